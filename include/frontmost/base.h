@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every room shares: errors, how to run (threads, instruction set, watching long work), boxes, buffers.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <limits>
+#include <memory>
+#include <new>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace frontmost {
+
+/// Why a public function could not do what it was asked.
+enum class ErrorCode : std::uint8_t {
+  bad_argument,     ///< a value outside its documented range
+  file_unreadable,  ///< missing, a folder, no permission
+  file_malformed,   ///< contents that break the format
+  file_unwritable,  ///< output that could not be written whole; nothing is left behind
+  unsupported,      ///< valid, but not something Frontmost can do
+  limit_exceeded,   ///< larger than a documented limit
+  singular_camera,  ///< a camera or transform that cannot be inverted
+  cancelled,        ///< Watch::cancelled said so
+};
+
+/// Thrown by every public function that can be given bad input.
+/// what() names the culprit first: "engine.stl: triangle 41: ...".
+class Error : public std::runtime_error {
+ public:
+  Error(ErrorCode code, const std::string& what) : std::runtime_error(what), code_(code) {}
+  [[nodiscard]] ErrorCode code() const noexcept { return code_; }
+
+ private:
+  ErrorCode code_;
+};
+
+/// Instruction sets that the kernels are compiled for. None changes any result.
+enum class Isa : std::uint8_t { best, scalar, sse4, avx2, avx512 };
+
+/// \returns "scalar", "sse4", ...; "best" is resolved to what this machine would run.
+[[nodiscard]] std::string_view name(Isa isa);
+/// The instruction sets that this build holds and this machine can run, slowest first, never `best`.
+[[nodiscard]] std::span<const Isa> available_isas();
+
+/// Watches long work. Both functions may be called from any thread, at most a few hundred times a second.
+struct Watch {
+  /// What is being done ("load", "surfaces", ...), and how much of it is done, 0 to 1.
+  std::function<void(std::string_view stage, double fraction)> progress;
+  /// True ends the work soon, by Error with ErrorCode::cancelled.
+  std::function<bool()> cancelled;
+};
+
+/// How to run; never what the result is.
+struct Execution {
+  int threads = 0;               ///< 0: one per core
+  Isa isa = Isa::best;           ///< must be one of available_isas(), or best
+  const Watch* watch = nullptr;  ///< borrowed; may be null
+};
+
+/// The running number of a triangle over all instances in scene order.
+using PrimitiveId = std::uint32_t;
+inline constexpr std::uint32_t no_primitive = 0xFFFFFFFFu;
+/// "None" for materials, textures, objects and every other index.
+inline constexpr std::uint32_t no_index = 0xFFFFFFFFu;
+
+/// An axis-aligned box. Default: empty.
+struct Box {
+  glm::vec3 low{std::numeric_limits<float>::infinity()};
+  glm::vec3 high{-std::numeric_limits<float>::infinity()};
+
+  [[nodiscard]] bool is_empty() const { return !(low.x <= high.x && low.y <= high.y && low.z <= high.z); }
+  void include(const glm::vec3& point) {
+    low = glm::min(low, point);
+    high = glm::max(high, point);
+  }
+  void include(const Box& box) {
+    low = glm::min(low, box.low);
+    high = glm::max(high, box.high);
+  }
+  /// Precondition: not empty.
+  [[nodiscard]] glm::vec3 centre() const { return low + (high - low) * 0.5f; }
+  /// The length of the diagonal; 0 when empty.
+  [[nodiscard]] float diagonal() const { return is_empty() ? 0.0f : glm::length(high - low); }
+};
+
+/// A fixed-size array, aligned to 64 bytes, whose elements start uninitialised: for planes of pixels that are written
+/// whole before they are read. Copies are deep.
+template <class T>
+class Buffer {
+ public:
+  Buffer() = default;
+  explicit Buffer(std::size_t size)
+      : data_(static_cast<T*>(::operator new[](size * sizeof(T), std::align_val_t{64}))), size_(size) {}
+  Buffer(std::size_t size, const T& value) : Buffer(size) {
+    for (T& element : *this) element = value;
+  }
+  Buffer(const Buffer& other) : Buffer(other.size_) {
+    for (std::size_t i = 0; i < size_; ++i) data_[i] = other.data_[i];
+  }
+  Buffer(Buffer&& other) noexcept { swap(other); }
+  Buffer& operator=(Buffer other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~Buffer() = default;
+
+  void swap(Buffer& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+  }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] bool empty() const { return size_ == 0; }
+  [[nodiscard]] T* data() { return data_.get(); }
+  [[nodiscard]] const T* data() const { return data_.get(); }
+  [[nodiscard]] T* begin() { return data(); }
+  [[nodiscard]] T* end() { return data() + size_; }
+  [[nodiscard]] const T* begin() const { return data(); }
+  [[nodiscard]] const T* end() const { return data() + size_; }
+  [[nodiscard]] T& operator[](std::size_t i) { return data_[i]; }
+  [[nodiscard]] const T& operator[](std::size_t i) const { return data_[i]; }
+
+ private:
+  static_assert(std::is_trivially_destructible_v<T> && std::is_trivially_copyable_v<T>);
+  struct Release {
+    void operator()(T* pointer) const { ::operator delete[](pointer, std::align_val_t{64}); }
+  };
+  std::unique_ptr<T[], Release> data_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace frontmost

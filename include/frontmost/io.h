@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files: models in, images out. The only room that touches the file system.
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+
+#include "frontmost/image.h"
+#include "frontmost/scene.h"
+
+namespace frontmost {
+
+enum class ModelFormat : std::uint8_t { stl, ply, obj, off, gltf };
+
+struct LoadOptions {
+  std::optional<ModelFormat> format;  ///< none: by suffix and, for memory and standard input, by content
+  std::optional<Axis> up;             ///< none: the format's (z for STL, y for the others)
+};
+
+/// Reads a model. "-" reads standard input, "builtin:NAME" makes a built-in scene. Files named inside a model
+/// (material libraries, buffers, textures) are read only from the model's own folder and below.
+/// Triangle order and count are the file's. Memory while reading is at most about twice the result.
+/// \throws Error file_unreadable, file_malformed, unsupported or limit_exceeded: "name: place: reason".
+[[nodiscard]] Scene load(const std::string& path, const LoadOptions& options = {}, const Execution& execution = {});
+
+/// Reads a model from memory; `name` stands for the file in messages. Files named inside it are not read.
+[[nodiscard]] Scene load(std::span<const std::byte> bytes, const std::string& name, const LoadOptions& options = {},
+                         const Execution& execution = {});
+
+enum class ImageFormat : std::uint8_t { png, exr, pfm, npy };
+
+struct SaveOptions {
+  std::optional<ImageFormat> format;  ///< none: by suffix; needed for "-"
+  int bits = 8;                       ///< PNG: 8 or 16 for colours; ids and depths are always 16
+  /// PNG of a depth channel: stored value = depth * scale, rounded. None: the seen range fills 1 to 65535.
+  std::optional<double> depth_scale;
+};
+
+/// Writes to a temporary file beside `path` and renames it when whole. "-" writes standard output.
+/// PNG takes colours (sRGB, straight alpha), or one channel: depth or id + 1 as 16-bit grey, 0 where nothing is seen.
+/// EXR takes any channels (floats as 32-bit float, ids as uint32). PFM takes one or three float channels. NPY takes
+/// channels of one type, shape (height, width) or (height, width, channels).
+/// \throws Error file_unwritable, unsupported (channels that the format cannot hold), limit_exceeded (id over 65534).
+void save(const Image& image, const std::string& path, const SaveOptions& options = {});
+
+/// Reads PNG (to R, G, B, A: linear, premultiplied), EXR, PFM or NPY as save() writes them.
+[[nodiscard]] Image load_image(const std::string& path);
+
+}  // namespace frontmost

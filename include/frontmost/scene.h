@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene: meshes, materials, textures, placed instances and cameras, as plain values.
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "frontmost/base.h"
+
+namespace frontmost {
+
+/// One value per vertex, or per corner. Empty: the mesh has no such attribute.
+template <class T>
+struct Attribute {
+  std::vector<T> values;
+  /// For every triangle, which values its corners take. Empty: the same numbers as in Mesh::triangles.
+  std::vector<glm::uvec3> triangles;
+
+  [[nodiscard]] bool empty() const { return values.empty(); }
+};
+
+/// A triangle mesh in its own space. Counter-clockwise corners face the viewer.
+struct Mesh {
+  std::string name;
+  std::vector<glm::vec3> positions;   ///< any unit; as stored in the file, non-finite ones included
+  std::vector<glm::uvec3> triangles;  ///< corners, indices into positions, in file order
+  Attribute<glm::vec3> normals;       ///< unit length is not required; zero or non-finite ones count as missing
+  Attribute<glm::vec2> texcoords;     ///< u right, v down from the image's first row (glTF's convention)
+  Attribute<glm::vec4> colors;        ///< linear RGBA, multiplies the material's base colour
+  std::vector<std::uint32_t> material_ids;  ///< one per triangle, or one for all, or none; no_index: default material
+  /// The polygon of the file that each triangle came from (counted from 0 in the mesh). Empty: every polygon was one
+  /// triangle, so the triangle's number is the polygon's.
+  std::vector<std::uint32_t> face_ids;
+
+  /// Corner numbers of one triangle into `attribute.values`.
+  template <class T>
+  [[nodiscard]] const glm::uvec3& corners(const Attribute<T>& attribute, std::uint32_t triangle) const {
+    return attribute.triangles.empty() ? triangles[triangle] : attribute.triangles[triangle];
+  }
+  [[nodiscard]] std::uint32_t material_of(std::uint32_t triangle) const {
+    if (material_ids.empty()) return no_index;
+    return material_ids.size() == 1 ? material_ids[0] : material_ids[triangle];
+  }
+  [[nodiscard]] std::uint32_t face_of(std::uint32_t triangle) const {
+    return face_ids.empty() ? triangle : face_ids[triangle];
+  }
+};
+
+/// Decoded pixels, 8 bits a channel as the file stores them, first row on top.
+struct Texture {
+  enum class Wrap : std::uint8_t { repeat, mirror, clamp };
+  std::string name;
+  int width = 0, height = 0;
+  std::vector<glm::u8vec4> pixels;  ///< width * height, straight alpha
+  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+  bool nearest = false;  ///< no filtering, as palettes want it
+};
+
+/// A use of a texture: which one, and how its coordinates are turned before looking up.
+struct TextureUse {
+  std::uint32_t texture = no_index;
+  glm::vec2 offset{0}, scale{1};  ///< uv' = offset + rotation * (scale * uv), as KHR_texture_transform
+  float rotation = 0;             ///< radians, counter-clockwise about the uv origin
+  [[nodiscard]] bool is_set() const { return texture != no_index; }
+};
+
+/// Metallic-roughness, as glTF 2.0 defines it. Colours are linear.
+struct Material {
+  enum class Alpha : std::uint8_t { opaque, mask, blend };
+  std::string name;
+  glm::vec4 base_color{1};
+  TextureUse base_color_texture;  ///< sRGB; alpha is linear
+  float metallic = 0, roughness = 0.6f;
+  TextureUse metallic_roughness_texture;  ///< G roughness, B metallic
+  TextureUse normal_texture;              ///< tangent space
+  float normal_scale = 1;
+  glm::vec3 emissive{0};
+  TextureUse emissive_texture;   ///< sRGB
+  TextureUse occlusion_texture;  ///< R
+  float occlusion_strength = 1;
+  Alpha alpha = Alpha::opaque;
+  float alpha_cutoff = 0.5f;
+  bool double_sided = false;
+  bool unlit = false;  ///< KHR_materials_unlit: base colour as it is
+};
+
+/// One mesh at one place: an object that can be seen, named and counted.
+struct Instance {
+  std::string name;
+  std::uint32_t mesh = 0;
+  glm::dmat4 world_from_mesh{1.0};
+};
+
+/// A camera of the file. Looks down its own -z, y up.
+struct Camera {
+  std::string name;
+  glm::dmat4 world_from_eye{1.0};
+  bool orthographic = false;
+  double vertical = 0.8;              ///< full vertical field of view in radians, or (orthographic) full height
+  std::optional<double> aspect;       ///< width / height; none: the picture's
+  std::optional<double> near, far;    ///< positive distances; none: fitted, or infinite
+};
+
+/// Which way is up in the model's own space.
+enum class Axis : std::uint8_t { x, y, z, minus_x, minus_y, minus_z };
+[[nodiscard]] glm::dvec3 direction(Axis axis);
+
+struct Scene {
+  std::string name;  ///< the file's name without folder and suffix, or the built-in scene's
+  std::vector<Mesh> meshes;
+  std::vector<Instance> instances;  ///< the order that primitive ids follow
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+  std::vector<Camera> cameras;
+  Axis up = Axis::y;
+  std::vector<std::string> warnings;  ///< what the reader passed over, each with its place
+};
+
+/// Triangles over all instances. O(instances).
+[[nodiscard]] std::uint64_t triangle_count(const Scene& scene);
+
+/// Checks what a reader promises: array sizes that belong together, indices in range, at most 2^32 - 2 triangles.
+/// \throws Error file_malformed or limit_exceeded naming the mesh and triangle. O(size of the scene).
+void validate(const Scene& scene);
+
+/// A scene made by code: teapot, cubes, cycle, city, spheres, gallery.
+/// \throws Error bad_argument naming the known ones.
+[[nodiscard]] Scene builtin(std::string_view name);
+/// The names that builtin() knows, in that order.
+[[nodiscard]] std::span<const std::string_view> builtin_names();
+
+}  // namespace frontmost

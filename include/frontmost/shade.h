@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shading: colour for what a method found visible, decided last and only where something is seen.
+#pragma once
+
+#include <optional>
+
+#include "frontmost/image.h"
+#include "frontmost/surfaces.h"
+#include "frontmost/visible.h"
+
+namespace frontmost {
+
+/// What the picture shows.
+enum class Shading : std::uint8_t {
+  lit,      ///< metallic-roughness, key light with shadow, sky and ground
+  flat,     ///< base colour as it is, no light
+  normals,  ///< world-space shading normals, 0.5 + 0.5 n
+  depth,    ///< near bright, far dark, over the depths that are seen
+  ids,      ///< a colour of its own for every object
+  uv,       ///< texture coordinates as red and green
+};
+
+struct ShadeOptions {
+  Shading shading = Shading::lit;
+  /// sRGB, 0 to 1. None: transparent.
+  std::optional<glm::vec3> background = glm::vec3(1.0f);
+  bool shadows = true;
+};
+
+/// A picture with channels R, G, B, A. Shades once per pixel and primitive and averages over the samples.
+/// Borrows everything; O(covered pixels). The bytes do not depend on threads or instruction set.
+[[nodiscard]] Image shade(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
+                          const Execution& execution = {});
+
+/// World-space unit shading normals at the first sample: channels N.X, N.Y, N.Z; zero where nothing is seen.
+[[nodiscard]] Image normal_image(const Surfaces& surfaces, const Visible& visible, const Execution& execution = {});
+
+}  // namespace frontmost

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Surfaces: a scene made ready for every visibility method.
+#pragma once
+
+#include <memory>
+
+#include "frontmost/base.h"
+#include "frontmost/scene.h"
+
+namespace frontmost {
+
+struct ClusterSet;  // src/surfaces/cluster_set.h: what the methods read
+
+/// Where a primitive id comes from.
+struct PrimitiveSource {
+  std::uint32_t instance = no_index;
+  std::uint32_t mesh = no_index;
+  std::uint32_t triangle = no_index;  ///< within the mesh
+};
+
+/// All triangles of a scene in world space, flattened over instances, in clusters, with stable ids: the id of a
+/// triangle is its running number over all instances in scene order. Immutable, and safe to share between threads.
+/// Triangles with a non-finite corner are never seen, but keep their number.
+class Surfaces {
+ public:
+  /// Borrows `scene`, which must outlive the surfaces and stay as it is.
+  /// O(triangles), in parallel; about 12 bytes a triangle for meshes with shared vertices.
+  /// \throws Error as validate(scene) does, and bad_argument for a non-finite instance transform.
+  explicit Surfaces(const Scene& scene, const Execution& execution = {});
+  ~Surfaces();
+  Surfaces(Surfaces&&) noexcept;
+  Surfaces& operator=(Surfaces&&) noexcept;
+  Surfaces(const Surfaces&) = delete;
+  Surfaces& operator=(const Surfaces&) = delete;
+
+  [[nodiscard]] const Scene& scene() const;
+  [[nodiscard]] std::uint32_t primitive_count() const;
+  /// The instance, mesh and triangle behind an id. O(log instances). Precondition: id < primitive_count().
+  [[nodiscard]] PrimitiveSource source(PrimitiveId id) const;
+  /// The first id of an instance; its ids are consecutive.
+  [[nodiscard]] PrimitiveId first_primitive(std::uint32_t instance) const;
+  /// World-space bounds of all triangles with finite corners; of one instance.
+  [[nodiscard]] const Box& bounds() const;
+  [[nodiscard]] const Box& bounds(std::uint32_t instance) const;
+  /// World-space corners of one triangle, to the bit those that the methods draw.
+  [[nodiscard]] std::array<glm::vec3, 3> corners(PrimitiveId id) const;
+  /// Bytes held beside the scene's own arrays.
+  [[nodiscard]] std::size_t byte_count() const;
+
+  [[nodiscard]] const ClusterSet& clusters() const { return *clusters_; }
+
+ private:
+  std::unique_ptr<const ClusterSet> clusters_;
+};
+
+}  // namespace frontmost

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// Views: projections, depth conventions, cameras, and the pixel grid that a visibility method answers for.
+//
+// Eye space looks down -z, y up, x right. Screen space is in pixels: x right, y down, origin at the top left corner,
+// pixel centres at +0.5. Depth given to users is -z_eye: planar distance, positive, in scene units.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+
+#include "frontmost/base.h"
+#include "frontmost/scene.h"
+#include "frontmost/surfaces.h"
+
+namespace frontmost {
+
+/// Positive distances of the near and far planes along the viewing axis. `far` may be infinite.
+struct ClipDistances {
+  double near = 0.1;
+  double far = std::numeric_limits<double>::infinity();
+
+  /// From the negative eye-space z values that Gortler's book uses: at_z(-0.1, -50).
+  static ClipDistances at_z(double z_near, double z_far) { return {-z_near, -z_far}; }
+};
+
+/// A viewing volume: the rectangle [left, right] x [bottom, top] at unit distance before the eye (perspective), or in
+/// scene units at every distance (orthographic), between two planes.
+struct Projection {
+  bool orthographic = false;
+  double left = -1, right = 1, bottom = -1, top = 1;
+  ClipDistances clip;
+};
+
+/// Perspective by the smaller field of view, in radians, of the two image directions. `aspect` is width / height.
+/// (S. Gortler, Foundations of 3D Computer Graphics, chapter 10.) The functions below throw Error bad_argument on
+/// non-finite, reversed or zero-sized values, and on near <= 0 in perspective or far <= near.
+[[nodiscard]] Projection make_projection(double min_fov, double aspect, const ClipDistances& clip);
+/// Perspective by frustum sides measured on the near plane, as glFrustum takes them.
+[[nodiscard]] Projection make_frustum(double left, double right, double bottom, double top, const ClipDistances& clip);
+/// Parallel projection of [left, right] x [bottom, top] in scene units.
+[[nodiscard]] Projection make_orthographic(double left, double right, double bottom, double top,
+                                           const ClipDistances& clip);
+
+/// Where the vision world puts the centre of the first pixel.
+enum class PixelRule : std::uint8_t {
+  centre_at_half,     ///< (0.5, 0.5): OpenGL, Frontmost
+  centre_at_integer,  ///< (0, 0): OpenCV, most calibration tools
+};
+
+/// A pinhole camera matrix K = [fx 0 cx; 0 fy cy; 0 0 1], x right, y down, in pixels.
+struct Intrinsics {
+  double fx = 0, fy = 0, cx = 0, cy = 0;
+  PixelRule rule = PixelRule::centre_at_integer;
+};
+[[nodiscard]] Projection make_projection(const Intrinsics& intrinsics, int width, int height,
+                                         const ClipDistances& clip);
+/// The inverse. Precondition: perspective.
+[[nodiscard]] Intrinsics intrinsics_of(const Projection& projection, int width, int height, PixelRule rule);
+
+/// Which normalised depth the near and far planes map to: conventions as values.
+struct DepthConvention {
+  double at_near, at_far;
+};
+inline constexpr DepthConvention gortler_depth{1, -1};   ///< nearer is greater; compare with GREATER
+inline constexpr DepthConvention opengl_depth{-1, 1};    ///< nearer is less; compare with LESS
+inline constexpr DepthConvention zero_to_one_depth{0, 1};
+inline constexpr DepthConvention reversed_depth{1, 0};   ///< nearer is greater; exact with floats
+
+/// The 4x4 matrix to clip space. Infinite far planes are taken to their limit.
+[[nodiscard]] glm::dmat4 clip_from_eye(const Projection& projection, const DepthConvention& depth = opengl_depth);
+/// Planar distance of a normalised depth, the inverse of the map above. Infinite far gives +inf at at_far.
+[[nodiscard]] double distance_of_depth(const Projection& projection, const DepthConvention& depth, double ndc_depth);
+
+/// A rigid pose from eye position, target and up. Up need not be perpendicular; where it is parallel to the viewing
+/// direction another axis is taken, deterministically.
+/// \throws Error singular_camera when eye and target coincide or are not finite.
+[[nodiscard]] glm::dmat4 look_at(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up);
+
+/// How a 4x4 pose is meant.
+enum class PoseConvention : std::uint8_t {
+  opengl_camera_to_world,  ///< the house's: x right, y up, looks down -z
+  opengl_world_to_camera,
+  opencv_camera_to_world,  ///< x right, y down, looks down +z
+  opencv_world_to_camera,
+};
+/// \throws Error singular_camera when the pose is not a rotation and a translation (to 1e-4).
+[[nodiscard]] glm::dmat4 world_from_eye(const glm::dmat4& pose, PoseConvention convention);
+[[nodiscard]] glm::dmat4 pose_of(const glm::dmat4& world_from_eye, PoseConvention convention);
+
+/// Which triangles are left out by the way they face. Counter-clockwise on the screen is front. A triangle that is
+/// seen edge-on (N.V = 0, zero area after snapping) faces nobody and covers nothing.
+enum class Culling : std::uint8_t { none, back, front, both };
+
+/// A camera and a pixel grid: all that decides what is visible, beside the surfaces.
+struct View {
+  int width = 0, height = 0;   ///< pixels, 1 to 16384 each
+  int samples = 1;             ///< per pixel: 1, 2, 4, 8 or 16; positions as in sample_offsets()
+  glm::dmat4 world_from_eye{1.0};
+  Projection projection;
+  Culling culling = Culling::none;
+
+  [[nodiscard]] glm::dvec3 eye() const { return glm::dvec3(world_from_eye[3]); }
+  [[nodiscard]] glm::dvec3 forward() const { return -glm::dvec3(world_from_eye[2]); }
+  [[nodiscard]] glm::dvec3 up() const { return glm::dvec3(world_from_eye[1]); }
+  [[nodiscard]] glm::dvec3 right() const { return glm::dvec3(world_from_eye[0]); }
+  [[nodiscard]] std::size_t pixel_count() const { return std::size_t(width) * std::size_t(height); }
+  [[nodiscard]] std::size_t sample_count() const { return pixel_count() * std::size_t(samples); }
+};
+
+/// \throws Error bad_argument, limit_exceeded or singular_camera, naming the field.
+void validate(const View& view);
+
+/// Sample positions within a pixel in 1/256 pixel from its top left corner: the standard rotated-grid patterns
+/// (Direct3D 11.1 functional specification, 16.1), whose entries are multiples of 1/16 pixel.
+/// One sample sits at the centre, (128, 128).
+[[nodiscard]] std::span<const glm::ivec2> sample_offsets(int samples);
+
+/// The named directions. `front` looks at the model's front: along -y for z-up models, along -z for y-up ones.
+enum class NamedView : std::uint8_t { front, back, left, right, top, bottom, iso, three_quarter };
+
+struct FrameOptions {
+  NamedView direction = NamedView::three_quarter;
+  bool orthographic = false;
+  double min_fov = 0.5235987755982988;  ///< radians (30 degrees), of the smaller image side
+  double margin = 0.05;                 ///< of the picture on each side
+  int samples = 1;
+  Culling culling = Culling::none;
+};
+
+/// A view that shows all of `surfaces`, with near and far fitted. Empty surfaces: a unit box about the origin.
+[[nodiscard]] View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& options = {});
+
+/// Near and far planes that enclose what of `bounds` lies before the eye, with 1 % to spare, and near at least
+/// far / 10000 in perspective.
+[[nodiscard]] ClipDistances fit_clip(const Box& bounds, const glm::dmat4& world_from_eye, bool orthographic);
+
+}  // namespace frontmost

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "base/float_environment.h"
+
+#if defined(FRONTMOST_THREADS_tbb)
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#endif
+
+namespace frontmost {
+namespace {
+
+// Chunks of one loop, handed out in order to whoever asks.
+class ChunkQueue {
+ public:
+  ChunkQueue(const Execution& execution, std::size_t count, std::size_t grain, detail::ChunkFunction function,
+             void* context)
+      : execution_(execution), count_(count), grain_(grain), function_(function), context_(context) {}
+
+  [[nodiscard]] std::size_t chunk_count() const { return (count_ + grain_ - 1) / grain_; }
+
+  // Runs chunks until none are left or one has failed.
+  void drain() noexcept {
+    const IeeeScope ieee;
+    for (;;) {
+      const std::size_t chunk = next_.fetch_add(1, std::memory_order_relaxed);
+      if (chunk >= chunk_count() || failed_.load(std::memory_order_relaxed)) return;
+      try {
+        check_cancelled(execution_);
+        function_(context_, chunk * grain_, std::min(count_, (chunk + 1) * grain_));
+      } catch (...) {
+        const std::lock_guard lock(mutex_);
+        if (!error_) error_ = std::current_exception();
+        failed_.store(true, std::memory_order_relaxed);
+      }
+    }
+  }
+
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  const Execution& execution_;
+  std::size_t count_, grain_;
+  detail::ChunkFunction function_;
+  void* context_;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<bool> failed_{false};
+  std::mutex mutex_;
+  std::exception_ptr error_;
+};
+
+#if defined(FRONTMOST_THREADS_tbb)
+void drain_on(int threads, ChunkQueue& queue) {
+  // More threads than cores need both the arena and the global limit raised.
+  tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
+  tbb::task_arena arena(threads);
+  arena.execute([&] {
+    tbb::parallel_for(0, threads, 1, [&](int) { queue.drain(); }, tbb::simple_partitioner());
+  });
+}
+#elif defined(FRONTMOST_THREADS_std)
+void drain_on(int threads, ChunkQueue& queue) {
+  std::vector<std::thread> helpers;
+  for (int i = 1; i < threads; ++i) helpers.emplace_back([&] { queue.drain(); });
+  queue.drain();
+  for (std::thread& helper : helpers) helper.join();
+}
+#else
+void drain_on(int, ChunkQueue& queue) { queue.drain(); }
+#endif
+
+}  // namespace
+
+void detail::run_chunks(const Execution& execution, std::size_t count, std::size_t grain, ChunkFunction function,
+                        void* context) {
+  if (count == 0) return;
+  ChunkQueue queue(execution, count, std::max<std::size_t>(grain, 1), function, context);
+  const int threads = static_cast<int>(std::min<std::size_t>(std::size_t(thread_count(execution)), queue.chunk_count()));
+  if (threads <= 1) {
+    queue.drain();
+  } else {
+    drain_on(threads, queue);
+  }
+  queue.rethrow();
+}
+
+int thread_count(const Execution& execution) {
+  constexpr int kMostThreads = 1024;
+  if (execution.threads < 0 || execution.threads > kMostThreads)
+    throw Error(ErrorCode::bad_argument, "threads: must be 0 (one per core) to 1024");
+  if (execution.threads > 0) return execution.threads;
+  static const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return cores;
+}
+
+void check_cancelled(const Execution& execution) {
+  if (execution.watch && execution.watch->cancelled && execution.watch->cancelled())
+    throw Error(ErrorCode::cancelled, "cancelled");
+}
+
+void report_progress(const Execution& execution, std::string_view stage, double fraction) {
+  if (execution.watch && execution.watch->progress) execution.watch->progress(stage, fraction);
+}
+
+}  // namespace frontmost

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// The only road to threads. Chunk boundaries depend on the range and the grain, never on the number of threads, so
+// that work split by chunk gives the same result however many threads there are.
+#pragma once
+
+#include <cstddef>
+
+#include "frontmost/base.h"
+
+namespace frontmost {
+
+namespace detail {
+using ChunkFunction = void (*)(void* context, std::size_t begin, std::size_t end);
+void run_chunks(const Execution& execution, std::size_t count, std::size_t grain, ChunkFunction function,
+                void* context);
+}  // namespace detail
+
+/// Calls `body(begin, end)` for consecutive chunks of `grain` indices that cover [0, count), in any order, on
+/// execution.threads threads. The first exception of a body is thrown again here. Polls Watch::cancelled between
+/// chunks. Every body runs with round-to-nearest and without flush-to-zero, whatever the caller's setting.
+template <class Body>
+void parallel_for(const Execution& execution, std::size_t count, std::size_t grain, Body&& body) {
+  detail::run_chunks(
+      execution, count, grain,
+      [](void* context, std::size_t begin, std::size_t end) {
+        (*static_cast<std::remove_reference_t<Body>*>(context))(begin, end);
+      },
+      &body);
+}
+
+/// The number of threads that parallel_for would use. \throws Error bad_argument for a negative number.
+[[nodiscard]] int thread_count(const Execution& execution);
+
+/// \throws Error cancelled when the watch says so.
+void check_cancelled(const Execution& execution);
+/// Tells the watch, if there is one.
+void report_progress(const Execution& execution, std::string_view stage, double fraction);
+
+}  // namespace frontmost

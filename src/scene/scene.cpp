@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frontmost/scene.h"
+
+namespace frontmost {
+namespace {
+
+[[noreturn]] void fail(const Scene& scene, std::size_t mesh, const std::string& reason) {
+  const std::string& name = scene.meshes[mesh].name;
+  throw Error(ErrorCode::file_malformed, scene.name + ": mesh " + std::to_string(mesh) +
+                                             (name.empty() ? "" : " (" + name + ")") + ": " + reason);
+}
+
+void check_corners(const Scene& scene, std::size_t mesh, const std::vector<glm::uvec3>& triangles, std::size_t count,
+                   const char* what) {
+  // One pass without branches finds whether there is anything to say; a second one finds where.
+  std::uint32_t greatest = 0;
+  for (const glm::uvec3& t : triangles) greatest = std::max({greatest, t.x, t.y, t.z});
+  if (triangles.empty() || greatest < count) return;
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      if (triangles[i][k] >= count)
+        fail(scene, mesh, "triangle " + std::to_string(i) + ": " + what + " " + std::to_string(triangles[i][k]) +
+                              " is out of range, there are " + std::to_string(count));
+}
+
+template <class T>
+void check_attribute(const Scene& scene, std::size_t m, const Attribute<T>& attribute, const char* what) {
+  if (attribute.empty()) return;
+  const Mesh& mesh = scene.meshes[m];
+  if (attribute.triangles.empty()) {
+    if (attribute.values.size() < mesh.positions.size()) fail(scene, m, std::string("fewer ") + what + "s than positions");
+  } else {
+    if (attribute.triangles.size() != mesh.triangles.size())
+      fail(scene, m, std::string("corners of ") + what + "s do not match the triangles");
+    check_corners(scene, m, attribute.triangles, attribute.values.size(), what);
+  }
+}
+
+void check_mesh(const Scene& scene, std::size_t m) {
+  const Mesh& mesh = scene.meshes[m];
+  check_corners(scene, m, mesh.triangles, mesh.positions.size(), "vertex");
+  check_attribute(scene, m, mesh.normals, "normal");
+  check_attribute(scene, m, mesh.texcoords, "texture coordinate");
+  check_attribute(scene, m, mesh.colors, "colour");
+  if (mesh.material_ids.size() > 1 && mesh.material_ids.size() != mesh.triangles.size())
+    fail(scene, m, "material ids do not match the triangles");
+  for (const std::uint32_t id : mesh.material_ids)
+    if (id != no_index && id >= scene.materials.size()) fail(scene, m, "material " + std::to_string(id) + " does not exist");
+  if (!mesh.face_ids.empty() && mesh.face_ids.size() != mesh.triangles.size())
+    fail(scene, m, "face ids do not match the triangles");
+}
+
+void check_use(const Scene& scene, const Material& material, const TextureUse& use) {
+  if (use.is_set() && use.texture >= scene.textures.size())
+    throw Error(ErrorCode::file_malformed, scene.name + ": material " + material.name + ": texture " +
+                                               std::to_string(use.texture) + " does not exist");
+}
+
+}  // namespace
+
+glm::dvec3 direction(Axis axis) {
+  switch (axis) {
+    case Axis::x: return {1, 0, 0};
+    case Axis::y: return {0, 1, 0};
+    case Axis::z: return {0, 0, 1};
+    case Axis::minus_x: return {-1, 0, 0};
+    case Axis::minus_y: return {0, -1, 0};
+    case Axis::minus_z: return {0, 0, -1};
+  }
+  return {0, 1, 0};
+}
+
+std::uint64_t triangle_count(const Scene& scene) {
+  std::uint64_t count = 0;
+  for (const Instance& instance : scene.instances)
+    if (instance.mesh < scene.meshes.size()) count += scene.meshes[instance.mesh].triangles.size();
+  return count;
+}
+
+void validate(const Scene& scene) {
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) check_mesh(scene, m);
+  for (const Material& material : scene.materials)
+    for (const TextureUse* use : {&material.base_color_texture, &material.metallic_roughness_texture,
+                                  &material.normal_texture, &material.emissive_texture, &material.occlusion_texture})
+      check_use(scene, material, *use);
+  for (const Texture& texture : scene.textures)
+    if (texture.width < 0 || texture.height < 0 ||
+        texture.pixels.size() != std::size_t(texture.width) * std::size_t(texture.height))
+      throw Error(ErrorCode::file_malformed, scene.name + ": texture " + texture.name + ": pixels do not match its size");
+  for (std::size_t i = 0; i < scene.instances.size(); ++i)
+    if (scene.instances[i].mesh >= scene.meshes.size())
+      throw Error(ErrorCode::file_malformed, scene.name + ": instance " + std::to_string(i) + ": mesh " +
+                                                 std::to_string(scene.instances[i].mesh) + " does not exist");
+  if (triangle_count(scene) > no_primitive - 1)
+    throw Error(ErrorCode::limit_exceeded, scene.name + ": more than 4294967294 triangles over all instances");
+}
+
+}  // namespace frontmost
