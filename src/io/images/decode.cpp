@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tells image formats apart and holds the limits that all decoders share.
+#include "io/images/decode.h"
+
+#include <cstring>
+#include <string_view>
+
+#include "io/images/decoders.h"
+
+namespace frontmost {
+namespace {
+
+struct Signature {
+  std::size_t offset;
+  std::string_view bytes;
+  const char* format;
+};
+
+/// Formats that models refer to in the wild and that we name instead of calling them broken.
+constexpr Signature foreign_formats[] = {
+    {8, "WEBP", "WebP"},
+    {1, "KTX 20", "KTX2"},
+    {1, "KTX 11", "KTX"},
+    {0, "DDS ", "DDS"},
+    {0, "GIF8", "GIF"},
+    {0, "BM", "BMP"},
+    {4, "ftypavif", "AVIF"},
+    {0, "II*\0", "TIFF"},
+    {0, "MM\0*", "TIFF"},
+    {0, "8BPS", "PSD"},
+    {0, "\x76\x2f\x31\x01", "OpenEXR"},
+    {0, "#?RADIANCE", "Radiance"},
+};
+
+bool matches(std::span<const std::byte> bytes, std::size_t offset, std::string_view signature) {
+  return bytes.size() >= offset + signature.size() &&
+         std::memcmp(bytes.data() + offset, signature.data(), signature.size()) == 0;
+}
+
+Texture decode(std::span<const std::byte> bytes, const std::string& name, detail::ImagePart part) {
+  using namespace std::string_view_literals;
+  if (matches(bytes, 0, "\x89PNG\r\n\x1a\n"sv)) return detail::decode_png(bytes, name, part);
+  if (matches(bytes, 0, "\xff\xd8\xff"sv)) return detail::decode_jpeg(bytes, name, part);
+  for (const Signature& foreign : foreign_formats)
+    if (matches(bytes, foreign.offset, foreign.bytes))
+      throw Error(ErrorCode::unsupported,
+                  name + ": " + foreign.format + " images are not supported, only PNG and JPEG");
+  throw Error(ErrorCode::file_malformed, name + (bytes.empty() ? ": the image is empty" : ": neither PNG nor JPEG"));
+}
+
+}  // namespace
+
+namespace detail {
+
+void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height, std::size_t byte_count,
+                      double densest) {
+  const std::string size = std::to_string(width) + " x " + std::to_string(height);
+  if (width == 0 || height == 0) throw Error(ErrorCode::file_malformed, name + ": an image of " + size + " pixels");
+  if (width > std::uint64_t(max_image_side) || height > std::uint64_t(max_image_side) ||
+      width * height > max_image_pixels)
+    throw Error(ErrorCode::limit_exceeded, name + ": " + size + " pixels, more than " + std::to_string(max_image_side) +
+                                               " on a side or " + std::to_string(max_image_pixels) + " in all");
+  if (double(width * height) > densest * double(byte_count))
+    throw Error(ErrorCode::file_malformed,
+                name + ": " + std::to_string(byte_count) + " bytes cannot hold " + size + " pixels");
+}
+
+}  // namespace detail
+
+Texture decode_texture(std::span<const std::byte> bytes, const std::string& name) {
+  return decode(bytes, name, detail::ImagePart::pixels);
+}
+
+glm::ivec2 texture_size(std::span<const std::byte> bytes, const std::string& name) {
+  const Texture header = decode(bytes, name, detail::ImagePart::size);
+  return {header.width, header.height};
+}
+
+}  // namespace frontmost
