@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/srgb.h"
+
+#include <cmath>
+
+namespace frontmost {
+namespace {
+
+// The exponent 2.4 is 12/5, so that both directions are roots of products. Newton's iteration for a root uses only
+// operations that every machine, and the compiler, rounds alike.
+
+/// value^(12/5) for value in (0.05, 1].
+constexpr double power_12_5(double value) {
+  const double square = value * value;
+  const double fourth = square * square;
+  const double twelfth = fourth * fourth * fourth;
+  double root = square;  // from above: the iteration falls to the fifth root
+  for (int i = 0; i < 16; ++i) {
+    const double root2 = root * root;
+    root = (4 * root + twelfth / (root2 * root2)) / 5;
+  }
+  return root;
+}
+
+/// value^(5/12) for value in (0.003, 1].
+double power_5_12(double value) {
+  const double square = value * value;
+  const double cube = std::sqrt(std::sqrt(square * square * value));  // sqrt is rounded correctly everywhere
+  double root = 0.22 + cube * (1.38 - 0.6 * cube);                    // within a factor of 3
+  for (int i = 0; i < 7; ++i) root = (2 * root + cube / (root * root)) / 3;
+  return root;
+}
+
+constexpr double linear_of_srgb(double value) {
+  return value <= 0.04045 ? value / 12.92 : power_12_5((value + 0.055) / 1.055);
+}
+
+/// The bits of the smallest float that is not below `value`, for value in (0, 1).
+constexpr std::uint32_t float_bits_from(double value) {
+  std::uint32_t exponent = 127;
+  while (value < 1) {
+    value *= 2;
+    --exponent;
+  }
+  const double mantissa = (value - 1) * 8388608.0;
+  const auto whole = std::uint32_t(mantissa);
+  return (exponent << 23) + whole + (double(whole) < mantissa ? 1 : 0);  // a carry moves on into the exponent, rightly
+}
+
+/// The first float of each byte from 1 on.
+constexpr std::array<std::uint32_t, 255> thresholds() {
+  std::array<std::uint32_t, 255> result{};
+  for (int byte = 1; byte < 256; ++byte)
+    result[std::size_t(byte - 1)] = float_bits_from(linear_of_srgb((byte - 0.5) / 255));
+  return result;
+}
+
+constexpr std::array<std::uint32_t, detail::srgb8_bucket_count> buckets() {
+  std::array<std::uint32_t, detail::srgb8_bucket_count> result{};
+  const auto threshold = thresholds();
+  std::uint32_t byte = 0;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const std::uint32_t first = detail::least_srgb8_bits + std::uint32_t(i << 16);
+    if (byte < 255 && threshold[byte] <= first) ++byte;
+    const bool changes = byte < 255 && threshold[byte] <= (first | 0xFFFFu);
+    result[i] = (byte << 16) + (changes ? 0x10000u - (threshold[byte] & 0xFFFFu) : 0);
+    if (changes) ++byte;
+  }
+  return result;
+}
+
+constexpr bool buckets_hold_one_threshold_each() {
+  const auto threshold = thresholds();
+  for (std::size_t i = 1; i < threshold.size(); ++i)
+    if (threshold[i] >> 16 == threshold[i - 1] >> 16) return false;
+  return threshold[0] > detail::least_srgb8_bits;
+}
+static_assert(buckets_hold_one_threshold_each());
+
+constexpr std::array<float, 256> linear_table() {
+  std::array<float, 256> result{};
+  for (int byte = 0; byte < 256; ++byte) result[std::size_t(byte)] = float(linear_of_srgb(byte / 255.0));
+  return result;
+}
+
+}  // namespace
+
+constexpr std::array<std::uint32_t, detail::srgb8_bucket_count> detail::srgb8_buckets = buckets();
+constexpr std::array<float, 256> detail::linear_of_srgb8 = linear_table();
+
+double srgb_of_linear(double linear) {
+  return linear <= 0.0031308 ? linear * 12.92 : 1.055 * power_5_12(linear) - 0.055;
+}
+
+std::uint16_t srgb16_of_linear(float linear) {
+  const double clamped = linear > 0 ? (linear < 1 ? double(linear) : 1.0) : 0.0;
+  return std::uint16_t(srgb_of_linear(clamped) * 65535 + 0.5);
+}
+
+float linear_of_srgb16(std::uint16_t value) { return float(linear_of_srgb(value / 65535.0)); }
+
+}  // namespace frontmost
