@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which format a file is in, by its name and by its contents.
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "io/models/reader.h"
+#include "io/models/stl.h"
+
+namespace frontmost {
+namespace {
+
+/// The first bytes as text, without leading white space, byte order mark and comment lines.
+std::string_view first_statement(Bytes bytes) {
+  constexpr std::size_t window = 1 << 16;
+  std::string_view text(reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), window));
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  for (;;) {
+    text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+    if (!text.starts_with('#')) return text;
+    text.remove_prefix(std::min(text.find('\n'), text.size()));
+  }
+}
+
+bool starts_with_word(std::string_view text, std::string_view word) {
+  return text.starts_with(word) && (text.size() == word.size() || std::strchr(" \t\r\n", text[word.size()]) != nullptr);
+}
+
+bool looks_like_off(std::string_view text) {
+  // [ST][C][N][4][n]OFF
+  for (const std::string_view prefix : {"ST", "C", "N", "4", "n"})
+    if (text.starts_with(prefix)) text.remove_prefix(prefix.size());
+  return starts_with_word(text, "OFF");
+}
+
+bool looks_like_obj(std::string_view text) {
+  constexpr std::array statements{"v", "vt", "vn", "vp", "f", "o", "g", "s", "l", "p", "usemtl", "mtllib"};
+  return std::any_of(statements.begin(), statements.end(),
+                     [&](std::string_view word) { return starts_with_word(text, word); });
+}
+
+}  // namespace
+
+std::optional<ModelFormat> format_of_suffix(const std::string& path) {
+  std::string suffix = std::filesystem::path(path).extension().string();
+  for (char& c : suffix)
+    if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+  if (suffix == ".stl") return ModelFormat::stl;
+  if (suffix == ".ply") return ModelFormat::ply;
+  if (suffix == ".obj") return ModelFormat::obj;
+  if (suffix == ".off") return ModelFormat::off;
+  if (suffix == ".gltf" || suffix == ".glb") return ModelFormat::gltf;
+  return std::nullopt;
+}
+
+std::optional<ModelFormat> format_of_content(Bytes bytes) {
+  const std::string_view text = first_statement(bytes);
+  if (text.starts_with("glTF") || text.starts_with('{')) return ModelFormat::gltf;
+  if (starts_with_word(text, "ply")) return ModelFormat::ply;
+  if (looks_like_off(text)) return ModelFormat::off;
+  if (stl_encoding(bytes) != StlEncoding::neither) return ModelFormat::stl;
+  if (looks_like_obj(text)) return ModelFormat::obj;
+  return std::nullopt;
+}
+
+}  // namespace frontmost

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// load(): finds the bytes, finds the format, calls its reader, checks what came out.
+#include "base/parallel.h"
+#include "io/models/reader.h"
+
+namespace frontmost {
+namespace {
+
+constexpr std::string_view builtin_prefix = "builtin:";
+
+Scene read(ModelFormat format, Bytes bytes, const ModelSource& source) {
+  switch (format) {
+    case ModelFormat::stl: return read_stl(bytes, source);
+    case ModelFormat::gltf: return read_gltf(bytes, source);
+    default: break;
+  }
+  throw Error(ErrorCode::unsupported, source.name() + ": no reader for this format");
+}
+
+Axis default_up(ModelFormat format) { return format == ModelFormat::stl ? Axis::z : Axis::y; }
+
+Scene read_any(Bytes bytes, const ModelSource& source, std::optional<ModelFormat> format, const LoadOptions& options) {
+  if (bytes.empty()) throw Error(ErrorCode::file_malformed, source.name() + ": the file is empty");
+  if (!format) format = format_of_content(bytes);
+  if (!format)
+    throw Error(ErrorCode::unsupported,
+                source.name() + ": not a model that Frontmost can read (STL, PLY, OBJ, OFF, glTF, GLB)");
+  report_progress(source.execution(), "load", 0);
+  Scene scene = read(*format, bytes, source);
+  scene.name = source.stem();
+  scene.up = options.up.value_or(default_up(*format));
+  try {
+    validate(scene);
+  } catch (const Error& error) {
+    // validate() knows the scene by its short name only.
+    throw Error(error.code(), source.name() + ": " + error.what());
+  }
+  if (triangle_count(scene) == 0) scene.warnings.emplace_back("the file holds no triangles");
+  report_progress(source.execution(), "load", 1);
+  return scene;
+}
+
+}  // namespace
+
+Scene load(const std::string& path, const LoadOptions& options, const Execution& execution) {
+  if (path.starts_with(builtin_prefix)) {
+    throw Error(ErrorCode::unsupported, path + ": this build has no built-in scenes");
+  }
+  if (path == "-") {
+    const InputFile file = InputFile::standard_input("standard input");
+    Scene scene = read_any(file.bytes(), ModelSource("standard input", execution), options.format, options);
+    scene.name = "stdin";
+    return scene;
+  }
+  const InputFile file = InputFile::open(path, path);
+  const auto format = options.format ? options.format : format_of_suffix(path);
+  return read_any(file.bytes(), ModelSource(path, execution, file, path), format, options);
+}
+
+Scene load(std::span<const std::byte> bytes, const std::string& name, const LoadOptions& options,
+           const Execution& execution) {
+  return read_any(bytes, ModelSource(name, execution), options.format, options);
+}
+
+}  // namespace frontmost

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/models/model_source.h"
+
+#include <algorithm>
+
+namespace frontmost {
+namespace fs = std::filesystem;
+namespace {
+
+/// Whether `path` is `folder` or below it. Both canonical.
+bool is_within(const fs::path& path, const fs::path& folder) {
+  const auto [folder_end, path_end] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+  (void)path_end;
+  return folder_end == folder.end();
+}
+
+/// Whether a file name leaves its folder by its wording alone, on any system.
+bool leaves_folder(const std::string& reference) {
+  const fs::path path(reference);
+  if (path.is_absolute() || (reference.size() > 1 && reference[1] == ':')) return true;
+  const fs::path normal = path.lexically_normal();
+  return !normal.empty() && *normal.begin() == "..";
+}
+
+}  // namespace
+
+ModelSource::ModelSource(std::string name, const Execution& execution, const InputFile& file, fs::path path)
+    : name_(std::move(name)), execution_(execution), file_(&file), path_(std::move(path)) {}
+
+std::string ModelSource::stem() const { return fs::path(name_).stem().string(); }
+
+void ModelSource::fail(const std::string& place, const std::string& reason) const {
+  throw Error(ErrorCode::file_malformed, name_ + ": " + place + ": " + reason);
+}
+
+void ModelSource::fail_limit(const std::string& place, const std::string& reason) const {
+  throw Error(ErrorCode::limit_exceeded, name_ + ": " + place + ": " + reason);
+}
+
+fs::path ModelSource::confined(const std::string& reference) const {
+  const auto refuse = [&](const char* reason) -> void {
+    throw Error(ErrorCode::file_unreadable, name_ + ": " + reference + ": " + reason);
+  };
+  if (!has_folder()) refuse("files named inside a model are not read when it comes from memory or a stream");
+  std::string slashed = reference;
+  std::replace(slashed.begin(), slashed.end(), '\\', '/');
+  if (slashed.empty() || slashed.find('\0') != std::string::npos) refuse("not a file name");
+  if (leaves_folder(slashed)) refuse("lies outside the model's folder, so it is not read");
+
+  std::error_code error;
+  const fs::path folder = path_.has_parent_path() ? path_.parent_path() : fs::path(".");
+  const fs::path found = fs::canonical(folder / slashed, error);
+  if (error) refuse("cannot be found");
+  // A model may itself be a link into a store; then the files beside it are links to the same place.
+  const bool inside =
+      is_within(found, fs::canonical(folder, error)) || is_within(found, fs::canonical(path_, error).parent_path());
+  if (error || !inside) refuse("links to a place outside the model's folder, so it is not read");
+  // Never a pipe or a device, which could block for ever.
+  if (!fs::is_regular_file(found, error)) refuse("is not an ordinary file");
+  return found;
+}
+
+InputFile ModelSource::open(const std::string& reference, std::uint64_t max_bytes) const {
+  return InputFile::open(confined(reference), name_ + ": " + reference, max_bytes);
+}
+
+}  // namespace frontmost

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// The readers, one a format. Each turns bytes into a scene that frontmost::validate() accepts, keeps the order and
+// number of the file's triangles (degenerate ones too), and leaves units alone; load() adds the scene's name and up
+// axis and validates. Bad bytes end in Error "name: place: reason"; what can be passed over is told in
+// Scene::warnings, each with its place but without the file's name.
+#pragma once
+
+#include "frontmost/io.h"
+#include "io/models/model_source.h"
+
+namespace frontmost {
+
+using Bytes = std::span<const std::byte>;
+
+[[nodiscard]] Scene read_stl(Bytes bytes, const ModelSource& source);
+[[nodiscard]] Scene read_gltf(Bytes bytes, const ModelSource& source);
+
+/// The format that a file's suffix stands for. None: not one of ours.
+[[nodiscard]] std::optional<ModelFormat> format_of_suffix(const std::string& path);
+/// The format that the contents look like. None: none of ours.
+[[nodiscard]] std::optional<ModelFormat> format_of_content(Bytes bytes);
+
+}  // namespace frontmost
