@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+# Debian packages by CPack: frontmost (the program) and libfrontmost-dev (library, headers, descriptions).
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME frontmost)
+set(CPACK_PACKAGE_CONTACT "Frontmost maintainers <maintainers@frontmost.example>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+
+# Shared libraries that the program needs are found by dpkg-shlibdeps; a static library's are known to CMake alone.
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME frontmost)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
+"Pictures, depth and id maps of 3D models from the command line, without a
+GPU or a display, the same bytes on every machine. Reads STL, PLY, OBJ, OFF
+and glTF; writes PNG, OpenEXR, PFM and NPY.")
+
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libfrontmost-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+list(JOIN FRONTMOST_LINKED_DEB ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
+string(PREPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libglm-dev, ")
+if(NOT frontmost_kind STREQUAL STATIC_LIBRARY)
+  set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libglm-dev, frontmost (= ${PROJECT_VERSION})")
+endif()
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "The C++ library of Frontmost: headers, library, CMake and pkg-config files.")
+
+include(CPack)

@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# bench.sh FOLDER [ARGS]: says what machine this is, then runs every benchmark program of FOLDER.
+set -euo pipefail
+folder=$1
+shift
+echo "machine:  $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1), $(nproc) cores"
+echo "compiler: $(${CXX:-c++} --version | head -1)"
+echo "commit:   $(git describe --always --dirty 2>/dev/null || echo none)"
+for program in "$folder"/*_bench; do
+  echo
+  echo "== $(basename "$program")"
+  "$program" --benchmark_counters_tabular=true --benchmark_enable_random_interleaving=true "$@"
+done

@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Runs a command and shows one line; all of its output only when it fails.
+set -u
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+start=$(date +%s)
+"$@" >"$log" 2>&1
+status=$?
+if [ "$status" = 0 ]; then
+  echo "passed $1 ($(($(date +%s) - start)) s)"
+else
+  cat "$log"
+  echo "FAILED $1 with $status"
+  exit 255 # xargs stops at once
+fi

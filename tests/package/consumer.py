@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Installs a build into a fresh folder, compares what was laid down with the stored list, and builds and runs the
+consumer against it, once found by CMake and once by pkg-config.
+
+    consumer.py BUILD            the test; exit status 0 when all is well
+    consumer.py BUILD --update   stores the lists anew
+"""
+import argparse
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+STORED = HERE / "installed.txt"
+
+
+def run(*command, **options):
+    print("+", *command, flush=True)
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, **options)
+    if done.returncode != 0:
+        sys.exit(f"{done.stdout}{done.stderr}failed with {done.returncode}")
+    return done.stdout
+
+
+def listing(folder):
+    """All files below a folder; public headers as one line once they are known to be the repository's own."""
+    found = {p.relative_to(folder).as_posix() for p in folder.rglob("*") if not p.is_dir()}
+    headers = {name for name in found if name.endswith(".h")}
+    if headers:
+        expected = {p.name for p in (HERE.parent.parent / "include" / "frontmost").glob("*.h")} | {"version.h"}
+        if {pathlib.PurePath(name).name for name in headers} != expected:
+            sys.exit(f"installed headers {sorted(headers)} are not those of include/frontmost")
+        found = found - headers | {f"{pathlib.PurePath(min(headers)).parent}/*.h"}
+    return sorted(found)
+
+
+def compare(found, stored, update):
+    if update:
+        stored.write_text("\n".join(found) + "\n")
+        return
+    expected = stored.read_text().split("\n")[:-1]
+    errors = [f"missing: {name}" for name in expected if name not in found]
+    errors += [f"unexpected: {name}" for name in found if name not in expected]
+    if errors:
+        sys.exit("\n".join(errors) + f"\nthe list is {stored}; --update stores it anew")
+
+
+def check_output(text):
+    print(text, end="")
+    if not text.startswith("frontmost "):
+        sys.exit("the consumer ran, and said something else")
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--update", action="store_true")
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        prefix = folder / "prefix"
+        run("cmake", "--install", arguments.build.resolve(), "--prefix", prefix)
+        compare(listing(prefix), STORED, arguments.update)
+
+        run("cmake", "-S", HERE / "consumer", "-B", folder / "by_cmake", "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}")
+        run("cmake", "--build", folder / "by_cmake")
+        check_output(run(folder / "by_cmake" / "consumer"))
+
+        modules = next(prefix.rglob("frontmost.pc")).parent
+        environment = dict(os.environ, PKG_CONFIG_PATH=str(modules))
+        flags = run("pkg-config", "--cflags", "--libs", "frontmost", env=environment).split()
+        run("c++", "-std=c++20", HERE / "consumer" / "main.cpp", "-o", folder / "by_pkg_config", *flags)
+        check_output(run(folder / "by_pkg_config"))
+
+
+if __name__ == "__main__":
+    main()
