@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/bezier_patch.h"
+
+#include <cmath>
+
+namespace frontmost {
+namespace {
+
+using Weights = std::array<double, 4>;
+using Curve = std::array<glm::dvec3, 4>;
+
+Weights bernstein(PatchParameter t) {
+  const double a = t.complement, b = t.value;
+  return {a * a * a, 3 * (a * a) * b, 3 * (b * b) * a, b * b * b};
+}
+
+// The derivative of the cubic, as weights of its four points.
+Weights bernstein_slope(PatchParameter t) {
+  const double a = t.complement, b = t.value;
+  const double first = 3 * (a * a), middle = 6 * (a * b), last = 3 * (b * b);
+  return {-first, first - middle, middle - last, last};
+}
+
+// Ends with ends and middle with middle: the sum is the same for a curve and its reverse.
+glm::dvec3 blend(const Curve& p, const Weights& w) { return (p[0] * w[0] + p[3] * w[3]) + (p[1] * w[1] + p[2] * w[2]); }
+
+glm::dvec3 blend(const BezierPatch& patch, const Weights& u, const Weights& v) {
+  Curve across;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const glm::dvec3* row = &patch.points[4 * i];
+    across[i] = blend({row[0], row[1], row[2], row[3]}, v);
+  }
+  return blend(across, u);
+}
+
+}  // namespace
+
+PatchPoint evaluate(const BezierPatch& patch, PatchParameter u, PatchParameter v) {
+  const Weights wu = bernstein(u), wv = bernstein(v), du = bernstein_slope(u), dv = bernstein_slope(v);
+  PatchPoint point{blend(patch, wu, wv), blend(patch, du, wv), blend(patch, wu, dv), {}};
+  // At a pole v moves nothing. Near it, along_v is the distance in u times d2P / du dv, whose direction is the limit;
+  // from a pole at u = 1 that distance is negative.
+  glm::dvec3 across = point.along_v;
+  if (glm::dot(across, across) < 1e-20) across = blend(patch, du, dv) * (u.value < 0.5 ? 1.0 : -1.0);
+  const glm::dvec3 normal = glm::cross(across, point.along_u);
+  point.normal = normal / std::sqrt(glm::dot(normal, normal));
+  return point;
+}
+
+}  // namespace frontmost

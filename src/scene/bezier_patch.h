@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bicubic Bezier patches: exact enough for equal bits on both sides of a shared edge, and the teapot made of them.
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace frontmost {
+
+/// Sixteen control points, row by row: points[4 * i + j] weighs B_i(u) B_j(v). The outer side is dv x du.
+struct BezierPatch {
+  std::array<glm::dvec3, 16> points;
+};
+
+/// A place on a patch, and the directions in which u and v grow there.
+struct PatchPoint {
+  glm::dvec3 position, along_u, along_v;
+  glm::dvec3 normal;  ///< unit length, outward; the limit where a whole edge is pulled together to a pole
+};
+
+/// A parameter as a fraction with an explicit complement, so that walking an edge from the other end takes the same
+/// numbers: 1 - 9/10 is not 1/10 in binary.
+struct PatchParameter {
+  double value, complement;
+};
+[[nodiscard]] inline PatchParameter fraction(int part, int whole) {
+  return {double(part) / whole, double(whole - part) / whole};
+}
+
+/// Uses only +, * and sqrt, so the bits are the same on every machine. Points on a common edge of two patches are
+/// bit-equal when their control points are, whichever way each patch runs along it.
+[[nodiscard]] PatchPoint evaluate(const BezierPatch& patch, PatchParameter u, PatchParameter v);
+
+/// The 32 patches of the classic teapot, y up, standing on y = 0, spout towards +x: rim, upper and lower body, knob,
+/// lid and bottom in four quarters each, then two pieces of the handle and two of the spout in two halves each.
+[[nodiscard]] std::vector<BezierPatch> teapot_patches();
+
+}  // namespace frontmost

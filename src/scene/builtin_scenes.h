@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// The scenes behind builtin(), one function each.
+#pragma once
+
+#include "frontmost/scene.h"
+
+namespace frontmost {
+
+[[nodiscard]] Scene make_teapot();
+[[nodiscard]] Scene make_cubes();
+[[nodiscard]] Scene make_cycle();
+
+}  // namespace frontmost

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scene/topology.h"
+#include "scene/turn.h"
+
+namespace frontmost {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+TEST(Turn, IsTheCircleToTheLastBitsAndExactAtItsQuarters) {
+  for (int whole = 1; whole <= 360; ++whole)
+    for (int part = -whole; part <= 2 * whole; ++part) {
+      const glm::dvec2 t = turn(part, whole);
+      ASSERT_NEAR(t.x, std::cos(2 * kPi * part / whole), 4e-15) << part << "/" << whole;
+      ASSERT_NEAR(t.y, std::sin(2 * kPi * part / whole), 4e-15) << part << "/" << whole;
+    }
+  EXPECT_EQ(turn(0, 7), glm::dvec2(1, 0));
+  EXPECT_EQ(turn(1, 4), glm::dvec2(0, 1));
+  EXPECT_EQ(turn(2, 4), glm::dvec2(-1, 0));
+  EXPECT_EQ(turn(-1, 4), glm::dvec2(0, -1));
+}
+
+TEST(Turn, IsSymmetricToTheLastBit) {
+  for (int part = 0; part <= 96; ++part) {
+    const glm::dvec2 t = turn(part, 96);
+    EXPECT_EQ(turn(96 - part, 96), glm::dvec2(t.x, -t.y));
+    EXPECT_EQ(turn(48 - part, 96), glm::dvec2(-t.x, t.y));
+    EXPECT_EQ(turn(24 - part, 96), glm::dvec2(t.y, t.x));
+  }
+}
+
+TEST(Turn, NoNegativeZeros) {
+  for (int part = 0; part < 16; ++part)
+    for (int k = 0; k < 2; ++k) EXPECT_FALSE(turn(part, 16)[k] == 0 && std::signbit(turn(part, 16)[k])) << part;
+}
+
+TEST(Shapes, SphereIsClosedRoundAndOutward) {
+  for (const int rings : {2, 3, 16, 33}) {
+    const Mesh mesh = sphere(rings);
+    EXPECT_EQ(mesh.triangles.size(), std::size_t(4 * rings * (rings - 1)));
+    EXPECT_TRUE(test::is_oriented_manifold(mesh)) << rings;
+    EXPECT_EQ(test::boundary_count(mesh), 0) << rings;
+    EXPECT_EQ(test::euler_characteristic(mesh), 2) << rings;
+    EXPECT_EQ(mesh.positions, mesh.normals.values);
+    EXPECT_EQ(mesh.positions.front(), glm::vec3(0, 1, 0));
+    EXPECT_EQ(mesh.positions.back(), glm::vec3(0, -1, 0));
+  }
+  EXPECT_NEAR(test::signed_volume(sphere(128)) / 6, 4 * kPi / 3, 0.004);
+}
+
+TEST(Shapes, TorusKnotIsAClosedTube) {
+  const Mesh mesh = torus_knot({});
+  EXPECT_TRUE(test::is_oriented_manifold(mesh));
+  EXPECT_EQ(test::boundary_count(mesh), 0);
+  EXPECT_EQ(test::euler_characteristic(mesh), 0) << "genus 1";
+  EXPECT_GT(test::signed_volume(mesh), 0);
+  EXPECT_GT(test::worst_normal(mesh), 0.9);
+}
+
+TEST(Shapes, BoxSidesFaceOutwardAndCarryTheTextureUpright) {
+  const Mesh mesh = box({-1, 0, -2}, {3, 1, 2});
+  EXPECT_TRUE(test::is_oriented_manifold(mesh));
+  EXPECT_EQ(test::boundary_count(mesh), 0);
+  EXPECT_EQ(test::signed_volume(mesh), 6 * 16.0);
+  EXPECT_EQ(test::worst_normal(mesh), 1);
+  for (std::uint32_t t = 0; t < 12; ++t)
+    for (int k = 0; k < 3; ++k) {
+      if (std::abs(mesh.normals.values[mesh.normals.triangles[t][k]].y) == 1) continue;
+      const float v = mesh.texcoords.values[mesh.texcoords.triangles[t][k]].y;
+      EXPECT_EQ(v, 1 - mesh.positions[mesh.triangles[t][k]].y) << "v runs down";
+    }
+}
+
+TEST(Shapes, FloorFacesUp) {
+  const Mesh mesh = floor(4, 2, 3);
+  EXPECT_EQ(test::worst_normal(mesh), 1);
+  EXPECT_EQ(mesh.normals.values[0], glm::vec3(0, 1, 0));
+}
+
+TEST(Shapes, LookAtPutsTheTargetOnTheAxis) {
+  const Camera camera = look_at("test", {3, 4, 5}, {-1, 2, 0.5}, 90);
+  const glm::dvec4 target = glm::inverse(camera.world_from_eye) * glm::dvec4(-1, 2, 0.5, 1);
+  EXPECT_NEAR(target.x, 0, 1e-12);
+  EXPECT_NEAR(target.y, 0, 1e-12);
+  EXPECT_NEAR(target.z, -glm::length(glm::dvec3(4, 2, 4.5)), 1e-12);
+  EXPECT_NEAR(camera.vertical, kPi / 2, 1e-15);
+}
+
+TEST(Shapes, TurnedIsCounterClockwiseSeenFromAbove) {
+  // From above x points right and z down, so a quarter turn takes x to -z.
+  const glm::dvec4 x = turned(1, 4) * glm::dvec4(1, 0, 0, 1);
+  EXPECT_EQ(x, glm::dvec4(0, 0, -1, 1));
+  EXPECT_EQ(glm::determinant(turned(1, 7)) > 0.999999, true);
+}
+
+TEST(Shapes, ColorIsTheSrgbCurve) {
+  EXPECT_EQ(color(0x000000), glm::vec4(0, 0, 0, 1));
+  EXPECT_EQ(color(0xFFFFFF, 0.5), glm::vec4(1, 1, 1, 0.5));
+  for (std::uint32_t byte = 0; byte < 256; ++byte) {
+    const double value = byte / 255.0;
+    const double expected = value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+    EXPECT_NEAR(color(byte << 8).y, expected, 1e-7) << byte;
+  }
+}
+
+}  // namespace
+}  // namespace frontmost
