@@ -10,7 +10,7 @@ namespace frontmost {
 
 /// Up to 64 vertices and 124 triangles of one instance, with consecutive primitive ids. Its vertices start at
 /// `first_vertex` of ClusterSet::x, y, z; its corner numbers (0 to 63, relative) at `first_corner` of i0, i1, i2.
-/// Both are padded to whole vectors of 16: padding vertices repeat the first one, padding triangles are degenerate.
+/// Both are padded to whole vectors of 16: padding vertices repeat the last one, padding triangles are degenerate.
 struct Cluster {
   static constexpr int max_vertices = 64;
   static constexpr int max_triangles = 124;
@@ -23,6 +23,18 @@ struct Cluster {
   std::uint16_t triangle_count = 0;
 };
 
+/// World-space boxes, one array a side, padded to whole vectors of 16 with empty boxes.
+struct BoxArrays {
+  Buffer<float> low_x, low_y, low_z, high_x, high_y, high_z;
+
+  BoxArrays() = default;
+  explicit BoxArrays(std::size_t count);
+  void set(std::size_t i, const Box& box);
+  [[nodiscard]] Box get(std::size_t i) const {
+    return {{low_x[i], low_y[i], low_z[i]}, {high_x[i], high_y[i], high_z[i]}};
+  }
+};
+
 struct ClusterSet {
   const Scene* scene = nullptr;
   std::vector<PrimitiveId> first_primitives;  ///< by instance, and the total at the end
@@ -30,11 +42,14 @@ struct ClusterSet {
   Box bounds;
 
   std::vector<Cluster> clusters;  ///< in id order
-  /// World-space boxes of the clusters, in the same order; empty where no corner is finite.
-  std::vector<Box> boxes;
-  Buffer<float> x, y, z;  ///< world space
+  BoxArrays boxes;                ///< of the clusters; empty where no triangle has finite corners
+  Buffer<float> x, y, z;          ///< world space
   Buffer<std::uint8_t> i0, i1, i2;
 };
+
+/// Cuts every instance's triangles into clusters, in id order. Triangles with a non-finite world-space corner become
+/// degenerate (three times the same corner number), so that no method sees them.
+[[nodiscard]] ClusterSet build_clusters(const Scene& scene, const Execution& execution);
 
 /// The world-space position of a vertex, in the one rounding that every part of the house uses.
 [[nodiscard]] inline glm::vec3 to_world(const glm::dmat4& world_from_mesh, const glm::vec3& p) {
@@ -43,6 +58,12 @@ struct ClusterSet {
   return {float(m[0][0] * q.x + m[1][0] * q.y + m[2][0] * q.z + m[3][0]),
           float(m[0][1] * q.x + m[1][1] * q.y + m[2][1] * q.z + m[3][1]),
           float(m[0][2] * q.x + m[1][2] * q.y + m[2][2] * q.z + m[3][2])};
+}
+
+[[nodiscard]] inline bool is_finite(const glm::vec3& p) {
+  // NaN and infinity both make x - x other than 0.
+  const glm::vec3 zero = p - p;
+  return zero.x == 0 && zero.y == 0 && zero.z == 0;
 }
 
 }  // namespace frontmost

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Homogeneous clipping by planes, one after another.
+//
+// I. Sutherland, G. Hodgman. Reentrant Polygon Clipping. 1974.
+//
+// Vertices that can be snapped keep the float position that every other triangle sees; only the others, and the cuts,
+// are worked out in double.
+
+#include "view/clip.h"
+
+#include <algorithm>
+
+namespace frontmost {
+namespace {
+
+struct ClipVertex {
+  double x, y, d;     // homogeneous, see screen_transform.h
+  ScreenVertex plain;
+  bool is_plain;      // `plain` holds
+};
+
+enum class Plane { near, far, left, right, top, bottom };
+
+double w_of(const ScreenTransform& t, const ClipVertex& v) { return t.orthographic ? 1.0 : v.d; }
+
+/// Not negative inside. A vertex that can be snapped is inside every plane, whatever double arithmetic says.
+double distance(const ScreenTransform& t, Plane plane, const ClipVertex& v) {
+  const double reach = kGuardBand * w_of(t, v);
+  double distance = 0;
+  switch (plane) {
+    case Plane::near: distance = v.d - t.near; break;
+    case Plane::far: distance = double(t.far) - v.d; break;
+    case Plane::left: distance = reach + v.x; break;
+    case Plane::right: distance = reach - v.x; break;
+    case Plane::top: distance = reach + v.y; break;
+    case Plane::bottom: distance = reach - v.y; break;
+  }
+  return v.is_plain ? std::max(distance, 0.0) : distance;
+}
+
+ClipVertex cut(const ScreenTransform& t, Plane plane, const ClipVertex& inside, const ClipVertex& outside) {
+  const double a = distance(t, plane, inside), b = distance(t, plane, outside);
+  const double s = a / (a - b);
+  ClipVertex v{inside.x + s * (outside.x - inside.x), inside.y + s * (outside.y - inside.y),
+               inside.d + s * (outside.d - inside.d), {}, false};
+  switch (plane) {
+    case Plane::near: v.d = t.near; break;
+    case Plane::far: v.d = t.far; break;
+    case Plane::left: v.x = -kGuardBand * w_of(t, v); break;
+    case Plane::right: v.x = kGuardBand * w_of(t, v); break;
+    case Plane::top: v.y = -kGuardBand * w_of(t, v); break;
+    case Plane::bottom: v.y = kGuardBand * w_of(t, v); break;
+  }
+  return v;
+}
+
+using Polygon = std::array<ClipVertex, ClippedPolygon::max_corners + 1>;
+
+int clip_by(const ScreenTransform& t, Plane plane, const Polygon& in, int count, Polygon& out) {
+  int kept = 0;
+  for (int i = 0; i < count; ++i) {
+    const ClipVertex& a = in[std::size_t(i)];
+    const ClipVertex& b = in[std::size_t(i + 1 == count ? 0 : i + 1)];
+    const bool a_inside = distance(t, plane, a) >= 0, b_inside = distance(t, plane, b) >= 0;
+    if (a_inside) out[std::size_t(kept++)] = a;
+    if (a_inside != b_inside) out[std::size_t(kept++)] = a_inside ? cut(t, plane, a, b) : cut(t, plane, b, a);
+    // Rounding can make a sliver polygon look non-convex; it has no area to lose.
+    if (kept >= ClippedPolygon::max_corners) break;
+  }
+  return kept;
+}
+
+std::int32_t snap_coordinate(double homogeneous, double w) {
+  const double limit = kGuardBand;
+  return static_cast<std::int32_t>(std::nearbyint(std::clamp(homogeneous / w, -limit, limit)));
+}
+
+ScreenVertex finish(const ScreenTransform& t, const ClipVertex& v) {
+  if (v.is_plain) return v.plain;
+  const double w = w_of(t, v);
+  const double key = t.orthographic ? (double(t.far) - v.d) * double(t.inverse_range) : double(t.near) / v.d;
+  return {snap_coordinate(v.x, w), snap_coordinate(v.y, w), std::clamp(float(key), 0.0f, 1.0f)};
+}
+
+double row_dot(const std::array<float, 3>& row, const glm::dvec3& d, float offset) {
+  return row[0] * d.x + row[1] * d.y + row[2] * d.z + offset;
+}
+
+ClipVertex prepare(const ScreenTransform& t, const glm::vec3& world) {
+  const glm::dvec3 d = glm::dvec3(world) - glm::dvec3(t.eye[0], t.eye[1], t.eye[2]);
+  ClipVertex v{row_dot(t.x_row, d, t.x_offset), row_dot(t.y_row, d, t.y_offset), row_dot(t.d_row, d, t.d_offset), {}, false};
+  const HomogeneousVertex single = transform(t, world);
+  v.is_plain = is_plain(t, single);
+  if (v.is_plain) v.plain = snap(t, single);
+  return v;
+}
+
+}  // namespace
+
+ClippedPolygon clip_triangle(const ScreenTransform& t, const std::array<glm::vec3, 3>& world) {
+  Polygon polygon, next;
+  int count = 3;
+  for (std::size_t i = 0; i < 3; ++i) polygon[i] = prepare(t, world[i]);
+  for (const Plane plane : {Plane::near, Plane::far, Plane::left, Plane::right, Plane::top, Plane::bottom}) {
+    count = clip_by(t, plane, polygon, count, next);
+    if (count < 3) return {};
+    std::swap(polygon, next);
+  }
+  ClippedPolygon result;
+  result.count = count;
+  for (int i = 0; i < count; ++i) result.corners[std::size_t(i)] = finish(t, polygon[std::size_t(i)]);
+  return result;
+}
+
+}  // namespace frontmost

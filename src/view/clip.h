@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Clipping of triangles that cannot be snapped whole.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "view/screen_transform.h"
+
+namespace frontmost {
+
+/// What is left of a triangle between near and far and within the guard band: a convex polygon, corners in the
+/// triangle's order. Six planes leave at most nine corners.
+struct ClippedPolygon {
+  static constexpr int max_corners = 9;
+  std::array<ScreenVertex, max_corners> corners;
+  int count = 0;  ///< 0, or 3 to 9
+};
+
+/// Precondition: finite corners. Neighbouring triangles are cut at the same points, to the bit: every edge is cut
+/// from its inside to its outside end, in the same order of planes, and the cut lies on the plane exactly.
+[[nodiscard]] ClippedPolygon clip_triangle(const ScreenTransform& t, const std::array<glm::vec3, 3>& world);
+
+}  // namespace frontmost

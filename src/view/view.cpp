@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frontmost/view.h"
+
+#include <array>
+#include <cmath>
+
+namespace frontmost {
+namespace {
+
+// In 1/16 pixel from the pixel's centre, x right, y down.
+constexpr std::array<glm::ivec2, 1> kOne{{{0, 0}}};
+constexpr std::array<glm::ivec2, 2> kTwo{{{4, 4}, {-4, -4}}};
+constexpr std::array<glm::ivec2, 4> kFour{{{-2, -6}, {6, -2}, {-6, 2}, {2, 6}}};
+constexpr std::array<glm::ivec2, 8> kEight{{{1, -3}, {-1, 3}, {5, 1}, {-3, -5}, {-5, 5}, {-7, -1}, {3, 7}, {7, -7}}};
+constexpr std::array<glm::ivec2, 16> kSixteen{{{1, 1}, {-1, -3}, {-3, 2}, {4, -1}, {-5, -2}, {2, 5}, {5, 3}, {3, -5},
+                                               {-2, 6}, {0, -7}, {-4, -6}, {-6, 4}, {-8, 0}, {7, -4}, {6, 7}, {-7, -8}}};
+
+template <std::size_t count>
+constexpr std::array<glm::ivec2, count> in_fixed_point(const std::array<glm::ivec2, count>& sixteenths) {
+  std::array<glm::ivec2, count> offsets{};
+  for (std::size_t i = 0; i < count; ++i) offsets[i] = {128 + 16 * sixteenths[i].x, 128 + 16 * sixteenths[i].y};
+  return offsets;
+}
+
+void check_range(double value, double low, double high, const char* what) {
+  if (!(value >= low && value <= high))
+    throw Error(value > high ? ErrorCode::limit_exceeded : ErrorCode::bad_argument,
+                std::string(what) + ": must be " + std::to_string(int(low)) + " to " + std::to_string(int(high)));
+}
+
+}  // namespace
+
+std::span<const glm::ivec2> sample_offsets(int samples) {
+  static constexpr auto one = in_fixed_point(kOne);
+  static constexpr auto two = in_fixed_point(kTwo);
+  static constexpr auto four = in_fixed_point(kFour);
+  static constexpr auto eight = in_fixed_point(kEight);
+  static constexpr auto sixteen = in_fixed_point(kSixteen);
+  switch (samples) {
+    case 1: return one;
+    case 2: return two;
+    case 4: return four;
+    case 8: return eight;
+    case 16: return sixteen;
+    default: throw Error(ErrorCode::bad_argument, "samples: must be 1, 2, 4, 8 or 16");
+  }
+}
+
+void validate(const View& view) {
+  constexpr int kLargest = 16384;
+  check_range(view.width, 1, kLargest, "width");
+  check_range(view.height, 1, kLargest, "height");
+  (void)sample_offsets(view.samples);
+  // Made anew by the functions that check their arguments.
+  const Projection& p = view.projection;
+  if (p.orthographic) {
+    (void)make_orthographic(p.left, p.right, p.bottom, p.top, p.clip);
+  } else {
+    const double n = p.clip.near;
+    (void)make_frustum(p.left * n, p.right * n, p.bottom * n, p.top * n, p.clip);
+  }
+  (void)world_from_eye(view.world_from_eye, PoseConvention::opengl_camera_to_world);
+}
+
+}  // namespace frontmost

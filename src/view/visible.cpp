@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frontmost/visible.h"
+
+#include <cstring>
+
+namespace frontmost {
+namespace {
+
+constexpr std::uint64_t kOffset = 0xCBF29CE484222325u, kPrime = 0x100000001B3u;
+
+void hash_word(std::uint64_t& hash, std::uint64_t word) { hash = (hash ^ word) * kPrime; }
+
+}  // namespace
+
+float depth_of_key(const View& view, float key) {
+  const ClipDistances& clip = view.projection.clip;
+  if (view.projection.orthographic) return float(clip.far - double(key) * (clip.far - clip.near));
+  return key > 0 ? float(double(float(clip.near)) / double(key)) : std::numeric_limits<float>::infinity();
+}
+
+Buffer<float> depths(const Visible& visible) {
+  Buffer<float> depth(visible.keys.size());
+  for (std::size_t i = 0; i < depth.size(); ++i)
+    depth[i] = visible.primitives[i] == no_primitive ? std::numeric_limits<float>::infinity()
+                                                     : depth_of_key(visible.view, visible.keys[i]);
+  return depth;
+}
+
+std::uint64_t content_hash(const Visible& visible) {
+  std::uint64_t hash = kOffset;
+  hash_word(hash, std::uint64_t(visible.view.width));
+  hash_word(hash, std::uint64_t(visible.view.height));
+  hash_word(hash, std::uint64_t(visible.view.samples));
+  for (std::size_t i = 0; i < visible.keys.size(); ++i) {
+    std::uint32_t key;
+    std::memcpy(&key, &visible.keys[i], sizeof key);
+    hash_word(hash, std::uint64_t(key) << 32 | visible.primitives[i]);
+  }
+  return hash;
+}
+
+}  // namespace frontmost
