@@ -19,6 +19,7 @@ struct Channel {
   [[nodiscard]] const Buffer<float>& floats() const { return std::get<Buffer<float>>(values); }
   [[nodiscard]] Buffer<float>& floats() { return std::get<Buffer<float>>(values); }
   [[nodiscard]] const Buffer<std::uint32_t>& integers() const { return std::get<Buffer<std::uint32_t>>(values); }
+  [[nodiscard]] Buffer<std::uint32_t>& integers() { return std::get<Buffer<std::uint32_t>>(values); }
   [[nodiscard]] bool is_integer() const { return values.index() == 1; }
 };
 

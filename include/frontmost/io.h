@@ -37,14 +37,24 @@ struct SaveOptions {
   std::optional<double> depth_scale;
 };
 
-/// Writes to a temporary file beside `path` and renames it when whole. "-" writes standard output.
-/// PNG takes colours (sRGB, straight alpha), or one channel: depth or id + 1 as 16-bit grey, 0 where nothing is seen.
+/// Nothing is seen at `path` before the file is whole, and a file that was there stays as it is when writing fails.
+/// "-" writes standard output.
+/// PNG takes colours (sRGB, straight alpha, without A where all is opaque), or one channel: depth or id + 1 as 16-bit
+/// grey, 0 where nothing is seen, or N.X, N.Y, N.Z with 0 as the middle value. Text chunks tell load_image() which.
 /// EXR takes any channels (floats as 32-bit float, ids as uint32). PFM takes one or three float channels. NPY takes
 /// channels of one type, shape (height, width) or (height, width, channels).
-/// \throws Error file_unwritable, unsupported (channels that the format cannot hold), limit_exceeded (id over 65534).
-void save(const Image& image, const std::string& path, const SaveOptions& options = {});
+/// The bytes do not depend on the number of threads.
+/// \throws Error file_unwritable, unsupported (channels that the format cannot hold, EXR in a build without it),
+/// limit_exceeded (id over 65534, depth over 65535 / depth_scale).
+void save(const Image& image, const std::string& path, const SaveOptions& options = {},
+          const Execution& execution = {});
 
-/// Reads PNG (to R, G, B, A: linear, premultiplied), EXR, PFM or NPY as save() writes them.
+/// Reads PNG, EXR, PFM or NPY, told apart by content, as save() writes them; "-" reads standard input. PNGs that were
+/// not written by save() give R, G, B, A: linear, premultiplied. PFM and NPY hold no names: one channel is read as Z or
+/// (integers) primitive, three or four float channels as R, G, B, A, others as 0, 1, 2...
+/// \throws Error file_unreadable, file_malformed, unsupported, limit_exceeded (16384 pixels a side).
 [[nodiscard]] Image load_image(const std::string& path);
+/// Reads an image from memory; `name` stands for the file in messages.
+[[nodiscard]] Image load_image(std::span<const std::byte> bytes, const std::string& name);
 
 }  // namespace frontmost
