@@ -86,7 +86,7 @@ constexpr std::array<float, 256> linear_table() {
 }  // namespace
 
 constexpr std::array<std::uint32_t, detail::srgb8_bucket_count> detail::srgb8_buckets = buckets();
-constexpr std::array<float, 256> detail::linear_of_srgb8 = linear_table();
+constexpr std::array<float, 256> detail::srgb8_linears = linear_table();
 
 double srgb_of_linear(double linear) {
   return linear <= 0.0031308 ? linear * 12.92 : 1.055 * power_5_12(linear) - 0.055;

@@ -23,7 +23,7 @@ inline constexpr std::size_t srgb8_bucket_count = ((one_bits - least_srgb8_bits)
 /// the bytes. An entry is the bucket's first byte in its high half, and in its low half what makes the low bits of a
 /// float carry into the high half from the threshold on: lookup, comparison and step are one addition.
 extern const std::array<std::uint32_t, srgb8_bucket_count> srgb8_buckets;
-extern const std::array<float, 256> linear_of_srgb8;
+extern const std::array<float, 256> srgb8_linears;
 
 }  // namespace detail
 
@@ -39,7 +39,7 @@ extern const std::array<float, 256> linear_of_srgb8;
 }
 
 /// The linear value of an sRGB byte, rounded to float.
-[[nodiscard]] inline float linear_of_srgb8(std::uint8_t value) { return detail::linear_of_srgb8[value]; }
+[[nodiscard]] inline float linear_of_srgb8(std::uint8_t value) { return detail::srgb8_linears[value]; }
 
 /// The same for 16 bits: round(65535 * sRGB(linear)). Slower: about 30 ns a value.
 [[nodiscard]] std::uint16_t srgb16_of_linear(float linear);

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frontmost/image.h"
+
+#include <cstring>
+#include <utility>
+
+namespace frontmost {
+namespace {
+
+/// FNV-1a, fed with 32-bit words instead of bytes: four times as fast, and as good for telling pictures apart.
+class WordHash {
+ public:
+  void add(std::uint32_t word) { value_ = (value_ ^ word) * 0x100000001B3u; }
+  void add(std::string_view text) {
+    add(std::uint32_t(text.size()));
+    for (const char c : text) add(std::uint32_t(static_cast<unsigned char>(c)));
+  }
+  /// Machines differ in the bits of the NaN that an operation makes, so all are one.
+  void add(float number) {
+    std::uint32_t bits = 0x7FC00000u;
+    if (number == number) std::memcpy(&bits, &number, sizeof bits);
+    add(bits);
+  }
+  [[nodiscard]] std::uint64_t value() const {
+    // The low bits of a word reach the high bits of the product only: fold them back.
+    return value_ ^ (value_ >> 32);
+  }
+
+ private:
+  std::uint64_t value_ = 0xCBF29CE484222325u;
+};
+
+}  // namespace
+
+const Channel* Image::find(std::string_view name) const {
+  for (const Channel& channel : channels)
+    if (channel.name == name) return &channel;
+  return nullptr;
+}
+
+Channel* Image::find(std::string_view name) { return const_cast<Channel*>(std::as_const(*this).find(name)); }
+
+std::uint64_t content_hash(const Image& image) {
+  WordHash hash;
+  hash.add(std::uint32_t(image.width));
+  hash.add(std::uint32_t(image.height));
+  for (const Channel& channel : image.channels) {
+    hash.add(channel.name);
+    hash.add(std::uint32_t(channel.is_integer()));
+    if (channel.is_integer()) {
+      for (const std::uint32_t id : channel.integers()) hash.add(id);
+    } else {
+      for (const float number : channel.floats()) hash.add(number);
+    }
+  }
+  return hash.value();
+}
+
+}  // namespace frontmost

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/images/exr_header.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string_view>
+
+#include "frontmost/base.h"
+#include "io/images/decoders.h"
+
+namespace frontmost::detail {
+namespace {
+
+[[noreturn]] void fail(const std::string& name, const std::string& reason) {
+  throw Error(ErrorCode::file_malformed, name + ": EXR: " + reason);
+}
+
+/// Reads forward through a header, never past its end.
+class Cursor {
+ public:
+  Cursor(std::span<const std::byte> bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+
+  std::span<const std::byte> take(std::size_t count) {
+    if (count > bytes_.size()) fail(name_, "the header is cut short");
+    const auto taken = bytes_.first(count);
+    bytes_ = bytes_.subspan(count);
+    return taken;
+  }
+  std::int32_t number() {
+    std::int32_t value;
+    std::memcpy(&value, take(sizeof value).data(), sizeof value);
+    return value;
+  }
+  /// Up to the next zero, which is passed.
+  std::string_view text() {
+    const auto end = std::find(bytes_.begin(), bytes_.end(), std::byte{0});
+    const auto taken = take(std::size_t(end - bytes_.begin()));
+    take(1);
+    return {reinterpret_cast<const char*>(taken.data()), taken.size()};
+  }
+
+ private:
+  std::span<const std::byte> bytes_;
+  const std::string& name_;
+};
+
+struct Sizes {
+  std::uint64_t width = 0, height = 0, channels = 0;
+};
+
+void read_window(Cursor window, Sizes& sizes) {
+  const std::int64_t left = window.number(), top = window.number();
+  const std::int64_t right = window.number(), bottom = window.number();
+  sizes.width = std::uint64_t(std::max<std::int64_t>(0, right - left + 1));
+  sizes.height = std::uint64_t(std::max<std::int64_t>(0, bottom - top + 1));
+}
+
+void read_channels(Cursor list, Sizes& sizes) {
+  constexpr std::size_t record = 16;  // type, linearity and sampling
+  for (sizes.channels = 0; !list.text().empty(); ++sizes.channels) list.take(record);
+}
+
+Sizes read_sizes(Cursor header, const std::string& name) {
+  Sizes sizes;
+  for (std::string_view key = header.text(); !key.empty(); key = header.text()) {
+    header.text();  // the type
+    const std::int32_t size = header.number();
+    if (size < 0) fail(name, "attribute " + std::string(key) + " has a negative size");
+    const Cursor value(header.take(std::size_t(size)), name);
+    if (key == "dataWindow") read_window(value, sizes);
+    if (key == "channels") read_channels(value, sizes);
+  }
+  return sizes;
+}
+
+}  // namespace
+
+void check_exr_header(std::span<const std::byte> bytes, const std::string& name) {
+  Cursor cursor(bytes, name);
+  cursor.number();  // the signature
+  const auto version = std::uint32_t(cursor.number());
+  constexpr std::uint32_t tiled = 0x200, deep = 0x800, multi_part = 0x1000;
+  if (version & (tiled | deep | multi_part))
+    throw Error(ErrorCode::unsupported, name + ": EXR: tiled, deep and multi-part files are not read");
+  const Sizes sizes = read_sizes(cursor, name);
+  constexpr std::uint64_t most_channels = 1024;
+  if (sizes.channels < 1 || sizes.channels > most_channels)
+    throw Error(ErrorCode::limit_exceeded,
+                name + ": EXR: " + std::to_string(sizes.channels) + " channels, not 1 to 1024");
+  check_image_size(name + ": EXR", sizes.width, sizes.height, bytes.size(), std::numeric_limits<double>::infinity());
+  // Deflate makes at most 1032 bytes of one; other compressions may do better on small pictures.
+  constexpr std::uint64_t always = std::uint64_t(1) << 26, ratio = 1100;
+  if (sizes.width * sizes.height * sizes.channels * 4 > std::max<std::uint64_t>(always, bytes.size() * ratio))
+    fail(name, std::to_string(bytes.size()) + " bytes cannot hold " + std::to_string(sizes.width) + " x " +
+                   std::to_string(sizes.height) + " pixels of " + std::to_string(sizes.channels) + " channels");
+}
+
+}  // namespace frontmost::detail

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/images/png_reader.h"
+
+#include <bit>
+#include <csetjmp>
+#include <cstring>
+#include <vector>
+
+#include "io/images/decoders.h"
+
+namespace frontmost::detail {
+namespace {
+
+/// Chunks that are held back from libpng: none changes a pixel here, and compressed ones may be huge.
+constexpr png_byte unread_chunks[] = "iCCP\0zTXt\0iTXt\0eXIf\0sPLT\0hIST\0gAMA\0cHRM\0sRGB";
+constexpr png_byte text_chunk[] = "tEXt";
+
+std::size_t pixel_bytes(PngReader::Pixels pixels) {
+  switch (pixels) {
+    case PngReader::Pixels::rgba8: return 4;
+    case PngReader::Pixels::rgba16: return 8;
+    case PngReader::Pixels::grey16: return 2;
+  }
+  return 0;
+}
+
+}  // namespace
+
+// libpng reports errors by longjmp, which must not pass over C++ objects: the functions that set the jump
+// (read_header, read_rows) hold none, and everything they need lies in the reader.
+
+PngReader::PngReader(std::span<const std::byte> bytes, const std::string& name, Texts texts)
+    : rest_(bytes), name_(name), keeps_texts_(texts == Texts::kept) {
+  try {
+    if (!read_header()) fail();
+    const std::uint64_t width = png_get_image_width(png_, info_), height = png_get_image_height(png_, info_);
+    bits_ = png_get_bit_depth(png_, info_);
+    grey_ = png_get_color_type(png_, info_) == PNG_COLOR_TYPE_GRAY;
+    // Deflate cannot do better than 258 bytes for two bits.
+    check_image_size(name_, width, height, bytes.size(), 258 * 4 * 8.0 / (bits_ * png_get_channels(png_, info_)));
+    width_ = int(width);
+    height_ = int(height);
+  } catch (...) {
+    png_destroy_read_struct(&png_, &info_, nullptr);
+    throw;
+  }
+}
+
+PngReader::~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+
+void PngReader::fail() const {
+  throw Error(ErrorCode::file_malformed, name_ + ": PNG: " + (message_[0] ? message_ : "cannot be read"));
+}
+
+void PngReader::on_error(png_structp png, png_const_charp message) {
+  PngReader& reader = *static_cast<PngReader*>(png_get_error_ptr(png));
+  std::strncpy(reader.message_, message, sizeof reader.message_ - 1);
+  png_longjmp(png, 1);
+}
+
+void PngReader::on_warning(png_structp, png_const_charp) {}
+
+void PngReader::read_bytes(png_structp png, png_bytep out, std::size_t count) {
+  PngReader& reader = *static_cast<PngReader*>(png_get_io_ptr(png));
+  if (count > reader.rest_.size()) png_error(png, "ends too early");
+  std::memcpy(out, reader.rest_.data(), count);
+  reader.rest_ = reader.rest_.subspan(count);
+}
+
+bool PngReader::read_header() {
+  png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, on_error, on_warning);
+  if (png_ == nullptr || setjmp(png_jmpbuf(png_))) return false;
+  info_ = png_create_info_struct(png_);
+  if (info_ == nullptr) png_error(png_, "out of memory");
+  png_set_read_fn(png_, this, read_bytes);
+  // Every size is let through here, so that the limit is told in the same words for all formats.
+  png_set_user_limits(png_, 0x7FFFFFFF, 0x7FFFFFFF);
+  png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, unread_chunks, int(sizeof unread_chunks / 5));
+  if (!keeps_texts_) png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, text_chunk, 1);
+  png_read_info(png_, info_);
+  return true;
+}
+
+std::map<std::string, std::string> PngReader::texts() const {
+  std::map<std::string, std::string> result;
+  png_textp texts = nullptr;
+  const int count = png_get_text(png_, info_, &texts, nullptr);
+  for (int i = 0; i < count; ++i) result[texts[i].key] = std::string(texts[i].text, texts[i].text_length);
+  return result;
+}
+
+void PngReader::read(Pixels pixels, void* out) {
+  const std::size_t row_bytes = std::size_t(width_) * pixel_bytes(pixels);
+  std::vector<png_bytep> rows(static_cast<std::size_t>(height_));
+  for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = static_cast<png_bytep>(out) + y * row_bytes;
+  if (!read_rows(pixels, rows.data(), row_bytes)) fail();
+}
+
+/// Turns whatever the file holds into `pixels` and fills `rows`, all passes of interlaced images included.
+bool PngReader::read_rows(Pixels pixels, png_bytep* rows, std::size_t row_bytes) {
+  if (setjmp(png_jmpbuf(png_))) return false;
+  if (pixels == Pixels::rgba8) {
+    png_set_expand(png_);
+    png_set_scale_16(png_);
+  } else {
+    png_set_expand_16(png_);
+    if (std::endian::native == std::endian::little) png_set_swap(png_);
+  }
+  if (pixels != Pixels::grey16) {
+    png_set_gray_to_rgb(png_);
+    png_set_add_alpha(png_, pixels == Pixels::rgba8 ? 0xFF : 0xFFFF, PNG_FILLER_AFTER);
+  }
+  png_set_interlace_handling(png_);
+  png_read_update_info(png_, info_);
+  if (png_get_rowbytes(png_, info_) != row_bytes) png_error(png_, "unexpected row size");
+  png_read_image(png_, rows);
+  png_read_end(png_, nullptr);
+  return true;
+}
+
+}  // namespace frontmost::detail

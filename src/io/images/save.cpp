@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cctype>
+
+#include "base/parallel.h"
+#include "io/images/formats.h"
+
+namespace frontmost {
+namespace {
+
+ImageFormat format_of(const std::string& path, const SaveOptions& options) {
+  if (options.format) return *options.format;
+  if (path == "-") throw Error(ErrorCode::bad_argument, "standard output: the image format must be given");
+  std::string suffix = std::filesystem::path(path).extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (suffix == ".png") return ImageFormat::png;
+  if (suffix == ".exr") return ImageFormat::exr;
+  if (suffix == ".pfm") return ImageFormat::pfm;
+  if (suffix == ".npy") return ImageFormat::npy;
+  throw Error(ErrorCode::unsupported,
+              path + ": an image file ends in .png, .exr, .pfm or .npy, not in \"" + suffix + "\"");
+}
+
+void check(const Image& image, const std::string& path) {
+  constexpr int most = 1 << 20;  // keeps every product of sizes far below 64 bits
+  if (image.width < 1 || image.height < 1 || image.width > most || image.height > most)
+    throw Error(ErrorCode::bad_argument, path + ": an image of " + std::to_string(image.width) + " x " +
+                                             std::to_string(image.height) + " pixels cannot be written");
+  if (image.channels.empty()) throw Error(ErrorCode::bad_argument, path + ": the image has no channels");
+  const std::size_t count = std::size_t(image.width) * std::size_t(image.height);
+  for (const Channel& channel : image.channels)
+    if ((channel.is_integer() ? channel.integers().size() : channel.floats().size()) != count)
+      throw Error(ErrorCode::bad_argument, path + ": channel " + channel.name + " does not have width x height values");
+}
+
+}  // namespace
+
+namespace detail {
+
+std::string channel_list(const Image& image) {
+  std::string list;
+  for (const Channel& channel : image.channels) list += (list.empty() ? "" : ", ") + channel.name;
+  return list;
+}
+
+std::vector<std::string> default_channel_names(std::size_t count, bool integers) {
+  if (count == 1) return {integers ? "primitive" : "Z"};
+  if (count == 3 && !integers) return {"R", "G", "B"};
+  if (count == 4 && !integers) return {"R", "G", "B", "A"};
+  std::vector<std::string> names(count);
+  for (std::size_t i = 0; i < count; ++i) names[i] = std::to_string(i);
+  return names;
+}
+
+}  // namespace detail
+
+void save(const Image& image, const std::string& path, const SaveOptions& options, const Execution& execution) {
+  const ImageFormat format = format_of(path, options);
+  check(image, path);
+  report_progress(execution, "save", 0);
+  OutputFile file(path);
+  switch (format) {
+    case ImageFormat::png: detail::save_png(image, options, file, execution); break;
+    case ImageFormat::exr: detail::save_exr(image, file); break;
+    case ImageFormat::pfm: detail::save_pfm(image, file); break;
+    case ImageFormat::npy: detail::save_npy(image, file); break;
+  }
+  check_cancelled(execution);
+  file.commit();
+  report_progress(execution, "save", 1);
+}
+
+}  // namespace frontmost
