@@ -5,6 +5,7 @@
 #include "frontmost/base.h"      // IWYU pragma: export
 #include "frontmost/image.h"     // IWYU pragma: export
 #include "frontmost/io.h"        // IWYU pragma: export
+#include "frontmost/report.h"    // IWYU pragma: export
 #include "frontmost/scene.h"     // IWYU pragma: export
 #include "frontmost/shade.h"     // IWYU pragma: export
 #include "frontmost/surfaces.h"  // IWYU pragma: export

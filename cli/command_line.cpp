@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// Splitting the command line. The only file that sees CLI11, which takes seconds to compile; what the words mean is
+// in the option tables.
+#include <fmt/format.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include "command.h"
+#include "failure.h"
+#include "option.h"
+
+namespace frontmost::cli {
+namespace {
+
+/// An option of the command and the texts it was given.
+struct Found {
+  const Option* option;
+  std::vector<std::string> texts;
+  bool is_set = false;
+};
+
+void declare(CLI::App& app, Found& found) {
+  const Option& option = *found.option;
+  std::string names = fmt::format("--{}", option.name);
+  if (option.letter) names = fmt::format("-{},{}", option.letter, names);
+  if (option.is_switch()) {
+    app.add_flag(names, found.is_set)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  } else {
+    // One value a time, taken whatever it looks like: -1,2,3 is a vector, and - is a file.
+    app.add_option(names, found.texts)->expected(1)->take_all()->allow_extra_args(false);
+  }
+}
+
+std::vector<std::string_view> known_flags(const Command& command) {
+  std::vector<std::string_view> names = {"help"};
+  for_each_option([&](const Option& option) {
+    if (option.commands & command.bit) names.push_back(option.name);
+  });
+  return names;
+}
+
+[[noreturn]] void complain_of_unknown(const Command& command, const std::string& word) {
+  const std::size_t dashes = std::min(word.find_first_not_of('-'), word.size());
+  const std::string_view name = std::string_view(word).substr(dashes, word.find('=', dashes) - dashes);
+  bool elsewhere = false;
+  for_each_option([&](const Option& option) { elsewhere |= option.name == name && dashes == 2; });
+  if (elsewhere) throw UsageError(fmt::format("--{} does not belong to 'frontmost {}'", name, command.name));
+  const std::vector<std::string_view> known = known_flags(command);
+  const std::string_view nearest = nearest_word(name, known);
+  throw UsageError(fmt::format("unknown option {}{}", word.substr(0, word.find('=')),
+                               nearest.empty() ? fmt::format("; see frontmost {} --help", command.name)
+                                               : fmt::format("; did you mean --{}?", nearest)));
+}
+
+void refuse_leftovers(const Command& command, const std::vector<std::string>& words, const std::string& model) {
+  for (const std::string& word : words) {
+    if (word.size() > 1 && word[0] == '-' && word != "--") complain_of_unknown(command, word);
+  }
+  if (!words.empty()) throw UsageError(fmt::format("one model at a time: '{}' and '{}'", model, words.front()));
+}
+
+/// "--output --hash" forgot a file name; a file of that name can still be written as ./--hash.
+void refuse_flag_as_value(const Command& command, const Found& found) {
+  for (const std::string& text : found.texts) {
+    if (text.substr(0, 2) != "--") continue;
+    for (const std::string_view flag : known_flags(command)) {
+      if (text.substr(2) == flag) throw UsageError(fmt::format("--{} needs a value, not {}", found.option->name, text));
+    }
+  }
+}
+
+void apply_found(const Command& command, const Found& found, Settings& settings) {
+  if (found.is_set) apply(*found.option, {}, settings);
+  refuse_flag_as_value(command, found);
+  if (found.texts.size() > 1 && !(found.option->commands & may_repeat)) {
+    throw UsageError(fmt::format("--{} is given {} times", found.option->name, found.texts.size()));
+  }
+  for (const std::string& text : found.texts) apply(*found.option, text, settings);
+}
+
+}  // namespace
+
+Settings parse_command_line(const Command& command, std::span<const char* const> words) {
+  CLI::App app;
+  app.set_help_flag();
+  app.allow_extras();
+  Settings settings;
+  app.add_option("model", settings.model);
+  std::vector<Found> all;
+  for_each_option([&](const Option& option) {
+    if (option.commands & command.bit) all.push_back({&option, {}, false});
+  });
+  for (Found& found : all) declare(app, found);
+  try {
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+  } catch (const CLI::ArgumentMismatch&) {
+    throw UsageError(fmt::format("{} needs a value", words.back()));
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(error.what());
+  }
+  refuse_leftovers(command, app.remaining(), settings.model);
+  for (const Found& found : all) apply_found(command, found, settings);
+  if (settings.model.empty() && !command.argument.empty()) {
+    throw UsageError(fmt::format("no {} given; see frontmost {} --help", command.argument, command.name));
+  }
+  return settings;
+}
+
+}  // namespace frontmost::cli

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// The table of commands.
+#include "command.h"
+#include "console.h"
+#include "option.h"
+
+namespace frontmost::cli {
+namespace {
+
+int run_completion(const Settings& settings) {
+  print(completion_script(settings.model));
+  return 0;
+}
+
+int run_man(const Settings&) {
+  print(man_page());
+  return 0;
+}
+
+constexpr Command table[] = {
+    {"render", for_render, "MODEL", "Render pictures and maps of a model.",
+     "MODEL is an STL, PLY, OBJ, OFF, glTF or GLB file, - for standard input, or builtin:teapot, cubes, cycle, city, "
+     "spheres or gallery. Without any output the picture is shown on the terminal. Outputs with the same .exr name "
+     "share one file.",
+     "frontmost render engine.glb -o engine.png\n"
+     "frontmost render part.stl --view iso --camera-orthographic -o '{model}_{view}.png'\n"
+     "frontmost render scene.glb --depth depth.exr --ids object=objects.exr --normals normals.npy\n"
+     "frontmost render object.ply --intrinsics 615,615,320,240 --resolution 640,480 --pose pose.txt \\\n"
+     "    --pose-convention opencv-world-to-camera --depth depth.png --depth-scale 1000\n"
+     "frontmost render part.stl -o new.png --reference old.png --reference-threshold 0.01\n"
+     "frontmost render city.glb --json --repeat 20 --samples 1\n"
+     "curl -s https://example.com/part.stl | frontmost render - -o - --format png > part.png",
+     run_render},
+    {"info", for_info, "MODEL", "Count and check what is in a model.",
+     "Counts, bounds, objects, materials and cameras, and what is odd: degenerate, duplicate and non-finite triangles, "
+     "boundary and non-manifold edges, inconsistent winding.",
+     "frontmost info engine.glb\n"
+     "frontmost info engine.glb --json",
+     run_info},
+    {"camera", for_camera, "MODEL", "Print one camera in every convention.",
+     "Takes the view options of render, and prints the camera that they make: position, focal point and up; 4x4 poses; "
+     "intrinsics; projection matrices.",
+     "frontmost camera part.stl --view front\n"
+     "frontmost camera object.ply --intrinsics 615,615,320,240 --resolution 640,480 --json",
+     run_camera},
+    {"completion", 0, "bash|zsh|fish", "Print a shell completion script.", "",
+     "frontmost completion bash > ~/.local/share/bash-completion/completions/frontmost\n"
+     "frontmost completion zsh > ~/.zfunc/_frontmost\n"
+     "frontmost completion fish > ~/.config/fish/completions/frontmost.fish",
+     run_completion},
+    {"man", 0, "", "Print the manual page.", "", "frontmost man | man -l -", run_man},
+};
+
+}  // namespace
+
+std::span<const Command> commands() { return table; }
+
+const Command* find_command(std::string_view name) {
+  for (const Command& command : table) {
+    if (command.name == name) return &command;
+  }
+  return nullptr;
+}
+
+}  // namespace frontmost::cli

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Help on the terminal, from the tables of commands and options.
+#include <fmt/format.h>
+
+#include "command.h"
+#include "option.h"
+
+namespace frontmost::cli {
+namespace {
+
+constexpr std::size_t line_width = 100;
+constexpr std::size_t help_column = 36;
+
+/// Breaks text at blanks into lines that start at a column; the first line continues where the caller stands.
+std::string wrapped(std::string_view text, std::size_t column) {
+  std::string result;
+  std::size_t used = column;
+  for (const std::string_view word : split(text, ' ')) {
+    if (used > column && used + 1 + word.size() > line_width) {
+      result += '\n' + std::string(column, ' ');
+      used = column;
+    }
+    if (used > column) result += ' ', ++used;
+    result += word;
+    used += word.size();
+  }
+  return result;
+}
+
+std::string option_line(const Option& option) {
+  std::string left =
+      option.letter ? fmt::format("  -{}, --{}", option.letter, option.name) : fmt::format("      --{}", option.name);
+  if (!option.is_switch()) left += fmt::format(" {}", option.value);
+  // A long list of words gets its own line.
+  if (left.size() + 2 > help_column) {
+    left += '\n' + std::string(help_column, ' ');
+  } else {
+    left.resize(help_column, ' ');
+  }
+  return left + wrapped(option.help, help_column) + '\n';
+}
+
+}  // namespace
+
+std::string help_overview() {
+  std::string text =
+      "What can be seen from here? Frontmost renders models exactly, on any CPU.\n\n"
+      "usage: frontmost COMMAND MODEL [options]\n\ncommands:\n";
+  for (const Command& command : commands()) text += fmt::format("  {:12}{}\n", command.name, command.summary);
+  text += "\noptions:\n  -h, --help  this, or help on a command\n  --version   which version this is\n\nexamples:\n";
+  for (const Command& command : commands()) {
+    const std::string_view first = split(command.examples, '\n').front();
+    if (!first.empty()) text += fmt::format("  {}\n", first);
+  }
+  return text;
+}
+
+std::string help_for(const Command& command) {
+  std::string text = fmt::format("{}\n\nusage: frontmost {} {}{}\n", command.summary, command.name, command.argument,
+                                 command.bit ? " [options]" : "");
+  if (!command.details.empty()) text += fmt::format("\n{}\n", wrapped(command.details, 0));
+  int last = -1;
+  for_each_option([&](const Option& option) {
+    if (!(option.commands & command.bit)) return;
+    if (int(option.group) != last) text += fmt::format("\n{}:\n", group_titles[int(option.group)]);
+    last = int(option.group);
+    text += option_line(option);
+  });
+  text += "\nexamples:\n";
+  for (const std::string_view line : split(command.examples, '\n')) text += fmt::format("  {}\n", line);
+  return text;
+}
+
+}  // namespace frontmost::cli

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Vectors and matrices as JSON.
+#pragma once
+
+#include <frontmost/base.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace frontmost::cli {
+
+/// Keys stay in the order in which they were set, which is the order to read them in.
+using Json = nlohmann::ordered_json;
+
+template <int n, class T>
+[[nodiscard]] Json to_json(const glm::vec<n, T>& vector) {
+  Json result = Json::array();
+  for (int i = 0; i < n; ++i) result.push_back(vector[i]);
+  return result;
+}
+
+/// Four rows of four, as matrices are written on paper.
+[[nodiscard]] inline Json to_json(const glm::dmat4& matrix) {
+  Json rows = Json::array();
+  for (int row = 0; row < 4; ++row) {
+    // Adding 0 turns -0 into 0, which reads better and means the same.
+    rows.push_back(
+        Json::array({matrix[0][row] + 0.0, matrix[1][row] + 0.0, matrix[2][row] + 0.0, matrix[3][row] + 0.0}));
+  }
+  return rows;
+}
+
+/// JSON has no infinity; an infinite far plane is null.
+[[nodiscard]] inline Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+/// \returns the text with a line break at the end. Names that are not UTF-8 are shown with replacement characters.
+[[nodiscard]] std::string dump(const Json& json);
+
+}  // namespace frontmost::cli

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reading the model, and passing on what the reader had to say.
+#pragma once
+
+#include <frontmost/scene.h>
+
+#include "progress.h"
+#include "settings.h"
+
+namespace frontmost::cli {
+
+[[nodiscard]] Execution execution_for(const RunSettings& settings, const Progress& progress);
+/// Loads, and prints the reader's warnings to standard error unless quiet: a few, then how many more.
+[[nodiscard]] Scene load_model(const Settings& settings, const Execution& execution, Progress& progress);
+
+}  // namespace frontmost::cli

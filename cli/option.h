@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// One table of options: the parser, --help, the man page, shell completion and batch files are all read from it.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "settings.h"
+#include "values.h"
+
+namespace frontmost::cli {
+
+enum class Group : std::uint8_t { model, camera, vision, grid, output, look, run };
+inline constexpr std::string_view group_titles[] = {"Model",
+                                                    "Camera, as f3d names it",
+                                                    "Camera, as computer vision names it",
+                                                    "Pixels and planes",
+                                                    "What to write",
+                                                    "How the picture looks",
+                                                    "How to run"};
+
+/// Bits of Option::commands.
+enum CommandBit : unsigned { for_render = 1, for_info = 2, for_camera = 4, may_repeat = 8 };
+
+/// The text given for an option, and the words it may be.
+struct Given {
+  std::string_view text, choices;
+
+  [[nodiscard]] double number(const Range& range = any_number) const { return parse_number(text, range); }
+  [[nodiscard]] int integer(const Range& range) const { return parse_integer(text, range); }
+  /// The order of the words in the table is the order of the enumerators.
+  template <class Enum>
+  [[nodiscard]] Enum choice() const {
+    return static_cast<Enum>(parse_choice(text, choices));
+  }
+  [[nodiscard]] std::string string() const { return std::string(text); }
+};
+
+struct Option {
+  std::string_view name;   ///< without dashes; also the key in a batch file
+  char letter;             ///< "-o"; 0: none
+  std::string_view value;  ///< what follows: "FILE", "X,Y,Z", or "a|b|c" for one of these; empty: a switch
+  std::string_view help;
+  Group group;
+  unsigned commands;
+  void (*apply)(Settings&, const Given&);  ///< throws UsageError on a value that cannot be meant
+
+  [[nodiscard]] bool is_switch() const { return value.empty(); }
+  [[nodiscard]] bool is_file() const { return value.find("FILE") != std::string_view::npos; }
+  [[nodiscard]] std::string_view choices() const {
+    return value.find('|') != std::string_view::npos ? value : std::string_view();
+  }
+};
+
+/// The tables, in the order of the help; each lives in its own file.
+[[nodiscard]] std::span<const Option> view_option_table();
+[[nodiscard]] std::span<const Option> output_option_table();
+[[nodiscard]] std::span<const Option> run_option_table();
+
+/// Calls visit(option) for every option, in the order of the help.
+template <class Visit>
+void for_each_option(const Visit& visit) {
+  for (const auto table : {view_option_table(), output_option_table(), run_option_table()}) {
+    for (const Option& option : table) visit(option);
+  }
+}
+
+/// Applies one option, with its name in front of any complaint.
+void apply(const Option& option, std::string_view text, Settings& settings);
+
+}  // namespace frontmost::cli

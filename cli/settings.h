@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the user asked for, as said: filled from flags or from a batch file, resolved later.
+#pragma once
+
+#include <frontmost/base.h>
+#include <frontmost/image.h>
+#include <frontmost/io.h>
+#include <frontmost/shade.h>
+#include <frontmost/view.h>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace frontmost::cli {
+
+/// The camera and the pixel grid.
+struct ViewSettings {
+  std::string name;  ///< {view} in file names; empty: derived from the flags
+  std::optional<NamedView> named;
+  std::optional<glm::dvec3> position, focal_point, view_up, direction;
+  std::optional<double> view_angle;  ///< vertical, degrees
+  double zoom = 1, azimuth = 0, elevation = 0;
+  bool orthographic = false;
+  std::optional<int> camera_index;
+  std::optional<std::array<double, 4>> intrinsics;  ///< fx, fy, cx, cy
+  PixelRule pixel_rule = PixelRule::centre_at_integer;
+  std::optional<glm::dmat4> pose;
+  std::optional<PoseConvention> pose_convention;
+  std::optional<double> near, far;
+  std::optional<glm::ivec2> resolution;
+  Culling culling = Culling::none;
+  std::optional<int> samples;
+};
+
+/// One file to write.
+enum class OutputKind : std::uint8_t { picture, depth, ray_distance, normals, primitive_ids, object_ids, material_ids };
+struct OutputRequest {
+  OutputKind kind;
+  std::string path;  ///< "-" is standard output; may hold {model} and {view}
+};
+
+/// What to write and how it looks.
+struct OutputSettings {
+  std::vector<OutputRequest> files;
+  std::optional<ImageFormat> format;
+  int bits = 8;
+  std::optional<double> depth_scale;
+  float background_depth = std::numeric_limits<float>::infinity();
+  std::optional<std::string> reference, reference_difference;
+  double reference_threshold = 0;
+  bool hash = false;
+  Shading shading = Shading::lit;
+  std::optional<glm::vec3> background = glm::vec3(1.0f);  ///< none: transparent
+  bool background_given = false;
+  bool no_shadows = false;
+};
+
+/// How to run.
+struct RunSettings {
+  int threads = 0;
+  Isa isa = Isa::best;
+  int repeat = 1;
+  std::optional<double> timeout;
+  bool json = false, quiet = false;
+  std::optional<std::string> batch;
+};
+
+struct Settings {
+  std::string model;
+  LoadOptions load;
+  ViewSettings view;
+  OutputSettings output;
+  RunSettings run;
+};
+
+}  // namespace frontmost::cli

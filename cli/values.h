@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// From text to values, the same for flags and batch files: whole text, finite, in range, in any locale.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace frontmost::cli {
+
+/// Inclusive limits of a number.
+struct Range {
+  double low, high;
+};
+inline constexpr Range any_number{-1e30, 1e30};
+
+/// Every function throws UsageError saying what is wrong with the text and what would be right; the caller puts the
+/// flag's name in front.
+[[nodiscard]] double parse_number(std::string_view text, const Range& range = any_number);
+[[nodiscard]] int parse_integer(std::string_view text, const Range& range);
+/// Exactly `count` numbers, or between `count` and `most`, separated by commas.
+[[nodiscard]] std::vector<double> parse_numbers(std::string_view text, std::size_t count,
+                                                const Range& range = any_number);
+[[nodiscard]] glm::dvec3 parse_vector(std::string_view text);
+/// As parse_vector, or an axis such as "x", "+Z" or "-y"; not zero.
+[[nodiscard]] glm::dvec3 parse_direction(std::string_view text);
+/// The place of `text` among `choices`, which are separated by '|'.
+[[nodiscard]] int parse_choice(std::string_view text, std::string_view choices);
+/// A colour as sRGB 0 to 1: "#rgb", "#rrggbb", "r,g,b" from 0 to 1, or one of a few names.
+[[nodiscard]] glm::vec3 parse_color(std::string_view text);
+/// 16 numbers (or 12: the last row is 0 0 0 1), row by row; commas, blanks, brackets and semicolons separate.
+/// None: not numbers at all.
+[[nodiscard]] std::optional<glm::dmat4> parse_matrix(std::string_view text);
+
+/// The candidate nearest to a mistyped word, if one is near enough to be meant; empty otherwise.
+[[nodiscard]] std::string_view nearest_word(std::string_view word, std::span<const std::string_view> candidates);
+[[nodiscard]] std::vector<std::string_view> split(std::string_view text, char separator);
+
+}  // namespace frontmost::cli

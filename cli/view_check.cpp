@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which view options exclude or need one another.
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "failure.h"
+#include "view_options.h"
+
+namespace frontmost::cli {
+namespace {
+
+struct Flag {
+  std::string_view name;
+  bool is_set;
+};
+
+void exclude(const Flag& one, std::initializer_list<Flag> others) {
+  if (!one.is_set) return;
+  for (const Flag& other : others) {
+    if (other.is_set) throw UsageError(fmt::format("--{} and --{} exclude each other", one.name, other.name));
+  }
+}
+
+void need(const Flag& one, const Flag& other) {
+  if (one.is_set && !other.is_set) throw UsageError(fmt::format("--{} needs --{}", one.name, other.name));
+}
+
+}  // namespace
+
+void check_view_settings(const ViewSettings& s) {
+  const Flag position{"camera-position", s.position.has_value()},
+      focal{"camera-focal-point", s.focal_point.has_value()}, direction{"camera-direction", s.direction.has_value()},
+      up{"camera-view-up", s.view_up.has_value()}, angle{"camera-view-angle", s.view_angle.has_value()},
+      zoom{"camera-zoom-factor", s.zoom != 1}, azimuth{"camera-azimuth-angle", s.azimuth != 0},
+      elevation{"camera-elevation-angle", s.elevation != 0}, orthographic{"camera-orthographic", s.orthographic},
+      index{"camera-index", s.camera_index.has_value()}, named{"view", s.named.has_value()},
+      intrinsics{"intrinsics", s.intrinsics.has_value()}, pose{"pose", s.pose.has_value()},
+      convention{"pose-convention", s.pose_convention.has_value()},
+      pixel{"pixel-center", s.pixel_rule != PixelRule::centre_at_integer};
+  exclude(pose, {position, focal, direction, up, named, index, azimuth, elevation});
+  exclude(index, {position, focal, direction, up, named, orthographic, angle, intrinsics});
+  exclude(named, {position, direction});
+  exclude(intrinsics, {angle, orthographic, zoom});
+  if (position.is_set && focal.is_set) exclude(direction, {focal});
+  need(pose, convention);
+  need(convention, pose);
+  need(pixel, intrinsics);
+  if (s.near && !s.orthographic && !s.camera_index && *s.near <= 0) throw UsageError("--near: must be above 0");
+  if (s.far && !s.orthographic && !s.camera_index && *s.far <= 0) throw UsageError("--far: must be above 0");
+  if (s.near && s.far && !(*s.near < *s.far)) throw UsageError("--near: must be below --far");
+  const glm::ivec2 size = s.resolution.value_or(glm::ivec2(1));
+  if (s.samples && double(size.x) * size.y * *s.samples > 16384.0 * 16384.0) {
+    throw UsageError("--samples: at most 268435456 samples in all (16384 x 16384 pixels of one)");
+  }
+}
+
+}  // namespace frontmost::cli

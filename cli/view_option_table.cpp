@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Options that say which model and where from.
+#include <fstream>
+#include <sstream>
+
+#include "failure.h"
+#include "option.h"
+
+namespace frontmost::cli {
+namespace {
+
+constexpr unsigned everywhere = for_render | for_info | for_camera;
+constexpr unsigned views = for_render | for_camera;
+constexpr int max_side = 16384;
+
+Axis axis_of(const glm::dvec3& direction) {
+  for (const Axis axis : {Axis::x, Axis::y, Axis::z, Axis::minus_x, Axis::minus_y, Axis::minus_z}) {
+    if (frontmost::direction(axis) == direction) return axis;
+  }
+  throw UsageError("up is one of +x, +y, +z, -x, -y, -z");
+}
+
+glm::dmat4 pose_from(std::string_view text) {
+  if (const std::optional<glm::dmat4> matrix = parse_matrix(text)) return *matrix;
+  std::ifstream file{std::string(text)};
+  if (!file) throw UsageError("'" + std::string(text) + "' is neither 16 numbers nor a file that can be read");
+  // A pose is a few hundred characters; anything longer is some other file.
+  std::string content(4096, '\0');
+  file.read(content.data(), std::streamsize(content.size()));
+  content.resize(std::size_t(file.gcount()));
+  const std::optional<glm::dmat4> matrix = parse_matrix(content);
+  if (!matrix) throw UsageError("'" + std::string(text) + "' does not hold 16 numbers");
+  return *matrix;
+}
+
+glm::ivec2 resolution_from(std::string_view text) {
+  // "1920x1080" is what most people type first.
+  std::string spelled(text);
+  if (const std::size_t x = spelled.find('x'); x != std::string::npos) spelled[x] = ',';
+  const std::vector<double> sides = parse_numbers(spelled, 2);
+  for (const double side : sides) {
+    if (!(side >= 1 && side <= max_side && side == double(int(side)))) {
+      throw UsageError("'" + std::string(text) + "': width and height are whole numbers from 1 to 16384");
+    }
+  }
+  return {int(sides[0]), int(sides[1])};
+}
+
+constexpr Option table[] = {
+    {"up", 0, "AXIS", "Which way is up in the model: +x, +y, +z, -x, -y or -z; the file format's by default.",
+     Group::model, everywhere, [](Settings& s, const Given& g) { s.load.up = axis_of(parse_direction(g.text)); }},
+    {"input-format", 0, "stl|ply|obj|off|gltf", "Format of the model; by default from its name, or its first bytes.",
+     Group::model, everywhere, [](Settings& s, const Given& g) { s.load.format = g.choice<ModelFormat>(); }},
+
+    {"view", 0, "front|back|left|right|top|bottom|iso", "Look from there, far enough away to see the whole model.",
+     Group::camera, views, [](Settings& s, const Given& g) { s.view.named = g.choice<NamedView>(); }},
+    {"camera-position", 0, "X,Y,Z", "Where the eye is.", Group::camera, views,
+     [](Settings& s, const Given& g) { s.view.position = parse_vector(g.text); }},
+    {"camera-focal-point", 0, "X,Y,Z", "What the eye looks at; by default the middle of the model.", Group::camera,
+     views, [](Settings& s, const Given& g) { s.view.focal_point = parse_vector(g.text); }},
+    {"camera-direction", 0, "X,Y,Z", "Which way the eye looks; also an axis, such as -z.", Group::camera, views,
+     [](Settings& s, const Given& g) { s.view.direction = parse_direction(g.text); }},
+    {"camera-view-up", 0, "X,Y,Z", "Which way is up in the picture; also an axis.", Group::camera, views,
+     [](Settings& s, const Given& g) { s.view.view_up = parse_direction(g.text); }},
+    {"camera-view-angle", 0, "DEGREES", "Vertical field of view, 0.001 to 179; 30 for the smaller side by default.",
+     Group::camera, views,
+     [](Settings& s, const Given& g) {
+       s.view.view_angle = g.number({0.001, 179});
+     }},
+    {"camera-zoom-factor", 0, "FACTOR", "Divide the view angle (or the height, if orthographic) by this.",
+     Group::camera, views,
+     [](Settings& s, const Given& g) {
+       s.view.zoom = g.number({1e-3, 1e6});
+     }},
+    {"camera-azimuth-angle", 0, "DEGREES", "Then turn the eye to the right about what it looks at.", Group::camera,
+     views,
+     [](Settings& s, const Given& g) {
+       s.view.azimuth = g.number({-36000, 36000});
+     }},
+    {"camera-elevation-angle", 0, "DEGREES", "Then turn the eye upwards about what it looks at.", Group::camera, views,
+     [](Settings& s, const Given& g) {
+       s.view.elevation = g.number({-36000, 36000});
+     }},
+    {"camera-orthographic", 0, "", "Parallel projection.", Group::camera, views,
+     [](Settings& s, const Given&) { s.view.orthographic = true; }},
+    {"camera-index", 0, "N", "Look through the model's own camera of this number, from 0.", Group::camera, views,
+     [](Settings& s, const Given& g) {
+       s.view.camera_index = g.integer({0, 1e6});
+     }},
+
+    {"intrinsics", 0, "FX,FY,CX,CY", "Pinhole camera matrix, in pixels.", Group::vision, views,
+     [](Settings& s, const Given& g) {
+       const std::vector<double> k = parse_numbers(g.text, 4);
+       if (!(k[0] > 0 && k[1] > 0)) throw UsageError("focal lengths must be above 0");
+       s.view.intrinsics = {k[0], k[1], k[2], k[3]};
+     }},
+    {"pixel-center", 0, "half|integer",
+     "Where cx,cy put the centre of the first pixel: 0.5,0.5 (OpenGL) or 0,0 (OpenCV, the default).", Group::vision,
+     views, [](Settings& s, const Given& g) { s.view.pixel_rule = g.choice<PixelRule>(); }},
+    {"pose", 0, "FILE", "Camera pose: 16 numbers row by row, or a file that holds them. Needs --pose-convention.",
+     Group::vision, views, [](Settings& s, const Given& g) { s.view.pose = pose_from(g.text); }},
+    {"pose-convention", 0,
+     "opengl-camera-to-world|opengl-world-to-camera|opencv-camera-to-world|opencv-world-to-camera",
+     "What the pose maps, and its axes: opengl looks down -z with y up, opencv down +z with y down.", Group::vision,
+     views, [](Settings& s, const Given& g) { s.view.pose_convention = g.choice<PoseConvention>(); }},
+
+    {"resolution", 0, "W,H", "Pixels, 1 to 16384 each; 1920,1080 by default.", Group::grid, views,
+     [](Settings& s, const Given& g) { s.view.resolution = resolution_from(g.text); }},
+    {"samples", 0, "1|2|4|8|16", "Samples per pixel of the picture; 4 by default. Maps have one, at pixel centres.",
+     Group::grid, for_render, [](Settings& s, const Given& g) { s.view.samples = 1 << g.choice<int>(); }},
+    {"near", 0, "DISTANCE", "Nearest distance that is drawn; fitted to the model by default.", Group::grid, views,
+     [](Settings& s, const Given& g) { s.view.near = g.number(); }},
+    {"far", 0, "DISTANCE", "Farthest distance that is drawn, or inf; fitted to the model by default.", Group::grid,
+     views,
+     [](Settings& s, const Given& g) {
+       s.view.far = g.text == "inf" ? std::numeric_limits<double>::infinity() : g.number();
+     }},
+    {"cull", 0, "none|back|front|both", "Leave out triangles that face this way.", Group::grid, views,
+     [](Settings& s, const Given& g) { s.view.culling = g.choice<Culling>(); }},
+};
+
+}  // namespace
+
+std::span<const Option> view_option_table() { return table; }
+
+}  // namespace frontmost::cli

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+// From what was said about the camera to a View: first where it looks, then how wide, then how far away, then the
+// planes.
+#include "view_options.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "failure.h"
+#include "fit.h"
+
+namespace frontmost::cli {
+namespace {
+
+constexpr double radians_per_degree = 0.017453292519943295;
+constexpr glm::ivec2 default_resolution{1920, 1080};
+
+/// The eye's axes, what it turns about, and whether its distance is still open.
+struct Aim {
+  glm::dmat4 world_from_eye{1.0};
+  glm::dvec3 target{0.0};
+  bool fitted = false;
+};
+
+glm::dvec3 axis(const glm::dmat4& world_from_eye, int column) { return glm::dvec3(world_from_eye[column]); }
+
+glm::dmat4 looking(const glm::dvec3& eye, const glm::dvec3& forward, const glm::dvec3& up) {
+  return look_at(eye, eye + glm::normalize(forward), up);
+}
+
+const Camera& model_camera(const ViewSettings& settings, const Scene& scene) {
+  const std::size_t index = std::size_t(*settings.camera_index);
+  if (index < scene.cameras.size()) return scene.cameras[index];
+  throw UsageError(
+      fmt::format("--camera-index: the model has {} cameras, there is no {}", scene.cameras.size(), index));
+}
+
+/// Rotation about an axis through `pivot`, anticlockwise as seen from the axis' tip. Rodrigues' formula.
+glm::dmat4 turned(const glm::dmat4& pose, const glm::dvec3& pivot, const glm::dvec3& about, double degrees) {
+  const glm::dvec3 k = glm::normalize(about);
+  const double c = std::cos(degrees * radians_per_degree), s = std::sin(degrees * radians_per_degree);
+  const auto turn = [&](const glm::dvec3& v) { return v * c + glm::cross(k, v) * s + k * glm::dot(k, v) * (1 - c); };
+  glm::dmat4 result(1.0);
+  for (int i = 0; i < 3; ++i) result[i] = glm::dvec4(turn(axis(pose, i)), 0);
+  result[3] = glm::dvec4(pivot + turn(axis(pose, 3) - pivot), 1);
+  return result;
+}
+
+/// Azimuth and elevation as in VTK and f3d: about the camera's own up, then about its own right.
+void turn(Aim& aim, const ViewSettings& settings) {
+  if (settings.azimuth != 0) {
+    aim.world_from_eye = turned(aim.world_from_eye, aim.target, axis(aim.world_from_eye, 1), settings.azimuth);
+  }
+  if (settings.elevation != 0) {
+    aim.world_from_eye = turned(aim.world_from_eye, aim.target, axis(aim.world_from_eye, 0), -settings.elevation);
+  }
+}
+
+/// `base` is the library's own choice of view, from which anything not said is taken.
+Aim aim_of(const ViewSettings& settings, const Surfaces& surfaces, const View& base) {
+  Aim aim{base.world_from_eye, settings.focal_point.value_or(visible_bounds(surfaces).centre), true};
+  if (settings.pose || settings.camera_index) {
+    aim.world_from_eye = settings.pose ? world_from_eye(*settings.pose, *settings.pose_convention)
+                                       : model_camera(settings, surfaces.scene()).world_from_eye;
+    View view;
+    view.world_from_eye = aim.world_from_eye;
+    return {aim.world_from_eye, focal_point_of(view, surfaces), false};
+  }
+  const glm::dvec3 up =
+      settings.view_up.value_or(settings.position || settings.direction ? direction(surfaces.scene().up) : base.up());
+  if (settings.position) {
+    const glm::dvec3& eye = *settings.position;
+    if (settings.direction) aim.target = eye + *settings.direction;
+    if (aim.target == eye) throw UsageError("--camera-position is where the camera looks; give --camera-direction");
+    return {looking(eye, aim.target - eye, up), aim.target, false};
+  }
+  aim.world_from_eye = looking(aim.target, settings.direction.value_or(base.forward()), up);
+  return aim;
+}
+
+/// The sides at unit distance; in parallel projection, of what a perspective camera would see at the focal point.
+Projection shape_of(const ViewSettings& settings, const glm::ivec2& size, const View& base) {
+  const double aspect = double(size.x) / size.y;
+  if (settings.intrinsics) {
+    const auto& [fx, fy, cx, cy] = *settings.intrinsics;
+    return make_projection(Intrinsics{fx, fy, cx, cy, settings.pixel_rule}, size.x, size.y, base.projection.clip);
+  }
+  Projection projection;
+  projection.orthographic = settings.orthographic;
+  const double min_half = std::tan(15 * radians_per_degree);  // FrameOptions::min_fov
+  projection.top = settings.view_angle ? std::tan(*settings.view_angle * 0.5 * radians_per_degree)
+                                       : (aspect >= 1 ? min_half : min_half / aspect);
+  projection.bottom = -projection.top;
+  projection.right = projection.top * aspect;
+  projection.left = -projection.right;
+  return projection;
+}
+
+Projection shape_of(const Camera& camera, const glm::ivec2& size) {
+  Projection projection;
+  projection.orthographic = camera.orthographic;
+  projection.top = camera.orthographic ? camera.vertical * 0.5 : std::tan(camera.vertical * 0.5);
+  projection.bottom = -projection.top;
+  projection.right = projection.top * size.x / size.y;
+  projection.left = -projection.right;
+  return projection;
+}
+
+void scale(Projection& projection, double factor) {
+  for (double* const side : {&projection.left, &projection.right, &projection.bottom, &projection.top}) *side *= factor;
+}
+
+/// As VTK and f3d: the view angle is divided, or the height of a parallel projection.
+void zoom(Projection& projection, double factor) {
+  if (factor == 1) return;
+  if (projection.orthographic) return scale(projection, 1 / factor);
+  const double half_angle = std::atan(projection.top) / factor;
+  if (half_angle > 89.5 * radians_per_degree)
+    throw UsageError("--camera-zoom-factor: the view angle passes 179 degrees");
+  scale(projection, std::tan(half_angle) / projection.top);
+}
+
+/// What the model's own camera says, then what the user says, over what fits.
+ClipDistances clip_of(const ViewSettings& settings, const Surfaces& surfaces, const View& view) {
+  const FitBounds bounds = visible_bounds(surfaces);
+  const bool orthographic = view.projection.orthographic;
+  ClipDistances clip = fit_clip(bounds.box, view.world_from_eye, orthographic);
+  std::optional<double> near = settings.near, far = settings.far;
+  if (settings.camera_index) {
+    const Camera& camera = model_camera(settings, surfaces.scene());
+    if (!near) near = camera.near;
+    if (!far) far = camera.far;
+  }
+  const double depth = std::max(bounds.diagonal, 1.0);
+  if (near) clip.near = *near;
+  if (far) clip.far = *far;
+  // Only one was given, and lies beyond the other one that was fitted.
+  if (clip.far <= clip.near && !far)
+    clip.far = orthographic ? clip.near + depth : std::numeric_limits<double>::infinity();
+  if (clip.far <= clip.near && !near) clip.near = orthographic ? clip.far - depth : clip.far / 10000;
+  return clip;
+}
+
+View framed(const ViewSettings& settings, const Surfaces& surfaces, const glm::ivec2& size) {
+  FrameOptions options;
+  options.direction = settings.named.value_or(NamedView::three_quarter);
+  options.orthographic = settings.orthographic;
+  if (settings.view_angle) {
+    // The library counts the field of view over the smaller side; the flag, as f3d, from bottom to top.
+    const double half = std::tan(*settings.view_angle * 0.5 * radians_per_degree);
+    options.min_fov = 2 * std::atan(half * std::min(1.0, double(size.x) / size.y));
+  }
+  return frame(surfaces, size.x, size.y, options);
+}
+
+/// True when the library's own framing is all that was asked for.
+bool is_plain(const ViewSettings& s) {
+  return !s.position && !s.focal_point && !s.direction && !s.view_up && !s.pose && !s.camera_index && !s.intrinsics &&
+         s.azimuth == 0 && s.elevation == 0;
+}
+
+}  // namespace
+
+glm::dvec3 focal_point_of(const View& view, const Surfaces& surfaces) {
+  const FitBounds bounds = visible_bounds(surfaces);
+  const double along = glm::dot(bounds.centre - view.eye(), view.forward());
+  return view.eye() + view.forward() * (along > 0 ? along : std::max(bounds.diagonal, 1e-6));
+}
+
+View resolve_view(const ViewSettings& settings, const Surfaces& surfaces) {
+  const glm::ivec2 size = settings.resolution.value_or(default_resolution);
+  View view = framed(settings, surfaces, size);
+  if (!is_plain(settings)) {
+    Aim aim = aim_of(settings, surfaces, view);
+    turn(aim, settings);
+    view.world_from_eye = aim.world_from_eye;
+    view.projection = settings.camera_index ? shape_of(model_camera(settings, surfaces.scene()), size)
+                                            : shape_of(settings, size, view);
+    if (aim.fitted) {
+      fit(view, aim.target, visible_bounds(surfaces));
+    } else if (view.projection.orthographic && !settings.camera_index) {
+      scale(view.projection, glm::distance(aim.target, view.eye()));
+    }
+  }
+  zoom(view.projection, settings.zoom);
+  view.projection.clip = clip_of(settings, surfaces, view);
+  view.culling = settings.culling;
+  validate(view);
+  return view;
+}
+
+std::string view_name(const ViewSettings& settings) {
+  constexpr std::string_view names[] = {"front", "back", "left", "right", "top", "bottom", "iso", "three-quarter"};
+  if (!settings.name.empty()) return settings.name;
+  if (settings.named) return std::string(names[int(*settings.named)]);
+  if (settings.camera_index) return fmt::format("camera{}", *settings.camera_index);
+  return is_plain(settings) ? "three-quarter" : "camera";
+}
+
+}  // namespace frontmost::cli

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// From what was said about the camera to a View.
+#pragma once
+
+#include <frontmost/surfaces.h>
+#include <frontmost/view.h>
+
+#include <string>
+
+#include "settings.h"
+
+namespace frontmost::cli {
+
+/// Finds options that exclude or need one another, before any model is read.
+/// \throws UsageError naming them
+void check_view_settings(const ViewSettings& settings);
+
+/// The view for these surfaces; `samples` is left at 1. Where no position is given the model is fitted into the
+/// picture.
+/// \throws UsageError for a camera number that the model has not; Error from the library's own checks.
+[[nodiscard]] View resolve_view(const ViewSettings& settings, const Surfaces& surfaces);
+
+/// What {view} stands for: the given name, the named direction, or how the camera was told.
+[[nodiscard]] std::string view_name(const ViewSettings& settings);
+
+/// What the camera turns about: the middle of the model, brought onto the viewing axis.
+[[nodiscard]] glm::dvec3 focal_point_of(const View& view, const Surfaces& surfaces);
+
+}  // namespace frontmost::cli

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Brings equal things together: the one tool behind welding, edges and duplicates.
+//
+// Items are dealt into buckets by a hash of their key, and each bucket is sorted. The hash only spreads the work: with
+// keys chosen to collide everything lands in one bucket, and it is still a sort, where a hash table would go quadratic.
+#pragma once
+
+#include <algorithm>
+#include <mutex>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "base/parallel.h"
+
+namespace frontmost {
+
+/// A key of 96 bits and 32 bits to carry along. Sorted by key, then by what is carried.
+struct Keyed {
+  std::uint64_t high;  ///< of the key
+  std::uint64_t low;   ///< 32 bits of key, 32 bits carried
+
+  Keyed() = default;
+  Keyed(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t carried)
+      : high(std::uint64_t(a) << 32 | b), low(std::uint64_t(c) << 32 | carried) {}
+  [[nodiscard]] std::uint32_t carried() const { return std::uint32_t(low); }
+  [[nodiscard]] bool same_key(const Keyed& other) const { return high == other.high && (low ^ other.low) >> 32 == 0; }
+  friend bool operator<(const Keyed& a, const Keyed& b) { return a.high != b.high ? a.high < b.high : a.low < b.low; }
+};
+
+namespace detail {
+
+inline constexpr std::size_t max_buckets = 1024;
+
+struct Dealt {
+  std::vector<std::size_t> starts;  // of each bucket, and the end of the last
+  Buffer<Keyed> items;
+};
+
+[[nodiscard]] inline std::size_t bucket_of(const Keyed& item, std::size_t bucket_count) {
+  std::uint64_t mixed = (item.high ^ (item.low >> 32) * 0x9E3779B97F4A7C15u) * 0xD6E8FEB86659FD93u;
+  mixed ^= mixed >> 32;
+  return std::size_t((mixed * 0xD6E8FEB86659FD93u) >> 40) & (bucket_count - 1);
+}
+
+// A counting sort by bucket: every chunk counts, then every chunk knows where its items go.
+template <class Produce>
+Dealt deal(const Execution& execution, std::size_t count, const Produce& produce) {
+  std::size_t buckets = 1;
+  while (buckets < max_buckets && count / buckets > 2048) buckets *= 2;
+  const std::size_t grain = std::max<std::size_t>(1 << 15, count / 64 + 1);
+  const std::size_t chunks = (count + grain - 1) / grain;
+  std::vector<std::size_t> places(chunks * buckets, 0);
+  parallel_for(execution, count, grain, [&](std::size_t begin, std::size_t end) {
+    Keyed item;
+    std::size_t* const counts = &places[begin / grain * buckets];
+    for (std::size_t i = begin; i < end; ++i)
+      if (produce(i, item)) ++counts[bucket_of(item, buckets)];
+  });
+  Dealt dealt;
+  dealt.starts.reserve(buckets + 1);
+  std::size_t total = 0;
+  for (std::size_t b = 0; b < buckets; ++b) {
+    dealt.starts.push_back(total);
+    for (std::size_t c = 0; c < chunks; ++c) total += std::exchange(places[c * buckets + b], total);
+  }
+  dealt.starts.push_back(total);
+  dealt.items = Buffer<Keyed>(total);
+  parallel_for(execution, count, grain, [&](std::size_t begin, std::size_t end) {
+    Keyed item;
+    std::size_t* const next = &places[begin / grain * buckets];
+    for (std::size_t i = begin; i < end; ++i)
+      if (produce(i, item)) dealt.items[next[bucket_of(item, buckets)]++] = item;
+  });
+  return dealt;
+}
+
+}  // namespace detail
+
+/// Calls `visit(group, sums)` once for every group of items with the same key, the carried numbers ascending, from
+/// several threads and in any order. `produce(i, item)` makes the item of each i < count, or returns false for none;
+/// it is called twice. \returns all `sums` (default-constructed, any number of them) added by `+=`.
+template <class Sums, class Produce, class Visit>
+Sums for_each_group(const Execution& execution, std::size_t count, const Produce& produce, const Visit& visit) {
+  detail::Dealt dealt = detail::deal(execution, count, produce);
+  Sums all{};
+  std::mutex mutex;
+  parallel_for(execution, dealt.starts.size() - 1, 1, [&](std::size_t bucket, std::size_t) {
+    Keyed* const begin = dealt.items.data() + dealt.starts[bucket];
+    Keyed* const end = dealt.items.data() + dealt.starts[bucket + 1];
+    std::sort(begin, end);
+    Sums sums{};
+    for (const Keyed* first = begin; first != end;) {
+      const Keyed* last = first + 1;
+      while (last != end && last->same_key(*first)) ++last;
+      visit(std::span<const Keyed>(first, last), sums);
+      first = last;
+    }
+    const std::lock_guard lock(mutex);
+    all += sums;
+  });
+  return all;
+}
+
+}  // namespace frontmost

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/mesh_topology.h"
+
+#include <atomic>
+#include <cmath>
+#include <cstring>
+
+#include "report/collinear.h"
+#include "report/group.h"
+
+namespace frontmost {
+namespace {
+
+constexpr std::size_t kMaxTriangles = std::size_t(1) << 29;  // so that a half-edge's number leaves a bit free
+constexpr std::size_t kGrain = std::size_t(1) << 14;
+constexpr std::uint32_t kUnpaired = no_index;
+
+bool is_finite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+struct Count {
+  std::uint64_t value = 0;
+  Count& operator+=(const Count& other) {
+    value += other.value;
+    return *this;
+  }
+};
+
+// For each vertex the first one at the same position.
+std::vector<std::uint32_t> weld(const std::vector<glm::vec3>& positions, const Execution& execution) {
+  std::vector<std::uint32_t> first(positions.size());
+  const auto produce = [&](std::size_t i, Keyed& item) {
+    const glm::vec3 p = positions[i] + 0.0f;  // makes -0 to +0
+    std::uint32_t bits[3];
+    std::memcpy(bits, &p, sizeof bits);
+    item = Keyed(bits[0], bits[1], bits[2], std::uint32_t(i));
+    return true;
+  };
+  (void)for_each_group<Count>(execution, positions.size(), produce, [&](std::span<const Keyed> same, Count&) {
+    for (const Keyed& item : same) first[item.carried()] = same.front().carried();
+  });
+  return first;
+}
+
+// Sets of numbers that can be joined from several threads. The least number of a set stands for it, so the outcome
+// does not depend on the order of joining.
+class Sets {
+ public:
+  explicit Sets(std::size_t count) : parents_(count) {
+    for (std::size_t i = 0; i < count; ++i) parents_[i].store(std::uint32_t(i), std::memory_order_relaxed);
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    for (;;) {
+      a = find(a), b = find(b);
+      if (a == b) return;
+      if (a > b) std::swap(a, b);
+      std::uint32_t expected = b;  // still the root of its set?
+      if (parents_[b].compare_exchange_weak(expected, a, std::memory_order_relaxed)) return;
+    }
+  }
+  [[nodiscard]] bool is_root(std::uint32_t i) const { return parents_[i].load(std::memory_order_relaxed) == i; }
+
+ private:
+  std::uint32_t find(std::uint32_t i) {
+    for (;;) {
+      std::uint32_t parent = parents_[i].load(std::memory_order_relaxed);
+      if (parent == i) return i;
+      // Halves the path. Another thread may have done more; then nothing is written.
+      const std::uint32_t above = parents_[parent].load(std::memory_order_relaxed);
+      parents_[i].compare_exchange_weak(parent, above, std::memory_order_relaxed);
+      i = above;
+    }
+  }
+
+  std::vector<std::atomic<std::uint32_t>> parents_;
+};
+
+struct EdgeCounts {
+  std::uint64_t boundary = 0, non_manifold = 0, inconsistent = 0;
+  EdgeCounts& operator+=(const EdgeCounts& other) {
+    boundary += other.boundary;
+    non_manifold += other.non_manifold;
+    inconsistent += other.inconsistent;
+    return *this;
+  }
+};
+
+// The mesh after welding. A half-edge is 3 * triangle + k, from corner k to the next.
+class WeldedMesh {
+ public:
+  WeldedMesh(const Mesh& mesh, const Execution& execution)
+      : mesh_(mesh),
+        execution_(execution),
+        corners_(mesh.triangles.size()),
+        kinds_(mesh.triangles.size()),
+        triangle_sets_(mesh.triangles.size()),
+        corner_sets_(mesh.positions.size()) {
+    const std::vector<std::uint32_t> first = weld(mesh.positions, execution);
+    parallel_for(execution, corners_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        const glm::uvec3& c = mesh.triangles[t];
+        corners_[t] = {first[c.x], first[c.y], first[c.z]};
+        kinds_[t] = kind_of(corners_[t]);
+        if (kinds_[t] == Kind::non_finite) continue;
+        corner_sets_.join(corners_[t].x, corners_[t].y);
+        corner_sets_.join(corners_[t].x, corners_[t].z);
+      }
+    });
+  }
+
+  [[nodiscard]] Topology examine() {
+    Topology topology;
+    Oddities& odd = topology.odd;
+    std::uint64_t surface = 0;  // triangles with three different corners
+    for (const Kind kind : kinds_) {
+      odd.non_finite_triangles += kind == Kind::non_finite;
+      odd.degenerate_triangles += kind == Kind::repeated || kind == Kind::flat;
+      surface += has_edges(kind);
+    }
+    odd.duplicate_triangles = count_duplicates();
+    const EdgeCounts edges = join_edges();
+    odd.boundary_edges = edges.boundary;
+    odd.non_manifold_edges = edges.non_manifold;
+    odd.inconsistent_edges = edges.inconsistent;
+    for (std::uint32_t t = 0; t < kinds_.size(); ++t)
+      topology.shells += has_edges(kinds_[t]) && triangle_sets_.is_root(t);
+    topology.closed = surface > 0 && edges.boundary == 0;
+    if (topology.closed && edges.non_manifold == 0 && edges.inconsistent == 0) {
+      // Euler: sum over shells of 2 - 2 genus = vertices - edges + triangles.
+      const auto euler = std::int64_t(count_fans()) - std::int64_t(surface * 3 / 2) + std::int64_t(surface);
+      topology.genus = std::uint64_t(std::int64_t(topology.shells) - euler / 2);
+    }
+    collect_points(topology);
+    return topology;
+  }
+
+ private:
+  enum class Kind : std::uint8_t { proper, flat, repeated, non_finite };
+  static bool has_edges(Kind kind) { return kind == Kind::proper || kind == Kind::flat; }
+
+  [[nodiscard]] Kind kind_of(const glm::uvec3& c) const {
+    const glm::vec3 &a = mesh_.positions[c.x], &b = mesh_.positions[c.y], &d = mesh_.positions[c.z];
+    if (!is_finite(a) || !is_finite(b) || !is_finite(d)) return Kind::non_finite;
+    if (c.x == c.y || c.y == c.z || c.z == c.x) return Kind::repeated;
+    return are_collinear(a, b, d) ? Kind::flat : Kind::proper;
+  }
+
+  [[nodiscard]] std::uint64_t count_duplicates() const {
+    const auto produce = [&](std::size_t t, Keyed& item) {
+      if (kinds_[t] == Kind::non_finite) return false;
+      glm::uvec3 c = corners_[t];
+      if (c.x > c.y) std::swap(c.x, c.y);
+      if (c.y > c.z) std::swap(c.y, c.z);
+      if (c.x > c.y) std::swap(c.x, c.y);
+      item = Keyed(c.x, c.y, c.z, std::uint32_t(t));
+      return true;
+    };
+    return for_each_group<Count>(execution_, corners_.size(), produce,
+                                 [](std::span<const Keyed> same, Count& count) { count.value += same.size() - 1; })
+        .value;
+  }
+
+  // Counts edges by their triangles, joins the triangles of each, and pairs the half-edges that run against each other.
+  EdgeCounts join_edges() {
+    constexpr std::uint32_t kBackward = 1u << 31;
+    twins_.assign(3 * corners_.size(), kUnpaired);
+    const auto produce = [&](std::size_t h, Keyed& item) {
+      const std::size_t t = h / 3, k = h % 3;
+      if (!has_edges(kinds_[t])) return false;
+      const std::uint32_t from = corners_[t][int(k)], to = corners_[t][int((k + 1) % 3)];
+      item = from < to ? Keyed(0, from, to, std::uint32_t(h)) : Keyed(0, to, from, std::uint32_t(h) | kBackward);
+      return true;
+    };
+    const auto visit = [&](std::span<const Keyed> edge, EdgeCounts& counts) {
+      const auto half_edge = [&](std::size_t i) { return edge[i].carried() & ~kBackward; };
+      for (std::size_t i = 1; i < edge.size(); ++i) triangle_sets_.join(half_edge(0) / 3, half_edge(i) / 3);
+      counts.boundary += edge.size() == 1;
+      counts.non_manifold += edge.size() > 2;
+      if (edge.size() != 2) return;
+      if (((edge[0].carried() ^ edge[1].carried()) & kBackward) == 0) {
+        ++counts.inconsistent;
+      } else {
+        twins_[half_edge(0)] = half_edge(1);
+        twins_[half_edge(1)] = half_edge(0);
+      }
+    };
+    return for_each_group<EdgeCounts>(execution_, twins_.size(), produce, visit);
+  }
+
+  // Fans of triangles about a vertex. One a vertex, but where two fans touch in a point: there the surface passes
+  // twice, and counting the vertex once would make a handle of it. Precondition: every half-edge has its twin.
+  [[nodiscard]] std::uint64_t count_fans() const {
+    std::uint64_t fans = 0;
+    std::vector<bool> seen(twins_.size(), false);
+    for (std::uint32_t start = 0; start < twins_.size(); ++start) {
+      if (seen[start] || twins_[start] == kUnpaired) continue;
+      ++fans;
+      // The half-edge before this one in its triangle ends where this one starts; so its twin starts there too.
+      for (std::uint32_t h = start; !seen[h]; h = twins_[h % 3 == 0 ? h + 2 : h - 1]) seen[h] = true;
+    }
+    return fans;
+  }
+
+  void collect_points(Topology& topology) const {
+    std::vector<bool> used(mesh_.positions.size(), false);
+    for (std::size_t t = 0; t < corners_.size(); ++t) {
+      if (kinds_[t] == Kind::non_finite) continue;
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t corner = corners_[t][k];
+        if (used[corner]) continue;
+        used[corner] = true;
+        topology.points.push_back(mesh_.positions[corner]);
+        topology.pieces += corner_sets_.is_root(corner);
+      }
+    }
+  }
+
+  const Mesh& mesh_;
+  const Execution& execution_;
+  std::vector<glm::uvec3> corners_;
+  std::vector<Kind> kinds_;
+  Sets triangle_sets_, corner_sets_;
+  std::vector<std::uint32_t> twins_;
+};
+
+}  // namespace
+
+Topology examine(const Mesh& mesh, const Execution& execution) {
+  if (mesh.triangles.size() > kMaxTriangles)
+    throw Error(ErrorCode::limit_exceeded, "mesh " + mesh.name + ": more than 536870912 triangles to examine");
+  return WeldedMesh(mesh, execution).examine();
+}
+
+}  // namespace frontmost

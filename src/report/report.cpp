@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frontmost/report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "base/parallel.h"
+#include "report/mesh_topology.h"
+
+namespace frontmost {
+namespace {
+
+void add(Oddities& sum, const Oddities& odd) {
+  sum.non_finite_triangles += odd.non_finite_triangles;
+  sum.degenerate_triangles += odd.degenerate_triangles;
+  sum.duplicate_triangles += odd.duplicate_triangles;
+  sum.boundary_edges += odd.boundary_edges;
+  sum.non_manifold_edges += odd.non_manifold_edges;
+  sum.inconsistent_edges += odd.inconsistent_edges;
+}
+
+// Triangles of each material, in the order of material numbers.
+std::vector<MaterialUse> materials_of(const Mesh& mesh, std::size_t material_count) {
+  if (mesh.triangles.empty()) return {};
+  if (mesh.material_ids.size() <= 1) return {{mesh.material_of(0), mesh.triangles.size()}};
+  // Few materials are the rule: counting beats sorting, unless the scene has more of them than the mesh triangles.
+  std::vector<MaterialUse> uses;
+  if (material_count <= mesh.material_ids.size()) {
+    std::vector<std::uint64_t> counts(material_count + 1, 0);
+    for (const std::uint32_t id : mesh.material_ids) ++counts[id == no_index ? material_count : id];
+    for (std::size_t i = 0; i <= material_count; ++i)
+      if (counts[i] > 0) uses.push_back({i == material_count ? no_index : std::uint32_t(i), counts[i]});
+    return uses;
+  }
+  std::vector<std::uint32_t> sorted = mesh.material_ids;
+  std::sort(sorted.begin(), sorted.end());
+  for (const std::uint32_t id : sorted) {
+    if (uses.empty() || uses.back().material != id) uses.push_back({id, 0});
+    ++uses.back().triangles;
+  }
+  return uses;
+}
+
+std::uint64_t face_count(const Mesh& mesh) {
+  if (mesh.face_ids.empty()) return mesh.triangles.size();
+  // Triangles of a polygon follow one another.
+  std::uint64_t faces = 1;
+  for (std::size_t i = 1; i < mesh.face_ids.size(); ++i) faces += mesh.face_ids[i] != mesh.face_ids[i - 1];
+  return faces;
+}
+
+MeshReport report_mesh(const Mesh& mesh, const Topology& topology, std::size_t material_count) {
+  MeshReport report;
+  report.name = mesh.name;
+  report.triangles = mesh.triangles.size();
+  report.vertices = mesh.positions.size();
+  report.positions = topology.points.size();
+  report.faces = face_count(mesh);
+  report.has_normals = !mesh.normals.empty();
+  report.has_texcoords = !mesh.texcoords.empty();
+  report.has_colors = !mesh.colors.empty();
+  report.materials = materials_of(mesh, material_count);
+  report.odd = topology.odd;
+  report.pieces = topology.pieces;
+  report.shells = topology.shells;
+  report.closed = topology.closed;
+  report.genus = topology.genus;
+  return report;
+}
+
+// Of points that stay finite in world space.
+Box bounds_of(const std::vector<glm::vec3>& points, const glm::dmat4& world_from_mesh, const Execution& execution) {
+  Box bounds;
+  std::mutex mutex;
+  parallel_for(execution, points.size(), std::size_t(1) << 16, [&](std::size_t begin, std::size_t end) {
+    Box part;
+    for (std::size_t i = begin; i < end; ++i) {
+      const glm::vec3 p(world_from_mesh * glm::dvec4(glm::dvec3(points[i]), 1));
+      if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) part.include(p);
+    }
+    const std::lock_guard lock(mutex);
+    bounds.include(part);
+  });
+  return bounds;
+}
+
+MaterialReport report_material(const Material& material) {
+  MaterialReport report;
+  report.name = material.name;
+  for (const TextureUse* use : {&material.base_color_texture, &material.metallic_roughness_texture,
+                                &material.normal_texture, &material.emissive_texture, &material.occlusion_texture})
+    report.textures += use->is_set();
+  report.alpha = material.alpha;
+  report.double_sided = material.double_sided;
+  return report;
+}
+
+glm::dvec3 unit(const glm::dvec4& v) {
+  const glm::dvec3 direction(v);
+  const double length = std::sqrt(glm::dot(direction, direction));
+  return length > 0 ? direction / length : direction;
+}
+
+CameraReport report_camera(const Camera& camera) {
+  CameraReport report;
+  report.name = camera.name;
+  report.position = glm::dvec3(camera.world_from_eye[3]);
+  report.direction = unit(-camera.world_from_eye[2]);
+  report.up = unit(camera.world_from_eye[1]);
+  report.orthographic = camera.orthographic;
+  report.vertical = camera.vertical;
+  return report;
+}
+
+// Objects of one mesh need its points; so meshes come one after the other, and only one holds its points.
+void report_objects(const Scene& scene, const std::vector<std::uint32_t>& instances, const Topology& topology,
+                    const Execution& execution, SceneReport& report) {
+  for (const std::uint32_t i : instances) {
+    const Instance& instance = scene.instances[i];
+    const MeshReport& mesh = report.meshes[instance.mesh];
+    report.objects[i] = {instance.name, instance.mesh, mesh.triangles,
+                         bounds_of(topology.points, instance.world_from_mesh, execution)};
+    report.bounds.include(report.objects[i].bounds);
+    report.triangles += mesh.triangles;
+    for (const MaterialUse& use : mesh.materials)
+      if (use.material != no_index) report.materials[use.material].triangles += use.triangles;
+  }
+}
+
+}  // namespace
+
+SceneReport inspect(const Scene& scene, const Execution& execution) {
+  validate(scene);
+  SceneReport report;
+  report.name = scene.name;
+  report.up = scene.up;
+  report.texture_count = scene.textures.size();
+  report.warnings = scene.warnings;
+  for (const Material& material : scene.materials) report.materials.push_back(report_material(material));
+  for (const Camera& camera : scene.cameras) report.cameras.push_back(report_camera(camera));
+  std::vector<std::vector<std::uint32_t>> instances(scene.meshes.size());
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) instances[scene.instances[i].mesh].push_back(i);
+  report.objects.resize(scene.instances.size());
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    report_progress(execution, "inspect", double(m) / double(scene.meshes.size()));
+    const Topology topology = examine(scene.meshes[m], execution);
+    report.meshes.push_back(report_mesh(scene.meshes[m], topology, scene.materials.size()));
+    report.stored_triangles += report.meshes[m].triangles;
+    report.vertices += report.meshes[m].vertices;
+    add(report.odd, topology.odd);
+    report_objects(scene, instances[m], topology, execution, report);
+  }
+  return report;
+}
+
+}  // namespace frontmost
