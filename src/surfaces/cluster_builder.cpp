@@ -17,7 +17,9 @@ namespace {
 
 constexpr std::uint32_t kTrianglesPerPart = 1u << 14;
 
-constexpr std::size_t padded(std::size_t count) { return (count + Cluster::lanes - 1) / Cluster::lanes * Cluster::lanes; }
+constexpr std::size_t padded(std::size_t count) {
+  return (count + Cluster::lanes - 1) / Cluster::lanes * Cluster::lanes;
+}
 
 /// A run of one instance's triangles, and the clusters made of it.
 struct Part {

@@ -14,9 +14,9 @@ namespace frontmost {
 namespace {
 
 struct ClipVertex {
-  double x, y, d;     // homogeneous, see screen_transform.h
+  double x, y, d;  // homogeneous, see screen_transform.h
   ScreenVertex plain;
-  bool is_plain;      // `plain` holds
+  bool is_plain;  // `plain` holds
 };
 
 enum class Plane { near, far, left, right, top, bottom };
@@ -41,8 +41,11 @@ double distance(const ScreenTransform& t, Plane plane, const ClipVertex& v) {
 ClipVertex cut(const ScreenTransform& t, Plane plane, const ClipVertex& inside, const ClipVertex& outside) {
   const double a = distance(t, plane, inside), b = distance(t, plane, outside);
   const double s = a / (a - b);
-  ClipVertex v{inside.x + s * (outside.x - inside.x), inside.y + s * (outside.y - inside.y),
-               inside.d + s * (outside.d - inside.d), {}, false};
+  ClipVertex v{inside.x + s * (outside.x - inside.x),
+               inside.y + s * (outside.y - inside.y),
+               inside.d + s * (outside.d - inside.d),
+               {},
+               false};
   switch (plane) {
     case Plane::near: v.d = t.near; break;
     case Plane::far: v.d = t.far; break;
@@ -88,7 +91,8 @@ double row_dot(const std::array<float, 3>& row, const glm::dvec3& d, float offse
 
 ClipVertex prepare(const ScreenTransform& t, const glm::vec3& world) {
   const glm::dvec3 d = glm::dvec3(world) - glm::dvec3(t.eye[0], t.eye[1], t.eye[2]);
-  ClipVertex v{row_dot(t.x_row, d, t.x_offset), row_dot(t.y_row, d, t.y_offset), row_dot(t.d_row, d, t.d_offset), {}, false};
+  ClipVertex v{
+      row_dot(t.x_row, d, t.x_offset), row_dot(t.y_row, d, t.y_offset), row_dot(t.d_row, d, t.d_offset), {}, false};
   const HomogeneousVertex single = transform(t, world);
   v.is_plain = is_plain(t, single);
   if (v.is_plain) v.plain = snap(t, single);

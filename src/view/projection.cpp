@@ -21,7 +21,8 @@ void check_finite(double value, const char* what) {
 void check_clip(const ClipDistances& clip, bool orthographic) {
   check_finite(clip.near, "near");
   if (std::isnan(clip.far)) throw Error(ErrorCode::bad_argument, "far: must be a number");
-  if (!orthographic && !(clip.near > 0)) throw Error(ErrorCode::bad_argument, "near: must be greater than 0 in perspective");
+  if (!orthographic && !(clip.near > 0))
+    throw Error(ErrorCode::bad_argument, "near: must be greater than 0 in perspective");
   if (orthographic) check_finite(clip.far, "far");
   if (!(clip.far > clip.near)) throw Error(ErrorCode::bad_argument, "far: must be greater than near");
 }
@@ -63,7 +64,8 @@ Projection make_projection(double min_fov, double aspect, const ClipDistances& c
   constexpr double kPi = 3.14159265358979323846;
   check_finite(min_fov, "field of view");
   check_finite(aspect, "aspect");
-  if (!(min_fov > 0 && min_fov < kPi)) throw Error(ErrorCode::bad_argument, "field of view: must be between 0 and 180 degrees");
+  if (!(min_fov > 0 && min_fov < kPi))
+    throw Error(ErrorCode::bad_argument, "field of view: must be between 0 and 180 degrees");
   if (!(aspect > 0)) throw Error(ErrorCode::bad_argument, "aspect: must be greater than 0");
   check_clip(clip, false);
   const double side = std::tan(min_fov / 2);
@@ -94,8 +96,7 @@ Projection make_projection(const Intrinsics& k, int width, int height, const Cli
 }
 
 Intrinsics intrinsics_of(const Projection& projection, int width, int height, PixelRule rule) {
-  if (projection.orthographic)
-    throw Error(ErrorCode::bad_argument, "intrinsics: a parallel projection has none");
+  if (projection.orthographic) throw Error(ErrorCode::bad_argument, "intrinsics: a parallel projection has none");
   const double fx = width / (projection.right - projection.left), fy = height / (projection.top - projection.bottom);
   return {fx, fy, -projection.left * fx - pixel_shift(rule), projection.top * fy - pixel_shift(rule), rule};
 }

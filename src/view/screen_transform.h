@@ -24,8 +24,8 @@ struct ScreenTransform {
   std::array<float, 3> eye, x_row, y_row, d_row;
   float x_offset, y_offset, d_offset;
   bool orthographic;
-  float near, far;       ///< planar distances; far may be infinite
-  float inverse_range;   ///< 1 / (far - near) in parallel projection
+  float near, far;                  ///< planar distances; far may be infinite
+  float inverse_range;              ///< 1 / (far - near) in parallel projection
   std::int32_t centre_x, centre_y;  ///< of the image from its top left corner, in 1/256 pixel
 
   /// Precondition: validate(view) passes.

@@ -12,8 +12,22 @@ constexpr std::array<glm::ivec2, 1> kOne{{{0, 0}}};
 constexpr std::array<glm::ivec2, 2> kTwo{{{4, 4}, {-4, -4}}};
 constexpr std::array<glm::ivec2, 4> kFour{{{-2, -6}, {6, -2}, {-6, 2}, {2, 6}}};
 constexpr std::array<glm::ivec2, 8> kEight{{{1, -3}, {-1, 3}, {5, 1}, {-3, -5}, {-5, 5}, {-7, -1}, {3, 7}, {7, -7}}};
-constexpr std::array<glm::ivec2, 16> kSixteen{{{1, 1}, {-1, -3}, {-3, 2}, {4, -1}, {-5, -2}, {2, 5}, {5, 3}, {3, -5},
-                                               {-2, 6}, {0, -7}, {-4, -6}, {-6, 4}, {-8, 0}, {7, -4}, {6, 7}, {-7, -8}}};
+constexpr std::array<glm::ivec2, 16> kSixteen{{{1, 1},
+                                               {-1, -3},
+                                               {-3, 2},
+                                               {4, -1},
+                                               {-5, -2},
+                                               {2, 5},
+                                               {5, 3},
+                                               {3, -5},
+                                               {-2, 6},
+                                               {0, -7},
+                                               {-4, -6},
+                                               {-6, 4},
+                                               {-8, 0},
+                                               {7, -4},
+                                               {6, 7},
+                                               {-7, -8}}};
 
 template <std::size_t count>
 constexpr std::array<glm::ivec2, count> in_fixed_point(const std::array<glm::ivec2, count>& sixteenths) {

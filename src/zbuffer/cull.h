@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which clusters can be seen at all, and where on the screen.
+#pragma once
+
+#include <vector>
+
+#include "surfaces/cluster_set.h"
+#include "view/screen_transform.h"
+
+namespace frontmost::zbuffer_detail {
+
+enum class ClusterFate : std::uint8_t {
+  culled,  ///< no sample can see it
+  whole,   ///< every vertex can be snapped as it is
+  apart,   ///< some triangle may need clipping: taken apart
+};
+
+/// Pixels [x0, x1] x [y0, y1], both ends included.
+struct PixelRect {
+  std::int32_t x0, y0, x1, y1;
+};
+
+/// One entry a cluster, padded to whole vectors. `rect` and `nearest` hold where the fate is `whole`.
+struct CullResult {
+  std::vector<std::uint8_t> fate;  ///< ClusterFate
+  std::vector<std::int32_t> x0, y0, x1, y1;
+  std::vector<float> nearest;  ///< no key of the cluster is greater
+
+  void resize(std::size_t cluster_count);
+  [[nodiscard]] ClusterFate fate_of(std::size_t i) const { return ClusterFate(fate[i]); }
+  [[nodiscard]] PixelRect rect(std::size_t i) const { return {x0[i], y0[i], x1[i], y1[i]}; }
+};
+
+/// Decides on clusters [begin, end); `begin` is a multiple of 16. Never culls what a sample sees: every bound derived
+/// from a box corner is padded by what the rounding of a vertex inside the box can amount to.
+void cull_clusters(const BoxArrays& boxes, const ScreenTransform& transform, const View& view, Isa isa,
+                   std::size_t begin, std::size_t end, CullResult& result);
+
+}  // namespace frontmost::zbuffer_detail

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drawing one tile of the picture: the inner loop of the z-buffer.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "surfaces/cluster_set.h"
+#include "view/screen_transform.h"
+#include "zbuffer/cull.h"
+#include "zbuffer/triangle_records.h"
+
+namespace frontmost::zbuffer_detail {
+
+inline constexpr int kTileSize = 128;              ///< pixels
+inline constexpr int kBlockSize = 16;              ///< pixels; a tile is 8 x 8 blocks, one bit of a 64-bit mask each
+inline constexpr int kTileStride = kTileSize + 8;  ///< words; a power of two would collide in the cache
+inline constexpr std::size_t kTileWords = std::size_t(kTileSize) * kTileStride;
+
+/// What all tiles of a frame have in common. Borrows everything.
+struct FrameInput {
+  const ClusterSet& set;
+  const ScreenTransform& transform;
+  const View& view;
+  const CullResult& culled;
+  std::span<const TriangleRecord> records;  ///< corners from the image's top left
+  std::span<const glm::ivec2> samples;      ///< offsets within a pixel
+  PrimitiveId* primitives;                  ///< output planes, [sample][y][x]
+  float* keys;
+};
+
+/// One tile: its pixels, and what may be seen in it, near things first.
+struct TileJob {
+  int x = 0, y = 0, width = 0, height = 0;
+  std::span<const std::uint32_t> records, clusters;
+};
+
+/// The private memory of one thread, reused from tile to tile.
+struct TileScratch {
+  explicit TileScratch(std::size_t sample_count);
+
+  /// By sample, kTileWords each: key bits << 32 | ~id, the greatest wins. 0 is "nothing".
+  Buffer<std::uint64_t> words;
+  /// By block: no sample of the block is farther than this key; 0 where some sample sees nothing.
+  Buffer<float> farthest;
+  std::uint64_t dirty = 0;           ///< blocks drawn to since `farthest` was found
+  Buffer<std::uint32_t> references;  ///< covered (triangle, pixel) pairs of one batch
+};
+
+/// Draws a tile and writes it to the output planes.
+void draw_tile(const FrameInput& frame, const TileJob& job, TileScratch& scratch, Isa isa);
+
+}  // namespace frontmost::zbuffer_detail

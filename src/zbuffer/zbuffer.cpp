@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// The z-buffer: plan the frame, then draw its tiles on all threads.
+
+#include "frontmost/zbuffer.h"
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "base/float_environment.h"
+#include "base/parallel.h"
+#include "zbuffer/frame_plan.h"
+
+namespace frontmost {
+namespace {
+
+using namespace zbuffer_detail;
+
+/// Lends a scratch to whoever draws a tile, and keeps it for the next.
+class ScratchPool {
+ public:
+  explicit ScratchPool(std::size_t sample_count) : sample_count_(sample_count) {}
+
+  std::unique_ptr<TileScratch> take() {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!free_.empty()) {
+        std::unique_ptr<TileScratch> scratch = std::move(free_.back());
+        free_.pop_back();
+        return scratch;
+      }
+    }
+    return std::make_unique<TileScratch>(sample_count_);
+  }
+  void give_back(std::unique_ptr<TileScratch> scratch) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(scratch));
+  }
+
+ private:
+  std::size_t sample_count_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<TileScratch>> free_;
+};
+
+}  // namespace
+
+Visible zbuffer(const Surfaces& surfaces, const View& view, const Execution& execution) {
+  validate(view);
+  const IeeeScope ieee;
+  const ClusterSet& set = surfaces.clusters();
+  const ScreenTransform transform(view);
+  const FramePlan plan = plan_frame(set, transform, view, execution);
+
+  Visible visible{view, Buffer<PrimitiveId>(view.sample_count()), Buffer<float>(view.sample_count())};
+  const FrameInput frame{set,
+                         transform,
+                         view,
+                         plan.culled,
+                         plan.records,
+                         sample_offsets(view.samples),
+                         visible.primitives.data(),
+                         visible.keys.data()};
+  ScratchPool pool(frame.samples.size());
+  parallel_for(execution, plan.tile_count(), 1, [&](std::size_t begin, std::size_t end) {
+    std::unique_ptr<TileScratch> scratch = pool.take();
+    for (std::size_t tile = begin; tile < end; ++tile) draw_tile(frame, plan.job(tile, view), *scratch, execution.isa);
+    pool.give_back(std::move(scratch));
+  });
+  return visible;
+}
+
+}  // namespace frontmost

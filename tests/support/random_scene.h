@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes to compare methods on: random, but the same on every machine.
+#pragma once
+
+#include <cstdint>
+
+#include "frontmost/scene.h"
+#include "frontmost/view.h"
+
+namespace frontmost::test {
+
+/// Numbers that do not depend on the standard library.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15u + 0x1234567) {}
+  std::uint32_t next() {
+    state_ = state_ * 6364136223846793005u + 1442695040888963407u;
+    return std::uint32_t(state_ >> 32) ^ std::uint32_t(state_ >> 13);
+  }
+  int below(int n) { return int(next() % std::uint32_t(n)); }
+  float unit() { return float(next() >> 8) / 16777216.0f; }
+  float within(float low, float high) { return low + (high - low) * unit(); }
+  glm::vec3 point(float reach) { return {within(-reach, reach), within(-reach, reach), within(-reach, reach)}; }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// One mesh of triangles placed once.
+inline Scene scene_of(Mesh mesh) {
+  Scene scene;
+  scene.name = "test";
+  scene.meshes.push_back(std::move(mesh));
+  scene.instances.push_back({"object", 0, glm::dmat4(1.0)});
+  return scene;
+}
+
+inline void add_triangle(Mesh& mesh, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+  const auto n = std::uint32_t(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), {a, b, c});
+  mesh.triangles.push_back({n, n + 1, n + 2});
+}
+
+enum class Kind { soup, tiny, slivers, fan, shared_grid, huge, coplanar, through_eye };
+inline constexpr Kind all_kinds[] = {Kind::soup,        Kind::tiny, Kind::slivers,  Kind::fan,
+                                     Kind::shared_grid, Kind::huge, Kind::coplanar, Kind::through_eye};
+
+/// Triangles within about a unit of the origin (huge ones reach far beyond).
+inline Mesh random_mesh(Kind kind, int count, std::uint64_t seed) {
+  Random random(seed);
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const glm::vec3 p = random.point(1);
+    switch (kind) {
+      case Kind::soup: add_triangle(mesh, p, p + random.point(0.4f), p + random.point(0.4f)); break;
+      case Kind::tiny: add_triangle(mesh, p, p + random.point(0.02f), p + random.point(0.02f)); break;
+      case Kind::slivers: {
+        const glm::vec3 q = random.point(1);
+        add_triangle(mesh, p, q, p + (q - p) * random.unit() + random.point(1e-3f));
+        break;
+      }
+      case Kind::fan: add_triangle(mesh, {0.1f, 0.2f, 0.3f}, p, random.point(1)); break;
+      case Kind::huge: add_triangle(mesh, random.point(1e6f), random.point(1e6f), random.point(1e6f)); break;
+      case Kind::coplanar: {
+        const auto on_grid = [&] { return glm::vec3(float(random.below(9)) / 8, float(random.below(9)) / 8, 0.25f); };
+        add_triangle(mesh, on_grid(), on_grid(), on_grid());
+        break;
+      }
+      case Kind::through_eye: add_triangle(mesh, random.point(8), random.point(8), random.point(8)); break;
+      case Kind::shared_grid: break;
+    }
+  }
+  if (kind == Kind::shared_grid) {
+    const int side = 1 + int(std::sqrt(double(count) / 2));
+    for (int j = 0; j <= side; ++j)
+      for (int i = 0; i <= side; ++i)
+        mesh.positions.push_back({2 * float(i) / float(side) - 1 + random.within(-0.3f, 0.3f) / float(side),
+                                  2 * float(j) / float(side) - 1 + random.within(-0.3f, 0.3f) / float(side),
+                                  random.within(-0.2f, 0.2f)});
+    for (int j = 0; j < side; ++j)
+      for (int i = 0; i < side; ++i) {
+        const auto a = std::uint32_t(j * (side + 1) + i), b = a + 1, c = a + std::uint32_t(side) + 1, d = c + 1;
+        mesh.triangles.push_back({a, b, d});
+        mesh.triangles.push_back({a, d, c});
+      }
+  }
+  return mesh;
+}
+
+/// A view of the unit cube about the origin from a random side.
+inline View random_view(Random& random, int width, int height) {
+  View view;
+  view.width = width;
+  view.height = height;
+  const glm::dvec3 eye = glm::normalize(glm::dvec3(random.point(1)) + glm::dvec3(0, 0, 1e-3)) * (2.0 + random.unit());
+  view.world_from_eye = look_at(eye, glm::dvec3(random.point(0.3f)), {0, 1, 0});
+  view.projection = random.below(3) == 0
+                        ? make_orthographic(-1.3, 1.1, -0.9, 1.2, {0.5, 6})
+                        : make_projection(0.9, double(width) / height,
+                                          {0.5, random.below(2) ? 6 : std::numeric_limits<double>::infinity()});
+  return view;
+}
+
+}  // namespace frontmost::test

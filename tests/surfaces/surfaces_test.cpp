@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frontmost/surfaces.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "support/random_scene.h"
+#include "surfaces/cluster_set.h"
+
+namespace frontmost::test {
+namespace {
+
+/// Corners of every triangle as the clusters hold them.
+std::vector<std::array<glm::vec3, 3>> triangles_of(const ClusterSet& set) {
+  std::vector<std::array<glm::vec3, 3>> triangles;
+  for (const Cluster& cluster : set.clusters) {
+    EXPECT_EQ(cluster.first_primitive, triangles.size());
+    EXPECT_LE(cluster.vertex_count, Cluster::max_vertices);
+    EXPECT_LE(cluster.triangle_count, Cluster::max_triangles);
+    for (std::size_t t = 0; t < cluster.triangle_count; ++t) {
+      std::array<glm::vec3, 3> corners;
+      const std::size_t c = cluster.first_corner + t;
+      const std::uint8_t numbers[3] = {set.i0[c], set.i1[c], set.i2[c]};
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_LT(numbers[k], cluster.vertex_count);
+        const std::size_t v = cluster.first_vertex + numbers[k];
+        corners[k] = {set.x[v], set.y[v], set.z[v]};
+      }
+      triangles.push_back(corners);
+    }
+  }
+  return triangles;
+}
+
+TEST(Surfaces, ClustersHoldEveryTriangleInIdOrder) {
+  for (const Kind kind : {Kind::soup, Kind::shared_grid, Kind::fan, Kind::coplanar}) {
+    Scene scene = scene_of(random_mesh(kind, 40'000, 1));
+    scene.instances.push_back({"again", 0, glm::dmat4(2.0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 5, 6, 7, 1)});
+    const Surfaces surfaces(scene);
+    const auto triangles = triangles_of(surfaces.clusters());
+    ASSERT_EQ(triangles.size(), surfaces.primitive_count());
+    for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) EXPECT_EQ(triangles[id], surfaces.corners(id));
+  }
+}
+
+TEST(Surfaces, AreTheSameForAnyNumberOfThreads) {
+  const Scene scene = scene_of(random_mesh(Kind::soup, 100'000, 2));
+  const Surfaces one(scene, {.threads = 1}), four(scene, {.threads = 4});
+  const ClusterSet &a = one.clusters(), &b = four.clusters();
+  ASSERT_EQ(a.clusters.size(), b.clusters.size());
+  ASSERT_EQ(a.x.size(), b.x.size());
+  EXPECT_EQ(std::memcmp(a.x.data(), b.x.data(), a.x.size() * 4), 0);
+  EXPECT_EQ(std::memcmp(a.i1.data(), b.i1.data(), a.i1.size()), 0);
+}
+
+TEST(Surfaces, BoxesHoldTheirClusters) {
+  const Scene scene = scene_of(random_mesh(Kind::tiny, 5000, 2));
+  const Surfaces surfaces(scene);
+  const ClusterSet& set = surfaces.clusters();
+  Box all;
+  for (std::size_t i = 0; i < set.clusters.size(); ++i) {
+    const Box box = set.boxes.get(i);
+    all.include(box);
+    for (std::size_t v = 0; v < set.clusters[i].vertex_count; ++v) {
+      const std::size_t at = set.clusters[i].first_vertex + v;
+      EXPECT_TRUE(set.x[at] >= box.low.x && set.x[at] <= box.high.x && set.z[at] >= box.low.z &&
+                  set.z[at] <= box.high.z);
+    }
+  }
+  EXPECT_EQ(all.low, surfaces.bounds().low);
+  EXPECT_EQ(all.high, surfaces.bounds().high);
+}
+
+TEST(Surfaces, IdsLeadBackToInstanceMeshAndTriangle) {
+  Scene scene = scene_of(random_mesh(Kind::soup, 10, 1));
+  scene.meshes.push_back(random_mesh(Kind::soup, 3, 2));
+  scene.meshes.emplace_back();  // an empty one in between takes no ids
+  scene.instances = {
+      {"a", 1, glm::dmat4(1)}, {"none", 2, glm::dmat4(1)}, {"b", 0, glm::dmat4(1)}, {"c", 1, glm::dmat4(1)}};
+  const Surfaces surfaces(scene);
+  EXPECT_EQ(surfaces.primitive_count(), 16u);
+  const PrimitiveSource first = surfaces.source(0), second = surfaces.source(3), last = surfaces.source(15);
+  EXPECT_EQ(first.instance, 0u);
+  EXPECT_EQ(second.instance, 2u);
+  EXPECT_EQ(second.mesh, 0u);
+  EXPECT_EQ(second.triangle, 0u);
+  EXPECT_EQ(last.instance, 3u);
+  EXPECT_EQ(last.triangle, 2u);
+  EXPECT_EQ(surfaces.first_primitive(3), 13u);
+}
+
+TEST(Surfaces, NonFiniteTrianglesAreDegenerateAndOutOfTheBounds) {
+  Mesh mesh = random_mesh(Kind::soup, 1, 1);
+  add_triangle(mesh, {std::numeric_limits<float>::infinity(), 0, 0}, {900, 0, 0}, {0, 900, 0});
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  EXPECT_EQ(surfaces.primitive_count(), 2u);
+  EXPECT_LT(surfaces.bounds().high.x, 10);
+  const ClusterSet& set = surfaces.clusters();
+  EXPECT_TRUE(set.i0[1] == set.i1[1] && set.i1[1] == set.i2[1]);
+
+  Scene only_bad = scene_of({});
+  add_triangle(only_bad.meshes[0], glm::vec3(std::nanf("")), {0, 0, 0}, {1, 0, 0});
+  const Surfaces nothing(only_bad);
+  EXPECT_TRUE(nothing.bounds().is_empty());
+  EXPECT_EQ(nothing.primitive_count(), 1u);
+}
+
+TEST(Surfaces, RefuseBrokenScenesByName) {
+  Scene scene = scene_of(random_mesh(Kind::soup, 3, 1));
+  scene.meshes[0].triangles[2].y = 99;
+  try {
+    const Surfaces surfaces(scene);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "test: mesh 0: triangle 2: vertex 99 is out of range, there are 9");
+  }
+  scene.meshes[0].triangles[2].y = 0;
+  scene.instances[0].world_from_mesh[3][0] = std::nan("");
+  EXPECT_THROW(Surfaces surfaces(scene), Error);
+  scene.instances[0].mesh = 7;
+  EXPECT_THROW(Surfaces surfaces(scene), Error);
+}
+
+TEST(Surfaces, StayWithinTheirMemory) {
+  const Scene scene = scene_of(random_mesh(Kind::shared_grid, 200'000, 1));
+  const Surfaces surfaces(scene);
+  EXPECT_LT(double(surfaces.byte_count()) / surfaces.primitive_count(), 64);
+}
+
+}  // namespace
+}  // namespace frontmost::test

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "support/random_scene.h"
+#include "view/screen_transform.h"
+
+namespace frontmost::test {
+namespace {
+
+constexpr NamedView kViews[] = {NamedView::front, NamedView::back,   NamedView::left, NamedView::right,
+                                NamedView::top,   NamedView::bottom, NamedView::iso,  NamedView::three_quarter};
+
+Scene box_scene(const glm::vec3& low, const glm::vec3& high, Axis up) {
+  Mesh mesh;
+  add_triangle(mesh, low, {high.x, low.y, low.z}, {low.x, high.y, low.z});
+  add_triangle(mesh, high, {low.x, high.y, high.z}, {high.x, low.y, high.z});
+  Scene scene = scene_of(mesh);
+  scene.up = up;
+  return scene;
+}
+
+/// Every corner of the box is inside the picture and between the planes; the picture is reasonably filled.
+void expect_fits(const Surfaces& surfaces, const View& view) {
+  const ScreenTransform t(view);
+  double widest = 0;
+  for (int k = 0; k < 8; ++k) {
+    const Box& b = surfaces.bounds();
+    const glm::vec3 corner(k & 1 ? b.high.x : b.low.x, k & 2 ? b.high.y : b.low.y, k & 4 ? b.high.z : b.low.z);
+    const HomogeneousVertex v = transform(t, corner);
+    ASSERT_TRUE(is_plain(t, v));
+    const ScreenVertex s = snap(t, v);
+    const double x = std::abs(double(s.x)) / t.centre_x, y = std::abs(double(s.y)) / t.centre_y;
+    EXPECT_LE(std::max(x, y), 1.0);
+    widest = std::max({widest, x, y});
+  }
+  EXPECT_GT(widest, 0.5);
+}
+
+TEST(Frame, ShowsTheWholeModelFromEverySide) {
+  for (const Axis up : {Axis::y, Axis::z, Axis::x, Axis::minus_z})
+    for (const glm::ivec2& size : {glm::ivec2(640, 480), glm::ivec2(100, 900)})
+      for (const NamedView direction : kViews)
+        for (const bool orthographic : {false, true}) {
+          const Scene scene = box_scene({100, -3, 7}, {104, 5, 9}, up);
+          const Surfaces surfaces(scene);
+          FrameOptions options;
+          options.direction = direction;
+          options.orthographic = orthographic;
+          expect_fits(surfaces, frame(surfaces, size.x, size.y, options));
+        }
+}
+
+TEST(Frame, TinyAndHugeModelsFitAlike) {
+  for (const float scale : {1e-6f, 1e6f}) {
+    const Scene scene = box_scene(glm::vec3(-scale), glm::vec3(scale), Axis::y);
+    const Surfaces surfaces(scene);
+    expect_fits(surfaces, frame(surfaces, 200, 100));
+  }
+}
+
+TEST(Frame, FrontOfAYUpModelLooksAlongMinusZAndOfAZUpModelAlongY) {
+  FrameOptions options;
+  options.direction = NamedView::front;
+  const Scene y_up = box_scene(glm::vec3(-1), glm::vec3(1), Axis::y),
+              z_up = box_scene(glm::vec3(-1), glm::vec3(1), Axis::z);
+  const Surfaces a(y_up), b(z_up);
+  EXPECT_NEAR(frame(a, 10, 10, options).forward().z, -1, 1e-12);
+  EXPECT_NEAR(frame(b, 10, 10, options).forward().y, 1, 1e-12);
+  EXPECT_NEAR(frame(b, 10, 10, options).up().z, 1, 1e-12);
+}
+
+TEST(Frame, EmptyAndFlatAndSinglePointModelsHaveAView) {
+  const Scene empty;
+  const Surfaces nothing(empty);
+  EXPECT_NO_THROW((void)frame(nothing, 10, 10));
+  const Scene flat = box_scene({-1, -1, 3}, {1, 1, 3}, Axis::z);
+  const Surfaces sheet(flat);
+  for (const NamedView direction : kViews) {
+    FrameOptions options;
+    options.direction = direction;
+    EXPECT_NO_THROW((void)frame(sheet, 10, 10, options));
+  }
+  const Scene point = box_scene({5, 5, 5}, {5, 5, 5}, Axis::y);
+  const Surfaces dot(point);
+  EXPECT_NO_THROW((void)frame(dot, 10, 10));
+}
+
+TEST(FitClip, EnclosesWhatIsBeforeTheEye) {
+  const Box box{glm::vec3(-1), glm::vec3(1)};
+  const ClipDistances outside = fit_clip(box, look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0}), false);
+  EXPECT_LT(outside.near, 4);
+  EXPECT_GT(outside.near, 3.9);
+  EXPECT_GT(outside.far, 6);
+  const ClipDistances inside = fit_clip(box, look_at({0, 0, 0}, {0, 0, -1}, {0, 1, 0}), false);
+  EXPECT_GT(inside.near, 0);
+  EXPECT_LE(inside.near, 1.1e-4);
+  const ClipDistances behind = fit_clip(box, look_at({0, 0, 5}, {0, 0, 9}, {0, 1, 0}), false);
+  EXPECT_TRUE(behind.near > 0 && behind.near < behind.far);
+}
+
+}  // namespace
+}  // namespace frontmost::test
