@@ -2,10 +2,11 @@
 // Checks the numbers that the documentation states: "EXPRESSION;  // -> 1.5, 2" becomes expect(EXPRESSION, "1.5, 2").
 #pragma once
 
+#include <frontmost/frontmost.h>
+
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <frontmost/frontmost.h>
 #include <string>
 #include <vector>
 

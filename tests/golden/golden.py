@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Golden pictures: few, small, and only of what a person has looked at.
+
+    golden.py check PROGRAM FOLDER     renders every case into FOLDER and compares
+    golden.py update PROGRAM FOLDER    renders, and stores the result as the new truth
+
+What is visible (ids and depths) and each map are promised to the byte, so their content hashes must be equal. Colours
+go through functions of the C library and may differ by a rounding: each channel within COLOUR_TOLERANCE. On failure
+the picture and its difference lie in FOLDER, the reference beside this script.
+"""
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+HASHES = HERE / "hashes.json"
+COLOUR_TOLERANCE = 2 / 255
+
+SMALL = ["--resolution", "96,72"]
+MAPS = ["--depth", "{}_depth.exr", "--ids", "primitive={}_primitives.npy", "--normals", "{}_normals.exr"]
+CASES = {
+    "teapot": ["builtin:teapot", *SMALL],
+    "teapot_back_culled": ["builtin:teapot", *SMALL, "--cull", "back", "--view", "top", "--camera-orthographic"],
+    "cubes": ["builtin:cubes", *SMALL, "--samples", "1"],
+    "cycle": ["builtin:cycle", *SMALL, "--shading", "flat"],
+    "city_ids": ["builtin:city", *SMALL, "--shading", "ids"],
+    "spheres": ["builtin:spheres", *SMALL, "--background", "transparent"],
+    "spheres_normals": ["builtin:spheres", *SMALL, "--shading", "normals"],
+}
+
+
+def hashes_of(text):
+    """{"visible": ..., "teapot_depth.exr": ...} from the lines "NAME HASH" of --hash."""
+    return dict(line.rsplit(None, 1) for line in text.splitlines() if line.strip())
+
+
+def render(program, folder, name, compare):
+    command = [program, "render", *CASES[name], "-o", f"{name}.png", *(word.format(name) for word in MAPS), "--hash"]
+    if compare:
+        command += ["--reference", HERE / f"{name}.png", "--reference-threshold", str(COLOUR_TOLERANCE)]
+    done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True)
+    found = {key: value for key, value in hashes_of(done.stdout).items() if not key.endswith(".png")}
+    return done, found
+
+
+def check(program, folder):
+    stored = json.loads(HASHES.read_text())
+    failures = []
+    for name in CASES:
+        done, found = render(program, folder, name, True)
+        if done.returncode != 0:
+            failures.append(f"{name}: exit status {done.returncode}: {done.stderr.strip()}")
+        for key in sorted(set(stored[name]) | set(found)):
+            if stored[name].get(key) != found.get(key):
+                failures.append(f"{name}: {key} has hash {found.get(key)}, stored is {stored[name].get(key)}")
+    if failures:
+        sys.exit("\n".join(failures) + f"\npictures and differences: {folder}; references: {HERE}")
+    print(f"{len(CASES)} pictures, {sum(map(len, stored.values()))} hashes")
+
+
+def update(program, folder):
+    stored = {}
+    for name in CASES:
+        done, stored[name] = render(program, folder, name, False)
+        if done.returncode != 0:
+            sys.exit(f"{name}: {done.stderr}")
+        shutil.copy(folder / f"{name}.png", HERE / f"{name}.png")
+    HASHES.write_text(json.dumps(stored, indent=1, sort_keys=True) + "\n")
+
+
+def main():
+    if len(sys.argv) != 4 or sys.argv[1] not in ("check", "update"):
+        sys.exit(__doc__)
+    program, folder = pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3]).resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    (check if sys.argv[1] == "check" else update)(program, folder)
+
+
+main()
