@@ -11,10 +11,12 @@ constexpr std::string_view builtin_prefix = "builtin:";
 Scene read(ModelFormat format, Bytes bytes, const ModelSource& source) {
   switch (format) {
     case ModelFormat::stl: return read_stl(bytes, source);
+    case ModelFormat::ply: return read_ply(bytes, source);
+    case ModelFormat::obj: return read_obj(bytes, source);
+    case ModelFormat::off: return read_off(bytes, source);
     case ModelFormat::gltf: return read_gltf(bytes, source);
-    default: break;
   }
-  throw Error(ErrorCode::unsupported, source.name() + ": no reader for this format");
+  throw Error(ErrorCode::bad_argument, source.name() + ": not a model format");
 }
 
 Axis default_up(ModelFormat format) { return format == ModelFormat::stl ? Axis::z : Axis::y; }
@@ -44,7 +46,9 @@ Scene read_any(Bytes bytes, const ModelSource& source, std::optional<ModelFormat
 
 Scene load(const std::string& path, const LoadOptions& options, const Execution& execution) {
   if (path.starts_with(builtin_prefix)) {
-    throw Error(ErrorCode::unsupported, path + ": this build has no built-in scenes");
+    Scene scene = builtin(std::string_view(path).substr(builtin_prefix.size()));
+    if (options.up) scene.up = *options.up;
+    return scene;
   }
   if (path == "-") {
     const InputFile file = InputFile::standard_input("standard input");

@@ -29,6 +29,11 @@ ModelSource::ModelSource(std::string name, const Execution& execution, const Inp
 
 std::string ModelSource::stem() const { return fs::path(name_).stem().string(); }
 
+std::string ModelSource::without_name(const Error& error) const {
+  const std::string what = error.what(), start = name_ + ": ";
+  return what.starts_with(start) ? what.substr(start.size()) : what;
+}
+
 void ModelSource::fail(const std::string& place, const std::string& reason) const {
   throw Error(ErrorCode::file_malformed, name_ + ": " + place + ": " + reason);
 }

@@ -36,6 +36,9 @@ class ModelSource {
     if (file_ != nullptr) file_->release(part);
   }
 
+  /// The words of an error without the model's name at their start, for Scene::warnings.
+  [[nodiscard]] std::string without_name(const Error& error) const;
+
   /// Throws Error file_malformed "name: place: reason".
   [[noreturn]] void fail(const std::string& place, const std::string& reason) const;
   [[noreturn]] void fail_limit(const std::string& place, const std::string& reason) const;

@@ -13,6 +13,9 @@ namespace frontmost {
 using Bytes = std::span<const std::byte>;
 
 [[nodiscard]] Scene read_stl(Bytes bytes, const ModelSource& source);
+[[nodiscard]] Scene read_ply(Bytes bytes, const ModelSource& source);
+[[nodiscard]] Scene read_obj(Bytes bytes, const ModelSource& source);
+[[nodiscard]] Scene read_off(Bytes bytes, const ModelSource& source);
 [[nodiscard]] Scene read_gltf(Bytes bytes, const ModelSource& source);
 
 /// The format that a file's suffix stands for. None: not one of ours.

@@ -127,6 +127,4 @@ Scene read_binary_stl(Bytes bytes, const ModelSource& source) {
   return scene;
 }
 
-Scene read_ascii_stl(Bytes, const ModelSource& source) { source.fail("line 1", "ASCII STL is not supported yet"); }
-
 }  // namespace frontmost

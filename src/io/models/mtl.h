@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Materials of OBJ files: a table of names, filled from material libraries (MTL).
+#pragma once
+
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "io/models/texture_files.h"
+
+namespace frontmost {
+
+/// The materials of a scene by name. A name may be used before, after or without its definition.
+class MaterialTable {
+ public:
+  MaterialTable(const ModelSource& source, Scene& scene) : source_(source), scene_(scene) {}
+
+  /// The number of the material called `name`. \throws Error limit_exceeded.
+  std::uint32_t number(const std::string& name);
+  /// The same, noting that a library defines it.
+  std::uint32_t define(const std::string& name);
+  [[nodiscard]] Material& operator[](std::uint32_t number) { return scene_.materials[number]; }
+  /// Warns about names that no library defined.
+  void finish();
+
+ private:
+  const ModelSource& source_;
+  Scene& scene_;
+  std::unordered_map<std::string, std::uint32_t> numbers_;
+  std::vector<bool> is_defined_;
+};
+
+/// Reads a material library. `library` stands for it in errors, `folder` is where it lies, relative to the model.
+/// \throws Error file_malformed.
+void read_mtl(Bytes bytes, const ModelSource& library, const std::string& folder, TextureFiles& textures,
+              MaterialTable& materials);
+
+}  // namespace frontmost

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/models/number.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <string_view>
+
+namespace frontmost::detail {
+namespace {
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+/// Whether the text at `at` is `word` in any case, not as part of a longer word.
+const char* match(const char* at, const char* end, std::string_view word) {
+  if (std::size_t(end - at) < word.size()) return nullptr;
+  for (std::size_t i = 0; i < word.size(); ++i)
+    if ((is_letter(at[i]) ? char(at[i] | 0x20) : at[i]) != word[i]) return nullptr;
+  const char* after = at + word.size();
+  return after != end && is_letter(*after) ? nullptr : after;
+}
+
+/// nan, inf, infinity, and what old Microsoft libraries print: 1.#QNAN, 1.#IND, 1.#INF.
+const char* parse_special(const char* at, const char* end, float& magnitude) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  constexpr struct {
+    std::string_view word;
+    float value;
+  } words[] = {{"nan", nan},     {"inf", inf},    {"infinity", inf}, {"1.#qnan", nan},
+               {"1.#snan", nan}, {"1.#ind", nan}, {"1.#inf", inf}};
+  for (const auto& special : words)
+    if (const char* after = match(at, end, special.word)) {
+      magnitude = special.value;
+      // "1.#IND00" pads to the digits that were asked for.
+      while (special.word[0] == '1' && after != end && is_digit(*after)) ++after;
+      return after;
+    }
+  return nullptr;
+}
+
+/// Where the decimal number at `at` ends; null if there is none. `is_small`: a number out of range is too small.
+const char* scan_decimal(const char* at, const char* end, bool& is_small) {
+  const char* p = at;
+  std::int64_t leading = 0, point = 0;
+  bool any = false, seen_nonzero = false;
+  for (; p != end && is_digit(*p); ++p, any = true) {
+    seen_nonzero |= *p != '0';
+    leading += seen_nonzero;
+  }
+  if (p != end && *p == '.')
+    for (++p; p != end && is_digit(*p); ++p, any = true) {
+      if (!seen_nonzero && *p == '0') --point;
+      seen_nonzero |= *p != '0';
+    }
+  if (!any) return nullptr;
+  std::int64_t exponent = 0;
+  if (p != end && (*p == 'e' || *p == 'E')) {
+    const char* q = p + 1;
+    const bool negative = q != end && *q == '-';
+    if (q != end && (*q == '-' || *q == '+')) ++q;
+    if (q != end && is_digit(*q)) {
+      for (; q != end && is_digit(*q); ++q)
+        exponent = std::min<std::int64_t>(10 * exponent + (*q - '0'), 1'000'000'000);
+      if (negative) exponent = -exponent;
+      p = q;
+    }
+  }
+  is_small = !seen_nonzero || (leading > 0 ? leading : point) + exponent < 0;
+  return p;
+}
+
+/// The float nearest to the digits [at, end). False: out of range.
+bool nearest_float(const char* at, const char* end, float& value) {
+#if defined(__cpp_lib_to_chars)
+  return std::from_chars(at, end, value).ec == std::errc();
+#else
+  // Libraries without from_chars for floats (WebAssembly) have the C locale only.
+  value = std::strtof(std::string(at, end).c_str(), nullptr);
+  return true;
+#endif
+}
+
+}  // namespace
+
+const char* parse_float_slowly(const char* at, const char* end, float& value) {
+  const bool negative = at != end && *at == '-';
+  if (at != end && (*at == '-' || *at == '+')) ++at;
+  float magnitude = 0;
+  const char* after = parse_special(at, end, magnitude);
+  if (after == nullptr) {
+    bool is_small = false;
+    after = scan_decimal(at, end, is_small);
+    if (after == nullptr) return nullptr;
+    if (!nearest_float(at, after, magnitude)) magnitude = is_small ? 0.0f : std::numeric_limits<float>::infinity();
+  }
+  value = negative ? -magnitude : magnitude;
+  return after;
+}
+
+}  // namespace frontmost::detail

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Decimal numbers out of text, correctly rounded to float, several times faster than strtof on what files hold.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+namespace frontmost {
+
+namespace detail {
+/// The general case: many digits, large exponents, nan and inf in every spelling. Null: not a number.
+const char* parse_float_slowly(const char* at, const char* end, float& value);
+
+inline constexpr double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                           1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
+inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Rounding a correctly rounded double to float is correct, unless the double is half way between two floats: then
+/// the digits lost to it would decide. Also false where floats get sparser (subnormal) or end.
+inline bool rounds_once(double magnitude) {
+  std::uint64_t bits;
+  std::memcpy(&bits, &magnitude, sizeof bits);
+  constexpr std::uint64_t below_float = (std::uint64_t(1) << 29) - 1, half = std::uint64_t(1) << 28;
+  return (bits & below_float) != half && magnitude >= 1e-37 && magnitude <= 1e38;
+}
+}  // namespace detail
+
+/// Reads [+-]digits[.digits][e[+-]digits], nan or inf at `at`. Beyond the range of float: infinity or zero.
+/// \returns the first character after the number; null if there is none.
+inline const char* parse_float(const char* at, const char* end, float& value) {
+  const char* p = at;
+  const bool negative = p != end && *p == '-';
+  if (p != end && (*p == '-' || *p == '+')) ++p;
+  const char* const digits = p;
+  std::uint64_t whole = 0;
+  for (; p != end && detail::is_digit(*p); ++p) whole = 10 * whole + std::uint64_t(*p - '0');
+  std::ptrdiff_t digit_count = p - digits;
+  int exponent = 0;
+  if (p != end && *p == '.') {
+    const char* const fraction = ++p;
+    for (; p != end && detail::is_digit(*p); ++p) whole = 10 * whole + std::uint64_t(*p - '0');
+    exponent = -int(p - fraction < 100 ? p - fraction : 100);
+    digit_count += p - fraction;
+  }
+  const bool has_more = p != end && (*p == 'e' || *p == 'E' || *p == '#');
+  // 15 digits are below 2^53, and powers of ten up to 22 are exact: one division rounds once.
+  if (digit_count == 0 || digit_count > 15 || has_more) return detail::parse_float_slowly(at, end, value);
+  const double magnitude = double(whole) / detail::powers_of_ten[-exponent];
+  if (whole != 0 && !detail::rounds_once(magnitude)) return detail::parse_float_slowly(at, end, value);
+  value = float(negative ? -magnitude : magnitude);
+  return p;
+}
+
+/// Reads [+-]digits. \returns the first character after it; null if there is none or it has over 18 digits.
+inline const char* parse_integer(const char* at, const char* end, std::int64_t& value) {
+  const char* p = at;
+  const bool negative = p != end && *p == '-';
+  if (p != end && (*p == '-' || *p == '+')) ++p;
+  const char* const digits = p;
+  std::int64_t magnitude = 0;
+  for (; p != end && detail::is_digit(*p) && p - digits < 19; ++p) magnitude = 10 * magnitude + (*p - '0');
+  if (p == digits || p - digits > 18) return nullptr;
+  value = negative ? -magnitude : magnitude;
+  return p;
+}
+
+}  // namespace frontmost

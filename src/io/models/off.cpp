@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// OFF, the text form, with the optional colours, normals and texture coordinates of Geomview: [ST][C][N]OFF.
+#include <algorithm>
+
+#include "io/models/mesh_building.h"
+#include "io/models/text_scanner.h"
+
+namespace frontmost {
+namespace {
+
+/// Colours as found, 0 to 255 or 0 to 1. Which of both is seen only when all are read.
+class RawColors {
+ public:
+  void add(const glm::vec4& color) {
+    for (int k = 0; k < 4; ++k) greatest_ = std::max(greatest_, color[k]);
+    colors_.push_back(color);
+  }
+  [[nodiscard]] std::size_t size() const { return colors_.size(); }
+  std::vector<glm::vec4> take_linear() {
+    const float scale = greatest_ > 1 ? 1.0f / 255 : 1.0f;
+    for (glm::vec4& color : colors_) color = linear_color(color * scale);
+    return std::move(colors_);
+  }
+  /// Opaque white in the scale that `add` was given so far is not known, so NaN stands for it.
+  static glm::vec4 none() { return glm::vec4(std::numeric_limits<float>::quiet_NaN()); }
+
+ private:
+  std::vector<glm::vec4> colors_;
+  float greatest_ = 0;
+};
+
+class OffReader {
+ public:
+  OffReader(Bytes bytes, const ModelSource& source)
+      : text_(bytes, source, TextScanner::Comments::hash), source_(source) {}
+
+  Scene read() {
+    read_header();
+    Mesh& mesh = add_object(scene_, "", source_, text_.place());
+    read_vertices(mesh);
+    read_faces(mesh);
+    return std::move(scene_);
+  }
+
+ private:
+  void read_header() {
+    if (!text_.to_word()) text_.fail("the file ends before the header");
+    std::int64_t count = 0;
+    if (!text_.integer(count)) {  // the keyword may be left out
+      read_keyword(text_.word());
+      if (!text_.to_word() || !text_.integer(count)) text_.fail("the number of vertices was expected");
+    }
+    vertex_count_ = checked(count, has_normals_ ? 6 : 3, "vertices");
+    if (!text_.integer(count)) text_.fail("the number of faces was expected");
+    face_count_ = checked(count, 1, "faces");
+    (void)text_.integer(count);  // edges; nobody needs them, and some files leave them out
+    if (!text_.at_line_end()) text_.fail("the header holds three counts: vertices, faces, edges");
+  }
+
+  void read_keyword(std::string_view word) {
+    const std::string keyword = in_quotes(word);
+    const auto take = [&](std::string_view prefix) {
+      const bool found = word.starts_with(prefix);
+      if (found) word.remove_prefix(prefix.size());
+      return found;
+    };
+    has_texcoords_ = take("ST");
+    has_colors_ = take("C");
+    has_normals_ = take("N");
+    if (word == "4OFF" || word == "nOFF" || word == "4nOFF" || text_.next_is('B'))
+      throw Error(ErrorCode::unsupported,
+                  source_.name() + ": " + text_.place() + ": four-dimensional and binary OFF files are not supported");
+    if (word != "OFF") text_.fail(keyword + " where \"OFF\" was expected");
+  }
+
+  /// Before memory is asked for: the rest of the file must have room for the rows, at two characters a value.
+  std::size_t checked(std::int64_t count, std::uint64_t values, const char* what) const {
+    if (count < 0) text_.fail(std::string("a negative number of ") + what);
+    if (std::uint64_t(count) > (text_.bytes_left() + 1) / (2 * values))
+      text_.fail(std::to_string(count) + " " + what + " do not fit into the " + std::to_string(text_.bytes_left()) +
+                 " bytes that follow");
+    if (count >= std::int64_t(no_index)) source_.fail_limit(text_.place(), std::string("too many ") + what);
+    return std::size_t(count);
+  }
+
+  float number(const char* what) {
+    float value = 0;
+    if (!text_.to_word()) text_.fail(std::string("the file ends within the ") + what);
+    if (!text_.number(value) || !text_.at_blank()) text_.fail("not a number");
+    return value;
+  }
+  glm::vec3 three(const char* what) {
+    const float x = number(what), y = number(what);
+    return {x, y, number(what)};
+  }
+
+  void read_vertices(Mesh& mesh) {
+    RawColors colors;
+    mesh.positions.reserve(vertex_count_);
+    for (std::size_t i = 0; i < vertex_count_; ++i) {
+      if (!text_.next_line()) text_.fail("the file ends within the vertices");
+      mesh.positions.push_back(three("vertices"));
+      if (has_normals_) mesh.normals.values.push_back(three("vertices"));
+      if (!has_colors_ && !has_texcoords_) continue;
+      float extra[6];
+      int count = rest_of_row(extra);
+      if (has_texcoords_) {
+        if (count < 2) text_.fail("texture coordinates were expected");
+        count -= 2;
+        mesh.texcoords.values.emplace_back(extra[count], 1.0f - extra[count + 1]);
+      }
+      if (has_colors_) colors.add(color(extra, count));
+    }
+    mesh.colors.values = colors.take_linear();
+  }
+
+  /// The numbers that are left on the line, at most six.
+  int rest_of_row(float (&values)[6]) {
+    int count = 0;
+    while (count < 6 && text_.number(values[count])) ++count;
+    return count;
+  }
+  /// Three or four components. Anything else, such as a number in a colour map, is no colour.
+  static glm::vec4 color(const float (&values)[6], int count) {
+    if (count != 3 && count != 4) return RawColors::none();
+    return {values[0], values[1], values[2], count == 4 ? values[3] : std::numeric_limits<float>::quiet_NaN()};
+  }
+
+  void read_faces(Mesh& mesh) {
+    RawColors colors;
+    PolygonWriter polygons;
+    std::vector<std::uint32_t> corners;
+    std::vector<glm::uvec3> color_corners;
+    mesh.triangles.reserve(face_count_);
+    for (std::size_t i = 0; i < face_count_; ++i) {
+      if (!text_.next_line() || !text_.to_word()) text_.fail("the file ends before face " + std::to_string(i));
+      read_corners(corners);
+      const std::size_t before = mesh.triangles.size();
+      polygons.add(corners, mesh.positions, mesh);
+      // Colours of vertices go before those of faces.
+      if (!mesh.colors.empty() || (text_.at_line_end() && colors.size() == 0)) continue;
+      if (colors.size() == 0) {
+        colors.add(RawColors::none());
+        color_corners.resize(before, glm::uvec3(0));
+      }
+      float extra[6];
+      const int count = rest_of_row(extra);
+      color_corners.resize(mesh.triangles.size(), glm::uvec3(std::uint32_t(colors.size())));
+      colors.add(color(extra, count));
+    }
+    if (polygons.skipped_count() > 0)
+      scene_.warnings.push_back("faces: " + std::to_string(polygons.skipped_count()) +
+                                " with fewer than three corners were passed over");
+    if (colors.size() > 0) mesh.colors = {colors.take_linear(), std::move(color_corners)};
+  }
+
+  void read_corners(std::vector<std::uint32_t>& corners) {
+    std::int64_t count = 0, index = 0;
+    if (!text_.integer(count) || count < 0 || !text_.at_blank()) text_.fail("the number of corners was expected");
+    if (std::uint64_t(count) > (text_.bytes_left() + 1) / 2) text_.fail("the file ends within the face");
+    corners.resize(std::size_t(count));
+    for (std::uint32_t& corner : corners) {
+      if (!text_.integer(index) || !text_.at_blank())
+        text_.fail("a face of " + std::to_string(count) + " corners has too few");
+      if (index < 0 || std::uint64_t(index) >= vertex_count_)
+        text_.fail("vertex " + std::to_string(index) + " is out of range, there are " + std::to_string(vertex_count_));
+      corner = std::uint32_t(index);
+    }
+  }
+
+  TextScanner text_;
+  const ModelSource& source_;
+  Scene scene_;
+  bool has_texcoords_ = false, has_colors_ = false, has_normals_ = false;
+  std::size_t vertex_count_ = 0, face_count_ = 0;
+};
+
+}  // namespace
+
+Scene read_off(Bytes bytes, const ModelSource& source) { return OffReader(bytes, source).read(); }
+
+}  // namespace frontmost

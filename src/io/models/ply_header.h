@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// The header of a PLY file: what its rows hold.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/models/bytes.h"
+#include "io/models/reader.h"
+
+namespace frontmost {
+
+enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+[[nodiscard]] constexpr std::size_t size_of(PlyType type) {
+  constexpr std::size_t sizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+  return sizes[std::size_t(type)];
+}
+[[nodiscard]] constexpr bool is_integer(PlyType type) { return type != PlyType::float32 && type != PlyType::float64; }
+
+struct PlyProperty {
+  std::string name;
+  PlyType type = PlyType::float32;
+  bool is_list = false;
+  PlyType count_type = PlyType::uint8;
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+
+  /// The bytes of a row whose lists are empty: with no lists, of every row.
+  [[nodiscard]] std::size_t least_row_size() const;
+  [[nodiscard]] bool has_lists() const;
+};
+
+enum class PlyEncoding : std::uint8_t { ascii, little, big };
+
+struct PlyHeader {
+  PlyEncoding encoding = PlyEncoding::ascii;
+  std::vector<PlyElement> elements;
+  std::vector<std::string> texture_files;  ///< from "comment TextureFile NAME", as MeshLab writes them
+  std::vector<std::string> warnings;
+  std::size_t size = 0;        ///< bytes before the first row
+  std::size_t line_count = 0;  ///< lines before the first row
+};
+
+/// \throws Error file_malformed, also when the file is too short for the rows that the header promises.
+[[nodiscard]] PlyHeader read_ply_header(Bytes bytes, const ModelSource& source);
+
+}  // namespace frontmost

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/models/text_scanner.h"
+
+#include "base/parallel.h"
+
+namespace frontmost {
+
+std::string in_quotes(std::string_view word) {
+  constexpr std::size_t longest = 40;
+  std::string text(1, '"');
+  text.append(word.substr(0, longest));
+  text.append(word.size() > longest ? "...\"" : "\"");
+  return text;
+}
+
+bool TextScanner::join_lines() {
+  const char* p = at_ + 1;
+  if (p != end_ && *p == '\r' && end_ - p > 1 && p[1] == '\n') ++p;
+  if (p == end_ || (*p != '\n' && *p != '\r')) return false;
+  at_ = p;
+  ++line_;
+  return true;
+}
+
+void TextScanner::release() {
+  source_.release({reinterpret_cast<const std::byte*>(released_), std::size_t(at_ - released_)});
+  released_ = at_;
+  check_cancelled(source_.execution());
+}
+
+}  // namespace frontmost

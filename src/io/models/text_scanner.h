@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Walks over a text file word by word and counts its lines.
+#pragma once
+
+#include <string_view>
+
+#include "io/models/number.h"
+#include "io/models/reader.h"
+
+namespace frontmost {
+
+/// A word of a file for a message: in quotes, and not longer than a line.
+[[nodiscard]] std::string in_quotes(std::string_view word);
+
+/// Lines end with \n, \r\n or \r. A word that starts with '#' ends its line where `comments` says so. A backslash at
+/// the end of a line joins it with the next one. Every step stays within the bytes; none looks for a terminator.
+class TextScanner {
+ public:
+  enum class Comments : bool { none, hash };
+
+  TextScanner(Bytes bytes, const ModelSource& source, Comments comments = Comments::none)
+      : at_(reinterpret_cast<const char*>(bytes.data())),
+        end_(at_ + bytes.size()),
+        released_(at_),
+        source_(source),
+        comments_(comments) {}
+
+  [[nodiscard]] bool at_end() const { return at_ == end_; }
+  [[nodiscard]] std::size_t line() const { return line_; }
+  [[nodiscard]] std::size_t bytes_left() const { return std::size_t(end_ - at_); }
+  [[nodiscard]] const ModelSource& source() const { return source_; }
+  [[nodiscard]] std::string place() const { return "line " + std::to_string(line_); }
+  [[noreturn]] void fail(const std::string& reason) const { source_.fail(place(), reason); }
+
+  /// Moves to the start of the next line. False: there is none.
+  bool next_line() {
+    while (at_ != end_ && *at_ != '\n' && *at_ != '\r') ++at_;
+    if (at_ == end_) return false;
+    end_line();
+    return at_ != end_;
+  }
+  /// Whether nothing but blanks and comments follows on this line. Skips blanks.
+  bool at_line_end() {
+    skip_blanks();
+    return at_ == end_ || *at_ == '\n' || *at_ == '\r' || (*at_ == '#' && comments_ == Comments::hash);
+  }
+  /// Moves to the next word, over line ends and comments. False: there is none.
+  bool to_word() {
+    while (at_line_end())
+      if (!next_line()) return false;
+    return true;
+  }
+
+  /// The next word of this line; empty at its end.
+  std::string_view word() {
+    if (at_line_end()) return {};
+    const char* const start = at_;
+    while (at_ != end_ && !is_space(*at_)) ++at_;
+    return {start, std::size_t(at_ - start)};
+  }
+  /// The rest of the line without blanks around it, comments included.
+  std::string_view rest() {
+    skip_blanks();
+    const char* const start = at_;
+    while (at_ != end_ && *at_ != '\n' && *at_ != '\r') ++at_;
+    const char* last = at_;
+    while (last != start && is_space(last[-1])) --last;
+    return {start, std::size_t(last - start)};
+  }
+  /// The next word of this line as a number. False, without moving: it is none.
+  bool number(float& value) {
+    skip_blanks();
+    return move_to(parse_float(at_, end_, value));
+  }
+  bool integer(std::int64_t& value) {
+    skip_blanks();
+    return move_to(parse_integer(at_, end_, value));
+  }
+  /// The same without skipping blanks.
+  bool integer_here(std::int64_t& value) { return move_to(parse_integer(at_, end_, value)); }
+  /// Takes one character if it comes next, without skipping blanks.
+  bool take(char c) {
+    if (at_ == end_ || *at_ != c) return false;
+    ++at_;
+    return true;
+  }
+  /// Whether the next word of this line starts with `c`. Skips blanks.
+  bool next_is(char c) { return !at_line_end() && *at_ == c; }
+  /// Whether a word ends here.
+  [[nodiscard]] bool at_blank() const { return at_ == end_ || is_space(*at_); }
+
+ private:
+  static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v'; }
+
+  void skip_blanks() {
+    for (; at_ != end_; ++at_) {
+      if (*at_ == ' ' || *at_ == '\t' || *at_ == '\f' || *at_ == '\v') continue;
+      if (*at_ != '\\' || !join_lines()) return;
+    }
+  }
+  bool move_to(const char* after) {
+    if (after == nullptr) return false;
+    at_ = after;
+    return true;
+  }
+  /// At a line end: steps over it.
+  void end_line() {
+    if (*at_ == '\r' && end_ - at_ > 1 && at_[1] == '\n') ++at_;
+    ++at_;
+    ++line_;
+    if (at_ - released_ > release_step) release();
+  }
+  /// At a backslash before a line end: moves to the last character of that line end.
+  bool join_lines();
+  void release();
+
+  static constexpr std::ptrdiff_t release_step = 1 << 20;
+  const char* at_;
+  const char* end_;
+  const char* released_;
+  std::size_t line_ = 1;
+  const ModelSource& source_;
+  Comments comments_;
+};
+
+}  // namespace frontmost

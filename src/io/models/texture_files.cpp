@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/models/texture_files.h"
+
+#include "io/images/decode.h"
+
+namespace frontmost {
+namespace {
+constexpr std::uint64_t max_image_file_bytes = std::uint64_t(1) << 30;
+// Of all textures of a model together: 2 GiB.
+constexpr std::uint64_t max_texture_pixels = std::uint64_t(1) << 29;
+constexpr std::size_t max_textures = 1 << 16;
+}  // namespace
+
+std::uint32_t TextureFiles::get(const std::string& reference, const std::string& place, Texture::Wrap wrap) {
+  if (known_.size() >= max_textures) return no_index;
+  const auto [entry, is_new] = known_.try_emplace({reference, wrap}, no_index);
+  if (is_new) entry->second = read(reference, place, wrap);
+  return entry->second;
+}
+
+std::uint32_t TextureFiles::read(const std::string& reference, const std::string& place, Texture::Wrap wrap) {
+  if (!source_.has_folder()) {
+    scene_.warnings.push_back(place + ": texture " + reference + " is not read, the model does not come from a file");
+    return no_index;
+  }
+  try {
+    const InputFile file = source_.open(reference, max_image_file_bytes);
+    const std::string name = source_.name() + ": " + reference;
+    const glm::ivec2 size = texture_size(file.bytes(), name);
+    pixel_count_ += std::uint64_t(size.x) * std::uint64_t(size.y);
+    if (pixel_count_ > max_texture_pixels)
+      throw Error(ErrorCode::limit_exceeded, name + ": the textures together have too many pixels");
+    Texture texture = decode_texture(file.bytes(), name);
+    texture.name = reference;
+    texture.wrap_u = texture.wrap_v = wrap;
+    scene_.textures.push_back(std::move(texture));
+  } catch (const Error& error) {
+    scene_.warnings.push_back(place + ": texture left out: " + source_.without_name(error));
+    return no_index;
+  }
+  return std::uint32_t(scene_.textures.size() - 1);
+}
+
+}  // namespace frontmost
