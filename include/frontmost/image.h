@@ -34,6 +34,10 @@ struct Image {
   [[nodiscard]] Channel* find(std::string_view name);
 };
 
+/// \throws Error bad_argument for sizes that are not 1 to 2^20, no channels, two of one name, or planes that do not have
+/// width * height values.
+void validate(const Image& image);
+
 /// Maps of a Visible's first sample (sample 0 of views with more samples than one), one channel each.
 /// "Z": planar depth; +inf, or `background`, where nothing is seen.
 [[nodiscard]] Image depth_image(const Visible& visible, float background = std::numeric_limits<float>::infinity());
@@ -48,5 +52,25 @@ enum class IdKind : std::uint8_t { primitive, object, material };
 
 /// A hash of size, channel names and values; equal for equal images on every machine.
 [[nodiscard]] std::uint64_t content_hash(const Image& image);
+
+/// How far an image is from a reference. The difference of two pixels is the greatest of their channels':
+/// - R, G, B, A: the step between them as 8-bit sRGB with straight alpha, over 255; an image without A is opaque;
+/// - other floats (depths, directions): the absolute difference of the values; equal infinities and NaNs do not differ;
+/// - ids: 1 where they are not the same.
+struct Comparison {
+  double error = 0;           ///< the greatest difference of any pixel: 0 to 1 for colours
+  double mean = 0;            ///< of all pixels
+  std::size_t differing = 0;  ///< pixels whose difference is over the threshold
+  int x = 0, y = 0;           ///< the first pixel, by rows, with the greatest difference
+};
+
+/// \throws Error bad_argument where size or channels are not the same, saying both.
+[[nodiscard]] Comparison compare(const Image& image, const Image& reference, double threshold = 0,
+                                 const Execution& execution = {});
+
+/// A picture of where they differ by more than `threshold`: red to yellow, the more the greater, over the reference in
+/// dim grey (black for maps). \throws Error as compare() does.
+[[nodiscard]] Image difference_image(const Image& image, const Image& reference, double threshold = 0,
+                                     const Execution& execution = {});
 
 }  // namespace frontmost

@@ -57,4 +57,10 @@ void save(const Image& image, const std::string& path, const SaveOptions& option
 /// Reads an image from memory; `name` stands for the file in messages.
 [[nodiscard]] Image load_image(std::span<const std::byte> bytes, const std::string& name);
 
+/// The picture as text for a terminal, two pixels a character (half blocks, UTF-8), in 24-bit colours or those of the
+/// 256-colour palette. Keeps its proportions and fits `columns` x `rows` characters; every line ends with a reset and a
+/// line feed. Transparent parts show the terminal's background.
+/// \throws Error bad_argument, or unsupported where there is no R, G, B.
+[[nodiscard]] std::string terminal_picture(const Image& image, int columns, int rows, bool true_color = true);
+
 }  // namespace frontmost

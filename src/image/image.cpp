@@ -40,6 +40,20 @@ const Channel* Image::find(std::string_view name) const {
 
 Channel* Image::find(std::string_view name) { return const_cast<Channel*>(std::as_const(*this).find(name)); }
 
+void validate(const Image& image) {
+  const auto fail = [](const std::string& reason) { throw Error(ErrorCode::bad_argument, "image: " + reason); };
+  constexpr int most = 1 << 20;  // keeps every product of sizes far below 64 bits
+  if (image.width < 1 || image.height < 1 || image.width > most || image.height > most)
+    fail(std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels");
+  if (image.channels.empty()) fail("no channels");
+  const std::size_t count = std::size_t(image.width) * std::size_t(image.height);
+  for (const Channel& channel : image.channels) {
+    if ((channel.is_integer() ? channel.integers().size() : channel.floats().size()) != count)
+      fail("channel " + channel.name + " does not have width x height values");
+    if (image.find(channel.name) != &channel) fail("two channels are named " + channel.name);
+  }
+}
+
 std::uint64_t content_hash(const Image& image) {
   WordHash hash;
   hash.add(std::uint32_t(image.width));

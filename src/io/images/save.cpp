@@ -22,18 +22,6 @@ ImageFormat format_of(const std::string& path, const SaveOptions& options) {
               path + ": an image file ends in .png, .exr, .pfm or .npy, not in \"" + suffix + "\"");
 }
 
-void check(const Image& image, const std::string& path) {
-  constexpr int most = 1 << 20;  // keeps every product of sizes far below 64 bits
-  if (image.width < 1 || image.height < 1 || image.width > most || image.height > most)
-    throw Error(ErrorCode::bad_argument, path + ": an image of " + std::to_string(image.width) + " x " +
-                                             std::to_string(image.height) + " pixels cannot be written");
-  if (image.channels.empty()) throw Error(ErrorCode::bad_argument, path + ": the image has no channels");
-  const std::size_t count = std::size_t(image.width) * std::size_t(image.height);
-  for (const Channel& channel : image.channels)
-    if ((channel.is_integer() ? channel.integers().size() : channel.floats().size()) != count)
-      throw Error(ErrorCode::bad_argument, path + ": channel " + channel.name + " does not have width x height values");
-}
-
 }  // namespace
 
 namespace detail {
@@ -57,7 +45,7 @@ std::vector<std::string> default_channel_names(std::size_t count, bool integers)
 
 void save(const Image& image, const std::string& path, const SaveOptions& options, const Execution& execution) {
   const ImageFormat format = format_of(path, options);
-  check(image, path);
+  validate(image);
   report_progress(execution, "save", 0);
   OutputFile file(path);
   switch (format) {

@@ -5,8 +5,8 @@
 #include <functional>
 
 #include "base/srgb.h"
-#include "io/images/test_images.h"
 #include "support/scratch_folder.h"
+#include "support/test_images.h"
 
 namespace frontmost::test {
 namespace {

@@ -3,8 +3,8 @@
 #include <functional>
 #include <sstream>
 
-#include "io/images/test_images.h"
 #include "support/scratch_folder.h"
+#include "support/test_images.h"
 
 namespace frontmost::test {
 namespace {

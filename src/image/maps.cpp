@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Maps of a Visible's first sample: depths, ray distances, ids.
+#include <cmath>
+
+#include "frontmost/image.h"
+#include "frontmost/surfaces.h"
+#include "frontmost/view.h"
+
+namespace frontmost {
+namespace {
+
+Image one_channel(const Visible& visible, Channel channel) {
+  Image image{visible.view.width, visible.view.height, {}};
+  image.channels.push_back(std::move(channel));
+  return image;
+}
+
+/// `depth_at(x, y, planar depth)` for every pixel where something is seen.
+template <class DepthAt>
+Image map_of_depths(const Visible& visible, const char* name, float background, DepthAt&& depth_at) {
+  const View& view = visible.view;
+  Buffer<float> values(view.pixel_count());
+  std::size_t i = 0;
+  for (int y = 0; y < view.height; ++y)
+    for (int x = 0; x < view.width; ++x, ++i)
+      values[i] =
+          visible.primitives[i] == no_primitive ? background : depth_at(x, y, depth_of_key(view, visible.keys[i]));
+  return one_channel(visible, {name, std::move(values)});
+}
+
+/// Distance along the ray for a planar distance of 1, through the first sample of each pixel.
+class RayLengths {
+ public:
+  explicit RayLengths(const View& view) : projection_(view.projection) {
+    const glm::ivec2 offset = sample_offsets(view.samples)[0];
+    first_ = glm::dvec2(offset) / 256.0;
+    step_ = {(projection_.right - projection_.left) / view.width, (projection_.top - projection_.bottom) / view.height};
+  }
+  [[nodiscard]] double at(int x, int y) const {
+    const double right = projection_.left + (x + first_.x) * step_.x;
+    const double up = projection_.top - (y + first_.y) * step_.y;
+    return std::sqrt(1 + right * right + up * up);
+  }
+
+ private:
+  const Projection& projection_;
+  glm::dvec2 first_{0}, step_{0};
+};
+
+std::uint32_t id_of(const Surfaces& surfaces, const PrimitiveSource& source, IdKind kind) {
+  if (kind == IdKind::object) return source.instance;
+  return surfaces.scene().meshes[source.mesh].material_of(source.triangle);
+}
+
+const char* channel_name(IdKind kind) {
+  switch (kind) {
+    case IdKind::primitive: return "primitive";
+    case IdKind::object: return "object";
+    case IdKind::material: return "material";
+  }
+  return "";
+}
+
+}  // namespace
+
+Image depth_image(const Visible& visible, float background) {
+  return map_of_depths(visible, "Z", background, [](int, int, float depth) { return depth; });
+}
+
+Image ray_distance_image(const Visible& visible, float background) {
+  const bool parallel = visible.view.projection.orthographic;
+  const RayLengths lengths(visible.view);
+  return map_of_depths(visible, "distance", background, [&](int x, int y, float depth) {
+    return parallel ? depth : float(double(depth) * lengths.at(x, y));
+  });
+}
+
+Image id_image(const Surfaces& surfaces, const Visible& visible, IdKind kind) {
+  Buffer<std::uint32_t> ids(visible.view.pixel_count());
+  // Neighbours mostly show the same triangle, which need not be looked up again.
+  PrimitiveId last_primitive = no_primitive;
+  std::uint32_t last_id = no_index;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const PrimitiveId primitive = visible.primitives[i];
+    if (primitive != last_primitive) {
+      if (primitive != no_primitive && primitive >= surfaces.primitive_count())
+        throw Error(ErrorCode::bad_argument, "id image: the surfaces are not those that were seen");
+      last_primitive = primitive;
+      last_id = primitive == no_primitive || kind == IdKind::primitive
+                    ? primitive
+                    : id_of(surfaces, surfaces.source(primitive), kind);
+    }
+    ids[i] = last_id;
+  }
+  return one_channel(visible, {channel_name(kind), std::move(ids)});
+}
+
+}  // namespace frontmost
