@@ -27,7 +27,7 @@ struct Visible {
 [[nodiscard]] Buffer<float> depths(const Visible& visible);
 
 /// A hash of ids and depths: equal for equal answers, on every machine and for any number of threads. FNV-1a over
-/// blocks of the two planes, combined in order.
+/// the two planes, sample by sample. O(samples), on one thread.
 [[nodiscard]] std::uint64_t content_hash(const Visible& visible);
 
 }  // namespace frontmost

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cuts triangles, in the order of their ids, into clusters of at most 64 distinct vertices.
+// Cuts triangles, in spatial order, into clusters of at most 64 distinct vertices.
 //
-// A vertex is told apart by its number in the mesh or, in a soup where every corner has a number of its own, by its
-// position: consecutive STL facets share most corners, and welding them inside a cluster doubles what it holds.
-// Work is split at fixed triangle numbers, so the clusters do not depend on the number of threads.
+// Vertices are told apart by position, not by number: in a soup, as STL files are, every corner has a number of its
+// own, and welding inside a cluster doubles what it holds. Work is split at fixed places of the order, so the clusters
+// do not depend on the number of threads.
 
 #include <algorithm>
 #include <array>
@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "surfaces/cluster_set.h"
+#include "surfaces/spatial_order.h"
 
 namespace frontmost {
 namespace {
@@ -21,16 +22,13 @@ constexpr std::size_t padded(std::size_t count) {
   return (count + Cluster::lanes - 1) / Cluster::lanes * Cluster::lanes;
 }
 
-/// A run of one instance's triangles, and the clusters made of it.
+/// A run of the spatial order, and the clusters made of it.
 struct Part {
-  std::uint32_t instance = 0;
-  std::uint32_t begin = 0, end = 0;
-  PrimitiveId first_primitive = 0;
-
-  std::vector<Cluster> clusters;  // first_vertex and first_corner relative to the part
+  std::vector<Cluster> clusters;  // first_vertex and first_triangle relative to the part
   std::vector<Box> boxes;
   std::vector<float> x, y, z;
   std::vector<std::uint8_t> i0, i1, i2;
+  std::vector<PrimitiveId> id;
 };
 
 /// Which of a cluster's vertices a position is: a small open-addressing table over the bits of the coordinates.
@@ -76,46 +74,52 @@ class VertexTable {
   int count_ = 0;
 };
 
+/// What all parts are made from.
+struct Source {
+  const Scene& scene;
+  const std::vector<PrimitiveId>& first_primitives;
+  const InstanceFinder& instances;
+  const std::vector<PrimitiveId>& order;
+};
+
 /// Fills one part, cluster by cluster.
 class PartBuilder {
  public:
-  PartBuilder(const Scene& scene, Part& part)
-      : part_(part),
-        mesh_(scene.meshes[scene.instances[part.instance].mesh]),
-        world_from_mesh_(scene.instances[part.instance].world_from_mesh) {
-    table_.clear();
-  }
+  PartBuilder(const Source& source, Part& part) : source_(source), part_(part) {}
 
-  void build() {
-    const std::size_t count = part_.end - part_.begin;
-    for (auto* corners : {&part_.i0, &part_.i1, &part_.i2}) corners->reserve(count + count / 8 + Cluster::lanes);
+  void build(std::size_t begin, std::size_t end) {
+    const std::size_t count = end - begin;
+    for (auto* corners : {&part_.i0, &part_.i1, &part_.i2}) corners->reserve(count + count / 4);
     for (auto* axis : {&part_.x, &part_.y, &part_.z}) axis->reserve(count);
-    start_cluster(part_.begin);
-    for (std::uint32_t t = part_.begin; t < part_.end; ++t) add(t);
+    part_.id.reserve(count + count / 4);
+    start_cluster();
+    for (std::size_t i = begin; i < end; ++i) add(source_.order[i]);
     finish_cluster();
   }
 
  private:
-  void start_cluster(std::uint32_t triangle) {
+  void start_cluster() {
     table_.clear();
     box_ = {};
     cluster_ = {};
     cluster_.first_vertex = part_.x.size();
-    cluster_.first_corner = part_.i0.size();
-    cluster_.first_primitive = part_.first_primitive + (triangle - part_.begin);
+    cluster_.first_triangle = part_.id.size();
   }
 
-  void add(std::uint32_t triangle) {
-    const glm::uvec3& corners = mesh_.triangles[triangle];
+  void add(PrimitiveId id) {
+    const std::uint32_t number = source_.instances.find(id);
+    const Instance& instance = source_.scene.instances[number];
+    const Mesh& mesh = source_.scene.meshes[instance.mesh];
+    const glm::uvec3& corners = mesh.triangles[id - source_.first_primitives[number]];
     std::array<glm::vec3, 3> world;
     bool finite = true;
     for (int k = 0; k < 3; ++k) {
-      world[std::size_t(k)] = to_world(world_from_mesh_, mesh_.positions[corners[k]]);
+      world[std::size_t(k)] = to_world(instance.world_from_mesh, mesh.positions[corners[k]]);
       finite = finite && is_finite(world[std::size_t(k)]);
     }
     if (cluster_.triangle_count == Cluster::max_triangles || (finite && !fits(world))) {
       finish_cluster();
-      start_cluster(triangle);
+      start_cluster();
     }
     // Not finite: degenerate, three times vertex 0, whatever that is or will be.
     std::array<std::uint8_t, 3> numbers{};
@@ -127,6 +131,7 @@ class PartBuilder {
     part_.i0.push_back(numbers[0]);
     part_.i1.push_back(numbers[1]);
     part_.i2.push_back(numbers[2]);
+    part_.id.push_back(id);
     ++cluster_.triangle_count;
   }
 
@@ -147,73 +152,91 @@ class PartBuilder {
       part_.y.push_back(p.y);
       part_.z.push_back(p.z);
     }
-    for (auto* corners : {&part_.i0, &part_.i1, &part_.i2})
-      corners->resize(cluster_.first_corner + padded(cluster_.triangle_count), 0);
+    const std::size_t end = cluster_.first_triangle + padded(cluster_.triangle_count);
+    for (auto* corners : {&part_.i0, &part_.i1, &part_.i2}) corners->resize(end, 0);
+    part_.id.resize(end, no_primitive);
     part_.clusters.push_back(cluster_);
     part_.boxes.push_back(box_);
   }
 
+  const Source& source_;
   Part& part_;
-  const Mesh& mesh_;
-  const glm::dmat4& world_from_mesh_;
   VertexTable table_;
   Cluster cluster_;
   Box box_;
 };
 
-std::vector<Part> split(const Scene& scene, const std::vector<PrimitiveId>& first_primitives) {
-  std::vector<Part> parts;
-  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-    const auto count = static_cast<std::uint32_t>(scene.meshes[scene.instances[i].mesh].triangles.size());
-    for (std::uint64_t begin = 0; begin < count; begin += kTrianglesPerPart) {
-      Part part;
-      part.instance = i;
-      part.begin = static_cast<std::uint32_t>(begin);
-      part.end = static_cast<std::uint32_t>(std::min<std::uint64_t>(begin + kTrianglesPerPart, count));
-      part.first_primitive = first_primitives[i] + part.begin;
-      parts.push_back(std::move(part));
-    }
-  }
-  return parts;
-}
-
-/// Where each part's clusters, vertices and corners go in the whole.
+/// Where each part's clusters, vertices and triangles go in the whole.
 struct Place {
-  std::size_t cluster = 0, vertex = 0, corner = 0;
+  std::size_t cluster = 0, vertex = 0, triangle = 0;
 };
+
+template <class T>
+void place(const std::vector<T>& part, Buffer<T>& whole, std::size_t at) {
+  std::copy(part.begin(), part.end(), whole.data() + at);
+}
 
 void gather(ClusterSet& set, std::vector<Part>& parts, const Execution& execution) {
   std::vector<Place> places(parts.size() + 1);
-  for (std::size_t i = 0; i < parts.size(); ++i) {
+  for (std::size_t i = 0; i < parts.size(); ++i)
     places[i + 1] = {places[i].cluster + parts[i].clusters.size(), places[i].vertex + parts[i].x.size(),
-                     places[i].corner + parts[i].i0.size()};
-    for (const Box& box : parts[i].boxes) set.instance_bounds[parts[i].instance].include(box);
-  }
+                     places[i].triangle + parts[i].id.size()};
   const Place& total = places.back();
   set.clusters.resize(total.cluster);
   set.boxes = BoxArrays(total.cluster);
   for (Buffer<float>* axis : {&set.x, &set.y, &set.z}) *axis = Buffer<float>(total.vertex);
-  for (Buffer<std::uint8_t>* corners : {&set.i0, &set.i1, &set.i2}) *corners = Buffer<std::uint8_t>(total.corner);
+  for (Buffer<std::uint8_t>* corners : {&set.i0, &set.i1, &set.i2}) *corners = Buffer<std::uint8_t>(total.triangle);
+  set.id = Buffer<PrimitiveId>(total.triangle);
 
   parallel_for(execution, parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      Part part = std::move(parts[i]);
-      const Place& place = places[i];
-      std::copy(part.x.begin(), part.x.end(), set.x.data() + place.vertex);
-      std::copy(part.y.begin(), part.y.end(), set.y.data() + place.vertex);
-      std::copy(part.z.begin(), part.z.end(), set.z.data() + place.vertex);
-      std::copy(part.i0.begin(), part.i0.end(), set.i0.data() + place.corner);
-      std::copy(part.i1.begin(), part.i1.end(), set.i1.data() + place.corner);
-      std::copy(part.i2.begin(), part.i2.end(), set.i2.data() + place.corner);
+      const Part part = std::move(parts[i]);
+      const Place& at = places[i];
+      place(part.x, set.x, at.vertex);
+      place(part.y, set.y, at.vertex);
+      place(part.z, set.z, at.vertex);
+      place(part.i0, set.i0, at.triangle);
+      place(part.i1, set.i1, at.triangle);
+      place(part.i2, set.i2, at.triangle);
+      place(part.id, set.id, at.triangle);
       for (std::size_t c = 0; c < part.clusters.size(); ++c) {
         Cluster cluster = part.clusters[c];
-        cluster.first_vertex += place.vertex;
-        cluster.first_corner += place.corner;
-        set.clusters[place.cluster + c] = cluster;
-        set.boxes.set(place.cluster + c, part.boxes[c]);
+        cluster.first_vertex += at.vertex;
+        cluster.first_triangle += at.triangle;
+        set.clusters[at.cluster + c] = cluster;
+        set.boxes.set(at.cluster + c, part.boxes[c]);
       }
     }
   });
+}
+
+/// World-space bounds of a run's triangles with finite corners.
+Box bounds_of(const Scene& scene, const InstanceRun& run) {
+  const Instance& instance = scene.instances[run.instance];
+  const Mesh& mesh = scene.meshes[instance.mesh];
+  Box box;
+  for (std::uint32_t t = run.begin; t < run.end; ++t) {
+    Box triangle;
+    bool finite = true;
+    for (int k = 0; k < 3; ++k) {
+      const glm::vec3 p = to_world(instance.world_from_mesh, mesh.positions[mesh.triangles[t][k]]);
+      finite = finite && is_finite(p);
+      triangle.include(p);
+    }
+    if (finite) box.include(triangle);
+  }
+  return box;
+}
+
+void find_bounds(ClusterSet& set, const Execution& execution) {
+  const std::vector<InstanceRun> runs = split_by_instance(*set.scene, kTrianglesPerPart);
+  std::vector<Box> boxes(runs.size());
+  parallel_for(execution, runs.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) boxes[i] = bounds_of(*set.scene, runs[i]);
+  });
+  set.instance_bounds.resize(set.scene->instances.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) set.instance_bounds[runs[i].instance].include(boxes[i]);
+  for (const Box& box : set.instance_bounds) set.bounds.include(box);
 }
 
 }  // namespace
@@ -237,14 +260,16 @@ ClusterSet build_clusters(const Scene& scene, const Execution& execution) {
   for (const Instance& instance : scene.instances)
     set.first_primitives.push_back(set.first_primitives.back() +
                                    static_cast<PrimitiveId>(scene.meshes[instance.mesh].triangles.size()));
-  set.instance_bounds.resize(scene.instances.size());
+  find_bounds(set, execution);
 
-  std::vector<Part> parts = split(scene, set.first_primitives);
-  parallel_for(execution, parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) PartBuilder(scene, parts[i]).build();
+  const std::vector<PrimitiveId> order = spatial_order(scene, set.first_primitives, set.bounds, execution);
+  const InstanceFinder instances(set.first_primitives);
+  const Source source{scene, set.first_primitives, instances, order};
+  std::vector<Part> parts((order.size() + kTrianglesPerPart - 1) / kTrianglesPerPart);
+  parallel_for(execution, order.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
+    PartBuilder(source, parts[begin / kTrianglesPerPart]).build(begin, end);
   });
   gather(set, parts, execution);
-  for (const Box& box : set.instance_bounds) set.bounds.include(box);
   return set;
 }
 

@@ -8,8 +8,8 @@
 
 namespace frontmost {
 
-/// Up to 64 vertices and 124 triangles of one instance, with consecutive primitive ids. Its vertices start at
-/// `first_vertex` of ClusterSet::x, y, z; its corner numbers (0 to 63, relative) at `first_corner` of i0, i1, i2.
+/// Up to 64 vertices and 124 triangles that are neighbours in space. Its vertices start at `first_vertex` of
+/// ClusterSet::x, y, z; its corner numbers (0 to 63, relative) and primitive ids at `first_triangle` of i0, i1, i2, id.
 /// Both are padded to whole vectors of 16: padding vertices repeat the last one, padding triangles are degenerate.
 struct Cluster {
   static constexpr int max_vertices = 64;
@@ -17,8 +17,7 @@ struct Cluster {
   static constexpr int lanes = 16;
 
   std::uint64_t first_vertex = 0;
-  std::uint64_t first_corner = 0;
-  PrimitiveId first_primitive = 0;
+  std::uint64_t first_triangle = 0;
   std::uint16_t vertex_count = 0;
   std::uint16_t triangle_count = 0;
 };
@@ -41,13 +40,14 @@ struct ClusterSet {
   std::vector<Box> instance_bounds;
   Box bounds;
 
-  std::vector<Cluster> clusters;  ///< in id order
-  BoxArrays boxes;                ///< of the clusters; empty where no triangle has finite corners
-  Buffer<float> x, y, z;          ///< world space
+  std::vector<Cluster> clusters;
+  BoxArrays boxes;        ///< of the clusters; empty where no triangle has finite corners
+  Buffer<float> x, y, z;  ///< world space
   Buffer<std::uint8_t> i0, i1, i2;
+  Buffer<PrimitiveId> id;
 };
 
-/// Cuts every instance's triangles into clusters, in id order. Triangles with a non-finite world-space corner become
+/// Cuts all triangles into clusters, every one into one. Triangles with a non-finite world-space corner become
 /// degenerate (three times the same corner number), so that no method sees them.
 [[nodiscard]] ClusterSet build_clusters(const Scene& scene, const Execution& execution);
 

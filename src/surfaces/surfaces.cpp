@@ -61,7 +61,8 @@ std::array<glm::vec3, 3> Surfaces::corners(PrimitiveId id) const {
 std::size_t Surfaces::byte_count() const {
   const ClusterSet& set = *clusters_;
   return sizeof set + set.first_primitives.size() * sizeof(PrimitiveId) + set.instance_bounds.size() * sizeof(Box) +
-         set.clusters.size() * (sizeof(Cluster) + sizeof(Box)) + 3 * set.x.size() * sizeof(float) + 3 * set.i0.size();
+         set.clusters.size() * (sizeof(Cluster) + sizeof(Box)) + 3 * set.x.size() * sizeof(float) +
+         (3 + sizeof(PrimitiveId)) * set.id.size();
 }
 
 }  // namespace frontmost

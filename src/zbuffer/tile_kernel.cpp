@@ -223,10 +223,12 @@ class TilePainter {
       hwy::Prefetch(set.z.data() + cluster.first_vertex + i);
     }
     for (std::size_t i = 0; i < cluster.triangle_count; i += 64) {
-      hwy::Prefetch(set.i0.data() + cluster.first_corner + i);
-      hwy::Prefetch(set.i1.data() + cluster.first_corner + i);
-      hwy::Prefetch(set.i2.data() + cluster.first_corner + i);
+      hwy::Prefetch(set.i0.data() + cluster.first_triangle + i);
+      hwy::Prefetch(set.i1.data() + cluster.first_triangle + i);
+      hwy::Prefetch(set.i2.data() + cluster.first_triangle + i);
     }
+    for (std::size_t i = 0; i < cluster.triangle_count; i += 16)
+      hwy::Prefetch(set.id.data() + cluster.first_triangle + i);
   }
 
   // The vertex formula of view/screen_transform.h, many at a time.
@@ -289,7 +291,7 @@ class TilePainter {
   /// Puts the triangles that may cover a sample of this tile into the queue; large ones are drawn at once.
   HWY_INLINE void Gather(const Cluster& cluster, std::size_t first) {
     const DI d;
-    const std::size_t at = cluster.first_corner + first;
+    const std::size_t at = cluster.first_triangle + first;
     const Corners a = Fetch(frame_.set.i0, at);
     Corners b = Fetch(frame_.set.i1, at), c = Fetch(frame_.set.i2, at);
 
@@ -318,7 +320,6 @@ class TilePainter {
     const VI by = hn::IfThenElse(front, c.y, b.y), cy = hn::IfThenElse(front, b.y, c.y);
     const VI bn = hn::IfThenElse(front, c.number, b.number), cn = hn::IfThenElse(front, b.number, c.number);
     const DF df;
-    const VI id = hn::Add(hn::Iota(d, 0), hn::Set(d, std::int32_t(cluster.first_primitive + std::uint32_t(first))));
     const Compactor<DI> compact(keep);
     const std::size_t n = queue_.count;
     compact.Store(a.x, queue_.x[0] + n);
@@ -330,7 +331,7 @@ class TilePainter {
     compact.Store(hn::GatherIndex(df, vertices_.key, a.number), queue_.key[0] + n);
     compact.Store(hn::GatherIndex(df, vertices_.key, bn), queue_.key[1] + n);
     compact.Store(hn::GatherIndex(df, vertices_.key, cn), queue_.key[2] + n);
-    compact.Store(hn::BitCast(DU(), id), queue_.id + n);
+    compact.Store(hn::LoadU(DU(), frame_.set.id.data() + at), queue_.id + n);
     queue_.count += compact.count();
   }
 
@@ -362,10 +363,10 @@ class TilePainter {
     hn::Store(hn::IfThenElseZero(large, hn::Set(d, 1)), d, lanes);
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
       if (lanes[lane] == 0) continue;
-      const std::size_t at = cluster.first_corner + first + lane;
+      const std::size_t at = cluster.first_triangle + first + lane;
       const std::uint8_t numbers[3] = {frame_.set.i0[at], frame_.set.i1[at], frame_.set.i2[at]};
       TriangleRecord record;
-      record.id = cluster.first_primitive + std::uint32_t(first + lane);
+      record.id = frame_.set.id[at];
       for (int k = 0; k < 3; ++k) {
         record.x[k] = vertices_.x[numbers[k]];
         record.y[k] = vertices_.y[numbers[k]];

@@ -22,7 +22,7 @@ bool keeps(Culling culling, bool is_front) {
 /// The corners of a cluster's triangle, world space.
 std::array<glm::vec3, 3> corners_of(const ClusterSet& set, const Cluster& cluster, std::size_t triangle) {
   std::array<glm::vec3, 3> corners;
-  const std::size_t c = cluster.first_corner + triangle;
+  const std::size_t c = cluster.first_triangle + triangle;
   const std::array<std::uint8_t, 3> numbers{set.i0[c], set.i1[c], set.i2[c]};
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t v = cluster.first_vertex + numbers[k];
@@ -47,14 +47,14 @@ bool orient(TriangleRecord& r, Culling culling) {
 void append_records(const ClusterSet& set, const Cluster& cluster, const ScreenTransform& t, Culling culling,
                     std::vector<TriangleRecord>& records) {
   for (std::size_t i = 0; i < cluster.triangle_count; ++i) {
-    const std::size_t c = cluster.first_corner + i;
+    const std::size_t c = cluster.first_triangle + i;
     if (set.i0[c] == set.i1[c] || set.i1[c] == set.i2[c] || set.i0[c] == set.i2[c]) continue;
     const ClippedPolygon polygon = clip_triangle(t, corners_of(set, cluster, i));
     for (int k = 2; k < polygon.count; ++k) {
       const ScreenVertex* fan[3] = {&polygon.corners[0], &polygon.corners[std::size_t(k - 1)],
                                     &polygon.corners[std::size_t(k)]};
       TriangleRecord record;
-      record.id = cluster.first_primitive + static_cast<PrimitiveId>(i);
+      record.id = set.id[c];
       for (int v = 0; v < 3; ++v) {
         record.x[v] = fan[v]->x + t.centre_x;
         record.y[v] = fan[v]->y + t.centre_y;

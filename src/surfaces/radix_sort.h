@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// A stable parallel radix sort.
+#pragma once
+
+#include <cstdint>
+
+#include "frontmost/base.h"
+
+namespace frontmost {
+
+/// Sorts by bits [32, 32 + key_bits) of each item, keeping the order of equal keys. Precondition: key_bits <= 32.
+/// O(count) with one more buffer of the same size; the same result for any number of threads.
+void radix_sort(Buffer<std::uint64_t>& items, int key_bits, const Execution& execution);
+
+}  // namespace frontmost

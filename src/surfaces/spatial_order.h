@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// The order in which triangles are put into clusters: neighbours in space are neighbours in the order.
+#pragma once
+
+#include <vector>
+
+#include "frontmost/surfaces.h"
+
+namespace frontmost {
+
+/// Finds the instance of a primitive in constant time: a starting point every 64 ids, then a short walk.
+class InstanceFinder {
+ public:
+  /// `first_primitives` by instance, and the total at the end; borrowed.
+  explicit InstanceFinder(const std::vector<PrimitiveId>& first_primitives);
+  [[nodiscard]] std::uint32_t find(PrimitiveId id) const {
+    std::uint32_t instance = start_[id / kStride];
+    while (first_primitives_[instance + 1] <= id) ++instance;
+    return instance;
+  }
+
+ private:
+  static constexpr std::uint32_t kStride = 64;
+  const std::vector<PrimitiveId>& first_primitives_;
+  std::vector<std::uint32_t> start_;
+};
+
+/// A run of consecutive ids within one instance. Work is split at fixed numbers, whatever the threads.
+struct InstanceRun {
+  std::uint32_t instance = 0;
+  std::uint32_t begin = 0, end = 0;  ///< triangles of the mesh
+};
+[[nodiscard]] std::vector<InstanceRun> split_by_instance(const Scene& scene, std::uint32_t triangles_per_run);
+
+/// All primitive ids, by the Morton code of the triangles' centroids within `bounds`; within a cell in id order.
+/// Cells hold some tens of triangles of an ordinary surface. O(triangles), 16 bytes a triangle while it runs.
+[[nodiscard]] std::vector<PrimitiveId> spatial_order(const Scene& scene,
+                                                     const std::vector<PrimitiveId>& first_primitives,
+                                                     const Box& bounds, const Execution& execution);
+
+}  // namespace frontmost
