@@ -2,19 +2,22 @@
 // The built-in scenes by name.
 #include <array>
 
+#include "base/float_environment.h"
 #include "scene/builtin_scenes.h"
 
 namespace frontmost {
 namespace {
 
-constexpr std::array<std::string_view, 3> kNames{"teapot", "cubes", "cycle"};
-constexpr std::array<Scene (*)(), kNames.size()> kMakers{make_teapot, make_cubes, make_cycle};
+constexpr std::array<std::string_view, 6> kNames{"teapot", "cubes", "cycle", "city", "spheres", "gallery"};
+constexpr std::array<Scene (*)(), kNames.size()> kMakers{make_teapot, make_cubes,   make_cycle,
+                                                         make_city,   make_spheres, make_gallery};
 
 }  // namespace
 
 std::span<const std::string_view> builtin_names() { return kNames; }
 
 Scene builtin(std::string_view name) {
+  const IeeeScope ieee;
   std::string known;
   for (std::size_t i = 0; i < kNames.size(); ++i) {
     if (kNames[i] == name) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The small classics of visibility: the teapot, two cubes through one another, three triangles in a ring.
 #include "scene/builtin_scenes.h"
+#include "scene/compose.h"
 #include "scene/shapes.h"
 #include "scene/turn.h"
 
@@ -10,7 +11,7 @@ Scene make_teapot() {
   Scene scene;
   const auto porcelain = add(scene, paint("porcelain", 0xEDE6D8, 0.28f));
   place(scene, "teapot", add(scene, "teapot", teapot(10), porcelain));
-  scene.cameras.push_back(look_at("classic", {2.6, 4.9, 8.4}, {0.2, 1.4, 0}, 32));
+  scene.cameras.push_back(camera_at("classic", {2.6, 4.9, 8.4}, {0.2, 1.4, 0}, 32));
   return scene;
 }
 
@@ -21,12 +22,12 @@ Scene make_cubes() {
   const auto clay = add(scene, paint("clay", 0xC8553D));
   const auto slate = add(scene, paint("slate", 0x3D6B8C));
   const Mesh cube = box({-1, -1, -1}, {1, 1, 1});
-  place(scene, "clay cube", add(scene, "clay cube", cube, clay), moved({-0.5, 1, -0.25}));
-  glm::dmat4 second = moved({0.75, 1.75, 0.75});
+  place(scene, "clay cube", add(scene, "clay cube", cube, clay), moved({-0.5, 1, 0.25}));
+  glm::dmat4 second = moved({0.75, 1.75, -0.5});
   second[0] = {0.8, 0, -0.6, 0};
   second[2] = {0.6, 0, 0.8, 0};
   place(scene, "slate cube", add(scene, "slate cube", cube, slate), second);
-  scene.cameras.push_back(look_at("corner", {4.6, 5.2, 7.4}, {0.15, 1.3, 0.25}, 30));
+  scene.cameras.push_back(camera_at("corner", {2.2, 5.0, 8.4}, {0.15, 1.35, -0.3}, 30));
   return scene;
 }
 
@@ -48,7 +49,7 @@ Scene make_cycle() {
     mesh.triangles = {{0, 1, 2}};
     place(scene, names[k], add(scene, names[k], mesh, paint_id));
   }
-  scene.cameras.push_back(look_at("front", {0, 0, 7}, {0, 0, 0}, 36));
+  scene.cameras.push_back(camera_at("front", {0, 0, 7}, {0, 0, 0}, 36));
   return scene;
 }
 

@@ -9,5 +9,8 @@ namespace frontmost {
 [[nodiscard]] Scene make_teapot();
 [[nodiscard]] Scene make_cubes();
 [[nodiscard]] Scene make_cycle();
+[[nodiscard]] Scene make_city();
+[[nodiscard]] Scene make_spheres();
+[[nodiscard]] Scene make_gallery();
 
 }  // namespace frontmost

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "base/srgb.h"
 #include "scene/turn.h"
 
 namespace frontmost {
@@ -102,96 +101,103 @@ Mesh floor(double width, double depth, double repeats) {
 
 Mesh sphere(int rings) {
   const SurfaceGrid grid{.rows = rings, .columns = 2 * rings, .closed_columns = true, .poles = true};
+  const std::vector<glm::dvec2> turns = circle(2 * rings);
   return surface(grid, [&](int i, int j) {
-    const glm::dvec2 down = turn(i, 2 * rings), around = turn(j, 2 * rings);
+    const glm::dvec2 down = turns[std::size_t(i)], around = turns[std::size_t(j)];
     const glm::dvec3 p{down.y * around.x, down.x, 0.0 - down.y * around.y};
     return SurfacePoint{p, p};
   });
 }
 
 Mesh torus_knot(const KnotShape& shape) {
-  // The curve and its derivative by the angle; the frame across it is the derivative's with the vector from the core.
-  const auto curve = [&](int i) {
-    const glm::dvec2 about = turn(std::int64_t(i) * shape.p, shape.along),
-                     swing = turn(std::int64_t(i) * shape.q, shape.along);
-    const double radius = 1 + shape.core * swing.x, radius_slope = -shape.core * shape.q * swing.y;
-    struct {
-      glm::dvec3 position, slope, outward;
-    } at{{radius * about.x, shape.core * swing.y, radius * about.y},
-         {radius_slope * about.x - radius * shape.p * about.y, shape.core * shape.q * swing.x,
-          radius_slope * about.y + radius * shape.p * about.x},
-         {swing.x * about.x, swing.y, swing.x * about.y}};
-    return at;
+  // The curve with two directions across it: away from the core circle, and the third.
+  struct Station {
+    glm::dvec3 position, out, side;
   };
+  std::vector<Station> stations;
+  for (int i = 0; i < shape.along; ++i) {
+    const glm::dvec2 about = turn(std::int64_t(i) * shape.p, shape.along);
+    const glm::dvec2 swing = turn(std::int64_t(i) * shape.q, shape.along);
+    const double radius = 1 + shape.core * swing.x, growth = -shape.core * shape.q * swing.y;
+    const glm::dvec3 slope{growth * about.x - radius * shape.p * about.y, shape.core * shape.q * swing.x,
+                           growth * about.y + radius * shape.p * about.x};
+    const glm::dvec3 forward = unit(slope);
+    const glm::dvec3 side = unit(glm::cross(forward, glm::dvec3(swing.x * about.x, swing.y, swing.x * about.y)));
+    stations.push_back({{radius * about.x, shape.core * swing.y, radius * about.y}, glm::cross(side, forward), side});
+  }
+  const std::vector<glm::dvec2> around = circle(shape.around);
   const SurfaceGrid grid{.rows = shape.along, .columns = shape.around, .closed_rows = true, .closed_columns = true};
   return surface(grid, [&](int i, int j) {
-    const auto at = curve(i);
-    const glm::dvec3 forward = unit(at.slope), side = unit(glm::cross(forward, at.outward)),
-                     out = glm::cross(side, forward);
-    const glm::dvec2 around = turn(j, shape.around);
-    const glm::dvec3 normal = out * around.x - side * around.y;
+    const Station& at = stations[std::size_t(i)];
+    const glm::dvec3 normal = at.out * around[std::size_t(j)].x - at.side * around[std::size_t(j)].y;
     return SurfacePoint{at.position + normal * shape.tube, normal};
   });
 }
 
-Material paint(std::string name, std::uint32_t srgb, float roughness, float metallic) {
-  Material material;
-  material.name = std::move(name);
-  material.base_color = color(srgb);
-  material.roughness = roughness;
-  material.metallic = metallic;
-  return material;
+Mesh lathe(std::span<const ProfilePoint> profile, int segments) {
+  Mesh mesh;
+  const int last = int(profile.size()) - 1;
+  const std::vector<glm::dvec2> turns = circle(segments);
+  for (int i = 0; i <= last; ++i)
+    for (int j = 0; j <= segments; ++j) {
+      const ProfilePoint& p = profile[std::size_t(i)];
+      mesh.texcoords.values.emplace_back(double(j) / segments, double(i) / last);
+      if (j == segments) continue;  // the seam: another texture coordinate, but the first position again
+      const glm::dvec2 around = turns[std::size_t(j)];
+      mesh.positions.emplace_back(p.radius * around.x, p.height, 0.0 - p.radius * around.y);
+      mesh.normals.values.emplace_back(p.normal.x * around.x, p.normal.y, 0.0 - p.normal.x * around.y);
+    }
+  const auto position = [&](int i, int j) { return std::uint32_t(i * segments + j % segments); };
+  const auto texcoord = [&](int i, int j) { return std::uint32_t(i * (segments + 1) + j); };
+  for (int i = 0; i < last; ++i) {
+    const ProfilePoint &upper = profile[std::size_t(i)], &lower = profile[std::size_t(i) + 1];
+    if (upper.radius == lower.radius && upper.height == lower.height) continue;
+    for (int j = 0; j < segments; ++j) {
+      glm::uvec4 c{position(i, j + 1), position(i, j), position(i + 1, j), position(i + 1, j + 1)};
+      if (upper.radius == 0) c[0] = c[1];
+      if (lower.radius == 0) c[3] = c[2];
+      add_quad(c, {texcoord(i, j + 1), texcoord(i, j), texcoord(i + 1, j), texcoord(i + 1, j + 1)}, mesh);
+    }
+  }
+  return mesh;
 }
 
-std::uint32_t add(Scene& scene, Material material) {
-  scene.materials.push_back(std::move(material));
-  return std::uint32_t(scene.materials.size() - 1);
+Mesh round_slab(const Slab& slab, int segments) {
+  constexpr int kBevelSteps = 5;
+  std::vector<ProfilePoint> profile{{0, slab.height, {0, 1}}};
+  for (int i = 0; i <= kBevelSteps; ++i) {
+    const glm::dvec2 normal = turn(kBevelSteps - i, 4 * kBevelSteps);
+    profile.push_back({slab.radius - slab.bevel * (1 - normal.x), slab.height - slab.bevel * (1 - normal.y), normal});
+  }
+  profile.push_back({slab.radius, 0, {1, 0}});
+  profile.push_back({slab.radius, 0, {0, -1}});
+  profile.push_back({0, 0, {0, -1}});
+  return lathe(profile, segments);
 }
 
-std::uint32_t add(Scene& scene, std::string name, Mesh mesh, std::uint32_t material) {
-  mesh.name = std::move(name);
-  mesh.material_ids = {material};
-  scene.meshes.push_back(std::move(mesh));
-  return std::uint32_t(scene.meshes.size() - 1);
+namespace {
+
+// The part's values behind the mesh's own, and which of them its corners take.
+template <class T>
+void append_values(Attribute<T>& attribute, const std::vector<T>& values, const std::vector<glm::uvec3>& corners) {
+  const auto first = std::uint32_t(attribute.values.size());
+  attribute.values.insert(attribute.values.end(), values.begin(), values.end());
+  for (const glm::uvec3& c : corners) attribute.triangles.push_back(c + first);
 }
 
-void place(Scene& scene, std::string name, std::uint32_t mesh, const glm::dmat4& world_from_mesh) {
-  scene.instances.push_back({std::move(name), mesh, world_from_mesh});
-}
+}  // namespace
 
-glm::dmat4 moved(const glm::dvec3& by) {
-  glm::dmat4 matrix(1.0);
-  matrix[3] = glm::dvec4(by, 1);
-  return matrix;
-}
-
-glm::dmat4 scaled(double by) {
-  glm::dmat4 matrix(by);
-  matrix[3][3] = 1;
-  return matrix;
-}
-
-glm::dmat4 turned(int part, int whole) {
-  const glm::dvec2 t = turn(part, whole);
-  glm::dmat4 matrix(1.0);
-  matrix[0] = {t.x, 0, 0 - t.y, 0};
-  matrix[2] = {t.y, 0, t.x, 0};
-  return matrix;
-}
-
-Camera look_at(std::string name, const glm::dvec3& eye, const glm::dvec3& target, double vertical) {
-  const glm::dvec3 back = unit(eye - target), right = unit(glm::cross(glm::dvec3(0, 1, 0), back));
-  Camera camera;
-  camera.name = std::move(name);
-  camera.world_from_eye = {glm::dvec4(right, 0), glm::dvec4(glm::cross(back, right), 0), glm::dvec4(back, 0),
-                           glm::dvec4(eye, 1)};
-  camera.vertical = vertical * 0.017453292519943295769;
-  return camera;
-}
-
-glm::vec4 color(std::uint32_t srgb, double alpha) {
-  const auto byte = [&](int shift) { return linear_of_srgb8(std::uint8_t(srgb >> shift & 255)); };
-  return {byte(16), byte(8), byte(0), float(alpha)};
+void append(Mesh& mesh, const Mesh& part, std::uint32_t material, const glm::dmat4& mesh_from_part) {
+  const auto first = std::uint32_t(mesh.positions.size());
+  for (const glm::vec3& p : part.positions) mesh.positions.emplace_back(mesh_from_part * glm::dvec4(p, 1));
+  for (const glm::uvec3& t : part.triangles) mesh.triangles.push_back(t + first);
+  std::vector<glm::vec3> normals;
+  for (const glm::vec3& n : part.normals.values)
+    normals.emplace_back(unit(glm::dvec3(mesh_from_part * glm::dvec4(n, 0))));
+  append_values(mesh.normals, normals, part.normals.triangles.empty() ? part.triangles : part.normals.triangles);
+  append_values(mesh.texcoords, part.texcoords.values,
+                part.texcoords.triangles.empty() ? part.triangles : part.texcoords.triangles);
+  mesh.material_ids.resize(mesh.triangles.size(), material);
 }
 
 }  // namespace frontmost

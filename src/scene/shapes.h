@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes and placements that the built-in scenes are composed of. Everything is computed in double with +, *, / and
+// Meshes that the built-in scenes are composed of. Everything is computed in double with +, *, / and
 // sqrt alone and rounded to float once, so that the scenes are bit-identical on every machine.
 #pragma once
 
 #include <functional>
-#include <string>
+#include <span>
 
 #include "frontmost/scene.h"
 
@@ -44,24 +44,22 @@ struct SurfaceGrid {
 };
 [[nodiscard]] Mesh surface(const SurfaceGrid& grid, const std::function<SurfacePoint(int i, int j)>& point);
 
-/// A plain material: base colour in sRGB as 0xRRGGBB.
-[[nodiscard]] Material paint(std::string name, std::uint32_t srgb, float roughness = 0.6f, float metallic = 0);
+/// A point of an outline to be turned about the y axis, and the outward normal there. Two points in one place with
+/// different normals make an edge.
+struct ProfilePoint {
+  double radius, height;
+  glm::dvec2 normal;  ///< (outward, up), unit length
+};
+/// The outline from its top to its bottom, turned. Closed where it starts and ends at radius 0.
+[[nodiscard]] Mesh lathe(std::span<const ProfilePoint> profile, int segments);
 
-/// Appends and returns the new one's number.
-std::uint32_t add(Scene& scene, Material material);
-/// Every triangle of the mesh gets that material.
-std::uint32_t add(Scene& scene, std::string name, Mesh mesh, std::uint32_t material);
-void place(Scene& scene, std::string name, std::uint32_t mesh, const glm::dmat4& world_from_mesh = glm::dmat4(1.0));
+/// A closed round slab that stands on y = 0, its upper edge rounded.
+struct Slab {
+  double radius, height, bevel;
+};
+[[nodiscard]] Mesh round_slab(const Slab& slab, int segments);
 
-[[nodiscard]] glm::dmat4 moved(const glm::dvec3& by);
-[[nodiscard]] glm::dmat4 scaled(double by);
-/// About the y axis, counter-clockwise seen from above, by part / whole of a full turn.
-[[nodiscard]] glm::dmat4 turned(int part, int whole);
-
-/// A camera at `eye` that looks at `target` with y up. `vertical`: full field of view in degrees.
-[[nodiscard]] Camera look_at(std::string name, const glm::dvec3& eye, const glm::dvec3& target, double vertical);
-
-/// From a colour as designers write it (0xRRGGBB, sRGB) to linear light.
-[[nodiscard]] glm::vec4 color(std::uint32_t srgb, double alpha = 1);
+/// Appends a part, moved, as triangles of that material. Both meshes have normals and texture coordinates.
+void append(Mesh& mesh, const Mesh& part, std::uint32_t material, const glm::dmat4& mesh_from_part = glm::dmat4(1.0));
 
 }  // namespace frontmost

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <vector>
 
 namespace frontmost {
 
@@ -34,6 +35,13 @@ namespace frontmost {
     case 6: return {sine, 0 - cosine};
     default: return {cosine, 0 - sine};
   }
+}
+
+/// All points of a circle divided into `whole` parts.
+[[nodiscard]] inline std::vector<glm::dvec2> circle(int whole) {
+  std::vector<glm::dvec2> points;
+  for (int part = 0; part < whole; ++part) points.push_back(turn(part, whole));
+  return points;
 }
 
 }  // namespace frontmost

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "frontmost/report.h"
+#include "scene/compose.h"
 #include "scene/shapes.h"
 
 namespace frontmost {
@@ -292,7 +293,7 @@ TEST(Inspect, CountsMaterialsPerTriangle) {
 
 TEST(Inspect, CamerasComeInWorldTerms) {
   Scene scene;
-  scene.cameras.push_back(look_at("front", {0, 0, 7}, {0, 0, 0}, 90));
+  scene.cameras.push_back(camera_at("front", {0, 0, 7}, {0, 0, 0}, 90));
   const SceneReport report = inspect(scene);
   EXPECT_EQ(report.cameras[0].position, glm::dvec3(0, 0, 7));
   EXPECT_EQ(report.cameras[0].direction, glm::dvec3(0, 0, -1));

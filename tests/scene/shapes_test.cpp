@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "scene/compose.h"
 #include "scene/topology.h"
 #include "scene/turn.h"
 
@@ -83,30 +84,27 @@ TEST(Shapes, FloorFacesUp) {
   EXPECT_EQ(mesh.normals.values[0], glm::vec3(0, 1, 0));
 }
 
-TEST(Shapes, LookAtPutsTheTargetOnTheAxis) {
-  const Camera camera = look_at("test", {3, 4, 5}, {-1, 2, 0.5}, 90);
-  const glm::dvec4 target = glm::inverse(camera.world_from_eye) * glm::dvec4(-1, 2, 0.5, 1);
-  EXPECT_NEAR(target.x, 0, 1e-12);
-  EXPECT_NEAR(target.y, 0, 1e-12);
-  EXPECT_NEAR(target.z, -glm::length(glm::dvec3(4, 2, 4.5)), 1e-12);
-  EXPECT_NEAR(camera.vertical, kPi / 2, 1e-15);
+TEST(Shapes, RoundSlabIsClosedAndRoundedOnTop) {
+  const Mesh mesh = round_slab({.radius = 2, .height = 1, .bevel = 0.25}, 32);
+  Box bounds;
+  for (const glm::vec3& p : mesh.positions) bounds.include(p);
+  EXPECT_EQ(bounds.low, glm::vec3(-2, 0, -2));
+  EXPECT_EQ(bounds.high, glm::vec3(2, 1, 2));
+  EXPECT_GT(test::signed_volume(mesh) / 6, kPi * 4 * 0.95);
+  EXPECT_LT(test::signed_volume(mesh) / 6, kPi * 4);
+  EXPECT_GT(test::worst_normal(mesh), 0.97);
 }
 
-TEST(Shapes, TurnedIsCounterClockwiseSeenFromAbove) {
-  // From above x points right and z down, so a quarter turn takes x to -z.
-  const glm::dvec4 x = turned(1, 4) * glm::dvec4(1, 0, 0, 1);
-  EXPECT_EQ(x, glm::dvec4(0, 0, -1, 1));
-  EXPECT_EQ(glm::determinant(turned(1, 7)) > 0.999999, true);
-}
-
-TEST(Shapes, ColorIsTheSrgbCurve) {
-  EXPECT_EQ(color(0x000000), glm::vec4(0, 0, 0, 1));
-  EXPECT_EQ(color(0xFFFFFF, 0.5), glm::vec4(1, 1, 1, 0.5));
-  for (std::uint32_t byte = 0; byte < 256; ++byte) {
-    const double value = byte / 255.0;
-    const double expected = value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
-    EXPECT_NEAR(color(byte << 8).y, expected, 1e-7) << byte;
-  }
+TEST(Shapes, AppendMovesTurnsAndPaintsAPart) {
+  Mesh mesh;
+  append(mesh, box({0, 0, 0}, {1, 1, 1}), 3);
+  append(mesh, sphere(4), 5, moved({10, 0, 0}) * scaled(2) * turned(1, 3));
+  EXPECT_EQ(mesh.triangles.size(), 12u + 48u);
+  EXPECT_EQ(mesh.material_of(11), 3u);
+  EXPECT_EQ(mesh.material_of(12), 5u);
+  EXPECT_GT(test::worst_normal(mesh), 0.8);
+  EXPECT_EQ(mesh.texcoords.triangles.size(), mesh.triangles.size());
+  EXPECT_NEAR(test::signed_volume(mesh) / 6, 1 + 8 * test::signed_volume(sphere(4)) / 6, 1e-4);
 }
 
 }  // namespace

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/compose.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace frontmost {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+TEST(Compose, CameraAtPutsTheTargetOnTheAxis) {
+  const Camera camera = camera_at("test", {3, 4, 5}, {-1, 2, 0.5}, 90);
+  const glm::dvec4 target = glm::inverse(camera.world_from_eye) * glm::dvec4(-1, 2, 0.5, 1);
+  EXPECT_NEAR(target.x, 0, 1e-12);
+  EXPECT_NEAR(target.y, 0, 1e-12);
+  EXPECT_NEAR(target.z, -glm::length(glm::dvec3(4, 2, 4.5)), 1e-12);
+  EXPECT_NEAR(camera.vertical, kPi / 2, 1e-15);
+}
+
+TEST(Compose, TurnedIsCounterClockwiseSeenFromAbove) {
+  // From above x points right and z down, so a quarter turn takes x to -z.
+  const glm::dvec4 x = turned(1, 4) * glm::dvec4(1, 0, 0, 1);
+  EXPECT_EQ(x, glm::dvec4(0, 0, -1, 1));
+  EXPECT_EQ(tilted(1, 4) * glm::dvec4(0, 1, 0, 1), glm::dvec4(0, 0, 1, 1));
+  EXPECT_NEAR(glm::determinant(turned(1, 7) * tilted(2, 9)), 1, 1e-15);
+}
+
+TEST(Compose, ColorIsTheSrgbCurve) {
+  EXPECT_EQ(color(0x000000), glm::vec4(0, 0, 0, 1));
+  EXPECT_EQ(color(0xFFFFFF, 0.5), glm::vec4(1, 1, 1, 0.5));
+  for (std::uint32_t byte = 0; byte < 256; ++byte) {
+    const double value = byte / 255.0;
+    const double expected = value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+    EXPECT_NEAR(color(byte << 8).y, expected, 1e-7) << byte;
+  }
+}
+
+}  // namespace
+}  // namespace frontmost
