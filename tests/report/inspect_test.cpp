@@ -266,7 +266,7 @@ TEST(Inspect, SumsOverInstancesAndMeshes) {
   EXPECT_EQ(report.objects[2].name, "third");
   EXPECT_EQ(report.objects[2].bounds.low, glm::vec3(99, -1, -1));
   EXPECT_EQ(report.bounds.high.x, 101);
-  EXPECT_EQ(report.objects[0].bounds.low, glm::vec3(-1.5f, 0, -1.25f));
+  EXPECT_EQ(report.objects[0].bounds.low, glm::vec3(-1.5f, 0, -0.75f));
   ASSERT_EQ(report.materials.size(), 2u);
   EXPECT_EQ(report.materials[0].triangles, 12u);
   EXPECT_EQ(report.materials[1].triangles, 24u);

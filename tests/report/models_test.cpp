@@ -33,11 +33,23 @@ TEST_P(KnownModel, IsInTheStateThatWasMeasured) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, KnownModel,
-    testing::Values(Known{"organic/stanford-bunny-binary.stl", 69451, 1, {.boundary_edges = 223}, -1},
-                    Known{"cad/crank-arm.stl", 8458, 2, {.degenerate_triangles = 2, .boundary_edges = 32}, -1},
-                    Known{"cad/angle-block.stl", 704, 1, {.boundary_edges = 166}, -1},
-                    Known{"cad/featuretype.stl", 3476, 1, {.boundary_edges = 576}, -1},
-                    Known{"cad/two-cylinders.stl", 1916, 1, {}, 0}, Known{"cad/torus.stl", 28800, 1, {}, 1}),
+    testing::Values(
+        Known{"organic/stanford-bunny-binary.stl", 69451, 1, {.boundary_edges = 223}, -1},
+        Known{"organic/stanford-bunny.obj", 69451, 1, {.boundary_edges = 223}, -1},
+        Known{"organic/stanford-bunny-ascii.ply", 69451, 1, {.boundary_edges = 223}, -1},
+        Known{"organic/armadillo-86k.obj", 86482, 1, {}, 0}, Known{"organic/lucy-100k.ply", 99970, 1, {}, 0},
+        Known{"organic/dragon-800k.ply",
+              798504,
+              4,
+              {.boundary_edges = 418, .non_manifold_edges = 224, .inconsistent_edges = 10},
+              -1},
+        Known{"cad/crank-arm.stl", 8458, 2, {.degenerate_triangles = 2, .boundary_edges = 32}, -1},
+        Known{"cad/propeller-ascii.stl", 7375, 1, {.degenerate_triangles = 1, .inconsistent_edges = 12}, -1},
+        Known{"cad/cycloidal-drive.ply", 43368, 100, {.non_manifold_edges = 242}, -1},
+        Known{"cad/as1.stl", 9868, 6, {}, 22}, Known{"cad/fandisk.obj", 12946, 1, {}, 0},
+        Known{"cad/rocker-arm.obj", 20088, 1, {}, 1}, Known{"cad/angle-block.stl", 704, 1, {.boundary_edges = 166}, -1},
+        Known{"cad/featuretype.stl", 3476, 1, {.boundary_edges = 576}, -1},
+        Known{"cad/two-cylinders.stl", 1916, 1, {}, 0}, Known{"cad/torus.stl", 28800, 1, {}, 1}),
     [](const auto& known) {
       std::string name = known.param.file;
       for (char& c : name)
