@@ -1,11 +1,88 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF 2.0 and GLB.
+// glTF 2.0 and GLB: the file's JSON becomes a Scene. Each step checks what it reads, so that later ones need not:
+// container, JSON, buffers and accessors, materials, meshes (planned), nodes, instances, textures.
+//
+// The document is read by a JSON library and not by a glTF one (tinygltf): that reads past a GLB's end, cuts long
+// integers short, ignores members of the wrong type, and refuses indices without a buffer view.
+#include <algorithm>
+#include <string_view>
+
+#include "io/models/gltf_instances.h"
 #include "io/models/reader.h"
 
 namespace frontmost {
+namespace gltf {
+namespace {
 
-Scene read_gltf(Bytes, const ModelSource& source) {
-  throw Error(ErrorCode::unsupported, source.name() + ": glTF is not supported by this build");
+/// Extensions that are followed, or that say nothing about what is visible or coloured here.
+constexpr std::string_view supported_extensions[] = {
+    "KHR_texture_transform",           "KHR_materials_unlit", "KHR_mesh_quantization", "EXT_mesh_gpu_instancing",
+    "KHR_materials_emissive_strength",
+};
+
+bool is_supported(const std::string& extension) {
+  return std::find(std::begin(supported_extensions), std::end(supported_extensions), extension) !=
+         std::end(supported_extensions);
+}
+
+void check_version(const Json& root) {
+  const Json asset = root.require("asset");
+  const Json version = asset.find("minVersion").value_or(asset.require("version"));
+  const std::string text = version.to_string();
+  // A later 2.x only adds what older readers may pass over, unless minVersion says otherwise.
+  const bool fits = version.place() == "asset.version" ? text.starts_with("2.") : text == "2.0";
+  if (!fits)
+    throw Error(ErrorCode::unsupported, root.source().name() + ": " + version.place() + ": glTF " + printable(text) +
+                                            " is not supported, only 2.0");
+}
+
+std::vector<std::string> unsupported(const Json& root, const char* key) {
+  std::vector<std::string> names;
+  const std::optional<Json> array = root.find(key);
+  for (std::size_t i = 0; array && i < array->size(); ++i) {
+    const std::string name = (*array)[i].to_string();
+    if (!is_supported(name)) names.push_back(printable(name));
+  }
+  return names;
+}
+
+void check_extensions(const Json& root, std::vector<std::string>& warnings) {
+  std::string list;
+  for (const std::string& name : unsupported(root, "extensionsRequired")) list += (list.empty() ? "" : ", ") + name;
+  if (!list.empty())
+    throw Error(ErrorCode::unsupported,
+                root.source().name() + ": extensionsRequired: " + printable(list) + ": not supported");
+  for (const std::string& name : unsupported(root, "extensionsUsed"))
+    warnings.push_back("extensionsUsed: " + name + " is not supported and passed over");
+}
+
+std::string_view without_byte_order_mark(std::string_view text) {
+  return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
+}
+
+Scene read_scene(const Container& container, const ModelSource& source) {
+  const JsonDocument document(without_byte_order_mark(container.json), source);
+  const Json root(document, source);
+  Scene scene;
+  check_version(root);
+  check_extensions(root, scene.warnings);
+  const Data data(root, container);
+  TextureTable textures(root, data);
+  Materials materials = read_materials(root, textures, scene.warnings);
+  const std::vector<MeshPlan> plans = plan_meshes(root, data, materials, scene.warnings);
+  const NodeTree tree = read_nodes(root, data);
+  scene.materials = std::move(materials.materials);
+  place_meshes(root, data, plans, tree, scene);
+  place_cameras(root, tree, scene);
+  textures.load(scene);
+  return scene;
+}
+
+}  // namespace
+}  // namespace gltf
+
+Scene read_gltf(Bytes bytes, const ModelSource& source) {
+  return gltf::read_scene(gltf::open_container(bytes, source), source);
 }
 
 }  // namespace frontmost

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/models/gltf_data.h"
+
+#include "io/models/gltf_uri.h"
+
+namespace frontmost::gltf {
+namespace {
+
+constexpr const char* no_contents = "its buffer has no contents in this file";
+constexpr std::uint32_t component_codes[] = {5120, 5121, 5122, 5123, 5125, 5126};
+
+/// None: a code of the future.
+std::optional<Component> component_of(const Json& json) {
+  const std::uint64_t code = json.to_unsigned();
+  for (const std::uint32_t known : component_codes)
+    if (code == known) return Component(known);
+  return std::nullopt;
+}
+
+struct Shape {
+  const char* name;
+  int columns, rows;
+};
+constexpr Shape shapes[] = {{"SCALAR", 1, 1}, {"VEC2", 1, 2}, {"VEC3", 1, 3}, {"VEC4", 1, 4},
+                            {"MAT2", 2, 2},   {"MAT3", 3, 3}, {"MAT4", 4, 4}};
+
+const Shape* shape_of(const Json& json) {
+  const std::string name = json.to_string();
+  for (const Shape& shape : shapes)
+    if (name == shape.name) return &shape;
+  return nullptr;
+}
+
+/// Bytes of one element. Columns of matrices start at multiples of four.
+std::size_t element_size(const Shape& shape, Component component) {
+  const std::size_t column = std::size_t(shape.rows) * size_of(component);
+  return shape.columns == 1 ? column : std::size_t(shape.columns) * ((column + 3) & ~std::size_t(3));
+}
+
+/// Whether `count` elements, `stride` apart, lie within `length` bytes from `offset` on; nothing overflows.
+bool fits(std::uint64_t offset, std::uint64_t count, std::uint64_t stride, std::uint64_t element,
+          std::uint64_t length) {
+  if (count == 0) return offset <= length;
+  if (offset > length || element > length - offset) return false;
+  return count - 1 <= (length - offset - element) / stride;
+}
+
+}  // namespace
+
+std::size_t size_of(Component component) {
+  switch (component) {
+    case Component::i8:
+    case Component::u8: return 1;
+    case Component::i16:
+    case Component::u16: return 2;
+    case Component::u32:
+    case Component::f32: return 4;
+  }
+  return 4;
+}
+
+void Budget::charge(std::uint64_t count, std::uint64_t size, const std::string& place, const ModelSource& source) {
+  if (count > left_ / size)
+    source.fail_limit(place, std::to_string(count) + " elements are far more than a file of this size should make");
+  left_ -= count * size;
+}
+
+Data::Data(const Json& root, const Container& container)
+    : container_bytes_(container.json.size() + container.binary.size()) {
+  const auto each = [&root](const char* key, auto&& read) {
+    const std::optional<Json> array = root.find(key);
+    for (std::size_t i = 0; array && i < array->size(); ++i) read((*array)[i], i);
+  };
+  each("buffers", [&](const Json& json, std::size_t i) { read_buffer(json, container, i == 0); });
+  each("bufferViews", [&](const Json& json, std::size_t) { read_view(json); });
+  each("accessors", [&](const Json& json, std::size_t) { read_accessor(json); });
+}
+
+std::uint64_t Data::byte_count() const {
+  std::uint64_t count = container_bytes_;
+  for (const auto& [path, file] : files_) count += file.bytes().size();
+  return count;
+}
+
+Bytes Data::view_bytes(std::uint32_t i, const Json& user) const {
+  if (!views_[i].present) user.fail(no_contents);
+  return views_[i].bytes;
+}
+
+std::uint32_t Data::readable_accessor(const Json& user) const {
+  const std::uint32_t id = user.to_index(accessors_.size());
+  if (accessors_[id].unreadable != nullptr) user.fail(accessors_[id].unreadable);
+  return id;
+}
+
+void Data::read_buffer(const Json& json, const Container& container, bool first) {
+  Extent buffer;
+  buffer.length = json.require("byteLength").to_unsigned();
+  buffer.present = true;
+  if (const std::optional<Json> uri = json.find("uri")) {
+    const std::string text = uri->to_string();
+    if (is_data_uri(text))
+      buffer.bytes = decoded_.emplace_back(decode_data_uri(text, *uri));
+    else
+      buffer.bytes = file_bytes(percent_decode(text), json.source());
+  } else if (first && container.is_glb) {
+    if (!container.has_binary) json.fail("the GLB has no BIN chunk");
+    buffer.bytes = container.binary;
+  } else {
+    buffer.present = false;
+  }
+  if (buffer.present) {
+    if (buffer.length > buffer.bytes.size())
+      json.fail("byteLength is " + std::to_string(buffer.length) + ", but there are only " +
+                std::to_string(buffer.bytes.size()) + " bytes");
+    buffer.bytes = buffer.bytes.first(buffer.length);
+  }
+  buffers_.push_back(buffer);
+}
+
+/// A file is opened once, however many buffers name it.
+Bytes Data::file_bytes(const std::string& path, const ModelSource& source) {
+  auto found = files_.find(path);
+  if (found == files_.end()) found = files_.emplace(path, source.open(path, max_file_bytes)).first;
+  return found->second.bytes();
+}
+
+void Data::read_view(const Json& json) {
+  const Extent& buffer = buffers_[json.require("buffer").to_index(buffers_.size())];
+  const std::uint64_t offset = json.unsigned_or("byteOffset", 0);
+  Extent view;
+  view.length = json.require("byteLength").to_unsigned();
+  view.stride = json.unsigned_or("byteStride", 0);
+  view.present = buffer.present;
+  if (!fits(offset, view.length, 1, 1, buffer.length))
+    json.fail("bytes " + std::to_string(offset) + " + " + std::to_string(view.length) +
+              " are not within the buffer, which has " + std::to_string(buffer.length));
+  if (view.present) view.bytes = buffer.bytes.subspan(offset, view.length);
+  views_.push_back(view);
+}
+
+void Data::read_accessor(const Json& json) {
+  Accessor accessor;
+  accessor.count = json.require("count").to_unsigned();
+  if (accessor.count >= no_index) json.source().fail_limit(json.place(), std::to_string(accessor.count) + " elements");
+  const std::optional<Component> component = component_of(json.require("componentType"));
+  const Shape* shape = shape_of(json.require("type"));
+  if (component && shape) {
+    accessor.component = *component;
+    accessor.components = shape->columns * shape->rows;
+    accessor.normalized = json.bool_or("normalized", false);
+    accessor.stride = element_size(*shape, *component);
+    find_elements(json, accessor);
+    const std::optional<Json> sparse = json.find("sparse");
+    if (sparse) read_sparse(*sparse, accessor, element_size(*shape, *component));
+  } else {
+    accessor.unreadable = "the accessor's type is unknown";
+  }
+  accessors_.push_back(accessor);
+}
+
+/// Sets bytes and stride, which holds the size of an element before.
+void Data::find_elements(const Json& json, Accessor& accessor) const {
+  const std::uint32_t id = json.index_or_none("bufferView", views_.size());
+  if (id == no_index) return;
+  const Extent& view = views_[id];
+  const std::uint64_t offset = json.unsigned_or("byteOffset", 0);
+  const std::size_t element = accessor.stride;
+  if (view.stride != 0) accessor.stride = view.stride;
+  if (accessor.stride < element)
+    json.fail("byteStride " + std::to_string(view.stride) + " is less than an element, " + std::to_string(element));
+  if (!fits(offset, accessor.count, accessor.stride, element, view.length))
+    json.fail(std::to_string(accessor.count) + " elements from byte " + std::to_string(offset) +
+              " on are not within bufferViews[" + std::to_string(id) + "], which has " + std::to_string(view.length) +
+              " bytes");
+  if (view.present)
+    accessor.bytes = view.bytes.subspan(offset);
+  else
+    accessor.unreadable = no_contents;
+}
+
+/// The bytes of `count` packed elements in the view that `json` names; none if it has no contents.
+Bytes Data::packed(const Json& json, std::size_t count, std::size_t size) const {
+  const Extent& view = views_[json.require("bufferView").to_index(views_.size())];
+  const std::uint64_t offset = json.unsigned_or("byteOffset", 0);
+  if (!fits(offset, count, size, size, view.length))
+    json.fail(std::to_string(count) + " elements from byte " + std::to_string(offset) +
+              " on are not within the buffer view, which has " + std::to_string(view.length) + " bytes");
+  return view.present ? view.bytes.subspan(offset, count * size) : Bytes();
+}
+
+void Data::read_sparse(const Json& json, Accessor& accessor, std::size_t value_size) const {
+  Sparse sparse;
+  sparse.value_size = value_size;
+  sparse.count = json.require("count").to_unsigned();
+  if (sparse.count > accessor.count)
+    json.fail("replaces " + std::to_string(sparse.count) + " of " + std::to_string(accessor.count) + " elements");
+  const Json indices = json.require("indices"), values = json.require("values");
+  const std::optional<Component> type = component_of(indices.require("componentType"));
+  if (type != Component::u8 && type != Component::u16 && type != Component::u32)
+    indices.fail("componentType is not an unsigned integer");
+  sparse.index_type = *type;
+  sparse.indices = packed(indices, sparse.count, size_of(*type));
+  sparse.values = packed(values, sparse.count, value_size);
+  if (sparse.count == 0) return;
+  if (sparse.indices.empty() || sparse.values.empty()) {
+    accessor.unreadable = no_contents;
+    return;
+  }
+  std::uint64_t least = 0;
+  for (std::size_t i = 0; i < sparse.count; ++i) {
+    const std::uint32_t index = sparse.index(i);
+    if (index < least || index >= accessor.count)
+      indices.fail("index " + std::to_string(i) + " is " + std::to_string(index) + ", which is " +
+                   (index < least ? "not above the one before" : "not below the accessor's count"));
+    least = std::uint64_t(index) + 1;
+  }
+  accessor.sparse = sparse;
+}
+
+}  // namespace frontmost::gltf

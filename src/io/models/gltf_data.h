@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// Buffers, buffer views and accessors of a glTF file: every range is checked here, once, before anything is read.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <vector>
+
+#include "io/input_file.h"
+#include "io/models/gltf_container.h"
+#include "io/models/gltf_json.h"
+
+namespace frontmost::gltf {
+
+using Bytes = std::span<const std::byte>;
+
+enum class Component : std::uint16_t { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, u32 = 5125, f32 = 5126 };
+[[nodiscard]] std::size_t size_of(Component component);
+
+/// A buffer, or a view of one.
+struct Extent {
+  Bytes bytes;               ///< empty when not present
+  std::uint64_t length = 0;  ///< as stated
+  std::size_t stride = 0;    ///< of views; 0: elements are tightly packed
+  bool present = false;      ///< false: the file leaves the contents open, which is an error once they are read
+};
+
+/// Elements that replace those of an accessor.
+struct Sparse {
+  std::size_t count = 0, value_size = 0;
+  Component index_type{};
+  Bytes indices, values;                                   ///< tightly packed; values have the accessor's type
+  [[nodiscard]] std::uint32_t index(std::size_t i) const;  ///< strictly increasing
+};
+
+struct Accessor {
+  std::size_t count = 0;
+  Component component{};
+  int components = 0;
+  bool normalized = false;
+  Bytes bytes;  ///< from the first element on; empty: all elements are zero
+  std::size_t stride = 0;
+  std::optional<Sparse> sparse;
+  const char* unreadable = nullptr;  ///< why its elements cannot be read, if so
+};
+
+/// Elements [first, first + count) of an accessor.
+struct Range {
+  std::size_t first = 0, count = 0;
+};
+
+/// What a small file may make of memory: elements can be repeated, shared and left out, so that a few bytes stand for
+/// many. Honest files stay far below the limit.
+class Budget {
+ public:
+  explicit Budget(std::uint64_t file_bytes) : left_(base + factor * file_bytes) {}
+  /// \throws Error limit_exceeded.
+  void charge(std::uint64_t count, std::uint64_t size, const std::string& place, const ModelSource& source);
+
+ private:
+  static constexpr std::uint64_t base = std::uint64_t(1) << 28, factor = 64;
+  std::uint64_t left_;
+};
+
+/// The binary part of a glTF file.
+class Data {
+ public:
+  Data(const Json& root, const Container& container);
+
+  [[nodiscard]] std::size_t view_count() const { return views_.size(); }
+  [[nodiscard]] const Accessor& accessor(std::uint32_t i) const { return accessors_[i]; }
+  /// The accessor that `user` names, which must be readable.
+  [[nodiscard]] std::uint32_t readable_accessor(const Json& user) const;
+  /// The bytes of a view, which must have contents. `user` is the place that refers to it.
+  [[nodiscard]] Bytes view_bytes(std::uint32_t i, const Json& user) const;
+  /// All bytes that belong to the model.
+  [[nodiscard]] std::uint64_t byte_count() const;
+
+ private:
+  void read_buffer(const Json& json, const Container& container, bool first);
+  [[nodiscard]] Bytes file_bytes(const std::string& path, const ModelSource& source);
+  void read_view(const Json& json);
+  void read_accessor(const Json& json);
+  void find_elements(const Json& json, Accessor& accessor) const;
+  void read_sparse(const Json& json, Accessor& accessor, std::size_t value_size) const;
+  [[nodiscard]] Bytes packed(const Json& json, std::size_t count, std::size_t element_size) const;
+
+  std::deque<std::vector<std::byte>> decoded_;  ///< contents of data URIs; a deque, so that they stay where they are
+  std::map<std::string, InputFile> files_;
+  std::vector<Extent> buffers_, views_;
+  std::vector<Accessor> accessors_;
+  std::uint64_t container_bytes_ = 0;
+};
+
+/// Reads a range of an accessor as floats, `width` of them for each element: normalised integers are mapped to
+/// [0, 1] or [-1, 1], others are taken as they are. Values beyond the accessor's own components are left as they are in
+/// `out`, components beyond `width` are passed over.
+void read_floats(const Accessor& accessor, Range range, int width, float* out);
+/// The same for unsigned integers. Precondition: an unsigned type.
+void read_integers(const Accessor& accessor, Range range, int width, std::uint32_t* out);
+
+}  // namespace frontmost::gltf

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/models/gltf_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace frontmost::gltf {
+namespace {
+
+using nlohmann::json;
+
+// glTF itself needs a depth of about ten. Values cost up to a hundred bytes each, so that a text of empty brackets
+// would take thirty times its size.
+constexpr int max_depth = 256;
+constexpr std::size_t max_values = std::size_t(1) << 23;
+constexpr double max_exact_integer = 9007199254740992.0;  // 2^53
+
+/// Counts brackets and commas outside of strings before a parser makes objects of them.
+void check_shape(std::string_view text, const ModelSource& source) {
+  int depth = 0;
+  std::size_t values = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    switch (text[i]) {
+      case '"':
+        while (++i < text.size() && text[i] != '"') i += text[i] == '\\';
+        break;
+      case '[':
+      case '{':
+        ++values;
+        if (++depth > max_depth) source.fail_limit("byte " + std::to_string(i), "JSON nested deeper than 256");
+        break;
+      case ']':
+      case '}': --depth; break;
+      case ',': ++values; break;
+      default: break;
+    }
+  }
+  if (values > max_values) source.fail_limit("JSON", "more than " + std::to_string(max_values) + " values");
+}
+
+std::string reason_of(const json::exception& error) {
+  // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."; the number says nothing to users.
+  const std::string_view what = error.what();
+  const std::size_t start = what.find("] ");
+  return printable(start == std::string_view::npos ? what : what.substr(start + 2));
+}
+
+const char* type_name(const json& value) { return value.type_name(); }
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+  constexpr std::size_t longest = 160;
+  std::string out(text.substr(0, longest));
+  for (char& c : out)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
+  return text.size() > longest ? out + "..." : out;
+}
+
+JsonDocument::JsonDocument(std::string_view text, const ModelSource& source) {
+  check_shape(text, source);
+  try {
+    root_ = std::make_unique<const json>(json::parse(text.begin(), text.end()));
+  } catch (const json::exception& error) {
+    source.fail("JSON", reason_of(error));
+  }
+  if (!root_->is_object()) source.fail("JSON", std::string("an object is expected, not ") + type_name(*root_));
+}
+
+JsonDocument::~JsonDocument() = default;
+
+void Json::fail(const std::string& reason) const { source_->fail(place_.empty() ? "JSON" : place_, reason); }
+
+Json Json::member(const json& value, const char* key) const {
+  return {value, place_.empty() ? std::string(key) : place_ + "." + key, *source_};
+}
+
+std::optional<Json> Json::find(const char* key) const {
+  if (!value_->is_object()) fail(std::string("an object is expected, not ") + type_name(*value_));
+  const auto found = value_->find(key);
+  if (found == value_->end()) return std::nullopt;
+  return member(*found, key);
+}
+
+Json Json::require(const char* key) const {
+  if (std::optional<Json> found = find(key)) return *std::move(found);
+  fail(std::string("'") + key + "' is missing");
+}
+
+std::optional<Json> Json::extension(const char* name) const {
+  const std::optional<Json> extensions = find("extensions");
+  return extensions ? extensions->find(name) : std::nullopt;
+}
+
+std::size_t Json::size() const {
+  if (!value_->is_array()) fail(std::string("an array is expected, not ") + type_name(*value_));
+  return value_->size();
+}
+
+Json Json::operator[](std::size_t i) const { return {(*value_)[i], place_ + "[" + std::to_string(i) + "]", *source_}; }
+
+bool Json::to_bool() const {
+  if (!value_->is_boolean()) fail(std::string("true or false is expected, not ") + type_name(*value_));
+  return value_->get<bool>();
+}
+
+double Json::to_number() const {
+  if (!value_->is_number()) fail(std::string("a number is expected, not ") + type_name(*value_));
+  return value_->get<double>();
+}
+
+std::string Json::to_string() const {
+  if (!value_->is_string()) fail(std::string("a string is expected, not ") + type_name(*value_));
+  return value_->get<std::string>();
+}
+
+std::uint64_t Json::to_unsigned() const {
+  if (value_->is_number_unsigned()) return value_->get<std::uint64_t>();
+  const double number = to_number();
+  if (!(number >= 0 && number <= max_exact_integer) || number != std::floor(number))
+    fail("a whole number from 0 on is expected, not " + printable(value_->dump()));
+  return static_cast<std::uint64_t>(number);
+}
+
+std::uint32_t Json::to_index(std::size_t count) const {
+  const std::uint64_t index = to_unsigned();
+  if (index >= count || index >= no_index)
+    fail(std::to_string(index) + " does not exist, there are " + std::to_string(count));
+  return static_cast<std::uint32_t>(index);
+}
+
+void Json::to_numbers(std::span<double> out) const {
+  if (size() != out.size()) fail(std::to_string(out.size()) + " numbers are expected, not " + std::to_string(size()));
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = (*this)[i].to_number();
+}
+
+bool Json::bool_or(const char* key, bool absent) const {
+  const std::optional<Json> found = find(key);
+  return found ? found->to_bool() : absent;
+}
+
+double Json::number_or(const char* key, double absent) const {
+  const std::optional<Json> found = find(key);
+  return found ? found->to_number() : absent;
+}
+
+std::string Json::string_or_empty(const char* key) const {
+  const std::optional<Json> found = find(key);
+  return found ? found->to_string() : std::string();
+}
+
+std::uint64_t Json::unsigned_or(const char* key, std::uint64_t absent) const {
+  const std::optional<Json> found = find(key);
+  return found ? found->to_unsigned() : absent;
+}
+
+std::uint32_t Json::index_or_none(const char* key, std::size_t count) const {
+  const std::optional<Json> found = find(key);
+  return found ? found->to_index(count) : no_index;
+}
+
+bool Json::read_numbers(const char* key, std::span<double> out) const {
+  const std::optional<Json> found = find(key);
+  if (found) found->to_numbers(out);
+  return found.has_value();
+}
+
+}  // namespace frontmost::gltf

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Materials of a glTF file.
+#pragma once
+
+#include "io/models/gltf_textures.h"
+
+namespace frontmost::gltf {
+
+/// Texture coordinate sets that are told apart; more than these hardly occur.
+inline constexpr std::uint32_t max_texcoord_sets = 4;
+
+struct Materials {
+  std::vector<Material> materials;
+  /// For each material, the set of texture coordinates that its textures use. A mesh has one: textures that ask for
+  /// another than the base colour does are left out, with a warning.
+  std::vector<std::uint32_t> texcoord_sets;
+};
+
+[[nodiscard]] Materials read_materials(const Json& root, TextureTable& textures, std::vector<std::string>& warnings);
+
+}  // namespace frontmost::gltf

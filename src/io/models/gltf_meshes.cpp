@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/models/gltf_meshes.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "io/models/gltf_pose.h"
+
+namespace frontmost::gltf {
+namespace {
+
+/// Builds one mesh. Triangles first, so that only vertices within their reach are read: exporters often let many
+/// meshes share one large array.
+class MeshBuilder {
+ public:
+  MeshBuilder(const MeshPlan& plan, const Data& data, Budget& budget, const ModelSource& source)
+      : plan_(plan), data_(data), budget_(budget), source_(source) {
+    mesh_.name = plan.name;
+  }
+
+  Mesh build(const Pose& pose, std::vector<std::string>& warnings) {
+    for (const Primitive& primitive : plan_.primitives) append_triangles(primitive, warnings);
+    place_blocks();
+    std::size_t triangle = 0;
+    for (const Run& run : runs_) {
+      const Block& block = blocks_[run.block];
+      // Wraps around where the mesh's vertices start before the accessor's; the sum is right nevertheless.
+      const auto shift = std::uint32_t(block.first - block.range.first);
+      for (const std::size_t end = triangle + run.triangle_count; triangle < end; ++triangle)
+        mesh_.triangles[triangle] += shift;
+    }
+    for (const Block& block : blocks_) read_vertices(block, pose);
+    return std::move(mesh_);
+  }
+
+ private:
+  /// Triangles of one primitive.
+  struct Run {
+    std::size_t block, triangle_count;
+  };
+
+  void append_triangles(const Primitive& primitive, std::vector<std::string>& warnings) {
+    const std::size_t corner_count =
+        primitive.indices != no_index ? data_.accessor(primitive.indices).count : primitive.vertex_count;
+    const bool is_list = primitive.mode == Mode::triangles;
+    const std::size_t count = is_list ? corner_count / 3 : std::max<std::size_t>(corner_count, 2) - 2;
+    if (is_list && corner_count % 3 != 0) warnings.push_back(primitive.place + ": the last triangle is not whole");
+    budget_.charge(count, sizeof(glm::uvec3) + sizeof(std::uint32_t), primitive.place, source_);
+    const std::size_t first = mesh_.triangles.size();
+    mesh_.triangles.resize(first + count);
+    const std::span<glm::uvec3> triangles(mesh_.triangles.data() + first, count);
+    if (is_list)
+      read_corners(primitive, {0, 3 * count}, count == 0 ? nullptr : &triangles[0][0]);
+    else
+      read_strip_or_fan(primitive, corner_count, triangles);
+    append_materials(primitive, first, count);
+    include(primitive, triangles);
+  }
+
+  void read_corners(const Primitive& primitive, Range range, std::uint32_t* out) const {
+    if (primitive.indices != no_index)
+      read_integers(data_.accessor(primitive.indices), range, 1, out);
+    else
+      std::iota(out, out + range.count, std::uint32_t(range.first));
+  }
+
+  /// Corners in the order that the format states for each, which keeps the winding of a strip's odd triangles.
+  void read_strip_or_fan(const Primitive& primitive, std::size_t corner_count, std::span<glm::uvec3> triangles) const {
+    if (triangles.empty()) return;
+    budget_.charge(corner_count, sizeof(std::uint32_t), primitive.place, source_);
+    std::vector<std::uint32_t> corners(corner_count);
+    read_corners(primitive, {0, corner_count}, corners.data());
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+      triangles[i] = primitive.mode == Mode::fan
+                         ? glm::uvec3(corners[i + 1], corners[i + 2], corners[0])
+                         : glm::uvec3(corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]);
+  }
+
+  void append_materials(const Primitive& primitive, std::size_t first, std::size_t count) {
+    std::vector<std::uint32_t>& ids = mesh_.material_ids;
+    if (count == 0) return;
+    if (first == 0) {
+      ids.assign(1, primitive.material);
+    } else if (ids.size() > 1 || ids[0] != primitive.material) {
+      if (ids.size() == 1) ids.assign(first, ids[0]);
+      ids.resize(first + count, primitive.material);
+    }
+  }
+
+  /// Checks corner numbers and widens the range of vertices that is needed.
+  void include(const Primitive& primitive, std::span<const glm::uvec3> triangles) {
+    std::uint32_t least = no_index, greatest = 0;
+    for (const glm::uvec3& t : triangles) {
+      least = std::min({least, t.x, t.y, t.z});
+      greatest = std::max({greatest, t.x, t.y, t.z});
+    }
+    if (!triangles.empty() && greatest >= primitive.vertex_count) fail_index(primitive, triangles);
+    const std::size_t block_id = block_of(primitive);
+    runs_.push_back({block_id, triangles.size()});
+    if (triangles.empty()) return;
+    Range& range = blocks_[block_id].range;
+    const std::size_t end = std::max(range.first + range.count, std::size_t(greatest) + 1);
+    range.first = range.count == 0 ? least : std::min<std::size_t>(range.first, least);
+    range.count = end - range.first;
+  }
+
+  [[noreturn]] void fail_index(const Primitive& primitive, std::span<const glm::uvec3> triangles) const {
+    for (std::size_t i = 0;; ++i)
+      for (int k = 0; k < 3; ++k)
+        if (triangles[i][k] >= primitive.vertex_count)
+          source_.fail(primitive.place + ".indices",
+                       "triangle " + std::to_string(i) + ": vertex " + std::to_string(triangles[i][k]) +
+                           " does not exist, there are " + std::to_string(primitive.vertex_count));
+  }
+
+  std::size_t block_of(const Primitive& primitive) {
+    const auto [found, is_new] = block_numbers_.emplace(primitive.vertices, blocks_.size());
+    if (is_new) blocks_.push_back({&found->first, {}, 0, primitive.place});
+    return found->second;
+  }
+
+  /// Gives every block its place in the mesh, and makes room.
+  void place_blocks() {
+    std::size_t total = 0;
+    bool normals = false, texcoords = false, colors = false;
+    for (Block& block : blocks_) {
+      const VertexSources& base = block.vertices->base;
+      block.first = total;
+      total += block.range.count;
+      normals |= base.normal != no_index;
+      texcoords |= base.texcoords[block.vertices->texcoord_set] != no_index;
+      colors |= base.color != no_index;
+    }
+    const std::size_t size = 12 + 12 * normals + 8 * texcoords + 16 * colors;
+    budget_.charge(total, size, plan_.place, source_);
+    if (total >= no_index) source_.fail_limit(plan_.place, "too many vertices");
+    mesh_.positions.resize(total);
+    // What a primitive lacks and another has: a missing normal, the texture's corner, white.
+    if (normals) mesh_.normals.values.resize(total, glm::vec3(0));
+    if (texcoords) mesh_.texcoords.values.resize(total, glm::vec2(0));
+    if (colors) mesh_.colors.values.resize(total, glm::vec4(1));
+  }
+
+  template <class V>
+  void read_attribute(const Block& block, std::uint32_t accessor, std::vector<V>& values) const {
+    if (accessor != no_index) read_floats(data_.accessor(accessor), block.range, V::length(), &values[block.first][0]);
+  }
+
+  void read_vertices(const Block& block, const Pose& pose) {
+    if (block.range.count == 0) return;
+    const VertexSources& base = block.vertices->base;
+    read_attribute(block, base.position, mesh_.positions);
+    read_attribute(block, base.normal, mesh_.normals.values);
+    read_attribute(block, base.texcoords[block.vertices->texcoord_set], mesh_.texcoords.values);
+    read_attribute(block, base.color, mesh_.colors.values);
+    charge_pose(block, pose);
+    apply_targets(data_, block, pose.weights, mesh_);
+    apply_skin(data_, block, pose.joints, source_, mesh_);
+  }
+
+  /// Posing keeps no memory, but many targets of many vertices would take forever.
+  void charge_pose(const Block& block, const Pose& pose) {
+    const auto targets =
+        std::size_t(std::count_if(pose.weights.begin(), pose.weights.end(), [](double w) { return w != 0; }));
+    const std::size_t passes = targets + (pose.joints.empty() ? 0 : block.vertices->joints.size());
+    if (passes != 0) budget_.charge(block.range.count, passes * sizeof(glm::vec4), block.place, source_);
+  }
+
+  const MeshPlan& plan_;
+  const Data& data_;
+  Budget& budget_;
+  const ModelSource& source_;
+  Mesh mesh_;
+  std::vector<Run> runs_;
+  std::vector<Block> blocks_;
+  std::map<VertexSet, std::size_t> block_numbers_;
+};
+
+}  // namespace
+
+Mesh MeshReader::read(const MeshPlan& plan, const Pose& pose, std::vector<std::string>& warnings) {
+  return MeshBuilder(plan, data_, budget_, source_).build(pose, warnings);
+}
+
+}  // namespace frontmost::gltf

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Meshes of a glTF file: all triangle primitives of one become one Mesh, in order, posed if need be.
+#pragma once
+
+#include <array>
+
+#include "io/models/gltf_data.h"
+#include "io/models/gltf_materials.h"
+
+namespace frontmost::gltf {
+
+/// Accessors of one set of vertices, or of what a morph target adds to them.
+struct VertexSources {
+  std::uint32_t position = no_index, normal = no_index, color = no_index;
+  std::array<std::uint32_t, max_texcoord_sets> texcoords;
+  VertexSources() { texcoords.fill(no_index); }
+  auto operator<=>(const VertexSources&) const = default;
+};
+
+/// All that decides about the vertices of a primitive. Primitives that agree in it share their vertices.
+struct VertexSet {
+  VertexSources base;
+  std::vector<VertexSources> targets;
+  std::vector<std::uint32_t> joints, weights;
+  std::uint32_t texcoord_set = 0;
+  auto operator<=>(const VertexSet&) const = default;
+};
+
+enum class Mode : std::uint8_t { triangles = 4, strip = 5, fan = 6 };
+
+struct Primitive {
+  std::string place;
+  VertexSet vertices;
+  Mode mode = Mode::triangles;
+  std::uint32_t indices = no_index, material = no_index;
+  std::size_t vertex_count = 0;
+};
+
+/// A mesh of the file, checked, but without its data.
+struct MeshPlan {
+  std::string name, place;
+  std::vector<Primitive> primitives;  ///< those that have triangles
+  std::vector<double> weights;        ///< of morph targets; may be empty
+  std::size_t target_count = 0;
+  bool has_joints = false;
+};
+
+/// Checks primitives and their accessors. Points, lines and primitives without positions become warnings.
+[[nodiscard]] std::vector<MeshPlan> plan_meshes(const Json& root, const Data& data, const Materials& materials,
+                                                std::vector<std::string>& warnings);
+
+/// How vertices are moved: by morph targets, then by joints.
+struct Pose {
+  std::vector<double> weights;              ///< as many as there are targets, or none
+  std::span<const glm::dmat4> joints = {};  ///< world_from_joint * inverse bind matrix; empty: no skin
+};
+
+/// Reads the data of planned meshes.
+class MeshReader {
+ public:
+  MeshReader(const Data& data, Budget& budget, const ModelSource& source)
+      : data_(data), budget_(budget), source_(source) {}
+  [[nodiscard]] Mesh read(const MeshPlan& plan, const Pose& pose, std::vector<std::string>& warnings);
+
+ private:
+  const Data& data_;
+  Budget& budget_;
+  const ModelSource& source_;
+};
+
+}  // namespace frontmost::gltf

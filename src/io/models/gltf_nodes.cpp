@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/models/gltf_nodes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontmost::gltf {
+namespace {
+
+/// Numbers of arrays that nodes refer to.
+struct Counts {
+  std::size_t nodes, meshes, skins, cameras;
+};
+
+std::size_t size_or_zero(const Json& root, const char* key) {
+  const std::optional<Json> array = root.find(key);
+  return array ? array->size() : 0;
+}
+
+glm::dmat4 read_transform(const Json& json) {
+  double m[16], t[3] = {0, 0, 0}, r[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
+  if (json.read_numbers("matrix", m)) {
+    glm::dmat4 matrix;
+    for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = m[i];
+    constexpr double tolerance = 1e-6;  // exporters that work in floats
+    for (int column = 0; column < 4; ++column) {
+      const double expected = column == 3 ? 1 : 0;
+      if (std::abs(matrix[column][3] - expected) > tolerance) json.require("matrix").fail("is not affine");
+      matrix[column][3] = expected;
+    }
+    return matrix;
+  }
+  json.read_numbers("translation", t);
+  json.read_numbers("rotation", r);
+  json.read_numbers("scale", s);
+  return compose({t[0], t[1], t[2]}, {r[0], r[1], r[2], r[3]}, {s[0], s[1], s[2]});
+}
+
+std::uint32_t copy_attribute(const Json& attributes, const char* key, int components, const Data& data,
+                             Copies& copies) {
+  const std::optional<Json> json = attributes.find(key);
+  if (!json) return no_index;
+  const std::uint32_t id = data.readable_accessor(*json);
+  const Accessor& accessor = data.accessor(id);
+  if (accessor.components != components) json->fail("the accessor's type does not fit");
+  if (copies.count != 0 && copies.count != accessor.count)
+    json->fail("has another number of elements than the attributes before");
+  copies.count = accessor.count;
+  return id;
+}
+
+std::optional<Copies> read_copies(const Json& node, const Data& data) {
+  const std::optional<Json> extension = node.extension("EXT_mesh_gpu_instancing");
+  if (!extension) return std::nullopt;
+  const Json attributes = extension->require("attributes");
+  Copies copies;
+  copies.translation = copy_attribute(attributes, "TRANSLATION", 3, data, copies);
+  copies.rotation = copy_attribute(attributes, "ROTATION", 4, data, copies);
+  copies.scale = copy_attribute(attributes, "SCALE", 3, data, copies);
+  return copies;
+}
+
+Node read_node(const Json& json, const Counts& counts, const Data& data) {
+  Node node;
+  node.place = json.place();
+  node.name = json.string_or_empty("name");
+  node.mesh = json.index_or_none("mesh", counts.meshes);
+  node.skin = json.index_or_none("skin", counts.skins);
+  node.camera = json.index_or_none("camera", counts.cameras);
+  node.world = read_transform(json);  // of its parent's space, until all parents are known
+  node.copies = read_copies(json, data);
+  const std::optional<Json> children = json.find("children");
+  for (std::size_t i = 0; children && i < children->size(); ++i)
+    node.children.push_back((*children)[i].to_index(counts.nodes));
+  if (const std::optional<Json> weights = json.find("weights")) {
+    node.weights.resize(weights->size());
+    weights->to_numbers(node.weights);
+  }
+  return node;
+}
+
+void find_parents(std::vector<Node>& nodes, const ModelSource& source) {
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    for (const std::uint32_t child : nodes[i].children) {
+      if (nodes[child].parent != no_index)
+        source.fail(nodes[child].place,
+                    "is a child of both " + nodes[nodes[child].parent].place + " and " + nodes[i].place);
+      nodes[child].parent = std::uint32_t(i);
+    }
+}
+
+/// Nodes from `starts` downwards, each before its children, in order. An own stack: trees may be a million deep.
+std::vector<std::uint32_t> walk(const std::vector<Node>& nodes, std::vector<std::uint32_t> starts) {
+  std::vector<std::uint32_t> order, stack(starts.rbegin(), starts.rend());
+  std::vector<bool> seen(nodes.size());
+  while (!stack.empty()) {
+    const std::uint32_t id = stack.back();
+    stack.pop_back();
+    if (seen[id]) continue;
+    seen[id] = true;
+    order.push_back(id);
+    stack.insert(stack.end(), nodes[id].children.rbegin(), nodes[id].children.rend());
+  }
+  return order;
+}
+
+bool is_finite(const glm::dmat4& m) {
+  for (int i = 0; i < 16; ++i)
+    if (!std::isfinite(m[i / 4][i % 4])) return false;
+  return true;
+}
+
+/// Takes transforms from parents' spaces to the world. \returns the nodes without parents.
+std::vector<std::uint32_t> place_in_world(std::vector<Node>& nodes, const ModelSource& source) {
+  std::vector<std::uint32_t> roots;
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (nodes[i].parent == no_index) roots.push_back(std::uint32_t(i));
+  const std::vector<std::uint32_t> order = walk(nodes, roots);
+  // With one parent at most, only nodes of a loop cannot be reached from above.
+  if (order.size() < nodes.size()) {
+    std::vector<bool> reached(nodes.size());
+    for (const std::uint32_t id : order) reached[id] = true;
+    const auto lost = std::size_t(std::find(reached.begin(), reached.end(), false) - reached.begin());
+    source.fail(nodes[lost].place, "is part of a loop of nodes");
+  }
+  for (const std::uint32_t id : order) {
+    Node& node = nodes[id];
+    if (node.parent != no_index) node.world = nodes[node.parent].world * node.world;
+    if (!is_finite(node.world)) source.fail(node.place, "its transform is not finite");
+  }
+  return roots;
+}
+
+/// Where the shown scene starts. A start that is not a root of the tree stays where its parents put it.
+std::vector<std::uint32_t> scene_starts(const Json& root, std::size_t node_count, std::vector<std::uint32_t> roots) {
+  const std::optional<Json> scenes = root.find("scenes");
+  const std::uint32_t chosen = root.index_or_none("scene", scenes ? scenes->size() : 0);
+  if (!scenes || scenes->size() == 0) return roots;
+  std::vector<std::uint32_t> starts;
+  const std::optional<Json> nodes = (*scenes)[chosen == no_index ? 0 : chosen].find("nodes");
+  for (std::size_t i = 0; nodes && i < nodes->size(); ++i) starts.push_back((*nodes)[i].to_index(node_count));
+  return starts;
+}
+
+}  // namespace
+
+glm::dmat4 compose(const glm::dvec3& translation, const glm::dvec4& rotation, const glm::dvec3& scale) {
+  const double length = glm::length(rotation);
+  const glm::dvec4 q = length > 0 ? rotation / length : glm::dvec4(0, 0, 0, 1);
+  const double x = q.x, y = q.y, z = q.z, w = q.w;
+  glm::dmat4 m(1.0);
+  m[0] = glm::dvec4(1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w), 0) * scale.x;
+  m[1] = glm::dvec4(2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w), 0) * scale.y;
+  m[2] = glm::dvec4(2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y), 0) * scale.z;
+  m[3] = glm::dvec4(translation, 1);
+  return m;
+}
+
+NodeTree read_nodes(const Json& root, const Data& data) {
+  NodeTree tree;
+  const std::optional<Json> array = root.find("nodes");
+  const Counts counts{array ? array->size() : 0, size_or_zero(root, "meshes"), size_or_zero(root, "skins"),
+                      size_or_zero(root, "cameras")};
+  for (std::size_t i = 0; i < counts.nodes; ++i) tree.nodes.push_back(read_node((*array)[i], counts, data));
+  find_parents(tree.nodes, root.source());
+  std::vector<std::uint32_t> roots = place_in_world(tree.nodes, root.source());
+  tree.shown = walk(tree.nodes, scene_starts(root, counts.nodes, std::move(roots)));
+  return tree;
+}
+
+}  // namespace frontmost::gltf

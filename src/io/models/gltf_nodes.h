@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The node tree of a glTF file.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "io/models/gltf_data.h"
+
+namespace frontmost::gltf {
+
+/// Accessors of EXT_mesh_gpu_instancing.
+struct Copies {
+  std::size_t count = 0;
+  std::uint32_t translation = no_index, rotation = no_index, scale = no_index;
+};
+
+struct Node {
+  std::string name, place;
+  std::uint32_t parent = no_index;
+  std::uint32_t mesh = no_index, skin = no_index, camera = no_index;
+  std::vector<std::uint32_t> children;
+  std::vector<double> weights;
+  std::optional<Copies> copies;
+  glm::dmat4 world{1.0};  ///< world_from_node
+};
+
+struct NodeTree {
+  std::vector<Node> nodes;
+  /// Nodes of the scene that is shown, each before its children, in the file's order.
+  std::vector<std::uint32_t> shown;
+};
+
+/// Reads all nodes and finds their places in the world. Shown is the scene that the file names, or its first one, or,
+/// in a file without scenes, everything. \throws Error for nodes with two parents and for loops.
+[[nodiscard]] NodeTree read_nodes(const Json& root, const Data& data);
+
+/// A rigid body's transform from translation, rotation (x, y, z, w; any length) and scale.
+[[nodiscard]] glm::dmat4 compose(const glm::dvec3& translation, const glm::dvec4& rotation, const glm::dvec3& scale);
+
+}  // namespace frontmost::gltf

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// Checks what meshes are made of before any of it is read.
+#include <algorithm>
+
+#include "io/models/gltf_meshes.h"
+
+namespace frontmost::gltf {
+namespace {
+
+/// Sets of joints, four joints each. Real files have one, rarely two.
+constexpr std::size_t max_joint_sets = 16;
+
+/// Which accessors an attribute may be read from.
+struct Allowed {
+  int least_components, most_components;
+  bool integers;  ///< unsigned ones, and nothing else
+};
+
+/// Reads the attributes of one primitive or morph target.
+class AttributeReader {
+ public:
+  AttributeReader(const Json& json, const Data& data) : json_(json), data_(data) {}
+
+  /// The accessor of an attribute, if it is there and can be read as asked.
+  std::uint32_t find(const std::string& name, Allowed allowed) {
+    const std::optional<Json> found = json_.find(name.c_str());
+    if (!found) return no_index;
+    const std::uint32_t id = data_.readable_accessor(*found);
+    const Accessor& accessor = data_.accessor(id);
+    if (accessor.components < allowed.least_components || accessor.components > allowed.most_components)
+      found->fail("has " + std::to_string(accessor.components) + " components");
+    if (allowed.integers && accessor.component != Component::u8 && accessor.component != Component::u16)
+      found->fail("is not of unsigned bytes or shorts");
+    if (count_ && *count_ != accessor.count)
+      found->fail(std::to_string(accessor.count) + " elements where others have " + std::to_string(*count_));
+    count_ = accessor.count;
+    return id;
+  }
+
+  VertexSources read_sources() {
+    VertexSources sources;
+    sources.position = find("POSITION", {3, 3, false});
+    sources.normal = find("NORMAL", {3, 3, false});
+    sources.color = find("COLOR_0", {3, 4, false});
+    for (std::size_t set = 0; set < sources.texcoords.size(); ++set)
+      sources.texcoords[set] = find("TEXCOORD_" + std::to_string(set), {2, 2, false});
+    return sources;
+  }
+
+  void expect_count(std::size_t count) { count_ = count; }
+  [[nodiscard]] std::size_t count() const { return count_.value_or(0); }
+
+ private:
+  const Json& json_;
+  const Data& data_;
+  std::optional<std::size_t> count_;
+};
+
+class Planner {
+ public:
+  Planner(const Json& json, const Data& data, const Materials& materials, std::vector<std::string>& warnings)
+      : json_(json), data_(data), materials_(materials), warnings_(warnings) {}
+
+  MeshPlan plan() {
+    MeshPlan plan;
+    plan.place = json_.place();
+    plan.name = json_.string_or_empty("name");
+    if (const auto weights = json_.find("weights")) {
+      plan.weights.resize(weights->size());
+      weights->to_numbers(plan.weights);
+    }
+    const Json primitives = json_.require("primitives");
+    std::optional<std::size_t> target_count;
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+      std::optional<Primitive> primitive = read(primitives[i]);
+      if (!primitive) continue;
+      const std::size_t targets = primitive->vertices.targets.size();
+      if (target_count.value_or(targets) != targets)
+        primitives[i].fail(std::to_string(targets) + " morph targets where others have " +
+                           std::to_string(*target_count));
+      target_count = targets;
+      plan.has_joints |= !primitive->vertices.joints.empty();
+      plan.primitives.push_back(*std::move(primitive));
+    }
+    plan.target_count = target_count.value_or(0);
+    if (!plan.weights.empty() && !plan.primitives.empty() && plan.weights.size() != plan.target_count)
+      json_.fail(std::to_string(plan.weights.size()) + " weights for " + std::to_string(plan.target_count) +
+                 " morph targets");
+    return plan;
+  }
+
+ private:
+  std::optional<Primitive> skip(const Json& json, const std::string& reason) {
+    warnings_.push_back(json.place() + ": " + reason);
+    return std::nullopt;
+  }
+
+  std::optional<Primitive> read(const Json& json) {
+    Primitive primitive;
+    primitive.place = json.place();
+    const std::uint64_t mode = json.unsigned_or("mode", 4);
+    primitive.material = json.index_or_none("material", materials_.materials.size());
+    read_vertices(json, primitive);
+    if (const auto indices = json.find("indices")) primitive.indices = read_indices(*indices);
+    if (mode < 4) return skip(json, mode == 0 ? "points are not drawn" : "lines are not drawn");
+    if (mode > 6) return skip(json, "mode " + std::to_string(mode) + " is unknown");
+    primitive.mode = Mode(mode);
+    if (primitive.vertices.base.position == no_index) return skip(json, "has no POSITION, nothing to draw");
+    if (json.extension("KHR_draco_mesh_compression"))
+      warnings_.push_back(json.place() + ": the uncompressed data are taken");
+    return primitive;
+  }
+
+  void read_vertices(const Json& json, Primitive& primitive) {
+    const Json attributes = json.require("attributes");
+    AttributeReader reader(attributes, data_);
+    VertexSet& vertices = primitive.vertices;
+    vertices.base = reader.read_sources();
+    if (primitive.material != no_index) vertices.texcoord_set = materials_.texcoord_sets[primitive.material];
+    for (std::size_t set = 0; set < max_joint_sets; ++set) {
+      const std::uint32_t joints = reader.find("JOINTS_" + std::to_string(set), {4, 4, true});
+      const std::uint32_t weights = reader.find("WEIGHTS_" + std::to_string(set), {4, 4, false});
+      if ((joints == no_index) != (weights == no_index)) attributes.fail("joints without weights, or the reverse");
+      if (joints == no_index) break;
+      vertices.joints.push_back(joints);
+      vertices.weights.push_back(weights);
+    }
+    primitive.vertex_count = reader.count();
+    const std::optional<Json> targets = json.find("targets");
+    for (std::size_t i = 0; targets && i < targets->size(); ++i) {
+      const Json target = (*targets)[i];
+      AttributeReader target_reader(target, data_);
+      target_reader.expect_count(primitive.vertex_count);
+      vertices.targets.push_back(target_reader.read_sources());
+    }
+  }
+
+  std::uint32_t read_indices(const Json& json) const {
+    const std::uint32_t id = data_.readable_accessor(json);
+    const Accessor& accessor = data_.accessor(id);
+    const bool is_unsigned = accessor.component == Component::u8 || accessor.component == Component::u16 ||
+                             accessor.component == Component::u32;
+    if (accessor.components != 1 || !is_unsigned) json.fail("the accessor is not of unsigned scalars");
+    return id;
+  }
+
+  const Json& json_;
+  const Data& data_;
+  const Materials& materials_;
+  std::vector<std::string>& warnings_;
+};
+
+}  // namespace
+
+std::vector<MeshPlan> plan_meshes(const Json& root, const Data& data, const Materials& materials,
+                                  std::vector<std::string>& warnings) {
+  std::vector<MeshPlan> plans;
+  const std::optional<Json> array = root.find("meshes");
+  for (std::size_t i = 0; array && i < array->size(); ++i) {
+    const Json json = (*array)[i];
+    plans.push_back(Planner(json, data, materials, warnings).plan());
+  }
+  return plans;
+}
+
+}  // namespace frontmost::gltf

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Textures of a glTF file: which images and samplers materials use, and their pixels.
+#pragma once
+
+#include <map>
+#include <tuple>
+
+#include "frontmost/scene.h"
+#include "io/models/gltf_data.h"
+
+namespace frontmost::gltf {
+
+/// Collects the textures that materials name, then decodes each image once.
+class TextureTable {
+ public:
+  TextureTable(const Json& root, const Data& data) : root_(root), data_(data) {}
+
+  /// The number that a texture of the file will have in the scene; textures alike in image and sampler share one.
+  /// no_index: it has no image that could be read, which `warnings` tells.
+  [[nodiscard]] std::uint32_t intern(const Json& index, std::vector<std::string>& warnings);
+
+  /// Decodes in parallel and fills scene.textures. Images that cannot be decoded become warnings, and the materials go
+  /// without them.
+  void load(Scene& scene) const;
+
+ private:
+  struct Look {
+    std::uint32_t image = no_index;
+    Texture::Wrap wrap_u = Texture::Wrap::repeat, wrap_v = Texture::Wrap::repeat;
+    bool nearest = false;
+    auto operator<=>(const Look&) const = default;
+  };
+  /// An encoded image, or where it is.
+  struct Encoded {
+    std::string place, name;
+    Bytes bytes;
+    std::vector<std::byte> decoded_uri;
+    std::string path;  ///< of a file beside the model; empty: `bytes` holds the image
+  };
+
+  void read_sampler(const Json& texture, Look& look) const;
+  [[nodiscard]] Encoded find_image(std::uint32_t image) const;
+  template <class Use>
+  auto with_bytes(const Encoded& encoded, Use use) const;
+  [[nodiscard]] std::map<std::uint32_t, Texture> decode_images(std::vector<std::string>& warnings) const;
+
+  const Json& root_;
+  const Data& data_;
+  std::vector<Look> looks_;
+  std::map<Look, std::uint32_t> numbers_;
+};
+
+}  // namespace frontmost::gltf
