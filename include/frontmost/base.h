@@ -8,7 +8,6 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <memory>
-#include <new>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -88,6 +87,12 @@ struct Box {
   [[nodiscard]] float diagonal() const { return is_empty() ? 0.0f : glm::length(high - low); }
 };
 
+namespace detail {
+/// Uninitialised memory, aligned to 64 bytes; large pieces ask the system for large pages. \throws std::bad_alloc.
+[[nodiscard]] void* allocate(std::size_t bytes);
+void release(void* pointer) noexcept;
+}  // namespace detail
+
 /// A fixed-size array, aligned to 64 bytes, whose elements start uninitialised: for planes of pixels that are written
 /// whole before they are read. Copies are deep.
 template <class T>
@@ -95,7 +100,7 @@ class Buffer {
  public:
   Buffer() = default;
   explicit Buffer(std::size_t size)
-      : data_(static_cast<T*>(::operator new[](size * sizeof(T), std::align_val_t{64}))), size_(size) {}
+      : data_(static_cast<T*>(detail::allocate(size * sizeof(T)))), size_(size) {}
   Buffer(std::size_t size, const T& value) : Buffer(size) {
     for (T& element : *this) element = value;
   }
@@ -127,7 +132,7 @@ class Buffer {
  private:
   static_assert(std::is_trivially_destructible_v<T> && std::is_trivially_copyable_v<T>);
   struct Release {
-    void operator()(T* pointer) const { ::operator delete[](pointer, std::align_val_t{64}); }
+    void operator()(T* pointer) const { detail::release(pointer); }
   };
   std::unique_ptr<T[], Release> data_;
   std::size_t size_ = 0;

@@ -110,11 +110,12 @@ class PartBuilder {
     const std::uint32_t number = source_.instances.find(id);
     const Instance& instance = source_.scene.instances[number];
     const Mesh& mesh = source_.scene.meshes[instance.mesh];
+    const ToWorld to_world_space(instance.world_from_mesh);
     const glm::uvec3& corners = mesh.triangles[id - source_.first_primitives[number]];
     std::array<glm::vec3, 3> world;
     bool finite = true;
     for (int k = 0; k < 3; ++k) {
-      world[std::size_t(k)] = to_world(instance.world_from_mesh, mesh.positions[corners[k]]);
+      world[std::size_t(k)] = to_world_space(mesh.positions[corners[k]]);
       finite = finite && is_finite(world[std::size_t(k)]);
     }
     if (cluster_.triangle_count == Cluster::max_triangles || (finite && !fits(world))) {
@@ -214,12 +215,13 @@ void gather(ClusterSet& set, std::vector<Part>& parts, const Execution& executio
 Box bounds_of(const Scene& scene, const InstanceRun& run) {
   const Instance& instance = scene.instances[run.instance];
   const Mesh& mesh = scene.meshes[instance.mesh];
+  const ToWorld world(instance.world_from_mesh);
   Box box;
   for (std::uint32_t t = run.begin; t < run.end; ++t) {
     Box triangle;
     bool finite = true;
     for (int k = 0; k < 3; ++k) {
-      const glm::vec3 p = to_world(instance.world_from_mesh, mesh.positions[mesh.triangles[t][k]]);
+      const glm::vec3 p = world(mesh.positions[mesh.triangles[t][k]]);
       finite = finite && is_finite(p);
       triangle.include(p);
     }

@@ -60,6 +60,18 @@ struct ClusterSet {
           float(m[0][2] * q.x + m[1][2] * q.y + m[2][2] * q.z + m[3][2])};
 }
 
+/// to_world() for many vertices of one instance, for which most files have no transform at all.
+class ToWorld {
+ public:
+  explicit ToWorld(const glm::dmat4& world_from_mesh)
+      : matrix_(world_from_mesh), is_identity_(world_from_mesh == glm::dmat4(1.0)) {}
+  [[nodiscard]] glm::vec3 operator()(const glm::vec3& p) const { return is_identity_ ? p : to_world(matrix_, p); }
+
+ private:
+  const glm::dmat4& matrix_;
+  bool is_identity_;
+};
+
 [[nodiscard]] inline bool is_finite(const glm::vec3& p) {
   // NaN and infinity both make x - x other than 0.
   const glm::vec3 zero = p - p;

@@ -31,7 +31,7 @@ class MortonGrid {
   MortonGrid(const Box& bounds, int bits_per_axis) : low_(bounds.low), last_((1u << bits_per_axis) - 1) {
     const glm::dvec3 size = glm::dvec3(bounds.high) - glm::dvec3(bounds.low);
     const double widest = std::max({size.x, size.y, size.z});
-    scale_ = widest > 0 ? (1u << bits_per_axis) / widest : 0.0;
+    scale_ = widest > 0 ? float((1u << bits_per_axis) / widest) : 0.0f;
   }
   [[nodiscard]] std::uint32_t code(const glm::vec3& p) const {
     return spread(cell(p.x, low_.x)) | spread(cell(p.y, low_.y)) << 1 | spread(cell(p.z, low_.z)) << 2;
@@ -39,13 +39,13 @@ class MortonGrid {
 
  private:
   [[nodiscard]] std::uint32_t cell(float x, float low) const {
-    const double at = (double(x) - low) * scale_;
-    if (!(at > 0)) return 0;  // NaN as well: a triangle that is never seen may be anywhere
-    return at < last_ ? std::uint32_t(at) : last_;
+    // NaN, of a triangle that is never seen, becomes 0.
+    const float at = (x - low) * scale_;
+    return std::uint32_t(at > 0 ? std::min(at, float(last_)) : 0.0f);
   }
   glm::vec3 low_;
   std::uint32_t last_;
-  double scale_;
+  float scale_;
 };
 
 /// A surface crosses about 2.5 r^2 of r^3 cells: as many bits as leave about 50 triangles in each.
@@ -87,10 +87,11 @@ std::vector<PrimitiveId> spatial_order(const Scene& scene, const std::vector<Pri
     for (std::size_t r = first; r < last; ++r) {
       const Instance& instance = scene.instances[runs[r].instance];
       const Mesh& mesh = scene.meshes[instance.mesh];
+      const ToWorld world(instance.world_from_mesh);
       for (std::uint32_t t = runs[r].begin; t < runs[r].end; ++t) {
         const glm::uvec3& c = mesh.triangles[t];
         const glm::vec3 sum = mesh.positions[c.x] + mesh.positions[c.y] + mesh.positions[c.z];
-        const std::uint32_t code = grid.code(to_world(instance.world_from_mesh, sum * (1.0f / 3.0f)));
+        const std::uint32_t code = grid.code(world(sum * (1.0f / 3.0f)));
         const PrimitiveId id = first_primitives[runs[r].instance] + t;
         items[id] = std::uint64_t(code) << 32 | id;
       }
