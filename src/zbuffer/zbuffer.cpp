@@ -3,6 +3,7 @@
 
 #include "frontmost/zbuffer.h"
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -62,10 +63,12 @@ Visible zbuffer(const Surfaces& surfaces, const View& view, const Execution& exe
                          visible.primitives.data(),
                          visible.keys.data()};
   ScratchPool pool(frame.samples.size());
+  std::atomic<std::size_t> drawn{0};
   parallel_for(execution, plan.tile_count(), 1, [&](std::size_t begin, std::size_t end) {
     std::unique_ptr<TileScratch> scratch = pool.take();
     for (std::size_t tile = begin; tile < end; ++tile) draw_tile(frame, plan.job(tile, view), *scratch, execution.isa);
     pool.give_back(std::move(scratch));
+    report_progress(execution, "visible", double(drawn += end - begin) / double(plan.tile_count()));
   });
   return visible;
 }
