@@ -48,6 +48,14 @@ class Cursor {
 
 struct Sizes {
   std::uint64_t width = 0, height = 0, channels = 0;
+  unsigned compression = 0;  ///< as in the file: 0 none, 1 RLE, 2 and 3 ZIP, then wavelets and other things
+
+  /// The most that `bytes` bytes of a file can hold, in bytes of memory. Deflate makes at most 1032 of one; what the
+  /// others make of plain pictures has no such bound, so they get some memory in any case.
+  [[nodiscard]] std::uint64_t most_memory(std::uint64_t bytes) const {
+    constexpr std::uint64_t ratio = 1100, always = std::uint64_t(1) << 26;
+    return compression <= 3 ? bytes * ratio : std::max(always, bytes * ratio);
+  }
 };
 
 void read_window(Cursor window, Sizes& sizes) {
@@ -68,9 +76,10 @@ Sizes read_sizes(Cursor header, const std::string& name) {
     header.text();  // the type
     const std::int32_t size = header.number();
     if (size < 0) fail(name, "attribute " + std::string(key) + " has a negative size");
-    const Cursor value(header.take(std::size_t(size)), name);
+    Cursor value(header.take(std::size_t(size)), name);
     if (key == "dataWindow") read_window(value, sizes);
     if (key == "channels") read_channels(value, sizes);
+    if (key == "compression") sizes.compression = std::to_integer<unsigned>(value.take(1)[0]);
   }
   return sizes;
 }
@@ -90,9 +99,7 @@ void check_exr_header(std::span<const std::byte> bytes, const std::string& name)
     throw Error(ErrorCode::limit_exceeded,
                 name + ": EXR: " + std::to_string(sizes.channels) + " channels, not 1 to 1024");
   check_image_size(name + ": EXR", sizes.width, sizes.height, bytes.size(), std::numeric_limits<double>::infinity());
-  // Deflate makes at most 1032 bytes of one; other compressions may do better on small pictures.
-  constexpr std::uint64_t always = std::uint64_t(1) << 26, ratio = 1100;
-  if (sizes.width * sizes.height * sizes.channels * 4 > std::max<std::uint64_t>(always, bytes.size() * ratio))
+  if (sizes.width * sizes.height * sizes.channels * 4 > sizes.most_memory(bytes.size()))
     fail(name, std::to_string(bytes.size()) + " bytes cannot hold " + std::to_string(sizes.width) + " x " +
                    std::to_string(sizes.height) + " pixels of " + std::to_string(sizes.channels) + " channels");
 }

@@ -4,6 +4,7 @@
 #include <bit>
 #include <csetjmp>
 #include <cstring>
+#include <string_view>
 #include <vector>
 
 #include "io/images/decoders.h"
@@ -24,6 +25,21 @@ std::size_t pixel_bytes(PngReader::Pixels pixels) {
   return 0;
 }
 
+/// Whether every chunk up to the last lies within the file. libpng asks for (and clears) as much memory as a chunk says
+/// it is long, before it finds that the file ends; its limit for that is only a warning.
+bool chunks_fit(std::span<const std::byte> bytes) {
+  constexpr std::size_t signature = 8, frame = 12;  // length, type and checksum
+  constexpr std::string_view last = "IEND";
+  for (std::size_t place = signature; place + frame <= bytes.size();) {
+    std::size_t length = 0;
+    for (std::size_t i = 0; i < 4; ++i) length = length << 8 | std::to_integer<std::size_t>(bytes[place + i]);
+    if (length > bytes.size() - place - frame) return false;
+    if (std::memcmp(&bytes[place + 4], last.data(), last.size()) == 0) return true;
+    place += frame + length;
+  }
+  return false;
+}
+
 }  // namespace
 
 // libpng reports errors by longjmp, which must not pass over C++ objects: the functions that set the jump
@@ -32,6 +48,7 @@ std::size_t pixel_bytes(PngReader::Pixels pixels) {
 PngReader::PngReader(std::span<const std::byte> bytes, const std::string& name, Texts texts)
     : rest_(bytes), name_(name), keeps_texts_(texts == Texts::kept) {
   try {
+    if (!chunks_fit(bytes)) throw Error(ErrorCode::file_malformed, name_ + ": PNG: ends too early");
     if (!read_header()) fail();
     const std::uint64_t width = png_get_image_width(png_, info_), height = png_get_image_height(png_, info_);
     bits_ = png_get_bit_depth(png_, info_);

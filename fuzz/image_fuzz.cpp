@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any bytes read as an image: a valid one or an Error. What was read can be compared, shown and hashed.
+#include <cstdlib>
+
+#include "frontmost/io.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace frontmost;
+  try {
+    const Image image = load_image({reinterpret_cast<const std::byte*>(data), size}, "fuzz");
+    try {
+      validate(image);
+    } catch (const Error&) {
+      std::abort();  // readers promise images that hold together
+    }
+    if (compare(image, image).differing != 0) std::abort();
+    (void)content_hash(image);
+    if (image.find("R") && image.find("G") && image.find("B")) (void)terminal_picture(image, 7, 5, false);
+  } catch (const Error&) {
+  }
+  return 0;
+}
