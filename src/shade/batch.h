@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is shaded at once: a few hundred fragments as structure of arrays, so that plain loops over them run many at a
+// time. A fragment is one primitive within one pixel, and stands for all samples that it holds there.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+
+namespace frontmost::shading {
+
+inline constexpr int batch_capacity = 256;  ///< all arrays together stay within a second-level cache
+
+struct alignas(64) Lane {
+  float values[batch_capacity];
+  float& operator[](int i) { return values[i]; }
+  const float& operator[](int i) const { return values[i]; }
+};
+
+struct Lane2 {
+  Lane x, y;
+  [[nodiscard]] glm::vec2 at(int i) const { return {x[i], y[i]}; }
+  void set(int i, const glm::vec2& v) {
+    x[i] = v.x;
+    y[i] = v.y;
+  }
+};
+
+struct Lane3 {
+  Lane x, y, z;
+  [[nodiscard]] glm::vec3 at(int i) const { return {x[i], y[i], z[i]}; }
+  void set(int i, const glm::vec3& v) {
+    x[i] = v.x;
+    y[i] = v.y;
+    z[i] = v.z;
+  }
+};
+
+/// Where the fragments are: made from a Visible.
+struct Coverage {
+  int count = 0;
+  std::uint32_t pixel[batch_capacity];     ///< within the tile
+  std::uint16_t triangle[batch_capacity];  ///< number of the set-up triangle
+  Lane weight;                             ///< part of the pixel's samples
+  Lane2 screen;                            ///< mean position of those samples
+};
+
+/// What the geometry says of each fragment. Positions are in world axes, measured from the eye, so that scenes far
+/// from the origin lose nothing.
+struct Geometry {
+  Lane3 position;
+  Lane3 smooth_position;  ///< lifted to the curved surface that the normals suggest; what shadows are looked up at
+  Lane3 normal;           ///< unit, on the viewer's side
+  Lane3 plane_normal;     ///< of the flat triangle, likewise
+  Lane3 to_viewer;        ///< unit
+  Lane2 texcoord, texcoord_dx, texcoord_dy;  ///< and change per pixel
+  Lane3 color;                               ///< of the vertices
+  Lane alpha;
+};
+
+/// What the material says of each fragment, all linear.
+struct Reflectance {
+  Lane3 base, emissive;
+  Lane alpha, metallic, roughness, occlusion;
+  Lane unlit;  ///< 1 or 0
+};
+
+struct Batch {
+  Coverage coverage;
+  Geometry geometry;
+  Reflectance material;
+  Lane shadow;  ///< part of the key light that arrives
+  Lane3 light;  ///< the answer: linear, before alpha
+};
+
+}  // namespace frontmost::shading

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a picture shows of a batch, one for each Shading.
+#pragma once
+
+#include "frontmost/shade.h"
+#include "shade/lighting.h"
+#include "shade/materials.h"
+#include "shade/shadow_map.h"
+#include "shade/tile.h"
+
+namespace frontmost::shading {
+
+/// Base colour, metallic-roughness and light. `shadow` may be null.
+struct Lit {
+  const MaterialTable& materials;
+  const Lighting& lighting;
+  const ShadowMap* shadow;
+  void operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const;
+};
+
+struct Flat {
+  const MaterialTable& materials;
+  void operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const;
+};
+
+struct Normals {
+  const MaterialTable& materials;
+  void operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const;
+};
+
+/// World normals as they are, for normal_image.
+struct RawNormals {
+  const MaterialTable& materials;
+  void operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const;
+};
+
+struct Depths {
+  glm::vec3 forward;
+  float nearest, farthest;
+  void operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const;
+};
+
+struct Ids {
+  void operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const;
+};
+
+struct Texcoords {
+  void operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const;
+};
+
+/// The linear value that is shown as `value` of 0 to 1 in sRGB, to well within 1/1000 of a step of 8 bits.
+[[nodiscard]] float linear_of_shown(float value);
+
+}  // namespace frontmost::shading

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shade/materials.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontmost::shading {
+namespace {
+
+/// The directions on a triangle in which u and v grow, at unit length; zero where the coordinates do not span a plane.
+struct TangentFrame {
+  glm::vec3 along_u{0}, along_v{0};
+};
+
+glm::vec3 unit_or_zero(const glm::dvec3& v) {
+  const double length = std::sqrt(glm::dot(v, v));
+  return length > 0 && length < 1e300 ? glm::vec3(v / length) : glm::vec3(0);
+}
+
+TangentFrame tangent_frame(const TriangleSetup& t, const TexcoordTransform& transform) {
+  std::array<glm::dvec2, 3> uv;
+  for (std::size_t k = 0; k < 3; ++k) uv[k] = glm::dvec2(transform({t.texcoord[k], {}, {}}).texcoord);
+  const glm::dvec3 edge1 = glm::dvec3(t.corner[1] - t.corner[0]), edge2 = glm::dvec3(t.corner[2] - t.corner[0]);
+  const glm::dvec2 uv1 = uv[1] - uv[0], uv2 = uv[2] - uv[0];
+  const double area = uv1.x * uv2.y - uv2.x * uv1.y;
+  const double sign = area < 0 ? -1 : 1;
+  return {unit_or_zero((edge1 * uv2.y - edge2 * uv1.y) * sign), unit_or_zero((edge2 * uv1.x - edge1 * uv2.x) * sign)};
+}
+
+glm::vec3 normalized_or(const glm::vec3& v, const glm::vec3& fallback) {
+  const float length2 = v.x * v.x + v.y * v.y + v.z * v.z;
+  return length2 > 1e-20f && length2 < 1e20f ? v * (1.0f / std::sqrt(length2)) : fallback;
+}
+
+/// One run of fragments with the same material.
+class Run {
+ public:
+  Run(const MaterialRow& row, const std::vector<TriangleSetup>& setups, Batch& batch)
+      : row_(row), setups_(setups), batch_(batch) {}
+
+  void fill(int begin, int end) {
+    fill_factors(begin, end);
+    if (row_.base_color.pyramid) for_textured(begin, end, [this](int i, const Footprint& f) { base_color(i, f); });
+    if (row_.metallic_roughness.pyramid)
+      for_textured(begin, end, [this](int i, const Footprint& f) { metallic_roughness(i, f); });
+    if (row_.occlusion.pyramid) for_textured(begin, end, [this](int i, const Footprint& f) { occlusion(i, f); });
+    if (row_.emissive.pyramid) for_textured(begin, end, [this](int i, const Footprint& f) { emissive(i, f); });
+    if (row_.normal.pyramid) for_textured(begin, end, [this](int i, const Footprint& f) { turn_normal(i, f); });
+    settle_alpha(begin, end);
+  }
+
+ private:
+  void fill_factors(int begin, int end) {
+    const Material& m = row_.factors;
+    Reflectance& out = batch_.material;
+    for (int i = begin; i < end; ++i) {
+      out.base.set(i, glm::vec3(m.base_color) * batch_.geometry.color.at(i));
+      out.alpha[i] = m.base_color.a * batch_.geometry.alpha[i];
+      out.emissive.set(i, m.emissive);
+      out.metallic[i] = m.metallic;
+      out.roughness[i] = m.roughness;
+      out.occlusion[i] = 1.0f;
+      out.unlit[i] = m.unlit ? 1.0f : 0.0f;
+    }
+  }
+
+  /// Fragments of triangles without texture coordinates look at the origin, as if all their coordinates were 0.
+  template <class Look>
+  void for_textured(int begin, int end, const Look& look) {
+    const Geometry& g = batch_.geometry;
+    for (int i = begin; i < end; ++i) look(i, {g.texcoord.at(i), g.texcoord_dx.at(i), g.texcoord_dy.at(i)});
+  }
+
+  void base_color(int i, const Footprint& footprint) {
+    const glm::vec4 color = row_.base_color.sample(footprint);
+    batch_.material.base.set(i, batch_.material.base.at(i) * glm::vec3(color));
+    batch_.material.alpha[i] *= color.a;
+  }
+  void metallic_roughness(int i, const Footprint& footprint) {
+    const glm::vec4 value = row_.metallic_roughness.sample(footprint);
+    batch_.material.roughness[i] *= value.g;
+    batch_.material.metallic[i] *= value.b;
+  }
+  void occlusion(int i, const Footprint& footprint) {
+    batch_.material.occlusion[i] = 1.0f + row_.factors.occlusion_strength * (row_.occlusion.sample(footprint).r - 1.0f);
+  }
+  void emissive(int i, const Footprint& footprint) {
+    batch_.material.emissive.set(i, batch_.material.emissive.at(i) * glm::vec3(row_.emissive.sample(footprint)));
+  }
+
+  void turn_normal(int i, const Footprint& footprint) {
+    const std::uint16_t triangle = batch_.coverage.triangle[i];
+    const TriangleSetup& t = setups_[triangle];
+    if (!t.has_texcoord) return;
+    if (triangle != framed_) {
+      frame_ = tangent_frame(t, row_.normal.transform);
+      framed_ = triangle;
+    }
+    const glm::vec3 n = batch_.geometry.normal.at(i);
+    const glm::vec3 u = frame_.along_u - n * glm::dot(n, frame_.along_u);
+    const glm::vec3 v = frame_.along_v - n * glm::dot(n, frame_.along_v);
+    const glm::vec3 map = glm::vec3(row_.normal.sample(footprint)) * 2.0f - 1.0f;
+    // Green points up in the picture, against v. The back of a surface has its bumps the other way round.
+    const float side = (t.is_backside ? -1.0f : 1.0f) * row_.factors.normal_scale;
+    const glm::vec3 turned = normalized_or(u, u) * (map.x * side) - normalized_or(v, v) * (map.y * side) + n * map.z;
+    batch_.geometry.normal.set(i, normalized_or(turned, n));
+  }
+
+  /// Without blending a texel either is there or is not.
+  void settle_alpha(int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      float& alpha = batch_.material.alpha[i];
+      switch (row_.factors.alpha) {
+        case Material::Alpha::opaque: alpha = 1.0f; break;
+        case Material::Alpha::mask: alpha = alpha >= row_.factors.alpha_cutoff ? 1.0f : 0.0f; break;
+        case Material::Alpha::blend: alpha = alpha > 0 ? std::min(alpha, 1.0f) : 0.0f; break;  // 0 for NaN
+      }
+    }
+  }
+
+  const MaterialRow& row_;
+  const std::vector<TriangleSetup>& setups_;
+  Batch& batch_;
+  int framed_ = -1;  ///< the triangle that frame_ belongs to
+  TangentFrame frame_;
+};
+
+}  // namespace
+
+Material default_material() {
+  Material material;
+  material.base_color = glm::vec4(0.56f, 0.575f, 0.60f, 1.0f);
+  material.roughness = 0.5f;
+  return material;
+}
+
+MaterialTable::MaterialTable(const Scene& scene, const std::vector<bool>& is_seen, const Execution& execution)
+    : scene_(scene), srgb_(scene.textures.size()), linear_(scene.textures.size()) {
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    const Material& m = scene.materials[i];
+    MaterialRow row{m, {}, {}, {}, {}, {}};
+    if (is_seen[i]) {
+      row.base_color = slot(m.base_color_texture, Encoding::srgb, execution);
+      row.emissive = slot(m.emissive_texture, Encoding::srgb, execution);
+      row.metallic_roughness = slot(m.metallic_roughness_texture, Encoding::linear, execution);
+      row.normal = slot(m.normal_texture, Encoding::linear, execution);
+      row.occlusion = slot(m.occlusion_texture, Encoding::linear, execution);
+    }
+    rows_.push_back(std::move(row));
+  }
+  rows_.push_back({default_material(), {}, {}, {}, {}, {}});
+}
+
+TextureSlot MaterialTable::slot(const TextureUse& use, Encoding encoding, const Execution& execution) {
+  if (!use.is_set()) return {};
+  std::unique_ptr<Pyramid>& pyramid = (encoding == Encoding::srgb ? srgb_ : linear_)[use.texture];
+  if (!pyramid) pyramid = std::make_unique<Pyramid>(scene_.textures[use.texture], encoding, execution);
+  return {pyramid.get(), TexcoordTransform(use)};
+}
+
+void look_up_materials(const MaterialTable& table, const std::vector<TriangleSetup>& setups, Batch& batch) {
+  const Coverage& coverage = batch.coverage;
+  const auto material_at = [&](int i) { return setups[coverage.triangle[i]].material; };
+  for (int begin = 0; begin < coverage.count;) {
+    int end = begin + 1;
+    while (end < coverage.count && material_at(end) == material_at(begin)) ++end;
+    Run(table[material_at(begin)], setups, batch).fill(begin, end);
+    begin = end;
+  }
+}
+
+}  // namespace frontmost::shading

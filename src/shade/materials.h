@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene's materials with their textures made ready, and what they say of each fragment.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "shade/batch.h"
+#include "shade/pyramid.h"
+#include "shade/triangle_setup.h"
+
+namespace frontmost::shading {
+
+struct TextureSlot {
+  const Pyramid* pyramid = nullptr;  ///< null: not set
+  TexcoordTransform transform{TextureUse{}};
+
+  [[nodiscard]] glm::vec4 sample(const Footprint& footprint) const { return pyramid->sample(transform(footprint)); }
+};
+
+struct MaterialRow {
+  Material factors;
+  TextureSlot base_color, metallic_roughness, normal, emissive, occlusion;
+};
+
+/// What triangles without a material are made of: a light neutral grey that shows its form on a white page.
+[[nodiscard]] Material default_material();
+
+class MaterialTable {
+ public:
+  /// Borrows `scene`. Makes mip levels only for the textures of materials that `is_seen`, one entry per material.
+  MaterialTable(const Scene& scene, const std::vector<bool>& is_seen, const Execution& execution);
+
+  /// By material number; no_index gives the default material.
+  [[nodiscard]] const MaterialRow& operator[](std::uint32_t material) const {
+    return material < rows_.size() ? rows_[material] : rows_.back();
+  }
+
+ private:
+  [[nodiscard]] TextureSlot slot(const TextureUse& use, Encoding encoding, const Execution& execution);
+
+  const Scene& scene_;
+  std::vector<MaterialRow> rows_;                        ///< the last one is the default
+  std::vector<std::unique_ptr<Pyramid>> srgb_, linear_;  ///< by texture; null where not used so
+};
+
+/// Looks up the materials of a batch, run by run of equal ones, and turns its normals by normal maps.
+/// `setups` are the triangles that batch.coverage.triangle numbers.
+void look_up_materials(const MaterialTable& table, const std::vector<TriangleSetup>& setups, Batch& batch);
+
+}  // namespace frontmost::shading

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// The viewing rays of a picture: for a point on the screen, where its ray starts and where it goes, in world axes.
+// Both are affine in the screen position, which is what makes barycentric weights affine as well.
+#pragma once
+
+#include "frontmost/view.h"
+
+namespace frontmost::shading {
+
+class ScreenRays {
+ public:
+  explicit ScreenRays(const View& view);
+
+  [[nodiscard]] bool is_parallel() const { return parallel_; }
+  [[nodiscard]] const glm::dvec3& eye() const { return eye_; }
+  [[nodiscard]] const glm::dvec3& forward() const { return forward_; }
+  /// Perspective: the direction of the ray through (x, y), not normalised, one unit along the viewing axis.
+  /// Parallel: where the ray starts, from the eye.
+  [[nodiscard]] glm::dvec3 at(double x, double y) const { return corner_ + x * step_x_ + y * step_y_; }
+  [[nodiscard]] const glm::dvec3& step_x() const { return step_x_; }
+  [[nodiscard]] const glm::dvec3& step_y() const { return step_y_; }
+
+  /// The point seen at (x, y) at a planar depth, from the eye.
+  [[nodiscard]] glm::dvec3 point(double x, double y, double depth) const {
+    return parallel_ ? at(x, y) + depth * forward_ : depth * at(x, y);
+  }
+
+ private:
+  bool parallel_;
+  glm::dvec3 eye_, forward_;
+  glm::dvec3 corner_;  ///< at the screen's origin
+  glm::dvec3 step_x_, step_y_;
+};
+
+inline ScreenRays::ScreenRays(const View& view)
+    : parallel_(view.projection.orthographic), eye_(view.eye()), forward_(view.forward()) {
+  const Projection& p = view.projection;
+  corner_ = p.left * view.right() + p.top * view.up() + (parallel_ ? glm::dvec3(0) : forward_);
+  step_x_ = (p.right - p.left) / view.width * view.right();
+  step_y_ = (p.bottom - p.top) / view.height * view.up();
+}
+
+}  // namespace frontmost::shading

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shade/shadow_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "base/parallel.h"
+#include "frontmost/zbuffer.h"
+
+namespace frontmost::shading {
+namespace {
+
+constexpr int kSize = 1024;
+constexpr double kSpareTexels = 12;  ///< around what is seen: the filter, and what lies between the points looked at
+constexpr int kStride = 4;           ///< every fourth pixel in x and y shows where the visible surfaces are
+
+/// A rectangle across the light's direction, and a range along it.
+struct Extent {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+
+  void include(const glm::dvec3& p) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  void include(const Extent& other) {
+    low = glm::min(low, other.low);
+    high = glm::max(high, other.high);
+  }
+  [[nodiscard]] bool is_empty() const { return !(low.x <= high.x); }
+};
+
+/// Of the points that are seen, in the axes of `light` (x, y across; z towards the light), from the eye.
+Extent extent_of_visible(const Visible& visible, const glm::dmat3& light_axes, const Execution& execution) {
+  const ScreenRays rays(visible.view);
+  const glm::dmat3 light_from_world = glm::transpose(light_axes);
+  const int rows = (visible.view.height + kStride - 1) / kStride;
+  Extent extent;
+  std::mutex mutex;
+  parallel_for(execution, std::size_t(rows), 16, [&](std::size_t begin, std::size_t end) {
+    Extent part;
+    for (int y = int(begin) * kStride; y < std::min(int(end) * kStride, visible.view.height); y += kStride)
+      for (int x = 0; x < visible.view.width; x += kStride) {
+        const std::size_t i = visible.index(x, y);
+        if (visible.primitives[i] == no_primitive) continue;
+        const double depth = double(depth_of_key(visible.view, visible.keys[i]));
+        if (depth < 1e30) part.include(light_from_world * rays.point(x + 0.5, y + 0.5, depth));
+      }
+    const std::lock_guard lock(mutex);
+    extent.include(part);  // in any order: minima and maxima do not round
+  });
+  return extent;
+}
+
+Extent extent_of_box(const Box& box, const glm::dvec3& eye, const glm::dmat3& light_axes) {
+  Extent extent;
+  for (int k = 0; k < 8; ++k) {
+    const glm::dvec3 corner(k & 1 ? box.high.x : box.low.x, k & 2 ? box.high.y : box.low.y,
+                            k & 4 ? box.high.z : box.low.z);
+    extent.include(glm::transpose(light_axes) * (corner - eye));
+  }
+  return extent;
+}
+
+/// Two directions across `to_light`, and itself.
+glm::dmat3 axes_of_light(const glm::dvec3& to_light, const View& view) {
+  const glm::dvec3 side = glm::normalize(glm::cross(view.up(), to_light));
+  return {side, glm::cross(to_light, side), to_light};
+}
+
+/// The window of the light's view: what is seen, but no more than there is, with room for the filter.
+Extent window_of(const Extent& seen, const Extent& all) {
+  Extent window = all;
+  for (int k = 0; k < 2; ++k) {
+    const double spare = 0.02 * (seen.high[k] - seen.low[k]);
+    window.low[k] = std::max(all.low[k], seen.low[k] - spare);
+    window.high[k] = std::min(all.high[k], seen.high[k] + spare);
+  }
+  const double side = std::max(
+      {window.high.x - window.low.x, window.high.y - window.low.y, 1e-6 * (window.high.z - window.low.z), 1e-30});
+  for (int k = 0; k < 2; ++k) {
+    const double centre = 0.5 * (window.low[k] + window.high[k]);
+    const double half = 0.5 * side * (1 + 2 * kSpareTexels / kSize);
+    window.low[k] = centre - half;
+    window.high[k] = centre + half;
+  }
+  return window;
+}
+
+View view_of_light(const Extent& window, const glm::dmat3& axes, const glm::dvec3& eye) {
+  View view;
+  view.width = view.height = kSize;
+  const double depth = std::max(window.high.z - window.low.z, 1e-6 * (window.high.x - window.low.x));
+  view.world_from_eye = glm::dmat4(axes);
+  view.world_from_eye[3] = glm::dvec4(eye + axes * glm::dvec3(0, 0, window.high.z + 0.01 * depth), 1);
+  view.projection = make_orthographic(window.low.x, window.high.x, window.low.y, window.high.y, {0.0, 1.02 * depth});
+  return view;
+}
+
+}  // namespace
+
+ShadowMap::ShadowMap(const Surfaces& surfaces, const Visible& visible, const glm::dvec3& to_light,
+                     const Execution& execution)
+    : to_light_(to_light) {
+  const glm::dmat3 axes = axes_of_light(to_light, visible.view);
+  const Extent seen = extent_of_visible(visible, axes, execution);
+  if (seen.is_empty()) return;
+  const Extent window = window_of(seen, extent_of_box(surfaces.bounds(), visible.view.eye(), axes));
+  const double texel = (window.high.x - window.low.x) / kSize;
+  const View view = view_of_light(window, axes, visible.view.eye());
+  const double depth = view.projection.clip.far - view.projection.clip.near;
+  texel_x_ = glm::vec3(axes[0] / texel);
+  texel_y_ = glm::vec3(axes[1] * (-1 / texel));
+  key_ = glm::vec3(axes[2] / depth);
+  // The light's eye is at window.high.z plus a hundredth; key 1 is there.
+  at_eye_ = glm::vec3(-window.low.x / texel, window.high.y / texel,
+                      1 - glm::dot(axes[2], view.eye() - visible.view.eye()) / depth);
+  key_bias_ = float(0.75 * texel / depth + 2e-6);
+  key_slope_bias_ = float((0.5 * taps + 1) * texel / depth);
+  draw(surfaces, view, execution);
+  find_ranges(execution);
+}
+
+void ShadowMap::draw(const Surfaces& surfaces, const View& view, const Execution& execution) {
+  keys_ = std::move(zbuffer(surfaces, view, execution).keys);
+  size_ = kSize;
+}
+
+void ShadowMap::find_ranges(const Execution& execution) {
+  blocks_ = size_ / block;
+  std::vector<Range> own(std::size_t(blocks_) * std::size_t(blocks_));
+  const auto at = [&](std::size_t x, std::size_t y) { return y * std::size_t(blocks_) + x; };
+  parallel_for(execution, std::size_t(blocks_), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t by = begin; by < end; ++by)
+      for (std::size_t bx = 0; bx < std::size_t(blocks_); ++bx) {
+        Range range{2, -1};
+        for (std::size_t y = by * block; y < (by + 1) * block; ++y)
+          for (std::size_t x = bx * block; x < (bx + 1) * block; ++x) {
+            const float key = keys_[y * std::size_t(size_) + x];
+            range = {std::min(range.low, key), std::max(range.high, key)};
+          }
+        own[at(bx, by)] = range;
+      }
+  });
+  ranges_ = own;
+  const auto last = std::size_t(blocks_ - 1);
+  for (std::size_t y = 0; y <= last; ++y)
+    for (std::size_t x = 0; x <= last; ++x)
+      for (const std::size_t i : {at(std::min(x + 1, last), y), at(x, std::min(y + 1, last)),
+                                  at(std::min(x + 1, last), std::min(y + 1, last))}) {
+        Range& range = ranges_[at(x, y)];
+        range = {std::min(range.low, own[i].low), std::max(range.high, own[i].high)};
+      }
+}
+
+float ShadowMap::light_at(const glm::vec3& position, const glm::vec3& plane_normal) const {
+  if (size_ == 0) return 1.0f;
+  const glm::vec2 texel(glm::dot(texel_x_, position) + at_eye_.x, glm::dot(texel_y_, position) + at_eye_.y);
+  // Over the filter's width a slanted surface itself comes nearer to the light by its slope: that is no shadow.
+  constexpr float steepest = 8;
+  const float cosine = std::abs(glm::dot(plane_normal, to_light_));
+  const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
+  const float slope = sine < steepest * cosine ? sine / cosine : steepest;
+  const float key = glm::dot(key_, position) + at_eye_.z + key_bias_ + slope * key_slope_bias_;
+  return filtered(texel, key);
+}
+
+float ShadowMap::filtered(const glm::vec2& texel, float key) const {
+  constexpr float half = 0.5f * taps;
+  const glm::vec2 first = texel - (half - 0.5f);  // the first texel whose centre is within the filter, plus a fraction
+  const float end = float(size_ - taps);
+  if (!(first.x >= 0 && first.y >= 0 && first.x < end && first.y < end)) return 1.0f;
+  const int x0 = int(first.x), y0 = int(first.y);
+  const Range& range = ranges_[std::size_t(y0 / block) * std::size_t(blocks_) + std::size_t(x0 / block)];
+  if (key >= range.high) return 1.0f;
+  if (key < range.low) return 0.0f;
+  // A tent, so that edges fade without steps. Its weights at whole texels always sum to half * half.
+  float across[taps], sum = 0;
+  for (int i = 0; i < taps; ++i) across[i] = std::max(0.0f, half - std::abs(float(x0 + i) + 0.5f - texel.x));
+  for (int j = 0; j < taps; ++j) {
+    const float* row = keys_.data() + std::size_t(y0 + j) * std::size_t(size_) + std::size_t(x0);
+    float lit = 0;
+    for (int i = 0; i < taps; ++i) lit += row[i] <= key ? across[i] : 0.0f;
+    sum += lit * std::max(0.0f, half - std::abs(float(y0 + j) + 0.5f - texel.y));
+  }
+  return sum * (1.0f / (half * half * half * half));
+}
+
+}  // namespace frontmost::shading

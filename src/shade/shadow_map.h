@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shadows of the key light: what the light sees, found by the same z-buffer.
+#pragma once
+
+#include "frontmost/surfaces.h"
+#include "frontmost/visible.h"
+#include "shade/screen_rays.h"
+
+namespace frontmost::shading {
+
+class ShadowMap {
+ public:
+  /// Looks along -to_light at what `visible` shows of the surfaces; whatever stands between that and the light counts.
+  /// Nothing visible: everything is lit.
+  ShadowMap(const Surfaces& surfaces, const Visible& visible, const glm::dvec3& to_light, const Execution& execution);
+
+  /// The part of the light that arrives at a point, 0 to 1, with soft edges a few texels wide.
+  /// `position` in world axes from the eye of `visible`; `plane_normal` of the flat surface there.
+  [[nodiscard]] float light_at(const glm::vec3& position, const glm::vec3& plane_normal) const;
+
+ private:
+  static constexpr int taps = 8;   ///< of the filter along each axis
+  static constexpr int block = 8;  ///< texels along the side of a block whose nearest and farthest key is known
+
+  struct Range {
+    float low, high;
+  };
+
+  void draw(const Surfaces& surfaces, const View& view, const Execution& execution);
+  void find_ranges(const Execution& execution);
+  [[nodiscard]] float filtered(const glm::vec2& texel, float key) const;
+
+  int size_ = 0;               ///< texels along each side; 0: no map
+  Buffer<float> keys_;         ///< greater is nearer to the light
+  std::vector<Range> ranges_;  ///< of each block and its right, lower and diagonal neighbours
+  int blocks_ = 0;             ///< along each side
+  glm::vec3 to_light_{0};
+  glm::vec3 texel_x_{0}, texel_y_{0}, key_{0};  ///< what a step in the world changes
+  glm::vec3 at_eye_{0};                         ///< texel x, y and key at the eye
+  float key_bias_ = 0, key_slope_bias_ = 0;
+};
+
+}  // namespace frontmost::shading

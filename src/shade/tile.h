@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// A rectangle of pixels shaded by one thread: finds its fragments, hands them out in batches, and sums the answers.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "frontmost/visible.h"
+#include "shade/batch.h"
+#include "shade/geometry.h"
+
+namespace frontmost::shading {
+
+inline constexpr int tile_width = 64, tile_height = 8;
+inline constexpr int tile_pixels = tile_width * tile_height;
+
+struct TileRectangle {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// Which of a Visible's samples count.
+enum class SampleUse : std::uint8_t { all, first };
+
+/// Triangles that were set up for one tile, by id: an open-addressing table.
+class TriangleCache {
+ public:
+  TriangleCache() : slots_(slot_count), setups_(capacity) {}
+
+  void clear() {
+    ++generation_;
+    count_ = 0;
+  }
+  [[nodiscard]] bool is_full() const { return count_ == capacity; }
+  [[nodiscard]] const std::vector<TriangleSetup>& setups() const { return setups_; }
+  [[nodiscard]] TriangleSetup& operator[](std::uint16_t number) { return setups_[number]; }
+
+  struct Found {
+    std::uint16_t number;
+    bool is_new;  ///< to be set up by the caller
+  };
+  /// Precondition: not full.
+  Found find_or_add(PrimitiveId id);
+
+ private:
+  static constexpr int capacity = 512;
+  static constexpr std::uint32_t slot_count = 2048;
+  struct Slot {
+    std::uint32_t generation = 0;
+    PrimitiveId id = no_primitive;
+    std::uint16_t number = 0;
+  };
+
+  std::vector<Slot> slots_;
+  std::vector<TriangleSetup> setups_;
+  std::uint32_t generation_ = 1;
+  int count_ = 0;
+};
+
+/// Reused from tile to tile by one thread. About half a megabyte.
+class TileWork {
+ public:
+  /// Colours a batch: reads coverage and geometry, fills batch.light and batch.material.alpha.
+  using Colorist = std::function<void(const std::vector<TriangleSetup>&, Batch&)>;
+
+  TileWork(const TriangleSource& source, const Visible& visible, SampleUse use, const Colorist& colorist);
+
+  /// Premultiplied sums over the samples of each pixel, row by row of the tile. False where nothing is seen at all.
+  bool shade(const TileRectangle& tile);
+  [[nodiscard]] const std::vector<glm::vec4>& pixels() const { return pixels_; }
+
+ private:
+  /// Sets seen_ for a row of pixels from `row` on. False when nothing is seen in any. O(samples), many at a time.
+  bool find_seen(std::size_t row, int width);
+  void add_pixel(int x, int y, std::uint32_t pixel);
+  void add_mixed_pixel(const PrimitiveId* ids, const glm::vec2& corner, std::uint32_t pixel);
+  void add_fragment(PrimitiveId id, std::uint32_t pixel, const glm::vec2& screen, float weight);
+  void flush();
+
+  const TriangleSource& source_;
+  const Visible& visible_;
+  const Colorist& colorist_;
+  int samples_;
+  std::vector<glm::vec2> offsets_;  ///< of the samples within a pixel
+  glm::vec2 centre_{0};             ///< their mean
+  TriangleCache cache_;
+  std::vector<glm::vec4> pixels_;
+  bool seen_[tile_width] = {};
+  Batch batch_;
+};
+
+}  // namespace frontmost::shading

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// One visible triangle made ready for interpolation.
+//
+// The barycentric weights of the point that a viewing ray meets are, up to a common factor, triple products that are
+// affine in the screen position. They stay valid for triangles that cross the eye plane, and their ratios are
+// perspective-correct without ever dividing by a depth of 0.
+#pragma once
+
+#include <array>
+
+#include "shade/screen_rays.h"
+
+namespace frontmost::shading {
+
+/// A value that is affine in the screen position, about a reference point.
+struct Affine {
+  float at_reference = 0, step_x = 0, step_y = 0;
+};
+
+struct TriangleSetup {
+  std::array<Affine, 3> weight;     ///< their sum at the reference is 1
+  glm::vec2 reference{0};           ///< screen
+  std::array<glm::vec3, 3> corner;  ///< world axes, from the eye
+  std::array<glm::vec3, 3> normal;  ///< world, unit, on the viewer's side
+  glm::vec3 plane_normal{0};        ///< unit, towards the viewer
+  bool is_smooth = false;           ///< the corner normals differ from the plane's
+  bool is_backside = false;         ///< the side that the winding calls back is seen
+  std::uint32_t instance = no_index, mesh = no_index, triangle = no_index;
+  std::uint32_t material = no_index;  ///< number in the scene
+  std::array<glm::vec2, 3> texcoord;
+  std::array<glm::vec4, 3> color;
+  bool has_texcoord = false, has_color = false;
+};
+
+/// Fills weights, reference, corners, plane normal, and is_backside (for a triangle that was not mirrored).
+/// Triangles that are seen edge-on, and non-finite results, get equal weights everywhere.
+void set_up_plane(TriangleSetup& setup, const ScreenRays& rays, const std::array<glm::vec3, 3>& corners_world,
+                  const glm::vec2& reference);
+
+/// Weights at a screen position: none negative, sum 1, so that nothing extrapolates past the triangle's edges.
+/// `divisor` is what they were divided by, which the gradients need.
+struct Barycentric {
+  glm::vec3 weight;
+  float divisor;
+};
+[[nodiscard]] inline Barycentric barycentric(const TriangleSetup& t, float x, float y) {
+  const float dx = x - t.reference.x, dy = y - t.reference.y;
+  glm::vec3 w;
+  for (int k = 0; k < 3; ++k) {
+    const Affine& a = t.weight[std::size_t(k)];
+    const float value = a.at_reference + dx * a.step_x + dy * a.step_y;
+    w[k] = value > 0.0f ? value : 0.0f;
+  }
+  const float sum = w.x + w.y + w.z;
+  const bool valid = sum > 1e-30f;
+  const float scale = valid ? 1.0f / sum : 0.0f;
+  const float rest = valid ? 0.0f : 1.0f / 3;
+  return {{w.x * scale + rest, w.y * scale + rest, w.z * scale + rest}, valid ? sum : 1.0f};
+}
+
+template <class T>
+[[nodiscard]] T interpolate(const std::array<T, 3>& corner, const glm::vec3& weight) {
+  return corner[0] * weight.x + corner[1] * weight.y + corner[2] * weight.z;
+}
+
+/// Change per pixel of an attribute that is `value` at the position of `b`: exact derivatives of the quotient.
+struct Gradient {
+  glm::vec2 dx, dy;
+};
+[[nodiscard]] inline Gradient gradient(const TriangleSetup& t, const std::array<glm::vec2, 3>& corner,
+                                       const glm::vec2& value, const Barycentric& b) {
+  Gradient g{glm::vec2(0), glm::vec2(0)};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const glm::vec2 difference = corner[k] - value;
+    g.dx += difference * t.weight[k].step_x;
+    g.dy += difference * t.weight[k].step_y;
+  }
+  const float scale = 1.0f / b.divisor;
+  return {g.dx * scale, g.dy * scale};
+}
+
+}  // namespace frontmost::shading
