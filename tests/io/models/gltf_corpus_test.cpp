@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fuzz targets' seeds, with the outcome that each stands for.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "frontmost/io.h"
+#include "io/images/decode.h"
+
+namespace frontmost {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::byte> bytes_of_file(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const auto* first = reinterpret_cast<const std::byte*>(text.data());
+  return {first, first + text.size()};
+}
+
+TEST(GltfCorpus, SeedsOfTheReader) {
+  const std::map<std::string, std::uint64_t> readable = {{"copies.gltf", 3}, {"posed.gltf", 2}, {"textured.glb", 1}};
+  std::size_t refused = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(FRONTMOST_CORPUS) / "gltf")) {
+    const std::string name = entry.path().filename().string();
+    const auto known = readable.find(name);
+    try {
+      const Scene scene = load(bytes_of_file(entry.path()), name, {.format = ModelFormat::gltf, .up = {}});
+      if (known == readable.end())
+        ADD_FAILURE() << name << " was read";
+      else
+        EXPECT_EQ(triangle_count(scene), known->second) << name;
+    } catch (const Error& error) {
+      EXPECT_TRUE(known == readable.end()) << error.what();
+      ++refused;
+    }
+  }
+  EXPECT_GE(refused, 3u);
+}
+
+TEST(GltfCorpus, SeedsOfTheImageDecoder) {
+  std::size_t decoded = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(FRONTMOST_CORPUS) / "texture")) {
+    const std::vector<std::byte> bytes = bytes_of_file(entry.path());
+    const Texture texture = decode_texture(bytes, entry.path().filename().string());
+    EXPECT_EQ(texture_size(bytes, "t"), glm::ivec2(texture.width, texture.height));
+    ++decoded;
+  }
+  EXPECT_GE(decoded, 6u);
+}
+
+}  // namespace
+}  // namespace frontmost
