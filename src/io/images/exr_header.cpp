@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 #include "frontmost/base.h"
 #include "io/images/decoders.h"
@@ -33,6 +34,7 @@ class Cursor {
     std::memcpy(&value, take(sizeof value).data(), sizeof value);
     return value;
   }
+  [[nodiscard]] bool at_end() const { return bytes_.empty(); }
   /// Up to the next zero, which is passed.
   std::string_view text() {
     const auto end = std::find(bytes_.begin(), bytes_.end(), std::byte{0});
@@ -65,20 +67,45 @@ void read_window(Cursor window, Sizes& sizes) {
   sizes.height = std::uint64_t(std::max<std::int64_t>(0, bottom - top + 1));
 }
 
-void read_channels(Cursor list, Sizes& sizes) {
+/// Counted on from earlier lists: the library adds the channels of a second one to the first's.
+void read_channels(Cursor list, Sizes& sizes, const std::string& name) {
   constexpr std::size_t record = 16;  // type, linearity and sampling
-  for (sizes.channels = 0; !list.text().empty(); ++sizes.channels) list.take(record);
+  for (; !list.text().empty(); ++sizes.channels) list.take(record);
+  if (!list.at_end()) fail(name, "the channel list ends before its attribute");
+}
+
+/// The library reads most attributes without a look at the size that the file gives them, and goes on from wherever it
+/// then stands. Where size and type do not agree it would see another header than this file does.
+constexpr std::size_t any_size = ~std::size_t(0);
+constexpr std::pair<std::string_view, std::size_t> attribute_sizes[] = {
+    {"box2i", 16},        {"box2f", 16},   {"chlist", any_size}, {"chromaticities", 32},
+    {"compression", 1},   {"double", 8},   {"envmap", 1},        {"float", 4},
+    {"int", 4},           {"keycode", 28}, {"lineOrder", 1},     {"m33d", 72},
+    {"m33f", 36},         {"m44d", 128},   {"m44f", 64},         {"rational", 8},
+    {"string", any_size}, {"timecode", 8}, {"v2d", 16},          {"v2f", 8},
+    {"v2i", 8},           {"v3d", 24},     {"v3f", 12},          {"v3i", 12},
+};
+
+void check_attribute(std::string_view type, std::size_t size, const std::string& name) {
+  for (const auto& [known, its_size] : attribute_sizes) {
+    if (type != known) continue;
+    if (its_size != any_size && size != its_size)
+      fail(name, "an attribute's size does not fit its type " + std::string(type));
+    return;
+  }
+  throw Error(ErrorCode::unsupported, name + ": EXR: attributes of type " + std::string(type) + " are not read");
 }
 
 Sizes read_sizes(Cursor header, const std::string& name) {
   Sizes sizes;
   for (std::string_view key = header.text(); !key.empty(); key = header.text()) {
-    header.text();  // the type
+    const std::string_view type = header.text();
     const std::int32_t size = header.number();
     if (size < 0) fail(name, "attribute " + std::string(key) + " has a negative size");
+    check_attribute(type, std::size_t(size), name);
     Cursor value(header.take(std::size_t(size)), name);
     if (key == "dataWindow") read_window(value, sizes);
-    if (key == "channels") read_channels(value, sizes);
+    if (type == "chlist") read_channels(value, sizes, name);
     if (key == "compression") sizes.compression = std::to_integer<unsigned>(value.take(1)[0]);
   }
   return sizes;

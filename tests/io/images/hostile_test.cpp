@@ -100,6 +100,13 @@ TEST(HostileImages, SizesThatTheBytesCannotHoldGetNoMemory) {
     std::memcpy(&lying[window + 12], &corner, 4);
     EXPECT_FALSE(survives(lying)) << corner;
   }
+  // A channel list that ends early: what follows in it must not become attributes.
+  std::string early = exr;
+  early[early.find(std::string("chlist\0", 7)) + 7] += 1;
+  EXPECT_FALSE(survives(early));
+  std::string wrong_size = exr;
+  wrong_size[wrong_size.find(std::string("v2f\0", 4)) + 4] = 4;
+  EXPECT_FALSE(survives(wrong_size));
 #endif
 }
 
