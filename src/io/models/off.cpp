@@ -17,8 +17,8 @@ class RawColors {
   }
   [[nodiscard]] std::size_t size() const { return colors_.size(); }
   std::vector<glm::vec4> take_linear() {
-    const float scale = greatest_ > 1 ? 1.0f / 255 : 1.0f;
-    for (glm::vec4& color : colors_) color = linear_color(color * scale);
+    const float range = greatest_ > 1 ? 255.0f : 1.0f;
+    for (glm::vec4& color : colors_) color = linear_color(color / range);
     return std::move(colors_);
   }
   /// Opaque white in the scale that `add` was given so far is not known, so NaN stands for it.
@@ -46,10 +46,10 @@ class OffReader {
   void read_header() {
     if (!text_.to_word()) text_.fail("the file ends before the header");
     std::int64_t count = 0;
-    if (!text_.integer(count)) {  // the keyword may be left out
-      read_keyword(text_.word());
-      if (!text_.to_word() || !text_.integer(count)) text_.fail("the number of vertices was expected");
-    }
+    TextScanner ahead = text_;
+    const bool has_keyword = !ahead.integer(count) || !ahead.at_blank();
+    if (has_keyword) read_keyword(text_.word());
+    if (!text_.to_word() || !text_.integer(count)) text_.fail("the number of vertices was expected");
     vertex_count_ = checked(count, has_normals_ ? 6 : 3, "vertices");
     if (!text_.integer(count)) text_.fail("the number of faces was expected");
     face_count_ = checked(count, 1, "faces");

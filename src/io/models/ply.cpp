@@ -55,11 +55,11 @@ Role role_of(const PlyProperty& property) {
   return property.is_list ? find(list_names) : find(scalar_names);
 }
 
-/// A property, its role, and what turns its numbers into [0, 1] if it is a colour.
+/// A property, its role, and what its greatest number is if it is a colour.
 struct Column {
   PlyProperty property;
   Role role;
-  float color_scale;
+  float color_range;
 };
 
 struct Columns {
@@ -67,8 +67,8 @@ struct Columns {
 
   explicit Columns(const PlyElement& element) {
     for (const PlyProperty& property : element.properties) {
-      constexpr float scales[] = {1.0f / 127, 1.0f / 255, 1.0f / 32767, 1.0f / 65535, 1, 1, 1, 1};
-      list.push_back({property, role_of(property), scales[std::size_t(property.type)]});
+      constexpr float ranges[] = {127, 255, 32767, 65535, 1, 1, 1, 1};
+      list.push_back({property, role_of(property), ranges[std::size_t(property.type)]});
     }
   }
   [[nodiscard]] bool has(Role role) const {
@@ -135,7 +135,7 @@ class PlyBody {
   bool read_float(const Column& column, FloatRow& row) {
     if (column.property.is_list || std::size_t(column.role) >= float_roles) return false;
     const bool is_color = column.role >= Role::red;
-    row[std::size_t(column.role)] = rows_.number(column.property.type) * (is_color ? column.color_scale : 1.0f);
+    row[std::size_t(column.role)] = rows_.number(column.property.type) / (is_color ? column.color_range : 1.0f);
     return true;
   }
   void skip_value(const PlyProperty& property) {

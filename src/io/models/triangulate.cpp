@@ -124,8 +124,9 @@ void Triangulator::clip_ears() {
   is_left_.assign(count, true);
   blockers_.clear();
   for (std::uint32_t i = 0; i < count; ++i) note_turn(i);
-  // Files of any size get time in proportion, and one polygon a good second at once.
-  allowed_work_ += 2000 * std::uint64_t(count);
+  // Files of any size get time in proportion, and one polygon half a second at once: enough for some 15000 corners
+  // of the most jagged kind.
+  allowed_work_ += 1000 * std::uint64_t(count);
 
   std::uint32_t corner = 0;
   for (std::uint32_t left = count; left > 3; --left) {

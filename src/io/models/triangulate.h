@@ -42,7 +42,7 @@ class Triangulator {
   std::vector<std::uint32_t> blockers_;         ///< corners that do not turn left: only they can block an ear
   std::vector<bool> is_left_;
   std::vector<glm::uvec3> triangles_;
-  std::uint64_t work_ = 0, allowed_work_ = 1 << 28;  ///< counted in tests of a corner against an ear
+  std::uint64_t work_ = 0, allowed_work_ = 1 << 27;  ///< counted in tests of a corner against an ear
   bool is_flat_ = true;                              ///< the polygon has a direction to be seen from
 };
 

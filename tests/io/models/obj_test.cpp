@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <fstream>
+
+#include "base/srgb.h"
+#include "model_bytes.h"
+#include "support/models.h"
+
+namespace frontmost {
+namespace {
+
+using test::error_of;
+using test::load_text;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+/// A folder of its own that vanishes with the test.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (std::filesystem::temp_directory_path() / "frontmost-obj-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    path = name;
+  }
+  ~Folder() { std::filesystem::remove_all(path); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories((path / name).parent_path());
+    std::ofstream(path / name, std::ios::binary) << text;
+    return (path / name).string();
+  }
+
+  std::filesystem::path path;
+};
+
+TEST(Obj, SeparateIndicesNegativeIndicesAndFaces) {
+  const Scene scene = load_text(square +
+                                "vt 0 0\nvt 1 0.25\nvn 0 0 1\nvn 0 0 -1\n"
+                                "f 1/1/1 2/2/1 3/2/1 4/1/2\nf -4//-1 -3//-1 -2//-2\n");
+  const Mesh& mesh = scene.meshes.at(0);
+  EXPECT_THAT(mesh.triangles, ElementsAre(glm::uvec3(0, 1, 2), glm::uvec3(0, 2, 3), glm::uvec3(0, 1, 2)));
+  EXPECT_THAT(mesh.face_ids, ElementsAre(0, 0, 1));
+  EXPECT_THAT(mesh.normals.triangles, ElementsAre(glm::uvec3(0, 0, 0), glm::uvec3(0, 0, 1), glm::uvec3(1, 1, 0)));
+  EXPECT_EQ(mesh.texcoords.values.at(1), glm::vec2(1, 0.75f));  // v goes down here
+  // The second face has no texture coordinates: its corners take one that is made up.
+  EXPECT_THAT(mesh.texcoords.triangles, ElementsAre(glm::uvec3(0, 1, 1), glm::uvec3(0, 1, 0), glm::uvec3(2, 2, 2)));
+  EXPECT_EQ(mesh.texcoords.values.size(), 3u);
+}
+
+TEST(Obj, EqualIndicesAreStoredOnce) {
+  const Scene scene = load_text(square + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 5 5\nf 1/1 2/2 3/3 4/4\n");
+  EXPECT_TRUE(scene.meshes.at(0).texcoords.triangles.empty());
+  EXPECT_EQ(scene.meshes[0].texcoords.values.size(), 5u);
+}
+
+TEST(Obj, ObjectsAndGroupsAreMeshesWithTheirOwnVertices) {
+  const Scene scene =
+      load_text("o unused\no first\n" + square + "f 1 2 3\ng second part\nf 3 4 1\nf 3 2 1\ng\nf 4 1 2\n");
+  ASSERT_EQ(scene.meshes.size(), 3u);
+  EXPECT_EQ(scene.instances[0].name, "first");
+  EXPECT_EQ(scene.instances[1].name, "second part");
+  EXPECT_EQ(scene.instances[2].name, "first");
+  EXPECT_THAT(scene.meshes[1].triangles, ElementsAre(glm::uvec3(0, 1, 2), glm::uvec3(0, 3, 2)));
+  EXPECT_THAT(scene.meshes[1].positions,
+              ElementsAre(glm::vec3(1, 1, 0), glm::vec3(0, 1, 0), glm::vec3(0, 0, 0), glm::vec3(1, 0, 0)));
+  EXPECT_EQ(scene.meshes[2].positions.size(), 3u);
+}
+
+TEST(Obj, NamesThatStayStartNoMesh) {
+  const Scene scene = load_text(square + "g a\nf 1 2 3\ng a\nf 3 4 1\ns 1\nusemtl m\nf 1 2 4\n");
+  ASSERT_EQ(scene.meshes.size(), 1u);
+  EXPECT_EQ(scene.meshes[0].triangles.size(), 3u);
+}
+
+TEST(Obj, MaterialsByTriangle) {
+  const Scene scene =
+      load_text(square + "f 1 2 3\nusemtl red\nf 1 2 3 4\nusemtl dark blue\nf 1 2 3\no next\nf 1 2 3\n");
+  ASSERT_EQ(scene.materials.size(), 2u);
+  EXPECT_EQ(scene.materials[1].name, "dark blue");
+  EXPECT_THAT(scene.meshes[0].material_ids, ElementsAre(no_index, 0, 0, 1));
+  EXPECT_THAT(scene.meshes[1].material_ids, ElementsAre(1));
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("usemtl \"red\": 2 materials are not defined")));
+}
+
+TEST(Obj, VertexColors) {
+  const Scene scene = load_text("v 0 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0.5 0\nv 1 1 1 nan nan nan\nf 1 2 3\n");
+  const auto& colors = scene.meshes.at(0).colors.values;
+  EXPECT_THAT(colors, ElementsAre(glm::vec4(1), glm::vec4(1, 0, 0, 1), glm::vec4(0, linear_of_srgb16(32768), 0, 1),
+                                  glm::vec4(1)));
+  EXPECT_TRUE(load_text("v 0 0 0 1\nv 1 0 0\nv 0 1 0\nf 1 2 3").meshes.at(0).colors.empty());
+}
+
+TEST(Obj, FacesMayComeBeforeTheirVertices) {
+  const Scene scene = load_text("f 1 2 3\nf 1 2 3 4\n" + square);
+  EXPECT_EQ(triangle_count(scene), 3u);
+}
+
+TEST(Obj, LinesGoOnAfterABackslashAndCommentsEndThem) {
+  const Scene scene = load_text("v 0 0 \\\n 0\r\nv 1 0 0#1\nv 0 1 0 # c\nf 1 2 \\\r\n 3\nl 1 2\nl 2 3\n# f 1 2 3\n");
+  EXPECT_EQ(triangle_count(scene), 1u);
+  EXPECT_THAT(scene.warnings, ElementsAre("line 7: statements \"l\" are passed over"));
+}
+
+TEST(Obj, ErrorsNameTheLine) {
+  const auto error = [](const std::string& text) { return error_of(text, ModelFormat::obj); };
+  EXPECT_EQ(error("v 0 0\n"), "model: line 1: a vertex needs three numbers");
+  EXPECT_EQ(error("v 0 0 0\nvn 0 1 up\n"), "model: line 2: a normal needs three numbers");
+  EXPECT_EQ(error("vt\n"), "model: line 1: a texture coordinate needs a number");
+  EXPECT_EQ(error(square + "f 1 2 5\nf 1 2 3\n"), "model: line 5: vertex index 5 is out of range, there are 4");
+  EXPECT_EQ(error(square + "f 1 2 0\n"), "model: line 5: vertex index out of range, there are 4 so far");
+  EXPECT_EQ(error(square + "f 1 2 -5\n"), "model: line 5: vertex index out of range, there are 4 so far");
+  EXPECT_EQ(error(square + "f 1 2 99999999999\n"), "model: line 5: vertex index out of range, there are 4 so far");
+  EXPECT_EQ(error(square + "f 1/1 2/1 3/1\n"),
+            "model: line 5: texture coordinate index 1 is out of range, there are 0");
+  EXPECT_EQ(error(square + "f 1//1 2//1 3//1\n"), "model: line 5: normal index 1 is out of range, there are 0");
+  EXPECT_EQ(error(square + "f 1 2 x\n"), "model: line 5: not a corner of a face");
+  EXPECT_EQ(error(square + "f 1 2 3.5\n"), "model: line 5: not a corner of a face");
+  EXPECT_EQ(error("\nbinary rubbish\n"), "model: line 2: not an OBJ statement");
+}
+
+TEST(Obj, MaterialLibraries) {
+  const Folder folder;
+  const std::string path =
+      folder.write("model.obj", "mtllib sub/a library.mtl\n" + square +
+                                    "usemtl paint\nf 1 2 3\nusemtl glass\nf 1 2 3\nusemtl later\nf 1 2 3\n");
+  folder.write(
+      "sub/a library.mtl",
+      "# c\nnewmtl paint\nKd 0.5 0 1 # c\nNs 98\nPm 0.25\nKe 1\nmap_Kd -s 2 3 1 -o 0.1 0.2 -clamp on none.png\n"
+      "newmtl glass\nd 0.25\nPr 2\nKd spectral f.rfl\nnewmtl unused\nTr 0.75\nillum 2\n");
+  const Scene scene = load(path);
+  ASSERT_EQ(scene.materials.size(), 4u);
+  const Material& paint = scene.materials[0];
+  EXPECT_EQ(paint.name, "paint");
+  EXPECT_EQ(paint.base_color, glm::vec4(linear_of_srgb16(32768), 0, 1, 1));
+  EXPECT_FLOAT_EQ(paint.roughness, 0.14142136f);
+  EXPECT_EQ(paint.metallic, 0.25f);
+  EXPECT_EQ(paint.emissive, glm::vec3(1));
+  EXPECT_EQ(paint.base_color_texture.scale, glm::vec2(2, 3));
+  EXPECT_FLOAT_EQ(paint.base_color_texture.offset.y, 1 - 3 - 0.2f);
+  EXPECT_EQ(scene.materials[2].name, "unused");
+  EXPECT_EQ(scene.materials[2].base_color.a, 0.25f);
+  const Material& glass = scene.materials[1];
+  EXPECT_EQ(glass.alpha, Material::Alpha::blend);
+  EXPECT_EQ(glass.base_color, glm::vec4(1, 1, 1, 0.25f));
+  EXPECT_EQ(glass.roughness, 1.0f);
+  EXPECT_THAT(scene.warnings, ElementsAre("material paint: texture left out: sub/none.png: cannot be found",
+                                          HasSubstr("usemtl \"later\": 1 material is not defined")));
+}
+
+TEST(Obj, ABrokenLibraryIsAWarning) {
+  const Folder folder;
+  folder.write("broken.mtl", "newmtl a\nd much\n");
+  const Scene scene = load(folder.write("model.obj", "mtllib broken.mtl\n" + square + "f 1 2 3\n"));
+  EXPECT_EQ(triangle_count(scene), 1u);
+  EXPECT_THAT(scene.warnings,
+              ElementsAre("line 1: material library left out: broken.mtl: line 2: a number was expected"));
+}
+
+TEST(Obj, NothingOutsideTheFolderIsRead) {
+  const Folder folder;
+  folder.write("outside.mtl", "newmtl secret\n");
+  std::filesystem::create_directories(folder.path / "model");
+  std::filesystem::create_symlink("../outside.mtl", folder.path / "model" / "link.mtl");
+  for (const std::string& name :
+       {std::string("../outside.mtl"), (folder.path / "outside.mtl").string(), std::string("link.mtl"),
+        std::string("..\\outside.mtl"), std::string("sub/../../outside.mtl"), std::string("C:\\outside.mtl"),
+        std::string("/dev/zero"), std::string(".")}) {
+    const Scene scene = load(folder.write("model/model.obj", "mtllib " + name + "\n" + square + "f 1 2 3\n"));
+    EXPECT_EQ(triangle_count(scene), 1u);
+    EXPECT_TRUE(scene.materials.empty()) << name;
+    EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("left out"))) << name;
+  }
+}
+
+TEST(Obj, TheBananaHasItsTexture) {
+  FRONTMOST_NEEDS_MODELS();
+  const Scene scene = load(test::model("objects/ycb-banana.obj"));
+  ASSERT_EQ(scene.textures.size(), 1u);
+  EXPECT_EQ(scene.materials.at(0).base_color_texture.texture, 0u);
+  EXPECT_EQ(scene.materials[0].name, "material_0.016");
+  EXPECT_GT(scene.textures[0].width, 0);
+  EXPECT_TRUE(scene.warnings.empty());
+}
+
+}  // namespace
+}  // namespace frontmost
