@@ -58,10 +58,10 @@ inline const char* parse_integer(const char* at, const char* end, std::int64_t& 
   const bool negative = p != end && *p == '-';
   if (p != end && (*p == '-' || *p == '+')) ++p;
   const char* const digits = p;
-  std::int64_t magnitude = 0;
-  for (; p != end && detail::is_digit(*p) && p - digits < 19; ++p) magnitude = 10 * magnitude + (*p - '0');
+  std::uint64_t magnitude = 0;  // has room for the 19th digit, which is one too many
+  for (; p != end && detail::is_digit(*p) && p - digits < 19; ++p) magnitude = 10 * magnitude + std::uint64_t(*p - '0');
   if (p == digits || p - digits > 18) return nullptr;
-  value = negative ? -magnitude : magnitude;
+  value = negative ? -std::int64_t(magnitude) : std::int64_t(magnitude);
   return p;
 }
 
