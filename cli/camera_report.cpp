@@ -66,8 +66,6 @@ std::string text_of(const glm::dmat4& m) {
 
 }  // namespace
 
-std::string dump(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n'; }
-
 std::string camera_flags(const View& view, const glm::dvec3& target) {
   const Projection& p = view.projection;
   std::string flags = fmt::format("--resolution {},{} --camera-position {} --camera-focal-point {} --camera-view-up {}",

@@ -56,9 +56,10 @@ std::vector<std::string_view> known_flags(const Command& command) {
 
 void refuse_leftovers(const Command& command, const std::vector<std::string>& words, const std::string& model) {
   for (const std::string& word : words) {
-    if (word.size() > 1 && word[0] == '-' && word != "--") complain_of_unknown(command, word);
+    if (word == "--") continue;  // it has done its work
+    if (word.size() > 1 && word[0] == '-') complain_of_unknown(command, word);
+    throw UsageError(fmt::format("one model at a time: '{}' and '{}'", model, word));
   }
-  if (!words.empty()) throw UsageError(fmt::format("one model at a time: '{}' and '{}'", model, words.front()));
 }
 
 /// "--output --hash" forgot a file name; a file of that name can still be written as ./--hash.

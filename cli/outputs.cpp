@@ -31,10 +31,6 @@ std::optional<ImageFormat> format_by_suffix(const std::string& path) {
 bool is_id(OutputKind kind) { return kind >= OutputKind::primitive_ids; }
 
 void check_format(OutputKind kind, ImageFormat format, const std::string& path) {
-  if (kind == OutputKind::normals && format == ImageFormat::png) {
-    throw UsageError(
-        fmt::format("{}: PNG cannot hold normals; use .exr, .npy or .pfm, or -o with --shading normals", path));
-  }
   if (is_id(kind) && format == ImageFormat::pfm) {
     throw UsageError(fmt::format("{}: PFM cannot hold ids; use .exr, .npy or .png", path));
   }
@@ -63,7 +59,7 @@ void add(std::vector<OutputFile>& files, OutputKind kind, const std::string& pat
 /// The same text for every spelling of a path.
 std::string canonical(const std::string& path) {
   std::error_code ignored;
-  const fs::path result = fs::weakly_canonical(path, ignored);
+  const fs::path result = fs::weakly_canonical(fs::absolute(path, ignored), ignored);
   return result.empty() ? path : result.string();
 }
 
@@ -74,8 +70,11 @@ void check_writable(const std::string& path) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
   if (fs::is_directory(status)) refuse("is a folder");
-  // Writing goes through a temporary file and a rename, which would replace a device by a file.
-  if (fs::exists(status) && !fs::is_regular_file(status)) refuse("is not a regular file; use - for standard output");
+  if (fs::exists(status)) {
+    if (access(path.c_str(), W_OK) != 0) refuse("is not writable");
+    // A device or a pipe is written as it is; a file is replaced, which its folder must allow.
+    if (!fs::is_regular_file(status)) return;
+  }
   fs::path folder = fs::path(path).parent_path();
   if (folder.empty()) folder = ".";
   if (!fs::exists(folder, ignored)) refuse(fmt::format("the folder {} does not exist", folder.string()));
@@ -140,6 +139,14 @@ void check_outputs(const std::vector<std::string>& paths, const std::string& mod
                                    : fmt::format("{}: would be written twice; {{view}} tells views apart", path));
     }
     if (path != "-") check_writable(path);
+  }
+}
+
+void check_not_written(const std::string& path, const std::vector<std::string>& outputs) {
+  for (const std::string& output : outputs) {
+    if (output != "-" && canonical(output) == canonical(path)) {
+      throw UsageError(fmt::format("{}: is both the reference and an output", path));
+    }
   }
 }
 

@@ -36,6 +36,9 @@ struct OutputFile {
 /// missing or not writable, or it is not a regular file.
 void check_outputs(const std::vector<std::string>& paths, const std::string& model);
 
+/// \throws UsageError when `path` is one of the outputs.
+void check_not_written(const std::string& path, const std::vector<std::string>& outputs);
+
 /// Where the difference to a reference goes.
 [[nodiscard]] std::string difference_path(const OutputSettings& settings, const std::vector<OutputFile>& files);
 

@@ -36,7 +36,9 @@ glm::dmat4 pose_from(std::string_view text) {
 glm::ivec2 resolution_from(std::string_view text) {
   // "1920x1080" is what most people type first.
   std::string spelled(text);
-  if (const std::size_t x = spelled.find('x'); x != std::string::npos) spelled[x] = ',';
+  if (const std::size_t x = spelled.find('x'); x != std::string::npos && spelled.find(',') == std::string::npos) {
+    spelled[x] = ',';
+  }
   const std::vector<double> sides = parse_numbers(spelled, 2);
   for (const double side : sides) {
     if (!(side >= 1 && side <= max_side && side == double(int(side)))) {

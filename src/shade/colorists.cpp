@@ -10,12 +10,20 @@
 namespace frontmost::shading {
 namespace {
 
-constexpr int kSteps = 1285;  ///< divides 65535
+constexpr int kSteps = 2048;
 
 const std::array<float, kSteps + 1>& shown_table() {
   static const auto table = [] {
     std::array<float, kSteps + 1> values{};
-    for (int i = 0; i <= kSteps; ++i) values[std::size_t(i)] = linear_of_srgb16(std::uint16_t(i * (65535 / kSteps)));
+    for (int i = 1; i <= kSteps; ++i) {
+      // The inverse of srgb_of_linear by bisection: 16-bit codes would be too coarse in the dark.
+      double low = 0, high = 1;
+      for (int k = 0; k < 52; ++k) {
+        const double middle = 0.5 * (low + high);
+        (srgb_of_linear(middle) < double(i) / kSteps ? low : high) = middle;
+      }
+      values[std::size_t(i)] = float(high);
+    }
     return values;
   }();
   return table;

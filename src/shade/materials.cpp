@@ -129,7 +129,7 @@ class Run {
 
 Material default_material() {
   Material material;
-  material.base_color = glm::vec4(0.66f, 0.675f, 0.70f, 1.0f);
+  material.base_color = glm::vec4(0.56f, 0.575f, 0.60f, 1.0f);
   material.roughness = 0.5f;
   return material;
 }

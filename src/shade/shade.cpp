@@ -100,68 +100,51 @@ DepthRange depth_range(const Visible& visible, const Execution& execution) {
   return {depth_of_key(visible.view, keys.farthest), depth_of_key(visible.view, keys.nearest)};
 }
 
-bool has_textures(const Scene& scene) {
-  const auto uses = [](const Material& m) {
-    return m.base_color_texture.is_set() || m.metallic_roughness_texture.is_set() || m.normal_texture.is_set() ||
-           m.emissive_texture.is_set() || m.occlusion_texture.is_set();
-  };
-  return std::any_of(scene.materials.begin(), scene.materials.end(), uses);
-}
-
-bool lacks_normals(const Scene& scene) {
-  return std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh& m) { return m.normals.empty(); });
-}
-
-/// What pictures of materials need.
+/// What all pictures of materials need.
 struct Prepared {
-  std::optional<MaterialTable> materials;
-  std::optional<BitSet> large;
-  std::optional<TriangleSource> source;
+  BitSet seen;
+  MaterialTable materials;
+  TriangleSource source;
 
-  Prepared(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {
-    const Scene& scene = surfaces.scene();
-    std::vector<bool> is_seen(scene.materials.size());
-    if (has_textures(scene))
-      is_seen = seen_materials(surfaces, seen_primitives(surfaces, visible, execution), execution);
-    materials.emplace(scene, is_seen, execution);
-    if (lacks_normals(scene)) large = large_primitives(surfaces, visible, execution);
-    source.emplace(surfaces, visible.view, large ? &*large : nullptr, execution);
-  }
+  Prepared(const Surfaces& surfaces, const Visible& visible, const Execution& execution)
+      : seen(seen_primitives(surfaces, visible, execution)),
+        materials(surfaces.scene(), seen_materials(surfaces, seen, execution), execution),
+        source(surfaces, visible.view, seen, execution) {}
 };
-
-bool shows_materials(Shading shading) {
-  return shading == Shading::lit || shading == Shading::flat || shading == Shading::normals;
-}
 
 }  // namespace
 
 Image shade(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options, const Execution& execution) {
+  const Prepared prepared(surfaces, visible, execution);
+  const Lighting lighting = lighting_for(visible.view, surfaces.scene().up);
   const glm::vec4 background = background_color(options);
-  const auto paint = [&](const TriangleSource& source, const TileWork::Colorist& colorist) {
-    return image_of(shade_tiles(source, visible, SampleUse::all, colorist, background, execution),
+  const auto paint = [&](const TileWork::Colorist& colorist) {
+    return image_of(shade_tiles(prepared.source, visible, SampleUse::all, colorist, background, execution),
                     {"R", "G", "B", "A"});
   };
-  if (shows_materials(options.shading)) {
-    const Prepared prepared(surfaces, visible, execution);
-    if (options.shading == Shading::flat) return paint(*prepared.source, Flat{*prepared.materials});
-    if (options.shading == Shading::normals) return paint(*prepared.source, Normals{*prepared.materials});
-    const Lighting lighting = lighting_for(visible.view, surfaces.scene().up);
-    std::optional<ShadowMap> shadow;
-    if (options.shadows) shadow.emplace(surfaces, visible, glm::dvec3(lighting.to_key), execution);
-    return paint(*prepared.source, Lit{*prepared.materials, lighting, shadow ? &*shadow : nullptr});
+  switch (options.shading) {
+    case Shading::lit: {
+      std::optional<ShadowMap> shadow;
+      if (options.shadows) shadow.emplace(surfaces, visible, glm::dvec3(lighting.to_key), execution);
+      return paint(Lit{prepared.materials, lighting, shadow ? &*shadow : nullptr});
+    }
+    case Shading::flat: return paint(Flat{prepared.materials});
+    case Shading::normals: return paint(Normals{prepared.materials});
+    case Shading::depth: {
+      const DepthRange range = depth_range(visible, execution);
+      return paint(Depths{glm::vec3(visible.view.forward()), range.nearest, range.farthest});
+    }
+    case Shading::ids: return paint(Ids{});
+    case Shading::uv: return paint(Texcoords{});
   }
-  const TriangleSource source(surfaces, visible.view, nullptr, execution);
-  if (options.shading == Shading::ids) return paint(source, Ids{});
-  if (options.shading == Shading::uv) return paint(source, Texcoords{});
-  const DepthRange range = depth_range(visible, execution);
-  return paint(source, Depths{glm::vec3(visible.view.forward()), range.nearest, range.farthest});
+  throw Error(ErrorCode::bad_argument, "shading: unknown value");
 }
 
 Image normal_image(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {
   const Prepared prepared(surfaces, visible, execution);
-  return image_of(shade_tiles(*prepared.source, visible, SampleUse::first, RawNormals{*prepared.materials},
-                              glm::vec4(0), execution),
-                  {"N.X", "N.Y", "N.Z"});
+  return image_of(
+      shade_tiles(prepared.source, visible, SampleUse::first, RawNormals{prepared.materials}, glm::vec4(0), execution),
+      {"N.X", "N.Y", "N.Z"});
 }
 
 }  // namespace frontmost

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "json_report.h"
+
+#include <fmt/format.h>
+#include <frontmost/version.h>
+
+#include <algorithm>
+
+#include "camera_report.h"
+
+namespace frontmost::cli {
+namespace {
+
+// As text: JSON numbers lose bits above 2^53 in many readers.
+std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 ? values[middle] : (values[middle - 1] + values[middle]) * 0.5;
+}
+
+Json visible_json(const std::vector<double>& times) {
+  const auto [low, high] = std::minmax_element(times.begin(), times.end());
+  return {{"min", *low}, {"median", median(times)}, {"max", *high}};
+}
+
+Json seen_json(const Seen& seen, const View& view) {
+  Json objects = Json::array();
+  for (const SeenObject& object : seen.objects) {
+    objects.push_back({{"object", object.instance}, {"name", object.name}, {"covered_pixels", object.pixels}});
+  }
+  return {{"hash", hash_text(seen.hash)},
+          {"pixels", view.pixel_count()},
+          {"covered_pixels", seen.pixels},
+          {"objects", std::move(objects)}};
+}
+
+Json reference_json(const ReferenceResult& reference) {
+  Json json = {{"file", reference.path},
+               {"passed", reference.passed},
+               {"largest_difference", finite_or_null(reference.largest_difference)},
+               {"mean_difference", finite_or_null(reference.mean_difference)},
+               {"differing_pixels", reference.differing_pixels}};
+  if (!reference.difference_path.empty()) json["difference_file"] = reference.difference_path;
+  return json;
+}
+
+void add_timings(const Timings& timings, Json& json) {
+  json["visible"] = visible_json(timings.visible);
+  if (timings.visible_maps) json["visible_maps"] = *timings.visible_maps;
+  json["shade"] = timings.shade;
+  json["save"] = timings.save;
+}
+
+Json view_json(const ViewResult& result) {
+  Json json = {{"name", result.name}, {"view", camera_json(result.view, result.target)}};
+  if (result.seen) json["seen"] = seen_json(*result.seen, result.view);
+  json["files"] = Json::array();
+  for (const Result& file : result.results) {
+    json["files"].push_back({{"what", file.what}, {"path", file.path}, {"hash", hash_text(file.hash)}});
+  }
+  if (result.reference) json["reference"] = reference_json(*result.reference);
+  json["warnings"] = result.warnings;
+  return json;
+}
+
+}  // namespace
+
+Json render_json(const Settings& settings, const Surfaces& surfaces, const std::vector<ViewResult>& views,
+                 const RunTimings& timings) {
+  Json json = {{"frontmost", FRONTMOST_VERSION}, {"model", settings.model}, {"method", "zbuffer"}};
+  json["isa"] = name(settings.run.isa);
+  json["triangles"] = surfaces.primitive_count();
+  Json times = {{"load", timings.load}, {"surfaces", timings.surfaces}};
+  if (settings.run.batch) {
+    json["views"] = Json::array();
+    for (const ViewResult& view : views) {
+      Json one = view_json(view);
+      add_timings(view.timings, one["timings_ms"]);
+      json["views"].push_back(std::move(one));
+    }
+    json["warnings"] = surfaces.scene().warnings;
+  } else {
+    json.update(view_json(views.front()));
+    for (const std::string& warning : surfaces.scene().warnings) json["warnings"].push_back(warning);
+    add_timings(views.front().timings, times);
+  }
+  times["total"] = timings.total;
+  json["timings_ms"] = std::move(times);
+  return json;
+}
+
+std::string hash_lines(const std::vector<ViewResult>& views, bool is_batch) {
+  std::string lines;
+  for (const ViewResult& view : views) {
+    if (!view.seen) continue;  // its hash was not asked for
+    const std::string prefix = is_batch ? view.name + ":" : "";
+    lines += fmt::format("{}visible {}\n", prefix, hash_text(view.seen->hash));
+    for (const Result& result : view.results) {
+      lines += fmt::format("{}{} {} {}\n", prefix, result.what, hash_text(result.hash), result.path);
+    }
+  }
+  return lines;
+}
+
+}  // namespace frontmost::cli

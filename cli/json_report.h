@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run of `frontmost render` reports: as JSON, or as lines of hashes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "json_numbers.h"
+#include "render_view.h"
+
+namespace frontmost::cli {
+
+/// Milliseconds of what was done once for all views.
+struct RunTimings {
+  double load = 0, surfaces = 0, total = 0;
+};
+
+/// With one view, its facts stand at the top; with a batch, under "views".
+[[nodiscard]] Json render_json(const Settings& settings, const Surfaces& surfaces, const std::vector<ViewResult>& views,
+                               const RunTimings& timings);
+/// "what HASH path", one line a result, "visible HASH" first; a batch has "view:" in front.
+[[nodiscard]] std::string hash_lines(const std::vector<ViewResult>& views, bool is_batch);
+
+}  // namespace frontmost::cli

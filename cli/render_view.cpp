@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// One view. The picture has several samples a pixel; maps, the report and the hash have one, at pixel centres, so that
+// they do not depend on how smooth the picture is to be.
+#include "render_view.h"
+
+#include <fmt/format.h>
+#include <frontmost/shade.h>
+#include <frontmost/zbuffer.h>
+
+#include "blank.h"
+#include "interruption.h"
+#include "reference.h"
+#include "stopwatch.h"
+#include "view_options.h"
+
+namespace frontmost::cli {
+namespace {
+
+constexpr int default_samples = 4;
+
+bool wants(const Job& job, OutputKind kind) {
+  for (const OutputFile& file : job.files) {
+    if (std::find(file.kinds.begin(), file.kinds.end(), kind) != file.kinds.end()) return true;
+  }
+  return false;
+}
+
+bool wants_maps(const Job& job) {
+  for (const OutputFile& file : job.files) {
+    if (file.kinds.size() > 1 || file.kinds.front() != OutputKind::picture) return true;
+  }
+  return false;
+}
+
+/// The visibility that a view needs: of the picture, of the maps, or of both at once.
+struct Sights {
+  std::optional<Visible> picture, maps;
+  bool shared = false;  ///< the maps are those of the picture
+
+  [[nodiscard]] const Visible& for_maps() const { return shared ? *picture : *maps; }
+  [[nodiscard]] const Visible& any() const { return picture ? *picture : *maps; }
+};
+
+Visible timed(const View& view, const RenderContext& context, std::vector<double>& times) {
+  for (int i = 1;; ++i) {
+    const Stopwatch watch;
+    Visible visible = zbuffer(context.surfaces, view, context.execution);
+    times.push_back(watch.milliseconds());
+    if (i >= context.run.repeat) return visible;
+  }
+}
+
+Sights look(const Job& job, const RenderContext& context, ViewResult& result) {
+  const bool picture = wants(job, OutputKind::picture) || context.keep_picture || job.output.reference;
+  const bool maps = wants_maps(job) || job.output.hash || context.run.json || !picture;
+  View view = result.view;
+  Sights sights;
+  if (picture) {
+    view.samples = job.view.samples.value_or(default_samples);
+    sights.picture = timed(view, context, result.timings.visible);
+    sights.shared = maps && view.samples == 1;
+  }
+  if (maps && !sights.shared) {
+    view.samples = 1;
+    std::vector<double> times;
+    sights.maps = timed(view, context, picture ? times : result.timings.visible);
+    if (picture) result.timings.visible_maps = times.front();
+  }
+  return sights;
+}
+
+Seen summary(const Surfaces& surfaces, const Visible& visible) {
+  Seen seen;
+  seen.hash = content_hash(visible);
+  const Image objects = id_image(surfaces, visible, IdKind::object);
+  const std::vector<Instance>& instances = surfaces.scene().instances;
+  std::vector<std::uint64_t> pixels(instances.size());
+  for (const std::uint32_t object : objects.channels.front().integers()) {
+    if (object != no_index) ++pixels[object];
+  }
+  for (std::uint32_t i = 0; i < pixels.size(); ++i) {
+    seen.pixels += pixels[i];
+    if (pixels[i] > 0) seen.objects.push_back({i, instances[i].name, pixels[i]});
+  }
+  return seen;
+}
+
+Image map_of(OutputKind kind, const Job& job, const RenderContext& context, const Visible& visible) {
+  const float background = job.output.background_depth;
+  switch (kind) {
+    case OutputKind::depth: return depth_image(visible, background);
+    case OutputKind::ray_distance: return ray_distance_image(visible, background);
+    case OutputKind::normals: return normal_image(context.surfaces, visible, context.execution);
+    case OutputKind::primitive_ids: return id_image(context.surfaces, visible, IdKind::primitive);
+    case OutputKind::object_ids: return id_image(context.surfaces, visible, IdKind::object);
+    case OutputKind::material_ids: return id_image(context.surfaces, visible, IdKind::material);
+    case OutputKind::picture: break;  // not a map
+  }
+  return {};
+}
+
+/// PFM holds three channels; there the picture is without its alpha.
+Image fitting(const Image& picture, ImageFormat format) {
+  Image copy = picture;
+  if (format == ImageFormat::pfm && copy.channels.size() == 4) copy.channels.pop_back();
+  return copy;
+}
+
+void append(Image& image, Image part) {
+  image.width = part.width;
+  image.height = part.height;
+  for (Channel& channel : part.channels) image.channels.push_back(std::move(channel));
+}
+
+SaveOptions save_options(const OutputFile& file, const OutputSettings& settings) {
+  SaveOptions options;
+  options.format = file.format;
+  options.bits = settings.bits;
+  options.depth_scale = settings.depth_scale;
+  return options;
+}
+
+void write(const OutputFile& file, const Image* picture, const Sights& sights, const Job& job,
+           const RenderContext& context, ViewResult& result) {
+  Image image;
+  for (const OutputKind kind : file.kinds) {
+    Image part =
+        kind == OutputKind::picture ? fitting(*picture, file.format) : map_of(kind, job, context, sights.for_maps());
+    Result& one = result.results.emplace_back(Result{std::string(kind_name(kind)), file.path, 0});
+    if (job.output.hash || context.run.json) one.hash = content_hash(part);
+    append(image, std::move(part));
+  }
+  const Stopwatch watch;
+  const WritingFiles writing;
+  save(image, file.path, save_options(file, job.output), context.execution);
+  result.timings.save += watch.milliseconds();
+}
+
+void warn_if_blank(const Sights& sights, const RenderContext& context, ViewResult& result) {
+  if (!is_blank(sights.any())) return;
+  result.warnings.push_back(fmt::format("nothing is in view: {}", blank_reason(context.surfaces, result.view)));
+}
+
+}  // namespace
+
+ViewResult render_view(const Job& job, const RenderContext& context) {
+  ViewResult result;
+  result.name = job.name;
+  result.view = resolve_view(job.view, context.surfaces);
+  result.target = job.view.focal_point.value_or(focal_point_of(result.view, context.surfaces));
+  const Sights sights = look(job, context, result);
+  if (job.output.hash || context.run.json) result.seen = summary(context.surfaces, sights.for_maps());
+  warn_if_blank(sights, context, result);
+  std::optional<Image> picture;
+  if (sights.picture) {
+    const Stopwatch watch;
+    picture = shade(context.surfaces, *sights.picture,
+                    {job.output.shading, job.output.background, !job.output.no_shadows}, context.execution);
+    result.timings.shade = watch.milliseconds();
+  }
+  for (const OutputFile& file : job.files) {
+    stop_if_interrupted();
+    write(file, picture ? &*picture : nullptr, sights, job, context, result);
+  }
+  if (job.output.reference) result.reference = compare_with_reference(*picture, job, context.execution);
+  if (context.keep_picture) result.picture = std::move(picture);
+  return result;
+}
+
+}  // namespace frontmost::cli

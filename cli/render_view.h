@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rendering one view, and what there is to say about it afterwards.
+#pragma once
+
+#include <frontmost/surfaces.h>
+#include <frontmost/visible.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "jobs.h"
+
+namespace frontmost::cli {
+
+/// Milliseconds.
+struct Timings {
+  std::vector<double> visible;         ///< one for each of --repeat
+  std::optional<double> visible_maps;  ///< of the maps' single sample, where the picture has more
+  double shade = 0, save = 0;
+};
+
+struct SeenObject {
+  std::uint32_t instance = no_index;
+  std::string name;
+  std::uint64_t pixels = 0;
+};
+
+/// What is seen at the pixel centres.
+struct Seen {
+  std::uint64_t hash = 0;
+  std::uint64_t pixels = 0;
+  std::vector<SeenObject> objects;  ///< in scene order, those with a pixel at least
+};
+
+struct Result {
+  std::string what;  ///< as kind_name()
+  std::string path;
+  std::uint64_t hash = 0;
+};
+
+struct ReferenceResult {
+  std::string path, difference_path;  ///< the latter empty when they do not differ
+  double largest_difference = 0, mean_difference = 0;
+  std::uint64_t differing_pixels = 0;
+  bool passed = false;
+};
+
+struct ViewResult {
+  std::string name;
+  View view;
+  glm::dvec3 target{0.0};
+  std::optional<Seen> seen;  ///< where --json or --hash ask
+  std::vector<Result> results;
+  std::optional<ReferenceResult> reference;
+  std::vector<std::string> warnings;
+  Timings timings;
+  std::optional<Image> picture;  ///< kept for the terminal
+};
+
+/// What all views share.
+struct RenderContext {
+  const Surfaces& surfaces;
+  const RunSettings& run;
+  Execution execution;
+  bool keep_picture = false;
+};
+
+/// Finds what is visible, shades, and writes every file of the job.
+[[nodiscard]] ViewResult render_view(const Job& job, const RenderContext& context);
+
+}  // namespace frontmost::cli

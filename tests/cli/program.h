@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Running the real program, as a user would, in a folder of its own.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace frontmost::test {
+
+struct Outcome {
+  int status = -1;  ///< exit status; 128 + signal when a signal ended it
+  std::string out, err;
+
+  /// Standard output as JSON; fails the test when it is not.
+  [[nodiscard]] nlohmann::json json() const;
+};
+
+struct Call {
+  std::vector<std::string> words{};
+  std::string input{};           ///< standard input
+  bool keep_input_open = false;  ///< as a pipe whose writer is slow
+  std::optional<int> signal{};   ///< sent after `signal_after` seconds
+  double signal_after = 0.3;
+  bool terminal = false;                   ///< standard output and error are one terminal; both arrive in `out`
+  std::vector<std::string> environment{};  ///< NAME=VALUE, added
+};
+
+/// A folder for one test, gone with it; programs run inside it.
+class ProgramTest : public testing::Test {
+ protected:
+  ProgramTest();
+  ~ProgramTest() override;
+
+  [[nodiscard]] Outcome run(std::vector<std::string> words) const { return run(Call{.words = std::move(words)}); }
+  [[nodiscard]] Outcome run(const Call& call) const;
+  /// As above; the test fails unless the exit status is 0. Words are split at blanks.
+  Outcome succeed(const std::string& line) const;
+  /// The test fails unless the exit status is this one and standard error holds `message`.
+  void expect_failure(const std::string& line, int status, const std::string& message) const;
+
+  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  [[nodiscard]] bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
+  [[nodiscard]] std::string read(const std::string& name) const;
+  void write(const std::string& name, const std::string& content) const;
+  /// Names of all files, sorted.
+  [[nodiscard]] std::vector<std::string> files() const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// A binary STL of the unit cube, z up, lower corner at `low`, sides of 1; 12 triangles.
+[[nodiscard]] std::string cube_stl(float low = 0);
+/// A binary STL of one triangle in the plane z = 0, counter-clockwise seen from +z.
+[[nodiscard]] std::string triangle_stl();
+
+}  // namespace frontmost::test

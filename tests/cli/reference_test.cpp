@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// --reference: passes, fails with its own exit status, and shows where.
+#include <gmock/gmock.h>
+
+#include "program.h"
+
+namespace frontmost::test {
+namespace {
+
+using testing::HasSubstr;
+
+class Reference : public ProgramTest {
+ protected:
+  Reference() {
+    write("cube.stl", cube_stl());
+    succeed("render cube.stl --resolution 48,32 -o old.png");
+  }
+};
+
+TEST_F(Reference, TheSamePicturePasses) {
+  const Outcome outcome = succeed("render cube.stl --resolution 48,32 -o new.png --reference old.png --json");
+  EXPECT_EQ(outcome.json()["reference"]["passed"], true);
+  EXPECT_EQ(outcome.json()["reference"]["differing_pixels"], 0);
+  EXPECT_FALSE(exists("new.difference.png"));
+  succeed("render cube.stl --resolution 48,32 --reference old.png");
+}
+
+TEST_F(Reference, AnotherPictureFailsAndShowsWhere) {
+  const Outcome outcome = run({"render", "cube.stl", "--resolution", "48,32", "--view", "iso", "-o", "new.png",
+                               "--reference", "old.png", "--json"});
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("old.png: "));
+  EXPECT_THAT(outcome.err, HasSubstr("pixels differ"));
+  EXPECT_EQ(outcome.json()["reference"]["passed"], false);
+  EXPECT_GT(outcome.json()["reference"]["differing_pixels"], 0);
+  EXPECT_EQ(outcome.json()["reference"]["difference_file"], "new.difference.png");
+  EXPECT_TRUE(exists("new.png"));
+  EXPECT_TRUE(exists("new.difference.png"));
+}
+
+TEST_F(Reference, TheThresholdForgives) {
+  succeed("render cube.stl --resolution 48,32 --view iso --reference old.png --reference-threshold 1");
+  EXPECT_EQ(run({"render", "cube.stl", "--resolution", "48,32", "--view", "iso", "--reference", "old.png",
+                 "--reference-threshold", "0.01", "--reference-difference", "d.exr"})
+                .status,
+            3);
+  EXPECT_TRUE(exists("d.exr"));
+}
+
+TEST_F(Reference, WrongReferencesAreNamed) {
+  expect_failure("render cube.stl --resolution 48,32 --reference none.png", 1, "none.png");
+  expect_failure("render cube.stl --resolution 40,32 --reference old.png", 1, "old.png: ");
+  expect_failure("render cube.stl -o ./old.png --reference old.png", 2, "is both the reference and an output");
+  expect_failure("render cube.stl --reference old.png --reference-threshold 2", 2, "--reference-threshold");
+}
+
+}  // namespace
+}  // namespace frontmost::test

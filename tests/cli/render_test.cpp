@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+// frontmost render: every output, every report, and the same bytes whatever it runs on.
+#include <frontmost/base.h>
+#include <frontmost/io.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "program.h"
+#include "support/models.h"
+
+namespace frontmost::test {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class Render : public ProgramTest {
+ protected:
+  Render() { write("cube.stl", cube_stl()); }
+
+  [[nodiscard]] Image image(const std::string& name) const { return load_image(path(name)); }
+};
+
+// The cube seen along +y from 10 before its near side, 1 unit 10 pixels wide there.
+const std::string front =
+    "render cube.stl --camera-position 0.5,-10,0.5 --camera-direction y "
+    "--intrinsics 100,100,32,32 --pixel-center half --resolution 64,64 ";
+
+TEST_F(Render, DepthIsPlanarAndInSceneUnits) {
+  EXPECT_THAT(succeed(front + "--depth d.exr --ray-distance r.npy").err, IsEmpty());
+  const Image depth = image("d.exr");
+  const Buffer<float>& z = depth.find("Z")->floats();
+  EXPECT_FLOAT_EQ(z[32 * 64 + 32], 10);
+  EXPECT_FLOAT_EQ(z[28 * 64 + 28], 10);
+  EXPECT_TRUE(std::isinf(z[0]));
+  // Along the ray the distance grows with the slope: pixel (28.5 - 32) / 100.
+  const Image ray = image("r.npy");
+  EXPECT_FLOAT_EQ(ray.channels[0].floats()[28 * 64 + 28], 10 * std::sqrt(1 + 2 * 0.035 * 0.035));
+  // The near side is 10 pixels wide.
+  const auto covered = std::count_if(z.begin(), z.end(), [](float v) { return std::isfinite(v); });
+  EXPECT_EQ(covered, 100);
+}
+
+TEST_F(Render, BackgroundDepthAndDepthScale) {
+  succeed(front + "--depth d.pfm --background-depth 0");
+  EXPECT_EQ(image("d.pfm").channels[0].floats()[0], 0);
+  succeed(front + "--depth d.png --depth-scale 1000");
+  EXPECT_NEAR(image("d.png").find("Z")->floats()[32 * 64 + 32], 10, 1e-3);
+}
+
+TEST_F(Render, IdsOfEveryKind) {
+  succeed(front + "--ids primitive=p.exr --ids object=o.npy --ids material=m.png --normals n.exr");
+  const Image primitives = image("p.exr");
+  const std::uint32_t id = primitives.find("primitive")->integers()[32 * 64 + 32];
+  EXPECT_TRUE(id == 4 || id == 5) << id;  // the side at low y comes third in the file
+  EXPECT_EQ(primitives.find("primitive")->integers()[0], no_index);
+  EXPECT_EQ(image("o.npy").channels[0].integers()[32 * 64 + 32], 0u);
+  EXPECT_TRUE(exists("m.png"));
+  const Image normals = image("n.exr");
+  EXPECT_NEAR(normals.find("N.Y")->floats()[32 * 64 + 32], -1, 1e-5);
+}
+
+TEST_F(Render, OneExrHoldsEverything) {
+  succeed(front + "-o all.exr --depth all.exr --normals all.exr --ids object=all.exr");
+  const Image all = image("all.exr");
+  for (const char* channel : {"R", "G", "B", "A", "Z", "N.X", "N.Y", "N.Z", "object"}) {
+    EXPECT_TRUE(all.find(channel)) << channel;
+  }
+  EXPECT_THAT(files(), ElementsAre("all.exr", "cube.stl"));
+}
+
+TEST_F(Render, PicturesInEveryFormat) {
+  for (const char* name : {"a.png", "a.exr", "a.pfm", "a.npy"}) {
+    succeed(front + "-o " + name);
+    const Image picture = image(name);
+    EXPECT_EQ(picture.width, 64);
+    EXPECT_NEAR(picture.channels[0].floats()[0], 1, 1e-6) << "white background in " << name;
+  }
+  succeed(front + "-o b.png --bits 16 --background transparent");
+  EXPECT_EQ(image("b.png").find("A")->floats()[0], 0);
+  succeed(front + "-o c.png --background #ff0000");
+  EXPECT_EQ(image("c.png").find("G")->floats()[0], 0);
+  for (const char* shading : {"lit", "flat", "normals", "depth", "ids", "uv"}) {
+    succeed(front + "-o s.png --no-shadows --shading " + shading);
+  }
+}
+
+TEST_F(Render, StandardOutputAndInput) {
+  const Outcome piped =
+      run(Call{.words = {"render", "-", "-o", "-", "--format", "png", "--resolution", "32,32"}, .input = cube_stl()});
+  EXPECT_EQ(piped.status, 0) << piped.err;
+  EXPECT_EQ(piped.out.substr(1, 3), "PNG");
+  EXPECT_THAT(piped.err, IsEmpty());
+  succeed("render cube.stl -o file.png --resolution 32,32");
+  EXPECT_EQ(piped.out, read("file.png"));
+}
+
+TEST_F(Render, TemplatesNameFiles) {
+  succeed("render cube.stl --view top -o {model}_{view}.png --resolution 16,16");
+  EXPECT_TRUE(exists("cube_top.png"));
+  expect_failure("render cube.stl -o {modle}.png", 2, "{model} and {view}");
+}
+
+TEST_F(Render, JsonSaysWhatWasSeen) {
+  const Outcome outcome = succeed(front + "--json --repeat 3 -o a.png --depth d.exr");
+  const json report = outcome.json();
+  EXPECT_EQ(report["seen"]["covered_pixels"], 100);
+  EXPECT_EQ(report["seen"]["pixels"], 4096);
+  EXPECT_EQ(report["seen"]["objects"][0]["covered_pixels"], 100);
+  EXPECT_EQ(report["seen"]["hash"].get<std::string>().size(), 16u);
+  EXPECT_EQ(report["triangles"], 12);
+  EXPECT_EQ(report["files"].size(), 2u);
+  EXPECT_EQ(report["files"][0]["what"], "picture");
+  EXPECT_EQ(report["files"][1]["path"], "d.exr");
+  EXPECT_EQ(report["view"]["resolution"], json({64, 64}));
+  EXPECT_TRUE(report["warnings"].is_array());
+  for (const char* stage : {"load", "surfaces", "shade", "save", "total"}) {
+    EXPECT_GE(report["timings_ms"].value(stage, -1.0), 0) << stage;
+  }
+  const json& visible = report["timings_ms"]["visible"];
+  EXPECT_LE(visible["min"].get<double>(), visible["median"].get<double>());
+  EXPECT_LE(visible["median"].get<double>(), visible["max"].get<double>());
+}
+
+TEST_F(Render, TheAnswerDoesNotDependOnHowItRuns) {
+  const std::string line = "render builtin:teapot --resolution 200,150 --hash -o a.png --depth d.exr --normals n.exr ";
+  const std::string expected = succeed(line).out;
+  const std::string picture = read("a.png");
+  EXPECT_THAT(expected, testing::StartsWith("visible "));
+  EXPECT_THAT(expected, testing::ContainsRegex("picture [0-9a-f]{16} a.png"));
+  std::vector<std::string> ways = {"--threads 1", "--threads 2", "--threads 7", "--repeat 2"};
+  for (const Isa isa : available_isas()) ways.push_back("--isa " + std::string(name(isa)));
+  for (const std::string& way : ways) {
+    EXPECT_EQ(succeed(line + way).out, expected) << way;
+    EXPECT_EQ(read("a.png"), picture) << way;
+  }
+  EXPECT_EQ(succeed(line + "--method zbuffer --json --quiet").json()["seen"]["hash"], expected.substr(8, 16));
+}
+
+TEST_F(Render, SamplesChangeThePictureAndNotTheMaps) {
+  const std::string line = "render builtin:teapot --resolution 100,80 --hash -o a.exr --depth d.exr --samples ";
+  const std::string one = succeed(line + "1").out, eight = succeed(line + "8").out;
+  EXPECT_EQ(one.substr(8, 16), eight.substr(8, 16));
+  EXPECT_NE(one, eight);
+  EXPECT_EQ(one.substr(one.rfind('\n', one.size() - 2)), eight.substr(eight.rfind('\n', eight.size() - 2)));
+}
+
+TEST_F(Render, BatchesRenderManyViews) {
+  write("views.json", R"({"views": [{"name": "a", "view": "front"}, {"view": "top", "resolution": [20, 10]},
+      {"camera-direction": [1, 1, -1]}], "outputs": {"output": "{model}_{view}.png", "depth": "{view}.npy"}})");
+  const json report = succeed("render cube.stl --batch views.json --resolution 32,32 --json").json();
+  EXPECT_THAT(files(), ElementsAre("2.npy", "a.npy", "cube.stl", "cube_2.png", "cube_a.png", "cube_top.png", "top.npy",
+                                   "views.json"));
+  ASSERT_EQ(report["views"].size(), 3u);
+  EXPECT_EQ(report["views"][1]["view"]["resolution"], json({20, 10}));
+  EXPECT_TRUE(report["views"][2]["timings_ms"].contains("visible"));
+  EXPECT_THAT(succeed("render cube.stl --batch views.json --hash").out,
+              testing::ContainsRegex("top:depth [0-9a-f]{16} top.npy"));
+}
+
+TEST_F(Render, BatchComplaintsComeBeforeAnyWork) {
+  write("same.json", R"({"views": [{"view": "front"}, {"view": "top"}], "outputs": {"output": "a.png"}})");
+  expect_failure("render cube.stl --batch same.json", 2, "would be written twice");
+  write("bad.json", R"({"views": [{"view": "fornt"}]})");
+  expect_failure("render cube.stl --batch bad.json -o a.png", 2, "bad.json: views[0].view: 'fornt' is not one of");
+  expect_failure("render cube.stl --batch none.json -o a.png", 1, "none.json: cannot be opened");
+  EXPECT_THAT(files(), ElementsAre("bad.json", "cube.stl", "same.json"));
+}
+
+TEST_F(Render, OutputsAreCheckedBeforeAnyWork) {
+  // The model does not exist: were it read first, the complaint would be about it.
+  expect_failure("render none.stl -o missing/a.png", 1, "the folder missing does not exist");
+  expect_failure("render none.stl -o a.jpg", 2, "a.jpg: the suffix names no format");
+  expect_failure("render none.stl -o -", 2, "--format");
+  expect_failure("render none.stl -o a.png --depth a.png", 2, "two outputs have this name");
+  expect_failure("render none.stl -o a.exr --depth ./a.exr", 2, "would be written twice");
+  expect_failure("render none.stl --ids face=a.png", 2, "'face' is not one of");
+  expect_failure("render none.stl --ids a.png", 2, "KIND=FILE");
+  expect_failure("render none.stl --ids object=a.pfm", 2, "PFM cannot hold ids");
+  expect_failure("render none.stl -o - --format png --json", 2, "standard output");
+  expect_failure("render none.stl -o - --format png --hash", 2, "standard output");
+  expect_failure("render none.stl -o .png/", 2, "suffix");
+  write("file", "x");
+  expect_failure("render none.stl -o file/a.png", 1, "file is not a folder");
+  write("cube.exr", cube_stl());
+  expect_failure("render cube.exr --input-format stl -o ./cube.exr", 2, "is the model itself");
+  expect_failure("render cube.stl", 2, "nothing to do: give an output such as -o FILE");
+  expect_failure("render cube.stl -o a.png --method raytrace", 2, "--method");
+  expect_failure("render cube.stl -o a.png --isa neon", 2, "--isa: 'neon' is not one of");
+  expect_failure("render cube.stl -o a.png --samples 3", 2, "--samples: '3' is not one of 1, 2, 4, 8, 16");
+  expect_failure("render cube.stl -o a.png --bits 12", 2, "--bits");
+  expect_failure("render cube.stl -o a.png --background mauve", 2, "--background: 'mauve' is not a colour");
+}
+
+TEST_F(Render, DevicesAreWrittenAsTheyAre) {
+  succeed(front + "-o /dev/null --format png");
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST_F(Render, ABlankPictureSaysWhy) {
+  write("empty.stl", std::string(80, ' ') + std::string(4, '\0'));
+  write("flap.stl", triangle_stl());
+  const std::pair<const char*, const char*> cases[] = {
+      {"render empty.stl", "the model has no triangles"},
+      {"render cube.stl --camera-position 0,-5,0 --camera-direction -y", "is behind the camera"},
+      {"render cube.stl --camera-position 0,-5,0 --camera-direction y --near 50", "is nearer than the near plane"},
+      {"render cube.stl --camera-position 0,-5,0 --camera-direction y --far 1", "is beyond the far plane"},
+      {"render cube.stl --camera-position 0,-5,0 --camera-direction 1,0.3,0", "is outside the picture"},
+      {"render cube.stl --cull both", "faces the way that --cull leaves out"},
+      {"render flap.stl --view bottom --cull back", "faces the way that --cull leaves out"},
+      {"render flap.stl --view top --cull front", "faces the way that --cull leaves out"},
+      {"render cube.stl --camera-position 0.3,-90000,0.2 --camera-direction y", "is smaller than a pixel"},
+  };
+  for (const auto& [words, reason] : cases) {
+    const std::string line = std::string(words) + " --resolution 32,32 -o a.png";
+    const Outcome outcome = succeed(line);
+    EXPECT_THAT(outcome.err, HasSubstr("warning: nothing is in view: ")) << line;
+    EXPECT_THAT(outcome.err, HasSubstr(reason)) << line;
+    const json report = succeed(line + " --json --quiet").json();
+    EXPECT_THAT(report["warnings"].dump(), HasSubstr(reason)) << line;
+  }
+  EXPECT_THAT(succeed("render flap.stl --view top --cull back --resolution 32,32 -o a.png").err, IsEmpty());
+}
+
+TEST_F(Render, ReadersWarningsAreFewAndCounted) {
+  FRONTMOST_NEEDS_MODELS();
+  const Outcome outcome = run({"info", model("scenes/pandora.obj"), "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::size_t warnings = outcome.json()["warnings"].size();
+  const auto lines = std::count(outcome.err.begin(), outcome.err.end(), '\n');
+  EXPECT_EQ(std::size_t(lines), warnings > 5 ? 6 : warnings);
+  EXPECT_THAT(run({"info", model("scenes/pandora.obj"), "--quiet"}).err, IsEmpty());
+}
+
+TEST_F(Render, NumbersDoNotDependOnTheLocale) {
+  const Outcome german = run(Call{.words = {"camera", "cube.stl", "--json", "--camera-position", "1.5,-2.5,3"},
+                                  .environment = {"LC_ALL=de_DE.UTF-8", "LANG=de_DE.UTF-8"}});
+  EXPECT_EQ(german.out, succeed("camera cube.stl --json --camera-position 1.5,-2.5,3").out);
+}
+
+}  // namespace
+}  // namespace frontmost::test
