@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "frontmost/view.h"
+#include "surfaces/cluster_set.h"
 
 namespace frontmost {
 namespace {
@@ -51,23 +52,119 @@ std::array<glm::dvec3, 8> corners_of(const Box& box) {
 
 Box unit_box() { return {glm::vec3(-0.5f), glm::vec3(0.5f)}; }
 
-/// How far a box reaches from its centre across the picture, and how far back a perspective eye must stand.
-struct Extent {
-  double half_x = 0, half_y = 0, distance = 0;
+/// The frustum of a pinhole that looks along `axes`, moved so that it just holds every point it is shown. With
+/// p = (x, y, towards) along the axes, a point is left of the right side when x <= spread * (eye_towards - towards), so
+/// each side asks for one sum of eye coordinates to be at least the greatest of the points'; two opposite sides give
+/// the eye's place across and how far back it must stand.
+class Fit {
+ public:
+  Fit(const glm::dmat4& axes, double spread_x, double spread_y) : axes_(axes), x_{spread_x}, y_{spread_y} {}
+
+  void include(const glm::dvec3& p) {
+    const double towards = glm::dot(p, glm::dvec3(axes_[2]));
+    x_.include(glm::dot(p, glm::dvec3(axes_[0])), towards);
+    y_.include(glm::dot(p, glm::dvec3(axes_[1])), towards);
+  }
+  /// False when the point would change nothing.
+  [[nodiscard]] bool is_extended_by(const glm::dvec3& p) const {
+    Fit larger = *this;
+    larger.include(p);
+    return !(larger.x_ == x_ && larger.y_ == y_);
+  }
+  /// Where a perspective eye stands, at least `closest` before the nearest point.
+  [[nodiscard]] glm::dvec3 eye(double closest) const {
+    const double back = std::max({x_.back(), y_.back(), x_.nearest + closest});
+    return in_world(x_.across(), y_.across(), back);
+  }
+  /// The middle of the points' extent across the view, and the halves of that extent.
+  [[nodiscard]] glm::dvec3 middle(double towards) const { return in_world(x_.middle(), y_.middle(), towards); }
+  [[nodiscard]] glm::dvec2 half_extent() const { return {x_.half_extent(), y_.half_extent()}; }
+
+ private:
+  struct Direction {
+    double spread;
+    double plus = -kInfinity, minus = -kInfinity;  // of +-x / spread + towards
+    double low = kInfinity, high = -kInfinity, nearest = -kInfinity;
+
+    void include(double x, double towards) {
+      plus = std::max(plus, x / spread + towards);
+      minus = std::max(minus, -x / spread + towards);
+      low = std::min(low, x);
+      high = std::max(high, x);
+      nearest = std::max(nearest, towards);
+    }
+    bool operator==(const Direction&) const = default;
+    [[nodiscard]] double back() const { return (plus + minus) / 2; }
+    [[nodiscard]] double across() const { return spread * (plus - minus) / 2; }
+    [[nodiscard]] double middle() const { return (low + high) / 2; }
+    [[nodiscard]] double half_extent() const { return (high - low) / 2; }
+  };
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] glm::dvec3 in_world(double x, double y, double towards) const {
+    return x * glm::dvec3(axes_[0]) + y * glm::dvec3(axes_[1]) + towards * glm::dvec3(axes_[2]);
+  }
+
+  glm::dmat4 axes_;
+  Direction x_, y_;
 };
 
-Extent measure(const Box& box, const glm::dmat4& pose, double spread_x, double spread_y) {
-  const glm::dvec3 centre = 0.5 * (glm::dvec3(box.low) + glm::dvec3(box.high));
-  Extent extent;
-  for (const glm::dvec3& corner : corners_of(box)) {
-    const glm::dvec3 p = corner - centre;
-    const double x = std::abs(glm::dot(p, glm::dvec3(pose[0]))), y = std::abs(glm::dot(p, glm::dvec3(pose[1])));
-    const double nearer = glm::dot(p, glm::dvec3(pose[2]));
-    extent.half_x = std::max(extent.half_x, x);
-    extent.half_y = std::max(extent.half_y, y);
-    extent.distance = std::max({extent.distance, x / spread_x + nearer, y / spread_y + nearer});
+/// The extremes of a model in the picture of an eye, as slopes y / distance, and how far away they are.
+class Spread {
+ public:
+  Spread(const glm::dmat4& pose, int axis) : pose_(pose), axis_(axis) {}
+
+  void include(const glm::dvec3& p) {
+    const glm::dvec3 d = p - glm::dvec3(pose_[3]);
+    const double distance = -glm::dot(d, glm::dvec3(pose_[2])),
+                 slope = glm::dot(d, glm::dvec3(pose_[axis_])) / distance;
+    if (slope < low_.slope) low_ = {slope, distance};
+    if (slope > high_.slope) high_ = {slope, distance};
   }
-  return extent;
+  [[nodiscard]] bool is_extended_by(const glm::dvec3& p) const {
+    Spread larger = *this;
+    larger.include(p);
+    return larger.low_.slope < low_.slope || larger.high_.slope > high_.slope;
+  }
+  /// How far the eye must move for the two extremes to lie equally far from the picture's middle.
+  [[nodiscard]] double to_centre() const {
+    return (low_.slope + high_.slope) / (1 / low_.distance + 1 / high_.distance);
+  }
+
+ private:
+  struct Extreme {
+    double slope, distance;
+  };
+  glm::dmat4 pose_;
+  int axis_;
+  Extreme low_{std::numeric_limits<double>::infinity(), 1}, high_{-std::numeric_limits<double>::infinity(), 1};
+};
+
+/// Shows `extremes` the vertices of all clusters, but for those whose box cannot change it: almost all.
+template <class Extremes>
+void include_clusters(Extremes& extremes, const ClusterSet& set) {
+  for (std::size_t i = 0; i < set.clusters.size(); ++i) {
+    const Box box = set.boxes.get(i);
+    if (box.is_empty()) continue;
+    const auto corners = corners_of(box);
+    const auto extends = [&](const glm::dvec3& corner) { return extremes.is_extended_by(corner); };
+    if (std::none_of(corners.begin(), corners.end(), extends)) continue;
+    const std::size_t first = set.clusters[i].first_vertex;
+    for (std::size_t v = first; v < first + set.clusters[i].vertex_count; ++v)
+      extremes.include({set.x[v], set.y[v], set.z[v]});
+  }
+}
+
+/// Moves the eye across until the model is in the middle of the picture. Only the looser direction moves: the tight
+/// one is in the middle already.
+void centre(glm::dmat4& pose, const ClusterSet& set) {
+  constexpr int kSteps = 3;  // each leaves the change of the extremes' distances, a small part
+  for (int step = 0; step < kSteps; ++step)
+    for (int axis = 0; axis < 2; ++axis) {
+      Spread spread(pose, axis);
+      include_clusters(spread, set);
+      pose[3] += pose[axis] * spread.to_centre();
+    }
 }
 
 }  // namespace
@@ -97,20 +194,30 @@ View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& 
   if (!(options.margin >= 0 && options.margin < 0.5)) throw Error(ErrorCode::bad_argument, "margin: must be 0 to 0.5");
   const Box box = surfaces.bounds().is_empty() ? unit_box() : surfaces.bounds();
   const Gaze look = gaze(options.direction, model_axes(surfaces.scene().up));
-  const glm::dvec3 centre = 0.5 * (glm::dvec3(box.low) + glm::dvec3(box.high));
-  const glm::dvec3 towards = glm::normalize(look.towards_viewer);
-  glm::dmat4 pose = look_at(towards, glm::dvec3(0), look.up);
+  glm::dmat4 pose = look_at(glm::normalize(look.towards_viewer), glm::dvec3(0), look.up);
 
   const double aspect = double(width) / height, filled = 1 - 2 * options.margin;
   Projection projection = make_projection(options.min_fov, aspect, {});
-  const Extent extent = measure(box, pose, projection.right * filled, projection.top * filled);
-  const double diagonal = std::max(glm::length(glm::dvec3(box.high) - glm::dvec3(box.low)), 1e-30);
-  const double distance = options.orthographic ? diagonal : std::max(extent.distance, 1e-3 * diagonal);
-  pose[3] = glm::dvec4(centre + towards * distance, 1.0);
+  Fit fit(pose, projection.right * filled, projection.top * filled);
+  if (surfaces.bounds().is_empty()) {
+    for (const glm::dvec3& corner : corners_of(box)) fit.include(corner);
+  } else {
+    include_clusters(fit, surfaces.clusters());
+  }
+  const glm::dvec3 low(box.low), high(box.high);
+  // A single point far from the origin has to be stood back from by more than rounding.
+  const double diagonal = std::max({glm::length(high - low), 1e-5 * glm::length(high), 1e-30});
+  if (options.orthographic) {
+    pose[3] = glm::dvec4(fit.middle(glm::dot(0.5 * (low + high), glm::dvec3(pose[2])) + diagonal), 1.0);
+  } else {
+    pose[3] = glm::dvec4(fit.eye(1e-3 * diagonal), 1.0);
+    if (!surfaces.bounds().is_empty()) centre(pose, surfaces.clusters());
+  }
 
   const ClipDistances clip = fit_clip(box, pose, options.orthographic);
   if (options.orthographic) {
-    const double half = std::max({extent.half_y, extent.half_x / aspect, 1e-3 * diagonal}) / filled;
+    const glm::dvec2 extent = fit.half_extent();
+    const double half = std::max({extent.y, extent.x / aspect, 1e-3 * diagonal}) / filled;
     projection = make_orthographic(-half * aspect, half * aspect, -half, half, clip);
   } else {
     projection.clip = clip;

@@ -19,13 +19,11 @@ Scene box_scene(const glm::vec3& low, const glm::vec3& high, Axis up) {
   return scene;
 }
 
-/// Every corner of the box is inside the picture and between the planes; the picture is reasonably filled.
+/// Every corner of the model is inside the picture and between the planes; the picture is reasonably filled.
 void expect_fits(const Surfaces& surfaces, const View& view) {
   const ScreenTransform t(view);
   double widest = 0;
-  for (int k = 0; k < 8; ++k) {
-    const Box& b = surfaces.bounds();
-    const glm::vec3 corner(k & 1 ? b.high.x : b.low.x, k & 2 ? b.high.y : b.low.y, k & 4 ? b.high.z : b.low.z);
+  for (const glm::vec3& corner : surfaces.scene().meshes[0].positions) {
     const HomogeneousVertex v = transform(t, corner);
     ASSERT_TRUE(is_plain(t, v));
     const ScreenVertex s = snap(t, v);
@@ -34,6 +32,34 @@ void expect_fits(const Surfaces& surfaces, const View& view) {
     widest = std::max({widest, x, y});
   }
   EXPECT_GT(widest, 0.5);
+}
+
+// What is seen fills the picture up to the margin in the direction that is tighter, and is in its middle.
+TEST(Frame, FitsTheModelNotItsBox) {
+  Mesh ring;  // a disc seen from its side: its box has corners far outside of it
+  for (int i = 0; i < 720; ++i) {
+    const double a = i * 3.14159265358979 / 360, b = (i + 1) * 3.14159265358979 / 360;
+    add_triangle(ring, {0.1f, 0, 0}, {float(std::cos(a)), 0, float(std::sin(a))},
+                 {float(std::cos(b)), 0, float(std::sin(b))});
+  }
+  const Scene scene = scene_of(ring);
+  const Surfaces surfaces(scene);
+  for (const bool orthographic : {false, true}) {
+    FrameOptions options;
+    options.orthographic = orthographic;
+    const View view = frame(surfaces, 400, 300, options);
+    const ScreenTransform t(view);
+    double low_x = 1e9, high_x = -1e9, low_y = 1e9, high_y = -1e9;
+    for (const glm::vec3& p : ring.positions) {
+      const ScreenVertex v = snap(t, transform(t, p));
+      low_x = std::min(low_x, v.x / 51200.0), high_x = std::max(high_x, v.x / 51200.0);
+      low_y = std::min(low_y, v.y / 38400.0), high_y = std::max(high_y, v.y / 38400.0);
+    }
+    const double filled = std::max(high_x - low_x, high_y - low_y) / 2;
+    EXPECT_NEAR(filled, 0.9, 0.002);
+    EXPECT_NEAR(low_x + high_x, 0, 0.002);
+    EXPECT_NEAR(low_y + high_y, 0, 0.002);
+  }
 }
 
 TEST(Frame, ShowsTheWholeModelFromEverySide) {
