@@ -10,20 +10,12 @@
 namespace frontmost::shading {
 namespace {
 
-constexpr int kSteps = 2048;
+constexpr int kSteps = 1285;  ///< divides 65535
 
 const std::array<float, kSteps + 1>& shown_table() {
   static const auto table = [] {
     std::array<float, kSteps + 1> values{};
-    for (int i = 1; i <= kSteps; ++i) {
-      // The inverse of srgb_of_linear by bisection: 16-bit codes would be too coarse in the dark.
-      double low = 0, high = 1;
-      for (int k = 0; k < 52; ++k) {
-        const double middle = 0.5 * (low + high);
-        (srgb_of_linear(middle) < double(i) / kSteps ? low : high) = middle;
-      }
-      values[std::size_t(i)] = float(high);
-    }
+    for (int i = 0; i <= kSteps; ++i) values[std::size_t(i)] = linear_of_srgb16(std::uint16_t(i * (65535 / kSteps)));
     return values;
   }();
   return table;
@@ -34,7 +26,10 @@ glm::vec3 linear_of_shown(const glm::vec3& value) {
 }
 
 void make_opaque(Batch& batch) {
-  for (int i = 0; i < batch.coverage.count; ++i) batch.material.alpha[i] = 1.0f;
+  for (int i = 0; i < batch.coverage.count; ++i) {
+    batch.material.alpha[i] = 1.0f;
+    batch.material.see_through[i] = 0.0f;
+  }
 }
 
 /// Hues a golden angle apart, in three rounds of brightness, so that neighbouring numbers look nothing alike.

@@ -56,6 +56,30 @@ BitSet seen_primitives(const Surfaces& surfaces, const Visible& visible, const E
   return seen;
 }
 
+BitSet large_primitives(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {
+  BitSet large(surfaces.primitive_count());
+  const View& view = visible.view;
+  parallel_for(execution, std::size_t(view.height), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y) {
+      const PrimitiveId* row = visible.primitives.data() + visible.index(0, int(y));
+      const auto is_at = [&](PrimitiveId id, int x, int up) {
+        return x >= 0 && std::size_t(up) <= y && row[x - up * view.width] == id;
+      };
+      PrimitiveId last = no_primitive;
+      for (int x = 0; x < view.width; ++x) {
+        const PrimitiveId id = row[x];
+        if (id == no_primitive || id == last) continue;
+        const bool left = is_at(id, x - 1, 0), above = is_at(id, x, 1);
+        if ((left && (above || is_at(id, x - 2, 0))) || (above && is_at(id, x, 2))) {
+          large.add(id);
+          last = id;
+        }
+      }
+    }
+  });
+  return large;
+}
+
 std::vector<bool> seen_materials(const Surfaces& surfaces, const BitSet& seen, const Execution& execution) {
   const Scene& scene = surfaces.scene();
   BitSet materials(scene.materials.size());
@@ -79,33 +103,36 @@ std::vector<bool> seen_materials(const Surfaces& surfaces, const BitSet& seen, c
   return result;
 }
 
-TriangleSource::TriangleSource(const Surfaces& surfaces, const View& view, const BitSet& seen,
+TriangleSource::TriangleSource(const Surfaces& surfaces, const View& view, const BitSet* large,
                                const Execution& execution)
-    : surfaces_(surfaces), rays_(view), smooth_(surfaces.scene().meshes.size()) {
+    : surfaces_(surfaces), rays_(view), large_(large), smooth_(surfaces.scene().meshes.size()) {
   const Scene& scene = surfaces.scene();
   std::vector<std::vector<PrimitiveId>> first_of_mesh(scene.meshes.size());
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-    const Instance& instance = scene.instances[i];
-    // The cofactors are the inverse transpose times the determinant, and exist for singular matrices too.
-    const glm::dmat3 m(instance.world_from_mesh);
-    const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
-    const bool is_mirrored = glm::dot(m[0], cofactors[0]) < 0;
-    double size = 0;
-    for (int k = 0; k < 9; ++k) size = std::max(size, std::abs(cofactors[k / 3][k % 3]));
-    const double scale = (is_mirrored ? -1 : 1) / (size > 0 ? size : 1);
-    placements_.push_back({glm::mat3(cofactors * scale), is_mirrored});
-    if (lacks_normals(scene.meshes[instance.mesh])) first_of_mesh[instance.mesh].push_back(surfaces.first_primitive(i));
+    placements_.push_back(placement_of(scene.instances[i].world_from_mesh));
+    first_of_mesh[scene.instances[i].mesh].push_back(surfaces.first_primitive(i));
   }
+  if (!large) return;
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    const auto& firsts = first_of_mesh[m];
-    if (firsts.empty() || scene.meshes[m].triangles.empty()) continue;
-    const auto is_seen = [&](std::uint32_t triangle) {
-      for (const PrimitiveId first : firsts)
-        if (seen.contains(first + triangle)) return true;
+    if (!lacks_normals(scene.meshes[m]) || first_of_mesh[m].empty()) continue;
+    const auto is_large = [&](std::uint32_t triangle) {
+      for (const PrimitiveId first : first_of_mesh[m])
+        if (large->contains(first + triangle)) return true;
       return false;
     };
-    smooth_[m] = smooth_normals(scene.meshes[m], is_seen, execution);
+    smooth_[m] = smooth_normals(scene.meshes[m], is_large, execution);
   }
+}
+
+TriangleSource::Placement TriangleSource::placement_of(const glm::dmat4& world_from_mesh) {
+  // The cofactors are the inverse transpose times the determinant, and exist for singular matrices too.
+  const glm::dmat3 m(world_from_mesh);
+  const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+  const bool is_mirrored = glm::dot(m[0], cofactors[0]) < 0;
+  double size = 0;
+  for (int k = 0; k < 9; ++k) size = std::max(size, std::abs(cofactors[k / 3][k % 3]));
+  const double scale = (is_mirrored ? -1 : 1) / (size > 0 ? size : 1);
+  return {glm::mat3(cofactors * scale), is_mirrored};
 }
 
 void TriangleSource::set_up(PrimitiveId id, const glm::vec2& reference, TriangleSetup& setup) const {
@@ -116,12 +143,17 @@ void TriangleSource::set_up(PrimitiveId id, const glm::vec2& reference, Triangle
   setup.material = surfaces_.scene().meshes[source.mesh].material_of(source.triangle);
   set_up_plane(setup, rays_, surfaces_.corners(id), reference);
   if (placements_[source.instance].is_mirrored) setup.is_backside = !setup.is_backside;
-  set_normals(setup);
+  set_normals(id, setup);
   set_attributes(setup);
 }
 
-void TriangleSource::set_normals(TriangleSetup& setup) const {
+void TriangleSource::set_normals(PrimitiveId id, TriangleSetup& setup) const {
   const Mesh& mesh = surfaces_.scene().meshes[setup.mesh];
+  if (lacks_normals(mesh) && !(large_ && large_->contains(id))) {
+    setup.normal.fill(setup.plane_normal);
+    setup.is_smooth = false;
+    return;
+  }
   const glm::mat3& normal_matrix = placements_[setup.instance].normal_matrix;
   glm::vec3 sum(0);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -189,8 +221,9 @@ void interpolate_one(const ScreenRays& rays, const TriangleSetup& t, const glm::
   out.plane_normal.set(i, t.plane_normal);
   out.to_viewer.set(i, towards_viewer(rays, point));
   if (t.is_smooth) {
-    const glm::vec3 normal = unit_or_zero(interpolate(t.normal, b.weight));
-    out.normal.set(i, normal == glm::vec3(0) ? t.plane_normal : normal);
+    const glm::vec3 normal = interpolate(t.normal, b.weight);  // of unit vectors: shorter than one, never long
+    const float length2 = dot3(normal, normal);
+    out.normal.set(i, length2 > 1e-12f ? normal * (1.0f / std::sqrt(length2)) : t.plane_normal);
     out.smooth_position.set(i, lifted(t, point, b.weight));
   } else {
     out.normal.set(i, t.plane_normal);

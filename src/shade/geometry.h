@@ -17,6 +17,11 @@ namespace frontmost::shading {
 /// Every primitive that holds a sample. O(samples), in parallel.
 [[nodiscard]] BitSet seen_primitives(const Surfaces& surfaces, const Visible& visible, const Execution& execution);
 
+/// Every primitive whose first samples cover three pixels in a row or around a corner. On smaller ones a smooth
+/// normal could hardly be told from a flat one: scans of millions of triangles are spared it.
+/// O(pixels), in parallel.
+[[nodiscard]] BitSet large_primitives(const Surfaces& surfaces, const Visible& visible, const Execution& execution);
+
 /// For every material of the scene, whether one of the seen triangles has it.
 [[nodiscard]] std::vector<bool> seen_materials(const Surfaces& surfaces, const BitSet& seen,
                                                const Execution& execution);
@@ -24,8 +29,9 @@ namespace frontmost::shading {
 /// Sets up triangles with their attributes in world space.
 class TriangleSource {
  public:
-  /// Borrows all; makes smooth normals for the seen triangles of meshes that have none.
-  TriangleSource(const Surfaces& surfaces, const View& view, const BitSet& seen, const Execution& execution);
+  /// Borrows `surfaces` and `large`; makes smooth normals for the large primitives of meshes that have none. Others of
+  /// those meshes, and all of them with no `large`, stay flat.
+  TriangleSource(const Surfaces& surfaces, const View& view, const BitSet* large, const Execution& execution);
 
   /// `reference` is a screen position on the triangle.
   void set_up(PrimitiveId id, const glm::vec2& reference, TriangleSetup& setup) const;
@@ -37,11 +43,13 @@ class TriangleSource {
     bool is_mirrored = false;
   };
 
-  void set_normals(TriangleSetup& setup) const;
+  static Placement placement_of(const glm::dmat4& world_from_mesh);
+  void set_normals(PrimitiveId id, TriangleSetup& setup) const;
   void set_attributes(TriangleSetup& setup) const;
 
   const Surfaces& surfaces_;
   ScreenRays rays_;
+  const BitSet* large_;
   std::vector<Placement> placements_;  ///< by instance
   std::vector<CornerNormals> smooth_;  ///< by mesh; empty where the mesh has normals of its own or is not seen
 };

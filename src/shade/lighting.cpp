@@ -106,7 +106,7 @@ inline float shaded(const Terms& t, const Colors& light, const Response& m) {
 
 Lighting lighting_for(const View& view, Axis up) {
   Lighting lighting;
-  const glm::dvec3 towards = -0.50 * view.right() + 0.78 * view.up() - 0.62 * view.forward();
+  const glm::dvec3 towards = -0.48 * view.right() + 0.68 * view.up() - 0.72 * view.forward();
   lighting.to_key = glm::vec3(glm::normalize(towards));
   lighting.up = glm::vec3(direction(up));
   return lighting;

@@ -16,9 +16,9 @@ namespace frontmost::shading {
 struct Lighting {
   glm::vec3 to_key{0, 0, 1};  ///< unit
   glm::vec3 up{0, 1, 0};      ///< the scene's
-  glm::vec3 key{0.60f, 0.59f, 0.57f};
-  glm::vec3 sky{0.40f, 0.41f, 0.43f};
-  glm::vec3 ground{0.21f, 0.205f, 0.20f};
+  glm::vec3 key{0.64f, 0.63f, 0.615f};
+  glm::vec3 sky{0.33f, 0.335f, 0.345f};
+  glm::vec3 ground{0.17f, 0.165f, 0.16f};
 };
 
 [[nodiscard]] Lighting lighting_for(const View& view, Axis up);

@@ -61,6 +61,7 @@ class Run {
       out.roughness[i] = m.roughness;
       out.occlusion[i] = 1.0f;
       out.unlit[i] = m.unlit ? 1.0f : 0.0f;
+      out.see_through[i] = m.alpha == Material::Alpha::opaque ? 0.0f : 1.0f;
     }
   }
 
@@ -129,7 +130,7 @@ class Run {
 
 Material default_material() {
   Material material;
-  material.base_color = glm::vec4(0.56f, 0.575f, 0.60f, 1.0f);
+  material.base_color = glm::vec4(0.66f, 0.675f, 0.70f, 1.0f);
   material.roughness = 0.5f;
   return material;
 }

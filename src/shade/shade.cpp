@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "shade/colorists.h"
+#include "shade/opaque_layer.h"
 
 namespace frontmost {
 namespace {
@@ -39,23 +40,53 @@ struct Planes {
   }
 };
 
-/// Shades all tiles, one row of tiles to a thread at a time. `background` is what an empty pixel gets.
-Planes shade_tiles(const TriangleSource& source, const Visible& visible, SampleUse use,
-                   const TileWork::Colorist& colorist, const glm::vec4& background, const Execution& execution) {
-  const View& view = visible.view;
+/// A Visible and what its triangles are set up from.
+struct Layer {
+  const TriangleSource& source;
+  const Visible& visible;
+};
+
+/// How a picture is made of its layers.
+struct Painting {
+  const TileWork::Colorist& colorist;
+  glm::vec4 background;  ///< what an empty pixel gets
+  SampleUse use = SampleUse::all;
+};
+
+/// One thread's work on a row of tiles.
+class TileRow {
+ public:
+  TileRow(const Layer& front, const Layer* behind, const Painting& painting)
+      : front_(std::make_unique<TileWork>(front.source, front.visible, painting.use, painting.colorist)),
+        background_(painting.background) {
+    if (behind) behind_ = std::make_unique<TileWork>(behind->source, behind->visible, painting.use, painting.colorist);
+  }
+
+  void shade(const TileRectangle& tile, Planes& planes) {
+    if (front_->shade(tile)) {
+      if (behind_ && front_->is_see_through() && behind_->shade(tile)) front_->put_behind(*behind_);
+      planes.write(tile, front_->pixels(), background_);
+    } else {
+      planes.fill(tile, background_);
+    }
+  }
+
+ private:
+  std::unique_ptr<TileWork> front_, behind_;
+  glm::vec4 background_;
+};
+
+/// Shades all tiles, one row of tiles to a thread at a time. `behind` may be null.
+Planes shade_tiles(const Layer& front, const Layer* behind, const Painting& painting, const Execution& execution) {
+  const View& view = front.visible.view;
   Planes planes(view.width, view.height);
   const auto rows = std::size_t((view.height + tile_height - 1) / tile_height);
   parallel_for(execution, rows, 1, [&](std::size_t begin, std::size_t end) {
-    const auto work = std::make_unique<TileWork>(source, visible, use, colorist);
+    TileRow work(front, behind, painting);
     for (std::size_t row = begin; row < end; ++row)
       for (int x = 0; x < view.width; x += tile_width) {
         const int y = int(row) * tile_height;
-        const TileRectangle tile{x, y, std::min(tile_width, view.width - x), std::min(tile_height, view.height - y)};
-        if (work->shade(tile)) {
-          planes.write(tile, work->pixels(), background);
-        } else {
-          planes.fill(tile, background);
-        }
+        work.shade({x, y, std::min(tile_width, view.width - x), std::min(tile_height, view.height - y)}, planes);
       }
   });
   return planes;
@@ -100,50 +131,117 @@ DepthRange depth_range(const Visible& visible, const Execution& execution) {
   return {depth_of_key(visible.view, keys.farthest), depth_of_key(visible.view, keys.nearest)};
 }
 
-/// What all pictures of materials need.
-struct Prepared {
-  BitSet seen;
-  MaterialTable materials;
-  TriangleSource source;
+bool has_textures(const Scene& scene) {
+  const auto uses = [](const Material& m) {
+    return m.base_color_texture.is_set() || m.metallic_roughness_texture.is_set() || m.normal_texture.is_set() ||
+           m.emissive_texture.is_set() || m.occlusion_texture.is_set();
+  };
+  return std::any_of(scene.materials.begin(), scene.materials.end(), uses);
+}
 
-  Prepared(const Surfaces& surfaces, const Visible& visible, const Execution& execution)
-      : seen(seen_primitives(surfaces, visible, execution)),
-        materials(surfaces.scene(), seen_materials(surfaces, seen, execution), execution),
-        source(surfaces, visible.view, seen, execution) {}
+bool lacks_normals(const Scene& scene) {
+  return std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh& m) { return m.normals.empty(); });
+}
+
+/// For every material, whether a texture of it will be looked at.
+std::vector<bool> needed_materials(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {
+  const Scene& scene = surfaces.scene();
+  if (!has_textures(scene)) return std::vector<bool>(scene.materials.size());
+  return seen_materials(surfaces, seen_primitives(surfaces, visible, execution), execution);
+}
+
+/// The triangles of one layer of a picture of materials.
+struct Triangles {
+  std::optional<BitSet> large;
+  std::optional<TriangleSource> source;
+
+  Triangles(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {
+    if (lacks_normals(surfaces.scene())) large = large_primitives(surfaces, visible, execution);
+    source.emplace(surfaces, visible.view, large ? &*large : nullptr, execution);
+  }
 };
+
+/// What pictures of materials need.
+class Materials {
+ public:
+  Materials(const Surfaces& surfaces, const Visible& visible, const Execution& execution)
+      : visible_(visible), front_(surfaces, visible, execution) {
+    std::vector<bool> is_needed = needed_materials(surfaces, visible, execution);
+    if (has_see_through(surfaces.scene())) {
+      opaque_.emplace(surfaces, visible, execution);
+      behind_.emplace(opaque_->surfaces(), opaque_->visible(), execution);
+      const std::vector<bool> more = needed_materials(opaque_->surfaces(), opaque_->visible(), execution);
+      for (std::size_t i = 0; i < more.size(); ++i) is_needed[i] = is_needed[i] || more[i];
+    }
+    table_.emplace(surfaces.scene(), is_needed, execution);
+  }
+
+  [[nodiscard]] const MaterialTable& table() const { return *table_; }
+  /// What throws shadows: glass does not, and of leaves only the outline of the card they are drawn on is known.
+  [[nodiscard]] const Surfaces& casters(const Surfaces& all) const { return opaque_ ? opaque_->surfaces() : all; }
+
+  [[nodiscard]] Planes paint(const Painting& painting, const Execution& execution) const {
+    const Layer front{*front_.source, visible_};
+    if (!opaque_) return shade_tiles(front, nullptr, painting, execution);
+    const Layer behind{*behind_->source, opaque_->visible()};
+    return shade_tiles(front, &behind, painting, execution);
+  }
+
+ private:
+  const Visible& visible_;
+  Triangles front_;
+  std::optional<OpaqueLayer> opaque_;
+  std::optional<Triangles> behind_;
+  std::optional<MaterialTable> table_;
+};
+
+bool shows_materials(Shading shading) {
+  return shading == Shading::lit || shading == Shading::flat || shading == Shading::normals;
+}
+
+}  // namespace
+
+namespace {
+
+Planes paint_materials(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options,
+                       const Execution& execution) {
+  const Materials materials(surfaces, visible, execution);
+  const auto paint = [&](const TileWork::Colorist& colorist) {
+    return materials.paint({colorist, background_color(options)}, execution);
+  };
+  if (options.shading == Shading::flat) return paint(Flat{materials.table()});
+  if (options.shading == Shading::normals) return paint(Normals{materials.table()});
+  const Lighting lighting = lighting_for(visible.view, surfaces.scene().up);
+  std::optional<ShadowMap> shadow;
+  if (options.shadows) shadow.emplace(materials.casters(surfaces), visible, glm::dvec3(lighting.to_key), execution);
+  return paint(Lit{materials.table(), lighting, shadow ? &*shadow : nullptr});
+}
+
+Planes paint_map(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options,
+                 const Execution& execution) {
+  const TriangleSource source(surfaces, visible.view, nullptr, execution);
+  const auto paint = [&](const TileWork::Colorist& colorist) {
+    return shade_tiles({source, visible}, nullptr, {colorist, background_color(options)}, execution);
+  };
+  if (options.shading == Shading::ids) return paint(Ids{});
+  if (options.shading == Shading::uv) return paint(Texcoords{});
+  const DepthRange range = depth_range(visible, execution);
+  return paint(Depths{glm::vec3(visible.view.forward()), range.nearest, range.farthest});
+}
 
 }  // namespace
 
 Image shade(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options, const Execution& execution) {
-  const Prepared prepared(surfaces, visible, execution);
-  const Lighting lighting = lighting_for(visible.view, surfaces.scene().up);
-  const glm::vec4 background = background_color(options);
-  const auto paint = [&](const TileWork::Colorist& colorist) {
-    return image_of(shade_tiles(prepared.source, visible, SampleUse::all, colorist, background, execution),
-                    {"R", "G", "B", "A"});
-  };
-  switch (options.shading) {
-    case Shading::lit: {
-      std::optional<ShadowMap> shadow;
-      if (options.shadows) shadow.emplace(surfaces, visible, glm::dvec3(lighting.to_key), execution);
-      return paint(Lit{prepared.materials, lighting, shadow ? &*shadow : nullptr});
-    }
-    case Shading::flat: return paint(Flat{prepared.materials});
-    case Shading::normals: return paint(Normals{prepared.materials});
-    case Shading::depth: {
-      const DepthRange range = depth_range(visible, execution);
-      return paint(Depths{glm::vec3(visible.view.forward()), range.nearest, range.farthest});
-    }
-    case Shading::ids: return paint(Ids{});
-    case Shading::uv: return paint(Texcoords{});
-  }
-  throw Error(ErrorCode::bad_argument, "shading: unknown value");
+  const auto paint = shows_materials(options.shading) ? paint_materials : paint_map;
+  return image_of(paint(surfaces, visible, options, execution), {"R", "G", "B", "A"});
 }
 
 Image normal_image(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {
-  const Prepared prepared(surfaces, visible, execution);
+  const MaterialTable table(surfaces.scene(), needed_materials(surfaces, visible, execution), execution);
+  const Triangles triangles(surfaces, visible, execution);
+  const TileWork::Colorist colorist = RawNormals{table};
   return image_of(
-      shade_tiles(prepared.source, visible, SampleUse::first, RawNormals{prepared.materials}, glm::vec4(0), execution),
+      shade_tiles({*triangles.source, visible}, nullptr, {colorist, glm::vec4(0), SampleUse::first}, execution),
       {"N.X", "N.Y", "N.Z"});
 }
 

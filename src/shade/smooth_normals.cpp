@@ -126,35 +126,42 @@ class Smoother {
     });
   }
 
-  /// Calls visit(corner, bucket) for the corners of some triangles whose position may be touched by a wanted one.
-  template <class Visit>
-  void for_touched(std::size_t begin, std::size_t end, const Visit& visit) const {
+  struct Touched {
+    std::uint32_t corner, hash;
+  };
+
+  [[nodiscard]] std::vector<Touched> find_touched(std::size_t begin, std::size_t end) const {
+    std::vector<Touched> found;
     for (std::size_t corner = 3 * begin; corner < 3 * end; ++corner) {
       const std::uint32_t hash = hash_of(bits_of(position(std::uint32_t(corner))));
-      if (touched_.contains(hash & touched_mask_)) visit(std::uint32_t(corner), bucket_of(hash));
+      if (touched_.contains(hash & touched_mask_)) found.push_back({std::uint32_t(corner), hash});
     }
+    return found;
   }
 
   void sort_into_buckets() {
     while (bucket_bits_ < 9 && (kCornersPerBucket << bucket_bits_) < 6 * wanted_count_) ++bucket_bits_;
-    const std::size_t parts = (mesh_.triangles.size() + kTrianglesAtOnce - 1) / kTrianglesAtOnce;
+    const std::size_t count = (mesh_.triangles.size() + kTrianglesAtOnce - 1) / kTrianglesAtOnce;
+    std::vector<std::vector<Touched>> parts(count);
     // First how many of each part go to each bucket, then where they start, then the corners themselves.
-    std::vector<std::uint32_t> place(parts * bucket_count());
+    std::vector<std::uint32_t> place(count * bucket_count());
     parallel_for(execution_, mesh_.triangles.size(), kTrianglesAtOnce, [&](std::size_t begin, std::size_t end) {
-      std::uint32_t* counts = &place[begin / kTrianglesAtOnce * bucket_count()];
-      for_touched(begin, end, [&](std::uint32_t, std::size_t bucket) { ++counts[bucket]; });
+      const std::size_t part = begin / kTrianglesAtOnce;
+      parts[part] = find_touched(begin, end);
+      for (const Touched& touched : parts[part]) ++place[part * bucket_count() + bucket_of(touched.hash)];
     });
     bucket_begin_.assign(bucket_count() + 1, 0);
     std::uint32_t total = 0;
     for (std::size_t b = 0; b < bucket_count(); ++b) {
       bucket_begin_[b] = total;
-      for (std::size_t part = 0; part < parts; ++part) total += std::exchange(place[part * bucket_count() + b], total);
+      for (std::size_t part = 0; part < count; ++part) total += std::exchange(place[part * bucket_count() + b], total);
     }
     bucket_begin_[bucket_count()] = total;
     corners_ = Buffer<std::uint32_t>(total);
-    parallel_for(execution_, mesh_.triangles.size(), kTrianglesAtOnce, [&](std::size_t begin, std::size_t end) {
-      std::uint32_t* next = &place[begin / kTrianglesAtOnce * bucket_count()];
-      for_touched(begin, end, [&](std::uint32_t corner, std::size_t bucket) { corners_[next[bucket]++] = corner; });
+    parallel_for(execution_, count, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t part = begin; part < end; ++part)
+        for (const Touched& touched : parts[part])
+          corners_[place[part * bucket_count() + bucket_of(touched.hash)]++] = touched.corner;
     });
   }
 

@@ -20,7 +20,8 @@ TileWork::TileWork(const TriangleSource& source, const Visible& visible, SampleU
       visible_(visible),
       colorist_(colorist),
       samples_(use == SampleUse::first ? 1 : visible.view.samples),
-      pixels_(tile_pixels) {
+      pixels_(tile_pixels),
+      see_through_(tile_pixels, glm::vec2(0)) {
   const auto all = sample_offsets(visible.view.samples);
   for (int s = 0; s < samples_; ++s) offsets_.push_back(glm::vec2(all[std::size_t(s)]) / 256.0f);
   for (const glm::vec2& offset : offsets_) centre_ += offset / float(samples_);
@@ -28,6 +29,8 @@ TileWork::TileWork(const TriangleSource& source, const Visible& visible, SampleU
 
 bool TileWork::shade(const TileRectangle& tile) {
   cache_.clear();
+  if (is_see_through_) std::fill(see_through_.begin(), see_through_.end(), glm::vec2(0));
+  is_see_through_ = false;
   bool anything = false;
   for (int y = 0; y < tile.height; ++y) {
     const std::size_t row = visible_.index(tile.x, tile.y + y);
@@ -112,8 +115,19 @@ void TileWork::flush() {
   for (int i = 0; i < coverage.count; ++i) {
     const float alpha = coverage.weight[i] * batch_.material.alpha[i];
     pixels_[coverage.pixel[i]] += glm::vec4(batch_.light.at(i) * alpha, alpha);
+    if (batch_.material.see_through[i] > 0) {
+      see_through_[coverage.pixel[i]] += glm::vec2(coverage.weight[i], coverage.weight[i] - alpha);
+      is_see_through_ = true;
+    }
   }
   coverage.count = 0;
+}
+
+void TileWork::put_behind(const TileWork& layer) {
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    const glm::vec2& part = see_through_[i];
+    if (part.y > 0) pixels_[i] += layer.pixels_[i] * (part.y / part.x);
+  }
 }
 
 }  // namespace frontmost::shading

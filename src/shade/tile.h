@@ -67,6 +67,9 @@ class TileWork {
   /// Premultiplied sums over the samples of each pixel, row by row of the tile. False where nothing is seen at all.
   bool shade(const TileRectangle& tile);
   [[nodiscard]] const std::vector<glm::vec4>& pixels() const { return pixels_; }
+  /// Lays what another layer shows of the same tile behind the see-through parts of this one.
+  void put_behind(const TileWork& layer);
+  [[nodiscard]] bool is_see_through() const { return is_see_through_; }
 
  private:
   /// Sets seen_ for a row of pixels from `row` on. False when nothing is seen in any. O(samples), many at a time.
@@ -84,6 +87,9 @@ class TileWork {
   glm::vec2 centre_{0};             ///< their mean
   TriangleCache cache_;
   std::vector<glm::vec4> pixels_;
+  /// Of each pixel, the part whose samples are see-through, and of that the part that lets light pass.
+  std::vector<glm::vec2> see_through_;
+  bool is_see_through_ = false;
   bool seen_[tile_width] = {};
   Batch batch_;
 };

@@ -370,5 +370,56 @@ TEST(Shade, MaskedTexelsAreHolesAndBlendedOnesLetTheBackgroundThrough) {
   EXPECT_EQ(alpha_with(Material::Alpha::blend), glm::vec4(0.4f, 0, 0, 0.4f));
 }
 
+/// A see-through square before a larger opaque blue one.
+Scene layered_scene(Material::Alpha alpha, const glm::vec4& front) {
+  Material see_through = colored(front);
+  see_through.alpha = alpha;
+  Scene scene = scene_of(square(), see_through);
+  scene.materials.push_back(colored({0, 0, 1, 1}));
+  scene.meshes.push_back(square());
+  scene.meshes[1].material_ids = {1};
+  scene.instances.push_back({"behind", 1, glm::dmat4(1.5)});
+  scene.instances[1].world_from_mesh[3] = {0, 0, -1, 1};
+  return scene;
+}
+
+TEST(Shade, WhatStandsBehindSeeThroughSurfacesIsShown) {
+  const ShadeOptions options{.shading = Shading::flat, .background = std::nullopt};
+  const Scene blended = layered_scene(Material::Alpha::blend, {1, 0, 0, 0.25f});
+  for (const int samples : {1, 4}) {
+    const Image image = picture(blended, front_view(64, samples), options);
+    EXPECT_EQ(color_at(image, 32, 32), glm::vec4(0.25f, 0, 0.75f, 1)) << samples;
+    EXPECT_EQ(color_at(image, 10, 32), glm::vec4(0, 0, 1, 1)) << samples;
+    EXPECT_EQ(color_at(image, 2, 32), glm::vec4(0)) << samples;
+  }
+  const Image masked = picture(layered_scene(Material::Alpha::mask, {1, 0, 0, 0.25f}), front_view(64, 4), options);
+  EXPECT_EQ(color_at(masked, 32, 32), glm::vec4(0, 0, 1, 1));
+  const Image solid = picture(layered_scene(Material::Alpha::mask, {1, 0, 0, 0.75f}), front_view(64, 4), options);
+  EXPECT_EQ(color_at(solid, 32, 32), glm::vec4(1, 0, 0, 1));
+}
+
+TEST(Shade, EdgesOfSeeThroughSurfacesBlendSampleBySample) {
+  Scene scene = layered_scene(Material::Alpha::blend, {1, 0, 0, 0.5f});
+  scene.instances[0].world_from_mesh[3] = {0.5 / 16, 0, 0, 1};   // half of pixel 16 is see-through, half is only blue
+  scene.instances[1].world_from_mesh[3] = {0.5 / 16, 0, -1, 1};  // half of pixel 8 is blue, half is background
+  const Image image = picture(scene, front_view(64, 4), {.shading = Shading::flat, .background = std::nullopt});
+  EXPECT_EQ(color_at(image, 16, 32), glm::vec4(0.25f, 0, 0.75f, 1));
+  EXPECT_EQ(color_at(image, 8, 32), glm::vec4(0, 0, 0.5f, 0.5f));
+}
+
+TEST(Shade, MeshesOfMixedMaterialsAreTakenApart) {
+  Material glass = colored({1, 0, 0, 0});
+  glass.alpha = Material::Alpha::blend;
+  Scene scene = scene_of(square(), glass);
+  scene.materials.push_back(colored({0, 1, 0, 1}));
+  // A second square a step behind, in the same mesh, with corners of its own.
+  Mesh& mesh = scene.meshes[0];
+  for (int i = 0; i < 4; ++i) mesh.positions.push_back(mesh.positions[std::size_t(i)] - glm::vec3(0, 0, 1));
+  mesh.triangles.insert(mesh.triangles.end(), {{4, 5, 6}, {4, 6, 7}});
+  mesh.material_ids = {0, 0, 1, 1};
+  mesh.texcoords.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 1, 2}, {0, 2, 3}};
+  EXPECT_EQ(color_at(picture(scene, front_view(), with(Shading::flat)), 32, 32), glm::vec4(0, 1, 0, 1));
+}
+
 }  // namespace
 }  // namespace frontmost

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shade/opaque_layer.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "frontmost/zbuffer.h"
+
+namespace frontmost::shading {
+namespace {
+
+bool is_see_through(const Scene& scene, std::uint32_t material) {
+  return material < scene.materials.size() && scene.materials[material].alpha != Material::Alpha::opaque;
+}
+
+/// Keeps the elements whose triangle is kept.
+template <class T>
+std::vector<T> kept(const std::vector<T>& values, const std::vector<std::uint32_t>& triangles) {
+  std::vector<T> result;
+  result.reserve(triangles.size());
+  for (const std::uint32_t t : triangles) result.push_back(values[t]);
+  return result;
+}
+
+template <class T>
+Attribute<T> kept(const Attribute<T>& attribute, const std::vector<std::uint32_t>& triangles) {
+  if (attribute.triangles.empty()) return attribute;
+  return {attribute.values, kept(attribute.triangles, triangles)};
+}
+
+Mesh opaque_part(const Scene& scene, const Mesh& mesh) {
+  std::vector<std::uint32_t> triangles;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    if (!is_see_through(scene, mesh.material_of(t))) triangles.push_back(t);
+  Mesh part;
+  if (triangles.empty()) return part;
+  part.positions = mesh.positions;
+  part.triangles = kept(mesh.triangles, triangles);
+  part.normals = kept(mesh.normals, triangles);
+  part.texcoords = kept(mesh.texcoords, triangles);
+  part.colors = kept(mesh.colors, triangles);
+  part.material_ids = mesh.material_ids.size() > 1 ? kept(mesh.material_ids, triangles) : mesh.material_ids;
+  return part;
+}
+
+Scene opaque_part(const Scene& scene) {
+  Scene part;
+  part.name = scene.name;
+  for (const Mesh& mesh : scene.meshes) part.meshes.push_back(opaque_part(scene, mesh));
+  part.instances = scene.instances;
+  part.materials = scene.materials;
+  part.textures.resize(scene.textures.size());  // their numbers must exist; their pixels stay where they are
+  part.up = scene.up;
+  return part;
+}
+
+BitSet see_through_primitives(const Surfaces& surfaces, const Execution& execution) {
+  const Scene& scene = surfaces.scene();
+  BitSet result(surfaces.primitive_count());
+  parallel_for(execution, scene.instances.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
+      const PrimitiveId first = surfaces.first_primitive(std::uint32_t(i));
+      for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+        if (is_see_through(scene, mesh.material_of(t))) result.add(first + t);
+    }
+  });
+  return result;
+}
+
+}  // namespace
+
+bool has_see_through(const Scene& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const Material& m) { return m.alpha != Material::Alpha::opaque; });
+}
+
+OpaqueLayer::OpaqueLayer(const Surfaces& surfaces, const Visible& front, const Execution& execution)
+    : scene_(std::make_unique<Scene>(opaque_part(surfaces.scene()))),
+      surfaces_(std::make_unique<Surfaces>(*scene_, execution)),
+      visible_(zbuffer(*surfaces_, front.view, execution)) {
+  const BitSet see_through = see_through_primitives(surfaces, execution);
+  constexpr std::size_t samples_at_once = 1u << 16;
+  parallel_for(execution, front.primitives.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const PrimitiveId id = front.primitives[i];
+      if (id == no_primitive || !see_through.contains(id)) visible_.primitives[i] = no_primitive;
+    }
+  });
+}
+
+}  // namespace frontmost::shading
