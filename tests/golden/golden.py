@@ -33,8 +33,9 @@ CASES = {
 
 
 def hashes_of(text):
-    """{"visible": ..., "teapot_depth.exr": ...} from the lines "NAME HASH" of --hash."""
-    return dict(line.rsplit(None, 1) for line in text.splitlines() if line.strip())
+    """{"visible": ..., "depth": ...} from the lines "WHAT HASH [FILE]" of --hash; colours are compared otherwise."""
+    words = [line.split() for line in text.splitlines()]
+    return {line[0]: line[1] for line in words if line and line[0] != "picture"}
 
 
 def render(program, folder, name, compare):
@@ -42,8 +43,7 @@ def render(program, folder, name, compare):
     if compare:
         command += ["--reference", HERE / f"{name}.png", "--reference-threshold", str(COLOUR_TOLERANCE)]
     done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True)
-    found = {key: value for key, value in hashes_of(done.stdout).items() if not key.endswith(".png")}
-    return done, found
+    return done, hashes_of(done.stdout)
 
 
 def check(program, folder):

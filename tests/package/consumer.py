@@ -9,6 +9,7 @@ consumer against it, once found by CMake and once by pkg-config.
 import argparse
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -50,7 +51,7 @@ def compare(found, stored, update):
 
 def check_output(text):
     print(text, end="")
-    if not text.startswith("frontmost "):
+    if not re.match(r"frontmost [0-9.]+ sees [0-9a-f]{16}$", text):
         sys.exit("the consumer ran, and said something else")
 
 
@@ -67,13 +68,13 @@ def main():
 
         run("cmake", "-S", HERE / "consumer", "-B", folder / "by_cmake", "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}")
         run("cmake", "--build", folder / "by_cmake")
-        check_output(run(folder / "by_cmake" / "consumer"))
+        check_output(run(folder / "by_cmake" / "consumer", cwd=folder))
 
         modules = next(prefix.rglob("frontmost.pc")).parent
         environment = dict(os.environ, PKG_CONFIG_PATH=str(modules))
         flags = run("pkg-config", "--cflags", "--libs", "frontmost", env=environment).split()
         run("c++", "-std=c++20", HERE / "consumer" / "main.cpp", "-o", folder / "by_pkg_config", *flags)
-        check_output(run(folder / "by_pkg_config"))
+        check_output(run(folder / "by_pkg_config", cwd=folder))
 
 
 if __name__ == "__main__":

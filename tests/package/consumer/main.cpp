@@ -5,7 +5,9 @@
 #include <cstdio>
 
 int main() {
-  frontmost::Scene scene;
-  std::printf("frontmost %s sees %llu triangles with %zu instruction sets\n", FRONTMOST_VERSION,
-              static_cast<unsigned long long>(frontmost::triangle_count(scene)), frontmost::available_isas().size());
+  const frontmost::Scene scene = frontmost::load("builtin:teapot");
+  const frontmost::Surfaces surfaces(scene);
+  const frontmost::Visible visible = frontmost::zbuffer(surfaces, frontmost::frame(surfaces, 64, 48));
+  frontmost::save(frontmost::depth_image(visible), "depth.png");
+  std::printf("frontmost %s sees %016llx\n", FRONTMOST_VERSION, (unsigned long long)frontmost::content_hash(visible));
 }
