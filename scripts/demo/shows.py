@@ -62,7 +62,7 @@ SECTIONS = [
         Show("Depth as NPY and PFM, ids as NPY", "float32 and uint32 arrays, ready for numpy.load.",
              "builtin:city --resolution 640,480 --depth depth.npy --ray-distance distance.pfm --ids object=objects.npy "
              "--ids primitive=primitives.npy --ids material=materials.npy"),
-        Show("Depth as 16-bit PNG", "A thousand steps to the unit; 0 where nothing is seen.",
-             "builtin:city --resolution 640,480 --depth depth16.png --depth-scale 1000"),
+        Show("Depth as 16-bit PNG", "Ten steps to the unit; 0 where nothing is seen.",
+             "builtin:city --resolution 640,480 --depth depth16.png --depth-scale 10"),
     ]),
 ]
