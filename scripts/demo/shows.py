@@ -30,8 +30,8 @@ CARD = "--resolution 640,480 --background transparent"
 
 SECTIONS = [
     Section("Pictures", "A model in, a picture out. Near, far and the camera are fitted unless you say otherwise.", [
-        Show("The gallery", "Everything at once: metal, marble, glass-smooth and rough, in one light.",
-             "builtin:gallery --resolution 1600,900 --samples 8 -o gallery.png", wide=True),
+        Show("The gallery", "Everything at once: metal, glaze and stone, smooth and rough, in one light.",
+             "builtin:gallery --resolution 1600,900 --samples 8 --background transparent -o gallery.png", wide=True),
         Show("Teapot", "The classic patches.", f"builtin:teapot {CARD} -o teapot.png"),
         Show("Spheres", "Smooth shapes, and the shadows they cast.", f"builtin:spheres {CARD} -o spheres.png"),
         Show("City", "Many objects that hide each other.", f"builtin:city {CARD} -o city.png"),
