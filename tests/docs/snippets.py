@@ -20,7 +20,7 @@ import tempfile
 import sample_models
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-CHECKED = re.compile(r"^(?P<indent>\s*)(?P<expression>[^/]+?);\s*// -> (?P<expected>.+)$")
+CHECKED = re.compile(r"^(?P<indent>\s*)(?P<expression>.+?);\s*// -> (?P<expected>.+)$")
 
 
 def blocks(language):
