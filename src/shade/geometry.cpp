@@ -187,64 +187,154 @@ void TriangleSource::set_attributes(TriangleSetup& setup) const {
 
 namespace {
 
-/// Where the point would lie on the curved surface that the corner normals suggest: the mean of its projections onto
-/// the corners' tangent planes, taken only outwards. Shadows looked up there do not show the facets along the
-/// terminator. (J. Hanika, Hacking the Shadow Terminator, in Ray Tracing Gems II, 2021.)
-glm::vec3 lifted(const TriangleSetup& t, const glm::vec3& point, const glm::vec3& weight) {
-  glm::vec3 lift(0);
-  for (int k = 0; k < 3; ++k) {
-    const auto corner = std::size_t(k);
-    const float height = dot3(point - t.corner[corner], t.normal[corner]);
-    if (height < 0) lift -= t.normal[corner] * (height * weight[k]);
-  }
-  return point + lift;
-}
+float at_least_zero(float value) { return value > 0.0f ? value : 0.0f; }  // 0 for NaN
 
-glm::vec3 towards_viewer(const ScreenRays& rays, const glm::vec3& point) {
-  if (rays.is_parallel()) return glm::vec3(-rays.forward());
-  const float length2 = dot3(point, point);
-  return length2 > 1e-36f && length2 < 1e36f ? point * (-1.0f / std::sqrt(length2)) : unit_or_zero(-point);
-}
+/// Fragments of one triangle: all that belongs to the triangle is read once, and the loops over its fragments hold
+/// nothing but arithmetic, so that the compiler takes several at a time.
+class TriangleRun {
+ public:
+  TriangleRun(const TriangleSetup& triangle, int begin, int end) : t_(triangle), begin_(begin), end_(end) {}
 
-void interpolate_texcoord(const TriangleSetup& t, const Barycentric& b, int i, Geometry& out) {
-  const glm::vec2 texcoord = interpolate(t.texcoord, b.weight);
-  const Gradient change = gradient(t, t.texcoord, texcoord, b);
-  out.texcoord.set(i, texcoord);
-  out.texcoord_dx.set(i, change.dx);
-  out.texcoord_dy.set(i, change.dy);
-}
+  void find_weights(const Lane2& screen) {
+    for (int i = begin_; i < end_; ++i) {
+      const float dx = screen.x[i] - t_.reference.x, dy = screen.y[i] - t_.reference.y;
+      const float a = at_least_zero(value(0, dx, dy)), b = at_least_zero(value(1, dx, dy));
+      const float c = at_least_zero(value(2, dx, dy)), sum = a + b + c;
+      const bool valid = sum > 1e-30f;
+      const float scale = valid ? 1.0f / sum : 0.0f, rest = valid ? 0.0f : 1.0f / 3;
+      weight_.x[i] = a * scale + rest;
+      weight_.y[i] = b * scale + rest;
+      weight_.z[i] = c * scale + rest;
+      divisor_[i] = valid ? sum : 1.0f;
+    }
+  }
 
-void interpolate_one(const ScreenRays& rays, const TriangleSetup& t, const glm::vec2& screen, int i, Geometry& out) {
-  const Barycentric b = barycentric(t, screen.x, screen.y);
-  const glm::vec3 point = interpolate(t.corner, b.weight);
-  out.position.set(i, point);
-  out.plane_normal.set(i, t.plane_normal);
-  out.to_viewer.set(i, towards_viewer(rays, point));
-  if (t.is_smooth) {
-    const glm::vec3 normal = interpolate(t.normal, b.weight);  // of unit vectors: shorter than one, never long
-    const float length2 = dot3(normal, normal);
-    out.normal.set(i, length2 > 1e-12f ? normal * (1.0f / std::sqrt(length2)) : t.plane_normal);
-    out.smooth_position.set(i, lifted(t, point, b.weight));
-  } else {
-    out.normal.set(i, t.plane_normal);
-    out.smooth_position.set(i, point);
+  void place(const ScreenRays& rays, Geometry& out) const {
+    for (int k = 0; k < 3; ++k) mix(corner_values(t_.corner, k), lane(out.position, k));
+    for (int k = 0; k < 3; ++k) fill(lane(out.plane_normal, k), t_.plane_normal[k]);
+    if (rays.is_parallel()) {
+      for (int k = 0; k < 3; ++k) fill(lane(out.to_viewer, k), float(-rays.forward()[k]));
+    } else {
+      const Lane3& p = out.position;
+      for (int i = begin_; i < end_; ++i) {
+        const float length2 = p.x[i] * p.x[i] + p.y[i] * p.y[i] + p.z[i] * p.z[i];
+        const float scale = -1.0f / std::sqrt(length2 > 1e-36f ? length2 : 1e-36f);
+        out.to_viewer.x[i] = p.x[i] * scale;
+        out.to_viewer.y[i] = p.y[i] * scale;
+        out.to_viewer.z[i] = p.z[i] * scale;
+      }
+    }
   }
-  if (t.has_texcoord) {
-    interpolate_texcoord(t, b, i, out);
-  } else {
-    for (Lane2* lane : {&out.texcoord, &out.texcoord_dx, &out.texcoord_dy}) lane->set(i, glm::vec2(0));
+
+  void find_normals(Geometry& out) const {
+    for (int k = 0; k < 3; ++k) copy(lane(out.position, k), lane(out.smooth_position, k));
+    if (!t_.is_smooth) {
+      for (int k = 0; k < 3; ++k) fill(lane(out.normal, k), t_.plane_normal[k]);
+      return;
+    }
+    for (int k = 0; k < 3; ++k) mix(corner_values(t_.normal, k), lane(out.normal, k));
+    Lane3& n = out.normal;
+    for (int i = begin_; i < end_; ++i) {
+      // Of unit vectors: shorter than one, never long.
+      const float length2 = n.x[i] * n.x[i] + n.y[i] * n.y[i] + n.z[i] * n.z[i];
+      const bool valid = length2 > 1e-12f;
+      const float scale = valid ? 1.0f / std::sqrt(length2) : 0.0f, rest = valid ? 0.0f : 1.0f;
+      n.x[i] = n.x[i] * scale + t_.plane_normal.x * rest;
+      n.y[i] = n.y[i] * scale + t_.plane_normal.y * rest;
+      n.z[i] = n.z[i] * scale + t_.plane_normal.z * rest;
+    }
+    lift(0, weight_.x, out);
+    lift(1, weight_.y, out);
+    lift(2, weight_.z, out);
   }
-  const glm::vec4 color = t.has_color ? interpolate(t.color, b.weight) : glm::vec4(1);
-  out.color.set(i, glm::vec3(color));
-  out.alpha[i] = color.a;
-}
+
+  void find_texcoords(Geometry& out) const {
+    if (!t_.has_texcoord) {
+      for (Lane2* lanes : {&out.texcoord, &out.texcoord_dx, &out.texcoord_dy}) {
+        fill(lanes->x, 0.0f);
+        fill(lanes->y, 0.0f);
+      }
+      return;
+    }
+    for (int i = begin_; i < end_; ++i) {
+      const Barycentric b{weight_.at(i), divisor_[i]};
+      const glm::vec2 texcoord = interpolate(t_.texcoord, b.weight);
+      const Gradient change = gradient(t_, t_.texcoord, texcoord, b);
+      out.texcoord.set(i, texcoord);
+      out.texcoord_dx.set(i, change.dx);
+      out.texcoord_dy.set(i, change.dy);
+    }
+  }
+
+  void find_colors(Geometry& out) const {
+    Lane* lanes[4] = {&out.color.x, &out.color.y, &out.color.z, &out.alpha};
+    for (int k = 0; k < 4; ++k) {
+      if (t_.has_color) {
+        mix(corner_values(t_.color, k), *lanes[k]);
+      } else {
+        fill(*lanes[k], 1.0f);
+      }
+    }
+  }
+
+ private:
+  static Lane& lane(Lane3& lanes, int k) { return k == 0 ? lanes.x : k == 1 ? lanes.y : lanes.z; }
+
+  [[nodiscard]] float value(std::size_t k, float dx, float dy) const {
+    return t_.weight[k].at_reference + dx * t_.weight[k].step_x + dy * t_.weight[k].step_y;
+  }
+  template <class Vector>
+  static glm::vec3 corner_values(const std::array<Vector, 3>& corner, int k) {
+    return {corner[0][k], corner[1][k], corner[2][k]};
+  }
+  void mix(const glm::vec3& corner, Lane& out) const {
+    for (int i = begin_; i < end_; ++i)
+      out[i] = corner.x * weight_.x[i] + corner.y * weight_.y[i] + corner.z * weight_.z[i];
+  }
+  void fill(Lane& out, float value) const {
+    for (int i = begin_; i < end_; ++i) out[i] = value;
+  }
+  void copy(const Lane& in, Lane& out) const {
+    for (int i = begin_; i < end_; ++i) out[i] = in[i];
+  }
+
+  /// Towards where the point would lie on the curved surface that the corner normals suggest: the mean of its
+  /// projections onto the corners' tangent planes, taken only outwards. Shadows looked up there do not show the facets
+  /// along the terminator. (J. Hanika, Hacking the Shadow Terminator, in Ray Tracing Gems II, 2021.)
+  void lift(std::size_t k, const Lane& weight, Geometry& out) const {
+    const glm::vec3 corner = t_.corner[k], n = t_.normal[k];
+    const Lane3& p = out.position;
+    Lane3& lifted = out.smooth_position;
+    for (int i = begin_; i < end_; ++i) {
+      const float height = (p.x[i] - corner.x) * n.x + (p.y[i] - corner.y) * n.y + (p.z[i] - corner.z) * n.z;
+      const float up = at_least_zero(-height) * weight[i];
+      lifted.x[i] += n.x * up;
+      lifted.y[i] += n.y * up;
+      lifted.z[i] += n.z * up;
+    }
+  }
+
+  const TriangleSetup& t_;
+  int begin_, end_;
+  Lane3 weight_;
+  Lane divisor_;
+};
 
 }  // namespace
 
 void interpolate_geometry(const ScreenRays& rays, const std::vector<TriangleSetup>& setups, Batch& batch) {
   const Coverage& coverage = batch.coverage;
-  for (int i = 0; i < coverage.count; ++i)
-    interpolate_one(rays, setups[coverage.triangle[i]], coverage.screen.at(i), i, batch.geometry);
+  for (int begin = 0; begin < coverage.count;) {
+    int end = begin + 1;
+    while (end < coverage.count && coverage.triangle[end] == coverage.triangle[begin]) ++end;
+    TriangleRun run(setups[coverage.triangle[begin]], begin, end);
+    run.find_weights(coverage.screen);
+    run.place(rays, batch.geometry);
+    run.find_normals(batch.geometry);
+    run.find_texcoords(batch.geometry);
+    run.find_colors(batch.geometry);
+    begin = end;
+  }
 }
 
 }  // namespace frontmost::shading

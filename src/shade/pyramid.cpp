@@ -130,6 +130,7 @@ struct Halving {
 
 float length_of(const glm::vec2& v) { return std::sqrt(v.x * v.x + v.y * v.y); }
 
+inline float mix(float a, float b, float t) { return a + (b - a) * t; }
 glm::vec4 mix(const glm::vec4& a, const glm::vec4& b, float t) { return a + (b - a) * t; }
 
 }  // namespace
@@ -176,7 +177,7 @@ void Pyramid::add_level(const Level& from, const Execution& execution) {
 
 glm::vec4 Pyramid::texel(const Level& level, int x, int y) const {
   const glm::u8vec4 t = level.texels[std::size_t(y) * std::size_t(level.width) + std::size_t(x)];
-  return {color_of_byte_[t.r], color_of_byte_[t.g], color_of_byte_[t.b], float(t.a) * (1.0f / 255.0f)};
+  return {color_of_byte_[t.r], color_of_byte_[t.g], color_of_byte_[t.b], table_of(Encoding::linear)[t.a]};
 }
 
 glm::vec4 Pyramid::nearest(const glm::vec2& texcoord) const {
@@ -193,10 +194,17 @@ glm::vec4 Pyramid::bilinear(const Level& level, const glm::vec2& texcoord) const
   const int left = floor_of(x), top = floor_of(y);
   const int x0 = neighbour(left, level.width, wrap_u), x1 = neighbour(left + 1, level.width, wrap_u);
   const int y0 = neighbour(top, level.height, wrap_v), y1 = neighbour(top + 1, level.height, wrap_v);
+  const glm::u8vec4* upper = level.texels + std::size_t(y0) * std::size_t(level.width);
+  const glm::u8vec4* lower = level.texels + std::size_t(y1) * std::size_t(level.width);
+  const glm::u8vec4 a = upper[x0], b = upper[x1], c = lower[x0], d = lower[x1];
   const float fx = x - float(left), fy = y - float(top);
-  const glm::vec4 upper = mix(texel(level, x0, y0), texel(level, x1, y0), fx);
-  const glm::vec4 lower = mix(texel(level, x0, y1), texel(level, x1, y1), fx);
-  return mix(upper, lower, fy);
+  // Channel by channel: the compiler keeps four scalars in registers where it would spill vectors.
+  const auto channel = [&](const float* table, int k) {
+    const float above = mix(table[a[k]], table[b[k]], fx), below = mix(table[c[k]], table[d[k]], fx);
+    return mix(above, below, fy);
+  };
+  const float* colors = color_of_byte_;
+  return {channel(colors, 0), channel(colors, 1), channel(colors, 2), channel(table_of(Encoding::linear), 3)};
 }
 
 glm::vec4 Pyramid::trilinear(const glm::vec2& texcoord, float level) const {

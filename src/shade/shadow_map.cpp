@@ -118,7 +118,7 @@ ShadowMap::ShadowMap(const Surfaces& surfaces, const Visible& visible, const glm
   key_bias_ = float(0.75 * texel / depth + 2e-6);
   key_slope_bias_ = float((0.5 * taps + 1) * texel / depth);
   draw(surfaces, view, execution);
-  find_ranges(execution);
+  find_nearest(execution);
 }
 
 void ShadowMap::draw(const Surfaces& surfaces, const View& view, const Execution& execution) {
@@ -126,31 +126,29 @@ void ShadowMap::draw(const Surfaces& surfaces, const View& view, const Execution
   size_ = kSize;
 }
 
-void ShadowMap::find_ranges(const Execution& execution) {
-  blocks_ = size_ / block;
-  std::vector<Range> own(std::size_t(blocks_) * std::size_t(blocks_));
-  const auto at = [&](std::size_t x, std::size_t y) { return y * std::size_t(blocks_) + x; };
-  parallel_for(execution, std::size_t(blocks_), 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t by = begin; by < end; ++by)
-      for (std::size_t bx = 0; bx < std::size_t(blocks_); ++bx) {
-        Range range{2, -1};
-        for (std::size_t y = by * block; y < (by + 1) * block; ++y)
-          for (std::size_t x = bx * block; x < (bx + 1) * block; ++x) {
-            const float key = keys_[y * std::size_t(size_) + x];
-            range = {std::min(range.low, key), std::max(range.high, key)};
-          }
-        own[at(bx, by)] = range;
-      }
+void ShadowMap::find_nearest(const Execution& execution) {
+  // Windows of 2, 4 and 8 texels, each from two of the size before; those past the last texel stay short and unused.
+  static_assert(taps == 8);
+  const auto size = std::size_t(size_);
+  nearest_ = Buffer<float>(size * size);
+  parallel_for(execution, size, 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y) {
+      float* row = nearest_.data() + y * size;
+      std::copy_n(keys_.data() + y * size, size, row);
+      for (const std::size_t step : {1, 2, 4})
+        for (std::size_t x = 0; x + step < size; ++x) row[x] = std::max(row[x], row[x + step]);
+    }
   });
-  ranges_ = own;
-  const auto last = std::size_t(blocks_ - 1);
-  for (std::size_t y = 0; y <= last; ++y)
-    for (std::size_t x = 0; x <= last; ++x)
-      for (const std::size_t i : {at(std::min(x + 1, last), y), at(x, std::min(y + 1, last)),
-                                  at(std::min(x + 1, last), std::min(y + 1, last))}) {
-        Range& range = ranges_[at(x, y)];
-        range = {std::min(range.low, own[i].low), std::max(range.high, own[i].high)};
-      }
+  constexpr std::size_t columns_at_once = 64;
+  parallel_for(execution, size / columns_at_once, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t first = begin * columns_at_once; first < end * columns_at_once; first += columns_at_once)
+      for (const std::size_t step : {1, 2, 4})
+        for (std::size_t y = 0; y + step < size; ++y) {
+          float* row = nearest_.data() + y * size + first;
+          const float* below = row + step * size;
+          for (std::size_t x = 0; x < columns_at_once; ++x) row[x] = std::max(row[x], below[x]);
+        }
+  });
 }
 
 float ShadowMap::light_at(const glm::vec3& position, const glm::vec3& plane_normal) const {
@@ -171,9 +169,7 @@ float ShadowMap::filtered(const glm::vec2& texel, float key) const {
   const float end = float(size_ - taps);
   if (!(first.x >= 0 && first.y >= 0 && first.x < end && first.y < end)) return 1.0f;
   const int x0 = int(first.x), y0 = int(first.y);
-  const Range& range = ranges_[std::size_t(y0 / block) * std::size_t(blocks_) + std::size_t(x0 / block)];
-  if (key >= range.high) return 1.0f;
-  if (key < range.low) return 0.0f;
+  if (key >= nearest_[std::size_t(y0) * std::size_t(size_) + std::size_t(x0)]) return 1.0f;
   // A tent, so that edges fade without steps. Its weights at whole texels always sum to half * half.
   float across[taps], sum = 0;
   for (int i = 0; i < taps; ++i) across[i] = std::max(0.0f, half - std::abs(float(x0 + i) + 0.5f - texel.x));

@@ -19,21 +19,15 @@ class ShadowMap {
   [[nodiscard]] float light_at(const glm::vec3& position, const glm::vec3& plane_normal) const;
 
  private:
-  static constexpr int taps = 8;   ///< of the filter along each axis
-  static constexpr int block = 8;  ///< texels along the side of a block whose nearest and farthest key is known
-
-  struct Range {
-    float low, high;
-  };
+  static constexpr int taps = 8;  ///< of the filter along each axis
 
   void draw(const Surfaces& surfaces, const View& view, const Execution& execution);
-  void find_ranges(const Execution& execution);
+  void find_nearest(const Execution& execution);
   [[nodiscard]] float filtered(const glm::vec2& texel, float key) const;
 
-  int size_ = 0;               ///< texels along each side; 0: no map
-  Buffer<float> keys_;         ///< greater is nearer to the light
-  std::vector<Range> ranges_;  ///< of each block and its right, lower and diagonal neighbours
-  int blocks_ = 0;             ///< along each side
+  int size_ = 0;           ///< texels along each side; 0: no map
+  Buffer<float> keys_;     ///< greater is nearer to the light
+  Buffer<float> nearest_;  ///< the greatest of the filter's keys, by its first texel: most points are lit by all
   glm::vec3 to_light_{0};
   glm::vec3 texel_x_{0}, texel_y_{0}, key_{0};  ///< what a step in the world changes
   glm::vec3 at_eye_{0};                         ///< texel x, y and key at the eye
