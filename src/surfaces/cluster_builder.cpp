@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <utility>
 
 #include "base/parallel.h"
 #include "surfaces/cluster_set.h"
@@ -27,8 +28,9 @@ struct Part {
   std::vector<Cluster> clusters;  // first_vertex and first_triangle relative to the part
   std::vector<Box> boxes;
   std::vector<float> x, y, z;
-  std::vector<std::uint8_t> i0, i1, i2;
+  std::array<std::vector<std::uint8_t>, 3> corners;
   std::vector<PrimitiveId> id;
+  std::vector<std::pair<std::uint32_t, Box>> instance_boxes;  // of runs of one instance's triangles
 };
 
 /// Which of a cluster's vertices a position is: a small open-addressing table over the bits of the coordinates.
@@ -41,19 +43,15 @@ class VertexTable {
   }
   [[nodiscard]] int size() const { return count_; }
 
-  /// The vertex's number, or -1 when it is not in the table.
-  [[nodiscard]] int find(const glm::vec3& p) const {
-    for (std::uint32_t slot = hash(p);; slot = (slot + 1) % kSlots) {
-      if (slots_[slot] == kFree) return -1;
-      if (same_bits(positions_[slots_[slot]], p)) return slots_[slot];
+  [[nodiscard]] bool holds(const glm::vec3& p) const { return slots_[slot_of(p)] != kFree; }
+  /// The vertex's number; it is added when it is not in the table yet. Precondition: there is room.
+  int intern(const glm::vec3& p) {
+    std::uint8_t& slot = slots_[slot_of(p)];
+    if (slot == kFree) {
+      positions_[std::size_t(count_)] = p;
+      slot = static_cast<std::uint8_t>(count_++);
     }
-  }
-  int add(const glm::vec3& p) {
-    std::uint32_t slot = hash(p);
-    while (slots_[slot] != kFree) slot = (slot + 1) % kSlots;
-    positions_[std::size_t(count_)] = p;
-    slots_[slot] = static_cast<std::uint8_t>(count_);
-    return count_++;
+    return slot;
   }
   [[nodiscard]] const glm::vec3& operator[](int i) const { return positions_[std::size_t(i)]; }
 
@@ -61,6 +59,12 @@ class VertexTable {
   static constexpr std::uint32_t kSlots = 256;
   static constexpr std::uint8_t kFree = 0xFF;
 
+  /// Where the position is, or belongs.
+  [[nodiscard]] std::uint32_t slot_of(const glm::vec3& p) const {
+    std::uint32_t slot = hash(p);
+    while (slots_[slot] != kFree && !same_bits(positions_[slots_[slot]], p)) slot = (slot + 1) % kSlots;
+    return slot;
+  }
   static bool same_bits(const glm::vec3& a, const glm::vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
   static std::uint32_t hash(const glm::vec3& p) {
     std::array<std::uint32_t, 3> bits;
@@ -89,11 +93,14 @@ class PartBuilder {
 
   void build(std::size_t begin, std::size_t end) {
     const std::size_t count = end - begin;
-    for (auto* corners : {&part_.i0, &part_.i1, &part_.i2}) corners->reserve(count + count / 4);
+    for (std::vector<std::uint8_t>& corners : part_.corners) corners.reserve(count + count / 4);
     for (auto* axis : {&part_.x, &part_.y, &part_.z}) axis->reserve(count);
     part_.id.reserve(count + count / 4);
     start_cluster();
-    for (std::size_t i = begin; i < end; ++i) add(source_.order[i]);
+    for (std::size_t i = begin; i < end; ++i) {
+      prefetch(i, end);
+      add(source_.order[i]);
+    }
     finish_cluster();
   }
 
@@ -104,6 +111,24 @@ class PartBuilder {
     cluster_ = {};
     cluster_.first_vertex = part_.x.size();
     cluster_.first_triangle = part_.id.size();
+  }
+
+  /// Triangles that are neighbours in space are often far apart in memory: the corner numbers are asked for well
+  /// ahead, and the positions that they lead to a little later.
+  void prefetch(std::size_t i, std::size_t end) const {
+    constexpr std::size_t kCornersAhead = 24, kPositionsAhead = 12;
+    if (i + kCornersAhead >= end) return;
+    __builtin_prefetch(&corners_of(source_.order[i + kCornersAhead]));
+    const PrimitiveId id = source_.order[i + kPositionsAhead];
+    const Mesh& mesh = source_.scene.meshes[source_.scene.instances[source_.instances.find(id)].mesh];
+    const glm::uvec3& corners = corners_of(id);
+    for (int k = 0; k < 3; ++k) __builtin_prefetch(&mesh.positions[corners[k]]);
+  }
+
+  [[nodiscard]] const glm::uvec3& corners_of(PrimitiveId id) const {
+    const std::uint32_t instance = source_.instances.find(id);
+    return source_.scene.meshes[source_.scene.instances[instance].mesh]
+        .triangles[id - source_.first_primitives[instance]];
   }
 
   void add(PrimitiveId id) {
@@ -123,23 +148,26 @@ class PartBuilder {
       start_cluster();
     }
     // Not finite: degenerate, three times vertex 0, whatever that is or will be.
-    std::array<std::uint8_t, 3> numbers{};
-    for (std::size_t k = 0; finite && k < 3; ++k) {
-      const int found = table_.find(world[k]);
-      numbers[k] = static_cast<std::uint8_t>(found >= 0 ? found : table_.add(world[k]));
-      box_.include(world[k]);
-    }
-    part_.i0.push_back(numbers[0]);
-    part_.i1.push_back(numbers[1]);
-    part_.i2.push_back(numbers[2]);
+    const std::size_t t = cluster_.triangle_count++;
+    for (std::size_t k = 0; k < 3; ++k)
+      corners_[k][t] = finite ? static_cast<std::uint8_t>(table_.intern(world[k])) : std::uint8_t(0);
     part_.id.push_back(id);
-    ++cluster_.triangle_count;
+    if (finite) include(number, world);
+  }
+
+  void include(std::uint32_t instance, const std::array<glm::vec3, 3>& world) {
+    if (part_.instance_boxes.empty() || part_.instance_boxes.back().first != instance)
+      part_.instance_boxes.emplace_back(instance, Box{});
+    const Box triangle{glm::min(glm::min(world[0], world[1]), world[2]),
+                       glm::max(glm::max(world[0], world[1]), world[2])};
+    box_.include(triangle);
+    part_.instance_boxes.back().second.include(triangle);
   }
 
   [[nodiscard]] bool fits(const std::array<glm::vec3, 3>& world) const {
     if (table_.size() + 3 <= Cluster::max_vertices) return true;
     int missing = 0;
-    for (const glm::vec3& p : world) missing += table_.find(p) < 0;
+    for (const glm::vec3& p : world) missing += !table_.holds(p);
     return table_.size() + missing <= Cluster::max_vertices;
   }
 
@@ -154,7 +182,11 @@ class PartBuilder {
       part_.z.push_back(p.z);
     }
     const std::size_t end = cluster_.first_triangle + padded(cluster_.triangle_count);
-    for (auto* corners : {&part_.i0, &part_.i1, &part_.i2}) corners->resize(end, 0);
+    for (std::size_t k = 0; k < 3; ++k) {
+      part_.corners[k].insert(part_.corners[k].end(), corners_[k].begin(),
+                              corners_[k].begin() + cluster_.triangle_count);
+      part_.corners[k].resize(end, 0);
+    }
     part_.id.resize(end, no_primitive);
     part_.clusters.push_back(cluster_);
     part_.boxes.push_back(box_);
@@ -164,6 +196,7 @@ class PartBuilder {
   Part& part_;
   VertexTable table_;
   Cluster cluster_;
+  std::array<std::array<std::uint8_t, Cluster::max_triangles>, 3> corners_;
   Box box_;
 };
 
@@ -196,9 +229,9 @@ void gather(ClusterSet& set, std::vector<Part>& parts, const Execution& executio
       place(part.x, set.x, at.vertex);
       place(part.y, set.y, at.vertex);
       place(part.z, set.z, at.vertex);
-      place(part.i0, set.i0, at.triangle);
-      place(part.i1, set.i1, at.triangle);
-      place(part.i2, set.i2, at.triangle);
+      place(part.corners[0], set.i0, at.triangle);
+      place(part.corners[1], set.i1, at.triangle);
+      place(part.corners[2], set.i2, at.triangle);
       place(part.id, set.id, at.triangle);
       for (std::size_t c = 0; c < part.clusters.size(); ++c) {
         Cluster cluster = part.clusters[c];
@@ -209,36 +242,6 @@ void gather(ClusterSet& set, std::vector<Part>& parts, const Execution& executio
       }
     }
   });
-}
-
-/// World-space bounds of a run's triangles with finite corners.
-Box bounds_of(const Scene& scene, const InstanceRun& run) {
-  const Instance& instance = scene.instances[run.instance];
-  const Mesh& mesh = scene.meshes[instance.mesh];
-  const ToWorld world(instance.world_from_mesh);
-  Box box;
-  for (std::uint32_t t = run.begin; t < run.end; ++t) {
-    Box triangle;
-    bool finite = true;
-    for (int k = 0; k < 3; ++k) {
-      const glm::vec3 p = world(mesh.positions[mesh.triangles[t][k]]);
-      finite = finite && is_finite(p);
-      triangle.include(p);
-    }
-    if (finite) box.include(triangle);
-  }
-  return box;
-}
-
-void find_bounds(ClusterSet& set, const Execution& execution) {
-  const std::vector<InstanceRun> runs = split_by_instance(*set.scene, kTrianglesPerPart);
-  std::vector<Box> boxes(runs.size());
-  parallel_for(execution, runs.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) boxes[i] = bounds_of(*set.scene, runs[i]);
-  });
-  set.instance_bounds.resize(set.scene->instances.size());
-  for (std::size_t i = 0; i < runs.size(); ++i) set.instance_bounds[runs[i].instance].include(boxes[i]);
-  for (const Box& box : set.instance_bounds) set.bounds.include(box);
 }
 
 }  // namespace
@@ -262,15 +265,18 @@ ClusterSet build_clusters(const Scene& scene, const Execution& execution) {
   for (const Instance& instance : scene.instances)
     set.first_primitives.push_back(set.first_primitives.back() +
                                    static_cast<PrimitiveId>(scene.meshes[instance.mesh].triangles.size()));
-  find_bounds(set, execution);
 
-  const std::vector<PrimitiveId> order = spatial_order(scene, set.first_primitives, set.bounds, execution);
+  const std::vector<PrimitiveId> order = spatial_order(scene, set.first_primitives, execution);
   const InstanceFinder instances(set.first_primitives);
   const Source source{scene, set.first_primitives, instances, order};
   std::vector<Part> parts((order.size() + kTrianglesPerPart - 1) / kTrianglesPerPart);
   parallel_for(execution, order.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
     PartBuilder(source, parts[begin / kTrianglesPerPart]).build(begin, end);
   });
+  set.instance_bounds.resize(scene.instances.size());
+  for (const Part& part : parts)
+    for (const auto& [instance, box] : part.instance_boxes) set.instance_bounds[instance].include(box);
+  for (const Box& box : set.instance_bounds) set.bounds.include(box);
   gather(set, parts, execution);
   return set;
 }

@@ -6,6 +6,7 @@
 #include "surfaces/spatial_order.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -15,7 +16,73 @@
 namespace frontmost {
 namespace {
 
-constexpr std::uint32_t kTrianglesPerRun = 1u << 15;
+constexpr std::uint32_t kItemsPerRun = 1u << 15;
+
+/// A run of one instance's triangles or vertices. Work is split at fixed numbers, whatever the threads.
+struct InstanceRun {
+  std::uint32_t instance = 0;
+  std::uint32_t begin = 0, end = 0;
+};
+
+template <class Count>
+std::vector<InstanceRun> split_by_instance(const Scene& scene, const Count& count_of) {
+  std::vector<InstanceRun> runs;
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const std::uint64_t count = count_of(scene.meshes[scene.instances[i].mesh]);
+    for (std::uint64_t begin = 0; begin < count; begin += kItemsPerRun)
+      runs.push_back({i, std::uint32_t(begin), std::uint32_t(std::min(begin + kItemsPerRun, count))});
+  }
+  return runs;
+}
+
+/// Bounds of untransformed positions. Several boxes side by side, as flat arrays, so that the compiler can use vectors
+/// and no comparison waits for the one before.
+Box bounds_of(const glm::vec3* positions, std::size_t count) {
+  constexpr std::size_t kBoxes = 16, kFloats = 3 * kBoxes;
+  constexpr float kMost = std::numeric_limits<float>::max();
+  std::array<float, kFloats> low, high;
+  low.fill(kMost);
+  high.fill(-kMost);
+  const std::size_t whole = count / kBoxes * kBoxes;
+  for (std::size_t i = 0; i < whole; i += kBoxes) {
+    const float* p = &positions[i].x;
+    for (std::size_t k = 0; k < kFloats; ++k) {
+      const bool finite = std::abs(p[k]) <= kMost;
+      low[k] = finite && p[k] < low[k] ? p[k] : low[k];
+      high[k] = finite && p[k] > high[k] ? p[k] : high[k];
+    }
+  }
+  Box box;
+  for (std::size_t k = 0; whole > 0 && k < kFloats; k += 3)
+    box.include(Box{{low[k], low[k + 1], low[k + 2]}, {high[k], high[k + 1], high[k + 2]}});
+  for (std::size_t i = whole; i < count; ++i)
+    if (is_finite(positions[i])) box.include(positions[i]);
+  return box;
+}
+
+/// Bounds of all finite vertices, whether a triangle uses them or not: good enough to lay a grid.
+Box bounds_of_vertices(const Scene& scene, const Execution& execution) {
+  const auto runs = split_by_instance(scene, [](const Mesh& mesh) { return mesh.positions.size(); });
+  std::vector<Box> boxes(runs.size());
+  parallel_for(execution, runs.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t r = first; r < last; ++r) {
+      const Instance& instance = scene.instances[runs[r].instance];
+      const std::vector<glm::vec3>& positions = scene.meshes[instance.mesh].positions;
+      const ToWorld world(instance.world_from_mesh);
+      if (world.is_identity()) {
+        boxes[r] = bounds_of(positions.data() + runs[r].begin, runs[r].end - runs[r].begin);
+        continue;
+      }
+      for (std::uint32_t v = runs[r].begin; v < runs[r].end; ++v) {
+        const glm::vec3 p = world(positions[v]);
+        if (is_finite(p)) boxes[r].include(p);
+      }
+    }
+  });
+  Box bounds;
+  for (const Box& box : boxes) bounds.include(box);
+  return bounds;
+}
 
 /// Spreads the low 10 bits to every third place.
 std::uint32_t spread(std::uint32_t x) {
@@ -30,7 +97,8 @@ class MortonGrid {
  public:
   MortonGrid(const Box& bounds, int bits_per_axis) : low_(bounds.low), last_((1u << bits_per_axis) - 1) {
     const glm::dvec3 size = glm::dvec3(bounds.high) - glm::dvec3(bounds.low);
-    const double widest = std::max({size.x, size.y, size.z});
+    // Without a finite vertex the size is minus infinity.
+    const double widest = std::max({size.x, size.y, size.z, 0.0});
     scale_ = widest > 0 ? float((1u << bits_per_axis) / widest) : 0.0f;
   }
   [[nodiscard]] std::uint32_t code(const glm::vec3& p) const {
@@ -66,23 +134,13 @@ InstanceFinder::InstanceFinder(const std::vector<PrimitiveId>& first_primitives)
   }
 }
 
-std::vector<InstanceRun> split_by_instance(const Scene& scene, std::uint32_t triangles_per_run) {
-  std::vector<InstanceRun> runs;
-  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-    const std::uint64_t count = scene.meshes[scene.instances[i].mesh].triangles.size();
-    for (std::uint64_t begin = 0; begin < count; begin += triangles_per_run)
-      runs.push_back({i, std::uint32_t(begin), std::uint32_t(std::min(begin + triangles_per_run, count))});
-  }
-  return runs;
-}
-
 std::vector<PrimitiveId> spatial_order(const Scene& scene, const std::vector<PrimitiveId>& first_primitives,
-                                       const Box& bounds, const Execution& execution) {
+                                       const Execution& execution) {
   const std::size_t count = first_primitives.back();
   const int bits = bits_per_axis(count);
-  const MortonGrid grid(bounds, bits);
+  const MortonGrid grid(bounds_of_vertices(scene, execution), bits);
   Buffer<std::uint64_t> items(count);
-  const std::vector<InstanceRun> runs = split_by_instance(scene, kTrianglesPerRun);
+  const auto runs = split_by_instance(scene, [](const Mesh& mesh) { return mesh.triangles.size(); });
   parallel_for(execution, runs.size(), 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t r = first; r < last; ++r) {
       const Instance& instance = scene.instances[runs[r].instance];

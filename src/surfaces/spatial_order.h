@@ -25,17 +25,10 @@ class InstanceFinder {
   std::vector<std::uint32_t> start_;
 };
 
-/// A run of consecutive ids within one instance. Work is split at fixed numbers, whatever the threads.
-struct InstanceRun {
-  std::uint32_t instance = 0;
-  std::uint32_t begin = 0, end = 0;  ///< triangles of the mesh
-};
-[[nodiscard]] std::vector<InstanceRun> split_by_instance(const Scene& scene, std::uint32_t triangles_per_run);
-
-/// All primitive ids, by the Morton code of the triangles' centroids within `bounds`; within a cell in id order.
+/// All primitive ids, by the Morton code of the triangles' centroids; within a cell in id order.
 /// Cells hold some tens of triangles of an ordinary surface. O(triangles), 16 bytes a triangle while it runs.
 [[nodiscard]] std::vector<PrimitiveId> spatial_order(const Scene& scene,
                                                      const std::vector<PrimitiveId>& first_primitives,
-                                                     const Box& bounds, const Execution& execution);
+                                                     const Execution& execution);
 
 }  // namespace frontmost
