@@ -58,7 +58,8 @@ Json view_json(const ViewResult& result) {
   if (result.seen) json["seen"] = seen_json(*result.seen, result.view);
   json["files"] = Json::array();
   for (const Result& file : result.results) {
-    json["files"].push_back({{"what", file.what}, {"path", file.path}, {"hash", hash_text(file.hash)}});
+    Json& one = json["files"].emplace_back(Json{{"what", file.what}, {"path", file.path}});
+    if (file.hash) one["hash"] = hash_text(*file.hash);
   }
   if (result.reference) json["reference"] = reference_json(*result.reference);
   json["warnings"] = result.warnings;
@@ -98,7 +99,7 @@ std::string hash_lines(const std::vector<ViewResult>& views, bool is_batch) {
     const std::string prefix = is_batch ? view.name + ":" : "";
     lines += fmt::format("{}visible {}\n", prefix, hash_text(view.seen->hash));
     for (const Result& result : view.results) {
-      lines += fmt::format("{}{} {} {}\n", prefix, result.what, hash_text(result.hash), result.path);
+      lines += fmt::format("{}{} {} {}\n", prefix, result.what, hash_text(*result.hash), result.path);
     }
   }
   return lines;

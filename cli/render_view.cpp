@@ -100,9 +100,9 @@ Image map_of(OutputKind kind, const Job& job, const RenderContext& context, cons
 }
 
 /// PFM holds three channels; there the picture is without its alpha.
-Image fitting(const Image& picture, ImageFormat format) {
+Image without_alpha(const Image& picture) {
   Image copy = picture;
-  if (format == ImageFormat::pfm && copy.channels.size() == 4) copy.channels.pop_back();
+  if (copy.channels.size() == 4) copy.channels.pop_back();
   return copy;
 }
 
@@ -120,20 +120,52 @@ SaveOptions save_options(const OutputFile& file, const OutputSettings& settings)
   return options;
 }
 
-void write(const OutputFile& file, const Image* picture, const Sights& sights, const Job& job,
-           const RenderContext& context, ViewResult& result) {
+/// What all files of a view are made from.
+struct Source {
+  const Job& job;
+  const RenderContext& context;
+  const Sights& sights;
+  const Image* picture;
+};
+
+void note(const Image& part, OutputKind kind, const OutputFile& file, const Source& source, ViewResult& result) {
+  Result& one = result.results.emplace_back(Result{std::string(kind_name(kind)), file.path, {}});
+  if (source.job.output.hash) one.hash = content_hash(part);
+}
+
+/// The channels of every kind that the file holds.
+Image compose(const OutputFile& file, const Source& source, ViewResult& result) {
   Image image;
   for (const OutputKind kind : file.kinds) {
-    Image part =
-        kind == OutputKind::picture ? fitting(*picture, file.format) : map_of(kind, job, context, sights.for_maps());
-    Result& one = result.results.emplace_back(Result{std::string(kind_name(kind)), file.path, 0});
-    if (job.output.hash || context.run.json) one.hash = content_hash(part);
+    Image part;
+    if (kind != OutputKind::picture) {
+      part = map_of(kind, source.job, source.context, source.sights.for_maps());
+    } else {
+      part = file.format == ImageFormat::pfm ? without_alpha(*source.picture) : *source.picture;
+    }
+    note(part, kind, file, source, result);
     append(image, std::move(part));
   }
+  return image;
+}
+
+void save_image(const Image& image, const OutputFile& file, const Source& source, ViewResult& result) {
   const Stopwatch watch;
   const WritingFiles writing;
-  save(image, file.path, save_options(file, job.output), context.execution);
+  save(image, file.path, save_options(file, source.job.output), source.context.execution);
   result.timings.save += watch.milliseconds();
+}
+
+void write(const OutputFile& file, const Source& source, ViewResult& result) {
+  // A picture on its own is saved as it is: copying one takes as long as finding what is visible.
+  const bool as_it_is =
+      file.kinds.size() == 1 && file.kinds.front() == OutputKind::picture && file.format != ImageFormat::pfm;
+  if (as_it_is) {
+    note(*source.picture, OutputKind::picture, file, source, result);
+    save_image(*source.picture, file, source, result);
+  } else {
+    save_image(compose(file, source, result), file, source, result);
+  }
 }
 
 void warn_if_blank(const Sights& sights, const RenderContext& context, ViewResult& result) {
@@ -160,7 +192,7 @@ ViewResult render_view(const Job& job, const RenderContext& context) {
   }
   for (const OutputFile& file : job.files) {
     stop_if_interrupted();
-    write(file, picture ? &*picture : nullptr, sights, job, context, result);
+    write(file, {job, context, sights, picture ? &*picture : nullptr}, result);
   }
   if (job.output.reference) result.reference = compare_with_reference(*picture, job, context.execution);
   if (context.keep_picture) result.picture = std::move(picture);

@@ -36,7 +36,7 @@ struct Seen {
 struct Result {
   std::string what;  ///< as kind_name()
   std::string path;
-  std::uint64_t hash = 0;
+  std::optional<std::uint64_t> hash;  ///< where --hash asks
 };
 
 struct ReferenceResult {
