@@ -6,6 +6,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 
 #include "frontmost/base.h"
@@ -125,6 +126,8 @@ struct FrameOptions {
   double margin = 0.05;                 ///< of the picture on each side
   int samples = 1;
   Culling culling = Culling::none;
+  /// Looks along this, with that upwards, where set; instead of the named direction's. Any length but zero.
+  std::optional<glm::dvec3> forward, up;
 };
 
 /// A view that shows all of `surfaces`, with near and far fitted. Empty surfaces: a unit box about the origin.

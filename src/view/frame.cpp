@@ -194,7 +194,8 @@ View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& 
   if (!(options.margin >= 0 && options.margin < 0.5)) throw Error(ErrorCode::bad_argument, "margin: must be 0 to 0.5");
   const Box box = surfaces.bounds().is_empty() ? unit_box() : surfaces.bounds();
   const Gaze look = gaze(options.direction, model_axes(surfaces.scene().up));
-  glm::dmat4 pose = look_at(glm::normalize(look.towards_viewer), glm::dvec3(0), look.up);
+  const glm::dvec3 forward = options.forward.value_or(-look.towards_viewer);
+  glm::dmat4 pose = look_at(-glm::normalize(forward), glm::dvec3(0), options.up.value_or(look.up));
 
   const double aspect = double(width) / height, filled = 1 - 2 * options.margin;
   Projection projection = make_projection(options.min_fov, aspect, {});
