@@ -142,8 +142,13 @@ ClipDistances clip_of(const ViewSettings& settings, const Surfaces& surfaces, co
   return clip;
 }
 
-View framed(const ViewSettings& settings, const Surfaces& surfaces, const glm::ivec2& size) {
+/// The library's own framing; `axes`, where given, instead of the named direction.
+View framed(const ViewSettings& settings, const Surfaces& surfaces, const glm::ivec2& size, const Aim* axes = nullptr) {
   FrameOptions options;
+  if (axes) {
+    options.forward = -axis(axes->world_from_eye, 2);
+    options.up = axis(axes->world_from_eye, 1);
+  }
   options.direction = settings.named.value_or(NamedView::three_quarter);
   options.orthographic = settings.orthographic;
   if (settings.view_angle) {
@@ -152,6 +157,19 @@ View framed(const ViewSettings& settings, const Surfaces& surfaces, const glm::i
     options.min_fov = 2 * std::atan(half * std::min(1.0, double(size.x) / size.y));
   }
   return frame(surfaces, size.x, size.y, options);
+}
+
+/// A camera that was told, or that is to see all from in line with a focal point or with given intrinsics.
+void place(View& view, const Aim& aim, const ViewSettings& settings, const Surfaces& surfaces) {
+  const glm::ivec2 size(view.width, view.height);
+  view.world_from_eye = aim.world_from_eye;
+  view.projection =
+      settings.camera_index ? shape_of(model_camera(settings, surfaces.scene()), size) : shape_of(settings, size, view);
+  if (aim.fitted) {
+    fit(view, aim.target, visible_bounds(surfaces));
+  } else if (view.projection.orthographic && !settings.camera_index) {
+    scale(view.projection, glm::distance(aim.target, view.eye()));
+  }
 }
 
 /// True when the library's own framing is all that was asked for.
@@ -174,13 +192,10 @@ View resolve_view(const ViewSettings& settings, const Surfaces& surfaces) {
   if (!is_plain(settings)) {
     Aim aim = aim_of(settings, surfaces, view);
     turn(aim, settings);
-    view.world_from_eye = aim.world_from_eye;
-    view.projection = settings.camera_index ? shape_of(model_camera(settings, surfaces.scene()), size)
-                                            : shape_of(settings, size, view);
-    if (aim.fitted) {
-      fit(view, aim.target, visible_bounds(surfaces));
-    } else if (view.projection.orthographic && !settings.camera_index) {
-      scale(view.projection, glm::distance(aim.target, view.eye()));
+    if (aim.fitted && !settings.focal_point && !settings.intrinsics) {
+      view = framed(settings, surfaces, size, &aim);
+    } else {
+      place(view, aim, settings, surfaces);
     }
   }
   zoom(view.projection, settings.zoom);

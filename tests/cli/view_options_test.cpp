@@ -15,13 +15,13 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Two triangles that span the box from (0, 0, 0) to (2, 4, 6), z up.
+/// The eight corners of the box from (0, 0, 0) to (2, 4, 6), z up.
 Scene box_scene() {
   Scene scene;
   scene.up = Axis::z;
   Mesh mesh;
-  mesh.positions = {{0, 0, 0}, {2, 0, 0}, {2, 4, 6}, {0, 4, 6}};
-  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  for (int i = 0; i < 8; ++i) mesh.positions.emplace_back(i & 1 ? 2 : 0, i & 2 ? 4 : 0, i & 4 ? 6 : 0);
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}, {5, 6, 7}};
   scene.meshes.push_back(mesh);
   scene.instances.push_back({"box", 0, glm::dmat4(1.0)});
   return scene;
@@ -111,6 +111,7 @@ TEST_F(ViewOptions, EverythingFitsFromAnyDirection) {
                                     {{"camera-azimuth-angle", "70"}, {"camera-elevation-angle", "-40"}},
                                     {{"camera-orthographic", ""}, {"camera-direction", "1,1,1"}},
                                     {{"view", "left"}, {"camera-azimuth-angle", "10"}, {"camera-orthographic", ""}},
+                                    {{"camera-focal-point", "0,0,0"}, {"view", "right"}},
                                     {{"intrinsics", "300,310,10,60"}, {"pixel-center", "half"}},
                                     {{"camera-view-angle", "100"}, {"camera-view-up", "x"}}};
   for (const Pairs& pairs : cases) {
@@ -124,6 +125,13 @@ TEST_F(ViewOptions, EverythingFitsFromAnyDirection) {
       // And no farther away than needed: it reaches a margin somewhere.
       EXPECT_LT(std::min({low.x, low.y, 1 - high.x, 1 - high.y}), 0.051);
     }
+  }
+}
+
+TEST_F(ViewOptions, TurningByNothingChangesNothing) {
+  const View still = view({{"view", "iso"}}), turned = view({{"view", "iso"}, {"camera-azimuth-angle", "1e-9"}});
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_NEAR(glm::distance(still.world_from_eye[i], turned.world_from_eye[i]), 0, 1e-6) << i;
   }
 }
 
