@@ -149,14 +149,13 @@ class TilePainter {
     PrimitiveId* primitives = frame_.primitives + at;
     float* keys = frame_.keys + at;
     const std::size_t lanes = hn::Lanes(d), width = std::size_t(job_.width);
-    // Aligned rows bypass the cache: the planes are larger than it, and are read next by somebody else.
-    const bool aligned = at % 16 == 0 && lanes >= 4;
+    const bool streams = frame_.streams && at % 16 == 0 && lanes >= 4;
     std::size_t x = 0;
     for (; x + lanes <= width; x += lanes) {
       const auto word = hn::Load(d, row + x);
       const auto id = hn::Not(hn::TruncateTo(dh, word));
       const auto key = hn::BitCast(df, hn::TruncateTo(dh, hn::ShiftRight<32>(word)));
-      if (aligned) {
+      if (streams) {
         hn::Stream(id, dh, primitives + x);
         hn::Stream(key, df, keys + x);
       } else {
@@ -676,10 +675,37 @@ class TilePainter {
   ScreenCluster vertices_;
 };
 
+template <class D>
+HWY_INLINE void FillRow(D d, hn::TFromD<D> value, hn::TFromD<D>* row, std::size_t width, bool streams) {
+  const auto vector = hn::Set(d, value);
+  std::size_t x = 0;
+  if (streams && reinterpret_cast<std::uintptr_t>(row) % 64 == 0)
+    for (; x + hn::Lanes(d) <= width; x += hn::Lanes(d)) hn::Stream(vector, d, row + x);
+  for (; x < width; ++x) row[x] = value;
+}
+
+/// A tile in which nothing can be seen.
+void FillTile(const FrameInput& frame, const TileJob& job) {
+  for (std::size_t s = 0; s < frame.samples.size(); ++s)
+    for (int y = 0; y < job.height; ++y) {
+      const std::size_t at =
+          (s * std::size_t(frame.view.height) + std::size_t(job.y + y)) * std::size_t(frame.view.width) +
+          std::size_t(job.x);
+      FillRow(DU(), no_primitive, frame.primitives + at, std::size_t(job.width), frame.streams);
+      FillRow(DF(), 0.0f, frame.keys + at, std::size_t(job.width), frame.streams);
+    }
+}
+
 void DrawTile(const FrameInput& frame, const TileJob& job, TileScratch& scratch) {
-  TilePainter painter(frame, job, scratch);
-  painter.Draw();
-  painter.WriteOut();
+  if (job.records.empty() && job.clusters.empty()) {
+    FillTile(frame, job);
+  } else {
+    TilePainter painter(frame, job, scratch);
+    painter.Draw();
+    painter.WriteOut();
+  }
+  // Streamed stores are weakly ordered: another thread may read the planes next.
+  hwy::FlushStream();
 }
 
 }  // namespace HWY_NAMESPACE
@@ -691,22 +717,6 @@ namespace frontmost::zbuffer_detail {
 
 HWY_EXPORT(DrawTile);
 
-namespace {
-
-/// A tile in which nothing can be seen.
-void fill_tile(const FrameInput& frame, const TileJob& job) {
-  for (std::size_t s = 0; s < frame.samples.size(); ++s)
-    for (int y = 0; y < job.height; ++y) {
-      const std::size_t at =
-          (s * std::size_t(frame.view.height) + std::size_t(job.y + y)) * std::size_t(frame.view.width) +
-          std::size_t(job.x);
-      std::fill_n(frame.primitives + at, job.width, no_primitive);
-      std::fill_n(frame.keys + at, job.width, 0.0f);
-    }
-}
-
-}  // namespace
-
 TileScratch::TileScratch(std::size_t sample_count)
     : words(sample_count * kTileWords),
       farthest(std::size_t(kTileSize / kBlockSize) * (kTileSize / kBlockSize)),
@@ -714,11 +724,7 @@ TileScratch::TileScratch(std::size_t sample_count)
       references(std::size_t(16 * 16 * 16) + 64) {}
 
 void draw_tile(const FrameInput& frame, const TileJob& job, TileScratch& scratch, Isa isa) {
-  if (job.records.empty() && job.clusters.empty()) {
-    fill_tile(frame, job);
-  } else {
-    kernel_for(HWY_DISPATCH_TABLE(DrawTile), isa)(frame, job, scratch);
-  }
+  kernel_for(HWY_DISPATCH_TABLE(DrawTile), isa)(frame, job, scratch);
 }
 
 }  // namespace frontmost::zbuffer_detail

@@ -27,6 +27,7 @@ struct FrameInput {
   std::span<const glm::ivec2> samples;      ///< offsets within a pixel
   PrimitiveId* primitives;                  ///< output planes, [sample][y][x]
   float* keys;
+  bool streams;  ///< write them past the cache: they are too large to stay in it
 };
 
 /// One tile: its pixels, and what may be seen in it, near things first.

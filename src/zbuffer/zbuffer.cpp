@@ -54,6 +54,9 @@ Visible zbuffer(const Surfaces& surfaces, const View& view, const Execution& exe
   const FramePlan plan = plan_frame(set, transform, view, execution);
 
   Visible visible{view, Buffer<PrimitiveId>(view.sample_count()), Buffer<float>(view.sample_count())};
+  // Measured on planes that are touched for the first time: at 16 MiB streaming costs 20 %, at 66 MiB it saves 15 %.
+  constexpr std::size_t kStreamFrom = std::size_t(32) << 20;
+  const bool streams = view.sample_count() * (sizeof(PrimitiveId) + sizeof(float)) >= kStreamFrom;
   const FrameInput frame{set,
                          transform,
                          view,
@@ -61,7 +64,8 @@ Visible zbuffer(const Surfaces& surfaces, const View& view, const Execution& exe
                          plan.records,
                          sample_offsets(view.samples),
                          visible.primitives.data(),
-                         visible.keys.data()};
+                         visible.keys.data(),
+                         streams};
   ScratchPool pool(frame.samples.size());
   std::atomic<std::size_t> drawn{0};
   parallel_for(execution, plan.tile_count(), 1, [&](std::size_t begin, std::size_t end) {
