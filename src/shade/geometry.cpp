@@ -174,7 +174,7 @@ void TriangleSource::set_normals(PrimitiveId id, TriangleSetup& setup) const {
 
 void TriangleSource::set_attributes(TriangleSetup& setup) const {
   const Mesh& mesh = surfaces_.scene().meshes[setup.mesh];
-  setup.has_texcoord = !mesh.texcoords.empty();
+  setup.has_texcoord = has_texcoords_ && !mesh.texcoords.empty();
   setup.has_color = !mesh.colors.empty();
   for (int k = 0; k < 3; ++k) {
     const auto corner = std::size_t(k);

@@ -33,6 +33,8 @@ class TriangleSource {
   /// those meshes, and all of them with no `large`, stay flat.
   TriangleSource(const Surfaces& surfaces, const View& view, const BitSet* large, const Execution& execution);
 
+  /// From now on no triangle has texture coordinates: for pictures that look at none.
+  void leave_out_texcoords() { has_texcoords_ = false; }
   /// `reference` is a screen position on the triangle.
   void set_up(PrimitiveId id, const glm::vec2& reference, TriangleSetup& setup) const;
   [[nodiscard]] const ScreenRays& rays() const { return rays_; }
@@ -50,6 +52,7 @@ class TriangleSource {
   const Surfaces& surfaces_;
   ScreenRays rays_;
   const BitSet* large_;
+  bool has_texcoords_ = true;
   std::vector<Placement> placements_;  ///< by instance
   std::vector<CornerNormals> smooth_;  ///< by mesh; empty where the mesh has normals of its own or is not seen
 };

@@ -158,6 +158,7 @@ struct Triangles {
   Triangles(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {
     if (lacks_normals(surfaces.scene())) large = large_primitives(surfaces, visible, execution);
     source.emplace(surfaces, visible.view, large ? &*large : nullptr, execution);
+    if (!has_textures(surfaces.scene())) source->leave_out_texcoords();
   }
 };
 
