@@ -77,20 +77,20 @@ inline Terms terms_of(const Lighting& lighting, const Batch& batch, int i) {
   t.smoothness = 1.0f - roughness;
   t.height = 0.5f + 0.5f * dot(n, up);
   t.reflected_height = smooth(clamp01(0.5f + dot(r, up) * sharpness));
-  t.reflected_key = smooth(box);
+  t.reflected_key = smooth(box) * t.smoothness;  // rough ones have it in their highlight
   return t;
 }
 
 /// One colour channel of the light, and of the material.
 struct Colors {
-  float key, sky, ground;
+  float key, sky, ground, box;
 };
 struct Response {
   float base, metallic, occlusion, emissive;
 };
 
 inline float shaded(const Terms& t, const Colors& light, const Response& m) {
-  constexpr float dielectric = 0.04f, box_brightness = 0.9f;
+  constexpr float dielectric = 0.04f;
   const float f0 = mix(dielectric, m.base, m.metallic);
   const float matt = m.base * (1.0f - m.metallic);
   const float key_fresnel = f0 + (1.0f - f0) * t.key_fresnel;
@@ -98,7 +98,7 @@ inline float shaded(const Terms& t, const Colors& light, const Response& m) {
   // Rough surfaces shimmer less at grazing angles (S. Lagarde's variant of Schlick's term).
   const float around_fresnel = f0 + (at_least(t.smoothness, f0) - f0) * t.around_fresnel;
   const float around_matt = mix(light.ground, light.sky, t.height) * matt * (1.0f - around_fresnel);
-  const float mirrored = mix(light.ground, light.sky, t.reflected_height) * 1.4f + box_brightness * t.reflected_key;
+  const float mirrored = mix(light.ground, light.sky, t.reflected_height) * 1.4f + light.box * t.reflected_key;
   return m.emissive + key + m.occlusion * (around_matt + around_fresnel * mirrored);
 }
 
@@ -118,11 +118,11 @@ void light_batch(const Lighting& lighting, Batch& batch) {
   for (int i = 0; i < batch.coverage.count; ++i) {
     const Terms t = terms_of(lighting, batch, i);
     const float metallic = clamp01(m.metallic[i]), occlusion = m.occlusion[i];
-    const float r = shaded(t, {lighting.key.x, lighting.sky.x, lighting.ground.x},
+    const float r = shaded(t, {lighting.key.x, lighting.sky.x, lighting.ground.x, lighting.key.x * lighting.box},
                            {m.base.x[i], metallic, occlusion, m.emissive.x[i]});
-    const float g = shaded(t, {lighting.key.y, lighting.sky.y, lighting.ground.y},
+    const float g = shaded(t, {lighting.key.y, lighting.sky.y, lighting.ground.y, lighting.key.y * lighting.box},
                            {m.base.y[i], metallic, occlusion, m.emissive.y[i]});
-    const float b = shaded(t, {lighting.key.z, lighting.sky.z, lighting.ground.z},
+    const float b = shaded(t, {lighting.key.z, lighting.sky.z, lighting.ground.z, lighting.key.z * lighting.box},
                            {m.base.z[i], metallic, occlusion, m.emissive.z[i]});
     batch.light.x[i] = finish(r, m.base.x[i], i);
     batch.light.y[i] = finish(g, m.base.y[i], i);

@@ -19,6 +19,8 @@ struct Lighting {
   glm::vec3 key{0.64f, 0.63f, 0.615f};
   glm::vec3 sky{0.33f, 0.335f, 0.345f};
   glm::vec3 ground{0.17f, 0.165f, 0.16f};
+  /// What smooth surfaces mirror of the box that the key light shines from, as a multiple of the key.
+  float box = 1.4f;
 };
 
 [[nodiscard]] Lighting lighting_for(const View& view, Axis up);

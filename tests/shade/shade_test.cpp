@@ -9,67 +9,18 @@
 
 #include "base/srgb.h"
 #include "frontmost/zbuffer.h"
+#include "shade/support.h"
 
 namespace frontmost {
 namespace {
 
+using namespace test;
+
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-/// A square of side 2 about the origin that faces +z; u to the right, v down.
-Mesh square() {
-  Mesh mesh;
-  mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-  mesh.texcoords.values = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
-  return mesh;
-}
-
-Material colored(const glm::vec4& base) {
-  Material material;
-  material.base_color = base;
-  return material;
-}
-
-Scene scene_of(Mesh mesh, std::optional<Material> material = std::nullopt) {
-  Scene scene;
-  if (material) {
-    scene.materials.push_back(*material);
-    mesh.material_ids = {0};
-  }
-  scene.meshes.push_back(std::move(mesh));
-  scene.instances.push_back({"one", 0, glm::dmat4(1)});
-  return scene;
-}
-
-/// Looks at the origin from (0, 0, 10); the picture is 4 x 4 units in parallel projection.
-View front_view(int size = 64, int samples = 1) {
-  View view;
-  view.width = view.height = size;
-  view.samples = samples;
-  view.world_from_eye = look_at({0, 0, 10}, {0, 0, 0}, {0, 1, 0});
-  view.projection = make_orthographic(-2, 2, -2, 2, {1, 20});
-  return view;
-}
 
 Image picture(const Scene& scene, const View& view, const ShadeOptions& options = {}, const Execution& execution = {}) {
   const Surfaces surfaces(scene);
   return shade(surfaces, zbuffer(surfaces, view), options, execution);
-}
-
-glm::vec4 color_at(const Image& image, int x, int y) {
-  const auto i = std::size_t(y * image.width + x);
-  glm::vec4 color;
-  int k = 0;
-  for (const char* name : {"R", "G", "B", "A"}) color[k++] = image.find(name)->floats()[i];
-  return color;
-}
-
-Texture texture_of(int width, int height, std::vector<glm::u8vec4> pixels) {
-  Texture texture;
-  texture.width = width;
-  texture.height = height;
-  texture.pixels = std::move(pixels);
-  return texture;
 }
 
 ShadeOptions with(Shading shading) { return {.shading = shading}; }
@@ -306,10 +257,16 @@ TEST(Shade, SmoothAndSlantedSurfacesDoNotShadowThemselves) {
   }
 }
 
+View four_samples(const Surfaces& surfaces) {
+  FrameOptions options;
+  options.samples = 4;
+  return frame(surfaces, 333, 222, options);
+}
+
 TEST(Shade, SameBytesForAnyNumberOfThreads) {
   const Scene scene = builtin("teapot");
   const Surfaces surfaces(scene);
-  const Visible visible = zbuffer(surfaces, frame(surfaces, 333, 222, {.samples = 4}));
+  const Visible visible = zbuffer(surfaces, four_samples(surfaces));
   for (const Shading shading :
        {Shading::lit, Shading::flat, Shading::normals, Shading::depth, Shading::ids, Shading::uv}) {
     const std::uint64_t one = content_hash(shade(surfaces, visible, with(shading), {.threads = 1}));
