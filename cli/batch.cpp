@@ -77,7 +77,8 @@ template <class Belongs>
 void apply_object(const Place& place, const Belongs& belongs, std::vector<std::string_view> other_keys,
                   Settings& settings) {
   if (!place.value.is_object()) place.refuse("must be an object");
-  for (const auto& [key, value] : place.value.items()) {
+  for (const auto& item : place.value.items()) {
+    const std::string& key = item.key();  // clang 14 does not capture structured bindings
     bool known = std::find(other_keys.begin(), other_keys.end(), key) != other_keys.end();
     std::vector<std::string_view> names = other_keys;
     for_each_option([&](const Option& option) {
