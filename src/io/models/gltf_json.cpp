@@ -49,14 +49,6 @@ const char* type_name(const json& value) { return value.type_name(); }
 
 }  // namespace
 
-std::string printable(std::string_view text) {
-  constexpr std::size_t longest = 160;
-  std::string out(text.substr(0, longest));
-  for (char& c : out)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
-  return text.size() > longest ? out + "..." : out;
-}
-
 JsonDocument::JsonDocument(std::string_view text, const ModelSource& source) {
   check_shape(text, source);
   try {
@@ -148,6 +140,8 @@ std::string Json::string_or_empty(const char* key) const {
   const std::optional<Json> found = find(key);
   return found ? found->to_string() : std::string();
 }
+
+std::string Json::name() const { return name_of(string_or_empty("name")); }
 
 std::uint64_t Json::unsigned_or(const char* key, std::uint64_t absent) const {
   const std::optional<Json> found = find(key);

@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "io/models/file_text.h"
 #include "io/models/model_source.h"
 
 namespace frontmost::gltf {
@@ -61,6 +62,8 @@ class Json {
   [[nodiscard]] bool bool_or(const char* key, bool absent) const;
   [[nodiscard]] double number_or(const char* key, double absent) const;
   [[nodiscard]] std::string string_or_empty(const char* key) const;
+  /// The member "name", if it is there.
+  [[nodiscard]] std::string name() const;
   [[nodiscard]] std::uint64_t unsigned_or(const char* key, std::uint64_t absent) const;
   [[nodiscard]] std::uint32_t index_or_none(const char* key, std::size_t count) const;
   /// False: absent, and `out` stays as it is.
@@ -75,8 +78,5 @@ class Json {
   std::string place_;
   const ModelSource* source_;
 };
-
-/// A text of the file as it may stand in a message: short, and without control characters.
-[[nodiscard]] std::string printable(std::string_view text);
 
 }  // namespace frontmost::gltf

@@ -12,7 +12,7 @@ class MaterialReader {
 
   Material read(const Json& json) {
     Material material;
-    material.name = json.string_or_empty("name");
+    material.name = json.name();
     // glTF's defaults, which differ from those of a material of our own.
     material.metallic = material.roughness = 1;
     if (const auto pbr = json.find("pbrMetallicRoughness")) read_metallic_roughness(*pbr, material);

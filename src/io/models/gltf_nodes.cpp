@@ -63,7 +63,7 @@ std::optional<Copies> read_copies(const Json& node, const Data& data) {
 Node read_node(const Json& json, const Counts& counts, const Data& data) {
   Node node;
   node.place = json.place();
-  node.name = json.string_or_empty("name");
+  node.name = json.name();
   node.mesh = json.index_or_none("mesh", counts.meshes);
   node.skin = json.index_or_none("skin", counts.skins);
   node.camera = json.index_or_none("camera", counts.cameras);

@@ -64,7 +64,7 @@ class Planner {
   MeshPlan plan() {
     MeshPlan plan;
     plan.place = json_.place();
-    plan.name = json_.string_or_empty("name");
+    plan.name = json_.name();
     if (const auto weights = json_.find("weights")) {
       plan.weights.resize(weights->size());
       weights->to_numbers(plan.weights);

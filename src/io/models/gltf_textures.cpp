@@ -65,7 +65,7 @@ void TextureTable::read_sampler(const Json& texture, Look& look) const {
 TextureTable::Encoded TextureTable::find_image(std::uint32_t id) const {
   const Json image = root_.require("images")[id];
   Encoded encoded;
-  encoded.name = image.string_or_empty("name");
+  encoded.name = image.name();
   encoded.place = image.place();
   const std::uint32_t view = image.index_or_none("bufferView", data_.view_count());
   if (view != no_index) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "io/models/file_text.h"
+
 namespace frontmost {
 namespace fs = std::filesystem;
 namespace {
@@ -44,12 +46,13 @@ void ModelSource::fail_limit(const std::string& place, const std::string& reason
 
 fs::path ModelSource::confined(const std::string& reference) const {
   const auto refuse = [&](const char* reason) -> void {
-    throw Error(ErrorCode::file_unreadable, name_ + ": " + reference + ": " + reason);
+    throw Error(ErrorCode::file_unreadable, name_ + ": " + printable(reference) + ": " + reason);
   };
+  constexpr std::size_t longest = 4096;  // as on Linux; taking a longer one apart costs many times its size
   if (!has_folder()) refuse("files named inside a model are not read when it comes from memory or a stream");
   std::string slashed = reference;
   std::replace(slashed.begin(), slashed.end(), '\\', '/');
-  if (slashed.empty() || slashed.find('\0') != std::string::npos) refuse("not a file name");
+  if (slashed.empty() || slashed.size() > longest || slashed.find('\0') != std::string::npos) refuse("not a file name");
   if (leaves_folder(slashed)) refuse("lies outside the model's folder, so it is not read");
 
   std::error_code error;
@@ -66,7 +69,7 @@ fs::path ModelSource::confined(const std::string& reference) const {
 }
 
 InputFile ModelSource::open(const std::string& reference, std::uint64_t max_bytes) const {
-  return InputFile::open(confined(reference), name_ + ": " + reference, max_bytes);
+  return InputFile::open(confined(reference), name_ + ": " + printable(reference), max_bytes);
 }
 
 }  // namespace frontmost

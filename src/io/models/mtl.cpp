@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/models/file_text.h"
 #include "io/models/mesh_building.h"
 #include "io/models/text_scanner.h"
 
@@ -25,7 +26,7 @@ class MtlReader {
     do {
       const std::string_view word = text_.word();
       if (word == "newmtl") {
-        number_ = materials_.define(std::string(text_.rest()));
+        number_ = materials_.define(name_of(text_.rest()));
       } else if (number_ != no_index) {
         statement(word);
       }
@@ -126,7 +127,8 @@ class MtlReader {
     }
     const std::string file(text_.rest());
     if (file.empty()) text_.fail("a file name was expected");
-    use.texture = textures_.get(folder_.empty() ? file : folder_ + "/" + file, "material " + material().name, wrap);
+    use.texture =
+        textures_.get(folder_.empty() ? file : folder_ + "/" + file, "material " + printable(material().name), wrap);
     // In the file v goes up: v' = s v + o there is v' = s v + (1 - s - o) here.
     use.scale = scale;
     use.offset = {offset.x, 1 - scale.y - offset.y};
@@ -162,7 +164,7 @@ class MtlReader {
 std::uint32_t MaterialTable::number(const std::string& name) {
   const auto [entry, is_new] = numbers_.try_emplace(name, std::uint32_t(scene_.materials.size()));
   if (is_new) {
-    if (scene_.materials.size() >= max_objects) source_.fail_limit("material " + name, "too many materials");
+    if (scene_.materials.size() >= max_objects) source_.fail_limit("material " + printable(name), "too many materials");
     scene_.materials.emplace_back().name = name;
     is_defined_.push_back(false);
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "io/models/file_text.h"
 #include "io/models/mesh_building.h"
 #include "io/models/mtl.h"
 #include "io/models/obj_meshes.h"
@@ -57,14 +58,14 @@ class ObjReader {
 
   void rare_statement(std::string_view word) {
     if (word == "usemtl") {
-      material_ = materials_.number(std::string(text_.rest()));
+      material_ = materials_.number(name_of(text_.rest()));
     } else if (word == "mtllib") {
       library(std::string(text_.rest()));
     } else if (word == "o") {
-      object_ = text_.rest();
+      object_ = name_of(text_.rest());
       start_group(object_);
     } else if (word == "g") {
-      const std::string name(text_.rest());
+      const std::string name = name_of(text_.rest());
       start_group(name.empty() || name == "default" || name == "off" ? object_ : name);
     } else if (word != "s") {
       pass_over(word);
@@ -170,7 +171,7 @@ class ObjReader {
     const std::string place = text_.place();
     if (names.empty()) return;
     if (!source_.has_folder()) {
-      scene_.warnings.push_back(place + ": " + names + " is not read, the model does not come from a file");
+      scene_.warnings.push_back(place + ": " + printable(names) + " is not read, the model does not come from a file");
       return;
     }
     std::string reason;
@@ -193,7 +194,7 @@ class ObjReader {
     try {
       if (!libraries_.insert(name).second) return true;
       const InputFile file = source_.open(name, max_library_bytes);
-      const ModelSource library(source_.name() + ": " + name, source_.execution());
+      const ModelSource library(source_.name() + ": " + printable(name), source_.execution());
       read_mtl(file.bytes(), library, std::filesystem::path(name).parent_path().generic_string(), textures_,
                materials_);
       return true;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // ASCII STL. Every solid becomes a mesh. Words may be in any case and anywhere on a line, as in files from the wild.
+#include "io/models/file_text.h"
 #include "io/models/mesh_building.h"
 #include "io/models/stl.h"
 #include "io/models/text_scanner.h"
@@ -43,7 +44,7 @@ class AsciiStl {
 
   void begin_solid() {
     in_solid_ = true;
-    const std::string name(text_.rest());
+    const std::string name = name_of(text_.rest());
     add_object(scene_, name, text_.source(), text_.place());
   }
 

@@ -2,15 +2,13 @@
 #include "io/models/text_scanner.h"
 
 #include "base/parallel.h"
+#include "io/models/file_text.h"
 
 namespace frontmost {
 
 std::string in_quotes(std::string_view word) {
   constexpr std::size_t longest = 40;
-  std::string text(1, '"');
-  text.append(word.substr(0, longest));
-  text.append(word.size() > longest ? "...\"" : "\"");
-  return text;
+  return '"' + printable(word.substr(0, longest)) + (word.size() > longest ? "...\"" : "\"");
 }
 
 bool TextScanner::join_lines() {

@@ -2,6 +2,7 @@
 #include "io/models/texture_files.h"
 
 #include "io/images/decode.h"
+#include "io/models/file_text.h"
 
 namespace frontmost {
 namespace {
@@ -20,12 +21,13 @@ std::uint32_t TextureFiles::get(const std::string& reference, const std::string&
 
 std::uint32_t TextureFiles::read(const std::string& reference, const std::string& place, Texture::Wrap wrap) {
   if (!source_.has_folder()) {
-    scene_.warnings.push_back(place + ": texture " + reference + " is not read, the model does not come from a file");
+    scene_.warnings.push_back(place + ": texture " + printable(reference) +
+                              " is not read, the model does not come from a file");
     return no_index;
   }
   try {
     const InputFile file = source_.open(reference, max_image_file_bytes);
-    const std::string name = source_.name() + ": " + reference;
+    const std::string name = source_.name() + ": " + printable(reference);
     const glm::ivec2 size = texture_size(file.bytes(), name);
     pixel_count_ += std::uint64_t(size.x) * std::uint64_t(size.y);
     if (pixel_count_ > max_texture_pixels)

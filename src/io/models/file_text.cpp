@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/models/file_text.h"
+
+namespace frontmost {
+namespace {
+
+/// The start of `text`, of at most `longest` bytes and without a part of a character at its end.
+std::string_view start_of(std::string_view text, std::size_t longest) {
+  if (text.size() <= longest) return text;
+  const auto continues = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xC0) == 0x80; };
+  std::size_t end = longest;
+  while (end > longest - 3 && continues(end)) --end;
+  return text.substr(0, end);
+}
+
+}  // namespace
+
+std::string name_of(std::string_view text) { return std::string(start_of(text, longest_name)); }
+
+std::string printable(std::string_view text) {
+  constexpr std::size_t longest = 160;
+  std::string out(start_of(text, longest));
+  for (char& c : out)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
+  return text.size() > longest ? out + "..." : out;
+}
+
+}  // namespace frontmost
