@@ -80,6 +80,9 @@ InputFile InputFile::map(int descriptor, std::size_t size, const std::string& na
 }
 
 InputFile InputFile::read_stream(int descriptor, const std::string& name, std::uint64_t max_bytes) {
+  struct ::stat status {};
+  if (::fstat(descriptor, &status) == 0 && (S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode)))
+    max_bytes = std::min(max_bytes, max_device_bytes);
   // realloc moves large blocks by remapping pages, so growing holds no second copy.
   std::size_t capacity = mapping_threshold, size = 0;
   auto* start = static_cast<std::byte*>(std::malloc(capacity));

@@ -14,6 +14,8 @@ namespace frontmost {
 /// Largest file that is accepted, and largest stream (standard input, pipes), which must be held in memory.
 inline constexpr std::uint64_t max_file_bytes = std::uint64_t(1) << 40;
 inline constexpr std::uint64_t max_stream_bytes = std::uint64_t(1) << 34;
+/// Largest amount that is read from a device such as a terminal: /dev/zero never ends.
+inline constexpr std::uint64_t max_device_bytes = std::uint64_t(1) << 26;
 
 /// The bytes of one file, read only, for as long as the object lives.
 ///

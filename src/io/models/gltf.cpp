@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "io/models/gltf_instances.h"
+#include "io/models/mesh_building.h"
 #include "io/models/reader.h"
 
 namespace frontmost {
@@ -56,6 +57,16 @@ void check_extensions(const Json& root, std::vector<std::string>& warnings) {
     warnings.push_back("extensionsUsed: " + name + " is not supported and passed over");
 }
 
+/// Every element costs some hundred bytes, whether a file says anything about it ("{}") or not.
+void check_counts(const Json& root) {
+  for (const char* key : {"accessors", "bufferViews", "buffers", "cameras", "images", "materials", "meshes", "nodes",
+                          "samplers", "skins", "textures"}) {
+    const std::optional<Json> array = root.find(key);
+    if (array && array->size() > max_objects)
+      root.source().fail_limit(key, std::to_string(array->size()) + " are more than " + std::to_string(max_objects));
+  }
+}
+
 std::string_view without_byte_order_mark(std::string_view text) {
   return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
 }
@@ -66,6 +77,7 @@ Scene read_scene(const Container& container, const ModelSource& source) {
   Scene scene;
   check_version(root);
   check_extensions(root, scene.warnings);
+  check_counts(root);
   const Data data(root, container);
   TextureTable textures(root, data);
   Materials materials = read_materials(root, textures, scene.warnings);

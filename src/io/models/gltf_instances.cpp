@@ -67,6 +67,10 @@ class Placer {
     Instance instance;
     instance.name = !node.name.empty() ? node.name : !plan.name.empty() ? plan.name : node.place;
     instance.mesh = posed_mesh(node, skinned);
+    const std::uint64_t copies = node.copies ? node.copies->count : 1;
+    // No memory here, but ten times as much in whatever looks at the triangles in the world.
+    constexpr std::uint64_t least_cost = 4;
+    budget_.charge(copies * scene_.meshes[instance.mesh].triangles.size(), least_cost, node.place, source_);
     instance.world_from_mesh = skinned ? glm::dmat4(1.0) : node.world;
     if (node.copies)
       place_copies(node, instance);
@@ -80,6 +84,8 @@ class Placer {
       source_.fail(node.place + ".weights", std::to_string(node.weights.size()) + " weights for " +
                                                 std::to_string(plan.target_count) + " morph targets");
     Pose pose{node.weights.empty() ? plan.weights : node.weights};
+    // Every node compares and keeps its weights, those of its mesh too.
+    budget_.charge(pose.weights.size(), sizeof(double), node.place, source_);
     if (skinned) pose.joints = skins_[node.skin];
     const Key key{node.mesh, skinned ? node.skin : no_index, pose.weights};
     const auto known = posed_.find(key);
@@ -154,7 +160,7 @@ std::optional<double> positive(const Json& json, const char* key) {
 /// The lens of a camera. None: a type of the future, or sizes that are not positive.
 std::optional<Camera> read_camera(const Json& json) {
   Camera camera;
-  camera.name = json.string_or_empty("name");
+  camera.name = json.name();
   camera.orthographic = json.require("type").to_string() == "orthographic";
   const std::optional<Json> lens = json.find(camera.orthographic ? "orthographic" : "perspective");
   if (!lens) return std::nullopt;

@@ -22,7 +22,15 @@ const char* match(const char* at, const char* end, std::string_view word) {
   return after != end && is_letter(*after) ? nullptr : after;
 }
 
-/// nan, inf, infinity, and what old Microsoft libraries print: 1.#QNAN, 1.#IND, 1.#INF.
+/// Steps over what C libraries print behind "nan": "(ind)", "(snan)", "(0x7ff)".
+const char* skip_payload(const char* at, const char* end) {
+  if (at == end || *at != '(') return at;
+  const char* p = at + 1;
+  while (p != end && (is_letter(*p) || is_digit(*p) || *p == '_')) ++p;
+  return p != end && *p == ')' ? p + 1 : at;
+}
+
+/// nan, nan(payload), inf, infinity, and what old Microsoft libraries print: 1.#QNAN, 1.#IND, 1.#INF.
 const char* parse_special(const char* at, const char* end, float& magnitude) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   constexpr struct {
@@ -35,7 +43,7 @@ const char* parse_special(const char* at, const char* end, float& magnitude) {
       magnitude = special.value;
       // "1.#IND00" pads to the digits that were asked for.
       while (special.word[0] == '1' && after != end && is_digit(*after)) ++after;
-      return after;
+      return special.word == "nan" ? skip_payload(after, end) : after;
     }
   return nullptr;
 }

@@ -211,7 +211,8 @@ void PlyBody<Rows>::read_faces(const PlyElement& element) {
   const Columns columns(element);
   if (!columns.has(Role::corners)) return skip(element);
   check_index_type(element, columns);
-  mesh_.triangles.reserve(mesh_.triangles.size() + std::size_t(element.count));
+  // Only once: reserve() takes no more than is asked for, so that thousands of elements would move all each time.
+  if (mesh_.triangles.empty()) mesh_.triangles.reserve(std::size_t(element.count));
   FloatRow row{};
   at(row, Role::alpha) = 1;
   for (std::uint64_t i = 0; i < element.count; ++i) {
@@ -283,6 +284,7 @@ void PlyBody<Rows>::finish() {
 template <class Rows>
 void PlyBody<Rows>::read_strips(const PlyElement& element) {
   const Columns columns(element);
+  if (!columns.has(Role::corners)) return skip(element);
   check_index_type(element, columns);
   for (std::uint64_t i = 0; i < element.count; ++i) {
     rows_.begin_row(element, i);

@@ -58,7 +58,8 @@ TEST(ParseFloat, RefusesWhatIsNone) {
 }
 
 TEST(ParseFloat, KnowsNanAndInfinityInEverySpelling) {
-  for (const char* text : {"nan", "NaN", "-nan", "1.#QNAN", "-1.#IND", "1.#IND00", "1.#SNAN"}) {
+  for (const char* text : {"nan", "NaN", "-nan", "1.#QNAN", "-1.#IND", "1.#IND00", "1.#SNAN", "nan(ind)", "-nan(ind)",
+                           "nan(snan)", "NaN(0x7ff)"}) {
     float value = 0;
     EXPECT_EQ(parse(text, value), std::ptrdiff_t(std::string(text).size())) << text;
     EXPECT_TRUE(std::isnan(value)) << text;
