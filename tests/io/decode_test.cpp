@@ -173,6 +173,17 @@ TEST(DecodeJpeg, SizeThatTheBytesCannotHoldIsRefused) {
   EXPECT_THAT(error_of(bytes), HasSubstr("cannot hold 16384 x 16384"));
 }
 
+TEST(Decode, JpegScansWithoutEndAreRefused) {
+  const JpegFlavour flavour{.width = 16, .height = 16, .components = 3, .progressive = true};
+  const std::vector<std::byte> one = encode_jpeg(flavour, std::vector<std::uint8_t>(16 * 16 * 3));
+  constexpr std::byte start_of_scan[] = {std::byte{0xFF}, std::byte{0xDA}};
+  const auto scan = std::find_end(one.begin(), one.end(), std::begin(start_of_scan), std::end(start_of_scan));
+  std::vector<std::byte> many(one.begin(), scan);
+  for (int i = 0; i < 300; ++i) many.insert(many.end(), scan, one.end() - 2);
+  many.insert(many.end(), one.end() - 2, one.end());
+  EXPECT_THAT(error_of(many), HasSubstr("more scans than an image of its size has"));
+}
+
 TEST(Decode, OtherFormatsAreNamed) {
   EXPECT_THAT(error_of(bytes_of(std::string_view("RIFF\0\0\0\0WEBPVP8 ", 16)), ErrorCode::unsupported),
               HasSubstr("WebP"));

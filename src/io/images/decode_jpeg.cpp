@@ -5,9 +5,11 @@
 #include <jpeglib.h>
 // clang-format on
 
+#include <algorithm>
 #include <csetjmp>
 #include <cstring>
 
+#include "io/images/decode.h"
 #include "io/images/decoders.h"
 
 namespace frontmost::detail {
@@ -16,6 +18,8 @@ namespace {
 /// A progressive file of a few kilobytes can hold thousands of scans, each a pass over the whole image; real ones
 /// hold about ten.
 constexpr int max_scans = 200;
+/// The same for large images: 16 scans at the greatest size.
+constexpr std::uint64_t max_scanned_pixels = 16 * max_image_pixels;
 
 /// libjpeg reports errors by longjmp, which must not pass over C++ objects: the functions that set the jump
 /// (`read_header`, `read_rows`) hold none, and everything they need lies here.
@@ -54,7 +58,9 @@ struct Reader {
       fail("ends too early");
   }
   void check_scans() {
-    if (jpeg.input_scan_number > max_scans) fail("more than 200 scans");
+    const auto scans = std::uint64_t(std::max(jpeg.input_scan_number, 0));
+    if (scans > max_scans || scans * jpeg.image_width * jpeg.image_height > max_scanned_pixels)
+      fail("more scans than an image of its size has");
   }
 };
 

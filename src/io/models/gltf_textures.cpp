@@ -4,12 +4,11 @@
 #include "base/parallel.h"
 #include "io/images/decode.h"
 #include "io/models/gltf_uri.h"
+#include "io/models/pixel_budget.h"
 
 namespace frontmost::gltf {
 namespace {
 
-/// Pixels of all images of a model: as many as one image may have, and more for larger files.
-constexpr std::uint64_t pixels_per_byte = 64;
 constexpr std::uint64_t max_image_bytes = std::uint64_t(1) << 30;
 
 Texture::Wrap wrap_of(std::uint64_t code) {
@@ -20,12 +19,6 @@ Texture::Wrap wrap_of(std::uint64_t code) {
   }
 }
 constexpr std::uint64_t repeat_code = 10497, nearest_code = 9728;
-
-/// Warnings carry no file name.
-std::string without_name(const std::string& message, const ModelSource& source) {
-  const std::string prefix = source.name() + ": ";
-  return message.starts_with(prefix) ? message.substr(prefix.size()) : message;
-}
 
 void remap(TextureUse& use, const std::vector<std::uint32_t>& new_numbers) {
   if (!use.is_set()) return;
@@ -93,64 +86,88 @@ auto TextureTable::with_bytes(const Encoded& encoded, Use use) const {
   return use(file.bytes(), encoded.place);
 }
 
-std::map<std::uint32_t, Texture> TextureTable::decode_images(std::vector<std::string>& warnings) const {
-  struct Job {
-    std::uint32_t image = no_index;
-    Encoded encoded;
-    Texture texture;
-    std::string problem;
-  };
-  std::map<std::uint32_t, Job> by_image;
-  for (const Look& look : looks_) by_image[look.image].image = look.image;
-  std::uint64_t pixels_left = max_image_pixels + pixels_per_byte * data_.byte_count();
-  std::vector<Job*> jobs;
-  for (auto& [id, job] : by_image) {
+/// Textures that lie in the same place are one: some exporters write an image for every material, hostile ones write
+/// thousands.
+TextureTable::Jobs TextureTable::find_images() const {
+  Jobs jobs;
+  std::map<std::tuple<const std::byte*, std::size_t, std::string>, std::uint32_t> places;
+  for (const Look& look : looks_) {
+    const auto [alike, is_new] = jobs.first_alike.emplace(look.image, look.image);
+    if (is_new) {
+      Job job;
+      try {
+        job.encoded = find_image(look.image);
+        const auto [place, is_first] =
+            places.try_emplace({job.encoded.bytes.data(), job.encoded.bytes.size(), job.encoded.path}, look.image);
+        alike->second = place->second;
+      } catch (const Error& error) {
+        job.problem = root_.source().without_name(error);
+      }
+      if (alike->second == look.image) jobs.by_image.emplace(look.image, std::move(job));
+    }
+    ++jobs.by_image.at(alike->second).uses;
+  }
+  return jobs;
+}
+
+/// Reads the headers. Images that would be too large together become problems before memory is asked for.
+void TextureTable::check_sizes(Jobs& jobs) const {
+  // Buffer views may overlap, and going over an image's chunks takes time: each byte may be in a few images only.
+  std::uint64_t encoded_left = (std::uint64_t(1) << 24) + 4 * data_.byte_count();
+  PixelBudget budget;
+  budget.add_file(data_.byte_count());
+  for (auto& [id, job] : jobs.by_image) {
+    if (!job.problem.empty()) continue;
+    const std::string& place = job.encoded.place;
     try {
-      job.encoded = find_image(id);
-      const glm::ivec2 size = with_bytes(job.encoded, texture_size);
-      const std::uint64_t pixels = std::uint64_t(size.x) * std::uint64_t(size.y);
-      if (pixels > pixels_left)
-        throw Error(ErrorCode::limit_exceeded, job.encoded.place + ": too many pixels in all images together");
-      pixels_left -= pixels;
-      jobs.push_back(&job);
+      if (job.encoded.bytes.size() > encoded_left)
+        throw Error(ErrorCode::limit_exceeded, place + ": all images together are larger than the file");
+      encoded_left -= job.encoded.bytes.size();
+      const auto pixel_count = [&](Bytes bytes, const std::string& name) {
+        if (!job.encoded.path.empty()) budget.add_file(bytes.size());
+        const glm::ivec2 size = texture_size(bytes, name);
+        return std::uint64_t(size.x) * std::uint64_t(size.y);
+      };
+      if (!budget.take(job.uses * with_bytes(job.encoded, pixel_count)))
+        throw Error(ErrorCode::limit_exceeded, place + ": too many pixels in all images together");
     } catch (const Error& error) {
-      job.problem = without_name(error.what(), root_.source());
+      job.problem = root_.source().without_name(error);
     }
   }
-  parallel_for(root_.source().execution(), jobs.size(), 1, [&](std::size_t begin, std::size_t end) {
+}
+
+void TextureTable::decode(Jobs& jobs) const {
+  std::vector<Job*> list;
+  for (auto& [id, job] : jobs.by_image)
+    if (job.problem.empty()) list.push_back(&job);
+  parallel_for(root_.source().execution(), list.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      Job& job = *jobs[i];
+      Job& job = *list[i];
       try {
         job.texture = with_bytes(job.encoded, decode_texture);
         job.texture.name = job.encoded.name;
       } catch (const Error& error) {
-        job.problem = without_name(error.what(), root_.source());
+        job.problem = root_.source().without_name(error);
       }
     }
   });
-  std::map<std::uint32_t, Texture> textures;
-  for (auto& [id, job] : by_image) {
-    if (job.problem.empty())
-      textures.emplace(id, std::move(job.texture));
-    else
-      warnings.push_back(job.problem + "; materials go without it");
-  }
-  return textures;
 }
 
 void TextureTable::load(Scene& scene) const {
-  std::map<std::uint32_t, Texture> images = decode_images(scene.warnings);
-  std::map<std::uint32_t, std::size_t> uses_left;
-  for (const Look& look : looks_) ++uses_left[look.image];
+  Jobs jobs = find_images();
+  check_sizes(jobs);
+  decode(jobs);
+  for (const auto& [id, job] : jobs.by_image)
+    if (!job.problem.empty()) scene.warnings.push_back(job.problem + "; materials go without it");
   std::vector<std::uint32_t> new_numbers(looks_.size(), no_index);
   for (std::size_t i = 0; i < looks_.size(); ++i) {
     const Look& look = looks_[i];
-    const auto image = images.find(look.image);
-    if (image == images.end()) continue;
+    Job& job = jobs.by_image.at(jobs.first_alike.at(look.image));
+    if (!job.problem.empty()) continue;
     new_numbers[i] = std::uint32_t(scene.textures.size());
     // Only samplers that differ make a second copy of the pixels.
-    const bool last = --uses_left[look.image] == 0;
-    Texture& texture = scene.textures.emplace_back(last ? std::move(image->second) : image->second);
+    const bool last = --job.uses == 0;
+    Texture& texture = scene.textures.emplace_back(last ? std::move(job.texture) : job.texture);
     texture.wrap_u = look.wrap_u;
     texture.wrap_v = look.wrap_v;
     texture.nearest = look.nearest;

@@ -37,12 +37,25 @@ class TextureTable {
     std::vector<std::byte> decoded_uri;
     std::string path;  ///< of a file beside the model; empty: `bytes` holds the image
   };
+  /// An image that textures use.
+  struct Job {
+    std::size_t uses = 0;  ///< textures that differ in their samplers, each of which gets the pixels
+    Encoded encoded;
+    Texture texture;
+    std::string problem;  ///< why it cannot be decoded
+  };
+  struct Jobs {
+    std::map<std::uint32_t, Job> by_image;
+    std::map<std::uint32_t, std::uint32_t> first_alike;  ///< for every image the first one with the same bytes
+  };
 
   void read_sampler(const Json& texture, Look& look) const;
   [[nodiscard]] Encoded find_image(std::uint32_t image) const;
   template <class Use>
   auto with_bytes(const Encoded& encoded, Use use) const;
-  [[nodiscard]] std::map<std::uint32_t, Texture> decode_images(std::vector<std::string>& warnings) const;
+  [[nodiscard]] Jobs find_images() const;
+  void check_sizes(Jobs& jobs) const;
+  void decode(Jobs& jobs) const;
 
   const Json& root_;
   const Data& data_;

@@ -7,8 +7,6 @@
 namespace frontmost {
 namespace {
 constexpr std::uint64_t max_image_file_bytes = std::uint64_t(1) << 30;
-// Of all textures of a model together: 2 GiB.
-constexpr std::uint64_t max_texture_pixels = std::uint64_t(1) << 29;
 constexpr std::size_t max_textures = 1 << 16;
 }  // namespace
 
@@ -29,8 +27,8 @@ std::uint32_t TextureFiles::read(const std::string& reference, const std::string
     const InputFile file = source_.open(reference, max_image_file_bytes);
     const std::string name = source_.name() + ": " + printable(reference);
     const glm::ivec2 size = texture_size(file.bytes(), name);
-    pixel_count_ += std::uint64_t(size.x) * std::uint64_t(size.y);
-    if (pixel_count_ > max_texture_pixels)
+    budget_.add_file(file.bytes().size());
+    if (!budget_.take(std::uint64_t(size.x) * std::uint64_t(size.y)))
       throw Error(ErrorCode::limit_exceeded, name + ": the textures together have too many pixels");
     Texture texture = decode_texture(file.bytes(), name);
     texture.name = reference;

@@ -5,6 +5,7 @@
 #include <map>
 #include <tuple>
 
+#include "io/models/pixel_budget.h"
 #include "io/models/reader.h"
 
 namespace frontmost {
@@ -21,7 +22,7 @@ class TextureFiles {
 
   const ModelSource& source_;
   Scene& scene_;
-  std::uint64_t pixel_count_ = 0;
+  PixelBudget budget_;
   std::map<std::pair<std::string, Texture::Wrap>, std::uint32_t> known_;
 };
 

@@ -112,6 +112,44 @@ TEST(GltfMaterials, ImagesAreSharedUnlessSamplersDiffer) {
   EXPECT_THAT(scene.textures[scene.materials[0].base_color_texture.texture].pixels, SizeIs(1));
 }
 
+// Two images in one place are one, whose pixels count once for each sampler that they are used with.
+TEST(GltfMaterials, ImagesThatGrowTooMuchAreLeftOut) {
+  for (const int sampler_count : {1, 2}) {
+    GltfMaker maker;
+    // Half of what is free of charge, in some thousand bytes.
+    const test::PngFlavour flavour{.width = 8192, .height = 6144, .color_type = 0, .bits = 1};
+    const std::vector<std::byte> png = test::encode_png(flavour, std::vector<std::uint8_t>(1024 * 6144));
+    ASSERT_LT(png.size(), 10'000u);
+    const int view = maker.view(png.data(), png.size());
+    maker.add("samplers", R"({"wrapS":10497})");
+    maker.add("samplers", R"({"wrapS":33071})");
+    for (int i = 0; i < 2; ++i) {
+      maker.add("images", R"({"bufferView":)" + std::to_string(view) + "}");
+      maker.add("textures", R"({"source":0,"sampler":)" + std::to_string(i % sampler_count) + "}");
+      maker.add("materials", R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":)" + std::to_string(i) + "}}}");
+    }
+    const Scene scene = read(maker);
+    EXPECT_THAT(scene.textures, SizeIs(sampler_count == 1 ? 1 : 0));
+    if (sampler_count == 2) {
+      EXPECT_THAT(scene.warnings.at(0), HasSubstr("images[0]: too many pixels"));
+    }
+  }
+}
+
+TEST(GltfMaterials, ImagesThatLieInOnePlaceAreReadOnce) {
+  GltfMaker maker = textured_maker();
+  maker.add("bufferViews", R"({"buffer":0,"byteOffset":84,"byteLength":)" + std::to_string(red_png().size()) + "}");
+  maker.add("images", R"({"name":"again","bufferView":4})");
+  maker.add("textures", R"({"source":1})");
+  for (int i = 0; i < 2; ++i)
+    maker.add("materials", R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":)" + std::to_string(i) + "}}}");
+  const Scene scene = read(maker);
+  EXPECT_THAT(scene.warnings, SizeIs(0));
+  ASSERT_THAT(scene.textures, SizeIs(2));
+  EXPECT_EQ(scene.textures[1].name, "red");
+  EXPECT_EQ(scene.textures[0].pixels, scene.textures[1].pixels);
+}
+
 TEST(GltfMaterials, ImagesThatCannotBeReadAreWarnings) {
   GltfMaker maker = textured_maker();
   maker.add("images", R"({"uri":"data:image/webp;base64,UklGRgAAAABXRUJQVlA4IA=="})");
