@@ -127,7 +127,7 @@ struct FrameOptions {
   int samples = 1;
   Culling culling = Culling::none;
   /// Looks along this, with that upwards, where set; instead of the named direction's. Any length but zero.
-  std::optional<glm::dvec3> forward, up;
+  std::optional<glm::dvec3> forward = std::nullopt, up = std::nullopt;
 };
 
 /// A view that shows all of `surfaces`, with near and far fitted. Empty surfaces: a unit box about the origin.

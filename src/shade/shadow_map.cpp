@@ -104,7 +104,7 @@ ShadowMap::ShadowMap(const Surfaces& surfaces, const Visible& visible, const glm
     : to_light_(to_light) {
   const glm::dmat3 axes = axes_of_light(to_light, visible.view);
   const Extent seen = extent_of_visible(visible, axes, execution);
-  if (seen.is_empty()) return;
+  if (seen.is_empty() || surfaces.bounds().is_empty()) return;
   const Extent window = window_of(seen, extent_of_box(surfaces.bounds(), visible.view.eye(), axes));
   const double texel = (window.high.x - window.low.x) / kSize;
   const View view = view_of_light(window, axes, visible.view.eye());

@@ -11,7 +11,7 @@ namespace frontmost::shading {
 class ShadowMap {
  public:
   /// Looks along -to_light at what `visible` shows of the surfaces; whatever stands between that and the light counts.
-  /// Nothing visible: everything is lit.
+  /// Nothing visible, or nothing to throw a shadow: everything is lit.
   ShadowMap(const Surfaces& surfaces, const Visible& visible, const glm::dvec3& to_light, const Execution& execution);
 
   /// The part of the light that arrives at a point, 0 to 1, with soft edges a few texels wide.

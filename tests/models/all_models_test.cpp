@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every model that others made, through the whole path: read, flattened, seen, shaded; the same bytes by every
+// instruction set and any number of threads, and by the oracle where it is small enough for that.
+
+#include <algorithm>
+#include <iostream>
+#include <vector>
+
+#include "frontmost/frontmost.h"
+#include "support/models.h"
+#include "support/oracle.h"
+
+namespace frontmost::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_model(const fs::path& path) {
+  const std::string suffix = path.extension().string();
+  for (const char* known : {".stl", ".ply", ".obj", ".off", ".gltf", ".glb"})
+    if (suffix == known) return true;
+  return false;
+}
+
+/// Files that are to be read whole; `loader` holds broken ones, which the readers' own tests take one by one.
+std::vector<std::string> good_models() {
+  std::vector<std::string> names;
+  if (!have_models()) return names;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(models_folder())) {
+    const std::string name = fs::relative(entry.path(), models_folder()).generic_string();
+    if (entry.is_regular_file() && is_model(entry.path()) && name.rfind("loader/", 0) != 0) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::size_t covered(const Visible& visible) {
+  return std::size_t(std::count_if(visible.primitives.begin(), visible.primitives.end(),
+                                   [](PrimitiveId id) { return id != no_primitive; }));
+}
+
+/// The oracle's time is triangles times pixels.
+bool is_small(const Surfaces& surfaces) { return surfaces.primitive_count() <= 6000; }
+
+void expect_oracles_answer(const Surfaces& surfaces) {
+  const View view = frame(surfaces, 96, 72);
+  const Visible expected = oracle(surfaces, view), actual = zbuffer(surfaces, view);
+  for (std::size_t i = 0; i < expected.keys.size(); ++i) {
+    ASSERT_EQ(expected.primitives[i], actual.primitives[i]) << "pixel " << i;
+    ASSERT_EQ(expected.keys[i], actual.keys[i]) << "pixel " << i;
+  }
+}
+
+TEST(AllModels, AreSeenAlikeByEveryInstructionSetAndNumberOfThreads) {
+  FRONTMOST_NEEDS_MODELS();
+  const std::vector<std::string> names = good_models();
+  std::size_t by_oracle = 0, without_triangles = 0;
+  for (const std::string& name : names) {
+    SCOPED_TRACE(name);
+    const Scene scene = load(model(name));
+    const Surfaces surfaces(scene);
+    const View view = frame(surfaces, 400, 300);
+    const Visible visible = zbuffer(surfaces, view, {.threads = 1});
+    // Points and lines are models without triangles.
+    if (surfaces.primitive_count() == 0) {
+      EXPECT_EQ(covered(visible), 0u);
+      ++without_triangles;
+      continue;
+    }
+    // One file holds a triangle ten million units from the others: all are smaller than a pixel.
+    const bool is_too_wide = name == "difficult/handmade/degenerate.obj";
+    EXPECT_EQ(covered(visible) > 1000, !is_too_wide) << "seen of " << surfaces.primitive_count() << " triangles";
+    for (const Isa isa : available_isas())
+      EXPECT_EQ(content_hash(visible), content_hash(zbuffer(surfaces, view, {.threads = 3, .isa = isa})));
+    if (is_small(surfaces)) {
+      expect_oracles_answer(surfaces);
+      ++by_oracle;
+    }
+  }
+  EXPECT_GE(names.size(), 60u);
+  EXPECT_GE(by_oracle, 20u);
+  EXPECT_LT(without_triangles, 10u);
+  std::cout << names.size() << " models, " << by_oracle << " of them against the oracle, " << without_triangles
+            << " without triangles\n";
+}
+
+TEST(AllModels, AreShadedAlikeByAnyNumberOfThreads) {
+  FRONTMOST_NEEDS_MODELS();
+  for (const std::string& name : good_models()) {
+    SCOPED_TRACE(name);
+    const Scene scene = load(model(name));
+    const Surfaces surfaces(scene);
+    View view = frame(surfaces, 160, 120);
+    view.samples = 4;
+    const Visible visible = zbuffer(surfaces, view);
+    const Image one = shade(surfaces, visible, {}, {.threads = 1});
+    EXPECT_EQ(content_hash(one), content_hash(shade(surfaces, visible, {}, {.threads = 4})));
+    for (const char* channel : {"R", "G", "B", "A"})
+      for (const float value : one.find(channel)->floats()) ASSERT_TRUE(value >= 0 && value < 100) << channel << value;
+  }
+}
+
+}  // namespace
+}  // namespace frontmost::test
