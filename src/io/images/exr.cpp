@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // OpenEXR: any channels by name, floats as 32-bit float, integers as uint32, ZIP compression.
+//
+// The library's own threads are one pool for the whole process, whose size is nobody's but the program's to set. So a
+// file is made of strips of rows, each of which the library writes as a file of its own, in parallel; what follows
+// their headers is strung together behind one header for all.
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
@@ -11,6 +15,7 @@
 #include <cstring>
 #include <vector>
 
+#include "base/parallel.h"
 #include "io/images/exr_header.h"
 #include "io/images/formats.h"
 
@@ -30,7 +35,7 @@ class MemoryOutput : public Imf::OStream {
   }
   std::uint64_t tellp() override { return place_; }
   void seekp(std::uint64_t place) override { place_ = std::size_t(place); }
-  [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
+  [[nodiscard]] std::vector<std::byte>& bytes() { return bytes_; }
 
  private:
   std::vector<std::byte> bytes_;
@@ -102,27 +107,76 @@ Image empty_image(const Imf::Header& header, const std::string& name) {
   return image;
 }
 
+constexpr int chunk_rows = 16;  // of ZIP compression
+
+/// A file with some rows of an image.
+struct Strip {
+  std::vector<std::byte> bytes;
+  std::size_t start = 0;  ///< of the compressed rows: behind the header and a table of one offset for every chunk
+};
+
+enum class Pixels : bool { left_out, written };
+
+Strip make_strip(Image& image, int first, int end, Pixels pixels, const std::string& name) {
+  Imf::Header header(image.width, image.height);
+  header.dataWindow() = Imath::Box2i({0, first}, {image.width - 1, end - 1});
+  header.compression() = Imf::ZIP_COMPRESSION;
+  header.zipCompressionLevel() = 1;  // 18 % faster than the library's 4, and 4 % larger
+  for (const Channel& channel : image.channels) header.channels().insert(channel.name, Imf::Channel(type_of(channel)));
+  MemoryOutput memory(name);
+  Strip strip;
+  {
+    Imf::OutputFile out(memory, header, 0);
+    strip.start = std::size_t(memory.tellp());
+    if (pixels == Pixels::written) {
+      out.setFrameBuffer(frame_buffer(image, 0, 0));
+      out.writePixels(end - first);
+    }
+  }
+  strip.bytes = std::move(memory.bytes());
+  return strip;
+}
+
+/// Fills in the table of offsets that ends the header. Every chunk begins with its first row and its size.
+void fill_in_offsets(Strip& head, const std::vector<Strip>& strips, int height) {
+  const std::size_t count = (std::size_t(height) + chunk_rows - 1) / chunk_rows;
+  std::byte* entry = head.bytes.data() + head.start - 8 * count;
+  std::uint64_t place = head.start;
+  for (const Strip& strip : strips)
+    for (std::size_t at = strip.start; at < strip.bytes.size(); entry += 8) {
+      std::memcpy(entry, &place, sizeof place);
+      std::int32_t size;
+      std::memcpy(&size, &strip.bytes[at + 4], sizeof size);
+      at += 8 + std::size_t(size);
+      place += 8 + std::size_t(size);
+    }
+}
+
 }  // namespace
 
-void save_exr(const Image& image, OutputFile& file) {
+void save_exr(const Image& image, OutputFile& file, const Execution& execution) {
   constexpr int most_channels = 1024;  // as many as load_image() takes
   if (image.channels.size() > most_channels)
     throw Error(ErrorCode::unsupported, file.name() + ": EXR: more than 1024 channels");
-  MemoryOutput memory(file.name());
+  constexpr int strip_rows = 4 * chunk_rows;
+  auto& planes = const_cast<Image&>(image);  // which are only read
+  std::vector<Strip> strips((std::size_t(image.height) + strip_rows - 1) / strip_rows);
+  Strip head;
   try {
-    Imf::Header header(image.width, image.height);
-    header.compression() = Imf::ZIP_COMPRESSION;
-    for (const Channel& channel : image.channels)
-      header.channels().insert(channel.name, Imf::Channel(type_of(channel)));
-    Imf::OutputFile out(memory, header, 0);
-    out.setFrameBuffer(frame_buffer(const_cast<Image&>(image), 0, 0));  // which is only read
-    out.writePixels(image.height);
+    head = make_strip(planes, 0, image.height, Pixels::left_out, file.name());
+    parallel_for(execution, std::size_t(image.height), strip_rows, [&](std::size_t first, std::size_t end) {
+      strips[first / strip_rows] = make_strip(planes, int(first), int(end), Pixels::written, file.name());
+    });
+  } catch (const Error&) {
+    throw;
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
     throw Error(ErrorCode::unsupported, file.name() + ": EXR: " + error.what());
   }
-  file.write(memory.bytes());
+  fill_in_offsets(head, strips, image.height);
+  file.write(std::span(head.bytes).first(head.start));
+  for (const Strip& strip : strips) file.write(std::span(strip.bytes).subspan(strip.start));
 }
 
 Image load_exr(std::span<const std::byte> bytes, const std::string& name) {

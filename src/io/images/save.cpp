@@ -50,7 +50,7 @@ void save(const Image& image, const std::string& path, const SaveOptions& option
   OutputFile file(path);
   switch (format) {
     case ImageFormat::png: detail::save_png(image, options, file, execution); break;
-    case ImageFormat::exr: detail::save_exr(image, file); break;
+    case ImageFormat::exr: detail::save_exr(image, file, execution); break;
     case ImageFormat::pfm: detail::save_pfm(image, file); break;
     case ImageFormat::npy: detail::save_npy(image, file); break;
   }

@@ -37,6 +37,17 @@ TEST_F(RawFormats, ExrKeepsAllChannelsToTheBit) {
   }
 }
 
+// Several strips of several chunks, the last of both cut short.
+TEST_F(RawFormats, ExrIsTheSameForAnyNumberOfThreads) {
+  Image image = random_floats(5, 201, {"R", "G", "B"});
+  for (std::size_t i = 0; i < 500; ++i) image.channels[0].floats()[i] = 0;  // chunks that do shrink
+  image.channels.push_back(std::move(random_ids(5, 201, {"primitive"}).channels[0]));
+  save(image, folder_.file("1.exr"), {}, {.threads = 1});
+  save(image, folder_.file("3.exr"), {}, {.threads = 3});
+  EXPECT_TRUE(read_text(folder_.file("1.exr")) == read_text(folder_.file("3.exr")));
+  expect_same_bits(load_image(folder_.file("3.exr")), image);
+}
+
 TEST_F(RawFormats, ExrNamesWhatItCannotHold) {
   Image image = random_floats(2, 2, {""});
   EXPECT_EQ(error_of([&] { save(image, folder_.file("a.exr")); }), ErrorCode::unsupported);
