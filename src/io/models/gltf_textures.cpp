@@ -116,7 +116,8 @@ void TextureTable::check_sizes(Jobs& jobs) const {
   std::uint64_t encoded_left = (std::uint64_t(1) << 24) + 4 * data_.byte_count();
   PixelBudget budget;
   budget.add_file(data_.byte_count());
-  for (auto& [id, job] : jobs.by_image) {
+  for (auto& entry : jobs.by_image) {
+    Job& job = entry.second;  // a name of its own, as lambdas may not capture parts of a pair
     if (!job.problem.empty()) continue;
     const std::string& place = job.encoded.place;
     try {
