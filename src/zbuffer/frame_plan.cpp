@@ -29,16 +29,56 @@ TileRect tiles_of(const PixelRect& rect) {
 
 /// Lists of the tiles that `visit(item, add)` names by add(tile), items in their order: counted first, then filled.
 template <class Visit>
-TileLists make_lists(std::size_t tile_count, std::size_t item_count, const Visit& visit) {
+TileLists make_lists(const TileRange& tiles, std::size_t item_count, const Visit& visit) {
   TileLists lists;
+  lists.first_tile = tiles.begin;
+  const std::size_t tile_count = tiles.end - tiles.begin;
   lists.begin.assign(tile_count + 1, 0);
-  for (std::size_t i = 0; i < item_count; ++i) visit(i, [&](std::size_t tile) { ++lists.begin[tile + 1]; });
+  for (std::size_t i = 0; i < item_count; ++i)
+    visit(i, [&](std::size_t tile) { ++lists.begin[tile - tiles.begin + 1]; });
   for (std::size_t tile = 0; tile < tile_count; ++tile) lists.begin[tile + 1] += lists.begin[tile];
   lists.items.resize(lists.begin[tile_count]);
-  std::vector<std::uint32_t> next(lists.begin.begin(), lists.begin.end() - 1);
+  std::vector<std::size_t> next(lists.begin.begin(), lists.begin.end() - 1);
   for (std::size_t i = 0; i < item_count; ++i)
-    visit(i, [&](std::size_t tile) { lists.items[next[tile]++] = static_cast<std::uint32_t>(i); });
+    visit(i, [&](std::size_t tile) { lists.items[next[tile - tiles.begin]++] = static_cast<std::uint32_t>(i); });
   return lists;
+}
+
+/// Calls add(tile) for the tiles of `range` in which a record may be seen.
+template <class Add>
+void visit_tiles(const TriangleRecord& record, const View& view, int tiles_x, const TileRange& range, const Add& add) {
+  const PixelRect rect = pixel_rect(record, view.width, view.height);
+  if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
+  const TileRect tiles = tiles_of(rect);
+  const int first_row = int(range.begin / std::size_t(tiles_x)), last_row = int((range.end - 1) / std::size_t(tiles_x));
+  for (int y = std::max(tiles.y0, first_row); y <= std::min(tiles.y1, last_row); ++y)
+    for (int x = tiles.x0; x <= tiles.x1; ++x) {
+      const std::size_t tile = std::size_t(y) * std::size_t(tiles_x) + std::size_t(x);
+      if (tile < range.begin || tile >= range.end) continue;
+      const PixelRect pixels{x * kTileSize, y * kTileSize, (x + 1) * kTileSize - 1, (y + 1) * kTileSize - 1};
+      if (tiles.count() == 1 || !misses(record, pixels)) add(tile);
+    }
+}
+
+/// Consecutive tiles whose lists together hold at most `most_items`, one tile at least.
+std::vector<TileRange> split_into_rounds(const FramePlan& plan, const View& view, std::size_t most_items) {
+  const TileRange all{0, plan.tile_count()};
+  // Even if every record were in every tile: no need to count.
+  if (plan.records.size() <= most_items / all.end) return {all};
+  std::vector<std::uint32_t> counts(all.end, 0);
+  for (const TriangleRecord& record : plan.records)
+    visit_tiles(record, view, plan.tiles_x, all, [&](std::size_t tile) { ++counts[tile]; });
+  std::vector<TileRange> rounds{{0, 0}};
+  std::size_t items = 0;
+  for (std::size_t tile = 0; tile < all.end; ++tile) {
+    if (items + counts[tile] > most_items && rounds.back().end > rounds.back().begin) {
+      rounds.push_back({tile, tile});
+      items = 0;
+    }
+    items += counts[tile];
+    rounds.back().end = tile + 1;
+  }
+  return rounds;
 }
 
 std::vector<TriangleRecord> take_apart(const ClusterSet& set, const ScreenTransform& transform, const View& view,
@@ -50,6 +90,9 @@ std::vector<TriangleRecord> take_apart(const ClusterSet& set, const ScreenTransf
       append_records(set, set.clusters[apart[i]], transform, view.culling, parts[begin / kGrain]);
   });
   std::vector<TriangleRecord> records;
+  std::size_t count = 0;
+  for (const std::vector<TriangleRecord>& part : parts) count += part.size();
+  records.reserve(count);
   for (std::vector<TriangleRecord>& part : parts) {
     records.insert(records.end(), part.begin(), part.end());
     std::vector<TriangleRecord>().swap(part);
@@ -67,8 +110,9 @@ std::vector<std::uint32_t> order_whole(const CullResult& culled, std::size_t clu
     least = std::min(least, culled.nearest[i]);
     greatest = std::max(greatest, culled.nearest[i]);
   }
-  const float scale = greatest > least ? float(kSlices - 1) / (greatest - least) : 0.0f;
-  const auto slice_of = [&](std::size_t i) { return std::size_t((greatest - culled.nearest[i]) * scale); };
+  // In double: keys may be denormal floats, whose reciprocal is not a float.
+  const double scale = greatest > least ? double(kSlices - 1) / (double(greatest) - least) : 0.0;
+  const auto slice_of = [&](std::size_t i) { return std::size_t((double(greatest) - culled.nearest[i]) * scale); };
 
   std::array<std::size_t, kSlices + 1> begin{};
   for (std::size_t i = 0; i < cluster_count; ++i)
@@ -82,7 +126,12 @@ std::vector<std::uint32_t> order_whole(const CullResult& culled, std::size_t clu
 
 }  // namespace
 
-TileJob FramePlan::job(std::size_t tile, const View& view) const {
+TileLists FramePlan::record_lists(const TileRange& round, const View& view) const {
+  return make_lists(round, records.size(),
+                    [&](std::size_t i, const auto& add) { visit_tiles(records[i], view, tiles_x, round, add); });
+}
+
+TileJob FramePlan::job(std::size_t tile, const View& view, const TileLists& record_lists) const {
   TileJob job;
   job.x = int(tile % std::size_t(tiles_x)) * kTileSize;
   job.y = int(tile / std::size_t(tiles_x)) * kTileSize;
@@ -94,7 +143,7 @@ TileJob FramePlan::job(std::size_t tile, const View& view) const {
 }
 
 FramePlan plan_frame(const ClusterSet& set, const ScreenTransform& transform, const View& view,
-                     const Execution& execution) {
+                     const Execution& execution, std::size_t most_record_items) {
   constexpr std::size_t kCullGrain = 4096;
   FramePlan plan;
   plan.tiles_x = (view.width + kTileSize - 1) / kTileSize;
@@ -113,20 +162,10 @@ FramePlan plan_frame(const ClusterSet& set, const ScreenTransform& transform, co
     if (plan.culled.fate_of(i) == ClusterFate::apart) apart.push_back(static_cast<std::uint32_t>(i));
   }
   plan.records = take_apart(set, transform, view, apart, execution);
-  plan.record_lists = make_lists(plan.tile_count(), plan.records.size(), [&](std::size_t i, const auto& add) {
-    const TriangleRecord& record = plan.records[i];
-    const PixelRect rect = pixel_rect(record, view.width, view.height);
-    if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
-    const TileRect tiles = tiles_of(rect);
-    for (int y = tiles.y0; y <= tiles.y1; ++y)
-      for (int x = tiles.x0; x <= tiles.x1; ++x) {
-        const PixelRect tile{x * kTileSize, y * kTileSize, (x + 1) * kTileSize - 1, (y + 1) * kTileSize - 1};
-        if (tiles.count() == 1 || !misses(record, tile)) add(std::size_t(y) * tiles_x + std::size_t(x));
-      }
-  });
+  plan.rounds = split_into_rounds(plan, view, most_record_items);
 
   const std::vector<std::uint32_t> order = order_whole(plan.culled, count);
-  plan.cluster_lists = make_lists(plan.tile_count(), order.size(), [&](std::size_t i, const auto& add) {
+  plan.cluster_lists = make_lists({0, plan.tile_count()}, order.size(), [&](std::size_t i, const auto& add) {
     const TileRect tiles = tiles_of(plan.culled.rect(order[i]));
     for (int y = tiles.y0; y <= tiles.y1; ++y)
       for (int x = tiles.x0; x <= tiles.x1; ++x) add(std::size_t(y) * tiles_x + std::size_t(x));

@@ -68,12 +68,16 @@ Visible zbuffer(const Surfaces& surfaces, const View& view, const Execution& exe
                          streams};
   ScratchPool pool(frame.samples.size());
   std::atomic<std::size_t> drawn{0};
-  parallel_for(execution, plan.tile_count(), 1, [&](std::size_t begin, std::size_t end) {
-    std::unique_ptr<TileScratch> scratch = pool.take();
-    for (std::size_t tile = begin; tile < end; ++tile) draw_tile(frame, plan.job(tile, view), *scratch, execution.isa);
-    pool.give_back(std::move(scratch));
-    report_progress(execution, "visible", double(drawn += end - begin) / double(plan.tile_count()));
-  });
+  for (const TileRange& round : plan.rounds) {
+    const TileLists record_lists = plan.record_lists(round, view);
+    parallel_for(execution, round.end - round.begin, 1, [&](std::size_t begin, std::size_t end) {
+      std::unique_ptr<TileScratch> scratch = pool.take();
+      for (std::size_t i = begin; i < end; ++i)
+        draw_tile(frame, plan.job(round.begin + i, view, record_lists), *scratch, execution.isa);
+      pool.give_back(std::move(scratch));
+      report_progress(execution, "visible", double(drawn += end - begin) / double(plan.tile_count()));
+    });
+  }
   return visible;
 }
 

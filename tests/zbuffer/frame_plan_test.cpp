@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "zbuffer/frame_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+using namespace zbuffer_detail;
+
+/// Every tile's list of records, over all rounds; checks that rounds follow one another and keep to their budget.
+std::vector<std::vector<std::uint32_t>> lists_of(const FramePlan& plan, const View& view, std::size_t budget) {
+  std::vector<std::vector<std::uint32_t>> lists;
+  for (const TileRange& round : plan.rounds) {
+    EXPECT_EQ(round.begin, lists.size());
+    const TileLists records = plan.record_lists(round, view);
+    EXPECT_TRUE(records.items.size() <= budget || round.end - round.begin == 1);
+    for (std::size_t tile = round.begin; tile < round.end; ++tile) {
+      const auto list = plan.job(tile, view, records).records;
+      lists.emplace_back(list.begin(), list.end());
+    }
+  }
+  EXPECT_EQ(lists.size(), plan.tile_count());
+  return lists;
+}
+
+TEST(FramePlan, RoundsListTheSameRecordsWithinTheirBudget) {
+  const Scene scene = scene_of(random_mesh(Kind::through_eye, 300, 5));
+  const Surfaces surfaces(scene);
+  Random random(4);
+  const View view = random_view(random, 1000, 700);
+  const ScreenTransform transform(view);
+  const FramePlan whole = plan_frame(surfaces.clusters(), transform, view, {});
+  ASSERT_EQ(whole.rounds.size(), 1u);
+  const auto expected = lists_of(whole, view, kMostRecordItems);
+  std::size_t items = 0;
+  for (const auto& list : expected) items += list.size();
+  ASSERT_GT(items, 1000u);
+  for (const std::size_t budget : {std::size_t(0), std::size_t(1), std::size_t(200), items - 1, items}) {
+    const FramePlan plan = plan_frame(surfaces.clusters(), transform, view, {}, budget);
+    EXPECT_EQ(plan.rounds.size() == 1, budget == items) << budget;
+    EXPECT_EQ(lists_of(plan, view, budget), expected) << budget;
+  }
+}
+
+// The list of a tile may leave out no record that covers one of its samples.
+TEST(FramePlan, ListsHoldEveryRecordThatCoversASample) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Scene scene = scene_of(random_mesh(seed % 2 ? Kind::through_eye : Kind::huge, 30, seed));
+    const Surfaces surfaces(scene);
+    Random random(seed);
+    const View view = random_view(random, 400, 300);
+    const FramePlan plan = plan_frame(surfaces.clusters(), ScreenTransform(view), view, {});
+    const auto lists = lists_of(plan, view, kMostRecordItems);
+    for (std::uint32_t i = 0; i < plan.records.size(); ++i)
+      for (int y = 0; y < view.height; y += 9)
+        for (int x = 0; x < view.width; x += 9) {
+          const PixelRect pixel{x, y, x, y};
+          if (misses(plan.records[i], pixel)) continue;
+          const auto& list = lists[std::size_t(y / kTileSize * plan.tiles_x + x / kTileSize)];
+          const PixelRect rect = pixel_rect(plan.records[i], view.width, view.height);
+          const bool inside = x >= rect.x0 && x <= rect.x1 && y >= rect.y0 && y <= rect.y1;
+          ASSERT_EQ(inside, inside && std::binary_search(list.begin(), list.end(), i)) << "seed " << seed;
+        }
+  }
+}
+
+}  // namespace
+}  // namespace frontmost::test
