@@ -108,7 +108,9 @@ struct View {
   [[nodiscard]] std::size_t sample_count() const { return pixel_count() * std::size_t(samples); }
 };
 
-/// \throws Error bad_argument, limit_exceeded or singular_camera, naming the field.
+/// \throws Error bad_argument, limit_exceeded or singular_camera, naming the field. Vertices are transformed in floats,
+/// so a view must lie within their range: near at least 1.2e-38 in perspective, the eye within 3.4e38 of the origin.
+/// Far planes beyond 8.5e37 in perspective count as that.
 void validate(const View& view);
 
 /// Sample positions within a pixel in 1/256 pixel from its top left corner: the standard rotated-grid patterns

@@ -41,9 +41,11 @@ double distance(const ScreenTransform& t, Plane plane, const ClipVertex& v) {
 ClipVertex cut(const ScreenTransform& t, Plane plane, const ClipVertex& inside, const ClipVertex& outside) {
   const double a = distance(t, plane, inside), b = distance(t, plane, outside);
   const double s = a / (a - b);
+  // Rounding must not carry the distance past an end: behind the near plane there is nothing to divide by.
+  const auto [nearest, farthest] = std::minmax(inside.d, outside.d);
   ClipVertex v{inside.x + s * (outside.x - inside.x),
                inside.y + s * (outside.y - inside.y),
-               inside.d + s * (outside.d - inside.d),
+               std::clamp(inside.d + s * (outside.d - inside.d), nearest, farthest),
                {},
                false};
   switch (plane) {
@@ -70,7 +72,7 @@ int clip_by(const ScreenTransform& t, Plane plane, const Polygon& in, int count,
     // Rounding can make a sliver polygon look non-convex; it has no area to lose.
     if (kept >= ClippedPolygon::max_corners) break;
   }
-  return kept;
+  return std::min(kept, ClippedPolygon::max_corners);
 }
 
 std::int32_t snap_coordinate(double homogeneous, double w) {

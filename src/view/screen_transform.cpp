@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view/screen_transform.h"
 
+#include <algorithm>
+
 namespace frontmost {
 namespace {
 
@@ -32,7 +34,7 @@ ScreenTransform::ScreenTransform(const View& view) {
 
   orthographic = p.orthographic;
   near = float(p.clip.near);
-  far = float(p.clip.far);
+  far = p.orthographic ? float(p.clip.far) : float(std::min(p.clip.far, double(farthest)));
   inverse_range = orthographic ? float(1 / (p.clip.far - p.clip.near)) : 0;
   centre_x = view.width * (kSubPixels / 2);
   centre_y = view.height * (kSubPixels / 2);

@@ -21,10 +21,13 @@ inline constexpr int kSubPixels = 256;
 inline constexpr std::int32_t kGuardBand = 8192 * kSubPixels;
 
 struct ScreenTransform {
+  /// 2^126: the greatest distance whose reciprocal a float holds to full precision.
+  static constexpr float farthest = 8.507059173e37f;
+
   std::array<float, 3> eye, x_row, y_row, d_row;
   float x_offset, y_offset, d_offset;
   bool orthographic;
-  float near, far;                  ///< planar distances; far may be infinite
+  float near, far;                  ///< planar distances; an infinite far plane stands at `farthest`
   float inverse_range;              ///< 1 / (far - near) in parallel projection
   std::int32_t centre_x, centre_y;  ///< of the image from its top left corner, in 1/256 pixel
 
@@ -53,7 +56,8 @@ inline HomogeneousVertex transform(const ScreenTransform& t, const glm::vec3& po
 /// True when the vertex lies between near and far and within the guard band, so that it can be snapped as it is.
 /// False for NaN.
 inline bool is_plain(const ScreenTransform& t, const HomogeneousVertex& v) {
-  const float reach = float(kGuardBand) * (t.orthographic ? 1.0f : v.d);
+  // Far away the product overflows, and infinity must not pass for being within infinity.
+  const float reach = std::fmin(float(kGuardBand) * (t.orthographic ? 1.0f : v.d), std::numeric_limits<float>::max());
   return v.d >= t.near && v.d <= t.far && std::abs(v.x) <= reach && std::abs(v.y) <= reach;
 }
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontmost/view.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "view/screen_transform.h"
 
 namespace frontmost {
 namespace {
@@ -42,6 +45,23 @@ void check_range(double value, double low, double high, const char* what) {
                 std::string(what) + ": must be " + std::to_string(int(low)) + " to " + std::to_string(int(high)));
 }
 
+template <std::size_t count>
+bool all_finite(const std::array<float, count>& values) {
+  return std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); });
+}
+
+/// Vertices are transformed in floats: what the view makes of itself must be within their range.
+void check_float_range(const View& view) {
+  const ScreenTransform t(view);
+  const auto refuse = [](const char* what) { throw Error(ErrorCode::limit_exceeded, what); };
+  if (!all_finite(t.eye)) refuse("pose: the eye is farther from the origin than floats reach");
+  if (!t.orthographic && !(t.near >= std::numeric_limits<float>::min())) refuse("near: must be at least 1.2e-38");
+  if (!(t.near < t.far)) refuse("far: too close to near, or too far, to be told apart in floats");
+  if (!all_finite<2>({t.far, t.inverse_range})) refuse("far: must lie within the range of floats, and not at near");
+  if (!all_finite(t.x_row) || !all_finite(t.y_row) || !all_finite<2>({t.x_offset, t.y_offset}))
+    refuse("projection: its sides are too close together, or too far from the axis, for floats");
+}
+
 }  // namespace
 
 std::span<const glm::ivec2> sample_offsets(int samples) {
@@ -74,6 +94,7 @@ void validate(const View& view) {
     (void)make_frustum(p.left * n, p.right * n, p.bottom * n, p.top * n, p.clip);
   }
   (void)world_from_eye(view.world_from_eye, PoseConvention::opengl_camera_to_world);
+  check_float_range(view);
 }
 
 }  // namespace frontmost

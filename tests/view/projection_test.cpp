@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "frontmost/view.h"
 
@@ -121,6 +122,31 @@ TEST(Projection, RefusesWhatMakesNoSense) {
   EXPECT_THROW((void)make_orthographic(0, 1, 0, 1, {1, kInfinity}), Error);
   EXPECT_THROW((void)make_projection(Intrinsics{0, 1, 0, 0}, 4, 4, {1, 2}), Error);
   EXPECT_THROW((void)intrinsics_of(make_orthographic(0, 1, 0, 1, {1, 2}), 4, 4, PixelRule::centre_at_half), Error);
+}
+
+/// The message that refuses a view, or "" when it is valid.
+std::string refusal(const Projection& projection, const glm::dvec3& eye = {0, 0, 0}) {
+  View view{64, 48, 1, glm::dmat4(1.0), projection, {}};
+  view.world_from_eye[3] = glm::dvec4(eye, 1);
+  try {
+    validate(view);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::limit_exceeded);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(View, OutOfTheRangeOfFloatsIsRefusedByTheFieldsName) {
+  EXPECT_EQ(refusal(make_projection(1, 1, {1e-37, kInfinity})), "");
+  EXPECT_EQ(refusal(make_projection(1, 1, {1e-3, 1e300})), "");  // as good as infinite
+  EXPECT_EQ(refusal(make_projection(1, 1, {1e-39, 1})).rfind("near:", 0), 0u);
+  EXPECT_EQ(refusal(make_projection(1, 1, {1e39, kInfinity})).rfind("far:", 0), 0u);
+  EXPECT_EQ(refusal(make_projection(1, 1, {1, 1 + 1e-12})).rfind("far:", 0), 0u);
+  EXPECT_EQ(refusal(make_orthographic(-1, 1, -1, 1, {0, 1e39})).rfind("far:", 0), 0u);
+  EXPECT_EQ(refusal(make_orthographic(-1, 1, -1, 1, {0, 1e-40})).rfind("far:", 0), 0u);
+  EXPECT_EQ(refusal(make_projection(1e-40, 1, {1, 2})).rfind("projection:", 0), 0u);
+  EXPECT_EQ(refusal(make_projection(1, 1, {1, 2}), {0, 1e39, 0}).rfind("pose:", 0), 0u);
 }
 
 TEST(Samples, LieInThePixelAndAreAllDifferent) {
