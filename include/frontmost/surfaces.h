@@ -20,13 +20,15 @@ struct PrimitiveSource {
 
 /// All triangles of a scene in world space, flattened over instances, in clusters, with stable ids: the id of a
 /// triangle is its running number over all instances in scene order. Immutable, and safe to share between threads.
-/// Triangles with a non-finite corner are never seen, but keep their number.
+/// Triangles with a corner that is not finite in world space are never seen, but keep their number. Singular transforms
+/// are no error: they flatten what they place. Only the first three rows of a transform count.
 class Surfaces {
  public:
   /// Borrows `scene`, which must outlive the surfaces and stay as it is.
   /// O(triangles), in parallel; about 20 bytes a triangle kept, 40 while it is built.
   /// \throws Error as validate(scene) does, and bad_argument for a non-finite instance transform.
   explicit Surfaces(const Scene& scene, const Execution& execution = {});
+  explicit Surfaces(Scene&&, const Execution& = {}) = delete;  // it would be gone at once
   ~Surfaces();
   Surfaces(Surfaces&&) noexcept;
   Surfaces& operator=(Surfaces&&) noexcept;

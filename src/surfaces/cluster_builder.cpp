@@ -266,18 +266,22 @@ ClusterSet build_clusters(const Scene& scene, const Execution& execution) {
     set.first_primitives.push_back(set.first_primitives.back() +
                                    static_cast<PrimitiveId>(scene.meshes[instance.mesh].triangles.size()));
 
+  // The fractions are about what the steps take of the time.
   const std::vector<PrimitiveId> order = spatial_order(scene, set.first_primitives, execution);
+  report_progress(execution, "surfaces", 0.4);
   const InstanceFinder instances(set.first_primitives);
   const Source source{scene, set.first_primitives, instances, order};
   std::vector<Part> parts((order.size() + kTrianglesPerPart - 1) / kTrianglesPerPart);
   parallel_for(execution, order.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
     PartBuilder(source, parts[begin / kTrianglesPerPart]).build(begin, end);
   });
+  report_progress(execution, "surfaces", 0.9);
   set.instance_bounds.resize(scene.instances.size());
   for (const Part& part : parts)
     for (const auto& [instance, box] : part.instance_boxes) set.instance_bounds[instance].include(box);
   for (const Box& box : set.instance_bounds) set.bounds.include(box);
   gather(set, parts, execution);
+  report_progress(execution, "surfaces", 1);
   return set;
 }
 

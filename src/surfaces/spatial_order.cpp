@@ -18,21 +18,15 @@ namespace {
 
 constexpr std::uint32_t kItemsPerRun = 1u << 15;
 
-/// A run of one instance's triangles or vertices. Work is split at fixed numbers, whatever the threads.
-struct InstanceRun {
-  std::uint32_t instance = 0;
+/// A run of one instance's triangles, or of one mesh's vertices. Work is split at fixed numbers, whatever the threads.
+struct Run {
+  std::uint32_t of = 0;
   std::uint32_t begin = 0, end = 0;
 };
 
-template <class Count>
-std::vector<InstanceRun> split_by_instance(const Scene& scene, const Count& count_of) {
-  std::vector<InstanceRun> runs;
-  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-    const std::uint64_t count = count_of(scene.meshes[scene.instances[i].mesh]);
-    for (std::uint64_t begin = 0; begin < count; begin += kItemsPerRun)
-      runs.push_back({i, std::uint32_t(begin), std::uint32_t(std::min(begin + kItemsPerRun, count))});
-  }
-  return runs;
+void append_runs(std::vector<Run>& runs, std::uint32_t of, std::uint64_t count) {
+  for (std::uint64_t begin = 0; begin < count; begin += kItemsPerRun)
+    runs.push_back({of, std::uint32_t(begin), std::uint32_t(std::min(begin + kItemsPerRun, count))});
 }
 
 /// Bounds of untransformed positions. Several boxes side by side, as flat arrays, so that the compiler can use vectors
@@ -60,27 +54,34 @@ Box bounds_of(const glm::vec3* positions, std::size_t count) {
   return box;
 }
 
-/// Bounds of all finite vertices, whether a triangle uses them or not: good enough to lay a grid.
-Box bounds_of_vertices(const Scene& scene, const Execution& execution) {
-  const auto runs = split_by_instance(scene, [](const Mesh& mesh) { return mesh.positions.size(); });
-  std::vector<Box> boxes(runs.size());
+/// Bounds of each mesh's finite vertices in its own space.
+std::vector<Box> bounds_of_meshes(const Scene& scene, const Execution& execution) {
+  std::vector<Run> runs;
+  for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) append_runs(runs, m, scene.meshes[m].positions.size());
+  std::vector<Box> boxes(runs.size()), of_mesh(scene.meshes.size());
   parallel_for(execution, runs.size(), 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t r = first; r < last; ++r) {
-      const Instance& instance = scene.instances[runs[r].instance];
-      const std::vector<glm::vec3>& positions = scene.meshes[instance.mesh].positions;
-      const ToWorld world(instance.world_from_mesh);
-      if (world.is_identity()) {
-        boxes[r] = bounds_of(positions.data() + runs[r].begin, runs[r].end - runs[r].begin);
-        continue;
-      }
-      for (std::uint32_t v = runs[r].begin; v < runs[r].end; ++v) {
-        const glm::vec3 p = world(positions[v]);
-        if (is_finite(p)) boxes[r].include(p);
-      }
-    }
+    for (std::size_t r = first; r < last; ++r)
+      boxes[r] = bounds_of(scene.meshes[runs[r].of].positions.data() + runs[r].begin, runs[r].end - runs[r].begin);
   });
+  for (std::size_t r = 0; r < runs.size(); ++r) of_mesh[runs[r].of].include(boxes[r]);
+  return of_mesh;
+}
+
+/// World-space bounds by the corners of the meshes' boxes, not by their vertices: good enough to lay a grid, and a mesh
+/// of many vertices costs nothing more for being placed many times.
+Box bounds_of_instances(const Scene& scene, const Execution& execution) {
+  const std::vector<Box> of_mesh = bounds_of_meshes(scene, execution);
   Box bounds;
-  for (const Box& box : boxes) bounds.include(box);
+  for (const Instance& instance : scene.instances) {
+    const Box& box = of_mesh[instance.mesh];
+    if (box.is_empty() || scene.meshes[instance.mesh].triangles.empty()) continue;
+    const ToWorld world(instance.world_from_mesh);
+    for (int k = 0; k < 8; ++k) {
+      const glm::vec3 p =
+          world({k & 1 ? box.high.x : box.low.x, k & 2 ? box.high.y : box.low.y, k & 4 ? box.high.z : box.low.z});
+      if (is_finite(p)) bounds.include(p);
+    }
+  }
   return bounds;
 }
 
@@ -138,19 +139,21 @@ std::vector<PrimitiveId> spatial_order(const Scene& scene, const std::vector<Pri
                                        const Execution& execution) {
   const std::size_t count = first_primitives.back();
   const int bits = bits_per_axis(count);
-  const MortonGrid grid(bounds_of_vertices(scene, execution), bits);
+  const MortonGrid grid(bounds_of_instances(scene, execution), bits);
   Buffer<std::uint64_t> items(count);
-  const auto runs = split_by_instance(scene, [](const Mesh& mesh) { return mesh.triangles.size(); });
+  std::vector<Run> runs;
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
+    append_runs(runs, i, scene.meshes[scene.instances[i].mesh].triangles.size());
   parallel_for(execution, runs.size(), 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t r = first; r < last; ++r) {
-      const Instance& instance = scene.instances[runs[r].instance];
+      const Instance& instance = scene.instances[runs[r].of];
       const Mesh& mesh = scene.meshes[instance.mesh];
       const ToWorld world(instance.world_from_mesh);
       for (std::uint32_t t = runs[r].begin; t < runs[r].end; ++t) {
         const glm::uvec3& c = mesh.triangles[t];
         const glm::vec3 sum = mesh.positions[c.x] + mesh.positions[c.y] + mesh.positions[c.z];
         const std::uint32_t code = grid.code(world(sum * (1.0f / 3.0f)));
-        const PrimitiveId id = first_primitives[runs[r].instance] + t;
+        const PrimitiveId id = first_primitives[runs[r].of] + t;
         items[id] = std::uint64_t(code) << 32 | id;
       }
     }

@@ -52,10 +52,9 @@ const Box& Surfaces::bounds(std::uint32_t instance) const { return clusters_->in
 std::array<glm::vec3, 3> Surfaces::corners(PrimitiveId id) const {
   const PrimitiveSource from = source(id);
   const Mesh& mesh = scene().meshes[from.mesh];
-  const glm::dmat4& world_from_mesh = scene().instances[from.instance].world_from_mesh;
+  const ToWorld world(scene().instances[from.instance].world_from_mesh);
   const glm::uvec3& corners = mesh.triangles[from.triangle];
-  return {to_world(world_from_mesh, mesh.positions[corners.x]), to_world(world_from_mesh, mesh.positions[corners.y]),
-          to_world(world_from_mesh, mesh.positions[corners.z])};
+  return {world(mesh.positions[corners.x]), world(mesh.positions[corners.y]), world(mesh.positions[corners.z])};
 }
 
 std::size_t Surfaces::byte_count() const {

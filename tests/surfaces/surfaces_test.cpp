@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 
 #include "support/random_scene.h"
@@ -122,6 +123,57 @@ TEST(Surfaces, RefuseBrokenScenesByName) {
   EXPECT_THROW(Surfaces surfaces(scene), Error);
   scene.instances[0].mesh = 7;
   EXPECT_THROW(Surfaces surfaces(scene), Error);
+}
+
+// The header promises that corners() gives the bits that are drawn, whichever zero they are.
+TEST(Surfaces, CornersKeepTheSignOfZero) {
+  Mesh mesh;
+  add_triangle(mesh, {-0.0f, -0.0f, 1}, {1, -0.0f, 0}, {0, 1, -0.0f});
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  const auto drawn = triangles_of(surfaces.clusters(), 1)[0], told = surfaces.corners(0);
+  EXPECT_EQ(std::memcmp(&drawn, &told, sizeof told), 0);
+}
+
+// Singular and overflowing transforms are no error: what they leave is flat, or beyond floats, and so not seen.
+TEST(Surfaces, DegenerateTransformsHaveAStatedOutcome) {
+  Scene scene = scene_of(random_mesh(Kind::soup, 50, 1));
+  scene.instances[0].world_from_mesh = glm::dmat4(0.0);
+  const Surfaces flat(scene);
+  EXPECT_EQ(flat.primitive_count(), 50u);
+  EXPECT_EQ(flat.bounds().low, glm::vec3(0));
+  EXPECT_EQ(flat.bounds().high, glm::vec3(0));
+  scene.instances[0].world_from_mesh = glm::dmat4(1e300);
+  const Surfaces beyond(scene);
+  EXPECT_TRUE(beyond.bounds().is_empty());
+  EXPECT_EQ(beyond.primitive_count(), 50u);
+}
+
+TEST(Surfaces, TellTheWatchAndStopWhenItSaysSo) {
+  const Scene scene = scene_of(random_mesh(Kind::soup, 50'000, 1));
+  std::vector<double> fractions;
+  Watch watch;
+  watch.progress = [&](std::string_view stage, double fraction) {
+    EXPECT_EQ(stage, "surfaces");
+    fractions.push_back(fraction);
+  };
+  const Surfaces surfaces(scene, {.watch = &watch});
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+  ASSERT_FALSE(fractions.empty());
+  EXPECT_EQ(fractions.back(), 1.0);
+  watch.cancelled = [] { return true; };
+  EXPECT_THROW(Surfaces(scene, {.watch = &watch}), Error);
+}
+
+// A small file can name the same vertices many times over.
+TEST(Surfaces, VerticesThatNoTriangleUsesCostNothingPerInstance) {
+  Scene scene = scene_of(random_mesh(Kind::soup, 1, 1));
+  scene.meshes[0].positions.resize(2'000'000, glm::vec3(0.5f));
+  scene.instances.resize(20'000, scene.instances[0]);
+  const auto start = std::chrono::steady_clock::now();
+  const Surfaces surfaces(scene, {.threads = 1});
+  EXPECT_EQ(surfaces.primitive_count(), 20'000u);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5)) << "40 thousand million vertices";
 }
 
 TEST(Surfaces, StayWithinTheirMemory) {
