@@ -46,7 +46,8 @@ enum class Isa : std::uint8_t { best, scalar, sse4, avx2, avx512 };
 /// The instruction sets that this build holds and this machine can run, slowest first, never `best`.
 [[nodiscard]] std::span<const Isa> available_isas();
 
-/// Watches long work. Both functions may be called from any thread, at most a few hundred times a second.
+/// Watches long work. Both functions are called after every small piece of it, by several threads at a time, so they
+/// must be quick and safe to call at once. What they throw ends the work and is thrown again.
 struct Watch {
   /// What is being done ("load", "surfaces", ...), and how much of it is done, 0 to 1.
   std::function<void(std::string_view stage, double fraction)> progress;
@@ -56,7 +57,7 @@ struct Watch {
 
 /// How to run; never what the result is.
 struct Execution {
-  int threads = 0;               ///< 0: one per core
+  int threads = 0;               ///< 0: one per core; at most 1024
   Isa isa = Isa::best;           ///< must be one of available_isas(), or best
   const Watch* watch = nullptr;  ///< borrowed; may be null
 };
@@ -99,8 +100,7 @@ template <class T>
 class Buffer {
  public:
   Buffer() = default;
-  explicit Buffer(std::size_t size)
-      : data_(static_cast<T*>(detail::allocate(size * sizeof(T)))), size_(size) {}
+  explicit Buffer(std::size_t size) : data_(static_cast<T*>(detail::allocate(size * sizeof(T)))), size_(size) {}
   Buffer(std::size_t size, const T& value) : Buffer(size) {
     for (T& element : *this) element = value;
   }

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -66,13 +67,19 @@ void drain_on(int threads, ChunkQueue& queue) {
   tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
   tbb::task_arena arena(threads);
   arena.execute([&] {
-    tbb::parallel_for(0, threads, 1, [&](int) { queue.drain(); }, tbb::simple_partitioner());
+    tbb::parallel_for(
+        0, threads, 1, [&](int) { queue.drain(); }, tbb::simple_partitioner());
   });
 }
 #elif defined(FRONTMOST_THREADS_std)
 void drain_on(int threads, ChunkQueue& queue) {
   std::vector<std::thread> helpers;
-  for (int i = 1; i < threads; ++i) helpers.emplace_back([&] { queue.drain(); });
+  helpers.reserve(std::size_t(threads));
+  try {
+    for (int i = 1; i < threads; ++i) helpers.emplace_back([&] { queue.drain(); });
+  } catch (const std::system_error&) {
+    // The system gives no more threads: those that there are do the same work.
+  }
   queue.drain();
   for (std::thread& helper : helpers) helper.join();
 }
@@ -86,7 +93,8 @@ void detail::run_chunks(const Execution& execution, std::size_t count, std::size
                         void* context) {
   if (count == 0) return;
   ChunkQueue queue(execution, count, std::max<std::size_t>(grain, 1), function, context);
-  const int threads = static_cast<int>(std::min<std::size_t>(std::size_t(thread_count(execution)), queue.chunk_count()));
+  const int threads =
+      static_cast<int>(std::min<std::size_t>(std::size_t(thread_count(execution)), queue.chunk_count()));
   if (threads <= 1) {
     queue.drain();
   } else {

@@ -28,7 +28,7 @@ void parallel_for(const Execution& execution, std::size_t count, std::size_t gra
       &body);
 }
 
-/// The number of threads that parallel_for would use. \throws Error bad_argument for a negative number.
+/// The number of threads that parallel_for would use. \throws Error bad_argument outside 0 to 1024.
 [[nodiscard]] int thread_count(const Execution& execution);
 
 /// \throws Error cancelled when the watch says so.

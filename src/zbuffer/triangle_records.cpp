@@ -66,7 +66,7 @@ void append_records(const ClusterSet& set, const Cluster& cluster, const ScreenT
 }
 
 PixelRect pixel_rect(const TriangleRecord& r, int width, int height) {
-  // Samples lie within (0, 256) of a pixel, so the pixels of the outermost corners are all that can be touched.
+  // Samples lie within [0, 256) of a pixel, so the pixels of the outermost corners are all that can be touched.
   const auto [x_min, x_max] = std::minmax({r.x[0], r.x[1], r.x[2]});
   const auto [y_min, y_max] = std::minmax({r.y[0], r.y[1], r.y[2]});
   return {std::max(x_min >> 8, 0), std::max(y_min >> 8, 0), std::min(x_max >> 8, width - 1),

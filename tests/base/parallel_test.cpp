@@ -59,8 +59,26 @@ TEST(ParallelFor, RunsBodiesWithRoundToNearestWhateverTheCallerSet) {
   }
 }
 
-TEST(ParallelFor, RejectsANegativeNumberOfThreads) {
+TEST(ParallelFor, ThrowsAgainWhatTheWatchThrows) {
+  const Watch watch{.progress = {}, .cancelled = []() -> bool { throw std::runtime_error("watch"); }};
+  for (const int threads : {1, 4})
+    EXPECT_THROW(parallel_for({.threads = threads, .watch = &watch}, 100, 1, [](std::size_t, std::size_t) {}),
+                 std::runtime_error);
+}
+
+TEST(ParallelFor, RunsInsideItself) {
+  for (const int threads : {1, 3}) {
+    std::atomic<int> calls{0};
+    parallel_for({.threads = threads}, 7, 1, [&](std::size_t, std::size_t) {
+      parallel_for({.threads = threads}, 11, 2, [&](std::size_t begin, std::size_t end) { calls += int(end - begin); });
+    });
+    EXPECT_EQ(calls, 77);
+  }
+}
+
+TEST(ParallelFor, RejectsANumberOfThreadsOutOfRange) {
   EXPECT_THROW((void)thread_count({.threads = -1}), Error);
+  EXPECT_THROW((void)thread_count({.threads = 1025}), Error);
   EXPECT_GE(thread_count({}), 1);
 }
 
