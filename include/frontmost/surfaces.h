@@ -44,8 +44,11 @@ class Surfaces {
   /// World-space bounds of all triangles with finite corners; of one instance.
   [[nodiscard]] const Box& bounds() const;
   [[nodiscard]] const Box& bounds(std::uint32_t instance) const;
-  /// World-space corners of one triangle, to the bit those that the methods draw.
+  /// World-space corners of one triangle, in the mesh's order, to the bit those that the methods draw.
   [[nodiscard]] std::array<glm::vec3, 3> corners(PrimitiveId id) const;
+  /// True when the instance's transform mirrors. Its front faces are then clockwise in the order of corners(): what is
+  /// outside of a mesh stays outside (glTF 2.0, 3.7.4).
+  [[nodiscard]] bool is_mirrored(std::uint32_t instance) const;
   /// Bytes held beside the scene's own arrays.
   [[nodiscard]] std::size_t byte_count() const;
 

@@ -84,6 +84,7 @@ struct Source {
   const std::vector<PrimitiveId>& first_primitives;
   const InstanceFinder& instances;
   const std::vector<PrimitiveId>& order;
+  const std::vector<std::uint8_t>& mirrored;
 };
 
 /// Fills one part, cluster by cluster.
@@ -151,6 +152,8 @@ class PartBuilder {
     const std::size_t t = cluster_.triangle_count++;
     for (std::size_t k = 0; k < 3; ++k)
       corners_[k][t] = finite ? static_cast<std::uint8_t>(table_.intern(world[k])) : std::uint8_t(0);
+    // A mirror turns counter-clockwise into clockwise, but what was outside stays outside.
+    if (source_.mirrored[number]) std::swap(corners_[1][t], corners_[2][t]);
     part_.id.push_back(id);
     if (finite) include(number, world);
   }
@@ -267,10 +270,12 @@ ClusterSet build_clusters(const Scene& scene, const Execution& execution) {
                                    static_cast<PrimitiveId>(scene.meshes[instance.mesh].triangles.size()));
 
   // The fractions are about what the steps take of the time.
+  for (const Instance& instance : scene.instances)
+    set.mirrored.push_back(glm::determinant(glm::dmat3(instance.world_from_mesh)) < 0);
   const std::vector<PrimitiveId> order = spatial_order(scene, set.first_primitives, execution);
   report_progress(execution, "surfaces", 0.4);
   const InstanceFinder instances(set.first_primitives);
-  const Source source{scene, set.first_primitives, instances, order};
+  const Source source{scene, set.first_primitives, instances, order, set.mirrored};
   std::vector<Part> parts((order.size() + kTrianglesPerPart - 1) / kTrianglesPerPart);
   parallel_for(execution, order.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
     PartBuilder(source, parts[begin / kTrianglesPerPart]).build(begin, end);

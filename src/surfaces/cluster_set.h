@@ -38,6 +38,7 @@ struct ClusterSet {
   const Scene* scene = nullptr;
   std::vector<PrimitiveId> first_primitives;  ///< by instance, and the total at the end
   std::vector<Box> instance_bounds;
+  std::vector<std::uint8_t> mirrored;  ///< by instance: its triangles have their last two corners swapped
   Box bounds;
 
   std::vector<Cluster> clusters;

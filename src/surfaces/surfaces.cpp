@@ -57,6 +57,8 @@ std::array<glm::vec3, 3> Surfaces::corners(PrimitiveId id) const {
   return {world(mesh.positions[corners.x]), world(mesh.positions[corners.y]), world(mesh.positions[corners.z])};
 }
 
+bool Surfaces::is_mirrored(std::uint32_t instance) const { return clusters_->mirrored[instance] != 0; }
+
 std::size_t Surfaces::byte_count() const {
   const ClusterSet& set = *clusters_;
   return sizeof set + set.first_primitives.size() * sizeof(PrimitiveId) + set.instance_bounds.size() * sizeof(Box) +

@@ -100,7 +100,11 @@ class Oracle {
 
 inline Visible oracle(const Surfaces& surfaces, const View& view) {
   Oracle oracle(view);
-  for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) oracle.draw(surfaces.corners(id), id);
+  for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
+    std::array<glm::vec3, 3> corners = surfaces.corners(id);
+    if (surfaces.is_mirrored(surfaces.source(id).instance)) std::swap(corners[1], corners[2]);
+    oracle.draw(corners, id);
+  }
   return oracle.visible();
 }
 
