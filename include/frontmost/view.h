@@ -118,7 +118,7 @@ void validate(const View& view);
 /// One sample sits at the centre, (128, 128).
 [[nodiscard]] std::span<const glm::ivec2> sample_offsets(int samples);
 
-/// The named directions. `front` looks at the model's front: along -y for z-up models, along -z for y-up ones.
+/// The named directions. `front` looks at the model's front: along +y for z-up models, along -z for the others.
 enum class NamedView : std::uint8_t { front, back, left, right, top, bottom, iso, three_quarter };
 
 struct FrameOptions {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/gltf_textures.h"
+#include "io/models/gltf/textures.h"
 
 #include "base/parallel.h"
 #include "io/images/decode.h"
-#include "io/models/gltf_uri.h"
+#include "io/models/gltf/uri.h"
 #include "io/models/pixel_budget.h"
 
 namespace frontmost::gltf {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/gltf_uri.h"
+#include "io/models/gltf/uri.h"
 
 #include <array>
 #include <cstdint>

@@ -2,7 +2,7 @@
 // Materials of a glTF file.
 #pragma once
 
-#include "io/models/gltf_textures.h"
+#include "io/models/gltf/textures.h"
 
 namespace frontmost::gltf {
 

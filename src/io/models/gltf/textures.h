@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "frontmost/scene.h"
-#include "io/models/gltf_data.h"
+#include "io/models/gltf/data.h"
 
 namespace frontmost::gltf {
 

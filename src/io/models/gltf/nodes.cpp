@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/gltf_nodes.h"
+#include "io/models/gltf/nodes.h"
 
 #include <algorithm>
 #include <cmath>

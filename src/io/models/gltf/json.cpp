@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/gltf_json.h"
+#include "io/models/gltf/json.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/gltf_instances.h"
+#include "io/models/gltf/instances.h"
 
 #include "base/parallel.h"
 

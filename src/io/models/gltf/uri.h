@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/models/gltf_json.h"
+#include "io/models/gltf/json.h"
 
 namespace frontmost::gltf {
 

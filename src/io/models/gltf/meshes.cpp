@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/gltf_meshes.h"
+#include "io/models/gltf/meshes.h"
 
 #include <algorithm>
 #include <numeric>
 
-#include "io/models/gltf_pose.h"
+#include "io/models/gltf/pose.h"
 
 namespace frontmost::gltf {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "io/models/bytes.h"
-#include "io/models/gltf_data.h"
+#include "io/models/gltf/data.h"
 
 namespace frontmost::gltf {
 namespace {

@@ -2,7 +2,7 @@
 // Moves vertices by morph targets and joints.
 #pragma once
 
-#include "io/models/gltf_meshes.h"
+#include "io/models/gltf/meshes.h"
 
 namespace frontmost::gltf {
 

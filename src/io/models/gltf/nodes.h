@@ -4,7 +4,7 @@
 
 #include <glm/glm.hpp>
 
-#include "io/models/gltf_data.h"
+#include "io/models/gltf/data.h"
 
 namespace frontmost::gltf {
 

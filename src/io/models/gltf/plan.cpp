@@ -2,7 +2,7 @@
 // Checks what meshes are made of before any of it is read.
 #include <algorithm>
 
-#include "io/models/gltf_meshes.h"
+#include "io/models/gltf/meshes.h"
 
 namespace frontmost::gltf {
 namespace {

@@ -2,8 +2,8 @@
 // What the nodes of a glTF file place in the world: meshes, posed or not, and cameras.
 #pragma once
 
-#include "io/models/gltf_meshes.h"
-#include "io/models/gltf_nodes.h"
+#include "io/models/gltf/meshes.h"
+#include "io/models/gltf/nodes.h"
 
 namespace frontmost::gltf {
 

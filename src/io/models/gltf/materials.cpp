@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/gltf_materials.h"
+#include "io/models/gltf/materials.h"
 
 namespace frontmost::gltf {
 namespace {

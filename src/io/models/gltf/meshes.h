@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "io/models/gltf_data.h"
-#include "io/models/gltf_materials.h"
+#include "io/models/gltf/data.h"
+#include "io/models/gltf/materials.h"
 
 namespace frontmost::gltf {
 

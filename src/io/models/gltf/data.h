@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "io/input_file.h"
-#include "io/models/gltf_container.h"
-#include "io/models/gltf_json.h"
+#include "io/models/gltf/container.h"
+#include "io/models/gltf/json.h"
 
 namespace frontmost::gltf {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/gltf_container.h"
+#include "io/models/gltf/container.h"
 
 #include <cstdint>
 #include <cstring>
