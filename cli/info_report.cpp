@@ -106,7 +106,13 @@ std::string section(std::string_view heading, const std::vector<T>& elements, co
 
 std::string vector_text(const glm::dvec3& v) { return fmt::format("{:.6g},{:.6g},{:.6g}", v.x, v.y, v.z); }
 
-std::string name_text(const std::string& name) { return name.empty() ? "(no name)" : name; }
+/// Names come from files: control characters, which terminals obey, are shown as question marks.
+std::string name_text(std::string name) {
+  if (name.empty()) return "(no name)";
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return (c >= 0 && c < 0x20) || c == 0x7F; }, '?');
+  return name;
+}
 
 std::string camera_line(const CameraReport& camera) {
   const std::string width = camera.orthographic ? fmt::format("orthographic, {:.6g} high", camera.vertical)

@@ -241,5 +241,12 @@ TEST_F(Render, NumbersDoNotDependOnTheLocale) {
   EXPECT_EQ(german.out, succeed("camera cube.stl --json --camera-position 1.5,-2.5,3").out);
 }
 
+TEST_F(Render, NamesFromFilesCannotDriveTheTerminal) {
+  write("bell.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\no red\x1b[31m\a\nf 1 2 3\n");
+  const Outcome outcome = succeed("info bell.obj");
+  EXPECT_EQ(outcome.out.find_first_of("\x1b\a"), std::string::npos);
+  EXPECT_THAT(outcome.out, HasSubstr("red?[31m?"));
+}
+
 }  // namespace
 }  // namespace frontmost::test
