@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Other programs that answer the same question: what is seen at every pixel centre of a view.
+#pragma once
+
+#include <frontmost/frontmost.h>
+
+#include <memory>
+#include <vector>
+
+namespace frontmost::bench {
+
+/// What a peer saw, top row first.
+struct PeerImage {
+  std::vector<PrimitiveId> primitives;  ///< no_primitive where nothing is seen
+  std::vector<float> depths;            ///< planar distance, or what make_*() says
+};
+
+class Peer {
+ public:
+  virtual ~Peer() = default;
+  /// One frame: clear, draw ids and depth, wait until it is finished. Nothing is read back.
+  virtual void draw() = 0;
+  /// The last frame.
+  [[nodiscard]] virtual PeerImage read() = 0;
+};
+
+/// A rasteriser that says where it puts vertices.
+class RasterPeer : public Peer {
+ public:
+  /// Every vertex before the divide, from the very shader that draws. y runs down, as in the picture.
+  [[nodiscard]] virtual std::vector<glm::vec4> clip_positions() const = 0;
+};
+
+/// Scenes are of one mesh in one instance without a transform. All of these borrow `scene`.
+struct PeerInput {
+  const Scene& scene;
+  const View& view;
+  int threads = 1;
+};
+
+/// Mesa's software OpenGL through EGL, without a display. The number of threads of the first call holds for all.
+/// Its depths are window depths: 0 at the near plane, 1 at the far plane and where nothing is seen.
+/// Null where it was not found when this was built. \throws Error unsupported where there is no such context.
+[[nodiscard]] std::unique_ptr<RasterPeer> make_llvmpipe(const PeerInput& input);
+/// Intel's ray casting kernels: primary rays in packets of 16. Building the hierarchy is part of the construction.
+/// Null where it was not found when this was built.
+[[nodiscard]] std::unique_ptr<Peer> make_embree(const PeerInput& input);
+
+}  // namespace frontmost::bench

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// zbuffer_bench [TABLE]... [--scene NAME]... [--threads N] [--rounds N] [--large] [--no-peers] [--json FILE]
+// Measures the z-buffer beside its peers and its own promises; docs/performance.md says what the tables mean.
+#include <frontmost/base.h>
+
+#include <cstdio>
+
+#include "zbuffer/scenes.h"
+#include "zbuffer/tables.h"
+
+namespace {
+
+using namespace frontmost::bench;
+
+void write_json(const std::string& path, const std::vector<Table>& tables) {
+  std::FILE* file = std::fopen(path.c_str(), "w");
+  if (file == nullptr) throw frontmost::Error(frontmost::ErrorCode::file_unwritable, path + ": cannot be written");
+  for (std::size_t i = 0; i < tables.size(); ++i)
+    std::fprintf(file, "%s%s", i == 0 ? "[" : ",\n", tables[i].json().c_str());
+  std::fprintf(file, "]\n");
+  std::fclose(file);
+}
+
+}  // namespace
+
+int main(int count, char** arguments) try {
+  const Options options = parse_options(count, arguments);
+  for (const std::string& name : options.scenes) (void)find_scene(name);
+  std::vector<Table> tables;
+  if (options.wants("peers")) tables.push_back(measure_peers(options));
+  if (!options.json.empty()) write_json(options.json, tables);
+  return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "zbuffer_bench: %s\n", error.what());
+  return 1;
+}

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the z-buffer's benchmark is asked to do.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "zbuffer/stopwatch.h"
+
+namespace frontmost::bench {
+
+struct Options {
+  std::vector<std::string> tables;  ///< none: all
+  std::vector<std::string> scenes;  ///< none: those that the table is about
+  std::string models;               ///< folder of test models
+  std::string json;                 ///< file for the results; none: not written
+  int threads = 1;                  ///< of the table of peers
+  bool large = false;               ///< the scenes of 16 million triangles too
+  bool llvmpipe = true, embree = true;
+  Sampling sampling;
+
+  [[nodiscard]] bool wants(const std::string& table) const;
+};
+
+/// \throws Error bad_argument naming the flag.
+[[nodiscard]] Options parse_options(int count, const char* const* arguments);
+
+}  // namespace frontmost::bench

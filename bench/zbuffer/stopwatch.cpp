@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "zbuffer/stopwatch.h"
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+
+namespace frontmost::bench {
+namespace {
+
+double median(std::vector<double> samples) {
+  std::sort(samples.begin(), samples.end());
+  const std::size_t n = samples.size();
+  return n % 2 == 1 ? samples[n / 2] : (samples[n / 2 - 1] + samples[n / 2]) / 2;
+}
+
+struct Samples {
+  std::vector<double> wall, processor;
+};
+
+}  // namespace
+
+Time now() {
+  timespec processor{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &processor);
+  const auto wall = std::chrono::steady_clock::now().time_since_epoch();
+  return {std::chrono::duration<double, std::milli>(wall).count(),
+          1e3 * double(processor.tv_sec) + 1e-6 * double(processor.tv_nsec)};
+}
+
+std::vector<Time> race(const std::vector<std::function<void()>>& contestants, const Sampling& sampling) {
+  for (const auto& run : contestants) run();
+  std::vector<Samples> samples(contestants.size());
+  const double start = now().wall;
+  for (int round = 0; round < sampling.rounds; ++round) {
+    if (round >= 2 && now().wall - start > 1e3 * sampling.most_seconds) break;
+    for (std::size_t i = 0; i < contestants.size(); ++i) {
+      const Time before = now();
+      contestants[i]();
+      const Time after = now();
+      samples[i].wall.push_back(after.wall - before.wall);
+      samples[i].processor.push_back(after.processor - before.processor);
+    }
+  }
+  std::vector<Time> times;
+  for (const Samples& s : samples) times.push_back({median(s.wall), median(s.processor)});
+  return times;
+}
+
+}  // namespace frontmost::bench

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Timing that can be trusted on a machine that does other things too: alternating runs, medians, processor time.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+namespace frontmost::bench {
+
+/// Milliseconds.
+struct Time {
+  double wall = 0, processor = 0;  ///< the processor's is summed over all threads of the process
+};
+
+struct Sampling {
+  int rounds = 7;            ///< of every contestant in turn
+  double most_seconds = 10;  ///< after which no further round is begun, from the third on
+};
+
+/// Runs the contestants in turn, once unmeasured and then `rounds` times, so that what slows the machine for a while
+/// slows them all. \returns their medians, in the order given.
+[[nodiscard]] std::vector<Time> race(const std::vector<std::function<void()>>& contestants, const Sampling& sampling);
+
+/// Now, on both clocks.
+[[nodiscard]] Time now();
+
+}  // namespace frontmost::bench

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Results: printed as they come, kept for a JSON file.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace frontmost::bench {
+
+struct Cell {
+  std::string text;  ///< as printed
+  std::string json;  ///< as a JSON value
+
+  Cell(const char* word);
+  Cell(std::string_view word);
+  Cell(double number, int decimals = 2);  ///< NaN: left empty
+  static Cell whole(unsigned long long number);
+};
+
+/// One table: columns of one width, rows printed at once, so that a long run shows what it has.
+class Table {
+ public:
+  Table(std::string name, std::vector<std::string> columns);
+  void add(const std::vector<Cell>& cells);
+  [[nodiscard]] std::string json() const;
+
+ private:
+  std::string name_;
+  std::vector<std::string> columns_;
+  std::vector<std::vector<Cell>> rows_;
+};
+
+}  // namespace frontmost::bench
