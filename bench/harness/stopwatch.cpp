@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "zbuffer/stopwatch.h"
+#include "harness/stopwatch.h"
 
 #include <algorithm>
 #include <chrono>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "zbuffer/options.h"
+#include "harness/options.h"
 
 #include <frontmost/base.h>
 

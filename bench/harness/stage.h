@@ -2,7 +2,7 @@
 // A scene made ready, and one frame of it.
 #pragma once
 
-#include "zbuffer/scenes.h"
+#include "harness/scenes.h"
 
 namespace frontmost::bench {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "zbuffer/scenes.h"
+#include "harness/scenes.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "zbuffer/random.h"
+#include "harness/random.h"
 
 namespace frontmost::bench {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <cstdio>
 
-#include "zbuffer/scenes.h"
-#include "zbuffer/tables.h"
+#include "harness/scenes.h"
+#include "harness/tables.h"
 
 namespace {
 

@@ -2,8 +2,8 @@
 // What is measured, one function a table.
 #pragma once
 
-#include "zbuffer/options.h"
-#include "zbuffer/table.h"
+#include "harness/options.h"
+#include "harness/table.h"
 
 namespace frontmost::bench {
 

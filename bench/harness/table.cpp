@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "zbuffer/table.h"
+#include "harness/table.h"
 
 #include <cmath>
 #include <cstdio>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
+#include "harness/stage.h"
+#include "harness/tables.h"
 #include "peers/peer.h"
-#include "zbuffer/stage.h"
-#include "zbuffer/tables.h"
 
 namespace frontmost::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "zbuffer/stopwatch.h"
+#include "harness/stopwatch.h"
 
 namespace frontmost::bench {
 
