@@ -26,6 +26,17 @@ struct Visible {
 /// Planar depth at every sample, in the order of Visible; +inf where nothing is seen.
 [[nodiscard]] Buffer<float> depths(const Visible& visible);
 
+/// A Visible of `view` in which nothing is seen: what merging begins with. \throws Error as validate(view) does.
+[[nodiscard]] Visible nothing_visible(const View& view);
+
+/// Lays what another part of a scene shows over `into`: at every sample the greater key stays, at equal keys the lower
+/// id. That is commutative, associative and idempotent, so parts may come in any order and from any machine, and all of
+/// them merged are to the bit what the whole scene shows. `first_id` is added to the ids of `other`: the place of its
+/// first triangle among those of the whole. O(samples), in parallel.
+/// \throws Error bad_argument unless both have the same view; limit_exceeded where an id would reach no_primitive, and
+/// then `into` is merged in part.
+void merge(Visible& into, const Visible& other, PrimitiveId first_id = 0, const Execution& execution = {});
+
 /// A hash of ids and depths: equal for equal answers, on every machine and for any number of threads. FNV-1a over
 /// the two planes, sample by sample. O(samples), on one thread.
 [[nodiscard]] std::uint64_t content_hash(const Visible& visible);
