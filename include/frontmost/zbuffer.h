@@ -2,6 +2,8 @@
 // The z-buffer: visibility by rasterisation into tiles.
 #pragma once
 
+#include <memory>
+
 #include "frontmost/surfaces.h"
 #include "frontmost/view.h"
 #include "frontmost/visible.h"
@@ -14,5 +16,27 @@ namespace frontmost {
 /// O(triangles + covered samples) time; 8 bytes a sample for the result.
 /// \throws Error as validate(view) does.
 [[nodiscard]] Visible zbuffer(const Surfaces& surfaces, const View& view, const Execution& execution = {});
+
+/// The same for repeated views: frames after the first reuse the memory of those before, and allocate nothing as long
+/// as no frame needs more. Not for several threads at once; each draw() uses the threads it is given.
+class ZBuffer {
+ public:
+  ZBuffer();
+  ~ZBuffer();
+  ZBuffer(ZBuffer&&) noexcept;
+  ZBuffer& operator=(ZBuffer&&) noexcept;
+  ZBuffer(const ZBuffer&) = delete;
+  ZBuffer& operator=(const ZBuffer&) = delete;
+
+  /// What zbuffer() gives. The result stays as it is until the next draw() or take(); after an error it is unspecified.
+  /// \throws Error as validate(view) does.
+  const Visible& draw(const Surfaces& surfaces, const View& view, const Execution& execution = {});
+  /// Moves the last result out; the next draw() allocates another.
+  [[nodiscard]] Visible take();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace frontmost

@@ -29,19 +29,19 @@ TileRect tiles_of(const PixelRect& rect) {
 
 /// Lists of the tiles that `visit(item, add)` names by add(tile), items in their order: counted first, then filled.
 template <class Visit>
-TileLists make_lists(const TileRange& tiles, std::size_t item_count, const Visit& visit) {
-  TileLists lists;
+void make_lists(const TileRange& tiles, std::size_t item_count, const Visit& visit, TileLists& lists) {
   lists.first_tile = tiles.begin;
   const std::size_t tile_count = tiles.end - tiles.begin;
-  lists.begin.assign(tile_count + 1, 0);
+  // One place behind, so that filling a list moves its beginning to where it belongs.
+  lists.begin.assign(tile_count + 2, 0);
   for (std::size_t i = 0; i < item_count; ++i)
-    visit(i, [&](std::size_t tile) { ++lists.begin[tile - tiles.begin + 1]; });
-  for (std::size_t tile = 0; tile < tile_count; ++tile) lists.begin[tile + 1] += lists.begin[tile];
-  lists.items.resize(lists.begin[tile_count]);
-  std::vector<std::size_t> next(lists.begin.begin(), lists.begin.end() - 1);
+    visit(i, [&](std::size_t tile) { ++lists.begin[tile - tiles.begin + 2]; });
+  for (std::size_t tile = 0; tile < tile_count; ++tile) lists.begin[tile + 2] += lists.begin[tile + 1];
+  lists.items.resize(lists.begin[tile_count + 1]);
   for (std::size_t i = 0; i < item_count; ++i)
-    visit(i, [&](std::size_t tile) { lists.items[next[tile - tiles.begin]++] = static_cast<std::uint32_t>(i); });
-  return lists;
+    visit(i, [&](std::size_t tile) {
+      lists.items[lists.begin[tile - tiles.begin + 1]++] = static_cast<std::uint32_t>(i);
+    });
 }
 
 /// Calls add(tile) for the tiles of `range` in which a record may be seen.
@@ -60,118 +60,117 @@ void visit_tiles(const TriangleRecord& record, const View& view, int tiles_x, co
     }
 }
 
-/// Consecutive tiles whose lists together hold at most `most_items`, one tile at least.
-std::vector<TileRange> split_into_rounds(const FramePlan& plan, const View& view, std::size_t most_items) {
-  const TileRange all{0, plan.tile_count()};
-  // Even if every record were in every tile: no need to count.
-  if (plan.records.size() <= most_items / all.end) return {all};
-  std::vector<std::uint32_t> counts(all.end, 0);
-  for (const TriangleRecord& record : plan.records)
-    visit_tiles(record, view, plan.tiles_x, all, [&](std::size_t tile) { ++counts[tile]; });
-  std::vector<TileRange> rounds{{0, 0}};
-  std::size_t items = 0;
-  for (std::size_t tile = 0; tile < all.end; ++tile) {
-    if (items + counts[tile] > most_items && rounds.back().end > rounds.back().begin) {
-      rounds.push_back({tile, tile});
-      items = 0;
-    }
-    items += counts[tile];
-    rounds.back().end = tile + 1;
-  }
-  return rounds;
-}
-
-std::vector<TriangleRecord> take_apart(const ClusterSet& set, const ScreenTransform& transform, const View& view,
-                                       const std::vector<std::uint32_t>& apart, const Execution& execution) {
-  constexpr std::size_t kGrain = 64;
-  std::vector<std::vector<TriangleRecord>> parts((apart.size() + kGrain - 1) / kGrain);
-  parallel_for(execution, apart.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      append_records(set, set.clusters[apart[i]], transform, view.culling, parts[begin / kGrain]);
-  });
-  std::vector<TriangleRecord> records;
-  std::size_t count = 0;
-  for (const std::vector<TriangleRecord>& part : parts) count += part.size();
-  records.reserve(count);
-  for (std::vector<TriangleRecord>& part : parts) {
-    records.insert(records.end(), part.begin(), part.end());
-    std::vector<TriangleRecord>().swap(part);
-  }
-  std::stable_sort(records.begin(), records.end(),
-                   [](const TriangleRecord& a, const TriangleRecord& b) { return a.nearest() > b.nearest(); });
-  return records;
-}
-
-/// The clusters drawn whole, nearer slices first.
-std::vector<std::uint32_t> order_whole(const CullResult& culled, std::size_t cluster_count) {
-  float least = std::numeric_limits<float>::infinity(), greatest = 0;
-  for (std::size_t i = 0; i < cluster_count; ++i) {
-    if (culled.fate_of(i) != ClusterFate::whole) continue;
-    least = std::min(least, culled.nearest[i]);
-    greatest = std::max(greatest, culled.nearest[i]);
-  }
-  // In double: keys may be denormal floats, whose reciprocal is not a float.
-  const double scale = greatest > least ? double(kSlices - 1) / (double(greatest) - least) : 0.0;
-  const auto slice_of = [&](std::size_t i) { return std::size_t((double(greatest) - culled.nearest[i]) * scale); };
-
-  std::array<std::size_t, kSlices + 1> begin{};
-  for (std::size_t i = 0; i < cluster_count; ++i)
-    if (culled.fate_of(i) == ClusterFate::whole) ++begin[slice_of(i) + 1];
-  for (std::size_t s = 0; s < kSlices; ++s) begin[s + 1] += begin[s];
-  std::vector<std::uint32_t> order(begin[kSlices]);
-  for (std::size_t i = 0; i < cluster_count; ++i)
-    if (culled.fate_of(i) == ClusterFate::whole) order[begin[slice_of(i)]++] = static_cast<std::uint32_t>(i);
-  return order;
-}
-
 }  // namespace
 
-TileLists FramePlan::record_lists(const TileRange& round, const View& view) const {
-  return make_lists(round, records.size(),
-                    [&](std::size_t i, const auto& add) { visit_tiles(records[i], view, tiles_x, round, add); });
+void FramePlan::list_records(const TileRange& round, const View& view) {
+  make_lists(
+      round, records_.size(),
+      [&](std::size_t i, const auto& add) { visit_tiles(records_[i], view, tiles_x_, round, add); }, record_lists_);
 }
 
-TileJob FramePlan::job(std::size_t tile, const View& view, const TileLists& record_lists) const {
+TileJob FramePlan::job(std::size_t tile, const View& view) const {
   TileJob job;
-  job.x = int(tile % std::size_t(tiles_x)) * kTileSize;
-  job.y = int(tile / std::size_t(tiles_x)) * kTileSize;
+  job.x = int(tile % std::size_t(tiles_x_)) * kTileSize;
+  job.y = int(tile / std::size_t(tiles_x_)) * kTileSize;
   job.width = std::min(kTileSize, view.width - job.x);
   job.height = std::min(kTileSize, view.height - job.y);
-  job.records = record_lists.of(tile);
-  job.clusters = cluster_lists.of(tile);
+  job.records = record_lists_.of(tile);
+  job.clusters = cluster_lists_.of(tile);
   return job;
 }
 
-FramePlan plan_frame(const ClusterSet& set, const ScreenTransform& transform, const View& view,
+void FramePlan::make(const ClusterSet& set, const ScreenTransform& transform, const View& view,
                      const Execution& execution, std::size_t most_record_items) {
   constexpr std::size_t kCullGrain = 4096;
-  FramePlan plan;
-  plan.tiles_x = (view.width + kTileSize - 1) / kTileSize;
-  plan.tiles_y = (view.height + kTileSize - 1) / kTileSize;
-  const std::size_t count = set.clusters.size(), tiles_x = std::size_t(plan.tiles_x);
-  plan.culled.resize(count);
-  parallel_for(execution, count, kCullGrain, [&](std::size_t begin, std::size_t end) {
-    cull_clusters(set.boxes, transform, view, execution.isa, begin, end, plan.culled);
+  tiles_x_ = (view.width + kTileSize - 1) / kTileSize;
+  tiles_y_ = (view.height + kTileSize - 1) / kTileSize;
+  culled_.resize(set.clusters.size());
+  parallel_for(execution, set.clusters.size(), kCullGrain, [&](std::size_t begin, std::size_t end) {
+    cull_clusters(set.boxes, transform, view, execution.isa, begin, end, culled_);
   });
+  choose_apart(set.clusters.size());
+  take_apart(set, transform, view, execution);
+  split_into_rounds(view, most_record_items);
+  order_whole(set.clusters.size());
+  list_clusters();
+}
 
-  std::vector<std::uint32_t> apart;
-  for (std::size_t i = 0; i < count; ++i) {
-    const ClusterFate fate = plan.culled.fate_of(i);
-    if (fate == ClusterFate::whole && tiles_of(plan.culled.rect(i)).count() > kMaxTilesOfCluster)
-      plan.culled.fate[i] = static_cast<std::uint8_t>(ClusterFate::apart);
-    if (plan.culled.fate_of(i) == ClusterFate::apart) apart.push_back(static_cast<std::uint32_t>(i));
+void FramePlan::choose_apart(std::size_t cluster_count) {
+  apart_.clear();
+  for (std::size_t i = 0; i < cluster_count; ++i) {
+    if (culled_.fate_of(i) == ClusterFate::whole && tiles_of(culled_.rect(i)).count() > kMaxTilesOfCluster)
+      culled_.fate[i] = static_cast<std::uint8_t>(ClusterFate::apart);
+    if (culled_.fate_of(i) == ClusterFate::apart) apart_.push_back(static_cast<std::uint32_t>(i));
   }
-  plan.records = take_apart(set, transform, view, apart, execution);
-  plan.rounds = split_into_rounds(plan, view, most_record_items);
+}
 
-  const std::vector<std::uint32_t> order = order_whole(plan.culled, count);
-  plan.cluster_lists = make_lists({0, plan.tile_count()}, order.size(), [&](std::size_t i, const auto& add) {
-    const TileRect tiles = tiles_of(plan.culled.rect(order[i]));
-    for (int y = tiles.y0; y <= tiles.y1; ++y)
-      for (int x = tiles.x0; x <= tiles.x1; ++x) add(std::size_t(y) * tiles_x + std::size_t(x));
+void FramePlan::take_apart(const ClusterSet& set, const ScreenTransform& transform, const View& view,
+                           const Execution& execution) {
+  constexpr std::size_t kGrain = 64;
+  const std::size_t part_count = (apart_.size() + kGrain - 1) / kGrain;
+  if (apart_parts_.size() < part_count) apart_parts_.resize(part_count);
+  parallel_for(execution, apart_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<TriangleRecord>& part = apart_parts_[begin / kGrain];
+    part.clear();
+    for (std::size_t i = begin; i < end; ++i)
+      append_records(set, set.clusters[apart_[i]], transform, view.culling, part);
   });
-  for (std::uint32_t& item : plan.cluster_lists.items) item = order[item];
-  return plan;
+  records_.clear();
+  for (std::size_t i = 0; i < part_count; ++i)
+    records_.insert(records_.end(), apart_parts_[i].begin(), apart_parts_[i].end());
+  std::sort(records_.begin(), records_.end(),
+            [](const TriangleRecord& a, const TriangleRecord& b) { return a.nearest() > b.nearest(); });
+}
+
+/// Consecutive tiles whose lists together hold at most `most_items`, one tile at least.
+void FramePlan::split_into_rounds(const View& view, std::size_t most_items) {
+  const TileRange all{0, tile_count()};
+  rounds_.assign(1, all);
+  // Even if every record were in every tile: no need to count.
+  if (records_.size() <= most_items / all.end) return;
+  std::vector<std::uint32_t> counts(all.end, 0);
+  for (const TriangleRecord& record : records_)
+    visit_tiles(record, view, tiles_x_, all, [&](std::size_t tile) { ++counts[tile]; });
+  rounds_.assign(1, {0, 0});
+  std::size_t items = 0;
+  for (std::size_t tile = 0; tile < all.end; ++tile) {
+    if (items + counts[tile] > most_items && rounds_.back().end > rounds_.back().begin) {
+      rounds_.push_back({tile, tile});
+      items = 0;
+    }
+    items += counts[tile];
+    rounds_.back().end = tile + 1;
+  }
+}
+
+void FramePlan::order_whole(std::size_t cluster_count) {
+  float least = std::numeric_limits<float>::infinity(), greatest = 0;
+  for (std::size_t i = 0; i < cluster_count; ++i) {
+    if (culled_.fate_of(i) != ClusterFate::whole) continue;
+    least = std::min(least, culled_.nearest[i]);
+    greatest = std::max(greatest, culled_.nearest[i]);
+  }
+  // In double: keys may be denormal floats, whose reciprocal is not a float.
+  const double scale = greatest > least ? double(kSlices - 1) / (double(greatest) - least) : 0.0;
+  const auto slice_of = [&](std::size_t i) { return std::size_t((double(greatest) - culled_.nearest[i]) * scale); };
+
+  std::array<std::size_t, kSlices + 1> begin{};
+  for (std::size_t i = 0; i < cluster_count; ++i)
+    if (culled_.fate_of(i) == ClusterFate::whole) ++begin[slice_of(i) + 1];
+  for (std::size_t s = 0; s < kSlices; ++s) begin[s + 1] += begin[s];
+  order_.resize(begin[kSlices]);
+  for (std::size_t i = 0; i < cluster_count; ++i)
+    if (culled_.fate_of(i) == ClusterFate::whole) order_[begin[slice_of(i)]++] = static_cast<std::uint32_t>(i);
+}
+
+void FramePlan::list_clusters() {
+  const auto visit = [&](std::size_t i, const auto& add) {
+    const TileRect tiles = tiles_of(culled_.rect(order_[i]));
+    for (int y = tiles.y0; y <= tiles.y1; ++y)
+      for (int x = tiles.x0; x <= tiles.x1; ++x) add(std::size_t(y) * std::size_t(tiles_x_) + std::size_t(x));
+  };
+  make_lists({0, tile_count()}, order_.size(), visit, cluster_lists_);
+  for (std::uint32_t& item : cluster_lists_.items) item = order_[item];
 }
 
 }  // namespace frontmost::zbuffer_detail

@@ -34,17 +34,20 @@ struct FrameInput {
 struct TileJob {
   int x = 0, y = 0, width = 0, height = 0;
   std::span<const std::uint32_t> records, clusters;
+
+  [[nodiscard]] bool is_empty() const { return records.empty() && clusters.empty(); }
 };
 
 /// The private memory of one thread, reused from tile to tile.
 struct TileScratch {
   explicit TileScratch(std::size_t sample_count);
+  /// Makes room for that many samples a pixel.
+  void reserve(std::size_t sample_count);
 
   /// By sample, kTileWords each: key bits << 32 | ~id, the greatest wins. 0 is "nothing".
   Buffer<std::uint64_t> words;
   /// By block: no sample of the block is farther than this key; 0 where some sample sees nothing.
   Buffer<float> farthest;
-  std::uint64_t dirty = 0;           ///< blocks drawn to since `farthest` was found
   Buffer<std::uint32_t> references;  ///< covered (triangle, pixel) pairs of one batch
 };
 

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangles of more than a few pixels, one at a time: all blocks of the tile are classified at once, and what is left
+// of them is filled in whole rows.
+
+// Included once for every target.
+#if defined(FRONTMOST_ZBUFFER_LARGE_TRIANGLES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FRONTMOST_ZBUFFER_LARGE_TRIANGLES_INL_H_
+#undef FRONTMOST_ZBUFFER_LARGE_TRIANGLES_INL_H_
+#else
+#define FRONTMOST_ZBUFFER_LARGE_TRIANGLES_INL_H_
+#endif
+
+#include "zbuffer/tile_buffer-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::zbuffer_detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// An edge value at the tile's first sample is clamped to this. Over 127 pixels both ways it changes by at most
+// 2 * 127 * 2^22 < 2^30, so its sign stays right and its sums stay within 32 bits.
+constexpr std::int64_t kEdgeLimit = std::int64_t(1) << 30;
+constexpr std::int32_t kBlockUnits = kBlockSize * kSubPixels;
+
+HWY_INLINE bool IsTopLeft(std::int32_t dx, std::int32_t dy) { return dy < 0 || (dy == 0 && dx > 0); }
+
+class LargeTriangles {
+ public:
+  LargeTriangles(const FrameInput& frame, const TileJob& job, TileBuffer& buffer)
+      : frame_(frame), job_(job), buffer_(buffer) {
+    low_ = high_ = frame.samples[0];
+    for (const glm::ivec2& s : frame.samples) low_ = glm::min(low_, s), high_ = glm::max(high_, s);
+  }
+
+  /// Precondition: oriented; corners relative to the tile.
+  void Draw(const TriangleRecord& r) {
+    const PixelRect rect = pixel_rect(r, job_.width, job_.height);
+    if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
+    const std::uint64_t touched = TileBuffer::BlocksOf(rect);
+    if (buffer_.AllHide(touched, r.nearest())) return;
+    const Plane plane = PlaneOf(r);
+    HWY_ALIGN_MAX float nearest[64];
+    std::uint64_t open = touched & ~KnownHidden(plane, rect, nearest);
+    for (std::size_t s = 0; s < frame_.samples.size(); ++s) DrawSample(r, plane, rect, s, open, nearest);
+  }
+
+ private:
+  /// The key at a sample is (k0 + dx*gx) + dy*gy from (x0, y0), clamped.
+  struct Plane {
+    std::int32_t x0, y0;
+    float k0, gx, gy, k_min, k_max;
+    std::uint32_t not_id;
+  };
+
+  /// Edge functions at the tile's first sample, and their steps from pixel to pixel.
+  struct Edges {
+    std::int32_t first[3], step_x[3], step_y[3];
+  };
+
+  /// Blocks that no sample of the triangle lies in, and those whose every sample does.
+  struct Cover {
+    std::uint64_t none = 0, all = 0;
+  };
+
+  [[nodiscard]] static HWY_INLINE Plane PlaneOf(const TriangleRecord& r) {
+    Plane p;
+    p.not_id = ~r.id;
+    p.x0 = r.x[0];
+    p.y0 = r.y[0];
+    p.k0 = r.key[0];
+    const std::int32_t x1 = r.x[1] - r.x[0], y1 = r.y[1] - r.y[0], x2 = r.x[2] - r.x[0], y2 = r.y[2] - r.y[0];
+    const float area = float(doubled_area(r));
+    const float k1 = r.key[1] - r.key[0], k2 = r.key[2] - r.key[0];
+    p.gx = (k1 * float(y2) - k2 * float(y1)) / area;
+    p.gy = (float(x1) * k2 - float(x2) * k1) / area;
+    p.k_min = HWY_MIN(r.key[0], HWY_MIN(r.key[1], r.key[2]));
+    p.k_max = HWY_MAX(r.key[0], HWY_MAX(r.key[1], r.key[2]));
+    return p;
+  }
+
+  [[nodiscard]] static HWY_INLINE Edges EdgesOf(const TriangleRecord& r, const glm::ivec2& offset) {
+    Edges edges;
+    for (int k = 0; k < 3; ++k) {
+      const int n = k == 2 ? 0 : k + 1;
+      const std::int32_t dx = r.x[n] - r.x[k], dy = r.y[n] - r.y[k];
+      const std::int64_t e =
+          std::int64_t(dx) * (offset.y - r.y[k]) - std::int64_t(dy) * (offset.x - r.x[k]) - (IsTopLeft(dx, dy) ? 0 : 1);
+      edges.first[k] = std::int32_t(HWY_MAX(HWY_MIN(e >> 8, kEdgeLimit), -kEdgeLimit));
+      edges.step_x[k] = -dy;
+      edges.step_y[k] = dx;
+    }
+    return edges;
+  }
+
+  /// Calls visit(first block, column, row of the block in each lane) for all blocks that may be of `rect`.
+  template <class Visit>
+  static HWY_INLINE void ForBlocks(const PixelRect& rect, const Visit& visit) {
+    const DI d;
+    constexpr int kLanes = int(kMaxLanes);
+    const int begin = rect.y0 / kBlockSize * 8 / kLanes * kLanes, end = (rect.y1 / kBlockSize + 1) * 8;
+    for (int first = begin; first < end; first += kLanes) {
+      const VI block = hn::Iota(d, first);
+      visit(first, hn::And(block, hn::Set(d, 7)), hn::ShiftRight<3>(block));
+    }
+  }
+
+  /// The blocks known to hide the triangle; and for every block, how near the triangle can be there.
+  [[nodiscard]] HWY_INLINE std::uint64_t KnownHidden(const Plane& p, const PixelRect& rect, float* nearest) const {
+    const DI d;
+    const DF df;
+    const VI unit = hn::Set(d, kBlockUnits);
+    constexpr std::int32_t kSpan = (kBlockSize - 1) * kSubPixels;
+    const VI from_x = hn::Set(d, (p.gx > 0 ? kSpan + high_.x : low_.x) - p.x0);
+    const VI from_y = hn::Set(d, (p.gy > 0 ? kSpan + high_.y : low_.y) - p.y0);
+    std::uint64_t hidden = 0;
+    ForBlocks(rect, [&](int first, VI column, VI row) HWY_ATTR {
+      const VF dx = hn::ConvertTo(df, hn::Add(hn::Mul(column, unit), from_x));
+      const VF dy = hn::ConvertTo(df, hn::Add(hn::Mul(row, unit), from_y));
+      const VF left = hn::Add(hn::Set(df, p.k0), hn::Mul(dx, hn::Set(df, p.gx)));
+      const VF key = Clamp(p, hn::Add(left, hn::Mul(dy, hn::Set(df, p.gy))));
+      hn::Store(key, df, nearest + first);
+      hidden |= BitsOf(df, hn::Gt(hn::Load(df, buffer_.farthest() + first), key)) << first;
+    });
+    return hidden;
+  }
+
+  [[nodiscard]] static HWY_INLINE VF Clamp(const Plane& p, VF key) {
+    const DF df;
+    return hn::Min(hn::Max(key, hn::Set(df, p.k_min)), hn::Set(df, p.k_max));
+  }
+
+  [[nodiscard]] HWY_INLINE Cover CoverOf(const Edges& edges, const PixelRect& rect) const {
+    const DI d;
+    constexpr std::int32_t kSpan = kBlockSize - 1;
+    Cover cover;
+    ForBlocks(rect, [&](int first, VI column, VI row) HWY_ATTR {
+      VI outside = hn::Zero(d), not_inside = hn::Zero(d);
+      for (int k = 0; k < 3; ++k) {
+        const std::int32_t right = kSpan * edges.step_x[k], down = kSpan * edges.step_y[k];
+        const VI e =
+            hn::Add(hn::Add(hn::Set(d, edges.first[k]), hn::Mul(column, hn::Set(d, kBlockSize * edges.step_x[k]))),
+                    hn::Mul(row, hn::Set(d, kBlockSize * edges.step_y[k])));
+        outside = hn::Or(outside, hn::Add(e, hn::Set(d, HWY_MAX(right, 0) + HWY_MAX(down, 0))));
+        not_inside = hn::Or(not_inside, hn::Add(e, hn::Set(d, HWY_MIN(right, 0) + HWY_MIN(down, 0))));
+      }
+      cover.none |= BitsOf(d, hn::Lt(outside, hn::Zero(d))) << first;
+      cover.all |= BitsOf(d, hn::Gt(not_inside, hn::Set(d, -1))) << first;
+    });
+    return cover;
+  }
+
+  void DrawSample(const TriangleRecord& r, const Plane& plane, const PixelRect& rect, std::size_t sample,
+                  std::uint64_t& open, const float* nearest) {
+    const Edges edges = EdgesOf(r, frame_.samples[sample]);
+    const Cover cover = CoverOf(edges, rect);
+    for (std::uint64_t left = open & ~cover.none; left != 0; left &= left - 1) {
+      const int block = int(hwy::Num0BitsBelowLS1Bit_Nonzero64(left));
+      if (sample == 0 && buffer_.Hides(block, nearest[block])) {
+        open &= ~(std::uint64_t(1) << block);
+        continue;
+      }
+      if (cover.all >> block & 1)
+        FillBlock<true>(plane, edges, rect, block, sample);
+      else
+        FillBlock<false>(plane, edges, rect, block, sample);
+    }
+  }
+
+  template <bool kWhole>
+  HWY_INLINE void FillBlock(const Plane& p, const Edges& edges, const PixelRect& rect, int block, std::size_t sample) {
+    const DI d;
+    const DU du;
+    const DF df;
+    const int bx = block % 8, by = block / 8;
+    const glm::ivec2 offset = frame_.samples[sample];
+    HWY_ALIGN_MAX float down[kBlockSize];
+    for (int y = 0; y < kBlockSize; y += int(kMaxLanes)) {
+      const VI dy = hn::Add(hn::ShiftLeft<8>(hn::Iota(d, y)), hn::Set(d, by * kBlockUnits + offset.y - p.y0));
+      hn::Store(hn::Mul(hn::ConvertTo(df, dy), hn::Set(df, p.gy)), df, down + y);
+    }
+    const int top = by * kBlockSize;
+    const int y0 = kWhole ? 0 : HWY_MAX(rect.y0 - top, 0),
+              y1 = kWhole ? kBlockSize - 1 : HWY_MIN(rect.y1 - top, kBlockSize - 1);
+    auto least = hn::Set(DWI(), std::int64_t(kOutsideImage));
+    for (int x = 0; x < kBlockSize; x += int(kMaxLanes)) {
+      const VI column = hn::Add(hn::Load(d, kPixelOrder.column), hn::Set(d, x));
+      const VI dx = hn::Add(hn::ShiftLeft<8>(column), hn::Set(d, bx * kBlockUnits + offset.x - p.x0));
+      const VF base = hn::Add(hn::Set(df, p.k0), hn::Mul(hn::ConvertTo(df, dx), hn::Set(df, p.gx)));
+      VI e[3];
+      if (!kWhole)
+        for (int k = 0; k < 3; ++k) {
+          const std::int32_t first = edges.first[k] + bx * kBlockSize * edges.step_x[k] + (top + y0) * edges.step_y[k];
+          e[k] = hn::Add(hn::Set(d, first), hn::Mul(column, hn::Set(d, edges.step_x[k])));
+        }
+      const VU not_id = hn::Set(du, p.not_id);
+      std::uint64_t* row = buffer_.Row(sample, top + y0) + bx * kBlockSize + x;
+      for (int y = y0; y <= y1; ++y, row += kTileStride) {
+        const VU bits = hn::BitCast(du, Clamp(p, hn::Add(base, hn::Set(df, down[y]))));
+        if (kWhole) {
+          least = MergeRow(bits, not_id, row, least);
+        } else {
+          const auto covered = hn::RebindMask(du, hn::Gt(hn::Or(hn::Or(e[0], e[1]), e[2]), hn::Set(d, -1)));
+          least = MergeRow(hn::IfThenElseZero(covered, bits), hn::IfThenElseZero(covered, not_id), row, least);
+          for (int k = 0; k < 3; ++k) e[k] = hn::Add(e[k], hn::Set(d, edges.step_y[k]));
+        }
+      }
+    }
+    if (y0 == 0 && y1 == kBlockSize - 1 && frame_.samples.size() == 1)
+      buffer_.SetLeast(block, least);
+    else
+      buffer_.MarkDrawn(std::uint64_t(1) << block);
+  }
+
+  const FrameInput& frame_;
+  const TileJob& job_;
+  TileBuffer& buffer_;
+  glm::ivec2 low_, high_;  // of the sample offsets
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace frontmost::zbuffer_detail
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard by target

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+// The private buffer of one tile: a 64-bit word for every sample, and how far the farthest of each block lies.
+//
+// N. Greene, M. Kass, G. Miller. Hierarchical Z-Buffer Visibility. 1993.
+
+// Included once for every target.
+#if defined(FRONTMOST_ZBUFFER_TILE_BUFFER_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FRONTMOST_ZBUFFER_TILE_BUFFER_INL_H_
+#undef FRONTMOST_ZBUFFER_TILE_BUFFER_INL_H_
+#else
+#define FRONTMOST_ZBUFFER_TILE_BUFFER_INL_H_
+#endif
+
+#include <algorithm>
+#include <cstring>
+
+#include "hwy/cache_control.h"
+#include "hwy/highway.h"
+#include "zbuffer/tile_kernel.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::zbuffer_detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using DI = hn::ScalableTag<std::int32_t>;
+using DU = hn::RebindToUnsigned<DI>;
+using DF = hn::RebindToFloat<DI>;
+using VI = hn::Vec<DI>;
+using VU = hn::Vec<DU>;
+using VF = hn::Vec<DF>;
+using MI = hn::Mask<DI>;
+// Words are handled in whole vectors of 64 bits, beside half vectors of 32.
+using DW = hn::ScalableTag<std::uint64_t>;
+using DWI = hn::RebindToSigned<DW>;
+using DHU = hn::Rebind<std::uint32_t, DW>;
+using DHF = hn::RebindToFloat<DHU>;
+
+constexpr std::size_t kMaxLanes = hn::MaxLanes(DI());
+
+// Pixels of the tile that lie outside the image: nearer than anything, so that they never keep a block from hiding.
+constexpr std::uint64_t kOutsideImage = std::uint64_t(0x7F7FFFFF) << 32;
+
+/// Lane i in bit i.
+template <class D>
+HWY_INLINE std::uint64_t BitsOf(D d, hn::Mask<D> mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  std::uint64_t bits;
+  std::memcpy(&bits, bytes, sizeof bits);
+  return bits & ((std::uint64_t(1) << hn::Lanes(d)) - 1);
+}
+
+/// The order in which MergeRow takes pixels, so that interleaving keys and ids puts their words in line.
+struct PixelOrder {
+  HWY_ALIGN_MAX std::int32_t column[kMaxLanes];
+  constexpr PixelOrder() : column{} {
+    for (int i = 0; i < int(kMaxLanes); ++i)
+      column[i] = kMaxLanes == 1 ? 0 : i / 4 * 2 + i % 2 + (i % 4 >= 2 ? int(kMaxLanes) / 2 : 0);
+  }
+};
+constexpr PixelOrder kPixelOrder;
+
+/// Keeps the greater words of a row of pixels; all vectors are in kPixelOrder. \returns what is kept, folded by
+/// minimum into `least`.
+HWY_INLINE hn::Vec<DWI> MergeRow(VU key_bits, VU not_ids, std::uint64_t* row, hn::Vec<DWI> least) {
+  const DU du;
+  const DWI d;
+  auto* words = reinterpret_cast<std::int64_t*>(row);
+#if HWY_TARGET == HWY_SCALAR
+  const DW dw;
+  const auto word = hn::Or(hn::ShiftLeft<32>(hn::PromoteTo(dw, key_bits)), hn::PromoteTo(dw, not_ids));
+  const auto kept = hn::Max(hn::BitCast(d, word), hn::Load(d, words));
+  hn::Store(kept, d, words);
+  (void)du;
+  return hn::Min(least, kept);
+#else
+  const auto left = hn::Max(hn::BitCast(d, hn::InterleaveLower(du, not_ids, key_bits)), hn::Load(d, words));
+  const auto right =
+      hn::Max(hn::BitCast(d, hn::InterleaveUpper(du, not_ids, key_bits)), hn::Load(d, words + hn::Lanes(d)));
+  hn::Store(left, d, words);
+  hn::Store(right, d, words + hn::Lanes(d));
+  return hn::Min(least, hn::Min(left, right));
+#endif
+}
+
+class TileBuffer {
+ public:
+  TileBuffer(const FrameInput& frame, const TileJob& job, TileScratch& scratch)
+      : frame_(frame), job_(job), words_(scratch.words.data()), farthest_(scratch.farthest.data()) {}
+
+  [[nodiscard]] static HWY_INLINE std::uint64_t BlockBit(int bx, int by) { return std::uint64_t(1) << (by * 8 + bx); }
+
+  /// The blocks that a rectangle of pixels touches. Precondition: not empty, within the tile.
+  [[nodiscard]] static HWY_INLINE std::uint64_t BlocksOf(const PixelRect& rect) {
+    constexpr std::uint64_t kFirstColumn = 0x0101010101010101u;
+    const int x0 = rect.x0 / kBlockSize, x1 = rect.x1 / kBlockSize;
+    const int y0 = rect.y0 / kBlockSize, y1 = rect.y1 / kBlockSize;
+    const std::uint64_t columns = ((std::uint64_t(2) << (x1 - x0)) - 1) << x0;
+    const std::uint64_t rows = (~std::uint64_t(0) >> (56 - 8 * (y1 - y0))) << (8 * y0);
+    return columns * kFirstColumn & rows;
+  }
+
+  [[nodiscard]] HWY_INLINE std::uint64_t* Row(std::size_t sample, int y) const {
+    return words_ + sample * kTileWords + std::size_t(y) * kTileStride;
+  }
+
+  void Clear() {
+    const DW d;
+    for (std::size_t s = 0; s < frame_.samples.size(); ++s)
+      for (int y = 0; y < kTileSize; ++y) {
+        std::uint64_t* row = Row(s, y);
+        const int inside = y < job_.height ? job_.width : 0;
+        for (int x = 0; x < kTileSize; x += int(hn::Lanes(d))) hn::Store(hn::Zero(d), d, row + x);
+        for (int x = inside; x < kTileSize; ++x) row[x] = kOutsideImage;
+      }
+    std::fill(farthest_, farthest_ + kBlocks, 0.0f);
+    const bool whole = job_.width == kTileSize && job_.height == kTileSize;
+    dirty_ = whole ? 0 : ~std::uint64_t(0);
+  }
+
+  // -- hierarchical depth -------------------------------------------------------------------------------------------
+
+  [[nodiscard]] HWY_INLINE const float* farthest() const { return farthest_; }
+
+  /// These blocks were drawn to: what is known of their farthest key is no more than a bound.
+  HWY_INLINE void MarkDrawn(std::uint64_t blocks) { dirty_ |= blocks; }
+
+  /// The least word of a block, all its samples seen.
+  HWY_INLINE void SetLeast(int block, hn::Vec<DWI> least) {
+    const DWI d;
+    HWY_ALIGN_MAX std::int64_t lanes[kMaxLanes];
+    hn::Store(least, d, lanes);
+    for (std::size_t i = 1; i < hn::Lanes(d); ++i) lanes[0] = HWY_MIN(lanes[0], lanes[i]);
+    const auto bits = std::uint32_t(std::uint64_t(lanes[0]) >> 32);
+    std::memcpy(&farthest_[block], &bits, sizeof bits);
+    dirty_ &= ~(std::uint64_t(1) << block);
+  }
+
+  /// True when every sample of the block is strictly nearer than `nearest`.
+  [[nodiscard]] HWY_INLINE bool Hides(int block, float nearest) {
+    if (farthest_[block] > nearest) return true;
+    if (!(dirty_ >> block & 1)) return false;
+    FindFarthest(block);
+    return farthest_[block] > nearest;
+  }
+
+  /// The blocks that are known to hide whatever is no nearer than `nearest`.
+  [[nodiscard]] HWY_INLINE std::uint64_t KnownToHide(float nearest) const {
+    const DF d;
+    const VF key = hn::Set(d, nearest);
+    std::uint64_t hiding = 0;
+    for (std::size_t i = 0; i < kBlocks; i += hn::Lanes(d))
+      hiding |= BitsOf(d, hn::Gt(hn::Load(d, farthest_ + i), key)) << i;
+    return hiding;
+  }
+
+  /// True when every sample of the blocks is strictly nearer than `nearest`.
+  [[nodiscard]] HWY_INLINE bool AllHide(std::uint64_t blocks, float nearest) {
+    std::uint64_t left = blocks & ~KnownToHide(nearest);
+    if (left & ~dirty_) return false;
+    for (; left != 0; left &= left - 1)
+      if (!Hides(int(hwy::Num0BitsBelowLS1Bit_Nonzero64(left)), nearest)) return false;
+    return true;
+  }
+
+  // -- the way out --------------------------------------------------------------------------------------------------
+
+  void WriteOut() const {
+    for (std::size_t s = 0; s < frame_.samples.size(); ++s)
+      for (int y = 0; y < job_.height; ++y) WriteRow(s, y);
+  }
+
+ private:
+  void FindFarthest(int block) {
+    const DWI d;
+    const int bx = block % 8, by = block / 8;
+    auto least = hn::Set(d, std::int64_t(kOutsideImage));
+    for (std::size_t s = 0; s < frame_.samples.size(); ++s)
+      for (int y = by * kBlockSize; y < (by + 1) * kBlockSize; ++y) {
+        const auto* row = reinterpret_cast<const std::int64_t*>(Row(s, y)) + bx * kBlockSize;
+        for (int x = 0; x < kBlockSize; x += int(hn::Lanes(d))) least = hn::Min(least, hn::Load(d, row + x));
+      }
+    SetLeast(block, least);
+  }
+
+  void WriteRow(std::size_t sample, int y) const {
+    const DW d;
+    const DHU dh;
+    const DHF df;
+    const std::size_t at =
+        (sample * std::size_t(frame_.view.height) + std::size_t(job_.y + y)) * std::size_t(frame_.view.width) +
+        std::size_t(job_.x);
+    const std::uint64_t* row = Row(sample, y);
+    PrimitiveId* primitives = frame_.primitives + at;
+    float* keys = frame_.keys + at;
+    const std::size_t lanes = hn::Lanes(d), width = std::size_t(job_.width);
+    const bool streams = frame_.streams && at % 16 == 0 && lanes >= 4;
+    std::size_t x = 0;
+    for (; x + lanes <= width; x += lanes) {
+      const auto word = hn::Load(d, row + x);
+      const auto id = hn::Not(hn::TruncateTo(dh, word));
+      const auto key = hn::BitCast(df, hn::TruncateTo(dh, hn::ShiftRight<32>(word)));
+      if (streams) {
+        hn::Stream(id, dh, primitives + x);
+        hn::Stream(key, df, keys + x);
+      } else {
+        hn::StoreU(id, dh, primitives + x);
+        hn::StoreU(key, df, keys + x);
+      }
+    }
+    for (; x < width; ++x) {
+      primitives[x] = ~std::uint32_t(row[x]);
+      const std::uint32_t bits = std::uint32_t(row[x] >> 32);
+      std::memcpy(keys + x, &bits, sizeof bits);
+    }
+  }
+
+  static constexpr std::size_t kBlocks = 64;
+
+  const FrameInput& frame_;
+  const TileJob& job_;
+  std::uint64_t* words_;
+  /// By block: no sample of the block is farther than this key; 0 where some sample sees nothing.
+  float* farthest_;
+  std::uint64_t dirty_ = 0;  // blocks drawn to since their farthest key was found
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace frontmost::zbuffer_detail
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard by target

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// ZBuffer, the object: frames that reuse memory are the frames that zbuffer() gives, and ask for none.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "frontmost/frontmost.h"
+#include "support/random_scene.h"
+
+namespace {
+
+std::atomic<std::size_t> allocation_count{0};
+
+void* counted(std::size_t bytes) {
+  ++allocation_count;
+  if (void* pointer = std::malloc(bytes == 0 ? 1 : bytes)) return pointer;
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
+void* operator new(std::size_t bytes) { return counted(bytes); }
+void* operator new[](std::size_t bytes) { return counted(bytes); }
+void operator delete(void* pointer) noexcept { std::free(pointer); }
+void operator delete[](void* pointer) noexcept { std::free(pointer); }
+void operator delete(void* pointer, std::size_t) noexcept { std::free(pointer); }
+void operator delete[](void* pointer, std::size_t) noexcept { std::free(pointer); }
+
+namespace frontmost::test {
+namespace {
+
+TEST(ZBuffer, FramesAfterTheFirstAreWhatTheFunctionGives) {
+  ZBuffer buffer;
+  Random random(11);
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    const Scene scene = scene_of(random_mesh(Kind(seed % 8), seed % 5 == 0 ? 0 : 80, seed));
+    const Surfaces surfaces(scene);
+    // Two grids of one size in memory among them, and views that leave most tiles empty.
+    constexpr std::array<std::pair<int, int>, 4> kSizes{{{400, 300}, {300, 400}, {700, 500}, {64, 64}}};
+    const auto [width, height] = kSizes[seed / 4 % 4];
+    View view = random_view(random, width, height);
+    view.samples = seed % 7 == 0 ? 4 : 1;
+    for (int frame = 0; frame < 2; ++frame) {
+      const Visible& reused = buffer.draw(surfaces, view);
+      const Visible fresh = zbuffer(surfaces, view);
+      ASSERT_EQ(content_hash(reused), content_hash(fresh)) << "seed " << seed;
+      ASSERT_EQ(reused.view.width, width);
+    }
+  }
+}
+
+TEST(ZBuffer, EmptyTilesAreClearedAfterSomethingWasSeenThere) {
+  const Scene scene = scene_of(random_mesh(Kind::tiny, 200, 1));
+  const Scene nothing = scene_of({});
+  const Surfaces surfaces(scene), empty(nothing);
+  const View view = frame(surfaces, 500, 300);
+  ZBuffer buffer;
+  for (int round = 0; round < 2; ++round) {
+    const Visible& drawn = buffer.draw(surfaces, view);
+    EXPECT_LT(std::size_t(std::count(drawn.primitives.begin(), drawn.primitives.end(), no_primitive)),
+              view.sample_count());
+    const Visible& cleared = buffer.draw(empty, view);
+    EXPECT_EQ(std::size_t(std::count(cleared.primitives.begin(), cleared.primitives.end(), no_primitive)),
+              view.sample_count());
+    EXPECT_EQ(std::size_t(std::count(cleared.keys.begin(), cleared.keys.end(), 0.0f)), view.sample_count());
+  }
+}
+
+TEST(ZBuffer, TakenPlanesAreLeftAlone) {
+  const Scene scene = scene_of(random_mesh(Kind::tiny, 200, 1));
+  const Surfaces surfaces(scene);
+  const View view = frame(surfaces, 300, 200);
+  ZBuffer buffer;
+  const std::uint64_t hash = content_hash(buffer.draw(surfaces, view));
+  const Visible taken = buffer.take();
+  View other = view;
+  other.culling = Culling::both;
+  EXPECT_NE(content_hash(buffer.draw(surfaces, other)), hash);
+  EXPECT_EQ(content_hash(taken), hash);
+  EXPECT_EQ(content_hash(buffer.draw(surfaces, view)), hash);
+}
+
+TEST(ZBuffer, RefusesABadViewAndGoesOn) {
+  const Scene scene = scene_of(random_mesh(Kind::tiny, 50, 1));
+  const Surfaces surfaces(scene);
+  const View view = frame(surfaces, 300, 200);
+  ZBuffer buffer;
+  View bad = view;
+  bad.width = 0;
+  EXPECT_THROW(buffer.draw(surfaces, bad), Error);
+  EXPECT_EQ(content_hash(buffer.draw(surfaces, view)), content_hash(zbuffer(surfaces, view)));
+}
+
+TEST(ZBuffer, GoesOnAfterAFrameWasCancelled) {
+  const Scene scene = scene_of(random_mesh(Kind::through_eye, 200, 3));
+  const Surfaces surfaces(scene);
+  Random random(3);
+  const View view = random_view(random, 600, 400);
+  ZBuffer buffer;
+  for (int polls = 0; polls < 40; ++polls) {
+    int left = polls;
+    const Watch watch{{}, [&] { return left-- <= 0; }};
+    try {
+      buffer.draw(surfaces, view, {.threads = 1, .watch = &watch});
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::cancelled);
+    }
+    ASSERT_EQ(content_hash(buffer.draw(surfaces, view)), content_hash(zbuffer(surfaces, view))) << polls;
+  }
+}
+
+// Planes and tile scratches are not taken from operator new: that they stay where they are shows that they are kept.
+TEST(ZBuffer, FramesAfterTheFirstAllocateNothing) {
+  for (const Kind kind : {Kind::tiny, Kind::through_eye, Kind::huge}) {
+    const Scene scene = scene_of(random_mesh(kind, 500, 1));
+    const Surfaces surfaces(scene);
+    View view = frame(surfaces, 640, 480);
+    ZBuffer buffer;
+    const Execution execution{.threads = 1};
+    const Visible& visible = buffer.draw(surfaces, view, execution);
+    const PrimitiveId* primitives = visible.primitives.data();
+    const float* keys = visible.keys.data();
+    const std::size_t before = allocation_count;
+    for (int i = 0; i < 5; ++i) buffer.draw(surfaces, view, execution);
+    EXPECT_EQ(allocation_count, before);
+    EXPECT_EQ(visible.primitives.data(), primitives);
+    EXPECT_EQ(visible.keys.data(), keys);
+  }
+}
+
+}  // namespace
+}  // namespace frontmost::test
