@@ -15,7 +15,7 @@ CODE = {".h", ".cpp"}
 MARKED = CODE | {".py", ".sh", ".cmake"}
 LONGEST_FILE = 800
 PUBLIC_HEADER_OF = {"visible": "view"}  # the others carry their room's name
-FACES = {"cli", "examples", "bench"}  # see include/frontmost alone
+FACES = {"cli", "examples"}  # see include/frontmost alone; tests and benchmarks look inside
 
 
 def tracked_files():

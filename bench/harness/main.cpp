@@ -12,6 +12,14 @@ namespace {
 
 using namespace frontmost::bench;
 
+struct Entry {
+  const char* name;
+  Table (*measure)(const Options&);
+};
+constexpr Entry kTables[] = {{"peers", measure_peers},       {"threads", measure_threads},
+                             {"isas", measure_isas},         {"stages", measure_stages},
+                             {"features", measure_features}, {"coverage", measure_coverage}};
+
 void write_json(const std::string& path, const std::vector<Table>& tables) {
   std::FILE* file = std::fopen(path.c_str(), "w");
   if (file == nullptr) throw frontmost::Error(frontmost::ErrorCode::file_unwritable, path + ": cannot be written");
@@ -27,7 +35,8 @@ int main(int count, char** arguments) try {
   const Options options = parse_options(count, arguments);
   for (const std::string& name : options.scenes) (void)find_scene(name);
   std::vector<Table> tables;
-  if (options.wants("peers")) tables.push_back(measure_peers(options));
+  for (const auto& [name, measure] : kTables)
+    if (options.wants(name)) tables.push_back(measure(options));
   if (!options.json.empty()) write_json(options.json, tables);
   return 0;
 } catch (const std::exception& error) {

@@ -20,6 +20,16 @@ bool Options::wants(const std::string& table) const {
   return tables.empty() || std::find(tables.begin(), tables.end(), table) != tables.end();
 }
 
+bool Options::wants_scene(const SceneEntry& entry) const {
+  if (scenes.empty()) return large || !entry.is_large;
+  return std::find(scenes.begin(), scenes.end(), entry.name) != scenes.end();
+}
+
+std::vector<std::string_view> Options::scenes_or(std::span<const std::string_view> own) const {
+  if (scenes.empty()) return {own.begin(), own.end()};
+  return {scenes.begin(), scenes.end()};
+}
+
 Options parse_options(int count, const char* const* arguments) {
   Options options;
   options.models = FRONTMOST_MODELS;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/scenes.h"
 #include "harness/stopwatch.h"
 
 namespace frontmost::bench {
@@ -20,6 +21,10 @@ struct Options {
   Sampling sampling;
 
   [[nodiscard]] bool wants(const std::string& table) const;
+  /// Named, or, where none is, not too large.
+  [[nodiscard]] bool wants_scene(const SceneEntry& entry) const;
+  /// Those that were named, or else a table's own.
+  [[nodiscard]] std::vector<std::string_view> scenes_or(std::span<const std::string_view> own) const;
 };
 
 /// \throws Error bad_argument naming the flag.

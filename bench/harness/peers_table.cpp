@@ -38,20 +38,13 @@ void measure(const SceneEntry& entry, const Options& options, Table& table) {
              {rays / ours, 1}});
 }
 
-bool is_wanted(const SceneEntry& entry, const Options& options) {
-  if (options.scenes.empty()) return options.large || !entry.is_large;
-  for (const std::string& name : options.scenes)
-    if (name == entry.name) return true;
-  return false;
-}
-
 }  // namespace
 
 Table measure_peers(const Options& options) {
-  Table table("peers, " + std::to_string(options.threads) + (options.threads == 1 ? " thread" : " threads"),
+  Table table(std::string("peers, threads: ").append(std::to_string(options.threads)),
               {"scene", "triangles", "ms", "wall ms", "llvmpipe", "times", "target", "Embree", "times E"});
   for (const SceneEntry& entry : scene_entries())
-    if (is_wanted(entry, options)) measure(entry, options, table);
+    if (options.wants_scene(entry)) measure(entry, options, table);
   return table;
 }
 

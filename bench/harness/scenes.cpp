@@ -29,7 +29,7 @@ constexpr SceneEntry kScenes[] = {
     {"boxes-in", Camera::fit, 28},
     {"boxes-out", Camera::fit, 28},
     {"boxes-random", Camera::fit, 28},
-    {"huge", Camera::fit, 0},
+    {"huge", Camera::close, 0},
     {"outside", Camera::away, 0},
     {"city-wall", Camera::wall, 0},
     {"city-no-wall", Camera::wall, 0},
@@ -149,7 +149,7 @@ Mesh city(std::size_t houses) {
 
 Mesh walled_city(bool wall) {
   Mesh mesh = city(90000);
-  if (wall) add_box(mesh, {150, 4, 301}, {{150, 4.5f, 0}, {0, 8, 0}, {0, 0, 0.25f}});
+  if (wall) add_box(mesh, {150, 25, 312}, {{60, 0, 0}, {0, 25, 0}, {0, 0, 0.25f}});
   return mesh;
 }
 
@@ -194,7 +194,8 @@ View aim(Camera camera, const glm::dvec3& centre) {
     case Camera::over_terrain: look({0.5, 0.25, 1.05}, {0.5, 0, 0.3}); break;
     case Camera::in_city: look({50, 4, 104}, {50, 0, 60}); break;
     case Camera::away: look({0.5, 0.25, 2}, {0.5, 0.25, 4}); break;
-    case Camera::wall: look({150, 3, 304}, {150, 2.5, 280}); break;
+    case Camera::wall: look({150, 30, 330}, {150, 0, 220}); break;
+    case Camera::close: look({0, 0, 4}, {0, 0, 0}); break;
   }
   return view;
 }
@@ -207,7 +208,7 @@ const SceneEntry& find_scene(std::string_view name) {
   std::string known;
   for (const SceneEntry& entry : kScenes) {
     if (entry.name == name) return entry;
-    known += " " + std::string(entry.name);
+    known.append(" ").append(entry.name);
   }
   throw Error(ErrorCode::bad_argument, "scene '" + std::string(name) + "' is none of:" + known);
 }

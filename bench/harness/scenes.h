@@ -16,7 +16,8 @@ enum class Camera : std::uint8_t {
   over_terrain,  ///< flown through: most pixels are covered, a third of the triangles is outside
   in_city,       ///< the same between the houses
   away,          ///< everything lies behind the eye
-  wall,          ///< from before the wall of `city_wall`
+  wall,          ///< over the city, from before its wall
+  close,         ///< all of the picture is covered
 };
 
 struct SceneEntry {

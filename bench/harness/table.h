@@ -14,6 +14,7 @@ struct Cell {
 
   Cell(const char* word);
   Cell(std::string_view word);
+  Cell(const std::string& word) : Cell(std::string_view(word)) {}
   Cell(double number, int decimals = 2);  ///< NaN: left empty
   static Cell whole(unsigned long long number);
 };

@@ -10,4 +10,15 @@ namespace frontmost::bench {
 /// Frontmost beside llvmpipe and Embree on the same views.
 [[nodiscard]] Table measure_peers(const Options& options);
 
+/// One thread and all of them.
+[[nodiscard]] Table measure_threads(const Options& options);
+/// Every instruction set of this machine.
+[[nodiscard]] Table measure_isas(const Options& options);
+/// Clear, cull, transform, set-up, raster.
+[[nodiscard]] Table measure_stages(const Options& options);
+/// Culling, hiding, order, samples.
+[[nodiscard]] Table measure_features(const Options& options);
+/// Our pictures and llvmpipe's, pixel by pixel.
+[[nodiscard]] Table measure_coverage(const Options& options);
+
 }  // namespace frontmost::bench

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a frame's time goes. The stages of the z-buffer are interleaved tile by tile, so no clock can be put between
+// them; instead frames are drawn that stop early, and what each adds to the one before is the cost of its last stage:
+//
+//   clear      no surfaces at all: the tiles are cleared, and the planes written
+//   cull       the same surfaces, all nearer than the near plane: every cluster is looked at and left out
+//   transform  every triangle collapsed to its first corner: clusters are binned and transformed, and every triangle
+//              falls at the first test, as it covers no sample
+//   set-up     Culling::both: triangles are fetched and tested, and fall because of the way they face
+//   raster     the frame itself: edges and depth planes, coverage, depth tests
+//
+// In the last only, near surfaces hide clusters before they are transformed. Where much is hidden the stages before it
+// look dearer than they are, and raster cheaper; it can even be negative.
+#include "harness/stage.h"
+#include "harness/tables.h"
+
+namespace frontmost::bench {
+namespace {
+
+constexpr std::string_view kVaried[] = {"teapot",        "bunny",  "sphere1m", "terrain1m",
+                                        "terrain1m-fly", "soup1m", "city-fly", "boxes-random"};
+
+Scene collapsed(const Scene& scene) {
+  Scene points = scene;
+  for (Mesh& mesh : points.meshes)
+    for (glm::uvec3& triangle : mesh.triangles) triangle = glm::uvec3(triangle.x);
+  return points;
+}
+
+View beyond_everything(View view) {
+  ClipDistances& clip = view.projection.clip;
+  clip = {clip.far * 1e3, clip.far * 1e4};
+  return view;
+}
+
+View without_faces(View view) {
+  view.culling = Culling::both;
+  return view;
+}
+
+}  // namespace
+
+Table measure_stages(const Options& options) {
+  Table table("stages, one thread, ms", {"scene", "clear", "cull", "transform", "set-up", "raster", "whole"});
+  const Scene nothing;
+  const Surfaces no_surfaces(nothing);
+  for (const std::string_view name : options.scenes_or(kVaried)) {
+    const Stage stage(name, options.models);
+    const Scene points = collapsed(stage.scene);
+    const Surfaces point_surfaces(points);
+    Frames clear(no_surfaces, stage.view), cull(stage.surfaces, beyond_everything(stage.view)),
+        transform(point_surfaces, stage.view), set_up(stage.surfaces, without_faces(stage.view)), whole(stage);
+    std::vector<std::function<void()>> contestants;
+    for (Frames* frames : {&clear, &cull, &transform, &set_up, &whole})
+      contestants.emplace_back([frames] { frames->draw({.threads = 1}); });
+    const std::vector<Time> times = race(contestants, options.sampling);
+    std::vector<Cell> cells{name, {times[0].processor}};
+    for (std::size_t i = 1; i < times.size(); ++i) cells.emplace_back(times[i].processor - times[i - 1].processor);
+    cells.emplace_back(times.back().processor);
+    table.add(cells);
+  }
+  return table;
+}
+
+}  // namespace frontmost::bench
