@@ -197,10 +197,10 @@ class LargeTriangles {
       for (int y = y0; y <= y1; ++y, row += kTileStride) {
         const VU bits = hn::BitCast(du, Clamp(p, hn::Add(base, hn::Set(df, down[y]))));
         if (kWhole) {
-          least = MergeRow(bits, not_id, row, least);
+          least = MergeRow(WordsOf(bits, not_id), row, least);
         } else {
           const auto covered = hn::RebindMask(du, hn::Gt(hn::Or(hn::Or(e[0], e[1]), e[2]), hn::Set(d, -1)));
-          least = MergeRow(hn::IfThenElseZero(covered, bits), hn::IfThenElseZero(covered, not_id), row, least);
+          least = MergeRow(WordsOf(hn::IfThenElseZero(covered, bits), hn::IfThenElseZero(covered, not_id)), row, least);
           for (int k = 0; k < 3; ++k) e[k] = hn::Add(e[k], hn::Set(d, edges.step_y[k]));
         }
       }

@@ -26,7 +26,7 @@ constexpr int kWalkLimit = 16;
 struct TriangleQueue {
   static constexpr std::size_t kRoom = 3 * kMaxLanes;
   HWY_ALIGN_MAX std::int32_t x[3][kRoom], y[3][kRoom];
-  HWY_ALIGN_MAX float key[3][kRoom];
+  HWY_ALIGN_MAX std::int32_t key[3][kRoom];  // bits of the float
   HWY_ALIGN_MAX std::uint32_t id[kRoom];
   std::size_t count = 0;
 };
@@ -77,24 +77,21 @@ class SmallTriangles {
   }
 
   void DrawQueued() {
-    const std::size_t lanes = hn::Lanes(DI()), drawn = HWY_MIN(queue_.count, lanes);
-    const Batch batch = SetUp(drawn);
-    HWY_ALIGN_MAX std::int32_t width[kMaxLanes], height[kMaxLanes];
-    hn::Store(batch.width, DI(), width);
-    hn::Store(batch.height, DI(), height);
-    int most_x = 0, most_y = 0;
-    for (std::size_t lane = 0; lane < drawn; ++lane) {
-      if (width[lane] > kWalkLimit || height[lane] > kWalkLimit) {
-        large_.Draw(QueuedRecord(lane));
-        width[lane] = 0;
-      } else {
-        most_x = HWY_MAX(most_x, width[lane]);
-        most_y = HWY_MAX(most_y, height[lane]);
-      }
+    const DI d;
+    const std::size_t drawn = HWY_MIN(queue_.count, hn::Lanes(d));
+    Batch batch = SetUp(drawn);
+    const VI limit = hn::Set(d, kWalkLimit);
+    const MI large = hn::Or(hn::Gt(batch.width, limit), hn::Gt(batch.height, limit));
+    if (!hn::AllFalse(d, large)) {
+      for (std::uint64_t left = BitsOf(d, large); left != 0; left &= left - 1)
+        large_.Draw(QueuedRecord(hwy::Num0BitsBelowLS1Bit_Nonzero64(left)));
+      batch.width = hn::IfThenZeroElse(large, batch.width);
+      batch.height = hn::IfThenZeroElse(large, batch.height);
     }
-    const VI walk_width = hn::Load(DI(), width);
+    const int most_x = hn::GetLane(hn::MaxOfLanes(d, batch.width));
+    const int most_y = hn::GetLane(hn::MaxOfLanes(d, batch.height));
     for (std::size_t s = 0; s < frame_.samples.size(); ++s) {
-      const std::size_t found = Walk(batch, walk_width, most_x, most_y, s);
+      const std::size_t found = Walk(batch, most_x, most_y, s);
       Merge(batch, found, s);
     }
     Shift(drawn);
@@ -105,24 +102,24 @@ class SmallTriangles {
     for (int k = 0; k < 3; ++k) {
       record.x[k] = queue_.x[k][lane];
       record.y[k] = queue_.y[k][lane];
-      record.key[k] = queue_.key[k][lane];
+      std::memcpy(&record.key[k], &queue_.key[k][lane], sizeof(float));
     }
     record.id = queue_.id[lane];
     return record;
   }
 
-  /// Moves what is left in the queue, less than two vectors, to its front.
+  /// Moves what is left in the queue, less than a vector unless all of it was drawn, to its front.
   HWY_INLINE void Shift(std::size_t drawn) {
+    const DI d;
+    const DU du;
     queue_.count -= drawn;
     if (queue_.count == 0) return;
-    for (std::size_t i = 0; i < queue_.count; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        queue_.x[k][i] = queue_.x[k][i + drawn];
-        queue_.y[k][i] = queue_.y[k][i + drawn];
-        queue_.key[k][i] = queue_.key[k][i + drawn];
-      }
-      queue_.id[i] = queue_.id[i + drawn];
+    for (int k = 0; k < 3; ++k) {
+      hn::Store(hn::LoadU(d, queue_.x[k] + drawn), d, queue_.x[k]);
+      hn::Store(hn::LoadU(d, queue_.y[k] + drawn), d, queue_.y[k]);
+      hn::Store(hn::LoadU(d, queue_.key[k] + drawn), d, queue_.key[k]);
     }
+    hn::Store(hn::LoadU(du, queue_.id + drawn), du, queue_.id);
   }
 
   HWY_INLINE Batch SetUp(std::size_t used) const {
@@ -134,7 +131,7 @@ class SmallTriangles {
     for (int k = 0; k < 3; ++k) {
       b.cx[k] = hn::Load(d, queue_.x[k]);
       b.cy[k] = hn::Load(d, queue_.y[k]);
-      key[k] = hn::Load(df, queue_.key[k]);
+      key[k] = hn::BitCast(df, hn::Load(d, queue_.key[k]));
     }
     b.x0 = b.cx[0];
     b.y0 = b.cy[0];
@@ -183,7 +180,7 @@ class SmallTriangles {
 
   /// Walks the rectangles of all triangles of a batch at once, one pixel position a step, and notes the covered
   /// (pixel, triangle) pairs as word offset << 12 | y << 8 | x << 4 | lane. \returns how many.
-  HWY_INLINE std::size_t Walk(const Batch& b, VI width, int most_x, int most_y, std::size_t sample) {
+  HWY_INLINE std::size_t Walk(const Batch& b, int most_x, int most_y, std::size_t sample) {
     const DI d;
     const DU du;
     const glm::ivec2 offset = frame_.samples[sample];
@@ -199,7 +196,7 @@ class SmallTriangles {
     const VI base = hn::Or(hn::ShiftLeft<12>(first), hn::Iota(d, 0));
     std::uint32_t* out = references_;
     for (int y = 0; y < most_y; ++y) {
-      const VI row_width = hn::IfThenElseZero(hn::Gt(b.height, hn::Set(d, y)), width);
+      const VI row_width = hn::IfThenElseZero(hn::Gt(b.height, hn::Set(d, y)), b.width);
       VI e0 = row[0], e1 = row[1], e2 = row[2];
       VI reference = hn::Add(base, hn::Set(d, (y * kTileStride) << 12 | y << 8));
       for (int x = 0; x < most_x; ++x) {
@@ -225,10 +222,12 @@ class SmallTriangles {
     const VI from_x = hn::Sub(hn::Add(hn::ShiftLeft<8>(b.px), hn::Set(d, offset.x)), b.x0);
     const VI from_y = hn::Sub(hn::Add(hn::ShiftLeft<8>(b.py), hn::Set(d, offset.y)), b.y0);
     std::uint64_t* words = buffer_.Row(sample, 0);
-    HWY_ALIGN_MAX std::uint32_t key_bits[kMaxLanes], not_ids[kMaxLanes];
-    const std::uint32_t* references = references_;
+    HWY_ALIGN_MAX std::uint64_t found[kMaxLanes];
+    HWY_ALIGN_MAX std::uint32_t at[kMaxLanes];
     for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-      const VI reference = hn::BitCast(d, hn::LoadU(du, references + i));
+      const VU in_line = hn::LoadU(du, references_ + i);
+      hn::Store(hn::ShiftRight<12>(in_line), du, at);
+      const VI reference = hn::BitCast(d, InPixelOrder(in_line));
       const auto lane = hn::IndicesFromVec(d, hn::And(reference, hn::Set(d, std::int32_t(hn::Lanes(d)) - 1)));
       const auto lane_f = hn::IndicesFromVec(df, hn::And(reference, hn::Set(d, std::int32_t(hn::Lanes(d)) - 1)));
       const auto lane_u = hn::IndicesFromVec(du, hn::And(reference, hn::Set(d, std::int32_t(hn::Lanes(d)) - 1)));
@@ -240,13 +239,11 @@ class SmallTriangles {
       VF key = hn::Add(hn::TableLookupLanes(b.k0, lane_f), hn::Mul(dx, hn::TableLookupLanes(b.gx, lane_f)));
       key = hn::Add(key, hn::Mul(dy, hn::TableLookupLanes(b.gy, lane_f)));
       key = hn::Min(hn::Max(key, hn::TableLookupLanes(b.k_min, lane_f)), hn::TableLookupLanes(b.k_max, lane_f));
-      hn::Store(hn::BitCast(du, key), du, key_bits);
-      hn::Store(hn::TableLookupLanes(b.not_id, lane_u), du, not_ids);
+      StoreWords(WordsOf(hn::BitCast(du, key), hn::TableLookupLanes(b.not_id, lane_u)), found);
       const std::size_t live = HWY_MIN(count - i, hn::Lanes(d));
       for (std::size_t k = 0; k < live; ++k) {
-        const std::uint64_t word = std::uint64_t(key_bits[k]) << 32 | not_ids[k];
-        std::uint64_t& kept = words[references[i + k] >> 12];
-        if (word > kept) kept = word;
+        std::uint64_t& kept = words[at[k]];
+        kept = HWY_MAX(kept, found[k]);
       }
     }
   }

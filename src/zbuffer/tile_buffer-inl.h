@@ -51,7 +51,7 @@ HWY_INLINE std::uint64_t BitsOf(D d, hn::Mask<D> mask) {
   return bits & ((std::uint64_t(1) << hn::Lanes(d)) - 1);
 }
 
-/// The order in which MergeRow takes pixels, so that interleaving keys and ids puts their words in line.
+/// The order in which vectors of 32 bits take pixels, so that interleaving keys and ids puts their words in line.
 struct PixelOrder {
   HWY_ALIGN_MAX std::int32_t column[kMaxLanes];
   constexpr PixelOrder() : column{} {
@@ -61,27 +61,52 @@ struct PixelOrder {
 };
 constexpr PixelOrder kPixelOrder;
 
-/// Keeps the greater words of a row of pixels; all vectors are in kPixelOrder. \returns what is kept, folded by
-/// minimum into `least`.
-HWY_INLINE hn::Vec<DWI> MergeRow(VU key_bits, VU not_ids, std::uint64_t* row, hn::Vec<DWI> least) {
-  const DU du;
+HWY_INLINE VU InPixelOrder(VU in_line) {
+  return hn::TableLookupLanes(in_line, hn::SetTableIndices(DU(), kPixelOrder.column));
+}
+
+/// Words of keys and ids, one vector or two.
+struct Words {
+#if HWY_TARGET == HWY_SCALAR
+  static constexpr std::size_t kVectors = 1;
+#else
+  static constexpr std::size_t kVectors = 2;
+#endif
+  hn::Vec<DWI> word[kVectors];
+};
+
+/// Key bits and ids are in kPixelOrder, their words in line.
+HWY_INLINE Words WordsOf(VU key_bits, VU not_ids) {
   const DWI d;
-  auto* words = reinterpret_cast<std::int64_t*>(row);
 #if HWY_TARGET == HWY_SCALAR
   const DW dw;
-  const auto word = hn::Or(hn::ShiftLeft<32>(hn::PromoteTo(dw, key_bits)), hn::PromoteTo(dw, not_ids));
-  const auto kept = hn::Max(hn::BitCast(d, word), hn::Load(d, words));
-  hn::Store(kept, d, words);
-  (void)du;
-  return hn::Min(least, kept);
+  return {{hn::BitCast(d, hn::Or(hn::ShiftLeft<32>(hn::PromoteTo(dw, key_bits)), hn::PromoteTo(dw, not_ids)))}};
 #else
-  const auto left = hn::Max(hn::BitCast(d, hn::InterleaveLower(du, not_ids, key_bits)), hn::Load(d, words));
-  const auto right =
-      hn::Max(hn::BitCast(d, hn::InterleaveUpper(du, not_ids, key_bits)), hn::Load(d, words + hn::Lanes(d)));
-  hn::Store(left, d, words);
-  hn::Store(right, d, words + hn::Lanes(d));
-  return hn::Min(least, hn::Min(left, right));
+  const DU du;
+  return {{hn::BitCast(d, hn::InterleaveLower(du, not_ids, key_bits)),
+           hn::BitCast(d, hn::InterleaveUpper(du, not_ids, key_bits))}};
 #endif
+}
+
+/// Keeps the greater words of a row of pixels. \returns what is kept, folded by minimum into `least`.
+HWY_INLINE hn::Vec<DWI> MergeRow(const Words& words, std::uint64_t* row, hn::Vec<DWI> least) {
+  const DWI d;
+  auto* kept = reinterpret_cast<std::int64_t*>(row);
+  for (const auto& word : words.word) {
+    const auto greater = hn::Max(word, hn::Load(d, kept));
+    hn::Store(greater, d, kept);
+    least = hn::Min(least, greater);
+    kept += hn::Lanes(d);
+  }
+  return least;
+}
+
+HWY_INLINE void StoreWords(const Words& words, std::uint64_t* to) {
+  const DWI d;
+  for (const auto& word : words.word) {
+    hn::Store(word, d, reinterpret_cast<std::int64_t*>(to));
+    to += hn::Lanes(d);
+  }
 }
 
 class TileBuffer {

@@ -32,10 +32,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 // at most 31744 * (31744 + 256).
 constexpr std::int32_t kSmallExtent = 124 * kSubPixels;
 
-/// A cluster's vertices on the screen.
+/// A cluster's vertices on the screen. Only those that it has are set.
 struct ScreenCluster {
   HWY_ALIGN_MAX std::int32_t x[Cluster::max_vertices], y[Cluster::max_vertices];
-  HWY_ALIGN_MAX float key[Cluster::max_vertices];
+  HWY_ALIGN_MAX std::int32_t key[Cluster::max_vertices];  ///< bits of the float
 };
 
 class TilePainter {
@@ -124,7 +124,7 @@ class TilePainter {
         sy = hn::Mul(y, inverse);
         key = hn::Mul(hn::Set(d, t.near), inverse);
       }
-      hn::Store(hn::Min(key, hn::Set(d, 1.0f)), d, vertices_.key + i);
+      hn::Store(hn::BitCast(di, hn::Min(key, hn::Set(d, 1.0f))), di, vertices_.key + i);
       hn::Store(hn::Add(hn::NearestInt(sx), origin_x), di, vertices_.x + i);
       hn::Store(hn::Add(hn::NearestInt(sy), origin_y), di, vertices_.y + i);
     }
@@ -144,15 +144,28 @@ class TilePainter {
     }
   }
 
+  /// One corner of each triangle of a vector.
   struct Corners {
     VI number, x, y;
   };
+
+#if HWY_TARGET <= HWY_AVX3
+  // 64 vertices are four vectors, and a permutation reads two: a gather takes several times as long.
+  static HWY_INLINE VI LookUp(const std::int32_t* table, VI number) {
+    const auto low = _mm512_permutex2var_epi32(_mm512_load_si512(table), number.raw, _mm512_load_si512(table + 16));
+    const auto high =
+        _mm512_permutex2var_epi32(_mm512_load_si512(table + 32), number.raw, _mm512_load_si512(table + 48));
+    return VI{_mm512_mask_blend_epi32(_mm512_test_epi32_mask(number.raw, _mm512_set1_epi32(32)), low, high)};
+  }
+#else
+  static HWY_INLINE VI LookUp(const std::int32_t* table, VI number) { return hn::GatherIndex(DI(), table, number); }
+#endif
 
   HWY_INLINE Corners Fetch(const Buffer<std::uint8_t>& numbers, std::size_t at) const {
     const DI d;
     const hn::Rebind<std::uint8_t, DI> d8;
     const VI number = hn::PromoteTo(d, hn::LoadU(d8, numbers.data() + at));
-    return {number, hn::GatherIndex(d, vertices_.x, number), hn::GatherIndex(d, vertices_.y, number)};
+    return {number, LookUp(vertices_.x, number), LookUp(vertices_.y, number)};
   }
 
   /// Puts the triangles that may cover a sample of this tile into the queue; large ones are drawn at once.
@@ -186,7 +199,6 @@ class TilePainter {
     const VI bx = hn::IfThenElse(front, c.x, b.x), cx = hn::IfThenElse(front, b.x, c.x);
     const VI by = hn::IfThenElse(front, c.y, b.y), cy = hn::IfThenElse(front, b.y, c.y);
     const VI bn = hn::IfThenElse(front, c.number, b.number), cn = hn::IfThenElse(front, b.number, c.number);
-    const DF df;
     const Compactor<DI> compact(keep);
     TriangleQueue& queue = small_.queue();
     const std::size_t n = queue.count;
@@ -196,9 +208,9 @@ class TilePainter {
     compact.Store(by, queue.y[1] + n);
     compact.Store(cx, queue.x[2] + n);
     compact.Store(cy, queue.y[2] + n);
-    compact.Store(hn::GatherIndex(df, vertices_.key, a.number), queue.key[0] + n);
-    compact.Store(hn::GatherIndex(df, vertices_.key, bn), queue.key[1] + n);
-    compact.Store(hn::GatherIndex(df, vertices_.key, cn), queue.key[2] + n);
+    compact.Store(LookUp(vertices_.key, a.number), queue.key[0] + n);
+    compact.Store(LookUp(vertices_.key, bn), queue.key[1] + n);
+    compact.Store(LookUp(vertices_.key, cn), queue.key[2] + n);
     compact.Store(hn::LoadU(DU(), frame_.set.id.data() + at), queue.id + n);
     queue.count += compact.count();
   }
@@ -228,7 +240,7 @@ class TilePainter {
       for (int k = 0; k < 3; ++k) {
         record.x[k] = vertices_.x[numbers[k]];
         record.y[k] = vertices_.y[numbers[k]];
-        record.key[k] = vertices_.key[numbers[k]];
+        std::memcpy(&record.key[k], &vertices_.key[numbers[k]], sizeof(float));
       }
       if (orient(record, frame_.view.culling)) large_.Draw(record);
     }
