@@ -18,6 +18,13 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(frontmost_flags INTERFACE -Wno-stringop-overflow -Wno-array-bounds -Wno-maybe-uninitialized)
 endif()
 
+# Highway's library is needed by builds with assertions only, and costs every start 2 ms.
+include(CheckLinkerFlag)
+check_linker_flag(CXX -Wl,--as-needed FRONTMOST_HAS_AS_NEEDED)
+if(FRONTMOST_HAS_AS_NEEDED)
+  target_link_options(frontmost_flags INTERFACE -Wl,--as-needed)
+endif()
+
 find_program(FRONTMOST_CCACHE ccache)
 mark_as_advanced(FRONTMOST_CCACHE)
 if(FRONTMOST_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)

@@ -6,6 +6,10 @@
 
 #include "hwy/highway.h"
 
+#if HWY_ARCH_X86
+#include <cpuid.h>
+#endif
+
 namespace frontmost {
 namespace {
 
@@ -22,8 +26,27 @@ constexpr std::array<IsaTarget, 4> kTargets{{
     {Isa::avx512, "avx512", HWY_AVX3},
 }};
 
+#if HWY_ARCH_X86
+/// What HWY_TARGET_STR of the three targets asks for. Older compilers do not know f16c by name.
+std::int64_t machine_targets() {
+  __builtin_cpu_init();
+  unsigned eax = 0, ebx = 0, ecx = 0, edx = 0;
+  const bool f16c = __get_cpuid(1, &eax, &ebx, &ecx, &edx) != 0 && (ecx & bit_F16C) != 0;
+  const bool sse4 = __builtin_cpu_supports("ssse3") && __builtin_cpu_supports("sse4.1") &&
+                    __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("pclmul") &&
+                    __builtin_cpu_supports("aes");
+  const bool avx2 = sse4 && f16c && __builtin_cpu_supports("avx") && __builtin_cpu_supports("avx2") &&
+                    __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("fma");
+  const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+                      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
+  return (sse4 ? HWY_SSE4 : 0) | (avx2 ? HWY_AVX2 : 0) | (avx512 ? HWY_AVX3 : 0);
+}
+#else
+std::int64_t machine_targets() { return hwy::SupportedTargets(); }
+#endif
+
 std::vector<Isa> find_available() {
-  const std::int64_t usable = hwy::SupportedTargets() & HWY_TARGETS;
+  const std::int64_t usable = machine_targets() & HWY_TARGETS;
   std::vector<Isa> found;
   for (const IsaTarget& target : kTargets)
     if (target.bit == 0 || (usable & target.bit)) found.push_back(target.isa);
@@ -48,7 +71,8 @@ std::int64_t highway_targets(Isa isa) {
   if (isa == Isa::best) isa = available_isas().back();
   for (const Isa available : available_isas())
     if (available == isa) return kTargets[std::size_t(isa) - 1].bit;
-  throw Error(ErrorCode::unsupported, std::string("isa: ") + std::string(name(isa)) + " is not available on this machine");
+  throw Error(ErrorCode::unsupported,
+              std::string("isa: ") + std::string(name(isa)) + " is not available on this machine");
 }
 
 }  // namespace frontmost

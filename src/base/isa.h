@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Choosing a kernel by Execution::isa from the table that HWY_EXPORT makes. Include after hwy/highway.h.
+// Choosing a kernel by Execution::isa. Include after hwy/highway.h.
 #pragma once
 
 #include <cstdint>
 
 #include "frontmost/base.h"
+#include "hwy/base.h"
 #include "hwy/targets.h"
 
 namespace frontmost {
@@ -12,14 +13,20 @@ namespace frontmost {
 /// Highway's target bits that may run for `isa`. \throws Error unsupported when this machine or build lacks it.
 [[nodiscard]] std::int64_t highway_targets(Isa isa);
 
-/// The entry of `table` (HWY_DISPATCH_TABLE of an exported function) for `isa`. Reads no global choice, so that two
-/// threads may run different instruction sets.
+/// The kernels that foreach_target.h made of `function`, in Highway's order, as `functionKernels`. HWY_EXPORT's table
+/// holds in addition an entry that needs Highway's library, whose loading costs every start of a program 2 ms.
+#define FRONTMOST_KERNELS(function)                                                                                  \
+  static constexpr decltype(&HWY_STATIC_DISPATCH(function)) function##Kernels[] = {HWY_CHOOSE_TARGET_LIST(function), \
+                                                                                   HWY_CHOOSE_FALLBACK(function)}
+
+/// The entry of a FRONTMOST_KERNELS table for `isa`. Reads no global choice, so that two threads may run different
+/// instruction sets.
 template <class Function, std::size_t size>
 [[nodiscard]] Function kernel_for(Function const (&table)[size], Isa isa) {
-  static_assert(size == HWY_MAX_DYNAMIC_TARGETS + 2);
-  hwy::ChosenTarget target;
-  target.Update(highway_targets(isa));
-  return table[target.GetIndex()];
+  static_assert(size == HWY_MAX_DYNAMIC_TARGETS + 1);
+  const std::int64_t wanted = HWY_CHOSEN_TARGET_SHIFT(highway_targets(isa)) | HWY_CHOSEN_TARGET_MASK_SCALAR;
+  const auto compiled = static_cast<std::uint64_t>(wanted & HWY_CHOSEN_TARGET_MASK_TARGETS);
+  return table[hwy::Num0BitsBelowLS1Bit_Nonzero64(compiled) - 1];  // Highway's bit 0 is that entry of its own
 }
 
 }  // namespace frontmost

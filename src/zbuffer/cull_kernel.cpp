@@ -163,7 +163,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace frontmost::zbuffer_detail {
 
-HWY_EXPORT(CullRange);
+FRONTMOST_KERNELS(CullRange);
 
 void CullResult::resize(std::size_t cluster_count) {
   const std::size_t padded = (cluster_count + Cluster::lanes - 1) / Cluster::lanes * Cluster::lanes;
@@ -174,7 +174,7 @@ void CullResult::resize(std::size_t cluster_count) {
 
 void cull_clusters(const BoxArrays& boxes, const ScreenTransform& transform, const View& view, Isa isa,
                    std::size_t begin, std::size_t end, CullResult& result) {
-  kernel_for(HWY_DISPATCH_TABLE(CullRange), isa)(boxes, transform, view, begin, end, result);
+  kernel_for(CullRangeKernels, isa)(boxes, transform, view, begin, end, result);
 }
 
 }  // namespace frontmost::zbuffer_detail

@@ -294,7 +294,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace frontmost::zbuffer_detail {
 
-HWY_EXPORT(DrawTile);
+FRONTMOST_KERNELS(DrawTile);
 
 TileScratch::TileScratch(std::size_t sample_count)
     : words(sample_count * kTileWords),
@@ -307,7 +307,7 @@ void TileScratch::reserve(std::size_t sample_count) {
 }
 
 void draw_tile(const FrameInput& frame, const TileJob& job, TileScratch& scratch, Isa isa) {
-  kernel_for(HWY_DISPATCH_TABLE(DrawTile), isa)(frame, job, scratch);
+  kernel_for(DrawTileKernels, isa)(frame, job, scratch);
 }
 
 }  // namespace frontmost::zbuffer_detail
