@@ -5,22 +5,38 @@
 #include <cstdlib>
 #include <new>
 
+#include "base/large_pages.h"
 #include "frontmost/base.h"
 
 #if defined(__linux__)
 #include <sys/mman.h>
 #endif
 
-namespace frontmost::detail {
+namespace frontmost {
 namespace {
 
 constexpr std::size_t kAlignment = 64;
 constexpr std::size_t kLargePage = std::size_t(2) << 20;
-constexpr std::size_t kWorthLargePages = 2 * kLargePage;
+constexpr std::size_t kWorthLargePages = kLargePage;
 
 constexpr std::size_t round_up(std::size_t bytes, std::size_t unit) { return (bytes + unit - 1) / unit * unit; }
 
 }  // namespace
+
+void want_large_pages(void* start, std::size_t bytes) {
+#if defined(__linux__) && defined(MADV_HUGEPAGE)
+  if (bytes < kWorthLargePages) return;
+  constexpr std::size_t small_page = 4096;
+  const auto first = reinterpret_cast<std::uintptr_t>(start);
+  const std::uintptr_t begin = round_up(first, small_page), end = (first + bytes) / small_page * small_page;
+  // Where small pages are larger than that, the system says no.
+  (void)madvise(static_cast<char*>(start) + (begin - first), end - begin, MADV_HUGEPAGE);
+#else
+  (void)start, (void)bytes;
+#endif
+}
+
+namespace detail {
 
 void* allocate(std::size_t bytes) {
   if (bytes > std::size_t(-1) - kLargePage) throw std::bad_alloc();
@@ -29,12 +45,12 @@ void* allocate(std::size_t bytes) {
   const std::size_t rounded = round_up(bytes == 0 ? 1 : bytes, alignment);
   void* pointer = std::aligned_alloc(alignment, rounded);
   if (!pointer) throw std::bad_alloc();
-#if defined(__linux__) && defined(MADV_HUGEPAGE)
-  if (large) (void)madvise(pointer, rounded, MADV_HUGEPAGE);  // only a wish: small pages do as well
-#endif
+  // A last page that would be less than half full is better made of small ones.
+  if (large) want_large_pages(pointer, (bytes + kLargePage / 2) / kLargePage * kLargePage);
   return pointer;
 }
 
 void release(void* pointer) noexcept { std::free(pointer); }
 
-}  // namespace frontmost::detail
+}  // namespace detail
+}  // namespace frontmost

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/large_pages.h"
 #include "base/parallel.h"
 #include "io/models/bytes.h"
 
@@ -103,8 +104,8 @@ Scene read_binary_stl(Bytes bytes, const ModelSource& source) {
   if (count == 0) return scene;
   Mesh mesh;
   mesh.name = header_name(bytes);
-  mesh.positions.reserve(3 * count);
-  mesh.triangles.reserve(count);
+  reserve_large(mesh.positions, 3 * count);
+  reserve_large(mesh.triangles, count);
   // In blocks small enough that growing (which writes zeros) and filling meet in the cache.
   constexpr std::size_t block = 8192;
   for (std::size_t begin = 0; begin < count; begin += block) {
