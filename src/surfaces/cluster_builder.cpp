@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include "base/parallel.h"
@@ -23,13 +24,13 @@ constexpr std::size_t padded(std::size_t count) {
   return (count + Cluster::lanes - 1) / Cluster::lanes * Cluster::lanes;
 }
 
-/// A run of the spatial order, and the clusters made of it.
+/// A run of the spatial order, and the clusters made of it. Their ids are the run itself.
 struct Part {
+  std::size_t begin = 0;          // in the order
   std::vector<Cluster> clusters;  // first_vertex and first_triangle relative to the part
   std::vector<Box> boxes;
   std::vector<float> x, y, z;
   std::array<std::vector<std::uint8_t>, 3> corners;
-  std::vector<PrimitiveId> id;
   std::vector<std::pair<std::uint32_t, Box>> instance_boxes;  // of runs of one instance's triangles
 };
 
@@ -43,38 +44,58 @@ class VertexTable {
   }
   [[nodiscard]] int size() const { return count_; }
 
-  [[nodiscard]] bool holds(const glm::vec3& p) const { return slots_[slot_of(p)] != kFree; }
-  /// The vertex's number; it is added when it is not in the table yet. Precondition: there is room.
-  int intern(const glm::vec3& p) {
-    std::uint8_t& slot = slots_[slot_of(p)];
-    if (slot == kFree) {
-      positions_[std::size_t(count_)] = p;
-      slot = static_cast<std::uint8_t>(count_++);
+  /// Where the position is, or belongs.
+  [[nodiscard]] std::uint32_t slot_of(const glm::vec3& p) const { return slot_from(hash(p), p); }
+  [[nodiscard]] bool is_free(std::uint32_t slot) const { return slots_[slot] == kFree; }
+  [[nodiscard]] std::uint8_t number_at(std::uint32_t slot) const { return slots_[slot]; }
+  /// The vertex's number; it is added when it is not in the table yet. `slot` is what slot_of(p) gave, perhaps before
+  /// others were added. Precondition: there is room.
+  std::uint8_t intern(std::uint32_t slot, const glm::vec3& p) {
+    std::uint8_t& number = slots_[slot_from(slot, p)];
+    if (number == kFree) {
+      x_[std::size_t(count_)] = p.x, y_[std::size_t(count_)] = p.y, z_[std::size_t(count_)] = p.z;
+      number = static_cast<std::uint8_t>(count_++);
     }
-    return slot;
+    return number;
   }
-  [[nodiscard]] const glm::vec3& operator[](int i) const { return positions_[std::size_t(i)]; }
+  [[nodiscard]] glm::vec3 operator[](std::size_t i) const { return {x_[i], y_[i], z_[i]}; }
+
+  /// Repeats the last vertex until there are whole vectors. \returns the new size, 0 for an empty table.
+  std::size_t pad() {
+    if (count_ == 0) return 0;
+    const auto count = std::size_t(count_), end = padded(count);
+    for (auto* axis : {&x_, &y_, &z_}) std::fill(axis->begin() + count, axis->begin() + end, (*axis)[count - 1]);
+    return end;
+  }
+  [[nodiscard]] const float* x() const { return x_.data(); }
+  [[nodiscard]] const float* y() const { return y_.data(); }
+  [[nodiscard]] const float* z() const { return z_.data(); }
 
  private:
   static constexpr std::uint32_t kSlots = 256;
   static constexpr std::uint8_t kFree = 0xFF;
 
-  /// Where the position is, or belongs.
-  [[nodiscard]] std::uint32_t slot_of(const glm::vec3& p) const {
-    std::uint32_t slot = hash(p);
-    while (slots_[slot] != kFree && !same_bits(positions_[slots_[slot]], p)) slot = (slot + 1) % kSlots;
+  [[nodiscard]] std::uint32_t slot_from(std::uint32_t slot, const glm::vec3& p) const {
+    while (slots_[slot] != kFree && !same_bits((*this)[slots_[slot]], p)) slot = (slot + 1) % kSlots;
     return slot;
   }
-  static bool same_bits(const glm::vec3& a, const glm::vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+  static bool same_bits(const glm::vec3& a, const glm::vec3& b) {
+    const auto p = bits(a), q = bits(b);
+    return ((p[0] ^ q[0]) | (p[1] ^ q[1]) | (p[2] ^ q[2])) == 0;
+  }
+  static std::array<std::uint32_t, 3> bits(const glm::vec3& p) {
+    std::array<std::uint32_t, 3> result;
+    std::memcpy(result.data(), &p, sizeof result);
+    return result;
+  }
+  /// Round numbers differ in their high bits only: multiplication brings them, and all others, to the top.
   static std::uint32_t hash(const glm::vec3& p) {
-    std::array<std::uint32_t, 3> bits;
-    std::memcpy(bits.data(), &p, sizeof bits);
-    const std::uint32_t mixed = (bits[0] * 0x9E3779B1u) ^ (bits[1] * 0x85EBCA77u) ^ (bits[2] * 0xC2B2AE3Du);
-    return (mixed ^ (mixed >> 15)) * 0x2C1B3C6Du >> 24;
+    const auto b = bits(p);
+    return (b[0] * 0x9E3779B1u + b[1] * 0x85EBCA77u + b[2] * 0xC2B2AE3Du) >> 24;
   }
 
   std::array<std::uint8_t, kSlots> slots_;
-  std::array<glm::vec3, Cluster::max_vertices> positions_;
+  std::array<float, Cluster::max_vertices> x_, y_, z_;
   int count_ = 0;
 };
 
@@ -83,8 +104,20 @@ struct Source {
   const Scene& scene;
   const std::vector<PrimitiveId>& first_primitives;
   const InstanceFinder& instances;
-  const std::vector<PrimitiveId>& order;
+  const Buffer<PrimitiveId>& order;
   const std::vector<std::uint8_t>& mirrored;
+};
+
+/// What is needed of an instance to read its triangles. Neighbours in the order mostly share it.
+struct Placed {
+  std::uint32_t number = 0;
+  PrimitiveId first = 0;
+  std::uint32_t count = 0;  ///< of its ids; none yet
+  const glm::uvec3* triangles = nullptr;
+  const glm::vec3* positions = nullptr;
+
+  [[nodiscard]] bool holds(PrimitiveId id) const { return id - first < count; }  // wraps for ids below
+  [[nodiscard]] const glm::uvec3& corners(PrimitiveId id) const { return triangles[id - first]; }
 };
 
 /// Fills one part, cluster by cluster.
@@ -94,9 +127,9 @@ class PartBuilder {
 
   void build(std::size_t begin, std::size_t end) {
     const std::size_t count = end - begin;
+    part_.begin = begin;
     for (std::vector<std::uint8_t>& corners : part_.corners) corners.reserve(count + count / 4);
     for (auto* axis : {&part_.x, &part_.y, &part_.z}) axis->reserve(count);
-    part_.id.reserve(count + count / 4);
     start_cluster();
     for (std::size_t i = begin; i < end; ++i) {
       prefetch(i, end);
@@ -108,99 +141,136 @@ class PartBuilder {
  private:
   void start_cluster() {
     table_.clear();
-    box_ = {};
     cluster_ = {};
     cluster_.first_vertex = part_.x.size();
-    cluster_.first_triangle = part_.id.size();
+    cluster_.first_triangle = part_.corners[0].size();
+  }
+
+  [[nodiscard]] Placed place_of(PrimitiveId id) const {
+    const std::uint32_t number = source_.instances.find(id);
+    const Mesh& mesh = source_.scene.meshes[source_.scene.instances[number].mesh];
+    const PrimitiveId first = source_.first_primitives[number];
+    return {number, first, source_.first_primitives[number + 1] - first, mesh.triangles.data(), mesh.positions.data()};
   }
 
   /// Triangles that are neighbours in space are often far apart in memory: the corner numbers are asked for well
   /// ahead, and the positions that they lead to a little later.
   void prefetch(std::size_t i, std::size_t end) const {
-    constexpr std::size_t kCornersAhead = 24, kPositionsAhead = 12;
+    constexpr std::size_t kCornersAhead = 48, kPositionsAhead = 24;
     if (i + kCornersAhead >= end) return;
-    __builtin_prefetch(&corners_of(source_.order[i + kCornersAhead]));
-    const PrimitiveId id = source_.order[i + kPositionsAhead];
-    const Mesh& mesh = source_.scene.meshes[source_.scene.instances[source_.instances.find(id)].mesh];
-    const glm::uvec3& corners = corners_of(id);
-    for (int k = 0; k < 3; ++k) __builtin_prefetch(&mesh.positions[corners[k]]);
+    const PrimitiveId far = source_.order[i + kCornersAhead], near = source_.order[i + kPositionsAhead];
+    __builtin_prefetch(&(placed_.holds(far) ? placed_ : place_of(far)).corners(far));
+    const Placed placed = placed_.holds(near) ? placed_ : place_of(near);
+    const glm::uvec3& corners = placed.corners(near);
+    for (int k = 0; k < 3; ++k) __builtin_prefetch(&placed.positions[corners[k]]);
   }
 
-  [[nodiscard]] const glm::uvec3& corners_of(PrimitiveId id) const {
-    const std::uint32_t instance = source_.instances.find(id);
-    return source_.scene.meshes[source_.scene.instances[instance].mesh]
-        .triangles[id - source_.first_primitives[instance]];
+  /// World-space corners. \returns whether all of them are finite.
+  bool read(PrimitiveId id, std::array<glm::vec3, 3>& world) {
+    if (!placed_.holds(id)) {
+      placed_ = place_of(id);
+      to_world_.emplace(source_.scene.instances[placed_.number].world_from_mesh);
+    }
+    const glm::uvec3& corners = placed_.corners(id);
+    bool finite = true;
+    for (int k = 0; k < 3; ++k) {
+      world[std::size_t(k)] = (*to_world_)(placed_.positions[corners[k]]);
+      finite = finite && is_finite(world[std::size_t(k)]);
+    }
+    return finite;
   }
 
   void add(PrimitiveId id) {
-    const std::uint32_t number = source_.instances.find(id);
-    const Instance& instance = source_.scene.instances[number];
-    const Mesh& mesh = source_.scene.meshes[instance.mesh];
-    const ToWorld to_world_space(instance.world_from_mesh);
-    const glm::uvec3& corners = mesh.triangles[id - source_.first_primitives[number]];
     std::array<glm::vec3, 3> world;
-    bool finite = true;
-    for (int k = 0; k < 3; ++k) {
-      world[std::size_t(k)] = to_world_space(mesh.positions[corners[k]]);
-      finite = finite && is_finite(world[std::size_t(k)]);
+    std::array<std::uint8_t, 3> numbers{};  // not finite: degenerate, three times vertex 0, whatever that is or will be
+    if (!read(id, world)) {
+      if (cluster_.triangle_count == Cluster::max_triangles) start_next_cluster();
+      append(numbers, no_index);
+      return;
     }
-    if (cluster_.triangle_count == Cluster::max_triangles || (finite && !fits(world))) {
-      finish_cluster();
-      start_cluster();
+    std::array<std::uint32_t, 3> slots;
+    int missing = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      slots[k] = table_.slot_of(world[k]);
+      missing += table_.is_free(slots[k]);
     }
-    // Not finite: degenerate, three times vertex 0, whatever that is or will be.
-    const std::size_t t = cluster_.triangle_count++;
+    if (cluster_.triangle_count == Cluster::max_triangles || table_.size() + missing > Cluster::max_vertices) {
+      start_next_cluster();
+      for (std::size_t k = 0; k < 3; ++k) slots[k] = table_.slot_of(world[k]);
+      missing = 3;
+    }
     for (std::size_t k = 0; k < 3; ++k)
-      corners_[k][t] = finite ? static_cast<std::uint8_t>(table_.intern(world[k])) : std::uint8_t(0);
+      numbers[k] = missing == 0 ? table_.number_at(slots[k]) : table_.intern(slots[k], world[k]);
     // A mirror turns counter-clockwise into clockwise, but what was outside stays outside.
-    if (source_.mirrored[number]) std::swap(corners_[1][t], corners_[2][t]);
-    part_.id.push_back(id);
-    if (finite) include(number, world);
+    if (source_.mirrored[placed_.number]) std::swap(numbers[1], numbers[2]);
+    append(numbers, placed_.number);
   }
 
-  void include(std::uint32_t instance, const std::array<glm::vec3, 3>& world) {
+  /// `instance` is no_index where the triangle counts for no box.
+  void append(const std::array<std::uint8_t, 3>& numbers, std::uint32_t instance) {
+    const std::size_t t = cluster_.triangle_count++;
+    for (std::size_t k = 0; k < 3; ++k) corners_[k][t] = numbers[k];
+    instances_[t] = instance;
+  }
+
+  void start_next_cluster() {
+    finish_cluster();
+    start_cluster();
+  }
+
+  [[nodiscard]] Box box_of_vertices() const {
+    Box box;
+    for (int i = 0; i < table_.size(); ++i) box.include(table_[std::size_t(i)]);
+    return box;
+  }
+
+  void include(std::uint32_t instance, const Box& box) {
     if (part_.instance_boxes.empty() || part_.instance_boxes.back().first != instance)
       part_.instance_boxes.emplace_back(instance, Box{});
-    const Box triangle{glm::min(glm::min(world[0], world[1]), world[2]),
-                       glm::max(glm::max(world[0], world[1]), world[2])};
-    box_.include(triangle);
-    part_.instance_boxes.back().second.include(triangle);
+    part_.instance_boxes.back().second.include(box);
   }
 
-  [[nodiscard]] bool fits(const std::array<glm::vec3, 3>& world) const {
-    if (table_.size() + 3 <= Cluster::max_vertices) return true;
-    int missing = 0;
-    for (const glm::vec3& p : world) missing += !table_.holds(p);
-    return table_.size() + missing <= Cluster::max_vertices;
+  /// Adds the cluster to the boxes of its instances: as a whole where there is one, else triangle by triangle.
+  void include_in_instances(const Box& box) {
+    const std::uint32_t* first = instances_.data();
+    const std::uint32_t* end = first + cluster_.triangle_count;
+    if (std::all_of(first, end, [&](std::uint32_t i) { return i == *first; })) {
+      if (*first != no_index) include(*first, box);
+      return;
+    }
+    for (std::size_t t = 0; t < cluster_.triangle_count; ++t) {
+      if (instances_[t] == no_index) continue;
+      Box triangle;
+      for (const auto& corners : corners_) triangle.include(table_[corners[t]]);
+      include(instances_[t], triangle);
+    }
   }
 
   void finish_cluster() {
     if (cluster_.triangle_count == 0) return;
+    const Box box = box_of_vertices();
+    include_in_instances(box);
     cluster_.vertex_count = static_cast<std::uint16_t>(table_.size());
-    const int last = table_.size() - 1;
-    for (int i = 0; i < int(padded(std::size_t(table_.size()))); ++i) {
-      const glm::vec3& p = table_[std::min(i, last)];
-      part_.x.push_back(p.x);
-      part_.y.push_back(p.y);
-      part_.z.push_back(p.z);
-    }
-    const std::size_t end = cluster_.first_triangle + padded(cluster_.triangle_count);
+    const std::size_t vertices = table_.pad(), triangles = padded(cluster_.triangle_count);
+    part_.x.insert(part_.x.end(), table_.x(), table_.x() + vertices);
+    part_.y.insert(part_.y.end(), table_.y(), table_.y() + vertices);
+    part_.z.insert(part_.z.end(), table_.z(), table_.z() + vertices);
     for (std::size_t k = 0; k < 3; ++k) {
-      part_.corners[k].insert(part_.corners[k].end(), corners_[k].begin(),
-                              corners_[k].begin() + cluster_.triangle_count);
-      part_.corners[k].resize(end, 0);
+      std::fill(corners_[k].begin() + cluster_.triangle_count, corners_[k].begin() + triangles, std::uint8_t(0));
+      part_.corners[k].insert(part_.corners[k].end(), corners_[k].begin(), corners_[k].begin() + triangles);
     }
-    part_.id.resize(end, no_primitive);
     part_.clusters.push_back(cluster_);
-    part_.boxes.push_back(box_);
+    part_.boxes.push_back(box);
   }
 
   const Source& source_;
   Part& part_;
+  Placed placed_;  ///< of the last triangle
+  std::optional<ToWorld> to_world_;
   VertexTable table_;
   Cluster cluster_;
-  std::array<std::array<std::uint8_t, Cluster::max_triangles>, 3> corners_;
-  Box box_;
+  std::array<std::array<std::uint8_t, padded(Cluster::max_triangles)>, 3> corners_;
+  std::array<std::uint32_t, Cluster::max_triangles> instances_;
 };
 
 /// Where each part's clusters, vertices and triangles go in the whole.
@@ -213,11 +283,22 @@ void place(const std::vector<T>& part, Buffer<T>& whole, std::size_t at) {
   std::copy(part.begin(), part.end(), whole.data() + at);
 }
 
-void gather(ClusterSet& set, std::vector<Part>& parts, const Execution& execution) {
+/// The ids of a part's clusters: the order itself, padded like the triangles.
+void place_ids(const Part& part, const Buffer<PrimitiveId>& order, PrimitiveId* ids) {
+  const PrimitiveId* next = order.data() + part.begin;
+  for (const Cluster& cluster : part.clusters) {
+    PrimitiveId* const first = ids + cluster.first_triangle;
+    PrimitiveId* const end = std::copy_n(next, cluster.triangle_count, first);
+    std::fill(end, first + padded(cluster.triangle_count), no_primitive);
+    next += cluster.triangle_count;
+  }
+}
+
+void gather(ClusterSet& set, std::vector<Part>& parts, const Buffer<PrimitiveId>& order, const Execution& execution) {
   std::vector<Place> places(parts.size() + 1);
   for (std::size_t i = 0; i < parts.size(); ++i)
     places[i + 1] = {places[i].cluster + parts[i].clusters.size(), places[i].vertex + parts[i].x.size(),
-                     places[i].triangle + parts[i].id.size()};
+                     places[i].triangle + parts[i].corners[0].size()};
   const Place& total = places.back();
   set.clusters.resize(total.cluster);
   set.boxes = BoxArrays(total.cluster);
@@ -235,7 +316,7 @@ void gather(ClusterSet& set, std::vector<Part>& parts, const Execution& executio
       place(part.corners[0], set.i0, at.triangle);
       place(part.corners[1], set.i1, at.triangle);
       place(part.corners[2], set.i2, at.triangle);
-      place(part.id, set.id, at.triangle);
+      place_ids(part, order, set.id.data() + at.triangle);
       for (std::size_t c = 0; c < part.clusters.size(); ++c) {
         Cluster cluster = part.clusters[c];
         cluster.first_vertex += at.vertex;
@@ -272,7 +353,7 @@ ClusterSet build_clusters(const Scene& scene, const Execution& execution) {
   // The fractions are about what the steps take of the time.
   for (const Instance& instance : scene.instances)
     set.mirrored.push_back(glm::determinant(glm::dmat3(instance.world_from_mesh)) < 0);
-  const std::vector<PrimitiveId> order = spatial_order(scene, set.first_primitives, execution);
+  const Buffer<PrimitiveId> order = spatial_order(scene, set.first_primitives, execution);
   report_progress(execution, "surfaces", 0.4);
   const InstanceFinder instances(set.first_primitives);
   const Source source{scene, set.first_primitives, instances, order, set.mirrored};
@@ -285,7 +366,7 @@ ClusterSet build_clusters(const Scene& scene, const Execution& execution) {
   for (const Part& part : parts)
     for (const auto& [instance, box] : part.instance_boxes) set.instance_bounds[instance].include(box);
   for (const Box& box : set.instance_bounds) set.bounds.include(box);
-  gather(set, parts, execution);
+  gather(set, parts, order, execution);
   report_progress(execution, "surfaces", 1);
   return set;
 }

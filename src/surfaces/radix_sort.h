@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stable parallel radix sort.
+// A stable parallel radix sort of numbers by keys.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,9 @@
 
 namespace frontmost {
 
-/// Sorts by bits [32, 32 + key_bits) of each item, keeping the order of equal keys. Precondition: key_bits <= 32.
-/// O(count) with one more buffer of the same size; the same result for any number of threads.
-void radix_sort(Buffer<std::uint64_t>& items, int key_bits, const Execution& execution);
+/// The low halves of `items`, sorted by the bits [32, 32 + key_bits) of each, those of equal keys in their order.
+/// Precondition: 0 < key_bits <= 32. O(count) with one more buffer of the same size; the same result for any number of
+/// threads.
+[[nodiscard]] Buffer<std::uint32_t> radix_order(Buffer<std::uint64_t> items, int key_bits, const Execution& execution);
 
 }  // namespace frontmost

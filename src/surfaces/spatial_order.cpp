@@ -86,12 +86,18 @@ Box bounds_of_instances(const Scene& scene, const Execution& execution) {
 }
 
 /// Spreads the low 10 bits to every third place.
-std::uint32_t spread(std::uint32_t x) {
+constexpr std::uint32_t spread(std::uint32_t x) {
   x = (x | x << 16) & 0x030000FFu;
   x = (x | x << 8) & 0x0300F00Fu;
   x = (x | x << 4) & 0x030C30C3u;
   return (x | x << 2) & 0x09249249u;
 }
+
+constexpr auto kSpread = [] {
+  std::array<std::uint32_t, 1024> table{};
+  for (std::uint32_t i = 0; i < table.size(); ++i) table[i] = spread(i);
+  return table;
+}();
 
 /// Cells of equal size along all axes, so that flat models do not waste cells on their thickness.
 class MortonGrid {
@@ -103,7 +109,7 @@ class MortonGrid {
     scale_ = widest > 0 ? float((1u << bits_per_axis) / widest) : 0.0f;
   }
   [[nodiscard]] std::uint32_t code(const glm::vec3& p) const {
-    return spread(cell(p.x, low_.x)) | spread(cell(p.y, low_.y)) << 1 | spread(cell(p.z, low_.z)) << 2;
+    return kSpread[cell(p.x, low_.x)] | kSpread[cell(p.y, low_.y)] << 1 | kSpread[cell(p.z, low_.z)] << 2;
   }
 
  private:
@@ -135,8 +141,8 @@ InstanceFinder::InstanceFinder(const std::vector<PrimitiveId>& first_primitives)
   }
 }
 
-std::vector<PrimitiveId> spatial_order(const Scene& scene, const std::vector<PrimitiveId>& first_primitives,
-                                       const Execution& execution) {
+Buffer<PrimitiveId> spatial_order(const Scene& scene, const std::vector<PrimitiveId>& first_primitives,
+                                  const Execution& execution) {
   const std::size_t count = first_primitives.back();
   const int bits = bits_per_axis(count);
   const MortonGrid grid(bounds_of_instances(scene, execution), bits);
@@ -158,10 +164,7 @@ std::vector<PrimitiveId> spatial_order(const Scene& scene, const std::vector<Pri
       }
     }
   });
-  radix_sort(items, 3 * bits, execution);
-  std::vector<PrimitiveId> order(count);
-  for (std::size_t i = 0; i < count; ++i) order[i] = PrimitiveId(items[i]);
-  return order;
+  return radix_order(std::move(items), 3 * bits, execution);
 }
 
 }  // namespace frontmost

@@ -27,8 +27,7 @@ class InstanceFinder {
 
 /// All primitive ids, by the Morton code of the triangles' centroids; within a cell in id order.
 /// Cells hold some tens of triangles of an ordinary surface. O(triangles), 16 bytes a triangle while it runs.
-[[nodiscard]] std::vector<PrimitiveId> spatial_order(const Scene& scene,
-                                                     const std::vector<PrimitiveId>& first_primitives,
-                                                     const Execution& execution);
+[[nodiscard]] Buffer<PrimitiveId> spatial_order(const Scene& scene, const std::vector<PrimitiveId>& first_primitives,
+                                                const Execution& execution);
 
 }  // namespace frontmost

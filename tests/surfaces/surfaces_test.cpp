@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <limits>
 
 #include "support/random_scene.h"
 #include "surfaces/cluster_set.h"
@@ -71,6 +72,25 @@ TEST(Surfaces, BoxesHoldTheirClusters) {
   }
   EXPECT_EQ(all.low, surfaces.bounds().low);
   EXPECT_EQ(all.high, surfaces.bounds().high);
+}
+
+TEST(Surfaces, BoundsOfAnInstanceAreThoseOfItsTriangles) {
+  // The instances lie within each other, so that clusters hold triangles of several.
+  Scene scene = scene_of(random_mesh(Kind::soup, 5'000, 3));
+  scene.instances.push_back({"smaller", 0, glm::dmat4(0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 0.5, 0, 0.1, 0.1, 0.1, 1)});
+  scene.instances.push_back({"mirrored", 0, glm::dmat4(-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0.5, 0, 1)});
+  scene.meshes[0].positions[7].y = std::numeric_limits<float>::quiet_NaN();
+  const Surfaces surfaces(scene);
+  std::vector<Box> boxes(scene.instances.size());
+  for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
+    const auto corners = surfaces.corners(id);
+    if (!std::all_of(corners.begin(), corners.end(), is_finite)) continue;
+    for (const glm::vec3& corner : corners) boxes[surfaces.source(id).instance].include(corner);
+  }
+  for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+    EXPECT_EQ(surfaces.bounds(i).low, boxes[i].low);
+    EXPECT_EQ(surfaces.bounds(i).high, boxes[i].high);
+  }
 }
 
 TEST(Surfaces, IdsLeadBackToInstanceMeshAndTriangle) {
