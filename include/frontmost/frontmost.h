@@ -2,14 +2,15 @@
 // All of Frontmost.
 #pragma once
 
-#include "frontmost/base.h"      // IWYU pragma: export
-#include "frontmost/image.h"     // IWYU pragma: export
-#include "frontmost/io.h"        // IWYU pragma: export
-#include "frontmost/report.h"    // IWYU pragma: export
-#include "frontmost/scene.h"     // IWYU pragma: export
-#include "frontmost/shade.h"     // IWYU pragma: export
-#include "frontmost/surfaces.h"  // IWYU pragma: export
-#include "frontmost/version.h"   // IWYU pragma: export
-#include "frontmost/view.h"      // IWYU pragma: export
-#include "frontmost/visible.h"   // IWYU pragma: export
-#include "frontmost/zbuffer.h"   // IWYU pragma: export
+#include "frontmost/base.h"
+#include "frontmost/depth_buffer.h"  // IWYU pragma: export
+#include "frontmost/image.h"         // IWYU pragma: export
+#include "frontmost/io.h"            // IWYU pragma: export
+#include "frontmost/report.h"        // IWYU pragma: export
+#include "frontmost/scene.h"         // IWYU pragma: export
+#include "frontmost/shade.h"         // IWYU pragma: export
+#include "frontmost/surfaces.h"      // IWYU pragma: export
+#include "frontmost/version.h"       // IWYU pragma: export
+#include "frontmost/view.h"          // IWYU pragma: export
+#include "frontmost/visible.h"       // IWYU pragma: export
+#include "frontmost/zbuffer.h"       // IWYU pragma: export

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// The depth buffer: batches of triangles in order, each drawn into all tiles at once.
+#include "frontmost/depth_buffer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/float_environment.h"
+#include "base/parallel.h"
+#include "zbuffer/depth_kernel.h"
+
+namespace frontmost {
+namespace {
+
+using namespace zbuffer_detail;
+
+/// Only size and samples count; the rest is a view that passes.
+std::size_t checked_sample_count(int width, int height, int samples) {
+  View view;
+  view.width = width;
+  view.height = height;
+  view.samples = samples;
+  view.projection.clip.near = 1;
+  validate(view);
+  return view.sample_count();
+}
+
+/// Every batch is placed by all threads, then drawn by all threads, each tile in order.
+void draw_batches(const Surfaces& surfaces, const View& view, const DepthDraw& call, const DepthCall& target,
+                  const Execution& execution) {
+  const ScreenTransform transform(view);
+  const TileGrid grid(view);
+  const std::vector<Piece> pieces = pieces_of(surfaces, call.begin, call.end);
+  const std::size_t at_once = pieces_at_once(grid);
+  std::vector<PlacedPiece> placed(std::min(at_once, pieces.size()));
+  for (std::size_t first = 0; first < pieces.size(); first += at_once) {
+    const std::size_t count = std::min(at_once, pieces.size() - first);
+    parallel_for(execution, count, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) place(surfaces, pieces[first + i], transform, view, placed[i]);
+    });
+    parallel_for(execution, grid.count(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t tile = begin; tile < end; ++tile)
+        for (std::size_t i = 0; i < count; ++i)
+          draw_depths(target, grid.rect(tile), placed[i].triangles, placed[i].in_tile(tile), execution.isa);
+    });
+    report_progress(execution, "visible", double(first + count) / double(pieces.size()));
+  }
+}
+
+}  // namespace
+
+DepthBuffer::DepthBuffer(int width, int height, int samples, DepthFormat format)
+    : width_(width),
+      height_(height),
+      samples_(samples),
+      format_(format),
+      stored_(checked_sample_count(width, height, samples)),
+      primitives_(stored_.size()),
+      keys_(stored_.size()) {
+  clear();
+}
+
+void DepthBuffer::clear(double depth) {
+  if (!std::isfinite(depth)) throw Error(ErrorCode::bad_argument, "clear: the depth must be a finite number");
+  const IeeeScope ieee;
+  std::fill(stored_.begin(), stored_.end(), stored_depth(format_, depth));
+  std::fill(primitives_.begin(), primitives_.end(), no_primitive);
+  std::fill(keys_.begin(), keys_.end(), 0.0f);
+}
+
+void DepthBuffer::draw(const Surfaces& surfaces, const View& view, const DepthDraw& call, const Execution& execution) {
+  validate(view);
+  if (view.width != width_ || view.height != height_ || view.samples != samples_)
+    throw Error(ErrorCode::bad_argument, "view: width, height and samples must be those of the depth buffer");
+  const PrimitiveId end = std::min(call.end, surfaces.primitive_count());
+  if (end > call.begin && call.id_offset > no_primitive - end)
+    throw Error(ErrorCode::bad_argument, "id offset: ids would pass 4294967294");
+  const IeeeScope ieee;
+  const DepthRules rules = rules_for(call.state, format_, ScreenTransform(view));
+  if (!rules.passes_less && !rules.passes_equal && !rules.passes_greater) return;  // never
+  const DepthPlanes planes{stored_.data(), primitives_.data(), keys_.data(), width_, height_, sample_offsets(samples_)};
+  draw_batches(surfaces, view, call, {planes, rules, call.id_offset}, execution);
+}
+
+Buffer<float> DepthBuffer::depths() const {
+  Buffer<float> depths(stored_.size());
+  for (std::size_t i = 0; i < depths.size(); ++i) depths[i] = float(depth_of_stored(format_, stored_[i]));
+  return depths;
+}
+
+Visible DepthBuffer::visible(const View& view) const& { return {view, primitives_, keys_}; }
+
+Visible DepthBuffer::visible(const View& view) && { return {view, std::move(primitives_), std::move(keys_)}; }
+
+}  // namespace frontmost

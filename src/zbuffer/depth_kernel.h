@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drawing placed triangles into a depth buffer, one tile.
+#pragma once
+
+#include <span>
+
+#include "zbuffer/depth_rules.h"
+#include "zbuffer/submission.h"
+
+namespace frontmost::zbuffer_detail {
+
+/// The planes of a depth buffer, [sample][y][x].
+struct DepthPlanes {
+  std::uint32_t* stored;
+  PrimitiveId* primitives;
+  float* keys;
+  int width, height;
+  std::span<const glm::ivec2> samples;
+};
+
+/// What all tiles of a draw call have in common.
+struct DepthCall {
+  DepthPlanes planes;
+  DepthRules rules;
+  PrimitiveId id_offset;
+};
+
+/// Draws the triangles that `items` names, one after the other, into the pixels of `tile`; touches no other pixel.
+void draw_depths(const DepthCall& call, const PixelRect& tile, std::span<const PlacedTriangle> triangles,
+                 std::span<const std::uint32_t> items, Isa isa);
+
+}  // namespace frontmost::zbuffer_detail

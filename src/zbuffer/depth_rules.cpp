@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "zbuffer/depth_rules.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace frontmost {
+
+int integer_bits(DepthFormat format) {
+  switch (format) {
+    case DepthFormat::d8: return 8;
+    case DepthFormat::d16: return 16;
+    case DepthFormat::d24: return 24;
+    case DepthFormat::f32: break;
+  }
+  return 0;
+}
+
+namespace {
+
+double steps(DepthFormat format) { return double((std::uint32_t(1) << integer_bits(format)) - 1); }
+
+}  // namespace
+
+std::uint32_t stored_depth(DepthFormat format, double depth) {
+  if (format == DepthFormat::f32) {
+    const float rounded = float(depth) + 0.0f;  // -0 would compare unlike its bits
+    std::uint32_t bits;
+    std::memcpy(&bits, &rounded, sizeof bits);
+    return bits;
+  }
+  return std::uint32_t(std::nearbyint(std::clamp(depth, 0.0, 1.0) * steps(format)));
+}
+
+double depth_of_stored(DepthFormat format, std::uint32_t stored) {
+  if (format == DepthFormat::f32) {
+    float depth;
+    std::memcpy(&depth, &stored, sizeof depth);
+    return depth;
+  }
+  return double(stored) / steps(format);
+}
+
+namespace zbuffer_detail {
+namespace {
+
+void check(bool is_good, const char* complaint) {
+  if (!is_good) throw Error(ErrorCode::bad_argument, complaint);
+}
+
+void check_state(const DepthState& state) {
+  const auto is_depth = [](double value) { return value >= 0 && value <= 1; };
+  check(is_depth(state.range_near) && is_depth(state.range_far), "depth range: both ends must be 0 to 1");
+  for (const double value : {state.offset.factor, state.offset.units, state.offset.clamp})
+    check(std::abs(value) <= 1e30, "polygon offset: must be within 1e30");
+  check(state.func <= DepthFunc::always, "depth function: there are eight");
+}
+
+/// 2^(e - 23) for 2^e <= depth < 2^(e + 1), never less than the smallest float's.
+double float_step(double depth) {
+  constexpr int kLeast = -149, kFractionBits = 23;
+  return std::ldexp(1.0, depth > 0 ? std::max(std::ilogb(depth) - kFractionBits, kLeast) : kLeast);
+}
+
+}  // namespace
+
+DepthRules rules_for(const DepthState& state, DepthFormat format, const ScreenTransform& t) {
+  check_state(state);
+  // Nearness 1 at the near plane and 0 at the far one, affine in the key. The key is 0 at infinity in perspective, and
+  // at the far plane in parallel projection.
+  const bool has_far_key = !t.orthographic && t.far < ScreenTransform::farthest;
+  const double far_key = has_far_key ? double(t.near) / double(t.far) : 0;
+  const double scale = 1 / (1 - far_key);
+  const double at_near = state.nearer_is_greater ? state.range_far : state.range_near;
+  const double at_far = state.nearer_is_greater ? state.range_near : state.range_far;
+
+  DepthRules rules;
+  rules.map.slope = (at_near - at_far) * scale;
+  rules.map.at_zero = at_far - rules.map.slope * far_key + 0.0;  // never -0, so no depth is
+  rules.map.low = std::min(state.range_near, state.range_far) + 0.0;
+  rules.map.high = std::max(state.range_near, state.range_far) + 0.0;
+  rules.format = format;
+  using enum DepthFunc;
+  const DepthFunc f = state.func;
+  rules.passes_less = f == less || f == less_equal || f == not_equal || f == always;
+  rules.passes_equal = f == equal || f == less_equal || f == greater_equal || f == always;
+  rules.passes_greater = f == greater || f == greater_equal || f == not_equal || f == always;
+  rules.mask = state.mask;
+  rules.offset = state.offset;
+  return rules;
+}
+
+double DepthRules::offset_of(float gx, float gy, float key_low, float key_high) const {
+  const double m = std::abs(map.slope) * kSubPixels * double(std::fmax(std::abs(gx), std::abs(gy)));
+  const double r =
+      format == DepthFormat::f32 ? float_step(std::max(map.of(key_low), map.of(key_high))) : 1 / steps(format);
+  const double sum = m * offset.factor + r * offset.units;
+  if (offset.clamp > 0) return std::min(sum, offset.clamp);
+  if (offset.clamp < 0) return std::max(sum, offset.clamp);
+  return sum;
+}
+
+}  // namespace zbuffer_detail
+}  // namespace frontmost
