@@ -7,6 +7,7 @@
 
 #include "frontmost/view.h"
 #include "surfaces/cluster_set.h"
+#include "view/extremes.h"
 
 namespace frontmost {
 namespace {
@@ -58,18 +59,12 @@ Box unit_box() { return {glm::vec3(-0.5f), glm::vec3(0.5f)}; }
 /// the eye's place across and how far back it must stand.
 class Fit {
  public:
-  Fit(const glm::dmat4& axes, double spread_x, double spread_y) : axes_(axes), x_{spread_x}, y_{spread_y} {}
+  Fit(const glm::dmat4& axes, const glm::dvec2& spread) : axes_(axes), x_{spread.x}, y_{spread.y} {}
 
   void include(const glm::dvec3& p) {
     const double towards = glm::dot(p, glm::dvec3(axes_[2]));
     x_.include(glm::dot(p, glm::dvec3(axes_[0])), towards);
     y_.include(glm::dot(p, glm::dvec3(axes_[1])), towards);
-  }
-  /// False when the point would change nothing.
-  [[nodiscard]] bool is_extended_by(const glm::dvec3& p) const {
-    Fit larger = *this;
-    larger.include(p);
-    return !(larger.x_ == x_ && larger.y_ == y_);
   }
   /// Where a perspective eye stands, at least `closest` before the nearest point.
   [[nodiscard]] glm::dvec3 eye(double closest) const {
@@ -93,7 +88,6 @@ class Fit {
       high = std::max(high, x);
       nearest = std::max(nearest, towards);
     }
-    bool operator==(const Direction&) const = default;
     [[nodiscard]] double back() const { return (plus + minus) / 2; }
     [[nodiscard]] double across() const { return spread * (plus - minus) / 2; }
     [[nodiscard]] double middle() const { return (low + high) / 2; }
@@ -121,11 +115,6 @@ class Spread {
     if (slope < low_.slope) low_ = {slope, distance};
     if (slope > high_.slope) high_ = {slope, distance};
   }
-  [[nodiscard]] bool is_extended_by(const glm::dvec3& p) const {
-    Spread larger = *this;
-    larger.include(p);
-    return larger.low_.slope < low_.slope || larger.high_.slope > high_.slope;
-  }
   /// How far the eye must move for the two extremes to lie equally far from the picture's middle.
   [[nodiscard]] double to_centre() const {
     return (low_.slope + high_.slope) / (1 / low_.distance + 1 / high_.distance);
@@ -140,29 +129,26 @@ class Spread {
   Extreme low_{std::numeric_limits<double>::infinity(), 1}, high_{-std::numeric_limits<double>::infinity(), 1};
 };
 
-/// Shows `extremes` the vertices of all clusters, but for those whose box cannot change it: almost all.
-template <class Extremes>
-void include_clusters(Extremes& extremes, const ClusterSet& set) {
+/// The vertices of the model that decide the framing. Almost all clusters are passed over by their boxes.
+std::vector<glm::vec3> deciding_points(const ClusterSet& set, Extremes extremes) {
   for (std::size_t i = 0; i < set.clusters.size(); ++i) {
     const Box box = set.boxes.get(i);
-    if (box.is_empty()) continue;
-    const auto corners = corners_of(box);
-    const auto extends = [&](const glm::dvec3& corner) { return extremes.is_extended_by(corner); };
-    if (std::none_of(corners.begin(), corners.end(), extends)) continue;
+    if (box.is_empty() || !extremes.may_change_by(box)) continue;
     const std::size_t first = set.clusters[i].first_vertex;
     for (std::size_t v = first; v < first + set.clusters[i].vertex_count; ++v)
       extremes.include({set.x[v], set.y[v], set.z[v]});
   }
+  return extremes.points();
 }
 
 /// Moves the eye across until the model is in the middle of the picture. Only the looser direction moves: the tight
 /// one is in the middle already.
-void centre(glm::dmat4& pose, const ClusterSet& set) {
+void centre(glm::dmat4& pose, const std::vector<glm::vec3>& points) {
   constexpr int kSteps = 3;  // each leaves the change of the extremes' distances, a small part
   for (int step = 0; step < kSteps; ++step)
     for (int axis = 0; axis < 2; ++axis) {
       Spread spread(pose, axis);
-      include_clusters(spread, set);
+      for (const glm::vec3& p : points) spread.include(glm::dvec3(p));
       pose[3] += pose[axis] * spread.to_centre();
     }
 }
@@ -199,12 +185,12 @@ View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& 
 
   const double aspect = double(width) / height, filled = 1 - 2 * options.margin;
   Projection projection = make_projection(options.min_fov, aspect, {});
-  Fit fit(pose, projection.right * filled, projection.top * filled);
-  if (surfaces.bounds().is_empty()) {
+  const glm::dvec2 spread(projection.right * filled, projection.top * filled);
+  const std::vector<glm::vec3> points = deciding_points(surfaces.clusters(), Extremes(pose, spread));
+  Fit fit(pose, spread);
+  for (const glm::vec3& p : points) fit.include(glm::dvec3(p));
+  if (points.empty())
     for (const glm::dvec3& corner : corners_of(box)) fit.include(corner);
-  } else {
-    include_clusters(fit, surfaces.clusters());
-  }
   const glm::dvec3 low(box.low), high(box.high);
   // A single point far from the origin has to be stood back from by more than rounding.
   const double diagonal = std::max({glm::length(high - low), 1e-5 * glm::length(high), 1e-30});
@@ -212,7 +198,7 @@ View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& 
     pose[3] = glm::dvec4(fit.middle(glm::dot(0.5 * (low + high), glm::dvec3(pose[2])) + diagonal), 1.0);
   } else {
     pose[3] = glm::dvec4(fit.eye(1e-3 * diagonal), 1.0);
-    if (!surfaces.bounds().is_empty()) centre(pose, surfaces.clusters());
+    if (!points.empty()) centre(pose, points);
   }
 
   const ClipDistances clip = fit_clip(box, pose, options.orthographic);
