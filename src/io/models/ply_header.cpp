@@ -27,7 +27,8 @@ std::optional<PlyType> type_of(std::string_view name) {
 
 class HeaderReader {
  public:
-  HeaderReader(Bytes bytes, const ModelSource& source) : bytes_(bytes), text_(bytes, source) {}
+  HeaderReader(Bytes bytes, std::uint64_t file_size, const ModelSource& source)
+      : bytes_(bytes), file_size_(file_size), text_(bytes, source) {}
 
   PlyHeader read() {
     if (text_.word() != "ply") text_.fail("a PLY file starts with \"ply\"");
@@ -121,7 +122,7 @@ class HeaderReader {
 
   /// Before memory is asked for: the rest of the file must have room for the rows.
   void check_room(const PlyElement& element) const {
-    const std::uint64_t room = bytes_.size() - header_.size;
+    const std::uint64_t room = file_size_ - header_.size;
     // A text value takes a digit and a separator, which the last one may lack.
     const std::uint64_t least =
         header_.encoding == PlyEncoding::ascii ? 2 * element.properties.size() : element.least_row_size();
@@ -131,6 +132,7 @@ class HeaderReader {
   }
 
   Bytes bytes_;
+  std::uint64_t file_size_;
   TextScanner text_;
   PlyHeader header_;
   bool has_format_ = false;
@@ -149,6 +151,8 @@ bool PlyElement::has_lists() const {
   return std::any_of(properties.begin(), properties.end(), [](const PlyProperty& p) { return p.is_list; });
 }
 
-PlyHeader read_ply_header(Bytes bytes, const ModelSource& source) { return HeaderReader(bytes, source).read(); }
+PlyHeader read_ply_header(Bytes bytes, std::uint64_t file_size, const ModelSource& source) {
+  return HeaderReader(bytes, file_size, source).read();
+}
 
 }  // namespace frontmost

@@ -46,7 +46,16 @@ struct PlyHeader {
   std::size_t line_count = 0;  ///< lines before the first row
 };
 
+/// The byte order of a binary file's rows.
+[[nodiscard]] inline Endian endian_of(const PlyHeader& header) {
+  return header.encoding == PlyEncoding::big ? Endian::big : Endian::little;
+}
+
+/// `bytes` start the file and hold its header at least; the whole file has `file_size` bytes.
 /// \throws Error file_malformed, also when the file is too short for the rows that the header promises.
-[[nodiscard]] PlyHeader read_ply_header(Bytes bytes, const ModelSource& source);
+[[nodiscard]] PlyHeader read_ply_header(Bytes bytes, std::uint64_t file_size, const ModelSource& source);
+[[nodiscard]] inline PlyHeader read_ply_header(Bytes bytes, const ModelSource& source) {
+  return read_ply_header(bytes, bytes.size(), source);
+}
 
 }  // namespace frontmost

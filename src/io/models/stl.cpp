@@ -12,7 +12,7 @@
 namespace frontmost {
 namespace {
 
-constexpr std::size_t header_size = 80, prelude_size = 84, record_size = 50;
+constexpr std::size_t header_size = 80, prelude_size = stl_prelude_size, record_size = stl_record_size;
 constexpr std::size_t normal_size = 12, corners_size = 36;
 // Every triangle has three vertices of its own, which 32-bit indices must reach.
 constexpr std::uint64_t max_triangles = no_index / 3;
@@ -38,37 +38,34 @@ bool starts_like_ascii(Bytes bytes) {
   return is("solid") || is("facet");
 }
 
-std::uint64_t promised_count(Bytes bytes) {
-  return read_value<std::uint32_t>(bytes.data() + header_size, Endian::little);
+}  // namespace
+
+std::uint64_t stl_promised_count(Bytes prelude) {
+  return read_value<std::uint32_t>(prelude.data() + header_size, Endian::little);
 }
 
-/// How many triangles to read, after holding the header against the size. Writers that cannot seek back leave 0 or
-/// 0xFFFFFFFF as the count; then the size decides, if it fits whole records.
-std::size_t checked_count(Bytes bytes, const ModelSource& source, Scene& scene) {
-  const std::uint64_t promised = promised_count(bytes);
-  const std::uint64_t room = bytes.size() - prelude_size, whole = room / record_size;
+std::uint64_t stl_checked_count(Bytes prelude, std::uint64_t file_size, const ModelSource& source,
+                                std::vector<std::string>& warnings) {
+  const std::uint64_t promised = stl_promised_count(prelude);
+  const std::uint64_t room = file_size - prelude_size, whole = room / record_size;
   const std::string place = "byte " + std::to_string(header_size);
-  std::uint64_t count = promised;
   if ((promised == 0 || promised == 0xFFFFFFFFu) && room > 0 && room % record_size == 0) {
-    scene.warnings.push_back(place + ": the triangle count was left open, the size of the file gives " +
-                             std::to_string(whole));
-    count = whole;
-  } else if (promised > whole) {
+    warnings.push_back(place + ": the triangle count was left open, the size of the file gives " +
+                       std::to_string(whole));
+    return whole;
+  }
+  if (promised > whole)
     source.fail("triangle " + std::to_string(whole),
                 "the file ends here, but its header promises " + std::to_string(promised) + " triangles");
-  } else if (room > promised * record_size) {
-    scene.warnings.push_back("byte " + std::to_string(prelude_size + promised * record_size) + ": " +
-                             std::to_string(room - promised * record_size) +
-                             " bytes after the last triangle were passed over");
-  }
-  if (count > max_triangles)
-    source.fail_limit(place, std::to_string(count) + " triangles are more than " + std::to_string(max_triangles));
-  return std::size_t(count);
+  if (room > promised * record_size)
+    warnings.push_back("byte " + std::to_string(prelude_size + promised * record_size) + ": " +
+                       std::to_string(room - promised * record_size) +
+                       " bytes after the last triangle were passed over");
+  return promised;
 }
 
-/// The solid's name, if the header is text. Exporters often put "solid NAME" there.
-std::string header_name(Bytes bytes) {
-  std::string name(reinterpret_cast<const char*>(bytes.data()), header_size);
+std::string stl_header_name(Bytes prelude) {
+  std::string name(reinterpret_cast<const char*>(prelude.data()), header_size);
   name.resize(std::min(name.find('\0'), name.size()));
   for (const char c : name)
     if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7E) return {};
@@ -77,52 +74,71 @@ std::string header_name(Bytes bytes) {
   return name;
 }
 
-}  // namespace
-
-StlEncoding stl_encoding(Bytes bytes) {
-  if (bytes.size() >= prelude_size) {
-    const std::uint64_t room = bytes.size() - prelude_size, needed = promised_count(bytes) * record_size;
-    if (room == needed) return StlEncoding::binary;
-    if (!is_text(bytes)) return room > needed && needed > 0 ? StlEncoding::binary : StlEncoding::neither;
-  }
-  return starts_like_ascii(bytes) && is_text(bytes) ? StlEncoding::ascii : StlEncoding::neither;
-}
-
-Scene read_stl(Bytes bytes, const ModelSource& source) {
-  const StlEncoding encoding = stl_encoding(bytes);
-  if (encoding == StlEncoding::ascii) return read_ascii_stl(bytes, source);
-  if (encoding == StlEncoding::binary) return read_binary_stl(bytes, source);
-  if (is_text(bytes)) source.fail("line 1", "text STL starts with \"solid\"");
-  if (bytes.size() < prelude_size)
-    source.fail("byte " + std::to_string(bytes.size()), "the file ends within the 84 bytes of a binary STL header");
-  return read_binary_stl(bytes, source);
-}
-
-Scene read_binary_stl(Bytes bytes, const ModelSource& source) {
-  Scene scene;
-  const std::size_t count = checked_count(bytes, source, scene);
-  if (count == 0) return scene;
-  Mesh mesh;
-  mesh.name = header_name(bytes);
-  reserve_large(mesh.positions, 3 * count);
-  reserve_large(mesh.triangles, count);
+void append_stl_records(Bytes records, Mesh& mesh) {
+  const std::size_t first = mesh.triangles.size(), count = records.size() / record_size;
   // In blocks small enough that growing (which writes zeros) and filling meet in the cache.
   constexpr std::size_t block = 8192;
   for (std::size_t begin = 0; begin < count; begin += block) {
     const std::size_t end = std::min(count, begin + block);
-    mesh.positions.resize(3 * end);
-    mesh.triangles.resize(end);
-    const std::byte* record = bytes.data() + prelude_size + begin * record_size;
-    for (std::size_t t = begin; t < end; ++t, record += record_size) {
+    mesh.positions.resize(3 * (first + end));
+    mesh.triangles.resize(first + end);
+    const std::byte* record = records.data() + begin * record_size;
+    for (std::size_t t = first + begin; t < first + end; ++t, record += record_size) {
       std::memcpy(&mesh.positions[3 * t], record + normal_size, corners_size);
       mesh.triangles[t] = glm::uvec3(3 * t, 3 * t + 1, 3 * t + 2);
     }
-    source.release(bytes.subspan(begin * record_size, (end - begin) * record_size));
-    check_cancelled(source.execution());
   }
   if constexpr (native_endian == Endian::big)
-    for (glm::vec3& p : mesh.positions)
-      for (int k = 0; k < 3; ++k) p[k] = read_value<float>(reinterpret_cast<const std::byte*>(&p[k]), Endian::little);
+    for (std::size_t i = 3 * first; i < mesh.positions.size(); ++i)
+      for (int k = 0; k < 3; ++k) {
+        float& value = mesh.positions[i][k];
+        value = read_value<float>(reinterpret_cast<const std::byte*>(&value), Endian::little);
+      }
+}
+
+StlEncoding stl_encoding(Bytes start, std::uint64_t file_size) {
+  if (file_size >= prelude_size) {
+    const std::uint64_t room = file_size - prelude_size, needed = stl_promised_count(start) * record_size;
+    if (room == needed) return StlEncoding::binary;
+    if (!is_text(start)) return room > needed && needed > 0 ? StlEncoding::binary : StlEncoding::neither;
+  }
+  return starts_like_ascii(start) && is_text(start) ? StlEncoding::ascii : StlEncoding::neither;
+}
+
+StlEncoding known_stl_encoding(Bytes start, std::uint64_t file_size, const ModelSource& source) {
+  const StlEncoding encoding = stl_encoding(start, file_size);
+  if (encoding != StlEncoding::neither) return encoding;
+  if (is_text(start)) source.fail("line 1", "text STL starts with \"solid\"");
+  if (file_size < prelude_size)
+    source.fail("byte " + std::to_string(file_size), "the file ends within the 84 bytes of a binary STL header");
+  return StlEncoding::binary;  // broken, as its reader will say
+}
+
+Scene read_stl(Bytes bytes, const ModelSource& source) {
+  return known_stl_encoding(bytes, bytes.size(), source) == StlEncoding::ascii ? read_ascii_stl(bytes, source)
+                                                                               : read_binary_stl(bytes, source);
+}
+
+Scene read_binary_stl(Bytes bytes, const ModelSource& source) {
+  Scene scene;
+  const std::uint64_t checked = stl_checked_count(bytes, bytes.size(), source, scene.warnings);
+  if (checked > max_triangles)
+    source.fail_limit("byte " + std::to_string(header_size),
+                      std::to_string(checked) + " triangles are more than " + std::to_string(max_triangles));
+  const auto count = std::size_t(checked);
+  if (count == 0) return scene;
+  Mesh mesh;
+  mesh.name = stl_header_name(bytes);
+  reserve_large(mesh.positions, 3 * count);
+  reserve_large(mesh.triangles, count);
+  constexpr std::size_t block = 8192;
+  for (std::size_t begin = 0; begin < count; begin += block) {
+    const Bytes records =
+        bytes.subspan(prelude_size + begin * record_size, std::min(block, count - begin) * record_size);
+    append_stl_records(records, mesh);
+    source.release(records);
+    check_cancelled(source.execution());
+  }
   scene.instances.push_back({.name = mesh.name, .mesh = 0});
   scene.meshes.push_back(std::move(mesh));
   return scene;
