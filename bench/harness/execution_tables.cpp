@@ -36,7 +36,8 @@ Table measure_threads(const Options& options) {
     const Stage stage(name, options.models);
     Frames one(stage), all(stage);
     const std::vector<Time> times =
-        race({[&] { one.draw({.threads = 1}); }, [&] { all.draw({.threads = threads}); }}, options.sampling);
+        race({Contestant([&] { one.draw({.threads = 1}); }), Contestant([&] { all.draw({.threads = threads}); })},
+             options.sampling);
     table.add({name,
                Cell::whole(unsigned(threads)),
                {times[0].wall},
@@ -53,7 +54,7 @@ Table measure_isas(const Options& options) {
   for (const std::string_view name : options.scenes_or(kVaried)) {
     const Stage stage(name, options.models);
     Frames frames(stage);
-    std::vector<std::function<void()>> contestants;
+    std::vector<Contestant> contestants;
     for (const Isa isa : available_isas())
       contestants.emplace_back([&frames, isa] { frames.draw({.threads = 1, .isa = isa}); });
     const std::vector<Time> times = race(contestants, options.sampling);

@@ -20,8 +20,8 @@ View with_samples(View view, int samples) {
 
 /// How many times dearer `a` is than `b`, on one thread.
 double ratio(Frames& a, Frames& b, const Options& options) {
-  const std::vector<Time> times =
-      race({[&] { a.draw({.threads = 1}); }, [&] { b.draw({.threads = 1}); }}, options.sampling);
+  const std::vector<Time> times = race(
+      {Contestant([&] { a.draw({.threads = 1}); }), Contestant([&] { b.draw({.threads = 1}); })}, options.sampling);
   return times[0].processor / times[1].processor;
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 
+#include "harness/peer_process.h"
 #include "harness/scenes.h"
 #include "harness/tables.h"
 
@@ -16,9 +17,9 @@ struct Entry {
   const char* name;
   Table (*measure)(const Options&);
 };
-constexpr Entry kTables[] = {{"peers", measure_peers},       {"threads", measure_threads},
-                             {"isas", measure_isas},         {"stages", measure_stages},
-                             {"features", measure_features}, {"coverage", measure_coverage}};
+constexpr Entry kTables[] = {{"peers", measure_peers},   {"threads", measure_threads},   {"isas", measure_isas},
+                             {"stages", measure_stages}, {"features", measure_features}, {"limits", measure_limits},
+                             {"memory", measure_memory}, {"coverage", measure_coverage}};
 
 void write_json(const std::string& path, const std::vector<Table>& tables) {
   std::FILE* file = std::fopen(path.c_str(), "w");
@@ -32,6 +33,10 @@ void write_json(const std::string& path, const std::vector<Table>& tables) {
 }  // namespace
 
 int main(int count, char** arguments) try {
+  if (count == 7 && std::string_view(arguments[1]) == "--serve") {
+    serve_peer(arguments + 2);
+    return 0;
+  }
   const Options options = parse_options(count, arguments);
   for (const std::string& name : options.scenes) (void)find_scene(name);
   std::vector<Table> tables;

@@ -11,8 +11,8 @@
 namespace frontmost::bench {
 namespace {
 
-constexpr std::array<std::string_view, 7> kTables = {"peers",    "threads", "isas",    "stages",
-                                                     "features", "memory",  "coverage"};
+constexpr std::array<std::string_view, 8> kTables = {"peers",    "threads", "isas",   "stages",
+                                                     "features", "limits",  "memory", "coverage"};
 
 }  // namespace
 

@@ -11,24 +11,43 @@ struct Stage {
       : scene(make_scene(scene_name, models)),
         surfaces(scene),
         view(make_view(surfaces, find_scene(scene_name).camera)) {}
+  Stage(Scene&& other_scene, const View& other_view)
+      : scene(std::move(other_scene)), surfaces(scene), view(other_view) {}
   Scene scene;
   Surfaces surfaces;
   View view;
 };
 
-/// Draws views of one stage again and again.
+/// One triangle that covers all of a perspective view.
+[[nodiscard]] inline Scene make_cover(const View& view) {
+  const Projection& p = view.projection;
+  const double z = -0.5 * (p.clip.near + p.clip.far);
+  // Twice the picture's height and width from its lower left corner, and a little more on each side.
+  const double x0 = -z * (p.left - 0.1), y0 = -z * (p.bottom - 0.1);
+  const double width = -z * (p.right - p.left + 0.3), height = -z * (p.top - p.bottom + 0.3);
+  Scene scene;
+  Mesh& mesh = scene.meshes.emplace_back();
+  for (const glm::dvec2 corner : {glm::dvec2(0, 0), glm::dvec2(2, 0), glm::dvec2(0, 2)})
+    mesh.positions.emplace_back(view.world_from_eye * glm::dvec4(x0 + corner.x * width, y0 + corner.y * height, z, 1));
+  mesh.triangles.push_back({0, 1, 2});
+  scene.instances.push_back({"cover", 0, glm::dmat4(1.0)});
+  return scene;
+}
+
+/// Draws one view again and again, in the same memory.
 class Frames {
  public:
   explicit Frames(const Stage& stage) : Frames(stage.surfaces, stage.view) {}
   Frames(const Surfaces& surfaces, const View& view) : surfaces_(surfaces), view_(view) {}
 
-  void draw(const Execution& execution) { visible_ = zbuffer(surfaces_, view_, execution); }
-  [[nodiscard]] const Visible& visible() const { return visible_; }
+  const Visible& draw(const Execution& execution) { return zbuffer_.draw(surfaces_, view_, execution); }
+  /// Another picture into the same planes: tiles that were left blank are so no more, and must be cleared again.
+  void draw_other(const Stage& other) { (void)zbuffer_.draw(other.surfaces, other.view, {.threads = 1}); }
 
  private:
   const Surfaces& surfaces_;
   View view_;
-  Visible visible_;
+  ZBuffer zbuffer_;
 };
 
 }  // namespace frontmost::bench

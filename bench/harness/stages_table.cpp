@@ -2,7 +2,8 @@
 // Where a frame's time goes. The stages of the z-buffer are interleaved tile by tile, so no clock can be put between
 // them; instead frames are drawn that stop early, and what each adds to the one before is the cost of its last stage:
 //
-//   clear      no surfaces at all: the tiles are cleared, and the planes written
+//   clear      no surfaces at all: both planes are written. Before each frame another covers them, so that no tile can
+//              be left as it is
 //   cull       the same surfaces, all nearer than the near plane: every cluster is looked at and left out
 //   transform  every triangle collapsed to its first corner: clusters are binned and transformed, and every triangle
 //              falls at the first test, as it covers no sample
@@ -50,9 +51,11 @@ Table measure_stages(const Options& options) {
     const Surfaces point_surfaces(points);
     Frames clear(no_surfaces, stage.view), cull(stage.surfaces, beyond_everything(stage.view)),
         transform(point_surfaces, stage.view), set_up(stage.surfaces, without_faces(stage.view)), whole(stage);
-    std::vector<std::function<void()>> contestants;
+    std::vector<Contestant> contestants;
+    const Stage cover(make_cover(stage.view), stage.view);
     for (Frames* frames : {&clear, &cull, &transform, &set_up, &whole})
-      contestants.emplace_back([frames] { frames->draw({.threads = 1}); });
+      contestants.emplace_back([frames] { frames->draw({.threads = 1}); },
+                               [frames, &cover] { frames->draw_other(cover); });
     const std::vector<Time> times = race(contestants, options.sampling);
     std::vector<Cell> cells{name, {times[0].processor}};
     for (std::size_t i = 1; i < times.size(); ++i) cells.emplace_back(times[i].processor - times[i - 1].processor);

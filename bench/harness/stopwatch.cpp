@@ -18,6 +18,15 @@ struct Samples {
   std::vector<double> wall, processor;
 };
 
+Time measure(const Contestant& contestant) {
+  if (contestant.run_timed) return contestant.run_timed();
+  if (contestant.prepare) contestant.prepare();
+  const Time before = now();
+  contestant.run();
+  const Time after = now();
+  return {after.wall - before.wall, after.processor - before.processor};
+}
+
 }  // namespace
 
 Time now() {
@@ -28,18 +37,16 @@ Time now() {
           1e3 * double(processor.tv_sec) + 1e-6 * double(processor.tv_nsec)};
 }
 
-std::vector<Time> race(const std::vector<std::function<void()>>& contestants, const Sampling& sampling) {
-  for (const auto& run : contestants) run();
+std::vector<Time> race(const std::vector<Contestant>& contestants, const Sampling& sampling) {
+  for (const Contestant& contestant : contestants) (void)measure(contestant);
   std::vector<Samples> samples(contestants.size());
   const double start = now().wall;
   for (int round = 0; round < sampling.rounds; ++round) {
     if (round >= 2 && now().wall - start > 1e3 * sampling.most_seconds) break;
     for (std::size_t i = 0; i < contestants.size(); ++i) {
-      const Time before = now();
-      contestants[i]();
-      const Time after = now();
-      samples[i].wall.push_back(after.wall - before.wall);
-      samples[i].processor.push_back(after.processor - before.processor);
+      const Time time = measure(contestants[i]);
+      samples[i].wall.push_back(time.wall);
+      samples[i].processor.push_back(time.processor);
     }
   }
   std::vector<Time> times;

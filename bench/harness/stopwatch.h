@@ -17,9 +17,24 @@ struct Sampling {
   double most_seconds = 10;  ///< after which no further round is begun, from the third on
 };
 
+/// What is measured, and what is done before it each time, unmeasured.
+struct Contestant {
+  Contestant(std::function<void()> what, std::function<void()> before = nullptr)
+      : run(std::move(what)), prepare(std::move(before)) {}
+  /// Somebody whose own clock counts.
+  static Contestant elsewhere(std::function<Time()> what) {
+    Contestant contestant(nullptr);
+    contestant.run_timed = std::move(what);
+    return contestant;
+  }
+
+  std::function<void()> run, prepare;
+  std::function<Time()> run_timed;
+};
+
 /// Runs the contestants in turn, once unmeasured and then `rounds` times, so that what slows the machine for a while
 /// slows them all. \returns their medians, in the order given.
-[[nodiscard]] std::vector<Time> race(const std::vector<std::function<void()>>& contestants, const Sampling& sampling);
+[[nodiscard]] std::vector<Time> race(const std::vector<Contestant>& contestants, const Sampling& sampling);
 
 /// Now, on both clocks.
 [[nodiscard]] Time now();

@@ -18,6 +18,10 @@ namespace frontmost::bench {
 [[nodiscard]] Table measure_stages(const Options& options);
 /// Culling, hiding, order, samples.
 [[nodiscard]] Table measure_features(const Options& options);
+/// How near frames come to what memory and processor allow.
+[[nodiscard]] Table measure_limits(const Options& options);
+/// Bytes a triangle, a pixel and a sample.
+[[nodiscard]] Table measure_memory(const Options& options);
 /// Our pictures and llvmpipe's, pixel by pixel.
 [[nodiscard]] Table measure_coverage(const Options& options);
 
