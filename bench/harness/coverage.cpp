@@ -131,16 +131,17 @@ class Judge {
     const Seen by_us = look(a, pixel), by_them = look(b, pixel);
     if (by_us.is_cut || by_them.is_cut) {
       ++report.clipped;
-    } else if ((a != no_primitive && !by_us.in_ours) || (b != no_primitive && !by_them.in_theirs)) {
-      ++report.disagreed;  // somebody drew what by the rule it must not
-    } else if ((a != no_primitive && !by_us.in_theirs) || (b != no_primitive && !by_them.in_ours)) {
+      return;
+    }
+    const bool is_drawn_rightly = (a == no_primitive || by_us.in_ours) && (b == no_primitive || by_them.in_theirs);
+    if (is_drawn_rightly && ((a != no_primitive && !by_us.in_theirs) || (b != no_primitive && !by_them.in_ours))) {
       ++report.moved;
-    } else if (a == no_primitive || b == no_primitive) {
-      ++report.disagreed;  // somebody left out what by the rule it must draw
+    } else if (is_drawn_rightly && a != no_primitive && b != no_primitive &&
+               can_hide(our_depth(a, pixel), our_depth(b, pixel)) &&
+               can_hide(their_depth(b, pixel), their_depth(a, pixel))) {
+      ++report.depth;
     } else {
-      const bool is_close =
-          can_hide(our_depth(a, pixel), our_depth(b, pixel)) && can_hide(their_depth(b, pixel), their_depth(a, pixel));
-      ++(is_close ? report.depth : report.disagreed);
+      ++report.disagreed;  // somebody drew what by the rule it must not, or left out what it must
     }
   }
 

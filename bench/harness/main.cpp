@@ -17,9 +17,10 @@ struct Entry {
   const char* name;
   Table (*measure)(const Options&);
 };
-constexpr Entry kTables[] = {{"peers", measure_peers},   {"threads", measure_threads},   {"isas", measure_isas},
-                             {"stages", measure_stages}, {"features", measure_features}, {"limits", measure_limits},
-                             {"memory", measure_memory}, {"coverage", measure_coverage}};
+constexpr Entry kTables[] = {
+    {"peers", measure_peers},   {"threads", measure_threads},   {"isas", measure_isas},
+    {"stages", measure_stages}, {"features", measure_features}, {"limits", measure_limits},
+    {"memory", measure_memory}, {"coverage", measure_coverage}, {"rays", measure_ray_coverage}};
 
 void write_json(const std::string& path, const std::vector<Table>& tables) {
   std::FILE* file = std::fopen(path.c_str(), "w");
@@ -43,6 +44,8 @@ int main(int count, char** arguments) try {
   for (const auto& [name, measure] : kTables)
     if (options.wants(name)) tables.push_back(measure(options));
   if (!options.json.empty()) write_json(options.json, tables);
+  for (const Table& table : tables)
+    if (!table.holds()) return 1;
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "zbuffer_bench: %s\n", error.what());

@@ -11,8 +11,8 @@
 namespace frontmost::bench {
 namespace {
 
-constexpr std::array<std::string_view, 8> kTables = {"peers",    "threads", "isas",   "stages",
-                                                     "features", "limits",  "memory", "coverage"};
+constexpr std::array<std::string_view, 9> kTables = {"peers",  "threads", "isas",     "stages", "features",
+                                                     "limits", "memory",  "coverage", "rays"};
 
 }  // namespace
 

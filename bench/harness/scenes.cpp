@@ -141,7 +141,8 @@ Mesh city(std::size_t houses) {
     const float a = random.unit(), b = random.unit();
     const float half_height = 0.5f + 2.5f * a * b;
     const float half_depth = 0.2f + 0.2f * random.unit(), half_width = 0.2f + 0.2f * random.unit();
-    add_box(mesh, {float(i % side), half_height, float(i / side)},
+    const std::size_t column = i % side, row = i / side;
+    add_box(mesh, {float(column), half_height, float(row)},
             {{half_width, 0, 0}, {0, half_height, 0}, {0, 0, half_depth}});
   }
   return mesh;

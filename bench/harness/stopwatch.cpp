@@ -50,6 +50,7 @@ std::vector<Time> race(const std::vector<Contestant>& contestants, const Samplin
     }
   }
   std::vector<Time> times;
+  times.reserve(samples.size());
   for (const Samples& s : samples) times.push_back({median(s.wall), median(s.processor)});
   return times;
 }

@@ -22,7 +22,9 @@ namespace frontmost::bench {
 [[nodiscard]] Table measure_limits(const Options& options);
 /// Bytes a triangle, a pixel and a sample.
 [[nodiscard]] Table measure_memory(const Options& options);
-/// Our pictures and llvmpipe's, pixel by pixel.
+/// Our pictures and llvmpipe's, pixel by pixel. Fails where a pixel differs for no reason.
 [[nodiscard]] Table measure_coverage(const Options& options);
+/// Our pictures and Embree's.
+[[nodiscard]] Table measure_ray_coverage(const Options& options);
 
 }  // namespace frontmost::bench
