@@ -68,7 +68,8 @@ void apply_value(const Place& place, const Option& option, Settings& settings) {
 }
 
 bool belongs_to_view(const Option& option) {
-  return option.group == Group::camera || option.group == Group::vision || option.group == Group::grid;
+  return option.group == Group::camera || option.group == Group::vision || option.group == Group::grid ||
+         option.group == Group::depth;
 }
 bool belongs_to_outputs(const Option& option) { return option.group == Group::output || option.group == Group::look; }
 

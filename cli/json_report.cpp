@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "camera_report.h"
+#include "sight.h"
 
 namespace frontmost::cli {
 namespace {
@@ -53,8 +54,20 @@ void add_timings(const Timings& timings, Json& json) {
   json["save"] = timings.save;
 }
 
+Json depth_json(const DepthSettings& settings) {
+  const DepthState state = depth_state(settings);
+  return {{"format", name(settings.format)},
+          {"func", name(state.func)},
+          {"mask", state.mask},
+          {"clear", depth_clear(settings)},
+          {"range", {state.range_near, state.range_far}},
+          {"polygon_offset", {state.offset.factor, state.offset.units}},
+          {"reversed", state.nearer_is_greater}};
+}
+
 Json view_json(const ViewResult& result) {
   Json json = {{"name", result.name}, {"view", camera_json(result.view, result.target)}};
+  if (result.depth.is_used) json["depth_buffer"] = depth_json(result.depth);
   if (result.seen) json["seen"] = seen_json(*result.seen, result.view);
   json["files"] = Json::array();
   for (const Result& file : result.results) {

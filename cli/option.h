@@ -10,11 +10,12 @@
 
 namespace frontmost::cli {
 
-enum class Group : std::uint8_t { model, camera, vision, grid, output, look, run };
+enum class Group : std::uint8_t { model, camera, vision, grid, depth, output, look, run };
 inline constexpr std::string_view group_titles[] = {"Model",
                                                     "Camera, as f3d names it",
                                                     "Camera, as computer vision names it",
                                                     "Pixels and planes",
+                                                    "Depth buffer, as OpenGL names it",
                                                     "What to write",
                                                     "How the picture looks",
                                                     "How to run"};
@@ -54,13 +55,14 @@ struct Option {
 
 /// The tables, in the order of the help; each lives in its own file.
 [[nodiscard]] std::span<const Option> view_option_table();
+[[nodiscard]] std::span<const Option> depth_option_table();
 [[nodiscard]] std::span<const Option> output_option_table();
 [[nodiscard]] std::span<const Option> run_option_table();
 
 /// Calls visit(option) for every option, in the order of the help.
 template <class Visit>
 void for_each_option(const Visit& visit) {
-  for (const auto table : {view_option_table(), output_option_table(), run_option_table()}) {
+  for (const auto table : {view_option_table(), depth_option_table(), output_option_table(), run_option_table()}) {
     for (const Option& option : table) visit(option);
   }
 }

@@ -31,6 +31,12 @@ constexpr Option table[] = {
      [](Settings& s, const Given& g) { add_file(s, OutputKind::depth, g.text); }},
     {"ray-distance", 0, "FILE", "Distance from the eye, in scene units.", Group::output, written,
      [](Settings& s, const Given& g) { add_file(s, OutputKind::ray_distance, g.text); }},
+    {"window-depth", 0, "FILE", "The depth buffer's values from 0 to 1, as glReadPixels gives them.", Group::output,
+     written,
+     [](Settings& s, const Given& g) {
+       s.view.depth.is_used = true;
+       add_file(s, OutputKind::window_depth, g.text);
+     }},
     {"ids", 0, "KIND=FILE", "Which primitive, object or material is seen: primitive=FILE, object=FILE, material=FILE.",
      Group::output, written, [](Settings& s, const Given& g) { add_ids(s, g.text); }},
     {"normals", 0, "FILE", "World-space normals.", Group::output, written,

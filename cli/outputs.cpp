@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kind_names[] = {"picture",       "depth",      "ray_distance", "normals",
-                                           "primitive_ids", "object_ids", "material_ids"};
+constexpr std::string_view kind_names[] = {"picture", "depth",         "ray_distance", "window_depth",
+                                           "normals", "primitive_ids", "object_ids",   "material_ids"};
 constexpr std::string_view format_names[] = {"png", "exr", "pfm", "npy"};
 
 std::optional<ImageFormat> format_by_suffix(const std::string& path) {

@@ -5,11 +5,11 @@
 
 #include <fmt/format.h>
 #include <frontmost/shade.h>
-#include <frontmost/zbuffer.h>
 
 #include "blank.h"
 #include "interruption.h"
 #include "reference.h"
+#include "sight.h"
 #include "stopwatch.h"
 #include "view_options.h"
 
@@ -34,19 +34,19 @@ bool wants_maps(const Job& job) {
 
 /// The visibility that a view needs: of the picture, of the maps, or of both at once.
 struct Sights {
-  std::optional<Visible> picture, maps;
+  std::optional<Sight> picture, maps;
   bool shared = false;  ///< the maps are those of the picture
 
-  [[nodiscard]] const Visible& for_maps() const { return shared ? *picture : *maps; }
-  [[nodiscard]] const Visible& any() const { return picture ? *picture : *maps; }
+  [[nodiscard]] const Sight& for_maps() const { return shared ? *picture : *maps; }
+  [[nodiscard]] const Visible& any() const { return (picture ? *picture : *maps).visible; }
 };
 
-Visible timed(const View& view, const RenderContext& context, std::vector<double>& times) {
+Sight timed(const View& view, const DepthSettings& depth, const RenderContext& context, std::vector<double>& times) {
   for (int i = 1;; ++i) {
     const Stopwatch watch;
-    Visible visible = zbuffer(context.surfaces, view, context.execution);
+    Sight sight = look_at_surfaces(context.surfaces, view, depth, context.execution);
     times.push_back(watch.milliseconds());
-    if (i >= context.run.repeat) return visible;
+    if (i >= context.run.repeat) return sight;
   }
 }
 
@@ -57,13 +57,13 @@ Sights look(const Job& job, const RenderContext& context, ViewResult& result) {
   Sights sights;
   if (picture) {
     view.samples = job.view.samples.value_or(default_samples);
-    sights.picture = timed(view, context, result.timings.visible);
+    sights.picture = timed(view, job.view.depth, context, result.timings.visible);
     sights.shared = maps && view.samples == 1;
   }
   if (maps && !sights.shared) {
     view.samples = 1;
     std::vector<double> times;
-    sights.maps = timed(view, context, picture ? times : result.timings.visible);
+    sights.maps = timed(view, job.view.depth, context, picture ? times : result.timings.visible);
     if (picture) result.timings.visible_maps = times.front();
   }
   return sights;
@@ -85,11 +85,19 @@ Seen summary(const Surfaces& surfaces, const Visible& visible) {
   return seen;
 }
 
-Image map_of(OutputKind kind, const Job& job, const RenderContext& context, const Visible& visible) {
+Image window_depth_image(const Sight& sight) {
+  Image image{sight.visible.view.width, sight.visible.view.height, {}};
+  image.channels.push_back({"window_depth", sight.window_depths});
+  return image;
+}
+
+Image map_of(OutputKind kind, const Job& job, const RenderContext& context, const Sight& sight) {
+  const Visible& visible = sight.visible;
   const float background = job.output.background_depth;
   switch (kind) {
     case OutputKind::depth: return depth_image(visible, background);
     case OutputKind::ray_distance: return ray_distance_image(visible, background);
+    case OutputKind::window_depth: return window_depth_image(sight);
     case OutputKind::normals: return normal_image(context.surfaces, visible, context.execution);
     case OutputKind::primitive_ids: return id_image(context.surfaces, visible, IdKind::primitive);
     case OutputKind::object_ids: return id_image(context.surfaces, visible, IdKind::object);
@@ -178,15 +186,16 @@ void warn_if_blank(const Sights& sights, const RenderContext& context, ViewResul
 ViewResult render_view(const Job& job, const RenderContext& context) {
   ViewResult result;
   result.name = job.name;
+  result.depth = job.view.depth;
   result.view = resolve_view(job.view, context.surfaces);
   result.target = job.view.focal_point.value_or(focal_point_of(result.view, context.surfaces));
   const Sights sights = look(job, context, result);
-  if (job.output.hash || context.run.json) result.seen = summary(context.surfaces, sights.for_maps());
+  if (job.output.hash || context.run.json) result.seen = summary(context.surfaces, sights.for_maps().visible);
   warn_if_blank(sights, context, result);
   std::optional<Image> picture;
   if (sights.picture) {
     const Stopwatch watch;
-    picture = shade(context.surfaces, *sights.picture,
+    picture = shade(context.surfaces, sights.picture->visible,
                     {job.output.shading, job.output.background, !job.output.no_shadows}, context.execution);
     result.timings.shade = watch.milliseconds();
   }

@@ -50,6 +50,7 @@ struct ViewResult {
   std::string name;
   View view;
   glm::dvec3 target{0.0};
+  DepthSettings depth;
   std::optional<Seen> seen;  ///< where --json or --hash ask
   std::vector<Result> results;
   std::optional<ReferenceResult> reference;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <frontmost/base.h>
+#include <frontmost/depth_buffer.h>
 #include <frontmost/image.h>
 #include <frontmost/io.h>
 #include <frontmost/shade.h>
@@ -14,6 +15,17 @@
 #include <vector>
 
 namespace frontmost::cli {
+
+/// A depth buffer beside the exact default.
+struct DepthSettings {
+  bool is_used = false;
+  DepthFormat format = DepthFormat::d24;
+  std::optional<DepthFunc> func;
+  bool mask = true, reversed = false;
+  std::optional<double> clear;
+  glm::dvec2 range{0, 1};
+  PolygonOffset offset;
+};
 
 /// The camera and the pixel grid.
 struct ViewSettings {
@@ -32,10 +44,20 @@ struct ViewSettings {
   std::optional<glm::ivec2> resolution;
   Culling culling = Culling::none;
   std::optional<int> samples;
+  DepthSettings depth;
 };
 
 /// One file to write.
-enum class OutputKind : std::uint8_t { picture, depth, ray_distance, normals, primitive_ids, object_ids, material_ids };
+enum class OutputKind : std::uint8_t {
+  picture,
+  depth,
+  ray_distance,
+  window_depth,
+  normals,
+  primitive_ids,
+  object_ids,
+  material_ids
+};
 struct OutputRequest {
   OutputKind kind;
   std::string path;  ///< "-" is standard output; may hold {model} and {view}

@@ -135,7 +135,12 @@ glm::dvec3 parse_direction(std::string_view text) {
 
 int parse_choice(std::string_view text, std::string_view choices) {
   const std::vector<std::string_view> words = split(choices, '|');
-  const auto found = std::find(words.begin(), words.end(), text);
+  // Some words are names in capitals elsewhere (LESS, D24), and nobody should have to remember which.
+  const auto same = [&](std::string_view word) {
+    return std::equal(word.begin(), word.end(), text.begin(), text.end(),
+                      [](char a, char b) { return lower(a) == lower(b); });
+  };
+  const auto found = std::find_if(words.begin(), words.end(), same);
   if (found != words.end()) return int(found - words.begin());
   throw UsageError(fmt::format("'{}' is not one of {}", text, fmt::join(words, ", ")));
 }
