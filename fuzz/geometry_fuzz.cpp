@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arbitrary geometry and an arbitrary camera into the z-buffer. Must not crash or hang; and threads and instruction
+// Arbitrary geometry and an arbitrary camera into the z-buffer and the ray caster. Must not crash or hang; and threads and instruction
 // sets must not change a bit of the answer.
 //
 // Input: 16 bytes of view, then triangles of nine floats each. Floats are taken as they are, so that NaN, infinities,
@@ -60,6 +60,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Visible wide = zbuffer(surfaces, view, {.threads = 2, .isa = Isa::best, .watch = nullptr});
     const Visible plain = zbuffer(surfaces, view, {.threads = 1, .isa = Isa::scalar, .watch = nullptr});
     if (content_hash(wide) != content_hash(plain)) std::abort();
+    const RayIndex index(surfaces, {.threads = 2, .isa = Isa::best, .watch = nullptr});
+    const Visible rays = raycast(index, view, {.threads = 2, .isa = Isa::best, .watch = nullptr});
+    const Visible plain_rays = raycast(index, view, {.threads = 1, .isa = Isa::scalar, .watch = nullptr});
+    if (content_hash(rays) != content_hash(plain_rays)) std::abort();
     for (const PrimitiveId id : wide.primitives) {
       if (id != no_primitive && id >= surfaces.primitive_count()) std::abort();
     }

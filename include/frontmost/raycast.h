@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ray casting: visibility by asking, for every sample, which triangle its ray meets first.
+#pragma once
+
+#include <memory>
+
+#include "frontmost/surfaces.h"
+#include "frontmost/view.h"
+#include "frontmost/visible.h"
+
+namespace frontmost {
+
+struct RayTree;  // src/raycast/ray_tree.h
+
+/// A hierarchy of boxes over the triangles of `Surfaces`, for any number of views and queries. Holds world-space
+/// corners of its own, so the surfaces may go; the ids are theirs. Immutable, and safe to share between threads.
+///
+/// Sixteen triangles a leaf in the surfaces' spatial order, sixteen boxes a node, split by the surface area heuristic
+/// (J. Goldsmith, J. Salmon. Automatic Creation of Object Hierarchies for Ray Tracing. 1987; binned as in I. Wald.
+/// On fast Construction of SAH-based Bounding Volume Hierarchies. 2007).
+class RayIndex {
+ public:
+  /// O(n log n) for n triangles, in parallel; about 45 bytes a triangle kept. The same for any number of threads.
+  explicit RayIndex(const Surfaces& surfaces, const Execution& execution = {});
+  ~RayIndex();
+  RayIndex(RayIndex&&) noexcept;
+  RayIndex& operator=(RayIndex&&) noexcept;
+  RayIndex(const RayIndex&) = delete;
+  RayIndex& operator=(const RayIndex&) = delete;
+
+  /// Triangles that a ray can meet: those with finite corners, no two the same.
+  [[nodiscard]] std::uint32_t triangle_count() const;
+  /// World-space bounds of these triangles; empty without any.
+  [[nodiscard]] const Box& bounds() const;
+  [[nodiscard]] std::size_t byte_count() const;
+
+  [[nodiscard]] const RayTree& tree() const { return *tree_; }
+
+ private:
+  std::unique_ptr<const RayTree> tree_;
+};
+
+/// The front-most triangle at every sample, by the ray from the eye through it (parallel projection: along the viewing
+/// axis). Nothing is snapped: corners are where floats put them, and whether a ray passes an edge on its left or right
+/// is decided exactly on those floats. A ray through an edge or corner meets every triangle that has it, so no ray
+/// leaks between neighbours; at equal keys the lower id wins. Near and far are tested at every sample.
+/// The result is the same to the bit for any number of threads and any instruction set.
+/// (S. Woop, C. Benthin, I. Wald. Watertight Ray/Triangle Intersection. 2013. A. Reshetov, A. Soupikov, J. Hurley.
+/// Multi-Level Ray Tracing Algorithm. 2005.)
+/// \throws Error as validate(view) does.
+[[nodiscard]] Visible raycast(const RayIndex& index, const View& view, const Execution& execution = {});
+/// The same with an index made for this one view.
+[[nodiscard]] Visible raycast(const Surfaces& surfaces, const View& view, const Execution& execution = {});
+
+/// The same for repeated views: casts after the first reuse the memory of those before. Not for several threads at
+/// once; each cast() uses the threads it is given.
+class RayCaster {
+ public:
+  RayCaster();
+  ~RayCaster();
+  RayCaster(RayCaster&&) noexcept;
+  RayCaster& operator=(RayCaster&&) noexcept;
+  RayCaster(const RayCaster&) = delete;
+  RayCaster& operator=(const RayCaster&) = delete;
+
+  /// What raycast() gives. The result stays as it is until the next cast() or take(); after an error it is unspecified.
+  /// \throws Error as validate(view) does.
+  const Visible& cast(const RayIndex& index, const View& view, const Execution& execution = {});
+  /// Moves the last result out; the next cast() allocates another.
+  [[nodiscard]] Visible take();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace frontmost

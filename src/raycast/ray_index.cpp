@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/float_environment.h"
+#include "base/parallel.h"
+#include "raycast/ray_tree.h"
+
+namespace frontmost {
+namespace {
+
+RayTree make_tree(const Surfaces& surfaces, const Execution& execution) {
+  const IeeeScope ieee;
+  RayTree tree;
+  report_progress(execution, "index", 0);
+  std::vector<LeafBox> boxes = fill_leaves(surfaces, tree, execution);
+  report_progress(execution, "index", 0.5);
+  build_nodes(boxes, tree, execution);
+  report_progress(execution, "index", 1);
+  return tree;
+}
+
+}  // namespace
+
+RayIndex::RayIndex(const Surfaces& surfaces, const Execution& execution)
+    : tree_(std::make_unique<const RayTree>(make_tree(surfaces, execution))) {}
+RayIndex::~RayIndex() = default;
+RayIndex::RayIndex(RayIndex&&) noexcept = default;
+RayIndex& RayIndex::operator=(RayIndex&&) noexcept = default;
+
+std::uint32_t RayIndex::triangle_count() const { return tree_->triangle_count; }
+
+const Box& RayIndex::bounds() const { return tree_->bounds; }
+
+std::size_t RayIndex::byte_count() const {
+  return sizeof(RayTree) + tree_->nodes.size() * sizeof(RayNode) + tree_->leaves.size() * sizeof(RayLeaf);
+}
+
+}  // namespace frontmost

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+// The nodes of a RayIndex: ranges of leaves are halved by the binned surface area heuristic, the child of the largest
+// surface first, until a node has sixteen.
+//
+// Large ranges are split one after another; what is below a fixed size is a piece of its own, built by whichever
+// thread comes, and the pieces are strung together in order. So the tree is the same for any number of threads.
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "base/parallel.h"
+#include "raycast/ray_tree.h"
+
+namespace frontmost {
+namespace {
+
+constexpr int kBins = 16;
+/// Ranges of at most this many leaves are pieces of their own.
+constexpr std::size_t kPieceLeaves = 2048;
+/// Fewer leaves than this are halved where they lie: their order already is a good one, and bins cost more than they
+/// save.
+constexpr std::size_t kBinFrom = 4;
+
+struct Range {
+  std::size_t begin = 0, end = 0;
+  Box box;
+  [[nodiscard]] std::size_t size() const { return end - begin; }
+};
+
+Box as_box(const LeafBox& b) { return {{b.low[0], b.low[1], b.low[2]}, {b.high[0], b.high[1], b.high[2]}}; }
+
+/// Halves first: the sum of two large floats can overflow.
+glm::vec3 centre_of(const LeafBox& b) {
+  return {0.5f * b.low[0] + 0.5f * b.high[0], 0.5f * b.low[1] + 0.5f * b.high[1], 0.5f * b.low[2] + 0.5f * b.high[2]};
+}
+
+float half_area(const Box& box) {
+  const glm::vec3 d = box.high - box.low;
+  return d.x * d.y + d.y * d.z + d.z * d.x;
+}
+
+struct Bin {
+  Box box;
+  std::uint32_t count = 0;
+};
+
+struct Split {
+  int axis = -1;
+  int bin = 0;  ///< the first on the right
+  float cost = std::numeric_limits<float>::infinity();
+};
+
+/// Which bin a centre falls into along each axis.
+struct Binning {
+  glm::vec3 origin, scale;
+
+  explicit Binning(const Box& centres) : origin(centres.low) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const float extent = centres.high[axis] - centres.low[axis];
+      // Zero, not finite, or so small that the scale overflows: everything is in the first bin.
+      const float wanted = kBins * 0.9999f / extent;
+      scale[axis] = extent > 0 && wanted < std::numeric_limits<float>::max() ? wanted : 0.0f;
+    }
+  }
+  [[nodiscard]] int operator()(const glm::vec3& centre, int axis) const {
+    return std::min(int((centre[axis] - origin[axis]) * scale[axis]), kBins - 1);
+  }
+};
+
+using Bins = std::array<std::array<Bin, kBins>, 3>;
+
+void consider(const std::array<Bin, kBins>& bins, int axis, Split& best) {
+  std::array<float, kBins> right_cost;
+  Box box;
+  std::uint32_t count = 0;
+  for (int i = kBins - 1; i > 0; --i) {
+    box.include(bins[std::size_t(i)].box);
+    count += bins[std::size_t(i)].count;
+    right_cost[std::size_t(i)] = count == 0 ? 0 : half_area(box) * float(count);
+  }
+  box = {};
+  count = 0;
+  std::uint32_t total = 0;
+  for (const Bin& bin : bins) total += bin.count;
+  for (int i = 1; i < kBins; ++i) {
+    box.include(bins[std::size_t(i - 1)].box);
+    count += bins[std::size_t(i - 1)].count;
+    if (count == 0 || count == total) continue;
+    const float cost = half_area(box) * float(count) + right_cost[std::size_t(i)];
+    if (cost < best.cost) best = {axis, i, cost};
+  }
+}
+
+class NodeBuilder {
+ public:
+  explicit NodeBuilder(std::vector<LeafBox>& boxes) : boxes_(boxes) {}
+
+  /// \returns up to sixteen ranges, by splitting the largest until none can be split or `stop` leaves are left in each.
+  std::vector<Range> children_of(const Range& range) {
+    std::vector<Range> ranges{range};
+    ranges.reserve(kRayLanes);
+    while (ranges.size() < kRayLanes) {
+      std::size_t largest = ranges.size();
+      float most = -1;
+      for (std::size_t i = 0; i < ranges.size(); ++i) {
+        // Areas that overflow count as equal; NaN never wins, but the first range that can be split does.
+        const float area = half_area(ranges[i].box);
+        if (ranges[i].size() > 1 && (largest == ranges.size() || area > most)) largest = i, most = area;
+      }
+      if (largest == ranges.size()) break;
+      const auto [left, right] = split(ranges[largest]);
+      ranges[largest] = left;
+      ranges.push_back(right);
+    }
+    return ranges;
+  }
+
+  [[nodiscard]] Range range_of(std::size_t begin, std::size_t end) const {
+    Range range{begin, end, {}};
+    for (std::size_t i = begin; i < end; ++i) range.box.include(as_box(boxes_[i]));
+    return range;
+  }
+
+ private:
+  std::pair<Range, Range> split(const Range& range) {
+    const std::size_t middle = range.size() < kBinFrom ? range.begin + range.size() / 2 : partition(range);
+    return {range_of(range.begin, middle), range_of(middle, range.end)};
+  }
+
+  std::size_t partition(const Range& range) {
+    Box centres;
+    for (std::size_t i = range.begin; i < range.end; ++i) centres.include(centre_of(boxes_[i]));
+    const Binning binning(centres);
+    Bins bins;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      const glm::vec3 centre = centre_of(boxes_[i]);
+      const Box box = as_box(boxes_[i]);
+      for (int axis = 0; axis < 3; ++axis) {
+        Bin& bin = bins[std::size_t(axis)][std::size_t(binning(centre, axis))];
+        bin.box.include(box);
+        ++bin.count;
+      }
+    }
+    Split best;
+    for (int axis = 0; axis < 3; ++axis) consider(bins[std::size_t(axis)], axis, best);
+    // All centres in one place, or areas beyond what floats hold.
+    if (best.axis < 0) return range.begin + range.size() / 2;
+    const auto first = boxes_.begin() + std::ptrdiff_t(range.begin), last = boxes_.begin() + std::ptrdiff_t(range.end);
+    const auto middle =
+        std::partition(first, last, [&](const LeafBox& box) { return binning(centre_of(box), best.axis) < best.bin; });
+    return std::size_t(middle - boxes_.begin());
+  }
+
+  std::vector<LeafBox>& boxes_;
+};
+
+/// Nodes over one range; children are numbered within the piece.
+struct Piece {
+  Range range;
+  std::vector<RayNode> nodes;
+  std::uint32_t root = 0, depth = 0;
+};
+
+void set_child(RayNode& node, std::size_t lane, const Box& box, std::uint32_t child) {
+  for (int axis = 0; axis < 3; ++axis) {
+    node.low[axis][lane] = box.low[axis];
+    node.high[axis][lane] = box.high[axis];
+  }
+  node.child[lane] = child;
+}
+
+class PieceBuilder {
+ public:
+  PieceBuilder(std::vector<LeafBox>& boxes, Piece& piece) : boxes_(boxes), builder_(boxes), piece_(piece) {}
+
+  void build() { piece_.root = build(piece_.range, 0); }
+
+ private:
+  std::uint32_t build(const Range& range, std::uint32_t depth) {
+    piece_.depth = std::max(piece_.depth, depth);
+    if (range.size() == 1) return boxes_[range.begin].leaf | kLeafBit;
+    const std::vector<Range> ranges = builder_.children_of(range);
+    const std::size_t number = piece_.nodes.size();
+    piece_.nodes.push_back({});
+    for (std::size_t lane = 0; lane < ranges.size(); ++lane) {
+      const std::uint32_t child = build(ranges[lane], depth + 1);
+      set_child(piece_.nodes[number], lane, ranges[lane].box, child);
+    }
+    piece_.nodes[number].count = std::uint32_t(ranges.size());
+    return std::uint32_t(number);
+  }
+
+  std::vector<LeafBox>& boxes_;
+  NodeBuilder builder_;
+  Piece& piece_;
+};
+
+/// The nodes above the pieces. A child with kPieceBit is the number of a piece.
+class TopBuilder {
+ public:
+  explicit TopBuilder(std::vector<LeafBox>& boxes) : builder_(boxes) {}
+
+  std::uint32_t build(const Range& range, std::uint32_t depth) {
+    if (range.size() <= kPieceLeaves) {
+      pieces.push_back({range, {}, 0, 0});
+      piece_depth.push_back(depth);
+      return std::uint32_t(pieces.size() - 1) | kLeafBit;
+    }
+    const std::vector<Range> ranges = builder_.children_of(range);
+    const std::size_t number = nodes.size();
+    nodes.push_back({});
+    for (std::size_t lane = 0; lane < ranges.size(); ++lane) {
+      const std::uint32_t child = build(ranges[lane], depth + 1);
+      set_child(nodes[number], lane, ranges[lane].box, child);
+    }
+    nodes[number].count = std::uint32_t(ranges.size());
+    return std::uint32_t(number);
+  }
+  [[nodiscard]] Range all(std::size_t count) const { return builder_.range_of(0, count); }
+
+  std::vector<RayNode> nodes;
+  std::vector<Piece> pieces;
+  std::vector<std::uint32_t> piece_depth;
+
+ private:
+  NodeBuilder builder_;
+};
+
+}  // namespace
+
+void build_nodes(std::vector<LeafBox>& boxes, RayTree& tree, const Execution& execution) {
+  if (boxes.empty()) return;
+  TopBuilder top(boxes);
+  const Range all = top.all(boxes.size());
+  tree.bounds = all.box;
+  const std::uint32_t root = top.build(all, 0);
+  std::vector<Piece>& pieces = top.pieces;
+  parallel_for(execution, pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) PieceBuilder(boxes, pieces[i]).build();
+  });
+
+  std::vector<std::uint32_t> first(pieces.size() + 1, std::uint32_t(top.nodes.size()));
+  for (std::size_t i = 0; i < pieces.size(); ++i) first[i + 1] = first[i] + std::uint32_t(pieces[i].nodes.size());
+  tree.nodes = Buffer<RayNode>(first.back());
+  const auto moved = [&](std::uint32_t piece, std::uint32_t child) {
+    return child & kLeafBit ? child : child + first[piece];
+  };
+  const auto root_of = [&](std::uint32_t piece) { return moved(piece, pieces[piece].root); };
+  for (std::size_t n = 0; n < top.nodes.size(); ++n) {
+    tree.nodes[n] = top.nodes[n];
+    for (std::uint32_t& child : tree.nodes[n].child)
+      if (child & kLeafBit) child = root_of(child & ~kLeafBit);
+  }
+  for (std::uint32_t p = 0; p < pieces.size(); ++p) {
+    tree.depth = std::max(tree.depth, top.piece_depth[p] + pieces[p].depth);
+    for (std::size_t n = 0; n < pieces[p].nodes.size(); ++n) {
+      RayNode& node = tree.nodes[first[p] + n] = pieces[p].nodes[n];
+      for (std::size_t lane = 0; lane < node.count; ++lane) node.child[lane] = moved(p, node.child[lane]);
+    }
+  }
+  tree.root = root & kLeafBit ? root_of(root & ~kLeafBit) : root;
+}
+
+}  // namespace frontmost

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The inside of RayIndex: nodes of sixteen boxes, leaves of sixteen triangles, as structure of arrays.
+#pragma once
+
+#include <vector>
+
+#include "frontmost/raycast.h"
+
+namespace frontmost {
+
+/// Boxes or triangles side by side: one vector of the widest instruction set.
+inline constexpr std::size_t kRayLanes = 16;
+
+/// A child: the number of a leaf with this bit set, or of a node.
+inline constexpr std::uint32_t kLeafBit = 0x80000000u;
+
+/// World-space boxes of `count` children. Unused lanes hold zeros.
+struct alignas(64) RayNode {
+  float low[3][kRayLanes], high[3][kRayLanes];
+  std::uint32_t child[kRayLanes];
+  std::uint32_t count;
+};
+
+/// corner[k][axis][lane], world space, counter-clockwise seen from the front. Unused lanes come last, hold zeros, and
+/// have the id no_primitive.
+struct alignas(64) RayLeaf {
+  float corner[3][3][kRayLanes];
+  PrimitiveId id[kRayLanes];
+};
+
+struct RayTree {
+  Buffer<RayNode> nodes;
+  Buffer<RayLeaf> leaves;
+  std::uint32_t root = no_index;  ///< a child; no_index when there are no triangles
+  std::uint32_t triangle_count = 0;
+  std::uint32_t depth = 0;  ///< nodes from the root to the deepest leaf
+  Box bounds;
+
+  /// The most children that a depth-first walk has waiting.
+  [[nodiscard]] std::size_t stack_size() const { return std::size_t(depth) * (kRayLanes - 1) + 1; }
+};
+
+/// Bounds of leaves, to build nodes over.
+struct LeafBox {
+  float low[3];
+  std::uint32_t leaf;
+  float high[3];
+  std::uint32_t unused;
+};
+
+/// Fills tree.leaves in the surfaces' spatial order. \returns the box of every leaf.
+[[nodiscard]] std::vector<LeafBox> fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execution);
+
+/// Fills tree.nodes over the boxes, which are reordered.
+void build_nodes(std::vector<LeafBox>& boxes, RayTree& tree, const Execution& execution);
+
+}  // namespace frontmost

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ray casting: one tile of rays after another, on all threads.
+
+#include "frontmost/raycast.h"
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "base/float_environment.h"
+#include "base/parallel.h"
+#include "raycast/tile_kernel.h"
+
+namespace frontmost {
+namespace {
+
+using namespace raycast_detail;
+
+/// Lends a scratch to whoever casts a tile, and keeps it for the next.
+class ScratchPool {
+ public:
+  std::unique_ptr<TileScratch> take(const RayTree& tree) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!free_.empty()) {
+        std::unique_ptr<TileScratch> scratch = std::move(free_.back());
+        free_.pop_back();
+        scratch->reserve(tree);
+        return scratch;
+      }
+    }
+    return std::make_unique<TileScratch>(tree);
+  }
+  void give_back(std::unique_ptr<TileScratch> scratch) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(scratch));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<TileScratch>> free_;
+};
+
+glm::vec3 reach_of(const Box& bounds, const ScreenTransform& t) {
+  if (bounds.is_empty()) return glm::vec3(0);
+  const glm::vec3 eye(t.eye[0], t.eye[1], t.eye[2]);
+  return glm::max(glm::abs(bounds.low - eye), glm::abs(bounds.high - eye));
+}
+
+}  // namespace
+
+struct RayCaster::State {
+  ScratchPool scratches;
+  Visible visible;
+
+  /// Planes for the view: those of the last one where they fit. \returns true when their memory was used before.
+  bool prepare_planes(const View& view) {
+    const bool fits = visible.primitives.size() == view.sample_count();
+    visible.view = view;
+    if (fits) return true;
+    visible.primitives = Buffer<PrimitiveId>(view.sample_count());
+    visible.keys = Buffer<float>(view.sample_count());
+    return false;
+  }
+};
+
+RayCaster::RayCaster() : state_(std::make_unique<State>()) {}
+RayCaster::~RayCaster() = default;
+RayCaster::RayCaster(RayCaster&&) noexcept = default;
+RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
+
+const Visible& RayCaster::cast(const RayIndex& index, const View& view, const Execution& execution) {
+  validate(view);
+  const IeeeScope ieee;
+  const RayTree& tree = index.tree();
+  const ScreenTransform transform(view);
+  const bool is_used = state_->prepare_planes(view);
+  Visible& visible = state_->visible;
+  const FrameInput frame{tree,
+                         transform,
+                         view,
+                         sample_offsets(view.samples),
+                         reach_of(tree.bounds, transform),
+                         visible.primitives.data(),
+                         visible.keys.data(),
+                         is_used};
+  const int tiles_x = (view.width + kTileSize - 1) / kTileSize, tiles_y = (view.height + kTileSize - 1) / kTileSize;
+  const std::size_t tiles = std::size_t(tiles_x) * std::size_t(tiles_y);
+  std::atomic<std::size_t> done{0};
+  constexpr std::size_t kTilesPerPart = 4;
+  parallel_for(execution, tiles, kTilesPerPart, [&](std::size_t begin, std::size_t end) {
+    std::unique_ptr<TileScratch> scratch = state_->scratches.take(tree);
+    for (std::size_t i = begin; i < end; ++i)
+      cast_tile(frame, int(i % std::size_t(tiles_x)), int(i / std::size_t(tiles_x)), *scratch, execution.isa);
+    state_->scratches.give_back(std::move(scratch));
+    report_progress(execution, "visible", double(done += end - begin) / double(tiles));
+  });
+  return visible;
+}
+
+Visible RayCaster::take() { return std::move(state_->visible); }
+
+Visible raycast(const RayIndex& index, const View& view, const Execution& execution) {
+  RayCaster caster;
+  caster.cast(index, view, execution);
+  return caster.take();
+}
+
+Visible raycast(const Surfaces& surfaces, const View& view, const Execution& execution) {
+  validate(view);
+  return raycast(RayIndex(surfaces, execution), view, execution);
+}
+
+}  // namespace frontmost

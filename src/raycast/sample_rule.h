@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a ray through a sample meets: the one definition, in plain scalar code. Kernels are faster ways to the same
+// bits.
+//
+// Corners are homogeneous screen positions (view/screen_transform.h). For the ray through sample (sx, sy), sheared so
+// that the ray is the axis, a corner lies at (x - sx*w, y - sy*w): rounded, but the same for every triangle that has
+// this corner. The ray meets the triangle when the origin is inside the three sheared corners, edges included; the
+// signs of the three 2x2 determinants are exact.
+//
+// S. Woop, C. Benthin, I. Wald. Watertight Ray/Triangle Intersection. Journal of Computer Graphics Techniques 2(1),
+// 2013; here the determinants are never rounded.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "view/screen_transform.h"
+
+namespace frontmost::raycast_detail {
+
+/// Keys are affine over the screen; they are evaluated from the centre of the tile that holds the sample, because far
+/// from the image's centre little would be left of a float's precision. The tile is part of the definition.
+inline constexpr int kTileSize = 32;
+
+/// Corners between the planes, on the guard band, and within these distances are transformed and sheared in floats:
+/// products of two sheared coordinates then stay in their range. The others take doubles.
+inline constexpr float kSingleNear = 0x1p-40f, kSingleFar = 0x1p40f;
+/// Steeper or higher key planes than this are those of triangles seen edge-on: their keys are made constant.
+inline constexpr float kSteepest = 0x1p60f;
+
+struct Corner {
+  double x = 0, y = 0, d = 0;
+  bool is_single = false;  ///< the values are floats
+};
+
+inline Corner make_corner(const ScreenTransform& t, const glm::vec3& world) {
+  const HomogeneousVertex v = transform(t, world);
+  if (is_plain(t, v) && v.d >= kSingleNear && v.d <= kSingleFar) return {v.x, v.y, v.d, true};
+  const double dx = double(world.x) - t.eye[0], dy = double(world.y) - t.eye[1], dz = double(world.z) - t.eye[2];
+  return {t.x_row[0] * dx + t.x_row[1] * dy + t.x_row[2] * dz + t.x_offset,
+          t.y_row[0] * dx + t.y_row[1] * dy + t.y_row[2] * dz + t.y_offset,
+          t.d_row[0] * dx + t.d_row[1] * dy + t.d_row[2] * dz + t.d_offset, false};
+}
+
+struct Point {
+  double x, y;
+};
+
+inline Point sheared(const ScreenTransform& t, const Corner& c, float sx, float sy) {
+  if (!c.is_single) {
+    const double w = t.orthographic ? 1.0 : c.d;
+    return {c.x - double(sx) * w, c.y - double(sy) * w};
+  }
+  const float w = t.orthographic ? 1.0f : float(c.d);
+  return {float(c.x) - sx * w, float(c.y) - sy * w};
+}
+
+/// The exact sign of a.x * b.y - a.y * b.x: products round monotonically, so where they differ, they tell; where they
+/// are equal, their rounding errors do.
+inline int side(const Point& a, const Point& b) {
+  const double p = a.x * b.y, q = a.y * b.x;
+  if (p != q) return p > q ? 1 : -1;
+  const double p_error = std::fma(a.x, b.y, -p), q_error = std::fma(a.y, b.x, -q);
+  return int(p_error > q_error) - int(p_error < q_error);
+}
+
+/// -1: met, front-facing (counter-clockwise on the screen; y is down); 1: met from behind; 0: missed, or edge-on.
+inline int facing(const ScreenTransform& t, const std::array<Corner, 3>& corners, float sx, float sy) {
+  const Point a = sheared(t, corners[0], sx, sy), b = sheared(t, corners[1], sx, sy),
+              c = sheared(t, corners[2], sx, sy);
+  const int u = side(b, c), v = side(c, a), w = side(a, b);
+  const int least = std::min({u, v, w}), most = std::max({u, v, w});
+  return least >= 0 ? most : most <= 0 ? least : 0;
+}
+
+inline float key_of_distance(const ScreenTransform& t, double d) {
+  if (t.orthographic) return std::fmin(std::fmax((t.far - float(d)) * t.inverse_range, 0.0f), 1.0f);
+  return std::fmin(t.near * (1.0f / float(d)), 1.0f);
+}
+
+/// The key of a triangle over one tile: k0 + u*gx + v*gy, (u, v) from the tile's centre in 1/256 pixel.
+struct KeyPlane {
+  float gx = 0, gy = 0, k0 = 0;
+  float low = 0, high = 0;  ///< the range of the corners' keys, which no key leaves
+  bool is_clipped = false;  ///< not wholly between near and far: only keys in [cut, 1] are seen
+  bool is_outside = false;  ///< wholly before near or beyond far
+  float cut = 0;
+
+  [[nodiscard]] float raw(float u, float v) const { return (k0 + u * gx) + v * gy; }
+  [[nodiscard]] bool sees(float raw_key) const { return !is_clipped || (raw_key >= cut && raw_key <= 1.0f); }
+  [[nodiscard]] float clamped(float raw_key) const { return std::min(std::max(raw_key, low), high); }
+};
+
+inline void set_range(const ScreenTransform& t, const std::array<Corner, 3>& c, KeyPlane& plane) {
+  const double nearest = std::min({c[0].d, c[1].d, c[2].d}), farthest = std::max({c[0].d, c[1].d, c[2].d});
+  plane.is_outside = !(farthest >= t.near && nearest <= t.far);
+  plane.is_clipped = !(nearest >= t.near && farthest <= t.far);
+  plane.cut = t.orthographic ? 0.0f : t.near / t.far;
+  plane.high = nearest >= t.near ? key_of_distance(t, nearest) : 1.0f;
+  plane.low = farthest <= t.far ? key_of_distance(t, farthest) : plane.cut;
+}
+
+/// Precondition: finite corners. (tx, ty): the tile's centre, from the image's, in 1/256 pixel.
+inline KeyPlane key_plane(const ScreenTransform& t, const std::array<Corner, 3>& c, double tx, double ty) {
+  KeyPlane plane;
+  set_range(t, c, plane);
+  const double px = c[1].x - c[0].x, py = c[1].y - c[0].y, pd = c[1].d - c[0].d;
+  const double qx = c[2].x - c[0].x, qy = c[2].y - c[0].y, qd = c[2].d - c[0].d;
+  const double nx = py * qd - pd * qy, ny = pd * qx - px * qd, nd = px * qy - py * qx;
+  const double det = (nx * c[0].x + ny * c[0].y) + nd * c[0].d;
+  const double across = nx * tx + ny * ty;
+  const double scale = t.orthographic ? double(t.inverse_range) / nd : double(t.near) / det;
+  plane.gx = float(nx * scale);
+  plane.gy = float(ny * scale);
+  plane.k0 = t.orthographic ? float(double(t.far) * double(t.inverse_range) - (det - across) * scale)
+                            : float((across + nd) * scale);
+  // NaN counts as too steep.
+  if (!(std::abs(plane.gx) <= kSteepest && std::abs(plane.gy) <= kSteepest && std::abs(plane.k0) <= kSteepest)) {
+    plane.gx = plane.gy = 0;
+    plane.k0 = plane.low;
+  }
+  return plane;
+}
+
+}  // namespace frontmost::raycast_detail

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+// Casting one tile: its rays walk the tree together, nearest children first, and meet many triangles at a time.
+//
+// A. Reshetov, A. Soupikov, J. Hurley. Multi-Level Ray Tracing Algorithm. 2005 (a frustum in place of its rays).
+//
+// What a ray meets is defined in sample_rule.h, and every path here gives its bits. Triangles of a few pixels are
+// handled as many at a time as the vector holds, larger ones by blocks of pixels. Everything that decides to leave
+// something out (boxes, rectangles, blocks) is padded by a bound of the rounding on both sides.
+
+#include "raycast/tile_kernel.h"
+
+#include <algorithm>
+#include <cstring>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raycast/tile_kernel.cpp"
+#include "base/isa.h"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+#include "raycast/triangle_queue-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::raycast_detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// A half-space of positions relative to the eye: a*x + b*y + c*z + offset.
+struct Plane {
+  float n[3], offset;
+  float pad;  // no rounding, here or of a corner, exceeds this
+};
+
+class TileCaster {
+ public:
+  TileCaster(const FrameInput& frame, int tile_x, int tile_y, std::size_t sample, TileScratch& scratch)
+      : frame_(frame),
+        t_(frame.transform),
+        scratch_(scratch),
+        sample_(sample),
+        place_(frame, tile_x, tile_y, sample),
+        buffer_(place_, scratch),
+        large_(frame, place_, buffer_),
+        queue_(frame, place_, buffer_, large_) {}
+
+  void Cast() {
+    if (frame_.tree.root != no_index) {
+      SetPlanes();
+      Walk();
+      queue_.Finish();
+    }
+    buffer_.WriteOut(frame_, sample_);
+  }
+
+ private:
+  /// sign * (row - at * w_row), so turned that it is positive inside.
+  [[nodiscard]] Plane SidePlane(const std::array<float, 3>& row, float row_offset, double at, double sign) const {
+    Plane p{};
+    const double w = t_.orthographic ? 0 : 1;
+    double terms =
+        std::abs(double(row_offset)) + std::abs(at) * (t_.orthographic ? 1.0 : std::abs(double(t_.d_offset)));
+    for (int axis = 0; axis < 3; ++axis) {
+      p.n[axis] = float(sign * (double(row[std::size_t(axis)]) - at * w * double(t_.d_row[std::size_t(axis)])));
+      terms +=
+          (std::abs(double(row[std::size_t(axis)])) + std::abs(at) * std::abs(double(t_.d_row[std::size_t(axis)]))) *
+          double(frame_.reach[axis]);
+    }
+    p.offset = float(sign * (double(row_offset) - at * (t_.orthographic ? 1.0 : double(t_.d_offset))));
+    p.pad = float(terms * (64 * double(kHalfUlp)));
+    return p;
+  }
+
+  void SetPlanes() {
+    const double left = place_.first_x, right = left + (place_.width - 1) * kSubPixels;
+    const double top = place_.first_y, bottom = top + (place_.height - 1) * kSubPixels;
+    planes_[0] = SidePlane(t_.x_row, t_.x_offset, left, 1);
+    planes_[1] = SidePlane(t_.x_row, t_.x_offset, right, -1);
+    planes_[2] = SidePlane(t_.y_row, t_.y_offset, top, 1);
+    planes_[3] = SidePlane(t_.y_row, t_.y_offset, bottom, -1);
+    depth_ = SidePlane(t_.d_row, t_.d_offset, 0, 1);
+  }
+
+  [[nodiscard]] HWY_INLINE VF Distance(const Plane& p, const VF (&ends)[2][3], bool farthest) const {
+    const DF d;
+    VF sum[3];
+    for (int axis = 0; axis < 3; ++axis)
+      sum[axis] = hn::Mul(hn::Set(d, p.n[axis]), ends[(p.n[axis] >= 0) == farthest ? 1 : 0][axis]);
+    return hn::Add(hn::Add(hn::Add(sum[0], sum[1]), sum[2]), hn::Set(d, p.offset));
+  }
+
+  /// No key of what lies at this distance or beyond is greater.
+  [[nodiscard]] HWY_INLINE VF NearestKey(VF nearest) const {
+    const DF d;
+    const VF one = hn::Set(d, 1.0f), near = hn::Set(d, t_.near);
+    const VF key = t_.orthographic ? hn::Mul(hn::Sub(hn::Set(d, t_.far), nearest), hn::Set(d, t_.inverse_range))
+                                   : hn::Div(near, nearest);
+    const VF padded = hn::Mul(key, hn::Set(d, 1.0f + 16 * kHalfUlp));
+    // Not beyond near, or NaN.
+    return hn::IfThenElse(hn::Gt(nearest, near), hn::Max(hn::Min(padded, one), hn::Zero(d)), one);
+  }
+
+  /// Pushes the children that the tile may see, the nearest last.
+  HWY_INLINE void LookInto(const RayNode& node) {
+    const DF d;
+    Waiting found[kRayLanes];
+    std::size_t count = 0;
+    for (std::size_t first = 0; first < node.count; first += kLanes) {
+      VF ends[2][3];
+      for (int axis = 0; axis < 3; ++axis) {
+        const VF eye = hn::Set(d, t_.eye[std::size_t(axis)]);
+        ends[0][axis] = hn::Sub(hn::Load(d, node.low[axis] + first), eye);
+        ends[1][axis] = hn::Sub(hn::Load(d, node.high[axis] + first), eye);
+      }
+      // Strictly outside by more than rounding can explain; NaN is not.
+      MF outside = hn::Lt(Distance(planes_[0], ends, true), hn::Set(d, -planes_[0].pad));
+      for (int i = 1; i < 4; ++i)
+        outside = hn::Or(outside, hn::Lt(Distance(planes_[i], ends, true), hn::Set(d, -planes_[i].pad)));
+      const VF nearest = hn::Sub(Distance(depth_, ends, false), hn::Set(d, depth_.pad));
+      const VF farthest = hn::Add(Distance(depth_, ends, true), hn::Set(d, depth_.pad));
+      outside = hn::Or(outside, hn::Or(hn::Lt(farthest, hn::Set(d, t_.near)), hn::Gt(nearest, hn::Set(d, t_.far))));
+      const VF key = NearestKey(nearest);
+      outside = hn::Or(outside, hn::Lt(key, hn::Set(d, buffer_.tile_farthest())));
+      alignas(64) std::uint32_t bits[kLanes];
+      hn::Store(hn::BitCast(DU(), key), DU(), bits);
+      const std::uint32_t used = (1u << std::min<std::size_t>(kLanes, node.count - first)) - 1;
+      ForEachBit(~BitsOf(d, outside) & used, [&](std::size_t lane) HWY_ATTR {
+        found[count++] = Waiting(bits[lane]) << 32 | node.child[first + lane];
+      });
+    }
+    for (std::size_t i = 1; i < count; ++i) {
+      const Waiting w = found[i];
+      std::size_t k = i;
+      for (; k > 0 && found[k - 1] > w; --k) found[k] = found[k - 1];
+      found[k] = w;
+    }
+    std::copy_n(found, count, scratch_.stack.data() + waiting_);
+    waiting_ += count;
+  }
+
+  void Walk() {
+    waiting_ = 1;
+    scratch_.stack[0] = Waiting(0x7F800000u) << 32 | frame_.tree.root;
+    while (waiting_ > 0) {
+      const Waiting next = scratch_.stack[--waiting_];
+      const auto bits = std::uint32_t(next >> 32), child = std::uint32_t(next);
+      buffer_.Refresh();
+      float key;
+      std::memcpy(&key, &bits, sizeof key);
+      if (key < buffer_.tile_farthest()) continue;
+      if (child & kLeafBit) {
+        MeetLeaf(frame_.tree.leaves[child & ~kLeafBit]);
+      } else {
+        LookInto(frame_.tree.nodes[child]);
+      }
+    }
+  }
+
+  // -- leaves -----------------------------------------------------------------------------------------------------
+
+  [[nodiscard]] HWY_INLINE VF Row(const std::array<float, 3>& row, float offset, const VF (&delta)[3]) const {
+    const DF d;
+    const VF x = hn::Mul(hn::Set(d, row[0]), delta[0]), y = hn::Mul(hn::Set(d, row[1]), delta[1]);
+    return hn::Add(hn::Add(hn::Add(x, y), hn::Mul(hn::Set(d, row[2]), delta[2])), hn::Set(d, offset));
+  }
+
+  /// make_corner().is_single
+  [[nodiscard]] HWY_INLINE MF IsSingle(VF x, VF y, VF distance) const {
+    const DF d;
+    const VF reach = t_.orthographic ? hn::Set(d, float(kGuardBand)) : hn::Mul(hn::Set(d, float(kGuardBand)), distance);
+    const MF between = hn::And(hn::Ge(distance, hn::Set(d, std::max(t_.near, kSingleNear))),
+                               hn::Le(distance, hn::Set(d, std::min(t_.far, kSingleFar))));
+    return hn::And(between, hn::And(hn::Le(hn::Abs(x), reach), hn::Le(hn::Abs(y), reach)));
+  }
+
+  /// The first and last sample column (or row) that corners at `low` to `high` may cover.
+  struct Span {
+    VF first, last;
+  };
+  [[nodiscard]] HWY_INLINE Span SamplesWithin(VF low, VF high, float first_sample, int count) const {
+    const DF d;
+    const VF pad = hn::Set(d, 32 * kHalfUlp * float(std::max(t_.centre_x, t_.centre_y)));
+    const VF start = hn::Set(d, first_sample), scale = hn::Set(d, 1 / kPixel);
+    const VF first = hn::Ceil(hn::Mul(hn::Sub(hn::Sub(low, pad), start), scale));
+    const VF last = hn::Floor(hn::Mul(hn::Sub(hn::Add(high, pad), start), scale));
+    return {hn::Max(first, hn::Zero(d)), hn::Min(last, hn::Set(d, float(count - 1)))};
+  }
+
+  void MeetLeaf(const RayLeaf& leaf) {
+    for (std::size_t first = 0; first < kRayLanes; first += kLanes) MeetLanes(leaf, first);
+  }
+
+  HWY_INLINE void MeetLanes(const RayLeaf& leaf, std::size_t first) {
+    const DF d;
+    const DU du;
+    VF x[3], y[3], dist[3];
+    MF single = hn::MaskFromVec(hn::Zero(d));
+    for (int k = 0; k < 3; ++k) {
+      VF delta[3];
+      for (int axis = 0; axis < 3; ++axis)
+        delta[axis] = hn::Sub(hn::Load(d, leaf.corner[k][axis] + first), hn::Set(d, t_.eye[std::size_t(axis)]));
+      x[k] = Row(t_.x_row, t_.x_offset, delta);
+      y[k] = Row(t_.y_row, t_.y_offset, delta);
+      dist[k] = Row(t_.d_row, t_.d_offset, delta);
+      const MF is_single = IsSingle(x[k], y[k], dist[k]);
+      single = k == 0 ? is_single : hn::And(single, is_single);
+    }
+    const VU id = hn::Load(du, leaf.id + first);
+    const MF used = hn::RebindMask(d, hn::Ne(id, hn::Set(du, no_primitive)));
+    const MF wide = hn::AndNot(single, used);
+    if (HWY_UNLIKELY(!hn::AllFalse(d, wide))) MeetWide(leaf, first, wide);
+
+    const VF one = hn::Set(d, 1.0f);
+    VF xs[3], ys[3];
+    for (int k = 0; k < 3; ++k) {
+      const VF inverse = t_.orthographic ? one : hn::Div(one, dist[k]);
+      xs[k] = hn::Mul(x[k], inverse);
+      ys[k] = hn::Mul(y[k], inverse);
+    }
+    const Span across = SamplesWithin(hn::Min(hn::Min(xs[0], xs[1]), xs[2]), hn::Max(hn::Max(xs[0], xs[1]), xs[2]),
+                                      place_.first_x, place_.width);
+    const Span down = SamplesWithin(hn::Min(hn::Min(ys[0], ys[1]), ys[2]), hn::Max(hn::Max(ys[0], ys[1]), ys[2]),
+                                    place_.first_y, place_.height);
+    const VF nearest = KeyOfDistance(t_, hn::Min(hn::Min(dist[0], dist[1]), dist[2]));
+    MF kept = hn::And(hn::And(single, used), hn::Ge(nearest, hn::Set(d, buffer_.tile_farthest())));
+    kept = hn::And(kept, hn::And(hn::Le(across.first, across.last), hn::Le(down.first, down.last)));
+    if (hn::AllFalse(d, kept)) return;
+
+    // Rectangles packed into bytes; lanes that are not kept may hold anything, but in range.
+    const auto as_byte = [&](VF v) HWY_ATTR {
+      return hn::BitCast(du, hn::ConvertTo(DI(), hn::Min(hn::Max(v, hn::Zero(d)), hn::Set(d, 255.0f))));
+    };
+    TriangleQueue::Batch batch;
+    std::copy_n(x, 3, batch.x);
+    std::copy_n(y, 3, batch.y);
+    std::copy_n(dist, 3, batch.d);
+    batch.id = id;
+    batch.rect = hn::Or(hn::Or(as_byte(across.first), hn::ShiftLeft<8>(as_byte(down.first))),
+                        hn::Or(hn::ShiftLeft<16>(as_byte(across.last)), hn::ShiftLeft<24>(as_byte(down.last))));
+    queue_.Add(batch, kept);
+  }
+
+  /// Triangles with a corner that floats do not serve: one by one.
+  HWY_NOINLINE void MeetWide(const RayLeaf& leaf, std::size_t first, MF wide) {
+    ForEachBit(BitsOf(DF(), wide), [&](std::size_t bit) {
+      const std::size_t lane = first + bit;
+      LargeTriangle large;
+      for (std::size_t k = 0; k < 3; ++k)
+        large.corners[k] = make_corner(t_, {leaf.corner[k][0][lane], leaf.corner[k][1][lane], leaf.corner[k][2][lane]});
+      large.plane = key_plane(t_, large.corners, double(place_.centre_x), double(place_.centre_y));
+      if (large.plane.is_outside || large.plane.high < buffer_.tile_farthest()) return;
+      large.is_single = false;
+      large.rect = {0, 0, place_.width - 1, place_.height - 1};
+      large.id = leaf.id[lane];
+      large_.Draw(large);
+    });
+  }
+
+  const FrameInput& frame_;
+  const ScreenTransform& t_;
+  TileScratch& scratch_;
+  std::size_t sample_;
+  TilePlace place_;
+  TileBuffer buffer_;
+  LargeTriangles large_;
+  TriangleQueue queue_;
+  Plane planes_[4], depth_;
+  std::size_t waiting_ = 0;
+};
+
+void CastTile(const FrameInput& frame, int x, int y, TileScratch& scratch) {
+  for (std::size_t sample = 0; sample < frame.samples.size(); ++sample) TileCaster(frame, x, y, sample, scratch).Cast();
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace frontmost::raycast_detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace frontmost::raycast_detail {
+
+HWY_EXPORT(CastTile);
+
+void cast_tile(const FrameInput& frame, int x, int y, TileScratch& scratch, Isa isa) {
+  kernel_for(HWY_DISPATCH_TABLE(CastTile), isa)(frame, x, y, scratch);
+}
+
+}  // namespace frontmost::raycast_detail
+#endif  // HWY_ONCE

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// The ray caster and the z-buffer have no code in common; where they differ, there is a reason.
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "explain.h"
+#include "frontmost/io.h"
+#include "frontmost/raycast.h"
+#include "frontmost/zbuffer.h"
+#include "support/models.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+Explained expect_explained(const Surfaces& surfaces, const View& view) {
+  const Explained e = Explainer(surfaces, view).compare(zbuffer(surfaces, view), raycast(surfaces, view));
+  const std::size_t pixel = e.first_unexplained % view.pixel_count();
+  EXPECT_EQ(e.unexplained, 0u) << "first at pixel " << pixel % std::size_t(view.width) << ", "
+                               << pixel / std::size_t(view.width) << ", sample "
+                               << e.first_unexplained / view.pixel_count();
+  return e;
+}
+
+class EveryKindAgrees : public testing::TestWithParam<Kind> {};
+INSTANTIATE_TEST_SUITE_P(Agreement, EveryKindAgrees, testing::ValuesIn(all_kinds));
+
+TEST_P(EveryKindAgrees, WithTheZBuffer) {
+  std::size_t differing = 0, samples = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed + 900);
+    const bool covers_little = GetParam() == Kind::tiny || GetParam() == Kind::slivers;
+    const Scene scene = scene_of(random_mesh(GetParam(), (30 + random.below(300)) * (covers_little ? 6 : 1), seed));
+    const Surfaces surfaces(scene);
+    View view = random_view(random, 1 + random.below(200), 1 + random.below(170));
+    view.culling = Culling(random.below(3));
+    view.samples = seed % 4 == 3 ? 4 : 1;
+    differing += expect_explained(surfaces, view).differing;
+    samples += view.sample_count();
+  }
+  EXPECT_GT(samples, 200'000u);
+  // Coplanar triangles lie in each other: everywhere either may be seen.
+  const std::size_t most = GetParam() == Kind::coplanar ? samples / 10 : samples / 50;
+  EXPECT_LT(differing, most) << "reasons have become the excuse";
+}
+
+TEST(Agreement, OnBuiltInScenes) {
+  for (const std::string_view name : builtin_names()) {
+    SCOPED_TRACE(std::string(name));
+    const Scene scene = builtin(name);
+    const Surfaces surfaces(scene);
+    if (surfaces.primitive_count() > 2'000'000) continue;
+    for (const bool orthographic : {false, true}) {
+      FrameOptions options;
+      options.orthographic = orthographic;
+      const View view = frame(surfaces, 640, 480, options);
+      EXPECT_LT(expect_explained(surfaces, view).differing, view.pixel_count() / 200);
+    }
+  }
+}
+
+TEST(Agreement, OnModels) {
+  FRONTMOST_NEEDS_MODELS();
+  for (const char* file :
+       {"organic/stanford-bunny.obj", "organic/lucy-100k.ply", "organic/dragon-800k.ply", "cad/crank-arm.stl",
+        "cad/propeller-ascii.stl", "assembly/as1.glb", "assembly/2-cylinder-engine.glb", "difficult/soup.stl",
+        "difficult/quadknot.obj", "difficult/negative-scale-test.glb", "hero/damaged-helmet.glb"}) {
+    SCOPED_TRACE(file);
+    const Scene scene = load(model(file));
+    const Surfaces surfaces(scene);
+    const View view = frame(surfaces, 800, 600);
+    const Explained e = expect_explained(surfaces, view);
+    RecordProperty(file, std::to_string(e.differing) + " differ: " + std::to_string(e.edge) + " edge, " +
+                             std::to_string(e.depth) + " depth");
+    EXPECT_LT(e.differing, view.pixel_count() / 100);
+  }
+}
+
+}  // namespace
+}  // namespace frontmost::test

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// The oracle: every sample against every triangle by the sample rule, with nothing clever.
+#pragma once
+
+#include "frontmost/raycast.h"
+#include "raycast/sample_rule.h"
+
+namespace frontmost::test {
+
+inline bool keeps(Culling culling, int facing) {
+  return facing != 0 && culling != Culling::both && !(culling == Culling::back && facing > 0) &&
+         !(culling == Culling::front && facing < 0);
+}
+
+class RayOracle {
+ public:
+  explicit RayOracle(const View& view)
+      : t_(view),
+        visible_{view, Buffer<PrimitiveId>(view.sample_count(), no_primitive),
+                 Buffer<float>(view.sample_count(), 0.0f)} {}
+
+  void meet(const std::array<glm::vec3, 3>& world, PrimitiveId id) {
+    std::array<raycast_detail::Corner, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!std::isfinite(world[k].x) || !std::isfinite(world[k].y) || !std::isfinite(world[k].z)) return;
+      corners[k] = raycast_detail::make_corner(t_, world[k]);
+    }
+    constexpr int tile = raycast_detail::kTileSize;
+    for (int y = 0; y < visible_.view.height; y += tile)
+      for (int x = 0; x < visible_.view.width; x += tile) {
+        const float tx = float((x + tile / 2) * 256 - t_.centre_x), ty = float((y + tile / 2) * 256 - t_.centre_y);
+        const raycast_detail::KeyPlane plane = raycast_detail::key_plane(t_, corners, tx, ty);
+        if (plane.is_outside) return;
+        meet_tile({x, y}, {tx, ty}, corners, plane, id);
+      }
+  }
+
+  [[nodiscard]] const Visible& visible() const { return visible_; }
+
+ private:
+  void meet_tile(const glm::ivec2& first, const glm::vec2& centre, const std::array<raycast_detail::Corner, 3>& corners,
+                 const raycast_detail::KeyPlane& plane, PrimitiveId id) {
+    const auto samples = sample_offsets(visible_.view.samples);
+    const int x1 = std::min(first.x + raycast_detail::kTileSize, visible_.view.width);
+    const int y1 = std::min(first.y + raycast_detail::kTileSize, visible_.view.height);
+    for (std::size_t s = 0; s < samples.size(); ++s)
+      for (int y = first.y; y < y1; ++y)
+        for (int x = first.x; x < x1; ++x) {
+          const float sx = float(256 * x + samples[s].x - t_.centre_x),
+                      sy = float(256 * y + samples[s].y - t_.centre_y);
+          if (!keeps(visible_.view.culling, raycast_detail::facing(t_, corners, sx, sy))) continue;
+          const float raw = plane.raw(sx - centre.x, sy - centre.y);
+          if (plane.sees(raw)) keep(visible_.index(x, y, int(s)), plane.clamped(raw), id);
+        }
+  }
+
+  void keep(std::size_t at, float key, PrimitiveId id) {
+    const bool nearer = key > visible_.keys[at] || (key == visible_.keys[at] && id < visible_.primitives[at]);
+    if (!nearer) return;
+    visible_.keys[at] = key;
+    visible_.primitives[at] = id;
+  }
+
+  ScreenTransform t_;
+  Visible visible_;
+};
+
+inline Visible ray_oracle(const Surfaces& surfaces, const View& view) {
+  RayOracle oracle(view);
+  for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
+    std::array<glm::vec3, 3> corners = surfaces.corners(id);
+    if (surfaces.is_mirrored(surfaces.source(id).instance)) std::swap(corners[1], corners[2]);
+    oracle.meet(corners, id);
+  }
+  return oracle.visible();
+}
+
+}  // namespace frontmost::test
