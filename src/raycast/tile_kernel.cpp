@@ -277,10 +277,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace frontmost::raycast_detail {
 
-HWY_EXPORT(CastTile);
+FRONTMOST_KERNELS(CastTile);
 
 void cast_tile(const FrameInput& frame, int x, int y, TileScratch& scratch, Isa isa) {
-  kernel_for(HWY_DISPATCH_TABLE(CastTile), isa)(frame, x, y, scratch);
+  kernel_for(CastTileKernels, isa)(frame, x, y, scratch);
 }
 
 }  // namespace frontmost::raycast_detail
