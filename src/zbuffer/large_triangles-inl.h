@@ -39,9 +39,13 @@ class LargeTriangles {
     const std::uint64_t touched = TileBuffer::BlocksOf(rect);
     if (buffer_.AllHide(touched, r.nearest())) return;
     const Plane plane = PlaneOf(r);
-    HWY_ALIGN_MAX float nearest[64];
-    std::uint64_t open = touched & ~KnownHidden(plane, rect, nearest);
-    for (std::size_t s = 0; s < frame_.samples.size(); ++s) DrawSample(r, plane, rect, s, open, nearest);
+    Reach reach;
+    std::uint64_t open = touched & ~KnownHidden(plane, rect, reach);
+    std::uint64_t whole = open;
+    for (std::size_t s = 0; s < frame_.samples.size() && open != 0; ++s)
+      whole &= DrawSample(r, plane, rect, s, open, reach);
+    for (whole &= open; whole != 0; whole &= whole - 1)
+      KeepPlane(int(hwy::Num0BitsBelowLS1Bit_Nonzero64(whole)), plane, reach);
   }
 
  private:
@@ -50,6 +54,12 @@ class LargeTriangles {
     std::int32_t x0, y0;
     float k0, gx, gy, k_min, k_max;
     std::uint32_t not_id;
+  };
+
+  /// By block: how near a triangle can be there, its keys at the four outermost samples, and what rounding may add to
+  /// the difference of one of those from the exact plane, and of any sample of the block as well.
+  struct Reach {
+    HWY_ALIGN_MAX float nearest[BlockBounds::count], corner[4][BlockBounds::count], slack[BlockBounds::count];
   };
 
   /// Edge functions at the tile's first sample, and their steps from pixel to pixel.
@@ -104,24 +114,59 @@ class LargeTriangles {
     }
   }
 
-  /// The blocks known to hide the triangle; and for every block, how near the triangle can be there.
-  [[nodiscard]] HWY_INLINE std::uint64_t KnownHidden(const Plane& p, const PixelRect& rect, float* nearest) const {
+  /// The blocks known to hide the triangle: by their farthest key, or by a triangle that covers them and whose plane
+  /// is nearer at all four corners. Planes are affine, so what holds at the corners holds between them.
+  [[nodiscard]] HWY_INLINE std::uint64_t KnownHidden(const Plane& p, const PixelRect& rect, Reach& reach) const {
     const DI d;
     const DF df;
+    const BlockBounds& bounds = buffer_.bounds();
     const VI unit = hn::Set(d, kBlockUnits);
     constexpr std::int32_t kSpan = (kBlockSize - 1) * kSubPixels;
-    const VI from_x = hn::Set(d, (p.gx > 0 ? kSpan + high_.x : low_.x) - p.x0);
-    const VI from_y = hn::Set(d, (p.gy > 0 ? kSpan + high_.y : low_.y) - p.y0);
     std::uint64_t hidden = 0;
     ForBlocks(rect, [&](int first, VI column, VI row) HWY_ATTR {
-      const VF dx = hn::ConvertTo(df, hn::Add(hn::Mul(column, unit), from_x));
-      const VF dy = hn::ConvertTo(df, hn::Add(hn::Mul(row, unit), from_y));
-      const VF left = hn::Add(hn::Set(df, p.k0), hn::Mul(dx, hn::Set(df, p.gx)));
-      const VF key = Clamp(p, hn::Add(left, hn::Mul(dy, hn::Set(df, p.gy))));
-      hn::Store(key, df, nearest + first);
-      hidden |= BitsOf(df, hn::Gt(hn::Load(df, buffer_.farthest() + first), key)) << first;
+      const VI x = hn::Mul(column, unit), y = hn::Mul(row, unit);
+      const VF left = Term(x, low_.x - p.x0, p.gx), right = Term(x, kSpan + high_.x - p.x0, p.gx);
+      const VF top = Term(y, low_.y - p.y0, p.gy), bottom = Term(y, kSpan + high_.y - p.y0, p.gy);
+      const VF k0 = hn::Set(df, p.k0);
+      const VF key[4] = {hn::Add(hn::Add(k0, left), top), hn::Add(hn::Add(k0, right), top),
+                         hn::Add(hn::Add(k0, left), bottom), hn::Add(hn::Add(k0, right), bottom)};
+      // Three roundings, each of at most 2^-24 of this sum, at the corner and at any sample: 6 * 2^-24. Some to spare,
+      // also for numbers so small that their roundings are not relative.
+      const VF sum =
+          hn::Add(k0, hn::Add(hn::Max(hn::Abs(left), hn::Abs(right)), hn::Max(hn::Abs(top), hn::Abs(bottom))));
+      const VF slack = hn::Add(hn::Mul(sum, hn::Set(df, 8.0f / 16777216.0f)), hn::Set(df, 1e-42f));
+      const VF nearest = Clamp(p, hn::Max(hn::Max(key[0], key[1]), hn::Max(key[2], key[3])));
+      auto behind = hn::Lt(nearest, hn::Load(df, bounds.greatest + first));
+      for (int c = 0; c < 4; ++c) {
+        const VF at_most = hn::Max(hn::Add(key[c], slack), hn::Set(df, p.k_min));
+        behind = hn::And(behind, hn::Lt(at_most, hn::Load(df, bounds.corner[c] + first)));
+        hn::Store(key[c], df, reach.corner[c] + first);
+      }
+      hn::Store(slack, df, reach.slack + first);
+      hn::Store(nearest, df, reach.nearest + first);
+      behind = hn::Or(behind, hn::Lt(nearest, hn::Load(df, bounds.farthest + first)));
+      hidden |= BitsOf(df, behind) << first;
     });
     return hidden;
+  }
+
+  [[nodiscard]] static HWY_INLINE VF Term(VI block, std::int32_t offset, float gradient) {
+    const DF df;
+    return hn::Mul(hn::ConvertTo(df, hn::Add(block, hn::Set(DI(), offset))), hn::Set(df, gradient));
+  }
+
+  /// The triangle covers all samples of the block: what is behind its plane from now on is hidden, as far as that is
+  /// the nearer plane of the two.
+  HWY_INLINE void KeepPlane(int block, const Plane& p, const Reach& reach) const {
+    BlockBounds& bounds = buffer_.bounds();
+    float corner[4], gain = 0;
+    for (int c = 0; c < 4; ++c) {
+      corner[c] = reach.corner[c][block] - reach.slack[block];
+      gain += corner[c] - bounds.corner[c][block];
+    }
+    if (bounds.greatest[block] > 0 && gain <= 0) return;
+    for (int c = 0; c < 4; ++c) bounds.corner[c][block] = corner[c];
+    bounds.greatest[block] = p.k_max;
   }
 
   [[nodiscard]] static HWY_INLINE VF Clamp(const Plane& p, VF key) {
@@ -149,13 +194,15 @@ class LargeTriangles {
     return cover;
   }
 
-  void DrawSample(const TriangleRecord& r, const Plane& plane, const PixelRect& rect, std::size_t sample,
-                  std::uint64_t& open, const float* nearest) {
+  /// \returns the blocks whose every pixel is covered at this sample. The first sample closes blocks that were drawn
+  /// to lately and turn out to hide the triangle.
+  [[nodiscard]] std::uint64_t DrawSample(const TriangleRecord& r, const Plane& plane, const PixelRect& rect,
+                                         std::size_t sample, std::uint64_t& open, const Reach& reach) {
     const Edges edges = EdgesOf(r, frame_.samples[sample]);
     const Cover cover = CoverOf(edges, rect);
     for (std::uint64_t left = open & ~cover.none; left != 0; left &= left - 1) {
       const int block = int(hwy::Num0BitsBelowLS1Bit_Nonzero64(left));
-      if (sample == 0 && buffer_.Hides(block, nearest[block])) {
+      if (sample == 0 && buffer_.Hides(block, reach.nearest[block])) {
         open &= ~(std::uint64_t(1) << block);
         continue;
       }
@@ -164,6 +211,7 @@ class LargeTriangles {
       else
         FillBlock<false>(plane, edges, rect, block, sample);
     }
+    return cover.all;
   }
 
   template <bool kWhole>

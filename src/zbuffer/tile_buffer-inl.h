@@ -112,7 +112,7 @@ HWY_INLINE void StoreWords(const Words& words, std::uint64_t* to) {
 class TileBuffer {
  public:
   TileBuffer(const FrameInput& frame, const TileJob& job, TileScratch& scratch)
-      : frame_(frame), job_(job), words_(scratch.words.data()), farthest_(scratch.farthest.data()) {}
+      : frame_(frame), job_(job), words_(scratch.words.data()), bounds_(scratch.bounds[0]) {}
 
   [[nodiscard]] static HWY_INLINE std::uint64_t BlockBit(int bx, int by) { return std::uint64_t(1) << (by * 8 + bx); }
 
@@ -139,14 +139,15 @@ class TileBuffer {
         for (int x = 0; x < kTileSize; x += int(hn::Lanes(d))) hn::Store(hn::Zero(d), d, row + x);
         for (int x = inside; x < kTileSize; ++x) row[x] = kOutsideImage;
       }
-    std::fill(farthest_, farthest_ + kBlocks, 0.0f);
+    std::fill(std::begin(bounds_.farthest), std::end(bounds_.farthest), 0.0f);
+    std::fill(std::begin(bounds_.greatest), std::end(bounds_.greatest), 0.0f);  // no plane
     const bool whole = job_.width == kTileSize && job_.height == kTileSize;
     dirty_ = whole ? 0 : ~std::uint64_t(0);
   }
 
   // -- hierarchical depth -------------------------------------------------------------------------------------------
 
-  [[nodiscard]] HWY_INLINE const float* farthest() const { return farthest_; }
+  [[nodiscard]] HWY_INLINE BlockBounds& bounds() const { return bounds_; }
 
   /// These blocks were drawn to: what is known of their farthest key is no more than a bound.
   HWY_INLINE void MarkDrawn(std::uint64_t blocks) { dirty_ |= blocks; }
@@ -158,16 +159,16 @@ class TileBuffer {
     hn::Store(least, d, lanes);
     for (std::size_t i = 1; i < hn::Lanes(d); ++i) lanes[0] = HWY_MIN(lanes[0], lanes[i]);
     const auto bits = std::uint32_t(std::uint64_t(lanes[0]) >> 32);
-    std::memcpy(&farthest_[block], &bits, sizeof bits);
+    std::memcpy(&bounds_.farthest[block], &bits, sizeof bits);
     dirty_ &= ~(std::uint64_t(1) << block);
   }
 
   /// True when every sample of the block is strictly nearer than `nearest`.
   [[nodiscard]] HWY_INLINE bool Hides(int block, float nearest) {
-    if (farthest_[block] > nearest) return true;
+    if (bounds_.farthest[block] > nearest) return true;
     if (!(dirty_ >> block & 1)) return false;
     FindFarthest(block);
-    return farthest_[block] > nearest;
+    return bounds_.farthest[block] > nearest;
   }
 
   /// The blocks that are known to hide whatever is no nearer than `nearest`.
@@ -175,8 +176,8 @@ class TileBuffer {
     const DF d;
     const VF key = hn::Set(d, nearest);
     std::uint64_t hiding = 0;
-    for (std::size_t i = 0; i < kBlocks; i += hn::Lanes(d))
-      hiding |= BitsOf(d, hn::Gt(hn::Load(d, farthest_ + i), key)) << i;
+    for (std::size_t i = 0; i < BlockBounds::count; i += hn::Lanes(d))
+      hiding |= BitsOf(d, hn::Gt(hn::Load(d, bounds_.farthest + i), key)) << i;
     return hiding;
   }
 
@@ -241,13 +242,10 @@ class TileBuffer {
     }
   }
 
-  static constexpr std::size_t kBlocks = 64;
-
   const FrameInput& frame_;
   const TileJob& job_;
   std::uint64_t* words_;
-  /// By block: no sample of the block is farther than this key; 0 where some sample sees nothing.
-  float* farthest_;
+  BlockBounds& bounds_;
   std::uint64_t dirty_ = 0;  // blocks drawn to since their farthest key was found
 };
 

@@ -298,7 +298,7 @@ FRONTMOST_KERNELS(DrawTile);
 
 TileScratch::TileScratch(std::size_t sample_count)
     : words(sample_count * kTileWords),
-      farthest(std::size_t(kTileSize / kBlockSize) * (kTileSize / kBlockSize)),
+      bounds(1),
       // Every pixel of the largest walk for every lane, and a vector of slack for whole stores.
       references(std::size_t(16 * 16 * 16) + 64) {}
 

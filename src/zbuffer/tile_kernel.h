@@ -38,6 +38,17 @@ struct TileJob {
   [[nodiscard]] bool is_empty() const { return records.empty() && clusters.empty(); }
 };
 
+/// What is known of the 64 blocks of a tile, row by row.
+struct BlockBounds {
+  static constexpr std::size_t count = 64;
+  /// No sample of the block is farther than this key; 0 where some sample sees nothing.
+  alignas(64) float farthest[count];
+  /// A triangle that covers all of the block: its keys at the four outermost samples, less what rounding may add, and
+  /// the greatest it can have. No sample of the block is farther than the plane through the four, or than `greatest`.
+  alignas(64) float corner[4][count];
+  alignas(64) float greatest[count];
+};
+
 /// The private memory of one thread, reused from tile to tile.
 struct TileScratch {
   explicit TileScratch(std::size_t sample_count);
@@ -46,8 +57,7 @@ struct TileScratch {
 
   /// By sample, kTileWords each: key bits << 32 | ~id, the greatest wins. 0 is "nothing".
   Buffer<std::uint64_t> words;
-  /// By block: no sample of the block is farther than this key; 0 where some sample sees nothing.
-  Buffer<float> farthest;
+  Buffer<BlockBounds> bounds;        ///< one
   Buffer<std::uint32_t> references;  ///< covered (triangle, pixel) pairs of one batch
 };
 

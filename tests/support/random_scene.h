@@ -41,9 +41,10 @@ inline void add_triangle(Mesh& mesh, const glm::vec3& a, const glm::vec3& b, con
   mesh.triangles.push_back({n, n + 1, n + 2});
 }
 
-enum class Kind { soup, tiny, slivers, fan, shared_grid, huge, coplanar, through_eye };
-inline constexpr Kind all_kinds[] = {Kind::soup,        Kind::tiny, Kind::slivers,  Kind::fan,
-                                     Kind::shared_grid, Kind::huge, Kind::coplanar, Kind::through_eye};
+/// `sheets` are large triangles one behind the other, by the seed up to a unit or a rounding error apart.
+enum class Kind { soup, tiny, slivers, fan, shared_grid, huge, coplanar, through_eye, sheets };
+inline constexpr Kind all_kinds[] = {Kind::soup, Kind::tiny,     Kind::slivers,     Kind::fan,   Kind::shared_grid,
+                                     Kind::huge, Kind::coplanar, Kind::through_eye, Kind::sheets};
 
 /// Triangles within about a unit of the origin (huge ones reach far beyond).
 inline Mesh random_mesh(Kind kind, int count, std::uint64_t seed) {
@@ -64,6 +65,14 @@ inline Mesh random_mesh(Kind kind, int count, std::uint64_t seed) {
       case Kind::coplanar: {
         const auto on_grid = [&] { return glm::vec3(float(random.below(9)) / 8, float(random.below(9)) / 8, 0.25f); };
         add_triangle(mesh, on_grid(), on_grid(), on_grid());
+        break;
+      }
+      case Kind::sheets: {
+        const float lean = float(seed % 2), gap = std::ldexp(1.0f, -int(seed % 25));
+        const auto corner = [&](float x, float y) {
+          return glm::vec3(x, y, lean * x + gap * random.unit()) + random.point(0.05f) * glm::vec3(1, 1, 0);
+        };
+        add_triangle(mesh, corner(-2, -2), corner(2, -2), corner(0, 2));
         break;
       }
       case Kind::through_eye: add_triangle(mesh, random.point(8), random.point(8), random.point(8)); break;
