@@ -71,4 +71,21 @@ Table measure_isas(const Options& options) {
   return table;
 }
 
+Table measure_surfaces(const Options& options) {
+  Table table("surfaces: making ready, before any frame", {"scene", "triangles", "1 thread", "all threads", "ns/tri"});
+  for (const std::string_view name : options.scenes_or(kVaried)) {
+    const Scene scene = make_scene(name, options.models);
+    const std::vector<Time> times = race({Contestant([&] { const Surfaces one(scene, {.threads = 1}); }),
+                                          Contestant([&] { const Surfaces all(scene); })},
+                                         options.sampling);
+    const double triangles = double(triangle_count(scene));
+    table.add({name,
+               Cell::whole(triangle_count(scene)),
+               {times[0].wall},
+               {times[1].wall},
+               {1e6 * times[0].wall / triangles, 0}});
+  }
+  return table;
+}
+
 }  // namespace frontmost::bench

@@ -26,7 +26,7 @@ double ratio(Frames& a, Frames& b, const Options& options) {
 }
 
 void measure_culling(const Options& options, Table& table) {
-  for (const char* name : {"bunny", "sphere1m", "sphere4m"}) {
+  for (const char* name : {"bunny", "sphere1m", "sphere4m", "boxes-random"}) {
     const Stage stage(name, options.models);
     Frames none(stage), back(stage.surfaces, with_culling(stage.view, Culling::back));
     table.add({std::string("back-face culling, ").append(name), {ratio(none, back, options)}, "at least", {1.6}});

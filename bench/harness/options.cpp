@@ -11,8 +11,8 @@
 namespace frontmost::bench {
 namespace {
 
-constexpr std::array<std::string_view, 9> kTables = {"peers",  "threads", "isas",     "stages", "features",
-                                                     "limits", "memory",  "coverage", "rays"};
+constexpr std::array<std::string_view, 10> kTables = {"peers",  "threads", "isas",     "stages",   "features",
+                                                      "limits", "memory",  "surfaces", "coverage", "rays"};
 
 }  // namespace
 

@@ -11,7 +11,7 @@
 #include <climits>
 #include <cstdlib>
 
-#include "harness/stage.h"
+#include "harness/scenes.h"
 #include "peers/peer.h"
 
 extern char** environ;
@@ -89,8 +89,11 @@ void serve_peer(const char* const* arguments) {
   mallopt(M_TRIM_THRESHOLD, threshold);
   mallopt(M_MMAP_THRESHOLD, threshold);
 #endif
-  const Stage stage(arguments[1], arguments[4]);
-  const std::unique_ptr<Peer> peer = make_peer(arguments[0], {stage.scene, stage.view, std::atoi(arguments[2])});
+  const Scene scene = make_scene(arguments[1], arguments[4]);
+  Box bounds;
+  for (const glm::vec3& position : scene.meshes.at(0).positions) bounds.include(position);
+  const View view = make_view(bounds, find_scene(arguments[1]).camera);
+  const std::unique_ptr<Peer> peer = make_peer(arguments[0], {scene, view, std::atoi(arguments[2])});
   // Ready, or not there at all.
   say({peer ? 0.0 : -1.0, 0});
   for (char line[16]; peer && std::fgets(line, sizeof line, stdin) != nullptr;) {

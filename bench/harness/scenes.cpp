@@ -233,9 +233,9 @@ Scene make_scene(std::string_view name, const std::string& models) {
   return std::move(*scene);
 }
 
-View make_view(const Surfaces& surfaces, Camera camera, int width, int height) {
+View make_view(const Box& bounds, Camera camera, int width, int height) {
   constexpr double kFov = 45 * std::numbers::pi / 180;
-  const glm::dvec3 low(surfaces.bounds().low), high(surfaces.bounds().high), centre = (low + high) * 0.5;
+  const glm::dvec3 low(bounds.low), high(bounds.high), centre = (low + high) * 0.5;
   View view = aim(camera, centre);
   view.width = width;
   view.height = height;

@@ -14,6 +14,8 @@ namespace frontmost::bench {
 [[nodiscard]] Table measure_threads(const Options& options);
 /// Every instruction set of this machine.
 [[nodiscard]] Table measure_isas(const Options& options);
+/// Building Surfaces.
+[[nodiscard]] Table measure_surfaces(const Options& options);
 /// Clear, cull, transform, set-up, raster.
 [[nodiscard]] Table measure_stages(const Options& options);
 /// Culling, hiding, order, samples.
