@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where an answer and the exact one differ, by how much, and between which objects.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/float_environment.h"
+#include "base/parallel.h"
+#include "frontmost/precision.h"
+#include "report/exact_depth.h"
+
+namespace frontmost {
+namespace {
+
+constexpr float kNothingSeen = std::numeric_limits<float>::infinity();
+
+double middle(const DepthBounds& bounds) { return 0.5 * (bounds.low + bounds.high); }
+
+class Judge {
+ public:
+  Judge(const Surfaces& surfaces, const View& view) : surfaces_(surfaces), rays_(view) {}
+
+  /// The error of showing `seen` where `nearest` is: as in DepthFights::errors, never 0 when it is wrong.
+  [[nodiscard]] float error(PrimitiveId seen, PrimitiveId nearest, const SampleRay& ray) const {
+    if (seen == nearest) return 0;
+    if (seen == no_primitive || nearest == no_primitive) return kNothingSeen;
+    const auto a = surfaces_.corners(seen), b = surfaces_.corners(nearest);
+    const DepthBounds at_seen = BoundedPlane(a, rays_).at(ray), at_nearest = BoundedPlane(b, rays_).at(ray);
+    const bool is_decided = at_seen.low > at_nearest.high;
+    if (!is_decided && compare(ExactDepth(a, rays_, ray), ExactDepth(b, rays_, ray)) <= 0) return 0;
+    const double behind = middle(at_seen) - middle(at_nearest);
+    const auto share = float(behind / std::max(std::abs(middle(at_nearest)), 1e-300));
+    return std::max(share, std::numeric_limits<float>::min());
+  }
+  [[nodiscard]] const SampleRays& rays() const { return rays_; }
+  [[nodiscard]] double distance(PrimitiveId id, const SampleRay& ray) const {
+    return middle(BoundedPlane(surfaces_.corners(id), rays_).at(ray));
+  }
+
+ private:
+  const Surfaces& surfaces_;
+  SampleRays rays_;
+};
+
+/// Visits (index, ray) of every sample of a row of a plane.
+template <class Visit>
+void for_each_sample(const View& view, const SampleRays& rays, std::size_t row, const Visit& visit) {
+  const auto height = std::size_t(view.height), width = std::size_t(view.width);
+  const glm::ivec2 offset = sample_offsets(view.samples)[row / height];
+  for (std::size_t x = 0; x < width; ++x)
+    visit(row * width + x, [&, x] { return rays.at(int(x), int(row % height), offset); });
+}
+
+void check_views(const ExactVisible& exact, const Visible& answer) {
+  const View &a = exact.view, &b = answer.view;
+  if (a.width != b.width || a.height != b.height || a.samples != b.samples || a.world_from_eye != b.world_from_eye)
+    throw Error(ErrorCode::bad_argument, "depth fights: the two answers are of different views");
+}
+
+glm::vec3 heat(float share) {
+  constexpr glm::vec3 kStops[] = {{0.25f, 0.02f, 0.45f}, {0.75f, 0.03f, 0.20f}, {1.0f, 0.25f, 0.02f}, {1, 0.85f, 0.2f}};
+  const float at = std::clamp((std::log10(share) + 6) / 5, 0.0f, 1.0f) * 3;
+  const int i = std::min(int(at), 2);
+  return glm::mix(kStops[i], kStops[i + 1], at - float(i));
+}
+
+}  // namespace
+
+DepthFights depth_fights(const Surfaces& surfaces, const ExactVisible& exact, const Visible& answer,
+                         const Execution& execution) {
+  check_views(exact, answer);
+  const IeeeScope ieee;
+  const View& view = exact.view;
+  DepthFights fights;
+  fights.view = view;
+  fights.errors = Buffer<float>(exact.primitives.size());
+  const Judge judge(surfaces, view);
+  const std::size_t rows = std::size_t(view.height) * std::size_t(view.samples);
+  parallel_for(execution, rows, 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row)
+      for_each_sample(view, judge.rays(), row, [&](std::size_t i, const auto& ray) {
+        const PrimitiveId seen = answer.primitives[i], nearest = exact.primitives[i];
+        fights.errors[i] = seen == nearest ? 0.0f : judge.error(seen, nearest, ray());
+      });
+  });
+
+  std::map<std::pair<std::uint32_t, std::uint32_t>, FightingPair> pairs;
+  const auto object = [&](PrimitiveId id) { return id == no_primitive ? no_index : surfaces.source(id).instance; };
+  for (std::size_t row = 0; row < rows; ++row)
+    for_each_sample(view, judge.rays(), row, [&](std::size_t i, const auto& ray) {
+      const PrimitiveId nearest = exact.primitives[i];
+      fights.covered += nearest != no_primitive;
+      fights.tied += exact.tied[i];
+      if (fights.errors[i] == 0) return;
+      ++fights.wrong;
+      const std::uint32_t seen = object(answer.primitives[i]), nearer = object(nearest);
+      FightingPair& pair = pairs[{seen, nearer}];
+      pair.seen = seen;
+      pair.nearer = nearer;
+      ++pair.samples;
+      if (seen == no_index || nearer == no_index) return;
+      pair.farthest = std::max(pair.farthest, double(fights.errors[i]) * judge.distance(nearest, ray()));
+    });
+  for (const auto& [key, pair] : pairs) fights.pairs.push_back(pair);
+  std::stable_sort(fights.pairs.begin(), fights.pairs.end(),
+                   [](const FightingPair& a, const FightingPair& b) { return a.samples > b.samples; });
+  return fights;
+}
+
+Image fight_image(const DepthFights& fights, const Image& backdrop) {
+  const Channel *red = backdrop.find("R"), *green = backdrop.find("G"), *blue = backdrop.find("B");
+  if (backdrop.width != fights.view.width || backdrop.height != fights.view.height || !red || !green || !blue)
+    throw Error(ErrorCode::bad_argument, "fight image: the backdrop must be a picture of the same size");
+  const std::size_t count = fights.view.pixel_count();
+  Image image{backdrop.width, backdrop.height, {}};
+  for (const char* name : {"R", "G", "B", "A"}) image.channels.push_back({name, Buffer<float>(count, 1.0f)});
+  for (std::size_t i = 0; i < count; ++i) {
+    const float grey = 0.2126f * red->floats()[i] + 0.7152f * green->floats()[i] + 0.0722f * blue->floats()[i];
+    glm::vec3 color(0.02f + 0.12f * grey);
+    if (fights.errors[i] == kNothingSeen)
+      color = {0.25f, 0.75f, 1.0f};
+    else if (fights.errors[i] > 0)
+      color = heat(fights.errors[i]);
+    for (std::size_t c = 0; c < 3; ++c) image.channels[c].floats()[i] = color[int(c)];
+  }
+  return image;
+}
+
+}  // namespace frontmost

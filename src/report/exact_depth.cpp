@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// With n the normal and a a corner, a ray o + d v meets the plane at d = n.(a - o) / n.v.
+#include "report/exact_depth.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "view/screen_transform.h"
+
+namespace frontmost {
+namespace {
+
+// Every bound below is a sum of at most a dozen roundings of 2^-53 of the terms' absolute values.
+constexpr double kRounding = 32.0 / 9007199254740992.0;
+
+using ExactVector = std::array<Expansion, 3>;
+
+ExactVector difference(const glm::dvec3& a, const glm::dvec3& b) {
+  return {Expansion::difference(a.x, b.x), Expansion::difference(a.y, b.y), Expansion::difference(a.z, b.z)};
+}
+
+ExactVector cross(const ExactVector& a, const ExactVector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Expansion dot(const ExactVector& a, const ExactVector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+ExactVector exact(const glm::dvec3& v) { return {Expansion(v.x), Expansion(v.y), Expansion(v.z)}; }
+
+struct Bounded {
+  double value, error;
+};
+
+/// n.v for a normal with errors; v exact but for a rounding of each component.
+Bounded bounded_dot(const glm::dvec3& n, const glm::dvec3& n_error, const glm::dvec3& v) {
+  const glm::dvec3 a = glm::abs(v);
+  return {glm::dot(n, v), glm::dot(n_error, a) + kRounding * glm::dot(glm::abs(n), a)};
+}
+
+}  // namespace
+
+SampleRays::SampleRays(const View& view)
+    : orthographic_(view.projection.orthographic),
+      eye_(view.eye()),
+      forward_(view.forward()),
+      right_(view.right()),
+      up_(view.up()),
+      left_(view.projection.left),
+      top_(view.projection.top),
+      step_x_((view.projection.right - view.projection.left) / view.width),
+      step_y_((view.projection.top - view.projection.bottom) / view.height) {
+  const ScreenTransform t(view);
+  near_ = double(t.near);
+  far_ = double(t.far);
+}
+
+SampleRay SampleRays::at(int x, int y, const glm::ivec2& offset) const {
+  const double along = left_ + (x + offset.x / 256.0) * step_x_, upwards = top_ - (y + offset.y / 256.0) * step_y_;
+  const glm::dvec3 aside = along * right_ + upwards * up_;
+  if (orthographic_) return {eye_ + aside, forward_};
+  return {eye_, forward_ + aside};
+}
+
+BoundedPlane::BoundedPlane(const std::array<glm::vec3, 3>& corners, const SampleRays& rays) : corner_(corners[0]) {
+  const glm::dvec3 ab = glm::dvec3(corners[1]) - corner_, ac = glm::dvec3(corners[2]) - corner_;
+  normal_ = glm::cross(ab, ac);
+  const glm::dvec3 p = glm::abs(ab), q = glm::abs(ac);
+  normal_error_ = kRounding * glm::dvec3(p.y * q.z + p.z * q.y, p.z * q.x + p.x * q.z, p.x * q.y + p.y * q.x);
+  double low = std::numeric_limits<double>::infinity(), high = -low, error = 0;
+  for (const glm::vec3& corner : corners) {
+    const Bounded depth = bounded_dot(rays.forward(), glm::dvec3(0), glm::dvec3(corner) - rays.eye());
+    low = std::min(low, depth.value);
+    high = std::max(high, depth.value);
+    error = std::max(error, depth.error);
+  }
+  const auto within = [&](double depth) { return std::min(std::max(depth, rays.near()), rays.far()); };
+  limits_low_ = {within(low - error), within(low + error)};
+  limits_high_ = {within(high - error), within(high + error)};
+}
+
+DepthBounds BoundedPlane::at(const SampleRay& ray) const {
+  const Bounded above = bounded_dot(normal_, normal_error_, corner_ - ray.origin);
+  const Bounded below = bounded_dot(normal_, normal_error_, ray.direction);
+  DepthBounds bounds{limits_low_.low, limits_high_.high};
+  // Seen nearly edge-on, or through the eye: no more is known than the corners' range. Written so that NaN is not.
+  if (!(std::abs(below.value) > 4 * below.error)) return bounds;
+  const double depth = above.value / below.value;
+  const double error = (above.error + std::abs(depth) * below.error) / (std::abs(below.value) - below.error) +
+                       kRounding * std::abs(depth);
+  bounds.low = std::min(std::max(depth - error, limits_low_.low), limits_high_.low);
+  bounds.high = std::min(std::max(depth + error, limits_low_.high), limits_high_.high);
+  return bounds;
+}
+
+ExactDepth::ExactDepth(const std::array<glm::vec3, 3>& corners, const SampleRays& rays, const SampleRay& ray) {
+  const glm::dvec3 a(corners[0]), b(corners[1]), c(corners[2]);
+  const ExactVector normal = cross(difference(b, a), difference(c, a));
+  numerator_ = dot(normal, difference(a, ray.origin));
+  denominator_ = dot(normal, exact(ray.direction));
+  if (denominator_.sign() < 0) {
+    numerator_ = -numerator_;
+    denominator_ = -denominator_;
+  }
+  if (denominator_.sign() == 0) {
+    // Edge-on: the ray lies in the plane, or misses it. The nearest corner stands for it.
+    numerator_ = Expansion(-std::numeric_limits<float>::max());
+    denominator_ = Expansion(1);
+  }
+  Expansion nearest, farthest;
+  for (int i = 0; i < 3; ++i) {
+    const Expansion depth = dot(exact(rays.forward()), difference(glm::dvec3(corners[std::size_t(i)]), rays.eye()));
+    if (i == 0 || (depth - nearest).sign() < 0) nearest = depth;
+    if (i == 0 || (depth - farthest).sign() > 0) farthest = depth;
+  }
+  limit(nearest, 1);
+  limit(farthest, -1);
+  limit(Expansion(rays.near()), 1);
+  limit(Expansion(rays.far()), -1);
+}
+
+/// From below (side 1) or from above (side -1).
+void ExactDepth::limit(const Expansion& bound, int side) {
+  if ((bound * denominator_ - numerator_).sign() != side) return;
+  numerator_ = bound;
+  denominator_ = Expansion(1);
+}
+
+}  // namespace frontmost

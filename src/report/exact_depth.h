@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// The depth of a triangle's plane at a sample: quickly within bounds, and exactly where bounds do not decide.
+#pragma once
+
+#include <array>
+
+#include "frontmost/view.h"
+#include "report/expansion.h"
+
+namespace frontmost {
+
+/// The ray of a sample: the point at depth d is origin + d * direction. Its doubles are what "exact" starts from.
+struct SampleRay {
+  glm::dvec3 origin, direction;
+};
+
+/// What all samples of a view have in common.
+class SampleRays {
+ public:
+  explicit SampleRays(const View& view);
+  [[nodiscard]] SampleRay at(int x, int y, const glm::ivec2& offset) const;
+
+  [[nodiscard]] const glm::dvec3& eye() const { return eye_; }
+  [[nodiscard]] const glm::dvec3& forward() const { return forward_; }
+  [[nodiscard]] double near() const { return near_; }
+  [[nodiscard]] double far() const { return far_; }
+
+ private:
+  bool orthographic_;
+  glm::dvec3 eye_, forward_, right_, up_;
+  double left_, top_, step_x_, step_y_, near_, far_;
+};
+
+/// A depth lies within.
+struct DepthBounds {
+  double low, high;
+};
+
+/// A plane in doubles, with what their rounding may amount to.
+class BoundedPlane {
+ public:
+  BoundedPlane(const std::array<glm::vec3, 3>& corners, const SampleRays& rays);
+  [[nodiscard]] DepthBounds at(const SampleRay& ray) const;
+
+ private:
+  glm::dvec3 corner_, normal_, normal_error_;
+  DepthBounds limits_low_, limits_high_;  // of the nearest and of the farthest corner
+};
+
+/// A depth as a fraction.
+class ExactDepth {
+ public:
+  ExactDepth(const std::array<glm::vec3, 3>& corners, const SampleRays& rays, const SampleRay& ray);
+
+  /// -1 when `a` is nearer than `b`, 0 when they are equal.
+  [[nodiscard]] friend int compare(const ExactDepth& a, const ExactDepth& b) {
+    return (a.numerator_ * b.denominator_ - b.numerator_ * a.denominator_).sign();
+  }
+
+ private:
+  void limit(const Expansion& bound, int side);
+
+  Expansion numerator_, denominator_;  // the latter positive
+};
+
+}  // namespace frontmost
