@@ -112,8 +112,7 @@ void FramePlan::take_apart(const ClusterSet& set, const ScreenTransform& transfo
   parallel_for(execution, apart_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<TriangleRecord>& part = apart_parts_[begin / kGrain];
     part.clear();
-    for (std::size_t i = begin; i < end; ++i)
-      append_records(set, set.clusters[apart_[i]], transform, view.culling, part);
+    for (std::size_t i = begin; i < end; ++i) append_records(set, set.clusters[apart_[i]], transform, view, part);
   });
   records_.clear();
   for (std::size_t i = 0; i < part_count; ++i)

@@ -2,6 +2,7 @@
 #include "zbuffer/triangle_records.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "view/clip.h"
@@ -19,17 +20,45 @@ bool keeps(Culling culling, bool is_front) {
   return true;
 }
 
-/// The corners of a cluster's triangle, world space.
-std::array<glm::vec3, 3> corners_of(const ClusterSet& set, const Cluster& cluster, std::size_t triangle) {
-  std::array<glm::vec3, 3> corners;
-  const std::size_t c = cluster.first_triangle + triangle;
-  const std::array<std::uint8_t, 3> numbers{set.i0[c], set.i1[c], set.i2[c]};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t v = cluster.first_vertex + numbers[k];
-    corners[k] = {set.x[v], set.y[v], set.z[v]};
+/// The vertices of a cluster on the screen, each worked out once.
+class SnappedCluster {
+ public:
+  SnappedCluster(const ClusterSet& set, const Cluster& cluster, const ScreenTransform& t)
+      : set_(set), cluster_(cluster), transform_(t) {
+    for (std::size_t i = 0; i < cluster.vertex_count; ++i) {
+      const HomogeneousVertex v = transform(t, position(i));
+      is_plain_[i] = is_plain(t, v);
+      if (is_plain_[i]) plain_[i] = snap(t, v);
+    }
   }
-  return corners;
-}
+
+  /// One of the cluster's triangles, clipped where it cannot be snapped whole.
+  [[nodiscard]] ClippedPolygon polygon(std::size_t triangle) const {
+    const std::size_t c = cluster_.first_triangle + triangle;
+    const std::size_t a = set_.i0[c], b = set_.i1[c], d = set_.i2[c];
+    if (a == b || b == d || a == d) return {};
+    if (!is_plain_[a] || !is_plain_[b] || !is_plain_[d])
+      return clip_triangle(transform_, {position(a), position(b), position(d)});
+    ClippedPolygon whole;
+    whole.corners[0] = plain_[a];
+    whole.corners[1] = plain_[b];
+    whole.corners[2] = plain_[d];
+    whole.count = 3;
+    return whole;
+  }
+
+ private:
+  [[nodiscard]] glm::vec3 position(std::size_t vertex) const {
+    const std::size_t v = cluster_.first_vertex + vertex;
+    return {set_.x[v], set_.y[v], set_.z[v]};
+  }
+
+  const ClusterSet& set_;
+  const Cluster& cluster_;
+  const ScreenTransform& transform_;
+  std::array<ScreenVertex, Cluster::max_vertices> plain_;
+  std::array<bool, Cluster::max_vertices> is_plain_;
+};
 
 }  // namespace
 
@@ -44,23 +73,23 @@ bool orient(TriangleRecord& r, Culling culling) {
   return true;
 }
 
-void append_records(const ClusterSet& set, const Cluster& cluster, const ScreenTransform& t, Culling culling,
+void append_records(const ClusterSet& set, const Cluster& cluster, const ScreenTransform& t, const View& view,
                     std::vector<TriangleRecord>& records) {
+  const SnappedCluster snapped(set, cluster, t);
   for (std::size_t i = 0; i < cluster.triangle_count; ++i) {
-    const std::size_t c = cluster.first_triangle + i;
-    if (set.i0[c] == set.i1[c] || set.i1[c] == set.i2[c] || set.i0[c] == set.i2[c]) continue;
-    const ClippedPolygon polygon = clip_triangle(t, corners_of(set, cluster, i));
+    const ClippedPolygon polygon = snapped.polygon(i);
     for (int k = 2; k < polygon.count; ++k) {
       const ScreenVertex* fan[3] = {&polygon.corners[0], &polygon.corners[std::size_t(k - 1)],
                                     &polygon.corners[std::size_t(k)]};
       TriangleRecord record;
-      record.id = set.id[c];
+      record.id = set.id[cluster.first_triangle + i];
       for (int v = 0; v < 3; ++v) {
         record.x[v] = fan[v]->x + t.centre_x;
         record.y[v] = fan[v]->y + t.centre_y;
         record.key[v] = fan[v]->key;
       }
-      if (orient(record, culling)) records.push_back(record);
+      const PixelRect rect = pixel_rect(record, view.width, view.height);
+      if (rect.x0 <= rect.x1 && rect.y0 <= rect.y1 && orient(record, view.culling)) records.push_back(record);
     }
   }
 }

@@ -2,6 +2,7 @@
 // Triangles on the screen, set up one by one: the large ones, and those that had to be clipped.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "surfaces/cluster_set.h"
@@ -17,7 +18,7 @@ struct TriangleRecord {
   float key[3];
   PrimitiveId id;
 
-  [[nodiscard]] float nearest() const { return std::fmax(key[0], std::fmax(key[1], key[2])); }
+  [[nodiscard]] float nearest() const { return std::max({key[0], key[1], key[2]}); }
 };
 
 /// Twice the signed area of a snapped triangle, exact; negative is counter-clockwise to the eye: front.
@@ -28,8 +29,8 @@ struct TriangleRecord {
 /// Turns a record's area positive. \returns false when it is culled, or has no area and so covers nothing.
 [[nodiscard]] bool orient(TriangleRecord& record, Culling culling);
 
-/// Appends the triangles of one cluster, clipped where needed, corners from the image's top left.
-void append_records(const ClusterSet& set, const Cluster& cluster, const ScreenTransform& transform, Culling culling,
+/// Appends the triangles of one cluster that may be seen, clipped where needed, corners from the image's top left.
+void append_records(const ClusterSet& set, const Cluster& cluster, const ScreenTransform& transform, const View& view,
                     std::vector<TriangleRecord>& records);
 
 /// The pixels whose samples a record may cover, within the image; empty (x1 < x0 or y1 < y0) when there are none.
