@@ -42,9 +42,27 @@ struct Rect {
   int x0, y0, x1, y1;
 };
 
-struct LargeTriangle {
+/// Corners that floats serve.
+struct SingleCorners {
+  float x[3], y[3], d[3];
+
+  [[nodiscard]] std::array<Corner, 3> all() const {
+    std::array<Corner, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = {x[k], y[k], d[k], true};
+    return corners;
+  }
+};
+
+/// Some of them may take doubles.
+struct WideCorners {
   std::array<Corner, 3> corners;
-  bool is_single;  // all three are
+
+  [[nodiscard]] const std::array<Corner, 3>& all() const { return corners; }
+};
+
+template <class Corners>
+struct LargeTriangle {
+  Corners corners;
   KeyPlane plane;
   Rect rect;
   PrimitiveId id;
@@ -55,22 +73,27 @@ class LargeTriangles {
   LargeTriangles(const FrameInput& frame, const TilePlace& place, TileBuffer& buffer)
       : t_(frame.transform), culling_(frame.view.culling), place_(place), buffer_(buffer) {}
 
-  void Draw(const LargeTriangle& large) {
-    const std::uint64_t touched = BlocksOf(large.rect);
-    std::uint64_t full = 0, open = touched & ~Hidden(large.plane);
-    Edges edges;
-    if (hwy::PopCount(open) >= std::size_t(kClassifyFrom) && SetEdges(large.corners, edges)) {
-      if (!Keeps(culling_, edges.facing)) return;
-      const Classes classes = Classify(edges);
-      open &= ~classes.outside;
-      full = classes.full;
+  template <class Corners>
+  HWY_INLINE void Draw(const LargeTriangle<Corners>& large) {
+    std::uint64_t open = BlocksOf(large.rect), full = 0;
+    if (hwy::PopCount(open) < std::size_t(kClassifyFrom)) {
+      std::uint64_t hidden = 0;
+      ForEachBit(open, [&](std::size_t block) {
+        hidden |= std::uint64_t(large.plane.high < buffer_.farthest()[block]) << block;
+      });
+      open &= ~hidden;
+    } else {
+      open &= ~Hidden(large.plane);
+      Edges edges;
+      if (hwy::PopCount(open) >= std::size_t(kClassifyFrom) && SetEdges(large.corners.all(), edges)) {
+        if (!Keeps(culling_, edges.facing)) return;
+        const Classes classes = Classify(edges);
+        open &= ~classes.outside;
+        full = classes.full;
+      }
     }
     if (open == 0) return;
-    if (large.is_single) {
-      DrawBlocks(large, open, full, SingleCorners(large, t_.orthographic));
-    } else {
-      DrawBlocks(large, open, full, WideCorners{});
-    }
+    DrawBlocks(large, open, full);
   }
 
  private:
@@ -183,29 +206,31 @@ class LargeTriangles {
 
   // -- blocks -------------------------------------------------------------------------------------------------------
 
-  struct SingleCorners {
+  /// What the rays of every block are held against.
+  struct SingleVectors {
     VF x[3], y[3], w[3];
-    SingleCorners(const LargeTriangle& large, bool orthographic) {
-      const DF d;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Corner& c = large.corners[k];
-        x[k] = hn::Set(d, float(c.x));
-        y[k] = hn::Set(d, float(c.y));
-        w[k] = hn::Set(d, orthographic ? 1.0f : float(c.d));
-      }
-    }
   };
-  struct WideCorners {};
+  [[nodiscard]] HWY_INLINE SingleVectors Vectors(const SingleCorners& corners) const {
+    const DF d;
+    SingleVectors v;
+    for (int k = 0; k < 3; ++k) {
+      v.x[k] = hn::Set(d, corners.x[k]);
+      v.y[k] = hn::Set(d, corners.y[k]);
+      v.w[k] = hn::Set(d, t_.orthographic ? 1.0f : corners.d[k]);
+    }
+    return v;
+  }
+  [[nodiscard]] static const WideCorners& Vectors(const WideCorners& corners) { return corners; }
 
   template <class Corners>
-  HWY_INLINE void DrawBlocks(const LargeTriangle& large, std::uint64_t open, std::uint64_t full,
-                             const Corners& corners) {
+  HWY_INLINE void DrawBlocks(const LargeTriangle<Corners>& large, std::uint64_t open, std::uint64_t full) {
     const DF d;
     const DU du;
     const KeyPlane& plane = large.plane;
     const VF gx = hn::Set(d, plane.gx), gy = hn::Set(d, plane.gy), k0 = hn::Set(d, plane.k0);
     const VF low = hn::Set(d, plane.low), high = hn::Set(d, plane.high);
     const VU id = hn::Set(du, large.id);
+    const auto& vectors = Vectors(large.corners);
     ForEachBit(open, [&](std::size_t block) HWY_ATTR {
       const VF start_x = hn::Set(d, place_.first_x + float(int(block) % kBlocks * kBlock * kSubPixels));
       const VF start_y = hn::Set(d, place_.first_y + float(int(block) / kBlocks * kBlock * kSubPixels));
@@ -225,7 +250,7 @@ class LargeTriangles {
         if (plane.is_clipped)
           nearer = hn::And(nearer, hn::And(hn::Ge(raw, hn::Set(d, plane.cut)), hn::Le(raw, hn::Set(d, 1.0f))));
         if (hn::AllFalse(d, nearer)) continue;
-        if (!is_full) nearer = hn::And(nearer, Met(large, corners, sx, sy));
+        if (!is_full) nearer = hn::And(nearer, Met(large.corners, vectors, sx, sy));
         hn::Store(hn::IfThenElse(nearer, key, old_key), d, keys);
         hn::Store(hn::IfThenElse(hn::RebindMask(du, nearer), id, old_id), du, ids);
         changed = true;
@@ -234,7 +259,7 @@ class LargeTriangles {
     });
   }
 
-  [[nodiscard]] HWY_INLINE MF Met(const LargeTriangle& large, const SingleCorners& c, VF sx, VF sy) const {
+  [[nodiscard]] HWY_INLINE MF Met(const SingleCorners& corners, const SingleVectors& c, VF sx, VF sy) const {
     const DF d;
     VF x[3], y[3];
     for (int k = 0; k < 3; ++k) {
@@ -245,11 +270,11 @@ class LargeTriangles {
     const MF met = Kept(culling_, sides);
     if (HWY_LIKELY(hn::AllFalse(d, sides.doubtful))) return met;
     return Resolve(met, sides.doubtful, sx, sy,
-                   [&](std::size_t, float px, float py) { return Keeps(culling_, facing(t_, large.corners, px, py)); });
+                   [&](std::size_t, float px, float py) { return Keeps(culling_, facing(t_, corners.all(), px, py)); });
   }
 
   /// The same in doubles, whose products may be rounded: where two are equal, the exact rule decides.
-  [[nodiscard]] HWY_NOINLINE MF Met(const LargeTriangle& large, const WideCorners&, VF sx, VF sy) const {
+  [[nodiscard]] HWY_NOINLINE MF Met(const WideCorners& wide, const WideCorners&, VF sx, VF sy) const {
     const DF d;
     const DI di;
     const DD dd;
@@ -261,7 +286,7 @@ class LargeTriangles {
     for (std::size_t i = 0; i < kLanes; i += kDoubles) {
       VD x[3], y[3], det[3];
       for (std::size_t k = 0; k < 3; ++k) {
-        const Corner& c = large.corners[k];
+        const Corner& c = wide.corners[k];
         const double w = t_.orthographic ? 1.0 : c.d;
         x[k] = Sheared(c.x, w, c.is_single, hn::Load(dh, fx + i));
         y[k] = Sheared(c.y, w, c.is_single, hn::Load(dh, fy + i));
@@ -278,7 +303,7 @@ class LargeTriangles {
         const bool certain = closest[lane] > 0;
         const int sign = least[lane] > 0 ? 1 : most[lane] < 0 ? -1 : 0;
         answer[i + lane] =
-            Keeps(culling_, certain ? sign : facing(t_, large.corners, fx[i + lane], fy[i + lane])) ? -1 : 0;
+            Keeps(culling_, certain ? sign : facing(t_, wide.corners, fx[i + lane], fy[i + lane])) ? -1 : 0;
       }
     }
     return hn::RebindMask(d, hn::MaskFromVec(hn::Load(di, answer)));

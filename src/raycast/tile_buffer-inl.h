@@ -28,6 +28,7 @@ using DU = hn::RebindToUnsigned<DF>;
 using DI = hn::RebindToSigned<DF>;
 using VF = hn::Vec<DF>;
 using VU = hn::Vec<DU>;
+using VI = hn::Vec<DI>;
 using MF = hn::Mask<DF>;
 // Doubles in whole vectors, beside half vectors of floats.
 using DD = hn::CappedTag<double, kRayLanes>;

@@ -101,7 +101,8 @@ class TileCaster {
   /// Pushes the children that the tile may see, the nearest last.
   HWY_INLINE void LookInto(const RayNode& node) {
     const DF d;
-    Waiting found[kRayLanes];
+    // Compress stores whole vectors.
+    alignas(64) std::uint32_t keys[2 * kRayLanes], children[2 * kRayLanes];
     std::size_t count = 0;
     for (std::size_t first = 0; first < node.count; first += kLanes) {
       VF ends[2][3];
@@ -119,21 +120,40 @@ class TileCaster {
       outside = hn::Or(outside, hn::Or(hn::Lt(farthest, hn::Set(d, t_.near)), hn::Gt(nearest, hn::Set(d, t_.far))));
       const VF key = NearestKey(nearest);
       outside = hn::Or(outside, hn::Lt(key, hn::Set(d, buffer_.tile_farthest())));
-      alignas(64) std::uint32_t bits[kLanes];
-      hn::Store(hn::BitCast(DU(), key), DU(), bits);
-      const std::uint32_t used = (1u << std::min<std::size_t>(kLanes, node.count - first)) - 1;
-      ForEachBit(~BitsOf(d, outside) & used, [&](std::size_t lane) HWY_ATTR {
-        found[count++] = Waiting(bits[lane]) << 32 | node.child[first + lane];
-      });
+      const DU du;
+      const auto used = hn::FirstN(d, std::min(kLanes, node.count - first));
+      const auto inside = hn::RebindMask(du, hn::AndNot(outside, used));
+      hn::StoreU(hn::Compress(hn::BitCast(du, key), inside), du, keys + count);
+      hn::StoreU(hn::Compress(hn::Load(du, node.child + first), inside), du, children + count);
+      count += hn::CountTrue(du, inside);
     }
-    for (std::size_t i = 1; i < count; ++i) {
-      const Waiting w = found[i];
-      std::size_t k = i;
-      for (; k > 0 && found[k - 1] > w; --k) found[k] = found[k - 1];
-      found[k] = w;
+    Push(keys, children, count);
+  }
+
+  /// Sorts by counting: the place of each is how many are farther. No branch depends on the keys.
+  HWY_INLINE void Push(const std::uint32_t* keys, const std::uint32_t* children, std::size_t count) {
+    const DI di;
+    // The lowest bits tell equals apart, for the order only.
+    alignas(64) std::int32_t order[kRayLanes];
+    for (std::size_t i = 0; i < kRayLanes; ++i)
+      order[i] = i < count ? std::int32_t((keys[i] & ~15u) | i) : std::numeric_limits<std::int32_t>::max();
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto own = hn::Set(di, order[i]);
+      std::size_t rank = 0;
+      for (std::size_t k = 0; k < count; k += kLanes) rank += hn::CountTrue(di, hn::Lt(hn::Load(di, order + k), own));
+      scratch_.stack[waiting_ + rank] = Waiting(keys[i]) << 32 | children[i];
     }
-    std::copy_n(found, count, scratch_.stack.data() + waiting_);
     waiting_ += count;
+  }
+
+  /// The child that comes next.
+  HWY_INLINE void Prefetch() const {
+    if (waiting_ == 0) return;
+    const auto child = std::uint32_t(scratch_.stack[waiting_ - 1]);
+    const char* from = child & kLeafBit ? reinterpret_cast<const char*>(&frame_.tree.leaves[child & ~kLeafBit])
+                                        : reinterpret_cast<const char*>(&frame_.tree.nodes[child]);
+    const std::size_t bytes = child & kLeafBit ? sizeof(RayLeaf) : sizeof(RayNode);
+    for (std::size_t i = 0; i < bytes; i += 64) hwy::Prefetch(from + i);
   }
 
   void Walk() {
@@ -142,7 +162,9 @@ class TileCaster {
     while (waiting_ > 0) {
       const Waiting next = scratch_.stack[--waiting_];
       const auto bits = std::uint32_t(next >> 32), child = std::uint32_t(next);
-      buffer_.Refresh();
+      Prefetch();
+      // Every few leaves: a hidden one that is met costs less than looking for it.
+      if (!(child & kLeafBit) || (++leaves_met_ & 3) == 0) buffer_.Refresh();
       float key;
       std::memcpy(&key, &bits, sizeof key);
       if (key < buffer_.tile_farthest()) continue;
@@ -184,8 +206,31 @@ class TileCaster {
     return {hn::Max(first, hn::Zero(d)), hn::Min(last, hn::Set(d, float(count - 1)))};
   }
 
+  /// To a few units in the last place, by one division. The products stay in range: kSingleNear, kSingleFar.
+  static HWY_INLINE void Invert(const VF (&d)[3], VF (&inverse)[3]) {
+    const VF ab = hn::Mul(d[0], d[1]), all = hn::Div(hn::Set(DF(), 1.0f), hn::Mul(ab, d[2]));
+    const VF c = hn::Mul(all, d[2]);
+    inverse[0] = hn::Mul(c, d[1]);
+    inverse[1] = hn::Mul(c, d[0]);
+    inverse[2] = hn::Mul(all, ab);
+  }
+
   void MeetLeaf(const RayLeaf& leaf) {
     for (std::size_t first = 0; first < kRayLanes; first += kLanes) MeetLanes(leaf, first);
+  }
+
+  /// Those of up to 2 x 2 blocks whose every pixel has something nearer.
+  [[nodiscard]] HWY_INLINE MF Hidden(VF nearest, VI x0, VI y0, VI x1, VI y1) const {
+    const DF d;
+    const DI di;
+    const VI left = hn::ShiftRight<2>(x0), right = hn::ShiftRight<2>(x1);
+    const VI top = hn::ShiftLeft<3>(hn::ShiftRight<2>(y0)), bottom = hn::ShiftLeft<3>(hn::ShiftRight<2>(y1));
+    const auto few =
+        hn::And(hn::Lt(hn::Sub(right, left), hn::Set(di, 2)), hn::Lt(hn::Sub(bottom, top), hn::Set(di, 2 * kBlocks)));
+    const auto farthest = [&](VI block) HWY_ATTR { return hn::GatherIndex(d, buffer_.farthest(), block); };
+    const VF above = hn::Min(farthest(hn::Add(top, left)), farthest(hn::Add(top, right)));
+    const VF below = hn::Min(farthest(hn::Add(bottom, left)), farthest(hn::Add(bottom, right)));
+    return hn::And(hn::RebindMask(d, few), hn::Lt(nearest, hn::Min(above, below)));
   }
 
   HWY_INLINE void MeetLanes(const RayLeaf& leaf, std::size_t first) {
@@ -209,32 +254,44 @@ class TileCaster {
     if (HWY_UNLIKELY(!hn::AllFalse(d, wide))) MeetWide(leaf, first, wide);
 
     const VF one = hn::Set(d, 1.0f);
+    VF inverse[3] = {one, one, one};
+    if (!t_.orthographic) Invert(dist, inverse);
     VF xs[3], ys[3];
     for (int k = 0; k < 3; ++k) {
-      const VF inverse = t_.orthographic ? one : hn::Div(one, dist[k]);
-      xs[k] = hn::Mul(x[k], inverse);
-      ys[k] = hn::Mul(y[k], inverse);
+      xs[k] = hn::Mul(x[k], inverse[k]);
+      ys[k] = hn::Mul(y[k], inverse[k]);
     }
     const Span across = SamplesWithin(hn::Min(hn::Min(xs[0], xs[1]), xs[2]), hn::Max(hn::Max(xs[0], xs[1]), xs[2]),
                                       place_.first_x, place_.width);
     const Span down = SamplesWithin(hn::Min(hn::Min(ys[0], ys[1]), ys[2]), hn::Max(hn::Max(ys[0], ys[1]), ys[2]),
                                     place_.first_y, place_.height);
-    const VF nearest = KeyOfDistance(t_, hn::Min(hn::Min(dist[0], dist[1]), dist[2]));
+    const VF nearest = t_.orthographic ? KeyOfDistance(t_, hn::Min(hn::Min(dist[0], dist[1]), dist[2]))
+                                       : hn::Mul(hn::Set(d, t_.near * (1 + 16 * kHalfUlp)),
+                                                 hn::Max(hn::Max(inverse[0], inverse[1]), inverse[2]));
     MF kept = hn::And(hn::And(single, used), hn::Ge(nearest, hn::Set(d, buffer_.tile_farthest())));
     kept = hn::And(kept, hn::And(hn::Le(across.first, across.last), hn::Le(down.first, down.last)));
     if (hn::AllFalse(d, kept)) return;
 
-    // Rectangles packed into bytes; lanes that are not kept may hold anything, but in range.
-    const auto as_byte = [&](VF v) HWY_ATTR {
-      return hn::BitCast(du, hn::ConvertTo(DI(), hn::Min(hn::Max(v, hn::Zero(d)), hn::Set(d, 255.0f))));
+    // Lanes that are not kept may hold anything, but in range.
+    const auto as_int = [&](VF v) HWY_ATTR {
+      return hn::ConvertTo(DI(), hn::Min(hn::Max(v, hn::Zero(d)), hn::Set(d, float(kTileSize - 1))));
     };
+    const auto x0 = as_int(across.first), x1 = as_int(across.last), y0 = as_int(down.first), y1 = as_int(down.last);
+    if (hidden_credit_ > 0 || (leaves_met_ & 15) == 0) {
+      const std::size_t before = hn::CountTrue(d, kept);
+      kept = hn::AndNot(Hidden(nearest, x0, y0, x1, y1), kept);
+      // Looking pays from two hidden triangles on.
+      hidden_credit_ = std::min(hidden_credit_ + int(before - hn::CountTrue(d, kept)) - 2, kMostCredit);
+      if (hn::AllFalse(d, kept)) return;
+    }
+    const auto byte = [&](auto v) HWY_ATTR { return hn::BitCast(du, v); };
     TriangleQueue::Batch batch;
     std::copy_n(x, 3, batch.x);
     std::copy_n(y, 3, batch.y);
     std::copy_n(dist, 3, batch.d);
     batch.id = id;
-    batch.rect = hn::Or(hn::Or(as_byte(across.first), hn::ShiftLeft<8>(as_byte(down.first))),
-                        hn::Or(hn::ShiftLeft<16>(as_byte(across.last)), hn::ShiftLeft<24>(as_byte(down.last))));
+    batch.rect = hn::Or(hn::Or(byte(x0), hn::ShiftLeft<8>(byte(y0))),
+                        hn::Or(hn::ShiftLeft<16>(byte(x1)), hn::ShiftLeft<24>(byte(y1))));
     queue_.Add(batch, kept);
   }
 
@@ -242,12 +299,12 @@ class TileCaster {
   HWY_NOINLINE void MeetWide(const RayLeaf& leaf, std::size_t first, MF wide) {
     ForEachBit(BitsOf(DF(), wide), [&](std::size_t bit) {
       const std::size_t lane = first + bit;
-      LargeTriangle large;
+      LargeTriangle<WideCorners> large;
       for (std::size_t k = 0; k < 3; ++k)
-        large.corners[k] = make_corner(t_, {leaf.corner[k][0][lane], leaf.corner[k][1][lane], leaf.corner[k][2][lane]});
-      large.plane = key_plane(t_, large.corners, double(place_.centre_x), double(place_.centre_y));
+        large.corners.corners[k] =
+            make_corner(t_, {leaf.corner[k][0][lane], leaf.corner[k][1][lane], leaf.corner[k][2][lane]});
+      large.plane = key_plane(t_, large.corners.corners, double(place_.centre_x), double(place_.centre_y));
       if (large.plane.is_outside || large.plane.high < buffer_.tile_farthest()) return;
-      large.is_single = false;
       large.rect = {0, 0, place_.width - 1, place_.height - 1};
       large.id = leaf.id[lane];
       large_.Draw(large);
@@ -264,6 +321,9 @@ class TileCaster {
   TriangleQueue queue_;
   Plane planes_[4], depth_;
   std::size_t waiting_ = 0;
+  std::uint32_t leaves_met_ = 0;
+  static constexpr int kMostCredit = 16;
+  int hidden_credit_ = kMostCredit;
 };
 
 void CastTile(const FrameInput& frame, int x, int y, TileScratch& scratch) {

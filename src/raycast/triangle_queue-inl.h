@@ -160,7 +160,7 @@ class TriangleQueue {
         const MF doubtful = hn::And(sides.doubtful, here);
         if (HWY_UNLIKELY(!hn::AllFalse(d, doubtful)))
           met = Resolve(met, doubtful, sx, sy, [&](std::size_t lane, float px1, float py1) {
-            return Keeps(culling_, facing(t_, Corners(from + lane), px1, py1));
+            return Keeps(culling_, facing(t_, Corners(from + lane).all(), px1, py1));
           });
         if (hn::AllFalse(d, met)) continue;
         const VF u_step = hn::Mul(hn::Sub(sx, hn::Set(d, place_.centre_x)), gx);
@@ -181,17 +181,16 @@ class TriangleQueue {
                [&](std::size_t lane) HWY_ATTR { buffer_.Merge(pixels[lane], keys[lane], id_[from + lane]); });
   }
 
-  [[nodiscard]] std::array<Corner, 3> Corners(std::size_t i) const {
-    std::array<Corner, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = {x_[k][i], y_[k][i], d_[k][i], true};
+  [[nodiscard]] HWY_INLINE SingleCorners Corners(std::size_t i) const {
+    SingleCorners corners;
+    for (std::size_t k = 0; k < 3; ++k) corners.x[k] = x_[k][i], corners.y[k] = y_[k][i], corners.d[k] = d_[k][i];
     return corners;
   }
 
-  HWY_INLINE void DrawLarge(std::size_t from, std::size_t lane, const Planes& planes) {
+  HWY_NOINLINE void DrawLarge(std::size_t from, std::size_t lane, const Planes& planes) {
     const std::uint32_t rect = rect_[from + lane];
-    LargeTriangle large;
+    LargeTriangle<SingleCorners> large;
     large.corners = Corners(from + lane);
-    large.is_single = true;
     large.plane.gx = planes.gx[lane], large.plane.gy = planes.gy[lane], large.plane.k0 = planes.k0[lane];
     large.plane.low = planes.low[lane], large.plane.high = planes.high[lane];
     large.rect = {int(rect & 255), int(rect >> 8 & 255), int(rect >> 16 & 255), int(rect >> 24)};
