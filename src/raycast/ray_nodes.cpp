@@ -2,8 +2,8 @@
 // The nodes of a RayIndex: ranges of leaves are halved by the binned surface area heuristic, the child of the largest
 // surface first, until a node has sixteen.
 //
-// Large ranges are split one after another; what is below a fixed size is a piece of its own, built by whichever
-// thread comes, and the pieces are strung together in order. So the tree is the same for any number of threads.
+// Runs of the spatial order of a fixed length are pieces of their own, built by whichever thread comes; the nodes above
+// are built over the pieces' boxes in the same way. So the tree is the same for any number of threads.
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,8 @@ namespace frontmost {
 namespace {
 
 constexpr int kBins = 16;
-/// Ranges of at most this many leaves are pieces of their own.
+/// Leaves of a piece. Beside splitting everything by area, views differ by less than the noise of 3 %, and two threads
+/// build in three quarters of the time.
 constexpr std::size_t kPieceLeaves = 2048;
 /// Fewer leaves than this are halved where they lie: their order already is a good one, and bins cost more than they
 /// save.
@@ -28,6 +29,9 @@ struct Range {
   [[nodiscard]] std::size_t size() const { return end - begin; }
 };
 
+LeafBox as_leaf_box(const Box& box, std::uint32_t leaf) {
+  return {{box.low.x, box.low.y, box.low.z}, leaf, {box.high.x, box.high.y, box.high.z}, 0};
+}
 Box as_box(const LeafBox& b) { return {{b.low[0], b.low[1], b.low[2]}, {b.high[0], b.high[1], b.high[2]}}; }
 
 /// Halves first: the sum of two large floats can overflow.
@@ -124,11 +128,16 @@ class NodeBuilder {
 
  private:
   std::pair<Range, Range> split(const Range& range) {
-    const std::size_t middle = range.size() < kBinFrom ? range.begin + range.size() / 2 : partition(range);
+    if (range.size() >= kBinFrom) {
+      const std::pair<Range, Range> halves = split_by_area(range);
+      if (halves.first.size() > 0) return halves;
+    }
+    const std::size_t middle = range.begin + range.size() / 2;
     return {range_of(range.begin, middle), range_of(middle, range.end)};
   }
 
-  std::size_t partition(const Range& range) {
+  /// \returns an empty range when all centres are in one place, or areas beyond what floats hold.
+  std::pair<Range, Range> split_by_area(const Range& range) {
     Box centres;
     for (std::size_t i = range.begin; i < range.end; ++i) centres.include(centre_of(boxes_[i]));
     const Binning binning(centres);
@@ -144,12 +153,15 @@ class NodeBuilder {
     }
     Split best;
     for (int axis = 0; axis < 3; ++axis) consider(bins[std::size_t(axis)], axis, best);
-    // All centres in one place, or areas beyond what floats hold.
-    if (best.axis < 0) return range.begin + range.size() / 2;
+    if (best.axis < 0) return {};
     const auto first = boxes_.begin() + std::ptrdiff_t(range.begin), last = boxes_.begin() + std::ptrdiff_t(range.end);
     const auto middle =
         std::partition(first, last, [&](const LeafBox& box) { return binning(centre_of(box), best.axis) < best.bin; });
-    return std::size_t(middle - boxes_.begin());
+    const auto cut = std::size_t(middle - boxes_.begin());
+    Range left{range.begin, cut, {}}, right{cut, range.end, {}};
+    for (int i = 0; i < kBins; ++i)
+      (i < best.bin ? left : right).box.include(bins[std::size_t(best.axis)][std::size_t(i)].box);
+    return {left, right};
   }
 
   std::vector<LeafBox>& boxes_;
@@ -196,70 +208,46 @@ class PieceBuilder {
   Piece& piece_;
 };
 
-/// The nodes above the pieces. A child with kPieceBit is the number of a piece.
-class TopBuilder {
- public:
-  explicit TopBuilder(std::vector<LeafBox>& boxes) : builder_(boxes) {}
-
-  std::uint32_t build(const Range& range, std::uint32_t depth) {
-    if (range.size() <= kPieceLeaves) {
-      pieces.push_back({range, {}, 0, 0});
-      piece_depth.push_back(depth);
-      return std::uint32_t(pieces.size() - 1) | kLeafBit;
-    }
-    const std::vector<Range> ranges = builder_.children_of(range);
-    const std::size_t number = nodes.size();
-    nodes.push_back({});
-    for (std::size_t lane = 0; lane < ranges.size(); ++lane) {
-      const std::uint32_t child = build(ranges[lane], depth + 1);
-      set_child(nodes[number], lane, ranges[lane].box, child);
-    }
-    nodes[number].count = std::uint32_t(ranges.size());
-    return std::uint32_t(number);
-  }
-  [[nodiscard]] Range all(std::size_t count) const { return builder_.range_of(0, count); }
-
-  std::vector<RayNode> nodes;
-  std::vector<Piece> pieces;
-  std::vector<std::uint32_t> piece_depth;
-
- private:
-  NodeBuilder builder_;
-};
-
 }  // namespace
 
 void build_nodes(std::vector<LeafBox>& boxes, RayTree& tree, const Execution& execution) {
   if (boxes.empty()) return;
-  TopBuilder top(boxes);
-  const Range all = top.all(boxes.size());
-  tree.bounds = all.box;
-  const std::uint32_t root = top.build(all, 0);
-  std::vector<Piece>& pieces = top.pieces;
-  parallel_for(execution, pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) PieceBuilder(boxes, pieces[i]).build();
+  std::vector<Piece> pieces((boxes.size() + kPieceLeaves - 1) / kPieceLeaves);
+  parallel_for(execution, boxes.size(), kPieceLeaves, [&](std::size_t begin, std::size_t end) {
+    Piece& piece = pieces[begin / kPieceLeaves];
+    piece.range = NodeBuilder(boxes).range_of(begin, end);
+    PieceBuilder(boxes, piece).build();
   });
+
+  // The piece above all others; its leaves are the pieces.
+  std::vector<LeafBox> roots;
+  for (std::uint32_t p = 0; p < pieces.size(); ++p) roots.push_back(as_leaf_box(pieces[p].range.box, p));
+  Piece top;
+  top.range = NodeBuilder(roots).range_of(0, roots.size());
+  PieceBuilder(roots, top).build();
+  tree.bounds = top.range.box;
 
   std::vector<std::uint32_t> first(pieces.size() + 1, std::uint32_t(top.nodes.size()));
   for (std::size_t i = 0; i < pieces.size(); ++i) first[i + 1] = first[i] + std::uint32_t(pieces[i].nodes.size());
   tree.nodes = Buffer<RayNode>(first.back());
-  const auto moved = [&](std::uint32_t piece, std::uint32_t child) {
-    return child & kLeafBit ? child : child + first[piece];
+  const auto in_piece = [&](std::uint32_t p, std::uint32_t child) {
+    return child & kLeafBit ? child : child + first[p];
   };
-  const auto root_of = [&](std::uint32_t piece) { return moved(piece, pieces[piece].root); };
+  const auto in_top = [&](std::uint32_t child) {
+    return child & kLeafBit ? in_piece(child & ~kLeafBit, pieces[child & ~kLeafBit].root) : child;
+  };
   for (std::size_t n = 0; n < top.nodes.size(); ++n) {
-    tree.nodes[n] = top.nodes[n];
-    for (std::uint32_t& child : tree.nodes[n].child)
-      if (child & kLeafBit) child = root_of(child & ~kLeafBit);
+    RayNode& node = tree.nodes[n] = top.nodes[n];
+    for (std::size_t lane = 0; lane < node.count; ++lane) node.child[lane] = in_top(node.child[lane]);
   }
   for (std::uint32_t p = 0; p < pieces.size(); ++p) {
-    tree.depth = std::max(tree.depth, top.piece_depth[p] + pieces[p].depth);
+    tree.depth = std::max(tree.depth, top.depth + pieces[p].depth);
     for (std::size_t n = 0; n < pieces[p].nodes.size(); ++n) {
       RayNode& node = tree.nodes[first[p] + n] = pieces[p].nodes[n];
-      for (std::size_t lane = 0; lane < node.count; ++lane) node.child[lane] = moved(p, node.child[lane]);
+      for (std::size_t lane = 0; lane < node.count; ++lane) node.child[lane] = in_piece(p, node.child[lane]);
     }
   }
-  tree.root = root & kLeafBit ? root_of(root & ~kLeafBit) : root;
+  tree.root = in_top(top.root);
 }
 
 }  // namespace frontmost
