@@ -2,6 +2,7 @@
 // From primitive ids to set-up triangles, and from those to what the geometry says of each fragment.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "frontmost/surfaces.h"
@@ -11,6 +12,7 @@
 #include "shade/materials.h"
 #include "shade/smooth_normals.h"
 #include "shade/triangle_setup.h"
+#include "surfaces/cluster_set.h"
 
 namespace frontmost::shading {
 
@@ -26,6 +28,13 @@ namespace frontmost::shading {
 [[nodiscard]] std::vector<bool> seen_materials(const Surfaces& surfaces, const BitSet& seen,
                                                const Execution& execution);
 
+/// A triangle that is to be set up as number `number`.
+struct NewTriangle {
+  PrimitiveId id = no_primitive;
+  std::uint16_t number = 0;
+  glm::vec2 reference{0};  ///< a screen position on the triangle
+};
+
 /// Sets up triangles with their attributes in world space.
 class TriangleSource {
  public:
@@ -35,21 +44,30 @@ class TriangleSource {
 
   /// From now on no triangle has texture coordinates: for pictures that look at none.
   void leave_out_texcoords() { has_texcoords_ = false; }
-  /// `reference` is a screen position on the triangle.
-  void set_up(PrimitiveId id, const glm::vec2& reference, TriangleSetup& setup) const;
+  /// Fills setups[number] of each triangle. Many at once are quicker than one by one.
+  void set_up(std::span<const NewTriangle> triangles, std::vector<TriangleSetup>& setups) const;
   [[nodiscard]] const ScreenRays& rays() const { return rays_; }
 
  private:
   struct Placement {
-    glm::mat3 normal_matrix{1.0f};  ///< takes normals to world space; any length
-    bool is_mirrored = false;
+    std::uint32_t instance;
+    PrimitiveId first;
+    std::uint32_t count;
+    const Mesh* mesh;
+    std::uint32_t mesh_number;
+    ToWorld world;
+    glm::mat3 normal_matrix;  ///< takes normals to world space; any length
+    bool is_mirrored;
+
+    [[nodiscard]] bool holds(PrimitiveId id) const { return id - first < count; }  // wraps for ids below
   };
 
-  static Placement placement_of(const glm::dmat4& world_from_mesh);
-  void set_normals(PrimitiveId id, TriangleSetup& setup) const;
-  void set_attributes(TriangleSetup& setup) const;
+  static Placement placement_of(const Surfaces& surfaces, std::uint32_t number);
+  [[nodiscard]] const Placement& placement_with(PrimitiveId id, const Placement& guess) const;
+  void set_up(const NewTriangle& triangle, const Placement& placement, TriangleSetup& setup) const;
+  void set_normals(PrimitiveId id, const Placement& placement, TriangleSetup& setup) const;
+  void set_attributes(const Mesh& mesh, TriangleSetup& setup) const;
 
-  const Surfaces& surfaces_;
   ScreenRays rays_;
   const BitSet* large_;
   bool has_texcoords_ = true;

@@ -99,7 +99,7 @@ void TileWork::add_fragment(PrimitiveId id, std::uint32_t pixel, const glm::vec2
     cache_.clear();
   }
   const TriangleCache::Found found = cache_.find_or_add(id);
-  if (found.is_new) source_.set_up(id, screen, cache_[found.number]);
+  if (found.is_new) new_triangles_.push_back({id, found.number, screen});
   const int i = coverage.count++;
   coverage.pixel[i] = pixel;
   coverage.triangle[i] = found.number;
@@ -110,6 +110,8 @@ void TileWork::add_fragment(PrimitiveId id, std::uint32_t pixel, const glm::vec2
 void TileWork::flush() {
   Coverage& coverage = batch_.coverage;
   if (coverage.count == 0) return;
+  source_.set_up(new_triangles_, cache_.setups());
+  new_triangles_.clear();
   interpolate_geometry(source_.rays(), cache_.setups(), batch_);
   colorist_(cache_.setups(), batch_);
   for (int i = 0; i < coverage.count; ++i) {

@@ -32,7 +32,7 @@ class TriangleCache {
   }
   [[nodiscard]] bool is_full() const { return count_ == capacity; }
   [[nodiscard]] const std::vector<TriangleSetup>& setups() const { return setups_; }
-  [[nodiscard]] TriangleSetup& operator[](std::uint16_t number) { return setups_[number]; }
+  [[nodiscard]] std::vector<TriangleSetup>& setups() { return setups_; }
 
   struct Found {
     std::uint16_t number;
@@ -90,6 +90,7 @@ class TileWork {
   /// Of each pixel, the part whose samples are see-through, and of that the part that lets light pass.
   std::vector<glm::vec2> see_through_;
   bool is_see_through_ = false;
+  std::vector<NewTriangle> new_triangles_;  ///< of the batch, not set up yet
   bool seen_[tile_width] = {};
   Batch batch_;
 };

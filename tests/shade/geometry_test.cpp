@@ -16,6 +16,13 @@ namespace {
 
 using namespace test;
 
+TriangleSetup set_up_one(const TriangleSource& source, PrimitiveId id, const glm::vec2& reference) {
+  std::vector<TriangleSetup> setups(1);
+  const NewTriangle triangle{id, 0, reference};
+  source.set_up({&triangle, 1}, setups);
+  return setups[0];
+}
+
 /// Everything that a TriangleSource borrows.
 struct World {
   Scene scene;
@@ -32,9 +39,7 @@ struct World {
         source(surfaces, view, &large, {}) {}
 
   [[nodiscard]] TriangleSetup set_up(PrimitiveId id, const glm::vec2& reference = {32, 32}) const {
-    TriangleSetup setup;
-    source.set_up(id, reference, setup);
-    return setup;
+    return set_up_one(source, id, reference);
   }
 };
 
@@ -104,8 +109,7 @@ TEST(TriangleSource, MeshesWithoutNormalsAreSmoothOnlyWhereLarge) {
   EXPECT_NEAR(large.normal[1].x, 0.0f, 0.02f);  // on the ridge: straight up
   EXPECT_LT(large.normal[0].x, -0.2f);          // at the eaves: the facet's own
   const TriangleSource flat(world.surfaces, front_view(), nullptr, {});
-  TriangleSetup setup;
-  flat.set_up(0, {32, 32}, setup);
+  const TriangleSetup setup = set_up_one(flat, 0, {32, 32});
   EXPECT_FALSE(setup.is_smooth);
   EXPECT_EQ(setup.normal[1], setup.plane_normal);
 }
