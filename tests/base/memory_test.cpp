@@ -27,7 +27,7 @@ TEST(LargePages, ReservingKeepsWhatIsThere) {
   std::vector<std::uint32_t> values(1000);
   std::iota(values.begin(), values.end(), 0u);
   for (const std::size_t count : {std::size_t(10), std::size_t(2000), 3 * kMebi}) {
-    reserve_large(values, count);
+    reserve_large(values, count, {.threads = 2});
     EXPECT_GE(values.capacity(), count);
     ASSERT_EQ(values.size(), 1000u);
     for (std::uint32_t i = 0; i < 1000; ++i) ASSERT_EQ(values[i], i);
@@ -41,6 +41,8 @@ TEST(LargePages, AnyRangeMayBeAskedFor) {
   want_large_pages(values.data() + 1, values.size() - 1);
   want_large_pages(values.data() + 4097, 1);
   want_large_pages(nullptr, 0);
+  populate_pages(values.data() + 1, values.size() - 1, {.threads = 3});
+  populate_pages(nullptr, 0, {});
   EXPECT_EQ(std::count(values.begin(), values.end(), 9), std::ptrdiff_t(values.size()));
 }
 

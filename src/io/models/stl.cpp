@@ -38,6 +38,22 @@ bool starts_like_ascii(Bytes bytes) {
   return is("solid") || is("facet");
 }
 
+/// Copies records to triangles of the mesh that are there, from number `first` on.
+void copy_records(Bytes records, std::size_t first, Mesh& mesh) {
+  const std::byte* record = records.data();
+  const std::size_t end = first + records.size() / record_size;
+  for (std::size_t t = first; t < end; ++t, record += record_size) {
+    std::memcpy(&mesh.positions[3 * t], record + normal_size, corners_size);
+    mesh.triangles[t] = glm::uvec3(3 * t, 3 * t + 1, 3 * t + 2);
+  }
+  if constexpr (native_endian == Endian::big)
+    for (std::size_t i = 3 * first; i < 3 * end; ++i)
+      for (int k = 0; k < 3; ++k) {
+        float& value = mesh.positions[i][k];
+        value = read_value<float>(reinterpret_cast<const std::byte*>(&value), Endian::little);
+      }
+}
+
 }  // namespace
 
 std::uint64_t stl_promised_count(Bytes prelude) {
@@ -82,18 +98,8 @@ void append_stl_records(Bytes records, Mesh& mesh) {
     const std::size_t end = std::min(count, begin + block);
     mesh.positions.resize(3 * (first + end));
     mesh.triangles.resize(first + end);
-    const std::byte* record = records.data() + begin * record_size;
-    for (std::size_t t = first + begin; t < first + end; ++t, record += record_size) {
-      std::memcpy(&mesh.positions[3 * t], record + normal_size, corners_size);
-      mesh.triangles[t] = glm::uvec3(3 * t, 3 * t + 1, 3 * t + 2);
-    }
+    copy_records(records.subspan(begin * record_size, (end - begin) * record_size), first + begin, mesh);
   }
-  if constexpr (native_endian == Endian::big)
-    for (std::size_t i = 3 * first; i < mesh.positions.size(); ++i)
-      for (int k = 0; k < 3; ++k) {
-        float& value = mesh.positions[i][k];
-        value = read_value<float>(reinterpret_cast<const std::byte*>(&value), Endian::little);
-      }
 }
 
 StlEncoding stl_encoding(Bytes start, std::uint64_t file_size) {
@@ -129,16 +135,16 @@ Scene read_binary_stl(Bytes bytes, const ModelSource& source) {
   if (count == 0) return scene;
   Mesh mesh;
   mesh.name = stl_header_name(bytes);
-  reserve_large(mesh.positions, 3 * count);
-  reserve_large(mesh.triangles, count);
-  constexpr std::size_t block = 8192;
-  for (std::size_t begin = 0; begin < count; begin += block) {
-    const Bytes records =
-        bytes.subspan(prelude_size + begin * record_size, std::min(block, count - begin) * record_size);
-    append_stl_records(records, mesh);
+  reserve_large(mesh.positions, 3 * count, source.execution());
+  reserve_large(mesh.triangles, count, source.execution());
+  mesh.positions.resize(3 * count);
+  mesh.triangles.resize(count);
+  constexpr std::size_t block = 1u << 14;
+  parallel_for(source.execution(), count, block, [&](std::size_t begin, std::size_t end) {
+    const Bytes records = bytes.subspan(prelude_size + begin * record_size, (end - begin) * record_size);
+    copy_records(records, begin, mesh);
     source.release(records);
-    check_cancelled(source.execution());
-  }
+  });
   scene.instances.push_back({.name = mesh.name, .mesh = 0});
   scene.meshes.push_back(std::move(mesh));
   return scene;
