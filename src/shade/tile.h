@@ -30,6 +30,7 @@ class TriangleCache {
     ++generation_;
     count_ = 0;
   }
+  static constexpr int capacity = 512;
   [[nodiscard]] bool is_full() const { return count_ == capacity; }
   [[nodiscard]] const std::vector<TriangleSetup>& setups() const { return setups_; }
   [[nodiscard]] std::vector<TriangleSetup>& setups() { return setups_; }
@@ -42,7 +43,6 @@ class TriangleCache {
   Found find_or_add(PrimitiveId id);
 
  private:
-  static constexpr int capacity = 512;
   static constexpr std::uint32_t slot_count = 2048;
   struct Slot {
     std::uint32_t generation = 0;
@@ -77,6 +77,7 @@ class TileWork {
   void add_pixel(int x, int y, std::uint32_t pixel);
   void add_mixed_pixel(const PrimitiveId* ids, const glm::vec2& corner, std::uint32_t pixel);
   void add_fragment(PrimitiveId id, std::uint32_t pixel, const glm::vec2& screen, float weight);
+  void sort_by_triangle();
   void flush();
 
   const TriangleSource& source_;
@@ -92,7 +93,9 @@ class TileWork {
   bool is_see_through_ = false;
   std::vector<NewTriangle> new_triangles_;  ///< of the batch, not set up yet
   bool seen_[tile_width] = {};
-  Batch batch_;
+  Coverage arrived_;                     ///< by pixels
+  std::uint16_t place_[batch_capacity];  ///< of each that arrived, in the batch
+  Batch batch_;                          ///< by triangles
 };
 
 }  // namespace frontmost::shading
