@@ -11,7 +11,7 @@ namespace frontmost::shading {
 inline constexpr int batch_capacity = 256;  ///< all arrays together stay within a second-level cache
 
 struct alignas(64) Lane {
-  float values[batch_capacity];
+  float values[batch_capacity + 16];  ///< lanes a power of two apart would share the same few sets of the cache
   float& operator[](int i) { return values[i]; }
   const float& operator[](int i) const { return values[i]; }
 };
