@@ -15,7 +15,7 @@ struct Options {
   std::vector<std::string> scenes;  ///< none: those that the table is about
   std::string models;               ///< folder of test models
   std::string json;                 ///< file for the results; none: not written
-  int threads = 1;                  ///< of the table of peers
+  int threads = 1;                  ///< of the tables `peers` and `stages`
   bool large = false;               ///< the scenes of 16 million triangles too
   bool llvmpipe = true, embree = true;
   Sampling sampling;

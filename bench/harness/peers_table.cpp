@@ -8,9 +8,6 @@
 namespace frontmost::bench {
 namespace {
 
-/// What counts: one thread's processor time is the steadier clock; of several threads the wall's is the answer.
-double cost(const Time& time, int threads) { return threads == 1 ? time.processor : time.wall; }
-
 /// The peers of one row, each in its process; null where it is not wanted or not there.
 struct Peers {
   std::unique_ptr<PeerProcess> llvmpipe, llvmpipe_keeping, embree;
@@ -61,8 +58,9 @@ void measure(const SceneEntry& entry, const Options& options, Table& table) {
 }  // namespace
 
 Table measure_peers(const Options& options) {
-  Table table(std::string("peers, threads: ").append(std::to_string(options.threads)),
-              {"scene", "triangles", "ms", "after other", "llvmpipe", "times", "target", "keeping", "Embree", "times"});
+  Table table(
+      std::string("peers, threads: ").append(std::to_string(options.threads)),
+      {"scene", "triangles", "ms", "after other", "llvmpipe", "times", "target", "keeping", "Embree", "times E"});
   for (const SceneEntry& entry : scene_entries())
     if (options.wants_scene(entry)) measure(entry, options, table);
   return table;

@@ -42,7 +42,8 @@ View without_faces(View view) {
 }  // namespace
 
 Table measure_stages(const Options& options) {
-  Table table("stages, one thread, ms", {"scene", "clear", "cull", "transform", "set-up", "raster", "whole"});
+  Table table(std::string("stages, ms, threads: ").append(std::to_string(options.threads)),
+              {"scene", "clear", "cull", "transform", "set-up", "raster", "whole"});
   const Scene nothing;
   const Surfaces no_surfaces(nothing);
   for (const std::string_view name : options.scenes_or(kVaried)) {
@@ -54,12 +55,13 @@ Table measure_stages(const Options& options) {
     std::vector<Contestant> contestants;
     const Stage cover(make_cover(stage.view), stage.view);
     for (Frames* frames : {&clear, &cull, &transform, &set_up, &whole})
-      contestants.emplace_back([frames] { frames->draw({.threads = 1}); },
+      contestants.emplace_back([frames, &options] { frames->draw({.threads = options.threads}); },
                                [frames, &cover] { frames->draw_other(cover); });
     const std::vector<Time> times = race(contestants, options.sampling);
-    std::vector<Cell> cells{name, {times[0].processor}};
-    for (std::size_t i = 1; i < times.size(); ++i) cells.emplace_back(times[i].processor - times[i - 1].processor);
-    cells.emplace_back(times.back().processor);
+    const auto ms = [&](std::size_t i) { return cost(times[i], options.threads); };
+    std::vector<Cell> cells{name, {ms(0)}};
+    for (std::size_t i = 1; i < times.size(); ++i) cells.emplace_back(ms(i) - ms(i - 1));
+    cells.emplace_back(ms(times.size() - 1));
     table.add(cells);
   }
   return table;

@@ -12,6 +12,9 @@ struct Time {
   double wall = 0, processor = 0;  ///< the processor's is summed over all threads of the process
 };
 
+/// What counts: one thread's processor time is the steadier clock; of several threads the wall's is the answer.
+[[nodiscard]] inline double cost(const Time& time, int threads) { return threads == 1 ? time.processor : time.wall; }
+
 struct Sampling {
   int rounds = 7;            ///< of every contestant in turn
   double most_seconds = 10;  ///< after which no further round is begun, from the third on
