@@ -166,9 +166,7 @@ class TileBuffer {
   /// True when every sample of the block is strictly nearer than `nearest`.
   [[nodiscard]] HWY_INLINE bool Hides(int block, float nearest) {
     if (bounds_.farthest[block] > nearest) return true;
-    if (!(dirty_ >> block & 1)) return false;
-    FindFarthest(block);
-    return bounds_.farthest[block] > nearest;
+    return (dirty_ >> block & 1) && FindHiding(block, nearest);
   }
 
   /// The blocks that are known to hide whatever is no nearer than `nearest`.
@@ -198,16 +196,24 @@ class TileBuffer {
   }
 
  private:
-  void FindFarthest(int block) {
+  /// Looks at all samples of a block, as long as they hide; notes the farthest key when they all do.
+  [[nodiscard]] bool FindHiding(int block, float nearest) {
+    constexpr int kRowsAtOnce = 4;
     const DWI d;
+    std::uint32_t bits;
+    std::memcpy(&bits, &nearest, sizeof bits);
+    const auto limit = hn::Set(d, std::int64_t(std::uint64_t(bits) << 32 | 0xFFFFFFFFu));
     const int bx = block % 8, by = block / 8;
     auto least = hn::Set(d, std::int64_t(kOutsideImage));
     for (std::size_t s = 0; s < frame_.samples.size(); ++s)
-      for (int y = by * kBlockSize; y < (by + 1) * kBlockSize; ++y) {
+      for (int y = by * kBlockSize; y < (by + 1) * kBlockSize; y += kRowsAtOnce) {
         const auto* row = reinterpret_cast<const std::int64_t*>(Row(s, y)) + bx * kBlockSize;
-        for (int x = 0; x < kBlockSize; x += int(hn::Lanes(d))) least = hn::Min(least, hn::Load(d, row + x));
+        for (int k = 0; k < kRowsAtOnce; ++k, row += kTileStride)
+          for (int x = 0; x < kBlockSize; x += int(hn::Lanes(d))) least = hn::Min(least, hn::Load(d, row + x));
+        if (!hn::AllTrue(d, hn::Gt(least, limit))) return false;
       }
     SetLeast(block, least);
+    return true;
   }
 
   void WriteRow(std::size_t sample, int y) const {
