@@ -33,8 +33,8 @@ struct TriangleQueue {
 
 /// Three edges and a depth plane for as many triangles as the vector holds.
 struct Batch {
-  VI x0, y0, dx[3], dy[3], bias[3];  // edge k runs from corner k
-  VI cx[3], cy[3];                   // its start
+  VI x0, y0, dx[3], dy[3], bias[3], area;  // edge k runs from corner k; twice the area
+  VI cx[3], cy[3];                         // its start
   VF k0, gx, gy, k_min, k_max;
   VI px, py, width, height;  // pixel rectangle within the tile
   VU not_id;
@@ -140,10 +140,9 @@ class SmallTriangles {
       const int n = k == 2 ? 0 : k + 1;
       b.dx[k] = hn::Sub(b.cx[n], b.cx[k]);
       b.dy[k] = hn::Sub(b.cy[n], b.cy[k]);
-      // Top-left edges include their own points: bias 0, the others -1.
-      const MI up = hn::Lt(b.dy[k], hn::Zero(d));
-      const MI level_right = hn::And(hn::Eq(b.dy[k], hn::Zero(d)), hn::Gt(b.dx[k], hn::Zero(d)));
-      b.bias[k] = hn::IfThenZeroElse(hn::Or(up, level_right), hn::Set(d, -1));
+      // Top-left edges include their own points: bias 0, the others -1. Top-left is dy < 0, or dy = 0 and dx > 0; that
+      // is dy * 2^16 - dx < 0, as both are within 15 bits.
+      b.bias[k] = hn::Not(hn::ShiftRight<31>(hn::Sub(hn::ShiftLeft<16>(b.dy[k]), b.dx[k])));
     }
     SetUpPlane(b, key);
     SetUpRect(b, used);
@@ -154,11 +153,11 @@ class SmallTriangles {
     const DF df;
     const VI x1 = b.dx[0], y1 = b.dy[0];
     const VI x2 = hn::Sub(b.cx[2], b.x0), y2 = hn::Sub(b.cy[2], b.y0);
-    const VI area = hn::Sub(hn::Mul(x1, y2), hn::Mul(x2, y1));
+    b.area = hn::Sub(hn::Mul(x1, y2), hn::Mul(x2, y1));
     const VF k1 = hn::Sub(key[1], key[0]), k2 = hn::Sub(key[2], key[0]);
     const VF fx1 = hn::ConvertTo(df, x1), fy1 = hn::ConvertTo(df, y1);
     const VF fx2 = hn::ConvertTo(df, x2), fy2 = hn::ConvertTo(df, y2);
-    const VF fa = hn::ConvertTo(df, area);
+    const VF fa = hn::ConvertTo(df, b.area);
     b.k0 = key[0];
     b.gx = hn::Div(hn::Sub(hn::Mul(k1, fy2), hn::Mul(k2, fy1)), fa);
     b.gy = hn::Div(hn::Sub(hn::Mul(fx1, k2), hn::Mul(fx2, k1)), fa);
@@ -186,10 +185,13 @@ class SmallTriangles {
     const glm::ivec2 offset = frame_.samples[sample];
     const VI sx = hn::Add(hn::ShiftLeft<8>(b.px), hn::Set(d, offset.x));
     const VI sy = hn::Add(hn::ShiftLeft<8>(b.py), hn::Set(d, offset.y));
-    VI row[3], step[3];
+    VI edge[3], row[3], step[3];
+    for (int k = 0; k < 2; ++k)
+      edge[k] = hn::Sub(hn::Mul(b.dx[k], hn::Sub(sy, b.cy[k])), hn::Mul(b.dy[k], hn::Sub(sx, b.cx[k])));
+    // The three edge functions of a point add up to twice the area.
+    edge[2] = hn::Sub(b.area, hn::Add(edge[0], edge[1]));
     for (int k = 0; k < 3; ++k) {
-      const VI e = hn::Sub(hn::Mul(b.dx[k], hn::Sub(sy, b.cy[k])), hn::Mul(b.dy[k], hn::Sub(sx, b.cx[k])));
-      row[k] = hn::ShiftRight<8>(hn::Add(e, b.bias[k]));
+      row[k] = hn::ShiftRight<8>(hn::Add(edge[k], b.bias[k]));
       step[k] = hn::Neg(b.dy[k]);
     }
     const VI first = hn::Add(hn::Mul(b.py, hn::Set(d, kTileStride)), b.px);
