@@ -58,6 +58,7 @@ void refuse_leftovers(const Command& command, const std::vector<std::string>& wo
   for (const std::string& word : words) {
     if (word == "--") continue;  // it has done its work
     if (word.size() > 1 && word[0] == '-') complain_of_unknown(command, word);
+    if (command.argument.empty()) throw UsageError(fmt::format("'{}' is one word too many", word));
     throw UsageError(fmt::format("one model at a time: '{}' and '{}'", model, word));
   }
 }
@@ -88,7 +89,7 @@ Settings parse_command_line(const Command& command, std::span<const char* const>
   app.set_help_flag();
   app.allow_extras();
   Settings settings;
-  app.add_option("model", settings.model);
+  if (!command.argument.empty()) app.add_option("model", settings.model);
   std::vector<Found> all;
   for_each_option([&](const Option& option) {
     if (option.commands & command.bit) all.push_back({&option, {}, false});

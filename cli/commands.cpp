@@ -43,6 +43,15 @@ constexpr Command table[] = {
      "frontmost camera part.stl --view front\n"
      "frontmost camera object.ply --intrinsics 615,615,320,240 --resolution 640,480 --json",
      run_camera},
+    {"precision", for_precision, "", "What a depth buffer can tell apart, at which distance.",
+     "The smallest gap that a depth buffer always resolves, against distance; without --format for the formats in use. "
+     "With --model also the pixels where such a buffer shows a surface that is not the nearest (z-fighting), against "
+     "the "
+     "exact answer, through the camera that the view options of render make; planes that are not given are fitted.",
+     "frontmost precision --near 0.1 --far 1000\n"
+     "frontmost precision --near 0.01 --infinite --format D24 --gap 0.05,800 --plot gaps.svg\n"
+     "frontmost precision --model city.glb --near 0.01 --format D16 --heat-map fights.png",
+     run_precision},
     {"completion", 0, "bash|zsh|fish", "Print a shell completion script.", "",
      "frontmost completion bash > ~/.local/share/bash-completion/completions/frontmost\n"
      "frontmost completion zsh > ~/.zfunc/_frontmost\n"

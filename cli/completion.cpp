@@ -38,8 +38,14 @@ std::string bash_script() {
   std::string values, flags;
   for_each_option([&](const Option& option) {
     if (option.is_switch()) return;
-    std::string pattern =
-        option.letter ? fmt::format("-{}|--{}", option.letter, option.name) : fmt::format("--{}", option.name);
+    // With the command: --format means one thing to render and another to precision.
+    std::string pattern;
+    for (const Command& command : commands()) {
+      if (!(option.commands & command.bit)) continue;
+      if (!pattern.empty()) pattern += '|';
+      if (option.letter) pattern += fmt::format("'{} -{}'|", command.name, option.letter);
+      pattern += fmt::format("'{} --{}'", command.name, option.name);
+    }
     const std::string reply = !option.choices().empty() ? fmt::format("COMPREPLY=($(compgen -W '{}' -- \"$word\"))",
                                                                       words_of(option.choices()))
                               : option.is_file()        ? "COMPREPLY=($(compgen -f -- \"$word\"))"
@@ -60,7 +66,7 @@ _frontmost() {{
     COMPREPLY=($(compgen -W '{} --help --version' -- "$word"))
     return
   fi
-  case $before in
+  case "${{COMP_WORDS[1]}} $before" in
 {}  esac
   case ${{COMP_WORDS[1]}} in
 {}  esac

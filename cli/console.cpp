@@ -5,6 +5,8 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <algorithm>
 #include <cstdio>
 
 namespace frontmost::cli {
@@ -30,5 +32,12 @@ std::optional<glm::ivec2> output_terminal() {
 }
 
 bool error_is_terminal() { return isatty(STDERR_FILENO) != 0; }
+
+std::string printable_name(std::string name) {
+  if (name.empty()) return "(no name)";
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return (c >= 0 && c < 0x20) || c == 0x7F; }, '?');
+  return name;
+}
 
 }  // namespace frontmost::cli

@@ -18,4 +18,7 @@ void complain(std::string_view text);
 [[nodiscard]] std::optional<glm::ivec2> output_terminal();
 [[nodiscard]] bool error_is_terminal();
 
+/// A name from a file, for a terminal: control characters, which terminals obey, are shown as question marks.
+[[nodiscard]] std::string printable_name(std::string name);
+
 }  // namespace frontmost::cli

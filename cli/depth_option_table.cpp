@@ -38,7 +38,7 @@ constexpr Option table[] = {
        used(s).offset = {offset[0], offset[1], 0};
      }},
     {"reversed", 0, "", "Nearer is greater: depths run from 1 at the near plane to 0 at the far one.", Group::depth,
-     for_render, [](Settings& s, const Given&) { used(s).reversed = true; }},
+     for_render | for_precision, [](Settings& s, const Given&) { used(s).reversed = true; }},
 };
 
 }  // namespace

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "console.h"
+
 namespace frontmost::cli {
 namespace {
 
@@ -106,18 +108,10 @@ std::string section(std::string_view heading, const std::vector<T>& elements, co
 
 std::string vector_text(const glm::dvec3& v) { return fmt::format("{:.6g},{:.6g},{:.6g}", v.x, v.y, v.z); }
 
-/// Names come from files: control characters, which terminals obey, are shown as question marks.
-std::string name_text(std::string name) {
-  if (name.empty()) return "(no name)";
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return (c >= 0 && c < 0x20) || c == 0x7F; }, '?');
-  return name;
-}
-
 std::string camera_line(const CameraReport& camera) {
   const std::string width = camera.orthographic ? fmt::format("orthographic, {:.6g} high", camera.vertical)
                                                 : fmt::format("{:.4g} degrees", camera.vertical * degrees_per_radian);
-  return fmt::format("{:24} {}, at {}", name_text(camera.name), width, vector_text(camera.position));
+  return fmt::format("{:24} {}, at {}", printable_name(camera.name), width, vector_text(camera.position));
 }
 
 std::string odd_lines(const SceneReport& report) {
@@ -148,7 +142,7 @@ Json info_json(const SceneReport& report) {
 }
 
 std::string info_text(const SceneReport& report) {
-  std::string text = fmt::format("{}\n  triangles  {}", name_text(report.name), report.triangles);
+  std::string text = fmt::format("{}\n  triangles  {}", printable_name(report.name), report.triangles);
   if (report.stored_triangles != report.triangles) text += fmt::format(" ({} stored)", report.stored_triangles);
   text += fmt::format("\n  vertices   {}\n  textures   {}\n  up         {}\n", report.vertices, report.texture_count,
                       axis_names[int(report.up)]);
@@ -161,10 +155,10 @@ std::string info_text(const SceneReport& report) {
       std::count_if(report.meshes.begin(), report.meshes.end(), [](const MeshReport& mesh) { return mesh.closed; }));
   text += fmt::format("  meshes     {}, {} closed\n", report.meshes.size(), closed);
   text += section("objects", report.objects, [](const ObjectReport& object) {
-    return fmt::format("{:24} {} triangles", name_text(object.name), object.triangles);
+    return fmt::format("{:24} {} triangles", printable_name(object.name), object.triangles);
   });
   text += section("materials", report.materials, [](const MaterialReport& material) {
-    return fmt::format("{:24} {} triangles, {} textures{}{}", name_text(material.name), material.triangles,
+    return fmt::format("{:24} {} triangles, {} textures{}{}", printable_name(material.name), material.triangles,
                        material.textures, material.alpha == Material::Alpha::opaque ? "" : ", ",
                        material.alpha == Material::Alpha::opaque ? "" : alpha_names[int(material.alpha)]);
   });

@@ -10,7 +10,7 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr unsigned everywhere = for_render | for_info | for_camera;
+constexpr unsigned everywhere = for_render | for_info | for_camera | for_precision;
 
 Isa isa_from(const Given& given) {
   // The words leave out Isa::best, which is the default.

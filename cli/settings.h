@@ -89,10 +89,19 @@ struct RunSettings {
   std::optional<std::string> batch;
 };
 
+/// What frontmost precision is to work out.
+struct PrecisionSettings {
+  std::optional<DepthFormat> format;  ///< none: those in use
+  bool infinite = false;
+  std::optional<glm::dvec2> wanted;  ///< a gap, and the distance at which it is to be resolved
+  std::optional<std::string> plot, heat_map;
+};
+
 struct Settings {
   std::string model;
   LoadOptions load;
   ViewSettings view;
+  PrecisionSettings precision;
   OutputSettings output;
   RunSettings run;
 };

@@ -9,8 +9,8 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr unsigned everywhere = for_render | for_info | for_camera;
-constexpr unsigned views = for_render | for_camera;
+constexpr unsigned everywhere = for_render | for_info | for_camera | for_precision;
+constexpr unsigned views = for_render | for_camera | for_precision;
 constexpr int max_side = 16384;
 
 Axis axis_of(const glm::dvec3& direction) {

@@ -49,6 +49,9 @@ struct SaveOptions {
 void save(const Image& image, const std::string& path, const SaveOptions& options = {},
           const Execution& execution = {});
 
+/// Writes text, such as an SVG drawing, with the same care: whole or not at all. \throws Error file_unwritable.
+void save_text(std::string_view text, const std::string& path);
+
 /// Reads PNG, EXR, PFM or NPY, told apart by content, as save() writes them; "-" reads standard input. PNGs that were
 /// not written by save() give R, G, B, A: linear, premultiplied. PFM and NPY hold no names: one channel is read as Z or
 /// (integers) primitive, three or four float channels as R, G, B, A, others as 0, 1, 2...

@@ -21,8 +21,8 @@ struct DepthSetup {
 /// The smallest gap that is always resolved: whatever lies at `distance`, a surface at least so much farther away is
 /// stored as another value. One full step of the format, carried back to distances: about
 /// distance^2 (far - near) / (far near (2^n - 1)) for integers, at most 2^-23 of the distance for reversed floats.
-/// Infinite where nothing beyond is told apart from infinity. It is the format's: where it is finer than about 1e-7 of
-/// the distance (floats that are not reversed, near the near plane), the 32-bit vertex positions are the limit.
+/// Infinite where nothing beyond is told apart from infinity. Float buffers are never finer than the float keys from
+/// which depths are made: 2^-24 to 2^-23 of the distance.
 /// \throws Error bad_argument unless near <= distance <= far, and for planes that make_projection() refuses.
 [[nodiscard]] double resolvable_gap(const DepthSetup& setup, double distance);
 

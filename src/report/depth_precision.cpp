@@ -41,12 +41,19 @@ double float_spacing(double depth) {
   return std::ldexp(1.0, depth > 0 ? std::max(std::ilogb(depth) - 23, kLeast) : kLeast);
 }
 
+/// And downwards: half as much where `depth` is a power of two.
+double spacing_below(double depth) { return float_spacing(depth * (1 - 1e-12)); }
+
+/// What two keys (see visible.h) must differ by not to round to the same float. Depths are made from keys, so a float
+/// buffer whose own values are finer, next to zero, gains nothing by it.
+double key_step(double key) { return spacing_below(key); }
+
 /// A difference of z that two depths never share a value across, the first at `depth`, the second farther away.
 double full_step(const DepthSetup& setup, double depth) {
   if (setup.format != DepthFormat::f32) return 1 / double((std::uint32_t(1) << integer_bits(setup.format)) - 1);
-  const double step = float_spacing(depth);
-  // Rounding separates what is a spacing apart where it is wider: farther away, unless depths fall.
-  return setup.reversed ? step : float_spacing(depth + step);
+  if (setup.reversed) return spacing_below(depth);
+  // Rounding separates what is a spacing apart where it is wider: farther away. No depth passes 1.
+  return spacing_below(std::min(depth + float_spacing(depth), 1.0));
 }
 
 /// The gap for a step of 1/d.
@@ -63,23 +70,27 @@ double bits_of(double depth) {
 }
 
 /// Floats that are not reversed: the gap only shrinks when the near plane goes away from the eye.
-double bisected_near(DepthSetup setup, double distance, double gap) {
+std::optional<double> bisected_near(DepthSetup setup, double distance, double gap) {
   double low = std::log(distance) - 70, high = std::log(distance);
   for (int i = 0; i < 200; ++i) {
     const double middle = 0.5 * (low + high);
     setup.clip.near = std::min(std::exp(middle), distance);
     (resolvable_gap(setup, distance) <= gap ? high : low) = middle;
   }
-  return std::exp(high);
+  setup.clip.near = std::min(std::exp(high), distance);
+  return resolvable_gap(setup, distance) <= gap ? std::optional(setup.clip.near) : std::nullopt;
 }
 
 }  // namespace
 
 double resolvable_gap(const DepthSetup& setup, double distance) {
   check(setup, distance);
+  const auto& [near, far] = setup.clip;
+  const bool is_float = setup.format == DepthFormat::f32;
   const double step = full_step(setup, depth_of(setup, distance));
-  if (setup.orthographic) return step * (setup.clip.far - setup.clip.near);
-  return gap_of(distance, step * span(setup.clip) / setup.clip.near);
+  if (setup.orthographic)
+    return std::max(step, is_float ? key_step((far - distance) / (far - near)) : 0.0) * (far - near);
+  return gap_of(distance, std::max(step * span(setup.clip), is_float ? key_step(near / distance) : 0.0) / near);
 }
 
 double share_of_values(const DepthSetup& setup, double distance) {

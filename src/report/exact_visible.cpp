@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/float_environment.h"
-#include "base/parallel.h"
 #include "frontmost/precision.h"
 #include "report/exact_depth.h"
 #include "zbuffer/submission.h"
@@ -97,25 +96,11 @@ ExactVisible exact_visible(const Surfaces& surfaces, const View& view, const Exe
   const std::size_t count = view.sample_count();
   ExactVisible answer{view, Buffer<PrimitiveId>(count, no_primitive), Buffer<std::uint8_t>(count, 0)};
   Field field{surfaces, SampleRays(view), sample_offsets(view.samples), answer, Buffer<DepthBounds>(count)};
-  const ScreenTransform transform(view);
   const TileGrid grid(view);
-  const std::vector<Piece> pieces = pieces_of(surfaces, 0, surfaces.primitive_count());
-  const std::size_t at_once = pieces_at_once(grid);
-  std::vector<PlacedPiece> placed(std::min(at_once, pieces.size()));
-  for (std::size_t first = 0; first < pieces.size(); first += at_once) {
-    const std::size_t batch = std::min(at_once, pieces.size() - first);
-    parallel_for(execution, batch, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) place(surfaces, pieces[first + i], transform, view, placed[i]);
-    });
-    parallel_for(execution, grid.count(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t tile = begin; tile < end; ++tile) {
-        Contest contest(field, grid.rect(tile));
-        for (std::size_t i = 0; i < batch; ++i)
-          for (const std::uint32_t item : placed[i].in_tile(tile)) contest.enter(placed[i].triangles[item]);
-      }
-    });
-    report_progress(execution, "exact", double(first + batch) / double(pieces.size()));
-  }
+  submit(surfaces, view, {0, surfaces.primitive_count()}, execution, [&](std::size_t tile, const PlacedPiece& piece) {
+    Contest contest(field, grid.rect(tile));
+    for (const std::uint32_t item : piece.in_tile(tile)) contest.enter(piece.triangles[item]);
+  });
   return answer;
 }
 

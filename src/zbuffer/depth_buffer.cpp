@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The depth buffer: batches of triangles in order, each drawn into all tiles at once.
+// The depth buffer: planes that outlive draw calls.
 #include "frontmost/depth_buffer.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/float_environment.h"
-#include "base/parallel.h"
 #include "zbuffer/depth_kernel.h"
 
 namespace frontmost {
@@ -23,28 +22,6 @@ std::size_t checked_sample_count(int width, int height, int samples) {
   view.projection.clip.near = 1;
   validate(view);
   return view.sample_count();
-}
-
-/// Every batch is placed by all threads, then drawn by all threads, each tile in order.
-void draw_batches(const Surfaces& surfaces, const View& view, const DepthDraw& call, const DepthCall& target,
-                  const Execution& execution) {
-  const ScreenTransform transform(view);
-  const TileGrid grid(view);
-  const std::vector<Piece> pieces = pieces_of(surfaces, call.begin, call.end);
-  const std::size_t at_once = pieces_at_once(grid);
-  std::vector<PlacedPiece> placed(std::min(at_once, pieces.size()));
-  for (std::size_t first = 0; first < pieces.size(); first += at_once) {
-    const std::size_t count = std::min(at_once, pieces.size() - first);
-    parallel_for(execution, count, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) place(surfaces, pieces[first + i], transform, view, placed[i]);
-    });
-    parallel_for(execution, grid.count(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t tile = begin; tile < end; ++tile)
-        for (std::size_t i = 0; i < count; ++i)
-          draw_depths(target, grid.rect(tile), placed[i].triangles, placed[i].in_tile(tile), execution.isa);
-    });
-    report_progress(execution, "visible", double(first + count) / double(pieces.size()));
-  }
 }
 
 }  // namespace
@@ -79,7 +56,11 @@ void DepthBuffer::draw(const Surfaces& surfaces, const View& view, const DepthDr
   const DepthRules rules = rules_for(call.state, format_, ScreenTransform(view));
   if (!rules.passes_less && !rules.passes_equal && !rules.passes_greater) return;  // never
   const DepthPlanes planes{stored_.data(), primitives_.data(), keys_.data(), width_, height_, sample_offsets(samples_)};
-  draw_batches(surfaces, view, call, {planes, rules, call.id_offset}, execution);
+  const DepthCall target{planes, rules, call.id_offset};
+  const TileGrid grid(view);
+  submit(surfaces, view, {call.begin, end}, execution, [&](std::size_t tile, const PlacedPiece& piece) {
+    draw_depths(target, grid.rect(tile), piece.triangles, piece.in_tile(tile), execution.isa);
+  });
 }
 
 Buffer<float> DepthBuffer::depths() const {

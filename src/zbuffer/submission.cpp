@@ -137,13 +137,13 @@ PixelRect TileGrid::rect(std::size_t tile) const {
   return {x, y, std::min(x + kSubmissionTile, width) - 1, std::min(y + kSubmissionTile, height) - 1};
 }
 
-std::vector<Piece> pieces_of(const Surfaces& surfaces, PrimitiveId begin, PrimitiveId end) {
+std::vector<Piece> pieces_of(const Surfaces& surfaces, const PrimitiveRange& range) {
   std::vector<Piece> pieces;
   const std::vector<Instance>& instances = surfaces.scene().instances;
   for (std::uint32_t i = 0; i < instances.size(); ++i) {
     const PrimitiveId first = surfaces.first_primitive(i);
     const auto count = std::uint32_t(surfaces.scene().meshes[instances[i].mesh].triangles.size());
-    const PrimitiveId low = std::max(begin, first), high = std::min(end, first + count);
+    const PrimitiveId low = std::max(range.begin, first), high = std::min(range.end, first + count);
     for (PrimitiveId id = low; id < high;) {
       const std::uint32_t size = std::min(kPieceTriangles, high - id);
       pieces.push_back({i, id - first, id - first + size, first});

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "base/parallel.h"
 #include "zbuffer/triangle_records.h"
 
 namespace frontmost::zbuffer_detail {
@@ -53,13 +54,41 @@ struct TileGrid {
   [[nodiscard]] PixelRect rect(std::size_t tile) const;
 };
 
-/// The pieces of primitives [begin, end), in order.
-[[nodiscard]] std::vector<Piece> pieces_of(const Surfaces& surfaces, PrimitiveId begin, PrimitiveId end);
+/// Primitives [begin, end).
+struct PrimitiveRange {
+  PrimitiveId begin, end;
+};
+
+/// The pieces of a range, in order.
+[[nodiscard]] std::vector<Piece> pieces_of(const Surfaces& surfaces, const PrimitiveRange& range);
 /// How many pieces may be placed at once: their lists stay within 256 MiB even where every triangle fills the image.
 [[nodiscard]] std::size_t pieces_at_once(const TileGrid& grid);
 
 /// Transforms, clips, culls and bins one piece; reuses the memory of `placed`.
 void place(const Surfaces& surfaces, const Piece& piece, const ScreenTransform& transform, const View& view,
            PlacedPiece& placed);
+
+/// Calls draw(tile, piece) for every tile and every piece of the range that is on the screen. In each tile pieces come
+/// in order; different tiles are drawn at the same time.
+template <class Draw>
+void submit(const Surfaces& surfaces, const View& view, const PrimitiveRange& range, const Execution& execution,
+            const Draw& draw) {
+  const ScreenTransform transform(view);
+  const TileGrid grid(view);
+  const std::vector<Piece> pieces = pieces_of(surfaces, range);
+  const std::size_t at_once = pieces_at_once(grid);
+  std::vector<PlacedPiece> placed(std::min(at_once, pieces.size()));
+  for (std::size_t first = 0; first < pieces.size(); first += at_once) {
+    const std::size_t count = std::min(at_once, pieces.size() - first);
+    parallel_for(execution, count, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) place(surfaces, pieces[first + i], transform, view, placed[i]);
+    });
+    parallel_for(execution, grid.count(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t tile = begin; tile < end; ++tile)
+        for (std::size_t i = 0; i < count; ++i) draw(tile, placed[i]);
+    });
+    report_progress(execution, "visible", double(first + count) / double(pieces.size()));
+  }
+}
 
 }  // namespace frontmost::zbuffer_detail

@@ -78,6 +78,16 @@ TEST(ResolvableGap, FloatsThatAreNotReversedAreNoBetterThan24BitsFarAway) {
   }
 }
 
+TEST(ResolvableGap, FloatsAreNeverFinerThanTheKeysTheyAreMadeFrom) {
+  for (const bool reversed : {false, true})
+    for (const double distance : {0.1, 0.13, 999.0, 1000.0}) {
+      const double gap = resolvable_gap({{0.1, 1000}, DepthFormat::f32, reversed}, distance);
+      EXPECT_GE(gap, 0.999 * std::ldexp(distance, -24)) << distance;
+      if (!reversed && distance > 1) continue;
+      EXPECT_LE(gap, 1.001 * std::ldexp(distance, -23)) << distance;
+    }
+}
+
 TEST(ResolvableGap, ParallelDepthIsEven) {
   for (const bool reversed : {false, true})
     EXPECT_NEAR(resolvable_gap({{0, 255}, DepthFormat::d8, reversed, true}, 77), 1, 1e-12);
@@ -129,7 +139,8 @@ TEST(ResolvableGap, CoversNeighbouringFloats) {
     const DepthSetup setup{{0.5, kInfinity}, DepthFormat::f32, reversed};
     Random random(9);
     for (int i = 0; i < 20'000; ++i) {
-      const float depth = random.within(1e-4f, 0.9999f);
+      // Below a half the keys, 1 - depth, are coarser than the depths.
+      const float depth = random.within(reversed ? 1e-4f : 0.5f, 0.9999f);
       const float next = std::nextafter(depth, reversed ? 0.0f : 2.0f);
       const auto distance = [&](float z) { return 0.5 / (reversed ? double(z) : 1 - double(z)); };
       const double between = distance(next) - distance(depth);

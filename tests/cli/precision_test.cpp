@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// frontmost precision: tables, reports, plots, and what it finds on models.
+#include <frontmost/io.h>
+#include <gmock/gmock.h>
+
+#include "program.h"
+
+namespace frontmost::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+class Precision : public ProgramTest {};
+
+/// Two squares at these z, as OBJ objects in that order.
+std::string two_squares(const std::string& first, const std::string& second) {
+  std::string text;
+  int corner = 1;
+  for (const std::string& z : {first, second}) {
+    text += "o at" + z + "\n";
+    for (const char* xy : {"-9 -9", "9 -9", "9 9", "-9 9"}) text += "v " + std::string(xy) + " " + z + "\n";
+    text += "f " + std::to_string(corner) + " " + std::to_string(corner + 1) + " " + std::to_string(corner + 2) + " " +
+            std::to_string(corner + 3) + "\n";
+    corner += 4;
+  }
+  return text;
+}
+
+TEST_F(Precision, TheTableHasARowForEveryDistance) {
+  const std::string text = succeed("precision --near 1 --far 100 --format D8").out;
+  EXPECT_THAT(text, StartsWith("D8, near 1, far 100\n"));
+  EXPECT_THAT(text, HasSubstr("\n          10         0.404         4.0e-02      90.91 %\n"));
+  EXPECT_THAT(text, Not(HasSubstr("model")));
+  const std::string all = succeed("precision --near 0.1 --infinite").out;
+  EXPECT_THAT(all, HasSubstr("    distance           D16           D24           F32  F32 reversed\n"));
+  EXPECT_THAT(all, HasSubstr("far infinite"));
+}
+
+TEST_F(Precision, TheReportHasTheSameNumbers) {
+  const json report = succeed("precision --near 1 --far 100 --format D8 --gap 0.5,10 --json").json();
+  EXPECT_EQ(report["near"], 1);
+  EXPECT_EQ(report["far"], 100);
+  const json& buffer = report["buffers"][0];
+  EXPECT_EQ(buffer["format"], "D8");
+  EXPECT_EQ(buffer["distances"][3]["distance"], 10);
+  EXPECT_NEAR(buffer["distances"][3]["gap"].get<double>(), 0.40392, 1e-5);
+  EXPECT_EQ(buffer["distances"].size(), 7u);
+  // 1/n = 0.5 / (10 * 10.5) * 255 + 1/100
+  EXPECT_NEAR(buffer["near_for_gap"].get<double>(), 1 / (0.5 / 105 * 255 + 0.01), 1e-12);
+  const json reversed = succeed("precision --near 0.1 --infinite --format F32 --reversed --gap 1e-9,10 --json").json();
+  EXPECT_TRUE(reversed["far"].is_null());
+  EXPECT_TRUE(reversed["buffers"][0]["near_for_gap"].is_null());
+  EXPECT_EQ(succeed("precision --near 1 --far 9 --json").json()["buffers"].size(), 4u);
+}
+
+TEST_F(Precision, AWantedGapNamesTheNearPlane) {
+  const std::string text = succeed("precision --near 0.01 --far 1000 --gap 0.01,100").out;
+  EXPECT_THAT(text, HasSubstr("to tell 0.01 apart at 100\n"));
+  EXPECT_THAT(text, HasSubstr("D24           near 0.05"));
+  EXPECT_THAT(text, HasSubstr("F32 reversed  any near plane will do\n"));
+  EXPECT_THAT(succeed("precision --near 1 --far 1000 --gap 0.01,100 --format D24").out, HasSubstr("or farther: it is"));
+}
+
+TEST_F(Precision, ThePlotIsADrawing) {
+  succeed("precision --near 0.1 --far 1000 --gap 0.05,800 --plot a.svg");
+  const std::string svg = read("a.svg");
+  EXPECT_THAT(svg, StartsWith("<svg xmlns="));
+  EXPECT_THAT(svg, HasSubstr(">F32 reversed</text>"));
+  EXPECT_THAT(svg, HasSubstr("wanted: 0.05 at 800"));
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+  EXPECT_THAT(svg, Not(HasSubstr("inf\"")));
+  succeed("precision --near 1e-20 --infinite --format D8 --reversed --plot b.svg");
+  EXPECT_THAT(read("b.svg"), HasSubstr("D8 reversed"));
+  succeed("precision --near 0 --far 10 --camera-orthographic --plot c.svg");
+  EXPECT_EQ(run({"precision", "--near", "1", "--far", "9", "--plot", "-"}).out.substr(0, 4), "<svg");
+}
+
+// From 10 away, near 0.01: 16 bits resolve 0.15, so the square 0.01 behind, drawn first, hides the other.
+TEST_F(Precision, SquaresThatFightAreFoundOnTheModel) {
+  write("fight.obj", two_squares("-0.01", "0"));
+  const std::string camera =
+      "precision --model fight.obj --camera-position 0,0,10 --camera-direction -z --resolution 40,30 --near 0.01 --far "
+      "100";
+  const json fights = succeed(camera + " --format D16 --json").json()["buffers"][0]["fights"];
+  EXPECT_EQ(fights["pixels"], 1200);
+  EXPECT_EQ(fights["covered_pixels"], 1200);
+  ASSERT_EQ(fights["wrong_pixels"], 1200);
+  EXPECT_EQ(fights["pairs"][0]["seen"]["name"], "at-0.01");
+  EXPECT_EQ(fights["pairs"][0]["nearer"]["name"], "at0");
+  EXPECT_NEAR(fights["pairs"][0]["farthest"].get<double>(), 0.01, 1e-6);
+  const std::string text = succeed(camera + " --format D16 --heat-map h.png").out;
+  EXPECT_THAT(text, HasSubstr("1200 pixels   100.000 %"));
+  EXPECT_THAT(text, HasSubstr("at-0.01"));
+  EXPECT_EQ(load_image(path("h.png")).width, 40);
+  EXPECT_EQ(succeed(camera + " --format D24 --json").json()["buffers"][0]["fights"]["wrong_pixels"], 0);
+  const json all = succeed(camera + " --json").json()["buffers"];
+  EXPECT_EQ(all[0]["fights"]["wrong_pixels"], 1200);
+  EXPECT_EQ(all[3]["fights"]["wrong_pixels"], 0);
+}
+
+TEST_F(Precision, OneSurfaceInTwoPlacesIsTied) {
+  write("same.obj", two_squares("0", "0"));
+  const json fights =
+      succeed(
+          "precision --model same.obj --camera-position 0,0,10 --camera-direction -z --resolution 40,30 --format D24 "
+          "--json")
+          .json()["buffers"][0]["fights"];
+  EXPECT_EQ(fights["wrong_pixels"], 0);
+  EXPECT_EQ(fights["tied_pixels"], 1200);
+}
+
+TEST_F(Precision, WrongUsageIsNamed) {
+  write("cube.stl", cube_stl());
+  expect_failure("precision", 2, "give --near, or a --model");
+  expect_failure("precision --near 1", 2, "give --far or --infinite");
+  expect_failure("precision --near 1 --far 2 --infinite", 2, "--infinite and --far exclude each other");
+  expect_failure("precision --near 2 --far 1", 2, "--near: must be below --far");
+  expect_failure("precision --near 1 --far 2 --format D32", 2, "--format: 'D32' is not one of D8, D16, D24, F32");
+  expect_failure("precision --near 1 --far 2 --gap 1", 2, "--gap: '1' has 1 values, 2 are needed");
+  expect_failure("precision --near 1 --far 2 --gap 1,5", 1, "distance: must lie between near and far");
+  expect_failure("precision --near 1 --far 2 --heat-map a.png --format D24", 2,
+                 "--heat-map needs --model and --format");
+  expect_failure("precision cube.stl --near 1 --far 2", 2, "'cube.stl' is one word too many");
+  expect_failure("precision --near 1 --far 2 --plot none/a.svg", 1, "does not exist");
+  expect_failure("precision --near 1 --far 2 --json --plot -", 2, "both want standard output");
+  expect_failure("precision --model cube.stl --plot cube.stl", 2, "is the model itself");
+  expect_failure("render cube.stl --gap 1,2", 2, "--gap does not belong to 'frontmost render'");
+}
+
+}  // namespace
+}  // namespace frontmost::test
