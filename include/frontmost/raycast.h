@@ -3,6 +3,8 @@
 #pragma once
 
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "frontmost/surfaces.h"
 #include "frontmost/view.h"
@@ -73,5 +75,50 @@ class RayCaster {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// Points origin + t * direction for t > 0; the direction has any length.
+struct Ray {
+  glm::vec3 origin{0}, direction{0, 0, -1};
+};
+
+/// The points between two: from + t * (to - from) for 0 < t < 1.
+struct Segment {
+  glm::vec3 from{0}, to{0};
+};
+
+/// Where a surface is met.
+struct RayHit {
+  PrimitiveId primitive = no_primitive;  ///< no_primitive: nothing is met
+  double t = std::numeric_limits<double>::infinity();
+  bool is_front = false;  ///< met from the side that its corners run counter-clockwise on
+
+  [[nodiscard]] explicit operator bool() const { return primitive != no_primitive; }
+};
+
+// Queries see both sides of every triangle, and are decided exactly on the floats of the query and of the corners,
+// without any tolerance. A surface is met where it is passed through: a triangle that contains an end of the segment
+// or the origin of the ray is not met there, nor is one that lies along the line. A line through an edge or a corner
+// meets every triangle that has it, so nothing slips through a closed surface. What lies between two points does not
+// depend on which is asked from. Only t is rounded, to doubles; at equal t the lower id wins.
+// Queries with a coordinate that is not finite, rays without a direction and segments from a point to itself meet
+// nothing, and are clear. O(log n) each in ordinary scenes.
+
+/// The nearest surface along a ray; between two points, the nearest to `from`.
+[[nodiscard]] RayHit closest_hit(const RayIndex& index, const Ray& ray);
+[[nodiscard]] RayHit closest_hit(const RayIndex& index, const Segment& segment);
+/// Every surface along a ray, nearest first.
+[[nodiscard]] std::vector<RayHit> all_hits(const RayIndex& index, const Ray& ray);
+/// True when no surface is met between two points: the line of sight. Quicker than closest_hit().
+[[nodiscard]] bool is_clear(const RayIndex& index, const Segment& segment);
+
+/// The same for many, on all threads; the answers do not depend on how many.
+/// \throws Error bad_argument when there are not as many answers as queries.
+void closest_hits(const RayIndex& index, std::span<const Ray> rays, std::span<RayHit> answers,
+                  const Execution& execution = {});
+void closest_hits(const RayIndex& index, std::span<const Segment> segments, std::span<RayHit> answers,
+                  const Execution& execution = {});
+/// 1 where the segment is clear, 0 where it is blocked.
+void are_clear(const RayIndex& index, std::span<const Segment> segments, std::span<std::uint8_t> answers,
+               const Execution& execution = {});
 
 }  // namespace frontmost

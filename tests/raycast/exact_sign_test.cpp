@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Signs of determinants, against whole numbers of 128 bits.
+#include "raycast/exact_sign.h"
+
+#include <gtest/gtest.h>
+
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+using raycast_detail::determinant_sign;
+using raycast_detail::exact;
+using raycast_detail::exact_difference;
+
+__extension__ using Int128 = __int128;
+
+int sign_of(Int128 v) { return int(v > 0) - int(v < 0); }
+
+/// Coordinates are whole numbers below 2^24, so that floats hold them and 128 bits hold the determinant.
+Int128 determinant(const glm::vec3& o, const std::array<glm::vec3, 3>& p) {
+  Int128 m[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) m[i][k] = Int128(p[std::size_t(i)][k]) - Int128(o[k]);
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) + m[0][1] * (m[1][2] * m[2][0] - m[1][0] * m[2][2]) +
+         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+}
+
+glm::vec3 whole_point(Random& random, int reach) {
+  return {float(random.below(2 * reach) - reach), float(random.below(2 * reach) - reach),
+          float(random.below(2 * reach) - reach)};
+}
+
+TEST(ExactSign, EqualsWholeNumbers) {
+  std::size_t zeros = 0;
+  for (std::uint64_t seed = 0; seed < 200'000; ++seed) {
+    Random random(seed);
+    const int reach = seed % 3 == 0 ? 3 : seed % 3 == 1 ? 1000 : 1 << 23;
+    const glm::vec3 o = whole_point(random, reach);
+    std::array<glm::vec3, 3> p{whole_point(random, reach), whole_point(random, reach), {}};
+    // Half of them all but coplanar: the third point is the other two's, as far as whole numbers allow.
+    p[2] = seed % 2 ? whole_point(random, reach) : glm::floor((p[0] + p[1]) * 0.5f);
+    const Int128 expected = determinant(o, p);
+    zeros += expected == 0;
+    ASSERT_EQ(determinant_sign(exact_difference(p[0], o), exact_difference(p[1], o), exact_difference(p[2], o)),
+              sign_of(expected))
+        << "seed " << seed;
+  }
+  EXPECT_GT(zeros, 1000u);
+}
+
+TEST(ExactSign, SeesTheLastBit) {
+  const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  EXPECT_EQ(determinant_sign(exact(x), exact(y), exact(z)), 1);
+  EXPECT_EQ(determinant_sign(exact(y), exact(x), exact(z)), -1);
+  EXPECT_EQ(determinant_sign(exact(x), exact(y), exact(glm::vec3(1, 1, 0))), 0);
+  // Denormals: products far below what floats hold.
+  const float tiny = 1e-40f;
+  EXPECT_EQ(determinant_sign(exact(tiny * x), exact(tiny * y), exact(-tiny * z)), -1);
+  // Seen from 1e30 to the left, three corners in the plane x = 0; one of them 1e-30 out of it makes no difference to
+  // a double: the difference is 1e30 either way. Three columns of them are dependent but for that.
+  const glm::vec3 eye(-1e30f, 0, 0);
+  const auto from_eye = [&](const glm::vec3& p) { return exact_difference(p, eye); };
+  EXPECT_EQ(determinant_sign(from_eye({0, 1, 0}), from_eye({0, 1, 1}), from_eye({0, 1, 2})), 0);
+  EXPECT_EQ(determinant_sign(from_eye({0, 1, 0}), from_eye({1e-30f, 1, 1}), from_eye({0, 1, 2})), -1);
+  EXPECT_EQ(determinant_sign(from_eye({0, 1, 0}), from_eye({-1e-30f, 1, 1}), from_eye({0, 1, 2})), 1);
+}
+
+}  // namespace
+}  // namespace frontmost::test

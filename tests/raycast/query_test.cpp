@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays and segments: known answers, the rules at the ends, against every triangle one by one, and nothing leaks.
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "frontmost/raycast.h"
+#include "raycast/query_kernel.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+constexpr float inf = std::numeric_limits<float>::infinity();
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+/// The square from (-1, -1) to (1, 1) at each height, as two triangles; ids 2 i and 2 i + 1. Seen from above: front.
+Scene floors(std::initializer_list<float> heights) {
+  Mesh mesh;
+  for (const float z : heights) {
+    add_triangle(mesh, {-1, -1, z}, {1, -1, z}, {1, 1, z});
+    add_triangle(mesh, {-1, -1, z}, {1, 1, z}, {-1, 1, z});
+  }
+  return scene_of(mesh);
+}
+
+struct Indexed {
+  explicit Indexed(Scene s) : scene(std::move(s)), surfaces(scene), index(surfaces) {}
+  Scene scene;
+  Surfaces surfaces;
+  RayIndex index;
+};
+
+TEST(Query, MeetsTheNearestFloorAndCountsThemAll) {
+  const Indexed of(floors({0, 1, 2, 3}));
+  const RayHit down = closest_hit(of.index, Ray{{0.5f, -0.25f, 5}, {0, 0, -2}});
+  EXPECT_EQ(down.primitive, 6u);
+  EXPECT_EQ(down.t, 1.0);
+  EXPECT_TRUE(down.is_front);
+  const RayHit up = closest_hit(of.index, Ray{{0.5f, -0.25f, 1.5f}, {0, 0, 1}});
+  EXPECT_EQ(up.primitive, 4u);
+  EXPECT_EQ(up.t, 0.5);
+  EXPECT_FALSE(up.is_front);
+  const std::vector<RayHit> all = all_hits(of.index, Ray{{0.5f, -0.25f, 5}, {0, 0, -1}});
+  ASSERT_EQ(all.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(all[i].t, 2.0 + double(i));
+  EXPECT_FALSE(closest_hit(of.index, Ray{{1.5f, 0, 5}, {0, 0, -1}}));
+  EXPECT_FALSE(closest_hit(of.index, Ray{{0.5f, -0.25f, -1}, {0, 0, -1}}));
+}
+
+TEST(Query, ARayThroughASharedEdgeMeetsBothAndNamesTheLower) {
+  const Indexed of(floors({0}));
+  EXPECT_EQ(closest_hit(of.index, Ray{{0.25f, 0.25f, 1}, {0, 0, -1}}).primitive, 0u);
+  EXPECT_EQ(all_hits(of.index, Ray{{0.25f, 0.25f, 1}, {0, 0, -1}}).size(), 2u);
+  // The outer edge and the corner belong to the floor too.
+  EXPECT_TRUE(closest_hit(of.index, Ray{{1, 0.25f, 1}, {0, 0, -1}}));
+  EXPECT_TRUE(closest_hit(of.index, Ray{{1, -1, 1}, {0, 0, -1}}));
+  EXPECT_FALSE(closest_hit(of.index, Ray{{std::nextafter(1.0f, 2.0f), 0.25f, 1}, {0, 0, -1}}));
+}
+
+TEST(Query, WhatLiesAtAnEndDoesNotBlock) {
+  const Indexed of(floors({0, 1}));
+  const glm::vec3 low(0.5f, -0.25f, 0), high(0.5f, -0.25f, 1), above(0.5f, -0.25f, 2);
+  EXPECT_TRUE(is_clear(of.index, {low, high}));
+  EXPECT_TRUE(is_clear(of.index, {high, above}));
+  EXPECT_FALSE(is_clear(of.index, {low, above}));
+  const float just_above = std::nextafter(1.0f, 2.0f), just_below = std::nextafter(1.0f, 0.0f);
+  EXPECT_FALSE(is_clear(of.index, {low, {0.5f, -0.25f, just_above}}));
+  EXPECT_TRUE(is_clear(of.index, {low, {0.5f, -0.25f, just_below}}));
+  EXPECT_EQ(closest_hit(of.index, Segment{low, above}).t, 0.5);
+  // A ray starts after its origin.
+  EXPECT_EQ(closest_hit(of.index, Ray{high, {0, 0, -1}}).primitive, 0u);
+  // Along a surface there is nothing to pass through.
+  EXPECT_TRUE(is_clear(of.index, {{-2, 0, 1}, {2, 0.5f, 1}}));
+  EXPECT_FALSE(closest_hit(of.index, Ray{{-2, 0, 1}, {1, 0, 0}}));
+}
+
+TEST(Query, NonsenseMeetsNothing) {
+  const Indexed of(floors({0})), empty{Scene{}};
+  const glm::vec3 origin(0.5f, -0.25f, 1), down(0, 0, -1);
+  for (const Ray& ray : {Ray{origin, glm::vec3(0)}, Ray{origin, {0, 0, nan}}, Ray{origin, {0, 0, -inf}},
+                         Ray{{nan, 0, 0}, down}, Ray{{0, inf, 0}, down}}) {
+    EXPECT_FALSE(closest_hit(of.index, ray));
+    EXPECT_TRUE(all_hits(of.index, ray).empty());
+  }
+  for (const Segment& segment : {Segment{origin, origin}, Segment{origin, {nan, 0, 0}}, Segment{{inf, 0, 0}, origin}})
+    EXPECT_TRUE(is_clear(of.index, segment));
+  EXPECT_FALSE(closest_hit(empty.index, Ray{origin, down}));
+  EXPECT_TRUE(is_clear(empty.index, {origin, -origin}));
+  // Neither tiny nor huge directions are nonsense.
+  EXPECT_EQ(closest_hit(of.index, Ray{origin, 1e-42f * down}).primitive, 0u);
+  EXPECT_EQ(closest_hit(of.index, Ray{origin, 3e38f * down}).primitive, 0u);
+  EXPECT_FALSE(is_clear(of.index, {{0.5f, -0.25f, 3e38f}, {0.5f, -0.25f, -3e38f}}));
+  std::vector<RayHit> two(2);
+  const Ray one_ray[] = {{origin, down}};
+  EXPECT_THROW(closest_hits(of.index, one_ray, two), Error);
+}
+
+TEST(Query, AMillionCoincidentTriangles) {
+  Mesh mesh;
+  mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+  mesh.triangles.assign(1'000'000, {0, 1, 2});
+  const Indexed of(scene_of(mesh));
+  EXPECT_EQ(closest_hit(of.index, Ray{{0, 0, 1}, {0, 0, -1}}).primitive, 0u);
+  EXPECT_FALSE(is_clear(of.index, {{0, 0, 1}, {0, 0, -1}}));
+  EXPECT_EQ(all_hits(of.index, Ray{{0, 0, 1}, {0, 0, -1}}).size(), 1'000'000u);
+  View view = frame(of.surfaces, 64, 64);
+  const Visible seen = raycast(of.index, view);
+  for (const PrimitiveId id : seen.primitives) EXPECT_TRUE(id == 0 || id == no_primitive);
+}
+
+class EveryKindOfQuery : public testing::TestWithParam<Kind> {};
+INSTANTIATE_TEST_SUITE_P(Query, EveryKindOfQuery, testing::ValuesIn(all_kinds));
+
+/// A point of a triangle's own, or anywhere: queries along edges and through corners are the hard ones.
+glm::vec3 some_point(Random& random, const Surfaces& surfaces) {
+  const std::array<glm::vec3, 3> c = surfaces.corners(PrimitiveId(random.below(int(surfaces.primitive_count()))));
+  switch (random.below(4)) {
+    case 0: return c[std::size_t(random.below(3))];
+    case 1: return (c[0] + c[1]) * 0.5f;
+    default: return random.point(1.5f);
+  }
+}
+
+TEST_P(EveryKindOfQuery, EqualsEveryTriangleOneByOneOnEveryInstructionSet) {
+  std::size_t met = 0;
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    Random random(seed + 40);
+    const Indexed of(scene_of(random_mesh(GetParam(), 100 + random.below(300), seed)));
+    for (int i = 0; i < 60; ++i) {
+      const glm::vec3 from = some_point(random, of.surfaces), to = some_point(random, of.surfaces);
+      const bool is_segment = i % 2 == 0;
+      const raycast_detail::Query query{from, to, to - from, is_segment};
+      if (!raycast_detail::is_valid(query)) continue;
+      std::vector<RayHit> expected;
+      for (PrimitiveId id = 0; id < of.surfaces.primitive_count(); ++id)
+        if (const RayHit hit = raycast_detail::meet(query, of.surfaces.corners(id), id)) expected.push_back(hit);
+      const auto order = [](const RayHit& a, const RayHit& b) {
+        return a.t != b.t ? a.t < b.t : a.primitive < b.primitive;
+      };
+      std::sort(expected.begin(), expected.end(), order);
+      met += !expected.empty();
+      for (const Isa isa : available_isas()) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed << ", query " << i << ", " << name(isa));
+        std::vector<RayHit> all, closest, any;
+        walk(of.index.tree(), query, raycast_detail::Want::all, all, isa);
+        walk(of.index.tree(), query, raycast_detail::Want::closest, closest, isa);
+        walk(of.index.tree(), query, raycast_detail::Want::any, any, isa);
+        std::sort(all.begin(), all.end(), order);
+        ASSERT_EQ(all.size(), expected.size());
+        for (std::size_t k = 0; k < all.size(); ++k) {
+          ASSERT_EQ(all[k].primitive, expected[k].primitive);
+          ASSERT_EQ(all[k].t, expected[k].t);
+        }
+        ASSERT_EQ(any.empty(), expected.empty());
+        ASSERT_EQ(closest.empty(), expected.empty());
+        if (!expected.empty()) {
+          ASSERT_EQ(closest[0].primitive, expected[0].primitive);
+        }
+      }
+    }
+  }
+  if (GetParam() != Kind::tiny && GetParam() != Kind::slivers) {
+    EXPECT_GT(met, 20u);
+  }
+}
+
+/// A ball with bumps: closed, its corners shared.
+Mesh bumpy_ball(int rings, std::uint64_t seed) {
+  Random random(seed);
+  Mesh mesh;
+  const int columns = 2 * rings;
+  mesh.positions.push_back({0, 0, 1});
+  for (int j = 1; j < rings; ++j)
+    for (int i = 0; i < columns; ++i) {
+      const float a = 3.14159265f * float(j) / float(rings), b = 6.2831853f * float(i) / float(columns);
+      mesh.positions.push_back(random.within(0.8f, 1.2f) *
+                               glm::vec3(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a)));
+    }
+  mesh.positions.push_back({0, 0, -1});
+  const auto at = [&](int j, int i) { return std::uint32_t(1 + (j - 1) * columns + i % columns); };
+  const auto last = std::uint32_t(mesh.positions.size() - 1);
+  for (int i = 0; i < columns; ++i) {
+    mesh.triangles.push_back({0, at(1, i), at(1, i + 1)});
+    mesh.triangles.push_back({last, at(rings - 1, i + 1), at(rings - 1, i)});
+    for (int j = 1; j + 1 < rings; ++j) {
+      mesh.triangles.push_back({at(j, i), at(j + 1, i), at(j + 1, i + 1)});
+      mesh.triangles.push_back({at(j, i), at(j + 1, i + 1), at(j, i + 1)});
+    }
+  }
+  return mesh;
+}
+
+TEST(Query, NothingLeaksOutOfAClosedSurface) {
+  const Mesh mesh = bumpy_ball(40, 5);
+  const Indexed of(scene_of(mesh));
+  Random random(77);
+  std::size_t asked = 0;
+  for (const glm::uvec3& triangle : mesh.triangles) {
+    const glm::vec3 inside = random.point(0.3f);
+    const glm::vec3 a = mesh.positions[triangle.x], b = mesh.positions[triangle.y], c = mesh.positions[triangle.z];
+    for (const glm::vec3& aim : {a, (a + b) * 0.5f, a + (c - a) * random.unit(), (a + b + c) / 3.0f}) {
+      ASSERT_TRUE(closest_hit(of.index, Ray{inside, aim - inside})) << aim.x << " " << aim.y << " " << aim.z;
+      ASSERT_FALSE(is_clear(of.index, {inside, inside + (aim - inside) * 3.0f}));
+      asked += 2;
+    }
+  }
+  EXPECT_GT(asked, 20'000u);
+}
+
+TEST(Query, TheLineOfSightIsMutual) {
+  const Indexed of(scene_of(random_mesh(Kind::shared_grid, 800, 3)));
+  Random random(4);
+  std::size_t clear = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const glm::vec3 a = some_point(random, of.surfaces), b = some_point(random, of.surfaces);
+    ASSERT_EQ(is_clear(of.index, {a, b}), is_clear(of.index, {b, a})) << i;
+    clear += is_clear(of.index, {a, b});
+  }
+  EXPECT_GT(clear, 1'000u);
+  EXPECT_LT(clear, 19'000u);
+}
+
+TEST(Query, BatchesDoNotDependOnThreads) {
+  const Indexed of(scene_of(random_mesh(Kind::soup, 3000, 9)));
+  Random random(6);
+  std::vector<Ray> rays(5000);
+  std::vector<Segment> segments(5000);
+  for (Ray& ray : rays) ray = {random.point(2), random.point(1)};
+  for (Segment& segment : segments) segment = {random.point(2), random.point(2)};
+  std::vector<RayHit> hits(5000), again(5000), between(5000);
+  std::vector<std::uint8_t> clear(5000);
+  closest_hits(of.index, rays, hits, {.threads = 1});
+  closest_hits(of.index, rays, again, {.threads = 3, .isa = Isa::scalar});
+  closest_hits(of.index, segments, between);
+  are_clear(of.index, segments, clear);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_EQ(hits[i].primitive, again[i].primitive);
+    ASSERT_EQ(hits[i].t, again[i].t);
+    ASSERT_EQ(hits[i].primitive, closest_hit(of.index, rays[i]).primitive);
+    ASSERT_EQ(bool(clear[i]), !between[i]);
+  }
+}
+
+}  // namespace
+}  // namespace frontmost::test
