@@ -129,18 +129,6 @@ class Spread {
   Extreme low_{std::numeric_limits<double>::infinity(), 1}, high_{-std::numeric_limits<double>::infinity(), 1};
 };
 
-/// The vertices of the model that decide the framing. Almost all clusters are passed over by their boxes.
-std::vector<glm::vec3> deciding_points(const ClusterSet& set, Extremes extremes) {
-  for (std::size_t i = 0; i < set.clusters.size(); ++i) {
-    const Box box = set.boxes.get(i);
-    if (box.is_empty() || !extremes.may_change_by(box)) continue;
-    const std::size_t first = set.clusters[i].first_vertex;
-    for (std::size_t v = first; v < first + set.clusters[i].vertex_count; ++v)
-      extremes.include({set.x[v], set.y[v], set.z[v]});
-  }
-  return extremes.points();
-}
-
 /// Moves the eye across until the model is in the middle of the picture. Only the looser direction moves: the tight
 /// one is in the middle already.
 void centre(glm::dmat4& pose, const std::vector<glm::vec3>& points) {
@@ -186,7 +174,9 @@ View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& 
   const double aspect = double(width) / height, filled = 1 - 2 * options.margin;
   Projection projection = make_projection(options.min_fov, aspect, {});
   const glm::dvec2 spread(projection.right * filled, projection.top * filled);
-  const std::vector<glm::vec3> points = deciding_points(surfaces.clusters(), Extremes(pose, spread));
+  Extremes extremes(pose, spread);
+  extremes.include(surfaces.clusters());
+  const std::vector<glm::vec3> points = extremes.points();
   Fit fit(pose, spread);
   for (const glm::vec3& p : points) fit.include(glm::dvec3(p));
   if (points.empty())

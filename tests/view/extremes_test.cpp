@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "view/extremes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "frontmost/scene.h"
+#include "frontmost/view.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+const glm::dvec2 kSpread(0.7, 0.4);
+
+glm::dmat4 turned() { return look_at({3, -2, 1.5}, {0, 0, 0}, {0, 0, 1}); }
+
+/// Vertices in as many clusters as it takes.
+Scene cloud(const std::vector<glm::vec3>& points) {
+  Mesh mesh;
+  for (std::size_t i = 0; i + 2 < points.size(); i += 3) add_triangle(mesh, points[i], points[i + 1], points[i + 2]);
+  return scene_of(mesh);
+}
+
+std::vector<glm::vec3> one_by_one(const std::vector<glm::vec3>& points, const glm::dmat4& axes) {
+  Extremes extremes(axes, kSpread);
+  for (const glm::vec3& point : points) extremes.include(point);
+  return extremes.points();
+}
+
+void expect_clusters_give_the_same(std::vector<glm::vec3> points, const glm::dmat4& axes) {
+  const std::vector<glm::vec3> expected = one_by_one(points, axes);
+  const Scene scene = cloud(points);
+  const Surfaces surfaces(scene);
+  Extremes whole(axes, kSpread);
+  whole.include(surfaces.clusters());
+  EXPECT_EQ(whole.points(), expected);
+  std::shuffle(points.begin(), points.end(), std::mt19937(5));
+  EXPECT_EQ(one_by_one(points, axes), expected);
+}
+
+std::vector<glm::vec3> random_points(std::size_t count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> draw;
+  std::vector<glm::vec3> points(count);
+  for (glm::vec3& p : points) p = {draw(random), draw(random), draw(random)};
+  return points;
+}
+
+TEST(Extremes, OfClustersAreThoseOfAllVertices) {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    std::vector<glm::vec3> points = random_points(30000, seed);
+    expect_clusters_give_the_same(points, turned());
+    for (glm::vec3& p : points) p = glm::normalize(p);  // a sphere: every cluster is near the outside
+    expect_clusters_give_the_same(points, turned());
+    for (glm::vec3& p : points) p = p * 1e-3f + glm::vec3(1000, -4000, 70);  // many are equal in floats
+    expect_clusters_give_the_same(points, turned());
+  }
+}
+
+TEST(Extremes, TiesGoToTheLesserPosition) {
+  std::vector<glm::vec3> grid;
+  for (int y = 0; y < 99; ++y)
+    for (int x = 0; x < 99; ++x) grid.emplace_back(x, y, 7);
+  for (const glm::dmat4& axes : {glm::dmat4(1.0), turned()}) expect_clusters_give_the_same(grid, axes);
+  // Seen along z all of them are nearest: of those, the least, and the corners of the sides' directions.
+  const std::vector<glm::vec3> kept = one_by_one(grid, glm::dmat4(1.0));
+  EXPECT_EQ(kept.front(), glm::vec3(0, 0, 7));
+  EXPECT_LE(kept.size(), 4u);
+}
+
+TEST(Extremes, FewDirectionsKeepFewPoints) {
+  const std::vector<glm::vec3> points = random_points(5000, 9);
+  EXPECT_LE(one_by_one(points, turned()).size(), 132u);
+  EXPECT_TRUE(Extremes(turned(), kSpread).points().empty());
+}
+
+TEST(Extremes, ABoxMayChangeThemOnlyIfItReachesOut) {
+  Extremes extremes(turned(), kSpread);
+  EXPECT_TRUE(extremes.may_change_by({glm::vec3(0), glm::vec3(0)}));
+  for (const glm::vec3& p : random_points(5000, 11)) extremes.include(glm::normalize(p));
+  EXPECT_FALSE(extremes.may_change_by({glm::vec3(-0.5f), glm::vec3(0.5f)}));
+  EXPECT_TRUE(extremes.may_change_by({glm::vec3(-0.5f), glm::vec3(0.5f, 0.5f, 3)}));
+  // A kept point itself ties with itself.
+  for (const glm::vec3& p : extremes.points()) EXPECT_TRUE(extremes.may_change_by({p, p}));
+}
+
+}  // namespace
+}  // namespace frontmost::test
