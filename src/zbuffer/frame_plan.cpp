@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 
 #include "base/parallel.h"
 
@@ -25,6 +26,12 @@ struct TileRect {
 
 TileRect tiles_of(const PixelRect& rect) {
   return {rect.x0 / kTileSize, rect.y0 / kTileSize, rect.x1 / kTileSize, rect.y1 / kTileSize};
+}
+
+std::uint32_t bits_of(float key) {
+  std::uint32_t bits;
+  std::memcpy(&bits, &key, sizeof bits);
+  return bits;
 }
 
 /// Lists of the tiles that `visit(item, add)` names by add(tile), items in their order: counted first, then filled.
@@ -143,15 +150,17 @@ void FramePlan::split_into_rounds(const View& view, std::size_t most_items) {
 }
 
 void FramePlan::order_whole(std::size_t cluster_count) {
-  float least = std::numeric_limits<float>::infinity(), greatest = 0;
+  // By the bits of the key, which grow with its logarithm: slices grow with the distance, as what is behind does.
+  std::uint32_t least = 0xFFFFFFFFu, greatest = 0;
   for (std::size_t i = 0; i < cluster_count; ++i) {
     if (culled_.fate_of(i) != ClusterFate::whole) continue;
-    least = std::min(least, culled_.nearest[i]);
-    greatest = std::max(greatest, culled_.nearest[i]);
+    least = std::min(least, bits_of(culled_.nearest[i]));
+    greatest = std::max(greatest, bits_of(culled_.nearest[i]));
   }
-  // In double: keys may be denormal floats, whose reciprocal is not a float.
-  const double scale = greatest > least ? double(kSlices - 1) / (double(greatest) - least) : 0.0;
-  const auto slice_of = [&](std::size_t i) { return std::size_t((double(greatest) - culled_.nearest[i]) * scale); };
+  const double scale = greatest > least ? double(kSlices - 1) / double(greatest - least) : 0.0;
+  const auto slice_of = [&](std::size_t i) {
+    return std::size_t(double(greatest - bits_of(culled_.nearest[i])) * scale);
+  };
 
   std::array<std::size_t, kSlices + 1> begin{};
   for (std::size_t i = 0; i < cluster_count; ++i)
