@@ -229,7 +229,7 @@ class LargeTriangles {
     const int top = by * kBlockSize;
     const int y0 = kWhole ? 0 : HWY_MAX(rect.y0 - top, 0),
               y1 = kWhole ? kBlockSize - 1 : HWY_MIN(rect.y1 - top, kBlockSize - 1);
-    auto least = hn::Set(DWI(), std::int64_t(kOutsideImage));
+    LeastKey least;
     for (int x = 0; x < kBlockSize; x += int(kMaxLanes)) {
       const VI column = hn::Add(hn::Load(d, kPixelOrder.column), hn::Set(d, x));
       const VI dx = hn::Add(hn::ShiftLeft<8>(column), hn::Set(d, bx * kBlockUnits + offset.x - p.x0));
@@ -245,10 +245,10 @@ class LargeTriangles {
       for (int y = y0; y <= y1; ++y, row += kTileStride) {
         const VU bits = hn::BitCast(du, Clamp(p, hn::Add(base, hn::Set(df, down[y]))));
         if (kWhole) {
-          least = MergeRow(WordsOf(bits, not_id), row, least);
+          MergeRow(WordsOf(bits, not_id), row, least);
         } else {
           const auto covered = hn::RebindMask(du, hn::Gt(hn::Or(hn::Or(e[0], e[1]), e[2]), hn::Set(d, -1)));
-          least = MergeRow(WordsOf(hn::IfThenElseZero(covered, bits), hn::IfThenElseZero(covered, not_id)), row, least);
+          MergeRow(WordsOf(hn::IfThenElseZero(covered, bits), hn::IfThenElseZero(covered, not_id)), row, least);
           for (int k = 0; k < 3; ++k) e[k] = hn::Add(e[k], hn::Set(d, edges.step_y[k]));
         }
       }

@@ -30,11 +30,8 @@ using VI = hn::Vec<DI>;
 using VU = hn::Vec<DU>;
 using VF = hn::Vec<DF>;
 using MI = hn::Mask<DI>;
-// Words are handled in whole vectors of 64 bits, beside half vectors of 32.
 using DW = hn::ScalableTag<std::uint64_t>;
 using DWI = hn::RebindToSigned<DW>;
-using DHU = hn::Rebind<std::uint32_t, DW>;
-using DHF = hn::RebindToFloat<DHU>;
 
 constexpr std::size_t kMaxLanes = hn::MaxLanes(DI());
 
@@ -88,17 +85,56 @@ HWY_INLINE Words WordsOf(VU key_bits, VU not_ids) {
 #endif
 }
 
-/// Keeps the greater words of a row of pixels. \returns what is kept, folded by minimum into `least`.
-HWY_INLINE hn::Vec<DWI> MergeRow(const Words& words, std::uint64_t* row, hn::Vec<DWI> least) {
+/// The least key among many words.
+class LeastKey {
+#if HWY_TARGET == HWY_SCALAR
+  using D = DWI;
+  static constexpr std::uint32_t kLowHalf = 0xFFFFFFFF;
+#else
+  // Words are folded by their halves, keys being the odd ones: unlike words, halves have a minimum everywhere. What the
+  // even ones fold to means nothing.
+  using D = hn::Repartition<std::int32_t, DWI>;
+  static constexpr std::uint32_t kLowHalf = 0x80000000;  // the least that even lanes can be
+#endif
+
+ public:
+  LeastKey() : least_(hn::BitCast(D(), hn::Set(DWI(), std::int64_t(kOutsideImage)))) {}
+  HWY_INLINE void Fold(hn::Vec<DWI> words) { least_ = hn::Min(least_, hn::BitCast(D(), words)); }
+
+  /// False when some key is no greater than this; in rare cases also when all are.
+  [[nodiscard]] HWY_INLINE bool IsAbove(float key) const {
+    const auto limit = hn::BitCast(D(), hn::Set(DWI(), std::int64_t(std::uint64_t(BitsOfKey(key)) << 32 | kLowHalf)));
+    return hn::AllTrue(D(), hn::Gt(least_, limit));
+  }
+  [[nodiscard]] float key() const {
+    HWY_ALIGN_MAX std::int32_t halves[2 * hn::MaxLanes(DWI())];
+    hn::Store(hn::BitCast(DWI(), least_), DWI(), reinterpret_cast<std::int64_t*>(halves));
+    for (std::size_t i = 3; i < 2 * hn::Lanes(DWI()); i += 2) halves[1] = HWY_MIN(halves[1], halves[i]);
+    float key;
+    std::memcpy(&key, &halves[1], sizeof key);
+    return key;
+  }
+
+ private:
+  static HWY_INLINE std::uint32_t BitsOfKey(float key) {
+    std::uint32_t bits;
+    std::memcpy(&bits, &key, sizeof bits);
+    return bits;
+  }
+
+  hn::Vec<D> least_;
+};
+
+/// Keeps the greater words of a row of pixels, and folds what is kept into `least`.
+HWY_INLINE void MergeRow(const Words& words, std::uint64_t* row, LeastKey& least) {
   const DWI d;
   auto* kept = reinterpret_cast<std::int64_t*>(row);
   for (const auto& word : words.word) {
     const auto greater = hn::Max(word, hn::Load(d, kept));
     hn::Store(greater, d, kept);
-    least = hn::Min(least, greater);
+    least.Fold(greater);
     kept += hn::Lanes(d);
   }
-  return least;
 }
 
 HWY_INLINE void StoreWords(const Words& words, std::uint64_t* to) {
@@ -152,14 +188,9 @@ class TileBuffer {
   /// These blocks were drawn to: what is known of their farthest key is no more than a bound.
   HWY_INLINE void MarkDrawn(std::uint64_t blocks) { dirty_ |= blocks; }
 
-  /// The least word of a block, all its samples seen.
-  HWY_INLINE void SetLeast(int block, hn::Vec<DWI> least) {
-    const DWI d;
-    HWY_ALIGN_MAX std::int64_t lanes[kMaxLanes];
-    hn::Store(least, d, lanes);
-    for (std::size_t i = 1; i < hn::Lanes(d); ++i) lanes[0] = HWY_MIN(lanes[0], lanes[i]);
-    const auto bits = std::uint32_t(std::uint64_t(lanes[0]) >> 32);
-    std::memcpy(&bounds_.farthest[block], &bits, sizeof bits);
+  /// The least key of a block, all its samples seen.
+  HWY_INLINE void SetLeast(int block, const LeastKey& least) {
+    bounds_.farthest[block] = least.key();
     dirty_ &= ~(std::uint64_t(1) << block);
   }
 
@@ -200,47 +231,48 @@ class TileBuffer {
   [[nodiscard]] bool FindHiding(int block, float nearest) {
     constexpr int kRowsAtOnce = 4;
     const DWI d;
-    std::uint32_t bits;
-    std::memcpy(&bits, &nearest, sizeof bits);
-    const auto limit = hn::Set(d, std::int64_t(std::uint64_t(bits) << 32 | 0xFFFFFFFFu));
     const int bx = block % 8, by = block / 8;
-    auto least = hn::Set(d, std::int64_t(kOutsideImage));
+    LeastKey least;
     for (std::size_t s = 0; s < frame_.samples.size(); ++s)
       for (int y = by * kBlockSize; y < (by + 1) * kBlockSize; y += kRowsAtOnce) {
         const auto* row = reinterpret_cast<const std::int64_t*>(Row(s, y)) + bx * kBlockSize;
         for (int k = 0; k < kRowsAtOnce; ++k, row += kTileStride)
-          for (int x = 0; x < kBlockSize; x += int(hn::Lanes(d))) least = hn::Min(least, hn::Load(d, row + x));
-        if (!hn::AllTrue(d, hn::Gt(least, limit))) return false;
+          for (int x = 0; x < kBlockSize; x += int(hn::Lanes(d))) least.Fold(hn::Load(d, row + x));
+        if (!least.IsAbove(nearest)) return false;
       }
     SetLeast(block, least);
     return true;
   }
 
   void WriteRow(std::size_t sample, int y) const {
-    const DW d;
-    const DHU dh;
-    const DHF df;
     const std::size_t at =
         (sample * std::size_t(frame_.view.height) + std::size_t(job_.y + y)) * std::size_t(frame_.view.width) +
         std::size_t(job_.x);
     const std::uint64_t* row = Row(sample, y);
     PrimitiveId* primitives = frame_.primitives + at;
     float* keys = frame_.keys + at;
-    const std::size_t lanes = hn::Lanes(d), width = std::size_t(job_.width);
-    const bool streams = frame_.streams && at % 16 == 0 && lanes >= 4;
+    const std::size_t width = std::size_t(job_.width);
     std::size_t x = 0;
+#if HWY_TARGET != HWY_SCALAR
+    // Two vectors of words are a vector of ids and one of keys.
+    const DU d;
+    const DF df;
+    const std::size_t lanes = hn::Lanes(d);
+    const bool streams = frame_.streams && at % 16 == 0;
+    const auto* halves = reinterpret_cast<const std::uint32_t*>(row);
     for (; x + lanes <= width; x += lanes) {
-      const auto word = hn::Load(d, row + x);
-      const auto id = hn::Not(hn::TruncateTo(dh, word));
-      const auto key = hn::BitCast(df, hn::TruncateTo(dh, hn::ShiftRight<32>(word)));
+      const auto low = hn::Load(d, halves + 2 * x), high = hn::Load(d, halves + 2 * x + lanes);
+      const auto id = hn::Not(hn::ConcatEven(d, high, low));
+      const auto key = hn::BitCast(df, hn::ConcatOdd(d, high, low));
       if (streams) {
-        hn::Stream(id, dh, primitives + x);
+        hn::Stream(id, d, primitives + x);
         hn::Stream(key, df, keys + x);
       } else {
-        hn::StoreU(id, dh, primitives + x);
+        hn::StoreU(id, d, primitives + x);
         hn::StoreU(key, df, keys + x);
       }
     }
+#endif
     for (; x < width; ++x) {
       primitives[x] = ~std::uint32_t(row[x]);
       const std::uint32_t bits = std::uint32_t(row[x] >> 32);
