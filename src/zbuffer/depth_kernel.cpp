@@ -56,19 +56,19 @@ class DepthPainter {
       r.x[k] -= tile_.x0 * kSubPixels;
       r.y[k] -= tile_.y0 * kSubPixels;
     }
-    const PixelRect rect = pixel_rect(r, width_, height_);
-    if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
     const DepthRules& rules = call_.rules;
     offset_ = rules.has_offset()
                   ? rules.offset_of(triangle.gx, triangle.gy, triangle.primitive_low, triangle.primitive_high)
                   : 0.0;
     id_ = r.id + call_.id_offset;
-    for (std::size_t s = 0; s < call_.planes.samples.size(); ++s) DrawSample(triangle, r, rect, s);
+    for (std::size_t s = 0; s < call_.planes.samples.size(); ++s) DrawSample(triangle, r, s);
   }
 
  private:
-  void DrawSample(const PlacedTriangle& t, const TriangleRecord& r, const PixelRect& rect, std::size_t sample) {
+  void DrawSample(const PlacedTriangle& t, const TriangleRecord& r, std::size_t sample) {
     const glm::ivec2 at = call_.planes.samples[sample];
+    const PixelRect rect = sampled_rect(r, at, at, width_, height_);
+    if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
     std::int32_t edge[3], step_y[3];
     for (int k = 0; k < 3; ++k) {
       const int n = k == 2 ? 0 : k + 1;

@@ -45,7 +45,9 @@ class VertexCache {
 class Placer {
  public:
   Placer(const ScreenTransform& t, const View& view, std::vector<PlacedTriangle>& out)
-      : transform_(t), view_(view), out_(out) {}
+      : transform_(t), view_(view), out_(out) {
+    for (const glm::ivec2& s : sample_offsets(view.samples)) low_ = glm::min(low_, s), high_ = glm::max(high_, s);
+  }
 
   void add(const glm::uvec3& corners, VertexCache& vertices, PrimitiveId id) {
     // Copies: the next look-up may take the place of the last.
@@ -66,7 +68,7 @@ class Placer {
   /// A fan: the top-left rule covers its inner edges once.
   void add_polygon(std::span<const ScreenVertex> polygon, PrimitiveId id) {
     float low = polygon[0].key, high = polygon[0].key;
-    for (const ScreenVertex& v : polygon) low = std::fmin(low, v.key), high = std::fmax(high, v.key);
+    for (const ScreenVertex& v : polygon) low = std::min(low, v.key), high = std::max(high, v.key);
     for (std::size_t k = 2; k < polygon.size(); ++k) {
       const ScreenVertex* fan[3] = {&polygon[0], &polygon[k - 1], &polygon[k]};
       PlacedTriangle triangle;
@@ -84,7 +86,7 @@ class Placer {
 
   void add_triangle(PlacedTriangle& triangle) {
     TriangleRecord& r = triangle.corners;
-    const PixelRect rect = pixel_rect(r, view_.width, view_.height);
+    const PixelRect rect = sampled_rect(r, low_, high_, view_.width, view_.height);
     if (rect.x1 < rect.x0 || rect.y1 < rect.y0 || !orient(r, view_.culling)) return;
     // The plane as every part of the z-buffer sets it up, operation by operation.
     const float x1 = float(r.x[1] - r.x[0]), y1 = float(r.y[1] - r.y[0]), k1 = r.key[1] - r.key[0];
@@ -92,14 +94,15 @@ class Placer {
     const float area = float(doubled_area(r));
     triangle.gx = (k1 * y2 - k2 * y1) / area;
     triangle.gy = (x1 * k2 - x2 * k1) / area;
-    triangle.k_min = std::fmin(r.key[0], std::fmin(r.key[1], r.key[2]));
-    triangle.k_max = r.nearest();
+    triangle.k_min = std::min(r.key[0], std::min(r.key[1], r.key[2]));
+    triangle.k_max = std::max(r.key[0], std::max(r.key[1], r.key[2]));
     out_.push_back(triangle);
   }
 
   const ScreenTransform& transform_;
   const View& view_;
   std::vector<PlacedTriangle>& out_;
+  glm::ivec2 low_{kSubPixels}, high_{0};  // of the sample offsets
 };
 
 /// Calls add(tile) for every tile in which the triangle may cover a sample.

@@ -5,6 +5,7 @@
 // transform and clipping, triangles through the same facing as everywhere.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -58,6 +59,18 @@ struct TileGrid {
 struct PrimitiveRange {
   PrimitiveId begin, end;
 };
+
+/// The pixels of [0, width) x [0, height) that have a sample between a triangle's outermost corners, `low` and `high`
+/// being the least and greatest sample offsets. Most triangles smaller than a pixel have none, and cover nothing.
+[[nodiscard]] inline PixelRect sampled_rect(const TriangleRecord& r, const glm::ivec2& low, const glm::ivec2& high,
+                                            int width, int height) {
+  const std::int32_t x_min = std::min(r.x[0], std::min(r.x[1], r.x[2])),
+                     x_max = std::max(r.x[0], std::max(r.x[1], r.x[2]));
+  const std::int32_t y_min = std::min(r.y[0], std::min(r.y[1], r.y[2])),
+                     y_max = std::max(r.y[0], std::max(r.y[1], r.y[2]));
+  return {std::max((x_min + 255 - high.x) >> 8, 0), std::max((y_min + 255 - high.y) >> 8, 0),
+          std::min((x_max - low.x) >> 8, width - 1), std::min((y_max - low.y) >> 8, height - 1)};
+}
 
 /// The pieces of a range, in order.
 [[nodiscard]] std::vector<Piece> pieces_of(const Surfaces& surfaces, const PrimitiveRange& range);
