@@ -36,7 +36,7 @@ struct Contestant {
 };
 
 /// Runs the contestants in turn, once unmeasured and then `rounds` times, so that what slows the machine for a while
-/// slows them all. \returns their medians, in the order given.
+/// slows them all. A turn is at least 50 ms long. \returns the medians of its mean, in the order given.
 [[nodiscard]] std::vector<Time> race(const std::vector<Contestant>& contestants, const Sampling& sampling);
 
 /// Now, on both clocks.
