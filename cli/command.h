@@ -28,6 +28,7 @@ int run_render(const Settings& settings);
 int run_info(const Settings& settings);
 int run_camera(const Settings& settings);
 int run_precision(const Settings& settings);
+int run_sight(const Settings& settings);
 
 /// Fills Settings from the words after the command's name.
 /// \throws UsageError

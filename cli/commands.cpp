@@ -52,6 +52,12 @@ constexpr Command table[] = {
      "frontmost precision --near 0.01 --infinite --format D24 --gap 0.05,800 --plot gaps.svg\n"
      "frontmost precision --model city.glb --near 0.01 --format D16 --heat-map fights.png",
      run_precision},
+    {"sight", for_sight, "MODEL", "Say whether one point sees another.",
+     "Whether a surface lies between two points, of either side and exactly: what lies at one of the points does not "
+     "block. Blocked lines come with the nearest object, triangle, point and distance.",
+     "frontmost sight city.glb --from 0,2,0 --to 40,2,-15\n"
+     "frontmost sight site.ply --pairs antennas.txt --json",
+     run_sight},
     {"completion", 0, "bash|zsh|fish", "Print a shell completion script.", "",
      "frontmost completion bash > ~/.local/share/bash-completion/completions/frontmost\n"
      "frontmost completion zsh > ~/.zfunc/_frontmost\n"

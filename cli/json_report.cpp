@@ -83,10 +83,13 @@ Json view_json(const ViewResult& result) {
 
 Json render_json(const Settings& settings, const Surfaces& surfaces, const std::vector<ViewResult>& views,
                  const RunTimings& timings) {
-  Json json = {{"frontmost", FRONTMOST_VERSION}, {"model", settings.model}, {"method", "zbuffer"}};
+  Json json = {{"frontmost", FRONTMOST_VERSION},
+               {"model", settings.model},
+               {"method", settings.run.method == Method::raycast ? "raycast" : "zbuffer"}};
   json["isa"] = name(settings.run.isa);
   json["triangles"] = surfaces.primitive_count();
   Json times = {{"load", timings.load}, {"surfaces", timings.surfaces}};
+  if (timings.index) times["index"] = *timings.index;
   if (settings.run.batch) {
     json["views"] = Json::array();
     for (const ViewResult& view : views) {

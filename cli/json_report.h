@@ -2,6 +2,7 @@
 // What a run of `frontmost render` reports: as JSON, or as lines of hashes.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace frontmost::cli {
 /// Milliseconds of what was done once for all views.
 struct RunTimings {
   double load = 0, surfaces = 0, total = 0;
+  std::optional<double> index;  ///< of the method raycast
 };
 
 /// With one view, its facts stand at the top; with a batch, under "views".

@@ -10,19 +10,27 @@
 
 namespace frontmost::cli {
 
-enum class Group : std::uint8_t { model, camera, vision, grid, depth, precision, output, look, run };
+enum class Group : std::uint8_t { model, camera, vision, grid, depth, precision, sight, output, look, run };
 inline constexpr std::string_view group_titles[] = {"Model",
                                                     "Camera, as f3d names it",
                                                     "Camera, as computer vision names it",
                                                     "Pixels and planes",
                                                     "Depth buffer, as OpenGL names it",
                                                     "Precision",
+                                                    "Points",
                                                     "What to write",
                                                     "How the picture looks",
                                                     "How to run"};
 
 /// Bits of Option::commands.
-enum CommandBit : unsigned { for_render = 1, for_info = 2, for_camera = 4, may_repeat = 8, for_precision = 16 };
+enum CommandBit : unsigned {
+  for_render = 1,
+  for_info = 2,
+  for_camera = 4,
+  may_repeat = 8,
+  for_precision = 16,
+  for_sight = 32
+};
 
 /// The text given for an option, and the words it may be.
 struct Given {
@@ -58,14 +66,15 @@ struct Option {
 [[nodiscard]] std::span<const Option> view_option_table();
 [[nodiscard]] std::span<const Option> depth_option_table();
 [[nodiscard]] std::span<const Option> precision_option_table();
+[[nodiscard]] std::span<const Option> sight_option_table();
 [[nodiscard]] std::span<const Option> output_option_table();
 [[nodiscard]] std::span<const Option> run_option_table();
 
 /// Calls visit(option) for every option, in the order of the help.
 template <class Visit>
 void for_each_option(const Visit& visit) {
-  for (const auto table : {view_option_table(), depth_option_table(), precision_option_table(), output_option_table(),
-                           run_option_table()}) {
+  for (const auto table : {view_option_table(), depth_option_table(), precision_option_table(), sight_option_table(),
+                           output_option_table(), run_option_table()}) {
     for (const Option& option : table) visit(option);
   }
 }

@@ -22,6 +22,13 @@ bool has_result(const Settings& settings, const std::vector<Job>& jobs) {
   return settings.run.json || std::any_of(jobs.begin(), jobs.end(), makes);
 }
 
+void check_method(const Settings& settings, const std::vector<Job>& jobs) {
+  if (settings.run.method == Method::zbuffer) return;
+  for (const Job& job : jobs) {
+    if (job.view.depth.is_used) throw UsageError("--method: a depth buffer's state needs the method zbuffer");
+  }
+}
+
 /// Without any result asked for, the picture goes to the terminal, if there is one.
 bool shows_on_terminal(const Settings& settings, std::vector<Job>& jobs) {
   if (has_result(settings, jobs)) return false;
@@ -60,6 +67,7 @@ int status_of(const std::vector<ViewResult>& results) {
 int run_render(const Settings& settings) {
   const Stopwatch whole;
   std::vector<Job> jobs = plan_jobs(settings);
+  check_method(settings, jobs);
   const bool on_terminal = shows_on_terminal(settings, jobs);
   catch_interruptions(settings.run.timeout);
   Progress progress(settings.run.quiet);
@@ -71,10 +79,17 @@ int run_render(const Settings& settings) {
   watch = {};
   const Surfaces surfaces(scene, execution);
   timings.surfaces = watch.milliseconds();
+  std::optional<RayIndex> index;
+  if (settings.run.method == Method::raycast) {
+    watch = {};
+    index.emplace(surfaces, execution);
+    timings.index = watch.milliseconds();
+  }
   std::vector<ViewResult> results;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     if (jobs.size() > 1) progress.set_prefix(fmt::format("view {} of {}: ", i + 1, jobs.size()));
-    results.push_back(render_view(jobs[i], {surfaces, settings.run, execution, on_terminal}));
+    results.push_back(
+        render_view(jobs[i], {surfaces, settings.run, execution, on_terminal, index ? &*index : nullptr}));
     tell(results.back(), settings, progress);
     results.back().picture.reset();
     stop_if_interrupted();

@@ -44,7 +44,7 @@ struct Sights {
 Sight timed(const View& view, const DepthSettings& depth, const RenderContext& context, std::vector<double>& times) {
   for (int i = 1;; ++i) {
     const Stopwatch watch;
-    Sight sight = look_at_surfaces(context.surfaces, view, depth, context.execution);
+    Sight sight = look_at_surfaces(context.surfaces, view, depth, context.execution, context.index);
     times.push_back(watch.milliseconds());
     if (i >= context.run.repeat) return sight;
   }

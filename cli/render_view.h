@@ -2,6 +2,7 @@
 // Rendering one view, and what there is to say about it afterwards.
 #pragma once
 
+#include <frontmost/raycast.h>
 #include <frontmost/surfaces.h>
 #include <frontmost/visible.h>
 
@@ -65,6 +66,7 @@ struct RenderContext {
   const RunSettings& run;
   Execution execution;
   bool keep_picture = false;
+  const RayIndex* index = nullptr;  ///< of the method raycast
 };
 
 /// Finds what is visible, shades, and writes every file of the job.

@@ -10,7 +10,7 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr unsigned everywhere = for_render | for_info | for_camera | for_precision;
+constexpr unsigned everywhere = for_render | for_info | for_camera | for_precision | for_sight;
 
 Isa isa_from(const Given& given) {
   // The words leave out Isa::best, which is the default.
@@ -25,13 +25,13 @@ Isa isa_from(const Given& given) {
 constexpr Option table[] = {
     {"batch", 0, "FILE", "Render many views: a JSON file of views and outputs (see frontmost(1)).", Group::run,
      for_render, [](Settings& s, const Given& g) { s.run.batch = g.string(); }},
-    {"method", 0, "NAME", "Visibility method: zbuffer.", Group::run, for_render,
-     [](Settings&, const Given& g) { (void)parse_choice(g.text, "zbuffer"); }},
+    {"method", 0, "zbuffer|raycast", "Visibility method; the z-buffer by default.", Group::run, for_render,
+     [](Settings& s, const Given& g) { s.run.method = g.choice<Method>(); }},
     {"threads", 0, "N", "Threads, 1 to 1024; 0, the default, is one per core.", Group::run, everywhere,
      [](Settings& s, const Given& g) {
        s.run.threads = g.integer({0, 1024});
      }},
-    {"isa", 0, "scalar|sse4|avx2|avx512", "Instruction set; the best by default.", Group::run, for_render,
+    {"isa", 0, "scalar|sse4|avx2|avx512", "Instruction set; the best by default.", Group::run, for_render | for_sight,
      [](Settings& s, const Given& g) { s.run.isa = isa_from(g); }},
     {"repeat", 0, "N", "Find what is visible N times, for timing.", Group::run, for_render,
      [](Settings& s, const Given& g) {

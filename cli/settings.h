@@ -79,8 +79,12 @@ struct OutputSettings {
   bool no_shadows = false;
 };
 
+/// How visibility is found.
+enum class Method : std::uint8_t { zbuffer, raycast };
+
 /// How to run.
 struct RunSettings {
+  Method method = Method::zbuffer;
   int threads = 0;
   Isa isa = Isa::best;
   int repeat = 1;
@@ -97,11 +101,18 @@ struct PrecisionSettings {
   std::optional<std::string> plot, heat_map;
 };
 
+/// What frontmost sight looks along.
+struct SightSettings {
+  std::optional<glm::dvec3> from, to;
+  std::optional<std::string> pairs;
+};
+
 struct Settings {
   std::string model;
   LoadOptions load;
   ViewSettings view;
   PrecisionSettings precision;
+  SightSettings sight;
   OutputSettings output;
   RunSettings run;
 };

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finding what is visible, by the default z-buffer or by a depth buffer with the state that the user asked for.
+// Finding what is visible, by the default z-buffer, by rays, or by a depth buffer with the state that the user asked
+// for.
 #pragma once
 
 #include <frontmost/depth_buffer.h>
+#include <frontmost/raycast.h>
 
 #include <optional>
 
@@ -19,8 +21,9 @@ struct Sight {
 [[nodiscard]] DepthState depth_state(const DepthSettings& settings);
 [[nodiscard]] double depth_clear(const DepthSettings& settings);
 
+/// By rays where there is an index.
 [[nodiscard]] Sight look_at_surfaces(const Surfaces& surfaces, const View& view, const DepthSettings& settings,
-                                     const Execution& execution);
+                                     const Execution& execution, const RayIndex* index = nullptr);
 
 /// "D8", "LESS" and so on, as on the command line.
 [[nodiscard]] std::string_view name(DepthFormat format);

@@ -9,7 +9,7 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr unsigned everywhere = for_render | for_info | for_camera | for_precision;
+constexpr unsigned everywhere = for_render | for_info | for_camera | for_precision | for_sight;
 constexpr unsigned views = for_render | for_camera | for_precision;
 constexpr int max_side = 16384;
 

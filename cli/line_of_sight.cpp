@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// frontmost sight: whether one point sees another, for one pair of points or a file of them.
+#include <fmt/format.h>
+#include <frontmost/raycast.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "command.h"
+#include "console.h"
+#include "failure.h"
+#include "interruption.h"
+#include "json_numbers.h"
+#include "model.h"
+#include "values.h"
+
+namespace frontmost::cli {
+namespace {
+
+/// A line that holds anything but a comment: six numbers.
+Segment pair_of(std::string line, const std::string& place) {
+  std::replace(line.begin(), line.end(), ',', ' ');
+  std::vector<double> numbers;
+  std::istringstream words(line);
+  for (std::string word; words >> word;) {
+    try {
+      numbers.push_back(parse_number(word, {-3e38, 3e38}));
+    } catch (const UsageError& error) {
+      throw Error(ErrorCode::file_malformed, place + ": " + error.what());
+    }
+  }
+  if (numbers.size() != 6)
+    throw Error(ErrorCode::file_malformed,
+                fmt::format("{}: six numbers make a pair of points; there are {}", place, numbers.size()));
+  return {glm::dvec3(numbers[0], numbers[1], numbers[2]), glm::dvec3(numbers[3], numbers[4], numbers[5])};
+}
+
+std::vector<Segment> read_pairs(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw Error(ErrorCode::file_unreadable, path + ": cannot open");
+  std::vector<Segment> pairs;
+  std::string line;
+  for (std::size_t number = 1; std::getline(file, line); ++number) {
+    line.resize(std::min(line.find('#'), line.size()));
+    if (line.find_first_not_of(" \t\r,") == std::string::npos) continue;
+    pairs.push_back(pair_of(line, fmt::format("{}: line {}", path, number)));
+  }
+  if (file.bad()) throw Error(ErrorCode::file_unreadable, path + ": cannot read");
+  return pairs;
+}
+
+std::vector<Segment> pairs_of(const SightSettings& sight) {
+  if (sight.pairs && (sight.from || sight.to)) throw UsageError("--pairs and --from, --to are two ways to say it");
+  if (sight.pairs) return read_pairs(*sight.pairs);
+  if (!sight.from || !sight.to) throw UsageError("give --from and --to, or --pairs");
+  return {{*sight.from, *sight.to}};
+}
+
+/// What stands in the way.
+struct Blocked {
+  PrimitiveSource source;
+  std::string object;
+  glm::dvec3 point;
+  double distance;
+};
+
+Blocked blocked_by(const RayHit& hit, const Segment& pair, const Surfaces& surfaces) {
+  const glm::dvec3 from(pair.from), along = glm::dvec3(pair.to) - from;
+  const PrimitiveSource source = surfaces.source(hit.primitive);
+  return {source, surfaces.scene().instances[source.instance].name, from + hit.t * along, hit.t * glm::length(along)};
+}
+
+Json pair_json(const RayHit& hit, const Segment& pair, const Surfaces& surfaces) {
+  Json json = {{"from", to_json(pair.from)}, {"to", to_json(pair.to)}, {"clear", !hit}};
+  if (!hit) return json;
+  const Blocked by = blocked_by(hit, pair, surfaces);
+  json["object"] = by.source.instance;
+  json["name"] = by.object;
+  json["triangle"] = by.source.triangle;
+  json["point"] = to_json(by.point);
+  json["distance"] = by.distance;
+  return json;
+}
+
+std::string pair_text(const RayHit& hit, const Segment& pair, const Surfaces& surfaces) {
+  if (!hit) return "clear\n";
+  const Blocked by = blocked_by(hit, pair, surfaces);
+  const std::string name = by.object.empty() ? "" : " (" + printable_name(by.object) + ")";
+  return fmt::format("blocked by object {}{}, triangle {}, at {:.6g},{:.6g},{:.6g}, distance {:.6g}\n",
+                     by.source.instance, name, by.source.triangle, by.point.x, by.point.y, by.point.z, by.distance);
+}
+
+}  // namespace
+
+int run_sight(const Settings& settings) {
+  const std::vector<Segment> pairs = pairs_of(settings.sight);
+  catch_interruptions(settings.run.timeout);
+  Progress progress(settings.run.quiet);
+  const Execution execution = execution_for(settings.run, progress);
+  const Scene scene = load_model(settings, execution, progress);
+  const Surfaces surfaces(scene, execution);
+  const RayIndex index(surfaces, execution);
+  std::vector<RayHit> hits(pairs.size());
+  closest_hits(index, pairs, hits, execution);
+  progress.clear();
+  Json list = Json::array();
+  std::string text;
+  std::size_t clear = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    clear += !hits[i];
+    if (settings.run.json) {
+      list.push_back(pair_json(hits[i], pairs[i], surfaces));
+    } else {
+      text += pair_text(hits[i], pairs[i], surfaces);
+    }
+  }
+  if (settings.run.json)
+    text = dump({{"model", settings.model}, {"pairs", std::move(list)}, {"clear", clear}, {"of", pairs.size()}});
+  print(text);
+  return exit_done;
+}
+
+}  // namespace frontmost::cli
