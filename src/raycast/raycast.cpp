@@ -5,42 +5,17 @@
 
 #include <atomic>
 #include <memory>
-#include <mutex>
 #include <vector>
 
 #include "base/float_environment.h"
 #include "base/parallel.h"
+#include "base/pool.h"
 #include "raycast/tile_kernel.h"
 
 namespace frontmost {
 namespace {
 
 using namespace raycast_detail;
-
-/// Lends a scratch to whoever casts a tile, and keeps it for the next.
-class ScratchPool {
- public:
-  std::unique_ptr<TileScratch> take(const RayTree& tree) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (!free_.empty()) {
-        std::unique_ptr<TileScratch> scratch = std::move(free_.back());
-        free_.pop_back();
-        scratch->reserve(tree);
-        return scratch;
-      }
-    }
-    return std::make_unique<TileScratch>(tree);
-  }
-  void give_back(std::unique_ptr<TileScratch> scratch) {
-    const std::lock_guard lock(mutex_);
-    free_.push_back(std::move(scratch));
-  }
-
- private:
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<TileScratch>> free_;
-};
 
 glm::vec3 reach_of(const Box& bounds, const ScreenTransform& t) {
   if (bounds.is_empty()) return glm::vec3(0);
@@ -51,7 +26,7 @@ glm::vec3 reach_of(const Box& bounds, const ScreenTransform& t) {
 }  // namespace
 
 struct RayCaster::State {
-  ScratchPool scratches;
+  Pool<TileScratch> scratches;
   Visible visible;
 
   /// Planes for the view: those of the last one where they fit. \returns true when their memory was used before.
@@ -90,10 +65,10 @@ const Visible& RayCaster::cast(const RayIndex& index, const View& view, const Ex
   std::atomic<std::size_t> done{0};
   constexpr std::size_t kTilesPerPart = 4;
   parallel_for(execution, tiles, kTilesPerPart, [&](std::size_t begin, std::size_t end) {
-    std::unique_ptr<TileScratch> scratch = state_->scratches.take(tree);
+    const auto scratch = state_->scratches.borrow([] { return std::make_unique<TileScratch>(); });
+    scratch->reserve(tree);
     for (std::size_t i = begin; i < end; ++i)
       cast_tile(frame, int(i % std::size_t(tiles_x)), int(i / std::size_t(tiles_x)), *scratch, execution.isa);
-    state_->scratches.give_back(std::move(scratch));
     report_progress(execution, "visible", double(done += end - begin) / double(tiles));
   });
   return visible;

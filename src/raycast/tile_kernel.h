@@ -30,7 +30,6 @@ using Waiting = std::uint64_t;
 struct TileScratch {
   static constexpr std::size_t kPixels = std::size_t(kTileSize) * kTileSize;
 
-  explicit TileScratch(const RayTree& tree) { reserve(tree); }
   void reserve(const RayTree& tree) { stack.resize(std::max(stack.size(), tree.stack_size() + kRayLanes)); }
 
   // Blocks of 4 x 4 pixels, row by row, and within a block its pixels row by row.

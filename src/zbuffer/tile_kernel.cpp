@@ -296,11 +296,8 @@ namespace frontmost::zbuffer_detail {
 
 FRONTMOST_KERNELS(DrawTile);
 
-TileScratch::TileScratch(std::size_t sample_count)
-    : words(sample_count * kTileWords),
-      bounds(1),
-      // Every pixel of the largest walk for every lane, and a vector of slack for whole stores.
-      references(std::size_t(16 * 16 * 16) + 64) {}
+// References: every pixel of the largest walk for every lane, and a vector of slack for whole stores.
+TileScratch::TileScratch() : bounds(1), references(std::size_t(16 * 16 * 16) + 64) {}
 
 void TileScratch::reserve(std::size_t sample_count) {
   if (words.size() < sample_count * kTileWords) words = Buffer<std::uint64_t>(sample_count * kTileWords);

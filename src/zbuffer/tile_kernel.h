@@ -51,7 +51,7 @@ struct BlockBounds {
 
 /// The private memory of one thread, reused from tile to tile.
 struct TileScratch {
-  explicit TileScratch(std::size_t sample_count);
+  TileScratch();
   /// Makes room for that many samples a pixel.
   void reserve(std::size_t sample_count);
 

@@ -5,48 +5,20 @@
 
 #include <atomic>
 #include <memory>
-#include <mutex>
 #include <vector>
 
 #include "base/float_environment.h"
 #include "base/parallel.h"
+#include "base/pool.h"
 #include "zbuffer/frame_plan.h"
 
 namespace frontmost {
-namespace {
 
 using namespace zbuffer_detail;
 
-/// Lends a scratch to whoever draws a tile, and keeps it for the next.
-class ScratchPool {
- public:
-  std::unique_ptr<TileScratch> take(std::size_t sample_count) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (!free_.empty()) {
-        std::unique_ptr<TileScratch> scratch = std::move(free_.back());
-        free_.pop_back();
-        scratch->reserve(sample_count);
-        return scratch;
-      }
-    }
-    return std::make_unique<TileScratch>(sample_count);
-  }
-  void give_back(std::unique_ptr<TileScratch> scratch) {
-    const std::lock_guard lock(mutex_);
-    free_.push_back(std::move(scratch));
-  }
-
- private:
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<TileScratch>> free_;
-};
-
-}  // namespace
-
 struct ZBuffer::State {
   FramePlan plan;
-  ScratchPool scratches;
+  Pool<TileScratch> scratches;
   Visible visible;
   /// By tile: its planes hold nothing but "nothing is seen". As long as they belong to the same grid, tiles that stay
   /// empty need not be filled again.
@@ -100,7 +72,8 @@ const Visible& ZBuffer::draw(const Surfaces& surfaces, const View& view, const E
   for (const TileRange& round : plan.rounds()) {
     plan.list_records(round, view);
     parallel_for(execution, round.end - round.begin, 1, [&](std::size_t begin, std::size_t end) {
-      std::unique_ptr<TileScratch> scratch = state_->scratches.take(frame.samples.size());
+      const auto scratch = state_->scratches.borrow([] { return std::make_unique<TileScratch>(); });
+      scratch->reserve(frame.samples.size());
       for (std::size_t i = begin; i < end; ++i) {
         const TileJob job = plan.job(round.begin + i, view);
         std::uint8_t& blank = state_->blank[round.begin + i];
@@ -109,7 +82,6 @@ const Visible& ZBuffer::draw(const Surfaces& surfaces, const View& view, const E
         draw_tile(frame, job, *scratch, execution.isa);
         blank = job.is_empty();
       }
-      state_->scratches.give_back(std::move(scratch));
       report_progress(execution, "visible", double(drawn += end - begin) / double(plan.tile_count()));
     });
   }
