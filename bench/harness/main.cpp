@@ -17,11 +17,11 @@ struct Entry {
   const char* name;
   Table (*measure)(const Options&);
 };
-constexpr Entry kTables[] = {{"peers", measure_peers},       {"threads", measure_threads},
-                             {"isas", measure_isas},         {"stages", measure_stages},
-                             {"features", measure_features}, {"limits", measure_limits},
-                             {"memory", measure_memory},     {"surfaces", measure_surfaces},
-                             {"coverage", measure_coverage}, {"rays", measure_ray_coverage}};
+constexpr Entry kTables[] = {
+    {"peers", measure_peers},       {"threads", measure_threads},   {"isas", measure_isas},
+    {"stages", measure_stages},     {"features", measure_features}, {"limits", measure_limits},
+    {"memory", measure_memory},     {"surfaces", measure_surfaces}, {"coverage", measure_coverage},
+    {"rays", measure_ray_coverage}, {"raycast", measure_raycast}};
 
 void write_json(const std::string& path, const std::vector<Table>& tables) {
   std::FILE* file = std::fopen(path.c_str(), "w");

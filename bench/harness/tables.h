@@ -26,6 +26,8 @@ namespace frontmost::bench {
 [[nodiscard]] Table measure_memory(const Options& options);
 /// Our pictures and llvmpipe's, pixel by pixel. Fails where a pixel differs for no reason.
 [[nodiscard]] Table measure_coverage(const Options& options);
+/// Ray casting beside Embree: index, views, and single rays in all directions.
+[[nodiscard]] Table measure_raycast(const Options& options);
 /// Our pictures and Embree's.
 [[nodiscard]] Table measure_ray_coverage(const Options& options);
 

@@ -8,7 +8,7 @@ namespace frontmost::bench {
 std::unique_ptr<RasterPeer> make_llvmpipe(const PeerInput&) { return nullptr; }
 #endif
 #ifndef FRONTMOST_BENCH_EMBREE
-std::unique_ptr<Peer> make_embree(const PeerInput&) { return nullptr; }
+std::unique_ptr<RayPeer> make_embree(const PeerInput&) { return nullptr; }
 #endif
 
 }  // namespace frontmost::bench

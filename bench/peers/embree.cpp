@@ -7,6 +7,7 @@
 #include <tbb/task_arena.h>
 #include <xmmintrin.h>
 
+#include <atomic>
 #include <cmath>
 
 #include "peers/peer.h"
@@ -32,7 +33,7 @@ Lens make_lens(const View& view) {
           glm::vec3(down),       float(p.clip.near), float(p.clip.far)};
 }
 
-class Embree : public Peer {
+class Embree : public RayPeer {
  public:
   explicit Embree(const PeerInput& input)
       : view_(input.view), lens_(make_lens(input.view)), arena_(input.threads), mesh_(input.scene.meshes.at(0)) {
@@ -41,6 +42,13 @@ class Embree : public Peer {
     const std::string settings = "set_affinity=0,frequency_level=simd256,threads=" + std::to_string(input.threads);
     device_ = rtcNewDevice(settings.c_str());
     if (!device_) throw Error(ErrorCode::unsupported, "Embree: no device");
+    rtcSetDeviceMemoryMonitorFunction(
+        device_,
+        [](void* bytes, ssize_t change, bool) {
+          *static_cast<std::atomic<std::ptrdiff_t>*>(bytes) += change;
+          return true;
+        },
+        &bytes_);
     build();
   }
   ~Embree() override {
@@ -65,7 +73,42 @@ class Embree : public Peer {
   }
   [[nodiscard]] PeerImage read() override { return image_; }
 
+  void rebuild() override {
+    rtcReleaseScene(scene_);
+    build();
+  }
+  [[nodiscard]] std::size_t byte_count() const override { return std::size_t(bytes_.load()); }
+
+  std::size_t count_hits(const std::vector<Ray>& rays) override {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    std::size_t count = 0;
+    for (const Ray& ray : rays) {
+      RTCRayHit query{};
+      query.ray = single(ray.origin, ray.direction, std::numeric_limits<float>::infinity());
+      query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(scene_, &context, &query);
+      count += query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+    }
+    return count;
+  }
+  std::size_t count_blocked(const std::vector<Segment>& segments) override {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    std::size_t count = 0;
+    for (const Segment& segment : segments) {
+      RTCRay query = single(segment.from, segment.to - segment.from, 1);
+      rtcOccluded1(scene_, &context, &query);
+      count += query.tfar < 0;  // its way of saying yes
+    }
+    return count;
+  }
+
  private:
+  static RTCRay single(const glm::vec3& o, const glm::vec3& d, float far) {
+    return {o.x, o.y, o.z, 0, d.x, d.y, d.z, 0, far, ~0u, 0, 0};
+  }
+
   void build() {
     // Embree reads 16 bytes at the last vertex.
     positions_ = mesh_.positions;
@@ -119,6 +162,7 @@ class Embree : public Peer {
   tbb::task_arena arena_;
   const Mesh& mesh_;
   std::vector<glm::vec3> positions_;
+  std::atomic<std::ptrdiff_t> bytes_{0};
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
   PeerImage image_;
@@ -126,6 +170,6 @@ class Embree : public Peer {
 
 }  // namespace
 
-std::unique_ptr<Peer> make_embree(const PeerInput& input) { return std::make_unique<Embree>(input); }
+std::unique_ptr<RayPeer> make_embree(const PeerInput& input) { return std::make_unique<Embree>(input); }
 
 }  // namespace frontmost::bench

@@ -31,6 +31,19 @@ class RasterPeer : public Peer {
   [[nodiscard]] virtual std::vector<glm::vec4> clip_positions() const = 0;
 };
 
+/// A ray caster that answers single rays too, one after another on one thread.
+class RayPeer : public Peer {
+ public:
+  /// Builds its hierarchy anew.
+  virtual void rebuild() = 0;
+  /// What the hierarchy takes beside the mesh.
+  [[nodiscard]] virtual std::size_t byte_count() const = 0;
+  /// How many rays meet something, the nearest of which is found.
+  virtual std::size_t count_hits(const std::vector<Ray>& rays) = 0;
+  /// How many segments are blocked, by whatever is found first.
+  virtual std::size_t count_blocked(const std::vector<Segment>& segments) = 0;
+};
+
 /// Scenes are of one mesh in one instance without a transform. All of these borrow `scene`.
 struct PeerInput {
   const Scene& scene;
@@ -44,6 +57,6 @@ struct PeerInput {
 [[nodiscard]] std::unique_ptr<RasterPeer> make_llvmpipe(const PeerInput& input);
 /// Intel's ray casting kernels: primary rays in packets of 16. Building the hierarchy is part of the construction.
 /// Null where it was not found when this was built.
-[[nodiscard]] std::unique_ptr<Peer> make_embree(const PeerInput& input);
+[[nodiscard]] std::unique_ptr<RayPeer> make_embree(const PeerInput& input);
 
 }  // namespace frontmost::bench

@@ -17,7 +17,8 @@ struct RayTree;  // src/raycast/ray_tree.h
 /// A hierarchy of boxes over the triangles of `Surfaces`, for any number of views and queries. Holds world-space
 /// corners of its own, so the surfaces may go; the ids are theirs. Immutable, and safe to share between threads.
 ///
-/// Sixteen triangles a leaf in the surfaces' spatial order, sixteen boxes a node, split by the surface area heuristic
+/// Sixteen triangles a leaf, dealt out by median splits of runs of the surfaces' spatial order; sixteen boxes a node,
+/// split by the surface area heuristic
 /// (J. Goldsmith, J. Salmon. Automatic Creation of Object Hierarchies for Ray Tracing. 1987; binned as in I. Wald.
 /// On fast Construction of SAH-based Bounding Volume Hierarchies. 2007).
 class RayIndex {
