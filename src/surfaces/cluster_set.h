@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "frontmost/surfaces.h"
+#include "surfaces/cones.h"
 
 namespace frontmost {
 
@@ -46,6 +47,7 @@ struct ClusterSet {
   Buffer<float> x, y, z;  ///< world space
   Buffer<std::uint8_t> i0, i1, i2;
   Buffer<PrimitiveId> id;
+  LazyCones cones;
 };
 
 /// Cuts all triangles into clusters, every one into one. Triangles with a non-finite world-space corner become

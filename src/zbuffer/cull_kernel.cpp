@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frustum culling of clusters, as many at a time as the vector holds, over the eight corners of their boxes.
+// Culling of clusters, as many at a time as the vector holds: by the frustum, over the eight corners of their boxes,
+// and by facing.
 
 #include "zbuffer/cull.h"
 
@@ -23,9 +24,24 @@ using MF = hn::Mask<DF>;
 // values of all terms, either errs by less than 6 * 2^-24; this is four times the sum of both.
 constexpr float kRoundingBound = 48.0f / 16777216.0f;
 
-/// One row of the transform: its range over the corners, and the bound of the rounding error.
+/// One row of the transform. `offset_terms` is the sum of the absolute values of what makes the offset.
 struct RowTerms {
-  float a, b, c, offset;
+  float a, b, c, offset, offset_terms;
+};
+
+/// What of the eye a float cannot hold. No float, hence no vertex, is nearer to the eye in any coordinate.
+glm::vec3 RestOfEye(const ScreenTransform& t, const View& view) {
+  return glm::vec3(view.eye() - glm::dvec3(t.eye[0], t.eye[1], t.eye[2]));
+}
+
+RowTerms MakeRow(const std::array<float, 3>& row, float offset, const glm::vec3& rest) {
+  const glm::vec3 terms = glm::abs(glm::vec3(row[0], row[1], row[2]) * rest);
+  const float sum = terms.x + terms.y + terms.z;
+  return {row[0], row[1], row[2], offset, std::abs(offset) + 2 * sum};
+}
+
+struct Vector3 {
+  VF x, y, z;
 };
 
 struct Reach {
@@ -41,7 +57,7 @@ HWY_INLINE VF Row(const RowTerms& row, VF dx, VF dy, VF dz) {
 HWY_INLINE VF Margin(const RowTerms& row, const Reach& reach) {
   const DF d;
   const VF x = hn::Mul(hn::Abs(hn::Set(d, row.a)), reach.ax), y = hn::Mul(hn::Abs(hn::Set(d, row.b)), reach.ay);
-  const VF z = hn::Mul(hn::Abs(hn::Set(d, row.c)), reach.az), w = hn::Abs(hn::Set(d, row.offset));
+  const VF z = hn::Mul(hn::Abs(hn::Set(d, row.c)), reach.az), w = hn::Set(d, row.offset_terms);
   return hn::Mul(hn::Set(d, kRoundingBound), hn::Add(hn::Add(x, y), hn::Add(z, w)));
 }
 
@@ -55,14 +71,74 @@ HWY_INLINE hn::Vec<DI> ToPixel(VF from_centre, std::int32_t centre, std::int32_t
   return hn::Min(hn::Max(hn::ShiftRight<8>(fixed), hn::Zero(di)), hn::Set(di, last));
 }
 
-struct Cull {
-  const ScreenTransform& t;
-  const View& view;
-  RowTerms x_row{t.x_row[0], t.x_row[1], t.x_row[2], t.x_offset};
-  RowTerms y_row{t.y_row[0], t.y_row[1], t.y_row[2], t.y_offset};
-  RowTerms d_row{t.d_row[0], t.d_row[1], t.d_row[2], t.d_offset};
+// Facing. What decides is the sign of the area of the snapped triangle, and snapping can turn a triangle over. It can
+// not where every corner moves by at most e and no altitude of the triangle on the screen is less than 2 e: on the way
+// the corners would have to come to lie on one line, which would have passed within e of all three.
+//
+// How high is it on the screen? Let a triangle with normal N (|N| is twice its area), corners P, Q, R, the eye at E,
+// and f the lesser of the scales of x and y, in snapped units per unit at distance 1; W(P) is the planar distance of P.
+// Twice its area on the screen, scaled alike both ways, is f^2 |N.(P-E)| / (W(P) W(Q) W(R)). The edge PQ becomes
+// f |(P-E) W(Q) - (Q-E) W(P)| / (W(P) W(Q)) long, and the numerator, a cross product of the axis and (P-E)x(Q-E), is at
+// most f |P-E| |PQ|. Hence the altitude on the image of PQ is at least
+//     f |N.(P-E)| / (|PQ| |P-E| W(R))  >=  f * altitude * sine / W,
+// where `altitude` is the triangle's least in space, `sine` that of the angle between its plane and the ray to P, and W
+// the greatest planar distance; a greater scale in one direction makes nothing thinner. In parallel projection it is
+// the same with W = 1 and the axis for the ray.
+//
+// Over a cluster: for p in the box and the cone's axis A, m = min A.(p-E) is taken at a corner, and with |p-E| <= R all
+// rays make an angle of cosine at least m/R with A. A normal may lean by the cone's half angle from A, so its cosine to
+// the ray, the sine above, is at least cos m/R - sin sqrt(1 - (m/R)^2).
+//
+// Margins: that cosine may be less by kFacingRounding, which is kConeRounding and what rounding here adds (a few
+// 2^-24). The corner's error is at most what pads the pixel rectangle, which counts snapping twice and rounding four
+// times. This leaves a factor of two for poses that are a rotation only to 1e-4.
+constexpr float kFacingRounding = kConeRounding + 1.0f / 1024.0f;
 
-  HWY_INLINE void Group(const BoxArrays& boxes, std::size_t i, CullResult& out) const {
+/// The ray to what faces away, and what the altitude on the screen is compared with.
+struct Rays {
+  Vector3 low, high;  // range of p - E over the box; in parallel projection the axis, twice
+  VF farthest;        // |p - E|, at most
+  VF needed;          // altitude * sine, at least
+};
+
+class FacingCull {
+ public:
+  FacingCull(const ConeArrays& cones, Culling culling)
+      : cones_(cones), sign_(culling == Culling::front ? -1.0f : 1.0f) {}
+
+  /// Clusters of which no triangle faces the side that is to be seen. NaN compares false, which keeps the cluster.
+  [[nodiscard]] HWY_INLINE MF TurnedAway(std::size_t i, const Rays& rays) const {
+    const DF d;
+    const VF sign = hn::Set(d, sign_), one = hn::Set(d, 1.0f), zero = hn::Zero(d);
+    const VF x = hn::Mul(hn::Load(d, cones_.x.data() + i), sign);
+    const VF y = hn::Mul(hn::Load(d, cones_.y.data() + i), sign);
+    const VF z = hn::Mul(hn::Load(d, cones_.z.data() + i), sign);
+    const VF along_x = hn::Min(hn::Mul(x, rays.low.x), hn::Mul(x, rays.high.x));
+    const VF along_y = hn::Min(hn::Mul(y, rays.low.y), hn::Mul(y, rays.high.y));
+    const VF along_z = hn::Min(hn::Mul(z, rays.low.z), hn::Mul(z, rays.high.z));
+    const VF m = hn::Div(hn::Add(hn::Add(along_x, along_y), along_z), rays.farthest);
+    const VF cosine = hn::Load(d, cones_.cosine.data() + i);
+    const VF lean = hn::Mul(hn::Sub(one, hn::Mul(cosine, cosine)), hn::Sub(one, hn::Mul(m, m)));
+    const VF sine = hn::Sub(hn::Mul(cosine, m), hn::Sqrt(hn::Max(lean, zero)));
+    const VF certain = hn::Mul(hn::Sub(sine, hn::Set(d, kFacingRounding)), hn::Load(d, cones_.altitude.data() + i));
+    return hn::And(hn::Gt(m, zero), hn::Gt(certain, rays.needed));
+  }
+
+ private:
+  const ConeArrays& cones_;
+  float sign_;
+};
+
+class Cull {
+ public:
+  Cull(const CullInput& input, const ScreenTransform& transform, const View& for_view)
+      : t(transform), view(for_view), boxes(input.boxes), cones(input.cones), rest(RestOfEye(transform, for_view)) {
+    const Projection& p = view.projection;
+    const double x = view.width / (p.right - p.left), y = view.height / (p.top - p.bottom);
+    inverse_scale = float(1 / (std::min(x, y) * kSubPixels));
+  }
+
+  HWY_INLINE void Group(std::size_t i, CullResult& out) const {
     const DF d;
     const DI di;
     const VF lx = hn::Load(d, boxes.low_x.data() + i), hx = hn::Load(d, boxes.high_x.data() + i);
@@ -145,15 +221,53 @@ struct Cull {
     HWY_ALIGN std::int32_t fates[hn::MaxLanes(DI())];
     const auto apart = hn::Set(di, std::int32_t(ClusterFate::apart));
     const auto fate = hn::IfThenElse(hn::RebindMask(di, whole), hn::Set(di, std::int32_t(ClusterFate::whole)), apart);
+    if (cones != nullptr) {
+      const Vector3 low{xs[0], ys[0], zs[0]}, high{xs[1], ys[1], zs[1]};
+      const VF error = hn::Sqrt(hn::Add(hn::Mul(x_pad, x_pad), hn::Mul(y_pad, y_pad)));
+      const Rays rays = t.orthographic ? ParallelRays(error) : RaysFromEye(low, high, error, farthest_d);
+      outside = hn::Or(outside, hn::And(whole, FacingCull(*cones, view.culling).TurnedAway(i, rays)));
+    }
     hn::Store(hn::IfThenZeroElse(hn::RebindMask(di, outside), fate), di, fates);
     for (std::size_t k = 0; k < hn::Lanes(di); ++k) out.fate[i + k] = static_cast<std::uint8_t>(fates[k]);
   }
+
+ private:
+  /// `low` and `high` are from the eye as a float, `error` is of a corner on the screen.
+  [[nodiscard]] HWY_INLINE Rays RaysFromEye(const Vector3& low, const Vector3& high, VF error, VF farthest_d) const {
+    const DF d;
+    const VF rest_x = hn::Set(d, rest.x), rest_y = hn::Set(d, rest.y), rest_z = hn::Set(d, rest.z);
+    Rays rays;
+    rays.low = {hn::Sub(low.x, rest_x), hn::Sub(low.y, rest_y), hn::Sub(low.z, rest_z)};
+    rays.high = {hn::Sub(high.x, rest_x), hn::Sub(high.y, rest_y), hn::Sub(high.z, rest_z)};
+    const VF x = hn::Max(hn::Abs(rays.low.x), hn::Abs(rays.high.x));
+    const VF y = hn::Max(hn::Abs(rays.low.y), hn::Abs(rays.high.y));
+    const VF z = hn::Max(hn::Abs(rays.low.z), hn::Abs(rays.high.z));
+    rays.farthest = hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z)));
+    rays.needed = hn::Mul(hn::Mul(error, farthest_d), hn::Set(d, 2 * inverse_scale));
+    return rays;
+  }
+  [[nodiscard]] HWY_INLINE Rays ParallelRays(VF error) const {
+    const DF d;
+    const Vector3 axis{hn::Set(d, t.d_row[0]), hn::Set(d, t.d_row[1]), hn::Set(d, t.d_row[2])};
+    const float length = glm::length(glm::vec3(t.d_row[0], t.d_row[1], t.d_row[2]));
+    return {axis, axis, hn::Set(d, length), hn::Mul(error, hn::Set(d, 2 * inverse_scale))};
+  }
+
+  const ScreenTransform& t;
+  const View& view;
+  const BoxArrays& boxes;
+  const ConeArrays* cones;
+  glm::vec3 rest;
+  float inverse_scale;  // units at distance 1 per snapped unit
+  RowTerms x_row = MakeRow(t.x_row, t.x_offset, rest);
+  RowTerms y_row = MakeRow(t.y_row, t.y_offset, rest);
+  RowTerms d_row = MakeRow(t.d_row, t.d_offset, rest);
 };
 
-void CullRange(const BoxArrays& boxes, const ScreenTransform& transform, const View& view, std::size_t begin,
+void CullRange(const CullInput& input, const ScreenTransform& transform, const View& view, std::size_t begin,
                std::size_t end, CullResult& result) {
-  const Cull cull{transform, view};
-  for (std::size_t i = begin; i < end; i += hn::Lanes(DF())) cull.Group(boxes, i, result);
+  const Cull cull(input, transform, view);
+  for (std::size_t i = begin; i < end; i += hn::Lanes(DF())) cull.Group(i, result);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -172,9 +286,9 @@ void CullResult::resize(std::size_t cluster_count) {
   nearest.resize(padded);
 }
 
-void cull_clusters(const BoxArrays& boxes, const ScreenTransform& transform, const View& view, Isa isa,
+void cull_clusters(const CullInput& input, const ScreenTransform& transform, const View& view, Isa isa,
                    std::size_t begin, std::size_t end, CullResult& result) {
-  kernel_for(CullRangeKernels, isa)(boxes, transform, view, begin, end, result);
+  kernel_for(CullRangeKernels, isa)(input, transform, view, begin, end, result);
 }
 
 }  // namespace frontmost::zbuffer_detail
