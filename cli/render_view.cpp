@@ -16,7 +16,12 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr int default_samples = 4;
+/// Samples of a picture that asks for none: 4, or as many as the largest pictures can have.
+int default_samples(const View& view) {
+  int samples = 4;
+  while (view.pixel_count() * std::size_t(samples) > most_samples) samples /= 2;
+  return samples;
+}
 
 bool wants(const Job& job, OutputKind kind) {
   for (const OutputFile& file : job.files) {
@@ -56,7 +61,7 @@ Sights look(const Job& job, const RenderContext& context, ViewResult& result) {
   View view = result.view;
   Sights sights;
   if (picture) {
-    view.samples = job.view.samples.value_or(default_samples);
+    view.samples = job.view.samples.value_or(default_samples(view));
     sights.picture = timed(view, job.view.depth, context, result.timings.visible);
     sights.shared = maps && view.samples == 1;
   }

@@ -50,8 +50,9 @@ void check_view_settings(const ViewSettings& s) {
   if (s.far && !s.orthographic && !s.camera_index && *s.far <= 0) throw UsageError("--far: must be above 0");
   if (s.near && s.far && !(*s.near < *s.far)) throw UsageError("--near: must be below --far");
   const glm::ivec2 size = s.resolution.value_or(glm::ivec2(1));
-  if (s.samples && double(size.x) * size.y * *s.samples > 16384.0 * 16384.0) {
-    throw UsageError("--samples: at most 268435456 samples in all (16384 x 16384 pixels of one)");
+  if (s.samples && double(size.x) * size.y * *s.samples > double(most_samples)) {
+    throw UsageError("--samples: at most " + std::to_string(most_samples) +
+                     " samples in all (16384 x 16384 pixels of one)");
   }
 }
 

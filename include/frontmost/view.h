@@ -92,6 +92,9 @@ enum class PoseConvention : std::uint8_t {
 /// seen edge-on (N.V = 0, zero area after snapping) faces nobody and covers nothing.
 enum class Culling : std::uint8_t { none, back, front, both };
 
+/// Width * height * samples of a view is at most this: 16384 x 16384 pixels of one sample, 2 GiB of ids and keys.
+inline constexpr std::size_t most_samples = std::size_t(1) << 28;
+
 /// A camera and a pixel grid: all that decides what is visible, beside the surfaces.
 struct View {
   int width = 0, height = 0;   ///< pixels, 1 to 16384 each

@@ -85,6 +85,9 @@ void validate(const View& view) {
   check_range(view.width, 1, kLargest, "width");
   check_range(view.height, 1, kLargest, "height");
   (void)sample_offsets(view.samples);
+  if (view.sample_count() > most_samples)
+    throw Error(ErrorCode::limit_exceeded,
+                "samples: at most " + std::to_string(most_samples) + " in all pixels together");
   // Made anew by the functions that check their arguments.
   const Projection& p = view.projection;
   if (p.orthographic) {

@@ -137,6 +137,19 @@ std::string refusal(const Projection& projection, const glm::dvec3& eye = {0, 0,
   return "";
 }
 
+TEST(View, HasALimitOfSamplesInAll) {
+  View view{16384, 16384, 1, glm::dmat4(1.0), make_projection(1, 1, {1, 2}), {}};
+  EXPECT_NO_THROW(validate(view));
+  view.samples = 2;
+  try {
+    validate(view);
+    FAIL() << "4 GiB of planes";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::limit_exceeded);
+    EXPECT_EQ(std::string(error.what()).rfind("samples:", 0), 0u);
+  }
+}
+
 TEST(View, OutOfTheRangeOfFloatsIsRefusedByTheFieldsName) {
   EXPECT_EQ(refusal(make_projection(1, 1, {1e-37, kInfinity})), "");
   EXPECT_EQ(refusal(make_projection(1, 1, {1e-3, 1e300})), "");  // as good as infinite
