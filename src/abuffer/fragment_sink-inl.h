@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// Coverage masks, and appending fragments to a tile.
+//
+// J. Pineda. A Parallel Algorithm for Polygon Rasterization. 1988 (edge functions).
+//
+// Coordinates are relative to the tile, in 1/256 pixel. Coverage: E >= 0 for three edge functions, biased by the
+// top-left rule (y down, area positive: an edge is left where it goes up, top where it is level and goes right).
+// Samples lie on multiples of 16 units from a pixel's corner, so an edge value at a corner may be shifted right by 4
+// before stepping: a step is then a multiple of dx or -dy, and the sign is still exact.
+
+// Included once for every target.
+#if defined(FRONTMOST_ABUFFER_FRAGMENT_SINK_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FRONTMOST_ABUFFER_FRAGMENT_SINK_INL_H_
+#undef FRONTMOST_ABUFFER_FRAGMENT_SINK_INL_H_
+#else
+#define FRONTMOST_ABUFFER_FRAGMENT_SINK_INL_H_
+#endif
+
+#include <algorithm>
+#include <cstring>
+
+#include "abuffer/gather_kernel.h"
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::abuffer_detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using DI = hn::ScalableTag<std::int32_t>;
+using DU = hn::RebindToUnsigned<DI>;
+using DF = hn::RebindToFloat<DI>;
+using VI = hn::Vec<DI>;
+using VU = hn::Vec<DU>;
+using VF = hn::Vec<DF>;
+using MI = hn::Mask<DI>;
+
+constexpr std::size_t kMaxLanes = hn::MaxLanes(DI());
+constexpr std::int32_t kStepsOfPixel = kSubPixels / SamplePattern::unit;
+
+/// Lane i in bit i.
+template <class D>
+HWY_INLINE std::uint64_t BitsOf(D d, hn::Mask<D> mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  std::uint64_t bits;
+  std::memcpy(&bits, bytes, sizeof bits);
+  return bits & ((std::uint64_t(1) << hn::Lanes(d)) - 1);
+}
+
+HWY_INLINE bool IsTopLeft(std::int32_t dx, std::int32_t dy) { return dy < 0 || (dy == 0 && dx > 0); }
+
+struct PixelBounds {
+  VI x0, x1, y0, y1;  // both ends included
+};
+
+/// For one triangle: by how much each edge function differs at each sample from the pixel's corner.
+struct SampleSteps {
+  HWY_ALIGN_MAX std::int32_t step[3][SamplePattern::max_count];
+};
+
+/// The sample positions, padded to whole vectors.
+class SampleTable {
+ public:
+  explicit SampleTable(const SamplePattern& p) : count_(std::size_t(p.count)), full_(p.full()) {
+    for (std::size_t i = 0; i < SamplePattern::max_count; ++i) {
+      x_[i] = p.x[i];
+      y_[i] = p.y[i];
+    }
+  }
+
+  HWY_INLINE void Fill(SampleSteps& steps, int k, std::int32_t dx, std::int32_t dy) const {
+    const DI d;
+    for (std::size_t i = 0; i < count_; i += hn::Lanes(d))
+      hn::Store(hn::Sub(hn::Mul(hn::Set(d, dx), hn::Load(d, y_ + i)), hn::Mul(hn::Set(d, dy), hn::Load(d, x_ + i))), d,
+                steps.step[k] + i);
+  }
+
+  /// e: edge functions at the pixel's corner.
+  [[nodiscard]] HWY_INLINE std::uint64_t MaskOf(const SampleSteps& steps, std::int32_t e0, std::int32_t e1,
+                                                std::int32_t e2) const {
+    const DI d;
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < count_; i += hn::Lanes(d)) {
+      const VI a = hn::Add(hn::Set(d, e0), hn::Load(d, steps.step[0] + i));
+      const VI b = hn::Add(hn::Set(d, e1), hn::Load(d, steps.step[1] + i));
+      const VI c = hn::Add(hn::Set(d, e2), hn::Load(d, steps.step[2] + i));
+      const MI inside = hn::Gt(hn::Or(hn::Or(a, b), c), hn::Set(d, -1));
+      bits |= BitsOf(d, inside) << i;
+    }
+    return bits & full_;
+  }
+  [[nodiscard]] std::uint64_t full() const { return full_; }
+
+ private:
+  HWY_ALIGN_MAX std::int32_t x_[SamplePattern::max_count];
+  HWY_ALIGN_MAX std::int32_t y_[SamplePattern::max_count];
+  std::size_t count_;
+  std::uint64_t full_;
+};
+
+/// Keys are (k0 + dx*gx) + dy*gy from the first corner, clamped to the triangle's own range: the formula of the house.
+/// In a pixel they differ from the centre's by at most 128 units of slope and the rounding of both.
+constexpr float kHalfPixel = kSubPixels / 2;
+/// Three roundings, each of at most 2^-24 of the sum of absolute terms, twice, and some to spare; keys so small that
+/// roundings are not relative have the second.
+constexpr float kKeyRounding = 16.0f / 16777216.0f, kLeastRounding = 1e-42f;
+
+template <bool kFlat>
+class FragmentSink {
+ public:
+  FragmentSink(const FrameInput& frame, const TileJob& job, TileScratch& scratch)
+      : samples(frame.pattern),
+        pattern(frame.pattern),
+        width(job.pixels.width),
+        height(job.pixels.height),
+        triangles(scratch.triangles),
+        arrived(scratch.arrived),
+        counts(scratch.counts.data()) {}
+
+  /// The pixels of the tile whose samples may lie between corners.
+  [[nodiscard]] HWY_INLINE PixelBounds BoundsOf(VI x_min, VI x_max, VI y_min, VI y_max) const {
+    return {First(x_min, pattern.high_x), Last(x_max, pattern.low_x, width), First(y_min, pattern.high_y),
+            Last(y_max, pattern.low_y, height)};
+  }
+
+  /// False when the tile is to be taken apart. In tiles of one pixel there is always room, up to the limit.
+  [[nodiscard]] bool HasRoom() {
+    if (HWY_LIKELY(arrived.count <= kMostOfTile)) return true;
+    if (width * height > 1) return false;
+    if (arrived.count > kMostOfPixel)
+      throw Error(ErrorCode::limit_exceeded, "abuffer: more than 1,048,575 fragments in one pixel");
+    arrived.grow(arrived.count + kMostAtOnce);
+    return true;
+  }
+
+  /// One fragment of a pixel; keys are bits of floats.
+  HWY_INLINE void Append(std::uint32_t pixel, std::uint32_t key, float nearest, float farthest, std::uint32_t triangle,
+                         std::uint64_t mask) {
+    const std::size_t n = arrived.count;
+    arrived.key[n] = key;
+    arrived.nearest[n] = nearest;
+    arrived.farthest[n] = farthest;
+    arrived.triangle[n] = triangle;
+    arrived.mask[n] = mask;
+    const std::uint32_t covered = mask != 0;
+    arrived.place[n] = pixel << kRankBits | counts[pixel];
+    counts[pixel] += covered;
+    arrived.count += covered;
+  }
+
+  const SampleTable samples;
+  const SamplePattern& pattern;
+  const std::int32_t width, height;
+  LocalTriangles& triangles;
+  Arrived& arrived;
+  std::uint32_t* const counts;
+
+ private:
+  static HWY_INLINE VI First(VI minimum, std::int32_t last) {
+    const DI d;
+    return hn::Max(hn::ShiftRight<8>(hn::Add(minimum, hn::Set(d, 255 - last * SamplePattern::unit))), hn::Zero(d));
+  }
+  static HWY_INLINE VI Last(VI maximum, std::int32_t first, std::int32_t size) {
+    const DI d;
+    return hn::Min(hn::ShiftRight<8>(hn::Sub(maximum, hn::Set(d, first * SamplePattern::unit))), hn::Set(d, size - 1));
+  }
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace frontmost::abuffer_detail
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard by target

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "abuffer/frame_plan.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "view/clip.h"
+
+namespace frontmost::abuffer_detail {
+namespace {
+
+// A cluster on more tiles than this is taken apart: every tile would look at all of its triangles.
+constexpr int kMaxTilesOfCluster = 16;
+// 256 MiB of numbers. Beyond that tiles look through all single triangles instead of through a list of theirs.
+constexpr std::size_t kMostSingleItems = std::size_t(1) << 26;
+
+struct TileRect {
+  int x0, y0, x1, y1;
+  [[nodiscard]] std::size_t count() const {
+    return x1 < x0 || y1 < y0 ? 0 : std::size_t(x1 - x0 + 1) * std::size_t(y1 - y0 + 1);
+  }
+};
+
+/// The tiles that bounds in 1/256 pixel from the image's top left corner touch.
+TileRect tiles_of(std::int32_t x0, std::int32_t y0, std::int32_t x1, std::int32_t y1, const View& view) {
+  constexpr int shift = 8 + 6;
+  static_assert(1 << shift == kTileSize * kSubPixels);
+  return {std::max(x0, 0) >> shift, std::max(y0, 0) >> shift, std::min(x1, view.width * kSubPixels - 1) >> shift,
+          std::min(y1, view.height * kSubPixels - 1) >> shift};
+}
+
+TileRect tiles_of(const ClusterPlace& p, const ScreenTransform& t, const View& view) {
+  return tiles_of(p.x0 + t.centre_x, p.y0 + t.centre_y, p.x1 + t.centre_x, p.y1 + t.centre_y, view);
+}
+
+TileRect tiles_of(const ScreenTriangle& s, const View& view) {
+  return tiles_of(std::min({s.x[0], s.x[1], s.x[2]}), std::min({s.y[0], s.y[1], s.y[2]}),
+                  std::max({s.x[0], s.x[1], s.x[2]}), std::max({s.y[0], s.y[1], s.y[2]}), view);
+}
+
+std::int64_t doubled_area(const ScreenTriangle& t) {
+  return std::int64_t(t.x[1] - t.x[0]) * (t.y[2] - t.y[0]) - std::int64_t(t.x[2] - t.x[0]) * (t.y[1] - t.y[0]);
+}
+
+/// True when the whole tile is outside of one edge.
+bool misses(const ScreenTriangle& t, int tile_x, int tile_y) {
+  constexpr std::int64_t size = kTileSize * kSubPixels;
+  for (int a = 0; a < 3; ++a) {
+    const int b = (a + 1) % 3;
+    const std::int64_t dx = t.x[b] - t.x[a], dy = t.y[b] - t.y[a];
+    const std::int64_t x = (tile_x + (dy < 0 ? 1 : 0)) * size, y = (tile_y + (dx > 0 ? 1 : 0)) * size;
+    if (dx * (y - t.y[a]) - dy * (x - t.x[a]) < 0) return true;
+  }
+  return false;
+}
+
+/// Lists of the tiles that `visit(item, add)` names by add(tile), items in their order: counted first, then filled.
+template <class Visit>
+TileLists lists_of(std::size_t tile_count, std::size_t item_count, const Visit& visit) {
+  TileLists lists;
+  // One place behind, so that filling a list moves its beginning to where it belongs.
+  lists.begin.assign(tile_count + 2, 0);
+  for (std::size_t i = 0; i < item_count; ++i) visit(i, [&](std::size_t tile) { ++lists.begin[tile + 2]; });
+  for (std::size_t tile = 0; tile < tile_count; ++tile) lists.begin[tile + 2] += lists.begin[tile + 1];
+  lists.items.resize(lists.begin[tile_count + 1]);
+  for (std::size_t i = 0; i < item_count; ++i)
+    visit(i, [&](std::size_t tile) { lists.items[lists.begin[tile + 1]++] = static_cast<std::uint32_t>(i); });
+  return lists;
+}
+
+template <class Add>
+void for_tiles(const TileRect& rect, int tiles_x, const Add& add) {
+  for (int y = rect.y0; y <= rect.y1; ++y)
+    for (int x = rect.x0; x <= rect.x1; ++x) add(x, y, std::size_t(y) * std::size_t(tiles_x) + std::size_t(x));
+}
+
+}  // namespace
+
+bool orient(ScreenTriangle& t, Culling culling) {
+  const std::int64_t area = doubled_area(t);
+  const bool front = area < 0;  // y is down
+  if (area == 0 || culling == Culling::both) return false;
+  if (culling == (front ? Culling::front : Culling::back)) return false;
+  if (front) {
+    std::swap(t.x[1], t.x[2]);
+    std::swap(t.y[1], t.y[2]);
+    std::swap(t.key[1], t.key[2]);
+  }
+  return true;
+}
+
+FramePlan::FramePlan(const Surfaces& surfaces, const View& view, const Execution& execution)
+    : set_(surfaces.clusters()),
+      transform_(view),
+      view_(view),
+      tiles_x_((view.width + kTileSize - 1) / kTileSize),
+      tiles_y_((view.height + kTileSize - 1) / kTileSize) {
+  transform_all(execution);
+  take_apart(execution);
+  make_lists();
+}
+
+Rectangle FramePlan::tile(std::size_t number) const {
+  const int x = int(number % std::size_t(tiles_x_)) * kTileSize, y = int(number / std::size_t(tiles_x_)) * kTileSize;
+  return {x, y, std::min(kTileSize, view_.width - x), std::min(kTileSize, view_.height - y)};
+}
+
+void FramePlan::transform_all(const Execution& execution) {
+  constexpr std::size_t kGrain = 256;
+  screen_.x = Buffer<std::int32_t>(set_.x.size());
+  screen_.y = Buffer<std::int32_t>(set_.x.size());
+  screen_.key = Buffer<float>(set_.x.size());
+  screen_.places.resize(set_.clusters.size());
+  parallel_for(execution, set_.clusters.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    transform_clusters(set_, transform_, execution.isa, begin, end, screen_);
+  });
+}
+
+void FramePlan::take_apart(const Execution& execution) {
+  std::vector<std::uint32_t> apart;
+  for (std::size_t i = 0; i < screen_.places.size(); ++i) {
+    ClusterPlace& place = screen_.places[i];
+    if (place.fate == ClusterFate::whole && tiles_of(place, transform_, view_).count() > kMaxTilesOfCluster)
+      place.fate = ClusterFate::apart;
+    if (place.fate == ClusterFate::apart) apart.push_back(std::uint32_t(i));
+  }
+  constexpr std::size_t kGrain = 64;
+  std::vector<std::vector<ScreenTriangle>> parts((apart.size() + kGrain - 1) / kGrain);
+  parallel_for(execution, apart.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) append_triangles(set_.clusters[apart[i]], parts[begin / kGrain]);
+  });
+  for (const std::vector<ScreenTriangle>& part : parts) singles_.insert(singles_.end(), part.begin(), part.end());
+}
+
+void FramePlan::append_triangles(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const {
+  const auto position = [&](std::size_t vertex) {
+    const std::size_t v = cluster.first_vertex + vertex;
+    return glm::vec3(set_.x[v], set_.y[v], set_.z[v]);
+  };
+  for (std::size_t c = cluster.first_triangle; c < cluster.first_triangle + cluster.triangle_count; ++c) {
+    if (set_.i0[c] == set_.i1[c]) continue;  // has a corner that is not finite, or no area
+    const ClippedPolygon polygon =
+        clip_triangle(transform_, {position(set_.i0[c]), position(set_.i1[c]), position(set_.i2[c])});
+    for (int k = 2; k < polygon.count; ++k) {
+      const ScreenVertex fan[3] = {polygon.corners[0], polygon.corners[std::size_t(k - 1)],
+                                   polygon.corners[std::size_t(k)]};
+      ScreenTriangle t;
+      t.id = set_.id[c];
+      for (int v = 0; v < 3; ++v) {
+        t.x[v] = fan[v].x + transform_.centre_x;
+        t.y[v] = fan[v].y + transform_.centre_y;
+        t.key[v] = fan[v].key;
+      }
+      if (tiles_of(t, view_).count() > 0 && orient(t, view_.culling)) triangles.push_back(t);
+    }
+  }
+}
+
+void FramePlan::make_lists() {
+  cluster_lists_ = lists_of(tile_count(), screen_.places.size(), [&](std::size_t i, const auto& add) {
+    const ClusterPlace& place = screen_.places[i];
+    if (place.fate == ClusterFate::whole)
+      for_tiles(tiles_of(place, transform_, view_), tiles_x_, [&](int, int, std::size_t tile) { add(tile); });
+  });
+  std::size_t items = 0;
+  for (const ScreenTriangle& t : singles_) items += tiles_of(t, view_).count();
+  if (items > kMostSingleItems) return;
+  single_lists_ = lists_of(tile_count(), singles_.size(), [&](std::size_t i, const auto& add) {
+    const ScreenTriangle& t = singles_[i];
+    for_tiles(tiles_of(t, view_), tiles_x_, [&](int x, int y, std::size_t tile) {
+      if (!misses(t, x, y)) add(tile);
+    });
+  });
+}
+
+}  // namespace frontmost::abuffer_detail

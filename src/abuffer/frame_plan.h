@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is drawn where: the clusters and single triangles of every tile.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "abuffer/sample_pattern.h"
+#include "abuffer/screen_clusters.h"
+
+namespace frontmost::abuffer_detail {
+
+inline constexpr int kTileSize = 64;
+
+/// A rectangle of pixels, at most a tile.
+struct Rectangle {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// A triangle on the screen, corners in 1/256 pixel from the image's top left corner, so turned that its area is
+/// positive (clockwise to the eye, y being down). Which corner is first is kept: the depth plane is anchored there.
+struct ScreenTriangle {
+  std::int32_t x[3], y[3];
+  float key[3];
+  PrimitiveId id;
+};
+
+/// Turns the area positive. \returns false when the triangle is culled, or has no area and so covers nothing.
+[[nodiscard]] bool orient(ScreenTriangle& triangle, Culling culling);
+
+/// For every tile a list of numbers, one after another in one array.
+struct TileLists {
+  std::vector<std::size_t> begin;  ///< by tile, and the end of the last
+  std::vector<std::uint32_t> items;
+
+  [[nodiscard]] std::span<const std::uint32_t> of(std::size_t tile) const {
+    return std::span(items).subspan(begin[tile], begin[tile + 1] - begin[tile]);
+  }
+};
+
+/// The plan of a frame: 12 bytes a vertex, and 40 for every triangle that is large or had to be clipped.
+class FramePlan {
+ public:
+  FramePlan(const Surfaces& surfaces, const View& view, const Execution& execution);
+
+  [[nodiscard]] const ClusterSet& set() const { return set_; }
+  [[nodiscard]] const ScreenTransform& transform() const { return transform_; }
+  [[nodiscard]] const View& view() const { return view_; }
+  [[nodiscard]] const ScreenClusters& screen() const { return screen_; }
+  [[nodiscard]] std::size_t tile_count() const { return std::size_t(tiles_x_) * std::size_t(tiles_y_); }
+  [[nodiscard]] Rectangle tile(std::size_t number) const;
+
+  [[nodiscard]] std::span<const std::uint32_t> clusters(std::size_t tile) const { return cluster_lists_.of(tile); }
+  [[nodiscard]] std::span<const ScreenTriangle> singles() const { return singles_; }
+  /// The singles of a tile; none: any of them may be in it, as lists of all would be too long.
+  [[nodiscard]] std::optional<std::span<const std::uint32_t>> singles(std::size_t tile) const {
+    if (!single_lists_) return std::nullopt;
+    return single_lists_->of(tile);
+  }
+
+ private:
+  void transform_all(const Execution& execution);
+  void take_apart(const Execution& execution);
+  void append_triangles(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const;
+  void make_lists();
+
+  const ClusterSet& set_;
+  ScreenTransform transform_;
+  View view_;
+  int tiles_x_, tiles_y_;
+  ScreenClusters screen_;
+  std::vector<ScreenTriangle> singles_;
+  TileLists cluster_lists_;
+  std::optional<TileLists> single_lists_;
+};
+
+}  // namespace frontmost::abuffer_detail

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangles of more than a few pixels, one at a time, in blocks of 4 x 4 pixels.
+
+// Included once for every target.
+#if defined(FRONTMOST_ABUFFER_LARGE_TRIANGLES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FRONTMOST_ABUFFER_LARGE_TRIANGLES_INL_H_
+#undef FRONTMOST_ABUFFER_LARGE_TRIANGLES_INL_H_
+#else
+#define FRONTMOST_ABUFFER_LARGE_TRIANGLES_INL_H_
+#endif
+
+#include "abuffer/fragment_sink-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::abuffer_detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// An edge value at a block's corner is clamped to this. Within the block it changes by at most 2^29 + 2^27, so its sign
+// stays right and its sums stay within 32 bits.
+constexpr std::int64_t kEdgeLimit = std::int64_t(1) << 30;
+
+template <bool kFlat>
+class LargeTriangles {
+ public:
+  explicit LargeTriangles(FragmentSink<kFlat>& sink) : sink_(sink) {
+    for (std::int32_t i = 0; i < 16; ++i) {
+      column_[i] = i % 4;
+      row_[i] = i / 4;
+    }
+  }
+
+  /// Precondition: oriented; corners relative to the tile.
+  void Draw(const ScreenTriangle& t) {
+    const Bounds rect = BoundsOf(t);
+    if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
+    SetUpEdges(t);
+    SetUpPlane(t);
+    const std::size_t before = sink_.arrived.count;
+    for (std::int32_t by = rect.y0 / 4; by <= rect.y1 / 4; ++by)
+      for (std::int32_t bx = rect.x0 / 4; bx <= rect.x1 / 4; ++bx) DrawBlock(bx, by);
+    if (!kFlat && sink_.arrived.count > before) KeepPlane();
+  }
+
+ private:
+  struct Bounds {
+    std::int32_t x0, y0, x1, y1;
+  };
+  struct Edge {
+    std::int64_t first;  // at the tile's corner
+    std::int32_t step_x, step_y;
+    std::int32_t sample_min, sample_max;   // over the samples of a pixel
+    std::int32_t block_min, block_max;     // over the samples of a block
+    HWY_ALIGN_MAX std::int32_t pixel[16];  // at the corners of a block's pixels
+  };
+
+  [[nodiscard]] Bounds BoundsOf(const ScreenTriangle& t) const {
+    const SamplePattern& p = sink_.pattern;
+    const auto [x_min, x_max] = std::minmax({t.x[0], t.x[1], t.x[2]});
+    const auto [y_min, y_max] = std::minmax({t.y[0], t.y[1], t.y[2]});
+    return {std::max((x_min + 255 - p.high_x * SamplePattern::unit) >> 8, 0),
+            std::max((y_min + 255 - p.high_y * SamplePattern::unit) >> 8, 0),
+            std::min((x_max - p.low_x * SamplePattern::unit) >> 8, sink_.width - 1),
+            std::min((y_max - p.low_y * SamplePattern::unit) >> 8, sink_.height - 1)};
+  }
+
+  void SetUpEdges(const ScreenTriangle& t) {
+    const SamplePattern& p = sink_.pattern;
+    for (int k = 0; k < 3; ++k) {
+      const int n = k == 2 ? 0 : k + 1;
+      const std::int32_t dx = t.x[n] - t.x[k], dy = t.y[n] - t.y[k];
+      Edge& e = edge_[k];
+      e.first = (std::int64_t(dy) * t.x[k] - std::int64_t(dx) * t.y[k] - (IsTopLeft(dx, dy) ? 0 : 1)) >> 4;
+      e.step_x = -dy * kStepsOfPixel;
+      e.step_y = dx * kStepsOfPixel;
+      e.sample_max = std::max(dx * p.low_y, dx * p.high_y) + std::max(-dy * p.low_x, -dy * p.high_x);
+      e.sample_min = std::min(dx * p.low_y, dx * p.high_y) + std::min(-dy * p.low_x, -dy * p.high_x);
+      e.block_max = e.sample_max + 3 * (std::max(e.step_x, 0) + std::max(e.step_y, 0));
+      e.block_min = e.sample_min + 3 * (std::min(e.step_x, 0) + std::min(e.step_y, 0));
+      for (int i = 0; i < 16; ++i) e.pixel[i] = column_[i] * e.step_x + row_[i] * e.step_y;
+      if (!kFlat) sink_.samples.Fill(steps_, k, dx, dy);
+    }
+  }
+
+  void SetUpPlane(const ScreenTriangle& t) {
+    const std::int32_t x1 = t.x[1] - t.x[0], y1 = t.y[1] - t.y[0], x2 = t.x[2] - t.x[0], y2 = t.y[2] - t.y[0];
+    const float area = float(std::int64_t(x1) * y2 - std::int64_t(x2) * y1);
+    const float k1 = t.key[1] - t.key[0], k2 = t.key[2] - t.key[0];
+    id_ = t.id;
+    x0_ = t.x[0];
+    y0_ = t.y[0];
+    k0_ = t.key[0];
+    gx_ = (k1 * float(y2) - k2 * float(y1)) / area;
+    gy_ = (float(x1) * k2 - float(x2) * k1) / area;
+    low_ = std::min({t.key[0], t.key[1], t.key[2]});
+    high_ = std::max({t.key[0], t.key[1], t.key[2]});
+    const float reach_x = float(std::max({std::abs(x1), std::abs(x2), std::abs(x2 - x1)})) + 2 * kSubPixels;
+    const float reach_y = float(std::max({std::abs(y1), std::abs(y2), std::abs(y2 - y1)})) + 2 * kSubPixels;
+    slack_ = (k0_ + (reach_x * std::abs(gx_) + reach_y * std::abs(gy_))) * kKeyRounding + kLeastRounding;
+    half_ = (std::abs(gx_) + std::abs(gy_)) * kHalfPixel + slack_;
+    triangle_ = kFlat ? id_ : std::uint32_t(sink_.triangles.count);
+  }
+
+  void KeepPlane() {
+    LocalTriangles& t = sink_.triangles;
+    t.reserve(1);
+    const std::size_t n = t.count++;
+    t.x0[n] = x0_;
+    t.y0[n] = y0_;
+    t.k0[n] = k0_;
+    t.gx[n] = gx_;
+    t.gy[n] = gy_;
+    t.low[n] = low_;
+    t.high[n] = high_;
+    t.slack[n] = slack_;
+    t.id[n] = id_;
+  }
+
+  HWY_INLINE void DrawBlock(std::int32_t bx, std::int32_t by) {
+    std::int32_t e[3];
+    bool full = true;
+    for (int k = 0; k < 3; ++k) {
+      const Edge& edge = edge_[k];
+      const std::int64_t at = edge.first + std::int64_t(4 * bx) * edge.step_x + std::int64_t(4 * by) * edge.step_y;
+      e[k] = std::int32_t(HWY_MAX(HWY_MIN(at, kEdgeLimit), -kEdgeLimit));
+      if (e[k] + edge.block_max < 0) return;
+      full = full && e[k] + edge.block_min >= 0;
+    }
+    const bool inside = 4 * bx + 4 <= sink_.width && 4 * by + 4 <= sink_.height;
+    for (std::int32_t i = 0; i < 16; i += std::int32_t(hn::Lanes(DI()))) {
+      if (full && inside)
+        DrawPixels<true>(bx, by, i, e);
+      else
+        DrawPixels<false>(bx, by, i, e);
+    }
+  }
+
+  template <bool kFull>
+  HWY_INLINE void DrawPixels(std::int32_t bx, std::int32_t by, std::int32_t first, const std::int32_t* e) {
+    const DI d;
+    const DF df;
+    const VI x = hn::Add(hn::Load(d, column_ + first), hn::Set(d, 4 * bx));
+    const VI y = hn::Add(hn::Load(d, row_ + first), hn::Set(d, 4 * by));
+    MI touched = hn::And(hn::Lt(x, hn::Set(d, sink_.width)), hn::Lt(y, hn::Set(d, sink_.height)));
+    MI covered = touched;
+    if (!kFull) {
+      VI least = hn::Zero(d), most = hn::Zero(d);
+      for (int k = 0; k < 3; ++k) {
+        const VI at = hn::Add(hn::Set(d, e[k]), hn::Load(d, edge_[k].pixel + first));
+        hn::Store(at, d, corner_[k]);
+        most = hn::Or(most, hn::Add(at, hn::Set(d, edge_[k].sample_max)));
+        least = hn::Or(least, hn::Add(at, hn::Set(d, edge_[k].sample_min)));
+      }
+      touched = hn::And(touched, hn::Gt(most, hn::Set(d, -1)));
+      covered = hn::And(touched, hn::Gt(least, hn::Set(d, -1)));
+      if (hn::AllFalse(d, touched)) return;
+    }
+    const VF dx = hn::ConvertTo(df, hn::Add(hn::ShiftLeft<8>(x), hn::Set(d, kSubPixels / 2 - x0_)));
+    const VF dy = hn::ConvertTo(df, hn::Add(hn::ShiftLeft<8>(y), hn::Set(d, kSubPixels / 2 - y0_)));
+    VF key = hn::Add(hn::Set(df, k0_), hn::Mul(dx, hn::Set(df, gx_)));
+    key = hn::Add(key, hn::Mul(dy, hn::Set(df, gy_)));
+    key = hn::Min(hn::Max(key, hn::Set(df, low_)), hn::Set(df, high_));
+    const std::uint32_t pixel = std::uint32_t((by * kBlocksAcross + bx) * 16 + first);
+    if (kFlat)
+      AppendFlat(pixel, key, touched);
+    else
+      AppendMasked(pixel, key, BitsOf(d, touched), BitsOf(d, covered));
+  }
+
+  HWY_INLINE void AppendFlat(std::uint32_t pixel, VF key, MI covered) {
+    const DU du;
+    Arrived& out = sink_.arrived;
+    const auto mask = hn::RebindMask(du, covered);
+    const VU count = hn::Load(du, sink_.counts + pixel);
+    const VU place = hn::Or(hn::ShiftLeft<kRankBits>(hn::Iota(du, pixel)), count);
+    hn::Store(hn::Add(count, hn::IfThenElseZero(mask, hn::Set(du, 1))), du, sink_.counts + pixel);
+    const std::size_t n = out.count;
+    hn::StoreU(hn::Compress(hn::BitCast(du, key), mask), du, out.key.data() + n);
+    hn::StoreU(hn::Compress(place, mask), du, out.place.data() + n);
+    hn::StoreU(hn::Set(du, triangle_), du, out.triangle.data() + n);
+    out.count += hn::CountTrue(du, mask);
+  }
+
+  HWY_INLINE void AppendMasked(std::uint32_t pixel, VF key, std::uint64_t touched, std::uint64_t covered) {
+    const DF df;
+    const VF half = hn::Set(df, half_);
+    HWY_ALIGN_MAX float keys[kMaxLanes], nearest[kMaxLanes], farthest[kMaxLanes];
+    hn::Store(key, df, keys);
+    hn::Store(hn::Min(hn::Add(key, half), hn::Set(df, high_)), df, nearest);
+    hn::Store(hn::Max(hn::Sub(key, half), hn::Set(df, low_)), df, farthest);
+    for (std::uint64_t left = touched; left != 0; left &= left - 1) {
+      const std::size_t i = hwy::Num0BitsBelowLS1Bit_Nonzero64(left);
+      const std::uint64_t mask = covered >> i & 1
+                                     ? sink_.samples.full()
+                                     : sink_.samples.MaskOf(steps_, corner_[0][i], corner_[1][i], corner_[2][i]);
+      std::uint32_t bits;
+      std::memcpy(&bits, keys + i, sizeof bits);
+      sink_.Append(pixel + std::uint32_t(i), bits, nearest[i], farthest[i], triangle_, mask);
+    }
+  }
+
+  FragmentSink<kFlat>& sink_;
+  HWY_ALIGN_MAX std::int32_t column_[16], row_[16];
+  HWY_ALIGN_MAX std::int32_t corner_[3][kMaxLanes];
+  Edge edge_[3];
+  SampleSteps steps_;
+  std::uint32_t id_, triangle_;
+  std::int32_t x0_, y0_;
+  float k0_, gx_, gy_, low_, high_, slack_, half_;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace frontmost::abuffer_detail
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard by target

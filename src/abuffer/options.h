@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// The room's own checks, and what materials say of primitives.
+#pragma once
+
+#include <vector>
+
+#include "frontmost/abuffer.h"
+
+namespace frontmost::abuffer_detail {
+
+/// \throws Error bad_argument.
+void validate(const AbufferOptions& options);
+
+/// By primitive, how far it hides what is behind.
+class Opacities {
+ public:
+  Opacities(const Surfaces& surfaces, float opacity, const Execution& execution);
+
+  [[nodiscard]] float of(PrimitiveId id) const { return values_.empty() ? all_ : std::abs(values_[id]); }
+  /// Nothing is seen through it, whatever its texture says.
+  [[nodiscard]] bool is_opaque(PrimitiveId id) const { return (values_.empty() ? all_ : values_[id]) >= 1.0f; }
+
+ private:
+  float all_;
+  std::vector<float> values_;  // none: all the same. Negative: 1, but a texture may cut holes into it
+};
+
+}  // namespace frontmost::abuffer_detail

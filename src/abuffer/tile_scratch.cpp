@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "abuffer/tile_scratch.h"
+
+#include <algorithm>
+
+namespace frontmost::abuffer_detail {
+namespace {
+
+template <class T>
+void enlarge(Buffer<T>& buffer, std::size_t used, std::size_t size) {
+  Buffer<T> larger(size);
+  std::copy_n(buffer.data(), used, larger.data());
+  buffer.swap(larger);
+}
+
+}  // namespace
+
+void LocalTriangles::reserve(std::size_t more) {
+  if (count + more <= id.size()) return;
+  const std::size_t size = std::max<std::size_t>(2 * id.size(), count + more + 4096);
+  for (Buffer<std::int32_t>* b : {&x0, &y0}) enlarge(*b, count, size);
+  for (Buffer<float>* b : {&k0, &gx, &gy, &low, &high, &slack}) enlarge(*b, count, size);
+  enlarge(id, count, size);
+}
+
+void Arrived::grow(std::size_t wanted) {
+  if (wanted <= capacity) return;
+  const std::size_t size = std::max(wanted, 2 * capacity);
+  for (Buffer<std::uint32_t>* b : {&key, &place, &triangle}) enlarge(*b, count, size);
+  for (Buffer<float>* b : {&nearest, &farthest}) enlarge(*b, count, size);
+  enlarge(mask, count, size);
+  capacity = size;
+}
+
+TileScratch::TileScratch()
+    // Every pixel of the largest walk for every lane, and a vector of slack for whole stores.
+    : counts(kTilePixels), group_base(kGroups + 1), references(16 * 16 * 16 + 64) {
+  arrived.grow(kMostOfTile + kMostAtOnce);
+}
+
+void TileScratch::reserve_group(std::size_t count) {
+  if (mask.size() >= count * kGroup) return;
+  for (Buffer<float>* b : {&nearest, &farthest, &behind_nearest}) *b = Buffer<float>(2 * count * kGroup);
+  mask = Buffer<std::uint64_t>(2 * count * kGroup);
+  reach = Buffer<std::int32_t>(2 * count * kGroup);
+}
+
+}  // namespace frontmost::abuffer_detail

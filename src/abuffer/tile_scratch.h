@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// The private memory of one thread: the fragments of one tile, as they arrive and sorted.
+#pragma once
+
+#include "abuffer/frame_plan.h"
+
+namespace frontmost::abuffer_detail {
+
+inline constexpr std::size_t kTilePixels = std::size_t(kTileSize) * kTileSize;
+/// Pixels are numbered by blocks of 4 x 4, which are sorted and composited together.
+inline constexpr std::size_t kGroup = 16, kGroups = kTilePixels / kGroup;
+inline constexpr int kBlocksAcross = kTileSize / 4;
+
+/// A fragment's pixel and how many its pixel had before, in one word.
+inline constexpr int kRankBits = 20;
+inline constexpr std::uint32_t kMostOfPixel = (1u << kRankBits) - 1;
+
+/// A tile that holds more is taken apart. At 36 bytes and up to 16 for the sorted lists, 14 MB.
+inline constexpr std::size_t kMostOfTile = std::size_t(1) << 18;
+/// What one step of gathering may add before fullness is looked at again.
+inline constexpr std::size_t kMostAtOnce = kTilePixels + 64;
+
+/// Edges run from -2^30 to 2^30 where they are stepped from, see gather_kernel.cpp.
+[[nodiscard]] inline std::uint32_t pixel_number(std::uint32_t x, std::uint32_t y) {
+  return ((y >> 2) * kBlocksAcross + (x >> 2)) * 16 + (y & 3) * 4 + (x & 3);
+}
+
+/// Depth planes of the triangles of a tile: the key at a point is (k0 + dx*gx) + dy*gy from (x0, y0), in 1/256 pixel
+/// from the tile's corner, then clamped to [low, high]. `slack` bounds the rounding of the difference of two such keys
+/// of one pixel.
+struct LocalTriangles {
+  std::size_t count = 0;
+  Buffer<std::int32_t> x0, y0;
+  Buffer<float> k0, gx, gy, low, high, slack;
+  Buffer<PrimitiveId> id;
+
+  /// Room for `more`.
+  void reserve(std::size_t more);
+  [[nodiscard]] float key_at(std::size_t t, std::int32_t x, std::int32_t y) const {
+    const float key = (k0[t] + float(x - x0[t]) * gx[t]) + float(y - y0[t]) * gy[t];
+    return std::min(std::max(key, low[t]), high[t]);
+  }
+};
+
+/// In the order of arrival.
+struct Arrived {
+  std::size_t count = 0, capacity = 0;
+  Buffer<std::uint32_t> key;       ///< bits of the float
+  Buffer<std::uint32_t> place;     ///< pixel << kRankBits | rank
+  Buffer<std::uint32_t> triangle;  ///< number in LocalTriangles; of flat tiles the primitive id
+  Buffer<std::uint64_t> mask;
+  Buffer<float> nearest, farthest;  ///< no key of the fragment leaves this range; both 0 <= key <= 1
+
+  void grow(std::size_t wanted);
+};
+
+struct TileScratch {
+  TileScratch();
+
+  LocalTriangles triangles;
+  Arrived arrived;
+  Buffer<std::uint32_t> counts;      ///< by pixel
+  Buffer<std::uint32_t> group_base;  ///< by group, in slots; and the end of the last
+  /// Slot-major: slot s of pixel p of a group at (base + s) * 16 + p. Each is key bits << 32 | ~number of the fragment
+  /// (flat: ~primitive id), descending; 0 is empty.
+  Buffer<std::uint64_t> slots;
+  Buffer<std::uint32_t> references;  ///< covered (triangle, pixel) pairs of one batch
+
+  // Of one group while it is composited, slot-major as well.
+  Buffer<float> nearest, farthest, behind_nearest;
+  Buffer<std::uint64_t> mask;
+  Buffer<std::int32_t> reach;
+  void reserve_group(std::size_t slots);
+
+  [[nodiscard]] std::size_t length(std::size_t group) const { return group_base[group + 1] - group_base[group]; }
+  [[nodiscard]] std::uint64_t* slot(std::size_t group, std::size_t s) {
+    return slots.data() + (group_base[group] + s) * kGroup;
+  }
+};
+
+}  // namespace frontmost::abuffer_detail

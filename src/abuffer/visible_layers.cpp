@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Layers: at every sample the nearest primitive, the second, and so on.
+
+#include <algorithm>
+
+#include "abuffer/options.h"
+#include "abuffer/visit_tiles.h"
+#include "base/float_environment.h"
+
+namespace frontmost {
+namespace {
+
+using namespace abuffer_detail;
+
+struct Seen {
+  float key;
+  PrimitiveId id;
+};
+
+/// What one sample of a pixel sees, nearest first.
+class SampleLists {
+ public:
+  SampleLists(const FrameInput& frame, TileScratch& scratch) : frame_(frame), s_(scratch) {}
+
+  const std::vector<Seen>& at(int x, int y, std::size_t sample) {
+    const std::uint32_t pixel = pixel_number(std::uint32_t(x), std::uint32_t(y));
+    const std::size_t group = pixel / kGroup, length = s_.length(group);
+    const std::uint64_t* words = s_.slot(group, 0) + pixel % kGroup;
+    const std::int32_t sx = x * kSubPixels + frame_.pattern.x[sample] * SamplePattern::unit;
+    const std::int32_t sy = y * kSubPixels + frame_.pattern.y[sample] * SamplePattern::unit;
+    seen_.clear();
+    for (std::size_t i = 0; i < length && words[i * kGroup] != 0; ++i) {
+      const std::uint32_t number = ~std::uint32_t(words[i * kGroup]);
+      if (!(s_.arrived.mask[number] >> sample & 1)) continue;
+      const std::size_t t = s_.arrived.triangle[number];
+      seen_.push_back({s_.triangles.key_at(t, sx, sy), s_.triangles.id[t]});
+    }
+    std::sort(seen_.begin(), seen_.end(),
+              [](const Seen& a, const Seen& b) { return a.key != b.key ? a.key > b.key : a.id < b.id; });
+    return seen_;
+  }
+
+ private:
+  const FrameInput& frame_;
+  TileScratch& s_;
+  std::vector<Seen> seen_;
+};
+
+}  // namespace
+
+std::vector<Visible> visible_layers(const Surfaces& surfaces, const View& view, int count,
+                                    const AbufferOptions& options, const Execution& execution) {
+  validate(view);
+  validate(options);
+  if (count < 1 || count > 1024) throw Error(ErrorCode::bad_argument, "abuffer: layers: must be 1 to 1024");
+  const IeeeScope ieee;
+  const SamplePattern pattern = sample_pattern(view, 0);
+  const FramePlan plan(surfaces, view, execution);
+  const FrameInput frame{plan, pattern, false, execution.isa};
+  const Opacities opacities(surfaces, options.opacity, execution);
+  std::vector<Visible> layers;
+  for (int k = 0; k < count; ++k) layers.push_back(nothing_visible(view));
+  visit_tiles(frame, execution, [&](const TileJob& job, TileScratch* scratch) {
+    if (!scratch) return;
+    SampleLists lists(frame, *scratch);
+    for (std::size_t sample = 0; sample < std::size_t(pattern.count); ++sample)
+      for (int y = 0; y < job.pixels.height; ++y)
+        for (int x = 0; x < job.pixels.width; ++x) {
+          const std::size_t at = layers[0].index(job.pixels.x + x, job.pixels.y + y, int(sample));
+          std::size_t k = 0;
+          for (const Seen& seen : lists.at(x, y, sample)) {
+            if (k == layers.size()) break;
+            layers[k].primitives[at] = seen.id;
+            layers[k++].keys[at] = seen.key;
+            if (opacities.is_opaque(seen.id)) break;
+          }
+        }
+  });
+  return layers;
+}
+
+}  // namespace frontmost

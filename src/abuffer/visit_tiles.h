@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tile after tile on all threads; tiles with too many fragments in parts. This is what bounds memory.
+#pragma once
+
+#include <atomic>
+
+#include "abuffer/gather_kernel.h"
+#include "base/parallel.h"
+#include "base/pool.h"
+
+namespace frontmost::abuffer_detail {
+
+/// Calls visit(job, scratch or null where nothing is seen) for `job`, or for parts of it.
+template <class Visit>
+void visit_job(const FrameInput& frame, const TileJob& job, TileScratch& scratch, const Visit& visit) {
+  const Gathered gathered = gather_tile(frame, job, scratch);
+  if (gathered != Gathered::too_much) {
+    visit(job, gathered == Gathered::something ? &scratch : nullptr);
+    return;
+  }
+  // Parts of whole groups of pixels as long as there are groups.
+  const Rectangle& r = job.pixels;
+  const auto half = [](int size) { return size > 4 ? (size / 2 + 3) / 4 * 4 : (size + 1) / 2; };
+  const int w = half(r.width), h = half(r.height);
+  for (int y = 0; y < r.height; y += h)
+    for (int x = 0; x < r.width; x += w)
+      visit_job(frame, {{r.x + x, r.y + y, std::min(w, r.width - x), std::min(h, r.height - y)}, job.tile}, scratch,
+                visit);
+}
+
+/// The same for the whole picture, in any order, on all threads. Every pixel is in one job.
+template <class Visit>
+void visit_tiles(const FrameInput& frame, const Execution& execution, const Visit& visit) {
+  Pool<TileScratch> pool;
+  std::atomic<std::size_t> done{0};
+  const std::size_t tiles = frame.plan.tile_count();
+  parallel_for(execution, tiles, 1, [&](std::size_t begin, std::size_t end) {
+    const auto scratch = pool.borrow([] { return std::make_unique<TileScratch>(); });
+    for (std::size_t tile = begin; tile < end; ++tile) visit_job(frame, {frame.plan.tile(tile), tile}, *scratch, visit);
+    report_progress(execution, "visible", double(done += end - begin) / double(tiles));
+  });
+}
+
+}  // namespace frontmost::abuffer_detail

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// The A-buffer by brute force: every sub-sample of every pixel against every triangle.
+#pragma once
+
+#include <algorithm>
+#include <map>
+
+#include "frontmost/abuffer.h"
+#include "support/oracle.h"
+
+namespace frontmost::test {
+
+/// Screen triangles, clipped, turned so that their area is positive, without those that are culled.
+inline std::vector<OracleTriangle> screen_triangles(const Surfaces& surfaces, const View& view) {
+  const ScreenTransform transform(view);
+  std::vector<OracleTriangle> triangles;
+  for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
+    std::array<glm::vec3, 3> world = surfaces.corners(id);
+    if (surfaces.is_mirrored(surfaces.source(id).instance)) std::swap(world[1], world[2]);
+    bool finite = true;
+    for (const glm::vec3& p : world) finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+    if (!finite) continue;
+    const ClippedPolygon polygon = clip_triangle(transform, world);
+    for (std::size_t k = 2; k < std::size_t(polygon.count); ++k) {
+      OracleTriangle t{};
+      const ScreenVertex corners[3] = {polygon.corners[0], polygon.corners[k - 1], polygon.corners[k]};
+      for (int v = 0; v < 3; ++v) {
+        t.x[v] = corners[v].x + transform.centre_x;
+        t.y[v] = corners[v].y + transform.centre_y;
+        t.key[v] = corners[v].key;
+      }
+      t.id = id;
+      const bool front = oracle_area(t) < 0;
+      if (oracle_area(t) == 0 || view.culling == Culling::both || (view.culling == Culling::back && !front) ||
+          (view.culling == Culling::front && front))
+        continue;
+      if (front) std::swap(t.x[1], t.x[2]), std::swap(t.y[1], t.y[2]), std::swap(t.key[1], t.key[2]);
+      triangles.push_back(t);
+    }
+  }
+  return triangles;
+}
+
+/// Positions of sub-samples in 1/256 pixel.
+inline std::vector<glm::ivec2> oracle_samples(const View& view, int grid) {
+  std::vector<glm::ivec2> result;
+  if (grid == 0) {
+    const auto own = sample_offsets(view.samples);
+    return {own.begin(), own.end()};
+  }
+  for (int y = 0; y < grid; ++y)
+    for (int x = 0; x < grid; ++x) result.push_back({128 * (2 * x + 1) / grid, 128 * (2 * y + 1) / grid});
+  return result;
+}
+
+struct OracleFragment {
+  std::uint64_t mask;
+  PrimitiveId id;
+  float key;  ///< at the centre
+  const OracleTriangle* triangle;
+};
+
+/// The list of one pixel, in the order of keys at the centre, then ids, then masks.
+inline std::vector<OracleFragment> oracle_fragments(const std::vector<OracleTriangle>& triangles,
+                                                    const std::vector<glm::ivec2>& samples, int x, int y) {
+  std::vector<OracleFragment> list;
+  for (const OracleTriangle& t : triangles) {
+    std::uint64_t mask = 0;
+    for (std::size_t s = 0; s < samples.size(); ++s)
+      if (oracle_covers(t, 256 * x + samples[s].x, 256 * y + samples[s].y)) mask |= std::uint64_t(1) << s;
+    if (mask) list.push_back({mask, t.id, oracle_key(t, 256 * x + 128, 256 * y + 128), &t});
+  }
+  std::sort(list.begin(), list.end(), [](const OracleFragment& a, const OracleFragment& b) {
+    return a.key != b.key ? a.key > b.key : a.id != b.id ? a.id < b.id : a.mask < b.mask;
+  });
+  return list;
+}
+
+/// Premultiplied mean over the sub-samples of what is laid over each other, in double, in the order at each sub-sample.
+inline glm::dvec4 oracle_pixel(const std::vector<OracleFragment>& list, const std::vector<glm::ivec2>& samples, int x,
+                               int y, std::span<const glm::vec4> colors, double opacity) {
+  glm::dvec4 sum(0);
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    std::vector<std::pair<float, PrimitiveId>> order;
+    for (const OracleFragment& f : list)
+      if (f.mask >> s & 1)
+        order.push_back({-oracle_key(*f.triangle, 256 * x + samples[s].x, 256 * y + samples[s].y), f.id});
+    std::sort(order.begin(), order.end());
+    double left = 1;
+    for (const auto& [key, id] : order) {
+      const glm::dvec4 color(colors[id]);
+      const double alpha = color.a * opacity;
+      sum += glm::dvec4(glm::dvec3(color) * (left * alpha), 0);
+      left *= 1 - alpha;
+    }
+    sum.a += 1 - left;
+  }
+  return sum / double(samples.size());
+}
+
+}  // namespace frontmost::test
