@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The leaves of a RayIndex: triangles in the surfaces' spatial order, sixteen at a time.
 //
-// Clusters already are in Morton order, and cutting their run into sixteens costs no sort of our own. The place of a
+// Clusters already are in spatial order, and cutting their run into sixteens costs no sort of our own. The place of a
 // triangle depends on how many go before it, so that they are counted first. Dealing groups of sixteen leaves out anew
 // doubles the time of a build, and makes single rays 20 to 40 % and views up to 10 % faster.
 

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// The order along Hilbert's curve, by way of Morton codes.
 // G. Morton. A Computer Oriented Geodetic Data Base and a New Technique in File Sequencing. 1966.
 //
-// File order would do for many meshes, but is up to seven times slower to draw for scattered ones.
+// File order would do for many meshes, but is up to seven times slower to draw for scattered ones. Morton's own order
+// jumps: clusters cut from it are scattered more, and a frame takes 2 to 8 % longer, for 4 ns a triangle saved here.
+// What did not pay is to look through the next triangles for such as find room in a full cluster: 32 add 2 % more
+// triangles to it, take a sixth of the time for clusters and gain nothing measurable.
 
 #include "surfaces/spatial_order.h"
 
@@ -11,6 +15,7 @@
 
 #include "base/parallel.h"
 #include "surfaces/cluster_set.h"
+#include "surfaces/hilbert.h"
 #include "surfaces/radix_sort.h"
 
 namespace frontmost {
@@ -158,9 +163,9 @@ Buffer<PrimitiveId> spatial_order(const Scene& scene, const std::vector<Primitiv
       for (std::uint32_t t = runs[r].begin; t < runs[r].end; ++t) {
         const glm::uvec3& c = mesh.triangles[t];
         const glm::vec3 sum = mesh.positions[c.x] + mesh.positions[c.y] + mesh.positions[c.z];
-        const std::uint32_t code = grid.code(world(sum * (1.0f / 3.0f)));
+        const std::uint32_t place = hilbert_place(grid.code(world(sum * (1.0f / 3.0f))), bits);
         const PrimitiveId id = first_primitives[runs[r].of] + t;
-        items[id] = std::uint64_t(code) << 32 | id;
+        items[id] = std::uint64_t(place) << 32 | id;
       }
     }
   });

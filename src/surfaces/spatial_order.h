@@ -25,7 +25,7 @@ class InstanceFinder {
   std::vector<std::uint32_t> start_;
 };
 
-/// All primitive ids, by the Morton code of the triangles' centroids; within a cell in id order.
+/// All primitive ids, by the cells of the triangles' centroids along Hilbert's curve; within a cell in id order.
 /// Cells hold some tens of triangles of an ordinary surface. O(triangles), 16 bytes a triangle while it runs.
 [[nodiscard]] Buffer<PrimitiveId> spatial_order(const Scene& scene, const std::vector<PrimitiveId>& first_primitives,
                                                 const Execution& execution);

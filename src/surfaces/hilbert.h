@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the Morton code of a cell to its place on Hilbert's curve, on which neighbours in the order always share a face.
+// D. Hilbert. Über die stetige Abbildung einer Linie auf ein Flächenstück. 1891.
+// C. Hamilton. Compact Hilbert Indices. Dalhousie University CS-2006-07. 2006: names and formulas of a step.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace frontmost {
+namespace hilbert_detail {
+
+/// How the curve lies in a cell: it enters at corner `entry` and leaves along axis `direction`. 24 ways.
+struct Pose {
+  std::uint32_t entry, direction;
+  [[nodiscard]] constexpr std::uint32_t number() const { return entry * 3 + direction; }
+};
+
+/// Which of the eight parts of a cell comes when, and how the curve lies in it.
+struct Step {
+  std::uint32_t place;
+  Pose inside;
+};
+
+constexpr std::uint32_t rotate_left(std::uint32_t bits, std::uint32_t by) {
+  by %= 3;
+  return (bits << by | bits >> (3 - by)) & 7;
+}
+constexpr std::uint32_t gray(std::uint32_t i) { return i ^ i >> 1; }
+constexpr std::uint32_t trailing_ones(std::uint32_t i) { return i & 1 ? 1 + trailing_ones(i >> 1) : 0; }
+
+/// `part` is a bit an axis.
+constexpr Step step(const Pose& pose, std::uint32_t part) {
+  const std::uint32_t turned = rotate_left(part ^ pose.entry, 2 - pose.direction);
+  const std::uint32_t place = (turned ^ turned >> 1 ^ turned >> 2) & 7;  // gray(place) == turned
+  const std::uint32_t entry = place == 0 ? 0 : gray((place - 1) & ~1u);
+  const std::uint32_t direction = place == 0 ? 0 : trailing_ones(place % 2 ? place : place - 1) % 3;
+  return {place, {pose.entry ^ rotate_left(entry, pose.direction + 1), (pose.direction + direction + 1) % 3}};
+}
+
+/// Two levels at a time: by pose and the two parts, the next pose and the two places, each in six bits.
+inline constexpr auto kSteps = [] {
+  std::array<std::uint16_t, 24 * 64> steps{};
+  for (std::uint32_t pose = 0; pose < 24; ++pose)
+    for (std::uint32_t parts = 0; parts < 64; ++parts) {
+      const Step outer = step({pose / 3, pose % 3}, parts >> 3), inner = step(outer.inside, parts & 7);
+      steps[pose * 64 + parts] =
+          static_cast<std::uint16_t>(inner.inside.number() * 64 | outer.place << 3 | inner.place);
+    }
+  return steps;
+}();
+
+}  // namespace hilbert_detail
+
+/// The place of a cell on the curve through a cube of 8^levels of them. `morton` has three bits a level, at most 30; so
+/// has the result.
+[[nodiscard]] inline std::uint32_t hilbert_place(std::uint32_t morton, int levels) {
+  std::uint32_t pose = 0, place = 0;
+  // An odd number of levels is one more, whose first part is part 0, place 0.
+  for (int shift = (levels - 1) / 2 * 6; shift >= 0; shift -= 6) {
+    const std::uint32_t next = hilbert_detail::kSteps[pose | (morton >> shift & 63)];
+    place = place << 6 | (next & 63);
+    pose = next & ~63u;
+  }
+  return place;
+}
+
+}  // namespace frontmost
