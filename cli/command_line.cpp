@@ -54,12 +54,15 @@ std::vector<std::string_view> known_flags(const Command& command) {
                                                : fmt::format("; did you mean --{}?", nearest)));
 }
 
-void refuse_leftovers(const Command& command, const std::vector<std::string>& words, const std::string& model) {
+/// What no option takes: more models, where the command takes several.
+void take_leftovers(const Command& command, const std::vector<std::string>& words, Settings& settings) {
   for (const std::string& word : words) {
     if (word == "--") continue;  // it has done its work
     if (word.size() > 1 && word[0] == '-') complain_of_unknown(command, word);
     if (command.argument.empty()) throw UsageError(fmt::format("'{}' is one word too many", word));
-    throw UsageError(fmt::format("one model at a time: '{}' and '{}'", model, word));
+    if (command.bit != for_render)
+      throw UsageError(fmt::format("one model at a time: '{}' and '{}'", settings.model, word));
+    settings.more_models.push_back(word);
   }
 }
 
@@ -102,7 +105,7 @@ Settings parse_command_line(const Command& command, std::span<const char* const>
   } catch (const CLI::ParseError& error) {
     throw UsageError(error.what());
   }
-  refuse_leftovers(command, app.remaining(), settings.model);
+  take_leftovers(command, app.remaining(), settings);
   for (const Found& found : all) apply_found(command, found, settings);
   if (settings.model.empty() && !command.argument.empty()) {
     throw UsageError(fmt::format("no {} given; see frontmost {} --help", command.argument, command.name));

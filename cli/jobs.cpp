@@ -13,6 +13,8 @@ namespace {
 
 Job make_job(const Settings& settings) {
   check_view_settings(settings.view);
+  if (settings.run.stream && settings.view.depth.is_used)
+    throw UsageError("--stream draws with the default depth test; it excludes the options of a depth buffer");
   Job job{view_name(settings.view), settings.view, settings.output, {}, {}};
   const std::string model = model_name(settings.model);
   job.files = plan_outputs(settings.output, model, job.name);
@@ -35,6 +37,7 @@ void check_files(const std::vector<Job>& jobs, const Settings& settings) {
     references.push_back(*job.output.reference);
   }
   check_outputs(paths, settings.model);
+  for (const std::string& model : settings.more_models) check_outputs(paths, model);
   // Comparing a picture with itself would always pass.
   for (const std::string& reference : references) check_not_written(reference, paths);
   const bool writes_stdout = std::find(paths.begin(), paths.end(), "-") != paths.end();

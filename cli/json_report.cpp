@@ -81,13 +81,15 @@ Json view_json(const ViewResult& result) {
 
 }  // namespace
 
-Json render_json(const Settings& settings, const Surfaces& surfaces, const std::vector<ViewResult>& views,
+Json render_json(const Settings& settings, const ModelFacts& model, const std::vector<ViewResult>& views,
                  const RunTimings& timings) {
   Json json = {{"frontmost", FRONTMOST_VERSION},
                {"model", settings.model},
                {"method", settings.run.method == Method::raycast ? "raycast" : "zbuffer"}};
   json["isa"] = name(settings.run.isa);
-  json["triangles"] = surfaces.primitive_count();
+  if (!settings.more_models.empty()) json["more_models"] = settings.more_models;
+  json["triangles"] = model.triangles;
+  if (model.passes) json["stream_passes"] = *model.passes;
   Json times = {{"load", timings.load}, {"surfaces", timings.surfaces}};
   if (timings.index) times["index"] = *timings.index;
   if (settings.run.batch) {
@@ -97,10 +99,10 @@ Json render_json(const Settings& settings, const Surfaces& surfaces, const std::
       add_timings(view.timings, one["timings_ms"]);
       json["views"].push_back(std::move(one));
     }
-    json["warnings"] = surfaces.scene().warnings;
+    json["warnings"] = model.warnings;
   } else {
     json.update(view_json(views.front()));
-    for (const std::string& warning : surfaces.scene().warnings) json["warnings"].push_back(warning);
+    for (const std::string& warning : model.warnings) json["warnings"].push_back(warning);
     add_timings(views.front().timings, times);
   }
   times["total"] = timings.total;

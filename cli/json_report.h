@@ -17,8 +17,15 @@ struct RunTimings {
   std::optional<double> index;  ///< of the method raycast
 };
 
+/// What there is to say of the model.
+struct ModelFacts {
+  std::uint64_t triangles = 0;
+  const std::vector<std::string>& warnings;
+  std::optional<int> passes = std::nullopt;  ///< over a stream
+};
+
 /// With one view, its facts stand at the top; with a batch, under "views".
-[[nodiscard]] Json render_json(const Settings& settings, const Surfaces& surfaces, const std::vector<ViewResult>& views,
+[[nodiscard]] Json render_json(const Settings& settings, const ModelFacts& model, const std::vector<ViewResult>& views,
                                const RunTimings& timings);
 /// "what HASH path", one line a result, "visible HASH" first; a batch has "view:" in front.
 [[nodiscard]] std::string hash_lines(const std::vector<ViewResult>& views, bool is_batch);

@@ -16,14 +16,18 @@ Execution execution_for(const RunSettings& settings, const Progress& progress) {
 
 Scene load_model(const Settings& settings, const Execution& execution, Progress& progress) {
   Scene scene = load(settings.model, settings.load, execution);
-  if (settings.run.quiet) return scene;
+  for (const std::string& model : settings.more_models) append(scene, load(model, settings.load, execution));
+  show_warnings(scene.warnings, settings.run, progress);
+  return scene;
+}
+
+void show_warnings(const std::vector<std::string>& warnings, const RunSettings& run, Progress& progress) {
+  if (run.quiet) return;
   progress.clear();
-  const std::vector<std::string>& warnings = scene.warnings;
   for (std::size_t i = 0; i < warnings.size() && i < warnings_shown; ++i) complain("warning: " + warnings[i]);
   if (warnings.size() > warnings_shown) {
     complain(fmt::format("warning: and {} more like these; --json lists them", warnings.size() - warnings_shown));
   }
-  return scene;
 }
 
 }  // namespace frontmost::cli

@@ -12,5 +12,7 @@ namespace frontmost::cli {
 [[nodiscard]] Execution execution_for(const RunSettings& settings, const Progress& progress);
 /// Loads, and prints the reader's warnings to standard error unless quiet: a few, then how many more.
 [[nodiscard]] Scene load_model(const Settings& settings, const Execution& execution, Progress& progress);
+/// The same of warnings alone.
+void show_warnings(const std::vector<std::string>& warnings, const RunSettings& run, Progress& progress);
 
 }  // namespace frontmost::cli

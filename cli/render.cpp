@@ -11,6 +11,7 @@
 #include "jobs.h"
 #include "json_report.h"
 #include "model.h"
+#include "render_stream.h"
 #include "stopwatch.h"
 #include "terminal.h"
 
@@ -62,14 +63,37 @@ int status_of(const std::vector<ViewResult>& results) {
   return std::any_of(results.begin(), results.end(), differs) ? exit_differs : exit_done;
 }
 
-}  // namespace
+/// Renders every job by `render`, and tells of each.
+template <class Render>
+std::vector<ViewResult> render_all(const std::vector<Job>& jobs, const Settings& settings, Progress& progress,
+                                   const Render& render) {
+  std::vector<ViewResult> results;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if (jobs.size() > 1) progress.set_prefix(fmt::format("view {} of {}: ", i + 1, jobs.size()));
+    results.push_back(render(jobs[i]));
+    tell(results.back(), settings, progress);
+    results.back().picture.reset();
+    stop_if_interrupted();
+  }
+  return results;
+}
 
-int run_render(const Settings& settings) {
-  const Stopwatch whole;
-  std::vector<Job> jobs = plan_jobs(settings);
-  check_method(settings, jobs);
-  const bool on_terminal = shows_on_terminal(settings, jobs);
-  catch_interruptions(settings.run.timeout);
+void report(const Settings& settings, const ModelFacts& model, const std::vector<ViewResult>& results,
+            const RunTimings& timings) {
+  if (settings.run.json) print(dump(render_json(settings, model, results, timings)));
+  if (!settings.run.json) print(hash_lines(results, settings.run.batch.has_value()));
+}
+
+/// What both ways to render begin with.
+struct Run {
+  const Settings& settings;
+  std::vector<Job> jobs;
+  bool on_terminal = false;
+  Stopwatch whole;
+};
+
+int render_whole(const Run& run) {
+  const Settings& settings = run.settings;
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
   RunTimings timings;
@@ -85,19 +109,46 @@ int run_render(const Settings& settings) {
     index.emplace(surfaces, execution);
     timings.index = watch.milliseconds();
   }
-  std::vector<ViewResult> results;
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
-    if (jobs.size() > 1) progress.set_prefix(fmt::format("view {} of {}: ", i + 1, jobs.size()));
-    results.push_back(
-        render_view(jobs[i], {surfaces, settings.run, execution, on_terminal, index ? &*index : nullptr}));
-    tell(results.back(), settings, progress);
-    results.back().picture.reset();
-    stop_if_interrupted();
-  }
-  timings.total = whole.milliseconds();
-  if (settings.run.json) print(dump(render_json(settings, surfaces, results, timings)));
-  if (!settings.run.json) print(hash_lines(results, settings.run.batch.has_value()));
+  const std::vector<ViewResult> results = render_all(run.jobs, settings, progress, [&](const Job& job) {
+    return render_view(job, {surfaces, settings.run, execution, run.on_terminal, index ? &*index : nullptr});
+  });
+  timings.total = run.whole.milliseconds();
+  report(settings, {surfaces.primitive_count(), scene.warnings}, results, timings);
   return status_of(results);
+}
+
+int render_stream(const Run& run) {
+  const Settings& settings = run.settings;
+  Progress progress(settings.run.quiet);
+  const Execution execution = execution_for(settings.run, progress);
+  RunTimings timings;
+  const Stopwatch watch;
+  std::vector<std::string> models = {settings.model};
+  models.insert(models.end(), settings.more_models.begin(), settings.more_models.end());
+  StreamOptions options;
+  options.load = settings.load;
+  Stream stream(models, options, execution);
+  timings.load = watch.milliseconds();
+  const std::vector<ViewResult> results = render_all(run.jobs, settings, progress, [&](const Job& job) {
+    return render_streamed_view(job, stream, {settings.run, execution, run.on_terminal});
+  });
+  show_warnings(stream.scene().warnings, settings.run, progress);
+  timings.total = run.whole.milliseconds();
+  report(settings, {stream.triangle_count(), stream.scene().warnings, stream.passes()}, results, timings);
+  return status_of(results);
+}
+
+}  // namespace
+
+int run_render(const Settings& settings) {
+  if (settings.run.stream && settings.run.repeat > 1) throw UsageError("--stream and --repeat exclude each other");
+  if (settings.run.stream && settings.run.method != Method::zbuffer)
+    throw UsageError("--stream draws with --method zbuffer only");
+  Run run{settings, plan_jobs(settings), false, {}};
+  check_method(settings, run.jobs);
+  run.on_terminal = shows_on_terminal(settings, run.jobs);
+  catch_interruptions(settings.run.timeout);
+  return settings.run.stream ? render_stream(run) : render_whole(run);
 }
 
 }  // namespace frontmost::cli

@@ -23,28 +23,12 @@ int default_samples(const View& view) {
   return samples;
 }
 
-bool wants(const Job& job, OutputKind kind) {
-  for (const OutputFile& file : job.files) {
-    if (std::find(file.kinds.begin(), file.kinds.end(), kind) != file.kinds.end()) return true;
-  }
-  return false;
-}
-
 bool wants_maps(const Job& job) {
   for (const OutputFile& file : job.files) {
     if (file.kinds.size() > 1 || file.kinds.front() != OutputKind::picture) return true;
   }
   return false;
 }
-
-/// The visibility that a view needs: of the picture, of the maps, or of both at once.
-struct Sights {
-  std::optional<Sight> picture, maps;
-  bool shared = false;  ///< the maps are those of the picture
-
-  [[nodiscard]] const Sight& for_maps() const { return shared ? *picture : *maps; }
-  [[nodiscard]] const Visible& any() const { return (picture ? *picture : *maps).visible; }
-};
 
 Sight timed(const View& view, const DepthSettings& depth, const RenderContext& context, std::vector<double>& times) {
   for (int i = 1;; ++i) {
@@ -56,27 +40,44 @@ Sight timed(const View& view, const DepthSettings& depth, const RenderContext& c
 }
 
 Sights look(const Job& job, const RenderContext& context, ViewResult& result) {
-  const bool picture = wants(job, OutputKind::picture) || context.keep_picture || job.output.reference;
-  const bool maps = wants_maps(job) || job.output.hash || context.run.json || !picture;
+  const SightPlan plan = plan_sights(job, context.run, context.keep_picture, result.view);
   View view = result.view;
   Sights sights;
-  if (picture) {
-    view.samples = job.view.samples.value_or(default_samples(view));
+  sights.shared = plan.shared;
+  if (plan.picture_samples) {
+    view.samples = *plan.picture_samples;
     sights.picture = timed(view, job.view.depth, context, result.timings.visible);
-    sights.shared = maps && view.samples == 1;
   }
-  if (maps && !sights.shared) {
+  if (plan.maps && !plan.shared) {
     view.samples = 1;
     std::vector<double> times;
-    sights.maps = timed(view, job.view.depth, context, picture ? times : result.timings.visible);
-    if (picture) result.timings.visible_maps = times.front();
+    sights.maps = timed(view, job.view.depth, context, plan.picture_samples ? times : result.timings.visible);
+    if (plan.picture_samples) result.timings.visible_maps = times.front();
   }
   return sights;
 }
 
-Seen summary(const Surfaces& surfaces, const Visible& visible) {
+/// With the stream's own ids, where the surfaces are an excerpt of one.
+std::uint64_t hash_of(const Sights& sights) {
+  if (!sights.stream_ids) return content_hash(sights.for_maps().visible);
+  Visible visible = sights.for_maps().visible;
+  for (PrimitiveId& id : visible.primitives)
+    if (id != no_primitive) id = (*sights.stream_ids)[id];
+  return content_hash(visible);
+}
+
+Image primitive_ids(const RenderContext& context, const Sights& sights) {
+  Image image = id_image(context.surfaces, sights.for_maps().visible, IdKind::primitive);
+  if (sights.stream_ids)
+    for (std::uint32_t& id : image.channels.front().integers())
+      if (id != no_index) id = (*sights.stream_ids)[id];
+  return image;
+}
+
+Seen summary(const Surfaces& surfaces, const Sights& sights) {
   Seen seen;
-  seen.hash = content_hash(visible);
+  seen.hash = hash_of(sights);
+  const Visible& visible = sights.for_maps().visible;
   const Image objects = id_image(surfaces, visible, IdKind::object);
   const std::vector<Instance>& instances = surfaces.scene().instances;
   std::vector<std::uint64_t> pixels(instances.size());
@@ -96,15 +97,15 @@ Image window_depth_image(const Sight& sight) {
   return image;
 }
 
-Image map_of(OutputKind kind, const Job& job, const RenderContext& context, const Sight& sight) {
-  const Visible& visible = sight.visible;
+Image map_of(OutputKind kind, const Job& job, const RenderContext& context, const Sights& sights) {
+  const Visible& visible = sights.for_maps().visible;
   const float background = job.output.background_depth;
   switch (kind) {
     case OutputKind::depth: return depth_image(visible, background);
     case OutputKind::ray_distance: return ray_distance_image(visible, background);
-    case OutputKind::window_depth: return window_depth_image(sight);
+    case OutputKind::window_depth: return window_depth_image(sights.for_maps());
     case OutputKind::normals: return normal_image(context.surfaces, visible, context.execution);
-    case OutputKind::primitive_ids: return id_image(context.surfaces, visible, IdKind::primitive);
+    case OutputKind::primitive_ids: return primitive_ids(context, sights);
     case OutputKind::object_ids: return id_image(context.surfaces, visible, IdKind::object);
     case OutputKind::material_ids: return id_image(context.surfaces, visible, IdKind::material);
     case OutputKind::picture: break;  // not a map
@@ -152,7 +153,7 @@ Image compose(const OutputFile& file, const Source& source, ViewResult& result) 
   for (const OutputKind kind : file.kinds) {
     Image part;
     if (kind != OutputKind::picture) {
-      part = map_of(kind, source.job, source.context, source.sights.for_maps());
+      part = map_of(kind, source.job, source.context, source.sights);
     } else {
       part = file.format == ImageFormat::pfm ? without_alpha(*source.picture) : *source.picture;
     }
@@ -183,10 +184,29 @@ void write(const OutputFile& file, const Source& source, ViewResult& result) {
 
 void warn_if_blank(const Sights& sights, const RenderContext& context, ViewResult& result) {
   if (!is_blank(sights.any())) return;
-  result.warnings.push_back(fmt::format("nothing is in view: {}", blank_reason(context.surfaces, result.view)));
+  // Of a stream, the triangles that are not seen are gone.
+  result.warnings.push_back(sights.stream_ids
+                                ? "nothing is in view"
+                                : fmt::format("nothing is in view: {}", blank_reason(context.surfaces, result.view)));
 }
 
 }  // namespace
+
+bool wants(const Job& job, OutputKind kind) {
+  for (const OutputFile& file : job.files) {
+    if (std::find(file.kinds.begin(), file.kinds.end(), kind) != file.kinds.end()) return true;
+  }
+  return false;
+}
+
+SightPlan plan_sights(const Job& job, const RunSettings& run, bool keep_picture, const View& view) {
+  const bool picture = wants(job, OutputKind::picture) || keep_picture || job.output.reference;
+  SightPlan plan;
+  if (picture) plan.picture_samples = job.view.samples.value_or(default_samples(view));
+  plan.maps = wants_maps(job) || job.output.hash || run.json || !picture;
+  plan.shared = plan.maps && plan.picture_samples == 1;
+  return plan;
+}
 
 ViewResult render_view(const Job& job, const RenderContext& context) {
   ViewResult result;
@@ -194,14 +214,19 @@ ViewResult render_view(const Job& job, const RenderContext& context) {
   result.depth = job.view.depth;
   result.view = resolve_view(job.view, context.surfaces);
   result.target = job.view.focal_point.value_or(focal_point_of(result.view, context.surfaces));
-  const Sights sights = look(job, context, result);
-  if (job.output.hash || context.run.json) result.seen = summary(context.surfaces, sights.for_maps().visible);
+  finish_view(job, context, look(job, context, result), result);
+  return result;
+}
+
+void finish_view(const Job& job, const RenderContext& context, const Sights& sights, ViewResult& result) {
+  if (job.output.hash || context.run.json) result.seen = summary(context.surfaces, sights);
   warn_if_blank(sights, context, result);
   std::optional<Image> picture;
   if (sights.picture) {
     const Stopwatch watch;
     picture = shade(context.surfaces, sights.picture->visible,
-                    {job.output.shading, job.output.background, !job.output.no_shadows}, context.execution);
+                    {job.output.shading, job.output.background, !job.output.no_shadows, sights.seen_by_light},
+                    context.execution);
     result.timings.shade = watch.milliseconds();
   }
   for (const OutputFile& file : job.files) {
@@ -210,7 +235,6 @@ ViewResult render_view(const Job& job, const RenderContext& context) {
   }
   if (job.output.reference) result.reference = compare_with_reference(*picture, job, context.execution);
   if (context.keep_picture) result.picture = std::move(picture);
-  return result;
 }
 
 }  // namespace frontmost::cli

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "jobs.h"
+#include "sight.h"
 
 namespace frontmost::cli {
 
@@ -68,6 +69,32 @@ struct RenderContext {
   bool keep_picture = false;
   const RayIndex* index = nullptr;  ///< of the method raycast
 };
+
+/// The visibility that a view needs: of the picture, of the maps, or of both at once.
+struct Sights {
+  std::optional<Sight> picture, maps;
+  bool shared = false;  ///< the maps are those of the picture
+  /// Of a stream: the numbers of the triangles, by id of the surfaces, and what throws shadows. Both borrowed.
+  const std::vector<PrimitiveId>* stream_ids = nullptr;
+  const Visible* seen_by_light = nullptr;
+
+  [[nodiscard]] const Sight& for_maps() const { return shared ? *picture : *maps; }
+  [[nodiscard]] const Visible& any() const { return (picture ? *picture : *maps).visible; }
+};
+
+/// Which of them a job needs, and with how many samples.
+struct SightPlan {
+  std::optional<int> picture_samples;
+  bool maps = false, shared = false;
+};
+/// Of `view` only the size counts.
+[[nodiscard]] SightPlan plan_sights(const Job& job, const RunSettings& run, bool keep_picture, const View& view);
+
+/// Whether the job writes this.
+[[nodiscard]] bool wants(const Job& job, OutputKind kind);
+
+/// What comes after looking: shades, and writes every file of the job. `result` holds the view.
+void finish_view(const Job& job, const RenderContext& context, const Sights& sights, ViewResult& result);
 
 /// Finds what is visible, shades, and writes every file of the job.
 [[nodiscard]] ViewResult render_view(const Job& job, const RenderContext& context);

@@ -27,6 +27,8 @@ constexpr Option table[] = {
      for_render, [](Settings& s, const Given& g) { s.run.batch = g.string(); }},
     {"method", 0, "zbuffer|raycast", "Visibility method; the z-buffer by default.", Group::run, for_render,
      [](Settings& s, const Given& g) { s.run.method = g.choice<Method>(); }},
+    {"stream", 0, "", "Read binary STL and PLY piece by piece: files larger than memory, with the same bytes.",
+     Group::run, for_render, [](Settings& s, const Given&) { s.run.stream = true; }},
     {"threads", 0, "N", "Threads, 1 to 1024; 0, the default, is one per core.", Group::run, everywhere,
      [](Settings& s, const Given& g) {
        s.run.threads = g.integer({0, 1024});

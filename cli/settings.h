@@ -89,7 +89,7 @@ struct RunSettings {
   Isa isa = Isa::best;
   int repeat = 1;
   std::optional<double> timeout;
-  bool json = false, quiet = false;
+  bool json = false, quiet = false, stream = false;
   std::optional<std::string> batch;
 };
 
@@ -109,6 +109,7 @@ struct SightSettings {
 
 struct Settings {
   std::string model;
+  std::vector<std::string> more_models;  ///< of `render`: drawn together with the first
   LoadOptions load;
   ViewSettings view;
   PrecisionSettings precision;

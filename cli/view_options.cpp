@@ -75,7 +75,9 @@ Aim aim_of(const ViewSettings& settings, const Surfaces& surfaces, const View& b
     if (aim.target == eye) throw UsageError("--camera-position is where the camera looks; give --camera-direction");
     return {looking(eye, aim.target - eye, up), aim.target, false};
   }
-  aim.world_from_eye = looking(aim.target, settings.direction.value_or(base.forward()), up);
+  // Turned about the origin, so that the axes do not depend on where the model is, not even in their last bits.
+  aim.world_from_eye = looking(glm::dvec3(0), settings.direction.value_or(base.forward()), up);
+  aim.world_from_eye[3] = glm::dvec4(aim.target, 1);
   return aim;
 }
 
@@ -184,6 +186,11 @@ glm::dvec3 focal_point_of(const View& view, const Surfaces& surfaces) {
   const FitBounds bounds = visible_bounds(surfaces);
   const double along = glm::dot(bounds.centre - view.eye(), view.forward());
   return view.eye() + view.forward() * (along > 0 ? along : std::max(bounds.diagonal, 1e-6));
+}
+
+bool depends_on_model(const ViewSettings& s) {
+  const bool is_placed = s.pose || (s.position && (s.focal_point || s.direction));
+  return !is_placed || !s.near || !s.far;
 }
 
 View resolve_view(const ViewSettings& settings, const Surfaces& surfaces) {

@@ -20,6 +20,9 @@ void check_view_settings(const ViewSettings& settings);
 /// \throws UsageError for a camera number that the model has not; Error from the library's own checks.
 [[nodiscard]] View resolve_view(const ViewSettings& settings, const Surfaces& surfaces);
 
+/// False when resolve_view() gives the same for all surfaces: the camera is placed, and both planes are told.
+[[nodiscard]] bool depends_on_model(const ViewSettings& settings);
+
 /// What {view} stands for: the given name, the named direction, or how the camera was told.
 [[nodiscard]] std::string view_name(const ViewSettings& settings);
 

@@ -12,6 +12,7 @@
 #include "frontmost/report.h"        // IWYU pragma: export
 #include "frontmost/scene.h"         // IWYU pragma: export
 #include "frontmost/shade.h"         // IWYU pragma: export
+#include "frontmost/stream.h"    // IWYU pragma: export
 #include "frontmost/surfaces.h"      // IWYU pragma: export
 #include "frontmost/version.h"       // IWYU pragma: export
 #include "frontmost/view.h"          // IWYU pragma: export

@@ -124,6 +124,10 @@ struct Scene {
 /// Triangles over all instances. O(instances).
 [[nodiscard]] std::uint64_t triangle_count(const Scene& scene);
 
+/// Adds all that `part` holds to `scene`: objects, materials, textures, cameras and warnings after its own, with their
+/// numbers counted on. Name and up stay as they are. O(size of part).
+void append(Scene& scene, Scene part);
+
 /// Checks what a reader promises: array sizes that belong together, indices in range, at most 2^32 - 2 triangles.
 /// \throws Error file_malformed or limit_exceeded naming the mesh and triangle. O(size of the scene).
 void validate(const Scene& scene);

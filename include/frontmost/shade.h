@@ -25,7 +25,15 @@ struct ShadeOptions {
   /// sRGB, 0 to 1. None: transparent.
   std::optional<glm::vec3> background = glm::vec3(1.0f);
   bool shadows = true;
+  /// What is visible in key_light_view(), borrowed. Null: that of the surfaces, found by shade() itself.
+  const Visible* seen_by_light = nullptr;
 };
+
+/// The view in which the key light sees what `visible` shows: whatever is visible in it is lit, the rest in shadow. For
+/// pictures made of parts, of which shade() is given only the triangles that are seen; `bounds` and `up` are those of
+/// the whole. None where nothing is visible. O(pixels).
+[[nodiscard]] std::optional<View> key_light_view(const Visible& visible, const Box& bounds, Axis up,
+                                                 const Execution& execution = {});
 
 /// A picture with channels R, G, B, A. Shades once per pixel and primitive and averages over the samples.
 /// Borrows everything; O(covered pixels). The bytes do not depend on threads or instruction set.

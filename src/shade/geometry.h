@@ -22,7 +22,7 @@ namespace frontmost::shading {
 /// Every primitive whose first samples cover three pixels in a row or around a corner. On smaller ones a smooth
 /// normal could hardly be told from a flat one: scans of millions of triangles are spared it.
 /// O(pixels), in parallel.
-[[nodiscard]] BitSet large_primitives(const Surfaces& surfaces, const Visible& visible, const Execution& execution);
+[[nodiscard]] BitSet large_primitives(std::size_t primitive_count, const Visible& visible, const Execution& execution);
 
 /// For every material of the scene, whether one of the seen triangles has it.
 [[nodiscard]] std::vector<bool> seen_materials(const Surfaces& surfaces, const BitSet& seen,

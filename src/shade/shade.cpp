@@ -156,7 +156,7 @@ struct Triangles {
   std::optional<TriangleSource> source;
 
   Triangles(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {
-    if (lacks_normals(surfaces.scene())) large = large_primitives(surfaces, visible, execution);
+    if (lacks_normals(surfaces.scene())) large = large_primitives(surfaces.primitive_count(), visible, execution);
     source.emplace(surfaces, visible.view, large ? &*large : nullptr, execution);
     if (!has_textures(surfaces.scene())) source->leave_out_texcoords();
   }
@@ -214,7 +214,10 @@ Planes paint_materials(const Surfaces& surfaces, const Visible& visible, const S
   if (options.shading == Shading::normals) return paint(Normals{materials.table()});
   const Lighting lighting = lighting_for(visible.view, surfaces.scene().up);
   std::optional<ShadowMap> shadow;
-  if (options.shadows) shadow.emplace(materials.casters(surfaces), visible, glm::dvec3(lighting.to_key), execution);
+  if (options.shadows && options.seen_by_light)
+    shadow.emplace(*options.seen_by_light, visible.view.eye(), execution);
+  else if (options.shadows)
+    shadow.emplace(materials.casters(surfaces), visible, glm::dvec3(lighting.to_key), execution);
   return paint(Lit{materials.table(), lighting, shadow ? &*shadow : nullptr});
 }
 
@@ -235,6 +238,10 @@ Planes paint_map(const Surfaces& surfaces, const Visible& visible, const ShadeOp
 Image shade(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options, const Execution& execution) {
   const auto paint = shows_materials(options.shading) ? paint_materials : paint_map;
   return image_of(paint(surfaces, visible, options, execution), {"R", "G", "B", "A"});
+}
+
+std::optional<View> key_light_view(const Visible& visible, const Box& bounds, Axis up, const Execution& execution) {
+  return view_of_light(visible, bounds, glm::dvec3(lighting_for(visible.view, up).to_key), execution);
 }
 
 Image normal_image(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {

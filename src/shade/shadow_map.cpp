@@ -87,7 +87,7 @@ Extent window_of(const Extent& seen, const Extent& all) {
   return window;
 }
 
-View view_of_light(const Extent& window, const glm::dmat3& axes, const glm::dvec3& eye) {
+View view_of_window(const Extent& window, const glm::dmat3& axes, const glm::dvec3& eye) {
   View view;
   view.width = view.height = kSize;
   const double depth = std::max(window.high.z - window.low.z, 1e-6 * (window.high.x - window.low.x));
@@ -99,30 +99,42 @@ View view_of_light(const Extent& window, const glm::dmat3& axes, const glm::dvec
 
 }  // namespace
 
-ShadowMap::ShadowMap(const Surfaces& surfaces, const Visible& visible, const glm::dvec3& to_light,
-                     const Execution& execution)
-    : to_light_(to_light) {
+std::optional<View> view_of_light(const Visible& visible, const Box& bounds, const glm::dvec3& to_light,
+                                  const Execution& execution) {
   const glm::dmat3 axes = axes_of_light(to_light, visible.view);
   const Extent seen = extent_of_visible(visible, axes, execution);
-  if (seen.is_empty() || surfaces.bounds().is_empty()) return;
-  const Extent window = window_of(seen, extent_of_box(surfaces.bounds(), visible.view.eye(), axes));
-  const double texel = (window.high.x - window.low.x) / kSize;
-  const View view = view_of_light(window, axes, visible.view.eye());
-  const double depth = view.projection.clip.far - view.projection.clip.near;
-  texel_x_ = glm::vec3(axes[0] / texel);
-  texel_y_ = glm::vec3(axes[1] * (-1 / texel));
-  key_ = glm::vec3(axes[2] / depth);
-  // The light's eye is at window.high.z plus a hundredth; key 1 is there.
-  at_eye_ = glm::vec3(-window.low.x / texel, window.high.y / texel,
-                      1 - glm::dot(axes[2], view.eye() - visible.view.eye()) / depth);
-  key_bias_ = float(0.75 * texel / depth + 2e-6);
-  key_slope_bias_ = float((0.5 * taps + 1) * texel / depth);
-  draw(surfaces, view, execution);
+  if (seen.is_empty() || bounds.is_empty()) return std::nullopt;
+  const glm::dvec3 eye = visible.view.eye();
+  return view_of_window(window_of(seen, extent_of_box(bounds, eye, axes)), axes, eye);
+}
+
+ShadowMap::ShadowMap(const Surfaces& surfaces, const Visible& visible, const glm::dvec3& to_light,
+                     const Execution& execution) {
+  const std::optional<View> light = view_of_light(visible, surfaces.bounds(), to_light, execution);
+  if (!light) return;
+  set_up(*light, visible.view.eye());
+  keys_ = std::move(zbuffer(surfaces, *light, execution).keys);
   find_nearest(execution);
 }
 
-void ShadowMap::draw(const Surfaces& surfaces, const View& view, const Execution& execution) {
-  keys_ = std::move(zbuffer(surfaces, view, execution).keys);
+ShadowMap::ShadowMap(const Visible& seen_by_light, const glm::dvec3& eye, const Execution& execution)
+    : keys_(seen_by_light.keys) {
+  set_up(seen_by_light.view, eye);
+  find_nearest(execution);
+}
+
+void ShadowMap::set_up(const View& light, const glm::dvec3& eye) {
+  const glm::dmat3 axes(light.world_from_eye);
+  const Projection& window = light.projection;
+  const double texel = (window.right - window.left) / kSize, depth = window.clip.far - window.clip.near;
+  to_light_ = glm::vec3(axes[2]);
+  texel_x_ = glm::vec3(axes[0] / texel);
+  texel_y_ = glm::vec3(axes[1] * (-1 / texel));
+  key_ = glm::vec3(axes[2] / depth);
+  // The light's eye is before all that it sees; key 1 is there.
+  at_eye_ = glm::vec3(-window.left / texel, window.top / texel, 1 - glm::dot(axes[2], light.eye() - eye) / depth);
+  key_bias_ = float(0.75 * texel / depth + 2e-6);
+  key_slope_bias_ = float((0.5 * taps + 1) * texel / depth);
   size_ = kSize;
 }
 

@@ -2,14 +2,23 @@
 // Shadows of the key light: what the light sees, found by the same z-buffer.
 #pragma once
 
+#include <optional>
+
 #include "frontmost/surfaces.h"
 #include "frontmost/visible.h"
 #include "shade/screen_rays.h"
 
 namespace frontmost::shading {
 
+/// The view of the light: along -to_light at what `visible` shows, with room for whatever else lies within `bounds` and
+/// may stand between. None where nothing is visible, or there is nothing to throw a shadow.
+[[nodiscard]] std::optional<View> view_of_light(const Visible& visible, const Box& bounds, const glm::dvec3& to_light,
+                                                const Execution& execution);
+
 class ShadowMap {
  public:
+  /// Of what is visible in view_of_light(), for points that are measured from `eye`.
+  ShadowMap(const Visible& seen_by_light, const glm::dvec3& eye, const Execution& execution);
   /// Looks along -to_light at what `visible` shows of the surfaces; whatever stands between that and the light counts.
   /// Nothing visible, or nothing to throw a shadow: everything is lit.
   ShadowMap(const Surfaces& surfaces, const Visible& visible, const glm::dvec3& to_light, const Execution& execution);
@@ -21,7 +30,7 @@ class ShadowMap {
  private:
   static constexpr int taps = 8;  ///< of the filter along each axis
 
-  void draw(const Surfaces& surfaces, const View& view, const Execution& execution);
+  void set_up(const View& light, const glm::dvec3& eye);
   void find_nearest(const Execution& execution);
   [[nodiscard]] float filtered(const glm::vec2& texel, float key) const;
 

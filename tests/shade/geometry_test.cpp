@@ -35,7 +35,7 @@ struct World {
       : scene(std::move(s)),
         surfaces(scene),
         visible(zbuffer(surfaces, view)),
-        large(large_primitives(surfaces, visible, {})),
+        large(large_primitives(surfaces.primitive_count(), visible, {})),
         source(surfaces, view, &large, {}) {}
 
   [[nodiscard]] TriangleSetup set_up(PrimitiveId id, const glm::vec2& reference = {32, 32}) const {
@@ -84,7 +84,7 @@ TEST(LargePrimitives, CoverThreePixelsInARowOrAroundACorner) {
     visible.primitives = Buffer<PrimitiveId>(64, no_primitive);
     visible.keys = Buffer<float>(64, 0.5f);
     for (const glm::ivec2& p : pixels) visible.primitives[visible.index(p.x, p.y)] = 1;
-    return large_primitives(surfaces, visible, {}).contains(1);
+    return large_primitives(surfaces.primitive_count(), visible, {}).contains(1);
   };
   EXPECT_FALSE(is_large({{3, 3}}));
   EXPECT_FALSE(is_large({{3, 3}, {4, 3}}));

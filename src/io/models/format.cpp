@@ -53,6 +53,8 @@ std::optional<ModelFormat> format_of_suffix(const std::string& path) {
   return std::nullopt;
 }
 
+Axis default_up(ModelFormat format) { return format == ModelFormat::stl ? Axis::z : Axis::y; }
+
 std::optional<ModelFormat> format_of_content(Bytes bytes) {
   const std::string_view text = first_statement(bytes);
   if (text.starts_with("glTF") || text.starts_with('{')) return ModelFormat::gltf;

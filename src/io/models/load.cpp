@@ -19,8 +19,6 @@ Scene read(ModelFormat format, Bytes bytes, const ModelSource& source) {
   throw Error(ErrorCode::bad_argument, source.name() + ": not a model format");
 }
 
-Axis default_up(ModelFormat format) { return format == ModelFormat::stl ? Axis::z : Axis::y; }
-
 Scene read_any(Bytes bytes, const ModelSource& source, std::optional<ModelFormat> format, const LoadOptions& options) {
   if (bytes.empty()) throw Error(ErrorCode::file_malformed, source.name() + ": the file is empty");
   if (!format) format = format_of_content(bytes);

@@ -70,7 +70,9 @@ std::unique_ptr<ModelStream> open_model_stream(const std::string& path, const Lo
   // The start of a binary STL file is no whole number of triangles, so it does not look like one.
   if (!format && stl_encoding(start.start, start.greatest_size()) == StlEncoding::binary) format = ModelFormat::stl;
   if (!format) throw Error(ErrorCode::unsupported, name + ": not a model that can be streamed (binary STL or PLY)");
-  return open(*format, std::move(start), source);
+  std::unique_ptr<ModelStream> stream = open(*format, std::move(start), source);
+  stream->introduce(path == "-" ? "stdin" : source.stem(), options.up.value_or(default_up(*format)));
+  return stream;
 }
 
 }  // namespace frontmost

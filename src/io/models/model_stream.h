@@ -31,9 +31,16 @@ class ModelStream {
   /// All but triangles: at most one mesh, without vertices, and its instance; materials, textures, up, and warnings,
   /// which are complete when the last piece was fetched.
   [[nodiscard]] const Scene& scene() const { return scene_; }
+  /// What load() adds to a reader's scene.
+  void introduce(std::string name, Axis up) {
+    scene_.name = std::move(name);
+    scene_.up = up;
+  }
   [[nodiscard]] bool can_rewind() const { return bytes_->can_rewind(); }
   /// How many triangles there will be, where the header and the size of the file say.
   [[nodiscard]] std::optional<std::uint64_t> known_count() const { return known_count_; }
+  /// How much of the model was fetched, 0 to 1.
+  [[nodiscard]] virtual double fraction() const = 0;
   /// The next fetch() gives the first piece. Precondition: can_rewind().
   virtual void rewind() = 0;
   /// Reads the bytes of the next `triangles` or so. For one thread at a time. \returns how many triangles they hold;

@@ -143,6 +143,10 @@ class PlyStream final : public ModelStream {
     next_row_ = next_triangle_ = skipped_ = 0;
   }
 
+  [[nodiscard]] double fraction() const override {
+    return double(next_row_) / double(std::max<std::uint64_t>(faces_->count, 1));
+  }
+
   std::uint64_t fetch(Piece& piece, std::uint64_t triangles) override {
     piece.clear();
     piece.first_triangle = next_triangle_;

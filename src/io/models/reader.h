@@ -20,6 +20,8 @@ using Bytes = std::span<const std::byte>;
 
 /// The format that a file's suffix stands for. None: not one of ours.
 [[nodiscard]] std::optional<ModelFormat> format_of_suffix(const std::string& path);
+/// Which way is up in files of a format, unless something else is said.
+[[nodiscard]] Axis default_up(ModelFormat format);
 /// The format that the contents look like. None: none of ours.
 [[nodiscard]] std::optional<ModelFormat> format_of_content(Bytes bytes);
 

@@ -10,8 +10,8 @@ namespace {
 
 class StlStream final : public ModelStream {
  public:
-  StlStream(StreamStart start, const ModelSource& source)
-      : ModelStream(std::move(start.bytes), source), size_(start.size()), start_(std::move(start.start)) {
+  StlStream(StreamStart start, std::optional<std::uint64_t> size, const ModelSource& source)
+      : ModelStream(std::move(start.bytes), source), size_(size), start_(std::move(start.start)) {
     promised_ = stl_promised_count(start_);
     if (size_) {
       known_count_ = stl_checked_count(start_, *size_, source_, scene_.warnings);
@@ -31,6 +31,8 @@ class StlStream final : public ModelStream {
     left_ = Bytes(start_).subspan(stl_prelude_size);
     next_ = 0;
   }
+
+  [[nodiscard]] double fraction() const override { return double(next_) / double(std::max<std::uint64_t>(count_, 1)); }
 
   std::uint64_t fetch(Piece& piece, std::uint64_t triangles) override {
     piece.clear();
@@ -84,7 +86,8 @@ class StlStream final : public ModelStream {
 }  // namespace
 
 std::unique_ptr<ModelStream> open_stl_stream(StreamStart start, const ModelSource& source) {
-  return std::make_unique<StlStream>(std::move(start), source);
+  const std::optional<std::uint64_t> size = start.size();
+  return std::make_unique<StlStream>(std::move(start), size, source);
 }
 
 }  // namespace frontmost

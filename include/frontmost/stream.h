@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// Streams: models of any length, drawn without ever being in memory as a whole.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "frontmost/io.h"
+#include "frontmost/surfaces.h"
+#include "frontmost/visible.h"
+
+namespace frontmost {
+
+struct StreamOptions {
+  LoadOptions load;
+  /// Read, drawn and forgotten together, 1 to 2^24. Never changes a result.
+  std::uint32_t triangles_at_once = 1u << 19;
+};
+
+/// What some views show of a stream: a scene of the triangles that are seen, and of those that their smooth normals
+/// need. Whatever takes surfaces and a Visible gives for it what it gives for the whole model.
+class Excerpt {
+ public:
+  Excerpt();
+  ~Excerpt();
+  Excerpt(Excerpt&&) noexcept;
+  Excerpt& operator=(Excerpt&&) noexcept;
+
+  [[nodiscard]] const Surfaces& surfaces() const;
+  /// One for each view. Their ids are those of surfaces().
+  std::vector<Visible> visible;
+  /// For ShadeOptions::seen_by_light, if it was asked for; of the first view.
+  std::optional<Visible> seen_by_light;
+  /// The numbers of the triangles in the stream, by id of surfaces(); ascending.
+  std::vector<PrimitiveId> stream_ids;
+  /// The same with ids of the stream: to the bit what zbuffer() shows of the whole model.
+  [[nodiscard]] Visible in_stream(Visible of_excerpt) const;
+
+ private:
+  friend class Stream;
+  struct Parts;
+  std::unique_ptr<const Parts> parts_;
+};
+
+/// What is to be known of a stream beside what is visible. Each needs the model to be read a second time.
+struct StreamNeeds {
+  bool key_light = false;       ///< what throws shadows in the first view: for pictures that are lit
+  bool smooth_normals = false;  ///< the neighbours of triangles that are seen: where meshes have no normals
+};
+
+/// Binary STL and PLY files, each an object, as if their scenes stood in one, in this order. Memory: some pieces at a
+/// time, at most 512 MiB or one piece, whichever is more; and for each sample of the views 8 bytes, and of the
+/// triangles seen about 60 bytes each, 100 while an Excerpt is made. Vertices of PLY files are mapped, and count as the
+/// system's cache; those of a PLY from a pipe are kept, up to 512 MiB.
+class Stream {
+ public:
+  /// Opens the files; "-" is standard input, which can be read only once.
+  /// \throws Error as load() does; unsupported for text, other formats, and triangle strips or several elements of
+  /// vertices or faces in PLY; limit_exceeded for more than 2^32 - 2 triangles in all.
+  explicit Stream(const std::vector<std::string>& paths, const StreamOptions& options = {},
+                  const Execution& execution = {});
+  ~Stream();
+  Stream(Stream&&) noexcept;
+  Stream& operator=(Stream&&) noexcept;
+
+  /// All but the triangles: objects, materials, textures, which way is up; warnings, complete after a pass.
+  [[nodiscard]] const Scene& scene() const;
+  /// Whether the model can be read again. \see passes()
+  [[nodiscard]] bool can_repeat() const;
+  /// How often it was read.
+  [[nodiscard]] int passes() const;
+  /// Of all triangles that were read; of those with finite corners. After a pass.
+  [[nodiscard]] std::uint64_t triangle_count() const;
+  [[nodiscard]] const Box& bounds() const;
+
+  /// A scene of points that stands for the model wherever only bounds and framing count: a view that looks the way of
+  /// `direction`, with the same field of view, is framed to the bit as it is for the whole model. One pass.
+  [[nodiscard]] Scene outline(const View& direction, double margin = 0.05, const Execution& execution = {});
+
+  /// What the views show. One pass, and another one where the needs ask for something that is seen.
+  /// \throws Error as load() and zbuffer() do; unsupported where another pass is needed and can_repeat() is false.
+  [[nodiscard]] Excerpt look(const std::vector<View>& views, const StreamNeeds& needs = {},
+                             const Execution& execution = {});
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace frontmost

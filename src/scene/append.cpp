@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Several scenes in one: whatever has a number is counted on from what is there.
+#include <algorithm>
+#include <iterator>
+
+#include "frontmost/scene.h"
+
+namespace frontmost {
+namespace {
+
+void shift(std::uint32_t& number, std::size_t by) {
+  if (number != no_index) number += std::uint32_t(by);
+}
+
+template <class T>
+void move_all(std::vector<T>& from, std::vector<T>& to) {
+  to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+}
+
+}  // namespace
+
+void append(Scene& scene, Scene part) {
+  for (Mesh& mesh : part.meshes)
+    for (std::uint32_t& material : mesh.material_ids) shift(material, scene.materials.size());
+  for (Instance& instance : part.instances) instance.mesh += std::uint32_t(scene.meshes.size());
+  for (Material& m : part.materials)
+    for (TextureUse* use : {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
+                            &m.emissive_texture, &m.occlusion_texture})
+      shift(use->texture, scene.textures.size());
+  move_all(part.meshes, scene.meshes);
+  move_all(part.instances, scene.instances);
+  move_all(part.materials, scene.materials);
+  move_all(part.textures, scene.textures);
+  move_all(part.cameras, scene.cameras);
+  move_all(part.warnings, scene.warnings);
+}
+
+}  // namespace frontmost

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stream/excerpt.h"
+
+#include "stream/id_map.h"
+
+namespace frontmost {
+
+Excerpt::Excerpt() = default;
+Excerpt::~Excerpt() = default;
+Excerpt::Excerpt(Excerpt&&) noexcept = default;
+Excerpt& Excerpt::operator=(Excerpt&&) noexcept = default;
+
+const Surfaces& Excerpt::surfaces() const { return parts_->surfaces; }
+
+Visible Excerpt::in_stream(Visible of_excerpt) const {
+  for (PrimitiveId& id : of_excerpt.primitives)
+    if (id != no_primitive) id = stream_ids[id];
+  return of_excerpt;
+}
+
+namespace streaming {
+namespace {
+
+template <class T>
+void move_to(std::vector<T>& from, std::vector<T>& to) {
+  to.insert(to.end(), from.begin(), from.end());
+  std::vector<T>().swap(from);
+}
+
+/// `part` gives up its memory at once: both together would be twice as much.
+void move_mesh(Mesh& part, Mesh& whole) {
+  const auto first = std::uint32_t(whole.positions.size());
+  for (const glm::uvec3& t : part.triangles) whole.triangles.push_back(t + first);
+  std::vector<glm::uvec3>().swap(part.triangles);
+  move_to(part.positions, whole.positions);
+  move_to(part.normals.values, whole.normals.values);
+  move_to(part.texcoords.values, whole.texcoords.values);
+  move_to(part.colors.values, whole.colors.values);
+  move_to(part.material_ids, whole.material_ids);
+}
+
+/// Room for all, so that nothing is moved while they grow.
+void reserve(const KeptPieces& kept, Scene& scene) {
+  std::vector<std::size_t> counts(scene.meshes.size());
+  for (const auto& [number, piece] : kept) counts[scene.instances[piece.place.object].mesh] += piece.triangles.size();
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    scene.meshes[i].positions.reserve(3 * counts[i]);
+    scene.meshes[i].triangles.reserve(counts[i]);
+  }
+}
+
+}  // namespace
+
+std::vector<PrimitiveId> ids_of(const KeptPieces& kept) {
+  std::vector<PrimitiveId> ids;
+  for (const auto& [number, piece] : kept)
+    for (const std::uint32_t triangle : piece.triangles) ids.push_back(piece.place.first + triangle);
+  return ids;
+}
+
+Scene scene_of(Scene frame, KeptPieces kept) {
+  for (Mesh& mesh : frame.meshes) mesh.material_ids.clear();
+  reserve(kept, frame);
+  for (auto& [number, piece] : kept) move_mesh(piece.mesh, frame.meshes[frame.instances[piece.place.object].mesh]);
+  return frame;
+}
+
+}  // namespace streaming
+}  // namespace frontmost

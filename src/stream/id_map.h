@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// From numbers of triangles in a stream to their places among those that are kept.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "base/parallel.h"
+#include "frontmost/visible.h"
+
+namespace frontmost::streaming {
+
+class IdMap {
+ public:
+  /// `ids` ascending; borrowed.
+  explicit IdMap(const std::vector<PrimitiveId>& ids) : ids_(ids) {
+    if (ids.empty()) return;
+    while ((std::size_t(ids.back()) >> shift_) > ids.size()) ++shift_;
+    begin_.resize((std::size_t(ids.back()) >> shift_) + 2);
+    for (const PrimitiveId id : ids) ++begin_[(id >> shift_) + 1];
+    for (std::size_t b = 1; b < begin_.size(); ++b) begin_[b] += begin_[b - 1];
+  }
+
+  /// Precondition: it is one of them. O(1) where ids are spread evenly, O(log) at worst.
+  [[nodiscard]] std::uint32_t place_of(PrimitiveId id) const {
+    const std::size_t bucket = id >> shift_;
+    const auto begin = ids_.begin();
+    return std::uint32_t(std::lower_bound(begin + begin_[bucket], begin + begin_[bucket + 1], id) - begin);
+  }
+
+  /// Replaces all ids of a Visible.
+  void apply(Visible& visible, const Execution& execution) const {
+    constexpr std::size_t samples_at_once = 1u << 16;
+    parallel_for(execution, visible.primitives.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
+      PrimitiveId last = no_primitive, place = no_primitive;
+      for (std::size_t i = begin; i < end; ++i) {
+        PrimitiveId& id = visible.primitives[i];
+        if (id == no_primitive) continue;
+        if (id != last) {
+          last = id;
+          place = place_of(id);
+        }
+        id = place;
+      }
+    });
+  }
+
+ private:
+  const std::vector<PrimitiveId>& ids_;
+  int shift_ = 0;
+  std::vector<std::uint32_t> begin_;  ///< of the ids that share their upper bits
+};
+
+}  // namespace frontmost::streaming

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stream/outline.h"
+
+#include <algorithm>
+
+#include "surfaces/cluster_set.h"
+
+namespace frontmost::streaming {
+namespace {
+
+glm::dvec2 spread_of(const View& view, double margin) {
+  const double filled = 1 - 2 * margin;
+  return {view.projection.right * filled, view.projection.top * filled};
+}
+
+template <class Visit>
+void for_finite_triangles(const Mesh& mesh, std::size_t begin, std::size_t end, const Visit& visit) {
+  for (std::size_t t = begin; t < end; ++t) {
+    const glm::uvec3& corners = mesh.triangles[t];
+    const glm::vec3 &a = mesh.positions[corners.x], &b = mesh.positions[corners.y], &c = mesh.positions[corners.z];
+    if (is_finite(a) && is_finite(b) && is_finite(c)) visit(a, b, c);
+  }
+}
+
+}  // namespace
+
+OutlineFinder::OutlineFinder(const View& direction, double margin)
+    : extremes_(direction.world_from_eye, spread_of(direction, margin)) {}
+
+void OutlineFinder::include(const Mesh& mesh) {
+  constexpr std::size_t run = 64;  // neighbours mostly: few runs reach out, and only their corners are looked at
+  for (std::size_t begin = 0; begin < mesh.triangles.size(); begin += run)
+    include(mesh, begin, std::min(begin + run, mesh.triangles.size()));
+}
+
+void OutlineFinder::include(const Mesh& mesh, std::size_t begin, std::size_t end) {
+  Box box;
+  for_finite_triangles(mesh, begin, end, [&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+    box.include(Box{glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c)});
+  });
+  if (box.is_empty()) return;
+  Box larger = bounds_;
+  larger.include(box);
+  const bool extends = larger.low != bounds_.low || larger.high != bounds_.high;
+  if (!extends && !extremes_.may_change_by(box)) return;
+  for_finite_triangles(mesh, begin, end, [&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+    for (const glm::vec3& point : {a, b, c}) include(point);
+  });
+}
+
+void OutlineFinder::include(const glm::vec3& point) {
+  extremes_.include(point);
+  for (int k = 0; k < 3; ++k) {
+    if (point[k] < bounds_.low[k]) ends_[k] = point;
+    if (point[k] > bounds_.high[k]) ends_[3 + k] = point;
+  }
+  bounds_.include(point);
+}
+
+void OutlineFinder::include(const OutlineFinder& other) {
+  if (other.bounds_.is_empty()) return;
+  for (const glm::vec3& point : other.extremes_.points()) include(point);
+  for (const glm::vec3& point : other.ends_) include(point);
+}
+
+Scene OutlineFinder::scene() const {
+  Scene scene;
+  if (bounds_.is_empty()) return scene;
+  Mesh& mesh = scene.meshes.emplace_back();
+  scene.instances.emplace_back();
+  mesh.positions = extremes_.points();
+  mesh.positions.insert(mesh.positions.end(), std::begin(ends_), std::end(ends_));
+  for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) mesh.triangles.emplace_back(i, i, i);
+  return scene;
+}
+
+}  // namespace frontmost::streaming

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stream/piece_loop.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+
+namespace frontmost::streaming {
+namespace {
+
+constexpr std::uint64_t most_triangles = no_primitive;  // ids from 0 to 2^32 - 2
+
+[[noreturn]] void fail_too_many() {
+  throw Error(ErrorCode::limit_exceeded, "stream: more triangles than ids can tell apart (4294967295)");
+}
+
+}  // namespace
+
+Models::Models(const std::vector<std::string>& paths, const LoadOptions& options, const Execution& execution) {
+  if (paths.empty()) throw Error(ErrorCode::bad_argument, "stream: no files");
+  std::uint64_t known = 0;
+  for (const std::string& path : paths) {
+    add({open_model_stream(path, options, execution), 0, 0, 0});
+    known += models_.back().stream->known_count().value_or(0);
+    if (known >= most_triangles) fail_too_many();
+  }
+}
+
+void Models::add(Model model) {
+  const Scene& part = model.stream->scene();
+  if (models_.empty()) {
+    scene_.name = part.name;
+    scene_.up = part.up;
+  }
+  model.object = std::uint32_t(scene_.instances.size());
+  model.first_material = std::uint32_t(scene_.materials.size());
+  Scene without_warnings = part;
+  without_warnings.warnings.clear();
+  append(scene_, std::move(without_warnings));
+  models_.push_back(std::move(model));
+  take_warnings(models_.back());
+}
+
+void Models::take_warnings(Model& model) {
+  const std::vector<std::string>& all = model.stream->scene().warnings;
+  for (; model.warnings < all.size(); ++model.warnings) scene_.warnings.push_back(all[model.warnings]);
+}
+
+bool Models::can_rewind() const {
+  return std::all_of(models_.begin(), models_.end(), [](const Model& m) { return m.stream->can_rewind(); });
+}
+
+double Models::fraction() const {
+  double sum = 0;
+  for (const Model& model : models_) sum += model.stream->fraction();
+  return sum / double(models_.size());
+}
+
+void Models::rewind() {
+  for (Model& model : models_) model.stream->rewind();
+  current_ = next_number_ = 0;
+  next_ = 0;
+}
+
+bool Models::fetch(Piece& piece, Place& place, std::uint32_t triangles) {
+  for (; current_ < models_.size(); ++current_) {
+    Model& model = models_[current_];
+    const std::uint64_t count = model.stream->fetch(piece, triangles);
+    take_warnings(model);
+    if (count == 0) continue;
+    place = {next_number_++, PrimitiveId(next_), model.object};
+    next_ += count;
+    if (next_ >= most_triangles) fail_too_many();
+    return true;
+  }
+  return false;
+}
+
+void Models::parse(Piece& piece, const Place& place) const {
+  const Model& model =
+      *std::find_if(models_.rbegin(), models_.rend(), [&](const Model& m) { return m.object <= place.object; });
+  model.stream->parse(piece);
+  for (std::uint32_t& material : piece.mesh.material_ids)
+    if (material != no_index) material += model.first_material;
+}
+
+namespace {
+
+/// Hands out pieces, and remembers the error of the first piece that had one.
+class Queue {
+ public:
+  Queue(Models& models, std::uint32_t triangles) : models_(models), triangles_(triangles) {}
+
+  bool fetch(Piece& piece, Place& place, const Execution& execution) {
+    const std::lock_guard lock(mutex_);
+    if (error_) return false;
+    place.number = fetched_;  // should this fetch fail
+    const bool got = models_.fetch(piece, place, triangles_);
+    if (got) fetched_ = place.number + 1;
+    report_progress(execution, "stream", models_.fraction());
+    return got;
+  }
+  void fail(std::size_t number) {
+    const std::lock_guard lock(mutex_);
+    if (error_ && number_ <= number) return;
+    error_ = std::current_exception();
+    number_ = number;
+  }
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  Models& models_;
+  std::uint32_t triangles_;
+  std::mutex mutex_;
+  std::size_t fetched_ = 0, number_ = 0;
+  std::exception_ptr error_;
+};
+
+}  // namespace
+
+void for_each_piece(Models& models, const LoopOptions& options, const Execution& execution,
+                    const std::function<void(int, Piece&, const Place&)>& work) {
+  Queue queue(models, options.triangles_at_once);
+  parallel_for(execution, std::size_t(options.workers), 1, [&](std::size_t worker, std::size_t) {
+    Piece piece;
+    Place place;
+    try {
+      while (queue.fetch(piece, place, execution)) {
+        models.parse(piece, place);
+        work(int(worker), piece, place);
+        check_cancelled(execution);
+      }
+    } catch (...) {
+      queue.fail(place.number);
+    }
+  });
+  queue.rethrow();
+}
+
+}  // namespace frontmost::streaming

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// The passes over a stream. Pieces are drawn on their own and merged; what is nearest is a minimum, so neither their
+// size nor their order shows in the result.
+#include "frontmost/stream.h"
+
+#include <algorithm>
+#include <mutex>
+
+#include "base/parallel.h"
+#include "frontmost/shade.h"
+#include "frontmost/zbuffer.h"
+#include "shade/geometry.h"
+#include "stream/excerpt.h"
+#include "stream/id_map.h"
+#include "stream/outline.h"
+#include "stream/sight.h"
+#include "stream/touched_positions.h"
+
+namespace frontmost {
+
+using namespace streaming;
+
+struct Stream::State {
+  State(const std::vector<std::string>& paths, const StreamOptions& given, const Execution& execution)
+      : options(given), models(paths, given.load, execution) {
+    constexpr std::uint32_t most_at_once = 1u << 24;
+    if (given.triangles_at_once < 1 || given.triangles_at_once > most_at_once)
+      throw Error(ErrorCode::bad_argument, "triangles_at_once: must be 1 to 16777216");
+  }
+
+  void begin_pass() {
+    if (passes++ == 0) return;
+    if (!models.can_rewind())
+      throw Error(ErrorCode::unsupported,
+                  "standard input and pipes can be read only once, and this takes another pass");
+    models.rewind();
+  }
+
+  /// As many as the memory for pieces allows; the threads are shared out among them.
+  [[nodiscard]] LoopOptions loop_options(std::size_t samples, const Execution& execution) const {
+    constexpr std::size_t memory = std::size_t(512) << 20, bytes_per_triangle = 180, bytes_per_sample = 8;
+    const std::size_t each = options.triangles_at_once * bytes_per_triangle + samples * bytes_per_sample;
+    const auto most = int(std::max<std::size_t>(memory / each, 1));
+    return {options.triangles_at_once, std::min(thread_count(execution), most)};
+  }
+
+  /// Calls work(worker, piece, place, execution of the worker) for every piece; `samples` are drawn of each.
+  template <class Work>
+  void pass(std::size_t samples, const Execution& execution, const Work& work);
+  KeptPieces find_visible(const std::vector<View>& views, Excerpt& excerpt, const Execution& execution);
+  KeptPieces find_needs(KeptPieces kept, const StreamNeeds& needs, Excerpt& excerpt, const Execution& execution);
+
+  StreamOptions options;
+  Models models;
+  int passes = 0;
+  Box bounds;
+};
+
+Stream::Stream(const std::vector<std::string>& paths, const StreamOptions& options, const Execution& execution)
+    : state_(std::make_unique<State>(paths, options, execution)) {}
+Stream::~Stream() = default;
+Stream::Stream(Stream&&) noexcept = default;
+Stream& Stream::operator=(Stream&&) noexcept = default;
+
+const Scene& Stream::scene() const { return state_->models.scene(); }
+bool Stream::can_repeat() const { return state_->models.can_rewind(); }
+int Stream::passes() const { return state_->passes; }
+std::uint64_t Stream::triangle_count() const { return state_->models.triangle_count(); }
+const Box& Stream::bounds() const { return state_->bounds; }
+
+namespace {
+
+/// What the threads of one worker are. Its stages do not report: the loop over pieces does.
+struct WorkerExecution {
+  WorkerExecution(const Execution& whole, int workers) {
+    if (whole.watch) quiet.cancelled = whole.watch->cancelled;
+    execution = {std::max(1, thread_count(whole) / workers), whole.isa, &quiet};
+  }
+  WorkerExecution(const WorkerExecution&) = delete;
+  WorkerExecution& operator=(const WorkerExecution&) = delete;
+
+  Watch quiet;
+  Execution execution;
+};
+
+bool lacks_normals(const Kept& piece) { return piece.mesh.normals.empty(); }
+
+/// The corners of the triangles whose smooth normals will be looked at; none where there are no such triangles.
+std::unique_ptr<TouchedPositions> large_corners(const KeptPieces& kept, const std::vector<Visible>& visible,
+                                                std::size_t count, const Execution& execution) {
+  std::vector<shading::BitSet> large;
+  for (const Visible& one : visible) large.push_back(shading::large_primitives(count, one, execution));
+  const auto for_each_large = [&](const auto& visit) {
+    std::size_t id = 0;
+    for (const auto& [number, piece] : kept)
+      for (std::uint32_t t = 0; t < piece.triangles.size(); ++t, ++id)
+        if (lacks_normals(piece) &&
+            std::any_of(large.begin(), large.end(), [&](auto& set) { return set.contains(id); }))
+          for (int k = 0; k < 3; ++k) visit(piece.mesh.positions[3 * t + std::uint32_t(k)]);
+  };
+  std::size_t corners = 0;
+  for_each_large([&](const glm::vec3&) { ++corners; });
+  if (corners == 0) return nullptr;
+  auto touched = std::make_unique<TouchedPositions>(corners);
+  for_each_large([&](const glm::vec3& position) { touched->add(position); });
+  return touched;
+}
+
+/// What touches large triangles, beside what is seen.
+class NeighbourFinder {
+ public:
+  /// Of `seen`, copies are made again: in the order of the stream, among their neighbours.
+  NeighbourFinder(KeptPieces seen, std::unique_ptr<TouchedPositions> touched)
+      : seen_(std::move(seen)), touched_(std::move(touched)) {
+    for (auto& [number, piece] : seen_) piece.mesh = {};
+  }
+
+  void find(const Mesh& mesh, const Place& place) {
+    Kept found{place, {}, {}};
+    const auto seen = seen_.find(place.number);
+    std::size_t next = 0;
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      const bool is_seen =
+          seen != seen_.end() && next < seen->second.triangles.size() && seen->second.triangles[next] == t;
+      next += is_seen;
+      const bool touches = touched_->touches(mesh, t);
+      if (!is_seen && !touches) continue;
+      found.triangles.push_back(t);
+      append_triangle(mesh, t, found.mesh);
+    }
+    if (found.triangles.empty()) return;
+    const std::lock_guard lock(mutex_);
+    all_.emplace(place.number, std::move(found));
+  }
+  [[nodiscard]] KeptPieces take() { return std::move(all_); }
+
+ private:
+  KeptPieces seen_, all_;
+  std::unique_ptr<TouchedPositions> touched_;
+  std::mutex mutex_;
+};
+
+/// Ids of the visible triangles, places among `ids`, become places among more ids.
+void move_ids(std::vector<Visible>& visible, std::vector<PrimitiveId>& ids, std::vector<PrimitiveId> more) {
+  const IdMap places(more);
+  std::vector<std::uint32_t> place_of(ids.size());
+  for (std::size_t i = 0; i < ids.size(); ++i) place_of[i] = places.place_of(ids[i]);
+  for (Visible& one : visible)
+    for (PrimitiveId& id : one.primitives)
+      if (id != no_primitive) id = place_of[id];
+  ids = std::move(more);
+}
+
+}  // namespace
+
+template <class Work>
+void Stream::State::pass(std::size_t samples, const Execution& execution, const Work& work) {
+  begin_pass();
+  const LoopOptions loop = loop_options(samples, execution);
+  const WorkerExecution each(execution, loop.workers);
+  for_each_piece(models, loop, execution,
+                 [&](int worker, Piece& piece, const Place& place) { work(worker, piece, place, each.execution); });
+}
+
+Scene Stream::outline(const View& direction, double margin, const Execution& execution) {
+  std::vector<OutlineFinder> finders(std::size_t(thread_count(execution)), OutlineFinder(direction, margin));
+  state_->pass(0, execution, [&](int worker, Piece& piece, const Place&, const Execution&) {
+    finders[std::size_t(worker)].include(piece.mesh);
+  });
+  for (const OutlineFinder& other : finders) finders.front().include(other);
+  state_->bounds = finders.front().bounds();
+  Scene scene = finders.front().scene();
+  scene.name = state_->models.scene().name;
+  scene.up = state_->models.scene().up;
+  return scene;
+}
+
+/// The first pass of look(): what is visible, and copies of it.
+KeptPieces Stream::State::find_visible(const std::vector<View>& views, Excerpt& excerpt, const Execution& execution) {
+  Sight sight(views);
+  std::vector<Drawer> drawers(std::size_t(thread_count(execution)));
+  pass(sight.sample_count(), execution, [&](int worker, Piece& piece, const Place& place, const Execution& each) {
+    drawers[std::size_t(worker)].draw(piece, place, models.scene(), sight, each);
+  });
+  sight.finish();
+  bounds = sight.bounds();
+  KeptPieces kept = sight.take_kept();
+  excerpt.visible = sight.take_visible();
+  excerpt.stream_ids = ids_of(kept);
+  const IdMap places(excerpt.stream_ids);
+  for (Visible& visible : excerpt.visible) places.apply(visible, execution);
+  return kept;
+}
+
+/// The second: what the light sees, and the neighbours of what is seen.
+KeptPieces Stream::State::find_needs(KeptPieces kept, const StreamNeeds& needs, Excerpt& excerpt,
+                                     const Execution& execution) {
+  std::vector<View> light;
+  if (needs.key_light)
+    if (const auto view = key_light_view(excerpt.visible.front(), bounds, models.scene().up, execution))
+      light.push_back(*view);
+  std::optional<NeighbourFinder> neighbours;
+  if (needs.smooth_normals)
+    if (auto touched = large_corners(kept, excerpt.visible, excerpt.stream_ids.size(), execution))
+      neighbours.emplace(std::move(kept), std::move(touched));
+  if (light.empty() && !neighbours) return kept;
+  Sight sight(light, false);
+  std::vector<Drawer> drawers(std::size_t(thread_count(execution)));
+  pass(sight.sample_count(), execution, [&](int worker, Piece& piece, const Place& place, const Execution& each) {
+    if (neighbours) neighbours->find(piece.mesh, place);
+    if (!light.empty()) drawers[std::size_t(worker)].draw(piece, place, models.scene(), sight, each);
+  });
+  if (!light.empty()) excerpt.seen_by_light = std::move(sight.take_visible().front());
+  if (!neighbours) return kept;
+  kept = neighbours->take();
+  move_ids(excerpt.visible, excerpt.stream_ids, ids_of(kept));
+  return kept;
+}
+
+Excerpt Stream::look(const std::vector<View>& views, const StreamNeeds& needs, const Execution& execution) {
+  if (views.empty()) throw Error(ErrorCode::bad_argument, "stream: no views");
+  Excerpt excerpt;
+  KeptPieces kept = state_->find_visible(views, excerpt, execution);
+  kept = state_->find_needs(std::move(kept), needs, excerpt, execution);
+  excerpt.parts_ = std::make_unique<const Excerpt::Parts>(scene_of(state_->models.scene(), std::move(kept)), execution);
+  return excerpt;
+}
+
+}  // namespace frontmost
