@@ -2,7 +2,8 @@
 // All of Frontmost.
 #pragma once
 
-#include "frontmost/abuffer.h"       // IWYU pragma: export
+#include "frontmost/abuffer.h"    // IWYU pragma: export
+#include "frontmost/agreement.h"  // IWYU pragma: export
 #include "frontmost/base.h"
 #include "frontmost/depth_buffer.h"  // IWYU pragma: export
 #include "frontmost/image.h"         // IWYU pragma: export

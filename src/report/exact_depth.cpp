@@ -8,36 +8,6 @@
 #include "view/screen_transform.h"
 
 namespace frontmost {
-namespace {
-
-// Every bound below is a sum of at most a dozen roundings of 2^-53 of the terms' absolute values.
-constexpr double kRounding = 32.0 / 9007199254740992.0;
-
-using ExactVector = std::array<Expansion, 3>;
-
-ExactVector difference(const glm::dvec3& a, const glm::dvec3& b) {
-  return {Expansion::difference(a.x, b.x), Expansion::difference(a.y, b.y), Expansion::difference(a.z, b.z)};
-}
-
-ExactVector cross(const ExactVector& a, const ExactVector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-Expansion dot(const ExactVector& a, const ExactVector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-ExactVector exact(const glm::dvec3& v) { return {Expansion(v.x), Expansion(v.y), Expansion(v.z)}; }
-
-struct Bounded {
-  double value, error;
-};
-
-/// n.v for a normal with errors; v exact but for a rounding of each component.
-Bounded bounded_dot(const glm::dvec3& n, const glm::dvec3& n_error, const glm::dvec3& v) {
-  const glm::dvec3 a = glm::abs(v);
-  return {glm::dot(n, v), glm::dot(n_error, a) + kRounding * glm::dot(glm::abs(n), a)};
-}
-
-}  // namespace
 
 SampleRays::SampleRays(const View& view)
     : orthographic_(view.projection.orthographic),
@@ -63,9 +33,7 @@ SampleRay SampleRays::at(int x, int y, const glm::ivec2& offset) const {
 
 BoundedPlane::BoundedPlane(const std::array<glm::vec3, 3>& corners, const SampleRays& rays) : corner_(corners[0]) {
   const glm::dvec3 ab = glm::dvec3(corners[1]) - corner_, ac = glm::dvec3(corners[2]) - corner_;
-  normal_ = glm::cross(ab, ac);
-  const glm::dvec3 p = glm::abs(ab), q = glm::abs(ac);
-  normal_error_ = kRounding * glm::dvec3(p.y * q.z + p.z * q.y, p.z * q.x + p.x * q.z, p.x * q.y + p.y * q.x);
+  normal_ = BoundedNormal(ab, ac);
   double low = std::numeric_limits<double>::infinity(), high = -low, error = 0;
   for (const glm::vec3& corner : corners) {
     const Bounded depth = bounded_dot(rays.forward(), glm::dvec3(0), glm::dvec3(corner) - rays.eye());
@@ -79,8 +47,8 @@ BoundedPlane::BoundedPlane(const std::array<glm::vec3, 3>& corners, const Sample
 }
 
 DepthBounds BoundedPlane::at(const SampleRay& ray) const {
-  const Bounded above = bounded_dot(normal_, normal_error_, corner_ - ray.origin);
-  const Bounded below = bounded_dot(normal_, normal_error_, ray.direction);
+  const Bounded above = bounded_dot(normal_.value, normal_.error, corner_ - ray.origin);
+  const Bounded below = bounded_dot(normal_.value, normal_.error, ray.direction);
   DepthBounds bounds{limits_low_.low, limits_high_.high};
   // Seen nearly edge-on, or through the eye: no more is known than the corners' range. Written so that NaN is not.
   if (!(std::abs(below.value) > 4 * below.error)) return bounds;

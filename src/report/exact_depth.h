@@ -5,7 +5,7 @@
 #include <array>
 
 #include "frontmost/view.h"
-#include "report/expansion.h"
+#include "report/exact_vector.h"
 
 namespace frontmost {
 
@@ -20,6 +20,7 @@ class SampleRays {
   explicit SampleRays(const View& view);
   [[nodiscard]] SampleRay at(int x, int y, const glm::ivec2& offset) const;
 
+  [[nodiscard]] bool is_orthographic() const { return orthographic_; }
   [[nodiscard]] const glm::dvec3& eye() const { return eye_; }
   [[nodiscard]] const glm::dvec3& forward() const { return forward_; }
   [[nodiscard]] double near() const { return near_; }
@@ -43,7 +44,8 @@ class BoundedPlane {
   [[nodiscard]] DepthBounds at(const SampleRay& ray) const;
 
  private:
-  glm::dvec3 corner_, normal_, normal_error_;
+  glm::dvec3 corner_;
+  BoundedNormal normal_;
   DepthBounds limits_low_, limits_high_;  // of the nearest and of the farthest corner
 };
 

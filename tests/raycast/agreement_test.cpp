@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The ray caster and the z-buffer have no code in common; where they differ, there is a reason.
 
+#include "frontmost/agreement.h"
+
 #include <gtest/gtest.h>
 
-#include <iostream>
+#include <algorithm>
 
-#include "explain.h"
 #include "frontmost/io.h"
 #include "frontmost/raycast.h"
 #include "frontmost/zbuffer.h"
@@ -15,13 +16,14 @@
 namespace frontmost::test {
 namespace {
 
-Explained expect_explained(const Surfaces& surfaces, const View& view) {
-  const Explained e = Explainer(surfaces, view).compare(zbuffer(surfaces, view), raycast(surfaces, view));
-  const std::size_t pixel = e.first_unexplained % view.pixel_count();
-  EXPECT_EQ(e.unexplained, 0u) << "first at pixel " << pixel % std::size_t(view.width) << ", "
-                               << pixel / std::size_t(view.width) << ", sample "
-                               << e.first_unexplained / view.pixel_count();
-  return e;
+Agreement expect_explained(const Surfaces& surfaces, const View& view) {
+  Agreement answer = agreement(surfaces, zbuffer(surfaces, view), raycast(surfaces, view));
+  const auto first = std::find(answer.differences.begin(), answer.differences.end(), Difference::unexplained);
+  const auto sample = std::size_t(first - answer.differences.begin()), pixel = sample % view.pixel_count();
+  EXPECT_EQ(answer.count(Difference::unexplained), 0u)
+      << "first at pixel " << pixel % std::size_t(view.width) << ", " << pixel / std::size_t(view.width) << ", sample "
+      << sample / view.pixel_count();
+  return answer;
 }
 
 class EveryKindAgrees : public testing::TestWithParam<Kind> {};
@@ -38,7 +40,7 @@ TEST_P(EveryKindAgrees, WithTheZBuffer) {
     View view = random_view(random, 1 + random.below(200), 1 + random.below(170));
     view.culling = Culling(random.below(3));
     view.samples = seed % 4 == 3 ? 4 : 1;
-    differing += expect_explained(surfaces, view).differing;
+    differing += expect_explained(surfaces, view).differing();
     samples += view.sample_count();
   }
   EXPECT_GT(samples, 200'000u);
@@ -58,7 +60,7 @@ TEST(Agreement, OnBuiltInScenes) {
       FrameOptions options;
       options.orthographic = orthographic;
       const View view = frame(surfaces, 640, 480, options);
-      EXPECT_LT(expect_explained(surfaces, view).differing, view.pixel_count() / 200);
+      EXPECT_LT(expect_explained(surfaces, view).differing(), view.pixel_count() / 200);
     }
   }
 }
@@ -73,10 +75,11 @@ TEST(Agreement, OnModels) {
     const Scene scene = load(model(file));
     const Surfaces surfaces(scene);
     const View view = frame(surfaces, 800, 600);
-    const Explained e = expect_explained(surfaces, view);
-    RecordProperty(file, std::to_string(e.differing) + " differ: " + std::to_string(e.edge) + " edge, " +
-                             std::to_string(e.depth) + " depth");
-    EXPECT_LT(e.differing, view.pixel_count() / 100);
+    const Agreement answer = expect_explained(surfaces, view);
+    RecordProperty(file, std::to_string(answer.differing()) +
+                             " differ: " + std::to_string(answer.count(Difference::edge)) + " edge, " +
+                             std::to_string(answer.count(Difference::depth)) + " depth");
+    EXPECT_LT(answer.differing(), view.pixel_count() / 100);
   }
 }
 

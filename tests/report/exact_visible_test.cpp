@@ -2,7 +2,6 @@
 // The exact answer against rational arithmetic, and what depth buffers get wrong against it.
 #include <gtest/gtest.h>
 
-#include <boost/multiprecision/cpp_int.hpp>
 #include <numeric>
 
 #include "frontmost/precision.h"
@@ -10,22 +9,10 @@
 #include "report/exact_depth.h"
 #include "support/oracle.h"
 #include "support/random_scene.h"
+#include "support/rational_vector.h"
 
 namespace frontmost::test {
 namespace {
-
-using Rational = boost::multiprecision::cpp_rational;
-
-struct RationalVector {
-  Rational x, y, z;
-  explicit RationalVector(const glm::dvec3& v) : x(v.x), y(v.y), z(v.z) {}
-  RationalVector(Rational a, Rational b, Rational c) : x(std::move(a)), y(std::move(b)), z(std::move(c)) {}
-};
-RationalVector operator-(const RationalVector& a, const RationalVector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Rational dot(const RationalVector& a, const RationalVector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-RationalVector cross(const RationalVector& a, const RationalVector& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 
 Rational rational_depth(const std::array<glm::vec3, 3>& corners, const SampleRays& rays, const SampleRay& ray) {
   const RationalVector a(corners[0]), b(corners[1]), c(corners[2]), forward(rays.forward()), eye(rays.eye());

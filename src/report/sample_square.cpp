@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+// With o the origin of a ray along v: a triangle abc is met where the determinants (a-o, b-o, v), (b-o, c-o, v) and
+// (c-o, a-o, v) have the sign of (a-o, b-o, c-o), or of (b-a, c-a, v) in parallel projection. That its line is met
+// before the eye and not behind it follows from the signs.
+#include "report/sample_square.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace frontmost {
+namespace {
+
+// 1/128 and 1/16 pixel in 1/256.
+constexpr int kMargin = 2, kWideMargin = 16;
+// 16 roundings of a float of the greatest key.
+constexpr double kKeyRounding = 16 * 0x1p-24;
+
+std::array<SampleRay, 4> rays_around(const SampleRays& rays, int x, int y, const glm::ivec2& offset, int margin) {
+  return {rays.at(x, y, offset + glm::ivec2(-margin, -margin)), rays.at(x, y, offset + glm::ivec2(margin, -margin)),
+          rays.at(x, y, offset + glm::ivec2(margin)), rays.at(x, y, offset + glm::ivec2(-margin, margin))};
+}
+
+}  // namespace
+
+SampleSquare::SampleSquare(const SampleRays& rays, int x, int y, const glm::ivec2& offset)
+    : corners(rays_around(rays, x, y, offset, kMargin)), wide(rays_around(rays, x, y, offset, kWideMargin)) {}
+
+double SeenTriangle::of_depth(double depth) const {
+  const double cut = std::min(std::max(depth, rays_->near()), rays_->far());
+  return rays_->is_orthographic() ? -cut : 1 / cut;
+}
+
+SeenTriangle::SeenTriangle(const std::array<glm::vec3, 3>& corners, const SampleRays& rays)
+    : corners_{glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])},
+      rays_(&rays),
+      normal_(corners_[1] - corners_[0], corners_[2] - corners_[0]) {
+  double low = std::numeric_limits<double>::infinity(), high = -low, error = 0;
+  for (const glm::dvec3& corner : corners_) {
+    const Bounded depth = bounded_dot(rays.forward(), glm::dvec3(0), corner - rays.eye());
+    low = std::min(low, depth.value);
+    high = std::max(high, depth.value);
+    error = std::max(error, depth.error);
+  }
+  depths_near_ = {low - error, low + error};
+  depths_far_ = {high - error, high + error};
+  const auto widened = [](double a, double b) {
+    return DepthBounds{a - kRounding * std::abs(a), b + kRounding * std::abs(b)};
+  };
+  limits_least_ = widened(of_depth(depths_far_.high), of_depth(depths_far_.low));
+  limits_greatest_ = widened(of_depth(depths_near_.high), of_depth(depths_near_.low));
+  resolution_ = kKeyRounding * (rays.is_orthographic() ? rays.far() - rays.near() : of_depth(low));
+  const Leg ab{corners_[1], corners_[0]}, ac{corners_[2], corners_[0]};
+  facing_ = sign_of_determinant(ab, ac, rays.is_orthographic() ? Leg{rays.forward()} : Leg{corners_[0], rays.eye()});
+}
+
+int SeenTriangle::edge_side(std::size_t edge, const SampleRay& ray) const {
+  return sign_of_determinant({corners_[edge], ray.origin}, {corners_[(edge + 1) % 3], ray.origin}, {ray.direction});
+}
+
+bool SeenTriangle::is_inside(const SampleRay& ray) const {
+  if (facing_ == 0) return false;
+  for (std::size_t edge = 0; edge < 3; ++edge)
+    if (edge_side(edge, ray) != facing_) return false;
+  return true;
+}
+
+/// Whether a plane through the eye along a side of either has the two on its two sides: then they do not meet, and two
+/// convex figures before the eye that do not meet have such a plane. Of triangles that reach behind it, a few that miss
+/// count as touching.
+bool SeenTriangle::is_separated(const SampleSquare& square) const {
+  for (std::size_t edge = 0; edge < 3; ++edge) {
+    std::array<int, 4> sides;
+    for (std::size_t i = 0; i < 4; ++i) sides[i] = edge_side(edge, square.corners[i]);
+    const auto [least, most] = std::minmax_element(sides.begin(), sides.end());
+    // Of a triangle that is seen edge-on, there is nothing on either side.
+    if (facing_ >= 0 && *most < 0) return true;
+    if (facing_ <= 0 && *least > 0) return true;
+  }
+  for (std::size_t side = 0; side < 4; ++side) {
+    const SampleRay &a = square.corners[side], &b = square.corners[(side + 1) % 4], &c = square.corners[(side + 2) % 4];
+    const bool parallel = rays_->is_orthographic();
+    const Leg first = parallel ? Leg{b.origin, a.origin} : Leg{a.direction};
+    const Leg second = parallel ? Leg{a.direction} : Leg{b.direction};
+    const int inner = sign_of_determinant(first, second, parallel ? Leg{c.origin, a.origin} : Leg{c.direction});
+    bool all_outside = true;
+    for (const glm::dvec3& corner : corners_)
+      all_outside = all_outside && sign_of_determinant(first, second, {corner, a.origin}) == -inner;
+    if (all_outside) return true;
+  }
+  return false;
+}
+
+/// What the near and far planes leave of a triangle that contains the square. Methods cut in floats, so within their
+/// rounding of a plane either may be.
+Meeting SeenTriangle::between_planes(const SampleSquare& square) const {
+  const double rim = kKeyRounding;
+  if (depths_near_.low > rays_->near() * (1 + rim) && depths_far_.high < rays_->far() * (1 - rim))
+    return Meeting::contains;
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const SampleRay& ray : square.corners) {
+    const double across = glm::dot(normal_.value, ray.direction),
+                 along = glm::dot(normal_.value, corners_[0] - ray.origin);
+    const double nearness = rays_->is_orthographic() ? -along / across : across / along;
+    least = std::min(least, nearness);
+    most = std::max(most, nearness);
+  }
+  const double nearest = of_depth(rays_->near()), farthest = of_depth(rays_->far());
+  if (most < farthest - resolution_ || least > nearest + resolution_) return Meeting::misses;
+  return most < nearest - resolution_ && least > farthest + resolution_ ? Meeting::contains : Meeting::touches;
+}
+
+Meeting SeenTriangle::meeting(const SampleSquare& square) const {
+  if (is_separated(square)) return Meeting::misses;
+  const Meeting by_planes = between_planes(square);
+  if (by_planes != Meeting::contains) return by_planes;
+  for (const SampleRay& ray : square.corners)
+    if (!is_inside(ray)) return Meeting::touches;
+  return Meeting::contains;
+}
+
+DepthBounds SeenTriangle::nearness_at(const SampleRay& ray) const {
+  const Bounded along = bounded_dot(normal_.value, normal_.error, corners_[0] - ray.origin);
+  const Bounded across = bounded_dot(normal_.value, normal_.error, ray.direction);
+  const Bounded& below = rays_->is_orthographic() ? across : along;
+  const Bounded& above = rays_->is_orthographic() ? along : across;
+  // The plane goes through the eye, as far as doubles tell. Written so that NaN does.
+  if (!(std::abs(below.value) > 4 * below.error)) return {limits_least_.low, limits_greatest_.high};
+  const double value = (rays_->is_orthographic() ? -above.value : above.value) / below.value;
+  const double error = (above.error + std::abs(value) * below.error) / (std::abs(below.value) - below.error) +
+                       kRounding * std::abs(value);
+  return {std::min(std::max(value - error, limits_least_.low), limits_greatest_.low),
+          std::min(std::max(value + error, limits_least_.high), limits_greatest_.high)};
+}
+
+NearnessRange SeenTriangle::plane_nearness(const SampleSquare& square) const {
+  NearnessRange range{nearness_at(square.corners[0]), {}};
+  range.greatest = range.least;
+  for (std::size_t i = 1; i < 4; ++i) {
+    const DepthBounds here = nearness_at(square.corners[i]);
+    range.least = {std::min(range.least.low, here.low), std::min(range.least.high, here.high)};
+    range.greatest = {std::max(range.greatest.low, here.low), std::max(range.greatest.high, here.high)};
+  }
+  return range;
+}
+
+bool SeenTriangle::is_thin(const SampleSquare& square) const {
+  int close = 0;
+  for (std::size_t edge = 0; edge < 3; ++edge) {
+    int sum = 0;
+    for (const SampleRay& ray : square.wide) sum += edge_side(edge, ray);
+    close += std::abs(sum) < 4;
+  }
+  return close >= 2;
+}
+
+NearnessRange SeenTriangle::nearness(const SampleSquare& square) const {
+  return is_thin(square) ? NearnessRange{limits_least_, limits_greatest_} : plane_nearness(square);
+}
+
+/// A nearness; the denominator is positive.
+struct SeenTriangle::Fraction {
+  Expansion numerator, denominator;
+
+  /// The sign of this minus `other`.
+  [[nodiscard]] int compare(const Fraction& other) const {
+    return (numerator * other.denominator - other.numerator * denominator).sign();
+  }
+};
+
+/// Of the corner that is nearest (extreme 1) or farthest (-1), between the planes.
+SeenTriangle::Fraction SeenTriangle::exact_limit(int extreme) const {
+  Expansion depth;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Expansion here = dot(exact(rays_->forward()), difference(corners_[i], rays_->eye()));
+    if (i == 0 || (depth - here).sign() == extreme) depth = here;
+  }
+  const Expansion near(rays_->near()), far(rays_->far());
+  if ((depth - near).sign() < 0) depth = near;
+  if ((depth - far).sign() > 0) depth = far;
+  return rays_->is_orthographic() ? Fraction{-depth, Expansion(1)} : Fraction{Expansion(1), depth};
+}
+
+SeenTriangle::Fraction SeenTriangle::exact_nearness(const SampleRay& ray, int extreme) const {
+  const ExactVector normal = cross(difference(corners_[1], corners_[0]), difference(corners_[2], corners_[0]));
+  const Expansion along = dot(normal, difference(corners_[0], ray.origin)), across = dot(normal, exact(ray.direction));
+  Fraction value = rays_->is_orthographic() ? Fraction{-along, across} : Fraction{across, along};
+  if (value.denominator.sign() == 0) return exact_limit(extreme);
+  if (value.denominator.sign() < 0) value = {-value.numerator, -value.denominator};
+  return value;
+}
+
+SeenTriangle::Fraction SeenTriangle::exact_extreme(const SeenTriangle& triangle, const SampleSquare& square,
+                                                   int extreme) {
+  if (triangle.is_thin(square)) return triangle.exact_limit(extreme);
+  Fraction best = triangle.exact_nearness(square.corners[0], extreme);
+  for (std::size_t i = 1; i < 4; ++i) {
+    const Fraction here = triangle.exact_nearness(square.corners[i], extreme);
+    if (here.compare(best) == extreme) best = here;
+  }
+  const Fraction least = triangle.exact_limit(-1), greatest = triangle.exact_limit(1);
+  if (best.compare(least) < 0) return least;
+  return best.compare(greatest) > 0 ? greatest : best;
+}
+
+bool SeenTriangle::exactly_nearer(const SeenTriangle& a, const SeenTriangle& b, const SampleSquare& square) {
+  const Fraction least = exact_extreme(a, square, -1), greatest = exact_extreme(b, square, 1);
+  // greatest + resolution, the latter being a double by definition.
+  const Expansion resolution(std::max(a.resolution_, b.resolution_));
+  const Fraction reach{greatest.numerator + resolution * greatest.denominator, greatest.denominator};
+  return least.compare(reach) > 0;
+}
+
+bool is_surely_nearer(const SeenTriangle& a, const SeenTriangle& b, const SampleSquare& square) {
+  const DepthBounds least = a.nearness(square).least, greatest = b.nearness(square).greatest;
+  const double resolution = std::max(a.resolution_, b.resolution_);
+  const double rounding = kRounding * (std::abs(greatest.high) + resolution);
+  if (least.low > greatest.high + resolution + rounding) return true;
+  if (least.high < greatest.low + resolution - rounding) return false;
+  return SeenTriangle::exactly_nearer(a, b, square);
+}
+
+}  // namespace frontmost

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// A triangle against the square of +-1/128 pixel about a sample: whether it meets it, contains it, and how near it is
+// there. Doubles with bounds decide nearly everywhere, expansions the rest.
+#pragma once
+
+#include "report/exact_depth.h"
+
+namespace frontmost {
+
+/// The square, as the rays through its corners, in order around it; and one of +-1/16 pixel.
+struct SampleSquare {
+  std::array<SampleRay, 4> corners, wide;
+  SampleSquare(const SampleRays& rays, int x, int y, const glm::ivec2& offset);
+};
+
+enum class Meeting : std::uint8_t { misses, touches, contains };
+
+/// Bounds of the least and of the greatest nearness over a square. Nearness grows as depth shrinks and is affine over
+/// the screen: 1 / depth in perspective, -depth in parallel projection.
+struct NearnessRange {
+  DepthBounds least, greatest;
+};
+
+/// A triangle with finite corners, as its view sees it. Borrows the rays.
+class SeenTriangle {
+ public:
+  SeenTriangle(const std::array<glm::vec3, 3>& corners, const SampleRays& rays);
+
+  [[nodiscard]] Meeting meeting(const SampleSquare& square) const;
+  /// Of its plane, within the nearness of its corners and of the near and far planes.
+  [[nodiscard]] NearnessRange plane_nearness(const SampleSquare& square) const;
+  /// The same; all that its corners allow where the triangle is thin.
+  [[nodiscard]] NearnessRange nearness(const SampleSquare& square) const;
+  /// True where two edges pass within 1/16 pixel. Snapping moves such a sliver's corners by as much as it is wide, and
+  /// its plane then rises so steeply that floats leave little of it: methods hold its keys within those of its corners.
+  [[nodiscard]] bool is_thin(const SampleSquare& square) const;
+  /// What keys of this triangle may be wrong by, as nearness.
+  [[nodiscard]] double resolution() const { return resolution_; }
+  /// -1: seen from the front (counter-clockwise), 1: from behind, 0: edge-on.
+  [[nodiscard]] int facing() const { return facing_; }
+
+  /// Exactly: the least nearness of `a` exceeds the greatest of `b` by more than either's resolution.
+  friend bool is_surely_nearer(const SeenTriangle& a, const SeenTriangle& b, const SampleSquare& square);
+
+ private:
+  struct Fraction;
+  [[nodiscard]] bool is_separated(const SampleSquare& square) const;
+  [[nodiscard]] bool is_inside(const SampleRay& ray) const;
+  [[nodiscard]] int edge_side(std::size_t edge, const SampleRay& ray) const;
+  [[nodiscard]] Meeting between_planes(const SampleSquare& square) const;
+  [[nodiscard]] Fraction exact_nearness(const SampleRay& ray, int extreme) const;
+  [[nodiscard]] Fraction exact_limit(int extreme) const;
+  [[nodiscard]] static Fraction exact_extreme(const SeenTriangle& triangle, const SampleSquare& square, int extreme);
+  [[nodiscard]] static bool exactly_nearer(const SeenTriangle& a, const SeenTriangle& b, const SampleSquare& square);
+  [[nodiscard]] double of_depth(double depth) const;
+  [[nodiscard]] DepthBounds nearness_at(const SampleRay& ray) const;
+
+  std::array<glm::dvec3, 3> corners_;
+  const SampleRays* rays_;
+  BoundedNormal normal_;
+  DepthBounds depths_near_, depths_far_;        // of the nearest and of the farthest corner, before the planes cut
+  DepthBounds limits_least_, limits_greatest_;  // nearness of the same, between the planes
+  double resolution_;
+  int facing_;
+};
+
+}  // namespace frontmost
