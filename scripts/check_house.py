@@ -14,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 CODE = {".h", ".cpp"}
 MARKED = CODE | {".py", ".sh", ".cmake"}
 LONGEST_FILE = 800
-PUBLIC_HEADER_OF = {"visible": "view"}  # the others carry their room's name
+PUBLIC_HEADER_OF = {"visible": "view", "ray_camera": "raycast"}  # the others carry their room's name
 FACES = {"cli", "examples"}  # see include/frontmost alone; tests and benchmarks look inside
 
 

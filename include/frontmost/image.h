@@ -34,8 +34,8 @@ struct Image {
   [[nodiscard]] Channel* find(std::string_view name);
 };
 
-/// \throws Error bad_argument for sizes that are not 1 to 2^20, no channels, two of one name, or planes that do not have
-/// width * height values.
+/// \throws Error bad_argument for sizes that are not 1 to 2^20, no channels, two of one name, or planes that do not
+/// have width * height values.
 void validate(const Image& image);
 
 /// Maps of a Visible's first sample (sample 0 of views with more samples than one), one channel each.
@@ -49,6 +49,10 @@ enum class IdKind : std::uint8_t { primitive, object, material };
 /// One integer channel named "primitive", "object" (instance number) or "material"; no_index where nothing is seen
 /// or no material is set.
 [[nodiscard]] Image id_image(const Surfaces& surfaces, const Visible& visible, IdKind kind);
+/// The same of any grid of primitives, rows from the top, such as a RangeScan's.
+/// \throws Error bad_argument where their number is not width * height.
+[[nodiscard]] Image id_image(const Surfaces& surfaces, const glm::ivec2& size, std::span<const PrimitiveId> primitives,
+                             IdKind kind);
 
 /// A hash of size, channel names and values; equal for equal images on every machine.
 [[nodiscard]] std::uint64_t content_hash(const Image& image);

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "frontmost/image.h"
+#include "frontmost/ray_camera.h"
 #include "frontmost/surfaces.h"
 #include "frontmost/visible.h"
 
@@ -38,6 +39,12 @@ struct ShadeOptions {
 /// A picture with channels R, G, B, A. Shades once per pixel and primitive and averages over the samples.
 /// Borrows everything; O(covered pixels). The bytes do not depend on threads or instruction set.
 [[nodiscard]] Image shade(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
+                          const Execution& execution = {});
+
+/// A picture of a scan, one sample a pixel: `lit` by a light at the eye, from base colours without textures and the
+/// planes of the triangles, all opaque and without shadows; `normals` are those of the planes, and `depth` is the
+/// range. O(pixels). \throws Error unsupported for Shading::uv.
+[[nodiscard]] Image shade(const Surfaces& surfaces, const RangeScan& scan, const ShadeOptions& options = {},
                           const Execution& execution = {});
 
 /// World-space unit shading normals at the first sample: channels N.X, N.Y, N.Z; zero where nothing is seen.

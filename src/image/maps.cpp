@@ -76,12 +76,19 @@ Image ray_distance_image(const Visible& visible, float background) {
 }
 
 Image id_image(const Surfaces& surfaces, const Visible& visible, IdKind kind) {
-  Buffer<std::uint32_t> ids(visible.view.pixel_count());
+  const View& view = visible.view;
+  return id_image(surfaces, {view.width, view.height}, {visible.primitives.data(), view.pixel_count()}, kind);
+}
+
+Image id_image(const Surfaces& surfaces, const glm::ivec2& size, std::span<const PrimitiveId> primitives, IdKind kind) {
+  if (size.x < 0 || size.y < 0 || primitives.size() != std::size_t(size.x) * std::size_t(size.y))
+    throw Error(ErrorCode::bad_argument, "id image: the size does not fit the number of ids");
+  Buffer<std::uint32_t> ids(primitives.size());
   // Neighbours mostly show the same triangle, which need not be looked up again.
   PrimitiveId last_primitive = no_primitive;
   std::uint32_t last_id = no_index;
   for (std::size_t i = 0; i < ids.size(); ++i) {
-    const PrimitiveId primitive = visible.primitives[i];
+    const PrimitiveId primitive = primitives[i];
     if (primitive != last_primitive) {
       if (primitive != no_primitive && primitive >= surfaces.primitive_count())
         throw Error(ErrorCode::bad_argument, "id image: the surfaces are not those that were seen");
@@ -92,7 +99,9 @@ Image id_image(const Surfaces& surfaces, const Visible& visible, IdKind kind) {
     }
     ids[i] = last_id;
   }
-  return one_channel(visible, {channel_name(kind), std::move(ids)});
+  Image image{size.x, size.y, {}};
+  image.channels.push_back({channel_name(kind), std::move(ids)});
+  return image;
 }
 
 }  // namespace frontmost

@@ -21,28 +21,11 @@ const std::array<float, kSteps + 1>& shown_table() {
   return table;
 }
 
-glm::vec3 linear_of_shown(const glm::vec3& value) {
-  return {shading::linear_of_shown(value.x), shading::linear_of_shown(value.y), shading::linear_of_shown(value.z)};
-}
-
 void make_opaque(Batch& batch) {
   for (int i = 0; i < batch.coverage.count; ++i) {
     batch.material.alpha[i] = 1.0f;
     batch.material.see_through[i] = 0.0f;
   }
-}
-
-/// Hues a golden angle apart, in three rounds of brightness, so that neighbouring numbers look nothing alike.
-glm::vec3 color_of_object(std::uint32_t object) {
-  const float hue = float(object * 0x9E3779B9u >> 8) / float(1 << 24) * 6.0f;
-  const float value = 0.95f - 0.18f * float(object % 3), saturation = 0.75f - 0.2f * float(object / 3 % 2);
-  const auto part = [&](float shift) {
-    float h = hue + shift;
-    if (h >= 6.0f) h -= 6.0f;
-    const float ramp = std::clamp(std::min(h, 4.0f - h), 0.0f, 1.0f);
-    return value * (1.0f - saturation * ramp);
-  };
-  return {part(5.0f), part(3.0f), part(1.0f)};
 }
 
 float clamped(float value) { return value > 0 ? (value < 1 ? value : 1.0f) : 0.0f; }  // 0 for NaN
@@ -65,6 +48,23 @@ float linear_of_shown(float value) {
   const auto& table = shown_table();
   const float low = table[std::size_t(i)], high = table[std::size_t(i) + 1];
   return low + (high - low) * (t - float(i));
+}
+
+glm::vec3 linear_of_shown(const glm::vec3& value) {
+  return {linear_of_shown(value.x), linear_of_shown(value.y), linear_of_shown(value.z)};
+}
+
+/// Hues a golden angle apart, in three rounds of brightness, so that neighbouring numbers look nothing alike.
+glm::vec3 color_of_object(std::uint32_t object) {
+  const float hue = float(object * 0x9E3779B9u >> 8) / float(1 << 24) * 6.0f;
+  const float value = 0.95f - 0.18f * float(object % 3), saturation = 0.75f - 0.2f * float(object / 3 % 2);
+  const auto part = [&](float shift) {
+    float h = hue + shift;
+    if (h >= 6.0f) h -= 6.0f;
+    const float ramp = std::clamp(std::min(h, 4.0f - h), 0.0f, 1.0f);
+    return value * (1.0f - saturation * ramp);
+  };
+  return {part(5.0f), part(3.0f), part(1.0f)};
 }
 
 void Lit::operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const {
@@ -99,7 +99,7 @@ void Depths::operator()(const std::vector<TriangleSetup>&, Batch& batch) const {
   for (int i = 0; i < batch.coverage.count; ++i) {
     const float depth = glm::dot(batch.geometry.position.at(i), forward);
     const float t = range > 0 ? std::clamp((depth - nearest) / range, 0.0f, 1.0f) : 0.0f;
-    batch.light.set(i, glm::vec3(shading::linear_of_shown(0.95f - 0.85f * t)));
+    batch.light.set(i, glm::vec3(linear_of_shown(0.95f - 0.85f * t)));
   }
   make_opaque(batch);
 }

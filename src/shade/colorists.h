@@ -50,5 +50,8 @@ struct Texcoords {
 
 /// The linear value that is shown as `value` of 0 to 1 in sRGB, to well within 1/1000 of a step of 8 bits.
 [[nodiscard]] float linear_of_shown(float value);
+[[nodiscard]] glm::vec3 linear_of_shown(const glm::vec3& value);
+/// As shown on a screen, 0 to 1.
+[[nodiscard]] glm::vec3 color_of_object(std::uint32_t object);
 
 }  // namespace frontmost::shading

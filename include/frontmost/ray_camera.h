@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cameras that only rays can serve: all around in one picture, and the patterns of laser scanners.
+//
+// Directions are those of eye space, as for every camera: the eye looks down -z, y up, x right. An azimuth is counted
+// from straight ahead to the right, an elevation from the horizon upwards: azimuth a and elevation e are the direction
+// (sin a cos e, sin e, -cos a cos e). Pixel (x, y) asks at its centre, (x + 0.5, y + 0.5), rows from the top.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "frontmost/raycast.h"
+
+namespace frontmost {
+
+/// Equirectangular: azimuth and elevation are affine over the picture. The left side is -180 degrees, straight behind;
+/// a quarter of the width is the left, the middle straight ahead; the top is straight up. Twice as wide as high gives
+/// pixels that are square along the horizon.
+struct Panorama {
+  int width = 2048, height = 1024;  ///< pixels, 1 to 16384 each
+};
+
+/// Equidistant: the angle from the viewing axis is proportional to the distance from the picture's middle, and is
+/// fov / 2 where the circle touches the nearer sides. Pixels beyond the circle see nothing.
+/// (K. Miyamoto. Fish Eye Lens. 1964.)
+struct Fisheye {
+  int width = 1024, height = 1024;      ///< pixels, 1 to 16384 each
+  double fov = 3.14159265358979323846;  ///< radians, above 0; at most a full turn, where the rim is straight behind
+};
+
+/// A scanner that turns about its up axis, to the right: column k looks at azimuth k / steps of a full turn, exactly
+/// ahead in column 0; row r has the elevation of ring r.
+struct Lidar {
+  std::vector<double> elevations;  ///< of each ring, in radians, -pi/2 to pi/2
+  int steps = 1024;                ///< azimuths of a turn, at least 1
+};
+
+/// Any rays from one point, as a single row: other lenses, risley scanners, sampling patterns.
+struct RayPattern {
+  std::vector<glm::vec3> directions;  ///< in eye space, of any length; zero or not finite sees nothing
+};
+
+/// Where the rays start, and how they spread. The eye and the rays' directions are rounded to floats.
+struct RayCamera {
+  std::variant<Panorama, Fisheye, Lidar, RayPattern> model;
+  glm::dmat4 world_from_eye{1.0};  ///< a rotation and a translation
+};
+
+/// Elevations of `rings` rings, evenly from `highest` down to `lowest`; the middle of both for a single ring.
+/// \throws Error bad_argument unless rings >= 1 and lowest <= highest.
+[[nodiscard]] std::vector<double> ring_elevations(int rings, double lowest, double highest);
+
+/// \throws Error bad_argument, limit_exceeded (more than most_samples rays in all) or singular_camera.
+void validate(const RayCamera& camera);
+
+/// Columns and rows of the rays: pixels; steps and rings; the length of the pattern and 1.
+[[nodiscard]] glm::ivec2 grid_of(const RayCamera& camera);
+
+/// The ray of a pixel, in world space; of unit length (to rounding), or zero where the pixel sees nothing; a pattern's
+/// directions keep their length. The same bits on every machine. Precondition: the camera is valid, the pixel in its
+/// grid.
+[[nodiscard]] Ray ray_of(const RayCamera& camera, int x, int y);
+
+/// What the rays of a camera meet. Planes are ordered [y][x], top row first.
+struct RangeScan {
+  RayCamera camera;
+  int width = 0, height = 0;       ///< as grid_of(camera)
+  Buffer<PrimitiveId> primitives;  ///< no_primitive where nothing is met
+  Buffer<float> ranges;            ///< distance from the eye along the ray, in scene units; +inf where nothing is met
+
+  [[nodiscard]] std::size_t index(int x, int y) const { return std::size_t(y) * std::size_t(width) + std::size_t(x); }
+};
+
+/// The nearest surface along every ray, as closest_hits() answers: both sides of every triangle are seen, nothing is
+/// too near or too far. The same bits for any number of threads and any instruction set. O(log n) a ray.
+/// \throws Error as validate(camera) does.
+[[nodiscard]] RangeScan scan(const RayIndex& index, const RayCamera& camera, const Execution& execution = {});
+
+/// Where the ray of a pixel meets the surface, in world space. Precondition: something is met there.
+[[nodiscard]] glm::dvec3 point_of(const RangeScan& scan, int x, int y);
+
+/// Distances along the viewing axis, as a pinhole camera in that pose would give them; +inf where nothing is met, and
+/// for rays that do not lead ahead, at 90 degrees from the axis and more, for which there is no such distance.
+[[nodiscard]] Buffer<float> planar_depths(const RangeScan& scan, const Execution& execution = {});
+
+}  // namespace frontmost

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: Apache-2.0
+// Panoramas, fisheyes and laser scanners: known directions, exact ranges in a box, the same answers as six pinholes.
+#include "frontmost/ray_camera.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "frontmost/io.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr float inf = std::numeric_limits<float>::infinity();
+
+/// The six sides of [-r, r]^3, two triangles each: ids 0-3 at -x, +x, 4-7 at -y, +y, 8-11 at -z, +z.
+Scene box_room(float r) {
+  Mesh mesh;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const float side : {-r, r}) {
+      const auto corner = [&](float u, float v) {
+        glm::vec3 p;
+        p[axis] = side, p[(axis + 1) % 3] = u, p[(axis + 2) % 3] = v;
+        return p;
+      };
+      add_triangle(mesh, corner(-r, -r), corner(r, -r), corner(r, r));
+      add_triangle(mesh, corner(-r, -r), corner(r, r), corner(-r, r));
+    }
+  return scene_of(mesh);
+}
+
+struct Indexed {
+  explicit Indexed(Scene s) : scene(std::move(s)), surfaces(scene), index(surfaces) {}
+  Scene scene;
+  Surfaces surfaces;
+  RayIndex index;
+};
+
+template <class T>
+std::vector<T> values_of(const Buffer<T>& buffer) {
+  return {buffer.begin(), buffer.end()};
+}
+
+/// Distance to the box around its middle: to the side that the largest component meets.
+double range_in_box(const glm::vec3& direction, double r) {
+  const glm::dvec3 d(direction), a = glm::abs(d);
+  return r * glm::length(d) / std::max(a.x, std::max(a.y, a.z));
+}
+
+void expect_direction(const RayCamera& camera, int x, int y, const glm::vec3& expected) {
+  const glm::vec3 direction = ray_of(camera, x, y).direction;
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(direction[i], expected[i]) << x << "," << y << " axis " << i;
+}
+
+void expect_near(const glm::vec3& direction, const glm::dvec3& expected) {
+  EXPECT_LT(glm::distance(glm::dvec3(direction), expected), 1e-7);
+}
+
+TEST(RayCamera, APanoramasMiddleLooksAheadAndItsQuartersToTheSides) {
+  // Odd sides have a pixel whose centre is the middle of the picture.
+  expect_direction({Panorama{5, 3}}, 2, 1, {0, 0, -1});
+  const RayCamera camera{Panorama{1000, 501}};
+  const double half_pixel = pi / 1000;
+  // Pixel 750 lies just past the quarter to the right, 249 just past the one to the left.
+  expect_near(ray_of(camera, 750, 250).direction, {std::cos(half_pixel), 0, std::sin(half_pixel)});
+  expect_near(ray_of(camera, 249, 250).direction, {-std::cos(half_pixel), 0, std::sin(half_pixel)});
+  // The sides meet straight behind; the top row looks almost straight up.
+  expect_near(ray_of(camera, 0, 250).direction, {-std::sin(half_pixel), 0, std::cos(half_pixel)});
+  expect_near(ray_of(camera, 999, 250).direction, {std::sin(half_pixel), 0, std::cos(half_pixel)});
+  EXPECT_EQ(ray_of(camera, 123, 0).direction.y, float(std::cos(pi / 1002)));
+  EXPECT_EQ(ray_of(camera, 123, 500).direction.y, -float(std::cos(pi / 1002)));
+}
+
+TEST(RayCamera, AFisheyesAngleGrowsEvenlyFromTheMiddle) {
+  const RayCamera half{Fisheye{9, 9, pi}};
+  expect_direction(half, 4, 4, {0, 0, -1});
+  // 3 pixels from the middle of a radius of 4.5: two thirds of 90 degrees.
+  expect_near(ray_of(half, 7, 4).direction, {std::sin(pi / 3), 0, -std::cos(pi / 3)});
+  expect_near(ray_of(half, 4, 1).direction, {0, std::sin(pi / 3), -std::cos(pi / 3)});
+  expect_near(ray_of(half, 1, 4).direction, {-std::sin(pi / 3), 0, -std::cos(pi / 3)});
+  EXPECT_EQ(ray_of(half, 0, 0).direction, glm::vec3(0));  // beyond the circle
+  // The whole turn looks behind at its rim; the circle touches the nearer sides.
+  const RayCamera whole{Fisheye{21, 9, 2 * pi}};
+  expect_near(ray_of(whole, 10, 0).direction, {0, std::sin(pi * 8 / 9), -std::cos(pi * 8 / 9)});
+  EXPECT_EQ(ray_of(whole, 5, 4).direction, glm::vec3(0));
+}
+
+TEST(RayCamera, AScannerTurnsToTheRightFromStraightAheadExactlyAtQuarters) {
+  const RayCamera camera{Lidar{{pi / 2, 0, -pi / 4, -pi / 2}, 8}};
+  EXPECT_EQ(grid_of(camera), glm::ivec2(8, 4));
+  expect_direction(camera, 3, 0, {0, 1, 0});
+  expect_direction(camera, 0, 1, {0, 0, -1});
+  expect_direction(camera, 2, 1, {1, 0, 0});
+  expect_direction(camera, 4, 1, {0, 0, 1});
+  expect_direction(camera, 6, 1, {-1, 0, 0});
+  expect_direction(camera, 5, 3, {0, -1, 0});
+  const float diagonal = float(std::sqrt(0.5));
+  expect_direction(camera, 2, 2, {diagonal, -diagonal, 0});
+}
+
+TEST(RayCamera, ThePoseTurnsAndMovesTheRays) {
+  // From (1, 2, 3) along +x, z up: the right is -y.
+  const RayCamera camera{Lidar{{0}, 4}, look_at({1, 2, 3}, {2, 2, 3}, {0, 0, 1})};
+  EXPECT_EQ(ray_of(camera, 0, 0).origin, glm::vec3(1, 2, 3));
+  expect_near(ray_of(camera, 0, 0).direction, {1, 0, 0});
+  expect_near(ray_of(camera, 1, 0).direction, {0, -1, 0});
+}
+
+TEST(RayCamera, RingsAreSpreadEvenlyFromTheTop) {
+  EXPECT_THAT(ring_elevations(3, -0.5, 0.25), testing::ElementsAre(0.25, -0.125, -0.5));
+  EXPECT_THAT(ring_elevations(1, -0.5, 0.25), testing::ElementsAre(-0.125));
+}
+
+TEST(RangeScan, InAClosedBoxEveryRayMeetsASideAtItsDistance) {
+  const Indexed room(box_room(2));
+  const RayCamera cameras[] = {{Lidar{ring_elevations(33, -pi / 2, pi / 2), 360}},
+                               {Panorama{96, 48}},
+                               {RayPattern{{{3, 0, 0}, {0, 0.5f, 0}, {1, 1, 1}, {-0.1f, 0.2f, -0.3f}}}}};
+  for (const RayCamera& camera : cameras) {
+    const RangeScan result = scan(room.index, camera);
+    for (int y = 0; y < result.height; ++y)
+      for (int x = 0; x < result.width; ++x) {
+        const std::size_t i = result.index(x, y);
+        const glm::vec3 direction = ray_of(camera, x, y).direction;
+        ASSERT_NE(result.primitives[i], no_primitive) << x << "," << y;
+        const double range = range_in_box(direction, 2);
+        ASSERT_NEAR(result.ranges[i], range, 2e-7 * range);
+        const glm::dvec3 point = glm::abs(point_of(result, x, y));
+        ASSERT_NEAR(std::max(point.x, std::max(point.y, point.z)), 2, 1e-6);
+      }
+  }
+}
+
+TEST(RangeScan, ALevelRingMeetsTheSidesExactly) {
+  const Indexed room(box_room(2));
+  const RangeScan ring = scan(room.index, {Lidar{{0}, 4}});
+  for (int step = 0; step < 4; ++step) EXPECT_EQ(ring.ranges[std::size_t(step)], 2.0f);
+  const int sides[] = {4, 1, 5, 0};  // -z, +x, +z, -x: pairs of triangles, of which a ray to the middle meets both
+  for (int step = 0; step < 4; ++step)
+    EXPECT_EQ(ring.primitives[std::size_t(step)], PrimitiveId(2 * sides[step])) << step;
+}
+
+TEST(RangeScan, BeyondAFisheyesCircleNothingIsSeen) {
+  const Indexed room(box_room(1));
+  const RangeScan result = scan(room.index, {Fisheye{64, 64, 2 * pi}});
+  int seen = 0;
+  for (std::size_t i = 0; i < result.ranges.size(); ++i) {
+    EXPECT_EQ(result.primitives[i] == no_primitive, result.ranges[i] == inf);
+    seen += result.primitives[i] != no_primitive;
+  }
+  EXPECT_EQ(result.primitives[result.index(0, 0)], no_primitive);
+  EXPECT_NEAR(seen, pi * 32 * 32, 40);
+}
+
+TEST(RangeScan, PlanarDepthIsThatOfAPinholeAndEndsAtTheSide) {
+  const Indexed room(box_room(2));
+  const RayCamera camera{Panorama{64, 32}};
+  const RangeScan result = scan(room.index, camera);
+  const Buffer<float> depths = planar_depths(result);
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 64; ++x) {
+      const glm::vec3 direction = ray_of(camera, x, y).direction;
+      const std::size_t i = result.index(x, y);
+      if (direction.z < 0) {
+        EXPECT_NEAR(depths[i], -point_of(result, x, y).z, 1e-6);
+      } else {
+        EXPECT_EQ(depths[i], inf);
+      }
+    }
+  // All that is seen on the wall ahead is 2 away along the axis.
+  EXPECT_NEAR(depths[result.index(36, 18)], 2, 1e-6);
+}
+
+/// The pinhole views through the faces of a cube around the eye, 90 degrees each.
+View face_view(const glm::dvec3& eye, const glm::dvec3& forward, int size) {
+  View view;
+  view.width = view.height = size;
+  const glm::dvec3 up = std::abs(forward.y) > 0.5 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
+  view.world_from_eye = look_at(eye, eye + forward, up);
+  view.projection = make_projection(pi / 2, 1, {1e-3, std::numeric_limits<double>::infinity()});
+  return view;
+}
+
+struct CubeViews {
+  CubeViews(const RayIndex& index, const glm::dvec3& eye, int size) {
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double sign : {-1.0, 1.0}) {
+        glm::dvec3 forward(0);
+        forward[axis] = sign;
+        faces.push_back(raycast(index, face_view(eye, forward, size)));
+      }
+  }
+  /// The ids seen in the 3 x 3 pixels around where a direction leads; empty too near a face's border.
+  [[nodiscard]] std::vector<PrimitiveId> around(const glm::vec3& direction) const {
+    const glm::vec3 a = glm::abs(direction);
+    const int axis = a.x > a.y && a.x > a.z ? 0 : a.y > a.z ? 1 : 2;
+    const Visible& face = faces[std::size_t(2 * axis + (direction[axis] > 0))];
+    const glm::dvec3 eye = glm::transpose(glm::dmat3(face.view.world_from_eye)) * glm::dvec3(direction);
+    const int size = face.view.width;
+    const int x = int((eye.x / -eye.z + 1) * 0.5 * size), y = int((1 + eye.y / eye.z) * 0.5 * size);
+    std::vector<PrimitiveId> ids;
+    if (x < 1 || y < 1 || x > size - 2 || y > size - 2) return ids;
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) ids.push_back(face.primitives[face.index(x + dx, y + dy)]);
+    return ids;
+  }
+  std::vector<Visible> faces;
+};
+
+void expect_agreement(const Indexed& of, const glm::dvec3& eye, const RayCamera& camera) {
+  const RangeScan around = scan(of.index, camera);
+  const CubeViews cube(of.index, eye, 512);
+  int compared = 0, all = 0;
+  for (int y = 0; y < around.height; ++y)
+    for (int x = 0; x < around.width; ++x) {
+      const glm::vec3 direction = ray_of(camera, x, y).direction;
+      if (direction == glm::vec3(0)) continue;
+      const std::vector<PrimitiveId> ids = cube.around(direction);
+      ++all;
+      // Away from every edge the cube's pixels agree with one another, and so they must with the ray between them.
+      if (ids.empty() || std::count(ids.begin(), ids.end(), ids[0]) != 9) continue;
+      ++compared;
+      ASSERT_EQ(around.primitives[around.index(x, y)], ids[0]) << x << "," << y;
+    }
+  EXPECT_GT(compared, all / 2);
+}
+
+TEST(RangeScan, AgreesWithSixPinholesAwayFromEdges) {
+  const Indexed gallery(builtin("gallery"));
+  const Box& box = gallery.surfaces.bounds();
+  for (const float along : {0.07f, -0.21f}) {
+    const auto eye = glm::dvec3(glm::vec3(box.centre() + along * (box.high - box.low)));
+    const glm::dmat4 pose = look_at(eye, eye + glm::dvec3(1, 0.3, -0.2), {0, 1, 0});
+    expect_agreement(gallery, eye, {Panorama{256, 128}, pose});
+    expect_agreement(gallery, eye, {Fisheye{160, 160, 1.9 * pi}, pose});
+    expect_agreement(gallery, eye, {Lidar{ring_elevations(40, -1.2, 1.3), 200}, pose});
+  }
+}
+
+TEST(RangeScan, TheForwardPixelMeetsWhatThePinholesCentreMeets) {
+  const Scene scene = builtin("teapot");
+  const Surfaces surfaces(scene);
+  const RayIndex index(surfaces);
+  const View view = frame(surfaces, 65, 65);
+  const Visible pinhole = raycast(index, view);
+  const std::size_t centre = pinhole.index(32, 32);
+  ASSERT_NE(pinhole.primitives[centre], no_primitive);
+  const float depth = depths(pinhole)[centre];
+  const RayCamera cameras[] = {{Panorama{65, 33}, view.world_from_eye},
+                               {Fisheye{65, 65, 1.0}, view.world_from_eye},
+                               {Lidar{{0}, 7}, view.world_from_eye}};
+  for (const RayCamera& camera : cameras) {
+    const RangeScan around = scan(index, camera);
+    const bool is_lidar = std::holds_alternative<Lidar>(camera.model);
+    const std::size_t ahead = is_lidar ? 0 : around.index(around.width / 2, around.height / 2);
+    EXPECT_EQ(around.primitives[ahead], pinhole.primitives[centre]);
+    EXPECT_NEAR(around.ranges[ahead], depth, 1e-5 * depth);
+  }
+}
+
+TEST(RangeScan, ThreadsAndInstructionSetsChangeNoBit) {
+  const Indexed of(scene_of(random_mesh(Kind::soup, 500, 9)));
+  const RayCamera camera{Panorama{333, 77}, look_at({0.1, 0.2, 0.3}, {1, 1, 0}, {0, 1, 0})};
+  const RangeScan first = scan(of.index, camera, {.threads = 1, .isa = Isa::scalar});
+  for (const Isa isa : available_isas())
+    for (const int threads : {1, 2, 5}) {
+      const RangeScan other = scan(of.index, camera, {.threads = threads, .isa = isa});
+      EXPECT_EQ(values_of(other.primitives), values_of(first.primitives));
+      EXPECT_EQ(values_of(other.ranges), values_of(first.ranges));
+    }
+}
+
+TEST(RangeScan, NothingIsMetInAnEmptySceneOrWithoutADirection) {
+  const Indexed empty{Scene{}}, room(box_room(1));
+  const RangeScan none = scan(empty.index, {Panorama{8, 4}});
+  EXPECT_THAT(values_of(none.primitives), testing::Each(no_primitive));
+  EXPECT_THAT(values_of(none.ranges), testing::Each(inf));
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const RangeScan nonsense = scan(room.index, {RayPattern{{{0, 0, 0}, {nan, 0, 1}, {inf, 0, 0}}}});
+  EXPECT_THAT(values_of(nonsense.primitives), testing::Each(no_primitive));
+  EXPECT_THAT(values_of(planar_depths(nonsense)), testing::Each(inf));
+}
+
+ErrorCode refusal(const RayCamera& camera) {
+  try {
+    validate(camera);
+  } catch (const Error& error) {
+    return error.code();
+  }
+  ADD_FAILURE() << "was accepted";
+  return ErrorCode::cancelled;
+}
+
+TEST(RayCamera, RefusesWhatIsOutOfRange) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto bad = ErrorCode::bad_argument, large = ErrorCode::limit_exceeded;
+  EXPECT_EQ(refusal({Panorama{0, 4}}), bad);
+  EXPECT_EQ(refusal({Panorama{4, 16385}}), large);
+  for (const double fov : {0.0, -1.0, 7.0, nan}) EXPECT_EQ(refusal({Fisheye{4, 4, fov}}), bad);
+  EXPECT_EQ(refusal({Fisheye{4, 0, 1}}), bad);
+  EXPECT_EQ(refusal({Lidar{{}, 4}}), bad);
+  EXPECT_EQ(refusal({Lidar{{0}, 0}}), bad);
+  for (const double elevation : {2.0, -2.0, nan}) EXPECT_EQ(refusal({Lidar{{elevation}, 4}}), bad);
+  EXPECT_EQ(refusal({Lidar{std::vector<double>(3, 0.0), 1 << 28}}), large);
+  EXPECT_EQ(refusal({RayPattern{}}), bad);
+  EXPECT_EQ(refusal({Panorama{}, glm::dmat4(2.0)}), ErrorCode::singular_camera);
+  glm::dmat4 far_away(1.0);
+  far_away[3].x = 1e300;
+  EXPECT_EQ(refusal({Panorama{}, far_away}), large);
+  EXPECT_THROW((void)ring_elevations(0, 0, 1), Error);
+  EXPECT_THROW((void)ring_elevations(3, 1, 0), Error);
+}
+
+TEST(RangeScan, CanBeCancelled) {
+  const Indexed room(box_room(1));
+  Watch watch;
+  watch.cancelled = [] { return true; };
+  EXPECT_THROW((void)scan(room.index, {Panorama{64, 32}}, {.watch = &watch}), Error);
+}
+
+}  // namespace
+}  // namespace frontmost::test
