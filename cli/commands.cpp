@@ -58,6 +58,12 @@ constexpr Command table[] = {
      "frontmost sight city.glb --from 0,2,0 --to 40,2,-15\n"
      "frontmost sight site.ply --pairs antennas.txt --json",
      run_sight},
+    {"lidar", for_lidar, "MODEL", "Scan a model as a spinning laser does.",
+     "Casts rings of rays, or any list of directions, from one point, and writes where they meet the model: as points "
+     "with range, object, triangle, ring and step (.ply), or as a range image with a row for each ring (.exr, .npy).",
+     "frontmost lidar city.glb --from 0,2,0 --rings 64 --elevations -24,2 --steps 2048 -o points.ply\n"
+     "frontmost lidar site.ply --from 0,0,1 --directions pattern.txt -o points.ply --json",
+     run_lidar},
     {"completion", 0, "bash|zsh|fish", "Print a shell completion script.", "",
      "frontmost completion bash > ~/.local/share/bash-completion/completions/frontmost\n"
      "frontmost completion zsh > ~/.zfunc/_frontmost\n"

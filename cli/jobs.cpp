@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "failure.h"
+#include "render_around.h"
 #include "view_options.h"
 
 namespace frontmost::cli {
@@ -18,6 +19,9 @@ Job make_job(const Settings& settings) {
   Job job{view_name(settings.view), settings.view, settings.output, {}, {}};
   const std::string model = model_name(settings.model);
   job.files = plan_outputs(settings.output, model, job.name);
+  check_outputs_around(job);
+  if (settings.run.stream && settings.view.camera_model != CameraModel::pinhole)
+    throw UsageError("--stream and --camera-model exclude each other");
   if (job.output.reference) {
     job.output.reference = fill_template(*job.output.reference, model, job.name);
     if (job.output.reference_difference) {

@@ -65,8 +65,21 @@ Json depth_json(const DepthSettings& settings) {
           {"reversed", state.nearer_is_greater}};
 }
 
+/// As far as there is anything to say of a camera that is no pinhole.
+Json view_camera_json(const ViewResult& result) {
+  Json json = camera_json(result.view, result.target);
+  if (result.camera_model == CameraModel::pinhole) return json;
+  for (const char* key :
+       {"flags", "sides", "field_of_view_degrees", "intrinsics", "near", "far", "projection_matrices"})
+    json.erase(key);
+  const bool is_fisheye = result.camera_model == CameraModel::fisheye;
+  json["projection"] = is_fisheye ? "fisheye" : "panorama";
+  if (is_fisheye) json["field_of_view_degrees"] = result.fisheye_angle;
+  return json;
+}
+
 Json view_json(const ViewResult& result) {
-  Json json = {{"name", result.name}, {"view", camera_json(result.view, result.target)}};
+  Json json = {{"name", result.name}, {"view", view_camera_json(result)}};
   if (result.depth.is_used) json["depth_buffer"] = depth_json(result.depth);
   if (result.seen) json["seen"] = seen_json(*result.seen, result.view);
   json["files"] = Json::array();
@@ -83,9 +96,10 @@ Json view_json(const ViewResult& result) {
 
 Json render_json(const Settings& settings, const ModelFacts& model, const std::vector<ViewResult>& views,
                  const RunTimings& timings) {
-  Json json = {{"frontmost", FRONTMOST_VERSION},
-               {"model", settings.model},
-               {"method", settings.run.method == Method::raycast ? "raycast" : "zbuffer"}};
+  const auto is_pinhole = [](const ViewResult& view) { return view.camera_model == CameraModel::pinhole; };
+  const bool by_rays = settings.run.method == Method::raycast || std::none_of(views.begin(), views.end(), is_pinhole);
+  Json json = {
+      {"frontmost", FRONTMOST_VERSION}, {"model", settings.model}, {"method", by_rays ? "raycast" : "zbuffer"}};
   json["isa"] = name(settings.run.isa);
   if (!settings.more_models.empty()) json["more_models"] = settings.more_models;
   json["triangles"] = model.triangles;

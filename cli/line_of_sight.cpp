@@ -3,50 +3,21 @@
 #include <fmt/format.h>
 #include <frontmost/raycast.h>
 
-#include <algorithm>
-#include <fstream>
-#include <sstream>
-
 #include "command.h"
 #include "console.h"
 #include "failure.h"
 #include "interruption.h"
 #include "json_numbers.h"
 #include "model.h"
-#include "values.h"
+#include "number_lines.h"
 
 namespace frontmost::cli {
 namespace {
 
-/// A line that holds anything but a comment: six numbers.
-Segment pair_of(std::string line, const std::string& place) {
-  std::replace(line.begin(), line.end(), ',', ' ');
-  std::vector<double> numbers;
-  std::istringstream words(line);
-  for (std::string word; words >> word;) {
-    try {
-      numbers.push_back(parse_number(word, {-3e38, 3e38}));
-    } catch (const UsageError& error) {
-      throw Error(ErrorCode::file_malformed, place + ": " + error.what());
-    }
-  }
-  if (numbers.size() != 6)
-    throw Error(ErrorCode::file_malformed,
-                fmt::format("{}: six numbers make a pair of points; there are {}", place, numbers.size()));
-  return {glm::dvec3(numbers[0], numbers[1], numbers[2]), glm::dvec3(numbers[3], numbers[4], numbers[5])};
-}
-
 std::vector<Segment> read_pairs(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw Error(ErrorCode::file_unreadable, path + ": cannot open");
   std::vector<Segment> pairs;
-  std::string line;
-  for (std::size_t number = 1; std::getline(file, line); ++number) {
-    line.resize(std::min(line.find('#'), line.size()));
-    if (line.find_first_not_of(" \t\r,") == std::string::npos) continue;
-    pairs.push_back(pair_of(line, fmt::format("{}: line {}", path, number)));
-  }
-  if (file.bad()) throw Error(ErrorCode::file_unreadable, path + ": cannot read");
+  for (const std::vector<double>& n : read_number_lines(path, {6, "six numbers make a pair of points"}))
+    pairs.push_back({glm::dvec3(n[0], n[1], n[2]), glm::dvec3(n[3], n[4], n[5])});
   return pairs;
 }
 

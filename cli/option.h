@@ -10,7 +10,7 @@
 
 namespace frontmost::cli {
 
-enum class Group : std::uint8_t { model, camera, vision, grid, depth, precision, sight, output, look, run };
+enum class Group : std::uint8_t { model, camera, vision, grid, depth, precision, sight, lidar, output, look, run };
 inline constexpr std::string_view group_titles[] = {"Model",
                                                     "Camera, as f3d names it",
                                                     "Camera, as computer vision names it",
@@ -18,6 +18,7 @@ inline constexpr std::string_view group_titles[] = {"Model",
                                                     "Depth buffer, as OpenGL names it",
                                                     "Precision",
                                                     "Points",
+                                                    "The scanner",
                                                     "What to write",
                                                     "How the picture looks",
                                                     "How to run"};
@@ -29,7 +30,8 @@ enum CommandBit : unsigned {
   for_camera = 4,
   may_repeat = 8,
   for_precision = 16,
-  for_sight = 32
+  for_sight = 32,
+  for_lidar = 64
 };
 
 /// The text given for an option, and the words it may be.
@@ -67,6 +69,7 @@ struct Option {
 [[nodiscard]] std::span<const Option> depth_option_table();
 [[nodiscard]] std::span<const Option> precision_option_table();
 [[nodiscard]] std::span<const Option> sight_option_table();
+[[nodiscard]] std::span<const Option> lidar_option_table();
 [[nodiscard]] std::span<const Option> output_option_table();
 [[nodiscard]] std::span<const Option> run_option_table();
 
@@ -74,7 +77,7 @@ struct Option {
 template <class Visit>
 void for_each_option(const Visit& visit) {
   for (const auto table : {view_option_table(), depth_option_table(), precision_option_table(), sight_option_table(),
-                           output_option_table(), run_option_table()}) {
+                           lidar_option_table(), output_option_table(), run_option_table()}) {
     for (const Option& option : table) visit(option);
   }
 }

@@ -30,6 +30,8 @@ void check_method(const Settings& settings, const std::vector<Job>& jobs) {
   }
 }
 
+bool looks_around(const Job& job) { return job.view.camera_model != CameraModel::pinhole; }
+
 /// Without any result asked for, the picture goes to the terminal, if there is one.
 bool shows_on_terminal(const Settings& settings, std::vector<Job>& jobs) {
   if (has_result(settings, jobs)) return false;
@@ -104,13 +106,15 @@ int render_whole(const Run& run) {
   const Surfaces surfaces(scene, execution);
   timings.surfaces = watch.milliseconds();
   std::optional<RayIndex> index;
-  if (settings.run.method == Method::raycast) {
+  const bool all_rays = settings.run.method == Method::raycast;
+  if (all_rays || std::any_of(run.jobs.begin(), run.jobs.end(), looks_around)) {
     watch = {};
     index.emplace(surfaces, execution);
     timings.index = watch.milliseconds();
   }
   const std::vector<ViewResult> results = render_all(run.jobs, settings, progress, [&](const Job& job) {
-    return render_view(job, {surfaces, settings.run, execution, run.on_terminal, index ? &*index : nullptr});
+    const bool by_rays = all_rays || looks_around(job);
+    return render_view(job, {surfaces, settings.run, execution, run.on_terminal, by_rays ? &*index : nullptr});
   });
   timings.total = run.whole.milliseconds();
   report(settings, {surfaces.primitive_count(), scene.warnings}, results, timings);

@@ -3,6 +3,7 @@
 
 #include <frontmost/shade.h>
 
+#include "output_writer.h"
 #include "stopwatch.h"
 #include "view_options.h"
 

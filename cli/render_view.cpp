@@ -7,8 +7,9 @@
 #include <frontmost/shade.h>
 
 #include "blank.h"
-#include "interruption.h"
+#include "output_writer.h"
 #include "reference.h"
+#include "render_around.h"
 #include "sight.h"
 #include "stopwatch.h"
 #include "view_options.h"
@@ -77,17 +78,7 @@ Image primitive_ids(const RenderContext& context, const Sights& sights) {
 Seen summary(const Surfaces& surfaces, const Sights& sights) {
   Seen seen;
   seen.hash = hash_of(sights);
-  const Visible& visible = sights.for_maps().visible;
-  const Image objects = id_image(surfaces, visible, IdKind::object);
-  const std::vector<Instance>& instances = surfaces.scene().instances;
-  std::vector<std::uint64_t> pixels(instances.size());
-  for (const std::uint32_t object : objects.channels.front().integers()) {
-    if (object != no_index) ++pixels[object];
-  }
-  for (std::uint32_t i = 0; i < pixels.size(); ++i) {
-    seen.pixels += pixels[i];
-    if (pixels[i] > 0) seen.objects.push_back({i, instances[i].name, pixels[i]});
-  }
+  count_objects(surfaces, id_image(surfaces, sights.for_maps().visible, IdKind::object), seen);
   return seen;
 }
 
@@ -113,75 +104,6 @@ Image map_of(OutputKind kind, const Job& job, const RenderContext& context, cons
   return {};
 }
 
-/// PFM holds three channels; there the picture is without its alpha.
-Image without_alpha(const Image& picture) {
-  Image copy = picture;
-  if (copy.channels.size() == 4) copy.channels.pop_back();
-  return copy;
-}
-
-void append(Image& image, Image part) {
-  image.width = part.width;
-  image.height = part.height;
-  for (Channel& channel : part.channels) image.channels.push_back(std::move(channel));
-}
-
-SaveOptions save_options(const OutputFile& file, const OutputSettings& settings) {
-  SaveOptions options;
-  options.format = file.format;
-  options.bits = settings.bits;
-  options.depth_scale = settings.depth_scale;
-  return options;
-}
-
-/// What all files of a view are made from.
-struct Source {
-  const Job& job;
-  const RenderContext& context;
-  const Sights& sights;
-  const Image* picture;
-};
-
-void note(const Image& part, OutputKind kind, const OutputFile& file, const Source& source, ViewResult& result) {
-  Result& one = result.results.emplace_back(Result{std::string(kind_name(kind)), file.path, {}});
-  if (source.job.output.hash) one.hash = content_hash(part);
-}
-
-/// The channels of every kind that the file holds.
-Image compose(const OutputFile& file, const Source& source, ViewResult& result) {
-  Image image;
-  for (const OutputKind kind : file.kinds) {
-    Image part;
-    if (kind != OutputKind::picture) {
-      part = map_of(kind, source.job, source.context, source.sights);
-    } else {
-      part = file.format == ImageFormat::pfm ? without_alpha(*source.picture) : *source.picture;
-    }
-    note(part, kind, file, source, result);
-    append(image, std::move(part));
-  }
-  return image;
-}
-
-void save_image(const Image& image, const OutputFile& file, const Source& source, ViewResult& result) {
-  const Stopwatch watch;
-  const WritingFiles writing;
-  save(image, file.path, save_options(file, source.job.output), source.context.execution);
-  result.timings.save += watch.milliseconds();
-}
-
-void write(const OutputFile& file, const Source& source, ViewResult& result) {
-  // A picture on its own is saved as it is: copying one takes as long as finding what is visible.
-  const bool as_it_is =
-      file.kinds.size() == 1 && file.kinds.front() == OutputKind::picture && file.format != ImageFormat::pfm;
-  if (as_it_is) {
-    note(*source.picture, OutputKind::picture, file, source, result);
-    save_image(*source.picture, file, source, result);
-  } else {
-    save_image(compose(file, source, result), file, source, result);
-  }
-}
-
 void warn_if_blank(const Sights& sights, const RenderContext& context, ViewResult& result) {
   if (!is_blank(sights.any())) return;
   // Of a stream, the triangles that are not seen are gone.
@@ -192,11 +114,16 @@ void warn_if_blank(const Sights& sights, const RenderContext& context, ViewResul
 
 }  // namespace
 
-bool wants(const Job& job, OutputKind kind) {
-  for (const OutputFile& file : job.files) {
-    if (std::find(file.kinds.begin(), file.kinds.end(), kind) != file.kinds.end()) return true;
+void count_objects(const Surfaces& surfaces, const Image& objects, Seen& seen) {
+  const std::vector<Instance>& instances = surfaces.scene().instances;
+  std::vector<std::uint64_t> pixels(instances.size());
+  for (const std::uint32_t object : objects.channels.front().integers()) {
+    if (object != no_index) ++pixels[object];
   }
-  return false;
+  for (std::uint32_t i = 0; i < pixels.size(); ++i) {
+    seen.pixels += pixels[i];
+    if (pixels[i] > 0) seen.objects.push_back({i, instances[i].name, pixels[i]});
+  }
 }
 
 SightPlan plan_sights(const Job& job, const RunSettings& run, bool keep_picture, const View& view) {
@@ -209,6 +136,7 @@ SightPlan plan_sights(const Job& job, const RunSettings& run, bool keep_picture,
 }
 
 ViewResult render_view(const Job& job, const RenderContext& context) {
+  if (job.view.camera_model != CameraModel::pinhole) return render_around(job, context);
   ViewResult result;
   result.name = job.name;
   result.depth = job.view.depth;
@@ -229,10 +157,8 @@ void finish_view(const Job& job, const RenderContext& context, const Sights& sig
                     context.execution);
     result.timings.shade = watch.milliseconds();
   }
-  for (const OutputFile& file : job.files) {
-    stop_if_interrupted();
-    write(file, {job, context, sights, picture ? &*picture : nullptr}, result);
-  }
+  const auto map = [&](OutputKind kind) { return map_of(kind, job, context, sights); };
+  write_files({job, context.execution, map, picture ? &*picture : nullptr}, result);
   if (job.output.reference) result.reference = compare_with_reference(*picture, job, context.execution);
   if (context.keep_picture) result.picture = std::move(picture);
 }

@@ -52,6 +52,8 @@ struct ViewResult {
   std::string name;
   View view;
   glm::dvec3 target{0.0};
+  CameraModel camera_model = CameraModel::pinhole;
+  double fisheye_angle = 0;  ///< degrees; of that model
   DepthSettings depth;
   std::optional<Seen> seen;  ///< where --json or --hash ask
   std::vector<Result> results;
@@ -90,11 +92,11 @@ struct SightPlan {
 /// Of `view` only the size counts.
 [[nodiscard]] SightPlan plan_sights(const Job& job, const RunSettings& run, bool keep_picture, const View& view);
 
-/// Whether the job writes this.
-[[nodiscard]] bool wants(const Job& job, OutputKind kind);
-
 /// What comes after looking: shades, and writes every file of the job. `result` holds the view.
 void finish_view(const Job& job, const RenderContext& context, const Sights& sights, ViewResult& result);
+
+/// Fills in the pixels, of all and of each object, from a map of objects.
+void count_objects(const Surfaces& surfaces, const Image& objects, Seen& seen);
 
 /// Finds what is visible, shades, and writes every file of the job.
 [[nodiscard]] ViewResult render_view(const Job& job, const RenderContext& context);

@@ -10,7 +10,7 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr unsigned everywhere = for_render | for_info | for_camera | for_precision | for_sight;
+constexpr unsigned everywhere = for_render | for_info | for_camera | for_precision | for_sight | for_lidar;
 
 Isa isa_from(const Given& given) {
   // The words leave out Isa::best, which is the default.
@@ -33,8 +33,8 @@ constexpr Option table[] = {
      [](Settings& s, const Given& g) {
        s.run.threads = g.integer({0, 1024});
      }},
-    {"isa", 0, "scalar|sse4|avx2|avx512", "Instruction set; the best by default.", Group::run, for_render | for_sight,
-     [](Settings& s, const Given& g) { s.run.isa = isa_from(g); }},
+    {"isa", 0, "scalar|sse4|avx2|avx512", "Instruction set; the best by default.", Group::run,
+     for_render | for_sight | for_lidar, [](Settings& s, const Given& g) { s.run.isa = isa_from(g); }},
     {"repeat", 0, "N", "Find what is visible N times, for timing.", Group::run, for_render,
      [](Settings& s, const Given& g) {
        s.run.repeat = g.integer({1, 1e6});

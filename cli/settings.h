@@ -27,6 +27,9 @@ struct DepthSettings {
   PolygonOffset offset;
 };
 
+/// What the pixels' rays look like; all but pinholes are cast.
+enum class CameraModel : std::uint8_t { pinhole, panorama, fisheye };
+
 /// The camera and the pixel grid.
 struct ViewSettings {
   std::string name;  ///< {view} in file names; empty: derived from the flags
@@ -36,6 +39,8 @@ struct ViewSettings {
   double zoom = 1, azimuth = 0, elevation = 0;
   bool orthographic = false;
   std::optional<int> camera_index;
+  CameraModel camera_model = CameraModel::pinhole;
+  std::optional<double> fisheye_angle;              ///< full, degrees
   std::optional<std::array<double, 4>> intrinsics;  ///< fx, fy, cx, cy
   PixelRule pixel_rule = PixelRule::centre_at_integer;
   std::optional<glm::dmat4> pose;
@@ -107,6 +112,15 @@ struct SightSettings {
   std::optional<std::string> pairs;
 };
 
+/// What frontmost lidar scans with.
+struct LidarSettings {
+  std::optional<glm::dvec3> from, forward;
+  std::optional<int> rings, steps;
+  std::optional<glm::dvec2> elevations;  ///< lowest and highest, degrees
+  std::optional<std::string> directions;
+  std::vector<std::string> outputs;
+};
+
 struct Settings {
   std::string model;
   std::vector<std::string> more_models;  ///< of `render`: drawn together with the first
@@ -114,6 +128,7 @@ struct Settings {
   ViewSettings view;
   PrecisionSettings precision;
   SightSettings sight;
+  LidarSettings lidar;
   OutputSettings output;
   RunSettings run;
 };

@@ -22,6 +22,22 @@ void exclude(const Flag& one, std::initializer_list<Flag> others) {
   }
 }
 
+/// Of a pinhole alone. Rays see both sides of everything, however near or far, and answer once a pixel.
+void check_camera_model(const ViewSettings& s) {
+  const Flag model{"camera-model", s.camera_model != CameraModel::pinhole};
+  exclude(model, {{"camera-orthographic", s.orthographic},
+                  {"camera-view-angle", s.view_angle.has_value()},
+                  {"camera-zoom-factor", s.zoom != 1},
+                  {"intrinsics", s.intrinsics.has_value()},
+                  {"near", s.near.has_value()},
+                  {"far", s.far.has_value()},
+                  {"cull", s.culling != Culling::none},
+                  {"samples", s.samples.value_or(1) != 1}});
+  if (model.is_set && s.depth.is_used) throw UsageError("--camera-model: a depth buffer's state needs a pinhole");
+  if (s.fisheye_angle && s.camera_model != CameraModel::fisheye)
+    throw UsageError("--fov needs --camera-model fisheye; a pinhole has --camera-view-angle");
+}
+
 void need(const Flag& one, const Flag& other) {
   if (one.is_set && !other.is_set) throw UsageError(fmt::format("--{} needs --{}", one.name, other.name));
 }
@@ -38,6 +54,7 @@ void check_view_settings(const ViewSettings& s) {
       intrinsics{"intrinsics", s.intrinsics.has_value()}, pose{"pose", s.pose.has_value()},
       convention{"pose-convention", s.pose_convention.has_value()},
       pixel{"pixel-center", s.pixel_rule != PixelRule::centre_at_integer};
+  check_camera_model(s);
   exclude(pose, {position, focal, direction, up, named, index, azimuth, elevation});
   exclude(index, {position, focal, direction, up, named, orthographic, angle, intrinsics});
   exclude(named, {position, direction});

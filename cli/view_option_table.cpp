@@ -9,7 +9,7 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr unsigned everywhere = for_render | for_info | for_camera | for_precision | for_sight;
+constexpr unsigned everywhere = for_render | for_info | for_camera | for_precision | for_sight | for_lidar;
 constexpr unsigned views = for_render | for_camera | for_precision;
 constexpr int max_side = 16384;
 
@@ -88,6 +88,14 @@ constexpr Option table[] = {
     {"camera-index", 0, "N", "Look through the model's own camera of this number, from 0.", Group::camera, views,
      [](Settings& s, const Given& g) {
        s.view.camera_index = g.integer({0, 1e6});
+     }},
+
+    {"camera-model", 0, "pinhole|panorama|fisheye",
+     "How pixels look: through a pinhole, all around (equirectangular), or by equal angles from the axis.",
+     Group::camera, for_render, [](Settings& s, const Given& g) { s.view.camera_model = g.choice<CameraModel>(); }},
+    {"fov", 0, "DEGREES", "Full field of view of a fisheye, 0.001 to 360; 180 by default.", Group::camera, for_render,
+     [](Settings& s, const Given& g) {
+       s.view.fisheye_angle = g.number({0.001, 360});
      }},
 
     {"intrinsics", 0, "FX,FY,CX,CY", "Pinhole camera matrix, in pixels.", Group::vision, views,

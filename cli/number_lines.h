@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files of numbers, a few on every line.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace frontmost::cli {
+
+/// How many numbers a line holds, and why, as complaints say it: "six numbers make a pair of points".
+struct LineRule {
+  std::size_t count;
+  const char* text;
+};
+
+/// The lines that hold anything, with blanks or commas between the numbers; # starts a comment.
+/// \throws Error file_unreadable, or file_malformed naming the line.
+[[nodiscard]] std::vector<std::vector<double>> read_number_lines(const std::string& path, const LineRule& rule);
+
+}  // namespace frontmost::cli

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writing the files of one view, however it was seen.
+#pragma once
+
+#include <frontmost/image.h>
+
+#include <functional>
+
+#include "render_view.h"
+
+namespace frontmost::cli {
+
+/// What all files of a view are made from.
+struct OutputSource {
+  const Job& job;
+  Execution execution;
+  std::function<Image(OutputKind)> map;  ///< makes the map of a kind, where a file asks for it
+  const Image* picture;                  ///< null where none was asked for
+};
+
+/// Whether the job writes this.
+[[nodiscard]] bool wants(const Job& job, OutputKind kind);
+
+/// Writes every file of the job, and notes it in the result.
+void write_files(const OutputSource& source, ViewResult& result);
+
+}  // namespace frontmost::cli
