@@ -74,7 +74,7 @@ void Lit::operator()(const std::vector<TriangleSetup>& setups, Batch& batch) con
     const bool faces_key = glm::dot(g.normal.at(i), lighting.to_key) > 0;
     batch.shadow[i] = shadow && faces_key ? shadow->light_at(g.smooth_position.at(i), g.plane_normal.at(i)) : 1.0f;
   }
-  light_batch(lighting, batch);
+  light_batch(lighting, batch, isa);
 }
 
 void Flat::operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const {

@@ -15,6 +15,7 @@ struct Lit {
   const MaterialTable& materials;
   const Lighting& lighting;
   const ShadowMap* shadow;
+  Isa isa;
   void operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const;
 };
 

@@ -218,7 +218,7 @@ Planes paint_materials(const Surfaces& surfaces, const Visible& visible, const S
     shadow.emplace(*options.seen_by_light, visible.view.eye(), execution);
   else if (options.shadows)
     shadow.emplace(materials.casters(surfaces), visible, glm::dvec3(lighting.to_key), execution);
-  return paint(Lit{materials.table(), lighting, shadow ? &*shadow : nullptr});
+  return paint(Lit{materials.table(), lighting, shadow ? &*shadow : nullptr, execution.isa});
 }
 
 Planes paint_map(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options,

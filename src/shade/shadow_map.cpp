@@ -109,18 +109,21 @@ std::optional<View> view_of_light(const Visible& visible, const Box& bounds, con
 }
 
 ShadowMap::ShadowMap(const Surfaces& surfaces, const Visible& visible, const glm::dvec3& to_light,
-                     const Execution& execution) {
+                     const Execution& execution)
+    : filter_(shadow_filter(execution.isa)) {
   const std::optional<View> light = view_of_light(visible, surfaces.bounds(), to_light, execution);
   if (!light) return;
   set_up(*light, visible.view.eye());
   keys_ = std::move(zbuffer(surfaces, *light, execution).keys);
   find_nearest(execution);
+  transpose(execution);
 }
 
 ShadowMap::ShadowMap(const Visible& seen_by_light, const glm::dvec3& eye, const Execution& execution)
-    : keys_(seen_by_light.keys) {
+    : filter_(shadow_filter(execution.isa)), keys_(seen_by_light.keys) {
   set_up(seen_by_light.view, eye);
   find_nearest(execution);
+  transpose(execution);
 }
 
 void ShadowMap::set_up(const View& light, const glm::dvec3& eye) {
@@ -163,6 +166,29 @@ void ShadowMap::find_nearest(const Execution& execution) {
   });
 }
 
+void ShadowMap::transpose(const Execution& execution) {
+  // Squares of one cache line a row, by way of a copy: rows 4 KiB apart share the same few sets of the cache.
+  constexpr std::size_t side = 16;
+  const auto size = std::size_t(size_);
+  const auto take = [&](std::size_t x, std::size_t y, float(&square)[side][side]) {
+    for (std::size_t j = 0; j < side; ++j) std::copy_n(keys_.data() + (y + j) * size + x, side, square[j]);
+  };
+  const auto put = [&](std::size_t x, std::size_t y, const float(&square)[side][side]) {
+    for (std::size_t j = 0; j < side; ++j)
+      for (std::size_t i = 0; i < side; ++i) keys_[(y + j) * size + x + i] = square[i][j];
+  };
+  parallel_for(execution, size / side, 1, [&](std::size_t begin, std::size_t end) {
+    float here[side][side], there[side][side];
+    for (std::size_t y = begin * side; y < end * side; y += side)
+      for (std::size_t x = 0; x <= y; x += side) {
+        take(x, y, here);
+        take(y, x, there);
+        put(x, y, there);
+        put(y, x, here);
+      }
+  });
+}
+
 float ShadowMap::light_at(const glm::vec3& position, const glm::vec3& plane_normal) const {
   if (size_ == 0) return 1.0f;
   const glm::vec2 texel(glm::dot(texel_x_, position) + at_eye_.x, glm::dot(texel_y_, position) + at_eye_.y);
@@ -183,15 +209,15 @@ float ShadowMap::filtered(const glm::vec2& texel, float key) const {
   const int x0 = int(first.x), y0 = int(first.y);
   if (key >= nearest_[std::size_t(y0) * std::size_t(size_) + std::size_t(x0)]) return 1.0f;
   // A tent, so that edges fade without steps. Its weights at whole texels always sum to half * half.
-  float across[taps], sum = 0;
-  for (int i = 0; i < taps; ++i) across[i] = std::max(0.0f, half - std::abs(float(x0 + i) + 0.5f - texel.x));
-  for (int j = 0; j < taps; ++j) {
-    const float* row = keys_.data() + std::size_t(y0 + j) * std::size_t(size_) + std::size_t(x0);
-    float lit = 0;
-    for (int i = 0; i < taps; ++i) lit += row[i] <= key ? across[i] : 0.0f;
-    sum += lit * std::max(0.0f, half - std::abs(float(y0 + j) + 0.5f - texel.y));
+  ShadowWindow window;
+  window.keys = keys_.data() + std::size_t(x0) * std::size_t(size_) + std::size_t(y0);
+  window.stride = std::size_t(size_);
+  window.key = key;
+  for (int i = 0; i < taps; ++i) {
+    window.across[i] = std::max(0.0f, half - std::abs(float(x0 + i) + 0.5f - texel.x));
+    window.down[i] = std::max(0.0f, half - std::abs(float(y0 + i) + 0.5f - texel.y));
   }
-  return sum * (1.0f / (half * half * half * half));
+  return filter_(window) * (1.0f / (half * half * half * half));
 }
 
 }  // namespace frontmost::shading

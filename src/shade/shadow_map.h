@@ -7,6 +7,7 @@
 #include "frontmost/surfaces.h"
 #include "frontmost/visible.h"
 #include "shade/screen_rays.h"
+#include "shade/shadow_filter.h"
 
 namespace frontmost::shading {
 
@@ -28,14 +29,16 @@ class ShadowMap {
   [[nodiscard]] float light_at(const glm::vec3& position, const glm::vec3& plane_normal) const;
 
  private:
-  static constexpr int taps = 8;  ///< of the filter along each axis
+  static constexpr int taps = shadow_taps;
 
   void set_up(const View& light, const glm::dvec3& eye);
   void find_nearest(const Execution& execution);
+  void transpose(const Execution& execution);
   [[nodiscard]] float filtered(const glm::vec2& texel, float key) const;
 
+  ShadowFilter filter_;
   int size_ = 0;           ///< texels along each side; 0: no map
-  Buffer<float> keys_;     ///< greater is nearer to the light
+  Buffer<float> keys_;     ///< by columns; greater is nearer to the light
   Buffer<float> nearest_;  ///< the greatest of the filter's keys, by its first texel: most points are lit by all
   glm::vec3 to_light_{0};
   glm::vec3 texel_x_{0}, texel_y_{0}, key_{0};  ///< what a step in the world changes

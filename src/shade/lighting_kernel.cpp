@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plain loops over lanes with nothing but + - * / and square roots: the compiler takes several fragments at a time,
-// and every machine gives the same bits.
+// Plain loops over lanes with nothing but + - * / and square roots, compiled once for each instruction set: the
+// compiler takes several fragments at a time, and every machine gives the same bits.
 
 #include "shade/lighting.h"
 
-#include <algorithm>
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "shade/lighting_kernel.cpp"
 #include <cmath>
 
+#include "base/isa.h"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
 namespace frontmost::shading {
+namespace HWY_NAMESPACE {
 namespace {
 
 struct Direction {
@@ -104,6 +111,33 @@ inline float shaded(const Terms& t, const Colors& light, const Response& m) {
 
 }  // namespace
 
+void LightBatch(const Lighting& lighting, Batch& batch) {
+  const Reflectance& m = batch.material;
+  for (int i = 0; i < batch.coverage.count; ++i) {
+    const Terms t = terms_of(lighting, batch, i);
+    const float metallic = clamp01(m.metallic[i]), occlusion = m.occlusion[i];
+    const bool is_unlit = m.unlit[i] > 0.5f;
+    const float r = shaded(t, {lighting.key.x, lighting.sky.x, lighting.ground.x, lighting.key.x * lighting.box},
+                           {m.base.x[i], metallic, occlusion, m.emissive.x[i]});
+    const float g = shaded(t, {lighting.key.y, lighting.sky.y, lighting.ground.y, lighting.key.y * lighting.box},
+                           {m.base.y[i], metallic, occlusion, m.emissive.y[i]});
+    const float b = shaded(t, {lighting.key.z, lighting.sky.z, lighting.ground.z, lighting.key.z * lighting.box},
+                           {m.base.z[i], metallic, occlusion, m.emissive.z[i]});
+    batch.light.x[i] = clamp01(is_unlit ? m.base.x[i] : r);
+    batch.light.y[i] = clamp01(is_unlit ? m.base.y[i] : g);
+    batch.light.z[i] = clamp01(is_unlit ? m.base.z[i] : b);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace frontmost::shading
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace frontmost::shading {
+
+FRONTMOST_KERNELS(LightBatch);
+
 Lighting lighting_for(const View& view, Axis up) {
   Lighting lighting;
   const glm::dvec3 towards = -0.48 * view.right() + 0.68 * view.up() - 0.72 * view.forward();
@@ -112,22 +146,9 @@ Lighting lighting_for(const View& view, Axis up) {
   return lighting;
 }
 
-void light_batch(const Lighting& lighting, Batch& batch) {
-  const Reflectance& m = batch.material;
-  const auto finish = [&](float lit, float base, int i) { return clamp01(m.unlit[i] > 0.5f ? base : lit); };
-  for (int i = 0; i < batch.coverage.count; ++i) {
-    const Terms t = terms_of(lighting, batch, i);
-    const float metallic = clamp01(m.metallic[i]), occlusion = m.occlusion[i];
-    const float r = shaded(t, {lighting.key.x, lighting.sky.x, lighting.ground.x, lighting.key.x * lighting.box},
-                           {m.base.x[i], metallic, occlusion, m.emissive.x[i]});
-    const float g = shaded(t, {lighting.key.y, lighting.sky.y, lighting.ground.y, lighting.key.y * lighting.box},
-                           {m.base.y[i], metallic, occlusion, m.emissive.y[i]});
-    const float b = shaded(t, {lighting.key.z, lighting.sky.z, lighting.ground.z, lighting.key.z * lighting.box},
-                           {m.base.z[i], metallic, occlusion, m.emissive.z[i]});
-    batch.light.x[i] = finish(r, m.base.x[i], i);
-    batch.light.y[i] = finish(g, m.base.y[i], i);
-    batch.light.z[i] = finish(b, m.base.z[i], i);
-  }
+void light_batch(const Lighting& lighting, Batch& batch, Isa isa) {
+  kernel_for(LightBatchKernels, isa)(lighting, batch);
 }
 
 }  // namespace frontmost::shading
+#endif  // HWY_ONCE
