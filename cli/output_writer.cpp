@@ -9,6 +9,10 @@
 namespace frontmost::cli {
 namespace {
 
+bool is_picture_alone(const OutputFile& file) {
+  return file.kinds.size() == 1 && file.kinds.front() == OutputKind::picture;
+}
+
 /// PFM holds three channels; there the picture is without its alpha.
 Image without_alpha(const Image& picture) {
   Image copy = picture;
@@ -51,7 +55,8 @@ Image compose(const OutputFile& file, const OutputSource& source, ViewResult& re
   return image;
 }
 
-void save_image(const Image& image, const OutputFile& file, const OutputSource& source, ViewResult& result) {
+template <class Picture>
+void save_image(const Picture& image, const OutputFile& file, const OutputSource& source, ViewResult& result) {
   const Stopwatch watch;
   const WritingFiles writing;
   save(image, file.path, save_options(file, source.job.output), source.execution);
@@ -60,9 +65,11 @@ void save_image(const Image& image, const OutputFile& file, const OutputSource& 
 
 void write(const OutputFile& file, const OutputSource& source, ViewResult& result) {
   // A picture on its own is saved as it is: copying one takes as long as finding what is visible.
-  const bool as_it_is =
-      file.kinds.size() == 1 && file.kinds.front() == OutputKind::picture && file.format != ImageFormat::pfm;
-  if (as_it_is) {
+  const bool as_it_is = is_picture_alone(file) && file.format != ImageFormat::pfm;
+  if (as_it_is && source.bitmap) {
+    result.results.push_back({std::string(kind_name(OutputKind::picture)), file.path, {}});
+    save_image(*source.bitmap, file, source, result);
+  } else if (as_it_is) {
     note(*source.picture, OutputKind::picture, file, source, result);
     save_image(*source.picture, file, source, result);
   } else {
@@ -77,6 +84,14 @@ bool wants(const Job& job, OutputKind kind) {
     if (std::find(file.kinds.begin(), file.kinds.end(), kind) != file.kinds.end()) return true;
   }
   return false;
+}
+
+bool needs_only_bitmap(const Job& job) {
+  if (job.output.reference || job.output.hash || job.output.bits != 8) return false;
+  return std::all_of(job.files.begin(), job.files.end(), [](const OutputFile& file) {
+    if (is_picture_alone(file)) return file.format == ImageFormat::png;
+    return std::find(file.kinds.begin(), file.kinds.end(), OutputKind::picture) == file.kinds.end();
+  });
 }
 
 void write_files(const OutputSource& source, ViewResult& result) {

@@ -150,15 +150,19 @@ void finish_view(const Job& job, const RenderContext& context, const Sights& sig
   if (job.output.hash || context.run.json) result.seen = summary(context.surfaces, sights);
   warn_if_blank(sights, context, result);
   std::optional<Image> picture;
+  std::optional<Bitmap> bitmap;
   if (sights.picture) {
     const Stopwatch watch;
-    picture = shade(context.surfaces, sights.picture->visible,
-                    {job.output.shading, job.output.background, !job.output.no_shadows, sights.seen_by_light},
-                    context.execution);
+    const Visible& visible = sights.picture->visible;
+    const ShadeOptions options{job.output.shading, job.output.background, !job.output.no_shadows, sights.seen_by_light};
+    if (!context.keep_picture && needs_only_bitmap(job))
+      bitmap = shade_bitmap(context.surfaces, visible, options, context.execution);
+    else
+      picture = shade(context.surfaces, visible, options, context.execution);
     result.timings.shade = watch.milliseconds();
   }
   const auto map = [&](OutputKind kind) { return map_of(kind, job, context, sights); };
-  write_files({job, context.execution, map, picture ? &*picture : nullptr}, result);
+  write_files({job, context.execution, map, picture ? &*picture : nullptr, bitmap ? &*bitmap : nullptr}, result);
   if (job.output.reference) result.reference = compare_with_reference(*picture, job, context.execution);
   if (context.keep_picture) result.picture = std::move(picture);
 }

@@ -34,9 +34,18 @@ struct Image {
   [[nodiscard]] Channel* find(std::string_view name);
 };
 
+/// A picture as screens and 8-bit PNG want it: sRGB, straight alpha, four bytes a pixel (R, G, B, A), rows top to
+/// bottom.
+struct Bitmap {
+  int width = 0, height = 0;
+  Buffer<std::uint8_t> rgba;
+};
+
 /// \throws Error bad_argument for sizes that are not 1 to 2^20, no channels, two of one name, or planes that do not
 /// have width * height values.
 void validate(const Image& image);
+/// \throws Error bad_argument for such sizes, or bytes that are not four a pixel.
+void validate(const Bitmap& bitmap);
 
 /// Maps of a Visible's first sample (sample 0 of views with more samples than one), one channel each.
 /// "Z": planar depth; +inf, or `background`, where nothing is seen.

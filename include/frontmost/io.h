@@ -49,6 +49,11 @@ struct SaveOptions {
 void save(const Image& image, const std::string& path, const SaveOptions& options = {},
           const Execution& execution = {});
 
+/// The same for a bitmap, which only PNG takes; the file is that of the image to the byte. Of the options, only the
+/// format counts.
+void save(const Bitmap& bitmap, const std::string& path, const SaveOptions& options = {},
+          const Execution& execution = {});
+
 /// Writes text, such as an SVG drawing, with the same care: whole or not at all. \throws Error file_unwritable.
 void save_text(std::string_view text, const std::string& path);
 

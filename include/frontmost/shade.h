@@ -41,6 +41,11 @@ struct ShadeOptions {
 [[nodiscard]] Image shade(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
                           const Execution& execution = {});
 
+/// The same picture as a PNG file of shade()'s holds it, to the byte, without the planes of floats that are four times
+/// as large: for pictures that are only to be shown or saved.
+[[nodiscard]] Bitmap shade_bitmap(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
+                                  const Execution& execution = {});
+
 /// A picture of a scan, one sample a pixel: `lit` by a light at the eye, from base colours without textures and the
 /// planes of the triangles, all opaque and without shadows; `normals` are those of the planes, and `depth` is the
 /// range. O(pixels). \throws Error unsupported for Shading::uv.

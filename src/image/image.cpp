@@ -30,6 +30,14 @@ class WordHash {
   std::uint64_t value_ = 0xCBF29CE484222325u;
 };
 
+[[noreturn]] void fail(const std::string& reason) { throw Error(ErrorCode::bad_argument, "image: " + reason); }
+
+void validate_size(int width, int height) {
+  constexpr int most = 1 << 20;  // keeps every product of sizes far below 64 bits
+  if (width < 1 || height < 1 || width > most || height > most)
+    fail(std::to_string(width) + " x " + std::to_string(height) + " pixels");
+}
+
 }  // namespace
 
 const Channel* Image::find(std::string_view name) const {
@@ -41,10 +49,7 @@ const Channel* Image::find(std::string_view name) const {
 Channel* Image::find(std::string_view name) { return const_cast<Channel*>(std::as_const(*this).find(name)); }
 
 void validate(const Image& image) {
-  const auto fail = [](const std::string& reason) { throw Error(ErrorCode::bad_argument, "image: " + reason); };
-  constexpr int most = 1 << 20;  // keeps every product of sizes far below 64 bits
-  if (image.width < 1 || image.height < 1 || image.width > most || image.height > most)
-    fail(std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels");
+  validate_size(image.width, image.height);
   if (image.channels.empty()) fail("no channels");
   const std::size_t count = std::size_t(image.width) * std::size_t(image.height);
   for (const Channel& channel : image.channels) {
@@ -52,6 +57,12 @@ void validate(const Image& image) {
       fail("channel " + channel.name + " does not have width x height values");
     if (image.find(channel.name) != &channel) fail("two channels are named " + channel.name);
   }
+}
+
+void validate(const Bitmap& bitmap) {
+  validate_size(bitmap.width, bitmap.height);
+  if (bitmap.rgba.size() != 4 * std::size_t(bitmap.width) * std::size_t(bitmap.height))
+    fail("a bitmap does not have four bytes a pixel");
 }
 
 std::uint64_t content_hash(const Image& image) {

@@ -2,8 +2,10 @@
 // The colours of an image as screens and PNG want them: sRGB, straight alpha.
 #pragma once
 
+#include <limits>
 #include <optional>
 
+#include "base/srgb.h"
 #include "frontmost/image.h"
 
 namespace frontmost {
@@ -20,6 +22,30 @@ struct ColorPlanes {
 
 /// R, G, B and, where there is one, A. None where one of the three is missing or holds integers.
 [[nodiscard]] std::optional<ColorPlanes> color_planes(const Image& image);
+
+/// 0 to 1 as 0 to `most`, rounded. Values out of range are clamped, NaN gives 0.
+template <class Value>
+[[nodiscard]] Value rounded_fraction(float fraction) {
+  constexpr float most = float(std::numeric_limits<Value>::max());
+  const float above = fraction > 0 ? fraction : 0.0f;  // false for NaN
+  return Value(double(above < 1 ? above : 1.0f) * most + 0.5);
+}
+
+/// The premultiplied colours of one pixel as sRGB with straight alpha; those of alpha 0 are black.
+template <class Value>
+void store_srgb(const float (&color)[3], float alpha, Value* out) {
+  const auto value = [](float linear) {
+    if constexpr (sizeof(Value) == 1) return srgb8_of_linear(linear);
+    if constexpr (sizeof(Value) == 2) return srgb16_of_linear(linear);
+  };
+  if (alpha >= 1.0f) {
+    for (int k = 0; k < 3; ++k) out[k] = value(color[k]);
+  } else if (alpha > 0.0f) {
+    for (int k = 0; k < 3; ++k) out[k] = value(color[k] / alpha);
+  } else {
+    out[0] = out[1] = out[2] = 0;
+  }
+}
 
 /// Row y as bytes R, G, B, or R, G, B, A. Values out of range are clamped, NaN gives 0, and the colour of pixels with
 /// alpha 0 is black.

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "base/parallel.h"
+#include "shade/canvas.h"
 #include "shade/colorists.h"
 #include "shade/opaque_layer.h"
 
@@ -13,32 +14,6 @@ namespace frontmost {
 namespace {
 
 using namespace shading;
-
-/// The four planes of a picture while tiles are written into them.
-struct Planes {
-  int width, height;
-  Buffer<float> values[4];
-
-  Planes(int w, int h) : width(w), height(h) {
-    for (Buffer<float>& plane : values) plane = Buffer<float>(std::size_t(w) * std::size_t(h));
-  }
-  [[nodiscard]] std::size_t row(const TileRectangle& tile, int y) const {
-    return std::size_t(tile.y + y) * std::size_t(width) + std::size_t(tile.x);
-  }
-  void fill(const TileRectangle& tile, const glm::vec4& value) {
-    for (int k = 0; k < 4; ++k)
-      for (int y = 0; y < tile.height; ++y) std::fill_n(values[k].data() + row(tile, y), tile.width, value[k]);
-  }
-  /// `pixels` are premultiplied.
-  void write(const TileRectangle& tile, const std::vector<glm::vec4>& pixels, const glm::vec4& background) {
-    for (int k = 0; k < 4; ++k)
-      for (int y = 0; y < tile.height; ++y) {
-        const glm::vec4* in = pixels.data() + y * tile.width;
-        float* out = values[k].data() + row(tile, y);
-        for (int x = 0; x < tile.width; ++x) out[x] = in[x][k] + background[k] * (1.0f - in[x].a);
-      }
-  }
-};
 
 /// A Visible and what its triangles are set up from.
 struct Layer {
@@ -48,6 +23,7 @@ struct Layer {
 
 /// How a picture is made of its layers.
 struct Painting {
+  Canvas& canvas;
   const TileWork::Colorist& colorist;
   glm::vec4 background;  ///< what an empty pixel gets
   SampleUse use = SampleUse::all;
@@ -62,12 +38,12 @@ class TileRow {
     if (behind) behind_ = std::make_unique<TileWork>(behind->source, behind->visible, painting.use, painting.colorist);
   }
 
-  void shade(const TileRectangle& tile, Planes& planes) {
+  void shade(const TileRectangle& tile, Canvas& canvas) {
     if (front_->shade(tile)) {
       if (behind_ && front_->is_see_through() && behind_->shade(tile)) front_->put_behind(*behind_);
-      planes.write(tile, front_->pixels(), background_);
+      canvas.write(tile, front_->pixels(), background_);
     } else {
-      planes.fill(tile, background_);
+      canvas.fill(tile, background_);
     }
   }
 
@@ -77,26 +53,18 @@ class TileRow {
 };
 
 /// Shades all tiles, one row of tiles to a thread at a time. `behind` may be null.
-Planes shade_tiles(const Layer& front, const Layer* behind, const Painting& painting, const Execution& execution) {
+void shade_tiles(const Layer& front, const Layer* behind, const Painting& painting, const Execution& execution) {
   const View& view = front.visible.view;
-  Planes planes(view.width, view.height);
   const auto rows = std::size_t((view.height + tile_height - 1) / tile_height);
   parallel_for(execution, rows, 1, [&](std::size_t begin, std::size_t end) {
     TileRow work(front, behind, painting);
     for (std::size_t row = begin; row < end; ++row)
       for (int x = 0; x < view.width; x += tile_width) {
         const int y = int(row) * tile_height;
-        work.shade({x, y, std::min(tile_width, view.width - x), std::min(tile_height, view.height - y)}, planes);
+        work.shade({x, y, std::min(tile_width, view.width - x), std::min(tile_height, view.height - y)},
+                   painting.canvas);
       }
   });
-  return planes;
-}
-
-Image image_of(Planes planes, std::initializer_list<const char*> names) {
-  Image image{planes.width, planes.height, {}};
-  int k = 0;
-  for (const char* name : names) image.channels.push_back({name, std::move(planes.values[k++])});
-  return image;
 }
 
 glm::vec4 background_color(const ShadeOptions& options) {
@@ -181,11 +149,11 @@ class Materials {
   /// What throws shadows: glass does not, and of leaves only the outline of the card they are drawn on is known.
   [[nodiscard]] const Surfaces& casters(const Surfaces& all) const { return opaque_ ? opaque_->surfaces() : all; }
 
-  [[nodiscard]] Planes paint(const Painting& painting, const Execution& execution) const {
+  void paint(const Painting& painting, const Execution& execution) const {
     const Layer front{*front_.source, visible_};
     if (!opaque_) return shade_tiles(front, nullptr, painting, execution);
     const Layer behind{*behind_->source, opaque_->visible()};
-    return shade_tiles(front, &behind, painting, execution);
+    shade_tiles(front, &behind, painting, execution);
   }
 
  private:
@@ -196,19 +164,23 @@ class Materials {
   std::optional<MaterialTable> table_;
 };
 
+/// All that a picture is made from.
+struct Request {
+  const Surfaces& surfaces;
+  const Visible& visible;
+  const ShadeOptions& options;
+  const Execution& execution;
+};
+
 bool shows_materials(Shading shading) {
   return shading == Shading::lit || shading == Shading::flat || shading == Shading::normals;
 }
 
-}  // namespace
-
-namespace {
-
-Planes paint_materials(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options,
-                       const Execution& execution) {
+void paint_materials(const Request& request, Canvas& canvas) {
+  const auto& [surfaces, visible, options, execution] = request;
   const Materials materials(surfaces, visible, execution);
   const auto paint = [&](const TileWork::Colorist& colorist) {
-    return materials.paint({colorist, background_color(options)}, execution);
+    materials.paint({canvas, colorist, background_color(options)}, execution);
   };
   if (options.shading == Shading::flat) return paint(Flat{materials.table()});
   if (options.shading == Shading::normals) return paint(Normals{materials.table()});
@@ -218,26 +190,38 @@ Planes paint_materials(const Surfaces& surfaces, const Visible& visible, const S
     shadow.emplace(*options.seen_by_light, visible.view.eye(), execution);
   else if (options.shadows)
     shadow.emplace(materials.casters(surfaces), visible, glm::dvec3(lighting.to_key), execution);
-  return paint(Lit{materials.table(), lighting, shadow ? &*shadow : nullptr, execution.isa});
+  paint(Lit{materials.table(), lighting, shadow ? &*shadow : nullptr, execution.isa});
 }
 
-Planes paint_map(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options,
-                 const Execution& execution) {
+void paint_map(const Request& request, Canvas& canvas) {
+  const auto& [surfaces, visible, options, execution] = request;
   const TriangleSource source(surfaces, visible.view, nullptr, execution);
   const auto paint = [&](const TileWork::Colorist& colorist) {
-    return shade_tiles({source, visible}, nullptr, {colorist, background_color(options)}, execution);
+    shade_tiles({source, visible}, nullptr, {canvas, colorist, background_color(options)}, execution);
   };
   if (options.shading == Shading::ids) return paint(Ids{});
   if (options.shading == Shading::uv) return paint(Texcoords{});
   const DepthRange range = depth_range(visible, execution);
-  return paint(Depths{glm::vec3(visible.view.forward()), range.nearest, range.farthest});
+  paint(Depths{glm::vec3(visible.view.forward()), range.nearest, range.farthest});
+}
+
+void paint(const Request& request, Canvas& canvas) {
+  shows_materials(request.options.shading) ? paint_materials(request, canvas) : paint_map(request, canvas);
 }
 
 }  // namespace
 
 Image shade(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options, const Execution& execution) {
-  const auto paint = shows_materials(options.shading) ? paint_materials : paint_map;
-  return image_of(paint(surfaces, visible, options, execution), {"R", "G", "B", "A"});
+  PlanesCanvas canvas(visible.view, {"R", "G", "B", "A"});
+  paint({surfaces, visible, options, execution}, canvas);
+  return canvas.take();
+}
+
+Bitmap shade_bitmap(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options,
+                    const Execution& execution) {
+  BitmapCanvas canvas(visible.view);
+  paint({surfaces, visible, options, execution}, canvas);
+  return canvas.take();
 }
 
 std::optional<View> key_light_view(const Visible& visible, const Box& bounds, Axis up, const Execution& execution) {
@@ -248,9 +232,9 @@ Image normal_image(const Surfaces& surfaces, const Visible& visible, const Execu
   const MaterialTable table(surfaces.scene(), needed_materials(surfaces, visible, execution), execution);
   const Triangles triangles(surfaces, visible, execution);
   const TileWork::Colorist colorist = RawNormals{table};
-  return image_of(
-      shade_tiles({*triangles.source, visible}, nullptr, {colorist, glm::vec4(0), SampleUse::first}, execution),
-      {"N.X", "N.Y", "N.Z"});
+  PlanesCanvas canvas(visible.view, {"N.X", "N.Y", "N.Z"});
+  shade_tiles({*triangles.source, visible}, nullptr, {canvas, colorist, glm::vec4(0), SampleUse::first}, execution);
+  return canvas.take();
 }
 
 }  // namespace frontmost

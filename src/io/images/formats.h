@@ -14,6 +14,7 @@ namespace frontmost::detail {
 /// Writers get images whose planes have the right sizes. They throw Error unsupported, naming the file and what the
 /// format cannot hold, before anything is written.
 void save_png(const Image& image, const SaveOptions& options, OutputFile& file, const Execution& execution);
+void save_png(const Bitmap& bitmap, OutputFile& file, const Execution& execution);
 void save_exr(const Image& image, OutputFile& file, const Execution& execution);
 void save_pfm(const Image& image, OutputFile& file);
 void save_npy(const Image& image, OutputFile& file);

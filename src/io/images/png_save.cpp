@@ -47,6 +47,27 @@ PngContents colors(const ColorPlanes& planes, int bits) {
   return contents;
 }
 
+PngContents colors(const Bitmap& bitmap) {
+  constexpr std::size_t bytes = 4;  // of a pixel
+  const std::size_t size = bitmap.rgba.size();
+  std::uint8_t least = 255;
+  for (std::size_t i = bytes - 1; i < size; i += bytes) least = std::min(least, bitmap.rgba[i]);
+  const bool with_alpha = least < 255;
+  PngContents contents;
+  contents.color = with_alpha ? Color::rgba : Color::rgb;
+  contents.row = [&bitmap, with_alpha](int y, std::uint8_t* row) {
+    const std::size_t width = std::size_t(bitmap.width);
+    const std::uint8_t* in = bitmap.rgba.data() + bytes * width * std::size_t(y);
+    if (with_alpha) {
+      std::copy_n(in, bytes * width, row);
+    } else {
+      for (std::size_t x = 0; x < width; ++x)
+        for (std::size_t k = 0; k < 3; ++k) row[3 * x + k] = in[bytes * x + k];
+    }
+  };
+  return contents;
+}
+
 /// Directions: zero is the middle value, exactly, and 1 the greatest.
 PngContents directions(const Image& image, int bits) {
   PngContents contents;
@@ -165,6 +186,13 @@ void save_png(const Image& image, const SaveOptions& options, OutputFile& file, 
   PngContents contents = contents_of(image, options, file.name());
   contents.width = image.width;
   contents.height = image.height;
+  write_png(contents, file, execution);
+}
+
+void save_png(const Bitmap& bitmap, OutputFile& file, const Execution& execution) {
+  PngContents contents = colors(bitmap);
+  contents.width = bitmap.width;
+  contents.height = bitmap.height;
   write_png(contents, file, execution);
 }
 

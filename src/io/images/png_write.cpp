@@ -10,6 +10,8 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <memory>
+#include <mutex>
 #include <string_view>
 
 #include "base/parallel.h"
@@ -59,13 +61,70 @@ Bytes head(const PngContents& contents) {
   return bytes;
 }
 
+/// zlib's state of a quarter of a megabyte, used for one strip after the other.
+class Deflater {
+ public:
+  Deflater() {
+    constexpr int level = 1, raw_window_bits = -15, memory = 8;
+    if (::deflateInit2(&stream_, level, Z_DEFLATED, raw_window_bits, memory, Z_RLE) != Z_OK) throw std::bad_alloc();
+  }
+  ~Deflater() { ::deflateEnd(&stream_); }
+  Deflater(const Deflater&) = delete;
+  Deflater& operator=(const Deflater&) = delete;
+
+  /// Compresses `raw` to `out`. \returns the number of bytes.
+  std::size_t run(std::span<std::uint8_t> raw, std::span<std::uint8_t> out, bool last) {
+    ::deflateReset(&stream_);
+    stream_.next_in = raw.data();
+    stream_.avail_in = uInt(raw.size());
+    stream_.next_out = out.data();
+    stream_.avail_out = uInt(out.size());
+    ::deflate(&stream_, last ? Z_FINISH : Z_FULL_FLUSH);  // `out` is as large as the worst case, so one call does it
+    return stream_.total_out;
+  }
+
+ private:
+  z_stream stream_{};
+};
+
+/// What a thread needs to make strips. Kept from strip to strip: the first touch of fresh memory costs more than the
+/// filter.
+struct Workspace {
+  Buffer<std::uint8_t> raw, row, above;
+  Deflater deflater;
+
+  Workspace(std::size_t rows, std::size_t row_size) : raw(rows * (row_size + 1)), row(row_size), above(row_size) {}
+};
+
+/// As many as there are threads at work at once.
+class Workspaces {
+ public:
+  Workspaces(std::size_t rows, std::size_t row_size) : rows_(rows), row_size_(row_size) {}
+
+  [[nodiscard]] std::unique_ptr<Workspace> take() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return std::make_unique<Workspace>(rows_, row_size_);
+    std::unique_ptr<Workspace> one = std::move(free_.back());
+    free_.pop_back();
+    return one;
+  }
+  void give_back(std::unique_ptr<Workspace> one) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(one));
+  }
+
+ private:
+  std::size_t rows_, row_size_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Workspace>> free_;
+};
+
 /// Rows of a strip after filtering: Up, except for the first, which must not look at another strip.
-Buffer<std::uint8_t> filtered_rows(const PngContents& contents, int first, int end) {
+std::span<std::uint8_t> filtered_rows(const PngContents& contents, int first, int end, Workspace& space) {
   const std::size_t pixel = contents.pixel_bytes();
   const std::size_t size = std::size_t(contents.width) * pixel;
-  Buffer<std::uint8_t> result(std::size_t(end - first) * (size + 1));
-  Buffer<std::uint8_t> row(size), above(size);
-  std::uint8_t* out = result.data();
+  Buffer<std::uint8_t>&raw = space.raw, &row = space.row, &above = space.above;
+  std::uint8_t* out = raw.data();
   for (int y = first; y < end; ++y, out += size + 1) {
     contents.row(y, row.data());
     out[0] = std::uint8_t(y == first ? Filter::sub : Filter::up);
@@ -77,7 +136,7 @@ Buffer<std::uint8_t> filtered_rows(const PngContents& contents, int first, int e
     }
     row.swap(above);
   }
-  return result;
+  return {raw.data(), out};
 }
 
 /// One IDAT chunk, ready to be written.
@@ -88,25 +147,11 @@ struct Strip {
   uLong checksum = 0;  ///< Adler-32 of the raw bytes
 };
 
-/// Compresses `raw` to `out`. \returns the number of bytes.
-std::size_t deflate_strip(std::span<std::uint8_t> raw, std::span<std::uint8_t> out, bool last) {
-  z_stream stream{};
-  constexpr int level = 1, raw_window_bits = -15, memory = 8;
-  if (::deflateInit2(&stream, level, Z_DEFLATED, raw_window_bits, memory, Z_RLE) != Z_OK) throw std::bad_alloc();
-  stream.next_in = raw.data();
-  stream.avail_in = uInt(raw.size());
-  stream.next_out = out.data();
-  stream.avail_out = uInt(out.size());
-  ::deflate(&stream, last ? Z_FINISH : Z_FULL_FLUSH);  // `out` is as large as the worst case, so one call does it
-  ::deflateEnd(&stream);
-  return stream.total_out;
-}
-
 /// zlib's bound for any settings, and room for the empty block of a flush and what makes it a chunk.
 std::size_t worst_case(std::size_t raw) { return ::deflateBound(nullptr, uLong(raw)) + 64; }
 
-Strip make_strip(const PngContents& contents, int first, int end) {
-  Buffer<std::uint8_t> raw = filtered_rows(contents, first, end);
+Strip make_strip(const PngContents& contents, int first, int end, Workspace& space) {
+  const std::span<std::uint8_t> raw = filtered_rows(contents, first, end, space);
   Strip strip;
   strip.raw_size = raw.size();
   strip.checksum = ::adler32(1, raw.data(), uInt(raw.size()));
@@ -119,7 +164,7 @@ Strip make_strip(const PngContents& contents, int first, int end) {
     *data++ = 0x01;
   }
   const std::size_t spare = std::size_t(data - strip.chunk.data()) + 4;
-  data += deflate_strip({raw.data(), raw.size()}, {data, strip.chunk.size() - spare}, end == contents.height);
+  data += space.deflater.run(raw, {data, strip.chunk.size() - spare}, end == contents.height);
   store_word(strip.chunk.data(), std::uint32_t(data - type - 4));
   store_word(data, std::uint32_t(::crc32(0, type, uInt(data - type))));
   strip.chunk_size = std::size_t(data + 4 - strip.chunk.data());
@@ -145,11 +190,14 @@ std::size_t PngContents::pixel_bytes() const {
 }
 
 void write_png(const PngContents& contents, OutputFile& file, const Execution& execution) {
-  const std::size_t row_size = std::size_t(contents.width) * contents.pixel_bytes() + 1;
-  const std::size_t rows = std::max<std::size_t>(1, strip_bytes / row_size);
+  const std::size_t row_size = std::size_t(contents.width) * contents.pixel_bytes();
+  const std::size_t rows = std::max<std::size_t>(1, strip_bytes / (row_size + 1));
+  Workspaces workspaces(rows, row_size);
   std::vector<Strip> strips((std::size_t(contents.height) + rows - 1) / rows);
   parallel_for(execution, std::size_t(contents.height), rows, [&](std::size_t first, std::size_t end) {
-    strips[first / rows] = make_strip(contents, int(first), int(end));
+    std::unique_ptr<Workspace> space = workspaces.take();
+    strips[first / rows] = make_strip(contents, int(first), int(end), *space);
+    workspaces.give_back(std::move(space));
   });
   const Bytes start = head(contents);
   file.write(std::as_bytes(std::span(start)));

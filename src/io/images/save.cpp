@@ -22,6 +22,16 @@ ImageFormat format_of(const std::string& path, const SaveOptions& options) {
               path + ": an image file ends in .png, .exr, .pfm or .npy, not in \"" + suffix + "\"");
 }
 
+template <class Write>
+void write_file(const std::string& path, const Execution& execution, const Write& write) {
+  report_progress(execution, "save", 0);
+  OutputFile file(path);
+  write(file);
+  check_cancelled(execution);
+  file.commit();
+  report_progress(execution, "save", 1);
+}
+
 }  // namespace
 
 namespace detail {
@@ -46,17 +56,21 @@ std::vector<std::string> default_channel_names(std::size_t count, bool integers)
 void save(const Image& image, const std::string& path, const SaveOptions& options, const Execution& execution) {
   const ImageFormat format = format_of(path, options);
   validate(image);
-  report_progress(execution, "save", 0);
-  OutputFile file(path);
-  switch (format) {
-    case ImageFormat::png: detail::save_png(image, options, file, execution); break;
-    case ImageFormat::exr: detail::save_exr(image, file, execution); break;
-    case ImageFormat::pfm: detail::save_pfm(image, file); break;
-    case ImageFormat::npy: detail::save_npy(image, file); break;
-  }
-  check_cancelled(execution);
-  file.commit();
-  report_progress(execution, "save", 1);
+  write_file(path, execution, [&](OutputFile& file) {
+    switch (format) {
+      case ImageFormat::png: return detail::save_png(image, options, file, execution);
+      case ImageFormat::exr: return detail::save_exr(image, file, execution);
+      case ImageFormat::pfm: return detail::save_pfm(image, file);
+      case ImageFormat::npy: return detail::save_npy(image, file);
+    }
+  });
+}
+
+void save(const Bitmap& bitmap, const std::string& path, const SaveOptions& options, const Execution& execution) {
+  if (format_of(path, options) != ImageFormat::png)
+    throw Error(ErrorCode::unsupported, path + ": only PNG holds the 8 bits of a bitmap");
+  validate(bitmap);
+  write_file(path, execution, [&](OutputFile& file) { detail::save_png(bitmap, file, execution); });
 }
 
 }  // namespace frontmost

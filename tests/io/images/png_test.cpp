@@ -2,9 +2,13 @@
 // PNG files, read back by libpng itself: what is promised are the pixels, and what the numbers of maps mean.
 #include <png.h>
 
+#include <cmath>
+#include <fstream>
 #include <functional>
+#include <iterator>
 
 #include "base/srgb.h"
+#include "image/srgb_pixels.h"
 #include "support/scratch_folder.h"
 #include "support/test_images.h"
 
@@ -215,6 +219,45 @@ TEST_F(Png, OptionsOutOfRangeAreNamed) {
   EXPECT_EQ(error_of([&] { save(image, file()); }, &message), ErrorCode::unsupported);
   EXPECT_NE(message.find("R, G, B, Z"), std::string::npos) << message;
   EXPECT_EQ(folder_.entry_count(), 0u);
+}
+
+TEST_F(Png, ABitmapsFileIsThatOfTheImage) {
+  const auto bytes_of = [](const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  for (const bool opaque : {false, true}) {
+    const Image image = random_floats(211, 1300, {"R", "G", "B", "A"}, opaque ? 1.0f : 0.0f, opaque ? 1.5f : 1.0f);
+    Bitmap bitmap{image.width, image.height, Buffer<std::uint8_t>(std::size_t(4 * image.width * image.height))};
+    for (int y = 0; y < image.height; ++y)
+      srgb8_row(color_planes(image).value(), y, true, bitmap.rgba.data() + 4 * y * image.width);
+    save(image, file());
+    const std::string expected = bytes_of(file());
+    save(bitmap, file());
+    EXPECT_EQ(bytes_of(file()), expected);
+    EXPECT_EQ(decode_by_libpng(file()).channels, opaque ? 3 : 4);
+  }
+}
+
+TEST_F(Png, BitmapsOfOtherSizesOrFormatsAreRefused) {
+  const Bitmap bitmap{2, 2, Buffer<std::uint8_t>(15)};
+  EXPECT_EQ(error_of([&] { save(bitmap, file()); }), ErrorCode::bad_argument);
+  const Bitmap whole{2, 2, Buffer<std::uint8_t>(16)};
+  EXPECT_EQ(error_of([&] { save(whole, folder_.file("a.exr")); }), ErrorCode::unsupported);
+  EXPECT_EQ(folder_.entry_count(), 0u);
+}
+
+// Alpha just below where it becomes 255: whether a picture is opaque must be what its bytes say.
+TEST_F(Png, TheLastAlphaThatIsNotOpaque) {
+  const float last = 254.5f / 255;
+  for (const float alpha : {last, std::nextafter(last, 1.0f)}) {
+    Image image = random_floats(3, 2, {"R", "G", "B", "A"});
+    for (float& value : image.channels[3].floats()) value = alpha;
+    save(image, file());
+    const Decoded decoded = decode_by_libpng(file());
+    EXPECT_EQ(decoded.channels, alpha == last ? 4 : 3);
+    if (decoded.channels == 4) EXPECT_EQ(decoded.bytes[3], 254);
+  }
 }
 
 TEST_F(Png, NoiseThatCannotBeCompressedFits) {

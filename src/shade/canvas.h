@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// What finished tiles are painted on: planes of floats, or bytes as they are shown.
+#pragma once
+
+#include <initializer_list>
+#include <vector>
+
+#include "frontmost/image.h"
+#include "shade/tile.h"
+
+namespace frontmost::shading {
+
+/// Different tiles may be painted from different threads at once.
+class Canvas {
+ public:
+  virtual ~Canvas() = default;
+  /// `pixels` of the tile, row by row, premultiplied, are laid over the background.
+  virtual void write(const TileRectangle& tile, const std::vector<glm::vec4>& pixels, const glm::vec4& background) = 0;
+  virtual void fill(const TileRectangle& tile, const glm::vec4& value) = 0;
+};
+
+/// An image of up to four channels, named as they are to be.
+class PlanesCanvas final : public Canvas {
+ public:
+  PlanesCanvas(const View& view, std::initializer_list<const char*> names);
+  void write(const TileRectangle& tile, const std::vector<glm::vec4>& pixels, const glm::vec4& background) override;
+  void fill(const TileRectangle& tile, const glm::vec4& value) override;
+  [[nodiscard]] Image take() { return std::move(image_); }
+
+ private:
+  /// Where row y of the tile begins in a plane.
+  [[nodiscard]] std::size_t row(const TileRectangle& tile, int y) const;
+  Image image_;
+};
+
+class BitmapCanvas final : public Canvas {
+ public:
+  explicit BitmapCanvas(const View& view);
+  void write(const TileRectangle& tile, const std::vector<glm::vec4>& pixels, const glm::vec4& background) override;
+  void fill(const TileRectangle& tile, const glm::vec4& value) override;
+  [[nodiscard]] Bitmap take() { return std::move(bitmap_); }
+
+ private:
+  [[nodiscard]] std::uint8_t* row(const TileRectangle& tile, int y);
+  Bitmap bitmap_;
+};
+
+}  // namespace frontmost::shading
