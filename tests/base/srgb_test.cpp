@@ -75,5 +75,26 @@ TEST(Srgb, SixteenBitsEqualTheFormula) {
   }
 }
 
+/// srgb_of_linear() rounded, without any shortcut.
+int word_by_function(float linear) { return int(srgb_of_linear(double(linear)) * 65535 + 0.5); }
+
+TEST(Srgb, SixteenBitsAreTheRoundedFunctionAllOverTheRange) {
+  // Ends, middles and the doubtful neighbourhood of steps all come by: the stride is prime to the pieces' 65536 floats.
+  for (std::uint32_t bits = 0x36000000u; bits <= 0x3F800000u; bits += 61) {
+    float x;
+    std::memcpy(&x, &bits, sizeof x);
+    ASSERT_EQ(srgb16_of_linear(x), word_by_function(x)) << "at " << x;
+  }
+}
+
+TEST(Srgb, SixteenBitsAreRightOnBothSidesOfEveryStep) {
+  for (int word = 1; word < 65536; ++word) {
+    const double value = (word - 0.5) / 65535;
+    float x = float(value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4));
+    for (int i = 0; i < 3; ++i) x = std::nextafter(x, 0.0f);
+    for (int i = 0; i < 7; ++i, x = std::nextafter(x, 2.0f)) ASSERT_EQ(srgb16_of_linear(x), word_by_function(x));
+  }
+}
+
 }  // namespace
 }  // namespace frontmost
