@@ -4,43 +4,17 @@
 // Every cut takes a triangle that turns the polygon's way, so the signed areas add up: for a polygon that does not
 // cross itself, triangles that all turn left cover it once, whatever else went wrong. That is also why the first
 // attempt, a fan whose triangles all turn left, needs no further test; it serves all convex polygons.
-// Looking for ears among n corners with r blockers takes O(n r) tests at best and O(n^2 r) at worst.
+// What may block an ear is found by place, so that cutting takes time in proportion to the corners and the logarithm of
+// their number, unless ears are far apart: looking for one takes O(n) tests at worst.
 #include "io/models/triangulate.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "base/orientation.h"
+
 namespace frontmost {
 namespace {
-
-struct Sum {
-  double high, low;
-};
-
-/// a + b without error (D. Knuth): high + low, where high is the rounded sum.
-Sum two_sum(double a, double b) {
-  const double high = a + b, b_part = high - a, a_part = high - b_part;
-  return {high, (a - a_part) + (b - b_part)};
-}
-
-/// The sign of the exact sum of six numbers, as an expansion (J. Shewchuk, Adaptive Precision Floating-Point
-/// Arithmetic and Fast Robust Geometric Predicates, 1997): the last non-zero component decides.
-int sign_of_sum(const double (&terms)[6]) {
-  double parts[6];
-  int count = 0;
-  for (const double term : terms) {
-    double carry = term;
-    for (int i = 0; i < count; ++i) {
-      const Sum sum = two_sum(carry, parts[i]);
-      parts[i] = sum.low;
-      carry = sum.high;
-    }
-    parts[count++] = carry;
-  }
-  for (int i = count; i-- > 0;)
-    if (parts[i] != 0) return parts[i] > 0 ? 1 : -1;
-  return 0;
-}
 
 bool is_finite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
@@ -54,20 +28,6 @@ glm::dvec3 area_vector(std::span<const glm::vec3> corners) {
 }
 
 }  // namespace
-
-int orientation(const glm::vec2& a, const glm::vec2& b, const glm::vec2& c) {
-  // Products of two floats are exact in double.
-  const double ax = a.x, ay = a.y, bx = b.x, by = b.y, cx = c.x, cy = c.y;
-  const double terms[6] = {ax * by, -(ay * bx), bx * cy, -(by * cx), cx * ay, -(cy * ax)};
-  double sum = 0, size = 0;
-  for (const double term : terms) {
-    sum += term;
-    size += std::abs(term);
-  }
-  // Five additions err by less than 5 * 2^-53 of the sizes; 1e-15 is 9 * 2^-53.
-  if (std::abs(sum) > 1e-15 * size) return sum > 0 ? 1 : -1;
-  return sign_of_sum(terms);
-}
 
 void Triangulator::project(std::span<const glm::vec3> corners) {
   const glm::dvec3 area = area_vector(corners), size = glm::abs(area);
@@ -108,9 +68,8 @@ int Triangulator::turn(std::uint32_t corner) const {
 }
 
 void Triangulator::note_turn(std::uint32_t corner) {
-  const bool left = turn(corner) > 0;
-  if (is_left_[corner] && !left) blockers_.push_back(corner);
-  is_left_[corner] = left;
+  is_left_[corner] = turn(corner) > 0;
+  blockers_.mark(corner, !is_left_[corner]);
 }
 
 void Triangulator::clip_ears() {
@@ -122,10 +81,10 @@ void Triangulator::clip_ears() {
     next_[i] = i + 1 == count ? 0 : i + 1;
   }
   is_left_.assign(count, true);
-  blockers_.clear();
+  blockers_.build(points_);
   for (std::uint32_t i = 0; i < count; ++i) note_turn(i);
-  // Files of any size get time in proportion, and one polygon half a second at once: enough for some 15000 corners
-  // of the most jagged kind.
+  // Files of any size get time in proportion, and one polygon half a second at once: enough for millions of corners of
+  // which some can always be cut.
   allowed_work_ += 1000 * std::uint64_t(count);
 
   std::uint32_t corner = 0;
@@ -162,24 +121,8 @@ bool Triangulator::is_ear(std::uint32_t corner, Ear kind) {
 /// Whether another corner lies within the triangle at `corner`, or on its edges if `by_touching`. Corners at the
 /// place of one of the triangle's own do not count: that is how holes are joined to an outline.
 bool Triangulator::is_blocked(std::uint32_t corner, bool by_touching) {
-  const glm::vec2 a = points_[previous_[corner]], b = points_[corner], c = points_[next_[corner]];
-  const glm::vec2 low = glm::min(a, glm::min(b, c)), high = glm::max(a, glm::max(b, c));
-  const int least = by_touching ? 0 : 1;
-  // Corners that were cut or turn left by now are dropped from the list on the way.
-  std::size_t kept = 0;
-  bool blocked = false;
-  for (std::size_t i = 0; i < blockers_.size(); ++i) {
-    const std::uint32_t other = blockers_[i];
-    if (is_left_[other]) continue;
-    blockers_[kept++] = other;
-    const glm::vec2 p = points_[other];
-    if (blocked || p.x < low.x || p.x > high.x || p.y < low.y || p.y > high.y) continue;
-    if (p == a || p == b || p == c) continue;
-    blocked = orientation(a, b, p) >= least && orientation(b, c, p) >= least && orientation(c, a, p) >= least;
-  }
-  work_ += blockers_.size();
-  blockers_.resize(kept);
-  return blocked;
+  const std::array<glm::vec2, 3> ear{points_[previous_[corner]], points_[corner], points_[next_[corner]]};
+  return blockers_.any_within(ear, by_touching, work_);
 }
 
 void Triangulator::clip(std::uint32_t corner) {
@@ -187,7 +130,8 @@ void Triangulator::clip(std::uint32_t corner) {
   triangles_.emplace_back(before, corner, after);
   next_[before] = after;
   previous_[after] = before;
-  is_left_[corner] = true;  // it is gone, so it blocks nothing
+  is_left_[corner] = true;
+  blockers_.mark(corner, false);  // it is gone, so it blocks nothing
   note_turn(before);
   note_turn(after);
 }

@@ -7,11 +7,9 @@
 #include <span>
 #include <vector>
 
-namespace frontmost {
+#include "io/models/corner_tree.h"
 
-/// +1 when a, b, c turn left (counter-clockwise), -1 when they turn right, 0 when they lie on one line. Exact for all
-/// finite coordinates.
-[[nodiscard]] int orientation(const glm::vec2& a, const glm::vec2& b, const glm::vec2& c);
+namespace frontmost {
 
 /// Keeps its arrays from polygon to polygon, and an account of the work done for all of them, so that hostile files
 /// cannot make it slow: see may_work().
@@ -39,10 +37,10 @@ class Triangulator {
 
   std::vector<glm::vec2> points_;               ///< counter-clockwise, exact copies of two coordinates
   std::vector<std::uint32_t> previous_, next_;  ///< rings of the corners that remain
-  std::vector<std::uint32_t> blockers_;         ///< corners that do not turn left: only they can block an ear
+  CornerTree blockers_;                         ///< marks corners that do not turn left: only they can block an ear
   std::vector<bool> is_left_;
   std::vector<glm::uvec3> triangles_;
-  std::uint64_t work_ = 0, allowed_work_ = 1 << 27;  ///< counted in tests of a corner against an ear
+  std::uint64_t work_ = 0, allowed_work_ = 1 << 27;  ///< counted in boxes and corners held against ears
   bool is_flat_ = true;                              ///< the polygon has a direction to be seen from
 };
 

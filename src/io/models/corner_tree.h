@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which corners of a polygon can block an ear, found by place.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+namespace frontmost {
+
+/// A tree of boxes over all corners of a polygon, of which some are marked. Halves hold the same number of corners, so
+/// the tree is as deep as the logarithm of their number. Keeps its arrays from polygon to polygon.
+class CornerTree {
+ public:
+  /// Borrows the points, none of which is marked then. O(n log n).
+  void build(std::span<const glm::vec2> points);
+  /// O(log n).
+  void mark(std::uint32_t corner, bool is_marked);
+
+  /// Whether a marked corner lies within the counter-clockwise triangle, or on its edges if `by_touching`. Corners at
+  /// the place of one of the triangle's own do not count. Adds to `work` one for each box and corner looked at.
+  [[nodiscard]] bool any_within(const std::array<glm::vec2, 3>& triangle, bool by_touching, std::uint64_t& work) const;
+
+ private:
+  static constexpr std::uint32_t leaf_size = 8;
+  /// Node i has the children 2i + 1 and 2i + 2.
+  struct Node {
+    glm::vec2 low, high;       ///< of all its corners
+    std::uint32_t begin, end;  ///< of those in order_
+    std::uint32_t marked;      ///< how many of them are
+    [[nodiscard]] bool is_leaf() const { return end - begin <= leaf_size; }
+  };
+  void build(std::uint32_t node);
+
+  std::span<const glm::vec2> points_;
+  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> order_;
+  std::vector<std::uint32_t> leaf_of_;  ///< by corner
+  std::vector<std::uint8_t> is_marked_;
+};
+
+}  // namespace frontmost
