@@ -98,7 +98,7 @@ class Parabolas {
       pieces_[i] = {low, 4 * middle - 3 * low - high, 2 * (low + high) - 4 * middle};
     }
   }
-  /// Off by 2e-4 at most.
+  /// Off by 1e-4 at most.
   [[nodiscard]] double operator()(float linear) const {
     std::uint32_t bits;
     std::memcpy(&bits, &linear, sizeof bits);

@@ -11,10 +11,10 @@
 
 #include <algorithm>
 #include <memory>
-#include <mutex>
 #include <string_view>
 
 #include "base/parallel.h"
+#include "base/pool.h"
 
 namespace frontmost::detail {
 namespace {
@@ -96,29 +96,6 @@ struct Workspace {
   Workspace(std::size_t rows, std::size_t row_size) : raw(rows * (row_size + 1)), row(row_size), above(row_size) {}
 };
 
-/// As many as there are threads at work at once.
-class Workspaces {
- public:
-  Workspaces(std::size_t rows, std::size_t row_size) : rows_(rows), row_size_(row_size) {}
-
-  [[nodiscard]] std::unique_ptr<Workspace> take() {
-    const std::lock_guard lock(mutex_);
-    if (free_.empty()) return std::make_unique<Workspace>(rows_, row_size_);
-    std::unique_ptr<Workspace> one = std::move(free_.back());
-    free_.pop_back();
-    return one;
-  }
-  void give_back(std::unique_ptr<Workspace> one) {
-    const std::lock_guard lock(mutex_);
-    free_.push_back(std::move(one));
-  }
-
- private:
-  std::size_t rows_, row_size_;
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<Workspace>> free_;
-};
-
 /// Rows of a strip after filtering: Up, except for the first, which must not look at another strip.
 std::span<std::uint8_t> filtered_rows(const PngContents& contents, int first, int end, Workspace& space) {
   const std::size_t pixel = contents.pixel_bytes();
@@ -192,12 +169,11 @@ std::size_t PngContents::pixel_bytes() const {
 void write_png(const PngContents& contents, OutputFile& file, const Execution& execution) {
   const std::size_t row_size = std::size_t(contents.width) * contents.pixel_bytes();
   const std::size_t rows = std::max<std::size_t>(1, strip_bytes / (row_size + 1));
-  Workspaces workspaces(rows, row_size);
+  Pool<Workspace> workspaces;
   std::vector<Strip> strips((std::size_t(contents.height) + rows - 1) / rows);
   parallel_for(execution, std::size_t(contents.height), rows, [&](std::size_t first, std::size_t end) {
-    std::unique_ptr<Workspace> space = workspaces.take();
+    const auto space = workspaces.borrow([&] { return std::make_unique<Workspace>(rows, row_size); });
     strips[first / rows] = make_strip(contents, int(first), int(end), *space);
-    workspaces.give_back(std::move(space));
   });
   const Bytes start = head(contents);
   file.write(std::as_bytes(std::span(start)));

@@ -40,7 +40,7 @@ class Triangulator {
   CornerTree blockers_;                         ///< marks corners that do not turn left: only they can block an ear
   std::vector<bool> is_left_;
   std::vector<glm::uvec3> triangles_;
-  std::uint64_t work_ = 0, allowed_work_ = 1 << 27;  ///< counted in boxes and corners held against ears
+  std::uint64_t work_ = 0, allowed_work_ = 1 << 25;  ///< counted in boxes and corners held against ears
   bool is_flat_ = true;                              ///< the polygon has a direction to be seen from
 };
 
