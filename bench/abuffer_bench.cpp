@@ -83,14 +83,40 @@ struct Stage {
 void picture(benchmark::State& state) {
   Stage stage(int(state.range(0)));
   const AbufferOptions options{grids[std::size_t(state.range(1))], 1.0f};
+  Resolver resolver;
+  stage.paint();
+  resolver.draw(stage.surfaces, stage.view, stage.colors, options, {.threads = 1});
   for (auto _ : state) {
     stage.paint();
-    benchmark::DoNotOptimize(
-        resolve(stage.surfaces, stage.view, stage.colors, options, {.threads = 1, .isa = Isa(state.range(2))})
-            .red.data());
+    const Execution execution{.threads = 1, .isa = Isa(state.range(2)), .watch = nullptr};
+    benchmark::DoNotOptimize(resolver.draw(stage.surfaces, stage.view, stage.colors, options, execution).red.data());
   }
 }
 BENCHMARK(picture)->ArgsProduct({{0, 1}, {0, 2, 3}, {0}})->Unit(benchmark::kMillisecond)->Iterations(5);
 BENCHMARK(picture)->ArgsProduct({{0, 1}, {0, 3}, {1, 2, 3}})->Unit(benchmark::kMillisecond)->Iterations(3);
+
+/// Sheets that fill the picture; all threads.
+void stack(benchmark::State& state) {
+  Mesh mesh;
+  const int layers = int(state.range(0));
+  for (int i = 0; i < layers; ++i) {
+    const float z = -float(i) / float(layers);
+    const auto n = std::uint32_t(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), {{-9, -9, z}, {9, -9, z}, {9, 9, z}, {-9, 9, z}});
+    mesh.triangles.insert(mesh.triangles.end(), {{n, n + 1, n + 2}, {n, n + 2, n + 3}});
+  }
+  Scene scene;
+  scene.meshes.push_back(std::move(mesh));
+  scene.instances.push_back({"stack", 0, glm::dmat4(1.0)});
+  const Surfaces surfaces(scene);
+  View view;
+  view.width = int(state.range(1));
+  view.height = view.width * 9 / 16;
+  view.world_from_eye = look_at({0, 0, 1}, {0, 0, 0}, {0, 1, 0});
+  view.projection = make_projection(1, 16.0 / 9, {0.5, 3});
+  const std::vector<glm::vec4> colors(surfaces.primitive_count(), glm::vec4(0.5f, 0.5f, 0.5f, 0.01f));
+  for (auto _ : state) benchmark::DoNotOptimize(resolve(surfaces, view, colors, {int(state.range(2))}).red.data());
+}
+BENCHMARK(stack)->Args({500, 1920, 0})->Args({100, 3840, 0})->Unit(benchmark::kMillisecond)->Iterations(1);
 
 }  // namespace

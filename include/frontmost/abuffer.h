@@ -4,6 +4,7 @@
 // L. Carpenter. The A-buffer, an Antialiased Hidden Surface Method. SIGGRAPH 1984.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -75,5 +76,27 @@ struct ResolvedPicture {
 /// \throws Error as abuffer() does; bad_argument where `colors` has not one entry a primitive.
 [[nodiscard]] ResolvedPicture resolve(const Surfaces& surfaces, const View& view, std::span<const glm::vec4> colors,
                                       const AbufferOptions& options = {}, const Execution& execution = {});
+
+/// The same for repeated views: pictures after the first reuse the memory of those before. Not for several threads at
+/// once; each draw() uses the threads it is given.
+class Resolver {
+ public:
+  Resolver();
+  ~Resolver();
+  Resolver(Resolver&&) noexcept;
+  Resolver& operator=(Resolver&&) noexcept;
+  Resolver(const Resolver&) = delete;
+  Resolver& operator=(const Resolver&) = delete;
+
+  /// What resolve() gives. The result stays as it is until the next draw() or take(); after an error it is unspecified.
+  const ResolvedPicture& draw(const Surfaces& surfaces, const View& view, std::span<const glm::vec4> colors,
+                              const AbufferOptions& options = {}, const Execution& execution = {});
+  /// Moves the last result out; the next draw() allocates another.
+  [[nodiscard]] ResolvedPicture take();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace frontmost

@@ -42,9 +42,14 @@ class TileCompositor {
       for (int x = 0; x < r.width; x += 4) {
         const std::size_t group = std::size_t((y / 4) * kBlocksAcross + x / 4);
         GroupColors colors;
-        CompositeGroup(group, colors);
+        SpecialPixels special;
+        if (kSamples > 1) special = FindSpecial(frame_, scratch_, group);
+        // Where only a few pixels are left, sixteen at once take longer than these one by one.
+        if (kSamples > 1 && hwy::PopCount(special.pixels) >= kGroup - kFewPixels)
+          special.pixels = AllPixels();
+        else
+          CompositeGroup(group, colors);
         if (kSamples > 1) {
-          const SpecialPixels special = FindSpecial(frame_, scratch_, group);
           for (std::uint64_t left = special.pixels; left != 0; left &= left - 1) {
             const auto pixel = std::size_t(hwy::Num0BitsBelowLS1Bit_Nonzero64(left));
             const glm::vec4 c = pixels.Composite(group, pixel, (special.in_conflict >> pixel & 1) != 0);
@@ -56,6 +61,9 @@ class TileCompositor {
   }
 
  private:
+  static constexpr std::size_t kFewPixels = 6;
+  static std::uint64_t AllPixels() { return (std::uint64_t(1) << kGroup) - 1; }
+
   /// The lower halves of a vector's words, in line.
   static HWY_INLINE VU LowHalves(const std::uint64_t* words) {
     const DU d;

@@ -53,63 +53,60 @@ class ConflictFinder {
   using DHU = hn::Rebind<std::uint32_t, D64U>;
   using DHI = hn::Rebind<std::int32_t, D64>;
 
-  /// Puts ranges and masks of the group's fragments beside each other. Empty slots have no mask and lie behind all.
+  /// Puts ranges and masks of the group's fragments beside each other.
   void Load() {
     const D64 d;
     const DHF df;
     const auto* masks = reinterpret_cast<const std::int64_t*>(s_.arrived.mask.data());
-    for (std::size_t i = 0; i < length_; ++i) {
-      const auto* words = reinterpret_cast<const std::int64_t*>(s_.slot(group_, i));
-      for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(d)) {
-        const auto word = hn::Load(d, words + lane);
+    const auto full = hn::Set(d, std::int64_t(full_));
+    for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(d)) {
+      auto missing = hn::Zero(d);
+      for (std::size_t i = 0; i < length_; ++i) {
+        const auto word = hn::Load(d, reinterpret_cast<const std::int64_t*>(s_.slot(group_, i)) + lane);
         const auto valid = hn::Ne(word, hn::Zero(d));
         const auto number = hn::IfThenElseZero(valid, hn::And(hn::Not(word), hn::Set(d, 0xFFFFFFFF)));
-        const auto mask = hn::IfThenElseZero(valid, hn::GatherIndex(d, masks, number));
-        partial_ |= BitsOf(d, hn::And(valid, hn::Ne(mask, hn::Set(d, std::int64_t(full_))))) << lane;
+        const auto mask = hn::GatherIndex(d, masks, number);
+        missing = hn::Or(missing, hn::IfThenElseZero(valid, hn::Xor(mask, full)));
         const std::size_t at = i * kGroup + lane;
-        hn::Store(mask, d, reinterpret_cast<std::int64_t*>(s_.mask.data()) + at);
+        const auto bits = hn::BitCast(D64U(), mask);
+        hn::Store(hn::TruncateTo(DHU(), bits), DHU(), s_.mask_low.data() + at);
+        hn::Store(hn::TruncateTo(DHU(), hn::ShiftRight<32>(bits)), DHU(), s_.mask_high.data() + at);
         const auto index = hn::BitCast(DHI(), hn::TruncateTo(DHU(), hn::BitCast(D64U(), number)));
         hn::Store(hn::GatherIndex(df, s_.arrived.nearest.data(), index), df, s_.nearest.data() + at);
         hn::Store(hn::GatherIndex(df, s_.arrived.farthest.data(), index), df, s_.farthest.data() + at);
       }
+      partial_ |= BitsOf(d, hn::Ne(missing, hn::Zero(d))) << lane;
     }
   }
 
-  /// Fragments of fewer slots come first in every list, so what is behind is where words are.
   void FindPairs(std::size_t lane) {
     const DF d;
+    const DI di;
     auto behind = hn::Set(d, -1.0f);
     for (std::size_t i = length_; i-- > 0;) {
       const std::size_t at = i * kGroup + lane;
-      const auto valid = hn::RebindMask(d, ValidLanes(i, lane));
-      const auto nearest = hn::IfThenElse(valid, hn::Load(d, s_.nearest.data() + at), hn::Set(d, -1.0f));
-      const auto farthest = hn::IfThenElse(valid, hn::Load(d, s_.farthest.data() + at), hn::Set(d, 2.0f));
-      hn::Store(nearest, d, s_.nearest.data() + at);
-      hn::Store(farthest, d, s_.farthest.data() + at);
       hn::Store(behind, d, s_.behind_nearest.data() + at);
-      behind = hn::Max(behind, nearest);
-      const DI di;
+      behind = hn::Max(behind, hn::Load(d, s_.nearest.data() + at));
       hn::Store(hn::Set(di, std::int32_t(i)), di, s_.reach.data() + at);
     }
     for (std::size_t i = 0; i + 1 < length_; ++i) FindPairsOf(i, lane);
   }
 
-  HWY_INLINE MI ValidLanes(std::size_t i, std::size_t lane) const {
-    const DI d;
-    HWY_ALIGN_MAX std::int32_t valid[kMaxLanes];
-    const std::uint64_t* words = s_.slot(group_, i) + lane;
-    for (std::size_t k = 0; k < hn::Lanes(d); ++k) valid[k] = words[k] != 0;
-    return hn::Ne(hn::Load(d, valid), hn::Zero(d));
-  }
-
   HWY_INLINE void FindPairsOf(std::size_t i, std::size_t lane) {
     const DF d;
+    const DU du;
     const VF farthest = hn::Load(d, s_.farthest.data() + i * kGroup + lane);
+    const VU low = hn::Load(du, s_.mask_low.data() + i * kGroup + lane);
+    const VU high = hn::Load(du, s_.mask_high.data() + i * kGroup + lane);
     for (std::size_t j = i + 1; j < length_; ++j) {
       const VF most = hn::Load(d, s_.behind_nearest.data() + (j - 1) * kGroup + lane);
       if (hn::AllTrue(d, hn::Lt(most, farthest))) return;
-      const VF nearest = hn::Load(d, s_.nearest.data() + j * kGroup + lane);
-      for (std::uint64_t left = BitsOf(d, hn::Ge(nearest, farthest)); left != 0; left &= left - 1) {
+      const std::size_t at = j * kGroup + lane;
+      const VU shared = hn::Or(hn::And(low, hn::Load(du, s_.mask_low.data() + at)),
+                               hn::And(high, hn::Load(du, s_.mask_high.data() + at)));
+      const auto overlap = hn::Ge(hn::Load(d, s_.nearest.data() + at), farthest);
+      const auto both = hn::And(hn::RebindMask(du, overlap), hn::Ne(shared, hn::Zero(du)));
+      for (std::uint64_t left = BitsOf(du, both); left != 0; left &= left - 1) {
         const std::size_t pixel = lane + hwy::Num0BitsBelowLS1Bit_Nonzero64(left);
         if (!MayChangePlaces(i * kGroup + pixel, j * kGroup + pixel)) continue;
         s_.reach[i * kGroup + pixel] = std::int32_t(j);
@@ -119,7 +116,6 @@ class ConflictFinder {
   }
 
   [[nodiscard]] HWY_INLINE bool MayChangePlaces(std::size_t a, std::size_t b) const {
-    if ((s_.mask[a] & s_.mask[b]) == 0) return false;
     const std::uint64_t *words = s_.slot(group_, 0), wa = words[a], wb = words[b];
     const LocalTriangles& t = s_.triangles;
     const std::size_t ta = s_.arrived.triangle[~std::uint32_t(wa)], tb = s_.arrived.triangle[~std::uint32_t(wb)];

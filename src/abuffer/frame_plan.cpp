@@ -89,12 +89,12 @@ bool orient(ScreenTriangle& t, Culling culling) {
   return true;
 }
 
-FramePlan::FramePlan(const Surfaces& surfaces, const View& view, const Execution& execution)
-    : set_(surfaces.clusters()),
-      transform_(view),
-      view_(view),
-      tiles_x_((view.width + kTileSize - 1) / kTileSize),
-      tiles_y_((view.height + kTileSize - 1) / kTileSize) {
+void FramePlan::make(const Surfaces& surfaces, const View& view, const Execution& execution) {
+  set_ = &surfaces.clusters();
+  transform_.emplace(view);
+  view_ = view;
+  tiles_x_ = (view.width + kTileSize - 1) / kTileSize;
+  tiles_y_ = (view.height + kTileSize - 1) / kTileSize;
   transform_all(execution);
   take_apart(execution);
   make_lists();
@@ -107,12 +107,14 @@ Rectangle FramePlan::tile(std::size_t number) const {
 
 void FramePlan::transform_all(const Execution& execution) {
   constexpr std::size_t kGrain = 256;
-  screen_.x = Buffer<std::int32_t>(set_.x.size());
-  screen_.y = Buffer<std::int32_t>(set_.x.size());
-  screen_.key = Buffer<float>(set_.x.size());
-  screen_.places.resize(set_.clusters.size());
-  parallel_for(execution, set_.clusters.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    transform_clusters(set_, transform_, execution.isa, begin, end, screen_);
+  if (screen_.x.size() < set_->x.size()) {
+    screen_.x = Buffer<std::int32_t>(set_->x.size());
+    screen_.y = Buffer<std::int32_t>(set_->x.size());
+    screen_.key = Buffer<float>(set_->x.size());
+  }
+  screen_.places.resize(set_->clusters.size());
+  parallel_for(execution, set_->clusters.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    transform_clusters(*set_, *transform_, execution.isa, begin, end, screen_);
   });
 }
 
@@ -120,38 +122,64 @@ void FramePlan::take_apart(const Execution& execution) {
   std::vector<std::uint32_t> apart;
   for (std::size_t i = 0; i < screen_.places.size(); ++i) {
     ClusterPlace& place = screen_.places[i];
-    if (place.fate == ClusterFate::whole && tiles_of(place, transform_, view_).count() > kMaxTilesOfCluster)
-      place.fate = ClusterFate::apart;
-    if (place.fate == ClusterFate::apart) apart.push_back(std::uint32_t(i));
+    if (place.fate == ClusterFate::whole && tiles_of(place, *transform_, view_).count() > kMaxTilesOfCluster)
+      place.fate = ClusterFate::spread;
+    if (place.fate == ClusterFate::spread || place.fate == ClusterFate::apart) apart.push_back(std::uint32_t(i));
   }
   constexpr std::size_t kGrain = 64;
   std::vector<std::vector<ScreenTriangle>> parts((apart.size() + kGrain - 1) / kGrain);
   parallel_for(execution, apart.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) append_triangles(set_.clusters[apart[i]], parts[begin / kGrain]);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Cluster& cluster = set_->clusters[apart[i]];
+      if (screen_.places[apart[i]].fate == ClusterFate::spread)
+        append_snapped(cluster, parts[begin / kGrain]);
+      else
+        append_clipped(cluster, parts[begin / kGrain]);
+    }
   });
+  singles_.clear();
   for (const std::vector<ScreenTriangle>& part : parts) singles_.insert(singles_.end(), part.begin(), part.end());
 }
 
-void FramePlan::append_triangles(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const {
+void FramePlan::append(ScreenTriangle t, std::vector<ScreenTriangle>& triangles) const {
+  if (tiles_of(t, view_).count() > 0 && orient(t, view_.culling)) triangles.push_back(t);
+}
+
+void FramePlan::append_snapped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const {
+  for (std::size_t c = cluster.first_triangle; c < cluster.first_triangle + cluster.triangle_count; ++c) {
+    const std::uint8_t numbers[3] = {set_->i0[c], set_->i1[c], set_->i2[c]};
+    ScreenTriangle t;
+    t.id = set_->id[c];
+    for (int k = 0; k < 3; ++k) {
+      const std::size_t v = cluster.first_vertex + numbers[k];
+      t.x[k] = screen_.x[v] + transform_->centre_x;
+      t.y[k] = screen_.y[v] + transform_->centre_y;
+      t.key[k] = screen_.key[v];
+    }
+    append(t, triangles);
+  }
+}
+
+void FramePlan::append_clipped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const {
   const auto position = [&](std::size_t vertex) {
     const std::size_t v = cluster.first_vertex + vertex;
-    return glm::vec3(set_.x[v], set_.y[v], set_.z[v]);
+    return glm::vec3(set_->x[v], set_->y[v], set_->z[v]);
   };
   for (std::size_t c = cluster.first_triangle; c < cluster.first_triangle + cluster.triangle_count; ++c) {
-    if (set_.i0[c] == set_.i1[c]) continue;  // has a corner that is not finite, or no area
+    if (set_->i0[c] == set_->i1[c]) continue;  // has a corner that is not finite, or no area
     const ClippedPolygon polygon =
-        clip_triangle(transform_, {position(set_.i0[c]), position(set_.i1[c]), position(set_.i2[c])});
+        clip_triangle(*transform_, {position(set_->i0[c]), position(set_->i1[c]), position(set_->i2[c])});
     for (int k = 2; k < polygon.count; ++k) {
       const ScreenVertex fan[3] = {polygon.corners[0], polygon.corners[std::size_t(k - 1)],
                                    polygon.corners[std::size_t(k)]};
       ScreenTriangle t;
-      t.id = set_.id[c];
+      t.id = set_->id[c];
       for (int v = 0; v < 3; ++v) {
-        t.x[v] = fan[v].x + transform_.centre_x;
-        t.y[v] = fan[v].y + transform_.centre_y;
+        t.x[v] = fan[v].x + transform_->centre_x;
+        t.y[v] = fan[v].y + transform_->centre_y;
         t.key[v] = fan[v].key;
       }
-      if (tiles_of(t, view_).count() > 0 && orient(t, view_.culling)) triangles.push_back(t);
+      append(t, triangles);
     }
   }
 }
@@ -160,10 +188,11 @@ void FramePlan::make_lists() {
   cluster_lists_ = lists_of(tile_count(), screen_.places.size(), [&](std::size_t i, const auto& add) {
     const ClusterPlace& place = screen_.places[i];
     if (place.fate == ClusterFate::whole)
-      for_tiles(tiles_of(place, transform_, view_), tiles_x_, [&](int, int, std::size_t tile) { add(tile); });
+      for_tiles(tiles_of(place, *transform_, view_), tiles_x_, [&](int, int, std::size_t tile) { add(tile); });
   });
   std::size_t items = 0;
   for (const ScreenTriangle& t : singles_) items += tiles_of(t, view_).count();
+  single_lists_.reset();
   if (items > kMostSingleItems) return;
   single_lists_ = lists_of(tile_count(), singles_.size(), [&](std::size_t i, const auto& add) {
     const ScreenTriangle& t = singles_[i];

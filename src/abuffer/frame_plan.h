@@ -42,10 +42,14 @@ struct TileLists {
 /// The plan of a frame: 12 bytes a vertex, and 40 for every triangle that is large or had to be clipped.
 class FramePlan {
  public:
-  FramePlan(const Surfaces& surfaces, const View& view, const Execution& execution);
+  FramePlan() = default;
+  FramePlan(const Surfaces& surfaces, const View& view, const Execution& execution) { make(surfaces, view, execution); }
 
-  [[nodiscard]] const ClusterSet& set() const { return set_; }
-  [[nodiscard]] const ScreenTransform& transform() const { return transform_; }
+  /// Plans another frame in the memory of the last one.
+  void make(const Surfaces& surfaces, const View& view, const Execution& execution);
+
+  [[nodiscard]] const ClusterSet& set() const { return *set_; }
+  [[nodiscard]] const ScreenTransform& transform() const { return *transform_; }
   [[nodiscard]] const View& view() const { return view_; }
   [[nodiscard]] const ScreenClusters& screen() const { return screen_; }
   [[nodiscard]] std::size_t tile_count() const { return std::size_t(tiles_x_) * std::size_t(tiles_y_); }
@@ -62,13 +66,15 @@ class FramePlan {
  private:
   void transform_all(const Execution& execution);
   void take_apart(const Execution& execution);
-  void append_triangles(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const;
+  void append_clipped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const;
+  void append_snapped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const;
+  void append(ScreenTriangle triangle, std::vector<ScreenTriangle>& triangles) const;
   void make_lists();
 
-  const ClusterSet& set_;
-  ScreenTransform transform_;
+  const ClusterSet* set_ = nullptr;
+  std::optional<ScreenTransform> transform_;
   View view_;
-  int tiles_x_, tiles_y_;
+  int tiles_x_ = 0, tiles_y_ = 0;
   ScreenClusters screen_;
   std::vector<ScreenTriangle> singles_;
   TileLists cluster_lists_;

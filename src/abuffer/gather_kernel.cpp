@@ -160,12 +160,12 @@ class TileGatherer {
 
 Gathered GatherTile(const FrameInput& frame, const TileJob& job, TileScratch& scratch) {
   std::fill(scratch.counts.begin(), scratch.counts.end(), 0u);
-  scratch.arrived.count = 0;
+  scratch.arrived.count = Arrived::first;
   scratch.triangles.count = 0;
   const bool fits =
       frame.is_flat ? TileGatherer<true>(frame, job, scratch).Run() : TileGatherer<false>(frame, job, scratch).Run();
   if (!fits) return Gathered::too_much;
-  if (scratch.arrived.count == 0) return Gathered::nothing;
+  if (scratch.arrived.count == Arrived::first) return Gathered::nothing;
   PlaceAndSort(frame, scratch);
   return Gathered::something;
 }

@@ -37,8 +37,10 @@ class LargeTriangles {
     SetUpEdges(t);
     SetUpPlane(t);
     const std::size_t before = sink_.arrived.count;
-    for (std::int32_t by = rect.y0 / 4; by <= rect.y1 / 4; ++by)
-      for (std::int32_t bx = rect.x0 / 4; bx <= rect.x1 / 4; ++bx) DrawBlock(bx, by);
+    if (IsNarrow(t))
+      DrawNarrow(rect);
+    else
+      DrawWide(rect);
     if (!kFlat && sink_.arrived.count > before) KeepPlane();
   }
 
@@ -116,19 +118,51 @@ class LargeTriangles {
     t.id[n] = id_;
   }
 
-  HWY_INLINE void DrawBlock(std::int32_t bx, std::int32_t by) {
-    std::int32_t e[3];
-    bool full = true;
-    for (int k = 0; k < 3; ++k) {
-      const Edge& edge = edge_[k];
-      const std::int64_t at = edge.first + std::int64_t(4 * bx) * edge.step_x + std::int64_t(4 * by) * edge.step_y;
-      e[k] = std::int32_t(HWY_MAX(HWY_MIN(at, kEdgeLimit), -kEdgeLimit));
-      if (e[k] + edge.block_max < 0) return;
-      full = full && e[k] + edge.block_min >= 0;
+  /// Edge functions of triangles up to 128 pixels wide and high stay below 2^28 all over the tile.
+  [[nodiscard]] static bool IsNarrow(const ScreenTriangle& t) {
+    constexpr std::int32_t most = 128 * kSubPixels;
+    const auto [x_min, x_max] = std::minmax({t.x[0], t.x[1], t.x[2]});
+    const auto [y_min, y_max] = std::minmax({t.y[0], t.y[1], t.y[2]});
+    return x_max - x_min <= most && y_max - y_min <= most;
+  }
+
+  HWY_INLINE void DrawNarrow(const Bounds& rect) {
+    std::int32_t row[3];
+    for (int k = 0; k < 3; ++k)
+      row[k] = std::int32_t(edge_[k].first) + (rect.x0 & ~3) * edge_[k].step_x + (rect.y0 & ~3) * edge_[k].step_y;
+    for (std::int32_t by = rect.y0 / 4; by <= rect.y1 / 4; ++by) {
+      std::int32_t e[3] = {row[0], row[1], row[2]};
+      for (std::int32_t bx = rect.x0 / 4; bx <= rect.x1 / 4; ++bx) {
+        DrawBlock(bx, by, e);
+        for (int k = 0; k < 3; ++k) e[k] += 4 * edge_[k].step_x;
+      }
+      for (int k = 0; k < 3; ++k) row[k] += 4 * edge_[k].step_y;
     }
-    const bool inside = 4 * bx + 4 <= sink_.width && 4 * by + 4 <= sink_.height;
+  }
+
+  void DrawWide(const Bounds& rect) {
+    for (std::int32_t by = rect.y0 / 4; by <= rect.y1 / 4; ++by)
+      for (std::int32_t bx = rect.x0 / 4; bx <= rect.x1 / 4; ++bx) {
+        std::int32_t e[3];
+        for (int k = 0; k < 3; ++k) {
+          const Edge& edge = edge_[k];
+          const std::int64_t at = edge.first + std::int64_t(4 * bx) * edge.step_x + std::int64_t(4 * by) * edge.step_y;
+          e[k] = std::int32_t(HWY_MAX(HWY_MIN(at, kEdgeLimit), -kEdgeLimit));
+        }
+        DrawBlock(bx, by, e);
+      }
+  }
+
+  HWY_INLINE void DrawBlock(std::int32_t bx, std::int32_t by, const std::int32_t (&e)[3]) {
+    std::int32_t most = 0, least = 0;
+    for (int k = 0; k < 3; ++k) {
+      most |= e[k] + edge_[k].block_max;
+      least |= e[k] + edge_[k].block_min;
+    }
+    if (most < 0) return;
+    const bool is_full = least >= 0 && 4 * bx + 4 <= sink_.width && 4 * by + 4 <= sink_.height;
     for (std::int32_t i = 0; i < 16; i += std::int32_t(hn::Lanes(DI()))) {
-      if (full && inside)
+      if (is_full)
         DrawPixels<true>(bx, by, i, e);
       else
         DrawPixels<false>(bx, by, i, e);
@@ -161,10 +195,31 @@ class LargeTriangles {
     key = hn::Add(key, hn::Mul(dy, hn::Set(df, gy_)));
     key = hn::Min(hn::Max(key, hn::Set(df, low_)), hn::Set(df, high_));
     const std::uint32_t pixel = std::uint32_t((by * kBlocksAcross + bx) * 16 + first);
-    if (kFlat)
+    if (kFull)
+      AppendFull(pixel, key);
+    else if (kFlat)
       AppendFlat(pixel, key, touched);
     else
       AppendMasked(pixel, key, BitsOf(d, touched), BitsOf(d, covered));
+  }
+
+  /// A vector of pixels that are covered wholly.
+  HWY_INLINE void AppendFull(std::uint32_t pixel, VF key) {
+    const DU du;
+    const DF df;
+    Arrived& out = sink_.arrived;
+    const std::size_t n = out.count;
+    const VU count = hn::Load(du, sink_.counts + pixel);
+    hn::StoreU(hn::Or(hn::ShiftLeft<kRankBits>(hn::Iota(du, pixel)), count), du, out.place.data() + n);
+    hn::Store(hn::Add(count, hn::Set(du, 1)), du, sink_.counts + pixel);
+    hn::StoreU(hn::BitCast(du, key), du, out.key.data() + n);
+    hn::StoreU(hn::Set(du, triangle_), du, out.triangle.data() + n);
+    out.count += hn::Lanes(du);
+    if (kFlat) return;
+    const VF half = hn::Set(df, half_);
+    hn::StoreU(hn::Min(hn::Add(key, half), hn::Set(df, high_)), df, out.nearest.data() + n);
+    hn::StoreU(hn::Max(hn::Sub(key, half), hn::Set(df, low_)), df, out.farthest.data() + n);
+    std::fill_n(out.mask.data() + n, hn::Lanes(du), sink_.samples.full());
   }
 
   HWY_INLINE void AppendFlat(std::uint32_t pixel, VF key, MI covered) {

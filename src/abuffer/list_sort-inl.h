@@ -107,7 +107,7 @@ inline void PlaceAndSort(const FrameInput& frame, TileScratch& s) {
   if (s.slots.size() < words) s.slots = Buffer<std::uint64_t>(words + words / 4);
   std::fill_n(s.slots.data(), words, std::uint64_t(0));
   const Arrived& from = s.arrived;
-  for (std::size_t n = 0; n < from.count; ++n) {
+  for (std::size_t n = Arrived::first; n < from.count; ++n) {
     const std::uint32_t pixel = from.place[n] >> kRankBits, rank = from.place[n] & kMostOfPixel;
     const std::uint32_t low = frame.is_flat ? ~from.triangle[n] : ~std::uint32_t(n);
     s.slots[(std::size_t(s.group_base[pixel / kGroup]) + rank) * kGroup + pixel % kGroup] =

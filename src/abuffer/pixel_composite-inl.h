@@ -214,11 +214,15 @@ class PixelCompositor {
   }
 
   /// A sum in the order of a tree that does not depend on the width of vectors.
-  static float SumOf(const VF* values) {
+  static HWY_INLINE float SumOf(const VF* values) {
     const DF d;
-    HWY_ALIGN_MAX float lane[kSamples + kMaxLanes];
-    for (std::size_t v = 0; v < kVectors; ++v) hn::StoreU(values[v], d, lane + v * kLanes);
-    for (std::size_t half = kSamples / 2; half > 0; half /= 2)
+    VF sum[kVectors];
+    for (std::size_t v = 0; v < kVectors; ++v) sum[v] = values[v];
+    for (std::size_t half = kVectors / 2; half > 0; half /= 2)
+      for (std::size_t v = 0; v < half; ++v) sum[v] = hn::Add(sum[v], sum[v + half]);
+    HWY_ALIGN_MAX float lane[kMaxLanes];
+    hn::Store(sum[0], d, lane);
+    for (std::size_t half = kLanes / 2; half > 0; half /= 2)
       for (std::size_t i = 0; i < half; ++i) lane[i] += lane[i + half];
     return lane[0];
   }

@@ -27,29 +27,71 @@ void clear(const Rectangle& r, const PicturePlanes& out) {
 
 }  // namespace
 
-ResolvedPicture resolve(const Surfaces& surfaces, const View& view, std::span<const glm::vec4> colors,
-                        const AbufferOptions& options, const Execution& execution) {
+struct Resolver::State {
+  FramePlan plan;
+  Pool<TileScratch> scratches;
+  ResolvedPicture picture;
+  /// By tile: nothing is seen in it, and its pixels say so. Such tiles need not be cleared again.
+  std::vector<std::uint8_t> blank;
+
+  void prepare(const View& view);
+};
+
+void Resolver::State::prepare(const View& view) {
+  if (picture.width == view.width && picture.height == view.height) return;
+  const std::size_t pixels = view.pixel_count();
+  picture = {view.width,           view.height, Buffer<float>(pixels), Buffer<float>(pixels), Buffer<float>(pixels),
+             Buffer<float>(pixels)};
+  blank.assign(plan.tile_count(), 0);
+}
+
+Resolver::Resolver() : state_(std::make_unique<State>()) {}
+Resolver::~Resolver() = default;
+Resolver::Resolver(Resolver&&) noexcept = default;
+Resolver& Resolver::operator=(Resolver&&) noexcept = default;
+
+const ResolvedPicture& Resolver::draw(const Surfaces& surfaces, const View& view, std::span<const glm::vec4> colors,
+                                      const AbufferOptions& options, const Execution& execution) {
   validate(view);
   validate(options);
   check_colors(surfaces, colors);
   const IeeeScope ieee;
   const SamplePattern pattern = sample_pattern(view, options.grid);
-  const FramePlan plan(surfaces, view, execution);
-  const FrameInput frame{plan, pattern, pattern.count == 1, execution.isa};
-  const std::size_t pixels = view.pixel_count();
-  ResolvedPicture picture{
-      view.width,           view.height, Buffer<float>(pixels), Buffer<float>(pixels), Buffer<float>(pixels),
-      Buffer<float>(pixels)};
+  State& state = *state_;
+  state.plan.make(surfaces, view, execution);
+  state.prepare(view);
+  const FrameInput frame{state.plan, pattern, pattern.count == 1, execution.isa};
+  ResolvedPicture& picture = state.picture;
   const PicturePlanes out{picture.red.data(), picture.green.data(), picture.blue.data(), picture.alpha.data(),
                           view.width};
   const FragmentColors paint{colors.data(), false, options.opacity};
-  visit_tiles(frame, execution, [&](const TileJob& job, TileScratch* scratch) {
-    if (scratch)
+  visit_tiles(frame, state.scratches, execution, [&](const TileJob& job, TileScratch* scratch) {
+    std::uint8_t& blank = state.blank[job.tile];
+    if (scratch) {
+      blank = 0;
       composite_tile(frame, job, *scratch, paint, out);
-    else
+    } else if (!blank) {
       clear(job.pixels, out);
+      // Of a tile in parts every part is looked at anew.
+      const Rectangle whole = frame.plan.tile(job.tile);
+      blank = job.pixels.width == whole.width && job.pixels.height == whole.height;
+    }
   });
   return picture;
+}
+
+ResolvedPicture Resolver::take() {
+  State& state = *state_;
+  ResolvedPicture picture = std::move(state.picture);
+  state.picture = {};
+  return picture;
+}
+
+ResolvedPicture resolve(const Surfaces& surfaces, const View& view, std::span<const glm::vec4> colors,
+                        const AbufferOptions& options, const Execution& execution) {
+  Resolver resolver;
+  resolver.draw(surfaces, view, colors, options, execution);
+  return resolver.take();
 }
 
 }  // namespace frontmost

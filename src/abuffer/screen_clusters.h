@@ -12,6 +12,7 @@ namespace frontmost::abuffer_detail {
 enum class ClusterFate : std::uint8_t {
   outside,  ///< no pixel can see it
   whole,    ///< every vertex is snapped
+  spread,   ///< likewise, but over so many tiles that it is taken apart
   apart,    ///< some triangle may need clipping
 };
 

@@ -36,12 +36,17 @@ TileScratch::TileScratch()
     // Every pixel of the largest walk for every lane, and a vector of slack for whole stores.
     : counts(kTilePixels), group_base(kGroups + 1), references(16 * 16 * 16 + 64) {
   arrived.grow(kMostOfTile + kMostAtOnce);
+  arrived.count = Arrived::first;
+  arrived.key[0] = arrived.triangle[0] = arrived.place[0] = 0;
+  arrived.mask[0] = 0;
+  arrived.nearest[0] = -1.0f;
+  arrived.farthest[0] = 2.0f;
 }
 
 void TileScratch::reserve_group(std::size_t count) {
-  if (mask.size() >= count * kGroup) return;
+  if (reach.size() >= count * kGroup) return;
   for (Buffer<float>* b : {&nearest, &farthest, &behind_nearest}) *b = Buffer<float>(2 * count * kGroup);
-  mask = Buffer<std::uint64_t>(2 * count * kGroup);
+  for (Buffer<std::uint32_t>* b : {&mask_low, &mask_high}) *b = Buffer<std::uint32_t>(2 * count * kGroup);
   reach = Buffer<std::int32_t>(2 * count * kGroup);
 }
 

@@ -20,7 +20,6 @@ inline constexpr std::size_t kMostOfTile = std::size_t(1) << 18;
 /// What one step of gathering may add before fullness is looked at again.
 inline constexpr std::size_t kMostAtOnce = kTilePixels + 64;
 
-/// Edges run from -2^30 to 2^30 where they are stepped from, see gather_kernel.cpp.
 [[nodiscard]] inline std::uint32_t pixel_number(std::uint32_t x, std::uint32_t y) {
   return ((y >> 2) * kBlocksAcross + (x >> 2)) * 16 + (y & 3) * 4 + (x & 3);
 }
@@ -42,14 +41,15 @@ struct LocalTriangles {
   }
 };
 
-/// In the order of arrival.
+/// In the order of arrival. Number 0 stands for no fragment: it covers nothing and lies behind everything.
 struct Arrived {
+  static constexpr std::size_t first = 1;
   std::size_t count = 0, capacity = 0;
   Buffer<std::uint32_t> key;       ///< bits of the float
   Buffer<std::uint32_t> place;     ///< pixel << kRankBits | rank
   Buffer<std::uint32_t> triangle;  ///< number in LocalTriangles; of flat tiles the primitive id
   Buffer<std::uint64_t> mask;
-  Buffer<float> nearest, farthest;  ///< no key of the fragment leaves this range; both 0 <= key <= 1
+  Buffer<float> nearest, farthest;  ///< no key of the fragment leaves this range
 
   void grow(std::size_t wanted);
 };
@@ -68,7 +68,7 @@ struct TileScratch {
 
   // Of one group while it is composited, slot-major as well.
   Buffer<float> nearest, farthest, behind_nearest;
-  Buffer<std::uint64_t> mask;
+  Buffer<std::uint32_t> mask_low, mask_high;
   Buffer<std::int32_t> reach;
   void reserve_group(std::size_t slots);
 

@@ -30,8 +30,7 @@ void visit_job(const FrameInput& frame, const TileJob& job, TileScratch& scratch
 
 /// The same for the whole picture, in any order, on all threads. Every pixel is in one job.
 template <class Visit>
-void visit_tiles(const FrameInput& frame, const Execution& execution, const Visit& visit) {
-  Pool<TileScratch> pool;
+void visit_tiles(const FrameInput& frame, Pool<TileScratch>& pool, const Execution& execution, const Visit& visit) {
   std::atomic<std::size_t> done{0};
   const std::size_t tiles = frame.plan.tile_count();
   parallel_for(execution, tiles, 1, [&](std::size_t begin, std::size_t end) {
@@ -39,6 +38,12 @@ void visit_tiles(const FrameInput& frame, const Execution& execution, const Visi
     for (std::size_t tile = begin; tile < end; ++tile) visit_job(frame, {frame.plan.tile(tile), tile}, *scratch, visit);
     report_progress(execution, "visible", double(done += end - begin) / double(tiles));
   });
+}
+
+template <class Visit>
+void visit_tiles(const FrameInput& frame, const Execution& execution, const Visit& visit) {
+  Pool<TileScratch> pool;
+  visit_tiles(frame, pool, execution, visit);
 }
 
 }  // namespace frontmost::abuffer_detail

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Fragments for those who give them colours: the order and the coverage are this room's, the colours are not.
+#pragma once
+
+#include <functional>
+
+#include "abuffer/fragment_lists.h"
+
+namespace frontmost::abuffer_detail {
+
+/// One view, gone through as often as wanted. Memory is bounded as in resolve(). Callbacks are called for one rectangle
+/// of pixels after another, in any order, by several threads at once.
+class FragmentPass {
+ public:
+  FragmentPass(const Surfaces& surfaces, const View& view, const AbufferOptions& options, const Execution& execution);
+
+  /// Positions of the masks' bits in 1/256 pixel.
+  [[nodiscard]] std::vector<glm::ivec2> samples() const { return pattern_.positions(); }
+
+  using Look = std::function<void(const Rectangle& pixels, const JobLists& lists)>;
+  void look(const Look& look, const Execution& execution) const;
+
+  /// Sets colors[lists.numbers[i]], straight alpha, for every fragment i. The rest is 0.
+  using Paint = std::function<void(const Rectangle& pixels, const JobLists& lists, std::vector<glm::vec4>& colors)>;
+  /// Lays the colours over each other, every alpha multiplied by the options' opacity.
+  [[nodiscard]] ResolvedPicture paint(const Paint& paint, const Execution& execution) const;
+
+ private:
+  float opacity_;
+  SamplePattern pattern_;
+  FramePlan plan_;
+  Opacities opacities_;
+};
+
+}  // namespace frontmost::abuffer_detail

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// Many layers, opaque ones among them, and values that are refused.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "frontmost/abuffer.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+/// Sheets one behind the other, the first the nearest, each of two triangles.
+Scene stack_of(int count) {
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const float z = -float(i) / float(count);
+    add_triangle(mesh, {-2, -2, z}, {2, -2, z}, {2, 2, z});
+    add_triangle(mesh, {-2, -2, z}, {2, 2, z}, {-2, 2, z});
+  }
+  return scene_of(std::move(mesh));
+}
+
+View front_view(int width, int height) {
+  View view;
+  view.width = width;
+  view.height = height;
+  view.world_from_eye = look_at({0, 0, 1}, {0, 0, 0}, {0, 1, 0});
+  view.projection = make_projection(0.9, double(width) / height, {0.5, 6});
+  return view;
+}
+
+ErrorCode code_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.code();
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return {};
+}
+
+TEST(ManyLayers, TilesInPartsGiveWhatEverySheetAddsUpTo) {
+  constexpr int count = 700;  // 2.8 million fragments in a tile of 64 x 64, ten times what is kept at once
+  const Scene scene = stack_of(count);
+  const Surfaces surfaces(scene);
+  const View view = front_view(70, 66);
+  Random random(1);
+  std::vector<glm::vec4> colors;
+  double left = 1, red = 0;
+  for (int i = 0; i < count; ++i) {
+    const glm::vec4 color(random.unit(), 0, 0, 0.004f);
+    colors.insert(colors.end(), {color, color});
+    red += left * double(color.a) * double(color.r);
+    left *= 1 - double(color.a);
+  }
+  for (const int grid : {0, 4}) {
+    const ResolvedPicture picture = resolve(surfaces, view, colors, {grid});
+    for (std::size_t i = 0; i < view.pixel_count(); ++i) {
+      ASSERT_NEAR(picture.red[i], red, 1e-5) << "pixel " << i;
+      ASSERT_NEAR(picture.alpha[i], 1 - left, 1e-5) << "pixel " << i;
+    }
+  }
+}
+
+TEST(ManyLayers, APixelOfThousandsIsSortedAlone) {
+  constexpr int count = 20'000;
+  const Scene scene = stack_of(count);
+  const Surfaces surfaces(scene);
+  const std::vector<Visible> layers = visible_layers(surfaces, front_view(5, 3), 1024, {0, 0.5f});
+  // Sheets a twenty thousandth apart have keys of their own, and each shows one of its two triangles.
+  for (std::size_t k = 0; k < layers.size(); ++k)
+    for (std::size_t i = 0; i < 15; ++i) ASSERT_EQ(layers[k].primitives[i] / 2, k) << "pixel " << i;
+}
+
+TEST(Opaque, SheetsCutOffWhatIsBehind) {
+  Scene scene = stack_of(10);
+  Material glass, wall;
+  glass.alpha = Material::Alpha::blend;
+  glass.base_color.a = 0.25f;
+  scene.materials = {glass, wall};
+  scene.meshes[0].material_ids.assign(20, 0);
+  scene.meshes[0].material_ids[6] = scene.meshes[0].material_ids[7] = 1;  // the fourth sheet
+  const Surfaces surfaces(scene);
+  for (const int grid : {0, 8}) {
+    const FragmentLists lists = abuffer(surfaces, front_view(40, 30), {grid});
+    const auto list = lists.at(30, 10);
+    ASSERT_EQ(list.size(), 4u);
+    EXPECT_EQ(list[0].opacity, 0.25f);
+    EXPECT_EQ(list[3].opacity, 1.0f);
+    EXPECT_EQ(list[3].primitive / 2, 3u);
+    // With everything see-through, nothing is cut off.
+    EXPECT_EQ(abuffer(surfaces, front_view(40, 30), {grid, 0.5f}).at(30, 10).size(), 10u);
+  }
+  const std::vector<Visible> layers = visible_layers(surfaces, front_view(40, 30), 6);
+  const std::size_t at = layers[0].index(30, 10);
+  EXPECT_EQ(layers[3].primitives[at] / 2, 3u);
+  EXPECT_EQ(layers[4].primitives[at], no_primitive);
+  EXPECT_EQ(layers[4].keys[at], 0.0f);
+}
+
+TEST(Slopes, TellTheKeyElsewhereInThePixel) {
+  const Scene scene = scene_of(random_mesh(Kind::soup, 400, 9));
+  const Surfaces surfaces(scene);
+  Random random(4);
+  const View view = random_view(random, 80, 60);
+  const FragmentLists lists = abuffer(surfaces, view, {8, 0.5f});
+  std::size_t compared = 0;
+  for (int y = 0; y < view.height; ++y)
+    for (int x = 0; x + 1 < view.width; ++x)
+      for (const Fragment& a : lists.at(x, y))
+        for (const Fragment& b : lists.at(x + 1, y)) {
+          if (a.primitive != b.primitive || a.mask != ~std::uint64_t(0) || b.mask != ~std::uint64_t(0)) continue;
+          ASSERT_NEAR(a.key + a.key_dx, b.key, 1e-5);
+          ++compared;
+        }
+  EXPECT_GT(compared, 2000u);
+}
+
+TEST(Values, OutOfRangeAreRefused) {
+  const Scene scene = stack_of(1);
+  const Surfaces surfaces(scene);
+  const View view = front_view(8, 8);
+  const std::vector<glm::vec4> colors(2, glm::vec4(1));
+  for (const int grid : {-1, 1, 3, 16})
+    EXPECT_EQ(code_of([&] { (void)abuffer(surfaces, view, {grid}); }), ErrorCode::bad_argument);
+  for (const float opacity : {-0.1f, 1.1f, std::numeric_limits<float>::quiet_NaN()})
+    EXPECT_EQ(code_of([&] { (void)resolve(surfaces, view, colors, {0, opacity}); }), ErrorCode::bad_argument);
+  EXPECT_EQ(code_of([&] { (void)resolve(surfaces, view, std::span(colors).first(1)); }), ErrorCode::bad_argument);
+  EXPECT_EQ(code_of([&] { (void)visible_layers(surfaces, view, 0); }), ErrorCode::bad_argument);
+  EXPECT_EQ(code_of([&] { (void)visible_layers(surfaces, view, 1025); }), ErrorCode::bad_argument);
+}
+
+TEST(Resolver, GivesTheSameAfterOtherPictures) {
+  const Scene many = stack_of(12), one = scene_of(random_mesh(Kind::tiny, 40, 2)), none = scene_of(Mesh());
+  const Surfaces a(many), b(one), c(none);
+  Resolver resolver;
+  for (const Surfaces* surfaces : {&a, &b, &a, &c, &b, &a})
+    for (const int grid : {0, 4}) {
+      const View view = front_view(130, 70);
+      const std::vector<glm::vec4> colors(surfaces->primitive_count(), glm::vec4(0.5f));
+      const ResolvedPicture& found = resolver.draw(*surfaces, view, colors, {grid});
+      const ResolvedPicture wanted = resolve(*surfaces, view, colors, {grid});
+      for (std::size_t i = 0; i < view.pixel_count(); ++i) ASSERT_EQ(found.alpha[i], wanted.alpha[i]) << i;
+    }
+}
+
+}  // namespace
+}  // namespace frontmost::test
