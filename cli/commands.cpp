@@ -64,6 +64,14 @@ constexpr Command table[] = {
      "frontmost lidar city.glb --from 0,2,0 --rings 64 --elevations -24,2 --steps 2048 -o points.ply\n"
      "frontmost lidar site.ply --from 0,0,1 --directions pattern.txt -o points.ply --json",
      run_lidar},
+    {"compare", for_compare, "MODEL", "Lay all visibility methods side by side.",
+     "Every method answers for the same view, in a process of its own: time by stage, memory, and the pixels where it "
+     "differs from the z-buffer, each put to exact arithmetic: an edge within 1/128 pixel, depths closer than can be "
+     "told, a translucent surface, or unexplained, which would be a mistake. With -o also a page to look at.",
+     "frontmost compare engine.glb\n"
+     "frontmost compare city.glb --explain --threads 1\n"
+     "frontmost compare part.stl --view iso -o comparison",
+     run_compare},
     {"completion", 0, "bash|zsh|fish", "Print a shell completion script.", "",
      "frontmost completion bash > ~/.local/share/bash-completion/completions/frontmost\n"
      "frontmost completion zsh > ~/.zfunc/_frontmost\n"

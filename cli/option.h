@@ -10,7 +10,20 @@
 
 namespace frontmost::cli {
 
-enum class Group : std::uint8_t { model, camera, vision, grid, depth, precision, sight, lidar, output, look, run };
+enum class Group : std::uint8_t {
+  model,
+  camera,
+  vision,
+  grid,
+  depth,
+  precision,
+  sight,
+  lidar,
+  compare,
+  output,
+  look,
+  run
+};
 inline constexpr std::string_view group_titles[] = {"Model",
                                                     "Camera, as f3d names it",
                                                     "Camera, as computer vision names it",
@@ -19,6 +32,7 @@ inline constexpr std::string_view group_titles[] = {"Model",
                                                     "Precision",
                                                     "Points",
                                                     "The scanner",
+                                                    "Comparing",
                                                     "What to write",
                                                     "How the picture looks",
                                                     "How to run"};
@@ -31,7 +45,8 @@ enum CommandBit : unsigned {
   may_repeat = 8,
   for_precision = 16,
   for_sight = 32,
-  for_lidar = 64
+  for_lidar = 64,
+  for_compare = 128
 };
 
 /// The text given for an option, and the words it may be.
@@ -70,6 +85,7 @@ struct Option {
 [[nodiscard]] std::span<const Option> precision_option_table();
 [[nodiscard]] std::span<const Option> sight_option_table();
 [[nodiscard]] std::span<const Option> lidar_option_table();
+[[nodiscard]] std::span<const Option> compare_option_table();
 [[nodiscard]] std::span<const Option> output_option_table();
 [[nodiscard]] std::span<const Option> run_option_table();
 
@@ -77,7 +93,7 @@ struct Option {
 template <class Visit>
 void for_each_option(const Visit& visit) {
   for (const auto table : {view_option_table(), depth_option_table(), precision_option_table(), sight_option_table(),
-                           lidar_option_table(), output_option_table(), run_option_table()}) {
+                           lidar_option_table(), compare_option_table(), output_option_table(), run_option_table()}) {
     for (const Option& option : table) visit(option);
   }
 }

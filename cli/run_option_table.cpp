@@ -10,7 +10,8 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr unsigned everywhere = for_render | for_info | for_camera | for_precision | for_sight | for_lidar;
+constexpr unsigned everywhere =
+    for_render | for_info | for_camera | for_precision | for_sight | for_lidar | for_compare;
 
 Isa isa_from(const Given& given) {
   // The words leave out Isa::best, which is the default.
@@ -34,7 +35,7 @@ constexpr Option table[] = {
        s.run.threads = g.integer({0, 1024});
      }},
     {"isa", 0, "scalar|sse4|avx2|avx512", "Instruction set; the best by default.", Group::run,
-     for_render | for_sight | for_lidar, [](Settings& s, const Given& g) { s.run.isa = isa_from(g); }},
+     for_render | for_sight | for_lidar | for_compare, [](Settings& s, const Given& g) { s.run.isa = isa_from(g); }},
     {"repeat", 0, "N", "Find what is visible N times, for timing.", Group::run, for_render,
      [](Settings& s, const Given& g) {
        s.run.repeat = g.integer({1, 1e6});

@@ -106,6 +106,13 @@ struct PrecisionSettings {
   std::optional<std::string> plot, heat_map;
 };
 
+/// What frontmost compare does.
+struct CompareSettings {
+  int runs = 5;
+  bool explain = false;
+  std::optional<std::string> folder;  ///< of the page and its pictures
+};
+
 /// What frontmost sight looks along.
 struct SightSettings {
   std::optional<glm::dvec3> from, to;
@@ -129,6 +136,7 @@ struct Settings {
   PrecisionSettings precision;
   SightSettings sight;
   LidarSettings lidar;
+  CompareSettings compare;
   OutputSettings output;
   RunSettings run;
 };

@@ -9,8 +9,9 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr unsigned everywhere = for_render | for_info | for_camera | for_precision | for_sight | for_lidar;
-constexpr unsigned views = for_render | for_camera | for_precision;
+constexpr unsigned everywhere =
+    for_render | for_info | for_camera | for_precision | for_sight | for_lidar | for_compare;
+constexpr unsigned views = for_render | for_camera | for_precision | for_compare;
 constexpr int max_side = 16384;
 
 Axis axis_of(const glm::dvec3& direction) {

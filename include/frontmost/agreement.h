@@ -35,14 +35,24 @@ struct Agreement {
 /// - what it shows meets that square, or it shows nothing;
 /// - no triangle of the scene that contains the whole square, and is not left out by View::culling, is surely nearer
 ///   (for nothing: none contains it). Surely nearer: its least key over the square exceeds the other's greatest by more
-///   than 2^-20 of the greatest key of their corners, which is what 16 roundings of float keys amount to.
+///   than 2^-20 of the greatest key of their corners, which is what 16 roundings of float keys amount to; in parallel
+///   projection, where keys are made of distances, also 2^-21 of that from the eye to the farthest corner.
 /// Two possible answers part for the reason `depth` where both triangles contain the square, otherwise for `edge` (the
 /// rim that the near and far plane cut counts as one). Any other difference is `unexplained`; and so is a key, of
-/// either answer and at any sample, that its triangle does not have in the square, to the same 2^-20. Corners are the
-/// floats of Surfaces::corners(), rays the doubles of the view; from there on signs are exact, as long as coordinates
-/// are 0 or between 2^-100 and 2^100. O(samples + triangles + differing samples * triangles over them), in parallel.
+/// either answer and at any sample, that its triangle does not have in the square, with the same allowance. Where two
+/// edges of a triangle pass within 1/16 pixel, snapping may tilt it in any way: all keys between its corners' are its.
+///
+/// Corners are the floats of Surfaces::corners(), rays the doubles of the view; from there on signs are exact, as long
+/// as coordinates are 0 or between 2^-100 and 2^100.
+/// O(samples + triangles + differing samples * triangles over them), in parallel.
 /// \throws Error bad_argument when the two are of different views.
 [[nodiscard]] Agreement agreement(const Surfaces& surfaces, const Visible& a, const Visible& b,
                                   const Execution& execution = {});
+
+/// Adds what shows through, for methods that answer in layers: of the samples that agree, those where `behind` shows
+/// something become `translucent` where the material of what `front` shows lets light through (alpha mode mask or
+/// blend), and `unexplained` where it is opaque. O(samples).
+/// \throws Error bad_argument when they are of different views.
+void see_through(Agreement& agreement, const Surfaces& surfaces, const Visible& front, const Visible& behind);
 
 }  // namespace frontmost

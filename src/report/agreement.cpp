@@ -304,4 +304,24 @@ Agreement agreement(const Surfaces& surfaces, const Visible& a, const Visible& b
   return result;
 }
 
+void see_through(Agreement& agreement, const Surfaces& surfaces, const Visible& front, const Visible& behind) {
+  check_views(front, behind);
+  if (agreement.differences.size() != front.primitives.size())
+    throw Error(ErrorCode::bad_argument, "agreement: the layers are of different views");
+  const Scene& scene = surfaces.scene();
+  const auto lets_light_through = [&](PrimitiveId id) {
+    if (id >= surfaces.primitive_count()) return false;
+    const PrimitiveSource source = surfaces.source(id);
+    const std::uint32_t material = scene.meshes[source.mesh].material_of(source.triangle);
+    return material != no_index && scene.materials[material].alpha != Material::Alpha::opaque;
+  };
+  for (std::size_t i = 0; i < agreement.differences.size(); ++i) {
+    Difference& difference = agreement.differences[i];
+    if (difference != Difference::none || behind.primitives[i] == no_primitive) continue;
+    --agreement.counts[std::size_t(difference)];
+    difference = lets_light_through(front.primitives[i]) ? Difference::translucent : Difference::unexplained;
+    ++agreement.counts[std::size_t(difference)];
+  }
+}
+
 }  // namespace frontmost

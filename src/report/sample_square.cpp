@@ -13,8 +13,8 @@ namespace {
 
 // 1/128 and 1/16 pixel in 1/256.
 constexpr int kMargin = 2, kWideMargin = 16;
-// 16 roundings of a float of the greatest key.
-constexpr double kKeyRounding = 16 * 0x1p-24;
+// 16 roundings of a float of the greatest key; 8 of a distance, which keys of parallel projection are made of.
+constexpr double kKeyRounding = 16 * 0x1p-24, kDistanceRounding = 8 * 0x1p-24;
 
 std::array<SampleRay, 4> rays_around(const SampleRays& rays, int x, int y, const glm::ivec2& offset, int margin) {
   return {rays.at(x, y, offset + glm::ivec2(-margin, -margin)), rays.at(x, y, offset + glm::ivec2(margin, -margin)),
@@ -35,12 +35,13 @@ SeenTriangle::SeenTriangle(const std::array<glm::vec3, 3>& corners, const Sample
     : corners_{glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])},
       rays_(&rays),
       normal_(corners_[1] - corners_[0], corners_[2] - corners_[0]) {
-  double low = std::numeric_limits<double>::infinity(), high = -low, error = 0;
+  double low = std::numeric_limits<double>::infinity(), high = -low, error = 0, reach = 0;
   for (const glm::dvec3& corner : corners_) {
     const Bounded depth = bounded_dot(rays.forward(), glm::dvec3(0), corner - rays.eye());
     low = std::min(low, depth.value);
     high = std::max(high, depth.value);
     error = std::max(error, depth.error);
+    reach = std::max(reach, glm::distance(corner, rays.eye()));
   }
   depths_near_ = {low - error, low + error};
   depths_far_ = {high - error, high + error};
@@ -49,7 +50,8 @@ SeenTriangle::SeenTriangle(const std::array<glm::vec3, 3>& corners, const Sample
   };
   limits_least_ = widened(of_depth(depths_far_.high), of_depth(depths_far_.low));
   limits_greatest_ = widened(of_depth(depths_near_.high), of_depth(depths_near_.low));
-  resolution_ = kKeyRounding * (rays.is_orthographic() ? rays.far() - rays.near() : of_depth(low));
+  resolution_ = rays.is_orthographic() ? kKeyRounding * (rays.far() - rays.near()) + kDistanceRounding * reach
+                                       : kKeyRounding * of_depth(low);
   const Leg ab{corners_[1], corners_[0]}, ac{corners_[2], corners_[0]};
   facing_ = sign_of_determinant(ab, ac, rays.is_orthographic() ? Leg{rays.forward()} : Leg{corners_[0], rays.eye()});
 }

@@ -2,37 +2,14 @@
 // Every model that others made, through the whole path: read, flattened, seen, shaded; the same bytes by every
 // instruction set and any number of threads, and by the oracle where it is small enough for that.
 
-#include <algorithm>
 #include <iostream>
-#include <vector>
 
 #include "frontmost/frontmost.h"
-#include "support/models.h"
+#include "good_models.h"
 #include "support/oracle.h"
 
 namespace frontmost::test {
 namespace {
-
-namespace fs = std::filesystem;
-
-bool is_model(const fs::path& path) {
-  const std::string suffix = path.extension().string();
-  for (const char* known : {".stl", ".ply", ".obj", ".off", ".gltf", ".glb"})
-    if (suffix == known) return true;
-  return false;
-}
-
-/// Files that are to be read whole; `loader` holds broken ones, which the readers' own tests take one by one.
-std::vector<std::string> good_models() {
-  std::vector<std::string> names;
-  if (!have_models()) return names;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(models_folder())) {
-    const std::string name = fs::relative(entry.path(), models_folder()).generic_string();
-    if (entry.is_regular_file() && is_model(entry.path()) && name.rfind("loader/", 0) != 0) names.push_back(name);
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
 
 std::size_t covered(const Visible& visible) {
   return std::size_t(std::count_if(visible.primitives.begin(), visible.primitives.end(),

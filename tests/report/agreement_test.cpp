@@ -165,6 +165,40 @@ TEST(Agreement, IsTheSameForAnyNumberOfThreads) {
   EXPECT_TRUE(std::equal(one.differences.begin(), one.differences.end(), many.differences.begin()));
 }
 
+TEST(Agreement, OnlyTranslucentTrianglesAreSeenThrough) {
+  Scene scene = sheets(6);
+  scene.materials.resize(2);
+  scene.materials[1].alpha = Material::Alpha::blend;
+  scene.meshes[0].material_ids = {0, 1, 0, 0, 0};
+  const Surfaces surfaces(scene);
+  const Visible front = zbuffer(surfaces, square_view());
+  Visible behind = nothing_visible(square_view());
+  for (const auto& [x, y] : {std::pair(50, 50), std::pair(5, 5)}) {  // on 0, and on 1
+    behind.primitives[behind.index(x, y)] = front.primitives[front.index(x, y)] + 2;
+    behind.keys[behind.index(x, y)] = 0.5f / 6;
+  }
+  Agreement answer = agreement(surfaces, front, front);
+  see_through(answer, surfaces, front, behind);
+  EXPECT_EQ(answer.differences[front.index(50, 50)], Difference::unexplained);
+  EXPECT_EQ(answer.differences[front.index(5, 5)], Difference::translucent);
+  EXPECT_EQ(answer.differing(), 2u);
+  EXPECT_EQ(answer.count(Difference::none), 64u * 64u - 2);
+}
+
+// Between planes a few roundings apart, keys are steps: not wrong, but coarse.
+TEST(Agreement, AFlatModelInParallelProjectionHasItsDepth) {
+  Mesh mesh;
+  add_triangle(mesh, {0, 0, 0}, {10, 0, 0}, {10, 10, 0});
+  add_triangle(mesh, {0, 0, 0}, {10, 10, 0}, {0, 10, 0});
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  FrameOptions options;
+  options.orthographic = true;
+  options.direction = NamedView::front;
+  const View view = frame(surfaces, 64, 48, options);
+  EXPECT_EQ(agreement(surfaces, zbuffer(surfaces, view), raycast(surfaces, view)).count(Difference::unexplained), 0u);
+}
+
 TEST(Agreement, RefusesAnswersOfDifferentViews) {
   const Scene scene = sheets(6);
   const Surfaces surfaces(scene);

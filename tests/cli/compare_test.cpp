@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// frontmost compare: what it reports, what it writes, what it refuses.
+#include <gmock/gmock.h>
+
+#include "program.h"
+#include "support/models.h"
+
+namespace frontmost::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class Compare : public ProgramTest {
+ protected:
+  Compare() { write("cube.stl", cube_stl()); }
+};
+
+TEST_F(Compare, ReportsEveryMethodAsJson) {
+  const json report = succeed("compare cube.stl --resolution 160,120 --runs 3 --json").json();
+  EXPECT_EQ(report["triangles"], 12);
+  EXPECT_EQ(report["width"], 160);
+  EXPECT_EQ(report["runs"], 3);
+  ASSERT_EQ(report["methods"].size(), 3u);
+  EXPECT_EQ(report["methods"][0]["method"], "zbuffer");
+  EXPECT_EQ(report["methods"][1]["method"], "raycast");
+  EXPECT_EQ(report["methods"][2]["method"], "abuffer");
+  for (const json& method : report["methods"]) {
+    SCOPED_TRACE(method["method"]);
+    const json& times = method["timings_ms"];
+    for (const char* stage : {"load", "surfaces"}) EXPECT_GE(times[stage].get<double>(), 0);
+    EXPECT_LE(times["visible"]["min"], times["visible"]["median"]);
+    EXPECT_LE(times["visible"]["median"], times["visible"]["max"]);
+    EXPECT_EQ(times.contains("index"), method["method"] == "raycast");
+    EXPECT_GT(method["peak_bytes"], 160 * 120 * 8) << "the answer itself";
+    EXPECT_LT(method["peak_bytes"], 1 << 28);
+    EXPECT_EQ(method["primitives"], 12);
+    EXPECT_EQ(method["samples"], 160 * 120);
+    EXPECT_GT(method["covered_samples"], 1000);
+    EXPECT_EQ(method["unexplained"], 0);
+    EXPECT_EQ(method["differing"], method["explained"]["edge"].get<int>() + method["explained"]["depth"].get<int>() +
+                                       method["explained"]["translucent"].get<int>());
+  }
+  EXPECT_EQ(report["methods"][0]["differing"], 0);
+  EXPECT_FALSE(report.contains("advice"));
+}
+
+TEST_F(Compare, PrintsATable) {
+  const std::string text = succeed("compare cube.stl --resolution 64,48 --runs 1").out;
+  for (const char* part : {"12 triangles, 64 x 48 pixels", "zbuffer", "raycast", "abuffer", "index, ms", "visible, ms",
+                           "memory", "unexplained"})
+    EXPECT_THAT(text, HasSubstr(part));
+  EXPECT_THAT(text, testing::Not(HasSubstr("One view")));
+}
+
+TEST_F(Compare, ExplainsInWords) {
+  const std::string text = succeed("compare cube.stl --resolution 64,48 --runs 1 --explain").out;
+  EXPECT_THAT(text, HasSubstr("One view: "));
+  EXPECT_THAT(text, HasSubstr("Many views of the same model: "));
+  EXPECT_THAT(text, HasSubstr("Memory beside the model: "));
+  const json report = succeed("compare cube.stl --resolution 64,48 --runs 1 --explain --json").json();
+  EXPECT_EQ(report["advice"].size(), 6u);
+}
+
+TEST_F(Compare, WritesAPageThatHoldsItsPictures) {
+  const json report = succeed("compare cube.stl --resolution 64,48 --runs 1 -o new/page --json").json();
+  EXPECT_EQ(report["files"].size(), 6u);
+  for (const json& file : report["files"]) EXPECT_TRUE(exists(file)) << file;
+  const std::string page = read("new/page/index.html");
+  EXPECT_THAT(page, HasSubstr("<!doctype html>"));
+  EXPECT_THAT(page, HasSubstr("data:image/png;base64,iVBORw0KGgo"));
+  EXPECT_THAT(page, testing::Not(HasSubstr("src=\"http"))) << "it must stand alone";
+  EXPECT_THAT(page, HasSubstr("Ray casting"));
+}
+
+TEST_F(Compare, NamesInThePageAreText) {
+  write("a<b>&.stl", cube_stl());
+  ASSERT_EQ(run({"compare", "a<b>&.stl", "--resolution", "32,24", "--runs", "1", "-o", "page"}).status, 0);
+  const std::string page = read("page/index.html");
+  EXPECT_THAT(page, HasSubstr("a&lt;b>&amp;.stl"));
+  EXPECT_THAT(page, testing::Not(HasSubstr("<b>")));
+}
+
+TEST_F(Compare, SaysWhatIsSeenThroughGlass) {
+  FRONTMOST_NEEDS_MODELS();
+  const Outcome outcome = run({"compare", model("transparency/glass-table.glb"), "--resolution", "320,240", "--runs",
+                               "1", "--json", "--explain", "-q"});
+  const json methods = outcome.json()["methods"];
+  EXPECT_GT(methods[2]["explained"]["translucent"], 1000);
+  EXPECT_EQ(methods[1]["explained"]["translucent"], 0);
+  EXPECT_EQ(methods[2]["unexplained"], 0);
+  EXPECT_THAT(outcome.out, HasSubstr("only the A-buffer shows what lies behind"));
+}
+
+TEST_F(Compare, NothingToSeeIsNoTrouble) {
+  write("empty.ply",
+        "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 0\nproperty list uchar int vertex_indices\nend_header\n");
+  const json report = succeed("compare empty.ply --resolution 32,24 --runs 1 --json -o page").json();
+  for (const json& method : report["methods"]) {
+    EXPECT_EQ(method["covered_samples"], 0);
+    EXPECT_EQ(method["differing"], 0);
+  }
+}
+
+TEST_F(Compare, RefusesWhatItCannotDo) {
+  expect_failure("compare none.stl", 1, "none.stl");
+  expect_failure("compare -", 2, "give a file");
+  expect_failure("compare cube.stl --runs 0", 2, "--runs");
+  expect_failure("compare cube.stl --camera-index 3", 2, "camera");
+  expect_failure("compare cube.stl --near 5 --far 1", 2, "--near");
+  write("file", "");
+  expect_failure("compare cube.stl -o file/page", 1, "file/page");
+  expect_failure("compare", 2, "no MODEL given");
+}
+
+}  // namespace
+}  // namespace frontmost::test
