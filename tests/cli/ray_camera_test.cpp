@@ -37,7 +37,8 @@ TEST_F(RayCameras, APanoramaInsideACubeSeesItAllAround) {
   EXPECT_NEAR(nearest, 0.5, 0.003);    // the middle of a side
   EXPECT_NEAR(farthest, 0.866, 0.03);  // near a corner
   EXPECT_EQ(load_image(path("far.exr")).find("distance")->floats()[777], depth.channels[0].floats()[777]);
-  for (const std::uint32_t id : load_image(path("ids.exr")).find("object")->integers()) EXPECT_EQ(id, 0u);
+  const Image ids = load_image(path("ids.exr"));
+  for (const std::uint32_t id : ids.find("object")->integers()) EXPECT_EQ(id, 0u);
   EXPECT_EQ(load_image(path("picture.png")).width, 64);
 }
 
