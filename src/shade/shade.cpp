@@ -177,7 +177,10 @@ bool shows_materials(Shading shading) {
 }
 
 void paint_materials(const Request& request, Canvas& canvas) {
-  const auto& [surfaces, visible, options, execution] = request;
+  const Surfaces& surfaces = request.surfaces;
+  const Visible& visible = request.visible;
+  const ShadeOptions& options = request.options;
+  const Execution& execution = request.execution;
   const Materials materials(surfaces, visible, execution);
   const auto paint = [&](const TileWork::Colorist& colorist) {
     materials.paint({canvas, colorist, background_color(options)}, execution);
@@ -194,14 +197,15 @@ void paint_materials(const Request& request, Canvas& canvas) {
 }
 
 void paint_map(const Request& request, Canvas& canvas) {
-  const auto& [surfaces, visible, options, execution] = request;
-  const TriangleSource source(surfaces, visible.view, nullptr, execution);
+  const Visible& visible = request.visible;
+  const ShadeOptions& options = request.options;
+  const TriangleSource source(request.surfaces, visible.view, nullptr, request.execution);
   const auto paint = [&](const TileWork::Colorist& colorist) {
-    shade_tiles({source, visible}, nullptr, {canvas, colorist, background_color(options)}, execution);
+    shade_tiles({source, visible}, nullptr, {canvas, colorist, background_color(options)}, request.execution);
   };
   if (options.shading == Shading::ids) return paint(Ids{});
   if (options.shading == Shading::uv) return paint(Texcoords{});
-  const DepthRange range = depth_range(visible, execution);
+  const DepthRange range = depth_range(visible, request.execution);
   paint(Depths{glm::vec3(visible.view.forward()), range.nearest, range.farthest});
 }
 
