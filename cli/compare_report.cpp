@@ -98,7 +98,7 @@ std::string compare_text(const Comparisons& all) {
   for (const auto& [label, cause] :
        {std::pair("  edge in 1/128 pixel", Difference::edge), std::pair("  depths too close", Difference::depth),
         std::pair("  translucent", Difference::translucent), std::pair("  unexplained", Difference::unexplained)})
-    text += row_of(all, label, [&](const Compared& c) { return grouped(c.agreement.count(cause)); });
+    text += row_of(all, label, [&, counted = cause](const Compared& c) { return grouped(c.agreement.count(counted)); });
   if (!all.settings.compare.explain) return text;
   text += '\n';
   for (const std::string& sentence : advice(all)) text += sentence + '\n';
