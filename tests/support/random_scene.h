@@ -46,36 +46,54 @@ enum class Kind { soup, tiny, slivers, fan, shared_grid, huge, coplanar, through
 inline constexpr Kind all_kinds[] = {Kind::soup, Kind::tiny,     Kind::slivers,     Kind::fan,   Kind::shared_grid,
                                      Kind::huge, Kind::coplanar, Kind::through_eye, Kind::sheets};
 
-/// Triangles within about a unit of the origin (huge ones reach far beyond).
+/// Triangles within about a unit of the origin (huge ones reach far beyond). One random number a statement, as
+/// compilers evaluate arguments in different orders.
 inline Mesh random_mesh(Kind kind, int count, std::uint64_t seed) {
   Random random(seed);
   Mesh mesh;
   for (int i = 0; i < count; ++i) {
     const glm::vec3 p = random.point(1);
     switch (kind) {
-      case Kind::soup: add_triangle(mesh, p, p + random.point(0.4f), p + random.point(0.4f)); break;
-      case Kind::tiny: add_triangle(mesh, p, p + random.point(0.02f), p + random.point(0.02f)); break;
+      case Kind::soup:
+      case Kind::tiny: {
+        const float reach = kind == Kind::soup ? 0.4f : 0.02f;
+        const glm::vec3 third = p + random.point(reach), second = p + random.point(reach);
+        add_triangle(mesh, p, second, third);
+        break;
+      }
       case Kind::slivers: {
         const glm::vec3 q = random.point(1);
-        add_triangle(mesh, p, q, p + (q - p) * random.unit() + random.point(1e-3f));
+        const glm::vec3 aside = random.point(1e-3f);
+        add_triangle(mesh, p, q, p + (q - p) * random.unit() + aside);
         break;
       }
       case Kind::fan: add_triangle(mesh, {0.1f, 0.2f, 0.3f}, p, random.point(1)); break;
-      case Kind::huge: add_triangle(mesh, random.point(1e6f), random.point(1e6f), random.point(1e6f)); break;
+      case Kind::huge:
+      case Kind::through_eye: {
+        const float reach = kind == Kind::huge ? 1e6f : 8.0f;
+        const glm::vec3 third = random.point(reach), second = random.point(reach), first = random.point(reach);
+        add_triangle(mesh, first, second, third);
+        break;
+      }
       case Kind::coplanar: {
-        const auto on_grid = [&] { return glm::vec3(float(random.below(9)) / 8, float(random.below(9)) / 8, 0.25f); };
-        add_triangle(mesh, on_grid(), on_grid(), on_grid());
+        const auto on_grid = [&] {
+          const int y = random.below(9), x = random.below(9);
+          return glm::vec3(float(x) / 8, float(y) / 8, 0.25f);
+        };
+        const glm::vec3 third = on_grid(), second = on_grid(), first = on_grid();
+        add_triangle(mesh, first, second, third);
         break;
       }
       case Kind::sheets: {
         const float lean = float(seed % 2), gap = std::ldexp(1.0f, -int(seed % 25));
         const auto corner = [&](float x, float y) {
-          return glm::vec3(x, y, lean * x + gap * random.unit()) + random.point(0.05f) * glm::vec3(1, 1, 0);
+          const glm::vec3 aside = random.point(0.05f) * glm::vec3(1, 1, 0);
+          return glm::vec3(x, y, lean * x + gap * random.unit()) + aside;
         };
-        add_triangle(mesh, corner(-2, -2), corner(2, -2), corner(0, 2));
+        const glm::vec3 third = corner(0, 2), second = corner(2, -2), first = corner(-2, -2);
+        add_triangle(mesh, first, second, third);
         break;
       }
-      case Kind::through_eye: add_triangle(mesh, random.point(8), random.point(8), random.point(8)); break;
       case Kind::shared_grid: break;
     }
   }
@@ -101,7 +119,8 @@ inline View random_view(Random& random, int width, int height) {
   View view;
   view.width = width;
   view.height = height;
-  const glm::dvec3 eye = glm::normalize(glm::dvec3(random.point(1)) + glm::dvec3(0, 0, 1e-3)) * (2.0 + random.unit());
+  const double distance = 2.0 + random.unit();
+  const glm::dvec3 eye = glm::normalize(glm::dvec3(random.point(1)) + glm::dvec3(0, 0, 1e-3)) * distance;
   view.world_from_eye = look_at(eye, glm::dvec3(random.point(0.3f)), {0, 1, 0});
   view.projection = random.below(3) == 0
                         ? make_orthographic(-1.3, 1.1, -0.9, 1.2, {0.5, 6})
