@@ -16,6 +16,8 @@ Job make_job(const Settings& settings) {
   check_view_settings(settings.view);
   if (settings.run.stream && settings.view.depth.is_used)
     throw UsageError("--stream draws with the default depth test; it excludes the options of a depth buffer");
+  if (settings.run.stream && settings.output.opacity < 1)
+    throw UsageError("--stream keeps only what is nearest; it excludes --opacity");
   Job job{view_name(settings.view), settings.view, settings.output, {}, {}};
   const std::string model = model_name(settings.model);
   job.files = plan_outputs(settings.output, model, job.name);

@@ -78,6 +78,11 @@ constexpr Option table[] = {
      }},
     {"no-shadows", 0, "", "The key light casts no shadow.", Group::look, for_render,
      [](Settings& s, const Given&) { s.output.no_shadows = true; }},
+    {"opacity", 0, "O", "See through everything: multiplies every opacity, 0 to 1; 1 by default.", Group::look,
+     for_render,
+     [](Settings& s, const Given& g) {
+       s.output.opacity = float(g.number({0, 1}));
+     }},
 };
 
 }  // namespace

@@ -89,6 +89,7 @@ Seen summary(const Surfaces& surfaces, const RangeScan& around) {
 void check_outputs_around(const Job& job) {
   if (job.view.camera_model == CameraModel::pinhole) return;
   if (wants(job, OutputKind::normals)) throw UsageError("--camera-model and --normals exclude each other");
+  if (job.output.opacity < 1) throw UsageError("--camera-model and --opacity exclude each other");
   if (job.output.shading == Shading::uv) throw UsageError("--camera-model and --shading uv exclude each other");
 }
 

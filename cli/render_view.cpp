@@ -154,7 +154,8 @@ void finish_view(const Job& job, const RenderContext& context, const Sights& sig
   if (sights.picture) {
     const Stopwatch watch;
     const Visible& visible = sights.picture->visible;
-    const ShadeOptions options{job.output.shading, job.output.background, !job.output.no_shadows, sights.seen_by_light};
+    const ShadeOptions options{job.output.shading, job.output.background, !job.output.no_shadows, sights.seen_by_light,
+                               job.output.opacity};
     if (!context.keep_picture && needs_only_bitmap(job))
       bitmap = shade_bitmap(context.surfaces, visible, options, context.execution);
     else

@@ -82,6 +82,7 @@ struct OutputSettings {
   std::optional<glm::vec3> background = glm::vec3(1.0f);  ///< none: transparent
   bool background_given = false;
   bool no_shadows = false;
+  float opacity = 1;
 };
 
 /// How visibility is found.

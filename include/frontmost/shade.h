@@ -28,6 +28,8 @@ struct ShadeOptions {
   bool shadows = true;
   /// What is visible in key_light_view(), borrowed. Null: that of the surfaces, found by shade() itself.
   const Visible* seen_by_light = nullptr;
+  /// Multiplies the opacity of everything, 0 to 1. Lit, flat and normals alone.
+  float opacity = 1.0f;
 };
 
 /// The view in which the key light sees what `visible` shows: whatever is visible in it is lit, the rest in shadow. For
@@ -37,6 +39,9 @@ struct ShadeOptions {
                                                  const Execution& execution = {});
 
 /// A picture with channels R, G, B, A. Shades once per pixel and primitive and averages over the samples.
+/// `visible` says what is front-most. Where materials are masked or blended, or the opacity is below 1, the A-buffer of
+/// the same view says all that is seen through, in true order at every sample.
+/// \throws Error bad_argument for an opacity out of range.
 /// Borrows everything; O(covered pixels). The bytes do not depend on threads or instruction set.
 [[nodiscard]] Image shade(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
                           const Execution& execution = {});

@@ -113,7 +113,8 @@ class TileCompositor {
     float* const planes[4] = {out_.red, out_.green, out_.blue, out_.alpha};
     for (int k = 0; k < 4; ++k)
       for (int row = 0; row < height; ++row) {
-        float* to = planes[k] + std::size_t(r.y + y + row) * std::size_t(out_.width) + std::size_t(r.x + x);
+        float* to =
+            planes[k] + std::size_t(r.y + y + row - out_.y) * std::size_t(out_.width) + std::size_t(r.x + x - out_.x);
         const float* from = colors.channel[k] + 4 * row;
         if (width == 4)
           std::memcpy(to, from, 4 * sizeof(float));

@@ -13,10 +13,11 @@ struct FragmentColors {
   float opacity;     ///< multiplies every alpha
 };
 
-/// Planes of the whole picture.
+/// Planes of the whole picture, or of a part of it.
 struct PicturePlanes {
   float *red, *green, *blue, *alpha;
   int width;
+  int x = 0, y = 0;  ///< of the picture's pixel that comes first
 };
 
 /// Writes a job's pixels: premultiplied means over the sub-samples. At every sub-sample the order is that of the keys

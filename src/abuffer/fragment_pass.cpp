@@ -7,6 +7,33 @@
 
 namespace frontmost::abuffer_detail {
 
+namespace {
+
+/// What composite_tile() writes of one rectangle.
+class TilePicture {
+ public:
+  explicit TilePicture(const Rectangle& pixels)
+      : rectangle_(pixels), size_(std::size_t(pixels.width) * std::size_t(pixels.height)), values_(4 * size_) {}
+
+  [[nodiscard]] PicturePlanes planes() {
+    float* const plane = values_.data();
+    return {plane, plane + size_, plane + 2 * size_, plane + 3 * size_, rectangle_.width, rectangle_.x, rectangle_.y};
+  }
+  [[nodiscard]] std::vector<glm::vec4> pixels() const {
+    std::vector<glm::vec4> result(size_);
+    for (std::size_t i = 0; i < size_; ++i)
+      for (int k = 0; k < 4; ++k) result[i][k] = values_[std::size_t(k) * size_ + i];
+    return result;
+  }
+
+ private:
+  Rectangle rectangle_;
+  std::size_t size_;
+  std::vector<float> values_;
+};
+
+}  // namespace
+
 FragmentPass::FragmentPass(const Surfaces& surfaces, const View& view, const AbufferOptions& options,
                            const Execution& execution)
     : opacity_(options.opacity),
@@ -22,27 +49,19 @@ void FragmentPass::look(const Look& look, const Execution& execution) const {
   });
 }
 
-ResolvedPicture FragmentPass::paint(const Paint& paint, const Execution& execution) const {
+void FragmentPass::paint(const Paint& paint, const Receive& receive, const Execution& execution) const {
   const IeeeScope ieee;
-  const View& view = plan_.view();
-  const std::size_t pixels = view.pixel_count();
-  ResolvedPicture picture{view.width,
-                          view.height,
-                          Buffer<float>(pixels, 0.0f),
-                          Buffer<float>(pixels, 0.0f),
-                          Buffer<float>(pixels, 0.0f),
-                          Buffer<float>(pixels, 0.0f)};
-  const PicturePlanes out{picture.red.data(), picture.green.data(), picture.blue.data(), picture.alpha.data(),
-                          view.width};
   const FrameInput frame{plan_, pattern_, false, execution.isa};
   visit_tiles(frame, execution, [&](const TileJob& job, TileScratch* scratch) {
-    if (!scratch) return;
+    if (!scratch) return receive(job.pixels, nullptr);
     const JobLists lists = list_fragments(frame, job, *scratch, opacities_);
     std::vector<glm::vec4> colors(scratch->arrived.count, glm::vec4(0));
     paint(job.pixels, lists, colors);
-    composite_tile(frame, job, *scratch, {colors.data(), true, opacity_}, out);
+    TilePicture picture(job.pixels);
+    composite_tile(frame, job, *scratch, {colors.data(), true, opacity_}, picture.planes());
+    const std::vector<glm::vec4> pixels = picture.pixels();
+    receive(job.pixels, &pixels);
   });
-  return picture;
 }
 
 }  // namespace frontmost::abuffer_detail

@@ -22,8 +22,10 @@ class FragmentPass {
 
   /// Sets colors[lists.numbers[i]], straight alpha, for every fragment i. The rest is 0.
   using Paint = std::function<void(const Rectangle& pixels, const JobLists& lists, std::vector<glm::vec4>& colors)>;
+  /// Takes the finished pixels of the rectangle, row by row, premultiplied; null where nothing is seen.
+  using Receive = std::function<void(const Rectangle& pixels, const std::vector<glm::vec4>* colors)>;
   /// Lays the colours over each other, every alpha multiplied by the options' opacity.
-  [[nodiscard]] ResolvedPicture paint(const Paint& paint, const Execution& execution) const;
+  void paint(const Paint& paint, const Receive& receive, const Execution& execution) const;
 
  private:
   float opacity_;

@@ -61,8 +61,7 @@ struct Geometry {
 struct Reflectance {
   Lane3 base, emissive;
   Lane alpha, metallic, roughness, occlusion;
-  Lane unlit;        ///< 1 or 0
-  Lane see_through;  ///< likewise: masked or blended
+  Lane unlit;  ///< 1 or 0
 };
 
 struct Batch {

@@ -19,6 +19,13 @@ class Canvas {
   virtual void fill(const TileRectangle& tile, const glm::vec4& value) = 0;
 };
 
+/// How a picture is made of what is seen.
+struct Painting {
+  Canvas& canvas;
+  const FragmentShader::Colorist& colorist;
+  glm::vec4 background;  ///< what an empty pixel gets
+};
+
 /// An image of up to four channels, named as they are to be.
 class PlanesCanvas final : public Canvas {
  public:

@@ -24,7 +24,6 @@ const std::array<float, kSteps + 1>& shown_table() {
 void make_opaque(Batch& batch) {
   for (int i = 0; i < batch.coverage.count; ++i) {
     batch.material.alpha[i] = 1.0f;
-    batch.material.see_through[i] = 0.0f;
   }
 }
 

@@ -61,7 +61,6 @@ class Run {
       out.roughness[i] = m.roughness;
       out.occlusion[i] = 1.0f;
       out.unlit[i] = m.unlit ? 1.0f : 0.0f;
-      out.see_through[i] = m.alpha == Material::Alpha::opaque ? 0.0f : 1.0f;
     }
   }
 

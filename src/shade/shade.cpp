@@ -8,7 +8,8 @@
 #include "base/parallel.h"
 #include "shade/canvas.h"
 #include "shade/colorists.h"
-#include "shade/opaque_layer.h"
+#include "shade/layers.h"
+#include "shade/opaque_part.h"
 
 namespace frontmost {
 namespace {
@@ -19,50 +20,27 @@ using namespace shading;
 struct Layer {
   const TriangleSource& source;
   const Visible& visible;
-};
-
-/// How a picture is made of its layers.
-struct Painting {
-  Canvas& canvas;
-  const TileWork::Colorist& colorist;
-  glm::vec4 background;  ///< what an empty pixel gets
   SampleUse use = SampleUse::all;
 };
 
-/// One thread's work on a row of tiles.
-class TileRow {
- public:
-  TileRow(const Layer& front, const Layer* behind, const Painting& painting)
-      : front_(std::make_unique<TileWork>(front.source, front.visible, painting.use, painting.colorist)),
-        background_(painting.background) {
-    if (behind) behind_ = std::make_unique<TileWork>(behind->source, behind->visible, painting.use, painting.colorist);
-  }
+void shade_tile(const TileRectangle& tile, TileWork& work, const Painting& painting) {
+  if (work.shade(tile))
+    painting.canvas.write(tile, work.pixels(), painting.background);
+  else
+    painting.canvas.fill(tile, painting.background);
+}
 
-  void shade(const TileRectangle& tile, Canvas& canvas) {
-    if (front_->shade(tile)) {
-      if (behind_ && front_->is_see_through() && behind_->shade(tile)) front_->put_behind(*behind_);
-      canvas.write(tile, front_->pixels(), background_);
-    } else {
-      canvas.fill(tile, background_);
-    }
-  }
-
- private:
-  std::unique_ptr<TileWork> front_, behind_;
-  glm::vec4 background_;
-};
-
-/// Shades all tiles, one row of tiles to a thread at a time. `behind` may be null.
-void shade_tiles(const Layer& front, const Layer* behind, const Painting& painting, const Execution& execution) {
-  const View& view = front.visible.view;
+/// Shades all tiles, one row of tiles to a thread at a time.
+void shade_tiles(const Layer& layer, const Painting& painting, const Execution& execution) {
+  const View& view = layer.visible.view;
   const auto rows = std::size_t((view.height + tile_height - 1) / tile_height);
   parallel_for(execution, rows, 1, [&](std::size_t begin, std::size_t end) {
-    TileRow work(front, behind, painting);
+    TileWork work(layer.source, layer.visible, layer.use, painting.colorist);
     for (std::size_t row = begin; row < end; ++row)
       for (int x = 0; x < view.width; x += tile_width) {
         const int y = int(row) * tile_height;
-        work.shade({x, y, std::min(tile_width, view.width - x), std::min(tile_height, view.height - y)},
-                   painting.canvas);
+        shade_tile({x, y, std::min(tile_width, view.width - x), std::min(tile_height, view.height - y)}, work,
+                   painting);
       }
   });
 }
@@ -111,56 +89,67 @@ bool lacks_normals(const Scene& scene) {
   return std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh& m) { return m.normals.empty(); });
 }
 
-/// For every material, whether a texture of it will be looked at.
-std::vector<bool> needed_materials(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {
+/// For every material, whether a texture of it will be looked at. `seen()` gives the primitives that are.
+template <class Seen>
+std::vector<bool> needed_materials(const Surfaces& surfaces, const Seen& seen, const Execution& execution) {
   const Scene& scene = surfaces.scene();
   if (!has_textures(scene)) return std::vector<bool>(scene.materials.size());
-  return seen_materials(surfaces, seen_primitives(surfaces, visible, execution), execution);
+  return seen_materials(surfaces, seen(), execution);
 }
 
-/// The triangles of one layer of a picture of materials.
+/// The triangles of a picture of materials.
 struct Triangles {
   std::optional<BitSet> large;
   std::optional<TriangleSource> source;
 
-  Triangles(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {
-    if (lacks_normals(surfaces.scene())) large = large_primitives(surfaces.primitive_count(), visible, execution);
-    source.emplace(surfaces, visible.view, large ? &*large : nullptr, execution);
+  /// `find_large()` gives those worth a smooth normal where the model has none.
+  template <class FindLarge>
+  Triangles(const Surfaces& surfaces, const View& view, const FindLarge& find_large, const Execution& execution) {
+    if (lacks_normals(surfaces.scene())) large = find_large();
+    source.emplace(surfaces, view, large ? &*large : nullptr, execution);
     if (!has_textures(surfaces.scene())) source->leave_out_texcoords();
   }
 };
 
-/// What pictures of materials need.
+/// What pictures of materials need: of the primitives that a Visible shows, or, where materials can be seen through, of
+/// all layers.
 class Materials {
  public:
-  Materials(const Surfaces& surfaces, const Visible& visible, const Execution& execution)
-      : visible_(visible), front_(surfaces, visible, execution) {
-    std::vector<bool> is_needed = needed_materials(surfaces, visible, execution);
-    if (has_see_through(surfaces.scene())) {
-      opaque_.emplace(surfaces, visible, execution);
-      behind_.emplace(opaque_->surfaces(), opaque_->visible(), execution);
-      const std::vector<bool> more = needed_materials(opaque_->surfaces(), opaque_->visible(), execution);
-      for (std::size_t i = 0; i < more.size(); ++i) is_needed[i] = is_needed[i] || more[i];
-    }
-    table_.emplace(surfaces.scene(), is_needed, execution);
+  Materials(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options, const Execution& execution)
+      : visible_(visible) {
+    if (has_see_through(surfaces.scene()) || options.opacity < 1.0f)
+      make_layers(surfaces, options, execution);
+    else
+      make_front(surfaces, execution);
   }
 
   [[nodiscard]] const MaterialTable& table() const { return *table_; }
-  /// What throws shadows: glass does not, and of leaves only the outline of the card they are drawn on is known.
-  [[nodiscard]] const Surfaces& casters(const Surfaces& all) const { return opaque_ ? opaque_->surfaces() : all; }
 
   void paint(const Painting& painting, const Execution& execution) const {
-    const Layer front{*front_.source, visible_};
-    if (!opaque_) return shade_tiles(front, nullptr, painting, execution);
-    const Layer behind{*behind_->source, opaque_->visible()};
-    shade_tiles(front, &behind, painting, execution);
+    if (layers_)
+      shade_layers(*triangles_->source, *layers_, painting, execution);
+    else
+      shade_tiles({*triangles_->source, visible_}, painting, execution);
   }
 
  private:
+  void make_front(const Surfaces& surfaces, const Execution& execution) {
+    const auto large = [&] { return large_primitives(surfaces.primitive_count(), visible_, execution); };
+    const auto seen = [&] { return seen_primitives(surfaces, visible_, execution); };
+    triangles_.emplace(surfaces, visible_.view, large, execution);
+    table_.emplace(surfaces.scene(), needed_materials(surfaces, seen, execution), execution);
+  }
+
+  void make_layers(const Surfaces& surfaces, const ShadeOptions& options, const Execution& execution) {
+    layers_.emplace(surfaces, visible_.view, AbufferOptions{0, options.opacity}, execution);
+    const auto seen = [&] { return seen_primitives(surfaces, *layers_, execution); };
+    triangles_.emplace(surfaces, visible_.view, seen, execution);
+    table_.emplace(surfaces.scene(), needed_materials(surfaces, seen, execution), execution);
+  }
+
   const Visible& visible_;
-  Triangles front_;
-  std::optional<OpaqueLayer> opaque_;
-  std::optional<Triangles> behind_;
+  std::optional<abuffer_detail::FragmentPass> layers_;
+  std::optional<Triangles> triangles_;
   std::optional<MaterialTable> table_;
 };
 
@@ -172,6 +161,15 @@ struct Request {
   const Execution& execution;
 };
 
+/// The shadows of what is opaque by its material.
+ShadowMap shadows_of(const Request& request, const Lighting& lighting) {
+  const Scene& scene = request.surfaces.scene();
+  const glm::dvec3 to_key(lighting.to_key);
+  if (!has_see_through(scene)) return ShadowMap(request.surfaces, request.visible, to_key, request.execution);
+  const Scene opaque = opaque_part(scene);
+  return ShadowMap(Surfaces(opaque, request.execution), request.visible, to_key, request.execution);
+}
+
 bool shows_materials(Shading shading) {
   return shading == Shading::lit || shading == Shading::flat || shading == Shading::normals;
 }
@@ -181,7 +179,7 @@ void paint_materials(const Request& request, Canvas& canvas) {
   const Visible& visible = request.visible;
   const ShadeOptions& options = request.options;
   const Execution& execution = request.execution;
-  const Materials materials(surfaces, visible, execution);
+  const Materials materials(surfaces, visible, options, execution);
   const auto paint = [&](const TileWork::Colorist& colorist) {
     materials.paint({canvas, colorist, background_color(options)}, execution);
   };
@@ -192,7 +190,7 @@ void paint_materials(const Request& request, Canvas& canvas) {
   if (options.shadows && options.seen_by_light)
     shadow.emplace(*options.seen_by_light, visible.view.eye(), execution);
   else if (options.shadows)
-    shadow.emplace(materials.casters(surfaces), visible, glm::dvec3(lighting.to_key), execution);
+    shadow.emplace(shadows_of(request, lighting));
   paint(Lit{materials.table(), lighting, shadow ? &*shadow : nullptr, execution.isa});
 }
 
@@ -201,7 +199,7 @@ void paint_map(const Request& request, Canvas& canvas) {
   const ShadeOptions& options = request.options;
   const TriangleSource source(request.surfaces, visible.view, nullptr, request.execution);
   const auto paint = [&](const TileWork::Colorist& colorist) {
-    shade_tiles({source, visible}, nullptr, {canvas, colorist, background_color(options)}, request.execution);
+    shade_tiles({source, visible}, {canvas, colorist, background_color(options)}, request.execution);
   };
   if (options.shading == Shading::ids) return paint(Ids{});
   if (options.shading == Shading::uv) return paint(Texcoords{});
@@ -210,6 +208,8 @@ void paint_map(const Request& request, Canvas& canvas) {
 }
 
 void paint(const Request& request, Canvas& canvas) {
+  const float opacity = request.options.opacity;
+  if (!(opacity >= 0.0f && opacity <= 1.0f)) throw Error(ErrorCode::bad_argument, "shade: opacity: must be 0 to 1");
   shows_materials(request.options.shading) ? paint_materials(request, canvas) : paint_map(request, canvas);
 }
 
@@ -233,11 +233,13 @@ std::optional<View> key_light_view(const Visible& visible, const Box& bounds, Ax
 }
 
 Image normal_image(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {
-  const MaterialTable table(surfaces.scene(), needed_materials(surfaces, visible, execution), execution);
-  const Triangles triangles(surfaces, visible, execution);
+  const auto large = [&] { return large_primitives(surfaces.primitive_count(), visible, execution); };
+  const auto seen = [&] { return seen_primitives(surfaces, visible, execution); };
+  const MaterialTable table(surfaces.scene(), needed_materials(surfaces, seen, execution), execution);
+  const Triangles triangles(surfaces, visible.view, large, execution);
   const TileWork::Colorist colorist = RawNormals{table};
   PlanesCanvas canvas(visible.view, {"N.X", "N.Y", "N.Z"});
-  shade_tiles({*triangles.source, visible}, nullptr, {canvas, colorist, glm::vec4(0), SampleUse::first}, execution);
+  shade_tiles({*triangles.source, visible, SampleUse::first}, {canvas, colorist, glm::vec4(0)}, execution);
   return canvas.take();
 }
 

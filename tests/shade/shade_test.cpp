@@ -324,7 +324,8 @@ TEST(Shade, MaskedTexelsAreHolesAndBlendedOnesLetTheBackgroundThrough) {
   };
   EXPECT_EQ(alpha_with(Material::Alpha::opaque), glm::vec4(1, 0, 0, 1));
   EXPECT_EQ(alpha_with(Material::Alpha::mask), glm::vec4(0));
-  EXPECT_EQ(alpha_with(Material::Alpha::blend), glm::vec4(0.4f, 0, 0, 0.4f));
+  // Alpha is what does not shine through: 1 - (1 - 0.4), in floats.
+  EXPECT_EQ(alpha_with(Material::Alpha::blend), glm::vec4(0.4f, 0, 0, 1.0f - (1.0f - 0.4f)));
 }
 
 /// A see-through square before a larger opaque blue one.
@@ -353,6 +354,24 @@ TEST(Shade, WhatStandsBehindSeeThroughSurfacesIsShown) {
   EXPECT_EQ(color_at(masked, 32, 32), glm::vec4(0, 0, 1, 1));
   const Image solid = picture(layered_scene(Material::Alpha::mask, {1, 0, 0, 0.75f}), front_view(64, 4), options);
   EXPECT_EQ(color_at(solid, 32, 32), glm::vec4(1, 0, 0, 1));
+}
+
+TEST(Shade, SeveralSeeThroughSurfacesShowInTheOrderOfDepth) {
+  const ShadeOptions options{.shading = Shading::flat, .background = std::nullopt};
+  for (const bool back_first : {false, true}) {
+    Scene scene = layered_scene(Material::Alpha::blend, {1, 0, 0, 0.5f});
+    scene.materials[1].alpha = Material::Alpha::blend;
+    scene.materials[1].base_color.a = 0.5f;
+    if (back_first) std::swap(scene.instances[0], scene.instances[1]);
+    const Image image = picture(scene, front_view(64, 4), options);
+    EXPECT_EQ(color_at(image, 32, 32), glm::vec4(0.5f, 0, 0.25f, 0.75f));
+  }
+}
+
+TEST(Shade, OpacityShowsWhatOpaqueSurfacesHide) {
+  const ShadeOptions options{.shading = Shading::flat, .background = std::nullopt, .opacity = 0.5f};
+  const Image image = picture(layered_scene(Material::Alpha::opaque, {1, 0, 0, 1}), front_view(64, 4), options);
+  EXPECT_EQ(color_at(image, 32, 32), glm::vec4(0.5f, 0, 0.25f, 0.75f));
 }
 
 TEST(Shade, EdgesOfSeeThroughSurfacesBlendSampleBySample) {

@@ -54,7 +54,6 @@ std::map<std::pair<int, int>, std::vector<Seen>> fragments(const Fake& fake) {
       result[{tile.x + pixel % tile.width, tile.y + pixel / tile.width}].push_back(
           {setups[batch.coverage.triangle[i]].triangle, batch.coverage.weight[i], batch.coverage.screen.at(i)});
       batch.material.alpha[i] = 1;
-      batch.material.see_through[i] = 0;
       batch.light.set(i, glm::vec3(1, 0.5f, 0));
     }
   };

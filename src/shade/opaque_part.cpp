@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shade/opaque_layer.h"
+#include "shade/opaque_part.h"
 
 #include <algorithm>
-
-#include "base/parallel.h"
-#include "frontmost/zbuffer.h"
 
 namespace frontmost::shading {
 namespace {
@@ -43,6 +40,13 @@ Mesh opaque_part(const Scene& scene, const Mesh& mesh) {
   return part;
 }
 
+}  // namespace
+
+bool has_see_through(const Scene& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const Material& m) { return m.alpha != Material::Alpha::opaque; });
+}
+
 Scene opaque_part(const Scene& scene) {
   Scene part;
   part.name = scene.name;
@@ -52,41 +56,6 @@ Scene opaque_part(const Scene& scene) {
   part.textures.resize(scene.textures.size());  // their numbers must exist; their pixels stay where they are
   part.up = scene.up;
   return part;
-}
-
-BitSet see_through_primitives(const Surfaces& surfaces, const Execution& execution) {
-  const Scene& scene = surfaces.scene();
-  BitSet result(surfaces.primitive_count());
-  parallel_for(execution, scene.instances.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
-      const PrimitiveId first = surfaces.first_primitive(std::uint32_t(i));
-      for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-        if (is_see_through(scene, mesh.material_of(t))) result.add(first + t);
-    }
-  });
-  return result;
-}
-
-}  // namespace
-
-bool has_see_through(const Scene& scene) {
-  return std::any_of(scene.materials.begin(), scene.materials.end(),
-                     [](const Material& m) { return m.alpha != Material::Alpha::opaque; });
-}
-
-OpaqueLayer::OpaqueLayer(const Surfaces& surfaces, const Visible& front, const Execution& execution)
-    : scene_(std::make_unique<Scene>(opaque_part(surfaces.scene()))),
-      surfaces_(std::make_unique<Surfaces>(*scene_, execution)),
-      visible_(zbuffer(*surfaces_, front.view, execution)) {
-  const BitSet see_through = see_through_primitives(surfaces, execution);
-  constexpr std::size_t samples_at_once = 1u << 16;
-  parallel_for(execution, front.primitives.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const PrimitiveId id = front.primitives[i];
-      if (id == no_primitive || !see_through.contains(id)) visible_.primitives[i] = no_primitive;
-    }
-  });
 }
 
 }  // namespace frontmost::shading

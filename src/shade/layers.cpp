@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shade/layers.h"
+
+#include "base/pool.h"
+
+namespace frontmost::shading {
+namespace {
+
+using abuffer_detail::FragmentPass;
+using abuffer_detail::JobLists;
+using abuffer_detail::Rectangle;
+
+/// The mean of the covered positions, in pixels.
+class Centroids {
+ public:
+  explicit Centroids(const std::vector<glm::ivec2>& samples) {
+    for (const glm::ivec2& s : samples) positions_.push_back(glm::vec2(s) / 256.0f);
+  }
+  [[nodiscard]] glm::vec2 of(std::uint64_t mask) const {
+    glm::vec2 sum(0);
+    float count = 0;
+    for (std::size_t s = 0; s < positions_.size(); ++s)
+      if (mask >> s & 1) {
+        sum += positions_[s];
+        ++count;
+      }
+    return sum / count;
+  }
+
+ private:
+  std::vector<glm::vec2> positions_;
+};
+
+void shade_job(const Rectangle& pixels, const JobLists& lists, const Centroids& centroids, FragmentShader& shader,
+               std::vector<glm::vec4>& colors) {
+  const auto receive = [&](std::uint32_t number, float, const glm::vec3& light, float alpha) {
+    colors[number] = glm::vec4(light, alpha);
+  };
+  shader.clear();
+  for (std::size_t p = 0; p + 1 < lists.begin.size(); ++p) {
+    const glm::vec2 corner(float(pixels.x + int(p) % pixels.width), float(pixels.y + int(p) / pixels.width));
+    for (std::size_t i = lists.begin[p]; i < lists.begin[p + 1]; ++i) {
+      if (shader.is_full()) shader.hand_out(receive);
+      const Fragment& f = lists.fragments[i];
+      shader.add(f.primitive, lists.numbers[i], corner + centroids.of(f.mask), 1.0f);
+    }
+  }
+  shader.hand_out(receive);
+}
+
+}  // namespace
+
+BitSet seen_primitives(const Surfaces& surfaces, const FragmentPass& pass, const Execution& execution) {
+  BitSet seen(surfaces.primitive_count());
+  pass.look(
+      [&](const Rectangle&, const JobLists& lists) {
+        PrimitiveId last = no_primitive;
+        for (const Fragment& f : lists.fragments) {
+          if (f.primitive != last) seen.add(f.primitive);
+          last = f.primitive;
+        }
+      },
+      execution);
+  return seen;
+}
+
+void shade_layers(const TriangleSource& source, const FragmentPass& pass, const Painting& painting,
+                  const Execution& execution) {
+  const Centroids centroids(pass.samples());
+  Pool<FragmentShader> shaders;
+  const auto paint = [&](const Rectangle& pixels, const JobLists& lists, std::vector<glm::vec4>& colors) {
+    const auto shader = shaders.borrow([&] { return std::make_unique<FragmentShader>(source, painting.colorist); });
+    shade_job(pixels, lists, centroids, *shader, colors);
+  };
+  const auto receive = [&](const Rectangle& r, const std::vector<glm::vec4>* pixels) {
+    const TileRectangle tile{r.x, r.y, r.width, r.height};
+    if (pixels)
+      painting.canvas.write(tile, *pixels, painting.background);
+    else
+      painting.canvas.fill(tile, painting.background);
+  };
+  pass.paint(paint, receive, execution);
+}
+
+}  // namespace frontmost::shading
