@@ -22,6 +22,14 @@ void for_finite_triangles(const Mesh& mesh, std::size_t begin, std::size_t end, 
   }
 }
 
+Box box_of(const Mesh& mesh, std::size_t begin, std::size_t end) {
+  Box box;
+  for_finite_triangles(mesh, begin, end, [&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+    box.include(Box{glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c)});
+  });
+  return box;
+}
+
 }  // namespace
 
 OutlineFinder::OutlineFinder(const View& direction, double margin)
@@ -29,20 +37,30 @@ OutlineFinder::OutlineFinder(const View& direction, double margin)
 
 void OutlineFinder::include(const Mesh& mesh) {
   constexpr std::size_t run = 64;  // neighbours mostly: few runs reach out, and only their corners are looked at
-  for (std::size_t begin = 0; begin < mesh.triangles.size(); begin += run)
-    include(mesh, begin, std::min(begin + run, mesh.triangles.size()));
+  const std::size_t count = mesh.triangles.size();
+  // A few triangles from all over the piece first. Where a model grows from one end to the other, every run would
+  // reach farther than the last one, and all corners would be looked at.
+  for (const std::size_t step : {64 * run, run})
+    for (std::size_t begin = 0; begin < count; begin += step) include_corners(mesh, begin, begin + 1);
+  for (std::size_t begin = 0; begin < count; begin += run) include_run(mesh, begin, std::min(begin + run, count));
 }
 
-void OutlineFinder::include(const Mesh& mesh, std::size_t begin, std::size_t end) {
-  Box box;
-  for_finite_triangles(mesh, begin, end, [&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-    box.include(Box{glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c)});
-  });
-  if (box.is_empty()) return;
+/// What reaches out of a run is mostly a small part of it.
+void OutlineFinder::include_run(const Mesh& mesh, std::size_t begin, std::size_t end) {
+  if (!may_change_by(box_of(mesh, begin, end))) return;
+  const std::size_t part = (end - begin + 3) / 4;
+  if (part == 1) return include_corners(mesh, begin, end);
+  for (; begin < end; begin += part) include_run(mesh, begin, std::min(begin + part, end));
+}
+
+bool OutlineFinder::may_change_by(const Box& box) const {
+  if (box.is_empty()) return false;
   Box larger = bounds_;
   larger.include(box);
-  const bool extends = larger.low != bounds_.low || larger.high != bounds_.high;
-  if (!extends && !extremes_.may_change_by(box)) return;
+  return larger.low != bounds_.low || larger.high != bounds_.high || extremes_.may_change_by(box);
+}
+
+void OutlineFinder::include_corners(const Mesh& mesh, std::size_t begin, std::size_t end) {
   for_finite_triangles(mesh, begin, end, [&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
     for (const glm::vec3& point : {a, b, c}) include(point);
   });

@@ -20,7 +20,10 @@ class OutlineFinder {
   [[nodiscard]] Scene scene() const;
 
  private:
-  void include(const Mesh& mesh, std::size_t begin, std::size_t end);
+  /// False when no point within the box would be kept.
+  [[nodiscard]] bool may_change_by(const Box& box) const;
+  void include_run(const Mesh& mesh, std::size_t begin, std::size_t end);
+  void include_corners(const Mesh& mesh, std::size_t begin, std::size_t end);
   void include(const glm::vec3& point);
 
   Extremes extremes_;

@@ -38,17 +38,28 @@ Extremes::Extremes(const glm::dmat4& axes, const glm::dvec2& spread)
   std::fill_n(reach_, direction_count, -kInfinity);
 }
 
-double Extremes::reach(int direction, const glm::vec3& point) const {
-  const int plane = direction >= in_plane, k = direction - plane * in_plane;
+/// A point along the axes of the two planes.
+struct Extremes::Projected {
+  double across[2], towards;
+};
+
+Extremes::Projected Extremes::projected(const glm::vec3& point) const {
   const glm::dvec3 p(point);
-  const double across = glm::dot(p, across_[plane]), towards = glm::dot(p, back_);
+  return {{glm::dot(p, across_[0]), glm::dot(p, across_[1])}, glm::dot(p, back_)};
+}
+
+double Extremes::reach(int direction, const Projected& point) const {
+  const int plane = direction >= in_plane, k = direction - plane * in_plane;
+  const double across = point.across[plane], towards = point.towards;
   if (k < around) return across * cosine_[k] + towards * sine_[k];
   // To the bit what the fitting of a frustum computes of the point.
   return (k == around ? across : -across) / spread_[plane] + towards;
 }
 
 void Extremes::include(const glm::vec3& point) {
-  for (int i = 0; i < direction_count; ++i) offer(i, reach(i, point), point);
+  if (!may_change_by({point, point})) return;
+  const Projected along = projected(point);
+  for (int i = 0; i < direction_count; ++i) offer(i, reach(i, along), point);
 }
 
 void Extremes::offer(int direction, double reach, const glm::vec3& point) {
@@ -80,12 +91,17 @@ double Extremes::reach(int i, const Extent& extent) const {
 
 bool Extremes::may_change_by(const Box& box) const {
   const Extent extent(box);
-  // A few directions at a time, without branches.
+  // A few directions at a time, without branches, so that the compiler can take several in one instruction.
   constexpr int at_once = 12;
   static_assert(direction_count % at_once == 0);
+  const auto [x, y, z] = std::tie(extent.middle.x, extent.middle.y, extent.middle.z);
+  const auto [dx, dy, dz] = std::tie(extent.half.x, extent.half.y, extent.half.z);
   for (int first = 0; first < direction_count; first += at_once) {
+    double beyond[at_once];
+    for (int k = 0, i = first; k < at_once; ++k, ++i)
+      beyond[k] = x * x_[i] + y * y_[i] + z * z_[i] + dx * abs_x_[i] + dy * abs_y_[i] + dz * abs_z_[i] - reach_[i];
     bool may = false;
-    for (int i = first; i < first + at_once; ++i) may |= reach(i, extent) >= reach_[i];
+    for (const double distance : beyond) may |= distance >= 0;
     if (may) return true;
   }
   return false;
@@ -147,7 +163,7 @@ class Extremes::Search {
     const std::size_t first = set_.clusters[cluster].first_vertex;
     for (std::size_t v = first; v < first + set_.clusters[cluster].vertex_count; ++v) {
       const glm::vec3 point(set_.x[v], set_.y[v], set_.z[v]);
-      extremes_.offer(direction, extremes_.reach(direction, point), point);
+      extremes_.offer(direction, extremes_.reach(direction, extremes_.projected(point)), point);
     }
   }
 

@@ -32,10 +32,12 @@ class Extremes {
   static constexpr int in_plane = around + 2;  ///< and those of the two sides
   static constexpr int direction_count = 2 * in_plane;
   struct Extent;
+  struct Projected;
   class Search;
 
+  [[nodiscard]] Projected projected(const glm::vec3& point) const;
   /// How far a point reaches in a direction, in the one rounding that decides.
-  [[nodiscard]] double reach(int direction, const glm::vec3& point) const;
+  [[nodiscard]] double reach(int direction, const Projected& point) const;
   /// Not less than that of any point within a box.
   [[nodiscard]] double reach(int direction, const Extent& extent) const;
   void offer(int direction, double reach, const glm::vec3& point);
