@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "ray_oracle.h"
+#include "support/effort.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
@@ -33,7 +34,7 @@ INSTANTIATE_TEST_SUITE_P(RayCast, EveryKind, testing::ValuesIn(all_kinds));
 
 TEST_P(EveryKind, EqualsTheOracleOnEveryInstructionSet) {
   std::size_t seen = 0;
-  for (std::uint64_t seed = 0; seed < 24; ++seed) {
+  for (std::uint64_t seed = 0; seed < seeds(24); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Random random(seed + 100);
     const bool covers_little = GetParam() == Kind::tiny || GetParam() == Kind::slivers;

@@ -6,6 +6,7 @@
 
 #include "frontmost/raycast.h"
 #include "frontmost/zbuffer.h"
+#include "support/effort.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
@@ -128,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(Agreement, MistakesInEveryKind, testing::ValuesIn(all_k
 /// Of any two answers that are possible at a sample, one with another key or with a hole is not.
 TEST_P(MistakesInEveryKind, WrongDepthsAndForeignTrianglesAreFound) {
   std::size_t planted = 0;
-  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+  for (std::uint64_t seed = 0; seed < seeds(12); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Random random(seed + 300);
     const Scene scene = scene_of(random_mesh(GetParam(), 60, seed));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The z-buffer against the oracle, to the bit: every instruction set, several threads, every kind of scene.
 
+#include "support/effort.h"
 #include "support/oracle.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(ZBuffer, EveryKind, testing::ValuesIn(all_kinds));
 
 TEST_P(EveryKind, EqualsTheOracleOnEveryInstructionSet) {
   std::size_t seen = 0;
-  for (std::uint64_t seed = 0; seed < 24; ++seed) {
+  for (std::uint64_t seed = 0; seed < seeds(24); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Random random(seed + 100);
     const bool covers_little = GetParam() == Kind::tiny || GetParam() == Kind::slivers;
@@ -81,7 +82,7 @@ TEST(ZBuffer, EqualsTheOracleWithEverySampleCount) {
 
 // Blocks are hidden by the planes of triangles that cover them: the margin for rounding must suffice.
 TEST(ZBuffer, SheetsARoundingErrorApartAreToldApart) {
-  for (std::uint64_t seed = 0; seed < 150; ++seed) {
+  for (std::uint64_t seed = 0; seed < seeds(150); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Random random(seed);
     const Scene scene = scene_of(random_mesh(Kind::sheets, 40, seed));

@@ -10,6 +10,7 @@
 #include <new>
 
 #include "frontmost/frontmost.h"
+#include "support/effort.h"
 #include "support/random_scene.h"
 
 namespace {
@@ -37,7 +38,7 @@ namespace {
 TEST(ZBuffer, FramesAfterTheFirstAreWhatTheFunctionGives) {
   ZBuffer buffer;
   Random random(11);
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < seeds(60); ++seed) {
     const Scene scene = scene_of(random_mesh(Kind(seed % 8), seed % 5 == 0 ? 0 : 80, seed));
     const Surfaces surfaces(scene);
     // Two grids of one size in memory among them, and views that leave most tiles empty.
