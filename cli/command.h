@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "settings.h"
+#include "cli/settings.h"
 
 namespace frontmost::cli {
 

@@ -7,9 +7,9 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
-#include "command.h"
-#include "failure.h"
-#include "option.h"
+#include "cli/command.h"
+#include "cli/failure.h"
+#include "cli/option.h"
 
 namespace frontmost::cli {
 namespace {

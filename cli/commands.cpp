@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The table of commands.
-#include "command.h"
-#include "console.h"
-#include "option.h"
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/option.h"
 
 namespace frontmost::cli {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "command.h"
-#include "failure.h"
-#include "option.h"
+#include "cli/command.h"
+#include "cli/failure.h"
+#include "cli/option.h"
 
 namespace frontmost::cli {
 namespace {

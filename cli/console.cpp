@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "console.h"
+#include "cli/console.h"
 
 #include <frontmost/base.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <algorithm>
 #include <cstdio>
 

@@ -2,8 +2,8 @@
 // Help on the terminal, from the tables of commands and options.
 #include <fmt/format.h>
 
-#include "command.h"
-#include "option.h"
+#include "cli/command.h"
+#include "cli/option.h"
 
 namespace frontmost::cli {
 namespace {

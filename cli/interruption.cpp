@@ -3,7 +3,7 @@
 //
 // Leaving at once is safe because only saving makes files: a reader stuck on a slow pipe, or a kernel in the middle of
 // a huge picture, has nothing to clean up, and no library call needs to be fast in noticing.
-#include "interruption.h"
+#include "cli/interruption.h"
 
 #include <fmt/format.h>
 #include <signal.h>
@@ -13,8 +13,8 @@
 #include <atomic>
 #include <cmath>
 
-#include "console.h"
-#include "failure.h"
+#include "cli/console.h"
+#include "cli/failure.h"
 
 namespace frontmost::cli {
 namespace {

@@ -2,7 +2,7 @@
 // JSON as text: indented, but a list of numbers stays on one line, so that a matrix is four lines and not sixteen.
 #include <algorithm>
 
-#include "json_numbers.h"
+#include "cli/json_numbers.h"
 
 namespace frontmost::cli {
 namespace {

@@ -8,11 +8,11 @@
 #include <new>
 #include <vector>
 
-#include "command.h"
-#include "console.h"
-#include "failure.h"
-#include "interruption.h"
-#include "values.h"
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/failure.h"
+#include "cli/interruption.h"
+#include "cli/values.h"
 
 namespace frontmost::cli {
 namespace {

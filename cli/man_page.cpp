@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <frontmost/version.h>
 
-#include "command.h"
-#include "option.h"
+#include "cli/command.h"
+#include "cli/option.h"
 
 namespace frontmost::cli {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model.h"
+#include "cli/model.h"
 
 #include <fmt/format.h>
 #include <frontmost/io.h>
 
-#include "console.h"
+#include "cli/console.h"
 
 namespace frontmost::cli {
 

@@ -4,8 +4,8 @@
 
 #include <frontmost/scene.h>
 
-#include "progress.h"
-#include "settings.h"
+#include "cli/progress.h"
+#include "cli/settings.h"
 
 namespace frontmost::cli {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <string_view>
 
-#include "settings.h"
-#include "values.h"
+#include "cli/settings.h"
+#include "cli/values.h"
 
 namespace frontmost::cli {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "progress.h"
+#include "cli/progress.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdio>
 
-#include "console.h"
-#include "interruption.h"
+#include "cli/console.h"
+#include "cli/interruption.h"
 
 namespace frontmost::cli {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "failure.h"
-#include "option.h"
+#include "cli/failure.h"
+#include "cli/option.h"
 
 namespace frontmost::cli {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // From text to values, by std::from_chars: no locale, no trailing garbage, no hexadecimal surprises.
-#include "values.h"
+#include "cli/values.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "failure.h"
+#include "cli/failure.h"
 
 namespace frontmost::cli {
 namespace {

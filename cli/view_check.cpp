@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "failure.h"
-#include "view_options.h"
+#include "cli/failure.h"
+#include "cli/view_options.h"
 
 namespace frontmost::cli {
 namespace {

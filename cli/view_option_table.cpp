@@ -3,8 +3,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "failure.h"
-#include "option.h"
+#include "cli/failure.h"
+#include "cli/option.h"
 
 namespace frontmost::cli {
 namespace {

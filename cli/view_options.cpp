@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // From what was said about the camera to a View: first where it looks, then how wide, then how far away, then the
 // planes.
-#include "view_options.h"
+#include "cli/view_options.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "failure.h"
-#include "fit.h"
+#include "cli/failure.h"
+#include "cli/render/fit.h"
 
 namespace frontmost::cli {
 namespace {

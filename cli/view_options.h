@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include "settings.h"
+#include "cli/settings.h"
 
 namespace frontmost::cli {
 

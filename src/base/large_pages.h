@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Large pages for arrays that are not Buffers. The first touch of a 4 KiB page costs about as much as writing it several
-// times, and every look-up far away misses the processor's table of pages: large ones spare both.
+// Large pages for arrays that are not Buffers. The first touch of a 4 KiB page costs about as much as writing it
+// several times, and every look-up far away misses the processor's table of pages: large ones spare both.
 #pragma once
 
 #include <cstddef>

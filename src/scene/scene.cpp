@@ -6,8 +6,8 @@ namespace {
 
 [[noreturn]] void fail(const Scene& scene, std::size_t mesh, const std::string& reason) {
   const std::string& name = scene.meshes[mesh].name;
-  throw Error(ErrorCode::file_malformed, scene.name + ": mesh " + std::to_string(mesh) +
-                                             (name.empty() ? "" : " (" + name + ")") + ": " + reason);
+  throw Error(ErrorCode::file_malformed,
+              scene.name + ": mesh " + std::to_string(mesh) + (name.empty() ? "" : " (" + name + ")") + ": " + reason);
 }
 
 void check_corners(const Scene& scene, std::size_t mesh, const std::vector<glm::uvec3>& triangles, std::size_t count,
@@ -19,8 +19,9 @@ void check_corners(const Scene& scene, std::size_t mesh, const std::vector<glm::
   for (std::size_t i = 0; i < triangles.size(); ++i)
     for (int k = 0; k < 3; ++k)
       if (triangles[i][k] >= count)
-        fail(scene, mesh, "triangle " + std::to_string(i) + ": " + what + " " + std::to_string(triangles[i][k]) +
-                              " is out of range, there are " + std::to_string(count));
+        fail(scene, mesh,
+             "triangle " + std::to_string(i) + ": " + what + " " + std::to_string(triangles[i][k]) +
+                 " is out of range, there are " + std::to_string(count));
 }
 
 template <class T>
@@ -28,7 +29,8 @@ void check_attribute(const Scene& scene, std::size_t m, const Attribute<T>& attr
   if (attribute.empty()) return;
   const Mesh& mesh = scene.meshes[m];
   if (attribute.triangles.empty()) {
-    if (attribute.values.size() < mesh.positions.size()) fail(scene, m, std::string("fewer ") + what + "s than positions");
+    if (attribute.values.size() < mesh.positions.size())
+      fail(scene, m, std::string("fewer ") + what + "s than positions");
   } else {
     if (attribute.triangles.size() != mesh.triangles.size())
       fail(scene, m, std::string("corners of ") + what + "s do not match the triangles");
@@ -45,7 +47,8 @@ void check_mesh(const Scene& scene, std::size_t m) {
   if (mesh.material_ids.size() > 1 && mesh.material_ids.size() != mesh.triangles.size())
     fail(scene, m, "material ids do not match the triangles");
   for (const std::uint32_t id : mesh.material_ids)
-    if (id != no_index && id >= scene.materials.size()) fail(scene, m, "material " + std::to_string(id) + " does not exist");
+    if (id != no_index && id >= scene.materials.size())
+      fail(scene, m, "material " + std::to_string(id) + " does not exist");
   if (!mesh.face_ids.empty() && mesh.face_ids.size() != mesh.triangles.size())
     fail(scene, m, "face ids do not match the triangles");
 }
@@ -86,7 +89,8 @@ void validate(const Scene& scene) {
   for (const Texture& texture : scene.textures)
     if (texture.width < 0 || texture.height < 0 ||
         texture.pixels.size() != std::size_t(texture.width) * std::size_t(texture.height))
-      throw Error(ErrorCode::file_malformed, scene.name + ": texture " + texture.name + ": pixels do not match its size");
+      throw Error(ErrorCode::file_malformed,
+                  scene.name + ": texture " + texture.name + ": pixels do not match its size");
   for (std::size_t i = 0; i < scene.instances.size(); ++i)
     if (scene.instances[i].mesh >= scene.meshes.size())
       throw Error(ErrorCode::file_malformed, scene.name + ": instance " + std::to_string(i) + ": mesh " +

@@ -5,7 +5,7 @@
 #include "frontmost/shade.h"
 #include "shade/lighting.h"
 #include "shade/materials.h"
-#include "shade/shadow_map.h"
+#include "shade/shadow/shadow_map.h"
 #include "shade/tile.h"
 
 namespace frontmost::shading {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "shade/batch.h"
-#include "shade/geometry.h"
+#include "shade/geometry/geometry.h"
 
 namespace frontmost::shading {
 

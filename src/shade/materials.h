@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "shade/batch.h"
+#include "shade/geometry/triangle_setup.h"
 #include "shade/pyramid.h"
-#include "shade/triangle_setup.h"
 
 namespace frontmost::shading {
 

@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "frontmost/shade.h"
 #include "frontmost/zbuffer.h"
-#include "shade/geometry.h"
+#include "shade/geometry/geometry.h"
 #include "stream/excerpt.h"
 #include "stream/id_map.h"
 #include "stream/outline.h"

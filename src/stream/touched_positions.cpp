@@ -6,8 +6,8 @@
 namespace frontmost::streaming {
 namespace {
 
-/// More corners than smooth normals look at in one place (shade/smooth_normals.cpp: 256), so that these are seen to be
-/// too many here as well.
+/// More corners than smooth normals look at in one place (shade/geometry/smooth_normals.cpp: 256), so that these are
+/// seen to be too many here as well.
 constexpr std::uint32_t most_at_one_place = 1000;
 
 std::array<std::uint32_t, 3> bits_of(const glm::vec3& position) {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "cli/failure.h"
-#include "cli/jobs.h"
+#include "cli/render/jobs.h"
 #include "cli/view_options.h"
 
 namespace frontmost::cli {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // From ids to set-up triangles to fragments: attributes, instances, and which primitives are large.
-#include "shade/geometry.h"
+#include "shade/geometry/geometry.h"
 
 #include <gtest/gtest.h>
 

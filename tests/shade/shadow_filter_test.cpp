@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shade/shadow_filter.h"
+#include "shade/shadow/shadow_filter.h"
 
 #include <gtest/gtest.h>
 

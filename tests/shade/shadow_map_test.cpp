@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shadows against rays: what the map says of a point must be what a ray to the light says, but for a soft edge.
-#include "shade/shadow_map.h"
+#include "shade/shadow/shadow_map.h"
 
 #include <gtest/gtest.h>
 

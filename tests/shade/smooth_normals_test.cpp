@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shade/smooth_normals.h"
+#include "shade/geometry/smooth_normals.h"
 
 #include <gtest/gtest.h>
 

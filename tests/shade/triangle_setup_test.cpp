@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shade/triangle_setup.h"
+#include "shade/geometry/triangle_setup.h"
 
 #include <gtest/gtest.h>
 

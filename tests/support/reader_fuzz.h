@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "frontmost/io.h"
-#include "io/models/mtl.h"
+#include "io/models/obj/mtl.h"
 
 namespace frontmost {
 

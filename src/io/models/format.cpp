@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "io/models/reader.h"
-#include "io/models/stl.h"
+#include "io/models/stl/stl.h"
 
 namespace frontmost {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "base/parallel.h"
 #include "io/models/reader.h"
-#include "io/models/stl.h"
+#include "io/models/stl/stl.h"
 
 namespace frontmost {
 namespace {

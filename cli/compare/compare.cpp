@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// frontmost compare: every visibility method on one view, side by side.
+#include "cli/command.h"
+#include "cli/compare/compare_page.h"
+#include "cli/compare/compare_report.h"
+#include "cli/console.h"
+#include "cli/failure.h"
+#include "cli/interruption.h"
+#include "cli/model.h"
+#include "cli/view_options.h"
+
+namespace frontmost::cli {
+namespace {
+
+void check(const Settings& settings) {
+  check_view_settings(settings.view);
+  // Every method reads the model for itself.
+  if (settings.model == "-") throw UsageError("compare reads its model several times: give a file");
+  if (settings.compare.folder) check_page_folder(*settings.compare.folder);
+}
+
+Agreement agreement_of(const MethodRun& run, const Visible& reference, const Surfaces& surfaces,
+                       const Execution& execution) {
+  Agreement result = agreement(surfaces, reference, run.answer.visible, execution);
+  if (run.answer.behind) see_through(result, surfaces, run.answer.visible, *run.answer.behind);
+  return result;
+}
+
+}  // namespace
+
+int run_compare(const Settings& settings) {
+  check(settings);
+  catch_interruptions(settings.run.timeout);
+  // The methods' processes come first: a process that has threads cannot be split.
+  std::vector<MethodRun> runs;
+  for (const ComparedMethod& method : compared_methods()) {
+    runs.push_back(run_alone(method, settings));
+    stop_if_interrupted();
+  }
+  Progress progress(settings.run.quiet);
+  const Execution execution = execution_for(settings.run, progress);
+  const Scene scene = load_model(settings, execution, progress);
+  const Surfaces surfaces(scene, execution);
+  Comparisons all{settings, surfaces, runs.front().answer.visible.view, {}, {}};
+  for (MethodRun& run : runs) {
+    const Visible& reference = all.methods.empty() ? run.answer.visible : all.methods.front().run.answer.visible;
+    Agreement agreement = agreement_of(run, reference, surfaces, execution);
+    all.methods.push_back({std::move(run), std::move(agreement)});
+    stop_if_interrupted();
+  }
+  if (settings.compare.folder) all.files = write_page(all, *settings.compare.folder, execution);
+  progress.clear();
+  print(settings.run.json ? dump(compare_json(all)) : compare_text(all));
+  return exit_done;
+}
+
+}  // namespace frontmost::cli

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which method suits this scene and machine, in words, each with the figure that it comes from.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/compare/compare_report.h"
+
+namespace frontmost::cli {
+namespace {
+
+/// The time from surfaces to answer for one view, and for each of many with the same surfaces.
+struct Cost {
+  const Compared* method;
+  double once, again;
+};
+
+Cost cost_of(const Compared& compared) {
+  const double index = compared.run.median_of("index").value_or(0), visible = *compared.run.median_of("visible");
+  return {&compared, index + visible, visible};
+}
+
+std::string_view title(const Cost& cost) { return cost.method->run.method->title; }
+
+std::string times(double ratio) { return ratio < 10 ? fmt::format("{:.1f}", ratio) : fmt::format("{:.0f}", ratio); }
+
+/// After how many views the one that prepares has caught up with the one that does not; 0: never.
+double views_to_catch_up(const Cost& prepared, const Cost& plain) {
+  const double gain = plain.again - prepared.again, lead = prepared.once - plain.once;
+  return gain > 0 && lead > 0 ? std::ceil(lead / gain) + 1 : 0;
+}
+
+std::string single_view(const std::vector<Cost>& costs) {
+  const auto by_once = [](const Cost& a, const Cost& b) { return a.once < b.once; };
+  std::vector<Cost> sorted = costs;
+  std::sort(sorted.begin(), sorted.end(), by_once);
+  std::string text =
+      fmt::format("One view: {} is quickest, {:.2f} ms from surfaces to answer", title(sorted[0]), sorted[0].once);
+  for (std::size_t i = 1; i < sorted.size(); ++i)
+    text += fmt::format("{} {} takes {} times that", i == 1 ? ";" : ",", title(sorted[i]),
+                        times(sorted[i].once / sorted[0].once));
+  return text + ".";
+}
+
+std::string many_views(const std::vector<Cost>& costs) {
+  const Cost& best =
+      *std::min_element(costs.begin(), costs.end(), [](const Cost& a, const Cost& b) { return a.again < b.again; });
+  const Cost& first =
+      *std::min_element(costs.begin(), costs.end(), [](const Cost& a, const Cost& b) { return a.once < b.once; });
+  if (best.method == first.method)
+    return fmt::format("Many views of the same model: {} again, {:.2f} ms each.", title(best), best.again);
+  const double views = views_to_catch_up(best, first);
+  return fmt::format("Many views of the same model: {}, {:.2f} ms each; its preparation has paid off after {:.0f}.",
+                     title(best), best.again, views);
+}
+
+std::string memory(const std::vector<Cost>& costs) {
+  const auto bytes = [](const Cost& cost) { return cost.method->run.peak_bytes; };
+  const auto [least, most] = std::minmax_element(costs.begin(), costs.end(),
+                                                 [&](const Cost& a, const Cost& b) { return bytes(a) < bytes(b); });
+  return fmt::format("Memory beside the model: {} takes least, {}; {} most, {}.", title(*least),
+                     mebibytes(bytes(*least)), title(*most), mebibytes(bytes(*most)));
+}
+
+std::string transparency(const Comparisons& all) {
+  std::uint64_t seen_through = 0;
+  for (const Compared& compared : all.methods)
+    seen_through = std::max(seen_through, compared.agreement.count(Difference::translucent));
+  if (seen_through == 0)
+    return "Nothing here is seen through anything, so the front-most surface is all there is to see.";
+  return fmt::format(
+      "In {} pixels something is seen through a translucent surface: there only the A-buffer shows what lies behind.",
+      grouped(seen_through));
+}
+
+std::string trust(const Comparisons& all) {
+  std::uint64_t differing = 0, unexplained = 0;
+  for (const Compared& compared : all.methods) {
+    differing =
+        std::max(differing, compared.agreement.count(Difference::edge) + compared.agreement.count(Difference::depth));
+    unexplained += compared.agreement.count(Difference::unexplained);
+  }
+  if (unexplained > 0)
+    return fmt::format("{} pixels are unexplained: a mistake in a method. Please report this model.", unexplained);
+  if (differing == 0) return "The front-most surface is the same to all methods in every pixel.";
+  return fmt::format(
+      "Front-most surfaces differ in {} of {} pixels at most, and exact arithmetic allows both answers in each: none "
+      "is "
+      "more right.",
+      grouped(differing), grouped(all.view.pixel_count()));
+}
+
+}  // namespace
+
+std::vector<std::string> advice(const Comparisons& all) {
+  std::vector<Cost> costs;
+  for (const Compared& compared : all.methods) costs.push_back(cost_of(compared));
+  return {single_view(costs),
+          many_views(costs),
+          memory(costs),
+          transparency(all),
+          "Lines of sight and other single rays: ray casting; the index serves them all.",
+          trust(all)};
+}
+
+}  // namespace frontmost::cli

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/compare/compare_methods.h"
+
+#include <frontmost/abuffer.h>
+#include <frontmost/raycast.h>
+#include <frontmost/zbuffer.h>
+
+#include <algorithm>
+
+namespace frontmost::cli {
+namespace {
+
+Answer answer_by_zbuffer(const Surfaces& surfaces, const View& view, const Execution& execution, StageClock& clock) {
+  return {clock.time("visible", [&] { return zbuffer(surfaces, view, execution); }), {}, surfaces.primitive_count()};
+}
+
+Answer answer_by_raycast(const Surfaces& surfaces, const View& view, const Execution& execution, StageClock& clock) {
+  const RayIndex index = clock.time("index", [&] { return RayIndex(surfaces, execution); });
+  return {clock.time("visible", [&] { return raycast(index, view, execution); }), {}, index.triangle_count()};
+}
+
+/// The second layer is asked for too: it is what shows through.
+Answer answer_by_abuffer(const Surfaces& surfaces, const View& view, const Execution& execution, StageClock& clock) {
+  std::vector<Visible> layers = clock.time("visible", [&] { return visible_layers(surfaces, view, 2, {}, execution); });
+  return {std::move(layers[0]), std::move(layers[1]), surfaces.primitive_count()};
+}
+
+constexpr ComparedMethod methods[] = {
+    {"zbuffer", "Z-buffer", "Draws every triangle, and keeps the nearest depth and id at every sample.",
+     answer_by_zbuffer},
+    {"raycast", "Ray casting",
+     "Asks for every sample which triangle its ray meets first, through a hierarchy of boxes.", answer_by_raycast},
+    {"abuffer", "A-buffer",
+     "Keeps all fragments of a pixel in order of depth, and so what shows through; here two layers.",
+     answer_by_abuffer},
+};
+
+}  // namespace
+
+std::span<const ComparedMethod> compared_methods() { return methods; }
+
+void StageClock::note(std::string_view name, double milliseconds) {
+  const auto found = std::find_if(stages_.begin(), stages_.end(), [&](const Stage& s) { return s.name == name; });
+  Stage& stage = found != stages_.end() ? *found : stages_.emplace_back(Stage{std::string(name), {}});
+  stage.times.push_back(milliseconds);
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 ? values[middle] : (values[middle - 1] + values[middle]) * 0.5;
+}
+
+}  // namespace frontmost::cli

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// The methods that frontmost compare lays side by side, and how each is run and timed.
+#pragma once
+
+#include <frontmost/surfaces.h>
+#include <frontmost/visible.h>
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/stopwatch.h"
+
+namespace frontmost::cli {
+
+/// Something that took time, once or several times; milliseconds.
+struct Stage {
+  std::string name;
+  std::vector<double> times;
+};
+
+/// Collects the times of stages, in the order in which they first came.
+class StageClock {
+ public:
+  /// Calls `work` and returns what it returns.
+  template <class Work>
+  auto time(std::string_view name, const Work& work) {
+    const Stopwatch watch;
+    auto result = work();
+    note(name, watch.milliseconds());
+    return result;
+  }
+  void note(std::string_view name, double milliseconds);
+  [[nodiscard]] const std::vector<Stage>& stages() const { return stages_; }
+
+ private:
+  std::vector<Stage> stages_;
+};
+
+/// What a method answers, and how much it had to do for that.
+struct Answer {
+  Visible visible;
+  std::optional<Visible> behind;  ///< what shows through the front-most, of methods that know
+  std::uint64_t primitives = 0;   ///< triangles that it works on
+};
+
+struct ComparedMethod {
+  std::string_view name;   ///< as for render --method
+  std::string_view title;  ///< as people call it
+  std::string_view how;    ///< in a sentence
+  Answer (*answer)(const Surfaces&, const View&, const Execution&, StageClock&);
+};
+
+/// The first is the one that the others are compared with.
+[[nodiscard]] std::span<const ComparedMethod> compared_methods();
+
+[[nodiscard]] double median(std::vector<double> values);
+
+}  // namespace frontmost::cli

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/compare/compare_page.h"
+
+#include <fmt/format.h>
+#include <frontmost/io.h>
+#include <frontmost/shade.h>
+#include <frontmost/version.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "cli/interruption.h"
+
+namespace frontmost::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* style = R"(:root { color-scheme: light dark; --ground: #f6f5f2; --card: #fff; --ink: #1d1f23;
+  --soft: #5d636e; --line: #e2e0da; --accent: #b4521b; --stage: radial-gradient(circle at 50% 35%, #fff, #e4e6ea); }
+@media (prefers-color-scheme: dark) { :root { --ground: #15171b; --card: #1e2127; --ink: #eceae5; --soft: #9aa1ad;
+  --line: #2e323a; --accent: #f0a06a; --stage: radial-gradient(circle at 50% 35%, #464c57, #23262d); } }
+* { box-sizing: border-box; }
+body { margin: 0; background: var(--ground); color: var(--ink); font: 16px/1.55 system-ui, sans-serif; }
+header, main, footer { max-width: 1280px; margin: 0 auto; padding: 0 24px; }
+header { padding-top: 48px; }
+h1 { font-size: clamp(2rem, 5vw, 3.2rem); letter-spacing: -0.03em; line-height: 1.05; margin: 0 0 12px;
+  overflow-wrap: anywhere; }
+h2 { font-size: 1.5rem; letter-spacing: -0.015em; margin: 48px 0 6px; }
+h3 { font-size: 1.05rem; margin: 0 0 2px; }
+p, li { margin: 0 0 10px; color: var(--soft); }
+.lead { font-size: 1.15rem; max-width: 46em; }
+.cards { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 340px), 1fr)); gap: 24px;
+  margin-top: 20px; }
+.card { margin: 0; background: var(--card); border: 1px solid var(--line); border-radius: 14px; overflow: hidden; }
+.card img { display: block; width: 100%; height: auto; background: var(--stage); }
+.card figcaption { padding: 16px 20px 10px; }
+.scroll { overflow-x: auto; background: var(--card); border: 1px solid var(--line); border-radius: 14px;
+  padding: 6px 20px; margin-top: 16px; }
+table { border-collapse: collapse; width: 100%; min-width: 560px; table-layout: fixed; font-variant-numeric: tabular-nums; }
+th, td { padding: 7px 16px 7px 0; border-bottom: 1px solid var(--line); text-align: right; font-weight: 400;
+  white-space: nowrap; }
+th:first-child { text-align: left; color: var(--soft); white-space: normal; width: 34%; }
+thead th { font-weight: 650; }
+tr:last-child > * { border-bottom: 0; }
+.part th:first-child { padding-left: 20px; }
+.bar { display: block; height: 6px; border-radius: 3px; background: var(--accent); margin: 3px 0 0 auto; }
+.key { display: inline-block; width: 12px; height: 12px; border-radius: 3px; margin: 0 6px -1px 0; }
+.legend span { margin-right: 22px; white-space: nowrap; }
+code { font: 0.85rem ui-monospace, Menlo, monospace; }
+footer { padding: 40px 24px; color: var(--soft); font-size: 0.9rem; }
+)";
+
+struct Cause {
+  Difference difference;
+  glm::vec3 color;  // sRGB
+  const char* text;
+};
+// Told apart in either kind of colour blindness, on dark grey.
+constexpr Cause causes[] = {{Difference::edge, {0.99f, 0.72f, 0.15f}, "edge within 1/128 pixel"},
+                            {Difference::depth, {0.31f, 0.70f, 1.0f}, "depths closer than can be told"},
+                            {Difference::translucent, {0.62f, 0.87f, 0.47f}, "seen through something translucent"},
+                            {Difference::unexplained, {1.0f, 0.15f, 0.45f}, "unexplained"}};
+
+std::string escaped(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '&') {
+      result += "&amp;";
+    } else if (c == '<') {
+      result += "&lt;";
+    } else if (c == '"') {
+      result += "&quot;";
+    } else {
+      result += c;
+    }
+  }
+  return result;
+}
+
+std::string base64(std::string_view bytes) {
+  constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (i + k < bytes.size() ? std::uint8_t(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+std::string data_uri(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  return "data:image/png;base64," + base64(bytes);
+}
+
+float linear(float srgb) { return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f); }
+
+/// Squares, because a single pixel is not seen in a small picture. What is rarer and worse goes on top.
+void mark(const Agreement& agreement, Image& map) {
+  const int reach = std::max(map.width, map.height) / 320;
+  for (const Cause& cause : causes) {
+    if (agreement.count(cause.difference) == 0) continue;
+    // Where most of an area differs, pixels are large enough by themselves.
+    const int side = agreement.count(cause.difference) > agreement.view.pixel_count() / 100 ? 0 : reach;
+    for (int y = 0; y < map.height; ++y)
+      for (int x = 0; x < map.width; ++x) {
+        if (agreement.differences[std::size_t(y) * std::size_t(map.width) + std::size_t(x)] != cause.difference)
+          continue;
+        for (int j = std::max(y - side, 0); j <= std::min(y + side, map.height - 1); ++j)
+          for (int i = std::max(x - side, 0); i <= std::min(x + side, map.width - 1); ++i)
+            for (std::size_t c = 0; c < 3; ++c)
+              map.channels[c].floats()[std::size_t(j) * std::size_t(map.width) + std::size_t(i)] =
+                  linear(cause.color[int(c)]);
+      }
+  }
+}
+
+/// The differing pixels over the picture in dim grey.
+Image difference_map(const Agreement& agreement, const Image& picture) {
+  Image map{picture.width, picture.height, {}};
+  for (const char* channel : {"R", "G", "B", "A"})
+    map.channels.push_back({channel, Buffer<float>(agreement.view.pixel_count(), 1.0f)});
+  const auto &red = picture.find("R")->floats(), &green = picture.find("G")->floats(),
+             &blue = picture.find("B")->floats();
+  for (std::size_t i = 0; i < red.size(); ++i) {
+    const float grey = 0.015f + 0.14f * (0.2126f * red[i] + 0.7152f * green[i] + 0.0722f * blue[i]);
+    for (std::size_t c = 0; c < 3; ++c) map.channels[c].floats()[i] = grey;
+  }
+  mark(agreement, map);
+  return map;
+}
+
+std::string row(std::string_view label, const std::vector<std::string>& cells, std::string_view kind = "") {
+  std::string text = fmt::format("<tr{}><th scope=\"row\">{}</th>", kind, label);
+  for (const std::string& cell : cells) text += "<td>" + cell + "</td>";
+  return text + "</tr>\n";
+}
+
+/// A number with a bar that shows its share of the greatest of its row.
+template <class Number, class Text>
+std::string bar_row(const Comparisons& all, std::string_view label, const Number& number, const Text& text) {
+  double greatest = 0;
+  for (const Compared& c : all.methods) greatest = std::max(greatest, number(c).value_or(0));
+  std::vector<std::string> cells;
+  for (const Compared& c : all.methods) {
+    const std::optional<double> value = number(c);
+    cells.push_back(!value ? ""
+                           : fmt::format("{}<span class=\"bar\" style=\"width:{:.1f}%\"></span>", text(*value),
+                                         greatest > 0 ? 100 * *value / greatest : 0));
+  }
+  return row(label, cells);
+}
+
+std::string table(const Comparisons& all) {
+  std::string text = "<div class=\"scroll\"><table><thead><tr><th></th>";
+  for (const Compared& c : all.methods) text += fmt::format("<th scope=\"col\">{}</th>", c.run.method->title);
+  text += "</tr></thead><tbody>\n";
+  for (const std::string& stage : stage_names(all.methods))
+    text += bar_row(
+        all, stage, [&](const Compared& c) { return c.run.median_of(stage); },
+        [](double ms) { return fmt::format("{:.2f} ms", ms); });
+  text += bar_row(
+      all, "memory beside the model", [](const Compared& c) { return std::optional(double(c.run.peak_bytes)); },
+      [](double bytes) { return mebibytes(std::uint64_t(bytes)); });
+  const auto plain = [&](std::string_view label, const auto& number, std::string_view kind = "") {
+    std::vector<std::string> cells;
+    for (const Compared& c : all.methods) cells.push_back(grouped(number(c)));
+    text += row(label, cells, kind);
+  };
+  plain("triangles worked on", [](const Compared& c) { return c.run.answer.primitives; });
+  plain("pixels covered", [](const Compared& c) { return covered_samples(c.run.answer.visible); });
+  plain("pixels that differ", [](const Compared& c) { return c.agreement.differing(); });
+  for (const Cause& cause : causes)
+    plain(
+        fmt::format("<span class=\"key\" style=\"background:rgb({:.0f},{:.0f},{:.0f})\"></span>{}", 255 * cause.color.r,
+                    255 * cause.color.g, 255 * cause.color.b, cause.text),
+        [&](const Compared& c) { return c.agreement.count(cause.difference); }, " class=\"part\"");
+  return text + "</tbody></table></div>\n";
+}
+
+std::string card(const std::string& image, std::string_view title, std::string_view words) {
+  return fmt::format(
+      "<figure class=\"card\"><img src=\"{}\" alt=\"{}\"><figcaption><h3>{}</h3><p>{}</p></figcaption></figure>\n",
+      image, title, title, words);
+}
+
+std::string legend() {
+  std::string text = "<p class=\"legend\">";
+  for (const Cause& cause : causes)
+    text += fmt::format("<span><i class=\"key\" style=\"background:rgb({:.0f},{:.0f},{:.0f})\"></i>{}</span> ",
+                        255 * cause.color.r, 255 * cause.color.g, 255 * cause.color.b, cause.text);
+  return text + "</p>";
+}
+
+struct Pictures {
+  std::vector<std::string> pictures, maps;  // files; the first method has no map
+};
+
+Pictures save_pictures(const Comparisons& all, const std::string& folder, const Execution& execution) {
+  Pictures files;
+  for (const Compared& compared : all.methods) {
+    const std::string stem = (fs::path(folder) / std::string(compared.run.method->name)).string();
+    const Image picture = shade(all.surfaces, compared.run.answer.visible,
+                                {.shading = Shading::lit, .background = std::nullopt}, execution);
+    const WritingFiles writing;
+    files.pictures.push_back(stem + ".png");
+    save(picture, files.pictures.back(), {}, execution);
+    if (files.pictures.size() == 1) continue;
+    files.maps.push_back(stem + "-differences.png");
+    save(difference_map(compared.agreement, picture), files.maps.back(), {}, execution);
+  }
+  return files;
+}
+
+std::string page(const Comparisons& all, const Pictures& files) {
+  const std::string model = escaped(all.settings.model);
+  std::string text = fmt::format(
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
+      "<title>{} by all methods</title><style>\n{}</style></head><body>\n"
+      "<header><h1>{}</h1><p class=\"lead\">The same question to every visibility method: what can be seen from here? "
+      "{} triangles, {} × {} pixels, medians of {} runs, each method in a process of its own.</p></header><main>\n",
+      model, style, model, grouped(all.surfaces.primitive_count()), all.view.width, all.view.height,
+      all.settings.compare.runs);
+  text += table(all);
+  text += "<h2>In words</h2><ul>";
+  for (const std::string& sentence : advice(all)) text += "<li>" + escaped(sentence) + "</li>";
+  text += "</ul>\n<h2>What they see</h2><div class=\"cards\">\n";
+  for (std::size_t i = 0; i < all.methods.size(); ++i)
+    text += card(data_uri(files.pictures[i]), all.methods[i].run.method->title, all.methods[i].run.method->how);
+  text += "</div>\n<h2>Where they differ</h2>" + legend() + "<div class=\"cards\">\n";
+  for (std::size_t i = 1; i < all.methods.size(); ++i) {
+    const Compared& c = all.methods[i];
+    text += card(data_uri(files.maps[i - 1]),
+                 fmt::format("{} and {}", c.run.method->title, all.methods[0].run.method->title),
+                 fmt::format("{} pixels differ; each is marked larger than it is.", grouped(c.agreement.differing())));
+  }
+  return text + "</div></main><footer>frontmost " FRONTMOST_VERSION "</footer></body></html>\n";
+}
+
+}  // namespace
+
+void check_page_folder(const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!fs::is_directory(folder)) throw Error(ErrorCode::file_unwritable, folder + ": cannot be made into a folder");
+}
+
+std::vector<std::string> write_page(const Comparisons& all, const std::string& folder, const Execution& execution) {
+  const Pictures files = save_pictures(all, folder, execution);
+  std::vector<std::string> names{(fs::path(folder) / "index.html").string()};
+  const WritingFiles writing;
+  save_text(page(all, files), names.front());
+  names.insert(names.end(), files.pictures.begin(), files.pictures.end());
+  names.insert(names.end(), files.maps.begin(), files.maps.end());
+  return names;
+}
+
+}  // namespace frontmost::cli

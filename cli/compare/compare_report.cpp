@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/compare/compare_report.h"
+
+#include <fmt/format.h>
+#include <frontmost/version.h>
+
+#include <algorithm>
+
+namespace frontmost::cli {
+namespace {
+
+constexpr Difference causes[] = {Difference::edge, Difference::depth, Difference::translucent};
+
+std::string row(std::string_view what, const std::vector<std::string>& cells) {
+  std::string text = fmt::format("{:24}", what);
+  for (const std::string& cell : cells) text += fmt::format("{:>14}", cell);
+  return text + '\n';
+}
+
+template <class Cell>
+std::string row_of(const Comparisons& all, std::string_view what, const Cell& cell) {
+  std::vector<std::string> cells;
+  for (const Compared& compared : all.methods) cells.push_back(cell(compared));
+  return row(what, cells);
+}
+
+Json times_json(const MethodRun& run) {
+  Json json = Json::object();
+  for (const Stage& stage : run.stages) {
+    const auto [low, high] = std::minmax_element(stage.times.begin(), stage.times.end());
+    if (stage.times.size() == 1 && stage.name != "visible") {
+      json[stage.name] = stage.times.front();
+    } else {
+      json[stage.name] = {{"min", *low}, {"median", median(stage.times)}, {"max", *high}};
+    }
+  }
+  return json;
+}
+
+Json method_json(const Comparisons& all, const Compared& compared) {
+  const MethodRun& run = compared.run;
+  Json explained = Json::object();
+  for (const Difference cause : causes) explained[std::string(name(cause))] = compared.agreement.count(cause);
+  return {{"method", run.method->name},
+          {"timings_ms", times_json(run)},
+          {"peak_bytes", run.peak_bytes},
+          {"primitives", run.answer.primitives},
+          {"samples", all.view.sample_count()},
+          {"covered_samples", covered_samples(run.answer.visible)},
+          {"differing", compared.agreement.differing()},
+          {"explained", std::move(explained)},
+          {"unexplained", compared.agreement.count(Difference::unexplained)}};
+}
+
+}  // namespace
+
+std::vector<std::string> stage_names(const std::vector<Compared>& methods) {
+  std::vector<std::string> names;
+  for (const Compared& compared : methods) {
+    // A stage that others lack goes before the one that follows it here.
+    auto place = names.begin();
+    for (const Stage& stage : compared.run.stages) {
+      const auto found = std::find(names.begin(), names.end(), stage.name);
+      place = (found != names.end() ? found : names.insert(place, stage.name)) + 1;
+    }
+  }
+  return names;
+}
+
+std::string mebibytes(std::uint64_t bytes) { return fmt::format("{:.1f} MiB", double(bytes) / (1024 * 1024)); }
+
+std::string grouped(std::uint64_t number) {
+  std::string text = std::to_string(number);
+  for (std::size_t i = text.size(); i > 3;) text.insert(i -= 3, 1, ',');
+  return text;
+}
+
+std::uint64_t covered_samples(const Visible& visible) {
+  return std::uint64_t(std::count_if(visible.primitives.begin(), visible.primitives.end(),
+                                     [](PrimitiveId id) { return id != no_primitive; }));
+}
+
+std::string compare_text(const Comparisons& all) {
+  std::string text = fmt::format("{} triangles, {} x {} pixels, medians of {} run{}\n\n",
+                                 grouped(all.surfaces.primitive_count()), all.view.width, all.view.height,
+                                 all.settings.compare.runs, all.settings.compare.runs == 1 ? "" : "s");
+  text += row_of(all, "", [](const Compared& c) { return std::string(c.run.method->name); });
+  for (const std::string& stage : stage_names(all.methods))
+    text += row_of(all, stage + ", ms", [&](const Compared& c) {
+      const std::optional<double> time = c.run.median_of(stage);
+      return time ? fmt::format("{:.2f}", *time) : std::string();
+    });
+  text += row_of(all, "memory", [](const Compared& c) { return mebibytes(c.run.peak_bytes); });
+  text += row_of(all, "primitives", [](const Compared& c) { return grouped(c.run.answer.primitives); });
+  text +=
+      row_of(all, "samples covered", [](const Compared& c) { return grouped(covered_samples(c.run.answer.visible)); });
+  text += row_of(all, "pixels that differ", [](const Compared& c) { return grouped(c.agreement.differing()); });
+  for (const auto& [label, cause] :
+       {std::pair("  edge in 1/128 pixel", Difference::edge), std::pair("  depths too close", Difference::depth),
+        std::pair("  translucent", Difference::translucent), std::pair("  unexplained", Difference::unexplained)})
+    text += row_of(all, label, [&, counted = cause](const Compared& c) { return grouped(c.agreement.count(counted)); });
+  if (!all.settings.compare.explain) return text;
+  text += '\n';
+  for (const std::string& sentence : advice(all)) text += sentence + '\n';
+  return text;
+}
+
+Json compare_json(const Comparisons& all) {
+  Json json = {{"frontmost", FRONTMOST_VERSION},    {"model", all.settings.model},
+               {"isa", name(all.settings.run.isa)}, {"threads", all.settings.run.threads},
+               {"runs", all.settings.compare.runs}, {"triangles", all.surfaces.primitive_count()},
+               {"width", all.view.width},           {"height", all.view.height}};
+  json["methods"] = Json::array();
+  for (const Compared& compared : all.methods) json["methods"].push_back(method_json(all, compared));
+  if (all.settings.compare.explain) json["advice"] = advice(all);
+  json["files"] = all.files;
+  return json;
+}
+
+}  // namespace frontmost::cli

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// What frontmost compare found out: as text, as JSON, in words.
+#pragma once
+
+#include <frontmost/agreement.h>
+
+#include "cli/compare/compare_process.h"
+#include "cli/json_numbers.h"
+
+namespace frontmost::cli {
+
+/// A method, and how far it agrees with the first.
+struct Compared {
+  MethodRun run;
+  Agreement agreement;
+};
+
+struct Comparisons {
+  const Settings& settings;
+  const Surfaces& surfaces;
+  View view;
+  std::vector<Compared> methods;
+  std::vector<std::string> files;  ///< that were written
+};
+
+/// The stages of all methods, in order.
+[[nodiscard]] std::vector<std::string> stage_names(const std::vector<Compared>& methods);
+[[nodiscard]] std::string mebibytes(std::uint64_t bytes);
+/// "1,234,567".
+[[nodiscard]] std::string grouped(std::uint64_t number);
+[[nodiscard]] std::uint64_t covered_samples(const Visible& visible);
+
+[[nodiscard]] std::string compare_text(const Comparisons& all);
+[[nodiscard]] Json compare_json(const Comparisons& all);
+/// Which method suits, from these figures: sentences.
+[[nodiscard]] std::vector<std::string> advice(const Comparisons& all);
+
+}  // namespace frontmost::cli

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// frontmost camera: one camera in every convention.
+#include <frontmost/surfaces.h>
+
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/failure.h"
+#include "cli/inspect/camera_report.h"
+#include "cli/interruption.h"
+#include "cli/model.h"
+#include "cli/view_options.h"
+
+namespace frontmost::cli {
+
+int run_camera(const Settings& settings) {
+  check_view_settings(settings.view);
+  catch_interruptions(settings.run.timeout);
+  Progress progress(settings.run.quiet);
+  const Execution execution = execution_for(settings.run, progress);
+  const Scene scene = load_model(settings, execution, progress);
+  const Surfaces surfaces(scene, execution);
+  const View view = resolve_view(settings.view, surfaces);
+  const glm::dvec3 target = settings.view.focal_point.value_or(focal_point_of(view, surfaces));
+  progress.clear();
+  print(settings.run.json ? dump(camera_json(view, target)) : camera_text(view, target));
+  return exit_done;
+}
+
+}  // namespace frontmost::cli

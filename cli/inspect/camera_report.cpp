@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/inspect/camera_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace frontmost::cli {
+namespace {
+
+constexpr double degrees_per_radian = 57.29577951308232;
+
+struct NamedDepth {
+  std::string_view name;
+  DepthConvention convention;
+};
+constexpr NamedDepth depths[] = {{"opengl", opengl_depth},
+                                 {"zero_to_one", zero_to_one_depth},
+                                 {"reversed", reversed_depth},
+                                 {"gortler", gortler_depth}};
+
+bool is_centred(const Projection& p) {
+  return std::abs(p.left + p.right) <= 1e-9 * (p.right - p.left) &&
+         std::abs(p.bottom + p.top) <= 1e-9 * (p.top - p.bottom);
+}
+
+/// From edge to edge of the picture, in degrees.
+double angle(double low, double high) { return (std::atan(high) - std::atan(low)) * degrees_per_radian; }
+
+/// The vertical view angle that gives this view; in parallel projection, seen from its distance to the target.
+double view_angle(const View& view, const glm::dvec3& target) {
+  const Projection& p = view.projection;
+  const double distance = p.orthographic ? glm::distance(view.eye(), target) : 1.0;
+  return angle(p.bottom / distance, p.top / distance);
+}
+
+Json intrinsics_json(const View& view, PixelRule rule) {
+  const Intrinsics k = intrinsics_of(view.projection, view.width, view.height, rule);
+  return {{"fx", k.fx},
+          {"fy", k.fy},
+          {"cx", k.cx},
+          {"cy", k.cy},
+          {"K", Json::array(
+                    {Json::array({k.fx, 0.0, k.cx}), Json::array({0.0, k.fy, k.cy}), Json::array({0.0, 0.0, 1.0})})}};
+}
+
+Json poses_json(const View& view) {
+  Json poses;
+  poses["opengl"]["world_from_camera"] = to_json(pose_of(view.world_from_eye, PoseConvention::opengl_camera_to_world));
+  poses["opengl"]["camera_from_world"] = to_json(pose_of(view.world_from_eye, PoseConvention::opengl_world_to_camera));
+  poses["opencv"]["world_from_camera"] = to_json(pose_of(view.world_from_eye, PoseConvention::opencv_camera_to_world));
+  poses["opencv"]["camera_from_world"] = to_json(pose_of(view.world_from_eye, PoseConvention::opencv_world_to_camera));
+  return poses;
+}
+
+std::string text_of(const glm::dvec3& v) { return fmt::format("{},{},{}", v.x + 0.0, v.y + 0.0, v.z + 0.0); }
+
+std::string text_of(const glm::dmat4& m) {
+  std::string text;
+  for (int row = 0; row < 4; ++row) {
+    text += fmt::format("    {:>12.6g} {:>12.6g} {:>12.6g} {:>12.6g}\n", m[0][row] + 0.0, m[1][row] + 0.0,
+                        m[2][row] + 0.0, m[3][row] + 0.0);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string camera_flags(const View& view, const glm::dvec3& target) {
+  const Projection& p = view.projection;
+  std::string flags = fmt::format("--resolution {},{} --camera-position {} --camera-focal-point {} --camera-view-up {}",
+                                  view.width, view.height, text_of(view.eye()), text_of(target), text_of(view.up()));
+  if (is_centred(p)) {
+    flags += fmt::format(" --camera-view-angle {}", view_angle(view, target));
+    if (p.orthographic) flags += " --camera-orthographic";
+  } else if (!p.orthographic) {
+    const Intrinsics k = intrinsics_of(p, view.width, view.height, PixelRule::centre_at_half);
+    flags += fmt::format(" --intrinsics {},{},{},{} --pixel-center half", k.fx, k.fy, k.cx, k.cy);
+  }
+  return flags + fmt::format(" --near {} --far {}", p.clip.near, p.clip.far);
+}
+
+Json camera_json(const View& view, const glm::dvec3& target) {
+  const Projection& p = view.projection;
+  Json json;
+  json["resolution"] = Json::array({view.width, view.height});
+  json["projection"] = p.orthographic ? "orthographic" : "perspective";
+  json["look_at"] = {{"eye", to_json(view.eye())}, {"target", to_json(target)}, {"up", to_json(view.up())}};
+  json["flags"] = camera_flags(view, target);
+  json["poses"] = poses_json(view);
+  json["sides"] = {{"left", p.left}, {"right", p.right}, {"bottom", p.bottom}, {"top", p.top}};
+  if (!p.orthographic) {
+    json["field_of_view_degrees"] = {{"horizontal", angle(p.left, p.right)}, {"vertical", angle(p.bottom, p.top)}};
+    json["intrinsics"] = {{"pixel_center_half", intrinsics_json(view, PixelRule::centre_at_half)},
+                          {"pixel_center_integer", intrinsics_json(view, PixelRule::centre_at_integer)}};
+  }
+  json["near"] = p.clip.near;
+  json["far"] = finite_or_null(p.clip.far);
+  for (const NamedDepth& depth : depths) {
+    json["projection_matrices"][std::string(depth.name)] = {
+        {"ndc_at_near", depth.convention.at_near},
+        {"ndc_at_far", depth.convention.at_far},
+        {"clip_from_eye", to_json(clip_from_eye(p, depth.convention))}};
+  }
+  return json;
+}
+
+std::string camera_text(const View& view, const glm::dvec3& target) {
+  const Projection& p = view.projection;
+  std::string text = fmt::format(
+      "resolution  {} x {}\nprojection  {}\neye         {}\ntarget      {}\nup          {}\n", view.width, view.height,
+      p.orthographic ? "orthographic" : "perspective", text_of(view.eye()), text_of(target), text_of(view.up()));
+  text += fmt::format("near, far   {}, {}\n", p.clip.near, p.clip.far);
+  if (!p.orthographic) {
+    const Intrinsics k = intrinsics_of(p, view.width, view.height, PixelRule::centre_at_integer);
+    text += fmt::format("view angle  {:.6g} horizontal, {:.6g} vertical (degrees)\n", angle(p.left, p.right),
+                        angle(p.bottom, p.top));
+    text += fmt::format("intrinsics  {},{},{},{} (first pixel centre at 0,0; add 0.5 to the last two for 0.5,0.5)\n",
+                        k.fx, k.fy, k.cx, k.cy);
+  }
+  text += "world from camera, opengl (x right, y up, looks down -z)\n" + text_of(view.world_from_eye);
+  text += "camera from world, opencv (x right, y down, looks down +z)\n" +
+          text_of(pose_of(view.world_from_eye, PoseConvention::opencv_world_to_camera));
+  return text + "flags       " + camera_flags(view, target) + "\n(--json has every convention)\n";
+}
+
+}  // namespace frontmost::cli

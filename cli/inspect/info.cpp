@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// frontmost info: what is in a model.
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/failure.h"
+#include "cli/inspect/info_report.h"
+#include "cli/interruption.h"
+#include "cli/model.h"
+
+namespace frontmost::cli {
+
+int run_info(const Settings& settings) {
+  catch_interruptions(settings.run.timeout);
+  Progress progress(settings.run.quiet);
+  const Execution execution = execution_for(settings.run, progress);
+  const Scene scene = load_model(settings, execution, progress);
+  const SceneReport report = inspect(scene, execution);
+  progress.clear();
+  print(settings.run.json ? dump(info_json(report)) : info_text(report));
+  return exit_done;
+}
+
+}  // namespace frontmost::cli

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// frontmost precision: what a depth buffer can tell apart, alone or on a model.
+#include <fmt/format.h>
+#include <frontmost/shade.h>
+
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/failure.h"
+#include "cli/interruption.h"
+#include "cli/model.h"
+#include "cli/precision/precision_plot.h"
+#include "cli/precision/precision_report.h"
+#include "cli/rays/sight.h"
+#include "cli/render/outputs.h"
+#include "cli/view_options.h"
+
+namespace frontmost::cli {
+namespace {
+
+void check(const Settings& settings) {
+  const PrecisionSettings& precision = settings.precision;
+  const bool has_model = !settings.model.empty();
+  check_view_settings(settings.view);
+  if (precision.infinite && settings.view.far) throw UsageError("--infinite and --far exclude each other");
+  if (!has_model && !settings.view.near) throw UsageError("give --near, or a --model to fit it to");
+  if (!has_model && !settings.view.far && !precision.infinite)
+    throw UsageError("give --far or --infinite, or a --model to fit the far plane to");
+  if (precision.heat_map && !(has_model && precision.format)) throw UsageError("--heat-map needs --model and --format");
+  std::vector<std::string> files;
+  for (const auto& file : {precision.plot, precision.heat_map})
+    if (file) files.push_back(*file);
+  check_outputs(files, settings.model);
+  if (settings.run.json && std::find(files.begin(), files.end(), "-") != files.end())
+    throw UsageError("--json and an output to - both want standard output");
+}
+
+ViewSettings with_far(const Settings& settings) {
+  ViewSettings view = settings.view;
+  if (settings.precision.infinite) view.far = std::numeric_limits<double>::infinity();
+  return view;
+}
+
+/// The buffer that was asked for, or those in use.
+std::vector<PrecisionResult> buffers_of(const Settings& settings, const Projection& projection) {
+  const bool reversed = settings.view.depth.reversed;
+  std::vector<PrecisionResult> results;
+  const auto add = [&](DepthFormat format, bool is_reversed) {
+    results.push_back({{projection.clip, format, is_reversed, projection.orthographic}, {}});
+  };
+  if (settings.precision.format) {
+    add(*settings.precision.format, reversed);
+    return results;
+  }
+  for (const DepthFormat format : {DepthFormat::d16, DepthFormat::d24, DepthFormat::f32}) add(format, reversed);
+  if (!reversed) add(DepthFormat::f32, true);
+  return results;
+}
+
+DepthFights fights_of(const Surfaces& surfaces, const ExactVisible& exact, const DepthSetup& setup,
+                      const Execution& execution) {
+  DepthSettings depth;
+  depth.is_used = true;
+  depth.format = setup.format;
+  depth.reversed = setup.reversed;
+  return depth_fights(surfaces, exact, look_at_surfaces(surfaces, exact.view, depth, execution).visible, execution);
+}
+
+void save_heat_map(const PrecisionRun& run, const ExactVisible& exact, const Execution& execution) {
+  const Surfaces& surfaces = *run.surfaces;
+  const Sight sight = look_at_surfaces(surfaces, exact.view, {}, execution);
+  const Image backdrop =
+      shade(surfaces, sight.visible, {.shading = Shading::lit, .background = glm::vec3(0.0f)}, execution);
+  SaveOptions options;
+  options.format = ImageFormat::png;
+  const WritingFiles writing;
+  save(fight_image(*run.results.front().fights, backdrop), *run.settings.precision.heat_map, options, execution);
+}
+
+void save_plot(const PrecisionRun& run) {
+  const Settings& settings = run.settings;
+  const DepthSetup& setup = run.results.front().setup;
+  const std::optional<DepthSetup> chosen = settings.precision.format ? std::optional(setup) : std::nullopt;
+  const WritingFiles writing;
+  save_text(precision_plot(setup.clip, setup.orthographic, chosen, settings.precision.wanted),
+            *settings.precision.plot);
+}
+
+/// Fills in what a model adds.
+void fight(PrecisionRun& run, const View& view, const Execution& execution) {
+  const ExactVisible exact = exact_visible(*run.surfaces, view, execution);
+  for (PrecisionResult& result : run.results) {
+    result.fights = fights_of(*run.surfaces, exact, result.setup, execution);
+    stop_if_interrupted();
+  }
+  if (!run.settings.precision.heat_map) return;
+  save_heat_map(run, exact, execution);
+  run.files.push_back(*run.settings.precision.heat_map);
+}
+
+Projection projection_without_model(const Settings& settings) {
+  Projection projection;
+  projection.orthographic = settings.view.orthographic;
+  const ViewSettings view = with_far(settings);
+  projection.clip = {*view.near, *view.far};
+  return projection;
+}
+
+}  // namespace
+
+int run_precision(const Settings& settings) {
+  check(settings);
+  catch_interruptions(settings.run.timeout);
+  Progress progress(settings.run.quiet);
+  const Execution execution = execution_for(settings.run, progress);
+  std::optional<Scene> scene;
+  std::optional<Surfaces> surfaces;
+  PrecisionRun run{settings, nullptr, {}, {}};
+  if (settings.model.empty()) {
+    run.results = buffers_of(settings, projection_without_model(settings));
+  } else {
+    scene = load_model(settings, execution, progress);
+    surfaces.emplace(*scene, execution);
+    run.surfaces = &*surfaces;
+    const View view = resolve_view(with_far(settings), *surfaces);
+    run.results = buffers_of(settings, view.projection);
+    fight(run, view, execution);
+  }
+  if (settings.precision.plot) {
+    save_plot(run);
+    run.files.push_back(*settings.precision.plot);
+  }
+  progress.clear();
+  const bool stdout_is_taken = std::find(run.files.begin(), run.files.end(), "-") != run.files.end();
+  if (!stdout_is_taken) print(settings.run.json ? dump(precision_json(run)) : precision_text(run));
+  return exit_done;
+}
+
+}  // namespace frontmost::cli

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/precision/precision_report.h"
+
+#include <fmt/format.h>
+#include <frontmost/version.h>
+
+#include <algorithm>
+
+#include "cli/console.h"
+#include "cli/rays/sight.h"
+
+namespace frontmost::cli {
+namespace {
+
+constexpr std::size_t pairs_shown = 10;
+
+std::string gap_text(double gap) { return std::isfinite(gap) ? fmt::format("{:.3g}", gap) : "none"; }
+
+std::string object_name(const PrecisionRun& run, std::uint32_t instance) {
+  if (instance == no_index) return "(nothing)";
+  return printable_name(run.surfaces->scene().instances[instance].name);
+}
+
+/// A single buffer, with more about it.
+std::string table_of(const DepthSetup& setup) {
+  std::string text =
+      fmt::format("{:>12}  {:>12}  {:>14}  {:>11}\n", "distance", "smallest gap", "gap / distance", "values used");
+  for (const double distance : round_distances(setup.clip)) {
+    const double gap = resolvable_gap(setup, distance);
+    const std::string share = std::isfinite(gap) && distance > 0 ? fmt::format("{:.1e}", gap / distance) : "";
+    text += fmt::format("{:>12.6g}  {:>12}  {:>14}  {:>9.2f} %\n", distance, gap_text(gap), share,
+                        100 * share_of_values(setup, distance));
+  }
+  return text;
+}
+
+/// Several, side by side.
+std::string table_of(const std::vector<PrecisionResult>& results) {
+  std::string text = fmt::format("{:>12}", "distance");
+  for (const PrecisionResult& result : results) text += fmt::format("  {:>12}", setup_name(result.setup));
+  text += '\n';
+  for (const double distance : round_distances(results.front().setup.clip)) {
+    text += fmt::format("{:>12.6g}", distance);
+    for (const PrecisionResult& result : results)
+      text += fmt::format("  {:>12}", gap_text(resolvable_gap(result.setup, distance)));
+    text += '\n';
+  }
+  return text;
+}
+
+std::string wanted_text(const PrecisionRun& run) {
+  const glm::dvec2 wanted = *run.settings.precision.wanted;
+  std::string text = fmt::format("\nto tell {:g} apart at {:g}\n", wanted.x, wanted.y);
+  for (const auto& [setup, fights] : run.results) {
+    const std::optional<double> near = near_for_gap(setup, wanted.y, wanted.x);
+    text += fmt::format("  {:14}", setup_name(setup));
+    if (!near) text += "no near plane will do\n";
+    if (near && *near == 0) text += "any near plane will do\n";
+    if (near && *near > 0)
+      text += fmt::format("near {:.4g} or farther{}\n", *near, *near <= setup.clip.near ? ": it is" : "");
+  }
+  return text;
+}
+
+std::string fights_text(const PrecisionRun& run) {
+  const DepthFights& first = *run.results.front().fights;
+  std::string text = fmt::format("\n{} of {} pixels covered", first.covered, first.view.pixel_count());
+  if (first.tied > 0) text += fmt::format("; in {}, several surfaces lie exactly in one place", first.tied);
+  text += "\nwrong surface seen\n";
+  for (const auto& [setup, fights] : run.results) {
+    text += fmt::format("  {:14}{:>10} pixels  {:>8.3f} %\n", setup_name(setup), fights->wrong,
+                        fights->covered > 0 ? 100.0 * double(fights->wrong) / double(fights->covered) : 0.0);
+  }
+  if (run.results.size() > 1 || first.pairs.empty()) return text;
+  text += fmt::format("\n{:>10}  {:>12}  {:28}  {}\n", "pixels", "at most by", "seen", "instead of");
+  for (std::size_t i = 0; i < first.pairs.size() && i < pairs_shown; ++i) {
+    const FightingPair& pair = first.pairs[i];
+    const std::string by = pair.seen == no_index ? "" : fmt::format("{:.3g}", pair.farthest);
+    text += fmt::format("{:>10}  {:>12}  {:28}  {}\n", pair.samples, by, object_name(run, pair.seen),
+                        pair.seen == pair.nearer ? "(itself)" : object_name(run, pair.nearer));
+  }
+  if (first.pairs.size() > pairs_shown)
+    text += fmt::format("            and {} more pairs; --json lists them\n", first.pairs.size() - pairs_shown);
+  return text;
+}
+
+Json object_json(const PrecisionRun& run, std::uint32_t instance) {
+  if (instance == no_index) return nullptr;
+  return {{"object", instance}, {"name", run.surfaces->scene().instances[instance].name}};
+}
+
+Json fights_json(const PrecisionRun& run, const DepthFights& fights) {
+  Json pairs = Json::array();
+  for (const FightingPair& pair : fights.pairs) {
+    pairs.push_back({{"seen", object_json(run, pair.seen)},
+                     {"nearer", object_json(run, pair.nearer)},
+                     {"pixels", pair.samples},
+                     {"farthest", pair.farthest}});
+  }
+  return {{"pixels", fights.view.pixel_count()},
+          {"covered_pixels", fights.covered},
+          {"wrong_pixels", fights.wrong},
+          {"tied_pixels", fights.tied},
+          {"pairs", std::move(pairs)}};
+}
+
+Json result_json(const PrecisionRun& run, const PrecisionResult& result) {
+  const DepthSetup& setup = result.setup;
+  Json json = {{"format", name(setup.format)}, {"reversed", setup.reversed}};
+  json["distances"] = Json::array();
+  for (const double distance : round_distances(setup.clip)) {
+    json["distances"].push_back({{"distance", distance},
+                                 {"gap", finite_or_null(resolvable_gap(setup, distance))},
+                                 {"values_used", share_of_values(setup, distance)}});
+  }
+  if (const std::optional<glm::dvec2>& wanted = run.settings.precision.wanted) {
+    const std::optional<double> near = near_for_gap(setup, wanted->y, wanted->x);
+    json["near_for_gap"] = near ? Json(*near) : Json(nullptr);
+  }
+  if (result.fights) json["fights"] = fights_json(run, *result.fights);
+  return json;
+}
+
+}  // namespace
+
+std::string setup_name(const DepthSetup& setup) {
+  return fmt::format("{}{}", name(setup.format), setup.reversed ? " reversed" : "");
+}
+
+std::string precision_text(const PrecisionRun& run) {
+  const ClipDistances& clip = run.clip();
+  const bool single = run.results.size() == 1;
+  std::string text = single ? setup_name(run.results.front().setup) + ", " : "smallest gap that is always resolved; ";
+  text += fmt::format("near {:.6g}, far {}\n\n", clip.near,
+                      std::isfinite(clip.far) ? fmt::format("{:.6g}", clip.far) : "infinite");
+  text += single ? table_of(run.results.front().setup) : table_of(run.results);
+  if (run.settings.precision.wanted) text += wanted_text(run);
+  if (run.surfaces) text += fights_text(run);
+  return text;
+}
+
+Json precision_json(const PrecisionRun& run) {
+  Json json = {{"frontmost", FRONTMOST_VERSION}, {"near", run.clip().near}, {"far", finite_or_null(run.clip().far)}};
+  json["projection"] = run.results.front().setup.orthographic ? "orthographic" : "perspective";
+  if (run.surfaces) json["model"] = run.settings.model;
+  if (const std::optional<glm::dvec2>& wanted = run.settings.precision.wanted)
+    json["wanted"] = {{"gap", wanted->x}, {"distance", wanted->y}};
+  json["buffers"] = Json::array();
+  for (const PrecisionResult& result : run.results) json["buffers"].push_back(result_json(run, result));
+  json["files"] = run.files;
+  return json;
+}
+
+}  // namespace frontmost::cli

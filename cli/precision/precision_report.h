@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// What frontmost precision found out: as text and as JSON.
+#pragma once
+
+#include <frontmost/precision.h>
+
+#include "cli/json_numbers.h"
+#include "cli/settings.h"
+
+namespace frontmost::cli {
+
+/// One depth buffer.
+struct PrecisionResult {
+  DepthSetup setup;
+  std::optional<DepthFights> fights;  ///< with a model
+};
+
+struct PrecisionRun {
+  const Settings& settings;
+  const Surfaces* surfaces = nullptr;  ///< null without a model
+  std::vector<PrecisionResult> results;
+  std::vector<std::string> files;  ///< that were written
+
+  [[nodiscard]] const ClipDistances& clip() const { return results.front().setup.clip; }
+};
+
+/// "D24", "F32 reversed".
+[[nodiscard]] std::string setup_name(const DepthSetup& setup);
+
+[[nodiscard]] std::string precision_text(const PrecisionRun& run);
+[[nodiscard]] Json precision_json(const PrecisionRun& run);
+
+}  // namespace frontmost::cli

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// frontmost lidar: what a spinning laser, or any pattern of rays from one point, meets.
+#include <fmt/format.h>
+#include <frontmost/image.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/failure.h"
+#include "cli/interruption.h"
+#include "cli/json_numbers.h"
+#include "cli/model.h"
+#include "cli/rays/lidar_points.h"
+#include "cli/rays/number_lines.h"
+#include "cli/render/outputs.h"
+#include "cli/stopwatch.h"
+
+namespace frontmost::cli {
+namespace {
+
+constexpr int default_rings = 16, default_steps = 1024;
+constexpr glm::dvec2 default_elevations{-15, 15};
+
+RayPattern read_directions(const std::string& path) {
+  RayPattern pattern;
+  for (const std::vector<double>& n : read_number_lines(path, {3, "three numbers make a direction"}))
+    pattern.directions.emplace_back(glm::dvec3(n[0], n[1], n[2]));
+  if (pattern.directions.empty()) throw Error(ErrorCode::file_malformed, path + ": holds no direction");
+  return pattern;
+}
+
+void check(const Settings& settings) {
+  const LidarSettings& s = settings.lidar;
+  if (!s.from) throw UsageError("give --from X,Y,Z, where the scanner stands");
+  if (s.directions && (s.rings || s.steps || s.elevations))
+    throw UsageError("--directions and --rings, --steps, --elevations are two ways to say it");
+  if (s.outputs.empty() && !settings.run.json) throw UsageError("nothing to do: give -o FILE or --json");
+  for (const std::string& path : s.outputs) {
+    const std::string suffix = std::filesystem::path(path).extension().string();
+    if (suffix != ".ply" && suffix != ".exr" && suffix != ".npy")
+      throw UsageError(path + ": the suffix names no format; use .ply, .exr or .npy");
+  }
+  check_outputs(s.outputs, settings.model);
+}
+
+/// The rays, in the scanner's own axes.
+RayCamera rays_of(const LidarSettings& s) {
+  if (s.directions) return {read_directions(*s.directions)};
+  const glm::dvec2 ends = glm::radians(s.elevations.value_or(default_elevations));
+  return {Lidar{ring_elevations(s.rings.value_or(default_rings), ends.x, ends.y), s.steps.value_or(default_steps)}};
+}
+
+/// Upright in the model.
+glm::dmat4 pose_of(const LidarSettings& s, const Surfaces& surfaces) {
+  FrameOptions front;
+  front.direction = NamedView::front;
+  const glm::dvec3 ahead = s.forward.value_or(frame(surfaces, 1, 1, front).forward());
+  glm::dmat4 pose = look_at(glm::dvec3(0), glm::normalize(ahead), direction(surfaces.scene().up));
+  pose[3] = glm::dvec4(*s.from, 1);
+  return pose;
+}
+
+Image range_image(const RangeScan& scan, const Surfaces& surfaces, bool with_ids) {
+  Image image{scan.width, scan.height, {}};
+  image.channels.push_back({"distance", scan.ranges});
+  if (!with_ids) return image;
+  for (const IdKind kind : {IdKind::primitive, IdKind::object}) {
+    const std::span<const PrimitiveId> primitives(scan.primitives.data(), scan.primitives.size());
+    Image ids = id_image(surfaces, {scan.width, scan.height}, primitives, kind);
+    image.channels.push_back(std::move(ids.channels.front()));
+  }
+  return image;
+}
+
+void write(const std::string& path, const RangeScan& scan, const Surfaces& surfaces, const Execution& execution) {
+  stop_if_interrupted();
+  const WritingFiles writing;
+  const std::string suffix = std::filesystem::path(path).extension().string();
+  if (suffix == ".ply") return save_text(points_ply(scan, surfaces), path);
+  save(range_image(scan, surfaces, suffix == ".exr"), path, {}, execution);
+}
+
+/// What was met, in all and by object.
+Json report(const Settings& settings, const RangeScan& scan, const Surfaces& surfaces) {
+  std::vector<std::uint64_t> points(surfaces.scene().instances.size());
+  std::uint64_t met = 0;
+  double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
+  for (std::size_t i = 0; i < scan.primitives.size(); ++i) {
+    if (scan.primitives[i] == no_primitive) continue;
+    ++met;
+    ++points[surfaces.source(scan.primitives[i]).instance];
+    nearest = std::min(nearest, double(scan.ranges[i]));
+    farthest = std::max(farthest, double(scan.ranges[i]));
+  }
+  Json json = {{"model", settings.model}, {"from", to_json(*settings.lidar.from)}, {"columns", scan.width},
+               {"rows", scan.height},     {"rays", scan.primitives.size()},        {"points", met}};
+  json["nearest"] = finite_or_null(nearest);
+  json["farthest"] = met > 0 ? Json(farthest) : Json(nullptr);
+  json["objects"] = Json::array();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i] == 0) continue;
+    json["objects"].push_back({{"object", i}, {"name", surfaces.scene().instances[i].name}, {"points", points[i]}});
+  }
+  return json;
+}
+
+}  // namespace
+
+int run_lidar(const Settings& settings) {
+  check(settings);
+  RayCamera camera = rays_of(settings.lidar);
+  catch_interruptions(settings.run.timeout);
+  Progress progress(settings.run.quiet);
+  const Execution execution = execution_for(settings.run, progress);
+  const Scene scene = load_model(settings, execution, progress);
+  const Surfaces surfaces(scene, execution);
+  camera.world_from_eye = pose_of(settings.lidar, surfaces);
+  Stopwatch watch;
+  const RayIndex index(surfaces, execution);
+  const double index_time = watch.milliseconds();
+  watch = {};
+  const RangeScan result = scan(index, camera, execution);
+  const double scan_time = watch.milliseconds();
+  progress.clear();
+  for (const std::string& path : settings.lidar.outputs) write(path, result, surfaces, execution);
+  if (!settings.run.json) return exit_done;
+  Json json = report(settings, result, surfaces);
+  json["timings_ms"] = {{"index", index_time}, {"visible", scan_time}};
+  print(dump(json));
+  return exit_done;
+}
+
+}  // namespace frontmost::cli

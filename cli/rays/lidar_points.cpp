@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/rays/lidar_points.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace frontmost::cli {
+namespace {
+
+constexpr std::size_t bytes_of_point = 32;
+
+void append(std::string& bytes, std::uint32_t word) {
+  // PLY's "little endian", whatever the machine's.
+  for (int shift = 0; shift < 32; shift += 8) bytes += char(word >> shift & 0xFF);
+}
+
+void append(std::string& bytes, float value) {
+  std::uint32_t word;
+  std::memcpy(&word, &value, sizeof word);
+  append(bytes, word);
+}
+
+void append_point(std::string& bytes, const RangeScan& scan, const glm::ivec2& at, const PrimitiveSource& source) {
+  const glm::dvec3 point = point_of(scan, at.x, at.y);
+  for (int axis = 0; axis < 3; ++axis) append(bytes, float(point[axis]));
+  append(bytes, scan.ranges[scan.index(at.x, at.y)]);
+  for (const std::uint32_t id : {source.instance, source.triangle, std::uint32_t(at.y), std::uint32_t(at.x)})
+    append(bytes, id);
+}
+
+}  // namespace
+
+std::string points_ply(const RangeScan& scan, const Surfaces& surfaces) {
+  const auto missed = std::count(scan.primitives.begin(), scan.primitives.end(), no_primitive);
+  const std::size_t points = scan.primitives.size() - std::size_t(missed);
+  std::string bytes = fmt::format(
+      "ply\nformat binary_little_endian 1.0\ncomment rays {} by {}\nelement vertex {}\n"
+      "property float x\nproperty float y\nproperty float z\nproperty float range\n"
+      "property uint object\nproperty uint triangle\nproperty uint ring\nproperty uint step\nend_header\n",
+      scan.width, scan.height, points);
+  bytes.reserve(bytes.size() + points * bytes_of_point);
+  for (int y = 0; y < scan.height; ++y)
+    for (int x = 0; x < scan.width; ++x) {
+      const PrimitiveId id = scan.primitives[scan.index(x, y)];
+      if (id != no_primitive) append_point(bytes, scan, {x, y}, surfaces.source(id));
+    }
+  return bytes;
+}
+
+}  // namespace frontmost::cli

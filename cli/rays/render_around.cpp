@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/rays/render_around.h"
+
+#include <fmt/format.h>
+#include <frontmost/ray_camera.h>
+#include <frontmost/shade.h>
+
+#include "cli/failure.h"
+#include "cli/render/output_writer.h"
+#include "cli/render/reference.h"
+#include "cli/stopwatch.h"
+#include "cli/view_options.h"
+
+namespace frontmost::cli {
+namespace {
+
+constexpr double half_turn_degrees = 180;
+constexpr glm::ivec2 panorama_resolution{2048, 1024}, fisheye_resolution{1024, 1024};
+
+/// The pose of the view that the same options make of a pinhole.
+RayCamera camera_of(const ViewResult& result) {
+  const View& view = result.view;
+  if (result.camera_model == CameraModel::panorama) return {Panorama{view.width, view.height}, view.world_from_eye};
+  return {Fisheye{view.width, view.height, glm::radians(result.fisheye_angle)}, view.world_from_eye};
+}
+
+ViewResult resolve(const Job& job, const Surfaces& surfaces) {
+  ViewSettings settings = job.view;
+  const bool is_panorama = settings.camera_model == CameraModel::panorama;
+  if (!settings.resolution) settings.resolution = is_panorama ? panorama_resolution : fisheye_resolution;
+  ViewResult result;
+  result.name = job.name;
+  result.view = resolve_view(settings, surfaces);
+  result.target = settings.focal_point.value_or(focal_point_of(result.view, surfaces));
+  result.camera_model = settings.camera_model;
+  result.fisheye_angle = settings.fisheye_angle.value_or(half_turn_degrees);
+  return result;
+}
+
+RangeScan timed_scan(const RayCamera& camera, const RenderContext& context, std::vector<double>& times) {
+  for (int i = 1;; ++i) {
+    const Stopwatch watch;
+    RangeScan result = scan(*context.index, camera, context.execution);
+    times.push_back(watch.milliseconds());
+    if (i >= context.run.repeat) return result;
+  }
+}
+
+Image ids(const Surfaces& surfaces, const RangeScan& around, IdKind kind) {
+  return id_image(surfaces, {around.width, around.height}, {around.primitives.data(), around.primitives.size()}, kind);
+}
+
+Image ranges(const RangeScan& around, const char* name, float background) {
+  Buffer<float> values = around.ranges;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (around.primitives[i] == no_primitive) values[i] = background;
+  Image image{around.width, around.height, {}};
+  image.channels.push_back({name, std::move(values)});
+  return image;
+}
+
+Image map_of(OutputKind kind, const Job& job, const Surfaces& surfaces, const RangeScan& around) {
+  const float background = job.output.background_depth;
+  switch (kind) {
+    // There is no image plane that a depth could be measured from.
+    case OutputKind::depth: return ranges(around, "Z", background);
+    case OutputKind::ray_distance: return ranges(around, "distance", background);
+    case OutputKind::primitive_ids: return ids(surfaces, around, IdKind::primitive);
+    case OutputKind::object_ids: return ids(surfaces, around, IdKind::object);
+    case OutputKind::material_ids: return ids(surfaces, around, IdKind::material);
+    case OutputKind::picture:
+    case OutputKind::window_depth:
+    case OutputKind::normals: break;  // refused before, or not a map
+  }
+  return {};
+}
+
+Seen summary(const Surfaces& surfaces, const RangeScan& around) {
+  Seen seen;
+  Image both = ids(surfaces, around, IdKind::primitive);
+  both.channels.push_back({"distance", around.ranges});
+  seen.hash = content_hash(both);
+  count_objects(surfaces, ids(surfaces, around, IdKind::object), seen);
+  return seen;
+}
+
+}  // namespace
+
+void check_outputs_around(const Job& job) {
+  if (job.view.camera_model == CameraModel::pinhole) return;
+  if (wants(job, OutputKind::normals)) throw UsageError("--camera-model and --normals exclude each other");
+  if (job.output.opacity < 1) throw UsageError("--camera-model and --opacity exclude each other");
+  if (job.output.shading == Shading::uv) throw UsageError("--camera-model and --shading uv exclude each other");
+}
+
+ViewResult render_around(const Job& job, const RenderContext& context) {
+  ViewResult result = resolve(job, context.surfaces);
+  const RangeScan around = timed_scan(camera_of(result), context, result.timings.visible);
+  const bool reports = job.output.hash || context.run.json;
+  const Seen seen = summary(context.surfaces, around);
+  if (reports) result.seen = seen;
+  if (seen.pixels == 0) result.warnings.emplace_back("nothing is in view: no ray meets the model");
+  std::optional<Image> picture;
+  if (wants(job, OutputKind::picture) || context.keep_picture || job.output.reference) {
+    const Stopwatch watch;
+    picture = shade(context.surfaces, around, {job.output.shading, job.output.background}, context.execution);
+    result.timings.shade = watch.milliseconds();
+  }
+  const auto map = [&](OutputKind kind) { return map_of(kind, job, context.surfaces, around); };
+  write_files({job, context.execution, map, picture ? &*picture : nullptr}, result);
+  if (job.output.reference) result.reference = compare_with_reference(*picture, job, context.execution);
+  if (context.keep_picture) result.picture = std::move(picture);
+  return result;
+}
+
+}  // namespace frontmost::cli

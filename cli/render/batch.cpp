@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// Batch files: JSON whose keys are the options' names, so that one table says what both may be.
+#include <fmt/format.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "cli/failure.h"
+#include "cli/json_numbers.h"
+#include "cli/option.h"
+#include "cli/render/jobs.h"
+
+namespace frontmost::cli {
+namespace {
+
+constexpr std::size_t view_limit = 100000;
+
+/// A value and where it stands, such as "batch.json: views[2].resolution".
+struct Place {
+  const Json& value;
+  std::string path;
+
+  [[nodiscard]] Place at(const std::string& key) const { return {value.at(key), fmt::format("{}.{}", path, key)}; }
+  [[noreturn]] void refuse(std::string_view why) const { throw UsageError(fmt::format("{}: {}", path, why)); }
+};
+
+std::string number_text(const Json& value) {
+  return value.is_number_integer() ? value.dump() : fmt::format("{}", value.get<double>());
+}
+
+/// What the value would be on a command line.
+std::string text_of(const Place& place) {
+  const Json& value = place.value;
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number()) return number_text(value);
+  if (!value.is_array()) place.refuse("must be a string, a number or a list of numbers");
+  std::string text;
+  for (const Json& element : value) {
+    // A matrix may be written as four rows.
+    if (!element.is_number() && !element.is_array()) place.refuse("must hold numbers alone");
+    if (!text.empty()) text += ',';
+    text += element.is_number() ? number_text(element) : text_of({element, place.path});
+  }
+  return text;
+}
+
+void apply_at(const Place& place, const Option& option, const std::string& text, Settings& settings) {
+  try {
+    option.apply(settings, {text, option.choices()});
+  } catch (const UsageError& error) {
+    place.refuse(error.what());
+  }
+}
+
+void apply_value(const Place& place, const Option& option, Settings& settings) {
+  if (option.is_switch()) {
+    if (!place.value.is_boolean()) place.refuse("must be true or false");
+    if (place.value.get<bool>()) apply_at(place, option, {}, settings);
+  } else if (option.name == "ids" && place.value.is_object()) {
+    for (const auto& [kind, file] : place.value.items()) {
+      const Place inner = place.at(kind);
+      if (!file.is_string()) inner.refuse("must be a file name");
+      apply_at(inner, option, kind + "=" + file.get<std::string>(), settings);
+    }
+  } else {
+    apply_at(place, option, text_of(place), settings);
+  }
+}
+
+bool belongs_to_view(const Option& option) {
+  return option.group == Group::camera || option.group == Group::vision || option.group == Group::grid ||
+         option.group == Group::depth;
+}
+bool belongs_to_outputs(const Option& option) { return option.group == Group::output || option.group == Group::look; }
+
+/// Applies every key of an object; `belongs` says which options it may hold.
+template <class Belongs>
+void apply_object(const Place& place, const Belongs& belongs, std::vector<std::string_view> other_keys,
+                  Settings& settings) {
+  if (!place.value.is_object()) place.refuse("must be an object");
+  for (const auto& item : place.value.items()) {
+    const std::string& key = item.key();  // clang 14 does not capture structured bindings
+    bool known = std::find(other_keys.begin(), other_keys.end(), key) != other_keys.end();
+    std::vector<std::string_view> names = other_keys;
+    for_each_option([&](const Option& option) {
+      if (!belongs(option) || !(option.commands & for_render)) return;
+      names.push_back(option.name);
+      if (known || option.name != key) return;
+      known = true;
+      apply_value(place.at(key), option, settings);
+    });
+    if (known) continue;
+    const std::string_view nearest = nearest_word(key, names);
+    place.at(key).refuse(nearest.empty() ? "is not known here"
+                                         : fmt::format("is not known; did you mean {}?", nearest));
+  }
+}
+
+Settings parse_view(const Place& place, const Settings& defaults) {
+  Settings settings = defaults;
+  apply_object(place, belongs_to_view, {"name", "outputs"}, settings);
+  if (place.value.contains("name")) {
+    const Place name = place.at("name");
+    if (!name.value.is_string() || name.value.get<std::string>().empty()) name.refuse("must be a string");
+    settings.view.name = name.value.get<std::string>();
+    // It becomes part of a file's name, and must not lead elsewhere.
+    if (settings.view.name.find('/') != std::string::npos) name.refuse("must not hold a /");
+  }
+  if (place.value.contains("outputs")) apply_object(place.at("outputs"), belongs_to_outputs, {}, settings);
+  return settings;
+}
+
+Json parse_json(const std::string& text, const std::string& name) {
+  try {
+    return Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    const std::size_t end = std::min(error.byte, text.size());
+    const auto lines = std::count(text.begin(), text.begin() + std::ptrdiff_t(end > 0 ? end - 1 : 0), '\n');
+    throw UsageError(fmt::format("{}: line {}: is not valid JSON", name, lines + 1));
+  }
+}
+
+}  // namespace
+
+std::vector<Settings> parse_batch(const std::string& text, const std::string& name, const Settings& defaults) {
+  const Json json = parse_json(text, name);
+  const Place root{json, name};
+  if (!json.is_object()) root.refuse("must be an object with views");
+  for (const auto& [key, value] : json.items()) {
+    if (key != "views" && key != "outputs") root.refuse(fmt::format("{}: is not known; views and outputs are", key));
+  }
+  Settings common = defaults;
+  if (json.contains("outputs")) apply_object({json.at("outputs"), name + ": outputs"}, belongs_to_outputs, {}, common);
+  if (!json.contains("views") || !json.at("views").is_array() || json.at("views").empty()) {
+    root.refuse("views: must be a list of at least one view");
+  }
+  const Json& views = json.at("views");
+  if (views.size() > view_limit) root.refuse(fmt::format("views: more than {}", view_limit));
+  std::vector<Settings> result;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const Place place{views[i], fmt::format("{}: views[{}]", name, i)};
+    result.push_back(parse_view(place, common));
+    if (result.back().view.name.empty() && !views[i].contains("view")) result.back().view.name = std::to_string(i);
+  }
+  return result;
+}
+
+std::vector<Settings> read_batch(const std::string& path, const Settings& defaults) {
+  std::ifstream file(path);
+  if (!file) throw Error(ErrorCode::file_unreadable, fmt::format("{}: cannot be opened", path));
+  std::stringstream text;
+  text << file.rdbuf();
+  if (file.bad() || text.str().empty())
+    throw Error(ErrorCode::file_unreadable, fmt::format("{}: cannot be read", path));
+  return parse_batch(text.str(), path, defaults);
+}
+
+}  // namespace frontmost::cli

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Options of a depth buffer, as OpenGL names its state.
+#include "cli/failure.h"
+#include "cli/option.h"
+
+namespace frontmost::cli {
+namespace {
+
+/// Any of these asks for a depth buffer instead of the exact default.
+DepthSettings& used(Settings& settings) {
+  settings.view.depth.is_used = true;
+  return settings.view.depth;
+}
+
+constexpr Option table[] = {
+    {"depth-format", 0, "D8|D16|D24|F32", "Keep depths in a buffer of this format; D24 with any of the options below.",
+     Group::depth, for_render, [](Settings& s, const Given& g) { used(s).format = g.choice<DepthFormat>(); }},
+    {"depth-func", 0, "NEVER|LESS|EQUAL|LEQUAL|GREATER|NOTEQUAL|GEQUAL|ALWAYS",
+     "Which fragments pass, triangles being drawn in the order of the file; LESS by default, GREATER with --reversed.",
+     Group::depth, for_render, [](Settings& s, const Given& g) { used(s).func = g.choice<DepthFunc>(); }},
+    {"depth-mask", 0, "off|on", "Whether passing fragments store their depth; on by default.", Group::depth, for_render,
+     [](Settings& s, const Given& g) { used(s).mask = g.choice<int>() == 1; }},
+    {"depth-clear", 0, "DEPTH", "What the buffer holds at first; 1 by default, 0 with --reversed.", Group::depth,
+     for_render,
+     [](Settings& s, const Given& g) {
+       used(s).clear = g.number({-3e38, 3e38});
+     }},
+    {"depth-range", 0, "NEAR,FAR", "Depths of the near and far planes, 0 to 1 in any order; 0,1 by default.",
+     Group::depth, for_render,
+     [](Settings& s, const Given& g) {
+       const std::vector<double> ends = parse_numbers(g.text, 2, {0, 1});
+       used(s).range = glm::dvec2(ends[0], ends[1]);
+     }},
+    {"polygon-offset", 0, "FACTOR,UNITS", "Add slope times FACTOR and UNITS steps of the format to depths.",
+     Group::depth, for_render,
+     [](Settings& s, const Given& g) {
+       const std::vector<double> offset = parse_numbers(g.text, 2, {-1e30, 1e30});
+       used(s).offset = {offset[0], offset[1], 0};
+     }},
+    {"reversed", 0, "", "Nearer is greater: depths run from 1 at the near plane to 0 at the far one.", Group::depth,
+     for_render | for_precision, [](Settings& s, const Given&) { used(s).reversed = true; }},
+};
+
+}  // namespace
+
+std::span<const Option> depth_option_table() { return table; }
+
+}  // namespace frontmost::cli

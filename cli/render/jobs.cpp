@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/render/jobs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/failure.h"
+#include "cli/rays/render_around.h"
+#include "cli/view_options.h"
+
+namespace frontmost::cli {
+namespace {
+
+Job make_job(const Settings& settings) {
+  check_view_settings(settings.view);
+  if (settings.run.stream && settings.view.depth.is_used)
+    throw UsageError("--stream draws with the default depth test; it excludes the options of a depth buffer");
+  if (settings.run.stream && settings.output.opacity < 1)
+    throw UsageError("--stream keeps only what is nearest; it excludes --opacity");
+  Job job{view_name(settings.view), settings.view, settings.output, {}, {}};
+  const std::string model = model_name(settings.model);
+  job.files = plan_outputs(settings.output, model, job.name);
+  check_outputs_around(job);
+  if (settings.run.stream && settings.view.camera_model != CameraModel::pinhole)
+    throw UsageError("--stream and --camera-model exclude each other");
+  if (job.output.reference) {
+    job.output.reference = fill_template(*job.output.reference, model, job.name);
+    if (job.output.reference_difference) {
+      job.output.reference_difference = fill_template(*job.output.reference_difference, model, job.name);
+    }
+    job.difference = difference_path(job.output, job.files);
+  }
+  return job;
+}
+
+void check_files(const std::vector<Job>& jobs, const Settings& settings) {
+  std::vector<std::string> paths, references;
+  for (const Job& job : jobs) {
+    for (const OutputFile& file : job.files) paths.push_back(file.path);
+    if (job.difference.empty()) continue;
+    paths.push_back(job.difference);
+    references.push_back(*job.output.reference);
+  }
+  check_outputs(paths, settings.model);
+  for (const std::string& model : settings.more_models) check_outputs(paths, model);
+  // Comparing a picture with itself would always pass.
+  for (const std::string& reference : references) check_not_written(reference, paths);
+  const bool writes_stdout = std::find(paths.begin(), paths.end(), "-") != paths.end();
+  if (writes_stdout && settings.run.json) throw UsageError("--json and an output to - both want standard output");
+  if (writes_stdout && settings.output.hash) throw UsageError("--hash and an output to - both want standard output");
+}
+
+}  // namespace
+
+std::vector<Job> plan_jobs(const Settings& settings) {
+  std::vector<Job> jobs;
+  if (settings.run.batch) {
+    for (const Settings& one : read_batch(*settings.run.batch, settings)) jobs.push_back(make_job(one));
+  } else {
+    jobs.push_back(make_job(settings));
+  }
+  check_files(jobs, settings);
+  return jobs;
+}
+
+}  // namespace frontmost::cli

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one run of `frontmost render` has to do: the views, each with its files.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/render/outputs.h"
+#include "cli/settings.h"
+
+namespace frontmost::cli {
+
+/// One view, ready to be rendered.
+struct Job {
+  std::string name;  ///< {view}
+  ViewSettings view;
+  OutputSettings output;
+  std::vector<OutputFile> files;
+  std::string difference;  ///< where the difference to the reference goes; empty: no reference
+};
+
+/// One job, or those of the batch file; all files have been checked.
+/// \throws UsageError and Error as plan_outputs() and check_outputs() do; the batch file's complaints name the place.
+[[nodiscard]] std::vector<Job> plan_jobs(const Settings& settings);
+
+/// The settings of each view of a batch file.
+[[nodiscard]] std::vector<Settings> read_batch(const std::string& path, const Settings& defaults);
+/// The same from text; `name` stands for the file in messages.
+[[nodiscard]] std::vector<Settings> parse_batch(const std::string& text, const std::string& name,
+                                                const Settings& defaults);
+
+}  // namespace frontmost::cli

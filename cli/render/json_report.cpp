@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/render/json_report.h"
+
+#include <fmt/format.h>
+#include <frontmost/version.h>
+
+#include <algorithm>
+
+#include "cli/inspect/camera_report.h"
+#include "cli/rays/sight.h"
+
+namespace frontmost::cli {
+namespace {
+
+// As text: JSON numbers lose bits above 2^53 in many readers.
+std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 ? values[middle] : (values[middle - 1] + values[middle]) * 0.5;
+}
+
+Json visible_json(const std::vector<double>& times) {
+  const auto [low, high] = std::minmax_element(times.begin(), times.end());
+  return {{"min", *low}, {"median", median(times)}, {"max", *high}};
+}
+
+Json seen_json(const Seen& seen, const View& view) {
+  Json objects = Json::array();
+  for (const SeenObject& object : seen.objects) {
+    objects.push_back({{"object", object.instance}, {"name", object.name}, {"covered_pixels", object.pixels}});
+  }
+  return {{"hash", hash_text(seen.hash)},
+          {"pixels", view.pixel_count()},
+          {"covered_pixels", seen.pixels},
+          {"objects", std::move(objects)}};
+}
+
+Json reference_json(const ReferenceResult& reference) {
+  Json json = {{"file", reference.path},
+               {"passed", reference.passed},
+               {"largest_difference", finite_or_null(reference.largest_difference)},
+               {"mean_difference", finite_or_null(reference.mean_difference)},
+               {"differing_pixels", reference.differing_pixels}};
+  if (!reference.difference_path.empty()) json["difference_file"] = reference.difference_path;
+  return json;
+}
+
+void add_timings(const Timings& timings, Json& json) {
+  json["visible"] = visible_json(timings.visible);
+  if (timings.visible_maps) json["visible_maps"] = *timings.visible_maps;
+  json["shade"] = timings.shade;
+  json["save"] = timings.save;
+}
+
+Json depth_json(const DepthSettings& settings) {
+  const DepthState state = depth_state(settings);
+  return {{"format", name(settings.format)},
+          {"func", name(state.func)},
+          {"mask", state.mask},
+          {"clear", depth_clear(settings)},
+          {"range", {state.range_near, state.range_far}},
+          {"polygon_offset", {state.offset.factor, state.offset.units}},
+          {"reversed", state.nearer_is_greater}};
+}
+
+/// As far as there is anything to say of a camera that is no pinhole.
+Json view_camera_json(const ViewResult& result) {
+  Json json = camera_json(result.view, result.target);
+  if (result.camera_model == CameraModel::pinhole) return json;
+  for (const char* key :
+       {"flags", "sides", "field_of_view_degrees", "intrinsics", "near", "far", "projection_matrices"})
+    json.erase(key);
+  const bool is_fisheye = result.camera_model == CameraModel::fisheye;
+  json["projection"] = is_fisheye ? "fisheye" : "panorama";
+  if (is_fisheye) json["field_of_view_degrees"] = result.fisheye_angle;
+  return json;
+}
+
+Json view_json(const ViewResult& result) {
+  Json json = {{"name", result.name}, {"view", view_camera_json(result)}};
+  if (result.depth.is_used) json["depth_buffer"] = depth_json(result.depth);
+  if (result.seen) json["seen"] = seen_json(*result.seen, result.view);
+  json["files"] = Json::array();
+  for (const Result& file : result.results) {
+    Json& one = json["files"].emplace_back(Json{{"what", file.what}, {"path", file.path}});
+    if (file.hash) one["hash"] = hash_text(*file.hash);
+  }
+  if (result.reference) json["reference"] = reference_json(*result.reference);
+  json["warnings"] = result.warnings;
+  return json;
+}
+
+}  // namespace
+
+Json render_json(const Settings& settings, const ModelFacts& model, const std::vector<ViewResult>& views,
+                 const RunTimings& timings) {
+  const auto is_pinhole = [](const ViewResult& view) { return view.camera_model == CameraModel::pinhole; };
+  const bool by_rays = settings.run.method == Method::raycast || std::none_of(views.begin(), views.end(), is_pinhole);
+  Json json = {
+      {"frontmost", FRONTMOST_VERSION}, {"model", settings.model}, {"method", by_rays ? "raycast" : "zbuffer"}};
+  json["isa"] = name(settings.run.isa);
+  if (!settings.more_models.empty()) json["more_models"] = settings.more_models;
+  json["triangles"] = model.triangles;
+  if (model.passes) json["stream_passes"] = *model.passes;
+  Json times = {{"load", timings.load}, {"surfaces", timings.surfaces}};
+  if (timings.index) times["index"] = *timings.index;
+  if (settings.run.batch) {
+    json["views"] = Json::array();
+    for (const ViewResult& view : views) {
+      Json one = view_json(view);
+      add_timings(view.timings, one["timings_ms"]);
+      json["views"].push_back(std::move(one));
+    }
+    json["warnings"] = model.warnings;
+  } else {
+    json.update(view_json(views.front()));
+    for (const std::string& warning : model.warnings) json["warnings"].push_back(warning);
+    add_timings(views.front().timings, times);
+  }
+  times["total"] = timings.total;
+  json["timings_ms"] = std::move(times);
+  return json;
+}
+
+std::string hash_lines(const std::vector<ViewResult>& views, bool is_batch) {
+  std::string lines;
+  for (const ViewResult& view : views) {
+    if (!view.seen) continue;  // its hash was not asked for
+    const std::string prefix = is_batch ? view.name + ":" : "";
+    lines += fmt::format("{}visible {}\n", prefix, hash_text(view.seen->hash));
+    for (const Result& result : view.results) {
+      lines += fmt::format("{}{} {} {}\n", prefix, result.what, hash_text(*result.hash), result.path);
+    }
+  }
+  return lines;
+}
+
+}  // namespace frontmost::cli

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run of `frontmost render` reports: as JSON, or as lines of hashes.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/json_numbers.h"
+#include "cli/render/render_view.h"
+
+namespace frontmost::cli {
+
+/// Milliseconds of what was done once for all views.
+struct RunTimings {
+  double load = 0, surfaces = 0, total = 0;
+  std::optional<double> index;  ///< of the method raycast
+};
+
+/// What there is to say of the model.
+struct ModelFacts {
+  std::uint64_t triangles = 0;
+  const std::vector<std::string>& warnings;
+  std::optional<int> passes = std::nullopt;  ///< over a stream
+};
+
+/// With one view, its facts stand at the top; with a batch, under "views".
+[[nodiscard]] Json render_json(const Settings& settings, const ModelFacts& model, const std::vector<ViewResult>& views,
+                               const RunTimings& timings);
+/// "what HASH path", one line a result, "visible HASH" first; a batch has "view:" in front.
+[[nodiscard]] std::string hash_lines(const std::vector<ViewResult>& views, bool is_batch);
+
+}  // namespace frontmost::cli

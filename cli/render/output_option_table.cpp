@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// Options that say what to write and how it looks.
+#include "cli/failure.h"
+#include "cli/option.h"
+
+namespace frontmost::cli {
+namespace {
+
+void add_file(Settings& settings, OutputKind kind, std::string_view path) {
+  if (path.empty()) throw UsageError("the file name is empty");
+  settings.output.files.push_back({kind, std::string(path)});
+}
+
+void add_ids(Settings& settings, std::string_view text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string_view::npos) {
+    throw UsageError("'" + std::string(text) + "' is not KIND=FILE with KIND primitive, object or material");
+  }
+  constexpr OutputKind kinds[] = {OutputKind::primitive_ids, OutputKind::object_ids, OutputKind::material_ids};
+  const int kind = parse_choice(text.substr(0, equals), "primitive|object|material");
+  add_file(settings, kinds[kind], text.substr(equals + 1));
+}
+
+constexpr unsigned written = for_render | may_repeat;
+
+constexpr Option table[] = {
+    {"output", 'o', "FILE",
+     "The picture: .png, .exr, .pfm or .npy; - is standard output. {model} and {view} stand for names.", Group::output,
+     written, [](Settings& s, const Given& g) { add_file(s, OutputKind::picture, g.text); }},
+    {"depth", 0, "FILE", "Distance along the viewing axis, in scene units.", Group::output, written,
+     [](Settings& s, const Given& g) { add_file(s, OutputKind::depth, g.text); }},
+    {"ray-distance", 0, "FILE", "Distance from the eye, in scene units.", Group::output, written,
+     [](Settings& s, const Given& g) { add_file(s, OutputKind::ray_distance, g.text); }},
+    {"window-depth", 0, "FILE", "The depth buffer's values from 0 to 1, as glReadPixels gives them.", Group::output,
+     written,
+     [](Settings& s, const Given& g) {
+       s.view.depth.is_used = true;
+       add_file(s, OutputKind::window_depth, g.text);
+     }},
+    {"ids", 0, "KIND=FILE", "Which primitive, object or material is seen: primitive=FILE, object=FILE, material=FILE.",
+     Group::output, written, [](Settings& s, const Given& g) { add_ids(s, g.text); }},
+    {"normals", 0, "FILE", "World-space normals.", Group::output, written,
+     [](Settings& s, const Given& g) { add_file(s, OutputKind::normals, g.text); }},
+    {"format", 0, "png|exr|pfm|npy", "Format of files whose names do not say, such as -.", Group::output, for_render,
+     [](Settings& s, const Given& g) { s.output.format = g.choice<ImageFormat>(); }},
+    {"bits", 0, "8|16", "Bits a channel of PNG pictures; 8 by default.", Group::output, for_render,
+     [](Settings& s, const Given& g) { s.output.bits = g.choice<int>() == 0 ? 8 : 16; }},
+    {"depth-scale", 0, "FACTOR", "PNG depth is distance times this, rounded; by default the range seen fills 16 bits.",
+     Group::output, for_render,
+     [](Settings& s, const Given& g) {
+       s.output.depth_scale = g.number({1e-12, 1e12});
+     }},
+    {"background-depth", 0, "DISTANCE", "Depth where nothing is seen; inf by default.", Group::output, for_render,
+     [](Settings& s, const Given& g) {
+       s.output.background_depth =
+           g.text == "inf" ? std::numeric_limits<float>::infinity() : float(g.number({-3e38, 3e38}));
+     }},
+    {"hash", 0, "", "Print a content hash of what is visible and of each result.", Group::output, for_render,
+     [](Settings& s, const Given&) { s.output.hash = true; }},
+    {"reference", 0, "FILE", "Compare the picture with this one; exit status 3 if it differs.", Group::output,
+     for_render, [](Settings& s, const Given& g) { s.output.reference = g.string(); }},
+    {"reference-threshold", 0, "T", "Largest difference that passes, 0 to 1 of a channel's range; 0 by default.",
+     Group::output, for_render,
+     [](Settings& s, const Given& g) {
+       s.output.reference_threshold = g.number({0, 1});
+     }},
+    {"reference-difference", 0, "FILE", "Where the difference goes; by default beside the picture, .difference.png.",
+     Group::output, for_render, [](Settings& s, const Given& g) { s.output.reference_difference = g.string(); }},
+
+    {"shading", 0, "lit|flat|normals|depth|ids|uv", "What the picture shows; lit by default.", Group::look, for_render,
+     [](Settings& s, const Given& g) { s.output.shading = g.choice<Shading>(); }},
+    {"background", 0, "COLOR", "#rrggbb, r,g,b from 0 to 1, a plain colour name, or transparent; white by default.",
+     Group::look, for_render,
+     [](Settings& s, const Given& g) {
+       s.output.background_given = true;
+       s.output.background = std::nullopt;
+       if (g.text != "transparent") s.output.background = parse_color(g.text);
+     }},
+    {"no-shadows", 0, "", "The key light casts no shadow.", Group::look, for_render,
+     [](Settings& s, const Given&) { s.output.no_shadows = true; }},
+    {"opacity", 0, "O", "See through everything: multiplies every opacity, 0 to 1; 1 by default.", Group::look,
+     for_render,
+     [](Settings& s, const Given& g) {
+       s.output.opacity = float(g.number({0, 1}));
+     }},
+};
+
+}  // namespace
+
+std::span<const Option> output_option_table() { return table; }
+
+}  // namespace frontmost::cli

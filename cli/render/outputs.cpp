@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/render/outputs.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "cli/failure.h"
+
+namespace frontmost::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kind_names[] = {"picture", "depth",         "ray_distance", "window_depth",
+                                           "normals", "primitive_ids", "object_ids",   "material_ids"};
+constexpr std::string_view format_names[] = {"png", "exr", "pfm", "npy"};
+
+std::optional<ImageFormat> format_by_suffix(const std::string& path) {
+  std::string suffix = fs::path(path).extension().string();
+  for (char& c : suffix) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+  for (int i = 0; i < 4; ++i) {
+    if (suffix.size() == 4 && suffix.substr(1) == format_names[i]) return ImageFormat(i);
+  }
+  return std::nullopt;
+}
+
+bool is_id(OutputKind kind) { return kind >= OutputKind::primitive_ids; }
+
+void check_format(OutputKind kind, ImageFormat format, const std::string& path) {
+  if (is_id(kind) && format == ImageFormat::pfm) {
+    throw UsageError(fmt::format("{}: PFM cannot hold ids; use .exr, .npy or .png", path));
+  }
+}
+
+ImageFormat format_of(const OutputSettings& settings, const std::string& path) {
+  if (const std::optional<ImageFormat> format = format_by_suffix(path)) return *format;
+  if (settings.format) return *settings.format;
+  if (path == "-") throw UsageError("standard output needs --format png, exr, pfm or npy");
+  throw UsageError(fmt::format("{}: the suffix names no format; use .png, .exr, .pfm or .npy, or --format", path));
+}
+
+void add(std::vector<OutputFile>& files, OutputKind kind, const std::string& path, ImageFormat format) {
+  const auto same = std::find_if(files.begin(), files.end(), [&](const OutputFile& file) { return file.path == path; });
+  if (same == files.end()) {
+    files.push_back({path, format, {kind}});
+    return;
+  }
+  const bool shareable = format == ImageFormat::exr && path != "-";
+  if (!shareable || std::find(same->kinds.begin(), same->kinds.end(), kind) != same->kinds.end()) {
+    throw UsageError(fmt::format("{}: two outputs have this name; only .exr files hold several", path));
+  }
+  same->kinds.push_back(kind);
+}
+
+/// The same text for every spelling of a path.
+std::string canonical(const std::string& path) {
+  std::error_code ignored;
+  const fs::path result = fs::weakly_canonical(fs::absolute(path, ignored), ignored);
+  return result.empty() ? path : result.string();
+}
+
+void check_writable(const std::string& path) {
+  const auto refuse = [&](std::string_view why) {
+    throw Error(ErrorCode::file_unwritable, fmt::format("{}: {}", path, why));
+  };
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  if (fs::is_directory(status)) refuse("is a folder");
+  if (fs::exists(status)) {
+    if (access(path.c_str(), W_OK) != 0) refuse("is not writable");
+    // A device or a pipe is written as it is; a file is replaced, which its folder must allow.
+    if (!fs::is_regular_file(status)) return;
+  }
+  fs::path folder = fs::path(path).parent_path();
+  if (folder.empty()) folder = ".";
+  if (!fs::exists(folder, ignored)) refuse(fmt::format("the folder {} does not exist", folder.string()));
+  if (!fs::is_directory(folder, ignored)) refuse(fmt::format("{} is not a folder", folder.string()));
+  if (access(folder.c_str(), W_OK | X_OK) != 0) refuse(fmt::format("the folder {} is not writable", folder.string()));
+}
+
+}  // namespace
+
+std::string_view kind_name(OutputKind kind) { return kind_names[int(kind)]; }
+
+std::string model_name(const std::string& model) {
+  if (model == "-") return "stdin";
+  if (model.substr(0, 8) == "builtin:") return model.substr(8);
+  const std::string stem = fs::path(model).stem().string();
+  return stem.empty() ? "model" : stem;
+}
+
+std::string fill_template(std::string_view text, const std::string& model, const std::string& view) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c != '{' && c != '}') {
+      result += c;
+    } else if (i + 1 < text.size() && text[i + 1] == c) {
+      result += c;
+      ++i;
+    } else {
+      const std::size_t end = c == '{' ? text.find('}', i) : std::string_view::npos;
+      const std::string_view word = end == std::string_view::npos ? "" : text.substr(i + 1, end - i - 1);
+      if (word != "model" && word != "view") {
+        throw UsageError(fmt::format("{}: {{model}} and {{view}} are known here, {{{{ and }}}} are braces", text));
+      }
+      result += word == "model" ? model : view;
+      i = end;
+    }
+  }
+  return result;
+}
+
+std::vector<OutputFile> plan_outputs(const OutputSettings& settings, const std::string& model,
+                                     const std::string& view) {
+  std::vector<OutputFile> files;
+  for (const OutputRequest& request : settings.files) {
+    const std::string path = request.path == "-" ? "-" : fill_template(request.path, model, view);
+    const ImageFormat format = format_of(settings, path);
+    check_format(request.kind, format, path);
+    add(files, request.kind, path, format);
+  }
+  return files;
+}
+
+void check_outputs(const std::vector<std::string>& paths, const std::string& model) {
+  std::set<std::string> taken;
+  std::error_code ignored;
+  for (const std::string& path : paths) {
+    if (path != "-" && fs::equivalent(path, model, ignored)) {
+      throw UsageError(fmt::format("{}: is the model itself", path));
+    }
+    if (!taken.insert(path == "-" ? path : canonical(path)).second) {
+      throw UsageError(path == "-" ? "standard output is given twice"
+                                   : fmt::format("{}: would be written twice; {{view}} tells views apart", path));
+    }
+    if (path != "-") check_writable(path);
+  }
+}
+
+void check_not_written(const std::string& path, const std::vector<std::string>& outputs) {
+  for (const std::string& output : outputs) {
+    if (output != "-" && canonical(output) == canonical(path)) {
+      throw UsageError(fmt::format("{}: is both the reference and an output", path));
+    }
+  }
+}
+
+std::string difference_path(const OutputSettings& settings, const std::vector<OutputFile>& files) {
+  if (settings.reference_difference) return *settings.reference_difference;
+  for (const OutputFile& file : files) {
+    if (file.path == "-" || file.kinds.front() != OutputKind::picture) continue;
+    return fs::path(file.path).replace_extension(".difference.png").string();
+  }
+  return fs::path(*settings.reference).stem().string() + ".difference.png";
+}
+
+}  // namespace frontmost::cli

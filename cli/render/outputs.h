@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which files a view makes: names filled in, formats known, and everything that can be refused refused before any
+// work is done.
+#pragma once
+
+#include <frontmost/io.h>
+
+#include <string>
+#include <vector>
+
+#include "cli/settings.h"
+
+namespace frontmost::cli {
+
+/// A file to write. Several kinds share one only as channels of an OpenEXR file.
+struct OutputFile {
+  std::string path;  ///< "-" is standard output
+  ImageFormat format;
+  std::vector<OutputKind> kinds;
+};
+
+/// "picture", "depth", "ray_distance", "normals", "primitive_ids", ...: as reports and hashes name them.
+[[nodiscard]] std::string_view kind_name(OutputKind kind);
+
+/// What {model} stands for: the file's name without folder and suffix.
+[[nodiscard]] std::string model_name(const std::string& model);
+/// Replaces {model} and {view}; {{ and }} are braces. \throws UsageError on any other name in braces.
+[[nodiscard]] std::string fill_template(std::string_view text, const std::string& model, const std::string& view);
+
+/// The files of one view.
+/// \throws UsageError for an unknown suffix, a format that cannot hold the kind, and a name taken twice
+[[nodiscard]] std::vector<OutputFile> plan_outputs(const OutputSettings& settings, const std::string& model,
+                                                   const std::string& view);
+
+/// \throws UsageError when a file is the model itself or is written twice; Error file_unwritable when its folder is
+/// missing or not writable, or it is not a regular file.
+void check_outputs(const std::vector<std::string>& paths, const std::string& model);
+
+/// \throws UsageError when `path` is one of the outputs.
+void check_not_written(const std::string& path, const std::vector<std::string>& outputs);
+
+/// Where the difference to a reference goes.
+[[nodiscard]] std::string difference_path(const OutputSettings& settings, const std::vector<OutputFile>& files);
+
+}  // namespace frontmost::cli

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// frontmost render: pictures and maps of a model.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/failure.h"
+#include "cli/interruption.h"
+#include "cli/model.h"
+#include "cli/render/jobs.h"
+#include "cli/render/json_report.h"
+#include "cli/render/render_stream.h"
+#include "cli/render/terminal.h"
+#include "cli/stopwatch.h"
+
+namespace frontmost::cli {
+namespace {
+
+bool has_result(const Settings& settings, const std::vector<Job>& jobs) {
+  const auto makes = [](const Job& job) { return !job.files.empty() || job.output.reference || job.output.hash; };
+  return settings.run.json || std::any_of(jobs.begin(), jobs.end(), makes);
+}
+
+void check_method(const Settings& settings, const std::vector<Job>& jobs) {
+  if (settings.run.method == Method::zbuffer) return;
+  for (const Job& job : jobs) {
+    if (job.view.depth.is_used) throw UsageError("--method: a depth buffer's state needs the method zbuffer");
+  }
+}
+
+bool looks_around(const Job& job) { return job.view.camera_model != CameraModel::pinhole; }
+
+/// Without any result asked for, the picture goes to the terminal, if there is one.
+bool shows_on_terminal(const Settings& settings, std::vector<Job>& jobs) {
+  if (has_result(settings, jobs)) return false;
+  const std::optional<glm::ivec2> terminal = output_terminal();
+  if (!terminal) {
+    throw UsageError(
+        "nothing to do: give an output such as -o FILE (without one the picture is shown on a terminal, "
+        "and standard output is none)");
+  }
+  for (Job& job : jobs) prepare_for_terminal(job, *terminal);
+  return true;
+}
+
+/// Warnings first, then the picture, so that both can be read.
+void tell(const ViewResult& result, const Settings& settings, Progress& progress) {
+  progress.clear();
+  const std::string prefix = settings.run.batch ? result.name + ": " : "";
+  if (!settings.run.quiet) {
+    for (const std::string& warning : result.warnings) complain(prefix + "warning: " + warning);
+  }
+  if (result.reference && !result.reference->passed) {
+    const ReferenceResult& reference = *result.reference;
+    complain(fmt::format("{}{}: {} pixels differ, by {:.4g} at most; see {}", prefix, reference.path,
+                         reference.differing_pixels, reference.largest_difference, reference.difference_path));
+  }
+  if (result.picture) show_on_terminal(*result.picture);
+}
+
+int status_of(const std::vector<ViewResult>& results) {
+  const auto differs = [](const ViewResult& result) { return result.reference && !result.reference->passed; };
+  return std::any_of(results.begin(), results.end(), differs) ? exit_differs : exit_done;
+}
+
+/// Renders every job by `render`, and tells of each.
+template <class Render>
+std::vector<ViewResult> render_all(const std::vector<Job>& jobs, const Settings& settings, Progress& progress,
+                                   const Render& render) {
+  std::vector<ViewResult> results;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if (jobs.size() > 1) progress.set_prefix(fmt::format("view {} of {}: ", i + 1, jobs.size()));
+    results.push_back(render(jobs[i]));
+    tell(results.back(), settings, progress);
+    results.back().picture.reset();
+    stop_if_interrupted();
+  }
+  return results;
+}
+
+void report(const Settings& settings, const ModelFacts& model, const std::vector<ViewResult>& results,
+            const RunTimings& timings) {
+  if (settings.run.json) print(dump(render_json(settings, model, results, timings)));
+  if (!settings.run.json) print(hash_lines(results, settings.run.batch.has_value()));
+}
+
+/// What both ways to render begin with.
+struct Run {
+  const Settings& settings;
+  std::vector<Job> jobs;
+  bool on_terminal = false;
+  Stopwatch whole;
+};
+
+int render_whole(const Run& run) {
+  const Settings& settings = run.settings;
+  Progress progress(settings.run.quiet);
+  const Execution execution = execution_for(settings.run, progress);
+  RunTimings timings;
+  Stopwatch watch;
+  const Scene scene = load_model(settings, execution, progress);
+  timings.load = watch.milliseconds();
+  watch = {};
+  const Surfaces surfaces(scene, execution);
+  timings.surfaces = watch.milliseconds();
+  std::optional<RayIndex> index;
+  const bool all_rays = settings.run.method == Method::raycast;
+  if (all_rays || std::any_of(run.jobs.begin(), run.jobs.end(), looks_around)) {
+    watch = {};
+    index.emplace(surfaces, execution);
+    timings.index = watch.milliseconds();
+  }
+  const std::vector<ViewResult> results = render_all(run.jobs, settings, progress, [&](const Job& job) {
+    const bool by_rays = all_rays || looks_around(job);
+    return render_view(job, {surfaces, settings.run, execution, run.on_terminal, by_rays ? &*index : nullptr});
+  });
+  timings.total = run.whole.milliseconds();
+  report(settings, {surfaces.primitive_count(), scene.warnings}, results, timings);
+  return status_of(results);
+}
+
+int render_stream(const Run& run) {
+  const Settings& settings = run.settings;
+  Progress progress(settings.run.quiet);
+  const Execution execution = execution_for(settings.run, progress);
+  RunTimings timings;
+  const Stopwatch watch;
+  std::vector<std::string> models = {settings.model};
+  models.insert(models.end(), settings.more_models.begin(), settings.more_models.end());
+  StreamOptions options;
+  options.load = settings.load;
+  Stream stream(models, options, execution);
+  timings.load = watch.milliseconds();
+  const std::vector<ViewResult> results = render_all(run.jobs, settings, progress, [&](const Job& job) {
+    return render_streamed_view(job, stream, {settings.run, execution, run.on_terminal});
+  });
+  show_warnings(stream.scene().warnings, settings.run, progress);
+  timings.total = run.whole.milliseconds();
+  report(settings, {stream.triangle_count(), stream.scene().warnings, stream.passes()}, results, timings);
+  return status_of(results);
+}
+
+}  // namespace
+
+int run_render(const Settings& settings) {
+  if (settings.run.stream && settings.run.repeat > 1) throw UsageError("--stream and --repeat exclude each other");
+  if (settings.run.stream && settings.run.method != Method::zbuffer)
+    throw UsageError("--stream draws with --method zbuffer only");
+  Run run{settings, plan_jobs(settings), false, {}};
+  check_method(settings, run.jobs);
+  run.on_terminal = shows_on_terminal(settings, run.jobs);
+  catch_interruptions(settings.run.timeout);
+  return settings.run.stream ? render_stream(run) : render_whole(run);
+}
+
+}  // namespace frontmost::cli

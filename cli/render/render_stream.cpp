@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/render/render_stream.h"
+
+#include <frontmost/shade.h>
+
+#include "cli/render/output_writer.h"
+#include "cli/stopwatch.h"
+#include "cli/view_options.h"
+
+namespace frontmost::cli {
+namespace {
+
+StreamNeeds needs_of(const Job& job, const SightPlan& plan) {
+  const bool picture = plan.picture_samples.has_value();
+  const bool lit = picture && job.output.shading == Shading::lit;
+  const bool shows_normals = lit || (picture && job.output.shading == Shading::normals);
+  return {lit && !job.output.no_shadows, shows_normals || wants(job, OutputKind::normals)};
+}
+
+void check_one_pass(const Job& job, const StreamNeeds& needs, const Stream& stream) {
+  const std::string sorry = "standard input and pipes can be read only once: ";
+  if (stream.can_repeat()) return;
+  if (depends_on_model(job.view))
+    throw Error(ErrorCode::unsupported, sorry +
+                                            "say where the camera is (--camera-position with --camera-focal-point, "
+                                            "or --pose), and give --near and --far");
+  if (needs.key_light || needs.smooth_normals)
+    throw Error(ErrorCode::unsupported,
+                sorry + "lit pictures and normals take another pass; --shading flat, depth, ids or uv do not");
+}
+
+/// A scene that has these bounds, which is all that is looked at.
+Scene scene_of(const Box& bounds) {
+  Scene scene;
+  if (bounds.is_empty()) return scene;
+  Mesh& mesh = scene.meshes.emplace_back();
+  mesh.positions = {bounds.low, bounds.high};
+  mesh.triangles = {glm::uvec3(0), glm::uvec3(1)};
+  scene.instances.emplace_back();
+  return scene;
+}
+
+/// The view of no model: its direction, shape and size are those of every model's.
+View view_of_nothing(const Job& job, const Stream& stream, const Execution& execution) {
+  Scene nothing;
+  nothing.up = stream.scene().up;
+  // Framing is wide enough for the whole model; the zoom comes after it.
+  ViewSettings settings = job.view;
+  if (depends_on_model(settings)) settings.zoom = 1;
+  return resolve_view(settings, Surfaces(nothing, execution));
+}
+
+/// The camera that the whole model would give.
+View find_view(const Job& job, const View& of_nothing, Stream& stream, const Execution& execution) {
+  if (!depends_on_model(job.view)) return of_nothing;
+  const Scene outline = stream.outline(of_nothing, FrameOptions().margin, execution);
+  return resolve_view(job.view, Surfaces(outline, execution));
+}
+
+std::vector<View> views_of(const View& view, const SightPlan& plan) {
+  std::vector<View> views;
+  if (plan.picture_samples) views.push_back(view);
+  if (plan.picture_samples) views.back().samples = *plan.picture_samples;
+  if (plan.maps && !plan.shared) views.push_back(view);
+  return views;
+}
+
+}  // namespace
+
+ViewResult render_streamed_view(const Job& job, Stream& stream, const StreamContext& context) {
+  const View of_nothing = view_of_nothing(job, stream, context.execution);
+  const SightPlan plan = plan_sights(job, context.run, context.keep_picture, of_nothing);
+  const StreamNeeds needs = needs_of(job, plan);
+  check_one_pass(job, needs, stream);
+  ViewResult result;
+  result.name = job.name;
+  const Stopwatch watch;
+  result.view = find_view(job, of_nothing, stream, context.execution);
+  Excerpt excerpt = stream.look(views_of(result.view, plan), needs, context.execution);
+  result.timings.visible.push_back(watch.milliseconds());
+  const Scene bounds = scene_of(stream.bounds());
+  result.target = job.view.focal_point.value_or(focal_point_of(result.view, Surfaces(bounds, context.execution)));
+
+  Sights sights;
+  sights.shared = plan.shared;
+  if (plan.picture_samples) sights.picture = Sight{std::move(excerpt.visible.front()), {}};
+  if (plan.maps && !plan.shared) sights.maps = Sight{std::move(excerpt.visible.back()), {}};
+  sights.stream_ids = &excerpt.stream_ids;
+  if (excerpt.seen_by_light) sights.seen_by_light = &*excerpt.seen_by_light;
+  finish_view(job, {excerpt.surfaces(), context.run, context.execution, context.keep_picture, nullptr}, sights, result);
+  return result;
+}
+
+}  // namespace frontmost::cli

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// One view. The picture has several samples a pixel; maps, the report and the hash have one, at pixel centres, so that
+// they do not depend on how smooth the picture is to be.
+#include "cli/render/render_view.h"
+
+#include <fmt/format.h>
+#include <frontmost/shade.h>
+
+#include "cli/rays/render_around.h"
+#include "cli/rays/sight.h"
+#include "cli/render/blank.h"
+#include "cli/render/output_writer.h"
+#include "cli/render/reference.h"
+#include "cli/stopwatch.h"
+#include "cli/view_options.h"
+
+namespace frontmost::cli {
+namespace {
+
+/// Samples of a picture that asks for none: 4, or as many as the largest pictures can have.
+int default_samples(const View& view) {
+  int samples = 4;
+  while (view.pixel_count() * std::size_t(samples) > most_samples) samples /= 2;
+  return samples;
+}
+
+bool wants_maps(const Job& job) {
+  for (const OutputFile& file : job.files) {
+    if (file.kinds.size() > 1 || file.kinds.front() != OutputKind::picture) return true;
+  }
+  return false;
+}
+
+Sight timed(const View& view, const DepthSettings& depth, const RenderContext& context, std::vector<double>& times) {
+  for (int i = 1;; ++i) {
+    const Stopwatch watch;
+    Sight sight = look_at_surfaces(context.surfaces, view, depth, context.execution, context.index);
+    times.push_back(watch.milliseconds());
+    if (i >= context.run.repeat) return sight;
+  }
+}
+
+Sights look(const Job& job, const RenderContext& context, ViewResult& result) {
+  const SightPlan plan = plan_sights(job, context.run, context.keep_picture, result.view);
+  View view = result.view;
+  Sights sights;
+  sights.shared = plan.shared;
+  if (plan.picture_samples) {
+    view.samples = *plan.picture_samples;
+    sights.picture = timed(view, job.view.depth, context, result.timings.visible);
+  }
+  if (plan.maps && !plan.shared) {
+    view.samples = 1;
+    std::vector<double> times;
+    sights.maps = timed(view, job.view.depth, context, plan.picture_samples ? times : result.timings.visible);
+    if (plan.picture_samples) result.timings.visible_maps = times.front();
+  }
+  return sights;
+}
+
+/// With the stream's own ids, where the surfaces are an excerpt of one.
+std::uint64_t hash_of(const Sights& sights) {
+  if (!sights.stream_ids) return content_hash(sights.for_maps().visible);
+  Visible visible = sights.for_maps().visible;
+  for (PrimitiveId& id : visible.primitives)
+    if (id != no_primitive) id = (*sights.stream_ids)[id];
+  return content_hash(visible);
+}
+
+Image primitive_ids(const RenderContext& context, const Sights& sights) {
+  Image image = id_image(context.surfaces, sights.for_maps().visible, IdKind::primitive);
+  if (sights.stream_ids)
+    for (std::uint32_t& id : image.channels.front().integers())
+      if (id != no_index) id = (*sights.stream_ids)[id];
+  return image;
+}
+
+Seen summary(const Surfaces& surfaces, const Sights& sights) {
+  Seen seen;
+  seen.hash = hash_of(sights);
+  count_objects(surfaces, id_image(surfaces, sights.for_maps().visible, IdKind::object), seen);
+  return seen;
+}
+
+Image window_depth_image(const Sight& sight) {
+  Image image{sight.visible.view.width, sight.visible.view.height, {}};
+  image.channels.push_back({"window_depth", sight.window_depths});
+  return image;
+}
+
+Image map_of(OutputKind kind, const Job& job, const RenderContext& context, const Sights& sights) {
+  const Visible& visible = sights.for_maps().visible;
+  const float background = job.output.background_depth;
+  switch (kind) {
+    case OutputKind::depth: return depth_image(visible, background);
+    case OutputKind::ray_distance: return ray_distance_image(visible, background);
+    case OutputKind::window_depth: return window_depth_image(sights.for_maps());
+    case OutputKind::normals: return normal_image(context.surfaces, visible, context.execution);
+    case OutputKind::primitive_ids: return primitive_ids(context, sights);
+    case OutputKind::object_ids: return id_image(context.surfaces, visible, IdKind::object);
+    case OutputKind::material_ids: return id_image(context.surfaces, visible, IdKind::material);
+    case OutputKind::picture: break;  // not a map
+  }
+  return {};
+}
+
+void warn_if_blank(const Sights& sights, const RenderContext& context, ViewResult& result) {
+  if (!is_blank(sights.any())) return;
+  // Of a stream, the triangles that are not seen are gone.
+  result.warnings.push_back(sights.stream_ids
+                                ? "nothing is in view"
+                                : fmt::format("nothing is in view: {}", blank_reason(context.surfaces, result.view)));
+}
+
+}  // namespace
+
+void count_objects(const Surfaces& surfaces, const Image& objects, Seen& seen) {
+  const std::vector<Instance>& instances = surfaces.scene().instances;
+  std::vector<std::uint64_t> pixels(instances.size());
+  for (const std::uint32_t object : objects.channels.front().integers()) {
+    if (object != no_index) ++pixels[object];
+  }
+  for (std::uint32_t i = 0; i < pixels.size(); ++i) {
+    seen.pixels += pixels[i];
+    if (pixels[i] > 0) seen.objects.push_back({i, instances[i].name, pixels[i]});
+  }
+}
+
+SightPlan plan_sights(const Job& job, const RunSettings& run, bool keep_picture, const View& view) {
+  const bool picture = wants(job, OutputKind::picture) || keep_picture || job.output.reference;
+  SightPlan plan;
+  if (picture) plan.picture_samples = job.view.samples.value_or(default_samples(view));
+  plan.maps = wants_maps(job) || job.output.hash || run.json || !picture;
+  plan.shared = plan.maps && plan.picture_samples == 1;
+  return plan;
+}
+
+ViewResult render_view(const Job& job, const RenderContext& context) {
+  if (job.view.camera_model != CameraModel::pinhole) return render_around(job, context);
+  ViewResult result;
+  result.name = job.name;
+  result.depth = job.view.depth;
+  result.view = resolve_view(job.view, context.surfaces);
+  result.target = job.view.focal_point.value_or(focal_point_of(result.view, context.surfaces));
+  finish_view(job, context, look(job, context, result), result);
+  return result;
+}
+
+void finish_view(const Job& job, const RenderContext& context, const Sights& sights, ViewResult& result) {
+  if (job.output.hash || context.run.json) result.seen = summary(context.surfaces, sights);
+  warn_if_blank(sights, context, result);
+  std::optional<Image> picture;
+  std::optional<Bitmap> bitmap;
+  if (sights.picture) {
+    const Stopwatch watch;
+    const Visible& visible = sights.picture->visible;
+    const ShadeOptions options{job.output.shading, job.output.background, !job.output.no_shadows, sights.seen_by_light,
+                               job.output.opacity};
+    if (!context.keep_picture && needs_only_bitmap(job))
+      bitmap = shade_bitmap(context.surfaces, visible, options, context.execution);
+    else
+      picture = shade(context.surfaces, visible, options, context.execution);
+    result.timings.shade = watch.milliseconds();
+  }
+  const auto map = [&](OutputKind kind) { return map_of(kind, job, context, sights); };
+  write_files({job, context.execution, map, picture ? &*picture : nullptr, bitmap ? &*bitmap : nullptr}, result);
+  if (job.output.reference) result.reference = compare_with_reference(*picture, job, context.execution);
+  if (context.keep_picture) result.picture = std::move(picture);
+}
+
+}  // namespace frontmost::cli

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rendering one view, and what there is to say about it afterwards.
+#pragma once
+
+#include <frontmost/raycast.h>
+#include <frontmost/surfaces.h>
+#include <frontmost/visible.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/rays/sight.h"
+#include "cli/render/jobs.h"
+
+namespace frontmost::cli {
+
+/// Milliseconds.
+struct Timings {
+  std::vector<double> visible;         ///< one for each of --repeat
+  std::optional<double> visible_maps;  ///< of the maps' single sample, where the picture has more
+  double shade = 0, save = 0;
+};
+
+struct SeenObject {
+  std::uint32_t instance = no_index;
+  std::string name;
+  std::uint64_t pixels = 0;
+};
+
+/// What is seen at the pixel centres.
+struct Seen {
+  std::uint64_t hash = 0;
+  std::uint64_t pixels = 0;
+  std::vector<SeenObject> objects;  ///< in scene order, those with a pixel at least
+};
+
+struct Result {
+  std::string what;  ///< as kind_name()
+  std::string path;
+  std::optional<std::uint64_t> hash;  ///< where --hash asks
+};
+
+struct ReferenceResult {
+  std::string path, difference_path;  ///< the latter empty when they do not differ
+  double largest_difference = 0, mean_difference = 0;
+  std::uint64_t differing_pixels = 0;
+  bool passed = false;
+};
+
+struct ViewResult {
+  std::string name;
+  View view;
+  glm::dvec3 target{0.0};
+  CameraModel camera_model = CameraModel::pinhole;
+  double fisheye_angle = 0;  ///< degrees; of that model
+  DepthSettings depth;
+  std::optional<Seen> seen;  ///< where --json or --hash ask
+  std::vector<Result> results;
+  std::optional<ReferenceResult> reference;
+  std::vector<std::string> warnings;
+  Timings timings;
+  std::optional<Image> picture;  ///< kept for the terminal
+};
+
+/// What all views share.
+struct RenderContext {
+  const Surfaces& surfaces;
+  const RunSettings& run;
+  Execution execution;
+  bool keep_picture = false;
+  const RayIndex* index = nullptr;  ///< of the method raycast
+};
+
+/// The visibility that a view needs: of the picture, of the maps, or of both at once.
+struct Sights {
+  std::optional<Sight> picture, maps;
+  bool shared = false;  ///< the maps are those of the picture
+  /// Of a stream: the numbers of the triangles, by id of the surfaces, and what throws shadows. Both borrowed.
+  const std::vector<PrimitiveId>* stream_ids = nullptr;
+  const Visible* seen_by_light = nullptr;
+
+  [[nodiscard]] const Sight& for_maps() const { return shared ? *picture : *maps; }
+  [[nodiscard]] const Visible& any() const { return (picture ? *picture : *maps).visible; }
+};
+
+/// Which of them a job needs, and with how many samples.
+struct SightPlan {
+  std::optional<int> picture_samples;
+  bool maps = false, shared = false;
+};
+/// Of `view` only the size counts.
+[[nodiscard]] SightPlan plan_sights(const Job& job, const RunSettings& run, bool keep_picture, const View& view);
+
+/// What comes after looking: shades, and writes every file of the job. `result` holds the view.
+void finish_view(const Job& job, const RenderContext& context, const Sights& sights, ViewResult& result);
+
+/// Fills in the pixels, of all and of each object, from a map of objects.
+void count_objects(const Surfaces& surfaces, const Image& objects, Seen& seen);
+
+/// Finds what is visible, shades, and writes every file of the job.
+[[nodiscard]] ViewResult render_view(const Job& job, const RenderContext& context);
+
+}  // namespace frontmost::cli

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// MTL describes the Phong model of 1990, and by later custom metallic and roughness too. Colours are taken as sRGB,
+// as most programs that write and read these files do.
+#include "io/models/obj/mtl.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/models/file_text.h"
+#include "io/models/mesh_building.h"
+#include "io/models/text_scanner.h"
+
+namespace frontmost {
+namespace {
+
+class MtlReader {
+ public:
+  MtlReader(Bytes bytes, const ModelSource& library, const std::string& folder, TextureFiles& textures,
+            MaterialTable& materials)
+      : text_(bytes, library, TextScanner::Comments::hash),
+        folder_(folder),
+        textures_(textures),
+        materials_(materials) {}
+
+  void read() {
+    do {
+      const std::string_view word = text_.word();
+      if (word == "newmtl") {
+        number_ = materials_.define(name_of(text_.rest()));
+      } else if (number_ != no_index) {
+        statement(word);
+      }
+    } while (text_.next_line());
+    finish();
+  }
+
+ private:
+  Material& material() { return materials_[number_]; }
+
+  void statement(std::string_view word) {
+    if (word == "Kd") {
+      const glm::vec3 c = color();
+      material().base_color = glm::vec4(c, material().base_color.a);
+    } else if (word == "Ke") {
+      material().emissive = color();
+    } else if (word == "d") {
+      set_alpha(value());
+    } else if (word == "Tr") {
+      set_alpha(1 - value());
+    } else if (word == "Ns") {
+      // The Blinn-Phong exponent of the same highlight width.
+      material().roughness = std::sqrt(2 / (2 + std::max(value(), 0.0f)));
+    } else if (word == "Pr") {
+      material().roughness = unit(value());
+    } else if (word == "Pm") {
+      material().metallic = unit(value());
+    } else {
+      texture_statement(word);
+    }
+  }
+
+  void texture_statement(std::string_view word) {
+    if (word == "map_Kd") {
+      material().base_color_texture = texture();
+      if (material().base_color_texture.is_set()) textured_.push_back(number_);
+    } else if (word == "map_Ke") {
+      material().emissive_texture = texture();
+      if (material().emissive == glm::vec3(0)) material().emissive = glm::vec3(1);
+    } else if (word == "map_d") {
+      // The alpha of the colour texture is the only one there is; usually it is the same file.
+      if (material().alpha == Material::Alpha::opaque) material().alpha = Material::Alpha::blend;
+    } else if (word == "norm") {
+      material().normal_texture = texture();
+    }
+  }
+
+  float value() {
+    float value = 0;
+    if (text_.next_is('-')) skip_option();
+    if (!text_.number(value)) text_.fail("a number was expected");
+    return std::isfinite(value) ? value : 0;
+  }
+  /// "d -halo 0.5": an option, unless the word is a negative number.
+  void skip_option() {
+    float value = 0;
+    TextScanner ahead = text_;
+    if (!ahead.number(value)) text_.word();
+  }
+  static float unit(float value) { return std::clamp(value, 0.0f, 1.0f); }
+
+  void set_alpha(float alpha) {
+    material().base_color.a = unit(alpha);
+    if (alpha < 1) material().alpha = Material::Alpha::blend;
+  }
+
+  /// One number stands for three. Spectral curves and CIE colours are not known; they leave white.
+  glm::vec3 color() {
+    glm::vec4 srgb(1);
+    if (text_.number(srgb.r)) {
+      srgb.g = srgb.b = srgb.r;
+      if (text_.number(srgb.g)) srgb.b = srgb.g, (void)text_.number(srgb.b);
+    }
+    return glm::vec3(linear_color(srgb));
+  }
+
+  /// [-option values]... file name
+  TextureUse texture() {
+    TextureUse use;
+    Texture::Wrap wrap = Texture::Wrap::repeat;
+    glm::vec2 scale(1), offset(0);
+    while (text_.next_is('-')) {
+      const std::string_view option = text_.word();
+      if (option == "-s") {
+        scale = pair(1);
+      } else if (option == "-o") {
+        offset = pair(0);
+      } else if (option == "-clamp") {
+        if (text_.word() == "on") wrap = Texture::Wrap::clamp;
+      } else if (option == "-t") {
+        pair(0);
+      } else if (option == "-mm") {
+        text_.word();
+        text_.word();
+      } else {
+        text_.word();
+      }
+    }
+    const std::string file(text_.rest());
+    if (file.empty()) text_.fail("a file name was expected");
+    use.texture =
+        textures_.get(folder_.empty() ? file : folder_ + "/" + file, "material " + printable(material().name), wrap);
+    // In the file v goes up: v' = s v + o there is v' = s v + (1 - s - o) here.
+    use.scale = scale;
+    use.offset = {offset.x, 1 - scale.y - offset.y};
+    return use;
+  }
+
+  /// Up to three numbers, of which two count.
+  glm::vec2 pair(float missing) {
+    glm::vec3 values(missing);
+    for (int k = 0; k < 3; ++k)
+      if (!text_.number(values[k])) break;
+    return {values.x, values.y};
+  }
+
+  /// Exporters often leave Kd black under a texture, meaning the texture as it is.
+  void finish() {
+    for (const std::uint32_t number : textured_) {
+      glm::vec4& c = materials_[number].base_color;
+      if (glm::vec3(c) == glm::vec3(0)) c = glm::vec4(1, 1, 1, c.a);
+    }
+  }
+
+  TextScanner text_;
+  const std::string& folder_;
+  TextureFiles& textures_;
+  MaterialTable& materials_;
+  std::uint32_t number_ = no_index;
+  std::vector<std::uint32_t> textured_;
+};
+
+}  // namespace
+
+std::uint32_t MaterialTable::number(const std::string& name) {
+  const auto [entry, is_new] = numbers_.try_emplace(name, std::uint32_t(scene_.materials.size()));
+  if (is_new) {
+    if (scene_.materials.size() >= max_objects) source_.fail_limit("material " + printable(name), "too many materials");
+    scene_.materials.emplace_back().name = name;
+    is_defined_.push_back(false);
+  }
+  return entry->second;
+}
+
+std::uint32_t MaterialTable::define(const std::string& name) {
+  const std::uint32_t number = this->number(name);
+  is_defined_[number] = true;
+  return number;
+}
+
+void MaterialTable::finish() {
+  std::size_t undefined = 0, first = 0;
+  for (std::size_t i = is_defined_.size(); i-- > 0;)
+    if (!is_defined_[i]) ++undefined, first = i;
+  if (undefined > 0)
+    scene_.warnings.push_back("usemtl " + in_quotes(scene_.materials[first].name) + ": " + std::to_string(undefined) +
+                              (undefined == 1 ? " material is" : " materials are") +
+                              " not defined by any library that was read");
+}
+
+void read_mtl(Bytes bytes, const ModelSource& library, const std::string& folder, TextureFiles& textures,
+              MaterialTable& materials) {
+  MtlReader(bytes, library, folder, textures, materials).read();
+}
+
+}  // namespace frontmost

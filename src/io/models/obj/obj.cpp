@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+// OBJ: polygons with separate indices for positions, texture coordinates and normals. Every run of faces under one
+// `o` or `g` name becomes a mesh and its instance, in file order. Curves, lines and points are passed over.
+#include <algorithm>
+#include <set>
+
+#include "io/models/file_text.h"
+#include "io/models/mesh_building.h"
+#include "io/models/obj/mtl.h"
+#include "io/models/obj/obj_meshes.h"
+#include "io/models/text_scanner.h"
+
+namespace frontmost {
+namespace {
+
+constexpr std::uint64_t max_library_bytes = std::uint64_t(1) << 28;
+
+/// The numbers of one list in a polygon's corners, and the greatest one so far, which may be defined later.
+struct IndexList {
+  const char* what;
+  std::vector<std::uint32_t> corners;
+  std::uint32_t greatest = 0;
+  std::size_t greatest_line = 0;
+};
+
+class ObjReader {
+ public:
+  ObjReader(Bytes bytes, const ModelSource& source)
+      : text_(bytes, source, TextScanner::Comments::hash),
+        source_(source),
+        materials_(source, scene_),
+        textures_(source, scene_) {}
+
+  Scene read() {
+    do statement(text_.word());
+    while (text_.next_line());
+    finish();
+    return std::move(scene_);
+  }
+
+ private:
+  void statement(std::string_view word) {
+    if (word == "v") {
+      vertex();
+    } else if (word == "f" || word == "fo") {
+      face();
+    } else if (word == "vt") {
+      glm::vec2 uv(0);
+      if (!text_.number(uv.x)) text_.fail("a texture coordinate needs a number");
+      (void)text_.number(uv.y);
+      pool_.texcoords.emplace_back(uv.x, 1.0f - uv.y);
+    } else if (word == "vn") {
+      pool_.normals.push_back(three_numbers("a normal needs three numbers"));
+    } else if (!word.empty()) {
+      rare_statement(word);
+    }
+  }
+
+  void rare_statement(std::string_view word) {
+    if (word == "usemtl") {
+      material_ = materials_.number(name_of(text_.rest()));
+    } else if (word == "mtllib") {
+      library(std::string(text_.rest()));
+    } else if (word == "o") {
+      object_ = name_of(text_.rest());
+      start_group(object_);
+    } else if (word == "g") {
+      const std::string name = name_of(text_.rest());
+      start_group(name.empty() || name == "default" || name == "off" ? object_ : name);
+    } else if (word != "s") {
+      pass_over(word);
+    }
+  }
+
+  glm::vec3 three_numbers(const char* reason) {
+    glm::vec3 value;
+    for (int k = 0; k < 3; ++k)
+      if (!text_.number(value[k])) text_.fail(reason);
+    return value;
+  }
+
+  /// v x y z, v x y z w, v x y z r g b, v x y z w r g b
+  void vertex() {
+    pool_.positions.push_back(three_numbers("a vertex needs three numbers"));
+    if (!text_.at_line_end()) vertex_color();
+    if (!pool_.colors.empty() && pool_.colors.size() < pool_.positions.size())
+      pool_.colors.resize(pool_.positions.size(), glm::vec4(1));
+  }
+
+  void vertex_color() {
+    float extra[4];
+    int count = 0;
+    while (count < 4 && text_.number(extra[count])) ++count;
+    if (count < 3) return;
+    const float* rgb = extra + count - 3;
+    pool_.colors.resize(pool_.positions.size() - 1, glm::vec4(1));
+    pool_.colors.push_back(linear_color({rgb[0], rgb[1], rgb[2], 1}));
+  }
+
+  void start_group(const std::string& name) {
+    is_new_group_ = is_new_group_ || name != group_;
+    group_ = name;
+  }
+
+  /// Appends an index of the file, which counts from 1, or backwards from the last one defined.
+  void append(IndexList& list, std::int64_t index, std::size_t count) {
+    if (index < 0) index += std::int64_t(count) + 1;
+    if (index < 1 || index >= std::int64_t(no_index))
+      text_.fail(std::string(list.what) + " index out of range, there are " + std::to_string(count) + " so far");
+    const auto number = std::uint32_t(index - 1);
+    if (number > list.greatest || list.greatest_line == 0) {
+      list.greatest = number;
+      list.greatest_line = text_.line();
+    }
+    list.corners.push_back(number);
+  }
+
+  /// v, v/vt, v//vn or v/vt/vn. What is left out becomes no_index.
+  bool corner() {
+    std::int64_t index = 0;
+    if (text_.at_line_end()) return false;
+    if (!text_.integer(index)) text_.fail("not a corner of a face");
+    append(vertices_, index, pool_.positions.size());
+    uvs_.corners.push_back(no_index);
+    normals_.corners.push_back(no_index);
+    if (!text_.take('/')) return end_corner();
+    if (text_.integer_here(index)) {
+      uvs_.corners.pop_back();
+      append(uvs_, index, pool_.texcoords.size());
+    }
+    if (text_.take('/') && text_.integer_here(index)) {
+      normals_.corners.pop_back();
+      append(normals_, index, pool_.normals.size());
+    }
+    return end_corner();
+  }
+  bool end_corner() {
+    if (!text_.at_blank()) text_.fail("not a corner of a face");
+    return true;
+  }
+
+  void face() {
+    vertices_.corners.clear();
+    uvs_.corners.clear();
+    normals_.corners.clear();
+    while (corner()) {
+    }
+    if (is_new_group_ || scene_.meshes.empty()) {
+      builder_.begin(add_object(scene_, group_, source_, text_.place()));
+      polygons_.restart();
+      is_new_group_ = false;
+    }
+    Mesh& mesh = scene_.meshes.back();
+    const std::size_t skipped = polygons_.skipped_count();
+    const auto triangles = polygons_.add(vertices_.corners, pool_.positions, mesh);
+    if (polygons_.skipped_count() == 1 && skipped == 0)
+      scene_.warnings.push_back(text_.place() + ": a face with fewer than three corners was passed over");
+    builder_.add(mesh, {triangles, uvs_.corners, normals_.corners, material_});
+  }
+
+  void pass_over(std::string_view word) {
+    const std::string keyword(word.substr(0, 40));
+    constexpr std::size_t most = 16;
+    if (passed_over_.size() >= most || !passed_over_.insert(keyword).second) return;
+    if (first_odd_line_ == 0) first_odd_line_ = text_.line();
+    scene_.warnings.push_back(text_.place() + ": statements " + in_quotes(word) + " are passed over");
+  }
+
+  /// A name with blanks or several names, tried in that order.
+  void library(const std::string& names) {
+    const std::string place = text_.place();
+    if (names.empty()) return;
+    if (!source_.has_folder()) {
+      scene_.warnings.push_back(place + ": " + printable(names) + " is not read, the model does not come from a file");
+      return;
+    }
+    std::string reason;
+    if (read_library(names, reason)) return;
+    std::size_t begin = names.find_first_of(" \t");
+    if (begin != std::string::npos) {
+      reason.clear();
+      for (begin = 0; begin < names.size();) {
+        const std::size_t end = std::min(names.find_first_of(" \t", begin), names.size());
+        if (end > begin) read_library(names.substr(begin, end - begin), reason);
+        begin = end + 1;
+      }
+    }
+    if (!reason.empty()) scene_.warnings.push_back(place + ": material library left out: " + reason);
+  }
+
+  bool read_library(const std::string& name, std::string& reason) {
+    constexpr std::size_t most = 256;
+    if (libraries_.size() >= most) return true;
+    try {
+      if (!libraries_.insert(name).second) return true;
+      const InputFile file = source_.open(name, max_library_bytes);
+      const ModelSource library(source_.name() + ": " + printable(name), source_.execution());
+      read_mtl(file.bytes(), library, std::filesystem::path(name).parent_path().generic_string(), textures_,
+               materials_);
+      return true;
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::cancelled) throw;
+      reason = source_.without_name(error);
+      return false;
+    }
+  }
+
+  void check_greatest(const IndexList& list, std::size_t count) const {
+    if (list.greatest_line == 0 || list.greatest < count) return;
+    source_.fail("line " + std::to_string(list.greatest_line),
+                 std::string(list.what) + " index " + std::to_string(std::uint64_t(list.greatest) + 1) +
+                     " is out of range, there are " + std::to_string(count));
+  }
+
+  void finish() {
+    if (pool_.positions.empty() && first_odd_line_ != 0)
+      source_.fail("line " + std::to_string(first_odd_line_), "not an OBJ statement");
+    check_greatest(vertices_, pool_.positions.size());
+    check_greatest(uvs_, pool_.texcoords.size());
+    check_greatest(normals_, pool_.normals.size());
+    builder_.finish(scene_, std::move(pool_));
+    materials_.finish();
+  }
+
+  TextScanner text_;
+  const ModelSource& source_;
+  Scene scene_;
+  MaterialTable materials_;
+  TextureFiles textures_;
+  ObjPool pool_;
+  IndexList vertices_{"vertex", {}, 0, 0}, uvs_{"texture coordinate", {}, 0, 0}, normals_{"normal", {}, 0, 0};
+  PolygonWriter polygons_;
+  ObjMeshes builder_;
+  std::string object_, group_;
+  bool is_new_group_ = false;
+  std::uint32_t material_ = no_index;
+  std::set<std::string> passed_over_, libraries_;
+  std::size_t first_odd_line_ = 0;
+};
+
+}  // namespace
+
+Scene read_obj(Bytes bytes, const ModelSource& source) { return ObjReader(bytes, source).read(); }
+
+}  // namespace frontmost

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+// Binary PLY, piece by piece. Faces name vertices anywhere in the file, so the rows of vertices must stay within reach:
+// those of a file are mapped, and only the blocks that a piece's faces name are parsed with it; a pipe's are kept.
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "io/models/model_stream.h"
+#include "io/models/ply/ply.h"
+#include "io/models/ply/ply_mesh.h"
+
+namespace frontmost {
+namespace {
+
+using namespace ply;
+
+/// Largest header that is looked for, largest row, and what is kept of the vertices of a pipe.
+constexpr std::size_t max_header = std::size_t(1) << 24;
+constexpr std::size_t max_row = std::size_t(1) << 28;
+constexpr std::uint64_t max_kept_vertices = std::uint64_t(1) << 29;
+
+/// How long a row of faces is and how many triangles it makes, without parsing the rest.
+class RowScanner {
+ public:
+  RowScanner(const PlyElement& element, Endian endian) : endian_(endian) {
+    for (const Column& column : Columns(element).list) {
+      const PlyProperty& p = column.property;
+      steps_.push_back({size_of(p.is_list ? p.count_type : p.type), size_of(p.type), p.is_list, p.count_type,
+                        column.role == Role::corners});
+    }
+  }
+
+  struct Row {
+    std::uint64_t size = 0, triangles = 0;
+    bool is_whole = false;
+  };
+  /// A row that is broken is given as far as it goes, for the parser to complain of.
+  [[nodiscard]] Row scan(Bytes bytes) const {
+    Row row;
+    for (const Step& step : steps_) {
+      if (bytes.size() < row.size + step.size) return row;
+      const std::byte* value = bytes.data() + row.size;
+      row.size += step.size;
+      if (!step.is_list) continue;
+      const std::int64_t count = list_count(value, step.count_type);
+      if (count < 0) break;
+      if (step.is_corners) row.triangles = count < 3 ? 0 : std::uint64_t(count) - 2;
+      row.size += std::uint64_t(count) * step.value_size;
+      if (bytes.size() < row.size) return row;
+    }
+    row.is_whole = true;
+    return row;
+  }
+
+ private:
+  struct Step {
+    std::size_t size, value_size;
+    bool is_list;
+    PlyType count_type;
+    bool is_corners;
+  };
+  [[nodiscard]] std::int64_t list_count(const std::byte* at, PlyType type) const {
+    switch (type) {
+      case PlyType::int8: return read_value<std::int8_t>(at, endian_);
+      case PlyType::uint8: return read_value<std::uint8_t>(at, endian_);
+      case PlyType::int16: return read_value<std::int16_t>(at, endian_);
+      case PlyType::uint16: return read_value<std::uint16_t>(at, endian_);
+      case PlyType::int32: return read_value<std::int32_t>(at, endian_);
+      default: return read_value<std::uint32_t>(at, endian_);
+    }
+  }
+
+  Endian endian_;
+  std::vector<Step> steps_;
+};
+
+/// The rows of all vertices, and how to parse them.
+struct VertexRows {
+  Bytes rows;
+  const PlyElement* element = nullptr;
+  const VertexReader* reader = nullptr;
+  const ModelSource* source = nullptr;
+  Endian endian = Endian::little;
+
+  void parse(std::uint64_t begin, std::uint64_t end, Mesh& mesh) const {
+    const std::size_t row = element->least_row_size();
+    PlyBinaryRows part(rows.subspan(std::size_t(begin) * row, std::size_t(end - begin) * row), endian, *source);
+    reader->read(part, begin, end, mesh);
+  }
+};
+
+/// Parses blocks of vertices when a face names one of them. Where faces jump about, so that whole blocks would be too
+/// many, the single vertices instead.
+class NamedVertices {
+ public:
+  NamedVertices(const VertexRows& rows, std::size_t most_in_blocks)
+      : rows_(rows), most_in_blocks_(most_in_blocks), places_(std::size_t(count_of(rows) / block + 1), no_index) {}
+
+  [[nodiscard]] std::uint64_t count(const Mesh&) const { return count_of(rows_); }
+  std::uint32_t operator()(std::uint64_t index, Mesh& mesh) {
+    std::uint32_t& place = places_[std::size_t(index / block)];
+    if (place != no_index) return place + std::uint32_t(index % block);
+    const auto next = std::uint32_t(mesh.positions.size());
+    if (next >= most_in_blocks_) {
+      rows_.parse(index, index + 1, mesh);
+      return next;
+    }
+    const std::uint64_t begin = index - index % block;
+    rows_.parse(begin, std::min(begin + block, count_of(rows_)), mesh);
+    place = next;
+    return next + std::uint32_t(index % block);
+  }
+
+ private:
+  static constexpr std::uint64_t block = 512;
+  static std::uint64_t count_of(const VertexRows& rows) { return rows.element->count; }
+
+  const VertexRows& rows_;
+  std::size_t most_in_blocks_;
+  std::vector<std::uint32_t> places_;  ///< of each block in the mesh; no_index: not there
+};
+
+class PlyStream final : public ModelStream {
+ public:
+  PlyStream(StreamStart start, PlyHeader header, std::unique_ptr<const InputFile> file, const ModelSource& source)
+      : ModelStream(std::move(start.bytes), source), header_(std::move(header)), file_(std::move(file)) {
+    scene_.warnings = header_.warnings;
+    add_object(scene_, "", source_, "header");
+    add_texture_materials(header_, source_, scene_);
+    choose_elements();
+    start_ = std::move(start.start);
+    if (file_) {
+      vertices_.rows = file_->bytes().subspan(vertex_offset_, std::size_t(vertex_bytes()));
+    } else {
+      keep_vertices();
+    }
+    scanner_.emplace(*faces_, endian());
+    if (can_rewind()) rewind();
+  }
+
+  void rewind() override {
+    bytes_->seek(face_offset_);
+    left_.clear();
+    next_row_ = next_triangle_ = skipped_ = 0;
+  }
+
+  [[nodiscard]] double fraction() const override {
+    return double(next_row_) / double(std::max<std::uint64_t>(faces_->count, 1));
+  }
+
+  std::uint64_t fetch(Piece& piece, std::uint64_t triangles) override {
+    piece.clear();
+    piece.first_triangle = next_triangle_;
+    piece.first_row = next_row_;
+    std::uint64_t count = 0;
+    // Faces without triangles are no end.
+    while (count == 0 && next_row_ < faces_->count) count += fetch_rows(piece, triangles);
+    next_triangle_ += count;
+    if (next_row_ == faces_->count && skipped_ > 0 && !has_warned_) {
+      scene_.warnings.push_back(skipped_faces_warning(skipped_));
+      has_warned_ = true;
+    }
+    return count;
+  }
+
+  void parse(Piece& piece) const override {
+    PlyBinaryRows rows(Bytes(piece.bytes).first(piece.used), endian(), source_);
+    FaceReader<PlyBinaryRows, NamedVertices> faces(rows, {vertices_, 2 * std::size_t(piece.row_count) + 4096}, header_,
+                                                   source_, piece.mesh);
+    faces.read_faces(*faces_, Columns(*faces_), piece.first_row, piece.first_row + piece.row_count);
+    faces.finish();
+    if (piece.mesh.material_ids.empty()) piece.mesh.material_ids = scene_.meshes[0].material_ids;
+    if (file_) file_->release(vertices_.rows);
+  }
+
+ private:
+  [[nodiscard]] Endian endian() const { return endian_of(header_); }
+  [[nodiscard]] std::uint64_t vertex_bytes() const {
+    return vertices_.element->count * vertices_.element->least_row_size();
+  }
+  [[noreturn]] void refuse(const std::string& reason) const {
+    throw Error(ErrorCode::unsupported, source_.name() + ": header: " + reason);
+  }
+
+  /// One element of vertices, then one of faces; whatever else is passed over, if its length is known.
+  void choose_elements() {
+    std::uint64_t offset = header_.size;
+    for (const PlyElement& element : header_.elements) {
+      const bool is_face = element.name == "face" || element.name == "tristrips";
+      if (element.name == "vertex") {
+        if (vertices_.element || faces_) refuse("a stream takes one element of vertices, before the faces");
+        reader_.emplace(element, source_);
+        vertices_ = {{}, &element, &*reader_, &source_, endian()};
+        vertex_offset_ = std::size_t(offset);
+      } else if (is_face && Columns(element).has(Role::corners)) {
+        if (element.name == "tristrips") refuse("triangle strips cannot be streamed");
+        if (!vertices_.element || faces_) refuse("a stream takes one element of faces, after the vertices");
+        faces_ = &element;
+        face_offset_ = offset;
+      }
+      if (faces_) continue;  // what comes after them is not looked at
+      if (element.has_lists()) refuse("element " + in_quotes(element.name) + " has lists, and comes before the faces");
+      offset += element.count * element.least_row_size();
+    }
+    if (!faces_) refuse("there are no faces to stream");
+    check_index_type(*faces_, Columns(*faces_), source_);
+  }
+
+  /// Of a pipe: what was read already lies in `start_`.
+  void keep_vertices() {
+    if (vertex_bytes() > max_kept_vertices)
+      source_.fail_limit("header", "the vertices of a pipe are kept in memory, and these take more than " +
+                                       std::to_string(max_kept_vertices) + " bytes; stream from a file");
+    if (face_offset_ > vertex_offset_ + vertex_bytes()) refuse("elements between the vertices and faces of a pipe");
+    const std::size_t before = start_.size();
+    if (face_offset_ > before) {
+      start_.resize(std::size_t(face_offset_));
+      const std::size_t got = bytes_->read(start_.data() + before, start_.size() - before);
+      if (before + got < start_.size()) fail_within_vertices(before + got);
+    } else {
+      left_.assign(start_.begin() + std::ptrdiff_t(face_offset_), start_.end());
+      start_.resize(std::size_t(face_offset_));
+    }
+    vertices_.rows = Bytes(start_).subspan(vertex_offset_);
+  }
+
+  [[noreturn]] void fail_within_vertices(std::size_t size) const {
+    const std::uint64_t row = (size - std::min(size, vertex_offset_)) / vertices_.element->least_row_size();
+    source_.fail("vertex " + std::to_string(row), "the file ends within the row");
+  }
+
+  /// Reads more bytes, and moves whole rows of them into the piece. What is left of a row waits for the next piece.
+  std::uint64_t fetch_rows(Piece& piece, std::uint64_t triangles) {
+    const std::size_t before = piece.used, row = faces_->least_row_size();
+    const std::size_t wanted = std::max<std::size_t>(std::size_t(triangles) * (row + 3 * corner_size()), 4096);
+    piece.bytes.resize(std::max(piece.bytes.size(), before + left_.size() + wanted));
+    std::copy(left_.begin(), left_.end(), piece.bytes.begin() + std::ptrdiff_t(before));
+    const std::size_t got = bytes_->read(piece.bytes.data() + before + left_.size(), wanted);
+    const std::size_t end = before + left_.size() + got;
+    std::size_t at = before;
+    std::uint64_t count = 0;
+    while (next_row_ < faces_->count && count < triangles) {
+      RowScanner::Row next = scanner_->scan(Bytes(piece.bytes).subspan(at, end - at));
+      if (!next.is_whole && got == wanted && next.size <= max_row) break;
+      if (!next.is_whole && got == wanted)
+        source_.fail_limit("face " + std::to_string(next_row_), "too long to be streamed");
+      // At the end of the file, a row that is cut short goes to the parser, which says so.
+      at = next.is_whole ? at + std::size_t(next.size) : end;
+      count += next.is_whole ? next.triangles : 1;
+      if (next.triangles == 0) ++skipped_;
+      ++next_row_;
+      ++piece.row_count;
+      if (!next.is_whole) break;
+    }
+    left_.assign(piece.bytes.begin() + std::ptrdiff_t(at), piece.bytes.begin() + std::ptrdiff_t(end));
+    piece.used = at;
+    return count;
+  }
+
+  [[nodiscard]] std::size_t corner_size() const {
+    for (const Column& column : Columns(*faces_).list)
+      if (column.role == Role::corners) return size_of(column.property.type);
+    return 0;
+  }
+
+  PlyHeader header_;
+  std::unique_ptr<const InputFile> file_;
+  std::vector<std::byte> start_;  ///< of a pipe: up to the last vertex
+  std::optional<VertexReader> reader_;
+  VertexRows vertices_;
+  const PlyElement* faces_ = nullptr;
+  std::optional<RowScanner> scanner_;
+  std::size_t vertex_offset_ = 0;
+  std::uint64_t face_offset_ = 0;
+  std::vector<std::byte> left_;  ///< read, but not a whole row yet
+  std::uint64_t next_row_ = 0, next_triangle_ = 0, skipped_ = 0;
+  bool has_warned_ = false;
+};
+
+/// Reads on until the header is whole: its last line is "end_header".
+void extend_to_header(StreamStart& start) {
+  const auto has_end = [&] {
+    const std::string_view text(reinterpret_cast<const char*>(start.start.data()), start.start.size());
+    const std::size_t at = text.find("end_header");
+    return at != std::string_view::npos && at + 12 < text.size();  // and its line end
+  };
+  while (!has_end() && !start.has_ended && start.start.size() < max_header) start.extend(2 * start.start.size());
+}
+
+}  // namespace
+
+std::unique_ptr<ModelStream> open_ply_stream(StreamStart start, const ModelSource& source) {
+  extend_to_header(start);
+  PlyHeader header = read_ply_header(start.start, start.greatest_size(), source);
+  if (header.encoding == PlyEncoding::ascii)
+    throw Error(ErrorCode::unsupported, source.name() + ": text PLY cannot be streamed; binary STL and PLY can");
+  if (!start.bytes->can_rewind())
+    return std::make_unique<PlyStream>(std::move(start), std::move(header), nullptr, source);
+  auto file = std::make_unique<const InputFile>(InputFile::open(start.path, source.name()));
+  const ModelSource with_folder(source.name(), source.execution(), *file, start.path);
+  return std::make_unique<PlyStream>(std::move(start), std::move(header), std::move(file), with_folder);
+}
+
+}  // namespace frontmost

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Binary STL, piece by piece: records of 50 bytes.
+#include <algorithm>
+
+#include "io/models/model_stream.h"
+#include "io/models/stl/stl.h"
+
+namespace frontmost {
+namespace {
+
+class StlStream final : public ModelStream {
+ public:
+  StlStream(StreamStart start, std::optional<std::uint64_t> size, const ModelSource& source)
+      : ModelStream(std::move(start.bytes), source), size_(size), start_(std::move(start.start)) {
+    promised_ = stl_promised_count(start_);
+    if (size_) {
+      known_count_ = stl_checked_count(start_, *size_, source_, scene_.warnings);
+      count_ = *known_count_;
+    } else {
+      is_open_ = promised_ == 0 || promised_ == 0xFFFFFFFFu;
+      count_ = is_open_ ? std::numeric_limits<std::uint64_t>::max() : promised_;
+    }
+    if (count_ == 0) return;
+    Mesh& mesh = scene_.meshes.emplace_back();
+    mesh.name = stl_header_name(start_);
+    scene_.instances.push_back({.name = mesh.name, .mesh = 0});
+  }
+
+  void rewind() override {
+    bytes_->seek(start_.size());
+    left_ = Bytes(start_).subspan(stl_prelude_size);
+    next_ = 0;
+  }
+
+  [[nodiscard]] double fraction() const override { return double(next_) / double(std::max<std::uint64_t>(count_, 1)); }
+
+  std::uint64_t fetch(Piece& piece, std::uint64_t triangles) override {
+    piece.clear();
+    piece.first_triangle = next_;
+    const std::size_t wanted = std::size_t(std::min(triangles, count_ - next_)) * stl_record_size;
+    piece.bytes.resize(std::max(piece.bytes.size(), wanted));
+    const std::size_t again = std::min(left_.size(), wanted);
+    std::copy_n(left_.begin(), again, piece.bytes.begin());
+    left_ = left_.subspan(again);
+    piece.used = again + bytes_->read(piece.bytes.data() + again, wanted - again);
+    const std::uint64_t got = piece.used / stl_record_size;
+    next_ += got;
+    if (piece.used < wanted) end_early(piece.used % stl_record_size);
+    piece.used = std::size_t(got) * stl_record_size;
+    if (got == 0) warn_of_the_rest();
+    return got;
+  }
+
+  void parse(Piece& piece) const override { append_stl_records(Bytes(piece.bytes).first(piece.used), piece.mesh); }
+
+ private:
+  /// What the size would have told of a file, of a pipe only its end can tell.
+  void end_early(std::size_t rest) {
+    if (!is_open_ || rest != 0)
+      source_.fail("triangle " + std::to_string(next_),
+                   "the file ends here, but its header promises " + std::to_string(promised_) + " triangles");
+    if (next_ > 0 && count_ != next_)
+      scene_.warnings.push_back("byte 80: the triangle count was left open, the size of the file gives " +
+                                std::to_string(next_));
+    count_ = next_;
+  }
+
+  void warn_of_the_rest() {
+    if (size_ || is_open_) return;
+    std::vector<std::byte> scrap(1 << 16);
+    std::uint64_t rest = left_.size();
+    for (std::size_t got = 1; got > 0; rest += got) got = bytes_->read(scrap.data(), scrap.size());
+    left_ = {};
+    if (rest > 0)
+      scene_.warnings.push_back("byte " + std::to_string(stl_prelude_size + next_ * stl_record_size) + ": " +
+                                std::to_string(rest) + " bytes after the last triangle were passed over");
+  }
+
+  std::optional<std::uint64_t> size_;
+  std::vector<std::byte> start_;
+  Bytes left_ = Bytes(start_).subspan(stl_prelude_size);  ///< of the start, not yet in a piece
+  std::uint64_t promised_ = 0, count_ = 0, next_ = 0;
+  bool is_open_ = false;  ///< a pipe whose header does not say how many triangles follow
+};
+
+}  // namespace
+
+std::unique_ptr<ModelStream> open_stl_stream(StreamStart start, const ModelSource& source) {
+  const std::optional<std::uint64_t> size = start.size();
+  return std::make_unique<StlStream>(std::move(start), size, source);
+}
+
+}  // namespace frontmost
