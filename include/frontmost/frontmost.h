@@ -5,6 +5,7 @@
 #include "frontmost/abuffer.h"    // IWYU pragma: export
 #include "frontmost/agreement.h"  // IWYU pragma: export
 #include "frontmost/base.h"
+#include "frontmost/curved.h"        // IWYU pragma: export
 #include "frontmost/depth_buffer.h"  // IWYU pragma: export
 #include "frontmost/image.h"         // IWYU pragma: export
 #include "frontmost/io.h"            // IWYU pragma: export
@@ -14,8 +15,9 @@
 #include "frontmost/report.h"        // IWYU pragma: export
 #include "frontmost/scene.h"         // IWYU pragma: export
 #include "frontmost/shade.h"         // IWYU pragma: export
-#include "frontmost/stream.h"    // IWYU pragma: export
+#include "frontmost/stream.h"        // IWYU pragma: export
 #include "frontmost/surfaces.h"      // IWYU pragma: export
+#include "frontmost/tessellate.h"    // IWYU pragma: export
 #include "frontmost/version.h"       // IWYU pragma: export
 #include "frontmost/view.h"          // IWYU pragma: export
 #include "frontmost/visible.h"       // IWYU pragma: export

@@ -24,19 +24,42 @@ struct Attribute {
   [[nodiscard]] bool empty() const { return values.empty(); }
 };
 
+/// A sphere. Its parameters are its texture coordinates: u once around from +x towards -z, v from the top (+y) down to
+/// the bottom, both 0 to 1. Its outer side is the front.
+struct Sphere {
+  glm::dvec3 centre{0};
+  double radius = 1;
+};
+
+/// A bicubic Bezier patch: points[4 * i + j] weighs B_i(u) B_j(v), for u and v from 0 to 1. Its front is the side that
+/// dP/dv x dP/du points to. Its texture coordinates are texture_low + (v, u) * texture_size.
+struct BezierPatch {
+  std::array<glm::dvec3, 16> points{};
+  glm::dvec2 texture_low{0}, texture_size{1};
+};
+
 /// A triangle mesh in its own space. Counter-clockwise corners face the viewer.
+///
+/// A mesh may be curved: then `spheres` and `patches` are what it is, in this order its curved primitives, and its
+/// triangles are only a tessellation of them, for methods that know triangles alone; tessellate() makes one for a view,
+/// CurvedIndex does without. Curved primitives that are not finite, and spheres whose radius is not positive, are never
+/// seen, but keep their number. A curved mesh has one material at most, and colours of its triangles do not count.
 struct Mesh {
   std::string name;
-  std::vector<glm::vec3> positions;   ///< any unit; as stored in the file, non-finite ones included
-  std::vector<glm::uvec3> triangles;  ///< corners, indices into positions, in file order
-  Attribute<glm::vec3> normals;       ///< unit length is not required; zero or non-finite ones count as missing
-  Attribute<glm::vec2> texcoords;     ///< u right, v down from the image's first row (glTF's convention)
-  Attribute<glm::vec4> colors;        ///< linear RGBA, multiplies the material's base colour
+  std::vector<glm::vec3> positions;         ///< any unit; as stored in the file, non-finite ones included
+  std::vector<glm::uvec3> triangles;        ///< corners, indices into positions, in file order
+  Attribute<glm::vec3> normals;             ///< unit length is not required; zero or non-finite ones count as missing
+  Attribute<glm::vec2> texcoords;           ///< u right, v down from the image's first row (glTF's convention)
+  Attribute<glm::vec4> colors;              ///< linear RGBA, multiplies the material's base colour
   std::vector<std::uint32_t> material_ids;  ///< one per triangle, or one for all, or none; no_index: default material
   /// The polygon of the file that each triangle came from (counted from 0 in the mesh). Empty: every polygon was one
   /// triangle, so the triangle's number is the polygon's.
   std::vector<std::uint32_t> face_ids;
+  std::vector<Sphere> spheres;
+  std::vector<BezierPatch> patches;
 
+  [[nodiscard]] bool is_curved() const { return !spheres.empty() || !patches.empty(); }
+  [[nodiscard]] std::size_t curved_count() const { return spheres.size() + patches.size(); }
   /// Corner numbers of one triangle into `attribute.values`.
   template <class T>
   [[nodiscard]] const glm::uvec3& corners(const Attribute<T>& attribute, std::uint32_t triangle) const {
@@ -101,9 +124,9 @@ struct Camera {
   std::string name;
   glm::dmat4 world_from_eye{1.0};
   bool orthographic = false;
-  double vertical = 0.8;              ///< full vertical field of view in radians, or (orthographic) full height
-  std::optional<double> aspect;       ///< width / height; none: the picture's
-  std::optional<double> near, far;    ///< positive distances; none: fitted, or infinite
+  double vertical = 0.8;            ///< full vertical field of view in radians, or (orthographic) full height
+  std::optional<double> aspect;     ///< width / height; none: the picture's
+  std::optional<double> near, far;  ///< positive distances; none: fitted, or infinite
 };
 
 /// Which way is up in the model's own space.

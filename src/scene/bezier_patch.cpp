@@ -33,17 +33,34 @@ glm::dvec3 blend(const BezierPatch& patch, const Weights& u, const Weights& v) {
   return blend(across, u);
 }
 
-}  // namespace
+bool is_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-PatchPoint evaluate(const BezierPatch& patch, PatchParameter u, PatchParameter v) {
+PatchPoint evaluate_there(const BezierPatch& patch, PatchParameter u, PatchParameter v) {
   const Weights wu = bernstein(u), wv = bernstein(v), du = bernstein_slope(u), dv = bernstein_slope(v);
   PatchPoint point{blend(patch, wu, wv), blend(patch, du, wv), blend(patch, wu, dv), {}};
   // At a pole v moves nothing. Near it, along_v is the distance in u times d2P / du dv, whose direction is the limit;
   // from a pole at u = 1 that distance is negative.
   glm::dvec3 across = point.along_v;
-  if (glm::dot(across, across) < 1e-20) across = blend(patch, du, dv) * (u.value < 0.5 ? 1.0 : -1.0);
+  if (glm::dot(across, across) < 1e-20 * glm::dot(point.along_u, point.along_u))
+    across = blend(patch, du, dv) * (u.value < 0.5 ? 1.0 : -1.0);
   const glm::dvec3 normal = glm::cross(across, point.along_u);
   point.normal = normal / std::sqrt(glm::dot(normal, normal));
+  return point;
+}
+
+// What is between the parameter and the middle of the patch, but near to it.
+PatchParameter inwards(PatchParameter t) {
+  const double value = t.value + (0.5 - t.value) * 0x1p-10;
+  return {value, 1 - value};
+}
+
+}  // namespace
+
+PatchPoint evaluate(const BezierPatch& patch, PatchParameter u, PatchParameter v) {
+  PatchPoint point = evaluate_there(patch, u, v);
+  if (is_finite(point.normal)) return point;
+  const glm::dvec3 beside = evaluate_there(patch, inwards(u), inwards(v)).normal;
+  point.normal = is_finite(beside) ? beside : glm::dvec3(0);
   return point;
 }
 

@@ -2,21 +2,19 @@
 // Bicubic Bezier patches: exact enough for equal bits on both sides of a shared edge, and the teapot made of them.
 #pragma once
 
-#include <array>
 #include <glm/glm.hpp>
 #include <vector>
 
-namespace frontmost {
+#include "frontmost/scene.h"
 
-/// Sixteen control points, row by row: points[4 * i + j] weighs B_i(u) B_j(v). The outer side is dv x du.
-struct BezierPatch {
-  std::array<glm::dvec3, 16> points;
-};
+namespace frontmost {
 
 /// A place on a patch, and the directions in which u and v grow there.
 struct PatchPoint {
   glm::dvec3 position, along_u, along_v;
-  glm::dvec3 normal;  ///< unit length, outward; the limit where a whole edge is pulled together to a pole
+  /// Unit length, outward. The limit where an edge of constant u is pulled together to a pole; that of a point beside
+  /// it where it degenerates otherwise, and zero where that has none either.
+  glm::dvec3 normal;
 };
 
 /// A parameter as a fraction with an explicit complement, so that walking an edge from the other end takes the same
@@ -33,7 +31,8 @@ struct PatchParameter {
 [[nodiscard]] PatchPoint evaluate(const BezierPatch& patch, PatchParameter u, PatchParameter v);
 
 /// The 32 patches of the classic teapot, y up, standing on y = 0, spout towards +x: rim, upper and lower body, knob,
-/// lid and bottom in four quarters each, then two pieces of the handle and two of the spout in two halves each.
+/// lid and bottom in four quarters each, then two pieces of the handle and two of the spout in two halves each. On the
+/// texture u is once around, v from the rim (handle, spout: the first end) down.
 [[nodiscard]] std::vector<BezierPatch> teapot_patches();
 
 }  // namespace frontmost

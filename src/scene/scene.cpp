@@ -51,6 +51,7 @@ void check_mesh(const Scene& scene, std::size_t m) {
       fail(scene, m, "material " + std::to_string(id) + " does not exist");
   if (!mesh.face_ids.empty() && mesh.face_ids.size() != mesh.triangles.size())
     fail(scene, m, "face ids do not match the triangles");
+  if (mesh.is_curved() && mesh.material_ids.size() > 1) fail(scene, m, "a curved mesh has more than one material");
 }
 
 void check_use(const Scene& scene, const Material& material, const TextureUse& use) {

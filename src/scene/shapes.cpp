@@ -102,11 +102,13 @@ Mesh floor(double width, double depth, double repeats) {
 Mesh sphere(int rings) {
   const SurfaceGrid grid{.rows = rings, .columns = 2 * rings, .closed_columns = true, .poles = true};
   const std::vector<glm::dvec2> turns = circle(2 * rings);
-  return surface(grid, [&](int i, int j) {
+  Mesh mesh = surface(grid, [&](int i, int j) {
     const glm::dvec2 down = turns[std::size_t(i)], around = turns[std::size_t(j)];
     const glm::dvec3 p{down.y * around.x, down.x, 0.0 - down.y * around.y};
     return SurfacePoint{p, p};
   });
+  mesh.spheres = {Sphere{}};
+  return mesh;
 }
 
 Mesh torus_knot(const KnotShape& shape) {

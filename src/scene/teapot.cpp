@@ -41,16 +41,6 @@ class Welder {
   std::map<glm::vec3, std::uint32_t, ByCoordinates> numbers_;
 };
 
-// Where a patch lies on the texture: u once around, v from the rim (handle, spout: the first end) down.
-struct TextureRectangle {
-  glm::dvec2 low, size;
-};
-TextureRectangle texture_rectangle(std::size_t patch) {
-  if (patch < kHandle) return {{double(patch % 4) / 4, double(patch / 4) / 6}, {1.0 / 4, 1.0 / 6}};
-  const std::size_t part = (patch - kHandle) % 4;
-  return {{double(part % 2) / 2, double(part / 2) / 2}, {1.0 / 2, 1.0 / 2}};
-}
-
 void add_triangle(const glm::uvec3& corners, const glm::uvec3& texcoords, std::uint32_t patch, Mesh& mesh) {
   // At a pole one side of the quad is a point.
   if (corners.x == corners.y || corners.y == corners.z || corners.z == corners.x) return;
@@ -70,12 +60,12 @@ Mesh teapot(int steps) {
   for (std::uint32_t p = 0; p < patches.size(); ++p) {
     if (p == kHandle || p == kSpout) welder.start_part();
     const auto first_texcoord = std::uint32_t(mesh.texcoords.values.size());
-    const TextureRectangle rectangle = texture_rectangle(p);
     for (int i = 0; i <= steps; ++i)
       for (int j = 0; j <= steps; ++j) {
         const PatchParameter u = fraction(i, steps), v = fraction(j, steps);
         corners[std::size_t(i * side + j)] = welder.add(evaluate(patches[p], u, v));
-        mesh.texcoords.values.emplace_back(rectangle.low + rectangle.size * glm::dvec2(v.value, u.value));
+        mesh.texcoords.values.emplace_back(patches[p].texture_low +
+                                           patches[p].texture_size * glm::dvec2(v.value, u.value));
       }
     for (int i = 0; i < steps; ++i)
       for (int j = 0; j < steps; ++j) {
@@ -87,6 +77,7 @@ Mesh teapot(int steps) {
         add(at, below + 1, below);
       }
   }
+  mesh.patches = patches;
   return mesh;
 }
 

@@ -81,6 +81,16 @@ void add_tube(std::vector<BezierPatch>& patches, const Tube& tube) {
     }
 }
 
+constexpr std::size_t kTubes = 24;  // the first patch of the handle; what is turned comes before
+
+void place_on_texture(BezierPatch& patch, std::size_t number) {
+  const bool is_turned = number < kTubes;
+  const std::size_t part = is_turned ? number : (number - kTubes) % 4;
+  const std::size_t columns = is_turned ? 4 : 2, rows = is_turned ? 6 : 2;
+  patch.texture_low = {double(part % columns) / double(columns), double(part / columns) / double(rows)};
+  patch.texture_size = {1.0 / double(columns), 1.0 / double(rows)};
+}
+
 }  // namespace
 
 std::vector<BezierPatch> teapot_patches() {
@@ -88,6 +98,7 @@ std::vector<BezierPatch> teapot_patches() {
   for (const auto* profile : {&kRim, &kUpperBody, &kLowerBody, &kKnob, &kLid, &kBottom}) add_turned(patches, *profile);
   add_tube(patches, kHandle);
   add_tube(patches, kSpout);
+  for (std::size_t i = 0; i < patches.size(); ++i) place_on_texture(patches[i], i);
   return patches;
 }
 

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// A small hierarchy of boxes in doubles, for the few primitives that are curved. Triangles have a wider one of their
+// own (ray_tree.h).
+#pragma once
+
+#include <array>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "raycast/curved/double_ray.h"
+
+namespace frontmost::raycast_detail {
+
+struct DoubleBox {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+
+  void include(const glm::dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); }
+  void include(const DoubleBox& b) { low = glm::min(low, b.low), high = glm::max(high, b.high); }
+  [[nodiscard]] double largest_side() const {
+    const glm::dvec3 d = high - low;
+    return std::max(d.x, std::max(d.y, d.z));
+  }
+};
+
+class BoxTree {
+ public:
+  BoxTree() = default;
+  /// Items are the numbers of the boxes. O(n log n).
+  explicit BoxTree(std::span<const DoubleBox> boxes);
+
+  /// Calls visit(item) for the items whose boxes the ray passes through, roughly nearest first; visit may lessen
+  /// ray.to.
+  template <class Visit>
+  void walk(DoubleRay& ray, const Visit& visit) const;
+
+  [[nodiscard]] std::size_t byte_count() const {
+    return nodes_.size() * sizeof(Node) + items_.size() * sizeof(std::uint32_t);
+  }
+
+ private:
+  static constexpr std::size_t kLeafItems = 2;
+  static constexpr std::size_t kDeepest = 64;  ///< halving 2^32 items takes 32 levels
+
+  /// A leaf holds items [first, first + count); an inner node, with count 0, has children first and first + 1.
+  struct Node {
+    DoubleBox box;
+    std::uint32_t first = 0, count = 0;
+  };
+  struct Range {
+    std::uint32_t node, begin, end;
+  };
+
+  void split(const Range& range, std::span<const DoubleBox> boxes, std::vector<Range>& pending);
+  /// Where the ray enters the box; infinity where it passes by. Wider than exact by a few roundings, never narrower.
+  static double entry(const DoubleBox& box, const DoubleRay& ray, const glm::dvec3& inverse);
+
+  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> items_;
+};
+
+inline double BoxTree::entry(const DoubleBox& box, const DoubleRay& ray, const glm::dvec3& inverse) {
+  constexpr double kRoundings = 1 + 0x1p-50;
+  double enters = ray.from, leaves = ray.to;
+  for (int k = 0; k < 3; ++k) {
+    double a = (box.low[k] - ray.origin[k]) * inverse[k], b = (box.high[k] - ray.origin[k]) * inverse[k];
+    if (a > b) std::swap(a, b);
+    // 0 * infinity, along a side: NaN, which bounds nothing.
+    if (a > enters) enters = a;
+    if (b * kRoundings < leaves) leaves = b * kRoundings;
+  }
+  return enters <= leaves ? enters : std::numeric_limits<double>::infinity();
+}
+
+template <class Visit>
+void BoxTree::walk(DoubleRay& ray, const Visit& visit) const {
+  if (nodes_.empty()) return;
+  struct Entry {
+    std::uint32_t node;
+    double at;
+  };
+  const glm::dvec3 inverse = 1.0 / ray.direction;
+  std::array<Entry, kDeepest> stack;
+  std::size_t size = 0;
+  const auto push = [&](std::uint32_t node) {
+    const double at = entry(nodes_[node].box, ray, inverse);
+    if (at <= ray.to && at < std::numeric_limits<double>::infinity()) stack[size++] = {node, at};
+  };
+  push(0);
+  while (size > 0) {
+    const Entry next = stack[--size];
+    if (next.at > ray.to) continue;
+    const Node& node = nodes_[next.node];
+    for (std::uint32_t i = 0; i < node.count; ++i) visit(items_[node.first + i]);
+    if (node.count > 0) continue;
+    push(node.first);
+    push(node.first + 1);
+    if (size >= 2 && stack[size - 1].node == node.first + 1 && stack[size - 2].node == node.first &&
+        stack[size - 1].at > stack[size - 2].at)
+      std::swap(stack[size - 1], stack[size - 2]);
+  }
+}
+
+}  // namespace frontmost::raycast_detail

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// The index of a scene with curved meshes: curved primitives in world space, each a leaf or several; and triangles.
+#include <algorithm>
+
+#include "base/float_environment.h"
+#include "raycast/curved/curved_parts.h"
+
+namespace frontmost {
+
+using namespace raycast_detail;
+
+namespace {
+
+Scene flat_part(const Scene& scene) {
+  validate(scene);
+  Scene flat;
+  flat.name = scene.name;
+  flat.instances = scene.instances;
+  flat.meshes.resize(scene.meshes.size());
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    if (scene.meshes[m].is_curved()) continue;
+    flat.meshes[m].positions = scene.meshes[m].positions;
+    flat.meshes[m].triangles = scene.meshes[m].triangles;
+  }
+  return flat;
+}
+
+std::uint64_t element_count_of(const Mesh& mesh) {
+  return mesh.is_curved() ? mesh.curved_count() : mesh.triangles.size();
+}
+
+bool is_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+}  // namespace
+
+bool has_curved(const Scene& scene) {
+  return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
+    return instance.mesh < scene.meshes.size() && scene.meshes[instance.mesh].is_curved();
+  });
+}
+
+CurvedParts::CurvedParts(const Scene& scene, const Execution& execution)
+    : flat(flat_part(scene)), surfaces(flat, execution), triangles(surfaces, execution) {
+  const IeeeScope ieee;
+  place_all(scene);
+  std::vector<DoubleBox> boxes;
+  boxes.reserve(spheres.size() + pieces.size());
+  for (const PlacedSphere& sphere : spheres) boxes.push_back(sphere.bounds());
+  for (const PatchPiece& piece : pieces) boxes.push_back(piece.bounds());
+  tree = BoxTree(boxes);
+}
+
+void CurvedParts::place_all(const Scene& scene) {
+  std::uint64_t next = 0;
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    first_elements.push_back(PrimitiveId(next));
+    meshes.push_back(instance.mesh);
+    auto id = PrimitiveId(next);
+    next += element_count_of(mesh);
+    if (next > no_primitive - 1)
+      throw Error(ErrorCode::limit_exceeded, scene.name + ": more than 4294967294 elements over all instances");
+    for (const Sphere& sphere : mesh.spheres)
+      if (auto placed = place(sphere, instance.world_from_mesh, id++)) spheres.push_back(*placed);
+    for (const BezierPatch& patch : mesh.patches) cut(patch, instance.world_from_mesh, id++, pieces);
+  }
+  first_elements.push_back(PrimitiveId(next));
+}
+
+PrimitiveId CurvedParts::element_of(PrimitiveId triangle) const {
+  const PrimitiveSource source = surfaces.source(triangle);
+  return first_elements[source.instance] + source.triangle;
+}
+
+CurvedHit CurvedParts::nearest(DoubleRay& ray) const {
+  CurvedHit best;
+  const auto keep = [&](const std::optional<Meeting>& met, PrimitiveId id) {
+    if (!met || met->t > ray.to || (met->t == best.t && id > best.primitive)) return;
+    best = {id, met->t, glm::dot(met->normal, ray.direction) <= 0, met->parameters, met->normal};
+    ray.to = met->t;
+  };
+  tree.walk(ray, [&](std::uint32_t item) {
+    if (item < spheres.size())
+      keep(meet(spheres[item], ray), spheres[item].id);
+    else
+      keep(meet(pieces[item - spheres.size()], ray), pieces[item - spheres.size()].id);
+  });
+  return best;
+}
+
+CurvedIndex::CurvedIndex(const Scene& scene, const Execution& execution)
+    : parts_(std::make_unique<CurvedParts>(scene, execution)) {}
+CurvedIndex::~CurvedIndex() = default;
+CurvedIndex::CurvedIndex(CurvedIndex&&) noexcept = default;
+CurvedIndex& CurvedIndex::operator=(CurvedIndex&&) noexcept = default;
+
+std::uint32_t CurvedIndex::element_count() const { return parts_->first_elements.back(); }
+
+PrimitiveSource CurvedIndex::source(PrimitiveId id) const {
+  const auto& first = parts_->first_elements;
+  const auto after = std::upper_bound(first.begin(), first.end(), id);
+  const auto instance = std::uint32_t(after - first.begin() - 1);
+  return {instance, parts_->meshes[instance], id - first[instance]};
+}
+
+std::size_t CurvedIndex::byte_count() const {
+  const CurvedParts& p = *parts_;
+  std::size_t flat = 0;
+  for (const Mesh& mesh : p.flat.meshes)
+    flat += mesh.positions.size() * sizeof(glm::vec3) + mesh.triangles.size() * sizeof(glm::uvec3);
+  return flat + p.surfaces.byte_count() + p.triangles.byte_count() + p.tree.byte_count() +
+         p.spheres.size() * sizeof(PlacedSphere) + p.pieces.size() * sizeof(PatchPiece) +
+         p.first_elements.size() * (sizeof(PrimitiveId) + sizeof(std::uint32_t));
+}
+
+CurvedHit closest_hit(const CurvedIndex& index, const Ray& ray) {
+  const IeeeScope ieee;
+  if (!is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == glm::vec3(0)) return {};
+  const RayHit flat = closest_hit(index.parts().triangles, ray);
+  DoubleRay line{ray.origin, ray.direction, std::numeric_limits<double>::denorm_min(), flat.t};
+  CurvedHit best = index.parts().nearest(line);
+  if (!flat) return best;
+  const PrimitiveId element = index.parts().element_of(flat.primitive);
+  if (best && (best.t < flat.t || best.primitive < element)) return best;
+  return {element, flat.t, flat.is_front, glm::dvec2(0), glm::dvec3(0)};
+}
+
+}  // namespace frontmost

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// How finely curved primitives are to be cut.
+#pragma once
+
+#include <compare>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "frontmost/scene.h"
+#include "frontmost/view.h"
+
+namespace frontmost {
+
+/// Steps of a grid over a patch.
+struct PatchLevel {
+  int u = 1, v = 1;  ///< powers of two
+  friend auto operator<=>(const PatchLevel&, const PatchLevel&) = default;
+};
+
+/// Of one mesh at one place.
+struct MeshLevel {
+  std::vector<int> rings;  ///< of each sphere, from pole to pole
+  std::vector<PatchLevel> patches;
+
+  friend bool operator<(const MeshLevel& a, const MeshLevel& b) {
+    return std::tie(a.rings, a.patches) < std::tie(b.rings, b.patches);
+  }
+  /// An estimate from above, without what finer neighbours add.
+  [[nodiscard]] double triangle_count() const;
+};
+
+/// How far a point may be displaced in a view: in world units, by its distance along the viewing axis.
+class ScreenTolerance {
+ public:
+  /// Precondition: a valid view, pixels > 0.
+  ScreenTolerance(const View& view, double pixels);
+
+  /// What a displacement may be that moves no point of the hull of `points` (world space) by more. Infinity where all
+  /// lie before the near plane.
+  [[nodiscard]] double of(std::span<const glm::dvec3> points) const;
+  [[nodiscard]] double of_ball(const glm::dvec3& centre, double radius) const;
+
+ private:
+  [[nodiscard]] double at(double nearest, double farthest) const;
+  [[nodiscard]] double distance(const glm::dvec3& p) const { return glm::dot(forward_, p - eye_); }
+
+  glm::dvec3 eye_, forward_;
+  double near_;
+  double per_distance_ = 0, anywhere_ = 0;  ///< tolerance = anywhere + distance * per_distance
+};
+
+/// The greatest distance between a patch and its grid of triangles, from above: Muu / 8 u^2 + Muv / 4 uv + Mvv / 8 v^2
+/// with the greatest second derivatives, for any triangles whose corners lie on a cell of the grid.
+class PatchBending {
+ public:
+  explicit PatchBending(std::span<const glm::dvec3, 16> points);
+  [[nodiscard]] double error(const PatchLevel& level) const;
+  [[nodiscard]] PatchLevel level_within(double tolerance) const;
+
+ private:
+  double uu_ = 0, uv_ = 0, vv_ = 0;
+};
+
+/// The greatest distance between the unit sphere and a globe of so many rings and twice as many columns.
+[[nodiscard]] double globe_error(int rings);
+
+/// Finest grids that are made; what would need finer ones gets these, and then has too many triangles as a whole.
+inline constexpr int finest_level = 1 << 13;
+
+[[nodiscard]] MeshLevel level_of(const Mesh& mesh, const glm::dmat4& world_from_mesh, const ScreenTolerance& tolerance);
+
+}  // namespace frontmost
