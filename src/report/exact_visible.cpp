@@ -25,8 +25,7 @@ class Contest {
  public:
   Contest(Field& field, const PixelRect& tile) : field_(field), tile_(tile) {}
 
-  void enter(const PlacedTriangle& triangle) {
-    const TriangleRecord& r = triangle.corners;
+  void enter(const TriangleRecord& r) {
     const View& view = field_.answer.view;
     const PixelRect touched = pixel_rect(r, view.width, view.height);
     const PixelRect rect{std::max(touched.x0, tile_.x0), std::max(touched.y0, tile_.y0), std::min(touched.x1, tile_.x1),
@@ -99,7 +98,7 @@ ExactVisible exact_visible(const Surfaces& surfaces, const View& view, const Exe
   const TileGrid grid(view);
   submit(surfaces, view, {0, surfaces.primitive_count()}, execution, [&](std::size_t tile, const PlacedPiece& piece) {
     Contest contest(field, grid.rect(tile));
-    for (const std::uint32_t item : piece.in_tile(tile)) contest.enter(piece.triangles[item]);
+    for (const std::uint32_t item : piece.in_tile(tile)) contest.enter(piece.triangles.record(item));
   });
   return answer;
 }

@@ -69,6 +69,7 @@ class ToWorld {
   explicit ToWorld(const glm::dmat4& world_from_mesh)
       : matrix_(world_from_mesh), is_identity_(world_from_mesh == glm::dmat4(1.0)) {}
   [[nodiscard]] glm::vec3 operator()(const glm::vec3& p) const { return is_identity_ ? p : to_world(matrix_, p); }
+  [[nodiscard]] bool is_identity() const { return is_identity_; }
 
  private:
   const glm::dmat4& matrix_;

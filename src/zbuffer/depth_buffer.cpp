@@ -7,6 +7,7 @@
 
 #include "base/float_environment.h"
 #include "zbuffer/depth_kernel.h"
+#include "zbuffer/submission.h"
 
 namespace frontmost {
 namespace {

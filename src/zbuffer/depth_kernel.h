@@ -5,7 +5,7 @@
 #include <span>
 
 #include "zbuffer/depth_rules.h"
-#include "zbuffer/submission.h"
+#include "zbuffer/placed_triangles.h"
 
 namespace frontmost::zbuffer_detail {
 
@@ -26,7 +26,7 @@ struct DepthCall {
 };
 
 /// Draws the triangles that `items` names, one after the other, into the pixels of `tile`; touches no other pixel.
-void draw_depths(const DepthCall& call, const PixelRect& tile, std::span<const PlacedTriangle> triangles,
+void draw_depths(const DepthCall& call, const PixelRect& tile, const PlacedTriangles& triangles,
                  std::span<const std::uint32_t> items, Isa isa);
 
 }  // namespace frontmost::zbuffer_detail

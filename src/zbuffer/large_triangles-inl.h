@@ -17,12 +17,7 @@ namespace frontmost::zbuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// An edge value at the tile's first sample is clamped to this. Over 127 pixels both ways it changes by at most
-// 2 * 127 * 2^22 < 2^30, so its sign stays right and its sums stay within 32 bits.
-constexpr std::int64_t kEdgeLimit = std::int64_t(1) << 30;
 constexpr std::int32_t kBlockUnits = kBlockSize * kSubPixels;
-
-HWY_INLINE bool IsTopLeft(std::int32_t dx, std::int32_t dy) { return dy < 0 || (dy == 0 && dx > 0); }
 
 class LargeTriangles {
  public:
@@ -38,7 +33,7 @@ class LargeTriangles {
     if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
     const std::uint64_t touched = TileBuffer::BlocksOf(rect);
     if (buffer_.AllHide(touched, r.nearest())) return;
-    const Plane plane = PlaneOf(r);
+    const Plane plane(r);
     Reach reach;
     std::uint64_t open = touched & ~KnownHidden(plane, rect, reach);
     std::uint64_t whole = open;
@@ -49,10 +44,8 @@ class LargeTriangles {
   }
 
  private:
-  /// The key at a sample is (k0 + dx*gx) + dy*gy from (x0, y0), clamped.
-  struct Plane {
-    std::int32_t x0, y0;
-    float k0, gx, gy, k_min, k_max;
+  struct Plane : KeyPlane {
+    explicit Plane(const TriangleRecord& r) : KeyPlane(r), not_id(~r.id) {}
     std::uint32_t not_id;
   };
 
@@ -62,45 +55,10 @@ class LargeTriangles {
     HWY_ALIGN_MAX float nearest[BlockBounds::count], corner[4][BlockBounds::count], slack[BlockBounds::count];
   };
 
-  /// Edge functions at the tile's first sample, and their steps from pixel to pixel.
-  struct Edges {
-    std::int32_t first[3], step_x[3], step_y[3];
-  };
-
   /// Blocks that no sample of the triangle lies in, and those whose every sample does.
   struct Cover {
     std::uint64_t none = 0, all = 0;
   };
-
-  [[nodiscard]] static HWY_INLINE Plane PlaneOf(const TriangleRecord& r) {
-    Plane p;
-    p.not_id = ~r.id;
-    p.x0 = r.x[0];
-    p.y0 = r.y[0];
-    p.k0 = r.key[0];
-    const std::int32_t x1 = r.x[1] - r.x[0], y1 = r.y[1] - r.y[0], x2 = r.x[2] - r.x[0], y2 = r.y[2] - r.y[0];
-    const float area = float(doubled_area(r));
-    const float k1 = r.key[1] - r.key[0], k2 = r.key[2] - r.key[0];
-    p.gx = (k1 * float(y2) - k2 * float(y1)) / area;
-    p.gy = (float(x1) * k2 - float(x2) * k1) / area;
-    p.k_min = HWY_MIN(r.key[0], HWY_MIN(r.key[1], r.key[2]));
-    p.k_max = HWY_MAX(r.key[0], HWY_MAX(r.key[1], r.key[2]));
-    return p;
-  }
-
-  [[nodiscard]] static HWY_INLINE Edges EdgesOf(const TriangleRecord& r, const glm::ivec2& offset) {
-    Edges edges;
-    for (int k = 0; k < 3; ++k) {
-      const int n = k == 2 ? 0 : k + 1;
-      const std::int32_t dx = r.x[n] - r.x[k], dy = r.y[n] - r.y[k];
-      const std::int64_t e =
-          std::int64_t(dx) * (offset.y - r.y[k]) - std::int64_t(dy) * (offset.x - r.x[k]) - (IsTopLeft(dx, dy) ? 0 : 1);
-      edges.first[k] = std::int32_t(HWY_MAX(HWY_MIN(e >> 8, kEdgeLimit), -kEdgeLimit));
-      edges.step_x[k] = -dy;
-      edges.step_y[k] = dx;
-    }
-    return edges;
-  }
 
   /// Calls visit(first block, column, row of the block in each lane) for all blocks that may be of `rect`.
   template <class Visit>
@@ -174,7 +132,7 @@ class LargeTriangles {
     return hn::Min(hn::Max(key, hn::Set(df, p.k_min)), hn::Set(df, p.k_max));
   }
 
-  [[nodiscard]] HWY_INLINE Cover CoverOf(const Edges& edges, const PixelRect& rect) const {
+  [[nodiscard]] HWY_INLINE Cover CoverOf(const TriangleEdges& edges, const PixelRect& rect) const {
     const DI d;
     constexpr std::int32_t kSpan = kBlockSize - 1;
     Cover cover;
@@ -198,7 +156,7 @@ class LargeTriangles {
   /// to lately and turn out to hide the triangle.
   [[nodiscard]] std::uint64_t DrawSample(const TriangleRecord& r, const Plane& plane, const PixelRect& rect,
                                          std::size_t sample, std::uint64_t& open, const Reach& reach) {
-    const Edges edges = EdgesOf(r, frame_.samples[sample]);
+    const TriangleEdges edges(r, frame_.samples[sample]);
     const Cover cover = CoverOf(edges, rect);
     for (std::uint64_t left = open & ~cover.none; left != 0; left &= left - 1) {
       const int block = int(hwy::Num0BitsBelowLS1Bit_Nonzero64(left));
@@ -215,7 +173,8 @@ class LargeTriangles {
   }
 
   template <bool kWhole>
-  HWY_INLINE void FillBlock(const Plane& p, const Edges& edges, const PixelRect& rect, int block, std::size_t sample) {
+  HWY_INLINE void FillBlock(const Plane& p, const TriangleEdges& edges, const PixelRect& rect, int block,
+                            std::size_t sample) {
     const DI d;
     const DU du;
     const DF df;

@@ -10,6 +10,7 @@
 #define FRONTMOST_ZBUFFER_SMALL_TRIANGLES_INL_H_
 #endif
 
+#include "zbuffer/batch-inl.h"
 #include "zbuffer/compactor-inl.h"
 #include "zbuffer/large_triangles-inl.h"
 #include "zbuffer/tile_buffer-inl.h"
@@ -31,12 +32,9 @@ struct TriangleQueue {
   std::size_t count = 0;
 };
 
-/// Three edges and a depth plane for as many triangles as the vector holds.
-struct Batch {
-  VI x0, y0, dx[3], dy[3], bias[3], area;  // edge k runs from corner k; twice the area
-  VI cx[3], cy[3];                         // its start
-  VF k0, gx, gy, k_min, k_max;
-  VI px, py, width, height;  // pixel rectangle within the tile
+/// Those that are drawn together, with their pixel rectangles within the tile.
+struct SmallBatch : Batch {
+  VI px, py, width, height;
   VU not_id;
 };
 
@@ -59,27 +57,19 @@ class SmallTriangles {
     while (queue_.count > 0) DrawQueued();
   }
 
-  /// The first pixel of the tile that has a sample at or after `minimum`, and the last that has one at or before
-  /// `maximum`.
-  [[nodiscard]] HWY_INLINE VI FirstPixelX(VI minimum) const { return FirstPixel(minimum, high_.x); }
-  [[nodiscard]] HWY_INLINE VI FirstPixelY(VI minimum) const { return FirstPixel(minimum, high_.y); }
-  [[nodiscard]] HWY_INLINE VI LastPixelX(VI maximum) const { return LastPixel(maximum, low_.x, job_.width); }
-  [[nodiscard]] HWY_INLINE VI LastPixelY(VI maximum) const { return LastPixel(maximum, low_.y, job_.height); }
+  /// The pixels of the tile that have a sample within the ranges of triangles.
+  [[nodiscard]] HWY_INLINE PixelRange ColumnsOf(const CoordinateRange& x) const {
+    return PixelsOf(x, low_.x, high_.x, job_.width);
+  }
+  [[nodiscard]] HWY_INLINE PixelRange RowsOf(const CoordinateRange& y) const {
+    return PixelsOf(y, low_.y, high_.y, job_.height);
+  }
 
  private:
-  static HWY_INLINE VI FirstPixel(VI minimum, std::int32_t last_offset) {
-    const DI d;
-    return hn::Max(hn::ShiftRight<8>(hn::Add(minimum, hn::Set(d, 255 - last_offset))), hn::Zero(d));
-  }
-  static HWY_INLINE VI LastPixel(VI maximum, std::int32_t first_offset, std::int32_t size) {
-    const DI d;
-    return hn::Min(hn::ShiftRight<8>(hn::Sub(maximum, hn::Set(d, first_offset))), hn::Set(d, size - 1));
-  }
-
   void DrawQueued() {
     const DI d;
     const std::size_t drawn = HWY_MIN(queue_.count, hn::Lanes(d));
-    Batch batch = SetUp(drawn);
+    SmallBatch batch = SetUp(drawn);
     const VI limit = hn::Set(d, kWalkLimit);
     const MI large = hn::Or(hn::Gt(batch.width, limit), hn::Gt(batch.height, limit));
     if (!hn::AllFalse(d, large)) {
@@ -122,107 +112,66 @@ class SmallTriangles {
     hn::Store(hn::LoadU(du, queue_.id + drawn), du, queue_.id);
   }
 
-  HWY_INLINE Batch SetUp(std::size_t used) const {
+  HWY_INLINE SmallBatch SetUp(std::size_t used) const {
     const DI d;
-    const DF df;
-    const DU du;
-    Batch b;
+    SmallBatch b;
     VF key[3];
     for (int k = 0; k < 3; ++k) {
-      b.cx[k] = hn::Load(d, queue_.x[k]);
-      b.cy[k] = hn::Load(d, queue_.y[k]);
-      key[k] = hn::BitCast(df, hn::Load(d, queue_.key[k]));
+      b.x[k] = hn::Load(d, queue_.x[k]);
+      b.y[k] = hn::Load(d, queue_.y[k]);
+      key[k] = hn::BitCast(DF(), hn::Load(d, queue_.key[k]));
     }
-    b.x0 = b.cx[0];
-    b.y0 = b.cy[0];
-    b.not_id = hn::Not(hn::Load(du, queue_.id));
-    for (int k = 0; k < 3; ++k) {
-      const int n = k == 2 ? 0 : k + 1;
-      b.dx[k] = hn::Sub(b.cx[n], b.cx[k]);
-      b.dy[k] = hn::Sub(b.cy[n], b.cy[k]);
-      // Top-left edges include their own points: bias 0, the others -1. Top-left is dy < 0, or dy = 0 and dx > 0; that
-      // is dy * 2^16 - dx < 0, as both are within 15 bits.
-      b.bias[k] = hn::Not(hn::ShiftRight<31>(hn::Sub(hn::ShiftLeft<16>(b.dy[k]), b.dx[k])));
-    }
-    SetUpPlane(b, key);
-    SetUpRect(b, used);
-    return b;
-  }
-
-  HWY_INLINE void SetUpPlane(Batch& b, const VF key[3]) const {
-    const DF df;
-    const VI x1 = b.dx[0], y1 = b.dy[0];
-    const VI x2 = hn::Sub(b.cx[2], b.x0), y2 = hn::Sub(b.cy[2], b.y0);
-    b.area = hn::Sub(hn::Mul(x1, y2), hn::Mul(x2, y1));
-    const VF k1 = hn::Sub(key[1], key[0]), k2 = hn::Sub(key[2], key[0]);
-    const VF fx1 = hn::ConvertTo(df, x1), fy1 = hn::ConvertTo(df, y1);
-    const VF fx2 = hn::ConvertTo(df, x2), fy2 = hn::ConvertTo(df, y2);
-    const VF fa = hn::ConvertTo(df, b.area);
-    b.k0 = key[0];
-    b.gx = hn::Div(hn::Sub(hn::Mul(k1, fy2), hn::Mul(k2, fy1)), fa);
-    b.gy = hn::Div(hn::Sub(hn::Mul(fx1, k2), hn::Mul(fx2, k1)), fa);
-    b.k_min = hn::Min(key[0], hn::Min(key[1], key[2]));
-    b.k_max = hn::Max(key[0], hn::Max(key[1], key[2]));
-  }
-
-  HWY_INLINE void SetUpRect(Batch& b, std::size_t used) const {
-    const DI d;
-    const VI x_min = hn::Min(b.cx[0], hn::Min(b.cx[1], b.cx[2])), x_max = hn::Max(b.cx[0], hn::Max(b.cx[1], b.cx[2]));
-    const VI y_min = hn::Min(b.cy[0], hn::Min(b.cy[1], b.cy[2])), y_max = hn::Max(b.cy[0], hn::Max(b.cy[1], b.cy[2]));
-    b.px = FirstPixelX(x_min);
-    b.py = FirstPixelY(y_min);
+    b.not_id = hn::Not(hn::Load(DU(), queue_.id));
+    SetUpBatch(b, key);
+    const PixelRange columns = ColumnsOf(RangeOf(b.x[0], b.x[1], b.x[2])),
+                     rows = RowsOf(RangeOf(b.y[0], b.y[1], b.y[2]));
     const VI one = hn::Set(d, 1);
     const MI live = hn::Lt(hn::Iota(d, 0), hn::Set(d, std::int32_t(used)));
-    b.width = hn::IfThenElseZero(live, hn::Add(hn::Sub(LastPixelX(x_max), b.px), one));
-    b.height = hn::IfThenElseZero(live, hn::Add(hn::Sub(LastPixelY(y_max), b.py), one));
+    b.px = columns.first;
+    b.py = rows.first;
+    b.width = hn::IfThenElseZero(live, hn::Add(hn::Sub(columns.last, b.px), one));
+    b.height = hn::IfThenElseZero(live, hn::Add(hn::Sub(rows.last, b.py), one));
+    return b;
   }
 
   /// Walks the rectangles of all triangles of a batch at once, one pixel position a step, and notes the covered
   /// (pixel, triangle) pairs as word offset << 12 | y << 8 | x << 4 | lane. \returns how many.
-  HWY_INLINE std::size_t Walk(const Batch& b, int most_x, int most_y, std::size_t sample) {
+  HWY_INLINE std::size_t Walk(const SmallBatch& b, int most_x, int most_y, std::size_t sample) {
     const DI d;
     const DU du;
     const glm::ivec2 offset = frame_.samples[sample];
     const VI sx = hn::Add(hn::ShiftLeft<8>(b.px), hn::Set(d, offset.x));
     const VI sy = hn::Add(hn::ShiftLeft<8>(b.py), hn::Set(d, offset.y));
-    VI edge[3], row[3], step[3];
-    for (int k = 0; k < 2; ++k)
-      edge[k] = hn::Sub(hn::Mul(b.dx[k], hn::Sub(sy, b.cy[k])), hn::Mul(b.dy[k], hn::Sub(sx, b.cx[k])));
-    // The three edge functions of a point add up to twice the area.
-    edge[2] = hn::Sub(b.area, hn::Add(edge[0], edge[1]));
-    for (int k = 0; k < 3; ++k) {
-      row[k] = hn::ShiftRight<8>(hn::Add(edge[k], b.bias[k]));
-      step[k] = hn::Neg(b.dy[k]);
-    }
+    BatchEdges row = EdgesAt(b, sx, sy);
     const VI first = hn::Add(hn::Mul(b.py, hn::Set(d, kTileStride)), b.px);
     const VI base = hn::Or(hn::ShiftLeft<12>(first), hn::Iota(d, 0));
     std::uint32_t* out = references_;
     for (int y = 0; y < most_y; ++y) {
       const VI row_width = hn::IfThenElseZero(hn::Gt(b.height, hn::Set(d, y)), b.width);
-      VI e0 = row[0], e1 = row[1], e2 = row[2];
+      VI e0 = row.e[0], e1 = row.e[1], e2 = row.e[2];
       VI reference = hn::Add(base, hn::Set(d, (y * kTileStride) << 12 | y << 8));
       for (int x = 0; x < most_x; ++x) {
         const VI all = hn::Or(hn::Or(e0, e1), e2);
         const MI covered = hn::And(hn::Gt(all, hn::Set(d, -1)), hn::Gt(row_width, hn::Set(d, x)));
         out += CompactInto(hn::BitCast(du, reference), hn::RebindMask(du, covered), du, out);
-        e0 = hn::Add(e0, step[0]);
-        e1 = hn::Add(e1, step[1]);
-        e2 = hn::Add(e2, step[2]);
+        e0 = hn::Sub(e0, b.dy[0]);
+        e1 = hn::Sub(e1, b.dy[1]);
+        e2 = hn::Sub(e2, b.dy[2]);
         reference = hn::Add(reference, hn::Set(d, 1 << 12 | 1 << 4));
       }
-      for (int k = 0; k < 3; ++k) row[k] = hn::Add(row[k], b.dx[k]);
+      for (int k = 0; k < 3; ++k) row.e[k] = hn::Add(row.e[k], b.dx[k]);
     }
     return std::size_t(out - references_);
   }
 
   /// Finds the keys of the covered pairs, as many at a time as the vector holds, and keeps the greater words.
-  HWY_INLINE void Merge(const Batch& b, std::size_t count, std::size_t sample) {
+  HWY_INLINE void Merge(const SmallBatch& b, std::size_t count, std::size_t sample) {
     const DI d;
     const DU du;
     const DF df;
     const glm::ivec2 offset = frame_.samples[sample];
-    const VI from_x = hn::Sub(hn::Add(hn::ShiftLeft<8>(b.px), hn::Set(d, offset.x)), b.x0);
-    const VI from_y = hn::Sub(hn::Add(hn::ShiftLeft<8>(b.py), hn::Set(d, offset.y)), b.y0);
+    const VI from_x = hn::Sub(hn::Add(hn::ShiftLeft<8>(b.px), hn::Set(d, offset.x)), b.x[0]);
+    const VI from_y = hn::Sub(hn::Add(hn::ShiftLeft<8>(b.py), hn::Set(d, offset.y)), b.y[0]);
     std::uint64_t* words = buffer_.Row(sample, 0);
     HWY_ALIGN_MAX std::uint64_t found[kMaxLanes];
     HWY_ALIGN_MAX std::uint32_t at[kMaxLanes];

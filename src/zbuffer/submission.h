@@ -5,24 +5,15 @@
 // transform and clipping, triangles through the same facing as everywhere.
 #pragma once
 
-#include <algorithm>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "base/parallel.h"
-#include "zbuffer/triangle_records.h"
+#include "base/pool.h"
+#include "zbuffer/place_kernel.h"
 
 namespace frontmost::zbuffer_detail {
-
-inline constexpr int kSubmissionTile = 128;  ///< pixels
-
-/// A triangle with its plane of keys: (key[0] + dx * gx) + dy * gy from the first corner, limited to [k_min, k_max].
-struct PlacedTriangle {
-  TriangleRecord corners;  ///< from the image's top left, area positive
-  float gx, gy;            ///< per 1/256 pixel
-  float k_min, k_max;
-  float primitive_low, primitive_high;  ///< keys of the primitive's whole visible part, of which clipping leaves pieces
-};
 
 /// Consecutive triangles of one instance.
 struct Piece {
@@ -31,46 +22,17 @@ struct Piece {
   PrimitiveId first;         ///< id of the instance's first triangle
 };
 
-/// What is left of a piece on the screen, in order, and for every tile the numbers of those that may touch it.
-struct PlacedPiece {
-  std::vector<PlacedTriangle> triangles;
-  std::vector<std::uint32_t> begin, items;  ///< by tile
-
-  [[nodiscard]] std::span<const std::uint32_t> in_tile(std::size_t tile) const {
-    if (triangles.empty()) return {};
-    return std::span(items).subspan(begin[tile], begin[tile + 1] - begin[tile]);
-  }
-};
-
-/// Tiles of an image, row by row.
-struct TileGrid {
-  int width, height, across, down;
-
-  explicit TileGrid(const View& view)
-      : width(view.width),
-        height(view.height),
-        across((view.width + kSubmissionTile - 1) / kSubmissionTile),
-        down((view.height + kSubmissionTile - 1) / kSubmissionTile) {}
-  [[nodiscard]] std::size_t count() const { return std::size_t(across) * std::size_t(down); }
-  [[nodiscard]] PixelRect rect(std::size_t tile) const;
-};
-
 /// Primitives [begin, end).
 struct PrimitiveRange {
   PrimitiveId begin, end;
 };
 
-/// The pixels of [0, width) x [0, height) that have a sample between a triangle's outermost corners, `low` and `high`
-/// being the least and greatest sample offsets. Most triangles smaller than a pixel have none, and cover nothing.
-[[nodiscard]] inline PixelRect sampled_rect(const TriangleRecord& r, const glm::ivec2& low, const glm::ivec2& high,
-                                            int width, int height) {
-  const std::int32_t x_min = std::min(r.x[0], std::min(r.x[1], r.x[2])),
-                     x_max = std::max(r.x[0], std::max(r.x[1], r.x[2]));
-  const std::int32_t y_min = std::min(r.y[0], std::min(r.y[1], r.y[2])),
-                     y_max = std::max(r.y[0], std::max(r.y[1], r.y[2]));
-  return {std::max((x_min + 255 - high.x) >> 8, 0), std::max((y_min + 255 - high.y) >> 8, 0),
-          std::min((x_max - low.x) >> 8, width - 1), std::min((y_max - low.y) >> 8, height - 1)};
-}
+/// What placing needs of memory, one a thread.
+struct PlaceScratch {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::uvec3> corners;
+  PieceVertices vertices;
+};
 
 /// The pieces of a range, in order.
 [[nodiscard]] std::vector<Piece> pieces_of(const Surfaces& surfaces, const PrimitiveRange& range);
@@ -78,7 +40,7 @@ struct PrimitiveRange {
 [[nodiscard]] std::size_t pieces_at_once(const TileGrid& grid);
 
 /// Transforms, clips, culls and bins one piece; reuses the memory of `placed`.
-void place(const Surfaces& surfaces, const Piece& piece, const ScreenTransform& transform, const View& view,
+void place(const Surfaces& surfaces, const Piece& piece, const PlaceTarget& target, PlaceScratch& scratch,
            PlacedPiece& placed);
 
 /// Calls draw(tile, piece) for every tile and every piece of the range that is on the screen. In each tile pieces come
@@ -87,18 +49,21 @@ template <class Draw>
 void submit(const Surfaces& surfaces, const View& view, const PrimitiveRange& range, const Execution& execution,
             const Draw& draw) {
   const ScreenTransform transform(view);
-  const TileGrid grid(view);
+  const PlaceTarget target(transform, view, execution.isa);
   const std::vector<Piece> pieces = pieces_of(surfaces, range);
-  const std::size_t at_once = pieces_at_once(grid);
+  const std::size_t at_once = pieces_at_once(target.grid);
   std::vector<PlacedPiece> placed(std::min(at_once, pieces.size()));
+  Pool<PlaceScratch> scratches;
   for (std::size_t first = 0; first < pieces.size(); first += at_once) {
     const std::size_t count = std::min(at_once, pieces.size() - first);
     parallel_for(execution, count, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) place(surfaces, pieces[first + i], transform, view, placed[i]);
+      const auto scratch = scratches.borrow([] { return std::make_unique<PlaceScratch>(); });
+      for (std::size_t i = begin; i < end; ++i) place(surfaces, pieces[first + i], target, *scratch, placed[i]);
     });
-    parallel_for(execution, grid.count(), 1, [&](std::size_t begin, std::size_t end) {
+    parallel_for(execution, target.grid.count(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t tile = begin; tile < end; ++tile)
-        for (std::size_t i = 0; i < count; ++i) draw(tile, placed[i]);
+        for (std::size_t i = 0; i < count; ++i)
+          if (!placed[i].in_tile(tile).empty()) draw(tile, placed[i]);
     });
     report_progress(execution, "visible", double(first + count) / double(pieces.size()));
   }

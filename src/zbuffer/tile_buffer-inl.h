@@ -16,6 +16,7 @@
 
 #include "hwy/cache_control.h"
 #include "hwy/highway.h"
+#include "zbuffer/batch-inl.h"
 #include "zbuffer/tile_kernel.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -23,30 +24,11 @@ namespace frontmost::zbuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using DI = hn::ScalableTag<std::int32_t>;
-using DU = hn::RebindToUnsigned<DI>;
-using DF = hn::RebindToFloat<DI>;
-using VI = hn::Vec<DI>;
-using VU = hn::Vec<DU>;
-using VF = hn::Vec<DF>;
-using MI = hn::Mask<DI>;
 using DW = hn::ScalableTag<std::uint64_t>;
 using DWI = hn::RebindToSigned<DW>;
 
-constexpr std::size_t kMaxLanes = hn::MaxLanes(DI());
-
 // Pixels of the tile that lie outside the image: nearer than anything, so that they never keep a block from hiding.
 constexpr std::uint64_t kOutsideImage = std::uint64_t(0x7F7FFFFF) << 32;
-
-/// Lane i in bit i.
-template <class D>
-HWY_INLINE std::uint64_t BitsOf(D d, hn::Mask<D> mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, mask, bytes);
-  std::uint64_t bits;
-  std::memcpy(&bits, bytes, sizeof bits);
-  return bits & ((std::uint64_t(1) << hn::Lanes(d)) - 1);
-}
 
 /// The order in which vectors of 32 bits take pixels, so that interleaving keys and ids puts their words in line.
 struct PixelOrder {

@@ -19,6 +19,7 @@
 #include "base/isa.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
+#include "view/snap-inl.h"
 #include "zbuffer/large_triangles-inl.h"
 #include "zbuffer/small_triangles-inl.h"
 #include "zbuffer/tile_buffer-inl.h"
@@ -27,10 +28,7 @@ HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-// Corners no farther apart than this keep every edge value inside the triangle's box within 32 bits: two products of
-// at most 31744 * (31744 + 256).
-constexpr std::int32_t kSmallExtent = 124 * kSubPixels;
+namespace screen = view_detail::HWY_NAMESPACE;
 
 /// A cluster's vertices on the screen. Only those that it has are set.
 struct ScreenCluster {
@@ -100,40 +98,22 @@ class TilePainter {
       hwy::Prefetch(set.id.data() + cluster.first_triangle + i);
   }
 
-  // The vertex formula of view/screen_transform.h, many at a time.
   HWY_INLINE void TransformVertices(const Cluster& cluster) {
     const ScreenTransform& t = frame_.transform;
+    const ClusterSet& set = frame_.set;
     const DF d;
     const DI di;
     const VI origin_x = hn::Set(di, t.centre_x - job_.x * kSubPixels);
     const VI origin_y = hn::Set(di, t.centre_y - job_.y * kSubPixels);
     for (std::size_t i = 0; i < cluster.vertex_count; i += hn::Lanes(d)) {
       const std::size_t v = cluster.first_vertex + i;
-      const VF dx = hn::Sub(hn::Load(d, frame_.set.x.data() + v), hn::Set(d, t.eye[0]));
-      const VF dy = hn::Sub(hn::Load(d, frame_.set.y.data() + v), hn::Set(d, t.eye[1]));
-      const VF dz = hn::Sub(hn::Load(d, frame_.set.z.data() + v), hn::Set(d, t.eye[2]));
-      const VF x = RowOf(t.x_row, t.x_offset, dx, dy, dz), y = RowOf(t.y_row, t.y_offset, dx, dy, dz);
-      const VF depth = RowOf(t.d_row, t.d_offset, dx, dy, dz);
-      VF sx = x, sy = y, key;
-      if (t.orthographic) {
-        key = hn::Mul(hn::Sub(hn::Set(d, t.far), depth), hn::Set(d, t.inverse_range));
-        key = hn::Max(key, hn::Zero(d));
-      } else {
-        const VF inverse = hn::Div(hn::Set(d, 1.0f), depth);
-        sx = hn::Mul(x, inverse);
-        sy = hn::Mul(y, inverse);
-        key = hn::Mul(hn::Set(d, t.near), inverse);
-      }
-      hn::Store(hn::BitCast(di, hn::Min(key, hn::Set(d, 1.0f))), di, vertices_.key + i);
-      hn::Store(hn::Add(hn::NearestInt(sx), origin_x), di, vertices_.x + i);
-      hn::Store(hn::Add(hn::NearestInt(sy), origin_y), di, vertices_.y + i);
+      const auto snapped =
+          screen::Snap(t, screen::Transform(t, hn::Load(d, set.x.data() + v), hn::Load(d, set.y.data() + v),
+                                            hn::Load(d, set.z.data() + v)));
+      hn::Store(hn::BitCast(di, snapped.key), di, vertices_.key + i);
+      hn::Store(hn::Add(snapped.x, origin_x), di, vertices_.x + i);
+      hn::Store(hn::Add(snapped.y, origin_y), di, vertices_.y + i);
     }
-  }
-
-  static HWY_INLINE VF RowOf(const std::array<float, 3>& row, float offset, VF dx, VF dy, VF dz) {
-    const DF d;
-    const VF x = hn::Mul(hn::Set(d, row[0]), dx), y = hn::Mul(hn::Set(d, row[1]), dy);
-    return hn::Add(hn::Add(hn::Add(x, y), hn::Mul(hn::Set(d, row[2]), dz)), hn::Set(d, offset));
   }
 
   void DrawCluster(const Cluster& cluster) {
@@ -175,14 +155,12 @@ class TilePainter {
     const Corners a = Fetch(frame_.set.i0, at);
     Corners b = Fetch(frame_.set.i1, at), c = Fetch(frame_.set.i2, at);
 
-    const VI x_min = hn::Min(a.x, hn::Min(b.x, c.x)), x_max = hn::Max(a.x, hn::Max(b.x, c.x));
-    const VI y_min = hn::Min(a.y, hn::Min(b.y, c.y)), y_max = hn::Max(a.y, hn::Max(b.y, c.y));
-    const VI px0 = small_.FirstPixelX(x_min), px1 = small_.LastPixelX(x_max);
-    const VI py0 = small_.FirstPixelY(y_min), py1 = small_.LastPixelY(y_max);
-    MI keep = hn::And(hn::Not(hn::Gt(px0, px1)), hn::Not(hn::Gt(py0, py1)));
+    const CoordinateRange x = RangeOf(a.x, b.x, c.x), y = RangeOf(a.y, b.y, c.y);
+    const PixelRange columns = small_.ColumnsOf(x), rows = small_.RowsOf(y);
+    MI keep = hn::And(hn::Not(hn::Gt(columns.first, columns.last)), hn::Not(hn::Gt(rows.first, rows.last)));
     if (hn::AllFalse(d, keep)) return;
 
-    const VI extent = hn::Max(hn::Sub(x_max, x_min), hn::Sub(y_max, y_min));
+    const VI extent = hn::Max(hn::Sub(x.greatest, x.least), hn::Sub(y.greatest, y.least));
     const MI large = hn::And(keep, hn::Gt(extent, hn::Set(d, kSmallExtent)));
     if (!hn::AllFalse(d, large)) {
       DrawLargeLanes(cluster, first, large);
@@ -192,7 +170,7 @@ class TilePainter {
     const VI area =
         hn::Sub(hn::Mul(hn::Sub(b.x, a.x), hn::Sub(c.y, a.y)), hn::Mul(hn::Sub(c.x, a.x), hn::Sub(b.y, a.y)));
     const MI front = hn::Lt(area, hn::Zero(d));  // counter-clockwise to the eye; y is down
-    keep = hn::And(keep, Facing(front, area));
+    keep = hn::And(keep, Facing(frame_.view.culling, front, hn::Gt(area, hn::Zero(d))));
     if (hn::AllFalse(d, keep)) return;
 
     // Turn the area positive: swap the last two corners of front faces.
@@ -213,18 +191,6 @@ class TilePainter {
     compact.Store(LookUp(vertices_.key, cn), queue.key[2] + n);
     compact.Store(hn::LoadU(DU(), frame_.set.id.data() + at), queue.id + n);
     queue.count += compact.count();
-  }
-
-  HWY_INLINE MI Facing(MI front, VI area) const {
-    const DI d;
-    const MI back = hn::Gt(area, hn::Zero(d));
-    switch (frame_.view.culling) {
-      case Culling::none: return hn::Or(front, back);
-      case Culling::back: return front;
-      case Culling::front: return back;
-      case Culling::both: break;
-    }
-    return hn::And(front, back);  // none
   }
 
   void DrawLargeLanes(const Cluster& cluster, std::size_t first, MI large) {

@@ -5,8 +5,6 @@
 #include <array>
 #include <utility>
 
-#include "view/clip.h"
-
 namespace frontmost::zbuffer_detail {
 namespace {
 
@@ -78,19 +76,10 @@ void append_records(const ClusterSet& set, const Cluster& cluster, const ScreenT
   const SnappedCluster snapped(set, cluster, t);
   for (std::size_t i = 0; i < cluster.triangle_count; ++i) {
     const ClippedPolygon polygon = snapped.polygon(i);
-    for (int k = 2; k < polygon.count; ++k) {
-      const ScreenVertex* fan[3] = {&polygon.corners[0], &polygon.corners[std::size_t(k - 1)],
-                                    &polygon.corners[std::size_t(k)]};
-      TriangleRecord record;
-      record.id = set.id[cluster.first_triangle + i];
-      for (int v = 0; v < 3; ++v) {
-        record.x[v] = fan[v]->x + t.centre_x;
-        record.y[v] = fan[v]->y + t.centre_y;
-        record.key[v] = fan[v]->key;
-      }
+    for_each_of_fan(polygon, t, set.id[cluster.first_triangle + i], [&](TriangleRecord& record) {
       const PixelRect rect = pixel_rect(record, view.width, view.height);
       if (rect.x0 <= rect.x1 && rect.y0 <= rect.y1 && orient(record, view.culling)) records.push_back(record);
-    }
+    });
   }
 }
 
@@ -100,6 +89,13 @@ PixelRect pixel_rect(const TriangleRecord& r, int width, int height) {
   const auto [y_min, y_max] = std::minmax({r.y[0], r.y[1], r.y[2]});
   return {std::max(x_min >> 8, 0), std::max(y_min >> 8, 0), std::min(x_max >> 8, width - 1),
           std::min(y_max >> 8, height - 1)};
+}
+
+PixelRect sampled_rect(const TriangleRecord& r, const glm::ivec2& low, const glm::ivec2& high, int width, int height) {
+  const auto [x_min, x_max] = std::minmax({r.x[0], r.x[1], r.x[2]});
+  const auto [y_min, y_max] = std::minmax({r.y[0], r.y[1], r.y[2]});
+  return {std::max((x_min + 255 - high.x) >> 8, 0), std::max((y_min + 255 - high.y) >> 8, 0),
+          std::min((x_max - low.x) >> 8, width - 1), std::min((y_max - low.y) >> 8, height - 1)};
 }
 
 bool misses(const TriangleRecord& r, const PixelRect& rect) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "surfaces/cluster_set.h"
+#include "view/clip.h"
 #include "view/screen_transform.h"
 #include "zbuffer/cull.h"
 
@@ -26,6 +27,47 @@ struct TriangleRecord {
   return std::int64_t(r.x[1] - r.x[0]) * (r.y[2] - r.y[0]) - std::int64_t(r.x[2] - r.x[0]) * (r.y[1] - r.y[0]);
 }
 
+/// Edge functions at a tile's first sample, shifted right by 8, and their steps from pixel to pixel: a sample is
+/// covered where none of the three is negative. Left and top edges include their points.
+struct TriangleEdges {
+  // Over 127 pixels both ways a value changes by at most 2 * 127 * 2^22 < 2^30: limited to this at the first sample,
+  // its sign stays right and its sums stay within 32 bits.
+  static constexpr std::int64_t limit = std::int64_t(1) << 30;
+
+  std::int32_t first[3], step_x[3], step_y[3];
+
+  /// `sample` lies in the tile's first pixel; corners relative to the tile, area positive.
+  TriangleEdges(const TriangleRecord& r, const glm::ivec2& sample) {
+    for (int k = 0; k < 3; ++k) {
+      const int n = k == 2 ? 0 : k + 1;
+      const std::int32_t dx = r.x[n] - r.x[k], dy = r.y[n] - r.y[k];
+      const bool is_top_left = dy < 0 || (dy == 0 && dx > 0);
+      const std::int64_t e =
+          std::int64_t(dx) * (sample.y - r.y[k]) - std::int64_t(dy) * (sample.x - r.x[k]) - (is_top_left ? 0 : 1);
+      first[k] = std::int32_t(std::clamp(e >> 8, -limit, limit));
+      step_x[k] = -dy;
+      step_y[k] = dx;
+    }
+  }
+};
+
+/// The key at (x, y) is (k0 + (x - x0) * gx) + (y - y0) * gy, limited to [k_min, k_max].
+struct KeyPlane {
+  std::int32_t x0, y0;
+  float k0, gx, gy, k_min, k_max;
+
+  /// Precondition: the area is positive.
+  explicit KeyPlane(const TriangleRecord& r) : x0(r.x[0]), y0(r.y[0]), k0(r.key[0]) {
+    const auto x1 = float(r.x[1] - x0), y1 = float(r.y[1] - y0), x2 = float(r.x[2] - x0), y2 = float(r.y[2] - y0);
+    const auto area = float(doubled_area(r));
+    const float k1 = r.key[1] - k0, k2 = r.key[2] - k0;
+    gx = (k1 * y2 - k2 * y1) / area;
+    gy = (x1 * k2 - x2 * k1) / area;
+    k_min = std::min({r.key[0], r.key[1], r.key[2]});
+    k_max = r.nearest();
+  }
+};
+
 /// Turns a record's area positive. \returns false when it is culled, or has no area and so covers nothing.
 [[nodiscard]] bool orient(TriangleRecord& record, Culling culling);
 
@@ -35,6 +77,28 @@ void append_records(const ClusterSet& set, const Cluster& cluster, const ScreenT
 
 /// The pixels whose samples a record may cover, within the image; empty (x1 < x0 or y1 < y0) when there are none.
 [[nodiscard]] PixelRect pixel_rect(const TriangleRecord& record, int width, int height);
+
+/// Those that have a sample between a triangle's outermost corners, `low` and `high` being the least and greatest
+/// sample offsets. Most triangles smaller than a pixel have none, and cover nothing.
+[[nodiscard]] PixelRect sampled_rect(const TriangleRecord& record, const glm::ivec2& low, const glm::ivec2& high,
+                                     int width, int height);
+
+/// Calls visit(record) for the triangles of a clipped polygon, corners from the image's top left, not turned yet. A
+/// fan: the top-left rule covers its inner edges once.
+template <class Visit>
+void for_each_of_fan(const ClippedPolygon& polygon, const ScreenTransform& t, PrimitiveId id, const Visit& visit) {
+  for (std::size_t k = 2; k < std::size_t(polygon.count); ++k) {
+    const ScreenVertex* const fan[3] = {&polygon.corners[0], &polygon.corners[k - 1], &polygon.corners[k]};
+    TriangleRecord record;
+    record.id = id;
+    for (int v = 0; v < 3; ++v) {
+      record.x[v] = fan[v]->x + t.centre_x;
+      record.y[v] = fan[v]->y + t.centre_y;
+      record.key[v] = fan[v]->key;
+    }
+    visit(record);
+  }
+}
 
 /// True when no sample of the rectangle's pixels lies inside all three edges: a quick test by corners.
 [[nodiscard]] bool misses(const TriangleRecord& record, const PixelRect& rect);

@@ -34,7 +34,7 @@ class DepthOracle {
       std::array<glm::vec3, 3> corners = surfaces.corners(id);
       if (surfaces.is_mirrored(surfaces.source(id).instance)) std::swap(corners[1], corners[2]);
       bool finite = true;
-      for (const glm::vec3& p : corners) finite = finite && std::isfinite(p.x + p.y + p.z);
+      for (const glm::vec3& p : corners) finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
       if (finite) draw(clip_triangle(transform_, corners), id + call.id_offset, call.state);
     }
   }

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// As many triangles at once as the vector holds: what all ways to draw them have in common.
+
+// Included once for every target.
+#if defined(FRONTMOST_ZBUFFER_BATCH_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FRONTMOST_ZBUFFER_BATCH_INL_H_
+#undef FRONTMOST_ZBUFFER_BATCH_INL_H_
+#else
+#define FRONTMOST_ZBUFFER_BATCH_INL_H_
+#endif
+
+#include <cstring>
+
+#include "frontmost/view.h"
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::zbuffer_detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using DF = hn::ScalableTag<float>;
+using DI = hn::RebindToSigned<DF>;
+using DU = hn::RebindToUnsigned<DF>;
+using VF = hn::Vec<DF>;
+using VI = hn::Vec<DI>;
+using VU = hn::Vec<DU>;
+using MI = hn::Mask<DI>;
+
+constexpr std::size_t kMaxLanes = hn::MaxLanes(DI());
+
+// Corners no farther apart than this keep every edge value inside the triangle's box within 32 bits: two products of
+// at most 31744 * (31744 + 256).
+constexpr std::int32_t kSmallExtent = 124 * 256;
+
+/// Lane i in bit i.
+template <class D>
+HWY_INLINE std::uint64_t BitsOf(D d, hn::Mask<D> mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  std::uint64_t bits;
+  std::memcpy(&bits, bytes, sizeof bits);
+  return bits & ((std::uint64_t(1) << hn::Lanes(d)) - 1);
+}
+
+/// The least and the greatest coordinate of each triangle.
+struct CoordinateRange {
+  VI least, greatest;
+};
+HWY_INLINE CoordinateRange RangeOf(VI a, VI b, VI c) { return {hn::Min(a, hn::Min(b, c)), hn::Max(a, hn::Max(b, c))}; }
+
+struct PixelRange {
+  VI first, last;
+};
+/// Of `size` pixels the first that has a sample at or after the least coordinate, and the last that has one at or
+/// before the greatest; `low` and `high` are the outermost sample offsets. None where the first is after the last.
+HWY_INLINE PixelRange PixelsOf(const CoordinateRange& range, std::int32_t low, std::int32_t high, std::int32_t size) {
+  const DI d;
+  return {hn::Max(hn::ShiftRight<8>(hn::Add(range.least, hn::Set(d, 255 - high))), hn::Zero(d)),
+          hn::Min(hn::ShiftRight<8>(hn::Sub(range.greatest, hn::Set(d, low))), hn::Set(d, size - 1))};
+}
+
+/// The triangles that culling leaves.
+HWY_INLINE MI Facing(Culling culling, MI front, MI back) {
+  switch (culling) {
+    case Culling::none: return hn::Or(front, back);
+    case Culling::back: return front;
+    case Culling::front: return back;
+    case Culling::both: break;
+  }
+  return hn::And(front, back);  // none
+}
+
+/// Three edges and a depth plane for each triangle. Corners no farther apart than kSmallExtent, areas positive.
+struct Batch {
+  VI x[3], y[3];                // corners
+  VI dx[3], dy[3], bias[3];     // edge k runs from corner k
+  VI area;                      // twice the area
+  VF k0, gx, gy, k_min, k_max;  // key (k0 + dx*gx) + dy*gy from the first corner, limited
+};
+
+HWY_INLINE void SetUpPlane(Batch& b, const VF key[3]) {
+  const DF df;
+  const VI x1 = b.dx[0], y1 = b.dy[0];
+  const VI x2 = hn::Sub(b.x[2], b.x[0]), y2 = hn::Sub(b.y[2], b.y[0]);
+  b.area = hn::Sub(hn::Mul(x1, y2), hn::Mul(x2, y1));
+  const VF k1 = hn::Sub(key[1], key[0]), k2 = hn::Sub(key[2], key[0]);
+  const VF fx1 = hn::ConvertTo(df, x1), fy1 = hn::ConvertTo(df, y1);
+  const VF fx2 = hn::ConvertTo(df, x2), fy2 = hn::ConvertTo(df, y2);
+  const VF fa = hn::ConvertTo(df, b.area);
+  b.k0 = key[0];
+  b.gx = hn::Div(hn::Sub(hn::Mul(k1, fy2), hn::Mul(k2, fy1)), fa);
+  b.gy = hn::Div(hn::Sub(hn::Mul(fx1, k2), hn::Mul(fx2, k1)), fa);
+  b.k_min = hn::Min(key[0], hn::Min(key[1], key[2]));
+  b.k_max = hn::Max(key[0], hn::Max(key[1], key[2]));
+}
+
+/// Precondition: the corners of `b` are set.
+HWY_INLINE void SetUpBatch(Batch& b, const VF key[3]) {
+  for (int k = 0; k < 3; ++k) {
+    const int n = k == 2 ? 0 : k + 1;
+    b.dx[k] = hn::Sub(b.x[n], b.x[k]);
+    b.dy[k] = hn::Sub(b.y[n], b.y[k]);
+    // Top-left edges include their own points: bias 0, the others -1. Top-left is dy < 0, or dy = 0 and dx > 0; that
+    // is dy * 2^16 - dx < 0, as both are within 15 bits.
+    b.bias[k] = hn::Not(hn::ShiftRight<31>(hn::Sub(hn::ShiftLeft<16>(b.dy[k]), b.dx[k])));
+  }
+  SetUpPlane(b, key);
+}
+
+/// Edge values at the samples (sx, sy) within the triangles' boxes: covered where none is negative. From pixel to pixel
+/// they grow by -dy and dx.
+struct BatchEdges {
+  VI e[3];
+};
+HWY_INLINE BatchEdges EdgesAt(const Batch& b, VI sx, VI sy) {
+  BatchEdges at;
+  for (int k = 0; k < 2; ++k)
+    at.e[k] = hn::Sub(hn::Mul(b.dx[k], hn::Sub(sy, b.y[k])), hn::Mul(b.dy[k], hn::Sub(sx, b.x[k])));
+  // The three edge functions of a point add up to twice the area.
+  at.e[2] = hn::Sub(b.area, hn::Add(at.e[0], at.e[1]));
+  for (int k = 0; k < 3; ++k) at.e[k] = hn::ShiftRight<8>(hn::Add(at.e[k], b.bias[k]));
+  return at;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace frontmost::zbuffer_detail
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard by target

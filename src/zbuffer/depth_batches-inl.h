@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangles of a few pixels drawn into a depth buffer, as many at once as the vector holds, and yet in their order: all
+// of a batch are walked pixel by pixel in step, which gives each its own mask of covered pixels; the masks are then
+// taken one after the other.
+
+// Included once for every target.
+#if defined(FRONTMOST_ZBUFFER_DEPTH_BATCHES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FRONTMOST_ZBUFFER_DEPTH_BATCHES_INL_H_
+#undef FRONTMOST_ZBUFFER_DEPTH_BATCHES_INL_H_
+#else
+#define FRONTMOST_ZBUFFER_DEPTH_BATCHES_INL_H_
+#endif
+
+#include <cstring>
+
+#include "hwy/highway.h"
+#include "zbuffer/batch-inl.h"
+#include "zbuffer/depth_kernel.h"
+#include "zbuffer/depth_rows-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::zbuffer_detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <bool is_float>
+class DepthBatches {
+ public:
+  DepthBatches(const DepthCall& call, const PixelRect& tile)
+      : call_(call),
+        tile_(tile),
+        width_(tile.x1 - tile.x0 + 1),
+        height_(tile.y1 - tile.y0 + 1),
+        test_(call.rules),
+        rows_(call, tile, test_) {}
+
+  void Draw(const PlacedTriangles& triangles, std::span<const std::uint32_t> items) {
+    const std::size_t lanes = hn::Lanes(DI());
+    for (std::size_t i = 0; i < items.size(); i += lanes) {
+      Load(triangles, items.subspan(i, HWY_MIN(items.size() - i, lanes)));
+      for (std::size_t s = 0; s < call_.planes.samples.size(); ++s) {
+        Walk(s);
+        Empty(s);
+      }
+    }
+  }
+
+ private:
+  // A triangle whose pixel rectangle is at most this wide and high is drawn with others at once: 64 pixels, a bit each.
+  static constexpr int kWalkLimit = 8;
+
+  void Load(const PlacedTriangles& t, std::span<const std::uint32_t> items) {
+    const DI d;
+    HWY_ALIGN_MAX std::int32_t numbers[kMaxLanes];
+    for (std::size_t k = 0; k < hn::Lanes(d); ++k) numbers[k] = std::int32_t(items[HWY_MIN(k, items.size() - 1)]);
+    const VI number = hn::Load(d, numbers);
+    // Mostly they are neighbours, and can be loaded as such.
+    const bool in_line = items.size() == hn::Lanes(d) && items.back() - items.front() + 1 == hn::Lanes(d);
+    const auto column = [&](auto tag, const auto* from) HWY_ATTR {
+      return in_line ? hn::LoadU(tag, from + numbers[0]) : hn::GatherIndex(tag, from, number);
+    };
+    const VI left = hn::Set(d, tile_.x0 * kSubPixels), top = hn::Set(d, tile_.y0 * kSubPixels);
+    count_ = items.size();
+    for (std::size_t k = 0; k < 3; ++k) {
+      batch_.x[k] = hn::Sub(column(d, t.x[k].data()), left);
+      batch_.y[k] = hn::Sub(column(d, t.y[k].data()), top);
+      key_[k] = column(DF(), t.key[k].data());
+    }
+    id_ = hn::Add(column(DU(), t.id.data()), hn::Set(DU(), call_.id_offset));
+    SetUpBatch(batch_, key_);
+    x_range_ = RangeOf(batch_.x[0], batch_.x[1], batch_.x[2]);
+    y_range_ = RangeOf(batch_.y[0], batch_.y[1], batch_.y[2]);
+    const VI extent = hn::Max(hn::Sub(x_range_.greatest, x_range_.least), hn::Sub(y_range_.greatest, y_range_.least));
+    small_ = hn::Not(hn::Gt(extent, hn::Set(d, kSmallExtent)));
+    live_ = hn::Lt(hn::Iota(d, 0), hn::Set(d, std::int32_t(count_)));
+    std::fill_n(offset_, kMaxLanes, 0.0);
+    if (call_.rules.has_offset())
+      for (std::size_t k = 0; k < count_; ++k) {
+        const KeyPlane plane(t.record(items[k]));
+        offset_[k] = call_.rules.offset_of(plane.gx, plane.gy, t.low[items[k]], t.high[items[k]]);
+      }
+  }
+
+  /// Finds the pixels of each triangle in which this sample is covered, within eight by eight of its first.
+  HWY_INLINE void Walk(std::size_t sample) {
+    const DI d;
+    const glm::ivec2 offset = call_.planes.samples[sample];
+    const PixelRange columns = PixelsOf(x_range_, offset.x, offset.x, width_);
+    const PixelRange rows = PixelsOf(y_range_, offset.y, offset.y, height_);
+    const VI one = hn::Set(d, 1), limit = hn::Set(d, kWalkLimit);
+    VI width = hn::Add(hn::Sub(columns.last, columns.first), one);
+    VI height = hn::Add(hn::Sub(rows.last, rows.first), one);
+    const MI any = hn::And(live_, hn::Gt(hn::Min(width, height), hn::Zero(d)));
+    const MI walked = hn::And(hn::And(any, small_), hn::Not(hn::Gt(hn::Max(width, height), limit)));
+    by_row_ = BitsOf(d, hn::AndNot(walked, any));
+    width = hn::IfThenElseZero(walked, width);
+    height = hn::IfThenElseZero(walked, height);
+    const VI sx = hn::Add(hn::ShiftLeft<8>(columns.first), hn::Set(d, offset.x));
+    const VI sy = hn::Add(hn::ShiftLeft<8>(rows.first), hn::Set(d, offset.y));
+    const int most_x = hn::GetLane(hn::MaxOfLanes(d, width)), most_y = hn::GetLane(hn::MaxOfLanes(d, height));
+    BatchEdges row = EdgesAt(batch_, sx, sy);
+    VI mask[2] = {hn::Zero(d), hn::Zero(d)};  // of four rows each
+    for (int y = 0; y < most_y; ++y) {
+      const VI row_width = hn::IfThenElseZero(hn::Gt(height, hn::Set(d, y)), width);
+      VI e0 = row.e[0], e1 = row.e[1], e2 = row.e[2], bit = hn::Set(d, 1 << (y % 4 * 8)), bits = mask[y / 4];
+      for (int x = 0; x < most_x; ++x) {
+        const MI inside = hn::Gt(row_width, hn::Set(d, x));
+        const MI covered = hn::And(hn::Gt(hn::Or(hn::Or(e0, e1), e2), hn::Set(d, -1)), inside);
+        bits = hn::Or(bits, hn::IfThenElseZero(covered, bit));
+        bit = hn::Add(bit, bit);
+        e0 = hn::Sub(e0, batch_.dy[0]);
+        e1 = hn::Sub(e1, batch_.dy[1]);
+        e2 = hn::Sub(e2, batch_.dy[2]);
+      }
+      mask[y / 4] = bits;
+      for (int k = 0; k < 3; ++k) row.e[k] = hn::Add(row.e[k], batch_.dx[k]);
+    }
+    hn::Store(hn::BitCast(DU(), mask[0]), DU(), mask_[0]);
+    hn::Store(hn::BitCast(DU(), mask[1]), DU(), mask_[1]);
+    drawn_ = by_row_ | BitsOf(d, hn::Ne(hn::Or(mask[0], mask[1]), hn::Zero(d)));
+    // The keys of a pixel are found from here on.
+    from_x_ = hn::Sub(sx, batch_.x[0]);
+    from_y_ = hn::Sub(sy, batch_.y[0]);
+    hn::Store(hn::Add(hn::Mul(rows.first, hn::Set(d, call_.planes.width)), columns.first), d, first_);
+  }
+
+  /// Triangle by triangle.
+  void Empty(std::size_t sample) {
+    std::size_t count = 0;
+    for (std::uint64_t left = drawn_; left != 0; left &= left - 1) {
+      const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero64(left);
+      if (by_row_ >> lane & 1) {
+        Merge(sample, count);
+        count = 0;
+        rows_.Draw(RecordOf(lane), offset_[lane], sample);
+        continue;
+      }
+      std::uint64_t mask = std::uint64_t(mask_[1][lane]) << 32 | mask_[0][lane];
+      for (; mask != 0; mask &= mask - 1)
+        references_[count++] = std::uint32_t(hwy::Num0BitsBelowLS1Bit_Nonzero64(mask) << 4 | lane);
+    }
+    Merge(sample, count);
+  }
+
+  /// Tests the fragments collected so far, each a pixel << 4 | lane, in order.
+  void Merge(std::size_t sample, std::size_t count) {
+    const DI d;
+    const DF df;
+    const DU du;
+    const DD dd;
+    HWY_ALIGN_MAX float key[kMaxLanes];
+    HWY_ALIGN_MAX std::uint32_t stored[kMaxLanes], id[kMaxLanes];
+    HWY_ALIGN_MAX double offset[kMaxLanes] = {};
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+      const VI reference = hn::BitCast(d, hn::LoadU(du, references_ + i));
+      const std::size_t live = HWY_MIN(count - i, hn::Lanes(d));
+      const VI lane = hn::And(reference, hn::Set(d, std::int32_t(hn::Lanes(d)) - 1));
+      const auto of_f = hn::IndicesFromVec(df, lane);
+      const auto of_i = hn::IndicesFromVec(d, lane);
+      const VI x = hn::And(hn::ShiftRight<4>(reference), hn::Set(d, 7)), y = hn::ShiftRight<7>(reference);
+      const VF dx = hn::ConvertTo(df, hn::Add(hn::TableLookupLanes(from_x_, of_i), hn::ShiftLeft<8>(x)));
+      const VF dy = hn::ConvertTo(df, hn::Add(hn::TableLookupLanes(from_y_, of_i), hn::ShiftLeft<8>(y)));
+      VF k = hn::Add(hn::TableLookupLanes(batch_.k0, of_f), hn::Mul(dx, hn::TableLookupLanes(batch_.gx, of_f)));
+      k = hn::Add(k, hn::Mul(dy, hn::TableLookupLanes(batch_.gy, of_f)));
+      k = hn::Min(hn::Max(k, hn::TableLookupLanes(batch_.k_min, of_f)), hn::TableLookupLanes(batch_.k_max, of_f));
+      hn::Store(k, df, key);
+      hn::Store(hn::TableLookupLanes(id_, hn::IndicesFromVec(du, lane)), du, id);
+      if (call_.rules.has_offset())
+        for (std::size_t n = 0; n < live; ++n) offset[n] = offset_[references_[i + n] & 15];
+      for (std::size_t n = 0; n < hn::Lanes(d); n += hn::Lanes(dd))
+        hn::Store(test_.Stored(hn::Load(HalfF(), key + n), hn::Load(dd, offset + n)), HalfU(), stored + n);
+      for (std::size_t n = 0; n < live; ++n) Put(PlaceOf(sample, references_[i + n]), stored[n], id[n], key[n]);
+    }
+  }
+
+  [[nodiscard]] HWY_INLINE std::size_t PlaceOf(std::size_t sample, std::uint32_t reference) const {
+    const DepthPlanes& p = call_.planes;
+    const std::size_t tile = (sample * std::size_t(p.height) + std::size_t(tile_.y0)) * std::size_t(p.width) +
+                             std::size_t(tile_.x0) + std::size_t(first_[reference & 15]);
+    return tile + std::size_t(reference >> 7) * std::size_t(p.width) + (reference >> 4 & 7);
+  }
+
+  HWY_INLINE void Put(std::size_t at, std::uint32_t stored, PrimitiveId id, float key) const {
+    const DepthPlanes& p = call_.planes;
+    if (!test_.Passes(stored, p.stored[at])) return;
+    if (call_.rules.mask) p.stored[at] = stored;
+    p.primitives[at] = id;
+    p.keys[at] = key;
+  }
+
+  [[nodiscard]] TriangleRecord RecordOf(std::size_t lane) const {
+    HWY_ALIGN_MAX std::int32_t x[kMaxLanes], y[kMaxLanes];
+    HWY_ALIGN_MAX float key[kMaxLanes];
+    HWY_ALIGN_MAX std::uint32_t id[kMaxLanes];
+    TriangleRecord record;
+    for (int k = 0; k < 3; ++k) {
+      hn::Store(batch_.x[k], DI(), x);
+      hn::Store(batch_.y[k], DI(), y);
+      hn::Store(key_[k], DF(), key);
+      record.x[k] = x[lane];
+      record.y[k] = y[lane];
+      record.key[k] = key[lane];
+    }
+    hn::Store(id_, DU(), id);
+    record.id = id[lane];
+    return record;
+  }
+
+  const DepthCall& call_;
+  PixelRect tile_;
+  int width_, height_;
+  DepthTest<is_float> test_;
+  DepthRows<is_float> rows_;
+  // Of the batch.
+  Batch batch_;
+  VF key_[3];
+  VU id_;
+  CoordinateRange x_range_, y_range_;
+  MI small_, live_;
+  std::size_t count_ = 0;
+  double offset_[kMaxLanes];
+  // Of the batch at one sample.
+  std::uint64_t by_row_ = 0, drawn_ = 0;         // lanes that are drawn on their own; those, and all that cover a pixel
+  VI from_x_, from_y_;                           // from the first corner to the sample of the first pixel
+  HWY_ALIGN_MAX std::int32_t first_[kMaxLanes];  // its place in the tile
+  HWY_ALIGN_MAX std::uint32_t mask_[2][kMaxLanes];
+  std::uint32_t references_[kMaxLanes * kWalkLimit * kWalkLimit + kMaxLanes];
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace frontmost::zbuffer_detail
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard by target
