@@ -7,14 +7,10 @@
 #include "frontmost/frontmost.h"
 #include "good_models.h"
 #include "support/oracle.h"
+#include "support/same_visible.h"
 
 namespace frontmost::test {
 namespace {
-
-std::size_t covered(const Visible& visible) {
-  return std::size_t(std::count_if(visible.primitives.begin(), visible.primitives.end(),
-                                   [](PrimitiveId id) { return id != no_primitive; }));
-}
 
 /// The oracle's time is triangles times pixels.
 bool is_small(const Surfaces& surfaces) { return surfaces.primitive_count() <= 6000; }
@@ -22,10 +18,7 @@ bool is_small(const Surfaces& surfaces) { return surfaces.primitive_count() <= 6
 void expect_oracles_answer(const Surfaces& surfaces) {
   const View view = frame(surfaces, 96, 72);
   const Visible expected = oracle(surfaces, view), actual = zbuffer(surfaces, view);
-  for (std::size_t i = 0; i < expected.keys.size(); ++i) {
-    ASSERT_EQ(expected.primitives[i], actual.primitives[i]) << "pixel " << i;
-    ASSERT_EQ(expected.keys[i], actual.keys[i]) << "pixel " << i;
-  }
+  expect_same(expected, actual);
 }
 
 TEST(AllModels, AreSeenAlikeByEveryInstructionSetAndNumberOfThreads) {

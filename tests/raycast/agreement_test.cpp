@@ -34,13 +34,9 @@ TEST_P(EveryKindAgrees, WithTheZBuffer) {
   std::size_t differing = 0, samples = 0;
   for (std::uint64_t seed = 0; seed < seeds(40); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    Random random(seed + 900);
-    const bool covers_little = GetParam() == Kind::tiny || GetParam() == Kind::slivers;
-    const Scene scene = scene_of(random_mesh(GetParam(), (30 + random.below(300)) * (covers_little ? 6 : 1), seed));
-    const Surfaces surfaces(scene);
-    View view = random_view(random, 1 + random.below(200), 1 + random.below(170));
-    view.culling = Culling(random.below(3));
-    view.samples = seed % 4 == 3 ? 4 : 1;
+    const RandomCase random = random_case(GetParam(), seed, 900);
+    const Surfaces surfaces(random.scene);
+    const View& view = random.view;
     differing += expect_explained(surfaces, view).differing();
     samples += view.sample_count();
   }

@@ -4,6 +4,7 @@
 
 #include "frontmost/raycast.h"
 #include "raycast/sample_rule.h"
+#include "support/oracle.h"
 
 namespace frontmost::test {
 
@@ -14,17 +15,11 @@ inline bool keeps(Culling culling, int facing) {
 
 class RayOracle {
  public:
-  explicit RayOracle(const View& view)
-      : t_(view),
-        visible_{view, Buffer<PrimitiveId>(view.sample_count(), no_primitive),
-                 Buffer<float>(view.sample_count(), 0.0f)} {}
+  explicit RayOracle(const View& view) : t_(view), visible_(nothing_visible(view)) {}
 
   void meet(const std::array<glm::vec3, 3>& world, PrimitiveId id) {
     std::array<raycast_detail::Corner, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (!std::isfinite(world[k].x) || !std::isfinite(world[k].y) || !std::isfinite(world[k].z)) return;
-      corners[k] = raycast_detail::make_corner(t_, world[k]);
-    }
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = raycast_detail::make_corner(t_, world[k]);
     constexpr int tile = raycast_detail::kTileSize;
     for (int y = 0; y < visible_.view.height; y += tile)
       for (int x = 0; x < visible_.view.width; x += tile) {
@@ -50,15 +45,8 @@ class RayOracle {
                       sy = float(256 * y + samples[s].y - t_.centre_y);
           if (!keeps(visible_.view.culling, raycast_detail::facing(t_, corners, sx, sy))) continue;
           const float raw = plane.raw(sx - centre.x, sy - centre.y);
-          if (plane.sees(raw)) keep(visible_.index(x, y, int(s)), plane.clamped(raw), id);
+          if (plane.sees(raw)) keep_nearest(visible_, visible_.index(x, y, int(s)), plane.clamped(raw), id);
         }
-  }
-
-  void keep(std::size_t at, float key, PrimitiveId id) {
-    const bool nearer = key > visible_.keys[at] || (key == visible_.keys[at] && id < visible_.primitives[at]);
-    if (!nearer) return;
-    visible_.keys[at] = key;
-    visible_.primitives[at] = id;
   }
 
   ScreenTransform t_;
@@ -67,11 +55,8 @@ class RayOracle {
 
 inline Visible ray_oracle(const Surfaces& surfaces, const View& view) {
   RayOracle oracle(view);
-  for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
-    std::array<glm::vec3, 3> corners = surfaces.corners(id);
-    if (surfaces.is_mirrored(surfaces.source(id).instance)) std::swap(corners[1], corners[2]);
-    oracle.meet(corners, id);
-  }
+  for_each_primitive(surfaces, 0, no_primitive,
+                     [&](PrimitiveId id, const std::array<glm::vec3, 3>& world) { oracle.meet(world, id); });
   return oracle.visible();
 }
 

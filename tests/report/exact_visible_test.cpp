@@ -34,15 +34,16 @@ Rational rational_depth(const std::array<glm::vec3, 3>& corners, const SampleRay
   return depth;
 }
 
-/// Which triangles cover a sample, by the oracle's coverage alone: each is drawn on its own.
+/// Which triangles cover a sample, by the oracle's coverage alone.
 std::vector<std::vector<PrimitiveId>> covering(const Surfaces& surfaces, const View& view) {
   std::vector<std::vector<PrimitiveId>> lists(view.sample_count());
-  for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
-    Oracle oracle(view);
-    oracle.draw(surfaces.corners(id), id);
-    for (std::size_t i = 0; i < lists.size(); ++i)
-      if (oracle.visible().primitives[i] == id) lists[i].push_back(id);
-  }
+  const ScreenTransform transform(view);
+  const Visible planes = nothing_visible(view);
+  for_each_primitive(surfaces, 0, no_primitive, [&](PrimitiveId id, const std::array<glm::vec3, 3>& world) {
+    for_each_triangle(transform, view.culling, clip_triangle(transform, world), id, [&](const OracleTriangle& t) {
+      for_each_covered(planes, t, [&](std::size_t at, float) { lists[at].push_back(id); });
+    });
+  });
   return lists;
 }
 

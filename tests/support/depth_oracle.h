@@ -30,13 +30,9 @@ class DepthOracle {
   }
 
   void draw(const Surfaces& surfaces, const DepthDraw& call) {
-    for (PrimitiveId id = call.begin; id < call.end && id < surfaces.primitive_count(); ++id) {
-      std::array<glm::vec3, 3> corners = surfaces.corners(id);
-      if (surfaces.is_mirrored(surfaces.source(id).instance)) std::swap(corners[1], corners[2]);
-      bool finite = true;
-      for (const glm::vec3& p : corners) finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-      if (finite) draw(clip_triangle(transform_, corners), id + call.id_offset, call.state);
-    }
+    for_each_primitive(surfaces, call.begin, call.end, [&](PrimitiveId id, const std::array<glm::vec3, 3>& world) {
+      draw(clip_triangle(transform_, world), id + call.id_offset, call.state);
+    });
   }
 
   [[nodiscard]] const Buffer<std::uint32_t>& stored() const { return stored_; }
@@ -104,37 +100,13 @@ class DepthOracle {
     double greatest = 0;
     for (int i = 0; i < polygon.count; ++i)
       greatest = std::max(greatest, window_depth(polygon.corners[std::size_t(i)].key, state));
-    for (std::size_t k = 2; k < std::size_t(polygon.count); ++k) {
-      OracleTriangle t{};
-      const ScreenVertex corners[3] = {polygon.corners[0], polygon.corners[k - 1], polygon.corners[k]};
-      for (int v = 0; v < 3; ++v) {
-        t.x[v] = corners[v].x + transform_.centre_x;
-        t.y[v] = corners[v].y + transform_.centre_y;
-        t.key[v] = corners[v].key;
-      }
-      t.id = id;
-      draw(t, greatest, state);
-    }
-  }
-
-  void draw(OracleTriangle t, double greatest, const DepthState& state) {
-    const std::int64_t area = oracle_area(t);
-    const bool front = area < 0;
-    if (area == 0 || view_.culling == Culling::both || (view_.culling == Culling::back && !front) ||
-        (view_.culling == Culling::front && front))
-      return;
-    if (front) std::swap(t.x[1], t.x[2]), std::swap(t.y[1], t.y[2]), std::swap(t.key[1], t.key[2]);
-    const double o = offset(t, greatest, state);
-    const auto samples = sample_offsets(view_.samples);
-    for (std::size_t s = 0; s < samples.size(); ++s)
-      for (int y = 0; y < view_.height; ++y)
-        for (int x = 0; x < view_.width; ++x) {
-          const std::int64_t px = 256 * x + samples[s].x, py = 256 * y + samples[s].y;
-          if (!oracle_covers(t, px, py)) continue;
-          const float key = oracle_key(t, px, py);
-          const double depth = std::min(std::max(window_depth(key, state) + o, 0.0), 1.0);
-          fragment(visible_.index(x, y, int(s)), rounded(depth), key, t.id, state);
-        }
+    for_each_triangle(transform_, view_.culling, polygon, id, [&](const OracleTriangle& t) {
+      const double o = offset(t, greatest, state);
+      for_each_covered(visible_, t, [&](std::size_t at, float key) {
+        const double depth = std::min(std::max(window_depth(key, state) + o, 0.0), 1.0);
+        fragment(at, rounded(depth), key, t.id, state);
+      });
+    });
   }
 
   void fragment(std::size_t at, std::uint32_t depth, float key, PrimitiveId id, const DepthState& state) {

@@ -42,70 +42,73 @@ inline float oracle_key(const OracleTriangle& t, std::int64_t px, std::int64_t p
   return std::min(std::max(key, low), high);
 }
 
-class Oracle {
- public:
-  explicit Oracle(const View& view)
-      : transform_(view),
-        visible_{view, Buffer<PrimitiveId>(view.sample_count(), no_primitive),
-                 Buffer<float>(view.sample_count(), 0.0f)} {}
-
-  void draw(const std::array<glm::vec3, 3>& world, PrimitiveId id) {
-    for (const glm::vec3& p : world)
-      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return;
-    const ClippedPolygon polygon = clip_triangle(transform_, world);
-    for (std::size_t k = 2; k < std::size_t(polygon.count); ++k) {
-      OracleTriangle t{};
-      const ScreenVertex corners[3] = {polygon.corners[0], polygon.corners[k - 1], polygon.corners[k]};
-      for (int v = 0; v < 3; ++v) {
-        t.x[v] = corners[v].x + transform_.centre_x;
-        t.y[v] = corners[v].y + transform_.centre_y;
-        t.key[v] = corners[v].key;
-      }
-      t.id = id;
-      draw(t);
-    }
-  }
-
-  [[nodiscard]] const Visible& visible() const { return visible_; }
-
- private:
-  void draw(OracleTriangle t) {
-    const std::int64_t area = oracle_area(t);
-    const bool front = area < 0;
-    const Culling culling = visible_.view.culling;
-    if (area == 0 || culling == Culling::both || (culling == Culling::back && !front) ||
-        (culling == Culling::front && front))
-      return;
-    if (front) std::swap(t.x[1], t.x[2]), std::swap(t.y[1], t.y[2]), std::swap(t.key[1], t.key[2]);
-    const auto samples = sample_offsets(visible_.view.samples);
-    for (std::size_t s = 0; s < samples.size(); ++s)
-      for (int y = 0; y < visible_.view.height; ++y)
-        for (int x = 0; x < visible_.view.width; ++x) {
-          const std::int64_t px = 256 * x + samples[s].x, py = 256 * y + samples[s].y;
-          if (oracle_covers(t, px, py)) keep(visible_.index(x, y, int(s)), oracle_key(t, px, py), t.id);
-        }
-  }
-
-  void keep(std::size_t at, float key, PrimitiveId id) {
-    const bool nearer = visible_.primitives[at] == no_primitive || key > visible_.keys[at] ||
-                        (key == visible_.keys[at] && id < visible_.primitives[at]);
-    if (!nearer) return;
-    visible_.keys[at] = key;
-    visible_.primitives[at] = id;
-  }
-
-  ScreenTransform transform_;
-  Visible visible_;
-};
-
-inline Visible oracle(const Surfaces& surfaces, const View& view) {
-  Oracle oracle(view);
-  for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
+/// Calls visit(id, corners) for the primitives of [begin, end) that can be seen at all: finite corners, in world space,
+/// the winding of mirrored instances turned.
+template <class Visit>
+void for_each_primitive(const Surfaces& surfaces, PrimitiveId begin, PrimitiveId end, const Visit& visit) {
+  for (PrimitiveId id = begin; id < std::min(end, surfaces.primitive_count()); ++id) {
     std::array<glm::vec3, 3> corners = surfaces.corners(id);
     if (surfaces.is_mirrored(surfaces.source(id).instance)) std::swap(corners[1], corners[2]);
-    oracle.draw(corners, id);
+    bool finite = true;
+    for (const glm::vec3& p : corners)
+      finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+    if (finite) visit(id, corners);
   }
-  return oracle.visible();
+}
+
+/// Calls visit(triangle) for what clipping and culling leave of a primitive, turned so that areas are positive.
+template <class Visit>
+void for_each_triangle(const ScreenTransform& transform, Culling culling, const ClippedPolygon& polygon, PrimitiveId id,
+                       const Visit& visit) {
+  for (std::size_t k = 2; k < std::size_t(polygon.count); ++k) {
+    OracleTriangle t{};
+    const ScreenVertex corners[3] = {polygon.corners[0], polygon.corners[k - 1], polygon.corners[k]};
+    for (int v = 0; v < 3; ++v) {
+      t.x[v] = corners[v].x + transform.centre_x;
+      t.y[v] = corners[v].y + transform.centre_y;
+      t.key[v] = corners[v].key;
+    }
+    t.id = id;
+    const std::int64_t area = oracle_area(t);
+    const bool front = area < 0;
+    if (area == 0 || culling == Culling::both || (culling == Culling::back && !front) ||
+        (culling == Culling::front && front))
+      continue;
+    if (front) std::swap(t.x[1], t.x[2]), std::swap(t.y[1], t.y[2]), std::swap(t.key[1], t.key[2]);
+    visit(t);
+  }
+}
+
+/// Calls visit(index, key) for every sample that a triangle covers.
+template <class Visit>
+void for_each_covered(const Visible& visible, const OracleTriangle& t, const Visit& visit) {
+  const auto samples = sample_offsets(visible.view.samples);
+  for (std::size_t s = 0; s < samples.size(); ++s)
+    for (int y = 0; y < visible.view.height; ++y)
+      for (int x = 0; x < visible.view.width; ++x) {
+        const std::int64_t px = 256 * x + samples[s].x, py = 256 * y + samples[s].y;
+        if (oracle_covers(t, px, py)) visit(visible.index(x, y, int(s)), oracle_key(t, px, py));
+      }
+}
+
+/// Keeps a fragment where it is nearer than what was kept, or as near and of a lower id.
+inline void keep_nearest(Visible& visible, std::size_t at, float key, PrimitiveId id) {
+  const bool nearer = visible.primitives[at] == no_primitive || key > visible.keys[at] ||
+                      (key == visible.keys[at] && id < visible.primitives[at]);
+  if (!nearer) return;
+  visible.keys[at] = key;
+  visible.primitives[at] = id;
+}
+
+inline Visible oracle(const Surfaces& surfaces, const View& view) {
+  const ScreenTransform transform(view);
+  Visible visible = nothing_visible(view);
+  for_each_primitive(surfaces, 0, no_primitive, [&](PrimitiveId id, const std::array<glm::vec3, 3>& world) {
+    for_each_triangle(transform, view.culling, clip_triangle(transform, world), id, [&](const OracleTriangle& t) {
+      for_each_covered(visible, t, [&](std::size_t at, float key) { keep_nearest(visible, at, key, t.id); });
+    });
+  });
+  return visible;
 }
 
 }  // namespace frontmost::test

@@ -129,4 +129,20 @@ inline View random_view(Random& random, int width, int height) {
   return view;
 }
 
+/// A scene of one kind and a view of it, of all sizes up to 200 x 170, with and without culling, one sample or four.
+struct RandomCase {
+  Scene scene;
+  View view;
+};
+inline RandomCase random_case(Kind kind, std::uint64_t seed, std::uint64_t salt = 100) {
+  Random random(seed + salt);
+  const bool covers_little = kind == Kind::tiny || kind == Kind::slivers;
+  RandomCase made{scene_of(random_mesh(kind, (30 + random.below(300)) * (covers_little ? 6 : 1), seed)), {}};
+  const int width = 1 + random.below(200), height = 1 + random.below(170);
+  made.view = random_view(random, width, height);
+  made.view.culling = Culling(random.below(3));
+  made.view.samples = seed % 4 == 3 ? 4 : 1;
+  return made;
+}
+
 }  // namespace frontmost::test

@@ -10,25 +10,19 @@
 #include "frontmost/zbuffer.h"
 #include "support/depth_oracle.h"
 #include "support/random_scene.h"
+#include "support/same_visible.h"
 
 namespace frontmost::test {
 namespace {
 
 constexpr DepthFormat all_formats[] = {DepthFormat::d8, DepthFormat::d16, DepthFormat::d24, DepthFormat::f32};
 
-std::size_t covered(const Visible& visible) {
-  std::size_t count = 0;
-  for (const PrimitiveId id : visible.primitives) count += id != no_primitive;
-  return count;
-}
-
 void expect_same(const DepthOracle& expected, const DepthBuffer& actual, const View& view) {
   const Visible& a = expected.visible();
   const Visible b = actual.visible(view);
   std::size_t differing = 0, first = 0;
   for (std::size_t i = 0; i < a.keys.size(); ++i) {
-    const bool same = expected.stored()[i] == actual.stored()[i] && a.primitives[i] == b.primitives[i] &&
-                      std::memcmp(&a.keys[i], &b.keys[i], 4) == 0;
+    const bool same = expected.stored()[i] == actual.stored()[i] && same_sample(a, b, i);
     if (!same && differing++ == 0) first = i;
   }
   EXPECT_EQ(differing, 0u) << "first at sample " << first << ": stored " << expected.stored()[first] << " by "

@@ -7,41 +7,14 @@
 #include <gtest/gtest.h>
 
 #include <cfenv>
-#include <cstring>
 #include <numeric>
 
 #include "frontmost/zbuffer.h"
 #include "support/random_scene.h"
+#include "support/same_visible.h"
 
 namespace frontmost::test {
 namespace {
-
-/// The number of samples where two answers differ in any bit, and where the first is.
-struct Difference {
-  std::size_t count = 0, first = 0;
-};
-
-Difference difference(const Visible& a, const Visible& b) {
-  Difference d;
-  for (std::size_t i = 0; i < a.keys.size(); ++i) {
-    if (a.primitives[i] == b.primitives[i] && std::memcmp(&a.keys[i], &b.keys[i], 4) == 0) continue;
-    if (d.count++ == 0) d.first = i;
-  }
-  return d;
-}
-
-void expect_same(const Visible& expected, const Visible& actual) {
-  const Difference d = difference(expected, actual);
-  EXPECT_EQ(d.count, 0u) << "first at sample " << d.first << ": primitive " << expected.primitives[d.first] << " key "
-                         << expected.keys[d.first] << " expected, " << actual.primitives[d.first] << " key "
-                         << actual.keys[d.first] << " found";
-}
-
-std::size_t covered(const Visible& visible) {
-  std::size_t count = 0;
-  for (const PrimitiveId id : visible.primitives) count += id != no_primitive;
-  return count;
-}
 
 class EveryKind : public testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(ZBuffer, EveryKind, testing::ValuesIn(all_kinds));
@@ -50,13 +23,9 @@ TEST_P(EveryKind, EqualsTheOracleOnEveryInstructionSet) {
   std::size_t seen = 0;
   for (std::uint64_t seed = 0; seed < seeds(24); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    Random random(seed + 100);
-    const bool covers_little = GetParam() == Kind::tiny || GetParam() == Kind::slivers;
-    const Scene scene = scene_of(random_mesh(GetParam(), (30 + random.below(300)) * (covers_little ? 6 : 1), seed));
-    const Surfaces surfaces(scene);
-    View view = random_view(random, 1 + random.below(200), 1 + random.below(170));
-    view.culling = Culling(random.below(3));
-    view.samples = seed % 4 == 3 ? 4 : 1;
+    const RandomCase random = random_case(GetParam(), seed);
+    const Surfaces surfaces(random.scene);
+    const View& view = random.view;
     const Visible expected = oracle(surfaces, view);
     seen += covered(expected);
     for (const Isa isa : available_isas()) {
