@@ -30,14 +30,16 @@ struct ZBuffer::State {
 
 bool ZBuffer::State::prepare_planes(const View& view) {
   const View& last = visible.view;
-  const bool same_grid = last.width == view.width && last.height == view.height && last.samples == view.samples;
   const bool fits = visible.primitives.size() == view.sample_count();
-  visible.view = view;
+  // Whatever fails for want of memory, planes, their view and `blank` go together.
   if (!fits) {
-    visible.primitives = Buffer<PrimitiveId>(view.sample_count());
-    visible.keys = Buffer<float>(view.sample_count());
+    visible = {};
+    visible = {view, Buffer<PrimitiveId>(view.sample_count()), Buffer<float>(view.sample_count())};
+    blank.clear();
   }
-  if (!fits || !same_grid) blank.assign(plan.tile_count(), 0);
+  if (last.width != view.width || last.height != view.height || last.samples != view.samples) blank.clear();
+  if (blank.empty()) blank.assign(plan.tile_count(), 0);
+  visible.view = view;
   return fits;
 }
 
