@@ -31,15 +31,21 @@ struct CullResult {
   [[nodiscard]] PixelRect rect(std::size_t i) const { return {x0[i], y0[i], x1[i], y1[i]}; }
 };
 
-/// What is known of the clusters.
+/// Clusters, and how they are looked at.
 struct CullInput {
   const BoxArrays& boxes;
   const ConeArrays* cones;  ///< null: facing culls triangles only
+  const ScreenTransform& transform;
+  const View& view;
 };
 
-/// Decides on clusters [begin, end); `begin` is a multiple of 16. Never culls what a sample sees: every bound derived
-/// from a box corner is padded by what the rounding of a vertex inside the box can amount to.
-void cull_clusters(const CullInput& input, const ScreenTransform& transform, const View& view, Isa isa,
-                   std::size_t begin, std::size_t end, CullResult& result);
+/// Clusters [begin, end); `begin` is a multiple of 16.
+struct ClusterRange {
+  std::size_t begin, end;
+};
+
+/// Never culls what a sample sees: every bound derived from a box corner is padded by what the rounding of a vertex
+/// inside the box can amount to.
+void cull_clusters(const CullInput& input, Isa isa, const ClusterRange& range, CullResult& result);
 
 }  // namespace frontmost::zbuffer_detail

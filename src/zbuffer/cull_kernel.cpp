@@ -131,8 +131,12 @@ class FacingCull {
 
 class Cull {
  public:
-  Cull(const CullInput& input, const ScreenTransform& transform, const View& for_view)
-      : t(transform), view(for_view), boxes(input.boxes), cones(input.cones), rest(RestOfEye(transform, for_view)) {
+  explicit Cull(const CullInput& input)
+      : t(input.transform),
+        view(input.view),
+        boxes(input.boxes),
+        cones(input.cones),
+        rest(RestOfEye(input.transform, input.view)) {
     const Projection& p = view.projection;
     const double x = view.width / (p.right - p.left), y = view.height / (p.top - p.bottom);
     inverse_scale = float(1 / (std::min(x, y) * kSubPixels));
@@ -140,105 +144,148 @@ class Cull {
 
   HWY_INLINE void Group(std::size_t i, CullResult& out) const {
     const DF d;
-    const DI di;
-    const VF lx = hn::Load(d, boxes.low_x.data() + i), hx = hn::Load(d, boxes.high_x.data() + i);
-    const VF ly = hn::Load(d, boxes.low_y.data() + i), hy = hn::Load(d, boxes.high_y.data() + i);
-    const VF lz = hn::Load(d, boxes.low_z.data() + i), hz = hn::Load(d, boxes.high_z.data() + i);
-    const VF ex = hn::Set(d, t.eye[0]), ey = hn::Set(d, t.eye[1]), ez = hn::Set(d, t.eye[2]);
-    const VF xs[2] = {hn::Sub(lx, ex), hn::Sub(hx, ex)};
-    const VF ys[2] = {hn::Sub(ly, ey), hn::Sub(hy, ey)};
-    const VF zs[2] = {hn::Sub(lz, ez), hn::Sub(hz, ez)};
-    const Reach reach{hn::Max(hn::Abs(xs[0]), hn::Abs(xs[1])), hn::Max(hn::Abs(ys[0]), hn::Abs(ys[1])),
-                      hn::Max(hn::Abs(zs[0]), hn::Abs(zs[1]))};
-    const VF x_margin = Margin(x_row, reach), y_margin = Margin(y_row, reach), d_margin = Margin(d_row, reach);
+    const Offsets from_eye = OffsetsOf(i);
+    const Margins margin = MarginsOf(from_eye);
+    const Extent e = ExtentOf(from_eye, margin);
+    const Pads pad = PadsOf(e, margin);
+    const MF empty = hn::Lt(hn::Load(d, boxes.high_x.data() + i), hn::Load(d, boxes.low_x.data() + i));
+    MF outside = hn::Or(empty, Outside(e, margin));
+    const MF whole = Whole(e, pad);
+    if (cones != nullptr) {
+      const VF error = hn::Sqrt(hn::Add(hn::Mul(pad.x, pad.x), hn::Mul(pad.y, pad.y)));
+      const Rays rays = t.orthographic ? ParallelRays(error) : RaysFromEye(from_eye, error, e.farthest);
+      outside = hn::Or(outside, hn::And(whole, FacingCull(*cones, view.culling).TurnedAway(i, rays)));
+    }
+    StorePlace(i, e, pad, out);
+    StoreFates(i, outside, whole, out);
+  }
 
-    // Over the corners: range of D, the greatest signed distance to each side of the frustum, range of X/W and Y/W.
+ private:
+  /// Sides of the boxes from the eye as a float: the lower, the upper.
+  struct Offsets {
+    VF x[2], y[2], z[2];
+  };
+  /// What rounding may amount to in X, Y, D and W.
+  struct Margins {
+    VF x, y, d, w;
+  };
+  /// Over the corners: D, with its margin; the greatest signed distance to each side of the frustum; X/W and Y/W.
+  struct Extent {
+    VF nearest, farthest;
+    VF left, right, top, bottom;
+    VF x_min, x_max, y_min, y_max;
+  };
+  /// What X/W and Y/W may be off, snapping included, and 1/W of what is nearest.
+  struct Pads {
+    VF x, y, inverse_nearest;
+  };
+
+  [[nodiscard]] HWY_INLINE Offsets OffsetsOf(std::size_t i) const {
+    const DF d;
+    const VF ex = hn::Set(d, t.eye[0]), ey = hn::Set(d, t.eye[1]), ez = hn::Set(d, t.eye[2]);
+    return {{hn::Sub(hn::Load(d, boxes.low_x.data() + i), ex), hn::Sub(hn::Load(d, boxes.high_x.data() + i), ex)},
+            {hn::Sub(hn::Load(d, boxes.low_y.data() + i), ey), hn::Sub(hn::Load(d, boxes.high_y.data() + i), ey)},
+            {hn::Sub(hn::Load(d, boxes.low_z.data() + i), ez), hn::Sub(hn::Load(d, boxes.high_z.data() + i), ez)}};
+  }
+
+  [[nodiscard]] HWY_INLINE Margins MarginsOf(const Offsets& o) const {
+    const Reach reach{hn::Max(hn::Abs(o.x[0]), hn::Abs(o.x[1])), hn::Max(hn::Abs(o.y[0]), hn::Abs(o.y[1])),
+                      hn::Max(hn::Abs(o.z[0]), hn::Abs(o.z[1]))};
+    const VF depth = Margin(d_row, reach);
+    return {Margin(x_row, reach), Margin(y_row, reach), depth, t.orthographic ? hn::Zero(DF()) : depth};
+  }
+
+  [[nodiscard]] HWY_INLINE Extent ExtentOf(const Offsets& o, const Margins& margin) const {
+    const DF d;
     const VF half_x = hn::Set(d, float(t.centre_x)), half_y = hn::Set(d, float(t.centre_y));
-    const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity());
-    VF d_min = infinity, d_max = hn::Neg(infinity);
-    VF left = d_max, right = d_max, top = d_max, bottom = d_max;
-    VF x_min = infinity, x_max = d_max, y_min = infinity, y_max = d_max;
+    const VF most = hn::Set(d, std::numeric_limits<float>::infinity()), least = hn::Neg(most);
+    Extent e{most, least, least, least, least, least, most, least, most, least};
     for (int corner = 0; corner < 8; ++corner) {
-      const VF dx = xs[corner & 1], dy = ys[(corner >> 1) & 1], dz = zs[corner >> 2];
+      const VF dx = o.x[corner & 1], dy = o.y[(corner >> 1) & 1], dz = o.z[corner >> 2];
       const VF x = Row(x_row, dx, dy, dz), y = Row(y_row, dx, dy, dz), depth = Row(d_row, dx, dy, dz);
       const VF w = t.orthographic ? hn::Set(d, 1.0f) : depth;
-      d_min = hn::Min(d_min, depth);
-      d_max = hn::Max(d_max, depth);
+      e.nearest = hn::Min(e.nearest, depth);
+      e.farthest = hn::Max(e.farthest, depth);
       const VF wx = hn::Mul(half_x, w), wy = hn::Mul(half_y, w);
-      left = hn::Max(left, hn::Add(wx, x));
-      right = hn::Max(right, hn::Sub(wx, x));
-      top = hn::Max(top, hn::Add(wy, y));
-      bottom = hn::Max(bottom, hn::Sub(wy, y));
+      e.left = hn::Max(e.left, hn::Add(wx, x));
+      e.right = hn::Max(e.right, hn::Sub(wx, x));
+      e.top = hn::Max(e.top, hn::Add(wy, y));
+      e.bottom = hn::Max(e.bottom, hn::Sub(wy, y));
       const VF inverse = hn::Div(hn::Set(d, 1.0f), w);
       const VF sx = hn::Mul(x, inverse), sy = hn::Mul(y, inverse);
-      x_min = hn::Min(x_min, sx);
-      x_max = hn::Max(x_max, sx);
-      y_min = hn::Min(y_min, sy);
-      y_max = hn::Max(y_max, sy);
+      e.x_min = hn::Min(e.x_min, sx);
+      e.x_max = hn::Max(e.x_max, sx);
+      e.y_min = hn::Min(e.y_min, sy);
+      e.y_max = hn::Max(e.y_max, sy);
     }
+    e.nearest = hn::Sub(e.nearest, margin.d);
+    e.farthest = hn::Add(e.farthest, margin.d);
+    return e;
+  }
 
-    // Outside: strictly, and by more than rounding can explain. NaN compares false, which keeps the cluster.
-    const VF w_margin = t.orthographic ? hn::Zero(d) : d_margin;
-    const VF x_slack = hn::Neg(hn::Add(x_margin, hn::Mul(half_x, w_margin)));
-    const VF y_slack = hn::Neg(hn::Add(y_margin, hn::Mul(half_y, w_margin)));
-    const VF nearest_d = hn::Sub(d_min, d_margin), farthest_d = hn::Add(d_max, d_margin);
-    const VF near = hn::Set(d, t.near), far = hn::Set(d, t.far);
+  /// Strictly, and by more than rounding can explain. NaN compares false, which keeps the cluster.
+  [[nodiscard]] HWY_INLINE MF Outside(const Extent& e, const Margins& margin) const {
+    const DF d;
+    const VF half_x = hn::Set(d, float(t.centre_x)), half_y = hn::Set(d, float(t.centre_y));
     // One pixel more on every side: samples sit inside pixels, and snapping moves by half a unit.
-    const VF pixel = hn::Set(d, 2.0f * kSubPixels);
-    const VF x_out = hn::Sub(x_slack, hn::Mul(pixel, hn::Abs(farthest_d)));
-    const VF y_out = hn::Sub(y_slack, hn::Mul(pixel, hn::Abs(farthest_d)));
-    const VF x_limit = t.orthographic ? hn::Sub(x_slack, pixel) : x_out;
-    const VF y_limit = t.orthographic ? hn::Sub(y_slack, pixel) : y_out;
-    MF outside = hn::Or(hn::Lt(farthest_d, near), hn::Gt(nearest_d, far));
-    outside = hn::Or(outside, hn::Or(hn::Lt(left, x_limit), hn::Lt(right, x_limit)));
-    outside = hn::Or(outside, hn::Or(hn::Lt(top, y_limit), hn::Lt(bottom, y_limit)));
-    outside = hn::Or(outside, hn::Lt(hx, lx));  // empty
+    const VF two_pixels = hn::Set(d, 2.0f * kSubPixels);
+    const VF pixel = t.orthographic ? two_pixels : hn::Mul(two_pixels, hn::Abs(e.farthest));
+    const VF x_limit = hn::Neg(hn::Add(hn::Add(margin.x, hn::Mul(half_x, margin.w)), pixel));
+    const VF y_limit = hn::Neg(hn::Add(hn::Add(margin.y, hn::Mul(half_y, margin.w)), pixel));
+    const MF beyond = hn::Or(hn::Lt(e.farthest, hn::Set(d, t.near)), hn::Gt(e.nearest, hn::Set(d, t.far)));
+    const MF beside = hn::Or(hn::Lt(e.left, x_limit), hn::Lt(e.right, x_limit));
+    return hn::Or(beyond, hn::Or(beside, hn::Or(hn::Lt(e.top, y_limit), hn::Lt(e.bottom, y_limit))));
+  }
 
-    // Whole: between the planes, and within the guard band, with the margins.
-    const VF w_min = t.orthographic ? hn::Set(d, 1.0f) : nearest_d;
-    const VF inverse_min = hn::Div(hn::Set(d, 1.0f), w_min);
-    const VF x_most = hn::Max(hn::Abs(x_min), hn::Abs(x_max)), y_most = hn::Max(hn::Abs(y_min), hn::Abs(y_max));
-    const VF round = hn::Set(d, kRoundingBound);
-    const VF one = hn::Set(d, 1.0f);
-    const VF x_pad = hn::Add(
-        hn::Add(hn::Mul(hn::Add(x_margin, hn::Mul(x_most, w_margin)), inverse_min), hn::Mul(x_most, round)), one);
-    const VF y_pad = hn::Add(
-        hn::Add(hn::Mul(hn::Add(y_margin, hn::Mul(y_most, w_margin)), inverse_min), hn::Mul(y_most, round)), one);
+  [[nodiscard]] HWY_INLINE Pads PadsOf(const Extent& e, const Margins& margin) const {
+    const DF d;
+    const VF inverse = hn::Div(hn::Set(d, 1.0f), t.orthographic ? hn::Set(d, 1.0f) : e.nearest);
+    const auto pad = [&](VF most, VF of_row) HWY_ATTR {
+      const VF rounding = hn::Mul(hn::Add(of_row, hn::Mul(most, margin.w)), inverse);
+      return hn::Add(hn::Add(rounding, hn::Mul(most, hn::Set(d, kRoundingBound))), hn::Set(d, 1.0f));
+    };
+    return {pad(hn::Max(hn::Abs(e.x_min), hn::Abs(e.x_max)), margin.x),
+            pad(hn::Max(hn::Abs(e.y_min), hn::Abs(e.y_max)), margin.y), inverse};
+  }
+
+  /// Between the planes, and within the guard band, with the margins.
+  [[nodiscard]] HWY_INLINE MF Whole(const Extent& e, const Pads& pad) const {
+    const DF d;
     const VF guard = hn::Set(d, float(kGuardBand));
-    MF whole = hn::And(hn::Ge(nearest_d, near), hn::Le(farthest_d, far));
-    whole = hn::And(whole, hn::And(hn::Lt(hn::Add(x_most, x_pad), guard), hn::Lt(hn::Add(y_most, y_pad), guard)));
+    const VF x_most = hn::Max(hn::Abs(e.x_min), hn::Abs(e.x_max)), y_most = hn::Max(hn::Abs(e.y_min), hn::Abs(e.y_max));
+    const MF between = hn::And(hn::Ge(e.nearest, hn::Set(d, t.near)), hn::Le(e.farthest, hn::Set(d, t.far)));
+    return hn::And(between, hn::And(hn::Lt(hn::Add(x_most, pad.x), guard), hn::Lt(hn::Add(y_most, pad.y), guard)));
+  }
 
-    // No key is greater than that of the nearest distance, give or take its own rounding.
-    const VF key =
-        t.orthographic ? hn::Mul(hn::Sub(far, nearest_d), hn::Set(d, t.inverse_range)) : hn::Mul(near, inverse_min);
+  /// Pixel rectangle and nearest key. No key is greater than that of the nearest distance, give or take its rounding.
+  HWY_INLINE void StorePlace(std::size_t i, const Extent& e, const Pads& pad, CullResult& out) const {
+    const DF d;
+    const DI di;
+    const VF key = t.orthographic ? hn::Mul(hn::Sub(hn::Set(d, t.far), e.nearest), hn::Set(d, t.inverse_range))
+                                  : hn::Mul(hn::Set(d, t.near), pad.inverse_nearest);
     hn::StoreU(hn::Mul(key, hn::Set(d, 1.0f + kRoundingBound)), d, out.nearest.data() + i);
+    hn::StoreU(ToPixel(hn::Sub(e.x_min, pad.x), t.centre_x, view.width - 1), di, out.x0.data() + i);
+    hn::StoreU(ToPixel(hn::Add(e.x_max, pad.x), t.centre_x, view.width - 1), di, out.x1.data() + i);
+    hn::StoreU(ToPixel(hn::Sub(e.y_min, pad.y), t.centre_y, view.height - 1), di, out.y0.data() + i);
+    hn::StoreU(ToPixel(hn::Add(e.y_max, pad.y), t.centre_y, view.height - 1), di, out.y1.data() + i);
+  }
 
-    hn::StoreU(ToPixel(hn::Sub(x_min, x_pad), t.centre_x, view.width - 1), di, out.x0.data() + i);
-    hn::StoreU(ToPixel(hn::Add(x_max, x_pad), t.centre_x, view.width - 1), di, out.x1.data() + i);
-    hn::StoreU(ToPixel(hn::Sub(y_min, y_pad), t.centre_y, view.height - 1), di, out.y0.data() + i);
-    hn::StoreU(ToPixel(hn::Add(y_max, y_pad), t.centre_y, view.height - 1), di, out.y1.data() + i);
-
+  static HWY_INLINE void StoreFates(std::size_t i, MF outside, MF whole, CullResult& out) {
+    const DI di;
     HWY_ALIGN std::int32_t fates[hn::MaxLanes(DI())];
     const auto apart = hn::Set(di, std::int32_t(ClusterFate::apart));
     const auto fate = hn::IfThenElse(hn::RebindMask(di, whole), hn::Set(di, std::int32_t(ClusterFate::whole)), apart);
-    if (cones != nullptr) {
-      const Vector3 low{xs[0], ys[0], zs[0]}, high{xs[1], ys[1], zs[1]};
-      const VF error = hn::Sqrt(hn::Add(hn::Mul(x_pad, x_pad), hn::Mul(y_pad, y_pad)));
-      const Rays rays = t.orthographic ? ParallelRays(error) : RaysFromEye(low, high, error, farthest_d);
-      outside = hn::Or(outside, hn::And(whole, FacingCull(*cones, view.culling).TurnedAway(i, rays)));
-    }
     hn::Store(hn::IfThenZeroElse(hn::RebindMask(di, outside), fate), di, fates);
     for (std::size_t k = 0; k < hn::Lanes(di); ++k) out.fate[i + k] = static_cast<std::uint8_t>(fates[k]);
   }
 
- private:
-  /// `low` and `high` are from the eye as a float, `error` is of a corner on the screen.
-  [[nodiscard]] HWY_INLINE Rays RaysFromEye(const Vector3& low, const Vector3& high, VF error, VF farthest_d) const {
+  /// `error` is of a corner on the screen.
+  [[nodiscard]] HWY_INLINE Rays RaysFromEye(const Offsets& o, VF error, VF farthest_d) const {
     const DF d;
     const VF rest_x = hn::Set(d, rest.x), rest_y = hn::Set(d, rest.y), rest_z = hn::Set(d, rest.z);
     Rays rays;
-    rays.low = {hn::Sub(low.x, rest_x), hn::Sub(low.y, rest_y), hn::Sub(low.z, rest_z)};
-    rays.high = {hn::Sub(high.x, rest_x), hn::Sub(high.y, rest_y), hn::Sub(high.z, rest_z)};
+    rays.low = {hn::Sub(o.x[0], rest_x), hn::Sub(o.y[0], rest_y), hn::Sub(o.z[0], rest_z)};
+    rays.high = {hn::Sub(o.x[1], rest_x), hn::Sub(o.y[1], rest_y), hn::Sub(o.z[1], rest_z)};
     const VF x = hn::Max(hn::Abs(rays.low.x), hn::Abs(rays.high.x));
     const VF y = hn::Max(hn::Abs(rays.low.y), hn::Abs(rays.high.y));
     const VF z = hn::Max(hn::Abs(rays.low.z), hn::Abs(rays.high.z));
@@ -264,10 +311,9 @@ class Cull {
   RowTerms d_row = MakeRow(t.d_row, t.d_offset, rest);
 };
 
-void CullRange(const CullInput& input, const ScreenTransform& transform, const View& view, std::size_t begin,
-               std::size_t end, CullResult& result) {
-  const Cull cull(input, transform, view);
-  for (std::size_t i = begin; i < end; i += hn::Lanes(DF())) cull.Group(i, result);
+void CullRange(const CullInput& input, const ClusterRange& range, CullResult& result) {
+  const Cull cull(input);
+  for (std::size_t i = range.begin; i < range.end; i += hn::Lanes(DF())) cull.Group(i, result);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -286,9 +332,8 @@ void CullResult::resize(std::size_t cluster_count) {
   nearest.resize(padded);
 }
 
-void cull_clusters(const CullInput& input, const ScreenTransform& transform, const View& view, Isa isa,
-                   std::size_t begin, std::size_t end, CullResult& result) {
-  kernel_for(CullRangeKernels, isa)(input, transform, view, begin, end, result);
+void cull_clusters(const CullInput& input, Isa isa, const ClusterRange& range, CullResult& result) {
+  kernel_for(CullRangeKernels, isa)(input, range, result);
 }
 
 }  // namespace frontmost::zbuffer_detail

@@ -93,9 +93,9 @@ void FramePlan::make(const ClusterSet& set, const ScreenTransform& transform, co
   tiles_y_ = (view.height + kTileSize - 1) / kTileSize;
   culled_.resize(set.clusters.size());
   const bool by_facing = view.culling == Culling::back || view.culling == Culling::front;
-  const CullInput input{set.boxes, by_facing ? set.cones.get(set, execution) : nullptr};
+  const CullInput input{set.boxes, by_facing ? set.cones.get(set, execution) : nullptr, transform, view};
   parallel_for(execution, set.clusters.size(), kCullGrain, [&](std::size_t begin, std::size_t end) {
-    cull_clusters(input, transform, view, execution.isa, begin, end, culled_);
+    cull_clusters(input, execution.isa, {begin, end}, culled_);
   });
   choose_apart(set.clusters.size());
   take_apart(set, transform, view, execution);

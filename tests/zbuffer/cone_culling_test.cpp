@@ -49,8 +49,9 @@ std::vector<ClusterFate> fates(const Surfaces& surfaces, const View& view, bool 
   const ClusterSet& set = surfaces.clusters();
   CullResult result;
   result.resize(set.clusters.size());
-  const CullInput input{set.boxes, with_cones ? &set.cones.get_now(set, {}) : nullptr};
-  cull_clusters(input, ScreenTransform(view), view, isa, 0, set.clusters.size(), result);
+  const ScreenTransform transform(view);
+  const CullInput input{set.boxes, with_cones ? &set.cones.get_now(set, {}) : nullptr, transform, view};
+  cull_clusters(input, isa, {0, set.clusters.size()}, result);
   std::vector<ClusterFate> fates;
   for (std::size_t i = 0; i < set.clusters.size(); ++i) fates.push_back(result.fate_of(i));
   return fates;
