@@ -21,7 +21,7 @@ constexpr Entry kTables[] = {
     {"peers", measure_peers},       {"threads", measure_threads},   {"isas", measure_isas},
     {"stages", measure_stages},     {"features", measure_features}, {"limits", measure_limits},
     {"memory", measure_memory},     {"surfaces", measure_surfaces}, {"coverage", measure_coverage},
-    {"rays", measure_ray_coverage}, {"raycast", measure_raycast}};
+    {"rays", measure_ray_coverage}, {"raycast", measure_raycast},   {"depth", measure_depth_buffer}};
 
 void write_json(const std::string& path, const std::vector<Table>& tables) {
   std::FILE* file = std::fopen(path.c_str(), "w");

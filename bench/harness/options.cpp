@@ -11,8 +11,8 @@
 namespace frontmost::bench {
 namespace {
 
-constexpr std::array<std::string_view, 11> kTables = {"peers",  "threads",  "isas",     "stages", "features", "limits",
-                                                      "memory", "surfaces", "coverage", "rays",   "raycast"};
+constexpr std::array<std::string_view, 12> kTables = {"peers",  "threads",  "isas",     "stages", "features", "limits",
+                                                      "memory", "surfaces", "coverage", "rays",   "raycast",  "depth"};
 
 }  // namespace
 

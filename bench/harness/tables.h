@@ -20,6 +20,8 @@ namespace frontmost::bench {
 [[nodiscard]] Table measure_stages(const Options& options);
 /// Culling, hiding, order, samples.
 [[nodiscard]] Table measure_features(const Options& options);
+/// The depth buffer with OpenGL's state beside the z-buffer.
+[[nodiscard]] Table measure_depth_buffer(const Options& options);
 /// How near frames come to what memory and processor allow.
 [[nodiscard]] Table measure_limits(const Options& options);
 /// Bytes a triangle, a pixel and a sample.
