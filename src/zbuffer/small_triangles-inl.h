@@ -20,8 +20,11 @@ namespace frontmost::zbuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// A triangle whose pixel rectangle is at most this wide and high is drawn with others at once.
-constexpr int kWalkLimit = 16;
+// A triangle whose pixel rectangle is at most this wide and high is drawn with others at once. All of them are walked
+// over the widest and the highest of their rectangles: long ones both ways would multiply. Walls are higher than wide.
+constexpr int kWalkWidth = kMostWalked.x, kWalkHeight = kMostWalked.y;
+// One of more pixels than this is first looked for in the hierarchical depth.
+constexpr std::int32_t kWalkUnseen = 96;
 
 /// Small triangles waiting to be drawn, set apart by corner. Room for one vector more than is drawn at a time.
 struct TriangleQueue {
@@ -70,14 +73,14 @@ class SmallTriangles {
     const DI d;
     const std::size_t drawn = HWY_MIN(queue_.count, hn::Lanes(d));
     SmallBatch batch = SetUp(drawn);
-    const VI limit = hn::Set(d, kWalkLimit);
-    const MI large = hn::Or(hn::Gt(batch.width, limit), hn::Gt(batch.height, limit));
+    const MI large = hn::Or(hn::Gt(batch.width, hn::Set(d, kWalkWidth)), hn::Gt(batch.height, hn::Set(d, kWalkHeight)));
     if (!hn::AllFalse(d, large)) {
       for (std::uint64_t left = BitsOf(d, large); left != 0; left &= left - 1)
         large_.Draw(QueuedRecord(hwy::Num0BitsBelowLS1Bit_Nonzero64(left)));
       batch.width = hn::IfThenZeroElse(large, batch.width);
       batch.height = hn::IfThenZeroElse(large, batch.height);
     }
+    LeaveOutHidden(batch);
     const int most_x = hn::GetLane(hn::MaxOfLanes(d, batch.width));
     const int most_y = hn::GetLane(hn::MaxOfLanes(d, batch.height));
     for (std::size_t s = 0; s < frame_.samples.size(); ++s) {
@@ -85,6 +88,26 @@ class SmallTriangles {
       Merge(batch, found, s);
     }
     Shift(drawn);
+  }
+
+  /// Of those that take long to walk.
+  HWY_INLINE void LeaveOutHidden(SmallBatch& batch) {
+    const DI d;
+    const MI asked = hn::Gt(hn::Mul(batch.width, batch.height), hn::Set(d, kWalkUnseen));
+    if (hn::AllFalse(d, asked)) return;
+    HWY_ALIGN_MAX std::int32_t x[kMaxLanes], y[kMaxLanes], width[kMaxLanes], height[kMaxLanes];
+    HWY_ALIGN_MAX float nearest[kMaxLanes];
+    hn::Store(batch.px, d, x);
+    hn::Store(batch.py, d, y);
+    hn::Store(batch.width, d, width);
+    hn::Store(batch.height, d, height);
+    hn::Store(batch.k_max, DF(), nearest);
+    for (std::uint64_t left = BitsOf(d, asked); left != 0; left &= left - 1) {
+      const std::size_t i = hwy::Num0BitsBelowLS1Bit_Nonzero64(left);
+      const PixelRect rect{x[i], y[i], x[i] + width[i] - 1, y[i] + height[i] - 1};
+      if (buffer_.AllHide(TileBuffer::BlocksOf(rect), nearest[i])) width[i] = 0;
+    }
+    batch.width = hn::Load(d, width);
   }
 
   [[nodiscard]] TriangleRecord QueuedRecord(std::size_t lane) const {
@@ -135,7 +158,7 @@ class SmallTriangles {
   }
 
   /// Walks the rectangles of all triangles of a batch at once, one pixel position a step, and notes the covered
-  /// (pixel, triangle) pairs as word offset << 12 | y << 8 | x << 4 | lane. \returns how many.
+  /// (pixel, triangle) pairs as word offset << 13 | y << 8 | x << 4 | lane. \returns how many.
   HWY_INLINE std::size_t Walk(const SmallBatch& b, int most_x, int most_y, std::size_t sample) {
     const DI d;
     const DU du;
@@ -144,12 +167,12 @@ class SmallTriangles {
     const VI sy = hn::Add(hn::ShiftLeft<8>(b.py), hn::Set(d, offset.y));
     BatchEdges row = EdgesAt(b, sx, sy);
     const VI first = hn::Add(hn::Mul(b.py, hn::Set(d, kTileStride)), b.px);
-    const VI base = hn::Or(hn::ShiftLeft<12>(first), hn::Iota(d, 0));
+    const VI base = hn::Or(hn::ShiftLeft<13>(first), hn::Iota(d, 0));
     std::uint32_t* out = references_;
     for (int y = 0; y < most_y; ++y) {
       const VI row_width = hn::IfThenElseZero(hn::Gt(b.height, hn::Set(d, y)), b.width);
       VI e0 = row.e[0], e1 = row.e[1], e2 = row.e[2];
-      VI reference = hn::Add(base, hn::Set(d, (y * kTileStride) << 12 | y << 8));
+      VI reference = hn::Add(base, hn::Set(d, (y * kTileStride) << 13 | y << 8));
       for (int x = 0; x < most_x; ++x) {
         const VI all = hn::Or(hn::Or(e0, e1), e2);
         const MI covered = hn::And(hn::Gt(all, hn::Set(d, -1)), hn::Gt(row_width, hn::Set(d, x)));
@@ -157,7 +180,7 @@ class SmallTriangles {
         e0 = hn::Sub(e0, b.dy[0]);
         e1 = hn::Sub(e1, b.dy[1]);
         e2 = hn::Sub(e2, b.dy[2]);
-        reference = hn::Add(reference, hn::Set(d, 1 << 12 | 1 << 4));
+        reference = hn::Add(reference, hn::Set(d, 1 << 13 | 1 << 4));
       }
       for (int k = 0; k < 3; ++k) row.e[k] = hn::Add(row.e[k], b.dx[k]);
     }
@@ -177,14 +200,13 @@ class SmallTriangles {
     HWY_ALIGN_MAX std::uint32_t at[kMaxLanes];
     for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
       const VU in_line = hn::LoadU(du, references_ + i);
-      hn::Store(hn::ShiftRight<12>(in_line), du, at);
+      hn::Store(hn::ShiftRight<13>(in_line), du, at);
       const VI reference = hn::BitCast(d, InPixelOrder(in_line));
       const auto lane = hn::IndicesFromVec(d, hn::And(reference, hn::Set(d, std::int32_t(hn::Lanes(d)) - 1)));
       const auto lane_f = hn::IndicesFromVec(df, hn::And(reference, hn::Set(d, std::int32_t(hn::Lanes(d)) - 1)));
       const auto lane_u = hn::IndicesFromVec(du, hn::And(reference, hn::Set(d, std::int32_t(hn::Lanes(d)) - 1)));
-      const VI nibble = hn::Set(d, 15);
-      const VI x = hn::ShiftLeft<8>(hn::And(hn::ShiftRight<4>(reference), nibble));
-      const VI y = hn::ShiftLeft<8>(hn::And(hn::ShiftRight<8>(reference), nibble));
+      const VI x = hn::ShiftLeft<8>(hn::And(hn::ShiftRight<4>(reference), hn::Set(d, kWalkWidth - 1)));
+      const VI y = hn::ShiftLeft<8>(hn::And(hn::ShiftRight<8>(reference), hn::Set(d, kWalkHeight - 1)));
       const VF dx = hn::ConvertTo(df, hn::Add(hn::TableLookupLanes(from_x, lane), x));
       const VF dy = hn::ConvertTo(df, hn::Add(hn::TableLookupLanes(from_y, lane), y));
       VF key = hn::Add(hn::TableLookupLanes(b.k0, lane_f), hn::Mul(dx, hn::TableLookupLanes(b.gx, lane_f)));

@@ -17,6 +17,9 @@ inline constexpr int kBlockSize = 16;              ///< pixels; a tile is 8 x 8 
 inline constexpr int kTileStride = kTileSize + 8;  ///< words; a power of two would collide in the cache
 inline constexpr std::size_t kTileWords = std::size_t(kTileSize) * kTileStride;
 
+/// The greatest pixel rectangle of triangles that are drawn many at a time, in x and y.
+inline constexpr glm::ivec2 kMostWalked{16, 32};
+
 /// What all tiles of a frame have in common. Borrows everything.
 struct FrameInput {
   const ClusterSet& set;
