@@ -81,7 +81,7 @@ struct OutputSettings {
   Shading shading = Shading::lit;
   std::optional<glm::vec3> background = glm::vec3(1.0f);  ///< none: transparent
   bool background_given = false;
-  bool no_shadows = false;
+  Shadows shadows = Shadows::map;
   float opacity = 1;
 };
 

@@ -24,6 +24,8 @@ Job make_job(const Settings& settings) {
   check_outputs_around(job);
   if (settings.run.stream && settings.view.camera_model != CameraModel::pinhole)
     throw UsageError("--stream and --camera-model exclude each other");
+  if (settings.run.stream && settings.output.shadows == Shadows::rays)
+    throw UsageError("--stream and --shadows rays exclude each other: rays need the whole model at once");
   if (job.output.reference) {
     job.output.reference = fill_template(*job.output.reference, model, job.name);
     if (job.output.reference_difference) {

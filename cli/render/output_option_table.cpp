@@ -76,8 +76,11 @@ constexpr Option table[] = {
        s.output.background = std::nullopt;
        if (g.text != "transparent") s.output.background = parse_color(g.text);
      }},
-    {"no-shadows", 0, "", "The key light casts no shadow.", Group::look, for_render,
-     [](Settings& s, const Given&) { s.output.no_shadows = true; }},
+    {"shadows", 0, "off|map|rays",
+     "Shadows of the key light: none, soft ones by a map, or exact ones by rays; map by default.", Group::look,
+     for_render, [](Settings& s, const Given& g) { s.output.shadows = g.choice<Shadows>(); }},
+    {"no-shadows", 0, "", "As --shadows off.", Group::look, for_render,
+     [](Settings& s, const Given&) { s.output.shadows = Shadows::off; }},
     {"opacity", 0, "O", "See through everything: multiplies every opacity, 0 to 1; 1 by default.", Group::look,
      for_render,
      [](Settings& s, const Given& g) {

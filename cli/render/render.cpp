@@ -30,7 +30,11 @@ void check_method(const Settings& settings, const std::vector<Job>& jobs) {
   }
 }
 
-bool looks_around(const Job& job) { return job.view.camera_model != CameraModel::pinhole; }
+/// Cameras that only rays can serve, and shadows by rays.
+bool needs_index(const Job& job) {
+  return job.view.camera_model != CameraModel::pinhole ||
+         (job.output.shading == Shading::lit && job.output.shadows == Shadows::rays);
+}
 
 /// Without any result asked for, the picture goes to the terminal, if there is one.
 bool shows_on_terminal(const Settings& settings, std::vector<Job>& jobs) {
@@ -106,15 +110,14 @@ int render_whole(const Run& run) {
   const Surfaces surfaces(scene, execution);
   timings.surfaces = watch.milliseconds();
   std::optional<RayIndex> index;
-  const bool all_rays = settings.run.method == Method::raycast;
-  if (all_rays || std::any_of(run.jobs.begin(), run.jobs.end(), looks_around)) {
+  const bool by_rays = settings.run.method == Method::raycast;
+  if (by_rays || std::any_of(run.jobs.begin(), run.jobs.end(), needs_index)) {
     watch = {};
     index.emplace(surfaces, execution);
     timings.index = watch.milliseconds();
   }
   const std::vector<ViewResult> results = render_all(run.jobs, settings, progress, [&](const Job& job) {
-    const bool by_rays = all_rays || looks_around(job);
-    return render_view(job, {surfaces, settings.run, execution, run.on_terminal, by_rays ? &*index : nullptr});
+    return render_view(job, {surfaces, settings.run, execution, run.on_terminal, index ? &*index : nullptr, by_rays});
   });
   timings.total = run.whole.milliseconds();
   report(settings, {surfaces.primitive_count(), scene.warnings}, results, timings);

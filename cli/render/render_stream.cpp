@@ -14,7 +14,7 @@ StreamNeeds needs_of(const Job& job, const SightPlan& plan) {
   const bool picture = plan.picture_samples.has_value();
   const bool lit = picture && job.output.shading == Shading::lit;
   const bool shows_normals = lit || (picture && job.output.shading == Shading::normals);
-  return {lit && !job.output.no_shadows, shows_normals || wants(job, OutputKind::normals)};
+  return {lit && job.output.shadows != Shadows::off, shows_normals || wants(job, OutputKind::normals)};
 }
 
 void check_one_pass(const Job& job, const StreamNeeds& needs, const Stream& stream) {

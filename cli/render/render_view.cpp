@@ -34,7 +34,8 @@ bool wants_maps(const Job& job) {
 Sight timed(const View& view, const DepthSettings& depth, const RenderContext& context, std::vector<double>& times) {
   for (int i = 1;; ++i) {
     const Stopwatch watch;
-    Sight sight = look_at_surfaces(context.surfaces, view, depth, context.execution, context.index);
+    const RayIndex* index = context.by_rays ? context.index : nullptr;
+    Sight sight = look_at_surfaces(context.surfaces, view, depth, context.execution, index);
     times.push_back(watch.milliseconds());
     if (i >= context.run.repeat) return sight;
   }
@@ -154,8 +155,8 @@ void finish_view(const Job& job, const RenderContext& context, const Sights& sig
   if (sights.picture) {
     const Stopwatch watch;
     const Visible& visible = sights.picture->visible;
-    const ShadeOptions options{job.output.shading, job.output.background, !job.output.no_shadows, sights.seen_by_light,
-                               job.output.opacity};
+    const ShadeOptions options{job.output.shading,   job.output.background, job.output.shadows,
+                               sights.seen_by_light, context.index,         job.output.opacity};
     if (!context.keep_picture && needs_only_bitmap(job))
       bitmap = shade_bitmap(context.surfaces, visible, options, context.execution);
     else

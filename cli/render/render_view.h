@@ -69,7 +69,8 @@ struct RenderContext {
   const RunSettings& run;
   Execution execution;
   bool keep_picture = false;
-  const RayIndex* index = nullptr;  ///< of the method raycast
+  const RayIndex* index = nullptr;  ///< where the method, the cameras or the shadows need one
+  bool by_rays = false;             ///< the method is raycast
 };
 
 /// The visibility that a view needs: of the picture, of the maps, or of both at once.

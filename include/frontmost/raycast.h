@@ -2,6 +2,7 @@
 // Ray casting: visibility by asking, for every sample, which triangle its ray meets first.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -15,7 +16,7 @@ namespace frontmost {
 struct RayTree;  // src/raycast/ray_tree.h
 
 /// A hierarchy of boxes over the triangles of `Surfaces`, for any number of views and queries. Holds world-space
-/// corners of its own, so the surfaces may go; the ids are theirs. Immutable, and safe to share between threads.
+/// corners of its own, so the surfaces may go; the ids are theirs. Safe to share between threads, but for refit().
 ///
 /// Sixteen triangles a leaf, dealt out by median splits of runs of the surfaces' spatial order; sixteen boxes a node,
 /// split by the surface area heuristic
@@ -31,6 +32,12 @@ class RayIndex {
   RayIndex(const RayIndex&) = delete;
   RayIndex& operator=(const RayIndex&) = delete;
 
+  /// Follows the triangles to where they are in `surfaces`: those of the same scene after its vertices or instances
+  /// have moved. Answers are to the bit those of a new index; what is kept is the order of triangles and boxes, so that
+  /// queries grow slower the less of the old neighbourhoods is left. O(n) in parallel, a fraction of the time of a new
+  /// index, which is made where `surfaces` has triangles to meet that this one does not hold.
+  void refit(const Surfaces& surfaces, const Execution& execution = {});
+
   /// Triangles that a ray can meet: those with finite corners, no two the same.
   [[nodiscard]] std::uint32_t triangle_count() const;
   /// World-space bounds of these triangles; empty without any.
@@ -40,7 +47,7 @@ class RayIndex {
   [[nodiscard]] const RayTree& tree() const { return *tree_; }
 
  private:
-  std::unique_ptr<const RayTree> tree_;
+  std::unique_ptr<RayTree> tree_;
 };
 
 /// The front-most triangle at every sample, by the ray from the eye through it (parallel projection: along the viewing
@@ -121,5 +128,23 @@ void closest_hits(const RayIndex& index, std::span<const Segment> segments, std:
 /// 1 where the segment is clear, 0 where it is blocked.
 void are_clear(const RayIndex& index, std::span<const Segment> segments, std::span<std::uint8_t> answers,
                const Execution& execution = {});
+
+/// A point of a triangle, without rounding: the mean of its corners by weights, moved by `lift`. The number that this
+/// stands for lies in the triangle's plane, which a point of floats seldom does.
+struct SurfacePoint {
+  PrimitiveId primitive = no_primitive;  ///< its triangle, where the index holds it
+  std::array<glm::vec3, 3> corners{};
+  glm::vec3 weights{1, 1, 1};  ///< of any sum; none negative, and not all zero
+  glm::vec3 lift{0};
+};
+
+/// Which points of surfaces a light at infinity reaches: 1 lit, 0 in shadow. Decided exactly and without tolerance: a
+/// point is in shadow when the ray from it towards the light passes through a triangle, front or back, other than its
+/// own and those with the same three corners. Triangles that contain the point are not passed through, so none of those
+/// that meet in an edge or corner throws a shadow on itself by rounding. Points near each other, in the order given,
+/// are asked together, and quicker for it. Values that are not finite, and a light without direction: lit.
+/// \throws Error bad_argument when there are not as many answers as points.
+void are_lit(const RayIndex& index, std::span<const SurfacePoint> points, const glm::vec3& to_light,
+             std::span<std::uint8_t> answers, const Execution& execution = {});
 
 }  // namespace frontmost

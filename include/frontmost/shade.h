@@ -6,6 +6,7 @@
 
 #include "frontmost/image.h"
 #include "frontmost/ray_camera.h"
+#include "frontmost/raycast.h"
 #include "frontmost/surfaces.h"
 #include "frontmost/visible.h"
 
@@ -21,13 +22,23 @@ enum class Shading : std::uint8_t {
   uv,       ///< texture coordinates as red and green
 };
 
+/// How the shadows of the key light are found.
+enum class Shadows : std::uint8_t {
+  off,   ///< none
+  map,   ///< what the light sees on 1024 x 1024 texels, with edges a few of them wide
+  rays,  ///< a ray to the light from every sample, exact: as sharp as the picture
+};
+
 struct ShadeOptions {
   Shading shading = Shading::lit;
   /// sRGB, 0 to 1. None: transparent.
   std::optional<glm::vec3> background = glm::vec3(1.0f);
-  bool shadows = true;
+  Shadows shadows = Shadows::map;
   /// What is visible in key_light_view(), borrowed. Null: that of the surfaces, found by shade() itself.
   const Visible* seen_by_light = nullptr;
+  /// Of the surfaces, for Shadows::rays, borrowed. Null: made by shade() itself, as it is where materials are
+  /// see-through.
+  const RayIndex* index = nullptr;
   /// Multiplies the opacity of everything, 0 to 1. Lit, flat and normals alone.
   float opacity = 1.0f;
 };

@@ -5,6 +5,7 @@
 
 #include "base/float_environment.h"
 #include "base/parallel.h"
+#include "raycast/light_kernel.h"
 #include "raycast/query_kernel.h"
 
 namespace frontmost {
@@ -92,6 +93,15 @@ void are_clear(const RayIndex& index, std::span<const Segment> segments, std::sp
   for_each_query(segments.size(), execution, [&](std::size_t i, std::vector<RayHit>& hits) {
     answers[i] =
         first_of(index.tree(), query_of(segments[i]), Want::any, hits, execution.isa).primitive == no_primitive;
+  });
+}
+
+void are_lit(const RayIndex& index, std::span<const SurfacePoint> points, const glm::vec3& to_light,
+             std::span<std::uint8_t> answers, const Execution& execution) {
+  check_sizes(points.size(), answers.size());
+  parallel_for(execution, points.size(), kQueriesPerPart, [&](std::size_t begin, std::size_t end) {
+    find_lit(index.tree(), points.subspan(begin, end - begin), to_light, answers.subspan(begin, end - begin),
+             execution.isa);
   });
 }
 

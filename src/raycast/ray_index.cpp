@@ -20,10 +20,17 @@ RayTree make_tree(const Surfaces& surfaces, const Execution& execution) {
 }  // namespace
 
 RayIndex::RayIndex(const Surfaces& surfaces, const Execution& execution)
-    : tree_(std::make_unique<const RayTree>(make_tree(surfaces, execution))) {}
+    : tree_(std::make_unique<RayTree>(make_tree(surfaces, execution))) {}
 RayIndex::~RayIndex() = default;
 RayIndex::RayIndex(RayIndex&&) noexcept = default;
 RayIndex& RayIndex::operator=(RayIndex&&) noexcept = default;
+
+void RayIndex::refit(const Surfaces& surfaces, const Execution& execution) {
+  const IeeeScope ieee;
+  report_progress(execution, "index", 0);
+  if (!refit_tree(surfaces, *tree_, execution)) *tree_ = make_tree(surfaces, execution);
+  report_progress(execution, "index", 1);
+}
 
 std::uint32_t RayIndex::triangle_count() const { return tree_->triangle_count; }
 

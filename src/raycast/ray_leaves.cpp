@@ -8,19 +8,13 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "raycast/ray_tree.h"
-#include "surfaces/cluster_set.h"
+#include "raycast/leaf_triangles.h"
 
 namespace frontmost {
 namespace {
 
 constexpr std::size_t kClustersPerPart = 64;
 constexpr std::size_t kLeavesPerPart = 1024;
-
-/// Two corners the same: no ray meets it, or it is one that Surfaces has set aside as not finite.
-bool is_degenerate(const ClusterSet& set, std::size_t t) {
-  return set.i0[t] == set.i1[t] || set.i1[t] == set.i2[t] || set.i2[t] == set.i0[t];
-}
 
 std::uint32_t count_triangles(const ClusterSet& set, std::size_t begin, std::size_t end) {
   std::uint32_t count = 0;
@@ -40,30 +34,10 @@ void fill(const ClusterSet& set, const Cluster& cluster, std::size_t& place, Buf
     if (is_degenerate(set, t)) continue;
     RayLeaf& leaf = leaves[place / kRayLanes];
     const std::size_t lane = place % kRayLanes;
-    const std::uint8_t corners[3] = {set.i0[t], set.i1[t], set.i2[t]};
-    for (std::size_t k = 0; k < 3; ++k)
-      for (std::size_t axis = 0; axis < 3; ++axis) leaf.corner[k][axis][lane] = positions[axis][corners[k]];
+    set_corners(set, t, positions, leaf, lane);
     leaf.id[lane] = set.id[t];
     ++place;
   }
-}
-
-LeafBox box_of(const RayLeaf& leaf, std::uint32_t number) {
-  std::size_t count = kRayLanes;
-  while (count > 1 && leaf.id[count - 1] == no_primitive) --count;
-  LeafBox box{};
-  box.leaf = number;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    float low = leaf.corner[0][axis][0], high = low;
-    for (std::size_t k = 0; k < 3; ++k)
-      for (std::size_t lane = 0; lane < count; ++lane) {
-        low = std::min(low, leaf.corner[k][axis][lane]);
-        high = std::max(high, leaf.corner[k][axis][lane]);
-      }
-    box.low[axis] = low;
-    box.high[axis] = high;
-  }
-  return box;
 }
 
 /// Deals the triangles of a group of whole leaves out anew: halved by the middle triangle along the longest side of
@@ -126,6 +100,24 @@ class Regrouping {
 };
 
 }  // namespace
+
+LeafBox box_of(const RayLeaf& leaf, std::uint32_t number) {
+  std::size_t count = kRayLanes;
+  while (count > 1 && leaf.id[count - 1] == no_primitive) --count;
+  LeafBox box{};
+  box.leaf = number;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    float low = leaf.corner[0][axis][0], high = low;
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t lane = 0; lane < count; ++lane) {
+        low = std::min(low, leaf.corner[k][axis][lane]);
+        high = std::max(high, leaf.corner[k][axis][lane]);
+      }
+    box.low[axis] = low;
+    box.high[axis] = high;
+  }
+  return box;
+}
 
 std::vector<LeafBox> fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execution) {
   const ClusterSet& set = surfaces.clusters();

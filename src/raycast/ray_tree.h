@@ -51,6 +51,13 @@ struct LeafBox {
 /// Fills tree.leaves in the surfaces' spatial order. \returns the box of every leaf.
 [[nodiscard]] std::vector<LeafBox> fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execution);
 
+/// Moves the triangles of `tree` to where they are in `surfaces`, and fits every box anew.
+/// \returns false where `surfaces` has other triangles; the tree is then unspecified.
+[[nodiscard]] bool refit_tree(const Surfaces& surfaces, RayTree& tree, const Execution& execution);
+
+/// The bounds of the triangles in use.
+[[nodiscard]] LeafBox box_of(const RayLeaf& leaf, std::uint32_t number);
+
 /// Fills tree.nodes over the boxes, which are reordered.
 void build_nodes(std::vector<LeafBox>& boxes, RayTree& tree, const Execution& execution);
 

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "frontmost/view.h"
-#include "report/exact_vector.h"
+#include "base/exact_vector.h"
 
 namespace frontmost {
 

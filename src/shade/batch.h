@@ -40,7 +40,8 @@ struct Coverage {
   int count = 0;
   std::uint32_t pixel[batch_capacity];     ///< within the tile
   std::uint16_t triangle[batch_capacity];  ///< number of the set-up triangle
-  Lane weight;                             ///< part of the pixel's samples
+  std::uint64_t samples[batch_capacity];   ///< which of the pixel's, a bit each
+  Lane weight;                             ///< their part of all
   Lane2 screen;                            ///< mean position of those samples
 };
 

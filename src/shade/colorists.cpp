@@ -69,10 +69,12 @@ glm::vec3 color_of_object(std::uint32_t object) {
 void Lit::operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const {
   look_up_materials(materials, setups, batch);
   const Geometry& g = batch.geometry;
+  bool faces_key[batch_capacity];
   for (int i = 0; i < batch.coverage.count; ++i) {
-    const bool faces_key = glm::dot(g.normal.at(i), lighting.to_key) > 0;
-    batch.shadow[i] = shadow && faces_key ? shadow->light_at(g.smooth_position.at(i), g.plane_normal.at(i)) : 1.0f;
+    faces_key[i] = glm::dot(g.normal.at(i), lighting.to_key) > 0;
+    batch.shadow[i] = map && faces_key[i] ? map->light_at(g.smooth_position.at(i), g.plane_normal.at(i)) : 1.0f;
   }
+  if (rays) rays->find_light(setups, faces_key, batch);
   light_batch(lighting, batch, isa);
 }
 

@@ -5,16 +5,18 @@
 #include "frontmost/shade.h"
 #include "shade/lighting.h"
 #include "shade/materials.h"
+#include "shade/shadow/ray_shadows.h"
 #include "shade/shadow/shadow_map.h"
 #include "shade/tile.h"
 
 namespace frontmost::shading {
 
-/// Base colour, metallic-roughness and light. `shadow` may be null.
+/// Base colour, metallic-roughness and light. One of `map` and `rays` at most is not null.
 struct Lit {
   const MaterialTable& materials;
   const Lighting& lighting;
-  const ShadowMap* shadow;
+  const ShadowMap* map;
+  const RayShadows* rays;
   Isa isa;
   void operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const;
 };

@@ -13,12 +13,14 @@ TriangleCache::Found TriangleCache::find_or_add(PrimitiveId id) {
   return {slots_[slot].number, true};
 }
 
-void FragmentShader::add(PrimitiveId id, std::uint32_t number, const glm::vec2& screen, float weight) {
+void FragmentShader::add(PrimitiveId id, std::uint32_t number, const glm::vec2& screen, std::uint64_t samples,
+                         float weight) {
   const TriangleCache::Found found = cache_.find_or_add(id);
   if (found.is_new) new_triangles_.push_back({id, found.number, screen});
   const int i = arrived_.count++;
   arrived_.pixel[i] = number;
   arrived_.triangle[i] = found.number;
+  arrived_.samples[i] = samples;
   arrived_.weight[i] = weight;
   arrived_.screen.set(i, screen);
 }
@@ -34,6 +36,7 @@ void FragmentShader::sort_by_triangle() {
     const std::uint16_t place = place_[i] = next[arrived_.triangle[i]]++;
     sorted.pixel[place] = arrived_.pixel[i];
     sorted.triangle[place] = arrived_.triangle[i];
+    sorted.samples[place] = arrived_.samples[i];
     sorted.weight[place] = arrived_.weight[i];
     sorted.screen.set(place, arrived_.screen.at(i));
   }

@@ -56,8 +56,9 @@ class FragmentShader {
 
   /// A fragment that hand_out() is to be called for before another is added.
   [[nodiscard]] bool is_full() const { return arrived_.count == batch_capacity || cache_.is_full(); }
-  /// `number` is the caller's own; `screen` the position that is shaded. Precondition: not full.
-  void add(PrimitiveId id, std::uint32_t number, const glm::vec2& screen, float weight);
+  /// `number` is the caller's own; `screen` the position that is shaded, within the pixel of the `samples` (a bit
+  /// each). Precondition: not full.
+  void add(PrimitiveId id, std::uint32_t number, const glm::vec2& screen, std::uint64_t samples, float weight);
   /// Shades what was added and calls receive(number, weight, light, alpha) for each, in the order of arrival.
   template <class Receive>
   void hand_out(const Receive& receive) {

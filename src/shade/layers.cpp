@@ -42,7 +42,7 @@ void shade_job(const Rectangle& pixels, const JobLists& lists, const Centroids& 
     for (std::size_t i = lists.begin[p]; i < lists.begin[p + 1]; ++i) {
       if (shader.is_full()) shader.hand_out(receive);
       const Fragment& f = lists.fragments[i];
-      shader.add(f.primitive, lists.numbers[i], corner + centroids.of(f.mask), 1.0f);
+      shader.add(f.primitive, lists.numbers[i], corner + centroids.of(f.mask), f.mask, 1.0f);
     }
   }
   shader.hand_out(receive);

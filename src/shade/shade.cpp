@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "shade/canvas.h"
 #include "shade/colorists.h"
+#include "shade/shadow/key_shadows.h"
 #include "shade/layers.h"
 #include "shade/opaque_part.h"
 
@@ -124,6 +125,12 @@ class Materials {
   }
 
   [[nodiscard]] const MaterialTable& table() const { return *table_; }
+  /// Where a fragment's samples lie within its pixel, in 1/256.
+  [[nodiscard]] std::vector<glm::ivec2> samples() const {
+    if (layers_) return layers_->samples();
+    const auto offsets = sample_offsets(visible_.view.samples);
+    return {offsets.begin(), offsets.end()};
+  }
 
   void paint(const Painting& painting, const Execution& execution) const {
     if (layers_)
@@ -161,15 +168,6 @@ struct Request {
   const Execution& execution;
 };
 
-/// The shadows of what is opaque by its material.
-ShadowMap shadows_of(const Request& request, const Lighting& lighting) {
-  const Scene& scene = request.surfaces.scene();
-  const glm::dvec3 to_key(lighting.to_key);
-  if (!has_see_through(scene)) return ShadowMap(request.surfaces, request.visible, to_key, request.execution);
-  const Scene opaque = opaque_part(scene);
-  return ShadowMap(Surfaces(opaque, request.execution), request.visible, to_key, request.execution);
-}
-
 bool shows_materials(Shading shading) {
   return shading == Shading::lit || shading == Shading::flat || shading == Shading::normals;
 }
@@ -186,12 +184,9 @@ void paint_materials(const Request& request, Canvas& canvas) {
   if (options.shading == Shading::flat) return paint(Flat{materials.table()});
   if (options.shading == Shading::normals) return paint(Normals{materials.table()});
   const Lighting lighting = lighting_for(visible.view, surfaces.scene().up);
-  std::optional<ShadowMap> shadow;
-  if (options.shadows && options.seen_by_light)
-    shadow.emplace(*options.seen_by_light, visible.view.eye(), execution);
-  else if (options.shadows)
-    shadow.emplace(shadows_of(request, lighting));
-  paint(Lit{materials.table(), lighting, shadow ? &*shadow : nullptr, execution.isa});
+  const std::vector<glm::ivec2> samples = materials.samples();
+  const KeyShadows shadows({surfaces, visible, options, samples}, lighting.to_key, execution);
+  paint(Lit{materials.table(), lighting, shadows.map(), shadows.rays(), execution.isa});
 }
 
 void paint_map(const Request& request, Canvas& canvas) {

@@ -2,6 +2,7 @@
 #include "shade/tile.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace frontmost::shading {
 
@@ -18,20 +19,22 @@ TileWork::TileWork(const TriangleSource& source, const Visible& visible, SampleU
 bool TileWork::shade(const TileRectangle& tile) {
   fragments_.clear();
   bool anything = false;
-  for (int y = 0; y < tile.height; ++y) {
-    const std::size_t row = visible_.index(tile.x, tile.y + y);
-    if (!find_seen(row, tile.width)) continue;
-    // Most of a picture is background: nothing is cleared before something is found.
-    if (!anything) std::fill(pixels_.begin(), pixels_.end(), glm::vec4(0));
-    anything = true;
-    for (int x = 0; x < tile.width; ++x)
-      if (seen_[x]) add_pixel(tile.x + x, tile.y + y, std::uint32_t(y * tile.width + x));
-  }
+  for (int y = 0; y < tile.height; ++y)
+    anything = find_seen(visible_.index(tile.x, tile.y + y), tile.width, y) || anything;
+  if (!anything) return false;
+  // Most of a picture is background: nothing is cleared before something is found.
+  std::fill(pixels_.begin(), pixels_.end(), glm::vec4(0));
+  // Column by column: what is shaded at once then lies together on the surface, as rays that are cast at once should.
+  constexpr int column = 4;
+  for (int left = 0; left < tile.width; left += column)
+    for (int y = 0; y < tile.height; ++y)
+      for (int x = left; x < std::min(left + column, tile.width); ++x)
+        if (seen_[y][x]) add_pixel(tile.x + x, tile.y + y, std::uint32_t(y * tile.width + x));
   flush();
-  return anything;
+  return true;
 }
 
-bool TileWork::find_seen(std::size_t row, int width) {
+bool TileWork::find_seen(std::size_t row, int width, int y) {
   PrimitiveId ids[tile_width];
   std::fill(std::begin(ids), std::end(ids), no_primitive);
   for (int s = 0; s < samples_; ++s) {
@@ -44,7 +47,7 @@ bool TileWork::find_seen(std::size_t row, int width) {
   PrimitiveId all = no_primitive;
   for (int x = 0; x < width; ++x) {
     all &= ids[x];
-    seen_[x] = ids[x] != no_primitive;
+    seen_[y][x] = ids[x] != no_primitive;
   }
   return all != no_primitive;
 }
@@ -58,7 +61,7 @@ void TileWork::add_pixel(int x, int y, std::uint32_t pixel) {
   }
   const glm::vec2 corner{float(x), float(y)};
   if (same) {
-    add_fragment(ids[0], pixel, corner + centre_, 1.0f);
+    add_fragment(ids[0], pixel, corner + centre_, (1u << samples_) - 1);
   } else {
     add_mixed_pixel(ids, corner, pixel);
   }
@@ -70,19 +73,21 @@ void TileWork::add_mixed_pixel(const PrimitiveId* ids, const glm::vec2& corner, 
     if (ids[s] == no_primitive || (done >> s) & 1) continue;
     glm::vec2 sum(0);
     int count = 0;
+    unsigned own = 0;
     for (int other = s; other < samples_; ++other)
       if (ids[other] == ids[s]) {
         sum += offsets_[std::size_t(other)];
         ++count;
-        done |= 1u << other;
+        own |= 1u << other;
       }
-    add_fragment(ids[s], pixel, corner + sum / float(count), float(count) / float(samples_));
+    done |= own;
+    add_fragment(ids[s], pixel, corner + sum / float(count), own);
   }
 }
 
-void TileWork::add_fragment(PrimitiveId id, std::uint32_t pixel, const glm::vec2& screen, float weight) {
+void TileWork::add_fragment(PrimitiveId id, std::uint32_t pixel, const glm::vec2& screen, unsigned samples) {
   if (fragments_.is_full()) flush();
-  fragments_.add(id, pixel, screen, weight);
+  fragments_.add(id, pixel, screen, samples, float(std::popcount(samples)) / float(samples_));
 }
 
 void TileWork::flush() {

@@ -31,11 +31,11 @@ class TileWork {
   [[nodiscard]] const std::vector<glm::vec4>& pixels() const { return pixels_; }
 
  private:
-  /// Sets seen_ for a row of pixels from `row` on. False when nothing is seen in any. O(samples), many at a time.
-  bool find_seen(std::size_t row, int width);
+  /// Sets seen_[y] for a row of pixels from `row` on. False when nothing is seen in any. O(samples), many at a time.
+  bool find_seen(std::size_t row, int width, int y);
   void add_pixel(int x, int y, std::uint32_t pixel);
   void add_mixed_pixel(const PrimitiveId* ids, const glm::vec2& corner, std::uint32_t pixel);
-  void add_fragment(PrimitiveId id, std::uint32_t pixel, const glm::vec2& screen, float weight);
+  void add_fragment(PrimitiveId id, std::uint32_t pixel, const glm::vec2& screen, unsigned samples);
   void flush();
 
   const Visible& visible_;
@@ -44,7 +44,7 @@ class TileWork {
   glm::vec2 centre_{0};             ///< their mean
   FragmentShader fragments_;
   std::vector<glm::vec4> pixels_;
-  bool seen_[tile_width] = {};
+  bool seen_[tile_height][tile_width] = {};
 };
 
 }  // namespace frontmost::shading

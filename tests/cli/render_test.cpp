@@ -88,6 +88,20 @@ TEST_F(Render, PicturesInEveryFormat) {
   }
 }
 
+TEST_F(Render, ShadowsByMapByRaysAndNone) {
+  const std::string teapot = "render builtin:teapot --resolution 160,120 ";
+  succeed(teapot + "-o default.png");
+  for (const char* how : {"off", "map", "rays"}) succeed(teapot + "--shadows " + how + " -o " + how + ".png");
+  succeed(teapot + "--no-shadows -o none.png");
+  succeed(teapot + "--method raycast --shadows rays -o both.png");
+  EXPECT_EQ(read("default.png"), read("map.png"));
+  EXPECT_EQ(read("none.png"), read("off.png"));
+  EXPECT_NE(read("rays.png"), read("map.png"));
+  EXPECT_NE(read("rays.png"), read("off.png"));
+  EXPECT_GT(succeed(teapot + "--shadows rays -o rays.png --json").json()["timings_ms"]["index"].get<double>(), 0);
+  expect_failure(teapot + "--shadows soft -o soft.png", 2, "off|map|rays");
+}
+
 TEST_F(Render, StandardOutputAndInput) {
   const Outcome piped =
       run(Call{.words = {"render", "-", "-o", "-", "--format", "png", "--resolution", "32,32"}, .input = cube_stl()});

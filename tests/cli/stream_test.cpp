@@ -69,6 +69,7 @@ TEST_F(StreamedProgram, StandardInputIsReadOnce) {
 TEST_F(StreamedProgram, RefusesWhatItCannotDo) {
   expect_failure("render builtin:cubes --stream -o p.png", 1, "cannot be streamed");
   expect_failure("render a.stl --stream --repeat 3 -o p.png", 2, "exclude each other");
+  expect_failure("render a.stl --stream --shadows rays -o p.png", 2, "exclude each other");
   expect_failure("info a.stl b.stl", 2, "one model at a time");
 }
 

@@ -127,7 +127,7 @@ TEST(Facets, ShadeAsAFineTessellationDoes) {
     const Visible fine = zbuffer(cut_surfaces, view);
     for (const Shading shading : {Shading::normals, Shading::flat, Shading::uv, Shading::ids, Shading::depth}) {
       SCOPED_TRACE(testing::Message() << name << ", shading " << int(shading));
-      const ShadeOptions options{.shading = shading, .shadows = false};
+      const ShadeOptions options{.shading = shading, .shadows = Shadows::off};
       const Image a = shade(facet_surfaces, shown.visible[0], options), b = shade(cut_surfaces, fine, options);
       EXPECT_LT(mean_difference(a, b), 0.003);
     }

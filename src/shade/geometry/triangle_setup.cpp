@@ -54,6 +54,7 @@ glm::vec3 unit_or(const glm::dvec3& v, const glm::dvec3& fallback) {
 
 void set_up_plane(TriangleSetup& setup, const ScreenRays& rays, const std::array<glm::vec3, 3>& corners_world,
                   const glm::vec2& reference) {
+  setup.corner_world = corners_world;
   std::array<glm::dvec3, 3> c;
   for (std::size_t k = 0; k < 3; ++k) {
     c[k] = glm::dvec3(corners_world[k]) - rays.eye();

@@ -21,10 +21,12 @@ struct TriangleSetup {
   std::array<Affine, 3> weight;     ///< their sum at the reference is 1
   glm::vec2 reference{0};           ///< screen
   std::array<glm::vec3, 3> corner;  ///< world axes, from the eye
+  std::array<glm::vec3, 3> corner_world;
   std::array<glm::vec3, 3> normal;  ///< world, unit, on the viewer's side
   glm::vec3 plane_normal{0};        ///< unit, towards the viewer
   bool is_smooth = false;           ///< the corner normals differ from the plane's
   bool is_backside = false;         ///< the side that the winding calls back is seen
+  PrimitiveId id = no_primitive;
   std::uint32_t instance = no_index, mesh = no_index, triangle = no_index;
   std::uint32_t material = no_index;  ///< number in the scene
   std::array<glm::vec2, 3> texcoord;

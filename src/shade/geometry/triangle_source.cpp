@@ -87,6 +87,7 @@ void TriangleSource::set_up(std::span<const NewTriangle> triangles, std::vector<
 
 void TriangleSource::set_up(const NewTriangle& triangle, const Placement& placement, TriangleSetup& setup) const {
   const Mesh& mesh = *placement.mesh;
+  setup.id = triangle.id;
   setup.instance = placement.instance;
   setup.mesh = placement.mesh_number;
   setup.triangle = triangle.id - placement.first;

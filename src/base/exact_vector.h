@@ -5,7 +5,7 @@
 #include <array>
 #include <glm/glm.hpp>
 
-#include "report/expansion.h"
+#include "base/expansion.h"
 
 namespace frontmost {
 

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a shadow map and rays to the light say different things, and whether the map's texels explain it.
+//
+// The map looks at the 8 x 8 texels whose centres lie within 4 of a point, a little above it by a bias that allows for
+// the slope of its plane. So where the map differs from the ray, one of those texels' lines, or the point's own raised
+// by the bias, must meet something else than the ray does: a shadow's edge passes within 4 texels. Whether it does is
+// asked of the triangles themselves, by lines of sight.
+#pragma once
+
+#include "frontmost/raycast.h"
+#include "frontmost/shade.h"
+#include "frontmost/zbuffer.h"
+#include "shade/lighting.h"
+#include "shade/shadow/shadow_map.h"
+#include "shade/geometry/triangle_setup.h"
+
+namespace frontmost::test {
+
+struct ShadowBand {
+  std::size_t asked = 0;      ///< pixels whose plane the light meets
+  std::size_t in_shadow = 0;  ///< by rays
+  std::size_t differing = 0;  ///< the map says neither wholly lit nor wholly dark as the ray does
+  std::size_t opposite = 0;   ///< of those, it says the opposite
+  std::size_t by_bias = 0;    ///< of those, what shadows the point is no higher than the bias
+  std::size_t unexplained = 0;
+  double widest = 0;  ///< texels to the nearest line that differs, along the worse axis
+};
+
+class ShadowBandMeter {
+ public:
+  ShadowBandMeter(const Surfaces& surfaces, const View& view, const Execution& execution = {})
+      : surfaces_(surfaces),
+        visible_(zbuffer(surfaces, view, execution)),
+        index_(surfaces, execution),
+        to_key_(shading::lighting_for(view, surfaces.scene().up).to_key),
+        map_(surfaces, visible_, glm::dvec3(to_key_), execution) {
+    const auto light = shading::view_of_light(visible_, surfaces.bounds(), glm::dvec3(to_key_), execution);
+    if (!light) return;
+    axes_ = glm::dmat3(light->world_from_eye);
+    const Projection& window = light->projection;
+    corner_ = light->eye() + window.left * axes_[0] + window.top * axes_[1];
+    texel_ = (window.right - window.left) / light->width;
+    depth_ = window.clip.far - window.clip.near;
+  }
+
+  [[nodiscard]] ShadowBand measure(int stride) const {
+    ShadowBand band;
+    for (int y = 0; y < visible_.view.height; y += stride)
+      for (int x = 0; x < visible_.view.width; x += stride) {
+        const PrimitiveId id = visible_.primitives[visible_.index(x, y)];
+        if (id != no_primitive) measure({float(x) + 0.5f, float(y) + 0.5f}, id, band);
+      }
+    return band;
+  }
+
+ private:
+  static constexpr double kReach = 4;  ///< texels: half the width of the map's filter
+
+  void measure(const glm::vec2& screen, PrimitiveId id, ShadowBand& band) const {
+    const shading::ScreenRays rays(visible_.view);
+    shading::TriangleSetup setup;
+    shading::set_up_plane(setup, rays, surfaces_.corners(id), screen);
+    const double cosine = glm::dot(glm::dvec3(setup.plane_normal), glm::dvec3(to_key_));
+    if (!(cosine > 0.02)) return;
+    ++band.asked;
+    const glm::vec3 weights = shading::barycentric(setup, screen.x, screen.y).weight;
+    const SurfacePoint point{id, setup.corner_world, weights, glm::vec3(0)};
+    std::uint8_t is_lit = 0;
+    are_lit(index_, {&point, 1}, to_key_, {&is_lit, 1}, {.threads = 1});
+    band.in_shadow += is_lit == 0;
+    const glm::vec3 position = shading::interpolate(setup.corner, weights);
+    const float by_map = map_.light_at(position, setup.plane_normal);
+    if (by_map == float(is_lit)) return;
+    ++band.differing;
+    band.opposite += by_map == float(1 - is_lit);
+    const double slope = std::min(8.0, std::sqrt(1 - cosine * cosine) / cosine);
+    const double bias = (0.75 + 5 * slope) * texel_ + 2e-6 * depth_;
+    explain(glm::dvec3(position) + rays.eye(), is_lit != 0, bias, band);
+  }
+
+  /// Whether nothing stands before the line of the light that passes `shift` texels beside a point, from `bias` on.
+  [[nodiscard]] bool is_clear_at(const glm::dvec3& world, const glm::dvec2& shift, double bias) const {
+    const glm::dvec3 from =
+        world + texel_ * (shift.x * axes_[0] - shift.y * axes_[1]) + (bias + 1e-7 * depth_) * axes_[2];
+    return is_clear(index_, Segment{glm::vec3(from), glm::vec3(from + 2.0 * depth_ * axes_[2])});
+  }
+
+  void explain(const glm::dvec3& world, bool is_lit, double bias, ShadowBand& band) const {
+    if (!is_lit && is_clear_at(world, {0, 0}, bias)) {
+      ++band.by_bias;
+      return;
+    }
+    const glm::dvec3 from_corner = world - corner_;
+    const glm::dvec2 texel(glm::dot(from_corner, axes_[0]) / texel_, -glm::dot(from_corner, axes_[1]) / texel_);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (double y = std::ceil(texel.y - kReach - 0.5); y + 0.5 <= texel.y + kReach; ++y)
+      for (double x = std::ceil(texel.x - kReach - 0.5); x + 0.5 <= texel.x + kReach; ++x) {
+        const glm::dvec2 shift = glm::dvec2(x, y) + 0.5 - texel;
+        const double away = std::max(std::abs(shift.x), std::abs(shift.y));
+        if (away < nearest && differs_at(world, shift, is_lit, bias)) nearest = away;
+      }
+    if (nearest <= kReach + kSnapped)
+      band.widest = std::max(band.widest, nearest);
+    else
+      ++band.unexplained;
+  }
+
+  /// The z-buffer moves corners by up to half of 1/256 texel: lines beside a texel's centre stand for it as well.
+  static constexpr double kSnapped = 1.0 / 128;
+
+  [[nodiscard]] bool differs_at(const glm::dvec3& world, const glm::dvec2& shift, bool is_lit, double bias) const {
+    for (const glm::dvec2& aside :
+         {glm::dvec2(0, 0), glm::dvec2(1, 1), glm::dvec2(-1, 1), glm::dvec2(1, -1), glm::dvec2(-1, -1)})
+      if (is_clear_at(world, shift + kSnapped * aside, bias) != is_lit) return true;
+    return false;
+  }
+
+  const Surfaces& surfaces_;
+  Visible visible_;
+  RayIndex index_;
+  glm::vec3 to_key_;
+  shading::ShadowMap map_;
+  glm::dmat3 axes_{1};
+  glm::dvec3 corner_{0};  ///< of the map: its first texel's
+  double texel_ = 1, depth_ = 1;
+};
+
+}  // namespace frontmost::test
