@@ -131,7 +131,7 @@ void are_clear(const RayIndex& index, std::span<const Segment> segments, std::sp
 
 /// A point of a triangle, without rounding: the mean of its corners by weights, moved by `lift`. The number that this
 /// stands for lies in the triangle's plane, which a point of floats seldom does.
-struct SurfacePoint {
+struct TrianglePoint {
   PrimitiveId primitive = no_primitive;  ///< its triangle, where the index holds it
   std::array<glm::vec3, 3> corners{};
   glm::vec3 weights{1, 1, 1};  ///< of any sum; none negative, and not all zero
@@ -144,7 +144,7 @@ struct SurfacePoint {
 /// that meet in an edge or corner throws a shadow on itself by rounding. Points near each other, in the order given,
 /// are asked together, and quicker for it. Values that are not finite, and a light without direction: lit.
 /// \throws Error bad_argument when there are not as many answers as points.
-void are_lit(const RayIndex& index, std::span<const SurfacePoint> points, const glm::vec3& to_light,
+void are_lit(const RayIndex& index, std::span<const TrianglePoint> points, const glm::vec3& to_light,
              std::span<std::uint8_t> answers, const Execution& execution = {});
 
 }  // namespace frontmost

@@ -70,7 +70,7 @@ class LightPacket {
     tree_size_ = std::max({far.x, far.y, far.z});
   }
 
-  void Find(std::span<const SurfacePoint> points, std::uint8_t* lit) {
+  void Find(std::span<const TrianglePoint> points, std::uint8_t* lit) {
     points_ = points;
     Place();
     Walk();
@@ -83,7 +83,7 @@ class LightPacket {
     float low_u, high_u, low_v, high_v, low_d, high_d;
   };
 
-  static glm::dvec3 PositionOf(const SurfacePoint& p) {
+  static glm::dvec3 PositionOf(const TrianglePoint& p) {
     glm::dvec3 sum(0);
     for (int i = 0; i < 3; ++i) sum += double(p.weights[i]) * glm::dvec3(p.corners[std::size_t(i)]);
     return sum / (double(p.weights.x) + double(p.weights.y) + double(p.weights.z)) + glm::dvec3(p.lift);
@@ -104,7 +104,7 @@ class LightPacket {
     waiting_count_ = 0;
     std::fill_n(waiting_, kLightRays, 0);  // those of a last packet that is not full are nobody's
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      const SurfacePoint& point = points_[i];
+      const TrianglePoint& point = points_[i];
       is_clear_[i] = !is_valid(point);
       waiting_[i] = is_clear_[i] ? 0 : -1;
       ids_[i] = point.primitive;
@@ -356,7 +356,7 @@ class LightPacket {
 
   /// A triangle that certainly is passed through; a lifted point may be below its own.
   void Meet(const RayLeaf& leaf, std::size_t lane, std::size_t ray) {
-    const SurfacePoint& point = points_[ray];
+    const TrianglePoint& point = points_[ray];
     if (point.lift == glm::vec3(0) || !is_own(CornersOf(leaf, lane), point)) Darken(ray);
   }
 
@@ -369,7 +369,7 @@ class LightPacket {
   LightAxes axes_;
   std::vector<std::uint32_t> stack_;
   float tree_size_;
-  std::span<const SurfacePoint> points_;
+  std::span<const TrianglePoint> points_;
   // The rays, in scaled coordinates from the origin.
   alignas(64) float u_[kLightRays], v_[kLightRays], d_[kLightRays];
   alignas(64) PrimitiveId ids_[kLightRays];
@@ -382,7 +382,7 @@ class LightPacket {
   std::size_t block_count_ = 0;
 };
 
-void FindLit(const RayTree& tree, std::span<const SurfacePoint> points, const glm::vec3& to_light,
+void FindLit(const RayTree& tree, std::span<const TrianglePoint> points, const glm::vec3& to_light,
              std::span<std::uint8_t> answers) {
   LightPacket packet(tree, to_light);
   for (std::size_t first = 0; first < points.size(); first += kLightRays)
@@ -398,7 +398,7 @@ namespace frontmost::raycast_detail {
 
 FRONTMOST_KERNELS(FindLit);
 
-void find_lit(const RayTree& tree, std::span<const SurfacePoint> points, const glm::vec3& to_light,
+void find_lit(const RayTree& tree, std::span<const TrianglePoint> points, const glm::vec3& to_light,
               std::span<std::uint8_t> answers, Isa isa) {
   const bool is_direction =
       std::isfinite(to_light.x) && std::isfinite(to_light.y) && std::isfinite(to_light.z) && to_light != glm::vec3(0);

@@ -12,7 +12,7 @@ namespace frontmost::raycast_detail {
 inline constexpr std::size_t kLightRays = 64;
 
 /// are_lit() on this thread.
-void find_lit(const RayTree& tree, std::span<const SurfacePoint> points, const glm::vec3& to_light,
+void find_lit(const RayTree& tree, std::span<const TrianglePoint> points, const glm::vec3& to_light,
               std::span<std::uint8_t> answers, Isa isa);
 
 }  // namespace frontmost::raycast_detail

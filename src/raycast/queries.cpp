@@ -96,7 +96,7 @@ void are_clear(const RayIndex& index, std::span<const Segment> segments, std::sp
   });
 }
 
-void are_lit(const RayIndex& index, std::span<const SurfacePoint> points, const glm::vec3& to_light,
+void are_lit(const RayIndex& index, std::span<const TrianglePoint> points, const glm::vec3& to_light,
              std::span<std::uint8_t> answers, const Execution& execution) {
   check_sizes(points.size(), answers.size());
   parallel_for(execution, points.size(), kQueriesPerPart, [&](std::size_t begin, std::size_t end) {

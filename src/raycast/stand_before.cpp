@@ -19,7 +19,7 @@ struct Rounded {
   glm::dvec3 value{0}, size{0};
 };
 
-Rounded rounded_from(const SurfacePoint& point, const glm::vec3& corner) {
+Rounded rounded_from(const TrianglePoint& point, const glm::vec3& corner) {
   Rounded result;
   const glm::dvec3 lift(point.lift);
   for (int i = 0; i < 3; ++i) {
@@ -31,7 +31,7 @@ Rounded rounded_from(const SurfacePoint& point, const glm::vec3& corner) {
   return result;
 }
 
-ExactVector exact_from(const SurfacePoint& point, const glm::vec3& corner) {
+ExactVector exact_from(const TrianglePoint& point, const glm::vec3& corner) {
   ExactVector result;
   for (int i = 0; i < 3; ++i)
     for (int axis = 0; axis < 3; ++axis) {
@@ -55,7 +55,7 @@ int likely_sign(const Rounded& a, const Rounded& b, const Rounded& c) {
 /// The corners of a triangle, from the point, and the direction of the light.
 class Sight {
  public:
-  Sight(const Corners& corners, const SurfacePoint& point, const glm::vec3& to_light)
+  Sight(const Corners& corners, const TrianglePoint& point, const glm::vec3& to_light)
       : corners_(corners), point_(point), light_(to_light) {
     for (std::size_t k = 0; k < 3; ++k) rounded_[k] = rounded_from(point, corners[k]);
     rounded_light_ = {glm::dvec3(to_light), glm::abs(glm::dvec3(to_light))};
@@ -79,7 +79,7 @@ class Sight {
   [[nodiscard]] ExactVector exact_corner(std::size_t k) const { return exact_from(point_, corners_[k]); }
 
   const Corners& corners_;
-  const SurfacePoint& point_;
+  const TrianglePoint& point_;
   const glm::vec3& light_;
   std::array<Rounded, 3> rounded_;
   Rounded rounded_light_;
@@ -87,7 +87,7 @@ class Sight {
 
 }  // namespace
 
-bool is_valid(const SurfacePoint& point) {
+bool is_valid(const TrianglePoint& point) {
   // Zero unless something is not finite: then it is NaN.
   float nothing = dot3(point.lift, glm::vec3(0)) + dot3(point.weights, glm::vec3(0));
   for (const glm::vec3& corner : point.corners) nothing += dot3(corner, glm::vec3(0));
@@ -95,11 +95,11 @@ bool is_valid(const SurfacePoint& point) {
   return nothing == 0 && w.x >= 0 && w.y >= 0 && w.z >= 0 && (w.x > 0 || w.y > 0 || w.z > 0);
 }
 
-bool is_own(const Corners& corners, const SurfacePoint& point) {
+bool is_own(const Corners& corners, const TrianglePoint& point) {
   return std::is_permutation(corners.begin(), corners.end(), point.corners.begin());
 }
 
-bool stands_before(const Corners& corners, const SurfacePoint& point, const glm::vec3& to_light) {
+bool stands_before(const Corners& corners, const TrianglePoint& point, const glm::vec3& to_light) {
   if (is_own(corners, point)) return false;
   const Sight sight(corners, point, to_light);
   // As meet(): all turns to one side, edges included, and the plane is yet to come.

@@ -15,7 +15,7 @@ namespace {
 using Corners = std::array<glm::vec3, 3>;
 
 /// What src/raycast says in doubles and expansions, in fractions.
-RationalVector position_of(const SurfacePoint& p) {
+RationalVector position_of(const TrianglePoint& p) {
   RationalVector sum{0, 0, 0};
   for (int i = 0; i < 3; ++i)
     sum = sum + Rational(p.weights[i]) * RationalVector(glm::dvec3(p.corners[std::size_t(i)]));
@@ -23,7 +23,7 @@ RationalVector position_of(const SurfacePoint& p) {
   return Rational(1 / weights) * sum + RationalVector(glm::dvec3(p.lift));
 }
 
-bool oracle_stands_before(const Corners& corners, const SurfacePoint& point, const glm::vec3& to_light) {
+bool oracle_stands_before(const Corners& corners, const TrianglePoint& point, const glm::vec3& to_light) {
   const RationalVector p = position_of(point), light{glm::dvec3(to_light)};
   const auto from = [&](int k) { return RationalVector(glm::dvec3(corners[std::size_t(k)])) - p; };
   const RationalVector a = from(0), b = from(1), c = from(2), n = cross(b - a, c - a);
@@ -40,7 +40,7 @@ bool oracle_stands_before(const Corners& corners, const SurfacePoint& point, con
 
 bool same_corners(const Corners& a, const Corners& b) { return std::is_permutation(a.begin(), a.end(), b.begin()); }
 
-std::uint8_t oracle_is_lit(const Surfaces& surfaces, const SurfacePoint& point, const glm::vec3& to_light) {
+std::uint8_t oracle_is_lit(const Surfaces& surfaces, const TrianglePoint& point, const glm::vec3& to_light) {
   for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
     const Corners corners = surfaces.corners(id);
     if (id == point.primitive || same_corners(corners, point.corners)) continue;
@@ -55,16 +55,16 @@ struct Indexed {
   Surfaces surfaces;
   RayIndex index;
 
-  [[nodiscard]] SurfacePoint point(PrimitiveId id, const glm::vec3& weights) const {
+  [[nodiscard]] TrianglePoint point(PrimitiveId id, const glm::vec3& weights) const {
     return {id, surfaces.corners(id), weights, glm::vec3(0)};
   }
-  [[nodiscard]] std::vector<std::uint8_t> lit(const std::vector<SurfacePoint>& points, const glm::vec3& to_light,
+  [[nodiscard]] std::vector<std::uint8_t> lit(const std::vector<TrianglePoint>& points, const glm::vec3& to_light,
                                               const Execution& execution = {}) const {
     std::vector<std::uint8_t> answers(points.size(), 7);
     are_lit(index, points, to_light, answers, execution);
     return answers;
   }
-  [[nodiscard]] bool is_lit(const SurfacePoint& point, const glm::vec3& to_light) const {
+  [[nodiscard]] bool is_lit(const TrianglePoint& point, const glm::vec3& to_light) const {
     return lit({point}, to_light)[0] == 1;
   }
 };
@@ -81,7 +81,7 @@ Scene floors(std::initializer_list<float> heights) {
 
 TEST(Light, AFloorAboveIsInTheWayUnlessTheLightComesPastIt) {
   const Indexed of(floors({0, 1}));
-  const SurfacePoint centre = of.point(0, {1, 0, 1});
+  const TrianglePoint centre = of.point(0, {1, 0, 1});
   EXPECT_FALSE(of.is_lit(centre, {0, 0, 1}));
   EXPECT_TRUE(of.is_lit(centre, {0, 0, -1}));
   // From the middle, the edge of the floor above is met exactly at a slope of 1: edges count.
@@ -93,7 +93,7 @@ TEST(Light, AFloorAboveIsInTheWayUnlessTheLightComesPastIt) {
 
 TEST(Light, ALiftedPointIsWhereItSaysExactly) {
   const Indexed of(floors({0, 1}));
-  SurfacePoint point = of.point(0, {1, 2, 3});
+  TrianglePoint point = of.point(0, {1, 2, 3});
   for (const float height : {0.5f, std::nextafter(1.0f, 0.0f)}) {
     point.lift = {0, 0, height};
     EXPECT_FALSE(of.is_lit(point, {0, 0, 1})) << height;
@@ -127,7 +127,7 @@ TEST(Light, NothingShadowsItselfAlongEdgesAndCorners) {
   Random random(5);
   for (int light = 0; light < 200; ++light) {
     const glm::vec3 to_light = random.point(1);
-    std::vector<SurfacePoint> points;
+    std::vector<TrianglePoint> points;
     std::vector<std::uint8_t> expected;
     for (PrimitiveId id = 0; id < of.surfaces.primitive_count(); ++id) {
       const Corners c = of.surfaces.corners(id);
@@ -147,10 +147,10 @@ TEST(Light, NothingShadowsItselfAlongEdgesAndCorners) {
 }
 
 /// Points of every kind: inside, on edges, at corners, lifted by much and by next to nothing.
-std::vector<SurfacePoint> random_points(const Surfaces& surfaces, int count, Random& random) {
-  std::vector<SurfacePoint> points;
+std::vector<TrianglePoint> random_points(const Surfaces& surfaces, int count, Random& random) {
+  std::vector<TrianglePoint> points;
   for (int i = 0; i < count; ++i) {
-    SurfacePoint p;
+    TrianglePoint p;
     const auto id = PrimitiveId(random.below(int(surfaces.primitive_count())));
     p.corners = surfaces.corners(id);
     if (random.below(4) != 0) p.primitive = id;
@@ -169,7 +169,7 @@ TEST(Light, EqualsEveryTriangleInFractions) {
     for (std::uint64_t seed = 0; seed < 1; ++seed) {
       const Indexed of(scene_of(random_mesh(kind, 14, seed)));
       Random random(seed + 99);
-      const std::vector<SurfacePoint> points = random_points(of.surfaces, 70, random);
+      const std::vector<TrianglePoint> points = random_points(of.surfaces, 70, random);
       const glm::vec3 slanted = random.point(1);
       for (const glm::vec3& to_light : {slanted, glm::vec3(0, 0, 1), glm::vec3(-1, 0, 0)}) {
         const std::vector<std::uint8_t> answers = of.lit(points, to_light);
@@ -188,7 +188,7 @@ TEST(Light, TheSameForEveryInstructionSetOrderAndNumberOfThreads) {
   for (const Kind kind : {Kind::soup, Kind::shared_grid, Kind::coplanar, Kind::sheets}) {
     const Indexed of(scene_of(random_mesh(kind, 300, 3)));
     Random random(8);
-    std::vector<SurfacePoint> points = random_points(of.surfaces, 200, random);
+    std::vector<TrianglePoint> points = random_points(of.surfaces, 200, random);
     const glm::vec3 to_light(0.3f, -0.2f, 0.9f);
     const std::vector<std::uint8_t> first = of.lit(points, to_light);
     for (const Isa isa : {Isa::scalar, Isa::best})
@@ -209,7 +209,7 @@ TEST(Light, ScalingByPowersOfTwoChangesNothing) {
       p = glm::vec3(std::ldexp(p.x, exponent), std::ldexp(p.y, exponent), std::ldexp(p.z, exponent));
     const Indexed of(scene_of(scaled));
     Random random(8);
-    std::vector<SurfacePoint> points;
+    std::vector<TrianglePoint> points;
     for (PrimitiveId id = 0; id < of.surfaces.primitive_count(); ++id) {
       const float a = random.unit(), b = random.unit();
       points.push_back(of.point(id, {a, b, 0.5f}));
@@ -225,8 +225,8 @@ TEST(Light, ScalingByPowersOfTwoChangesNothing) {
 TEST(Light, NonsenseIsLit) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   const Indexed of(floors({0, 1})), empty{Scene{}};
-  const SurfacePoint good = of.point(0, {1, 1, 1});
-  std::vector<SurfacePoint> points(10, good);
+  const TrianglePoint good = of.point(0, {1, 1, 1});
+  std::vector<TrianglePoint> points(10, good);
   points[1].weights = glm::vec3(0);
   points[2].weights = {1, -1, 1};
   points[3].weights = {1, nan, 1};
@@ -253,7 +253,7 @@ TEST(Light, HugeTinyAndEmptyTrianglesAreNoTrouble) {
   add_triangle(mesh, {0, 0, 2}, {0, 0, 2}, {1, 1, 2});
   add_triangle(mesh, {-huge, -huge, huge}, {huge, -huge, huge}, {0, huge, huge});
   const Indexed of(scene_of(mesh));
-  std::vector<SurfacePoint> points;
+  std::vector<TrianglePoint> points;
   for (PrimitiveId id = 0; id < 5; ++id)
     for (const glm::vec3& weights : {glm::vec3(1, 1, 1), glm::vec3(1, 0, 0), glm::vec3(1e-20f, 1, 1e20f)})
       points.push_back(of.point(id, weights));

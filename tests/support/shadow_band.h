@@ -10,9 +10,9 @@
 #include "frontmost/raycast.h"
 #include "frontmost/shade.h"
 #include "frontmost/zbuffer.h"
+#include "shade/geometry/triangle_setup.h"
 #include "shade/lighting.h"
 #include "shade/shadow/shadow_map.h"
-#include "shade/geometry/triangle_setup.h"
 
 namespace frontmost::test {
 
@@ -64,7 +64,7 @@ class ShadowBandMeter {
     if (!(cosine > 0.02)) return;
     ++band.asked;
     const glm::vec3 weights = shading::barycentric(setup, screen.x, screen.y).weight;
-    const SurfacePoint point{id, setup.corner_world, weights, glm::vec3(0)};
+    const TrianglePoint point{id, setup.corner_world, weights, glm::vec3(0)};
     std::uint8_t is_lit = 0;
     are_lit(index_, {&point, 1}, to_key_, {&is_lit, 1}, {.threads = 1});
     band.in_shadow += is_lit == 0;

@@ -14,7 +14,7 @@ class RayShadows::Questions {
  public:
   Questions(const RayShadows& shadows, Batch& batch) : shadows_(shadows), batch_(batch) {}
 
-  void add(const SurfacePoint& point, int fragment) {
+  void add(const TrianglePoint& point, int fragment) {
     points_[count_] = point;
     fragments_[count_] = fragment;
     if (++count_ == points_.size()) ask();
@@ -35,7 +35,7 @@ class RayShadows::Questions {
   const RayShadows& shadows_;
   Batch& batch_;
   std::size_t count_ = 0;
-  std::array<SurfacePoint, kAtOnce> points_;
+  std::array<TrianglePoint, kAtOnce> points_;
   std::array<int, kAtOnce> fragments_;
 };
 
@@ -53,7 +53,7 @@ void RayShadows::find_light(const std::vector<TriangleSetup>& setups, const bool
     batch.shadow[i] = 0;
     const TriangleSetup& setup = setups[coverage.triangle[i]];
     if (!setup.is_smooth && !(glm::dot(g.plane_normal.at(i), to_key_) > 0)) continue;
-    SurfacePoint point;
+    TrianglePoint point;
     if (knows_ids_) point.primitive = setup.id;
     point.corners = setup.corner_world;
     if (setup.is_smooth) point.lift = g.smooth_position.at(i) - g.position.at(i);
