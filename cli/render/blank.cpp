@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each triangle is charged with the first thing that hides it, in the order in which a renderer would find it; the
-// sentence names what hides all, or else counts.
+// The sentence names what hides all, or else counts.
 #include "cli/render/blank.h"
 
 #include <fmt/format.h>
@@ -8,20 +7,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace frontmost::cli {
 namespace {
 
-enum Cause { non_finite, behind, too_near, too_far, outside, culled, too_small, cause_count };
+enum Cause { non_finite, behind, too_near, too_far, outside, culled, too_small };
 
-constexpr std::array<std::string_view, cause_count> clauses = {"has corners that are not finite",
-                                                               "is behind the camera",
-                                                               "is nearer than the near plane",
-                                                               "is beyond the far plane",
-                                                               "is outside the picture",
-                                                               "faces the way that --cull leaves out",
-                                                               "is smaller than a pixel or seen edge-on"};
+constexpr std::array<std::string_view, 7> clauses = {"has corners that are not finite",
+                                                     "is behind the camera",
+                                                     "is nearer than the near plane",
+                                                     "is beyond the far plane",
+                                                     "is outside the picture",
+                                                     "faces the way that --cull leaves out",
+                                                     "is smaller than a pixel or seen edge-on"};
 
 using Corners = std::array<glm::dvec3, 3>;
 
@@ -76,17 +76,37 @@ bool is_blank(const Visible& visible) {
                      [](PrimitiveId id) { return id == no_primitive; });
 }
 
-std::string blank_reason(const Surfaces& surfaces, const View& view) {
-  if (surfaces.primitive_count() == 0) return "the model has no triangles";
+void BlankReason::add(std::span<const std::array<glm::vec3, 3>> triangles) {
   std::array<std::uint64_t, cause_count> counts{};
-  for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) ++counts[cause_of(surfaces.corners(id), view)];
+  for (const std::array<glm::vec3, 3>& corners : triangles) ++counts[cause_of(corners, view_)];
+  const std::lock_guard lock(mutex_);
+  for (std::size_t i = 0; i < counts.size(); ++i) counts_[i] += counts[i];
+}
+
+std::string BlankReason::clause() const {
+  static_assert(clauses.size() == cause_count);
+  const std::uint64_t all = std::accumulate(counts_.begin(), counts_.end(), std::uint64_t(0));
+  if (all == 0) return "the model has no triangles";
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < cause_count; ++i) {
-    if (counts[i] == surfaces.primitive_count()) return fmt::format("all of the model {}", clauses[i]);
-    if (counts[i] > 0)
-      parts.push_back(fmt::format("{} of {} triangles: {}", counts[i], surfaces.primitive_count(), clauses[i]));
+    if (counts_[i] == all) return fmt::format("all of the model {}", clauses[i]);
+    if (counts_[i] > 0) parts.push_back(fmt::format("{} of {} triangles: {}", counts_[i], all, clauses[i]));
   }
   return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+std::string blank_reason(const Surfaces& surfaces, const View& view) {
+  BlankReason reason(view);
+  std::vector<std::array<glm::vec3, 3>> corners;
+  constexpr PrimitiveId at_once = 4096;
+  for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
+    corners.push_back(surfaces.corners(id));
+    if (corners.size() < at_once) continue;
+    reason.add(corners);
+    corners.clear();
+  }
+  reason.add(corners);
+  return reason.clause();
 }
 
 }  // namespace frontmost::cli

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "cli/command.h"
 #include "cli/console.h"
@@ -136,10 +137,13 @@ int render_stream(const Run& run) {
   options.load = settings.load;
   Stream stream(models, options, execution);
   timings.load = watch.milliseconds();
+  bool is_first = true;
   const std::vector<ViewResult> results = render_all(run.jobs, settings, progress, [&](const Job& job) {
-    return render_streamed_view(job, stream, {settings.run, execution, run.on_terminal});
+    ViewResult result = render_streamed_view(job, stream, {settings.run, execution, run.on_terminal});
+    // They are known now, and stand before what there is to say of the view, as without --stream.
+    if (std::exchange(is_first, false)) show_warnings(stream.scene().warnings, settings.run, progress);
+    return result;
   });
-  show_warnings(stream.scene().warnings, settings.run, progress);
   timings.total = run.whole.milliseconds();
   report(settings, {stream.triangle_count(), stream.scene().warnings, stream.passes()}, results, timings);
   return status_of(results);

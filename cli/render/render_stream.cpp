@@ -14,7 +14,7 @@ StreamNeeds needs_of(const Job& job, const SightPlan& plan) {
   const bool picture = plan.picture_samples.has_value();
   const bool lit = picture && job.output.shading == Shading::lit;
   const bool shows_normals = lit || (picture && job.output.shading == Shading::normals);
-  return {lit && job.output.shadows != Shadows::off, shows_normals || wants(job, OutputKind::normals)};
+  return {lit && job.output.shadows != Shadows::off, shows_normals || wants(job, OutputKind::normals), nullptr};
 }
 
 void check_one_pass(const Job& job, const StreamNeeds& needs, const Stream& stream) {
@@ -24,9 +24,10 @@ void check_one_pass(const Job& job, const StreamNeeds& needs, const Stream& stre
     throw Error(ErrorCode::unsupported, sorry +
                                             "say where the camera is (--camera-position with --camera-focal-point, "
                                             "or --pose), and give --near and --far");
-  if (needs.key_light || needs.smooth_normals)
+  // Smooth normals may turn out to need none: look() says.
+  if (needs.key_light)
     throw Error(ErrorCode::unsupported,
-                sorry + "lit pictures and normals take another pass; --shading flat, depth, ids or uv do not");
+                sorry + "shadows take another pass; --no-shadows, --shading flat, depth, ids or uv do not");
 }
 
 /// A scene that has these bounds, which is all that is looked at.
@@ -70,12 +71,14 @@ std::vector<View> views_of(const View& view, const SightPlan& plan) {
 ViewResult render_streamed_view(const Job& job, Stream& stream, const StreamContext& context) {
   const View of_nothing = view_of_nothing(job, stream, context.execution);
   const SightPlan plan = plan_sights(job, context.run, context.keep_picture, of_nothing);
-  const StreamNeeds needs = needs_of(job, plan);
+  StreamNeeds needs = needs_of(job, plan);
   check_one_pass(job, needs, stream);
   ViewResult result;
   result.name = job.name;
   const Stopwatch watch;
   result.view = find_view(job, of_nothing, stream, context.execution);
+  BlankReason blank_reason(result.view);
+  needs.unseen = [&](CornerSpan triangles) { blank_reason.add(triangles); };
   Excerpt excerpt = stream.look(views_of(result.view, plan), needs, context.execution);
   result.timings.visible.push_back(watch.milliseconds());
   const Scene bounds = scene_of(stream.bounds());
@@ -86,6 +89,7 @@ ViewResult render_streamed_view(const Job& job, Stream& stream, const StreamCont
   if (plan.picture_samples) sights.picture = Sight{std::move(excerpt.visible.front()), {}};
   if (plan.maps && !plan.shared) sights.maps = Sight{std::move(excerpt.visible.back()), {}};
   sights.stream_ids = &excerpt.stream_ids;
+  sights.blank_reason = &blank_reason;
   if (excerpt.seen_by_light) sights.seen_by_light = &*excerpt.seen_by_light;
   finish_view(job, {excerpt.surfaces(), context.run, context.execution, context.keep_picture, nullptr}, sights, result);
   return result;

@@ -108,9 +108,9 @@ Image map_of(OutputKind kind, const Job& job, const RenderContext& context, cons
 void warn_if_blank(const Sights& sights, const RenderContext& context, ViewResult& result) {
   if (!is_blank(sights.any())) return;
   // Of a stream, the triangles that are not seen are gone.
-  result.warnings.push_back(sights.stream_ids
-                                ? "nothing is in view"
-                                : fmt::format("nothing is in view: {}", blank_reason(context.surfaces, result.view)));
+  const std::string reason =
+      sights.blank_reason ? sights.blank_reason->clause() : blank_reason(context.surfaces, result.view);
+  result.warnings.push_back("nothing is in view: " + reason);
 }
 
 }  // namespace

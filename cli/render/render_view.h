@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/rays/sight.h"
+#include "cli/render/blank.h"
 #include "cli/render/jobs.h"
 
 namespace frontmost::cli {
@@ -80,6 +81,7 @@ struct Sights {
   /// Of a stream: the numbers of the triangles, by id of the surfaces, and what throws shadows. Both borrowed.
   const std::vector<PrimitiveId>* stream_ids = nullptr;
   const Visible* seen_by_light = nullptr;
+  const BlankReason* blank_reason = nullptr;  ///< counted while the stream was read; borrowed
 
   [[nodiscard]] const Sight& for_maps() const { return shared ? *picture : *maps; }
   [[nodiscard]] const Visible& any() const { return (picture ? *picture : *maps).visible; }

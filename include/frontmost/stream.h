@@ -2,7 +2,10 @@
 // Streams: models of any length, drawn without ever being in memory as a whole.
 #pragma once
 
+#include <array>
+#include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "frontmost/io.h"
@@ -42,10 +45,16 @@ class Excerpt {
   std::unique_ptr<const Parts> parts_;
 };
 
-/// What is to be known of a stream beside what is visible. Each needs the model to be read a second time.
+/// Corners of triangles.
+using CornerSpan = std::span<const std::array<glm::vec3, 3>>;
+
+/// What is to be known of a stream beside what is visible.
 struct StreamNeeds {
-  bool key_light = false;       ///< what throws shadows in the first view: for pictures that are lit
-  bool smooth_normals = false;  ///< the neighbours of triangles that are seen: where meshes have no normals
+  bool key_light = false;       ///< what throws shadows in the first view: for pictures that are lit. A second pass
+  bool smooth_normals = false;  ///< the neighbours of triangles that are seen: where meshes have no normals. The same
+  /// Called with triangles as long as nothing is seen in the first view: with all of them when it stays blank, so that
+  /// it can be said why. By several threads at once. No pass of its own.
+  std::function<void(CornerSpan)> unseen = nullptr;
 };
 
 /// Binary STL and PLY files, each an object, as if their scenes stood in one, in this order. Memory: some pieces at a
@@ -71,7 +80,7 @@ class Stream {
   [[nodiscard]] int passes() const;
   /// Of all triangles that were read; of those with finite corners. After a pass.
   [[nodiscard]] std::uint64_t triangle_count() const;
-  [[nodiscard]] const Box& bounds() const;
+  [[nodiscard]] Box bounds() const;
 
   /// A scene of points that stands for the model wherever only bounds and framing count: a view that looks the way of
   /// `direction`, with the same field of view, is framed to the bit as it is for the whole model. One pass.

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "surfaces/cluster_set.h"
+#include "stream/finite_triangles.h"
 
 namespace frontmost::streaming {
 namespace {
@@ -11,23 +11,6 @@ namespace {
 glm::dvec2 spread_of(const View& view, double margin) {
   const double filled = 1 - 2 * margin;
   return {view.projection.right * filled, view.projection.top * filled};
-}
-
-template <class Visit>
-void for_finite_triangles(const Mesh& mesh, std::size_t begin, std::size_t end, const Visit& visit) {
-  for (std::size_t t = begin; t < end; ++t) {
-    const glm::uvec3& corners = mesh.triangles[t];
-    const glm::vec3 &a = mesh.positions[corners.x], &b = mesh.positions[corners.y], &c = mesh.positions[corners.z];
-    if (is_finite(a) && is_finite(b) && is_finite(c)) visit(a, b, c);
-  }
-}
-
-Box box_of(const Mesh& mesh, std::size_t begin, std::size_t end) {
-  Box box;
-  for_finite_triangles(mesh, begin, end, [&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-    box.include(Box{glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c)});
-  });
-  return box;
 }
 
 }  // namespace
@@ -47,7 +30,7 @@ void OutlineFinder::include(const Mesh& mesh) {
 
 /// What reaches out of a run is mostly a small part of it.
 void OutlineFinder::include_run(const Mesh& mesh, std::size_t begin, std::size_t end) {
-  if (!may_change_by(box_of(mesh, begin, end))) return;
+  if (!may_change_by(finite_bounds(mesh, begin, end))) return;
   const std::size_t part = (end - begin + 3) / 4;
   if (part == 1) return include_corners(mesh, begin, end);
   for (; begin < end; begin += part) include_run(mesh, begin, std::min(begin + part, end));

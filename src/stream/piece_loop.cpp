@@ -20,7 +20,9 @@ Models::Models(const std::vector<std::string>& paths, const LoadOptions& options
   if (paths.empty()) throw Error(ErrorCode::bad_argument, "stream: no files");
   std::uint64_t known = 0;
   for (const std::string& path : paths) {
-    add({open_model_stream(path, options, execution), 0, 0, 0});
+    Model model;
+    model.stream = open_model_stream(path, options, execution);
+    add(std::move(model));
     known += models_.back().stream->known_count().value_or(0);
     if (known >= most_triangles) fail_too_many();
   }
@@ -46,6 +48,12 @@ void Models::take_warnings(Model& model) {
   for (; model.warnings < all.size(); ++model.warnings) scene_.warnings.push_back(all[model.warnings]);
 }
 
+/// As load() warns.
+void Models::end(Model& model) {
+  if (!model.has_ended && model.triangle_count == 0) scene_.warnings.emplace_back("the file holds no triangles");
+  model.has_ended = true;
+}
+
 bool Models::can_rewind() const {
   return std::all_of(models_.begin(), models_.end(), [](const Model& m) { return m.stream->can_rewind(); });
 }
@@ -57,7 +65,10 @@ double Models::fraction() const {
 }
 
 void Models::rewind() {
-  for (Model& model : models_) model.stream->rewind();
+  for (Model& model : models_) {
+    model.stream->rewind();
+    model.triangle_count = 0;
+  }
   current_ = next_number_ = 0;
   next_ = 0;
 }
@@ -65,11 +76,15 @@ void Models::rewind() {
 bool Models::fetch(Piece& piece, Place& place, std::uint32_t triangles) {
   for (; current_ < models_.size(); ++current_) {
     Model& model = models_[current_];
-    const std::uint64_t count = model.stream->fetch(piece, triangles);
+    const bool got = model.stream->fetch(piece, triangles);
     take_warnings(model);
-    if (count == 0) continue;
+    if (!got) {
+      end(model);
+      continue;
+    }
+    model.triangle_count += piece.triangle_count;
     place = {next_number_++, PrimitiveId(next_), model.object};
-    next_ += count;
+    next_ += piece.triangle_count;
     if (next_ >= most_triangles) fail_too_many();
     return true;
   }

@@ -35,10 +35,13 @@ class Models {
   struct Model {
     std::unique_ptr<ModelStream> stream;
     std::uint32_t object = 0, first_material = 0;
-    std::size_t warnings = 0;  ///< taken over so far
+    std::size_t warnings = 0;          ///< taken over so far
+    std::uint64_t triangle_count = 0;  ///< fetched in this pass
+    bool has_ended = false;            ///< in an earlier pass or in this
   };
   void add(Model model);
   void take_warnings(Model& model);
+  void end(Model& model);
 
   std::vector<Model> models_;
   Scene scene_;

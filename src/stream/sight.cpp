@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "stream/finite_triangles.h"
+
 namespace frontmost::streaming {
 namespace {
 
@@ -22,9 +24,20 @@ void for_ids_within(const Visible& visible, PrimitiveId first, std::size_t count
   }
 }
 
+/// Calls visit(index of the sample, id, key) where something is seen.
+template <class Visit>
+void for_covered_samples(const Visible& visible, const PixelBounds& pixels, const Visit& visit) {
+  for (int sample = 0; sample < visible.view.samples; ++sample)
+    for (int y = pixels.y0; y < pixels.y1; ++y) {
+      const std::size_t row = visible.index(0, y, sample);
+      for (std::size_t i = row + std::size_t(pixels.x0); i < row + std::size_t(pixels.x1); ++i)
+        if (visible.primitives[i] != no_primitive) visit(i, visible.primitives[i], visible.keys[i]);
+    }
+}
+
 }  // namespace
 
-Sight::Sight(const std::vector<View>& views, bool keeps_triangles) : keeps_triangles_(keeps_triangles) {
+Sight::Sight(const std::vector<View>& views, const SightNeeds& needs) : needs_(needs) {
   for (const View& view : views) {
     visible_.push_back(nothing_visible(view));
     sample_count_ += view.sample_count();
@@ -32,18 +45,27 @@ Sight::Sight(const std::vector<View>& views, bool keeps_triangles) : keeps_trian
   limit_ = std::max<std::size_t>(std::size_t(1) << 20, sample_count_ / 2);
 }
 
-std::vector<bool> Sight::merge(const std::vector<const Visible*>& piece, const Place& place, std::size_t triangle_count,
-                               const Box& bounds) {
-  std::vector<bool> seen;
+void Sight::include(const Box& bounds) {
   const std::lock_guard lock(mutex_);
   bounds_.include(bounds);
-  for (std::size_t i = 0; i < visible_.size(); ++i)
-    frontmost::merge(visible_[i], *piece[i], place.first, {.threads = 1});
-  if (!keeps_triangles_) return seen;
-  seen.resize(triangle_count);
-  for (const Visible& visible : visible_)
-    for_ids_within(visible, place.first, triangle_count, [&](std::uint32_t triangle) { seen[triangle] = true; });
-  return seen;
+}
+
+std::vector<bool> Sight::merge(const std::vector<const Visible*>& piece, const Place& place,
+                               const Selection& selection) {
+  std::vector<bool> wins(selection.numbers.size());
+  const std::lock_guard lock(mutex_);
+  for (std::size_t v = 0; v < visible_.size(); ++v)
+    for_covered_samples(*piece[v], selection.pixels[v], [&](std::size_t i, PrimitiveId id, float key) {
+      PrimitiveId& last_id = visible_[v].primitives[i];
+      float& last_key = visible_[v].keys[i];
+      const PrimitiveId new_id = place.first + selection.numbers[id];
+      if (key < last_key || (key == last_key && new_id >= last_id)) return;
+      last_id = new_id;
+      last_key = key;
+      wins[id] = true;
+      if (v == 0) is_blank_ = false;
+    });
+  return wins;
 }
 
 void Sight::keep(Kept kept) {
@@ -80,32 +102,72 @@ void Sight::forget_hidden() {
   }
 }
 
+Selection Drawer::select(const Mesh& mesh, const Sight& sight) {
+  Selection selection;
+  marks_.assign(mesh.triangles.size(), 0);
+  for (std::size_t i = 0; i < sight.view_count(); ++i) {
+    if (filters_.size() == i) filters_.emplace_back(sight.view(i));
+    selection.pixels.push_back(filters_[i].mark(mesh, marks_));
+  }
+  for (std::uint32_t t = 0; t < marks_.size(); ++t)
+    if (marks_[t]) selection.numbers.push_back(t);
+  return selection;
+}
+
+namespace {
+
+/// A few at a time: the mesh's own arrays are not in this shape.
+void tell_corners(const Mesh& mesh, const std::function<void(CornerSpan)>& tell) {
+  std::vector<std::array<glm::vec3, 3>> corners;
+  constexpr std::size_t at_once = 1024;
+  for (std::size_t begin = 0; begin < mesh.triangles.size(); begin += at_once) {
+    corners.clear();
+    for (std::size_t t = begin; t < std::min(begin + at_once, mesh.triangles.size()); ++t) {
+      const glm::uvec3& triangle = mesh.triangles[t];
+      corners.push_back({mesh.positions[triangle.x], mesh.positions[triangle.y], mesh.positions[triangle.z]});
+    }
+    tell(corners);
+  }
+}
+
+}  // namespace
+
 void Drawer::draw(Piece& piece, const Place& place, const Scene& frame, Sight& sight, const Execution& execution) {
+  draw_selection(piece, place, frame, sight, execution);
+  if (sight.needs().unseen && sight.is_blank()) tell_corners(piece.mesh, sight.needs().unseen);
+}
+
+void Drawer::draw_selection(Piece& piece, const Place& place, const Scene& frame, Sight& sight,
+                            const Execution& execution) {
+  const Selection selection = select(piece.mesh, sight);
+  if (sight.needs().bounds) sight.include(finite_bounds(piece.mesh, 0, piece.mesh.triangles.size()));
+  if (selection.numbers.empty()) return;
   if (scene_.instances.empty()) {
     scene_.name = frame.name;
     scene_.meshes.emplace_back();
     scene_.instances.emplace_back();
     buffers_.resize(sight.view_count());
   }
-  // What is visible does not depend on materials, and their numbers are those of another scene.
-  std::vector<std::uint32_t> material_ids = std::move(piece.mesh.material_ids);
-  piece.mesh.material_ids.clear();
-  std::swap(scene_.meshes[0], piece.mesh);
+  // Positions alone: what is visible depends on nothing else.
+  Mesh& drawn = scene_.meshes[0];
+  drawn.triangles.clear();
+  for (const std::uint32_t t : selection.numbers) drawn.triangles.push_back(piece.mesh.triangles[t]);
+  std::swap(drawn.positions, piece.mesh.positions);
   std::vector<bool> seen;
   {
     const Surfaces surfaces(scene_, execution);
     std::vector<const Visible*> visible;
     for (std::size_t i = 0; i < buffers_.size(); ++i)
       visible.push_back(&buffers_[i].draw(surfaces, sight.view(i), execution));
-    seen = sight.merge(visible, place, surfaces.primitive_count(), surfaces.bounds());
+    seen = sight.merge(visible, place, selection);
   }
-  std::swap(scene_.meshes[0], piece.mesh);
-  piece.mesh.material_ids = std::move(material_ids);
+  std::swap(drawn.positions, piece.mesh.positions);
+  if (!sight.needs().triangles) return;
   Kept kept{place, {}, {}};
-  for (std::uint32_t t = 0; t < seen.size(); ++t) {
-    if (!seen[t]) continue;
-    kept.triangles.push_back(t);
-    append_triangle(piece.mesh, t, kept.mesh);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (!seen[i]) continue;
+    kept.triangles.push_back(selection.numbers[i]);
+    append_triangle(piece.mesh, selection.numbers[i], kept.mesh);
   }
   sight.keep(std::move(kept));
 }

@@ -2,29 +2,48 @@
 // What views show of the pieces so far.
 #pragma once
 
+#include <atomic>
+#include <functional>
 #include <mutex>
 #include <vector>
 
+#include "frontmost/stream.h"
 #include "frontmost/visible.h"
 #include "frontmost/zbuffer.h"
 #include "stream/kept_triangles.h"
+#include "stream/sample_filter.h"
 
 namespace frontmost::streaming {
+
+/// What of a piece is drawn: the triangles that may hold a sample, renumbered.
+struct Selection {
+  std::vector<std::uint32_t> numbers;  ///< within the piece, ascending
+  std::vector<PixelBounds> pixels;     ///< that they may cover, by view
+};
+
+/// What is to be known beside what is visible.
+struct SightNeeds {
+  bool triangles = false;                            ///< copies of those that are seen
+  bool bounds = false;                               ///< of all triangles
+  std::function<void(CornerSpan)> unseen = nullptr;  ///< as in StreamNeeds
+};
 
 /// Gathers what the workers draw.
 class Sight {
  public:
-  /// Copies of the triangles that are seen are kept, unless nobody will look at them.
-  explicit Sight(const std::vector<View>& views, bool keeps_triangles = true);
+  Sight(const std::vector<View>& views, const SightNeeds& needs);
 
   [[nodiscard]] std::size_t sample_count() const { return sample_count_; }
+  [[nodiscard]] const SightNeeds& needs() const { return needs_; }
   [[nodiscard]] std::size_t view_count() const { return visible_.size(); }
   [[nodiscard]] const View& view(std::size_t i) const { return visible_[i].view; }
 
-  /// Lays one piece's answers over what was there. \returns for each of its triangles whether it is seen now; empty
-  /// where nothing is kept.
-  std::vector<bool> merge(const std::vector<const Visible*>& piece, const Place& place, std::size_t triangle_count,
-                          const Box& bounds);
+  /// Nothing is seen in the first view so far.
+  [[nodiscard]] bool is_blank() const { return is_blank_; }
+  void include(const Box& bounds);
+  /// Lays one piece's answers over what was there: at every sample the greater key stays, at equal keys the lower
+  /// number in the stream, as by merge(). \returns for each triangle of the selection whether it is seen now.
+  std::vector<bool> merge(const std::vector<const Visible*>& piece, const Place& place, const Selection& selection);
   void keep(Kept kept);
   /// After the last piece: forgets what was hidden by later ones.
   void finish();
@@ -38,7 +57,8 @@ class Sight {
 
   std::vector<Visible> visible_;
   std::size_t sample_count_ = 0;
-  bool keeps_triangles_;
+  SightNeeds needs_;
+  std::atomic<bool> is_blank_{true};
   std::mutex mutex_;
   KeptPieces kept_;
   std::size_t kept_count_ = 0, limit_;
@@ -52,8 +72,14 @@ class Drawer {
   void draw(Piece& piece, const Place& place, const Scene& frame, Sight& sight, const Execution& execution);
 
  private:
+  void draw_selection(Piece& piece, const Place& place, const Scene& frame, Sight& sight, const Execution& execution);
+  /// Those that may hold a sample of one of the views.
+  [[nodiscard]] Selection select(const Mesh& mesh, const Sight& sight);
+
   Scene scene_;
   std::vector<ZBuffer> buffers_;
+  std::vector<SampleFilter> filters_;
+  std::vector<std::uint8_t> marks_;  ///< of the piece's triangles
 };
 
 }  // namespace frontmost::streaming

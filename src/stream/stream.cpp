@@ -38,7 +38,7 @@ struct Stream::State {
 
   /// As many as the memory for pieces allows; the threads are shared out among them.
   [[nodiscard]] LoopOptions loop_options(std::size_t samples, const Execution& execution) const {
-    constexpr std::size_t memory = std::size_t(512) << 20, bytes_per_triangle = 180, bytes_per_sample = 8;
+    constexpr std::size_t memory = std::size_t(512) << 20, bytes_per_triangle = 220, bytes_per_sample = 8;
     const std::size_t each = options.triangles_at_once * bytes_per_triangle + samples * bytes_per_sample;
     const auto most = int(std::max<std::size_t>(memory / each, 1));
     return {options.triangles_at_once, std::min(thread_count(execution), most)};
@@ -47,13 +47,14 @@ struct Stream::State {
   /// Calls work(worker, piece, place, execution of the worker) for every piece; `samples` are drawn of each.
   template <class Work>
   void pass(std::size_t samples, const Execution& execution, const Work& work);
-  KeptPieces find_visible(const std::vector<View>& views, Excerpt& excerpt, const Execution& execution);
+  KeptPieces find_visible(const std::vector<View>& views, const StreamNeeds& needs, Excerpt& excerpt,
+                          const Execution& execution);
   KeptPieces find_needs(KeptPieces kept, const StreamNeeds& needs, Excerpt& excerpt, const Execution& execution);
 
   StreamOptions options;
   Models models;
   int passes = 0;
-  Box bounds;
+  std::optional<Box> bounds;  ///< once a pass has looked
 };
 
 Stream::Stream(const std::vector<std::string>& paths, const StreamOptions& options, const Execution& execution)
@@ -66,7 +67,7 @@ const Scene& Stream::scene() const { return state_->models.scene(); }
 bool Stream::can_repeat() const { return state_->models.can_rewind(); }
 int Stream::passes() const { return state_->passes; }
 std::uint64_t Stream::triangle_count() const { return state_->models.triangle_count(); }
-const Box& Stream::bounds() const { return state_->bounds; }
+Box Stream::bounds() const { return state_->bounds.value_or(Box{}); }
 
 namespace {
 
@@ -176,14 +177,15 @@ Scene Stream::outline(const View& direction, double margin, const Execution& exe
 }
 
 /// The first pass of look(): what is visible, and copies of it.
-KeptPieces Stream::State::find_visible(const std::vector<View>& views, Excerpt& excerpt, const Execution& execution) {
-  Sight sight(views);
+KeptPieces Stream::State::find_visible(const std::vector<View>& views, const StreamNeeds& needs, Excerpt& excerpt,
+                                       const Execution& execution) {
+  Sight sight(views, {.triangles = true, .bounds = !bounds, .unseen = needs.unseen});
   std::vector<Drawer> drawers(std::size_t(thread_count(execution)));
   pass(sight.sample_count(), execution, [&](int worker, Piece& piece, const Place& place, const Execution& each) {
     drawers[std::size_t(worker)].draw(piece, place, models.scene(), sight, each);
   });
   sight.finish();
-  bounds = sight.bounds();
+  if (!bounds) bounds = sight.bounds();
   KeptPieces kept = sight.take_kept();
   excerpt.visible = sight.take_visible();
   excerpt.stream_ids = ids_of(kept);
@@ -197,14 +199,14 @@ KeptPieces Stream::State::find_needs(KeptPieces kept, const StreamNeeds& needs, 
                                      const Execution& execution) {
   std::vector<View> light;
   if (needs.key_light)
-    if (const auto view = key_light_view(excerpt.visible.front(), bounds, models.scene().up, execution))
+    if (const auto view = key_light_view(excerpt.visible.front(), *bounds, models.scene().up, execution))
       light.push_back(*view);
   std::optional<NeighbourFinder> neighbours;
   if (needs.smooth_normals)
     if (auto touched = large_corners(kept, excerpt.visible, excerpt.stream_ids.size(), execution))
       neighbours.emplace(std::move(kept), std::move(touched));
   if (light.empty() && !neighbours) return kept;
-  Sight sight(light, false);
+  Sight sight(light, {});
   std::vector<Drawer> drawers(std::size_t(thread_count(execution)));
   pass(sight.sample_count(), execution, [&](int worker, Piece& piece, const Place& place, const Execution& each) {
     if (neighbours) neighbours->find(piece.mesh, place);
@@ -220,7 +222,7 @@ KeptPieces Stream::State::find_needs(KeptPieces kept, const StreamNeeds& needs, 
 Excerpt Stream::look(const std::vector<View>& views, const StreamNeeds& needs, const Execution& execution) {
   if (views.empty()) throw Error(ErrorCode::bad_argument, "stream: no views");
   Excerpt excerpt;
-  KeptPieces kept = state_->find_visible(views, excerpt, execution);
+  KeptPieces kept = state_->find_visible(views, needs, excerpt, execution);
   kept = state_->find_needs(std::move(kept), needs, excerpt, execution);
   excerpt.parts_ = std::make_unique<const Excerpt::Parts>(scene_of(state_->models.scene(), std::move(kept)), execution);
   return excerpt;

@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <pty.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -51,6 +52,8 @@ std::string drain(int file) {
   for (const std::string& setting : call.environment) putenv(strdup(setting.c_str()));
   for (const int one : {SIGINT, SIGTERM, SIGALRM, SIGPIPE}) signal(one, SIG_DFL);
   if (chdir(folder.c_str()) != 0) _exit(126);
+  const rlimit limit{call.address_space.value_or(RLIM_INFINITY), RLIM_INFINITY};
+  if (call.address_space && setrlimit(RLIMIT_AS, &limit) != 0) _exit(126);
   execv(FRONTMOST_PROGRAM, pointers.data());
   _exit(127);
 }

@@ -26,8 +26,9 @@ struct Call {
   bool keep_input_open = false;  ///< as a pipe whose writer is slow
   std::optional<int> signal{};   ///< sent after `signal_after` seconds
   double signal_after = 0.3;
-  bool terminal = false;                   ///< standard output and error are one terminal; both arrive in `out`
-  std::vector<std::string> environment{};  ///< NAME=VALUE, added
+  bool terminal = false;                       ///< standard output and error are one terminal; both arrive in `out`
+  std::vector<std::string> environment{};      ///< NAME=VALUE, added
+  std::optional<std::size_t> address_space{};  ///< bytes, as `ulimit -v`
 };
 
 /// A folder for one test, gone with it; programs run inside it.

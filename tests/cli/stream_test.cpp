@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // --stream: the same files, to the byte, as without it.
+#include <array>
+#include <initializer_list>
+
 #include "program.h"
 
 namespace frontmost::test {
@@ -66,10 +69,84 @@ TEST_F(StreamedProgram, StandardInputIsReadOnce) {
   EXPECT_EQ(read("p.png"), read("whole.png"));
 }
 
+TEST_F(StreamedProgram, SaysWhyNothingIsInView) {
+  write("empty.stl", std::string(80, ' ') + std::string(4, '\0'));
+  for (const char* options :
+       {"empty.stl", "empty.stl empty.stl", "a.stl --camera-position 0,-5,0 --camera-direction -y",
+        "a.stl b.stl --camera-position 0,-5,0 --camera-direction y --far 1", "a.stl --cull both",
+        "a.stl b.stl --camera-position 0,-5,0 --camera-direction 1,0.3,0 --near 1 --far 20 --shading flat",
+        "b.stl --camera-position 0.3,-90000,0.2 --camera-direction y"}) {
+    const std::string line = std::string("render ") + options + " --resolution 32,32 -o p.png";
+    const Outcome whole = succeed(line);
+    EXPECT_NE(whole.err.find("nothing is in view: "), std::string::npos) << line;
+    EXPECT_EQ(succeed(line + " --stream").err, whole.err) << line;
+    EXPECT_EQ(succeed(line + " --json --quiet --stream").json()["warnings"],
+              succeed(line + " --json --quiet").json()["warnings"]);
+  }
+}
+
+/// A sanitizer takes all addresses for itself, so that there is nothing to limit.
+constexpr bool takes_all_addresses =
+#if defined(__SANITIZE_ADDRESS__)
+    true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+    true;
+#else
+    false;
+#endif
+#else
+    false;
+#endif
+
+/// A flat sheet of two triangles for every square, bent a little, from its near end to its far end.
+std::string sheet_stl(std::uint32_t columns, std::uint32_t rows) {
+  std::string stl(80, ' ');
+  const std::uint32_t count = 2 * columns * rows;
+  stl.append(reinterpret_cast<const char*>(&count), 4);
+  stl.reserve(84 + 50 * std::size_t(count));
+  const auto put = [&](std::initializer_list<std::array<std::uint32_t, 2>> corners) {
+    float facet[12] = {};
+    float* next = facet + 3;
+    for (const auto& [i, j] : corners) {
+      *next++ = float(i) / float(columns);
+      *next++ = float(j) / float(rows);
+      *next++ = float((i * 7 + j * 3) % 11) / 500;
+    }
+    stl.append(reinterpret_cast<const char*>(facet), sizeof facet);
+    stl.append(2, '\0');
+  };
+  for (std::uint32_t j = 0; j < rows; ++j)
+    for (std::uint32_t i = 0; i < columns; ++i) {
+      put({{i, j}, {i + 1, j}, {i + 1, j + 1}});
+      put({{i, j}, {i + 1, j + 1}, {i, j + 1}});
+    }
+  return stl;
+}
+
+// 150 MB of triangles, of which the model in memory takes 250 MB and the mapped file its own size.
+TEST_F(StreamedProgram, DrawsInMemoryThatTheModelDoesNotFitInto) {
+  if (takes_all_addresses) GTEST_SKIP() << "the sanitizer takes all addresses";
+  write("sheet.stl", sheet_stl(1500, 1000));
+  const auto call = [](const char* name, bool stream, std::optional<std::size_t> limit) {
+    Call one{.words = {"render", "sheet.stl", "--resolution", "160,120", "--threads", "1", "-o", name}};
+    if (stream) one.words.emplace_back("--stream");
+    one.address_space = limit;
+    return one;
+  };
+  constexpr std::size_t limit = std::size_t(320) << 20;
+  const Outcome streamed = run(call("stream.png", true, limit));
+  EXPECT_EQ(streamed.status, 0) << streamed.err;
+  EXPECT_EQ(run(call("whole.png", false, limit)).status, 1);
+  EXPECT_EQ(run(call("whole.png", false, std::nullopt)).status, 0);
+  EXPECT_EQ(read("stream.png"), read("whole.png"));
+}
+
 TEST_F(StreamedProgram, RefusesWhatItCannotDo) {
   expect_failure("render builtin:cubes --stream -o p.png", 1, "cannot be streamed");
   expect_failure("render a.stl --stream --repeat 3 -o p.png", 2, "exclude each other");
   expect_failure("render a.stl --stream --shadows rays -o p.png", 2, "exclude each other");
+  expect_failure("render a.stl --stream --opacity 0.5 -o p.png", 2, "excludes --opacity");
   expect_failure("info a.stl b.stl", 2, "one model at a time");
 }
 

@@ -42,6 +42,7 @@ void Piece::clear() {
   clear(mesh.colors);
   used = 0;
   row_count = 0;
+  triangle_count = 0;
 }
 
 std::optional<std::uint64_t> StreamStart::size() const {

@@ -18,7 +18,7 @@ struct Piece {
   Mesh mesh;                         ///< vertices are numbered anew in every piece; no names, no face ids
   std::vector<std::byte> bytes;      ///< as in the file: the reader's own
   std::size_t used = 0;              ///< of the bytes
-  std::uint64_t first_row = 0, row_count = 0;
+  std::uint64_t first_row = 0, row_count = 0, triangle_count = 0;
 
   void clear();
 };
@@ -43,9 +43,10 @@ class ModelStream {
   [[nodiscard]] virtual double fraction() const = 0;
   /// The next fetch() gives the first piece. Precondition: can_rewind().
   virtual void rewind() = 0;
-  /// Reads the bytes of the next `triangles` or so. For one thread at a time. \returns how many triangles they hold;
-  /// none at the end of the model, and only there. \throws Error as load() does.
-  virtual std::uint64_t fetch(Piece& piece, std::uint64_t triangles) = 0;
+  /// Reads the bytes of the next `triangles` or so, and says in the piece how many they hold: perhaps none, where a
+  /// file has faces of two corners. For one thread at a time. \returns false at the end of the model. \throws Error as
+  /// load() does.
+  virtual bool fetch(Piece& piece, std::uint64_t triangles) = 0;
   /// Makes piece.mesh of the bytes. Several threads may, each with a piece of its own. \throws Error as load() does.
   virtual void parse(Piece& piece) const = 0;
 

@@ -147,19 +147,18 @@ class PlyStream final : public ModelStream {
     return double(next_row_) / double(std::max<std::uint64_t>(faces_->count, 1));
   }
 
-  std::uint64_t fetch(Piece& piece, std::uint64_t triangles) override {
+  bool fetch(Piece& piece, std::uint64_t triangles) override {
     piece.clear();
     piece.first_triangle = next_triangle_;
     piece.first_row = next_row_;
-    std::uint64_t count = 0;
-    // Faces without triangles are no end.
-    while (count == 0 && next_row_ < faces_->count) count += fetch_rows(piece, triangles);
-    next_triangle_ += count;
+    for (bool again = false; piece.row_count == 0 && next_row_ < faces_->count; again = true)
+      fetch_rows(piece, triangles, again);
+    next_triangle_ += piece.triangle_count;
     if (next_row_ == faces_->count && skipped_ > 0 && !has_warned_) {
       scene_.warnings.push_back(skipped_faces_warning(skipped_));
       has_warned_ = true;
     }
-    return count;
+    return piece.row_count > 0;
   }
 
   void parse(Piece& piece) const override {
@@ -183,6 +182,9 @@ class PlyStream final : public ModelStream {
 
   /// One element of vertices, then one of faces; whatever else is passed over, if its length is known.
   void choose_elements() {
+    // Each fits into the file, but nobody has said yet that all of them do.
+    constexpr std::uint64_t farthest = std::uint64_t(1) << 62;
+    const std::uint64_t size = file_ ? file_->bytes().size() : farthest;
     std::uint64_t offset = header_.size;
     for (const PlyElement& element : header_.elements) {
       const bool is_face = element.name == "face" || element.name == "tristrips";
@@ -199,7 +201,10 @@ class PlyStream final : public ModelStream {
       }
       if (faces_) continue;  // what comes after them is not looked at
       if (element.has_lists()) refuse("element " + in_quotes(element.name) + " has lists, and comes before the faces");
-      offset += element.count * element.least_row_size();
+      const std::uint64_t row = element.least_row_size();
+      if (row > 0 && element.count > (size - std::min(size, offset)) / row)
+        fail_within(element, (size - std::min(size, offset)) / row);
+      offset += element.count * row;
     }
     if (!faces_) refuse("there are no faces to stream");
     check_index_type(*faces_, Columns(*faces_), source_);
@@ -207,15 +212,14 @@ class PlyStream final : public ModelStream {
 
   /// Of a pipe: what was read already lies in `start_`.
   void keep_vertices() {
-    if (vertex_bytes() > max_kept_vertices)
+    if (face_offset_ - header_.size > max_kept_vertices)
       source_.fail_limit("header", "the vertices of a pipe are kept in memory, and these take more than " +
                                        std::to_string(max_kept_vertices) + " bytes; stream from a file");
-    if (face_offset_ > vertex_offset_ + vertex_bytes()) refuse("elements between the vertices and faces of a pipe");
     const std::size_t before = start_.size();
     if (face_offset_ > before) {
       start_.resize(std::size_t(face_offset_));
       const std::size_t got = bytes_->read(start_.data() + before, start_.size() - before);
-      if (before + got < start_.size()) fail_within_vertices(before + got);
+      if (before + got < start_.size()) fail_at(before + got);
     } else {
       left_.assign(start_.begin() + std::ptrdiff_t(face_offset_), start_.end());
       start_.resize(std::size_t(face_offset_));
@@ -223,21 +227,34 @@ class PlyStream final : public ModelStream {
     vertices_.rows = Bytes(start_).subspan(vertex_offset_);
   }
 
-  [[noreturn]] void fail_within_vertices(std::size_t size) const {
-    const std::uint64_t row = (size - std::min(size, vertex_offset_)) / vertices_.element->least_row_size();
-    source_.fail("vertex " + std::to_string(row), "the file ends within the row");
+  [[noreturn]] void fail_within(const PlyElement& element, std::uint64_t row) const {
+    source_.fail(element.name + " " + std::to_string(row), "the file ends within the row");
   }
 
-  /// Reads more bytes, and moves whole rows of them into the piece. What is left of a row waits for the next piece.
-  std::uint64_t fetch_rows(Piece& piece, std::uint64_t triangles) {
-    const std::size_t before = piece.used, row = faces_->least_row_size();
-    const std::size_t wanted = std::max<std::size_t>(std::size_t(triangles) * (row + 3 * corner_size()), 4096);
-    piece.bytes.resize(std::max(piece.bytes.size(), before + left_.size() + wanted));
-    std::copy(left_.begin(), left_.end(), piece.bytes.begin() + std::ptrdiff_t(before));
-    const std::size_t got = bytes_->read(piece.bytes.data() + before + left_.size(), wanted);
-    const std::size_t end = before + left_.size() + got;
-    std::size_t at = before;
-    std::uint64_t count = 0;
+  /// A pipe that ended before the faces.
+  [[noreturn]] void fail_at(std::uint64_t size) const {
+    std::uint64_t offset = header_.size;
+    for (const PlyElement& element : header_.elements) {
+      const std::uint64_t row = element.least_row_size();
+      if (row > 0 && size < offset + element.count * row) fail_within(element, (size - std::min(size, offset)) / row);
+      offset += element.count * row;
+    }
+    source_.fail("header", "the file ends before its rows");
+  }
+
+  /// Fills the piece with whole rows. What is left of the bytes waits for the next piece, and counts for it: polygons
+  /// make more triangles of their bytes than triangles do. `again`: a row longer than all of them was found, so that
+  /// twice as much is read.
+  void fetch_rows(Piece& piece, std::uint64_t triangles, bool again) {
+    const std::size_t row = faces_->least_row_size() + 3 * corner_size();
+    const std::size_t enough = std::max<std::size_t>(std::size_t(triangles) * row, 4096);
+    const std::size_t wanted = again ? std::max(enough, left_.size()) : enough - std::min(enough, left_.size());
+    piece.bytes.resize(std::max(piece.bytes.size(), left_.size() + wanted));
+    std::copy(left_.begin(), left_.end(), piece.bytes.begin());
+    const std::size_t got = bytes_->read(piece.bytes.data() + left_.size(), wanted);
+    const std::size_t end = left_.size() + got;
+    std::size_t at = 0;
+    std::uint64_t& count = piece.triangle_count;
     while (next_row_ < faces_->count && count < triangles) {
       RowScanner::Row next = scanner_->scan(Bytes(piece.bytes).subspan(at, end - at));
       if (!next.is_whole && got == wanted && next.size <= max_row) break;
@@ -253,7 +270,6 @@ class PlyStream final : public ModelStream {
     }
     left_.assign(piece.bytes.begin() + std::ptrdiff_t(at), piece.bytes.begin() + std::ptrdiff_t(end));
     piece.used = at;
-    return count;
   }
 
   [[nodiscard]] std::size_t corner_size() const {
@@ -276,14 +292,23 @@ class PlyStream final : public ModelStream {
   bool has_warned_ = false;
 };
 
-/// Reads on until the header is whole: its last line is "end_header".
+/// Whether the text holds a whole line that begins with "end_header"; comments may have the word too.
+bool holds_end(std::string_view text) {
+  constexpr std::string_view word = "end_header";
+  for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
+    const std::size_t before = text.find_last_not_of(" \t", at - 1);
+    if (at > 0 && before != std::string_view::npos && (text[before] == '\n' || text[before] == '\r'))
+      return text.find_first_of("\r\n", at) < text.size() - 1;  // and the byte after, should there be two
+  }
+  return false;
+}
+
 void extend_to_header(StreamStart& start) {
-  const auto has_end = [&] {
-    const std::string_view text(reinterpret_cast<const char*>(start.start.data()), start.start.size());
-    const std::size_t at = text.find("end_header");
-    return at != std::string_view::npos && at + 12 < text.size();  // and its line end
+  const auto text = [&] {
+    return std::string_view(reinterpret_cast<const char*>(start.start.data()), start.start.size());
   };
-  while (!has_end() && !start.has_ended && start.start.size() < max_header) start.extend(2 * start.start.size());
+  while (!holds_end(text()) && !start.has_ended && start.start.size() < max_header)
+    start.extend(2 * start.start.size());
 }
 
 }  // namespace

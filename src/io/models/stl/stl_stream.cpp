@@ -34,7 +34,7 @@ class StlStream final : public ModelStream {
 
   [[nodiscard]] double fraction() const override { return double(next_) / double(std::max<std::uint64_t>(count_, 1)); }
 
-  std::uint64_t fetch(Piece& piece, std::uint64_t triangles) override {
+  bool fetch(Piece& piece, std::uint64_t triangles) override {
     piece.clear();
     piece.first_triangle = next_;
     const std::size_t wanted = std::size_t(std::min(triangles, count_ - next_)) * stl_record_size;
@@ -47,8 +47,9 @@ class StlStream final : public ModelStream {
     next_ += got;
     if (piece.used < wanted) end_early(piece.used % stl_record_size);
     piece.used = std::size_t(got) * stl_record_size;
+    piece.triangle_count = got;
     if (got == 0) warn_of_the_rest();
-    return got;
+    return got > 0;
   }
 
   void parse(Piece& piece) const override { append_stl_records(Bytes(piece.bytes).first(piece.used), piece.mesh); }
@@ -56,7 +57,10 @@ class StlStream final : public ModelStream {
  private:
   /// What the size would have told of a file, of a pipe only its end can tell.
   void end_early(std::size_t rest) {
-    if (!is_open_ || rest != 0)
+    if (is_open_ && rest != 0)
+      source_.fail("triangle " + std::to_string(next_),
+                   "the file ends within the triangle; its header does not say how many there are");
+    if (!is_open_)
       source_.fail("triangle " + std::to_string(next_),
                    "the file ends here, but its header promises " + std::to_string(promised_) + " triangles");
     if (next_ > 0 && count_ != next_)

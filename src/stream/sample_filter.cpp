@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stream/sample_filter.h"
+
+#include <algorithm>
+
+namespace frontmost::streaming {
+namespace {
+
+/// Planes that a corner may be beyond. Where all three corners are beyond the same one, nothing is seen.
+enum Beyond : std::uint32_t { near = 1, far = 2, left = 4, right = 8, top = 16, bottom = 32, unknown = 64 };
+
+/// The first pixel with a sample at `offset` that is not before `at`; the last that is not after it.
+std::int32_t first_pixel(std::int32_t at, std::int32_t offset) { return (at - offset + kSubPixels - 1) >> 8; }
+std::int32_t last_pixel(std::int32_t at, std::int32_t offset) { return (at - offset) >> 8; }
+static_assert(kSubPixels == 1 << 8);
+
+}  // namespace
+
+void PixelBounds::include(const PixelBounds& other) {
+  if (other.is_empty()) return;
+  if (is_empty()) {
+    *this = other;
+    return;
+  }
+  x0 = std::min(x0, other.x0), y0 = std::min(y0, other.y0);
+  x1 = std::max(x1, other.x1), y1 = std::max(y1, other.y1);
+}
+
+SampleFilter::SampleFilter(const View& view) : transform_(view), width_(view.width), height_(view.height) {
+  for (const glm::ivec2& offset : sample_offsets(view.samples)) offsets_.push_back(offset);
+}
+
+SampleFilter::Corner SampleFilter::corner_of(const glm::vec3& position) const {
+  const HomogeneousVertex v = transform(transform_, position);
+  if (is_plain(transform_, v)) {
+    const float inverse = transform_.orthographic ? 1.0f : 1.0f / v.d;
+    // Cut off, not rounded: that is quicker, and less than one unit away.
+    return {int(v.x * inverse) + transform_.centre_x, int(v.y * inverse) + transform_.centre_y, 0};
+  }
+  std::uint32_t beyond = unknown;
+  if (v.d < transform_.near) beyond |= near;
+  if (v.d > transform_.far) beyond |= far;
+  const float reach = float(kGuardBand) * (transform_.orthographic ? 1.0f : v.d);
+  if (v.d >= transform_.near && reach <= std::numeric_limits<float>::max()) {
+    if (v.x < -reach) beyond |= left;
+    if (v.x > reach) beyond |= right;
+    if (v.y < -reach) beyond |= top;
+    if (v.y > reach) beyond |= bottom;
+  }
+  return {0, 0, beyond};
+}
+
+bool SampleFilter::may_hold_sample(const Extent& e) const {
+  for (const glm::ivec2& o : offsets_) {
+    const std::int32_t x0 = std::max(first_pixel(e.x0, o.x), 0), x1 = std::min(last_pixel(e.x1, o.x), width_ - 1);
+    const std::int32_t y0 = std::max(first_pixel(e.y0, o.y), 0), y1 = std::min(last_pixel(e.y1, o.y), height_ - 1);
+    if (x0 <= x1 && y0 <= y1) return true;
+  }
+  return false;
+}
+
+PixelBounds SampleFilter::pixels_of(const Extent& e) const {
+  return {std::max(e.x0 >> 8, 0), std::max(e.y0 >> 8, 0), std::min((e.x1 >> 8) + 1, width_),
+          std::min((e.y1 >> 8) + 1, height_)};
+}
+
+PixelBounds SampleFilter::mark(const Mesh& mesh, std::vector<std::uint8_t>& marks) {
+  corners_.resize(std::max(corners_.size(), mesh.positions.size()));
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) corners_[i] = corner_of(mesh.positions[i]);
+  PixelBounds pixels;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const glm::uvec3& corners = mesh.triangles[t];
+    const Corner &a = corners_[corners.x], &b = corners_[corners.y], &c = corners_[corners.z];
+    if ((a.beyond | b.beyond | c.beyond) != 0) {
+      if ((a.beyond & b.beyond & c.beyond & ~std::uint32_t(unknown)) != 0) continue;
+      marks[t] = 1;
+      pixels = {0, 0, width_, height_};
+      continue;
+    }
+    const Extent extent{std::min({a.x, b.x, c.x}) - 1, std::min({a.y, b.y, c.y}) - 1, std::max({a.x, b.x, c.x}) + 1,
+                        std::max({a.y, b.y, c.y}) + 1};
+    if (!may_hold_sample(extent)) continue;
+    marks[t] = 1;
+    pixels.include(pixels_of(extent));
+  }
+  return pixels;
+}
+
+}  // namespace frontmost::streaming

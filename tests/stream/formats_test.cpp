@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// What files may hold: polygons, attributes, both byte orders, gaps, lies.
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <fstream>
+
+#include "stream/as_whole.h"
+#include "support/stream_fuzz.h"
+
+namespace frontmost {
+namespace {
+
+using test::expect_streams_as_whole;
+
+class StreamFormats : public test::StreamFiles {
+ protected:
+  static std::string seed(const std::string& name) { return std::string(FRONTMOST_CORPUS) + "/stream/" + name; }
+  static std::string bytes_of(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+};
+
+std::span<const std::byte> as_bytes(const std::string& text) {
+  return {reinterpret_cast<const std::byte*>(text.data()), text.size()};
+}
+
+TEST_F(StreamFormats, EverySeedOfTheFuzzerIsReadAsByLoad) {
+  int files = 0, read = 0;
+  for (const char* folder : {"/stream", "/ply", "/stl"})
+    for (const auto& entry : std::filesystem::directory_iterator(FRONTMOST_CORPUS + std::string(folder))) {
+      SCOPED_TRACE(entry.path());
+      const std::string text = bytes_of(entry.path());
+      for (const std::uint64_t at_once : {1u, 2u, 1000u}) read += fuzz_stream(entry.path(), as_bytes(text), at_once);
+      ++files;
+    }
+  EXPECT_GE(files, 30);
+  EXPECT_GE(read, 3 * 14);  // the others are text, cut short, or promise too much
+}
+
+TEST_F(StreamFormats, PolygonsAttributesAndByteOrdersAreDrawnAsAWhole) {
+  for (const std::uint32_t at_once : {1u, 4u}) {
+    for (const char* name : {"quads_big.ply", "quads_little.ply", "attributes.ply", "face_colours.ply", "between.ply",
+                             "wedges.ply", "degenerate.ply", "many_vertices.ply", "end_in_comment.ply", "open.stl"})
+      expect_streams_as_whole({seed(name)}, at_once);
+    expect_streams_as_whole({seed("quads_big.ply"), seed("nine.stl"), seed("attributes.ply"), seed("quads_little.ply")},
+                            at_once);
+  }
+}
+
+TEST_F(StreamFormats, LyingHeadersGiveTheErrorsOfTheReader) {
+  for (const char* name :
+       {"lying_faces.ply", "lying_vertices.ply", "two_that_do_not_fit.ply", "wrapping.ply", "promises.stl"}) {
+    const std::string message = test::error_of(seed(name), 3);
+    EXPECT_NE(message, "read") << name;
+    EXPECT_EQ(message, test::error_of_whole(seed(name)));
+  }
+}
+
+std::string stl_with_count(std::uint32_t promised, std::size_t bytes) {
+  std::string text(80, ' ');
+  text.append(reinterpret_cast<const char*>(&promised), 4);
+  return text + std::string(bytes, '\1');
+}
+
+/// The words of the error that reading from a pipe ends in; "read" if there is none.
+std::string error_of_pipe(const std::string& text, ModelFormat format) {
+  const FullPipe pipe(as_bytes(text));
+  try {
+    (void)read_in_pieces(pipe.path(), {.format = format, .up = {}}, 3);
+    return "read";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+// What a pipe promises is known only when it is there, so less is believed.
+TEST_F(StreamFormats, PipesThatPromiseTooMuchAreRefusedBeforeMemoryIsAskedFor) {
+  const std::string ply = bytes_of(seed("many_vertices.ply"));
+  std::string many = ply;
+  many.replace(many.find("vertex 1200"), 11, "vertex 4000000000");
+  EXPECT_THAT(error_of_pipe(many, ModelFormat::ply), testing::HasSubstr("stream from a file"));
+  EXPECT_THAT(error_of_pipe(ply.substr(0, 5000), ModelFormat::ply),
+              testing::ContainsRegex("vertex [0-9]+: the file ends within the row"));
+  EXPECT_THAT(error_of_pipe(ply.substr(0, ply.size() - 1), ModelFormat::ply),
+              testing::HasSubstr("face 299: the file ends within the row"));
+  constexpr std::size_t forty = 40 * 50;
+  EXPECT_EQ(error_of_pipe(stl_with_count(40, forty), ModelFormat::stl), "read");
+  EXPECT_THAT(error_of_pipe(stl_with_count(41, forty), ModelFormat::stl), testing::HasSubstr("promises 41 triangles"));
+  for (const std::uint32_t open : {0u, 0xFFFFFFFFu}) {
+    EXPECT_EQ(error_of_pipe(stl_with_count(open, forty), ModelFormat::stl), "read");
+    EXPECT_THAT(error_of_pipe(stl_with_count(open, forty - 1), ModelFormat::stl),
+                testing::HasSubstr("triangle 39: the file ends within the triangle"));
+  }
+}
+
+TEST_F(StreamFormats, TextIsRefusedWithAReason) {
+  const std::string ply = file("a.ply",
+                               "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                               "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                               "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  EXPECT_THAT(test::error_of(ply, 3), testing::HasSubstr("text PLY cannot be streamed; binary STL and PLY can"));
+  const std::string stl = file("a.stl",
+                               "solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                               "vertex 0 1 0\nendloop\nendfacet\nendsolid a\n");
+  EXPECT_THAT(test::error_of(stl, 3), testing::HasSubstr("text STL cannot be streamed; binary STL and PLY can"));
+  EXPECT_THAT(test::error_of(file("empty.ply", ""), 3), testing::HasSubstr("the file is empty"));
+}
+
+/// Faces of so many corners, all of them vertex 0.
+std::string equal_faces(int faces, int corners) {
+  std::string text =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face " +
+      std::to_string(faces) + "\nproperty list uchar uchar vertex_indices\nend_header\n" + std::string(12, '\0');
+  for (int i = 0; i < faces; ++i) {
+    text += char(corners);
+    text.append(std::size_t(corners), '\0');
+  }
+  return text;
+}
+
+// Faces of two corners make no triangles, polygons many of a few bytes: whatever a file is made of, no piece grows with
+// its length.
+TEST_F(StreamFormats, PiecesStaySmallWhateverTheFacesAre) {
+  constexpr int faces = 30'000;
+  for (const int corners : {0, 2, 3, 4, 60}) {
+    SCOPED_TRACE(corners);
+    const std::string path = file("faces.ply", equal_faces(faces, corners));
+    const std::unique_ptr<ModelStream> stream = open_model_stream(path, {}, {});
+    Piece piece;
+    std::uint64_t rows = 0, triangles = 0;
+    while (stream->fetch(piece, 100)) {
+      stream->parse(piece);
+      rows += piece.row_count;
+      triangles += piece.triangle_count;
+    }
+    EXPECT_LE(piece.bytes.capacity(), 20'000u);
+    EXPECT_EQ(rows, std::uint64_t(faces));
+    EXPECT_EQ(triangles, std::uint64_t(faces) * std::uint64_t(std::max(corners - 2, 0)));
+    EXPECT_EQ(stream->scene().warnings.size(), corners < 3 ? 1u : 0u);
+  }
+}
+
+// A polygon longer than a piece is read whole, in steps that double.
+TEST_F(StreamFormats, APolygonMayBeLongerThanAPiece) {
+  constexpr std::uint32_t count = 20'000;
+  std::string text =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 2\nproperty list uint uchar vertex_indices\nend_header\n";
+  const float corners[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  text.append(reinterpret_cast<const char*>(corners), sizeof corners);
+  text.append(reinterpret_cast<const char*>(&count), 4);
+  for (std::uint32_t i = 0; i < count; ++i) text += char(i * 4 / count);
+  text += std::string("\3\0\0\0\0\1\2", 7);
+  EXPECT_TRUE(fuzz_stream(file("long.ply", text), as_bytes(text), 1));
+}
+
+// A view in which nothing is seen asks for all triangles, whatever the size of the pieces; another for none behind the
+// first that is seen.
+TEST_F(StreamFormats, WhatABlankViewDoesNotShowIsTold) {
+  const Scene scene = load(seed("many_vertices.ply"));
+  const Surfaces surfaces(scene);
+  View view = frame(surfaces, 32, 32);
+  const auto told = [&](const View& looked) {
+    std::atomic<std::size_t> count{0};
+    Stream stream({seed("many_vertices.ply")}, {.load = {}, .triangles_at_once = 7});
+    (void)stream.look({looked}, {.unseen = [&](CornerSpan corners) { count += corners.size(); }}, {.threads = 2});
+    return count.load();
+  };
+  EXPECT_LT(told(view), 100u);
+  view.world_from_eye[3] += glm::dvec4(view.forward() * 1e5, 0);
+  EXPECT_EQ(told(view), surfaces.primitive_count());
+}
+
+}  // namespace
+}  // namespace frontmost
