@@ -4,19 +4,11 @@
 #include <frontmost/base.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <string_view>
 
 namespace frontmost::bench {
-namespace {
-
-constexpr std::array<std::string_view, 12> kTables = {"peers",  "threads",  "isas",     "stages", "features", "limits",
-                                                      "memory", "surfaces", "coverage", "rays",   "raycast",  "depth"};
-
-}  // namespace
-
-bool Options::wants(const std::string& table) const {
+bool Options::wants(std::string_view table) const {
   return tables.empty() || std::find(tables.begin(), tables.end(), table) != tables.end();
 }
 
@@ -30,7 +22,7 @@ std::vector<std::string_view> Options::scenes_or(std::span<const std::string_vie
   return {scenes.begin(), scenes.end()};
 }
 
-Options parse_options(int count, const char* const* arguments) {
+Options parse_options(int count, const char* const* arguments, std::span<const std::string_view> tables) {
   Options options;
   options.models = FRONTMOST_MODELS;
   for (int i = 1; i < count; ++i) {
@@ -39,7 +31,7 @@ Options parse_options(int count, const char* const* arguments) {
       if (i + 1 >= count) throw Error(ErrorCode::bad_argument, flag + ": a value is missing");
       return arguments[++i];
     };
-    if (std::find(kTables.begin(), kTables.end(), flag) != kTables.end())
+    if (std::find(tables.begin(), tables.end(), flag) != tables.end())
       options.tables.push_back(flag);
     else if (flag == "--scene")
       options.scenes.push_back(value());
@@ -49,6 +41,8 @@ Options parse_options(int count, const char* const* arguments) {
       options.json = value();
     else if (flag == "--threads")
       options.threads = std::atoi(value().c_str());
+    else if (flag == "--grid")
+      options.grid = std::atoi(value().c_str());
     else if (flag == "--rounds")
       options.sampling.rounds = std::max(1, std::atoi(value().c_str()));
     else if (flag == "--seconds")

@@ -40,6 +40,7 @@ pid_t start(std::array<std::string, 7> arguments, int input, int output) {
 
 std::unique_ptr<Peer> make_peer(std::string_view name, const PeerInput& input) {
   if (name == "llvmpipe") return make_llvmpipe(input);
+  if (name == "peeling") return make_peeling(input);
   return make_embree(input);
 }
 
@@ -53,7 +54,7 @@ void say(const Time& time) {
 PeerProcess::PeerProcess(const PeerRequest& request, const Options& options) {
   std::array<int, 2> input{}, output{};
   if (pipe2(input.data(), O_CLOEXEC) != 0 || pipe2(output.data(), O_CLOEXEC) != 0) fail("no pipe");
-  process_ = start({"zbuffer_bench", "--serve", request.peer, request.scene, std::to_string(request.threads),
+  process_ = start({"peer", "--serve", request.peer, request.scene, std::to_string(request.threads),
                     request.keeps_memory ? "1" : "0", options.models},
                    input[0], output[1]);
   close(input[0]);

@@ -14,7 +14,7 @@
 namespace frontmost::bench {
 
 struct PeerRequest {
-  std::string peer;  ///< "llvmpipe" or "embree"
+  std::string peer;  ///< "llvmpipe", "peeling" or "embree"
   std::string scene;
   int threads = 1;
   bool keeps_memory = false;
@@ -43,7 +43,7 @@ class PeerProcess {
   bool is_present_ = false;
 };
 
-/// The other end: "zbuffer_bench --serve PEER SCENE THREADS KEEPS_MEMORY MODELS". Draws a frame for every line of
+/// The other end: "PROGRAM --serve PEER SCENE THREADS KEEPS_MEMORY MODELS". Draws a frame for every line of
 /// input and says how long it took, until the input ends.
 void serve_peer(const char* const* arguments);
 

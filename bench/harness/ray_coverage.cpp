@@ -58,7 +58,7 @@ void judge(const ScreenTransform& t, const Mesh& mesh, const Pixel& pixel, RayRe
 
 }  // namespace
 
-RayReport compare_with_rays(const Scene& scene, const Visible& visible, Peer& peer) {
+RayReport compare_with_rays(const Scene& scene, const Visible& visible, RayPeer& peer) {
   const ScreenTransform t(visible.view);
   const Mesh& mesh = scene.meshes.at(0);
   peer.draw();

@@ -22,6 +22,6 @@ struct RayReport {
 
 /// Precondition: `scene` is one mesh in one instance without a transform, `visible` has one sample a pixel, and the
 /// peer's depths are planar distances.
-[[nodiscard]] RayReport compare_with_rays(const Scene& scene, const Visible& visible, Peer& peer);
+[[nodiscard]] RayReport compare_with_rays(const Scene& scene, const Visible& visible, RayPeer& peer);
 
 }  // namespace frontmost::bench

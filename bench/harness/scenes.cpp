@@ -35,6 +35,9 @@ constexpr SceneEntry kScenes[] = {
     {"city-no-wall", Camera::wall, 0},
 };
 
+constexpr SceneEntry kTranslucent[] = {{"teapots"}, {"bunnies"}};
+constexpr int kCopies = 4;
+
 /// Triangles of a grid of columns x rows positions.
 void add_grid(Mesh& mesh, std::uint32_t columns, std::uint32_t rows) {
   mesh.triangles.reserve(std::size_t(2) * (columns - 1) * (rows - 1));
@@ -201,16 +204,30 @@ View aim(Camera camera, const glm::dvec3& centre) {
   return view;
 }
 
+void add_copies(Scene& scene) {
+  Box bounds;
+  for (const glm::vec3& position : scene.meshes.at(0).positions) bounds.include(position);
+  const glm::dvec3 step = glm::dvec3(bounds.high - bounds.low) * (0.25 / (kCopies - 1));
+  scene.instances = {{"0", 0, glm::dmat4(1.0)}};
+  for (int copy = 1; copy < kCopies; ++copy) {
+    Instance& instance = scene.instances.emplace_back(scene.instances[0]);
+    instance.name = std::to_string(copy);
+    instance.world_from_mesh[3] += glm::dvec4(step * double(copy), 0);
+  }
+}
+
 }  // namespace
 
 std::span<const SceneEntry> scene_entries() { return kScenes; }
+std::span<const SceneEntry> translucent_entries() { return kTranslucent; }
 
 const SceneEntry& find_scene(std::string_view name) {
   std::string known;
-  for (const SceneEntry& entry : kScenes) {
-    if (entry.name == name) return entry;
-    known.append(" ").append(entry.name);
-  }
+  for (const std::span<const SceneEntry> entries : {scene_entries(), translucent_entries()})
+    for (const SceneEntry& entry : entries) {
+      if (entry.name == name) return entry;
+      known.append(" ").append(entry.name);
+    }
   throw Error(ErrorCode::bad_argument, "scene '" + std::string(name) + "' is none of:" + known);
 }
 
@@ -221,13 +238,15 @@ Scene make_scene(std::string_view name, const std::string& models) {
     return std::filesystem::exists(path) ? std::optional(load(path.string())) : std::nullopt;
   };
   std::optional<Scene> scene;
-  if (mesh_name == "bunny") scene = from_file("organic/stanford-bunny.obj");
-  if (mesh_name == "teapot") scene = builtin("teapot");
+  if (mesh_name == "bunny" || mesh_name == "bunnies") scene = from_file("organic/stanford-bunny.obj");
+  if (mesh_name == "teapots") scene = from_file("reference/teapot/teapot.obj");
+  if (mesh_name == "teapot" || (mesh_name == "teapots" && !scene)) scene = builtin("teapot");
   if (!scene) {
     scene.emplace();
     scene->meshes.push_back(make_mesh(mesh_name));
     scene->instances.push_back({std::string(mesh_name), 0, glm::dmat4(1.0)});
   }
+  if (mesh_name == "bunnies" || mesh_name == "teapots") add_copies(*scene);
   scene->name = mesh_name;
   scene->up = Axis::y;
   return std::move(*scene);

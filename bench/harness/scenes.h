@@ -27,8 +27,11 @@ struct SceneEntry {
   bool is_large = false;      ///< takes tens of seconds to make and to draw with the peers
 };
 
-/// All of them, smallest first.
+/// Those of opaque surfaces, smallest first.
 [[nodiscard]] std::span<const SceneEntry> scene_entries();
+/// One mesh in four instances, a twelfth of its bounds' diagonal apart, to be drawn as if translucent. The camera looks
+/// at the first.
+[[nodiscard]] std::span<const SceneEntry> translucent_entries();
 /// \throws Error bad_argument naming the known ones.
 [[nodiscard]] const SceneEntry& find_scene(std::string_view name);
 

@@ -10,7 +10,7 @@ struct Stage {
   Stage(std::string_view scene_name, const std::string& models)
       : scene(make_scene(scene_name, models)),
         surfaces(scene),
-        view(make_view(surfaces.bounds(), find_scene(scene_name).camera)) {}
+        view(make_view(surfaces.bounds(0), find_scene(scene_name).camera)) {}
   Stage(Scene&& other_scene, const View& other_view)
       : scene(std::move(other_scene)), surfaces(scene), view(other_view) {}
   Scene scene;

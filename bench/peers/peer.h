@@ -20,13 +20,13 @@ class Peer {
   virtual ~Peer() = default;
   /// One frame: clear, draw ids and depth, wait until it is finished. Nothing is read back.
   virtual void draw() = 0;
-  /// The last frame.
-  [[nodiscard]] virtual PeerImage read() = 0;
 };
 
 /// A rasteriser that says where it puts vertices.
 class RasterPeer : public Peer {
  public:
+  /// The last frame.
+  [[nodiscard]] virtual PeerImage read() = 0;
   /// Every vertex before the divide, from the very shader that draws. y runs down, as in the picture.
   [[nodiscard]] virtual std::vector<glm::vec4> clip_positions() const = 0;
 };
@@ -34,6 +34,8 @@ class RasterPeer : public Peer {
 /// A ray caster that answers single rays too, one after another on one thread.
 class RayPeer : public Peer {
  public:
+  /// The last frame.
+  [[nodiscard]] virtual PeerImage read() = 0;
   /// Builds its hierarchy anew.
   virtual void rebuild() = 0;
   /// What the hierarchy takes beside the mesh.
@@ -44,7 +46,17 @@ class RayPeer : public Peer {
   virtual std::size_t count_blocked(const std::vector<Segment>& segments) = 0;
 };
 
-/// Scenes are of one mesh in one instance without a transform. All of these borrow `scene`.
+/// Draws everything translucent, layer by layer.
+class PeelingPeer : public Peer {
+ public:
+  /// The last frame, top row first: colours multiplied by alpha, and alpha.
+  [[nodiscard]] virtual std::vector<glm::vec4> read() = 0;
+  /// How many layers it had.
+  [[nodiscard]] virtual int layer_count() const = 0;
+};
+
+/// Scenes are of one mesh in one instance without a transform, or of many that are shifted each by the same as the one
+/// before. All of these borrow `scene`.
 struct PeerInput {
   const Scene& scene;
   const View& view;
@@ -55,6 +67,10 @@ struct PeerInput {
 /// Its depths are window depths: 0 at the near plane, 1 at the far plane and where nothing is seen.
 /// Null where it was not found when this was built. \throws Error unsupported where there is no such context.
 [[nodiscard]] std::unique_ptr<RasterPeer> make_llvmpipe(const PeerInput& input);
+/// The same, peeling: front to back, one pass over all triangles a layer, until nothing is left. Every surface has
+/// opacity 0.4 and is lit by one light at the camera's upper left. Null or throws as make_llvmpipe().
+/// C. Everitt. Interactive Order-Independent Transparency. NVIDIA, 2001.
+[[nodiscard]] std::unique_ptr<PeelingPeer> make_peeling(const PeerInput& input);
 /// Intel's ray casting kernels: primary rays in packets of 16. Building the hierarchy is part of the construction.
 /// Null where it was not found when this was built.
 [[nodiscard]] std::unique_ptr<RayPeer> make_embree(const PeerInput& input);

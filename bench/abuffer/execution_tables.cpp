@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// The same pictures by more threads, and by every instruction set.
+#include <algorithm>
+#include <thread>
+
+#include "abuffer/pictures.h"
+#include "abuffer/tables.h"
+
+namespace frontmost::bench {
+
+Table measure_abuffer_threads(const Options& options) {
+  const int threads = std::max(2, int(std::thread::hardware_concurrency()));
+  Table table("threads", {"scene", "sub-samples", "threads", "1 thread", "all threads", "times"});
+  for (const SceneEntry& entry : translucent_entries()) {
+    if (!options.wants_scene(entry)) continue;
+    const Stage stage(entry.name, options.models);
+    Pictures one(stage), all(stage);
+    for (const int grid : grids(options)) {
+      const std::vector<Time> times = race({Contestant([&] { one.draw(grid, {.threads = 1}); }),
+                                            Contestant([&] { all.draw(grid, {.threads = threads}); })},
+                                           options.sampling);
+      table.add({entry.name,
+                 Cell::whole(unsigned(samples_of(grid))),
+                 Cell::whole(unsigned(threads)),
+                 {times[0].wall},
+                 {times[1].wall},
+                 {times[0].wall / times[1].wall}});
+    }
+  }
+  return table;
+}
+
+Table measure_abuffer_isas(const Options& options) {
+  Table table("instruction sets, one thread", {"scene", "sub-samples", "set", "ms", "speed"});
+  for (const SceneEntry& entry : translucent_entries()) {
+    if (!options.wants_scene(entry)) continue;
+    const Stage stage(entry.name, options.models);
+    Pictures pictures(stage);
+    for (const int grid : grids(options)) {
+      std::vector<Contestant> contestants;
+      for (const Isa isa : available_isas())
+        contestants.emplace_back([&pictures, grid, isa] { pictures.draw(grid, {.threads = 1, .isa = isa}); });
+      const std::vector<Time> times = race(contestants, options.sampling);
+      for (std::size_t i = 0; i < times.size(); ++i)
+        table.add({entry.name,
+                   Cell::whole(unsigned(samples_of(grid))),
+                   frontmost::name(available_isas()[i]),
+                   {times[i].processor},
+                   {times.back().processor / times[i].processor}});
+    }
+  }
+  return table;
+}
+
+}  // namespace frontmost::bench
