@@ -3,8 +3,8 @@
 //
 // T. Porter, T. Duff. Compositing Digital Images. 1984 (over); L. Carpenter. The A-buffer. 1984.
 //
-// Pixels whose fragments all cover the whole pixel, and keep their order all over it, are composited sixteen at a time.
-// The others are taken one by one, sub-samples side by side.
+// The sixteen pixels of a group are composited at once. Those in which fragments change places are then taken again one
+// by one.
 
 #include "abuffer/composite_kernel.h"
 
@@ -16,17 +16,13 @@
 // After Highway: a block of its own.
 #include "abuffer/conflicts-inl.h"
 #include "abuffer/fragment_sink-inl.h"
+#include "abuffer/group_composite-inl.h"
 #include "abuffer/pixel_composite-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::abuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-/// Sixteen pixels, premultiplied.
-struct GroupColors {
-  HWY_ALIGN_MAX float channel[4][kGroup];
-};
 
 class TileCompositor {
  public:
@@ -36,62 +32,61 @@ class TileCompositor {
 
   template <int kSamples>
   void Run() {
-    PixelCompositor<kSamples> pixels(frame_, job_, scratch_, colors_);
+    if (frame_.is_flat) return RunFlat();
+    if (!colors_.by_fragment) FetchLocalColors();
+    const glm::vec4* table = colors_.by_fragment ? colors_.table : scratch_.colors.data();
+    GroupReader<(kSamples > 32)> reader(scratch_, frame_.pattern.full(), colors_.by_fragment);
+    GroupCompositor<kSamples> groups(scratch_.fragments, table, colors_.opacity);
+    ForGroups([&](std::size_t group, GroupColors& colors) {
+      const std::uint64_t in_conflict = reader.Read(group);
+      groups.Composite(scratch_.length(group), colors);
+      // At a single sample the order is that of the lists.
+      if constexpr (kSamples > 1) {
+        PixelCompositor<kSamples> pixels(frame_, scratch_, table, colors_.opacity);
+        ForEachBit(in_conflict, [&](std::size_t pixel) {
+          const glm::vec4 c = pixels.Composite(group, pixel);
+          for (int k = 0; k < 4; ++k) colors.channel[k][pixel] = c[k];
+        });
+      }
+    });
+  }
+
+ private:
+  /// Visits a job's groups: visit(group, colours to be filled).
+  template <class Visit>
+  HWY_INLINE void ForGroups(const Visit& visit) const {
     const Rectangle& r = job_.pixels;
     for (int y = 0; y < r.height; y += 4)
       for (int x = 0; x < r.width; x += 4) {
-        const std::size_t group = std::size_t((y / 4) * kBlocksAcross + x / 4);
         GroupColors colors;
-        SpecialPixels special;
-        if (kSamples > 1) special = FindSpecial(frame_, scratch_, group);
-        // Where only a few pixels are left, sixteen at once take longer than these one by one.
-        if (kSamples > 1 && hwy::PopCount(special.pixels) >= kGroup - kFewPixels)
-          special.pixels = AllPixels();
-        else
-          CompositeGroup(group, colors);
-        if (kSamples > 1) {
-          for (std::uint64_t left = special.pixels; left != 0; left &= left - 1) {
-            const auto pixel = std::size_t(hwy::Num0BitsBelowLS1Bit_Nonzero64(left));
-            const glm::vec4 c = pixels.Composite(group, pixel, (special.in_conflict >> pixel & 1) != 0);
-            for (int k = 0; k < 4; ++k) colors.channel[k][pixel] = c[k];
-          }
-        }
+        visit(std::size_t((y / 4) * kBlocksAcross + x / 4), colors);
         WriteGroup(x, y, colors);
       }
   }
 
- private:
-  static constexpr std::size_t kFewPixels = 6;
-  static std::uint64_t AllPixels() { return (std::uint64_t(1) << kGroup) - 1; }
-
-  /// The lower halves of a vector's words, in line.
-  static HWY_INLINE VU LowHalves(const std::uint64_t* words) {
-    const DU d;
-    const auto* halves = reinterpret_cast<const std::uint32_t*>(words);
-#if HWY_TARGET == HWY_SCALAR
-    return hn::Load(d, halves);
-#else
-    return hn::ConcatEven(d, hn::Load(d, halves + hn::Lanes(d)), hn::Load(d, halves));
-#endif
+  /// Colours beside each other that the whole picture's table has far apart.
+  void FetchLocalColors() {
+    const std::size_t count = scratch_.triangles.count;
+    if (scratch_.colors.size() < count) scratch_.colors = Buffer<glm::vec4>(scratch_.triangles.id.size());
+    for (std::size_t t = 0; t < count; ++t) scratch_.colors[t] = colors_.table[scratch_.triangles.id[t]];
   }
 
-  HWY_INLINE void CompositeGroup(std::size_t group, GroupColors& colors) const {
+  void RunFlat() const {
+    ForGroups([&](std::size_t group, GroupColors& colors) { CompositeFlat(group, colors); });
+  }
+
+  HWY_INLINE void CompositeFlat(std::size_t group, GroupColors& colors) const {
     const DI d;
     const DU du;
     const DF df;
     const std::size_t length = scratch_.length(group);
     const auto* table = reinterpret_cast<const float*>(colors_.table);
-    const auto* triangles = reinterpret_cast<const std::int32_t*>(scratch_.arrived.triangle.data());
-    const auto* ids = reinterpret_cast<const std::int32_t*>(scratch_.triangles.id.data());
     for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(d)) {
       VF left = hn::Set(df, 1.0f), red = hn::Zero(df), green = red, blue = red;
       for (std::size_t s = 0; s < length; ++s) {
-        const VU low = LowHalves(scratch_.slot(group, s) + lane);
+        const VU low = HalvesOf(scratch_.slot(group, s) + lane).low;
         const auto valid = hn::Ne(low, hn::Zero(du));
-        VI index = hn::BitCast(d, hn::IfThenElseZero(valid, hn::Not(low)));
-        if (!frame_.is_flat && !colors_.by_fragment)
-          index = hn::GatherIndex(d, ids, hn::GatherIndex(d, triangles, index));
-        index = hn::ShiftLeft<2>(index);
+        const VI index = hn::ShiftLeft<2>(hn::BitCast(d, hn::IfThenElseZero(valid, hn::Not(low))));
         const VF alpha = hn::Mul(hn::GatherIndex(df, table + 3, index), hn::Set(df, colors_.opacity));
         const VF shows = hn::IfThenElseZero(hn::RebindMask(df, valid), alpha);
         const VF weight = hn::Mul(left, shows);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which pixels of a group must be taken one by one: those with fragments that cover them in part, and those in which
-// two fragments may change places.
+// The fragments of a group laid out beside each other, and the pixels in which two of them may change places.
 //
 // Lists are in the order of keys at the centre. Two fragments can be in another order elsewhere in the pixel only if
 // they share a sub-sample, the ranges of their keys overlap, and their keys at the centre differ by no more than the
@@ -22,128 +21,142 @@ namespace frontmost::abuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Pixels of a group as bits.
-struct SpecialPixels {
-  std::uint64_t pixels = 0;
-  /// In these TileScratch::reach holds, for every fragment, the last slot that one up to it may change places with.
-  std::uint64_t in_conflict = 0;
+/// Sixteen words of a slot: 64 bits each, the key above the number.
+struct SlotHalves {
+  VU low, high;
 };
+HWY_INLINE SlotHalves HalvesOf(const std::uint64_t* words) {
+  const DU d;
+  const auto* halves = reinterpret_cast<const std::uint32_t*>(words);
+#if HWY_TARGET == HWY_SCALAR
+  return {hn::Load(d, halves), hn::Load(d, halves + 1)};
+#else
+  const VU first = hn::Load(d, halves), second = hn::Load(d, halves + hn::Lanes(d));
+  return {hn::ConcatEven(d, second, first), hn::ConcatOdd(d, second, first)};
+#endif
+}
 
-class ConflictFinder {
+/// kWide: more than 32 sub-samples.
+template <bool kWide>
+class GroupReader {
  public:
-  ConflictFinder(const FrameInput& frame, TileScratch& scratch, std::size_t group)
-      : full_(frame.pattern.full()), s_(scratch), group_(group), length_(scratch.length(group)) {
-    s_.reserve_group(length_);
-  }
+  /// `all`: the mask of all sub-samples. `by_fragment`: colours are numbered as in Arrived, not as in LocalTriangles.
+  GroupReader(TileScratch& scratch, std::uint64_t all, bool by_fragment)
+      : s_(scratch), g_(scratch.fragments), all_(all), by_fragment_(by_fragment) {}
 
-  SpecialPixels Find() {
-    SpecialPixels result;
-    Load();
-    result.pixels = partial_;
-    for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(DF())) FindPairs(lane);
-    result.in_conflict = in_conflict_;
-    result.pixels |= in_conflict_;
-    return result;
+  /// Fills GroupFragments. \returns the pixels, as bits, in which fragments may change places: none at a single sample.
+  /// In these `reach` holds, for every fragment, the last slot that one up to it may change places with.
+  HWY_NOINLINE std::uint64_t Read(std::size_t group) {
+    group_ = group;
+    length_ = s_.length(group);
+    g_.reserve(length_);
+    in_conflict_ = 0;
+    for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(DF()))
+      if (const std::uint64_t suspects = ReadLanes(lane); suspects != 0 && all_ != 1) FindPairs(lane, suspects);
+    return in_conflict_;
   }
 
  private:
-  using D64 = hn::ScalableTag<std::int64_t>;
-  using D64U = hn::RebindToUnsigned<D64>;
-  using DHF = hn::Rebind<float, D64>;
-  using DHU = hn::Rebind<std::uint32_t, D64U>;
-  using DHI = hn::Rebind<std::int32_t, D64>;
+  static constexpr std::size_t kLastBit = 63;
 
-  /// Puts ranges and masks of the group's fragments beside each other.
-  void Load() {
-    const D64 d;
-    const DHF df;
-    const auto* masks = reinterpret_cast<const std::int64_t*>(s_.arrived.mask.data());
-    const auto full = hn::Set(d, std::int64_t(full_));
-    for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(d)) {
-      auto missing = hn::Zero(d);
-      for (std::size_t i = 0; i < length_; ++i) {
-        const auto word = hn::Load(d, reinterpret_cast<const std::int64_t*>(s_.slot(group_, i)) + lane);
-        const auto valid = hn::Ne(word, hn::Zero(d));
-        const auto number = hn::IfThenElseZero(valid, hn::And(hn::Not(word), hn::Set(d, 0xFFFFFFFF)));
-        const auto mask = hn::GatherIndex(d, masks, number);
-        missing = hn::Or(missing, hn::IfThenElseZero(valid, hn::Xor(mask, full)));
-        const std::size_t at = i * kGroup + lane;
-        const auto bits = hn::BitCast(D64U(), mask);
-        hn::Store(hn::TruncateTo(DHU(), bits), DHU(), s_.mask_low.data() + at);
-        hn::Store(hn::TruncateTo(DHU(), hn::ShiftRight<32>(bits)), DHU(), s_.mask_high.data() + at);
-        const auto index = hn::BitCast(DHI(), hn::TruncateTo(DHU(), hn::BitCast(D64U(), number)));
-        hn::Store(hn::GatherIndex(df, s_.arrived.nearest.data(), index), df, s_.nearest.data() + at);
-        hn::Store(hn::GatherIndex(df, s_.arrived.farthest.data(), index), df, s_.farthest.data() + at);
-      }
-      partial_ |= BitsOf(d, hn::Ne(missing, hn::Zero(d))) << lane;
-    }
-  }
-
-  void FindPairs(std::size_t lane) {
-    const DF d;
-    const DI di;
-    auto behind = hn::Set(d, -1.0f);
+  /// From behind. \returns, as bits, the slots whose ranges of keys meet others behind them; the last bit stands for
+  /// all slots from there.
+  HWY_INLINE std::uint64_t ReadLanes(std::size_t lane) {
+    const DI d;
+    const DU du;
+    const DF df;
+    const auto* triangles = reinterpret_cast<const std::int32_t*>(s_.arrived.triangle.data());
+    const auto* low_masks = reinterpret_cast<const std::int32_t*>(s_.arrived.mask_low.data());
+    const auto* high_masks = reinterpret_cast<const std::int32_t*>(s_.arrived.mask_high.data());
+    const VF nowhere = hn::Set(df, -std::numeric_limits<float>::max());
+    VF behind = nowhere;
+    std::uint64_t suspects = 0;
     for (std::size_t i = length_; i-- > 0;) {
       const std::size_t at = i * kGroup + lane;
-      hn::Store(behind, d, s_.behind_nearest.data() + at);
-      behind = hn::Max(behind, hn::Load(d, s_.nearest.data() + at));
-      hn::Store(hn::Set(di, std::int32_t(i)), di, s_.reach.data() + at);
+      const SlotHalves words = HalvesOf(s_.slot(group_, i) + lane);
+      const auto valid = hn::Ne(words.low, hn::Zero(du));
+      const VI number = hn::BitCast(d, hn::IfThenElseZero(valid, hn::Not(words.low)));
+      const VI triangle = hn::GatherIndex(d, triangles, number);
+      const VF half = hn::GatherIndex(df, s_.triangles.half.data(), triangle);
+      const VF key = hn::BitCast(df, words.high);
+      const VF nearest = hn::IfThenElse(hn::RebindMask(df, valid), hn::Add(key, half), nowhere);
+      const VF farthest = hn::Sub(key, half);
+      const bool overlaps = !hn::AllTrue(df, hn::Lt(behind, farthest));
+      suspects |= std::uint64_t(overlaps) << HWY_MIN(i, kLastBit);
+      hn::Store(behind, df, g_.behind.data() + at);
+      behind = hn::Max(behind, nearest);
+      hn::Store(nearest, df, g_.nearest.data() + at);
+      hn::Store(farthest, df, g_.farthest.data() + at);
+      hn::Store(hn::BitCast(du, triangle), du, g_.triangle.data() + at);
+      hn::Store(hn::BitCast(du, by_fragment_ ? number : triangle), du, g_.paint.data() + at);
+      // Where there is no fragment, nothing is covered in part.
+      const auto mask_of = [&](const std::int32_t* masks, std::uint32_t all) HWY_ATTR {
+        return hn::IfThenElse(valid, hn::BitCast(du, hn::GatherIndex(d, masks, number)), hn::Set(du, all));
+      };
+      hn::Store(mask_of(low_masks, std::uint32_t(all_)), du, g_.mask_low.data() + at);
+      if (kWide) hn::Store(mask_of(high_masks, std::uint32_t(all_ >> 32)), du, g_.mask_high.data() + at);
     }
-    for (std::size_t i = 0; i + 1 < length_; ++i) FindPairsOf(i, lane);
+    return suspects;
+  }
+
+  void FindPairs(std::size_t lane, std::uint64_t suspects) {
+    const DI d;
+    for (std::size_t i = 0; i < length_; ++i)
+      hn::Store(hn::Set(d, std::int32_t(i)), d, g_.reach.data() + i * kGroup + lane);
+    ForEachBit(suspects, [&](std::size_t i) HWY_ATTR { FindPairsOf(i, lane); });
+    if (suspects >> kLastBit != 0)
+      for (std::size_t i = kLastBit + 1; i + 1 < length_; ++i) FindPairsOf(i, lane);
   }
 
   HWY_INLINE void FindPairsOf(std::size_t i, std::size_t lane) {
     const DF d;
     const DU du;
-    const VF farthest = hn::Load(d, s_.farthest.data() + i * kGroup + lane);
-    const VU low = hn::Load(du, s_.mask_low.data() + i * kGroup + lane);
-    const VU high = hn::Load(du, s_.mask_high.data() + i * kGroup + lane);
+    const std::size_t first = i * kGroup + lane;
+    const VF farthest = hn::Load(d, g_.farthest.data() + first);
+    const VU low = hn::Load(du, g_.mask_low.data() + first);
+    const VU high = kWide ? hn::Load(du, g_.mask_high.data() + first) : low;
     for (std::size_t j = i + 1; j < length_; ++j) {
-      const VF most = hn::Load(d, s_.behind_nearest.data() + (j - 1) * kGroup + lane);
+      const VF most = hn::Load(d, g_.behind.data() + (j - 1) * kGroup + lane);
       if (hn::AllTrue(d, hn::Lt(most, farthest))) return;
       const std::size_t at = j * kGroup + lane;
-      const VU shared = hn::Or(hn::And(low, hn::Load(du, s_.mask_low.data() + at)),
-                               hn::And(high, hn::Load(du, s_.mask_high.data() + at)));
-      const auto overlap = hn::Ge(hn::Load(d, s_.nearest.data() + at), farthest);
+      VU shared = hn::And(low, hn::Load(du, g_.mask_low.data() + at));
+      if (kWide) shared = hn::Or(shared, hn::And(high, hn::Load(du, g_.mask_high.data() + at)));
+      const auto overlap = hn::Ge(hn::Load(d, g_.nearest.data() + at), farthest);
       const auto both = hn::And(hn::RebindMask(du, overlap), hn::Ne(shared, hn::Zero(du)));
-      for (std::uint64_t left = BitsOf(du, both); left != 0; left &= left - 1) {
-        const std::size_t pixel = lane + hwy::Num0BitsBelowLS1Bit_Nonzero64(left);
-        if (!MayChangePlaces(i * kGroup + pixel, j * kGroup + pixel)) continue;
-        s_.reach[i * kGroup + pixel] = std::int32_t(j);
+      ForEachBit(BitsOf(du, both), [&](std::size_t p) HWY_ATTR {
+        const std::size_t pixel = lane + p;
+        if (!MayChangePlaces(i * kGroup + pixel, j * kGroup + pixel)) return;
+        g_.reach[i * kGroup + pixel] = std::int32_t(j);
         in_conflict_ |= std::uint64_t(1) << pixel;
-      }
+      });
     }
   }
 
   [[nodiscard]] HWY_INLINE bool MayChangePlaces(std::size_t a, std::size_t b) const {
-    const std::uint64_t *words = s_.slot(group_, 0), wa = words[a], wb = words[b];
     const LocalTriangles& t = s_.triangles;
-    const std::size_t ta = s_.arrived.triangle[~std::uint32_t(wa)], tb = s_.arrived.triangle[~std::uint32_t(wb)];
-    const bool is_affine = s_.nearest[a] < t.high[ta] && s_.farthest[a] > t.low[ta] && s_.nearest[b] < t.high[tb] &&
-                           s_.farthest[b] > t.low[tb];
+    const std::size_t ta = g_.triangle[a], tb = g_.triangle[b];
+    const bool is_affine = g_.nearest[a] < t.high[ta] && g_.farthest[a] > t.low[ta] && g_.nearest[b] < t.high[tb] &&
+                           g_.farthest[b] > t.low[tb];
     if (!is_affine) return true;
     const float slope = std::abs(t.gx[ta] - t.gx[tb]) + std::abs(t.gy[ta] - t.gy[tb]);
     const float most = slope * kHalfPixel + (t.slack[ta] + t.slack[tb]);
-    return KeyOf(wa) - KeyOf(wb) <= most;
+    return KeyOf(a) - KeyOf(b) <= most;
   }
 
-  static HWY_INLINE float KeyOf(std::uint64_t word) {
-    const auto bits = std::uint32_t(word >> 32);
+  [[nodiscard]] HWY_INLINE float KeyOf(std::size_t at) const {
+    const auto bits = std::uint32_t(s_.slot(group_, 0)[at] >> 32);
     float key;
     std::memcpy(&key, &bits, sizeof key);
     return key;
   }
 
-  const std::uint64_t full_;
   TileScratch& s_;
-  const std::size_t group_, length_;
-  std::uint64_t partial_ = 0, in_conflict_ = 0;
+  GroupFragments& g_;
+  const std::uint64_t all_;
+  const bool by_fragment_;
+  std::size_t group_ = 0, length_ = 0;
+  std::uint64_t in_conflict_ = 0;
 };
-
-inline SpecialPixels FindSpecial(const FrameInput& frame, TileScratch& scratch, std::size_t group) {
-  if (scratch.length(group) == 0) return {};
-  return ConflictFinder(frame, scratch, group).Find();
-}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace frontmost::abuffer_detail

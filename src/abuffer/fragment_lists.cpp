@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "abuffer/fragment_lists.h"
 
-#include <cstring>
-
 namespace frontmost::abuffer_detail {
 namespace {
 
@@ -18,7 +16,7 @@ class Lister {
     const float hidden = hidden_behind(words, length);
     for (std::size_t i = 0; i < length && words[i * kGroup] != 0; ++i) {
       const std::uint32_t number = ~std::uint32_t(words[i * kGroup]);
-      if (s_.arrived.nearest[number] < hidden) continue;
+      if (s_.nearest_of(number) < hidden) continue;
       add(number);
       // At a single sample there is no part of a pixel: what comes first hides the rest.
       if (frame_.pattern.count == 1 && opacities_.is_opaque(id_of(number))) break;
@@ -34,8 +32,8 @@ class Lister {
     if (frame_.pattern.count == 1) return key;
     for (std::size_t i = 0; i < length && words[i * kGroup] != 0; ++i) {
       const std::uint32_t number = ~std::uint32_t(words[i * kGroup]);
-      if (s_.arrived.mask[number] == frame_.pattern.full() && opacities_.is_opaque(id_of(number)))
-        key = std::max(key, s_.arrived.farthest[number]);
+      if (s_.arrived.mask(number) == frame_.pattern.full() && opacities_.is_opaque(id_of(number)))
+        key = std::max(key, s_.farthest_of(number));
     }
     return key;
   }
@@ -43,9 +41,9 @@ class Lister {
   void add(std::uint32_t number) {
     const std::size_t t = s_.arrived.triangle[number];
     Fragment f;
-    f.mask = s_.arrived.mask[number];
+    f.mask = s_.arrived.mask(number);
     f.primitive = s_.triangles.id[t];
-    std::memcpy(&f.key, &s_.arrived.key[number], sizeof f.key);
+    f.key = s_.arrived.key_of(number);
     f.key_dx = s_.triangles.gx[t] * kSubPixels;
     f.key_dy = s_.triangles.gy[t] * kSubPixels;
     f.opacity = opacities_.of(f.primitive);

@@ -17,15 +17,18 @@
 #endif
 
 #include <algorithm>
-#include <cstring>
 
 #include "abuffer/gather_kernel.h"
+#include "base/lanes-inl.h"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::abuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using frontmost::HWY_NAMESPACE::BitsOf;
+using frontmost::HWY_NAMESPACE::CountFrom;
+using frontmost::HWY_NAMESPACE::ForEachBit;
 
 using DI = hn::ScalableTag<std::int32_t>;
 using DU = hn::RebindToUnsigned<DI>;
@@ -37,16 +40,6 @@ using MI = hn::Mask<DI>;
 
 constexpr std::size_t kMaxLanes = hn::MaxLanes(DI());
 constexpr std::int32_t kStepsOfPixel = kSubPixels / SamplePattern::unit;
-
-/// Lane i in bit i.
-template <class D>
-HWY_INLINE std::uint64_t BitsOf(D d, hn::Mask<D> mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, mask, bytes);
-  std::uint64_t bits;
-  std::memcpy(&bits, bytes, sizeof bits);
-  return bits & ((std::uint64_t(1) << hn::Lanes(d)) - 1);
-}
 
 HWY_INLINE bool IsTopLeft(std::int32_t dx, std::int32_t dy) { return dy < 0 || (dy == 0 && dx > 0); }
 
@@ -134,19 +127,29 @@ class FragmentSink {
     return true;
   }
 
-  /// One fragment of a pixel; keys are bits of floats.
-  HWY_INLINE void Append(std::uint32_t pixel, std::uint32_t key, float nearest, float farthest, std::uint32_t triangle,
-                         std::uint64_t mask) {
+  /// One fragment of a pixel, unless its mask is empty; the key's bits.
+  HWY_INLINE void Append(std::uint32_t pixel, std::uint32_t key, std::uint32_t triangle, std::uint64_t mask) {
     const std::size_t n = arrived.count;
     arrived.key[n] = key;
-    arrived.nearest[n] = nearest;
-    arrived.farthest[n] = farthest;
     arrived.triangle[n] = triangle;
-    arrived.mask[n] = mask;
+    arrived.mask_low[n] = std::uint32_t(mask);
+    arrived.mask_high[n] = std::uint32_t(mask >> 32);
     const std::uint32_t covered = mask != 0;
     arrived.place[n] = pixel << kRankBits | counts[pixel];
     counts[pixel] += covered;
     arrived.count += covered;
+  }
+
+  /// A vector of fragments that cover all samples, of which the caller counts as many as there are.
+  HWY_INLINE void AppendVector(VU key, VU place, std::uint32_t triangle) {
+    const DU d;
+    const std::size_t n = arrived.count;
+    hn::StoreU(key, d, arrived.key.data() + n);
+    hn::StoreU(place, d, arrived.place.data() + n);
+    hn::StoreU(hn::Set(d, triangle), d, arrived.triangle.data() + n);
+    if (kFlat) return;
+    hn::StoreU(hn::Set(d, std::uint32_t(samples.full())), d, arrived.mask_low.data() + n);
+    hn::StoreU(hn::Set(d, std::uint32_t(samples.full() >> 32)), d, arrived.mask_high.data() + n);
   }
 
   const SampleTable samples;

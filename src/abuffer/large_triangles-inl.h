@@ -27,6 +27,8 @@ class LargeTriangles {
     for (std::int32_t i = 0; i < 16; ++i) {
       column_[i] = i % 4;
       row_[i] = i / 4;
+      centre_x_[i] = float(column_[i] * kSubPixels);
+      centre_y_[i] = float(row_[i] * kSubPixels);
     }
   }
 
@@ -54,6 +56,7 @@ class LargeTriangles {
     std::int32_t sample_min, sample_max;   // over the samples of a pixel
     std::int32_t block_min, block_max;     // over the samples of a block
     HWY_ALIGN_MAX std::int32_t pixel[16];  // at the corners of a block's pixels
+    HWY_ALIGN_MAX std::int32_t block[16];  // at the corners of a row's blocks
   };
 
   [[nodiscard]] Bounds BoundsOf(const ScreenTriangle& t) const {
@@ -80,6 +83,7 @@ class LargeTriangles {
       e.block_max = e.sample_max + 3 * (std::max(e.step_x, 0) + std::max(e.step_y, 0));
       e.block_min = e.sample_min + 3 * (std::min(e.step_x, 0) + std::min(e.step_y, 0));
       for (int i = 0; i < 16; ++i) e.pixel[i] = column_[i] * e.step_x + row_[i] * e.step_y;
+      for (int i = 0; i < kBlocksAcross; ++i) e.block[i] = 4 * i * e.step_x;
       if (!kFlat) sink_.samples.Fill(steps_, k, dx, dy);
     }
   }
@@ -99,7 +103,8 @@ class LargeTriangles {
     const float reach_x = float(std::max({std::abs(x1), std::abs(x2), std::abs(x2 - x1)})) + 2 * kSubPixels;
     const float reach_y = float(std::max({std::abs(y1), std::abs(y2), std::abs(y2 - y1)})) + 2 * kSubPixels;
     slack_ = (k0_ + (reach_x * std::abs(gx_) + reach_y * std::abs(gy_))) * kKeyRounding + kLeastRounding;
-    half_ = (std::abs(gx_) + std::abs(gy_)) * kHalfPixel + slack_;
+    // However steep, no key leaves the triangle's range.
+    half_ = std::min((std::abs(gx_) + std::abs(gy_)) * kHalfPixel, high_ - low_) + slack_;
     triangle_ = kFlat ? id_ : std::uint32_t(sink_.triangles.count);
   }
 
@@ -115,6 +120,7 @@ class LargeTriangles {
     t.low[n] = low_;
     t.high[n] = high_;
     t.slack[n] = slack_;
+    t.half[n] = half_;
     t.id[n] = id_;
   }
 
@@ -126,18 +132,45 @@ class LargeTriangles {
     return x_max - x_min <= most && y_max - y_min <= most;
   }
 
+  /// A row of blocks at a time.
   HWY_INLINE void DrawNarrow(const Bounds& rect) {
     std::int32_t row[3];
-    for (int k = 0; k < 3; ++k)
-      row[k] = std::int32_t(edge_[k].first) + (rect.x0 & ~3) * edge_[k].step_x + (rect.y0 & ~3) * edge_[k].step_y;
+    for (int k = 0; k < 3; ++k) row[k] = std::int32_t(edge_[k].first) + (rect.y0 & ~3) * edge_[k].step_y;
     for (std::int32_t by = rect.y0 / 4; by <= rect.y1 / 4; ++by) {
-      std::int32_t e[3] = {row[0], row[1], row[2]};
-      for (std::int32_t bx = rect.x0 / 4; bx <= rect.x1 / 4; ++bx) {
-        DrawBlock(bx, by, e);
-        for (int k = 0; k < 3; ++k) e[k] += 4 * edge_[k].step_x;
-      }
+      const BlockRow blocks = FindBlocks(rect, row);
+      const std::uint64_t full = 4 * by + 4 <= sink_.height ? blocks.full : 0;
+      ForEachBit(blocks.touched, [&](std::size_t i) HWY_ATTR {
+        const auto bx = std::int32_t(i);
+        std::int32_t e[3];
+        for (int k = 0; k < 3; ++k) e[k] = row[k] + edge_[k].block[i];
+        DrawBlock(bx, by, e, (full >> i & 1) != 0);
+      });
       for (int k = 0; k < 3; ++k) row[k] += 4 * edge_[k].step_y;
     }
+  }
+
+  struct BlockRow {
+    std::uint64_t touched = 0, full = 0;
+  };
+  /// `row`: edge functions at the corner of the row's first block.
+  HWY_INLINE BlockRow FindBlocks(const Bounds& rect, const std::int32_t (&row)[3]) const {
+    const DI d;
+    BlockRow result;
+    constexpr auto lanes = std::int32_t(kMaxLanes);
+    for (std::int32_t first = rect.x0 / 4 / lanes * lanes; first <= rect.x1 / 4; first += lanes) {
+      VI most = hn::Zero(d), least = hn::Zero(d);
+      for (int k = 0; k < 3; ++k) {
+        const VI at = hn::Add(hn::Set(d, row[k]), hn::Load(d, edge_[k].block + first));
+        most = hn::Or(most, hn::Add(at, hn::Set(d, edge_[k].block_max)));
+        least = hn::Or(least, hn::Add(at, hn::Set(d, edge_[k].block_min)));
+      }
+      result.touched |= BitsOf(d, hn::Gt(most, hn::Set(d, -1))) << first;
+      result.full |= BitsOf(d, hn::Gt(least, hn::Set(d, -1))) << first;
+    }
+    const auto below = [](std::int32_t block) { return (std::uint64_t(1) << block) - 1; };
+    result.touched &= below(rect.x1 / 4 + 1) & ~below(rect.x0 / 4);
+    result.full &= below(sink_.width / 4);
+    return result;
   }
 
   void DrawWide(const Bounds& rect) {
@@ -149,18 +182,17 @@ class LargeTriangles {
           const std::int64_t at = edge.first + std::int64_t(4 * bx) * edge.step_x + std::int64_t(4 * by) * edge.step_y;
           e[k] = std::int32_t(HWY_MAX(HWY_MIN(at, kEdgeLimit), -kEdgeLimit));
         }
-        DrawBlock(bx, by, e);
+        std::int32_t most = 0, least = 0;
+        for (int k = 0; k < 3; ++k) {
+          most |= e[k] + edge_[k].block_max;
+          least |= e[k] + edge_[k].block_min;
+        }
+        if (most < 0) continue;
+        DrawBlock(bx, by, e, least >= 0 && 4 * bx + 4 <= sink_.width && 4 * by + 4 <= sink_.height);
       }
   }
 
-  HWY_INLINE void DrawBlock(std::int32_t bx, std::int32_t by, const std::int32_t (&e)[3]) {
-    std::int32_t most = 0, least = 0;
-    for (int k = 0; k < 3; ++k) {
-      most |= e[k] + edge_[k].block_max;
-      least |= e[k] + edge_[k].block_min;
-    }
-    if (most < 0) return;
-    const bool is_full = least >= 0 && 4 * bx + 4 <= sink_.width && 4 * by + 4 <= sink_.height;
+  HWY_INLINE void DrawBlock(std::int32_t bx, std::int32_t by, const std::int32_t (&e)[3], bool is_full) {
     for (std::int32_t i = 0; i < 16; i += std::int32_t(hn::Lanes(DI()))) {
       if (is_full)
         DrawPixels<true>(bx, by, i, e);
@@ -172,90 +204,78 @@ class LargeTriangles {
   template <bool kFull>
   HWY_INLINE void DrawPixels(std::int32_t bx, std::int32_t by, std::int32_t first, const std::int32_t* e) {
     const DI d;
-    const DF df;
-    const VI x = hn::Add(hn::Load(d, column_ + first), hn::Set(d, 4 * bx));
-    const VI y = hn::Add(hn::Load(d, row_ + first), hn::Set(d, 4 * by));
-    MI touched = hn::And(hn::Lt(x, hn::Set(d, sink_.width)), hn::Lt(y, hn::Set(d, sink_.height)));
-    MI covered = touched;
+    MI touched = hn::Eq(hn::Zero(d), hn::Zero(d)), covered = touched;
     if (!kFull) {
       VI least = hn::Zero(d), most = hn::Zero(d);
       for (int k = 0; k < 3; ++k) {
         const VI at = hn::Add(hn::Set(d, e[k]), hn::Load(d, edge_[k].pixel + first));
-        hn::Store(at, d, corner_[k]);
+        if (!kFlat) hn::Store(at, d, corner_[k]);
         most = hn::Or(most, hn::Add(at, hn::Set(d, edge_[k].sample_max)));
-        least = hn::Or(least, hn::Add(at, hn::Set(d, edge_[k].sample_min)));
+        if (!kFlat) least = hn::Or(least, hn::Add(at, hn::Set(d, edge_[k].sample_min)));
       }
+      const VI x = hn::Add(hn::Load(d, column_ + first), hn::Set(d, 4 * bx));
+      const VI y = hn::Add(hn::Load(d, row_ + first), hn::Set(d, 4 * by));
+      touched = hn::And(hn::Lt(x, hn::Set(d, sink_.width)), hn::Lt(y, hn::Set(d, sink_.height)));
       touched = hn::And(touched, hn::Gt(most, hn::Set(d, -1)));
-      covered = hn::And(touched, hn::Gt(least, hn::Set(d, -1)));
+      if (!kFlat) covered = hn::And(touched, hn::Gt(least, hn::Set(d, -1)));
       if (hn::AllFalse(d, touched)) return;
     }
-    const VF dx = hn::ConvertTo(df, hn::Add(hn::ShiftLeft<8>(x), hn::Set(d, kSubPixels / 2 - x0_)));
-    const VF dy = hn::ConvertTo(df, hn::Add(hn::ShiftLeft<8>(y), hn::Set(d, kSubPixels / 2 - y0_)));
-    VF key = hn::Add(hn::Set(df, k0_), hn::Mul(dx, hn::Set(df, gx_)));
-    key = hn::Add(key, hn::Mul(dy, hn::Set(df, gy_)));
-    key = hn::Min(hn::Max(key, hn::Set(df, low_)), hn::Set(df, high_));
+    const VF key = KeysOf(bx, by, first);
     const std::uint32_t pixel = std::uint32_t((by * kBlocksAcross + bx) * 16 + first);
-    if (kFull)
-      AppendFull(pixel, key);
-    else if (kFlat)
-      AppendFlat(pixel, key, touched);
-    else
-      AppendMasked(pixel, key, BitsOf(d, touched), BitsOf(d, covered));
+    if (kFull) return AppendFull(pixel, key);
+    if (kFlat) return AppendWhole(pixel, key, touched);
+    if (!hn::AllFalse(d, covered)) AppendWhole(pixel, key, covered);
+    AppendParts(pixel, key, BitsOf(d, hn::AndNot(covered, touched)));
+  }
+
+  /// Distances are whole numbers below 2^24, so that floats add them up exactly.
+  [[nodiscard]] HWY_INLINE VF KeysOf(std::int32_t bx, std::int32_t by, std::int32_t first) const {
+    const DF d;
+    constexpr std::int32_t size = 4 * kSubPixels, half = kSubPixels / 2;
+    const VF dx = hn::Add(hn::Load(d, centre_x_ + first), hn::Set(d, float(bx * size + half - x0_)));
+    const VF dy = hn::Add(hn::Load(d, centre_y_ + first), hn::Set(d, float(by * size + half - y0_)));
+    VF key = hn::Add(hn::Set(d, k0_), hn::Mul(dx, hn::Set(d, gx_)));
+    key = hn::Add(key, hn::Mul(dy, hn::Set(d, gy_)));
+    return hn::Min(hn::Max(key, hn::Set(d, low_)), hn::Set(d, high_));
   }
 
   /// A vector of pixels that are covered wholly.
   HWY_INLINE void AppendFull(std::uint32_t pixel, VF key) {
     const DU du;
-    const DF df;
-    Arrived& out = sink_.arrived;
-    const std::size_t n = out.count;
     const VU count = hn::Load(du, sink_.counts + pixel);
-    hn::StoreU(hn::Or(hn::ShiftLeft<kRankBits>(hn::Iota(du, pixel)), count), du, out.place.data() + n);
     hn::Store(hn::Add(count, hn::Set(du, 1)), du, sink_.counts + pixel);
-    hn::StoreU(hn::BitCast(du, key), du, out.key.data() + n);
-    hn::StoreU(hn::Set(du, triangle_), du, out.triangle.data() + n);
-    out.count += hn::Lanes(du);
-    if (kFlat) return;
-    const VF half = hn::Set(df, half_);
-    hn::StoreU(hn::Min(hn::Add(key, half), hn::Set(df, high_)), df, out.nearest.data() + n);
-    hn::StoreU(hn::Max(hn::Sub(key, half), hn::Set(df, low_)), df, out.farthest.data() + n);
-    std::fill_n(out.mask.data() + n, hn::Lanes(du), sink_.samples.full());
+    sink_.AppendVector(hn::BitCast(du, key), PlaceOf(pixel, count), triangle_);
+    sink_.arrived.count += hn::Lanes(du);
   }
 
-  HWY_INLINE void AppendFlat(std::uint32_t pixel, VF key, MI covered) {
+  /// Those pixels of a vector that are covered wholly.
+  HWY_INLINE void AppendWhole(std::uint32_t pixel, VF key, MI covered) {
     const DU du;
-    Arrived& out = sink_.arrived;
     const auto mask = hn::RebindMask(du, covered);
     const VU count = hn::Load(du, sink_.counts + pixel);
-    const VU place = hn::Or(hn::ShiftLeft<kRankBits>(hn::Iota(du, pixel)), count);
     hn::Store(hn::Add(count, hn::IfThenElseZero(mask, hn::Set(du, 1))), du, sink_.counts + pixel);
-    const std::size_t n = out.count;
-    hn::StoreU(hn::Compress(hn::BitCast(du, key), mask), du, out.key.data() + n);
-    hn::StoreU(hn::Compress(place, mask), du, out.place.data() + n);
-    hn::StoreU(hn::Set(du, triangle_), du, out.triangle.data() + n);
-    out.count += hn::CountTrue(du, mask);
+    sink_.AppendVector(hn::Compress(hn::BitCast(du, key), mask), hn::Compress(PlaceOf(pixel, count), mask), triangle_);
+    sink_.arrived.count += hn::CountTrue(du, mask);
   }
 
-  HWY_INLINE void AppendMasked(std::uint32_t pixel, VF key, std::uint64_t touched, std::uint64_t covered) {
-    const DF df;
-    const VF half = hn::Set(df, half_);
-    HWY_ALIGN_MAX float keys[kMaxLanes], nearest[kMaxLanes], farthest[kMaxLanes];
-    hn::Store(key, df, keys);
-    hn::Store(hn::Min(hn::Add(key, half), hn::Set(df, high_)), df, nearest);
-    hn::Store(hn::Max(hn::Sub(key, half), hn::Set(df, low_)), df, farthest);
-    for (std::uint64_t left = touched; left != 0; left &= left - 1) {
-      const std::size_t i = hwy::Num0BitsBelowLS1Bit_Nonzero64(left);
-      const std::uint64_t mask = covered >> i & 1
-                                     ? sink_.samples.full()
-                                     : sink_.samples.MaskOf(steps_, corner_[0][i], corner_[1][i], corner_[2][i]);
-      std::uint32_t bits;
-      std::memcpy(&bits, keys + i, sizeof bits);
-      sink_.Append(pixel + std::uint32_t(i), bits, nearest[i], farthest[i], triangle_, mask);
-    }
+  static HWY_INLINE VU PlaceOf(std::uint32_t pixel, VU count) {
+    return hn::Or(hn::ShiftLeft<kRankBits>(CountFrom(DU(), pixel)), count);
+  }
+
+  /// Pixels that are covered in part, or not at all.
+  HWY_INLINE void AppendParts(std::uint32_t pixel, VF key, std::uint64_t touched) {
+    HWY_ALIGN_MAX std::uint32_t keys[kMaxLanes];
+    hn::Store(hn::BitCast(DU(), key), DU(), keys);
+    ForEachBit(touched, [&](std::size_t i) HWY_ATTR {
+      const std::uint64_t mask = sink_.samples.MaskOf(steps_, corner_[0][i], corner_[1][i], corner_[2][i]);
+      sink_.Append(pixel + std::uint32_t(i), keys[i], triangle_, mask);
+    });
   }
 
   FragmentSink<kFlat>& sink_;
+  // Of a block's pixels: place in the block, in pixels and in 1/256 pixel.
   HWY_ALIGN_MAX std::int32_t column_[16], row_[16];
+  HWY_ALIGN_MAX float centre_x_[16], centre_y_[16];
   HWY_ALIGN_MAX std::int32_t corner_[3][kMaxLanes];
   Edge edge_[3];
   SampleSteps steps_;

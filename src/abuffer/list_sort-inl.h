@@ -43,8 +43,10 @@ HWY_INLINE void SortGroup(std::uint64_t* slots, std::size_t length) {
   for (std::size_t p = top; p > 0; p /= 2) {
     std::size_t q = top, r = 0, d = p;
     for (;;) {
-      for (std::size_t i = 0; i + d < length; ++i)
-        if ((i & p) == r) CompareExchange(words + i * kGroup, words + (i + d) * kGroup);
+      // Those i with (i & p) == r: every other p of them.
+      for (std::size_t begin = r; begin + d < length; begin += 2 * p)
+        for (std::size_t i = begin; i < HWY_MIN(begin + p, length - d); ++i)
+          CompareExchange(words + i * kGroup, words + (i + d) * kGroup);
       if (q == p) break;
       d = q - p;
       q /= 2;
@@ -63,13 +65,14 @@ inline void OrderTies(TileScratch& s, std::size_t group, std::size_t lane) {
     // An empty slot has the key 0 as well.
     while (end < length && at(end) != 0 && at(end) >> 32 == at(begin) >> 32) ++end;
     if (end - begin > 1) {
-      std::vector<std::uint64_t> run;
+      std::vector<std::uint64_t>& run = s.run;
+      run.clear();
       for (std::size_t i = begin; i < end; ++i) run.push_back(at(i));
       // Pieces of one clipped triangle have one id; their masks are disjoint and put them into an order of their own.
       std::sort(run.begin(), run.end(), [&](std::uint64_t a, std::uint64_t b) {
         const PrimitiveId ia = id(a), ib = id(b);
         if (ia != ib) return ia < ib;
-        return s.arrived.mask[~std::uint32_t(a)] < s.arrived.mask[~std::uint32_t(b)];
+        return s.arrived.mask(~std::uint32_t(a)) < s.arrived.mask(~std::uint32_t(b));
       });
       for (std::size_t i = begin; i < end; ++i) at(i) = run[i - begin];
     }
@@ -94,25 +97,46 @@ inline void FindTies(TileScratch& s, std::size_t group) {
   }
 }
 
-inline void PlaceAndSort(const FrameInput& frame, TileScratch& s) {
+/// Makes room for the lists. Counts of pixels become the places where their lists begin, in words.
+HWY_INLINE void MakeRoom(TileScratch& s) {
+  const DU d;
   std::uint32_t base = 0;
   for (std::size_t g = 0; g < kGroups; ++g) {
     s.group_base[g] = base;
-    std::uint32_t longest = 0;
-    for (std::size_t i = 0; i < kGroup; ++i) longest = HWY_MAX(longest, s.counts[g * kGroup + i]);
-    base += longest;
+    VU longest = hn::Zero(d);
+    for (std::size_t i = 0; i < kGroup; i += hn::Lanes(d)) {
+      std::uint32_t* counts = s.counts.data() + g * kGroup + i;
+      longest = hn::Max(longest, hn::Load(d, counts));
+      hn::Store(CountFrom(d, std::uint32_t(base * kGroup + i)), d, counts);
+    }
+    base += hn::GetLane(hn::MaxOfLanes(d, longest));
   }
   s.group_base[kGroups] = base;
   const std::size_t words = std::size_t(base) * kGroup;
   if (s.slots.size() < words) s.slots = Buffer<std::uint64_t>(words + words / 4);
   std::fill_n(s.slots.data(), words, std::uint64_t(0));
-  const Arrived& from = s.arrived;
-  for (std::size_t n = Arrived::first; n < from.count; ++n) {
-    const std::uint32_t pixel = from.place[n] >> kRankBits, rank = from.place[n] & kMostOfPixel;
-    const std::uint32_t low = frame.is_flat ? ~from.triangle[n] : ~std::uint32_t(n);
-    s.slots[(std::size_t(s.group_base[pixel / kGroup]) + rank) * kGroup + pixel % kGroup] =
-        std::uint64_t(from.key[n]) << 32 | low;
+}
+
+template <bool kFlat>
+HWY_INLINE void Place(TileScratch& s) {
+  const std::uint32_t *place = s.arrived.place.data(), *key = s.arrived.key.data(), *begin = s.counts.data();
+  const std::uint32_t* triangle = s.arrived.triangle.data();
+  auto* slots = reinterpret_cast<char*>(s.slots.data());
+  const std::size_t count = s.arrived.count;
+  for (std::size_t n = Arrived::first; n < count; ++n) {
+    const std::size_t rank = place[n] & kMostOfPixel;
+    const std::uint64_t word = std::uint64_t(key[n]) << 32 | (kFlat ? ~triangle[n] : ~std::uint32_t(n));
+    // As bytes, which may be those of any other array: g++ would make a scatter of it that takes longer.
+    std::memcpy(slots + (begin[place[n] >> kRankBits] + rank * kGroup) * sizeof word, &word, sizeof word);
   }
+}
+
+inline void PlaceAndSort(const FrameInput& frame, TileScratch& s) {
+  MakeRoom(s);
+  if (frame.is_flat)
+    Place<true>(s);
+  else
+    Place<false>(s);
   for (std::size_t g = 0; g < kGroups; ++g) {
     SortGroup(s.slot(g, 0), s.length(g));
     if (!frame.is_flat) FindTies(s, g);

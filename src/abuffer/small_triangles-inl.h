@@ -120,7 +120,8 @@ class SmallTriangles {
     const VF reach = hn::Set(df, float(kSmallExtent + 2 * kSubPixels));
     slack_ =
         hn::Add(hn::Mul(hn::Add(k0_, hn::Mul(slope, reach)), hn::Set(df, kKeyRounding)), hn::Set(df, kLeastRounding));
-    half_ = hn::Add(hn::Mul(slope, hn::Set(df, kHalfPixel)), slack_);
+    // However steep, no key leaves the triangle's range.
+    half_ = hn::Add(hn::Min(hn::Mul(slope, hn::Set(df, kHalfPixel)), hn::Sub(high_, low_)), slack_);
   }
 
   HWY_INLINE void KeepPlanes(std::size_t drawn) {
@@ -138,6 +139,7 @@ class SmallTriangles {
     hn::StoreU(low_, df, t.low.data() + n);
     hn::StoreU(high_, df, t.high.data() + n);
     hn::StoreU(slack_, df, t.slack.data() + n);
+    hn::StoreU(half_, df, t.half.data() + n);
     hn::StoreU(hn::BitCast(du, hn::Load(d, queue_.field[9])), du, t.id.data() + n);
     t.count += drawn;
     HWY_ALIGN_MAX std::int32_t dx[kMaxLanes], dy[kMaxLanes];
@@ -167,7 +169,7 @@ class SmallTriangles {
       for (int x = 0; x < most_x; ++x) {
         const VI all = hn::Or(hn::Or(e0, e1), e2);
         const MI covered = hn::And(hn::Gt(all, hn::Set(d, -1)), hn::Gt(row_width, hn::Set(d, x)));
-        const VI reference = hn::Iota(d, y << 8 | x << 4);
+        const VI reference = CountFrom(d, y << 8 | x << 4);
         const auto mask = hn::RebindMask(du, covered);
         hn::StoreU(hn::Compress(hn::BitCast(du, reference), mask), du, out);
         out += hn::CountTrue(du, mask);
@@ -208,10 +210,7 @@ class SmallTriangles {
         AppendFlat(hn::BitCast(d, key), hn::TableLookupLanes(ids, of), live);
         continue;
       }
-      const VF half = hn::TableLookupLanes(half_, of_f);
-      hn::Store(key, df, key_);
-      hn::Store(hn::Min(hn::Add(key, half), high), df, nearest_);
-      hn::Store(hn::Max(hn::Sub(key, half), low), df, farthest_);
+      hn::Store(hn::BitCast(du, key), du, key_);
       hn::Store(lane, d, lane_);
       for (int k = 0; k < 3; ++k) {
         const VI sx = hn::Mul(hn::ShiftLeft<4>(x), hn::TableLookupLanes(dy_[k], of));
@@ -246,9 +245,7 @@ class SmallTriangles {
     for (std::size_t k = 0; k < live; ++k) {
       const auto lane = std::size_t(lane_[k]);
       const std::uint64_t mask = sink_.samples.MaskOf(steps_[lane], corner_[0][k], corner_[1][k], corner_[2][k]);
-      std::uint32_t bits;
-      std::memcpy(&bits, key_ + k, sizeof bits);
-      sink_.Append(std::uint32_t(pixel_[k]), bits, nearest_[k], farthest_[k], std::uint32_t(first_ + lane), mask);
+      sink_.Append(std::uint32_t(pixel_[k]), key_[k], std::uint32_t(first_ + lane), mask);
     }
   }
 
@@ -262,7 +259,7 @@ class SmallTriangles {
   std::size_t first_ = 0;  // of the batch, in LocalTriangles
   // One vector of pairs.
   HWY_ALIGN_MAX std::int32_t pixel_[kMaxLanes], lane_[kMaxLanes], corner_[3][kMaxLanes];
-  HWY_ALIGN_MAX float key_[kMaxLanes], nearest_[kMaxLanes], farthest_[kMaxLanes];
+  HWY_ALIGN_MAX std::uint32_t key_[kMaxLanes];
 };
 
 }  // namespace HWY_NAMESPACE

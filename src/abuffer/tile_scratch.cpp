@@ -19,16 +19,14 @@ void LocalTriangles::reserve(std::size_t more) {
   if (count + more <= id.size()) return;
   const std::size_t size = std::max<std::size_t>(2 * id.size(), count + more + 4096);
   for (Buffer<std::int32_t>* b : {&x0, &y0}) enlarge(*b, count, size);
-  for (Buffer<float>* b : {&k0, &gx, &gy, &low, &high, &slack}) enlarge(*b, count, size);
+  for (Buffer<float>* b : {&k0, &gx, &gy, &low, &high, &slack, &half}) enlarge(*b, count, size);
   enlarge(id, count, size);
 }
 
 void Arrived::grow(std::size_t wanted) {
   if (wanted <= capacity) return;
   const std::size_t size = std::max(wanted, 2 * capacity);
-  for (Buffer<std::uint32_t>* b : {&key, &place, &triangle}) enlarge(*b, count, size);
-  for (Buffer<float>* b : {&nearest, &farthest}) enlarge(*b, count, size);
-  enlarge(mask, count, size);
+  for (Buffer<std::uint32_t>* b : {&key, &place, &triangle, &mask_low, &mask_high}) enlarge(*b, count, size);
   capacity = size;
 }
 
@@ -37,17 +35,15 @@ TileScratch::TileScratch()
     : counts(kTilePixels), group_base(kGroups + 1), references(16 * 16 * 16 + 64) {
   arrived.grow(kMostOfTile + kMostAtOnce);
   arrived.count = Arrived::first;
-  arrived.key[0] = arrived.triangle[0] = arrived.place[0] = 0;
-  arrived.mask[0] = 0;
-  arrived.nearest[0] = -1.0f;
-  arrived.farthest[0] = 2.0f;
+  arrived.key[0] = arrived.triangle[0] = arrived.place[0] = arrived.mask_low[0] = arrived.mask_high[0] = 0;
 }
 
-void TileScratch::reserve_group(std::size_t count) {
-  if (reach.size() >= count * kGroup) return;
-  for (Buffer<float>* b : {&nearest, &farthest, &behind_nearest}) *b = Buffer<float>(2 * count * kGroup);
-  for (Buffer<std::uint32_t>* b : {&mask_low, &mask_high}) *b = Buffer<std::uint32_t>(2 * count * kGroup);
-  reach = Buffer<std::int32_t>(2 * count * kGroup);
+void GroupFragments::reserve(std::size_t slots) {
+  const std::size_t size = 2 * slots * kGroup;
+  if (reach.size() >= size / 2) return;
+  for (Buffer<std::uint32_t>* b : {&mask_low, &mask_high, &triangle, &paint}) *b = Buffer<std::uint32_t>(size);
+  for (Buffer<float>* b : {&nearest, &farthest, &behind}) *b = Buffer<float>(size);
+  reach = Buffer<std::int32_t>(size);
 }
 
 }  // namespace frontmost::abuffer_detail

@@ -2,6 +2,8 @@
 // The private memory of one thread: the fragments of one tile, as they arrive and sorted.
 #pragma once
 
+#include <cstring>
+
 #include "abuffer/frame_plan.h"
 
 namespace frontmost::abuffer_detail {
@@ -15,7 +17,7 @@ inline constexpr int kBlocksAcross = kTileSize / 4;
 inline constexpr int kRankBits = 20;
 inline constexpr std::uint32_t kMostOfPixel = (1u << kRankBits) - 1;
 
-/// A tile that holds more is taken apart. At 36 bytes and up to 16 for the sorted lists, 14 MB.
+/// A tile that holds more is taken apart. At 28 bytes and up to 16 for the sorted lists, 14 MB.
 inline constexpr std::size_t kMostOfTile = std::size_t(1) << 18;
 /// What one step of gathering may add before fullness is looked at again.
 inline constexpr std::size_t kMostAtOnce = kTilePixels + 64;
@@ -26,11 +28,11 @@ inline constexpr std::size_t kMostAtOnce = kTilePixels + 64;
 
 /// Depth planes of the triangles of a tile: the key at a point is (k0 + dx*gx) + dy*gy from (x0, y0), in 1/256 pixel
 /// from the tile's corner, then clamped to [low, high]. `slack` bounds the rounding of the difference of two such keys
-/// of one pixel.
+/// of one pixel, `half` how far the keys of a pixel are from its centre's.
 struct LocalTriangles {
   std::size_t count = 0;
   Buffer<std::int32_t> x0, y0;
-  Buffer<float> k0, gx, gy, low, high, slack;
+  Buffer<float> k0, gx, gy, low, high, slack, half;
   Buffer<PrimitiveId> id;
 
   /// Room for `more`.
@@ -45,13 +47,29 @@ struct LocalTriangles {
 struct Arrived {
   static constexpr std::size_t first = 1;
   std::size_t count = 0, capacity = 0;
-  Buffer<std::uint32_t> key;       ///< bits of the float
-  Buffer<std::uint32_t> place;     ///< pixel << kRankBits | rank
-  Buffer<std::uint32_t> triangle;  ///< number in LocalTriangles; of flat tiles the primitive id
-  Buffer<std::uint64_t> mask;
-  Buffer<float> nearest, farthest;  ///< no key of the fragment leaves this range
+  Buffer<std::uint32_t> key;                  ///< bits of the float
+  Buffer<std::uint32_t> place;                ///< pixel << kRankBits | rank
+  Buffer<std::uint32_t> triangle;             ///< number in LocalTriangles; of flat tiles the primitive id
+  Buffer<std::uint32_t> mask_low, mask_high;  ///< sub-samples 0 to 31 and 32 to 63
 
   void grow(std::size_t wanted);
+  [[nodiscard]] std::uint64_t mask(std::size_t n) const { return std::uint64_t(mask_high[n]) << 32 | mask_low[n]; }
+  [[nodiscard]] float key_of(std::size_t n) const {
+    float value;
+    std::memcpy(&value, &key[n], sizeof value);
+    return value;
+  }
+};
+
+/// The fragments of one group while it is composited: of pixel p in slot s at s * 16 + p.
+struct GroupFragments {
+  Buffer<std::uint32_t> mask_low, mask_high;  ///< all samples where there is no fragment
+  Buffer<std::uint32_t> triangle;             ///< number in LocalTriangles
+  Buffer<std::uint32_t> paint;                ///< number of the colour
+  Buffer<float> nearest, farthest, behind;    ///< the range of its keys; the nearest of all behind it
+  Buffer<std::int32_t> reach;                 ///< the last slot that one up to this may change places with
+
+  void reserve(std::size_t slots);
 };
 
 struct TileScratch {
@@ -59,20 +77,27 @@ struct TileScratch {
 
   LocalTriangles triangles;
   Arrived arrived;
-  Buffer<std::uint32_t> counts;      ///< by pixel
+  Buffer<std::uint32_t> counts;      ///< by pixel; of sorted lists, where they begin
   Buffer<std::uint32_t> group_base;  ///< by group, in slots; and the end of the last
   /// Slot-major: slot s of pixel p of a group at (base + s) * 16 + p. Each is key bits << 32 | ~number of the fragment
   /// (flat: ~primitive id), descending; 0 is empty.
   Buffer<std::uint64_t> slots;
+  std::vector<std::uint64_t> run;    ///< equal keys of one pixel
   Buffer<std::uint32_t> references;  ///< covered (triangle, pixel) pairs of one batch
 
-  // Of one group while it is composited, slot-major as well.
-  Buffer<float> nearest, farthest, behind_nearest;
-  Buffer<std::uint32_t> mask_low, mask_high;
-  Buffer<std::int32_t> reach;
-  void reserve_group(std::size_t slots);
+  GroupFragments fragments;  ///< of one group
+  Buffer<glm::vec4> colors;  ///< of the local triangles
 
   [[nodiscard]] std::size_t length(std::size_t group) const { return group_base[group + 1] - group_base[group]; }
+  /// The keys of a fragment within its pixel.
+  [[nodiscard]] float nearest_of(std::size_t number) const {
+    const std::size_t t = arrived.triangle[number];
+    return std::min(arrived.key_of(number) + triangles.half[t], triangles.high[t]);
+  }
+  [[nodiscard]] float farthest_of(std::size_t number) const {
+    const std::size_t t = arrived.triangle[number];
+    return std::max(arrived.key_of(number) - triangles.half[t], triangles.low[t]);
+  }
   [[nodiscard]] std::uint64_t* slot(std::size_t group, std::size_t s) {
     return slots.data() + (group_base[group] + s) * kGroup;
   }

@@ -20,7 +20,9 @@ struct Seen {
 /// What one sample of a pixel sees, nearest first.
 class SampleLists {
  public:
-  SampleLists(const FrameInput& frame, TileScratch& scratch) : frame_(frame), s_(scratch) {}
+  /// `most`: how many are wanted.
+  SampleLists(const FrameInput& frame, TileScratch& scratch, std::size_t most)
+      : frame_(frame), s_(scratch), most_(most) {}
 
   const std::vector<Seen>& at(int x, int y, std::size_t sample) {
     const std::uint32_t pixel = pixel_number(std::uint32_t(x), std::uint32_t(y));
@@ -31,18 +33,22 @@ class SampleLists {
     seen_.clear();
     for (std::size_t i = 0; i < length && words[i * kGroup] != 0; ++i) {
       const std::uint32_t number = ~std::uint32_t(words[i * kGroup]);
-      if (!(s_.arrived.mask[number] >> sample & 1)) continue;
+      if (!(s_.arrived.mask(number) >> sample & 1)) continue;
       const std::size_t t = s_.arrived.triangle[number];
       seen_.push_back({s_.triangles.key_at(t, sx, sy), s_.triangles.id[t]});
+      // At a single sample the order is that of the lists.
+      if (frame_.pattern.count == 1 && seen_.size() == most_) return seen_;
     }
-    std::sort(seen_.begin(), seen_.end(),
-              [](const Seen& a, const Seen& b) { return a.key != b.key ? a.key > b.key : a.id < b.id; });
+    if (frame_.pattern.count > 1)
+      std::sort(seen_.begin(), seen_.end(),
+                [](const Seen& a, const Seen& b) { return a.key != b.key ? a.key > b.key : a.id < b.id; });
     return seen_;
   }
 
  private:
   const FrameInput& frame_;
   TileScratch& s_;
+  const std::size_t most_;
   std::vector<Seen> seen_;
 };
 
@@ -62,7 +68,7 @@ std::vector<Visible> visible_layers(const Surfaces& surfaces, const View& view, 
   for (int k = 0; k < count; ++k) layers.push_back(nothing_visible(view));
   visit_tiles(frame, execution, [&](const TileJob& job, TileScratch* scratch) {
     if (!scratch) return;
-    SampleLists lists(frame, *scratch);
+    SampleLists lists(frame, *scratch, layers.size());
     for (std::size_t sample = 0; sample < std::size_t(pattern.count); ++sample)
       for (int y = 0; y < job.pixels.height; ++y)
         for (int x = 0; x < job.pixels.width; ++x) {

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pixels of a group side by side, slot by slot: what shows through is multiplied down, so nothing is ever re-read.
+//
+// For every sub-sample only that is kept: a fragment's weight is its opacity times the mean, over the sub-samples that
+// it covers, of what shows through, and the picture the sum of colours by weight. As long as all fragments cover their
+// pixels wholly, all sub-samples are the same.
+//
+// Sums over sub-samples are trees that add those half of them apart; pixel_composite-inl.h does the same. Equal values
+// sum up exactly, so a pixel's bits depend neither on what other pixels hold nor on the width of vectors.
+
+// Included once for every target.
+#if defined(FRONTMOST_ABUFFER_GROUP_COMPOSITE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FRONTMOST_ABUFFER_GROUP_COMPOSITE_INL_H_
+#undef FRONTMOST_ABUFFER_GROUP_COMPOSITE_INL_H_
+#else
+#define FRONTMOST_ABUFFER_GROUP_COMPOSITE_INL_H_
+#endif
+
+#include "abuffer/composite_kernel.h"
+#include "abuffer/fragment_sink-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::abuffer_detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Sixteen pixels, premultiplied.
+struct GroupColors {
+  HWY_ALIGN_MAX float channel[4][kGroup];
+};
+
+/// What shows through at every sub-sample of a vector of pixels.
+template <int kSamples>
+class ShownThrough {
+ public:
+  explicit HWY_INLINE ShownThrough(VF all) {
+    for (VF& left : left_) left = all;
+  }
+
+  /// The sum of the sub-samples that the masks name, or of all; lets only so much of them pass.
+  template <bool kOfAll>
+  HWY_INLINE VF Cover(VU low, VU high, VF passes) {
+    VF sum[kStride];
+    for (std::size_t i = 0; i < kStride; ++i) {
+      sum[i] = CoverFrom<kOfAll, 0, 1>(left_ + i, low, high, passes);
+      if (kOfAll) continue;
+      low = hn::ShiftRight<1>(low);
+      if (kSamples > 32) high = hn::ShiftRight<1>(high);
+    }
+    for (std::size_t half = kStride / 2; half > 0; half /= 2)
+      for (std::size_t i = 0; i < half; ++i) sum[i] = hn::Add(sum[i], sum[i + half]);
+    return sum[0];
+  }
+
+ private:
+  /// Sub-samples so far apart are written out, the others are a loop: all written out, the compiler takes minutes.
+  static constexpr std::size_t kStride = kSamples < 8 ? kSamples : 8, kCount = kSamples / kStride;
+
+  /// Sub-samples kFirst * kStride on, in steps, as seen from `left`.
+  template <bool kOfAll, std::size_t kFirst, std::size_t kStep>
+  static HWY_INLINE VF CoverFrom(VF* left, VU low, VU high, VF passes) {
+    if constexpr (kStep < kCount) {
+      const VF even = CoverFrom<kOfAll, kFirst, 2 * kStep>(left, low, high, passes);
+      return hn::Add(even, CoverFrom<kOfAll, kFirst + kStep, 2 * kStep>(left, low, high, passes));
+    } else {
+      constexpr std::size_t sample = kFirst * kStride;
+      const VF before = left[sample], after = hn::Mul(before, passes);
+      if (kOfAll) {
+        left[sample] = after;
+        return before;
+      }
+      const auto bit = hn::Set(DU(), std::uint32_t(1) << sample % 32);
+      const auto covered = hn::RebindMask(DF(), hn::TestBit(sample < 32 ? low : high, bit));
+      left[sample] = hn::IfThenElse(covered, after, before);
+      return hn::IfThenElseZero(covered, before);
+    }
+  }
+
+  VF left_[kSamples];
+};
+
+template <int kSamples>
+class GroupCompositor {
+ public:
+  GroupCompositor(const GroupFragments& fragments, const glm::vec4* table, float opacity)
+      : g_(fragments), table_(reinterpret_cast<const float*>(table)), opacity_(opacity) {}
+
+  /// `length` slots in the order of depth.
+  HWY_NOINLINE void Composite(std::size_t length, GroupColors& colors) {
+    for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(DF())) CompositeLanes(lane, length, colors);
+  }
+
+ private:
+  static constexpr std::uint64_t kAll = kSamples == 64 ? ~std::uint64_t(0) : (std::uint64_t(1) << kSamples % 64) - 1;
+  static constexpr float kScale = 1.0f / kSamples;
+
+  HWY_INLINE void CompositeLanes(std::size_t lane, std::size_t length, GroupColors& colors) {
+    const DF d;
+    red_ = green_ = blue_ = hn::Zero(d);
+    VF left = hn::Set(d, 1.0f);
+    std::size_t slot = 0;
+    for (; slot < length && CoversAll(slot * kGroup + lane); ++slot) {
+      const VF alpha = Fetch(slot * kGroup + lane);
+      AddWeighted(hn::Mul(left, alpha));
+      left = hn::Mul(left, hn::Sub(hn::Set(d, 1.0f), alpha));
+    }
+    if (slot < length) left = CompositeApart(lane, slot, length, left);
+    hn::Store(red_, d, colors.channel[0] + lane);
+    hn::Store(green_, d, colors.channel[1] + lane);
+    hn::Store(blue_, d, colors.channel[2] + lane);
+    hn::Store(hn::Sub(hn::Set(d, 1.0f), left), d, colors.channel[3] + lane);
+  }
+
+  /// From where sub-samples differ. \returns the mean of what shows through all.
+  HWY_INLINE VF CompositeApart(std::size_t lane, std::size_t slot, std::size_t length, VF before) {
+    const DF d;
+    const DU du;
+    const VF one = hn::Set(d, 1.0f), scale = hn::Set(d, kScale);
+    ShownThrough<kSamples> left(before);
+    for (; slot < length; ++slot) {
+      const std::size_t at = slot * kGroup + lane;
+      const VF alpha = Fetch(at), passes = hn::Sub(one, alpha);
+      const VU low = hn::Load(du, g_.mask_low.data() + at);
+      const VU high = kSamples > 32 ? hn::Load(du, g_.mask_high.data() + at) : low;
+      const VF sum =
+          CoversAll(at) ? left.template Cover<true>(low, high, passes) : left.template Cover<false>(low, high, passes);
+      AddWeighted(hn::Mul(hn::Mul(sum, scale), alpha));
+    }
+    return hn::Mul(left.template Cover<true>(hn::Zero(du), hn::Zero(du), one), scale);
+  }
+
+  [[nodiscard]] HWY_INLINE bool CoversAll(std::size_t at) const {
+    const DU d;
+    VU covered = hn::Xor(hn::Load(d, g_.mask_low.data() + at), hn::Set(d, std::uint32_t(kAll)));
+    if (kSamples > 32)
+      covered = hn::Or(covered, hn::Xor(hn::Load(d, g_.mask_high.data() + at), hn::Set(d, std::uint32_t(kAll >> 32))));
+    return hn::AllTrue(d, hn::Eq(covered, hn::Zero(d)));
+  }
+
+  /// The colours of a slot. \returns opacities: 0 where there is no fragment.
+  HWY_INLINE VF Fetch(std::size_t at) {
+    const DI d;
+    const DF df;
+    const VI index = hn::ShiftLeft<2>(hn::BitCast(d, hn::Load(DU(), g_.paint.data() + at)));
+    slot_red_ = hn::GatherIndex(df, table_, index);
+    slot_green_ = hn::GatherIndex(df, table_ + 1, index);
+    slot_blue_ = hn::GatherIndex(df, table_ + 2, index);
+    const VF alpha = hn::Mul(hn::GatherIndex(df, table_ + 3, index), hn::Set(df, opacity_));
+    const VF nearest = hn::Load(df, g_.nearest.data() + at);
+    return hn::IfThenElseZero(hn::Gt(nearest, hn::Set(df, -1.0f)), alpha);
+  }
+
+  HWY_INLINE void AddWeighted(VF weight) {
+    red_ = hn::Add(red_, hn::Mul(weight, slot_red_));
+    green_ = hn::Add(green_, hn::Mul(weight, slot_green_));
+    blue_ = hn::Add(blue_, hn::Mul(weight, slot_blue_));
+  }
+
+  const GroupFragments& g_;
+  const float* table_;
+  const float opacity_;
+  VF red_, green_, blue_, slot_red_, slot_green_, slot_blue_;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace frontmost::abuffer_detail
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard by target

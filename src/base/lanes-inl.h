@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// What Highway 1.0.3 lacks or does by way of memory: masks as bits, and counting lanes from a number known at run time.
+
+// Included once for every target.
+#if defined(FRONTMOST_BASE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FRONTMOST_BASE_LANES_INL_H_
+#undef FRONTMOST_BASE_LANES_INL_H_
+#else
+#define FRONTMOST_BASE_LANES_INL_H_
+#endif
+
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Lane i in bit i. What is stored is read in the same size: a wider read would wait for the store to reach the cache.
+template <class D>
+HWY_INLINE std::uint64_t BitsOf(D d, hn::Mask<D> mask) {
+  using Bits = std::conditional_t<(hn::MaxLanes(D()) > 8), std::uint16_t, std::uint8_t>;
+  static_assert(hn::MaxLanes(D()) <= 16);
+  std::uint8_t bytes[8];
+  hn::StoreMaskBits(d, mask, bytes);
+  Bits bits;
+  std::memcpy(&bits, bytes, sizeof bits);
+  return bits & ((std::uint64_t(1) << hn::Lanes(d)) - 1);
+}
+
+/// `first` and up. Highway's own writes lanes to memory one by one unless it knows `first` when compiled.
+template <class D>
+HWY_INLINE hn::Vec<D> CountFrom(D d, hn::TFromD<D> first) {
+  return hn::Add(hn::Iota(d, hn::TFromD<D>(0)), hn::Set(d, first));
+}
+
+/// Calls `body(i)` for every bit i, lowest first.
+template <class Body>
+HWY_INLINE void ForEachBit(std::uint64_t bits, Body&& body) {
+  for (; bits != 0; bits &= bits - 1) body(std::size_t(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits)));
+}
+
+}  // namespace frontmost::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard by target
