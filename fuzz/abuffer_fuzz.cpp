@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Arbitrary geometry and an arbitrary camera into the A-buffer. Must not crash or hang; lists are in order and their
+// nearest layer is the z-buffer's; threads and instruction sets change no bit. Input: support/geometry_fuzz.h.
+#include <cstdlib>
+
+#include "support/geometry_fuzz.h"
+
+using namespace frontmost;
+
+namespace {
+
+constexpr Execution kWide{.threads = 2, .isa = Isa::best, .watch = nullptr};
+constexpr Execution kPlain{.threads = 1, .isa = Isa::scalar, .watch = nullptr};
+
+void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+bool equal(const Buffer<float>& a, const Buffer<float>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+}
+
+bool equal(const Fragment& a, const Fragment& b) {
+  const float found[] = {a.key, a.key_dx, a.key_dy, a.opacity}, wanted[] = {b.key, b.key_dx, b.key_dy, b.opacity};
+  return a.mask == b.mask && a.primitive == b.primitive && std::memcmp(found, wanted, sizeof found) == 0;
+}
+
+/// Some opaque, some nearly invisible.
+std::vector<glm::vec4> colors_of(PrimitiveId count, std::uint8_t seed) {
+  std::vector<glm::vec4> colors;
+  for (PrimitiveId id = 0; id < count; ++id) {
+    const std::uint32_t mixed = (id + 1) * 2654435761u + seed;
+    colors.emplace_back(float(mixed & 15) / 15, float(mixed >> 8 & 15) / 15, float(mixed >> 16 & 15) / 15,
+                        float(mixed >> 24 & 3) / 3);
+  }
+  return colors;
+}
+
+void check_lists(const Surfaces& surfaces, const View& view, const AbufferOptions& options) {
+  const FragmentLists lists = abuffer(surfaces, view, options, kWide), plain = abuffer(surfaces, view, options, kPlain);
+  require(lists.fragments.size() == plain.fragments.size());
+  for (std::size_t i = 0; i < lists.fragments.size(); ++i) require(equal(lists.fragments[i], plain.fragments[i]));
+  const std::size_t samples = lists.samples.size();
+  for (int y = 0; y < view.height; ++y)
+    for (int x = 0; x < view.width; ++x) {
+      const Fragment* before = nullptr;
+      for (const Fragment& f : lists.at(x, y)) {
+        require(f.mask != 0 && (samples == 64 || f.mask >> samples == 0) && f.primitive < surfaces.primitive_count());
+        require(f.key >= 0 && f.key <= 1);
+        if (before) require(before->key > f.key || (before->key == f.key && before->primitive <= f.primitive));
+        before = &f;
+      }
+    }
+}
+
+void check_picture(const Surfaces& surfaces, const View& view, const AbufferOptions& options, std::uint8_t seed) {
+  const std::vector<glm::vec4> colors = colors_of(surfaces.primitive_count(), seed);
+  const ResolvedPicture wide = resolve(surfaces, view, colors, options, kWide);
+  const ResolvedPicture plain = resolve(surfaces, view, colors, options, kPlain);
+  require(equal(wide.red, plain.red) && equal(wide.green, plain.green) && equal(wide.blue, plain.blue) &&
+          equal(wide.alpha, plain.alpha));
+  for (const Buffer<float>* plane : {&wide.red, &wide.green, &wide.blue, &wide.alpha})
+    for (const float value : *plane) require(value >= 0 && value <= 1.00001f);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  test::ViewBytes bytes;
+  if (size < sizeof(bytes)) return 0;
+  std::memcpy(&bytes, data, sizeof(bytes));
+  const Scene scene = test::scene_of(data + sizeof(bytes), size - sizeof(bytes));
+  constexpr int kGrids[] = {0, 2, 4, 8};
+  const AbufferOptions options{kGrids[bytes.spare % 4], bytes.spare & 4 ? 1.0f : 0.7f};
+  try {
+    const View view = test::view_of(bytes);
+    const Surfaces surfaces(scene);
+    check_lists(surfaces, view, options);
+    check_picture(surfaces, view, options, bytes.spare);
+    const std::vector<Visible> layers = visible_layers(surfaces, view, 2, options, kWide);
+    require(content_hash(layers[0]) == content_hash(zbuffer(surfaces, view, kWide)));
+  } catch (const Error&) {
+    // A camera at its own target, or not finite: a stated outcome.
+  }
+  return 0;
+}
