@@ -83,7 +83,6 @@ class LargeTriangles {
       e.block_max = e.sample_max + 3 * (std::max(e.step_x, 0) + std::max(e.step_y, 0));
       e.block_min = e.sample_min + 3 * (std::min(e.step_x, 0) + std::min(e.step_y, 0));
       for (int i = 0; i < 16; ++i) e.pixel[i] = column_[i] * e.step_x + row_[i] * e.step_y;
-      for (int i = 0; i < kBlocksAcross; ++i) e.block[i] = 4 * i * e.step_x;
       if (!kFlat) sink_.samples.Fill(steps_, k, dx, dy);
     }
   }
@@ -135,7 +134,10 @@ class LargeTriangles {
   /// A row of blocks at a time.
   HWY_INLINE void DrawNarrow(const Bounds& rect) {
     std::int32_t row[3];
-    for (int k = 0; k < 3; ++k) row[k] = std::int32_t(edge_[k].first) + (rect.y0 & ~3) * edge_[k].step_y;
+    for (int k = 0; k < 3; ++k) {
+      row[k] = std::int32_t(edge_[k].first) + (rect.y0 & ~3) * edge_[k].step_y;
+      for (int i = 0; i < kBlocksAcross; ++i) edge_[k].block[i] = 4 * i * edge_[k].step_x;
+    }
     for (std::int32_t by = rect.y0 / 4; by <= rect.y1 / 4; ++by) {
       const BlockRow blocks = FindBlocks(rect, row);
       const std::uint64_t full = 4 * by + 4 <= sink_.height ? blocks.full : 0;
