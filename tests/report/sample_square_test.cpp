@@ -97,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(SampleSquare, SquareOfEveryKind, testing::ValuesIn(all_
 
 TEST_P(SquareOfEveryKind, MeetsAndContainsAsRationalArithmeticSays) {
   std::size_t missed = 0, contained = 0, touched = 0;
-  for (std::uint64_t seed = 0; seed < seeds(6); ++seed) {
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
     Random random(seed + 70);
     const Scene scene = scene_of(random_mesh(GetParam(), 12, seed));
     const Surfaces surfaces(scene);
