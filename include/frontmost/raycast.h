@@ -34,8 +34,8 @@ class RayIndex {
 
   /// Follows the triangles to where they are in `surfaces`: those of the same scene after its vertices or instances
   /// have moved. Answers are to the bit those of a new index; what is kept is the order of triangles and boxes, so that
-  /// queries grow slower the less of the old neighbourhoods is left. O(n) in parallel, a fraction of the time of a new
-  /// index, which is made where `surfaces` has triangles to meet that this one does not hold.
+  /// queries grow slower the less of the old neighbourhoods is left. O(n) in parallel, about a third of the time of a
+  /// new index, which is made where `surfaces` has triangles to meet that this one does not hold.
   void refit(const Surfaces& surfaces, const Execution& execution = {});
 
   /// Triangles that a ray can meet: those with finite corners, no two the same.
