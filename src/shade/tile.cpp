@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/prefetch.h"
+
 namespace frontmost::shading {
 
 TileWork::TileWork(const TriangleSource& source, const Visible& visible, SampleUse use, const Colorist& colorist)
@@ -41,7 +43,7 @@ bool TileWork::find_seen(std::size_t row, int width, int y) {
     const PrimitiveId* plane = visible_.primitives.data() + row + std::size_t(s) * visible_.view.pixel_count();
     // The same row of the next tile: steps of a row are too long for the processor to foresee.
     constexpr int line = 64 / sizeof(PrimitiveId);
-    for (int x = 0; x < tile_width; x += line) __builtin_prefetch(plane + tile_width + x);
+    for (int x = 0; x < tile_width; x += line) prefetch_line(plane + tile_width + x);
     for (int x = 0; x < width; ++x) ids[x] &= plane[x];
   }
   PrimitiveId all = no_primitive;

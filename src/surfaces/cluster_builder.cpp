@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/prefetch.h"
 #include "surfaces/cluster_set.h"
 #include "surfaces/spatial_order.h"
 
@@ -159,10 +160,10 @@ class PartBuilder {
     constexpr std::size_t kCornersAhead = 48, kPositionsAhead = 24;
     if (i + kCornersAhead >= end) return;
     const PrimitiveId far = source_.order[i + kCornersAhead], near = source_.order[i + kPositionsAhead];
-    __builtin_prefetch(&(placed_.holds(far) ? placed_ : place_of(far)).corners(far));
+    prefetch_line(&(placed_.holds(far) ? placed_ : place_of(far)).corners(far));
     const Placed placed = placed_.holds(near) ? placed_ : place_of(near);
     const glm::uvec3& corners = placed.corners(near);
-    for (int k = 0; k < 3; ++k) __builtin_prefetch(&placed.positions[corners[k]]);
+    for (int k = 0; k < 3; ++k) prefetch_line(&placed.positions[corners[k]]);
   }
 
   /// World-space corners. \returns whether all of them are finite.

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/prefetch.h"
 #include "shade/bit_set.h"
 
 namespace frontmost::shading {
@@ -168,10 +169,10 @@ class Smoother {
   /// The corners of a bucket lie all over the mesh: asks for what they and their facets read, well ahead.
   void prefetch(const std::uint32_t* corners, std::uint32_t i, std::uint32_t count) const {
     constexpr std::uint32_t kTrianglesAhead = 32, kPositionsAhead = 16;
-    if (i + kTrianglesAhead < count) __builtin_prefetch(&mesh_.triangles[corners[i + kTrianglesAhead] / 3]);
+    if (i + kTrianglesAhead < count) prefetch_line(&mesh_.triangles[corners[i + kTrianglesAhead] / 3]);
     if (i + kPositionsAhead >= count) return;
     const glm::uvec3& triangle = mesh_.triangles[corners[i + kPositionsAhead] / 3];
-    for (int k = 0; k < 3; ++k) __builtin_prefetch(&mesh_.positions[triangle[k]]);
+    for (int k = 0; k < 3; ++k) prefetch_line(&mesh_.positions[triangle[k]]);
   }
 
   void smooth_bucket(std::size_t bucket);

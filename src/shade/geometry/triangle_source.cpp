@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/prefetch.h"
 #include "shade/geometry/geometry.h"
 
 namespace frontmost::shading {
@@ -70,14 +71,14 @@ void TriangleSource::set_up(std::span<const NewTriangle> triangles, std::vector<
   const Placement* placement = &placements_.front();
   for (const NewTriangle& t : triangles) {
     placement = &placement_with(t.id, *placement);
-    __builtin_prefetch(&placement->mesh->triangles[t.id - placement->first]);
+    prefetch_line(&placement->mesh->triangles[t.id - placement->first]);
     const CornerNormals& smooth = smooth_[placement->mesh_number];
-    if (!smooth.empty()) __builtin_prefetch(&smooth[t.id - placement->first]);
+    if (!smooth.empty()) prefetch_line(&smooth[t.id - placement->first]);
   }
   for (const NewTriangle& t : triangles) {
     placement = &placement_with(t.id, *placement);
     const glm::uvec3& corners = placement->mesh->triangles[t.id - placement->first];
-    for (int k = 0; k < 3; ++k) __builtin_prefetch(&placement->mesh->positions[corners[k]]);
+    for (int k = 0; k < 3; ++k) prefetch_line(&placement->mesh->positions[corners[k]]);
   }
   for (const NewTriangle& t : triangles) {
     placement = &placement_with(t.id, *placement);
