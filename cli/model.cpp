@@ -2,7 +2,9 @@
 #include "cli/model.h"
 
 #include <fmt/format.h>
+#include <frontmost/curved.h>
 #include <frontmost/io.h>
+#include <frontmost/tessellate.h>
 
 #include "cli/console.h"
 
@@ -28,6 +30,11 @@ void show_warnings(const std::vector<std::string>& warnings, const RunSettings& 
   if (warnings.size() > warnings_shown) {
     complain(fmt::format("warning: and {} more like these; --json lists them", warnings.size() - warnings_shown));
   }
+}
+
+std::optional<Scene> tessellated(const Scene& scene, const ViewSettings& settings, const View& view) {
+  if (!settings.tessellation_error || !has_curved(scene)) return std::nullopt;
+  return tessellate(scene, view, *settings.tessellation_error);
 }
 
 }  // namespace frontmost::cli

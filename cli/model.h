@@ -14,5 +14,7 @@ namespace frontmost::cli {
 [[nodiscard]] Scene load_model(const Settings& settings, const Execution& execution, Progress& progress);
 /// The same of warnings alone.
 void show_warnings(const std::vector<std::string>& warnings, const RunSettings& run, Progress& progress);
+/// The scene with its curved meshes cut for `view`, where --tessellation-error says how finely; none otherwise.
+[[nodiscard]] std::optional<Scene> tessellated(const Scene& scene, const ViewSettings& settings, const View& view);
 
 }  // namespace frontmost::cli

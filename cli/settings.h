@@ -49,6 +49,7 @@ struct ViewSettings {
   std::optional<glm::ivec2> resolution;
   Culling culling = Culling::none;
   std::optional<int> samples;
+  std::optional<double> tessellation_error;  ///< pixels
   DepthSettings depth;
 };
 

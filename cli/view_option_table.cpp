@@ -129,6 +129,13 @@ constexpr Option table[] = {
      }},
     {"cull", 0, "none|back|front|both", "Leave out triangles that face this way.", Group::grid, views,
      [](Settings& s, const Given& g) { s.view.culling = g.choice<Culling>(); }},
+    {"tessellation-error", 0, "PIXELS",
+     "Cut spheres and patches into triangles within that many pixels of the surface. Without it the method raycast "
+     "meets the surfaces themselves, and others draw the triangles of the model.",
+     Group::grid, for_render | for_compare,
+     [](Settings& s, const Given& g) {
+       s.view.tessellation_error = g.number({1e-3, 1e3});
+     }},
 };
 
 }  // namespace

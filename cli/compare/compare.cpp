@@ -40,8 +40,10 @@ int run_compare(const Settings& settings) {
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
   const Scene scene = load_model(settings, execution, progress);
-  const Surfaces surfaces(scene, execution);
-  Comparisons all{settings, surfaces, runs.front().answer.visible.view, {}, {}};
+  const View& view = runs.front().answer.visible.view;
+  const std::optional<Scene> cut = tessellated(scene, settings.view, view);
+  const Surfaces surfaces(cut ? *cut : scene, execution);
+  Comparisons all{settings, surfaces, view, {}, {}};
   for (MethodRun& run : runs) {
     const Visible& reference = all.methods.empty() ? run.answer.visible : all.methods.front().run.answer.visible;
     Agreement agreement = agreement_of(run, reference, surfaces, execution);

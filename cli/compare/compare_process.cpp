@@ -129,13 +129,15 @@ MethodRun run_here(const ComparedMethod& method, const Settings& settings) {
   const Execution execution = execution_for(settings.run, progress);
   StageClock clock;
   const Scene scene = clock.time("load", [&] { return load(settings.model, settings.load, execution); });
-  const Surfaces surfaces = clock.time("surfaces", [&] { return Surfaces(scene, execution); });
-  const View view = resolve_view(settings.view, surfaces);
+  std::optional<Surfaces> surfaces(clock.time("surfaces", [&] { return Surfaces(scene, execution); }));
+  const View view = resolve_view(settings.view, *surfaces);
+  const std::optional<Scene> cut = tessellated(scene, settings.view, view);
+  if (cut) surfaces.emplace(*cut, execution);
   MethodRun run;
   const std::uint64_t before = start_counting_memory();
   for (int i = 0; i < settings.compare.runs; ++i) {
     run.answer = {};  // as a first run would find it
-    run.answer = method.answer(surfaces, view, execution, clock);
+    run.answer = method.answer(*surfaces, view, execution, clock);
     if (i == 0) run.peak_bytes = std::max(status_bytes("VmHWM"), before) - before;
   }
   run.stages = clock.stages();

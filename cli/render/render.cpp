@@ -10,6 +10,8 @@
 #include "cli/failure.h"
 #include "cli/interruption.h"
 #include "cli/model.h"
+#include "cli/rays/ray_indexes.h"
+#include "cli/rays/render_curved.h"
 #include "cli/render/jobs.h"
 #include "cli/render/json_report.h"
 #include "cli/render/render_stream.h"
@@ -29,12 +31,6 @@ void check_method(const Settings& settings, const std::vector<Job>& jobs) {
   for (const Job& job : jobs) {
     if (job.view.depth.is_used) throw UsageError("--method: a depth buffer's state needs the method zbuffer");
   }
-}
-
-/// Cameras that only rays can serve, and shadows by rays.
-bool needs_index(const Job& job) {
-  return job.view.camera_model != CameraModel::pinhole ||
-         (job.output.shading == Shading::lit && job.output.shadows == Shadows::rays);
 }
 
 /// Without any result asked for, the picture goes to the terminal, if there is one.
@@ -99,7 +95,7 @@ struct Run {
   Stopwatch whole;
 };
 
-int render_whole(const Run& run) {
+int render_whole(Run& run) {
   const Settings& settings = run.settings;
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
@@ -110,15 +106,17 @@ int render_whole(const Run& run) {
   watch = {};
   const Surfaces surfaces(scene, execution);
   timings.surfaces = watch.milliseconds();
-  std::optional<RayIndex> index;
+  watch = {};
+  plan_curved(scene, settings.run, run.jobs);
+  const RayIndexes indexes(run.jobs, settings.run, surfaces, execution);
+  if (indexes.triangles || indexes.curved) timings.index = watch.milliseconds();
   const bool by_rays = settings.run.method == Method::raycast;
-  if (by_rays || std::any_of(run.jobs.begin(), run.jobs.end(), needs_index)) {
-    watch = {};
-    index.emplace(surfaces, execution);
-    timings.index = watch.milliseconds();
-  }
   const std::vector<ViewResult> results = render_all(run.jobs, settings, progress, [&](const Job& job) {
-    return render_view(job, {surfaces, settings.run, execution, run.on_terminal, index ? &*index : nullptr, by_rays});
+    const RayIndex* index = indexes.triangles ? &*indexes.triangles : nullptr;
+    const RenderContext context{surfaces, settings.run, execution, run.on_terminal, index, by_rays};
+    if (job.view.tessellation_error) return render_tessellated_view(job, context);
+    if (meets_curved(job, settings.run, scene)) return render_curved_view(job, context, *indexes.curved);
+    return render_view(job, context);
   });
   timings.total = run.whole.milliseconds();
   report(settings, {surfaces.primitive_count(), scene.warnings}, results, timings);

@@ -58,14 +58,6 @@ View find_view(const Job& job, const View& of_nothing, Stream& stream, const Exe
   return resolve_view(job.view, Surfaces(outline, execution));
 }
 
-std::vector<View> views_of(const View& view, const SightPlan& plan) {
-  std::vector<View> views;
-  if (plan.picture_samples) views.push_back(view);
-  if (plan.picture_samples) views.back().samples = *plan.picture_samples;
-  if (plan.maps && !plan.shared) views.push_back(view);
-  return views;
-}
-
 }  // namespace
 
 ViewResult render_streamed_view(const Job& job, Stream& stream, const StreamContext& context) {

@@ -136,13 +136,21 @@ SightPlan plan_sights(const Job& job, const RunSettings& run, bool keep_picture,
   return plan;
 }
 
+std::vector<View> views_of(const View& view, const SightPlan& plan) {
+  std::vector<View> views;
+  if (plan.picture_samples) views.push_back(view);
+  if (plan.picture_samples) views.back().samples = *plan.picture_samples;
+  if (plan.maps && !plan.shared) views.push_back(view);
+  return views;
+}
+
 ViewResult render_view(const Job& job, const RenderContext& context) {
   if (job.view.camera_model != CameraModel::pinhole) return render_around(job, context);
   ViewResult result;
   result.name = job.name;
   result.depth = job.view.depth;
-  result.view = resolve_view(job.view, context.surfaces);
-  result.target = job.view.focal_point.value_or(focal_point_of(result.view, context.surfaces));
+  result.view = resolve_view(job.view, context.framed_surfaces());
+  result.target = job.view.focal_point.value_or(focal_point_of(result.view, context.framed_surfaces()));
   finish_view(job, context, look(job, context, result), result);
   return result;
 }
@@ -161,7 +169,7 @@ void finish_view(const Job& job, const RenderContext& context, const Sights& sig
       bitmap = shade_bitmap(context.surfaces, visible, options, context.execution);
     else
       picture = shade(context.surfaces, visible, options, context.execution);
-    result.timings.shade = watch.milliseconds();
+    result.timings.shade += watch.milliseconds();
   }
   const auto map = [&](OutputKind kind) { return map_of(kind, job, context, sights); };
   write_files({job, context.execution, map, picture ? &*picture : nullptr, bitmap ? &*bitmap : nullptr}, result);

@@ -72,6 +72,10 @@ struct RenderContext {
   bool keep_picture = false;
   const RayIndex* index = nullptr;  ///< where the method, the cameras or the shadows need one
   bool by_rays = false;             ///< the method is raycast
+  /// Whose bounds the camera goes by, where it is not these surfaces'.
+  const Surfaces* framed = nullptr;
+
+  [[nodiscard]] const Surfaces& framed_surfaces() const { return framed ? *framed : surfaces; }
 };
 
 /// The visibility that a view needs: of the picture, of the maps, or of both at once.
@@ -94,6 +98,9 @@ struct SightPlan {
 };
 /// Of `view` only the size counts.
 [[nodiscard]] SightPlan plan_sights(const Job& job, const RunSettings& run, bool keep_picture, const View& view);
+
+/// The views that are to be looked at: the picture's first, and the maps' where they are not the same.
+[[nodiscard]] std::vector<View> views_of(const View& view, const SightPlan& plan);
 
 /// What comes after looking: shades, and writes every file of the job. `result` holds the view.
 void finish_view(const Job& job, const RenderContext& context, const Sights& sights, ViewResult& result);

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/rays/render_curved.h"
+
+#include <frontmost/shade.h>
+
+#include <algorithm>
+
+#include "cli/model.h"
+#include "cli/rays/ray_indexes.h"
+#include "cli/stopwatch.h"
+#include "cli/view_options.h"
+
+namespace frontmost::cli {
+namespace {
+
+CurvedVisible timed(const CurvedIndex& index, const View& view, const RenderContext& context,
+                    std::vector<double>& times) {
+  for (int i = 1;; ++i) {
+    const Stopwatch watch;
+    CurvedVisible seen = raycast(index, view, context.execution);
+    times.push_back(watch.milliseconds());
+    if (i >= context.run.repeat) return seen;
+  }
+}
+
+std::vector<CurvedVisible> cast(const CurvedIndex& index, const std::vector<View>& views, const RenderContext& context,
+                                ViewResult& result) {
+  std::vector<CurvedVisible> seen;
+  seen.push_back(timed(index, views.front(), context, result.timings.visible));
+  if (views.size() > 1) {
+    std::vector<double> times;
+    seen.push_back(timed(index, views.back(), context, times));
+    result.timings.visible_maps = times.front();
+  }
+  return seen;
+}
+
+/// What the key light sees of the surfaces themselves.
+std::optional<Visible> seen_by_light(const Job& job, const RenderContext& context, const CurvedIndex& index,
+                                     const Visible& picture) {
+  const Scene& scene = context.surfaces.scene();
+  if (job.output.shading != Shading::lit || job.output.shadows == Shadows::off) return std::nullopt;
+  const std::optional<View> light = key_light_view(picture, context.surfaces.bounds(), scene.up, context.execution);
+  if (!light) return std::nullopt;
+  return raycast(index, *light, context.execution).visible;
+}
+
+}  // namespace
+
+ViewResult render_curved_view(const Job& job, const RenderContext& context, const CurvedIndex& index) {
+  ViewResult result;
+  result.name = job.name;
+  result.view = resolve_view(job.view, context.surfaces);
+  result.target = job.view.focal_point.value_or(focal_point_of(result.view, context.surfaces));
+  const SightPlan plan = plan_sights(job, context.run, context.keep_picture, result.view);
+  const std::vector<View> views = views_of(result.view, plan);
+  const std::vector<CurvedVisible> seen = cast(index, views, context, result);
+  const Stopwatch watch;
+  const Facets shown = facets(index, context.surfaces.scene(), seen);
+  const Surfaces surfaces(shown.scene, context.execution);
+
+  Sights sights;
+  sights.shared = plan.shared;
+  std::optional<Visible> light;
+  if (plan.picture_samples) {
+    sights.picture = Sight{shown.visible.front(), {}};
+    light = seen_by_light(job, context, index, sights.picture->visible);
+  }
+  if (plan.maps && !plan.shared) sights.maps = Sight{shown.visible.back(), {}};
+  sights.stream_ids = &shown.elements;
+  if (light) sights.seen_by_light = &*light;
+  result.timings.shade = watch.milliseconds();
+  finish_view(job, {surfaces, context.run, context.execution, context.keep_picture}, sights, result);
+  return result;
+}
+
+ViewResult render_tessellated_view(const Job& job, const RenderContext& context) {
+  const View view = resolve_view(job.view, context.surfaces);
+  const std::optional<Scene> scene = tessellated(context.surfaces.scene(), job.view, view);
+  const Surfaces surfaces(*scene, context.execution);
+  std::optional<RayIndex> index;
+  if (needs_index(job, context.run)) index.emplace(surfaces, context.execution);
+  return render_view(job, {surfaces, context.run, context.execution, context.keep_picture, index ? &*index : nullptr,
+                           context.by_rays, &context.surfaces});
+}
+
+}  // namespace frontmost::cli
