@@ -26,8 +26,9 @@ Isa isa_from(const Given& given) {
 constexpr Option table[] = {
     {"batch", 0, "FILE", "Render many views: a JSON file of views and outputs (see frontmost(1)).", Group::run,
      for_render, [](Settings& s, const Given& g) { s.run.batch = g.string(); }},
-    {"method", 0, "zbuffer|raycast", "Visibility method; the z-buffer by default.", Group::run, for_render,
-     [](Settings& s, const Given& g) { s.run.method = g.choice<Method>(); }},
+    {"method", 0, "zbuffer|raycast|abuffer",
+     "Visibility method; by default the z-buffer, and the A-buffer for what can be seen through.", Group::run,
+     for_render, [](Settings& s, const Given& g) { s.run.method = g.choice<Method>(); }},
     {"stream", 0, "", "Read binary STL and PLY piece by piece: files larger than memory, with the same bytes.",
      Group::run, for_render, [](Settings& s, const Given&) { s.run.stream = true; }},
     {"threads", 0, "N", "Threads, 1 to 1024; 0, the default, is one per core.", Group::run, everywhere,

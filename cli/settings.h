@@ -48,7 +48,7 @@ struct ViewSettings {
   std::optional<double> near, far;
   std::optional<glm::ivec2> resolution;
   Culling culling = Culling::none;
-  std::optional<int> samples;
+  std::optional<int> samples;                ///< 1 to 16, or 64 of the A-buffer
   std::optional<double> tessellation_error;  ///< pixels
   DepthSettings depth;
 };
@@ -56,6 +56,7 @@ struct ViewSettings {
 /// One file to write.
 enum class OutputKind : std::uint8_t {
   picture,
+  deep,
   depth,
   ray_distance,
   window_depth,
@@ -66,7 +67,7 @@ enum class OutputKind : std::uint8_t {
 };
 struct OutputRequest {
   OutputKind kind;
-  std::string path;  ///< "-" is standard output; may hold {model} and {view}
+  std::string path;  ///< "-" is standard output; may hold {model}, {view} and {layer}
 };
 
 /// What to write and how it looks.
@@ -84,14 +85,15 @@ struct OutputSettings {
   bool background_given = false;
   Shadows shadows = Shadows::map;
   float opacity = 1;
+  std::optional<int> layers;  ///< how many of the nearest go to files with {layer} in their names
 };
 
 /// How visibility is found.
-enum class Method : std::uint8_t { zbuffer, raycast };
+enum class Method : std::uint8_t { zbuffer, raycast, abuffer };
 
 /// How to run.
 struct RunSettings {
-  Method method = Method::zbuffer;
+  std::optional<Method> method;  ///< none: the z-buffer, and the A-buffer for pictures that need it
   int threads = 0;
   Isa isa = Isa::best;
   int repeat = 1;

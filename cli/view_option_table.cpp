@@ -117,9 +117,14 @@ constexpr Option table[] = {
 
     {"resolution", 0, "W,H", "Pixels, 1 to 16384 each; 1920,1080 by default.", Group::grid, views,
      [](Settings& s, const Given& g) { s.view.resolution = resolution_from(g.text); }},
-    {"samples", 0, "1|2|4|8|16",
-     "Samples per pixel of the picture; 4 by default, fewer above 8192 x 8192. Maps have one, at pixel centres.",
-     Group::grid, for_render, [](Settings& s, const Given& g) { s.view.samples = 1 << g.choice<int>(); }},
+    {"samples", 0, "1|2|4|8|16|64",
+     "Samples per pixel of the picture; 4 by default, fewer above 8192 x 8192; 64 with --method abuffer. Maps have "
+     "one, at pixel centres.",
+     Group::grid, for_render,
+     [](Settings& s, const Given& g) {
+       constexpr int counts[] = {1, 2, 4, 8, 16, 64};
+       s.view.samples = counts[g.choice<int>()];
+     }},
     {"near", 0, "DISTANCE", "Nearest distance that is drawn; fitted to the model by default.", Group::grid, views,
      [](Settings& s, const Given& g) { s.view.near = g.number(); }},
     {"far", 0, "DISTANCE", "Farthest distance that is drawn, or inf; fitted to the model by default.", Group::grid,

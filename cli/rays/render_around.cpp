@@ -69,6 +69,7 @@ Image map_of(OutputKind kind, const Job& job, const Surfaces& surfaces, const Ra
     case OutputKind::object_ids: return ids(surfaces, around, IdKind::object);
     case OutputKind::material_ids: return ids(surfaces, around, IdKind::material);
     case OutputKind::picture:
+    case OutputKind::deep:
     case OutputKind::window_depth:
     case OutputKind::normals: break;  // refused before, or not a map
   }
@@ -89,7 +90,8 @@ Seen summary(const Surfaces& surfaces, const RangeScan& around) {
 void check_outputs_around(const Job& job) {
   if (job.view.camera_model == CameraModel::pinhole) return;
   if (wants(job, OutputKind::normals)) throw UsageError("--camera-model and --normals exclude each other");
-  if (job.output.opacity < 1) throw UsageError("--camera-model and --opacity exclude each other");
+  if (job.output.opacity < 1 || !job.layer_files.empty() || wants(job, OutputKind::deep))
+    throw UsageError("--camera-model excludes --opacity, --layers and --deep");
   if (job.output.shading == Shading::uv) throw UsageError("--camera-model and --shading uv exclude each other");
 }
 

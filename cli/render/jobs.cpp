@@ -7,20 +7,34 @@
 
 #include "cli/failure.h"
 #include "cli/rays/render_around.h"
+#include "cli/render/output_writer.h"
 #include "cli/view_options.h"
 
 namespace frontmost::cli {
 namespace {
 
+/// What only the A-buffer, or only a method that knows layers, can do.
+void check_layers(const Settings& settings, const Job& job) {
+  const bool has_layers = !job.layer_files.empty() || wants(job, OutputKind::deep);
+  if (settings.run.stream && (has_layers || settings.output.opacity < 1))
+    throw UsageError("--stream keeps only what is nearest; it excludes --opacity, --layers and --deep");
+  const bool names_other = settings.run.method && *settings.run.method != Method::abuffer;
+  if ((names_other || settings.view.depth.is_used) && (has_layers || settings.output.opacity < 1))
+    throw UsageError(
+        "--opacity, --layers and --deep need the A-buffer: another method or a depth buffer excludes them");
+  if (settings.view.samples == 64 && settings.run.method != Method::abuffer)
+    throw UsageError("--samples 64 needs --method abuffer");
+}
+
 Job make_job(const Settings& settings) {
   check_view_settings(settings.view);
   if (settings.run.stream && settings.view.depth.is_used)
     throw UsageError("--stream draws with the default depth test; it excludes the options of a depth buffer");
-  if (settings.run.stream && settings.output.opacity < 1)
-    throw UsageError("--stream keeps only what is nearest; it excludes --opacity");
-  Job job{view_name(settings.view), settings.view, settings.output, {}, {}};
+  Job job{view_name(settings.view), settings.view, settings.output, {}, {}, {}};
   const std::string model = model_name(settings.model);
-  job.files = plan_outputs(settings.output, model, job.name);
+  for (OutputFile& file : plan_outputs(settings.output, model, job.name))
+    (file.layer ? job.layer_files : job.files).push_back(std::move(file));
+  check_layers(settings, job);
   check_outputs_around(job);
   if (settings.run.stream && settings.view.camera_model != CameraModel::pinhole)
     throw UsageError("--stream and --camera-model exclude each other");
@@ -39,7 +53,8 @@ Job make_job(const Settings& settings) {
 void check_files(const std::vector<Job>& jobs, const Settings& settings) {
   std::vector<std::string> paths, references;
   for (const Job& job : jobs) {
-    for (const OutputFile& file : job.files) paths.push_back(file.path);
+    for (const auto* files : {&job.files, &job.layer_files})
+      for (const OutputFile& file : *files) paths.push_back(file.path);
     if (job.difference.empty()) continue;
     paths.push_back(job.difference);
     references.push_back(*job.output.reference);

@@ -15,8 +15,8 @@ struct Job {
   std::string name;  ///< {view}
   ViewSettings view;
   OutputSettings output;
-  std::vector<OutputFile> files;
-  std::string difference;  ///< where the difference to the reference goes; empty: no reference
+  std::vector<OutputFile> files, layer_files;  ///< of what is nearest, or of all; of single layers
+  std::string difference;                      ///< where the difference to the reference goes; empty: no reference
 };
 
 /// One job, or those of the batch file; all files have been checked.

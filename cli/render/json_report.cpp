@@ -92,14 +92,23 @@ Json view_json(const ViewResult& result) {
   return json;
 }
 
+/// That of the picture.
+std::string_view method_name(const Settings& settings, const ModelFacts& model) {
+  constexpr std::string_view names[] = {"zbuffer", "raycast", "abuffer"};
+  const bool is_seen_through = model.lets_light_through && !settings.view.depth.is_used;
+  const bool needs_layers = is_seen_through || settings.output.opacity < 1 || settings.output.layers;
+  return names[int(settings.run.method.value_or(needs_layers ? Method::abuffer : Method::zbuffer))];
+}
+
 }  // namespace
 
 Json render_json(const Settings& settings, const ModelFacts& model, const std::vector<ViewResult>& views,
                  const RunTimings& timings) {
   const auto is_pinhole = [](const ViewResult& view) { return view.camera_model == CameraModel::pinhole; };
-  const bool by_rays = settings.run.method == Method::raycast || std::none_of(views.begin(), views.end(), is_pinhole);
-  Json json = {
-      {"frontmost", FRONTMOST_VERSION}, {"model", settings.model}, {"method", by_rays ? "raycast" : "zbuffer"}};
+  const bool by_rays = std::none_of(views.begin(), views.end(), is_pinhole);
+  Json json = {{"frontmost", FRONTMOST_VERSION},
+               {"model", settings.model},
+               {"method", by_rays ? "raycast" : method_name(settings, model)}};
   json["isa"] = name(settings.run.isa);
   if (!settings.more_models.empty()) json["more_models"] = settings.more_models;
   json["triangles"] = model.triangles;

@@ -41,6 +41,13 @@ constexpr Option table[] = {
      Group::output, written, [](Settings& s, const Given& g) { add_ids(s, g.text); }},
     {"normals", 0, "FILE", "World-space normals.", Group::output, written,
      [](Settings& s, const Given& g) { add_file(s, OutputKind::normals, g.text); }},
+    {"deep", 0, "FILE", "All that is seen through, as a deep OpenEXR file: colour, depth and ids of every layer.",
+     Group::output, written, [](Settings& s, const Given& g) { add_file(s, OutputKind::deep, g.text); }},
+    {"layers", 0, "K", "Write the K nearest layers, 1 to 1024: a file of each where its name holds {layer}, from 0.",
+     Group::output, for_render,
+     [](Settings& s, const Given& g) {
+       s.output.layers = g.integer({1, 1024});
+     }},
     {"format", 0, "png|exr|pfm|npy", "Format of files whose names do not say, such as -.", Group::output, for_render,
      [](Settings& s, const Given& g) { s.output.format = g.choice<ImageFormat>(); }},
     {"bits", 0, "8|16", "Bits a channel of PNG pictures; 8 by default.", Group::output, for_render,

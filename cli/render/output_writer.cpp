@@ -63,7 +63,18 @@ void save_image(const Picture& image, const OutputFile& file, const OutputSource
   result.timings.save += watch.milliseconds();
 }
 
+void write_deep(const OutputFile& file, const OutputSource& source, ViewResult& result) {
+  const DeepImage image = source.deep();
+  Result& one = result.results.emplace_back(Result{std::string(kind_name(OutputKind::deep)), file.path, {}});
+  if (source.job.output.hash) one.hash = content_hash(image);
+  const Stopwatch watch;
+  const WritingFiles writing;
+  save(image, file.path, source.execution);
+  result.timings.save += watch.milliseconds();
+}
+
 void write(const OutputFile& file, const OutputSource& source, ViewResult& result) {
+  if (file.kinds.front() == OutputKind::deep) return write_deep(file, source, result);
   // A picture on its own is saved as it is: copying one takes as long as finding what is visible.
   const bool as_it_is = is_picture_alone(file) && file.format != ImageFormat::pfm;
   if (as_it_is && source.bitmap) {

@@ -17,6 +17,7 @@ struct OutputSource {
   std::function<Image(OutputKind)> map;  ///< makes the map of a kind, where a file asks for it
   const Image* picture;                  ///< null where none was asked for, or only its bytes are needed
   const Bitmap* bitmap = nullptr;        ///< the picture where that is enough: see needs_only_bitmap()
+  std::function<DeepImage()> deep = {};  ///< makes the deep image, where a file asks for it
 };
 
 /// Whether the job writes this.

@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kind_names[] = {"picture", "depth",         "ray_distance", "window_depth",
-                                           "normals", "primitive_ids", "object_ids",   "material_ids"};
+constexpr std::string_view kind_names[] = {"picture", "deep",          "depth",      "ray_distance", "window_depth",
+                                           "normals", "primitive_ids", "object_ids", "material_ids"};
 constexpr std::string_view format_names[] = {"png", "exr", "pfm", "npy"};
 
 std::optional<ImageFormat> format_by_suffix(const std::string& path) {
@@ -34,6 +34,8 @@ void check_format(OutputKind kind, ImageFormat format, const std::string& path) 
   if (is_id(kind) && format == ImageFormat::pfm) {
     throw UsageError(fmt::format("{}: PFM cannot hold ids; use .exr, .npy or .png", path));
   }
+  if (kind == OutputKind::deep && format != ImageFormat::exr)
+    throw UsageError(fmt::format("{}: only .exr files are deep", path));
 }
 
 ImageFormat format_of(const OutputSettings& settings, const std::string& path) {
@@ -43,15 +45,20 @@ ImageFormat format_of(const OutputSettings& settings, const std::string& path) {
   throw UsageError(fmt::format("{}: the suffix names no format; use .png, .exr, .pfm or .npy, or --format", path));
 }
 
-void add(std::vector<OutputFile>& files, OutputKind kind, const std::string& path, ImageFormat format) {
+void add(std::vector<OutputFile>& files, const OutputFile& added) {
+  const std::string& path = added.path;
+  const OutputKind kind = added.kinds.front();
   const auto same = std::find_if(files.begin(), files.end(), [&](const OutputFile& file) { return file.path == path; });
   if (same == files.end()) {
-    files.push_back({path, format, {kind}});
+    files.push_back(added);
     return;
   }
-  const bool shareable = format == ImageFormat::exr && path != "-";
+  const auto is_deep = [](OutputKind k) { return k == OutputKind::deep; };
+  const bool shareable = added.format == ImageFormat::exr && path != "-" && added.layer == same->layer &&
+                         !is_deep(kind) && !is_deep(same->kinds.front());
   if (!shareable || std::find(same->kinds.begin(), same->kinds.end(), kind) != same->kinds.end()) {
-    throw UsageError(fmt::format("{}: two outputs have this name; only .exr files hold several", path));
+    throw UsageError(
+        fmt::format("{}: two outputs have this name; only .exr files that are not deep hold several", path));
   }
   same->kinds.push_back(kind);
 }
@@ -61,6 +68,14 @@ std::string canonical(const std::string& path) {
   std::error_code ignored;
   const fs::path result = fs::weakly_canonical(fs::absolute(path, ignored), ignored);
   return result.empty() ? path : result.string();
+}
+
+/// Whether it makes a file of every layer. Others with {layer} in their names are refused by fill_template().
+bool is_of_layers(const OutputRequest& request) {
+  if (request.path.find("{layer}") == std::string::npos) return false;
+  if (request.kind == OutputKind::deep || request.kind == OutputKind::window_depth)
+    throw UsageError(fmt::format("{}: there is one such file, not one of every layer", request.path));
+  return true;
 }
 
 void check_writable(const std::string& path) {
@@ -93,7 +108,8 @@ std::string model_name(const std::string& model) {
   return stem.empty() ? "model" : stem;
 }
 
-std::string fill_template(std::string_view text, const std::string& model, const std::string& view) {
+std::string fill_template(std::string_view text, const std::string& model, const std::string& view,
+                          std::optional<int> layer) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -105,10 +121,14 @@ std::string fill_template(std::string_view text, const std::string& model, const
     } else {
       const std::size_t end = c == '{' ? text.find('}', i) : std::string_view::npos;
       const std::string_view word = end == std::string_view::npos ? "" : text.substr(i + 1, end - i - 1);
-      if (word != "model" && word != "view") {
-        throw UsageError(fmt::format("{}: {{model}} and {{view}} are known here, {{{{ and }}}} are braces", text));
+      if (word == "layer" && layer) {
+        result += std::to_string(*layer);
+      } else if (word == "model" || word == "view") {
+        result += word == "model" ? model : view;
+      } else {
+        throw UsageError(fmt::format(
+            "{}: {{model}} and {{view}} are known here, and {{layer}} with --layers; {{{{ and }}}} are braces", text));
       }
-      result += word == "model" ? model : view;
       i = end;
     }
   }
@@ -118,12 +138,22 @@ std::string fill_template(std::string_view text, const std::string& model, const
 std::vector<OutputFile> plan_outputs(const OutputSettings& settings, const std::string& model,
                                      const std::string& view) {
   std::vector<OutputFile> files;
+  bool any_layers = false;
   for (const OutputRequest& request : settings.files) {
-    const std::string path = request.path == "-" ? "-" : fill_template(request.path, model, view);
-    const ImageFormat format = format_of(settings, path);
-    check_format(request.kind, format, path);
-    add(files, request.kind, path, format);
+    const auto plan = [&](std::optional<int> layer) {
+      const std::string path = request.path == "-" ? "-" : fill_template(request.path, model, view, layer);
+      const ImageFormat format = format_of(settings, path);
+      check_format(request.kind, format, path);
+      add(files, {path, format, {request.kind}, layer});
+    };
+    if (!settings.layers || !is_of_layers(request)) {
+      plan(std::nullopt);
+      continue;
+    }
+    any_layers = true;
+    for (int layer = 0; layer < *settings.layers; ++layer) plan(layer);
   }
+  if (settings.layers && !any_layers) throw UsageError("--layers: no output has {layer} in its name");
   return files;
 }
 

@@ -5,6 +5,7 @@
 
 #include <frontmost/io.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct OutputFile {
   std::string path;  ///< "-" is standard output
   ImageFormat format;
   std::vector<OutputKind> kinds;
+  std::optional<int> layer = std::nullopt;  ///< of --layers
 };
 
 /// "picture", "depth", "ray_distance", "normals", "primitive_ids", ...: as reports and hashes name them.
@@ -24,10 +26,12 @@ struct OutputFile {
 
 /// What {model} stands for: the file's name without folder and suffix.
 [[nodiscard]] std::string model_name(const std::string& model);
-/// Replaces {model} and {view}; {{ and }} are braces. \throws UsageError on any other name in braces.
-[[nodiscard]] std::string fill_template(std::string_view text, const std::string& model, const std::string& view);
+/// Replaces {model} and {view}, and {layer} where there is one; {{ and }} are braces.
+/// \throws UsageError on any other name in braces.
+[[nodiscard]] std::string fill_template(std::string_view text, const std::string& model, const std::string& view,
+                                        std::optional<int> layer = std::nullopt);
 
-/// The files of one view.
+/// The files of one view. Names with {layer} make one for every layer.
 /// \throws UsageError for an unknown suffix, a format that cannot hold the kind, and a name taken twice
 [[nodiscard]] std::vector<OutputFile> plan_outputs(const OutputSettings& settings, const std::string& model,
                                                    const std::string& view);

@@ -22,15 +22,23 @@ namespace frontmost::cli {
 namespace {
 
 bool has_result(const Settings& settings, const std::vector<Job>& jobs) {
-  const auto makes = [](const Job& job) { return !job.files.empty() || job.output.reference || job.output.hash; };
+  const auto makes = [](const Job& job) {
+    return !job.files.empty() || !job.layer_files.empty() || job.output.reference || job.output.hash;
+  };
   return settings.run.json || std::any_of(jobs.begin(), jobs.end(), makes);
 }
 
 void check_method(const Settings& settings, const std::vector<Job>& jobs) {
-  if (settings.run.method == Method::zbuffer) return;
+  if (settings.run.method.value_or(Method::zbuffer) == Method::zbuffer) return;
   for (const Job& job : jobs) {
     if (job.view.depth.is_used) throw UsageError("--method: a depth buffer's state needs the method zbuffer");
   }
+}
+
+/// Whether some material is masked or blended.
+bool lets_light_through(const Scene& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const Material& m) { return m.alpha != Material::Alpha::opaque; });
 }
 
 /// Without any result asked for, the picture goes to the terminal, if there is one.
@@ -119,7 +127,7 @@ int render_whole(Run& run) {
     return render_view(job, context);
   });
   timings.total = run.whole.milliseconds();
-  report(settings, {surfaces.primitive_count(), scene.warnings}, results, timings);
+  report(settings, {surfaces.primitive_count(), scene.warnings, lets_light_through(scene)}, results, timings);
   return status_of(results);
 }
 
@@ -143,7 +151,7 @@ int render_stream(const Run& run) {
     return result;
   });
   timings.total = run.whole.milliseconds();
-  report(settings, {stream.triangle_count(), stream.scene().warnings, stream.passes()}, results, timings);
+  report(settings, {stream.triangle_count(), stream.scene().warnings, false, stream.passes()}, results, timings);
   return status_of(results);
 }
 
@@ -151,7 +159,7 @@ int render_stream(const Run& run) {
 
 int run_render(const Settings& settings) {
   if (settings.run.stream && settings.run.repeat > 1) throw UsageError("--stream and --repeat exclude each other");
-  if (settings.run.stream && settings.run.method != Method::zbuffer)
+  if (settings.run.stream && settings.run.method.value_or(Method::zbuffer) != Method::zbuffer)
     throw UsageError("--stream draws with --method zbuffer only");
   Run run{settings, plan_jobs(settings), false, {}};
   check_method(settings, run.jobs);

@@ -4,38 +4,45 @@
 #include "cli/render/render_view.h"
 
 #include <fmt/format.h>
+#include <frontmost/abuffer.h>
 #include <frontmost/shade.h>
+
+#include <algorithm>
 
 #include "cli/rays/render_around.h"
 #include "cli/rays/sight.h"
 #include "cli/render/blank.h"
 #include "cli/render/output_writer.h"
 #include "cli/render/reference.h"
+#include "cli/render/render_layers.h"
 #include "cli/stopwatch.h"
 #include "cli/view_options.h"
 
 namespace frontmost::cli {
 namespace {
 
-/// Samples of a picture that asks for none: 4, or as many as the largest pictures can have.
-int default_samples(const View& view) {
-  int samples = 4;
-  while (view.pixel_count() * std::size_t(samples) > most_samples) samples /= 2;
-  return samples;
+bool wants_picture(const Job& job, bool keep_picture) {
+  return wants(job, OutputKind::picture) || keep_picture || job.output.reference;
 }
 
+bool is_map(OutputKind kind) { return kind != OutputKind::picture && kind != OutputKind::deep; }
+
 bool wants_maps(const Job& job) {
-  for (const OutputFile& file : job.files) {
-    if (file.kinds.size() > 1 || file.kinds.front() != OutputKind::picture) return true;
-  }
-  return false;
+  return std::any_of(job.files.begin(), job.files.end(),
+                     [](const OutputFile& file) { return std::any_of(file.kinds.begin(), file.kinds.end(), is_map); });
+}
+
+Sight look_once(const View& view, const DepthSettings& depth, const RenderContext& context) {
+  if (context.run.method == Method::abuffer)
+    return {visible_layers(context.surfaces, view, 1, {}, context.execution).front(), {}};
+  const RayIndex* index = context.by_rays ? context.index : nullptr;
+  return look_at_surfaces(context.surfaces, view, depth, context.execution, index);
 }
 
 Sight timed(const View& view, const DepthSettings& depth, const RenderContext& context, std::vector<double>& times) {
   for (int i = 1;; ++i) {
     const Stopwatch watch;
-    const RayIndex* index = context.by_rays ? context.index : nullptr;
-    Sight sight = look_at_surfaces(context.surfaces, view, depth, context.execution, index);
+    Sight sight = look_once(view, depth, context);
     times.push_back(watch.milliseconds());
     if (i >= context.run.repeat) return sight;
   }
@@ -89,6 +96,26 @@ Image window_depth_image(const Sight& sight) {
   return image;
 }
 
+void warn_if_blank(const Sights& sights, const RenderContext& context, ViewResult& result) {
+  if (!is_blank(sights.any())) return;
+  // Of a stream, the triangles that are not seen are gone.
+  const std::string reason =
+      sights.blank_reason ? sights.blank_reason->clause() : blank_reason(context.surfaces, result.view);
+  result.warnings.push_back("nothing is in view: " + reason);
+}
+
+/// 64 sub-samples are the A-buffer's; what is visible has one.
+bool is_fine(const Job& job) { return job.view.samples == 64; }
+
+}  // namespace
+
+int picture_samples(const Job& job, const View& view) {
+  if (is_fine(job)) return 1;
+  int samples = 4;
+  while (view.pixel_count() * std::size_t(samples) > most_samples) samples /= 2;
+  return job.view.samples.value_or(samples);
+}
+
 Image map_of(OutputKind kind, const Job& job, const RenderContext& context, const Sights& sights) {
   const Visible& visible = sights.for_maps().visible;
   const float background = job.output.background_depth;
@@ -100,20 +127,11 @@ Image map_of(OutputKind kind, const Job& job, const RenderContext& context, cons
     case OutputKind::primitive_ids: return primitive_ids(context, sights);
     case OutputKind::object_ids: return id_image(context.surfaces, visible, IdKind::object);
     case OutputKind::material_ids: return id_image(context.surfaces, visible, IdKind::material);
-    case OutputKind::picture: break;  // not a map
+    case OutputKind::picture:
+    case OutputKind::deep: break;  // not a map
   }
   return {};
 }
-
-void warn_if_blank(const Sights& sights, const RenderContext& context, ViewResult& result) {
-  if (!is_blank(sights.any())) return;
-  // Of a stream, the triangles that are not seen are gone.
-  const std::string reason =
-      sights.blank_reason ? sights.blank_reason->clause() : blank_reason(context.surfaces, result.view);
-  result.warnings.push_back("nothing is in view: " + reason);
-}
-
-}  // namespace
 
 void count_objects(const Surfaces& surfaces, const Image& objects, Seen& seen) {
   const std::vector<Instance>& instances = surfaces.scene().instances;
@@ -128,9 +146,9 @@ void count_objects(const Surfaces& surfaces, const Image& objects, Seen& seen) {
 }
 
 SightPlan plan_sights(const Job& job, const RunSettings& run, bool keep_picture, const View& view) {
-  const bool picture = wants(job, OutputKind::picture) || keep_picture || job.output.reference;
+  const bool picture = wants_picture(job, keep_picture) || wants(job, OutputKind::deep);
   SightPlan plan;
-  if (picture) plan.picture_samples = job.view.samples.value_or(default_samples(view));
+  if (picture) plan.picture_samples = picture_samples(job, view);
   plan.maps = wants_maps(job) || job.output.hash || run.json || !picture;
   plan.shared = plan.maps && plan.picture_samples == 1;
   return plan;
@@ -152,19 +170,30 @@ ViewResult render_view(const Job& job, const RenderContext& context) {
   result.view = resolve_view(job.view, context.framed_surfaces());
   result.target = job.view.focal_point.value_or(focal_point_of(result.view, context.framed_surfaces()));
   finish_view(job, context, look(job, context, result), result);
+  write_layers(job, context, result);
   return result;
+}
+
+ShadeOptions shade_options(const Job& job, const RenderContext& context) {
+  ShadeOptions options{job.output.shading, job.output.background, job.output.shadows, nullptr,
+                       context.index,      job.output.opacity};
+  const std::optional<Method> method = context.run.method;
+  if (method) options.see_through = *method == Method::abuffer ? SeeThrough::always : SeeThrough::never;
+  if (job.view.depth.is_used) options.see_through = SeeThrough::never;  // what its state lets through
+  if (is_fine(job)) options.grid = 8;
+  return options;
 }
 
 void finish_view(const Job& job, const RenderContext& context, const Sights& sights, ViewResult& result) {
   if (job.output.hash || context.run.json) result.seen = summary(context.surfaces, sights);
   warn_if_blank(sights, context, result);
+  ShadeOptions options = shade_options(job, context);
+  options.seen_by_light = sights.seen_by_light;
   std::optional<Image> picture;
   std::optional<Bitmap> bitmap;
-  if (sights.picture) {
+  if (wants_picture(job, context.keep_picture)) {
     const Stopwatch watch;
     const Visible& visible = sights.picture->visible;
-    const ShadeOptions options{job.output.shading,   job.output.background, job.output.shadows,
-                               sights.seen_by_light, context.index,         job.output.opacity};
     if (!context.keep_picture && needs_only_bitmap(job))
       bitmap = shade_bitmap(context.surfaces, visible, options, context.execution);
     else
@@ -172,7 +201,8 @@ void finish_view(const Job& job, const RenderContext& context, const Sights& sig
     result.timings.shade += watch.milliseconds();
   }
   const auto map = [&](OutputKind kind) { return map_of(kind, job, context, sights); };
-  write_files({job, context.execution, map, picture ? &*picture : nullptr, bitmap ? &*bitmap : nullptr}, result);
+  const auto deep = [&] { return shade_deep(context.surfaces, sights.picture->visible, options, context.execution); };
+  write_files({job, context.execution, map, picture ? &*picture : nullptr, bitmap ? &*bitmap : nullptr, deep}, result);
   if (job.output.reference) result.reference = compare_with_reference(*picture, job, context.execution);
   if (context.keep_picture) result.picture = std::move(picture);
 }

@@ -105,6 +105,13 @@ struct SightPlan {
 /// What comes after looking: shades, and writes every file of the job. `result` holds the view.
 void finish_view(const Job& job, const RenderContext& context, const Sights& sights, ViewResult& result);
 
+/// Samples of a picture: without an answer of the user's 4, or as many as the largest pictures can have.
+[[nodiscard]] int picture_samples(const Job& job, const View& view);
+/// What a picture of the job looks like. The light is to be found by shade() itself.
+[[nodiscard]] ShadeOptions shade_options(const Job& job, const RenderContext& context);
+/// One channel, or a few that belong together.
+[[nodiscard]] Image map_of(OutputKind kind, const Job& job, const RenderContext& context, const Sights& sights);
+
 /// Fills in the pixels, of all and of each object, from a map of objects.
 void count_objects(const Surfaces& surfaces, const Image& objects, Seen& seen);
 

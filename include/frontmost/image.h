@@ -34,6 +34,14 @@ struct Image {
   [[nodiscard]] Channel* find(std::string_view name);
 };
 
+/// A picture with any number of samples a pixel, one behind the other: what OpenEXR calls deep.
+struct DeepImage {
+  int width = 0, height = 0;
+  /// By pixel, rows top to bottom, where its samples begin; and the end of the last. Nearer samples come first.
+  Buffer<std::uint64_t> first;
+  std::vector<Channel> channels;  ///< one value a sample
+};
+
 /// A picture as screens and 8-bit PNG want it: sRGB, straight alpha, four bytes a pixel (R, G, B, A), rows top to
 /// bottom.
 struct Bitmap {
@@ -44,6 +52,9 @@ struct Bitmap {
 /// \throws Error bad_argument for sizes that are not 1 to 2^20, no channels, two of one name, or planes that do not
 /// have width * height values.
 void validate(const Image& image);
+/// \throws Error bad_argument for such sizes and channels, beginnings that are not one a pixel and one more or that
+/// decrease, or channels that have not one value a sample.
+void validate(const DeepImage& image);
 /// \throws Error bad_argument for such sizes, or bytes that are not four a pixel.
 void validate(const Bitmap& bitmap);
 
@@ -65,6 +76,8 @@ enum class IdKind : std::uint8_t { primitive, object, material };
 
 /// A hash of size, channel names and values; equal for equal images on every machine.
 [[nodiscard]] std::uint64_t content_hash(const Image& image);
+/// The same, with the number of samples of every pixel.
+[[nodiscard]] std::uint64_t content_hash(const DeepImage& image);
 
 /// How far an image is from a reference. The difference of two pixels is the greatest of their channels':
 /// - R, G, B, A: the step between them as 8-bit sRGB with straight alpha, over 255; an image without A is opaque;

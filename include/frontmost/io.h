@@ -54,6 +54,10 @@ void save(const Image& image, const std::string& path, const SaveOptions& option
 void save(const Bitmap& bitmap, const std::string& path, const SaveOptions& options = {},
           const Execution& execution = {});
 
+/// Writes a deep OpenEXR file (one part of type deepscanline, compression ZIPS, 32-bit floats and uint32), whatever the
+/// name. \throws Error file_unwritable; bad_argument as validate() does; unsupported in a build without OpenEXR.
+void save(const DeepImage& image, const std::string& path, const Execution& execution = {});
+
 /// Writes text, such as an SVG drawing, with the same care: whole or not at all. \throws Error file_unwritable.
 void save_text(std::string_view text, const std::string& path);
 

@@ -29,6 +29,13 @@ enum class Shadows : std::uint8_t {
   rays,  ///< a ray to the light from every sample, exact: as sharp as the picture
 };
 
+/// How much of what lies one behind another a picture shows. Of lit, flat and normals alone.
+enum class SeeThrough : std::uint8_t {
+  where_needed,  ///< every layer, by the A-buffer, of scenes in which something can be seen through
+  always,        ///< the same of opaque scenes: for the A-buffer's sub-samples
+  never,         ///< what is visible, over the background
+};
+
 struct ShadeOptions {
   Shading shading = Shading::lit;
   /// sRGB, 0 to 1. None: transparent.
@@ -41,6 +48,9 @@ struct ShadeOptions {
   const RayIndex* index = nullptr;
   /// Multiplies the opacity of everything, 0 to 1. Lit, flat and normals alone.
   float opacity = 1.0f;
+  SeeThrough see_through = SeeThrough::where_needed;
+  /// The A-buffer's sub-samples: as AbufferOptions::grid.
+  int grid = 0;
 };
 
 /// The view in which the key light sees what `visible` shows: whatever is visible in it is lit, the rest in shadow. For
@@ -51,9 +61,9 @@ struct ShadeOptions {
 
 /// A picture with channels R, G, B, A. Shades once per pixel and primitive and averages over the samples.
 /// `visible` says what is front-most. Where materials are masked or blended, or the opacity is below 1, the A-buffer of
-/// the same view says all that is seen through, in true order at every sample.
-/// \throws Error bad_argument for an opacity out of range.
-/// Borrows everything; O(covered pixels). The bytes do not depend on threads or instruction set.
+/// the same view says all that is seen through, in true order at every sample. \throws Error bad_argument for an
+/// opacity or a grid out of range. Borrows everything; O(covered pixels). The bytes do not depend on threads or
+/// instruction set.
 [[nodiscard]] Image shade(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
                           const Execution& execution = {});
 
@@ -61,6 +71,16 @@ struct ShadeOptions {
 /// as large: for pictures that are only to be shown or saved.
 [[nodiscard]] Bitmap shade_bitmap(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
                                   const Execution& execution = {});
+
+/// Every fragment of the picture by itself, nearest first: channels R, G, B (multiplied by A), A, Z and ZBack, and the
+/// integers "primitive", "object" and "material". A is the part that a sample hides of what those before it leave
+/// uncovered, at the options' sub-samples: laid over each other with nothing in between, samples give the picture that
+/// shade() gives over a transparent background, edges included. Z is the planar depth at the pixel's centre; surfaces
+/// have no thickness, so ZBack is the same.
+/// O(fragments * sub-samples); 36 bytes a fragment, twice that while it works. Options as for shade().
+/// \throws Error as shade() and abuffer() do, unsupported for other shadings than lit, flat and normals.
+[[nodiscard]] DeepImage shade_deep(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
+                                   const Execution& execution = {});
 
 /// A picture of a scan, one sample a pixel: `lit` by a light at the eye, from base colours without textures and the
 /// planes of the triangles, all opaque and without shadows; `normals` are those of the planes, and `depth` is the

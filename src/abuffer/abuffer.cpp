@@ -9,6 +9,7 @@
 
 #include "abuffer/fragment_lists.h"
 #include "abuffer/options.h"
+#include "abuffer/tile_parts.h"
 #include "abuffer/visit_tiles.h"
 #include "base/float_environment.h"
 
@@ -47,46 +48,9 @@ Opacities::Opacities(const Surfaces& surfaces, float opacity, const Execution& e
 
 }  // namespace abuffer_detail
 
-namespace {
-
-using namespace abuffer_detail;
-
-/// The lists of one job, until all are known.
-struct Part {
-  Rectangle pixels;
-  JobLists lists;
-};
-
-/// Where each pixel's list begins, and the end of the last.
-Buffer<std::uint64_t> beginnings(const View& view, const std::vector<Part>& parts) {
-  Buffer<std::uint64_t> first(view.pixel_count() + 1, 0);
-  for (const Part& part : parts)
-    for (int y = 0; y < part.pixels.height; ++y)
-      for (int x = 0; x < part.pixels.width; ++x) {
-        const std::size_t at =
-            std::size_t(part.pixels.y + y) * std::size_t(view.width) + std::size_t(part.pixels.x + x);
-        const std::size_t p = std::size_t(y) * std::size_t(part.pixels.width) + std::size_t(x);
-        first[at + 1] = part.lists.begin[p + 1] - part.lists.begin[p];
-      }
-  for (std::size_t i = 0; i < view.pixel_count(); ++i) first[i + 1] += first[i];
-  return first;
-}
-
-void copy_rows(const Part& part, FragmentLists& lists) {
-  const auto width = std::size_t(part.pixels.width);
-  for (std::size_t y = 0; y < std::size_t(part.pixels.height); ++y) {
-    const std::size_t at =
-        (std::size_t(part.pixels.y) + y) * std::size_t(lists.view.width) + std::size_t(part.pixels.x);
-    const std::uint32_t begin = part.lists.begin[y * width], end = part.lists.begin[(y + 1) * width];
-    std::copy(part.lists.fragments.begin() + begin, part.lists.fragments.begin() + end,
-              lists.fragments.begin() + std::ptrdiff_t(lists.first[at]));
-  }
-}
-
-}  // namespace
-
 FragmentLists abuffer(const Surfaces& surfaces, const View& view, const AbufferOptions& options,
                       const Execution& execution) {
+  using namespace abuffer_detail;
   validate(view);
   validate(options);
   const IeeeScope ieee;
@@ -95,13 +59,14 @@ FragmentLists abuffer(const Surfaces& surfaces, const View& view, const AbufferO
   const FrameInput frame{plan, pattern, false, execution.isa};
   const Opacities opacities(surfaces, options.opacity, execution);
   std::mutex mutex;
-  std::vector<Part> parts;
+  std::vector<TilePart<Fragment>> parts;
   std::uint64_t total = 0;
   visit_tiles(frame, execution, [&](const TileJob& job, TileScratch* scratch) {
     if (!scratch) return;
-    Part part{job.pixels, list_fragments(frame, job, *scratch, opacities)};
+    JobLists made = list_fragments(frame, job, *scratch, opacities);
+    TilePart<Fragment> part{job.pixels, std::move(made.begin), std::move(made.fragments)};
     const std::lock_guard lock(mutex);
-    total += part.lists.fragments.size();
+    total += part.items.size();
     if (total > max_fragments) throw Error(ErrorCode::limit_exceeded, "abuffer: more than 2^30 fragments");
     parts.push_back(std::move(part));
   });
@@ -110,8 +75,8 @@ FragmentLists abuffer(const Surfaces& surfaces, const View& view, const AbufferO
   constexpr std::size_t kGrain = 16;
   parallel_for(execution, parts.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      copy_rows(parts[i], lists);
-      parts[i].lists = {};
+      place_items(parts[i], view, lists.first, [&](std::uint64_t at, const Fragment& f) { lists.fragments[at] = f; });
+      parts[i] = {};
     }
   });
   return lists;

@@ -61,6 +61,7 @@ class Lister {
 
 JobLists list_fragments(const FrameInput& frame, const TileJob& job, TileScratch& scratch, const Opacities& opacities) {
   JobLists lists;
+  lists.scratch = &scratch;
   lists.fragments.reserve(scratch.arrived.count);
   lists.numbers.reserve(scratch.arrived.count);
   lists.begin.push_back(0);

@@ -14,6 +14,7 @@ class FragmentPass {
  public:
   FragmentPass(const Surfaces& surfaces, const View& view, const AbufferOptions& options, const Execution& execution);
 
+  [[nodiscard]] float opacity() const { return opacity_; }
   /// Positions of the masks' bits in 1/256 pixel.
   [[nodiscard]] std::vector<glm::ivec2> samples() const { return pattern_.positions(); }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontmost/image.h"
 
+#include <algorithm>
 #include <cstring>
+#include <set>
 #include <utility>
 
 namespace frontmost {
@@ -38,6 +40,26 @@ void validate_size(int width, int height) {
     fail(std::to_string(width) + " x " + std::to_string(height) + " pixels");
 }
 
+/// Size, names and values, of a plain image or a deep one.
+template <class AnyImage>
+void add(WordHash& hash, const AnyImage& image) {
+  hash.add(std::uint32_t(image.width));
+  hash.add(std::uint32_t(image.height));
+  for (const Channel& channel : image.channels) {
+    hash.add(channel.name);
+    hash.add(std::uint32_t(channel.is_integer()));
+    if (channel.is_integer()) {
+      for (const std::uint32_t id : channel.integers()) hash.add(id);
+    } else {
+      for (const float number : channel.floats()) hash.add(number);
+    }
+  }
+}
+
+std::size_t value_count(const Channel& channel) {
+  return channel.is_integer() ? channel.integers().size() : channel.floats().size();
+}
+
 }  // namespace
 
 const Channel* Image::find(std::string_view name) const {
@@ -53,9 +75,23 @@ void validate(const Image& image) {
   if (image.channels.empty()) fail("no channels");
   const std::size_t count = std::size_t(image.width) * std::size_t(image.height);
   for (const Channel& channel : image.channels) {
-    if ((channel.is_integer() ? channel.integers().size() : channel.floats().size()) != count)
-      fail("channel " + channel.name + " does not have width x height values");
+    if (value_count(channel) != count) fail("channel " + channel.name + " does not have width x height values");
     if (image.find(channel.name) != &channel) fail("two channels are named " + channel.name);
+  }
+}
+
+void validate(const DeepImage& image) {
+  validate_size(image.width, image.height);
+  if (image.channels.empty()) fail("no channels");
+  const std::size_t pixels = std::size_t(image.width) * std::size_t(image.height);
+  if (image.first.size() != pixels + 1 || image.first[0] != 0 ||
+      !std::is_sorted(image.first.begin(), image.first.end()))
+    fail("a deep image's beginnings are not one a pixel and the end, in order");
+  std::set<std::string_view> names;
+  for (const Channel& channel : image.channels) {
+    if (value_count(channel) != image.first[pixels])
+      fail("channel " + channel.name + " does not have one value a sample");
+    if (!names.insert(channel.name).second) fail("two channels are named " + channel.name);
   }
 }
 
@@ -67,17 +103,14 @@ void validate(const Bitmap& bitmap) {
 
 std::uint64_t content_hash(const Image& image) {
   WordHash hash;
-  hash.add(std::uint32_t(image.width));
-  hash.add(std::uint32_t(image.height));
-  for (const Channel& channel : image.channels) {
-    hash.add(channel.name);
-    hash.add(std::uint32_t(channel.is_integer()));
-    if (channel.is_integer()) {
-      for (const std::uint32_t id : channel.integers()) hash.add(id);
-    } else {
-      for (const float number : channel.floats()) hash.add(number);
-    }
-  }
+  add(hash, image);
+  return hash.value();
+}
+
+std::uint64_t content_hash(const DeepImage& image) {
+  WordHash hash;
+  add(hash, image);
+  for (std::size_t i = 1; i < image.first.size(); ++i) hash.add(std::uint32_t(image.first[i] - image.first[i - 1]));
   return hash.value();
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "abuffer/fragment_pass.h"
+#include "base/pool.h"
 #include "shade/canvas.h"
 
 namespace frontmost::shading {
@@ -12,7 +13,28 @@ namespace frontmost::shading {
 [[nodiscard]] BitSet seen_primitives(const Surfaces& surfaces, const abuffer_detail::FragmentPass& pass,
                                      const Execution& execution);
 
-/// Shades every such fragment once, at the middle of what it covers of the pixel, and lays them over each other.
+/// Colours the fragments of one rectangle after another, from several threads at once.
+class LayerShader {
+ public:
+  LayerShader(const TriangleSource& source, const abuffer_detail::FragmentPass& pass,
+              const FragmentShader::Colorist& colorist);
+
+  /// Sets colors[numbers[i]], straight alpha, for every fragment i: shaded at the middle of what it covers of its
+  /// pixel.
+  void shade(const abuffer_detail::Rectangle& pixels, const abuffer_detail::JobLists& lists,
+             std::span<const std::uint32_t> numbers, std::vector<glm::vec4>& colors) const;
+
+ private:
+  /// The mean of the covered positions, in pixels.
+  [[nodiscard]] glm::vec2 centroid(std::uint64_t mask) const;
+
+  const TriangleSource& source_;
+  const FragmentShader::Colorist& colorist_;
+  std::vector<glm::vec2> positions_;  ///< of the masks' bits
+  mutable Pool<FragmentShader> shaders_;
+};
+
+/// Shades every such fragment once and lays them over each other.
 void shade_layers(const TriangleSource& source, const abuffer_detail::FragmentPass& pass, const Painting& painting,
                   const Execution& execution);
 

@@ -8,9 +8,9 @@
 #include "base/parallel.h"
 #include "shade/canvas.h"
 #include "shade/colorists.h"
-#include "shade/shadow/key_shadows.h"
-#include "shade/layers.h"
+#include "shade/deep_layers.h"
 #include "shade/opaque_part.h"
+#include "shade/shadow/key_shadows.h"
 
 namespace frontmost {
 namespace {
@@ -25,10 +25,12 @@ struct Layer {
 };
 
 void shade_tile(const TileRectangle& tile, TileWork& work, const Painting& painting) {
-  if (work.shade(tile))
+  if (work.shade(tile)) {
+    if (painting.opacity != 1.0f) work.fade(painting.opacity);
     painting.canvas.write(tile, work.pixels(), painting.background);
-  else
+  } else {
     painting.canvas.fill(tile, painting.background);
+  }
 }
 
 /// Shades all tiles, one row of tiles to a thread at a time.
@@ -118,7 +120,7 @@ class Materials {
  public:
   Materials(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options, const Execution& execution)
       : visible_(visible) {
-    if (has_see_through(surfaces.scene()) || options.opacity < 1.0f)
+    if (wants_layers(surfaces.scene(), options))
       make_layers(surfaces, options, execution);
     else
       make_front(surfaces, execution);
@@ -132,6 +134,13 @@ class Materials {
     return {offsets.begin(), offsets.end()};
   }
 
+  /// Precondition: with layers.
+  [[nodiscard]] DeepImage deep(const Surfaces& surfaces, const FragmentShader::Colorist& colorist,
+                               const Execution& execution) const {
+    const LayerShader shader(*triangles_->source, *layers_, colorist);
+    return deep_layers(surfaces, visible_.view, *layers_, shader, execution);
+  }
+
   void paint(const Painting& painting, const Execution& execution) const {
     if (layers_)
       shade_layers(*triangles_->source, *layers_, painting, execution);
@@ -140,6 +149,11 @@ class Materials {
   }
 
  private:
+  static bool wants_layers(const Scene& scene, const ShadeOptions& options) {
+    if (options.see_through != SeeThrough::where_needed) return options.see_through == SeeThrough::always;
+    return has_see_through(scene) || options.opacity < 1.0f;
+  }
+
   void make_front(const Surfaces& surfaces, const Execution& execution) {
     const auto large = [&] { return large_primitives(surfaces.primitive_count(), visible_, execution); };
     const auto seen = [&] { return seen_primitives(surfaces, visible_, execution); };
@@ -148,7 +162,7 @@ class Materials {
   }
 
   void make_layers(const Surfaces& surfaces, const ShadeOptions& options, const Execution& execution) {
-    layers_.emplace(surfaces, visible_.view, AbufferOptions{0, options.opacity}, execution);
+    layers_.emplace(surfaces, visible_.view, AbufferOptions{options.grid, options.opacity}, execution);
     const auto seen = [&] { return seen_primitives(surfaces, *layers_, execution); };
     triangles_.emplace(surfaces, visible_.view, seen, execution);
     table_.emplace(surfaces.scene(), needed_materials(surfaces, seen, execution), execution);
@@ -172,21 +186,23 @@ bool shows_materials(Shading shading) {
   return shading == Shading::lit || shading == Shading::flat || shading == Shading::normals;
 }
 
-void paint_materials(const Request& request, Canvas& canvas) {
-  const Surfaces& surfaces = request.surfaces;
-  const Visible& visible = request.visible;
+/// Calls use(colorist) with what colours fragments as the options say. Precondition: shows_materials().
+template <class Use>
+void with_colorist(const Request& request, const Materials& materials, const Use& use) {
   const ShadeOptions& options = request.options;
-  const Execution& execution = request.execution;
-  const Materials materials(surfaces, visible, options, execution);
-  const auto paint = [&](const TileWork::Colorist& colorist) {
-    materials.paint({canvas, colorist, background_color(options)}, execution);
-  };
-  if (options.shading == Shading::flat) return paint(Flat{materials.table()});
-  if (options.shading == Shading::normals) return paint(Normals{materials.table()});
-  const Lighting lighting = lighting_for(visible.view, surfaces.scene().up);
+  if (options.shading == Shading::flat) return use(FragmentShader::Colorist(Flat{materials.table()}));
+  if (options.shading == Shading::normals) return use(FragmentShader::Colorist(Normals{materials.table()}));
+  const Lighting lighting = lighting_for(request.visible.view, request.surfaces.scene().up);
   const std::vector<glm::ivec2> samples = materials.samples();
-  const KeyShadows shadows({surfaces, visible, options, samples}, lighting.to_key, execution);
-  paint(Lit{materials.table(), lighting, shadows.map(), shadows.rays(), execution.isa});
+  const KeyShadows shadows({request.surfaces, request.visible, options, samples}, lighting.to_key, request.execution);
+  use(FragmentShader::Colorist(Lit{materials.table(), lighting, shadows.map(), shadows.rays(), request.execution.isa}));
+}
+
+void paint_materials(const Request& request, Canvas& canvas) {
+  const Materials materials(request.surfaces, request.visible, request.options, request.execution);
+  with_colorist(request, materials, [&](const FragmentShader::Colorist& colorist) {
+    materials.paint({canvas, colorist, background_color(request.options), request.options.opacity}, request.execution);
+  });
 }
 
 void paint_map(const Request& request, Canvas& canvas) {
@@ -202,9 +218,13 @@ void paint_map(const Request& request, Canvas& canvas) {
   paint(Depths{glm::vec3(visible.view.forward()), range.nearest, range.farthest});
 }
 
+void check_opacity(const ShadeOptions& options) {
+  if (!(options.opacity >= 0.0f && options.opacity <= 1.0f))
+    throw Error(ErrorCode::bad_argument, "shade: opacity: must be 0 to 1");
+}
+
 void paint(const Request& request, Canvas& canvas) {
-  const float opacity = request.options.opacity;
-  if (!(opacity >= 0.0f && opacity <= 1.0f)) throw Error(ErrorCode::bad_argument, "shade: opacity: must be 0 to 1");
+  check_opacity(request.options);
   shows_materials(request.options.shading) ? paint_materials(request, canvas) : paint_map(request, canvas);
 }
 
@@ -221,6 +241,22 @@ Bitmap shade_bitmap(const Surfaces& surfaces, const Visible& visible, const Shad
   BitmapCanvas canvas(visible.view);
   paint({surfaces, visible, options, execution}, canvas);
   return canvas.take();
+}
+
+DeepImage shade_deep(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options,
+                     const Execution& execution) {
+  check_opacity(options);
+  if (!shows_materials(options.shading))
+    throw Error(ErrorCode::unsupported, "shade: deep images are lit, flat, or of normals");
+  ShadeOptions in_layers = options;
+  in_layers.see_through = SeeThrough::always;
+  const Request request{surfaces, visible, in_layers, execution};
+  const Materials materials(surfaces, visible, in_layers, execution);
+  DeepImage image;
+  with_colorist(request, materials, [&](const FragmentShader::Colorist& colorist) {
+    image = materials.deep(surfaces, colorist, execution);
+  });
+  return image;
 }
 
 std::optional<View> key_light_view(const Visible& visible, const Box& bounds, Axis up, const Execution& execution) {

@@ -36,6 +36,10 @@ bool TileWork::shade(const TileRectangle& tile) {
   return true;
 }
 
+void TileWork::fade(float opacity) {
+  for (glm::vec4& pixel : pixels_) pixel *= opacity;
+}
+
 bool TileWork::find_seen(std::size_t row, int width, int y) {
   PrimitiveId ids[tile_width];
   std::fill(std::begin(ids), std::end(ids), no_primitive);

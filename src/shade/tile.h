@@ -28,6 +28,8 @@ class TileWork {
 
   /// Premultiplied sums over the samples of each pixel, row by row of the tile. False where nothing is seen at all.
   bool shade(const TileRectangle& tile);
+  /// Multiplies what is seen by this.
+  void fade(float opacity);
   [[nodiscard]] const std::vector<glm::vec4>& pixels() const { return pixels_; }
 
  private:

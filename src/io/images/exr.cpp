@@ -17,30 +17,11 @@
 
 #include "base/parallel.h"
 #include "io/images/exr_header.h"
+#include "io/images/exr_output.h"
 #include "io/images/formats.h"
 
 namespace frontmost::detail {
 namespace {
-
-/// A file in memory: the library goes back to fill in its table of offsets, which standard output could not.
-class MemoryOutput : public Imf::OStream {
- public:
-  explicit MemoryOutput(const std::string& name) : Imf::OStream(name.c_str()) {}
-
-  void write(const char bytes[], int count) override {
-    const std::size_t end = place_ + std::size_t(count);
-    if (end > bytes_.size()) bytes_.resize(end);
-    std::memcpy(bytes_.data() + place_, bytes, std::size_t(count));
-    place_ = end;
-  }
-  std::uint64_t tellp() override { return place_; }
-  void seekp(std::uint64_t place) override { place_ = std::size_t(place); }
-  [[nodiscard]] std::vector<std::byte>& bytes() { return bytes_; }
-
- private:
-  std::vector<std::byte> bytes_;
-  std::size_t place_ = 0;
-};
 
 class MemoryInput : public Imf::IStream {
  public:
@@ -60,8 +41,6 @@ class MemoryInput : public Imf::IStream {
   std::span<const std::byte> bytes_;
   std::size_t place_ = 0;
 };
-
-Imf::PixelType type_of(const Channel& channel) { return channel.is_integer() ? Imf::UINT : Imf::FLOAT; }
 
 char* plane_of(Channel& channel) {
   return channel.is_integer() ? reinterpret_cast<char*>(channel.integers().data())

@@ -12,6 +12,7 @@ namespace {
 }  // namespace
 
 void save_exr(const Image&, OutputFile& file, const Execution&) { refuse(file.name()); }
+void save_deep_exr(const DeepImage&, OutputFile& file, const Execution&) { refuse(file.name()); }
 Image load_exr(std::span<const std::byte>, const std::string& name) { refuse(name); }
 
 }  // namespace frontmost::detail

@@ -16,6 +16,7 @@ namespace frontmost::detail {
 void save_png(const Image& image, const SaveOptions& options, OutputFile& file, const Execution& execution);
 void save_png(const Bitmap& bitmap, OutputFile& file, const Execution& execution);
 void save_exr(const Image& image, OutputFile& file, const Execution& execution);
+void save_deep_exr(const DeepImage& image, OutputFile& file, const Execution& execution);
 void save_pfm(const Image& image, OutputFile& file);
 void save_npy(const Image& image, OutputFile& file);
 

@@ -73,4 +73,9 @@ void save(const Bitmap& bitmap, const std::string& path, const SaveOptions& opti
   write_file(path, execution, [&](OutputFile& file) { detail::save_png(bitmap, file, execution); });
 }
 
+void save(const DeepImage& image, const std::string& path, const Execution& execution) {
+  validate(image);
+  write_file(path, execution, [&](OutputFile& file) { detail::save_deep_exr(image, file, execution); });
+}
+
 }  // namespace frontmost

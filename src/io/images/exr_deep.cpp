@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Deep OpenEXR: any number of samples a pixel, row by row, each row compressed by itself (ZIPS).
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfDeepFrameBuffer.h>
+#include <OpenEXR/ImfDeepScanLineOutputFile.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfPartType.h>
+
+#include "base/parallel.h"
+#include "io/images/exr_output.h"
+#include "io/images/formats.h"
+
+namespace frontmost::detail {
+namespace {
+
+const char* values_of(const Channel& channel) {
+  return channel.is_integer() ? reinterpret_cast<const char*>(channel.integers().data())
+                              : reinterpret_cast<const char*>(channel.floats().data());
+}
+
+/// One row as the library wants it: how many samples each pixel has, and for every channel where they are.
+class Row {
+ public:
+  explicit Row(const DeepImage& image)
+      : image_(image),
+        counts_(std::size_t(image.width)),
+        pointers_(image.channels.size(), std::vector<const char*>(std::size_t(image.width))) {}
+
+  /// For every row: it is filled anew, and stays where it is.
+  [[nodiscard]] Imf::DeepFrameBuffer frame_buffer() {
+    Imf::DeepFrameBuffer frame;
+    frame.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts_.data()), sizeof counts_[0], 0));
+    for (std::size_t c = 0; c < pointers_.size(); ++c)
+      frame.insert(image_.channels[c].name,
+                   Imf::DeepSlice(type_of(image_.channels[c]), reinterpret_cast<char*>(pointers_[c].data()),
+                                  sizeof(char*), 0, kValueSize));
+    return frame;
+  }
+  void fill(int y) {
+    const std::size_t width = std::size_t(image_.width), row = std::size_t(y) * width;
+    for (std::size_t x = 0; x < width; ++x) {
+      const std::uint64_t begin = image_.first[row + x];
+      counts_[x] = std::uint32_t(image_.first[row + x + 1] - begin);
+      for (std::size_t c = 0; c < pointers_.size(); ++c)
+        pointers_[c][x] = values_of(image_.channels[c]) + begin * kValueSize;
+    }
+  }
+
+ private:
+  static constexpr std::size_t kValueSize = 4;
+  const DeepImage& image_;
+  std::vector<std::uint32_t> counts_;
+  std::vector<std::vector<const char*>> pointers_;  ///< by channel
+};
+
+std::vector<std::byte> encode(const DeepImage& image, const std::string& name, const Execution& execution) {
+  Imf::Header header(image.width, image.height);
+  header.setType(Imf::DEEPSCANLINE);
+  header.compression() = Imf::ZIPS_COMPRESSION;  // of those for deep files the one that makes them smallest
+  for (const Channel& channel : image.channels) header.channels().insert(channel.name, Imf::Channel(type_of(channel)));
+  MemoryOutput memory(name);
+  {
+    Row row(image);
+    Imf::DeepScanLineOutputFile out(memory, header, 0);
+    out.setFrameBuffer(row.frame_buffer());
+    for (int y = 0; y < image.height; ++y) {
+      check_cancelled(execution);
+      row.fill(y);
+      out.writePixels(1);
+    }
+  }
+  return std::move(memory.bytes());
+}
+
+}  // namespace
+
+void save_deep_exr(const DeepImage& image, OutputFile& file, const Execution& execution) {
+  try {
+    file.write(encode(image, file.name(), execution));
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Error(ErrorCode::unsupported, file.name() + ": EXR: " + error.what());
+  }
+}
+
+}  // namespace frontmost::detail

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// What all writers of OpenEXR files need.
+#pragma once
+
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfPixelType.h>
+
+#include <cstring>
+#include <vector>
+
+#include "frontmost/image.h"
+
+namespace frontmost::detail {
+
+/// A file in memory: the library goes back to fill in its table of offsets, which standard output could not.
+class MemoryOutput : public Imf::OStream {
+ public:
+  explicit MemoryOutput(const std::string& name) : Imf::OStream(name.c_str()) {}
+
+  void write(const char bytes[], int count) override {
+    const std::size_t end = place_ + std::size_t(count);
+    if (end > bytes_.size()) bytes_.resize(end);
+    std::memcpy(bytes_.data() + place_, bytes, std::size_t(count));
+    place_ = end;
+  }
+  std::uint64_t tellp() override { return place_; }
+  void seekp(std::uint64_t place) override { place_ = std::size_t(place); }
+  [[nodiscard]] std::vector<std::byte>& bytes() { return bytes_; }
+
+ private:
+  std::vector<std::byte> bytes_;
+  std::size_t place_ = 0;
+};
+
+[[nodiscard]] inline Imf::PixelType type_of(const Channel& channel) {
+  return channel.is_integer() ? Imf::UINT : Imf::FLOAT;
+}
+
+}  // namespace frontmost::detail

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+// Layers: single ones, and all of them as a deep image, which laid over each other are the picture again.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "frontmost/abuffer.h"
+#include "frontmost/shade.h"
+#include "frontmost/zbuffer.h"
+#include "shade/deep_layers.h"
+#include "shade/support.h"
+
+namespace frontmost {
+namespace {
+
+using namespace test;
+
+/// Samples laid over each other, nearest first, as programs flatten deep images.
+glm::dvec4 flattened(const DeepImage& image, std::size_t pixel) {
+  const char* const names[] = {"R", "G", "B", "A"};
+  glm::dvec4 sum(0);
+  for (std::uint64_t i = image.first[pixel]; i < image.first[pixel + 1]; ++i) {
+    const double left = 1 - sum.a;
+    for (int k = 0; k < 4; ++k) {
+      const auto is_named = [&](const Channel& c) { return c.name == names[k]; };
+      sum[k] += left * double(std::find_if(image.channels.begin(), image.channels.end(), is_named)->floats()[i]);
+    }
+  }
+  return sum;
+}
+
+const Channel& channel(const DeepImage& image, std::string_view name) {
+  for (const Channel& c : image.channels)
+    if (c.name == name) return c;
+  throw std::out_of_range(std::string(name));
+}
+
+/// A see-through red square before a larger opaque blue one.
+Scene two_squares(float opacity) {
+  Material red = colored({1, 0, 0, opacity});
+  red.alpha = Material::Alpha::blend;
+  Scene scene = scene_of(square(), red);
+  scene.materials.push_back(colored({0, 0, 1, 1}));
+  scene.meshes.push_back(square());
+  scene.meshes[1].material_ids = {1};
+  scene.instances.push_back({"behind", 1, glm::dmat4(1.5)});
+  scene.instances[1].world_from_mesh[3] = {0, 0, -1, 1};
+  return scene;
+}
+
+const ShadeOptions flat_over_nothing{.shading = Shading::flat, .background = std::nullopt};
+
+TEST(DeepImage, HoldsEveryFragmentThatShows) {
+  const Scene scene = two_squares(0.25f);
+  const Surfaces surfaces(scene);
+  const Visible visible = zbuffer(surfaces, front_view(64, 4));
+  const DeepImage image = shade_deep(surfaces, visible, flat_over_nothing);
+  validate(image);
+  const auto samples = [&](int x, int y) {
+    const std::size_t pixel = std::size_t(y) * 64 + std::size_t(x);
+    return image.first[pixel + 1] - image.first[pixel];
+  };
+  EXPECT_EQ(samples(2, 2), 0u);
+  EXPECT_EQ(samples(10, 32), 1u);
+  ASSERT_EQ(samples(40, 30), 2u);
+  const std::uint64_t i = image.first[30 * 64 + 40];
+  EXPECT_FLOAT_EQ(channel(image, "Z").floats()[i], 10);
+  EXPECT_FLOAT_EQ(channel(image, "ZBack").floats()[i], 10);
+  EXPECT_FLOAT_EQ(channel(image, "Z").floats()[i + 1], 11);
+  EXPECT_EQ(channel(image, "A").floats()[i], 0.25f);
+  EXPECT_EQ(channel(image, "R").floats()[i], 0.25f);
+  EXPECT_EQ(channel(image, "B").floats()[i + 1], 1.0f);
+  EXPECT_EQ(channel(image, "object").integers()[i], 0u);
+  EXPECT_EQ(channel(image, "object").integers()[i + 1], 1u);
+  EXPECT_EQ(channel(image, "material").integers()[i + 1], 1u);
+  EXPECT_LT(channel(image, "primitive").integers()[i], 2u);
+}
+
+TEST(DeepImage, FlattensToThePicture) {
+  const Scene scene = builtin("gallery");
+  const Surfaces surfaces(scene);
+  View view = frame(surfaces, 160, 90);
+  for (const int samples : {1, 4, 16})
+    for (const float opacity : {1.0f, 0.4f}) {
+      view.samples = samples;
+      ShadeOptions options{.background = std::nullopt, .opacity = opacity};
+      const Visible visible = zbuffer(surfaces, view);
+      const DeepImage deep = shade_deep(surfaces, visible, options);
+      options.see_through = SeeThrough::always;
+      const Image picture = shade(surfaces, visible, options);
+      double worst = 0;
+      for (std::size_t pixel = 0; pixel < view.pixel_count(); ++pixel) {
+        const glm::dvec4 flat = flattened(deep, pixel);
+        for (int k = 0; k < 4; ++k) {
+          worst = std::max(worst, std::abs(flat[k] - double(picture.channels[std::size_t(k)].floats()[pixel])));
+        }
+      }
+      EXPECT_LT(worst, 1e-5) << samples << " samples, opacity " << opacity;
+    }
+}
+
+TEST(DeepImage, NeighboursAlongAnEdgeCloseIt) {
+  // Two halves of a square, cut along its diagonal: every pixel within is hidden wholly, though no fragment hides one
+  // on the diagonal by itself.
+  const Scene scene = scene_of(square(), colored({1, 1, 1, 1}));
+  const Surfaces surfaces(scene);
+  View view = front_view(63, 4);
+  const DeepImage image = shade_deep(surfaces, zbuffer(surfaces, view), flat_over_nothing);
+  int shared = 0;
+  for (int y = 20; y < 43; ++y)
+    for (int x = 20; x < 43; ++x) {
+      const std::size_t pixel = std::size_t(y) * 63 + std::size_t(x);
+      shared += image.first[pixel + 1] - image.first[pixel] == 2;
+      ASSERT_NEAR(flattened(image, pixel).a, 1, 1e-6);
+    }
+  EXPECT_EQ(shared, 23);
+}
+
+TEST(DeepImage, ShownPartsAreThoseOfEverySubSample) {
+  // Two crossing fragments, half transparent: left of the middle the second is nearer.
+  const std::vector<glm::ivec2> samples = {{64, 128}, {192, 128}};
+  std::vector<Fragment> fragments(3);
+  fragments[0] = {3, 0, 0.5f, 0.2f, 0, 1};
+  fragments[1] = {3, 1, 0.5f, -0.2f, 0, 1};
+  fragments[2] = {1, 2, 0.1f, 0, 0, 1};
+  const std::vector<float> alphas = {0.5f, 0.5f, 1.0f};
+  const auto key_at = [&](std::size_t i, std::size_t s) {
+    return fragments[i].key + float(samples[s].x - 128) / 256 * fragments[i].key_dx;
+  };
+  const std::vector<float> parts = shading::shown_parts(fragments, alphas, samples.size(), key_at);
+  EXPECT_FLOAT_EQ(parts[0], (0.25f + 0.5f) / 2);
+  EXPECT_FLOAT_EQ(parts[1], (0.5f + 0.25f) / 2);
+  EXPECT_FLOAT_EQ(parts[2], 0.25f / 2);
+}
+
+TEST(DeepImage, IsTheSameForAnyThreads) {
+  const Scene scene = two_squares(0.5f);
+  const Surfaces surfaces(scene);
+  const Visible visible = zbuffer(surfaces, front_view(200, 4));
+  Execution one;
+  one.threads = 1;
+  EXPECT_EQ(content_hash(shade_deep(surfaces, visible, {}, one)), content_hash(shade_deep(surfaces, visible)));
+}
+
+TEST(DeepImage, RefusesWhatItCannotHold) {
+  const Scene scene = two_squares(0.5f);
+  const Surfaces surfaces(scene);
+  const Visible visible = zbuffer(surfaces, front_view());
+  EXPECT_THROW((void)shade_deep(surfaces, visible, {.shading = Shading::depth}), Error);
+  EXPECT_THROW((void)shade_deep(surfaces, visible, {.opacity = 2}), Error);
+  EXPECT_THROW((void)shade_deep(surfaces, visible, {.grid = 3}), Error);
+  DeepImage image = shade_deep(surfaces, visible);
+  image.first[5] = 1u << 30;
+  EXPECT_THROW(validate(image), Error);
+}
+
+TEST(SeeThrough, NeverShowsOneLayerOverTheBackground) {
+  const Scene scene = two_squares(0.25f);
+  const Surfaces surfaces(scene);
+  ShadeOptions options = flat_over_nothing;
+  options.see_through = SeeThrough::never;
+  const Image image = shade(surfaces, zbuffer(surfaces, front_view()), options);
+  EXPECT_EQ(color_at(image, 32, 32), glm::vec4(0.25f, 0, 0, 0.25f));
+  EXPECT_EQ(color_at(image, 10, 32), glm::vec4(0, 0, 1, 1));
+  options.opacity = 0.5f;
+  const Image faded = shade(surfaces, zbuffer(surfaces, front_view()), options);
+  EXPECT_EQ(color_at(faded, 32, 32), glm::vec4(0.125f, 0, 0, 0.125f));
+  EXPECT_EQ(color_at(faded, 10, 32), glm::vec4(0, 0, 0.5f, 0.5f));
+}
+
+TEST(SeeThrough, LayersLaidOverEachOtherAreThePicture) {
+  const Scene scene = two_squares(0.25f);
+  const Surfaces surfaces(scene);
+  const View view = front_view();  // one sample: every pixel has one order
+  const std::vector<Visible> layers = visible_layers(surfaces, view, 2);
+  ShadeOptions options = flat_over_nothing;
+  const Image picture = shade(surfaces, layers[0], options);
+  options.see_through = SeeThrough::never;
+  const Image front = shade(surfaces, layers[0], options), behind = shade(surfaces, layers[1], options);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) {
+      const glm::vec4 a = color_at(front, x, y), b = color_at(behind, x, y), sum = a + (1.0f - a.a) * b;
+      for (int k = 0; k < 4; ++k) ASSERT_NEAR(sum[k], color_at(picture, x, y)[k], 1e-6);
+    }
+}
+
+TEST(SeeThrough, AlwaysGivesOpaqueScenesTheSubSamplesOfTheABuffer) {
+  // The left edge at 16.3 of 64: of 8 columns of sub-samples in pixel 16, those at 5/16 and beyond are covered.
+  Scene scene = scene_of(square(), colored({1, 0, 0, 1}));
+  scene.instances[0].world_from_mesh[3] = {0.3 / 16, 0, 0, 1};
+  const Surfaces surfaces(scene);
+  ShadeOptions options = flat_over_nothing;
+  options.see_through = SeeThrough::always;
+  options.grid = 8;
+  const Image image = shade(surfaces, zbuffer(surfaces, front_view()), options);
+  EXPECT_FLOAT_EQ(color_at(image, 16, 32).a, 6.0f / 8);
+  EXPECT_EQ(color_at(image, 17, 32), glm::vec4(1, 0, 0, 1));
+}
+
+}  // namespace
+}  // namespace frontmost
