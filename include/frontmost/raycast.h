@@ -13,7 +13,7 @@
 
 namespace frontmost {
 
-struct RayTree;  // src/raycast/ray_tree.h
+struct RayTree;  // src/raycast/index/ray_tree.h
 
 /// A hierarchy of boxes over the triangles of `Surfaces`, for any number of views and queries. Holds world-space
 /// corners of its own, so the surfaces may go; the ids are theirs. Safe to share between threads, but for refit().
@@ -26,6 +26,13 @@ class RayIndex {
  public:
   /// O(n log n) for n triangles, in parallel; about 45 bytes a triangle kept. The same for any number of threads.
   explicit RayIndex(const Surfaces& surfaces, const Execution& execution = {});
+  /// On two levels: a hierarchy for every mesh that has instances, in the mesh's own space, and one over the instances.
+  /// Ids and answers are to the bit those of an index over Surfaces(scene), which need not be made: memory and time grow
+  /// with the triangles of the meshes, and with the instances by a matrix each, however many triangles they repeat.
+  /// Queries take longer, as boxes and triangles are placed in the world when a ray comes to them.
+  /// (I. Wald, C. Benthin, P. Slusallek. Distributed Interactive Ray Tracing of Dynamic Scenes. 2003.)
+  /// \throws Error as Surfaces(scene) does.
+  explicit RayIndex(const Scene& scene, const Execution& execution = {});
   ~RayIndex();
   RayIndex(RayIndex&&) noexcept;
   RayIndex& operator=(RayIndex&&) noexcept;
@@ -37,10 +44,14 @@ class RayIndex {
   /// queries grow slower the less of the old neighbourhoods is left. O(n) in parallel, about a third of the time of a
   /// new index, which is made where `surfaces` has triangles to meet that this one does not hold.
   void refit(const Surfaces& surfaces, const Execution& execution = {});
+  /// On two levels: moves the instances to where they are in `scene`, whose meshes are taken to be as they were.
+  /// O(instances), and what one copy of the boxes of the meshes takes. Where the index is on one level, or has other
+  /// instances, it is made anew. \throws Error as Surfaces(scene) does.
+  void refit(const Scene& scene, const Execution& execution = {});
 
-  /// Triangles that a ray can meet: those with finite corners, no two the same.
+  /// Triangles that a ray can meet: those with finite corners (on two levels: in their meshes), no two the same.
   [[nodiscard]] std::uint32_t triangle_count() const;
-  /// World-space bounds of these triangles; empty without any.
+  /// World-space bounds of these triangles; empty without any. On two levels a box around them.
   [[nodiscard]] const Box& bounds() const;
   [[nodiscard]] std::size_t byte_count() const;
 

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <vector>
 
+#include "raycast/index/placement.h"
 #include "raycast/stand_before.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -172,12 +173,18 @@ class LightPacket {
     if (waiting_count_ == 0) return;
     std::size_t count = 1;
     stack_[0] = tree_.root;
+    PlacedWalk walk(tree_);
     while (count > 0 && waiting_count_ > 0) {
       const std::uint32_t child = stack_[--count];
-      if (child & kLeafBit)
-        MeetLeaf(tree_.leaves[child & ~kLeafBit]);
-      else
-        LookInto(tree_.nodes[child], count);
+      walk.Take(count);
+      if (HWY_UNLIKELY(walk.IsInstance(child))) {
+        stack_[count] = walk.Enter(child, count);
+        ++count;
+      } else if (child & kLeafBit) {
+        MeetLeaf(walk.Leaf(child));
+      } else {
+        LookInto(walk.Node(child), count);
+      }
     }
   }
 
@@ -186,18 +193,24 @@ class LightPacket {
     return hn::Sub(hn::Mul(hn::Load(d, from), hn::Set(d, scale_)), hn::Set(d, origin_[axis]));
   }
 
-  /// Whether boxes from low to high along one axis, and low_d to high_d towards the light, may cast an outline between
-  /// `begin` and `end`.
-  [[nodiscard]] HWY_INLINE LM Beside(const RayNode& node, std::size_t first, int axis, float slope, LV low_d, LV high_d,
-                                     float begin, float end) const {
+  /// An axis across the light, and between where along it outlines matter.
+  struct Across {
+    int axis;
+    float slope, begin, end;
+  };
+
+  /// Whether boxes that reach from low_d to high_d towards the light cast no outline there.
+  [[nodiscard]] HWY_INLINE LM Beside(const RayNode& node, std::size_t first, const Across& across, LV low_d,
+                                     LV high_d) const {
     const LF d;
-    const LV low = FromOrigin(node.low[axis] + first, axis), high = FromOrigin(node.high[axis] + first, axis);
-    const LV a = hn::Mul(low_d, hn::Set(d, slope)), b = hn::Mul(high_d, hn::Set(d, slope));
+    const LV low = FromOrigin(node.low[across.axis] + first, across.axis);
+    const LV high = FromOrigin(node.high[across.axis] + first, across.axis);
+    const LV a = hn::Mul(low_d, hn::Set(d, across.slope)), b = hn::Mul(high_d, hn::Set(d, across.slope));
     const LV size = hn::Add(hn::Max(hn::Abs(low), hn::Abs(high)), hn::Max(hn::Abs(low_d), hn::Abs(high_d)));
     const LV pad = hn::Mul(size, hn::Set(d, kShearError));
     const LV low_outline = hn::Sub(hn::Sub(low, hn::Max(a, b)), pad);
     const LV high_outline = hn::Add(hn::Sub(high, hn::Min(a, b)), pad);
-    return hn::Or(hn::Gt(low_outline, hn::Set(d, end)), hn::Lt(high_outline, hn::Set(d, begin)));
+    return hn::Or(hn::Gt(low_outline, hn::Set(d, across.end)), hn::Lt(high_outline, hn::Set(d, across.begin)));
   }
 
   HWY_INLINE void LookInto(const RayNode& node, std::size_t& count) {
@@ -211,8 +224,8 @@ class LightPacket {
       LM outside = hn::Lt(hn::Add(high_d, pad), hn::Set(d, b.low_d));
       // What lies below all starts casts no shadow on them.
       low_d = hn::Max(hn::Sub(low_d, pad), hn::Set(d, b.low_d));
-      outside = hn::Or(outside, Beside(node, first, axes_.u, axes_.slope_u, low_d, high_d, b.low_u, b.high_u));
-      outside = hn::Or(outside, Beside(node, first, axes_.v, axes_.slope_v, low_d, high_d, b.low_v, b.high_v));
+      outside = hn::Or(outside, Beside(node, first, {axes_.u, axes_.slope_u, b.low_u, b.high_u}, low_d, high_d));
+      outside = hn::Or(outside, Beside(node, first, {axes_.v, axes_.slope_v, b.low_v, b.high_v}, low_d, high_d));
       const std::uint32_t used = (1u << std::min(kLightLanes, node.count - first)) - 1;
       for (std::uint32_t inside = ~LaneBits(outside) & used; inside != 0; inside &= inside - 1)
         stack_[count++] = node.child[first + hwy::Num0BitsBelowLS1Bit_Nonzero32(inside)];

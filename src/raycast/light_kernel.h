@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "raycast/ray_tree.h"
+#include "raycast/index/ray_tree.h"
 
 namespace frontmost::raycast_detail {
 

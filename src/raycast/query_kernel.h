@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "raycast/exact_sign.h"
-#include "raycast/ray_tree.h"
+#include "raycast/index/ray_tree.h"
 
 namespace frontmost::raycast_detail {
 

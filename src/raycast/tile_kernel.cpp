@@ -17,6 +17,7 @@
 #include "base/isa.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
+#include "raycast/index/placement.h"
 #include "raycast/triangle_queue-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -40,6 +41,7 @@ class TileCaster {
         place_(frame, tile_x, tile_y, sample),
         buffer_(place_, scratch),
         large_(frame, place_, buffer_),
+        walk_(frame.tree),
         queue_(frame, place_, buffer_, large_) {}
 
   void Cast() {
@@ -146,32 +148,26 @@ class TileCaster {
     waiting_ += count;
   }
 
-  /// The child that comes next.
-  HWY_INLINE void Prefetch() const {
-    if (waiting_ == 0) return;
-    const auto child = std::uint32_t(scratch_.stack[waiting_ - 1]);
-    const char* from = child & kLeafBit ? reinterpret_cast<const char*>(&frame_.tree.leaves[child & ~kLeafBit])
-                                        : reinterpret_cast<const char*>(&frame_.tree.nodes[child]);
-    const std::size_t bytes = child & kLeafBit ? sizeof(RayLeaf) : sizeof(RayNode);
-    for (std::size_t i = 0; i < bytes; i += 64) hwy::Prefetch(from + i);
-  }
-
   void Walk() {
     waiting_ = 1;
     scratch_.stack[0] = Waiting(0x7F800000u) << 32 | frame_.tree.root;
     while (waiting_ > 0) {
       const Waiting next = scratch_.stack[--waiting_];
       const auto bits = std::uint32_t(next >> 32), child = std::uint32_t(next);
-      Prefetch();
+      walk_.Take(waiting_);
+      if (!walk_.IsAround(waiting_)) walk_.Prefetch(std::uint32_t(scratch_.stack[waiting_ - 1]));
       // Every few leaves: a hidden one that is met costs less than looking for it.
       if (!(child & kLeafBit) || (++leaves_met_ & 3) == 0) buffer_.Refresh();
       float key;
       std::memcpy(&key, &bits, sizeof key);
       if (key < buffer_.tile_farthest()) continue;
-      if (child & kLeafBit) {
-        MeetLeaf(frame_.tree.leaves[child & ~kLeafBit]);
+      if (HWY_UNLIKELY(walk_.IsInstance(child))) {
+        scratch_.stack[waiting_] = Waiting(bits) << 32 | walk_.Enter(child, waiting_);
+        ++waiting_;
+      } else if (child & kLeafBit) {
+        MeetLeaf(walk_.Leaf(child));
       } else {
-        LookInto(frame_.tree.nodes[child]);
+        LookInto(walk_.Node(child));
       }
     }
   }
@@ -318,6 +314,7 @@ class TileCaster {
   TilePlace place_;
   TileBuffer buffer_;
   LargeTriangles large_;
+  PlacedWalk walk_;
   TriangleQueue queue_;
   Plane planes_[4], depth_;
   std::size_t waiting_ = 0;

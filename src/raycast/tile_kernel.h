@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "raycast/ray_tree.h"
+#include "raycast/index/ray_tree.h"
 #include "raycast/sample_rule.h"
 
 namespace frontmost::raycast_detail {

@@ -353,7 +353,7 @@ ClusterSet build_clusters(const Scene& scene, const Execution& execution) {
 
   // The fractions are about what the steps take of the time.
   for (const Instance& instance : scene.instances)
-    set.mirrored.push_back(glm::determinant(glm::dmat3(instance.world_from_mesh)) < 0);
+    set.mirrored.push_back(mirrors(instance.world_from_mesh));
   const Buffer<PrimitiveId> order = spatial_order(scene, set.first_primitives, execution);
   report_progress(execution, "surfaces", 0.4);
   const InstanceFinder instances(set.first_primitives);

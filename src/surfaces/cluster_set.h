@@ -54,6 +54,14 @@ struct ClusterSet {
 /// degenerate (three times the same corner number), so that no method sees them.
 [[nodiscard]] ClusterSet build_clusters(const Scene& scene, const Execution& execution);
 
+/// \throws Error bad_argument for a transform that is not finite.
+void check_transforms(const Scene& scene);
+
+/// True for a transform that turns counter-clockwise into clockwise.
+[[nodiscard]] inline bool mirrors(const glm::dmat4& world_from_mesh) {
+  return glm::determinant(glm::dmat3(world_from_mesh)) < 0;
+}
+
 /// The world-space position of a vertex, in the one rounding that every part of the house uses.
 [[nodiscard]] inline glm::vec3 to_world(const glm::dmat4& world_from_mesh, const glm::vec3& p) {
   const glm::dvec3 q(p);

@@ -8,8 +8,6 @@
 #include "surfaces/cluster_set.h"
 
 namespace frontmost {
-namespace {
-
 void check_transforms(const Scene& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i)
     for (int column = 0; column < 4; ++column)
@@ -18,8 +16,6 @@ void check_transforms(const Scene& scene) {
           throw Error(ErrorCode::bad_argument, scene.name + ": instance " + std::to_string(i) + " (" +
                                                    scene.instances[i].name + "): its transform is not finite");
 }
-
-}  // namespace
 
 Surfaces::Surfaces(const Scene& scene, const Execution& execution) {
   const IeeeScope ieee;

@@ -4,10 +4,12 @@
 
 #include <cstdio>
 
+#include "frontmost/io.h"
 #include "frontmost/raycast.h"
 #include "frontmost/shade.h"
 #include "frontmost/zbuffer.h"
 #include "shade/support.h"
+#include "support/models.h"
 #include "support/shadow_band.h"
 
 namespace frontmost::test {
@@ -141,6 +143,12 @@ TEST(RayShadows, TheMapDiffersOnlyWhereAnEdgeIsWithinItsFilter) {
   expect_explained("roof", roof_and_floor(0.4), 1);
   for (const char* name : {"teapot", "cubes", "spheres"}) expect_explained(name, builtin(name), 3);
   expect_explained("city", builtin("city"), 5);
+}
+
+TEST(RayShadows, TheMapDiffersOnlyWhereAnEdgeIsWithinItsFilterOnModels) {
+  FRONTMOST_NEEDS_MODELS();
+  for (const char* name : {"cad/crank-arm.stl", "assembly/2-cylinder-engine.glb", "scenes/sponza.glb"})
+    expect_explained(name, load(model(name)), 7);
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/float_environment.h"
 #include "base/parallel.h"
-#include "raycast/ray_tree.h"
+#include "raycast/index/ray_tree.h"
 
 namespace frontmost {
-namespace {
 
 RayTree make_tree(const Surfaces& surfaces, const Execution& execution) {
   const IeeeScope ieee;
@@ -17,10 +16,10 @@ RayTree make_tree(const Surfaces& surfaces, const Execution& execution) {
   return tree;
 }
 
-}  // namespace
-
 RayIndex::RayIndex(const Surfaces& surfaces, const Execution& execution)
     : tree_(std::make_unique<RayTree>(make_tree(surfaces, execution))) {}
+RayIndex::RayIndex(const Scene& scene, const Execution& execution)
+    : tree_(std::make_unique<RayTree>(make_placed_tree(scene, execution))) {}
 RayIndex::~RayIndex() = default;
 RayIndex::RayIndex(RayIndex&&) noexcept = default;
 RayIndex& RayIndex::operator=(RayIndex&&) noexcept = default;
@@ -32,12 +31,18 @@ void RayIndex::refit(const Surfaces& surfaces, const Execution& execution) {
   report_progress(execution, "index", 1);
 }
 
+void RayIndex::refit(const Scene& scene, const Execution& execution) {
+  const IeeeScope ieee;
+  if (!replace_instances(scene, *tree_, execution)) *tree_ = make_placed_tree(scene, execution);
+}
+
 std::uint32_t RayIndex::triangle_count() const { return tree_->triangle_count; }
 
 const Box& RayIndex::bounds() const { return tree_->bounds; }
 
 std::size_t RayIndex::byte_count() const {
-  return sizeof(RayTree) + tree_->nodes.size() * sizeof(RayNode) + tree_->leaves.size() * sizeof(RayLeaf);
+  return sizeof(RayTree) + tree_->nodes.size() * sizeof(RayNode) + tree_->leaves.size() * sizeof(RayLeaf) +
+         tree_->placed.size() * sizeof(PlacedRoot);
 }
 
 }  // namespace frontmost

@@ -28,13 +28,26 @@ struct alignas(64) RayLeaf {
   PrimitiveId id[kRayLanes];
 };
 
+/// A tree that stands somewhere in the world: nodes and leaves in the space of a mesh.
+struct PlacedRoot {
+  glm::dmat4 world_from_mesh{1.0};
+  std::uint32_t mesh = no_index;
+  PrimitiveId first = 0;          ///< the id of the mesh's triangle 0; leaves count from there
+  std::uint32_t root = no_index;  ///< a child
+  bool is_mirrored = false;       ///< the last two corners change places
+};
+
+/// On two levels, the leaves of the tree under `root` are the numbers of placed roots.
 struct RayTree {
   Buffer<RayNode> nodes;
   Buffer<RayLeaf> leaves;
-  std::uint32_t root = no_index;  ///< a child; no_index when there are no triangles
+  std::vector<PlacedRoot> placed;  ///< by instance; empty on one level
+  std::uint32_t mesh_nodes = 0;    ///< how many nodes belong to meshes, before those over the instances
+  std::uint32_t mesh_depth = 0;    ///< nodes from the root of a mesh to its deepest leaf
+  std::uint32_t root = no_index;   ///< a child; no_index when there are no triangles
   std::uint32_t triangle_count = 0;
-  std::uint32_t depth = 0;  ///< nodes from the root to the deepest leaf
-  Box bounds;
+  std::uint32_t depth = 0;  ///< nodes from the root to the deepest leaf, over both levels
+  Box bounds;               ///< on two levels, of the boxes; around those of the triangles otherwise
 
   /// The most children that a depth-first walk has waiting.
   [[nodiscard]] std::size_t stack_size() const { return std::size_t(depth) * (kRayLanes - 1) + 1; }
@@ -60,5 +73,15 @@ struct LeafBox {
 
 /// Fills tree.nodes over the boxes, which are reordered.
 void build_nodes(std::vector<LeafBox>& boxes, RayTree& tree, const Execution& execution);
+
+/// One level over `surfaces`.
+[[nodiscard]] RayTree make_tree(const Surfaces& surfaces, const Execution& execution);
+
+/// Two levels: one tree for every mesh that has instances, and one over the instances.
+[[nodiscard]] RayTree make_placed_tree(const Scene& scene, const Execution& execution);
+
+/// Moves the instances of a tree on two levels to where they are in `scene`.
+/// \returns false where these are other instances; the tree is then as it was.
+[[nodiscard]] bool replace_instances(const Scene& scene, RayTree& tree, const Execution& execution);
 
 }  // namespace frontmost

@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "base/parallel.h"
-#include "raycast/ray_tree.h"
+#include "raycast/index/ray_tree.h"
 
 namespace frontmost {
 namespace {

@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "raycast/leaf_triangles.h"
+#include "raycast/index/leaf_triangles.h"
 
 namespace frontmost {
 namespace {

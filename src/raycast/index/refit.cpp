@@ -6,7 +6,7 @@
 #include <atomic>
 
 #include "base/parallel.h"
-#include "raycast/leaf_triangles.h"
+#include "raycast/index/leaf_triangles.h"
 
 namespace frontmost {
 namespace {
@@ -74,6 +74,7 @@ void fit_nodes(const std::vector<LeafBox>& boxes, RayTree& tree) {
 }  // namespace
 
 bool refit_tree(const Surfaces& surfaces, RayTree& tree, const Execution& execution) {
+  if (!tree.placed.empty()) return false;
   const ClusterSet& set = surfaces.clusters();
   const Buffer<std::uint32_t> places = places_of(tree, surfaces.primitive_count(), execution);
   std::atomic<std::size_t> moved{0};

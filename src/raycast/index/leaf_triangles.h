@@ -2,7 +2,7 @@
 // From a triangle of a cluster to one of a leaf.
 #pragma once
 
-#include "raycast/ray_tree.h"
+#include "raycast/index/ray_tree.h"
 #include "surfaces/cluster_set.h"
 
 namespace frontmost {
