@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cuts triangles, in spatial order, into clusters of at most 64 distinct vertices.
 //
-// Vertices are told apart by position, not by number: in a soup, as STL files are, every corner has a number of its
-// own, and welding inside a cluster doubles what it holds. Work is split at fixed places of the order, so the clusters
-// do not depend on the number of threads.
+// Work is split at fixed places of the order, so the clusters do not depend on the number of threads.
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <optional>
 #include <utility>
 
@@ -15,19 +12,16 @@
 #include "base/prefetch.h"
 #include "surfaces/cluster_set.h"
 #include "surfaces/spatial_order.h"
+#include "surfaces/vertex_table.h"
 
 namespace frontmost {
 namespace {
 
-constexpr std::uint32_t kTrianglesPerPart = 1u << 14;
+constexpr std::uint32_t kRunsPerPart = 1u << 13;
 
-constexpr std::size_t padded(std::size_t count) {
-  return (count + Cluster::lanes - 1) / Cluster::lanes * Cluster::lanes;
-}
-
-/// A run of the spatial order, and the clusters made of it. Their ids are the run itself.
+/// Some runs of the spatial order, and the clusters made of them. Their ids are those of the runs, in order.
 struct Part {
-  std::size_t begin = 0;          // in the order
+  std::size_t begin = 0;          // of the runs
   std::vector<Cluster> clusters;  // first_vertex and first_triangle relative to the part
   std::vector<Box> boxes;
   std::vector<float> x, y, z;
@@ -35,77 +29,12 @@ struct Part {
   std::vector<std::pair<std::uint32_t, Box>> instance_boxes;  // of runs of one instance's triangles
 };
 
-/// Which of a cluster's vertices a position is: a small open-addressing table over the bits of the coordinates.
-/// Keying by position serves indexed meshes and soups alike.
-class VertexTable {
- public:
-  void clear() {
-    slots_.fill(kFree);
-    count_ = 0;
-  }
-  [[nodiscard]] int size() const { return count_; }
-
-  /// Where the position is, or belongs.
-  [[nodiscard]] std::uint32_t slot_of(const glm::vec3& p) const { return slot_from(hash(p), p); }
-  [[nodiscard]] bool is_free(std::uint32_t slot) const { return slots_[slot] == kFree; }
-  [[nodiscard]] std::uint8_t number_at(std::uint32_t slot) const { return slots_[slot]; }
-  /// The vertex's number; it is added when it is not in the table yet. `slot` is what slot_of(p) gave, perhaps before
-  /// others were added. Precondition: there is room.
-  std::uint8_t intern(std::uint32_t slot, const glm::vec3& p) {
-    std::uint8_t& number = slots_[slot_from(slot, p)];
-    if (number == kFree) {
-      x_[std::size_t(count_)] = p.x, y_[std::size_t(count_)] = p.y, z_[std::size_t(count_)] = p.z;
-      number = static_cast<std::uint8_t>(count_++);
-    }
-    return number;
-  }
-  [[nodiscard]] glm::vec3 operator[](std::size_t i) const { return {x_[i], y_[i], z_[i]}; }
-
-  /// Repeats the last vertex until there are whole vectors. \returns the new size, 0 for an empty table.
-  std::size_t pad() {
-    if (count_ == 0) return 0;
-    const auto count = std::size_t(count_), end = padded(count);
-    for (auto* axis : {&x_, &y_, &z_}) std::fill(axis->begin() + count, axis->begin() + end, (*axis)[count - 1]);
-    return end;
-  }
-  [[nodiscard]] const float* x() const { return x_.data(); }
-  [[nodiscard]] const float* y() const { return y_.data(); }
-  [[nodiscard]] const float* z() const { return z_.data(); }
-
- private:
-  static constexpr std::uint32_t kSlots = 256;
-  static constexpr std::uint8_t kFree = 0xFF;
-
-  [[nodiscard]] std::uint32_t slot_from(std::uint32_t slot, const glm::vec3& p) const {
-    while (slots_[slot] != kFree && !same_bits((*this)[slots_[slot]], p)) slot = (slot + 1) % kSlots;
-    return slot;
-  }
-  static bool same_bits(const glm::vec3& a, const glm::vec3& b) {
-    const auto p = bits(a), q = bits(b);
-    return ((p[0] ^ q[0]) | (p[1] ^ q[1]) | (p[2] ^ q[2])) == 0;
-  }
-  static std::array<std::uint32_t, 3> bits(const glm::vec3& p) {
-    std::array<std::uint32_t, 3> result;
-    std::memcpy(result.data(), &p, sizeof result);
-    return result;
-  }
-  /// Round numbers differ in their high bits only: multiplication brings them, and all others, to the top.
-  static std::uint32_t hash(const glm::vec3& p) {
-    const auto b = bits(p);
-    return (b[0] * 0x9E3779B1u + b[1] * 0x85EBCA77u + b[2] * 0xC2B2AE3Du) >> 24;
-  }
-
-  std::array<std::uint8_t, kSlots> slots_;
-  std::array<float, Cluster::max_vertices> x_, y_, z_;
-  int count_ = 0;
-};
-
 /// What all parts are made from.
 struct Source {
   const Scene& scene;
   const std::vector<PrimitiveId>& first_primitives;
   const InstanceFinder& instances;
-  const Buffer<PrimitiveId>& order;
+  const SpatialOrder& order;
   const std::vector<std::uint8_t>& mirrored;
 };
 
@@ -127,19 +56,22 @@ class PartBuilder {
   PartBuilder(const Source& source, Part& part) : source_(source), part_(part) {}
 
   void build(std::size_t begin, std::size_t end) {
-    const std::size_t count = end - begin;
+    const std::size_t count = 2 * (end - begin);
     part_.begin = begin;
-    for (std::vector<std::uint8_t>& corners : part_.corners) corners.reserve(count + count / 4);
+    for (std::vector<std::uint8_t>& corners : part_.corners) corners.reserve(count);
     for (auto* axis : {&part_.x, &part_.y, &part_.z}) axis->reserve(count);
     start_cluster();
     for (std::size_t i = begin; i < end; ++i) {
       prefetch(i, end);
-      add(source_.order[i]);
+      const TriangleRun run = run_at(i);
+      for (std::uint32_t k = 0; k < run.count; ++k) add(run.first + k);
     }
     finish_cluster();
   }
 
  private:
+  [[nodiscard]] TriangleRun run_at(std::size_t i) const { return TriangleRun::unpacked(source_.order.runs[i]); }
+
   void start_cluster() {
     table_.clear();
     cluster_ = {};
@@ -154,16 +86,21 @@ class PartBuilder {
     return {number, first, source_.first_primitives[number + 1] - first, mesh.triangles.data(), mesh.positions.data()};
   }
 
-  /// Triangles that are neighbours in space are often far apart in memory: the corner numbers are asked for well
-  /// ahead, and the positions that they lead to a little later.
+  /// Runs that are neighbours in space are often far apart in memory: the corner numbers are asked for well ahead, and
+  /// the positions that they lead to a little later.
   void prefetch(std::size_t i, std::size_t end) const {
     constexpr std::size_t kCornersAhead = 48, kPositionsAhead = 24;
     if (i + kCornersAhead >= end) return;
-    const PrimitiveId far = source_.order[i + kCornersAhead], near = source_.order[i + kPositionsAhead];
-    prefetch_line(&(placed_.holds(far) ? placed_ : place_of(far)).corners(far));
-    const Placed placed = placed_.holds(near) ? placed_ : place_of(near);
-    const glm::uvec3& corners = placed.corners(near);
-    for (int k = 0; k < 3; ++k) prefetch_line(&placed.positions[corners[k]]);
+    const TriangleRun far = run_at(i + kCornersAhead), near = run_at(i + kPositionsAhead);
+    const PrimitiveId last = far.first + (far.count - 1);
+    const Placed far_place = placed_.holds(far.first) ? placed_ : place_of(far.first);
+    prefetch_line(&far_place.corners(far.first));
+    prefetch_line(&far_place.corners(last).z);
+    const Placed near_place = placed_.holds(near.first) ? placed_ : place_of(near.first);
+    for (std::uint32_t t = 0; t < near.count; ++t) {
+      const glm::uvec3& corners = near_place.corners(near.first + t);
+      for (int k = 0; k < 3; ++k) prefetch_line(&near_place.positions[corners[k]]);
+    }
   }
 
   /// World-space corners. \returns whether all of them are finite.
@@ -171,14 +108,11 @@ class PartBuilder {
     if (!placed_.holds(id)) {
       placed_ = place_of(id);
       to_world_.emplace(source_.scene.instances[placed_.number].world_from_mesh);
+      must_check_ = !to_world_->is_identity() || source_.order.all_finite[placed_.number] == 0;
     }
     const glm::uvec3& corners = placed_.corners(id);
-    bool finite = true;
-    for (int k = 0; k < 3; ++k) {
-      world[std::size_t(k)] = (*to_world_)(placed_.positions[corners[k]]);
-      finite = finite && is_finite(world[std::size_t(k)]);
-    }
-    return finite;
+    for (int k = 0; k < 3; ++k) world[std::size_t(k)] = (*to_world_)(placed_.positions[corners[k]]);
+    return !must_check_ || std::all_of(world.begin(), world.end(), is_finite);
   }
 
   void add(PrimitiveId id) {
@@ -189,22 +123,32 @@ class PartBuilder {
       append(numbers, no_index);
       return;
     }
-    std::array<std::uint32_t, 3> slots;
-    int missing = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      slots[k] = table_.slot_of(world[k]);
-      missing += table_.is_free(slots[k]);
-    }
-    if (cluster_.triangle_count == Cluster::max_triangles || table_.size() + missing > Cluster::max_vertices) {
+    if (cluster_.triangle_count == Cluster::max_triangles || !intern_into_rest(world, numbers)) {
       start_next_cluster();
-      for (std::size_t k = 0; k < 3; ++k) slots[k] = table_.slot_of(world[k]);
-      missing = 3;
+      intern(world, numbers);
     }
-    for (std::size_t k = 0; k < 3; ++k)
-      numbers[k] = missing == 0 ? table_.number_at(slots[k]) : table_.intern(slots[k], world[k]);
     // A mirror turns counter-clockwise into clockwise, but what was outside stays outside.
     if (source_.mirrored[placed_.number]) std::swap(numbers[1], numbers[2]);
     append(numbers, placed_.number);
+  }
+
+  void intern(const std::array<glm::vec3, 3>& world, std::array<std::uint8_t, 3>& numbers) {
+    for (std::size_t k = 0; k < 3; ++k) numbers[k] = table_.intern(world[k]);
+  }
+
+  /// \returns false, with the table as it was, where there is no room left.
+  bool intern_into_rest(const std::array<glm::vec3, 3>& world, std::array<std::uint8_t, 3>& numbers) {
+    if (table_.size() + 3 <= Cluster::max_vertices) {
+      intern(world, numbers);
+      return true;
+    }
+    std::size_t missing = 0;
+    for (std::size_t k = 0; k < 3; ++k) missing += (numbers[k] = table_.find(world[k])) == VertexTable::none;
+    if (table_.size() + missing > Cluster::max_vertices) return false;
+    // What was found is not looked for again: adding one may lose the guess of another.
+    for (std::size_t k = 0; k < 3; ++k)
+      if (numbers[k] == VertexTable::none) numbers[k] = table_.intern(world[k]);
+    return true;
   }
 
   /// `instance` is no_index where the triangle counts for no box.
@@ -217,12 +161,6 @@ class PartBuilder {
   void start_next_cluster() {
     finish_cluster();
     start_cluster();
-  }
-
-  [[nodiscard]] Box box_of_vertices() const {
-    Box box;
-    for (int i = 0; i < table_.size(); ++i) box.include(table_[std::size_t(i)]);
-    return box;
   }
 
   void include(std::uint32_t instance, const Box& box) {
@@ -249,10 +187,10 @@ class PartBuilder {
 
   void finish_cluster() {
     if (cluster_.triangle_count == 0) return;
-    const Box box = box_of_vertices();
-    include_in_instances(box);
     cluster_.vertex_count = static_cast<std::uint16_t>(table_.size());
-    const std::size_t vertices = table_.pad(), triangles = padded(cluster_.triangle_count);
+    const std::size_t vertices = table_.pad(), triangles = padded_to_lanes(cluster_.triangle_count);
+    const Box box = table_.bounds();
+    include_in_instances(box);
     part_.x.insert(part_.x.end(), table_.x(), table_.x() + vertices);
     part_.y.insert(part_.y.end(), table_.y(), table_.y() + vertices);
     part_.z.insert(part_.z.end(), table_.z(), table_.z() + vertices);
@@ -268,9 +206,10 @@ class PartBuilder {
   Part& part_;
   Placed placed_;  ///< of the last triangle
   std::optional<ToWorld> to_world_;
+  bool must_check_ = true;  ///< that corners are finite
   VertexTable table_;
   Cluster cluster_;
-  std::array<std::array<std::uint8_t, padded(Cluster::max_triangles)>, 3> corners_;
+  std::array<std::array<std::uint8_t, padded_to_lanes(Cluster::max_triangles)>, 3> corners_;
   std::array<std::uint32_t, Cluster::max_triangles> instances_;
 };
 
@@ -284,18 +223,22 @@ void place(const std::vector<T>& part, Buffer<T>& whole, std::size_t at) {
   std::copy(part.begin(), part.end(), whole.data() + at);
 }
 
-/// The ids of a part's clusters: the order itself, padded like the triangles.
-void place_ids(const Part& part, const Buffer<PrimitiveId>& order, PrimitiveId* ids) {
-  const PrimitiveId* next = order.data() + part.begin;
+/// The ids of a part's clusters: those of its runs, padded like the triangles.
+void place_ids(const Part& part, const SpatialOrder& order, PrimitiveId* ids) {
+  const std::uint64_t* next = order.runs.data() + part.begin;
+  TriangleRun run{0, 0};
   for (const Cluster& cluster : part.clusters) {
     PrimitiveId* const first = ids + cluster.first_triangle;
-    PrimitiveId* const end = std::copy_n(next, cluster.triangle_count, first);
-    std::fill(end, first + padded(cluster.triangle_count), no_primitive);
-    next += cluster.triangle_count;
+    for (std::size_t t = 0; t < cluster.triangle_count; ++t) {
+      if (run.count == 0) run = TriangleRun::unpacked(*next++);
+      first[t] = run.first++;
+      --run.count;
+    }
+    std::fill(first + cluster.triangle_count, first + padded_to_lanes(cluster.triangle_count), no_primitive);
   }
 }
 
-void gather(ClusterSet& set, std::vector<Part>& parts, const Buffer<PrimitiveId>& order, const Execution& execution) {
+void gather(ClusterSet& set, std::vector<Part>& parts, const SpatialOrder& order, const Execution& execution) {
   std::vector<Place> places(parts.size() + 1);
   for (std::size_t i = 0; i < parts.size(); ++i)
     places[i + 1] = {places[i].cluster + parts[i].clusters.size(), places[i].vertex + parts[i].x.size(),
@@ -333,9 +276,9 @@ void gather(ClusterSet& set, std::vector<Part>& parts, const Buffer<PrimitiveId>
 
 BoxArrays::BoxArrays(std::size_t count) {
   for (Buffer<float>* low : {&low_x, &low_y, &low_z})
-    *low = Buffer<float>(padded(count), std::numeric_limits<float>::infinity());
+    *low = Buffer<float>(padded_to_lanes(count), std::numeric_limits<float>::infinity());
   for (Buffer<float>* high : {&high_x, &high_y, &high_z})
-    *high = Buffer<float>(padded(count), -std::numeric_limits<float>::infinity());
+    *high = Buffer<float>(padded_to_lanes(count), -std::numeric_limits<float>::infinity());
 }
 
 void BoxArrays::set(std::size_t i, const Box& box) {
@@ -354,13 +297,13 @@ ClusterSet build_clusters(const Scene& scene, const Execution& execution) {
   // The fractions are about what the steps take of the time.
   for (const Instance& instance : scene.instances)
     set.mirrored.push_back(mirrors(instance.world_from_mesh));
-  const Buffer<PrimitiveId> order = spatial_order(scene, set.first_primitives, execution);
+  const SpatialOrder order = spatial_order(scene, set.first_primitives, execution);
   report_progress(execution, "surfaces", 0.4);
   const InstanceFinder instances(set.first_primitives);
   const Source source{scene, set.first_primitives, instances, order, set.mirrored};
-  std::vector<Part> parts((order.size() + kTrianglesPerPart - 1) / kTrianglesPerPart);
-  parallel_for(execution, order.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
-    PartBuilder(source, parts[begin / kTrianglesPerPart]).build(begin, end);
+  std::vector<Part> parts((order.runs.size() + kRunsPerPart - 1) / kRunsPerPart);
+  parallel_for(execution, order.runs.size(), kRunsPerPart, [&](std::size_t begin, std::size_t end) {
+    PartBuilder(source, parts[begin / kRunsPerPart]).build(begin, end);
   });
   report_progress(execution, "surfaces", 0.9);
   set.instance_bounds.resize(scene.instances.size());

@@ -25,7 +25,7 @@ struct ConeArrays {
 /// without a cone); the cosine of a closed cone errs by 2^-22, the angle thus by 2^-10.5.
 inline constexpr float kConeRounding = 3.0f / 1024.0f;
 
-/// O(triangles), in parallel: 3 ms a million triangles on one thread, a twentieth of the time for clusters.
+/// O(triangles), in parallel: 3 ms a million triangles on one thread, a tenth of the time for clusters.
 [[nodiscard]] ConeArrays make_cones(const ClusterSet& set, const Execution& execution);
 
 /// The cones of a set, made when they have been asked for often enough to pay.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stable parallel radix sort of numbers by keys.
+// A stable parallel radix sort.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 namespace frontmost {
 
-/// The low halves of `items`, sorted by the bits [32, 32 + key_bits) of each, those of equal keys in their order.
+/// Sorts by the bits [32, 32 + key_bits) of each item; those of equal keys keep their order.
 /// Precondition: 0 < key_bits <= 32. O(count) with one more buffer of the same size; the same result for any number of
 /// threads.
-[[nodiscard]] Buffer<std::uint32_t> radix_order(Buffer<std::uint64_t> items, int key_bits, const Execution& execution);
+[[nodiscard]] Buffer<std::uint64_t> radix_sort(Buffer<std::uint64_t> items, int key_bits, const Execution& execution);
 
 }  // namespace frontmost

@@ -25,9 +25,29 @@ class InstanceFinder {
   std::vector<std::uint32_t> start_;
 };
 
-/// All primitive ids, by the cells of the triangles' centroids along Hilbert's curve; within a cell in id order.
-/// Cells hold some tens of triangles of an ordinary surface. O(triangles), 16 bytes a triangle while it runs.
-[[nodiscard]] Buffer<PrimitiveId> spatial_order(const Scene& scene, const std::vector<PrimitiveId>& first_primitives,
-                                                const Execution& execution);
+/// Up to four triangles of an instance with consecutive ids that lie together, put into order as one. Files mostly have
+/// neighbours one after the other, and there are a third as many runs to be sorted as triangles.
+struct TriangleRun {
+  static constexpr std::uint32_t max_count = 4;
+
+  PrimitiveId first;
+  std::uint32_t count;
+
+  /// In 64 bits: count, the place on the curve in 30 bits, first.
+  [[nodiscard]] std::uint64_t packed(std::uint32_t place) const {
+    return std::uint64_t(count - 1) << 62 | std::uint64_t(place) << 32 | first;
+  }
+  static TriangleRun unpacked(std::uint64_t bits) { return {PrimitiveId(bits), std::uint32_t(bits >> 62) + 1}; }
+};
+
+struct SpatialOrder {
+  Buffer<std::uint64_t> runs;            ///< packed TriangleRuns that hold every primitive once
+  std::vector<std::uint8_t> all_finite;  ///< by instance: not 0 where all corners are, in the space of their mesh
+};
+
+/// Runs by the cells of their first triangles' centroids along Hilbert's curve; within a cell in id order.
+/// Cells hold some tens of triangles of an ordinary surface. O(triangles), 5 to 16 bytes a triangle while it runs.
+[[nodiscard]] SpatialOrder spatial_order(const Scene& scene, const std::vector<PrimitiveId>& first_primitives,
+                                         const Execution& execution);
 
 }  // namespace frontmost

@@ -93,6 +93,28 @@ TEST(Surfaces, BoundsOfAnInstanceAreThoseOfItsTriangles) {
   }
 }
 
+/// The same surface whose file is in another order: neighbours far apart, and rows that end in the middle of a run.
+TEST(Surfaces, ClustersAreSmallWhateverTheOrderOfTheFile) {
+  Mesh mesh = random_mesh(Kind::shared_grid, 20'000, 4);  // rows of 202 triangles, two units wide
+  const auto expect_small_clusters = [&] {
+    const Scene scene = scene_of(mesh);
+    const Surfaces surfaces(scene);
+    const std::size_t count = surfaces.clusters().clusters.size();
+    EXPECT_LT(count, 20'000u / 45);
+    double sum = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const float size = surfaces.clusters().boxes.get(i).diagonal();
+      sum += size;
+      EXPECT_LT(size, 1.6);  // a row is longer; the curve leaves a flat sheet and comes back elsewhere
+    }
+    EXPECT_LT(sum / double(count), 0.6);
+  };
+  expect_small_clusters();
+  for (std::size_t i = mesh.triangles.size() - 1; i > 0; --i)
+    std::swap(mesh.triangles[i], mesh.triangles[i * 7919 % (i + 1)]);
+  expect_small_clusters();
+}
+
 TEST(Surfaces, IdsLeadBackToInstanceMeshAndTriangle) {
   Scene scene = scene_of(random_mesh(Kind::soup, 10, 1));
   scene.meshes.push_back(random_mesh(Kind::soup, 3, 2));

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// The cells of a grid over a scene, and which of them triangles lie in.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "frontmost/scene.h"
+
+namespace frontmost {
+
+/// A cell by its place along each axis, 0 to 1023, packed: x in bits 0 to 9, y in 11 to 20, z in 22 to 31.
+struct Cell {
+  static constexpr int y_shift = 11, z_shift = 22;
+  static constexpr std::uint32_t mask = 1023;
+
+  std::uint32_t packed = 0;
+
+  [[nodiscard]] std::uint32_t x() const { return packed & mask; }
+  [[nodiscard]] std::uint32_t y() const { return packed >> y_shift & mask; }
+  [[nodiscard]] std::uint32_t z() const { return packed >> z_shift; }
+  /// True when `other` is from one cell before to two cells after this one, along every axis.
+  [[nodiscard]] bool is_near(Cell other) const {
+    // One bit above each place is lent to it, so that no difference borrows from the next.
+    constexpr std::uint64_t ones = 1 | 1ull << y_shift | 1ull << z_shift, lent = ones << 10;
+    return (((((other.packed | lent) - packed) + ones) ^ lent) & ~(3 * ones)) == 0;
+  }
+};
+
+/// From the sum of a triangle's corners, in the space of their mesh, to its place in the grid, in cells.
+struct CellMap {
+  std::array<std::array<float, 4>, 3> rows;  ///< by axis: factors of x, y, z, and what is added
+  float last = 0;                            ///< the greatest place along an axis
+};
+
+/// Triangles [begin, end) of a mesh.
+struct MeshPart {
+  const Mesh& mesh;
+  std::uint32_t begin = 0, end = 0;
+};
+
+/// Finds the cells of triangles, the same ones for any instruction set; 0 along an axis along
+/// which the place is not a number. \returns false where a corner may not be finite.
+bool find_cells(const MeshPart& part, const CellMap& map, Isa isa, Cell* cells);
+
+}  // namespace frontmost

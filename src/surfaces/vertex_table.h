@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which of a cluster's vertices a corner is.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "surfaces/cluster_set.h"
+
+namespace frontmost {
+
+constexpr std::size_t padded_to_lanes(std::size_t count) {
+  return (count + Cluster::lanes - 1) / Cluster::lanes * Cluster::lanes;
+}
+
+/// The vertices of one cluster after the other. They are told apart by the bits of their position, not by number, which
+/// serves indexed meshes and soups alike: in a soup, as STL files are, every corner has a number of its own, and
+/// welding inside a cluster doubles what it holds.
+///
+/// A hash of the position leads to a guess, and what is guessed is compared. The guesses are never cleared, and one may
+/// be lost to another: a vertex is then there twice, which costs a place and changes no picture. In return nothing is
+/// searched, and nothing branches: whether a corner is new cannot be foreseen, and would cost more than all the rest.
+class VertexTable {
+ public:
+  static constexpr std::uint8_t none = 0xFF;
+
+  void clear() { count_ = 0; }
+  [[nodiscard]] std::size_t size() const { return count_; }
+
+  /// The position's number, or `none`: intern() would add it.
+  [[nodiscard]] std::uint8_t find(const glm::vec3& p) const {
+    const Bits bits = bits_of(p);
+    const std::uint8_t guess = guesses_[hash(bits)];
+    return is_at(guess, bits) ? guess : none;
+  }
+  /// The position's number; it is added when it is not found. Precondition: there is room for one more.
+  std::uint8_t intern(const glm::vec3& p) {
+    const Bits bits = bits_of(p);
+    std::uint8_t& guess = guesses_[hash(bits)];
+    const bool found = is_at(guess, bits);
+    const std::uint32_t number = found ? guess : count_;
+    x_[number] = p.x, y_[number] = p.y, z_[number] = p.z;
+    guess = static_cast<std::uint8_t>(number);
+    count_ += !found;
+    return static_cast<std::uint8_t>(number);
+  }
+  [[nodiscard]] glm::vec3 operator[](std::size_t i) const { return {x_[i], y_[i], z_[i]}; }
+
+  /// Repeats the last vertex until there are whole vectors. \returns the new size, 0 for an empty table.
+  std::size_t pad() {
+    if (count_ == 0) return 0;
+    const std::size_t end = padded_to_lanes(count_);
+    for (auto* axis : {&x_, &y_, &z_}) std::fill(axis->begin() + count_, axis->begin() + end, (*axis)[count_ - 1]);
+    return end;
+  }
+  /// Bounds of all vertices. Precondition: pad() was called after the last was added.
+  [[nodiscard]] Box bounds() const {
+    Box box;
+    for (int k = 0; k < 3; ++k) {
+      const auto& axis = k == 0 ? x_ : k == 1 ? y_ : z_;
+      // Side by side, so that the compiler can use vectors and no comparison waits for the one before.
+      std::array<float, Cluster::lanes> low, high;
+      low.fill(std::numeric_limits<float>::infinity());
+      high.fill(-std::numeric_limits<float>::infinity());
+      for (std::size_t i = 0; i < padded_to_lanes(count_); i += Cluster::lanes)
+        for (std::size_t lane = 0; lane < Cluster::lanes; ++lane) {
+          const float v = axis[i + lane];
+          low[lane] = v < low[lane] ? v : low[lane];
+          high[lane] = v > high[lane] ? v : high[lane];
+        }
+      box.low[k] = *std::min_element(low.begin(), low.end());
+      box.high[k] = *std::max_element(high.begin(), high.end());
+    }
+    return box;
+  }
+  [[nodiscard]] const float* x() const { return x_.data(); }
+  [[nodiscard]] const float* y() const { return y_.data(); }
+  [[nodiscard]] const float* z() const { return z_.data(); }
+
+ private:
+  using Bits = std::array<std::uint32_t, 3>;
+  static constexpr int kHashBits = 12;  // with fewer, guesses are lost more often
+
+  static Bits bits_of(const glm::vec3& p) {
+    Bits bits;
+    std::memcpy(bits.data(), &p, sizeof bits);
+    return bits;
+  }
+  /// Round numbers differ in their high bits only: multiplication brings them, and all others, to the top.
+  static std::uint32_t hash(const Bits& b) {
+    return (b[0] * 0x9E3779B1u + b[1] * 0x85EBCA77u + b[2] * 0xC2B2AE3Du) >> (32 - kHashBits);
+  }
+  [[nodiscard]] bool is_at(std::uint8_t number, const Bits& bits) const {
+    const Bits other = bits_of((*this)[number]);
+    const std::uint32_t differing = (bits[0] ^ other[0]) | (bits[1] ^ other[1]) | (bits[2] ^ other[2]);
+    return static_cast<bool>(int(number < count_) & int(differing == 0));
+  }
+
+  std::array<std::uint8_t, std::size_t(1) << kHashBits> guesses_{};
+  std::array<float, Cluster::max_vertices> x_{}, y_{}, z_{};  // a guess may be of a vertex that is not there
+  std::uint32_t count_ = 0;
+};
+
+}  // namespace frontmost

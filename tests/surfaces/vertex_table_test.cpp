@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surfaces/vertex_table.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+#include <set>
+
+namespace frontmost::test {
+namespace {
+
+TEST(VertexTable, GivesEveryPositionANumberOfItsOwn) {
+  VertexTable table;
+  std::mt19937 random(1);
+  for (int round = 0; round < 200; ++round) {
+    table.clear();
+    std::set<int> numbers;
+    for (std::size_t i = 0; i < Cluster::max_vertices; ++i) {
+      const glm::vec3 p(float(random() % 100), float(round), float(i));
+      EXPECT_EQ(table.find(p), VertexTable::none);  // whatever was there before clear()
+      const std::uint8_t number = table.intern(p);
+      EXPECT_TRUE(numbers.insert(number).second);
+      EXPECT_EQ(table[number], p);
+      EXPECT_EQ(table.find(p), number);
+      EXPECT_EQ(table.intern(p), number);
+      EXPECT_EQ(table.size(), i + 1);
+    }
+  }
+}
+
+TEST(VertexTable, FindsNearlyAllVerticesAgain) {
+  VertexTable table;
+  std::mt19937 random(2);
+  int lost = 0, looked_for = 0;
+  for (int round = 0; round < 500; ++round) {
+    table.clear();
+    std::vector<glm::vec3> positions;
+    for (int i = 0; i < Cluster::max_vertices; ++i)
+      positions.push_back(glm::vec3(float(random()), float(random()), float(random())));
+    for (const glm::vec3& p : positions) table.intern(p);
+    for (const glm::vec3& p : positions) lost += table.find(p) == VertexTable::none, ++looked_for;
+  }
+  EXPECT_LT(lost, looked_for / 50);
+}
+
+TEST(VertexTable, TellsPositionsApartByTheirBits) {
+  VertexTable table;
+  const std::uint8_t zero = table.intern({0, 0, 0}), minus = table.intern({-0.0f, 0, 0});
+  EXPECT_NE(zero, minus);
+  EXPECT_EQ(table.intern({0, 0, 0}), zero);
+}
+
+TEST(VertexTable, PadsToWholeVectorsWithinItsBounds) {
+  VertexTable table;
+  EXPECT_EQ(table.pad(), 0u);
+  EXPECT_TRUE(table.bounds().is_empty());
+  for (int i = 0; i < 17; ++i) table.intern({float(i), float(-i), float(100 + i)});
+  EXPECT_EQ(table.pad(), 32u);
+  EXPECT_EQ(table.x()[31], 16.0f);
+  EXPECT_EQ(table.bounds().low, glm::vec3(0, -16, 100));
+  EXPECT_EQ(table.bounds().high, glm::vec3(16, 0, 116));
+}
+
+}  // namespace
+}  // namespace frontmost::test
