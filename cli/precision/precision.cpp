@@ -85,6 +85,15 @@ void save_plot(const PrecisionRun& run) {
             *settings.precision.plot);
 }
 
+/// Known only after a model has told where its planes lie.
+void check_wanted(const Settings& settings, const ClipDistances& clip) {
+  const std::optional<glm::dvec2>& wanted = settings.precision.wanted;
+  if (!wanted || (wanted->y >= clip.near && wanted->y <= clip.far)) return;
+  throw UsageError(
+      fmt::format("--gap: the distance {:g} must lie between the near plane at {:g} and the far one at {:g}", wanted->y,
+                  clip.near, clip.far));
+}
+
 /// Fills in what a model adds.
 void fight(PrecisionRun& run, const View& view, const Execution& execution) {
   const ExactVisible exact = exact_visible(*run.surfaces, view, execution);
@@ -116,12 +125,15 @@ int run_precision(const Settings& settings) {
   std::optional<Surfaces> surfaces;
   PrecisionRun run{settings, nullptr, {}, {}};
   if (settings.model.empty()) {
-    run.results = buffers_of(settings, projection_without_model(settings));
+    const Projection projection = projection_without_model(settings);
+    check_wanted(settings, projection.clip);
+    run.results = buffers_of(settings, projection);
   } else {
     scene = load_model(settings, execution, progress);
     surfaces.emplace(*scene, execution);
     run.surfaces = &*surfaces;
     const View view = resolve_view(with_far(settings), *surfaces);
+    check_wanted(settings, view.projection.clip);
     run.results = buffers_of(settings, view.projection);
     fight(run, view, execution);
   }

@@ -117,10 +117,13 @@ TEST_F(Precision, WrongUsageIsNamed) {
   expect_failure("precision", 2, "give --near, or a --model");
   expect_failure("precision --near 1", 2, "give --far or --infinite");
   expect_failure("precision --near 1 --far 2 --infinite", 2, "--infinite and --far exclude each other");
+  expect_failure("precision --near 0.1 --far 1000 --gap 0.05,2000", 2,
+                 "--gap: the distance 2000 must lie between the near plane at 0.1 and the far one at 1000");
+  expect_failure("precision --near 0.1 --far 1000 --gap 0.05,0.05", 2, "--gap: the distance 0.05 must lie between");
+  expect_failure("precision --model builtin:teapot --gap 0.05,1e6", 2, "--gap: the distance 1e+06 must lie between");
   expect_failure("precision --near 2 --far 1", 2, "--near: must be below --far");
   expect_failure("precision --near 1 --far 2 --format D32", 2, "--format: 'D32' is not one of D8, D16, D24, F32");
   expect_failure("precision --near 1 --far 2 --gap 1", 2, "--gap: '1' has 1 values, 2 are needed");
-  expect_failure("precision --near 1 --far 2 --gap 1,5", 1, "distance: must lie between near and far");
   expect_failure("precision --near 1 --far 2 --heat-map a.png --format D24", 2,
                  "--heat-map needs --model and --format");
   expect_failure("precision cube.stl --near 1 --far 2", 2, "'cube.stl' is one word too many");
