@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Edges by their lower vertex, triangles side by side at each: a counting sort, and short sorts within.
+#include "lines/feature_edges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+
+namespace frontmost::lines_detail {
+namespace {
+
+/// A triangle at an edge, which is known by its lower vertex.
+struct Side {
+  std::uint32_t upper;  ///< the edge's other vertex
+  std::uint32_t triangle;
+  std::uint32_t opposite;  ///< the vertex that is not on the edge
+  bool is_forward;         ///< the triangle runs from the lower vertex to the upper
+};
+
+/// The sides of all edges, those of one lower vertex together.
+class SideTable {
+ public:
+  explicit SideTable(const WeldedMesh& mesh) : first_(mesh.positions.size() + 1, 0), sides_(3 * mesh.triangles.size()) {
+    for (const glm::uvec3& t : mesh.triangles)
+      for (int k = 0; k < 3; ++k) ++first_[std::min(t[k], t[(k + 1) % 3]) + 1];
+    for (std::size_t v = 0; v + 1 < first_.size(); ++v) first_[v + 1] += first_[v];
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+      const glm::uvec3& t = mesh.triangles[i];
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+        sides_[next[std::min(a, b)]++] = {std::max(a, b), i, t[(k + 2) % 3], a < b};
+      }
+    }
+  }
+
+  /// Sorted by edge, then by opposite vertex.
+  [[nodiscard]] std::span<Side> at(std::uint32_t vertex) {
+    const std::span<Side> sides(sides_.data() + first_[vertex], first_[vertex + 1] - first_[vertex]);
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+      return a.upper != b.upper ? a.upper < b.upper : a.opposite < b.opposite;
+    });
+    return sides;
+  }
+
+ private:
+  std::vector<std::uint32_t> first_;
+  std::vector<Side> sides_;
+};
+
+class Classifier {
+ public:
+  Classifier(const WeldedMesh& mesh, const std::vector<std::int8_t>& facing, const Surfaces& surfaces,
+             const LineOptions& options)
+      : mesh_(mesh), facing_(facing), surfaces_(surfaces), cosine_(std::cos(options.crease_angle)) {}
+
+  /// `sides` with different opposite vertices: a triangle that is there twice counts once.
+  [[nodiscard]] std::optional<EdgeKind> kind_of(std::span<const Side> sides) const {
+    if (sides.size() != 2) return EdgeKind::boundary;
+    const int a = side_of(sides[0]), b = side_of(sides[1]);
+    if (a * b > 0 || (a == 0) != (b == 0)) return EdgeKind::silhouette;
+    if (!is_one_surface(sides[0].triangle, sides[1].triangle)) return EdgeKind::border;
+    if (is_crease(sides[0], sides[1])) return EdgeKind::crease;
+    return std::nullopt;
+  }
+
+ private:
+  /// Of the eye's plane through the edge: where the triangle lies, whichever way it is wound.
+  [[nodiscard]] int side_of(const Side& side) const { return facing_[side.triangle] * (side.is_forward ? 1 : -1); }
+
+  [[nodiscard]] bool is_one_surface(std::uint32_t a, std::uint32_t b) const {
+    const PrimitiveSource p = surfaces_.source(mesh_.ids[a]), q = surfaces_.source(mesh_.ids[b]);
+    if (p.instance != q.instance) return false;
+    const Mesh& mesh = surfaces_.scene().meshes[p.mesh];
+    return mesh.material_of(p.triangle) == mesh.material_of(q.triangle);
+  }
+
+  [[nodiscard]] bool is_crease(const Side& a, const Side& b) const {
+    const glm::uvec3& t = mesh_.triangles[a.triangle];
+    const std::vector<glm::dvec3>& at = mesh_.positions;
+    const FacePlane plane(at[t.x], at[t.y], at[t.z]);
+    // Neighbours that run along their edge the same way are wound against each other.
+    const glm::dvec3 n = plane.normal(), m = normal(b.triangle) * (a.is_forward == b.is_forward ? -1.0 : 1.0);
+    const double along = glm::dot(n, m), size = std::sqrt(glm::dot(n, n) * glm::dot(m, m));
+    if (along > cosine_ * size) return false;
+    return along <= 0 || plane.height(at[b.opposite]).sign != 0;
+  }
+
+  [[nodiscard]] glm::dvec3 normal(std::uint32_t triangle) const {
+    const glm::uvec3& t = mesh_.triangles[triangle];
+    const glm::dvec3& a = mesh_.positions[t.x];
+    return glm::cross(mesh_.positions[t.y] - a, mesh_.positions[t.z] - a);
+  }
+
+  const WeldedMesh& mesh_;
+  const std::vector<std::int8_t>& facing_;
+  const Surfaces& surfaces_;
+  const double cosine_;
+};
+
+}  // namespace
+
+std::vector<FeatureEdge> find_features(const WeldedMesh& mesh, const std::vector<std::int8_t>& facing,
+                                       const Surfaces& surfaces, const LineOptions& options) {
+  SideTable table(mesh);
+  const Classifier classifier(mesh, facing, surfaces, options);
+  std::vector<FeatureEdge> features;
+  for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+    const std::span<Side> sides = table.at(v);
+    for (auto begin = sides.begin(); begin != sides.end();) {
+      const auto end = std::find_if(begin, sides.end(), [&](const Side& s) { return s.upper != begin->upper; });
+      const auto last = std::unique(begin, end, [](const Side& a, const Side& b) { return a.opposite == b.opposite; });
+      const std::span<const Side> edge(begin, last);
+      if (const std::optional<EdgeKind> kind = classifier.kind_of(edge))
+        features.push_back({v, begin->upper, edge[0].triangle, edge.size() > 1 ? edge[1].triangle : no_index, *kind});
+      begin = end;
+    }
+  }
+  return features;
+}
+
+}  // namespace frontmost::lines_detail

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// J. Shewchuk. Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates. 1997: doubles with a
+// bound on their rounding first, expansions where that leaves the sign open.
+#include "lines/sight.h"
+
+namespace frontmost::lines_detail {
+namespace {
+
+/// `exact_sign` is asked where the rounding of `rounded` matters.
+template <class ExactSign>
+Signed with_certain_sign(const Bounded& rounded, const ExactSign& exact_sign) {
+  if (rounded.value > rounded.error) return {rounded.value, 1};
+  if (rounded.value < -rounded.error) return {rounded.value, -1};
+  return {rounded.value, exact_sign()};
+}
+
+}  // namespace
+
+Sight::Sight(const View& view)
+    : eye_(view.eye()),
+      forward_(view.forward()),
+      right_(view.right()),
+      up_(view.up()),
+      near_(view.projection.clip.near),
+      far_(view.projection.clip.far),
+      is_parallel_(view.projection.orthographic) {
+  const Projection& p = view.projection;
+  scale_ = {view.width / (p.right - p.left), -view.height / (p.top - p.bottom)};
+  offset_ = {-p.left * scale_.x, -p.top * scale_.y};
+}
+
+Sight::EyePlane Sight::plane_through(const glm::dvec3& p, const glm::dvec3& q) const {
+  EyePlane plane;
+  plane.sight_ = this;
+  plane.p_ = p;
+  plane.q_ = q;
+  plane.normal_ = BoundedNormal(is_parallel_ ? forward_ : p - eye_, q - p);
+  return plane;
+}
+
+/// From p on: what is near p and q then has a small bound, however far away the eye is. Vectors from the eye to all
+/// three would leave every seventh sign of a finely divided sphere open.
+Signed Sight::EyePlane::turn(const glm::dvec3& x) const {
+  Bounded rounded = bounded_dot(normal_.value, normal_.error, x - p_);
+  rounded.value = -rounded.value;
+  return with_certain_sign(rounded, [&] {
+    const Leg along = sight_->is_parallel_ ? Leg{sight_->forward_} : Leg{p_, sight_->eye_};
+    return -sign_of_determinant(along, {q_, p_}, {x, p_});
+  });
+}
+
+glm::dvec3 Sight::in_eye(const glm::dvec3& position) const {
+  const glm::dvec3 from_eye = position - eye_;
+  return {glm::dot(from_eye, right_), glm::dot(from_eye, up_), glm::dot(from_eye, forward_)};
+}
+
+glm::dvec3 Sight::to_screen(const glm::dvec3& in_eye) const {
+  const double w = is_parallel_ ? 1 : in_eye.z;
+  return {in_eye.x / w * scale_.x + offset_.x, in_eye.y / w * scale_.y + offset_.y, in_eye.z};
+}
+
+Signed FacePlane::height(const glm::dvec3& x) const {
+  return with_certain_sign(bounded_dot(normal_.value, normal_.error, x - a_), [&] {
+    return sign_of_determinant({b_, a_}, {c_, a_}, {x, a_});
+  });
+}
+
+}  // namespace frontmost::lines_detail

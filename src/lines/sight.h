@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lines of sight of a view: what lies left and right of them, before and behind, by exact signs.
+#pragma once
+
+#include "base/exact_vector.h"
+#include "frontmost/view.h"
+
+namespace frontmost::lines_detail {
+
+/// A double whose sign is certain.
+struct Signed {
+  double value = 0;
+  int sign = 0;
+};
+
+/// Planes that contain lines of sight, and where points are on the screen.
+class Sight {
+ public:
+  /// Precondition: validate(view) passes.
+  explicit Sight(const View& view);
+
+  /// The plane through the eye (parallel: along the view) and two points.
+  class EyePlane {
+   public:
+    /// Positive where p, q and x turn left as they are seen.
+    [[nodiscard]] Signed turn(const glm::dvec3& x) const;
+
+   private:
+    friend class Sight;
+    const Sight* sight_ = nullptr;
+    glm::dvec3 p_, q_;
+    BoundedNormal normal_;
+  };
+  [[nodiscard]] EyePlane plane_through(const glm::dvec3& p, const glm::dvec3& q) const;
+
+  /// 1 for a triangle that is seen counter-clockwise, -1 clockwise, 0 from its edge.
+  [[nodiscard]] int facing(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) const {
+    return plane_through(a, b).turn(c).sign;
+  }
+
+  /// x and y in pixels, z the planar distance. Precondition in perspective: not in the plane of the eye.
+  [[nodiscard]] glm::dvec3 on_screen(const glm::dvec3& position) const { return to_screen(in_eye(position)); }
+  /// Eye space with the planar distance in place of z.
+  [[nodiscard]] glm::dvec3 in_eye(const glm::dvec3& position) const;
+  [[nodiscard]] glm::dvec3 to_screen(const glm::dvec3& in_eye) const;
+  [[nodiscard]] double near() const { return near_; }
+  [[nodiscard]] double far() const { return far_; }
+  [[nodiscard]] bool is_parallel() const { return is_parallel_; }
+  [[nodiscard]] const glm::dvec3& eye() const { return eye_; }
+  /// Where the eye looks: of unit length.
+  [[nodiscard]] const glm::dvec3& forward() const { return forward_; }
+
+ private:
+  glm::dvec3 eye_, forward_, right_, up_;
+  glm::dvec2 scale_, offset_;  ///< to pixels
+  double near_, far_;
+  bool is_parallel_;
+};
+
+/// The plane of a triangle.
+class FacePlane {
+ public:
+  FacePlane(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
+      : a_(a), b_(b), c_(c), normal_(b - a, c - a) {}
+  /// Positive on the side from which a, b, c are counter-clockwise.
+  [[nodiscard]] Signed height(const glm::dvec3& x) const;
+  [[nodiscard]] const glm::dvec3& normal() const { return normal_.value; }
+
+ private:
+  glm::dvec3 a_, b_, c_;
+  BoundedNormal normal_;
+};
+
+}  // namespace frontmost::lines_detail

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drawings whose every part is known.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "frontmost/lines.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+View view_from(const glm::dvec3& eye, bool is_parallel) {
+  View view;
+  view.width = view.height = 200;
+  view.world_from_eye =
+      look_at(eye, glm::dvec3(0), std::abs(eye.y) > 0.9 * glm::length(eye) ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0));
+  view.projection = is_parallel ? make_orthographic(-2, 2, -2, 2, {0.5, 50}) : make_projection(0.6, 1, {0.5, 50});
+  return view;
+}
+
+void add_quad(Mesh& mesh, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d) {
+  add_triangle(mesh, a, b, c);
+  add_triangle(mesh, a, c, d);
+}
+
+/// Outside out, without shared vertices.
+Mesh box(const glm::vec3& low, const glm::vec3& high) {
+  const auto corner = [&](int x, int y, int z) {
+    return glm::vec3(x ? high.x : low.x, y ? high.y : low.y, z ? high.z : low.z);
+  };
+  Mesh mesh;
+  add_quad(mesh, corner(0, 0, 0), corner(0, 0, 1), corner(0, 1, 1), corner(0, 1, 0));
+  add_quad(mesh, corner(1, 0, 0), corner(1, 1, 0), corner(1, 1, 1), corner(1, 0, 1));
+  add_quad(mesh, corner(0, 0, 0), corner(1, 0, 0), corner(1, 0, 1), corner(0, 0, 1));
+  add_quad(mesh, corner(0, 1, 0), corner(0, 1, 1), corner(1, 1, 1), corner(1, 1, 0));
+  add_quad(mesh, corner(0, 0, 0), corner(0, 1, 0), corner(1, 1, 0), corner(1, 0, 0));
+  add_quad(mesh, corner(0, 0, 1), corner(1, 0, 1), corner(1, 1, 1), corner(0, 1, 1));
+  return mesh;
+}
+
+std::size_t count(const Drawing& drawing, EdgeKind kind) {
+  std::size_t n = 0;
+  for (const DrawnEdge& edge : drawing.edges) n += edge.kind == kind;
+  return n;
+}
+
+TEST(KnownDrawings, ACubeHasNineEdgesSeenAndThreeHidden) {
+  for (const bool is_parallel : {false, true}) {
+    const Scene scene = scene_of(box(glm::vec3(-1), glm::vec3(1)));
+    const Drawing drawing = lines(Surfaces(scene), view_from({4, 5, 6}, is_parallel));
+    EXPECT_EQ(drawing.edges.size(), 12u);
+    EXPECT_EQ(count(drawing, EdgeKind::silhouette), 6u);
+    EXPECT_EQ(count(drawing, EdgeKind::crease), 6u);
+    ASSERT_EQ(drawing.parts.size(), 12u);
+    std::size_t hidden = 0;
+    for (const DrawnPart& part : drawing.parts) {
+      EXPECT_EQ(part.begin, 0);
+      EXPECT_EQ(part.end, 1);
+      const DrawnEdge& edge = drawing.edges[part.edge];
+      const bool meets_far_corner = edge.from == glm::dvec3(-1) || edge.to == glm::dvec3(-1);
+      EXPECT_EQ(part.hidden_by != 0, meets_far_corner);
+      hidden += part.hidden_by != 0;
+    }
+    EXPECT_EQ(hidden, 3u);
+  }
+}
+
+TEST(KnownDrawings, ACubeFromTheFrontHidesItsBackEdgesBehindItsFrontOnes) {
+  const Scene scene = scene_of(box(glm::vec3(-1), glm::vec3(1)));
+  const Drawing drawing = lines(Surfaces(scene), view_from({0, 0, 10}, true));
+  for (const DrawnPart& part : drawing.parts) {
+    const DrawnEdge& edge = drawing.edges[part.edge];
+    // Exactly behind the front face's outline counts as hidden, and so do the edges that are seen as points.
+    const bool is_front = edge.from.z > 0 && edge.to.z > 0;
+    EXPECT_EQ(part.hidden_by == 0, is_front) << edge.from.z << " " << edge.to.z;
+  }
+}
+
+TEST(KnownDrawings, APlateCutsTheEdgesBehindItWhereItEnds) {
+  // The square from -0.5 to 0.5 at z = 1 before that from -1 to 1 at z = 0, one shifted so that sides are cut in parts.
+  Mesh mesh;
+  add_quad(mesh, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0});
+  add_quad(mesh, {0.5, -0.5, 1}, {1.5, -0.5, 1}, {1.5, 0.25, 1}, {0.5, 0.25, 1});
+  const Scene scene = scene_of(mesh);
+  const Drawing drawing = lines(Surfaces(scene), view_from({0, 0, 10}, true), {.counts_hidden = true});
+  EXPECT_EQ(drawing.edges.size(), 8u);  // diagonals are flat
+  EXPECT_EQ(count(drawing, EdgeKind::boundary), 8u);
+  EXPECT_EQ(drawing.parts.size(), 10u);
+  for (const DrawnPart& part : drawing.parts) {
+    const DrawnEdge& edge = drawing.edges[part.edge];
+    if (edge.from.x != 1 || edge.to.x != 1) {
+      EXPECT_EQ(part.hidden_by, 0u);
+      continue;
+    }
+    // The right side of the square behind, from y = -1 to 1.
+    EXPECT_EQ(edge.from.y, -1);
+    const double y0 = -1 + 2 * part.begin, y1 = -1 + 2 * part.end;
+    EXPECT_EQ(part.hidden_by, y0 < -0.5 || y1 > 0.25 ? 0u : 1u);
+    EXPECT_TRUE(y0 == -1 || y0 == -0.5 || y0 == 0.25) << y0;
+    EXPECT_TRUE(y1 == 1 || y1 == -0.5 || y1 == 0.25) << y1;
+    EXPECT_DOUBLE_EQ(part.from.y, 100 - 50 * y0);
+    EXPECT_DOUBLE_EQ(part.from.x, 150);
+  }
+}
+
+TEST(KnownDrawings, LayersAreCounted) {
+  Mesh mesh;
+  for (int i = 0; i < 5; ++i)
+    add_quad(mesh, {-1, -1, float(i)}, {1, -1, float(i)}, {1, 1, float(i)}, {-1, 1, float(i)});
+  add_quad(mesh, {-0.5f, -0.5f, -1}, {0.5f, -0.5f, -1}, {0.5f, 0.5f, -1}, {-0.5f, 0.5f, -1});
+  const Scene scene = scene_of(mesh);
+  const Drawing drawing = lines(Surfaces(scene), view_from({0, 0, 10}, true), {.counts_hidden = true});
+  for (const DrawnPart& part : drawing.parts) {
+    const double z = drawing.edges[part.edge].from.z;
+    EXPECT_EQ(part.hidden_by, std::uint32_t(z < 0 ? 5 : 4 - z));
+  }
+}
+
+TEST(KnownDrawings, FlatNeighboursAndTwinsDrawNothingBetween) {
+  Mesh mesh;
+  add_quad(mesh, {-1, -1, 0}, {0, -1, 0}, {0, 1, 0}, {-1, 1, 0});
+  add_quad(mesh, {0, -1, 0}, {1, -1, 0}, {1, 1, 0}, {0, 1, 0});
+  add_quad(mesh, {0, -1, 0}, {1, -1, 0}, {1, 1, 0}, {0, 1, 0});  // once more
+  const Scene scene = scene_of(mesh);
+  const Drawing drawing = lines(Surfaces(scene), view_from({1, 2, 8}, false), {.crease_angle = 0});
+  EXPECT_EQ(drawing.edges.size(), 6u);
+  for (const DrawnPart& part : drawing.parts) EXPECT_EQ(part.hidden_by, 0u);
+}
+
+TEST(KnownDrawings, WindingDoesNotMatter) {
+  Mesh mesh = box(glm::vec3(-1), glm::vec3(1));
+  for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) std::swap(mesh.triangles[i].x, mesh.triangles[i].y);
+  const Scene scene = scene_of(mesh);
+  const Drawing drawing = lines(Surfaces(scene), view_from({4, 5, 6}, false));
+  EXPECT_EQ(count(drawing, EdgeKind::silhouette), 6u);
+  EXPECT_EQ(count(drawing, EdgeKind::crease), 6u);
+  EXPECT_EQ(drawing.edges.size(), 12u);
+}
+
+TEST(KnownDrawings, BordersBetweenMaterialsAndInstances) {
+  Mesh mesh;
+  add_quad(mesh, {-1, -1, 0}, {0, -1, 0}, {0, 1, 0}, {-1, 1, 0});
+  add_quad(mesh, {0, -1, 0}, {1, -1, 0}, {1, 1, 0}, {0, 1, 0});
+  mesh.material_ids = {0, 0, 1, 1};
+  Scene scene = scene_of(mesh);
+  scene.materials.resize(2);
+  const View view = view_from({1, 2, 8}, false);
+  EXPECT_EQ(count(lines(Surfaces(scene), view), EdgeKind::border), 1u);
+  scene.instances.push_back({"above", 0, glm::dmat4({1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 2, 0, 1})});
+  const Surfaces both(scene);
+  // One each, and two where the instances touch.
+  EXPECT_EQ(count(lines(both, view), EdgeKind::border), 4u);
+}
+
+TEST(KnownDrawings, WhatLiesOutsideOfTheViewIsCutOff) {
+  Mesh mesh;
+  add_triangle(mesh, {-1, 0, 0}, {100, 0, 0}, {-1, 100, 0});
+  const Scene scene = scene_of(mesh);
+  const Drawing drawing = lines(Surfaces(scene), view_from({0, 0, 10}, true));
+  ASSERT_EQ(drawing.edges.size(), 3u);
+  ASSERT_EQ(drawing.parts.size(), 2u);
+  for (const DrawnPart& part : drawing.parts)
+    for (const glm::dvec2& p : {part.from, part.to}) {
+      EXPECT_GE(p.x, -1e-9);
+      EXPECT_LE(p.x, 200 + 1e-9);
+      EXPECT_GE(p.y, -1e-9);
+    }
+}
+
+TEST(KnownDrawings, WhatIsBeforeTheNearPlaneHidesNothing) {
+  for (const bool is_parallel : {false, true}) {
+    Mesh mesh;
+    add_triangle(mesh, {-1, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    add_quad(mesh, {-3, -3, 9.8f}, {3, -3, 9.8f}, {3, 3, 9.8f}, {-3, 3, 9.8f});
+    const Scene scene = scene_of(mesh);
+    for (const DrawnPart& part : lines(Surfaces(scene), view_from({0, 0, 10}, is_parallel)).parts)
+      EXPECT_EQ(part.hidden_by, 0u);
+  }
+}
+
+TEST(KnownDrawings, NothingAndNonsense) {
+  const Scene empty;
+  EXPECT_TRUE(lines(Surfaces(empty), view_from({0, 0, 5}, false)).edges.empty());
+  const Scene scene = scene_of(box(glm::vec3(-1), glm::vec3(1)));
+  const Surfaces surfaces(scene);
+  for (const double angle : {-0.1, 3.2, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THROW((void)lines(surfaces, view_from({0, 0, 5}, false), {.crease_angle = angle}), Error);
+  EXPECT_EQ(lines(surfaces, view_from({0, 0, 5}, false), {.crease_angle = std::numbers::pi}).edges.size(), 4u);
+}
+
+}  // namespace
+}  // namespace frontmost::test
