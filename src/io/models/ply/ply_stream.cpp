@@ -292,30 +292,26 @@ class PlyStream final : public ModelStream {
   bool has_warned_ = false;
 };
 
-/// Whether the text holds a whole line that begins with "end_header"; comments may have the word too.
-bool holds_end(std::string_view text) {
-  constexpr std::string_view word = "end_header";
-  for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
-    const std::size_t before = text.find_last_not_of(" \t", at - 1);
-    if (at > 0 && before != std::string_view::npos && (text[before] == '\n' || text[before] == '\r'))
-      return text.find_first_of("\r\n", at) < text.size() - 1;  // and the byte after, should there be two
-  }
-  return false;
-}
-
-void extend_to_header(StreamStart& start) {
-  const auto text = [&] {
-    return std::string_view(reinterpret_cast<const char*>(start.start.data()), start.start.size());
-  };
-  while (!holds_end(text()) && !start.has_ended && start.start.size() < max_header)
+/// Reads on until the header is whole. Only its reader knows where it ends: comments and longer words may hold
+/// "end_header" too, and lines may be joined.
+PlyHeader read_header(StreamStart& start, const ModelSource& source) {
+  while (true) {
+    const bool is_all = start.has_ended || start.start.size() >= max_header;
+    try {
+      PlyHeader header = read_ply_header(start.start, start.greatest_size(), source);
+      // With the byte after, should its line end in two.
+      if (is_all || header.size < start.start.size()) return header;
+    } catch (const Error&) {
+      if (is_all) throw;
+    }
     start.extend(2 * start.start.size());
+  }
 }
 
 }  // namespace
 
 std::unique_ptr<ModelStream> open_ply_stream(StreamStart start, const ModelSource& source) {
-  extend_to_header(start);
-  PlyHeader header = read_ply_header(start.start, start.greatest_size(), source);
+  PlyHeader header = read_header(start, source);
   if (header.encoding == PlyEncoding::ascii)
     throw Error(ErrorCode::unsupported, source.name() + ": text PLY cannot be streamed; binary STL and PLY can");
   if (!start.bytes->can_rewind())
