@@ -2,6 +2,7 @@
 #include "view/patch_grid.h"
 
 #include <algorithm>
+#include <cmath>
 #include <compare>
 #include <map>
 #include <tuple>
@@ -108,17 +109,23 @@ class GridBuilder {
 
 }  // namespace
 
+bool is_finite(const BezierPatch& patch) {
+  for (const glm::dvec3& p : patch.points)
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return false;
+  return true;
+}
+
 std::vector<EdgeLevels> edge_levels(std::span<const BezierPatch> patches, std::span<const PatchLevel> levels) {
   std::map<EdgePoints, int, EdgeOrder> finest;
   const auto own = [&](std::size_t patch, std::size_t edge) { return edge < 2 ? levels[patch].v : levels[patch].u; };
   for (std::size_t p = 0; p < patches.size(); ++p)
-    for (std::size_t e = 0; e < 4; ++e) {
+    for (std::size_t e = 0; e < 4 && is_finite(patches[p]); ++e) {  // what is no number has no order
       int& level = finest[edge_of(patches[p], e)];
       level = std::max(level, own(p, e));
     }
   std::vector<EdgeLevels> result(patches.size());
   for (std::size_t p = 0; p < patches.size(); ++p)
-    for (std::size_t e = 0; e < 4; ++e) result[p][e] = finest[edge_of(patches[p], e)];
+    for (std::size_t e = 0; e < 4 && is_finite(patches[p]); ++e) result[p][e] = finest[edge_of(patches[p], e)];
   return result;
 }
 

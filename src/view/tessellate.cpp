@@ -13,12 +13,6 @@ namespace {
 
 constexpr double kMostTriangles = 1 << 26;
 
-bool is_finite(const BezierPatch& patch) {
-  for (const glm::dvec3& p : patch.points)
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return false;
-  return true;
-}
-
 void append_globe(const Sphere& sphere, int rings, std::uint32_t face, Mesh& mesh) {
   const Mesh globe = frontmost::sphere(rings);
   const auto first = std::uint32_t(mesh.positions.size()), first_texcoord = std::uint32_t(mesh.texcoords.values.size());

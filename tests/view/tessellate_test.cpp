@@ -261,6 +261,7 @@ TEST(Tessellation, SurvivesWhatIsNoSurface) {
   scene.meshes[0].patches[0].points[5].x = nan;
   scene.meshes[0].patches[1].points[0].y = inf;
   for (glm::dvec3& p : scene.meshes[0].patches[2].points) p = {1, 1, 1};
+  for (const std::size_t p : {4, 7, 8}) scene.meshes[0].patches[p].points[p].z = nan;  // on edges, which have no order
   scene.meshes[0].spheres = {{{0, 0, 0}, -1}, {{0, 0, 0}, nan}, {{nan, 0, 0}, 1}};
   const Scene cut = tessellate(scene, looking_at_origin({3, 5, 9}), 0.5);
   EXPECT_NO_THROW(validate(cut));

@@ -14,6 +14,12 @@ constexpr double kTurn = 6.283185307179586477;
 
 bool is_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
+/// What squares of products stay finite of. Not NaN.
+bool is_moderate(const glm::dvec3& v) {
+  constexpr double kFarthest = 0x1p250;
+  return std::abs(v.x) <= kFarthest && std::abs(v.y) <= kFarthest && std::abs(v.z) <= kFarthest;
+}
+
 /// Of a point of the unit sphere, as Sphere says.
 glm::dvec2 parameters_of(const glm::dvec3& p) {
   const double around = std::atan2(-p.z, p.x) / kTurn;
@@ -45,8 +51,8 @@ std::optional<PlacedSphere> place(const Sphere& sphere, const glm::dmat4& world_
   placed.centre = glm::dvec3(world_from_mesh * glm::dvec4(sphere.centre, 1));
   placed.reach = {glm::length(rows[0]), glm::length(rows[1]), glm::length(rows[2])};
   placed.id = id;
-  bool usable = is_finite(placed.centre) && is_finite(placed.reach);
-  for (int k = 0; k < 3; ++k) usable = usable && is_finite(placed.unit_from_world[k]);
+  bool usable = is_moderate(placed.centre) && is_moderate(placed.reach);
+  for (int k = 0; k < 3; ++k) usable = usable && is_moderate(placed.unit_from_world[k]);
   return usable ? std::optional(placed) : std::nullopt;
 }
 

@@ -18,7 +18,8 @@ struct PlacedSphere {
   [[nodiscard]] DoubleBox bounds() const;
 };
 
-/// None where nothing can be met: not finite, no positive radius, a singular transform.
+/// None where nothing can be met: no positive radius, a singular transform, sizes and places that are not finite or
+/// beyond 2^250 or its inverse.
 [[nodiscard]] std::optional<PlacedSphere> place(const Sphere& sphere, const glm::dmat4& world_from_mesh,
                                                 PrimitiveId id);
 
