@@ -62,35 +62,34 @@ glm::dmat4 pose_of(const LidarSettings& s, const Surfaces& surfaces) {
   return pose;
 }
 
-Image range_image(const RangeScan& scan, const Surfaces& surfaces, bool with_ids) {
+Image range_image(const RangeScan& scan, const RayScene& rays, bool with_ids) {
   Image image{scan.width, scan.height, {}};
   image.channels.push_back({"distance", scan.ranges});
   if (!with_ids) return image;
   for (const IdKind kind : {IdKind::primitive, IdKind::object}) {
-    const std::span<const PrimitiveId> primitives(scan.primitives.data(), scan.primitives.size());
-    Image ids = id_image(surfaces, {scan.width, scan.height}, primitives, kind);
+    Image ids = rays.ids(scan, kind);
     image.channels.push_back(std::move(ids.channels.front()));
   }
   return image;
 }
 
-void write(const std::string& path, const RangeScan& scan, const Surfaces& surfaces, const Execution& execution) {
+void write(const std::string& path, const RangeScan& scan, const RayScene& rays, const Execution& execution) {
   stop_if_interrupted();
   const WritingFiles writing;
   const std::string suffix = std::filesystem::path(path).extension().string();
-  if (suffix == ".ply") return save_text(points_ply(scan, surfaces), path);
-  save(range_image(scan, surfaces, suffix == ".exr"), path, {}, execution);
+  if (suffix == ".ply") return save_text(points_ply(scan, rays), path);
+  save(range_image(scan, rays, suffix == ".exr"), path, {}, execution);
 }
 
 /// What was met, in all and by object.
-Json report(const Settings& settings, const RangeScan& scan, const Surfaces& surfaces) {
-  std::vector<std::uint64_t> points(surfaces.scene().instances.size());
+Json report(const Settings& settings, const RangeScan& scan, const RayScene& rays) {
+  std::vector<std::uint64_t> points(rays.scene().instances.size());
   std::uint64_t met = 0;
   double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
   for (std::size_t i = 0; i < scan.primitives.size(); ++i) {
     if (scan.primitives[i] == no_primitive) continue;
     ++met;
-    ++points[surfaces.source(scan.primitives[i]).instance];
+    ++points[rays.source(scan.primitives[i]).instance];
     nearest = std::min(nearest, double(scan.ranges[i]));
     farthest = std::max(farthest, double(scan.ranges[i]));
   }
@@ -101,7 +100,7 @@ Json report(const Settings& settings, const RangeScan& scan, const Surfaces& sur
   json["objects"] = Json::array();
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (points[i] == 0) continue;
-    json["objects"].push_back({{"object", i}, {"name", surfaces.scene().instances[i].name}, {"points", points[i]}});
+    json["objects"].push_back({{"object", i}, {"name", rays.scene().instances[i].name}, {"points", points[i]}});
   }
   return json;
 }
@@ -118,15 +117,16 @@ int run_lidar(const Settings& settings) {
   const Surfaces surfaces(scene, execution);
   camera.world_from_eye = pose_of(settings.lidar, surfaces);
   Stopwatch watch;
-  const RayIndex index(surfaces, execution);
+  const OwnRayScene index(surfaces, execution);
+  const RayScene rays = index.get();
   const double index_time = watch.milliseconds();
   watch = {};
-  const RangeScan result = scan(index, camera, execution);
+  const RangeScan result = rays.scan(camera, execution).scan;
   const double scan_time = watch.milliseconds();
   progress.clear();
-  for (const std::string& path : settings.lidar.outputs) write(path, result, surfaces, execution);
+  for (const std::string& path : settings.lidar.outputs) write(path, result, rays, execution);
   if (!settings.run.json) return exit_done;
-  Json json = report(settings, result, surfaces);
+  Json json = report(settings, result, rays);
   json["timings_ms"] = {{"index", index_time}, {"visible", scan_time}};
   print(dump(json));
   return exit_done;

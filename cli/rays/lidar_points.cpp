@@ -32,7 +32,7 @@ void append_point(std::string& bytes, const RangeScan& scan, const glm::ivec2& a
 
 }  // namespace
 
-std::string points_ply(const RangeScan& scan, const Surfaces& surfaces) {
+std::string points_ply(const RangeScan& scan, const RayScene& rays) {
   const auto missed = std::count(scan.primitives.begin(), scan.primitives.end(), no_primitive);
   const std::size_t points = scan.primitives.size() - std::size_t(missed);
   std::string bytes = fmt::format(
@@ -44,7 +44,7 @@ std::string points_ply(const RangeScan& scan, const Surfaces& surfaces) {
   for (int y = 0; y < scan.height; ++y)
     for (int x = 0; x < scan.width; ++x) {
       const PrimitiveId id = scan.primitives[scan.index(x, y)];
-      if (id != no_primitive) append_point(bytes, scan, {x, y}, surfaces.source(id));
+      if (id != no_primitive) append_point(bytes, scan, {x, y}, rays.source(id));
     }
   return bytes;
 }

@@ -2,14 +2,15 @@
 // A scan as a file of points.
 #pragma once
 
-#include <frontmost/ray_camera.h>
-
 #include <string>
+
+#include "cli/rays/ray_scene.h"
 
 namespace frontmost::cli {
 
 /// A binary PLY with a vertex for every ray that meets something, by rings and then by steps: x, y, z and range
-/// (floats, in the model's own coordinates), object, triangle (within its object), ring and step (32 bits).
-[[nodiscard]] std::string points_ply(const RangeScan& scan, const Surfaces& surfaces);
+/// (floats, in the model's own coordinates), object, triangle (within its object; of a curved one
+/// its sphere or patch), ring and step (32 bits).
+[[nodiscard]] std::string points_ply(const RangeScan& scan, const RayScene& rays);
 
 }  // namespace frontmost::cli

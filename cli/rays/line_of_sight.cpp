@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // frontmost sight: whether one point sees another, for one pair of points or a file of them.
 #include <fmt/format.h>
-#include <frontmost/raycast.h>
 
 #include "cli/command.h"
 #include "cli/console.h"
@@ -10,6 +9,7 @@
 #include "cli/json_numbers.h"
 #include "cli/model.h"
 #include "cli/rays/number_lines.h"
+#include "cli/rays/ray_scene.h"
 
 namespace frontmost::cli {
 namespace {
@@ -30,36 +30,37 @@ std::vector<Segment> pairs_of(const SightSettings& sight) {
 
 /// What stands in the way.
 struct Blocked {
-  PrimitiveSource source;
+  RayElement by;
   std::string object;
   glm::dvec3 point;
   double distance;
 };
 
-Blocked blocked_by(const RayHit& hit, const Segment& pair, const Surfaces& surfaces) {
+Blocked blocked_by(const CurvedHit& hit, const Segment& pair, const RayScene& rays) {
   const glm::dvec3 from(pair.from), along = glm::dvec3(pair.to) - from;
-  const PrimitiveSource source = surfaces.source(hit.primitive);
-  return {source, surfaces.scene().instances[source.instance].name, from + hit.t * along, hit.t * glm::length(along)};
+  const RayElement by = rays.element(hit.primitive);
+  return {by, rays.scene().instances[by.instance].name, from + hit.t * along, hit.t * glm::length(along)};
 }
 
-Json pair_json(const RayHit& hit, const Segment& pair, const Surfaces& surfaces) {
+Json pair_json(const CurvedHit& hit, const Segment& pair, const RayScene& rays) {
   Json json = {{"from", to_json(pair.from)}, {"to", to_json(pair.to)}, {"clear", !hit}};
   if (!hit) return json;
-  const Blocked by = blocked_by(hit, pair, surfaces);
-  json["object"] = by.source.instance;
-  json["name"] = by.object;
-  json["triangle"] = by.source.triangle;
-  json["point"] = to_json(by.point);
-  json["distance"] = by.distance;
+  const Blocked blocked = blocked_by(hit, pair, rays);
+  json["object"] = blocked.by.instance;
+  json["name"] = blocked.object;
+  json[std::string(blocked.by.kind)] = blocked.by.number;
+  json["point"] = to_json(blocked.point);
+  json["distance"] = blocked.distance;
   return json;
 }
 
-std::string pair_text(const RayHit& hit, const Segment& pair, const Surfaces& surfaces) {
+std::string pair_text(const CurvedHit& hit, const Segment& pair, const RayScene& rays) {
   if (!hit) return "clear\n";
-  const Blocked by = blocked_by(hit, pair, surfaces);
-  const std::string name = by.object.empty() ? "" : " (" + printable_name(by.object) + ")";
-  return fmt::format("blocked by object {}{}, triangle {}, at {:.6g},{:.6g},{:.6g}, distance {:.6g}\n",
-                     by.source.instance, name, by.source.triangle, by.point.x, by.point.y, by.point.z, by.distance);
+  const Blocked blocked = blocked_by(hit, pair, rays);
+  const std::string name = blocked.object.empty() ? "" : " (" + printable_name(blocked.object) + ")";
+  return fmt::format("blocked by object {}{}, {} {}, at {:.6g},{:.6g},{:.6g}, distance {:.6g}\n", blocked.by.instance,
+                     name, blocked.by.kind, blocked.by.number, blocked.point.x, blocked.point.y, blocked.point.z,
+                     blocked.distance);
 }
 
 }  // namespace
@@ -71,9 +72,9 @@ int run_sight(const Settings& settings) {
   const Execution execution = execution_for(settings.run, progress);
   const Scene scene = load_model(settings, execution, progress);
   const Surfaces surfaces(scene, execution);
-  const RayIndex index(surfaces, execution);
-  std::vector<RayHit> hits(pairs.size());
-  closest_hits(index, pairs, hits, execution);
+  const OwnRayScene index(surfaces, execution);
+  const RayScene rays = index.get();
+  const std::vector<CurvedHit> hits = rays.closest(pairs, execution);
   progress.clear();
   Json list = Json::array();
   std::string text;
@@ -81,9 +82,9 @@ int run_sight(const Settings& settings) {
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     clear += !hits[i];
     if (settings.run.json) {
-      list.push_back(pair_json(hits[i], pairs[i], surfaces));
+      list.push_back(pair_json(hits[i], pairs[i], rays));
     } else {
-      text += pair_text(hits[i], pairs[i], surfaces);
+      text += pair_text(hits[i], pairs[i], rays);
     }
   }
   if (settings.run.json)

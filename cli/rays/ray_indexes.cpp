@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "cli/render/output_writer.h"
+
 namespace frontmost::cli {
 namespace {
 
@@ -12,10 +14,11 @@ bool has_ray_shadows(const Job& job) {
   return job.output.shading == Shading::lit && job.output.shadows == Shadows::rays;
 }
 
-/// True where something of the model lets light through, or everything shall.
+/// True where layers are looked for, or something of the model lets light through.
 bool sees_through(const Job& job, const Scene& scene) {
-  return job.output.opacity < 1 || std::any_of(scene.materials.begin(), scene.materials.end(),
-                                               [](const Material& m) { return m.alpha != Material::Alpha::opaque; });
+  return job.output.opacity < 1 || !job.layer_files.empty() || wants(job, OutputKind::deep) ||
+         std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const Material& m) { return m.alpha != Material::Alpha::opaque; });
 }
 
 }  // namespace
@@ -34,7 +37,7 @@ void plan_curved(const Scene& scene, const RunSettings& run, std::vector<Job>& j
 }
 
 bool meets_curved(const Job& job, const RunSettings& run, const Scene& scene) {
-  return run.method == Method::raycast && is_pinhole(job) && !job.view.tessellation_error && has_curved(scene);
+  return (run.method == Method::raycast || !is_pinhole(job)) && !job.view.tessellation_error && has_curved(scene);
 }
 
 bool needs_index(const Job& job, const RunSettings& run) {

@@ -14,7 +14,7 @@ namespace frontmost::cli {
 
 /// Says how curved models are drawn, by the jobs' tessellation errors: rays meet the surfaces themselves unless
 /// triangles are asked for, or needed: what is seen through something is looked for among triangles. Cameras that are
-/// no pinholes have no screen to measure an error on.
+/// no pinholes have no screen to measure an error on, and see nothing through anything.
 void plan_curved(const Scene& scene, const RunSettings& run, std::vector<Job>& jobs);
 
 /// True where the pixels' rays meet curved surfaces themselves. After plan_curved().

@@ -6,6 +6,7 @@
 #include <frontmost/shade.h>
 
 #include "cli/failure.h"
+#include "cli/rays/ray_scene.h"
 #include "cli/render/output_writer.h"
 #include "cli/render/reference.h"
 #include "cli/stopwatch.h"
@@ -37,17 +38,14 @@ ViewResult resolve(const Job& job, const Surfaces& surfaces) {
   return result;
 }
 
-RangeScan timed_scan(const RayCamera& camera, const RenderContext& context, std::vector<double>& times) {
+CurvedScan timed_scan(const RayScene& rays, const RayCamera& camera, const RenderContext& context,
+                      std::vector<double>& times) {
   for (int i = 1;; ++i) {
     const Stopwatch watch;
-    RangeScan result = scan(*context.index, camera, context.execution);
+    CurvedScan result = rays.scan(camera, context.execution);
     times.push_back(watch.milliseconds());
     if (i >= context.run.repeat) return result;
   }
-}
-
-Image ids(const Surfaces& surfaces, const RangeScan& around, IdKind kind) {
-  return id_image(surfaces, {around.width, around.height}, {around.primitives.data(), around.primitives.size()}, kind);
 }
 
 Image ranges(const RangeScan& around, const char* name, float background) {
@@ -59,15 +57,15 @@ Image ranges(const RangeScan& around, const char* name, float background) {
   return image;
 }
 
-Image map_of(OutputKind kind, const Job& job, const Surfaces& surfaces, const RangeScan& around) {
+Image map_of(OutputKind kind, const Job& job, const RayScene& rays, const RangeScan& around) {
   const float background = job.output.background_depth;
   switch (kind) {
     // There is no image plane that a depth could be measured from.
     case OutputKind::depth: return ranges(around, "Z", background);
     case OutputKind::ray_distance: return ranges(around, "distance", background);
-    case OutputKind::primitive_ids: return ids(surfaces, around, IdKind::primitive);
-    case OutputKind::object_ids: return ids(surfaces, around, IdKind::object);
-    case OutputKind::material_ids: return ids(surfaces, around, IdKind::material);
+    case OutputKind::primitive_ids: return rays.ids(around, IdKind::primitive);
+    case OutputKind::object_ids: return rays.ids(around, IdKind::object);
+    case OutputKind::material_ids: return rays.ids(around, IdKind::material);
     case OutputKind::picture:
     case OutputKind::deep:
     case OutputKind::window_depth:
@@ -76,12 +74,12 @@ Image map_of(OutputKind kind, const Job& job, const Surfaces& surfaces, const Ra
   return {};
 }
 
-Seen summary(const Surfaces& surfaces, const RangeScan& around) {
+Seen summary(const RayScene& rays, const RangeScan& around) {
   Seen seen;
-  Image both = ids(surfaces, around, IdKind::primitive);
+  Image both = rays.ids(around, IdKind::primitive);
   both.channels.push_back({"distance", around.ranges});
   seen.hash = content_hash(both);
-  count_objects(surfaces, ids(surfaces, around, IdKind::object), seen);
+  count_objects(rays.surfaces, rays.ids(around, IdKind::object), seen);
   return seen;
 }
 
@@ -97,18 +95,20 @@ void check_outputs_around(const Job& job) {
 
 ViewResult render_around(const Job& job, const RenderContext& context) {
   ViewResult result = resolve(job, context.surfaces);
-  const RangeScan around = timed_scan(camera_of(result), context, result.timings.visible);
+  const RayScene rays{context.surfaces, context.index, context.curved};
+  const CurvedScan met = timed_scan(rays, camera_of(result), context, result.timings.visible);
+  const RangeScan& around = met.scan;
   const bool reports = job.output.hash || context.run.json;
-  const Seen seen = summary(context.surfaces, around);
+  const Seen seen = summary(rays, around);
   if (reports) result.seen = seen;
   if (seen.pixels == 0) result.warnings.emplace_back("nothing is in view: no ray meets the model");
   std::optional<Image> picture;
   if (wants(job, OutputKind::picture) || context.keep_picture || job.output.reference) {
     const Stopwatch watch;
-    picture = shade(context.surfaces, around, {job.output.shading, job.output.background}, context.execution);
+    picture = rays.shade(met, {job.output.shading, job.output.background}, context.execution);
     result.timings.shade = watch.milliseconds();
   }
-  const auto map = [&](OutputKind kind) { return map_of(kind, job, context.surfaces, around); };
+  const auto map = [&](OutputKind kind) { return map_of(kind, job, rays, around); };
   write_files({job, context.execution, map, picture ? &*picture : nullptr}, result);
   if (job.output.reference) result.reference = compare_with_reference(*picture, job, context.execution);
   if (context.keep_picture) result.picture = std::move(picture);

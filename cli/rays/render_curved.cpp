@@ -47,7 +47,8 @@ std::optional<Visible> seen_by_light(const Job& job, const RenderContext& contex
 
 }  // namespace
 
-ViewResult render_curved_view(const Job& job, const RenderContext& context, const CurvedIndex& index) {
+ViewResult render_curved_view(const Job& job, const RenderContext& context) {
+  const CurvedIndex& index = *context.curved;
   ViewResult result;
   result.name = job.name;
   result.view = resolve_view(job.view, context.surfaces);
@@ -81,7 +82,7 @@ ViewResult render_tessellated_view(const Job& job, const RenderContext& context)
   std::optional<RayIndex> index;
   if (needs_index(job, context.run)) index.emplace(surfaces, context.execution);
   return render_view(job, {surfaces, context.run, context.execution, context.keep_picture, index ? &*index : nullptr,
-                           context.by_rays, &context.surfaces});
+                           context.by_rays, nullptr, &context.surfaces});
 }
 
 }  // namespace frontmost::cli

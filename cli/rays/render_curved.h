@@ -8,10 +8,10 @@
 
 namespace frontmost::cli {
 
-/// Like render_view(), but every ray meets the curved surfaces themselves. Precondition: a pinhole camera, and
-/// nothing that is seen through.
+/// Like render_view(), but every ray meets the curved surfaces themselves. Precondition: a pinhole camera, nothing that
+/// is seen through, and an index in `context.curved`.
 /// `context.surfaces` are those of the model's triangles; camera and object names go by them.
-[[nodiscard]] ViewResult render_curved_view(const Job& job, const RenderContext& context, const CurvedIndex& index);
+[[nodiscard]] ViewResult render_curved_view(const Job& job, const RenderContext& context);
 
 /// Like render_view(), on triangles that are made for the view. Precondition: the model is curved, the job says how
 /// finely to cut it, and has a pinhole camera.

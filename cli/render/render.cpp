@@ -118,12 +118,14 @@ int render_whole(Run& run) {
   plan_curved(scene, settings.run, run.jobs);
   const RayIndexes indexes(run.jobs, settings.run, surfaces, execution);
   if (indexes.triangles || indexes.curved) timings.index = watch.milliseconds();
-  const bool by_rays = settings.run.method == Method::raycast;
   const std::vector<ViewResult> results = render_all(run.jobs, settings, progress, [&](const Job& job) {
-    const RayIndex* index = indexes.triangles ? &*indexes.triangles : nullptr;
-    const RenderContext context{surfaces, settings.run, execution, run.on_terminal, index, by_rays};
+    const bool is_met = meets_curved(job, settings.run, scene);
+    RenderContext context{surfaces, settings.run, execution, run.on_terminal};
+    context.by_rays = settings.run.method == Method::raycast;
+    if (indexes.triangles) context.index = &*indexes.triangles;
+    if (is_met) context.curved = &*indexes.curved;
     if (job.view.tessellation_error) return render_tessellated_view(job, context);
-    if (meets_curved(job, settings.run, scene)) return render_curved_view(job, context, *indexes.curved);
+    if (is_met && job.view.camera_model == CameraModel::pinhole) return render_curved_view(job, context);
     return render_view(job, context);
   });
   timings.total = run.whole.milliseconds();

@@ -2,7 +2,7 @@
 // Rendering one view, and what there is to say about it afterwards.
 #pragma once
 
-#include <frontmost/raycast.h>
+#include <frontmost/curved.h>
 #include <frontmost/surfaces.h>
 #include <frontmost/visible.h>
 
@@ -70,8 +70,9 @@ struct RenderContext {
   const RunSettings& run;
   Execution execution;
   bool keep_picture = false;
-  const RayIndex* index = nullptr;  ///< where the method, the cameras or the shadows need one
-  bool by_rays = false;             ///< the method is raycast
+  const RayIndex* index = nullptr;      ///< where the method, the cameras or the shadows need one
+  bool by_rays = false;                 ///< the method is raycast
+  const CurvedIndex* curved = nullptr;  ///< where cameras that are no pinholes meet curved surfaces; then no `index`
   /// Whose bounds the camera goes by, where it is not these surfaces'.
   const Surfaces* framed = nullptr;
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "frontmost/raycast.h"
+#include "frontmost/ray_camera.h"
 
 namespace frontmost {
 
@@ -27,6 +27,7 @@ struct CurvedParts;  // src/raycast/curved/curved_parts.h
 /// root R. Krawczyk. Newton-Algorithmen zur Bestimmung von Nullstellen mit Fehlerschranken. 1969.) Under a transform
 /// that is not rigid, spheres are ellipsoids, and the bound grows by the ratio of their longest to their shortest axis;
 /// one that is singular leaves nothing to be met of a sphere.
+/// Spheres with sizes or places beyond 2^250, and patches beyond 2^500, are never met.
 class CurvedIndex {
  public:
   /// Copies what it needs of `scene`. O(n log n) for n elements; about 30 kB a patch, 150 bytes a sphere.
@@ -68,6 +69,24 @@ struct CurvedHit {
 /// The nearest surface along a ray, both sides of all; at equal t the lower id. Triangles as closest_hit() of a
 /// RayIndex decides. Rays that are not finite or have no direction meet nothing.
 [[nodiscard]] CurvedHit closest_hit(const CurvedIndex& index, const Ray& ray);
+/// Between two points the nearest to `from`. A curved surface that passes one of them within the bound may be met or
+/// not; all else is as for rays.
+[[nodiscard]] CurvedHit closest_hit(const CurvedIndex& index, const Segment& segment);
+
+/// The same for many, on all threads; the answers do not depend on how many.
+/// \throws Error bad_argument when there are not as many answers as queries.
+void closest_hits(const CurvedIndex& index, std::span<const Segment> segments, std::span<CurvedHit> answers,
+                  const Execution& execution = {});
+
+/// What the rays of a camera meet, and from which side.
+struct CurvedScan {
+  RangeScan scan;  ///< ids are those of the index's elements
+  /// By ray: of unit length, outwards, of triangles that of their plane; anything where nothing is met.
+  Buffer<glm::vec3> normals;
+};
+
+/// As scan() of a RayIndex. \throws Error as validate(camera) does.
+[[nodiscard]] CurvedScan scan(const CurvedIndex& index, const RayCamera& camera, const Execution& execution = {});
 
 /// What the rays of a view meet, and where on the curved primitives.
 struct CurvedVisible {

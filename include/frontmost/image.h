@@ -2,6 +2,7 @@
 // Image: named planes of pixels, the one type that is written to and read from image files.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -73,6 +74,12 @@ enum class IdKind : std::uint8_t { primitive, object, material };
 /// \throws Error bad_argument where their number is not width * height.
 [[nodiscard]] Image id_image(const Surfaces& surfaces, const glm::ivec2& size, std::span<const PrimitiveId> primitives,
                              IdKind kind);
+
+/// The same of any other ids, of which `source` says where in `scene` they come from.
+struct PrimitiveSource;
+using SourceOfId = std::function<PrimitiveSource(PrimitiveId)>;
+[[nodiscard]] Image id_image(const Scene& scene, const SourceOfId& source, const glm::ivec2& size,
+                             std::span<const PrimitiveId> primitives, IdKind kind);
 
 /// A hash of size, channel names and values; equal for equal images on every machine.
 [[nodiscard]] std::uint64_t content_hash(const Image& image);

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "frontmost/curved.h"
 #include "frontmost/image.h"
 #include "frontmost/ray_camera.h"
 #include "frontmost/raycast.h"
@@ -87,6 +88,10 @@ struct ShadeOptions {
 /// range. O(pixels). \throws Error unsupported for Shading::uv.
 [[nodiscard]] Image shade(const Surfaces& surfaces, const RangeScan& scan, const ShadeOptions& options = {},
                           const Execution& execution = {});
+
+/// The same where rays met curved surfaces, whose own normals count. Precondition: index and scan are of the scene.
+[[nodiscard]] Image shade(const CurvedIndex& index, const Scene& scene, const CurvedScan& scan,
+                          const ShadeOptions& options = {}, const Execution& execution = {});
 
 /// World-space unit shading normals at the first sample: channels N.X, N.Y, N.Z; zero where nothing is seen.
 [[nodiscard]] Image normal_image(const Surfaces& surfaces, const Visible& visible, const Execution& execution = {});

@@ -47,9 +47,9 @@ class RayLengths {
   glm::dvec2 first_{0}, step_{0};
 };
 
-std::uint32_t id_of(const Surfaces& surfaces, const PrimitiveSource& source, IdKind kind) {
+std::uint32_t id_of(const Scene& scene, const PrimitiveSource& source, IdKind kind) {
   if (kind == IdKind::object) return source.instance;
-  return surfaces.scene().meshes[source.mesh].material_of(source.triangle);
+  return scene.meshes[source.mesh].material_of(source.triangle);
 }
 
 const char* channel_name(IdKind kind) {
@@ -81,6 +81,16 @@ Image id_image(const Surfaces& surfaces, const Visible& visible, IdKind kind) {
 }
 
 Image id_image(const Surfaces& surfaces, const glm::ivec2& size, std::span<const PrimitiveId> primitives, IdKind kind) {
+  const auto source = [&](PrimitiveId id) {
+    if (id >= surfaces.primitive_count())
+      throw Error(ErrorCode::bad_argument, "id image: the surfaces are not those that were seen");
+    return surfaces.source(id);
+  };
+  return id_image(surfaces.scene(), source, size, primitives, kind);
+}
+
+Image id_image(const Scene& scene, const SourceOfId& source, const glm::ivec2& size,
+               std::span<const PrimitiveId> primitives, IdKind kind) {
   if (size.x < 0 || size.y < 0 || primitives.size() != std::size_t(size.x) * std::size_t(size.y))
     throw Error(ErrorCode::bad_argument, "id image: the size does not fit the number of ids");
   Buffer<std::uint32_t> ids(primitives.size());
@@ -90,12 +100,11 @@ Image id_image(const Surfaces& surfaces, const glm::ivec2& size, std::span<const
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const PrimitiveId primitive = primitives[i];
     if (primitive != last_primitive) {
-      if (primitive != no_primitive && primitive >= surfaces.primitive_count())
-        throw Error(ErrorCode::bad_argument, "id image: the surfaces are not those that were seen");
-      last_primitive = primitive;
-      last_id = primitive == no_primitive || kind == IdKind::primitive
-                    ? primitive
-                    : id_of(surfaces, surfaces.source(primitive), kind);
+      last_primitive = last_id = primitive;
+      if (primitive != no_primitive) {
+        const PrimitiveSource from = source(primitive);
+        if (kind != IdKind::primitive) last_id = id_of(scene, from, kind);
+      }
     }
     ids[i] = last_id;
   }

@@ -11,6 +11,7 @@
 
 #include "base/float_environment.h"
 #include "base/parallel.h"
+#include "raycast/scan_parts.h"
 #include "scene/turn.h"
 
 namespace frontmost {
@@ -154,17 +155,35 @@ Ray ray_of(const RayCamera& camera, int x, int y) {
   return std::visit([&](const auto& model) { return Rays(model, camera.world_from_eye).at(x, y); }, camera.model);
 }
 
-RangeScan scan(const RayIndex& index, const RayCamera& camera, const Execution& execution) {
+namespace raycast_detail {
+
+RangeScan prepare_scan(const RayCamera& camera) {
   validate(camera);
   RangeScan result{camera, grid_of(camera).x, grid_of(camera).y, {}, {}};
   const std::size_t count = std::size_t(result.width) * std::size_t(result.height);
   result.primitives = Buffer<PrimitiveId>(count);
   result.ranges = Buffer<float>(count);
+  return result;
+}
+
+void cast_parts(const RangeScan& scan, const Execution& execution, const CastPart& cast) {
+  const auto count = double(scan.ranges.size());
   std::atomic<std::size_t> done{0};
+  const auto cast_part = [&](std::size_t first, const std::vector<Ray>& rays) {
+    cast(first, rays);
+    report_progress(execution, "visible", double(done += rays.size()) / count);
+  };
+  std::visit([&](const auto& model) { for_each_part(scan, model, execution, cast_part); }, scan.camera.model);
+}
+
+}  // namespace raycast_detail
+
+RangeScan scan(const RayIndex& index, const RayCamera& camera, const Execution& execution) {
+  RangeScan result = raycast_detail::prepare_scan(camera);
   Execution within = execution;  // the parts are what is shared out
   within.threads = 1;
   within.watch = nullptr;
-  const auto cast = [&](std::size_t first, const std::vector<Ray>& rays) {
+  raycast_detail::cast_parts(result, execution, [&](std::size_t first, std::span<const Ray> rays) {
     std::vector<RayHit> hits(rays.size());
     closest_hits(index, rays, hits, within);
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -172,9 +191,7 @@ RangeScan scan(const RayIndex& index, const RayCamera& camera, const Execution& 
       result.ranges[first + i] =
           hits[i] ? float(hits[i].t * length_of(rays[i].direction)) : std::numeric_limits<float>::infinity();
     }
-    report_progress(execution, "visible", double(done += rays.size()) / double(count));
-  };
-  std::visit([&](const auto& model) { for_each_part(result, model, execution, cast); }, result.camera.model);
+  });
   return result;
 }
 

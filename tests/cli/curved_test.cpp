@@ -83,6 +83,38 @@ TEST_F(Curved, CompareExplainsEveryPixelOnFineTriangles) {
   EXPECT_GT(found["methods"][0]["primitives"], coarse["methods"][0]["primitives"]);
 }
 
+// The knob's top is 3.15 above the ground.
+TEST_F(Curved, SightMeetsPatches) {
+  EXPECT_THAT(succeed("sight builtin:teapot --from 0,9,0 --to 0,-9,0").out,
+              ::testing::ContainsRegex("blocked by object 0 \\(teapot\\), patch [0-9]+, at 0,3.15,0, distance 5.85"));
+  const json seen = report("sight builtin:spheres --from 0,9,0.1 --to 0.3,-9,0.2");
+  EXPECT_EQ(seen["clear"], 0);
+  EXPECT_TRUE(seen["pairs"][0].contains("triangle")) << "the stage is no sphere";
+}
+
+TEST_F(Curved, ALidarMeetsPatchesAndCountsThem) {
+  const json seen = report("lidar builtin:teapot --from 0,9,0 --forward -y --rings 9 --steps 90 -o a.exr -o a.ply");
+  EXPECT_GT(seen["points"], 10);
+  EXPECT_NEAR(double(seen["nearest"]), 5.85, 1e-5);
+  const Image met = image("a.exr");
+  for (const std::uint32_t id : met.find("primitive")->integers()) EXPECT_TRUE(id < 32 || id == 0xFFFFFFFFu);
+}
+
+TEST_F(Curved, PanoramasMeetSpheresThemselves) {
+  const std::string around =
+      "render builtin:spheres --camera-model panorama --camera-position 0,3,0 --resolution 128,64 ";
+  const json seen = report(around + "--ids primitive=ids.exr --shading normals -o a.png");
+  succeed(
+      "render builtin:spheres --camera-model panorama --camera-position 0,3,0 --resolution 128,64 "
+      "--method raycast --ids primitive=same.exr");
+  const Image ids = image("ids.exr"), same = image("same.exr");
+  std::set<std::uint32_t> all(ids.channels[0].integers().begin(), ids.channels[0].integers().end());
+  EXPECT_TRUE(std::equal(ids.channels[0].integers().begin(), ids.channels[0].integers().end(),
+                         same.channels[0].integers().begin()));
+  EXPECT_GT(all.size(), 20u);
+  EXPECT_GT(seen["seen"]["objects"].size(), 20u);
+}
+
 TEST_F(Curved, OtherModelsAreNotTouched) {
   write("cube.stl", cube_stl());
   EXPECT_EQ(succeed("render cube.stl --hash" + small).out,

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "scene/bezier_patch.h"
 #include "scene/shapes.h"
@@ -310,6 +311,47 @@ TEST(CurvedIndex, SurvivesWhatIsNoSurface) {
   EXPECT_FALSE(closest_hit(sphere, Ray{{0, 0, 5}, {0, float(nan), 0}}));
 }
 
+TEST(CurvedIndex, AnswersForSegmentsBetweenTheirEnds) {
+  const CurvedIndex index(one_sphere({{0, 0, 0}, 1}));
+  EXPECT_FALSE(closest_hit(index, Segment{{0, 0, 5}, {0, 0, 1.001f}}));
+  EXPECT_FALSE(closest_hit(index, Segment{{0, 0, -0.9f}, {0, 0, 0.9f}}));
+  const CurvedHit hit = closest_hit(index, Segment{{0, 0, 5}, {0, 0, -3}});
+  EXPECT_EQ(hit.t, 0.5);
+  EXPECT_FALSE(closest_hit(index, Segment{{0, 0, 5}, {0, 0, 5}}));
+  EXPECT_FALSE(closest_hit(index, Segment{{0, 0, 5}, {0, 0, std::numeric_limits<float>::infinity()}}));
+  std::vector<CurvedHit> answers(1);
+  EXPECT_THROW(closest_hits(index, {}, answers), Error);
+}
+
+TEST(CurvedIndex, SegmentsMeetTrianglesToo) {
+  Scene scene = one_sphere({{0, 0, 0}, 1});
+  scene.meshes.push_back(floor(4, 1));
+  scene.instances.push_back({"", 1, glm::translate(glm::dmat4(1.0), {0, 2, 0})});
+  const CurvedIndex index(scene);
+  std::vector<CurvedHit> answers(2);
+  const std::vector<Segment> segments{{{0.25f, 5, 0.5f}, {0.25f, 0, 0.5f}}, {{0.25f, 0, 0.5f}, {0.25f, 1.9f, 0.5f}}};
+  closest_hits(index, segments, answers);
+  EXPECT_GT(answers[0].primitive, 0u);
+  EXPECT_NEAR(answers[0].t, 0.6, 1e-6);
+  EXPECT_EQ(answers[1].primitive, 0u);
+}
+
+// From the middle of a sphere every ray is as long as the radius, to half an ulp of float.
+TEST(CurvedIndex, AScanFromWithinASphereMeetsItAllAround) {
+  const CurvedIndex index(one_sphere({{1, 2, 3}, 2}));
+  RayCamera camera{Panorama{64, 32}};
+  camera.world_from_eye[3] = glm::dvec4(1, 2, 3, 1);
+  const CurvedScan met = scan(index, camera), single = scan(index, camera, {.threads = 1});
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 64; ++x) {
+      const std::size_t i = met.scan.index(x, y);
+      EXPECT_EQ(met.scan.primitives[i], 0u);
+      EXPECT_EQ(met.scan.ranges[i], 2.0f);
+      EXPECT_EQ(met.scan.ranges[i], single.scan.ranges[i]);
+      EXPECT_LT(glm::length(met.normals[i] - ray_of(camera, x, y).direction), 1e-6f);
+    }
+}
+
 // Whole curves of roots, or surfaces of them: a bounded search all the same.
 TEST(CurvedPatch, ThatDegeneratesEndsTheSearch) {
   const auto flat = [](int, int) { return 0.0; };
@@ -321,6 +363,12 @@ TEST(CurvedPatch, ThatDegeneratesEndsTheSearch) {
   (void)closest_hit(CurvedIndex(one_patch(point)), Ray{{1, 1, 5}, {0, 0, -1}});
   (void)closest_hit(CurvedIndex(one_patch(line)), Ray{{1, 0, 5}, {0, 0, -1}});
   (void)closest_hit(CurvedIndex(one_patch(line)), Ray{{-5, 0, 0}, {1, 0, 0}});
+  // So small that halves round to what they are halves of.
+  const glm::dmat4 tiny = glm::scale(glm::dmat4(1.0), glm::dvec3(0x1p-1070));
+  (void)closest_hit(CurvedIndex(one_patch(teapot_patches()[4], tiny)), Ray{{0, 0, 0}, {0, 0, -1}});
+  // A curve of 2^104, which rays meet for whole curves of parameters.
+  for (std::size_t i = 0; i < 16; ++i) line.points[i] = glm::dvec3(double(i % 7) - 3, 0, 0) * 0x1p104;
+  (void)closest_hit(CurvedIndex(one_patch(line)), Ray{{0, 0, 3}, {0.1f, 0, -1}});
   // Random nets, folded and self-intersecting, from near and far.
   Random random(23);
   for (int i = 0; i < 300; ++i) {

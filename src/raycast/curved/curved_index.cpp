@@ -29,8 +29,6 @@ std::uint64_t element_count_of(const Mesh& mesh) {
   return mesh.is_curved() ? mesh.curved_count() : mesh.triangles.size();
 }
 
-bool is_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
 }  // namespace
 
 bool has_curved(const Scene& scene) {
@@ -72,6 +70,17 @@ PrimitiveId CurvedParts::element_of(PrimitiveId triangle) const {
   return first_elements[source.instance] + source.triangle;
 }
 
+PrimitiveSource CurvedParts::source(PrimitiveId element) const {
+  const auto after = std::upper_bound(first_elements.begin(), first_elements.end(), element);
+  const auto instance = std::uint32_t(after - first_elements.begin() - 1);
+  return {instance, meshes[instance], element - first_elements[instance]};
+}
+
+std::array<glm::vec3, 3> CurvedParts::corners_of(PrimitiveId element) const {
+  const PrimitiveSource from = source(element);
+  return surfaces.corners(surfaces.first_primitive(from.instance) + from.triangle);
+}
+
 CurvedHit CurvedParts::nearest(DoubleRay& ray) const {
   CurvedHit best;
   const auto keep = [&](const std::optional<Meeting>& met, PrimitiveId id) {
@@ -79,6 +88,7 @@ CurvedHit CurvedParts::nearest(DoubleRay& ray) const {
     best = {id, met->t, glm::dot(met->normal, ray.direction) <= 0, met->parameters, met->normal};
     ray.to = met->t;
   };
+  if (ray.culling == Culling::both) return best;
   tree.walk(ray, [&](std::uint32_t item) {
     if (item < spheres.size())
       keep(meet(spheres[item], ray), spheres[item].id);
@@ -96,12 +106,7 @@ CurvedIndex& CurvedIndex::operator=(CurvedIndex&&) noexcept = default;
 
 std::uint32_t CurvedIndex::element_count() const { return parts_->first_elements.back(); }
 
-PrimitiveSource CurvedIndex::source(PrimitiveId id) const {
-  const auto& first = parts_->first_elements;
-  const auto after = std::upper_bound(first.begin(), first.end(), id);
-  const auto instance = std::uint32_t(after - first.begin() - 1);
-  return {instance, parts_->meshes[instance], id - first[instance]};
-}
+PrimitiveSource CurvedIndex::source(PrimitiveId id) const { return parts_->source(id); }
 
 std::size_t CurvedIndex::byte_count() const {
   const CurvedParts& p = *parts_;
@@ -111,18 +116,6 @@ std::size_t CurvedIndex::byte_count() const {
   return flat + p.surfaces.byte_count() + p.triangles.byte_count() + p.tree.byte_count() +
          p.spheres.size() * sizeof(PlacedSphere) + p.pieces.size() * sizeof(PatchPiece) +
          p.first_elements.size() * (sizeof(PrimitiveId) + sizeof(std::uint32_t));
-}
-
-CurvedHit closest_hit(const CurvedIndex& index, const Ray& ray) {
-  const IeeeScope ieee;
-  if (!is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == glm::vec3(0)) return {};
-  const RayHit flat = closest_hit(index.parts().triangles, ray);
-  DoubleRay line{ray.origin, ray.direction, std::numeric_limits<double>::denorm_min(), flat.t};
-  CurvedHit best = index.parts().nearest(line);
-  if (!flat) return best;
-  const PrimitiveId element = index.parts().element_of(flat.primitive);
-  if (best && (best.t < flat.t || best.primitive < element)) return best;
-  return {element, flat.t, flat.is_front, glm::dvec2(0), glm::dvec3(0)};
 }
 
 }  // namespace frontmost

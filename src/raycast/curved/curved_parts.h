@@ -16,6 +16,9 @@ struct CurvedParts {
   [[nodiscard]] CurvedHit nearest(raycast_detail::DoubleRay& ray) const;
   /// The element of a triangle of `surfaces`.
   [[nodiscard]] PrimitiveId element_of(PrimitiveId triangle) const;
+  /// Of an element that is a triangle.
+  [[nodiscard]] std::array<glm::vec3, 3> corners_of(PrimitiveId element) const;
+  [[nodiscard]] PrimitiveSource source(PrimitiveId element) const;
 
   Scene flat;  ///< of meshes that are not curved, positions and triangles; all instances, in their order
   Surfaces surfaces;
