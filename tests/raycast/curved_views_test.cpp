@@ -83,6 +83,42 @@ TEST(CurvedViews, OfTheZBufferHaveTheirOutlinesWithinThePixelsAskedFor) {
   }
 }
 
+/// Every ray of a view alone, among curved surfaces only, against what packets of them gave.
+void expect_single_rays(const Scene& scene, const View& view, Isa isa) {
+  const CurvedIndex index(scene);
+  const CurvedVisible seen = raycast(index, view, {.threads = 1, .isa = isa});
+  const raycast_detail::ViewRays rays(view);
+  for (int y = 0; y < view.height; ++y)
+    for (int x = 0; x < view.width; ++x) {
+      const std::size_t at = seen.visible.index(x, y);
+      raycast_detail::DoubleRay ray = rays.at(x, y, sample_offsets(1)[0]);
+      const CurvedHit hit = index.parts().nearest(ray);
+      ASSERT_EQ(seen.visible.primitives[at], hit.primitive) << x << ", " << y;
+      if (!hit) continue;
+      ASSERT_EQ(seen.visible.keys[at], rays.key(hit.t));
+      ASSERT_EQ(seen.parameters[at], glm::vec2(hit.parameters));
+      ASSERT_EQ(seen.normals[at], glm::vec3(hit.normal));
+    }
+}
+
+TEST(CurvedViews, ByPacketsAreThoseOfSingleRaysToTheBit) {
+  Scene scene = builtin("teapot");
+  scene.meshes[0].spheres = {{{0.5, 3, 0.5}, 0.7}, {{0, 1, 2}, 0.5}};
+  const Surfaces surfaces(scene);
+  for (const Isa isa : available_isas()) {
+    View view = frame(surfaces, 75, 50);  // no multiple of eight
+    expect_single_rays(scene, view, isa);
+    view.culling = Culling::back;
+    expect_single_rays(scene, view, isa);
+    view.culling = Culling::front;
+    view.world_from_eye = look_at({0.1, 1.2, 0}, {1, 1.3, 0.4}, {0, 1, 0});
+    expect_single_rays(scene, view, isa);
+    view.projection = make_orthographic(-4, 4, -3, 3, {0.1, 20});
+    view.culling = Culling::none;
+    expect_single_rays(scene, view, isa);
+  }
+}
+
 TEST(CurvedViews, ShowWhatLiesInFront) {
   // A sphere half sunk into a box: triangles and sphere hide each other.
   Scene scene;

@@ -23,6 +23,12 @@ struct DoubleBox {
   }
 };
 
+/// Which of several rays pass through a box, as bits, and where the first of them enters it.
+struct BoxEntry {
+  std::uint32_t lanes = 0;
+  double at = 0;
+};
+
 class BoxTree {
  public:
   BoxTree() = default;
@@ -34,9 +40,16 @@ class BoxTree {
   template <class Visit>
   void walk(DoubleRay& ray, const Visit& visit) const;
 
+  /// The same for several rays, as bits: enter(box, lanes) gives the BoxEntry of a box, is_past(entry) says whether all
+  /// of its rays have been shortened to less by now. Calls visit(item, lanes).
+  template <class Enter, class IsPast, class Visit>
+  void walk_together(std::uint32_t lanes, const Enter& enter, const IsPast& is_past, const Visit& visit) const;
+
   [[nodiscard]] std::size_t byte_count() const {
     return nodes_.size() * sizeof(Node) + items_.size() * sizeof(std::uint32_t);
   }
+
+  static constexpr double kRoundings = 1 + 0x1p-50;  ///< a box ends a little farther than it is told to
 
  private:
   static constexpr std::size_t kLeafItems = 2;
@@ -60,7 +73,6 @@ class BoxTree {
 };
 
 inline double BoxTree::entry(const DoubleBox& box, const DoubleRay& ray, const glm::dvec3& inverse) {
-  constexpr double kRoundings = 1 + 0x1p-50;
   double enters = ray.from, leaves = ray.to;
   for (int k = 0; k < 3; ++k) {
     double a = (box.low[k] - ray.origin[k]) * inverse[k], b = (box.high[k] - ray.origin[k]) * inverse[k];
@@ -98,6 +110,34 @@ void BoxTree::walk(DoubleRay& ray, const Visit& visit) const {
     if (size >= 2 && stack[size - 1].node == node.first + 1 && stack[size - 2].node == node.first &&
         stack[size - 1].at > stack[size - 2].at)
       std::swap(stack[size - 1], stack[size - 2]);
+  }
+}
+
+template <class Enter, class IsPast, class Visit>
+void BoxTree::walk_together(std::uint32_t lanes, const Enter& enter, const IsPast& is_past, const Visit& visit) const {
+  if (nodes_.empty()) return;
+  struct Waiting {
+    std::uint32_t node;
+    BoxEntry entry;
+  };
+  std::array<Waiting, kDeepest> stack;
+  std::size_t size = 0;
+  const auto push = [&](std::uint32_t node, std::uint32_t of) {
+    const BoxEntry entry = enter(nodes_[node].box, of);
+    if (entry.lanes != 0) stack[size++] = {node, entry};
+  };
+  push(0, lanes);
+  while (size > 0) {
+    const Waiting next = stack[--size];
+    if (is_past(next.entry)) continue;
+    const Node& node = nodes_[next.node];
+    for (std::uint32_t i = 0; i < node.count; ++i) visit(items_[node.first + i], next.entry.lanes);
+    if (node.count > 0) continue;
+    const std::size_t before = size;
+    push(node.first, next.entry.lanes);
+    push(node.first + 1, next.entry.lanes);
+    if (size == before + 2 && stack[before].entry.at < stack[before + 1].entry.at)
+      std::swap(stack[before], stack[before + 1]);
   }
 }
 

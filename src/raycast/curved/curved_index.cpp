@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The index of a scene with curved meshes: curved primitives in world space, each a leaf or several; and triangles.
 #include <algorithm>
+#include <tuple>
 
 #include "base/float_environment.h"
 #include "raycast/curved/curved_parts.h"
@@ -81,21 +82,26 @@ std::array<glm::vec3, 3> CurvedParts::corners_of(PrimitiveId element) const {
   return surfaces.corners(surfaces.first_primitive(from.instance) + from.triangle);
 }
 
+bool NearestHit::keep(const Meeting& met, PrimitiveId id, std::uint32_t from_item, DoubleRay& ray) {
+  if (met.t > ray.to) return false;
+  if (hit && met.t == hit.t && std::tie(id, from_item) > std::tie(hit.primitive, item)) return false;
+  hit = {id, met.t, glm::dot(met.normal, ray.direction) <= 0, met.parameters, met.normal};
+  item = from_item;
+  ray.to = met.t;
+  return true;
+}
+
+std::optional<Meeting> CurvedParts::meet_item(std::uint32_t item, const DoubleRay& ray) const {
+  return item < spheres.size() ? meet(spheres[item], ray) : meet(pieces[item - spheres.size()], ray);
+}
+
 CurvedHit CurvedParts::nearest(DoubleRay& ray) const {
-  CurvedHit best;
-  const auto keep = [&](const std::optional<Meeting>& met, PrimitiveId id) {
-    if (!met || met->t > ray.to || (met->t == best.t && id > best.primitive)) return;
-    best = {id, met->t, glm::dot(met->normal, ray.direction) <= 0, met->parameters, met->normal};
-    ray.to = met->t;
-  };
-  if (ray.culling == Culling::both) return best;
+  NearestHit best;
+  if (ray.culling == Culling::both) return best.hit;
   tree.walk(ray, [&](std::uint32_t item) {
-    if (item < spheres.size())
-      keep(meet(spheres[item], ray), spheres[item].id);
-    else
-      keep(meet(pieces[item - spheres.size()], ray), pieces[item - spheres.size()].id);
+    if (const std::optional<Meeting> met = meet_item(item, ray)) best.keep(*met, id_of(item), item, ray);
   });
-  return best;
+  return best.hit;
 }
 
 CurvedIndex::CurvedIndex(const Scene& scene, const Execution& execution)

@@ -6,6 +6,7 @@
 #include "base/float_environment.h"
 #include "base/parallel.h"
 #include "raycast/curved/curved_parts.h"
+#include "raycast/curved/patch_packet.h"
 #include "raycast/curved/view_rays.h"
 
 namespace frontmost {
@@ -16,31 +17,47 @@ namespace {
 
 class CurvedCast {
  public:
-  CurvedCast(const CurvedParts& parts, CurvedVisible& out) : parts_(parts), out_(out), rays_(out.visible.view) {}
+  CurvedCast(const CurvedParts& parts, CurvedVisible& out, Isa isa)
+      : parts_(parts), out_(out), rays_(out.visible.view), isa_(isa) {}
 
   void cast_row(int y, int sample) const {
-    Visible& visible = out_.visible;
-    const glm::ivec2 offset = sample_offsets(visible.view.samples)[std::size_t(sample)];
-    for (int x = 0; x < visible.view.width; ++x) {
-      const std::size_t at = visible.index(x, y, sample);
-      PrimitiveId& id = visible.primitives[at];
-      if (id != no_primitive) id = parts_.element_of(id);
-      DoubleRay ray = rays_.at(x, y, offset);
-      if (id != no_primitive) ray.to = rays_.beyond(visible.keys[at]);
-      const CurvedHit hit = parts_.nearest(ray);
-      const float key = rays_.key(hit.t);
-      if (!hit || key < visible.keys[at] || (key == visible.keys[at] && id < hit.primitive)) continue;
-      id = hit.primitive;
-      visible.keys[at] = key;
-      out_.parameters[at] = hit.parameters;
-      out_.normals[at] = hit.normal;
-    }
+    const int width = out_.visible.view.width;
+    for (int x = 0; x < width; x += int(kPacketRays)) cast_packet(x, std::min(x + int(kPacketRays), width), y, sample);
   }
 
  private:
+  void cast_packet(int begin, int end, int y, int sample) const {
+    Visible& visible = out_.visible;
+    const glm::ivec2 offset = sample_offsets(visible.view.samples)[std::size_t(sample)];
+    std::array<DoubleRay, kPacketRays> rays;
+    std::array<CurvedHit, kPacketRays> hits;
+    const auto count = std::size_t(end - begin);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t at = visible.index(begin + int(i), y, sample);
+      PrimitiveId& id = visible.primitives[at];
+      rays[i] = rays_.at(begin + int(i), y, offset);
+      if (id == no_primitive) continue;
+      id = parts_.element_of(id);
+      rays[i].to = rays_.beyond(visible.keys[at]);
+    }
+    parts_.nearest({rays.data(), count}, hits, isa_);
+    for (std::size_t i = 0; i < count; ++i) keep(hits[i], visible.index(begin + int(i), y, sample));
+  }
+
+  void keep(const CurvedHit& hit, std::size_t at) const {
+    Visible& visible = out_.visible;
+    const float key = rays_.key(hit.t);
+    if (!hit || key < visible.keys[at] || (key == visible.keys[at] && visible.primitives[at] < hit.primitive)) return;
+    visible.primitives[at] = hit.primitive;
+    visible.keys[at] = key;
+    out_.parameters[at] = hit.parameters;
+    out_.normals[at] = hit.normal;
+  }
+
   const CurvedParts& parts_;
   CurvedVisible& out_;
   ViewRays rays_;
+  Isa isa_;
 };
 
 }  // namespace
@@ -50,7 +67,7 @@ CurvedVisible raycast(const CurvedIndex& index, const View& view, const Executio
   const IeeeScope ieee;
   CurvedVisible out{raycast(index.parts().triangles, view, execution), Buffer<glm::vec2>(view.sample_count()),
                     Buffer<glm::vec3>(view.sample_count())};
-  const CurvedCast cast(index.parts(), out);
+  const CurvedCast cast(index.parts(), out, execution.isa);
   const auto rows = std::size_t(view.height) * std::size_t(view.samples);
   std::atomic<std::size_t> done{0};
   parallel_for(execution, rows, 1, [&](std::size_t begin, std::size_t end) {

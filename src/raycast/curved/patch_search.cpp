@@ -10,21 +10,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raycast/curved/patch_rules.h"
 #include "raycast/curved/placed_patch.h"
+#include "raycast/curved/ray_frame.h"
 #include "scene/bezier_patch.h"
 
 namespace frontmost::raycast_detail {
 namespace {
 
-constexpr double kContracting = 0.5;  ///< at most; steps then halve the distance to the root at least
-constexpr int kMostSteps = 64;
-constexpr double kThere = 0x1p-52;  ///< in parameters: nearer to a root steps do not come
 /// A search that comes to this many answers with the nearest point found so far. Of 2.8 million searches on the teapot
 /// and on random nets none took more than 85.
 constexpr int kMostNets = 1 << 10;
 constexpr int kMostCulled = 8;  ///< the same of points without a root of their own that are not looked at
-constexpr double kFinestPart = 0x1p-30, kFinestPartOfReach = 0x1p-44;  ///< CurvedIndex states them
-constexpr double kFinest = 0x1p-1000;  ///< denormal parts would round to themselves when halved, and never end
 
 PatchParameter parameter(double value) { return {value, 1 - value}; }
 
@@ -41,14 +38,6 @@ glm::dvec3 value_of(const ControlNet& net, const glm::dvec2& at) {
     sum += (row[0] * v[0] + row[1] * v[1] + row[2] * v[2] + row[3] * v[3]) * u[i];
   }
   return sum;
-}
-
-/// Two axes that make a right angle with `axis`, which has unit length, and with each other.
-/// (T. Duff et al. Building an Orthonormal Basis, Revisited. 2017.)
-std::array<glm::dvec3, 2> across(const glm::dvec3& axis) {
-  const double sign = std::copysign(1.0, axis.z), a = -1 / (sign + axis.z), b = axis.x * axis.y * a;
-  return {glm::dvec3(1 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x),
-          glm::dvec3(b, sign + axis.y * axis.y * a, -axis.y)};
 }
 
 /// A net in the ray's frame, and its place in the piece.
@@ -72,7 +61,7 @@ bool precondition(const ControlNet& net, Preconditioned& out) {
   }
   const double determinant = u.x * v.y - u.y * v.x;
   const double product = glm::length(u) * glm::length(v);
-  if (!(std::abs(determinant) > product * 1e-6)) return false;
+  if (!(std::abs(determinant) > product * kSingular)) return false;
   out.inverse = glm::dmat2(v.y, -u.y, -v.x, u.x) / determinant;  // columns
   for (std::size_t i = 0; i < 16; ++i) out.net[i] = out.inverse * glm::dvec2(net[i]);
   const glm::dmat2& m = out.inverse;
@@ -95,11 +84,7 @@ double departure(const std::array<glm::dvec2, 16>& net) {
 class PatchSearch {
  public:
   PatchSearch(const PatchPiece& piece, const DoubleRay& ray)
-      : piece_(piece),
-        ray_(ray),
-        length_(std::sqrt(glm::dot(ray.direction, ray.direction))),
-        from_(ray.from * length_),
-        nearest_(ray.to * length_) {}
+      : piece_(piece), ray_(ray), frame_(ray), nearest_(frame_.farthest) {}
 
   std::optional<Meeting> run() {
     Part whole;
@@ -108,26 +93,24 @@ class PatchSearch {
     for (const glm::dvec3& p : whole.net)
       for (int k = 0; k < 3; ++k) reach = std::max(reach, std::abs(p[k]));
     finest_ = std::max(piece_.scale * kFinestPart + reach * kFinestPartOfReach, kFinest);
-    pad_ = finest_ / 16;
+    pad_ = finest_ * kPad;
     search(whole);
     return found_;
   }
 
  private:
   [[nodiscard]] ControlNet in_frame() const {
-    const glm::dvec3 along = ray_.direction / length_;
-    const std::array<glm::dvec3, 2> axes = across(along);
     ControlNet net;
     for (std::size_t i = 0; i < net.size(); ++i) {
       const glm::dvec3 p = piece_.patch.points[i] - ray_.origin;
-      net[i] = {glm::dot(axes[0], p), glm::dot(axes[1], p), glm::dot(along, p)};
+      net[i] = {glm::dot(frame_.across_x, p), glm::dot(frame_.across_y, p), glm::dot(frame_.along, p)};
     }
     return net;
   }
 
   [[nodiscard]] bool is_clear(const DoubleBox& hull) const {
     return hull.low.x > pad_ || hull.high.x < -pad_ || hull.low.y > pad_ || hull.high.y < -pad_ ||
-           hull.low.z > nearest_ || hull.high.z < from_;
+           hull.low.z > nearest_ || hull.high.z < frame_.nearest;
   }
 
   void search(const Part& part) {
@@ -192,7 +175,7 @@ class PatchSearch {
       const double size = std::max(std::abs(off.x), std::abs(off.y));
       if (size > (1 + rate) * distance + tolerance) return;
       const double beside = std::max(std::abs(value.x), std::abs(value.y));
-      if (beside <= pad_ / 8 || distance < kThere) {
+      if (beside <= pad_ * kNearEnough || distance < kThere) {
         if (beside <= pad_) accept(part.low + part.size * at, value.z);
         return;
       }
@@ -203,32 +186,40 @@ class PatchSearch {
 
   /// At the parameters in the piece and the distance along the ray.
   void accept(const glm::dvec2& at, double distance) {
-    if (!(distance >= from_ && distance <= nearest_)) return;
-    const glm::dvec3 normal = normal_at(at);
-    if (!ray_.keeps(normal)) return;
+    if (!(distance >= frame_.nearest && distance <= nearest_)) return;
+    const std::optional<Meeting> met = meeting_at(piece_, ray_, at, distance);
+    if (!met) return;
     nearest_ = distance - finest_;
-    const double t = std::min(std::max(distance / length_, ray_.from), ray_.to);
-    found_ = Meeting{t, piece_.low + piece_.size * at, normal};
-  }
-
-  /// A patch that has no sides anywhere faces the ray.
-  [[nodiscard]] glm::dvec3 normal_at(const glm::dvec2& at) const {
-    const glm::dvec3 n = evaluate(piece_.patch, parameter(at.x), parameter(at.y)).normal;
-    return n == glm::dvec3(0) ? -ray_.direction / length_ : n * piece_.outward;
+    found_ = met;
   }
 
   const PatchPiece& piece_;
   const DoubleRay& ray_;
+  RayFrame frame_;
   /// Along the ray, in world units. Once something is found, what is not nearer by the bound is not looked for: a
   /// surface that is pulled together to a curve is at the same place for whole curves of parameters.
-  double length_, from_, nearest_;
+  double nearest_;
   double finest_ = 0;  ///< parts of this size are as good as points
   double pad_ = 0;     ///< how far from the ray a hull counts as holding it: many roundings
   int nets_ = 0, culled_ = 0;
   std::optional<Meeting> found_;
 };
 
+/// A patch that has no sides anywhere faces the ray.
+glm::dvec3 normal_at(const PatchPiece& piece, const glm::dvec2& at, const DoubleRay& ray) {
+  const glm::dvec3 n = evaluate(piece.patch, parameter(at.x), parameter(at.y)).normal;
+  return n == glm::dvec3(0) ? -glm::normalize(ray.direction) : n * piece.outward;
+}
+
 }  // namespace
+
+std::optional<Meeting> meeting_at(const PatchPiece& piece, const DoubleRay& ray, const glm::dvec2& at,
+                                  double distance) {
+  const glm::dvec3 normal = normal_at(piece, at, ray);
+  if (!ray.keeps(normal)) return std::nullopt;
+  const double t = std::max(distance / glm::length(ray.direction), ray.from);
+  return Meeting{t, piece.low + piece.size * at, normal};
+}
 
 std::optional<Meeting> meet(const PatchPiece& piece, const DoubleRay& ray) { return PatchSearch(piece, ray).run(); }
 
