@@ -39,6 +39,14 @@ float fraction(float value) {
 /// 1 stays 1, so that the far edge of a texture looks unlike its near edge.
 float wrapped_texcoord(float value) { return value == 1.0f ? 1.0f : fraction(value); }
 
+/// True where light that the normal faces would come from behind the triangle, and nothing says that the surface bulges
+/// towards the viewer there, over the triangle's horizon: as on the inside of a hollow body, whose wall the light would
+/// have to pass through. Rays leave the triangle that they start from out of account, and would not see it; nor does a
+/// map, whose bias is thicker than the wall (and which lets light through beside it for the same reason).
+bool comes_through(const Geometry& g, int i, const glm::vec3& to_key) {
+  return glm::dot(g.plane_normal.at(i), to_key) <= 0 && g.smooth_position.at(i) == g.position.at(i);
+}
+
 }  // namespace
 
 float linear_of_shown(float value) {
@@ -72,7 +80,12 @@ void Lit::operator()(const std::vector<TriangleSetup>& setups, Batch& batch) con
   bool faces_key[batch_capacity];
   for (int i = 0; i < batch.coverage.count; ++i) {
     faces_key[i] = glm::dot(g.normal.at(i), lighting.to_key) > 0;
-    batch.shadow[i] = map && faces_key[i] ? map->light_at(g.smooth_position.at(i), g.plane_normal.at(i)) : 1.0f;
+    batch.shadow[i] = 1;
+    if ((map || rays) && faces_key[i] && comes_through(g, i, lighting.to_key)) {
+      batch.shadow[i] = 0;
+      faces_key[i] = false;
+    }
+    if (map && faces_key[i]) batch.shadow[i] = map->light_at(g.smooth_position.at(i), g.plane_normal.at(i));
   }
   if (rays) rays->find_light(setups, faces_key, batch);
   light_batch(lighting, batch, isa);

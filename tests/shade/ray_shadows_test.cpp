@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "frontmost/io.h"
 #include "frontmost/raycast.h"
 #include "frontmost/shade.h"
 #include "frontmost/zbuffer.h"
+#include "scene/shapes.h"
 #include "shade/support.h"
 #include "support/models.h"
 #include "support/shadow_band.h"
@@ -92,6 +94,19 @@ TEST(RayShadows, AConvexSolidShowsNoShadow) {
       const View view = frame(Surfaces(scene), 200, 150);
       EXPECT_EQ(differing(unshadowed(scene, view), by_rays(scene, view)), 0u) << name << " " << turn;
     }
+  }
+}
+
+// A second ball about the first keeps all light away for certain, so nothing may change within.
+TEST(RayShadows, NoLightComesThroughTheWallOfAHollowBall) {
+  Scene alone = scene_of(sphere(12)), within = scene_of(sphere(12));
+  within.instances.push_back({"outer", 0, glm::scale(glm::dmat4(1.0), glm::dvec3(3))});
+  View view;
+  view.width = view.height = 160;
+  view.projection = make_projection(glm::radians(100.0), 1, {0.01, 100});
+  for (const glm::dvec3 ahead : {glm::dvec3(1, 0, 0), glm::dvec3(0, 0, -1), glm::dvec3(-0.6, 0.8, 0)}) {
+    view.world_from_eye = look_at({0, 0, 0}, ahead, {0, 0.1, 1});
+    EXPECT_EQ(differing(by_rays(alone, view), by_rays(within, view)), 0u);
   }
 }
 
