@@ -6,34 +6,51 @@ namespace {
 
 class Lister {
  public:
-  Lister(const FrameInput& frame, TileScratch& scratch, const Opacities& opacities, JobLists& lists)
-      : frame_(frame), s_(scratch), opacities_(opacities), lists_(lists) {}
+  Lister(const FrameInput& frame, TileScratch& scratch, const Opacities& opacities, float negligible)
+      : frame_(frame), s_(scratch), opacities_(opacities), negligible_(negligible) {
+    lists_.scratch = &scratch;
+    lists_.fragments.reserve(scratch.arrived.count);
+    lists_.numbers.reserve(scratch.arrived.count);
+    lists_.begin.push_back(0);
+  }
+  [[nodiscard]] JobLists take() { return std::move(lists_); }
 
   void add_pixel(int x, int y) {
     const std::uint32_t pixel = pixel_number(std::uint32_t(x), std::uint32_t(y));
     const std::size_t group = pixel / kGroup, length = s_.length(group);
     const std::uint64_t* words = s_.slot(group, 0) + pixel % kGroup;
     const float hidden = hidden_behind(words, length);
+    float passes = 1;
     for (std::size_t i = 0; i < length && words[i * kGroup] != 0; ++i) {
       const std::uint32_t number = ~std::uint32_t(words[i * kGroup]);
       if (s_.nearest_of(number) < hidden) continue;
       add(number);
       // At a single sample there is no part of a pixel: what comes first hides the rest.
-      if (frame_.pattern.count == 1 && opacities_.is_opaque(id_of(number))) break;
+      if (frame_.pattern.count == 1 && hides_rest(id_of(number), passes)) break;
     }
+    lists_.begin.push_back(std::uint32_t(lists_.fragments.size()));
   }
 
  private:
+  /// Whether behind another fragment that covers the pixel nothing is seen, or next to nothing. `passes`: what all
+  /// before it let pass.
+  [[nodiscard]] bool hides_rest(PrimitiveId id, float& passes) const {
+    passes *= 1 - opacities_.least(id);
+    return opacities_.is_opaque(id) || passes < negligible_;
+  }
   [[nodiscard]] PrimitiveId id_of(std::uint32_t number) const { return s_.triangles.id[s_.arrived.triangle[number]]; }
 
   /// The key behind which nothing is seen anywhere in the pixel.
   [[nodiscard]] float hidden_behind(const std::uint64_t* words, std::size_t length) const {
-    float key = -1;
+    float key = -1, passes = 1, farthest = std::numeric_limits<float>::infinity();
     if (frame_.pattern.count == 1) return key;
     for (std::size_t i = 0; i < length && words[i * kGroup] != 0; ++i) {
       const std::uint32_t number = ~std::uint32_t(words[i * kGroup]);
-      if (s_.arrived.mask(number) == frame_.pattern.full() && opacities_.is_opaque(id_of(number)))
-        key = std::max(key, s_.farthest_of(number));
+      if (s_.arrived.mask(number) != frame_.pattern.full()) continue;
+      // Clear ones hide only together, so only what is behind all of them.
+      farthest = std::min(farthest, s_.farthest_of(number));
+      if (hides_rest(id_of(number), passes))
+        key = std::max(key, opacities_.is_opaque(id_of(number)) ? s_.farthest_of(number) : farthest);
     }
     return key;
   }
@@ -54,24 +71,18 @@ class Lister {
   const FrameInput& frame_;
   TileScratch& s_;
   const Opacities& opacities_;
-  JobLists& lists_;
+  const float negligible_;
+  JobLists lists_;
 };
 
 }  // namespace
 
-JobLists list_fragments(const FrameInput& frame, const TileJob& job, TileScratch& scratch, const Opacities& opacities) {
-  JobLists lists;
-  lists.scratch = &scratch;
-  lists.fragments.reserve(scratch.arrived.count);
-  lists.numbers.reserve(scratch.arrived.count);
-  lists.begin.push_back(0);
-  Lister lister(frame, scratch, opacities, lists);
+JobLists list_fragments(const FrameInput& frame, const TileJob& job, TileScratch& scratch, const Opacities& opacities,
+                        float negligible) {
+  Lister lister(frame, scratch, opacities, negligible);
   for (int y = 0; y < job.pixels.height; ++y)
-    for (int x = 0; x < job.pixels.width; ++x) {
-      lister.add_pixel(x, y);
-      lists.begin.push_back(std::uint32_t(lists.fragments.size()));
-    }
-  return lists;
+    for (int x = 0; x < job.pixels.width; ++x) lister.add_pixel(x, y);
+  return lister.take();
 }
 
 }  // namespace frontmost::abuffer_detail

@@ -20,8 +20,9 @@ struct JobLists {
   }
 };
 
-/// Leaves out what lies wholly behind opaque fragments that cover the whole pixel. Precondition: not flat.
+/// Leaves out what lies wholly behind opaque fragments that cover the whole pixel; and what lies wholly behind
+/// fragments that cover it and together let no more pass than `negligible`. Precondition: not flat.
 [[nodiscard]] JobLists list_fragments(const FrameInput& frame, const TileJob& job, TileScratch& scratch,
-                                      const Opacities& opacities);
+                                      const Opacities& opacities, float negligible = 0);
 
 }  // namespace frontmost::abuffer_detail

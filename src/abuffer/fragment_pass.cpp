@@ -9,6 +9,9 @@ namespace frontmost::abuffer_detail {
 
 namespace {
 
+/// Far below what rounding leaves of a sum of floats.
+constexpr float kNegligible = 0x1p-40f;
+
 /// What composite_tile() writes of one rectangle.
 class TilePicture {
  public:
@@ -41,6 +44,14 @@ FragmentPass::FragmentPass(const Surfaces& surfaces, const View& view, const Abu
       plan_(surfaces, view, execution),
       opacities_(surfaces, options.opacity, execution) {}
 
+void FragmentPass::list_primitives(const Note& note, const Execution& execution) const {
+  const IeeeScope ieee;
+  const FrameInput frame{plan_, pattern_, false, execution.isa};
+  visit_tiles(frame, execution, [&](const TileJob& /*job*/, TileScratch* scratch) {
+    if (scratch) note({scratch->triangles.id.data(), scratch->triangles.count});
+  });
+}
+
 void FragmentPass::look(const Look& look, const Execution& execution) const {
   const IeeeScope ieee;
   const FrameInput frame{plan_, pattern_, false, execution.isa};
@@ -54,7 +65,7 @@ void FragmentPass::paint(const Paint& paint, const Receive& receive, const Execu
   const FrameInput frame{plan_, pattern_, false, execution.isa};
   visit_tiles(frame, execution, [&](const TileJob& job, TileScratch* scratch) {
     if (!scratch) return receive(job.pixels, nullptr);
-    const JobLists lists = list_fragments(frame, job, *scratch, opacities_);
+    const JobLists lists = list_fragments(frame, job, *scratch, opacities_, kNegligible);
     std::vector<glm::vec4> colors(scratch->arrived.count, glm::vec4(0));
     paint(job.pixels, lists, colors);
     TilePicture picture(job.pixels);

@@ -18,10 +18,16 @@ class FragmentPass {
   /// Positions of the masks' bits in 1/256 pixel.
   [[nodiscard]] std::vector<glm::ivec2> samples() const { return pattern_.positions(); }
 
+  /// The primitives in one part of the picture after another: all that are seen, some hidden ones, some several times.
+  /// Quicker than looking at their fragments.
+  using Note = std::function<void(std::span<const PrimitiveId> primitives)>;
+  void list_primitives(const Note& note, const Execution& execution) const;
+
   using Look = std::function<void(const Rectangle& pixels, const JobLists& lists)>;
   void look(const Look& look, const Execution& execution) const;
 
-  /// Sets colors[lists.numbers[i]], straight alpha, for every fragment i. The rest is 0.
+  /// Sets colors[lists.numbers[i]], straight alpha, for every fragment i. The rest is 0: what is hidden, and what adds
+  /// less than 1e-12 of itself to its pixel because of what is before it.
   using Paint = std::function<void(const Rectangle& pixels, const JobLists& lists, std::vector<glm::vec4>& colors)>;
   /// Takes the finished pixels of the rectangle, row by row, premultiplied; null where nothing is seen.
   using Receive = std::function<void(const Rectangle& pixels, const std::vector<glm::vec4>* colors)>;

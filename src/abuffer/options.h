@@ -2,6 +2,8 @@
 // The room's own checks, and what materials say of primitives.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "frontmost/abuffer.h"
@@ -17,6 +19,8 @@ class Opacities {
   Opacities(const Surfaces& surfaces, float opacity, const Execution& execution);
 
   [[nodiscard]] float of(PrimitiveId id) const { return values_.empty() ? all_ : std::abs(values_[id]); }
+  /// What it hides at least, whatever its texture says.
+  [[nodiscard]] float least(PrimitiveId id) const { return std::max(values_.empty() ? all_ : values_[id], 0.0f); }
   /// Nothing is seen through it, whatever its texture says.
   [[nodiscard]] bool is_opaque(PrimitiveId id) const { return (values_.empty() ? all_ : values_[id]) >= 1.0f; }
 

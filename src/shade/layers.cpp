@@ -44,13 +44,9 @@ void LayerShader::shade(const Rectangle& pixels, const JobLists& lists, std::spa
 
 BitSet seen_primitives(const Surfaces& surfaces, const FragmentPass& pass, const Execution& execution) {
   BitSet seen(surfaces.primitive_count());
-  pass.look(
-      [&](const Rectangle&, const JobLists& lists) {
-        PrimitiveId last = no_primitive;
-        for (const Fragment& f : lists.fragments) {
-          if (f.primitive != last) seen.add(f.primitive);
-          last = f.primitive;
-        }
+  pass.list_primitives(
+      [&](std::span<const PrimitiveId> primitives) {
+        for (const PrimitiveId id : primitives) seen.add(id);
       },
       execution);
   return seen;

@@ -9,7 +9,7 @@
 
 namespace frontmost::shading {
 
-/// Every primitive that has a fragment which nothing opaque hides. O(fragments).
+/// Every primitive that is seen, and perhaps some that something opaque hides. O(fragments).
 [[nodiscard]] BitSet seen_primitives(const Surfaces& surfaces, const abuffer_detail::FragmentPass& pass,
                                      const Execution& execution);
 

@@ -66,6 +66,35 @@ TEST_F(Layers, DeepFilesAreWritten) {
   EXPECT_NE(hashes("").find("deep "), std::string::npos);
 }
 
+/// Sheets one behind the other, each of which fills the picture.
+std::string stack_obj(int count) {
+  std::string text;
+  for (int i = 0; i < count; ++i)
+    for (const char* corner : {"-9 -9 ", "9 -9 ", "9 9 ", "-9 9 "})
+      text += "v " + std::string(corner) + std::to_string(-0.01 * i) + "\n";
+  for (int i = 0; i < count; ++i)
+    text += "f " + std::to_string(4 * i + 1) + " " + std::to_string(4 * i + 2) + " " + std::to_string(4 * i + 3) + " " +
+            std::to_string(4 * i + 4) + "\n";
+  return text;
+}
+
+// The fragments are 7 million: as lists 250 MB, and as much again while they are made.
+TEST_F(Layers, FiveHundredFitIntoTheMemoryOfFew) {
+  if (takes_all_addresses) GTEST_SKIP() << "the sanitizer takes all addresses";
+  write("stack.obj", stack_obj(500));
+  const auto call = [&](const std::vector<std::string>& output) {
+    Call one{.words = {"render", "stack.obj", "--opacity", "0.01", "--camera-position", "0,0,5", "--camera-direction",
+                       "0,0,-1", "--resolution", "160,90", "--samples", "1", "--threads", "1"}};
+    one.words.insert(one.words.end(), output.begin(), output.end());
+    one.address_space = std::size_t(256) << 20;
+    return one;
+  };
+  const Outcome picture = run(call({"--background", "transparent", "-o", "stack.exr"}));
+  EXPECT_EQ(picture.status, 0) << picture.err;
+  EXPECT_NEAR(image("stack.exr").find("A")->floats()[45 * 160 + 80], 1 - std::pow(0.99, 500), 1e-5);
+  EXPECT_EQ(run(call({"--deep", "deep.exr"})).status, 1);
+}
+
 TEST_F(Layers, TheMethodIsNamed) {
   const auto method = [&](const std::string& options) {
     return succeed(front + "-o m.png --json " + options).json()["method"].get<std::string>();

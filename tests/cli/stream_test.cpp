@@ -85,20 +85,6 @@ TEST_F(StreamedProgram, SaysWhyNothingIsInView) {
   }
 }
 
-/// A sanitizer takes all addresses for itself, so that there is nothing to limit.
-constexpr bool takes_all_addresses =
-#if defined(__SANITIZE_ADDRESS__)
-    true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-    true;
-#else
-    false;
-#endif
-#else
-    false;
-#endif
-
 /// A flat sheet of two triangles for every square, bent a little, from its near end to its far end.
 std::string sheet_stl(std::uint32_t columns, std::uint32_t rows) {
   std::string stl(80, ' ');
