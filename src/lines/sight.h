@@ -38,10 +38,9 @@ class Sight {
     return plane_through(a, b).turn(c).sign;
   }
 
-  /// x and y in pixels, z the planar distance. Precondition in perspective: not in the plane of the eye.
-  [[nodiscard]] glm::dvec3 on_screen(const glm::dvec3& position) const { return to_screen(in_eye(position)); }
   /// Eye space with the planar distance in place of z.
   [[nodiscard]] glm::dvec3 in_eye(const glm::dvec3& position) const;
+  /// x and y in pixels, z the planar distance. Precondition in perspective: not in the plane of the eye.
   [[nodiscard]] glm::dvec3 to_screen(const glm::dvec3& in_eye) const;
   [[nodiscard]] double near() const { return near_; }
   [[nodiscard]] double far() const { return far_; }
