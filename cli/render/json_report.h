@@ -21,7 +21,7 @@ struct RunTimings {
 struct ModelFacts {
   std::uint64_t triangles = 0;
   const std::vector<std::string>& warnings;
-  bool lets_light_through = false;           ///< some of its materials are masked or blended
+  bool lets_light_through = false;           ///< some of its materials are blended
   std::optional<int> passes = std::nullopt;  ///< over a stream
 };
 

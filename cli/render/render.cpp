@@ -35,10 +35,10 @@ void check_method(const Settings& settings, const std::vector<Job>& jobs) {
   }
 }
 
-/// Whether some material is masked or blended.
+/// Whether something is behind glass.
 bool lets_light_through(const Scene& scene) {
   return std::any_of(scene.materials.begin(), scene.materials.end(),
-                     [](const Material& m) { return m.alpha != Material::Alpha::opaque; });
+                     [](const Material& m) { return m.alpha == Material::Alpha::blend; });
 }
 
 /// Without any result asked for, the picture goes to the terminal, if there is one.

@@ -50,8 +50,8 @@ struct Agreement {
                                   const Execution& execution = {});
 
 /// Adds what shows through, for methods that answer in layers: of the samples that agree, those where `behind` shows
-/// something become `translucent` where the material of what `front` shows lets light through (alpha mode mask or
-/// blend), and `unexplained` where it is opaque. O(samples).
+/// something become `translucent` where the material of what `front` shows lets light through (alpha mode blend), and
+/// `unexplained` where it is opaque. O(samples).
 /// \throws Error bad_argument when they are of different views.
 void see_through(Agreement& agreement, const Surfaces& surfaces, const Visible& front, const Visible& behind);
 

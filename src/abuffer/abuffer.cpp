@@ -29,7 +29,7 @@ Opacities::Opacities(const Surfaces& surfaces, float opacity, const Execution& e
     float value = opacity;
     if (m.alpha == Material::Alpha::blend) value *= m.base_color.a > 0 ? std::min(m.base_color.a, 1.0f) : 0.0f;
     // Even blended materials of opacity 1 may be seen through where their texture says so.
-    by_material.push_back(m.alpha == Material::Alpha::opaque ? value : -value);
+    by_material.push_back(m.alpha == Material::Alpha::blend ? -value : value);
     differ = differ || by_material.back() != opacity;
   }
   if (!differ) return;

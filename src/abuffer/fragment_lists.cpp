@@ -23,7 +23,7 @@ class Lister {
     float passes = 1;
     for (std::size_t i = 0; i < length && words[i * kGroup] != 0; ++i) {
       const std::uint32_t number = ~std::uint32_t(words[i * kGroup]);
-      if (s_.nearest_of(number) < hidden) continue;
+      if (s_.nearest_of(number) < hidden || s_.arrived.mask(number) == 0) continue;
       add(number);
       // At a single sample there is no part of a pixel: what comes first hides the rest.
       if (frame_.pattern.count == 1 && hides_rest(id_of(number), passes)) break;

@@ -60,7 +60,9 @@ const ResolvedPicture& Resolver::draw(const Surfaces& surfaces, const View& view
   State& state = *state_;
   state.plan.make(surfaces, view, execution);
   state.prepare(view);
-  const FrameInput frame{state.plan, pattern, pattern.count == 1, execution.isa};
+  // Holes are taken out of masks, which flat frames do not have.
+  const bool has_holes = surfaces.clusters().cutouts != nullptr;
+  const FrameInput frame{state.plan, pattern, pattern.count == 1 && !has_holes, execution.isa};
   ResolvedPicture& picture = state.picture;
   const PicturePlanes out{picture.red.data(), picture.green.data(), picture.blue.data(), picture.alpha.data(),
                           view.width};

@@ -4,7 +4,7 @@
 
 #include <atomic>
 
-#include "abuffer/gather_kernel.h"
+#include "abuffer/cut_fragments.h"
 #include "base/parallel.h"
 #include "base/pool.h"
 
@@ -15,6 +15,7 @@ template <class Visit>
 void visit_job(const FrameInput& frame, const TileJob& job, TileScratch& scratch, const Visit& visit) {
   const Gathered gathered = gather_tile(frame, job, scratch);
   if (gathered != Gathered::too_much) {
+    if (gathered == Gathered::something && !frame.is_flat) cut_fragments(frame, job, scratch);
     visit(job, gathered == Gathered::something ? &scratch : nullptr);
     return;
   }

@@ -84,12 +84,6 @@ class LightPacket {
     float low_u, high_u, low_v, high_v, low_d, high_d;
   };
 
-  static glm::dvec3 PositionOf(const TrianglePoint& p) {
-    glm::dvec3 sum(0);
-    for (int i = 0; i < 3; ++i) sum += double(p.weights[i]) * glm::dvec3(p.corners[std::size_t(i)]);
-    return sum / (double(p.weights.x) + double(p.weights.y) + double(p.weights.z)) + glm::dvec3(p.lift);
-  }
-
   static float SizeOf(const glm::vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
   /// Scales by a power of two, so that nothing overflows and products keep their digits.
@@ -111,7 +105,7 @@ class LightPacket {
       ids_[i] = point.primitive;
       if (is_clear_[i]) continue;
       ++waiting_count_;
-      position[i] = PositionOf(point);
+      position[i] = position_of(point);
       size = std::max(size, SizeOf(point.lift));
       // Neighbours are mostly of one triangle.
       if (i > 0 && !is_clear_[i - 1] && point.corners == points_[i - 1].corners) continue;
@@ -370,11 +364,18 @@ class LightPacket {
   /// A triangle that certainly is passed through; a lifted point may be below its own.
   void Meet(const RayLeaf& leaf, std::size_t lane, std::size_t ray) {
     const TrianglePoint& point = points_[ray];
-    if (point.lift == glm::vec3(0) || !is_own(CornersOf(leaf, lane), point)) Darken(ray);
+    if ((point.lift == glm::vec3(0) || !is_own(CornersOf(leaf, lane), point)) && !IsHole(leaf, lane, ray)) Darken(ray);
   }
 
   HWY_NOINLINE void Decide(const RayLeaf& leaf, std::size_t lane, std::size_t ray) {
-    if (stands_before(CornersOf(leaf, lane), points_[ray], to_light_)) Darken(ray);
+    if (stands_before(CornersOf(leaf, lane), points_[ray], to_light_) && !IsHole(leaf, lane, ray)) Darken(ray);
+  }
+
+  /// Whether the triangle has a hole where the ray passes.
+  [[nodiscard]] HWY_INLINE bool IsHole(const RayLeaf& leaf, std::size_t lane, std::size_t ray) const {
+    const Cutouts* const cutouts = tree_.cutouts.get();
+    if (!cutouts || !cutouts->has(leaf.id[lane])) return false;
+    return (*cutouts)[leaf.id[lane]].is_hole_at(passed_point(CornersOf(leaf, lane), points_[ray], to_light_));
   }
 
   const RayTree& tree_;

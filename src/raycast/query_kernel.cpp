@@ -146,7 +146,7 @@ class QueryWalker {
     bool met = false;
     for (std::size_t first = 0; first < kRayLanes; first += kQueryLanes) {
       const Candidates candidates = CandidatesOf(leaf, first);
-      if (want_ == Want::any && candidates.certain != 0) {
+      if (want_ == Want::any && candidates.certain != 0 && !tree_.cutouts) {
         const std::size_t lane = first + hwy::Num0BitsBelowLS1Bit_Nonzero32(candidates.certain);
         hits_.push_back({leaf.id[lane], 0, false});
         return true;
@@ -158,12 +158,19 @@ class QueryWalker {
         for (std::size_t k = 0; k < 3; ++k)
           corners[k] = {leaf.corner[k][0][lane], leaf.corner[k][1][lane], leaf.corner[k][2][lane]};
         const RayHit hit = meet(q_, corners, leaf.id[lane]);
-        if (hit.primitive == no_primitive) continue;
+        if (hit.primitive == no_primitive || LooksThrough(hit)) continue;
         met = true;
         Keep(hit);
       }
     }
     return met;
+  }
+
+  [[nodiscard]] HWY_INLINE bool LooksThrough(const RayHit& hit) const {
+    const Cutouts* const cutouts = tree_.cutouts.get();
+    if (!cutouts || !cutouts->has(hit.primitive)) return false;
+    const glm::dvec3 along = q_.is_segment ? glm::dvec3(q_.end) - glm::dvec3(q_.origin) : glm::dvec3(q_.direction);
+    return (*cutouts)[hit.primitive].is_hole_at(glm::dvec3(q_.origin) + hit.t * along);
   }
 
   void Keep(const RayHit& hit) {

@@ -10,6 +10,7 @@
 #include "base/float_environment.h"
 #include "base/parallel.h"
 #include "base/pool.h"
+#include "raycast/hole_pass.h"
 #include "raycast/tile_kernel.h"
 
 namespace frontmost {
@@ -71,6 +72,7 @@ const Visible& RayCaster::cast(const RayIndex& index, const View& view, const Ex
       cast_tile(frame, int(i % std::size_t(tiles_x)), int(i / std::size_t(tiles_x)), *scratch, execution.isa);
     report_progress(execution, "visible", double(done += end - begin) / double(tiles));
   });
+  pass_holes(tree, visible, execution);
   return visible;
 }
 

@@ -109,4 +109,16 @@ bool stands_before(const Corners& corners, const TrianglePoint& point, const glm
   return facing != 0 && sight.side() == facing;
 }
 
+glm::dvec3 position_of(const TrianglePoint& point) {
+  glm::dvec3 sum(0);
+  for (int i = 0; i < 3; ++i) sum += double(point.weights[i]) * glm::dvec3(point.corners[std::size_t(i)]);
+  return sum / (double(point.weights.x) + double(point.weights.y) + double(point.weights.z)) + glm::dvec3(point.lift);
+}
+
+glm::dvec3 passed_point(const Corners& corners, const TrianglePoint& point, const glm::vec3& to_light) {
+  const glm::dvec3 a(corners[0]), light(to_light), from = position_of(point);
+  const glm::dvec3 normal = glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a);
+  return from + glm::dot(normal, a - from) / glm::dot(normal, light) * light;
+}
+
 }  // namespace frontmost::raycast_detail

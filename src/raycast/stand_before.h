@@ -22,4 +22,10 @@ using Corners = std::array<glm::vec3, 3>;
 /// Precondition: is_valid(point), finite values elsewhere, and a direction.
 [[nodiscard]] bool stands_before(const Corners& corners, const TrianglePoint& point, const glm::vec3& to_light);
 
+/// Where the ray passes through the triangle's plane, rounded. Precondition: stands_before().
+[[nodiscard]] glm::dvec3 passed_point(const Corners& corners, const TrianglePoint& point, const glm::vec3& to_light);
+
+/// The point itself, rounded.
+[[nodiscard]] glm::dvec3 position_of(const TrianglePoint& point);
+
 }  // namespace frontmost::raycast_detail

@@ -12,6 +12,9 @@
 #include "base/float_environment.h"
 #include "base/parallel.h"
 #include "report/sample_square.h"
+#include "surfaces/cluster_set.h"
+#include "view/screen_cutout.h"
+#include "view/screen_transform.h"
 
 namespace frontmost {
 namespace {
@@ -31,6 +34,7 @@ struct Question {
   const Surfaces& surfaces;
   const View& view;
   const SampleRays rays;
+  const ScreenRays screen_rays;
   const std::span<const glm::ivec2> offsets;
 
   [[nodiscard]] SampleSquare square(std::size_t sample) const {
@@ -49,9 +53,20 @@ struct Question {
     const bool is_front = (triangle.facing() < 0) != surfaces.is_mirrored(surfaces.source(id).instance);
     return view.culling == Culling::both || (view.culling == Culling::front) == is_front;
   }
-  /// As a method sees it: one that is left out is not there, except where it is so thin that snapping may turn it.
-  [[nodiscard]] Meeting meeting(const SeenTriangle& triangle, PrimitiveId id, const SampleSquare& square) const {
+  /// Whether a triangle with holes lets the ray of a sample pass: asked as the methods ask.
+  [[nodiscard]] bool is_hole(PrimitiveId id, std::size_t sample) const {
+    const Cutouts* const cutouts = surfaces.clusters().cutouts.get();
+    if (!cutouts || !cutouts->has(id)) return false;
+    const std::size_t pixel = sample % view.pixel_count(), width = std::size_t(view.width);
+    const glm::ivec2 at = glm::ivec2(pixel % width, pixel / width) * kSubPixels + offsets[sample / view.pixel_count()];
+    return ScreenCutout((*cutouts)[id], screen_rays).is_hole(at.x, at.y);
+  }
+  /// As a method sees it: one that is left out is not there, except where it is so thin that snapping may turn it; nor
+  /// is one that has a hole.
+  [[nodiscard]] Meeting meeting(const SeenTriangle& triangle, PrimitiveId id, const SampleSquare& square,
+                                std::size_t sample) const {
     const Meeting meeting = triangle.meeting(square);
+    if (meeting != Meeting::misses && is_hole(id, sample)) return Meeting::misses;
     return meeting == Meeting::contains && is_culled(triangle, id) ? Meeting::misses : meeting;
   }
   /// A key as nearness.
@@ -189,7 +204,7 @@ void testify(const Question& question, PrimitiveId id, const SeenTriangle& trian
   for (std::size_t i = 0; i < 2; ++i) {
     const Claim& claim = contest.claims[i];
     if (claim.id == id || impossible[i].load(std::memory_order_relaxed)) continue;
-    is_there = is_there || question.meeting(triangle, id, contest.square) == Meeting::contains;
+    is_there = is_there || question.meeting(triangle, id, contest.square, contest.sample) == Meeting::contains;
     if (!is_there) return;
     if (!claim.triangle || is_surely_nearer(triangle, *claim.triangle, contest.square))
       impossible[i].store(true, std::memory_order_relaxed);
@@ -220,7 +235,8 @@ Contest contest_at(const Question& question, std::size_t sample, PrimitiveId a, 
   for (Claim& claim : contest.claims) {
     if (claim.id == no_primitive) continue;
     claim.triangle = question.triangle(claim.id);
-    claim.meeting = claim.triangle ? question.meeting(*claim.triangle, claim.id, contest.square) : Meeting::misses;
+    claim.meeting =
+        claim.triangle ? question.meeting(*claim.triangle, claim.id, contest.square, sample) : Meeting::misses;
   }
   return contest;
 }
@@ -293,7 +309,8 @@ Agreement agreement(const Surfaces& surfaces, const Visible& a, const Visible& b
   Agreement result;
   result.view = a.view;
   result.differences = Buffer<Difference>(a.primitives.size());
-  const Question question{surfaces, result.view, SampleRays(a.view), sample_offsets(a.view.samples)};
+  const Question question{surfaces, result.view, SampleRays(a.view), ScreenRays(a.view),
+                          sample_offsets(a.view.samples)};
   look_at_samples(question, a, b, execution, result);
   const std::vector<Contest> contests = contests_of(question, a, b, result);
   Verdicts impossible(contests.size());
@@ -313,7 +330,7 @@ void see_through(Agreement& agreement, const Surfaces& surfaces, const Visible& 
     if (id >= surfaces.primitive_count()) return false;
     const PrimitiveSource source = surfaces.source(id);
     const std::uint32_t material = scene.meshes[source.mesh].material_of(source.triangle);
-    return material != no_index && scene.materials[material].alpha != Material::Alpha::opaque;
+    return material != no_index && scene.materials[material].alpha == Material::Alpha::blend;
   };
   for (std::size_t i = 0; i < agreement.differences.size(); ++i) {
     Difference& difference = agreement.differences[i];

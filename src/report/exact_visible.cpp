@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The nearest triangle at every sample, exactly: bounds in doubles decide nearly everywhere, expansions the rest.
 #include <algorithm>
+#include <optional>
 
 #include "base/float_environment.h"
 #include "frontmost/precision.h"
 #include "report/exact_depth.h"
+#include "view/screen_cutout.h"
+#include "zbuffer/covered_pixels.h"
 #include "zbuffer/submission.h"
 
 namespace frontmost {
@@ -16,6 +19,7 @@ using namespace zbuffer_detail;
 struct Field {
   const Surfaces& surfaces;
   const SampleRays rays;
+  const ScreenRays screen_rays;
   std::span<const glm::ivec2> samples;
   ExactVisible& answer;
   Buffer<DepthBounds> bounds;
@@ -27,37 +31,22 @@ class Contest {
 
   void enter(const TriangleRecord& r) {
     const View& view = field_.answer.view;
-    const PixelRect touched = pixel_rect(r, view.width, view.height);
-    const PixelRect rect{std::max(touched.x0, tile_.x0), std::max(touched.y0, tile_.y0), std::min(touched.x1, tile_.x1),
-                         std::min(touched.y1, tile_.y1)};
+    const PixelRect rect = common_part(pixel_rect(r, view.width, view.height), tile_);
     if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
     const BoundedPlane plane(field_.surfaces.corners(r.id), field_.rays);
-    for (std::size_t s = 0; s < field_.samples.size(); ++s) enter(r, plane, rect, s);
+    const Cutouts* const cutouts = field_.surfaces.clusters().cutouts.get();
+    std::optional<ScreenCutout> cutout;
+    if (cutouts && cutouts->has(r.id)) cutout.emplace((*cutouts)[r.id], field_.screen_rays);
+    for (std::size_t s = 0; s < field_.samples.size(); ++s) {
+      const glm::ivec2 offset = field_.samples[s];
+      visit_covered(r, rect, offset, [&](int x, int y) {
+        if (cutout && cutout->is_hole(x * kSubPixels + offset.x, y * kSubPixels + offset.y)) return;
+        fragment(x, y, s, r.id, plane);
+      });
+    }
   }
 
  private:
-  void enter(const TriangleRecord& r, const BoundedPlane& plane, const PixelRect& rect, std::size_t sample) {
-    const glm::ivec2 offset = field_.samples[sample];
-    std::int64_t row[3], step_x[3], step_y[3];
-    for (int k = 0; k < 3; ++k) {
-      const int n = k == 2 ? 0 : k + 1;
-      const std::int64_t dx = r.x[n] - r.x[k], dy = r.y[n] - r.y[k];
-      const bool is_top_left = dy < 0 || (dy == 0 && dx > 0);
-      row[k] = dx * (rect.y0 * kSubPixels + offset.y - r.y[k]) - dy * (rect.x0 * kSubPixels + offset.x - r.x[k]) -
-               (is_top_left ? 0 : 1);
-      step_x[k] = -dy * kSubPixels;
-      step_y[k] = dx * kSubPixels;
-    }
-    for (int y = rect.y0; y <= rect.y1; ++y) {
-      std::int64_t e[3] = {row[0], row[1], row[2]};
-      for (int x = rect.x0; x <= rect.x1; ++x) {
-        if ((e[0] | e[1] | e[2]) >= 0) fragment(x, y, sample, r.id, plane);
-        for (int k = 0; k < 3; ++k) e[k] += step_x[k];
-      }
-      for (int k = 0; k < 3; ++k) row[k] += step_y[k];
-    }
-  }
-
   void fragment(int x, int y, std::size_t sample, PrimitiveId id, const BoundedPlane& plane) {
     ExactVisible& answer = field_.answer;
     const SampleRay ray = field_.rays.at(x, y, field_.samples[sample]);
@@ -94,7 +83,8 @@ ExactVisible exact_visible(const Surfaces& surfaces, const View& view, const Exe
   const IeeeScope ieee;
   const std::size_t count = view.sample_count();
   ExactVisible answer{view, Buffer<PrimitiveId>(count, no_primitive), Buffer<std::uint8_t>(count, 0)};
-  Field field{surfaces, SampleRays(view), sample_offsets(view.samples), answer, Buffer<DepthBounds>(count)};
+  Field field{surfaces, SampleRays(view),          ScreenRays(view), sample_offsets(view.samples),
+              answer,   Buffer<DepthBounds>(count)};
   const TileGrid grid(view);
   submit(surfaces, view, {0, surfaces.primitive_count()}, execution, [&](std::size_t tile, const PlacedPiece& piece) {
     Contest contest(field, grid.rect(tile));

@@ -19,7 +19,7 @@ glm::vec3 unit_or_zero(const glm::dvec3& v) {
 
 TangentFrame tangent_frame(const TriangleSetup& t, const TexcoordTransform& transform) {
   std::array<glm::dvec2, 3> uv;
-  for (std::size_t k = 0; k < 3; ++k) uv[k] = glm::dvec2(transform({t.texcoord[k], {}, {}}).texcoord);
+  for (std::size_t k = 0; k < 3; ++k) uv[k] = glm::dvec2(transform.place(t.texcoord[k]));
   const glm::dvec3 edge1 = glm::dvec3(t.corner[1] - t.corner[0]), edge2 = glm::dvec3(t.corner[2] - t.corner[0]);
   const glm::dvec2 uv1 = uv[1] - uv[0], uv2 = uv[2] - uv[0];
   const double area = uv1.x * uv2.y - uv2.x * uv1.y;
@@ -106,13 +106,13 @@ class Run {
     batch_.geometry.normal.set(i, normalized_or(turned, n));
   }
 
-  /// Without blending a texel either is there or is not.
+  /// What can be seen without blending is there.
   void settle_alpha(int begin, int end) {
     for (int i = begin; i < end; ++i) {
       float& alpha = batch_.material.alpha[i];
       switch (row_.factors.alpha) {
         case Material::Alpha::opaque: alpha = 1.0f; break;
-        case Material::Alpha::mask: alpha = alpha >= row_.factors.alpha_cutoff ? 1.0f : 0.0f; break;
+        case Material::Alpha::mask: alpha = 1.0f; break;  // holes are not seen in the first place
         case Material::Alpha::blend: alpha = alpha > 0 ? std::min(alpha, 1.0f) : 0.0f; break;  // 0 for NaN
       }
     }

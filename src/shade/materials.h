@@ -15,7 +15,9 @@ struct TextureSlot {
   const Pyramid* pyramid = nullptr;  ///< null: not set
   TexcoordTransform transform{TextureUse{}};
 
-  [[nodiscard]] glm::vec4 sample(const Footprint& footprint) const { return pyramid->sample(transform(footprint)); }
+  [[nodiscard]] glm::vec4 sample(const Footprint& footprint) const {
+    return pyramid->sample(transformed(transform, footprint));
+  }
 };
 
 struct MaterialRow {

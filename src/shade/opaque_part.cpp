@@ -7,7 +7,7 @@ namespace frontmost::shading {
 namespace {
 
 bool is_see_through(const Scene& scene, std::uint32_t material) {
-  return material < scene.materials.size() && scene.materials[material].alpha != Material::Alpha::opaque;
+  return material < scene.materials.size() && scene.materials[material].alpha == Material::Alpha::blend;
 }
 
 /// Keeps the elements whose triangle is kept.
@@ -44,7 +44,7 @@ Mesh opaque_part(const Scene& scene, const Mesh& mesh) {
 
 bool has_see_through(const Scene& scene) {
   return std::any_of(scene.materials.begin(), scene.materials.end(),
-                     [](const Material& m) { return m.alpha != Material::Alpha::opaque; });
+                     [](const Material& m) { return m.alpha == Material::Alpha::blend; });
 }
 
 Scene opaque_part(const Scene& scene) {
@@ -53,7 +53,12 @@ Scene opaque_part(const Scene& scene) {
   for (const Mesh& mesh : scene.meshes) part.meshes.push_back(opaque_part(scene, mesh));
   part.instances = scene.instances;
   part.materials = scene.materials;
-  part.textures.resize(scene.textures.size());  // their numbers must exist; their pixels stay where they are
+  part.textures.resize(scene.textures.size());  // their numbers must exist; most pixels stay where they are
+  for (const Material& m : scene.materials) {
+    const std::uint32_t texture = m.base_color_texture.texture;
+    if (m.alpha == Material::Alpha::mask && m.base_color_texture.is_set())
+      part.textures[texture] = scene.textures[texture];
+  }
   part.up = scene.up;
   return part;
 }

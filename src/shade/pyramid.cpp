@@ -32,32 +32,6 @@ const float* table_of(Encoding encoding) {
 
 std::uint8_t linear_byte(float value) { return std::uint8_t(std::min(value, 1.0f) * 255.0f + 0.5f); }
 
-int floor_of(float value) {
-  const int truncated = int(value);
-  return truncated - int(float(truncated) > value);
-}
-
-/// A texture coordinate brought into [0, 1] by its wrap rule. Non-finite and absurd ones become 0.
-float wrapped(float t, Texture::Wrap wrap) {
-  if (!(std::abs(t) < 1e6f)) return 0.0f;
-  switch (wrap) {
-    case Texture::Wrap::clamp: return std::clamp(t, 0.0f, 1.0f);
-    case Texture::Wrap::repeat: return t - float(floor_of(t));
-    case Texture::Wrap::mirror: {
-      const float twice = t - 2.0f * float(floor_of(t * 0.5f));
-      return twice > 1.0f ? 2.0f - twice : twice;
-    }
-  }
-  return 0.0f;
-}
-
-/// A texel number one past an end: the other end where the texture repeats, else the same texel again.
-int neighbour(int i, int size, Texture::Wrap wrap) {
-  if (i < 0) return wrap == Texture::Wrap::repeat ? size - 1 : 0;
-  if (i >= size) return wrap == Texture::Wrap::repeat ? 0 : size - 1;
-  return i;
-}
-
 /// Which texels of the finer level make one of the coarser, along one axis: two, or three with an odd size, so that
 /// every texel counts alike.
 struct Taps {
@@ -147,14 +121,6 @@ float approximate_log2(float value) {
   return exponent + t * (1.3465f - 0.3465f * t);
 }
 
-TexcoordTransform::TexcoordTransform(const TextureUse& use) : offset_(use.offset) {
-  const bool turned = use.rotation != 0;
-  const float c = turned ? float(std::cos(double(use.rotation))) : 1.0f;
-  const float s = turned ? float(std::sin(double(use.rotation))) : 0.0f;
-  across_ = glm::vec2(c, -s) * use.scale.x;
-  down_ = glm::vec2(s, c) * use.scale.y;
-}
-
 Pyramid::Pyramid(const Texture& texture, Encoding encoding, const Execution& execution)
     : texture_(&texture), encoding_(encoding), color_of_byte_(table_of(encoding)) {
   if (texture.pixels.empty()) return;
@@ -182,22 +148,17 @@ glm::vec4 Pyramid::texel(const Level& level, int x, int y) const {
 
 glm::vec4 Pyramid::nearest(const glm::vec2& texcoord) const {
   const Level& level = levels_[0];
-  const int x = int(wrapped(texcoord.x, texture_->wrap_u) * float(level.width));
-  const int y = int(wrapped(texcoord.y, texture_->wrap_v) * float(level.height));
-  return texel(level, std::min(x, level.width - 1), std::min(y, level.height - 1));
+  return texel(level, texel_of(texcoord.x, level.width, texture_->wrap_u),
+               texel_of(texcoord.y, level.height, texture_->wrap_v));
 }
 
 glm::vec4 Pyramid::bilinear(const Level& level, const glm::vec2& texcoord) const {
-  const Texture::Wrap wrap_u = texture_->wrap_u, wrap_v = texture_->wrap_v;
-  const float x = wrapped(texcoord.x, wrap_u) * float(level.width) - 0.5f;
-  const float y = wrapped(texcoord.y, wrap_v) * float(level.height) - 0.5f;
-  const int left = floor_of(x), top = floor_of(y);
-  const int x0 = neighbour(left, level.width, wrap_u), x1 = neighbour(left + 1, level.width, wrap_u);
-  const int y0 = neighbour(top, level.height, wrap_v), y1 = neighbour(top + 1, level.height, wrap_v);
-  const glm::u8vec4* upper = level.texels + std::size_t(y0) * std::size_t(level.width);
-  const glm::u8vec4* lower = level.texels + std::size_t(y1) * std::size_t(level.width);
-  const glm::u8vec4 a = upper[x0], b = upper[x1], c = lower[x0], d = lower[x1];
-  const float fx = x - float(left), fy = y - float(top);
+  const TexelPair x = texel_pair(texcoord.x, level.width, texture_->wrap_u);
+  const TexelPair y = texel_pair(texcoord.y, level.height, texture_->wrap_v);
+  const glm::u8vec4* upper = level.texels + std::size_t(y.first) * std::size_t(level.width);
+  const glm::u8vec4* lower = level.texels + std::size_t(y.second) * std::size_t(level.width);
+  const glm::u8vec4 a = upper[x.first], b = upper[x.second], c = lower[x.first], d = lower[x.second];
+  const float fx = x.fraction, fy = y.fraction;
   // Channel by channel: the compiler keeps four scalars in registers where it would spill vectors.
   const auto channel = [&](const float* table, int k) {
     const float above = mix(table[a[k]], table[b[k]], fx), below = mix(table[c[k]], table[d[k]], fx);

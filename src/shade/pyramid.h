@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "frontmost/scene.h"
+#include "scene/texture_lookup.h"
 
 namespace frontmost::shading {
 
@@ -16,20 +16,9 @@ struct Footprint {
   glm::vec2 texcoord{0}, dx{0}, dy{0};
 };
 
-/// KHR_texture_transform, its sine and cosine taken once.
-class TexcoordTransform {
- public:
-  explicit TexcoordTransform(const TextureUse& use);
-  [[nodiscard]] Footprint operator()(const Footprint& footprint) const {
-    return {turned(footprint.texcoord) + offset_, turned(footprint.dx), turned(footprint.dy)};
-  }
-
- private:
-  [[nodiscard]] glm::vec2 turned(const glm::vec2& v) const { return across_ * v.x + down_ * v.y; }
-
-  glm::vec2 across_, down_;  ///< where one step in u, and in v, leads
-  glm::vec2 offset_;
-};
+[[nodiscard]] inline Footprint transformed(const TexcoordTransform& t, const Footprint& f) {
+  return {t.place(f.texcoord), t.step(f.dx), t.step(f.dy)};
+}
 
 class Pyramid {
  public:

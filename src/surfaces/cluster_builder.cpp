@@ -36,6 +36,7 @@ struct Source {
   const InstanceFinder& instances;
   const SpatialOrder& order;
   const std::vector<std::uint8_t>& mirrored;
+  std::size_t first_cutout;  ///< in the order: clusters hold triangles from before, or from there on
 };
 
 /// What is needed of an instance to read its triangles. Neighbours in the order mostly share it.
@@ -63,6 +64,7 @@ class PartBuilder {
     start_cluster();
     for (std::size_t i = begin; i < end; ++i) {
       prefetch(i, end);
+      if (i == source_.first_cutout) start_next_cluster();
       const TriangleRun run = run_at(i);
       for (std::uint32_t k = 0; k < run.count; ++k) add(run.first + k);
     }
@@ -272,6 +274,31 @@ void gather(ClusterSet& set, std::vector<Part>& parts, const SpatialOrder& order
   });
 }
 
+/// Puts what may have holes at the end of the order; runs that hold both kinds become several. \returns where that
+/// begins.
+std::size_t part_cutouts(const Cutouts* cutouts, Buffer<std::uint64_t>& runs) {
+  if (!cutouts) return runs.size();
+  std::vector<std::uint64_t> kinds[2];
+  for (const std::uint64_t bits : runs) {
+    const TriangleRun run = TriangleRun::unpacked(bits);
+    for (std::uint32_t begin = 0, end; begin < run.count; begin = end) {
+      const bool has = cutouts->has(run.first + begin);
+      for (end = begin + 1; end < run.count && cutouts->has(run.first + end) == has;) ++end;
+      kinds[has].push_back(TriangleRun{run.first + begin, end - begin}.packed(0));
+    }
+  }
+  runs = Buffer<std::uint64_t>(kinds[0].size() + kinds[1].size());
+  std::copy(kinds[1].begin(), kinds[1].end(), std::copy(kinds[0].begin(), kinds[0].end(), runs.begin()));
+  return kinds[0].size();
+}
+
+/// The clusters before the one whose first triangle is `id`.
+std::size_t clusters_before(const ClusterSet& set, PrimitiveId id) {
+  std::size_t count = 0;
+  while (count < set.clusters.size() && set.id[set.clusters[count].first_triangle] != id) ++count;
+  return count;
+}
+
 }  // namespace
 
 BoxArrays::BoxArrays(std::size_t count) {
@@ -295,12 +322,13 @@ ClusterSet build_clusters(const Scene& scene, const Execution& execution) {
                                    static_cast<PrimitiveId>(scene.meshes[instance.mesh].triangles.size()));
 
   // The fractions are about what the steps take of the time.
-  for (const Instance& instance : scene.instances)
-    set.mirrored.push_back(mirrors(instance.world_from_mesh));
-  const SpatialOrder order = spatial_order(scene, set.first_primitives, execution);
+  for (const Instance& instance : scene.instances) set.mirrored.push_back(mirrors(instance.world_from_mesh));
+  set.cutouts = Cutouts::of(scene, set.first_primitives);
+  SpatialOrder order = spatial_order(scene, set.first_primitives, execution);
+  const std::size_t first_cutout = part_cutouts(set.cutouts.get(), order.runs);
   report_progress(execution, "surfaces", 0.4);
   const InstanceFinder instances(set.first_primitives);
-  const Source source{scene, set.first_primitives, instances, order, set.mirrored};
+  const Source source{scene, set.first_primitives, instances, order, set.mirrored, first_cutout};
   std::vector<Part> parts((order.runs.size() + kRunsPerPart - 1) / kRunsPerPart);
   parallel_for(execution, order.runs.size(), kRunsPerPart, [&](std::size_t begin, std::size_t end) {
     PartBuilder(source, parts[begin / kRunsPerPart]).build(begin, end);
@@ -311,6 +339,9 @@ ClusterSet build_clusters(const Scene& scene, const Execution& execution) {
     for (const auto& [instance, box] : part.instance_boxes) set.instance_bounds[instance].include(box);
   for (const Box& box : set.instance_bounds) set.bounds.include(box);
   gather(set, parts, order, execution);
+  set.first_cutout = first_cutout < order.runs.size()
+                         ? clusters_before(set, TriangleRun::unpacked(order.runs[first_cutout]).first)
+                         : set.clusters.size();
   report_progress(execution, "surfaces", 1);
   return set;
 }

@@ -6,6 +6,7 @@
 
 #include "frontmost/surfaces.h"
 #include "surfaces/cones.h"
+#include "surfaces/cutouts.h"
 
 namespace frontmost {
 
@@ -43,8 +44,10 @@ struct ClusterSet {
   Box bounds;
 
   std::vector<Cluster> clusters;
-  BoxArrays boxes;        ///< of the clusters; empty where no triangle has finite corners
-  Buffer<float> x, y, z;  ///< world space
+  std::size_t first_cutout = 0;  ///< clusters from here on hold what may have holes, those before nothing of it
+  std::shared_ptr<const Cutouts> cutouts;  ///< null where nothing may
+  BoxArrays boxes;                         ///< of the clusters; empty where no triangle has finite corners
+  Buffer<float> x, y, z;                   ///< world space
   Buffer<std::uint8_t> i0, i1, i2;
   Buffer<PrimitiveId> id;
   LazyCones cones;

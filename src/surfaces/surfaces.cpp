@@ -59,7 +59,8 @@ std::size_t Surfaces::byte_count() const {
   const ClusterSet& set = *clusters_;
   return sizeof set + set.first_primitives.size() * sizeof(PrimitiveId) + set.instance_bounds.size() * sizeof(Box) +
          set.clusters.size() * (sizeof(Cluster) + sizeof(Box)) + 3 * set.x.size() * sizeof(float) +
-         (3 + sizeof(PrimitiveId)) * set.id.size() + set.cones.byte_count();
+         (3 + sizeof(PrimitiveId)) * set.id.size() + set.cones.byte_count() +
+         (set.cutouts ? set.cutouts->byte_count() : 0);
 }
 
 }  // namespace frontmost

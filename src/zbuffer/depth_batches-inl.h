@@ -72,6 +72,7 @@ class DepthBatches {
     y_range_ = RangeOf(batch_.y[0], batch_.y[1], batch_.y[2]);
     const VI extent = hn::Max(hn::Sub(x_range_.greatest, x_range_.least), hn::Sub(y_range_.greatest, y_range_.least));
     small_ = hn::Not(hn::Gt(extent, hn::Set(d, kSmallExtent)));
+    if (call_.cutouts) small_ = hn::AndNot(HaveHoles(t, items), small_);
     live_ = hn::Lt(hn::Iota(d, 0), hn::Set(d, std::int32_t(count_)));
     std::fill_n(offset_, kMaxLanes, 0.0);
     if (call_.rules.has_offset())
@@ -79,6 +80,13 @@ class DepthBatches {
         const KeyPlane plane(t.record(items[k]));
         offset_[k] = call_.rules.offset_of(plane.gx, plane.gy, t.low[items[k]], t.high[items[k]]);
       }
+  }
+
+  /// Those that must ask for holes, which rows do.
+  [[nodiscard]] HWY_NOINLINE MI HaveHoles(const PlacedTriangles& t, std::span<const std::uint32_t> items) const {
+    HWY_ALIGN_MAX std::int32_t lanes[kMaxLanes] = {};
+    for (std::size_t k = 0; k < items.size(); ++k) lanes[k] = call_.cutouts->has(t.id[items[k]]) ? -1 : 0;
+    return hn::MaskFromVec(hn::Load(DI(), lanes));
   }
 
   /// Finds the pixels of each triangle in which this sample is covered, within eight by eight of its first.

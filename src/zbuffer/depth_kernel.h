@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "view/screen_cutout.h"
 #include "zbuffer/depth_rules.h"
 #include "zbuffer/placed_triangles.h"
 
@@ -23,6 +24,8 @@ struct DepthCall {
   DepthPlanes planes;
   DepthRules rules;
   PrimitiveId id_offset;
+  const Cutouts* cutouts;  ///< null where no triangle has holes, through which nothing is drawn
+  const ScreenRays& rays;
 };
 
 /// Draws the triangles that `items` names, one after the other, into the pixels of `tile`; touches no other pixel.

@@ -13,6 +13,7 @@
 #endif
 
 #include <cstring>
+#include <optional>
 
 #include "hwy/highway.h"
 #include "zbuffer/batch-inl.h"
@@ -121,6 +122,9 @@ class DepthRows {
     if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
     const KeyPlane plane(r);
     const TriangleEdges edges(r, at);
+    const PrimitiveId own_id = r.id - call_.id_offset;
+    std::optional<ScreenCutout> cutout;
+    if (call_.cutouts && call_.cutouts->has(own_id)) cutout.emplace((*call_.cutouts)[own_id], call_.rays);
     const Paint paint{plane, hn::Set(DD(), offset), r.id, sample};
     const HalfI d;
     const int lanes = int(hn::Lanes(d)), first = rect.x0 / lanes * lanes;
@@ -134,7 +138,8 @@ class DepthRows {
       const float dy_gy = float(y * kSubPixels + at.y - plane.y0) * plane.gy;
       auto e0 = row[0], e1 = row[1], e2 = row[2];
       for (int x = first; x <= rect.x1; x += lanes) {
-        const auto covered = hn::RebindMask(HalfU(), hn::Gt(hn::Or(hn::Or(e0, e1), e2), hn::Set(d, -1)));
+        auto covered = hn::RebindMask(HalfU(), hn::Gt(hn::Or(hn::Or(e0, e1), e2), hn::Set(d, -1)));
+        if (cutout) covered = Solid(*cutout, covered, {x * kSubPixels + at.x, y * kSubPixels + at.y});
         if (!hn::AllFalse(HalfU(), covered))
           Put(paint, x, y, covered, Key(plane, x * kSubPixels + at.x - plane.x0, dy_gy));
         e0 = hn::Add(e0, step[0]);
@@ -153,6 +158,18 @@ class DepthRows {
     PrimitiveId id;
     std::size_t sample;
   };
+
+  /// The covered lanes that look into no hole; `first` is the place of the first of them, in 1/256 pixel of the tile.
+  [[nodiscard]] HWY_NOINLINE hn::Mask<HalfU> Solid(const ScreenCutout& cutout, hn::Mask<HalfU> covered,
+                                                   const glm::ivec2& first) const {
+    const HalfU d;
+    HWY_ALIGN_MAX std::uint32_t lanes[kHalfLanes];
+    hn::Store(hn::VecFromMask(d, covered), d, lanes);
+    const glm::ivec2 from = first + glm::ivec2(tile_.x0, tile_.y0) * kSubPixels;
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i)
+      if (lanes[i] != 0 && cutout.is_hole(from.x + int(i) * kSubPixels, from.y)) lanes[i] = 0;
+    return hn::MaskFromVec(hn::Load(d, lanes));
+  }
 
   [[nodiscard]] static HWY_INLINE hn::Vec<HalfF> Key(const KeyPlane& plane, std::int32_t from_x, float dy_gy) {
     const HalfI di;

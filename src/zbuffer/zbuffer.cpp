@@ -10,6 +10,7 @@
 #include "base/float_environment.h"
 #include "base/parallel.h"
 #include "base/pool.h"
+#include "zbuffer/cutout_pass.h"
 #include "zbuffer/frame_plan.h"
 
 namespace frontmost {
@@ -86,6 +87,10 @@ const Visible& ZBuffer::draw(const Surfaces& surfaces, const View& view, const E
       }
       report_progress(execution, "visible", double(drawn += end - begin) / double(plan.tile_count()));
     });
+  }
+  if (set.cutouts) {
+    draw_cutouts(set, transform, visible, execution);
+    std::fill(state_->blank.begin(), state_->blank.end(), std::uint8_t(0));  // of tiles that it may have drawn to
   }
   return visible;
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "ray_oracle.h"
+#include "support/cutout_scene.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 #include "support/same_visible.h"
@@ -30,6 +31,19 @@ TEST_P(EveryKind, EqualsTheOracleOnEveryInstructionSet) {
     }
   }
   EXPECT_GT(seen, seeds(24) * 20) << "the scenes have become empty";
+}
+
+TEST_P(EveryKind, EqualsTheOracleThroughHoles) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed + 300);
+    const Scene scene = cutout_scene(random_mesh(GetParam(), 100 + random.below(100), seed), Cut(seed % 2), 0.5f, seed);
+    const Surfaces surfaces(scene);
+    View view = random_view(random, 1 + random.below(100), 1 + random.below(90));
+    view.culling = Culling(random.below(3));
+    view.samples = seed % 4 == 3 ? 4 : 1;
+    expect_same(ray_oracle(surfaces, view), raycast(surfaces, view));
+  }
 }
 
 TEST(RayCast, EqualsTheOracleWithEverySampleCount) {

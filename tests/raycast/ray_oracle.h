@@ -2,9 +2,13 @@
 // The oracle: every sample against every triangle by the sample rule, with nothing clever.
 #pragma once
 
+#include <optional>
+
 #include "frontmost/raycast.h"
 #include "raycast/sample_rule.h"
 #include "support/oracle.h"
+#include "surfaces/cluster_set.h"
+#include "view/screen_cutout.h"
 
 namespace frontmost::test {
 
@@ -17,7 +21,9 @@ class RayOracle {
  public:
   explicit RayOracle(const View& view) : t_(view), visible_(nothing_visible(view)) {}
 
-  void meet(const std::array<glm::vec3, 3>& world, PrimitiveId id) {
+  /// `cutout`: asked for holes; may be null.
+  void meet(const std::array<glm::vec3, 3>& world, PrimitiveId id, const ScreenCutout* cutout = nullptr) {
+    cutout_ = cutout;
     std::array<raycast_detail::Corner, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) corners[k] = raycast_detail::make_corner(t_, world[k]);
     constexpr int tile = raycast_detail::kTileSize;
@@ -45,18 +51,25 @@ class RayOracle {
                       sy = float(256 * y + samples[s].y - t_.centre_y);
           if (!keeps(visible_.view.culling, raycast_detail::facing(t_, corners, sx, sy))) continue;
           const float raw = plane.raw(sx - centre.x, sy - centre.y);
+          if (cutout_ && cutout_->is_hole(256 * x + samples[s].x, 256 * y + samples[s].y)) continue;
           if (plane.sees(raw)) keep_nearest(visible_, visible_.index(x, y, int(s)), plane.clamped(raw), id);
         }
   }
 
   ScreenTransform t_;
   Visible visible_;
+  const ScreenCutout* cutout_ = nullptr;
 };
 
 inline Visible ray_oracle(const Surfaces& surfaces, const View& view) {
   RayOracle oracle(view);
-  for_each_primitive(surfaces, 0, no_primitive,
-                     [&](PrimitiveId id, const std::array<glm::vec3, 3>& world) { oracle.meet(world, id); });
+  const ScreenRays rays(view);
+  const Cutouts* const cutouts = surfaces.clusters().cutouts.get();
+  for_each_primitive(surfaces, 0, no_primitive, [&](PrimitiveId id, const std::array<glm::vec3, 3>& world) {
+    std::optional<ScreenCutout> cutout;
+    if (cutouts && cutouts->has(id)) cutout.emplace((*cutouts)[id], rays);
+    oracle.meet(world, id, cutout ? &*cutout : nullptr);
+  });
   return oracle.visible();
 }
 

@@ -154,7 +154,7 @@ TEST(TexcoordTransform, FollowsTheTextureTransformExtension) {
   TextureUse use;
   use.offset = {0.5f, 0.25f};
   use.scale = {2, 3};
-  const Footprint moved = TexcoordTransform(use)({{0.1f, 0.2f}, {1, 0}, {0, 1}});
+  const Footprint moved = transformed(TexcoordTransform(use), {{0.1f, 0.2f}, {1, 0}, {0, 1}});
   EXPECT_NEAR(moved.texcoord.x, 0.7f, 1e-6f);
   EXPECT_NEAR(moved.texcoord.y, 0.85f, 1e-6f);
   EXPECT_EQ(moved.dx, glm::vec2(2, 0));
@@ -162,7 +162,7 @@ TEST(TexcoordTransform, FollowsTheTextureTransformExtension) {
   // A quarter turn counter-clockwise, v down: u leads to -v.
   TextureUse turned;
   turned.rotation = 1.57079632679f;
-  const glm::vec2 uv = TexcoordTransform(turned)({{1, 0}, {}, {}}).texcoord;
+  const glm::vec2 uv = TexcoordTransform(turned).place({1, 0});
   EXPECT_NEAR(uv.x, 0.0f, 1e-6f);
   EXPECT_NEAR(uv.y, -1.0f, 1e-6f);
 }

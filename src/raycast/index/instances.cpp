@@ -116,6 +116,14 @@ void build_upper(RayTree& tree, const Execution& execution) {
   tree.bounds = upper.bounds;
 }
 
+/// Holes are looked up in the world: as many triangles with holes as all instances have together.
+std::shared_ptr<const Cutouts> cutouts_of(const Scene& scene) {
+  std::vector<PrimitiveId> first = {0};
+  for (const Instance& instance : scene.instances)
+    first.push_back(first.back() + PrimitiveId(scene.meshes[instance.mesh].triangles.size()));
+  return Cutouts::of(scene, first);
+}
+
 void place_instance(const Instance& instance, PlacedRoot& placed) {
   placed.world_from_mesh = instance.world_from_mesh;
   placed.is_mirrored = mirrors(instance.world_from_mesh);
@@ -150,6 +158,7 @@ RayTree make_placed_tree(const Scene& scene, const Execution& execution) {
     first += PrimitiveId(scene.meshes[instance.mesh].triangles.size());
   }
   forest.move_to(tree);
+  tree.cutouts = cutouts_of(scene);
   tree.mesh_nodes = std::uint32_t(tree.nodes.size());
   build_upper(tree, execution);
   report_progress(execution, "index", 1);
@@ -166,6 +175,7 @@ bool replace_instances(const Scene& scene, RayTree& tree, const Execution& execu
   }
   check_transforms(scene);
   for (std::size_t i = 0; i < tree.placed.size(); ++i) place_instance(scene.instances[i], tree.placed[i]);
+  if (tree.cutouts) tree.cutouts = cutouts_of(scene);
   build_upper(tree, execution);
   return true;
 }

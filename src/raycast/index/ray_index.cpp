@@ -2,12 +2,14 @@
 #include "base/float_environment.h"
 #include "base/parallel.h"
 #include "raycast/index/ray_tree.h"
+#include "surfaces/cluster_set.h"
 
 namespace frontmost {
 
 RayTree make_tree(const Surfaces& surfaces, const Execution& execution) {
   const IeeeScope ieee;
   RayTree tree;
+  tree.cutouts = surfaces.clusters().cutouts;
   report_progress(execution, "index", 0);
   std::vector<LeafBox> boxes = fill_leaves(surfaces, tree, execution);
   report_progress(execution, "index", 0.5);
@@ -42,7 +44,7 @@ const Box& RayIndex::bounds() const { return tree_->bounds; }
 
 std::size_t RayIndex::byte_count() const {
   return sizeof(RayTree) + tree_->nodes.size() * sizeof(RayNode) + tree_->leaves.size() * sizeof(RayLeaf) +
-         tree_->placed.size() * sizeof(PlacedRoot);
+         tree_->placed.size() * sizeof(PlacedRoot) + (tree_->cutouts ? tree_->cutouts->byte_count() : 0);
 }
 
 }  // namespace frontmost

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "frontmost/raycast.h"
+#include "surfaces/cutouts.h"
 
 namespace frontmost {
 
@@ -46,8 +47,9 @@ struct RayTree {
   std::uint32_t mesh_depth = 0;    ///< nodes from the root of a mesh to its deepest leaf
   std::uint32_t root = no_index;   ///< a child; no_index when there are no triangles
   std::uint32_t triangle_count = 0;
-  std::uint32_t depth = 0;  ///< nodes from the root to the deepest leaf, over both levels
-  Box bounds;               ///< on two levels, of the boxes; around those of the triangles otherwise
+  std::uint32_t depth = 0;                 ///< nodes from the root to the deepest leaf, over both levels
+  Box bounds;                              ///< on two levels, of the boxes; around those of the triangles otherwise
+  std::shared_ptr<const Cutouts> cutouts;  ///< null where no triangle has holes
 
   /// The most children that a depth-first walk has waiting.
   [[nodiscard]] std::size_t stack_size() const { return std::size_t(depth) * (kRayLanes - 1) + 1; }

@@ -76,6 +76,7 @@ void fit_nodes(const std::vector<LeafBox>& boxes, RayTree& tree) {
 bool refit_tree(const Surfaces& surfaces, RayTree& tree, const Execution& execution) {
   if (!tree.placed.empty()) return false;
   const ClusterSet& set = surfaces.clusters();
+  tree.cutouts = set.cutouts;
   const Buffer<std::uint32_t> places = places_of(tree, surfaces.primitive_count(), execution);
   std::atomic<std::size_t> moved{0};
   parallel_for(execution, set.clusters.size(), kClustersPerPart, [&](std::size_t begin, std::size_t end) {

@@ -6,39 +6,11 @@
 namespace frontmost::shading {
 namespace {
 
-/// Twice the volume spanned with the ray, for each corner left out in turn, and its change over the screen.
-struct Volumes {
-  glm::dvec3 at_reference, step_x, step_y;
-};
-
-Volumes perspective_volumes(const ScreenRays& rays, const std::array<glm::dvec3, 3>& c, const glm::dvec3& direction) {
-  Volumes v{};
-  for (int k = 0; k < 3; ++k) {
-    const glm::dvec3 side = glm::cross(c[std::size_t((k + 1) % 3)], c[std::size_t((k + 2) % 3)]);
-    v.at_reference[k] = glm::dot(side, direction);
-    v.step_x[k] = glm::dot(side, rays.step_x());
-    v.step_y[k] = glm::dot(side, rays.step_y());
-  }
-  return v;
-}
-
-Volumes parallel_volumes(const ScreenRays& rays, const std::array<glm::dvec3, 3>& c, const glm::dvec3& start) {
-  Volumes v{};
-  for (int k = 0; k < 3; ++k) {
-    const glm::dvec3 &p = c[std::size_t((k + 1) % 3)], &q = c[std::size_t((k + 2) % 3)];
-    v.at_reference[k] = glm::dot(glm::cross(p - start, q - start), rays.forward());
-    const glm::dvec3 per_shift = glm::cross(rays.forward(), q - p);
-    v.step_x[k] = glm::dot(per_shift, rays.step_x());
-    v.step_y[k] = glm::dot(per_shift, rays.step_y());
-  }
-  return v;
-}
-
 /// False when a value is not finite.
-bool store(const Volumes& v, double scale, std::array<Affine, 3>& weight) {
+bool store(const RayVolumes& v, double scale, std::array<Affine, 3>& weight) {
   bool finite = true;
   for (int k = 0; k < 3; ++k) {
-    const Affine a{float(v.at_reference[k] * scale), float(v.step_x[k] * scale), float(v.step_y[k] * scale)};
+    const Affine a{float(v.value[k] * scale), float(v.step_x[k] * scale), float(v.step_y[k] * scale)};
     finite = finite && std::isfinite(a.at_reference) && std::isfinite(a.step_x) && std::isfinite(a.step_y);
     weight[std::size_t(k)] = a;
   }
@@ -61,9 +33,8 @@ void set_up_plane(TriangleSetup& setup, const ScreenRays& rays, const std::array
     setup.corner[k] = glm::vec3(c[k]);
   }
   setup.reference = reference;
-  const glm::dvec3 ray = rays.at(double(reference.x), double(reference.y));
-  const Volumes v = rays.is_parallel() ? parallel_volumes(rays, c, ray) : perspective_volumes(rays, c, ray);
-  const double sum = v.at_reference.x + v.at_reference.y + v.at_reference.z;
+  const RayVolumes v = ray_volumes(rays, c, double(reference.x), double(reference.y));
+  const double sum = v.value.x + v.value.y + v.value.z;
   const glm::dvec3 normal = glm::cross(c[1] - c[0], c[2] - c[0]);
   const double away = glm::dot(normal, rays.is_parallel() ? rays.forward() : c[0]);
   setup.is_backside = away > 0;

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // One visible triangle made ready for interpolation.
-//
-// The barycentric weights of the point that a viewing ray meets are, up to a common factor, triple products that are
-// affine in the screen position. They stay valid for triangles that cross the eye plane, and their ratios are
-// perspective-correct without ever dividing by a depth of 0.
 #pragma once
 
 #include <array>
 
-#include "shade/screen_rays.h"
+#include "view/ray_volumes.h"
 
 namespace frontmost::shading {
 

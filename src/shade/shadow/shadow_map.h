@@ -6,8 +6,8 @@
 
 #include "frontmost/surfaces.h"
 #include "frontmost/visible.h"
-#include "shade/screen_rays.h"
 #include "shade/shadow/shadow_filter.h"
+#include "view/screen_rays.h"
 
 namespace frontmost::shading {
 

@@ -5,7 +5,7 @@
 
 #include "frontmost/view.h"
 
-namespace frontmost::shading {
+namespace frontmost {
 
 class ScreenRays {
  public:
@@ -40,4 +40,4 @@ inline ScreenRays::ScreenRays(const View& view)
   step_y_ = (p.bottom - p.top) / view.height * view.up();
 }
 
-}  // namespace frontmost::shading
+}  // namespace frontmost

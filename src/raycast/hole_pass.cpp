@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// The definition of sample_rule.h, ray by ray: only rays that ended in a hole come here, so nothing is done many at a
+// time. Boxes are met in doubles, padded by more than the rounding of a corner's place.
+#include "raycast/hole_pass.h"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "base/parallel.h"
+#include "raycast/index/placement.h"
+#include "raycast/sample_rule.h"
+#include "view/screen_cutout.h"
+
+namespace frontmost::raycast_detail {
+namespace {
+
+/// A place on the screen: the pixel, and its sample in 1/256 pixel from the image's top left corner.
+struct SamplePlace {
+  int pixel_x, pixel_y;
+  std::int32_t x, y;
+};
+
+struct Nearest {
+  PrimitiveId id = no_primitive;
+  float key = 0;
+};
+
+/// One view; used by one thread.
+class HolePasser {
+ public:
+  HolePasser(const RayTree& tree, const View& view)
+      : tree_(tree), cutouts_(*tree.cutouts), culling_(view.culling), transform_(view), rays_(view) {}
+
+  [[nodiscard]] bool is_hole(PrimitiveId id, const SamplePlace& place) {
+    if (!cutouts_.has(id)) return false;
+    if (id != id_) {
+      cutout_.emplace(cutouts_[id], rays_);
+      id_ = id;
+    }
+    return cutout_->is_hole(place.x, place.y);
+  }
+
+  /// What is met through all holes.
+  [[nodiscard]] Nearest look(const SamplePlace& place) {
+    const glm::dvec3 at = rays_.at(double(place.x) / kSubPixels, double(place.y) / kSubPixels);
+    start_ = rays_.is_parallel() ? at : glm::dvec3(0);
+    direction_ = rays_.is_parallel() ? rays_.forward() : at;
+    nearest_ = {};
+    waiting_.assign(1, tree_.root);
+    PlacedWalk walk(tree_);
+    while (!waiting_.empty()) {
+      const std::uint32_t child = waiting_.back();
+      waiting_.pop_back();
+      walk.Take(waiting_.size());
+      if (walk.IsInstance(child))
+        waiting_.push_back(walk.Enter(child, waiting_.size()));
+      else if (child & kLeafBit)
+        meet_leaf(walk.Leaf(child), place);
+      else
+        look_into(walk.Node(child));
+    }
+    return nearest_;
+  }
+
+ private:
+  void look_into(const RayNode& node) {
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+      glm::dvec3 low, high;
+      for (int axis = 0; axis < 3; ++axis) low[axis] = node.low[axis][i], high[axis] = node.high[axis][i];
+      if (meets_box(low - rays_.eye(), high - rays_.eye())) waiting_.push_back(node.child[i]);
+    }
+  }
+
+  /// Of a box from the eye, between the planes and not behind what was found. Distances are along the viewing axis.
+  [[nodiscard]] bool meets_box(const glm::dvec3& low, const glm::dvec3& high) const {
+    const glm::dvec3 far = glm::max(glm::abs(low), glm::abs(high));
+    const double pad = 0x1p-17 * std::max({far.x, far.y, far.z});
+    double enter = transform_.near - pad, leave = transform_.far + pad;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double a = low[axis] - pad - start_[axis], b = high[axis] + pad - start_[axis], d = direction_[axis];
+      if (d == 0) {
+        if (a > 0 || b < 0) return false;
+        continue;
+      }
+      enter = std::max(enter, std::min(a / d, b / d));
+      leave = std::min(leave, std::max(a / d, b / d));
+    }
+    if (!(enter <= leave)) return false;
+    return enter <= transform_.near || key_of_distance(transform_, enter) * (1 + 0x1p-20f) >= nearest_.key;
+  }
+
+  void meet_leaf(const RayLeaf& leaf, const SamplePlace& place) {
+    for (std::size_t lane = 0; lane < kRayLanes && leaf.id[lane] != no_primitive; ++lane) {
+      std::array<Corner, 3> corners;
+      for (std::size_t k = 0; k < 3; ++k)
+        corners[k] =
+            make_corner(transform_, {leaf.corner[k][0][lane], leaf.corner[k][1][lane], leaf.corner[k][2][lane]});
+      meet(corners, leaf.id[lane], place);
+    }
+  }
+
+  void meet(const std::array<Corner, 3>& corners, PrimitiveId id, const SamplePlace& place) {
+    const float sx = float(place.x - transform_.centre_x), sy = float(place.y - transform_.centre_y);
+    if (!keeps(facing(transform_, corners, sx, sy))) return;
+    const auto tile_centre = [](int pixel, std::int32_t image_centre) {
+      return float((pixel / kTileSize * kTileSize + kTileSize / 2) * kSubPixels - image_centre);
+    };
+    const float tx = tile_centre(place.pixel_x, transform_.centre_x);
+    const float ty = tile_centre(place.pixel_y, transform_.centre_y);
+    const KeyPlane plane = key_plane(transform_, corners, double(tx), double(ty));
+    const float raw = plane.raw(sx - tx, sy - ty);
+    if (plane.is_outside || !plane.sees(raw)) return;
+    const float key = plane.clamped(raw);
+    const bool is_nearer = key > nearest_.key || (key == nearest_.key && id < nearest_.id);
+    if (is_nearer && !is_hole(id, place)) nearest_ = {id, key};
+  }
+
+  [[nodiscard]] bool keeps(int facing) const {
+    switch (culling_) {
+      case Culling::none: return facing != 0;
+      case Culling::back: return facing < 0;
+      case Culling::front: return facing > 0;
+      case Culling::both: break;
+    }
+    return false;
+  }
+
+  const RayTree& tree_;
+  const Cutouts& cutouts_;
+  Culling culling_;
+  ScreenTransform transform_;
+  ScreenRays rays_;
+  PrimitiveId id_ = no_primitive;  ///< that cutout_ is of
+  std::optional<ScreenCutout> cutout_;
+  // Of the ray that is looked along.
+  glm::dvec3 start_{0}, direction_{0};  ///< from the eye; one unit along the viewing axis
+  Nearest nearest_;
+  std::vector<std::uint32_t> waiting_;
+};
+
+}  // namespace
+
+void pass_holes(const RayTree& tree, Visible& visible, const Execution& execution) {
+  if (!tree.cutouts) return;
+  const View& view = visible.view;
+  const std::span<const glm::ivec2> samples = sample_offsets(view.samples);
+  constexpr std::size_t kRowsPerPart = 4;
+  const std::size_t height = std::size_t(view.height), rows = height * samples.size();
+  parallel_for(execution, rows, kRowsPerPart, [&](std::size_t begin, std::size_t end) {
+    HolePasser passer(tree, view);
+    for (std::size_t row = begin; row < end; ++row)
+      for (int x = 0; x < view.width; ++x) {
+        const int y = int(row % height);
+        const glm::ivec2 offset = samples[row / height];
+        const SamplePlace place{x, y, x * kSubPixels + offset.x, y * kSubPixels + offset.y};
+        const std::size_t i = row * std::size_t(view.width) + std::size_t(x);
+        if (visible.primitives[i] == no_primitive || !passer.is_hole(visible.primitives[i], place)) continue;
+        const Nearest next = passer.look(place);
+        visible.primitives[i] = next.id;
+        visible.keys[i] = next.key;
+      }
+  });
+}
+
+}  // namespace frontmost::raycast_detail

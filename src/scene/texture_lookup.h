@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where in a texture a coordinate lies: the rules of wrapping and turning that all who look into one share.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "frontmost/scene.h"
+
+namespace frontmost {
+
+[[nodiscard]] inline int floor_of(float value) {
+  const int truncated = int(value);
+  return truncated - int(float(truncated) > value);
+}
+
+/// A texture coordinate brought into [0, 1] by its wrap rule. Non-finite and absurd ones become 0.
+[[nodiscard]] inline float wrapped(float t, Texture::Wrap wrap) {
+  if (!(std::abs(t) < 1e6f)) return 0.0f;
+  switch (wrap) {
+    case Texture::Wrap::clamp: return std::clamp(t, 0.0f, 1.0f);
+    case Texture::Wrap::repeat: return t - float(floor_of(t));
+    case Texture::Wrap::mirror: {
+      const float twice = t - 2.0f * float(floor_of(t * 0.5f));
+      return twice > 1.0f ? 2.0f - twice : twice;
+    }
+  }
+  return 0.0f;
+}
+
+/// A texel number one past an end: the other end where the texture repeats, else the same texel again.
+[[nodiscard]] inline int neighbour(int i, int size, Texture::Wrap wrap) {
+  if (i < 0) return wrap == Texture::Wrap::repeat ? size - 1 : 0;
+  if (i >= size) return wrap == Texture::Wrap::repeat ? 0 : size - 1;
+  return i;
+}
+
+/// The two texels on either side of a coordinate, along one axis, and how far it is from the first to the second.
+struct TexelPair {
+  int first, second;
+  float fraction;
+};
+[[nodiscard]] inline TexelPair texel_pair(float t, int size, Texture::Wrap wrap) {
+  const float at = wrapped(t, wrap) * float(size) - 0.5f;
+  const int low = floor_of(at);
+  return {neighbour(low, size, wrap), neighbour(low + 1, size, wrap), at - float(low)};
+}
+
+/// The texel that a coordinate lies in.
+[[nodiscard]] inline int texel_of(float t, int size, Texture::Wrap wrap) {
+  return std::min(int(wrapped(t, wrap) * float(size)), size - 1);
+}
+
+/// KHR_texture_transform, its sine and cosine taken once.
+class TexcoordTransform {
+ public:
+  explicit TexcoordTransform(const TextureUse& use) : offset_(use.offset) {
+    const bool is_turned = use.rotation != 0;
+    const float c = is_turned ? float(std::cos(double(use.rotation))) : 1.0f;
+    const float s = is_turned ? float(std::sin(double(use.rotation))) : 0.0f;
+    across_ = glm::vec2(c, -s) * use.scale.x;
+    down_ = glm::vec2(s, c) * use.scale.y;
+  }
+  /// Of a place, and of a step from one to another.
+  [[nodiscard]] glm::vec2 place(const glm::vec2& uv) const { return step(uv) + offset_; }
+  [[nodiscard]] glm::vec2 step(const glm::vec2& v) const { return across_ * v.x + down_ * v.y; }
+
+ private:
+  glm::vec2 across_, down_;  ///< where one step in u, and in v, leads
+  glm::vec2 offset_;
+};
+
+}  // namespace frontmost

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "zbuffer/cutout_pass.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "view/screen_cutout.h"
+#include "zbuffer/covered_pixels.h"
+
+namespace frontmost::zbuffer_detail {
+namespace {
+
+/// Draws one triangle after another into some rows of the picture, sample by sample.
+class CutoutPainter {
+ public:
+  CutoutPainter(const Cutouts& cutouts, const ScreenRays& rays, const PixelRect& rows, Visible& visible)
+      : cutouts_(cutouts),
+        rays_(rays),
+        rows_(rows),
+        samples_(sample_offsets(visible.view.samples)),
+        visible_(visible) {}
+
+  void draw(const TriangleRecord& r) {
+    const PixelRect rect = common_part(pixel_rect(r, visible_.view.width, visible_.view.height), rows_);
+    if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
+    const ScreenCutout cutout(cutouts_[r.id], rays_);
+    const KeyPlane plane(r);
+    for (std::size_t s = 0; s < samples_.size(); ++s)
+      visit_covered(r, rect, samples_[s], [&](int x, int y) {
+        const glm::ivec2 at = glm::ivec2(x, y) * kSubPixels + samples_[s];
+        put(r.id, key_at(plane, at), visible_.index(x, y, int(s)), [&] { return cutout.is_hole(at.x, at.y); });
+      });
+  }
+
+ private:
+  /// Operation by operation as in tile_kernel.cpp.
+  static float key_at(const KeyPlane& p, const glm::ivec2& at) {
+    const float raw = (p.k0 + float(at.x - p.x0) * p.gx) + float(at.y - p.y0) * p.gy;
+    return std::min(std::max(raw, p.k_min), p.k_max);
+  }
+  template <class IsHole>
+  void put(PrimitiveId id, float key, std::size_t i, const IsHole& is_hole) {
+    const bool is_nearer = key > visible_.keys[i] || (key == visible_.keys[i] && id < visible_.primitives[i]);
+    if (!is_nearer || is_hole()) return;
+    visible_.keys[i] = key;
+    visible_.primitives[i] = id;
+  }
+
+  const Cutouts& cutouts_;
+  const ScreenRays& rays_;
+  PixelRect rows_;
+  std::span<const glm::ivec2> samples_;
+  Visible& visible_;
+};
+
+}  // namespace
+
+void draw_cutouts(const ClusterSet& set, const ScreenTransform& transform, Visible& visible,
+                  const Execution& execution) {
+  const View& view = visible.view;
+  const ScreenRays rays(view);
+  std::vector<TriangleRecord> records;
+  for (std::size_t i = set.first_cutout; i < set.clusters.size(); ++i)
+    append_records(set, set.clusters[i], transform, view, records);
+  constexpr std::size_t kRowsPerPart = 16;
+  parallel_for(execution, std::size_t(view.height), kRowsPerPart, [&](std::size_t begin, std::size_t end) {
+    CutoutPainter painter(*set.cutouts, rays, {0, int(begin), view.width - 1, int(end) - 1}, visible);
+    for (const TriangleRecord& record : records) painter.draw(record);
+  });
+}
+
+}  // namespace frontmost::zbuffer_detail
