@@ -53,7 +53,8 @@ struct Drawing {
 /// a triangle when the line of sight to it passes through the triangle, its edges included, before the point. So
 /// neither an edge's own triangles nor others of their planes hide it, and nothing is seen through the seam between two
 /// triangles. Ends of parts are rounded to doubles. Vertices at one place count as one, so that open seams of files
-/// without shared vertices are closed. Triangles between the eye and the near plane hide nothing.
+/// without shared vertices are closed. Triangles between the eye and the near plane hide nothing;
+/// those with holes (alpha mode MASK) hide as if they had none.
 /// Near-linear: every edge is held against the triangles in the cells of a screen grid that it passes.
 /// (A. Appel. The Notion of Quantitative Invisibility and the Machine Rendering of Solids. 1967.)
 /// The result is the same to the bit for any number of threads.
