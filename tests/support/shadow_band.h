@@ -57,7 +57,7 @@ class ShadowBandMeter {
   static constexpr double kReach = 4;  ///< texels: half the width of the map's filter
 
   void measure(const glm::vec2& screen, PrimitiveId id, ShadowBand& band) const {
-    const shading::ScreenRays rays(visible_.view);
+    const ScreenRays rays(visible_.view);
     shading::TriangleSetup setup;
     shading::set_up_plane(setup, rays, surfaces_.corners(id), screen);
     const double cosine = glm::dot(glm::dvec3(setup.plane_normal), glm::dvec3(to_key_));
