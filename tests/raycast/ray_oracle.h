@@ -2,13 +2,9 @@
 // The oracle: every sample against every triangle by the sample rule, with nothing clever.
 #pragma once
 
-#include <optional>
-
 #include "frontmost/raycast.h"
 #include "raycast/sample_rule.h"
 #include "support/oracle.h"
-#include "surfaces/cluster_set.h"
-#include "view/screen_cutout.h"
 
 namespace frontmost::test {
 
@@ -63,11 +59,9 @@ class RayOracle {
 
 inline Visible ray_oracle(const Surfaces& surfaces, const View& view) {
   RayOracle oracle(view);
-  const ScreenRays rays(view);
-  const Cutouts* const cutouts = surfaces.clusters().cutouts.get();
+  const OracleHoles holes(surfaces, view);
   for_each_primitive(surfaces, 0, no_primitive, [&](PrimitiveId id, const std::array<glm::vec3, 3>& world) {
-    std::optional<ScreenCutout> cutout;
-    if (cutouts && cutouts->has(id)) cutout.emplace((*cutouts)[id], rays);
+    const std::optional<ScreenCutout> cutout = holes.of(id);
     oracle.meet(world, id, cutout ? &*cutout : nullptr);
   });
   return oracle.visible();

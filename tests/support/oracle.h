@@ -3,9 +3,12 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 
 #include "frontmost/visible.h"
+#include "surfaces/cluster_set.h"
 #include "view/clip.h"
+#include "view/screen_cutout.h"
 #include "view/screen_transform.h"
 
 namespace frontmost::test {
@@ -79,15 +82,32 @@ void for_each_triangle(const ScreenTransform& transform, Culling culling, const 
   }
 }
 
-/// Calls visit(index, key) for every sample that a triangle covers.
+/// The holes of triangles, as a view sees them.
+class OracleHoles {
+ public:
+  OracleHoles(const Surfaces& surfaces, const View& view) : cutouts_(surfaces.clusters().cutouts.get()), rays_(view) {}
+  [[nodiscard]] std::optional<ScreenCutout> of(PrimitiveId id) const {
+    if (!cutouts_ || !cutouts_->has(id)) return std::nullopt;
+    return ScreenCutout((*cutouts_)[id], rays_);
+  }
+
+ private:
+  const Cutouts* cutouts_;
+  ScreenRays rays_;
+};
+
+/// Calls visit(index, key) for every sample that a triangle covers, holes apart.
 template <class Visit>
-void for_each_covered(const Visible& visible, const OracleTriangle& t, const Visit& visit) {
+void for_each_covered(const Visible& visible, const OracleTriangle& t, const Visit& visit,
+                      const std::optional<ScreenCutout>& cutout = std::nullopt) {
   const auto samples = sample_offsets(visible.view.samples);
   for (std::size_t s = 0; s < samples.size(); ++s)
     for (int y = 0; y < visible.view.height; ++y)
       for (int x = 0; x < visible.view.width; ++x) {
         const std::int64_t px = 256 * x + samples[s].x, py = 256 * y + samples[s].y;
-        if (oracle_covers(t, px, py)) visit(visible.index(x, y, int(s)), oracle_key(t, px, py));
+        if (!oracle_covers(t, px, py)) continue;
+        if (cutout && cutout->is_hole(std::int32_t(px), std::int32_t(py))) continue;
+        visit(visible.index(x, y, int(s)), oracle_key(t, px, py));
       }
 }
 
@@ -102,10 +122,13 @@ inline void keep_nearest(Visible& visible, std::size_t at, float key, PrimitiveI
 
 inline Visible oracle(const Surfaces& surfaces, const View& view) {
   const ScreenTransform transform(view);
+  const OracleHoles holes(surfaces, view);
   Visible visible = nothing_visible(view);
   for_each_primitive(surfaces, 0, no_primitive, [&](PrimitiveId id, const std::array<glm::vec3, 3>& world) {
+    const std::optional<ScreenCutout> cutout = holes.of(id);
     for_each_triangle(transform, view.culling, clip_triangle(transform, world), id, [&](const OracleTriangle& t) {
-      for_each_covered(visible, t, [&](std::size_t at, float key) { keep_nearest(visible, at, key, t.id); });
+      for_each_covered(
+          visible, t, [&](std::size_t at, float key) { keep_nearest(visible, at, key, id); }, cutout);
     });
   });
   return visible;
