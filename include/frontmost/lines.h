@@ -11,11 +11,13 @@ namespace frontmost {
 
 /// Why an edge is drawn. Where several hold, the first.
 enum class EdgeKind : std::uint8_t {
-  boundary,    ///< of one triangle alone, or of more than two
-  silhouette,  ///< one of its triangles faces the eye, the other does not
-  border,      ///< its triangles belong to different instances, or have different materials
-  crease,      ///< its triangles meet at an angle
+  boundary,      ///< of one triangle alone, or of more than two
+  silhouette,    ///< one of its triangles faces the eye, the other does not
+  border,        ///< its triangles belong to different instances, or have different materials
+  crease,        ///< its triangles meet at an angle
+  intersection,  ///< no edge of the mesh: where two triangles pass through each other
 };
+inline constexpr int edge_kind_count = 5;
 
 struct LineOptions {
   /// Radians, 0 to pi: edges whose triangles' normals differ by more are creases. Edges between triangles of one plane
@@ -39,6 +41,9 @@ struct DrawnPart {
   double begin = 0, end = 1;
   glm::dvec2 from{0}, to{0};    ///< in pixels of the view: x right, y down, the first pixel's centre at (0.5, 0.5)
   std::uint32_t hidden_by = 0;  ///< surfaces in front of it; 0: seen. Without LineOptions::counts_hidden 0 or 1
+  /// A silhouette or boundary that is seen, and nothing of the scene lies beside it on its outer side: the rest of the
+  /// silhouettes are contours within the picture of the scene.
+  bool is_outline = false;
 };
 
 struct Drawing {
