@@ -3,8 +3,8 @@
 #pragma once
 
 #include "frontmost/lines.h"
-#include "lines/sight.h"
 #include "lines/welded_mesh.h"
+#include "view/sight.h"
 
 namespace frontmost::lines_detail {
 

@@ -6,8 +6,8 @@
 #include <array>
 #include <span>
 
-#include "lines/sight.h"
 #include "lines/welded_mesh.h"
+#include "view/sight.h"
 
 namespace frontmost::lines_detail {
 

@@ -5,7 +5,7 @@
 #include "base/exact_vector.h"
 #include "frontmost/view.h"
 
-namespace frontmost::lines_detail {
+namespace frontmost {
 
 /// A double whose sign is certain.
 struct Signed {
@@ -70,4 +70,4 @@ class FacePlane {
   BoundedNormal normal_;
 };
 
-}  // namespace frontmost::lines_detail
+}  // namespace frontmost

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // J. Shewchuk. Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates. 1997: doubles with a
 // bound on their rounding first, expansions where that leaves the sign open.
-#include "lines/sight.h"
+#include "view/sight.h"
 
-namespace frontmost::lines_detail {
+namespace frontmost {
 namespace {
 
 /// `exact_sign` is asked where the rounding of `rounded` matters.
@@ -65,4 +65,4 @@ Signed FacePlane::height(const glm::dvec3& x) const {
   });
 }
 
-}  // namespace frontmost::lines_detail
+}  // namespace frontmost
