@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pages: pen lines and filled polygons in millimetres, written as SVG, PDF, DXF or JSON.
+//
+// A page has x to the right and y down, from its top left corner. What comes first lies below what comes later. Colours
+// are sRGB, as those files have them.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "frontmost/base.h"
+
+namespace frontmost {
+
+/// sRGB and opacity, 0 to 255 each; not premultiplied.
+struct PageColor {
+  std::uint8_t red = 0, green = 0, blue = 0, opacity = 255;
+  friend bool operator==(const PageColor&, const PageColor&) = default;
+};
+
+/// How lines are drawn: with round ends and corners.
+struct Pen {
+  double width = 0.25;  ///< millimetres, 0 to 1000; 0 draws nothing
+  PageColor color;
+  /// Millimetres that are drawn, left out, drawn and so on; an even count, empty: no gaps. Every path begins anew.
+  std::vector<double> dashes{};
+  /// Draws around filled paths in their own colour instead, where that is opaque: against the hairlines that viewers
+  /// leave between neighbours. Translucent fills then have no line.
+  bool takes_fill_color = false;
+};
+
+/// Consecutive points of a group, joined in their order. One point alone is a dot.
+struct PagePath {
+  std::uint32_t first = 0, count = 0;
+  bool is_closed = false;  ///< the last point is joined to the first
+};
+
+/// Paths that are drawn with one pen, one after the other. Millions of paths are better in one group than in many.
+struct PageGroup {
+  std::string name;  ///< of the object, any text
+  Pen pen;
+  std::vector<glm::dvec2> points{};  ///< millimetres
+  /// Empty: all joins are straight. Otherwise one for each point, of the join that begins there: the tangent of a
+  /// quarter of the angle that an arc turns through, positive from +x towards +y; 0 straight, 1 a half circle.
+  std::vector<double> bulges{};
+  std::vector<PagePath> paths{};
+  std::vector<PageColor> fills{};  ///< empty: nothing is filled; otherwise one for each path (nonzero winding rule)
+
+  /// Appends a path without arcs.
+  void add(std::span<const glm::dvec2> corners, bool is_closed);
+};
+
+struct PageLayer {
+  std::string name;  ///< plotters choose layers by the number that a name begins with: "1 hidden"
+  std::vector<PageGroup> groups{};
+};
+
+struct Page {
+  double width = 210, height = 297;  ///< millimetres, 0.01 to 100000 (100 m)
+  std::string title{};
+  std::vector<PageLayer> layers{};
+};
+
+enum class PageFormat : std::uint8_t { svg, pdf, dxf, json };
+
+/// \throws Error bad_argument or limit_exceeded, naming layer and group: sizes out of range; points that are not
+/// finite or further than 1000 m away; bulges beyond 10; paths of points that are not there; lists that do not match.
+void validate(const Page& page);
+
+/// The format that a file's suffix names; none where it names no format of pages.
+[[nodiscard]] std::optional<PageFormat> page_format(const std::string& path);
+
+/// Writes a page; whole or not at all, as images. Coordinates are rounded to 0.001 mm, so that paths that share a point
+/// share it in the file. The bytes depend on the page alone (PDF: and the version of zlib).
+///
+/// SVG: size in millimetres, one user unit to the millimetre; layers and groups are named as Inkscape does it, paths of
+/// one pen share elements; without style sheets, clip paths, masks or transforms. PDF 1.6: layers as optional content,
+/// compressed, scaled by a user unit where a side is over 5080 mm. DXF (AutoCAD release 12), lines only: LINE,
+/// POLYLINE, ARC, CIRCLE and POINT by layers with line types, y up from the page's lower left corner; it has no widths,
+/// and layer names keep letters, digits, - and _ alone. JSON: all of the page, as it is. Characters that a format does
+/// not allow are replaced in names. Memory is constant beside the page's own. \throws Error as validate() does;
+/// bad_argument without a format; unsupported for fills in DXF; file_unwritable.
+void save(const Page& page, const std::string& path, std::optional<PageFormat> format = std::nullopt,
+          const Execution& execution = {});
+
+}  // namespace frontmost

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+// DXF of AutoCAD release 12 (AC1009), which everything reads: pairs of lines, a group code and its value.
+#include <algorithm>
+#include <cmath>
+
+#include "io/drawings/arc.h"
+#include "io/drawings/formats.h"
+#include "io/drawings/page_text.h"
+
+namespace frontmost::detail {
+namespace {
+
+/// Release 12 takes capitals, digits, $, - and _, at most 31.
+std::string table_name(const std::string& name, std::vector<std::string>& taken) {
+  std::string clean;
+  for (const char c : name) {
+    const bool is_lower = c >= 'a' && c <= 'z';
+    const bool is_fine = (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+    clean += is_lower ? char(c - 'a' + 'A') : is_fine ? c : '_';
+  }
+  constexpr std::size_t longest = 24;  // leaves room for a number
+  clean = clean.empty() ? "LAYER" : clean.substr(0, longest);
+  std::string unique = clean;
+  for (int i = 2; std::find(taken.begin(), taken.end(), unique) != taken.end(); ++i)
+    unique = clean + "_" + std::to_string(i);
+  taken.push_back(unique);
+  return unique;
+}
+
+/// The nearest of the colours that have a number everywhere.
+int color_number(const PageColor& color) {
+  struct Numbered {
+    int number, red, green, blue;
+  };
+  // 7 is black on white paper and white on a black screen.
+  constexpr Numbered all[] = {{7, 0, 0, 0},   {1, 255, 0, 0},   {2, 255, 255, 0},   {3, 0, 255, 0},    {4, 0, 255, 255},
+                              {5, 0, 0, 255}, {6, 255, 0, 255}, {8, 128, 128, 128}, {9, 192, 192, 192}};
+  const auto distance = [&](const Numbered& n) {
+    const int r = n.red - color.red, g = n.green - color.green, b = n.blue - color.blue;
+    return r * r + g * g + b * b;
+  };
+  return std::min_element(std::begin(all), std::end(all),
+                          [&](const Numbered& a, const Numbered& b) { return distance(a) < distance(b); })
+      ->number;
+}
+
+class DxfWriter {
+ public:
+  DxfWriter(const Page& page, OutputFile& file, const Execution& execution)
+      : page_(page), sink_(file), out_(sink_), progress_(page, execution) {
+    std::vector<std::string> taken = {"0"};
+    for (const PageLayer& layer : page.layers) {
+      names_.push_back(table_name(layer.name, taken));
+      for (const PageGroup& group : layer.groups)
+        if (type_of(group.pen) == 0) dashes_.push_back(group.pen.dashes);
+    }
+  }
+
+  void write() {
+    out_ << "999\nmillimetres\n";
+    write_header();
+    write_tables();
+    section("BLOCKS");
+    end_section();
+    section("ENTITIES");
+    for (std::size_t i = 0; i < page_.layers.size(); ++i)
+      for (const PageGroup& group : page_.layers[i].groups) write_group(group, names_[i]);
+    end_section();
+    text(0, "EOF");
+    out_.flush();
+  }
+
+ private:
+  // A group code is one short line, its value another.
+  void text(int code, std::string_view value) { out_.integer(code) << '\n' << value << '\n'; }
+  void integer(int code, int value) {
+    out_.integer(code) << '\n';
+    out_.integer(value) << '\n';
+  }
+  void number(int code, double value, int digits = 3) {
+    out_.integer(code) << '\n';
+    out_.decimal(value, digits) << '\n';
+  }
+  void section(std::string_view name) {
+    text(0, "SECTION");
+    text(2, name);
+  }
+  void end_section() { text(0, "ENDSEC"); }
+  /// From y down to y up.
+  void point(const glm::dvec2& p, int code = 10) {
+    number(code, p.x);
+    number(code + 10, page_.height - p.y);
+    number(code + 20, 0);
+  }
+
+  void write_header() {
+    section("HEADER");
+    text(9, "$ACADVER");
+    text(1, "AC1009");
+    text(9, "$EXTMIN");
+    point({0, page_.height});
+    text(9, "$EXTMAX");
+    point({page_.width, 0});
+    text(9, "$LIMMIN");
+    number(10, 0);
+    number(20, 0);
+    text(9, "$LIMMAX");
+    number(10, page_.width);
+    number(20, page_.height);
+    end_section();
+  }
+
+  /// -1: without gaps; otherwise 1 + the place in dashes_, or 0 where it is not there.
+  [[nodiscard]] int type_of(const Pen& pen) const {
+    if (pen.dashes.empty()) return -1;
+    const auto found = std::find(dashes_.begin(), dashes_.end(), pen.dashes);
+    return found == dashes_.end() ? 0 : int(found - dashes_.begin()) + 1;
+  }
+  [[nodiscard]] std::string type_name(const Pen& pen) const {
+    const int type = type_of(pen);
+    return type < 0 ? "CONTINUOUS" : "DASHED" + std::to_string(type);
+  }
+
+  void line_type(const std::string& name, const std::vector<double>& dashes) {
+    text(0, "LTYPE");
+    text(2, name);
+    integer(70, 0);
+    text(3, dashes.empty() ? "Solid line" : "Dashed, in millimetres");
+    integer(72, 'A');
+    integer(73, int(dashes.size()));
+    double length = 0;
+    for (const double dash : dashes) length += dash;
+    number(40, length);
+    for (std::size_t i = 0; i < dashes.size(); ++i) number(49, i % 2 == 0 ? dashes[i] : -dashes[i]);
+  }
+
+  void table(std::string_view name, std::size_t entries) {
+    text(0, "TABLE");
+    text(2, name);
+    integer(70, int(entries));
+  }
+
+  void write_tables() {
+    section("TABLES");
+    table("LTYPE", dashes_.size() + 1);
+    line_type("CONTINUOUS", {});
+    for (std::size_t i = 0; i < dashes_.size(); ++i) line_type("DASHED" + std::to_string(i + 1), dashes_[i]);
+    text(0, "ENDTAB");
+    table("LAYER", names_.size());
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      const std::vector<PageGroup>& groups = page_.layers[i].groups;
+      const Pen pen = groups.empty() ? Pen{} : groups.front().pen;
+      text(0, "LAYER");
+      text(2, names_[i]);
+      integer(70, 0);
+      integer(62, color_number(pen.color));
+      text(6, type_name(pen));
+    }
+    text(0, "ENDTAB");
+    end_section();
+  }
+
+  void write_group(const PageGroup& group, const std::string& layer) {
+    if (group.pen.width == 0 || group.pen.color.opacity == 0) return;
+    type_ = type_name(group.pen);
+    color_ = color_number(group.pen.color);
+    for (const PagePath& path : group.paths) {
+      progress_.step();
+      write_path(group, path, layer);
+    }
+  }
+
+  void entity(std::string_view kind, const std::string& layer) {
+    text(0, kind);
+    text(8, layer);
+    text(6, type_);
+    integer(62, color_);
+  }
+
+  void write_path(const PageGroup& group, const PagePath& path, const std::string& layer) {
+    if (path.count == 1) {
+      entity("POINT", layer);
+      point(group.points[path.first]);
+    } else if (const std::optional<Arc> arc = whole_arc(group, path)) {
+      write_arc(*arc, path.is_closed, layer);
+    } else if (path.count == 2) {
+      entity("LINE", layer);
+      point(group.points[path.first]);
+      point(group.points[path.first + 1], 11);
+    } else {
+      write_polyline(group, path, layer);
+    }
+  }
+
+  /// DXF counts degrees anticlockwise with y up: the other way round, and from the other end.
+  void write_arc(const Arc& arc, bool is_closed, const std::string& layer) {
+    entity(is_closed ? "CIRCLE" : "ARC", layer);
+    point(arc.centre);
+    number(40, arc.radius);
+    if (is_closed) return;
+    const double low = arc.turn > 0 ? arc.begin : arc.begin + arc.turn, high = low + std::abs(arc.turn);
+    const auto degrees = [](double angle) {
+      const double turned = std::fmod(-angle * 57.295779513082321, 360);
+      return turned < 0 ? turned + 360 : turned;
+    };
+    number(50, degrees(high), 6);
+    number(51, degrees(low), 6);
+  }
+
+  void write_polyline(const PageGroup& group, const PagePath& path, const std::string& layer) {
+    entity("POLYLINE", layer);
+    integer(66, 1);
+    point({0, page_.height});
+    integer(70, path.is_closed ? 1 : 0);
+    for (std::uint32_t i = 0; i < path.count; ++i) {
+      text(0, "VERTEX");
+      text(8, layer);
+      point(group.points[path.first + i]);
+      const double bulge = group.bulges.empty() ? 0 : group.bulges[path.first + i];
+      if (bulge != 0) number(42, -bulge, 9);
+    }
+    text(0, "SEQEND");
+    text(8, layer);
+  }
+
+  const Page& page_;
+  FileSink sink_;
+  PageText out_;
+  WritingProgress progress_;
+  std::vector<std::string> names_;
+  std::vector<std::vector<double>> dashes_;
+  std::string type_;
+  int color_ = 7;
+};
+
+}  // namespace
+
+void save_dxf(const Page& page, OutputFile& file, const Execution& execution) {
+  for (const PageLayer& layer : page.layers)
+    for (const PageGroup& group : layer.groups)
+      if (!group.fills.empty())
+        throw Error(ErrorCode::unsupported, file.name() + ": DXF holds lines alone, no filled polygons");
+  DxfWriter(page, file, execution).write();
+}
+
+}  // namespace frontmost::detail

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// The formats behind save(page), and how they walk over a page.
+#pragma once
+
+#include "frontmost/page.h"
+#include "io/output_file.h"
+
+namespace frontmost::detail {
+
+/// Writers get pages that are valid, and do not commit the file.
+void save_svg(const Page& page, OutputFile& file, const Execution& execution);
+void save_pdf(const Page& page, OutputFile& file, const Execution& execution);
+/// \throws Error unsupported where something is filled, before anything is written.
+void save_dxf(const Page& page, OutputFile& file, const Execution& execution);
+void save_json(const Page& page, OutputFile& file, const Execution& execution);
+
+/// Tells the watch how far writing is, path by path.
+class WritingProgress {
+ public:
+  WritingProgress(const Page& page, const Execution& execution);
+  /// One path more. \throws Error cancelled.
+  void step() {
+    if (++done_ % paths_between == 0) tell();
+  }
+
+ private:
+  static constexpr std::size_t paths_between = 4096;
+  void tell() const;
+
+  const Execution& execution_;
+  std::size_t done_ = 0, count_ = 0;
+};
+
+/// What a path looks like with its group's pen: whether it is filled, and with which line around it.
+struct PathPaint {
+  std::optional<PageColor> fill, line;
+  friend bool operator==(const PathPaint&, const PathPaint&) = default;
+  [[nodiscard]] bool is_seen() const { return fill || line; }
+};
+[[nodiscard]] PathPaint paint_of(const PageGroup& group, std::size_t path);
+
+}  // namespace frontmost::detail

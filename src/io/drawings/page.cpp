@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pages are checked at this door, so that their writers have no error paths.
+#include "frontmost/page.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "base/parallel.h"
+#include "io/drawings/formats.h"
+
+namespace frontmost {
+namespace {
+
+constexpr double least_side = 0.01, most_side = 1e5, farthest = 1e6, most_width = 1000, most_bulge = 10;
+
+[[noreturn]] void refuse(const std::string& where, const char* reason) {
+  throw Error(ErrorCode::bad_argument, where + ": " + reason);
+}
+
+void check_pen(const Pen& pen, const std::string& where) {
+  // Written so that NaN fails, here as below.
+  if (!(pen.width >= 0 && pen.width <= most_width)) refuse(where, "the pen's width must be from 0 to 1000 mm");
+  if (pen.dashes.size() % 2 != 0) refuse(where, "dashes and gaps must come in pairs");
+  for (const double dash : pen.dashes)
+    if (!(dash >= 0.001 && dash <= most_side)) refuse(where, "dashes and gaps must be from 0.001 to 100000 mm");
+}
+
+void check_group(const PageGroup& group, const std::string& where) {
+  check_pen(group.pen, where);
+  if (group.points.size() > 0xFFFFFFFFu) throw Error(ErrorCode::limit_exceeded, where + ": over 2^32 points");
+  for (const glm::dvec2& p : group.points)
+    if (!(std::abs(p.x) <= farthest && std::abs(p.y) <= farthest))
+      refuse(where, "a point is not finite, or further than 1000 m from the page");
+  if (!group.bulges.empty() && group.bulges.size() != group.points.size())
+    refuse(where, "bulges and points differ in number");
+  for (const double bulge : group.bulges)
+    if (!(std::abs(bulge) <= most_bulge)) refuse(where, "a bulge is beyond 10");
+  if (!group.fills.empty() && group.fills.size() != group.paths.size())
+    refuse(where, "fills and paths differ in number");
+  for (const PagePath& path : group.paths)
+    if (path.count == 0 || path.first >= group.points.size() || path.count > group.points.size() - path.first)
+      refuse(where, "a path has no points, or points that are not there");
+}
+
+}  // namespace
+
+void PageGroup::add(std::span<const glm::dvec2> corners, bool is_closed) {
+  paths.push_back({std::uint32_t(points.size()), std::uint32_t(corners.size()), is_closed});
+  points.insert(points.end(), corners.begin(), corners.end());
+}
+
+void validate(const Page& page) {
+  for (const double side : {page.width, page.height})
+    if (!(side >= least_side && side <= most_side)) refuse("page", "its sides must be from 0.01 to 100000 mm");
+  for (std::size_t i = 0; i < page.layers.size(); ++i)
+    for (std::size_t j = 0; j < page.layers[i].groups.size(); ++j)
+      check_group(page.layers[i].groups[j], "page: layer " + std::to_string(i) + ": group " + std::to_string(j));
+}
+
+std::optional<PageFormat> page_format(const std::string& path) {
+  std::string suffix = std::filesystem::path(path).extension().string();
+  for (char& c : suffix) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+  if (suffix == ".svg") return PageFormat::svg;
+  if (suffix == ".pdf") return PageFormat::pdf;
+  if (suffix == ".dxf") return PageFormat::dxf;
+  if (suffix == ".json") return PageFormat::json;
+  return std::nullopt;
+}
+
+void save(const Page& page, const std::string& path, std::optional<PageFormat> format, const Execution& execution) {
+  validate(page);
+  if (!format) format = page_format(path);
+  if (!format)
+    throw Error(ErrorCode::bad_argument, path + ": the suffix names no format; use .svg, .pdf, .dxf or .json");
+  OutputFile file(path);
+  switch (*format) {
+    case PageFormat::svg: detail::save_svg(page, file, execution); break;
+    case PageFormat::pdf: detail::save_pdf(page, file, execution); break;
+    case PageFormat::dxf: detail::save_dxf(page, file, execution); break;
+    case PageFormat::json: detail::save_json(page, file, execution); break;
+  }
+  check_cancelled(execution);
+  file.commit();
+}
+
+namespace detail {
+
+WritingProgress::WritingProgress(const Page& page, const Execution& execution) : execution_(execution) {
+  for (const PageLayer& layer : page.layers)
+    for (const PageGroup& group : layer.groups) count_ += group.paths.size();
+  report_progress(execution, "write", 0);
+}
+
+void WritingProgress::tell() const {
+  check_cancelled(execution_);
+  report_progress(execution_, "write", double(done_) / double(count_));
+}
+
+PathPaint paint_of(const PageGroup& group, std::size_t path) {
+  PathPaint paint;
+  if (!group.fills.empty() && group.fills[path].opacity > 0) paint.fill = group.fills[path];
+  if (group.pen.width == 0) return paint;
+  if (!group.pen.takes_fill_color) {
+    if (group.pen.color.opacity > 0) paint.line = group.pen.color;
+  } else if (paint.fill && paint.fill->opacity == 255) {
+    paint.line = paint.fill;
+  }
+  return paint;
+}
+
+}  // namespace detail
+}  // namespace frontmost

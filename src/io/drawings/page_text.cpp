@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/drawings/page_text.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace frontmost::detail {
+namespace {
+
+constexpr char32_t replacement = 0xFFFD;
+
+/// How many bytes follow the first of a character in UTF-8, and the bits of the first that count; none: not a first.
+struct Lead {
+  int following;
+  char32_t bits, least;
+};
+std::optional<Lead> lead_of(unsigned char byte) {
+  if (byte < 0x80) return Lead{0, byte, 0};
+  if (byte >= 0xC2 && byte < 0xE0) return Lead{1, byte & 0x1Fu, 0x80};
+  if (byte >= 0xE0 && byte < 0xF0) return Lead{2, byte & 0x0Fu, 0x800};
+  if (byte >= 0xF0 && byte < 0xF5) return Lead{3, byte & 0x07u, 0x10000};
+  return std::nullopt;
+}
+
+/// Takes the first character away. A byte that begins none is taken alone, as the replacement character.
+char32_t take_character(std::string_view& text) {
+  const std::optional<Lead> lead = lead_of((unsigned char)text[0]);
+  std::size_t length = 1;
+  char32_t code = lead ? lead->bits : replacement;
+  for (; lead && int(length) <= lead->following; ++length) {
+    if (length == text.size() || ((unsigned char)text[length] & 0xC0) != 0x80) break;
+    code = code << 6 | ((unsigned char)text[length] & 0x3Fu);
+  }
+  const bool whole = lead && int(length) == lead->following + 1 && code >= lead->least && code < 0x110000 &&
+                     !(code >= 0xD800 && code < 0xE000);
+  text.remove_prefix(whole ? length : 1);
+  return whole ? code : replacement;
+}
+
+void append_utf8(char32_t code, std::string& text) {
+  if (code < 0x80) {
+    text += char(code);
+    return;
+  }
+  const int following = code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;
+  constexpr unsigned leads[] = {0, 0xC0, 0xE0, 0xF0};
+  text += char(leads[following] | code >> (6 * following));
+  for (int i = following - 1; i >= 0; --i) text += char(0x80 | (code >> (6 * i) & 0x3F));
+}
+
+constexpr char hex[] = "0123456789ABCDEF";
+
+void append_hex(unsigned value, std::string& text) {
+  for (int shift = 12; shift >= 0; shift -= 4) text += hex[value >> shift & 15];
+}
+
+}  // namespace
+
+PageText& PageText::operator<<(std::string_view text) {
+  while (!text.empty()) {
+    if (used_ == capacity) pass_on();
+    const std::size_t count = std::min(text.size(), capacity - used_);
+    std::copy_n(text.data(), count, buffer_.data() + used_);
+    used_ += count;
+    text.remove_prefix(count);
+  }
+  return *this;
+}
+
+PageText& PageText::integer(std::int64_t value) {
+  char digits[20];
+  char* first = std::end(digits);
+  std::uint64_t rest = value < 0 ? 0 - std::uint64_t(value) : std::uint64_t(value);
+  do *--first = char('0' + rest % 10);
+  while (rest /= 10);
+  if (value < 0) *this << '-';
+  return *this << std::string_view(first, std::size_t(std::end(digits) - first));
+}
+
+PageText& PageText::fixed(std::int64_t value, int digits) {
+  std::uint64_t rest = value < 0 ? 0 - std::uint64_t(value) : std::uint64_t(value);
+  while (digits > 0 && rest % 10 == 0) {
+    rest /= 10;
+    --digits;
+  }
+  char text[24];
+  char* first = std::end(text);
+  for (int i = 0; i < digits; ++i, rest /= 10) *--first = char('0' + rest % 10);
+  if (digits > 0) *--first = '.';
+  if (digits == 0 || rest != 0) do
+      *--first = char('0' + rest % 10);
+    while (rest /= 10);
+  if (value < 0) *--first = '-';
+  return *this << std::string_view(first, std::size_t(std::end(text) - first));
+}
+
+PageText& PageText::decimal(double value, int digits) {
+  std::int64_t unit = 1;
+  for (int i = 0; i < digits; ++i) unit *= 10;
+  const std::int64_t scaled = std::llround(value * double(unit));
+  if (scaled == 0 || std::abs(scaled) >= unit) return fixed(scaled, digits);
+  *this << (scaled < 0 ? "-0" : "0");
+  return fixed(std::abs(scaled), digits);
+}
+
+void PageText::pass_on() {
+  sink_.write(std::string_view(buffer_.data(), used_));
+  passed_on_ += used_;
+  used_ = 0;
+}
+
+std::string xml_text(std::string_view name) {
+  std::string text;
+  while (!name.empty()) {
+    const char32_t code = take_character(name);
+    if (code == '&') {
+      text += "&amp;";
+    } else if (code == '<') {
+      text += "&lt;";
+    } else if (code == '>') {
+      text += "&gt;";
+    } else if (code == '"') {
+      text += "&quot;";
+    } else if (code == '\t' || code == '\n' || code == '\r') {
+      text += ' ';  // allowed, but attributes turn it into a blank anyway
+    } else {
+      const bool is_allowed = code >= 0x20 && code != 0xFFFE && code != 0xFFFF && !(code >= 0x7F && code < 0xA0);
+      append_utf8(is_allowed ? code : replacement, text);
+    }
+  }
+  return text;
+}
+
+std::string json_text(std::string_view name) {
+  std::string text = "\"";
+  while (!name.empty()) {
+    const char32_t code = take_character(name);
+    if (code < 0x20 || code == 0x7F) {
+      text += "\\u";
+      append_hex(unsigned(code), text);
+    } else {
+      if (code == '"' || code == '\\') text += '\\';
+      append_utf8(code, text);
+    }
+  }
+  return text + '"';
+}
+
+std::string pdf_text(std::string_view name) {
+  std::string text = "<FEFF";
+  while (!name.empty()) {
+    const char32_t code = take_character(name);
+    if (code >= 0x10000) {
+      append_hex(0xD800 + unsigned((code - 0x10000) >> 10), text);
+      append_hex(0xDC00 + unsigned((code - 0x10000) & 0x3FF), text);
+    } else {
+      append_hex(code < 0x20 ? unsigned(replacement) : unsigned(code), text);
+    }
+  }
+  return text + '>';
+}
+
+}  // namespace frontmost::detail

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+// What each format holds, to the character where it matters.
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "io/drawings/sample_page.h"
+
+namespace frontmost::test {
+namespace {
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++n;
+  return n;
+}
+
+TEST(Svg, IsInRealMillimetresAndNamesItsLayersAsInkscapeDoes) {
+  const std::string svg = saved(sample_page(), PageFormat::svg);
+  EXPECT_TRUE(has(svg, "width=\"100mm\" height=\"50mm\" viewBox=\"0 0 100 50\"")) << svg;
+  EXPECT_TRUE(has(svg, "<title>Sample</title>"));
+  EXPECT_TRUE(has(svg, "<g id=\"layer1\" inkscape:groupmode=\"layer\" inkscape:label=\"1 hidden\">"));
+  EXPECT_TRUE(has(svg, "<g id=\"layer2\" inkscape:groupmode=\"layer\" inkscape:label=\"2 visible\">"));
+  EXPECT_LT(svg.find("1 hidden"), svg.find("2 visible"));
+  EXPECT_TRUE(has(svg, "inkscape:label=\"axle\" stroke=\"#000000\" stroke-width=\".25\""));
+  EXPECT_EQ(count(svg, "stroke-dasharray=\"3 .75\""), 1u);
+  for (const char* const absent : {"clip", "mask", "style", "transform"}) EXPECT_FALSE(has(svg, absent)) << absent;
+}
+
+TEST(Svg, PathsStepFromRoundedPlaceToRoundedPlace) {
+  const std::string svg = saved(sample_page(), PageFormat::svg);
+  EXPECT_TRUE(has(svg, "<path d=\"M10 10l10 0 .5 2.346\"/>")) << svg;
+  EXPECT_TRUE(has(svg, "<path d=\"M0 0l5 0-5 5zM1 1l1 2\"/>")) << svg;  // one element for one pen
+  EXPECT_TRUE(has(svg, "M60 20a10 10 0 0 1-10 10")) << svg;
+  EXPECT_TRUE(has(svg, "M40 20a10 10 0 0 1 20 0 10 10 0 0 1-20 0z")) << svg;
+  EXPECT_TRUE(has(svg, "M5 5l0 0")) << svg;
+}
+
+TEST(Svg, RoundingDoesNotAddUp) {
+  Page page{1000, 10, "", {}};
+  PageGroup group{"", {}};
+  std::vector<glm::dvec2> points;
+  for (int i = 0; i <= 9000; ++i) points.emplace_back(i * 0.10044, 5);
+  group.add(points, false);
+  page.layers = {{"", {group}}};
+  std::istringstream path(saved(page, PageFormat::svg));
+  double x = 0, dx = 0, dy = 0;
+  std::string text = path.str();
+  text = text.substr(text.find("M0 5l") + 5);
+  std::istringstream steps(text);
+  while (steps >> dx >> dy) x += dx;
+  EXPECT_NEAR(x, 903.96, 0.0005);
+}
+
+TEST(Svg, FillsKeepTheirOrderAndHaveAnElementEach) {
+  Page page{10, 10, "", {}};
+  PageGroup group{"", {0.1, {}}};
+  group.pen.takes_fill_color = true;
+  const std::vector<glm::dvec2> triangle = {{1, 1}, {9, 1}, {1, 9}};
+  for (int i = 0; i < 3; ++i) group.add(triangle, true);
+  group.fills = {{255, 0, 0}, {0, 255, 0, 51}, {0, 0, 255, 0}};
+  page.layers = {{"", {group}}};
+  const std::string svg = saved(page, PageFormat::svg);
+  EXPECT_TRUE(has(svg,
+                  "<path fill=\"#ff0000\" stroke=\"#ff0000\" d=\"M1 1l8 0-8 8z\"/>\n"
+                  "<path fill=\"#00ff00\" fill-opacity=\".2\" d=\"M1 1l8 0-8 8z\"/>\n</g>"))
+      << svg;
+}
+
+TEST(Pdf, FindsItsObjectsAndItsSize) {
+  const std::string pdf = saved(sample_page(), PageFormat::pdf);
+  EXPECT_EQ(pdf.substr(0, 9), "%PDF-1.6\n");
+  EXPECT_TRUE(has(pdf, "/MediaBox [0 0 283.464567 141.732283]"));
+  EXPECT_TRUE(has(pdf, "/Type /OCG /Name <FEFF003100200068"));
+  const std::size_t start = std::stoul(pdf.substr(pdf.rfind("startxref\n") + 10));
+  std::istringstream table(pdf.substr(start));
+  std::string word, zeros, kind;
+  std::size_t first = 0, size = 0, place = 0;
+  table >> word >> first >> size;
+  EXPECT_EQ(word, "xref");
+  EXPECT_EQ(size, 9u);  // two layers
+  table >> zeros >> zeros >> kind;
+  for (std::size_t i = 1; i < size; ++i) {
+    table >> place >> zeros >> kind;
+    const std::string head = std::to_string(i) + " 0 obj\n";
+    EXPECT_EQ(pdf.substr(place, head.size()), head);
+  }
+  EXPECT_FALSE(has(pdf, "Date"));
+  // The length that the stream says it has.
+  const std::size_t begin = pdf.find("stream\n") + 7, end = pdf.find("\nendstream");
+  EXPECT_TRUE(has(pdf, "5 0 obj\n" + std::to_string(end - begin) + "\nendobj"));
+}
+
+TEST(Pdf, DrawsMillimetresWithYDown) {
+  const std::string operators = operators_of(saved(sample_page(), PageFormat::pdf));
+  EXPECT_EQ(operators.substr(0, operators.find('\n')), "2.834645669 0 0 -2.834645669 0 141.732283 cm 1 J 1 j");
+  EXPECT_TRUE(has(operators, ".25 w [3 .75 ] 0 d\n10 10 m\n20 10 l\n20.5 12.346 l\nS\n")) << operators;
+  EXPECT_TRUE(has(operators, "1 0 0 RG\n0 0 m\n5 0 l\n0 5 l\nh\n1 1 m\n2 3 l\nS\n")) << operators;
+  EXPECT_EQ(count(operators, " c\n"), 10u);  // 2 for the quarter, 4 for each half
+  EXPECT_EQ(count(operators, "BDC\n"), 2u);
+  EXPECT_EQ(count(operators, "EMC\n"), 2u);
+}
+
+TEST(Pdf, CurvesKeepToTheirCircle) {
+  Page page{100, 100, "", {}};
+  PageGroup group{"", {}};
+  group.points = {{10, 50}, {90, 50}};
+  group.bulges = {1, 0};
+  group.paths = {{0, 2, false}};
+  page.layers = {{"", {group}}};
+  std::string operators = operators_of(saved(page, PageFormat::pdf));
+  std::istringstream in(operators.substr(operators.find("10 50 m\n") + 8));
+  glm::dvec2 at(10, 50), a, b, c;
+  std::string command;
+  std::size_t curves = 0;
+  while (in >> a.x >> a.y >> b.x >> b.y >> c.x >> c.y >> command && command == "c") {
+    ++curves;
+    for (double t = 0; t <= 1; t += 0.125) {
+      const double s = 1 - t;
+      const glm::dvec2 p = s * s * s * at + 3 * s * s * t * a + 3 * s * t * t * b + t * t * t * c;
+      EXPECT_NEAR(glm::distance(p, {50, 50}), 40, 0.001);
+      EXPECT_LE(p.y, 50.001);  // from -x by -y to +x: the way from +x towards +y
+    }
+    at = c;
+  }
+  EXPECT_EQ(curves, 4u);
+  EXPECT_EQ(at, glm::dvec2(90, 50));
+}
+
+TEST(Pdf, OpacityAndColourAreSaidOnceWhileTheyLast) {
+  Page page{10, 10, "", {}};
+  PageGroup group{"", {0, {}}};
+  const std::vector<glm::dvec2> triangle = {{1, 1}, {9, 1}, {1, 9}};
+  for (int i = 0; i < 4; ++i) group.add(triangle, true);
+  group.fills = {{255, 0, 0, 51}, {255, 0, 0, 51}, {0, 0, 255, 51}, {0, 0, 255, 255}};
+  page.layers = {{"", {group}}};
+  const std::string pdf = saved(page, PageFormat::pdf), operators = operators_of(pdf);
+  EXPECT_EQ(count(operators, "rg\n"), 2u);
+  EXPECT_EQ(count(operators, " gs\n"), 2u);
+  EXPECT_EQ(count(operators, "f\n"), 4u);
+  EXPECT_TRUE(has(pdf, "/F51 << /ca .2 >>"));
+  EXPECT_FALSE(has(operators, "RG"));
+}
+
+TEST(Pdf, PagesBeyondWhatViewersTakeHaveALargerUnit) {
+  Page page = sample_page();
+  page.width = 12000;
+  const std::string pdf = saved(page, PageFormat::pdf);
+  EXPECT_TRUE(has(pdf, "/UserUnit 3"));
+  EXPECT_TRUE(has(pdf, "/MediaBox [0 0 11338.582677 47.244094]"));
+}
+
+/// Pairs of a DXF: entity kinds with their group codes.
+struct Entity {
+  std::string kind;
+  std::multimap<int, std::string> codes;
+  [[nodiscard]] double number(int code) const { return std::stod(codes.find(code)->second); }
+  [[nodiscard]] std::string text(int code) const { return codes.find(code)->second; }
+};
+
+std::vector<Entity> entities_of(const std::string& dxf) {
+  std::istringstream in(dxf.substr(dxf.find("ENTITIES\n") + 9));
+  std::vector<Entity> entities;
+  std::string code, value;
+  while (std::getline(in, code) && std::getline(in, value)) {
+    if (code == "0") {
+      entities.push_back({value, {}});
+    } else {
+      entities.back().codes.emplace(std::stoi(code), value);
+    }
+  }
+  return entities;
+}
+
+TEST(Dxf, HoldsLinesArcsAndCirclesWithYUp) {
+  const std::string dxf = saved(sample_page(), PageFormat::dxf);
+  EXPECT_TRUE(has(dxf, "9\n$ACADVER\n1\nAC1009\n"));
+  const std::vector<Entity> all = entities_of(dxf);
+  std::string kinds;
+  for (const Entity& entity : all) kinds += entity.kind + " ";
+  EXPECT_EQ(kinds,
+            "POLYLINE VERTEX VERTEX VERTEX SEQEND POLYLINE VERTEX VERTEX VERTEX SEQEND LINE ARC CIRCLE POINT "
+            "ENDSEC EOF ");
+  EXPECT_EQ(all[0].text(8), "1_HIDDEN");
+  EXPECT_EQ(all[0].text(6), "DASHED1");
+  EXPECT_EQ(all[0].text(70), "0");
+  EXPECT_EQ(all[3].number(10), 20.5);
+  EXPECT_EQ(all[3].number(20), 37.654);
+  EXPECT_EQ(all[5].text(70), "1");
+  EXPECT_EQ(all[5].text(62), "1");  // red
+  EXPECT_EQ(all[10].number(11), 2);
+  EXPECT_EQ(all[10].number(21), 47);
+  const Entity &arc = all[11], &circle = all[12];
+  // From (60, 30) clockwise to (50, 20), with y up: the quarter from 270 to 360 degrees.
+  EXPECT_EQ(arc.number(10), 50);
+  EXPECT_EQ(arc.number(20), 30);
+  EXPECT_EQ(arc.number(40), 10);
+  EXPECT_EQ(arc.number(50), 270);
+  EXPECT_EQ(std::fmod(arc.number(51), 360), 0);
+  EXPECT_EQ(circle.number(10), 50);
+  EXPECT_EQ(circle.number(40), 10);
+}
+
+TEST(Dxf, BulgesTurnTheOtherWayRound) {
+  Page page{100, 100, "", {}};
+  PageGroup slot{"", {}};
+  slot.points = {{10, 10}, {30, 10}, {30, 20}, {10, 20}};
+  slot.bulges = {0, 1, 0, 1};
+  slot.paths = {{0, 4, true}};
+  page.layers = {{"slot \xC3\xA9 with a rather long name", {slot}}, {"", {}}, {"SLOT __ WITH A RATHER LO", {slot}}};
+  const std::string dxf = saved(page, PageFormat::dxf);
+  const std::vector<Entity> all = entities_of(dxf);
+  EXPECT_EQ(all[2].number(42), -1);
+  EXPECT_EQ(all[1].codes.count(42), 0u);
+  // Layers that would have the same name are told apart.
+  EXPECT_TRUE(has(dxf, "2\nSLOT____WITH_A_RATHER_LO\n"));
+  EXPECT_TRUE(has(dxf, "2\nSLOT____WITH_A_RATHER_LO_2\n"));
+  EXPECT_TRUE(has(dxf, "2\nLAYER\n"));
+}
+
+TEST(Json, HoldsThePageAsItIs) {
+  const nlohmann::json json = nlohmann::json::parse(saved(sample_page(), PageFormat::json));
+  EXPECT_EQ(json["unit"], "mm");
+  EXPECT_EQ(json["width"], 100);
+  ASSERT_EQ(json["layers"].size(), 2u);
+  const nlohmann::json& dashed = json["layers"][0]["groups"][0];
+  EXPECT_EQ(dashed["name"], "axle");
+  EXPECT_EQ(dashed["pen"]["dashes"], nlohmann::json({3, 0.75}));
+  EXPECT_EQ(dashed["paths"][0]["points"][2], nlohmann::json({20.5, 12.346}));
+  const nlohmann::json& round = json["layers"][1]["groups"][1];
+  EXPECT_EQ(round["paths"][0]["bulges"][0], 0.414213562);
+  EXPECT_EQ(round["paths"][1]["closed"], true);
+  EXPECT_FALSE(round["paths"][2].contains("bulges"));
+}
+
+TEST(Formats, NamesDoNoHarmAnywhere) {
+  Page page = sample_page();
+  const std::string hostile = std::string("a<b>&\"'\x01\x1b[31m\n\xff\xc3(\xed\xa0\x80 \xf0\x9f\x9a\x80 ]]>--") + '\0';
+  page.title = page.layers[0].name = page.layers[1].groups[0].name = hostile;
+  const std::string svg = saved(page, PageFormat::svg);
+  EXPECT_EQ(count(svg, "a&lt;b&gt;&amp;&quot;'\xEF\xBF\xBD\xEF\xBF\xBD[31m \xEF\xBF\xBD\xEF\xBF\xBD("), 3u) << svg;
+  EXPECT_EQ(svg.find('\x1b'), std::string::npos);
+  EXPECT_EQ(svg.find('\0'), std::string::npos);
+  EXPECT_TRUE(has(svg, "\xF0\x9F\x9A\x80"));
+  const nlohmann::json json = nlohmann::json::parse(saved(page, PageFormat::json));
+  EXPECT_EQ(json["title"].get<std::string>().substr(0, 7), "a<b>&\"'");
+  const std::string pdf = saved(page, PageFormat::pdf);
+  EXPECT_TRUE(has(pdf, "D83DDE80"));  // surrogates
+  const std::string dxf = saved(page, PageFormat::dxf);
+  EXPECT_EQ(dxf.find('\x1b'), std::string::npos);
+  EXPECT_EQ(std::count(dxf.begin(), dxf.end(), '\n') % 2, 0);
+}
+
+}  // namespace
+}  // namespace frontmost::test
