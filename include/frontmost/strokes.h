@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Strokes: the parts of a drawing put together to long lines, as a pen draws them.
+#pragma once
+
+#include <vector>
+
+#include "frontmost/lines.h"
+
+namespace frontmost {
+
+struct StrokeOptions {
+  bool with_hidden = true;  ///< false: hidden parts are left out
+  bool by_kind = true;      ///< false: edges of all kinds may share a stroke
+  bool by_instance = true;  ///< false: edges of several objects may share a stroke
+  double tolerance = 0.01;  ///< pixels, 0.0001 to 1: strokes leave their parts by at most this
+  /// Pixels, 0 to 100. Above 0: runs of at least four parts whose corners lie within this of one circle, with at most
+  /// 20 degrees between two, become arcs. A polygon of up to 17 sides stays one.
+  double arc_tolerance = 0;
+  /// Each stroke begins as near as possible to the end of the one before, and goes on with it where they touch: for
+  /// plotters. False: strokes come in the order of their parts.
+  bool nearest_first = false;
+};
+
+/// A line from point to point, without a lift of the pen.
+struct Stroke {
+  EdgeKind kind = EdgeKind::boundary;  ///< of all its parts, or, without by_kind, of its first one
+  bool is_hidden = false;
+  bool is_outline = false;            ///< of all its parts; false without by_kind
+  std::uint32_t instance = no_index;  ///< of all its parts, or, without by_instance, of its first one
+  std::uint32_t first = 0, count = 0;
+  bool is_closed = false;  ///< the last point is joined to the first
+};
+
+struct Strokes {
+  std::vector<glm::dvec2> points;  ///< in pixels, as DrawnPart's
+  /// One for each point, of the join that begins there: the tangent of a quarter of the angle that an arc turns
+  /// through, positive from +x towards +y; 0: straight. At most about 1. Empty without arcs.
+  std::vector<double> bulges;
+  /// Hidden ones first; then by outline, kind and instance.
+  std::vector<Stroke> strokes;
+};
+
+/// Parts of one class (seen or hidden, outline, kind, instance) that meet end to end, where no third one does, become
+/// one stroke. Every line is drawn once: of parts that lie on each other, as an edge behind another in parallel
+/// projection, one is kept, the seen one before the hidden one. Parts that are seen as points are left out. Near-linear
+/// in the parts. \throws Error bad_argument for tolerances out of range.
+[[nodiscard]] Strokes strokes(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options = {},
+                              const Execution& execution = {});
+
+}  // namespace frontmost

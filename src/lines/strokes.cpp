@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frontmost/strokes.h"
+
+#include <algorithm>
+#include <map>
+
+#include "base/float_environment.h"
+#include "base/parallel.h"
+#include "lines/strokes_parts.h"
+
+namespace frontmost {
+namespace {
+
+using namespace lines_detail;
+
+/// What the parts of a stroke have in common, as one number: the order of strokes.
+class Classes {
+ public:
+  Classes(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options)
+      : surfaces_(surfaces), drawing_(drawing), options_(options) {}
+
+  /// Ranks grow with what is drawn further below: hidden lines last, outlines first.
+  [[nodiscard]] std::uint64_t key(const DrawnPart& part) const {
+    const DrawnEdge& edge = drawing_.edges[part.edge];
+    std::uint64_t key = part.hidden_by != 0;
+    key = key << 1 | (options_.by_kind && !part.is_outline);
+    key = key << 8 | (options_.by_kind ? std::uint64_t(edge.kind) : 0);
+    return key << 32 | (options_.by_instance ? instance_of(edge) : 0);
+  }
+
+  [[nodiscard]] Stroke stroke(const DrawnPart& part) const {
+    const DrawnEdge& edge = drawing_.edges[part.edge];
+    return {edge.kind, part.hidden_by != 0, options_.by_kind && part.is_outline, instance_of(edge), 0, 0, false};
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t instance_of(const DrawnEdge& edge) const {
+    const PrimitiveId id = edge.left != no_primitive ? edge.left : edge.right;
+    return id == no_primitive ? no_index : surfaces_.source(id).instance;
+  }
+
+  const Surfaces& surfaces_;
+  const Drawing& drawing_;
+  const StrokeOptions& options_;
+};
+
+void check(const StrokeOptions& options) {
+  if (!(options.tolerance >= 1e-4 && options.tolerance <= 1))
+    throw Error(ErrorCode::bad_argument, "strokes: the tolerance must be from 0.0001 to 1 pixel");
+  if (!(options.arc_tolerance >= 0 && options.arc_tolerance <= 100))
+    throw Error(ErrorCode::bad_argument, "strokes: the tolerance of arcs must be from 0 to 100 pixels");
+}
+
+/// The segments of all parts with their ranks, and what stands behind each rank: a stroke without points.
+struct Ranked {
+  std::vector<Segment> segments;
+  std::vector<Stroke> strokes;
+};
+
+Ranked ranked(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options) {
+  const Classes classes(surfaces, drawing, options);
+  std::map<std::uint64_t, std::pair<std::uint32_t, Stroke>> known;
+  std::vector<std::uint64_t> keys(drawing.parts.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    keys[i] = classes.key(drawing.parts[i]);
+    known.try_emplace(keys[i], 0, classes.stroke(drawing.parts[i]));
+  }
+  Ranked result;
+  for (auto& [key, entry] : known) {
+    entry.first = std::uint32_t(result.strokes.size());
+    result.strokes.push_back(entry.second);
+  }
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const DrawnPart& part = drawing.parts[i];
+    if (part.hidden_by != 0 && !options.with_hidden) continue;
+    result.segments.push_back({part.from, part.to, known.find(keys[i])->second.first});
+  }
+  return result;
+}
+
+void append(const Chain& chain, const Stroke& like, bool with_arcs, Strokes& all) {
+  Stroke stroke = like;
+  stroke.first = std::uint32_t(all.points.size());
+  stroke.count = std::uint32_t(chain.points.size());
+  stroke.is_closed = chain.is_closed;
+  all.strokes.push_back(stroke);
+  all.points.insert(all.points.end(), chain.points.begin(), chain.points.end());
+  if (!with_arcs) return;
+  all.bulges.insert(all.bulges.end(), chain.bulges.begin(), chain.bulges.end());
+  all.bulges.resize(all.points.size(), 0);
+}
+
+}  // namespace
+
+Strokes strokes(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options,
+                const Execution& execution) {
+  check(options);
+  const IeeeScope ieee;
+  report_progress(execution, "strokes", 0);
+  const Ranked parts = ranked(surfaces, drawing, options);
+  std::vector<Chain> chains = chained(draw_once(parts.segments, execution));
+  report_progress(execution, "strokes", 0.6);
+  parallel_for(execution, chains.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      straighten(chains[i], options.tolerance);
+      if (options.arc_tolerance > 0) find_arcs(chains[i], options.arc_tolerance);
+    }
+  });
+  report_progress(execution, "strokes", 0.8);
+  if (options.nearest_first) chains = nearest_first(std::move(chains), options.tolerance);
+  check_cancelled(execution);
+  // What is hidden has the highest ranks, and lies below.
+  std::stable_sort(chains.begin(), chains.end(), [&](const Chain& a, const Chain& b) {
+    return parts.strokes[a.rank].is_hidden > parts.strokes[b.rank].is_hidden;
+  });
+  Strokes result;
+  for (const Chain& chain : chains) append(chain, parts.strokes[chain.rank], options.arc_tolerance > 0, result);
+  report_progress(execution, "strokes", 1);
+  return result;
+}
+
+}  // namespace frontmost

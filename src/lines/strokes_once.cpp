@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lines that lie on each other are drawn once.
+//
+// Segments are laid down by rank, each without what lies there already. What could lie there is found in the cells of a
+// grid: about one segment to the cell.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "lines/strokes_parts.h"
+
+namespace frontmost::lines_detail {
+namespace {
+
+/// Pixels. Places of one point differ by the rounding of floats, 1e-7 of some thousand pixels.
+constexpr double near = 2e-3;
+constexpr double shortest = 4 * near;  // of what is left, and of what is taken away
+
+struct Interval {
+  double begin, end;
+};
+
+/// Where, along `segment`, `other` lies on it; empty where it does not. Lengths in pixels.
+Interval overlap(const Segment& segment, const Segment& other) {
+  constexpr Interval nothing{0, 0};
+  const glm::dvec2 along = glm::normalize(segment.to - segment.from);
+  const glm::dvec2 a = other.from - segment.from, b = other.to - segment.from;
+  const double a_at = glm::dot(along, a), b_at = glm::dot(along, b);
+  const double begin = std::max(0.0, std::min(a_at, b_at));
+  const double end = std::min(glm::distance(segment.from, segment.to), std::max(a_at, b_at));
+  if (!(end - begin > shortest)) return nothing;
+  const double a_off = cross(along, a), slope = (cross(along, b) - a_off) / (b_at - a_at);
+  const auto off = [&](double at) { return std::abs(a_off + slope * (at - a_at)); };
+  return off(begin) <= near && off(end) <= near ? Interval{begin, end} : nothing;
+}
+
+class Sheet {
+ public:
+  /// Precondition: not empty.
+  explicit Sheet(const std::vector<Segment>& segments) {
+    glm::dvec2 low(1e300), high(-1e300);
+    double length = 0;
+    for (const Segment& s : segments) {
+      low = glm::min(low, glm::min(s.from, s.to));
+      high = glm::max(high, glm::max(s.from, s.to));
+      length += glm::distance(s.from, s.to);
+    }
+    const auto count = double(segments.size());
+    const double extent = std::max({high.x - low.x, high.y - low.y, 1e-6});
+    cell_ = std::max({length / count, extent / std::sqrt(count), extent / 4096});
+    low_ = low - near;
+    columns_ = int((high.x - low.x + 2 * near) / cell_) + 1;
+    rows_ = int((high.y - low.y + 2 * near) / cell_) + 1;
+    cells_.resize(std::size_t(columns_) * std::size_t(rows_));
+  }
+
+  /// Adds what of `segment` is not there yet to `fresh`.
+  void lay(const Segment& segment, std::vector<Segment>& fresh) {
+    const double length = glm::distance(segment.from, segment.to);
+    covered_.clear();
+    ++asking_;
+    for_each_cell(segment, [&](const std::vector<std::uint32_t>& cell) {
+      for (const std::uint32_t other : cell) {
+        if (asked_[other] == asking_) continue;
+        asked_[other] = asking_;
+        const Interval there = overlap(segment, laid_[other]);
+        if (there.end > there.begin) covered_.push_back(there);
+      }
+    });
+    if (covered_.empty()) return add(segment, fresh);
+    std::sort(covered_.begin(), covered_.end(), [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
+    covered_.push_back({length, length});
+    const glm::dvec2 along = (segment.to - segment.from) / length;
+    double at = 0;
+    for (const Interval& c : covered_) {
+      if (c.begin - at > shortest) {
+        // The segment's own ends to the bit, so that its neighbours find them.
+        const glm::dvec2 from = at == 0 ? segment.from : segment.from + along * at;
+        const glm::dvec2 to = c.begin == length ? segment.to : segment.from + along * c.begin;
+        add({from, to, segment.rank}, fresh);
+      }
+      at = std::max(at, c.end);
+    }
+  }
+
+ private:
+  void add(const Segment& segment, std::vector<Segment>& fresh) {
+    fresh.push_back(segment);
+    const auto number = std::uint32_t(laid_.size());
+    laid_.push_back(segment);
+    asked_.push_back(0);
+    for_each_cell(segment, [&](std::vector<std::uint32_t>& cell) { cell.push_back(number); });
+  }
+
+  [[nodiscard]] int column(double x) const { return std::clamp(int((x - low_.x) / cell_), 0, columns_ - 1); }
+  [[nodiscard]] int row(double y) const { return std::clamp(int((y - low_.y) / cell_), 0, rows_ - 1); }
+
+  /// Column by column, the rows that the segment passes there, with `near` to spare.
+  template <class Visit>
+  void for_each_cell(const Segment& s, const Visit& visit) {
+    const glm::dvec2 a = s.from.x <= s.to.x ? s.from : s.to, b = s.from.x <= s.to.x ? s.to : s.from;
+    const double width = b.x - a.x;
+    for (int x = column(a.x - near); x <= column(b.x + near); ++x) {
+      double y0 = a.y, y1 = b.y;
+      if (width > 2 * near) {
+        const double left = low_.x + x * cell_ - near, right = left + cell_ + 2 * near;
+        y0 = a.y + (b.y - a.y) * std::clamp((left - a.x) / width, 0.0, 1.0);
+        y1 = a.y + (b.y - a.y) * std::clamp((right - a.x) / width, 0.0, 1.0);
+      }
+      if (y0 > y1) std::swap(y0, y1);
+      for (int y = row(y0 - near); y <= row(y1 + near); ++y) visit(cells_[std::size_t(y) * columns_ + x]);
+    }
+  }
+
+  glm::dvec2 low_{0};
+  double cell_ = 1;
+  int columns_ = 1, rows_ = 1;
+  std::vector<std::vector<std::uint32_t>> cells_;
+  std::vector<Segment> laid_;
+  std::vector<std::uint32_t> asked_;  ///< by segment: the question that it was last part of
+  std::uint32_t asking_ = 0;
+  std::vector<Interval> covered_;
+};
+
+}  // namespace
+
+std::vector<Segment> draw_once(const std::vector<Segment>& segments, const Execution& execution) {
+  if (segments.empty()) return {};
+  std::vector<std::uint32_t> order(segments.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return segments[a].rank < segments[b].rank; });
+  std::vector<Segment> fresh;
+  fresh.reserve(segments.size());
+  Sheet sheet(segments);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Segment& segment = segments[order[i]];
+    if (i % 4096 == 0) {
+      check_cancelled(execution);
+      report_progress(execution, "strokes", 0.1 + 0.4 * double(i) / double(order.size()));
+    }
+    if (glm::distance(segment.from, segment.to) > near) sheet.lay(segment, fresh);
+  }
+  return fresh;
+}
+
+}  // namespace frontmost::lines_detail

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// What strokes are made of, on their way.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "frontmost/base.h"
+
+namespace frontmost::lines_detail {
+
+/// A straight piece on the screen; what differs in rank is never joined. Lower ranks are drawn over higher ones.
+struct Segment {
+  glm::dvec2 from, to;
+  std::uint32_t rank;
+};
+
+/// Joined segments. A closed one does not repeat its first point.
+struct Chain {
+  std::vector<glm::dvec2> points;
+  std::vector<double> bulges;  ///< empty, or one for each point
+  std::uint32_t rank = 0;
+  bool is_closed = false;
+};
+
+inline double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+
+/// Of what lies on each other, what has the lower rank, or comes first. What is left keeps its order.
+[[nodiscard]] std::vector<Segment> draw_once(const std::vector<Segment>& segments, const Execution& execution);
+
+/// Joins segments of one rank wherever exactly two ends meet. By rank, then in the order of the segments.
+[[nodiscard]] std::vector<Chain> chained(const std::vector<Segment>& segments);
+
+/// Leaves out corners that lie within `tolerance` of the line between those that stay.
+void straighten(Chain& chain, double tolerance);
+
+/// Puts arcs where four corners or more lie on a circle.
+void find_arcs(Chain& chain, double tolerance);
+
+/// Chains of one rank, each begun at the end that is nearest to the last one's end, and joined with it where the two
+/// are within `touching`.
+[[nodiscard]] std::vector<Chain> nearest_first(std::vector<Chain> chains, double touching);
+
+}  // namespace frontmost::lines_detail

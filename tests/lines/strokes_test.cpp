@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+// Strokes: known counts, every line once, arcs where arcs are, and pens that travel little.
+#include "frontmost/strokes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+View parallel_view(const glm::dvec3& eye) {
+  View view;
+  view.width = view.height = 400;
+  const bool is_steep = std::abs(eye.y) > 0.9 * glm::length(eye);
+  view.world_from_eye = look_at(eye, glm::dvec3(0), is_steep ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0));
+  view.projection = make_orthographic(-2, 2, -2, 2, {0.5, 50});
+  return view;
+}
+
+void add_quad(Mesh& mesh, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d) {
+  add_triangle(mesh, a, b, c);
+  add_triangle(mesh, a, c, d);
+}
+
+/// The prism over a polygon in the plane z = -1, to z = 1, with flat ends about the origin.
+Mesh prism(const std::vector<glm::dvec2>& polygon) {
+  Mesh mesh;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const glm::vec2 a(polygon[i]), b(polygon[(i + 1) % polygon.size()]);
+    add_quad(mesh, {a, -1}, {b, -1}, {b, 1}, {a, 1});
+    add_triangle(mesh, {0, 0, 1}, {a, 1}, {b, 1});
+    add_triangle(mesh, {0, 0, -1}, {b, -1}, {a, -1});
+  }
+  return mesh;
+}
+
+std::vector<glm::dvec2> regular(int corners, double radius = 1) {
+  std::vector<glm::dvec2> polygon;
+  for (int i = 0; i < corners; ++i)
+    polygon.push_back(radius * glm::dvec2(std::cos(2 * pi * i / corners), std::sin(2 * pi * i / corners)));
+  return polygon;
+}
+
+const std::vector<glm::dvec2> square = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+
+Strokes strokes_of(const Mesh& mesh, const View& view, const StrokeOptions& options = {}, double crease = 0.5) {
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  return strokes(surfaces, lines(surfaces, view, {.crease_angle = crease}), options);
+}
+
+double length_of(const Strokes& all, const Stroke& stroke) {
+  double length = 0;
+  for (std::uint32_t i = 0; i + (stroke.is_closed ? 0 : 1) < stroke.count; ++i)
+    length += glm::distance(all.points[stroke.first + i], all.points[stroke.first + (i + 1) % stroke.count]);
+  return length;
+}
+
+double length_of(const Strokes& all, bool hidden) {
+  double length = 0;
+  for (const Stroke& stroke : all.strokes) length += stroke.is_hidden == hidden ? length_of(all, stroke) : 0;
+  return length;
+}
+
+TEST(StrokesOfACube, FromACorner) {
+  const Strokes all = strokes_of(prism(square), parallel_view({4, 5, 6}));
+  // Three hidden edges that meet, the outline, three seen edges that meet.
+  ASSERT_EQ(all.strokes.size(), 7u);
+  std::size_t closed = 0;
+  for (std::size_t i = 0; i < all.strokes.size(); ++i) {
+    const Stroke& stroke = all.strokes[i];
+    EXPECT_EQ(stroke.is_hidden, i < 3);
+    EXPECT_EQ(stroke.kind == EdgeKind::silhouette, stroke.is_closed);
+    EXPECT_EQ(stroke.count, stroke.is_closed ? 6u : 2u);
+    EXPECT_EQ(stroke.instance, 0u);
+    closed += stroke.is_closed;
+  }
+  EXPECT_EQ(closed, 1u);
+  EXPECT_TRUE(all.bulges.empty());
+  EXPECT_EQ(strokes_of(prism(square), parallel_view({4, 5, 6}), {.with_hidden = false}).strokes.size(), 4u);
+  // Of any kind: every corner of the cube but the hidden one and three of the outline is a junction.
+  EXPECT_EQ(strokes_of(prism(square), parallel_view({4, 5, 6}), {.by_kind = false}).strokes.size(), 9u);
+}
+
+TEST(StrokesOfACube, FromTheFrontEveryLineOnce) {
+  const Strokes all = strokes_of(prism(square), parallel_view({0, 0, 10}), {.by_kind = false});
+  // Its four back edges lie behind the front ones, and four edges are points.
+  ASSERT_EQ(all.strokes.size(), 1u);
+  EXPECT_FALSE(all.strokes[0].is_hidden);
+  EXPECT_TRUE(all.strokes[0].is_closed);
+  EXPECT_EQ(all.strokes[0].count, 4u);
+  EXPECT_NEAR(length_of(all, false), 800, 1e-9);
+}
+
+TEST(StrokesOnce, WhatIsThereTwiceIsDrawnOnce) {
+  const View view = parallel_view({3, 4, 9});
+  const Mesh mesh = prism(regular(5));
+  Mesh twice = mesh;  // all edges have more than two triangles now, of which one is drawn
+  for (const glm::uvec3& t : mesh.triangles)
+    add_triangle(twice, mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]);
+  const StrokeOptions any_kind{.by_kind = false};
+  const Strokes a = strokes_of(mesh, view, any_kind), b = strokes_of(twice, view, any_kind);
+  EXPECT_EQ(a.strokes.size(), b.strokes.size());
+  EXPECT_NEAR(length_of(a, false), length_of(b, false), 0.1);
+  EXPECT_NEAR(length_of(a, true), length_of(b, true), 0.1);
+}
+
+TEST(StrokesOnce, AHiddenEdgeBehindASeenOneKeepsWhatSticksOut) {
+  // A plate before a wider one of the same height: of the back one's sides only what sticks out is drawn.
+  Mesh mesh;
+  add_quad(mesh, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1});
+  add_quad(mesh, {-1.5, -1, 0}, {1.5, -1, 0}, {1.5, 1, 0}, {-1.5, 1, 0});
+  const Strokes all = strokes_of(mesh, parallel_view({0, 0, 10}), {.by_kind = false});
+  EXPECT_NEAR(length_of(all, false), 800 + 2 * 200 + 4 * 50, 1e-6);
+  EXPECT_NEAR(length_of(all, true), 0, 1e-6);
+}
+
+TEST(StrokesOnce, TotalLengthIsThatOfTheParts) {
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    const Scene scene = scene_of(random_mesh(Kind::soup, 60, seed));
+    const Surfaces surfaces(scene);
+    View view = frame(surfaces, 500, 400);
+    const Drawing drawing = lines(surfaces, view);
+    double seen = 0, hidden = 0, shorter = 0;
+    for (const DrawnPart& part : drawing.parts) {
+      const double length = glm::distance(part.from, part.to);
+      (part.hidden_by ? hidden : seen) += length;
+      if (length < 0.01) shorter += length;
+    }
+    const Strokes all = strokes(surfaces, drawing);
+    // What is drawn once may be less; never more. Random soups have a few edges on each other.
+    EXPECT_LE(length_of(all, false), seen * 1.0001 + 0.1);
+    EXPECT_GE(length_of(all, false), (seen - shorter) * 0.9 - 1) << seed;
+    EXPECT_LE(length_of(all, true), hidden * 1.0001 + 0.1);
+  }
+}
+
+TEST(StrokesArcs, ADiscIsACircleAndAHexagonStaysOne) {
+  const StrokeOptions options{.by_kind = false, .arc_tolerance = 0.05};
+  const Strokes disc = strokes_of(prism(regular(64)), parallel_view({0, 0, 10}), options);
+  ASSERT_EQ(disc.strokes.size(), 1u);
+  EXPECT_TRUE(disc.strokes[0].is_closed);
+  ASSERT_EQ(disc.strokes[0].count, 2u);
+  EXPECT_EQ(std::abs(disc.bulges[0]), 1);
+  EXPECT_EQ(disc.bulges[0], disc.bulges[1]);
+  EXPECT_NEAR(glm::distance(disc.points[0], disc.points[1]), 200, 0.001);
+  for (const int sides : {6, 12, 16}) {
+    const Strokes polygon = strokes_of(prism(regular(sides)), parallel_view({0, 0, 10}), options);
+    ASSERT_EQ(polygon.strokes.size(), 1u) << sides;
+    EXPECT_EQ(polygon.strokes[0].count, std::uint32_t(sides));
+    for (const double bulge : polygon.bulges) EXPECT_EQ(bulge, 0);
+  }
+}
+
+TEST(StrokesArcs, ARoundedPlateHasFourArcsAndFourLines) {
+  std::vector<glm::dvec2> outline;
+  for (int corner = 0; corner < 4; ++corner)
+    for (int i = 0; i <= 12; ++i) {
+      const double angle = pi / 2 * (corner + i / 12.0);
+      const glm::dvec2 centre((corner == 0 || corner == 3 ? 1 : -1) * 0.7, (corner < 2 ? 1 : -1) * 0.5);
+      outline.push_back(centre + 0.3 * glm::dvec2(std::cos(angle), std::sin(angle)));
+    }
+  const Strokes all = strokes_of(prism(outline), parallel_view({0, 0, 10}), {.by_kind = false, .arc_tolerance = 0.05});
+  ASSERT_EQ(all.strokes.size(), 1u);
+  ASSERT_EQ(all.strokes[0].count, 8u);
+  std::size_t arcs = 0;
+  for (const double bulge : all.bulges) {
+    if (bulge == 0) continue;
+    ++arcs;
+    EXPECT_NEAR(std::abs(bulge), std::tan(pi / 8), 1e-4);
+  }
+  EXPECT_EQ(arcs, 4u);
+}
+
+TEST(StrokesArcs, HalvesOfLongArcsLieOnTheCircle) {
+  // A disc with a slice cut out: 300 degrees.
+  std::vector<glm::dvec2> outline = {{0, 0}};
+  for (int i = 0; i <= 60; ++i) outline.push_back(glm::dvec2(std::cos(i * pi / 36), std::sin(i * pi / 36)));
+  const Strokes all = strokes_of(prism(outline), parallel_view({0, 0, 10}), {.by_kind = false, .arc_tolerance = 0.05});
+  ASSERT_EQ(all.strokes.size(), 1u);
+  ASSERT_EQ(all.strokes[0].count, 4u);
+  for (const glm::dvec2& p : all.points) {
+    const double radius = glm::distance(p, {200, 200});
+    EXPECT_TRUE(radius < 1e-6 || std::abs(radius - 100) < 0.001) << radius;
+  }
+}
+
+TEST(StrokesOrder, TheNextOneIsAlwaysTheNearest) {
+  Mesh mesh;
+  Random random(5);
+  for (int i = 0; i < 300; ++i) {
+    const glm::vec3 at(random.within(-1.9f, 1.9f), random.within(-1.9f, 1.9f), random.within(-1, 1));
+    add_triangle(mesh, at, at + glm::vec3(0.02f, 0, 0), at + glm::vec3(0, 0.03f, 0));
+  }
+  const View view = parallel_view({0, 0, 10});
+  const Strokes plain = strokes_of(mesh, view, {.with_hidden = false}),
+                all = strokes_of(mesh, view, {.with_hidden = false, .nearest_first = true});
+  EXPECT_NEAR(length_of(all, false), length_of(plain, false), 1e-6);
+  ASSERT_GT(all.strokes.size(), 250u);
+  const auto begin = [&](const Stroke& s) { return all.points[s.first]; };
+  const auto end = [&](const Stroke& s) { return all.points[s.is_closed ? s.first : s.first + s.count - 1]; };
+  for (std::size_t i = 0; i + 1 < all.strokes.size(); ++i) {
+    const double travel = glm::distance(end(all.strokes[i]), begin(all.strokes[i + 1]));
+    for (std::size_t j = i + 2; j < all.strokes.size(); ++j)
+      EXPECT_GE(std::min(glm::distance(end(all.strokes[i]), begin(all.strokes[j])),
+                         glm::distance(end(all.strokes[i]), end(all.strokes[j]))),
+                travel - 1e-9);
+  }
+}
+
+TEST(StrokesOrder, APenGoesOnWhereStrokesTouch) {
+  // Nine seen edges of a cube with eight odd corners or so: fewer lifts than chains.
+  const StrokeOptions plain{.with_hidden = false, .by_kind = false};
+  StrokeOptions plot = plain;
+  plot.nearest_first = true;
+  const View view = parallel_view({4, 5, 6});
+  const Strokes a = strokes_of(prism(square), view, plain), b = strokes_of(prism(square), view, plot);
+  EXPECT_EQ(a.strokes.size(), 6u);
+  EXPECT_LE(b.strokes.size(), 3u);
+  EXPECT_NEAR(length_of(a, false), length_of(b, false), 1e-9);
+}
+
+TEST(StrokesOrder, ArcsSurviveTurningRound) {
+  std::vector<glm::dvec2> outline;
+  for (int i = 0; i <= 30; ++i) outline.push_back(glm::dvec2(std::cos(i * pi / 30), std::sin(i * pi / 30)));
+  Mesh mesh;  // half rings, bent up, from right to left: the pen comes from the left
+  for (std::size_t i = 0; i + 1 < outline.size(); ++i) {
+    const glm::vec2 a(outline[i]), b(outline[i + 1]);
+    add_quad(mesh, {a, 0}, {b, 0}, {b * 0.5f, 0}, {a * 0.5f, 0});
+  }
+  const StrokeOptions options{.arc_tolerance = 0.05, .nearest_first = true};
+  const Strokes all = strokes_of(mesh, parallel_view({0, 0, 10}), options);
+  ASSERT_EQ(all.strokes.size(), 1u);
+  double around = 0;
+  for (std::size_t i = 0; i < all.points.size(); ++i) around += std::abs(4 * std::atan(all.bulges[i]));
+  EXPECT_NEAR(around, 2 * pi, 0.01);
+}
+
+TEST(Strokes, AreTheSameForAnyNumberOfThreads) {
+  const Scene scene = scene_of(random_mesh(Kind::shared_grid, 400, 3));
+  const Surfaces surfaces(scene);
+  const Drawing drawing = lines(surfaces, frame(surfaces, 500, 400));
+  const StrokeOptions options{.arc_tolerance = 0.2, .nearest_first = true};
+  const Strokes one = strokes(surfaces, drawing, options, {.threads = 1}),
+                many = strokes(surfaces, drawing, options, {.threads = 5});
+  EXPECT_EQ(one.points, many.points);
+  EXPECT_EQ(one.bulges, many.bulges);
+  EXPECT_EQ(one.strokes.size(), many.strokes.size());
+}
+
+TEST(Strokes, NothingAndNonsense) {
+  const Scene empty;
+  const Surfaces surfaces(empty);
+  EXPECT_TRUE(strokes(surfaces, lines(surfaces, parallel_view({0, 0, 5}))).strokes.empty());
+  for (const double bad : {0.0, 2.0, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THROW((void)strokes(surfaces, {}, {.tolerance = bad}), Error);
+  for (const double bad : {-1.0, 101.0, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THROW((void)strokes(surfaces, {}, {.arc_tolerance = bad}), Error);
+}
+
+}  // namespace
+}  // namespace frontmost::test
