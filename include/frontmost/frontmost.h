@@ -11,6 +11,7 @@
 #include "frontmost/io.h"            // IWYU pragma: export
 #include "frontmost/lines.h"         // IWYU pragma: export
 #include "frontmost/page.h"          // IWYU pragma: export
+#include "frontmost/painter.h"       // IWYU pragma: export
 #include "frontmost/precision.h"     // IWYU pragma: export
 #include "frontmost/ray_camera.h"    // IWYU pragma: export
 #include "frontmost/raycast.h"       // IWYU pragma: export

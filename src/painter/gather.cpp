@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "painter/gather.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "surfaces/cluster_set.h"
+
+namespace frontmost::painter_detail {
+namespace {
+
+constexpr std::size_t kTrianglesPerPart = 4096;
+/// Of a distance: more than rounding moves it.
+constexpr double kMargin = 1e-9;
+
+struct Gathered {
+  std::vector<Extent> extents;
+  std::vector<Face> faces;
+  std::vector<std::uint32_t> crossing;  ///< those that the near or the far plane may cut
+};
+
+class Gatherer {
+ public:
+  Gatherer(const Surfaces& surfaces, const View& view, const Sight& sight)
+      : surfaces_(surfaces), view_(view), sight_(sight) {}
+
+  void gather(PrimitiveId id, Gathered& to) const {
+    Face face{surfaces_.corners(id), id};
+    for (const glm::vec3& corner : face.corners)
+      if (!is_finite(corner)) return;
+    ExtentBuilder box(sight_);
+    double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
+    for (const glm::vec3& corner : face.corners) {
+      const glm::dvec3 in_eye = sight_.in_eye(glm::dvec3(corner));
+      nearest = std::min(nearest, in_eye.z);
+      farthest = std::max(farthest, in_eye.z);
+      box.include(in_eye);
+    }
+    const double slack = kMargin * std::max(std::abs(nearest), std::abs(farthest));
+    if (farthest + slack < sight_.near() || nearest - slack > sight_.far()) return;
+    const bool is_crossing = nearest - slack < sight_.near() || farthest + slack > sight_.far();
+    Extent extent = is_crossing ? anywhere() : box.extent();
+    extent.low = glm::max(extent.low, glm::vec2(0));
+    extent.high = glm::min(extent.high, glm::vec2(view_.width, view_.height));
+    if (!(extent.low.x < extent.high.x && extent.low.y < extent.high.y) || !turn_to_eye(face)) return;
+    if (is_crossing) to.crossing.push_back(std::uint32_t(to.faces.size()));
+    to.extents.push_back(extent);
+    to.faces.push_back(face);
+  }
+
+ private:
+  static Extent anywhere() {
+    const float infinite = std::numeric_limits<float>::infinity();
+    return {glm::vec2(-infinite), glm::vec2(infinite), -infinite, infinite};
+  }
+
+  /// Counter-clockwise as it is seen. \returns false for what is not seen at all.
+  bool turn_to_eye(Face& face) const {
+    const auto& c = face.corners;
+    const int facing = sight_.facing(glm::dvec3(c[0]), glm::dvec3(c[1]), glm::dvec3(c[2]));
+    if (facing == 0 || view_.culling == Culling::both) return false;
+    if (view_.culling != Culling::none) {
+      const bool is_front = (facing > 0) != surfaces_.is_mirrored(surfaces_.source(face.id).instance);
+      if (is_front == (view_.culling == Culling::front)) return false;
+    }
+    if (facing < 0) std::swap(face.corners[1], face.corners[2]);
+    return true;
+  }
+
+  const Surfaces& surfaces_;
+  const View& view_;
+  const Sight& sight_;
+};
+
+/// At a distance before the eye, facing away from it.
+Plane plane_at(const View& view, double distance) {
+  return {view.eye() + view.forward() * distance, Leg{view.up()}, Leg{view.right()}};
+}
+
+/// Leaves what is between the planes. \returns no_index where nothing is.
+std::uint32_t clip(Pieces& pieces, std::uint32_t piece, std::uint32_t near_plane, const Plane& near,
+                   std::uint32_t far_plane, const Plane* far) {
+  const Sides at_near = pieces.sides(piece, near);
+  if (!at_near.front) return no_index;
+  if (at_near.both()) piece = pieces.cut(piece, near_plane).front;
+  if (!far) return piece;
+  const Sides at_far = pieces.sides(piece, *far);
+  if (!at_far.back) return no_index;
+  return at_far.both() ? pieces.cut(piece, far_plane).back : piece;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> gather(const Surfaces& surfaces, const View& view, Pieces& pieces,
+                                  const Execution& execution) {
+  const std::size_t count = surfaces.primitive_count();
+  std::vector<Gathered> parts((count + kTrianglesPerPart - 1) / kTrianglesPerPart);
+  const Gatherer gatherer(surfaces, view, pieces.sight());
+  parallel_for(execution, count, kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t id = begin; id < end; ++id) gatherer.gather(PrimitiveId(id), parts[begin / kTrianglesPerPart]);
+  });
+  std::size_t total = 0;
+  for (const Gathered& part : parts) total += part.faces.size();
+  pieces.reserve(total);
+  std::vector<std::uint32_t> crossing;
+  for (Gathered& part : parts) {
+    for (const std::uint32_t i : part.crossing) crossing.push_back(pieces.size() + i);
+    for (std::size_t i = 0; i < part.faces.size(); ++i) pieces.add(part.extents[i], part.faces[i]);
+    part = {};
+  }
+  std::vector<std::uint32_t> members(total);
+  for (std::uint32_t i = 0; i < total; ++i) members[i] = i;
+
+  const bool has_far = view.projection.clip.far < std::numeric_limits<double>::infinity();
+  const Plane near = plane_at(view, pieces.sight().near());
+  const Plane far = has_far ? plane_at(view, pieces.sight().far()) : near;
+  const std::uint32_t near_plane = pieces.add_plane(near), far_plane = pieces.add_plane(far);
+  for (const std::uint32_t i : crossing)
+    members[i] = clip(pieces, i, near_plane, near, far_plane, has_far ? &far : nullptr);
+  members.erase(std::remove(members.begin(), members.end(), no_index), members.end());
+  return members;
+}
+
+}  // namespace frontmost::painter_detail

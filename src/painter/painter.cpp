@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frontmost/painter.h"
+
+#include <algorithm>
+
+#include "base/float_environment.h"
+#include "painter/depth_sort.h"
+#include "painter/gather.h"
+#include "painter/partition.h"
+
+namespace frontmost {
+namespace {
+
+using namespace painter_detail;
+
+/// Makes one list of pieces out of all, by work that is still to do, the next on top. Not by recursion: a partition may
+/// be as uneven as there are pieces.
+class Orderer {
+ public:
+  Orderer(Pieces& pieces, const PainterOptions& options, const Execution& execution, PaintSteps& steps)
+      : pieces_(pieces), options_(options), execution_(execution), steps_(steps) {}
+
+  [[nodiscard]] std::vector<std::uint32_t> order(std::vector<std::uint32_t> members) {
+    all_ = members.size();
+    push(options_.method == PaintMethod::bsp ? Work::part : Work::sort, std::move(members));
+    while (!work_.empty()) {
+      const Item item = std::move(work_.back());
+      work_.pop_back();
+      check_cancelled(execution_);
+      run(item);
+    }
+    return std::move(order_);
+  }
+
+ private:
+  enum class Work : std::uint8_t { sort, part, paint };
+  struct Item {
+    Work work;
+    std::vector<std::uint32_t> members;
+  };
+
+  void push(Work work, std::vector<std::uint32_t> members) {
+    if (members.empty()) return;
+    work_.push_back({members.size() == 1 ? Work::paint : work, std::move(members)});
+  }
+
+  void run(const Item& item) {
+    switch (item.work) {
+      case Work::paint: order_.insert(order_.end(), item.members.begin(), item.members.end()); break;
+      case Work::sort: sort(item.members); break;
+      case Work::part: {
+        Partition partition = part(pieces_, item.members, steps_);
+        if (pieces_.size() > options_.most_polygons)
+          throw Error(ErrorCode::limit_exceeded,
+                      "painter: more than " + std::to_string(options_.most_polygons) + " polygons and pieces");
+        const Work next = options_.method == PaintMethod::bsp ? Work::part : Work::sort;
+        push(next, std::move(partition.before));
+        push(Work::paint, std::move(partition.within));
+        push(next, std::move(partition.behind));
+        break;
+      }
+    }
+  }
+
+  void sort(const std::vector<std::uint32_t>& members) {
+    const Groups groups = depth_sort(pieces_, members, members.size() == all_, execution_, steps_);
+    std::vector<Item> items;
+    std::size_t begin = 0;
+    for (const std::size_t end : groups.ends) {
+      const Work work = end - begin == 1 ? Work::paint : Work::part;
+      if (work == Work::part || items.empty() || items.back().work == Work::part) items.push_back({work, {}});
+      std::vector<std::uint32_t>& list = items.back().members;
+      list.insert(list.end(), groups.pieces.begin() + std::ptrdiff_t(begin),
+                  groups.pieces.begin() + std::ptrdiff_t(end));
+      begin = end;
+    }
+    std::move(items.rbegin(), items.rend(), std::back_inserter(work_));
+  }
+
+  Pieces& pieces_;
+  const PainterOptions& options_;
+  const Execution& execution_;
+  PaintSteps& steps_;
+  std::size_t all_ = 0;
+  std::vector<Item> work_;
+  std::vector<std::uint32_t> order_;
+};
+
+void sort_by_centroid(const Pieces& pieces, std::vector<std::uint32_t>& members) {
+  std::vector<double> depth(pieces.size());
+  for (const std::uint32_t i : members)
+    for (const glm::vec3& corner : pieces.face(i).corners) depth[i] += pieces.sight().in_eye(glm::dvec3(corner)).z;
+  std::sort(members.begin(), members.end(), [&](std::uint32_t a, std::uint32_t b) {
+    if (depth[a] != depth[b]) return depth[a] > depth[b];
+    return pieces.face(a).id > pieces.face(b).id;
+  });
+}
+
+void emit(const Pieces& pieces, std::uint32_t piece, PaintOrder& order) {
+  const Face& face = pieces.face(piece);
+  const Sight& sight = pieces.sight();
+  PaintPolygon polygon{face.id, 3, order.corners.size()};
+  const auto add = [&](const glm::dvec3& at, bool is_cut) {
+    order.corners.push_back({sight.to_screen(sight.in_eye(at)), is_cut});
+  };
+  if (pieces.is_whole(piece)) {
+    for (const glm::vec3& corner : face.corners) add(glm::dvec3(corner), false);
+  } else {
+    const Shape& shape = pieces.shape(piece);
+    polygon.corner_count = std::uint32_t(shape.corners.size());
+    for (std::size_t i = 0; i < shape.corners.size(); ++i) add(shape.corners[i].at, shape.sides[i] >= Shape::first_cut);
+  }
+  order.polygons.push_back(polygon);
+}
+
+}  // namespace
+
+PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOptions& options,
+                   const Execution& execution) {
+  validate(view);
+  const IeeeScope ieee;
+  report_progress(execution, "painter", 0);
+  PaintOrder order;
+  order.view = view;
+  Pieces pieces(view);
+  std::vector<std::uint32_t> members = gather(surfaces, view, pieces, execution);
+  report_progress(execution, "painter", 0.2);
+  if (options.method == PaintMethod::farthest) {
+    sort_by_farthest(pieces, members);
+  } else if (options.method == PaintMethod::centroid) {
+    sort_by_centroid(pieces, members);
+  } else {
+    members = Orderer(pieces, options, execution, order.steps).order(std::move(members));
+  }
+  report_progress(execution, "painter", 0.9);
+  order.polygons.reserve(members.size());
+  order.corners.reserve(3 * members.size());
+  for (const std::uint32_t piece : members) emit(pieces, piece, order);
+  report_progress(execution, "painter", 1);
+  return order;
+}
+
+}  // namespace frontmost

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pieces by the parts of the screen that their boxes touch.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "painter/pieces.h"
+
+namespace frontmost::painter_detail {
+
+/// A grid over the boxes of a list of pieces. Each cell lists those that touch it, by their place in that list, in its
+/// order.
+class PieceGrid {
+ public:
+  explicit PieceGrid(const std::vector<Extent>& extents);
+
+  /// The cells that a box touches, from the first to the last of each axis.
+  struct Range {
+    int first_x, last_x, first_y, last_y;
+  };
+  [[nodiscard]] Range range(const Extent& extent) const {
+    return {index(extent.low.x, 0), index(extent.high.x, 0), index(extent.low.y, 1), index(extent.high.y, 1)};
+  }
+  [[nodiscard]] std::size_t number(int x, int y) const {
+    return std::size_t(y) * std::size_t(columns_[0]) + std::size_t(x);
+  }
+  [[nodiscard]] std::span<const std::uint32_t> cell(std::size_t number) const {
+    return {entries_.data() + first_[number], first_[number + 1] - first_[number]};
+  }
+  [[nodiscard]] std::size_t cell_count() const { return first_.size() - 1; }
+
+ private:
+  void choose_cells(const std::vector<Extent>& extents);
+  /// Rounding is monotonic: boxes that overlap meet in a cell.
+  [[nodiscard]] int index(float place, int axis) const {
+    const float cell = (place - low_[axis]) * scale_[axis];
+    return cell > 0 ? int(std::min(cell, float(columns_[axis] - 1))) : 0;
+  }
+
+  glm::vec2 low_{0}, scale_{0};  ///< of the grid, and cells a pixel
+  glm::ivec2 columns_{1};
+  std::vector<std::size_t> first_;
+  std::vector<std::uint32_t> entries_;
+};
+
+}  // namespace frontmost::painter_detail

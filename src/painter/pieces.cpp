@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// A piece's corners are known twice: as doubles with a bound on their error, and as the planes that meet there. The
+// planes are always those of triangles and of sight, never of what was worked out, so that an exact sign stays a
+// polynomial of the ninth degree in what was given, however often a piece was cut.
+#include "painter/pieces.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontmost::painter_detail {
+namespace {
+
+float rounded_down(double value) {
+  const float nearest = float(value);
+  return double(nearest) <= value ? nearest : std::nextafter(nearest, -std::numeric_limits<float>::infinity());
+}
+float rounded_up(double value) { return -rounded_down(-value); }
+
+bool is_before(const glm::dvec3& a, const glm::dvec3& b) {
+  return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+}
+
+}  // namespace
+
+void ExtentBuilder::include(const glm::dvec3& in_eye, double error) {
+  // Rounding moves a place by some 1e-15 of itself.
+  error += 1e-12 * (std::abs(in_eye.x) + std::abs(in_eye.y) + std::abs(in_eye.z));
+  nearest_ = std::min(nearest_, in_eye.z - error);
+  farthest_ = std::max(farthest_, in_eye.z + error);
+  const double w = sight_.is_parallel() ? 1 : in_eye.z;
+  if (!sight_.is_parallel() && in_eye.z < 2 * error) {  // next to the eye's plane: anywhere
+    low_ = glm::dvec2(-std::numeric_limits<double>::infinity());
+    high_ = -low_;
+    return;
+  }
+  const glm::dvec2 at(sight_.to_screen(in_eye)), centre(sight_.to_screen({0, 0, in_eye.z}));
+  const glm::dvec2 unit = glm::abs(glm::dvec2(sight_.to_screen({1, 1, w})) - glm::dvec2(sight_.to_screen({0, 0, w})));
+  const double lean = sight_.is_parallel() ? 0 : (std::abs(in_eye.x) + std::abs(in_eye.y)) / w;
+  const glm::dvec2 slack = 2 * error * (1 + lean) * unit + 1e-9 * (1.0 + glm::abs(at) + glm::abs(centre));
+  low_ = glm::min(low_, at - slack);
+  high_ = glm::max(high_, at + slack);
+}
+
+Extent ExtentBuilder::extent() const {
+  return {{rounded_down(low_.x), rounded_down(low_.y)},
+          {rounded_up(high_.x), rounded_up(high_.y)},
+          rounded_down(nearest_),
+          rounded_up(farthest_)};
+}
+
+Plane Pieces::edge_plane(const Face& face, std::uint32_t edge) const {
+  const glm::dvec3 p(face.corners[edge]), q(face.corners[edge == 2 ? 0 : edge + 1]);
+  const Leg sight = sight_.is_parallel() ? Leg{sight_.forward()} : Leg{p, sight_.eye()};
+  return {p, {q, p}, sight};
+}
+
+std::array<Plane, 3> Pieces::planes_of(const Face& face, const PieceCorner& corner) const {
+  const auto of_side = [&](std::uint32_t side) {
+    return side < Shape::first_cut ? edge_plane(face, side) : planes_[side - Shape::first_cut];
+  };
+  return {face.plane(), of_side(corner.sides[0]), of_side(corner.sides[1])};
+}
+
+int Pieces::side_of_corner(const Face& face, const PieceCorner& corner, const Plane& plane) const {
+  if (corner.sides[0] == no_index) return plane.side(corner.at);
+  const Bounded height = plane.height(corner.at, corner.error);
+  if (height.value > height.error) return 1;
+  if (height.value < -height.error) return -1;
+  const std::array<Plane, 3> meeting = planes_of(face, corner);
+  return plane.side_of_meeting({&meeting[0], &meeting[1], &meeting[2]});
+}
+
+Sides Pieces::sides(std::uint32_t piece, const Plane& plane) const {
+  const Face& face = faces_[piece];
+  Sides sides;
+  const auto add = [&](int side) { side > 0 ? sides.front = true : side < 0 ? sides.back = true : false; };
+  for (const glm::vec3& corner : face.corners) add(plane.side(glm::dvec3(corner)));
+  if (!sides.both() || face.shape == no_index) return sides;
+  sides = {};
+  for (const PieceCorner& corner : shapes_[face.shape].corners) add(side_of_corner(face, corner, plane));
+  return sides;
+}
+
+bool Pieces::keeps_off(std::uint32_t piece, const Plane& plane, int sign, bool& is_flat) const {
+  const Face& face = faces_[piece];
+  is_flat = true;
+  bool keeps_off = true;
+  for (const glm::vec3& corner : face.corners) {
+    const int side = plane.side(glm::dvec3(corner));
+    is_flat = is_flat && side == 0;
+    if (side != sign) continue;
+    keeps_off = false;
+    break;
+  }
+  if (keeps_off || face.shape == no_index) return keeps_off;
+  for (const PieceCorner& corner : shapes_[face.shape].corners)
+    if (side_of_corner(face, corner, plane) == sign) return false;
+  return true;
+}
+
+std::uint32_t Pieces::add_plane(const Plane& plane) {
+  planes_.push_back(plane);
+  return std::uint32_t(planes_.size() - 1);
+}
+
+Shape Pieces::shape_of(std::uint32_t piece) const {
+  const Face& face = faces_[piece];
+  if (face.shape != no_index) return shapes_[face.shape];
+  Shape whole;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    whole.corners.push_back({glm::dvec3(face.corners[k])});
+    whole.sides.push_back(k);
+  }
+  return whole;
+}
+
+/// Between the ends of the side, or where the planes meet: what is known better. The former gets worse from cut to cut,
+/// the latter where planes meet at small angles. From the end that comes first in space, so that neighbours are cut at
+/// the same point to the bit.
+PieceCorner Pieces::crossing(const Face& face, const Shape& shape, std::size_t side, std::uint32_t plane) const {
+  const PieceCorner *from = &shape.corners[side], *to = &shape.corners[(side + 1) % shape.corners.size()];
+  if (is_before(to->at, from->at)) std::swap(from, to);
+  const Bounded a = planes_[plane].height(from->at, from->error), b = planes_[plane].height(to->at, to->error);
+  const double span = std::abs(a.value) + std::abs(b.value), doubt = a.error + b.error;
+  const double t = span > 0 ? std::abs(a.value) / span : 0.5;
+  const glm::dvec3 way = to->at - from->at;
+  PieceCorner corner{from->at + t * way, 0, {shape.sides[side], Shape::first_cut + plane}};
+  const double length = std::abs(way.x) + std::abs(way.y) + std::abs(way.z);
+  const double size = std::abs(corner.at.x) + std::abs(corner.at.y) + std::abs(corner.at.z);
+  // The true one is on the side, so never farther away than the side is long.
+  corner.error = length * (span > 2 * doubt ? 2 * doubt / span : 1.0) + std::max(from->error, to->error) +
+                 kRounding * (size + length);
+  const std::array<Plane, 3> planes = planes_of(face, corner);
+  const Approximate meeting = Plane::meeting({&planes[0], &planes[1], &planes[2]});
+  if (meeting.error < corner.error) {
+    corner.at = meeting.at;
+    corner.error = meeting.error;
+  }
+  return corner;
+}
+
+Pieces::Halves Pieces::cut(std::uint32_t piece, std::uint32_t plane) {
+  const Shape whole = shape_of(piece);
+  const std::size_t count = whole.corners.size();
+  const std::uint32_t cut = Shape::first_cut + plane;
+  std::vector<int> at(count);
+  for (std::size_t i = 0; i < count; ++i) at[i] = side_of_corner(faces_[piece], whole.corners[i], planes_[plane]);
+  Shape front, back;
+  const auto add = [](Shape& half, const PieceCorner& corner, std::uint32_t side) {
+    half.corners.push_back(corner);
+    half.sides.push_back(side);
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    const int next = at[(i + 1) % count];
+    const std::uint32_t side = whole.sides[i];
+    // A corner in the plane belongs to both halves; one of them goes on along the cut.
+    if (at[i] >= 0) add(front, whole.corners[i], at[i] == 0 && next < 0 ? cut : side);
+    if (at[i] <= 0) add(back, whole.corners[i], at[i] == 0 && next > 0 ? cut : side);
+    if (at[i] * next >= 0) continue;
+    const PieceCorner corner = crossing(faces_[piece], whole, i, plane);
+    add(front, corner, next < 0 ? cut : side);
+    add(back, corner, next > 0 ? cut : side);
+  }
+  const std::uint32_t first = add_half(piece, std::move(front)), second = add_half(piece, std::move(back));
+  return {first, second};
+}
+
+std::uint32_t Pieces::add_half(std::uint32_t piece, Shape half) {
+  ExtentBuilder box(sight_);
+  for (const PieceCorner& corner : half.corners) box.include(sight_.in_eye(corner.at), corner.error);
+  const Extent of_half = box.extent(), &of_whole = extents_[piece];
+  const Extent extent{glm::max(of_half.low, of_whole.low), glm::min(of_half.high, of_whole.high),
+                      std::max(of_half.nearest, of_whole.nearest), std::min(of_half.farthest, of_whole.farthest)};
+  Face face = faces_[piece];
+  face.shape = std::uint32_t(shapes_.size());
+  shapes_.push_back(std::move(half));
+  add(extent, face);
+  return size() - 1;
+}
+
+}  // namespace frontmost::painter_detail

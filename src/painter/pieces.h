@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangles as a view sees them, and the convex pieces that they are cut into.
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "frontmost/view.h"
+#include "painter/plane.h"
+#include "view/sight.h"
+
+namespace frontmost::painter_detail {
+
+/// Boxes around a piece: on the screen in pixels, and of planar distances. Rounded outwards.
+struct Extent {
+  glm::vec2 low, high;
+  float nearest, farthest;
+};
+
+/// The triangle that a piece belongs to, counter-clockwise as it is seen.
+struct Face {
+  std::array<glm::vec3, 3> corners;
+  PrimitiveId id;
+  std::uint32_t shape = no_index;  ///< the piece's own outline, in Pieces; none: all of the triangle
+
+  [[nodiscard]] Plane plane() const {
+    return Plane::through(glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2]));
+  }
+};
+
+/// A corner of a piece: one of its triangle's, or where two sides meet.
+struct PieceCorner {
+  glm::dvec3 at;
+  double error = 0;                                        ///< how far from `at` it may be
+  std::array<std::uint32_t, 2> sides{no_index, no_index};  ///< as in Shape; none: the triangle's, as it is
+};
+
+/// The outline of a piece that was cut, in the order of its triangle.
+struct Shape {
+  /// Side i leads from corner i to the next: 0 to 2 is an edge of the triangle, first_cut + k is Pieces::planes[k].
+  static constexpr std::uint32_t first_cut = 3;
+  std::vector<PieceCorner> corners;
+  std::vector<std::uint32_t> sides;
+};
+
+/// On which sides of a plane a piece has points.
+struct Sides {
+  bool front = false, back = false;
+  [[nodiscard]] bool both() const { return front && back; }
+  [[nodiscard]] bool none() const { return !front && !back; }
+};
+
+/// All pieces of a view, by number. Cut ones stay, and are in no order any more.
+class Pieces {
+ public:
+  explicit Pieces(const View& view) : sight_(view) {}
+
+  [[nodiscard]] std::uint32_t size() const { return std::uint32_t(faces_.size()); }
+  [[nodiscard]] const Sight& sight() const { return sight_; }
+  [[nodiscard]] const Extent& extent(std::uint32_t piece) const { return extents_[piece]; }
+  [[nodiscard]] const Face& face(std::uint32_t piece) const { return faces_[piece]; }
+  [[nodiscard]] bool is_whole(std::uint32_t piece) const { return faces_[piece].shape == no_index; }
+  [[nodiscard]] const Shape& shape(std::uint32_t piece) const { return shapes_[faces_[piece].shape]; }
+
+  void add(const Extent& extent, const Face& face) {
+    extents_.push_back(extent);
+    faces_.push_back(face);
+  }
+  void reserve(std::size_t count) {
+    extents_.reserve(count);
+    faces_.reserve(count);
+  }
+
+  /// Exactly.
+  [[nodiscard]] Sides sides(std::uint32_t piece, const Plane& plane) const;
+  /// No point of the piece is on the side `sign` of a plane. Quicker than sides(). Sets `is_flat` where the whole
+  /// triangle is in the plane.
+  [[nodiscard]] bool keeps_off(std::uint32_t piece, const Plane& plane, int sign, bool& is_flat) const;
+  /// The plane of sight through an edge of the triangle: positive on its side.
+  [[nodiscard]] Plane edge_plane(const Face& face, std::uint32_t edge) const;
+
+  struct Halves {
+    std::uint32_t front, back;
+  };
+  /// Keeps a plane to cut by. \returns its number.
+  std::uint32_t add_plane(const Plane& plane);
+  /// New pieces. Precondition: sides() of that plane has both().
+  Halves cut(std::uint32_t piece, std::uint32_t plane);
+
+ private:
+  [[nodiscard]] int side_of_corner(const Face& face, const PieceCorner& corner, const Plane& plane) const;
+  [[nodiscard]] Shape shape_of(std::uint32_t piece) const;
+  [[nodiscard]] std::array<Plane, 3> planes_of(const Face& face, const PieceCorner& corner) const;
+  [[nodiscard]] PieceCorner crossing(const Face& face, const Shape& shape, std::size_t side, std::uint32_t plane) const;
+  std::uint32_t add_half(std::uint32_t piece, Shape half);
+
+  Sight sight_;
+  std::vector<Extent> extents_;
+  std::vector<Face> faces_;
+  std::deque<Shape> shapes_;
+  std::deque<Plane> planes_;
+};
+
+/// The box around points of eye space, of which each may be `error` away, as far as they are before the eye.
+class ExtentBuilder {
+ public:
+  explicit ExtentBuilder(const Sight& sight) : sight_(sight) {}
+  void include(const glm::dvec3& in_eye, double error = 0);
+  [[nodiscard]] Extent extent() const;
+
+ private:
+  const Sight& sight_;
+  glm::dvec2 low_{std::numeric_limits<double>::infinity()}, high_{-std::numeric_limits<double>::infinity()};
+  double nearest_ = std::numeric_limits<double>::infinity(), farthest_ = -std::numeric_limits<double>::infinity();
+};
+
+}  // namespace frontmost::painter_detail

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "painter/plane.h"
+
+namespace frontmost::painter_detail {
+
+int Plane::side_by_hand(const glm::dvec3& x) const {
+  // Corners that triangles share are nearly all that rounding leaves open.
+  if (x == anchor_ || (x == u_.to && u_.from == anchor_) || (x == v_.to && v_.from == anchor_)) return 0;
+  return sign_of_determinant(u_, v_, {x, anchor_});
+}
+
+Bounded Plane::height(const glm::dvec3& x, double error) const {
+  Bounded height = bounded_dot(normal_.value, normal_.error, x - anchor_);
+  const glm::dvec3 slope = glm::abs(normal_.value) + normal_.error;
+  height.error += error * (slope.x + slope.y + slope.z);
+  return height;
+}
+
+/// By Cramer's rule about a point of the first plane. The same sums of absolute values bound what is rounded: three
+/// normals and a distance, each wrong by at most kRounding of its own terms, and a dozen roundings more.
+Approximate Plane::meeting(const std::array<const Plane*, 3>& planes) {
+  const Plane &a = *planes[0], &b = *planes[1], &c = *planes[2];
+  const auto size = [](const Plane& plane) { return plane.normal_.error / kRounding; };
+  const auto cross_size = [](const glm::dvec3& p, const glm::dvec3& q) {
+    return glm::dvec3(p.y * q.z + p.z * q.y, p.z * q.x + p.x * q.z, p.x * q.y + p.y * q.x);
+  };
+  const auto distance = [&](const Plane& plane) { return glm::dot(plane.normal_.value, plane.anchor_ - a.anchor_); };
+  const auto distance_size = [&](const Plane& plane) {
+    return glm::dot(size(plane), glm::abs(plane.anchor_ - a.anchor_));
+  };
+  const glm::dvec3 bc = glm::cross(b.normal_.value, c.normal_.value), ca = glm::cross(c.normal_.value, a.normal_.value),
+                   ab = glm::cross(a.normal_.value, b.normal_.value);
+  const double determinant = glm::dot(a.normal_.value, bc);
+  const double doubt = 8 * kRounding * glm::dot(size(a), cross_size(size(b), size(c)));
+  if (!(std::abs(determinant) > 2 * doubt)) return {};
+  const glm::dvec3 from_a = (distance(b) * ca + distance(c) * ab) / determinant;
+  const glm::dvec3 error =
+      8 * kRounding *
+      (distance_size(b) * cross_size(size(c), size(a)) + distance_size(c) * cross_size(size(a), size(b)));
+  const glm::dvec3 bound = 2.0 * (error + doubt * glm::abs(from_a)) / std::abs(determinant) +
+                           kRounding * (glm::abs(from_a) + glm::abs(a.anchor_));
+  return {a.anchor_ + from_a, bound.x + bound.y + bound.z};
+}
+
+/// With planes n.x = d about a point of the first one, so that its d is 0, by Cramer's rule.
+int Plane::side_of_meeting(const std::array<const Plane*, 3>& planes) const {
+  struct Exact {
+    ExactVector n;
+    Expansion d;
+  };
+  const auto exactly = [&](const Plane& plane) {
+    Exact e{cross(difference(plane.u_.to, plane.u_.from), difference(plane.v_.to, plane.v_.from)), {}};
+    e.d = dot(e.n, difference(plane.anchor_, planes[0]->anchor_));
+    return e;
+  };
+  const Exact a = exactly(*planes[0]), b = exactly(*planes[1]), c = exactly(*planes[2]), asked = exactly(*this);
+  const Expansion determinant = dot(a.n, cross(b.n, c.n));
+  const Expansion height =
+      b.d * dot(asked.n, cross(c.n, a.n)) + c.d * dot(asked.n, cross(a.n, b.n)) - asked.d * determinant;
+  return height.sign() * determinant.sign();
+}
+
+}  // namespace frontmost::painter_detail

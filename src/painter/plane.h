@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Planes that are never rounded: they are known by points and vectors as they were given.
+#pragma once
+
+#include <array>
+#include <limits>
+
+#include "base/exact_vector.h"
+
+namespace frontmost::painter_detail {
+
+/// A point, and how far from it the true one may be.
+struct Approximate {
+  glm::dvec3 at{0};
+  double error = std::numeric_limits<double>::infinity();
+};
+
+/// Through `anchor`, along u and v. Its positive side is that of u x v.
+class Plane {
+ public:
+  Plane(const glm::dvec3& anchor, const Leg& u, const Leg& v)
+      : anchor_(anchor), u_(u), v_(v), normal_(u.to - u.from, v.to - v.from) {}
+  /// Positive on the side from which a, b, c are counter-clockwise.
+  [[nodiscard]] static Plane through(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    return {a, {b, a}, {c, a}};
+  }
+
+  /// The side of a point: -1, 0 or 1, exactly.
+  [[nodiscard]] int side(const glm::dvec3& x) const {
+    const Bounded height = bounded_dot(normal_.value, normal_.error, x - anchor_);
+    if (height.value > height.error) return 1;
+    if (height.value < -height.error) return -1;
+    return side_by_hand(x);
+  }
+  /// How far on the positive side x lies, in the plane's own unit, where x is known to within a distance `error`.
+  [[nodiscard]] Bounded height(const glm::dvec3& x, double error) const;
+
+  /// Where three planes meet.
+  [[nodiscard]] static Approximate meeting(const std::array<const Plane*, 3>& planes);
+  /// The side of the point where three planes meet, exactly. Precondition: they meet in one point.
+  [[nodiscard]] int side_of_meeting(const std::array<const Plane*, 3>& planes) const;
+
+ private:
+  [[nodiscard]] int side_by_hand(const glm::dvec3& x) const;
+
+  glm::dvec3 anchor_;
+  Leg u_, v_;
+  BoundedNormal normal_;
+};
+
+}  // namespace frontmost::painter_detail

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes whose order, or whose lack of one, is known.
+#include <gmock/gmock.h>
+
+#include "painter/painted.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+using testing::ElementsAre;
+
+class Orders : public testing::TestWithParam<bool> {
+ protected:
+  [[nodiscard]] View view(int size = 64) const { return view_from_above(GetParam(), size); }
+};
+INSTANTIATE_TEST_SUITE_P(Projections, Orders, testing::Bool(),
+                         [](const auto& p) { return p.param ? "Parallel" : "Perspective"; });
+
+void add_flat(Mesh& mesh, float z) { add_triangle(mesh, {-1, -1, z}, {1, -1, z}, {0, 1, z}); }
+
+/// A long thin triangle from one point to another, seen from above.
+void add_stick(Mesh& mesh, const glm::vec3& from, const glm::vec3& to) {
+  const glm::vec3 aside = glm::normalize(glm::vec3(from.y - to.y, to.x - from.x, 0)) * 0.15f;
+  add_triangle(mesh, from + aside, from - aside, to);
+}
+
+/// Three sticks of which each lies over the next: no order without a cut.
+Mesh ring_of_three(float tilt) {
+  Mesh mesh;
+  for (int i = 0; i < 3; ++i) {
+    const float a = glm::radians(120.0f * float(i)), c = std::cos(a), s = std::sin(a);
+    const auto turned = [&](float x, float y, float z) { return glm::vec3(c * x - s * y, s * x + c * y, z); };
+    add_stick(mesh, turned(-1.2f, -0.4f, -tilt), turned(1.2f, -0.4f, tilt));
+  }
+  return mesh;
+}
+
+TEST_P(Orders, FarBeforeNear) {
+  Mesh mesh;
+  for (const float z : {0.5f, -0.5f, 0.0f}) add_flat(mesh, z);
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  const Painted found = painted(surfaces, view());
+  EXPECT_THAT(ids_of(found.order), ElementsAre(1, 2, 0));
+  EXPECT_EQ(found.order.steps.cuts, 0u);
+  EXPECT_EQ(found.unexplained + found.explained, 0u);
+}
+
+TEST_P(Orders, InOnePlaneTheLowerIdIsOnTop) {
+  Mesh mesh;
+  for (int i = 0; i < 4; ++i) add_flat(mesh, 0.25f);
+  add_triangle(mesh, {-0.5f, -0.5f, 0.25f}, {0.5f, -0.5f, 0.25f}, {0, 0.5f, 0.25f});
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  const Painted found = painted(surfaces, view());
+  EXPECT_THAT(ids_of(found.order), ElementsAre(4, 3, 2, 1, 0));
+  EXPECT_EQ(found.unexplained + found.explained, 0u);
+}
+
+/// The far end of the long one is farther than the small one, and yet it lies over it.
+TEST_P(Orders, ExchangesWhereDepthMisleads) {
+  Mesh mesh;
+  add_triangle(mesh, {-1.5f, -1, -3}, {1.5f, 0, 1}, {-1.5f, 1, -3});
+  add_triangle(mesh, {1, -0.3f, -0.5f}, {1.4f, -0.3f, -0.5f}, {1.2f, 0.3f, -0.5f});
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  const Painted found = painted(surfaces, view());
+  EXPECT_THAT(ids_of(found.order), ElementsAre(1, 0));
+  EXPECT_EQ(found.order.steps.exchanges, 1u);
+  EXPECT_EQ(found.unexplained, 0u);
+  EXPECT_GT(painted(surfaces, view(), PaintMethod::farthest).unexplained, 0u);
+}
+
+TEST_P(Orders, ARingOfThreeIsCut) {
+  const Scene scene = scene_of(ring_of_three(0.4f));
+  const Surfaces surfaces(scene);
+  const Painted found = painted(surfaces, view(128));
+  EXPECT_EQ(found.order.steps.cycles, 1u);
+  EXPECT_EQ(found.order.steps.largest_cycle, 3u);
+  EXPECT_EQ(found.order.steps.cuts, 2u);  // the plane of one passes through both others
+  EXPECT_EQ(found.order.polygons.size(), 5u);
+  EXPECT_EQ(found.unexplained, 0u);
+  for (const PaintMethod naive : {PaintMethod::farthest, PaintMethod::centroid})
+    EXPECT_GT(painted(surfaces, view(128), naive).unexplained, 0u);
+  EXPECT_EQ(painted(surfaces, view(128), PaintMethod::bsp).unexplained, 0u);
+}
+
+TEST_P(Orders, TwoThroughEachOtherAreCutOnce) {
+  Mesh mesh;
+  add_triangle(mesh, {-1, -1, -1}, {1, -1, 1}, {0, 1, 0});
+  add_triangle(mesh, {-1, -1, 1}, {1, -1, -1}, {0, 1, 0});
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  const Painted found = painted(surfaces, view());
+  EXPECT_EQ(found.order.polygons.size(), 3u);
+  EXPECT_EQ(found.order.steps.cuts, 1u);
+  EXPECT_EQ(found.unexplained, 0u);
+}
+
+TEST_P(Orders, SharedEdgesAndCornersNeedNoCut) {
+  Mesh mesh = random_mesh(Kind::shared_grid, 200, 3);
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  const Painted found = painted(surfaces, view());
+  EXPECT_EQ(found.order.polygons.size(), mesh.triangles.size());
+  EXPECT_EQ(found.order.steps.cycles, 0u);
+  EXPECT_EQ(found.unexplained, 0u);
+}
+
+/// A corner of one triangle in the middle of another's edge, in the same plane and folded.
+TEST_P(Orders, TJunctionsNeedNoCut) {
+  Mesh mesh;
+  add_triangle(mesh, {-1, 0, 0}, {1, 0, 0}, {0, 1, 0.5f});
+  add_triangle(mesh, {-1, 0, 0}, {0, -1, 0.5f}, {0, 0, 0});
+  add_triangle(mesh, {0, 0, 0}, {0, -1, 0.5f}, {1, 0, 0});
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  const Painted found = painted(surfaces, view());
+  EXPECT_EQ(found.order.polygons.size(), 3u);
+  EXPECT_EQ(found.order.steps.compared, 0u);
+  EXPECT_EQ(found.unexplained, 0u);
+}
+
+TEST_P(Orders, WhatPassesTheEyeIsCutAtTheNearPlane) {
+  Mesh mesh;
+  add_triangle(mesh, {-1, -0.5f, 0}, {1, -0.5f, 0}, {0, -0.5f, 30});
+  add_flat(mesh, 2);
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  const Painted found = painted(surfaces, view());
+  EXPECT_EQ(found.unexplained, 0u);
+  for (const PaintCorner& corner : found.order.corners) EXPECT_GE(corner.at.z, 1 - 1e-9);
+}
+
+TEST_P(Orders, WhatIsNotSeenIsNotThere) {
+  Mesh mesh;
+  add_triangle(mesh, {0, -1, 0}, {0, 1, 0}, {0, 0, 1});             // from its edge, in parallel projection and here
+  add_triangle(mesh, {-1, -1, 20}, {1, -1, 20}, {0, 1, 20});        // behind the eye
+  add_triangle(mesh, {-1, -1, -200}, {1, -1, -200}, {0, 1, -200});  // beyond the far plane
+  add_triangle(mesh, {50, 50, 0}, {51, 50, 0}, {50, 51, 0});        // beside the picture
+  add_triangle(mesh, {NAN, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  add_triangle(mesh, {0, 0, 0}, {1, 1, 0}, {0.5f, 0.5f, 0});  // no area
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  EXPECT_TRUE(painter(surfaces, view()).polygons.empty());
+}
+
+TEST_P(Orders, CullingLeavesOut) {
+  Mesh mesh;
+  add_flat(mesh, 0);
+  add_triangle(mesh, {-1, -1, 1}, {0, 1, 1}, {1, -1, 1});
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  View culled = view();
+  culled.culling = Culling::back;
+  EXPECT_THAT(ids_of(painter(surfaces, culled)), ElementsAre(0));
+  culled.culling = Culling::front;
+  EXPECT_THAT(ids_of(painter(surfaces, culled)), ElementsAre(1));
+  culled.culling = Culling::both;
+  EXPECT_TRUE(painter(surfaces, culled).polygons.empty());
+}
+
+TEST(Painter, BuiltInScenesAreRight) {
+  for (const char* name : {"cubes", "cycle", "teapot"}) {
+    SCOPED_TRACE(name);
+    const Scene scene = builtin(name);
+    const Surfaces surfaces(scene);
+    for (const bool is_parallel : {false, true})
+      for (const PaintMethod method : {PaintMethod::depth_sort, PaintMethod::bsp})
+        EXPECT_EQ(painted(surfaces, frame(surfaces, 160, 120, {.orthographic = is_parallel}), method).unexplained, 0u);
+  }
+}
+
+TEST(Painter, TooManyPiecesAreAnError) {
+  const Scene scene = scene_of(random_mesh(Kind::soup, 300, 1));
+  const Surfaces surfaces(scene);
+  const View view = frame(surfaces, 64, 64);
+  try {
+    (void)painter(surfaces, view, {.method = PaintMethod::bsp, .most_polygons = 310});
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::limit_exceeded);
+  }
+}
+
+TEST(Painter, OrdersOfOtherSurfacesAreRefused) {
+  const Scene one = scene_of(ring_of_three(0.4f)), none = scene_of({});
+  const Surfaces surfaces(one), empty(none);
+  PaintOrder order = painter(surfaces, view_from_above(false));
+  EXPECT_THROW((void)paint(empty, order), Error);
+  order.polygons[0].corner_count = 1000;
+  EXPECT_THROW((void)paint(surfaces, order), Error);
+  EXPECT_TRUE(painter(empty, view_from_above(false)).polygons.empty());
+}
+
+}  // namespace
+}  // namespace frontmost::test

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// A painted order beside the z-buffer.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "frontmost/agreement.h"
+#include "frontmost/painter.h"
+#include "frontmost/zbuffer.h"
+
+namespace frontmost::test {
+
+/// How many samples the painted order and the z-buffer show differently, with a reason and without.
+struct Painted {
+  PaintOrder order;
+  std::uint64_t explained = 0, unexplained = 0;
+};
+
+inline Painted painted(const Surfaces& surfaces, const View& view, PaintMethod method = PaintMethod::depth_sort) {
+  Painted result{painter(surfaces, view, {.method = method}), 0, 0};
+  const Agreement found = agreement(surfaces, zbuffer(surfaces, view), paint(surfaces, result.order));
+  result.unexplained = found.count(Difference::unexplained);
+  result.explained = found.differing() - result.unexplained;
+  return result;
+}
+
+inline std::vector<PrimitiveId> ids_of(const PaintOrder& order) {
+  std::vector<PrimitiveId> ids;
+  for (const PaintPolygon& polygon : order.polygons) ids.push_back(polygon.id);
+  return ids;
+}
+
+/// From (0, 0, 10) down to the origin, parallel or not, with planes at 1 and 100.
+inline View view_from_above(bool is_parallel, int size = 64) {
+  View view;
+  view.width = view.height = size;
+  view.world_from_eye = look_at({0, 0, 10}, {0, 0, 0}, {0, 1, 0});
+  view.projection = is_parallel ? make_orthographic(-2, 2, -2, 2, {1, 100}) : make_projection(0.4, 1.0, {1, 100});
+  return view;
+}
+
+}  // namespace frontmost::test
