@@ -55,12 +55,19 @@ struct Leg {
   glm::dvec3 to, from{0};
 };
 
+/// The sign of a value whose error is known: 2 where that leaves it open. Without any error the value is 0: each of its
+/// products has a factor that is.
+[[nodiscard]] inline int certain_sign(const Bounded& rounded) {
+  if (rounded.value > rounded.error) return 1;
+  if (rounded.value < -rounded.error) return -1;
+  return rounded.error == 0 ? 0 : 2;
+}
+
 /// The sign of the determinant of three vectors, exactly: doubles decide where their rounding cannot matter.
 [[nodiscard]] inline int sign_of_determinant(const Leg& a, const Leg& b, const Leg& c) {
   const BoundedNormal normal(a.to - a.from, b.to - b.from);
-  const Bounded rounded = bounded_dot(normal.value, normal.error, c.to - c.from);
-  if (rounded.value > rounded.error) return 1;
-  if (rounded.value < -rounded.error) return -1;
+  const int sign = certain_sign(bounded_dot(normal.value, normal.error, c.to - c.from));
+  if (sign != 2) return sign;
   return dot(cross(difference(a.to, a.from), difference(b.to, b.from)), difference(c.to, c.from)).sign();
 }
 

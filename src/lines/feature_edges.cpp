@@ -7,8 +7,13 @@
 #include <optional>
 #include <span>
 
+#include "base/parallel.h"
+#include "lines/joined.h"
+
 namespace frontmost::lines_detail {
 namespace {
+
+constexpr std::size_t kVerticesPerPart = 4096;
 
 /// A triangle at an edge, which is known by its lower vertex.
 struct Side {
@@ -21,39 +26,53 @@ struct Side {
 /// The sides of all edges, those of one lower vertex together.
 class SideTable {
  public:
-  explicit SideTable(const WeldedMesh& mesh) : first_(mesh.positions.size() + 1, 0), sides_(3 * mesh.triangles.size()) {
-    for (const glm::uvec3& t : mesh.triangles)
-      for (int k = 0; k < 3; ++k) ++first_[std::min(t[k], t[(k + 1) % 3]) + 1];
-    for (std::size_t v = 0; v + 1 < first_.size(); ++v) first_[v + 1] += first_[v];
+  SideTable(const WeldedMesh& mesh, const Execution& execution)
+      : first_(mesh.positions.size() + 1, 0), sides_(3 * mesh.triangles.size()) {
+    const auto bands = std::size_t(thread_count(execution));
+    const std::size_t vertices = mesh.positions.size();
+    // A thread counts and enters what belongs to its own vertices: it reads all triangles, which costs less than
+    // counting in common.
+    const auto for_each_side = [&](const auto& visit) {
+      parallel_for(execution, bands, 1, [&](std::size_t band, std::size_t) {
+        const std::size_t begin = vertices * band / bands, end = vertices * (band + 1) / bands;
+        for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+          const glm::uvec3& t = mesh.triangles[i];
+          for (int k = 0; k < 3; ++k) {
+            const std::uint32_t lower = std::min(t[k], t[k == 2 ? 0 : k + 1]);
+            if (lower >= begin && lower < end) visit(lower, i, k);
+          }
+        }
+      });
+    };
+    for_each_side([&](std::uint32_t lower, std::uint32_t, int) { ++first_[lower + 1]; });
+    for (std::size_t v = 0; v < vertices; ++v) first_[v + 1] += first_[v];
     std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    for_each_side([&](std::uint32_t lower, std::uint32_t i, int k) {
       const glm::uvec3& t = mesh.triangles[i];
-      for (int k = 0; k < 3; ++k) {
-        const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-        sides_[next[std::min(a, b)]++] = {std::max(a, b), i, t[(k + 2) % 3], a < b};
-      }
-    }
+      const std::uint32_t a = t[k], b = t[k == 2 ? 0 : k + 1];
+      sides_[next[lower]++] = {std::max(a, b), i, t[k == 0 ? 2 : k - 1], a < b};
+    });
   }
 
-  /// Sorted by edge, then by opposite vertex.
+  /// Sorted by edge, then by opposite vertex. For different vertices at once.
   [[nodiscard]] std::span<Side> at(std::uint32_t vertex) {
     const std::span<Side> sides(sides_.data() + first_[vertex], first_[vertex + 1] - first_[vertex]);
     std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-      return a.upper != b.upper ? a.upper < b.upper : a.opposite < b.opposite;
+      if (a.upper != b.upper) return a.upper < b.upper;
+      return a.opposite != b.opposite ? a.opposite < b.opposite : a.triangle < b.triangle;
     });
     return sides;
   }
 
  private:
   std::vector<std::uint32_t> first_;
-  std::vector<Side> sides_;
+  Buffer<Side> sides_;
 };
 
 class Classifier {
  public:
-  Classifier(const WeldedMesh& mesh, const std::vector<std::int8_t>& facing, const Surfaces& surfaces,
-             const LineOptions& options)
-      : mesh_(mesh), facing_(facing), surfaces_(surfaces), cosine_(std::cos(options.crease_angle)) {}
+  Classifier(const SeenMesh& seen, const Surfaces& surfaces, const LineOptions& options)
+      : mesh_(seen.mesh), facing_(seen.facing), surfaces_(surfaces), cosine_(std::cos(options.crease_angle)) {}
 
   /// `sides` with different opposite vertices: a triangle that is there twice counts once.
   [[nodiscard]] std::optional<EdgeKind> kind_of(std::span<const Side> sides) const {
@@ -78,7 +97,7 @@ class Classifier {
 
   [[nodiscard]] bool is_crease(const Side& a, const Side& b) const {
     const glm::uvec3& t = mesh_.triangles[a.triangle];
-    const std::vector<glm::dvec3>& at = mesh_.positions;
+    const Buffer<glm::dvec3>& at = mesh_.positions;
     const FacePlane plane(at[t.x], at[t.y], at[t.z]);
     // Neighbours that run along their edge the same way are wound against each other.
     const glm::dvec3 n = plane.normal(), m = normal(b.triangle) * (a.is_forward == b.is_forward ? -1.0 : 1.0);
@@ -94,30 +113,37 @@ class Classifier {
   }
 
   const WeldedMesh& mesh_;
-  const std::vector<std::int8_t>& facing_;
+  const Buffer<std::int8_t>& facing_;
   const Surfaces& surfaces_;
   const double cosine_;
 };
 
+/// `sides` are those of the edges whose lower vertex is v.
+void add_features(std::span<Side> sides, std::uint32_t v, const Classifier& classifier,
+                  std::vector<FeatureEdge>& features) {
+  for (auto begin = sides.begin(); begin != sides.end();) {
+    const auto end = std::find_if(begin, sides.end(), [&](const Side& s) { return s.upper != begin->upper; });
+    const auto last = std::unique(begin, end, [](const Side& a, const Side& b) { return a.opposite == b.opposite; });
+    const std::span<const Side> edge(begin, last);
+    if (const std::optional<EdgeKind> kind = classifier.kind_of(edge))
+      features.push_back({v, begin->upper, edge[0].triangle, edge.size() > 1 ? edge[1].triangle : no_index, *kind});
+    begin = end;
+  }
+}
+
 }  // namespace
 
-std::vector<FeatureEdge> find_features(const WeldedMesh& mesh, const std::vector<std::int8_t>& facing,
-                                       const Surfaces& surfaces, const LineOptions& options) {
-  SideTable table(mesh);
-  const Classifier classifier(mesh, facing, surfaces, options);
-  std::vector<FeatureEdge> features;
-  for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
-    const std::span<Side> sides = table.at(v);
-    for (auto begin = sides.begin(); begin != sides.end();) {
-      const auto end = std::find_if(begin, sides.end(), [&](const Side& s) { return s.upper != begin->upper; });
-      const auto last = std::unique(begin, end, [](const Side& a, const Side& b) { return a.opposite == b.opposite; });
-      const std::span<const Side> edge(begin, last);
-      if (const std::optional<EdgeKind> kind = classifier.kind_of(edge))
-        features.push_back({v, begin->upper, edge[0].triangle, edge.size() > 1 ? edge[1].triangle : no_index, *kind});
-      begin = end;
-    }
-  }
-  return features;
+std::vector<FeatureEdge> find_features(const SeenMesh& seen, const Surfaces& surfaces, const LineOptions& options,
+                                       const Execution& execution) {
+  SideTable table(seen.mesh, execution);
+  const Classifier classifier(seen, surfaces, options);
+  const std::size_t vertices = seen.mesh.positions.size();
+  std::vector<std::vector<FeatureEdge>> lists((vertices + kVerticesPerPart - 1) / kVerticesPerPart);
+  parallel_for(execution, vertices, kVerticesPerPart, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      add_features(table.at(std::uint32_t(v)), std::uint32_t(v), classifier, lists[begin / kVerticesPerPart]);
+  });
+  return joined(lists);
 }
 
 }  // namespace frontmost::lines_detail

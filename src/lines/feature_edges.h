@@ -2,6 +2,8 @@
 // Which edges of a mesh are drawn.
 #pragma once
 
+#include <vector>
+
 #include "frontmost/lines.h"
 #include "lines/welded_mesh.h"
 #include "view/sight.h"
@@ -14,8 +16,14 @@ struct FeatureEdge {
   EdgeKind kind;
 };
 
-/// `facing` of every triangle as Sight::facing() says. In the order of their vertices. O(triangles).
-[[nodiscard]] std::vector<FeatureEdge> find_features(const WeldedMesh& mesh, const std::vector<std::int8_t>& facing,
-                                                     const Surfaces& surfaces, const LineOptions& options);
+/// A mesh, and Sight::facing() of its triangles.
+struct SeenMesh {
+  const WeldedMesh& mesh;
+  const Buffer<std::int8_t>& facing;
+};
+
+/// In the order of their vertices. O(triangles).
+[[nodiscard]] std::vector<FeatureEdge> find_features(const SeenMesh& seen, const Surfaces& surfaces,
+                                                     const LineOptions& options, const Execution& execution);
 
 }  // namespace frontmost::lines_detail

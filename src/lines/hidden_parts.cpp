@@ -1,40 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-// A point X of an edge is hidden by a triangle when it lies within its three planes through the eye, and beyond its
-// own: four functions that are linear along the edge, so that their signs at both ends say all. X within a plane
-// through the eye is hidden (the shadow is closed), X within the triangle's own plane is not.
+// Cell by cell along the edge, the nearest occluders first, eight at a time. A cell is left as soon as what of the edge
+// lies in it is hidden: what else it holds could only hide the same again.
 
 #include "lines/hidden_parts.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace frontmost::lines_detail {
 namespace {
 
-/// Where a function that is linear from 0 to 1, with these ends, is not negative; `is_strict`: where it is positive.
-/// Nothing of no length: {1, 0}.
-std::pair<double, double> where_positive(const Signed& at_0, const Signed& at_1, bool is_strict) {
-  if (at_0.sign >= 0 && at_1.sign >= 0) {
-    if (is_strict && at_0.sign == 0 && at_1.sign == 0) return {1, 0};
-    return {0, 1};
-  }
-  if (at_0.sign <= 0 && at_1.sign <= 0) return {1, 0};
-  // The values may be wrong by rounding, their signs are not.
-  const double a = std::abs(at_0.value), b = std::abs(at_1.value);
-  const double root = a + b > 0 ? a / (a + b) : 0.5;
-  if (at_0.sign < 0) return {root, 1};
-  return {0, root};
-}
+constexpr std::size_t kMostAtOnce = 64;
 
 Signed with_sign_of_value(double value) { return {value, value > 0 ? 1 : value < 0 ? -1 : 0}; }
 
+/// A float not nearer, whatever rounding does.
+float wide_low(double value) { return float(value - 1e-6 * std::abs(value)); }
+float wide_high(double value) { return -wide_low(-value); }
+
 }  // namespace
 
-EdgeCutter::Interval EdgeCutter::within_view() const {
+Interval EdgeCutter::within_view() const {
   Interval shown{0, 1};
   const auto keep = [&](double at_0, double at_1) {
-    const auto [begin, end] = where_positive(with_sign_of_value(at_0), with_sign_of_value(at_1), false);
-    shown = {std::max(shown.begin, begin), std::min(shown.end, end)};
+    const Interval in = where_positive(with_sign_of_value(at_0), with_sign_of_value(at_1), false);
+    shown = {std::max(shown.begin, in.begin), std::min(shown.end, in.end)};
   };
   const Projection& p = o_.view.projection;
   const double w0 = p.orthographic ? 1 : from_eye_.z, w1 = p.orthographic ? 1 : to_eye_.z;
@@ -53,106 +44,115 @@ glm::dvec2 EdgeCutter::on_screen(double t) const {
   return glm::dvec2(o_.sight.to_screen(p));
 }
 
-EdgeCutter::Interval EdgeCutter::hidden_by(const Occluder& occluder) const {
-  const glm::uvec3& corners = o_.mesh.triangles[occluder.triangle];
-  const std::vector<glm::dvec3>& at = o_.mesh.positions;
-  const int facing = o_.facing[occluder.triangle];
-  const FacePlane plane(at[corners.x], at[corners.y], at[corners.z]);
-  const auto depth = [&](std::uint32_t vertex, const glm::dvec3& place) {
-    if (vertex == corners.x || vertex == corners.y || vertex == corners.z) return Signed{};
-    const Signed height = plane.height(place);
-    return Signed{-height.value * facing, -height.sign * facing};
+/// What of the edge may lie in a cell: rather more.
+Interval EdgeCutter::part_in(const OccluderGrid::Visit& cell) const {
+  const glm::dvec2 along = end_ - begin_;
+  const int axis = std::abs(along.y) > std::abs(along.x);
+  if (std::abs(along[axis]) < 1e-3) return shown_;
+  const auto at = [&](double coordinate, double margin) {
+    const double s = std::clamp((coordinate - begin_[axis]) / along[axis] + margin / std::abs(along[axis]), 0.0, 1.0);
+    const double w0 = o_.sight.to_weight(from_eye_, to_eye_, shown_.begin),
+                 w1 = o_.sight.to_weight(from_eye_, to_eye_, shown_.end);
+    const double share = s * w0 / (s * w0 + (1 - s) * w1);
+    return shown_.begin + share * (shown_.end - shown_.begin);
   };
-  const auto [begin, end] = where_positive(depth(edge_.from, from_), depth(edge_.to, to_), true);
-  if (!(begin < end)) return {1, 0};
-  const Interval shadow = in_shadow_of(occluder, plane);
-  return {std::max(begin, shadow.begin), std::min(end, shadow.end)};
-}
-
-EdgeCutter::Interval EdgeCutter::in_shadow_of(const Occluder& occluder, const FacePlane& plane) const {
-  const glm::uvec3& corners = o_.mesh.triangles[occluder.triangle];
-  const std::vector<glm::dvec3>& at = o_.mesh.positions;
-  const int facing = o_.facing[occluder.triangle];
-  Interval shadow{0, 1};
-  for (int k = 0; k < 3; ++k) {
-    const std::uint32_t a = corners[k], b = corners[(k + 1) % 3];
-    // Neighbours ask the same plane, turned over: what they say fits to the bit.
-    const Sight::EyePlane side = o_.sight.plane_through(at[std::min(a, b)], at[std::max(a, b)]);
-    const int sign = a < b ? facing : -facing;
-    const auto turn = [&](std::uint32_t vertex, const glm::dvec3& place) {
-      if (vertex == a || vertex == b) return Signed{};
-      const Signed value = side.turn(place);
-      return Signed{value.value * sign, value.sign * sign};
-    };
-    const auto [begin, end] = where_positive(turn(edge_.from, from_), turn(edge_.to, to_), false);
-    shadow = {std::max(shadow.begin, begin), std::min(shadow.end, end)};
-    if (!(shadow.begin < shadow.end)) return {1, 0};
-  }
-  if (double(occluder.nearest) > o_.sight.near() * (1 + 1e-6)) return shadow;
-  const Interval beyond = beyond_near(corners, plane, facing);
-  return {std::max(shadow.begin, beyond.begin), std::min(shadow.end, beyond.end)};
-}
-
-/// Where the triangle is not between the eye and the near plane: with its normal n, a point A of it and the eye E, the
-/// line of sight to X meets it at the distance of X times n.(A - E) / n.(X - E).
-EdgeCutter::Interval EdgeCutter::beyond_near(const glm::uvec3& corners, const FacePlane& plane, int facing) const {
-  const Sight& sight = o_.sight;
-  const glm::dvec3 &n = plane.normal(), &a = o_.mesh.positions[corners.x];
-  const auto beyond = [&](const glm::dvec3& x, double distance) {
-    if (sight.is_parallel())
-      return with_sign_of_value(-facing *
-                                ((distance - sight.near()) * glm::dot(n, sight.forward()) - glm::dot(n, x - a)));
-    return with_sign_of_value(-facing *
-                              (distance * glm::dot(n, a - sight.eye()) - sight.near() * glm::dot(n, x - sight.eye())));
-  };
-  const auto [begin, end] = where_positive(beyond(from_, from_eye_.z), beyond(to_, to_eye_.z), false);
-  return {begin, end};
+  const bool is_forward = along[axis] > 0;
+  return {at(is_forward ? cell.low[axis] : cell.high[axis], -2e-6) - 1e-12,
+          at(is_forward ? cell.high[axis] : cell.low[axis], 2e-6) + 1e-12};
 }
 
 /// \returns true when all of the edge is hidden.
-bool EdgeCutter::collect(const Interval& shown, std::span<const Occluder> cell, double farthest) {
-  const std::size_t before = hidden_.size();
-  for (const Occluder& occluder : cell) {
-    if (double(occluder.nearest) > farthest) break;
-    if (occluder.low.x > high_.x || occluder.high.x < low_.x || occluder.low.y > high_.y || occluder.high.y < low_.y)
-      continue;
-    if (asked_[occluder.triangle] == asking_) continue;
-    asked_[occluder.triangle] = asking_;
-    Interval hidden = hidden_by(occluder);
-    hidden = {std::max(hidden.begin, shown.begin), std::min(hidden.end, shown.end)};
-    if (hidden.begin < hidden.end) hidden_.push_back(hidden);
+bool EdgeCutter::pass(const OccluderGrid::Visit& cell) {
+  const glm::dvec2 pad(OccluderGrid::kPad);
+  const glm::dvec2 low = cell.low - pad, high = cell.high + pad;
+  const ScreenPart part{{wide_low(low.x), wide_low(low.y)}, {wide_high(high.x), wide_high(high.y)}, farthest_};
+  for (std::size_t first = cell.first; first < cell.last; first += kMostAtOnce) {
+    const ScreenBoxes boxes = o_.grid.boxes(first);
+    if (*boxes.nearest > farthest_) return false;
+    const std::uint64_t bits = o_.kernels.overlapping(boxes, std::min(kMostAtOnce, cell.last - first), part);
+    if (!ask(bits, first, cell)) break;
   }
-  return !counts_ && hidden_.size() > before && is_covered(shown);
+  return !o_.counts && is_hidden(shown_);
 }
 
-/// Unites what is hidden, in order.
-bool EdgeCutter::is_covered(const Interval& shown) {
-  std::sort(hidden_.begin(), hidden_.end(), [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
-  std::size_t kept = 0;
-  for (std::size_t i = 1; i < hidden_.size(); ++i) {
-    if (hidden_[i].begin <= hidden_[kept].end)
-      hidden_[kept].end = std::max(hidden_[kept].end, hidden_[i].end);
+/// \returns false when nothing is left to hide in this cell.
+bool EdgeCutter::ask(std::uint64_t bits, std::size_t first, const OccluderGrid::Visit& cell) {
+  for (; bits != 0; bits &= bits - 1) {
+    const Occluder& occluder = o_.grid.occluder(first + std::size_t(std::countr_zero(bits)));
+    const Occluder*& last = asked_[(reinterpret_cast<std::uintptr_t>(&occluder) / sizeof(Occluder)) % asked_.size()];
+    if (last == &occluder) continue;
+    last = &occluder;
+    batch_.add(occluder);
+    if (batch_.count == OccluderBatch::most && flush() && is_hidden(part_in(cell))) return false;
+  }
+  return true;
+}
+
+/// \returns true when more is hidden than before, and it matters.
+bool EdgeCutter::flush() {
+  HiddenBatch found;
+  o_.kernels.hide(batch_, edge_, o_.sight, found);
+  for (std::uint32_t bits = found.hides | found.open; bits != 0; bits &= bits - 1) {
+    const auto i = std::size_t(std::countr_zero(bits));
+    const Occluder& occluder = *batch_.occluders[i];
+    if ((found.open >> i & 1) || occluder.is_near)
+      hide(hidden_by(occluder, edge_, o_.sight), occluder.triangle);
     else
-      hidden_[++kept] = hidden_[i];
+      hide({found.begin[i], found.end[i]}, occluder.triangle);
   }
-  hidden_.resize(kept + 1);
-  return hidden_[0].begin <= shown.begin && hidden_[0].end >= shown.end;
+  batch_.count = 0;
+  return !o_.counts && (found.hides | found.open) != 0;
 }
 
-void EdgeCutter::emit(const Interval& shown, std::uint32_t number, std::vector<DrawnPart>& parts) {
-  changes_.clear();
-  for (const Interval& hidden : hidden_) {
-    changes_.emplace_back(hidden.begin, 1);
-    changes_.emplace_back(hidden.end, -1);
+void EdgeCutter::hide(const Interval& interval, std::uint32_t triangle) {
+  Interval in{std::max(interval.begin, shown_.begin), std::min(interval.end, shown_.end)};
+  if (!(in.begin < in.end)) return;
+  if (o_.counts) {
+    hidden_.push_back({in, triangle});
+    return;
   }
-  changes_.emplace_back(shown.end, 0);
+  auto first = hidden_.begin();
+  while (first != hidden_.end() && first->interval.end < in.begin) ++first;
+  auto last = first;
+  for (; last != hidden_.end() && last->interval.begin <= in.end; ++last)
+    in = {std::min(in.begin, last->interval.begin), std::max(in.end, last->interval.end)};
+  if (first == last) {
+    hidden_.insert(first, {in, triangle});
+  } else {
+    first->interval = in;
+    hidden_.erase(first + 1, last);
+  }
+}
+
+bool EdgeCutter::is_hidden(const Interval& part) const {
+  const double begin = std::max(part.begin, shown_.begin), end = std::min(part.end, shown_.end);
+  for (const Hidden& hidden : hidden_)
+    if (hidden.interval.begin <= begin && hidden.interval.end >= end) return true;
+  return false;
+}
+
+/// A triangle that was asked in two cells counts once.
+void EdgeCutter::drop_doubles() {
+  std::sort(hidden_.begin(), hidden_.end(), [](const Hidden& a, const Hidden& b) { return a.triangle < b.triangle; });
+  hidden_.erase(std::unique(hidden_.begin(), hidden_.end(),
+                            [](const Hidden& a, const Hidden& b) { return a.triangle == b.triangle; }),
+                hidden_.end());
+}
+
+void EdgeCutter::emit(std::uint32_t number, std::vector<DrawnPart>& parts) {
+  changes_.clear();
+  for (const Hidden& hidden : hidden_) {
+    changes_.emplace_back(hidden.interval.begin, 1);
+    changes_.emplace_back(hidden.interval.end, -1);
+  }
+  changes_.emplace_back(shown_.end, 0);
   std::sort(changes_.begin(), changes_.end());
   const std::size_t first = parts.size();
-  double begin = shown.begin;
+  double begin = shown_.begin;
   int depth = 0;
   for (const auto& [t, change] : changes_) {
     if (t > begin) {
-      const auto hidden_by = std::uint32_t(counts_ ? depth : std::min(depth, 1));
+      const auto hidden_by = std::uint32_t(o_.counts ? depth : std::min(depth, 1));
       if (parts.size() > first && parts.back().hidden_by == hidden_by)
         parts.back().end = t;
       else
@@ -168,24 +168,24 @@ void EdgeCutter::emit(const Interval& shown, std::uint32_t number, std::vector<D
 }
 
 void EdgeCutter::cut(const FeatureEdge& edge, std::uint32_t number, std::vector<DrawnPart>& parts) {
-  asked_.resize(o_.mesh.triangles.size(), 0);
-  ++asking_;
-  edge_ = edge;
-  from_ = o_.mesh.positions[edge.from];
-  to_ = o_.mesh.positions[edge.to];
-  from_eye_ = o_.sight.in_eye(from_);
-  to_eye_ = o_.sight.in_eye(to_);
-  const Interval shown = within_view();
-  if (!(shown.begin < shown.end)) return;
-  const glm::dvec2 a = on_screen(shown.begin), b = on_screen(shown.end);
-  const glm::dvec2 pad(OccluderGrid::kPad), low = glm::min(a, b) * o_.grid.scale() - pad;
-  low_ = glm::vec2(low - 1e-6 * glm::abs(low));
-  const glm::dvec2 high = glm::max(a, b) * o_.grid.scale() + pad;
-  high_ = glm::vec2(high + 1e-6 * glm::abs(high));
-  const double farthest = std::max(from_eye_.z, to_eye_.z) * (1 + 1e-9);
+  const glm::dvec3 &from = o_.mesh.positions[edge.from], &to = o_.mesh.positions[edge.to];
+  from_eye_ = o_.sight.in_eye(from);
+  to_eye_ = o_.sight.in_eye(to);
+  edge_ = {from, to, edge.from, edge.to, from_eye_.z, to_eye_.z};
+  shown_ = within_view();
+  if (!(shown_.begin < shown_.end)) return;
+  const glm::dvec2 a = on_screen(shown_.begin), b = on_screen(shown_.end);
+  begin_ = a * o_.grid.scale();
+  end_ = b * o_.grid.scale();
+  const double farthest = std::max(from_eye_.z, to_eye_.z);
+  farthest_ = wide_high(farthest);
   hidden_.clear();
-  o_.grid.visit_cells(a, b, [&](std::span<const Occluder> cell) { return !collect(shown, cell, farthest); });
-  emit(shown, number, parts);
+  asked_.fill(nullptr);
+  batch_.count = 0;
+  o_.grid.visit_cells(a, b, [&](const OccluderGrid::Visit& cell) { return !pass(cell); });
+  if (batch_.count > 0) flush();
+  if (o_.counts) drop_doubles();
+  emit(number, parts);
 }
 
 }  // namespace frontmost::lines_detail

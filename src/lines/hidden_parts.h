@@ -5,48 +5,55 @@
 #include "frontmost/lines.h"
 #include "lines/feature_edges.h"
 #include "lines/occluder_grid.h"
+#include "lines/shadow_kernel.h"
 
 namespace frontmost::lines_detail {
 
 /// What edges are held against.
-struct Occluders {
+struct Occlusion {
   const WeldedMesh& mesh;
-  const std::vector<std::int8_t>& facing;
   const Sight& sight;
   const View& view;
   const OccluderGrid& grid;
+  const ShadowKernels kernels;
+  const bool counts;
 };
 
 /// Cuts one edge after another. Not for several threads at once.
 class EdgeCutter {
  public:
-  EdgeCutter(const Occluders& occluders, bool counts) : o_(occluders), counts_(counts) {}
+  explicit EdgeCutter(const Occlusion& occlusion) : o_(occlusion) {}
 
   /// Appends the parts of `edge`, whose number is `number`, that lie within the view.
   void cut(const FeatureEdge& edge, std::uint32_t number, std::vector<DrawnPart>& parts);
 
  private:
-  struct Interval {
-    double begin, end;
+  struct Hidden {
+    Interval interval;
+    std::uint32_t triangle;
   };
   [[nodiscard]] Interval within_view() const;
-  [[nodiscard]] Interval hidden_by(const Occluder& occluder) const;
-  [[nodiscard]] Interval in_shadow_of(const Occluder& occluder, const FacePlane& plane) const;
-  [[nodiscard]] Interval beyond_near(const glm::uvec3& corners, const FacePlane& plane, int facing) const;
   [[nodiscard]] glm::dvec2 on_screen(double t) const;
-  bool collect(const Interval& shown, std::span<const Occluder> cell, double farthest);
-  [[nodiscard]] bool is_covered(const Interval& shown);
-  void emit(const Interval& shown, std::uint32_t number, std::vector<DrawnPart>& parts);
+  [[nodiscard]] Interval part_in(const OccluderGrid::Visit& cell) const;
+  bool pass(const OccluderGrid::Visit& cell);
+  bool ask(std::uint64_t bits, std::size_t first, const OccluderGrid::Visit& cell);
+  bool flush();
+  void hide(const Interval& interval, std::uint32_t triangle);
+  [[nodiscard]] bool is_hidden(const Interval& part) const;
+  void drop_doubles();
+  void emit(std::uint32_t number, std::vector<DrawnPart>& parts);
 
-  const Occluders o_;
-  const bool counts_;
-  FeatureEdge edge_{};
-  glm::dvec3 from_{0}, to_{0}, from_eye_{0}, to_eye_{0};
-  glm::vec2 low_{0}, high_{0};  ///< of the part in the view, in cells
-  std::vector<Interval> hidden_;
+  const Occlusion o_;
+  SightedEdge edge_;
+  glm::dvec3 from_eye_{0}, to_eye_{0};
+  Interval shown_;                ///< within the view
+  glm::dvec2 begin_{0}, end_{0};  ///< of that, in cells
+  float farthest_ = 0;
+  OccluderBatch batch_;
+  std::vector<Hidden> hidden_;  ///< without counts united, in order
   std::vector<std::pair<double, int>> changes_;
-  std::vector<std::uint32_t> asked_;  ///< by triangle: the edge that it was last held against
-  std::uint32_t asking_ = 0;
+  /// By the low bits of occluders' addresses: which were asked last, so that the next cell need not.
+  std::array<const Occluder*, 64> asked_{};
 };
 
 }  // namespace frontmost::lines_detail

@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "lines/hidden_parts.h"
+#include "lines/joined.h"
 
 namespace frontmost {
 namespace {
@@ -15,8 +16,8 @@ using namespace lines_detail;
 
 constexpr std::size_t kTrianglesPerPart = 4096, kEdgesPerPart = 1024;
 
-std::vector<std::int8_t> facing_of(const WeldedMesh& mesh, const Sight& sight, const Execution& execution) {
-  std::vector<std::int8_t> facing(mesh.triangles.size());
+Buffer<std::int8_t> facing_of(const WeldedMesh& mesh, const Sight& sight, const Execution& execution) {
+  Buffer<std::int8_t> facing(mesh.triangles.size());
   parallel_for(execution, facing.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const glm::uvec3& t = mesh.triangles[i];
@@ -26,19 +27,17 @@ std::vector<std::int8_t> facing_of(const WeldedMesh& mesh, const Sight& sight, c
   return facing;
 }
 
-std::vector<DrawnPart> cut_all(const std::vector<FeatureEdge>& features, const Occluders& occluders, bool counts,
+std::vector<DrawnPart> cut_all(const std::vector<FeatureEdge>& features, const Occlusion& occlusion,
                                const Execution& execution) {
   std::vector<std::vector<DrawnPart>> lists((features.size() + kEdgesPerPart - 1) / kEdgesPerPart);
   Pool<EdgeCutter> cutters;
   std::atomic<std::size_t> done{0};
   parallel_for(execution, features.size(), kEdgesPerPart, [&](std::size_t begin, std::size_t end) {
-    const auto cutter = cutters.borrow([&] { return std::make_unique<EdgeCutter>(occluders, counts); });
+    const auto cutter = cutters.borrow([&] { return std::make_unique<EdgeCutter>(occlusion); });
     for (std::size_t i = begin; i < end; ++i) cutter->cut(features[i], std::uint32_t(i), lists[begin / kEdgesPerPart]);
     report_progress(execution, "lines", 0.3 + 0.7 * double(done += end - begin) / double(features.size()));
   });
-  std::vector<DrawnPart> parts;
-  for (const std::vector<DrawnPart>& list : lists) parts.insert(parts.end(), list.begin(), list.end());
-  return parts;
+  return joined(lists);
 }
 
 }  // namespace
@@ -49,12 +48,12 @@ Drawing lines(const Surfaces& surfaces, const View& view, const LineOptions& opt
     throw Error(ErrorCode::bad_argument, "crease_angle: must be from 0 to pi");
   const IeeeScope ieee;
   report_progress(execution, "lines", 0);
-  const WeldedMesh mesh = weld(surfaces);
+  const WeldedMesh mesh = weld(surfaces, execution);
   const Sight sight(view);
-  const std::vector<std::int8_t> facing = facing_of(mesh, sight, execution);
-  const std::vector<FeatureEdge> features = find_features(mesh, facing, surfaces, options);
+  const Buffer<std::int8_t> facing = facing_of(mesh, sight, execution);
+  const std::vector<FeatureEdge> features = find_features({mesh, facing}, surfaces, options, execution);
   report_progress(execution, "lines", 0.2);
-  const OccluderGrid grid(mesh, facing, sight, view);
+  const OccluderGrid grid({mesh, facing}, view, execution);
   report_progress(execution, "lines", 0.3);
 
   Drawing drawing;
@@ -63,7 +62,8 @@ Drawing lines(const Surfaces& surfaces, const View& view, const LineOptions& opt
   const auto id_of = [&](std::uint32_t triangle) { return triangle == no_index ? no_primitive : mesh.ids[triangle]; };
   for (const FeatureEdge& f : features)
     drawing.edges.push_back({mesh.positions[f.from], mesh.positions[f.to], f.kind, id_of(f.left), id_of(f.right)});
-  drawing.parts = cut_all(features, {mesh, facing, sight, view, grid}, options.counts_hidden, execution);
+  drawing.parts =
+      cut_all(features, {mesh, sight, view, grid, shadow_kernels(execution.isa), options.counts_hidden}, execution);
   return drawing;
 }
 

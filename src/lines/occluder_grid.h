@@ -1,47 +1,66 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles by the part of the screen that they may cover, the nearest first.
+// Occluders by the part of the screen that they may cover, the nearest first.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <span>
+#include <vector>
 
+#include "lines/feature_edges.h"
+#include "lines/occluder.h"
+#include "lines/shadow_kernel.h"
 #include "lines/welded_mesh.h"
-#include "view/sight.h"
 
 namespace frontmost::lines_detail {
-
-/// A triangle on the screen: a box around it in cells' units, and its nearest distance.
-struct Occluder {
-  glm::vec2 low, high;
-  float nearest;
-  std::uint32_t triangle;
-};
 
 /// A grid of square cells over the picture.
 class OccluderGrid {
  public:
   /// Of triangles that are seen from a side. O(triangles) where they are of a like size on the screen.
-  OccluderGrid(const WeldedMesh& mesh, const std::vector<std::int8_t>& facing, const Sight& sight, const View& view);
+  OccluderGrid(const SeenMesh& seen, const View& view, const Execution& execution);
 
-  /// Calls visit(occluders of one cell) for every cell that the segment between two points of the picture passes, until
-  /// it returns false.
-  template <class Visit>
-  void visit_cells(const glm::dvec2& from, const glm::dvec2& to, const Visit& visit) const {
+  /// A cell's occluders, the nearest first, and what of a segment may lie in it: a box in cells' units.
+  struct Visit {
+    std::size_t first, last;
+    glm::dvec2 low, high;
+  };
+
+  /// Calls visit(Visit) for every cell that the segment between two points of the picture passes, until it returns
+  /// false.
+  template <class Visitor>
+  void visit_cells(const glm::dvec2& from, const glm::dvec2& to, const Visitor& visit) const {
     const glm::dvec2 a = from * scale_, b = to * scale_;
     const glm::dvec2& top = a.y < b.y ? a : b;
     const glm::dvec2& bottom = a.y < b.y ? b : a;
     const double slope = bottom.y > top.y ? (bottom.x - top.x) / (bottom.y - top.y) : 0;
     const int last_row = row(bottom.y + kPad);
     for (int y = row(top.y - kPad); y <= last_row; ++y) {
-      const double enter = top.x + slope * (std::max(y - kPad, top.y) - top.y);
-      const double leave = slope == 0 ? bottom.x : top.x + slope * (std::min(y + 1 + kPad, bottom.y) - top.y);
-      const int last_column = column(std::max(enter, leave) + kPad);
-      for (int x = column(std::min(enter, leave) - kPad); x <= last_column; ++x)
-        if (!visit(cell(x, y))) return;
+      const double low_y = std::max(y - kPad, top.y), high_y = std::min(y + 1 + kPad, bottom.y);
+      const double enter = top.x + slope * (low_y - top.y);
+      const double leave = slope == 0 ? bottom.x : top.x + slope * (high_y - top.y);
+      const double low_x = std::min(enter, leave), high_x = std::max(enter, leave);
+      const int last_column = column(high_x + kPad);
+      for (int x = column(low_x - kPad); x <= last_column; ++x) {
+        const std::size_t cell = number(x, y);
+        if (!visit(Visit{first_[cell],
+                         first_[cell + 1],
+                         {std::max(x - kPad, low_x), low_y},
+                         {std::min(x + 1 + kPad, high_x), high_y}}))
+          return;
+      }
     }
   }
+  /// The cell of a point in the picture.
+  [[nodiscard]] std::size_t cell_of(const glm::dvec2& point) const {
+    return number(column(point.x * scale_.x), row(point.y * scale_.y));
+  }
+  [[nodiscard]] std::size_t cell_count() const { return first_.size() - 1; }
 
+  [[nodiscard]] ScreenBoxes boxes(std::size_t entry) const {
+    return {low_x_.data() + entry, low_y_.data() + entry, high_x_.data() + entry, high_y_.data() + entry,
+            nearest_.data() + entry};
+  }
+  [[nodiscard]] const Occluder& occluder(std::size_t entry) const { return occluders_[numbers_[entry]]; }
   [[nodiscard]] const glm::dvec2& scale() const { return scale_; }
   /// Cells: more than the rounding of any place in the picture.
   static constexpr double kPad = 1e-6;
@@ -53,24 +72,38 @@ class OccluderGrid {
     int count = 0;
     double nearest = 0;
   };
-  [[nodiscard]] Outline outline_of(const WeldedMesh& mesh, const Sight& sight, std::uint32_t triangle) const;
-  template <class Visit>
-  void cover(const Outline& outline, const Visit& visit) const;
+  /// A triangle's box in cells' units; `nearest` is infinite where it is not seen.
+  struct Footprint {
+    glm::vec2 low, high;
+    float nearest;
+    std::uint32_t triangle;
+  };
+  struct Plan;
+  [[nodiscard]] Outline outline_of(const Plan& plan, std::uint32_t triangle) const;
+  [[nodiscard]] Footprint footprint_of(const Plan& plan, std::uint32_t triangle) const;
+  [[nodiscard]] Buffer<Footprint> footprints_by_cell(const Plan& plan) const;
+  void make_occluders(const Plan& plan, const Buffer<Footprint>& footprints);
+  void fill_cells(const Plan& plan, const Buffer<Footprint>& footprints);
+  struct Band {
+    int first, last;  ///< rows
+  };
+  template <class Fill>
+  void for_each_band(const Execution& execution, const Fill& fill) const;
+  template <class Visitor>
+  void cover(const Plan& plan, const Footprint& footprint, const Band& band, const Visitor& visit) const;
 
   [[nodiscard]] int row(double y) const { return int(std::clamp(y, 0.0, double(rows_ - 1))); }
   [[nodiscard]] int column(double x) const { return int(std::clamp(x, 0.0, double(columns_ - 1))); }
   [[nodiscard]] std::size_t number(int x, int y) const {
     return std::size_t(y) * std::size_t(columns_) + std::size_t(x);
   }
-  [[nodiscard]] std::span<const Occluder> cell(int x, int y) const {
-    const std::size_t i = number(x, y);
-    return {occluders_.data() + first_[i], first_[i + 1] - first_[i]};
-  }
 
   int columns_ = 1, rows_ = 1;
-  glm::dvec2 scale_{1};  ///< cells a pixel
-  std::vector<std::size_t> first_;
-  std::vector<Occluder> occluders_;
+  glm::dvec2 scale_{1};             ///< cells a pixel
+  std::vector<std::size_t> first_;  ///< by cell: of the entries
+  Buffer<float> low_x_, low_y_, high_x_, high_y_, nearest_;
+  Buffer<std::uint32_t> numbers_;
+  Buffer<Occluder> occluders_;
 };
 
 }  // namespace frontmost::lines_detail

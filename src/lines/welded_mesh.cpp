@@ -1,31 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lines/welded_mesh.h"
 
+#include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cstring>
+#include <vector>
 
+#include "base/parallel.h"
 #include "surfaces/cluster_set.h"
 
 namespace frontmost::lines_detail {
 namespace {
 
-/// Numbers places in the order in which they come, by open addressing.
+constexpr std::size_t kPerPart = 8192;
+
+/// Calls visit(instance, first, last) for the pieces that the numbers from `begin` to `end`, counted over all
+/// instances, have in each; `firsts` are the instances' first numbers, and the count of all.
+template <class Visitor>
+void visit_instances(const std::vector<std::size_t>& firsts, std::size_t begin, std::size_t end, const Visitor& visit) {
+  auto i = std::size_t(std::upper_bound(firsts.begin(), firsts.end(), begin) - firsts.begin()) - 1;
+  for (; begin < end; ++i) {
+    const std::size_t last = std::min(end, firsts[i + 1]);
+    if (begin < last) visit(i, begin - firsts[i], last - firsts[i]);
+    begin = last;
+  }
+}
+
+template <class Size>
+std::vector<std::size_t> firsts_of(const Scene& scene, const Size& size) {
+  std::vector<std::size_t> firsts{0};
+  firsts.reserve(scene.instances.size() + 1);
+  for (const Instance& instance : scene.instances) firsts.push_back(firsts.back() + size(scene.meshes[instance.mesh]));
+  return firsts;
+}
+
+/// By open addressing, which of the vertices at one place comes first.
 class PlaceTable {
  public:
-  PlaceTable(std::size_t most, std::vector<glm::dvec3>& positions)
-      : slots_(std::bit_ceil(2 * most + 2), no_index), positions_(positions) {}
+  /// Precondition: fewer than 2^31 places.
+  explicit PlaceTable(const Buffer<glm::vec3>& places)
+      : places_(places), slots_(std::bit_ceil(2 * places.size() + 2)) {}
 
-  std::uint32_t number_of(const glm::vec3& place) {
-    const glm::vec3 p = place + 0.0f;  // -0 is 0
+  /// \returns the slot of the vertex's place; the lowest vertex stays in it, whoever comes first. For many threads.
+  std::uint32_t enter(std::uint32_t vertex) {
+    const glm::vec3& p = places_[vertex];
     const std::size_t mask = slots_.size() - 1;
     for (std::size_t i = hash(p) & mask;; i = (i + 1) & mask) {
-      if (slots_[i] == no_index) {
-        slots_[i] = std::uint32_t(positions_.size());
-        positions_.emplace_back(p);
-        return slots_[i];
+      std::uint32_t held = slots_[i].load(std::memory_order_relaxed);
+      if (held == 0 && slots_[i].compare_exchange_strong(held, vertex + 1, std::memory_order_relaxed))
+        return std::uint32_t(i);
+      if (places_[held - 1] != p) continue;
+      while (vertex + 1 < held && !slots_[i].compare_exchange_weak(held, vertex + 1, std::memory_order_relaxed)) {
       }
-      if (positions_[slots_[i]] == glm::dvec3(p)) return slots_[i];
+      return std::uint32_t(i);
     }
+  }
+  [[nodiscard]] std::uint32_t lowest_in(std::uint32_t slot) const {
+    return slots_[slot].load(std::memory_order_relaxed) - 1;
   }
 
  private:
@@ -40,38 +72,95 @@ class PlaceTable {
     return std::size_t(h);
   }
 
-  std::vector<std::uint32_t> slots_;
-  std::vector<glm::dvec3>& positions_;
+  const Buffer<glm::vec3>& places_;
+  std::vector<std::atomic<std::uint32_t>> slots_;  ///< 0: free; else a vertex + 1
 };
+
+Buffer<glm::vec3> places_of(const Scene& scene, const Execution& execution) {
+  const std::vector<std::size_t> firsts = firsts_of(scene, [](const Mesh& mesh) { return mesh.positions.size(); });
+  if (firsts.back() >= std::size_t(1) << 31)
+    throw Error(ErrorCode::limit_exceeded, "lines: more than 2147483647 vertices over all instances");
+  Buffer<glm::vec3> places(firsts.back());
+  parallel_for(execution, places.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
+    visit_instances(firsts, begin, end, [&](std::size_t i, std::size_t first, std::size_t last) {
+      const std::vector<glm::vec3>& positions = scene.meshes[scene.instances[i].mesh].positions;
+      const ToWorld to_world(scene.instances[i].world_from_mesh);
+      for (std::size_t v = first; v < last; ++v) places[firsts[i] + v] = to_world(positions[v]) + 0.0f;  // -0 is 0
+    });
+  });
+  return places;
+}
+
+/// By vertex of all instances, the first at its place; no_index where it is not finite.
+Buffer<std::uint32_t> first_at_place(const Buffer<glm::vec3>& places, const Execution& execution) {
+  PlaceTable table(places);
+  Buffer<std::uint32_t> first(places.size());
+  parallel_for(execution, places.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      first[v] = is_finite(places[v]) ? table.enter(std::uint32_t(v)) : no_index;
+  });
+  parallel_for(execution, places.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      if (first[v] != no_index) first[v] = table.lowest_in(first[v]);
+  });
+  return first;
+}
+
+/// By vertex of all instances, the number of its place; fills `positions`.
+Buffer<std::uint32_t> number_places(const Scene& scene, Buffer<glm::dvec3>& positions, const Execution& execution) {
+  const Buffer<glm::vec3> places = places_of(scene, execution);
+  const Buffer<std::uint32_t> first = first_at_place(places, execution);
+  Buffer<std::uint32_t> numbers(places.size());
+  std::uint32_t count = 0;
+  for (std::size_t v = 0; v < places.size(); ++v)
+    numbers[v] = first[v] == v ? count++ : first[v] == no_index ? no_index : numbers[first[v]];
+  positions = Buffer<glm::dvec3>(count);
+  parallel_for(execution, places.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      if (first[v] == v) positions[numbers[v]] = glm::dvec3(places[v]);
+  });
+  return numbers;
+}
+
+/// By primitive, its three places; no_index first where it is left out.
+Buffer<glm::uvec3> corners_of(const Surfaces& surfaces, const Buffer<std::uint32_t>& numbers,
+                              const Execution& execution) {
+  const Scene& scene = surfaces.scene();
+  const std::vector<std::size_t> vertices = firsts_of(scene, [](const Mesh& mesh) { return mesh.positions.size(); });
+  const std::vector<std::size_t> firsts = firsts_of(scene, [](const Mesh& mesh) { return mesh.triangles.size(); });
+  Buffer<glm::uvec3> all(firsts.back());
+  parallel_for(execution, all.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
+    visit_instances(firsts, begin, end, [&](std::size_t i, std::size_t first, std::size_t last) {
+      const std::vector<glm::uvec3>& triangles = scene.meshes[scene.instances[i].mesh].triangles;
+      const bool is_mirrored = surfaces.is_mirrored(std::uint32_t(i));
+      for (std::size_t t = first; t < last; ++t) {
+        glm::uvec3 c;
+        for (int k = 0; k < 3; ++k) c[k] = numbers[vertices[i] + triangles[t][is_mirrored && k > 0 ? 3 - k : k]];
+        if (c.y == no_index || c.z == no_index || c.x == c.y || c.y == c.z || c.z == c.x) c.x = no_index;
+        all[firsts[i] + t] = c;
+      }
+    });
+  });
+  return all;
+}
 
 }  // namespace
 
-WeldedMesh weld(const Surfaces& surfaces) {
-  const Scene& scene = surfaces.scene();
-  std::size_t vertices = 0;
-  for (const Instance& instance : scene.instances) vertices += scene.meshes[instance.mesh].positions.size();
+WeldedMesh weld(const Surfaces& surfaces, const Execution& execution) {
   WeldedMesh welded;
-  welded.triangles.reserve(surfaces.primitive_count());
-  welded.ids.reserve(surfaces.primitive_count());
-  PlaceTable places(vertices, welded.positions);
-  std::vector<std::uint32_t> numbers;
-  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-    const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
-    const ToWorld to_world(scene.instances[i].world_from_mesh);
-    numbers.assign(mesh.positions.size(), no_index);
-    for (std::size_t v = 0; v < numbers.size(); ++v) {
-      const glm::vec3 place = to_world(mesh.positions[v]);
-      if (is_finite(place)) numbers[v] = places.number_of(place);
-    }
-    const bool is_mirrored = surfaces.is_mirrored(i);
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      glm::uvec3 corners;
-      for (int k = 0; k < 3; ++k) corners[k] = numbers[mesh.triangles[t][is_mirrored && k > 0 ? 3 - k : k]];
-      if (corners.x == no_index || corners.y == no_index || corners.z == no_index) continue;
-      if (corners.x == corners.y || corners.y == corners.z || corners.z == corners.x) continue;
-      welded.triangles.push_back(corners);
-      welded.ids.push_back(surfaces.first_primitive(i) + t);
-    }
+  const Buffer<std::uint32_t> numbers = number_places(surfaces.scene(), welded.positions, execution);
+  Buffer<glm::uvec3> all = corners_of(surfaces, numbers, execution);
+  std::size_t kept = 0;
+  for (const glm::uvec3& corners : all) kept += corners.x != no_index;
+  welded.ids = Buffer<PrimitiveId>(kept);
+  kept = 0;
+  for (std::size_t id = 0; id < all.size(); ++id)
+    if (all[id].x != no_index) welded.ids[kept++] = PrimitiveId(id);
+  if (kept == all.size()) {
+    welded.triangles = std::move(all);
+  } else {
+    welded.triangles = Buffer<glm::uvec3>(kept);
+    for (std::size_t i = 0; i < kept; ++i) welded.triangles[i] = all[welded.ids[i]];
   }
   return welded;
 }

@@ -9,9 +9,8 @@ namespace {
 /// `exact_sign` is asked where the rounding of `rounded` matters.
 template <class ExactSign>
 Signed with_certain_sign(const Bounded& rounded, const ExactSign& exact_sign) {
-  if (rounded.value > rounded.error) return {rounded.value, 1};
-  if (rounded.value < -rounded.error) return {rounded.value, -1};
-  return {rounded.value, exact_sign()};
+  const int sign = certain_sign(rounded);
+  return {rounded.value, sign == 2 ? exact_sign() : sign};
 }
 
 }  // namespace

@@ -42,6 +42,10 @@ class Sight {
   [[nodiscard]] glm::dvec3 in_eye(const glm::dvec3& position) const;
   /// x and y in pixels, z the planar distance. Precondition in perspective: not in the plane of the eye.
   [[nodiscard]] glm::dvec3 to_screen(const glm::dvec3& in_eye) const;
+  /// What a point between two of eye space, a share t of the way, weighs on the screen.
+  [[nodiscard]] double to_weight(const glm::dvec3& from, const glm::dvec3& to, double t) const {
+    return is_parallel_ ? 1 : from.z + (to.z - from.z) * t;
+  }
   [[nodiscard]] double near() const { return near_; }
   [[nodiscard]] double far() const { return far_; }
   [[nodiscard]] bool is_parallel() const { return is_parallel_; }

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a triangle hides of an edge.
+#pragma once
+
+#include "view/sight.h"
+
+namespace frontmost::lines_detail {
+
+/// A triangle as a thing that hides. One cache line.
+struct alignas(64) Occluder {
+  glm::vec3 corners[3];       ///< world space, in the order of `vertices`
+  std::uint32_t vertices[3];  ///< ascending, so that neighbours ask their common plane with the same bits
+  std::int32_t turn;          ///< of the corners as they are seen: 1 left, -1 right
+  std::uint32_t triangle;
+  bool is_near;  ///< some of it may lie before the near plane
+};
+
+/// A segment that things are held against, from t = 0 to 1.
+struct SightedEdge {
+  glm::dvec3 from{0}, to{0};  ///< world space
+  std::uint32_t from_vertex = no_index, to_vertex = no_index;
+  double from_distance = 0, to_distance = 0;  ///< planar
+};
+
+/// Empty unless begin < end.
+struct Interval {
+  double begin = 1, end = 0;
+};
+
+/// Where a function that is linear from 0 to 1, with these ends, is not negative; `is_strict`: where it is positive.
+[[nodiscard]] Interval where_positive(const Signed& at_0, const Signed& at_1, bool is_strict);
+
+/// Where `occluder` hides the edge: within its three planes through the eye (the shadow is closed), and beyond its own
+/// plane (within it, nothing is hidden).
+[[nodiscard]] Interval hidden_by(const Occluder& occluder, const SightedEdge& edge, const Sight& sight);
+
+}  // namespace frontmost::lines_detail

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// The arithmetic of hidden_by() and of the bounds of exact_vector.h, operation by operation, so that every lane has
+// their bits.
+
+#include "lines/shadow_kernel.h"
+
+#include "base/exact_vector.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "lines/shadow_kernel.cpp"
+#include "base/isa.h"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+// After foreach_target.h, for each target.
+#include "base/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::lines_detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<double, OccluderBatch::most>;
+using V = hn::Vec<D>;
+using M = hn::Mask<D>;
+using DF = hn::CappedTag<float, 16>;
+
+struct Vector3 {
+  V x, y, z;
+};
+
+HWY_INLINE Vector3 Splat(const glm::dvec3& v) {
+  const D d;
+  return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
+}
+HWY_INLINE Vector3 Minus(const Vector3& a, const Vector3& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE Vector3 Abs(const Vector3& v) { return {hn::Abs(v.x), hn::Abs(v.y), hn::Abs(v.z)}; }
+HWY_INLINE V Dot(const Vector3& a, const Vector3& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+
+/// As BoundedNormal.
+struct Normals {
+  Vector3 value, error;
+
+  HWY_INLINE Normals(const Vector3& a, const Vector3& b) {
+    const auto minor = [](V p, V q, V r, V s) HWY_ATTR { return hn::Sub(hn::Mul(p, q), hn::Mul(r, s)); };
+    value = {minor(a.y, b.z, b.y, a.z), minor(a.z, b.x, b.z, a.x), minor(a.x, b.y, b.x, a.y)};
+    const Vector3 p = Abs(a), q = Abs(b);
+    const V rounding = hn::Set(D(), kRounding);
+    const auto bound = [&](V s, V t, V u, V v)
+                           HWY_ATTR { return hn::Mul(rounding, hn::Add(hn::Mul(s, t), hn::Mul(u, v))); };
+    error = {bound(p.y, q.z, p.z, q.y), bound(p.z, q.x, p.x, q.z), bound(p.x, q.y, p.y, q.x)};
+  }
+};
+
+/// Values with the signs that are certain.
+struct Values {
+  V value;
+  M is_positive, is_negative, is_zero;
+
+  /// n.v times `sign`; zero where `is_on`.
+  HWY_INLINE Values(const Normals& n, const Vector3& v, V sign, M is_on) {
+    const D d;
+    const Vector3 a = Abs(v);
+    value = hn::Mul(Dot(n.value, v), sign);
+    const V error = hn::Add(Dot(n.error, a), hn::Mul(hn::Set(d, kRounding), Dot(Abs(n.value), a)));
+    is_positive = hn::AndNot(is_on, hn::Gt(value, error));
+    is_negative = hn::AndNot(is_on, hn::Lt(value, hn::Neg(error)));
+    is_zero = hn::Or(is_on, hn::Eq(error, hn::Zero(d)));
+  }
+};
+
+/// What all functions so far leave of the edge.
+struct Rest {
+  V begin, end;
+  M is_gone, is_open;
+
+  /// As where_positive().
+  template <bool is_strict>
+  HWY_INLINE void Keep(const Values& a, const Values& b) {
+    const M above_a = hn::Or(a.is_positive, a.is_zero), above_b = hn::Or(b.is_positive, b.is_zero);
+    const M below = hn::And(hn::Or(a.is_negative, a.is_zero), hn::Or(b.is_negative, b.is_zero));
+    const M on = hn::And(a.is_zero, b.is_zero);
+    is_gone = hn::Or(is_gone, is_strict ? below : hn::AndNot(on, below));
+    const M known = hn::And(hn::Or(above_a, a.is_negative), hn::Or(above_b, b.is_negative));
+    is_open = hn::Or(is_open, hn::Not(known));
+    const M falls = hn::And(a.is_positive, b.is_negative), rises = hn::And(a.is_negative, b.is_positive);
+    const V from_a = hn::Abs(a.value), root = hn::Div(from_a, hn::Add(from_a, hn::Abs(b.value)));
+    begin = hn::IfThenElse(rises, hn::Max(begin, root), begin);
+    end = hn::IfThenElse(falls, hn::Min(end, root), end);
+  }
+  HWY_INLINE bool IsAllGone() const { return hn::AllTrue(D(), is_gone); }
+};
+
+struct Corner {
+  Vector3 place;
+  M is_from, is_to;  // the edge's ends
+};
+
+void HideBatch(const OccluderBatch& batch, const SightedEdge& edge, const Sight& sight, HiddenBatch& hidden) {
+  const D d;
+  const V from_vertex = hn::Set(d, double(edge.from_vertex)), to_vertex = hn::Set(d, double(edge.to_vertex));
+  const Vector3 from = Splat(edge.from), to = Splat(edge.to);
+  const Vector3 axis = Splat(sight.is_parallel() ? sight.forward() : sight.eye());
+  hidden.hides = hidden.open = 0;
+  for (std::size_t i = 0; i < batch.count; i += hn::Lanes(d)) {
+    Corner corner[3];
+    for (int k = 0; k < 3; ++k) {
+      const auto load = [&](int c) HWY_ATTR { return hn::Load(d, batch.corners[3 * k + c] + i); };
+      const V vertex = hn::Load(d, batch.vertices[k] + i);
+      corner[k] = {{load(0), load(1), load(2)}, hn::Eq(vertex, from_vertex), hn::Eq(vertex, to_vertex)};
+    }
+    const V turn = hn::Load(d, batch.turn + i), against = hn::Neg(turn);
+    const M none = hn::FirstN(d, 0);
+    Rest rest{hn::Zero(d), hn::Set(d, 1.0), none, none};
+    const Normals face(Minus(corner[1].place, corner[0].place), Minus(corner[2].place, corner[0].place));
+    const Vector3 from_0 = Minus(from, corner[0].place), to_0 = Minus(to, corner[0].place);
+    const auto any = [](M a, M b, M c) HWY_ATTR { return hn::Or(hn::Or(a, b), c); };
+    rest.Keep<true>(Values(face, from_0, against, any(corner[0].is_from, corner[1].is_from, corner[2].is_from)),
+                    Values(face, to_0, against, any(corner[0].is_to, corner[1].is_to, corner[2].is_to)));
+    // A turn is the negative product with the plane's normal.
+    const auto keep_within = [&](const Corner& p, const Corner& q, V sign) HWY_ATTR {
+      if (rest.IsAllGone()) return;
+      const Normals side(sight.is_parallel() ? axis : Minus(p.place, axis), Minus(q.place, p.place));
+      rest.Keep<false>(Values(side, Minus(from, p.place), sign, hn::Or(p.is_from, q.is_from)),
+                       Values(side, Minus(to, p.place), sign, hn::Or(p.is_to, q.is_to)));
+    };
+    keep_within(corner[0], corner[1], against);
+    keep_within(corner[1], corner[2], against);
+    keep_within(corner[0], corner[2], turn);
+    const M is_left = hn::AndNot(rest.is_gone, hn::Lt(rest.begin, rest.end));
+    hn::Store(rest.begin, d, hidden.begin + i);
+    hn::Store(rest.end, d, hidden.end + i);
+    const std::uint64_t left = frontmost::HWY_NAMESPACE::BitsOf(d, is_left);
+    const std::uint64_t open = frontmost::HWY_NAMESPACE::BitsOf(d, hn::And(is_left, rest.is_open));
+    hidden.hides |= std::uint32_t((left & ~open) << i);
+    hidden.open |= std::uint32_t(open << i);
+  }
+  const std::uint32_t used = (1u << batch.count) - 1;
+  hidden.hides &= used;
+  hidden.open &= used;
+}
+
+std::uint64_t Overlapping(const ScreenBoxes& boxes, std::size_t count, const ScreenPart& part) {
+  const DF d;
+  const auto low_x = hn::Set(d, part.low.x), low_y = hn::Set(d, part.low.y);
+  const auto high_x = hn::Set(d, part.high.x), high_y = hn::Set(d, part.high.y), farthest = hn::Set(d, part.farthest);
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const auto in_x =
+        hn::And(hn::Le(hn::LoadU(d, boxes.low_x + i), high_x), hn::Ge(hn::LoadU(d, boxes.high_x + i), low_x));
+    const auto in_y =
+        hn::And(hn::Le(hn::LoadU(d, boxes.low_y + i), high_y), hn::Ge(hn::LoadU(d, boxes.high_y + i), low_y));
+    const auto is_before = hn::Le(hn::LoadU(d, boxes.nearest + i), farthest);
+    bits |= frontmost::HWY_NAMESPACE::BitsOf(d, hn::And(hn::And(in_x, in_y), is_before)) << i;
+  }
+  return count < 64 ? bits & ((std::uint64_t(1) << count) - 1) : bits;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace frontmost::lines_detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace frontmost::lines_detail {
+
+FRONTMOST_KERNELS(Overlapping);
+FRONTMOST_KERNELS(HideBatch);
+
+ShadowKernels shadow_kernels(Isa isa) {
+  return {kernel_for(OverlappingKernels, isa), kernel_for(HideBatchKernels, isa)};
+}
+
+}  // namespace frontmost::lines_detail
+#endif  // HWY_ONCE
