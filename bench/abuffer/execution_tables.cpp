@@ -14,10 +14,11 @@ Table measure_abuffer_threads(const Options& options) {
   for (const SceneEntry& entry : translucent_entries()) {
     if (!options.wants_scene(entry)) continue;
     const Stage stage(entry.name, options.models);
-    Pictures one(stage), all(stage);
+    Pictures pictures(stage);
+    pictures.draw(0, {});
     for (const int grid : grids(options)) {
-      const std::vector<Time> times = race({Contestant([&] { one.draw(grid, {.threads = 1}); }),
-                                            Contestant([&] { all.draw(grid, {.threads = threads}); })},
+      const std::vector<Time> times = race({Contestant([&] { pictures.draw_unlit(grid, {.threads = 1}); }),
+                                            Contestant([&] { pictures.draw_unlit(grid, {.threads = threads}); })},
                                            options.sampling);
       table.add({entry.name,
                  Cell::whole(unsigned(samples_of(grid))),

@@ -7,6 +7,10 @@ namespace frontmost::bench {
 
 const ResolvedPicture& Pictures::draw(int grid, const Execution& execution) {
   light();
+  return draw_unlit(grid, execution);
+}
+
+const ResolvedPicture& Pictures::draw_unlit(int grid, const Execution& execution) {
   return resolver_.draw(stage_.surfaces, stage_.view, colors_, {grid, 1.0f}, execution);
 }
 

@@ -19,6 +19,8 @@ class Pictures {
  public:
   explicit Pictures(const Stage& stage) : stage_(stage) {}
   const ResolvedPicture& draw(int grid, const Execution& execution);
+  /// With the colours of the last draw(): the A-buffer alone, as lighting is done by one thread.
+  const ResolvedPicture& draw_unlit(int grid, const Execution& execution);
 
  private:
   void light();

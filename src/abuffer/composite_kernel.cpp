@@ -11,6 +11,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "abuffer/composite_kernel.cpp"
 #include "base/isa.h"
+#include "hwy/cache_control.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
 // After Highway: a block of its own.
@@ -54,14 +55,20 @@ class TileCompositor {
  private:
   /// Visits a job's groups: visit(group, colours to be filled).
   template <class Visit>
-  HWY_INLINE void ForGroups(const Visit& visit) const {
+  HWY_INLINE void ForGroups(const Visit& visit) {
     const Rectangle& r = job_.pixels;
-    for (int y = 0; y < r.height; y += 4)
+    for (int y = 0; y < r.height; y += 4) {
       for (int x = 0; x < r.width; x += 4) {
         GroupColors colors;
         visit(std::size_t((y / 4) * kBlocksAcross + x / 4), colors);
-        WriteGroup(x, y, colors);
+        for (int k = 0; k < 4; ++k)
+          for (int row = 0; row < 4; ++row)
+            std::memcpy(strip_[k][row] + x, colors.channel[k] + 4 * row, 4 * sizeof(float));
       }
+      WriteStrip(y);
+    }
+    // Streamed stores are weakly ordered: another thread may read the planes next.
+    hwy::FlushStream();
   }
 
   /// Colours beside each other that the whole picture's table has far apart.
@@ -71,28 +78,28 @@ class TileCompositor {
     for (std::size_t t = 0; t < count; ++t) scratch_.colors[t] = colors_.table[scratch_.triangles.id[t]];
   }
 
-  void RunFlat() const {
+  void RunFlat() {
     ForGroups([&](std::size_t group, GroupColors& colors) { CompositeFlat(group, colors); });
   }
 
   HWY_INLINE void CompositeFlat(std::size_t group, GroupColors& colors) const {
-    const DI d;
     const DU du;
     const DF df;
     const std::size_t length = scratch_.length(group);
     const auto* table = reinterpret_cast<const float*>(colors_.table);
-    for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(d)) {
+    NumberColors(group);
+    const std::uint32_t* numbers = scratch_.fragments.paint.data();
+    for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(df)) {
       VF left = hn::Set(df, 1.0f), red = hn::Zero(df), green = red, blue = red;
       for (std::size_t s = 0; s < length; ++s) {
-        const VU low = HalvesOf(scratch_.slot(group, s) + lane).low;
-        const auto valid = hn::Ne(low, hn::Zero(du));
-        const VI index = hn::ShiftLeft<2>(hn::BitCast(d, hn::IfThenElseZero(valid, hn::Not(low))));
-        const VF alpha = hn::Mul(hn::GatherIndex(df, table + 3, index), hn::Set(df, colors_.opacity));
+        const auto valid = hn::Ne(HalvesOf(scratch_.slot(group, s) + lane).low, hn::Zero(du));
+        const LaneColors color = ColorsOf(table, numbers + s * kGroup + lane);
+        const VF alpha = hn::Mul(color.alpha, hn::Set(df, colors_.opacity));
         const VF shows = hn::IfThenElseZero(hn::RebindMask(df, valid), alpha);
         const VF weight = hn::Mul(left, shows);
-        red = hn::Add(red, hn::Mul(weight, hn::GatherIndex(df, table, index)));
-        green = hn::Add(green, hn::Mul(weight, hn::GatherIndex(df, table + 1, index)));
-        blue = hn::Add(blue, hn::Mul(weight, hn::GatherIndex(df, table + 2, index)));
+        red = hn::Add(red, hn::Mul(weight, color.red));
+        green = hn::Add(green, hn::Mul(weight, color.green));
+        blue = hn::Add(blue, hn::Mul(weight, color.blue));
         left = hn::Mul(left, hn::Sub(hn::Set(df, 1.0f), shows));
       }
       hn::Store(red, df, colors.channel[0] + lane);
@@ -102,20 +109,40 @@ class TileCompositor {
     }
   }
 
-  HWY_INLINE void WriteGroup(int x, int y, const GroupColors& colors) const {
+  /// The primitives of a group's slots, 0 where there is none. Written out beforehand: where they are read right away,
+  /// g++ takes them out of the vector lane by lane.
+  HWY_INLINE void NumberColors(std::size_t group) const {
+    const DU d;
+    const std::size_t length = scratch_.length(group);
+    scratch_.fragments.reserve(length);
+    std::uint32_t* numbers = scratch_.fragments.paint.data();
+    const std::uint64_t* words = scratch_.slot(group, 0);
+    for (std::size_t i = 0; i < length * kGroup; i += hn::Lanes(d)) {
+      const VU low = HalvesOf(words + i).low;
+      hn::Store(hn::IfThenElseZero(hn::Ne(low, hn::Zero(d)), hn::Not(low)), d, numbers + i);
+    }
+  }
+
+  /// Whole rows: groups alone would write a quarter of a cache line at a time, each into memory that is not at hand.
+  HWY_INLINE void WriteStrip(int y) const {
     const Rectangle& r = job_.pixels;
-    const int width = HWY_MIN(4, r.width - x), height = HWY_MIN(4, r.height - y);
     float* const planes[4] = {out_.red, out_.green, out_.blue, out_.alpha};
     for (int k = 0; k < 4; ++k)
-      for (int row = 0; row < height; ++row) {
-        float* to =
-            planes[k] + std::size_t(r.y + y + row - out_.y) * std::size_t(out_.width) + std::size_t(r.x + x - out_.x);
-        const float* from = colors.channel[k] + 4 * row;
-        if (width == 4)
-          std::memcpy(to, from, 4 * sizeof(float));
-        else
-          std::copy_n(from, width, to);
+      for (int row = 0; row < HWY_MIN(4, r.height - y); ++row) {
+        const std::size_t at =
+            std::size_t(r.y + y + row - out_.y) * std::size_t(out_.width) + std::size_t(r.x - out_.x);
+        WriteRow(strip_[k][row], planes[k] + at);
       }
+  }
+
+  HWY_INLINE void WriteRow(const float* from, float* to) const {
+    const DF d;
+    const auto width = std::size_t(job_.pixels.width);
+    if (!out_.streams || width % hn::Lanes(d) != 0 || reinterpret_cast<std::uintptr_t>(to) % 64 != 0) {
+      std::memcpy(to, from, width * sizeof(float));
+      return;
+    }
+    for (std::size_t x = 0; x < width; x += hn::Lanes(d)) hn::Stream(hn::Load(d, from + x), d, to + x);
   }
 
   const FrameInput& frame_;
@@ -123,6 +150,7 @@ class TileCompositor {
   TileScratch& scratch_;
   const FragmentColors& colors_;
   const PicturePlanes& out_;
+  HWY_ALIGN_MAX float strip_[4][4][kTileSize];  // four rows of each plane
 };
 
 void CompositeTile(const FrameInput& frame, const TileJob& job, TileScratch& scratch, const FragmentColors& colors,

@@ -17,7 +17,8 @@ struct FragmentColors {
 struct PicturePlanes {
   float *red, *green, *blue, *alpha;
   int width;
-  int x = 0, y = 0;  ///< of the picture's pixel that comes first
+  int x = 0, y = 0;      ///< of the picture's pixel that comes first
+  bool streams = false;  ///< write them past the cache: they are too large to stay in it
 };
 
 /// Writes a job's pixels: premultiplied means over the sub-samples. At every sub-sample the order is that of the keys

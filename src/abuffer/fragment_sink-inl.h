@@ -19,7 +19,9 @@
 #include <algorithm>
 
 #include "abuffer/gather_kernel.h"
+#include "base/compactor-inl.h"
 #include "base/lanes-inl.h"
+#include "base/prefetch.h"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -27,6 +29,8 @@ namespace frontmost::abuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using frontmost::HWY_NAMESPACE::BitsOf;
+using frontmost::HWY_NAMESPACE::CompactInto;
+using frontmost::HWY_NAMESPACE::Compactor;
 using frontmost::HWY_NAMESPACE::CountFrom;
 using frontmost::HWY_NAMESPACE::ForEachBit;
 
@@ -109,7 +113,14 @@ class FragmentSink {
         height(job.pixels.height),
         triangles(scratch.triangles),
         arrived(scratch.arrived),
-        counts(scratch.counts.data()) {}
+        counts(scratch.counts.data()),
+        colors_(frame.colors) {}
+
+  /// Colours are read from all over the table when the tile is composited: late for every one that is not asked for
+  /// now.
+  HWY_INLINE void ExpectColor(PrimitiveId id) const {
+    if (colors_) prefetch_line(colors_ + id);
+  }
 
   /// The pixels of the tile whose samples may lie between corners.
   [[nodiscard]] HWY_INLINE PixelBounds BoundsOf(VI x_min, VI x_max, VI y_min, VI y_max) const {
@@ -140,16 +151,24 @@ class FragmentSink {
     arrived.count += covered;
   }
 
-  /// A vector of fragments that cover all samples, of which the caller counts as many as there are.
+  /// A vector of fragments that cover all samples.
   HWY_INLINE void AppendVector(VU key, VU place, std::uint32_t triangle) {
     const DU d;
     const std::size_t n = arrived.count;
     hn::StoreU(key, d, arrived.key.data() + n);
     hn::StoreU(place, d, arrived.place.data() + n);
-    hn::StoreU(hn::Set(d, triangle), d, arrived.triangle.data() + n);
-    if (kFlat) return;
-    hn::StoreU(hn::Set(d, std::uint32_t(samples.full())), d, arrived.mask_low.data() + n);
-    hn::StoreU(hn::Set(d, std::uint32_t(samples.full() >> 32)), d, arrived.mask_high.data() + n);
+    FillIn(n, triangle);
+    arrived.count += hn::Lanes(d);
+  }
+
+  /// Those of a vector that a mask names.
+  HWY_INLINE void AppendSome(VU key, VU place, std::uint32_t triangle, hn::Mask<DU> some) {
+    const Compactor<DU> compact(some);
+    const std::size_t n = arrived.count;
+    compact.Store(key, arrived.key.data() + n);
+    compact.Store(place, arrived.place.data() + n);
+    FillIn(n, triangle);
+    arrived.count += compact.count();
   }
 
   const SampleTable samples;
@@ -160,6 +179,15 @@ class FragmentSink {
   std::uint32_t* const counts;
 
  private:
+  /// What a vector of fragments from number n on shares.
+  HWY_INLINE void FillIn(std::size_t n, std::uint32_t triangle) {
+    const DU d;
+    hn::StoreU(hn::Set(d, triangle), d, arrived.triangle.data() + n);
+    if (kFlat) return;
+    hn::StoreU(hn::Set(d, std::uint32_t(samples.full())), d, arrived.mask_low.data() + n);
+    hn::StoreU(hn::Set(d, std::uint32_t(samples.full() >> 32)), d, arrived.mask_high.data() + n);
+  }
+
   static HWY_INLINE VI First(VI minimum, std::int32_t last) {
     const DI d;
     return hn::Max(hn::ShiftRight<8>(hn::Add(minimum, hn::Set(d, 255 - last * SamplePattern::unit))), hn::Zero(d));
@@ -168,6 +196,8 @@ class FragmentSink {
     const DI d;
     return hn::Min(hn::ShiftRight<8>(hn::Sub(maximum, hn::Set(d, first * SamplePattern::unit))), hn::Set(d, size - 1));
   }
+
+  const glm::vec4* const colors_;
 };
 
 }  // namespace HWY_NAMESPACE

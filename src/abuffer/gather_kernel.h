@@ -14,6 +14,8 @@ struct FrameInput {
   /// and enough where a pixel has one sample. Only with one sample.
   bool is_flat;
   Isa isa;
+  /// By primitive, where it is known; asked for ahead while triangles are drawn.
+  const glm::vec4* colors = nullptr;
 };
 
 /// A rectangle of a tile, whose clusters and single triangles it looks through.

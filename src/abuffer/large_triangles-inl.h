@@ -36,6 +36,7 @@ class LargeTriangles {
   void Draw(const ScreenTriangle& t) {
     const Bounds rect = BoundsOf(t);
     if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
+    sink_.ExpectColor(t.id);
     SetUpEdges(t);
     SetUpPlane(t);
     const std::size_t before = sink_.arrived.count;
@@ -247,7 +248,6 @@ class LargeTriangles {
     const VU count = hn::Load(du, sink_.counts + pixel);
     hn::Store(hn::Add(count, hn::Set(du, 1)), du, sink_.counts + pixel);
     sink_.AppendVector(hn::BitCast(du, key), PlaceOf(pixel, count), triangle_);
-    sink_.arrived.count += hn::Lanes(du);
   }
 
   /// Those pixels of a vector that are covered wholly.
@@ -256,8 +256,7 @@ class LargeTriangles {
     const auto mask = hn::RebindMask(du, covered);
     const VU count = hn::Load(du, sink_.counts + pixel);
     hn::Store(hn::Add(count, hn::IfThenElseZero(mask, hn::Set(du, 1))), du, sink_.counts + pixel);
-    sink_.AppendVector(hn::Compress(hn::BitCast(du, key), mask), hn::Compress(PlaceOf(pixel, count), mask), triangle_);
-    sink_.arrived.count += hn::CountTrue(du, mask);
+    sink_.AppendSome(hn::BitCast(du, key), PlaceOf(pixel, count), triangle_, mask);
   }
 
   static HWY_INLINE VU PlaceOf(std::uint32_t pixel, VU count) {

@@ -11,6 +11,8 @@ using namespace abuffer_detail;
 
 // Colours are looked up by 32-bit offsets.
 constexpr std::size_t kMostColors = (std::size_t(1) << 29) - 1;
+// Bytes of a picture that would drive everything else out of the caches.
+constexpr std::size_t kStreamFrom = std::size_t(4) << 20;
 
 void check_colors(const Surfaces& surfaces, std::span<const glm::vec4> colors) {
   if (colors.size() != surfaces.primitive_count())
@@ -62,10 +64,11 @@ const ResolvedPicture& Resolver::draw(const Surfaces& surfaces, const View& view
   state.prepare(view);
   // Holes are taken out of masks, which flat frames do not have.
   const bool has_holes = surfaces.clusters().cutouts != nullptr;
-  const FrameInput frame{state.plan, pattern, pattern.count == 1 && !has_holes, execution.isa};
+  const FrameInput frame{state.plan, pattern, pattern.count == 1 && !has_holes, execution.isa, colors.data()};
   ResolvedPicture& picture = state.picture;
-  const PicturePlanes out{picture.red.data(), picture.green.data(), picture.blue.data(), picture.alpha.data(),
-                          view.width};
+  const bool streams = view.pixel_count() * 4 * sizeof(float) >= kStreamFrom;
+  const PicturePlanes out{
+      picture.red.data(), picture.green.data(), picture.blue.data(), picture.alpha.data(), view.width, 0, 0, streams};
   const FragmentColors paint{colors.data(), false, options.opacity};
   visit_tiles(frame, state.scratches, execution, [&](const TileJob& job, TileScratch* scratch) {
     std::uint8_t& blank = state.blank[job.tile];

@@ -35,10 +35,9 @@ class SmallTriangles {
       : sink_(sink), references_(scratch.references.data()) {}
 
   HWY_INLINE void Append(const VI (&fields)[TriangleQueue::kFields], MI keep) {
-    const DI d;
-    for (int f = 0; f < TriangleQueue::kFields; ++f)
-      hn::StoreU(hn::Compress(fields[f], keep), d, queue_.field[f] + queue_.count);
-    queue_.count += hn::CountTrue(d, keep);
+    const Compactor<DI> compact(keep);
+    for (int f = 0; f < TriangleQueue::kFields; ++f) compact.Store(fields[f], queue_.field[f] + queue_.count);
+    queue_.count += compact.count();
   }
   [[nodiscard]] bool IsFull() const { return queue_.count >= hn::Lanes(DI()); }
   void Finish() {
@@ -52,6 +51,7 @@ class SmallTriangles {
     SetUp(drawn);
     const std::size_t found = Walk();
     if (found > 0) {
+      for (std::size_t i = 0; i < drawn; ++i) sink_.ExpectColor(std::uint32_t(queue_.field[9][i]));
       if (!kFlat) KeepPlanes(drawn);
       AppendFound(found);
     }
@@ -169,10 +169,7 @@ class SmallTriangles {
       for (int x = 0; x < most_x; ++x) {
         const VI all = hn::Or(hn::Or(e0, e1), e2);
         const MI covered = hn::And(hn::Gt(all, hn::Set(d, -1)), hn::Gt(row_width, hn::Set(d, x)));
-        const VI reference = CountFrom(d, y << 8 | x << 4);
-        const auto mask = hn::RebindMask(du, covered);
-        hn::StoreU(hn::Compress(hn::BitCast(du, reference), mask), du, out);
-        out += hn::CountTrue(du, mask);
+        out += CompactInto(CountFrom(du, std::uint32_t(y << 8 | x << 4)), hn::RebindMask(du, covered), du, out);
         e0 = hn::Add(e0, step_x[0]);
         e1 = hn::Add(e1, step_x[1]);
         e2 = hn::Add(e2, step_x[2]);

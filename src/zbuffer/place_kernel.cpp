@@ -8,14 +8,16 @@
 #include "base/isa.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
+// After Highway: a block of its own.
+#include "base/compactor-inl.h"
 #include "view/snap-inl.h"
 #include "zbuffer/batch-inl.h"
-#include "zbuffer/compactor-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using frontmost::HWY_NAMESPACE::Compactor;
 namespace screen = view_detail::HWY_NAMESPACE;
 
 /// Calls visit(first, pointer to a whole vector of triples) over `count` triples; the last may be repeated to fill up.

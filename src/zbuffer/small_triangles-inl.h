@@ -10,8 +10,8 @@
 #define FRONTMOST_ZBUFFER_SMALL_TRIANGLES_INL_H_
 #endif
 
+#include "base/compactor-inl.h"
 #include "zbuffer/batch-inl.h"
-#include "zbuffer/compactor-inl.h"
 #include "zbuffer/large_triangles-inl.h"
 #include "zbuffer/tile_buffer-inl.h"
 
@@ -19,6 +19,8 @@ HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using frontmost::HWY_NAMESPACE::CompactInto;
+using frontmost::HWY_NAMESPACE::Compactor;
 
 // A triangle whose pixel rectangle is at most this wide and high is drawn with others at once. All of them are walked
 // over the widest and the highest of their rectangles: long ones both ways would multiply. Walls are higher than wide.

@@ -132,6 +132,48 @@ TEST(Values, OutOfRangeAreRefused) {
   EXPECT_EQ(code_of([&] { (void)visible_layers(surfaces, view, 1025); }), ErrorCode::bad_argument);
 }
 
+/// One unit of x and y is one pixel, and pixel (x, y) of the crop is pixel (left + x, top + y) of the whole.
+View crop(int left, int top, int width, int height) {
+  View view;
+  view.width = width;
+  view.height = height;
+  view.world_from_eye = look_at({0, 0, 4}, {0, 0, 0}, {0, 1, 0});
+  view.projection = make_orthographic(left, left + width, -top - height, -top, {1, 9});
+  return view;
+}
+
+TEST(LargePictures, EqualTheirParts) {
+  // Corners are on multiples of 1/4 pixel, so both round them alike.
+  Random random(7);
+  Mesh mesh;
+  for (int i = 0; i < 500; ++i) {
+    glm::vec3 corners[3];
+    const float x = 0.25f * float(random.below(4096)), y = -0.25f * float(random.below(2048));
+    for (glm::vec3& corner : corners) {
+      const float dx = float(random.below(200)), dy = float(random.below(200));
+      corner = {x + dx, y + dy, random.within(-2, 2)};
+    }
+    add_triangle(mesh, corners[0], corners[1], corners[2]);
+  }
+  const Scene scene = scene_of(std::move(mesh));
+  const Surfaces surfaces(scene);
+  const std::vector<glm::vec4> colors(surfaces.primitive_count(), {0.2f, 0.4f, 0.9f, 0.3f});
+  // Written past the cache, where rows begin at whole lines of it: all of 1024 pixels, some of 1004, few of 1001.
+  constexpr int height = 512, step = 128;
+  for (const int width : {1024, 1004, 1001})
+    for (const int grid : {0, 2}) {
+      const ResolvedPicture whole = resolve(surfaces, crop(0, 0, width, height), colors, {grid});
+      for (int top = 0; top < height; top += step) {
+        const ResolvedPicture part = resolve(surfaces, crop(0, top, width, step), colors, {grid});
+        for (std::size_t i = 0; i < part.red.size(); ++i) {
+          const std::size_t at = std::size_t(top) * std::size_t(width) + i;
+          ASSERT_EQ(part.blue[i], whole.blue[at]) << width << ": " << at;
+          ASSERT_EQ(part.alpha[i], whole.alpha[at]) << width << ": " << at;
+        }
+      }
+    }
+}
+
 TEST(Resolver, GivesTheSameAfterOtherPictures) {
   const Scene many = stack_of(12), one = scene_of(random_mesh(Kind::tiny, 40, 2)), none = scene_of(Mesh());
   const Surfaces a(many), b(one), c(none);

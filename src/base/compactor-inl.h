@@ -3,11 +3,11 @@
 // every call under GCC 12; a small byte table and one permutation are 1.7 times as fast on a whole frame.
 
 // Included once for every target.
-#if defined(FRONTMOST_ZBUFFER_COMPACTOR_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef FRONTMOST_ZBUFFER_COMPACTOR_INL_H_
-#undef FRONTMOST_ZBUFFER_COMPACTOR_INL_H_
+#if defined(FRONTMOST_BASE_COMPACTOR_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FRONTMOST_BASE_COMPACTOR_INL_H_
+#undef FRONTMOST_BASE_COMPACTOR_INL_H_
 #else
-#define FRONTMOST_ZBUFFER_COMPACTOR_INL_H_
+#define FRONTMOST_BASE_COMPACTOR_INL_H_
 #endif
 
 #include <array>
@@ -15,8 +15,7 @@
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace frontmost::zbuffer_detail {
-namespace HWY_NAMESPACE {
+namespace frontmost::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4
@@ -91,8 +90,7 @@ HWY_INLINE std::size_t CompactInto(V v, hn::Mask<D> mask, D, hn::TFromD<D>* to) 
   return compact.count();
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace frontmost::zbuffer_detail
+}  // namespace frontmost::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // include guard by target
