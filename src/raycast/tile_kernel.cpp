@@ -125,9 +125,10 @@ class TileCaster {
       const DU du;
       const auto used = hn::FirstN(d, std::min(kLanes, node.count - first));
       const auto inside = hn::RebindMask(du, hn::AndNot(outside, used));
-      hn::StoreU(hn::Compress(hn::BitCast(du, key), inside), du, keys + count);
-      hn::StoreU(hn::Compress(hn::Load(du, node.child + first), inside), du, children + count);
-      count += hn::CountTrue(du, inside);
+      const Compactor<DU> compact(inside);
+      compact.Store(hn::BitCast(du, key), keys + count);
+      compact.Store(hn::Load(du, node.child + first), children + count);
+      count += compact.count();
     }
     Push(keys, children, count);
   }

@@ -10,12 +10,14 @@
 #define FRONTMOST_RAYCAST_TRIANGLE_QUEUE_INL_H_
 #endif
 
+#include "base/compactor-inl.h"
 #include "raycast/large_triangles-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::raycast_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using frontmost::HWY_NAMESPACE::Compactor;
 
 /// A triangle whose rectangle of samples is at most this wide and high is met with others at once.
 constexpr int kWalkLimit = 3;
@@ -32,16 +34,15 @@ class TriangleQueue {
 
   /// Adds the lanes of `kept`, and meets what fills a vector.
   HWY_INLINE void Add(const Batch& batch, MF kept) {
-    const DF d;
-    const DU du;
+    const Compactor<DF> compact(kept);
     for (std::size_t k = 0; k < 3; ++k) {
-      hn::StoreU(hn::Compress(batch.x[k], kept), d, x_[k] + count_);
-      hn::StoreU(hn::Compress(batch.y[k], kept), d, y_[k] + count_);
-      hn::StoreU(hn::Compress(batch.d[k], kept), d, d_[k] + count_);
+      compact.Store(batch.x[k], x_[k] + count_);
+      compact.Store(batch.y[k], y_[k] + count_);
+      compact.Store(batch.d[k], d_[k] + count_);
     }
-    hn::StoreU(hn::Compress(batch.id, hn::RebindMask(du, kept)), du, id_ + count_);
-    hn::StoreU(hn::Compress(batch.rect, hn::RebindMask(du, kept)), du, rect_ + count_);
-    count_ += hn::CountTrue(d, kept);
+    compact.Store(batch.id, id_ + count_);
+    compact.Store(batch.rect, rect_ + count_);
+    count_ += compact.count();
     while (count_ >= kLanes) Flush(kLanes);
   }
 
