@@ -20,10 +20,10 @@ Query query_of(const Ray& ray) { return {ray.origin, ray.origin, ray.direction, 
 /// The rounded direction may overflow where the ends are as far apart as floats reach; it then leaves nothing out.
 Query query_of(const Segment& segment) { return {segment.from, segment.to, segment.to - segment.from, true}; }
 
-RayHit first_of(const RayTree& tree, const Query& query, Want want, std::vector<RayHit>& hits, Isa isa) {
-  hits.clear();
-  if (is_valid(query)) walk(tree, query, want, hits, isa);
-  return hits.empty() ? RayHit{} : hits[0];
+RayHit first_of(const RayTree& tree, const Query& query, Want want) {
+  RayHit hit;
+  walk_batch(tree, {&query, 1}, want, {&hit, 1}, Isa::best);
+  return hit;
 }
 
 void check_sizes(std::size_t queries, std::size_t answers) {
@@ -32,12 +32,26 @@ void check_sizes(std::size_t queries, std::size_t answers) {
                                              std::to_string(queries) + " queries");
 }
 
-/// Calls answer(i, hits) for every query, with room for hits that is used again.
-template <class Answer>
-void for_each_query(std::size_t count, const Execution& execution, const Answer& answer) {
-  parallel_for(execution, count, kQueriesPerPart, [&](std::size_t begin, std::size_t end) {
-    std::vector<RayHit> hits;
-    for (std::size_t i = begin; i < end; ++i) answer(i, hits);
+/// Calls take(begin, hits) for the answers to consecutive questions.
+template <class Question, class Take>
+void ask(const RayIndex& index, std::span<const Question> questions, Want want, const Execution& execution,
+         const Take& take) {
+  parallel_for(execution, questions.size(), kQueriesPerPart, [&](std::size_t begin, std::size_t end) {
+    std::array<Query, kQueriesPerPart> queries;
+    std::array<RayHit, kQueriesPerPart> hits;
+    const std::size_t count = end - begin;
+    for (std::size_t i = 0; i < count; ++i) queries[i] = query_of(questions[begin + i]);
+    walk_batch(index.tree(), {queries.data(), count}, want, {hits.data(), count}, execution.isa);
+    take(begin, std::span<const RayHit>(hits.data(), count));
+  });
+}
+
+template <class Question>
+void ask_closest(const RayIndex& index, std::span<const Question> questions, std::span<RayHit> answers,
+                 const Execution& execution) {
+  check_sizes(questions.size(), answers.size());
+  ask(index, questions, Want::closest, execution, [&](std::size_t begin, std::span<const RayHit> hits) {
+    std::copy(hits.begin(), hits.end(), answers.begin() + std::ptrdiff_t(begin));
   });
 }
 
@@ -45,14 +59,12 @@ void for_each_query(std::size_t count, const Execution& execution, const Answer&
 
 RayHit closest_hit(const RayIndex& index, const Ray& ray) {
   const IeeeScope ieee;
-  std::vector<RayHit> hits;
-  return first_of(index.tree(), query_of(ray), Want::closest, hits, Isa::best);
+  return first_of(index.tree(), query_of(ray), Want::closest);
 }
 
 RayHit closest_hit(const RayIndex& index, const Segment& segment) {
   const IeeeScope ieee;
-  std::vector<RayHit> hits;
-  return first_of(index.tree(), query_of(segment), Want::closest, hits, Isa::best);
+  return first_of(index.tree(), query_of(segment), Want::closest);
 }
 
 std::vector<RayHit> all_hits(const RayIndex& index, const Ray& ray) {
@@ -67,32 +79,24 @@ std::vector<RayHit> all_hits(const RayIndex& index, const Ray& ray) {
 
 bool is_clear(const RayIndex& index, const Segment& segment) {
   const IeeeScope ieee;
-  std::vector<RayHit> hits;
-  return first_of(index.tree(), query_of(segment), Want::any, hits, Isa::best).primitive == no_primitive;
+  return first_of(index.tree(), query_of(segment), Want::any).primitive == no_primitive;
 }
 
 void closest_hits(const RayIndex& index, std::span<const Ray> rays, std::span<RayHit> answers,
                   const Execution& execution) {
-  check_sizes(rays.size(), answers.size());
-  for_each_query(rays.size(), execution, [&](std::size_t i, std::vector<RayHit>& hits) {
-    answers[i] = first_of(index.tree(), query_of(rays[i]), Want::closest, hits, execution.isa);
-  });
+  ask_closest(index, rays, answers, execution);
 }
 
 void closest_hits(const RayIndex& index, std::span<const Segment> segments, std::span<RayHit> answers,
                   const Execution& execution) {
-  check_sizes(segments.size(), answers.size());
-  for_each_query(segments.size(), execution, [&](std::size_t i, std::vector<RayHit>& hits) {
-    answers[i] = first_of(index.tree(), query_of(segments[i]), Want::closest, hits, execution.isa);
-  });
+  ask_closest(index, segments, answers, execution);
 }
 
 void are_clear(const RayIndex& index, std::span<const Segment> segments, std::span<std::uint8_t> answers,
                const Execution& execution) {
   check_sizes(segments.size(), answers.size());
-  for_each_query(segments.size(), execution, [&](std::size_t i, std::vector<RayHit>& hits) {
-    answers[i] =
-        first_of(index.tree(), query_of(segments[i]), Want::any, hits, execution.isa).primitive == no_primitive;
+  ask(index, segments, Want::any, execution, [&](std::size_t begin, std::span<const RayHit> hits) {
+    for (std::size_t i = 0; i < hits.size(); ++i) answers[begin + i] = hits[i].primitive == no_primitive;
   });
 }
 

@@ -30,6 +30,10 @@ enum class Want : std::uint8_t {
 /// Appends what is met to `hits`. Precondition: is_valid(query).
 void walk(const RayTree& tree, const Query& query, Want want, std::vector<RayHit>& hits, Isa isa);
 
+/// The hit of each query that `want`, closest or any, asks for; none where the query is not valid.
+/// Precondition: as many answers as queries.
+void walk_batch(const RayTree& tree, std::span<const Query> queries, Want want, std::span<RayHit> answers, Isa isa);
+
 /// A triangle met at its exact place, or not at all: the definition, on plain scalars.
 [[nodiscard]] RayHit meet(const Query& query, const std::array<glm::vec3, 3>& corners, PrimitiveId id);
 

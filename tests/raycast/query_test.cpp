@@ -123,45 +123,70 @@ glm::vec3 some_point(Random& random, const Surfaces& surfaces) {
   }
 }
 
+/// Every way to ask, against every triangle one by one. \returns whether anything is met.
+bool expect_each_triangle_asked(const Indexed& of, const raycast_detail::Query& query) {
+  std::vector<RayHit> expected;
+  for (PrimitiveId id = 0; id < of.surfaces.primitive_count(); ++id)
+    if (const RayHit hit = raycast_detail::meet(query, of.surfaces.corners(id), id)) expected.push_back(hit);
+  const auto order = [](const RayHit& a, const RayHit& b) {
+    return a.t != b.t ? a.t < b.t : a.primitive < b.primitive;
+  };
+  std::sort(expected.begin(), expected.end(), order);
+  for (const Isa isa : available_isas()) {
+    SCOPED_TRACE(name(isa));
+    std::vector<RayHit> all, closest, any;
+    walk(of.index.tree(), query, raycast_detail::Want::all, all, isa);
+    walk(of.index.tree(), query, raycast_detail::Want::closest, closest, isa);
+    walk(of.index.tree(), query, raycast_detail::Want::any, any, isa);
+    std::sort(all.begin(), all.end(), order);
+    EXPECT_EQ(all.size(), expected.size());
+    for (std::size_t k = 0; k < std::min(all.size(), expected.size()); ++k) {
+      EXPECT_EQ(all[k].primitive, expected[k].primitive);
+      EXPECT_EQ(all[k].t, expected[k].t);
+    }
+    EXPECT_EQ(any.empty(), expected.empty());
+    EXPECT_EQ(closest.empty(), expected.empty());
+    if (!expected.empty() && !closest.empty()) {
+      EXPECT_EQ(closest[0].primitive, expected[0].primitive);
+    }
+  }
+  return !expected.empty();
+}
+
 TEST_P(EveryKindOfQuery, EqualsEveryTriangleOneByOneOnEveryInstructionSet) {
   std::size_t met = 0;
-  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+  for (std::uint64_t seed = 0; seed < 8 && !HasFailure(); ++seed) {
     Random random(seed + 40);
     const Indexed of(scene_of(random_mesh(GetParam(), 100 + random.below(300), seed)));
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < 60 && !HasFailure(); ++i) {
+      SCOPED_TRACE(testing::Message() << "seed " << seed << ", query " << i);
       const glm::vec3 from = some_point(random, of.surfaces), to = some_point(random, of.surfaces);
-      const bool is_segment = i % 2 == 0;
-      const raycast_detail::Query query{from, to, to - from, is_segment};
-      if (!raycast_detail::is_valid(query)) continue;
-      std::vector<RayHit> expected;
-      for (PrimitiveId id = 0; id < of.surfaces.primitive_count(); ++id)
-        if (const RayHit hit = raycast_detail::meet(query, of.surfaces.corners(id), id)) expected.push_back(hit);
-      const auto order = [](const RayHit& a, const RayHit& b) {
-        return a.t != b.t ? a.t < b.t : a.primitive < b.primitive;
-      };
-      std::sort(expected.begin(), expected.end(), order);
-      met += !expected.empty();
-      for (const Isa isa : available_isas()) {
-        SCOPED_TRACE(testing::Message() << "seed " << seed << ", query " << i << ", " << name(isa));
-        std::vector<RayHit> all, closest, any;
-        walk(of.index.tree(), query, raycast_detail::Want::all, all, isa);
-        walk(of.index.tree(), query, raycast_detail::Want::closest, closest, isa);
-        walk(of.index.tree(), query, raycast_detail::Want::any, any, isa);
-        std::sort(all.begin(), all.end(), order);
-        ASSERT_EQ(all.size(), expected.size());
-        for (std::size_t k = 0; k < all.size(); ++k) {
-          ASSERT_EQ(all[k].primitive, expected[k].primitive);
-          ASSERT_EQ(all[k].t, expected[k].t);
-        }
-        ASSERT_EQ(any.empty(), expected.empty());
-        ASSERT_EQ(closest.empty(), expected.empty());
-        if (!expected.empty()) {
-          ASSERT_EQ(closest[0].primitive, expected[0].primitive);
-        }
-      }
+      const raycast_detail::Query query{from, to, to - from, i % 2 == 0};
+      if (raycast_detail::is_valid(query)) met += expect_each_triangle_asked(of, query);
     }
   }
   if (GetParam() != Kind::tiny && GetParam() != Kind::slivers) {
+    EXPECT_GT(met, 20u);
+  }
+}
+
+/// Products of coordinates of one overflow, of others underflow.
+TEST(Query, EqualsEveryTriangleOneByOneAtEveryScale) {
+  for (const float scale : {1e-30f, 1e-20f, 1e-13f, 1e-6f, 1e6f, 1e13f, 1e20f, 1e30f}) {
+    std::size_t met = 0;
+    for (std::uint64_t seed = 0; seed < 3 && !HasFailure(); ++seed) {
+      Random random(seed + 70);
+      Mesh mesh = random_mesh(seed == 0 ? Kind::soup : seed == 1 ? Kind::sheets : Kind::fan, 150, seed);
+      for (glm::vec3& p : mesh.positions) p *= scale;
+      const Indexed of(scene_of(mesh));
+      for (int i = 0; i < 40 && !HasFailure(); ++i) {
+        SCOPED_TRACE(testing::Message() << "scale " << scale << ", seed " << seed << ", query " << i);
+        const glm::vec3 from = scale * random.point(1.5f), to = scale * random.point(1.5f);
+        // Rays of any length, too.
+        const glm::vec3 direction = i % 4 == 1 ? (to - from) / scale : to - from;
+        met += expect_each_triangle_asked(of, {from, to, direction, i % 2 == 0});
+      }
+    }
     EXPECT_GT(met, 20u);
   }
 }
@@ -241,6 +266,35 @@ TEST(Query, BatchesDoNotDependOnThreads) {
     ASSERT_EQ(hits[i].primitive, closest_hit(of.index, rays[i]).primitive);
     ASSERT_EQ(bool(clear[i]), !between[i]);
   }
+}
+
+/// So large that the rays of a batch take turns; some of them are nonsense.
+TEST(Query, BatchesOfLargeTreesEqualSingleRays) {
+  const Indexed of(scene_of(random_mesh(Kind::tiny, 250'000, 10)));
+  ASSERT_GT(of.index.byte_count(), std::size_t(8) << 20);
+  Random random(11);
+  std::vector<Ray> rays(1500);
+  std::vector<Segment> segments(1500);
+  for (Ray& ray : rays) ray = {random.point(1), random.point(1)};
+  for (Segment& segment : segments) segment = {random.point(1), random.point(1)};
+  for (std::size_t i = 0; i < rays.size(); i += 7) rays[i].direction = glm::vec3(0);
+  std::vector<RayHit> hits(rays.size());
+  std::vector<std::uint8_t> clear(segments.size());
+  closest_hits(of.index, rays, hits);
+  are_clear(of.index, segments, clear);
+  std::size_t met = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    std::vector<RayHit> one, any;
+    const raycast_detail::Query ray{rays[i].origin, rays[i].origin, rays[i].direction, false};
+    if (raycast_detail::is_valid(ray)) walk(of.index.tree(), ray, raycast_detail::Want::closest, one, Isa::best);
+    ASSERT_EQ(hits[i].primitive, one.empty() ? no_primitive : one[0].primitive);
+    ASSERT_EQ(hits[i].t, one.empty() ? RayHit{}.t : one[0].t);
+    const Segment& s = segments[i];
+    walk(of.index.tree(), {s.from, s.to, s.to - s.from, true}, raycast_detail::Want::any, any, Isa::best);
+    ASSERT_EQ(bool(clear[i]), any.empty());
+    met += !one.empty();
+  }
+  EXPECT_GT(met, 500u);
 }
 
 }  // namespace
