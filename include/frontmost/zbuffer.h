@@ -17,6 +17,13 @@ namespace frontmost {
 /// \throws Error as validate(view) does.
 [[nodiscard]] Visible zbuffer(const Surfaces& surfaces, const View& view, const Execution& execution = {});
 
+/// The same to the bit, for a single picture of a scene of which no Surfaces are made: triangles are drawn from the
+/// scene's own arrays. 1.2 to 3 times as fast as making Surfaces and drawing those once; slower from the second picture
+/// on, and where nearly all is hidden. Memory beside the result: some tens of MiB, 100 bytes for each large or clipped
+/// one of half a million triangles in a row, and the holes of MASK materials.
+/// \throws Error as Surfaces(scene) and validate(view) do.
+[[nodiscard]] Visible zbuffer(const Scene& scene, const View& view, const Execution& execution = {});
+
 /// The same for repeated views: frames after the first reuse the memory of those before, and allocate nothing as long
 /// as no frame needs more. Not for several threads at once; each draw() uses the threads it is given.
 class ZBuffer {

@@ -13,9 +13,11 @@ namespace {
 void check_corners(const Scene& scene, std::size_t mesh, const std::vector<glm::uvec3>& triangles, std::size_t count,
                    const char* what) {
   // One pass without branches finds whether there is anything to say; a second one finds where.
+  if (triangles.empty()) return;
   std::uint32_t greatest = 0;
-  for (const glm::uvec3& t : triangles) greatest = std::max({greatest, t.x, t.y, t.z});
-  if (triangles.empty() || greatest < count) return;
+  const std::uint32_t* numbers = &triangles.front().x;
+  for (std::size_t i = 0; i < 3 * triangles.size(); ++i) greatest = std::max(greatest, numbers[i]);
+  if (greatest < count) return;
   for (std::size_t i = 0; i < triangles.size(); ++i)
     for (int k = 0; k < 3; ++k)
       if (triangles[i][k] >= count)

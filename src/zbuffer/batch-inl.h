@@ -43,6 +43,18 @@ HWY_INLINE std::uint64_t BitsOf(D d, hn::Mask<D> mask) {
   return bits & ((std::uint64_t(1) << hn::Lanes(d)) - 1);
 }
 
+#if HWY_TARGET <= HWY_AVX3
+// 64 entries are four vectors, and a permutation reads two: a gather takes several times as long.
+HWY_INLINE VI LookUp64(const std::int32_t* table, VI number) {
+  const auto low = _mm512_permutex2var_epi32(_mm512_load_si512(table), number.raw, _mm512_load_si512(table + 16));
+  const auto high = _mm512_permutex2var_epi32(_mm512_load_si512(table + 32), number.raw, _mm512_load_si512(table + 48));
+  return VI{_mm512_mask_blend_epi32(_mm512_test_epi32_mask(number.raw, _mm512_set1_epi32(32)), low, high)};
+}
+#else
+/// The entries of an aligned table of 64.
+HWY_INLINE VI LookUp64(const std::int32_t* table, VI number) { return hn::GatherIndex(DI(), table, number); }
+#endif
+
 /// The least and the greatest coordinate of each triangle.
 struct CoordinateRange {
   VI least, greatest;

@@ -57,14 +57,19 @@ class CutoutPainter {
 
 void draw_cutouts(const ClusterSet& set, const ScreenTransform& transform, Visible& visible,
                   const Execution& execution) {
-  const View& view = visible.view;
-  const ScreenRays rays(view);
   std::vector<TriangleRecord> records;
   for (std::size_t i = set.first_cutout; i < set.clusters.size(); ++i)
-    append_records(set, set.clusters[i], transform, view, records);
+    append_records(set, set.clusters[i], transform, visible.view, records);
+  draw_cutouts(*set.cutouts, records, visible, execution);
+}
+
+void draw_cutouts(const Cutouts& cutouts, std::span<const TriangleRecord> records, Visible& visible,
+                  const Execution& execution) {
+  const View& view = visible.view;
+  const ScreenRays rays(view);
   constexpr std::size_t kRowsPerPart = 16;
   parallel_for(execution, std::size_t(view.height), kRowsPerPart, [&](std::size_t begin, std::size_t end) {
-    CutoutPainter painter(*set.cutouts, rays, {0, int(begin), view.width - 1, int(end) - 1}, visible);
+    CutoutPainter painter(cutouts, rays, {0, int(begin), view.width - 1, int(end) - 1}, visible);
     for (const TriangleRecord& record : records) painter.draw(record);
   });
 }

@@ -11,6 +11,7 @@
 #endif
 
 #include "zbuffer/tile_buffer-inl.h"
+#include "zbuffer/triangle_records.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {
@@ -21,15 +22,29 @@ constexpr std::int32_t kBlockUnits = kBlockSize * kSubPixels;
 
 class LargeTriangles {
  public:
-  LargeTriangles(const FrameInput& frame, const TileJob& job, TileBuffer& buffer)
-      : frame_(frame), job_(job), buffer_(buffer) {
-    low_ = high_ = frame.samples[0];
-    for (const glm::ivec2& s : frame.samples) low_ = glm::min(low_, s), high_ = glm::max(high_, s);
+  LargeTriangles(const Picture& picture, const Tile& tile, TileBuffer& buffer)
+      : picture_(picture), tile_(tile), buffer_(buffer) {
+    low_ = high_ = picture.samples[0];
+    for (const glm::ivec2& s : picture.samples) low_ = glm::min(low_, s), high_ = glm::max(high_, s);
+  }
+
+  /// Of `records`, nearest first and with corners from the image's top left, those that `numbers` names.
+  void DrawAll(std::span<const TriangleRecord> records, std::span<const std::uint32_t> numbers) {
+    for (const std::uint32_t i : numbers) {
+      TriangleRecord record = records[i];
+      // Nearest first: what hides this one everywhere hides the others, too.
+      if (buffer_.KnownToHide(record.nearest()) == ~std::uint64_t(0)) return;
+      for (int k = 0; k < 3; ++k) {
+        record.x[k] -= tile_.x * kSubPixels;
+        record.y[k] -= tile_.y * kSubPixels;
+      }
+      Draw(record);
+    }
   }
 
   /// Precondition: oriented; corners relative to the tile.
   void Draw(const TriangleRecord& r) {
-    const PixelRect rect = pixel_rect(r, job_.width, job_.height);
+    const PixelRect rect = pixel_rect(r, tile_.width, tile_.height);
     if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
     const std::uint64_t touched = TileBuffer::BlocksOf(rect);
     if (buffer_.AllHide(touched, r.nearest())) return;
@@ -37,7 +52,7 @@ class LargeTriangles {
     Reach reach;
     std::uint64_t open = touched & ~KnownHidden(plane, rect, reach);
     std::uint64_t whole = open;
-    for (std::size_t s = 0; s < frame_.samples.size() && open != 0; ++s)
+    for (std::size_t s = 0; s < picture_.samples.size() && open != 0; ++s)
       whole &= DrawSample(r, plane, rect, s, open, reach);
     for (whole &= open; whole != 0; whole &= whole - 1)
       KeepPlane(int(hwy::Num0BitsBelowLS1Bit_Nonzero64(whole)), plane, reach);
@@ -156,7 +171,7 @@ class LargeTriangles {
   /// to lately and turn out to hide the triangle.
   [[nodiscard]] std::uint64_t DrawSample(const TriangleRecord& r, const Plane& plane, const PixelRect& rect,
                                          std::size_t sample, std::uint64_t& open, const Reach& reach) {
-    const TriangleEdges edges(r, frame_.samples[sample]);
+    const TriangleEdges edges(r, picture_.samples[sample]);
     const Cover cover = CoverOf(edges, rect);
     for (std::uint64_t left = open & ~cover.none; left != 0; left &= left - 1) {
       const int block = int(hwy::Num0BitsBelowLS1Bit_Nonzero64(left));
@@ -179,7 +194,7 @@ class LargeTriangles {
     const DU du;
     const DF df;
     const int bx = block % 8, by = block / 8;
-    const glm::ivec2 offset = frame_.samples[sample];
+    const glm::ivec2 offset = picture_.samples[sample];
     HWY_ALIGN_MAX float down[kBlockSize];
     for (int y = 0; y < kBlockSize; y += int(kMaxLanes)) {
       const VI dy = hn::Add(hn::ShiftLeft<8>(hn::Iota(d, y)), hn::Set(d, by * kBlockUnits + offset.y - p.y0));
@@ -212,14 +227,14 @@ class LargeTriangles {
         }
       }
     }
-    if (y0 == 0 && y1 == kBlockSize - 1 && frame_.samples.size() == 1)
+    if (y0 == 0 && y1 == kBlockSize - 1 && picture_.samples.size() == 1)
       buffer_.SetLeast(block, least);
     else
       buffer_.MarkDrawn(std::uint64_t(1) << block);
   }
 
-  const FrameInput& frame_;
-  const TileJob& job_;
+  const Picture& picture_;
+  const Tile& tile_;
   TileBuffer& buffer_;
   glm::ivec2 low_, high_;  // of the sample offsets
 };

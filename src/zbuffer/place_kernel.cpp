@@ -10,27 +10,14 @@
 #include "hwy/highway.h"
 // After Highway: a block of its own.
 #include "base/compactor-inl.h"
-#include "view/snap-inl.h"
 #include "zbuffer/batch-inl.h"
+#include "zbuffer/snap_piece-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using frontmost::HWY_NAMESPACE::Compactor;
-namespace screen = view_detail::HWY_NAMESPACE;
-
-/// Calls visit(first, pointer to a whole vector of triples) over `count` triples; the last may be repeated to fill up.
-template <class Triple, class Visit>
-HWY_INLINE void ForTriples(std::span<const Triple> triples, const Visit& visit) {
-  const std::size_t lanes = hn::Lanes(DF());
-  std::size_t i = 0;
-  for (; i + lanes <= triples.size(); i += lanes) visit(i, &triples[i].x);
-  if (i == triples.size()) return;
-  Triple rest[kMaxLanes];
-  for (std::size_t k = 0; k < lanes; ++k) rest[k] = triples[HWY_MIN(i + k, triples.size() - 1)];
-  visit(i, &rest[0].x);
-}
 
 class Placer {
  public:
@@ -38,54 +25,20 @@ class Placer {
       : target_(target), piece_(piece), vertices_(vertices), placed_(placed) {}
 
   void Place() {
-    SnapVertices();
+    (void)SnapVertices(target_.transform, piece_.positions, vertices_,
+                       [](const auto&, const auto&) HWY_ATTR { return hn::Set(DF(), -1.0f); });
     ForTriples(piece_.corners, [&](std::size_t i, const std::uint32_t* corners) HWY_ATTR { PlaceVector(i, corners); });
   }
 
  private:
-  struct Corner {
-    VI number, x, y;
-  };
-
-  void SnapVertices() {
-    const DF d;
-    const DI di;
-    const std::size_t room = piece_.positions.size() + kMaxLanes;
-    if (vertices_.x.size() < room) {
-      vertices_.x.resize(room);
-      vertices_.y.resize(room);
-      vertices_.key.resize(room);
-    }
-    const VI centre_x = hn::Set(di, target_.transform.centre_x), centre_y = hn::Set(di, target_.transform.centre_y);
-    ForTriples(piece_.positions, [&](std::size_t i, const float* positions) HWY_ATTR {
-      VF x, y, z;
-      hn::LoadInterleaved3(d, positions, x, y, z);
-      const auto homogeneous = screen::Transform(target_.transform, x, y, z);
-      const auto snapped = screen::Snap(target_.transform, homogeneous);
-      const auto plain = screen::IsPlain(target_.transform, homogeneous);
-      hn::StoreU(hn::Add(snapped.x, centre_x), di, vertices_.x.data() + i);
-      hn::StoreU(hn::Add(snapped.y, centre_y), di, vertices_.y.data() + i);
-      hn::StoreU(hn::IfThenElse(plain, snapped.key, hn::Set(d, -1.0f)), d, vertices_.key.data() + i);
-    });
-  }
-
-  [[nodiscard]] HWY_INLINE Corner Fetch(hn::Vec<DU> number) const {
-    const DI d;
-    const VI n = hn::Sub(hn::BitCast(d, number), hn::Set(d, std::int32_t(piece_.first_position)));
-    return {n, hn::GatherIndex(d, vertices_.x.data(), n), hn::GatherIndex(d, vertices_.y.data(), n)};
-  }
-  [[nodiscard]] HWY_INLINE VF KeyOf(const Corner& corner) const {
-    return hn::GatherIndex(DF(), vertices_.key.data(), corner.number);
-  }
-
   HWY_INLINE void PlaceVector(std::size_t first, const std::uint32_t* corners) {
     const DI d;
     const DF df;
-    hn::Vec<DU> numbers[3];
+    VU numbers[3];
     hn::LoadInterleaved3(DU(), corners, numbers[0], numbers[1], numbers[2]);
     if (piece_.is_mirrored) std::swap(numbers[1], numbers[2]);
-    const Corner a = Fetch(numbers[0]), b = Fetch(numbers[1]), c = Fetch(numbers[2]);
-    const VF ka = KeyOf(a), kb = KeyOf(b), kc = KeyOf(c);
+    const PlacedCorners a = Fetch(numbers[0]), b = Fetch(numbers[1]), c = Fetch(numbers[2]);
+    const VF ka = FetchKeys(vertices_, a), kb = FetchKeys(vertices_, b), kc = FetchKeys(vertices_, c);
     const std::size_t live = HWY_MIN(piece_.corners.size() - first, hn::Lanes(d));
     placed_.make_room(live);
     if (!hn::AllFalse(df, hn::Lt(hn::Min(ka, hn::Min(kb, kc)), hn::Zero(df)))) {
@@ -122,6 +75,10 @@ class Placer {
     placed_.count += compact.count();
   }
 
+  [[nodiscard]] HWY_INLINE PlacedCorners Fetch(VU number) const {
+    return FetchCorners(vertices_, number, piece_.first_position);
+  }
+
   [[nodiscard]] HWY_INLINE VI OnlyTile(const PixelRange& px, const PixelRange& py) const {
     const DI d;
     static_assert(kSubmissionTile == 1 << 7);
@@ -132,7 +89,7 @@ class Placer {
   }
 
   /// Twice the signed area, rounded once: within the guard band doubles hold it exactly.
-  [[nodiscard]] static HWY_INLINE VF AreaOf(const Corner& a, const Corner& b, const Corner& c) {
+  [[nodiscard]] static HWY_INLINE VF AreaOf(const PlacedCorners& a, const PlacedCorners& b, const PlacedCorners& c) {
     using DD = hn::ScalableTag<double>;
     using Half = hn::Rebind<std::int32_t, DD>;
     const DI d;
@@ -163,12 +120,37 @@ void PlaceTriangles(const PlaceTarget& target, const PieceGeometry& piece, Piece
   Placer(target, piece, scratch, placed).Place();
 }
 
+NumberRange RangeOfNumbers(std::span<const glm::uvec3> corners) {
+  const DU d;
+  const std::uint32_t* numbers = &corners.front().x;
+  const std::size_t count = 3 * corners.size(), lanes = hn::Lanes(d);
+  NumberRange range{no_index, 0};
+  std::size_t i = 0;
+  if (count >= lanes) {
+    VU low = hn::Set(d, no_index), high = hn::Zero(d);
+    for (; i + lanes <= count; i += lanes) {
+      const VU number = hn::LoadU(d, numbers + i);
+      low = hn::Min(low, number);
+      high = hn::Max(high, number);
+    }
+    range = {hn::GetLane(hn::MinOfLanes(d, low)), hn::GetLane(hn::MaxOfLanes(d, high))};
+  }
+  for (; i < count; ++i) range = {HWY_MIN(range.low, numbers[i]), HWY_MAX(range.high, numbers[i])};
+  return range;
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace frontmost::zbuffer_detail
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace frontmost::zbuffer_detail {
+
+FRONTMOST_KERNELS(RangeOfNumbers);
+
+NumberRange range_of_numbers(std::span<const glm::uvec3> corners, Isa isa) {
+  return kernel_for(RangeOfNumbersKernels, isa)(corners);
+}
 
 FRONTMOST_KERNELS(PlaceTriangles);
 

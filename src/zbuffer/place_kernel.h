@@ -30,6 +30,13 @@ struct PieceGeometry {
 struct PieceVertices {
   std::vector<std::int32_t> x, y;  ///< from the image's top left
   std::vector<float> key;          ///< less than 0 where the vertex cannot be snapped as it is
+
+  void make_room(std::size_t count) {
+    if (x.size() >= count) return;
+    x.resize(count);
+    y.resize(count);
+    key.resize(count);
+  }
 };
 
 /// What all pieces of a draw call have in common.
@@ -42,6 +49,13 @@ struct PlaceTarget {
 
   PlaceTarget(const ScreenTransform& t, const View& v, Isa i);
 };
+
+/// The least and the greatest.
+struct NumberRange {
+  std::uint32_t low, high;
+};
+/// Precondition: not empty.
+[[nodiscard]] NumberRange range_of_numbers(std::span<const glm::uvec3> corners, Isa isa);
 
 /// Appends what of the triangles may cover a sample, in order. Those that have to be clipped go through
 /// append_clipped().

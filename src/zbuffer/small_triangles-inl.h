@@ -45,11 +45,11 @@ struct SmallBatch : Batch {
 
 class SmallTriangles {
  public:
-  SmallTriangles(const FrameInput& frame, const TileJob& job, TileScratch& scratch, TileBuffer& buffer,
+  SmallTriangles(const Picture& picture, const Tile& tile, TileScratch& scratch, TileBuffer& buffer,
                  LargeTriangles& large)
-      : frame_(frame), job_(job), references_(scratch.references.data()), buffer_(buffer), large_(large) {
-    low_ = high_ = frame.samples[0];
-    for (const glm::ivec2& s : frame.samples) low_ = glm::min(low_, s), high_ = glm::max(high_, s);
+      : picture_(picture), tile_(tile), references_(scratch.references.data()), buffer_(buffer), large_(large) {
+    low_ = high_ = picture.samples[0];
+    for (const glm::ivec2& s : picture.samples) low_ = glm::min(low_, s), high_ = glm::max(high_, s);
   }
 
   /// Where triangles are to be appended, less than a vector of them before DrawFull() is called.
@@ -64,10 +64,10 @@ class SmallTriangles {
 
   /// The pixels of the tile that have a sample within the ranges of triangles.
   [[nodiscard]] HWY_INLINE PixelRange ColumnsOf(const CoordinateRange& x) const {
-    return PixelsOf(x, low_.x, high_.x, job_.width);
+    return PixelsOf(x, low_.x, high_.x, tile_.width);
   }
   [[nodiscard]] HWY_INLINE PixelRange RowsOf(const CoordinateRange& y) const {
-    return PixelsOf(y, low_.y, high_.y, job_.height);
+    return PixelsOf(y, low_.y, high_.y, tile_.height);
   }
 
  private:
@@ -85,7 +85,7 @@ class SmallTriangles {
     LeaveOutHidden(batch);
     const int most_x = hn::GetLane(hn::MaxOfLanes(d, batch.width));
     const int most_y = hn::GetLane(hn::MaxOfLanes(d, batch.height));
-    for (std::size_t s = 0; s < frame_.samples.size(); ++s) {
+    for (std::size_t s = 0; s < picture_.samples.size(); ++s) {
       const std::size_t found = Walk(batch, most_x, most_y, s);
       Merge(batch, found, s);
     }
@@ -164,7 +164,7 @@ class SmallTriangles {
   HWY_INLINE std::size_t Walk(const SmallBatch& b, int most_x, int most_y, std::size_t sample) {
     const DI d;
     const DU du;
-    const glm::ivec2 offset = frame_.samples[sample];
+    const glm::ivec2 offset = picture_.samples[sample];
     const VI sx = hn::Add(hn::ShiftLeft<8>(b.px), hn::Set(d, offset.x));
     const VI sy = hn::Add(hn::ShiftLeft<8>(b.py), hn::Set(d, offset.y));
     BatchEdges row = EdgesAt(b, sx, sy);
@@ -194,7 +194,7 @@ class SmallTriangles {
     const DI d;
     const DU du;
     const DF df;
-    const glm::ivec2 offset = frame_.samples[sample];
+    const glm::ivec2 offset = picture_.samples[sample];
     const VI from_x = hn::Sub(hn::Add(hn::ShiftLeft<8>(b.px), hn::Set(d, offset.x)), b.x[0]);
     const VI from_y = hn::Sub(hn::Add(hn::ShiftLeft<8>(b.py), hn::Set(d, offset.y)), b.y[0]);
     std::uint64_t* words = buffer_.Row(sample, 0);
@@ -223,8 +223,8 @@ class SmallTriangles {
     }
   }
 
-  const FrameInput& frame_;
-  const TileJob& job_;
+  const Picture& picture_;
+  const Tile& tile_;
   std::uint32_t* references_;
   TileBuffer& buffer_;
   LargeTriangles& large_;

@@ -3,29 +3,21 @@
 
 #include <algorithm>
 
-#include "surfaces/cluster_set.h"
-
 namespace frontmost::zbuffer_detail {
 namespace {
 
-constexpr std::uint32_t kPieceTriangles = 2048;
 constexpr std::size_t kMostItems = std::size_t(1) << 26;  // 256 MiB
 
 /// The vertices of some triangles: all between the least and the greatest number where that is not many more than the
 /// triangles have corners, as in files whose order is not random; else each corner by itself, and `own` its number.
-std::span<const glm::vec3> positions_of(const Mesh& mesh, const glm::dmat4& world_from_mesh, PlaceScratch& scratch,
-                                        PieceGeometry& piece) {
-  std::uint32_t low = no_index, high = 0;
-  for (const glm::uvec3& c : piece.corners) {
-    low = std::min(low, std::min(c.x, std::min(c.y, c.z)));
-    high = std::max(high, std::max(c.x, std::max(c.y, c.z)));
-  }
+std::span<const glm::vec3> positions_of(const Mesh& mesh, const glm::dmat4& world_from_mesh, const NumberRange& numbers,
+                                        PlaceScratch& scratch, PieceGeometry& piece) {
   const std::size_t corner_count = 3 * piece.corners.size();
   const ToWorld world(world_from_mesh);
   scratch.positions.clear();
-  if (high - low < 2 * corner_count) {
-    piece.first_position = low;
-    const auto range = std::span(mesh.positions).subspan(low, std::size_t(high - low) + 1);
+  if (numbers.high - numbers.low < 2 * corner_count) {
+    piece.first_position = numbers.low;
+    const auto range = std::span(mesh.positions).subspan(numbers.low, std::size_t(numbers.high - numbers.low) + 1);
     if (world.is_identity()) return range;
     for (const glm::vec3& p : range) scratch.positions.push_back(world(p));
     return scratch.positions;
@@ -71,15 +63,15 @@ void append_clipped(const PlaceTarget& target, const PieceGeometry& piece, std::
   });
 }
 
-std::vector<Piece> pieces_of(const Surfaces& surfaces, const PrimitiveRange& range) {
+std::vector<Piece> pieces_of(const Scene& scene, std::span<const PrimitiveId> first_primitives,
+                             const PrimitiveRange& range, std::uint32_t most) {
   std::vector<Piece> pieces;
-  const std::vector<Instance>& instances = surfaces.scene().instances;
-  for (std::uint32_t i = 0; i < instances.size(); ++i) {
-    const PrimitiveId first = surfaces.first_primitive(i);
-    const auto count = std::uint32_t(surfaces.scene().meshes[instances[i].mesh].triangles.size());
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const PrimitiveId first = first_primitives[i];
+    const auto count = std::uint32_t(scene.meshes[scene.instances[i].mesh].triangles.size());
     const PrimitiveId low = std::max(range.begin, first), high = std::min(range.end, first + count);
     for (PrimitiveId id = low; id < high;) {
-      const std::uint32_t size = std::min(kPieceTriangles, high - id);
+      const std::uint32_t size = std::min(most, high - id);
       pieces.push_back({i, id - first, id - first + size, first});
       id += size;
     }
@@ -93,17 +85,22 @@ std::size_t pieces_at_once(const TileGrid& grid) {
   return std::clamp<std::size_t>(kMostItems / (grid.count() * kPieceTriangles), 1, kMost);
 }
 
-void place(const Surfaces& surfaces, const Piece& piece, const PlaceTarget& target, PlaceScratch& scratch,
-           PlacedPiece& placed) {
-  const Instance& instance = surfaces.scene().instances[piece.instance];
-  const Mesh& mesh = surfaces.scene().meshes[instance.mesh];
+PieceGeometry geometry_of(const Scene& scene, const Piece& piece, Isa isa, PlaceScratch& scratch) {
+  const Instance& instance = scene.instances[piece.instance];
+  const Mesh& mesh = scene.meshes[instance.mesh];
   PieceGeometry geometry;
   geometry.corners = std::span(mesh.triangles).subspan(piece.begin, piece.end - piece.begin);
-  geometry.positions = positions_of(mesh, instance.world_from_mesh, scratch, geometry);
-  geometry.is_mirrored = surfaces.is_mirrored(piece.instance);
+  geometry.positions =
+      positions_of(mesh, instance.world_from_mesh, range_of_numbers(geometry.corners, isa), scratch, geometry);
+  geometry.is_mirrored = mirrors(instance.world_from_mesh);
   geometry.first_id = piece.first + piece.begin;
+  return geometry;
+}
+
+void place(const Scene& scene, const Piece& piece, const PlaceTarget& target, PlaceScratch& scratch,
+           PlacedPiece& placed) {
   placed.triangles.count = 0;
-  place_triangles(target, geometry, scratch.vertices, placed.triangles);
+  place_triangles(target, geometry_of(scene, piece, target.isa, scratch), scratch.vertices, placed.triangles);
   placed.bin(target.grid);
 }
 

@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "base/pool.h"
+#include "surfaces/cluster_set.h"
 #include "zbuffer/place_kernel.h"
 
 namespace frontmost::zbuffer_detail {
@@ -21,6 +22,8 @@ struct Piece {
   std::uint32_t begin, end;  ///< within the mesh
   PrimitiveId first;         ///< id of the instance's first triangle
 };
+
+inline constexpr std::uint32_t kPieceTriangles = 2048;
 
 /// Primitives [begin, end).
 struct PrimitiveRange {
@@ -34,13 +37,16 @@ struct PlaceScratch {
   PieceVertices vertices;
 };
 
-/// The pieces of a range, in order.
-[[nodiscard]] std::vector<Piece> pieces_of(const Surfaces& surfaces, const PrimitiveRange& range);
+/// The pieces of a range, in order, none of more than `most` triangles. `first_primitives`: by instance.
+[[nodiscard]] std::vector<Piece> pieces_of(const Scene& scene, std::span<const PrimitiveId> first_primitives,
+                                           const PrimitiveRange& range, std::uint32_t most);
+/// The triangles of a piece in world space.
+[[nodiscard]] PieceGeometry geometry_of(const Scene& scene, const Piece& piece, Isa isa, PlaceScratch& scratch);
 /// How many pieces may be placed at once: their lists stay within 256 MiB even where every triangle fills the image.
 [[nodiscard]] std::size_t pieces_at_once(const TileGrid& grid);
 
 /// Transforms, clips, culls and bins one piece; reuses the memory of `placed`.
-void place(const Surfaces& surfaces, const Piece& piece, const PlaceTarget& target, PlaceScratch& scratch,
+void place(const Scene& scene, const Piece& piece, const PlaceTarget& target, PlaceScratch& scratch,
            PlacedPiece& placed);
 
 /// Calls draw(tile, piece) for every tile and every piece of the range that is on the screen. In each tile pieces come
@@ -50,7 +56,8 @@ void submit(const Surfaces& surfaces, const View& view, const PrimitiveRange& ra
             const Draw& draw) {
   const ScreenTransform transform(view);
   const PlaceTarget target(transform, view, execution.isa);
-  const std::vector<Piece> pieces = pieces_of(surfaces, range);
+  const std::vector<Piece> pieces =
+      pieces_of(surfaces.scene(), surfaces.clusters().first_primitives, range, kPieceTriangles);
   const std::size_t at_once = pieces_at_once(target.grid);
   std::vector<PlacedPiece> placed(std::min(at_once, pieces.size()));
   Pool<PlaceScratch> scratches;
@@ -58,7 +65,7 @@ void submit(const Surfaces& surfaces, const View& view, const PrimitiveRange& ra
     const std::size_t count = std::min(at_once, pieces.size() - first);
     parallel_for(execution, count, 1, [&](std::size_t begin, std::size_t end) {
       const auto scratch = scratches.borrow([] { return std::make_unique<PlaceScratch>(); });
-      for (std::size_t i = begin; i < end; ++i) place(surfaces, pieces[first + i], target, *scratch, placed[i]);
+      for (std::size_t i = begin; i < end; ++i) place(surfaces.scene(), pieces[first + i], target, *scratch, placed[i]);
     });
     parallel_for(execution, target.grid.count(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t tile = begin; tile < end; ++tile)

@@ -17,7 +17,8 @@
 #include "hwy/cache_control.h"
 #include "hwy/highway.h"
 #include "zbuffer/batch-inl.h"
-#include "zbuffer/tile_kernel.h"
+#include "zbuffer/cull.h"
+#include "zbuffer/tile.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {
@@ -127,10 +128,31 @@ HWY_INLINE void StoreWords(const Words& words, std::uint64_t* to) {
   }
 }
 
+template <class D>
+HWY_INLINE void FillRow(D d, hn::TFromD<D> value, hn::TFromD<D>* row, std::size_t width, bool streams) {
+  const auto vector = hn::Set(d, value);
+  std::size_t x = 0;
+  if (streams && reinterpret_cast<std::uintptr_t>(row) % 64 == 0)
+    for (; x + hn::Lanes(d) <= width; x += hn::Lanes(d)) hn::Stream(vector, d, row + x);
+  for (; x < width; ++x) row[x] = value;
+}
+
+/// A tile in which nothing can be seen.
+HWY_INLINE void FillTile(const Picture& picture, const Tile& tile) {
+  for (std::size_t s = 0; s < picture.samples.size(); ++s)
+    for (int y = 0; y < tile.height; ++y) {
+      const std::size_t at =
+          (s * std::size_t(picture.view.height) + std::size_t(tile.y + y)) * std::size_t(picture.view.width) +
+          std::size_t(tile.x);
+      FillRow(DU(), no_primitive, picture.primitives + at, std::size_t(tile.width), picture.streams);
+      FillRow(DF(), 0.0f, picture.keys + at, std::size_t(tile.width), picture.streams);
+    }
+}
+
 class TileBuffer {
  public:
-  TileBuffer(const FrameInput& frame, const TileJob& job, TileScratch& scratch)
-      : frame_(frame), job_(job), words_(scratch.words.data()), bounds_(scratch.bounds[0]) {}
+  TileBuffer(const Picture& picture, const Tile& tile, TileScratch& scratch)
+      : picture_(picture), tile_(tile), words_(scratch.words.data()), bounds_(scratch.bounds[0]) {}
 
   [[nodiscard]] static HWY_INLINE std::uint64_t BlockBit(int bx, int by) { return std::uint64_t(1) << (by * 8 + bx); }
 
@@ -144,23 +166,36 @@ class TileBuffer {
     return columns * kFirstColumn & rows;
   }
 
+  /// Those of the tile that a rectangle of the image touches. Precondition: there are some.
+  [[nodiscard]] HWY_INLINE std::uint64_t BlocksInTile(const PixelRect& rect) const {
+    return BlocksOf({HWY_MAX(rect.x0 - tile_.x, 0), HWY_MAX(rect.y0 - tile_.y, 0),
+                     HWY_MIN(rect.x1 - tile_.x, tile_.width - 1), HWY_MIN(rect.y1 - tile_.y, tile_.height - 1)});
+  }
+
   [[nodiscard]] HWY_INLINE std::uint64_t* Row(std::size_t sample, int y) const {
     return words_ + sample * kTileWords + std::size_t(y) * kTileStride;
   }
 
   void Clear() {
     const DW d;
-    for (std::size_t s = 0; s < frame_.samples.size(); ++s)
+    for (std::size_t s = 0; s < picture_.samples.size(); ++s)
       for (int y = 0; y < kTileSize; ++y) {
         std::uint64_t* row = Row(s, y);
-        const int inside = y < job_.height ? job_.width : 0;
+        const int inside = y < tile_.height ? tile_.width : 0;
         for (int x = 0; x < kTileSize; x += int(hn::Lanes(d))) hn::Store(hn::Zero(d), d, row + x);
         for (int x = inside; x < kTileSize; ++x) row[x] = kOutsideImage;
       }
     std::fill(std::begin(bounds_.farthest), std::end(bounds_.farthest), 0.0f);
     std::fill(std::begin(bounds_.greatest), std::end(bounds_.greatest), 0.0f);  // no plane
-    const bool whole = job_.width == kTileSize && job_.height == kTileSize;
+    const bool whole = tile_.width == kTileSize && tile_.height == kTileSize;
     dirty_ = whole ? 0 : ~std::uint64_t(0);
+  }
+
+  /// After Clear(): takes up again what WriteOut() left in the planes.
+  void ReadBack() {
+    for (std::size_t s = 0; s < picture_.samples.size(); ++s)
+      for (int y = 0; y < tile_.height; ++y) ReadRow(s, y);
+    dirty_ = ~std::uint64_t(0);
   }
 
   // -- hierarchical depth -------------------------------------------------------------------------------------------
@@ -192,6 +227,27 @@ class TileBuffer {
     return hiding;
   }
 
+  /// Finds the farthest key of every block that was drawn to.
+  void Refresh() {
+    for (; dirty_ != 0;) {
+      const int block = int(hwy::Num0BitsBelowLS1Bit_Nonzero64(dirty_));
+      if (!FindHiding(block, -1.0f)) dirty_ &= ~(std::uint64_t(1) << block);
+    }
+  }
+
+  /// Of triangles with these pixels and these greatest keys, those that blocks hide for certain; asks of two by two
+  /// blocks at most.
+  [[nodiscard]] HWY_INLINE MI Hidden(const PixelRange& columns, const PixelRange& rows, VF nearest) const {
+    static_assert(kBlockSize == 1 << 4 && kTileSize / kBlockSize == 8);
+    const DI d;
+    const VI x0 = hn::ShiftRight<4>(columns.first), x1 = hn::ShiftRight<4>(columns.last);
+    const VI y0 = hn::ShiftLeft<3>(hn::ShiftRight<4>(rows.first)), y1 = hn::ShiftLeft<3>(hn::ShiftRight<4>(rows.last));
+    const MI wide = hn::Or(hn::Gt(hn::Sub(x1, x0), hn::Set(d, 1)), hn::Gt(hn::Sub(y1, y0), hn::Set(d, 8)));
+    const VF farthest = hn::Min(hn::Min(Farthest(hn::Add(x0, y0)), Farthest(hn::Add(x1, y0))),
+                                hn::Min(Farthest(hn::Add(x0, y1)), Farthest(hn::Add(x1, y1))));
+    return hn::AndNot(wide, hn::RebindMask(d, hn::Gt(farthest, nearest)));
+  }
+
   /// True when every sample of the blocks is strictly nearer than `nearest`.
   [[nodiscard]] HWY_INLINE bool AllHide(std::uint64_t blocks, float nearest) {
     std::uint64_t left = blocks & ~KnownToHide(nearest);
@@ -204,18 +260,22 @@ class TileBuffer {
   // -- the way out --------------------------------------------------------------------------------------------------
 
   void WriteOut() const {
-    for (std::size_t s = 0; s < frame_.samples.size(); ++s)
-      for (int y = 0; y < job_.height; ++y) WriteRow(s, y);
+    for (std::size_t s = 0; s < picture_.samples.size(); ++s)
+      for (int y = 0; y < tile_.height; ++y) WriteRow(s, y);
   }
 
  private:
+  [[nodiscard]] HWY_INLINE VF Farthest(VI block) const {
+    return hn::BitCast(DF(), LookUp64(reinterpret_cast<const std::int32_t*>(bounds_.farthest), block));
+  }
+
   /// Looks at all samples of a block, as long as they hide; notes the farthest key when they all do.
   [[nodiscard]] bool FindHiding(int block, float nearest) {
     constexpr int kRowsAtOnce = 4;
     const DWI d;
     const int bx = block % 8, by = block / 8;
     LeastKey least;
-    for (std::size_t s = 0; s < frame_.samples.size(); ++s)
+    for (std::size_t s = 0; s < picture_.samples.size(); ++s)
       for (int y = by * kBlockSize; y < (by + 1) * kBlockSize; y += kRowsAtOnce) {
         const auto* row = reinterpret_cast<const std::int64_t*>(Row(s, y)) + bx * kBlockSize;
         for (int k = 0; k < kRowsAtOnce; ++k, row += kTileStride)
@@ -226,21 +286,35 @@ class TileBuffer {
     return true;
   }
 
+  /// Where a row of the tile is in the planes.
+  [[nodiscard]] std::size_t PlaceOf(std::size_t sample, int y) const {
+    return (sample * std::size_t(picture_.view.height) + std::size_t(tile_.y + y)) * std::size_t(picture_.view.width) +
+           std::size_t(tile_.x);
+  }
+
+  void ReadRow(std::size_t sample, int y) {
+    const std::size_t at = PlaceOf(sample, y);
+    std::uint64_t* row = Row(sample, y);
+    for (std::size_t x = 0; x < std::size_t(tile_.width); ++x) {
+      std::uint32_t bits;
+      std::memcpy(&bits, picture_.keys + at + x, sizeof bits);
+      row[x] = std::uint64_t(bits) << 32 | ~picture_.primitives[at + x];
+    }
+  }
+
   void WriteRow(std::size_t sample, int y) const {
-    const std::size_t at =
-        (sample * std::size_t(frame_.view.height) + std::size_t(job_.y + y)) * std::size_t(frame_.view.width) +
-        std::size_t(job_.x);
+    const std::size_t at = PlaceOf(sample, y);
     const std::uint64_t* row = Row(sample, y);
-    PrimitiveId* primitives = frame_.primitives + at;
-    float* keys = frame_.keys + at;
-    const std::size_t width = std::size_t(job_.width);
+    PrimitiveId* primitives = picture_.primitives + at;
+    float* keys = picture_.keys + at;
+    const std::size_t width = std::size_t(tile_.width);
     std::size_t x = 0;
 #if HWY_TARGET != HWY_SCALAR
     // Two vectors of words are a vector of ids and one of keys.
     const DU d;
     const DF df;
     const std::size_t lanes = hn::Lanes(d);
-    const bool streams = frame_.streams && at % 16 == 0;
+    const bool streams = picture_.streams && at % 16 == 0;
     const auto* halves = reinterpret_cast<const std::uint32_t*>(row);
     for (; x + lanes <= width; x += lanes) {
       const auto low = hn::Load(d, halves + 2 * x), high = hn::Load(d, halves + 2 * x + lanes);
@@ -262,8 +336,8 @@ class TileBuffer {
     }
   }
 
-  const FrameInput& frame_;
-  const TileJob& job_;
+  const Picture& picture_;
+  const Tile& tile_;
   std::uint64_t* words_;
   BlockBounds& bounds_;
   std::uint64_t dirty_ = 0;  // blocks drawn to since their farthest key was found

@@ -47,11 +47,11 @@ class TilePainter {
 
   void Draw() {
     buffer_.Clear();
-    DrawRecords();
+    large_.DrawAll(frame_.records, job_.records);
     for (std::size_t i = 0; i < job_.clusters.size(); ++i) {
       if (i + 2 < job_.clusters.size()) Prefetch(job_.clusters[i + 2]);
       const std::uint32_t cluster = job_.clusters[i];
-      const std::uint64_t blocks = TileBuffer::BlocksOf(InTile(frame_.culled.rect(cluster)));
+      const std::uint64_t blocks = buffer_.BlocksInTile(frame_.culled.rect(cluster));
       if (buffer_.AllHide(blocks, frame_.culled.nearest[cluster])) continue;
       DrawCluster(frame_.set.clusters[cluster]);
       // Triangles in the queue stay within the cluster's blocks, whenever they are drawn.
@@ -63,24 +63,6 @@ class TilePainter {
   void WriteOut() const { buffer_.WriteOut(); }
 
  private:
-  void DrawRecords() {
-    for (const std::uint32_t i : job_.records) {
-      TriangleRecord record = frame_.records[i];
-      // Nearest first: what hides this one everywhere hides the others, too.
-      if (buffer_.KnownToHide(record.nearest()) == ~std::uint64_t(0)) return;
-      for (int k = 0; k < 3; ++k) {
-        record.x[k] -= job_.x * kSubPixels;
-        record.y[k] -= job_.y * kSubPixels;
-      }
-      large_.Draw(record);
-    }
-  }
-
-  [[nodiscard]] HWY_INLINE PixelRect InTile(const PixelRect& rect) const {
-    return {HWY_MAX(rect.x0 - job_.x, 0), HWY_MAX(rect.y0 - job_.y, 0), HWY_MIN(rect.x1 - job_.x, job_.width - 1),
-            HWY_MIN(rect.y1 - job_.y, job_.height - 1)};
-  }
-
   HWY_INLINE void Prefetch(std::uint32_t index) const {
     const Cluster& cluster = frame_.set.clusters[index];
     const ClusterSet& set = frame_.set;
@@ -129,23 +111,11 @@ class TilePainter {
     VI number, x, y;
   };
 
-#if HWY_TARGET <= HWY_AVX3
-  // 64 vertices are four vectors, and a permutation reads two: a gather takes several times as long.
-  static HWY_INLINE VI LookUp(const std::int32_t* table, VI number) {
-    const auto low = _mm512_permutex2var_epi32(_mm512_load_si512(table), number.raw, _mm512_load_si512(table + 16));
-    const auto high =
-        _mm512_permutex2var_epi32(_mm512_load_si512(table + 32), number.raw, _mm512_load_si512(table + 48));
-    return VI{_mm512_mask_blend_epi32(_mm512_test_epi32_mask(number.raw, _mm512_set1_epi32(32)), low, high)};
-  }
-#else
-  static HWY_INLINE VI LookUp(const std::int32_t* table, VI number) { return hn::GatherIndex(DI(), table, number); }
-#endif
-
   HWY_INLINE Corners Fetch(const Buffer<std::uint8_t>& numbers, std::size_t at) const {
     const DI d;
     const hn::Rebind<std::uint8_t, DI> d8;
     const VI number = hn::PromoteTo(d, hn::LoadU(d8, numbers.data() + at));
-    return {number, LookUp(vertices_.x, number), LookUp(vertices_.y, number)};
+    return {number, LookUp64(vertices_.x, number), LookUp64(vertices_.y, number)};
   }
 
   /// Puts the triangles that may cover a sample of this tile into the queue; large ones are drawn at once.
@@ -186,9 +156,9 @@ class TilePainter {
     compact.Store(by, queue.y[1] + n);
     compact.Store(cx, queue.x[2] + n);
     compact.Store(cy, queue.y[2] + n);
-    compact.Store(LookUp(vertices_.key, a.number), queue.key[0] + n);
-    compact.Store(LookUp(vertices_.key, bn), queue.key[1] + n);
-    compact.Store(LookUp(vertices_.key, cn), queue.key[2] + n);
+    compact.Store(LookUp64(vertices_.key, a.number), queue.key[0] + n);
+    compact.Store(LookUp64(vertices_.key, bn), queue.key[1] + n);
+    compact.Store(LookUp64(vertices_.key, cn), queue.key[2] + n);
     compact.Store(hn::LoadU(DU(), frame_.set.id.data() + at), queue.id + n);
     queue.count += compact.count();
   }
@@ -220,27 +190,6 @@ class TilePainter {
   ScreenCluster vertices_;
 };
 
-template <class D>
-HWY_INLINE void FillRow(D d, hn::TFromD<D> value, hn::TFromD<D>* row, std::size_t width, bool streams) {
-  const auto vector = hn::Set(d, value);
-  std::size_t x = 0;
-  if (streams && reinterpret_cast<std::uintptr_t>(row) % 64 == 0)
-    for (; x + hn::Lanes(d) <= width; x += hn::Lanes(d)) hn::Stream(vector, d, row + x);
-  for (; x < width; ++x) row[x] = value;
-}
-
-/// A tile in which nothing can be seen.
-void FillTile(const FrameInput& frame, const TileJob& job) {
-  for (std::size_t s = 0; s < frame.samples.size(); ++s)
-    for (int y = 0; y < job.height; ++y) {
-      const std::size_t at =
-          (s * std::size_t(frame.view.height) + std::size_t(job.y + y)) * std::size_t(frame.view.width) +
-          std::size_t(job.x);
-      FillRow(DU(), no_primitive, frame.primitives + at, std::size_t(job.width), frame.streams);
-      FillRow(DF(), 0.0f, frame.keys + at, std::size_t(job.width), frame.streams);
-    }
-}
-
 void DrawTile(const FrameInput& frame, const TileJob& job, TileScratch& scratch) {
   if (job.is_empty()) {
     FillTile(frame, job);
@@ -261,13 +210,6 @@ HWY_AFTER_NAMESPACE();
 namespace frontmost::zbuffer_detail {
 
 FRONTMOST_KERNELS(DrawTile);
-
-// References: every pixel of the largest walk for every lane, and a vector of slack for whole stores.
-TileScratch::TileScratch() : bounds(1), references(std::size_t(16 * kMostWalked.x * kMostWalked.y) + 64) {}
-
-void TileScratch::reserve(std::size_t sample_count) {
-  if (words.size() < sample_count * kTileWords) words = Buffer<std::uint64_t>(sample_count * kTileWords);
-}
 
 void draw_tile(const FrameInput& frame, const TileJob& job, TileScratch& scratch, Isa isa) {
   kernel_for(DrawTileKernels, isa)(frame, job, scratch);

@@ -74,13 +74,16 @@ bool orient(TriangleRecord& r, Culling culling) {
 void append_records(const ClusterSet& set, const Cluster& cluster, const ScreenTransform& t, const View& view,
                     std::vector<TriangleRecord>& records) {
   const SnappedCluster snapped(set, cluster, t);
-  for (std::size_t i = 0; i < cluster.triangle_count; ++i) {
-    const ClippedPolygon polygon = snapped.polygon(i);
-    for_each_of_fan(polygon, t, set.id[cluster.first_triangle + i], [&](TriangleRecord& record) {
-      const PixelRect rect = pixel_rect(record, view.width, view.height);
-      if (rect.x0 <= rect.x1 && rect.y0 <= rect.y1 && orient(record, view.culling)) records.push_back(record);
-    });
-  }
+  for (std::size_t i = 0; i < cluster.triangle_count; ++i)
+    append_polygon(snapped.polygon(i), t, set.id[cluster.first_triangle + i], view, records);
+}
+
+void append_polygon(const ClippedPolygon& polygon, const ScreenTransform& t, PrimitiveId id, const View& view,
+                    std::vector<TriangleRecord>& records) {
+  for_each_of_fan(polygon, t, id, [&](TriangleRecord& record) {
+    const PixelRect rect = pixel_rect(record, view.width, view.height);
+    if (rect.x0 <= rect.x1 && rect.y0 <= rect.y1 && orient(record, view.culling)) records.push_back(record);
+  });
 }
 
 PixelRect pixel_rect(const TriangleRecord& r, int width, int height) {

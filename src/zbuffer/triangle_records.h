@@ -75,6 +75,10 @@ struct KeyPlane {
 void append_records(const ClusterSet& set, const Cluster& cluster, const ScreenTransform& transform, const View& view,
                     std::vector<TriangleRecord>& records);
 
+/// The same of one polygon.
+void append_polygon(const ClippedPolygon& polygon, const ScreenTransform& t, PrimitiveId id, const View& view,
+                    std::vector<TriangleRecord>& records);
+
 /// The pixels whose samples a record may cover, within the image; empty (x1 < x0 or y1 < y0) when there are none.
 [[nodiscard]] PixelRect pixel_rect(const TriangleRecord& record, int width, int height);
 

@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "zbuffer/cutout_pass.h"
+#include "zbuffer/direct_frame.h"
 #include "zbuffer/frame_plan.h"
 
 namespace frontmost {
@@ -39,7 +40,7 @@ bool ZBuffer::State::prepare_planes(const View& view) {
     blank.clear();
   }
   if (last.width != view.width || last.height != view.height || last.samples != view.samples) blank.clear();
-  if (blank.empty()) blank.assign(plan.tile_count(), 0);
+  if (blank.empty()) blank.assign(Tile::count(view), 0);
   visible.view = view;
   return fits;
 }
@@ -62,18 +63,11 @@ const Visible& ZBuffer::draw(const Surfaces& surfaces, const View& view, const E
   const std::size_t stream_from = std::size_t(state_->prepare_planes(view) ? 2 : 32) << 20;
   const bool streams = view.sample_count() * (sizeof(PrimitiveId) + sizeof(float)) >= stream_from;
   Visible& visible = state_->visible;
-  const FrameInput frame{set,
-                         transform,
-                         view,
-                         plan.culled(),
-                         plan.records(),
-                         sample_offsets(view.samples),
-                         visible.primitives.data(),
-                         visible.keys.data(),
-                         streams};
+  const Picture picture{view, sample_offsets(view.samples), visible.primitives.data(), visible.keys.data(), streams};
+  const FrameInput frame{picture, set, transform, plan.culled(), plan.records().records};
   std::atomic<std::size_t> drawn{0};
-  for (const TileRange& round : plan.rounds()) {
-    plan.list_records(round, view);
+  for (const TileRange& round : plan.records().rounds()) {
+    plan.records().list(round, view);
     parallel_for(execution, round.end - round.begin, 1, [&](std::size_t begin, std::size_t end) {
       const auto scratch = state_->scratches.borrow([] { return std::make_unique<TileScratch>(); });
       scratch->reserve(frame.samples.size());
@@ -85,7 +79,7 @@ const Visible& ZBuffer::draw(const Surfaces& surfaces, const View& view, const E
         draw_tile(frame, job, *scratch, execution.isa);
         blank = job.is_empty();
       }
-      report_progress(execution, "visible", double(drawn += end - begin) / double(plan.tile_count()));
+      report_progress(execution, "visible", double(drawn += end - begin) / double(Tile::count(view)));
     });
   }
   if (set.cutouts) {
@@ -101,6 +95,14 @@ Visible zbuffer(const Surfaces& surfaces, const View& view, const Execution& exe
   ZBuffer buffer;
   buffer.draw(surfaces, view, execution);
   return buffer.take();
+}
+
+Visible zbuffer(const Scene& scene, const View& view, const Execution& execution) {
+  validate(view);
+  const IeeeScope ieee;
+  validate(scene);
+  check_transforms(scene);
+  return draw_directly(scene, view, execution);
 }
 
 }  // namespace frontmost

@@ -15,9 +15,9 @@ using namespace zbuffer_detail;
 /// Every tile's list of records, over all rounds; checks that rounds follow one another and keep to their budget.
 std::vector<std::vector<std::uint32_t>> lists_of(FramePlan& plan, const View& view, std::size_t budget) {
   std::vector<std::vector<std::uint32_t>> lists;
-  for (const TileRange& round : plan.rounds()) {
+  for (const TileRange& round : plan.records().rounds()) {
     EXPECT_EQ(round.begin, lists.size());
-    plan.list_records(round, view);
+    plan.records().list(round, view);
     std::size_t items = 0;
     for (std::size_t tile = round.begin; tile < round.end; ++tile) {
       const auto list = plan.job(tile, view).records;
@@ -26,7 +26,7 @@ std::vector<std::vector<std::uint32_t>> lists_of(FramePlan& plan, const View& vi
     }
     EXPECT_TRUE(items <= budget || round.end - round.begin == 1);
   }
-  EXPECT_EQ(lists.size(), plan.tile_count());
+  EXPECT_EQ(lists.size(), Tile::count(view));
   return lists;
 }
 
@@ -38,7 +38,7 @@ TEST(FramePlan, RoundsListTheSameRecordsWithinTheirBudget) {
   const ScreenTransform transform(view);
   FramePlan whole;
   whole.make(surfaces.clusters(), transform, view, {});
-  ASSERT_EQ(whole.rounds().size(), 1u);
+  ASSERT_EQ(whole.records().rounds().size(), 1u);
   const auto expected = lists_of(whole, view, kMostRecordItems);
   std::size_t items = 0;
   for (const auto& list : expected) items += list.size();
@@ -46,7 +46,7 @@ TEST(FramePlan, RoundsListTheSameRecordsWithinTheirBudget) {
   FramePlan plan;
   for (const std::size_t budget : {std::size_t(0), std::size_t(1), std::size_t(200), items - 1, items}) {
     plan.make(surfaces.clusters(), transform, view, {}, budget);
-    EXPECT_EQ(plan.rounds().size() == 1, budget == items) << budget;
+    EXPECT_EQ(plan.records().rounds().size() == 1, budget == items) << budget;
     EXPECT_EQ(lists_of(plan, view, budget), expected) << budget;
   }
 }
@@ -61,14 +61,14 @@ TEST(FramePlan, ListsHoldEveryRecordThatCoversASample) {
     FramePlan plan;
     plan.make(surfaces.clusters(), ScreenTransform(view), view, {});
     const auto lists = lists_of(plan, view, kMostRecordItems);
-    for (std::uint32_t i = 0; i < plan.records().size(); ++i)
+    for (std::uint32_t i = 0; i < plan.records().records.size(); ++i)
       for (int y = 0; y < view.height; y += 9)
         for (int x = 0; x < view.width; x += 9) {
           const PixelRect pixel{x, y, x, y};
-          if (misses(plan.records()[i], pixel)) continue;
+          if (misses(plan.records().records[i], pixel)) continue;
           const auto& list =
               lists[std::size_t(y / kTileSize * ((view.width + kTileSize - 1) / kTileSize) + x / kTileSize)];
-          const PixelRect rect = pixel_rect(plan.records()[i], view.width, view.height);
+          const PixelRect rect = pixel_rect(plan.records().records[i], view.width, view.height);
           const bool inside = x >= rect.x0 && x <= rect.x1 && y >= rect.y0 && y <= rect.y1;
           ASSERT_EQ(inside, inside && std::binary_search(list.begin(), list.end(), i)) << "seed " << seed;
         }

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "zbuffer/parcel.h"
+
+#include <cstring>
+
+namespace frontmost::zbuffer_detail {
+namespace {
+
+/// ParcelColumns::tiles, taken apart: two by two at most.
+struct SmallTiles {
+  explicit SmallTiles(std::uint32_t t)
+      : x0(int(t & 255)), y0(int(t >> 8 & 255)), x1(int(t >> 16 & 255)), y1(int(t >> 24)) {}
+  int x0, y0, x1, y1;
+};
+
+}  // namespace
+
+void Parcel::clear() {
+  constexpr std::int32_t kFar = 1 << 30;
+  count = 0;
+  rect = {kFar, kFar, -1, -1};
+  nearest = 0;
+  records.clear();
+}
+
+TriangleRecord Parcel::record(std::size_t i) const {
+  const ParcelColumns& c = columns();
+  TriangleRecord record;
+  record.id = c.id[i];
+  for (int k = 0; k < 3; ++k) {
+    record.x[k] = c.x[k][i];
+    record.y[k] = c.y[k][i];
+    std::memcpy(&record.key[k], &c.key[k][i], sizeof(float));
+  }
+  return record;
+}
+
+/// Calls visit(tiles, run). \returns how many runs there are.
+template <class Visit>
+std::size_t Parcel::visit_runs(const Visit& visit) const {
+  const std::uint32_t* tiles = columns().tiles;
+  std::size_t runs = 0;
+  for (std::size_t i = 0; i < count; ++runs) {
+    std::size_t end = i + 1;
+    while (end < count && tiles[end] == tiles[i]) ++end;
+    visit(SmallTiles(tiles[i]), TileRun{std::uint16_t(i), std::uint16_t(end - i)});
+    i = end;
+  }
+  return runs;
+}
+
+void Parcel::bin(Buffer<ParcelColumns>& spare) {
+  constexpr std::size_t kShortRun = 4;
+  if (count == 0) return;
+  if (visit_runs([](const SmallTiles&, const TileRun&) {}) > count / kShortRun) {
+    sort_by_tiles(spare[0]);
+    columns_.swap(spare);
+  }
+  const TileRect all = tiles();
+  const int across = all.x1 - all.x0 + 1;
+  const auto visit = [&](const auto& add) {
+    visit_runs([&](const SmallTiles& tiles, const TileRun& run) {
+      for (int y = tiles.y0; y <= tiles.y1; ++y)
+        for (int x = tiles.x0; x <= tiles.x1; ++x) add(std::size_t((y - all.y0) * across + x - all.x0), run);
+    });
+  };
+  const auto tile_count = std::size_t(all.count());
+  // One place behind, so that filling a list moves its beginning to where it belongs.
+  begin_.assign(tile_count + 2, 0);
+  visit([&](std::size_t tile, const TileRun&) { ++begin_[tile + 2]; });
+  for (std::size_t tile = 0; tile < tile_count; ++tile) begin_[tile + 2] += begin_[tile + 1];
+  runs_.resize(begin_[tile_count + 1]);
+  visit([&](std::size_t tile, const TileRun& run) { runs_[begin_[tile + 1]++] = run; });
+}
+
+/// By the first tile, and among those by whether they reach into the next ones.
+void Parcel::sort_by_tiles(ParcelColumns& sorted) {
+  const TileRect all = tiles();
+  const ParcelColumns& from = columns();
+  const auto place_of = [&](std::size_t i) {
+    const SmallTiles t(from.tiles[i]);
+    const int tile = (t.y0 - all.y0) * (all.x1 - all.x0 + 1) + t.x0 - all.x0;
+    return std::size_t(4 * tile + 2 * (t.y1 - t.y0) + (t.x1 - t.x0));
+  };
+  begin_.assign(4 * std::size_t(all.count()) + 1, 0);
+  for (std::size_t i = 0; i < count; ++i) ++begin_[place_of(i) + 1];
+  for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t to = begin_[place_of(i)]++;
+    for (int k = 0; k < 3; ++k) {
+      sorted.x[k][to] = from.x[k][i];
+      sorted.y[k][to] = from.y[k][i];
+      sorted.key[k][to] = from.key[k][i];
+    }
+    sorted.id[to] = from.id[i];
+    sorted.tiles[to] = from.tiles[i];
+  }
+}
+
+}  // namespace frontmost::zbuffer_detail

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// A parcel: a few thousand triangles as they stand in the scene, put on the screen and sorted into tiles.
+//
+// Drawing a scene once needs no clusters. Neighbours in a file are mostly neighbours on the screen, too, and where they
+// are not a parcel is merely in more tiles.
+#pragma once
+
+#include <vector>
+
+#include "zbuffer/tile_lists.h"
+#include "zbuffer/triangle_records.h"
+
+namespace frontmost::zbuffer_detail {
+
+/// Triangles with corners no farther apart than 124 pixels, set apart by corner; from the image's top left, areas
+/// positive, each with a sample within its bounds.
+struct ParcelColumns {
+  static constexpr std::size_t room = 2048 + 16;  ///< a store may write a whole vector
+
+  alignas(64) std::int32_t x[3][room], y[3][room];
+  alignas(64) std::int32_t key[3][room];  ///< bits of the float
+  alignas(64) std::uint32_t id[room];
+  /// The first and the last tile column and row that it may touch: x0 | y0 << 8 | x1 << 16 | y1 << 24.
+  alignas(64) std::uint32_t tiles[room];
+};
+
+/// Consecutive triangles of a parcel that touch the same tiles.
+struct TileRun {
+  std::uint16_t first, count;
+};
+
+class Parcel {
+ public:
+  static constexpr std::size_t most_triangles = 2048;
+
+  // Filled by place_in_parcel().
+  std::size_t count = 0;                ///< of the columns
+  PixelRect rect{0, 0, -1, -1};         ///< no pixel of those lies outside
+  std::int32_t nearest = 0;             ///< bits of their greatest key
+  std::vector<TriangleRecord> records;  ///< all others: large ones, and those that were clipped
+
+  Parcel() : columns_(1) {}
+  void clear();
+  [[nodiscard]] ParcelColumns& columns() { return columns_[0]; }
+  [[nodiscard]] const ParcelColumns& columns() const { return columns_[0]; }
+  [[nodiscard]] TriangleRecord record(std::size_t i) const;
+  /// Takes out those for which `is_out(id)`, and hands over what they are.
+  template <class IsOut>
+  void extract(const IsOut& is_out, std::vector<TriangleRecord>& out);
+
+  /// Makes the lists by tile, when all triangles are there. Where neighbours are strewn over the picture, as in a soup,
+  /// they are first put together by tile, in `spare`, which takes the place of the columns.
+  void bin(Buffer<ParcelColumns>& spare);
+  [[nodiscard]] TileRect tiles() const { return TileRect(rect); }
+  /// Precondition: the tile is one of tiles(), and count > 0.
+  [[nodiscard]] std::span<const TileRun> in_tile(int column, int row) const {
+    const TileRect all = tiles();
+    const std::size_t tile = std::size_t((row - all.y0) * (all.x1 - all.x0 + 1) + column - all.x0);
+    return std::span(runs_).subspan(begin_[tile], begin_[tile + 1] - begin_[tile]);
+  }
+
+ private:
+  template <class Visit>
+  std::size_t visit_runs(const Visit& visit) const;
+  void sort_by_tiles(ParcelColumns& sorted);
+
+  Buffer<ParcelColumns> columns_;
+  std::vector<std::uint32_t> begin_;  // by tile
+  std::vector<TileRun> runs_;
+};
+
+template <class IsOut>
+void Parcel::extract(const IsOut& is_out, std::vector<TriangleRecord>& out) {
+  const auto first_out =
+      std::partition(records.begin(), records.end(), [&](const TriangleRecord& r) { return !is_out(r.id); });
+  out.insert(out.end(), first_out, records.end());
+  records.erase(first_out, records.end());
+  ParcelColumns& c = columns();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (is_out(c.id[i])) {
+      out.push_back(record(i));
+      continue;
+    }
+    for (int k = 0; k < 3; ++k) {
+      c.x[k][kept] = c.x[k][i];
+      c.y[k][kept] = c.y[k][i];
+      c.key[k][kept] = c.key[k][i];
+    }
+    c.id[kept] = c.id[i];
+    c.tiles[kept++] = c.tiles[i];
+  }
+  count = kept;
+}
+
+}  // namespace frontmost::zbuffer_detail

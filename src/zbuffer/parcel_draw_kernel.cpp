@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drawing one tile from parcels: the same triangles into the same buffer as tile_kernel.cpp, from another source.
+
+#include "zbuffer/parcel_kernel.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "zbuffer/parcel_draw_kernel.cpp"
+#include "base/isa.h"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+// After Highway: a block of its own.
+#include "base/compactor-inl.h"
+#include "zbuffer/large_triangles-inl.h"
+#include "zbuffer/small_triangles-inl.h"
+#include "zbuffer/tile_buffer-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::zbuffer_detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+using frontmost::HWY_NAMESPACE::Compactor;
+
+// Triangles after which it is found out again what blocks hide, or whether asking pays.
+constexpr std::size_t kWindow = 512;
+constexpr int kMostIdle = 7;
+
+class ParcelPainter {
+ public:
+  ParcelPainter(const ParcelFrame& frame, const ParcelJob& job, TileScratch& scratch)
+      : frame_(frame),
+        job_(job),
+        buffer_(frame, job, scratch),
+        large_(frame, job, buffer_),
+        small_(frame, job, scratch, buffer_, large_) {}
+
+  void Draw() {
+    buffer_.Clear();
+    if (job_.is_drawn) buffer_.ReadBack();
+    large_.DrawAll(frame_.records, job_.records);
+    for (const std::uint32_t i : job_.parcels) DrawParcel(*frame_.parcels[i]);
+    small_.Finish();
+    buffer_.WriteOut();
+  }
+
+ private:
+  HWY_INLINE void DrawParcel(const Parcel& parcel) {
+    blocks_ = buffer_.BlocksInTile(parcel.rect);
+    float nearest;
+    std::memcpy(&nearest, &parcel.nearest, sizeof nearest);
+    if (buffer_.AllHide(blocks_, nearest)) return;
+    for (const TileRun& run : parcel.in_tile(job_.x / kTileSize, job_.y / kTileSize)) AppendRun(parcel.columns(), run);
+    AppendPending(parcel.columns());
+    // Triangles in the queue stay within the parcel's blocks, whenever they are drawn.
+    buffer_.MarkDrawn(blocks_);
+  }
+
+  /// Whole vectors of a run as they stand; what is left of it is gathered, with others, when it fills a vector.
+  HWY_INLINE void AppendRun(const ParcelColumns& from, const TileRun& run) {
+    const DI d;
+    std::size_t i = run.first;
+    const std::size_t end = i + run.count;
+    for (; pending_ == 0 && i + hn::Lanes(d) <= end; i += hn::Lanes(d))
+      Append(
+          hn::Lanes(d), [&](auto tag, const auto* column) HWY_ATTR { return hn::LoadU(tag, column + i); }, from);
+    while (i < end) {
+      const std::size_t taken = HWY_MIN(hn::Lanes(d) - pending_, end - i);
+      hn::StoreU(hn::Iota(d, std::int32_t(i)), d, numbers_ + pending_);
+      pending_ += taken;
+      i += taken;
+      if (pending_ == hn::Lanes(d)) AppendPending(from);
+    }
+  }
+
+  HWY_INLINE void AppendPending(const ParcelColumns& from) {
+    if (pending_ == 0) return;
+    const DI d;
+    // The rest of the vector repeats the first: what is asked of it holds within the tile alone.
+    const MI live = hn::Lt(hn::Iota(d, 0), hn::Set(d, std::int32_t(pending_)));
+    const VI number = hn::IfThenElse(live, hn::Load(d, numbers_), hn::Set(d, numbers_[0]));
+    Append(
+        pending_, [&](auto tag, const auto* column) HWY_ATTR { return hn::GatherIndex(tag, column, number); }, from);
+    pending_ = 0;
+  }
+
+  /// `fetch` reads a vector of a column.
+  template <class Fetch>
+  HWY_INLINE void Append(std::size_t count, const Fetch& fetch, const ParcelColumns& from) {
+    const DI d;
+    const DU du;
+    const VI left = hn::Set(d, job_.x * kSubPixels), top = hn::Set(d, job_.y * kSubPixels);
+    VI x[3], y[3], key[3];
+    for (int k = 0; k < 3; ++k) {
+      x[k] = hn::Sub(fetch(d, from.x[k]), left);
+      y[k] = hn::Sub(fetch(d, from.y[k]), top);
+      key[k] = fetch(d, from.key[k]);
+    }
+    const VU id = fetch(du, from.id);
+    TriangleQueue& queue = small_.queue();
+    if (asks_) {
+      const MI live = hn::Lt(hn::Iota(d, 0), hn::Set(d, std::int32_t(count)));
+      const Compactor<DI> compact(hn::AndNot(Hidden(x, y, key), live));
+      Put(x, y, key, id, [&](auto v, auto* to) HWY_ATTR { compact.Store(v, to + queue.count); });
+      queue.count += compact.count();
+      hidden_ += count - compact.count();
+    } else {
+      Put(x, y, key, id,
+          [&](auto v, auto* to) HWY_ATTR { hn::StoreU(v, hn::DFromV<decltype(v)>(), to + queue.count); });
+      queue.count += count;
+    }
+    small_.DrawFull();
+    met_ += count;
+    if (met_ >= kWindow) NextWindow();
+  }
+
+  /// Into the queue, by `store`.
+  template <class Store>
+  HWY_INLINE void Put(const VI (&x)[3], const VI (&y)[3], const VI (&key)[3], VU id, const Store& store) {
+    TriangleQueue& queue = small_.queue();
+    for (int k = 0; k < 3; ++k) {
+      store(x[k], queue.x[k]);
+      store(y[k], queue.y[k]);
+      store(key[k], queue.key[k]);
+    }
+    store(id, queue.id);
+  }
+
+  [[nodiscard]] HWY_INLINE MI Hidden(const VI (&x)[3], const VI (&y)[3], const VI (&key)[3]) const {
+    const VF nearest = hn::BitCast(DF(), hn::Max(key[0], hn::Max(key[1], key[2])));
+    return buffer_.Hidden(small_.ColumnsOf(RangeOf(x[0], x[1], x[2])), small_.RowsOf(RangeOf(y[0], y[1], y[2])),
+                          nearest);
+  }
+
+  /// Asking whether triangles are hidden, and finding what hides, costs an eighth of drawing a dense mesh: it goes on
+  /// as long as it finds something, and is tried again now and then.
+  HWY_NOINLINE void NextWindow() {
+    const bool pays = asks_ && hidden_ * 8 >= met_;
+    idle_ = pays || idle_ == kMostIdle ? 0 : idle_ + 1;
+    asks_ = pays || idle_ == 0;
+    met_ = hidden_ = 0;
+    if (!asks_) return;
+    buffer_.MarkDrawn(blocks_);
+    buffer_.Refresh();
+  }
+
+  const ParcelFrame& frame_;
+  const ParcelJob& job_;
+  TileBuffer buffer_;
+  LargeTriangles large_;
+  SmallTriangles small_;
+  HWY_ALIGN_MAX std::int32_t numbers_[2 * kMaxLanes];  // triangles of the parcel that wait for others
+  std::size_t pending_ = 0;
+  std::uint64_t blocks_ = 0;  // of the parcel
+  // Of this window: triangles, those that were hidden, and whether that is asked.
+  std::size_t met_ = 0, hidden_ = 0;
+  bool asks_ = false;
+  int idle_ = kMostIdle;  // windows in which it was not
+};
+
+void DrawParcels(const ParcelFrame& frame, const ParcelJob& job, TileScratch& scratch) {
+  if (job.is_empty() && !job.is_drawn)
+    FillTile(frame, job);
+  else
+    ParcelPainter(frame, job, scratch).Draw();
+  // Streamed stores are weakly ordered: another thread may read the planes next.
+  hwy::FlushStream();
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace frontmost::zbuffer_detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace frontmost::zbuffer_detail {
+
+FRONTMOST_KERNELS(DrawParcels);
+
+void draw_parcels(const ParcelFrame& frame, const ParcelJob& job, TileScratch& scratch, Isa isa) {
+  kernel_for(DrawParcelsKernels, isa)(frame, job, scratch);
+}
+
+}  // namespace frontmost::zbuffer_detail
+#endif  // HWY_ONCE

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "zbuffer/record_lists.h"
+
+#include <algorithm>
+
+namespace frontmost::zbuffer_detail {
+namespace {
+
+/// Calls add(tile) for the tiles of `range` in which a record may be seen.
+template <class Add>
+void visit_tiles(const TriangleRecord& record, const View& view, const TileRange& range, const Add& add) {
+  const PixelRect rect = pixel_rect(record, view.width, view.height);
+  if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
+  const TileRect tiles(rect);
+  const std::size_t across = Tile::tiles_across(view);
+  const int first_row = int(range.begin / across), last_row = int((range.end - 1) / across);
+  for (int y = std::max(tiles.y0, first_row); y <= std::min(tiles.y1, last_row); ++y)
+    for (int x = tiles.x0; x <= tiles.x1; ++x) {
+      const std::size_t tile = std::size_t(y) * across + std::size_t(x);
+      if (tile < range.begin || tile >= range.end) continue;
+      const PixelRect pixels{x * kTileSize, y * kTileSize, (x + 1) * kTileSize - 1, (y + 1) * kTileSize - 1};
+      if (tiles.count() == 1 || !misses(record, pixels)) add(tile);
+    }
+}
+
+}  // namespace
+
+void RecordLists::plan(const View& view, std::size_t most_items) {
+  std::sort(records.begin(), records.end(),
+            [](const TriangleRecord& a, const TriangleRecord& b) { return a.nearest() > b.nearest(); });
+  split_into_rounds(view, most_items);
+}
+
+void RecordLists::list(const TileRange& round, const View& view) {
+  lists_.make(round, records.size(),
+              [&](std::size_t i, const auto& add) { visit_tiles(records[i], view, round, add); });
+}
+
+/// Consecutive tiles whose lists together hold at most `most_items`, one tile at least.
+void RecordLists::split_into_rounds(const View& view, std::size_t most_items) {
+  const TileRange all{0, Tile::count(view)};
+  rounds_.assign(1, all);
+  // Even if every record were in every tile: no need to count.
+  if (records.size() <= most_items / all.end) return;
+  std::vector<std::uint32_t> counts(all.end, 0);
+  for (const TriangleRecord& record : records)
+    visit_tiles(record, view, all, [&](std::size_t tile) { ++counts[tile]; });
+  rounds_.assign(1, {0, 0});
+  std::size_t items = 0;
+  for (std::size_t tile = 0; tile < all.end; ++tile) {
+    if (items + counts[tile] > most_items && rounds_.back().end > rounds_.back().begin) {
+      rounds_.push_back({tile, tile});
+      items = 0;
+    }
+    items += counts[tile];
+    rounds_.back().end = tile + 1;
+  }
+}
+
+}  // namespace frontmost::zbuffer_detail

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// The vertices of a piece put on the screen, as many at once as the vector holds.
+
+// Included once for every target.
+#if defined(FRONTMOST_ZBUFFER_SNAP_PIECE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FRONTMOST_ZBUFFER_SNAP_PIECE_INL_H_
+#undef FRONTMOST_ZBUFFER_SNAP_PIECE_INL_H_
+#else
+#define FRONTMOST_ZBUFFER_SNAP_PIECE_INL_H_
+#endif
+
+#include "hwy/highway.h"
+#include "view/snap-inl.h"
+#include "zbuffer/batch-inl.h"
+#include "zbuffer/place_kernel.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::zbuffer_detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+namespace screen = view_detail::HWY_NAMESPACE;
+
+/// Calls visit(first, pointer to a whole vector of triples) over `count` triples; the last may be repeated to fill up.
+template <class Triple, class Visit>
+HWY_INLINE void ForTriples(std::span<const Triple> triples, const Visit& visit) {
+  const std::size_t lanes = hn::Lanes(DF());
+  std::size_t i = 0;
+  for (; i + lanes <= triples.size(); i += lanes) visit(i, &triples[i].x);
+  if (i == triples.size()) return;
+  Triple rest[kMaxLanes];
+  for (std::size_t k = 0; k < lanes; ++k) rest[k] = triples[HWY_MIN(i + k, triples.size() - 1)];
+  visit(i, &rest[0].x);
+}
+
+/// Vertices before they are put on the screen.
+struct WorldVertices {
+  VF x, y, z;
+};
+
+/// `mark(world, homogeneous)` gives the key of those that cannot be snapped as they are: a negative number.
+/// \returns true when there are none of them.
+template <class Mark>
+HWY_INLINE bool SnapVertices(const ScreenTransform& t, std::span<const glm::vec3> positions, PieceVertices& vertices,
+                             const Mark& mark) {
+  const DF d;
+  const DI di;
+  vertices.make_room(positions.size() + kMaxLanes);
+  const VI centre_x = hn::Set(di, t.centre_x), centre_y = hn::Set(di, t.centre_y);
+  bool all_plain = true;
+  ForTriples(positions, [&](std::size_t i, const float* triples) HWY_ATTR {
+    WorldVertices world;
+    hn::LoadInterleaved3(d, triples, world.x, world.y, world.z);
+    const auto homogeneous = screen::Transform(t, world.x, world.y, world.z);
+    const auto snapped = screen::Snap(t, homogeneous);
+    const auto plain = screen::IsPlain(t, homogeneous);
+    hn::StoreU(hn::Add(snapped.x, centre_x), di, vertices.x.data() + i);
+    hn::StoreU(hn::Add(snapped.y, centre_y), di, vertices.y.data() + i);
+    VF key = snapped.key;
+    if (!hn::AllTrue(d, plain)) {
+      key = hn::IfThenElse(plain, key, mark(world, homogeneous));
+      all_plain = false;
+    }
+    hn::StoreU(key, d, vertices.key.data() + i);
+  });
+  return all_plain;
+}
+
+/// One corner of each triangle of a vector.
+struct PlacedCorners {
+  VI number, x, y;
+};
+HWY_INLINE PlacedCorners FetchCorners(const PieceVertices& vertices, VU number, std::uint32_t first) {
+  const DI d;
+  const VI n = hn::Sub(hn::BitCast(d, number), hn::Set(d, std::int32_t(first)));
+  return {n, hn::GatherIndex(d, vertices.x.data(), n), hn::GatherIndex(d, vertices.y.data(), n)};
+}
+HWY_INLINE VF FetchKeys(const PieceVertices& vertices, const PlacedCorners& corners) {
+  return hn::GatherIndex(DF(), vertices.key.data(), corners.number);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace frontmost::zbuffer_detail
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard by target

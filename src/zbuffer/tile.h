@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tiles of the picture: where they are, what they are drawn to, and the memory that drawing one takes.
+#pragma once
+
+#include <span>
+
+#include "frontmost/visible.h"
+#include "view/screen_transform.h"
+
+namespace frontmost::zbuffer_detail {
+
+inline constexpr int kTileSize = 128;              ///< pixels
+inline constexpr int kBlockSize = 16;              ///< pixels; a tile is 8 x 8 blocks, one bit of a 64-bit mask each
+inline constexpr int kTileStride = kTileSize + 8;  ///< words; a power of two would collide in the cache
+inline constexpr std::size_t kTileWords = std::size_t(kTileSize) * kTileStride;
+
+/// The greatest pixel rectangle of triangles that are drawn many at a time, in x and y.
+inline constexpr glm::ivec2 kMostWalked{16, 32};
+
+/// The picture that tiles are drawn to. Borrows everything.
+struct Picture {
+  const View& view;
+  std::span<const glm::ivec2> samples;  ///< offsets within a pixel
+  PrimitiveId* primitives;              ///< planes, [sample][y][x]
+  float* keys;
+  bool streams;  ///< write them past the cache: they are too large to stay in it
+};
+
+/// The pixels of one tile.
+struct Tile {
+  int x = 0, y = 0, width = 0, height = 0;
+
+  /// Tiles are counted row by row.
+  Tile(std::size_t number, const View& view)
+      : x(int(number % tiles_across(view)) * kTileSize),
+        y(int(number / tiles_across(view)) * kTileSize),
+        width(std::min(kTileSize, view.width - x)),
+        height(std::min(kTileSize, view.height - y)) {}
+
+  [[nodiscard]] static std::size_t tiles_across(const View& view) {
+    return (std::size_t(view.width) + kTileSize - 1) / kTileSize;
+  }
+  [[nodiscard]] static std::size_t count(const View& view) {
+    return tiles_across(view) * ((std::size_t(view.height) + kTileSize - 1) / kTileSize);
+  }
+};
+
+/// What is known of the 64 blocks of a tile, row by row.
+struct BlockBounds {
+  static constexpr std::size_t count = 64;
+  /// No sample of the block is farther than this key; 0 where some sample sees nothing.
+  alignas(64) float farthest[count];
+  /// A triangle that covers all of the block: its keys at the four outermost samples, less what rounding may add, and
+  /// the greatest it can have. No sample of the block is farther than the plane through the four, or than `greatest`.
+  alignas(64) float corner[4][count];
+  alignas(64) float greatest[count];
+};
+
+/// The private memory of one thread, reused from tile to tile.
+struct TileScratch {
+  TileScratch();
+  /// Makes room for that many samples a pixel.
+  void reserve(std::size_t sample_count);
+
+  /// By sample, kTileWords each: key bits << 32 | ~id, the greatest wins. 0 is "nothing".
+  Buffer<std::uint64_t> words;
+  Buffer<BlockBounds> bounds;        ///< one
+  Buffer<std::uint32_t> references;  ///< covered (triangle, pixel) pairs of one batch
+};
+
+}  // namespace frontmost::zbuffer_detail

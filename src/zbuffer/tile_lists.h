@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// For every tile of a range a list of numbers.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "zbuffer/cull.h"
+#include "zbuffer/tile.h"
+
+namespace frontmost::zbuffer_detail {
+
+/// Tiles [begin, end), counted row by row.
+struct TileRange {
+  std::size_t begin = 0, end = 0;
+};
+
+/// Tiles [x0, x1] x [y0, y1], both ends included.
+struct TileRect {
+  int x0, y0, x1, y1;
+
+  explicit TileRect(const PixelRect& rect)
+      : x0(rect.x0 / kTileSize), y0(rect.y0 / kTileSize), x1(rect.x1 / kTileSize), y1(rect.y1 / kTileSize) {}
+  [[nodiscard]] int count() const { return (x1 - x0 + 1) * (y1 - y0 + 1); }
+};
+
+/// The lists stand one after another in one array.
+struct TileLists {
+  std::size_t first_tile = 0;
+  std::vector<std::size_t> begin;  ///< by tile, and the end of the last
+  std::vector<std::uint32_t> items;
+
+  [[nodiscard]] std::span<const std::uint32_t> of(std::size_t tile) const {
+    const std::size_t i = tile - first_tile;
+    return std::span(items).subspan(begin[i], begin[i + 1] - begin[i]);
+  }
+  /// Lists of the tiles that `visit(item, add)` names by add(tile), items in their order: counted first, then filled.
+  template <class Visit>
+  void make(const TileRange& tiles, std::size_t item_count, const Visit& visit);
+};
+
+template <class Visit>
+void TileLists::make(const TileRange& tiles, std::size_t item_count, const Visit& visit) {
+  first_tile = tiles.begin;
+  const std::size_t tile_count = tiles.end - tiles.begin;
+  // One place behind, so that filling a list moves its beginning to where it belongs.
+  begin.assign(tile_count + 2, 0);
+  for (std::size_t i = 0; i < item_count; ++i) visit(i, [&](std::size_t tile) { ++begin[tile - tiles.begin + 2]; });
+  for (std::size_t tile = 0; tile < tile_count; ++tile) begin[tile + 2] += begin[tile + 1];
+  items.resize(begin[tile_count + 1]);
+  for (std::size_t i = 0; i < item_count; ++i)
+    visit(i, [&](std::size_t tile) { items[begin[tile - tiles.begin + 1]++] = static_cast<std::uint32_t>(i); });
+}
+
+}  // namespace frontmost::zbuffer_detail
