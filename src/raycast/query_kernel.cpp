@@ -146,8 +146,10 @@ class QueryWalker {
       if (HWY_UNLIKELY(slab_[0].rests || slab_[1].rests || slab_[2].rests))
         outside = hn::Or(outside, Beside(node, first));
       const QM inside = hn::AndNot(outside, hn::FirstN(d, node.count - first));
-      hn::CompressStore(hn::BitCast(di, enter), hn::RebindMask(di, inside), di, at + count);
-      count += hn::CompressStore(hn::Load(du, node.child + first), hn::RebindMask(du, inside), du, child + count);
+      const Compactor<QF> entered(inside);
+      entered.Store(hn::BitCast(di, enter), at + count);
+      entered.Store(hn::Load(du, node.child + first), child + count);
+      count += entered.count();
     }
     for (std::size_t i = 0; i < count; ++i) {
       Entry& entry = top[RankOf(at, count, i)];

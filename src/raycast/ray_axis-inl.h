@@ -11,6 +11,7 @@
 
 #include <cmath>
 
+#include "base/compactor-inl.h"
 #include "hwy/highway.h"
 #include "raycast/query_kernel.h"
 
@@ -18,6 +19,8 @@ HWY_BEFORE_NAMESPACE();
 namespace frontmost::raycast_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+
+using frontmost::HWY_NAMESPACE::Compactor;
 
 using QF = hn::CappedTag<float, kRayLanes>;
 using QI = hn::RebindToSigned<QF>;

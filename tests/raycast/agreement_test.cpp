@@ -31,8 +31,10 @@ class EveryKindAgrees : public testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(Agreement, EveryKindAgrees, testing::ValuesIn(all_kinds));
 
 TEST_P(EveryKindAgrees, WithTheZBuffer) {
+  // Most pixels of stacked sheets are put to exact arithmetic.
+  const std::uint64_t count = seeds(GetParam() == Kind::sheets ? 8 : 40);
   std::size_t differing = 0, samples = 0;
-  for (std::uint64_t seed = 0; seed < seeds(40); ++seed) {
+  for (std::uint64_t seed = 0; seed < count; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const RandomCase random = random_case(GetParam(), seed, 900);
     const Surfaces surfaces(random.scene);
@@ -40,7 +42,7 @@ TEST_P(EveryKindAgrees, WithTheZBuffer) {
     differing += expect_explained(surfaces, view).differing();
     samples += view.sample_count();
   }
-  EXPECT_GT(samples, seeds(40) * 5'000);
+  EXPECT_GT(samples, count * 5'000);
   // Coplanar triangles and stacked sheets lie in each other: everywhere either may be seen.
   const bool are_one = GetParam() == Kind::coplanar || GetParam() == Kind::sheets;
   const std::size_t most = are_one ? samples / 10 : samples / 50;
