@@ -31,6 +31,7 @@ int run_precision(const Settings& settings);
 int run_sight(const Settings& settings);
 int run_lidar(const Settings& settings);
 int run_compare(const Settings& settings);
+int run_lines(const Settings& settings);
 
 /// Fills Settings from the words after the command's name.
 /// \throws UsageError

@@ -31,6 +31,16 @@ constexpr Command table[] = {
      "frontmost render city.glb --json --repeat 20 --samples 1\n"
      "curl -s https://example.com/part.stl | frontmost render - -o - --format png > part.png",
      run_render},
+    {"lines", for_lines, "MODEL", "Draw the edges of a model on paper, hidden lines removed.",
+     "Outlines, creases, borders and intersections, cut exactly where they go out of sight, in millimetres, as vectors "
+     "for journals, drawing sheets and pen plotters. The layers of SVG and PDF are 1 hidden, 2 visible and 3 outline, "
+     "with a group for every object.",
+     "frontmost lines part.stl --view iso --camera-orthographic --hidden dashed -o part.svg\n"
+     "frontmost lines part.stl --views front,top,left,iso --hidden dashed --page a3 -o sheet.pdf\n"
+     "frontmost lines part.stl --view top --camera-orthographic --scale 1:1 -o part.dxf\n"
+     "frontmost lines engine.glb --style figure -o figure.pdf\n"
+     "frontmost lines city.glb --plot --page a3 -o plot.svg --json",
+     run_lines},
     {"info", for_info, "MODEL", "Count and check what is in a model.",
      "Counts, bounds, objects, materials and cameras, and what is odd: degenerate, duplicate and non-finite triangles, "
      "boundary and non-manifold edges, inconsistent winding.",

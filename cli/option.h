@@ -20,6 +20,7 @@ enum class Group : std::uint8_t {
   sight,
   lidar,
   compare,
+  drawing,
   output,
   look,
   run
@@ -33,6 +34,7 @@ inline constexpr std::string_view group_titles[] = {"Model",
                                                     "Points",
                                                     "The scanner",
                                                     "Comparing",
+                                                    "The drawing",
                                                     "What to write",
                                                     "How the picture looks",
                                                     "How to run"};
@@ -46,7 +48,8 @@ enum CommandBit : unsigned {
   for_precision = 16,
   for_sight = 32,
   for_lidar = 64,
-  for_compare = 128
+  for_compare = 128,
+  for_lines = 256
 };
 
 /// The text given for an option, and the words it may be.
@@ -86,14 +89,16 @@ struct Option {
 [[nodiscard]] std::span<const Option> sight_option_table();
 [[nodiscard]] std::span<const Option> lidar_option_table();
 [[nodiscard]] std::span<const Option> compare_option_table();
+[[nodiscard]] std::span<const Option> drawing_option_table();
 [[nodiscard]] std::span<const Option> output_option_table();
 [[nodiscard]] std::span<const Option> run_option_table();
 
 /// Calls visit(option) for every option, in the order of the help.
 template <class Visit>
 void for_each_option(const Visit& visit) {
-  for (const auto table : {view_option_table(), depth_option_table(), precision_option_table(), sight_option_table(),
-                           lidar_option_table(), compare_option_table(), output_option_table(), run_option_table()}) {
+  for (const auto table :
+       {view_option_table(), depth_option_table(), precision_option_table(), sight_option_table(), lidar_option_table(),
+        compare_option_table(), drawing_option_table(), output_option_table(), run_option_table()}) {
     for (const Option& option : table) visit(option);
   }
 }

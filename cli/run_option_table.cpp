@@ -11,7 +11,7 @@ namespace frontmost::cli {
 namespace {
 
 constexpr unsigned everywhere =
-    for_render | for_info | for_camera | for_precision | for_sight | for_lidar | for_compare;
+    for_render | for_info | for_camera | for_precision | for_sight | for_lidar | for_compare | for_lines;
 
 Isa isa_from(const Given& given) {
   // The words leave out Isa::best, which is the default.

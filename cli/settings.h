@@ -6,6 +6,7 @@
 #include <frontmost/depth_buffer.h>
 #include <frontmost/image.h>
 #include <frontmost/io.h>
+#include <frontmost/page.h>
 #include <frontmost/shade.h>
 #include <frontmost/view.h>
 
@@ -132,6 +133,38 @@ struct LidarSettings {
   std::vector<std::string> outputs;
 };
 
+/// How frontmost lines finds the scale of a drawing.
+enum class ScaleRule : std::uint8_t { fit, standard, given };
+
+/// A sheet of paper, before it is known how large the drawing is.
+struct PaperSettings {
+  glm::dvec2 size{210, 297};  ///< millimetres
+  bool may_turn = true;       ///< landscape where that is better
+  bool fits_drawing = false;  ///< as large as the drawing and its margins; the size does not count
+};
+
+/// What frontmost lines draws, and on what.
+struct DrawingSettings {
+  enum class Hidden : std::uint8_t { none, dashed, thin };
+  enum class Layout : std::uint8_t { first_angle, third_angle };
+  enum class Style : std::uint8_t { technical, figure };
+  enum class Unit : std::uint8_t { millimetre, centimetre, metre, inch };
+
+  Hidden hidden = Hidden::none;
+  Style style = Style::technical;
+  std::optional<ScaleRule> scale_rule;
+  double scale = 1;  ///< millimetres on paper to a millimetre of the model
+  std::optional<Unit> unit;
+  std::optional<PaperSettings> paper;
+  double margin = 10;  ///< millimetres
+  std::vector<NamedView> views;
+  std::optional<Layout> layout;
+  double crease_angle = 30;  ///< degrees
+  bool plot = false;
+  std::optional<PageFormat> format;
+  std::vector<std::string> outputs;
+};
+
 struct Settings {
   std::string model;
   std::vector<std::string> more_models;  ///< of `render`: drawn together with the first
@@ -141,6 +174,7 @@ struct Settings {
   SightSettings sight;
   LidarSettings lidar;
   CompareSettings compare;
+  DrawingSettings drawing;
   OutputSettings output;
   RunSettings run;
 };

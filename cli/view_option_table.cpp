@@ -10,8 +10,8 @@ namespace frontmost::cli {
 namespace {
 
 constexpr unsigned everywhere =
-    for_render | for_info | for_camera | for_precision | for_sight | for_lidar | for_compare;
-constexpr unsigned views = for_render | for_camera | for_precision | for_compare;
+    for_render | for_info | for_camera | for_precision | for_sight | for_lidar | for_compare | for_lines;
+constexpr unsigned views = for_render | for_camera | for_precision | for_compare | for_lines;
 constexpr int max_side = 16384;
 
 Axis axis_of(const glm::dvec3& direction) {
@@ -132,7 +132,8 @@ constexpr Option table[] = {
      [](Settings& s, const Given& g) {
        s.view.far = g.text == "inf" ? std::numeric_limits<double>::infinity() : g.number();
      }},
-    {"cull", 0, "none|back|front|both", "Leave out triangles that face this way.", Group::grid, views,
+    {"cull", 0, "none|back|front|both", "Leave out triangles that face this way.", Group::grid,
+     for_render | for_camera | for_precision | for_compare,
      [](Settings& s, const Given& g) { s.view.culling = g.choice<Culling>(); }},
     {"tessellation-error", 0, "PIXELS",
      "Cut spheres and patches into triangles within that many pixels of the surface. Without it the method raycast "

@@ -66,5 +66,5 @@ if(TARGET frontmost_cli)
   add_custom_target(frontmost_words ALL DEPENDS ${words})
 endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
-install(FILES README.md CHANGELOG.md docs/batch.md docs/command-line.md docs/conventions.md docs/formats.md
+install(FILES README.md CHANGELOG.md docs/batch.md docs/command-line.md docs/conventions.md docs/drawings.md docs/formats.md
   DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)

@@ -18,6 +18,7 @@
 #include "frontmost/report.h"        // IWYU pragma: export
 #include "frontmost/scene.h"         // IWYU pragma: export
 #include "frontmost/shade.h"         // IWYU pragma: export
+#include "frontmost/sheet.h"         // IWYU pragma: export
 #include "frontmost/stream.h"        // IWYU pragma: export
 #include "frontmost/strokes.h"       // IWYU pragma: export
 #include "frontmost/surfaces.h"      // IWYU pragma: export

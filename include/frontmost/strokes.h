@@ -11,6 +11,7 @@ namespace frontmost {
 struct StrokeOptions {
   bool with_hidden = true;  ///< false: hidden parts are left out
   bool by_kind = true;      ///< false: edges of all kinds may share a stroke
+  bool by_outline = true;   ///< false: outlines and other lines may share a stroke
   bool by_instance = true;  ///< false: edges of several objects may share a stroke
   double tolerance = 0.01;  ///< pixels, 0.0001 to 1: strokes leave their parts by at most this
   /// Pixels, 0 to 100. Above 0: runs of at least four parts whose corners lie within this of one circle, with at most
@@ -25,7 +26,7 @@ struct StrokeOptions {
 struct Stroke {
   EdgeKind kind = EdgeKind::boundary;  ///< of all its parts, or, without by_kind, of its first one
   bool is_hidden = false;
-  bool is_outline = false;            ///< of all its parts; false without by_kind
+  bool is_outline = false;            ///< of all its parts; false without by_outline
   std::uint32_t instance = no_index;  ///< of all its parts, or, without by_instance, of its first one
   std::uint32_t first = 0, count = 0;
   bool is_closed = false;  ///< the last point is joined to the first

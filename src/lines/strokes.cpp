@@ -23,14 +23,14 @@ class Classes {
   [[nodiscard]] std::uint64_t key(const DrawnPart& part) const {
     const DrawnEdge& edge = drawing_.edges[part.edge];
     std::uint64_t key = part.hidden_by != 0;
-    key = key << 1 | (options_.by_kind && !part.is_outline);
+    key = key << 1 | (options_.by_outline && !part.is_outline);
     key = key << 8 | (options_.by_kind ? std::uint64_t(edge.kind) : 0);
     return key << 32 | (options_.by_instance ? instance_of(edge) : 0);
   }
 
   [[nodiscard]] Stroke stroke(const DrawnPart& part) const {
     const DrawnEdge& edge = drawing_.edges[part.edge];
-    return {edge.kind, part.hidden_by != 0, options_.by_kind && part.is_outline, instance_of(edge), 0, 0, false};
+    return {edge.kind, part.hidden_by != 0, options_.by_outline && part.is_outline, instance_of(edge), 0, 0, false};
   }
 
  private:

@@ -85,11 +85,12 @@ TEST(StrokesOfACube, FromACorner) {
   EXPECT_TRUE(all.bulges.empty());
   EXPECT_EQ(strokes_of(prism(square), parallel_view({4, 5, 6}), {.with_hidden = false}).strokes.size(), 4u);
   // Of any kind: every corner of the cube but the hidden one and three of the outline is a junction.
-  EXPECT_EQ(strokes_of(prism(square), parallel_view({4, 5, 6}), {.by_kind = false}).strokes.size(), 9u);
+  EXPECT_EQ(strokes_of(prism(square), parallel_view({4, 5, 6}), {.by_kind = false, .by_outline = false}).strokes.size(),
+            9u);
 }
 
 TEST(StrokesOfACube, FromTheFrontEveryLineOnce) {
-  const Strokes all = strokes_of(prism(square), parallel_view({0, 0, 10}), {.by_kind = false});
+  const Strokes all = strokes_of(prism(square), parallel_view({0, 0, 10}), {.by_kind = false, .by_outline = false});
   // Its four back edges lie behind the front ones, and four edges are points.
   ASSERT_EQ(all.strokes.size(), 1u);
   EXPECT_FALSE(all.strokes[0].is_hidden);
@@ -104,7 +105,7 @@ TEST(StrokesOnce, WhatIsThereTwiceIsDrawnOnce) {
   Mesh twice = mesh;  // all edges have more than two triangles now, of which one is drawn
   for (const glm::uvec3& t : mesh.triangles)
     add_triangle(twice, mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]);
-  const StrokeOptions any_kind{.by_kind = false};
+  const StrokeOptions any_kind{.by_kind = false, .by_outline = false};
   const Strokes a = strokes_of(mesh, view, any_kind), b = strokes_of(twice, view, any_kind);
   EXPECT_EQ(a.strokes.size(), b.strokes.size());
   EXPECT_NEAR(length_of(a, false), length_of(b, false), 0.1);
@@ -116,7 +117,7 @@ TEST(StrokesOnce, AHiddenEdgeBehindASeenOneKeepsWhatSticksOut) {
   Mesh mesh;
   add_quad(mesh, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1});
   add_quad(mesh, {-1.5, -1, 0}, {1.5, -1, 0}, {1.5, 1, 0}, {-1.5, 1, 0});
-  const Strokes all = strokes_of(mesh, parallel_view({0, 0, 10}), {.by_kind = false});
+  const Strokes all = strokes_of(mesh, parallel_view({0, 0, 10}), {.by_kind = false, .by_outline = false});
   EXPECT_NEAR(length_of(all, false), 800 + 2 * 200 + 4 * 50, 1e-6);
   EXPECT_NEAR(length_of(all, true), 0, 1e-6);
 }
@@ -142,7 +143,7 @@ TEST(StrokesOnce, TotalLengthIsThatOfTheParts) {
 }
 
 TEST(StrokesArcs, ADiscIsACircleAndAHexagonStaysOne) {
-  const StrokeOptions options{.by_kind = false, .arc_tolerance = 0.05};
+  const StrokeOptions options{.by_kind = false, .by_outline = false, .arc_tolerance = 0.05};
   const Strokes disc = strokes_of(prism(regular(64)), parallel_view({0, 0, 10}), options);
   ASSERT_EQ(disc.strokes.size(), 1u);
   EXPECT_TRUE(disc.strokes[0].is_closed);
@@ -166,7 +167,8 @@ TEST(StrokesArcs, ARoundedPlateHasFourArcsAndFourLines) {
       const glm::dvec2 centre((corner == 0 || corner == 3 ? 1 : -1) * 0.7, (corner < 2 ? 1 : -1) * 0.5);
       outline.push_back(centre + 0.3 * glm::dvec2(std::cos(angle), std::sin(angle)));
     }
-  const Strokes all = strokes_of(prism(outline), parallel_view({0, 0, 10}), {.by_kind = false, .arc_tolerance = 0.05});
+  const Strokes all = strokes_of(prism(outline), parallel_view({0, 0, 10}),
+                                 {.by_kind = false, .by_outline = false, .arc_tolerance = 0.05});
   ASSERT_EQ(all.strokes.size(), 1u);
   ASSERT_EQ(all.strokes[0].count, 8u);
   std::size_t arcs = 0;
@@ -182,7 +184,8 @@ TEST(StrokesArcs, HalvesOfLongArcsLieOnTheCircle) {
   // A disc with a slice cut out: 300 degrees.
   std::vector<glm::dvec2> outline = {{0, 0}};
   for (int i = 0; i <= 60; ++i) outline.push_back(glm::dvec2(std::cos(i * pi / 36), std::sin(i * pi / 36)));
-  const Strokes all = strokes_of(prism(outline), parallel_view({0, 0, 10}), {.by_kind = false, .arc_tolerance = 0.05});
+  const Strokes all = strokes_of(prism(outline), parallel_view({0, 0, 10}),
+                                 {.by_kind = false, .by_outline = false, .arc_tolerance = 0.05});
   ASSERT_EQ(all.strokes.size(), 1u);
   ASSERT_EQ(all.strokes[0].count, 4u);
   for (const glm::dvec2& p : all.points) {
@@ -216,7 +219,7 @@ TEST(StrokesOrder, TheNextOneIsAlwaysTheNearest) {
 
 TEST(StrokesOrder, APenGoesOnWhereStrokesTouch) {
   // Nine seen edges of a cube with eight odd corners or so: fewer lifts than chains.
-  const StrokeOptions plain{.with_hidden = false, .by_kind = false};
+  const StrokeOptions plain{.with_hidden = false, .by_kind = false, .by_outline = false};
   StrokeOptions plot = plain;
   plot.nearest_first = true;
   const View view = parallel_view({4, 5, 6});

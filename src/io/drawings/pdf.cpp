@@ -220,8 +220,8 @@ class PdfWriter {
 
   void write_page(const PdfContent& content, double scale) {
     begin(page_itself) << "<< /Type /Page /Parent 2 0 R /Contents 4 0 R /MediaBox [0 0 ";
-    out_.fixed(std::llround(page_.width * scale * 1e6), 6) << ' ';
-    out_.fixed(std::llround(page_.height * scale * 1e6), 6) << "]";
+    out_.fixed(std::int64_t(page_.width * scale * 1e6), 6) << ' ';  // rounded down: rasterisers round up
+    out_.fixed(std::int64_t(page_.height * scale * 1e6), 6) << "]";
     if (unit_ > 1) {
       out_ << " /UserUnit ";
       out_.integer(std::int64_t(unit_));

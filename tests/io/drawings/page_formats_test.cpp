@@ -73,7 +73,7 @@ TEST(Svg, FillsKeepTheirOrderAndHaveAnElementEach) {
 TEST(Pdf, FindsItsObjectsAndItsSize) {
   const std::string pdf = saved(sample_page(), PageFormat::pdf);
   EXPECT_EQ(pdf.substr(0, 9), "%PDF-1.6\n");
-  EXPECT_TRUE(has(pdf, "/MediaBox [0 0 283.464567 141.732283]"));
+  EXPECT_TRUE(has(pdf, "/MediaBox [0 0 283.464566 141.732283]"));
   EXPECT_TRUE(has(pdf, "/Type /OCG /Name <FEFF003100200068"));
   const std::size_t start = std::stoul(pdf.substr(pdf.rfind("startxref\n") + 10));
   std::istringstream table(pdf.substr(start));

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Options of frontmost lines alone.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/failure.h"
+#include "cli/lines/paper.h"
+#include "cli/option.h"
+
+namespace frontmost::cli {
+namespace {
+
+constexpr std::string_view view_names = "front|back|left|right|top|bottom|iso";
+
+std::vector<NamedView> views_from(std::string_view text) {
+  std::vector<NamedView> views;
+  for (const std::string_view word : split(text, ',')) {
+    const auto view = NamedView(parse_choice(word, view_names));
+    if (std::find(views.begin(), views.end(), view) != views.end())
+      throw UsageError(fmt::format("'{}' is there twice", word));
+    views.push_back(view);
+  }
+  return views;
+}
+
+void set_scale(Settings& s, const Given& g) {
+  s.drawing.scale_rule = g.text == "fit"        ? ScaleRule::fit
+                         : g.text == "standard" ? ScaleRule::standard
+                                                : ScaleRule::given;
+  if (s.drawing.scale_rule == ScaleRule::given) s.drawing.scale = parse_scale(g.text);
+}
+
+std::string file_from(const Given& given) {
+  if (given.text.empty()) throw UsageError("the file name is empty");
+  return given.string();
+}
+
+constexpr Option table[] = {
+    {"hidden", 0, "none|dashed|thin", "How hidden edges are drawn; none by default.", Group::drawing, for_lines,
+     [](Settings& s, const Given& g) { s.drawing.hidden = g.choice<DrawingSettings::Hidden>(); }},
+    {"style", 0, "technical|figure",
+     "Pens of drawing standards (0.5 mm, the default), or for people: outlines heavier than the lines within them.",
+     Group::drawing, for_lines,
+     [](Settings& s, const Given& g) { s.drawing.style = g.choice<DrawingSettings::Style>(); }},
+    {"crease-angle", 0, "DEGREES", "Edges whose faces meet at more than this are drawn, 0 to 180; 30 by default.",
+     Group::drawing, for_lines,
+     [](Settings& s, const Given& g) {
+       s.drawing.crease_angle = g.number({0, 180});
+     }},
+    {"page", 0, "PAPER",
+     "a0 to a6, letter, legal or tabloid, perhaps with -portrait or -landscape; W,H in millimetres; or fit: as large "
+     "as "
+     "the drawing. a4 by default; fit with a --scale of numbers.",
+     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.paper = parse_paper(g.text); }},
+    {"margin", 0, "MM", "Room at the sides of the page, 0 to 1000; 10 by default.", Group::drawing, for_lines,
+     [](Settings& s, const Given& g) {
+       s.drawing.margin = g.number({0, 1000});
+     }},
+    {"scale", 0, "A:B",
+     "Length on paper to that of the model, as 1:5 or 0.2; fit: as large as the page allows; standard: the largest "
+     "scale "
+     "of ISO 5455 that fits. For parallel projection; standard by default with --views, fit otherwise.",
+     Group::drawing, for_lines, set_scale},
+    {"unit", 0, "mm|cm|m|in", "What the model's unit of length is; m by default for glTF, mm for others.",
+     Group::drawing, for_lines,
+     [](Settings& s, const Given& g) { s.drawing.unit = g.choice<DrawingSettings::Unit>(); }},
+    {"views", 0, "V,V,...",
+     "Several views on one sheet, in parallel projection, aligned, at one scale: front, back, left, right, top, "
+     "bottom, "
+     "iso.",
+     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.views = views_from(g.text); }},
+    {"projection", 0, "first-angle|third-angle",
+     "Where views stand about the front one: the view from above below it (the default), or above it.", Group::drawing,
+     for_lines, [](Settings& s, const Given& g) { s.drawing.layout = g.choice<DrawingSettings::Layout>(); }},
+    {"plot", 0, "", "For pen plotters: long strokes whatever they belong to, ordered to spare lifts of the pen.",
+     Group::drawing, for_lines, [](Settings& s, const Given&) { s.drawing.plot = true; }},
+    {"output", 'o', "FILE", "The drawing: .svg, .pdf, .dxf or .json; - is standard output, with --format.",
+     Group::output, for_lines | may_repeat,
+     [](Settings& s, const Given& g) { s.drawing.outputs.push_back(file_from(g)); }},
+    {"format", 0, "svg|pdf|dxf|json", "Format of the drawing; by default from the file's suffix.", Group::output,
+     for_lines, [](Settings& s, const Given& g) { s.drawing.format = g.choice<PageFormat>(); }},
+};
+
+}  // namespace
+
+std::span<const Option> drawing_option_table() { return table; }
+
+}  // namespace frontmost::cli

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the views of a sheet stand, and how large.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/settings.h"
+
+namespace frontmost::cli {
+
+/// What a view takes around its anchor, in millimetres at scale 1:1, y down; and its cell, of which views in line share
+/// the row or the column. Anchors in a row are at one height, in a column below each other.
+struct ViewCell {
+  glm::dvec2 low{0}, high{0};
+  int column = 0, row = 0;
+};
+
+/// The cell of a named view about the front view: a view from the left stands to the right in first-angle projection,
+/// and to the left in third-angle projection.
+[[nodiscard]] glm::ivec2 cell_of(NamedView view, DrawingSettings::Layout layout);
+
+/// Columns and rows in use, each as wide as its widest view.
+class Layout {
+ public:
+  /// Precondition: not empty. `gap` in millimetres, at any scale.
+  Layout(const std::vector<ViewCell>& cells, double gap);
+
+  [[nodiscard]] glm::dvec2 size(double scale) const { return extent_ * scale + gaps_; }
+  /// The largest scale at which all fits into `area`; 1 where it has no size.
+  [[nodiscard]] double largest_scale(const glm::dvec2& area) const;
+  /// Where the anchors are, with the layout's upper left corner at `corner`.
+  [[nodiscard]] std::vector<glm::dvec2> anchors(double scale, const glm::dvec2& corner) const;
+
+ private:
+  /// Along one axis: numbers of lines in use, and how far views reach before and behind their anchors.
+  struct Line {
+    int number;
+    double before, behind;
+  };
+  [[nodiscard]] static std::vector<Line> lines_of(const std::vector<ViewCell>& cells, int axis);
+  [[nodiscard]] double place(const ViewCell& cell, int axis, double scale) const;
+
+  std::vector<ViewCell> cells_;
+  double gap_;
+  std::vector<Line> lines_[2];
+  glm::dvec2 extent_{0}, gaps_{0};
+};
+
+/// A sheet whose size and scale are settled.
+struct SheetPlan {
+  glm::dvec2 size{0};
+  double scale = 1;
+  std::vector<glm::dvec2> anchors;
+};
+
+/// \throws UsageError when the drawing does not fit, saying what would.
+[[nodiscard]] SheetPlan plan_sheet(const Layout& layout, const DrawingSettings& settings, bool has_scale);
+
+}  // namespace frontmost::cli

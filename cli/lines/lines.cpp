@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+// frontmost lines: hidden-line drawings on paper, from the camera to the file.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/failure.h"
+#include "cli/interruption.h"
+#include "cli/lines/layout.h"
+#include "cli/lines/lines_report.h"
+#include "cli/model.h"
+#include "cli/render/fit.h"
+#include "cli/render/outputs.h"
+#include "cli/stopwatch.h"
+#include "cli/view_options.h"
+
+namespace frontmost::cli {
+namespace {
+
+constexpr double gap_between_views = 15;     // millimetres
+constexpr double arc_tolerance = 0.01;       // millimetres
+constexpr double stroke_tolerance = 0.0005;  // millimetres: half of what coordinates are rounded to
+constexpr glm::ivec2 fine_grid{3840, 2160};  // shaped as render's default picture, for the same camera
+constexpr std::string_view view_names[] = {"front", "back", "left", "right", "top", "bottom", "iso"};
+
+bool is_parallel(const Settings& s) { return s.view.orthographic || !s.drawing.views.empty(); }
+
+void check_views(const Settings& s) {
+  if (s.drawing.views.empty()) {
+    if (s.drawing.layout) throw UsageError("--projection needs --views");
+    return;
+  }
+  const ViewSettings& v = s.view;
+  const std::pair<const char*, bool> others[] = {{"view", v.named.has_value()},
+                                                 {"camera-position", v.position.has_value()},
+                                                 {"camera-focal-point", v.focal_point.has_value()},
+                                                 {"camera-direction", v.direction.has_value()},
+                                                 {"camera-view-up", v.view_up.has_value()},
+                                                 {"camera-view-angle", v.view_angle.has_value()},
+                                                 {"camera-zoom-factor", v.zoom != 1},
+                                                 {"camera-azimuth-angle", v.azimuth != 0},
+                                                 {"camera-elevation-angle", v.elevation != 0},
+                                                 {"camera-index", v.camera_index.has_value()},
+                                                 {"intrinsics", v.intrinsics.has_value()},
+                                                 {"pose", v.pose.has_value()},
+                                                 {"resolution", v.resolution.has_value()}};
+  for (const auto& [name, is_set] : others)
+    if (is_set) throw UsageError(fmt::format("--views and --{} exclude each other", name));
+}
+
+void check(const Settings& settings) {
+  const DrawingSettings& s = settings.drawing;
+  check_view_settings(settings.view);
+  check_views(settings);
+  if (s.outputs.empty() && !settings.run.json) throw UsageError("nothing to do: give -o FILE or --json");
+  if (s.scale_rule && s.scale_rule != ScaleRule::fit && !is_parallel(settings))
+    throw UsageError("--scale: in perspective nothing has a scale; add --camera-orthographic, or --views");
+  if (s.paper && s.paper->fits_drawing && s.scale_rule != ScaleRule::given)
+    throw UsageError("--page fit: needs a --scale such as 1:5");
+  for (const std::string& path : s.outputs)
+    if (!s.format && !page_format(path))
+      throw UsageError(path == "-" ? "-o -: needs --format"
+                                   : path + ": the suffix names no format; use .svg, .pdf, .dxf or .json");
+  const bool takes_output = std::find(s.outputs.begin(), s.outputs.end(), "-") != s.outputs.end();
+  if (takes_output && settings.run.json) throw UsageError("--json and an output to - both want standard output");
+}
+
+/// Millimetres to the model's unit.
+double unit_of(const Settings& settings) {
+  constexpr double sizes[] = {1, 10, 1000, 25.4};
+  if (settings.drawing.unit) return sizes[int(*settings.drawing.unit)];
+  const auto ends_in = [&](std::string_view suffix) {
+    const std::string& model = settings.model;
+    return model.size() > suffix.size() && model.compare(model.size() - suffix.size(), suffix.size(), suffix) == 0;
+  };
+  const bool is_gltf =
+      settings.load.format ? *settings.load.format == ModelFormat::gltf : ends_in(".glb") || ends_in(".gltf");
+  return is_gltf ? 1000 : 1;
+}
+
+/// True when the user chose what is in the picture, beyond the direction from where the model is seen.
+bool is_framed(const ViewSettings& s) {
+  return s.pose || s.camera_index || s.position || s.intrinsics || s.resolution || s.zoom != 1;
+}
+
+DrawnView draw(const ViewSettings& settings, const Settings& all, const Surfaces& surfaces,
+               const Execution& execution) {
+  DrawnView result;
+  const View view = resolve_view(settings, surfaces);
+  LineOptions options;
+  options.crease_angle = glm::radians(all.drawing.crease_angle);
+  result.drawing = lines(surfaces, view, options, execution);
+  const Projection& p = view.projection;
+  if (p.orthographic) result.millimetres_per_pixel = (p.right - p.left) / view.width * unit_of(all);
+  result.keeps_frame = is_framed(settings);
+  return result;
+}
+
+std::vector<DrawnView> draw_all(const Settings& settings, const Surfaces& surfaces, const Execution& execution) {
+  ViewSettings one = settings.view;
+  if (!one.resolution && !one.intrinsics) one.resolution = fine_grid;
+  std::vector<DrawnView> views;
+  if (settings.drawing.views.empty()) {
+    views.push_back(draw(one, settings, surfaces, execution));
+    views.back().name = view_name(settings.view);
+    views.back().keeps_frame = is_framed(settings.view);
+  }
+  one.orthographic = true;
+  for (const NamedView named : settings.drawing.views) {
+    one.named = named;
+    views.push_back(draw(one, settings, surfaces, execution));
+    views.back().name = views.back().sheet.name = view_names[int(named)];
+    views.back().keeps_frame = false;
+  }
+  return views;
+}
+
+/// The pixel that views in line share: the middle of the model.
+glm::dvec2 middle_pixel(const View& view, const Surfaces& surfaces) {
+  const glm::dvec3 offset = visible_bounds(surfaces).centre - view.eye();
+  const Projection& p = view.projection;
+  return {(glm::dot(offset, view.right()) - p.left) / (p.right - p.left) * view.width,
+          (p.top - glm::dot(offset, view.up())) / (p.top - p.bottom) * view.height};
+}
+
+/// What a view covers, and the pixel that its cell stands about.
+struct Frame {
+  ViewCell cell;
+  glm::dvec2 anchor{0};
+};
+
+Frame frame_of(const DrawnView& view, const Settings& settings, const Surfaces& surfaces, std::size_t number) {
+  const View& camera = view.drawing.view;
+  DrawingBounds box = bounds(view.drawing, settings.drawing.hidden != DrawingSettings::Hidden::none);
+  if (view.keeps_frame || box.is_empty()) {
+    box.low = glm::dvec2(0);
+    box.high = glm::dvec2(camera.width, camera.height);
+  }
+  Frame frame;
+  frame.anchor = (box.low + box.high) * 0.5;
+  if (!settings.drawing.views.empty()) {
+    const NamedView named = settings.drawing.views[number];
+    const glm::ivec2 cell = cell_of(named, settings.drawing.layout.value_or(DrawingSettings::Layout::first_angle));
+    frame.cell.column = cell.x;
+    frame.cell.row = cell.y;
+    if (named != NamedView::iso) frame.anchor = middle_pixel(camera, surfaces);
+  }
+  frame.cell.low = (box.low - frame.anchor) * view.millimetres_per_pixel;
+  frame.cell.high = (box.high - frame.anchor) * view.millimetres_per_pixel;
+  return frame;
+}
+
+/// Lays the views out. \returns the plan; the views know their places from now on.
+SheetPlan place(std::vector<DrawnView>& views, const Settings& settings, const Surfaces& surfaces) {
+  std::vector<Frame> frames;
+  std::vector<ViewCell> cells;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    frames.push_back(frame_of(views[i], settings, surfaces, i));
+    cells.push_back(frames.back().cell);
+  }
+  SheetPlan plan = plan_sheet(Layout(cells, gap_between_views), settings.drawing, is_parallel(settings));
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    SheetView& sheet = views[i].sheet;
+    sheet.millimetres_per_pixel = views[i].millimetres_per_pixel * plan.scale;
+    sheet.origin = plan.anchors[i] - frames[i].anchor * sheet.millimetres_per_pixel;
+  }
+  return plan;
+}
+
+StrokeOptions stroke_options(const DrawingSettings& settings, double millimetres_per_pixel) {
+  StrokeOptions options;
+  options.with_hidden = settings.hidden != DrawingSettings::Hidden::none;
+  options.by_kind = false;
+  options.by_outline = settings.style == DrawingSettings::Style::figure;
+  options.by_instance = !settings.plot;
+  options.nearest_first = settings.plot;
+  options.tolerance = std::clamp(stroke_tolerance / millimetres_per_pixel, 1e-4, 1.0);
+  options.arc_tolerance = std::min(arc_tolerance / millimetres_per_pixel, 100.0);
+  return options;
+}
+
+LinePens pens_of(const DrawingSettings& settings) {
+  LinePens pens = settings.style == DrawingSettings::Style::figure ? figure_pens() : technical_pens();
+  if (settings.hidden == DrawingSettings::Hidden::thin) pens.hidden = thin_pen();
+  return pens;
+}
+
+void write(const Page& page, const Settings& settings, const Execution& execution) {
+  for (const std::string& path : settings.drawing.outputs) {
+    stop_if_interrupted();
+    const WritingFiles writing;
+    save(page, path, settings.drawing.format, execution);
+  }
+}
+
+}  // namespace
+
+int run_lines(const Settings& given) {
+  check(given);
+  Settings settings = given;
+  for (std::string& path : settings.drawing.outputs)
+    path = fill_template(path, settings.model, settings.drawing.views.empty() ? view_name(settings.view) : "sheet");
+  check_outputs(settings.drawing.outputs, settings.model);
+  catch_interruptions(settings.run.timeout);
+  Progress progress(settings.run.quiet);
+  const Execution execution = execution_for(settings.run, progress);
+  const Scene scene = load_model(settings, execution, progress);
+  const Surfaces surfaces(scene, execution);
+  LinesTimings timings;
+  Stopwatch watch;
+  std::vector<DrawnView> views = draw_all(settings, surfaces, execution);
+  timings.lines = watch.milliseconds();
+  watch = {};
+  const SheetPlan plan = place(views, settings, surfaces);
+  std::vector<SheetView> sheets;
+  for (DrawnView& view : views) {
+    const StrokeOptions options = stroke_options(settings.drawing, view.sheet.millimetres_per_pixel);
+    view.sheet.strokes = strokes(surfaces, view.drawing, options, execution);
+    sheets.push_back(view.sheet);
+  }
+  const Page page = draw_sheet(surfaces, sheets, pens_of(settings.drawing), plan.size);
+  timings.strokes = watch.milliseconds();
+  watch = {};
+  if (page.layers.empty() && !settings.run.quiet) {
+    progress.clear();
+    complain("warning: nothing is seen; the drawing is empty");
+  }
+  write(page, settings, execution);
+  timings.write = watch.milliseconds();
+  progress.clear();
+  const std::optional<double> scale = is_parallel(settings) ? std::optional(plan.scale) : std::nullopt;
+  if (settings.run.json) print(dump(lines_json(settings, views, page, scale, timings)));
+  return exit_done;
+}
+
+}  // namespace frontmost::cli

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// What frontmost lines says about a drawing.
+#pragma once
+
+#include <frontmost/sheet.h>
+
+#include <string>
+#include <vector>
+
+#include "cli/json_numbers.h"
+#include "cli/settings.h"
+
+namespace frontmost::cli {
+
+/// One view, from its camera to its strokes.
+struct DrawnView {
+  std::string name;
+  Drawing drawing;
+  double millimetres_per_pixel = 1;  ///< at scale 1:1; in perspective of no meaning by itself
+  bool keeps_frame = false;          ///< the camera was placed: the picture's rectangle counts, not what is in it
+  SheetView sheet{};
+};
+
+struct LinesTimings {
+  double lines = 0, strokes = 0, write = 0;
+};
+
+/// `scale` is null in perspective.
+[[nodiscard]] Json lines_json(const Settings& settings, const std::vector<DrawnView>& views, const Page& page,
+                              std::optional<double> scale, const LinesTimings& timings);
+
+}  // namespace frontmost::cli

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drawing sheets: strokes of one or several views laid on a page, with pens as drawing standards have them.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "frontmost/page.h"
+#include "frontmost/strokes.h"
+
+namespace frontmost {
+
+/// Pens by what they draw.
+struct LinePens {
+  Pen outline{0.5, {}};  ///< where the scene ends, seen
+  Pen seen{0.5, {}};     ///< all other lines that are seen
+  Pen hidden{0.25, {}, {3, 0.75}};
+};
+/// ISO 128: what is seen 0.5 mm, hidden lines 0.25 mm in dashes of 3 mm with gaps of 0.75 mm.
+[[nodiscard]] LinePens technical_pens();
+/// For people: an outline of 0.7 mm, 0.25 mm within it, hidden lines of 0.13 mm.
+[[nodiscard]] LinePens figure_pens();
+/// Hidden lines that are thin (0.13 mm) instead of dashed.
+[[nodiscard]] Pen thin_pen();
+
+/// One view of a sheet.
+struct SheetView {
+  std::string name;  ///< in front of objects' names; may be empty
+  Strokes strokes;
+  glm::dvec2 origin{0};  ///< millimetres: where the view's pixel (0, 0) begins
+  double millimetres_per_pixel = 1;
+};
+
+/// A page with the layers "1 hidden", "2 visible" and "3 outline", those that have lines. Each has a group for every
+/// view and object, named as they are; in the order of the strokes.
+[[nodiscard]] Page draw_sheet(const Surfaces& surfaces, std::span<const SheetView> views, const LinePens& pens,
+                              const glm::dvec2& size);
+
+/// What the parts of a drawing cover, hidden ones only where asked for: low and high corner, in pixels. Low is greater
+/// than high where there is nothing.
+struct DrawingBounds {
+  glm::dvec2 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+  [[nodiscard]] bool is_empty() const { return !(low.x <= high.x && low.y <= high.y); }
+};
+[[nodiscard]] DrawingBounds bounds(const Drawing& drawing, bool with_hidden);
+
+/// How a plotter would draw a page, in millimetres and numbers.
+struct PenTravel {
+  double down = 0;  ///< drawn
+  double up = 0;    ///< moved between paths, from the page's corner on
+  std::size_t paths = 0, points = 0, arcs = 0;
+};
+[[nodiscard]] PenTravel travel(const Page& page);
+
+}  // namespace frontmost

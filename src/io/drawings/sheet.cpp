@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frontmost/sheet.h"
+
+#include <cmath>
+#include <map>
+
+#include "io/drawings/arc.h"
+
+namespace frontmost {
+namespace {
+
+enum LayerOf : std::size_t { hidden, seen, outline };
+
+/// The layers while they are filled: where the group of a view and an object is.
+class Sheet {
+ public:
+  Sheet(const Surfaces& surfaces, const LinePens& pens)
+      : surfaces_(surfaces),
+        layers_{{"1 hidden"}, {"2 visible"}, {"3 outline"}},
+        pens_{pens.hidden, pens.seen, pens.outline} {}
+
+  void draw(const SheetView& view, std::uint32_t number) {
+    for (const Stroke& stroke : view.strokes.strokes) {
+      const LayerOf layer = stroke.is_hidden ? hidden : stroke.is_outline ? outline : seen;
+      append(stroke, view, group_for(layer, view, number, stroke.instance));
+    }
+  }
+
+  std::vector<PageLayer> take() {
+    std::vector<PageLayer> layers;
+    for (PageLayer& layer : layers_)
+      if (!layer.groups.empty()) layers.push_back(std::move(layer));
+    return layers;
+  }
+
+ private:
+  PageGroup& group_for(LayerOf layer, const SheetView& view, std::uint32_t number, std::uint32_t instance) {
+    std::vector<PageGroup>& groups = layers_[layer].groups;
+    const auto [known, is_new] = places_[layer].try_emplace({number, instance}, groups.size());
+    if (is_new) groups.push_back({name_of(view, instance), pens_[layer]});
+    return groups[known->second];
+  }
+
+  [[nodiscard]] std::string name_of(const SheetView& view, std::uint32_t instance) const {
+    const std::string object = instance == no_index ? "" : surfaces_.scene().instances[instance].name;
+    return view.name.empty() || object.empty() ? view.name + object : view.name + ": " + object;
+  }
+
+  static void append(const Stroke& stroke, const SheetView& view, PageGroup& group) {
+    const Strokes& all = view.strokes;
+    group.paths.push_back({std::uint32_t(group.points.size()), stroke.count, stroke.is_closed});
+    for (std::uint32_t i = stroke.first; i < stroke.first + stroke.count; ++i) {
+      group.points.push_back(view.origin + view.millimetres_per_pixel * all.points[i]);
+      if (!all.bulges.empty()) group.bulges.push_back(all.bulges[i]);
+    }
+    // Views with arcs and without may share a group.
+    if (!group.bulges.empty()) group.bulges.resize(group.points.size(), 0);
+  }
+
+  const Surfaces& surfaces_;
+  PageLayer layers_[3];
+  Pen pens_[3];
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> places_[3];
+};
+
+}  // namespace
+
+LinePens technical_pens() { return {}; }
+
+LinePens figure_pens() { return {{0.7, {}}, {0.25, {}}, {0.13, {}, {1.5, 0.75}}}; }
+
+Pen thin_pen() { return {0.13, {}}; }
+
+Page draw_sheet(const Surfaces& surfaces, std::span<const SheetView> views, const LinePens& pens,
+                const glm::dvec2& size) {
+  Sheet sheet(surfaces, pens);
+  for (std::size_t i = 0; i < views.size(); ++i) sheet.draw(views[i], std::uint32_t(i));
+  return {size.x, size.y, surfaces.scene().name, sheet.take()};
+}
+
+DrawingBounds bounds(const Drawing& drawing, bool with_hidden) {
+  DrawingBounds all;
+  for (const DrawnPart& part : drawing.parts) {
+    if (part.hidden_by != 0 && !with_hidden) continue;
+    all.low = glm::min(all.low, glm::min(part.from, part.to));
+    all.high = glm::max(all.high, glm::max(part.from, part.to));
+  }
+  return all;
+}
+
+PenTravel travel(const Page& page) {
+  PenTravel sum;
+  glm::dvec2 pen(0);
+  for (const PageLayer& layer : page.layers)
+    for (const PageGroup& group : layer.groups)
+      for (const PagePath& path : group.paths) {
+        sum.up += glm::distance(pen, group.points[path.first]);
+        ++sum.paths;
+        sum.points += path.count;
+        for (std::uint32_t i = 0; i < detail::join_count(path); ++i) {
+          const detail::Join join = detail::join_of(group, path, i);
+          const std::optional<detail::Arc> arc = detail::arc_between(join.from, join.to, join.bulge);
+          sum.arcs += arc.has_value();
+          sum.down += arc ? arc->radius * std::abs(arc->turn) : glm::distance(join.from, join.to);
+        }
+        pen = group.points[path.is_closed ? path.first : path.first + path.count - 1];
+      }
+  return sum;
+}
+
+}  // namespace frontmost

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+// frontmost lines: real millimetres, aligned views, every line once, and nothing that a plotter would not know.
+#include <gmock/gmock.h>
+
+#include <map>
+
+#include "program.h"
+
+namespace frontmost::test {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+/// A box of those sides with its lower corner at the origin, as OBJ with shared corners; z is up by --up.
+std::string box_obj(double x, double y, double z, const std::string& name = "box") {
+  std::string text = "o " + name + "\n";
+  for (int i = 0; i < 8; ++i)
+    text += "v " + std::to_string(i & 1 ? x : 0) + " " + std::to_string(i & 2 ? y : 0) + " " +
+            std::to_string(i & 4 ? z : 0) + "\n";
+  return text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+}
+
+struct Box {
+  double left = 1e9, top = 1e9, right = -1e9, bottom = -1e9;
+  std::size_t paths = 0;
+  void include(const json& points) {
+    for (const json& p : points) {
+      left = std::min(left, p[0].get<double>());
+      right = std::max(right, p[0].get<double>());
+      top = std::min(top, p[1].get<double>());
+      bottom = std::max(bottom, p[1].get<double>());
+    }
+    ++paths;
+  }
+};
+
+class LinesCommand : public ProgramTest {
+ protected:
+  LinesCommand() {
+    write("box.obj", box_obj(40, 30, 20));
+    write("cube.stl", cube_stl());
+  }
+
+  [[nodiscard]] json drawn(const std::string& options) const {
+    succeed("lines " + options + " -o drawing.json");
+    return json::parse(read("drawing.json"));
+  }
+
+  /// What each group covers, by its name.
+  [[nodiscard]] static std::map<std::string, Box> boxes(const json& page) {
+    std::map<std::string, Box> all;
+    for (const json& layer : page["layers"])
+      for (const json& group : layer["groups"])
+        for (const json& path : group["paths"]) all[group["name"]].include(path["points"]);
+    return all;
+  }
+};
+
+TEST_F(LinesCommand, ABoxAtFullScaleHasItsSidesInMillimetres) {
+  const json page = drawn("box.obj --up +z --view front --camera-orthographic --scale 1:1 --margin 5 --hidden dashed");
+  EXPECT_EQ(page["width"], 50);
+  EXPECT_EQ(page["height"], 30);
+  // Its back edges lie behind the front ones: one closed line, nothing hidden.
+  ASSERT_EQ(page["layers"].size(), 1u);
+  EXPECT_EQ(page["layers"][0]["name"], "2 visible");
+  const json& path = page["layers"][0]["groups"][0]["paths"];
+  ASSERT_EQ(path.size(), 1u);
+  EXPECT_EQ(path[0]["closed"], true);
+  ASSERT_EQ(path[0]["points"].size(), 4u);
+  const Box box = boxes(page)["box"];
+  EXPECT_EQ(box.left, 5);
+  EXPECT_EQ(box.right, 45);
+  EXPECT_EQ(box.top, 5);
+  EXPECT_EQ(box.bottom, 25);
+  succeed("lines box.obj --up +z --view front --camera-orthographic --scale 1:1 --margin 5 -o box.svg");
+  EXPECT_THAT(read("box.svg"), HasSubstr("width=\"50mm\" height=\"30mm\" viewBox=\"0 0 50 30\""));
+}
+
+TEST_F(LinesCommand, ScalesAndUnits) {
+  const std::string front = "cube.stl --view front --camera-orthographic --margin 0 ";
+  EXPECT_EQ(drawn(front + "--scale 20:1")["width"], 20);
+  EXPECT_EQ(drawn(front + "--scale 0.5 --unit m")["width"], 500);
+  EXPECT_EQ(drawn(front + "--scale 1:1 --unit in")["width"], 25.4);
+  EXPECT_EQ(drawn(front + "--scale 1:5 --unit cm")["height"], 2);
+  const json fitted = drawn(front + "--page 100,50");
+  EXPECT_EQ(boxes(fitted).begin()->second.bottom - boxes(fitted).begin()->second.top, 50);
+  const json standard = succeed("lines cube.stl --view front --camera-orthographic --scale standard --json").json();
+  EXPECT_EQ(standard["scale"], 100);  // of 190 mm
+  EXPECT_EQ(standard["scale_text"], "100:1");
+}
+
+TEST_F(LinesCommand, ViewsStandInLine) {
+  const std::string sheet = "box.obj --up +z --views front,top,left,right,bottom,back --page a3 --scale 1:1 ";
+  for (const bool third : {false, true}) {
+    const std::map<std::string, Box> all =
+        boxes(drawn(sheet + "--projection " + (third ? "third-angle" : "first-angle")));
+    ASSERT_EQ(all.size(), 6u);
+    const auto of = [&](const char* view) { return all.at(std::string(view) + ": box"); };
+    const Box front = of("front"), top = of("top"), left = of("left"), right = of("right"), bottom = of("bottom");
+    const auto expect_size = [](const Box& box, double width, double height) {
+      EXPECT_NEAR(box.right - box.left, width, 0.0011);
+      EXPECT_NEAR(box.bottom - box.top, height, 0.0011);
+      EXPECT_EQ(box.paths, 1u);
+    };
+    expect_size(front, 40, 20);
+    expect_size(of("back"), 40, 20);
+    expect_size(top, 40, 30);
+    expect_size(bottom, 40, 30);
+    expect_size(left, 30, 20);
+    expect_size(right, 30, 20);
+    for (const Box& beside : {left, right, of("back")}) {
+      EXPECT_EQ(beside.top, front.top);
+      EXPECT_EQ(beside.bottom, front.bottom);
+    }
+    for (const Box& in_column : {top, bottom}) {
+      EXPECT_EQ(in_column.left, front.left);
+      EXPECT_EQ(in_column.right, front.right);
+    }
+    EXPECT_EQ(top.bottom < front.top, third);
+    EXPECT_EQ(bottom.bottom < front.top, !third);
+    EXPECT_EQ(left.right < front.left, third);
+    EXPECT_EQ(right.right < front.left, !third);
+  }
+}
+
+TEST_F(LinesCommand, SheetsTakeAStandardScaleAndCentreTheirViews) {
+  const json report = succeed("lines box.obj --up +z --views front,top,left,iso -o sheet.json --json").json();
+  EXPECT_EQ(report["scale"], 2);
+  const json page = json::parse(read("sheet.json"));
+  EXPECT_EQ(page["width"], 297);  // turned, as it fits better
+  const std::map<std::string, Box> all = boxes(page);
+  Box whole;
+  for (const auto& [name, box] : all) {
+    whole.left = std::min(whole.left, box.left);
+    whole.right = std::max(whole.right, box.right);
+  }
+  EXPECT_NEAR(whole.left, 297 - whole.right, 0.002);
+  EXPECT_EQ(all.size(), 4u);
+}
+
+TEST_F(LinesCommand, HiddenEdgesAsAsked) {
+  const std::string iso = "lines cube.stl --view iso --camera-orthographic -o drawing.svg --hidden ";
+  succeed(iso + "none");
+  EXPECT_THAT(read("drawing.svg"), Not(HasSubstr("hidden")));
+  succeed(iso + "dashed");
+  const std::string dashed = read("drawing.svg");
+  EXPECT_THAT(dashed, HasSubstr("stroke-width=\".25\" stroke-linecap=\"round\" stroke-linejoin=\"round\" "
+                                "stroke-dasharray=\"3 .75\""));
+  EXPECT_THAT(dashed, HasSubstr("stroke-width=\".5\""));
+  EXPECT_LT(dashed.find("inkscape:label=\"1 hidden\""), dashed.find("inkscape:label=\"2 visible\""));
+  succeed(iso + "thin");
+  EXPECT_THAT(read("drawing.svg"), HasSubstr("stroke-width=\".13\""));
+  EXPECT_THAT(read("drawing.svg"), Not(HasSubstr("dash")));
+  for (const char* const absent : {"clip", "mask", "#ffffff", "rect"}) EXPECT_THAT(dashed, Not(HasSubstr(absent)));
+}
+
+TEST_F(LinesCommand, EachEdgeOfACubeOnce) {
+  const json report =
+      succeed("lines cube.stl --view iso --camera-orthographic --hidden dashed --page a4 --scale 50:1 --json").json();
+  EXPECT_EQ(report["views"][0]["edges"], 12);
+  // Isometric edges are the root of two thirds of their length. Hidden ones end in the corner before them.
+  const double edge = 50 * std::sqrt(2.0 / 3);
+  EXPECT_NEAR(report["layers"][1]["drawn_mm"].get<double>(), 9 * edge, 0.01);
+  EXPECT_NEAR(report["layers"][0]["drawn_mm"].get<double>(), 3 * edge, 0.01);
+  const json plot =
+      succeed("lines cube.stl --view iso --camera-orthographic --page a4 --scale 50:1 --plot --json").json();
+  EXPECT_NEAR(plot["drawn_mm"].get<double>(), 9 * edge, 0.01);
+  EXPECT_LT(plot["paths"].get<int>(), report["layers"][1]["paths"].get<int>());
+}
+
+TEST_F(LinesCommand, ThePicturesFrameIsThePageWhereTheCameraIsPlaced) {
+  const json page = drawn("cube.stl --camera-position 0.5,-4,0.5 --resolution 200,100 --page 200,100 --margin 0");
+  // Straight before the camera, 30 degrees high: the near face is 1 wide at a distance of 4.
+  const double half = 50 * 0.5 / (4 * std::tan(0.26179938779914943));
+  const Box box = boxes(page).begin()->second;
+  EXPECT_NEAR(box.left, 100 - half, 0.01);
+  EXPECT_NEAR(box.right, 100 + half, 0.01);
+  EXPECT_NEAR(box.top, 50 - half, 0.01);
+}
+
+TEST_F(LinesCommand, TheSameBytesForAnyNumberOfThreads) {
+  for (const char* const format : {"svg", "pdf", "dxf", "json"}) {
+    const std::string name = std::string("a.") + format, other = std::string("b.") + format;
+    succeed("lines builtin:teapot --plot --hidden dashed --threads 1 -o " + name);
+    succeed("lines builtin:teapot --plot --hidden dashed --threads 3 -o " + other);
+    EXPECT_EQ(read(name), read(other));
+    succeed("lines builtin:teapot --plot --hidden dashed --format " + std::string(format) + " -o -");
+  }
+}
+
+TEST_F(LinesCommand, NamesOfObjectsDoNoHarm) {
+  write("odd.obj", box_obj(1, 1, 1, "<a>&\"\x01\xff]]>"));
+  succeed("lines odd.obj -o odd.svg");
+  EXPECT_THAT(read("odd.svg"), HasSubstr("&lt;a&gt;&amp;&quot;"));
+  EXPECT_THAT(read("odd.svg"), Not(HasSubstr("\x01")));
+}
+
+TEST_F(LinesCommand, AnEmptyDrawingIsAFileWithAWarning) {
+  const Outcome outcome =
+      run({"lines", "cube.stl", "--camera-position", "0,-5,0", "--camera-direction", "-y", "-o", "a.svg"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("nothing is seen"));
+  EXPECT_THAT(read("a.svg"), HasSubstr("</svg>"));
+}
+
+TEST_F(LinesCommand, WhatCannotBeMeantIsRefused) {
+  expect_failure("lines cube.stl", 2, "nothing to do");
+  expect_failure("lines cube.stl -o a.png", 2, "names no format");
+  expect_failure("lines cube.stl -o -", 2, "needs --format");
+  expect_failure("lines cube.stl -o a.svg --scale 1:5", 2, "--camera-orthographic");
+  expect_failure("lines cube.stl -o a.svg --camera-orthographic --scale 1:0", 2, "--scale");
+  expect_failure("lines cube.stl -o a.svg --camera-orthographic --scale big", 2, "--scale: 'big'");
+  expect_failure("lines cube.stl -o a.svg --page a9", 2, "--page: 'a9' is no paper");
+  expect_failure("lines cube.stl -o a.svg --page 10,0", 2, "--page");
+  expect_failure("lines cube.stl -o a.svg --page fit", 2, "needs a --scale");
+  expect_failure("lines cube.stl -o a.svg --margin 200", 2, "--margin: leaves no room");
+  expect_failure("lines cube.stl -o a.svg --views front,front", 2, "'front' is there twice");
+  expect_failure("lines cube.stl -o a.svg --views front,up", 2, "--views: 'up'");
+  expect_failure("lines cube.stl -o a.svg --views front --view top", 2, "exclude each other");
+  expect_failure("lines cube.stl -o a.svg --projection third-angle", 2, "needs --views");
+  expect_failure("lines cube.stl -o a.svg --crease-angle 181", 2, "--crease-angle");
+  expect_failure("lines cube.stl -o a.svg --hidden dotted", 2, "--hidden");
+  expect_failure("lines cube.stl -o - --format svg --json", 2, "both want standard output");
+  expect_failure("lines cube.stl -o a.svg --samples 4", 2, "does not belong");
+  EXPECT_THAT(files(), ElementsAre("box.obj", "cube.stl"));
+}
+
+TEST_F(LinesCommand, TooLargeADrawingSaysWhatWouldFit) {
+  expect_failure("lines box.obj --camera-orthographic --view front --scale 50:1 --page a4 -o a.svg", 2,
+                 "--scale 5:1 would fit");
+  expect_failure("lines box.obj --camera-orthographic --view front --scale 1000000:1 -o a.svg", 2, "100 m a side");
+  // Tiny and huge, but possible.
+  succeed("lines box.obj --camera-orthographic --view front --scale 1:1000000 -o a.svg");
+  succeed("lines box.obj --camera-orthographic --view front --scale 2000:1 -o a.pdf");
+  EXPECT_THAT(read("a.pdf"), HasSubstr("/UserUnit 16"));
+}
+
+TEST_F(LinesCommand, StopsWhenItsTimeIsOver) {
+  const Outcome outcome = run({"lines", "builtin:city", "--timeout", "0.001", "-o", "a.svg"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_FALSE(exists("a.svg"));
+}
+
+}  // namespace
+}  // namespace frontmost::test
