@@ -119,8 +119,8 @@ constexpr Option table[] = {
      [](Settings& s, const Given& g) { s.view.resolution = resolution_from(g.text); }},
     {"samples", 0, "1|2|4|8|16|64",
      "Samples per pixel of the picture; 4 by default, fewer above 8192 x 8192; 64 with --method abuffer. Maps have "
-     "one, at pixel centres.",
-     Group::grid, for_render,
+     "one, at pixel centres. compare: of every method, 1 by default, 16 at most.",
+     Group::grid, for_render | for_compare,
      [](Settings& s, const Given& g) {
        constexpr int counts[] = {1, 2, 4, 8, 16, 64};
        s.view.samples = counts[g.choice<int>()];

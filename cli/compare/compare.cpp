@@ -15,6 +15,7 @@ namespace {
 void check(const Settings& settings) {
   check_view_settings(settings.view);
   // Every method reads the model for itself.
+  if (settings.view.samples.value_or(1) > 16) throw UsageError("--samples: compare takes 1, 2, 4, 8 or 16");
   if (settings.model == "-") throw UsageError("compare reads its model several times: give a file");
   if (settings.compare.folder) check_page_folder(*settings.compare.folder);
 }

@@ -70,8 +70,8 @@ std::string transparency(const Comparisons& all) {
   if (seen_through == 0)
     return "Nothing here is seen through anything, so the front-most surface is all there is to see.";
   return fmt::format(
-      "In {} pixels something is seen through a translucent surface: there only the A-buffer shows what lies behind.",
-      grouped(seen_through));
+      "In {} {} something is seen through a translucent surface: there only the A-buffer shows what lies behind.",
+      grouped(seen_through), spots(all.view));
 }
 
 std::string trust(const Comparisons& all) {
@@ -82,13 +82,13 @@ std::string trust(const Comparisons& all) {
     unexplained += compared.agreement.count(Difference::unexplained);
   }
   if (unexplained > 0)
-    return fmt::format("{} pixels are unexplained: a mistake in a method. Please report this model.", unexplained);
-  if (differing == 0) return "The front-most surface is the same to all methods in every pixel.";
+    return fmt::format("{} {} are unexplained: a mistake in a method. Please report this model.", unexplained,
+                       spots(all.view));
+  if (differing == 0) return "The front-most surface is the same to all methods everywhere.";
   return fmt::format(
-      "Front-most surfaces differ in {} of {} pixels at most, and exact arithmetic allows both answers in each: none "
-      "is "
+      "Front-most surfaces differ in {} of {} {} at most, and exact arithmetic allows both answers in each: none is "
       "more right.",
-      grouped(differing), grouped(all.view.pixel_count()));
+      grouped(differing), grouped(all.view.sample_count()), spots(all.view));
 }
 
 }  // namespace

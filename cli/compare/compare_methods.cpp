@@ -25,14 +25,19 @@ Answer answer_by_abuffer(const Surfaces& surfaces, const View& view, const Execu
   return {std::move(layers[0]), std::move(layers[1]), surfaces.primitive_count()};
 }
 
+Lists lists_of_abuffer(const Surfaces& surfaces, const View& view, const Execution& execution) {
+  const FragmentCounts counts = count_fragments(surfaces, view, {}, execution);
+  return {counts.fragments, counts.longest};
+}
+
 constexpr ComparedMethod methods[] = {
     {"zbuffer", "Z-buffer", "Draws every triangle, and keeps the nearest depth and id at every sample.",
      answer_by_zbuffer},
     {"raycast", "Ray casting",
      "Asks for every sample which triangle its ray meets first, through a hierarchy of boxes.", answer_by_raycast},
     {"abuffer", "A-buffer",
-     "Keeps all fragments of a pixel in order of depth, and so what shows through; here two layers.",
-     answer_by_abuffer},
+     "Keeps all fragments of a pixel in order of depth, and so what shows through; here two layers.", answer_by_abuffer,
+     lists_of_abuffer},
 };
 
 }  // namespace

@@ -46,11 +46,17 @@ struct Answer {
   std::uint64_t primitives = 0;   ///< triangles that it works on
 };
 
+/// The lists of fragments, of methods that keep them.
+struct Lists {
+  std::uint64_t fragments = 0, longest = 0;
+};
+
 struct ComparedMethod {
   std::string_view name;   ///< as for render --method
   std::string_view title;  ///< as people call it
   std::string_view how;    ///< in a sentence
   Answer (*answer)(const Surfaces&, const View&, const Execution&, StageClock&);
+  Lists (*lists)(const Surfaces&, const View&, const Execution&) = nullptr;  ///< counted apart, beside the clock
 };
 
 /// The first is the one that the others are compared with.

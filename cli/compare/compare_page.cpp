@@ -106,17 +106,16 @@ void mark(const Agreement& agreement, Image& map) {
   for (const Cause& cause : causes) {
     if (agreement.count(cause.difference) == 0) continue;
     // Where most of an area differs, pixels are large enough by themselves.
-    const int side = agreement.count(cause.difference) > agreement.view.pixel_count() / 100 ? 0 : reach;
-    for (int y = 0; y < map.height; ++y)
-      for (int x = 0; x < map.width; ++x) {
-        if (agreement.differences[std::size_t(y) * std::size_t(map.width) + std::size_t(x)] != cause.difference)
-          continue;
-        for (int j = std::max(y - side, 0); j <= std::min(y + side, map.height - 1); ++j)
-          for (int i = std::max(x - side, 0); i <= std::min(x + side, map.width - 1); ++i)
-            for (std::size_t c = 0; c < 3; ++c)
-              map.channels[c].floats()[std::size_t(j) * std::size_t(map.width) + std::size_t(i)] =
-                  linear(cause.color[int(c)]);
-      }
+    const int side = agreement.count(cause.difference) > agreement.view.sample_count() / 100 ? 0 : reach;
+    for (std::size_t sample = 0; sample < agreement.view.sample_count(); ++sample) {
+      if (agreement.differences[sample] != cause.difference) continue;
+      const auto pixel = int(sample % agreement.view.pixel_count()), x = pixel % map.width, y = pixel / map.width;
+      for (int j = std::max(y - side, 0); j <= std::min(y + side, map.height - 1); ++j)
+        for (int i = std::max(x - side, 0); i <= std::min(x + side, map.width - 1); ++i)
+          for (std::size_t c = 0; c < 3; ++c)
+            map.channels[c].floats()[std::size_t(j) * std::size_t(map.width) + std::size_t(i)] =
+                linear(cause.color[int(c)]);
+    }
   }
 }
 
@@ -167,19 +166,29 @@ std::string table(const Comparisons& all) {
   text += bar_row(
       all, "memory beside the model", [](const Compared& c) { return std::optional(double(c.run.peak_bytes)); },
       [](double bytes) { return mebibytes(std::uint64_t(bytes)); });
+  constexpr std::string_view part = " class=\"part\"";
   const auto plain = [&](std::string_view label, const auto& number, std::string_view kind = "") {
     std::vector<std::string> cells;
     for (const Compared& c : all.methods) cells.push_back(grouped(number(c)));
     text += row(label, cells, kind);
   };
   plain("triangles worked on", [](const Compared& c) { return c.run.answer.primitives; });
-  plain("pixels covered", [](const Compared& c) { return covered_samples(c.run.answer.visible); });
-  plain("pixels that differ", [](const Compared& c) { return c.agreement.differing(); });
+  plain("samples", [&](const Compared&) { return all.view.sample_count(); });
+  plain(
+      "covered", [](const Compared& c) { return covered_samples(c.run.answer.visible); }, part);
+  const auto of_lists = [&](std::string_view label, std::uint64_t Lists::*number, std::string_view kind = "") {
+    std::vector<std::string> cells;
+    for (const Compared& c : all.methods) cells.push_back(c.run.lists ? grouped(*c.run.lists.*number) : "");
+    text += row(label, cells, kind);
+  };
+  of_lists("fragments", &Lists::fragments);
+  of_lists("most of a pixel", &Lists::longest, part);
+  plain(fmt::format("{} that differ", spots(all.view)), [](const Compared& c) { return c.agreement.differing(); });
   for (const Cause& cause : causes)
     plain(
         fmt::format("<span class=\"key\" style=\"background:rgb({:.0f},{:.0f},{:.0f})\"></span>{}", 255 * cause.color.r,
                     255 * cause.color.g, 255 * cause.color.b, cause.text),
-        [&](const Compared& c) { return c.agreement.count(cause.difference); }, " class=\"part\"");
+        [&](const Compared& c) { return c.agreement.count(cause.difference); }, part);
   return text + "</tbody></table></div>\n";
 }
 
@@ -224,9 +233,8 @@ std::string page(const Comparisons& all, const Pictures& files) {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
       "<title>{} by all methods</title><style>\n{}</style></head><body>\n"
       "<header><h1>{}</h1><p class=\"lead\">The same question to every visibility method: what can be seen from here? "
-      "{} triangles, {} × {} pixels, medians of {} runs, each method in a process of its own.</p></header><main>\n",
-      model, style, model, grouped(all.surfaces.primitive_count()), all.view.width, all.view.height,
-      all.settings.compare.runs);
+      "{} triangles, {}, medians of {} runs, each method in a process of its own.</p></header><main>\n",
+      model, style, model, grouped(all.surfaces.primitive_count()), grid_of(all.view, "×"), all.settings.compare.runs);
   text += table(all);
   text += "<h2>In words</h2><ul>";
   for (const std::string& sentence : advice(all)) text += "<li>" + escaped(sentence) + "</li>";
@@ -238,7 +246,8 @@ std::string page(const Comparisons& all, const Pictures& files) {
     const Compared& c = all.methods[i];
     text += card(data_uri(files.maps[i - 1]),
                  fmt::format("{} and {}", c.run.method->title, all.methods[0].run.method->title),
-                 fmt::format("{} pixels differ; each is marked larger than it is.", grouped(c.agreement.differing())));
+                 fmt::format("{} {} differ; each is marked larger than it is.", grouped(c.agreement.differing()),
+                             spots(all.view)));
   }
   return text + "</div></main><footer>frontmost " FRONTMOST_VERSION "</footer></body></html>\n";
 }

@@ -130,7 +130,8 @@ MethodRun run_here(const ComparedMethod& method, const Settings& settings) {
   StageClock clock;
   const Scene scene = clock.time("load", [&] { return load(settings.model, settings.load, execution); });
   std::optional<Surfaces> surfaces(clock.time("surfaces", [&] { return Surfaces(scene, execution); }));
-  const View view = resolve_view(settings.view, *surfaces);
+  View view = resolve_view(settings.view, *surfaces);
+  view.samples = settings.view.samples.value_or(1);
   const std::optional<Scene> cut = tessellated(scene, settings.view, view);
   if (cut) surfaces.emplace(*cut, execution);
   MethodRun run;
@@ -140,6 +141,7 @@ MethodRun run_here(const ComparedMethod& method, const Settings& settings) {
     run.answer = method.answer(*surfaces, view, execution, clock);
     if (i == 0) run.peak_bytes = std::max(status_bytes("VmHWM"), before) - before;
   }
+  if (method.lists) run.lists = method.lists(*surfaces, view, execution);
   run.stages = clock.stages();
   return run;
 }
@@ -153,6 +155,8 @@ void send_run(const Sender& sender, const MethodRun& run) {
   sender.send(run.answer.visible);
   sender.send(std::uint64_t(run.answer.behind.has_value()));
   if (run.answer.behind) sender.send(*run.answer.behind);
+  sender.send(std::uint64_t(run.lists.has_value()));
+  if (run.lists) sender.send(&*run.lists, sizeof *run.lists);
 }
 
 [[noreturn]] void be_child(const ComparedMethod& method, const Settings& settings, int file) {
@@ -192,6 +196,7 @@ MethodRun receive_run(const Receiver& receiver) {
   run.answer.primitives = receiver.number();
   run.answer.visible = receiver.visible();
   if (receiver.number() != 0) run.answer.behind = receiver.visible();
+  if (receiver.number() != 0) receiver.receive(&run.lists.emplace(), sizeof(Lists));
   return run;
 }
 

@@ -41,15 +41,20 @@ Json method_json(const Comparisons& all, const Compared& compared) {
   const MethodRun& run = compared.run;
   Json explained = Json::object();
   for (const Difference cause : causes) explained[std::string(name(cause))] = compared.agreement.count(cause);
-  return {{"method", run.method->name},
-          {"timings_ms", times_json(run)},
-          {"peak_bytes", run.peak_bytes},
-          {"primitives", run.answer.primitives},
-          {"samples", all.view.sample_count()},
-          {"covered_samples", covered_samples(run.answer.visible)},
-          {"differing", compared.agreement.differing()},
-          {"explained", std::move(explained)},
-          {"unexplained", compared.agreement.count(Difference::unexplained)}};
+  Json json = {{"method", run.method->name},
+               {"timings_ms", times_json(run)},
+               {"peak_bytes", run.peak_bytes},
+               {"primitives", run.answer.primitives},
+               {"samples", all.view.sample_count()},
+               {"covered_samples", covered_samples(run.answer.visible)},
+               {"differing", compared.agreement.differing()},
+               {"explained", std::move(explained)},
+               {"unexplained", compared.agreement.count(Difference::unexplained)}};
+  if (run.lists) {
+    json["fragments"] = run.lists->fragments;
+    json["longest_list"] = run.lists->longest;
+  }
+  return json;
 }
 
 }  // namespace
@@ -75,15 +80,23 @@ std::string grouped(std::uint64_t number) {
   return text;
 }
 
+std::string_view spots(const View& view) { return view.samples == 1 ? "pixels" : "samples"; }
+
+std::string grid_of(const View& view, std::string_view times) {
+  std::string text = fmt::format("{} {} {} pixels", view.width, times, view.height);
+  if (view.samples > 1) text += fmt::format(", {} samples each", view.samples);
+  return text;
+}
+
 std::uint64_t covered_samples(const Visible& visible) {
   return std::uint64_t(std::count_if(visible.primitives.begin(), visible.primitives.end(),
                                      [](PrimitiveId id) { return id != no_primitive; }));
 }
 
 std::string compare_text(const Comparisons& all) {
-  std::string text = fmt::format("{} triangles, {} x {} pixels, medians of {} run{}\n\n",
-                                 grouped(all.surfaces.primitive_count()), all.view.width, all.view.height,
-                                 all.settings.compare.runs, all.settings.compare.runs == 1 ? "" : "s");
+  std::string text =
+      fmt::format("{} triangles, {}, medians of {} run{}\n\n", grouped(all.surfaces.primitive_count()),
+                  grid_of(all.view, "x"), all.settings.compare.runs, all.settings.compare.runs == 1 ? "" : "s");
   text += row_of(all, "", [](const Compared& c) { return std::string(c.run.method->name); });
   for (const std::string& stage : stage_names(all.methods))
     text += row_of(all, stage + ", ms", [&](const Compared& c) {
@@ -92,9 +105,14 @@ std::string compare_text(const Comparisons& all) {
     });
   text += row_of(all, "memory", [](const Compared& c) { return mebibytes(c.run.peak_bytes); });
   text += row_of(all, "primitives", [](const Compared& c) { return grouped(c.run.answer.primitives); });
+  text += row_of(all, "samples", [&](const Compared&) { return grouped(all.view.sample_count()); });
+  text += row_of(all, "  covered", [](const Compared& c) { return grouped(covered_samples(c.run.answer.visible)); });
   text +=
-      row_of(all, "samples covered", [](const Compared& c) { return grouped(covered_samples(c.run.answer.visible)); });
-  text += row_of(all, "pixels that differ", [](const Compared& c) { return grouped(c.agreement.differing()); });
+      row_of(all, "fragments", [](const Compared& c) { return c.run.lists ? grouped(c.run.lists->fragments) : ""; });
+  text += row_of(all, "  most of a pixel",
+                 [](const Compared& c) { return c.run.lists ? grouped(c.run.lists->longest) : ""; });
+  text += row_of(all, fmt::format("{} that differ", spots(all.view)),
+                 [](const Compared& c) { return grouped(c.agreement.differing()); });
   for (const auto& [label, cause] :
        {std::pair("  edge in 1/128 pixel", Difference::edge), std::pair("  depths too close", Difference::depth),
         std::pair("  translucent", Difference::translucent), std::pair("  unexplained", Difference::unexplained)})
@@ -109,7 +127,8 @@ Json compare_json(const Comparisons& all) {
   Json json = {{"frontmost", FRONTMOST_VERSION},    {"model", all.settings.model},
                {"isa", name(all.settings.run.isa)}, {"threads", all.settings.run.threads},
                {"runs", all.settings.compare.runs}, {"triangles", all.surfaces.primitive_count()},
-               {"width", all.view.width},           {"height", all.view.height}};
+               {"width", all.view.width},           {"height", all.view.height},
+               {"samples", all.view.samples}};
   json["methods"] = Json::array();
   for (const Compared& compared : all.methods) json["methods"].push_back(method_json(all, compared));
   if (all.settings.compare.explain) json["advice"] = advice(all);

@@ -28,6 +28,10 @@ struct Comparisons {
 [[nodiscard]] std::string mebibytes(std::uint64_t bytes);
 /// "1,234,567".
 [[nodiscard]] std::string grouped(std::uint64_t number);
+/// What is counted where methods differ: "pixels" as long as each has one sample.
+[[nodiscard]] std::string_view spots(const View& view);
+/// "1920 x 1080 pixels, 4 samples each".
+[[nodiscard]] std::string grid_of(const View& view, std::string_view times);
 [[nodiscard]] std::uint64_t covered_samples(const Visible& visible);
 
 [[nodiscard]] std::string compare_text(const Comparisons& all);

@@ -56,6 +56,18 @@ inline constexpr std::uint64_t max_fragments = std::uint64_t(1) << 30;
 [[nodiscard]] FragmentLists abuffer(const Surfaces& surfaces, const View& view, const AbufferOptions& options = {},
                                     const Execution& execution = {});
 
+/// What the A-buffer goes through for a view.
+struct FragmentCounts {
+  std::uint64_t fragments = 0;  ///< of all pixels, those behind opaque ones too
+  std::uint32_t longest = 0;    ///< the most of one pixel
+};
+
+/// Counts without keeping: what a picture's depth complexity is, and before abuffer() is called an upper bound of its
+/// fragments. Takes about as long as resolve(). `options.opacity` has no meaning here.
+/// \throws Error as abuffer() does.
+[[nodiscard]] FragmentCounts count_fragments(const Surfaces& surfaces, const View& view,
+                                             const AbufferOptions& options = {}, const Execution& execution = {});
+
 /// The first `count` layers, nearest first, at the view's samples: the k-th holds the k-th nearest primitive at every
 /// sample, by the key there. Behind an opaque primitive nothing is seen. The nearest layer is what zbuffer() gives, to
 /// the bit. Memory: `count` Visibles and a few megabytes a thread. `options.grid` has no meaning here.

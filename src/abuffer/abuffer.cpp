@@ -82,4 +82,26 @@ FragmentLists abuffer(const Surfaces& surfaces, const View& view, const AbufferO
   return lists;
 }
 
+FragmentCounts count_fragments(const Surfaces& surfaces, const View& view, const AbufferOptions& options,
+                               const Execution& execution) {
+  using namespace abuffer_detail;
+  validate(view);
+  validate(options);
+  const IeeeScope ieee;
+  const SamplePattern pattern = sample_pattern(view, options.grid);
+  const FramePlan plan(surfaces, view, execution);
+  const FrameInput frame{plan, pattern, false, execution.isa};
+  std::mutex mutex;
+  FragmentCounts counts;
+  visit_tiles(frame, execution, [&](const TileJob& /*job*/, const TileScratch* scratch) {
+    if (!scratch) return;
+    std::size_t longest = 0;
+    for (std::size_t group = 0; group < kGroups; ++group) longest = std::max(longest, scratch->length(group));
+    const std::lock_guard lock(mutex);
+    counts.fragments += scratch->arrived.count - Arrived::first;
+    counts.longest = std::max(counts.longest, std::uint32_t(longest));
+  });
+  return counts;
+}
+
 }  // namespace frontmost

@@ -74,6 +74,28 @@ TEST(ManyLayers, APixelOfThousandsIsSortedAlone) {
     for (std::size_t i = 0; i < 15; ++i) ASSERT_EQ(layers[k].primitives[i] / 2, k) << "pixel " << i;
 }
 
+TEST(Counts, AreThoseOfTheListsOfTranslucentThings) {
+  const View view = front_view(130, 70);
+  for (const Kind kind : all_kinds) {
+    const Scene scene = scene_of(random_mesh(kind, 40, 3));
+    const Surfaces surfaces(scene);
+    for (const int grid : {0, 4}) {
+      const FragmentLists lists = abuffer(surfaces, view, {grid, 0.5f});
+      std::size_t longest = 0;
+      for (int y = 0; y < view.height; ++y)
+        for (int x = 0; x < view.width; ++x) longest = std::max(longest, lists.at(x, y).size());
+      const FragmentCounts counts = count_fragments(surfaces, view, {grid});
+      EXPECT_EQ(counts.fragments, lists.fragments.size());
+      EXPECT_EQ(counts.longest, longest);
+    }
+  }
+  // In parts as well: 700 sheets are more than a tile holds at once.
+  const Scene many = stack_of(700);
+  const FragmentCounts counts = count_fragments(Surfaces(many), front_view(70, 66), {});
+  EXPECT_EQ(counts.fragments, 700u * 70 * 66);
+  EXPECT_EQ(counts.longest, 700u);
+}
+
 TEST(Opaque, SheetsCutOffWhatIsBehind) {
   Scene scene = stack_of(10);
   Material glass, wall;

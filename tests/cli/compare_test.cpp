@@ -43,6 +43,27 @@ TEST_F(Compare, ReportsEveryMethodAsJson) {
   }
   EXPECT_EQ(report["methods"][0]["differing"], 0);
   EXPECT_FALSE(report.contains("advice"));
+  // A pixel sees a side of the cube before another, twice where an edge passes.
+  const json& lists = report["methods"][2];
+  EXPECT_NEAR(lists["fragments"].get<double>(), 2.0 * lists["covered_samples"].get<double>(), 200);
+  EXPECT_GE(lists["longest_list"], 2);
+  EXPECT_FALSE(report["methods"][0].contains("fragments"));
+}
+
+TEST_F(Compare, AsksEveryMethodAtManySamples) {
+  const json one = succeed("compare cube.stl --resolution 160,120 --runs 1 --json").json();
+  const json report = succeed("compare cube.stl --resolution 160,120 --runs 1 --samples 4 --json -o page").json();
+  EXPECT_EQ(one["samples"], 1);
+  EXPECT_EQ(report["samples"], 4);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const json& method = report["methods"][i];
+    EXPECT_EQ(method["samples"], 4 * 160 * 120);
+    EXPECT_NEAR(method["covered_samples"].get<double>(), 4 * one["methods"][i]["covered_samples"].get<double>(), 200);
+    EXPECT_EQ(method["unexplained"], 0);
+  }
+  EXPECT_THAT(read("page/index.html"), HasSubstr("4 samples each"));
+  EXPECT_THAT(succeed("compare cube.stl --resolution 64,48 --runs 1 --samples 2").out,
+              HasSubstr("samples that differ"));
 }
 
 TEST_F(Compare, PrintsATable) {
@@ -107,6 +128,7 @@ TEST_F(Compare, RefusesWhatItCannotDo) {
   expect_failure("compare none.stl", 1, "none.stl");
   expect_failure("compare -", 2, "give a file");
   expect_failure("compare cube.stl --runs 0", 2, "--runs");
+  expect_failure("compare cube.stl --samples 64", 2, "--samples");
   expect_failure("compare cube.stl --camera-index 3", 2, "camera");
   expect_failure("compare cube.stl --near 5 --far 1", 2, "--near");
   write("file", "");
