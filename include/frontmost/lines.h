@@ -25,6 +25,8 @@ struct LineOptions {
   double crease_angle = 0.5235987755982988;
   /// True: DrawnPart::hidden_by counts; false: it tells 0 from more, and costs less.
   bool counts_hidden = false;
+  /// Which kinds are found. Without intersections a third to a half of the time is saved.
+  bool boundaries = true, silhouettes = true, borders = true, creases = true, intersections = true;
 };
 
 /// An edge of the scene, between two points of world space.
@@ -58,11 +60,15 @@ struct Drawing {
 /// a triangle when the line of sight to it passes through the triangle, its edges included, before the point. So
 /// neither an edge's own triangles nor others of their planes hide it, and nothing is seen through the seam between two
 /// triangles. Ends of parts are rounded to doubles. Vertices at one place count as one, so that open seams of files
-/// without shared vertices are closed. Triangles between the eye and the near plane hide nothing;
-/// those with holes (alpha mode MASK) hide as if they had none.
+/// without shared vertices are closed. Triangles between the eye and the near plane hide nothing; those with holes
+/// (alpha mode MASK) hide as if they had none.
+/// An intersection belongs to two triangles each of which has corners strictly on either side of the other's plane:
+/// what only stands on a surface does not pass through it, and draws its own edges. Its ends are rounded, so that a
+/// plane counts as holding an end that their rounding leaves open. Surfaces that cross give lines without gaps, end to
+/// end to the bit.
 /// Near-linear: every edge is held against the triangles in the cells of a screen grid that it passes.
 /// (A. Appel. The Notion of Quantitative Invisibility and the Machine Rendering of Solids. 1967.)
-/// The result is the same to the bit for any number of threads.
+/// The result is the same to the bit for any number of threads and every instruction set.
 /// \throws Error as validate(view) does, and bad_argument for an angle that is out of range.
 [[nodiscard]] Drawing lines(const Surfaces& surfaces, const View& view, const LineOptions& options = {},
                             const Execution& execution = {});

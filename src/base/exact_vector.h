@@ -63,11 +63,53 @@ struct Leg {
   return rounded.error == 0 ? 0 : 2;
 }
 
+namespace detail {
+
+/// high + low, twice as long as a double.
+struct DoubleDouble {
+  double high, low;
+};
+
+[[nodiscard]] inline DoubleDouble exact_difference(double a, double b) {
+  const double high = a - b, part = a - high;
+  return {high, (a - (high + part)) + (part - b)};
+}
+[[nodiscard]] inline DoubleDouble product(const DoubleDouble& a, const DoubleDouble& b) {
+  const double high = a.high * b.high;
+  return {high, std::fma(a.high, b.high, -high) + (a.high * b.low + a.low * b.high)};
+}
+[[nodiscard]] inline DoubleDouble sum(const DoubleDouble& a, const DoubleDouble& b) {
+  const double high = a.high + b.high, part = high - a.high;
+  return {high, ((a.high - (high - part)) + (b.high - part)) + (a.low + b.low)};
+}
+
+/// 0 where twice the length of doubles leaves the sign of the determinant open.
+[[nodiscard]] inline int sign_by_double_doubles(const Leg& a, const Leg& b, const Leg& c) {
+  const Leg* legs[3] = {&a, &b, &c};
+  DoubleDouble v[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int axis = 0; axis < 3; ++axis) v[i][axis] = exact_difference(legs[i]->to[axis], legs[i]->from[axis]);
+  DoubleDouble all{0, 0};
+  double size = 0;
+  for (int i = 0; i < 3; ++i) {
+    const int j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
+    const DoubleDouble plus = product(v[0][j], v[1][k]), minus = product(v[0][k], v[1][j]);
+    all = sum(all, product(sum(plus, {-minus.high, -minus.low}), v[2][i]));
+    size += (std::abs(plus.high) + std::abs(minus.high)) * std::abs(v[2][i].high);
+  }
+  // A product or sum errs by less than 2^-100 of what goes into it; here are seventeen of them.
+  const double value = all.high + all.low, error = size * 1.6e-28;  // 2^-92
+  return value > error ? 1 : value < -error ? -1 : 0;
+}
+
+}  // namespace detail
+
 /// The sign of the determinant of three vectors, exactly: doubles decide where their rounding cannot matter.
 [[nodiscard]] inline int sign_of_determinant(const Leg& a, const Leg& b, const Leg& c) {
   const BoundedNormal normal(a.to - a.from, b.to - b.from);
   const int sign = certain_sign(bounded_dot(normal.value, normal.error, c.to - c.from));
   if (sign != 2) return sign;
+  if (const int twice = detail::sign_by_double_doubles(a, b, c)) return twice;
   return dot(cross(difference(a.to, a.from), difference(b.to, b.from)), difference(c.to, c.from)).sign();
 }
 

@@ -72,15 +72,19 @@ class SideTable {
 class Classifier {
  public:
   Classifier(const SeenMesh& seen, const Surfaces& surfaces, const LineOptions& options)
-      : mesh_(seen.mesh), facing_(seen.facing), surfaces_(surfaces), cosine_(std::cos(options.crease_angle)) {}
+      : mesh_(seen.mesh),
+        facing_(seen.facing),
+        surfaces_(surfaces),
+        options_(options),
+        cosine_(std::cos(options.crease_angle)) {}
 
   /// `sides` with different opposite vertices: a triangle that is there twice counts once.
   [[nodiscard]] std::optional<EdgeKind> kind_of(std::span<const Side> sides) const {
-    if (sides.size() != 2) return EdgeKind::boundary;
+    if (sides.size() != 2) return options_.boundaries ? std::optional(EdgeKind::boundary) : std::nullopt;
     const int a = side_of(sides[0]), b = side_of(sides[1]);
-    if (a * b > 0 || (a == 0) != (b == 0)) return EdgeKind::silhouette;
-    if (!is_one_surface(sides[0].triangle, sides[1].triangle)) return EdgeKind::border;
-    if (is_crease(sides[0], sides[1])) return EdgeKind::crease;
+    if (options_.silhouettes && (a * b > 0 || (a == 0) != (b == 0))) return EdgeKind::silhouette;
+    if (options_.borders && !is_one_surface(sides[0].triangle, sides[1].triangle)) return EdgeKind::border;
+    if (options_.creases && is_crease(sides[0], sides[1])) return EdgeKind::crease;
     return std::nullopt;
   }
 
@@ -115,6 +119,7 @@ class Classifier {
   const WeldedMesh& mesh_;
   const Buffer<std::int8_t>& facing_;
   const Surfaces& surfaces_;
+  const LineOptions& options_;
   const double cosine_;
 };
 

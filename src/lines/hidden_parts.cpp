@@ -95,7 +95,7 @@ bool EdgeCutter::flush() {
   for (std::uint32_t bits = found.hides | found.open; bits != 0; bits &= bits - 1) {
     const auto i = std::size_t(std::countr_zero(bits));
     const Occluder& occluder = *batch_.occluders[i];
-    if ((found.open >> i & 1) || occluder.is_near)
+    if ((found.open >> i & 1) || occluder.is_near || edge_.slack > 0)
       hide(hidden_by(occluder, edge_, o_.sight), occluder.triangle);
     else
       hide({found.begin[i], found.end[i]}, occluder.triangle);
@@ -167,11 +167,12 @@ void EdgeCutter::emit(std::uint32_t number, std::vector<DrawnPart>& parts) {
   }
 }
 
-void EdgeCutter::cut(const FeatureEdge& edge, std::uint32_t number, std::vector<DrawnPart>& parts) {
-  const glm::dvec3 &from = o_.mesh.positions[edge.from], &to = o_.mesh.positions[edge.to];
-  from_eye_ = o_.sight.in_eye(from);
-  to_eye_ = o_.sight.in_eye(to);
-  edge_ = {from, to, edge.from, edge.to, from_eye_.z, to_eye_.z};
+void EdgeCutter::cut(const SightedEdge& edge, std::uint32_t number, std::vector<DrawnPart>& parts) {
+  edge_ = edge;
+  from_eye_ = o_.sight.in_eye(edge.from);
+  to_eye_ = o_.sight.in_eye(edge.to);
+  edge_.from_distance = from_eye_.z;
+  edge_.to_distance = to_eye_.z;
   shown_ = within_view();
   if (!(shown_.begin < shown_.end)) return;
   const glm::dvec2 a = on_screen(shown_.begin), b = on_screen(shown_.end);

@@ -24,8 +24,8 @@ class EdgeCutter {
  public:
   explicit EdgeCutter(const Occlusion& occlusion) : o_(occlusion) {}
 
-  /// Appends the parts of `edge`, whose number is `number`, that lie within the view.
-  void cut(const FeatureEdge& edge, std::uint32_t number, std::vector<DrawnPart>& parts);
+  /// Appends the parts of `edge`, whose number is `number`, that lie within the view. Its distances need not be set.
+  void cut(const SightedEdge& edge, std::uint32_t number, std::vector<DrawnPart>& parts);
 
  private:
   struct Hidden {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontmost/lines.h"
 
+#include <algorithm>
 #include <atomic>
 
 #include "base/float_environment.h"
 #include "base/parallel.h"
 #include "base/pool.h"
+#include "lines/crossings.h"
 #include "lines/hidden_parts.h"
 #include "lines/joined.h"
 
@@ -15,6 +17,7 @@ namespace {
 using namespace lines_detail;
 
 constexpr std::size_t kTrianglesPerPart = 4096, kEdgesPerPart = 1024;
+constexpr double kCutFrom = 0.3;  // of the progress
 
 Buffer<std::int8_t> facing_of(const WeldedMesh& mesh, const Sight& sight, const Execution& execution) {
   Buffer<std::int8_t> facing(mesh.triangles.size());
@@ -27,15 +30,57 @@ Buffer<std::int8_t> facing_of(const WeldedMesh& mesh, const Sight& sight, const 
   return facing;
 }
 
-std::vector<DrawnPart> cut_all(const std::vector<FeatureEdge>& features, const Occlusion& occlusion,
-                               const Execution& execution) {
-  std::vector<std::vector<DrawnPart>> lists((features.size() + kEdgesPerPart - 1) / kEdgesPerPart);
+/// All that is drawn, before it is cut.
+class Candidates {
+ public:
+  Candidates(const WeldedMesh& mesh, std::vector<FeatureEdge> features, std::vector<Crossing> crossings)
+      : mesh_(mesh), features_(std::move(features)), crossings_(std::move(crossings)) {}
+
+  [[nodiscard]] std::size_t count() const { return features_.size() + crossings_.size(); }
+
+  [[nodiscard]] DrawnEdge drawn(std::size_t i) const {
+    if (i < features_.size()) {
+      const FeatureEdge& f = features_[i];
+      return {mesh_.positions[f.from], mesh_.positions[f.to], f.kind, id_of(f.left), id_of(f.right)};
+    }
+    const Crossing& c = crossings_[i - features_.size()];
+    return {c.from.place, c.to.place, EdgeKind::intersection, id_of(c.left), id_of(c.right)};
+  }
+
+  [[nodiscard]] SightedEdge sighted(std::size_t i) const {
+    if (i < features_.size()) {
+      const FeatureEdge& f = features_[i];
+      return {mesh_.positions[f.from], mesh_.positions[f.to], {f.from, f.from}, {f.to, f.to}};
+    }
+    const Crossing& c = crossings_[i - features_.size()];
+    const glm::dvec3 size = glm::max(glm::abs(c.from.place), glm::abs(c.to.place));
+    return {c.from.place, c.to.place,        c.from.on,
+            c.to.on,      {c.left, c.right}, kSlack * std::max({size.x, size.y, size.z, 1e-100})};
+  }
+
+ private:
+  /// Roundings of the place of a crossing, of its size.
+  static constexpr double kSlack = 8.0 / 9007199254740992.0;
+
+  [[nodiscard]] PrimitiveId id_of(std::uint32_t triangle) const {
+    return triangle == no_index ? no_primitive : mesh_.ids[triangle];
+  }
+
+  const WeldedMesh& mesh_;
+  const std::vector<FeatureEdge> features_;
+  const std::vector<Crossing> crossings_;
+};
+
+std::vector<DrawnPart> cut_all(const Candidates& candidates, const Occlusion& occlusion, const Execution& execution) {
+  const std::size_t count = candidates.count();
+  std::vector<std::vector<DrawnPart>> lists((count + kEdgesPerPart - 1) / kEdgesPerPart);
   Pool<EdgeCutter> cutters;
   std::atomic<std::size_t> done{0};
-  parallel_for(execution, features.size(), kEdgesPerPart, [&](std::size_t begin, std::size_t end) {
+  parallel_for(execution, count, kEdgesPerPart, [&](std::size_t begin, std::size_t end) {
     const auto cutter = cutters.borrow([&] { return std::make_unique<EdgeCutter>(occlusion); });
-    for (std::size_t i = begin; i < end; ++i) cutter->cut(features[i], std::uint32_t(i), lists[begin / kEdgesPerPart]);
-    report_progress(execution, "lines", 0.3 + 0.7 * double(done += end - begin) / double(features.size()));
+    for (std::size_t i = begin; i < end; ++i)
+      cutter->cut(candidates.sighted(i), std::uint32_t(i), lists[begin / kEdgesPerPart]);
+    report_progress(execution, "lines", kCutFrom + (1 - kCutFrom) * double(done += end - begin) / double(count));
   });
   return joined(lists);
 }
@@ -51,19 +96,21 @@ Drawing lines(const Surfaces& surfaces, const View& view, const LineOptions& opt
   const WeldedMesh mesh = weld(surfaces, execution);
   const Sight sight(view);
   const Buffer<std::int8_t> facing = facing_of(mesh, sight, execution);
-  const std::vector<FeatureEdge> features = find_features({mesh, facing}, surfaces, options, execution);
+  std::vector<FeatureEdge> features = find_features({mesh, facing}, surfaces, options, execution);
+  report_progress(execution, "lines", 0.1);
+  std::vector<Crossing> crossings;
+  if (options.intersections) crossings = find_crossings(mesh, execution);
+  const Candidates candidates(mesh, std::move(features), std::move(crossings));
   report_progress(execution, "lines", 0.2);
   const OccluderGrid grid({mesh, facing}, view, execution);
-  report_progress(execution, "lines", 0.3);
+  report_progress(execution, "lines", kCutFrom);
 
   Drawing drawing;
   drawing.view = view;
-  drawing.edges.reserve(features.size());
-  const auto id_of = [&](std::uint32_t triangle) { return triangle == no_index ? no_primitive : mesh.ids[triangle]; };
-  for (const FeatureEdge& f : features)
-    drawing.edges.push_back({mesh.positions[f.from], mesh.positions[f.to], f.kind, id_of(f.left), id_of(f.right)});
+  drawing.edges.reserve(candidates.count());
+  for (std::size_t i = 0; i < candidates.count(); ++i) drawing.edges.push_back(candidates.drawn(i));
   drawing.parts =
-      cut_all(features, {mesh, sight, view, grid, shadow_kernels(execution.isa), options.counts_hidden}, execution);
+      cut_all(candidates, {mesh, sight, view, grid, shadow_kernels(execution.isa), options.counts_hidden}, execution);
   return drawing;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Four functions that are linear along the edge, so that their signs at both ends say all. A corner of the triangle is
-// in the planes through it by its number, not by arithmetic.
+// in the planes through it by its number, not by arithmetic, and so is a point between two corners in the planes
+// through both.
 #include "lines/occluder.h"
 
 #include <algorithm>
@@ -12,6 +13,8 @@ namespace {
 Signed with_sign_of_value(double value) { return {value, value > 0 ? 1 : value < 0 ? -1 : 0}; }
 
 Interval overlap(const Interval& a, const Interval& b) { return {std::max(a.begin, b.begin), std::min(a.end, b.end)}; }
+
+Signed times(const Signed& value, int sign) { return {value.value * sign, value.sign * sign}; }
 
 /// Where the triangle is not between the eye and the near plane: with its normal n, a point A of it and the eye E, the
 /// line of sight to X meets it at the distance of X times n.(A - E) / n.(X - E).
@@ -43,27 +46,27 @@ Interval where_positive(const Signed& at_0, const Signed& at_1, bool is_strict) 
 }
 
 Interval hidden_by(const Occluder& occluder, const SightedEdge& edge, const Sight& sight) {
+  if (occluder.triangle == edge.own[0] || occluder.triangle == edge.own[1]) return {};
   const glm::dvec3 at[3] = {glm::dvec3(occluder.corners[0]), glm::dvec3(occluder.corners[1]),
                             glm::dvec3(occluder.corners[2])};
   const std::uint32_t(&v)[3] = occluder.vertices;
   const FacePlane plane(at[0], at[1], at[2]);
-  const auto depth = [&](std::uint32_t vertex, const glm::dvec3& place) {
-    if (vertex == v[0] || vertex == v[1] || vertex == v[2]) return Signed{};
-    const Signed height = plane.height(place);
-    return Signed{-height.value * occluder.turn, -height.sign * occluder.turn};
+  const auto is_corner = [&](std::uint32_t vertex) { return vertex == v[0] || vertex == v[1] || vertex == v[2]; };
+  const auto depth = [&](const EndOn& on, const glm::dvec3& place) {
+    if (is_corner(on[0]) && is_corner(on[1])) return Signed{};
+    return times(plane.height(place, edge.slack), -occluder.turn);
   };
-  Interval hidden = where_positive(depth(edge.from_vertex, edge.from), depth(edge.to_vertex, edge.to), true);
+  Interval hidden = where_positive(depth(edge.from_on, edge.from), depth(edge.to_on, edge.to), true);
   constexpr int sides[3][2] = {{0, 1}, {1, 2}, {0, 2}};
   for (int k = 0; k < 3 && hidden.begin < hidden.end; ++k) {
     const int a = sides[k][0], b = sides[k][1];
     const Sight::EyePlane side = sight.plane_through(at[a], at[b]);
-    const int sign = k < 2 ? occluder.turn : -occluder.turn;
-    const auto turn = [&](std::uint32_t vertex, const glm::dvec3& place) {
-      if (vertex == v[a] || vertex == v[b]) return Signed{};
-      const Signed value = side.turn(place);
-      return Signed{value.value * sign, value.sign * sign};
+    const auto is_on_side = [&](std::uint32_t vertex) { return vertex == v[a] || vertex == v[b]; };
+    const auto turn = [&](const EndOn& on, const glm::dvec3& place) {
+      if (is_on_side(on[0]) && is_on_side(on[1])) return Signed{};
+      return times(side.turn(place, edge.slack), k < 2 ? occluder.turn : -occluder.turn);
     };
-    hidden = overlap(hidden, where_positive(turn(edge.from_vertex, edge.from), turn(edge.to_vertex, edge.to), false));
+    hidden = overlap(hidden, where_positive(turn(edge.from_on, edge.from), turn(edge.to_on, edge.to), false));
   }
   if (occluder.is_near && hidden.begin < hidden.end)
     hidden = overlap(hidden, beyond_near(occluder, edge, sight, plane.normal()));

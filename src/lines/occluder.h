@@ -2,6 +2,9 @@
 // What a triangle hides of an edge.
 #pragma once
 
+#include <array>
+
+#include "frontmost/base.h"
 #include "view/sight.h"
 
 namespace frontmost::lines_detail {
@@ -15,10 +18,16 @@ struct alignas(64) Occluder {
   bool is_near;  ///< some of it may lie before the near plane
 };
 
+/// An end of a segment: a vertex, twice, or a point of the edge between two.
+using EndOn = std::array<std::uint32_t, 2>;
+
 /// A segment that things are held against, from t = 0 to 1.
 struct SightedEdge {
   glm::dvec3 from{0}, to{0};  ///< world space
-  std::uint32_t from_vertex = no_index, to_vertex = no_index;
+  EndOn from_on{}, to_on{};
+  std::array<std::uint32_t, 2> own{no_index, no_index};  ///< triangles that it lies within
+  /// How far the rounding of ends that are no vertices may have moved them, by axis; 0: both are vertices.
+  double slack = 0;
   double from_distance = 0, to_distance = 0;  ///< planar
 };
 
@@ -31,7 +40,8 @@ struct Interval {
 [[nodiscard]] Interval where_positive(const Signed& at_0, const Signed& at_1, bool is_strict);
 
 /// Where `occluder` hides the edge: within its three planes through the eye (the shadow is closed), and beyond its own
-/// plane (within it, nothing is hidden).
+/// plane (within it, nothing is hidden). An end that is no vertex counts as within every plane that its rounding leaves
+/// open.
 [[nodiscard]] Interval hidden_by(const Occluder& occluder, const SightedEdge& edge, const Sight& sight);
 
 }  // namespace frontmost::lines_detail

@@ -60,12 +60,14 @@ struct Values {
   V value;
   M is_positive, is_negative, is_zero;
 
-  /// n.v times `sign`; zero where `is_on`.
-  HWY_INLINE Values(const Normals& n, const Vector3& v, V sign, M is_on) {
+  /// n.v times `sign`; zero where `is_on`. Any coordinate of v may be wrong by `slack`.
+  HWY_INLINE Values(const Normals& n, const Vector3& v, V sign, M is_on, double slack) {
     const D d;
     const Vector3 a = Abs(v);
     value = hn::Mul(Dot(n.value, v), sign);
-    const V error = hn::Add(Dot(n.error, a), hn::Mul(hn::Set(d, kRounding), Dot(Abs(n.value), a)));
+    const Vector3 size = Abs(n.value);
+    V error = hn::Add(Dot(n.error, a), hn::Mul(hn::Set(d, kRounding), Dot(size, a)));
+    if (slack > 0) error = hn::Add(error, hn::Mul(hn::Set(d, slack), hn::Add(hn::Add(size.x, size.y), size.z)));
     is_positive = hn::AndNot(is_on, hn::Gt(value, error));
     is_negative = hn::AndNot(is_on, hn::Lt(value, hn::Neg(error)));
     is_zero = hn::Or(is_on, hn::Eq(error, hn::Zero(d)));
@@ -101,7 +103,10 @@ struct Corner {
 
 void HideBatch(const OccluderBatch& batch, const SightedEdge& edge, const Sight& sight, HiddenBatch& hidden) {
   const D d;
-  const V from_vertex = hn::Set(d, double(edge.from_vertex)), to_vertex = hn::Set(d, double(edge.to_vertex));
+  // What is known of ends that are no vertices is left to hidden_by().
+  const bool has_vertices = edge.slack == 0;
+  const V from_vertex = hn::Set(d, has_vertices ? double(edge.from_on[0]) : -1.0);
+  const V to_vertex = hn::Set(d, has_vertices ? double(edge.to_on[0]) : -1.0);
   const Vector3 from = Splat(edge.from), to = Splat(edge.to);
   const Vector3 axis = Splat(sight.is_parallel() ? sight.forward() : sight.eye());
   hidden.hides = hidden.open = 0;
@@ -118,14 +123,15 @@ void HideBatch(const OccluderBatch& batch, const SightedEdge& edge, const Sight&
     const Normals face(Minus(corner[1].place, corner[0].place), Minus(corner[2].place, corner[0].place));
     const Vector3 from_0 = Minus(from, corner[0].place), to_0 = Minus(to, corner[0].place);
     const auto any = [](M a, M b, M c) HWY_ATTR { return hn::Or(hn::Or(a, b), c); };
-    rest.Keep<true>(Values(face, from_0, against, any(corner[0].is_from, corner[1].is_from, corner[2].is_from)),
-                    Values(face, to_0, against, any(corner[0].is_to, corner[1].is_to, corner[2].is_to)));
+    rest.Keep<true>(
+        Values(face, from_0, against, any(corner[0].is_from, corner[1].is_from, corner[2].is_from), edge.slack),
+        Values(face, to_0, against, any(corner[0].is_to, corner[1].is_to, corner[2].is_to), edge.slack));
     // A turn is the negative product with the plane's normal.
     const auto keep_within = [&](const Corner& p, const Corner& q, V sign) HWY_ATTR {
       if (rest.IsAllGone()) return;
       const Normals side(sight.is_parallel() ? axis : Minus(p.place, axis), Minus(q.place, p.place));
-      rest.Keep<false>(Values(side, Minus(from, p.place), sign, hn::Or(p.is_from, q.is_from)),
-                       Values(side, Minus(to, p.place), sign, hn::Or(p.is_to, q.is_to)));
+      rest.Keep<false>(Values(side, Minus(from, p.place), sign, hn::Or(p.is_from, q.is_from), edge.slack),
+                       Values(side, Minus(to, p.place), sign, hn::Or(p.is_to, q.is_to), edge.slack));
     };
     keep_within(corner[0], corner[1], against);
     keep_within(corner[1], corner[2], against);

@@ -3,14 +3,20 @@
 // bound on their rounding first, expansions where that leaves the sign open.
 #include "view/sight.h"
 
+#include <cmath>
+
 namespace frontmost {
 namespace {
 
-/// `exact_sign` is asked where the rounding of `rounded` matters.
+/// `exact_sign` is asked where the rounding of n.v matters.
 template <class ExactSign>
-Signed with_certain_sign(const Bounded& rounded, const ExactSign& exact_sign) {
+Signed with_certain_sign(const BoundedNormal& n, const glm::dvec3& v, double slack, const ExactSign& exact_sign) {
+  Bounded rounded = bounded_dot(n.value, n.error, v);
+  if (slack > 0) rounded.error += slack * (std::abs(n.value.x) + std::abs(n.value.y) + std::abs(n.value.z));
   const int sign = certain_sign(rounded);
-  return {rounded.value, sign == 2 ? exact_sign() : sign};
+  if (sign != 2) return {rounded.value, sign};
+  if (slack > 0) return {};
+  return {rounded.value, exact_sign()};
 }
 
 }  // namespace
@@ -39,13 +45,12 @@ Sight::EyePlane Sight::plane_through(const glm::dvec3& p, const glm::dvec3& q) c
 
 /// From p on: what is near p and q then has a small bound, however far away the eye is. Vectors from the eye to all
 /// three would leave every seventh sign of a finely divided sphere open.
-Signed Sight::EyePlane::turn(const glm::dvec3& x) const {
-  Bounded rounded = bounded_dot(normal_.value, normal_.error, x - p_);
-  rounded.value = -rounded.value;
-  return with_certain_sign(rounded, [&] {
+Signed Sight::EyePlane::turn(const glm::dvec3& x, double slack) const {
+  const Signed against = with_certain_sign(normal_, x - p_, slack, [&] {
     const Leg along = sight_->is_parallel_ ? Leg{sight_->forward_} : Leg{p_, sight_->eye_};
-    return -sign_of_determinant(along, {q_, p_}, {x, p_});
+    return sign_of_determinant(along, {q_, p_}, {x, p_});
   });
+  return {-against.value, -against.sign};
 }
 
 glm::dvec3 Sight::in_eye(const glm::dvec3& position) const {
@@ -58,10 +63,8 @@ glm::dvec3 Sight::to_screen(const glm::dvec3& in_eye) const {
   return {in_eye.x / w * scale_.x + offset_.x, in_eye.y / w * scale_.y + offset_.y, in_eye.z};
 }
 
-Signed FacePlane::height(const glm::dvec3& x) const {
-  return with_certain_sign(bounded_dot(normal_.value, normal_.error, x - a_), [&] {
-    return sign_of_determinant({b_, a_}, {c_, a_}, {x, a_});
-  });
+Signed FacePlane::height(const glm::dvec3& x, double slack) const {
+  return with_certain_sign(normal_, x - a_, slack, [&] { return sign_of_determinant({b_, a_}, {c_, a_}, {x, a_}); });
 }
 
 }  // namespace frontmost

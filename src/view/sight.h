@@ -22,8 +22,9 @@ class Sight {
   /// The plane through the eye (parallel: along the view) and two points.
   class EyePlane {
    public:
-    /// Positive where p, q and x turn left as they are seen.
-    [[nodiscard]] Signed turn(const glm::dvec3& x) const;
+    /// Positive where p, q and x turn left as they are seen. With `slack`, by which any coordinate of x may be wrong:
+    /// 0 where that, or rounding, leaves the sign open.
+    [[nodiscard]] Signed turn(const glm::dvec3& x, double slack = 0) const;
 
    private:
     friend class Sight;
@@ -65,8 +66,8 @@ class FacePlane {
  public:
   FacePlane(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
       : a_(a), b_(b), c_(c), normal_(b - a, c - a) {}
-  /// Positive on the side from which a, b, c are counter-clockwise.
-  [[nodiscard]] Signed height(const glm::dvec3& x) const;
+  /// Positive on the side from which a, b, c are counter-clockwise. `slack` as for turn().
+  [[nodiscard]] Signed height(const glm::dvec3& x, double slack = 0) const;
   [[nodiscard]] const glm::dvec3& normal() const { return normal_.value; }
 
  private:

@@ -24,12 +24,12 @@ class PointOracle {
     bool is_certain = true;
     std::uint32_t hidden_by = 0;
   };
-  /// `own` are the ends of the edge that x is on.
-  [[nodiscard]] Answer ask(const glm::dvec3& x, const std::array<glm::dvec3, 2>& own) const {
+  /// x is on `edge`: a triangle that the edge lies within does not hide it.
+  [[nodiscard]] Answer ask(const glm::dvec3& x, const DrawnEdge& edge) const {
     Answer answer;
-    for (const auto& t : triangles_) {
-      const int shared = shared_corners(t, own);
-      if (shared == 2) continue;
+    for (std::size_t id = 0; id < triangles_.size(); ++id) {
+      const auto& t = triangles_[id];
+      if (id == edge.left || id == edge.right || shared_corners(t, {edge.from, edge.to}) == 2) continue;
       const glm::dvec3 direction = view_.projection.orthographic ? -view_.forward() : view_.eye() - x;
       const glm::dvec3 u = t[1] - t[0], v = t[2] - t[0], n = glm::cross(u, v);
       const double slope = glm::dot(n, direction), size = glm::length(n) * glm::length(direction);
@@ -90,7 +90,7 @@ Checked check(const Scene& scene, const View& view, bool counts, std::uint64_t s
     EXPECT_LT(part.begin, part.end);
     const DrawnEdge& edge = drawing.edges[part.edge];
     const double t = part.begin + (part.end - part.begin) * random.within(0.1f, 0.9f);
-    const PointOracle::Answer answer = oracle.ask(edge.from + (edge.to - edge.from) * t, {edge.from, edge.to});
+    const PointOracle::Answer answer = oracle.ask(edge.from + (edge.to - edge.from) * t, edge);
     ++checked.asked;
     if (!answer.is_certain) continue;
     ++checked.certain;
@@ -109,7 +109,8 @@ TEST_P(EveryKind, IsHiddenWhereATriangleIsBefore) {
   for (std::uint64_t seed = 0; seed < seeds(8); ++seed) {
     SCOPED_TRACE(seed);
     Random random(seed + 100);
-    const Scene scene = scene_of(random_mesh(GetParam(), 150, seed));
+    // Sheets all pass through each other: hundreds of thousands of segments.
+    const Scene scene = scene_of(random_mesh(GetParam(), GetParam() == Kind::sheets ? 30 : 150, seed));
     View view = random_view(random, 160, 120);
     const Checked checked = check(scene, view, seed % 2 == 0, seed);
     all.asked += checked.asked;

@@ -153,6 +153,52 @@ TEST(KnownDrawings, BordersBetweenMaterialsAndInstances) {
   EXPECT_EQ(count(lines(both, view), EdgeKind::border), 4u);
 }
 
+double length_of(const Drawing& drawing, const DrawnPart& part) {
+  const DrawnEdge& edge = drawing.edges[part.edge];
+  return (part.end - part.begin) * glm::length(edge.to - edge.from);
+}
+
+TEST(KnownDrawings, TwoBoxesThroughEachOtherMeetInTwoSquares) {
+  Scene scene = scene_of(box(glm::vec3(-1), glm::vec3(1)));
+  scene.meshes.push_back(box({-0.5f, -0.5f, -2}, {0.5f, 0.5f, 2}));
+  scene.instances.push_back({"through", 1, glm::dmat4(1.0)});
+  const Surfaces surfaces(scene);
+  for (const bool is_parallel : {false, true}) {
+    const Drawing drawing = lines(surfaces, view_from({4, 5, 6}, is_parallel), {.counts_hidden = true});
+    double seen = 0, hidden = 0;
+    for (const DrawnPart& part : drawing.parts) {
+      const DrawnEdge& edge = drawing.edges[part.edge];
+      if (edge.kind != EdgeKind::intersection) continue;
+      for (const glm::dvec3& p : {edge.from, edge.to}) {
+        EXPECT_EQ(std::abs(p.z), 1);
+        EXPECT_EQ(std::max(std::abs(p.x), std::abs(p.y)), 0.5);
+      }
+      // Seen are the upper square's two sides before the inner box.
+      const glm::dvec3 middle = (edge.from + edge.to) * 0.5;
+      EXPECT_EQ(part.hidden_by == 0, middle.z == 1 && (middle.x == 0.5 || middle.y == 0.5));
+      (part.hidden_by == 0 ? seen : hidden) += length_of(drawing, part);
+    }
+    EXPECT_NEAR(seen, 2, 1e-12);
+    EXPECT_NEAR(hidden, 6, 1e-12);
+    EXPECT_EQ(
+        count(lines(surfaces, view_from({4, 5, 6}, is_parallel), {.intersections = false}), EdgeKind::intersection),
+        0u);
+  }
+}
+
+TEST(KnownDrawings, KindsThatAreNotWantedAreNotDrawn) {
+  const Scene scene = scene_of(box(glm::vec3(-1), glm::vec3(1)));
+  const Surfaces surfaces(scene);
+  const View view = view_from({4, 5, 6}, false);
+  EXPECT_EQ(lines(surfaces, view, {.silhouettes = false}).edges.size(), 12u);  // they are creases, too
+  EXPECT_EQ(count(lines(surfaces, view, {.silhouettes = false}), EdgeKind::crease), 12u);
+  EXPECT_EQ(lines(surfaces, view, {.creases = false}).edges.size(), 6u);
+  Mesh open;
+  add_triangle(open, {-1, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  const Scene one = scene_of(open);
+  EXPECT_TRUE(lines(Surfaces(one), view, {.boundaries = false}).edges.empty());
+}
+
 TEST(KnownDrawings, WhatLiesOutsideOfTheViewIsCutOff) {
   Mesh mesh;
   add_triangle(mesh, {-1, 0, 0}, {100, 0, 0}, {-1, 100, 0});

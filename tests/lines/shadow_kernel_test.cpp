@@ -47,7 +47,7 @@ Occluder random_occluder(const Lattice& lattice, const Sight& sight, Random& ran
 
 SightedEdge random_edge(const Lattice& lattice, Random& random) {
   const std::uint32_t a = lattice.pick(random), b = lattice.pick(random);
-  return {glm::dvec3(lattice.places[a]), glm::dvec3(lattice.places[b]), a, b, 1, 1};
+  return {glm::dvec3(lattice.places[a]), glm::dvec3(lattice.places[b]), {a, a}, {b, b}};
 }
 
 TEST(ShadowKernels, HideAsThePlainFunctionOnEveryInstructionSet) {

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lines/box_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace frontmost::lines_detail {
+namespace {
+
+constexpr std::size_t kPerPart = 4096;
+constexpr int kBitsAnAxis = 9;
+constexpr int kExponents = 160;  // more than floats have
+
+/// The low 9 bits, two apart.
+std::uint32_t spread(std::uint32_t bits) {
+  std::uint32_t out = 0;
+  for (int i = 0; i < kBitsAnAxis; ++i) out |= (bits >> i & 1u) << 3 * i;
+  return out;
+}
+
+Box box_of(const WeldedMesh& mesh, std::size_t triangle) {
+  Box box;
+  for (int k = 0; k < 3; ++k) box.include(glm::vec3(mesh.positions[mesh.triangles[triangle][k]]));
+  return box;
+}
+
+int exponent_of(const Box& box) {
+  const glm::dvec3 size = glm::dvec3(box.high) - glm::dvec3(box.low);
+  int exponent;
+  std::frexp(std::max({size.x, size.y, size.z}), &exponent);
+  return std::clamp(exponent, -kExponents, kExponents - 1);
+}
+
+/// By exponent: 0 for nine tenths of all triangles, and for what is larger the steps of a factor of 4 from there. Asks
+/// every sixteenth triangle.
+std::array<std::uint32_t, 2 * kExponents> size_classes(const WeldedMesh& mesh) {
+  std::array<std::size_t, 2 * kExponents> counts{};
+  std::size_t asked = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 16, ++asked)
+    ++counts[std::size_t(exponent_of(box_of(mesh, t)) + kExponents)];
+  std::array<std::uint32_t, 2 * kExponents> classes{};
+  std::size_t seen = 0;
+  std::uint32_t above = 0;
+  for (std::size_t e = 0; e < counts.size(); ++e) {
+    if (10 * seen >= 9 * asked) ++above;
+    classes[e] = std::min(7u, above / 2);
+    seen += counts[e];
+  }
+  return classes;
+}
+
+/// G. Morton's curve: the class of size, then the middle of the box, as 30 bits.
+class Curve {
+ public:
+  explicit Curve(const WeldedMesh& mesh) : classes_(size_classes(mesh)) {
+    Box all;
+    for (const glm::dvec3& p : mesh.positions) all.include(glm::vec3(p));
+    low_ = glm::dvec3(all.low);
+    scale_ = kSteps / glm::max(glm::dvec3(all.high) - low_, glm::dvec3(1e-300));
+    for (std::uint32_t i = 0; i < spread_.size(); ++i) spread_[i] = spread(i);
+  }
+  [[nodiscard]] std::uint32_t place_of(const Box& box) const {
+    const glm::dvec3 at = ((glm::dvec3(box.low) + glm::dvec3(box.high)) * 0.5 - low_) * scale_;
+    const auto step = [&](double t) { return spread_[std::size_t(std::clamp(t, 0.0, kSteps))]; };
+    const std::uint32_t size = classes_[std::size_t(exponent_of(box) + kExponents)];
+    return size << 27 | step(at.x) | step(at.y) << 1 | step(at.z) << 2;
+  }
+
+ private:
+  static constexpr double kSteps = (1 << kBitsAnAxis) - 1;
+  std::array<std::uint32_t, 2 * kExponents> classes_;
+  glm::dvec3 low_{0}, scale_{0};
+  std::array<std::uint32_t, 1 << kBitsAnAxis> spread_;
+};
+
+/// By the upper half: three passes of ten bits. Equal ones stay in order.
+void sort_by_key(Buffer<std::uint64_t>& keys) {
+  constexpr std::size_t buckets = 1024;
+  Buffer<std::uint64_t> other(keys.size());
+  for (int shift = 32; shift < 62; shift += 10) {
+    std::array<std::size_t, buckets + 1> next{};
+    for (const std::uint64_t key : keys) ++next[(key >> shift) % buckets + 1];
+    for (std::size_t i = 0; i < buckets; ++i) next[i + 1] += next[i];
+    for (const std::uint64_t key : keys) other[next[(key >> shift) % buckets]++] = key;
+    keys.swap(other);
+  }
+}
+
+/// Boxes of `count` groups of what lies below.
+template <class BoxBelow>
+SpaceBoxes boxes_of_groups(std::size_t count, const BoxBelow& box_below) {
+  SpaceBoxes boxes(count);
+  for (std::size_t group = 0; group < count; ++group) {
+    Box box;
+    for (std::size_t i = 0; i < kSpaceLanes; ++i) box.include(box_below(group * kSpaceLanes + i));
+    boxes.set(group, box);
+  }
+  return boxes;
+}
+
+}  // namespace
+
+BoxTree::BoxTree(const WeldedMesh& mesh, const Execution& execution)
+    : kernels_(space_kernels(execution.isa)), triangles_(mesh.triangles.size()) {
+  const std::size_t count = triangles_.count;
+  const Curve curve(mesh);
+  Buffer<std::uint64_t> keys(count);
+  parallel_for(execution, count, kPerPart, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) keys[t] = std::uint64_t(curve.place_of(box_of(mesh, t))) << 32 | t;
+  });
+  sort_by_key(keys);
+  parallel_for(execution, triangles_.numbers.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto number = std::uint32_t(keys[std::min(i, count - 1)]);
+      triangles_.numbers[i] = number;
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t vertex = mesh.triangles[number][k];
+        triangles_.vertices[k][i] = vertex;
+        for (int axis = 0; axis < 3; ++axis) triangles_.corners[3 * k + axis][i] = float(mesh.positions[vertex][axis]);
+      }
+    }
+  });
+  levels_.push_back(
+      boxes_of_groups(triangles_.numbers.size() / kSpaceLanes, [&](std::size_t i) { return triangles_.box(i); }));
+  while (levels_.back().group_count() > 1) {
+    const SpaceBoxes& below = levels_.back();
+    SpaceBoxes level = boxes_of_groups(below.group_count(), [&](std::size_t i) { return below.get(i); });
+    levels_.push_back(std::move(level));
+  }
+}
+
+}  // namespace frontmost::lines_detail

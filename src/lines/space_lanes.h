@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// Boxes and triangles in space, sixteen side by side.
+#pragma once
+
+#include <array>
+
+#include "frontmost/base.h"
+
+namespace frontmost::lines_detail {
+
+inline constexpr std::size_t kSpaceLanes = 16;
+[[nodiscard]] inline std::size_t padded_to_lanes(std::size_t count) {
+  return (count + kSpaceLanes - 1) / kSpaceLanes * kSpaceLanes;
+}
+
+/// Padded to whole groups of sixteen with empty boxes.
+struct SpaceBoxes {
+  Buffer<float> low[3], high[3];
+
+  explicit SpaceBoxes(std::size_t count) {
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = Buffer<float>(padded_to_lanes(count));
+      high[axis] = Buffer<float>(padded_to_lanes(count));
+    }
+    for (std::size_t i = count; i < low[0].size(); ++i) set(i, Box());
+  }
+  [[nodiscard]] std::size_t group_count() const { return low[0].size() / kSpaceLanes; }
+  void set(std::size_t i, const Box& box) {
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis][i] = box.low[axis];
+      high[axis][i] = box.high[axis];
+    }
+  }
+  [[nodiscard]] Box get(std::size_t i) const {
+    return {{low[0][i], low[1][i], low[2][i]}, {high[0][i], high[1][i], high[2][i]}};
+  }
+};
+
+/// Padded by repeating the last.
+struct SpaceTriangles {
+  std::size_t count = 0;
+  Buffer<float> corners[9];
+  Buffer<std::uint32_t> vertices[3];
+  Buffer<std::uint32_t> numbers;
+
+  explicit SpaceTriangles(std::size_t size) : count(size), numbers(padded_to_lanes(size)) {
+    for (Buffer<float>& c : corners) c = Buffer<float>(padded_to_lanes(size));
+    for (Buffer<std::uint32_t>& v : vertices) v = Buffer<std::uint32_t>(padded_to_lanes(size));
+  }
+  [[nodiscard]] glm::vec3 corner(std::size_t i, std::size_t k) const {
+    return {corners[3 * k][i], corners[3 * k + 1][i], corners[3 * k + 2][i]};
+  }
+  [[nodiscard]] Box box(std::size_t i) const {
+    Box box;
+    for (std::size_t k = 0; k < 3; ++k) box.include(corner(i, k));
+    return box;
+  }
+};
+
+/// A triangle that others are held against.
+struct SpaceProbe {
+  Box box;
+  glm::vec3 corners[3];
+  glm::vec3 normal;  ///< of any length, each component to 2^-22 of `size`
+  glm::vec3 size;    ///< at least the absolute values that the normal's components are differences of
+  glm::uvec3 vertices;
+};
+/// Where products of floats underflow, this much more of `size` makes up for it.
+inline constexpr float kLeastSize = 1e-32f;
+/// Sixteen of them, from `first` on.
+struct SpaceProbes {
+  SpaceProbe probes[kSpaceLanes];
+  alignas(64) float low[3][kSpaceLanes], high[3][kSpaceLanes];  ///< their boxes
+
+  SpaceProbes(const SpaceTriangles& triangles, std::size_t first);
+};
+
+/// By probe: triangle i of sixteen in bit i.
+using SpaceMasks = std::array<std::uint16_t, kSpaceLanes>;
+
+/// The functions of one instruction set, for sixteen from `first`, a multiple of 16, on.
+struct SpaceKernels {
+  /// Bit i: box first + i has a point in common with `box`.
+  std::uint32_t (*touching)(const SpaceBoxes& boxes, std::size_t first, const Box& box);
+  /// Triangles whose box touches a probe's, that share at most one vertex with it, and of which rounding does not rule
+  /// out that each has corners on both sides of the other's plane. `box` holds the sixteen triangles.
+  void (*crossing)(const SpaceTriangles& triangles, std::size_t first, const Box& box, const SpaceProbes& probes,
+                   SpaceMasks& masks);
+};
+[[nodiscard]] SpaceKernels space_kernels(Isa isa);
+
+}  // namespace frontmost::lines_detail
