@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontmost/scene.h"
 
+#include "scene/validation.h"
+
 namespace frontmost {
 namespace {
 
@@ -40,9 +42,12 @@ void check_attribute(const Scene& scene, std::size_t m, const Attribute<T>& attr
   }
 }
 
+void check_vertices(const Scene& scene, std::size_t m) {
+  check_corners(scene, m, scene.meshes[m].triangles, scene.meshes[m].positions.size(), "vertex");
+}
+
 void check_mesh(const Scene& scene, std::size_t m) {
   const Mesh& mesh = scene.meshes[m];
-  check_corners(scene, m, mesh.triangles, mesh.positions.size(), "vertex");
   check_attribute(scene, m, mesh.normals, "normal");
   check_attribute(scene, m, mesh.texcoords, "texture coordinate");
   check_attribute(scene, m, mesh.colors, "colour");
@@ -84,6 +89,11 @@ std::uint64_t triangle_count(const Scene& scene) {
 }
 
 void validate(const Scene& scene) {
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) check_vertices(scene, m);
+  validate_besides_vertices(scene);
+}
+
+void validate_besides_vertices(const Scene& scene) {
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) check_mesh(scene, m);
   for (const Material& material : scene.materials)
     for (const TextureUse* use : {&material.base_color_texture, &material.metallic_roughness_texture,

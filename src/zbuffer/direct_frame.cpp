@@ -6,6 +6,7 @@
 #include "zbuffer/direct_frame.h"
 
 #include <algorithm>
+#include <cstring>
 #include <memory>
 
 #include "base/parallel.h"
@@ -18,7 +19,8 @@
 namespace frontmost::zbuffer_detail {
 namespace {
 
-constexpr std::size_t kParcelsAtOnce = 256;  // half a million triangles
+// Half a million triangles; of a large scene at first fewer, so that those behind them need not be looked at.
+constexpr std::size_t kParcelsAtOnce = 256, kParcelsAtFirst = 32, kFewParcels = 128;
 
 std::vector<PrimitiveId> first_primitives_of(const Scene& scene) {
   std::vector<PrimitiveId> first{0};
@@ -53,6 +55,18 @@ struct ParcelScratch : PlaceScratch {
   Buffer<ParcelColumns> spare{1};
 };
 
+/// A parcel and how near it is. Slices are half as deep again as they are far: finer ones hide no more, and lose the
+/// order of the file, which is that of memory.
+struct Near {
+  std::uint32_t slice, parcel;
+
+  Near() = default;
+  Near(float key, std::size_t number) : parcel(std::uint32_t(number)) {
+    std::memcpy(&slice, &key, sizeof slice);
+    slice >>= 22;  // the exponent and a bit
+  }
+};
+
 class DirectFrame {
  public:
   DirectFrame(const Scene& scene, const View& view, const Execution& execution)
@@ -63,36 +77,110 @@ class DirectFrame {
         transform_(view),
         target_(transform_, view, execution.isa),
         visible_{view, Buffer<PrimitiveId>(view.sample_count()), Buffer<float>(view.sample_count())},
-        is_drawn_(Tile::count(view), 0) {}
+        is_drawn_(Tile::count(view), 0),
+        farthest_(is_drawn_.size() * BlockBounds::count, 0.0f) {}
 
   Visible draw() {
-    const std::vector<Piece> pieces =
-        pieces_of(scene_, first_primitives_, {0, first_primitives_.back()}, std::uint32_t(Parcel::most_triangles));
-    const std::vector<PieceRange> parcels = parcels_of(pieces);
-    parcels_.resize(std::min(parcels.size(), kParcelsAtOnce));
-    for (std::size_t first = 0; first < parcels.size() || first == 0; first += kParcelsAtOnce) {
-      const std::size_t end = std::min(parcels.size(), first + kParcelsAtOnce);
-      place(pieces, std::span(parcels).subspan(first, end - first));
-      draw_placed(end == parcels.size());
-      if (!parcels.empty()) report_progress(execution_, "visible", double(end) / double(parcels.size()));
-    }
+    check_unplaced();
+    survey();
+    std::size_t next = 0, at_once = order_.size() > kFewParcels ? kParcelsAtFirst : kParcelsAtOnce;
+    do {
+      const std::size_t count = std::min(at_once, order_.size() - next);
+      place(std::span(order_).subspan(next, count));
+      next += count;
+      draw_placed(next == order_.size());
+      report_progress(execution_, "visible", order_.empty() ? 1 : double(next) / double(order_.size()));
+      at_once = kParcelsAtOnce;
+    } while (next < order_.size());
     if (cutouts_) draw_cutouts(*cutouts_, cutout_records_, visible_, execution_);
     return std::move(visible_);
   }
 
  private:
-  void place(std::span<const Piece> pieces, std::span<const PieceRange> parcels) {
-    parallel_for(execution_, parcels.size(), 1, [&](std::size_t begin, std::size_t end) {
+  /// Vertices of placed triangles are checked as they are met.
+  void check_unplaced() const {
+    std::vector<bool> is_placed(scene_.meshes.size(), false);
+    for (const Instance& instance : scene_.instances) is_placed[instance.mesh] = true;
+    for (std::size_t m = 0; m < is_placed.size(); ++m) {
+      const Mesh& mesh = scene_.meshes[m];
+      if (is_placed[m] || mesh.triangles.empty()) continue;
+      if (range_of_numbers(mesh.triangles, execution_.isa).high >= mesh.positions.size()) validate(scene_);
+    }
+  }
+
+  /// Parcels, and in which order to draw them: near ones first, as far as a few triangles of each tell.
+  void survey() {
+    constexpr std::size_t kGrain = 64;
+    pieces_ = pieces_of(scene_, first_primitives_, {0, first_primitives_.back()}, Parcel::most_triangles);
+    parcel_pieces_ = parcels_of(pieces_);
+    order_.resize(parcel_pieces_.size());
+    parallel_for(execution_, order_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) order_[i] = Near(nearest_of(parcel_pieces_[i]), i);
+    });
+    std::sort(order_.begin(), order_.end(), [](const Near& a, const Near& b) {
+      return a.slice != b.slice ? a.slice > b.slice : a.parcel < b.parcel;
+    });
+  }
+
+  /// The greatest key of some triangles of a parcel; more than any where one is behind the eye.
+  [[nodiscard]] float nearest_of(const PieceRange& pieces) const {
+    constexpr std::size_t kTriangles = 4;
+    float nearest = 0;
+    for (std::size_t k = 0; k < kTriangles; ++k) {
+      const Piece& piece = pieces_[pieces.begin + (2 * k + 1) * (pieces.end - pieces.begin) / (2 * kTriangles)];
+      const std::span<const glm::uvec3> corners = corners_of(scene_, piece);
+      const glm::uvec3& triangle = corners[(2 * k + 1) * corners.size() / (2 * kTriangles)];
+      const Instance& instance = scene_.instances[piece.instance];
+      const std::vector<glm::vec3>& positions = scene_.meshes[instance.mesh].positions;
+      for (int c = 0; c < 3; ++c) {
+        if (triangle[c] >= positions.size()) validate(scene_);  // says what is wrong
+        const HomogeneousVertex v = transform(transform_, ToWorld(instance.world_from_mesh)(positions[triangle[c]]));
+        if (v.d < transform_.near) return 2;
+        if (is_plain(transform_, v)) nearest = std::max(nearest, snap(transform_, v).key);
+      }
+    }
+    return nearest;
+  }
+
+  /// False where blocks that were found to be nearer cover all of the piece, or nothing of it is on the screen.
+  [[nodiscard]] bool may_be_seen(const PieceExtent& extent) const {
+    if (!extent.all_plain) return extent.common >= 0 || (extent.common & kOutside) == 0;
+    const View& view = visible_.view;
+    const PixelRect rect{std::max(extent.low.x >> 8, 0), std::max(extent.low.y >> 8, 0),
+                         std::min(extent.high.x >> 8, view.width - 1), std::min(extent.high.y >> 8, view.height - 1)};
+    if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return false;
+    float nearest;
+    std::memcpy(&nearest, &extent.nearest, sizeof nearest);
+    const std::size_t across = Tile::tiles_across(view);
+    for (int y = rect.y0 / kBlockSize; y <= rect.y1 / kBlockSize; ++y)
+      for (int x = rect.x0 / kBlockSize; x <= rect.x1 / kBlockSize; ++x) {
+        const std::size_t tile = std::size_t(y / 8) * across + std::size_t(x / 8);
+        if (!(farthest_[tile * BlockBounds::count + std::size_t(y % 8 * 8 + x % 8)] > nearest)) return true;
+      }
+    return false;
+  }
+
+  void place_piece(const Piece& piece, ParcelScratch& scratch, Parcel& parcel) const {
+    const NumberRange numbers = range_of_numbers(corners_of(scene_, piece), execution_.isa);
+    if (numbers.high >= scene_.meshes[scene_.instances[piece.instance].mesh].positions.size()) validate(scene_);
+    const PieceGeometry geometry = geometry_of(scene_, piece, numbers, scratch);
+    const PieceExtent extent = snap_piece(target_, geometry, scratch.vertices);
+    if (may_be_seen(extent)) place_in_parcel(target_, geometry, scratch.vertices, extent.all_plain, parcel);
+  }
+
+  void place(std::span<const Near> chosen) {
+    if (parcels_.size() < chosen.size()) parcels_.resize(chosen.size());
+    parallel_for(execution_, chosen.size(), 1, [&](std::size_t begin, std::size_t end) {
       const auto scratch = scratches_.borrow([] { return std::make_unique<ParcelScratch>(); });
       for (std::size_t i = begin; i < end; ++i) {
+        const PieceRange& pieces = parcel_pieces_[chosen[i].parcel];
         parcels_[i].clear();
-        for (std::size_t piece = parcels[i].begin; piece < parcels[i].end; ++piece)
-          place_in_parcel(target_, geometry_of(scene_, pieces[piece], execution_.isa, *scratch), scratch->vertices,
-                          parcels_[i]);
+        for (std::size_t piece = pieces.begin; piece < pieces.end; ++piece)
+          place_piece(pieces_[piece], *scratch, parcels_[i]);
         if (!cutouts_) parcels_[i].bin(scratch->spare);
       }
     });
-    sort_out(parcels.size());
+    sort_out(chosen.size());
   }
 
   /// What was placed, by kind, near things first.
@@ -139,7 +227,8 @@ class DirectFrame {
         const auto scratch = tile_scratches_.borrow([] { return std::make_unique<TileScratch>(); });
         scratch->reserve(frame.samples.size());
         for (std::size_t tile = round.begin + begin; tile < round.begin + end; ++tile) {
-          const ParcelJob job{Tile(tile, view), records_.of(tile), parcel_lists_.of(tile), is_drawn_[tile] != 0};
+          const ParcelJob job{Tile(tile, view),     records_.of(tile), parcel_lists_.of(tile),
+                              is_drawn_[tile] != 0, is_last,           &farthest_[tile * BlockBounds::count]};
           if (job.is_empty() && (job.is_drawn || !is_last)) continue;
           draw_parcels(frame, job, *scratch, execution_.isa);
           is_drawn_[tile] = 1;
@@ -156,6 +245,10 @@ class DirectFrame {
   PlaceTarget target_;
   Visible visible_;
   std::vector<std::uint8_t> is_drawn_;  // by tile
+  std::vector<float> farthest_;         // by tile and block: no sample of it is farther than this key
+  std::vector<Piece> pieces_;
+  std::vector<PieceRange> parcel_pieces_;
+  std::vector<Near> order_;
   // Of the parcels that are placed.
   std::vector<Parcel> parcels_;
   std::vector<const Parcel*> nearest_first_;

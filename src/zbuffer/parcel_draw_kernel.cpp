@@ -35,11 +35,12 @@ class ParcelPainter {
 
   void Draw() {
     buffer_.Clear();
-    if (job_.is_drawn) buffer_.ReadBack();
+    if (job_.is_drawn) buffer_.ReadBack(job_.farthest);
     large_.DrawAll(frame_.records, job_.records);
     for (const std::uint32_t i : job_.parcels) DrawParcel(*frame_.parcels[i]);
     small_.Finish();
     buffer_.WriteOut();
+    if (!job_.is_last) buffer_.FindFarthest(job_.farthest);
   }
 
  private:

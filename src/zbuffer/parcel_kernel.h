@@ -10,9 +10,16 @@
 
 namespace frontmost::zbuffer_detail {
 
-/// Appends what of the triangles may cover a sample, in no particular order. Precondition: there is room in the
-/// columns.
-void place_in_parcel(const PlaceTarget& target, const PieceGeometry& piece, PieceVertices& scratch, Parcel& parcel);
+/// Set in the key of a vertex that cannot be snapped as it is, a negative float: the planes of the clip volume that it
+/// lies outside of for certain. What has one of them at every corner is not seen.
+inline constexpr std::int32_t kOutside = 63;
+
+/// Puts the vertices of a piece on the screen.
+[[nodiscard]] PieceExtent snap_piece(const PlaceTarget& target, const PieceGeometry& piece, PieceVertices& vertices);
+/// Appends what of the piece's triangles may cover a sample, in no particular order; vertices and `all_plain` are of
+/// snap_piece(). Precondition: there is room in the columns.
+void place_in_parcel(const PlaceTarget& target, const PieceGeometry& piece, const PieceVertices& vertices,
+                     bool all_plain, Parcel& parcel);
 
 /// What all tiles have in common that are drawn from the same parcels.
 struct ParcelFrame : Picture {
@@ -23,7 +30,9 @@ struct ParcelFrame : Picture {
 /// One tile, and what may be seen in it.
 struct ParcelJob : Tile {
   std::span<const std::uint32_t> records, parcels;
-  bool is_drawn;  ///< it shows something already, which the planes hold
+  bool is_drawn;    ///< it shows something already, which the planes hold
+  bool is_last;     ///< nothing will be drawn to it any more
+  float* farthest;  ///< of the 64 blocks: what was found before, and is found now unless this is the last time
 
   [[nodiscard]] bool is_empty() const { return records.empty() && parcels.empty(); }
 };

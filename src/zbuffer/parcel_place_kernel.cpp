@@ -48,7 +48,7 @@ class OutCodes {
   [[nodiscard]] static HWY_INLINE MI Outside(VF a, VF b, VF c) {
     const DI d;
     const VI all = hn::And(hn::BitCast(d, a), hn::And(hn::BitCast(d, b), hn::BitCast(d, c)));
-    return hn::And(hn::Lt(all, hn::Zero(d)), hn::Ne(hn::And(all, hn::Set(d, 63)), hn::Zero(d)));
+    return hn::And(hn::Lt(all, hn::Zero(d)), hn::Ne(hn::And(all, hn::Set(d, kOutside)), hn::Zero(d)));
   }
 
  private:
@@ -70,11 +70,11 @@ class OutCodes {
 
 class ParcelPlacer {
  public:
-  ParcelPlacer(const PlaceTarget& target, const PieceGeometry& piece, PieceVertices& vertices, Parcel& parcel)
+  ParcelPlacer(const PlaceTarget& target, const PieceGeometry& piece, const PieceVertices& vertices, Parcel& parcel)
       : target_(target), piece_(piece), vertices_(vertices), parcel_(parcel) {}
 
-  void Place() {
-    all_plain_ = SnapVertices(target_.transform, piece_.positions, vertices_, OutCodes(target_.transform));
+  void Place(bool all_plain) {
+    all_plain_ = all_plain;
     const DI d;
     least_x_ = hn::Set(d, parcel_.rect.x0);
     least_y_ = hn::Set(d, parcel_.rect.y0);
@@ -195,15 +195,20 @@ class ParcelPlacer {
 
   const PlaceTarget& target_;
   const PieceGeometry& piece_;
-  PieceVertices& vertices_;
+  const PieceVertices& vertices_;
   Parcel& parcel_;
   bool all_plain_ = false;
   VI least_x_, least_y_, greatest_x_, greatest_y_;  // pixels
   VI nearest_;                                      // bits of keys
 };
 
-void PlaceInParcel(const PlaceTarget& target, const PieceGeometry& piece, PieceVertices& scratch, Parcel& parcel) {
-  ParcelPlacer(target, piece, scratch, parcel).Place();
+PieceExtent SnapPiece(const PlaceTarget& target, const PieceGeometry& piece, PieceVertices& vertices) {
+  return SnapVertices(target.transform, piece.positions, vertices, OutCodes(target.transform));
+}
+
+void PlaceInParcel(const PlaceTarget& target, const PieceGeometry& piece, const PieceVertices& vertices, bool all_plain,
+                   Parcel& parcel) {
+  ParcelPlacer(target, piece, vertices, parcel).Place(all_plain);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -213,10 +218,16 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace frontmost::zbuffer_detail {
 
+FRONTMOST_KERNELS(SnapPiece);
 FRONTMOST_KERNELS(PlaceInParcel);
 
-void place_in_parcel(const PlaceTarget& target, const PieceGeometry& piece, PieceVertices& scratch, Parcel& parcel) {
-  kernel_for(PlaceInParcelKernels, target.isa)(target, piece, scratch, parcel);
+PieceExtent snap_piece(const PlaceTarget& target, const PieceGeometry& piece, PieceVertices& vertices) {
+  return kernel_for(SnapPieceKernels, target.isa)(target, piece, vertices);
+}
+
+void place_in_parcel(const PlaceTarget& target, const PieceGeometry& piece, const PieceVertices& vertices,
+                     bool all_plain, Parcel& parcel) {
+  kernel_for(PlaceInParcelKernels, target.isa)(target, piece, vertices, all_plain, parcel);
 }
 
 }  // namespace frontmost::zbuffer_detail

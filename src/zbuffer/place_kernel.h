@@ -39,6 +39,25 @@ struct PieceVertices {
   }
 };
 
+/// The least and the greatest.
+struct NumberRange {
+  std::uint32_t low, high;
+
+  /// Whether vertices of so many triangles are best read from the one to the other, as in files whose order is not
+  /// random.
+  [[nodiscard]] bool is_dense(std::size_t triangle_count) const { return high - low < 6 * triangle_count; }
+};
+/// Precondition: not empty.
+[[nodiscard]] NumberRange range_of_numbers(std::span<const glm::uvec3> corners, Isa isa);
+
+/// Where the vertices of a piece are.
+struct PieceExtent {
+  bool all_plain = true;       ///< all can be snapped as they are; else the next three mean nothing
+  glm::ivec2 low{0}, high{0};  ///< on the screen
+  std::int32_t nearest = 0;    ///< bits of the greatest key
+  std::int32_t common = -1;    ///< bits that all keys have in common
+};
+
 /// What all pieces of a draw call have in common.
 struct PlaceTarget {
   const ScreenTransform& transform;
@@ -49,13 +68,6 @@ struct PlaceTarget {
 
   PlaceTarget(const ScreenTransform& t, const View& v, Isa i);
 };
-
-/// The least and the greatest.
-struct NumberRange {
-  std::uint32_t low, high;
-};
-/// Precondition: not empty.
-[[nodiscard]] NumberRange range_of_numbers(std::span<const glm::uvec3> corners, Isa isa);
 
 /// Appends what of the triangles may cover a sample, in order. Those that have to be clipped go through
 /// append_clipped().

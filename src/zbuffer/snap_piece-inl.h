@@ -9,6 +9,8 @@
 #define FRONTMOST_ZBUFFER_SNAP_PIECE_INL_H_
 #endif
 
+#include <limits>
+
 #include "hwy/highway.h"
 #include "view/snap-inl.h"
 #include "zbuffer/batch-inl.h"
@@ -38,31 +40,46 @@ struct WorldVertices {
 };
 
 /// `mark(world, homogeneous)` gives the key of those that cannot be snapped as they are: a negative number.
-/// \returns true when there are none of them.
 template <class Mark>
-HWY_INLINE bool SnapVertices(const ScreenTransform& t, std::span<const glm::vec3> positions, PieceVertices& vertices,
-                             const Mark& mark) {
+HWY_INLINE PieceExtent SnapVertices(const ScreenTransform& t, std::span<const glm::vec3> positions,
+                                    PieceVertices& vertices, const Mark& mark) {
   const DF d;
   const DI di;
   vertices.make_room(positions.size() + kMaxLanes);
   const VI centre_x = hn::Set(di, t.centre_x), centre_y = hn::Set(di, t.centre_y);
-  bool all_plain = true;
+  VI low_x = hn::Set(di, std::numeric_limits<std::int32_t>::max()), low_y = low_x;
+  VI high_x = hn::Set(di, std::numeric_limits<std::int32_t>::min()), high_y = high_x;
+  VI nearest = hn::Zero(di), common = hn::Set(di, -1);
+  PieceExtent extent;
   ForTriples(positions, [&](std::size_t i, const float* triples) HWY_ATTR {
     WorldVertices world;
     hn::LoadInterleaved3(d, triples, world.x, world.y, world.z);
     const auto homogeneous = screen::Transform(t, world.x, world.y, world.z);
     const auto snapped = screen::Snap(t, homogeneous);
     const auto plain = screen::IsPlain(t, homogeneous);
-    hn::StoreU(hn::Add(snapped.x, centre_x), di, vertices.x.data() + i);
-    hn::StoreU(hn::Add(snapped.y, centre_y), di, vertices.y.data() + i);
+    const VI x = hn::Add(snapped.x, centre_x), y = hn::Add(snapped.y, centre_y);
+    hn::StoreU(x, di, vertices.x.data() + i);
+    hn::StoreU(y, di, vertices.y.data() + i);
     VF key = snapped.key;
     if (!hn::AllTrue(d, plain)) {
       key = hn::IfThenElse(plain, key, mark(world, homogeneous));
-      all_plain = false;
+      extent.all_plain = false;
     }
     hn::StoreU(key, d, vertices.key.data() + i);
+    low_x = hn::Min(low_x, x);
+    low_y = hn::Min(low_y, y);
+    high_x = hn::Max(high_x, x);
+    high_y = hn::Max(high_y, y);
+    nearest = hn::Max(nearest, hn::BitCast(di, key));
+    common = hn::And(common, hn::BitCast(di, key));
   });
-  return all_plain;
+  extent.low = {hn::GetLane(hn::MinOfLanes(di, low_x)), hn::GetLane(hn::MinOfLanes(di, low_y))};
+  extent.high = {hn::GetLane(hn::MaxOfLanes(di, high_x)), hn::GetLane(hn::MaxOfLanes(di, high_y))};
+  extent.nearest = hn::GetLane(hn::MaxOfLanes(di, nearest));
+  HWY_ALIGN_MAX std::int32_t lanes[kMaxLanes];
+  hn::Store(common, di, lanes);
+  for (std::size_t k = 0; k < hn::Lanes(di); ++k) extent.common &= lanes[k];
+  return extent;
 }
 
 /// One corner of each triangle of a vector.

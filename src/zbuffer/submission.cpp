@@ -12,10 +12,9 @@ constexpr std::size_t kMostItems = std::size_t(1) << 26;  // 256 MiB
 /// triangles have corners, as in files whose order is not random; else each corner by itself, and `own` its number.
 std::span<const glm::vec3> positions_of(const Mesh& mesh, const glm::dmat4& world_from_mesh, const NumberRange& numbers,
                                         PlaceScratch& scratch, PieceGeometry& piece) {
-  const std::size_t corner_count = 3 * piece.corners.size();
   const ToWorld world(world_from_mesh);
   scratch.positions.clear();
-  if (numbers.high - numbers.low < 2 * corner_count) {
+  if (numbers.is_dense(piece.corners.size())) {
     piece.first_position = numbers.low;
     const auto range = std::span(mesh.positions).subspan(numbers.low, std::size_t(numbers.high - numbers.low) + 1);
     if (world.is_identity()) return range;
@@ -85,13 +84,12 @@ std::size_t pieces_at_once(const TileGrid& grid) {
   return std::clamp<std::size_t>(kMostItems / (grid.count() * kPieceTriangles), 1, kMost);
 }
 
-PieceGeometry geometry_of(const Scene& scene, const Piece& piece, Isa isa, PlaceScratch& scratch) {
+PieceGeometry geometry_of(const Scene& scene, const Piece& piece, const NumberRange& numbers, PlaceScratch& scratch) {
   const Instance& instance = scene.instances[piece.instance];
   const Mesh& mesh = scene.meshes[instance.mesh];
   PieceGeometry geometry;
-  geometry.corners = std::span(mesh.triangles).subspan(piece.begin, piece.end - piece.begin);
-  geometry.positions =
-      positions_of(mesh, instance.world_from_mesh, range_of_numbers(geometry.corners, isa), scratch, geometry);
+  geometry.corners = corners_of(scene, piece);
+  geometry.positions = positions_of(mesh, instance.world_from_mesh, numbers, scratch, geometry);
   geometry.is_mirrored = mirrors(instance.world_from_mesh);
   geometry.first_id = piece.first + piece.begin;
   return geometry;
@@ -100,7 +98,8 @@ PieceGeometry geometry_of(const Scene& scene, const Piece& piece, Isa isa, Place
 void place(const Scene& scene, const Piece& piece, const PlaceTarget& target, PlaceScratch& scratch,
            PlacedPiece& placed) {
   placed.triangles.count = 0;
-  place_triangles(target, geometry_of(scene, piece, target.isa, scratch), scratch.vertices, placed.triangles);
+  place_triangles(target, geometry_of(scene, piece, range_of_numbers(corners_of(scene, piece), target.isa), scratch),
+                  scratch.vertices, placed.triangles);
   placed.bin(target.grid);
 }
 

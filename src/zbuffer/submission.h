@@ -40,8 +40,13 @@ struct PlaceScratch {
 /// The pieces of a range, in order, none of more than `most` triangles. `first_primitives`: by instance.
 [[nodiscard]] std::vector<Piece> pieces_of(const Scene& scene, std::span<const PrimitiveId> first_primitives,
                                            const PrimitiveRange& range, std::uint32_t most);
-/// The triangles of a piece in world space.
-[[nodiscard]] PieceGeometry geometry_of(const Scene& scene, const Piece& piece, Isa isa, PlaceScratch& scratch);
+[[nodiscard]] inline std::span<const glm::uvec3> corners_of(const Scene& scene, const Piece& piece) {
+  return std::span(scene.meshes[scene.instances[piece.instance].mesh].triangles)
+      .subspan(piece.begin, piece.end - piece.begin);
+}
+/// The triangles of a piece in world space; `numbers` are the least and the greatest of their corners.
+[[nodiscard]] PieceGeometry geometry_of(const Scene& scene, const Piece& piece, const NumberRange& numbers,
+                                        PlaceScratch& scratch);
 /// How many pieces may be placed at once: their lists stay within 256 MiB even where every triangle fills the image.
 [[nodiscard]] std::size_t pieces_at_once(const TileGrid& grid);
 

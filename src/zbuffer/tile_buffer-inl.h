@@ -191,11 +191,18 @@ class TileBuffer {
     dirty_ = whole ? 0 : ~std::uint64_t(0);
   }
 
-  /// After Clear(): takes up again what WriteOut() left in the planes.
-  void ReadBack() {
+  /// After Clear(): takes up again what WriteOut() left in the planes, and FindFarthest() found.
+  void ReadBack(const float* farthest) {
     for (std::size_t s = 0; s < picture_.samples.size(); ++s)
       for (int y = 0; y < tile_.height; ++y) ReadRow(s, y);
-    dirty_ = ~std::uint64_t(0);
+    std::copy_n(farthest, BlockBounds::count, bounds_.farthest);
+    dirty_ = 0;
+  }
+
+  /// The farthest key of every block; 0 where something is not covered.
+  void FindFarthest(float* farthest) {
+    Refresh();
+    std::copy_n(bounds_.farthest, BlockBounds::count, farthest);
   }
 
   // -- hierarchical depth -------------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 
 #include "frontmost/zbuffer.h"
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <vector>
@@ -10,6 +11,8 @@
 #include "base/float_environment.h"
 #include "base/parallel.h"
 #include "base/pool.h"
+#include "scene/validation.h"
+#include "surfaces/cluster_set.h"
 #include "zbuffer/cutout_pass.h"
 #include "zbuffer/direct_frame.h"
 #include "zbuffer/frame_plan.h"
@@ -100,7 +103,13 @@ Visible zbuffer(const Surfaces& surfaces, const View& view, const Execution& exe
 Visible zbuffer(const Scene& scene, const View& view, const Execution& execution) {
   validate(view);
   const IeeeScope ieee;
-  validate(scene);
+  // Drawing meets every vertex and checks it; only what has holes is looked at before.
+  const bool may_cut = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                   [](const Material& m) { return m.alpha == Material::Alpha::mask; });
+  if (may_cut)
+    validate(scene);
+  else
+    validate_besides_vertices(scene);
   check_transforms(scene);
   return draw_directly(scene, view, execution);
 }

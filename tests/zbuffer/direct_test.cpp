@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 
 #include "frontmost/zbuffer.h"
 #include "support/cutout_scene.h"
@@ -130,20 +131,53 @@ TEST(Direct, NothingAtAll) {
   EXPECT_EQ(expect_same_both_ways(scene_of(Mesh{}), view, 1), 0u);
 }
 
+// What is wrong with a vertex is found while drawing, and said as if it had been looked for before.
 TEST(Direct, BadScenesAreRefusedAsBySurfaces) {
+  const auto reason = [](const auto& act) -> std::string {
+    try {
+      act();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
   Random random(1);
-  const View view = random_view(random, 20, 20);
-  Scene scene = scene_of(random_mesh(Kind::soup, 3, 1));
-  scene.instances[0].world_from_mesh[1][1] = std::numeric_limits<double>::infinity();
-  EXPECT_THROW((void)zbuffer(scene, view), Error);
-  scene = scene_of(random_mesh(Kind::soup, 3, 1));
-  scene.meshes[0].triangles[1].y = 1'000;
-  EXPECT_THROW((void)zbuffer(scene, view), Error);
-  scene.meshes[0].triangles[1].y = 0;
-  EXPECT_NO_THROW((void)zbuffer(scene, view));
-  View none = view;
-  none.width = 0;
-  EXPECT_THROW((void)zbuffer(scene, none), Error);
+  View view = random_view(random, 20, 20);
+  Scene good = scene_of(random_mesh(Kind::shared_grid, 9'000, 1));
+  good.meshes.push_back(random_mesh(Kind::soup, 3, 1));  // not placed
+  std::vector<Scene> bad(6, good);
+  bad[0].instances[0].world_from_mesh[1][1] = std::numeric_limits<double>::infinity();
+  bad[1].meshes[0].triangles[8'000].y = 1'000'000;
+  bad[2].meshes[1].triangles[2].x = 9;
+  bad[3].instances[0].mesh = 2;
+  bad[4].meshes[0].material_ids.push_back(7);
+  bad[5].meshes[0].triangles[4'000].z = no_index;
+  bad[5].materials.emplace_back().alpha = Material::Alpha::mask;
+  for (const Scene& scene : bad) {
+    const std::string expected = reason([&] { const Surfaces surfaces(scene); });
+    EXPECT_NE(expected, "");
+    EXPECT_EQ(expected, reason([&] { (void)zbuffer(scene, view, {.threads = 2}); }));
+  }
+  EXPECT_EQ("", reason([&] { (void)zbuffer(good, view); }));
+  view.width = 0;
+  EXPECT_NE("", reason([&] { (void)zbuffer(good, view); }));
+}
+
+// A wall before a crowd, last in the file: parcels behind it are left out, which nothing must show.
+TEST(Direct, WhatAWallHides) {
+  for (const int holes : {0, 1}) {
+    Scene scene = scene_of(random_mesh(Kind::tiny, 300'000, 9));
+    Mesh wall;
+    add_triangle(wall, {-9, -9, 1.2f}, {9, -9, 1.2f}, {0, holes ? 0.3f : 30.0f, 1.2f});
+    scene.meshes.push_back(wall);
+    scene.instances.push_back({"wall", 1, glm::dmat4(1.0)});
+    View view;
+    view.width = 300;
+    view.height = 200;
+    view.world_from_eye = look_at({0.3, 0.2, 2.5}, {0, 0, 0}, {0, 1, 0});
+    view.projection = make_projection(0.8, 1.5, {0.1, 9});
+    EXPECT_GT(expect_same_both_ways(scene, view, 2), 10'000u);
+  }
 }
 
 }  // namespace
