@@ -8,7 +8,7 @@
 #include <mutex>
 
 #include "abuffer/fragment_lists.h"
-#include "abuffer/options.h"
+#include "abuffer/prepared_frame.h"
 #include "abuffer/tile_parts.h"
 #include "abuffer/visit_tiles.h"
 #include "base/float_environment.h"
@@ -51,12 +51,9 @@ Opacities::Opacities(const Surfaces& surfaces, float opacity, const Execution& e
 FragmentLists abuffer(const Surfaces& surfaces, const View& view, const AbufferOptions& options,
                       const Execution& execution) {
   using namespace abuffer_detail;
-  validate(view);
-  validate(options);
   const IeeeScope ieee;
-  const SamplePattern pattern = sample_pattern(view, options.grid);
-  const FramePlan plan(surfaces, view, execution);
-  const FrameInput frame{plan, pattern, false, execution.isa};
+  const PreparedFrame prepared(surfaces, view, options, execution);
+  const FrameInput frame = prepared.input(execution);
   const Opacities opacities(surfaces, options.opacity, execution);
   std::mutex mutex;
   std::vector<TilePart<Fragment>> parts;
@@ -70,7 +67,7 @@ FragmentLists abuffer(const Surfaces& surfaces, const View& view, const AbufferO
     if (total > max_fragments) throw Error(ErrorCode::limit_exceeded, "abuffer: more than 2^30 fragments");
     parts.push_back(std::move(part));
   });
-  FragmentLists lists{view, pattern.positions(), beginnings(view, parts), {}};
+  FragmentLists lists{view, prepared.pattern.positions(), beginnings(view, parts), {}};
   lists.fragments.resize(total);
   constexpr std::size_t kGrain = 16;
   parallel_for(execution, parts.size(), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -85,12 +82,9 @@ FragmentLists abuffer(const Surfaces& surfaces, const View& view, const AbufferO
 FragmentCounts count_fragments(const Surfaces& surfaces, const View& view, const AbufferOptions& options,
                                const Execution& execution) {
   using namespace abuffer_detail;
-  validate(view);
-  validate(options);
   const IeeeScope ieee;
-  const SamplePattern pattern = sample_pattern(view, options.grid);
-  const FramePlan plan(surfaces, view, execution);
-  const FrameInput frame{plan, pattern, false, execution.isa};
+  const PreparedFrame prepared(surfaces, view, options, execution);
+  const FrameInput frame = prepared.input(execution);
   std::mutex mutex;
   FragmentCounts counts;
   visit_tiles(frame, execution, [&](const TileJob& /*job*/, const TileScratch* scratch) {

@@ -2,7 +2,7 @@
 // The lists of one job as data.
 #pragma once
 
-#include "abuffer/gather_kernel.h"
+#include "abuffer/gather/gather_kernel.h"
 #include "abuffer/options.h"
 
 namespace frontmost::abuffer_detail {

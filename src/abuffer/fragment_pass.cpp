@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "abuffer/fragment_pass.h"
 
-#include "abuffer/composite_kernel.h"
+#include "abuffer/composite/composite_kernel.h"
 #include "abuffer/visit_tiles.h"
 #include "base/float_environment.h"
 
@@ -40,13 +40,12 @@ class TilePicture {
 FragmentPass::FragmentPass(const Surfaces& surfaces, const View& view, const AbufferOptions& options,
                            const Execution& execution)
     : opacity_(options.opacity),
-      pattern_((validate(options), sample_pattern(view, options.grid))),
-      plan_(surfaces, view, execution),
+      prepared_(surfaces, view, options, execution),
       opacities_(surfaces, options.opacity, execution) {}
 
 void FragmentPass::list_primitives(const Note& note, const Execution& execution) const {
   const IeeeScope ieee;
-  const FrameInput frame{plan_, pattern_, false, execution.isa};
+  const FrameInput frame = prepared_.input(execution);
   visit_tiles(frame, execution, [&](const TileJob& /*job*/, TileScratch* scratch) {
     if (scratch) note({scratch->triangles.id.data(), scratch->triangles.count});
   });
@@ -54,7 +53,7 @@ void FragmentPass::list_primitives(const Note& note, const Execution& execution)
 
 void FragmentPass::look(const Look& look, const Execution& execution) const {
   const IeeeScope ieee;
-  const FrameInput frame{plan_, pattern_, false, execution.isa};
+  const FrameInput frame = prepared_.input(execution);
   visit_tiles(frame, execution, [&](const TileJob& job, TileScratch* scratch) {
     if (scratch) look(job.pixels, list_fragments(frame, job, *scratch, opacities_));
   });
@@ -62,7 +61,7 @@ void FragmentPass::look(const Look& look, const Execution& execution) const {
 
 void FragmentPass::paint(const Paint& paint, const Receive& receive, const Execution& execution) const {
   const IeeeScope ieee;
-  const FrameInput frame{plan_, pattern_, false, execution.isa};
+  const FrameInput frame = prepared_.input(execution);
   visit_tiles(frame, execution, [&](const TileJob& job, TileScratch* scratch) {
     if (!scratch) return receive(job.pixels, nullptr);
     const JobLists lists = list_fragments(frame, job, *scratch, opacities_, kNegligible);

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "abuffer/fragment_lists.h"
+#include "abuffer/prepared_frame.h"
 
 namespace frontmost::abuffer_detail {
 
@@ -16,7 +17,7 @@ class FragmentPass {
 
   [[nodiscard]] float opacity() const { return opacity_; }
   /// Positions of the masks' bits in 1/256 pixel.
-  [[nodiscard]] std::vector<glm::ivec2> samples() const { return pattern_.positions(); }
+  [[nodiscard]] std::vector<glm::ivec2> samples() const { return prepared_.pattern.positions(); }
 
   /// The primitives in one part of the picture after another: all that are seen, some hidden ones, some several times.
   /// Quicker than looking at their fragments.
@@ -36,8 +37,7 @@ class FragmentPass {
 
  private:
   float opacity_;
-  SamplePattern pattern_;
-  FramePlan plan_;
+  PreparedFrame prepared_;
   Opacities opacities_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "abuffer/composite_kernel.h"
+#include "abuffer/composite/composite_kernel.h"
 #include "abuffer/options.h"
 #include "abuffer/visit_tiles.h"
 #include "base/float_environment.h"

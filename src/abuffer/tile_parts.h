@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "abuffer/frame_plan.h"
+#include "abuffer/plan/frame_plan.h"
 
 namespace frontmost::abuffer_detail {
 

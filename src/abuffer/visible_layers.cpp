@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "abuffer/options.h"
+#include "abuffer/prepared_frame.h"
 #include "abuffer/visit_tiles.h"
 #include "base/float_environment.h"
 
@@ -56,20 +56,17 @@ class SampleLists {
 
 std::vector<Visible> visible_layers(const Surfaces& surfaces, const View& view, int count,
                                     const AbufferOptions& options, const Execution& execution) {
-  validate(view);
-  validate(options);
   if (count < 1 || count > 1024) throw Error(ErrorCode::bad_argument, "abuffer: layers: must be 1 to 1024");
   const IeeeScope ieee;
-  const SamplePattern pattern = sample_pattern(view, 0);
-  const FramePlan plan(surfaces, view, execution);
-  const FrameInput frame{plan, pattern, false, execution.isa};
+  const PreparedFrame prepared(surfaces, view, {0, options.opacity}, execution);
+  const FrameInput frame = prepared.input(execution);
   const Opacities opacities(surfaces, options.opacity, execution);
   std::vector<Visible> layers;
   for (int k = 0; k < count; ++k) layers.push_back(nothing_visible(view));
   visit_tiles(frame, execution, [&](const TileJob& job, TileScratch* scratch) {
     if (!scratch) return;
     SampleLists lists(frame, *scratch, layers.size());
-    for (std::size_t sample = 0; sample < std::size_t(pattern.count); ++sample)
+    for (std::size_t sample = 0; sample < std::size_t(prepared.pattern.count); ++sample)
       for (int y = 0; y < job.pixels.height; ++y)
         for (int x = 0; x < job.pixels.width; ++x) {
           const std::size_t at = layers[0].index(job.pixels.x + x, job.pixels.y + y, int(sample));

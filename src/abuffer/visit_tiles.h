@@ -4,7 +4,7 @@
 
 #include <atomic>
 
-#include "abuffer/cut_fragments.h"
+#include "abuffer/gather/cut_fragments.h"
 #include "base/parallel.h"
 #include "base/pool.h"
 

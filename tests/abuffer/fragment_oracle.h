@@ -14,30 +14,10 @@ namespace frontmost::test {
 inline std::vector<OracleTriangle> screen_triangles(const Surfaces& surfaces, const View& view) {
   const ScreenTransform transform(view);
   std::vector<OracleTriangle> triangles;
-  for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
-    std::array<glm::vec3, 3> world = surfaces.corners(id);
-    if (surfaces.is_mirrored(surfaces.source(id).instance)) std::swap(world[1], world[2]);
-    bool finite = true;
-    for (const glm::vec3& p : world) finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-    if (!finite) continue;
-    const ClippedPolygon polygon = clip_triangle(transform, world);
-    for (std::size_t k = 2; k < std::size_t(polygon.count); ++k) {
-      OracleTriangle t{};
-      const ScreenVertex corners[3] = {polygon.corners[0], polygon.corners[k - 1], polygon.corners[k]};
-      for (int v = 0; v < 3; ++v) {
-        t.x[v] = corners[v].x + transform.centre_x;
-        t.y[v] = corners[v].y + transform.centre_y;
-        t.key[v] = corners[v].key;
-      }
-      t.id = id;
-      const bool front = oracle_area(t) < 0;
-      if (oracle_area(t) == 0 || view.culling == Culling::both || (view.culling == Culling::back && !front) ||
-          (view.culling == Culling::front && front))
-        continue;
-      if (front) std::swap(t.x[1], t.x[2]), std::swap(t.y[1], t.y[2]), std::swap(t.key[1], t.key[2]);
-      triangles.push_back(t);
-    }
-  }
+  for_each_primitive(surfaces, 0, no_primitive, [&](PrimitiveId id, const std::array<glm::vec3, 3>& world) {
+    for_each_triangle(transform, view.culling, clip_triangle(transform, world), id,
+                      [&](const OracleTriangle& t) { triangles.push_back(t); });
+  });
   return triangles;
 }
 

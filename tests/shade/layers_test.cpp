@@ -35,23 +35,10 @@ const Channel& channel(const DeepImage& image, std::string_view name) {
   throw std::out_of_range(std::string(name));
 }
 
-/// A see-through red square before a larger opaque blue one.
-Scene two_squares(float opacity) {
-  Material red = colored({1, 0, 0, opacity});
-  red.alpha = Material::Alpha::blend;
-  Scene scene = scene_of(square(), red);
-  scene.materials.push_back(colored({0, 0, 1, 1}));
-  scene.meshes.push_back(square());
-  scene.meshes[1].material_ids = {1};
-  scene.instances.push_back({"behind", 1, glm::dmat4(1.5)});
-  scene.instances[1].world_from_mesh[3] = {0, 0, -1, 1};
-  return scene;
-}
-
 const ShadeOptions flat_over_nothing{.shading = Shading::flat, .background = std::nullopt};
 
 TEST(DeepImage, HoldsEveryFragmentThatShows) {
-  const Scene scene = two_squares(0.25f);
+  const Scene scene = layered_scene(Material::Alpha::blend, {1, 0, 0, 0.25f});
   const Surfaces surfaces(scene);
   const Visible visible = zbuffer(surfaces, front_view(64, 4));
   const DeepImage image = shade_deep(surfaces, visible, flat_over_nothing);
@@ -134,7 +121,7 @@ TEST(DeepImage, ShownPartsAreThoseOfEverySubSample) {
 }
 
 TEST(DeepImage, IsTheSameForAnyThreads) {
-  const Scene scene = two_squares(0.5f);
+  const Scene scene = layered_scene(Material::Alpha::blend, {1, 0, 0, 0.5f});
   const Surfaces surfaces(scene);
   const Visible visible = zbuffer(surfaces, front_view(200, 4));
   Execution one;
@@ -143,7 +130,7 @@ TEST(DeepImage, IsTheSameForAnyThreads) {
 }
 
 TEST(DeepImage, RefusesWhatItCannotHold) {
-  const Scene scene = two_squares(0.5f);
+  const Scene scene = layered_scene(Material::Alpha::blend, {1, 0, 0, 0.5f});
   const Surfaces surfaces(scene);
   const Visible visible = zbuffer(surfaces, front_view());
   EXPECT_THROW((void)shade_deep(surfaces, visible, {.shading = Shading::depth}), Error);
@@ -155,7 +142,7 @@ TEST(DeepImage, RefusesWhatItCannotHold) {
 }
 
 TEST(SeeThrough, NeverShowsOneLayerOverTheBackground) {
-  const Scene scene = two_squares(0.25f);
+  const Scene scene = layered_scene(Material::Alpha::blend, {1, 0, 0, 0.25f});
   const Surfaces surfaces(scene);
   ShadeOptions options = flat_over_nothing;
   options.see_through = SeeThrough::never;
@@ -169,7 +156,7 @@ TEST(SeeThrough, NeverShowsOneLayerOverTheBackground) {
 }
 
 TEST(SeeThrough, LayersLaidOverEachOtherAreThePicture) {
-  const Scene scene = two_squares(0.25f);
+  const Scene scene = layered_scene(Material::Alpha::blend, {1, 0, 0, 0.25f});
   const Surfaces surfaces(scene);
   const View view = front_view();  // one sample: every pixel has one order
   const std::vector<Visible> layers = visible_layers(surfaces, view, 2);

@@ -249,7 +249,8 @@ TEST(Shade, SmoothAndSlantedSurfacesDoNotShadowThemselves) {
   for (const double angle : {0.2, 0.7, 1.2, 1.4}) {
     tilted.instances[0].world_from_mesh = glm::dmat4({std::cos(angle), 0, std::sin(angle), 0}, {0, 1, 0, 0},
                                                      {-std::sin(angle), 0, std::cos(angle), 0}, {0, 0, 0, 1});
-    const Image lit = picture(tilted, front_view(), {.shadows = Shadows::off}), shadowed = picture(tilted, front_view());
+    const Image lit = picture(tilted, front_view(), {.shadows = Shadows::off}),
+                shadowed = picture(tilted, front_view());
     for (int y = 0; y < 64; ++y)
       for (int x = 0; x < 64; ++x)
         ASSERT_LT(glm::length(color_at(lit, x, y) - color_at(shadowed, x, y)), 1e-5f)
@@ -326,19 +327,6 @@ TEST(Shade, MaskedTexelsAreHolesAndBlendedOnesLetTheBackgroundThrough) {
   EXPECT_EQ(alpha_with(Material::Alpha::mask), glm::vec4(0));
   // Alpha is what does not shine through: 1 - (1 - 0.4), in floats.
   EXPECT_EQ(alpha_with(Material::Alpha::blend), glm::vec4(0.4f, 0, 0, 1.0f - (1.0f - 0.4f)));
-}
-
-/// A see-through square before a larger opaque blue one.
-Scene layered_scene(Material::Alpha alpha, const glm::vec4& front) {
-  Material see_through = colored(front);
-  see_through.alpha = alpha;
-  Scene scene = scene_of(square(), see_through);
-  scene.materials.push_back(colored({0, 0, 1, 1}));
-  scene.meshes.push_back(square());
-  scene.meshes[1].material_ids = {1};
-  scene.instances.push_back({"behind", 1, glm::dmat4(1.5)});
-  scene.instances[1].world_from_mesh[3] = {0, 0, -1, 1};
-  return scene;
 }
 
 TEST(Shade, WhatStandsBehindSeeThroughSurfacesIsShown) {

@@ -36,6 +36,19 @@ inline Scene scene_of(Mesh mesh, std::optional<Material> material = std::nullopt
   return scene;
 }
 
+/// A see-through square before a larger opaque blue one.
+inline Scene layered_scene(Material::Alpha alpha, const glm::vec4& front) {
+  Material see_through = colored(front);
+  see_through.alpha = alpha;
+  Scene scene = scene_of(square(), see_through);
+  scene.materials.push_back(colored({0, 0, 1, 1}));
+  scene.meshes.push_back(square());
+  scene.meshes[1].material_ids = {1};
+  scene.instances.push_back({"behind", 1, glm::dmat4(1.5)});
+  scene.instances[1].world_from_mesh[3] = {0, 0, -1, 1};
+  return scene;
+}
+
 /// Looks at the origin from (0, 0, 10); the picture is 4 x 4 units in parallel projection.
 inline View front_view(int size = 64, int samples = 1) {
   View view;

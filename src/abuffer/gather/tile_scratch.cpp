@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "abuffer/tile_scratch.h"
+#include "abuffer/gather/tile_scratch.h"
 
 #include <algorithm>
 

@@ -18,7 +18,7 @@
 
 #include <algorithm>
 
-#include "abuffer/gather_kernel.h"
+#include "abuffer/gather/gather_kernel.h"
 #include "base/compactor-inl.h"
 #include "base/lanes-inl.h"
 #include "base/prefetch.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "abuffer/cut_fragments.h"
+#include "abuffer/gather/cut_fragments.h"
 
 #include <bit>
 #include <optional>

@@ -2,7 +2,7 @@
 // Holes in fragments: sub-samples that look through are taken out of their masks.
 #pragma once
 
-#include "abuffer/gather_kernel.h"
+#include "abuffer/gather/gather_kernel.h"
 #include "view/ray_volumes.h"
 
 namespace frontmost::abuffer_detail {

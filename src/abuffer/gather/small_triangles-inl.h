@@ -10,7 +10,7 @@
 #define FRONTMOST_ABUFFER_SMALL_TRIANGLES_INL_H_
 #endif
 
-#include "abuffer/fragment_sink-inl.h"
+#include "abuffer/gather/fragment_sink-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::abuffer_detail {

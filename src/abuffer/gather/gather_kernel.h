@@ -2,7 +2,7 @@
 // Gathering the fragments of one tile.
 #pragma once
 
-#include "abuffer/tile_scratch.h"
+#include "abuffer/gather/tile_scratch.h"
 
 namespace frontmost::abuffer_detail {
 

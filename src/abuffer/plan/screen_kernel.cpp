@@ -1,29 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// The vertex formula of view/screen_transform.h, many vertices at a time.
+// All vertices of clusters put on the screen, and what their clusters cover there.
 
-#include "abuffer/screen_clusters.h"
+#include "abuffer/plan/screen_clusters.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "abuffer/screen_kernel.cpp"
+#define HWY_TARGET_INCLUDE "abuffer/plan/screen_kernel.cpp"
 #include "base/isa.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
+// After Highway: a block of its own.
+#include "view/snap-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::abuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+namespace screen = view_detail::HWY_NAMESPACE;
 
-using DF = hn::ScalableTag<float>;
-using DI = hn::RebindToSigned<DF>;
-using VF = hn::Vec<DF>;
+using DF = screen::SnapF;
+using DI = screen::SnapI;
 using VI = hn::Vec<DI>;
-
-HWY_INLINE VF Row(const std::array<float, 3>& row, float offset, VF dx, VF dy, VF dz) {
-  const DF d;
-  const VF x = hn::Mul(hn::Set(d, row[0]), dx), y = hn::Mul(hn::Set(d, row[1]), dy);
-  return hn::Add(hn::Add(hn::Add(x, y), hn::Mul(hn::Set(d, row[2]), dz)), hn::Set(d, offset));
-}
 
 class Transformer {
  public:
@@ -58,34 +54,19 @@ class Transformer {
   }
 
  private:
+  /// \returns which of a vector of vertices are snapped.
   HWY_INLINE hn::Mask<DI> Snap(std::size_t v) {
     const DF d;
     const DI di;
-    const VF dx = hn::Sub(hn::Load(d, set_.x.data() + v), hn::Set(d, t_.eye[0]));
-    const VF dy = hn::Sub(hn::Load(d, set_.y.data() + v), hn::Set(d, t_.eye[1]));
-    const VF dz = hn::Sub(hn::Load(d, set_.z.data() + v), hn::Set(d, t_.eye[2]));
-    const VF x = Row(t_.x_row, t_.x_offset, dx, dy, dz), y = Row(t_.y_row, t_.y_offset, dx, dy, dz);
-    const VF depth = Row(t_.d_row, t_.d_offset, dx, dy, dz);
-    const VF w = t_.orthographic ? hn::Set(d, 1.0f) : depth;
-    const VF reach = hn::Min(hn::Mul(hn::Set(d, float(kGuardBand)), w), hn::Set(d, std::numeric_limits<float>::max()));
-    // Written so that NaN is not plain.
-    auto plain = hn::And(hn::Ge(depth, hn::Set(d, t_.near)), hn::Le(depth, hn::Set(d, t_.far)));
-    plain = hn::And(plain, hn::And(hn::Le(hn::Abs(x), reach), hn::Le(hn::Abs(y), reach)));
-
-    VF sx = x, sy = y, key;
-    if (t_.orthographic) {
-      key = hn::Mul(hn::Sub(hn::Set(d, t_.far), depth), hn::Set(d, t_.inverse_range));
-      key = hn::Max(key, hn::Zero(d));
-    } else {
-      const VF inverse = hn::Div(hn::Set(d, 1.0f), depth);
-      sx = hn::Mul(x, inverse);
-      sy = hn::Mul(y, inverse);
-      key = hn::Mul(hn::Set(d, t_.near), inverse);
-    }
-    hn::Store(hn::IfThenElseZero(plain, hn::Min(key, hn::Set(d, 1.0f))), d, screen_.key.data() + v);
-    hn::Store(hn::NearestInt(hn::IfThenElseZero(plain, sx)), di, screen_.x.data() + v);
-    hn::Store(hn::NearestInt(hn::IfThenElseZero(plain, sy)), di, screen_.y.data() + v);
-    return hn::RebindMask(di, plain);
+    const screen::HomogeneousVertices vertices = screen::Transform(
+        t_, hn::Load(d, set_.x.data() + v), hn::Load(d, set_.y.data() + v), hn::Load(d, set_.z.data() + v));
+    const auto plain = screen::IsPlain(t_, vertices);
+    const auto is_snapped = hn::RebindMask(di, plain);
+    const screen::ScreenVertices snapped = screen::Snap(t_, vertices);
+    hn::Store(hn::IfThenElseZero(plain, snapped.key), d, screen_.key.data() + v);
+    hn::Store(hn::IfThenElseZero(is_snapped, snapped.x), di, screen_.x.data() + v);
+    hn::Store(hn::IfThenElseZero(is_snapped, snapped.y), di, screen_.y.data() + v);
+    return is_snapped;
   }
 
   const ClusterSet& set_;

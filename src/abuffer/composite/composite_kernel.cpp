@@ -6,19 +6,19 @@
 // The sixteen pixels of a group are composited at once. Those in which fragments change places are then taken again one
 // by one.
 
-#include "abuffer/composite_kernel.h"
+#include "abuffer/composite/composite_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "abuffer/composite_kernel.cpp"
+#define HWY_TARGET_INCLUDE "abuffer/composite/composite_kernel.cpp"
 #include "base/isa.h"
 #include "hwy/cache_control.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
 // After Highway: a block of its own.
-#include "abuffer/conflicts-inl.h"
-#include "abuffer/fragment_sink-inl.h"
-#include "abuffer/group_composite-inl.h"
-#include "abuffer/pixel_composite-inl.h"
+#include "abuffer/composite/conflicts-inl.h"
+#include "abuffer/composite/group_composite-inl.h"
+#include "abuffer/composite/pixel_composite-inl.h"
+#include "abuffer/gather/fragment_sink-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::abuffer_detail {

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fragments of one tile: rasterised, counted and appended in one go, then placed into lists and sorted.
 
-#include "abuffer/gather_kernel.h"
+#include "abuffer/gather/gather_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "abuffer/gather_kernel.cpp"
+#define HWY_TARGET_INCLUDE "abuffer/gather/gather_kernel.cpp"
 #include "base/isa.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
 // After Highway: a block of its own.
-#include "abuffer/fragment_sink-inl.h"
-#include "abuffer/large_triangles-inl.h"
-#include "abuffer/list_sort-inl.h"
-#include "abuffer/small_triangles-inl.h"
+#include "abuffer/gather/fragment_sink-inl.h"
+#include "abuffer/gather/large_triangles-inl.h"
+#include "abuffer/gather/list_sort-inl.h"
+#include "abuffer/gather/small_triangles-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::abuffer_detail {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "abuffer/sample_pattern.h"
-#include "abuffer/screen_clusters.h"
+#include "abuffer/plan/sample_pattern.h"
+#include "abuffer/plan/screen_clusters.h"
 
 namespace frontmost::abuffer_detail {
 

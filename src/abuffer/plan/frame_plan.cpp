@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "abuffer/frame_plan.h"
+#include "abuffer/plan/frame_plan.h"
 
 #include <algorithm>
 

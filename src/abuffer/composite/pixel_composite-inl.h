@@ -12,8 +12,8 @@
 #define FRONTMOST_ABUFFER_PIXEL_COMPOSITE_INL_H_
 #endif
 
-#include "abuffer/composite_kernel.h"
-#include "abuffer/fragment_sink-inl.h"
+#include "abuffer/composite/composite_kernel.h"
+#include "abuffer/gather/fragment_sink-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::abuffer_detail {

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "abuffer/frame_plan.h"
+#include "abuffer/plan/frame_plan.h"
 
 namespace frontmost::abuffer_detail {
 

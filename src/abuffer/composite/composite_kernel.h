@@ -2,7 +2,7 @@
 // Colours of one tile's fragments, laid over each other in the order of depth.
 #pragma once
 
-#include "abuffer/gather_kernel.h"
+#include "abuffer/gather/gather_kernel.h"
 
 namespace frontmost::abuffer_detail {
 

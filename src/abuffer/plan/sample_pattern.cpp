@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "abuffer/sample_pattern.h"
+#include "abuffer/plan/sample_pattern.h"
 
 #include <algorithm>
 #include <string>
