@@ -27,6 +27,7 @@ struct LineOptions {
   bool counts_hidden = false;
   /// Which kinds are found. Without intersections a third to a half of the time is saved.
   bool boundaries = true, silhouettes = true, borders = true, creases = true, intersections = true;
+  bool outlines = false;  ///< DrawnPart::is_outline is found
 };
 
 /// An edge of the scene, between two points of world space.
@@ -43,8 +44,9 @@ struct DrawnPart {
   double begin = 0, end = 1;
   glm::dvec2 from{0}, to{0};    ///< in pixels of the view: x right, y down, the first pixel's centre at (0.5, 0.5)
   std::uint32_t hidden_by = 0;  ///< surfaces in front of it; 0: seen. Without LineOptions::counts_hidden 0 or 1
-  /// A silhouette or boundary that is seen, and nothing of the scene lies beside it on its outer side: the rest of the
-  /// silhouettes are contours within the picture of the scene.
+  /// It is seen, and beside it nothing is: its own triangles lie on one side of it (they are silhouettes or
+  /// boundaries), and on the other there is no triangle of the scene, before it or behind. The other silhouettes are
+  /// contours within the scene's picture.
   bool is_outline = false;
 };
 

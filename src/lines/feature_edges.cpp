@@ -88,6 +88,17 @@ class Classifier {
     return std::nullopt;
   }
 
+  /// The other side than that of all triangles at the edge; 0 where they are on both.
+  [[nodiscard]] std::int8_t outer_side(std::span<const Side> sides) const {
+    int inner = 0;
+    for (const Side& side : sides) {
+      const int own = side_of(side);
+      if (own * inner < 0) return 0;
+      if (own != 0) inner = own;
+    }
+    return std::int8_t(-inner);
+  }
+
  private:
   /// Of the eye's plane through the edge: where the triangle lies, whichever way it is wound.
   [[nodiscard]] int side_of(const Side& side) const { return facing_[side.triangle] * (side.is_forward ? 1 : -1); }
@@ -131,7 +142,8 @@ void add_features(std::span<Side> sides, std::uint32_t v, const Classifier& clas
     const auto last = std::unique(begin, end, [](const Side& a, const Side& b) { return a.opposite == b.opposite; });
     const std::span<const Side> edge(begin, last);
     if (const std::optional<EdgeKind> kind = classifier.kind_of(edge))
-      features.push_back({v, begin->upper, edge[0].triangle, edge.size() > 1 ? edge[1].triangle : no_index, *kind});
+      features.push_back({v, begin->upper, edge[0].triangle, edge.size() > 1 ? edge[1].triangle : no_index, *kind,
+                          classifier.outer_side(edge)});
     begin = end;
   }
 }

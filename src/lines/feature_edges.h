@@ -14,6 +14,7 @@ namespace frontmost::lines_detail {
 struct FeatureEdge {
   std::uint32_t from, to, left, right;
   EdgeKind kind;
+  std::int8_t outer;  ///< as SightedEdge::outer
 };
 
 /// A mesh, and Sight::facing() of its triangles.

@@ -40,8 +40,10 @@ Interval EdgeCutter::within_view() const {
 
 glm::dvec2 EdgeCutter::on_screen(double t) const {
   // From the nearer end, so that both ends are met.
-  const glm::dvec3 p = t <= 0.5 ? from_eye_ + (to_eye_ - from_eye_) * t : to_eye_ + (from_eye_ - to_eye_) * (1 - t);
-  return glm::dvec2(o_.sight.to_screen(p));
+  glm::dvec3 p = t <= 0.5 ? from_eye_ + (to_eye_ - from_eye_) * t : to_eye_ + (from_eye_ - to_eye_) * (1 - t);
+  // It is within the view; rounding may say otherwise of edges that are very much longer than their part in it.
+  p.z = std::max(p.z, o_.sight.near());
+  return glm::clamp(glm::dvec2(o_.sight.to_screen(p)), glm::dvec2(0), glm::dvec2(o_.view.width, o_.view.height));
 }
 
 /// What of the edge may lie in a cell: rather more.
@@ -72,7 +74,7 @@ bool EdgeCutter::pass(const OccluderGrid::Visit& cell) {
     const std::uint64_t bits = o_.kernels.overlapping(boxes, std::min(kMostAtOnce, cell.last - first), part);
     if (!ask(bits, first, cell)) break;
   }
-  return !o_.counts && is_hidden(shown_);
+  return !counts_ && is_hidden(shown_);
 }
 
 /// \returns false when nothing is left to hide in this cell.
@@ -91,23 +93,23 @@ bool EdgeCutter::ask(std::uint64_t bits, std::size_t first, const OccluderGrid::
 /// \returns true when more is hidden than before, and it matters.
 bool EdgeCutter::flush() {
   HiddenBatch found;
-  o_.kernels.hide(batch_, edge_, o_.sight, found);
+  (is_for_cover_ ? o_.kernels.cover : o_.kernels.hide)(batch_, edge_, o_.sight, found);
   for (std::uint32_t bits = found.hides | found.open; bits != 0; bits &= bits - 1) {
     const auto i = std::size_t(std::countr_zero(bits));
     const Occluder& occluder = *batch_.occluders[i];
     if ((found.open >> i & 1) || occluder.is_near || edge_.slack > 0)
-      hide(hidden_by(occluder, edge_, o_.sight), occluder.triangle);
+      hide((is_for_cover_ ? covered_by : hidden_by)(occluder, edge_, o_.sight), occluder.triangle);
     else
       hide({found.begin[i], found.end[i]}, occluder.triangle);
   }
   batch_.count = 0;
-  return !o_.counts && (found.hides | found.open) != 0;
+  return !counts_ && (found.hides | found.open) != 0;
 }
 
 void EdgeCutter::hide(const Interval& interval, std::uint32_t triangle) {
   Interval in{std::max(interval.begin, shown_.begin), std::min(interval.end, shown_.end)};
   if (!(in.begin < in.end)) return;
-  if (o_.counts) {
+  if (counts_) {
     hidden_.push_back({in, triangle});
     return;
   }
@@ -152,7 +154,7 @@ void EdgeCutter::emit(std::uint32_t number, std::vector<DrawnPart>& parts) {
   int depth = 0;
   for (const auto& [t, change] : changes_) {
     if (t > begin) {
-      const auto hidden_by = std::uint32_t(o_.counts ? depth : std::min(depth, 1));
+      const auto hidden_by = std::uint32_t(counts_ ? depth : std::min(depth, 1));
       if (parts.size() > first && parts.back().hidden_by == hidden_by)
         parts.back().end = t;
       else
@@ -173,20 +175,61 @@ void EdgeCutter::cut(const SightedEdge& edge, std::uint32_t number, std::vector<
   to_eye_ = o_.sight.in_eye(edge.to);
   edge_.from_distance = from_eye_.z;
   edge_.to_distance = to_eye_.z;
-  shown_ = within_view();
-  if (!(shown_.begin < shown_.end)) return;
-  const glm::dvec2 a = on_screen(shown_.begin), b = on_screen(shown_.end);
+  const Interval shown = within_view();
+  if (!(shown.begin < shown.end)) return;
+  search(shown, false);
+  if (counts_) drop_doubles();
+  const std::size_t first = parts.size();
+  emit(number, parts);
+  if (o_.outlines && edge.outer != 0) split_outline(first, parts);
+}
+
+/// Fills `hidden_` for what of the edge lies in `span`.
+void EdgeCutter::search(const Interval& span, bool for_cover) {
+  shown_ = span;
+  is_for_cover_ = for_cover;
+  counts_ = o_.counts && !for_cover;
+  const glm::dvec2 a = on_screen(span.begin), b = on_screen(span.end);
   begin_ = a * o_.grid.scale();
   end_ = b * o_.grid.scale();
   const double farthest = std::max(from_eye_.z, to_eye_.z);
-  farthest_ = wide_high(farthest);
+  farthest_ = for_cover ? std::numeric_limits<float>::infinity() : wide_high(farthest);
   hidden_.clear();
   asked_.fill(nullptr);
   batch_.count = 0;
   o_.grid.visit_cells(a, b, [&](const OccluderGrid::Visit& cell) { return !pass(cell); });
   if (batch_.count > 0) flush();
-  if (o_.counts) drop_doubles();
-  emit(number, parts);
+}
+
+/// Cuts the seen parts from `first` on where what lies beside them begins and ends.
+void EdgeCutter::split_outline(std::size_t first, std::vector<DrawnPart>& parts) {
+  split_.clear();
+  for (std::size_t i = first; i < parts.size(); ++i) {
+    DrawnPart part = parts[i];
+    if (part.hidden_by == 0) {
+      search({part.begin, part.end}, true);
+      const auto cut_at = [&](double t, bool is_outline) {
+        if (!(part.begin < t)) return;
+        DrawnPart piece = part;
+        piece.is_outline = is_outline;
+        piece.end = t;
+        if (t < part.end) piece.to = on_screen(t);
+        part.begin = t;
+        part.from = piece.to;
+        split_.push_back(piece);
+      };
+      const double end = part.end;
+      for (const Hidden& covered : hidden_) {
+        cut_at(covered.interval.begin, true);
+        cut_at(covered.interval.end, false);
+      }
+      cut_at(end, true);
+    } else {
+      split_.push_back(part);
+    }
+  }
+  parts.resize(first);
+  parts.insert(parts.end(), split_.begin(), split_.end());
 }
 
 }  // namespace frontmost::lines_detail

@@ -17,6 +17,7 @@ struct Occlusion {
   const OccluderGrid& grid;
   const ShadowKernels kernels;
   const bool counts;
+  const bool outlines;
 };
 
 /// Cuts one edge after another. Not for several threads at once.
@@ -41,17 +42,22 @@ class EdgeCutter {
   void hide(const Interval& interval, std::uint32_t triangle);
   [[nodiscard]] bool is_hidden(const Interval& part) const;
   void drop_doubles();
+  void search(const Interval& span, bool for_cover);
+  void split_outline(std::size_t first, std::vector<DrawnPart>& parts);
   void emit(std::uint32_t number, std::vector<DrawnPart>& parts);
 
   const Occlusion o_;
   SightedEdge edge_;
   glm::dvec3 from_eye_{0}, to_eye_{0};
-  Interval shown_;                ///< within the view
+  Interval shown_;             ///< what is searched: at first all within the view
+  bool is_for_cover_ = false;  ///< what covers the outer side is searched, instead of what hides
+  bool counts_ = false;
   glm::dvec2 begin_{0}, end_{0};  ///< of that, in cells
   float farthest_ = 0;
   OccluderBatch batch_;
   std::vector<Hidden> hidden_;  ///< without counts united, in order
   std::vector<std::pair<double, int>> changes_;
+  std::vector<DrawnPart> split_;
   /// By the low bits of occluders' addresses: which were asked last, so that the next cell need not.
   std::array<const Occluder*, 64> asked_{};
 };

@@ -50,7 +50,13 @@ class Candidates {
   [[nodiscard]] SightedEdge sighted(std::size_t i) const {
     if (i < features_.size()) {
       const FeatureEdge& f = features_[i];
-      return {mesh_.positions[f.from], mesh_.positions[f.to], {f.from, f.from}, {f.to, f.to}};
+      return {mesh_.positions[f.from],
+              mesh_.positions[f.to],
+              {f.from, f.from},
+              {f.to, f.to},
+              {f.left, f.right},
+              0,
+              f.outer};
     }
     const Crossing& c = crossings_[i - features_.size()];
     const glm::dvec3 size = glm::max(glm::abs(c.from.place), glm::abs(c.to.place));
@@ -109,8 +115,9 @@ Drawing lines(const Surfaces& surfaces, const View& view, const LineOptions& opt
   drawing.view = view;
   drawing.edges.reserve(candidates.count());
   for (std::size_t i = 0; i < candidates.count(); ++i) drawing.edges.push_back(candidates.drawn(i));
-  drawing.parts =
-      cut_all(candidates, {mesh, sight, view, grid, shadow_kernels(execution.isa), options.counts_hidden}, execution);
+  drawing.parts = cut_all(
+      candidates, {mesh, sight, view, grid, shadow_kernels(execution.isa), options.counts_hidden, options.outlines},
+      execution);
   return drawing;
 }
 

@@ -28,6 +28,7 @@ struct SightedEdge {
   std::array<std::uint32_t, 2> own{no_index, no_index};  ///< triangles that it lies within
   /// How far the rounding of ends that are no vertices may have moved them, by axis; 0: both are vertices.
   double slack = 0;
+  int outer = 0;  ///< the side, as Sight's turns, on which none of the edge's own triangles are seen; 0: neither
   double from_distance = 0, to_distance = 0;  ///< planar
 };
 
@@ -43,5 +44,9 @@ struct Interval {
 /// plane (within it, nothing is hidden). An end that is no vertex counts as within every plane that its rounding leaves
 /// open.
 [[nodiscard]] Interval hidden_by(const Occluder& occluder, const SightedEdge& edge, const Sight& sight);
+
+/// Where `occluder` is seen just beside the edge, on its outer side, before it or behind. An edge of the occluder that
+/// is seen exactly along this one has it there if the occluder lies on that side.
+[[nodiscard]] Interval covered_by(const Occluder& occluder, const SightedEdge& edge, const Sight& sight);
 
 }  // namespace frontmost::lines_detail

@@ -32,7 +32,8 @@ class OccluderGrid {
     const glm::dvec2 a = from * scale_, b = to * scale_;
     const glm::dvec2& top = a.y < b.y ? a : b;
     const glm::dvec2& bottom = a.y < b.y ? b : a;
-    const double slope = bottom.y > top.y ? (bottom.x - top.x) / (bottom.y - top.y) : 0;
+    // Nearly level ones lie in one row, or in both that they touch, from end to end.
+    const double slope = bottom.y - top.y > 1e-9 ? (bottom.x - top.x) / (bottom.y - top.y) : 0;
     const int last_row = row(bottom.y + kPad);
     for (int y = row(top.y - kPad); y <= last_row; ++y) {
       const double low_y = std::max(y - kPad, top.y), high_y = std::min(y + 1 + kPad, bottom.y);

@@ -79,13 +79,15 @@ struct Rest {
   V begin, end;
   M is_gone, is_open;
 
-  /// As where_positive().
-  template <bool is_strict>
+  /// As where_positive(). What lies along a plane from end to end is gone, kept, or left open.
+  enum class Along { gone, kept, open };
+  template <Along along>
   HWY_INLINE void Keep(const Values& a, const Values& b) {
     const M above_a = hn::Or(a.is_positive, a.is_zero), above_b = hn::Or(b.is_positive, b.is_zero);
     const M below = hn::And(hn::Or(a.is_negative, a.is_zero), hn::Or(b.is_negative, b.is_zero));
     const M on = hn::And(a.is_zero, b.is_zero);
-    is_gone = hn::Or(is_gone, is_strict ? below : hn::AndNot(on, below));
+    is_gone = hn::Or(is_gone, along == Along::gone ? below : hn::AndNot(on, below));
+    if (along == Along::open) is_open = hn::Or(is_open, on);
     const M known = hn::And(hn::Or(above_a, a.is_negative), hn::Or(above_b, b.is_negative));
     is_open = hn::Or(is_open, hn::Not(known));
     const M falls = hn::And(a.is_positive, b.is_negative), rises = hn::And(a.is_negative, b.is_positive);
@@ -101,7 +103,8 @@ struct Corner {
   M is_from, is_to;  // the edge's ends
 };
 
-void HideBatch(const OccluderBatch& batch, const SightedEdge& edge, const Sight& sight, HiddenBatch& hidden) {
+template <bool needs_depth>
+HWY_INLINE void Ask(const OccluderBatch& batch, const SightedEdge& edge, const Sight& sight, HiddenBatch& hidden) {
   const D d;
   // What is known of ends that are no vertices is left to hidden_by().
   const bool has_vertices = edge.slack == 0;
@@ -120,18 +123,21 @@ void HideBatch(const OccluderBatch& batch, const SightedEdge& edge, const Sight&
     const V turn = hn::Load(d, batch.turn + i), against = hn::Neg(turn);
     const M none = hn::FirstN(d, 0);
     Rest rest{hn::Zero(d), hn::Set(d, 1.0), none, none};
-    const Normals face(Minus(corner[1].place, corner[0].place), Minus(corner[2].place, corner[0].place));
-    const Vector3 from_0 = Minus(from, corner[0].place), to_0 = Minus(to, corner[0].place);
-    const auto any = [](M a, M b, M c) HWY_ATTR { return hn::Or(hn::Or(a, b), c); };
-    rest.Keep<true>(
-        Values(face, from_0, against, any(corner[0].is_from, corner[1].is_from, corner[2].is_from), edge.slack),
-        Values(face, to_0, against, any(corner[0].is_to, corner[1].is_to, corner[2].is_to), edge.slack));
+    if (needs_depth) {
+      const Normals face(Minus(corner[1].place, corner[0].place), Minus(corner[2].place, corner[0].place));
+      const Vector3 from_0 = Minus(from, corner[0].place), to_0 = Minus(to, corner[0].place);
+      const auto any = [](M a, M b, M c) HWY_ATTR { return hn::Or(hn::Or(a, b), c); };
+      rest.Keep<Rest::Along::gone>(
+          Values(face, from_0, against, any(corner[0].is_from, corner[1].is_from, corner[2].is_from), edge.slack),
+          Values(face, to_0, against, any(corner[0].is_to, corner[1].is_to, corner[2].is_to), edge.slack));
+    }
     // A turn is the negative product with the plane's normal.
     const auto keep_within = [&](const Corner& p, const Corner& q, V sign) HWY_ATTR {
       if (rest.IsAllGone()) return;
       const Normals side(sight.is_parallel() ? axis : Minus(p.place, axis), Minus(q.place, p.place));
-      rest.Keep<false>(Values(side, Minus(from, p.place), sign, hn::Or(p.is_from, q.is_from), edge.slack),
-                       Values(side, Minus(to, p.place), sign, hn::Or(p.is_to, q.is_to), edge.slack));
+      rest.Keep<needs_depth ? Rest::Along::kept : Rest::Along::open>(
+          Values(side, Minus(from, p.place), sign, hn::Or(p.is_from, q.is_from), edge.slack),
+          Values(side, Minus(to, p.place), sign, hn::Or(p.is_to, q.is_to), edge.slack));
     };
     keep_within(corner[0], corner[1], against);
     keep_within(corner[1], corner[2], against);
@@ -147,6 +153,13 @@ void HideBatch(const OccluderBatch& batch, const SightedEdge& edge, const Sight&
   const std::uint32_t used = (1u << batch.count) - 1;
   hidden.hides &= used;
   hidden.open &= used;
+}
+
+void HideBatch(const OccluderBatch& batch, const SightedEdge& edge, const Sight& sight, HiddenBatch& hidden) {
+  Ask<true>(batch, edge, sight, hidden);
+}
+void CoverBatch(const OccluderBatch& batch, const SightedEdge& edge, const Sight& sight, HiddenBatch& hidden) {
+  Ask<false>(batch, edge, sight, hidden);
 }
 
 std::uint64_t Overlapping(const ScreenBoxes& boxes, std::size_t count, const ScreenPart& part) {
@@ -174,9 +187,10 @@ namespace frontmost::lines_detail {
 
 FRONTMOST_KERNELS(Overlapping);
 FRONTMOST_KERNELS(HideBatch);
+FRONTMOST_KERNELS(CoverBatch);
 
 ShadowKernels shadow_kernels(Isa isa) {
-  return {kernel_for(OverlappingKernels, isa), kernel_for(HideBatchKernels, isa)};
+  return {kernel_for(OverlappingKernels, isa), kernel_for(HideBatchKernels, isa), kernel_for(CoverBatchKernels, isa)};
 }
 
 }  // namespace frontmost::lines_detail

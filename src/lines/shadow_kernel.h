@@ -50,6 +50,8 @@ struct ShadowKernels {
   std::uint64_t (*overlapping)(const ScreenBoxes& boxes, std::size_t count, const ScreenPart& part);
   /// hidden_by() of every occluder of the batch, to the bit, but for what is left open.
   void (*hide)(const OccluderBatch& batch, const SightedEdge& edge, const Sight& sight, HiddenBatch& hidden);
+  /// The same for covered_by().
+  void (*cover)(const OccluderBatch& batch, const SightedEdge& edge, const Sight& sight, HiddenBatch& hidden);
 };
 [[nodiscard]] ShadowKernels shadow_kernels(Isa isa);
 

@@ -186,6 +186,40 @@ TEST(KnownDrawings, TwoBoxesThroughEachOtherMeetInTwoSquares) {
   }
 }
 
+TEST(KnownDrawings, OutlinesHaveNothingBeside) {
+  // A box before a plate that it hides in part: on the plate the box has contours, beyond it an outline.
+  Mesh mesh = box({-0.5f, -0.5f, 0}, {0.5f, 0.5f, 1});
+  add_quad(mesh, {0, -2, -1}, {2, -2, -1}, {2, 2, -1}, {0, 2, -1});
+  const Scene scene = scene_of(mesh);
+  const Drawing drawing = lines(Surfaces(scene), view_from({0, 0, 10}, true), {.outlines = true});
+  double outline = 0, contour = 0;
+  for (const DrawnPart& part : drawing.parts) {
+    const DrawnEdge& edge = drawing.edges[part.edge];
+    if (part.hidden_by != 0) {
+      EXPECT_FALSE(part.is_outline);
+      continue;
+    }
+    const glm::dvec3 at = edge.from + (edge.to - edge.from) * (0.5 * (part.begin + part.end));
+    if (edge.kind == EdgeKind::silhouette) {
+      EXPECT_EQ(part.is_outline, at.x < 0) << at.x << " " << at.y;
+    }
+    (part.is_outline ? outline : contour) += length_of(drawing, part);
+  }
+  // The box's left half, and the plate but for what the box hides of it.
+  EXPECT_NEAR(outline, 2 + (12 - 1), 1e-12);
+  EXPECT_NEAR(contour, 2, 1e-12);
+  for (const DrawnPart& part : lines(Surfaces(scene), view_from({0, 0, 10}, true)).parts) EXPECT_FALSE(part.is_outline);
+}
+
+TEST(KnownDrawings, EdgesExactlyBehindTheOutlineLeaveItOne) {
+  const Scene scene = scene_of(box(glm::vec3(-1), glm::vec3(1)));
+  double outline = 0;
+  const Drawing drawing = lines(Surfaces(scene), view_from({0, 0, 10}, true), {.outlines = true});
+  for (const DrawnPart& part : drawing.parts)
+    if (part.is_outline) outline += length_of(drawing, part);
+  EXPECT_EQ(outline, 8);
+}
+
 TEST(KnownDrawings, KindsThatAreNotWantedAreNotDrawn) {
   const Scene scene = scene_of(box(glm::vec3(-1), glm::vec3(1)));
   const Surfaces surfaces(scene);

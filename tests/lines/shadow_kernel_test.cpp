@@ -50,7 +50,8 @@ SightedEdge random_edge(const Lattice& lattice, Random& random) {
   return {glm::dvec3(lattice.places[a]), glm::dvec3(lattice.places[b]), {a, a}, {b, b}};
 }
 
-TEST(ShadowKernels, HideAsThePlainFunctionOnEveryInstructionSet) {
+/// `plain_function` is hidden_by() or covered_by().
+void expect_equal(Interval (*plain_function)(const Occluder&, const SightedEdge&, const Sight&), bool covers) {
   std::size_t hidden = 0, open = 0;
   for (const Isa isa : available_isas()) {
     SCOPED_TRACE(name(isa));
@@ -67,14 +68,14 @@ TEST(ShadowKernels, HideAsThePlainFunctionOnEveryInstructionSet) {
         occluders.push_back(random_occluder(lattice, sight, random));
       for (const Occluder& occluder : occluders) batch.add(occluder);
       HiddenBatch found;
-      kernels.hide(batch, edge, sight, found);
+      (covers ? kernels.cover : kernels.hide)(batch, edge, sight, found);
       ASSERT_EQ((found.hides | found.open) >> batch.count, 0u);
       for (std::size_t i = 0; i < batch.count; ++i) {
         if (found.open >> i & 1) {
           ++open;
           continue;
         }
-        const Interval plain = hidden_by(occluders[i], edge, sight);
+        const Interval plain = plain_function(occluders[i], edge, sight);
         ASSERT_EQ(found.hides >> i & 1, plain.begin < plain.end) << seed;
         if (!(plain.begin < plain.end)) continue;
         ++hidden;
@@ -86,6 +87,9 @@ TEST(ShadowKernels, HideAsThePlainFunctionOnEveryInstructionSet) {
   EXPECT_GT(hidden, 500u);
   EXPECT_LT(open, 20 * hidden);
 }
+
+TEST(ShadowKernels, HideAsThePlainFunctionOnEveryInstructionSet) { expect_equal(hidden_by, false); }
+TEST(ShadowKernels, CoverAsThePlainFunctionOnEveryInstructionSet) { expect_equal(covered_by, true); }
 
 TEST(ShadowKernels, FindTheBoxesThatOverlap) {
   constexpr std::size_t most = 64;

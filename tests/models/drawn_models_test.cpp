@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drawings of models that others made: against every triangle, against the z-buffer, and by the lengths that another
+// system draws.
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "frontmost/frontmost.h"
+#include "support/models.h"
+#include "support/point_oracle.h"
+#include "support/random_scene.h"
+#include "view/sight.h"
+
+namespace frontmost::test {
+namespace {
+
+constexpr const char* names[] = {"cad/as1.stl", "cad/crank-arm.stl", "cad/torus.stl", "cad/two-cylinders.stl",
+                                 "cad/rocker-arm.obj"};
+
+/// From outside, in both projections, and from the middle of the model.
+std::vector<View> views_of(const Surfaces& surfaces) {
+  std::vector<View> views = {frame(surfaces, 320, 240), frame(surfaces, 320, 240, {.orthographic = true})};
+  View inside = views[0];
+  inside.world_from_eye[3] = glm::dvec4(glm::dvec3(surfaces.bounds().centre()), 1);
+  inside.projection.clip.near = double(surfaces.bounds().diagonal()) / 50;
+  views.push_back(inside);
+  return views;
+}
+
+TEST(DrawnModels, PointsOfPartsAreHiddenWhereATriangleIsBefore) {
+  FRONTMOST_NEEDS_MODELS();
+  std::size_t asked = 0, certain = 0;
+  for (const char* name : names) {
+    SCOPED_TRACE(name);
+    const Scene scene = load(model(name));
+    const Surfaces surfaces(scene);
+    Random random(1);
+    for (const View& view : views_of(surfaces)) {
+      const Drawing drawing = lines(surfaces, view);
+      const PointOracle oracle(surfaces, view);
+      const std::size_t step = 1 + drawing.parts.size() / 150;
+      for (std::size_t i = 0; i < drawing.parts.size(); i += step) {
+        const DrawnPart& part = drawing.parts[i];
+        const DrawnEdge& edge = drawing.edges[part.edge];
+        const double t = part.begin + (part.end - part.begin) * random.within(0.1f, 0.9f);
+        const PointOracle::Answer answer = oracle.ask(edge.from + (edge.to - edge.from) * t, edge);
+        ++asked;
+        if (!answer.is_certain) continue;
+        ++certain;
+        EXPECT_EQ(part.hidden_by != 0, answer.hidden_by != 0) << part.edge << " at " << t;
+      }
+    }
+  }
+  EXPECT_GT(certain, asked / 2);
+  std::cout << asked << " points, " << asked - certain << " of them within rounding of another answer\n";
+}
+
+/// Pixels within one of a seen part.
+std::vector<bool> near_lines(const Drawing& drawing, int width, int height) {
+  std::vector<bool> near(std::size_t(width) * std::size_t(height), false);
+  for (const DrawnPart& part : drawing.parts) {
+    if (part.hidden_by != 0) continue;
+    const int steps = 1 + int(4 * glm::distance(part.from, part.to));
+    for (int i = 0; i <= steps; ++i) {
+      const glm::dvec2 p = part.from + (part.to - part.from) * (double(i) / steps);
+      for (int y = int(p.y) - 1; y <= int(p.y) + 1; ++y)
+        for (int x = int(p.x) - 1; x <= int(p.x) + 1; ++x)
+          if (x >= 0 && y >= 0 && x < width && y < height)
+            near[std::size_t(y) * std::size_t(width) + std::size_t(x)] = true;
+    }
+  }
+  return near;
+}
+
+bool are_flat(const Surfaces& surfaces, PrimitiveId a, PrimitiveId b) {
+  if (a == no_primitive || b == no_primitive) return false;
+  const auto t = surfaces.corners(a), u = surfaces.corners(b);
+  const FacePlane plane{glm::dvec3(t[0]), glm::dvec3(t[1]), glm::dvec3(t[2])};
+  for (const glm::vec3& corner : u)
+    if (plane.height(glm::dvec3(corner)).sign != 0) return false;
+  return true;
+}
+
+TEST(DrawnModels, BordersOfSeenTrianglesLieOnDrawnLines) {
+  FRONTMOST_NEEDS_MODELS();
+  std::size_t borders = 0, bare = 0;
+  for (const char* name : names) {
+    const Scene scene = load(model(name));
+    const Surfaces surfaces(scene);
+    for (const View& view : views_of(surfaces)) {
+      const Visible visible = zbuffer(surfaces, view);
+      const std::vector<bool> near = near_lines(lines(surfaces, view, {.crease_angle = 0}), view.width, view.height);
+      const auto compare = [&](std::size_t a, std::size_t b) {
+        if (visible.primitives[a] == visible.primitives[b] ||
+            are_flat(surfaces, visible.primitives[a], visible.primitives[b]))
+          return;
+        ++borders;
+        // Where the near plane cuts a surface open there is no edge.
+        const bool is_cut = std::max(visible.keys[a], visible.keys[b]) > 0.98f;
+        bare += !near[a] && !near[b] && !is_cut;
+      };
+      const auto width = std::size_t(view.width);
+      for (std::size_t i = 0; i + width < visible.primitives.size(); ++i) {
+        if (i % width + 1 < width) compare(i, i + 1);
+        compare(i, i + width);
+      }
+    }
+  }
+  EXPECT_GT(borders, 10000u);
+  EXPECT_EQ(bare, 0u) << "of " << borders;
+}
+
+struct Reference {
+  const char* name;
+  glm::dvec3 towards_viewer;
+  double length, tolerance;
+};
+
+/// Seen lengths by Open CASCADE's exact hidden-line removal of the shapes that the meshes were made of, without its
+/// smooth seams. The tolerance is the tessellation's: silhouettes go to and fro between its triangles.
+constexpr Reference references[] = {{"cad/as1.stl", {1, -1, 1}, 2444.05, 0.002},
+                                    {"cad/as1.stl", {0.31, -0.82, 0.48}, 2317.3, 0.002},
+                                    {"cad/two-cylinders.stl", {0, -1, 0}, 160, 0.0001},
+                                    {"cad/two-cylinders.stl", {1, -1, 1}, 203.49, 0.005},
+                                    {"cad/two-cylinders.stl", {0, 0, 1}, 112.77, 0.005},
+                                    {"cad/two-cylinders.stl", {0.31, -0.82, 0.48}, 203.5, 0.005},
+                                    {"cad/torus.stl", {0, 0, 1}, 375.91, 0.005},
+                                    {"cad/torus.stl", {1, -1, 1}, 302.41, 0.05},
+                                    {"cad/torus.stl", {0.31, -0.82, 0.48}, 288.84, 0.05},
+                                    {"cad/crank-arm.stl", {1, -1, 1}, 1079.29, 0.05},
+                                    {"cad/crank-arm.stl", {0.31, -0.82, 0.48}, 1117.46, 0.05}};
+
+TEST(DrawnModels, AreAsLongAsAnotherSystemDrawsThem) {
+  FRONTMOST_NEEDS_MODELS();
+  for (const Reference& reference : references) {
+    const Scene scene = load(model(reference.name));
+    const Surfaces surfaces(scene);
+    const View view = frame(surfaces, 1000, 1000, {.orthographic = true, .forward = -reference.towards_viewer});
+    const double unit = (view.projection.right - view.projection.left) / view.width;
+    double length = 0;
+    for (const DrawnPart& part : lines(surfaces, view).parts)
+      if (part.hidden_by == 0) length += glm::distance(part.from, part.to) * unit;
+    EXPECT_NEAR(length, reference.length, reference.tolerance * reference.length) << reference.name;
+  }
+}
+
+}  // namespace
+}  // namespace frontmost::test
