@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arbitrary geometry and an arbitrary camera into the z-buffer and the ray caster. Must not crash or hang; and threads
-// and instruction sets must not change a bit of the answer. Input: support/geometry_fuzz.h.
+// Arbitrary geometry and an arbitrary camera into the z-buffer and the ray caster. Must not crash or hang; and threads,
+// instruction sets and whether there are clusters must not change a bit of the answer. Input: support/geometry_fuzz.h.
 #include "support/geometry_fuzz.h"
 
 #include <cstdlib>
@@ -18,6 +18,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Visible wide = zbuffer(surfaces, view, {.threads = 2, .isa = Isa::best, .watch = nullptr});
     const Visible plain = zbuffer(surfaces, view, {.threads = 1, .isa = Isa::scalar, .watch = nullptr});
     if (content_hash(wide) != content_hash(plain)) std::abort();
+    const Visible once = zbuffer(scene, view, {.threads = 2, .isa = Isa::best, .watch = nullptr});
+    if (content_hash(once) != content_hash(plain)) std::abort();
     const RayIndex index(surfaces, {.threads = 2, .isa = Isa::best, .watch = nullptr});
     const Visible rays = raycast(index, view, {.threads = 2, .isa = Isa::best, .watch = nullptr});
     const Visible plain_rays = raycast(index, view, {.threads = 1, .isa = Isa::scalar, .watch = nullptr});

@@ -147,6 +147,7 @@ HWY_INLINE void FillTile(const Picture& picture, const Tile& tile) {
       FillRow(DU(), no_primitive, picture.primitives + at, std::size_t(tile.width), picture.streams);
       FillRow(DF(), 0.0f, picture.keys + at, std::size_t(tile.width), picture.streams);
     }
+  hwy::FlushStream();
 }
 
 class TileBuffer {
@@ -269,6 +270,8 @@ class TileBuffer {
   void WriteOut() const {
     for (std::size_t s = 0; s < picture_.samples.size(); ++s)
       for (int y = 0; y < tile_.height; ++y) WriteRow(s, y);
+    // Streamed stores are weakly ordered: another thread may read the planes next.
+    hwy::FlushStream();
   }
 
  private:

@@ -58,9 +58,8 @@ class TilePainter {
       buffer_.MarkDrawn(blocks);
     }
     small_.Finish();
+    buffer_.WriteOut();
   }
-
-  void WriteOut() const { buffer_.WriteOut(); }
 
  private:
   HWY_INLINE void Prefetch(std::uint32_t index) const {
@@ -194,12 +193,8 @@ void DrawTile(const FrameInput& frame, const TileJob& job, TileScratch& scratch)
   if (job.is_empty()) {
     FillTile(frame, job);
   } else {
-    TilePainter painter(frame, job, scratch);
-    painter.Draw();
-    painter.WriteOut();
+    TilePainter(frame, job, scratch).Draw();
   }
-  // Streamed stores are weakly ordered: another thread may read the planes next.
-  hwy::FlushStream();
 }
 
 }  // namespace HWY_NAMESPACE

@@ -14,7 +14,7 @@
 #include "scene/validation.h"
 #include "surfaces/cluster_set.h"
 #include "zbuffer/cutout_pass.h"
-#include "zbuffer/direct_frame.h"
+#include "zbuffer/direct/direct_frame.h"
 #include "zbuffer/frame_plan.h"
 
 namespace frontmost {

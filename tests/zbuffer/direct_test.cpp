@@ -10,7 +10,7 @@
 #include "support/cutout_scene.h"
 #include "support/effort.h"
 #include "support/same_visible.h"
-#include "zbuffer/direct_frame.h"
+#include "zbuffer/direct/direct_frame.h"
 
 namespace frontmost::test {
 namespace {

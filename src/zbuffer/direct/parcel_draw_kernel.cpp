@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Drawing one tile from parcels: the same triangles into the same buffer as tile_kernel.cpp, from another source.
 
-#include "zbuffer/parcel_kernel.h"
+#include "zbuffer/direct/parcel_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "zbuffer/parcel_draw_kernel.cpp"
+#define HWY_TARGET_INCLUDE "zbuffer/direct/parcel_draw_kernel.cpp"
 #include "base/isa.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
@@ -162,8 +162,6 @@ void DrawParcels(const ParcelFrame& frame, const ParcelJob& job, TileScratch& sc
     FillTile(frame, job);
   else
     ParcelPainter(frame, job, scratch).Draw();
-  // Streamed stores are weakly ordered: another thread may read the planes next.
-  hwy::FlushStream();
 }
 
 }  // namespace HWY_NAMESPACE

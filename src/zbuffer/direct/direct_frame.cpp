@@ -3,7 +3,7 @@
 // and drawn, some hundred parcels at a time. What is seen is a minimum, so the picture may be taken up again for the
 // next ones.
 
-#include "zbuffer/direct_frame.h"
+#include "zbuffer/direct/direct_frame.h"
 
 #include <algorithm>
 #include <cstring>
@@ -12,7 +12,7 @@
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "zbuffer/cutout_pass.h"
-#include "zbuffer/parcel_kernel.h"
+#include "zbuffer/direct/parcel_kernel.h"
 #include "zbuffer/record_lists.h"
 #include "zbuffer/submission.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Putting triangles into parcels: vertices, pixel rectangles and facing, many at a time.
 
-#include "zbuffer/parcel_kernel.h"
+#include "zbuffer/direct/parcel_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "zbuffer/parcel_place_kernel.cpp"
+#define HWY_TARGET_INCLUDE "zbuffer/direct/parcel_place_kernel.cpp"
 #include "base/isa.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "zbuffer/parcel.h"
+#include "zbuffer/direct/parcel.h"
 
 #include <cstring>
 

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "zbuffer/parcel.h"
+#include "zbuffer/direct/parcel.h"
 #include "zbuffer/place_kernel.h"
 #include "zbuffer/tile.h"
 
