@@ -86,7 +86,9 @@ struct OutputSettings {
   bool background_given = false;
   Shadows shadows = Shadows::map;
   float opacity = 1;
-  std::optional<int> layers;  ///< how many of the nearest go to files with {layer} in their names
+  bool visible_only = true;             ///< of figures
+  std::size_t most_polygons = 2000000;  ///< likewise
+  std::optional<int> layers;            ///< how many of the nearest go to files with {layer} in their names
 };
 
 /// How visibility is found.

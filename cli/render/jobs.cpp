@@ -7,6 +7,7 @@
 
 #include "cli/failure.h"
 #include "cli/rays/render_around.h"
+#include "cli/render/figure.h"
 #include "cli/render/output_writer.h"
 #include "cli/view_options.h"
 
@@ -26,13 +27,31 @@ void check_layers(const Settings& settings, const Job& job) {
     throw UsageError("--samples 64 needs --method abuffer");
 }
 
+/// Takes those pictures out of the outputs that are polygons and no pixels.
+void take_figures(const Settings& settings, const std::string& model, Job& job) {
+  std::vector<OutputRequest>& files = job.output.files;
+  const auto is_one = [](const OutputRequest& r) { return r.kind == OutputKind::picture && is_figure(r.path); };
+  for (const OutputRequest& request : files)
+    if (is_one(request)) job.figures.push_back(fill_template(request.path, model, job.name));
+  if (job.figures.empty()) return;
+  files.erase(std::remove_if(files.begin(), files.end(), is_one), files.end());
+  const auto refuse = [&](const char* why) { throw UsageError(fmt::format("{}: {}", job.figures.front(), why)); };
+  if (settings.run.stream) refuse("--stream keeps only pixels; polygons need the whole model");
+  if (settings.run.method || settings.view.depth.is_used)
+    refuse("polygons are painted, without --method or depth buffer");
+  if (settings.view.camera_model != CameraModel::pinhole) refuse("polygons are seen by pinhole cameras alone");
+  const Shading shading = settings.output.shading;
+  if (shading == Shading::depth || shading == Shading::uv) refuse("polygons are shaded lit, flat, normals or ids");
+}
+
 Job make_job(const Settings& settings) {
   check_view_settings(settings.view);
   if (settings.run.stream && settings.view.depth.is_used)
     throw UsageError("--stream draws with the default depth test; it excludes the options of a depth buffer");
-  Job job{view_name(settings.view), settings.view, settings.output, {}, {}, {}};
+  Job job{view_name(settings.view), settings.view, settings.output, {}, {}, {}, {}};
   const std::string model = model_name(settings.model);
-  for (OutputFile& file : plan_outputs(settings.output, model, job.name))
+  take_figures(settings, model, job);
+  for (OutputFile& file : plan_outputs(job.output, model, job.name))
     (file.layer ? job.layer_files : job.files).push_back(std::move(file));
   check_layers(settings, job);
   check_outputs_around(job);
@@ -55,6 +74,7 @@ void check_files(const std::vector<Job>& jobs, const Settings& settings) {
   for (const Job& job : jobs) {
     for (const auto* files : {&job.files, &job.layer_files})
       for (const OutputFile& file : *files) paths.push_back(file.path);
+    paths.insert(paths.end(), job.figures.begin(), job.figures.end());
     if (job.difference.empty()) continue;
     paths.push_back(job.difference);
     references.push_back(*job.output.reference);

@@ -16,6 +16,7 @@ struct Job {
   ViewSettings view;
   OutputSettings output;
   std::vector<OutputFile> files, layer_files;  ///< of what is nearest, or of all; of single layers
+  std::vector<std::string> figures;            ///< pictures of polygons
   std::string difference;                      ///< where the difference to the reference goes; empty: no reference
 };
 

@@ -25,8 +25,10 @@ constexpr unsigned written = for_render | may_repeat;
 
 constexpr Option table[] = {
     {"output", 'o', "FILE",
-     "The picture: .png, .exr, .pfm or .npy; - is standard output. {model} and {view} stand for names.", Group::output,
-     written, [](Settings& s, const Given& g) { add_file(s, OutputKind::picture, g.text); }},
+     "The picture: .png, .exr, .pfm or .npy, or its polygons: .svg or .pdf; - is standard output. {model} and {view} "
+     "stand "
+     "for names.",
+     Group::output, written, [](Settings& s, const Given& g) { add_file(s, OutputKind::picture, g.text); }},
     {"depth", 0, "FILE", "Distance along the viewing axis, in scene units.", Group::output, written,
      [](Settings& s, const Given& g) { add_file(s, OutputKind::depth, g.text); }},
     {"ray-distance", 0, "FILE", "Distance from the eye, in scene units.", Group::output, written,
@@ -47,6 +49,14 @@ constexpr Option table[] = {
      Group::output, for_render,
      [](Settings& s, const Given& g) {
        s.output.layers = g.integer({1, 1024});
+     }},
+    {"visible-only", 0, "yes|no",
+     "Leave out of .svg and .pdf what is hidden, and cut what is hidden in part; yes by default.", Group::output,
+     for_render, [](Settings& s, const Given& g) { s.output.visible_only = g.choice<int>() == 0; }},
+    {"most-polygons", 0, "N", "Refuse .svg and .pdf files of more polygons; 2000000 by default.", Group::output,
+     for_render,
+     [](Settings& s, const Given& g) {
+       s.output.most_polygons = std::size_t(g.integer({1, 1000000000}));
      }},
     {"format", 0, "png|exr|pfm|npy", "Format of files whose names do not say, such as -.", Group::output, for_render,
      [](Settings& s, const Given& g) { s.output.format = g.choice<ImageFormat>(); }},

@@ -23,7 +23,8 @@ namespace {
 
 bool has_result(const Settings& settings, const std::vector<Job>& jobs) {
   const auto makes = [](const Job& job) {
-    return !job.files.empty() || !job.layer_files.empty() || job.output.reference || job.output.hash;
+    return !job.files.empty() || !job.layer_files.empty() || !job.figures.empty() || job.output.reference ||
+           job.output.hash;
   };
   return settings.run.json || std::any_of(jobs.begin(), jobs.end(), makes);
 }

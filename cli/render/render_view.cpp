@@ -12,6 +12,7 @@
 #include "cli/rays/render_around.h"
 #include "cli/rays/sight.h"
 #include "cli/render/blank.h"
+#include "cli/render/figure.h"
 #include "cli/render/output_writer.h"
 #include "cli/render/reference.h"
 #include "cli/render/render_layers.h"
@@ -171,6 +172,7 @@ ViewResult render_view(const Job& job, const RenderContext& context) {
   result.target = job.view.focal_point.value_or(focal_point_of(result.view, context.framed_surfaces()));
   finish_view(job, context, look(job, context, result), result);
   write_layers(job, context, result);
+  write_figures(job, context, result);
   return result;
 }
 

@@ -2,6 +2,7 @@
 // The painter's algorithm: polygons in an order in which painting one over the other is right everywhere.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "frontmost/surfaces.h"
@@ -77,6 +78,22 @@ struct PaintOrder {
 /// validate(view) does, and limit_exceeded for more than PainterOptions::most_polygons.
 [[nodiscard]] PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOptions& options = {},
                                  const Execution& execution = {});
+
+/// What is seen of an order, for drawings: without polygons that those after them hide together, and with what is left
+/// of those that are hidden in part, as convex pieces in the same place of the order; also cut at the sides of the
+/// picture. `hides(id)` says of which triangles nothing shows through, for several threads at once; empty: all hide.
+/// Parts thinner than 1/1024 pixel are left out. A polygon of which more than a few pieces are left stays whole, as do
+/// large ones: they are painted over as before. Near-linear, as painter(): every polygon is held against those after it
+/// that overlap it.
+[[nodiscard]] PaintOrder visible_parts(const PaintOrder& order, const std::function<bool(PrimitiveId)>& hides = {},
+                                       const Execution& execution = {});
+
+/// The same order with hems: a polygon reaches under what is painted later and lies beside it, by `width` pixels,
+/// wherever that hides the hem. So viewers that blend the rims of polygons show no hairlines of the background between
+/// neighbours, and no outline grows. For drawings: with a hem an outline is not convex, and paint() does not know it.
+/// Cost and `hides` as for visible_parts(). \throws Error bad_argument for a width of 0 or less, or over 100.
+[[nodiscard]] PaintOrder with_hems(const PaintOrder& order, double width,
+                                   const std::function<bool(PrimitiveId)>& hides = {}, const Execution& execution = {});
 
 /// Paints an order: every polygon over those before it, at the samples that its primitive covers in the z-buffer and
 /// that lie on the polygon's side of all cuts. Wrong orders give wrong pictures. Holes are left open.

@@ -13,6 +13,10 @@ namespace {
 
 using namespace painter_detail;
 
+/// A group without an order is parted until so much smaller groups are left, and these are sorted again: sooner costs
+/// more sorting, later more cuts.
+constexpr std::size_t kFewer = 4;
+
 /// Makes one list of pieces out of all, by work that is still to do, the next on top. Not by recursion: a partition may
 /// be as uneven as there are pieces.
 class Orderer {
@@ -22,7 +26,7 @@ class Orderer {
 
   [[nodiscard]] std::vector<std::uint32_t> order(std::vector<std::uint32_t> members) {
     all_ = members.size();
-    push(options_.method == PaintMethod::bsp ? Work::part : Work::sort, std::move(members));
+    push(std::move(members), options_.method == PaintMethod::bsp ? 0 : all_);
     while (!work_.empty()) {
       const Item item = std::move(work_.back());
       work_.pop_back();
@@ -37,29 +41,31 @@ class Orderer {
   struct Item {
     Work work;
     std::vector<std::uint32_t> members;
+    std::size_t few = 0;  ///< so many are sorted again, more are parted on
   };
 
-  void push(Work work, std::vector<std::uint32_t> members) {
+  void push(std::vector<std::uint32_t> members, std::size_t few) {
     if (members.empty()) return;
-    work_.push_back({members.size() == 1 ? Work::paint : work, std::move(members)});
+    const Work work = members.size() == 1 ? Work::paint : members.size() <= few ? Work::sort : Work::part;
+    work_.push_back({work, std::move(members), few});
   }
 
   void run(const Item& item) {
     switch (item.work) {
       case Work::paint: order_.insert(order_.end(), item.members.begin(), item.members.end()); break;
       case Work::sort: sort(item.members); break;
-      case Work::part: {
-        Partition partition = part(pieces_, item.members, steps_);
-        if (pieces_.size() > options_.most_polygons)
-          throw Error(ErrorCode::limit_exceeded,
-                      "painter: more than " + std::to_string(options_.most_polygons) + " polygons and pieces");
-        const Work next = options_.method == PaintMethod::bsp ? Work::part : Work::sort;
-        push(next, std::move(partition.before));
-        push(Work::paint, std::move(partition.within));
-        push(next, std::move(partition.behind));
-        break;
-      }
+      case Work::part: part_by_plane(item); break;
     }
+  }
+
+  void part_by_plane(const Item& item) {
+    Partition partition = part(pieces_, item.members, steps_);
+    if (pieces_.size() > options_.most_polygons)
+      throw Error(ErrorCode::limit_exceeded,
+                  "painter: more than " + std::to_string(options_.most_polygons) + " polygons and pieces");
+    push(std::move(partition.before), item.few);
+    work_.push_back({Work::paint, std::move(partition.within)});
+    push(std::move(partition.behind), item.few);
   }
 
   void sort(const std::vector<std::uint32_t>& members) {
@@ -68,7 +74,8 @@ class Orderer {
     std::size_t begin = 0;
     for (const std::size_t end : groups.ends) {
       const Work work = end - begin == 1 ? Work::paint : Work::part;
-      if (work == Work::part || items.empty() || items.back().work == Work::part) items.push_back({work, {}});
+      if (work == Work::part || items.empty() || items.back().work == Work::part)
+        items.push_back({work, {}, (end - begin) / kFewer});
       std::vector<std::uint32_t>& list = items.back().members;
       list.insert(list.end(), groups.pieces.begin() + std::ptrdiff_t(begin),
                   groups.pieces.begin() + std::ptrdiff_t(end));

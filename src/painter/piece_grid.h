@@ -28,6 +28,17 @@ class PieceGrid {
   [[nodiscard]] std::span<const std::uint32_t> cell(std::size_t number) const {
     return {entries_.data() + first_[number], first_[number + 1] - first_[number]};
   }
+  /// Pixels. Cells at the rim of the grid reach on without end.
+  struct Box {
+    glm::dvec2 low, high;
+  };
+  [[nodiscard]] Box box(int x, int y) const {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    const auto side = [&](int i, int axis) {
+      return i <= 0 ? -infinite : i >= columns_[axis] ? infinite : double(low_[axis]) + i / double(scale_[axis]);
+    };
+    return {{side(x, 0), side(y, 1)}, {side(x + 1, 0), side(y + 1, 1)}};
+  }
   [[nodiscard]] std::size_t cell_count() const { return first_.size() - 1; }
 
  private:

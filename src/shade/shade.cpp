@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "base/parallel.h"
+#include "base/srgb.h"
 #include "shade/canvas.h"
 #include "shade/colorists.h"
 #include "shade/deep_layers.h"
@@ -259,8 +260,62 @@ DeepImage shade_deep(const Surfaces& surfaces, const Visible& visible, const Sha
   return image;
 }
 
+namespace {
+
+/// Calls receive(number, light, alpha) for every point.
+template <class Receive>
+void shade_all(const TriangleSource& source, const FragmentShader::Colorist& colorist,
+               std::span<const ShadePoint> points, const Execution& execution, const Receive& receive) {
+  constexpr std::size_t points_at_once = 1u << 13;
+  parallel_for(execution, points.size(), points_at_once, [&](std::size_t begin, std::size_t end) {
+    FragmentShader shader(source, colorist);
+    const auto hand_out = [&] {
+      shader.hand_out(
+          [&](std::uint32_t number, float, const glm::vec3& light, float alpha) { receive(number, light, alpha); });
+    };
+    for (std::size_t i = begin; i < end; ++i) {
+      if (shader.is_full()) hand_out();
+      shader.add(points[i].id, std::uint32_t(i), points[i].screen, 1, 1.0f);
+    }
+    hand_out();
+  });
+}
+
+}  // namespace
+
 std::optional<View> key_light_view(const Visible& visible, const Box& bounds, Axis up, const Execution& execution) {
   return view_of_light(visible, bounds, glm::dvec3(lighting_for(visible.view, up).to_key), execution);
+}
+
+std::vector<glm::u8vec4> shade_points(const Surfaces& surfaces, const View& view, std::span<const ShadePoint> points,
+                                      const ShadeOptions& options, const Execution& execution) {
+  validate(view);
+  check_opacity(options);
+  if (!shows_materials(options.shading) && options.shading != Shading::ids)
+    throw Error(ErrorCode::unsupported, "shade: points are lit, flat, of normals or of ids");
+  BitSet seen(surfaces.primitive_count());
+  for (const ShadePoint& point : points) {
+    if (point.id >= surfaces.primitive_count())
+      throw Error(ErrorCode::bad_argument, "shade: a point's triangle is not of these surfaces");
+    seen.add(point.id);
+  }
+  const TriangleSource source(surfaces, view, nullptr, execution);
+  const MaterialTable table(surfaces.scene(),
+                            needed_materials(
+                                surfaces, [&]() -> const BitSet& { return seen; }, execution),
+                            execution);
+  const Lighting lighting = lighting_for(view, surfaces.scene().up);
+  FragmentShader::Colorist colorist = Lit{table, lighting, nullptr, nullptr, execution.isa};
+  if (options.shading == Shading::flat) colorist = Flat{table};
+  if (options.shading == Shading::normals) colorist = Normals{table};
+  if (options.shading == Shading::ids) colorist = Ids{};
+  std::vector<glm::u8vec4> colors(points.size());
+  shade_all(source, colorist, points, execution, [&](std::uint32_t i, const glm::vec3& light, float alpha) {
+    const float opacity = std::clamp(alpha * options.opacity, 0.0f, 1.0f);
+    colors[i] = {srgb8_of_linear(light.x), srgb8_of_linear(light.y), srgb8_of_linear(light.z),
+                 std::uint8_t(opacity * 255.0f + 0.5f)};
+  });
+  return colors;
 }
 
 Image normal_image(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/render/figure.h"
+
+#include <fmt/format.h>
+#include <frontmost/page.h>
+#include <frontmost/painter.h>
+#include <frontmost/shade.h>
+
+#include <functional>
+
+#include "cli/console.h"
+#include "cli/interruption.h"
+#include "cli/stopwatch.h"
+
+namespace frontmost::cli {
+namespace {
+
+/// A pixel as style sheets define it, so that a figure is as large on a page as the picture in a browser.
+constexpr double kMillimetres = 25.4 / 96;
+/// Pixels that a polygon reaches under its neighbours, against the hairlines of viewers that blend rims; and
+/// millimetres of a line in its own colour where nothing hides a hem.
+constexpr double kHem = 1, kSeam = 0.05;
+
+/// Nothing shows through a triangle.
+bool is_opaque(const Surfaces& surfaces, PrimitiveId id) {
+  const Scene& scene = surfaces.scene();
+  const PrimitiveSource source = surfaces.source(id);
+  const std::uint32_t material = scene.meshes[source.mesh].material_of(source.triangle);
+  return material == no_index || scene.materials[material].alpha == Material::Alpha::opaque;
+}
+
+/// Of which polygons nothing behind is seen.
+std::function<bool(PrimitiveId)> hiding(const Job& job, const RenderContext& context) {
+  const bool is_clear = job.output.opacity < 1;
+  return [is_clear, &surfaces = context.surfaces](PrimitiveId id) { return !is_clear && is_opaque(surfaces, id); };
+}
+
+PaintOrder order_of(const Job& job, const RenderContext& context, const View& view) {
+  PaintOrder order = painter(context.surfaces, view, {}, context.execution);
+  return job.output.visible_only ? visible_parts(order, hiding(job, context), context.execution) : order;
+}
+
+/// Each polygon has one colour: that of its middle.
+std::vector<glm::u8vec4> colors_of(const PaintOrder& order, const Job& job, const RenderContext& context) {
+  std::vector<ShadePoint> points;
+  points.reserve(order.polygons.size());
+  for (const PaintPolygon& polygon : order.polygons) {
+    glm::dvec2 sum(0);
+    for (std::size_t i = 0; i < polygon.corner_count; ++i)
+      sum += glm::dvec2(order.corners[polygon.first_corner + i].at);
+    points.push_back({polygon.id, glm::vec2(sum / double(polygon.corner_count))});
+  }
+  return shade_points(context.surfaces, order.view, points, shade_options(job, context), context.execution);
+}
+
+PageColor page_color(const glm::u8vec4& color) { return {color.r, color.g, color.b, color.a}; }
+
+PageGroup backdrop(const glm::vec3& color, const Page& page) {
+  PageGroup group{"background", Pen{}};
+  group.pen.width = 0;
+  group.add(std::array{glm::dvec2(0), glm::dvec2(page.width, 0), glm::dvec2(page.width, page.height),
+                       glm::dvec2(0, page.height)},
+            true);
+  const auto part = [](float value) { return std::uint8_t(value * 255.0f + 0.5f); };
+  group.fills.push_back({part(color.r), part(color.g), part(color.b)});
+  return group;
+}
+
+Page page_of(const PaintOrder& order, const std::vector<glm::u8vec4>& colors, const Job& job) {
+  Page page{order.view.width * kMillimetres, order.view.height * kMillimetres, job.name};
+  PageLayer& layer = page.layers.emplace_back(PageLayer{"figure"});
+  if (job.output.background) layer.groups.push_back(backdrop(*job.output.background, page));
+  PageGroup& group = layer.groups.emplace_back(PageGroup{"surfaces", Pen{}});
+  group.pen.width = kSeam;
+  group.pen.takes_fill_color = true;
+  std::vector<glm::dvec2> outline;
+  for (std::size_t i = 0; i < order.polygons.size(); ++i) {
+    if (colors[i].a == 0) continue;
+    const PaintPolygon& polygon = order.polygons[i];
+    outline.clear();
+    for (std::size_t k = 0; k < polygon.corner_count; ++k)
+      outline.push_back(glm::dvec2(order.corners[polygon.first_corner + k].at) * kMillimetres);
+    group.add(outline, true);
+    group.fills.push_back(page_color(colors[i]));
+  }
+  return page;
+}
+
+/// Megabytes of the files, roughly: what a path and a corner take in each.
+void tell_size(const Job& job, const PaintOrder& order) {
+  for (const std::string& path : job.figures) {
+    const bool is_svg = page_format(path) == PageFormat::svg;
+    const double bytes = is_svg ? 50.0 * double(order.polygons.size()) + 9.0 * double(order.corners.size())
+                                : 10.0 * double(order.polygons.size()) + 5.0 * double(order.corners.size());
+    complain(fmt::format("{}: {} polygons, about {:.1f} MB", path, order.polygons.size(), bytes / 1e6));
+  }
+}
+
+void check_size(const Job& job, const PaintOrder& order) {
+  if (order.polygons.size() <= job.output.most_polygons) return;
+  throw Error(ErrorCode::limit_exceeded,
+              fmt::format("{}: {} polygons, more than --most-polygons {}", job.figures.front(), order.polygons.size(),
+                          job.output.most_polygons));
+}
+
+}  // namespace
+
+bool is_figure(const std::string& path) {
+  const std::optional<PageFormat> format = page_format(path);
+  return format == PageFormat::svg || format == PageFormat::pdf;
+}
+
+void write_figures(const Job& job, const RenderContext& context, ViewResult& result) {
+  if (job.figures.empty()) return;
+  Stopwatch watch;
+  PaintOrder order = order_of(job, context, result.view);
+  check_size(job, order);
+  const std::vector<glm::u8vec4> colors = colors_of(order, job, context);
+  order = with_hems(order, kHem, hiding(job, context), context.execution);
+  const Page page = page_of(order, colors, job);
+  result.timings.shade += watch.milliseconds();
+  if (!context.run.quiet) tell_size(job, order);
+  watch = {};
+  for (const std::string& path : job.figures) {
+    stop_if_interrupted();
+    result.results.push_back({"figure", path, {}});
+    const WritingFiles writing;
+    save(page, path, std::nullopt, context.execution);
+  }
+  result.timings.save += watch.milliseconds();
+}
+
+}  // namespace frontmost::cli

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// frontmost render -o FILE.svg and .pdf: polygons in the order of painting.
+#include <gmock/gmock.h>
+
+#include "program.h"
+
+namespace frontmost::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+class Figures : public ProgramTest {
+ protected:
+  Figures() { write("cube.stl", cube_stl()); }
+  [[nodiscard]] std::size_t count(const std::string& file, const std::string& word) const {
+    const std::string text = read(file);
+    std::size_t found = 0;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++found;
+    return found;
+  }
+};
+
+TEST_F(Figures, HoldVisiblePolygonsAlone) {
+  EXPECT_THAT(succeed("render cube.stl -o cube.svg --resolution 320,240").err,
+              HasSubstr("cube.svg: 6 polygons, about 0.0 MB"));
+  EXPECT_EQ(count("cube.svg", "<path"), 7u);  // and the background
+  EXPECT_THAT(read("cube.svg"), HasSubstr("width=\"84.667mm\" height=\"63.5mm\""));
+  succeed("render cube.stl -o all.svg --visible-only no --background transparent --quiet");
+  EXPECT_EQ(count("all.svg", "<path"), 12u);
+}
+
+TEST_F(Figures, KeepWhatShowsThrough) {
+  EXPECT_THAT(succeed("render cube.stl -o glass.svg --opacity 0.5 --quiet").err, IsEmpty());
+  EXPECT_EQ(count("glass.svg", "fill-opacity=\".502\""), 12u);
+}
+
+TEST_F(Figures, StandBesidePixels) {
+  const Outcome outcome = succeed("render cube.stl -o {model}.svg -o {model}.pdf -o {model}.png --json --quiet");
+  EXPECT_THAT(files(), testing::ElementsAre("cube.pdf", "cube.png", "cube.stl", "cube.svg"));
+  EXPECT_THAT(read("cube.pdf"), StartsWith("%PDF"));
+  EXPECT_EQ(outcome.json()["files"].size(), 3u);
+}
+
+TEST_F(Figures, ShowColoursOfTheirShading) {
+  succeed("render cube.stl -o ids.svg --shading ids --background red --quiet");
+  EXPECT_THAT(read("ids.svg"), HasSubstr("#ff0000"));
+  EXPECT_EQ(count("ids.svg", "<path"), 7u);
+}
+
+TEST_F(Figures, AreTheSameForAnyNumberOfThreads) {
+  succeed("render builtin:gallery -o one.svg --threads 1 --quiet");
+  succeed("render builtin:gallery -o three.svg --threads 3 --quiet");
+  EXPECT_EQ(read("one.svg"), read("three.svg"));
+}
+
+TEST_F(Figures, RefuseWhatTheyCannotBe) {
+  expect_failure("render cube.stl -o a.svg --most-polygons 5", 1, "6 polygons, more than --most-polygons 5");
+  expect_failure("render cube.stl -o a.svg --method abuffer", 2, "without --method");
+  expect_failure("render cube.stl -o a.svg --stream", 2, "whole model");
+  expect_failure("render cube.stl -o a.svg --camera-model panorama", 2, "pinhole");
+  expect_failure("render cube.stl -o a.svg --shading depth", 2, "lit, flat, normals or ids");
+  expect_failure("render cube.stl -o a.svg -o a.svg", 2, "written twice");
+  EXPECT_THAT(files(), testing::ElementsAre("cube.stl"));
+}
+
+}  // namespace
+}  // namespace frontmost::test

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is left of an order for drawings.
+#include <gmock/gmock.h>
+
+#include "painter/painted.h"
+#include "support/effort.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+using testing::ElementsAre;
+
+/// Square pixels.
+double area_of(const PaintOrder& order, std::size_t polygon) {
+  const PaintPolygon& p = order.polygons[polygon];
+  double area = 0;
+  for (std::size_t i = 0; i < p.corner_count; ++i) {
+    const glm::dvec3 &a = order.corners[p.first_corner + i].at,
+                     &b = order.corners[p.first_corner + (i + 1) % p.corner_count].at;
+    area -= 0.5 * (a.x * b.y - a.y * b.x);  // y points down
+  }
+  return area;
+}
+
+void add_square(Mesh& mesh, float half, float z) {
+  add_triangle(mesh, {-half, -half, z}, {half, -half, z}, {half, half, z});
+  add_triangle(mesh, {-half, -half, z}, {half, half, z}, {-half, half, z});
+}
+
+TEST(VisibleParts, WhatOthersHideTogetherIsLeftOut) {
+  Mesh mesh;
+  add_triangle(mesh, {-0.5f, -0.5f, 0}, {0.7f, -0.5f, 0}, {0, 0.5f, 0});  // behind both halves of the square
+  add_square(mesh, 1, 1);
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  const PaintOrder order = painter(surfaces, view_from_above(true));
+  EXPECT_EQ(order.polygons.size(), 3u);
+  EXPECT_THAT(ids_of(visible_parts(order)), testing::UnorderedElementsAre(1, 2));
+  // Glass hides nothing, nor do two together of which one is glass.
+  EXPECT_EQ(visible_parts(order, [](PrimitiveId id) { return id != 1; }).polygons.size(), 3u);
+}
+
+TEST(VisibleParts, WhatIsHiddenInPartIsCut) {
+  Mesh mesh;
+  add_triangle(mesh, {-1, -1, 0}, {1, -1, 0}, {-1, 1, 0});
+  add_triangle(mesh, {-1.5f, 0, 1}, {1.5f, 0, 1}, {0, 1.9f, 1});  // the half above y = 0, and more
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  const PaintOrder seen = visible_parts(painter(surfaces, view_from_above(true)));
+  ASSERT_EQ(seen.polygons.back().id, 1u);
+  double left = 0;
+  for (std::size_t i = 0; i + 1 < seen.polygons.size(); ++i) left += area_of(seen, i);
+  // 16 pixels a unit. Beside the cover's slanted side a corner of the lower triangle's upper half is seen.
+  EXPECT_GE(left, 256 * 1.5 - 1e-6);
+  EXPECT_LT(left, 256 * 1.75);
+}
+
+TEST(VisibleParts, ThePictureIsTheSame) {
+  std::size_t samples = 0, differing = 0;
+  for (const Kind kind : {Kind::soup, Kind::fan, Kind::shared_grid, Kind::sheets, Kind::through_eye})
+    for (std::uint64_t seed = 0; seed < seeds(4); ++seed) {
+      SCOPED_TRACE(seed);
+      Random random(seed + 40);
+      const Scene scene = scene_of(random_mesh(kind, kind == Kind::sheets ? 12 : 50, seed));
+      const Surfaces surfaces(scene);
+      const View view = random_view(random, 120, 90);
+      const PaintOrder order = painter(surfaces, view), seen = visible_parts(order);
+      const Visible whole = paint(surfaces, order), parts = paint(surfaces, seen);
+      for (std::size_t i = 0; i < whole.primitives.size(); ++i) {
+        differing += whole.primitives[i] != parts.primitives[i];
+        ++samples;
+      }
+      for (const PaintCorner& corner : seen.corners) {
+        EXPECT_GE(corner.at.x, -1e-3);
+        EXPECT_LE(corner.at.y, 90 + 1e-3);
+      }
+    }
+  // paint() covers from snapped corners: a sample between those and the true outline of what hides may be left open.
+  EXPECT_LT(double(differing), 1e-3 * double(samples));
+  EXPECT_GT(samples, 10000u);
+}
+
+TEST(VisibleParts, HemsReachUnderWhatHidesThem) {
+  Mesh mesh;
+  add_square(mesh, 1, 0);
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  const PaintOrder order = painter(surfaces, view_from_above(true)), hemmed = with_hems(order, 0.5);
+  ASSERT_EQ(hemmed.polygons.size(), 2u);
+  // The diagonal has one, under the other half; the outline of the square has none.
+  EXPECT_EQ(hemmed.polygons[0].corner_count, 5u);
+  EXPECT_EQ(hemmed.polygons[1].corner_count, 3u);
+  const double diagonal = 32 * std::sqrt(2.0);
+  EXPECT_NEAR(area_of(hemmed, 0), 512 + 0.5 * (diagonal - 1), 1e-9);
+  EXPECT_NEAR(area_of(hemmed, 1), 512, 1e-9);
+  // Under glass it would show.
+  EXPECT_EQ(with_hems(order, 0.5, [](PrimitiveId) { return false; }).polygons[0].corner_count, 3u);
+  EXPECT_THROW((void)with_hems(order, 0), Error);
+}
+
+TEST(VisibleParts, ThreadsChangeNothing) {
+  const Scene scene = scene_of(random_mesh(Kind::soup, 3000, 2));
+  const Surfaces surfaces(scene);
+  const PaintOrder order = painter(surfaces, frame(surfaces, 160, 120));
+  const PaintOrder one = visible_parts(order, {}, {.threads = 1}), three = visible_parts(order, {}, {.threads = 3});
+  EXPECT_EQ(ids_of(one), ids_of(three));
+  ASSERT_EQ(one.corners.size(), three.corners.size());
+  for (std::size_t i = 0; i < one.corners.size(); ++i) ASSERT_EQ(one.corners[i].at, three.corners[i].at);
+}
+
+}  // namespace
+}  // namespace frontmost::test
