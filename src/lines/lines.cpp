@@ -86,7 +86,7 @@ std::vector<DrawnPart> cut_all(const Candidates& candidates, const Occlusion& oc
     const auto cutter = cutters.borrow([&] { return std::make_unique<EdgeCutter>(occlusion); });
     for (std::size_t i = begin; i < end; ++i)
       cutter->cut(candidates.sighted(i), std::uint32_t(i), lists[begin / kEdgesPerPart]);
-    report_progress(execution, "lines", kCutFrom + (1 - kCutFrom) * double(done += end - begin) / double(count));
+    report_progress(execution, "lines", 1 - (1 - kCutFrom) * double(count - (done += end - begin)) / double(count));
   });
   return joined(lists);
 }

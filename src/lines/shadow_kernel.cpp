@@ -13,6 +13,7 @@
 #include "hwy/highway.h"
 // After foreach_target.h, for each target.
 #include "base/lanes-inl.h"
+#include "lines/vector3-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::lines_detail {
@@ -24,21 +25,7 @@ using V = hn::Vec<D>;
 using M = hn::Mask<D>;
 using DF = hn::CappedTag<float, 16>;
 
-struct Vector3 {
-  V x, y, z;
-};
-
-HWY_INLINE Vector3 Splat(const glm::dvec3& v) {
-  const D d;
-  return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
-}
-HWY_INLINE Vector3 Minus(const Vector3& a, const Vector3& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE Vector3 Abs(const Vector3& v) { return {hn::Abs(v.x), hn::Abs(v.y), hn::Abs(v.z)}; }
-HWY_INLINE V Dot(const Vector3& a, const Vector3& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
+using Vector3 = Lanes3<V>;
 
 /// As BoundedNormal.
 struct Normals {
@@ -110,8 +97,8 @@ HWY_INLINE void Ask(const OccluderBatch& batch, const SightedEdge& edge, const S
   const bool has_vertices = edge.slack == 0;
   const V from_vertex = hn::Set(d, has_vertices ? double(edge.from_on[0]) : -1.0);
   const V to_vertex = hn::Set(d, has_vertices ? double(edge.to_on[0]) : -1.0);
-  const Vector3 from = Splat(edge.from), to = Splat(edge.to);
-  const Vector3 axis = Splat(sight.is_parallel() ? sight.forward() : sight.eye());
+  const Vector3 from = Splat(D(), edge.from), to = Splat(D(), edge.to);
+  const Vector3 axis = Splat(D(), sight.is_parallel() ? sight.forward() : sight.eye());
   hidden.hides = hidden.open = 0;
   for (std::size_t i = 0; i < batch.count; i += hn::Lanes(d)) {
     Corner corner[3];

@@ -10,6 +10,7 @@
 #include "hwy/highway.h"
 // After foreach_target.h, for each target.
 #include "base/lanes-inl.h"
+#include "lines/vector3-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::lines_detail {
@@ -48,21 +49,7 @@ std::uint32_t Touching(const SpaceBoxes& boxes, std::size_t first, const Box& bo
                        {boxes.high[0].data() + first, boxes.high[1].data() + first, boxes.high[2].data() + first}, box);
 }
 
-struct Vector3 {
-  V x, y, z;
-};
-
-HWY_INLINE Vector3 Splat(const glm::vec3& v) {
-  const D d;
-  return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
-}
-HWY_INLINE Vector3 Minus(const Vector3& a, const Vector3& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE Vector3 Abs(const Vector3& v) { return {hn::Abs(v.x), hn::Abs(v.y), hn::Abs(v.z)}; }
-HWY_INLINE V Dot(const Vector3& a, const Vector3& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
+using Vector3 = Lanes3<V>;
 
 struct Plane {
   Vector3 corner, normal, size;
@@ -129,7 +116,7 @@ struct Lanes {
   /// Which may have corners on both sides of the probe's plane.
   HWY_INLINE M Straddles(const SpaceProbe& probe) const {
     const D d;
-    const Plane probe_plane{Splat(probe.corners[0]), Splat(probe.normal), Splat(probe.size)};
+    const Plane probe_plane{Splat(D(), probe.corners[0]), Splat(D(), probe.normal), Splat(D(), probe.size)};
     Sides sides{hn::FirstN(d, 0), hn::FirstN(d, 0)};
     for (int k = 0; k < 3; ++k) {
       const auto is = [&](std::uint32_t v) HWY_ATTR { return hn::Eq(vertex[k], hn::Set(DU(), v)); };
@@ -143,7 +130,7 @@ struct Lanes {
     const D d;
     const M has[3] = {Has(probe.vertices.x), Has(probe.vertices.y), Has(probe.vertices.z)};
     Sides sides{hn::FirstN(d, 0), hn::FirstN(d, 0)};
-    for (int k = 0; k < 3; ++k) sides.Add(Splat(probe.corners[k]), plane, has[k]);
+    for (int k = 0; k < 3; ++k) sides.Add(Splat(D(), probe.corners[k]), plane, has[k]);
     const M two = hn::Or(hn::Or(hn::And(has[0], has[1]), hn::And(has[1], has[2])), hn::And(has[2], has[0]));
     return hn::AndNot(two, sides.Both());
   }

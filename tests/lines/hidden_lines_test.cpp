@@ -64,6 +64,27 @@ TEST_P(EveryKind, IsHiddenWhereATriangleIsBefore) {
 
 INSTANTIATE_TEST_SUITE_P(Lines, EveryKind, testing::ValuesIn(all_kinds));
 
+TEST(Lines, TellProgressAndStopWhenAsked) {
+  const Scene scene = scene_of(random_mesh(Kind::soup, 3000, 5));
+  const Surfaces surfaces(scene);
+  const View view = frame(surfaces, 320, 240);
+  double last = 0;
+  Watch watch;
+  watch.progress = [&](std::string_view stage, double fraction) {
+    EXPECT_EQ(stage, "lines");
+    EXPECT_GE(fraction, last);
+    last = fraction;
+  };
+  (void)lines(surfaces, view, {}, {.threads = 1, .watch = &watch});
+  EXPECT_EQ(last, 1);
+  watch.progress = nullptr;
+  for (const int after : {0, 3, 10}) {
+    int asked = 0;
+    watch.cancelled = [&] { return asked++ >= after; };
+    EXPECT_THROW((void)lines(surfaces, view, {}, {.threads = 1, .watch = &watch}), Error);
+  }
+}
+
 TEST(Lines, ThreadsChangeNothing) {
   const Scene scene = scene_of(random_mesh(Kind::soup, 3000, 5));
   const Surfaces surfaces(scene);

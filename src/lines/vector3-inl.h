@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Vectors of three coordinates, many side by side.
+
+// Included once for every target.
+#if defined(FRONTMOST_LINES_VECTOR3_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FRONTMOST_LINES_VECTOR3_INL_H_
+#undef FRONTMOST_LINES_VECTOR3_INL_H_
+#else
+#define FRONTMOST_LINES_VECTOR3_INL_H_
+#endif
+
+#include <glm/glm.hpp>
+
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::lines_detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <class V>
+struct Lanes3 {
+  V x, y, z;
+};
+
+template <class D>
+HWY_INLINE Lanes3<hn::Vec<D>> Splat(D d, const glm::vec<3, hn::TFromD<D>>& v) {
+  return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
+}
+template <class V>
+HWY_INLINE Lanes3<V> Minus(const Lanes3<V>& a, const Lanes3<V>& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+template <class V>
+HWY_INLINE Lanes3<V> Abs(const Lanes3<V>& v) {
+  return {hn::Abs(v.x), hn::Abs(v.y), hn::Abs(v.z)};
+}
+/// In the order of glm::dot().
+template <class V>
+HWY_INLINE V Dot(const Lanes3<V>& a, const Lanes3<V>& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace frontmost::lines_detail
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard by target
