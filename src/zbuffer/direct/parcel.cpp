@@ -80,7 +80,7 @@ void Parcel::sort_by_tiles(ParcelColumns& sorted) {
   const auto place_of = [&](std::size_t i) {
     const SmallTiles t(from.tiles[i]);
     const int tile = (t.y0 - all.y0) * (all.x1 - all.x0 + 1) + t.x0 - all.x0;
-    return std::size_t(4 * tile + 2 * (t.y1 - t.y0) + (t.x1 - t.x0));
+    return 4 * std::size_t(tile) + std::size_t(2 * (t.y1 - t.y0) + (t.x1 - t.x0));
   };
   begin_.assign(4 * std::size_t(all.count()) + 1, 0);
   for (std::size_t i = 0; i < count; ++i) ++begin_[place_of(i) + 1];
