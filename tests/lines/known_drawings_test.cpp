@@ -77,6 +77,46 @@ TEST(KnownDrawings, ACubeFromTheFrontHidesItsBackEdgesBehindItsFrontOnes) {
   }
 }
 
+/// A profile in x and z that its first corner sees all of, from y = 0 to 1.
+Mesh prism(const std::vector<glm::vec2>& profile) {
+  Mesh mesh;
+  const auto at = [&](std::size_t i, float y) {
+    const glm::vec2& p = profile[i % profile.size()];
+    return glm::vec3(p.x, y, p.y);
+  };
+  for (std::size_t i = 0; i < profile.size(); ++i) {
+    add_quad(mesh, at(i, 0), at(i + 1, 0), at(i + 1, 1), at(i, 1));
+    if (i == 0 || i + 1 == profile.size()) continue;
+    add_triangle(mesh, at(0, 0), at(i, 0), at(i + 1, 0));
+    add_triangle(mesh, at(0, 1), at(i + 1, 1), at(i, 1));
+  }
+  return mesh;
+}
+
+TEST(KnownDrawings, StairsAndABracketHideThreeEdges) {
+  const std::vector<glm::vec2> stairs = {{0, 0}, {3, 0}, {3, 1}, {2, 1}, {2, 2}, {1, 2}, {1, 3}, {0, 3}};
+  const std::vector<glm::vec2> bracket = {{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}};
+  for (const std::vector<glm::vec2>& profile : {stairs, bracket})
+    for (const bool is_parallel : {false, true}) {
+      const Scene scene = scene_of(prism(profile));
+      View view = view_from({20, 25, 30}, is_parallel);
+      if (is_parallel) view.projection = make_orthographic(-4, 4, -4, 4, {0.5, 80});
+      const Drawing drawing = lines(Surfaces(scene), view);
+      EXPECT_EQ(drawing.edges.size(), 3 * profile.size());
+      ASSERT_EQ(drawing.parts.size(), drawing.edges.size());
+      std::size_t hidden = 0;
+      for (const DrawnPart& part : drawing.parts) {
+        // Steps rise away from the eye: hidden is what bottom, back and the far side have among themselves.
+        const DrawnEdge& edge = drawing.edges[part.edge];
+        const auto both = [&](int axis) { return edge.from[axis] == 0 && edge.to[axis] == 0; };
+        const bool is_behind = int(both(0)) + int(both(1)) + int(both(2)) == 2;
+        EXPECT_EQ(part.hidden_by != 0, is_behind);
+        hidden += part.hidden_by != 0;
+      }
+      EXPECT_EQ(hidden, 3u);
+    }
+}
+
 TEST(KnownDrawings, APlateCutsTheEdgesBehindItWhereItEnds) {
   // The square from -0.5 to 0.5 at z = 1 before that from -1 to 1 at z = 0, one shifted so that sides are cut in parts.
   Mesh mesh;
