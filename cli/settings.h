@@ -161,7 +161,8 @@ struct DrawingSettings {
   double margin = 10;  ///< millimetres
   std::vector<NamedView> views;
   std::optional<Layout> layout;
-  double crease_angle = 30;  ///< degrees
+  double crease_angle = 30;   ///< degrees
+  std::optional<double> pen;  ///< millimetres, of what is seen
   bool plot = false;
   std::optional<PageFormat> format;
   std::vector<std::string> outputs;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // frontmost lines: hidden-line drawings on paper, from the camera to the file.
 #include <fmt/format.h>
+#include <frontmost/curved.h>
+#include <frontmost/tessellate.h>
 
 #include <algorithm>
 
@@ -23,6 +25,7 @@ constexpr double gap_between_views = 15;     // millimetres
 constexpr double arc_tolerance = 0.01;       // millimetres
 constexpr double stroke_tolerance = 0.0005;  // millimetres: half of what coordinates are rounded to
 constexpr glm::ivec2 fine_grid{3840, 2160};  // shaped as render's default picture, for the same camera
+constexpr double fine_error = 0.2;           // of its pixels: about 0.01 mm on a sheet of A4
 constexpr std::string_view view_names[] = {"front", "back", "left", "right", "top", "bottom", "iso"};
 
 bool is_parallel(const Settings& s) { return s.view.orthographic || !s.drawing.views.empty(); }
@@ -89,9 +92,17 @@ DrawnView draw(const ViewSettings& settings, const Settings& all, const Surfaces
                const Execution& execution) {
   DrawnView result;
   const View view = resolve_view(settings, surfaces);
+  result.surfaces = &surfaces;
+  if (has_curved(surfaces.scene())) {
+    const double error = settings.tessellation_error.value_or(fine_error);
+    result.cut = std::make_unique<const Scene>(tessellate(surfaces.scene(), view, error));
+    result.own = std::make_unique<const Surfaces>(*result.cut, execution);
+    result.surfaces = result.own.get();
+  }
   LineOptions options;
   options.crease_angle = glm::radians(all.drawing.crease_angle);
-  result.drawing = lines(surfaces, view, options, execution);
+  options.outlines = all.drawing.style == DrawingSettings::Style::figure;
+  result.drawing = lines(*result.surfaces, view, options, execution);
   const Projection& p = view.projection;
   if (p.orthographic) result.millimetres_per_pixel = (p.right - p.left) / view.width * unit_of(all);
   result.keeps_frame = is_framed(settings);
@@ -172,8 +183,7 @@ SheetPlan place(std::vector<DrawnView>& views, const Settings& settings, const S
 StrokeOptions stroke_options(const DrawingSettings& settings, double millimetres_per_pixel) {
   StrokeOptions options;
   options.with_hidden = settings.hidden != DrawingSettings::Hidden::none;
-  options.by_kind = false;
-  options.by_outline = settings.style == DrawingSettings::Style::figure;
+  options.by_kind = options.by_outline = settings.style == DrawingSettings::Style::figure;
   options.by_instance = !settings.plot;
   options.nearest_first = settings.plot;
   options.tolerance = std::clamp(stroke_tolerance / millimetres_per_pixel, 1e-4, 1.0);
@@ -184,6 +194,12 @@ StrokeOptions stroke_options(const DrawingSettings& settings, double millimetres
 LinePens pens_of(const DrawingSettings& settings) {
   LinePens pens = settings.style == DrawingSettings::Style::figure ? figure_pens() : technical_pens();
   if (settings.hidden == DrawingSettings::Hidden::thin) pens.hidden = thin_pen();
+  if (!settings.pen) return pens;
+  const double factor = *settings.pen / pens.seen.width;
+  for (Pen* const pen : {&pens.outline, &pens.seen, &pens.crease, &pens.hidden}) {
+    pen->width *= factor;
+    for (double& dash : pen->dashes) dash *= factor;  // standards count dashes in widths
+  }
   return pens;
 }
 
@@ -217,7 +233,7 @@ int run_lines(const Settings& given) {
   std::vector<SheetView> sheets;
   for (DrawnView& view : views) {
     const StrokeOptions options = stroke_options(settings.drawing, view.sheet.millimetres_per_pixel);
-    view.sheet.strokes = strokes(surfaces, view.drawing, options, execution);
+    view.sheet.strokes = strokes(*view.surfaces, view.drawing, options, execution);
     sheets.push_back(view.sheet);
   }
   const Page page = draw_sheet(surfaces, sheets, pens_of(settings.drawing), plan.size);

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <frontmost/sheet.h>
+#include <frontmost/surfaces.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,9 @@ namespace frontmost::cli {
 /// One view, from its camera to its strokes.
 struct DrawnView {
   std::string name;
+  std::unique_ptr<const Scene> cut;  ///< where curved surfaces were cut for this view
+  std::unique_ptr<const Surfaces> own;
+  const Surfaces* surfaces = nullptr;  ///< what the drawing's ids mean
   Drawing drawing;
   double millimetres_per_pixel = 1;  ///< at scale 1:1; in perspective of no meaning by itself
   bool keeps_frame = false;          ///< the camera was placed: the picture's rectangle counts, not what is in it

@@ -15,11 +15,12 @@ namespace frontmost {
 struct LinePens {
   Pen outline{0.5, {}};  ///< where the scene ends, seen
   Pen seen{0.5, {}};     ///< all other lines that are seen
+  Pen crease{0.5, {}};   ///< of those, creases; by themselves where strokes were made by kind
   Pen hidden{0.25, {}, {3, 0.75}};
 };
 /// ISO 128: what is seen 0.5 mm, hidden lines 0.25 mm in dashes of 3 mm with gaps of 0.75 mm.
 [[nodiscard]] LinePens technical_pens();
-/// For people: an outline of 0.7 mm, 0.25 mm within it, hidden lines of 0.13 mm.
+/// For people: an outline of 0.7 mm, contours within it of 0.35 mm, creases of 0.18 mm, hidden lines of 0.13 mm.
 [[nodiscard]] LinePens figure_pens();
 /// Hidden lines that are thin (0.13 mm) instead of dashed.
 [[nodiscard]] Pen thin_pen();

@@ -18,7 +18,7 @@ import xml.etree.ElementTree
 import zlib
 
 WIDTH, HEIGHT = 480, 270
-VIEWS = [["builtin:cubes"], ["builtin:cycle"], ["builtin:gallery"], ["builtin:teapot", "--crease-angle", "0"],
+VIEWS = [["builtin:cubes"], ["builtin:cycle"], ["builtin:gallery", "--tessellation-error", "1"], ["builtin:teapot", "--tessellation-error", "1", "--crease-angle", "0"],
          ["builtin:cubes", "--view", "iso", "--camera-orthographic"]]
 NOTHING = 0xFFFFFFFF
 REACH = 2  # pixels: half a pixel of rounding, half of a line, and smoothing

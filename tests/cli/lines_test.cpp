@@ -191,6 +191,20 @@ TEST_F(LinesCommand, TheSameBytesForAnyNumberOfThreads) {
   }
 }
 
+TEST_F(LinesCommand, PensAndTheirDashesGoTogether) {
+  succeed("lines cube.stl --view iso --camera-orthographic --hidden dashed --pen 1 -o drawing.svg");
+  EXPECT_THAT(read("drawing.svg"), HasSubstr("stroke-width=\".5\" stroke-linecap=\"round\" stroke-linejoin=\"round\" "
+                                             "stroke-dasharray=\"6 1.5\""));
+  EXPECT_THAT(read("drawing.svg"), HasSubstr("stroke-width=\"1\""));
+  expect_failure("lines cube.stl --pen 0 -o drawing.svg", 2, "--pen");
+}
+
+TEST_F(LinesCommand, CurvedModelsAreCutAsFinelyAsPaperShows) {
+  const json fine = succeed("lines builtin:teapot --json").json(),
+             coarse = succeed("lines builtin:teapot --tessellation-error 50 --json").json();
+  EXPECT_GT(fine["views"][0]["parts"].get<int>(), 3 * coarse["views"][0]["parts"].get<int>());
+}
+
 TEST_F(LinesCommand, NamesOfObjectsDoNoHarm) {
   write("odd.obj", box_obj(1, 1, 1, "<a>&\"\x01\xff]]>"));
   succeed("lines odd.obj -o odd.svg");

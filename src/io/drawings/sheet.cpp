@@ -3,27 +3,26 @@
 
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "io/drawings/arc.h"
 
 namespace frontmost {
 namespace {
 
+constexpr std::size_t layer_count = 3;
 enum LayerOf : std::size_t { hidden, seen, outline };
+const char* const layer_names[layer_count] = {"1 hidden", "2 visible", "3 outline"};
 
 /// The layers while they are filled: where the group of a view and an object is.
 class Sheet {
  public:
-  Sheet(const Surfaces& surfaces, const LinePens& pens)
-      : surfaces_(surfaces),
-        layers_{{"1 hidden"}, {"2 visible"}, {"3 outline"}},
-        pens_{pens.hidden, pens.seen, pens.outline} {}
+  Sheet(const Surfaces& surfaces, const LinePens& pens) : surfaces_(surfaces), pens_(pens) {
+    for (std::size_t i = 0; i < layer_count; ++i) layers_[i].name = layer_names[i];
+  }
 
   void draw(const SheetView& view, std::uint32_t number) {
-    for (const Stroke& stroke : view.strokes.strokes) {
-      const LayerOf layer = stroke.is_hidden ? hidden : stroke.is_outline ? outline : seen;
-      append(stroke, view, group_for(layer, view, number, stroke.instance));
-    }
+    for (const Stroke& stroke : view.strokes.strokes) append(stroke, view, group_for(stroke, view, number));
   }
 
   std::vector<PageLayer> take() {
@@ -34,10 +33,18 @@ class Sheet {
   }
 
  private:
-  PageGroup& group_for(LayerOf layer, const SheetView& view, std::uint32_t number, std::uint32_t instance) {
+  PageGroup& group_for(const Stroke& stroke, const SheetView& view, std::uint32_t number) {
+    const bool is_crease = stroke.kind == EdgeKind::crease;
+    const LayerOf layer = stroke.is_hidden ? hidden : stroke.is_outline ? outline : seen;
+    const Pen& pen = layer == hidden    ? pens_.hidden
+                     : layer == outline ? pens_.outline
+                     : is_crease        ? pens_.crease
+                                        : pens_.seen;
+    // Creases share a group with the other lines of their object unless their pen is another one.
+    const bool is_apart = layer == seen && is_crease && pens_.crease.width != pens_.seen.width;
     std::vector<PageGroup>& groups = layers_[layer].groups;
-    const auto [known, is_new] = places_[layer].try_emplace({number, instance}, groups.size());
-    if (is_new) groups.push_back({name_of(view, instance), pens_[layer]});
+    const auto [known, is_new] = places_[layer].try_emplace({number, stroke.instance, is_apart}, groups.size());
+    if (is_new) groups.push_back({name_of(view, stroke.instance), pen});
     return groups[known->second];
   }
 
@@ -58,16 +65,16 @@ class Sheet {
   }
 
   const Surfaces& surfaces_;
-  PageLayer layers_[3];
-  Pen pens_[3];
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> places_[3];
+  const LinePens& pens_;
+  PageLayer layers_[layer_count];
+  std::map<std::tuple<std::uint32_t, std::uint32_t, bool>, std::size_t> places_[layer_count];
 };
 
 }  // namespace
 
 LinePens technical_pens() { return {}; }
 
-LinePens figure_pens() { return {{0.7, {}}, {0.25, {}}, {0.13, {}, {1.5, 0.75}}}; }
+LinePens figure_pens() { return {{0.7, {}}, {0.35, {}}, {0.18, {}}, {0.13, {}, {1.5, 0.75}}}; }
 
 Pen thin_pen() { return {0.13, {}}; }
 

@@ -1,0 +1,12 @@
+#!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
+# The three drawings of docs/drawings.md: a technical sheet, a plotter drawing and a figure for a paper.
+#
+#     PATH=$PATH:build/release examples/drawings.sh [FOLDER]
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+cd "${1:-.}"
+python3 "$here/bracket.py" > bracket.obj
+frontmost lines bracket.obj --up +z --views front,top,left,iso --hidden dashed --page 200,175 --scale 1:1 -o sheet.svg -o sheet.dxf
+frontmost lines builtin:teapot --plot --crease-angle 180 --page 200,120 --pen 0.3 -o plot.svg -o plot.pdf
+frontmost lines builtin:gallery --style figure --page 160,100 --margin 3 -o figure.svg -o figure.pdf
