@@ -5,6 +5,7 @@
 #include <frontmost/tessellate.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "cli/command.h"
 #include "cli/console.h"
@@ -74,12 +75,10 @@ void check(const Settings& settings) {
 double unit_of(const Settings& settings) {
   constexpr double sizes[] = {1, 10, 1000, 25.4};
   if (settings.drawing.unit) return sizes[int(*settings.drawing.unit)];
-  const auto ends_in = [&](std::string_view suffix) {
-    const std::string& model = settings.model;
-    return model.size() > suffix.size() && model.compare(model.size() - suffix.size(), suffix.size(), suffix) == 0;
-  };
+  std::string suffix = std::filesystem::path(settings.model).extension().string();
+  for (char& c : suffix) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
   const bool is_gltf =
-      settings.load.format ? *settings.load.format == ModelFormat::gltf : ends_in(".glb") || ends_in(".gltf");
+      settings.load.format ? *settings.load.format == ModelFormat::gltf : suffix == ".glb" || suffix == ".gltf";
   return is_gltf ? 1000 : 1;
 }
 

@@ -83,7 +83,7 @@ double standard_scale(double most) {
   for (int decade = 0; decade < 10; ++decade)
     for (const int digit : {2, 5, 10})
       if (const double scale = 1 / (digit * std::pow(10.0, decade)); scale <= most * slack) return scale;
-  return 1e-10;
+  return most;  // beyond all standards, but it fits
 }
 
 }  // namespace frontmost::cli

@@ -18,6 +18,7 @@ namespace frontmost::cli {
 /// The other way round: "1:5", "2:1", "1:3.2".
 [[nodiscard]] std::string scale_text(double scale);
 /// The largest scale of ISO 5455 (1, 2 and 5 times powers of ten, and their reciprocals) that is not above `most`.
+/// From 5e9:1 to 1:1e10; `most` itself where it is below them.
 [[nodiscard]] double standard_scale(double most);
 
 }  // namespace frontmost::cli

@@ -48,7 +48,8 @@ class Sheet {
     }
     const auto count = double(segments.size());
     const double extent = std::max({high.x - low.x, high.y - low.y, 1e-6});
-    cell_ = std::max({length / count, extent / std::sqrt(count), extent / 4096});
+    // Never finer than what counts as one place: a drawing of one point would have ten million cells a side.
+    cell_ = std::max({length / count, extent / std::sqrt(count), extent / 4096, 8 * near});
     low_ = low - near;
     columns_ = int((high.x - low.x + 2 * near) / cell_) + 1;
     rows_ = int((high.y - low.y + 2 * near) / cell_) + 1;

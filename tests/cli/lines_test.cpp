@@ -59,6 +59,35 @@ class LinesCommand : public ProgramTest {
   }
 };
 
+TEST_F(LinesCommand, AModelBeyondAllStandardScalesStillFitsItsSheet) {
+  std::string huge = box_obj(40, 30, 20);
+  for (std::size_t at = 0; (at = huge.find(".000000", at)) != std::string::npos;) huge.replace(at, 7, "e20");
+  write("huge.obj", huge);
+  const json page = drawn("huge.obj --views front,top --page a4");
+  EXPECT_EQ(page["width"], 210);
+  for (const auto& [name, box] : boxes(page)) {
+    EXPECT_GE(box.left, 10) << name;
+    EXPECT_GE(box.top, 10) << name;
+    EXPECT_LE(box.right, 200) << name;
+    EXPECT_LE(box.bottom, 287) << name;
+  }
+}
+
+TEST_F(LinesCommand, GltfIsInMetresHoweverItsSuffixIsWritten) {
+  const std::string gltf =
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{"bufferView":0,"componentType":5126,)"
+      R"("count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":)"
+      // (0, 0, 0), (1, 0, 0), (0, 1, 0)
+      R"([{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+  for (const std::string name : {"metre.gltf", "METRE.GLTF"}) {
+    write(name, gltf);
+    const json page = drawn(name + " --view front --camera-orthographic --scale 1:10 --margin 0");
+    EXPECT_EQ(page["width"], 100) << name;
+    EXPECT_EQ(page["height"], 100) << name;
+  }
+}
+
 TEST_F(LinesCommand, ABoxAtFullScaleHasItsSidesInMillimetres) {
   const json page = drawn("box.obj --up +z --view front --camera-orthographic --scale 1:1 --margin 5 --hidden dashed");
   EXPECT_EQ(page["width"], 50);

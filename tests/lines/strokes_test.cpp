@@ -267,5 +267,16 @@ TEST(Strokes, NothingAndNonsense) {
     EXPECT_THROW((void)strokes(surfaces, {}, {.arc_tolerance = bad}), Error);
 }
 
+TEST(Strokes, NeedNoMemoryForADrawingOfNextToNothing) {
+  // A flat sliver seen along its length is a point: a grid for so little once had ten million cells a side.
+  for (const float width : {0.f, 1e-7f, 1e-5f, 1e-3f}) {
+    Mesh sliver;
+    add_triangle(sliver, {0, 0, -1}, {width, 0, 0}, {0, 0, 1});
+    EXPECT_LE(strokes_of(sliver, parallel_view({0, 0, 5})).strokes.size(), 1u) << width;
+    add_triangle(sliver, {0, 0, -1}, {0, 0, 0}, {0, width, 1});
+    EXPECT_LE(strokes_of(sliver, parallel_view({0, 0, 5})).strokes.size(), 2u) << width;
+  }
+}
+
 }  // namespace
 }  // namespace frontmost::test
