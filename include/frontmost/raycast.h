@@ -27,8 +27,9 @@ class RayIndex {
   /// O(n log n) for n triangles, in parallel; about 45 bytes a triangle kept. The same for any number of threads.
   explicit RayIndex(const Surfaces& surfaces, const Execution& execution = {});
   /// On two levels: a hierarchy for every mesh that has instances, in the mesh's own space, and one over the instances.
-  /// Ids and answers are to the bit those of an index over Surfaces(scene), which need not be made: memory and time grow
-  /// with the triangles of the meshes, and with the instances by a matrix each, however many triangles they repeat.
+  /// Ids and answers are to the bit those of an index over Surfaces(scene), which need not be made: memory and time
+  /// grow with the triangles of the meshes, and with the instances by a matrix each, however many triangles they
+  /// repeat; only triangles of alpha mode MASK are kept for every instance, 80 bytes each.
   /// Queries take longer, as boxes and triangles are placed in the world when a ray comes to them.
   /// (I. Wald, C. Benthin, P. Slusallek. Distributed Interactive Ray Tracing of Dynamic Scenes. 2003.)
   /// \throws Error as Surfaces(scene) does.
@@ -109,7 +110,7 @@ struct Segment {
 struct RayHit {
   PrimitiveId primitive = no_primitive;  ///< no_primitive: nothing is met
   double t = std::numeric_limits<double>::infinity();
-  bool is_front = false;  ///< met from the side that its corners run counter-clockwise on
+  bool is_front = false;  ///< met from the side that the mesh's corners run counter-clockwise on; see is_mirrored()
 
   [[nodiscard]] explicit operator bool() const { return primitive != no_primitive; }
 };
@@ -118,7 +119,8 @@ struct RayHit {
 // without any tolerance. A surface is met where it is passed through: a triangle that contains an end of the segment
 // or the origin of the ray is not met there, nor is one that lies along the line. A line through an edge or a corner
 // meets every triangle that has it, so nothing slips through a closed surface. What lies between two points does not
-// depend on which is asked from. Only t is rounded, to doubles; at equal t the lower id wins.
+// depend on which is asked from, but for the rims of holes, which are looked up at the rounded place. Only t is
+// rounded, to doubles; at equal t the lower id wins.
 // Queries with a coordinate that is not finite, rays without a direction and segments from a point to itself meet
 // nothing, and are clear. O(log n) each in ordinary scenes.
 

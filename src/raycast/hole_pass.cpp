@@ -4,6 +4,7 @@
 #include "raycast/hole_pass.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -47,14 +48,15 @@ class HolePasser {
     start_ = rays_.is_parallel() ? at : glm::dvec3(0);
     direction_ = rays_.is_parallel() ? rays_.forward() : at;
     nearest_ = {};
-    waiting_.assign(1, tree_.root);
+    waiting_.assign(1, {transform_.near, tree_.root});
     PlacedWalk walk(tree_);
     while (!waiting_.empty()) {
-      const std::uint32_t child = waiting_.back();
+      const auto [enter, child] = waiting_.back();
       waiting_.pop_back();
+      if (is_behind(enter)) continue;
       walk.Take(waiting_.size());
       if (walk.IsInstance(child))
-        waiting_.push_back(walk.Enter(child, waiting_.size()));
+        waiting_.push_back({enter, walk.Enter(child, waiting_.size())});
       else if (child & kLeafBit)
         meet_leaf(walk.Leaf(child), place);
       else
@@ -64,30 +66,47 @@ class HolePasser {
   }
 
  private:
+  /// A child, and where the ray enters its box.
+  struct Waiting {
+    double enter;
+    std::uint32_t child;
+  };
+
+  /// The nearest is taken first: what it shows hides most of the others.
   void look_into(const RayNode& node) {
+    const std::size_t others = waiting_.size();
     for (std::uint32_t i = 0; i < node.count; ++i) {
       glm::dvec3 low, high;
       for (int axis = 0; axis < 3; ++axis) low[axis] = node.low[axis][i], high[axis] = node.high[axis][i];
-      if (meets_box(low - rays_.eye(), high - rays_.eye())) waiting_.push_back(node.child[i]);
+      if (const auto enter = entry(low - rays_.eye(), high - rays_.eye())) waiting_.push_back({*enter, node.child[i]});
     }
+    std::sort(waiting_.begin() + std::ptrdiff_t(others), waiting_.end(),
+              [](const Waiting& a, const Waiting& b) { return a.enter > b.enter; });
   }
 
-  /// Of a box from the eye, between the planes and not behind what was found. Distances are along the viewing axis.
-  [[nodiscard]] bool meets_box(const glm::dvec3& low, const glm::dvec3& high) const {
+  /// Whether what begins there is behind what was found.
+  [[nodiscard]] bool is_behind(double enter) const {
+    return !(enter <= transform_.near || key_of_distance(transform_, enter) * (1 + 0x1p-20f) >= nearest_.key);
+  }
+
+  /// Where the ray enters a box, that is given from the eye, between the planes; none where it misses it or that is
+  /// behind what was found. Distances are along the viewing axis.
+  [[nodiscard]] std::optional<double> entry(const glm::dvec3& low, const glm::dvec3& high) const {
     const glm::dvec3 far = glm::max(glm::abs(low), glm::abs(high));
     const double pad = 0x1p-17 * std::max({far.x, far.y, far.z});
+    if (!std::isfinite(pad)) return transform_.near;  // where instances take boxes beyond the floats they say nothing
     double enter = transform_.near - pad, leave = transform_.far + pad;
     for (int axis = 0; axis < 3; ++axis) {
       const double a = low[axis] - pad - start_[axis], b = high[axis] + pad - start_[axis], d = direction_[axis];
       if (d == 0) {
-        if (a > 0 || b < 0) return false;
+        if (a > 0 || b < 0) return std::nullopt;
         continue;
       }
       enter = std::max(enter, std::min(a / d, b / d));
       leave = std::min(leave, std::max(a / d, b / d));
     }
-    if (!(enter <= leave)) return false;
-    return enter <= transform_.near || key_of_distance(transform_, enter) * (1 + 0x1p-20f) >= nearest_.key;
+    if (!(enter <= leave) || is_behind(enter)) return std::nullopt;
+    return enter;
   }
 
   void meet_leaf(const RayLeaf& leaf, const SamplePlace& place) {
@@ -136,7 +155,7 @@ class HolePasser {
   // Of the ray that is looked along.
   glm::dvec3 start_{0}, direction_{0};  ///< from the eye; one unit along the viewing axis
   Nearest nearest_;
-  std::vector<std::uint32_t> waiting_;
+  std::vector<Waiting> waiting_;
 };
 
 }  // namespace

@@ -13,6 +13,26 @@ bool is_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(
 
 glm::dvec3 rounded(const ExactVector& v) { return {v.high[0], v.high[1], v.high[2]}; }
 
+/// Where the plane of corners, which are counted from the origin, is met. What is met lies between the corners along
+/// every axis: of triangles that are slivers, or tiny against how far they are, rounding leaves no more than that. The
+/// signs are certain as well, so it cannot be allowed to say otherwise.
+double place_along(const Query& q, const glm::dvec3& along, const std::array<glm::dvec3, 3>& c) {
+  double nearest = std::numeric_limits<double>::denorm_min();
+  double farthest = q.is_segment ? 1.0 : std::numeric_limits<double>::max();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (along[axis] == 0) continue;
+    const double low = std::min({c[0][axis], c[1][axis], c[2][axis]}) / along[axis];
+    const double high = std::max({c[0][axis], c[1][axis], c[2][axis]}) / along[axis];
+    nearest = std::max(nearest, std::min(low, high));
+    farthest = std::min(farthest, std::max(low, high));
+  }
+  const glm::dvec3 n = glm::cross(c[1] - c[0], c[2] - c[0]);
+  const double t = glm::dot(n, c[0]) / glm::dot(n, along);
+  // NaN is what underflow leaves. The range may be empty by a rounding.
+  return std::max(std::min(std::isnan(t) ? nearest : std::max(t, nearest), farthest),
+                  std::numeric_limits<double>::denorm_min());
+}
+
 }  // namespace
 
 bool is_valid(const Query& q) {
@@ -38,12 +58,7 @@ RayHit meet(const Query& q, const std::array<glm::vec3, 3>& corners, PrimitiveId
     for (std::size_t k = 0; k < 3; ++k) e[k] = exact_difference(corners[k], q.end);
     if (determinant_sign(e[0], e[1], e[2]) != -facing) return {};
   }
-  const glm::dvec3 a = rounded(c[0]), n = glm::cross(rounded(c[1]) - a, rounded(c[2]) - a);
-  const double t = glm::dot(n, a) / glm::dot(n, rounded(along));
-  // The signs are certain, so rounding cannot be allowed to say otherwise; NaN is what underflow leaves.
-  const double least_t = std::numeric_limits<double>::denorm_min();
-  const double most_t = q.is_segment ? 1.0 : std::numeric_limits<double>::max();
-  return {id, std::min(std::max(std::isnan(t) ? 0.0 : t, least_t), most_t), facing < 0};
+  return {id, place_along(q, rounded(along), {rounded(c[0]), rounded(c[1]), rounded(c[2])}), facing < 0};
 }
 
 }  // namespace frontmost::raycast_detail

@@ -71,7 +71,8 @@ class QueryWalker {
   }
 
  private:
-  /// t = bound * inverse - start, widened by all rounding; the end of a segment is rounded too.
+  /// t = bound * inverse - start, widened by all rounding, also of numbers below the normal floats; the end of a
+  /// segment is rounded too.
   struct Slab {
     float inverse, start_enter, start_leave;
     bool rests, is_flipped;
@@ -93,7 +94,7 @@ class QueryWalker {
     // An axis along which the ray hardly moves says nothing, except where it does not move at all.
     const double reach = std::max(1.0, size) / std::abs(d);
     if (!(reach < 0x1p120) || std::isinf(d)) return {0, all, -all, d == 0, false};
-    const double inverse = 1 / d, slack = 0x1p-20 * size * std::abs(inverse);
+    const double inverse = 1 / d, slack = 0x1p-20 * size * std::abs(inverse) + 0x1p-146;
     return {float(inverse), float(o * inverse + slack), float(o * inverse - slack), false, inverse < 0};
   }
 
@@ -180,7 +181,7 @@ class QueryWalker {
   }
 
   /// Nothing that begins beyond a place along the ray is the nearest.
-  void EndAt(float place) { end_ = std::min(end_, axis_.t_of(place) * (1 + 0x1p-20f)); }
+  void EndAt(float place) { end_ = std::min(end_, axis_.t_of(place) * (1 + 0x1p-20f) + 0x1p-148f); }
 
   void Note(const RayLeaf& leaf, std::size_t lane, float from) {
     if (leaf.id[lane] == no_primitive) return;

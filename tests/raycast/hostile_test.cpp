@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cfenv>
 
 #include "ray_oracle.h"
@@ -69,6 +70,31 @@ TEST(HostileRayCast, HugeAndTinyCoordinates) {
     }
     expect_the_oracle(scene_of(mesh), from_the_front());
     expect_the_oracle(scene_of(mesh), from_the_front(1e-3, 1e30));
+  }
+}
+
+TEST(HostileRayCast, TrianglesFartherApartThanFloatsReach) {
+  Mesh mesh;
+  Random random(5);
+  constexpr int kCount = 400;
+  for (int i = 0; i < kCount; ++i) {
+    glm::vec3 p = random.point(1e37f);
+    p.x = i % 2 == 0 ? 3.2e38f : -3.2e38f;
+    const glm::vec3 second = p + random.point(1e37f), third = p + random.point(1e37f);
+    add_triangle(mesh, p, second, third);
+  }
+  const Scene scene = scene_of(mesh);
+  const RayIndex one_level{Surfaces(scene)}, two_levels(scene);
+  for (const RayIndex* const index : {&one_level, &two_levels}) {
+    EXPECT_EQ(index->triangle_count(), std::uint32_t(kCount));
+    for (PrimitiveId id = 0; id < PrimitiveId(kCount); ++id) {
+      const glm::vec3* const corner = &mesh.positions[3 * std::size_t(id)];
+      const glm::vec3 middle = corner[0] / 3.0f + corner[1] / 3.0f + corner[2] / 3.0f;
+      const std::vector<RayHit> hits =
+          all_hits(*index, Ray{{0, middle.y, middle.z}, {middle.x > 0 ? 1.0f : -1.0f, 0, 0}});
+      const bool is_met = std::any_of(hits.begin(), hits.end(), [&](const RayHit& hit) { return hit.primitive == id; });
+      EXPECT_TRUE(is_met) << id;
+    }
   }
 }
 

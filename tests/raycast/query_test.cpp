@@ -76,6 +76,44 @@ TEST(Query, WhatLiesAtAnEndDoesNotBlock) {
   EXPECT_FALSE(closest_hit(of.index, Ray{{-2, 0, 1}, {1, 0, 0}}));
 }
 
+TEST(Query, WhatIsTinyAgainstItsDistanceIsMetWhereItIs) {
+  // A pole whose ring is as wide as the sine of pi in floats, below the rounding of doubles seen from afar.
+  Mesh mesh;
+  add_triangle(mesh, {1.2e-17f, 0, 0}, {-1e-17f, 1e-18f, 1e-17f}, {-1e-17f, 0, -1e-17f});
+  add_triangle(mesh, {-1, 0.5f, -1}, {0, 0.5f, 2}, {2, 0.5f, 0});
+  const Indexed of(scene_of(mesh));
+  const RayIndex two_levels(of.scene);
+  const glm::vec3 origin(0.3f, 0.7f, 0.2f);
+  for (const RayIndex* const index : {&of.index, &two_levels}) {
+    const std::vector<RayHit> all = all_hits(*index, Ray{origin, -origin});
+    ASSERT_EQ(all.size(), 2u);
+    EXPECT_EQ(all[0].primitive, 1u);
+    EXPECT_NEAR(all[1].t, 1, 1e-15);
+    EXPECT_EQ(closest_hit(*index, Ray{origin, -origin}).primitive, 1u);
+    EXPECT_EQ(closest_hit(*index, Segment{origin, -origin}).primitive, 1u);
+  }
+}
+
+TEST(Query, TheLengthOfADirectionSaysNothing) {
+  Mesh mesh = random_mesh(Kind::soup, 2000, 3);
+  for (glm::vec3& p : mesh.positions) p *= 0x1p-20f;
+  const Indexed of(scene_of(mesh));
+  Random random(4);
+  int met = 0;
+  for (int i = 0; i < 500; ++i) {
+    const glm::vec3 origin = random.point(0x1p-20f), direction = random.point(1);
+    const RayHit expected = closest_hit(of.index, Ray{origin, direction});
+    met += bool(expected);
+    // Powers of two: the same line, to the bit.
+    for (const float length : {0x1p-100f, 0x1p-40f, 0x1p100f, 0x1p120f, 0x1p127f}) {
+      const Ray ray{origin, direction * length};
+      EXPECT_EQ(closest_hit(of.index, ray).primitive, expected.primitive) << length;
+      EXPECT_EQ(closest_hit(of.index, ray).t * double(length), expected.t) << length;
+    }
+  }
+  EXPECT_GT(met, 200);
+}
+
 TEST(Query, NonsenseMeetsNothing) {
   const Indexed of(floors({0})), empty{Scene{}};
   const glm::vec3 origin(0.5f, -0.25f, 1), down(0, 0, -1);

@@ -68,7 +68,8 @@ struct Binning {
     }
   }
   [[nodiscard]] int operator()(const glm::vec3& centre, int axis) const {
-    return std::min(int((centre[axis] - origin[axis]) * scale[axis]), kBins - 1);
+    // In this order NaN, which differences beyond the floats leave, counts as 0.
+    return std::min(int(std::max(0.0f, (centre[axis] - origin[axis]) * scale[axis])), kBins - 1);
   }
 };
 
