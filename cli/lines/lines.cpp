@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "cli/command.h"
 #include "cli/console.h"
@@ -27,6 +28,8 @@ constexpr double arc_tolerance = 0.01;       // millimetres
 constexpr double stroke_tolerance = 0.0005;  // millimetres: half of what coordinates are rounded to
 constexpr glm::ivec2 fine_grid{3840, 2160};  // shaped as render's default picture, for the same camera
 constexpr double fine_error = 0.2;           // of its pixels: about 0.01 mm on a sheet of A4
+constexpr double coarsest_error = 10;
+constexpr double most_fine_triangles = 2e6;  // seconds to draw
 constexpr std::string_view view_names[] = {"front", "back", "left", "right", "top", "bottom", "iso"};
 
 bool is_parallel(const Settings& s) { return s.view.orthographic || !s.drawing.views.empty(); }
@@ -87,14 +90,24 @@ bool is_framed(const ViewSettings& s) {
   return s.pose || s.camera_index || s.position || s.intrinsics || s.resolution || s.zoom != 1;
 }
 
+/// As fine as paper shows it, or coarser where the eye is so near that this is beyond measure. None where no fineness
+/// that looks well can be had: the model's own triangles look better.
+std::optional<double> tessellation_error(const ViewSettings& settings, const Scene& scene, const View& view) {
+  if (settings.tessellation_error) return settings.tessellation_error;
+  for (double error = fine_error; error <= coarsest_error; error *= 2)
+    if (tessellated_count(scene, view, error) <= most_fine_triangles) return error;
+  return std::nullopt;
+}
+
 DrawnView draw(const ViewSettings& settings, const Settings& all, const Surfaces& surfaces,
                const Execution& execution) {
   DrawnView result;
   const View view = resolve_view(settings, surfaces);
   result.surfaces = &surfaces;
-  if (has_curved(surfaces.scene())) {
-    const double error = settings.tessellation_error.value_or(fine_error);
-    result.cut = std::make_unique<const Scene>(tessellate(surfaces.scene(), view, error));
+  std::optional<double> error;
+  if (has_curved(surfaces.scene())) error = tessellation_error(settings, surfaces.scene(), view);
+  if (error) {
+    result.cut = std::make_unique<const Scene>(tessellate(surfaces.scene(), view, *error));
     result.own = std::make_unique<const Surfaces>(*result.cut, execution);
     result.surfaces = result.own.get();
   }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontmost/tessellate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <set>
 
 #include "base/float_environment.h"
 #include "scene/shapes.h"
@@ -47,31 +50,63 @@ Mesh make_triangles(const Mesh& curved, const MeshLevel& level) {
   return mesh;
 }
 
-/// Gives every instance of a curved mesh the tessellation that it needs, and shares those that are alike.
+/// How fine each curved mesh has to be where, known before anything is made; instances that are alike share.
+class Plan {
+ public:
+  using Key = std::pair<std::uint32_t, MeshLevel>;  ///< a mesh, and how fine
+
+  Plan(const Scene& scene, const View& view, double pixels) {
+    if (!(pixels > 0))
+      throw Error(ErrorCode::bad_argument, "tessellation error: " + std::to_string(pixels) + " pixels is not above 0");
+    validate(scene);
+    validate(view);
+    const ScreenTolerance tolerance(view, pixels);
+    for (const Instance& instance : scene.instances) {
+      counts_.push_back(triangles_);
+      keys_.emplace_back();
+      if (!scene.meshes[instance.mesh].is_curved()) continue;
+      const MeshLevel level = level_of(scene.meshes[instance.mesh], instance.world_from_mesh, tolerance);
+      keys_.back().emplace(instance.mesh, level);
+      if (seen_.insert(*keys_.back()).second) triangles_ += level.triangle_count();
+      counts_.back() = triangles_;
+    }
+  }
+  /// None where the instance is not of a curved mesh.
+  [[nodiscard]] const std::optional<Key>& key(std::size_t instance) const { return keys_[instance]; }
+  [[nodiscard]] double triangle_count() const { return triangles_; }
+
+  void check_limit(const Scene& scene) const {
+    const auto over = std::find_if(counts_.begin(), counts_.end(), [](double n) { return !(n <= kMostTriangles); });
+    if (over == counts_.end()) return;
+    const auto instance = std::size_t(over - counts_.begin());
+    throw Error(ErrorCode::limit_exceeded, scene.name + ": instance " + std::to_string(instance) + ", mesh " +
+                                               std::to_string(scene.instances[instance].mesh) +
+                                               ": so small a tessellation error takes more than 2^26 triangles");
+  }
+
+ private:
+  std::vector<std::optional<Key>> keys_;  ///< by instance
+  std::vector<double> counts_;            ///< triangles made for it and those before
+  std::set<Key> seen_;
+  double triangles_ = 0;
+};
+
+/// Gives every instance of a curved mesh the tessellation that it needs.
 class Tessellator {
  public:
-  Tessellator(const Scene& scene, const ScreenTolerance& tolerance)
-      : out_(scene), tolerance_(tolerance), is_made_(scene.meshes.size()) {}
+  explicit Tessellator(const Scene& scene) : out_(scene), is_made_(scene.meshes.size()) {}
 
-  void place(std::uint32_t number) {
-    Instance& instance = out_.instances[number];
-    const std::uint32_t mesh = instance.mesh;
-    if (!out_.meshes[mesh].is_curved()) return;
-    const auto key = std::make_pair(mesh, level_of(out_.meshes[mesh], instance.world_from_mesh, tolerance_));
+  void place(std::uint32_t number, const Plan::Key& key) {
     const auto [made, is_new] = made_.try_emplace(key, 0u);
-    if (is_new) made->second = make(number, mesh, key.second);
-    instance.mesh = made->second;
+    if (is_new) made->second = make(key);
+    out_.instances[number].mesh = made->second;
   }
   [[nodiscard]] Scene take() { return std::move(out_); }
 
  private:
   /// The first takes the place of the mesh itself.
-  std::uint32_t make(std::uint32_t instance, std::uint32_t mesh, const MeshLevel& level) {
-    triangles_ += level.triangle_count();
-    if (!(triangles_ <= kMostTriangles))
-      throw Error(ErrorCode::limit_exceeded, out_.name + ": instance " + std::to_string(instance) + ", mesh " +
-                                                 std::to_string(mesh) +
-                                                 ": so small a tessellation error takes more than 2^26 triangles");
+  std::uint32_t make(const Plan::Key& key) {
+    const auto& [mesh, level] = key;
     Mesh triangles = make_triangles(out_.meshes[mesh], level);
     if (is_made_[mesh]) {
       out_.meshes.push_back(std::move(triangles));
@@ -83,23 +118,24 @@ class Tessellator {
   }
 
   Scene out_;
-  const ScreenTolerance& tolerance_;
-  double triangles_ = 0;
-  std::vector<bool> is_made_;                                          ///< of the scene's meshes
-  std::map<std::pair<std::uint32_t, MeshLevel>, std::uint32_t> made_;  ///< which mesh it became
+  std::vector<bool> is_made_;                ///< of the scene's meshes
+  std::map<Plan::Key, std::uint32_t> made_;  ///< which mesh it became
 };
 
 }  // namespace
 
-Scene tessellate(const Scene& scene, const View& view, double pixels) {
-  if (!(pixels > 0))
-    throw Error(ErrorCode::bad_argument, "tessellation error: " + std::to_string(pixels) + " pixels is not above 0");
-  validate(scene);
-  validate(view);
+double tessellated_count(const Scene& scene, const View& view, double pixels) {
   const IeeeScope ieee;
-  const ScreenTolerance tolerance(view, pixels);
-  Tessellator tessellator(scene, tolerance);
-  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) tessellator.place(i);
+  return Plan(scene, view, pixels).triangle_count();
+}
+
+Scene tessellate(const Scene& scene, const View& view, double pixels) {
+  const IeeeScope ieee;
+  const Plan plan(scene, view, pixels);
+  plan.check_limit(scene);
+  Tessellator tessellator(scene);
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
+    if (plan.key(i)) tessellator.place(i, *plan.key(i));
   return tessellator.take();
 }
 

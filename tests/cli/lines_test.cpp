@@ -210,6 +210,16 @@ TEST_F(LinesCommand, ThePicturesFrameIsThePageWhereTheCameraIsPlaced) {
   EXPECT_NEAR(box.top, 50 - half, 0.01);
 }
 
+TEST_F(LinesCommand, CurvedModelsAreDrawnFromWithin) {
+  const json page = drawn("builtin:teapot --camera-position 0,1.5,0 --camera-direction +x");
+  EXPECT_FALSE(boxes(page).empty());
+  // What the user asks for is not made coarser.
+  const Outcome refused = run({"lines", "builtin:teapot", "--camera-position", "0,1.5,0", "--camera-direction", "+x",
+                               "--tessellation-error", "0.001", "-o", "refused.svg"});
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.err, HasSubstr("so small a tessellation error"));
+}
+
 TEST_F(LinesCommand, TheSameBytesForAnyNumberOfThreads) {
   for (const char* const format : {"svg", "pdf", "dxf", "json"}) {
     const std::string name = std::string("a.") + format, other = std::string("b.") + format;

@@ -218,6 +218,10 @@ TEST(Tessellation, GivesInstancesWhatEachNeedsAndSharesTheRest) {
   EXPECT_GT(cut.meshes[0].triangles.size(), 4 * cut.meshes[2].triangles.size());
   EXPECT_EQ(cut.meshes[1].positions, scene.meshes[1].positions);
   EXPECT_TRUE(cut.meshes[2].is_curved());
+  // What is shared counts once, and what is not curved not at all.
+  const double made = double(cut.meshes[0].triangles.size() + cut.meshes[2].triangles.size());
+  EXPECT_GE(tessellated_count(scene, looking_at_origin({0, 1, 9}), 0.2), made);
+  EXPECT_LT(tessellated_count(scene, looking_at_origin({0, 1, 9}), 0.2), 1.1 * made);
   EXPECT_NO_THROW(validate(cut));
 }
 
@@ -253,6 +257,7 @@ TEST(Tessellation, RefusesWhatCannotBe) {
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::limit_exceeded);
   }
+  EXPECT_GT(tessellated_count(teapot, view, 1e-9), 1 << 26);
 }
 
 TEST(Tessellation, SurvivesWhatIsNoSurface) {
