@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
-#include "lines/strokes_parts.h"
+#include "lines/strokes/parts.h"
 
 namespace frontmost::lines_detail {
 namespace {

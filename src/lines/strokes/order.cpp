@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lines/strokes_parts.h"
+#include "lines/strokes/parts.h"
 
 namespace frontmost::lines_detail {
 namespace {

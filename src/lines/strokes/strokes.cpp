@@ -6,7 +6,7 @@
 
 #include "base/float_environment.h"
 #include "base/parallel.h"
-#include "lines/strokes_parts.h"
+#include "lines/strokes/parts.h"
 
 namespace frontmost {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <optional>
 
-#include "lines/strokes_parts.h"
+#include "lines/strokes/parts.h"
 
 namespace frontmost::lines_detail {
 namespace {
