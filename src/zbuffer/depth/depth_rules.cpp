@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "zbuffer/depth_rules.h"
+#include "zbuffer/depth/depth_rules.h"
 
 #include <algorithm>
 #include <cmath>

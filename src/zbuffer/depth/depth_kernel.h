@@ -5,7 +5,7 @@
 #include <span>
 
 #include "view/screen_cutout.h"
-#include "zbuffer/depth_rules.h"
+#include "zbuffer/depth/depth_rules.h"
 #include "zbuffer/placed_triangles.h"
 
 namespace frontmost::zbuffer_detail {

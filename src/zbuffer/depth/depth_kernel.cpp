@@ -4,14 +4,14 @@
 // Coverage and keys as in tile_kernel.cpp: edge values shifted right by 8, so that a pixel's step is -dy or dx; keys
 // (k0 + dx*gx) + dy*gy, limited to the triangle's own.
 
-#include "zbuffer/depth_kernel.h"
+#include "zbuffer/depth/depth_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "zbuffer/depth_kernel.cpp"
+#define HWY_TARGET_INCLUDE "zbuffer/depth/depth_kernel.cpp"
 #include "base/isa.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
-#include "zbuffer/depth_batches-inl.h"
+#include "zbuffer/depth/depth_batches-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {

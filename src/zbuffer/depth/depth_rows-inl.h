@@ -17,7 +17,7 @@
 
 #include "hwy/highway.h"
 #include "zbuffer/batch-inl.h"
-#include "zbuffer/depth_kernel.h"
+#include "zbuffer/depth/depth_kernel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {

@@ -15,8 +15,8 @@
 
 #include "hwy/highway.h"
 #include "zbuffer/batch-inl.h"
-#include "zbuffer/depth_kernel.h"
-#include "zbuffer/depth_rows-inl.h"
+#include "zbuffer/depth/depth_kernel.h"
+#include "zbuffer/depth/depth_rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {
