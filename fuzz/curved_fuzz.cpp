@@ -8,7 +8,7 @@
 
 #include "scene/bezier_patch.h"
 #include "support/geometry_fuzz.h"
-#include "view/tessellation_level.h"
+#include "view/tessellate/level.h"
 
 using namespace frontmost;
 

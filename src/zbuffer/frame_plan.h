@@ -6,7 +6,7 @@
 
 #include "zbuffer/cull.h"
 #include "zbuffer/record_lists.h"
-#include "zbuffer/tile_kernel.h"
+#include "zbuffer/tile/tile_kernel.h"
 
 namespace frontmost::zbuffer_detail {
 

@@ -12,7 +12,7 @@
 #include "frontmost/surfaces.h"
 #include "scene/bezier_patch.h"
 #include "scene/shapes.h"
-#include "view/patch_grid.h"
+#include "view/tessellate/patch_grid.h"
 
 namespace frontmost::test {
 namespace {

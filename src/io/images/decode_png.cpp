@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/images/decoders.h"
-#include "io/images/png_reader.h"
+#include "io/images/png/reader.h"
 
 namespace frontmost::detail {
 

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "zbuffer/tile_lists.h"
+#include "zbuffer/tile/tile_lists.h"
 #include "zbuffer/triangle_records.h"
 
 namespace frontmost::zbuffer_detail {

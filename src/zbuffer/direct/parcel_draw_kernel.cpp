@@ -10,9 +10,9 @@
 #include "hwy/highway.h"
 // After Highway: a block of its own.
 #include "base/compactor-inl.h"
-#include "zbuffer/large_triangles-inl.h"
-#include "zbuffer/small_triangles-inl.h"
-#include "zbuffer/tile_buffer-inl.h"
+#include "zbuffer/tile/large_triangles-inl.h"
+#include "zbuffer/tile/small_triangles-inl.h"
+#include "zbuffer/tile/tile_buffer-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {

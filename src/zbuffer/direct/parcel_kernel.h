@@ -6,7 +6,7 @@
 
 #include "zbuffer/direct/parcel.h"
 #include "zbuffer/place_kernel.h"
-#include "zbuffer/tile.h"
+#include "zbuffer/tile/tile.h"
 
 namespace frontmost::zbuffer_detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/images/png_reader.h"
+#include "io/images/png/reader.h"
 
 #include <bit>
 #include <csetjmp>

@@ -6,7 +6,7 @@
 
 #include "surfaces/cluster_set.h"
 #include "zbuffer/cull.h"
-#include "zbuffer/tile.h"
+#include "zbuffer/tile/tile.h"
 #include "zbuffer/triangle_records.h"
 
 namespace frontmost::zbuffer_detail {

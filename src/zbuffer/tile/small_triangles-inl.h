@@ -12,8 +12,8 @@
 
 #include "base/compactor-inl.h"
 #include "zbuffer/batch-inl.h"
-#include "zbuffer/large_triangles-inl.h"
-#include "zbuffer/tile_buffer-inl.h"
+#include "zbuffer/tile/large_triangles-inl.h"
+#include "zbuffer/tile/tile_buffer-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {

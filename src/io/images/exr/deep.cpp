@@ -7,7 +7,7 @@
 #include <OpenEXR/ImfPartType.h>
 
 #include "base/parallel.h"
-#include "io/images/exr_output.h"
+#include "io/images/exr/output.h"
 #include "io/images/formats.h"
 
 namespace frontmost::detail {

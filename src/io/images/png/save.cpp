@@ -7,8 +7,8 @@
 
 #include "image/srgb_pixels.h"
 #include "io/images/formats.h"
-#include "io/images/png_text.h"
-#include "io/images/png_write.h"
+#include "io/images/png/text.h"
+#include "io/images/png/write.h"
 
 namespace frontmost::detail {
 namespace {

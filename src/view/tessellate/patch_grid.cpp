@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "view/patch_grid.h"
+#include "view/tessellate/patch_grid.h"
 
 #include <algorithm>
 #include <cmath>

@@ -12,17 +12,17 @@
 // path evaluates exactly this, so they agree to the bit; and each rounding is monotone, so the corners of a block
 // bound the keys inside it.
 
-#include "zbuffer/tile_kernel.h"
+#include "zbuffer/tile/tile_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "zbuffer/tile_kernel.cpp"
+#define HWY_TARGET_INCLUDE "zbuffer/tile/tile_kernel.cpp"
 #include "base/isa.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
 #include "view/snap-inl.h"
-#include "zbuffer/large_triangles-inl.h"
-#include "zbuffer/small_triangles-inl.h"
-#include "zbuffer/tile_buffer-inl.h"
+#include "zbuffer/tile/large_triangles-inl.h"
+#include "zbuffer/tile/small_triangles-inl.h"
+#include "zbuffer/tile/tile_buffer-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {

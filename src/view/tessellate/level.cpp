@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "view/tessellation_level.h"
+#include "view/tessellate/level.h"
 
 #include <algorithm>
 #include <cmath>

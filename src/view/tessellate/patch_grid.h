@@ -3,7 +3,7 @@
 #pragma once
 
 #include "frontmost/scene.h"
-#include "view/tessellation_level.h"
+#include "view/tessellate/level.h"
 
 namespace frontmost {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "zbuffer/cull.h"
-#include "zbuffer/tile.h"
+#include "zbuffer/tile/tile.h"
 
 namespace frontmost::zbuffer_detail {
 

@@ -18,7 +18,7 @@
 #include "hwy/highway.h"
 #include "zbuffer/batch-inl.h"
 #include "zbuffer/cull.h"
-#include "zbuffer/tile.h"
+#include "zbuffer/tile/tile.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {

@@ -9,7 +9,7 @@
 
 #include "base/float_environment.h"
 #include "scene/shapes.h"
-#include "view/patch_grid.h"
+#include "view/tessellate/patch_grid.h"
 
 namespace frontmost {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/images/exr_header.h"
+#include "io/images/exr/header.h"
 
 #include <algorithm>
 #include <cstdint>

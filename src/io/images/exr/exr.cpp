@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "io/images/exr_header.h"
-#include "io/images/exr_output.h"
+#include "io/images/exr/header.h"
+#include "io/images/exr/output.h"
 #include "io/images/formats.h"
 
 namespace frontmost::detail {

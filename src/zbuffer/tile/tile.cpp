@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "zbuffer/tile.h"
+#include "zbuffer/tile/tile.h"
 
 namespace frontmost::zbuffer_detail {
 

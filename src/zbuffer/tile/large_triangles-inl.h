@@ -10,7 +10,7 @@
 #define FRONTMOST_ZBUFFER_LARGE_TRIANGLES_INL_H_
 #endif
 
-#include "zbuffer/tile_buffer-inl.h"
+#include "zbuffer/tile/tile_buffer-inl.h"
 #include "zbuffer/triangle_records.h"
 
 HWY_BEFORE_NAMESPACE();

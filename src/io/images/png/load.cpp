@@ -7,8 +7,8 @@
 
 #include "base/srgb.h"
 #include "io/images/formats.h"
-#include "io/images/png_reader.h"
-#include "io/images/png_text.h"
+#include "io/images/png/reader.h"
+#include "io/images/png/text.h"
 
 namespace frontmost::detail {
 namespace {
