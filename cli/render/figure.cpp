@@ -17,9 +17,9 @@ namespace {
 
 /// A pixel as style sheets define it, so that a figure is as large on a page as the picture in a browser.
 constexpr double kMillimetres = 25.4 / 96;
-/// Pixels that a polygon reaches under its neighbours, against the hairlines of viewers that blend rims; and
-/// millimetres of a line in its own colour where nothing hides a hem.
-constexpr double kHem = 1, kSeam = 0.05;
+/// Pixels that a polygon reaches under its neighbours, against the hairlines of viewers that blend rims. No lines
+/// around polygons: they make everything wider, in poppler by much more than they are wide.
+constexpr double kHem = 1;
 
 /// Nothing shows through a triangle.
 bool is_opaque(const Surfaces& surfaces, PrimitiveId id) {
@@ -71,8 +71,7 @@ Page page_of(const PaintOrder& order, const std::vector<glm::u8vec4>& colors, co
   PageLayer& layer = page.layers.emplace_back(PageLayer{"figure"});
   if (job.output.background) layer.groups.push_back(backdrop(*job.output.background, page));
   PageGroup& group = layer.groups.emplace_back(PageGroup{"surfaces", Pen{}});
-  group.pen.width = kSeam;
-  group.pen.takes_fill_color = true;
+  group.pen.width = 0;
   std::vector<glm::dvec2> outline;
   for (std::size_t i = 0; i < order.polygons.size(); ++i) {
     if (colors[i].a == 0) continue;

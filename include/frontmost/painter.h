@@ -88,10 +88,11 @@ struct PaintOrder {
 [[nodiscard]] PaintOrder visible_parts(const PaintOrder& order, const std::function<bool(PrimitiveId)>& hides = {},
                                        const Execution& execution = {});
 
-/// The same order with hems: a polygon reaches under what is painted later and lies beside it, by `width` pixels,
-/// wherever that hides the hem. So viewers that blend the rims of polygons show no hairlines of the background between
-/// neighbours, and no outline grows. For drawings: with a hem an outline is not convex, and paint() does not know it.
-/// Cost and `hides` as for visible_parts(). \throws Error bad_argument for a width of 0 or less, or over 100.
+/// The same order with hems: a polygon reaches under what is painted later and lies beside it, by `width` pixels or
+/// some part of it, wherever that hides the hem. So viewers that blend the rims of polygons show no hairlines of the
+/// background between neighbours, and no outline grows. For drawings: with a hem an outline is not convex, and paint()
+/// does not know it. Cost and `hides` as for visible_parts(). \throws Error bad_argument for a width of 0 or less, or
+/// over 100.
 [[nodiscard]] PaintOrder with_hems(const PaintOrder& order, double width,
                                    const std::function<bool(PrimitiveId)>& hides = {}, const Execution& execution = {});
 

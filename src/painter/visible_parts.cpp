@@ -192,10 +192,18 @@ PaintOrder map_polygons(const PaintOrder& order, const Scenery& scenery, const E
   return made;
 }
 
-/// What lies beside a side of an outline, by a width: narrower towards its ends, where neighbours are narrow too.
-std::array<PaintCorner, 4> hem(const PaintCorner& from, const PaintCorner& to, double width) {
+/// Hems that are tried, the first that is hidden is taken: part of the width, and how far from the ends they have it,
+/// in their width. Neighbours are narrow towards their corners, and may be narrow everywhere.
+struct HemShape {
+  double part, inset;
+};
+constexpr HemShape kHemShapes[] = {{1, 0.5}, {1, 2}, {0.25, 0.5}, {0.25, 2}, {0.0625, 1}};
+
+/// What lies beside a side of an outline.
+std::array<PaintCorner, 4> hem(const PaintCorner& from, const PaintCorner& to, double width, double inset) {
   const glm::dvec3 way = to.at - from.at;
-  const double length = glm::length(glm::dvec2(way)), inset = std::min(2 * width, 0.45 * length);
+  const double length = glm::length(glm::dvec2(way));
+  inset = std::min(inset * width, 0.45 * length);
   const glm::dvec3 along = way / length, out(-along.y * width, along.x * width, 0);
   return {from, {from.at + along * inset + out, true}, {to.at - along * inset + out, true}, to};
 }
@@ -223,8 +231,12 @@ PaintOrder with_hems(const PaintOrder& order, double width, const std::function<
       const PaintCorner &from = outline[i], &to = outline[i + 1 == outline.size() ? 0 : i + 1];
       hemmed.push_back(from);
       if (!scenery.hides(polygon) || glm::length(glm::dvec2(to.at - from.at)) < OutlineCutter::thin) continue;
-      const std::array<PaintCorner, 4> beside = hem(from, to, width);
-      if (looker.is_hidden(polygon, beside)) hemmed.insert(hemmed.end(), {beside[1], beside[2]});
+      for (const HemShape& shape : kHemShapes) {
+        const std::array<PaintCorner, 4> beside = hem(from, to, width * shape.part, shape.inset);
+        if (!looker.is_hidden(polygon, beside)) continue;
+        hemmed.insert(hemmed.end(), {beside[1], beside[2]});
+        break;
+      }
     }
     keep(hemmed);
   });

@@ -10,12 +10,13 @@ all ink must lie beside a border between two triangles. Rasterisers that are not
 """
 import pathlib
 import shutil
-import struct
 import subprocess
 import sys
 import tempfile
 import xml.etree.ElementTree
-import zlib
+
+sys.dont_write_bytecode = True
+from rasters import read_ids, read_png, read_pnm  # noqa: E402
 
 WIDTH, HEIGHT = 480, 270
 VIEWS = [["builtin:cubes"], ["builtin:cycle"], ["builtin:gallery", "--tessellation-error", "1"], ["builtin:teapot", "--tessellation-error", "1", "--crease-angle", "0"],
@@ -32,62 +33,6 @@ def run(*words):
     if done.returncode != 0:
         sys.exit(f"{' '.join(map(str, words))}: {done.stderr}")
     return done.stdout
-
-
-def rows_of_png(path):
-    """Grey values of an 8-bit PNG: rows of bytes."""
-    data, at, packed = path.read_bytes(), 8, b""
-    width = height = channels = 0
-    while at < len(data):
-        size, kind = struct.unpack(">I4s", data[at : at + 8])
-        if kind == b"IHDR":
-            width, height, bits, color = struct.unpack(">IIBB", data[at + 8 : at + 18])
-            assert bits == 8
-            channels = {0: 1, 2: 3, 4: 2, 6: 4}[color]
-        if kind == b"IDAT":
-            packed += data[at + 8 : at + 8 + size]
-        at += size + 12
-    raw, rows, above = zlib.decompress(packed), [], bytearray(width * channels)
-    for y in range(height):
-        start = y * (width * channels + 1)
-        kind, row = raw[start], bytearray(raw[start + 1 : start + 1 + width * channels])
-        for i in range(len(row)):
-            left = row[i - channels] if i >= channels else 0
-            corner = above[i - channels] if i >= channels else 0
-            if kind == 1:
-                row[i] = (row[i] + left) & 255
-            elif kind == 2:
-                row[i] = (row[i] + above[i]) & 255
-            elif kind == 3:
-                row[i] = (row[i] + (left + above[i]) // 2) & 255
-            elif kind == 4:
-                guess = left + above[i] - corner
-                near = min((abs(guess - left), 0, left), (abs(guess - above[i]), 1, above[i]),
-                           (abs(guess - corner), 2, corner))
-                row[i] = (row[i] + near[2]) & 255
-        rows.append(bytes(row[::channels]))
-        above = row
-    return rows
-
-
-def rows_of_pgm(path):
-    data = path.read_bytes()
-    fields, at = [], 0
-    while len(fields) < 4:
-        end = at
-        while data[end : end + 1] not in (b" ", b"\n", b"\t"):
-            end += 1
-        fields.append(data[at:end])
-        at = end + 1
-    width, height = int(fields[1]), int(fields[2])
-    return [data[at + y * width : at + (y + 1) * width] for y in range(height)]
-
-
-def ids_of(path):
-    data = path.read_bytes()
-    at = 10 + struct.unpack("<H", data[8:10])[0]
-    values = struct.unpack(f"<{WIDTH * HEIGHT}I", data[at:])
-    return [values[y * WIDTH : (y + 1) * WIDTH] for y in range(HEIGHT)]
 
 
 def borders(ids, counts=lambda a, b: a != b):
@@ -129,15 +74,15 @@ def check_view(program, view, folder):
     camera = [word for word in view if word not in ("--crease-angle", "0")]
     run(program, "render", *camera, *size, "--ids", f"object={folder}/objects.npy", "--ids",
         f"primitive={folder}/primitives.npy")
-    outlines = borders(ids_of(folder / "objects.npy"), ends)
-    edges = grown(borders(ids_of(folder / "primitives.npy")))
+    outlines = borders(read_ids(folder / "objects.npy", WIDTH, HEIGHT), ends)
+    edges = grown(borders(read_ids(folder / "primitives.npy", WIDTH, HEIGHT)))
     inks = {}
     if shutil.which("rsvg-convert"):
         run("rsvg-convert", "-w", WIDTH, "-h", HEIGHT, "-b", "white", folder / "a.svg", "-o", folder / "svg.png")
-        inks["librsvg"] = ink_of(rows_of_png(folder / "svg.png"))
+        inks["librsvg"] = ink_of(read_png(folder / "svg.png").channel(0))
     if shutil.which("pdftoppm"):
         run("pdftoppm", "-r", "25.4", "-gray", "-singlefile", folder / "a.pdf", folder / "pdf")
-        inks["poppler"] = ink_of(rows_of_pgm(folder / "pdf.pgm"))
+        inks["poppler"] = ink_of(read_pnm(folder / "pdf.pgm").rows)
     for name, ink in inks.items():
         missing, stray = outlines - grown(ink), ink - edges
         assert len(ink) > 500, f"{view}: {name}: hardly any ink"
