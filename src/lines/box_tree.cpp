@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "surfaces/hilbert.h"
 
 namespace frontmost::lines_detail {
 namespace {
@@ -23,7 +24,7 @@ std::uint32_t spread(std::uint32_t bits) {
 
 Box box_of(const WeldedMesh& mesh, std::size_t triangle) {
   Box box;
-  for (int k = 0; k < 3; ++k) box.include(glm::vec3(mesh.positions[mesh.triangles[triangle][k]]));
+  for (int k = 0; k < 3; ++k) box.include(mesh.positions.places()[mesh.triangles[triangle][k]]);
   return box;
 }
 
@@ -34,45 +35,58 @@ int exponent_of(const Box& box) {
   return std::clamp(exponent, -kExponents, kExponents - 1);
 }
 
-/// By exponent: 0 for nine tenths of all triangles, and for what is larger the steps of a factor of 4 from there. Asks
-/// every sixteenth triangle.
-std::array<std::uint32_t, 2 * kExponents> size_classes(const WeldedMesh& mesh) {
+/// Sizes of triangles by exponent.
+struct SizeClasses {
+  /// 0 for nine tenths of all triangles, and for what is larger the steps of a factor of 4 from there.
+  std::array<std::uint32_t, 2 * kExponents> of{};
+  int usual = 0;  ///< the exponent from which on they are larger
+};
+
+/// Asks every sixteenth triangle.
+SizeClasses size_classes(const WeldedMesh& mesh) {
   std::array<std::size_t, 2 * kExponents> counts{};
   std::size_t asked = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 16, ++asked)
     ++counts[std::size_t(exponent_of(box_of(mesh, t)) + kExponents)];
-  std::array<std::uint32_t, 2 * kExponents> classes{};
+  SizeClasses classes;
   std::size_t seen = 0;
   std::uint32_t above = 0;
   for (std::size_t e = 0; e < counts.size(); ++e) {
     if (10 * seen >= 9 * asked) ++above;
-    classes[e] = std::min(7u, above / 2);
+    if (above == 0) classes.usual = int(e) - kExponents;
+    classes.of[e] = std::min(7u, above / 2);
     seen += counts[e];
   }
   return classes;
 }
 
-/// G. Morton's curve: the class of size, then the middle of the box, as 30 bits.
+/// D. Hilbert's curve: the class of size, then the place of the box's middle, as 30 bits.
 class Curve {
  public:
   explicit Curve(const WeldedMesh& mesh) : classes_(size_classes(mesh)) {
     Box all;
-    for (const glm::dvec3& p : mesh.positions) all.include(glm::vec3(p));
+    for (const glm::vec3& p : mesh.positions.places()) all.include(p);
     low_ = glm::dvec3(all.low);
-    scale_ = kSteps / glm::max(glm::dvec3(all.high) - low_, glm::dvec3(1e-300));
+    const glm::dvec3 extent = glm::dvec3(all.high) - low_;
+    scale_ = kSteps / std::max({extent.x, extent.y, extent.z, 1e-300});
     for (std::uint32_t i = 0; i < spread_.size(); ++i) spread_[i] = spread(i);
   }
   [[nodiscard]] std::uint32_t place_of(const Box& box) const {
     const glm::dvec3 at = ((glm::dvec3(box.low) + glm::dvec3(box.high)) * 0.5 - low_) * scale_;
     const auto step = [&](double t) { return spread_[std::size_t(std::clamp(t, 0.0, kSteps))]; };
-    const std::uint32_t size = classes_[std::size_t(exponent_of(box) + kExponents)];
-    return size << 27 | step(at.x) | step(at.y) << 1 | step(at.z) << 2;
+    const std::uint32_t size = classes_.of[std::size_t(exponent_of(box) + kExponents)];
+    return size << 27 | hilbert_place(step(at.x) | step(at.y) << 1 | step(at.z) << 2, kBitsAnAxis);
   }
+  /// Makes most triangles as large as 1: the kernels take products of many lengths, and what is less than floats can
+  /// hold costs hundreds of cycles. A power of two rounds nothing; what it makes infinite is left open.
+  [[nodiscard]] float scale() const { return std::ldexp(1.0f, std::clamp(-classes_.usual, 0, kMostScale)); }
 
  private:
   static constexpr double kSteps = (1 << kBitsAnAxis) - 1;
-  std::array<std::uint32_t, 2 * kExponents> classes_;
-  glm::dvec3 low_{0}, scale_{0};
+  static constexpr int kMostScale = 60;
+  SizeClasses classes_;
+  glm::dvec3 low_{0};
+  double scale_ = 0;
   std::array<std::uint32_t, 1 << kBitsAnAxis> spread_;
 };
 
@@ -112,6 +126,7 @@ BoxTree::BoxTree(const WeldedMesh& mesh, const Execution& execution)
     for (std::size_t t = begin; t < end; ++t) keys[t] = std::uint64_t(curve.place_of(box_of(mesh, t))) << 32 | t;
   });
   sort_by_key(keys);
+  const float scale = curve.scale();
   parallel_for(execution, triangles_.numbers.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto number = std::uint32_t(keys[std::min(i, count - 1)]);
@@ -119,7 +134,8 @@ BoxTree::BoxTree(const WeldedMesh& mesh, const Execution& execution)
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t vertex = mesh.triangles[number][k];
         triangles_.vertices[k][i] = vertex;
-        for (int axis = 0; axis < 3; ++axis) triangles_.corners[3 * k + axis][i] = float(mesh.positions[vertex][axis]);
+        for (int axis = 0; axis < 3; ++axis)
+          triangles_.corners[3 * k + axis][i] = mesh.positions.places()[vertex][axis] * scale;
       }
     }
   });

@@ -24,12 +24,15 @@ class BoxTree {
   template <class Visitor>
   void visit_pairs(std::size_t group, const Visitor& visit) const {
     const std::size_t begin = group * kSpaceLanes;
-    const SpaceProbes probes(triangles_, begin);
+    SpaceProbes probes;
+    kernels_.set_probes(triangles_, begin, probes);
     visit_groups(group, [&](std::size_t other, const Box& other_box) {
       const std::size_t first = other * kSpaceLanes;
       SpaceMasks masks;
-      kernels_.crossing(triangles_, first, other_box, probes, masks);
-      for (std::size_t i = 0; i < kSpaceLanes && begin + i < triangles_.count; ++i) {
+      std::uint32_t found = kernels_.crossing(triangles_, first, other_box, probes, masks);
+      for (; found != 0; found &= found - 1) {
+        const auto i = std::size_t(std::countr_zero(found));
+        if (begin + i >= triangles_.count) break;
         std::uint32_t bits = masks[i];
         if (other == group) bits &= 0xFFFEu << i;
         for (; bits != 0; bits &= bits - 1) {

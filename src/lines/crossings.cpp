@@ -81,7 +81,7 @@ std::array<Meeting, 2> meetings(const WeldedMesh& mesh, const Face& face, const 
     const std::uint32_t p = face.vertices[sides[k][0]], q = face.vertices[sides[k][1]];
     const double from_p = std::abs(a.value), sum = from_p + std::abs(b.value);
     const double t = sum > 0 ? from_p / sum : 0.5;
-    const glm::dvec3 &from = mesh.positions[p], &to = mesh.positions[q];
+    const glm::dvec3 from = mesh.positions[p], to = mesh.positions[q];
     found[count++] = {{t <= 0.5 ? from + (to - from) * t : to + (from - to) * (1 - t), {p, q}}, p, q};
   }
   return found;

@@ -23,6 +23,27 @@ struct Side {
   bool is_forward;         ///< the triangle runs from the lower vertex to the upper
 };
 
+std::uint64_t key(const Side& side) { return std::uint64_t(side.upper) << 32 | side.opposite; }
+
+/// As many as most vertices have.
+constexpr std::size_t kFew = 12;
+
+/// By counting who comes before, pair by pair: nothing to guess for the processor. Equal keys stay in order.
+void sort_few(std::span<Side> sides) {
+  Side copy[kFew];
+  std::uint64_t keys[kFew];
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    copy[i] = sides[i];
+    keys[i] = key(sides[i]);
+  }
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    std::size_t before = 0;
+    for (std::size_t j = 0; j < i; ++j) before += keys[j] <= keys[i];
+    for (std::size_t j = i + 1; j < sides.size(); ++j) before += keys[j] < keys[i];
+    sides[before] = copy[i];
+  }
+}
+
 /// The sides of all edges, those of one lower vertex together.
 class SideTable {
  public:
@@ -57,10 +78,12 @@ class SideTable {
   /// Sorted by edge, then by opposite vertex. For different vertices at once.
   [[nodiscard]] std::span<Side> at(std::uint32_t vertex) {
     const std::span<Side> sides(sides_.data() + first_[vertex], first_[vertex + 1] - first_[vertex]);
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-      if (a.upper != b.upper) return a.upper < b.upper;
-      return a.opposite != b.opposite ? a.opposite < b.opposite : a.triangle < b.triangle;
-    });
+    if (sides.size() <= kFew)
+      sort_few(sides);
+    else
+      std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+        return key(a) != key(b) ? key(a) < key(b) : a.triangle < b.triangle;
+      });
     return sides;
   }
 
@@ -73,17 +96,18 @@ class Classifier {
  public:
   Classifier(const SeenMesh& seen, const Surfaces& surfaces, const LineOptions& options)
       : mesh_(seen.mesh),
-        facing_(seen.facing),
+        seen_(seen),
         surfaces_(surfaces),
         options_(options),
-        cosine_(std::cos(options.crease_angle)) {}
+        cosine_(std::cos(options.crease_angle)),
+        has_borders_(options.borders && !is_one_surface(surfaces.scene())) {}
 
   /// `sides` with different opposite vertices: a triangle that is there twice counts once.
   [[nodiscard]] std::optional<EdgeKind> kind_of(std::span<const Side> sides) const {
     if (sides.size() != 2) return options_.boundaries ? std::optional(EdgeKind::boundary) : std::nullopt;
     const int a = side_of(sides[0]), b = side_of(sides[1]);
     if (options_.silhouettes && (a * b > 0 || (a == 0) != (b == 0))) return EdgeKind::silhouette;
-    if (options_.borders && !is_one_surface(sides[0].triangle, sides[1].triangle)) return EdgeKind::border;
+    if (has_borders_ && !is_one_surface(sides[0].triangle, sides[1].triangle)) return EdgeKind::border;
     if (options_.creases && is_crease(sides[0], sides[1])) return EdgeKind::crease;
     return std::nullopt;
   }
@@ -101,8 +125,11 @@ class Classifier {
 
  private:
   /// Of the eye's plane through the edge: where the triangle lies, whichever way it is wound.
-  [[nodiscard]] int side_of(const Side& side) const { return facing_[side.triangle] * (side.is_forward ? 1 : -1); }
+  [[nodiscard]] int side_of(const Side& side) const { return seen_.facing[side.triangle] * (side.is_forward ? 1 : -1); }
 
+  static bool is_one_surface(const Scene& scene) {
+    return scene.instances.size() == 1 && scene.meshes[scene.instances[0].mesh].material_ids.empty();
+  }
   [[nodiscard]] bool is_one_surface(std::uint32_t a, std::uint32_t b) const {
     const PrimitiveSource p = surfaces_.source(mesh_.ids[a]), q = surfaces_.source(mesh_.ids[b]);
     if (p.instance != q.instance) return false;
@@ -111,27 +138,23 @@ class Classifier {
   }
 
   [[nodiscard]] bool is_crease(const Side& a, const Side& b) const {
-    const glm::uvec3& t = mesh_.triangles[a.triangle];
-    const Buffer<glm::dvec3>& at = mesh_.positions;
-    const FacePlane plane(at[t.x], at[t.y], at[t.z]);
     // Neighbours that run along their edge the same way are wound against each other.
-    const glm::dvec3 n = plane.normal(), m = normal(b.triangle) * (a.is_forward == b.is_forward ? -1.0 : 1.0);
-    const double along = glm::dot(n, m), size = std::sqrt(glm::dot(n, n) * glm::dot(m, m));
+    const glm::dvec3 &n = seen_.normals[a.triangle], &m = seen_.normals[b.triangle];
+    const double along = glm::dot(n, m) * (a.is_forward == b.is_forward ? -1.0 : 1.0);
+    const double size = std::sqrt(glm::dot(n, n) * glm::dot(m, m));
     if (along > cosine_ * size) return false;
-    return along <= 0 || plane.height(at[b.opposite]).sign != 0;
-  }
-
-  [[nodiscard]] glm::dvec3 normal(std::uint32_t triangle) const {
-    const glm::uvec3& t = mesh_.triangles[triangle];
-    const glm::dvec3& a = mesh_.positions[t.x];
-    return glm::cross(mesh_.positions[t.y] - a, mesh_.positions[t.z] - a);
+    if (along <= 0) return true;
+    const glm::uvec3& t = mesh_.triangles[a.triangle];
+    const Positions& at = mesh_.positions;
+    return FacePlane(at[t.x], at[t.y], at[t.z]).height(at[b.opposite]).sign != 0;
   }
 
   const WeldedMesh& mesh_;
-  const Buffer<std::int8_t>& facing_;
+  const SeenMesh& seen_;
   const Surfaces& surfaces_;
   const LineOptions& options_;
   const double cosine_;
+  const bool has_borders_;
 };
 
 /// `sides` are those of the edges whose lower vertex is v.

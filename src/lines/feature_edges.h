@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "frontmost/lines.h"
-#include "lines/welded_mesh.h"
-#include "view/sight.h"
+#include "lines/seen_mesh.h"
 
 namespace frontmost::lines_detail {
 
@@ -15,12 +14,6 @@ struct FeatureEdge {
   std::uint32_t from, to, left, right;
   EdgeKind kind;
   std::int8_t outer;  ///< as SightedEdge::outer
-};
-
-/// A mesh, and Sight::facing() of its triangles.
-struct SeenMesh {
-  const WeldedMesh& mesh;
-  const Buffer<std::int8_t>& facing;
 };
 
 /// In the order of their vertices. O(triangles).

@@ -16,19 +16,8 @@ namespace {
 
 using namespace lines_detail;
 
-constexpr std::size_t kTrianglesPerPart = 4096, kEdgesPerPart = 1024;
+constexpr std::size_t kEdgesPerPart = 1024;
 constexpr double kCutFrom = 0.3;  // of the progress
-
-Buffer<std::int8_t> facing_of(const WeldedMesh& mesh, const Sight& sight, const Execution& execution) {
-  Buffer<std::int8_t> facing(mesh.triangles.size());
-  parallel_for(execution, facing.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const glm::uvec3& t = mesh.triangles[i];
-      facing[i] = std::int8_t(sight.facing(mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]));
-    }
-  });
-  return facing;
-}
 
 /// All that is drawn, before it is cut.
 class Candidates {
@@ -101,14 +90,14 @@ Drawing lines(const Surfaces& surfaces, const View& view, const LineOptions& opt
   report_progress(execution, "lines", 0);
   const WeldedMesh mesh = weld(surfaces, execution);
   const Sight sight(view);
-  const Buffer<std::int8_t> facing = facing_of(mesh, sight, execution);
-  std::vector<FeatureEdge> features = find_features({mesh, facing}, surfaces, options, execution);
+  const SeenMesh seen = see(mesh, sight, execution);
+  std::vector<FeatureEdge> features = find_features(seen, surfaces, options, execution);
   report_progress(execution, "lines", 0.1);
   std::vector<Crossing> crossings;
   if (options.intersections) crossings = find_crossings(mesh, execution);
   const Candidates candidates(mesh, std::move(features), std::move(crossings));
   report_progress(execution, "lines", 0.2);
-  const OccluderGrid grid({mesh, facing}, view, execution);
+  const OccluderGrid grid(seen, view, execution);
   report_progress(execution, "lines", kCutFrom);
 
   Drawing drawing;

@@ -38,15 +38,14 @@ std::uint32_t ordered(float value) {
 
 /// What the grid is made of.
 struct OccluderGrid::Plan {
-  const WeldedMesh& mesh;
-  const Buffer<std::int8_t>& facing;
+  const SeenMesh& seen;
   const Sight sight;
   const Execution& execution;
   Buffer<glm::dvec3> on_grid;  ///< vertices in cells' units, z the planar distance
 };
 
 OccluderGrid::Outline OccluderGrid::outline_of(const Plan& plan, std::uint32_t triangle) const {
-  const glm::uvec3& corners = plan.mesh.triangles[triangle];
+  const glm::uvec3& corners = plan.seen.mesh.triangles[triangle];
   const double near = plan.sight.near();
   Outline outline;
   outline.nearest = infinite;
@@ -59,7 +58,8 @@ OccluderGrid::Outline OccluderGrid::outline_of(const Plan& plan, std::uint32_t t
     const glm::dvec3 &p = plan.on_grid[v], &q = plan.on_grid[w];
     if (p.z >= near) add(glm::dvec2(p), p.z);
     if ((p.z < near) == (q.z < near)) continue;
-    const glm::dvec3 a = plan.sight.in_eye(plan.mesh.positions[v]), b = plan.sight.in_eye(plan.mesh.positions[w]);
+    const glm::dvec3 a = plan.sight.in_eye(plan.seen.mesh.positions[v]),
+                     b = plan.sight.in_eye(plan.seen.mesh.positions[w]);
     glm::dvec3 cut = a + (b - a) * ((near - a.z) / (b.z - a.z));
     cut.z = near;
     add(glm::dvec2(plan.sight.to_screen(cut)) * scale_, near);
@@ -69,20 +69,30 @@ OccluderGrid::Outline OccluderGrid::outline_of(const Plan& plan, std::uint32_t t
 
 OccluderGrid::Footprint OccluderGrid::footprint_of(const Plan& plan, std::uint32_t triangle) const {
   Footprint none{glm::vec2(0), glm::vec2(0), std::numeric_limits<float>::infinity(), triangle};
-  if (plan.facing[triangle] == 0) return none;
-  const Outline outline = outline_of(plan, triangle);
-  if (outline.count == 0 || outline.nearest > plan.sight.far()) return none;
-  glm::dvec2 low(infinite), high(-infinite);
-  for (int i = 0; i < outline.count; ++i) {
-    low = glm::min(low, outline.corners[std::size_t(i)]);
-    high = glm::max(high, outline.corners[std::size_t(i)]);
+  if (plan.seen.facing[triangle] == 0) return none;
+  const glm::uvec3& corners = plan.seen.mesh.triangles[triangle];
+  const glm::dvec3 &a = plan.on_grid[corners.x], &b = plan.on_grid[corners.y], &c = plan.on_grid[corners.z];
+  glm::dvec3 low = glm::min(glm::min(a, b), c), high = glm::max(glm::max(a, b), c);
+  double nearest = widened(low.z, -1);
+  if (low.z < plan.sight.near()) {
+    const Outline outline = outline_of(plan, triangle);
+    if (outline.count == 0) return none;
+    nearest = outline.nearest;
+    low = glm::dvec3(infinite);
+    high = -low;
+    for (int i = 0; i < outline.count; ++i) {
+      const glm::dvec3 corner(outline.corners[std::size_t(i)], 0);
+      low = glm::min(low, corner);
+      high = glm::max(high, corner);
+    }
   }
-  low = {widened(low.x, -1), widened(low.y, -1)};
-  high = {widened(high.x, 1), widened(high.y, 1)};
+  if (nearest > plan.sight.far()) return none;
+  low = {widened(low.x, -1), widened(low.y, -1), 0};
+  high = {widened(high.x, 1), widened(high.y, 1), 0};
   if (!(low.x <= columns_ && low.y <= rows_ && high.x >= 0 && high.y >= 0)) return none;
   return {{rounded_down(low.x), rounded_down(low.y)},
           {rounded_up(high.x), rounded_up(high.y)},
-          std::min(rounded_down(outline.nearest), std::numeric_limits<float>::max()),
+          std::min(rounded_down(nearest), std::numeric_limits<float>::max()),
           triangle};
 }
 
@@ -134,7 +144,7 @@ void OccluderGrid::for_each_band(const Execution& execution, const Fill& fill) c
 
 /// Of what is seen, in the order of their first cells: what lies side by side on the screen does in memory.
 Buffer<OccluderGrid::Footprint> OccluderGrid::footprints_by_cell(const Plan& plan) const {
-  const std::size_t count = plan.mesh.triangles.size();
+  const std::size_t count = plan.seen.mesh.triangles.size();
   Buffer<Footprint> all(count);
   Buffer<std::uint32_t> cells(count);
   parallel_for(plan.execution, count, kPerPart, [&](std::size_t begin, std::size_t end) {
@@ -164,16 +174,16 @@ void OccluderGrid::make_occluders(const Plan& plan, const Buffer<Footprint>& foo
   parallel_for(plan.execution, footprints.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint32_t triangle = footprints[i].triangle;
-      glm::uvec3 v = plan.mesh.triangles[triangle];
-      int turn = plan.facing[triangle];
+      glm::uvec3 v = plan.seen.mesh.triangles[triangle];
+      int turn = plan.seen.facing[triangle];
       const auto order = [&](int a, int b) {
         if (v[a] < v[b]) return;
         std::swap(v[a], v[b]);
         turn = -turn;
       };
       order(0, 1), order(1, 2), order(0, 1);
-      const auto& at = plan.mesh.positions;
-      occluders_[i] = {{glm::vec3(at[v.x]), glm::vec3(at[v.y]), glm::vec3(at[v.z])},
+      const auto& at = plan.seen.mesh.positions.places();
+      occluders_[i] = {{at[v.x], at[v.y], at[v.z]},
                        {v.x, v.y, v.z},
                        turn,
                        triangle,
@@ -227,7 +237,7 @@ OccluderGrid::OccluderGrid(const SeenMesh& seen, const View& view, const Executi
   first_.assign(std::size_t(columns_) * std::size_t(rows_) + 1, 0);
 
   const WeldedMesh& mesh = seen.mesh;
-  Plan plan{mesh, seen.facing, Sight(view), execution, Buffer<glm::dvec3>(mesh.positions.size())};
+  Plan plan{seen, Sight(view), execution, Buffer<glm::dvec3>(mesh.positions.size())};
   parallel_for(execution, mesh.positions.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const glm::dvec3 p = plan.sight.to_screen(plan.sight.in_eye(mesh.positions[v]));

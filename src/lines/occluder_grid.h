@@ -6,10 +6,9 @@
 #include <array>
 #include <vector>
 
-#include "lines/feature_edges.h"
 #include "lines/occluder.h"
+#include "lines/seen_mesh.h"
 #include "lines/shadow_kernel.h"
-#include "lines/welded_mesh.h"
 
 namespace frontmost::lines_detail {
 

@@ -39,7 +39,7 @@ struct SpaceBoxes {
 /// Padded by repeating the last.
 struct SpaceTriangles {
   std::size_t count = 0;
-  Buffer<float> corners[9];
+  Buffer<float> corners[9];  ///< of any scale
   Buffer<std::uint32_t> vertices[3];
   Buffer<std::uint32_t> numbers;
 
@@ -57,22 +57,14 @@ struct SpaceTriangles {
   }
 };
 
-/// A triangle that others are held against.
-struct SpaceProbe {
-  Box box;
-  glm::vec3 corners[3];
-  glm::vec3 normal;  ///< of any length, each component to 2^-22 of `size`
-  glm::vec3 size;    ///< at least the absolute values that the normal's components are differences of
-  glm::uvec3 vertices;
-};
-/// Where products of floats underflow, this much more of `size` makes up for it.
+/// Where products of floats underflow, this much more of a normal's size makes up for it.
 inline constexpr float kLeastSize = 1e-32f;
-/// Sixteen of them, from `first` on.
+/// Sixteen triangles that others are held against, from `first` on.
 struct SpaceProbes {
-  SpaceProbe probes[kSpaceLanes];
+  std::size_t first;
   alignas(64) float low[3][kSpaceLanes], high[3][kSpaceLanes];  ///< their boxes
-
-  SpaceProbes(const SpaceTriangles& triangles, std::size_t first);
+  alignas(64) float normal[3][kSpaceLanes];                     ///< of any length, each component to 2^-22 of `size`
+  alignas(64) float size[3][kSpaceLanes];  ///< at least the absolute values that it is a difference of
 };
 
 /// By probe: triangle i of sixteen in bit i.
@@ -82,10 +74,12 @@ using SpaceMasks = std::array<std::uint16_t, kSpaceLanes>;
 struct SpaceKernels {
   /// Bit i: box first + i has a point in common with `box`.
   std::uint32_t (*touching)(const SpaceBoxes& boxes, std::size_t first, const Box& box);
+  void (*set_probes)(const SpaceTriangles& triangles, std::size_t first, SpaceProbes& probes);
   /// Triangles whose box touches a probe's, that share at most one vertex with it, and of which rounding does not rule
-  /// out that each has corners on both sides of the other's plane. `box` holds the sixteen triangles.
-  void (*crossing)(const SpaceTriangles& triangles, std::size_t first, const Box& box, const SpaceProbes& probes,
-                   SpaceMasks& masks);
+  /// out that each has corners on both sides of the other's plane. `box` holds the sixteen triangles. Returns which
+  /// probes have any, and sets their masks.
+  std::uint32_t (*crossing)(const SpaceTriangles& triangles, std::size_t first, const Box& box,
+                            const SpaceProbes& probes, SpaceMasks& masks);
 };
 [[nodiscard]] SpaceKernels space_kernels(Isa isa);
 

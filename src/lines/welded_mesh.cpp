@@ -107,18 +107,19 @@ Buffer<std::uint32_t> first_at_place(const Buffer<glm::vec3>& places, const Exec
 }
 
 /// By vertex of all instances, the number of its place; fills `positions`.
-Buffer<std::uint32_t> number_places(const Scene& scene, Buffer<glm::dvec3>& positions, const Execution& execution) {
+Buffer<std::uint32_t> number_places(const Scene& scene, Positions& positions, const Execution& execution) {
   const Buffer<glm::vec3> places = places_of(scene, execution);
   const Buffer<std::uint32_t> first = first_at_place(places, execution);
   Buffer<std::uint32_t> numbers(places.size());
   std::uint32_t count = 0;
   for (std::size_t v = 0; v < places.size(); ++v)
     numbers[v] = first[v] == v ? count++ : first[v] == no_index ? no_index : numbers[first[v]];
-  positions = Buffer<glm::dvec3>(count);
+  Buffer<glm::vec3> kept(count);
   parallel_for(execution, places.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
-      if (first[v] == v) positions[numbers[v]] = glm::dvec3(places[v]);
+      if (first[v] == v) kept[numbers[v]] = places[v];
   });
+  positions = Positions(std::move(kept));
   return numbers;
 }
 

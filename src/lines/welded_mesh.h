@@ -6,8 +6,21 @@
 
 namespace frontmost::lines_detail {
 
+/// Where vertices are, in world space: kept as the floats that they are, half as much to fetch from afar.
+class Positions {
+ public:
+  Positions() = default;
+  explicit Positions(Buffer<glm::vec3> places) : places_(std::move(places)) {}
+  [[nodiscard]] std::size_t size() const { return places_.size(); }
+  [[nodiscard]] glm::dvec3 operator[](std::size_t vertex) const { return glm::dvec3(places_[vertex]); }
+  [[nodiscard]] const Buffer<glm::vec3>& places() const { return places_; }
+
+ private:
+  Buffer<glm::vec3> places_;
+};
+
 struct WeldedMesh {
-  Buffer<glm::dvec3> positions;  ///< world space, all of them floats
+  Positions positions;
   /// Three different vertices each, counter-clockwise seen from the front.
   Buffer<glm::uvec3> triangles;
   Buffer<PrimitiveId> ids;  ///< of the triangles
