@@ -9,28 +9,16 @@
 #include <system_error>
 
 #include "frontmost/base.h"
+#include "io/read_errors.h"
 
 namespace frontmost {
-namespace {
-
-[[noreturn]] void fail(const std::string& name, const std::string& reason) {
-  throw Error(ErrorCode::file_unreadable, name + ": " + reason);
-}
-
-[[noreturn]] void fail_by_errno(const std::string& name, const char* doing) {
-  const int code = errno;
-  fail(name, std::string(doing) + ": " + std::generic_category().message(code));
-}
-
-}  // namespace
-
 ByteStream::ByteStream(const std::string& path, std::string name) : name_(std::move(name)) {
   is_ours_ = path != "-";
   descriptor_ = is_ours_ ? ::open(path.c_str(), O_RDONLY | O_CLOEXEC) : STDIN_FILENO;
-  if (descriptor_ < 0) fail_by_errno(name_, "cannot open");
+  if (descriptor_ < 0) fail_to_read_by_errno(name_, "cannot open");
   struct ::stat status {};
-  if (::fstat(descriptor_, &status) != 0) fail_by_errno(name_, "cannot read");
-  if (S_ISDIR(status.st_mode)) fail(name_, "is a folder");
+  if (::fstat(descriptor_, &status) != 0) fail_to_read_by_errno(name_, "cannot read");
+  if (S_ISDIR(status.st_mode)) fail_to_read(name_, "is a folder");
   // Files of /proc say 0 and have contents; standard input may be a file that was read in part.
   const bool is_at_start = ::lseek(descriptor_, 0, SEEK_CUR) == 0;
   if (S_ISREG(status.st_mode) && status.st_size > 0 && is_at_start) size_ = std::uint64_t(status.st_size);
@@ -46,7 +34,7 @@ std::size_t ByteStream::read(std::byte* to, std::size_t count) {
   while (done < count) {
     const ssize_t got = ::read(descriptor_, to + done, count - done);
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) fail_by_errno(name_, "cannot read");
+    if (got < 0) fail_to_read_by_errno(name_, "cannot read");
     if (got == 0) break;
     done += std::size_t(got);
   }
@@ -54,7 +42,7 @@ std::size_t ByteStream::read(std::byte* to, std::size_t count) {
 }
 
 void ByteStream::seek(std::uint64_t offset) {
-  if (::lseek(descriptor_, off_t(offset), SEEK_SET) < 0) fail_by_errno(name_, "cannot read again");
+  if (::lseek(descriptor_, off_t(offset), SEEK_SET) < 0) fail_to_read_by_errno(name_, "cannot read again");
 }
 
 }  // namespace frontmost

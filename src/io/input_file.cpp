@@ -12,18 +12,10 @@
 #include <system_error>
 
 #include "frontmost/base.h"
+#include "io/read_errors.h"
 
 namespace frontmost {
 namespace {
-
-[[noreturn]] void fail(const std::string& name, const std::string& reason) {
-  throw Error(ErrorCode::file_unreadable, name + ": " + reason);
-}
-
-[[noreturn]] void fail_by_errno(const std::string& name, const char* doing) {
-  const int code = errno;
-  fail(name, std::string(doing) + ": " + std::generic_category().message(code));
-}
 
 void check_size(std::uint64_t size, std::uint64_t max_bytes, const std::string& name) {
   if (size > max_bytes)
@@ -55,11 +47,11 @@ void InputFile::Delete::operator()(const std::byte* data) const {
 
 InputFile InputFile::open(const std::filesystem::path& path, const std::string& name, std::uint64_t max_bytes) {
   const int number = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (number < 0) fail_by_errno(name, "cannot open");
+  if (number < 0) fail_to_read_by_errno(name, "cannot open");
   const Descriptor file(number);
   struct ::stat status {};
-  if (::fstat(number, &status) != 0) fail_by_errno(name, "cannot read");
-  if (S_ISDIR(status.st_mode)) fail(name, "is a folder");
+  if (::fstat(number, &status) != 0) fail_to_read_by_errno(name, "cannot read");
+  if (S_ISDIR(status.st_mode)) fail_to_read(name, "is a folder");
   // Pipes have no size, and files of /proc say 0.
   const auto size = std::uint64_t(std::max<off_t>(status.st_size, 0));
   if (!S_ISREG(status.st_mode) || size < mapping_threshold)
@@ -74,7 +66,7 @@ InputFile InputFile::standard_input(const std::string& name) {
 
 InputFile InputFile::map(int descriptor, std::size_t size, const std::string& name) {
   void* start = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
-  if (start == MAP_FAILED) fail_by_errno(name, "cannot map");
+  if (start == MAP_FAILED) fail_to_read_by_errno(name, "cannot map");
   ::madvise(start, size, MADV_SEQUENTIAL);  // only advice
   return {Data(static_cast<const std::byte*>(start), Delete{Owner::mapping, size}), size};
 }
@@ -98,7 +90,7 @@ InputFile InputFile::read_stream(int descriptor, const std::string& name, std::u
     }
     const ssize_t got = ::read(descriptor, start + size, capacity - size);
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) fail_by_errno(name, "cannot read");
+    if (got < 0) fail_to_read_by_errno(name, "cannot read");
     if (got == 0) break;
     size += std::size_t(got);
   }

@@ -121,7 +121,7 @@ class HolePasser {
 
   void meet(const std::array<Corner, 3>& corners, PrimitiveId id, const SamplePlace& place) {
     const float sx = float(place.x - transform_.centre_x), sy = float(place.y - transform_.centre_y);
-    if (!keeps(facing(transform_, corners, sx, sy))) return;
+    if (!keeps(culling_, facing(transform_, corners, sx, sy))) return;
     const auto tile_centre = [](int pixel, std::int32_t image_centre) {
       return float((pixel / kTileSize * kTileSize + kTileSize / 2) * kSubPixels - image_centre);
     };
@@ -133,16 +133,6 @@ class HolePasser {
     const float key = plane.clamped(raw);
     const bool is_nearer = key > nearest_.key || (key == nearest_.key && id < nearest_.id);
     if (is_nearer && !is_hole(id, place)) nearest_ = {id, key};
-  }
-
-  [[nodiscard]] bool keeps(int facing) const {
-    switch (culling_) {
-      case Culling::none: return facing != 0;
-      case Culling::back: return facing < 0;
-      case Culling::front: return facing > 0;
-      case Culling::both: break;
-    }
-    return false;
   }
 
   const RayTree& tree_;

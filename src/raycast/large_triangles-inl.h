@@ -86,7 +86,7 @@ class LargeTriangles {
       open &= ~Hidden(large.plane);
       Edges edges;
       if (hwy::PopCount(open) >= std::size_t(kClassifyFrom) && SetEdges(large.corners.all(), edges)) {
-        if (!Keeps(culling_, edges.facing)) return;
+        if (!keeps(culling_, edges.facing)) return;
         const Classes classes = Classify(edges);
         open &= ~classes.outside;
         full = classes.full;
@@ -270,7 +270,7 @@ class LargeTriangles {
     const MF met = Kept(culling_, sides);
     if (HWY_LIKELY(hn::AllFalse(d, sides.doubtful))) return met;
     return Resolve(met, sides.doubtful, sx, sy,
-                   [&](std::size_t, float px, float py) { return Keeps(culling_, facing(t_, corners.all(), px, py)); });
+                   [&](std::size_t, float px, float py) { return keeps(culling_, facing(t_, corners.all(), px, py)); });
   }
 
   /// The same in doubles, whose products may be rounded: where two are equal, the exact rule decides.
@@ -303,7 +303,7 @@ class LargeTriangles {
         const bool certain = closest[lane] > 0;
         const int sign = least[lane] > 0 ? 1 : most[lane] < 0 ? -1 : 0;
         answer[i + lane] =
-            Keeps(culling_, certain ? sign : facing(t_, wide.corners, fx[i + lane], fy[i + lane])) ? -1 : 0;
+            keeps(culling_, certain ? sign : facing(t_, wide.corners, fx[i + lane], fy[i + lane])) ? -1 : 0;
       }
     }
     return hn::RebindMask(d, hn::MaskFromVec(hn::Load(di, answer)));

@@ -20,6 +20,8 @@
 #include "base/isa.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
+// After Highway: a block of its own.
+#include "base/lanes-inl.h"
 
 #ifndef FRONTMOST_RAYCAST_LIGHT_KERNEL_ONCE_
 #define FRONTMOST_RAYCAST_LIGHT_KERNEL_ONCE_
@@ -57,11 +59,7 @@ using LV = hn::Vec<LF>;
 using LM = hn::Mask<LF>;
 constexpr std::size_t kLightLanes = hn::MaxLanes(LF());
 
-HWY_INLINE std::uint32_t LaneBits(LM mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(LF(), mask, bytes);
-  return (std::uint32_t(bytes[0]) | std::uint32_t(bytes[1]) << 8) & ((1u << kLightLanes) - 1);
-}
+HWY_INLINE std::uint32_t LaneBits(LM mask) { return std::uint32_t(frontmost::HWY_NAMESPACE::BitsOf(LF(), mask)); }
 
 class LightPacket {
  public:

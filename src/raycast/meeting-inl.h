@@ -43,16 +43,6 @@ HWY_INLINE MF Kept(Culling culling, const Sides& sides) {
   return hn::MaskFromVec(hn::Zero(DF()));
 }
 
-HWY_INLINE bool Keeps(Culling culling, int facing) {
-  switch (culling) {
-    case Culling::none: return facing != 0;
-    case Culling::back: return facing < 0;
-    case Culling::front: return facing > 0;
-    case Culling::both: break;
-  }
-  return false;
-}
-
 /// Asks `meets(lane, sx, sy)` about the doubtful lanes, one by one.
 template <class Meets>
 HWY_NOINLINE MF Resolve(MF met, MF doubtful, VF sx, VF sy, Meets&& meets) {

@@ -18,6 +18,8 @@
 #include "base/isa.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
+// After Highway: a block of its own.
+#include "base/lanes-inl.h"
 #include "raycast/ray_axis-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -31,11 +33,7 @@ struct Entry {
   std::uint32_t child;
 };
 
-HWY_INLINE std::uint32_t QueryBits(QM mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(QF(), mask, bytes);
-  return (std::uint32_t(bytes[0]) | std::uint32_t(bytes[1]) << 8) & ((1u << kQueryLanes) - 1);
-}
+HWY_INLINE std::uint32_t QueryBits(QM mask) { return std::uint32_t(frontmost::HWY_NAMESPACE::BitsOf(QF(), mask)); }
 
 class QueryWalker {
  public:

@@ -74,6 +74,17 @@ inline int facing(const ScreenTransform& t, const std::array<Corner, 3>& corners
   return least >= 0 ? most : most <= 0 ? least : 0;
 }
 
+/// Whether culling leaves what a ray meets so; `facing` is that of facing().
+inline bool keeps(Culling culling, int facing) {
+  switch (culling) {
+    case Culling::none: return facing != 0;
+    case Culling::back: return facing < 0;
+    case Culling::front: return facing > 0;
+    case Culling::both: break;
+  }
+  return false;
+}
+
 inline float key_of_distance(const ScreenTransform& t, double d) {
   if (t.orthographic) return std::fmin(std::fmax((t.far - float(d)) * t.inverse_range, 0.0f), 1.0f);
   return std::fmin(t.near * (1.0f / float(d)), 1.0f);

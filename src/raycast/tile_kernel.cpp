@@ -230,41 +230,69 @@ class TileCaster {
     return hn::And(hn::RebindMask(d, few), hn::Lt(nearest, hn::Min(above, below)));
   }
 
-  HWY_INLINE void MeetLanes(const RayLeaf& leaf, std::size_t first) {
+  /// Puts corners into the batch, as rays see them. \returns the triangles whose corners are all single ones.
+  HWY_INLINE MF PlaceCorners(const RayLeaf& leaf, std::size_t first, TriangleQueue::Batch& to) const {
     const DF d;
-    const DU du;
-    VF x[3], y[3], dist[3];
     MF single = hn::MaskFromVec(hn::Zero(d));
     for (int k = 0; k < 3; ++k) {
       VF delta[3];
       for (int axis = 0; axis < 3; ++axis)
         delta[axis] = hn::Sub(hn::Load(d, leaf.corner[k][axis] + first), hn::Set(d, t_.eye[std::size_t(axis)]));
-      x[k] = Row(t_.x_row, t_.x_offset, delta);
-      y[k] = Row(t_.y_row, t_.y_offset, delta);
-      dist[k] = Row(t_.d_row, t_.d_offset, delta);
-      const MF is_single = IsSingle(x[k], y[k], dist[k]);
+      to.x[k] = Row(t_.x_row, t_.x_offset, delta);
+      to.y[k] = Row(t_.y_row, t_.y_offset, delta);
+      to.d[k] = Row(t_.d_row, t_.d_offset, delta);
+      const MF is_single = IsSingle(to.x[k], to.y[k], to.d[k]);
       single = k == 0 ? is_single : hn::And(single, is_single);
     }
-    const VU id = hn::Load(du, leaf.id + first);
-    const MF used = hn::RebindMask(d, hn::Ne(id, hn::Set(du, no_primitive)));
+    return single;
+  }
+
+  /// What triangles may be seen through: a rectangle of samples, and no key greater than `nearest`.
+  struct Extent {
+    Span across, down;
+    VF nearest;
+  };
+  [[nodiscard]] HWY_INLINE Extent ExtentOf(const TriangleQueue::Batch& batch) const {
+    const DF d;
+    const auto least = [](const VF(&v)[3]) HWY_ATTR { return hn::Min(hn::Min(v[0], v[1]), v[2]); };
+    const auto greatest = [](const VF(&v)[3]) HWY_ATTR { return hn::Max(hn::Max(v[0], v[1]), v[2]); };
+    const VF one = hn::Set(d, 1.0f);
+    VF inverse[3] = {one, one, one};
+    if (!t_.orthographic) Invert(batch.d, inverse);
+    VF xs[3], ys[3];
+    for (int k = 0; k < 3; ++k) {
+      xs[k] = hn::Mul(batch.x[k], inverse[k]);
+      ys[k] = hn::Mul(batch.y[k], inverse[k]);
+    }
+    return {SamplesWithin(least(xs), greatest(xs), place_.first_x, place_.width),
+            SamplesWithin(least(ys), greatest(ys), place_.first_y, place_.height),
+            t_.orthographic ? KeyOfDistance(t_, least(batch.d))
+                            : hn::Mul(hn::Set(d, t_.near * (1 + 16 * kHalfUlp)), greatest(inverse))};
+  }
+
+  /// Without those that are hidden, where looking for them has paid lately.
+  [[nodiscard]] HWY_INLINE MF WithoutHidden(MF kept, VF nearest, VI x0, VI y0, VI x1, VI y1) {
+    if (hidden_credit_ <= 0 && (leaves_met_ & 15) != 0) return kept;
+    const DF d;
+    const std::size_t before = hn::CountTrue(d, kept);
+    const MF left = hn::AndNot(Hidden(nearest, x0, y0, x1, y1), kept);
+    // Looking pays from two hidden triangles on.
+    hidden_credit_ = std::min(hidden_credit_ + int(before - hn::CountTrue(d, left)) - 2, kMostCredit);
+    return left;
+  }
+
+  HWY_INLINE void MeetLanes(const RayLeaf& leaf, std::size_t first) {
+    const DF d;
+    const DU du;
+    TriangleQueue::Batch batch;
+    batch.id = hn::Load(du, leaf.id + first);
+    const MF single = PlaceCorners(leaf, first, batch);
+    const MF used = hn::RebindMask(d, hn::Ne(batch.id, hn::Set(du, no_primitive)));
     const MF wide = hn::AndNot(single, used);
     if (HWY_UNLIKELY(!hn::AllFalse(d, wide))) MeetWide(leaf, first, wide);
 
-    const VF one = hn::Set(d, 1.0f);
-    VF inverse[3] = {one, one, one};
-    if (!t_.orthographic) Invert(dist, inverse);
-    VF xs[3], ys[3];
-    for (int k = 0; k < 3; ++k) {
-      xs[k] = hn::Mul(x[k], inverse[k]);
-      ys[k] = hn::Mul(y[k], inverse[k]);
-    }
-    const Span across = SamplesWithin(hn::Min(hn::Min(xs[0], xs[1]), xs[2]), hn::Max(hn::Max(xs[0], xs[1]), xs[2]),
-                                      place_.first_x, place_.width);
-    const Span down = SamplesWithin(hn::Min(hn::Min(ys[0], ys[1]), ys[2]), hn::Max(hn::Max(ys[0], ys[1]), ys[2]),
-                                    place_.first_y, place_.height);
-    const VF nearest = t_.orthographic ? KeyOfDistance(t_, hn::Min(hn::Min(dist[0], dist[1]), dist[2]))
-                                       : hn::Mul(hn::Set(d, t_.near * (1 + 16 * kHalfUlp)),
-                                                 hn::Max(hn::Max(inverse[0], inverse[1]), inverse[2]));
+    const Extent extent = ExtentOf(batch);
+    const auto& [across, down, nearest] = extent;
     MF kept = hn::And(hn::And(single, used), hn::Ge(nearest, hn::Set(d, buffer_.tile_farthest())));
     kept = hn::And(kept, hn::And(hn::Le(across.first, across.last), hn::Le(down.first, down.last)));
     if (hn::AllFalse(d, kept)) return;
@@ -274,19 +302,9 @@ class TileCaster {
       return hn::ConvertTo(DI(), hn::Min(hn::Max(v, hn::Zero(d)), hn::Set(d, float(kTileSize - 1))));
     };
     const auto x0 = as_int(across.first), x1 = as_int(across.last), y0 = as_int(down.first), y1 = as_int(down.last);
-    if (hidden_credit_ > 0 || (leaves_met_ & 15) == 0) {
-      const std::size_t before = hn::CountTrue(d, kept);
-      kept = hn::AndNot(Hidden(nearest, x0, y0, x1, y1), kept);
-      // Looking pays from two hidden triangles on.
-      hidden_credit_ = std::min(hidden_credit_ + int(before - hn::CountTrue(d, kept)) - 2, kMostCredit);
-      if (hn::AllFalse(d, kept)) return;
-    }
+    kept = WithoutHidden(kept, nearest, x0, y0, x1, y1);
+    if (hn::AllFalse(d, kept)) return;
     const auto byte = [&](auto v) HWY_ATTR { return hn::BitCast(du, v); };
-    TriangleQueue::Batch batch;
-    std::copy_n(x, 3, batch.x);
-    std::copy_n(y, 3, batch.y);
-    std::copy_n(dist, 3, batch.d);
-    batch.id = id;
     batch.rect = hn::Or(hn::Or(byte(x0), hn::ShiftLeft<8>(byte(y0))),
                         hn::Or(hn::ShiftLeft<16>(byte(x1)), hn::ShiftLeft<24>(byte(y1))));
     queue_.Add(batch, kept);

@@ -161,7 +161,7 @@ class TriangleQueue {
         const MF doubtful = hn::And(sides.doubtful, here);
         if (HWY_UNLIKELY(!hn::AllFalse(d, doubtful)))
           met = Resolve(met, doubtful, sx, sy, [&](std::size_t lane, float px1, float py1) {
-            return Keeps(culling_, facing(t_, Corners(from + lane).all(), px1, py1));
+            return keeps(culling_, facing(t_, Corners(from + lane).all(), px1, py1));
           });
         if (hn::AllFalse(d, met)) continue;
         const VF u_step = hn::Mul(hn::Sub(sx, hn::Set(d, place_.centre_x)), gx);

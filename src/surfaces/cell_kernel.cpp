@@ -10,19 +10,13 @@
 #include "base/isa.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
+// After Highway: a block of its own.
+#include "base/lane_types-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-using DF = hn::ScalableTag<float>;
-using DI = hn::RebindToSigned<DF>;
-using DU = hn::RebindToUnsigned<DF>;
-using VF = hn::Vec<DF>;
-using VI = hn::Vec<DI>;
-
-constexpr std::size_t kMaxLanes = hn::MaxLanes(DF());
 
 class CellFinder {
  public:

@@ -9,8 +9,8 @@
 #define FRONTMOST_ZBUFFER_BATCH_INL_H_
 #endif
 
-#include <cstring>
-
+#include "base/lane_types-inl.h"
+#include "base/lanes-inl.h"
 #include "frontmost/view.h"
 #include "hwy/highway.h"
 
@@ -18,30 +18,11 @@ HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-using DF = hn::ScalableTag<float>;
-using DI = hn::RebindToSigned<DF>;
-using DU = hn::RebindToUnsigned<DF>;
-using VF = hn::Vec<DF>;
-using VI = hn::Vec<DI>;
-using VU = hn::Vec<DU>;
-using MI = hn::Mask<DI>;
-
-constexpr std::size_t kMaxLanes = hn::MaxLanes(DI());
+using namespace frontmost::HWY_NAMESPACE;
 
 // Corners no farther apart than this keep every edge value inside the triangle's box within 32 bits: two products of
 // at most 31744 * (31744 + 256).
 constexpr std::int32_t kSmallExtent = 124 * 256;
-
-/// Lane i in bit i.
-template <class D>
-HWY_INLINE std::uint64_t BitsOf(D d, hn::Mask<D> mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, mask, bytes);
-  std::uint64_t bits;
-  std::memcpy(&bits, bytes, sizeof bits);
-  return bits & ((std::uint64_t(1) << hn::Lanes(d)) - 1);
-}
 
 #if HWY_TARGET <= HWY_AVX3
 // 64 entries are four vectors, and a permutation reads two: a gather takes several times as long.
@@ -81,6 +62,29 @@ HWY_INLINE MI Facing(Culling culling, MI front, MI back) {
     case Culling::both: break;
   }
   return hn::And(front, back);  // none
+}
+
+/// One corner of each triangle of a vector: its vertex, and where that is on the screen.
+struct Corners {
+  VI number, x, y;
+};
+HWY_INLINE Corners Chosen(MI mask, const Corners& yes, const Corners& no) {
+  return {hn::IfThenElse(mask, yes.number, no.number), hn::IfThenElse(mask, yes.x, no.x),
+          hn::IfThenElse(mask, yes.y, no.y)};
+}
+
+/// How small triangles are wound. Those that face the eye have negative areas, as y is down: to turn them positive,
+/// they swap their last two corners.
+struct Winding {
+  MI front;
+  MI kept;  ///< culling leaves them, and they have an area
+};
+/// Precondition: corners of kept triangles are no farther apart than kSmallExtent.
+HWY_INLINE Winding WindingOf(Culling culling, const Corners& a, const Corners& b, const Corners& c) {
+  const VI zero = hn::Zero(DI());
+  const VI area = hn::Sub(hn::Mul(hn::Sub(b.x, a.x), hn::Sub(c.y, a.y)), hn::Mul(hn::Sub(c.x, a.x), hn::Sub(b.y, a.y)));
+  const MI front = hn::Lt(area, zero);
+  return {front, Facing(culling, front, hn::Gt(area, zero))};
 }
 
 /// Three edges and a depth plane for each triangle. Corners no farther apart than kSmallExtent, areas positive.

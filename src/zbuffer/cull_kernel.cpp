@@ -9,16 +9,14 @@
 #include "base/isa.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
+// After Highway: a block of its own.
+#include "base/lane_types-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-using DF = hn::ScalableTag<float>;
-using DI = hn::RebindToSigned<DF>;
-using VF = hn::Vec<DF>;
-using MF = hn::Mask<DF>;
+using namespace frontmost::HWY_NAMESPACE;
 
 // A vertex and its box are transformed by the same formula, but round differently. Relative to the sum of the absolute
 // values of all terms, either errs by less than 6 * 2^-24; this is four times the sum of both.

@@ -17,7 +17,6 @@ HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-using frontmost::HWY_NAMESPACE::Compactor;
 
 class Placer {
  public:
@@ -37,7 +36,7 @@ class Placer {
     VU numbers[3];
     hn::LoadInterleaved3(DU(), corners, numbers[0], numbers[1], numbers[2]);
     if (piece_.is_mirrored) std::swap(numbers[1], numbers[2]);
-    const PlacedCorners a = Fetch(numbers[0]), b = Fetch(numbers[1]), c = Fetch(numbers[2]);
+    const Corners a = Fetch(numbers[0]), b = Fetch(numbers[1]), c = Fetch(numbers[2]);
     const VF ka = FetchKeys(vertices_, a), kb = FetchKeys(vertices_, b), kc = FetchKeys(vertices_, c);
     const std::size_t live = HWY_MIN(piece_.corners.size() - first, hn::Lanes(d));
     placed_.make_room(live);
@@ -57,16 +56,16 @@ class Placer {
 
     const Compactor<DI> compact(keep);
     const std::size_t at = placed_.count;
-    const auto store = [&](std::size_t corner, VI x, VI y, VF key) HWY_ATTR {
-      compact.Store(x, placed_.x[corner].data() + at);
-      compact.Store(y, placed_.y[corner].data() + at);
-      compact.Store(key, placed_.key[corner].data() + at);
+    const auto store = [&](std::size_t k, const Corners& corner, VF key) HWY_ATTR {
+      compact.Store(corner.x, placed_.x[k].data() + at);
+      compact.Store(corner.y, placed_.y[k].data() + at);
+      compact.Store(key, placed_.key[k].data() + at);
     };
     // Turn the area positive: swap the last two corners of front faces.
     const auto front_f = hn::RebindMask(df, front);
-    store(0, a.x, a.y, ka);
-    store(1, hn::IfThenElse(front, c.x, b.x), hn::IfThenElse(front, c.y, b.y), hn::IfThenElse(front_f, kc, kb));
-    store(2, hn::IfThenElse(front, b.x, c.x), hn::IfThenElse(front, b.y, c.y), hn::IfThenElse(front_f, kb, kc));
+    store(0, a, ka);
+    store(1, Chosen(front, c, b), hn::IfThenElse(front_f, kc, kb));
+    store(2, Chosen(front, b, c), hn::IfThenElse(front_f, kb, kc));
     compact.Store(hn::Min(ka, hn::Min(kb, kc)), placed_.low.data() + at);
     compact.Store(hn::Max(ka, hn::Max(kb, kc)), placed_.high.data() + at);
     const VI id = hn::Add(hn::Iota(d, 0), hn::Set(d, std::int32_t(piece_.first_id + std::uint32_t(first))));
@@ -75,7 +74,7 @@ class Placer {
     placed_.count += compact.count();
   }
 
-  [[nodiscard]] HWY_INLINE PlacedCorners Fetch(VU number) const {
+  [[nodiscard]] HWY_INLINE Corners Fetch(VU number) const {
     return FetchCorners(vertices_, number, piece_.first_position);
   }
 
@@ -89,7 +88,7 @@ class Placer {
   }
 
   /// Twice the signed area, rounded once: within the guard band doubles hold it exactly.
-  [[nodiscard]] static HWY_INLINE VF AreaOf(const PlacedCorners& a, const PlacedCorners& b, const PlacedCorners& c) {
+  [[nodiscard]] static HWY_INLINE VF AreaOf(const Corners& a, const Corners& b, const Corners& c) {
     using DD = hn::ScalableTag<double>;
     using Half = hn::Rebind<std::int32_t, DD>;
     const DI d;

@@ -82,16 +82,12 @@ HWY_INLINE PieceExtent SnapVertices(const ScreenTransform& t, std::span<const gl
   return extent;
 }
 
-/// One corner of each triangle of a vector.
-struct PlacedCorners {
-  VI number, x, y;
-};
-HWY_INLINE PlacedCorners FetchCorners(const PieceVertices& vertices, VU number, std::uint32_t first) {
+HWY_INLINE Corners FetchCorners(const PieceVertices& vertices, VU number, std::uint32_t first) {
   const DI d;
   const VI n = hn::Sub(hn::BitCast(d, number), hn::Set(d, std::int32_t(first)));
   return {n, hn::GatherIndex(d, vertices.x.data(), n), hn::GatherIndex(d, vertices.y.data(), n)};
 }
-HWY_INLINE VF FetchKeys(const PieceVertices& vertices, const PlacedCorners& corners) {
+HWY_INLINE VF FetchKeys(const PieceVertices& vertices, const Corners& corners) {
   return hn::GatherIndex(DF(), vertices.key.data(), corners.number);
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "frontmost/raycast.h"
+#include "indexed_scene.h"
 #include "support/random_scene.h"
 #include "support/rational_vector.h"
 
@@ -49,11 +50,8 @@ std::uint8_t oracle_is_lit(const Surfaces& surfaces, const TrianglePoint& point,
   return 1;
 }
 
-struct Indexed {
-  explicit Indexed(Scene s) : scene(std::move(s)), surfaces(scene), index(surfaces) {}
-  Scene scene;
-  Surfaces surfaces;
-  RayIndex index;
+struct Lit : Indexed {
+  using Indexed::Indexed;
 
   [[nodiscard]] TrianglePoint point(PrimitiveId id, const glm::vec3& weights) const {
     return {id, surfaces.corners(id), weights, glm::vec3(0)};
@@ -69,18 +67,8 @@ struct Indexed {
   }
 };
 
-/// The square from (-1, -1) to (1, 1) at each height, as two triangles; ids 2 i and 2 i + 1.
-Scene floors(std::initializer_list<float> heights) {
-  Mesh mesh;
-  for (const float z : heights) {
-    add_triangle(mesh, {-1, -1, z}, {1, -1, z}, {1, 1, z});
-    add_triangle(mesh, {-1, -1, z}, {1, 1, z}, {-1, 1, z});
-  }
-  return scene_of(mesh);
-}
-
 TEST(Light, AFloorAboveIsInTheWayUnlessTheLightComesPastIt) {
-  const Indexed of(floors({0, 1}));
+  const Lit of(floors({0, 1}));
   const TrianglePoint centre = of.point(0, {1, 0, 1});
   EXPECT_FALSE(of.is_lit(centre, {0, 0, 1}));
   EXPECT_TRUE(of.is_lit(centre, {0, 0, -1}));
@@ -92,7 +80,7 @@ TEST(Light, AFloorAboveIsInTheWayUnlessTheLightComesPastIt) {
 }
 
 TEST(Light, ALiftedPointIsWhereItSaysExactly) {
-  const Indexed of(floors({0, 1}));
+  const Lit of(floors({0, 1}));
   TrianglePoint point = of.point(0, {1, 2, 3});
   for (const float height : {0.5f, std::nextafter(1.0f, 0.0f)}) {
     point.lift = {0, 0, height};
@@ -105,7 +93,7 @@ TEST(Light, ALiftedPointIsWhereItSaysExactly) {
   // Below its own triangle, which is never in its way; the other half of the floor would be.
   point.lift = {0, 0, -0.5f};
   EXPECT_TRUE(of.is_lit(point, {0, 0, -1}));
-  const Indexed one(floors({0}));
+  const Lit one(floors({0}));
   point.lift = {-1, 1, -0.5f};
   EXPECT_FALSE(one.is_lit(point, {0, 0, 1}));
 }
@@ -123,7 +111,7 @@ TEST(Light, NothingShadowsItselfAlongEdgesAndCorners) {
   Scene scene = scene_of(cube());
   scene.instances[0].world_from_mesh =
       glm::dmat4({0.36, 0.48, -0.8, 0}, {-0.8, 0.6, 0, 0}, {0.48, 0.64, 0.6, 0}, {0.1, 0.2, 0.3, 1});
-  const Indexed of(std::move(scene));
+  const Lit of(std::move(scene));
   Random random(5);
   for (int light = 0; light < 200; ++light) {
     const glm::vec3 to_light = random.point(1);
@@ -167,7 +155,7 @@ TEST(Light, EqualsEveryTriangleInFractions) {
   std::size_t lit = 0, asked = 0;
   for (const Kind kind : all_kinds)
     for (std::uint64_t seed = 0; seed < 1; ++seed) {
-      const Indexed of(scene_of(random_mesh(kind, 14, seed)));
+      const Lit of(scene_of(random_mesh(kind, 14, seed)));
       Random random(seed + 99);
       const std::vector<TrianglePoint> points = random_points(of.surfaces, 70, random);
       const glm::vec3 slanted = random.point(1);
@@ -186,7 +174,7 @@ TEST(Light, EqualsEveryTriangleInFractions) {
 
 TEST(Light, TheSameForEveryInstructionSetOrderAndNumberOfThreads) {
   for (const Kind kind : {Kind::soup, Kind::shared_grid, Kind::coplanar, Kind::sheets}) {
-    const Indexed of(scene_of(random_mesh(kind, 300, 3)));
+    const Lit of(scene_of(random_mesh(kind, 300, 3)));
     Random random(8);
     std::vector<TrianglePoint> points = random_points(of.surfaces, 200, random);
     const glm::vec3 to_light(0.3f, -0.2f, 0.9f);
@@ -207,7 +195,7 @@ TEST(Light, ScalingByPowersOfTwoChangesNothing) {
     Mesh scaled = mesh;
     for (glm::vec3& p : scaled.positions)
       p = glm::vec3(std::ldexp(p.x, exponent), std::ldexp(p.y, exponent), std::ldexp(p.z, exponent));
-    const Indexed of(scene_of(scaled));
+    const Lit of(scene_of(scaled));
     Random random(8);
     std::vector<TrianglePoint> points;
     for (PrimitiveId id = 0; id < of.surfaces.primitive_count(); ++id) {
@@ -224,7 +212,7 @@ TEST(Light, ScalingByPowersOfTwoChangesNothing) {
 
 TEST(Light, NonsenseIsLit) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-  const Indexed of(floors({0, 1})), empty{Scene{}};
+  const Lit of(floors({0, 1})), empty{Scene{}};
   const TrianglePoint good = of.point(0, {1, 1, 1});
   std::vector<TrianglePoint> points(10, good);
   points[1].weights = glm::vec3(0);
@@ -252,7 +240,7 @@ TEST(Light, HugeTinyAndEmptyTrianglesAreNoTrouble) {
   add_triangle(mesh, {0, 0, 1e-45f}, {1e-45f, 0, 1e-45f}, {0, 1e-45f, 1e-45f});
   add_triangle(mesh, {0, 0, 2}, {0, 0, 2}, {1, 1, 2});
   add_triangle(mesh, {-huge, -huge, huge}, {huge, -huge, huge}, {0, huge, huge});
-  const Indexed of(scene_of(mesh));
+  const Lit of(scene_of(mesh));
   std::vector<TrianglePoint> points;
   for (PrimitiveId id = 0; id < 5; ++id)
     for (const glm::vec3& weights : {glm::vec3(1, 1, 1), glm::vec3(1, 0, 0), glm::vec3(1e-20f, 1, 1e20f)})

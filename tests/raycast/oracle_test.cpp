@@ -6,6 +6,7 @@
 #include "ray_oracle.h"
 #include "support/cutout_scene.h"
 #include "support/effort.h"
+#include "support/oracle_on_every_isa.h"
 #include "support/random_scene.h"
 #include "support/same_visible.h"
 
@@ -16,21 +17,9 @@ class EveryKind : public testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(RayCast, EveryKind, testing::ValuesIn(all_kinds));
 
 TEST_P(EveryKind, EqualsTheOracleOnEveryInstructionSet) {
-  std::size_t seen = 0;
-  for (std::uint64_t seed = 0; seed < seeds(24); ++seed) {
-    SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const RandomCase random = random_case(GetParam(), seed);
-    const Surfaces surfaces(random.scene);
-    const View& view = random.view;
-    const Visible expected = ray_oracle(surfaces, view);
-    seen += covered(expected);
-    const RayIndex index(surfaces);
-    for (const Isa isa : available_isas()) {
-      SCOPED_TRACE(name(isa));
-      expect_same(expected, raycast(index, view, {.threads = 1, .isa = isa}));
-    }
-  }
-  EXPECT_GT(seen, seeds(24) * 20) << "the scenes have become empty";
+  expect_oracle_on_every_isa(
+      GetParam(), [](const Surfaces& surfaces, const View& view) { return ray_oracle(surfaces, view); },
+      [](const Surfaces& surfaces, const View& view, const Execution& how) { return raycast(surfaces, view, how); });
 }
 
 TEST_P(EveryKind, EqualsTheOracleThroughHoles) {

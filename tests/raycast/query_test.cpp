@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "frontmost/raycast.h"
+#include "indexed_scene.h"
 #include "raycast/query_kernel.h"
 #include "support/random_scene.h"
 
@@ -14,23 +15,6 @@ namespace {
 
 constexpr float inf = std::numeric_limits<float>::infinity();
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
-/// The square from (-1, -1) to (1, 1) at each height, as two triangles; ids 2 i and 2 i + 1. Seen from above: front.
-Scene floors(std::initializer_list<float> heights) {
-  Mesh mesh;
-  for (const float z : heights) {
-    add_triangle(mesh, {-1, -1, z}, {1, -1, z}, {1, 1, z});
-    add_triangle(mesh, {-1, -1, z}, {1, 1, z}, {-1, 1, z});
-  }
-  return scene_of(mesh);
-}
-
-struct Indexed {
-  explicit Indexed(Scene s) : scene(std::move(s)), surfaces(scene), index(surfaces) {}
-  Scene scene;
-  Surfaces surfaces;
-  RayIndex index;
-};
 
 TEST(Query, MeetsTheNearestFloorAndCountsThemAll) {
   const Indexed of(floors({0, 1, 2, 3}));

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "frontmost/io.h"
+#include "indexed_scene.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
@@ -30,13 +31,6 @@ Scene box_room(float r) {
     }
   return scene_of(mesh);
 }
-
-struct Indexed {
-  explicit Indexed(Scene s) : scene(std::move(s)), surfaces(scene), index(surfaces) {}
-  Scene scene;
-  Surfaces surfaces;
-  RayIndex index;
-};
 
 template <class T>
 std::vector<T> values_of(const Buffer<T>& buffer) {

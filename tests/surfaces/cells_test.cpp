@@ -69,7 +69,8 @@ TEST(FindCells, TellsWhereACornerIsNotFinite) {
         const CellMap map{{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 1023};
         EXPECT_FALSE(find_cells({mesh, 0, 37}, map, isa, cells.data())) << name(isa) << ", " << at;
         EXPECT_LE(cells[at].z(), 1023u);
-        if (at > 0) EXPECT_TRUE(find_cells({mesh, 0, at}, map, isa, cells.data()));
+        if (at == 0) continue;
+        EXPECT_TRUE(find_cells({mesh, 0, at}, map, isa, cells.data()));
       }
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The z-buffer against the oracle, to the bit: every instruction set, several threads, every kind of scene.
 
-#include "support/effort.h"
 #include "support/oracle.h"
 
 #include <gtest/gtest.h>
@@ -10,6 +9,8 @@
 #include <numeric>
 
 #include "frontmost/zbuffer.h"
+#include "support/effort.h"
+#include "support/oracle_on_every_isa.h"
 #include "support/random_scene.h"
 #include "support/same_visible.h"
 
@@ -20,20 +21,9 @@ class EveryKind : public testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(ZBuffer, EveryKind, testing::ValuesIn(all_kinds));
 
 TEST_P(EveryKind, EqualsTheOracleOnEveryInstructionSet) {
-  std::size_t seen = 0;
-  for (std::uint64_t seed = 0; seed < seeds(24); ++seed) {
-    SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const RandomCase random = random_case(GetParam(), seed);
-    const Surfaces surfaces(random.scene);
-    const View& view = random.view;
-    const Visible expected = oracle(surfaces, view);
-    seen += covered(expected);
-    for (const Isa isa : available_isas()) {
-      SCOPED_TRACE(name(isa));
-      expect_same(expected, zbuffer(surfaces, view, {.threads = 1, .isa = isa}));
-    }
-  }
-  EXPECT_GT(seen, seeds(24) * 20) << "the scenes have become empty";
+  expect_oracle_on_every_isa(
+      GetParam(), [](const Surfaces& surfaces, const View& view) { return oracle(surfaces, view); },
+      [](const Surfaces& surfaces, const View& view, const Execution& how) { return zbuffer(surfaces, view, how); });
 }
 
 TEST(ZBuffer, EqualsTheOracleWithEverySampleCount) {

@@ -20,6 +20,7 @@
 
 #include "abuffer/gather/gather_kernel.h"
 #include "base/compactor-inl.h"
+#include "base/lane_types-inl.h"
 #include "base/lanes-inl.h"
 #include "base/prefetch.h"
 #include "hwy/highway.h"
@@ -28,21 +29,8 @@ HWY_BEFORE_NAMESPACE();
 namespace frontmost::abuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-using frontmost::HWY_NAMESPACE::BitsOf;
-using frontmost::HWY_NAMESPACE::CompactInto;
-using frontmost::HWY_NAMESPACE::Compactor;
-using frontmost::HWY_NAMESPACE::CountFrom;
-using frontmost::HWY_NAMESPACE::ForEachBit;
+using namespace frontmost::HWY_NAMESPACE;
 
-using DI = hn::ScalableTag<std::int32_t>;
-using DU = hn::RebindToUnsigned<DI>;
-using DF = hn::RebindToFloat<DI>;
-using VI = hn::Vec<DI>;
-using VU = hn::Vec<DU>;
-using VF = hn::Vec<DF>;
-using MI = hn::Mask<DI>;
-
-constexpr std::size_t kMaxLanes = hn::MaxLanes(DI());
 constexpr std::int32_t kStepsOfPixel = kSubPixels / SamplePattern::unit;
 
 HWY_INLINE bool IsTopLeft(std::int32_t dx, std::int32_t dy) { return dy < 0 || (dy == 0 && dx > 0); }

@@ -18,7 +18,6 @@ HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-using frontmost::HWY_NAMESPACE::Compactor;
 
 // Triangles after which it is found out again what blocks hide, or whether asking pays.
 constexpr std::size_t kWindow = 512;

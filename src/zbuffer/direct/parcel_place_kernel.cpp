@@ -18,7 +18,6 @@ HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-using frontmost::HWY_NAMESPACE::Compactor;
 
 /// Which planes of the clip volume a vertex lies outside of for certain, a bit each, in the bits of a negative float.
 class OutCodes {
@@ -93,7 +92,7 @@ class ParcelPlacer {
     VU numbers[3];
     hn::LoadInterleaved3(DU(), corners, numbers[0], numbers[1], numbers[2]);
     if (piece_.is_mirrored) std::swap(numbers[1], numbers[2]);
-    const PlacedCorners a = Fetch(numbers[0]), b = Fetch(numbers[1]), c = Fetch(numbers[2]);
+    const Corners a = Fetch(numbers[0]), b = Fetch(numbers[1]), c = Fetch(numbers[2]);
     MI keep = hn::Lt(hn::Iota(d, 0), hn::Set(d, std::int32_t(HWY_MIN(piece_.corners.size() - first, hn::Lanes(d)))));
     if (!all_plain_) keep = hn::And(keep, Plain(first, keep, a, b, c));
 
@@ -108,46 +107,38 @@ class ParcelPlacer {
       AppendLarge(first, large);
       keep = hn::AndNot(large, keep);
     }
-    const VI area =
-        hn::Sub(hn::Mul(hn::Sub(b.x, a.x), hn::Sub(c.y, a.y)), hn::Mul(hn::Sub(c.x, a.x), hn::Sub(b.y, a.y)));
-    const MI front = hn::Lt(area, hn::Zero(d));  // counter-clockwise to the eye; y is down
-    keep = hn::And(keep, Facing(target_.view.culling, front, hn::Gt(area, hn::Zero(d))));
+    const Winding winding = WindingOf(target_.view.culling, a, b, c);
+    keep = hn::And(keep, winding.kept);
     if (hn::AllFalse(d, keep)) return;
     Note(keep, columns, rows);
-    // Turn the area positive: swap the last two corners of front faces.
-    const PlacedCorners second = Chosen(front, c, b), third = Chosen(front, b, c);
-    Store(keep, first, {a, second, third}, TilesOf(columns, rows));
+    Store(keep, first, {a, Chosen(winding.front, c, b), Chosen(winding.front, b, c)}, TilesOf(columns, rows));
   }
 
-  [[nodiscard]] HWY_INLINE PlacedCorners Fetch(VU number) const {
+  [[nodiscard]] HWY_INLINE Corners Fetch(VU number) const {
     return FetchCorners(vertices_, number, piece_.first_position);
-  }
-  [[nodiscard]] static HWY_INLINE PlacedCorners Chosen(MI mask, const PlacedCorners& yes, const PlacedCorners& no) {
-    return {hn::IfThenElse(mask, yes.number, no.number), hn::IfThenElse(mask, yes.x, no.x),
-            hn::IfThenElse(mask, yes.y, no.y)};
   }
 
   /// Those whose corners are on the screen as they are; the others are clipped, unless all of them is away.
-  [[nodiscard]] HWY_NOINLINE MI Plain(std::size_t first, MI live, const PlacedCorners& a, const PlacedCorners& b,
-                                      const PlacedCorners& c) {
+  [[nodiscard]] HWY_NOINLINE MI Plain(std::size_t first, MI live, const Corners& a, const Corners& b,
+                                      const Corners& c) {
     const DI d;
     const DF df;
     const VF ka = FetchKeys(vertices_, a), kb = FetchKeys(vertices_, b), kc = FetchKeys(vertices_, c);
     const MI plain = hn::Not(hn::RebindMask(d, hn::Lt(hn::Min(ka, hn::Min(kb, kc)), hn::Zero(df))));
     const MI clipped = hn::AndNot(hn::Or(plain, OutCodes::Outside(ka, kb, kc)), live);
-    for (std::uint64_t left = BitsOf(d, clipped); left != 0; left &= left - 1) {
-      const std::size_t triangle = first + hwy::Num0BitsBelowLS1Bit_Nonzero64(left);
+    ForEachBit(BitsOf(d, clipped), [&](std::size_t lane) {
+      const std::size_t triangle = first + lane;
       const std::array<glm::vec3, 3> world = piece_.world(triangle);
-      if (!is_finite(world[0]) || !is_finite(world[1]) || !is_finite(world[2])) continue;
+      if (!is_finite(world[0]) || !is_finite(world[1]) || !is_finite(world[2])) return;
       append_polygon(clip_triangle(target_.transform, world), target_.transform,
                      piece_.first_id + PrimitiveId(triangle), target_.view, parcel_.records);
-    }
+    });
     return plain;
   }
 
   HWY_NOINLINE void AppendLarge(std::size_t first, MI large) {
-    for (std::uint64_t left = BitsOf(DI(), large); left != 0; left &= left - 1) {
-      const std::size_t triangle = first + hwy::Num0BitsBelowLS1Bit_Nonzero64(left);
+    ForEachBit(BitsOf(DI(), large), [&](std::size_t lane) {
+      const std::size_t triangle = first + lane;
       TriangleRecord record;
       record.id = piece_.first_id + PrimitiveId(triangle);
       glm::uvec3 corners = piece_.corners[triangle] - piece_.first_position;
@@ -158,7 +149,7 @@ class ParcelPlacer {
         record.key[k] = vertices_.key[corners[k]];
       }
       if (orient(record, target_.view.culling)) parcel_.records.push_back(record);
-    }
+    });
   }
 
   HWY_INLINE void Note(MI keep, const PixelRange& columns, const PixelRange& rows) {
@@ -175,7 +166,7 @@ class ParcelPlacer {
     return hn::Or(first, hn::ShiftLeft<16>(last));
   }
 
-  HWY_INLINE void Store(MI keep, std::size_t first, const PlacedCorners (&corners)[3], VI tiles) {
+  HWY_INLINE void Store(MI keep, std::size_t first, const Corners (&corners)[3], VI tiles) {
     const DI d;
     const Compactor<DI> compact(keep);
     ParcelColumns& to = parcel_.columns();

@@ -77,8 +77,7 @@ class SmallTriangles {
     SmallBatch batch = SetUp(drawn);
     const MI large = hn::Or(hn::Gt(batch.width, hn::Set(d, kWalkWidth)), hn::Gt(batch.height, hn::Set(d, kWalkHeight)));
     if (!hn::AllFalse(d, large)) {
-      for (std::uint64_t left = BitsOf(d, large); left != 0; left &= left - 1)
-        large_.Draw(QueuedRecord(hwy::Num0BitsBelowLS1Bit_Nonzero64(left)));
+      ForEachBit(BitsOf(d, large), [&](std::size_t lane) { large_.Draw(QueuedRecord(lane)); });
       batch.width = hn::IfThenZeroElse(large, batch.width);
       batch.height = hn::IfThenZeroElse(large, batch.height);
     }
@@ -104,11 +103,10 @@ class SmallTriangles {
     hn::Store(batch.width, d, width);
     hn::Store(batch.height, d, height);
     hn::Store(batch.k_max, DF(), nearest);
-    for (std::uint64_t left = BitsOf(d, asked); left != 0; left &= left - 1) {
-      const std::size_t i = hwy::Num0BitsBelowLS1Bit_Nonzero64(left);
+    ForEachBit(BitsOf(d, asked), [&](std::size_t i) {
       const PixelRect rect{x[i], y[i], x[i] + width[i] - 1, y[i] + height[i] - 1};
       if (buffer_.AllHide(TileBuffer::BlocksOf(rect), nearest[i])) width[i] = 0;
-    }
+    });
     batch.width = hn::Load(d, width);
   }
 

@@ -105,11 +105,6 @@ class TilePainter {
     }
   }
 
-  /// One corner of each triangle of a vector.
-  struct Corners {
-    VI number, x, y;
-  };
-
   HWY_INLINE Corners Fetch(const Buffer<std::uint8_t>& numbers, std::size_t at) const {
     const DI d;
     const hn::Rebind<std::uint8_t, DI> d8;
@@ -121,8 +116,7 @@ class TilePainter {
   HWY_INLINE void Gather(const Cluster& cluster, std::size_t first) {
     const DI d;
     const std::size_t at = cluster.first_triangle + first;
-    const Corners a = Fetch(frame_.set.i0, at);
-    Corners b = Fetch(frame_.set.i1, at), c = Fetch(frame_.set.i2, at);
+    const Corners a = Fetch(frame_.set.i0, at), b = Fetch(frame_.set.i1, at), c = Fetch(frame_.set.i2, at);
 
     const CoordinateRange x = RangeOf(a.x, b.x, c.x), y = RangeOf(a.y, b.y, c.y);
     const PixelRange columns = small_.ColumnsOf(x), rows = small_.RowsOf(y);
@@ -136,38 +130,27 @@ class TilePainter {
       keep = hn::AndNot(large, keep);
     }
 
-    const VI area =
-        hn::Sub(hn::Mul(hn::Sub(b.x, a.x), hn::Sub(c.y, a.y)), hn::Mul(hn::Sub(c.x, a.x), hn::Sub(b.y, a.y)));
-    const MI front = hn::Lt(area, hn::Zero(d));  // counter-clockwise to the eye; y is down
-    keep = hn::And(keep, Facing(frame_.view.culling, front, hn::Gt(area, hn::Zero(d))));
+    const Winding winding = WindingOf(frame_.view.culling, a, b, c);
+    keep = hn::And(keep, winding.kept);
     if (hn::AllFalse(d, keep)) return;
 
-    // Turn the area positive: swap the last two corners of front faces.
-    const VI bx = hn::IfThenElse(front, c.x, b.x), cx = hn::IfThenElse(front, b.x, c.x);
-    const VI by = hn::IfThenElse(front, c.y, b.y), cy = hn::IfThenElse(front, b.y, c.y);
-    const VI bn = hn::IfThenElse(front, c.number, b.number), cn = hn::IfThenElse(front, b.number, c.number);
     const Compactor<DI> compact(keep);
     TriangleQueue& queue = small_.queue();
     const std::size_t n = queue.count;
-    compact.Store(a.x, queue.x[0] + n);
-    compact.Store(a.y, queue.y[0] + n);
-    compact.Store(bx, queue.x[1] + n);
-    compact.Store(by, queue.y[1] + n);
-    compact.Store(cx, queue.x[2] + n);
-    compact.Store(cy, queue.y[2] + n);
-    compact.Store(LookUp64(vertices_.key, a.number), queue.key[0] + n);
-    compact.Store(LookUp64(vertices_.key, bn), queue.key[1] + n);
-    compact.Store(LookUp64(vertices_.key, cn), queue.key[2] + n);
+    const auto store = [&](int k, const Corners& corner) HWY_ATTR {
+      compact.Store(corner.x, queue.x[k] + n);
+      compact.Store(corner.y, queue.y[k] + n);
+      compact.Store(LookUp64(vertices_.key, corner.number), queue.key[k] + n);
+    };
+    store(0, a);
+    store(1, Chosen(winding.front, c, b));
+    store(2, Chosen(winding.front, b, c));
     compact.Store(hn::LoadU(DU(), frame_.set.id.data() + at), queue.id + n);
     queue.count += compact.count();
   }
 
   void DrawLargeLanes(const Cluster& cluster, std::size_t first, MI large) {
-    const DI d;
-    HWY_ALIGN_MAX std::int32_t lanes[kMaxLanes];
-    hn::Store(hn::IfThenElseZero(large, hn::Set(d, 1)), d, lanes);
-    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
-      if (lanes[lane] == 0) continue;
+    ForEachBit(BitsOf(DI(), large), [&](std::size_t lane) {
       const std::size_t at = cluster.first_triangle + first + lane;
       const std::uint8_t numbers[3] = {frame_.set.i0[at], frame_.set.i1[at], frame_.set.i2[at]};
       TriangleRecord record;
@@ -178,7 +161,7 @@ class TilePainter {
         std::memcpy(&record.key[k], &vertices_.key[numbers[k]], sizeof(float));
       }
       if (orient(record, frame_.view.culling)) large_.Draw(record);
-    }
+    });
   }
 
   const FrameInput& frame_;

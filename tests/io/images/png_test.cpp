@@ -256,7 +256,9 @@ TEST_F(Png, TheLastAlphaThatIsNotOpaque) {
     save(image, file());
     const Decoded decoded = decode_by_libpng(file());
     EXPECT_EQ(decoded.channels, alpha == last ? 4 : 3);
-    if (decoded.channels == 4) EXPECT_EQ(decoded.bytes[3], 254);
+    if (decoded.channels == 4) {
+      EXPECT_EQ(decoded.bytes[3], 254);
+    }
   }
 }
 

@@ -75,15 +75,7 @@ std::vector<std::byte> encode(const DeepImage& image, const std::string& name, c
 }  // namespace
 
 void save_deep_exr(const DeepImage& image, OutputFile& file, const Execution& execution) {
-  try {
-    file.write(encode(image, file.name(), execution));
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw Error(ErrorCode::unsupported, file.name() + ": EXR: " + error.what());
-  }
+  with_named_errors(file.name(), [&] { file.write(encode(image, file.name(), execution)); });
 }
 
 }  // namespace frontmost::detail

@@ -141,18 +141,12 @@ void save_exr(const Image& image, OutputFile& file, const Execution& execution) 
   auto& planes = const_cast<Image&>(image);  // which are only read
   std::vector<Strip> strips((std::size_t(image.height) + strip_rows - 1) / strip_rows);
   Strip head;
-  try {
+  with_named_errors(file.name(), [&] {
     head = make_strip(planes, 0, image.height, Pixels::left_out, file.name());
     parallel_for(execution, std::size_t(image.height), strip_rows, [&](std::size_t first, std::size_t end) {
       strips[first / strip_rows] = make_strip(planes, int(first), int(end), Pixels::written, file.name());
     });
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw Error(ErrorCode::unsupported, file.name() + ": EXR: " + error.what());
-  }
+  });
   fill_in_offsets(head, strips, image.height);
   file.write(std::span(head.bytes).first(head.start));
   for (const Strip& strip : strips) file.write(std::span(strip.bytes).subspan(strip.start));

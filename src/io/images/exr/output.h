@@ -6,8 +6,12 @@
 #include <OpenEXR/ImfPixelType.h>
 
 #include <cstring>
+#include <exception>
+#include <new>
+#include <string>
 #include <vector>
 
+#include "frontmost/base.h"
 #include "frontmost/image.h"
 
 namespace frontmost::detail {
@@ -31,6 +35,20 @@ class MemoryOutput : public Imf::OStream {
   std::vector<std::byte> bytes_;
   std::size_t place_ = 0;
 };
+
+/// Calls `write`; what OpenEXR throws becomes an Error that begins with the file's name.
+template <class Write>
+void with_named_errors(const std::string& name, Write&& write) {
+  try {
+    write();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Error(ErrorCode::unsupported, name + ": EXR: " + error.what());
+  }
+}
 
 [[nodiscard]] inline Imf::PixelType type_of(const Channel& channel) {
   return channel.is_integer() ? Imf::UINT : Imf::FLOAT;

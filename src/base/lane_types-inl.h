@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Names for whole vectors of 32-bit numbers, for kernels that work on as many at once as the machine has room for.
+
+// Included once for every target.
+#if defined(FRONTMOST_BASE_LANE_TYPES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FRONTMOST_BASE_LANE_TYPES_INL_H_
+#undef FRONTMOST_BASE_LANE_TYPES_INL_H_
+#else
+#define FRONTMOST_BASE_LANE_TYPES_INL_H_
+#endif
+
+#include <cstddef>
+
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using DF = hn::ScalableTag<float>;
+using DI = hn::RebindToSigned<DF>;
+using DU = hn::RebindToUnsigned<DF>;
+using VF = hn::Vec<DF>;
+using VI = hn::Vec<DI>;
+using VU = hn::Vec<DU>;
+using MF = hn::Mask<DF>;
+using MI = hn::Mask<DI>;
+
+/// Known when compiled: for arrays that hold a vector.
+constexpr std::size_t kMaxLanes = hn::MaxLanes(DF());
+
+}  // namespace frontmost::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard by target
