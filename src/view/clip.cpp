@@ -5,6 +5,9 @@
 //
 // Vertices that can be snapped keep the float position that every other triangle sees; only the others, and the cuts,
 // are worked out in double.
+//
+// No cracks: what becomes of an edge depends on its two ends alone. Both triangles that have it cut it from its inner
+// to its outer end, in the same order of planes, and so get the same bits.
 
 #include "view/clip.h"
 
@@ -40,6 +43,7 @@ double distance(const ScreenTransform& t, Plane plane, const ClipVertex& v) {
 
 ClipVertex cut(const ScreenTransform& t, Plane plane, const ClipVertex& inside, const ClipVertex& outside) {
   const double a = distance(t, plane, inside), b = distance(t, plane, outside);
+  // a >= 0 > b: never 0 / 0, and s is within [0, 1].
   const double s = a / (a - b);
   // Rounding must not carry the distance past an end: behind the near plane there is nothing to divide by.
   const auto [nearest, farthest] = std::minmax(inside.d, outside.d);
@@ -48,6 +52,7 @@ ClipVertex cut(const ScreenTransform& t, Plane plane, const ClipVertex& inside, 
                std::clamp(inside.d + s * (outside.d - inside.d), nearest, farthest),
                {},
                false};
+  // Exactly on its plane: rounding must not make it an outer one of the plane that made it.
   switch (plane) {
     case Plane::near: v.d = t.near; break;
     case Plane::far: v.d = t.far; break;
@@ -59,6 +64,7 @@ ClipVertex cut(const ScreenTransform& t, Plane plane, const ClipVertex& inside, 
   return v;
 }
 
+/// Each of six planes adds at most one corner to a convex polygon, and one more is written before it is looked at.
 using Polygon = std::array<ClipVertex, ClippedPolygon::max_corners + 1>;
 
 int clip_by(const ScreenTransform& t, Plane plane, const Polygon& in, int count, Polygon& out) {
@@ -75,6 +81,7 @@ int clip_by(const ScreenTransform& t, Plane plane, const Polygon& in, int count,
   return std::min(kept, ClippedPolygon::max_corners);
 }
 
+/// In 1/256 pixel. Ties go to the even number, as in every kernel; a cut on the guard band must not round beyond it.
 std::int32_t snap_coordinate(double homogeneous, double w) {
   const double limit = kGuardBand;
   return static_cast<std::int32_t>(std::nearbyint(std::clamp(homogeneous / w, -limit, limit)));
@@ -107,6 +114,7 @@ ClippedPolygon clip_triangle(const ScreenTransform& t, const std::array<glm::vec
   Polygon polygon, next;
   int count = 3;
   for (std::size_t i = 0; i < 3; ++i) polygon[i] = prepare(t, world[i]);
+  // Near comes first: in perspective the sides are only planes where w, the distance, is positive.
   for (const Plane plane : {Plane::near, Plane::far, Plane::left, Plane::right, Plane::top, Plane::bottom}) {
     count = clip_by(t, plane, polygon, count, next);
     if (count < 3) return {};

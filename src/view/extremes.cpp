@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// The farthest points of a model in directions all around, found without looking at all of them.
+
 #include "view/extremes.h"
 
 #include <algorithm>
@@ -79,6 +81,8 @@ struct Extremes::Extent {
     middle = 0.5 * (low + high);
     half = 0.5 * (high - low);
     const glm::dvec3 size = glm::abs(middle) + half;
+    // Coordinates are floats, exact in double; a reach is three products and two sums of them, and errs by less than
+    // 1e-15 of this sum.
     half += 1e-12 * (size.x + size.y + size.z);
   }
 };

@@ -51,6 +51,7 @@ std::array<glm::dvec3, 8> corners_of(const Box& box) {
   return corners;
 }
 
+/// What is framed where a scene has nothing to show.
 Box unit_box() { return {glm::vec3(-0.5f), glm::vec3(0.5f)}; }
 
 /// The frustum of a pinhole that looks along `axes`, moved so that it just holds every point it is shown. With
@@ -117,6 +118,7 @@ class Spread {
   }
   /// How far the eye must move for the two extremes to lie equally far from the picture's middle.
   [[nodiscard]] double to_centre() const {
+    // Moved by m, a point at distance w has slope s - m / w: the m for which the two new slopes add up to 0.
     return (low_.slope + high_.slope) / (1 / low_.distance + 1 / high_.distance);
   }
 
@@ -158,6 +160,8 @@ ClipDistances fit_clip(const Box& bounds, const glm::dmat4& world_from_eye, bool
   ClipDistances clip{nearest - spare, farthest + spare};
   if (orthographic) return clip;
   if (!(clip.far > 0)) clip.far = std::max(size, 1e-30);  // all behind the eye: any valid planes will do
+  // An eye within the model would have a near plane at 0, and keys (near / distance) that are all 0. Four digits of
+  // reach cost floats nothing: keys near 0 are as finely spaced.
   clip.near = std::max(clip.near, 1e-4 * clip.far);
   if (!(clip.near < clip.far)) clip.near = 0.5 * clip.far;
   return clip;
@@ -194,6 +198,7 @@ View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& 
   const ClipDistances clip = fit_clip(box, pose, options.orthographic);
   if (options.orthographic) {
     const glm::dvec2 extent = fit.half_extent();
+    // A model of no extent across, a point or a line seen from its end, still needs a picture with sides.
     const double half = std::max({extent.y, extent.x / aspect, 1e-3 * diagonal}) / filled;
     projection = make_orthographic(-half * aspect, half * aspect, -half, half, clip);
   } else {

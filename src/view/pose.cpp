@@ -13,6 +13,7 @@ bool is_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite
 // y and z change sign between OpenGL's camera axes (y up, z back) and OpenCV's (y down, z forward).
 const glm::dmat4 kFlipYZ(1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1);
 
+/// The transpose undoes a rotation exactly where a general inverse would round once more.
 glm::dmat4 inverse_rigid(const glm::dmat4& pose) {
   const glm::dmat3 rotation = glm::transpose(glm::dmat3(pose));
   glm::dmat4 inverse(rotation);
@@ -53,6 +54,7 @@ glm::dmat4 look_at(const glm::dvec3& eye, const glm::dvec3& target, const glm::d
   const glm::dvec3 wanted = is_finite(up) && up_length > 0 ? up / up_length : glm::dvec3(0, 1, 0);
   glm::dvec3 right = glm::cross(wanted, back);
   // Looking along "up", the roll is undefined: take the axis farthest from the viewing direction instead.
+  // Sine of the angle between both. Below that the roll would be made of rounding errors.
   if (glm::length(right) < 1e-9) {
     const glm::dvec3 other = std::abs(back.z) < 0.9 ? glm::dvec3(0, 0, back.y > 0 ? -1 : 1) : glm::dvec3(0, 1, 0);
     right = glm::cross(other, back);

@@ -54,6 +54,7 @@ DepthRow depth_row(const Projection& projection, const DepthConvention& depth) {
     const double a = (depth.at_far - depth.at_near) / (f - n);
     return {a, depth.at_near - a * n};
   }
+  // The limit of the last line: n / (f - n) goes to 0, f / (f - n) to 1.
   if (std::isinf(f)) return {-depth.at_far, (depth.at_near - depth.at_far) * n};
   return {(depth.at_near * n - depth.at_far * f) / (f - n), (depth.at_near - depth.at_far) * n * f / (f - n)};
 }
@@ -113,6 +114,7 @@ double distance_of_depth(const Projection& projection, const DepthConvention& de
   const DepthRow row = depth_row(projection, depth);
   if (projection.orthographic) return (ndc_depth - row.b) / row.a;
   const double denominator = ndc_depth + row.a;
+  // What is infinitely far: the far plane's own depth where that is infinite, else one beyond it.
   if (denominator == 0) return std::numeric_limits<double>::infinity();
   return row.b / denominator;
 }

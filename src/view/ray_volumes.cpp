@@ -8,6 +8,7 @@ RayVolumes perspective_volumes(const ScreenRays& rays, const std::array<glm::dve
                                const glm::dvec3& direction) {
   RayVolumes v{};
   for (int k = 0; k < 3; ++k) {
+    // The triple product of the ray and the two other corners; in it only the ray depends on the screen.
     const glm::dvec3 side = glm::cross(c[std::size_t((k + 1) % 3)], c[std::size_t((k + 2) % 3)]);
     v.value[k] = glm::dot(side, direction);
     v.step_x[k] = glm::dot(side, rays.step_x());
@@ -21,6 +22,7 @@ RayVolumes parallel_volumes(const ScreenRays& rays, const std::array<glm::dvec3,
   for (int k = 0; k < 3; ++k) {
     const glm::dvec3 &p = c[std::size_t((k + 1) % 3)], &q = c[std::size_t((k + 2) % 3)];
     v.value[k] = glm::dot(glm::cross(p - start, q - start), rays.forward());
+    // Where the ray starts moves: the product changes by its area swept along the side from p to q.
     const glm::dvec3 per_shift = glm::cross(rays.forward(), q - p);
     v.step_x[k] = glm::dot(per_shift, rays.step_x());
     v.step_y[k] = glm::dot(per_shift, rays.step_y());

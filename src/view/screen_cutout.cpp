@@ -17,6 +17,8 @@ ScreenCutout::ScreenCutout(const CutoutTriangle& triangle, const ScreenRays& ray
     : triangle_(&triangle), volumes_(ray_volumes(rays, from_eye(triangle, rays), 0, 0)) {}
 
 bool ScreenCutout::is_hole(std::int32_t x, std::int32_t y) const {
+  // From the same corner each time, never by steps from the sample before: the answer is that of the place alone,
+  // whoever asks in whatever order.
   constexpr double kPixel = 1.0 / kSubPixels;
   const glm::dvec3 at =
       volumes_.value + (double(x) * kPixel) * volumes_.step_x + (double(y) * kPixel) * volumes_.step_y;

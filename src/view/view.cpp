@@ -39,6 +39,7 @@ constexpr std::array<glm::ivec2, count> in_fixed_point(const std::array<glm::ive
   return offsets;
 }
 
+/// Too large is a limit of the house, too small a mistake of the caller; messages say both ends.
 void check_range(double value, double low, double high, const char* what) {
   if (!(value >= low && value <= high))
     throw Error(value > high ? ErrorCode::limit_exceeded : ErrorCode::bad_argument,

@@ -9,6 +9,7 @@ namespace frontmost::zbuffer_detail {
 /// Calls visit(x, y) for the pixels of `rect` whose sample, `offset` from the pixel's corner, is covered.
 template <class Visit>
 void visit_covered(const TriangleRecord& r, const PixelRect& rect, const glm::ivec2& offset, const Visit& visit) {
+  // Exact: coordinates within the guard band have 22 bits, their differences 23, a product and a sum of such 47.
   std::int64_t row[3], step_x[3], step_y[3];
   for (int k = 0; k < 3; ++k) {
     const int n = k == 2 ? 0 : k + 1;

@@ -32,6 +32,7 @@ glm::vec3 RestOfEye(const ScreenTransform& t, const View& view) {
   return glm::vec3(view.eye() - glm::dvec3(t.eye[0], t.eye[1], t.eye[2]));
 }
 
+/// The rest of the eye went through the row in doubles and was rounded with the offset: twice its terms bound both.
 RowTerms MakeRow(const std::array<float, 3>& row, float offset, const glm::vec3& rest) {
   const glm::vec3 terms = glm::abs(glm::vec3(row[0], row[1], row[2]) * rest);
   const float sum = terms.x + terms.y + terms.z;
@@ -59,7 +60,8 @@ HWY_INLINE VF Margin(const RowTerms& row, const Reach& reach) {
   return hn::Mul(hn::Set(d, kRoundingBound), hn::Add(hn::Add(x, y), hn::Add(z, w)));
 }
 
-/// Pixel of a coordinate from the image's centre in 1/256 pixel, clamped to [0, last].
+/// Pixel of a coordinate from the image's centre in 1/256 pixel, clamped to [0, last]. Limited before it is converted:
+/// floats beyond the range of integers become different ones on different machines.
 HWY_INLINE hn::Vec<DI> ToPixel(VF from_centre, std::int32_t centre, std::int32_t last) {
   const DF d;
   const VF limit = hn::Set(d, float(kGuardBand));
@@ -204,11 +206,14 @@ class Cull {
       const VF w = t.orthographic ? hn::Set(d, 1.0f) : depth;
       e.nearest = hn::Min(e.nearest, depth);
       e.farthest = hn::Max(e.farthest, depth);
+      // Inside the left side where X >= -W * half the width, and so on; no division, so corners behind the eye serve as
+      // well.
       const VF wx = hn::Mul(half_x, w), wy = hn::Mul(half_y, w);
       e.left = hn::Max(e.left, hn::Add(wx, x));
       e.right = hn::Max(e.right, hn::Sub(wx, x));
       e.top = hn::Max(e.top, hn::Add(wy, y));
       e.bottom = hn::Max(e.bottom, hn::Sub(wy, y));
+      // Nonsense for corners that are not before the eye; Whole() then fails on `nearest`, and nothing of this is used.
       const VF inverse = hn::Div(hn::Set(d, 1.0f), w);
       const VF sx = hn::Mul(x, inverse), sy = hn::Mul(y, inverse);
       e.x_min = hn::Min(e.x_min, sx);

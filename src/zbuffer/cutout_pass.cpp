@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Triangles with holes, behind all others: no order, no tiles, no vectors. A look into a texture costs many depth
+// tests, so all that counts is to look only where the fragment would be seen.
+
 #include "zbuffer/cutout_pass.h"
 
 #include <algorithm>
@@ -41,6 +44,7 @@ class CutoutPainter {
   template <class IsHole>
   void put(PrimitiveId id, float key, std::size_t i, const IsHole& is_hole) {
     const bool is_nearer = key > visible_.keys[i] || (key == visible_.keys[i] && id < visible_.primitives[i]);
+    // In this order: most fragments of foliage are behind what is there already.
     if (!is_nearer || is_hole()) return;
     visible_.keys[i] = key;
     visible_.primitives[i] = id;
@@ -67,6 +71,7 @@ void draw_cutouts(const Cutouts& cutouts, std::span<const TriangleRecord> record
                   const Execution& execution) {
   const View& view = visible.view;
   const ScreenRays rays(view);
+  // Threads share no row, so none has to be locked; each goes through all records, which are few or large.
   constexpr std::size_t kRowsPerPart = 16;
   parallel_for(execution, std::size_t(view.height), kRowsPerPart, [&](std::size_t begin, std::size_t end) {
     CutoutPainter painter(cutouts, rays, {0, int(begin), view.width - 1, int(end) - 1}, visible);

@@ -65,6 +65,7 @@ void FramePlan::take_apart(const ClusterSet& set, const ScreenTransform& transfo
   const std::size_t part_count = (apart_.size() + kGrain - 1) / kGrain;
   if (apart_parts_.size() < part_count) apart_parts_.resize(part_count);
   parallel_for(execution, apart_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    // By chunk, not by thread: records are put together in the same order however many threads there are.
     std::vector<TriangleRecord>& part = apart_parts_[begin / kGrain];
     part.clear();
     for (std::size_t i = begin; i < end; ++i) append_records(set, set.clusters[apart_[i]], transform, view, part);

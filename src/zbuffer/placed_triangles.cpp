@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Growing columns, and lists by tile: counted in a first pass, filled in a second, so that nothing is allocated
+// between.
+
 #include "zbuffer/placed_triangles.h"
 
 namespace frontmost::zbuffer_detail {
@@ -33,6 +36,8 @@ PixelRect TileGrid::rect(std::size_t tile) const {
 void PlacedTriangles::make_room(std::size_t more) {
   const std::size_t needed = count + more + slack;
   if (id.size() >= needed) return;
+  // All columns have the size of `id`, which grows last: what fails for want of memory leaves a size that holds for
+  // all.
   const std::size_t size = std::max(needed, 2 * id.size());
   for (auto* columns : {&x, &y})
     for (Buffer<std::int32_t>& column : *columns) grow(column, count, size);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Which large triangles are drawn in which tiles, in rounds that keep the lists within a bound.
+
 #include "zbuffer/record_lists.h"
 
 #include <algorithm>
@@ -19,6 +21,8 @@ void visit_tiles(const TriangleRecord& record, const View& view, const TileRange
       const std::size_t tile = std::size_t(y) * across + std::size_t(x);
       if (tile < range.begin || tile >= range.end) continue;
       const PixelRect pixels{x * kTileSize, y * kTileSize, (x + 1) * kTileSize - 1, (y + 1) * kTileSize - 1};
+      // Of a single tile the outermost corners were asked already; a long diagonal touches few of those in its
+      // rectangle.
       if (tiles.count() == 1 || !misses(record, pixels)) add(tile);
     }
 }
@@ -26,6 +30,7 @@ void visit_tiles(const TriangleRecord& record, const View& view, const TileRange
 }  // namespace
 
 void RecordLists::plan(const View& view, std::size_t most_items) {
+  // Any order gives the same picture. Nearest first, a tile may stop at the first record that all of its blocks hide.
   std::sort(records.begin(), records.end(),
             [](const TriangleRecord& a, const TriangleRecord& b) { return a.nearest() > b.nearest(); });
   split_into_rounds(view, most_items);

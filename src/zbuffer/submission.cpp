@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// From the scene's own arrays to triangles on the screen, in the order of their ids.
+
 #include "zbuffer/submission.h"
 
 #include <algorithm>
@@ -17,6 +19,7 @@ std::span<const glm::vec3> positions_of(const Mesh& mesh, const glm::dmat4& worl
   if (numbers.is_dense(piece.corners.size())) {
     piece.first_position = numbers.low;
     const auto range = std::span(mesh.positions).subspan(numbers.low, std::size_t(numbers.high - numbers.low) + 1);
+    // No copy at all: most files have one instance, where it is.
     if (world.is_identity()) return range;
     for (const glm::vec3& p : range) scratch.positions.push_back(world(p));
     return scratch.positions;
@@ -50,6 +53,7 @@ void append_clipped(const PlaceTarget& target, const PieceGeometry& piece, std::
   const std::array<glm::vec3, 3> world = piece.world(triangle);
   if (!is_finite(world[0]) || !is_finite(world[1]) || !is_finite(world[2])) return;
   const ClippedPolygon polygon = clip_triangle(target.transform, world);
+  // Of the whole polygon, not of each piece: the polygon offset of f32 looks at the greatest depth of the primitive.
   float low = polygon.corners[0].key, high = low;
   for (int i = 0; i < polygon.count; ++i) {
     low = std::min(low, polygon.corners[std::size_t(i)].key);

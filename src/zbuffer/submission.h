@@ -23,6 +23,7 @@ struct Piece {
   PrimitiveId first;         ///< id of the instance's first triangle
 };
 
+/// Long to place beside being handed to a thread, and its columns of 104 KiB stay in the second-level cache.
 inline constexpr std::uint32_t kPieceTriangles = 2048;
 
 /// Primitives [begin, end).

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Setting up single triangles: those of clusters that cannot be drawn as a whole.
+
 #include "zbuffer/triangle_records.h"
 
 #include <algorithm>
@@ -34,6 +36,7 @@ class SnappedCluster {
   [[nodiscard]] ClippedPolygon polygon(std::size_t triangle) const {
     const std::size_t c = cluster_.first_triangle + triangle;
     const std::size_t a = set_.i0[c], b = set_.i1[c], d = set_.i2[c];
+    // Padding, and triangles with a corner that is not finite: build_clusters() made them so.
     if (a == b || b == d || a == d) return {};
     if (!is_plain_[a] || !is_plain_[b] || !is_plain_[d])
       return clip_triangle(transform_, {position(a), position(b), position(d)});
@@ -62,6 +65,7 @@ class SnappedCluster {
 
 bool orient(TriangleRecord& r, Culling culling) {
   const std::int64_t area = doubled_area(r);
+  // Without area is edge-on, whatever the winding was: culling never comes to it.
   if (area == 0 || !keeps(culling, area < 0)) return false;
   if (area < 0) {
     std::swap(r.x[1], r.x[2]);
@@ -106,6 +110,8 @@ bool misses(const TriangleRecord& r, const PixelRect& rect) {
     const int b = (a + 1) % 3;
     const std::int64_t dx = r.x[b] - r.x[a], dy = r.y[b] - r.y[a];
     // The corner of the rectangle that lies deepest inside the edge.
+    // One past the last pixel, as samples lie within [0, 256) of theirs. Without the top-left bias the edge is a little
+    // too generous, which only costs time.
     const std::int64_t x = dy < 0 ? (std::int64_t(rect.x1) + 1) * kSubPixels : std::int64_t(rect.x0) * kSubPixels;
     const std::int64_t y = dx > 0 ? (std::int64_t(rect.y1) + 1) * kSubPixels : std::int64_t(rect.y0) * kSubPixels;
     if (dx * (y - r.y[a]) - dy * (x - r.x[a]) < 0) return true;

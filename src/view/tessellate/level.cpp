@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+// Bounds on how far triangles are from what they stand for, and the coarsest grids that keep within them.
+//
+// D. Filip, R. Magedson, R. Markot. Surface Algorithms Using Bounds on Derivatives. 1986 (patches).
+
 #include "view/tessellate/level.h"
 
 #include <algorithm>
@@ -21,6 +25,7 @@ double greatest_stretch(const glm::dmat3& m) {
   return std::sqrt(most);
 }
 
+/// By doubling, then by halves: globe_error() looks at all rings, and falls with their number.
 int rings_within(double tolerance) {
   int rings = kFewestRings;
   while (rings < finest_level && globe_error(rings) > tolerance) rings *= 2;
@@ -57,6 +62,7 @@ ScreenTolerance::ScreenTolerance(const View& view, double pixels)
 }
 
 double ScreenTolerance::at(double nearest, double farthest) const {
+  // Nothing of it is seen, so any tessellation will do.
   if (farthest < near_) return std::numeric_limits<double>::infinity();
   return anywhere_ + std::max(nearest, near_) * per_distance_;
 }
@@ -93,8 +99,11 @@ double PatchBending::error(const PatchLevel& level) const {
 
 PatchLevel PatchBending::level_within(double tolerance) const {
   PatchLevel level;
+  // A control point that is infinite or no number: tessellate() leaves such patches out.
   if (!std::isfinite(error(level))) return level;  // never seen
   while (error(level) > tolerance && (level.u < finest_level || level.v < finest_level)) {
+    // The direction whose share of the error is greater is halved: it quarters that share, the other keeps its
+    // triangles.
     const double by_u = uu_ / level.u / level.u, by_v = vv_ / level.v / level.v;
     // Where only the twist is left, the longer cells are halved.
     const bool is_u = by_u != by_v ? by_u > by_v : level.u <= level.v;
@@ -111,6 +120,7 @@ double globe_error(int rings) {
   const double leg = 2 * half_step;
   double most = 0;
   for (int i = 0; i < rings; ++i) {
+    // The two parallels of a ring: chords of a column's width, one of them a point at a pole.
     const double a = 2 * turn(i, 2 * rings).y * half_step, b = 2 * turn(i + 1, 2 * rings).y * half_step;
     const double diagonal = std::sqrt(leg * leg + a * b), height = std::sqrt(leg * leg - (a - b) * (a - b) / 4);
     const double radius = leg * diagonal / (2 * height);

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// A grid over a patch whose rims are as fine as the neighbours need: rows of quads inside, fans of triangles along rims
+// that are finer.
+
 #include "view/tessellate/patch_grid.h"
 
 #include <algorithm>
@@ -18,6 +21,7 @@ bool comes_before(const glm::dvec3& a, const glm::dvec3& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
 
+/// Edges are the same where all four control points are, to the bit; rounding differently is being apart.
 struct EdgeOrder {
   bool operator()(const EdgePoints& a, const EdgePoints& b) const {
     return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), comes_before);
@@ -65,6 +69,8 @@ class GridBuilder {
     walk({u0, v1}, {u1, v1}, last_v ? lattice_.u / edges_[3] : step_u);
     walk({u1, v1}, {u1, v0}, last_u ? lattice_.v / edges_[1] : step_v);
     walk({u1, v0}, {u0, v0}, j == 0 ? lattice_.u / edges_[2] : step_u);
+    // Nothing finer beside it: two triangles. Otherwise a fan about the middle, which any number of rim points can
+    // join.
     if (around_.size() == 4) {
       add_triangle(around_[0], around_[1], around_[2]);
       add_triangle(around_[0], around_[2], around_[3]);

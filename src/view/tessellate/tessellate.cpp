@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Curved meshes as triangles fine enough for one view: first how fine, so that limits are known, then the triangles.
+
 #include "frontmost/tessellate.h"
 
 #include <algorithm>
@@ -14,6 +16,7 @@
 namespace frontmost {
 namespace {
 
+/// Some 3 GiB of mesh. A double, as what is asked for may be beyond all integers.
 constexpr double kMostTriangles = 1 << 26;
 
 void append_globe(const Sphere& sphere, int rings, std::uint32_t face, Mesh& mesh) {

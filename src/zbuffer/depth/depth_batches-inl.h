@@ -55,6 +55,7 @@ class DepthBatches {
     for (std::size_t k = 0; k < hn::Lanes(d); ++k) numbers[k] = std::int32_t(items[HWY_MIN(k, items.size() - 1)]);
     const VI number = hn::Load(d, numbers);
     // Mostly they are neighbours, and can be loaded as such.
+    // A gather takes a load for every lane.
     const bool in_line = items.size() == hn::Lanes(d) && items.back() - items.front() + 1 == hn::Lanes(d);
     const auto column = [&](auto tag, const auto* from) HWY_ATTR {
       return in_line ? hn::LoadU(tag, from + numbers[0]) : hn::GatherIndex(tag, from, number);
@@ -176,6 +177,7 @@ class DepthBatches {
       if (call_.rules.has_offset())
         for (std::size_t n = 0; n < live; ++n) offset[n] = offset_[references_[i + n] & 15];
       for (std::size_t n = 0; n < hn::Lanes(d); n += hn::Lanes(dd))
+        // Depths may be worked out together, tests may not: two fragments of a vector may be of one pixel.
         hn::Store(test_.Stored(hn::Load(HalfF(), key + n), hn::Load(dd, offset + n)), HalfU(), stored + n);
       for (std::size_t n = 0; n < live; ++n) Put(PlaceOf(sample, references_[i + n]), stored[n], id[n], key[n]);
     }

@@ -135,6 +135,7 @@ class DepthRows {
       step[k] = hn::Set(d, lanes * edges.step_x[k]);
     }
     for (int y = rect.y0; y <= rect.y1; ++y) {
+      // The same operations in the same order as for many triangles at a time, so that both give the same bits.
       const float dy_gy = float(y * kSubPixels + at.y - plane.y0) * plane.gy;
       auto e0 = row[0], e1 = row[1], e2 = row[2];
       for (int x = first; x <= rect.x1; x += lanes) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// From the state to constants of a draw call, and the formats' roundings.
+
 #include "zbuffer/depth/depth_rules.h"
 
 #include <algorithm>
@@ -30,6 +32,7 @@ std::uint32_t stored_depth(DepthFormat format, double depth) {
     std::memcpy(&bits, &rounded, sizeof bits);
     return bits;
   }
+  // 24 bits times a double: exact but for the rounding itself, whose ties go to even in IeeeScope.
   return std::uint32_t(std::nearbyint(std::clamp(depth, 0.0, 1.0) * steps(format)));
 }
 
@@ -92,6 +95,7 @@ DepthRules rules_for(const DepthState& state, DepthFormat format, const ScreenTr
 }
 
 double DepthRules::offset_of(float gx, float gy, float key_low, float key_high) const {
+  // Gradients are per 1/256 pixel, OpenGL's m is per pixel; it may be the greater of the two instead of the length.
   const double m = std::abs(map.slope) * kSubPixels * double(std::fmax(std::abs(gx), std::abs(gy)));
   const double r =
       format == DepthFormat::f32 ? float_step(std::max(map.of(key_low), map.of(key_high))) : 1 / steps(format);

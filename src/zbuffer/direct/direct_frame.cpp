@@ -144,6 +144,7 @@ class DirectFrame {
 
   /// False where blocks that were found to be nearer cover all of the piece, or nothing of it is on the screen.
   [[nodiscard]] bool may_be_seen(const PieceExtent& extent) const {
+    // A negative key is a vertex with out codes: not seen where all of them have one, and one plane in common.
     if (!extent.all_plain) return extent.common >= 0 || (extent.common & kOutside) == 0;
     const View& view = visible_.view;
     const PixelRect rect{std::max(extent.low.x >> 8, 0), std::max(extent.low.y >> 8, 0),

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Lists by tile of a parcel: runs of triangles where neighbours in the file lie in the same tiles.
+
 #include "zbuffer/direct/parcel.h"
 
 #include <cstring>
@@ -50,6 +52,7 @@ std::size_t Parcel::visit_runs(const Visit& visit) const {
 }
 
 void Parcel::bin(Buffer<ParcelColumns>& spare) {
+  // Runs of fewer than this on average are gathered lane by lane when drawn, which costs more than sorting once.
   constexpr std::size_t kShortRun = 4;
   if (count == 0) return;
   if (visit_runs([](const SmallTiles&, const TileRun&) {}) > count / kShortRun) {

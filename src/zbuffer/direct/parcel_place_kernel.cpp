@@ -51,6 +51,7 @@ class OutCodes {
   }
 
  private:
+  // The sign and the top of the exponent: negative, finite, and with room for the six bits below.
   static constexpr std::int32_t kNone = std::int32_t(0xC0000000);  // -2
 
   [[nodiscard]] static HWY_INLINE VI Bit(hn::Mask<DF> mask, std::int32_t bit) {
@@ -152,6 +153,7 @@ class ParcelPlacer {
     });
   }
 
+  /// Widens what is known of the whole parcel.
   HWY_INLINE void Note(MI keep, const PixelRange& columns, const PixelRange& rows) {
     least_x_ = hn::IfThenElse(keep, hn::Min(least_x_, columns.first), least_x_);
     least_y_ = hn::IfThenElse(keep, hn::Min(least_y_, rows.first), least_y_);
@@ -159,6 +161,7 @@ class ParcelPlacer {
     greatest_y_ = hn::IfThenElse(keep, hn::Max(greatest_y_, rows.last), greatest_y_);
   }
 
+  /// ParcelColumns::tiles. Eight bits a number are enough: the largest image has 128 tiles either way.
   [[nodiscard]] static HWY_INLINE VI TilesOf(const PixelRange& columns, const PixelRange& rows) {
     static_assert(kTileSize == 1 << 7);
     const VI first = hn::Or(hn::ShiftRight<7>(columns.first), hn::ShiftLeft<8>(hn::ShiftRight<7>(rows.first)));
@@ -172,6 +175,7 @@ class ParcelPlacer {
     ParcelColumns& to = parcel_.columns();
     const std::size_t at = parcel_.count;
     for (int k = 0; k < 3; ++k) {
+      // As bits, which order as the keys do while none is negative; kept triangles have none that is.
       const VI key = hn::GatherIndex(d, reinterpret_cast<const std::int32_t*>(vertices_.key.data()), corners[k].number);
       compact.Store(corners[k].x, to.x[k] + at);
       compact.Store(corners[k].y, to.y[k] + at);

@@ -137,6 +137,7 @@ class LargeTriangles {
       corner[c] = reach.corner[c][block] - reach.slack[block];
       gain += corner[c] - bounds.corner[c][block];
     }
+    // One plane a block: the one whose corners are nearer in sum. Any is right, as each is a bound of its own.
     if (bounds.greatest[block] > 0 && gain <= 0) return;
     for (int c = 0; c < 4; ++c) bounds.corner[c][block] = corner[c];
     bounds.greatest[block] = p.k_max;
@@ -158,6 +159,7 @@ class LargeTriangles {
         const VI e =
             hn::Add(hn::Add(hn::Set(d, edges.first[k]), hn::Mul(column, hn::Set(d, kBlockSize * edges.step_x[k]))),
                     hn::Mul(row, hn::Set(d, kBlockSize * edges.step_y[k])));
+        // The block's corners lie where the edge function is greatest and least; signs are or-ed, not compared.
         outside = hn::Or(outside, hn::Add(e, hn::Set(d, HWY_MAX(right, 0) + HWY_MAX(down, 0))));
         not_inside = hn::Or(not_inside, hn::Add(e, hn::Set(d, HWY_MIN(right, 0) + HWY_MIN(down, 0))));
       }
@@ -175,6 +177,7 @@ class LargeTriangles {
     const Cover cover = CoverOf(edges, rect);
     for (std::uint64_t left = open & ~cover.none; left != 0; left &= left - 1) {
       const int block = int(hwy::Num0BitsBelowLS1Bit_Nonzero64(left));
+      // Only before the first sample: afterwards the triangle itself may be what hides.
       if (sample == 0 && buffer_.Hides(block, reach.nearest[block])) {
         open &= ~(std::uint64_t(1) << block);
         continue;

@@ -152,6 +152,7 @@ class SmallTriangles {
     const MI live = hn::Lt(hn::Iota(d, 0), hn::Set(d, std::int32_t(used)));
     b.px = columns.first;
     b.py = rows.first;
+    // Lanes behind the last triangle hold what was there before: without width and height none of it is walked.
     b.width = hn::IfThenElseZero(live, hn::Add(hn::Sub(columns.last, b.px), one));
     b.height = hn::IfThenElseZero(live, hn::Add(hn::Sub(rows.last, b.py), one));
     return b;
@@ -215,6 +216,7 @@ class SmallTriangles {
       StoreWords(WordsOf(hn::BitCast(du, key), hn::TableLookupLanes(b.not_id, lane_u)), found);
       const std::size_t live = HWY_MIN(count - i, hn::Lanes(d));
       for (std::size_t k = 0; k < live; ++k) {
+        // One by one: two of the triangles may have covered the same pixel.
         std::uint64_t& kept = words[at[k]];
         kept = HWY_MAX(kept, found[k]);
       }

@@ -150,6 +150,10 @@ HWY_INLINE void FillTile(const Picture& picture, const Tile& tile) {
   hwy::FlushStream();
 }
 
+/// The tile's samples as 64-bit words, the key's bits above the complement of the id: the greater word is the nearer
+/// fragment, at equal keys the lower id, and 0 is nothing. Keys are not negative, so words compare alike as signed
+/// numbers, which is all that AVX2 has. Beside them the hierarchical depth: by block the farthest key, found when
+/// asked.
 class TileBuffer {
  public:
   TileBuffer(const Picture& picture, const Tile& tile, TileScratch& scratch)
@@ -188,6 +192,8 @@ class TileBuffer {
       }
     std::fill(std::begin(bounds_.farthest), std::end(bounds_.farthest), 0.0f);
     std::fill(std::begin(bounds_.greatest), std::end(bounds_.greatest), 0.0f);  // no plane
+    // An empty block of a whole tile hides nothing, which 0 says already; at the image's rim pixels outside may make up
+    // a whole block, which hides all.
     const bool whole = tile_.width == kTileSize && tile_.height == kTileSize;
     dirty_ = whole ? 0 : ~std::uint64_t(0);
   }
@@ -259,6 +265,7 @@ class TileBuffer {
   /// True when every sample of the blocks is strictly nearer than `nearest`.
   [[nodiscard]] HWY_INLINE bool AllHide(std::uint64_t blocks, float nearest) {
     std::uint64_t left = blocks & ~KnownToHide(nearest);
+    // Nothing was drawn to them since their farthest key was found: looking again finds the same.
     if (left & ~dirty_) return false;
     for (; left != 0; left &= left - 1)
       if (!Hides(int(hwy::Num0BitsBelowLS1Bit_Nonzero64(left)), nearest)) return false;
@@ -302,6 +309,7 @@ class TileBuffer {
            std::size_t(tile_.x);
   }
 
+  /// The inverse of WriteRow(); no_primitive with key 0 becomes the word 0 again.
   void ReadRow(std::size_t sample, int y) {
     const std::size_t at = PlaceOf(sample, y);
     std::uint64_t* row = Row(sample, y);
@@ -324,6 +332,7 @@ class TileBuffer {
     const DU d;
     const DF df;
     const std::size_t lanes = hn::Lanes(d);
+    // Streamed vectors have to be aligned: planes are to 64 bytes, rows only where the width is a multiple of 16.
     const bool streams = picture_.streams && at % 16 == 0;
     const auto* halves = reinterpret_cast<const std::uint32_t*>(row);
     for (; x + lanes <= width; x += lanes) {
