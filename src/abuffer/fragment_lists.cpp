@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// From a tile's sorted lists to the fragments that somebody may see: what is hidden in the whole pixel is left out.
+
 #include "abuffer/fragment_lists.h"
 
 namespace frontmost::abuffer_detail {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// One frame gone through several times: first to learn what is seen, then to paint it.
+
 #include "abuffer/fragment_pass.h"
 
 #include "abuffer/composite/composite_kernel.h"

@@ -42,9 +42,10 @@ struct Resolver::State {
 void Resolver::State::prepare(const View& view) {
   if (picture.width == view.width && picture.height == view.height) return;
   const std::size_t pixels = view.pixel_count();
+  picture = {};  // whatever fails for want of memory below, the next call begins here again
+  blank.assign(plan.tile_count(), 0);
   picture = {view.width,           view.height, Buffer<float>(pixels), Buffer<float>(pixels), Buffer<float>(pixels),
              Buffer<float>(pixels)};
-  blank.assign(plan.tile_count(), 0);
 }
 
 Resolver::Resolver() : state_(std::make_unique<State>()) {}

@@ -27,6 +27,7 @@ template <class T>
         const std::size_t at =
             std::size_t(part.pixels.y + y) * std::size_t(view.width) + std::size_t(part.pixels.x + x);
         const std::size_t p = std::size_t(y) * std::size_t(part.pixels.width) + std::size_t(x);
+        // Lengths first, one place behind, then their sums: parts may come in any order.
         first[at + 1] = part.begin[p + 1] - part.begin[p];
       }
   for (std::size_t i = 0; i < view.pixel_count(); ++i) first[i + 1] += first[i];

@@ -39,6 +39,7 @@ class SampleLists {
       // At a single sample the order is that of the lists.
       if (frame_.pattern.count == 1 && seen_.size() == most_) return seen_;
     }
+    // Lists are sorted by the key at one place of the pixel; at other samples triangles that cross there change places.
     if (frame_.pattern.count > 1)
       std::sort(seen_.begin(), seen_.end(),
                 [](const Seen& a, const Seen& b) { return a.key != b.key ? a.key > b.key : a.id < b.id; });
@@ -75,6 +76,7 @@ std::vector<Visible> visible_layers(const Surfaces& surfaces, const View& view, 
             if (k == layers.size()) break;
             layers[k].primitives[at] = seen.id;
             layers[k++].keys[at] = seen.key;
+            // Nothing behind it is a layer: nobody can see it.
             if (opacities.is_opaque(seen.id)) break;
           }
         }

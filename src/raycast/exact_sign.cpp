@@ -2,66 +2,17 @@
 #include "raycast/exact_sign.h"
 
 #include <cmath>
-#include <vector>
+
+#include "base/exact_vector.h"
 
 namespace frontmost::raycast_detail {
 namespace {
 
-/// A sum of doubles that do not overlap, least first: exact, whatever is added.
-class Expansion {
- public:
-  void add(double term) {
-    std::size_t kept = 0;
-    for (const double part : parts_) {
-      // Two-sum: sum + error is part + term, exactly.
-      const double sum = term + part, from_part = sum - term;
-      const double error = (term - (sum - from_part)) + (part - from_part);
-      if (error != 0) parts_[kept++] = error;
-      term = sum;
-    }
-    parts_.resize(kept);
-    if (term != 0) parts_.push_back(term);
-  }
-  /// The last part outweighs all others.
-  [[nodiscard]] int sign() const { return parts_.empty() ? 0 : parts_.back() > 0 ? 1 : -1; }
-
- private:
-  std::vector<double> parts_;
-};
-
-struct Product {
-  double value, error;
-};
-Product multiply(double a, double b) {
-  const double value = a * b;
-  return {value, std::fma(a, b, -value)};
-}
-
-/// sign * a * b * c, each a sum of two.
-struct Term {
-  int sign;
-  std::size_t a, b, c;  // coordinates
-};
-constexpr std::array<Term, 6> kTerms{
-    {{1, 0, 1, 2}, {1, 1, 2, 0}, {1, 2, 0, 1}, {-1, 0, 2, 1}, {-1, 1, 0, 2}, {-1, 2, 1, 0}}};
-
-void add_product(Expansion& sum, double a, double b, double c) {
-  if (a == 0 || b == 0 || c == 0) return;
-  const Product ab = multiply(a, b);
-  for (const double part : {ab.error, ab.value}) {
-    const Product abc = multiply(part, c);
-    sum.add(abc.error);
-    sum.add(abc.value);
-  }
-}
-
-int exact_sign(const ExactVector& a, const ExactVector& b, const ExactVector& c) {
-  Expansion sum;
-  for (const Term& t : kTerms)
-    for (const double x : {a.low[t.a], a.high[t.a]})
-      for (const double y : {b.low[t.b], b.high[t.b]})
-        for (const double z : {c.low[t.c], c.high[t.c]}) add_product(sum, t.sign * x, y, z);
-  return sum.sign();
+/// The sums themselves, as numbers that are never rounded.
+frontmost::ExactVector unrounded(const ExactVector& v) {
+  frontmost::ExactVector sums;
+  for (std::size_t axis = 0; axis < 3; ++axis) sums[axis] = Expansion(v.low[axis]) + Expansion(v.high[axis]);
+  return sums;
 }
 
 }  // namespace
@@ -89,7 +40,7 @@ int determinant_sign(const ExactVector& a, const ExactVector& b, const ExactVect
   }
   // Three roundings of the coordinates and five on the way: less than 16 half units in the last place of the size.
   if (std::abs(det) > size * 0x1p-49) return det > 0 ? 1 : -1;
-  return exact_sign(a, b, c);
+  return dot(unrounded(a), cross(unrounded(b), unrounded(c))).sign();
 }
 
 }  // namespace frontmost::raycast_detail

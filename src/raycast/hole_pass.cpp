@@ -35,6 +35,7 @@ class HolePasser {
 
   [[nodiscard]] bool is_hole(PrimitiveId id, const SamplePlace& place) {
     if (!cutouts_.has(id)) return false;
+    // Neighbours mostly look at the same triangle, and setting one up costs more than asking it.
     if (id != id_) {
       cutout_.emplace(cutouts_[id], rays_);
       id_ = id;
@@ -98,6 +99,7 @@ class HolePasser {
     double enter = transform_.near - pad, leave = transform_.far + pad;
     for (int axis = 0; axis < 3; ++axis) {
       const double a = low[axis] - pad - start_[axis], b = high[axis] + pad - start_[axis], d = direction_[axis];
+      // Between the two planes all along, or nowhere: the division below would give NaN on one of them.
       if (d == 0) {
         if (a > 0 || b < 0) return std::nullopt;
         continue;
@@ -122,6 +124,7 @@ class HolePasser {
   void meet(const std::array<Corner, 3>& corners, PrimitiveId id, const SamplePlace& place) {
     const float sx = float(place.x - transform_.centre_x), sy = float(place.y - transform_.centre_y);
     if (!keeps(culling_, facing(transform_, corners, sx, sy))) return;
+    // The tile is part of the definition of a key: sample_rule.h.
     const auto tile_centre = [](int pixel, std::int32_t image_centre) {
       return float((pixel / kTileSize * kTileSize + kTileSize / 2) * kSubPixels - image_centre);
     };

@@ -79,6 +79,8 @@ class LargeTriangles {
     if (hwy::PopCount(open) < std::size_t(kClassifyFrom)) {
       std::uint64_t hidden = 0;
       ForEachBit(open, [&](std::size_t block) {
+        // Of few blocks the greatest key of all of the triangle has to do: working out the key of each costs more than
+        // it hides.
         hidden |= std::uint64_t(large.plane.high < buffer_.farthest()[block]) << block;
       });
       open &= ~hidden;
@@ -119,6 +121,8 @@ class LargeTriangles {
     for (std::size_t i = 0; i < kBlockCount; i += kLanes) {
       const VF u = hn::Add(hn::Load(d, kOffsets.block_x + i), first_x);
       const VF v = hn::Add(hn::Load(d, kOffsets.block_y + i), first_y);
+      // The key at the middle of the block, and what the slope adds to its farthest sample; no key is above the
+      // corners'.
       const VF nearest = hn::Min(hn::Add(start, hn::Add(hn::Mul(u, gx), hn::Mul(v, gy))), high);
       hidden |= std::uint64_t(BitsOf(d, hn::Lt(nearest, hn::Load(d, buffer_.farthest() + i)))) << i;
     }

@@ -293,6 +293,8 @@ class LightPacket {
     // No difference of two coordinates is greater than `most`, nor wrong by more than `error`.
     const float own_error = kShearError * from.reach[lane];
     const float most = 2 * (from.reach[lane] + reach_), error = own_error + error_ + 0x1p-23f * most;
+    // A turn is a difference of two products of differences: each of the four factors is wrong by `error` at most, and
+    // two products and their difference round once. The last term stands for underflow.
     t.edge_error = 8 * (most + error) * error + 0x1p-140f;
     t.side_error = 64 * most * (most + error) * error + 0x1p-140f;
     t.is_above = std::min({t.d[0], t.d[1], t.d[2]}) - own_error > bounds_.high_d;
@@ -322,6 +324,7 @@ class LightPacket {
     const LF d;
     const hn::RebindToUnsigned<LF> du;
     const hn::RebindToSigned<LF> di;
+    // Not its own triangle, nor rays that have met something already: those are in the dark for good.
     const LM waiting = hn::RebindMask(d, hn::MaskFromVec(hn::Load(di, waiting_ + first)));
     const LM others = hn::RebindMask(d, hn::Ne(hn::Load(du, ids_ + first), hn::Set(du, id)));
     const LV height = hn::Load(d, d_ + first);

@@ -13,6 +13,7 @@ namespace {
 
 using namespace raycast_detail;
 
+/// Their queries and answers, 20 KiB, lie on the stack and in the first-level cache.
 constexpr std::size_t kQueriesPerPart = 256;
 
 Query query_of(const Ray& ray) { return {ray.origin, ray.origin, ray.direction, false}; }
@@ -32,7 +33,8 @@ void check_sizes(std::size_t queries, std::size_t answers) {
                                              std::to_string(queries) + " queries");
 }
 
-/// Calls take(begin, hits) for the answers to consecutive questions.
+/// Calls take(begin, hits) for the answers to consecutive questions. Answers go by number to where they belong, so they
+/// do not depend on which thread asked what.
 template <class Question, class Take>
 void ask(const RayIndex& index, std::span<const Question> questions, Want want, const Execution& execution,
          const Take& take) {

@@ -183,6 +183,7 @@ class QueryWalker {
 
   void Note(const RayLeaf& leaf, std::size_t lane, float from) {
     if (leaf.id[lane] == no_primitive) return;
+    // Deciding early costs time alone: what is farther than the end is left out again then.
     if (noted_ == kMostNoted) Settle();
     notes_[noted_++] = {from, leaf.id[lane], CornersOf(leaf, lane)};
   }
@@ -209,6 +210,7 @@ class QueryWalker {
     bool met = false;
     for (std::size_t first = 0; first < kRayLanes; first += kQueryLanes) {
       const Candidates candidates = CandidatesOf(axis_.Pass(leaf, first));
+      // A hit of any kind is asked for; which one, and where, says nothing to whoever asks whether the way is clear.
       if (want_ == Want::any && candidates.certain != 0 && !tree_.cutouts) {
         const std::size_t lane = first + hwy::Num0BitsBelowLS1Bit_Nonzero32(candidates.certain);
         hits_.push_back({leaf.id[lane], 0, false});

@@ -38,6 +38,8 @@ glm::dvec3 direction_of(const Panorama& camera, int x, int y) {
 
 glm::dvec3 direction_of(const Fisheye& camera, int x, int y) {
   const double right = x + 0.5 - camera.width * 0.5, up = camera.height * 0.5 - y - 0.5;
+  // Equidistant: the angle from the axis grows with the distance from the middle, up to half the field of view at the
+  // rim.
   const double from_middle = std::sqrt(right * right + up * up);
   const double rim = std::min(camera.width, camera.height) * 0.5;
   if (from_middle > rim) return glm::dvec3(0);
@@ -88,6 +90,7 @@ void check(const Fisheye& camera) {
 
 void check_count(std::size_t columns, std::size_t rows) {
   if (columns == 0 || rows == 0) throw Error(ErrorCode::bad_argument, "ray camera: there is no ray");
+  // Divided, not multiplied: the product may overflow.
   if (columns > most_samples / rows)
     throw Error(ErrorCode::limit_exceeded, "ray camera: at most " + std::to_string(most_samples) + " rays in all");
 }
@@ -181,6 +184,7 @@ void cast_parts(const RangeScan& scan, const Execution& execution, const CastPar
 RangeScan scan(const RayIndex& index, const RayCamera& camera, const Execution& execution) {
   RangeScan result = raycast_detail::prepare_scan(camera);
   Execution within = execution;  // the parts are what is shared out
+  // A part is a few thousand rays: sharing it out again would cost threads more than they save.
   within.threads = 1;
   within.watch = nullptr;
   raycast_detail::cast_parts(result, execution, [&](std::size_t first, std::span<const Ray> rays) {

@@ -18,6 +18,7 @@ namespace {
 
 using namespace raycast_detail;
 
+/// What bounds the rounding of a box's distance to a plane: nothing in the tree is farther from the eye by any axis.
 glm::vec3 reach_of(const Box& bounds, const ScreenTransform& t) {
   if (bounds.is_empty()) return glm::vec3(0);
   const glm::vec3 eye(t.eye[0], t.eye[1], t.eye[2]);
@@ -33,11 +34,13 @@ struct RayCaster::State {
   /// Planes for the view: those of the last one where they fit. \returns true when their memory was used before.
   bool prepare_planes(const View& view) {
     const bool fits = visible.primitives.size() == view.sample_count();
+    // Where there is memory for one plane and not for the other, neither may stay: `fits` looks at one alone.
+    if (!fits) {
+      visible = {};
+      visible = {view, Buffer<PrimitiveId>(view.sample_count()), Buffer<float>(view.sample_count())};
+    }
     visible.view = view;
-    if (fits) return true;
-    visible.primitives = Buffer<PrimitiveId>(view.sample_count());
-    visible.keys = Buffer<float>(view.sample_count());
-    return false;
+    return fits;
   }
 };
 
@@ -64,6 +67,8 @@ const Visible& RayCaster::cast(const RayIndex& index, const View& view, const Ex
   const int tiles_x = (view.width + kTileSize - 1) / kTileSize, tiles_y = (view.height + kTileSize - 1) / kTileSize;
   const std::size_t tiles = std::size_t(tiles_x) * std::size_t(tiles_y);
   std::atomic<std::size_t> done{0};
+  // Tiles of 32 pixels are small: one by one, threads would wait for each other, and neighbours share what the caches
+  // hold.
   constexpr std::size_t kTilesPerPart = 4;
   parallel_for(execution, tiles, kTilesPerPart, [&](std::size_t begin, std::size_t end) {
     const auto scratch = state_->scratches.borrow([] { return std::make_unique<TileScratch>(); });

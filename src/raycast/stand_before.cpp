@@ -96,6 +96,7 @@ bool is_valid(const TrianglePoint& point) {
 }
 
 bool is_own(const Corners& corners, const TrianglePoint& point) {
+  // By positions, not by ids: the same triangle twice in a file would darken itself.
   return std::is_permutation(corners.begin(), corners.end(), point.corners.begin());
 }
 

@@ -71,6 +71,7 @@ class TileCaster {
     return p;
   }
 
+  /// Through the outermost samples, not the tile's sides: the frustum of the rays that are cast.
   void SetPlanes() {
     const double left = place_.first_x, right = left + (place_.width - 1) * kSubPixels;
     const double top = place_.first_y, bottom = top + (place_.height - 1) * kSubPixels;
@@ -85,6 +86,7 @@ class TileCaster {
     const DF d;
     VF sum[3];
     for (int axis = 0; axis < 3; ++axis)
+      // The end of the box that lies farthest along the normal, or against it: no need to look at eight corners.
       sum[axis] = hn::Mul(hn::Set(d, p.n[axis]), ends[(p.n[axis] >= 0) == farthest ? 1 : 0][axis]);
     return hn::Add(hn::Add(hn::Add(sum[0], sum[1]), sum[2]), hn::Set(d, p.offset));
   }
@@ -151,6 +153,7 @@ class TileCaster {
 
   void Walk() {
     waiting_ = 1;
+    // Infinity: nothing hides the root.
     scratch_.stack[0] = Waiting(0x7F800000u) << 32 | frame_.tree.root;
     while (waiting_ > 0) {
       const Waiting next = scratch_.stack[--waiting_];

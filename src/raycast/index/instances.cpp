@@ -100,6 +100,7 @@ void build_upper(RayTree& tree, const Execution& execution) {
       boxes[i] = {{box.low.x, box.low.y, box.low.z}, std::uint32_t(i), {box.high.x, box.high.y, box.high.z}, 0};
     }
   });
+  // Meshes without triangles, and instances that take all of theirs beyond the floats.
   std::erase_if(boxes, [](const LeafBox& box) { return box.low[0] > box.high[0]; });
   RayTree upper;
   build_nodes(boxes, upper, execution);
@@ -137,6 +138,7 @@ RayTree make_placed_tree(const Scene& scene, const Execution& execution) {
   check_transforms(scene);
   std::vector<std::uint8_t> is_used(scene.meshes.size(), 0);
   for (const Instance& instance : scene.instances) is_used[instance.mesh] = 1;
+  // Progress is told by mesh; each of their builds would begin again at 0.
   const Execution unwatched{execution.threads, execution.isa, nullptr};
   std::vector<RayTree> trees(scene.meshes.size());
   for (std::size_t m = 0; m < trees.size(); ++m) {

@@ -49,6 +49,7 @@ HWY_INLINE void place(const PlacedRoot& by, const RayLeaf& from, RayLeaf& to) {
     to.id[i] = from.id[i] == no_primitive ? no_primitive : from.id[i] + by.first;
   float nothing[kRayLanes] = {};
   for (std::size_t k = 0; k < 3; ++k) {
+    // Mirroring turns the winding; Surfaces swaps the last two corners, and ids and bits are to be the same.
     const auto& corner = from.corner[by.is_mirrored && k > 0 ? 3 - k : k];
     for (int row = 0; row < 3; ++row) {
       const glm::dmat4& m = by.world_from_mesh;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// RayIndex: what its constructors and refit() do, and in what order.
+
 #include "base/float_environment.h"
 #include "base/parallel.h"
 #include "raycast/index/ray_tree.h"

@@ -142,6 +142,7 @@ std::vector<LeafBox> fill_leaves(const Surfaces& surfaces, RayTree& tree, const 
 
   std::vector<LeafBox> boxes(leaf_count);
   parallel_for(execution, leaf_count, kLeavesPerPart, [&](std::size_t begin, std::size_t end) {
+    // The last leaf, where it is not full, keeps its unused lanes at the end and stays as it is.
     const std::size_t whole_end = std::min(end, total / kRayLanes);
     Regrouping regrouping;
     for (std::size_t i = begin; i + 1 < whole_end; i += Regrouping::kLeaves)

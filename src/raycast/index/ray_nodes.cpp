@@ -91,6 +91,7 @@ void consider(const std::array<Bin, kBins>& bins, int axis, Split& best) {
   for (int i = 1; i < kBins; ++i) {
     box.include(bins[std::size_t(i - 1)].box);
     count += bins[std::size_t(i - 1)].count;
+    // A split must leave something on either side, or building would never end.
     if (count == 0 || count == total) continue;
     const float cost = half_area(box) * float(count) + right_cost[std::size_t(i)];
     if (cost < best.cost) best = {axis, i, cost};

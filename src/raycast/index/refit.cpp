@@ -58,6 +58,7 @@ void fit_nodes(const std::vector<LeafBox>& boxes, RayTree& tree) {
   const auto box_of_child = [&](std::uint32_t child) {
     return child & kLeafBit ? as_box(boxes[child & ~kLeafBit]) : box_of(tree.nodes[child]);
   };
+  // From the last, so that a node's children have been fitted before it.
   for (std::size_t n = tree.nodes.size(); n-- > 0;) {
     RayNode& node = tree.nodes[n];
     for (std::size_t lane = 0; lane < node.count; ++lane) {
