@@ -161,8 +161,12 @@ struct DrawingSettings {
   double margin = 10;  ///< millimetres
   std::vector<NamedView> views;
   std::optional<Layout> layout;
-  double crease_angle = 30;   ///< degrees
-  std::optional<double> pen;  ///< millimetres, of what is seen
+  double crease_angle = 30;           ///< degrees
+  std::optional<double> pen;          ///< millimetres, of what is seen
+  std::optional<double> hatch;        ///< millimetres from line to line
+  std::optional<double> hatch_angle;  ///< degrees
+  std::optional<glm::dvec3> light;    ///< towards it: to the right, upwards and to the viewer
+  std::optional<bool> casts_shadows;
   bool plot = false;
   std::optional<PageFormat> format;
   std::vector<std::string> outputs;

@@ -31,6 +31,13 @@ void set_scale(Settings& s, const Given& g) {
   if (s.drawing.scale_rule == ScaleRule::given) s.drawing.scale = parse_scale(g.text);
 }
 
+glm::dvec3 light_from(std::string_view text) {
+  const std::vector<double> parts = parse_numbers(text, 3, {-1e6, 1e6});
+  const glm::dvec3 light(parts[0], parts[1], parts[2]);
+  if (!(glm::length(light) > 1e-6)) throw UsageError("the light must come from somewhere");
+  return light;
+}
+
 std::string file_from(const Given& given) {
   if (given.text.empty()) throw UsageError("the file name is empty");
   return given.string();
@@ -56,6 +63,25 @@ constexpr Option table[] = {
      [](Settings& s, const Given& g) {
        s.drawing.crease_angle = g.number({0, 180});
      }},
+    {"hatch", 0, "MM",
+     "Hatches what is dark: lines this far apart, 0.2 to 50, as many between them where it is darker, crossed by "
+     "others "
+     "in shadow.",
+     Group::drawing, for_lines,
+     [](Settings& s, const Given& g) {
+       s.drawing.hatch = g.number({0.2, 50});
+     }},
+    {"hatch-angle", 0, "DEGREES", "Of hatch lines, counter-clockwise from level; 45 by default.", Group::drawing,
+     for_lines,
+     [](Settings& s, const Given& g) {
+       s.drawing.hatch_angle = g.number({-360, 360});
+     }},
+    {"light", 0, "X,Y,Z",
+     "Where the light of --hatch comes from, as the viewer sees it: X to the right, Y upwards, Z towards the viewer; "
+     "-0.48,0.68,0.72 by default.",
+     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.light = light_from(g.text); }},
+    {"cast-shadows", 0, "yes|no", "Whether objects keep the light of --hatch from others; yes by default.",
+     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.casts_shadows = g.choice<int>() == 0; }},
     {"page", 0, "PAPER",
      "a0 to a6, letter, legal or tabloid, perhaps with -portrait or -landscape; W,H in millimetres; or fit: as large "
      "as "

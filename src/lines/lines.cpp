@@ -48,15 +48,10 @@ class Candidates {
               f.outer};
     }
     const Crossing& c = crossings_[i - features_.size()];
-    const glm::dvec3 size = glm::max(glm::abs(c.from.place), glm::abs(c.to.place));
-    return {c.from.place, c.to.place,        c.from.on,
-            c.to.on,      {c.left, c.right}, kSlack * std::max({size.x, size.y, size.z, 1e-100})};
+    return {c.from.place, c.to.place, c.from.on, c.to.on, {c.left, c.right}, slack_of(c.from.place, c.to.place)};
   }
 
  private:
-  /// Roundings of the place of a crossing, of its size.
-  static constexpr double kSlack = 8.0 / 9007199254740992.0;
-
   [[nodiscard]] PrimitiveId id_of(std::uint32_t triangle) const {
     return triangle == no_index ? no_primitive : mesh_.ids[triangle];
   }

@@ -2,6 +2,7 @@
 // What a triangle hides of an edge.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "frontmost/base.h"
@@ -31,6 +32,12 @@ struct SightedEdge {
   int outer = 0;  ///< the side, as Sight's turns, on which none of the edge's own triangles are seen; 0: neither
   double from_distance = 0, to_distance = 0;  ///< planar
 };
+
+/// SightedEdge::slack of a segment whose ends were constructed: some roundings of their size.
+[[nodiscard]] inline double slack_of(const glm::dvec3& from, const glm::dvec3& to) {
+  const glm::dvec3 size = glm::max(glm::abs(from), glm::abs(to));
+  return 8.0 / 9007199254740992.0 * std::max({size.x, size.y, size.z, 1e-100});
+}
 
 /// Empty unless begin < end.
 struct Interval {

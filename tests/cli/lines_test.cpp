@@ -186,6 +186,33 @@ TEST_F(LinesCommand, HiddenEdgesAsAsked) {
   for (const char* const absent : {"clip", "mask", "#ffffff", "rect"}) EXPECT_THAT(dashed, Not(HasSubstr(absent)));
 }
 
+TEST_F(LinesCommand, HatchingIsInMillimetresAndLiesBelow) {
+  const json page = drawn(
+      "cube.stl --view iso --camera-orthographic --scale 50:1 --hatch 2 --hatch-angle 0 --light 1,1,3 --cast-shadows "
+      "no");
+  ASSERT_EQ(page["layers"].size(), 2u);
+  EXPECT_EQ(page["layers"][0]["name"], "4 hatching");
+  EXPECT_EQ(page["layers"][1]["name"], "2 visible");
+  // Brightnesses of 0.77 above, 0.61 right, 0.19 left: level lines at every second millimetre, and every one.
+  std::map<double, int> heights;
+  for (const json& path : page["layers"][0]["groups"][0]["paths"]) {
+    ASSERT_EQ(path["points"].size(), 2u);
+    EXPECT_EQ(path["points"][0][1], path["points"][1][1]);
+    ++heights[path["points"][0][1].get<double>()];
+  }
+  ASSERT_GT(heights.size(), 20u);
+  const double first = heights.begin()->first;
+  for (const auto& [height, count] : heights) EXPECT_NEAR(std::remainder(height - first, 1), 0, 0.0011);
+  succeed("lines cube.stl --view iso --camera-orthographic --hatch 2 --plot --hidden dashed -o drawing.svg");
+  EXPECT_THAT(read("drawing.svg"), HasSubstr("inkscape:label=\"4 hatching\""));
+  for (const char* const needs : {"--light 1,1,1", "--hatch-angle 3", "--cast-shadows no"})
+    expect_failure(std::string("lines cube.stl -o a.svg ") + needs, 2, "needs --hatch");
+  expect_failure("lines cube.stl -o a.svg --hatch 0.1", 2, "--hatch");
+  expect_failure("lines cube.stl -o a.svg --hatch 1 --light 0,0,0", 2, "--light: the light must come from somewhere");
+  expect_failure("lines cube.stl -o a.svg --hatch 1 --cast-shadows maybe", 2, "--cast-shadows");
+  expect_failure("lines cube.stl -o a.svg --hatch 1 --resolution 20,20", 2, "larger --resolution");
+}
+
 TEST_F(LinesCommand, EachEdgeOfACubeOnce) {
   const json report =
       succeed("lines cube.stl --view iso --camera-orthographic --hidden dashed --page a4 --scale 50:1 --json").json();

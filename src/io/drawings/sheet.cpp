@@ -10,9 +10,10 @@
 namespace frontmost {
 namespace {
 
-constexpr std::size_t layer_count = 3;
-enum LayerOf : std::size_t { hidden, seen, outline };
-const char* const layer_names[layer_count] = {"1 hidden", "2 visible", "3 outline"};
+/// In the order of drawing. The numbers are names: a plotter's pens are chosen by them.
+constexpr std::size_t layer_count = 4;
+enum LayerOf : std::size_t { hatching, hidden, seen, outline };
+const char* const layer_names[layer_count] = {"4 hatching", "1 hidden", "2 visible", "3 outline"};
 
 /// The layers while they are filled: where the group of a view and an object is.
 class Sheet {
@@ -22,6 +23,10 @@ class Sheet {
   }
 
   void draw(const SheetView& view, std::uint32_t number) {
+    for (const HatchLine& line : view.hatching) {
+      const glm::dvec2 ends[] = {view.on_page(line.from), view.on_page(line.to)};
+      group({hatching, number, line.instance, false}, view, pens_.hatching).add(ends, false);
+    }
     for (const Stroke& stroke : view.strokes.strokes) append(stroke, view, group_for(stroke, view, number));
   }
 
@@ -42,9 +47,22 @@ class Sheet {
                                         : pens_.seen;
     // Creases share a group with the other lines of their object unless their pen is another one.
     const bool is_apart = layer == seen && is_crease && pens_.crease.width != pens_.seen.width;
-    std::vector<PageGroup>& groups = layers_[layer].groups;
-    const auto [known, is_new] = places_[layer].try_emplace({number, stroke.instance, is_apart}, groups.size());
-    if (is_new) groups.push_back({name_of(view, stroke.instance), pen});
+    return group({layer, number, stroke.instance, is_apart}, view, pen);
+  }
+
+  struct GroupKey {
+    LayerOf layer;
+    std::uint32_t view, instance;
+    bool is_apart;
+
+    friend bool operator<(const GroupKey& a, const GroupKey& b) {
+      return std::tie(a.layer, a.view, a.instance, a.is_apart) < std::tie(b.layer, b.view, b.instance, b.is_apart);
+    }
+  };
+  PageGroup& group(const GroupKey& key, const SheetView& view, const Pen& pen) {
+    std::vector<PageGroup>& groups = layers_[key.layer].groups;
+    const auto [known, is_new] = places_.try_emplace(key, groups.size());
+    if (is_new) groups.push_back({name_of(view, key.instance), pen});
     return groups[known->second];
   }
 
@@ -57,7 +75,7 @@ class Sheet {
     const Strokes& all = view.strokes;
     group.paths.push_back({std::uint32_t(group.points.size()), stroke.count, stroke.is_closed});
     for (std::uint32_t i = stroke.first; i < stroke.first + stroke.count; ++i) {
-      group.points.push_back(view.origin + view.millimetres_per_pixel * all.points[i]);
+      group.points.push_back(view.on_page(all.points[i]));
       if (!all.bulges.empty()) group.bulges.push_back(all.bulges[i]);
     }
     // Views with arcs and without may share a group.
@@ -67,14 +85,14 @@ class Sheet {
   const Surfaces& surfaces_;
   const LinePens& pens_;
   PageLayer layers_[layer_count];
-  std::map<std::tuple<std::uint32_t, std::uint32_t, bool>, std::size_t> places_[layer_count];
+  std::map<GroupKey, std::size_t> places_;
 };
 
 }  // namespace
 
 LinePens technical_pens() { return {}; }
 
-LinePens figure_pens() { return {{0.7, {}}, {0.35, {}}, {0.18, {}}, {0.13, {}, {1.5, 0.75}}}; }
+LinePens figure_pens() { return {{0.7, {}}, {0.35, {}}, {0.18, {}}, {0.13, {}, {1.5, 0.75}}, {0.13, {}}}; }
 
 Pen thin_pen() { return {0.13, {}}; }
 
