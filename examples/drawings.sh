@@ -8,5 +8,5 @@ here=$(cd "$(dirname "$0")" && pwd)
 cd "${1:-.}"
 python3 "$here/bracket.py" > bracket.obj
 frontmost lines bracket.obj --up +z --views front,top,left,iso --hidden dashed --page 200,175 --scale 1:1 -o sheet.svg -o sheet.dxf
-frontmost lines builtin:teapot --plot --crease-angle 180 --page 200,120 --pen 0.3 -o plot.svg -o plot.pdf
-frontmost lines builtin:gallery --style figure --page 160,100 --margin 3 -o figure.svg -o figure.pdf
+frontmost lines bracket.obj --up +z --view iso --camera-orthographic --plot --hidden dashed --hatch 1.5 --page 160,130 --margin 5 -o plot.svg -o plot.pdf
+frontmost lines builtin:gallery --style figure --hatch 1.2 --page 160,100 --margin 3 -o figure.svg -o figure.pdf

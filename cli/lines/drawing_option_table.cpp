@@ -107,13 +107,16 @@ constexpr Option table[] = {
     {"projection", 0, "first-angle|third-angle",
      "Where views stand about the front one: the view from above below it (the default), or above it.", Group::drawing,
      for_lines, [](Settings& s, const Given& g) { s.drawing.layout = g.choice<DrawingSettings::Layout>(); }},
-    {"plot", 0, "", "For pen plotters: long strokes whatever they belong to, ordered to spare lifts of the pen.",
+    {"plot", 0, "",
+     "For pen plotters: long strokes whatever they belong to, ordered to spare lifts of the pen; dashes are lines of "
+     "their "
+     "own.",
      Group::drawing, for_lines, [](Settings& s, const Given&) { s.drawing.plot = true; }},
     {"output", 'o', "FILE", "The drawing: .svg, .pdf, .dxf or .json; - is standard output, with --format.",
      Group::output, for_lines | may_repeat,
      [](Settings& s, const Given& g) { s.drawing.outputs.push_back(file_from(g)); }},
-    {"format", 0, "svg|pdf|dxf|json", "Format of the drawing; by default from the file's suffix.", Group::output,
-     for_lines, [](Settings& s, const Given& g) { s.drawing.format = g.choice<PageFormat>(); }},
+    {"format", 0, "svg|pdf|dxf|json", "Format of files whose names do not say, such as -.", Group::output, for_lines,
+     [](Settings& s, const Given& g) { s.drawing.format = g.choice<PageFormat>(); }},
 };
 
 }  // namespace

@@ -106,7 +106,12 @@ SheetPlan plan_sheet(const Layout& layout, const DrawingSettings& settings, bool
     page = turned;
   }
   const glm::dvec2 area = page - 2 * margin;
-  if (!(area.x > 0 && area.y > 0 && most > 0)) throw UsageError("--margin: leaves no room on the page");
+  if (!(area.x > 0 && area.y > 0))
+    throw UsageError(fmt::format("--margin: {} mm at each side leave nothing of a page of {} x {} mm", margin,
+                                 paper.size.x, paper.size.y));
+  if (!(most > 0))
+    throw UsageError(fmt::format("--page: {} x {} mm have no room for so many views, which stand 15 mm apart",
+                                 paper.size.x, paper.size.y));
   double scale = rule == ScaleRule::standard && has_scale ? standard_scale(most) : most;
   if (rule == ScaleRule::given) {
     scale = settings.scale;

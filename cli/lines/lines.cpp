@@ -77,10 +77,14 @@ void check(const Settings& settings) {
     throw UsageError("--scale: in perspective nothing has a scale; add --camera-orthographic, or --views");
   if (s.paper && s.paper->fits_drawing && s.scale_rule != ScaleRule::given)
     throw UsageError("--page fit: needs a --scale such as 1:5");
-  for (const std::string& path : s.outputs)
-    if (!s.format && !page_format(path))
+  for (const std::string& path : s.outputs) {
+    const std::optional<PageFormat> format = page_format(path);
+    if (!s.format && !format)
       throw UsageError(path == "-" ? "-o -: needs --format"
                                    : path + ": the suffix names no format; use .svg, .pdf, .dxf or .json");
+    if (s.format && format && s.format != format)
+      throw UsageError(path + ": the suffix names another format than --format, which is for files whose names do not");
+  }
   const bool takes_output = std::find(s.outputs.begin(), s.outputs.end(), "-") != s.outputs.end();
   if (takes_output && settings.run.json) throw UsageError("--json and an output to - both want standard output");
 }
@@ -241,11 +245,13 @@ LinePens pens_of(const DrawingSettings& settings) {
   return pens;
 }
 
-void write(const Page& page, const Settings& settings, const Execution& execution) {
+/// Plotters follow paths. DXF is for programs that know line types.
+void write(const Page& page, const Page& plotted, const Settings& settings, const Execution& execution) {
   for (const std::string& path : settings.drawing.outputs) {
     stop_if_interrupted();
     const WritingFiles writing;
-    save(page, path, settings.drawing.format, execution);
+    const auto format = page_format(path) ? page_format(path) : settings.drawing.format;
+    save(format == PageFormat::dxf ? page : plotted, path, format, execution);
   }
 }
 
@@ -279,17 +285,20 @@ int run_lines(const Settings& given) {
     sheets.push_back(view.sheet);
   }
   const Page page = draw_sheet(surfaces, sheets, pens_of(settings.drawing), plan.size);
+  std::optional<Page> dashed;
+  if (settings.drawing.plot) dashed = with_real_dashes(page);
+  const Page& plotted = dashed ? *dashed : page;
   timings.strokes = watch.milliseconds();
   watch = {};
   if (page.layers.empty() && !settings.run.quiet) {
     progress.clear();
     complain("warning: nothing is seen; the drawing is empty");
   }
-  write(page, settings, execution);
+  write(page, plotted, settings, execution);
   timings.write = watch.milliseconds();
   progress.clear();
   const std::optional<double> scale = is_parallel(settings) ? std::optional(plan.scale) : std::nullopt;
-  if (settings.run.json) print(dump(lines_json(settings, views, page, scale, timings)));
+  if (settings.run.json) print(dump(lines_json(settings, views, plotted, scale, timings)));
   return exit_done;
 }
 

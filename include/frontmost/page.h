@@ -64,6 +64,12 @@ struct Page {
   std::vector<PageLayer> layers{};
 };
 
+/// The same page with every dash of its pens as a path, for plotters, which follow paths and know no dashes. Patterns
+/// run along whole paths; from corner to corner, of 25 degrees and more, they are stretched so that both ends are drawn
+/// (ISO 128-2). What is filled stays. O(points + dashes).
+/// \throws Error as validate() does, and limit_exceeded for more than 20 million dashes.
+[[nodiscard]] Page with_real_dashes(Page page);
+
 enum class PageFormat : std::uint8_t { svg, pdf, dxf, json };
 
 /// \throws Error bad_argument or limit_exceeded, naming layer and group: sizes out of range; points that are not

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Renders the built-in scenes with every output kind and makes one page of them.
+"""Renders and draws the built-in scenes with every output kind and makes one page of them.
 
     demo.py PROGRAM FOLDER
 
@@ -30,12 +30,12 @@ class Result:
 
 
 def run_show(program, folder, show):
-    command = [program, "render", *shlex.split(show.arguments), "--json"]
+    command = [program, show.command, *shlex.split(show.arguments), "--json"]
     start = time.perf_counter()
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     wall_ms = 1e3 * (time.perf_counter() - start)
     if done.returncode != 0:
-        sys.exit(f"frontmost render {show.arguments}\nfailed with {done.returncode}\n{done.stderr}")
+        sys.exit(f"frontmost {show.command} {show.arguments}\nfailed with {done.returncode}\n{done.stderr}")
     return Result(show, [folder / name for name in show.files], wall_ms, json.loads(done.stdout))
 
 
@@ -55,12 +55,14 @@ def main():
         sys.exit(__doc__)
     program, folder = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2])
     folder.mkdir(parents=True, exist_ok=True)
+    bracket = pathlib.Path(__file__).parents[2] / "examples/bracket.py"
+    (folder / "bracket.obj").write_bytes(subprocess.run([sys.executable, bracket], capture_output=True, check=True).stdout)
     sections = []
     for section in SECTIONS:
         results = []
         for show in section.shows:
             results.append(run_show(program, folder, show))
-            print(f"  {results[-1].wall_ms:6.0f} ms  frontmost render {show.arguments}")
+            print(f"  {results[-1].wall_ms:6.0f} ms  frontmost {show.command} {show.arguments}")
         sections.append((section, results))
     version = subprocess.run([program, "--version"], capture_output=True, text=True).stdout.strip()
     index = folder / "index.html"

@@ -12,8 +12,10 @@ def escaped(text):
 
 
 def picture(path, title):
+    """Drawings lie on white: they are black lines on nothing."""
     data = base64.b64encode(path.read_bytes()).decode()
-    return f'<img src="data:image/png;base64,{data}" alt="{escaped(title)}" loading="lazy">'
+    kind, paper = ("svg+xml", ' class="paper"') if path.suffix == ".svg" else ("png", "")
+    return f'<img{paper} src="data:image/{kind};base64,{data}" alt="{escaped(title)}" loading="lazy">'
 
 
 def milliseconds(value):
@@ -24,7 +26,7 @@ def timings(result):
     """"whole process 62 ms · visible 3.1 ms · ..." from the program's own report."""
     parts = [f"whole process {milliseconds(result.wall_ms)}"]
     found = result.report.get("timings_ms", {})
-    for name in ("load", "surfaces", "visible", "shade", "save"):
+    for name in ("load", "surfaces", "visible", "shade", "save", "lines", "strokes", "write"):
         value = found.get(name)
         if isinstance(value, dict):
             value = value.get("median")
@@ -34,7 +36,7 @@ def timings(result):
 
 
 def command(result):
-    return f"<pre><code>frontmost render {escaped(result.show.arguments)}</code></pre>"
+    return f"<pre><code>frontmost {result.show.command} {escaped(result.show.arguments)}</code></pre>"
 
 
 def card(result):
@@ -54,7 +56,7 @@ def file_rows(result):
 
 
 def section(words, results):
-    only_files = all(result.show.files[0][-4:] != ".png" or "--depth " in result.show.arguments for result in results)
+    only_files = all(result.show.files[0][-4:] not in (".png", ".svg") or "--depth " in result.show.arguments for result in results)
     body = "".join(map(file_rows if only_files else card, results))
     kind = "rows" if only_files else "cards"
     return f'<section><h2>{escaped(words.title)}</h2><p>{escaped(words.words)}</p><div class="{kind}">{body}</div></section>'

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the demo shows: sections of pictures, each with the arguments of `frontmost render` that make it."""
+"""What the demo shows: sections of pictures, each with the arguments of the command that makes it."""
 import dataclasses
 import shlex
 
@@ -10,13 +10,14 @@ class Show:
     caption: str
     arguments: str
     wide: bool = False
+    command: str = "render"
 
     @property
     def files(self):
         """The file names among the arguments, in their order."""
         words = shlex.split(self.arguments)
         names = [word.split("=")[-1] for word in words]
-        return [name for name in names if name.endswith((".png", ".exr", ".npy", ".pfm"))]
+        return [name for name in names if name.endswith((".png", ".exr", ".npy", ".pfm", ".svg", ".pdf", ".dxf"))]
 
 
 @dataclasses.dataclass
@@ -50,6 +51,20 @@ SECTIONS = [
         Show("Iso", "Along the diagonal.", f"builtin:teapot {CARD} --view iso --camera-orthographic -o iso.png"),
         Show("From below", "Turned by azimuth and elevation.",
              f"builtin:teapot {CARD} --camera-azimuth-angle 40 --camera-elevation-angle -50 -o below.png"),
+    ]),
+    Section("Drawings", "Edges cut exactly where they go out of sight, in millimetres, for paper and for pens.", [
+        Show("For a paper", "Outlines heavier than contours; hatched by the direction of light, with the shadows that it casts.",
+             "builtin:gallery --style figure --hatch 1.2 --page 240,150 --margin 3 -o figure.svg", wide=True, command="lines"),
+        Show("For a pen plotter", "Dashes are lines of their own, from corner to corner; layers are pens.",
+             "bracket.obj --up +z --view iso --camera-orthographic --plot --hidden dashed --hatch 1.5 --page 160,130 "
+             "--margin 5 -o plot.svg", command="lines"),
+        Show("A drawing sheet", "Three views in line and one at an angle, to scale. The same as PDF and DXF lies beside this page.",
+             "bracket.obj --up +z --views front,top,left,iso --hidden dashed --page 200,175 --scale 1:1 -o sheet.svg "
+             "-o sheet.pdf -o sheet.dxf", command="lines"),
+        Show("Hatched", "Lines in their exact distances, cut where the surface turns into light.",
+             "builtin:teapot --style figure --hatch 1 --page 160,110 --margin 5 -o hatched.svg", command="lines"),
+        Show("Polygons", "The painter's algorithm: what is hidden is left out or cut.",
+             "builtin:cubes --resolution 640,480 -o painted.svg"),
     ]),
     Section("Hard cases", "What paints wrongly when triangles are sorted whole, decided here sample by sample.", [
         Show("Ring of three", "Each triangle lies over the next one: no order of painting is right.",

@@ -213,6 +213,22 @@ TEST_F(LinesCommand, HatchingIsInMillimetresAndLiesBelow) {
   expect_failure("lines cube.stl -o a.svg --hatch 1 --resolution 20,20", 2, "larger --resolution");
 }
 
+TEST_F(LinesCommand, PlottersGetDashesAsLines) {
+  const std::string iso = "lines cube.stl --view iso --camera-orthographic --hidden dashed --plot --scale 50:1 -o ";
+  succeed(iso + "plot.svg -o plot.json -o plot.dxf");
+  EXPECT_THAT(read("plot.svg"), Not(HasSubstr("dasharray")));
+  const json page = json::parse(read("plot.json"));
+  EXPECT_EQ(page["layers"][0]["name"], "1 hidden");
+  const json& group = page["layers"][0]["groups"][0];
+  EXPECT_FALSE(group["pen"].contains("dashes") && !group["pen"]["dashes"].empty());
+  // Three edges of 40.82 mm from the corner that is hidden: eleven dashes each, of which those at the corner may be
+  // one.
+  EXPECT_GE(group["paths"].size(), 31u);
+  EXPECT_LE(group["paths"].size(), 33u);
+  // Programs know line types.
+  EXPECT_THAT(read("plot.dxf"), HasSubstr("DASHED1"));
+}
+
 TEST_F(LinesCommand, EachEdgeOfACubeOnce) {
   const json report =
       succeed("lines cube.stl --view iso --camera-orthographic --hidden dashed --page a4 --scale 50:1 --json").json();
@@ -296,7 +312,10 @@ TEST_F(LinesCommand, WhatCannotBeMeantIsRefused) {
   expect_failure("lines cube.stl -o a.svg --page a9", 2, "--page: 'a9' is no paper");
   expect_failure("lines cube.stl -o a.svg --page 10,0", 2, "--page");
   expect_failure("lines cube.stl -o a.svg --page fit", 2, "needs a --scale");
-  expect_failure("lines cube.stl -o a.svg --margin 200", 2, "--margin: leaves no room");
+  expect_failure("lines cube.stl -o a.svg --margin 200", 2,
+                 "--margin: 200 mm at each side leave nothing of a page of 210 x 297 mm");
+  expect_failure("lines cube.stl -o a.svg --views front,top,left --page 25,25 --margin 5", 2, "--page: 25 x 25 mm");
+  expect_failure("lines cube.stl -o a.svg --format dxf", 2, "a.svg: the suffix names another format");
   expect_failure("lines cube.stl -o a.svg --views front,front", 2, "'front' is there twice");
   expect_failure("lines cube.stl -o a.svg --views front,up", 2, "--views: 'up'");
   expect_failure("lines cube.stl -o a.svg --views front --view top", 2, "exclude each other");

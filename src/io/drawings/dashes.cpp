@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+// Dashes as lines of their own.
+//
+// A path is a ruler from corner to corner; between two corners the pattern is stretched so that it begins and ends with
+// a dash (ISO 128-2, 5.2), which then meets the next one around the corner.
+#include <cmath>
+
+#include "io/drawings/arc.h"
+
+namespace frontmost {
+namespace {
+
+using detail::Arc;
+using detail::Join;
+
+constexpr double sharp = 0.906;  // the cosine of 25 degrees: arcs and their chords turn by less
+constexpr std::size_t most_dashes = 20'000'000;
+
+struct Span {
+  double begin, end;
+};
+
+/// A path by its length.
+class Ruler {
+ public:
+  Ruler(const PageGroup& group, const PagePath& path) : is_closed_(path.is_closed) {
+    for (std::uint32_t i = 0; i < detail::join_count(path); ++i) {
+      const Join join = detail::join_of(group, path, i);
+      Leg leg{join, detail::arc_between(join.from, join.to, join.bulge), length_, 0};
+      leg.length = leg.arc ? leg.arc->radius * std::abs(leg.arc->turn) : glm::distance(join.from, join.to);
+      length_ += leg.length;
+      if (leg.length > 0) legs_.push_back(leg);
+    }
+  }
+
+  [[nodiscard]] double length() const { return length_; }
+  [[nodiscard]] bool is_empty() const { return legs_.empty(); }
+
+  /// From corner to corner. A closed path is one span where it has none, and otherwise begins at one.
+  [[nodiscard]] std::vector<Span> spans() const {
+    std::vector<double> corners;
+    if (!is_closed_) corners.push_back(0);
+    for (std::size_t i = is_closed_ ? 0 : 1; i < legs_.size(); ++i) {
+      const Leg& before = legs_[i == 0 ? legs_.size() - 1 : i - 1];
+      if (glm::dot(direction(before, true), direction(legs_[i], false)) < sharp) corners.push_back(legs_[i].begin);
+    }
+    if (!is_closed_)
+      corners.push_back(length_);
+    else if (!corners.empty())
+      corners.push_back(corners.front() + length_);
+    std::vector<Span> spans;
+    for (std::size_t i = 1; i < corners.size(); ++i) spans.push_back({corners[i - 1], corners[i]});
+    return spans;
+  }
+
+  /// Adds what lies within the span, which may reach once over the end of a closed path, as a path.
+  void cut(const Span& span, PageGroup& group) const {
+    PagePath path{std::uint32_t(group.points.size()), 0, false};
+    for (int round = 0; round < (is_closed_ ? 2 : 1); ++round)
+      for (const Leg& leg : legs_) {
+        const double start = leg.begin + round * length_;
+        const double begin = std::max(span.begin - start, 0.0), end = std::min(span.end - start, leg.length);
+        if (!(begin < end)) continue;
+        const double share = (end - begin) / leg.length;
+        if (group.points.size() == path.first) add(group, at(leg, begin));
+        if (leg.arc) group.bulges.back() = std::tan(leg.arc->turn * share / 4);
+        add(group, at(leg, end));
+      }
+    path.count = std::uint32_t(group.points.size()) - path.first;
+    if (path.count > 0) group.paths.push_back(path);
+  }
+
+ private:
+  struct Leg {
+    Join join;
+    std::optional<Arc> arc;
+    double begin, length;
+  };
+
+  static void add(PageGroup& group, const glm::dvec2& point) {
+    group.points.push_back(point);
+    group.bulges.push_back(0);
+  }
+
+  [[nodiscard]] static glm::dvec2 at(const Leg& leg, double along) {
+    // The ends to the bit.
+    if (along <= 0) return leg.join.from;
+    if (along >= leg.length) return leg.join.to;
+    if (!leg.arc) return leg.join.from + (leg.join.to - leg.join.from) * (along / leg.length);
+    const double angle = leg.arc->begin + leg.arc->turn * (along / leg.length);
+    return leg.arc->centre + leg.arc->radius * glm::dvec2(std::cos(angle), std::sin(angle));
+  }
+
+  [[nodiscard]] static glm::dvec2 direction(const Leg& leg, bool at_end) {
+    if (!leg.arc) return glm::normalize(leg.join.to - leg.join.from);
+    const double angle = leg.arc->begin + (at_end ? leg.arc->turn : 0);
+    return std::copysign(1.0, leg.arc->turn) * glm::dvec2(-std::sin(angle), std::cos(angle));
+  }
+
+  const bool is_closed_;
+  std::vector<Leg> legs_;
+  double length_ = 0;
+};
+
+/// A pen's dashes: drawn, left out, drawn and so on.
+class Pattern {
+ public:
+  explicit Pattern(const std::vector<double>& dashes) : dashes_(dashes) {
+    for (const double dash : dashes) period_ += dash;
+  }
+
+  [[nodiscard]] double period() const { return period_; }
+
+  /// The dashes of a span that begins and ends with the first of them; all of it where it is too short for a gap.
+  void fill(const Span& span, std::vector<Span>& drawn) const {
+    const double length = span.end - span.begin, times = std::round((length - dashes_[0]) / period_);
+    if (times < 1) return append(span, drawn);
+    const double stretch = length / (times * period_ + dashes_[0]);
+    double at = span.begin;
+    for (double k = 0; k < times; ++k) at = draw_period(at, stretch, drawn);
+    append({at, span.end}, drawn);
+  }
+
+  /// Dashes all around a closed line without corners.
+  void fill_around(double length, std::vector<Span>& drawn) const {
+    const double times = std::max(1.0, std::round(length / period_));
+    double at = 0;
+    for (double k = 0; k < times; ++k) at = draw_period(at, length / (times * period_), drawn);
+  }
+
+ private:
+  double draw_period(double at, double stretch, std::vector<Span>& drawn) const {
+    for (std::size_t i = 0; i < dashes_.size(); ++i) {
+      const double end = at + dashes_[i] * stretch;
+      if (i % 2 == 0) append({at, end}, drawn);
+      at = end;
+    }
+    return at;
+  }
+
+  /// Goes on with a dash that ends where this one begins: around a corner.
+  static void append(const Span& span, std::vector<Span>& drawn) {
+    if (!drawn.empty() && drawn.back().end == span.begin)
+      drawn.back().end = span.end;
+    else
+      drawn.push_back(span);
+  }
+
+  const std::vector<double>& dashes_;
+  double period_ = 0;
+};
+
+void cut_path(const PageGroup& group, const PagePath& path, const Pattern& pattern, PageGroup& cut) {
+  const Ruler ruler(group, path);
+  if (ruler.is_empty()) {  // a dot
+    cut.paths.push_back({std::uint32_t(cut.points.size()), 1, false});
+    cut.points.push_back(group.points[path.first]);
+    cut.bulges.push_back(0);
+    return;
+  }
+  if (double(cut.paths.size()) + ruler.length() / pattern.period() > double(most_dashes))
+    throw Error(ErrorCode::limit_exceeded, "dashes: more than 20000000 of them");
+  const std::vector<Span> spans = ruler.spans();
+  std::vector<Span> drawn;
+  for (const Span& span : spans) pattern.fill(span, drawn);
+  if (spans.empty()) pattern.fill_around(ruler.length(), drawn);
+  // The last dash of a closed path goes on with the first.
+  if (path.is_closed && drawn.size() > 1 && drawn.back().end == drawn.front().begin + ruler.length()) {
+    drawn.back().end = drawn.front().end + ruler.length();
+    drawn.erase(drawn.begin());
+  }
+  for (const Span& span : drawn) ruler.cut(span, cut);
+}
+
+}  // namespace
+
+Page with_real_dashes(Page page) {
+  validate(page);
+  for (PageLayer& layer : page.layers)
+    for (PageGroup& group : layer.groups) {
+      if (group.pen.dashes.empty() || !group.fills.empty()) continue;
+      const Pattern pattern(group.pen.dashes);
+      PageGroup cut{group.name, group.pen};
+      for (const PagePath& path : group.paths) cut_path(group, path, pattern, cut);
+      cut.pen.dashes.clear();
+      if (group.bulges.empty()) cut.bulges.clear();
+      group = std::move(cut);
+    }
+  return page;
+}
+
+}  // namespace frontmost
