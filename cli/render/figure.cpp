@@ -2,9 +2,9 @@
 #include "cli/render/figure.h"
 
 #include <fmt/format.h>
+#include <frontmost/figure.h>
 #include <frontmost/page.h>
-#include <frontmost/painter.h>
-#include <frontmost/shade.h>
+#include <frontmost/zbuffer.h>
 
 #include <functional>
 
@@ -21,36 +21,38 @@ constexpr double kMillimetres = 25.4 / 96;
 /// around polygons: they make everything wider, in poppler by much more than they are wide.
 constexpr double kHem = 1;
 
-/// Nothing shows through a triangle.
-bool is_opaque(const Surfaces& surfaces, PrimitiveId id) {
+Material::Alpha alpha_of(const Surfaces& surfaces, PrimitiveId id) {
   const Scene& scene = surfaces.scene();
   const PrimitiveSource source = surfaces.source(id);
   const std::uint32_t material = scene.meshes[source.mesh].material_of(source.triangle);
-  return material == no_index || scene.materials[material].alpha == Material::Alpha::opaque;
+  return material == no_index ? Material::Alpha::opaque : scene.materials[material].alpha;
 }
 
-/// Of which polygons nothing behind is seen.
-std::function<bool(PrimitiveId)> hiding(const Job& job, const RenderContext& context) {
+/// Of which triangles nothing behind is seen: neither through them nor, as long as holes are not cut out, through
+/// their holes.
+std::function<bool(PrimitiveId)> hiding(const Job& job, const RenderContext& context, bool has_cut_holes) {
   const bool is_clear = job.output.opacity < 1;
-  return [is_clear, &surfaces = context.surfaces](PrimitiveId id) { return !is_clear && is_opaque(surfaces, id); };
+  return [=, &surfaces = context.surfaces](PrimitiveId id) {
+    const Material::Alpha alpha = alpha_of(surfaces, id);
+    return !is_clear && (alpha == Material::Alpha::opaque || (has_cut_holes && alpha == Material::Alpha::mask));
+  };
 }
 
 PaintOrder order_of(const Job& job, const RenderContext& context, const View& view) {
   PaintOrder order = painter(context.surfaces, view, {}, context.execution);
-  return job.output.visible_only ? visible_parts(order, hiding(job, context), context.execution) : order;
+  return job.output.visible_only ? visible_parts(order, hiding(job, context, false), context.execution) : order;
 }
 
-/// Each polygon has one colour: that of its middle.
-std::vector<glm::u8vec4> colors_of(const PaintOrder& order, const Job& job, const RenderContext& context) {
-  std::vector<ShadePoint> points;
-  points.reserve(order.polygons.size());
-  for (const PaintPolygon& polygon : order.polygons) {
-    glm::dvec2 sum(0);
-    for (std::size_t i = 0; i < polygon.corner_count; ++i)
-      sum += glm::dvec2(order.corners[polygon.first_corner + i].at);
-    points.push_back({polygon.id, glm::vec2(sum / double(polygon.corner_count))});
-  }
-  return shade_points(context.surfaces, order.view, points, shade_options(job, context), context.execution);
+/// In the colours of the picture that the same options make.
+ColoredOrder colors_of(const PaintOrder& order, const Job& job, const RenderContext& context) {
+  View view = order.view;
+  view.samples = 1;
+  const Visible visible = zbuffer(context.surfaces, view, context.execution);
+  ColorOptions options;
+  options.shade = shade_options(job, context);
+  options.tolerance = job.output.color_tolerance;
+  options.most_polygons = job.output.most_polygons;
+  return color_order(context.surfaces, visible, order, options, context.execution);
 }
 
 PageColor page_color(const glm::u8vec4& color) { return {color.r, color.g, color.b, color.a}; }
@@ -114,9 +116,9 @@ void write_figures(const Job& job, const RenderContext& context, ViewResult& res
   Stopwatch watch;
   PaintOrder order = order_of(job, context, result.view);
   check_size(job, order);
-  const std::vector<glm::u8vec4> colors = colors_of(order, job, context);
-  order = with_hems(order, kHem, hiding(job, context), context.execution);
-  const Page page = page_of(order, colors, job);
+  ColoredOrder colored = colors_of(order, job, context);
+  order = with_hems(colored.order, kHem, hiding(job, context, true), context.execution);
+  const Page page = page_of(order, colored.colors, job);
   result.timings.shade += watch.milliseconds();
   if (!context.run.quiet) tell_size(job, order);
   watch = {};

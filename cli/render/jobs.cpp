@@ -40,8 +40,6 @@ void take_figures(const Settings& settings, const std::string& model, Job& job) 
   if (settings.run.method || settings.view.depth.is_used)
     refuse("polygons are painted, without --method or depth buffer");
   if (settings.view.camera_model != CameraModel::pinhole) refuse("polygons are seen by pinhole cameras alone");
-  const Shading shading = settings.output.shading;
-  if (shading == Shading::depth || shading == Shading::uv) refuse("polygons are shaded lit, flat, normals or ids");
 }
 
 Job make_job(const Settings& settings) {

@@ -53,6 +53,12 @@ constexpr Option table[] = {
     {"visible-only", 0, "yes|no",
      "Leave out of .svg and .pdf what is hidden, and cut what is hidden in part; yes by default.", Group::output,
      for_render, [](Settings& s, const Given& g) { s.output.visible_only = g.choice<int>() == 0; }},
+    {"color-tolerance", 0, "STEPS",
+     "Cut polygons of .svg and .pdf whose colour varies by more than so many of 255 steps; 6 by default, 255: never.",
+     Group::output, for_render,
+     [](Settings& s, const Given& g) {
+       s.output.color_tolerance = g.number({0, 255});
+     }},
     {"most-polygons", 0, "N", "Refuse .svg and .pdf files of more polygons; 2000000 by default.", Group::output,
      for_render,
      [](Settings& s, const Given& g) {

@@ -7,6 +7,7 @@
 #include "frontmost/base.h"
 #include "frontmost/curved.h"        // IWYU pragma: export
 #include "frontmost/depth_buffer.h"  // IWYU pragma: export
+#include "frontmost/figure.h"        // IWYU pragma: export
 #include "frontmost/hatching.h"      // IWYU pragma: export
 #include "frontmost/image.h"         // IWYU pragma: export
 #include "frontmost/io.h"            // IWYU pragma: export

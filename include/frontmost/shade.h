@@ -95,21 +95,6 @@ struct ShadeOptions {
 [[nodiscard]] Image shade(const CurvedIndex& index, const Scene& scene, const CurvedScan& scan,
                           const ShadeOptions& options = {}, const Execution& execution = {});
 
-/// A point of a triangle as a view sees it.
-struct ShadePoint {
-  PrimitiveId id = no_primitive;
-  glm::vec2 screen{0};  ///< pixels; beside the triangle counts as the nearest of it, roughly
-};
-
-/// The colours of single points, each as if nothing was before it: sRGB with straight alpha, for drawings. Lit ones are
-/// without shadows, and as flat as their triangles where the model has no normals. Of `options` shading and opacity
-/// count. O(points), in parallel.
-/// \throws Error unsupported for other shadings than lit, flat, normals and ids; bad_argument for an id that is not of
-/// these surfaces, and for an opacity out of range.
-[[nodiscard]] std::vector<glm::u8vec4> shade_points(const Surfaces& surfaces, const View& view,
-                                                    std::span<const ShadePoint> points,
-                                                    const ShadeOptions& options = {}, const Execution& execution = {});
-
 /// World-space unit shading normals at the first sample: channels N.X, N.Y, N.Z; zero where nothing is seen.
 [[nodiscard]] Image normal_image(const Surfaces& surfaces, const Visible& visible, const Execution& execution = {});
 

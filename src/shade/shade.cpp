@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "base/parallel.h"
 #include "base/srgb.h"
@@ -11,6 +10,7 @@
 #include "shade/colorists.h"
 #include "shade/deep_layers.h"
 #include "shade/opaque_part.h"
+#include "shade/picture_parts.h"
 #include "shade/shadow/key_shadows.h"
 
 namespace frontmost {
@@ -53,52 +53,6 @@ glm::vec4 background_color(const ShadeOptions& options) {
   if (!options.background) return glm::vec4(0);
   const glm::vec3& c = *options.background;
   return {linear_of_shown(c.x), linear_of_shown(c.y), linear_of_shown(c.z), 1.0f};
-}
-
-/// The depths between which a picture of depths goes from bright to dark.
-struct DepthRange {
-  float nearest = std::numeric_limits<float>::infinity(), farthest = -std::numeric_limits<float>::infinity();
-
-  void include(const DepthRange& other) {
-    nearest = std::min(nearest, other.nearest);
-    farthest = std::max(farthest, other.farthest);
-  }
-};
-
-DepthRange depth_range(const Visible& visible, const Execution& execution) {
-  // Keys are monotonic in depth, so their extremes are enough.
-  DepthRange keys;
-  std::mutex mutex;
-  constexpr std::size_t samples_at_once = 1u << 16;
-  parallel_for(execution, visible.keys.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
-    DepthRange part;
-    for (std::size_t i = begin; i < end; ++i)
-      if (visible.primitives[i] != no_primitive) part.include({visible.keys[i], visible.keys[i]});
-    const std::lock_guard lock(mutex);
-    keys.include(part);
-  });
-  if (!(keys.nearest <= keys.farthest)) return {0, 0};
-  return {depth_of_key(visible.view, keys.farthest), depth_of_key(visible.view, keys.nearest)};
-}
-
-bool has_textures(const Scene& scene) {
-  const auto uses = [](const Material& m) {
-    return m.base_color_texture.is_set() || m.metallic_roughness_texture.is_set() || m.normal_texture.is_set() ||
-           m.emissive_texture.is_set() || m.occlusion_texture.is_set();
-  };
-  return std::any_of(scene.materials.begin(), scene.materials.end(), uses);
-}
-
-bool lacks_normals(const Scene& scene) {
-  return std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh& m) { return m.normals.empty(); });
-}
-
-/// For every material, whether a texture of it will be looked at. `seen()` gives the primitives that are.
-template <class Seen>
-std::vector<bool> needed_materials(const Surfaces& surfaces, const Seen& seen, const Execution& execution) {
-  const Scene& scene = surfaces.scene();
-  if (!has_textures(scene)) return std::vector<bool>(scene.materials.size());
-  return seen_materials(surfaces, seen(), execution);
 }
 
 /// The triangles of a picture of materials.
@@ -183,10 +137,6 @@ struct Request {
   const Execution& execution;
 };
 
-bool shows_materials(Shading shading) {
-  return shading == Shading::lit || shading == Shading::flat || shading == Shading::normals;
-}
-
 /// Calls use(colorist) with what colours fragments as the options say. Precondition: shows_materials().
 template <class Use>
 void with_colorist(const Request& request, const Materials& materials, const Use& use) {
@@ -217,11 +167,6 @@ void paint_map(const Request& request, Canvas& canvas) {
   if (options.shading == Shading::uv) return paint(Texcoords{});
   const DepthRange range = depth_range(visible, request.execution);
   paint(Depths{glm::vec3(visible.view.forward()), range.nearest, range.farthest});
-}
-
-void check_opacity(const ShadeOptions& options) {
-  if (!(options.opacity >= 0.0f && options.opacity <= 1.0f))
-    throw Error(ErrorCode::bad_argument, "shade: opacity: must be 0 to 1");
 }
 
 void paint(const Request& request, Canvas& canvas) {
@@ -260,62 +205,8 @@ DeepImage shade_deep(const Surfaces& surfaces, const Visible& visible, const Sha
   return image;
 }
 
-namespace {
-
-/// Calls receive(number, light, alpha) for every point.
-template <class Receive>
-void shade_all(const TriangleSource& source, const FragmentShader::Colorist& colorist,
-               std::span<const ShadePoint> points, const Execution& execution, const Receive& receive) {
-  constexpr std::size_t points_at_once = 1u << 13;
-  parallel_for(execution, points.size(), points_at_once, [&](std::size_t begin, std::size_t end) {
-    FragmentShader shader(source, colorist);
-    const auto hand_out = [&] {
-      shader.hand_out(
-          [&](std::uint32_t number, float, const glm::vec3& light, float alpha) { receive(number, light, alpha); });
-    };
-    for (std::size_t i = begin; i < end; ++i) {
-      if (shader.is_full()) hand_out();
-      shader.add(points[i].id, std::uint32_t(i), points[i].screen, 1, 1.0f);
-    }
-    hand_out();
-  });
-}
-
-}  // namespace
-
 std::optional<View> key_light_view(const Visible& visible, const Box& bounds, Axis up, const Execution& execution) {
   return view_of_light(visible, bounds, glm::dvec3(lighting_for(visible.view, up).to_key), execution);
-}
-
-std::vector<glm::u8vec4> shade_points(const Surfaces& surfaces, const View& view, std::span<const ShadePoint> points,
-                                      const ShadeOptions& options, const Execution& execution) {
-  validate(view);
-  check_opacity(options);
-  if (!shows_materials(options.shading) && options.shading != Shading::ids)
-    throw Error(ErrorCode::unsupported, "shade: points are lit, flat, of normals or of ids");
-  BitSet seen(surfaces.primitive_count());
-  for (const ShadePoint& point : points) {
-    if (point.id >= surfaces.primitive_count())
-      throw Error(ErrorCode::bad_argument, "shade: a point's triangle is not of these surfaces");
-    seen.add(point.id);
-  }
-  const TriangleSource source(surfaces, view, nullptr, execution);
-  const MaterialTable table(surfaces.scene(),
-                            needed_materials(
-                                surfaces, [&]() -> const BitSet& { return seen; }, execution),
-                            execution);
-  const Lighting lighting = lighting_for(view, surfaces.scene().up);
-  FragmentShader::Colorist colorist = Lit{table, lighting, nullptr, nullptr, execution.isa};
-  if (options.shading == Shading::flat) colorist = Flat{table};
-  if (options.shading == Shading::normals) colorist = Normals{table};
-  if (options.shading == Shading::ids) colorist = Ids{};
-  std::vector<glm::u8vec4> colors(points.size());
-  shade_all(source, colorist, points, execution, [&](std::uint32_t i, const glm::vec3& light, float alpha) {
-    const float opacity = std::clamp(alpha * options.opacity, 0.0f, 1.0f);
-    colors[i] = {srgb8_of_linear(light.x), srgb8_of_linear(light.y), srgb8_of_linear(light.z),
-                 std::uint8_t(opacity * 255.0f + 0.5f)};
-  });
-  return colors;
 }
 
 Image normal_image(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {

@@ -27,12 +27,12 @@ TEST_F(Figures, HoldVisiblePolygonsAlone) {
               HasSubstr("cube.svg: 6 polygons, about 0.0 MB"));
   EXPECT_EQ(count("cube.svg", "<path"), 7u);  // and the background
   EXPECT_THAT(read("cube.svg"), HasSubstr("width=\"84.667mm\" height=\"63.5mm\""));
-  succeed("render cube.stl -o all.svg --visible-only no --background transparent --quiet");
+  succeed("render cube.stl -o all.svg --shading flat --visible-only no --background transparent --quiet");
   EXPECT_EQ(count("all.svg", "<path"), 12u);
 }
 
 TEST_F(Figures, KeepWhatShowsThrough) {
-  EXPECT_THAT(succeed("render cube.stl -o glass.svg --opacity 0.5 --quiet").err, IsEmpty());
+  EXPECT_THAT(succeed("render cube.stl -o glass.svg --shading flat --opacity 0.5 --quiet").err, IsEmpty());
   EXPECT_EQ(count("glass.svg", "fill-opacity=\".502\""), 12u);
 }
 
@@ -49,6 +49,14 @@ TEST_F(Figures, ShowColoursOfTheirShading) {
   EXPECT_EQ(count("ids.svg", "<path"), 7u);
 }
 
+TEST_F(Figures, AreCutWhereColoursVary) {
+  succeed("render builtin:gallery -o coarse.svg --shading flat --color-tolerance 255 --quiet");
+  succeed("render builtin:gallery -o fine.svg --shading flat --quiet");
+  EXPECT_GT(count("fine.svg", "<path"), count("coarse.svg", "<path") + 500);
+  succeed("render cube.stl -o depths.svg --shading depth --quiet");
+  EXPECT_GT(count("depths.svg", "<path"), 10u);
+}
+
 TEST_F(Figures, AreTheSameForAnyNumberOfThreads) {
   succeed("render builtin:gallery -o one.svg --threads 1 --quiet");
   succeed("render builtin:gallery -o three.svg --threads 3 --quiet");
@@ -60,7 +68,7 @@ TEST_F(Figures, RefuseWhatTheyCannotBe) {
   expect_failure("render cube.stl -o a.svg --method abuffer", 2, "without --method");
   expect_failure("render cube.stl -o a.svg --stream", 2, "whole model");
   expect_failure("render cube.stl -o a.svg --camera-model panorama", 2, "pinhole");
-  expect_failure("render cube.stl -o a.svg --shading depth", 2, "lit, flat, normals or ids");
+  expect_failure("render cube.stl -o a.svg --color-tolerance 256", 2, "--color-tolerance");
   expect_failure("render cube.stl -o a.svg -o a.svg", 2, "written twice");
   EXPECT_THAT(files(), testing::ElementsAre("cube.stl"));
 }

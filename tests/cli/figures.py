@@ -7,7 +7,7 @@ of the z-buffer.
 
 A pixel of a figure is a mixture of what lies around it. So every channel of it must lie between the least and the
 greatest of the z-buffer's picture within a pixel, twice as fine so as to find what is narrower than one, give or take
-BOUND. Nothing is left out: at the borders of polygons hairlines would show. Away from the borders of ids the colour
+a bound. Nothing is left out: at the borders of polygons hairlines would show. Away from the borders of ids the colour
 itself must be the same within the bound. Rasterisers that are not installed are skipped, and counted.
 """
 import pathlib
@@ -23,17 +23,30 @@ from rasters import Raster, read_ids, read_png, read_pnm  # noqa: E402
 WIDTH, HEIGHT = 240, 160
 LAYERS = 6  # more than one behind the other
 BOUND = 3  # steps of 8 bits: viewers round, and blend twice at rims
+TOLERANCE = 6  # what --color-tolerance allows by default
 FLAT = ["--shading", "flat"]
-MOST, MOST_BLENDED = 0.001, 0.025  # parts of the pixels: those of things narrower than half a pixel, and of cuts in glass
-FURTHEST = 48
+
+
+class Case:
+    """A view, and what is known of it: by how much its colours vary within a polygon, and which part of the pixels may
+    be beyond the bound, by how much at most: things narrower than half a pixel, rims of translucent neighbours, which
+    viewers blend both, and details of textures and shadows that are narrower than a piece."""
+
+    def __init__(self, words, varies=0, most=0.001, furthest=50):
+        self.words, self.bound, self.most, self.furthest = words, BOUND + varies, most, furthest
+
+
 CASES = {
-    "cubes through each other": ["builtin:cubes", "--no-shadows"],
-    "a ring of three": ["builtin:cycle", *FLAT],
-    "ids": ["builtin:city", "--shading", "ids"],
-    "in parallel": ["builtin:cubes", "--view", "iso", "--camera-orthographic", "--shading", "normals"],
-    "all of glass": ["builtin:cubes", *FLAT, "--opacity", "0.5"],
+    "cubes through each other": Case(["builtin:cubes", "--no-shadows"]),
+    "a ring of three": Case(["builtin:cycle", *FLAT]),
+    "ids": Case(["builtin:city", "--shading", "ids"]),
+    "in parallel": Case(["builtin:cubes", "--view", "iso", "--camera-orthographic", "--shading", "normals"]),
+    "tiles": Case(["builtin:gallery", *FLAT], TOLERANCE, 0.015),
+    "light and shadow": Case(["builtin:gallery"], TOLERANCE, 0.015),
+    "depths": Case(["builtin:spheres", "--shading", "depth"], TOLERANCE, 0.004),
+    "normals": Case(["builtin:teapot", "--shading", "normals"], TOLERANCE, 0.005),
+    "all of glass": Case(["builtin:cubes", *FLAT, "--opacity", "0.5"], 0, 0.025),
 }
-BLENDED = {"all of glass"}  # where two translucent neighbours meet, viewers blend both rims
 SVG = "{http://www.w3.org/2000/svg}"
 
 
@@ -83,21 +96,21 @@ def inner_pixels(ids):
             if all(ids[y + dy][x + dx] == ids[y][x] for dy in (-1, 0, 1) for dx in (-1, 0, 1))]
 
 
-def strays(raster, low, high):
+def strays(raster, low, high, bound):
     """By how much the pixels that are beyond the bound are beyond."""
     found = {}
     for number in range(3):
         for y, row in enumerate(raster.channel(number)):
             for x, value in enumerate(row):
                 excess = max(low[number][y][x] - value, value - high[number][y][x])
-                if excess > BOUND:
+                if excess > bound:
                     found[x, y] = max(excess, found.get((x, y), 0))
     return found
 
 
-def differing(raster, picture, pixels):
+def differing(raster, picture, pixels, bound):
     channels = [(raster.channel(number), picture.channel(number)) for number in range(3)]
-    return [(x, y) for x, y in pixels if any(abs(a[y][x] - b[y][x]) > BOUND for a, b in channels)]
+    return [(x, y) for x, y in pixels if any(abs(a[y][x] - b[y][x]) > bound for a, b in channels)]
 
 
 def rasters_of(folder):
@@ -111,8 +124,10 @@ def rasters_of(folder):
     return found
 
 
-def check_case(program, name, words, folder):
+def check_case(program, name, case, folder):
     """Returns how many rasterisers were there."""
+    words = case.words
+
     def picture(scale, *more):
         def draw(file, *how):
             run(program, "render", *words, "--samples", 1, "--resolution", f"{scale * WIDTH},{scale * HEIGHT}", "-o",
@@ -134,22 +149,21 @@ def check_case(program, name, words, folder):
     found = rasters_of(folder)
     for viewer, raster in found.items():
         assert (raster.width, raster.height) == (WIDTH, HEIGHT), (raster.width, raster.height)
-        stray, wrong = strays(raster, low, high), differing(raster, same, inner)
+        stray, wrong = strays(raster, low, high, case.bound), differing(raster, same, inner, case.bound)
         told = (f"{name}: {viewer}: {len(stray)} of {WIDTH * HEIGHT} pixels stray, by up to "
                 f"{max(stray.values(), default=0)}; {len(wrong)} of {len(inner)} inner ones differ")
         print(told)
-        most = MOST_BLENDED if name in BLENDED else MOST
-        assert len(stray) <= most * WIDTH * HEIGHT and len(wrong) <= most * len(inner), (
+        assert len(stray) <= case.most * WIDTH * HEIGHT and len(wrong) <= case.most * len(inner), (
             told, sorted(stray.items(), key=lambda e: -e[1])[:5], wrong[:5])
-        assert max(stray.values(), default=0) <= FURTHEST, told
+        assert max(stray.values(), default=0) <= case.furthest, told
     return len(found)
 
 
 def main():
     program, checked = pathlib.Path(sys.argv[1]).resolve(), 0
     with tempfile.TemporaryDirectory() as folder:
-        for name, words in CASES.items():
-            checked += check_case(program, name, words, pathlib.Path(folder))
+        for name, case in CASES.items():
+            checked += check_case(program, name, case, pathlib.Path(folder))
     print(f"{len(CASES)} figures, {checked} rasterised, {2 * len(CASES) - checked} skipped for want of a rasteriser")
 
 

@@ -385,36 +385,5 @@ TEST(Shade, MeshesOfMixedMaterialsAreTakenApart) {
   EXPECT_EQ(color_at(picture(scene, front_view(), with(Shading::flat)), 32, 32), glm::vec4(0, 1, 0, 1));
 }
 
-TEST(ShadePoints, HaveTheColoursOfThePicture) {
-  const Scene scene = scene_of(square(), colored({1, 0.5f, 0, 0.25f}));
-  const Surfaces surfaces(scene);
-  const std::vector<ShadePoint> points(1000, {1, {32, 30}});
-  const std::vector<glm::u8vec4> flat = shade_points(surfaces, front_view(), points, with(Shading::flat));
-  ASSERT_EQ(flat.size(), points.size());
-  EXPECT_EQ(flat[0], flat[999]);
-  EXPECT_EQ(glm::u8vec3(flat[0]), glm::u8vec3(255, srgb8_of_linear(0.5f), 0));
-  const ShadeOptions lit{.shadows = Shadows::off};
-  const glm::vec4 pixel = color_at(picture(scene, front_view(), lit), 32, 30);
-  const glm::u8vec4 point = shade_points(surfaces, front_view(), points, lit)[0];
-  for (int k = 0; k < 3; ++k) EXPECT_NEAR(point[k], srgb8_of_linear(pixel[k]), 1) << k;
-}
-
-TEST(ShadePoints, OpacityMultiplies) {
-  const Scene scene = scene_of(square());
-  const Surfaces surfaces(scene);
-  const ShadePoint point{0, {32, 34}};
-  EXPECT_EQ(shade_points(surfaces, front_view(), {&point, 1}, {.opacity = 0.5f})[0].a, 128);
-}
-
-TEST(ShadePoints, RefuseWhatTheyDoNotHave) {
-  const Scene scene = scene_of(square());
-  const Surfaces surfaces(scene);
-  const ShadePoint good{0, {32, 34}}, bad{2, {32, 34}};
-  EXPECT_THROW((void)shade_points(surfaces, front_view(), {&bad, 1}), Error);
-  EXPECT_THROW((void)shade_points(surfaces, front_view(), {&good, 1}, with(Shading::depth)), Error);
-  EXPECT_THROW((void)shade_points(surfaces, front_view(), {&good, 1}, {.opacity = 2}), Error);
-  EXPECT_TRUE(shade_points(surfaces, front_view(), {}).empty());
-}
-
 }  // namespace
 }  // namespace frontmost

@@ -24,6 +24,11 @@ class KeyShadows {
  public:
   KeyShadows(const ShadedPicture& picture, const glm::vec3& to_key, const Execution& execution);
 
+  /// As RayShadows has it.
+  void ask_at_points() {
+    if (rays_) rays_->ask_at_points();
+  }
+
   /// One of them, or none where there are no shadows.
   [[nodiscard]] const ShadowMap* map() const { return map_ ? &*map_ : nullptr; }
   [[nodiscard]] const RayShadows* rays() const { return rays_ ? &*rays_ : nullptr; }

@@ -57,7 +57,7 @@ void RayShadows::find_light(const std::vector<TriangleSetup>& setups, const bool
     if (knows_ids_) point.primitive = setup.id;
     point.corners = setup.corner_world;
     if (setup.is_smooth) point.lift = g.smooth_position.at(i) - g.position.at(i);
-    const glm::vec2 corner = glm::floor(coverage.screen.at(i));
+    const glm::vec2 corner = at_points_ ? coverage.screen.at(i) : glm::floor(coverage.screen.at(i));
     for (std::uint64_t left = coverage.samples[i]; left != 0; left &= left - 1) {
       const glm::vec2 sample = corner + offsets_[std::size_t(std::countr_zero(left))];
       point.weights = barycentric(setup, sample.x, sample.y).weight;

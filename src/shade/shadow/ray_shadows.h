@@ -23,6 +23,9 @@ class RayShadows {
   /// The ids of the index are not those of what is shaded. Slower: a triangle is then known by its corners.
   void forget_ids() { knows_ids_ = false; }
 
+  /// Fragments are single points where they are, not pixels.
+  void ask_at_points() { at_points_ = true; }
+
   /// Fills batch.shadow where `is_asked`: the part of each fragment's samples that the light reaches.
   void find_light(const std::vector<TriangleSetup>& setups, const bool* is_asked, Batch& batch) const;
 
@@ -32,7 +35,7 @@ class RayShadows {
   const RayIndex& index_;
   glm::vec3 to_key_;
   Isa isa_;
-  bool knows_ids_ = true;
+  bool knows_ids_ = true, at_points_ = false;
   std::vector<glm::vec2> offsets_;  ///< of the samples within a pixel
 };
 

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shade/figure/color_cut.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace frontmost::shading {
+namespace {
+
+constexpr std::size_t kMostSamples = 256;
+constexpr int kDirections = 8;
+/// The direction across which the colour changes is found from a cut, and a better cut from that: so often.
+constexpr int kRounds = 2;
+/// Texels: a cut that near to the border of two texels is that border.
+constexpr double kTexelReach = 0.25;
+
+/// A cut of samples in two, by the values of a function.
+struct Split {
+  double gain = 0;               ///< by how much the sum of squared differences gets smaller
+  double threshold = 0;          ///< of the function
+  glm::vec4 below{0}, above{0};  ///< mean colours
+};
+
+class CutFinder {
+ public:
+  CutFinder(const ColorPiece& piece, std::span<const TexcoordLines> texture) : piece_(piece), texture_(texture) {
+    const std::size_t stride = std::max<std::size_t>((piece.samples.size() + kMostSamples - 1) / kMostSamples, 1);
+    for (std::size_t i = 0; i < piece.samples.size(); i += stride) samples_.push_back(piece.samples[i]);
+    for (const ColorSample& sample : samples_) total_ += sample.color;
+  }
+
+  [[nodiscard]] std::optional<ScreenLine> find() {
+    for (const TexcoordLines& lines : texture_) try_texture(lines);
+    for (int i = 0; i < kDirections; ++i) {
+      const double angle = i * 3.14159265358979323846 / kDirections;
+      try_direction({std::cos(angle), std::sin(angle)});
+    }
+    for (int i = 0; i < kRounds && line_; ++i)
+      if (const std::optional<glm::dvec2> direction = direction_of_change()) try_direction(*direction);
+    return line_;
+  }
+
+ private:
+  struct Range {
+    double least, greatest;
+  };
+  /// How far the piece reaches on either side of a line.
+  [[nodiscard]] Range reach(const ScreenLine& line) const {
+    Range range{line.distance(piece_.corners[0]), line.distance(piece_.corners[0])};
+    for (const glm::dvec2& corner : piece_.corners) {
+      const double distance = line.distance(corner);
+      range = {std::min(range.least, distance), std::max(range.greatest, distance)};
+    }
+    return range;
+  }
+
+  /// The best split by a function of the place, at a value within a range.
+  template <class Function>
+  [[nodiscard]] Split split_by(const Function& function, const Range& allowed) {
+    keys_.clear();
+    for (std::uint32_t i = 0; i < samples_.size(); ++i) keys_.push_back({function(samples_[i].at), i});
+    std::sort(keys_.begin(), keys_.end());
+    Split best;
+    glm::dvec4 below(0);
+    const glm::dvec4 total(total_);
+    const double count = double(samples_.size()), whole = glm::dot(total, total) / count;
+    for (std::size_t i = 0; i + 1 < keys_.size(); ++i) {
+      below += glm::dvec4(samples_[keys_[i].second].color);
+      const double threshold = (keys_[i].first + keys_[i + 1].first) * 0.5;
+      if (!(keys_[i].first < keys_[i + 1].first) || threshold < allowed.least || threshold > allowed.greatest) continue;
+      const double n = double(i + 1);
+      const glm::dvec4 above = total - below;
+      const double gain = glm::dot(below, below) / n + glm::dot(above, above) / (count - n) - whole;
+      if (gain <= best.gain * (1 + 1e-9)) continue;  // equal ones: the first, whatever rounding says
+      best = {gain, threshold, glm::vec4(below / n), glm::vec4(above / (count - n))};
+    }
+    return best;
+  }
+
+  void take(const Split& split, const ScreenLine& line) {
+    best_ = split;
+    line_ = line;
+  }
+  [[nodiscard]] bool is_better(const Split& split) const { return split.gain > best_.gain * (1 + 1e-9) + 1e-9; }
+
+  void try_direction(const glm::dvec2& normal) {
+    const Range all = reach({normal, 0});
+    const Split split = split_by([&](const glm::dvec2& p) { return glm::dot(normal, p); },
+                                 {all.least + piece_.least_width, all.greatest - piece_.least_width});
+    if (is_better(split)) take(split, {normal, split.threshold});
+  }
+
+  void try_texture(const TexcoordLines& lines) {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    Split split = split_by([&](const glm::dvec2& p) { return lines.at(p); }, {-infinite, infinite});
+    if (!is_better(split)) return;
+    const double border = std::round(split.threshold);
+    if (std::abs(split.threshold - border) < kTexelReach) split.threshold = border;
+    const std::optional<ScreenLine> line = lines.line(split.threshold);
+    if (!line) return;
+    const Range sides = reach(*line);
+    if (sides.least <= -piece_.least_width && sides.greatest >= piece_.least_width) take(split, *line);
+  }
+
+  /// That in which samples lie apart that are more like one or more like the other side of the best split.
+  [[nodiscard]] std::optional<glm::dvec2> direction_of_change() const {
+    const glm::vec4 way = best_.above - best_.below, middle = (best_.above + best_.below) * 0.5f;
+    const double length = double(glm::dot(way, way));
+    glm::dvec2 mean(0), covariance(0);
+    double xx = 0, xy = 0, yy = 0;
+    for (const ColorSample& sample : samples_) mean += sample.at;
+    mean /= double(samples_.size());
+    for (const ColorSample& sample : samples_) {
+      const double side = std::clamp(double(glm::dot(sample.color - middle, way)) / length, -0.5, 0.5);
+      const glm::dvec2 p = sample.at - mean;
+      covariance += p * side;
+      xx += p.x * p.x;
+      xy += p.x * p.y;
+      yy += p.y * p.y;
+    }
+    const glm::dvec2 direction(yy * covariance.x - xy * covariance.y, xx * covariance.y - xy * covariance.x);
+    const double size = glm::length(direction);
+    if (!(size > 0)) return std::nullopt;
+    return direction / size;
+  }
+
+  const ColorPiece& piece_;
+  std::span<const TexcoordLines> texture_;
+  std::vector<ColorSample> samples_;
+  std::vector<std::pair<double, std::uint32_t>> keys_;
+  glm::vec4 total_{0};
+  Split best_;
+  std::optional<ScreenLine> line_;
+};
+
+}  // namespace
+
+TexcoordLines::TexcoordLines(const TriangleSetup& setup, const std::array<double, 3>& coordinate) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Affine& a = setup.weight[k];
+    const double x = double(a.step_x), y = double(a.step_y);
+    const double constant = double(a.at_reference) - x * double(setup.reference.x) - y * double(setup.reference.y);
+    const auto add = [&](Plane& plane, double factor) {
+      plane.constant += factor * constant;
+      plane.x += factor * x;
+      plane.y += factor * y;
+    };
+    add(weight_, 1);
+    add(weighted_, coordinate[k]);
+  }
+}
+
+double TexcoordLines::at(const glm::dvec2& p) const {
+  const double weight = weight_.constant + weight_.x * p.x + weight_.y * p.y;
+  const double value = (weighted_.constant + weighted_.x * p.x + weighted_.y * p.y) / weight;
+  return std::isfinite(value) ? value : 0;
+}
+
+std::optional<ScreenLine> TexcoordLines::line(double value) const {
+  const glm::dvec2 normal(weighted_.x - value * weight_.x, weighted_.y - value * weight_.y);
+  const double length = glm::length(normal);
+  if (!(length > 1e-300)) return std::nullopt;
+  return ScreenLine{normal / length, (value * weight_.constant - weighted_.constant) / length};
+}
+
+std::optional<ScreenLine> best_cut(const ColorPiece& piece, std::span<const TexcoordLines> texture) {
+  return CutFinder(piece, texture).find();
+}
+
+}  // namespace frontmost::shading

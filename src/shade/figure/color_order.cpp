@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <atomic>
+
+#include "base/float_environment.h"
+#include "base/parallel.h"
+#include "base/pool.h"
+#include "frontmost/figure.h"
+#include "shade/figure/polygon_colors.h"
+
+namespace frontmost {
+namespace {
+
+using namespace shading;
+
+constexpr std::size_t kPolygonsPerPart = 256;
+/// Square pixels in which a triangle is seen: on smaller ones a smooth normal could hardly be told from a flat one.
+constexpr float kLarge = 3;
+
+void check(const Surfaces& surfaces, const Visible& visible, const PaintOrder& order, const ColorOptions& options) {
+  const auto refuse = [](const char* why) { throw Error(ErrorCode::bad_argument, std::string("figure: ") + why); };
+  validate(order.view);
+  if (visible.view.width != order.view.width || visible.view.height != order.view.height)
+    refuse("what is visible is not of the order's view");
+  if (!(options.tolerance >= 0 && options.tolerance <= 255)) refuse("tolerance: must be 0 to 255");
+  for (const PaintPolygon& polygon : order.polygons)
+    if (polygon.id >= surfaces.primitive_count() || polygon.corner_count < 3 ||
+        polygon.corner_count > order.corners.size() ||
+        polygon.first_corner > order.corners.size() - polygon.corner_count)
+      refuse("the order is not of these surfaces");
+}
+
+float area_of(const PaintOrder& order, const PaintPolygon& polygon) {
+  const PaintCorner* const corners = order.corners.data() + polygon.first_corner;
+  double twice = 0;
+  for (std::size_t i = 2; i < polygon.corner_count; ++i) {
+    const glm::dvec3 a = corners[i - 1].at - corners[0].at, b = corners[i].at - corners[0].at;
+    twice += a.x * b.y - a.y * b.x;
+  }
+  return float(std::abs(twice) * 0.5);
+}
+
+FigureTriangles triangles_of(const Surfaces& surfaces, const PaintOrder& order) {
+  FigureTriangles triangles{BitSet(surfaces.primitive_count()), BitSet(surfaces.primitive_count())};
+  for (const PaintPolygon& polygon : order.polygons) triangles.seen.add(polygon.id);
+  if (!lacks_normals(surfaces.scene())) return triangles;
+  std::vector<float> areas(surfaces.primitive_count());
+  for (const PaintPolygon& polygon : order.polygons) areas[polygon.id] += area_of(order, polygon);
+  for (std::size_t id = 0; id < areas.size(); ++id)
+    if (areas[id] >= kLarge) triangles.large.add(id);
+  return triangles;
+}
+
+/// What becomes of consecutive polygons.
+struct Part {
+  std::vector<PaintPolygon> polygons;
+  std::vector<PaintCorner> corners;
+  std::vector<glm::u8vec4> colors;
+  std::vector<std::uint32_t> shapes;  ///< from 0 on
+  std::uint32_t shape_count = 0;
+
+  void add(PrimitiveId id, const ColoredPieces& pieces) {
+    for (const ColoredPiece& piece : pieces.pieces) {
+      polygons.push_back({id, piece.corner_count, corners.size() + piece.first_corner});
+      colors.push_back(piece.color);
+      shapes.push_back(shape_count + piece.shape);
+    }
+    corners.insert(corners.end(), pieces.corners.begin(), pieces.corners.end());
+    shape_count += pieces.shape_count;
+  }
+};
+
+void append(const Part& part, std::uint32_t first_shape, ColoredOrder& into) {
+  for (PaintPolygon polygon : part.polygons) {
+    polygon.first_corner += into.order.corners.size();
+    into.order.polygons.push_back(polygon);
+  }
+  into.order.corners.insert(into.order.corners.end(), part.corners.begin(), part.corners.end());
+  into.colors.insert(into.colors.end(), part.colors.begin(), part.colors.end());
+  for (const std::uint32_t shape : part.shapes) into.shapes.push_back(first_shape + shape);
+}
+
+[[noreturn]] void refuse_more_than(std::size_t most) {
+  throw Error(ErrorCode::limit_exceeded, "figure: more than " + std::to_string(most) + " polygons and pieces");
+}
+
+}  // namespace
+
+ColoredOrder color_order(const Surfaces& surfaces, const Visible& visible, const PaintOrder& order,
+                         const ColorOptions& options, const Execution& execution) {
+  check(surfaces, visible, order, options);
+  const IeeeScope ieee;
+  const FigureTriangles triangles = triangles_of(surfaces, order);
+  const PointShader shader(surfaces, visible, triangles, options.shade, execution);
+  const std::size_t count = order.polygons.size();
+  std::vector<Part> parts((count + kPolygonsPerPart - 1) / kPolygonsPerPart);
+  Pool<PolygonColors> colorers;
+  std::atomic<std::size_t> done{0}, made{0};
+  parallel_for(execution, count, kPolygonsPerPart, [&](std::size_t begin, std::size_t end) {
+    const auto colorer =
+        colorers.borrow([&] { return std::make_unique<PolygonColors>(surfaces, order.view, shader, options); });
+    Part& part = parts[begin / kPolygonsPerPart];
+    for (std::size_t i = begin; i < end; ++i) {
+      const PaintPolygon& polygon = order.polygons[i];
+      const ColoredPieces& pieces =
+          colorer->pieces_of(polygon.id, {order.corners.data() + polygon.first_corner, polygon.corner_count});
+      part.add(polygon.id, pieces);
+      if ((made += pieces.pieces.size()) > options.most_polygons) refuse_more_than(options.most_polygons);
+    }
+    report_progress(execution, "colours", double(done += end - begin) / double(count));
+  });
+  ColoredOrder colored;
+  colored.order.view = order.view;
+  colored.order.steps = order.steps;
+  std::uint32_t shapes = 0;
+  for (const Part& part : parts) {
+    append(part, shapes, colored);
+    shapes += part.shape_count;
+  }
+  return colored;
+}
+
+}  // namespace frontmost

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Everything that the colours of single points are made from.
+#pragma once
+
+#include <memory>
+
+#include "shade/colorists.h"
+#include "shade/fragment_shader.h"
+#include "shade/picture_parts.h"
+#include "shade/shadow/key_shadows.h"
+
+namespace frontmost::shading {
+
+/// Triangles, of a figure.
+struct FigureTriangles {
+  BitSet seen;   ///< all that the figure holds
+  BitSet large;  ///< those worth a smooth normal where the model has none
+};
+
+/// For several threads at once: each has a FragmentShader of its own.
+class PointShader {
+ public:
+  /// Borrows all but the options. \throws Error as check_opacity().
+  PointShader(const Surfaces& surfaces, const Visible& visible, const FigureTriangles& triangles,
+              const ShadeOptions& options, const Execution& execution);
+
+  [[nodiscard]] const TriangleSource& source() const { return source_; }
+  [[nodiscard]] const FragmentShader::Colorist& colorist() const { return colorist_; }
+  [[nodiscard]] float opacity() const { return opacity_; }
+
+ private:
+  const TriangleSource source_;
+  const MaterialTable table_;
+  const Lighting lighting_;
+  std::unique_ptr<const KeyShadows> shadows_;
+  FragmentShader::Colorist colorist_;
+  const float opacity_;
+};
+
+}  // namespace frontmost::shading
