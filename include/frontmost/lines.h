@@ -71,7 +71,8 @@ struct Drawing {
 /// Near-linear: every edge is held against the triangles in the cells of a screen grid that it passes.
 /// (A. Appel. The Notion of Quantitative Invisibility and the Machine Rendering of Solids. 1967.)
 /// The result is the same to the bit for any number of threads and every instruction set.
-/// \throws Error as validate(view) does, and bad_argument for an angle that is out of range.
+/// \throws Error as validate(view) does, bad_argument for an angle that is out of range, and limit_exceeded for more
+/// than 2^25 segments of intersections or 2^26 parts.
 [[nodiscard]] Drawing lines(const Surfaces& surfaces, const View& view, const LineOptions& options = {},
                             const Execution& execution = {});
 

@@ -117,13 +117,20 @@ SpaceBoxes boxes_of_groups(std::size_t count, const BoxBelow& box_below) {
 
 }  // namespace
 
-BoxTree::BoxTree(const WeldedMesh& mesh, const Execution& execution)
-    : kernels_(space_kernels(execution.isa)), triangles_(mesh.triangles.size()) {
+BoxTree::BoxTree(const WeldedMesh& mesh, const std::vector<std::uint32_t>& left_out, const Execution& execution)
+    : kernels_(space_kernels(execution.isa)), triangles_(mesh.triangles.size() - left_out.size()) {
   const std::size_t count = triangles_.count;
   const Curve curve(mesh);
   Buffer<std::uint64_t> keys(count);
   parallel_for(execution, count, kPerPart, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) keys[t] = std::uint64_t(curve.place_of(box_of(mesh, t))) << 32 | t;
+    // The i-th that is not left out is i, and as many more as are left out before it.
+    std::size_t t = begin;
+    auto next = left_out.begin();
+    for (; next != left_out.end() && *next <= t; ++next) ++t;
+    for (std::size_t i = begin; i < end; ++i, ++t) {
+      for (; next != left_out.end() && *next == t; ++next) ++t;
+      keys[i] = std::uint64_t(curve.place_of(box_of(mesh, t))) << 32 | t;
+    }
   });
   sort_by_key(keys);
   const float scale = curve.scale();

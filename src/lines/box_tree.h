@@ -14,7 +14,8 @@ namespace frontmost::lines_detail {
 class BoxTree {
  public:
   /// O(triangles). Triangles of a like size are together, so that large ones do not widen the boxes of small ones.
-  BoxTree(const WeldedMesh& mesh, const Execution& execution);
+  /// Without those `left_out`, which are in order.
+  BoxTree(const WeldedMesh& mesh, const std::vector<std::uint32_t>& left_out, const Execution& execution);
 
   /// Groups of up to sixteen triangles.
   [[nodiscard]] std::size_t group_count() const { return triangles_.numbers.size() / kSpaceLanes; }

@@ -7,18 +7,21 @@
 #include "lines/crossings.h"
 
 #include <algorithm>
+#include <atomic>
 #include <optional>
+#include <string>
 #include <tuple>
 
 #include "base/parallel.h"
 #include "lines/box_tree.h"
 #include "lines/joined.h"
+#include "lines/sort_in_parts.h"
 #include "view/sight.h"
 
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr std::size_t kGroupsPerPart = 64;
+constexpr std::size_t kGroupsPerPart = 16, kPairsPerPoll = 16384;
 
 /// A triangle with its vertices in ascending order, so that whoever asks its plane gets the same bits.
 class Face {
@@ -155,29 +158,58 @@ bool is_same_line(const Crossing& a, const Crossing& b) {
   return a.from.place == b.from.place && a.to.place == b.to.place;
 }
 
+/// Segments of all threads, so that their number is known before their memory is asked for.
+class Tally {
+ public:
+  void add(std::size_t count) {
+    if ((all_ += count) > kMost)
+      throw Error(ErrorCode::limit_exceeded,
+                  "lines: more than " + std::to_string(kMost) + " segments where triangles pass through each other");
+  }
+
+ private:
+  static constexpr std::size_t kMost = std::size_t(1) << 25;
+  std::atomic<std::size_t> all_{0};
+};
+
+/// Appends the segment of two triangles, if there is one.
+void add_crossing(const WeldedMesh& mesh, std::uint32_t left, std::uint32_t right, std::vector<Crossing>& list) {
+  const Face one(mesh, left), two(mesh, right);
+  std::optional<Crossing> found = crossing(mesh, {&one, &two});
+  if (!found) return;
+  found->left = left;
+  found->right = right;
+  const glm::dvec3 &p = found->from.place, &q = found->to.place;
+  if (std::make_tuple(q.x, q.y, q.z) < std::make_tuple(p.x, p.y, p.z)) std::swap(found->from, found->to);
+  if (p != q) list.push_back(*found);
+}
+
 }  // namespace
 
-std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Execution& execution) {
-  if (mesh.triangles.size() < 2) return {};
-  const BoxTree tree(mesh, execution);
+std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const std::vector<std::uint32_t>& left_out,
+                                     const Execution& execution) {
+  if (mesh.triangles.size() < left_out.size() + 2) return {};
+  const BoxTree tree(mesh, left_out, execution);
   std::vector<std::vector<Crossing>> lists((tree.group_count() + kGroupsPerPart - 1) / kGroupsPerPart);
+  Tally tally;
   parallel_for(execution, tree.group_count(), kGroupsPerPart, [&](std::size_t begin, std::size_t end) {
     std::vector<Crossing>& list = lists[begin / kGroupsPerPart];
-    for (std::size_t group = begin; group < end; ++group)
+    std::size_t counted = 0, asked = 0;
+    for (std::size_t group = begin; group < end; ++group) {
+      check_cancelled(execution);
       tree.visit_pairs(group, [&](std::uint32_t a, std::uint32_t b) {
-        const std::uint32_t left = std::min(a, b), right = std::max(a, b);
-        const Face one(mesh, left), two(mesh, right);
-        std::optional<Crossing> found = crossing(mesh, {&one, &two});
-        if (!found) return;
-        found->left = left;
-        found->right = right;
-        const glm::dvec3 &p = found->from.place, &q = found->to.place;
-        if (std::make_tuple(q.x, q.y, q.z) < std::make_tuple(p.x, p.y, p.z)) std::swap(found->from, found->to);
-        if (p != q) list.push_back(*found);
+        add_crossing(mesh, std::min(a, b), std::max(a, b), list);
+        if (++asked % kPairsPerPoll != 0) return;
+        check_cancelled(execution);
+        tally.add(list.size() - counted);
+        counted = list.size();
       });
+    }
+    tally.add(list.size() - counted);
   });
   std::vector<Crossing> all = joined(lists);
-  std::sort(all.begin(), all.end(), [](const Crossing& a, const Crossing& b) { return order(a) < order(b); });
+  sort_in_parts(
+      all, [](const Crossing& a, const Crossing& b) { return order(a) < order(b); }, execution);
   all.erase(std::unique(all.begin(), all.end(), is_same_line), all.end());
   return all;
 }

@@ -13,7 +13,7 @@
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr std::size_t kVerticesPerPart = 4096;
+constexpr std::size_t kVerticesPerPart = 4096, kTrianglesPerPoll = 1 << 18;
 
 /// A triangle at an edge, which is known by its lower vertex.
 struct Side {
@@ -57,6 +57,7 @@ class SideTable {
       parallel_for(execution, bands, 1, [&](std::size_t band, std::size_t) {
         const std::size_t begin = vertices * band / bands, end = vertices * (band + 1) / bands;
         for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+          if (i % kTrianglesPerPoll == 0) check_cancelled(execution);
           const glm::uvec3& t = mesh.triangles[i];
           for (int k = 0; k < 3; ++k) {
             const std::uint32_t lower = std::min(t[k], t[k == 2 ? 0 : k + 1]);
@@ -158,32 +159,41 @@ class Classifier {
 };
 
 /// `sides` are those of the edges whose lower vertex is v.
-void add_features(std::span<Side> sides, std::uint32_t v, const Classifier& classifier,
-                  std::vector<FeatureEdge>& features) {
+void add_features(std::span<Side> sides, std::uint32_t v, const Classifier& classifier, Features& features) {
   for (auto begin = sides.begin(); begin != sides.end();) {
     const auto end = std::find_if(begin, sides.end(), [&](const Side& s) { return s.upper != begin->upper; });
+    for (auto side = begin; side + 1 < end; ++side)  // known at one of its three edges
+      if (side[0].opposite == side[1].opposite && side->opposite > side->upper)
+        features.twins.push_back(side[1].triangle);
     const auto last = std::unique(begin, end, [](const Side& a, const Side& b) { return a.opposite == b.opposite; });
     const std::span<const Side> edge(begin, last);
     if (const std::optional<EdgeKind> kind = classifier.kind_of(edge))
-      features.push_back({v, begin->upper, edge[0].triangle, edge.size() > 1 ? edge[1].triangle : no_index, *kind,
-                          classifier.outer_side(edge)});
+      features.edges.push_back({v, begin->upper, edge[0].triangle, edge.size() > 1 ? edge[1].triangle : no_index, *kind,
+                                classifier.outer_side(edge)});
     begin = end;
   }
 }
 
 }  // namespace
 
-std::vector<FeatureEdge> find_features(const SeenMesh& seen, const Surfaces& surfaces, const LineOptions& options,
-                                       const Execution& execution) {
+Features find_features(const SeenMesh& seen, const Surfaces& surfaces, const LineOptions& options,
+                       const Execution& execution) {
   SideTable table(seen.mesh, execution);
   const Classifier classifier(seen, surfaces, options);
   const std::size_t vertices = seen.mesh.positions.size();
-  std::vector<std::vector<FeatureEdge>> lists((vertices + kVerticesPerPart - 1) / kVerticesPerPart);
+  const std::size_t parts = (vertices + kVerticesPerPart - 1) / kVerticesPerPart;
+  std::vector<std::vector<FeatureEdge>> edges(parts);
+  std::vector<std::vector<std::uint32_t>> twins(parts);
   parallel_for(execution, vertices, kVerticesPerPart, [&](std::size_t begin, std::size_t end) {
+    Features found;
     for (std::size_t v = begin; v < end; ++v)
-      add_features(table.at(std::uint32_t(v)), std::uint32_t(v), classifier, lists[begin / kVerticesPerPart]);
+      add_features(table.at(std::uint32_t(v)), std::uint32_t(v), classifier, found);
+    edges[begin / kVerticesPerPart] = std::move(found.edges);
+    twins[begin / kVerticesPerPart] = std::move(found.twins);
   });
-  return joined(lists);
+  Features all{joined(edges), joined(twins)};
+  std::sort(all.twins.begin(), all.twins.end());
+  return all;
 }
 
 }  // namespace frontmost::lines_detail

@@ -16,8 +16,13 @@ struct FeatureEdge {
   std::int8_t outer;  ///< as SightedEdge::outer
 };
 
-/// In the order of their vertices. O(triangles).
-[[nodiscard]] std::vector<FeatureEdge> find_features(const SeenMesh& seen, const Surfaces& surfaces,
-                                                     const LineOptions& options, const Execution& execution);
+struct Features {
+  std::vector<FeatureEdge> edges;    ///< in the order of their vertices
+  std::vector<std::uint32_t> twins;  ///< ascending: triangles with the same corners as another before them
+};
+
+/// O(triangles log triangles at a vertex).
+[[nodiscard]] Features find_features(const SeenMesh& seen, const Surfaces& surfaces, const LineOptions& options,
+                                     const Execution& execution);
 
 }  // namespace frontmost::lines_detail

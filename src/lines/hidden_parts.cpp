@@ -11,7 +11,9 @@
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr std::size_t kMostAtOnce = 64;
+constexpr std::size_t kMostAtOnce = 64, kBlock = 16;
+/// Cells: less than what sides leave open, and more than the rounding of a place.
+constexpr double kEndPad = 5e-6;
 
 Signed with_sign_of_value(double value) { return {value, value > 0 ? 1 : value < 0 ? -1 : 0}; }
 
@@ -63,14 +65,76 @@ Interval EdgeCutter::part_in(const OccluderGrid::Visit& cell) const {
           at(is_forward ? cell.high[axis] : cell.low[axis], 2e-6) + 1e-12};
 }
 
+/// From the first to the last point of `part` that is not hidden so far; empty where all of it is.
+Interval EdgeCutter::open_part(Interval part) const {
+  part = {std::max(part.begin, shown_.begin), std::min(part.end, shown_.end)};
+  if (counts_) return part;
+  for (const Hidden& hidden : hidden_) {
+    const Interval& h = hidden.interval;
+    if (h.begin <= part.begin && h.end > part.begin) part.begin = h.end;
+    if (h.begin < part.end && h.end >= part.end) part.end = h.begin;
+  }
+  return part;
+}
+
+/// A part of the edge as it is seen in a cell.
+struct EdgeCutter::InCell {
+  ScreenPart box;
+  ScreenSegment segment;
+
+  InCell(const EdgeCutter& cutter, const Interval& part, std::size_t cell) {
+    const OccluderGrid& grid = cutter.o_.grid;
+    const glm::dvec2 a = cutter.on_screen(part.begin) * grid.scale(), b = cutter.on_screen(part.end) * grid.scale();
+    const glm::dvec2 low = glm::min(a, b) - kEndPad, high = glm::max(a, b) + kEndPad, corner = grid.corner(cell);
+    const auto distance = [&](double t) { return cutter.from_eye_.z + (cutter.to_eye_.z - cutter.from_eye_.z) * t; };
+    const double from = distance(part.begin), to = distance(part.end);
+    box = {{wide_low(low.x), wide_low(low.y)},
+           {wide_high(high.x), wide_high(high.y)},
+           cutter.is_for_cover_ ? cutter.farthest_ : std::min(cutter.farthest_, wide_high(std::max(from, to)))};
+    const auto near = [&](double planar) {
+      // What covers may lie behind.
+      if (cutter.is_for_cover_) return -std::numeric_limits<float>::infinity();
+      return float(nearness(planar, cutter.o_.sight.is_parallel()));
+    };
+    segment = {glm::vec2(a - corner), glm::vec2(b - corner), near(from), near(to)};
+  }
+};
+
+/// For cells of many entries: the nearest first, then those just before the edge. Of a stack of sheets the ones between
+/// hide ever less than the next one, and are asked no more when that has left nothing where they are.
+void EdgeCutter::pass_many(const OccluderGrid::Visit& cell) {
+  Interval open = open_part(part_in(cell));
+  if (!(open.begin < open.end)) return;
+  InCell in(*this, open, cell.cell);
+  const float* nearest = o_.grid.boxes(cell.first).nearest;
+  const auto before =
+      std::size_t(std::upper_bound(nearest, nearest + (cell.last - cell.first), in.box.farthest) - nearest);
+  const std::size_t blocks = (before + kBlock - 1) / kBlock;
+  for (std::size_t i = 0; i < blocks; ++i) {
+    const std::size_t offset = (i == 0 ? 0 : blocks - i) * kBlock, count = std::min(kBlock, before - offset);
+    std::uint64_t bits = o_.kernels.overlapping(o_.grid.boxes(cell.first + offset), count, in.box);
+    if (bits != 0) bits &= o_.kernels.within_sides(o_.grid.sides(cell.cell, offset), count, in.segment);
+    if (bits == 0) continue;
+    if (!ask(bits, cell.first + offset, cell)) return;
+    if (batch_.count == 0 || !flush()) continue;
+    open = open_part(open);
+    if (!(open.begin < open.end)) return;
+    in = InCell(*this, open, cell.cell);
+  }
+}
+
 /// \returns true when all of the edge is hidden.
 bool EdgeCutter::pass(const OccluderGrid::Visit& cell) {
+  if (cell.last - cell.first >= OccluderGrid::kMany) {
+    pass_many(cell);
+    return !counts_ && is_hidden(shown_);
+  }
   const glm::dvec2 pad(OccluderGrid::kPad);
   const glm::dvec2 low = cell.low - pad, high = cell.high + pad;
   const ScreenPart part{{wide_low(low.x), wide_low(low.y)}, {wide_high(high.x), wide_high(high.y)}, farthest_};
   for (std::size_t first = cell.first; first < cell.last; first += kMostAtOnce) {
     const ScreenBoxes boxes = o_.grid.boxes(first);
-    if (*boxes.nearest > farthest_) return false;
+    if (*boxes.nearest > farthest_) break;
     const std::uint64_t bits = o_.kernels.overlapping(boxes, std::min(kMostAtOnce, cell.last - first), part);
     if (!ask(bits, first, cell)) break;
   }

@@ -36,6 +36,9 @@ class EdgeCutter {
   [[nodiscard]] Interval within_view() const;
   [[nodiscard]] glm::dvec2 on_screen(double t) const;
   [[nodiscard]] Interval part_in(const OccluderGrid::Visit& cell) const;
+  struct InCell;
+  [[nodiscard]] Interval open_part(Interval part) const;
+  void pass_many(const OccluderGrid::Visit& cell);
   bool pass(const OccluderGrid::Visit& cell);
   bool ask(std::uint64_t bits, std::size_t first, const OccluderGrid::Visit& cell);
   bool flush();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <string>
 
 #include "base/float_environment.h"
 #include "base/parallel.h"
@@ -16,7 +17,8 @@ namespace {
 
 using namespace lines_detail;
 
-constexpr std::size_t kEdgesPerPart = 1024;
+constexpr std::size_t kEdgesPerPart = 1024, kEdgesPerPoll = 16;
+constexpr std::size_t kMostParts = std::size_t(1) << 26;
 constexpr double kCutFrom = 0.3;  // of the progress
 
 /// All that is drawn, before it is cut.
@@ -65,11 +67,16 @@ std::vector<DrawnPart> cut_all(const Candidates& candidates, const Occlusion& oc
   const std::size_t count = candidates.count();
   std::vector<std::vector<DrawnPart>> lists((count + kEdgesPerPart - 1) / kEdgesPerPart);
   Pool<EdgeCutter> cutters;
-  std::atomic<std::size_t> done{0};
+  std::atomic<std::size_t> done{0}, parts{0};
   parallel_for(execution, count, kEdgesPerPart, [&](std::size_t begin, std::size_t end) {
     const auto cutter = cutters.borrow([&] { return std::make_unique<EdgeCutter>(occlusion); });
-    for (std::size_t i = begin; i < end; ++i)
-      cutter->cut(candidates.sighted(i), std::uint32_t(i), lists[begin / kEdgesPerPart]);
+    std::vector<DrawnPart>& list = lists[begin / kEdgesPerPart];
+    for (std::size_t i = begin; i < end; ++i) {
+      if (i % kEdgesPerPoll == 0) check_cancelled(execution);
+      cutter->cut(candidates.sighted(i), std::uint32_t(i), list);
+    }
+    if ((parts += list.size()) > kMostParts)
+      throw Error(ErrorCode::limit_exceeded, "lines: more than " + std::to_string(kMostParts) + " parts of edges");
     report_progress(execution, "lines", 1 - (1 - kCutFrom) * double(count - (done += end - begin)) / double(count));
   });
   return joined(lists);
@@ -85,14 +92,17 @@ Drawing lines(const Surfaces& surfaces, const View& view, const LineOptions& opt
   report_progress(execution, "lines", 0);
   const WeldedMesh mesh = weld(surfaces, execution);
   const Sight sight(view);
-  const SeenMesh seen = see(mesh, sight, execution);
-  std::vector<FeatureEdge> features = find_features(seen, surfaces, options, execution);
+  SeenMesh seen = see(mesh, sight, execution);
+  Features features = find_features(seen, surfaces, options, execution);
+  // Of many at one place one hides as much as all.
+  if (!options.counts_hidden)
+    for (const std::uint32_t twin : features.twins) seen.facing[twin] = 0;
   report_progress(execution, "lines", 0.1);
   std::vector<Crossing> crossings;
-  if (options.intersections) crossings = find_crossings(mesh, execution);
-  const Candidates candidates(mesh, std::move(features), std::move(crossings));
+  if (options.intersections) crossings = find_crossings(mesh, features.twins, execution);
+  const Candidates candidates(mesh, std::move(features.edges), std::move(crossings));
   report_progress(execution, "lines", 0.2);
-  const OccluderGrid grid(seen, view, execution);
+  const OccluderGrid grid(seen, view, options.counts_hidden, execution);
   report_progress(execution, "lines", kCutFrom);
 
   Drawing drawing;

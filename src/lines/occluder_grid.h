@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "lines/cell_depth.h"
 #include "lines/occluder.h"
 #include "lines/seen_mesh.h"
 #include "lines/shadow_kernel.h"
@@ -15,12 +16,13 @@ namespace frontmost::lines_detail {
 /// A grid of square cells over the picture.
 class OccluderGrid {
  public:
-  /// Of triangles that are seen from a side. O(triangles) where they are of a like size on the screen.
-  OccluderGrid(const SeenMesh& seen, const View& view, const Execution& execution);
+  /// Of triangles that are seen from a side. O(triangles), with at most a score of cells a triangle. Unless it
+  /// `keeps_all`, a cell that a triangle covers whole holds none that lie beyond it there: they hide the same again.
+  OccluderGrid(const SeenMesh& seen, const View& view, bool keeps_all, const Execution& execution);
 
   /// A cell's occluders, the nearest first, and what of a segment may lie in it: a box in cells' units.
   struct Visit {
-    std::size_t first, last;
+    std::size_t cell, first, last;
     glm::dvec2 low, high;
   };
 
@@ -42,7 +44,8 @@ class OccluderGrid {
       const int last_column = column(high_x + kPad);
       for (int x = column(low_x - kPad); x <= last_column; ++x) {
         const std::size_t cell = number(x, y);
-        if (!visit(Visit{first_[cell],
+        if (!visit(Visit{cell,
+                         first_[cell],
                          first_[cell + 1],
                          {std::max(x - kPad, low_x), low_y},
                          {std::min(x + 1 + kPad, high_x), high_y}}))
@@ -59,6 +62,24 @@ class OccluderGrid {
   [[nodiscard]] ScreenBoxes boxes(std::size_t entry) const {
     return {low_x_.data() + entry, low_y_.data() + entry, high_x_.data() + entry, high_y_.data() + entry,
             nearest_.data() + entry};
+  }
+  /// A cell of so many entries knows the sides of its triangles: else an edge among many that lie side by side, at an
+  /// angle, would be held against all whose boxes it meets.
+  static constexpr std::size_t kMany = 512;
+  /// Of entries from the cell's `offset`-th on. Precondition: it has kMany.
+  [[nodiscard]] ScreenSides sides(std::size_t cell, std::size_t offset) const {
+    const std::size_t first = first_side_[cell] + offset;
+    ScreenSides sides;
+    for (int k = 0; k < ScreenSides::count; ++k) {
+      sides.a[k] = sides_[3 * k].data() + first;
+      sides.b[k] = sides_[3 * k + 1].data() + first;
+      sides.c[k] = sides_[3 * k + 2].data() + first;
+    }
+    return sides;
+  }
+  /// The cell's corner.
+  [[nodiscard]] glm::dvec2 corner(std::size_t cell) const {
+    return {double(cell % std::size_t(columns_)), double(cell / std::size_t(columns_))};
   }
   [[nodiscard]] const Occluder& occluder(std::size_t entry) const { return occluders_[numbers_[entry]]; }
   [[nodiscard]] const glm::dvec2& scale() const { return scale_; }
@@ -79,19 +100,36 @@ class OccluderGrid {
     std::uint32_t triangle;
   };
   struct Plan;
-  [[nodiscard]] Outline outline_of(const Plan& plan, std::uint32_t triangle) const;
-  [[nodiscard]] Footprint footprint_of(const Plan& plan, std::uint32_t triangle) const;
-  [[nodiscard]] Buffer<Footprint> footprints_by_cell(const Plan& plan) const;
-  void make_occluders(const Plan& plan, const Buffer<Footprint>& footprints);
-  void fill_cells(const Plan& plan, const Buffer<Footprint>& footprints);
   struct Band {
     int first, last;  ///< rows
   };
+  struct Extent {
+    int first_column, last_column, first_row, last_row;
+    [[nodiscard]] bool is_large() const { return last_row - first_row >= 2 && last_column > first_column; }
+  };
+  [[nodiscard]] Buffer<Footprint> set_cells(Plan& plan, const View& view, double cells);
+  [[nodiscard]] double entries_of(Plan& plan, const Buffer<Footprint>& footprints) const;
+  [[nodiscard]] double area_of(const Plan& plan, std::uint32_t triangle) const;
+  [[nodiscard]] Outline outline_of(const Plan& plan, std::uint32_t triangle) const;
+  [[nodiscard]] Footprint footprint_of(const Plan& plan, std::uint32_t triangle) const;
+  [[nodiscard]] Extent extent_of(const Footprint& footprint) const;
+  [[nodiscard]] CellDepth depth_of(const Plan& plan, std::uint32_t triangle) const;
+  [[nodiscard]] bool is_near(const Plan& plan, const Footprint& footprint) const;
+  [[nodiscard]] Buffer<Footprint> footprints_by_cell(const Plan& plan) const;
+  [[nodiscard]] Buffer<float> backs_of(const Plan& plan, const Buffer<Footprint>& footprints) const;
+  void make_occluders(const Plan& plan, const Buffer<Footprint>& footprints);
+  void fill_cells(const Plan& plan, const Buffer<Footprint>& footprints);
+  void fill_sides(const Plan& plan);
   template <class Fill>
   void for_each_band(const Execution& execution, const Fill& fill) const;
   template <class Visitor>
   void cover(const Plan& plan, const Footprint& footprint, const Band& band, const Visitor& visit) const;
 
+  void set_side(std::size_t i, int k, const CellDepth::Side& side) {
+    sides_[3 * k][i] = side.a;
+    sides_[3 * k + 1][i] = side.b;
+    sides_[3 * k + 2][i] = side.c;
+  }
   [[nodiscard]] int row(double y) const { return int(std::clamp(y, 0.0, double(rows_ - 1))); }
   [[nodiscard]] int column(double x) const { return int(std::clamp(x, 0.0, double(columns_ - 1))); }
   [[nodiscard]] std::size_t number(int x, int y) const {
@@ -103,6 +141,8 @@ class OccluderGrid {
   std::vector<std::size_t> first_;  ///< by cell: of the entries
   Buffer<float> low_x_, low_y_, high_x_, high_y_, nearest_;
   Buffer<std::uint32_t> numbers_;
+  std::vector<std::size_t> first_side_;  ///< by cell
+  Buffer<float> sides_[3 * ScreenSides::count];
   Buffer<Occluder> occluders_;
 };
 

@@ -165,6 +165,27 @@ std::uint64_t Overlapping(const ScreenBoxes& boxes, std::size_t count, const Scr
   return count < 64 ? bits & ((std::uint64_t(1) << count) - 1) : bits;
 }
 
+std::uint64_t WithinSides(const ScreenSides& sides, std::size_t count, const ScreenSegment& segment) {
+  const DF d;
+  const auto from_x = hn::Set(d, segment.from.x), from_y = hn::Set(d, segment.from.y);
+  const auto to_x = hn::Set(d, segment.to.x), to_y = hn::Set(d, segment.to.y);
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    auto is_outside = hn::FirstN(d, 0);
+    for (int k = 0; k < ScreenSides::count; ++k) {
+      const auto a = hn::LoadU(d, sides.a[k] + i), b = hn::LoadU(d, sides.b[k] + i), c = hn::LoadU(d, sides.c[k] + i);
+      const auto at_from = hn::Add(hn::Add(hn::Mul(a, from_x), hn::Mul(b, from_y)), c);
+      const auto at_to = hn::Add(hn::Add(hn::Mul(a, to_x), hn::Mul(b, to_y)), c);
+      const bool is_plane = k + 1 == ScreenSides::count;
+      const auto from_least = hn::Set(d, is_plane ? segment.from_nearness : 0.0f);
+      const auto to_least = hn::Set(d, is_plane ? segment.to_nearness : 0.0f);
+      is_outside = hn::Or(is_outside, hn::And(hn::Lt(at_from, from_least), hn::Lt(at_to, to_least)));
+    }
+    bits |= frontmost::HWY_NAMESPACE::BitsOf(d, hn::Not(is_outside)) << i;
+  }
+  return count < 64 ? bits & ((std::uint64_t(1) << count) - 1) : bits;
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace frontmost::lines_detail
 HWY_AFTER_NAMESPACE();
@@ -173,11 +194,13 @@ HWY_AFTER_NAMESPACE();
 namespace frontmost::lines_detail {
 
 FRONTMOST_KERNELS(Overlapping);
+FRONTMOST_KERNELS(WithinSides);
 FRONTMOST_KERNELS(HideBatch);
 FRONTMOST_KERNELS(CoverBatch);
 
 ShadowKernels shadow_kernels(Isa isa) {
-  return {kernel_for(OverlappingKernels, isa), kernel_for(HideBatchKernels, isa), kernel_for(CoverBatchKernels, isa)};
+  return {kernel_for(OverlappingKernels, isa), kernel_for(WithinSidesKernels, isa), kernel_for(HideBatchKernels, isa),
+          kernel_for(CoverBatchKernels, isa)};
 }
 
 }  // namespace frontmost::lines_detail

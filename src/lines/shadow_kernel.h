@@ -17,6 +17,18 @@ struct ScreenPart {
   float farthest;
 };
 
+/// CellDepth::Side of triangles: the three sides, and the plane.
+struct ScreenSides {
+  static constexpr int count = 4;
+  const float *a[count], *b[count], *c[count];
+};
+
+/// A segment on the screen, from a cell's corner on, and the nearness() of its ends.
+struct ScreenSegment {
+  glm::vec2 from, to;
+  float from_nearness, to_nearness;
+};
+
 /// Occluders side by side, as doubles.
 struct OccluderBatch {
   static constexpr std::size_t most = 8;
@@ -48,6 +60,9 @@ struct ShadowKernels {
   /// Bit i: box i of the first `count`, at most 64, overlaps the part and is not wholly beyond it. Reads up to 64
   /// boxes.
   std::uint64_t (*overlapping)(const ScreenBoxes& boxes, std::size_t count, const ScreenPart& part);
+  /// Bit i: triangle i of the first `count`, at most 64, has the segment neither outside of one of its sides, nor
+  /// before its plane. Reads up to 64 of each.
+  std::uint64_t (*within_sides)(const ScreenSides& sides, std::size_t count, const ScreenSegment& segment);
   /// hidden_by() of every occluder of the batch, to the bit, but for what is left open.
   void (*hide)(const OccluderBatch& batch, const SightedEdge& edge, const Sight& sight, HiddenBatch& hidden);
   /// The same for covered_by().

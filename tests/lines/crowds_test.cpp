@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// Many triangles at one place: one behind the other, around one edge, the same again and again.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "frontmost/lines.h"
+#include "support/effort.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+enum class Crowd { stack, leaning_stack, book, fan, cone };
+constexpr Crowd all_crowds[] = {Crowd::stack, Crowd::leaning_stack, Crowd::book, Crowd::fan, Crowd::cone};
+
+Mesh crowd(Crowd kind, int count) {
+  Random random(3);
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const float t = float(i) / float(count), turn = 6.2831853f * t, next = 6.2831853f * float(i + 1) / float(count);
+    switch (kind) {
+      case Crowd::stack:
+      case Crowd::leaning_stack: {
+        const float lean = kind == Crowd::stack ? 0.0f : 0.3f;
+        add_triangle(mesh, {-1, -1, t}, {1, -1, t + lean}, {1, 1, t + 2 * lean});
+        add_triangle(mesh, {-1, -1, t}, {1, 1, t + 2 * lean}, {-1, 1, t + lean});
+        break;
+      }
+      case Crowd::book: add_triangle(mesh, {0, 0, -1}, {0, 0, 1}, {std::cos(turn), std::sin(turn), t}); break;
+      case Crowd::fan: add_triangle(mesh, {0, 0, -1}, {0, 0, 1}, random.point(1)); break;
+      case Crowd::cone:
+        add_triangle(mesh, {0, 0, 1}, {std::cos(turn), std::sin(turn), 0}, {std::cos(next), std::sin(next), 0});
+        break;
+    }
+  }
+  return mesh;
+}
+
+/// The parts with what follows each other equally hidden as one.
+std::vector<DrawnPart> without_counts(const Drawing& drawing) {
+  std::vector<DrawnPart> parts;
+  for (DrawnPart part : drawing.parts) {
+    part.hidden_by = std::min(part.hidden_by, 1u);
+    if (!parts.empty() && parts.back().edge == part.edge && parts.back().hidden_by == part.hidden_by)
+      parts.back().end = part.end;
+    else
+      parts.push_back(part);
+  }
+  return parts;
+}
+
+/// What is counted holds everything against everything; what is not leaves out what is hidden behind whole cells.
+void expect_as_counted(const Scene& scene, const View& view) {
+  const Surfaces surfaces(scene);
+  LineOptions options;
+  options.crease_angle = 0;
+  const std::vector<DrawnPart> parts = lines(surfaces, view, options).parts;
+  options.counts_hidden = true;
+  const std::vector<DrawnPart> counted = without_counts(lines(surfaces, view, options));
+  ASSERT_EQ(parts.size(), counted.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    ASSERT_EQ(parts[i].edge, counted[i].edge);
+    ASSERT_EQ(parts[i].hidden_by, counted[i].hidden_by) << i;
+    ASSERT_EQ(parts[i].begin, counted[i].begin) << i;
+    ASSERT_EQ(parts[i].end, counted[i].end) << i;
+  }
+}
+
+TEST(Crowds, AreDrawnAsIfAllWereHeldAgainstAll) {
+  for (const Crowd kind : all_crowds)
+    for (std::uint64_t seed = 0; seed < seeds(2); ++seed) {
+      SCOPED_TRACE(int(kind) * 10 + int(seed));
+      Random random(seed);
+      expect_as_counted(scene_of(crowd(kind, 600)), random_view(random, 200, 150));
+    }
+}
+
+TEST(Crowds, SoAreScenesOfEveryKind) {
+  for (const Kind kind : all_kinds)
+    for (std::uint64_t seed = 0; seed < seeds(2); ++seed) {
+      if (kind == Kind::sheets) continue;
+      SCOPED_TRACE(int(kind) * 100 + int(seed));
+      const RandomCase random = random_case(kind, seed);
+      expect_as_counted(random.scene, random.view);
+    }
+}
+
+TEST(Crowds, CopiesChangeNothing) {
+  for (const Kind kind : {Kind::soup, Kind::slivers, Kind::fan, Kind::shared_grid, Kind::coplanar})
+    for (std::uint64_t seed = 0; seed < seeds(6); ++seed) {
+      SCOPED_TRACE(int(kind) * 100 + int(seed));
+      Random random(seed);
+      Mesh mesh = random_mesh(kind, 100, seed);
+      const View view = random_view(random, 160, 120);
+      const Scene once = scene_of(mesh);
+      // Some in another order of corners, and wound the other way round.
+      const std::vector<glm::uvec3> triangles = mesh.triangles;
+      for (int copy = 0; copy < 3; ++copy)
+        for (const glm::uvec3& t : triangles) {
+          if (random.below(4) == 0) continue;
+          mesh.triangles.push_back(copy == 0 ? t : copy == 1 ? glm::uvec3(t.y, t.z, t.x) : glm::uvec3(t.x, t.z, t.y));
+        }
+      const Scene often = scene_of(std::move(mesh));
+      const Drawing one = lines(Surfaces(once), view, {.outlines = true});
+      const Drawing many = lines(Surfaces(often), view, {.outlines = true});
+      ASSERT_EQ(one.edges.size(), many.edges.size());
+      for (std::size_t i = 0; i < one.edges.size(); ++i) {
+        ASSERT_EQ(one.edges[i].from, many.edges[i].from);
+        ASSERT_EQ(one.edges[i].to, many.edges[i].to);
+        ASSERT_EQ(one.edges[i].kind, many.edges[i].kind);
+      }
+      ASSERT_EQ(one.parts.size(), many.parts.size());
+      for (std::size_t i = 0; i < one.parts.size(); ++i) {
+        ASSERT_EQ(one.parts[i].end, many.parts[i].end);
+        ASSERT_EQ(one.parts[i].hidden_by, many.parts[i].hidden_by);
+        ASSERT_EQ(one.parts[i].is_outline, many.parts[i].is_outline);
+      }
+    }
+}
+
+TEST(Crowds, OfTheSameTriangleAreOne) {
+  Mesh mesh;
+  for (int i = 0; i < 20000; ++i) add_triangle(mesh, {-1, -1, 0}, {1, -1, 0.3f}, {0.5f, 1, 0});
+  const Scene scene = scene_of(std::move(mesh));
+  const Surfaces surfaces(scene);
+  const Drawing drawing = lines(surfaces, frame(surfaces, 320, 240));
+  EXPECT_EQ(drawing.edges.size(), 3u);
+  ASSERT_EQ(drawing.parts.size(), 3u);
+  for (const DrawnPart& part : drawing.parts) EXPECT_EQ(part.hidden_by, 0u);
+}
+
+TEST(Crowds, AskOftenWhetherToStop) {
+  using Clock = std::chrono::steady_clock;
+  Mesh crossing;
+  Random random(9);
+  for (int i = 0; i < 3000; ++i) {
+    const glm::vec3 a = random.point(1), b = random.point(1), aside = random.point(0.3f);
+    add_triangle(crossing, a, b, (a + b) * 0.5f + aside);
+  }
+  std::vector<Mesh> meshes = {crossing};
+  for (const Crowd kind : all_crowds) meshes.push_back(crowd(kind, 4000));
+  for (Mesh& mesh : meshes) {
+    const Scene scene = scene_of(std::move(mesh));
+    const Surfaces surfaces(scene);
+    const View view = frame(surfaces, 640, 480);
+    const Clock::time_point start = Clock::now();
+    Clock::time_point last = start;
+    Clock::duration longest{0};
+    Watch watch;
+    watch.cancelled = [&] {
+      const Clock::time_point now = Clock::now();
+      longest = std::max(longest, now - last);
+      last = now;
+      return now - start > std::chrono::milliseconds(200);
+    };
+    try {
+      (void)lines(surfaces, view, {}, {.threads = 1, .watch = &watch});
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::cancelled);
+    }
+    longest = std::max(longest, Clock::now() - last);
+    // 30 to 100 ms; sanitizers and busy machines take longer.
+    EXPECT_LT(std::chrono::duration<double>(longest).count(), 2.0);
+  }
+}
+
+}  // namespace
+}  // namespace frontmost::test
