@@ -21,8 +21,11 @@ enum class PaintMethod : std::uint8_t {
 
 struct PainterOptions {
   PaintMethod method = PaintMethod::depth_sort;
-  /// More polygons, whole ones and pieces, are an error: cuts of n polygons may leave as many as n * n.
+  /// More polygons, whole ones and pieces, are an error.
   std::size_t most_polygons = std::size_t(1) << 27;
+  /// More cuts are one, too: where all of n triangles pass through each other there may be n * n and more. About 400
+  /// bytes each.
+  std::size_t most_cuts = std::size_t(1) << 21;
 };
 
 /// A corner of a polygon, and the side from it to the next one.
@@ -75,7 +78,8 @@ struct PaintOrder {
 /// Near-linear in scenes of bounded depth complexity: n log n to sort, then one test for every two triangles that
 /// overlap on the screen and in depth. They are found by a grid when they are asked for, and not stored: about 200
 /// bytes a triangle, 110 of them the result, whatever overlaps. The result is the same to the bit for any number of
-/// threads. \throws Error as validate(view) does, and limit_exceeded for more than PainterOptions::most_polygons.
+/// threads. \throws Error as validate(view) does, and limit_exceeded for more than
+/// PainterOptions allow.
 [[nodiscard]] PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOptions& options = {},
                                  const Execution& execution = {});
 

@@ -20,24 +20,24 @@ constexpr std::uint32_t kReportEvery = 1 << 14;
 class Search {
  public:
   /// `members` from far to near.
-  Search(const Pieces& pieces, const std::vector<std::uint32_t>& members, PaintSteps& steps)
+  Search(const Pieces& pieces, const std::vector<std::uint32_t>& members, PaintSteps& steps, Poll& poll)
       : pieces_(pieces),
         members_(members),
         extents_(extents_of(pieces, members)),
         grid_(extents_),
         steps_(steps),
+        poll_(poll),
         unpainted_(grid_.cell_count(), 0),
         found_(members.size(), kNotFound),
         lowest_(members.size(), 0),
         asked_by_(members.size(), no_index) {}
 
-  void visit_all(bool reports, const Execution& execution) {
+  void visit_all(bool reports) {
     groups_.pieces.reserve(members_.size());
     for (std::uint32_t i = 0; i < members_.size(); ++i) {
       if (found_[i] == kNotFound) visit(i);
-      if (!reports || i % kReportEvery != 0) continue;
-      report_progress(execution, "painter", 0.2 + 0.7 * double(i) / double(members_.size()));
-      check_cancelled(execution);
+      if (reports && i % kReportEvery == 0)
+        report_progress(poll_.execution(), "painter", 0.2 + 0.7 * double(i) / double(members_.size()));
     }
   }
   [[nodiscard]] Groups take() { return std::move(groups_); }
@@ -101,6 +101,7 @@ class Search {
     std::uint32_t& unpainted = unpainted_[number];
     while (unpainted < cell.size() && found_[cell[unpainted]] == kPainted) ++unpainted;
     const Extent& own = extents_[w.member];
+    poll_.count();
     for (w.entry = std::max(w.entry, std::size_t(unpainted)); w.entry < cell.size(); ++w.entry) {
       const std::uint32_t other = cell[w.entry];
       if (extents_[other].farthest <= own.nearest) {
@@ -118,6 +119,7 @@ class Search {
   }
 
   bool covers(const Extent& own, std::uint32_t other, std::uint32_t member, std::optional<Coverer>& coverer) {
+    poll_.count();
     const Extent& e = extents_[other];
     if (e.low.x >= own.high.x || e.high.x <= own.low.x || e.low.y >= own.high.y || e.high.y <= own.low.y) {
       ++steps_.boxes_apart;
@@ -149,6 +151,7 @@ class Search {
   const std::vector<Extent> extents_;
   const PieceGrid grid_;
   PaintSteps& steps_;
+  Poll& poll_;
   std::vector<std::uint32_t> unpainted_;  ///< by cell: how many entries at its beginning are painted
   std::vector<std::uint32_t> found_;      ///< by member: when it was found, or kPainted
   std::vector<std::uint32_t> lowest_;     ///< of all that was found from it
@@ -170,12 +173,12 @@ void sort_by_farthest(const Pieces& pieces, std::vector<std::uint32_t>& members)
   });
 }
 
-Groups depth_sort(const Pieces& pieces, const std::vector<std::uint32_t>& members, bool is_all,
-                  const Execution& execution, PaintSteps& steps) {
+Groups depth_sort(const Pieces& pieces, const std::vector<std::uint32_t>& members, bool is_all, PaintSteps& steps,
+                  Poll& poll) {
   std::vector<std::uint32_t> sorted = members;
   sort_by_farthest(pieces, sorted);
-  Search search(pieces, sorted, steps);
-  search.visit_all(is_all, execution);
+  Search search(pieces, sorted, steps, poll);
+  search.visit_all(is_all);
   return search.take();
 }
 

@@ -2,9 +2,9 @@
 // Pieces in the order of painting, as far as they have one.
 #pragma once
 
-#include "base/parallel.h"
 #include "frontmost/painter.h"
 #include "painter/pieces.h"
+#include "painter/poll.h"
 
 namespace frontmost::painter_detail {
 
@@ -17,7 +17,7 @@ struct Groups {
 
 /// Reports progress where `is_all`: these are all the pieces that there are.
 [[nodiscard]] Groups depth_sort(const Pieces& pieces, const std::vector<std::uint32_t>& members, bool is_all,
-                                const Execution& execution, PaintSteps& steps);
+                                PaintSteps& steps, Poll& poll);
 
 /// By farthest points, the farthest first, then by id.
 void sort_by_farthest(const Pieces& pieces, std::vector<std::uint32_t>& members);

@@ -22,7 +22,7 @@ constexpr std::size_t kFewer = 4;
 class Orderer {
  public:
   Orderer(Pieces& pieces, const PainterOptions& options, const Execution& execution, PaintSteps& steps)
-      : pieces_(pieces), options_(options), execution_(execution), steps_(steps) {}
+      : pieces_(pieces), options_(options), steps_(steps), poll_(execution) {}
 
   [[nodiscard]] std::vector<std::uint32_t> order(std::vector<std::uint32_t> members) {
     all_ = members.size();
@@ -30,7 +30,7 @@ class Orderer {
     while (!work_.empty()) {
       const Item item = std::move(work_.back());
       work_.pop_back();
-      check_cancelled(execution_);
+      poll_.count();
       run(item);
     }
     return std::move(order_);
@@ -59,17 +59,24 @@ class Orderer {
   }
 
   void part_by_plane(const Item& item) {
-    Partition partition = part(pieces_, item.members, steps_);
-    if (pieces_.size() > options_.most_polygons)
-      throw Error(ErrorCode::limit_exceeded,
-                  "painter: more than " + std::to_string(options_.most_polygons) + " polygons and pieces");
+    Partition partition = part(pieces_, item.members, steps_, poll_);
+    check_limits();
     push(std::move(partition.before), item.few);
     work_.push_back({Work::paint, std::move(partition.within)});
     push(std::move(partition.behind), item.few);
   }
 
+  void check_limits() const {
+    if (steps_.cuts > options_.most_cuts)
+      throw Error(ErrorCode::limit_exceeded, "painter: more than " + std::to_string(options_.most_cuts) +
+                                                 " cuts: too many triangles pass through each other");
+    if (pieces_.size() > options_.most_polygons)
+      throw Error(ErrorCode::limit_exceeded,
+                  "painter: more than " + std::to_string(options_.most_polygons) + " polygons and pieces");
+  }
+
   void sort(const std::vector<std::uint32_t>& members) {
-    const Groups groups = depth_sort(pieces_, members, members.size() == all_, execution_, steps_);
+    const Groups groups = depth_sort(pieces_, members, members.size() == all_, steps_, poll_);
     std::vector<Item> items;
     std::size_t begin = 0;
     for (const std::size_t end : groups.ends) {
@@ -86,8 +93,8 @@ class Orderer {
 
   Pieces& pieces_;
   const PainterOptions& options_;
-  const Execution& execution_;
   PaintSteps& steps_;
+  Poll poll_;
   std::size_t all_ = 0;
   std::vector<Item> work_;
   std::vector<std::uint32_t> order_;
@@ -108,7 +115,10 @@ void emit(const Pieces& pieces, std::uint32_t piece, PaintOrder& order) {
   const Sight& sight = pieces.sight();
   PaintPolygon polygon{face.id, 3, order.corners.size()};
   const auto add = [&](const glm::dvec3& at, bool is_cut) {
-    order.corners.push_back({sight.to_screen(sight.in_eye(at)), is_cut});
+    glm::dvec3 in_eye = sight.in_eye(at);
+    // Where rounding of huge coordinates takes a corner to the eye, it would be at infinity.
+    in_eye.z = std::max(in_eye.z, sight.near());
+    order.corners.push_back({sight.to_screen(in_eye), is_cut});
   };
   if (pieces.is_whole(piece)) {
     for (const glm::vec3& corner : face.corners) add(glm::dvec3(corner), false);
@@ -142,7 +152,11 @@ PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOpti
   report_progress(execution, "painter", 0.9);
   order.polygons.reserve(members.size());
   order.corners.reserve(3 * members.size());
-  for (const std::uint32_t piece : members) emit(pieces, piece, order);
+  Poll poll(execution);
+  for (const std::uint32_t piece : members) {
+    poll.count();
+    emit(pieces, piece, order);
+  }
   report_progress(execution, "painter", 1);
   return order;
 }

@@ -8,6 +8,7 @@ namespace {
 
 /// Twice and four times as many find planes that cut 5 % less, and take twice and five times as long.
 constexpr std::size_t kMostCandidates = 8, kMostWitnesses = 64;
+constexpr std::size_t kStepsPerCut = 16;
 
 /// Numbers spread evenly over `count`.
 std::vector<std::size_t> spread(std::size_t count, std::size_t most) {
@@ -44,13 +45,15 @@ std::uint32_t choose(const Pieces& pieces, const std::vector<std::uint32_t>& mem
 
 }  // namespace
 
-Partition part(Pieces& pieces, const std::vector<std::uint32_t>& members, PaintSteps& steps) {
+Partition part(Pieces& pieces, const std::vector<std::uint32_t>& members, PaintSteps& steps, Poll& poll) {
+  poll.count(kMostCandidates * kMostWitnesses);
   const std::uint32_t chosen = choose(pieces, members);
   const Plane plane = pieces.face(chosen).plane();
   const std::uint32_t number = pieces.add_plane(plane);
   Partition partition;
   for (const std::uint32_t piece : members) {
     const Sides sides = pieces.sides(piece, plane);
+    poll.count(sides.both() ? kStepsPerCut : 1);
     if (sides.both()) {
       const Pieces::Halves halves = pieces.cut(piece, number);
       partition.before.push_back(halves.front);

@@ -6,6 +6,7 @@
 
 #include "frontmost/painter.h"
 #include "painter/pieces.h"
+#include "painter/poll.h"
 
 namespace frontmost::painter_detail {
 
@@ -15,7 +16,7 @@ struct Partition {
 };
 
 /// By the plane of one of `members`, which cuts as few of the others as those that were tried. Neither side is as many
-/// as the members were. Appends the pieces of what is cut.
-[[nodiscard]] Partition part(Pieces& pieces, const std::vector<std::uint32_t>& members, PaintSteps& steps);
+/// as the members were. Of what is cut, one half takes its number and the other a new one.
+[[nodiscard]] Partition part(Pieces& pieces, const std::vector<std::uint32_t>& members, PaintSteps& steps, Poll& poll);
 
 }  // namespace frontmost::painter_detail

@@ -146,7 +146,7 @@ Pieces::Halves Pieces::cut(std::uint32_t piece, std::uint32_t plane) {
   std::vector<int> at(count);
   for (std::size_t i = 0; i < count; ++i) at[i] = side_of_corner(faces_[piece], whole.corners[i], planes_[plane]);
   Shape front, back;
-  const auto add = [](Shape& half, const PieceCorner& corner, std::uint32_t side) {
+  const auto extend = [](Shape& half, const PieceCorner& corner, std::uint32_t side) {
     half.corners.push_back(corner);
     half.sides.push_back(side);
   };
@@ -154,28 +154,36 @@ Pieces::Halves Pieces::cut(std::uint32_t piece, std::uint32_t plane) {
     const int next = at[(i + 1) % count];
     const std::uint32_t side = whole.sides[i];
     // A corner in the plane belongs to both halves; one of them goes on along the cut.
-    if (at[i] >= 0) add(front, whole.corners[i], at[i] == 0 && next < 0 ? cut : side);
-    if (at[i] <= 0) add(back, whole.corners[i], at[i] == 0 && next > 0 ? cut : side);
+    if (at[i] >= 0) extend(front, whole.corners[i], at[i] == 0 && next < 0 ? cut : side);
+    if (at[i] <= 0) extend(back, whole.corners[i], at[i] == 0 && next > 0 ? cut : side);
     if (at[i] * next >= 0) continue;
     const PieceCorner corner = crossing(faces_[piece], whole, i, plane);
-    add(front, corner, next < 0 ? cut : side);
-    add(back, corner, next > 0 ? cut : side);
+    extend(front, corner, next < 0 ? cut : side);
+    extend(back, corner, next > 0 ? cut : side);
   }
-  const std::uint32_t first = add_half(piece, std::move(front)), second = add_half(piece, std::move(back));
-  return {first, second};
+  Extent& extent = extents_[piece];
+  const Extent back_extent = extent_of(back, extent);
+  extent = extent_of(front, extent);
+  Face face = faces_[piece];
+  const auto back_shape = std::uint32_t(shapes_.size());
+  shapes_.push_back(std::move(back));
+  if (face.shape == no_index) {
+    faces_[piece].shape = back_shape + 1;
+    shapes_.push_back(std::move(front));
+  } else {
+    shapes_[face.shape] = std::move(front);
+  }
+  face.shape = back_shape;
+  add(back_extent, face);
+  return {piece, size() - 1};
 }
 
-std::uint32_t Pieces::add_half(std::uint32_t piece, Shape half) {
+Extent Pieces::extent_of(const Shape& half, const Extent& whole) const {
   ExtentBuilder box(sight_);
   for (const PieceCorner& corner : half.corners) box.include(sight_.in_eye(corner.at), corner.error);
-  const Extent of_half = box.extent(), &of_whole = extents_[piece];
-  const Extent extent{glm::max(of_half.low, of_whole.low), glm::min(of_half.high, of_whole.high),
-                      std::max(of_half.nearest, of_whole.nearest), std::min(of_half.farthest, of_whole.farthest)};
-  Face face = faces_[piece];
-  face.shape = std::uint32_t(shapes_.size());
-  shapes_.push_back(std::move(half));
-  add(extent, face);
-  return size() - 1;
+  const Extent own = box.extent();
+  return {glm::max(own.low, whole.low), glm::min(own.high, whole.high), std::max(own.nearest, whole.nearest),
+          std::min(own.farthest, whole.farthest)};
 }
 
 }  // namespace frontmost::painter_detail

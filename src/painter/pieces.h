@@ -50,7 +50,7 @@ struct Sides {
   [[nodiscard]] bool none() const { return !front && !back; }
 };
 
-/// All pieces of a view, by number. Cut ones stay, and are in no order any more.
+/// All pieces of a view, by number. What is cut gives its number to one of its halves.
 class Pieces {
  public:
   explicit Pieces(const View& view) : sight_(view) {}
@@ -84,7 +84,7 @@ class Pieces {
   };
   /// Keeps a plane to cut by. \returns its number.
   std::uint32_t add_plane(const Plane& plane);
-  /// New pieces. Precondition: sides() of that plane has both().
+  /// The front one keeps the number. Precondition: sides() of that plane has both().
   Halves cut(std::uint32_t piece, std::uint32_t plane);
 
  private:
@@ -92,7 +92,7 @@ class Pieces {
   [[nodiscard]] Shape shape_of(std::uint32_t piece) const;
   [[nodiscard]] std::array<Plane, 3> planes_of(const Face& face, const PieceCorner& corner) const;
   [[nodiscard]] PieceCorner crossing(const Face& face, const Shape& shape, std::size_t side, std::uint32_t plane) const;
-  std::uint32_t add_half(std::uint32_t piece, Shape half);
+  [[nodiscard]] Extent extent_of(const Shape& half, const Extent& whole) const;
 
   Sight sight_;
   std::vector<Extent> extents_;

@@ -10,6 +10,7 @@
 #include "base/pool.h"
 #include "painter/outlines.h"
 #include "painter/piece_grid.h"
+#include "painter/poll.h"
 
 namespace frontmost {
 namespace {
@@ -72,7 +73,7 @@ class Scenery {
 /// One polygon after another. Not for several threads at once.
 class Looker {
  public:
-  explicit Looker(const Scenery& scenery) : scenery_(scenery) {}
+  Looker(const Scenery& scenery, const Execution& execution) : scenery_(scenery), poll_(execution) {}
 
   /// Whether those after a polygon hide an outline together.
   [[nodiscard]] bool is_hidden(std::size_t polygon, std::span<const PaintCorner> outline) {
@@ -123,6 +124,7 @@ class Looker {
   bool take_covers_of_cell(std::size_t polygon, std::size_t cell, const Extent& own, bool remembers) {
     const std::span<const std::uint32_t> entries = scenery_.grid().cell(cell);
     for (std::size_t i = entries.size(); i-- > 0 && entries[i] > polygon;) {
+      poll_.count();
       const std::uint32_t cover = entries[i];
       const Extent& e = scenery_.extent(cover);
       if (!scenery_.hides(cover) || e.low.x >= own.high.x || e.high.x <= own.low.x || e.low.y >= own.high.y ||
@@ -149,6 +151,7 @@ class Looker {
   }
 
   const Scenery& scenery_;
+  Poll poll_;
   OutlineCutter cutter_;
   std::vector<std::uint32_t> asked_;
 };
@@ -167,7 +170,7 @@ PaintOrder map_polygons(const PaintOrder& order, const Scenery& scenery, const E
   Pool<Looker> lookers;
   std::atomic<std::size_t> done{0};
   parallel_for(execution, count, kPolygonsPerPart, [&](std::size_t begin, std::size_t end) {
-    const auto looker = lookers.borrow([&] { return std::make_unique<Looker>(scenery); });
+    const auto looker = lookers.borrow([&] { return std::make_unique<Looker>(scenery, execution); });
     Parts& parts = lists[begin / kPolygonsPerPart];
     for (std::size_t i = begin; i < end; ++i)
       look(*looker, i, [&](std::span<const PaintCorner> outline) {

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes that are made to take long: they end at a limit, or as soon as they are told to.
+#include <chrono>
+
+#include "painter/painted.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+/// All through each other, near the origin.
+Scene all_crossing(int count) {
+  Random random(1);
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const glm::vec3 a = random.point(1), b = random.point(1), aside = random.point(0.1f);
+    add_triangle(mesh, a, b, aside - a - b);
+  }
+  return scene_of(mesh);
+}
+
+/// Says to stop from a moment on, and how long it took until that was heard.
+class Stopper {
+ public:
+  explicit Stopper(int milliseconds) : end_(Clock::now() + std::chrono::milliseconds(milliseconds)) {
+    watch_.cancelled = [this] { return Clock::now() >= end_; };
+  }
+  [[nodiscard]] Execution execution() const { return {.threads = 2, .isa = Isa::best, .watch = &watch_}; }
+
+  template <class Work>
+  void expect_heard(const Work& work) const {
+    try {
+      work();
+      ADD_FAILURE() << "was not stopped";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::cancelled) << error.what();
+    }
+    // A thousand times what it takes on an idle machine.
+    EXPECT_LT(std::chrono::duration<double>(Clock::now() - end_).count(), 2.0);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point end_;
+  Watch watch_;
+};
+
+TEST(Hostile, CutsEndAtTheirLimit) {
+  const Scene scene = all_crossing(150);
+  const Surfaces surfaces(scene);
+  const View view = frame(surfaces, 64, 64);
+  for (const PaintMethod method : {PaintMethod::depth_sort, PaintMethod::bsp}) try {
+      (void)painter(surfaces, view, {.method = method, .most_cuts = 2000});
+      ADD_FAILURE() << "no error";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::limit_exceeded);
+      EXPECT_STREQ(error.what(), "painter: more than 2000 cuts: too many triangles pass through each other");
+    }
+}
+
+TEST(Hostile, OrdersStopWhenTold) {
+  const Scene scene = all_crossing(1500);
+  const Surfaces surfaces(scene);
+  const View view = frame(surfaces, 256, 256);
+  for (const PaintMethod method : {PaintMethod::depth_sort, PaintMethod::bsp}) {
+    const Stopper stopper(30);
+    stopper.expect_heard(
+        [&] { (void)painter(surfaces, view, {.method = method, .most_cuts = 1 << 30}, stopper.execution()); });
+  }
+}
+
+TEST(Hostile, PartsAndHemsStopWhenTold) {
+  const Scene scene = scene_of(random_mesh(Kind::soup, 40000, 1));
+  const Surfaces surfaces(scene);
+  const PaintOrder order = painter(surfaces, frame(surfaces, 256, 256), {.method = PaintMethod::centroid});
+  const Stopper parts(30);
+  parts.expect_heard([&] { (void)visible_parts(order, {}, parts.execution()); });
+  const Stopper hems(30);
+  hems.expect_heard([&] { (void)with_hems(order, 1, {}, hems.execution()); });
+}
+
+}  // namespace
+}  // namespace frontmost::test
