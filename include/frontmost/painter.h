@@ -86,17 +86,18 @@ struct PaintOrder {
 /// What is seen of an order, for drawings: without polygons that those after them hide together, and with what is left
 /// of those that are hidden in part, as convex pieces in the same place of the order; also cut at the sides of the
 /// picture. `hides(id)` says of which triangles nothing shows through, for several threads at once; empty: all hide.
-/// Parts thinner than 1/1024 pixel are left out. A polygon of which more than a few pieces are left stays whole, as do
-/// large ones: they are painted over as before. Near-linear, as painter(): every polygon is held against those after it
-/// that overlap it.
+/// Parts thinner than 1/1024 pixel are left out, and those between that and 1/16 are not cut off; large polygons are
+/// cut along a grid where they are hidden in part. Near-linear, as painter(): every polygon is held against those after
+/// it that overlap it. In a cell of the grid these are the 4,096 foremost at most, and once 48 parts are left of a
+/// polygon there, only those go that one of them hides whole: what is left too much is painted over as before.
 [[nodiscard]] PaintOrder visible_parts(const PaintOrder& order, const std::function<bool(PrimitiveId)>& hides = {},
                                        const Execution& execution = {});
 
 /// The same order with hems: a polygon reaches under what is painted later and lies beside it, by `width` pixels or
-/// some part of it, wherever that hides the hem. So viewers that blend the rims of polygons show no hairlines of the
-/// background between neighbours, and no outline grows. For drawings: with a hem an outline is not convex, and paint()
-/// does not know it. Cost and `hides` as for visible_parts(). \throws Error bad_argument for a width of 0 or less, or
-/// over 100.
+/// some part of it, wherever that, or another part of the same primitive, hides the hem. So viewers that blend the rims
+/// of polygons show no hairlines of the background between neighbours, and no outline grows. For drawings: with a hem
+/// an outline is not convex, and paint() does not know it. Cost and `hides` as for visible_parts(). \throws Error
+/// bad_argument for a width of 0 or less, or over 100.
 [[nodiscard]] PaintOrder with_hems(const PaintOrder& order, double width,
                                    const std::function<bool(PrimitiveId)>& hides = {}, const Execution& execution = {});
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Nearly all pairs of outlines that are held against each other lie beside each other or one within the other. So that
+// is found first, mostly without a root or a copy, and only what is left is cut.
 #include "painter/outlines.h"
 
 #include <algorithm>
@@ -6,113 +8,154 @@
 namespace frontmost::painter_detail {
 namespace {
 
-/// The widest that an outline of this area and border can be is about this.
-bool is_thin(std::span<const PaintCorner> outline) {
-  double area = 0, border = 0;
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const glm::dvec2 p(outline[i].at), q(outline[i + 1 == outline.size() ? 0 : i + 1].at), from(outline[0].at);
-    area += (p.x - from.x) * (q.y - from.y) - (q.x - from.x) * (p.y - from.y);
-    border += glm::length(q - p);
-  }
-  return std::abs(area) < OutlineCutter::thin * border;
-}
+std::size_t next(std::size_t i, std::size_t count) { return i + 1 == count ? 0 : i + 1; }
 
-bool is_beside(std::span<const PaintCorner> a, std::span<const PaintCorner> b) {
-  glm::dvec2 low_a(a[0].at), high_a = low_a, low_b(b[0].at), high_b = low_b;
-  for (const PaintCorner& corner : a) {
-    low_a = glm::min(low_a, glm::dvec2(corner.at));
-    high_a = glm::max(high_a, glm::dvec2(corner.at));
-  }
-  for (const PaintCorner& corner : b) {
-    low_b = glm::min(low_b, glm::dvec2(corner.at));
-    high_b = glm::max(high_b, glm::dvec2(corner.at));
-  }
-  return low_a.x >= high_b.x || low_b.x >= high_a.x || low_a.y >= high_b.y || low_b.y >= high_a.y;
-}
+double turn(const glm::dvec2& along, const glm::dvec2& at) { return along.x * at.y - along.y * at.x; }
 
 }  // namespace
 
-void OutlineCutter::begin(std::span<const PaintCorner> outline) {
-  left_.clear();
-  left_.add(outline);
+bool is_narrower(Outline outline, double width) {
+  double area = 0, border = 0;
+  const glm::dvec2 from(outline[0].at);
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const glm::dvec2 p(outline[i].at), q(outline[next(i, outline.size())].at);
+    area += turn(p - from, q - from);
+    border += glm::length(q - p);
+  }
+  return std::abs(area) < width * border;
+}
+
+void OutlineCutter::begin(Outline outline) {
+  corners_.clear();
+  parts_.clear();
+  add(outline);
   is_changed_ = false;
 }
 
-OutlineCutter::Split OutlineCutter::split(const std::vector<PaintCorner>& outline, const Line& line) {
-  const std::size_t count = outline.size();
+void OutlineCutter::add(Outline outline) {
+  Part part{corners_.size(), outline.size(), glm::dvec2(outline[0].at), glm::dvec2(outline[0].at)};
+  for (const PaintCorner& corner : outline) {
+    part.low = glm::min(part.low, glm::dvec2(corner.at));
+    part.high = glm::max(part.high, glm::dvec2(corner.at));
+  }
+  corners_.insert(corners_.end(), outline.begin(), outline.end());
+  parts_.push_back(part);
+}
+
+OutlineCutter::Place OutlineCutter::place(Outline outline, const glm::dvec2& p, const glm::dvec2& q, Line& line) {
+  const glm::dvec2 way = q - p;
+  double least = std::numeric_limits<double>::infinity(), greatest = -least;
+  for (const PaintCorner& corner : outline) {
+    const double distance = turn(way, glm::dvec2(corner.at) - p);
+    least = std::min(least, distance);
+    greatest = std::max(greatest, distance);
+  }
+  if (greatest <= 0) return Place::inside;
+  if (least >= 0) return Place::outside;
+  const double length = glm::length(way), allowed = thin * length;
+  if (length < 1e-9 || greatest < allowed) return Place::inside;
+  if (least > -allowed) return Place::outside;
+  line = {p, way / length};
+  return Place::both;
+}
+
+bool OutlineCutter::parts(Outline a, Outline b) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const glm::dvec2 p(a[i].at), way = glm::dvec2(a[next(i, a.size())].at) - p;
+    bool is_beyond = way != glm::dvec2(0);
+    for (std::size_t k = 0; is_beyond && k < b.size(); ++k) is_beyond = turn(way, glm::dvec2(b[k].at) - p) >= 0;
+    if (is_beyond) return true;
+  }
+  return false;
+}
+
+OutlineCutter::Place OutlineCutter::split(const Line& line) {
+  const std::size_t count = inside_.size();
   distances_.resize(count);
   double least = 0, greatest = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const glm::dvec2 at = glm::dvec2(outline[i].at) - line.from;
-    distances_[i] = line.along.x * at.y - line.along.y * at.x;
+    distances_[i] = turn(line.along, glm::dvec2(inside_[i].at) - line.from);
     least = std::min(least, distances_[i]);
     greatest = std::max(greatest, distances_[i]);
   }
-  if (greatest < thin) return Split::inside;
-  if (least > -thin) return Split::outside;
-  rest_ = outline;
+  if (greatest < thin) return Place::inside;
+  if (least > -thin) return Place::outside;
+  std::swap(rest_, inside_);
   inside_.clear();
   outside_.clear();
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t next = i + 1 == count ? 0 : i + 1;
+    const std::size_t after = next(i, count);
     const PaintCorner& corner = rest_[i];
-    const double a = distances_[i], b = distances_[next];
+    const double a = distances_[i], b = distances_[after];
     if (a <= 0) inside_.push_back(corner);
     if (a > 0) outside_.push_back(corner);
     if ((a <= 0) == (b <= 0)) continue;
-    PaintCorner cut{corner.at + (rest_[next].at - corner.at) * (a / (a - b)), corner.is_cut};
-    PaintCorner turn{cut.at, true};
-    inside_.push_back(a <= 0 ? turn : cut);
-    outside_.push_back(a <= 0 ? cut : turn);
+    const PaintCorner cut{corner.at + (rest_[after].at - corner.at) * (a / (a - b)), corner.is_cut};
+    const PaintCorner bend{cut.at, true};
+    inside_.push_back(a <= 0 ? bend : cut);
+    outside_.push_back(a <= 0 ? cut : bend);
   }
-  return Split::both;
+  return Place::both;
 }
 
-void OutlineCutter::subtract_from(std::span<const PaintCorner> outline, std::span<const PaintCorner> cover) {
-  const std::size_t before = next_.count();
-  inside_.assign(outline.begin(), outline.end());
+/// \returns true where the part is to go; what is left of it was added.
+bool OutlineCutter::subtract_from(std::size_t part, Outline cover, bool may_split) {
+  const Outline outline = (*this)[part];
+  lines_.clear();
   for (std::size_t i = 0; i < cover.size(); ++i) {
-    const glm::dvec2 from(cover[i].at), way = glm::dvec2(cover[i + 1 == cover.size() ? 0 : i + 1].at) - from;
-    const double length = glm::length(way);
-    if (length < 1e-9) continue;
-    const Split found = split(inside_, {from, way / length});
-    if (found == Split::inside) continue;
-    if (found == Split::outside) {
-      next_.shrink(before);
-      next_.add(outline);
-      return;
-    }
-    if (!is_thin(outside_)) next_.add(outside_);
+    Line line{};
+    const Place found = place(outline, glm::dvec2(cover[i].at), glm::dvec2(cover[next(i, cover.size())].at), line);
+    if (found == Place::outside) return false;
+    if (found == Place::both) lines_.push_back(line);
   }
-  is_changed_ = true;
+  if (lines_.empty()) return true;
+  if (!may_split || parts(outline, cover)) return false;
+  inside_.assign(outline.begin(), outline.end());
+  const std::size_t parts_before = parts_.size(), corners_before = corners_.size();
+  for (const Line& line : lines_) {
+    const Place found = split(line);
+    if (found == Place::outside) {
+      parts_.resize(parts_before);
+      corners_.resize(corners_before);
+      return false;
+    }
+    if (found == Place::both && !is_narrower(outside_, thin)) add(outside_);
+  }
+  return true;
 }
 
-bool OutlineCutter::subtract(std::span<const PaintCorner> cover) {
-  next_.clear();
-  for (std::size_t i = 0; i < left_.count(); ++i) {
-    if (is_beside(left_[i], cover))
-      next_.add(left_[i]);
-    else
-      subtract_from(left_[i], cover);
+bool OutlineCutter::subtract(const Cover& cover, bool may_split) {
+  const std::size_t count = parts_.size();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Part& part = parts_[i];
+    const bool is_apart = part.low.x >= cover.high.x || cover.low.x >= part.high.x || part.low.y >= cover.high.y ||
+                          cover.low.y >= part.high.y;
+    if (is_apart || !subtract_from(i, cover.outline, may_split)) parts_[kept++] = parts_[i];
   }
-  std::swap(left_, next_);
-  return left_.count() == 0;
+  if (kept == count) return count == 0;
+  parts_.erase(parts_.begin() + std::ptrdiff_t(kept), parts_.begin() + std::ptrdiff_t(count));
+  is_changed_ = true;
+  return parts_.empty();
 }
 
 void OutlineCutter::keep_within(const glm::dvec2& low, const glm::dvec2& high) {
   const Line sides[] = {{low, {0, 1}}, {low, {-1, 0}}, {high, {0, -1}}, {high, {1, 0}}};
-  next_.clear();
-  for (std::size_t i = 0; i < left_.count(); ++i) {
-    inside_.assign(left_[i].begin(), left_[i].end());
-    bool is_there = true;
-    for (const Line& side : sides) {
-      const Split found = split(inside_, side);
-      is_there = is_there && found != Split::outside;
-      is_changed_ = is_changed_ || found != Split::inside;
+  const std::vector<Part> before = parts_;
+  parts_.clear();
+  for (const Part& part : before) {
+    if (part.low.x >= low.x && part.low.y >= low.y && part.high.x <= high.x && part.high.y <= high.y) {
+      parts_.push_back(part);
+      continue;
     }
-    if (is_there && !is_thin(inside_)) next_.add(inside_);
+    is_changed_ = true;
+    inside_.assign(corners_.begin() + std::ptrdiff_t(part.first),
+                   corners_.begin() + std::ptrdiff_t(part.first + part.count));
+    if (std::all_of(std::begin(sides), std::end(sides),
+                    [&](const Line& side) { return split(side) != Place::outside; }) &&
+        !is_narrower(inside_, thin))
+      add(inside_);
   }
-  std::swap(left_, next_);
 }
 
 }  // namespace frontmost::painter_detail

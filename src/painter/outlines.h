@@ -9,11 +9,22 @@
 
 namespace frontmost::painter_detail {
 
-/// A few convex outlines, counter-clockwise as they are seen; z is affine over the screen.
-class Outlines {
+using Outline = std::span<const PaintCorner>;
+
+/// An outline and the box around it, in pixels.
+struct Cover {
+  Outline outline;
+  glm::dvec2 low, high;
+};
+
+/// Whether an outline is narrower than `width` everywhere, by its area and border.
+[[nodiscard]] bool is_narrower(Outline outline, double width);
+
+/// Outlines one after another in one piece of memory.
+class OutlineList {
  public:
   [[nodiscard]] std::size_t count() const { return ends_.size(); }
-  [[nodiscard]] std::span<const PaintCorner> operator[](std::size_t i) const {
+  [[nodiscard]] Outline operator[](std::size_t i) const {
     const std::size_t begin = i == 0 ? 0 : ends_[i - 1];
     return {corners_.data() + begin, ends_[i] - begin};
   }
@@ -21,14 +32,9 @@ class Outlines {
     corners_.clear();
     ends_.clear();
   }
-  void add(std::span<const PaintCorner> outline) {
+  void add(Outline outline) {
     corners_.insert(corners_.end(), outline.begin(), outline.end());
     ends_.push_back(corners_.size());
-  }
-  /// Forgets all from the `count`-th on.
-  void shrink(std::size_t count) {
-    ends_.resize(count);
-    corners_.resize(count == 0 ? 0 : ends_.back());
   }
 
  private:
@@ -36,36 +42,51 @@ class Outlines {
   std::vector<std::size_t> ends_;
 };
 
-/// Takes outlines apart. Not for several threads at once.
+/// Takes convex outlines apart: counter-clockwise as they are seen, z affine over the screen. Not for several threads
+/// at once.
 class OutlineCutter {
  public:
   /// Pixels: what is thinner is not there.
   static constexpr double thin = 1.0 / 1024;
 
-  void begin(std::span<const PaintCorner> outline);
-  /// Leaves what is not within `cover`. \returns true when nothing is left.
-  bool subtract(std::span<const PaintCorner> cover);
+  void begin(Outline outline);
+  /// Leaves what is not within `cover`. Without `may_split` only parts that lie within it as they are go.
+  /// \returns true when nothing is left.
+  bool subtract(const Cover& cover, bool may_split = true);
   /// Leaves what is within a box.
   void keep_within(const glm::dvec2& low, const glm::dvec2& high);
 
-  [[nodiscard]] const Outlines& left() const { return left_; }
-  /// Something was taken away.
+  [[nodiscard]] std::size_t count() const { return parts_.size(); }
+  [[nodiscard]] Outline operator[](std::size_t i) const { return {corners_.data() + parts_[i].first, parts_[i].count}; }
+  /// Something was taken away since begin() or forget_changes().
+  void forget_changes() { is_changed_ = false; }
   [[nodiscard]] bool is_changed() const { return is_changed_; }
 
  private:
-  /// The line of a side; positive is outside.
+  struct Part {
+    std::size_t first, count;
+    glm::dvec2 low, high;
+  };
+  /// The line of a side, of unit length; positive is outside.
   struct Line {
     glm::dvec2 from, along;
   };
-  enum class Split : std::uint8_t { inside, outside, both };
+  enum class Place : std::uint8_t { inside, outside, both };
 
-  /// Sets inside_ and outside_ where they are both. `outline` may be inside_.
-  Split split(const std::vector<PaintCorner>& outline, const Line& line);
-  void subtract_from(std::span<const PaintCorner> outline, std::span<const PaintCorner> cover);
+  /// Where `outline` is beside the line from p to q. Sets `line` for both.
+  static Place place(Outline outline, const glm::dvec2& p, const glm::dvec2& q, Line& line);
+  /// Whether a side of `a` has all of `b` on its outer side.
+  static bool parts(Outline a, Outline b);
+  void add(Outline outline);
+  bool subtract_from(std::size_t part, Outline cover, bool may_split);
+  /// Leaves in inside_ what is on that side of a line and puts the rest into outside_. \returns where inside_ was.
+  Place split(const Line& line);
 
-  Outlines left_, next_;
+  std::vector<PaintCorner> corners_;  ///< of all parts since begin(), also of those that are gone
+  std::vector<Part> parts_;
   std::vector<PaintCorner> rest_, inside_, outside_;
   std::vector<double> distances_;
+  std::vector<Line> lines_;
   bool is_changed_ = false;
 };
 

@@ -2,6 +2,8 @@
 // What is left of an order for drawings.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "painter/painted.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
@@ -56,6 +58,67 @@ TEST(VisibleParts, WhatIsHiddenInPartIsCut) {
   EXPECT_LT(left, 256 * 1.75);
 }
 
+double area_of(const PaintOrder& order) {
+  double area = 0;
+  for (std::size_t i = 0; i < order.polygons.size(); ++i) area += area_of(order, i);
+  return area;
+}
+
+/// A grid of squares, each half as wide as its cell of the whole square, or as wide.
+void add_tiles(Mesh& mesh, int side, float share) {
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      const float size = 2.0f / float(side), left = float(x) * size - 1, low = float(y) * size - 1;
+      const float right = left + size * share, high = low + size * share;
+      add_triangle(mesh, {left, low, 1}, {right, low, 1}, {right, high, 1});
+      add_triangle(mesh, {left, low, 1}, {right, high, 1}, {left, high, 1});
+    }
+}
+
+TEST(VisibleParts, LargePolygonsAreCutAmongManySmallOnes) {
+  Mesh mesh;
+  add_square(mesh, 1, 0);
+  add_tiles(mesh, 32, 0.5f);
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  const PaintOrder seen = visible_parts(painter(surfaces, view_from_above(true, 256)));
+  double square = 0;
+  for (std::size_t i = 0; i < seen.polygons.size(); ++i)
+    if (seen.polygons[i].id < 2) square += area_of(seen, i);
+  // What would leave a sliver, where the grid passes close to a small one, stays.
+  EXPECT_GE(square, 128 * 128 * 0.75 - 1e-3);
+  EXPECT_LT(square, 128 * 128 * 0.82);
+}
+
+TEST(VisibleParts, LargePolygonsGoWhereManySmallOnesHideThem) {
+  Mesh mesh;
+  add_square(mesh, 0.999f, 0);
+  add_tiles(mesh, 32, 1);
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  const PaintOrder seen = visible_parts(painter(surfaces, view_from_above(true, 256)));
+  EXPECT_EQ(seen.polygons.size(), 2048u);
+  for (const PaintPolygon& polygon : seen.polygons) EXPECT_GE(polygon.id, 2u);
+}
+
+/// The areas add up to what the scene covers, and a little more beside slivers.
+TEST(VisibleParts, HardlyAnythingIsPaintedTwice) {
+  for (const Kind kind : {Kind::soup, Kind::shared_grid, Kind::through_eye, Kind::sheets}) {
+    SCOPED_TRACE(int(kind));
+    const Scene scene = scene_of(random_mesh(kind, 60, 3));
+    const Surfaces surfaces(scene);
+    Random random(8);
+    View view = random_view(random, 96, 96);
+    view.samples = 16;
+    const Visible picture = zbuffer(surfaces, view);
+    const auto covered = std::count_if(picture.primitives.begin(), picture.primitives.end(),
+                                       [](PrimitiveId id) { return id != no_primitive; });
+    const double expected = double(covered) / 16, found = area_of(visible_parts(painter(surfaces, view)));
+    EXPECT_GT(found, 0.996 * expected);
+    EXPECT_LT(found, 1.1 * expected);
+  }
+}
+
 TEST(VisibleParts, ThePictureIsTheSame) {
   std::size_t samples = 0, differing = 0;
   for (const Kind kind : {Kind::soup, Kind::fan, Kind::shared_grid, Kind::sheets, Kind::through_eye})
@@ -100,7 +163,7 @@ TEST(VisibleParts, HemsReachUnderWhatHidesThem) {
 }
 
 TEST(VisibleParts, ThreadsChangeNothing) {
-  const Scene scene = scene_of(random_mesh(Kind::soup, 3000, 2));
+  const Scene scene = scene_of(random_mesh(Kind::soup, 600, 2));
   const Surfaces surfaces(scene);
   const PaintOrder order = painter(surfaces, frame(surfaces, 160, 120));
   const PaintOrder one = visible_parts(order, {}, {.threads = 1}), three = visible_parts(order, {}, {.threads = 3});

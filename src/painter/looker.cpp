@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+// A polygon in a few cells of the grid is held against all that covers it there. One in many is halved along the cells
+// until it is in few, so that it meets only what is near, and comes back together where nothing was taken away.
+#include "painter/looker.h"
+
+#include <algorithm>
+
+namespace frontmost::painter_detail {
+namespace {
+
+/// More are halved.
+constexpr int kFewCells = 4;
+/// Pixels. Beside a narrower part nothing has room for a hem, and viewers show a hairline; what would leave one stays
+/// whole, and is painted over.
+constexpr double kNarrowest = 1.0 / 16;
+/// When so many parts are left of a polygon in a few cells, none is split any more: those go that are hidden whole.
+constexpr std::size_t kMostParts = 48, kMostPartsOfHem = 8;
+/// So many of those after a polygon, from the front, may hide it in a cell: without an end, a stack of n planes that
+/// each leave a sliver of the next takes n * n.
+constexpr std::size_t kMostCovers = 4096;
+
+std::vector<Extent> extents_of(const PaintOrder& order) {
+  std::vector<Extent> extents;
+  extents.reserve(order.polygons.size());
+  const glm::vec2 most(order.view.width, order.view.height);
+  for (const PaintPolygon& polygon : order.polygons) {
+    Extent extent{most, glm::vec2(0), 0, 0};
+    for (std::size_t i = 0; i < polygon.corner_count; ++i) {
+      const glm::vec2 at(order.corners[polygon.first_corner + i].at);
+      extent.low = glm::min(extent.low, at);
+      extent.high = glm::max(extent.high, at);
+    }
+    extent.low = glm::max(extent.low, glm::vec2(0));
+    extent.high = glm::min(extent.high, most);
+    extents.push_back(extent);
+  }
+  return extents;
+}
+
+Extent box_of(Outline outline) {
+  Extent box{glm::vec2(outline[0].at), glm::vec2(outline[0].at), 0, 0};
+  for (const PaintCorner& corner : outline) {
+    box.low = glm::min(box.low, glm::vec2(corner.at));
+    box.high = glm::max(box.high, glm::vec2(corner.at));
+  }
+  return box;
+}
+
+bool is_within(Outline outline, const glm::dvec2& at) {
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const glm::dvec2 p(outline[i].at), way = glm::dvec2(outline[i + 1 == outline.size() ? 0 : i + 1].at) - p;
+    if (way.x * (at.y - p.y) - way.y * (at.x - p.x) > OutlineCutter::thin * glm::length(way)) return false;
+  }
+  return true;
+}
+
+/// The cells in two halves along the longer axis.
+struct Halves {
+  int axis;
+  PieceGrid::Range low, high;
+};
+Halves halve(const PieceGrid::Range& cells) {
+  const int columns = cells.last_x - cells.first_x + 1, rows = cells.last_y - cells.first_y + 1;
+  Halves halves{columns >= rows ? 0 : 1, cells, cells};
+  if (halves.axis == 0) {
+    halves.low.last_x = cells.first_x + columns / 2 - 1;
+    halves.high.first_x = halves.low.last_x + 1;
+  } else {
+    halves.low.last_y = cells.first_y + rows / 2 - 1;
+    halves.high.first_y = halves.low.last_y + 1;
+  }
+  return halves;
+}
+
+bool is_few(const PieceGrid::Range& cells) {
+  return (cells.last_x - cells.first_x + 1) * (cells.last_y - cells.first_y + 1) <= kFewCells;
+}
+
+bool is_apart(const Extent& a, const Extent& b) {
+  return a.low.x >= b.high.x || b.low.x >= a.high.x || a.low.y >= b.high.y || b.low.y >= a.high.y;
+}
+
+}  // namespace
+
+Scenery::Scenery(const PaintOrder& order, const std::function<bool(PrimitiveId)>& hides)
+    : size_(order.view.width, order.view.height), grid_(extents_of(order)) {
+  fill_slots(order, extents_of(order));
+  for (Slot& slot : slots_) slot.hides = !hides || hides(order.polygons[slot.place].id);
+}
+
+/// By counting: as many as begin in each cell.
+void Scenery::fill_slots(const PaintOrder& order, const std::vector<Extent>& extents) {
+  const auto cell_of = [&](const Extent& extent) {
+    const PieceGrid::Range cells = grid_.range(extent);
+    return grid_.number(cells.first_x, cells.first_y);
+  };
+  std::vector<std::uint32_t> next(grid_.cell_count() + 1, 0);
+  for (const Extent& extent : extents) ++next[cell_of(extent) + 1];
+  for (std::size_t cell = 1; cell < next.size(); ++cell) next[cell] += next[cell - 1];
+  slots_.resize(extents.size());
+  slot_of_.resize(extents.size());
+  std::uint32_t first_place = 0;
+  for (std::uint32_t place = 0; place < extents.size(); ++place) {
+    slot_of_[place] = next[cell_of(extents[place])]++;
+    const bool goes_on = place > 0 && order.polygons[place].id == order.polygons[place - 1].id;
+    if (!goes_on) first_place = place;
+    slots_[slot_of_[place]] = {extents[place], place, first_place, order.polygons[place].corner_count, 0, false};
+  }
+  corners_.reserve(order.corners.size());
+  for (Slot& slot : slots_) {
+    slot.first_corner = corners_.size();
+    const PaintCorner* const from = order.corners.data() + order.polygons[slot.place].first_corner;
+    corners_.insert(corners_.end(), from, from + slot.corner_count);
+  }
+  for (PaintCorner& corner : corners_) corner.at.z = affine_depth(order.view, corner.at.z);
+}
+
+bool Looker::is_hidden_at(std::size_t slot, const glm::dvec2& at) {
+  const std::uint32_t own_place = scenery_.place(slot), first_place = scenery_.first_place(slot);
+  const PieceGrid::Range cells = scenery_.grid().range({glm::vec2(at), glm::vec2(at), 0, 0});
+  const std::span<const std::uint32_t> places =
+      scenery_.grid().cell(scenery_.grid().number(cells.first_x, cells.first_y));
+  for (std::size_t i = places.size(); i-- > 0 && places[i] >= first_place;) {
+    if (places[i] == own_place) continue;
+    poll_.count();
+    const std::uint32_t other = scenery_.slot(places[i]);
+    const Extent& e = scenery_.extent(other);
+    if (at.x > e.low.x && at.x < e.high.x && at.y > e.low.y && at.y < e.high.y && scenery_.hides(other) &&
+        is_within(scenery_.outline(other), at))
+      return true;
+  }
+  return false;
+}
+
+/// Most are not, and one of their corners tells.
+bool Looker::is_hidden(std::size_t slot, Outline outline) {
+  for (const PaintCorner& corner : outline.subspan(1, outline.size() - 2))
+    if (!is_hidden_at(slot, glm::dvec2(corner.at))) return false;
+  const Extent box = box_of(outline);
+  cutter_.begin(outline);
+  return take_covers({scenery_.place(slot), scenery_.first_place(slot), kMostPartsOfHem}, box,
+                     scenery_.grid().range(box));
+}
+
+const OutlineList& Looker::look(std::size_t slot) {
+  seen_.clear();
+  const Extent& extent = scenery_.extent(slot);
+  if (!(extent.low.x < extent.high.x && extent.low.y < extent.high.y)) return seen_;
+  const PieceGrid::Range cells = scenery_.grid().range(extent);
+  cutter_.begin(scenery_.outline(slot));
+  cutter_.keep_within(glm::dvec2(0), scenery_.size());
+  if (cutter_.count() == 0) return seen_;
+  if (is_few(cells)) {
+    if (is_all_seen_at_once(slot, extent, cells)) seen_.add(cutter_[0]);
+    return seen_;
+  }
+  const Corners whole(cutter_[0].begin(), cutter_[0].end());
+  if (is_all_seen(slot, whole, cells)) seen_.add(whole);
+  return seen_;
+}
+
+bool Looker::is_all_seen(std::size_t slot, const Corners& outline, const PieceGrid::Range& cells) {
+  if (is_few(cells)) {
+    cutter_.begin(outline);
+    return is_all_seen_at_once(slot, box_of(outline), cells);
+  }
+  const auto [axis, low, high] = halve(cells);
+  glm::dvec2 low_end = scenery_.size(), high_begin(0);
+  low_end[axis] = high_begin[axis] = scenery_.grid().box(high.first_x, high.first_y).low[axis];
+  const Corners low_part = part_within(outline, glm::dvec2(0), low_end),
+                high_part = part_within(outline, high_begin, scenery_.size());
+  const bool sees_low = low_part.empty() || is_all_seen(slot, low_part, low);
+  const bool sees_high = high_part.empty() || is_all_seen(slot, high_part, high);
+  if (sees_low && sees_high) return true;
+  if (sees_low && !low_part.empty()) seen_.add(low_part);
+  if (sees_high && !high_part.empty()) seen_.add(high_part);
+  return false;
+}
+
+Looker::Corners Looker::part_within(const Corners& outline, const glm::dvec2& low, const glm::dvec2& high) {
+  cutter_.begin(outline);
+  cutter_.keep_within(low, high);
+  return cutter_.count() == 0 ? Corners() : Corners(cutter_[0].begin(), cutter_[0].end());
+}
+
+bool Looker::is_all_seen_at_once(std::size_t slot, const Extent& own, const PieceGrid::Range& cells) {
+  cutter_.forget_changes();
+  const Corners whole(cutter_[0].begin(), cutter_[0].end());
+  take_covers({scenery_.place(slot), scenery_.place(slot), kMostParts}, own, cells);
+  if (!cutter_.is_changed()) return true;
+  for (std::size_t i = 0; i < cutter_.count(); ++i)
+    if (is_narrower(cutter_[i], kNarrowest)) {
+      seen_.add(whole);
+      return false;
+    }
+  for (std::size_t i = 0; i < cutter_.count(); ++i) seen_.add(cutter_[i]);
+  return false;
+}
+
+/// Boxes that overlap meet in several cells; the one that both begin in, or where the later one begins, is the first.
+bool Looker::is_first_meeting(const PieceGrid::Range& cells, const Extent& cover, int x, int y) const {
+  const PieceGrid::Range other = scenery_.grid().range(cover);
+  return x == std::max(cells.first_x, other.first_x) && y == std::max(cells.first_y, other.first_y);
+}
+
+bool Looker::take_covers(const Covers& covers, const Extent& own, const PieceGrid::Range& cells) {
+  const bool is_one_cell = cells.first_x == cells.last_x && cells.first_y == cells.last_y;
+  for (int y = cells.first_y; y <= cells.last_y; ++y)
+    for (int x = cells.first_x; x <= cells.last_x; ++x) {
+      const std::span<const std::uint32_t> places = scenery_.grid().cell(scenery_.grid().number(x, y));
+      std::size_t count = 0;
+      for (std::size_t i = places.size(); i-- > 0 && places[i] >= covers.first && count < kMostCovers;) {
+        if (places[i] == covers.own) continue;
+        poll_.count();
+        const std::uint32_t other = scenery_.slot(places[i]);
+        const Extent& e = scenery_.extent(other);
+        if (is_apart(e, own) || !scenery_.hides(other)) continue;
+        if (!is_one_cell && !is_first_meeting(cells, e, x, y)) continue;
+        ++count;
+        const Cover cover{scenery_.outline(other), glm::dvec2(e.low), glm::dvec2(e.high)};
+        if (cutter_.subtract(cover, cutter_.count() <= covers.most_parts)) return true;
+      }
+    }
+  return false;
+}
+
+}  // namespace frontmost::painter_detail
