@@ -25,7 +25,7 @@ struct PainterOptions {
   std::size_t most_polygons = std::size_t(1) << 27;
   /// More cuts are one, too: where all of n triangles pass through each other there may be n * n and more. About 400
   /// bytes each.
-  std::size_t most_cuts = std::size_t(1) << 21;
+  std::size_t most_cuts = std::size_t(1) << 20;
 };
 
 /// A corner of a polygon, and the side from it to the next one.
