@@ -5,6 +5,7 @@
 #include "frontmost/image.h"
 #include "frontmost/surfaces.h"
 #include "frontmost/view.h"
+#include "view/answer.h"
 
 namespace frontmost {
 namespace {
@@ -18,6 +19,7 @@ Image one_channel(const Visible& visible, Channel channel) {
 /// `depth_at(x, y, planar depth)` for every pixel where something is seen.
 template <class DepthAt>
 Image map_of_depths(const Visible& visible, const char* name, float background, DepthAt&& depth_at) {
+  check_planes(visible, "depth image");
   const View& view = visible.view;
   Buffer<float> values(view.pixel_count());
   std::size_t i = 0;
@@ -76,6 +78,7 @@ Image ray_distance_image(const Visible& visible, float background) {
 }
 
 Image id_image(const Surfaces& surfaces, const Visible& visible, IdKind kind) {
+  check_planes(visible, "id image");
   const View& view = visible.view;
   return id_image(surfaces, {view.width, view.height}, {visible.primitives.data(), view.pixel_count()}, kind);
 }

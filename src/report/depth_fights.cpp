@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "frontmost/precision.h"
 #include "report/exact_depth.h"
+#include "view/answer.h"
 
 namespace frontmost {
 namespace {
@@ -53,7 +54,8 @@ void for_each_sample(const View& view, const SampleRays& rays, std::size_t row, 
 
 void check_views(const ExactVisible& exact, const Visible& answer) {
   const View &a = exact.view, &b = answer.view;
-  if (a.width != b.width || a.height != b.height || a.samples != b.samples || a.world_from_eye != b.world_from_eye)
+  if (a.width != b.width || a.height != b.height || a.samples != b.samples || a.world_from_eye != b.world_from_eye ||
+      exact.primitives.size() != a.sample_count() || exact.tied.size() != a.sample_count())
     throw Error(ErrorCode::bad_argument, "depth fights: the two answers are of different views");
 }
 
@@ -69,6 +71,8 @@ glm::vec3 heat(float share) {
 DepthFights depth_fights(const Surfaces& surfaces, const ExactVisible& exact, const Visible& answer,
                          const Execution& execution) {
   check_views(exact, answer);
+  check_answer(answer, surfaces.primitive_count(), "depth fights", execution);
+  check_ids({exact.primitives.data(), exact.primitives.size()}, surfaces.primitive_count(), "depth fights", execution);
   const IeeeScope ieee;
   const View& view = exact.view;
   DepthFights fights;

@@ -12,6 +12,7 @@
 #include "shade/opaque_part.h"
 #include "shade/picture_parts.h"
 #include "shade/shadow/key_shadows.h"
+#include "view/answer.h"
 
 namespace frontmost {
 namespace {
@@ -169,8 +170,13 @@ void paint_map(const Request& request, Canvas& canvas) {
   paint(Depths{glm::vec3(visible.view.forward()), range.nearest, range.farthest});
 }
 
-void paint(const Request& request, Canvas& canvas) {
+void check(const Request& request) {
   check_opacity(request.options);
+  check_answer(request.visible, request.surfaces.primitive_count(), "shade", request.execution);
+}
+
+void paint(const Request& request, Canvas& canvas) {
+  check(request);
   shows_materials(request.options.shading) ? paint_materials(request, canvas) : paint_map(request, canvas);
 }
 
@@ -191,12 +197,12 @@ Bitmap shade_bitmap(const Surfaces& surfaces, const Visible& visible, const Shad
 
 DeepImage shade_deep(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options,
                      const Execution& execution) {
-  check_opacity(options);
   if (!shows_materials(options.shading))
     throw Error(ErrorCode::unsupported, "shade: deep images are lit, flat, or of normals");
   ShadeOptions in_layers = options;
   in_layers.see_through = SeeThrough::always;
   const Request request{surfaces, visible, in_layers, execution};
+  check(request);
   const Materials materials(surfaces, visible, in_layers, execution);
   DeepImage image;
   with_colorist(request, materials, [&](const FragmentShader::Colorist& colorist) {
@@ -206,10 +212,12 @@ DeepImage shade_deep(const Surfaces& surfaces, const Visible& visible, const Sha
 }
 
 std::optional<View> key_light_view(const Visible& visible, const Box& bounds, Axis up, const Execution& execution) {
+  check_planes(visible, "light");
   return view_of_light(visible, bounds, glm::dvec3(lighting_for(visible.view, up).to_key), execution);
 }
 
 Image normal_image(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {
+  check_answer(visible, surfaces.primitive_count(), "normal image", execution);
   const auto large = [&] { return large_primitives(surfaces.primitive_count(), visible, execution); };
   const auto seen = [&] { return seen_primitives(surfaces, visible, execution); };
   const MaterialTable table(surfaces.scene(), needed_materials(surfaces, seen, execution), execution);

@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "frontmost/visible.h"
+#include "view/answer.h"
 
 namespace frontmost {
 namespace {
@@ -48,6 +49,8 @@ Visible nothing_visible(const View& view) {
 
 void merge(Visible& into, const Visible& other, PrimitiveId first_id, const Execution& execution) {
   if (!same_view(into.view, other.view)) throw Error(ErrorCode::bad_argument, "merge: the two views are not the same");
+  check_planes(into, "merge");
+  check_planes(other, "merge");
   std::atomic<bool> is_full{false};
   constexpr std::size_t samples_at_once = 1u << 16;
   parallel_for(execution, into.keys.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {

@@ -5,6 +5,8 @@
 
 #include <cstring>
 
+#include "view/answer.h"
+
 namespace frontmost {
 namespace {
 
@@ -23,6 +25,7 @@ float depth_of_key(const View& view, float key) {
 }
 
 Buffer<float> depths(const Visible& visible) {
+  check_planes(visible, "depths");
   Buffer<float> depth(visible.keys.size());
   for (std::size_t i = 0; i < depth.size(); ++i)
     depth[i] = visible.primitives[i] == no_primitive ? std::numeric_limits<float>::infinity()

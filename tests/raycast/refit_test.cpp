@@ -2,8 +2,12 @@
 // A refitted index against a new one: the same answers to the bit, wherever the triangles have gone.
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "frontmost/raycast.h"
+#include "support/cutout_scene.h"
 #include "support/random_scene.h"
+#include "support/same_visible.h"
 
 namespace frontmost::test {
 namespace {
@@ -16,8 +20,7 @@ Scene three_of(Kind kind, std::uint64_t seed) {
   return scene;
 }
 
-void expect_same_answers(const RayIndex& index, const Surfaces& surfaces, std::uint64_t seed) {
-  const RayIndex anew(surfaces);
+void expect_same_answers(const RayIndex& index, const RayIndex& anew, std::uint64_t seed) {
   EXPECT_EQ(index.triangle_count(), anew.triangle_count());
   EXPECT_EQ(index.bounds().low, anew.bounds().low);
   EXPECT_EQ(index.bounds().high, anew.bounds().high);
@@ -36,6 +39,10 @@ void expect_same_answers(const RayIndex& index, const Surfaces& surfaces, std::u
     ASSERT_EQ(hits[i].primitive, hits_anew[i].primitive) << i;
     ASSERT_EQ(hits[i].t, hits_anew[i].t) << i;
   }
+}
+
+void expect_same_answers(const RayIndex& index, const Surfaces& surfaces, std::uint64_t seed) {
+  expect_same_answers(index, RayIndex(surfaces), seed);
 }
 
 TEST(Refit, AnswersEqualThoseOfANewIndex) {
@@ -95,6 +102,71 @@ TEST(Refit, OtherTrianglesMakeANewIndex) {
   expect_followed("nothing");
   scene = three_of(Kind::fan, 1);
   expect_followed("something");
+}
+
+/// Says "cancelled" from a certain question on.
+struct Impatience {
+  explicit Impatience(int patience) : left(patience) {
+    watch.cancelled = [this] { return left.fetch_sub(1) <= 0; };
+  }
+  std::atomic<int> left;
+  Watch watch;
+};
+
+/// Asks for everything that an index can be asked for: where something were left of two scenes, this would meet it.
+void expect_empty(const RayIndex& index) {
+  EXPECT_EQ(index.triangle_count(), 0u);
+  EXPECT_TRUE(index.bounds().is_empty());
+  EXPECT_FALSE(closest_hit(index, Ray{{0, 0, 5}, {0, 0, -1}}));
+  EXPECT_TRUE(is_clear(index, {{0, 0, 5}, {0, 0, -5}}));
+  Random random(1);
+  const Visible seen = raycast(index, random_view(random, 60, 40));
+  EXPECT_EQ(covered(seen), 0u);
+}
+
+TEST(Refit, OneThatIsEndedHalfwayLeavesNothing) {
+  // Fewer triangles with holes than before: ids of the old ones would be looked up beyond the new table.
+  const Scene many = cutout_scene(random_mesh(Kind::soup, 4000, 1), Cut::all, 0.5f, 1);
+  const Scene few = cutout_scene(random_mesh(Kind::soup, 40, 2), Cut::all, 0.5f, 2);
+  const Surfaces before(many), after(few);
+  bool was_ended = false, was_whole = false;
+  for (int patience = 0; patience < 40 && !was_whole; ++patience) {
+    RayIndex index(before);
+    const Impatience impatience(patience);
+    try {
+      index.refit(after, {.threads = 1, .watch = &impatience.watch});
+      was_whole = true;
+      expect_same_answers(index, after, 7);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::cancelled);
+      was_ended = true;
+      expect_empty(index);
+      index.refit(after);
+      expect_same_answers(index, after, 7);
+    }
+  }
+  EXPECT_TRUE(was_ended);
+  EXPECT_TRUE(was_whole);
+}
+
+TEST(Refit, InstancesThatAreMovedHalfwayLeaveNothing) {
+  Scene scene = three_of(Kind::soup, 9);
+  RayIndex index(scene);
+  scene.instances[1].world_from_mesh[3] += glm::dvec4(0.5, 0, 0, 0);
+  const Impatience impatience(0);
+  EXPECT_THROW(index.refit(scene, {.threads = 1, .watch = &impatience.watch}), Error);
+  expect_empty(index);
+  index.refit(scene);
+  expect_same_answers(index, RayIndex(scene), 3);
+}
+
+TEST(Refit, ABadTransformLeavesTheIndexAsItWas) {
+  Scene scene = three_of(Kind::soup, 9);
+  RayIndex index(scene);
+  Scene bad = scene;
+  bad.instances[2].world_from_mesh[0][0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(index.refit(bad), Error);
+  expect_same_answers(index, RayIndex(scene), 3);
 }
 
 }  // namespace

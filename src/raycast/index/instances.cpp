@@ -176,9 +176,11 @@ bool replace_instances(const Scene& scene, RayTree& tree, const Execution& execu
     first += PrimitiveId(scene.meshes[mesh].triangles.size());
   }
   check_transforms(scene);
+  TreeChange change(tree);
   for (std::size_t i = 0; i < tree.placed.size(); ++i) place_instance(scene.instances[i], tree.placed[i]);
   if (tree.cutouts) tree.cutouts = cutouts_of(scene);
   build_upper(tree, execution);
+  change.complete();
   return true;
 }
 

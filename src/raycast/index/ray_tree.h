@@ -55,6 +55,23 @@ struct RayTree {
   [[nodiscard]] std::size_t stack_size() const { return std::size_t(depth) * (kRayLanes - 1) + 1; }
 };
 
+/// While a tree is changed in place. Where an error ends that halfway it holds triangles of two scenes, and holes of
+/// one: nothing is left of it then.
+class TreeChange {
+ public:
+  explicit TreeChange(RayTree& tree) : tree_(tree) {}
+  ~TreeChange() {
+    if (!is_complete_) tree_ = RayTree();
+  }
+  TreeChange(const TreeChange&) = delete;
+  TreeChange& operator=(const TreeChange&) = delete;
+  void complete() { is_complete_ = true; }
+
+ private:
+  RayTree& tree_;
+  bool is_complete_ = false;
+};
+
 /// Bounds of leaves, to build nodes over.
 struct LeafBox {
   float low[3];
@@ -67,7 +84,7 @@ struct LeafBox {
 [[nodiscard]] std::vector<LeafBox> fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execution);
 
 /// Moves the triangles of `tree` to where they are in `surfaces`, and fits every box anew.
-/// \returns false where `surfaces` has other triangles; the tree is then unspecified.
+/// \returns false where `surfaces` has other triangles; the tree is then empty, as it is after an error.
 [[nodiscard]] bool refit_tree(const Surfaces& surfaces, RayTree& tree, const Execution& execution);
 
 /// The bounds of the triangles in use.
@@ -83,7 +100,7 @@ void build_nodes(std::vector<LeafBox>& boxes, RayTree& tree, const Execution& ex
 [[nodiscard]] RayTree make_placed_tree(const Scene& scene, const Execution& execution);
 
 /// Moves the instances of a tree on two levels to where they are in `scene`.
-/// \returns false where these are other instances; the tree is then as it was.
+/// \returns false where these are other instances; the tree is then as it was. Empty after an error halfway.
 [[nodiscard]] bool replace_instances(const Scene& scene, RayTree& tree, const Execution& execution);
 
 }  // namespace frontmost

@@ -77,6 +77,7 @@ void fit_nodes(const std::vector<LeafBox>& boxes, RayTree& tree) {
 bool refit_tree(const Surfaces& surfaces, RayTree& tree, const Execution& execution) {
   if (!tree.placed.empty()) return false;
   const ClusterSet& set = surfaces.clusters();
+  TreeChange change(tree);
   tree.cutouts = set.cutouts;
   const Buffer<std::uint32_t> places = places_of(tree, surfaces.primitive_count(), execution);
   std::atomic<std::size_t> moved{0};
@@ -85,12 +86,16 @@ bool refit_tree(const Surfaces& surfaces, RayTree& tree, const Execution& execut
   });
   // Too many where one has no place, too few where one cannot be met any more.
   if (moved != tree.triangle_count) return false;
-  if (tree.root == no_index) return true;
+  if (tree.root == no_index) {
+    change.complete();
+    return true;
+  }
   std::vector<LeafBox> boxes(tree.leaves.size());
   parallel_for(execution, tree.leaves.size(), kLeavesPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) boxes[i] = box_of(tree.leaves[i], std::uint32_t(i));
   });
   fit_nodes(boxes, tree);
+  change.complete();
   return true;
 }
 
