@@ -74,5 +74,64 @@ TEST(Image, HashIsKnown) {
   EXPECT_EQ(content_hash(image), hash ^ (hash >> 32));
 }
 
+DeepImage deep_image() {
+  DeepImage image;
+  image.width = 2, image.height = 1;
+  image.first = Buffer<std::uint64_t>(3);
+  for (std::size_t i = 0; i < 3; ++i) image.first[i] = 2 * i;  // two samples a pixel
+  image.channels = {float_channel("Z", {1, 2, 3, 4}), id_channel("primitive", {7, 8, 9, 10})};
+  return image;
+}
+
+TEST(DeepImages, HashTellsEverythingApart) {
+  std::set<std::uint64_t> hashes;
+  const auto add = [&](const DeepImage& image) {
+    EXPECT_NO_THROW(validate(image));
+    EXPECT_TRUE(hashes.insert(content_hash(image)).second);
+  };
+  const DeepImage image = deep_image();
+  add(image);
+  EXPECT_EQ(content_hash(image), content_hash(deep_image()));
+  DeepImage uneven = image;
+  uneven.first[1] = 1;  // one sample, then three: the same values
+  add(uneven);
+  DeepImage deeper = image;
+  deeper.channels[0].floats()[3] = 5;
+  add(deeper);
+  DeepImage other_id = image;
+  other_id.channels[1].integers()[0] = 8;
+  add(other_id);
+  DeepImage renamed = image;
+  renamed.channels[1].name = "object";
+  add(renamed);
+  DeepImage upright = image;
+  std::swap(upright.width, upright.height);
+  add(upright);
+}
+
+TEST(DeepImages, WrongBeginningsAndChannelsAreNamed) {
+  std::string message;
+  const auto complaint = [&](const DeepImage& image) {
+    EXPECT_EQ(error_of([&] { validate(image); }, &message), ErrorCode::bad_argument);
+    return message;
+  };
+  const char* const order = "a deep image's beginnings are not one a pixel and the end, in order";
+  DeepImage image = deep_image();
+  image.first = Buffer<std::uint64_t>(2, 0);
+  EXPECT_NE(complaint(image).find(order), std::string::npos) << message;
+  image = deep_image();
+  image.first[1] = 5;
+  EXPECT_NE(complaint(image).find(order), std::string::npos) << message;
+  image = deep_image();
+  image.first[0] = 1;
+  EXPECT_NE(complaint(image).find(order), std::string::npos) << message;
+  image = deep_image();
+  image.channels[1].values = Buffer<std::uint32_t>(3, 0u);
+  EXPECT_NE(complaint(image).find("primitive"), std::string::npos) << message;
+  image = deep_image();
+  image.height = 0;
+  EXPECT_EQ(error_of([&] { validate(image); }), ErrorCode::bad_argument);
+}
+
 }  // namespace
 }  // namespace frontmost::test

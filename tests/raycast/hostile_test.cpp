@@ -2,11 +2,16 @@
 // Views of hostile geometry: a stated answer, the same on every instruction set; and pictures that do not leak.
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cfenv>
+#include <cstdlib>
+#include <fstream>
+#include <new>
 
 #include "ray_oracle.h"
+#include "support/effort.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
@@ -165,6 +170,31 @@ TEST(RayIndex, StaysBelowItsPromisedSize) {
   const RayIndex index{Surfaces(scene)};
   EXPECT_EQ(index.triangle_count(), 100'000u);
   EXPECT_LT(double(index.byte_count()) / index.triangle_count(), 50);
+}
+
+TEST(HostileRayCast, WithoutMemoryForAllPlanesNoneIsUsed) {
+  if (under_sanitizer) GTEST_SKIP() << "a sanitizer takes all addresses for itself";
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto cast_twice = [] {
+    const Scene empty;
+    const RayIndex index(empty);
+    RayCaster caster;
+    View view = from_the_front();
+    view.width = view.height = 16384;  // 1 GiB a plane
+    // Room for what there is, one plane, and half of the other.
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    const rlimit limit{pages * 4096 + (std::size_t(3) << 29), RLIM_INFINITY};
+    setrlimit(RLIMIT_AS, &limit);
+    int failures = 0;
+    for (int i = 0; i < 2; ++i) try {
+        (void)caster.cast(index, view, {.threads = 1});
+      } catch (const std::bad_alloc&) {
+        ++failures;
+      }
+    std::exit(failures == 2 ? 0 : 1);
+  };
+  EXPECT_EXIT(cast_twice(), testing::ExitedWithCode(0), "");
 }
 
 }  // namespace

@@ -2,7 +2,9 @@
 // What files may hold: polygons, attributes, both byte orders, gaps, lies.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cstring>
 #include <fstream>
 
 #include "stream/as_whole.h"
@@ -47,6 +49,46 @@ TEST_F(StreamFormats, PolygonsAttributesAndByteOrdersAreDrawnAsAWhole) {
     expect_streams_as_whole({seed("quads_big.ply"), seed("nine.stl"), seed("attributes.ply"), seed("quads_little.ply")},
                             at_once);
   }
+}
+
+/// A strip of quads whose places, list lengths and corners are of these types.
+std::string binary_ply(const std::string& place, const std::string& count, const std::string& corner, bool big) {
+  std::string text = std::string("ply\nformat binary_") + (big ? "big" : "little") +
+                     "_endian 1.0\nelement vertex 20\nproperty " + place + " x\nproperty " + place + " y\nproperty " +
+                     place + " z\nelement face 9\nproperty list " + count + " " + corner +
+                     " vertex_indices\nend_header\n";
+  const auto append = [&](const auto value) {
+    char bytes[sizeof value];
+    std::memcpy(bytes, &value, sizeof value);
+    if (big) std::reverse(bytes, bytes + sizeof value);
+    text.append(bytes, sizeof value);
+  };
+  const auto put = [&](const std::string& type, int value) {
+    if (type == "char") append(std::int8_t(value));
+    if (type == "uchar") append(std::uint8_t(value));
+    if (type == "short") append(std::int16_t(value));
+    if (type == "ushort") append(std::uint16_t(value));
+    if (type == "int") append(std::int32_t(value));
+    if (type == "uint") append(std::uint32_t(value));
+    if (type == "float") append(float(value));
+    if (type == "double") append(double(value));
+  };
+  for (int i = 0; i < 20; ++i)
+    for (const int coordinate : {i / 2 * 3, i % 2 * 10, i * i % 7}) put(place, coordinate);
+  for (int i = 0; i < 9; ++i) {
+    put(count, 4);
+    for (const int vertex : {2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1}) put(corner, vertex);
+  }
+  return text;
+}
+
+TEST_F(StreamFormats, EveryTypeOfAPlyIsStreamedAsItIsLoaded) {
+  for (const bool big : {false, true})
+    for (const std::string type : {"char", "uchar", "short", "ushort", "int", "uint", "float", "double"}) {
+      const std::string whole = type == "float" || type == "double" ? "uchar" : type;
+      const std::string path = file(type + (big ? "_big.ply" : "_little.ply"), binary_ply(type, whole, whole, big));
+      expect_streams_as_whole({path}, 5);
+    }
 }
 
 TEST_F(StreamFormats, LyingHeadersGiveTheErrorsOfTheReader) {

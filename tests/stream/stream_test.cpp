@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "stream/as_whole.h"
+#include "support/bumpy_mesh.h"
 #include "support/random_scene.h"
 
 namespace frontmost {
@@ -119,4 +120,41 @@ TEST_F(StreamTest, MoreTrianglesThanIdsAreRefusedAtOnce) {
 }
 
 }  // namespace
+TEST_F(StreamTest, SaysHowOftenItWasReadAndGoesOnWhereItIsMoved) {
+  const Mesh mesh = test::bumpy_ball(20, 0.1f, 1);
+  const std::string path = file("bumps.stl", stl_of(mesh));
+  Stream first({path}, {.load = {}, .triangles_at_once = 100});
+  EXPECT_TRUE(first.can_repeat());
+  EXPECT_EQ(first.passes(), 0);
+  EXPECT_TRUE(first.bounds().is_empty());
+  ASSERT_EQ(first.scene().instances.size(), 1u);
+  EXPECT_TRUE(first.scene().meshes.at(first.scene().instances[0].mesh).triangles.empty());
+  const Scene whole = load(path);
+  const Surfaces surfaces(whole);
+  const View view = frame(surfaces, 40, 30);
+  const std::uint64_t hash = content_hash(zbuffer(surfaces, view));
+  Excerpt excerpt = first.look({view});
+  EXPECT_EQ(first.passes(), 1);
+  Stream second = std::move(first);
+  Excerpt moved = std::move(excerpt);
+  EXPECT_EQ(content_hash(moved.in_stream(moved.visible[0])), hash);
+  excerpt = second.look({view});
+  EXPECT_EQ(second.passes(), 2);
+  EXPECT_EQ(second.triangle_count(), mesh.triangles.size());
+  EXPECT_EQ(content_hash(excerpt.in_stream(excerpt.visible[0])), hash);
+  moved = std::move(excerpt);
+  EXPECT_EQ(content_hash(moved.in_stream(moved.visible[0])), hash);
+}
+
+TEST_F(StreamTest, PiecesHaveASize) {
+  const std::string path = file("bumps.stl", stl_of(test::bumpy_ball(4, 0.1f, 1)));
+  for (const std::uint32_t size : {0u, (1u << 24) + 1}) try {
+      const Stream stream({path}, {.load = {}, .triangles_at_once = size});
+      ADD_FAILURE() << size;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::bad_argument);
+      EXPECT_STREQ(error.what(), "triangles_at_once: must be 1 to 16777216");
+    }
+}
+
 }  // namespace frontmost

@@ -78,6 +78,85 @@ TEST(Ply, BothByteOrdersAndTextAgree) {
   expect_rich(load_text(text + "2 7 8 -1\n0 -1\n1 3 2 1 0\n"));
 }
 
+// -- every type in every place
+// ------------------------------------------------------------------------------------------
+
+struct TypeName {
+  const char* name;
+  bool is_integer;
+};
+constexpr TypeName type_names[] = {{"char", true},  {"uchar", true},  {"short", true},    {"ushort", true},
+                                   {"int", true},   {"uint", true},   {"float", false},   {"double", false},
+                                   {"int8", true},  {"uint8", true},  {"int16", true},    {"uint16", true},
+                                   {"int32", true}, {"uint32", true}, {"float32", false}, {"float64", false}};
+
+/// A whole number as a type of PLY.
+void put_as(const std::string& type, int value, ByteWriter& out) {
+  if (type == "char" || type == "int8") out.put(std::int8_t(value));
+  if (type == "uchar" || type == "uint8") out.put(std::uint8_t(value));
+  if (type == "short" || type == "int16") out.put(std::int16_t(value));
+  if (type == "ushort" || type == "uint16") out.put(std::uint16_t(value));
+  if (type == "int" || type == "int32") out.put(std::int32_t(value));
+  if (type == "uint" || type == "uint32") out.put(std::uint32_t(value));
+  if (type == "float" || type == "float32") out.put(float(value));
+  if (type == "double" || type == "float64") out.put(double(value));
+}
+
+/// A triangle and a quad over five vertices on a parabola.
+std::string of_types(const std::string& place, const std::string& count, const std::string& corner, bool big) {
+  ByteWriter out(big);
+  out.text = header("element vertex 5\nproperty " + place + " x\nproperty " + place + " y\nproperty " + place +
+                        " z\nelement face 2\nproperty list " + count + " " + corner + " vertex_indices\n",
+                    big ? "binary_big_endian" : "binary_little_endian");
+  for (int i = 0; i < 5; ++i)
+    for (const int coordinate : {i, i * i, 100 - i}) put_as(place, coordinate, out);
+  for (const std::vector<int>& face : {std::vector<int>{0, 1, 4}, std::vector<int>{1, 2, 3, 4}}) {
+    put_as(count, int(face.size()), out);
+    for (const int vertex : face) put_as(corner, vertex, out);
+  }
+  return out.text;
+}
+
+TEST(Ply, EveryTypeServesAsPlaceCountAndCorner) {
+  for (const bool big : {false, true})
+    for (const TypeName& type : type_names) {
+      SCOPED_TRACE(std::string(type.name) + (big ? ", big" : ", little"));
+      const std::string whole = type.is_integer ? type.name : "uchar";
+      const Mesh mesh = load_text(of_types(type.name, whole, whole, big)).meshes.at(0);
+      ASSERT_EQ(mesh.positions.size(), 5u);
+      for (int i = 0; i < 5; ++i) EXPECT_EQ(mesh.positions[std::size_t(i)], glm::vec3(i, i * i, 100 - i));
+      EXPECT_THAT(mesh.triangles, ElementsAre(glm::uvec3(0, 1, 4), glm::uvec3(1, 2, 3), glm::uvec3(1, 3, 4)));
+      EXPECT_THAT(mesh.face_ids, ElementsAre(0, 1, 1));
+    }
+}
+
+TEST(Ply, CountsAndCornersAreWholeNumbers) {
+  for (const char* type : {"float", "double"}) {
+    EXPECT_EQ(error_of(of_types("float", "uchar", type, false), ModelFormat::ply),
+              "model: header: the corners of element \"face\" must be integers");
+    EXPECT_THAT(error_of(of_types("float", type, "int", false), ModelFormat::ply), HasSubstr("line 8: "));
+  }
+}
+
+TEST(Ply, NegativeNumbersOfEveryWidthAreOutOfRange) {
+  for (const char* type : {"char", "short", "int"}) {
+    ByteWriter out;
+    out.text = header(
+        "element vertex 3\n" + xyz + "element face 1\nproperty list uchar " + std::string(type) + " vertex_indices\n",
+        "binary_little_endian");
+    for (int i = 0; i < 9; ++i) out.put(float(i));
+    out.put(std::uint8_t(3));
+    for (const int corner : {0, 1, -2}) put_as(type, corner, out);
+    EXPECT_THAT(error_of(out.text, ModelFormat::ply), HasSubstr("face 0: vertex -2 is out of range, there are 3"));
+    ByteWriter lengths;
+    lengths.text = header(
+        "element vertex 0\n" + xyz + "element face 1\nproperty list " + std::string(type) + " uchar vertex_indices\n",
+        "binary_little_endian");
+    put_as(type, -1, lengths);
+    EXPECT_THAT(error_of(lengths.text, ModelFormat::ply), HasSubstr("face 0: a list of negative length"));
+  }
+}
+
 TEST(Ply, StripsTurnEverySecondTriangle) {
   const Scene scene = load_text(header("element vertex 5\n" + xyz + "element tristrips 1\n" + corner_list) +
                                 "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n9 0 1 2 3 4 -1 2 1 0\n");

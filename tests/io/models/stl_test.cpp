@@ -107,5 +107,19 @@ TEST(Stl, AsciiErrorsNameTheLine) {
   EXPECT_THAT(error("solid a\nfacet normal 0 0"), HasSubstr("the file ends within a triangle"));
 }
 
+TEST(Stl, FacetsBehindASolidBelongToNone) {
+  const std::string solid = "solid one\n" + facet("0") + "endsolid one\n";
+  EXPECT_EQ(triangle_count(load_text(solid, ModelFormat::stl)), 1u);
+  EXPECT_EQ(error_of(solid + facet("0"), ModelFormat::stl), "model: line 10: \"facet\" outside a solid");
+  EXPECT_EQ(triangle_count(load_text(solid + "solid two\n" + facet("0") + "endsolid\n", ModelFormat::stl)), 2u);
+}
+
+TEST(Stl, HeadersSayNothingOfPlaces) {
+  const Scene plain = load_text(binary_stl("made by hand", 50, 50), ModelFormat::stl);
+  const Scene other = load_text(binary_stl("COLOR=\xff\xff\xff\xff", 50, 50), ModelFormat::stl);
+  EXPECT_EQ(plain.meshes.at(0).positions, other.meshes.at(0).positions);
+  EXPECT_EQ(plain.meshes.at(0).triangles, other.meshes.at(0).triangles);
+}
+
 }  // namespace
 }  // namespace frontmost
