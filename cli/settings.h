@@ -89,6 +89,7 @@ struct OutputSettings {
   bool visible_only = true;             ///< of figures
   std::size_t most_polygons = 2000000;  ///< likewise
   double color_tolerance = 6;           ///< likewise, in steps of 8 bits
+  bool merges_neighbours = false;       ///< likewise
   std::optional<int> layers;            ///< how many of the nearest go to files with {layer} in their names
 };
 

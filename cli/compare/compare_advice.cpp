@@ -74,9 +74,18 @@ std::string transparency(const Comparisons& all) {
       grouped(seen_through), spots(all.view));
 }
 
+/// None for methods that are right.
+std::optional<std::string> mistakes(const Compared& compared, const Comparisons& all) {
+  const std::uint64_t wrong = compared.agreement.count(Difference::unexplained);
+  if (!compared.run.method->is_naive || wrong == 0) return std::nullopt;
+  return fmt::format("{}: wrong in {} of {} {}.", compared.run.method->title, grouped(wrong),
+                     grouped(all.view.sample_count()), spots(all.view));
+}
+
 std::string trust(const Comparisons& all) {
   std::uint64_t differing = 0, unexplained = 0;
   for (const Compared& compared : all.methods) {
+    if (compared.run.method->is_naive) continue;
     differing =
         std::max(differing, compared.agreement.count(Difference::edge) + compared.agreement.count(Difference::depth));
     unexplained += compared.agreement.count(Difference::unexplained);
@@ -95,13 +104,17 @@ std::string trust(const Comparisons& all) {
 
 std::vector<std::string> advice(const Comparisons& all) {
   std::vector<Cost> costs;
-  for (const Compared& compared : all.methods) costs.push_back(cost_of(compared));
-  return {single_view(costs),
-          many_views(costs),
-          memory(costs),
-          transparency(all),
-          "Lines of sight and other single rays: ray casting; the index serves them all.",
-          trust(all)};
+  for (const Compared& compared : all.methods)
+    if (!compared.run.method->is_naive) costs.push_back(cost_of(compared));
+  std::vector<std::string> lines{single_view(costs),
+                                 many_views(costs),
+                                 memory(costs),
+                                 transparency(all),
+                                 "Lines of sight and other single rays: ray casting; the index serves them all.",
+                                 trust(all)};
+  for (const Compared& compared : all.methods)
+    if (std::optional<std::string> line = mistakes(compared, all)) lines.push_back(std::move(*line));
+  return lines;
 }
 
 }  // namespace frontmost::cli

@@ -2,6 +2,7 @@
 #include "cli/compare/compare_methods.h"
 
 #include <frontmost/abuffer.h>
+#include <frontmost/painter.h>
 #include <frontmost/raycast.h>
 #include <frontmost/zbuffer.h>
 
@@ -25,6 +26,15 @@ Answer answer_by_abuffer(const Surfaces& surfaces, const View& view, const Execu
   return {std::move(layers[0]), std::move(layers[1]), surfaces.primitive_count()};
 }
 
+/// Polygons are put into order, and then painted one over the other.
+template <PaintMethod method>
+Answer answer_by_painter(const Surfaces& surfaces, const View& view, const Execution& execution, StageClock& clock) {
+  return {
+      clock.time("visible", [&] { return paint(surfaces, painter(surfaces, view, {.method = method}, execution)); }),
+      {},
+      surfaces.primitive_count()};
+}
+
 Lists lists_of_abuffer(const Surfaces& surfaces, const View& view, const Execution& execution) {
   const FragmentCounts counts = count_fragments(surfaces, view, {}, execution);
   return {counts.fragments, counts.longest};
@@ -38,6 +48,12 @@ constexpr ComparedMethod methods[] = {
     {"abuffer", "A-buffer",
      "Keeps all fragments of a pixel in order of depth, and so what shows through; here two layers.", answer_by_abuffer,
      lists_of_abuffer},
+    {"painter", "Painter's algorithm",
+     "Puts polygons into an order in which painting one over the other is right, and paints them.",
+     answer_by_painter<PaintMethod::depth_sort>},
+    {"painter-centroid", "Painter's, by centroids",
+     "The same, ordered by the polygons' centroids alone, as simple programs do: wrong where that does not decide.",
+     answer_by_painter<PaintMethod::centroid>, nullptr, true},
 };
 
 }  // namespace

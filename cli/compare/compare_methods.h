@@ -57,6 +57,7 @@ struct ComparedMethod {
   std::string_view how;    ///< in a sentence
   Answer (*answer)(const Surfaces&, const View&, const Execution&, StageClock&);
   Lists (*lists)(const Surfaces&, const View&, const Execution&) = nullptr;  ///< counted apart, beside the clock
+  bool is_naive = false;  ///< known to be wrong: shown to be seen, and not counted among those that agree
 };
 
 /// The first is the one that the others are compared with.

@@ -68,32 +68,32 @@ PageGroup backdrop(const glm::vec3& color, const Page& page) {
   return group;
 }
 
-Page page_of(const PaintOrder& order, const std::vector<glm::u8vec4>& colors, const Job& job) {
-  Page page{order.view.width * kMillimetres, order.view.height * kMillimetres, job.name};
+Page page_of(const Figure& figure, const Job& job) {
+  Page page{figure.view.width * kMillimetres, figure.view.height * kMillimetres, job.name};
   PageLayer& layer = page.layers.emplace_back(PageLayer{"figure"});
   if (job.output.background) layer.groups.push_back(backdrop(*job.output.background, page));
   PageGroup& group = layer.groups.emplace_back(PageGroup{"surfaces", Pen{}});
   group.pen.width = 0;
   std::vector<glm::dvec2> outline;
-  for (std::size_t i = 0; i < order.polygons.size(); ++i) {
-    if (colors[i].a == 0) continue;
-    const PaintPolygon& polygon = order.polygons[i];
-    outline.clear();
-    for (std::size_t k = 0; k < polygon.corner_count; ++k)
-      outline.push_back(glm::dvec2(order.corners[polygon.first_corner + k].at) * kMillimetres);
-    group.add(outline, true);
-    group.fills.push_back(page_color(colors[i]));
-  }
+  for (const FigureShape& shape : figure.shapes)
+    for (std::uint32_t i = 0; i < shape.ring_count; ++i) {
+      const FigureRing& ring = figure.rings[shape.first_ring + i];
+      outline.clear();
+      for (std::size_t k = 0; k < ring.corner_count; ++k)
+        outline.push_back(figure.corners[ring.first_corner + k] * kMillimetres);
+      group.add(outline, true, i > 0);
+      group.fills.push_back(page_color(shape.color));
+    }
   return page;
 }
 
 /// Megabytes of the files, roughly: what a path and a corner take in each.
-void tell_size(const Job& job, const PaintOrder& order) {
+void tell_size(const Job& job, const Figure& figure) {
   for (const std::string& path : job.figures) {
     const bool is_svg = page_format(path) == PageFormat::svg;
-    const double bytes = is_svg ? 50.0 * double(order.polygons.size()) + 9.0 * double(order.corners.size())
-                                : 10.0 * double(order.polygons.size()) + 5.0 * double(order.corners.size());
-    complain(fmt::format("{}: {} polygons, about {:.1f} MB", path, order.polygons.size(), bytes / 1e6));
+    const auto shapes = double(figure.shapes.size()), corners = double(figure.corners.size());
+    const double bytes = is_svg ? 32 * shapes + 9 * corners : 8 * shapes + 5 * corners;
+    complain(fmt::format("{}: {} shapes, about {:.1f} MB", path, figure.shapes.size(), bytes / 1e6));
   }
 }
 
@@ -114,13 +114,14 @@ bool is_figure(const std::string& path) {
 void write_figures(const Job& job, const RenderContext& context, ViewResult& result) {
   if (job.figures.empty()) return;
   Stopwatch watch;
-  PaintOrder order = order_of(job, context, result.view);
+  const PaintOrder order = order_of(job, context, result.view);
   check_size(job, order);
   ColoredOrder colored = colors_of(order, job, context);
-  order = with_hems(colored.order, kHem, hiding(job, context, true), context.execution);
-  const Page page = page_of(order, colored.colors, job);
+  if (job.output.merges_neighbours) colored = merge_neighbours(colored, context.execution);
+  const Figure figure = outlined(colored, kHem, hiding(job, context, true), context.execution);
+  const Page page = page_of(figure, job);
   result.timings.shade += watch.milliseconds();
-  if (!context.run.quiet) tell_size(job, order);
+  if (!context.run.quiet) tell_size(job, figure);
   watch = {};
   for (const std::string& path : job.figures) {
     stop_if_interrupted();

@@ -59,6 +59,9 @@ constexpr Option table[] = {
      [](Settings& s, const Given& g) {
        s.output.color_tolerance = g.number({0, 255});
      }},
+    {"merge-neighbours", 0, "",
+     "Make neighbours of one colour one path in .svg and .pdf, where nothing lies above them.", Group::output,
+     for_render, [](Settings& s, const Given&) { s.output.merges_neighbours = true; }},
     {"most-polygons", 0, "N", "Refuse .svg and .pdf files of more polygons; 2000000 by default.", Group::output,
      for_render,
      [](Settings& s, const Given& g) {

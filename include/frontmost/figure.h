@@ -39,4 +39,34 @@ struct ColoredOrder {
 [[nodiscard]] ColoredOrder color_order(const Surfaces& surfaces, const Visible& visible, const PaintOrder& order,
                                        const ColorOptions& options = {}, const Execution& execution = {});
 
+/// The same picture of fewer shapes: polygons of one colour that share a part of a side become one shape, where no
+/// later polygon covers any of them, so that their place in the order does not matter; it is then that of the last.
+/// O(n log n) in the number of polygons of bounded overlap, on one thread.
+[[nodiscard]] ColoredOrder merge_neighbours(const ColoredOrder& colored, const Execution& execution = {});
+
+/// A closed path of a figure: `corner_count` of Figure::corners from `first_corner` on.
+struct FigureRing {
+  std::size_t first_corner = 0;
+  std::uint32_t corner_count = 0;
+};
+/// What is filled with one colour by the nonzero rule: `ring_count` of Figure::rings from `first_ring` on.
+struct FigureShape {
+  glm::u8vec4 color{0};
+  std::uint32_t ring_count = 0;
+  std::size_t first_ring = 0;
+};
+/// Paths to be filled one after the other. Pixels of the view, x right, y down.
+struct Figure {
+  View view;
+  std::vector<FigureShape> shapes;
+  std::vector<FigureRing> rings;
+  std::vector<glm::dvec2> corners;
+};
+
+/// The outlines of all shapes, without the sides that their own polygons share, and with hems as with_hems() makes
+/// them. Corners of shapes of several polygons are rounded to 1/4096 pixel.
+/// \throws Error bad_argument as with_hems(), and for a ColoredOrder whose parts do not match.
+[[nodiscard]] Figure outlined(const ColoredOrder& colored, double hem,
+                              const std::function<bool(PrimitiveId)>& hides = {}, const Execution& execution = {});
+
 }  // namespace frontmost

@@ -36,6 +36,8 @@ struct Pen {
 struct PagePath {
   std::uint32_t first = 0, count = 0;
   bool is_closed = false;  ///< the last point is joined to the first
+  /// Belongs to the path before it, of the same group, and is filled as it is: one of its holes, or more of it.
+  bool is_part = false;
 };
 
 /// Paths that are drawn with one pen, one after the other. Millions of paths are better in one group than in many.
@@ -50,7 +52,7 @@ struct PageGroup {
   std::vector<PageColor> fills{};  ///< empty: nothing is filled; otherwise one for each path (nonzero winding rule)
 
   /// Appends a path without arcs.
-  void add(std::span<const glm::dvec2> corners, bool is_closed);
+  void add(std::span<const glm::dvec2> corners, bool is_closed, bool is_part = false);
 };
 
 struct PageLayer {

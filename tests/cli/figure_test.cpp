@@ -24,7 +24,7 @@ class Figures : public ProgramTest {
 
 TEST_F(Figures, HoldVisiblePolygonsAlone) {
   EXPECT_THAT(succeed("render cube.stl -o cube.svg --resolution 320,240").err,
-              HasSubstr("cube.svg: 6 polygons, about 0.0 MB"));
+              HasSubstr("cube.svg: 6 shapes, about 0.0 MB"));
   EXPECT_EQ(count("cube.svg", "<path"), 7u);  // and the background
   EXPECT_THAT(read("cube.svg"), HasSubstr("width=\"84.667mm\" height=\"63.5mm\""));
   succeed("render cube.stl -o all.svg --shading flat --visible-only no --background transparent --quiet");
@@ -50,16 +50,26 @@ TEST_F(Figures, ShowColoursOfTheirShading) {
 }
 
 TEST_F(Figures, AreCutWhereColoursVary) {
-  succeed("render builtin:gallery -o coarse.svg --shading flat --color-tolerance 255 --quiet");
-  succeed("render builtin:gallery -o fine.svg --shading flat --quiet");
-  EXPECT_GT(count("fine.svg", "<path"), count("coarse.svg", "<path") + 500);
+  succeed("render builtin:gallery --resolution 320,180 -o coarse.svg --shading flat --color-tolerance 255 --quiet");
+  succeed("render builtin:gallery --resolution 320,180 -o fine.svg --shading flat --quiet");
+  EXPECT_GT(count("fine.svg", "<path"), count("coarse.svg", "<path") + 200);
   succeed("render cube.stl -o depths.svg --shading depth --quiet");
   EXPECT_GT(count("depths.svg", "<path"), 10u);
 }
 
+TEST_F(Figures, MergeNeighboursOnRequest) {
+  succeed("render builtin:gallery -o apart.svg --shading ids --resolution 320,180 --quiet");
+  succeed(
+      "render builtin:gallery -o joined.svg -o joined.pdf --shading ids --resolution 320,180 --merge-neighbours "
+      "--quiet");
+  EXPECT_LT(3 * count("joined.svg", "<path"), count("apart.svg", "<path"));
+  EXPECT_LT(2 * read("joined.svg").size(), read("apart.svg").size());
+  EXPECT_THAT(read("joined.pdf"), StartsWith("%PDF"));
+}
+
 TEST_F(Figures, AreTheSameForAnyNumberOfThreads) {
-  succeed("render builtin:gallery -o one.svg --threads 1 --quiet");
-  succeed("render builtin:gallery -o three.svg --threads 3 --quiet");
+  succeed("render builtin:gallery --resolution 320,180 -o one.svg --threads 1 --quiet");
+  succeed("render builtin:gallery --resolution 320,180 -o three.svg --threads 3 --quiet");
   EXPECT_EQ(read("one.svg"), read("three.svg"));
 }
 

@@ -29,6 +29,7 @@ void write_pen(PageText& out, const Pen& pen) {
 void write_path(PageText& out, const PageGroup& group, std::size_t i) {
   const PagePath& path = group.paths[i];
   out << (i == 0 ? "\n" : ",\n") << "{\"closed\": " << (path.is_closed ? "true" : "false");
+  if (path.is_part) out << ", \"part\": true";
   if (!group.fills.empty()) {
     out << ", \"fill\": ";
     write_color(out, group.fills[i]);

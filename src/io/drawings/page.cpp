@@ -40,12 +40,13 @@ void check_group(const PageGroup& group, const std::string& where) {
   for (const PagePath& path : group.paths)
     if (path.count == 0 || path.first >= group.points.size() || path.count > group.points.size() - path.first)
       refuse(where, "a path has no points, or points that are not there");
+  if (!group.paths.empty() && group.paths[0].is_part) refuse(where, "the first path is part of none");
 }
 
 }  // namespace
 
-void PageGroup::add(std::span<const glm::dvec2> corners, bool is_closed) {
-  paths.push_back({std::uint32_t(points.size()), std::uint32_t(corners.size()), is_closed});
+void PageGroup::add(std::span<const glm::dvec2> corners, bool is_closed, bool is_part) {
+  paths.push_back({std::uint32_t(points.size()), std::uint32_t(corners.size()), is_closed, is_part});
   points.insert(points.end(), corners.begin(), corners.end());
 }
 

@@ -79,11 +79,14 @@ class PdfContent {
     std::size_t points = 0;
     for (std::size_t i = 0; i < group.paths.size(); ++i) {
       progress_.step();
+      if (group.paths[i].is_part && !group.fills.empty()) continue;  // drawn with what it is part of
       const PathPaint paint = paint_of(group, i);
       if (!paint.is_seen()) continue;
       set(paint);
       write_path(group, group.paths[i]);
       points += group.paths[i].count;
+      for (std::size_t k = i + 1; paint.fill && k < group.paths.size() && group.paths[k].is_part; ++k)
+        write_path(group, group.paths[k]);
       // Lines share a painting operator. Fills do not: where they overlap, the later one lies above.
       if (paint.fill) {
         out_ << (paint.line ? "B\n" : "f\n");

@@ -73,7 +73,7 @@ class SvgWriter {
     for (std::size_t i = 0; i < group.paths.size(); ++i) {
       progress_.step();
       if (!group.fills.empty()) {
-        write_filled(group, i);
+        if (!group.paths[i].is_part) write_filled(group, i);
         continue;
       }
       if (points == 0) out_ << "<path d=\"";
@@ -98,7 +98,8 @@ class SvgWriter {
     }
     if (paint.line && group.pen.takes_fill_color) color("stroke", *paint.line);
     out_ << " d=\"";
-    write_path(group, group.paths[i]);
+    do write_path(group, group.paths[i]);
+    while (++i < group.paths.size() && group.paths[i].is_part);
     out_ << "\"/>\n";
   }
 

@@ -70,6 +70,36 @@ TEST(Svg, FillsKeepTheirOrderAndHaveAnElementEach) {
       << svg;
 }
 
+/// A triangle with a triangular hole, and another beside it.
+Page page_with_parts() {
+  Page page{10, 10, "", {}};
+  PageGroup group{"", {0, {}}};
+  group.add(std::vector<glm::dvec2>{{1, 1}, {9, 1}, {1, 9}}, true);
+  group.add(std::vector<glm::dvec2>{{2, 2}, {2, 4}, {4, 2}}, true, true);
+  group.add(std::vector<glm::dvec2>{{9, 9}, {9, 8}, {8, 9}}, true);
+  group.fills = {{255, 0, 0}, {255, 0, 0}, {0, 255, 0}};
+  page.layers = {{"", {group}}};
+  return page;
+}
+
+TEST(Svg, PartsAreInTheElementOfTheirPath) {
+  const std::string svg = saved(page_with_parts(), PageFormat::svg);
+  EXPECT_TRUE(has(svg,
+                  "<path fill=\"#ff0000\" d=\"M1 1l8 0-8 8zM2 2l0 2 2-2z\"/>\n"
+                  "<path fill=\"#00ff00\" d=\"M9 9l0-1-1 1z\"/>\n</g>"))
+      << svg;
+}
+
+TEST(Pdf, PartsAreFilledWithTheirPath) {
+  const std::string operators = operators_of(saved(page_with_parts(), PageFormat::pdf));
+  EXPECT_EQ(count(operators, " m\n"), 3u) << operators;
+  EXPECT_EQ(count(operators, "f\n"), 2u);
+}
+
+TEST(Json, SaysWhatIsAPart) {
+  EXPECT_EQ(count(saved(page_with_parts(), PageFormat::json), "\"part\": true"), 1u);
+}
+
 TEST(Pdf, FindsItsObjectsAndItsSize) {
   const std::string pdf = saved(sample_page(), PageFormat::pdf);
   EXPECT_EQ(pdf.substr(0, 9), "%PDF-1.6\n");

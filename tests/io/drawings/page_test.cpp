@@ -49,6 +49,7 @@ TEST(PageChecks, PensAndLists) {
   expect_refused(changed([](PageGroup& g) { g.pen.dashes = {1}; }), "pairs");
   expect_refused(changed([](PageGroup& g) { g.pen.dashes = {1, 0}; }), "dashes and gaps");
   expect_refused(changed([](PageGroup& g) { g.fills = {{}, {}}; }), "fills and paths");
+  expect_refused(changed([](PageGroup& g) { g.paths[0].is_part = true; }), "part of none");
   expect_refused(changed([](PageGroup& g) { g.bulges = {0}; }), "bulges and points");
   expect_refused(changed([](PageGroup& g) { g.paths[0].count = 4; }), "not there");
   expect_refused(changed([](PageGroup& g) { g.paths[0].count = 0; }), "no points");

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// Outlines that lie beside each other, without the sides that two of them share.
+#pragma once
+
+#include <algorithm>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+namespace frontmost::shading {
+
+/// How far a side reaches under its neighbour, and how far from its ends it does; pixels, 0 for none.
+struct SideHem {
+  float width = 0, inset = 0;
+  friend bool operator==(const SideHem&, const SideHem&) = default;
+};
+
+/// A corner, and the side from it to the next.
+struct NetCorner {
+  glm::dvec2 at{0};
+  SideHem hem;
+};
+
+/// Corners are rounded to 1/4096 pixel, and sides are parted where corners of others lie on them; so what lies beside
+/// each other has the same sides there, once to and once fro. O(n log n) in the number of corners, for sides that are
+/// short beside the whole.
+class SideNet {
+ public:
+  /// Adds a closed outline, as number `outline` of the caller's.
+  void add(std::span<const NetCorner> corners, std::uint32_t outline);
+  void clear() { raw_.clear(); }
+  /// Parts sides. All is to be added before.
+  void weave();
+
+  /// Calls share(a, b) for outlines that share a side.
+  template <class Share>
+  void for_each_shared(const Share& share) const {
+    for (std::size_t i = 0, j; i < sides_.size(); i = j) {
+      for (j = i + 1; j < sides_.size() && joins_same(sides_[i], sides_[j]); ++j)
+        if (sides_[j].from != sides_[j - 1].from) share(sides_[j - 1].outline, sides_[j].outline);
+    }
+  }
+  /// Calls keep(corners) for every closed ring of what is left without shared sides.
+  template <class Keep>
+  void for_each_ring(const Keep& keep) {
+    begin_rings();
+    while (next_ring()) keep(std::span<const NetCorner>(ring_));
+  }
+
+ private:
+  using Point = glm::i64vec2;
+  struct Side {
+    std::uint32_t from, to, outline;
+    SideHem hem;
+  };
+  struct Raw {
+    Point from, to;
+    std::uint32_t outline;
+    SideHem hem;
+  };
+
+  static bool joins_same(const Side& a, const Side& b) {
+    return std::minmax(a.from, a.to) == std::minmax(b.from, b.to);
+  }
+  [[nodiscard]] std::uint32_t number(const Point& p) const;
+  void sort_points();
+  void find_between(const Point& from, const Point& to);
+  void begin_rings();
+  bool next_ring();
+  void straighten();
+
+  std::vector<Raw> raw_;
+  std::vector<Point> points_;      ///< by rows, and by x in a row
+  std::vector<std::size_t> rows_;  ///< where each begins
+  std::int64_t low_y_ = 0, row_height_ = 1;
+  std::vector<std::pair<double, std::uint32_t>> between_;
+  std::vector<Side> sides_;  ///< those between the same points together
+  std::vector<Side> left_;   ///< by where they begin
+  std::vector<std::uint8_t> is_used_;
+  std::size_t next_ = 0;
+  std::vector<NetCorner> ring_;
+};
+
+}  // namespace frontmost::shading

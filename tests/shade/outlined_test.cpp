@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shapes of figures: what is joined, what stays apart, and that nothing is lost.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "frontmost/figure.h"
+#include "frontmost/zbuffer.h"
+#include "shade/figure/side_net.h"
+#include "shade/support.h"
+
+namespace frontmost {
+namespace {
+
+using namespace test;
+using shading::NetCorner;
+using shading::SideNet;
+
+/// A polygon of a figure made by hand, counter-clockwise as it is seen.
+struct Tile {
+  std::vector<glm::dvec2> corners;
+  glm::u8vec4 color{0};
+};
+constexpr glm::u8vec4 kRed(255, 0, 0, 255), kBlue(0, 0, 255, 255), kGlass(255, 0, 0, 99);
+
+Tile box(double x, double y, double width, double height, const glm::u8vec4& color = kRed) {
+  return {{{x, y}, {x, y + height}, {x + width, y + height}, {x + width, y}}, color};
+}
+
+ColoredOrder order_of(const std::vector<Tile>& tiles) {
+  ColoredOrder colored;
+  colored.order.view = front_view();
+  for (const Tile& tile : tiles) {
+    colored.order.polygons.push_back({0, std::uint32_t(tile.corners.size()), colored.order.corners.size()});
+    for (const glm::dvec2& corner : tile.corners) colored.order.corners.push_back({{corner.x, corner.y, 1}, false});
+    colored.shapes.push_back(std::uint32_t(colored.shapes.size()));
+    colored.colors.push_back(tile.color);
+  }
+  return colored;
+}
+
+/// Without hems: nothing hides.
+Figure bare(const ColoredOrder& colored) {
+  return outlined(colored, 1, [](PrimitiveId) { return false; });
+}
+double area_of(const Figure& figure, const FigureRing& ring) {
+  double twice = 0;
+  for (std::size_t k = 0; k < ring.corner_count; ++k) {
+    const glm::dvec2 p = figure.corners[ring.first_corner + k];
+    const glm::dvec2 q = figure.corners[ring.first_corner + (k + 1) % ring.corner_count];
+    twice += q.x * p.y - p.x * q.y;
+  }
+  return twice / 2;
+}
+/// Holes turn the other way.
+double area_of(const Figure& figure, std::size_t shape) {
+  double area = 0;
+  for (std::uint32_t i = 0; i < figure.shapes[shape].ring_count; ++i)
+    area += area_of(figure, figure.rings[figure.shapes[shape].first_ring + i]);
+  return area;
+}
+
+TEST(MergeNeighbours, MakesOneSquareOfMany) {
+  std::vector<Tile> tiles;
+  for (int y = 0; y < 7; ++y)
+    for (int x = 0; x < 9; ++x) tiles.push_back(box(x / 3.0, y / 7.0, 1 / 3.0, 1 / 7.0));
+  const Figure figure = bare(merge_neighbours(order_of(tiles)));
+  ASSERT_EQ(figure.shapes.size(), 1u);
+  ASSERT_EQ(figure.rings.size(), 1u);
+  EXPECT_EQ(figure.corners.size(), 4u);
+  EXPECT_NEAR(area_of(figure, 0), 3, 2e-3);
+}
+
+TEST(MergeNeighbours, PartsSidesWhereCornersLieOnThem) {
+  const ColoredOrder tiles = order_of({box(0, 0, 4, 4), box(4, 0, 3, 1.3), box(4, 1.3, 3, 2.7)});
+  const Figure figure = bare(merge_neighbours(tiles));
+  ASSERT_EQ(figure.shapes.size(), 1u);
+  EXPECT_EQ(figure.corners.size(), 4u);
+  EXPECT_NEAR(area_of(figure, 0), 28, 1e-2);
+}
+
+TEST(MergeNeighbours, LeavesHolesOpen) {
+  std::vector<Tile> tiles;
+  for (int y = 0; y < 3; ++y)
+    for (int x = 0; x < 3; ++x)
+      if (x != 1 || y != 1) tiles.push_back(box(x, y, 1, 1));
+  const Figure figure = bare(merge_neighbours(order_of(tiles)));
+  ASSERT_EQ(figure.shapes.size(), 1u);
+  EXPECT_EQ(figure.rings.size(), 2u);
+  EXPECT_EQ(figure.corners.size(), 8u);
+  EXPECT_NEAR(area_of(figure, 0), 8, 1e-9);
+}
+
+TEST(MergeNeighbours, LeavesApartWhatDoesNotTouchOrHasAnotherColour) {
+  EXPECT_EQ(merge_neighbours(order_of({box(0, 0, 1, 1), box(1.1, 0, 1, 1)})).shapes.back(), 1u);
+  EXPECT_EQ(merge_neighbours(order_of({box(0, 0, 1, 1), box(1, 1, 1, 1)})).shapes.back(), 1u);  // at a corner
+  EXPECT_EQ(merge_neighbours(order_of({box(0, 0, 1, 1), box(1, 0, 1, 1, kBlue)})).shapes.back(), 1u);
+  EXPECT_EQ(merge_neighbours(order_of({box(0, 0, 1, 1), box(1, 0, 1, 1, kGlass)})).shapes.back(), 1u);
+}
+
+TEST(MergeNeighbours, KeepsTheOrderOfWhatCovers) {
+  // The blue one covers the first red one, so that the reds may not be painted together after it.
+  const ColoredOrder merged =
+      merge_neighbours(order_of({box(0, 0, 2, 2), box(1, 1, 0.5, 0.5, kBlue), box(2, 0, 2, 2)}));
+  EXPECT_EQ(merged.shapes, (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(merged.colors[1], kBlue);
+  // Here it covers none: both become one, in the place of the later.
+  const ColoredOrder free = merge_neighbours(order_of({box(0, 0, 2, 2), box(5, 1, 1, 1, kBlue), box(2, 0, 2, 2)}));
+  EXPECT_EQ(free.shapes, (std::vector<std::uint32_t>{0, 1, 1}));
+  EXPECT_EQ(free.colors[0], kBlue);
+}
+
+TEST(MergeNeighbours, TranslucentNeighboursBecomeOneUnlessTheyOverlap) {
+  EXPECT_EQ(merge_neighbours(order_of({box(0, 0, 2, 2, kGlass), box(2, 0, 2, 2, kGlass)})).shapes.back(), 0u);
+  EXPECT_EQ(merge_neighbours(order_of({box(0, 0, 2, 2, kGlass), box(1.9, 0, 2, 2, kGlass)})).shapes.back(), 1u);
+}
+
+TEST(MergeNeighbours, NothingIsLostOfAScene) {
+  const Scene scene = builtin("gallery");
+  const Surfaces surfaces(scene);
+  const View view = frame(surfaces, 160, 90);
+  ColorOptions options;
+  options.shade.shading = Shading::ids;
+  const ColoredOrder colored =
+      color_order(surfaces, zbuffer(surfaces, view), visible_parts(painter(surfaces, view)), options);
+  const ColoredOrder merged = merge_neighbours(colored);
+  EXPECT_EQ(merged.order.polygons.size(), colored.order.polygons.size());
+  EXPECT_LT(merged.shapes.back() * 10, colored.shapes.back());
+  double before = 0, after = 0;
+  const Figure apart = bare(colored), joined = bare(merged);
+  for (std::size_t i = 0; i < apart.shapes.size(); ++i) before += area_of(apart, i);
+  for (std::size_t i = 0; i < joined.shapes.size(); ++i) after += area_of(joined, i);
+  EXPECT_NEAR(after, before, before * 1e-4);
+  EXPECT_LT(joined.corners.size() * 3, apart.corners.size());
+}
+
+TEST(Outlined, HemsReachUnderLaterShapesAlone) {
+  const ColoredOrder tiles = order_of({box(0, 0, 8, 8), box(8, 0, 8, 4, kBlue), box(8, 4, 8, 4, kBlue)});
+  const Figure figure = outlined(tiles, 1);
+  ASSERT_EQ(figure.shapes.size(), 3u);
+  EXPECT_GT(area_of(figure, 0), 64 + 3);
+  EXPECT_LT(area_of(figure, 0), 64 + 8);
+  EXPECT_NEAR(area_of(figure, 2), 32, 1e-9);
+  // As one shape the blue ones need none between them, and the red one has its own still.
+  const Figure merged = outlined(merge_neighbours(tiles), 1);
+  ASSERT_EQ(merged.shapes.size(), 2u);
+  EXPECT_GT(area_of(merged, 0), 64 + 3);
+  EXPECT_NEAR(area_of(merged, 1), 64, 1e-2);
+}
+
+TEST(Outlined, RefusesListsThatDoNotMatch) {
+  ColoredOrder tiles = order_of({box(0, 0, 1, 1)});
+  tiles.colors.clear();
+  EXPECT_THROW((void)bare(tiles), Error);
+  EXPECT_THROW((void)merge_neighbours(tiles), Error);
+  EXPECT_THROW((void)outlined(order_of({box(0, 0, 1, 1)}), 0), Error);
+  EXPECT_TRUE(bare({}).shapes.empty());
+}
+
+TEST(SideNet, GivesEveryRingOnceWhateverWayOutlinesTouch) {
+  SideNet net;
+  const auto add = [&](std::vector<glm::dvec2> corners, std::uint32_t number) {
+    std::vector<NetCorner> list;
+    for (const glm::dvec2& corner : corners) list.push_back({corner, {}});
+    net.add(list, number);
+  };
+  // A bow tie: two triangles that share a corner alone, and a third that shares a side with the first.
+  add({{0, 0}, {0, 2}, {1, 1}}, 0);
+  add({{2, 0}, {1, 1}, {2, 2}}, 1);
+  add({{0, 0}, {-1, 1}, {0, 2}}, 2);
+  net.weave();
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> shared;
+  net.for_each_shared([&](std::uint32_t a, std::uint32_t b) { shared.emplace_back(std::minmax(a, b)); });
+  ASSERT_EQ(shared.size(), 1u);
+  EXPECT_EQ(shared[0], std::make_pair(0u, 2u));
+  std::size_t corners = 0;
+  net.for_each_ring([&](std::span<const NetCorner> ring) { corners += ring.size(); });
+  EXPECT_EQ(corners, 7u);
+}
+
+}  // namespace
+}  // namespace frontmost
