@@ -64,8 +64,9 @@ struct Drawing {
 /// triangles. Ends of parts are rounded to doubles. Vertices at one place count as one, so that open seams of files
 /// without shared vertices are closed. Triangles between the eye and the near plane hide nothing; those with holes
 /// (alpha mode MASK) hide as if they had none.
-/// An intersection belongs to two triangles each of which has corners strictly on either side of the other's plane:
-/// what only stands on a surface does not pass through it, and draws its own edges. Its ends are rounded, so that a
+/// An intersection belongs to two triangles each of which has corners strictly on either side of the other's plane, or
+/// to an edge that lies in the plane of a triangle between its own two, and is not drawn itself: what only stands on a
+/// surface does not pass through it, and draws its own edges. Its ends are rounded, so that a
 /// plane counts as holding an end that their rounding leaves open. Surfaces that cross give lines without gaps, end to
 /// end to the bit.
 /// Near-linear: every edge is held against the triangles in the cells of a screen grid that it passes.

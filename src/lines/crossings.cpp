@@ -14,6 +14,7 @@
 
 #include "base/parallel.h"
 #include "lines/box_tree.h"
+#include "lines/edge_contacts.h"
 #include "lines/joined.h"
 #include "lines/sort_in_parts.h"
 #include "view/sight.h"
@@ -26,14 +27,16 @@ constexpr std::size_t kGroupsPerPart = 16, kPairsPerPoll = 16384;
 /// A triangle with its vertices in ascending order, so that whoever asks its plane gets the same bits.
 class Face {
  public:
-  Face(const WeldedMesh& mesh, std::uint32_t triangle)
-      : vertices(ascending(mesh.triangles[triangle])),
+  Face(const WeldedMesh& mesh, std::uint32_t number)
+      : triangle(number),
+        vertices(ascending(mesh.triangles[number])),
         plane(mesh.positions[vertices.x], mesh.positions[vertices.y], mesh.positions[vertices.z]) {}
 
   [[nodiscard]] bool has(std::uint32_t vertex) const {
     return vertex == vertices.x || vertex == vertices.y || vertex == vertices.z;
   }
 
+  const std::uint32_t triangle;
   const glm::uvec3 vertices;
   const FacePlane plane;
 
@@ -52,6 +55,16 @@ struct Heights {
   [[nodiscard]] bool straddle() const {
     const auto any = [&](int sign) { return of[0].sign == sign || of[1].sign == sign || of[2].sign == sign; };
     return any(1) && any(-1);
+  }
+  /// The corner that alone is not in the plane; -1 where there is no such.
+  [[nodiscard]] int beside() const {
+    int corner = -1;
+    for (int k = 0; k < 3; ++k) {
+      if (of[k].sign == 0) continue;
+      if (corner >= 0) return -1;
+      corner = k;
+    }
+    return corner;
   }
 };
 
@@ -126,12 +139,29 @@ bool lie_apart(const WeldedMesh& mesh, const std::array<const Face*, 2>& faces, 
   return turn(mesh, a[from], a[to], shared, next) * heights.of[from].sign * order > 0;
 }
 
+/// What was found so far, and edges that lie in planes.
+struct Found {
+  std::vector<Crossing> crossings;
+  std::vector<EdgeContact> contacts;
+
+  void add_contact(const Face& face, int beside, std::uint32_t triangle) {
+    if (beside < 0) return;
+    const glm::uvec3& v = face.vertices;
+    contacts.push_back({beside == 0 ? v.y : v.x, beside == 2 ? v.y : v.z, triangle});
+  }
+};
+
 /// The segment of two triangles that share one vertex or none.
-std::optional<Crossing> crossing(const WeldedMesh& mesh, const std::array<const Face*, 2>& faces) {
+std::optional<Crossing> crossing(const WeldedMesh& mesh, const std::array<const Face*, 2>& faces, Found& found) {
   const Heights first = heights(mesh, *faces[0], *faces[1]);
-  if (!first.straddle()) return std::nullopt;
+  const int first_beside = first.beside();
+  if (!first.straddle() && first_beside < 0) return std::nullopt;
   const Heights second = heights(mesh, *faces[1], *faces[0]);
-  if (!second.straddle()) return std::nullopt;
+  const int second_beside = second.beside();
+  if (!second.straddle() && second_beside < 0) return std::nullopt;
+  found.add_contact(*faces[0], first_beside, faces[1]->triangle);
+  found.add_contact(*faces[1], second_beside, faces[0]->triangle);
+  if (first_beside >= 0 || second_beside >= 0) return std::nullopt;
   const std::optional<std::uint32_t> shared = shared_vertex(*faces[0], *faces[1]);
   if (shared && lie_apart(mesh, faces, first, *shared)) return std::nullopt;
   const std::array<Meeting, 2> ends[2] = {meetings(mesh, *faces[0], first), meetings(mesh, *faces[1], second)};
@@ -173,41 +203,59 @@ class Tally {
 };
 
 /// Appends the segment of two triangles, if there is one.
-void add_crossing(const WeldedMesh& mesh, std::uint32_t left, std::uint32_t right, std::vector<Crossing>& list) {
+void add_crossing(const WeldedMesh& mesh, std::uint32_t left, std::uint32_t right, Found& found) {
   const Face one(mesh, left), two(mesh, right);
-  std::optional<Crossing> found = crossing(mesh, {&one, &two});
-  if (!found) return;
-  found->left = left;
-  found->right = right;
-  const glm::dvec3 &p = found->from.place, &q = found->to.place;
-  if (std::make_tuple(q.x, q.y, q.z) < std::make_tuple(p.x, p.y, p.z)) std::swap(found->from, found->to);
-  if (p != q) list.push_back(*found);
+  std::optional<Crossing> segment = crossing(mesh, {&one, &two}, found);
+  if (!segment) return;
+  segment->left = left;
+  segment->right = right;
+  found.crossings.push_back(*segment);
+}
+
+/// Makes the lesser end the first, and drops those that rounding left without a length.
+void order_ends(std::vector<Crossing>& crossings) {
+  for (Crossing& c : crossings) {
+    const glm::dvec3 &p = c.from.place, &q = c.to.place;
+    if (std::make_tuple(q.x, q.y, q.z) < std::make_tuple(p.x, p.y, p.z)) std::swap(c.from, c.to);
+  }
+  crossings.erase(
+      std::remove_if(crossings.begin(), crossings.end(), [](const Crossing& c) { return c.from.place == c.to.place; }),
+      crossings.end());
 }
 
 }  // namespace
 
-std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const std::vector<std::uint32_t>& left_out,
-                                     const Execution& execution) {
-  if (mesh.triangles.size() < left_out.size() + 2) return {};
-  const BoxTree tree(mesh, left_out, execution);
-  std::vector<std::vector<Crossing>> lists((tree.group_count() + kGroupsPerPart - 1) / kGroupsPerPart);
+std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features, const Execution& execution) {
+  if (mesh.triangles.size() < features.twins.size() + 2) return {};
+  const BoxTree tree(mesh, features.twins, execution);
+  const std::size_t parts = (tree.group_count() + kGroupsPerPart - 1) / kGroupsPerPart;
+  std::vector<std::vector<Crossing>> crossings(parts);
+  std::vector<std::vector<EdgeContact>> contacts(parts);
   Tally tally;
   parallel_for(execution, tree.group_count(), kGroupsPerPart, [&](std::size_t begin, std::size_t end) {
-    std::vector<Crossing>& list = lists[begin / kGroupsPerPart];
+    Found found;
     std::size_t counted = 0, asked = 0;
+    const auto count = [&] {
+      const std::size_t all = found.crossings.size() + found.contacts.size();
+      tally.add(all - counted);
+      counted = all;
+    };
     for (std::size_t group = begin; group < end; ++group) {
       check_cancelled(execution);
       tree.visit_pairs(group, [&](std::uint32_t a, std::uint32_t b) {
-        add_crossing(mesh, std::min(a, b), std::max(a, b), list);
+        add_crossing(mesh, std::min(a, b), std::max(a, b), found);
         if (++asked % kPairsPerPoll != 0) return;
         check_cancelled(execution);
-        tally.add(list.size() - counted);
-        counted = list.size();
+        count();
       });
     }
-    tally.add(list.size() - counted);
+    count();
+    crossings[begin / kGroupsPerPart] = std::move(found.crossings);
+    contacts[begin / kGroupsPerPart] = std::move(found.contacts);
   });
-  std::vector<Crossing> all = joined(lists);
+  std::vector<Crossing> all = joined(crossings);
+  add_contacts(mesh, features, joined(contacts), all);
+  order_ends(all);
   sort_in_parts(
       all, [](const Crossing& a, const Crossing& b) { return order(a) < order(b); }, execution);
   all.erase(std::unique(all.begin(), all.end(), is_same_line), all.end());

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "lines/welded_mesh.h"
+#include "lines/feature_edges.h"
 
 namespace frontmost::lines_detail {
 
@@ -22,12 +22,11 @@ struct Crossing {
 };
 
 /// The segments of all pairs of triangles each of which has a corner strictly on either side of the other's plane, by
-/// exact signs. Ends are computed from the edge and the plane that they are on, so that the next segment along a
-/// surface begins where one ends, to the bit. Triangles that are there twice give each segment once, and those
-/// `left_out`, which are in order, none. In the order of their ends. O(triangles log triangles + pairs whose boxes
-/// touch).
+/// exact signs, and those of add_contacts(). Ends are computed from the edge and the plane that they are on, so that
+/// the next segment along a surface begins where one ends, to the bit. Triangles that are there twice give each segment
+/// once. In the order of their ends. O(triangles log triangles + pairs whose boxes touch).
 /// \throws Error limit_exceeded for more than 2^25 segments.
-[[nodiscard]] std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const std::vector<std::uint32_t>& left_out,
+[[nodiscard]] std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features,
                                                    const Execution& execution);
 
 }  // namespace frontmost::lines_detail

@@ -99,7 +99,7 @@ Drawing lines(const Surfaces& surfaces, const View& view, const LineOptions& opt
     for (const std::uint32_t twin : features.twins) seen.facing[twin] = 0;
   report_progress(execution, "lines", 0.1);
   std::vector<Crossing> crossings;
-  if (options.intersections) crossings = find_crossings(mesh, features.twins, execution);
+  if (options.intersections) crossings = find_crossings(mesh, features, execution);
   const Candidates candidates(mesh, std::move(features.edges), std::move(crossings));
   report_progress(execution, "lines", 0.2);
   const OccluderGrid grid(seen, view, options.counts_hidden, execution);

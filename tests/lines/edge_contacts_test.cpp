@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// Surfaces that pass through each other exactly along edges and diagonals: a line, once.
+#include <gtest/gtest.h>
+
+#include "lines/crossings.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+using namespace lines_detail;
+
+/// With the diagonal from a to c.
+void add_quad(Mesh& mesh, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d) {
+  add_triangle(mesh, a, b, c);
+  add_triangle(mesh, a, c, d);
+}
+
+/// Every face with one diagonal or the other.
+Mesh box(const glm::vec3& low, const glm::vec3& high, bool turned) {
+  Mesh mesh;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const float side : {low[axis], high[axis]}) {
+      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+      const auto at = [&](float at_u, float at_v) {
+        glm::vec3 p;
+        p[axis] = side;
+        p[u] = at_u;
+        p[v] = at_v;
+        return p;
+      };
+      const glm::vec3 a = at(low[u], low[v]), b = at(high[u], low[v]), c = at(high[u], high[v]),
+                      d = at(low[u], high[v]);
+      if (turned)
+        add_quad(mesh, b, c, d, a);
+      else
+        add_quad(mesh, a, b, c, d);
+    }
+  return mesh;
+}
+
+Mesh joined_meshes(Mesh a, const Mesh& b) {
+  for (const glm::uvec3& t : b.triangles) add_triangle(a, b.positions[t.x], b.positions[t.y], b.positions[t.z]);
+  return a;
+}
+
+/// The length of all segments; none of them overlap.
+double crossing_length(const Mesh& mesh) {
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  double length = 0;
+  std::vector<const DrawnEdge*> crossings;
+  const Drawing drawing = lines(surfaces, frame(surfaces, 100, 100), {.crease_angle = 0.1});
+  for (const DrawnEdge& edge : drawing.edges) {
+    const glm::dvec3 along = edge.to - edge.from;
+    // Nor does any lie along an edge that is drawn.
+    for (const DrawnEdge& other : drawing.edges) {
+      if (&other == &edge || edge.kind != EdgeKind::intersection) continue;
+      const auto place = [&](const glm::dvec3& p) { return glm::dot(p - edge.from, along) / glm::dot(along, along); };
+      const auto off = [&](const glm::dvec3& p) { return glm::length(p - edge.from - along * place(p)); };
+      if (off(other.from) > 1e-9 || off(other.to) > 1e-9) continue;
+      const auto [first, last] = std::minmax(place(other.from), place(other.to));
+      EXPECT_FALSE(first < 1 - 1e-9 && last > 1e-9);
+    }
+    if (edge.kind == EdgeKind::intersection) length += glm::length(along);
+  }
+  return length;
+}
+
+const double root_2 = std::sqrt(2.0);
+
+TEST(EdgeContacts, ASheetAlongADiagonal) {
+  Mesh flat;
+  add_quad(flat, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0});
+  Mesh through = flat;
+  add_quad(through, {-1, -1, -1}, {1, 1, -1}, {1, 1, 1}, {-1, -1, 1});
+  EXPECT_NEAR(crossing_length(through), 2 * root_2, 1e-12);
+  Mesh beyond = flat;  // one triangle that reaches farther than the diagonal
+  add_triangle(beyond, {-3, -3, -1}, {3, 3, -1}, {0, 0, 3});
+  EXPECT_NEAR(crossing_length(beyond), 2 * root_2, 1e-12);
+  Mesh within = flat;  // and one that ends within
+  add_triangle(within, {-0.5f, -0.5f, -1}, {0.5f, 0.5f, -1}, {0, 0, 1});
+  EXPECT_NEAR(crossing_length(within), root_2 / 2, 1e-12);
+  Mesh standing = flat;
+  add_quad(standing, {-1, -1, 0}, {1, 1, 0}, {1, 1, 1}, {-1, -1, 1});
+  EXPECT_EQ(crossing_length(standing), 0);
+}
+
+TEST(EdgeContacts, EdgesAlongEachOther) {
+  Mesh mesh;
+  add_quad(mesh, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0});
+  Mesh through = mesh;  // two quads of which one stands on the diagonal and one hangs from it
+  add_quad(through, {-2, -2, 0}, {2, 2, 0}, {2, 2, 1}, {-2, -2, 1});
+  add_quad(through, {-2, -2, 0}, {2, 2, 0}, {2, 2, -1}, {-2, -2, -1});
+  EXPECT_NEAR(crossing_length(through), 2 * root_2, 1e-12);
+  Mesh folded = mesh;  // both on one side: they touch
+  add_quad(folded, {-2, -2, 0}, {2, 2, 0}, {2, 2, 1}, {-2, -2, 1});
+  add_quad(folded, {-2, -2, 0}, {2, 2, 0}, {2, 2.5f, 1}, {-2, -1.5f, 1});
+  EXPECT_EQ(crossing_length(folded), 0);
+}
+
+TEST(EdgeContacts, APlaneThroughTheCornersOfACube) {
+  for (const bool turned : {false, true})
+    for (const bool flipped : {false, true}) {
+      Mesh mesh = box(glm::vec3(-1), glm::vec3(1), turned);
+      const float s = flipped ? -1.0f : 1.0f;
+      add_quad(mesh, {-2 * s, -2, -2}, {2 * s, 2, -2}, {2 * s, 2, 2}, {-2 * s, -2, 2});
+      // Its diagonals above and below; the upright edges are drawn anyway.
+      EXPECT_NEAR(crossing_length(mesh), 4 * root_2, 1e-12) << turned << flipped;
+    }
+}
+
+TEST(EdgeContacts, BeamsThroughEachOther) {
+  for (const bool turned : {false, true}) {
+    const Mesh beam = box({-3, -1, -1}, {3, 1, 1}, turned);
+    // Level above and below: they cross in the four upright lines.
+    EXPECT_NEAR(crossing_length(joined_meshes(beam, box({-1, -3, -1}, {1, 3, 1}, !turned))), 8, 1e-12);
+    EXPECT_NEAR(crossing_length(joined_meshes(beam, box({-1, -3, -1}, {1, 3, 1}, turned))), 8, 1e-12);
+    // Through its side and out at the other: two squares.
+    EXPECT_NEAR(crossing_length(joined_meshes(beam, box({-0.5f, -3, -0.5f}, {0.5f, 3, 0.5f}, turned))), 8, 1e-12);
+    // A beam whose edges lie in the middle of the other's sides, half a turn of 45 degrees: each side's middle line.
+    Mesh diamond;
+    const glm::vec2 corners[4] = {{2, 0}, {0, 2}, {-2, 0}, {0, -2}};
+    for (int k = 0; k < 4; ++k) {
+      const glm::vec2 p = corners[k], q = corners[(k + 1) % 4];
+      add_quad(diamond, {-4, p.x, p.y}, {4, p.x, p.y}, {4, q.x, q.y}, {-4, q.x, q.y});
+    }
+    // Inscribed: its edges touch the diamond's sides from within.
+    EXPECT_EQ(crossing_length(joined_meshes(beam, diamond)), 0);
+  }
+}
+
+TEST(EdgeContacts, OrderOfTrianglesAndCornersDoesNotMatter) {
+  Random random(4);
+  Mesh mesh = box(glm::vec3(-1), glm::vec3(1), false);
+  add_quad(mesh, {-2, -2, -2}, {2, 2, -2}, {2, 2, 2}, {-2, -2, 2});
+  for (int trial = 0; trial < 20; ++trial) {
+    for (std::size_t i = mesh.triangles.size() - 1; i > 0; --i)
+      std::swap(mesh.triangles[i], mesh.triangles[std::size_t(random.below(int(i) + 1))]);
+    for (glm::uvec3& t : mesh.triangles) t = {t.y, t.z, t.x};
+    EXPECT_NEAR(crossing_length(mesh), 4 * root_2, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace frontmost::test
