@@ -49,7 +49,6 @@ double crossing_length(const Mesh& mesh) {
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
   double length = 0;
-  std::vector<const DrawnEdge*> crossings;
   const Drawing drawing = lines(surfaces, frame(surfaces, 100, 100), {.crease_angle = 0.1});
   for (const DrawnEdge& edge : drawing.edges) {
     const glm::dvec3 along = edge.to - edge.from;
@@ -59,8 +58,8 @@ double crossing_length(const Mesh& mesh) {
       const auto place = [&](const glm::dvec3& p) { return glm::dot(p - edge.from, along) / glm::dot(along, along); };
       const auto off = [&](const glm::dvec3& p) { return glm::length(p - edge.from - along * place(p)); };
       if (off(other.from) > 1e-9 || off(other.to) > 1e-9) continue;
-      const auto [first, last] = std::minmax(place(other.from), place(other.to));
-      EXPECT_FALSE(first < 1 - 1e-9 && last > 1e-9);
+      const double a = place(other.from), b = place(other.to);
+      EXPECT_FALSE(std::min(a, b) < 1 - 1e-9 && std::max(a, b) > 1e-9);
     }
     if (edge.kind == EdgeKind::intersection) length += glm::length(along);
   }

@@ -82,11 +82,25 @@ bool are_flat(const Surfaces& surfaces, PrimitiveId a, PrimitiveId b) {
   return true;
 }
 
+/// With holes, borders between objects, and parts through each other. Not nonmanifold-crash.obj: of its sheets a
+/// rounding apart, the z-buffer shows now the one and now the other.
+constexpr const char* others[] = {"cad/fandisk.obj",
+                                  "cad/linkrod.glb",
+                                  "assembly/as1.glb",
+                                  "hero/suzanne.glb",
+                                  "difficult/self-intersect-a.obj",
+                                  "difficult/handmade/interpenetrating-planes.obj",
+                                  "difficult/handmade/t-junction.obj"};
+
 TEST(DrawnModels, BordersOfSeenTrianglesLieOnDrawnLines) {
   FRONTMOST_NEEDS_MODELS();
+  std::vector<Scene> scenes;
+  for (const char* name : names) scenes.push_back(load(model(name)));
+  for (const char* name : others) scenes.push_back(load(model(name)));
+  for (const char* name : {"cubes", "city"}) scenes.push_back(builtin(name));
   std::size_t borders = 0, bare = 0;
-  for (const char* name : names) {
-    const Scene scene = load(model(name));
+  for (const Scene& scene : scenes) {
+    SCOPED_TRACE(scene.name);
     const Surfaces surfaces(scene);
     for (const View& view : views_of(surfaces)) {
       const Visible visible = zbuffer(surfaces, view);
@@ -98,7 +112,10 @@ TEST(DrawnModels, BordersOfSeenTrianglesLieOnDrawnLines) {
         ++borders;
         // Where the near plane cuts a surface open there is no edge.
         const bool is_cut = std::max(visible.keys[a], visible.keys[b]) > 0.98f;
-        bare += !near[a] && !near[b] && !is_cut;
+        const bool is_bare = !near[a] && !near[b] && !is_cut;
+        if (is_bare && bare++ < 10)
+          ADD_FAILURE() << a % std::size_t(view.width) << ", " << a / std::size_t(view.width) << ": "
+                        << visible.primitives[a] << " and " << visible.primitives[b];
       };
       const auto width = std::size_t(view.width);
       for (std::size_t i = 0; i + width < visible.primitives.size(); ++i) {
@@ -142,6 +159,61 @@ TEST(DrawnModels, AreAsLongAsAnotherSystemDrawsThem) {
     for (const DrawnPart& part : lines(surfaces, view).parts)
       if (part.hidden_by == 0) length += glm::distance(part.from, part.to) * unit;
     EXPECT_NEAR(length, reference.length, reference.tolerance * reference.length) << reference.name;
+  }
+}
+
+glm::dvec3 right_of(const glm::dvec3& towards_viewer) {
+  return glm::normalize(glm::cross(glm::dvec3(0, 0, 1), towards_viewer));
+}
+
+/// As it is seen, of a closed curve from t = 0 to 2 pi.
+template <class Curve>
+double seen_length(const Curve& curve, const glm::dvec3& towards_viewer) {
+  const glm::dvec3 d = glm::normalize(towards_viewer), right = right_of(d), up = glm::cross(d, right);
+  const auto at = [&](int i) {
+    const glm::dvec3 p = curve(2 * 3.14159265358979323846 * i / 2000);
+    return glm::dvec2(glm::dot(p, right), glm::dot(p, up));
+  };
+  double length = 0;
+  for (int i = 0; i < 2000; ++i) length += glm::distance(at(i), at(i + 1));
+  return length;
+}
+
+double circle_length(double radius, const glm::dvec3& towards_viewer) {
+  return seen_length([&](double t) { return radius * glm::dvec3(std::cos(t), std::sin(t), 0); }, towards_viewer);
+}
+
+/// The circles of two cylinders, one on the other, and the four sides.
+double cylinders_length(const glm::dvec3& towards_viewer) {
+  const double upright = glm::length(glm::dvec2(towards_viewer)) / glm::length(towards_viewer);
+  return 2 * circle_length(10, towards_viewer) + 2 * circle_length(8, towards_viewer) + 2 * (30 + 22) * upright;
+}
+
+struct HiddenReference {
+  const char* name;
+  glm::dvec3 towards_viewer;
+  double (*all)(const glm::dvec3&);  ///< the length of what is seen and hidden, by formula
+  double seen, tolerance;            ///< Open CASCADE's, and of `all`
+};
+
+// The stored drawings have no hidden lines. Where all lines of a shape are known by formula, they are the rest. Not of
+// the torus: where it curves away from the eye, silhouettes of its triangles go to and fro, 40 of 300 long, all hidden.
+constexpr HiddenReference hidden_references[] = {
+    {"cad/two-cylinders.stl", {1, -1, 1}, cylinders_length, 203.49, 0.01},
+    {"cad/two-cylinders.stl", {0.31, -0.82, 0.48}, cylinders_length, 203.5, 0.01}};
+
+TEST(DrawnModels, HideAsMuchAsAnotherSystemLeavesOut) {
+  FRONTMOST_NEEDS_MODELS();
+  for (const HiddenReference& reference : hidden_references) {
+    const Scene scene = load(model(reference.name));
+    const Surfaces surfaces(scene);
+    const View view = frame(surfaces, 1000, 1000, {.orthographic = true, .forward = -reference.towards_viewer});
+    const double unit = (view.projection.right - view.projection.left) / view.width;
+    double hidden = 0;
+    for (const DrawnPart& part : lines(surfaces, view).parts)
+      if (part.hidden_by != 0) hidden += glm::distance(part.from, part.to) * unit;
+    const double all = reference.all(reference.towards_viewer);
+    EXPECT_NEAR(hidden, all - reference.seen, reference.tolerance * all) << reference.name << " of " << all;
   }
 }
 
