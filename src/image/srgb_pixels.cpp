@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Rows of pixels as PNG wants them: sRGB, straight alpha, whole numbers.
+
 #include "image/srgb_pixels.h"
 
 #include <algorithm>

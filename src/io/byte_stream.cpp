@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reading a file or a pipe once from its beginning to its end, and again where it can be.
+
 #include "io/byte_stream.h"
 
 #include <fcntl.h>
@@ -33,8 +35,10 @@ std::size_t ByteStream::read(std::byte* to, std::size_t count) {
   std::size_t done = 0;
   while (done < count) {
     const ssize_t got = ::read(descriptor_, to + done, count - done);
+    // A signal that came in between is no error.
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail_to_read_by_errno(name_, "cannot read");
+    // Fewer than asked for is no end: pipes give what they have. Only nothing is.
     if (got == 0) break;
     done += std::size_t(got);
   }

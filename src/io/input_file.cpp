@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// A whole file in memory: mapped where that pays, else read, with a limit that is checked before memory is asked for.
+
 #include "io/input_file.h"
 
 #include <fcntl.h>
@@ -74,6 +76,7 @@ InputFile InputFile::map(int descriptor, std::size_t size, const std::string& na
 InputFile InputFile::read_stream(int descriptor, const std::string& name, std::uint64_t max_bytes) {
   struct ::stat status {};
   if (::fstat(descriptor, &status) == 0 && (S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode)))
+    // /dev/zero has no end, and would fill the memory up to any limit that serves for models.
     max_bytes = std::min(max_bytes, max_device_bytes);
   // realloc moves large blocks by remapping pages, so growing holds no second copy.
   std::size_t capacity = mapping_threshold, size = 0;
@@ -81,10 +84,12 @@ InputFile InputFile::read_stream(int descriptor, const std::string& name, std::u
   Data data(start, Delete{});
   while (start != nullptr) {
     if (size == capacity) {
+      // There may be just as much as there is room for; asking for more room says that there is one more.
       check_size(size + 1, max_bytes, name);
       capacity *= 2;
       start = static_cast<std::byte*>(std::realloc(start, capacity));
       if (start == nullptr) break;
+      // realloc has freed the old block, or moved it: nobody may free it again.
       (void)data.release();
       data.reset(start);
     }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Output that is there whole or not at all: written beside its place without a name, and named when it is complete.
+
 #include "io/output_file.h"
 
 #include <fcntl.h>
@@ -66,6 +68,7 @@ OutputFile::OutputFile(const std::string& path, Staging staging)
   const bool exists = ::stat(target_.c_str(), &status) == 0;
   if (!exists && errno != ENOENT) fail("cannot write");
   if (exists && S_ISDIR(status.st_mode)) throw Error(ErrorCode::file_unwritable, name_ + ": is a folder");
+  // Devices and pipes are written to, not replaced: nobody wants /dev/null to become a file.
   if (exists && !S_ISREG(status.st_mode)) {
     open_direct();
     return;
@@ -153,6 +156,7 @@ void OutputFile::give_name() {
   const auto link_to = [&](const fs::path& path) {
     return ::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0;
   };
+  // Straight to its place where there was nothing; if something has come there meanwhile it is replaced, below.
   if (!mode_ && link_to(target_)) return;
   temporary_ = make_beside(target_, link_to);
   if (temporary_.empty()) fail("cannot create");

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Where finished tiles go: planes of linear floats, or bytes for screens, without planes in between.
+
 #include "shade/canvas.h"
 
 #include <algorithm>

@@ -135,5 +135,21 @@ TEST_F(Info, ModelsMayComeFromStandardInput) {
   EXPECT_EQ(outcome.json()["triangles"], 12);
 }
 
+TEST_F(Camera, UpIsWhereThePictureSaysUp) {
+  const std::string looks = "camera cube.stl --camera-position 0.5,0.5,9 --camera-focal-point 0.5,0.5,0.5 --json ";
+  const auto axes = [&](const std::string& up) {
+    return matrix(succeed(looks + "--camera-view-up " + up).json()["poses"]["opengl"]["world_from_camera"]);
+  };
+  // Right is up x back, and back is +z.
+  EXPECT_LT(glm::length(glm::dvec3(axes("1,0,0")[0]) - glm::dvec3(0, -1, 0)), 1e-12);
+  EXPECT_LT(glm::length(glm::dvec3(axes("1,0,0")[1]) - glm::dvec3(1, 0, 0)), 1e-12);
+  EXPECT_LT(glm::length(glm::dvec3(axes("0,-3,0")[0]) - glm::dvec3(-1, 0, 0)), 1e-12);
+  EXPECT_LT(difference(axes("x"), axes("1,0,0")), 1e-12);
+  EXPECT_LT(difference(axes("-y"), axes("0,-3,0")), 1e-12);
+  // Leaning up only rolls: what of it points along the view is left out.
+  EXPECT_LT(difference(axes("1,0,5"), axes("1,0,0")), 1e-12);
+  expect_failure(looks + "--camera-view-up up", 2, "--camera-view-up: ");
+}
+
 }  // namespace
 }  // namespace frontmost::test

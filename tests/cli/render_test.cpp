@@ -262,5 +262,13 @@ TEST_F(Render, NamesFromFilesCannotDriveTheTerminal) {
   EXPECT_THAT(outcome.out, HasSubstr("red?[31m?"));
 }
 
+TEST_F(Render, TheLongNamesAreTheShortOnes) {
+  succeed("render cube.stl --resolution 32,24 -o short.png");
+  succeed("render cube.stl --resolution=32,24 --output long.png");
+  succeed("render cube.stl --resolution=32,24 --output=equals.png");
+  EXPECT_EQ(read("short.png"), read("long.png"));
+  EXPECT_EQ(read("short.png"), read("equals.png"));
+}
+
 }  // namespace
 }  // namespace frontmost::test

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Numbers as they lie in NPY and PFM files: pixel by pixel, the channels of each side by side.
+
 #include "io/images/raw_planes.h"
 
 #include <algorithm>

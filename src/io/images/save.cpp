@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Which format a file is to have, and writing it whole.
+
 #include <algorithm>
 #include <cctype>
 
@@ -27,6 +29,7 @@ void write_file(const std::string& path, const Execution& execution, const Write
   report_progress(execution, "save", 0);
   OutputFile file(path);
   write(file);
+  // Once more before the file gets its name: whoever ended the work does not expect a new one.
   check_cancelled(execution);
   file.commit();
   report_progress(execution, "save", 1);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Which files can be read piece by piece, told from their first bytes.
+
 #include "io/models/model_stream.h"
 
 #include "base/parallel.h"
@@ -28,6 +30,7 @@ std::unique_ptr<ModelStream> open(ModelFormat format, StreamStart start, const M
 
 }  // namespace
 
+/// Values go and memory stays: the same few pieces are filled again and again.
 void Piece::clear() {
   const auto clear = [](auto& attribute) {
     attribute.values.clear();

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// The chunks of a GLB file, or the JSON text alone. Lengths are held against what is left before they are used.
+
 #include "io/models/gltf/container.h"
 
 #include <cstdint>
@@ -31,6 +33,7 @@ Bytes checked_body(Bytes bytes, const ModelSource& source) {
     source.fail("GLB header", "the length is stated as " + std::to_string(length) + " bytes, the file has " +
                                   std::to_string(bytes.size()));
   if (length < header_size + chunk_header_size) source.fail("GLB header", "no room for a chunk");
+  // Bytes behind the stated length belong to no chunk.
   return bytes.first(length);
 }
 
@@ -42,6 +45,7 @@ void take_chunk(Container& container, std::uint32_t type, Bytes chunk, std::size
   } else if (type == json_type) {
     source.fail(place, "a second JSON chunk");
   } else if (type == binary_type) {
+    // Chunks of other types may follow, and are to be ignored (glTF 2.0, section 4.4).
     if (number != 1) source.fail(place, "a BIN chunk that is not the second one");
     container.binary = chunk;
     container.has_binary = true;

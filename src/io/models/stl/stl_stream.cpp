@@ -71,6 +71,7 @@ class StlStream final : public ModelStream {
 
   void warn_of_the_rest() {
     if (size_ || is_open_) return;
+    // A file tells by its size whether something follows; of a pipe it has to be read.
     std::vector<std::byte> scrap(1 << 16);
     std::uint64_t rest = left_.size();
     for (std::size_t got = 1; got > 0; rest += got) got = bytes_->read(scrap.data(), scrap.size());
