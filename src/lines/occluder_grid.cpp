@@ -213,8 +213,10 @@ Buffer<OccluderGrid::Footprint> OccluderGrid::footprints_by_cell(const Plan& pla
   const auto for_each_seen = [&](const auto& visit) {
     for_each_band(plan.execution, [&](const Band& band) {
       const std::size_t begin = number(0, band.first), end = number(0, band.last + 1);
-      for (std::size_t t = 0; t < count; ++t)
+      for (std::size_t t = 0; t < count; ++t) {
+        poll(plan.execution, t);
         if (cells[t] >= begin && cells[t] < end) visit(t);
+      }
     });
   };
   for_each_seen([&](std::size_t t) { ++next[cells[t] + 1]; });
