@@ -42,13 +42,13 @@ CASES = {
     "a ring of three": Case(["builtin:cycle", *FLAT]),
     "ids": Case(["builtin:city", "--shading", "ids"]),
     "in parallel": Case(["builtin:cubes", "--view", "iso", "--camera-orthographic", "--shading", "normals"]),
-    "tiles": Case(["builtin:gallery", *FLAT], TOLERANCE, 0.015),
-    "light and shadow": Case(["builtin:gallery"], TOLERANCE, 0.015),
+    "tiles": Case(["builtin:gallery", *FLAT], TOLERANCE, 0.02, 64),
+    "light and shadow": Case(["builtin:gallery"], TOLERANCE, 0.02, 64),
     "depths": Case(["builtin:spheres", "--shading", "depth"], TOLERANCE, 0.004),
     "normals": Case(["builtin:teapot", "--shading", "normals"], TOLERANCE, 0.005),
     "ids, neighbours merged": Case(["builtin:city", "--shading", "ids", MERGED], furthest=64),
     "cubes, neighbours merged": Case(["builtin:cubes", *FLAT, MERGED]),
-    "tiles, neighbours merged": Case(["builtin:gallery", *FLAT, MERGED], TOLERANCE, 0.015),
+    "tiles, neighbours merged": Case(["builtin:gallery", *FLAT, MERGED], TOLERANCE, 0.02, 64),
     "all of glass": Case(["builtin:cubes", *FLAT, "--opacity", "0.5"], 0, 0.025),
 }
 SVG = "{http://www.w3.org/2000/svg}"

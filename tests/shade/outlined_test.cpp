@@ -32,7 +32,8 @@ ColoredOrder order_of(const std::vector<Tile>& tiles) {
   ColoredOrder colored;
   colored.order.view = front_view();
   for (const Tile& tile : tiles) {
-    colored.order.polygons.push_back({0, std::uint32_t(tile.corners.size()), colored.order.corners.size()});
+    const auto id = PrimitiveId(colored.shapes.size());
+    colored.order.polygons.push_back({id, std::uint32_t(tile.corners.size()), colored.order.corners.size()});
     for (const glm::dvec2& corner : tile.corners) colored.order.corners.push_back({{corner.x, corner.y, 1}, false});
     colored.shapes.push_back(std::uint32_t(colored.shapes.size()));
     colored.colors.push_back(tile.color);

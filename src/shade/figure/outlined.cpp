@@ -80,6 +80,25 @@ class Outliner {
   Figure& figure_;
 };
 
+/// Hems may reach over other parts of the same primitive, as if it had one colour. That is true of a shape, and of
+/// parts of a primitive that have the same; so numbers of such groups take the place of the primitive's.
+PaintOrder hemmed_by_color(const ColoredOrder& colored, double hem, const std::function<bool(PrimitiveId)>& hides,
+                           const Execution& execution) {
+  PaintOrder order = colored.order;
+  const std::vector<PaintPolygon>& polygons = colored.order.polygons;
+  std::vector<std::uint8_t> hiding;
+  for (std::size_t i = 0; i < polygons.size(); ++i) {
+    const bool goes_on =
+        i > 0 && (colored.shapes[i] == colored.shapes[i - 1] ||
+                  (polygons[i].id == polygons[i - 1].id && colored.colors[i] == colored.colors[i - 1]));
+    if (!goes_on) hiding.push_back(1);
+    hiding.back() = hiding.back() && (!hides || hides(polygons[i].id));
+    order.polygons[i].id = PrimitiveId(hiding.size() - 1);
+  }
+  return with_hems(
+      order, hem, [&](PrimitiveId shape) { return hiding[shape] != 0; }, execution);
+}
+
 }  // namespace
 
 Figure outlined(const ColoredOrder& colored, double hem, const std::function<bool(PrimitiveId)>& hides,
@@ -87,7 +106,7 @@ Figure outlined(const ColoredOrder& colored, double hem, const std::function<boo
   const std::size_t count = colored.order.polygons.size();
   if (colored.colors.size() != count || colored.shapes.size() != count)
     throw Error(ErrorCode::bad_argument, "figure: colours, shapes and polygons differ in number");
-  const PaintOrder hemmed = with_hems(colored.order, hem, hides, execution);
+  const PaintOrder hemmed = hemmed_by_color(colored, hem, hides, execution);
   const IeeeScope ieee;
   Figure figure;
   figure.view = colored.order.view;
