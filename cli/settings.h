@@ -166,6 +166,7 @@ struct DrawingSettings {
   double crease_angle = 30;           ///< degrees
   std::optional<double> pen;          ///< millimetres, of what is seen
   std::optional<double> hatch;        ///< millimetres from line to line
+  std::optional<double> stipple;      ///< millimetres from dot to dot
   std::optional<double> hatch_angle;  ///< degrees
   std::optional<glm::dvec3> light;    ///< towards it: to the right, upwards and to the viewer
   std::optional<bool> casts_shadows;

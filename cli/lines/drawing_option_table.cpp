@@ -76,12 +76,17 @@ constexpr Option table[] = {
      [](Settings& s, const Given& g) {
        s.drawing.hatch_angle = g.number({-360, 360});
      }},
+    {"stipple", 0, "MM", "Dots where it is dark, at least about this far apart, 0.2 to 10.", Group::drawing, for_lines,
+     [](Settings& s, const Given& g) {
+       s.drawing.stipple = g.number({0.2, 10});
+     }},
     {"light", 0, "X,Y,Z",
-     "Where the light of --hatch comes from, as the viewer sees it: X to the right, Y upwards, Z towards the viewer; "
+     "Where the light of --hatch and --stipple comes from, as the viewer sees it: X to the right, Y upwards, Z towards "
+     "the viewer; "
      "-0.48,0.68,0.72 by default.",
      Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.light = light_from(g.text); }},
-    {"cast-shadows", 0, "yes|no", "Whether objects keep the light of --hatch from others; yes by default.",
-     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.casts_shadows = g.choice<int>() == 0; }},
+    {"cast-shadows", 0, "yes|no", "Whether objects keep that light from others; yes by default.", Group::drawing,
+     for_lines, [](Settings& s, const Given& g) { s.drawing.casts_shadows = g.choice<int>() == 0; }},
     {"page", 0, "PAPER",
      "a0 to a6, letter, legal or tabloid, perhaps with -portrait or -landscape; W,H in millimetres; or fit: as large "
      "as "

@@ -14,6 +14,7 @@
 #include "cli/interruption.h"
 #include "cli/lines/layout.h"
 #include "cli/lines/lines_report.h"
+#include "cli/lines/tones.h"
 #include "cli/model.h"
 #include "cli/render/fit.h"
 #include "cli/render/outputs.h"
@@ -26,7 +27,6 @@ namespace {
 constexpr double gap_between_views = 15;     // millimetres
 constexpr double arc_tolerance = 0.01;       // millimetres
 constexpr double stroke_tolerance = 0.0005;  // millimetres: half of what coordinates are rounded to
-constexpr double shortest_hatch = 0.2;       // millimetres: less is a dot of the pen
 constexpr glm::ivec2 fine_grid{3840, 2160};  // shaped as render's default picture, for the same camera
 constexpr double fine_error = 0.2;           // of its pixels: about 0.01 mm on a sheet of A4
 constexpr double coarsest_error = 10;
@@ -58,20 +58,11 @@ void check_views(const Settings& s) {
     if (is_set) throw UsageError(fmt::format("--views and --{} exclude each other", name));
 }
 
-void check_hatching(const DrawingSettings& s) {
-  if (s.hatch) return;
-  const std::pair<const char*, bool> others[] = {{"hatch-angle", s.hatch_angle.has_value()},
-                                                 {"light", s.light.has_value()},
-                                                 {"cast-shadows", s.casts_shadows.has_value()}};
-  for (const auto& [name, is_set] : others)
-    if (is_set) throw UsageError(fmt::format("--{} needs --hatch", name));
-}
-
 void check(const Settings& settings) {
   const DrawingSettings& s = settings.drawing;
   check_view_settings(settings.view);
   check_views(settings);
-  check_hatching(s);
+  check_tones(s);
   if (s.outputs.empty() && !settings.run.json) throw UsageError("nothing to do: give -o FILE or --json");
   if (s.scale_rule && s.scale_rule != ScaleRule::fit && !is_parallel(settings))
     throw UsageError("--scale: in perspective nothing has a scale; add --camera-orthographic, or --views");
@@ -218,27 +209,12 @@ StrokeOptions stroke_options(const DrawingSettings& settings, double millimetres
   return options;
 }
 
-HatchOptions hatch_options(const DrawingSettings& settings, const View& view, double millimetres_per_pixel) {
-  HatchOptions options;
-  if (*settings.hatch < millimetres_per_pixel)
-    throw UsageError("--hatch: lines would be nearer to each other than pixels; give a larger --resolution");
-  options.sets = hatch_sets(*settings.hatch / millimetres_per_pixel, glm::radians(settings.hatch_angle.value_or(45)));
-  if (settings.light)
-    options.tone.to_light = glm::dmat3(view.world_from_eye) * *settings.light;  // eye space looks down -z
-  options.tone.casts_shadows = settings.casts_shadows.value_or(true);
-  options.tone.crease_angle = glm::radians(settings.crease_angle);
-  options.shortest = std::min(shortest_hatch / millimetres_per_pixel, 1000.0);
-  options.by_instance = !settings.plot;
-  options.nearest_first = settings.plot;
-  return options;
-}
-
 LinePens pens_of(const DrawingSettings& settings) {
   LinePens pens = settings.style == DrawingSettings::Style::figure ? figure_pens() : technical_pens();
   if (settings.hidden == DrawingSettings::Hidden::thin) pens.hidden = thin_pen();
   if (!settings.pen) return pens;
   const double factor = *settings.pen / pens.seen.width;
-  for (Pen* const pen : {&pens.outline, &pens.seen, &pens.crease, &pens.hidden, &pens.hatching}) {
+  for (Pen* const pen : {&pens.outline, &pens.seen, &pens.crease, &pens.hidden, &pens.hatching, &pens.stippling}) {
     pen->width *= factor;
     for (double& dash : pen->dashes) dash *= factor;  // standards count dashes in widths
   }
@@ -274,22 +250,23 @@ int run_lines(const Settings& given) {
   timings.lines = watch.milliseconds();
   watch = {};
   const SheetPlan plan = place(views, settings, surfaces);
-  std::vector<SheetView> sheets;
   for (DrawnView& view : views) {
     const StrokeOptions options = stroke_options(settings.drawing, view.sheet.millimetres_per_pixel);
     view.sheet.strokes = strokes(*view.surfaces, view.drawing, options, execution);
-    if (settings.drawing.hatch)
-      view.sheet.hatching =
-          hatch(*view.surfaces, view.drawing.view,
-                hatch_options(settings.drawing, view.drawing.view, view.sheet.millimetres_per_pixel), execution);
+  }
+  timings.strokes = watch.milliseconds();
+  watch = {};
+  std::vector<SheetView> sheets;
+  for (DrawnView& view : views) {
+    add_tones(view, settings.drawing, execution);
     sheets.push_back(view.sheet);
   }
+  timings.tones = watch.milliseconds();
+  watch = {};
   const Page page = draw_sheet(surfaces, sheets, pens_of(settings.drawing), plan.size);
   std::optional<Page> dashed;
   if (settings.drawing.plot) dashed = with_real_dashes(page);
   const Page& plotted = dashed ? *dashed : page;
-  timings.strokes = watch.milliseconds();
-  watch = {};
   if (page.layers.empty() && !settings.run.quiet) {
     progress.clear();
     complain("warning: nothing is seen; the drawing is empty");

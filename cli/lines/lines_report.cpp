@@ -49,7 +49,8 @@ Json lines_json(const Settings& settings, const std::vector<DrawnView>& views, c
   json["drawn_mm"] = all.down;
   json["moved_mm"] = all.up;
   json["outputs"] = settings.drawing.outputs;
-  json["timings_ms"] = {{"lines", timings.lines}, {"strokes", timings.strokes}, {"write", timings.write}};
+  json["timings_ms"] = {
+      {"lines", timings.lines}, {"strokes", timings.strokes}, {"tones", timings.tones}, {"write", timings.write}};
   return json;
 }
 

@@ -27,7 +27,7 @@ struct DrawnView {
 };
 
 struct LinesTimings {
-  double lines = 0, strokes = 0, write = 0;
+  double lines = 0, strokes = 0, tones = 0, write = 0;
 };
 
 /// `scale` is null in perspective.

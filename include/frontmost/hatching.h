@@ -68,4 +68,25 @@ struct HatchLine {
 [[nodiscard]] std::vector<HatchLine> hatch(const Surfaces& surfaces, const View& view, const HatchOptions& options,
                                            const Execution& execution = {});
 
+struct StippleOptions {
+  double spacing = 4;  ///< pixels between dots where it is darkest, 0.5 to 1000
+  ToneOptions tone{};
+  bool by_instance = true;     ///< false: dots belong to no object
+  bool nearest_first = false;  ///< for plotters, as HatchOptions
+};
+
+/// A dot on an object.
+struct Stipple {
+  glm::dvec2 at{0};                   ///< in pixels of the view, as DrawnPart's
+  std::uint32_t instance = no_index;  ///< none without by_instance
+};
+
+/// Dots on what is seen of `surfaces`, the more of them the darker it is: none where the brightness is over 0.95, one
+/// to a square of `spacing` in shadow. They lie as far from each other as their number allows, in a pattern that
+/// depends on the picture alone. Each is seen and in shadow or not by the same signs as hatch(). By row, from the left.
+/// (R. Ulichney. The Void-and-Cluster Method for Dither Array Generation. 1993.)
+/// Cost, threads and errors as for hatch(); limit_exceeded where the picture has room for more than 20 million dots.
+[[nodiscard]] std::vector<Stipple> stipple(const Surfaces& surfaces, const View& view, const StippleOptions& options,
+                                           const Execution& execution = {});
+
 }  // namespace frontmost

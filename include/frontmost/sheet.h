@@ -19,6 +19,7 @@ struct LinePens {
   Pen crease{0.5, {}};   ///< of those, creases; by themselves where strokes were made by kind
   Pen hidden{0.25, {}, {3, 0.75}};
   Pen hatching{0.18, {}};
+  Pen stippling{0.3, {}};  ///< its width is that of the dots
 };
 /// ISO 128: what is seen 0.5 mm, hidden lines 0.25 mm in dashes of 3 mm with gaps of 0.75 mm.
 [[nodiscard]] LinePens technical_pens();
@@ -34,13 +35,14 @@ struct SheetView {
   glm::dvec2 origin{0};  ///< millimetres: where the view's pixel (0, 0) begins
   double millimetres_per_pixel = 1;
   std::vector<HatchLine> hatching{};
+  std::vector<Stipple> stippling{};
 
   [[nodiscard]] glm::dvec2 on_page(const glm::dvec2& pixel) const { return origin + millimetres_per_pixel * pixel; }
 };
 
-/// A page with the layers "4 hatching", "1 hidden", "2 visible" and "3 outline", those that have lines, the lowest
-/// first. Each has a group for every view and object, named as they are; in the order of the strokes and of the
-/// hatching.
+/// A page with the layers "5 stippling", "4 hatching", "1 hidden", "2 visible" and "3 outline", those that have lines,
+/// the lowest first. Each has a group for every view and object, named as they are; in the order of the strokes and of
+/// the hatching.
 [[nodiscard]] Page draw_sheet(const Surfaces& surfaces, std::span<const SheetView> views, const LinePens& pens,
                               const glm::dvec2& size);
 

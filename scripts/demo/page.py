@@ -26,7 +26,7 @@ def timings(result):
     """"whole process 62 ms · visible 3.1 ms · ..." from the program's own report."""
     parts = [f"whole process {milliseconds(result.wall_ms)}"]
     found = result.report.get("timings_ms", {})
-    for name in ("load", "surfaces", "visible", "shade", "save", "lines", "strokes", "write"):
+    for name in ("load", "surfaces", "visible", "shade", "save", "lines", "strokes", "tones", "write"):
         value = found.get(name)
         if isinstance(value, dict):
             value = value.get("median")

@@ -207,10 +207,29 @@ TEST_F(LinesCommand, HatchingIsInMillimetresAndLiesBelow) {
   EXPECT_THAT(read("drawing.svg"), HasSubstr("inkscape:label=\"4 hatching\""));
   for (const char* const needs : {"--light 1,1,1", "--hatch-angle 3", "--cast-shadows no"})
     expect_failure(std::string("lines cube.stl -o a.svg ") + needs, 2, "needs --hatch");
+  expect_failure("lines cube.stl -o a.svg --hatch-angle 3 --stipple 1", 2, "needs --hatch");
   expect_failure("lines cube.stl -o a.svg --hatch 0.1", 2, "--hatch");
   expect_failure("lines cube.stl -o a.svg --hatch 1 --light 0,0,0", 2, "--light: the light must come from somewhere");
   expect_failure("lines cube.stl -o a.svg --hatch 1 --cast-shadows maybe", 2, "--cast-shadows");
   expect_failure("lines cube.stl -o a.svg --hatch 1 --resolution 20,20", 2, "larger --resolution");
+}
+
+TEST_F(LinesCommand, StippledOnlyWhereAskedFor) {
+  const std::string iso = "lines cube.stl --view iso --camera-orthographic --style figure --light 1,1,3 ";
+  const json report =
+      succeed(iso + "--stipple 0.8 --plot -o dots.svg -o dots.pdf -o dots.json -o dots.dxf --json").json();
+  EXPECT_EQ(report["layers"][0]["name"], "5 stippling");
+  const json page = json::parse(read("dots.json"));
+  const json& dots = page["layers"][0]["groups"][0]["paths"];
+  EXPECT_EQ(dots.size(), report["layers"][0]["paths"].get<std::size_t>());
+  ASSERT_GT(dots.size(), 1000u);
+  for (const json& dot : dots) EXPECT_EQ(dot["points"].size(), 1u);
+  EXPECT_THAT(read("dots.svg"), HasSubstr("stroke-width=\".25\""));
+  EXPECT_THAT(read("dots.dxf"), HasSubstr("\nPOINT\n"));
+  succeed("lines cube.stl --style figure -o none.svg");
+  EXPECT_THAT(read("none.svg"), Not(HasSubstr("stippling")));
+  expect_failure("lines cube.stl -o a.svg --stipple 20", 2, "--stipple");
+  expect_failure("lines cube.stl -o a.svg --stipple 1 --resolution 20,20", 2, "larger --resolution");
 }
 
 TEST_F(LinesCommand, PlottersGetDashesAsLines) {

@@ -11,9 +11,9 @@ namespace frontmost {
 namespace {
 
 /// In the order of drawing. The numbers are names: a plotter's pens are chosen by them.
-constexpr std::size_t layer_count = 4;
-enum LayerOf : std::size_t { hatching, hidden, seen, outline };
-const char* const layer_names[layer_count] = {"4 hatching", "1 hidden", "2 visible", "3 outline"};
+constexpr std::size_t layer_count = 5;
+enum LayerOf : std::size_t { stippling, hatching, hidden, seen, outline };
+const char* const layer_names[layer_count] = {"5 stippling", "4 hatching", "1 hidden", "2 visible", "3 outline"};
 
 /// The layers while they are filled: where the group of a view and an object is.
 class Sheet {
@@ -23,6 +23,10 @@ class Sheet {
   }
 
   void draw(const SheetView& view, std::uint32_t number) {
+    for (const Stipple& dot : view.stippling) {
+      const glm::dvec2 at = view.on_page(dot.at);
+      group({stippling, number, dot.instance, false}, view, pens_.stippling).add(std::span(&at, 1), false);
+    }
     for (const HatchLine& line : view.hatching) {
       const glm::dvec2 ends[] = {view.on_page(line.from), view.on_page(line.to)};
       group({hatching, number, line.instance, false}, view, pens_.hatching).add(ends, false);
@@ -92,7 +96,7 @@ class Sheet {
 
 LinePens technical_pens() { return {}; }
 
-LinePens figure_pens() { return {{0.7, {}}, {0.35, {}}, {0.18, {}}, {0.13, {}, {1.5, 0.75}}, {0.13, {}}}; }
+LinePens figure_pens() { return {{0.7, {}}, {0.35, {}}, {0.18, {}}, {0.13, {}, {1.5, 0.75}}, {0.13, {}}, {0.25, {}}}; }
 
 Pen thin_pen() { return {0.13, {}}; }
 

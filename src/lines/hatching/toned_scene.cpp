@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lines/hatching/toned_scene.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "base/pool.h"
+#include "lines/joined.h"
+
+namespace frontmost::lines_detail {
+namespace {
+
+constexpr std::size_t triangles_per_part = 256, triangles_per_poll = 16;
+
+/// \returns where the light is, of unit length.
+glm::dvec3 light_of(const ToneOptions& tone, const View& view) {
+  if (!(tone.crease_angle >= 0 && tone.crease_angle <= std::numbers::pi))
+    throw Error(ErrorCode::bad_argument, "hatch: the crease angle must be from 0 to pi");
+  if (!tone.to_light) return glm::normalize(-0.48 * view.right() + 0.68 * view.up() - 0.72 * view.forward());
+  const double length = glm::length(*tone.to_light);
+  if (!(length > 1e-100 && length < 1e100))
+    throw Error(ErrorCode::bad_argument, "hatch: the light must come from somewhere");
+  return *tone.to_light / length;
+}
+
+View view_from_light(const Surfaces& surfaces, const glm::dvec3& to_light) {
+  FrameOptions options;
+  options.orthographic = true;
+  options.forward = -to_light;
+  return frame(surfaces, 1024, 1024, options);
+}
+
+}  // namespace
+
+TonedScene::TonedScene(const Surfaces& surfaces, const View& view, const ToneOptions& tone, const Execution& execution)
+    : surfaces_(surfaces),
+      to_light_(light_of(tone, view)),
+      mesh_(weld(surfaces, execution)),
+      eye_(mesh_, view, execution),
+      normals_(eye_.seen, surfaces, tone.crease_angle) {
+  if (tone.casts_shadows) light_.emplace(mesh_, view_from_light(surfaces, to_light_), execution);
+}
+
+/// Hatches one triangle after another. Not for several threads at once.
+class TonedScene::Hatcher {
+ public:
+  Hatcher(const TonedScene& scene, const Task& task, const std::vector<HatchRows>& rows)
+      : scene_(scene), task_(task), rows_(rows), seen_(scene.eye_.occlusion) {
+    if (scene.light_) lit_.emplace(scene.light_->occlusion);
+  }
+
+  void hatch(std::uint32_t number, std::vector<Piece>& pieces) {
+    if (scene_.eye_.seen.facing[number] == 0) return;
+    HatchedTriangle triangle{number, scene_.mesh_.triangles[number], {}, {}};
+    for (int k = 0; k < 3; ++k) {
+      triangle.places[k] = scene_.mesh_.positions[triangle.vertices[k]];
+      triangle.in_eye[k] = scene_.eye_.sight.in_eye(triangle.places[k]);
+    }
+    has_normals_ = false;
+    const std::uint32_t instance =
+        task_.by_instance ? scene_.surfaces_.source(scene_.mesh_.ids[number]).instance : no_index;
+    for (std::uint32_t set = 0; set < rows_.size(); ++set) {
+      const HatchRows::Range range = rows_[set].range_of(triangle);
+      for (std::int32_t line = range.first; line <= range.last; ++line) {
+        const std::optional<HatchSegment> segment = rows_[set].segment(triangle, line);
+        if (segment)
+          (this->*(task_.dots ? &Hatcher::add_dots : &Hatcher::add_pieces))(*segment, {set, line, 0, 0, instance},
+                                                                            pieces);
+      }
+    }
+  }
+
+ private:
+  /// A place that may have a dot: along its line, and along the segment.
+  struct Dot {
+    double along, t, below;
+  };
+
+  void add_pieces(const HatchSegment& segment, Piece piece, std::vector<Piece>& pieces) {
+    find_normals(segment.edge.own[0]);
+    const double below = task_.sets[piece.set].below;
+    find_dark({HatchSegment::at(segment.from, normals_), HatchSegment::at(segment.to, normals_)}, scene_.to_light_,
+              below, dark_);
+    const bool is_all_dark = dark_.size() == 1 && dark_[0].begin == 0 && dark_[0].end == 1;
+    const bool may_be_in_shadow = is_towards_light_ && below > 0 && !is_all_dark;
+    if (dark_.empty() && !may_be_in_shadow) return;
+    cut(segment.edge);
+    if (parts_.empty()) return;
+    if (may_be_in_shadow) add_shadows(segment.edge);
+    for (const DrawnPart& part : parts_)
+      for (const Interval& dark : dark_) {
+        const Interval shown{std::max(part.begin, dark.begin), std::min(part.end, dark.end)};
+        if (!(shown.begin < shown.end)) continue;
+        const double begin = along(segment.edge, shown.begin, piece.set),
+                     end = along(segment.edge, shown.end, piece.set);
+        piece.begin = std::min(begin, end);
+        piece.end = std::max(begin, end);
+        pieces.push_back(piece);
+      }
+  }
+
+  /// Dots on the segment whose place is seen, and darker than they ask for.
+  void add_dots(const HatchSegment& segment, Piece piece, std::vector<Piece>& pieces) {
+    find_dots(segment.edge, piece);
+    if (dots_.empty()) return;
+    find_normals(segment.edge.own[0]);
+    const NormalAlong normal{HatchSegment::at(segment.from, normals_), HatchSegment::at(segment.to, normals_)};
+    cut(segment.edge);
+    dark_.clear();
+    if (is_towards_light_ && !parts_.empty()) add_shadows(segment.edge);
+    for (const Dot& dot : dots_) {
+      const auto holds = [&](const auto& part) { return part.begin <= dot.t && dot.t < part.end; };
+      if (std::none_of(parts_.begin(), parts_.end(), holds)) continue;
+      const bool is_in_shadow = std::any_of(dark_.begin(), dark_.end(), holds);
+      const double brightness = is_in_shadow ? 0 : std::max(0.0, normal.cosine_at(dot.t, scene_.to_light_));
+      if (!(brightness < dot.below)) continue;
+      piece.begin = piece.end = dot.along;
+      pieces.push_back(piece);
+    }
+  }
+
+  /// Those from the segment's one end to its other.
+  void find_dots(const SightedEdge& edge, const Piece& piece) {
+    dots_.clear();
+    const Sight& sight = scene_.eye_.sight;
+    const glm::dvec3 from = sight.in_eye(edge.from), to = sight.in_eye(edge.to);
+    const double w0 = sight.to_weight(from, to, 0), w1 = sight.to_weight(from, to, 1);
+    const bool is_before_eye = w0 > 0 && w1 > 0;
+    const HatchRows& row = rows_[piece.set];
+    const double a = row.along(glm::dvec2(sight.to_screen(from))), b = row.along(glm::dvec2(sight.to_screen(to)));
+    if (!std::isfinite(a) || !std::isfinite(b)) return;
+    const double low = is_before_eye ? std::min(a, b) : -1e300, high = is_before_eye ? std::max(a, b) : 1e300;
+    task_.dots->for_each(piece.line, low, high, [&](double along, double below) {
+      // What is linear on the screen is not along the segment.
+      const double part = w0 * (along - a), rest = w1 * (b - along), t = part / (part + rest);
+      if (t >= 0 && t < 1) dots_.push_back({along, t, below});
+    });
+  }
+
+  void cut(const SightedEdge& edge) {
+    parts_.clear();
+    seen_.cut(edge, 0, parts_);
+    std::erase_if(parts_, [](const DrawnPart& part) { return part.hidden_by != 0; });
+  }
+
+  /// On the side that is seen. A triangle that is turned away from the light has no shadows: its brightness is what is
+  /// left at the rim between light and dark.
+  void find_normals(std::uint32_t triangle) {
+    if (has_normals_) return;
+    has_normals_ = true;
+    normals_ = scene_.normals_.of(triangle);
+    const int facing = scene_.eye_.seen.facing[triangle];
+    if (facing < 0)
+      for (glm::dvec3& normal : normals_) normal = -normal;
+    is_towards_light_ = scene_.light_ && scene_.light_->seen.facing[triangle] == facing;
+  }
+
+  void add_shadows(const SightedEdge& edge) {
+    shadows_.clear();
+    lit_->cut(edge, 0, shadows_);
+    for (const DrawnPart& part : shadows_)
+      if (part.hidden_by != 0) dark_.push_back({part.begin, part.end});
+  }
+
+  [[nodiscard]] double along(const SightedEdge& edge, double t, std::uint32_t set) const {
+    // From the nearer end, so that both ends are met.
+    const glm::dvec3 place =
+        t <= 0.5 ? edge.from + (edge.to - edge.from) * t : edge.to + (edge.from - edge.to) * (1 - t);
+    const Sight& sight = scene_.eye_.sight;
+    return rows_[set].along(glm::dvec2(sight.to_screen(sight.in_eye(place))));
+  }
+
+  const TonedScene& scene_;
+  const Task task_;
+  const std::vector<HatchRows>& rows_;
+  EdgeCutter seen_;
+  std::optional<EdgeCutter> lit_;
+  bool has_normals_ = false, is_towards_light_ = false;
+  std::array<glm::dvec3, 3> normals_{};
+  std::vector<Interval> dark_;
+  std::vector<DrawnPart> parts_, shadows_;
+  std::vector<Dot> dots_;
+};
+
+std::vector<Piece> TonedScene::pieces(const Task& task, const std::vector<HatchRows>& rows,
+                                      const Execution& execution) const {
+  const std::size_t count = mesh_.triangles.size();
+  std::vector<std::vector<Piece>> lists((count + triangles_per_part - 1) / triangles_per_part);
+  Pool<Hatcher> hatchers;
+  std::atomic<std::size_t> done{0};
+  parallel_for(execution, count, triangles_per_part, [&](std::size_t begin, std::size_t end) {
+    const auto hatcher = hatchers.borrow([&] { return std::make_unique<Hatcher>(*this, task, rows); });
+    for (std::size_t i = begin; i < end; ++i) {
+      if (i % triangles_per_poll == 0) check_cancelled(execution);
+      hatcher->hatch(std::uint32_t(i), lists[begin / triangles_per_part]);
+    }
+    report_progress(execution, "hatching", 0.2 + 0.7 * double(done += end - begin) / double(count));
+  });
+  return joined(lists);
+}
+
+}  // namespace frontmost::lines_detail

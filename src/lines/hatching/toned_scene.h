@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lines over a scene, as far as they are seen and dark; and points of them.
+#pragma once
+
+#include "frontmost/hatching.h"
+#include "lines/hatching/dot_grid.h"
+#include "lines/hatching/hatch_rows.h"
+#include "lines/hidden_parts.h"
+
+namespace frontmost::lines_detail {
+
+/// A piece of line `line` of a set, in pixels along it; a dot where it has no length.
+struct Piece {
+  std::uint32_t set;
+  std::int32_t line;
+  double begin, end;
+  std::uint32_t instance;
+
+  friend bool operator<(const Piece& a, const Piece& b) {
+    return std::tie(a.set, a.line, a.begin, a.end, a.instance) < std::tie(b.set, b.line, b.begin, b.end, b.instance);
+  }
+};
+
+/// A view, and what hides in it.
+struct Scenery {
+  Scenery(const WeldedMesh& mesh, const View& its_view, const Execution& execution)
+      : view(its_view),
+        sight(view),
+        seen(see(mesh, sight, execution)),
+        grid(seen, view, false, execution),
+        occlusion{mesh, sight, view, grid, shadow_kernels(execution.isa), false, false} {}
+
+  Scenery(const Scenery&) = delete;  // it looks at itself
+  Scenery& operator=(const Scenery&) = delete;
+
+  const View view;
+  const Sight sight;
+  const SeenMesh seen;
+  const OccluderGrid grid;
+  const Occlusion occlusion;
+};
+
+/// Everything that answers how dark a scene is along lines.
+class TonedScene {
+ public:
+  /// Borrows the surfaces. \throws Error bad_argument for options out of range.
+  TonedScene(const Surfaces& surfaces, const View& view, const ToneOptions& tone, const Execution& execution);
+
+  struct Task {
+    const std::vector<HatchSet>& sets;
+    bool by_instance = true;
+    const DotGrid* dots = nullptr;  ///< of sets[0]: pieces are its dots
+  };
+  /// In no order that matters.
+  [[nodiscard]] std::vector<Piece> pieces(const Task& task, const std::vector<HatchRows>& rows,
+                                          const Execution& execution) const;
+
+  [[nodiscard]] const WeldedMesh& mesh() const { return mesh_; }
+
+ private:
+  class Hatcher;
+
+  const Surfaces& surfaces_;
+  const glm::dvec3 to_light_;
+  const WeldedMesh mesh_;
+  const Scenery eye_;
+  std::optional<Scenery> light_;  ///< none: nothing stands in it
+  const CornerNormals normals_;
+};
+
+}  // namespace frontmost::lines_detail
