@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <optional>
+#include <unordered_map>
 
+#include "painter/hulls.h"
 #include "painter/overlap.h"
 #include "painter/piece_grid.h"
 
@@ -16,6 +18,8 @@ namespace frontmost::painter_detail {
 namespace {
 
 constexpr std::uint32_t kReportEvery = 1 << 14;
+/// Cells with more pieces have boxes around many at a time.
+constexpr std::size_t kManyPieces = 256;
 
 class Search {
  public:
@@ -101,13 +105,18 @@ class Search {
     std::uint32_t& unpainted = unpainted_[number];
     while (unpainted < cell.size() && found_[cell[unpainted]] == kPainted) ++unpainted;
     const Extent& own = extents_[w.member];
+    const Hulls* const hulls = hulls_of(number);
     poll_.count();
     for (w.entry = std::max(w.entry, std::size_t(unpainted)); w.entry < cell.size(); ++w.entry) {
-      const std::uint32_t other = cell[w.entry];
-      if (extents_[other].farthest <= own.nearest) {
+      if (extents_[cell[w.entry]].farthest <= own.nearest) {
         steps_.depths_apart += cell.size() - w.entry;
         break;
       }
+      if (hulls) {
+        w.entry += pass_over(*hulls, w, coverer);
+        if (w.entry >= cell.size()) break;
+      }
+      const std::uint32_t other = cell[w.entry];
       if (found_[other] == kPainted || other == w.member || asked_by_[other] == w.member) continue;
       asked_by_[other] = w.member;
       if (!covers(own, other, w.member, coverer)) continue;
@@ -116,6 +125,25 @@ class Search {
       lowest_[w.member] = std::min(lowest_[w.member], found_[other]);
     }
     return no_index;
+  }
+
+  /// Made when first asked for; none for a few pieces.
+  const Hulls* hulls_of(std::size_t cell) {
+    const std::span<const std::uint32_t> pieces = grid_.cell(cell);
+    if (pieces.size() <= kManyPieces) return nullptr;
+    return &hulls_.try_emplace(cell, pieces_, members_, pieces).first->second;
+  }
+
+  /// How many next ones this piece cannot cover, for they lie before its plane.
+  std::size_t pass_over(const Hulls& hulls, const Waiting& w, std::optional<Coverer>& coverer) {
+    if (!coverer) coverer.emplace(pieces_, members_[w.member]);
+    std::size_t passed = 0;
+    while (const std::size_t count = hulls.count_before(w.entry + passed, coverer->plane())) {
+      poll_.count();
+      passed += count;
+    }
+    steps_.before += passed;
+    return passed;
   }
 
   bool covers(const Extent& own, std::uint32_t other, std::uint32_t member, std::optional<Coverer>& coverer) {
@@ -152,10 +180,11 @@ class Search {
   const PieceGrid grid_;
   PaintSteps& steps_;
   Poll& poll_;
-  std::vector<std::uint32_t> unpainted_;  ///< by cell: how many entries at its beginning are painted
-  std::vector<std::uint32_t> found_;      ///< by member: when it was found, or kPainted
-  std::vector<std::uint32_t> lowest_;     ///< of all that was found from it
-  std::vector<std::uint32_t> asked_by_;   ///< most pairs meet in several cells
+  std::vector<std::uint32_t> unpainted_;          ///< by cell: how many entries at its beginning are painted
+  std::vector<std::uint32_t> found_;              ///< by member: when it was found, or kPainted
+  std::vector<std::uint32_t> lowest_;             ///< of all that was found from it
+  std::vector<std::uint32_t> asked_by_;           ///< most pairs meet in several cells
+  std::unordered_map<std::size_t, Hulls> hulls_;  ///< by cell
   std::vector<std::uint32_t> open_;
   std::vector<Waiting> waiting_;
   std::uint32_t count_ = 0;

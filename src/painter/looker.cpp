@@ -83,8 +83,12 @@ bool is_apart(const Extent& a, const Extent& b) {
 }  // namespace
 
 Scenery::Scenery(const PaintOrder& order, const std::function<bool(PrimitiveId)>& hides)
-    : size_(order.view.width, order.view.height), grid_(extents_of(order)) {
-  fill_slots(order, extents_of(order));
+    : Scenery(order, hides, extents_of(order)) {}
+
+Scenery::Scenery(const PaintOrder& order, const std::function<bool(PrimitiveId)>& hides,
+                 const std::vector<Extent>& extents)
+    : size_(order.view.width, order.view.height), grid_(extents) {
+  fill_slots(order, extents);
   for (Slot& slot : slots_) slot.hides = !hides || hides(order.polygons[slot.place].id);
 }
 

@@ -44,6 +44,7 @@ class Scenery {
     std::size_t first_corner;
     bool hides;
   };
+  Scenery(const PaintOrder& order, const std::function<bool(PrimitiveId)>& hides, const std::vector<Extent>& extents);
   void fill_slots(const PaintOrder& order, const std::vector<Extent>& extents);
 
   const glm::dvec2 size_;

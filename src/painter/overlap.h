@@ -14,6 +14,7 @@ class Coverer {
  public:
   Coverer(const Pieces& pieces, std::uint32_t piece);
 
+  [[nodiscard]] const Plane& plane() const { return plane_; }
   /// Whether the piece covers a point of `other`, by any of the tests but those of the extents. True also where one of
   /// the two was cut and no test tells: then they may have no order.
   [[nodiscard]] bool covers(std::uint32_t other, PaintSteps& steps);

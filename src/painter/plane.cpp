@@ -16,6 +16,16 @@ Bounded Plane::height(const glm::dvec3& x, double error) const {
   return height;
 }
 
+Bounded Plane::least_height(const glm::dvec3& centre, const std::array<glm::dvec3, 3>& halves, double error) const {
+  Bounded least = height(centre, error);
+  const glm::dvec3 doubt = normal_.error + kRounding * glm::abs(normal_.value);
+  for (const glm::dvec3& half : halves) {
+    least.value -= std::abs(glm::dot(normal_.value, half));
+    least.error += glm::dot(doubt, glm::abs(half));
+  }
+  return least;
+}
+
 /// By Cramer's rule about a point of the first plane. The same sums of absolute values bound what is rounded: three
 /// normals and a distance, each wrong by at most kRounding of its own terms, and a dozen roundings more.
 Approximate Plane::meeting(const std::array<const Plane*, 3>& planes) {

@@ -34,6 +34,9 @@ class Plane {
   }
   /// How far on the positive side x lies, in the plane's own unit, where x is known to within a distance `error`.
   [[nodiscard]] Bounded height(const glm::dvec3& x, double error) const;
+  /// The same for the lowest corner of a box, known by its centre and the ways from there to its sides.
+  [[nodiscard]] Bounded least_height(const glm::dvec3& centre, const std::array<glm::dvec3, 3>& halves,
+                                     double error) const;
 
   /// Where three planes meet.
   [[nodiscard]] static Approximate meeting(const std::array<const Plane*, 3>& planes);

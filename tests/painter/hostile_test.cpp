@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "painter/painted.h"
+#include "support/effort.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
@@ -56,6 +57,29 @@ TEST(Hostile, CutsEndAtTheirLimit) {
       EXPECT_EQ(error.code(), ErrorCode::limit_exceeded);
       EXPECT_STREQ(error.what(), "painter: more than 2000 cuts: too many triangles pass through each other");
     }
+}
+
+/// Parallel and tilted: depths overlap, and so does everything on the screen.
+Scene stack(int count) {
+  Random random(2);
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const float z = random.within(-1, 1);
+    add_triangle(mesh, {-1, -1, z - 0.7f}, {1, -1, z + 0.2f}, {0, 1, z + 0.5f});
+  }
+  return scene_of(mesh);
+}
+
+TEST(Hostile, StacksArePassedOverManyAtATime) {
+  const int count = under_sanitizer ? 3000 : 20000;
+  const Scene scene = stack(count);
+  const Surfaces surfaces(scene);
+  const PaintOrder order = painter(surfaces, frame(surfaces, 64, 64));
+  ASSERT_EQ(order.polygons.size(), std::size_t(count));
+  for (std::size_t i = 1; i < order.polygons.size(); ++i)
+    ASSERT_LE(surfaces.corners(order.polygons[i - 1].id)[0].z, surfaces.corners(order.polygons[i].id)[0].z);
+  // Not every two: each is asked about those of its own box and of a few others.
+  EXPECT_LT(order.steps.behind, std::uint64_t(count) * 200);
 }
 
 TEST(Hostile, OrdersStopWhenTold) {
