@@ -19,7 +19,7 @@ namespace {
 constexpr double kMillimetres = 25.4 / 96;
 /// Pixels that a polygon reaches under its neighbours, against the hairlines of viewers that blend rims. No lines
 /// around polygons: they make everything wider, in poppler by much more than they are wide.
-constexpr double kHem = 1;
+constexpr double kHem = 4;
 
 Material::Alpha alpha_of(const Surfaces& surfaces, PrimitiveId id) {
   const Scene& scene = surfaces.scene();
