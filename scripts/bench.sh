@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # bench.sh FOLDER [ARGS]: says what machine this is, then runs every benchmark program of FOLDER.
-# bench.sh FOLDER zbuffer|abuffer [ARGS]: the tables of one method alone; stream [ARGS]: models of growing length,
+# bench.sh FOLDER zbuffer|abuffer|drawings [ARGS]: the tables of one method alone; stream [ARGS]: models of growing length,
 # streamed.
 set -euo pipefail
 folder=$1
@@ -11,7 +11,7 @@ echo "compiler: $(${CXX:-c++} --version | head -1)"
 echo "commit:   $(git describe --always --dirty 2>/dev/null || echo none)"
 
 case "${1:-}" in
-  zbuffer | abuffer)
+  zbuffer | abuffer | drawings)
     program=$1_bench
     shift
     exec "$folder/$program" "$@"
@@ -23,6 +23,7 @@ case "${1:-}" in
 esac
 "$folder/zbuffer_bench"
 "$folder/abuffer_bench"
+"$folder/drawings_bench"
 for program in "$folder"/*_bench; do
   case "$(basename "$program")" in zbuffer_bench | abuffer_bench) continue ;; esac
   echo
