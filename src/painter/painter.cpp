@@ -13,9 +13,10 @@ namespace {
 
 using namespace painter_detail;
 
-/// A group without an order is parted until so much smaller groups are left, and these are sorted again: sooner costs
-/// more sorting, later more cuts.
-constexpr std::size_t kFewer = 4;
+/// A group without an order is parted until so much smaller groups are left, and these are sorted again. With 4 it
+/// takes 1.3 times as long on assemblies of parts that pass through each other, for 2 to 9 % fewer polygons, none of
+/// them seen; parting down to single pieces, as PaintMethod::bsp does, takes a third and leaves half as many again.
+constexpr std::size_t kFewer = 64;
 
 /// Makes one list of pieces out of all, by work that is still to do, the next on top. Not by recursion: a partition may
 /// be as uneven as there are pieces.
