@@ -3,6 +3,7 @@
 //
 // A path is a ruler from corner to corner; between two corners the pattern is stretched so that it begins and ends with
 // a dash (ISO 128-2, 5.2), which then meets the next one around the corner.
+#include <algorithm>
 #include <cmath>
 
 #include "io/drawings/arc.h"
@@ -57,14 +58,15 @@ class Ruler {
   void cut(const Span& span, PageGroup& group) const {
     PagePath path{std::uint32_t(group.points.size()), 0, false};
     for (int round = 0; round < (is_closed_ ? 2 : 1); ++round)
-      for (const Leg& leg : legs_) {
-        const double start = leg.begin + round * length_;
-        const double begin = std::max(span.begin - start, 0.0), end = std::min(span.end - start, leg.length);
+      for (auto leg = first_leg(span.begin - round * length_); leg != legs_.end(); ++leg) {
+        const double start = leg->begin + round * length_;
+        if (start >= span.end) break;
+        const double begin = std::max(span.begin - start, 0.0), end = std::min(span.end - start, leg->length);
         if (!(begin < end)) continue;
-        const double share = (end - begin) / leg.length;
-        if (group.points.size() == path.first) add(group, at(leg, begin));
-        if (leg.arc) group.bulges.back() = std::tan(leg.arc->turn * share / 4);
-        add(group, at(leg, end));
+        const double share = (end - begin) / leg->length;
+        if (group.points.size() == path.first) add(group, at(*leg, begin));
+        if (leg->arc) group.bulges.back() = std::tan(leg->arc->turn * share / 4);
+        add(group, at(*leg, end));
       }
     path.count = std::uint32_t(group.points.size()) - path.first;
     if (path.count > 0) group.paths.push_back(path);
@@ -76,6 +78,13 @@ class Ruler {
     std::optional<Arc> arc;
     double begin, length;
   };
+
+  /// The last leg that begins at `along` or before; the first where none does.
+  [[nodiscard]] std::vector<Leg>::const_iterator first_leg(double along) const {
+    const auto after = std::upper_bound(legs_.begin(), legs_.end(), along,
+                                        [](double place, const Leg& leg) { return place < leg.begin; });
+    return after == legs_.begin() ? after : after - 1;
+  }
 
   static void add(PageGroup& group, const glm::dvec2& point) {
     group.points.push_back(point);
@@ -109,7 +118,8 @@ class Pattern {
     for (const double dash : dashes) period_ += dash;
   }
 
-  [[nodiscard]] double period() const { return period_; }
+  /// About how many dashes a line of that length has.
+  [[nodiscard]] double count_on(double length) const { return length / period_ * double(dashes_.size() / 2); }
 
   /// The dashes of a span that begins and ends with the first of them; all of it where it is too short for a gap.
   void fill(const Span& span, std::vector<Span>& drawn) const {
@@ -150,7 +160,9 @@ class Pattern {
   double period_ = 0;
 };
 
-void cut_path(const PageGroup& group, const PagePath& path, const Pattern& pattern, PageGroup& cut) {
+/// `before` are the dashes of other groups.
+void cut_path(const PageGroup& group, const PagePath& path, const Pattern& pattern, std::size_t before,
+              PageGroup& cut) {
   const Ruler ruler(group, path);
   if (ruler.is_empty()) {  // a dot
     cut.paths.push_back({std::uint32_t(cut.points.size()), 1, false});
@@ -158,7 +170,7 @@ void cut_path(const PageGroup& group, const PagePath& path, const Pattern& patte
     cut.bulges.push_back(0);
     return;
   }
-  if (double(cut.paths.size()) + ruler.length() / pattern.period() > double(most_dashes))
+  if (double(before + cut.paths.size()) + pattern.count_on(ruler.length()) > double(most_dashes))
     throw Error(ErrorCode::limit_exceeded, "dashes: more than 20000000 of them");
   const std::vector<Span> spans = ruler.spans();
   std::vector<Span> drawn;
@@ -176,12 +188,14 @@ void cut_path(const PageGroup& group, const PagePath& path, const Pattern& patte
 
 Page with_real_dashes(Page page) {
   validate(page);
+  std::size_t dashes = 0;
   for (PageLayer& layer : page.layers)
     for (PageGroup& group : layer.groups) {
       if (group.pen.dashes.empty() || !group.fills.empty()) continue;
       const Pattern pattern(group.pen.dashes);
       PageGroup cut{group.name, group.pen};
-      for (const PagePath& path : group.paths) cut_path(group, path, pattern, cut);
+      for (const PagePath& path : group.paths) cut_path(group, path, pattern, dashes, cut);
+      dashes += cut.paths.size();
       cut.pen.dashes.clear();
       if (group.bulges.empty()) cut.bulges.clear();
       group = std::move(cut);
