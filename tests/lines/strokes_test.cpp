@@ -4,9 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <numbers>
 
+#include "support/effort.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
@@ -214,6 +216,82 @@ TEST(StrokesOrder, TheNextOneIsAlwaysTheNearest) {
       EXPECT_GE(std::min(glm::distance(end(all.strokes[i]), begin(all.strokes[j])),
                          glm::distance(end(all.strokes[i]), end(all.strokes[j]))),
                 travel - 1e-9);
+  }
+}
+
+TEST(StrokesOrder, OfEndsAsNearTheFirst) {
+  // Spokes from one point: all ends there are as near.
+  Drawing drawing;
+  constexpr int count = 100;
+  for (int i = 0; i < count; ++i) {
+    const double turn = 2 * pi * i / count;
+    drawing.edges.push_back({});
+    drawing.parts.push_back(
+        {std::uint32_t(i), 0, 1, {200, 200}, {200 + 50 * std::cos(turn), 200 + 50 * std::sin(turn)}});
+  }
+  const Scene scene = scene_of(prism(square));
+  const Surfaces surfaces(scene);
+  const Strokes all = strokes(surfaces, drawing, {.by_instance = false, .nearest_first = true});
+  // In along one, and out along the lowest that is left; from there to its neighbour's end.
+  EXPECT_EQ(all.strokes.size(), std::size_t(count / 2));
+  double length = 0;
+  for (const Stroke& stroke : all.strokes) length += length_of(all, stroke);
+  EXPECT_NEAR(length, 50 * count, 0.3 * count);
+  EXPECT_EQ(all.points[1], glm::dvec2(200, 200));
+  EXPECT_EQ(all.points[2], drawing.parts[0].to);
+}
+
+/// Short lines within a three-hundredth of the picture, and one on its other side.
+Drawing far_crowd(int count) {
+  Drawing drawing;
+  Random random(4);
+  for (int i = 0; i <= count; ++i) {
+    const double x = i == 0 ? 3000 : random.within(0, 10), y = i == 0 ? 3000 : random.within(0, 10);
+    const double angle = random.within(0, 6);
+    drawing.edges.push_back({});
+    drawing.parts.push_back({std::uint32_t(i), 0, 1, {x, y}, {x + 0.1 * std::cos(angle), y + 0.1 * std::sin(angle)}});
+  }
+  return drawing;
+}
+
+TEST(StrokesOnce, ACrowdFarFromTheRestIsNoMatter) {
+  using Clock = std::chrono::steady_clock;
+  const Scene scene = scene_of(prism(square));
+  const Surfaces surfaces(scene);
+  const Drawing drawing = far_crowd(under_sanitizer ? 4000 : 50000);
+  const Clock::time_point start = Clock::now();
+  const Strokes all = strokes(surfaces, drawing, {.by_instance = false, .nearest_first = true});
+  // 0.2 s; when all was held against all, 20.
+  EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 5);
+  double length = 0;
+  for (const Stroke& stroke : all.strokes) length += length_of(all, stroke);
+  EXPECT_NEAR(length, 0.1 * double(drawing.parts.size()), 0.05 * 0.1 * double(drawing.parts.size()));
+}
+
+TEST(StrokesOnce, CopiesInACrowdAreDrawnOnce) {
+  const Scene scene = scene_of(prism(square));
+  const Surfaces surfaces(scene);
+  Drawing drawing = far_crowd(3000);
+  const StrokeOptions options{.by_instance = false};
+  const Strokes once = strokes(surfaces, drawing, options);
+  const std::vector<DrawnPart> parts = drawing.parts;
+  drawing.parts.insert(drawing.parts.end(), parts.rbegin(), parts.rend());
+  EXPECT_EQ(strokes(surfaces, drawing, options).points, once.points);
+}
+
+TEST(StrokesOrder, StopsWhenAsked) {
+  const Scene scene = scene_of(prism(square));
+  const Surfaces surfaces(scene);
+  const Drawing drawing = far_crowd(5000);
+  bool is_ordering = false;
+  Watch watch;
+  watch.progress = [&](std::string_view, double fraction) { is_ordering = fraction >= 0.8; };
+  watch.cancelled = [&] { return is_ordering; };
+  try {
+    (void)strokes(surfaces, drawing, {.by_instance = false, .nearest_first = true}, {.watch = &watch});
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::cancelled);
   }
 }
 

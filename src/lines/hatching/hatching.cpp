@@ -37,7 +37,7 @@ std::vector<Piece> united(std::vector<Piece> pieces) {
 }
 
 /// Each set and instance by itself.
-std::vector<HatchLine> in_pen_order(std::vector<HatchLine> lines) {
+std::vector<HatchLine> in_pen_order(std::vector<HatchLine> lines, const Execution& execution) {
   const auto is_before = [](const HatchLine& a, const HatchLine& b) {
     return std::tie(a.set, a.instance) < std::tie(b.set, b.instance);
   };
@@ -50,7 +50,7 @@ std::vector<HatchLine> in_pen_order(std::vector<HatchLine> lines) {
   }
   constexpr double never = -1;
   lines.clear();
-  for (const Chain& chain : lines_detail::nearest_first(std::move(chains), never)) {
+  for (const Chain& chain : lines_detail::nearest_first(std::move(chains), never, execution)) {
     const HatchLine& like = of_rank[chain.rank];
     lines.push_back({chain.points.front(), chain.points.back(), like.set, like.instance});
   }
@@ -92,7 +92,7 @@ std::vector<HatchLine> hatch(const Surfaces& surfaces, const View& view, const H
     const HatchRows& row = rows[piece.set];
     lines.push_back({row.point(piece.line, piece.begin), row.point(piece.line, piece.end), piece.set, piece.instance});
   }
-  if (options.nearest_first) lines = in_pen_order(std::move(lines));
+  if (options.nearest_first) lines = in_pen_order(std::move(lines), execution);
   report_progress(execution, "hatching", 1);
   return lines;
 }

@@ -23,13 +23,13 @@ void sort(std::vector<Piece>& dots) {
   dots.erase(std::unique(dots.begin(), dots.end(), is_same), dots.end());
 }
 
-std::vector<Stipple> in_pen_order(const std::vector<Stipple>& dots) {
+std::vector<Stipple> in_pen_order(const std::vector<Stipple>& dots, const Execution& execution) {
   std::vector<Chain> chains;
   for (const Stipple& dot : dots) chains.push_back({{dot.at}, {}, dot.instance, false});
   std::stable_sort(chains.begin(), chains.end(), [](const Chain& a, const Chain& b) { return a.rank < b.rank; });
   constexpr double never = -1;
   std::vector<Stipple> ordered;
-  for (const Chain& chain : lines_detail::nearest_first(std::move(chains), never))
+  for (const Chain& chain : lines_detail::nearest_first(std::move(chains), never, execution))
     ordered.push_back({chain.points.front(), chain.rank});
   return ordered;
 }
@@ -55,7 +55,7 @@ std::vector<Stipple> stipple(const Surfaces& surfaces, const View& view, const S
   sort(pieces);
   std::vector<Stipple> dots;
   for (const Piece& piece : pieces) dots.push_back({rows[0].point(piece.line, piece.begin), piece.instance});
-  if (options.nearest_first) dots = in_pen_order(dots);
+  if (options.nearest_first) dots = in_pen_order(dots, execution);
   report_progress(execution, "hatching", 1);
   return dots;
 }

@@ -2,9 +2,11 @@
 // Lines that lie on each other are drawn once.
 //
 // Segments are laid down by rank, each without what lies there already. What could lie there is found in the cells of a
-// grid: about one segment to the cell.
+// grid: about one segment to the cell, and where more come together, as in a detailed part of a large scene, the cell
+// becomes a grid itself.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 
 #include "base/parallel.h"
@@ -35,33 +37,118 @@ Interval overlap(const Segment& segment, const Segment& other) {
   return off(begin) <= near && off(end) <= near ? Interval{begin, end} : nothing;
 }
 
+/// Square cells; crowded ones are divided again.
+class Grid {
+ public:
+  struct Cell {
+    std::vector<std::uint32_t> segments;
+    std::unique_ptr<Grid> finer;  ///< has them instead
+  };
+
+  Grid(const glm::dvec2& low, double cell, const glm::ivec2& count)
+      : low_(low), cell_(cell), count_(count), cells_(std::size_t(count.x) * std::size_t(count.y)) {}
+
+  /// Calls visit(segments) for every undivided cell that the segment passes, with `near` to spare.
+  template <class Visit>
+  void for_each_cell(const Segment& s, const Visit& visit) const {
+    for_each(s, [&](std::size_t number, const glm::ivec2&) {
+      const Cell& cell = cells_[number];
+      if (cell.finer)
+        cell.finer->for_each_cell(s, visit);
+      else
+        visit(cell.segments);
+    });
+  }
+
+  /// Adds the last of the segments `laid`. \returns how many entries of cells are new.
+  std::size_t add(const std::vector<Segment>& laid, bool may_divide) {
+    const auto number = std::uint32_t(laid.size() - 1);
+    std::size_t entries = 0;
+    for_each(laid[number], [&](std::size_t i, const glm::ivec2& at) {
+      Cell& cell = cells_[i];
+      if (!cell.finer && may_divide && cell.segments.size() >= crowd && cell_ > finest * divisions)
+        entries += divide(cell, at, laid);
+      if (cell.finer) {
+        entries += cell.finer->add(laid, may_divide);
+      } else {
+        cell.segments.push_back(number);
+        ++entries;
+      }
+    });
+    return entries;
+  }
+
+ private:
+  static constexpr std::size_t crowd = 256;
+  static constexpr int divisions = 8;
+  static constexpr double finest = 8 * near;
+
+  std::size_t divide(Cell& cell, const glm::ivec2& at, const std::vector<Segment>& laid) {
+    std::size_t entries = 0;
+    cell.finer = std::make_unique<Grid>(low_ + glm::dvec2(at) * cell_, cell_ / divisions, glm::ivec2(divisions));
+    for (const std::uint32_t number : cell.segments)
+      cell.finer->for_each(laid[number], [&](std::size_t i, const glm::ivec2&) {
+        cell.finer->cells_[i].segments.push_back(number);
+        ++entries;
+      });
+    cell.segments = {};
+    return entries;
+  }
+
+  [[nodiscard]] int column(double x) const { return std::clamp(int((x - low_.x) / cell_), 0, count_.x - 1); }
+  [[nodiscard]] int row(double y) const { return std::clamp(int((y - low_.y) / cell_), 0, count_.y - 1); }
+
+  /// Column by column, the rows that the segment passes there.
+  template <class Visit>
+  void for_each(const Segment& s, const Visit& visit) const {
+    const glm::dvec2 a = s.from.x <= s.to.x ? s.from : s.to, b = s.from.x <= s.to.x ? s.to : s.from;
+    const double width = b.x - a.x;
+    for (int x = column(a.x - near); x <= column(b.x + near); ++x) {
+      double y0 = a.y, y1 = b.y;
+      if (width > 2 * near) {
+        const double left = low_.x + x * cell_ - near, right = left + cell_ + 2 * near;
+        y0 = a.y + (b.y - a.y) * std::clamp((left - a.x) / width, 0.0, 1.0);
+        y1 = a.y + (b.y - a.y) * std::clamp((right - a.x) / width, 0.0, 1.0);
+      }
+      if (y0 > y1) std::swap(y0, y1);
+      for (int y = row(y0 - near); y <= row(y1 + near); ++y)
+        visit(std::size_t(y) * std::size_t(count_.x) + std::size_t(x), glm::ivec2(x, y));
+    }
+  }
+
+  const glm::dvec2 low_;
+  const double cell_;
+  const glm::ivec2 count_;
+  std::vector<Cell> cells_;
+};
+
+/// A grid for so many segments. Precondition: not empty.
+Grid grid_for(const std::vector<Segment>& segments) {
+  glm::dvec2 low(1e300), high(-1e300);
+  double length = 0;
+  for (const Segment& s : segments) {
+    low = glm::min(low, glm::min(s.from, s.to));
+    high = glm::max(high, glm::max(s.from, s.to));
+    length += glm::distance(s.from, s.to);
+  }
+  const auto count = double(segments.size());
+  const double extent = std::max({high.x - low.x, high.y - low.y, 1e-6});
+  // Never finer than what counts as one place: a drawing of one point would have ten million cells a side.
+  const double cell = std::max({length / count, extent / std::sqrt(count), extent / 4096, 8 * near});
+  return {low - near, cell, glm::ivec2((high - low + 2 * near) / cell) + 1};
+}
+
 class Sheet {
  public:
   /// Precondition: not empty.
-  explicit Sheet(const std::vector<Segment>& segments) {
-    glm::dvec2 low(1e300), high(-1e300);
-    double length = 0;
-    for (const Segment& s : segments) {
-      low = glm::min(low, glm::min(s.from, s.to));
-      high = glm::max(high, glm::max(s.from, s.to));
-      length += glm::distance(s.from, s.to);
-    }
-    const auto count = double(segments.size());
-    const double extent = std::max({high.x - low.x, high.y - low.y, 1e-6});
-    // Never finer than what counts as one place: a drawing of one point would have ten million cells a side.
-    cell_ = std::max({length / count, extent / std::sqrt(count), extent / 4096, 8 * near});
-    low_ = low - near;
-    columns_ = int((high.x - low.x + 2 * near) / cell_) + 1;
-    rows_ = int((high.y - low.y + 2 * near) / cell_) + 1;
-    cells_.resize(std::size_t(columns_) * std::size_t(rows_));
-  }
+  explicit Sheet(const std::vector<Segment>& segments) : grid_(grid_for(segments)) {}
 
   /// Adds what of `segment` is not there yet to `fresh`.
   void lay(const Segment& segment, std::vector<Segment>& fresh) {
     const double length = glm::distance(segment.from, segment.to);
     covered_.clear();
     ++asking_;
-    for_each_cell(segment, [&](const std::vector<std::uint32_t>& cell) {
+    grid_.for_each_cell(segment, [&](const std::vector<std::uint32_t>& cell) {
       for (const std::uint32_t other : cell) {
         if (asked_[other] == asking_) continue;
         asked_[other] = asking_;
@@ -88,36 +175,16 @@ class Sheet {
  private:
   void add(const Segment& segment, std::vector<Segment>& fresh) {
     fresh.push_back(segment);
-    const auto number = std::uint32_t(laid_.size());
     laid_.push_back(segment);
     asked_.push_back(0);
-    for_each_cell(segment, [&](std::vector<std::uint32_t>& cell) { cell.push_back(number); });
+    // Where divisions do not part them, as where all meet in a point, they would only take memory.
+    entries_ += grid_.add(laid_, entries_ < most_entries * laid_.size());
   }
 
-  [[nodiscard]] int column(double x) const { return std::clamp(int((x - low_.x) / cell_), 0, columns_ - 1); }
-  [[nodiscard]] int row(double y) const { return std::clamp(int((y - low_.y) / cell_), 0, rows_ - 1); }
+  static constexpr std::size_t most_entries = 16;  // to the segment
 
-  /// Column by column, the rows that the segment passes there, with `near` to spare.
-  template <class Visit>
-  void for_each_cell(const Segment& s, const Visit& visit) {
-    const glm::dvec2 a = s.from.x <= s.to.x ? s.from : s.to, b = s.from.x <= s.to.x ? s.to : s.from;
-    const double width = b.x - a.x;
-    for (int x = column(a.x - near); x <= column(b.x + near); ++x) {
-      double y0 = a.y, y1 = b.y;
-      if (width > 2 * near) {
-        const double left = low_.x + x * cell_ - near, right = left + cell_ + 2 * near;
-        y0 = a.y + (b.y - a.y) * std::clamp((left - a.x) / width, 0.0, 1.0);
-        y1 = a.y + (b.y - a.y) * std::clamp((right - a.x) / width, 0.0, 1.0);
-      }
-      if (y0 > y1) std::swap(y0, y1);
-      for (int y = row(y0 - near); y <= row(y1 + near); ++y) visit(cells_[std::size_t(y) * columns_ + x]);
-    }
-  }
-
-  glm::dvec2 low_{0};
-  double cell_ = 1;
-  int columns_ = 1, rows_ = 1;
-  std::vector<std::vector<std::uint32_t>> cells_;
+  Grid grid_;
+  std::size_t entries_ = 0;
   std::vector<Segment> laid_;
   std::vector<std::uint32_t> asked_;  ///< by segment: the question that it was last part of
   std::uint32_t asking_ = 0;

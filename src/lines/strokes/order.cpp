@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The order in which a plotter's pen travels little: always on to the nearest end.
 //
-// Ends lie in the cells of a grid, a few to the cell. As they are used up the grid becomes too fine; it is made anew
-// whenever three quarters are gone, which keeps every search short, and all of them together near-linear.
+// Ends lie in a tree of boxes whose nodes know the lowest end in them that is left: those that are empty are not
+// entered, nor those where only higher numbers are as near. So crowds of ends, also at one place, cost no more than
+// others.
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <tuple>
 
+#include "base/parallel.h"
 #include "lines/strokes/parts.h"
 
 namespace frontmost::lines_detail {
@@ -19,76 +23,105 @@ glm::dvec2 place(const std::vector<Chain>& chains, std::uint32_t number) {
   return number % 2 == 0 || chain.is_closed ? chain.points.front() : chain.points.back();
 }
 
-class EndGrid {
+class EndTree {
  public:
-  EndGrid(const std::vector<Chain>& chains, const std::vector<bool>& is_used, std::size_t first, std::size_t last)
-      : chains_(chains), is_used_(is_used) {
-    glm::dvec2 high(-1e300);
-    std::vector<std::uint32_t> numbers;
-    for (std::size_t i = 2 * first; i < 2 * last; ++i) {
-      if (is_used[i / 2]) continue;
-      numbers.push_back(std::uint32_t(i));
-      low_ = glm::min(low_, place(chains, numbers.back()));
-      high = glm::max(high, place(chains, numbers.back()));
-    }
-    const double extent = std::max({high.x - low_.x, high.y - low_.y, 1e-6});
-    cell_ = extent / std::max(1.0, std::sqrt(double(numbers.size()) / 2)) * 1.0001;
-    side_ = int(extent / cell_) + 1;
-    cells_.resize(std::size_t(side_) * std::size_t(side_));
-    for (const std::uint32_t number : numbers) {
-      const glm::ivec2 at = cell_of(place(chains, number));
-      cells_[std::size_t(at.y) * std::size_t(side_) + std::size_t(at.x)].push_back(number);
-    }
+  EndTree(const std::vector<Chain>& chains, std::size_t first, std::size_t last) : offset_(2 * first) {
+    for (std::size_t i = 2 * first; i < 2 * last; ++i)
+      ends_.push_back({place(chains, std::uint32_t(i)), std::uint32_t(i)});
+    std::size_t nodes = 1;
+    for (std::size_t size = ends_.size(); size > few; size = (size + 1) / 2) nodes = 2 * nodes + 1;
+    nodes_.resize(nodes);
+    leaf_of_.resize(ends_.size());
+    build(0, 0, ends_.size());
   }
 
-  /// The unused end nearest to `from`, of equals the lowest number; none when all are used.
-  [[nodiscard]] std::uint32_t nearest(const glm::dvec2& from) {
-    std::uint32_t best = none;
-    double best_distance = 1e300;
-    const glm::ivec2 at = cell_of(from);
-    const double outside = glm::distance(from, glm::clamp(from, low_, low_ + cell_ * side_));
-    for (int ring = 0; ring <= side_; ++ring) {
-      // Nothing in a ring is nearer than the rings within it are wide.
-      if (best != none && std::sqrt(best_distance) <= std::max(0.0, (ring - 1) * cell_ - outside)) break;
-      for_ring(at, ring, [&](std::vector<std::uint32_t>& cell) {
-        cell.erase(std::remove_if(cell.begin(), cell.end(), [&](std::uint32_t n) { return bool(is_used_[n / 2]); }),
-                   cell.end());
-        for (const std::uint32_t number : cell) {
-          const glm::dvec2 d = place(chains_, number) - from;
-          const double distance = glm::dot(d, d);
-          if (distance < best_distance || (distance == best_distance && number < best)) {
-            best = number;
-            best_distance = distance;
-          }
-        }
-      });
+  /// The end that is left nearest to `from`, of equals the lowest number. Precondition: one is left.
+  [[nodiscard]] std::uint32_t nearest(const glm::dvec2& from) const {
+    Found best;
+    visit(0, from, best);
+    return best.number;
+  }
+
+  void remove(std::uint32_t number) {
+    std::size_t node = leaf_of_[number - offset_];
+    Node& leaf = nodes_[node];
+    const auto at = std::find_if(ends_.begin() + leaf.begin, ends_.begin() + leaf.end,
+                                 [&](const End& end) { return end.number == number; });
+    std::swap(*at, ends_[--leaf.end]);
+    leaf.lowest = none;
+    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) leaf.lowest = std::min(leaf.lowest, ends_[i].number);
+    for (; node > 0; node = (node - 1) / 2) {
+      const std::size_t parent = (node - 1) / 2;
+      nodes_[parent].lowest = std::min(nodes_[2 * parent + 1].lowest, nodes_[2 * parent + 2].lowest);
     }
-    return best;
   }
 
  private:
-  [[nodiscard]] glm::ivec2 cell_of(const glm::dvec2& p) const {
-    const glm::dvec2 at = (p - low_) / cell_;
-    return {std::clamp(int(std::clamp(at.x, -1.0, 1e6)), 0, side_ - 1),
-            std::clamp(int(std::clamp(at.y, -1.0, 1e6)), 0, side_ - 1)};
+  static constexpr std::size_t few = 8;
+  struct End {
+    glm::dvec2 at;
+    std::uint32_t number;
+  };
+  /// Node i has the nodes 2 i + 1 and 2 i + 2 below it.
+  struct Node {
+    glm::dvec2 low{0}, high{0};
+    std::uint32_t begin = 0, end = 0;  ///< of the ends that are left; of leaves alone
+    std::uint32_t lowest = none;
+    bool is_leaf = true;
+  };
+  struct Found {
+    double distance = std::numeric_limits<double>::infinity();
+    std::uint32_t number = none;
+  };
+
+  void build(std::size_t number, std::size_t begin, std::size_t end) {
+    Node& node = nodes_[number];
+    node = {ends_[begin].at, ends_[begin].at, std::uint32_t(begin), std::uint32_t(end), none, end - begin <= few};
+    for (std::size_t i = begin; i < end; ++i) {
+      node.low = glm::min(node.low, ends_[i].at);
+      node.high = glm::max(node.high, ends_[i].at);
+      node.lowest = std::min(node.lowest, ends_[i].number);
+      leaf_of_[ends_[i].number - offset_] = number;
+    }
+    if (node.is_leaf) return;
+    const int axis = node.high.y - node.low.y > node.high.x - node.low.x;
+    const auto at = [&](std::size_t i) { return ends_.begin() + std::ptrdiff_t(i); };
+    const std::size_t middle = begin + (end - begin + 1) / 2;
+    std::nth_element(at(begin), at(middle), at(end),
+                     [&](const End& a, const End& b) { return a.at[axis] < b.at[axis]; });
+    build(2 * number + 1, begin, middle);
+    build(2 * number + 2, middle, end);
   }
 
-  template <class Visit>
-  void for_ring(const glm::ivec2& at, int ring, const Visit& visit) {
-    for (int y = std::max(0, at.y - ring); y <= std::min(side_ - 1, at.y + ring); ++y) {
-      const bool whole = std::abs(y - at.y) == ring;
-      const int step = whole || ring == 0 ? 1 : 2 * ring;
-      for (int x = at.x - ring; x <= at.x + ring; x += step)
-        if (x >= 0 && x < side_) visit(cells_[std::size_t(y) * std::size_t(side_) + std::size_t(x)]);
+  [[nodiscard]] double distance(std::size_t number, const glm::dvec2& from) const {
+    const glm::dvec2 d = glm::clamp(from, nodes_[number].low, nodes_[number].high) - from;
+    return glm::dot(d, d);
+  }
+
+  void visit(std::size_t number, const glm::dvec2& from, Found& best) const {
+    const Node& node = nodes_[number];
+    if (node.is_leaf) {
+      for (std::uint32_t i = node.begin; i < node.end; ++i) {
+        const glm::dvec2 d = ends_[i].at - from;
+        const Found found{glm::dot(d, d), ends_[i].number};
+        if (std::tie(found.distance, found.number) < std::tie(best.distance, best.number)) best = found;
+      }
+      return;
+    }
+    std::size_t below[] = {2 * number + 1, 2 * number + 2};
+    double distances[] = {distance(below[0], from), distance(below[1], from)};
+    const int first = std::tie(distances[1], nodes_[below[1]].lowest) < std::tie(distances[0], nodes_[below[0]].lowest);
+    for (const int i : {first, 1 - first}) {
+      const std::uint32_t lowest = nodes_[below[i]].lowest;
+      if (lowest != none && std::tie(distances[i], lowest) < std::tie(best.distance, best.number))
+        visit(below[i], from, best);
     }
   }
 
-  const std::vector<Chain>& chains_;
-  const std::vector<bool>& is_used_;
-  glm::dvec2 low_{1e300};
-  double cell_ = 1;
-  int side_ = 1;
-  std::vector<std::vector<std::uint32_t>> cells_;
+  const std::size_t offset_;  ///< the first end's number
+  std::vector<End> ends_;
+  std::vector<Node> nodes_;
+  std::vector<std::size_t> leaf_of_;
 };
 
 void reverse(Chain& chain) {
@@ -121,32 +154,30 @@ void draw(Chain&& chain, double touching, std::size_t first, std::vector<Chain>&
 }
 
 void order_rank(std::vector<Chain>& chains, std::size_t first, std::size_t last, double touching,
-                std::vector<Chain>& drawn) {
-  std::vector<bool> is_used(chains.size());
+                std::vector<Chain>& drawn, const Execution& execution) {
+  EndTree left(chains, first, last);
   const std::size_t begin = drawn.size();
   glm::dvec2 pen(0);
-  std::size_t left = last - first;
-  while (left > 0) {
-    EndGrid grid(chains, is_used, first, last);
-    for (const std::size_t enough = left / 4; left > enough; --left) {
-      const std::uint32_t number = grid.nearest(pen);
-      Chain chain = chains[number / 2];  // the grid still looks at the places of used ones
-      is_used[number / 2] = true;
-      if (number % 2 == 1 && !chain.is_closed) reverse(chain);
-      pen = chain.is_closed ? chain.points.front() : chain.points.back();
-      draw(std::move(chain), touching, begin, drawn);
-    }
+  for (std::size_t i = first; i < last; ++i) {
+    if (i % 1024 == 0) check_cancelled(execution);
+    const std::uint32_t number = left.nearest(pen);
+    left.remove(number);
+    left.remove(number ^ 1);
+    Chain& chain = chains[number / 2];
+    if (number % 2 == 1 && !chain.is_closed) reverse(chain);
+    pen = chain.is_closed ? chain.points.front() : chain.points.back();
+    draw(std::move(chain), touching, begin, drawn);
   }
 }
 
 }  // namespace
 
-std::vector<Chain> nearest_first(std::vector<Chain> chains, double touching) {
+std::vector<Chain> nearest_first(std::vector<Chain> chains, double touching, const Execution& execution) {
   std::vector<Chain> drawn;
   for (std::size_t first = 0; first < chains.size();) {
     std::size_t last = first + 1;
     while (last < chains.size() && chains[last].rank == chains[first].rank) ++last;
-    order_rank(chains, first, last, touching, drawn);
+    order_rank(chains, first, last, touching, drawn, execution);
     first = last;
   }
   return drawn;

@@ -40,6 +40,6 @@ void find_arcs(Chain& chain, double tolerance);
 
 /// Chains of one rank, each begun at the end that is nearest to the last one's end, and joined with it where the two
 /// are within `touching`.
-[[nodiscard]] std::vector<Chain> nearest_first(std::vector<Chain> chains, double touching);
+[[nodiscard]] std::vector<Chain> nearest_first(std::vector<Chain> chains, double touching, const Execution& execution);
 
 }  // namespace frontmost::lines_detail

@@ -107,7 +107,7 @@ Strokes strokes(const Surfaces& surfaces, const Drawing& drawing, const StrokeOp
     }
   });
   report_progress(execution, "strokes", 0.8);
-  if (options.nearest_first) chains = nearest_first(std::move(chains), options.tolerance);
+  if (options.nearest_first) chains = nearest_first(std::move(chains), options.tolerance, execution);
   check_cancelled(execution);
   // What is hidden has the highest ranks, and lies below.
   std::stable_sort(chains.begin(), chains.end(), [&](const Chain& a, const Chain& b) {
