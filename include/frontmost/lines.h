@@ -63,7 +63,8 @@ struct Drawing {
 /// neither an edge's own triangles nor others of their planes hide it, and nothing is seen through the seam between two
 /// triangles. Ends of parts are rounded to doubles. Vertices at one place count as one, so that open seams of files
 /// without shared vertices are closed. Triangles between the eye and the near plane hide nothing; those with holes
-/// (alpha mode MASK) hide as if they had none.
+/// (alpha mode MASK) hide as if they had none. View::culling does not count: triangles hide, and have edges, whichever
+/// way they face.
 /// An intersection belongs to two triangles each of which has corners strictly on either side of the other's plane, or
 /// to an edge that lies in the plane of a triangle between its own two, and is not drawn itself: what only stands on a
 /// surface does not pass through it, and draws its own edges. Its ends are rounded, so that a

@@ -69,11 +69,10 @@ Interval EdgeCutter::part_in(const OccluderGrid::Visit& cell) const {
 Interval EdgeCutter::open_part(Interval part) const {
   part = {std::max(part.begin, shown_.begin), std::min(part.end, shown_.end)};
   if (counts_) return part;
-  for (const Hidden& hidden : hidden_) {
-    const Interval& h = hidden.interval;
-    if (h.begin <= part.begin && h.end > part.begin) part.begin = h.end;
-    if (h.begin < part.end && h.end >= part.end) part.end = h.begin;
-  }
+  if (const auto at = first_to(part.begin); at != hidden_.end() && at->interval.begin <= part.begin)
+    part.begin = at->interval.end;
+  if (const auto at = first_to(part.end); at != hidden_.end() && at->interval.begin < part.end)
+    part.end = at->interval.begin;
   return part;
 }
 
@@ -177,8 +176,7 @@ void EdgeCutter::hide(const Interval& interval, std::uint32_t triangle) {
     hidden_.push_back({in, triangle});
     return;
   }
-  auto first = hidden_.begin();
-  while (first != hidden_.end() && first->interval.end < in.begin) ++first;
+  const auto first = hidden_.begin() + (first_to(in.begin) - hidden_.begin());
   auto last = first;
   for (; last != hidden_.end() && last->interval.begin <= in.end; ++last)
     in = {std::min(in.begin, last->interval.begin), std::max(in.end, last->interval.end)};
@@ -192,9 +190,14 @@ void EdgeCutter::hide(const Interval& interval, std::uint32_t triangle) {
 
 bool EdgeCutter::is_hidden(const Interval& part) const {
   const double begin = std::max(part.begin, shown_.begin), end = std::min(part.end, shown_.end);
-  for (const Hidden& hidden : hidden_)
-    if (hidden.interval.begin <= begin && hidden.interval.end >= end) return true;
-  return false;
+  const auto at = first_to(end);
+  return at != hidden_.end() && at->interval.begin <= begin;
+}
+
+/// Of what is hidden, without counts, the first that reaches t.
+std::deque<EdgeCutter::Hidden>::const_iterator EdgeCutter::first_to(double t) const {
+  return std::lower_bound(hidden_.begin(), hidden_.end(), t,
+                          [](const Hidden& hidden, double place) { return hidden.interval.end < place; });
 }
 
 /// A triangle that was asked in two cells counts once.

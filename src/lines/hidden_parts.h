@@ -2,6 +2,8 @@
 // Where an edge goes out of sight.
 #pragma once
 
+#include <deque>
+
 #include "frontmost/lines.h"
 #include "lines/feature_edges.h"
 #include "lines/occluder_grid.h"
@@ -44,6 +46,7 @@ class EdgeCutter {
   bool flush();
   void hide(const Interval& interval, std::uint32_t triangle);
   [[nodiscard]] bool is_hidden(const Interval& part) const;
+  [[nodiscard]] std::deque<Hidden>::const_iterator first_to(double t) const;
   void drop_doubles();
   void search(const Interval& span, bool for_cover);
   void split_outline(std::size_t first, std::vector<DrawnPart>& parts);
@@ -58,7 +61,8 @@ class EdgeCutter {
   glm::dvec2 begin_{0}, end_{0};  ///< of that, in cells
   float farthest_ = 0;
   OccluderBatch batch_;
-  std::vector<Hidden> hidden_;  ///< without counts united, in order
+  /// Without counts united, in order. Cells may come from its end to its beginning.
+  std::deque<Hidden> hidden_;
   std::vector<std::pair<double, int>> changes_;
   std::vector<DrawnPart> split_;
   /// By the low bits of occluders' addresses: which were asked last, so that the next cell need not.

@@ -18,7 +18,7 @@ namespace {
 using namespace lines_detail;
 
 constexpr std::size_t kEdgesPerPart = 1024, kEdgesPerPoll = 16;
-constexpr std::size_t kMostParts = std::size_t(1) << 26;
+constexpr std::size_t kMostParts = std::size_t(1) << 26, kPartsPerTally = 1 << 16;
 constexpr double kCutFrom = 0.3;  // of the progress
 
 /// All that is drawn, before it is cut.
@@ -71,12 +71,16 @@ std::vector<DrawnPart> cut_all(const Candidates& candidates, const Occlusion& oc
   parallel_for(execution, count, kEdgesPerPart, [&](std::size_t begin, std::size_t end) {
     const auto cutter = cutters.borrow([&] { return std::make_unique<EdgeCutter>(occlusion); });
     std::vector<DrawnPart>& list = lists[begin / kEdgesPerPart];
+    std::size_t counted = 0;
     for (std::size_t i = begin; i < end; ++i) {
       if (i % kEdgesPerPoll == 0) check_cancelled(execution);
       cutter->cut(candidates.sighted(i), std::uint32_t(i), list);
+      // An edge alone may have as many as there are triangles.
+      if (list.size() - counted < kPartsPerTally && i + 1 < end) continue;
+      if ((parts += list.size() - counted) > kMostParts)
+        throw Error(ErrorCode::limit_exceeded, "lines: more than " + std::to_string(kMostParts) + " parts of edges");
+      counted = list.size();
     }
-    if ((parts += list.size()) > kMostParts)
-      throw Error(ErrorCode::limit_exceeded, "lines: more than " + std::to_string(kMostParts) + " parts of edges");
     report_progress(execution, "lines", 1 - (1 - kCutFrom) * double(count - (done += end - begin)) / double(count));
   });
   return joined(lists);

@@ -12,8 +12,9 @@
 namespace frontmost::test {
 namespace {
 
-enum class Crowd { stack, leaning_stack, book, fan, cone };
-constexpr Crowd all_crowds[] = {Crowd::stack, Crowd::leaning_stack, Crowd::book, Crowd::fan, Crowd::cone};
+/// A fence stands before one long edge.
+enum class Crowd { stack, leaning_stack, book, fan, cone, fence };
+constexpr Crowd all_crowds[] = {Crowd::stack, Crowd::leaning_stack, Crowd::book, Crowd::fan, Crowd::cone, Crowd::fence};
 
 Mesh crowd(Crowd kind, int count) {
   Random random(3);
@@ -33,6 +34,12 @@ Mesh crowd(Crowd kind, int count) {
       case Crowd::cone:
         add_triangle(mesh, {0, 0, 1}, {std::cos(turn), std::sin(turn), 0}, {std::cos(next), std::sin(next), 0});
         break;
+      case Crowd::fence: {
+        if (i == 0) add_triangle(mesh, {1, 0, 0}, {-1, 0, 0}, {0, -1, -1});
+        const float left = 2 * t - 1, right = left + 1 / float(count);
+        add_triangle(mesh, {left, -0.1f, 0.1f}, {right, -0.1f, 0.1f}, {0.5f * (left + right), 0.1f, 0.2f});
+        break;
+      }
     }
   }
   return mesh;
