@@ -249,6 +249,23 @@ TEST(Hatch, ForPlottersOrderedAndOtherwiseTheSame) {
   for (const HatchLine& line : ordered) EXPECT_EQ(line.instance, no_index);
 }
 
+TEST(Hatch, StaysWithinThePictureOnWhatReachesFarBeyond) {
+  View view = view_from({0, -1, 0.1}, false);
+  view.projection.clip.far = std::numeric_limits<double>::infinity();
+  for (const float reach : {1e6f, 1e12f, 1e20f, 1e30f}) {
+    Mesh floor;
+    add_triangle(floor, {-reach, -reach, -1}, {reach, -reach, -1}, {0, reach, -1});
+    const Scene scene = scene_of(std::move(floor));
+    const Surfaces surfaces(scene);
+    const std::vector<HatchLine> lines =
+        hatch(surfaces, view, options_of({{0.7, 5, 0, 1}, {0, 5, 0, 1}, {1.57, 5, 0, 1}}, {0.2, 0, 1}, false));
+    EXPECT_FALSE(lines.empty());
+    for (const HatchLine& line : lines)
+      for (const glm::dvec2& end : {line.from, line.to})
+        EXPECT_TRUE(end.x > -1e-3 && end.y > -1e-3 && end.x < 200.001 && end.y < 200.001) << end.x << " " << end.y;
+  }
+}
+
 TEST(Hatch, ShortLinesAreLeftOutWhereAskedFor) {
   const Scene scene = scene_of(random_mesh(Kind::soup, 300, 4));
   const Surfaces surfaces(scene);

@@ -17,7 +17,8 @@ glm::dvec2 direction_of(double angle) {
 }  // namespace
 
 HatchRows::HatchRows(const HatchSet& set, const View& view)
-    : direction_(direction_of(set.angle)),
+    : size_(view.width, view.height),
+      direction_(direction_of(set.angle)),
       across_(-direction_.y, direction_.x),
       spacing_(set.spacing),
       offset_(set.offset),
@@ -31,6 +32,16 @@ HatchRows::HatchRows(const HatchSet& set, const View& view)
   const auto [low, high] = std::minmax_element(std::begin(heights), std::end(heights));
   picture_ = {std::int32_t(std::ceil((*low - offset_) / spacing_)),
               std::int32_t(std::floor((*high - offset_) / spacing_))};
+}
+
+double HatchRows::within_picture(std::int32_t line, double along) const {
+  const glm::dvec2 start = point(line, 0);
+  for (int axis = 0; axis < 2; ++axis) {
+    if (direction_[axis] == 0) continue;
+    const double a = -start[axis] / direction_[axis], b = (size_[axis] - start[axis]) / direction_[axis];
+    along = std::clamp(along, std::min(a, b), std::max(a, b));
+  }
+  return along;
 }
 
 HatchRows::Range HatchRows::range_of(const HatchedTriangle& triangle) const {

@@ -48,6 +48,8 @@ class HatchRows {
 
   /// Pixels along the line, of a point on it.
   [[nodiscard]] double along(const glm::dvec2& screen) const { return glm::dot(screen, direction_); }
+  /// The nearest place along the line that is in the picture.
+  [[nodiscard]] double within_picture(std::int32_t line, double along) const;
   [[nodiscard]] glm::dvec2 point(std::int32_t line, double along) const {
     return across_ * height_of(line) + direction_ * along;
   }
@@ -60,6 +62,7 @@ class HatchRows {
     return glm::dot(plane_, {in_eye.x, in_eye.y, weight(in_eye)});
   }
 
+  glm::dvec2 size_;
   glm::dvec2 direction_, across_;  ///< of unit length
   double spacing_, offset_, near_;
   bool is_parallel_;

@@ -93,8 +93,7 @@ class TonedScene::Hatcher {
       for (const Interval& dark : dark_) {
         const Interval shown{std::max(part.begin, dark.begin), std::min(part.end, dark.end)};
         if (!(shown.begin < shown.end)) continue;
-        const double begin = along(segment.edge, shown.begin, piece.set),
-                     end = along(segment.edge, shown.end, piece.set);
+        const double begin = along(segment.edge, shown.begin, piece), end = along(segment.edge, shown.end, piece);
         piece.begin = std::min(begin, end);
         piece.end = std::max(begin, end);
         pieces.push_back(piece);
@@ -164,12 +163,16 @@ class TonedScene::Hatcher {
       if (part.hidden_by != 0) dark_.push_back({part.begin, part.end});
   }
 
-  [[nodiscard]] double along(const SightedEdge& edge, double t, std::uint32_t set) const {
+  [[nodiscard]] double along(const SightedEdge& edge, double t, const Piece& piece) const {
     // From the nearer end, so that both ends are met.
     const glm::dvec3 place =
         t <= 0.5 ? edge.from + (edge.to - edge.from) * t : edge.to + (edge.from - edge.to) * (1 - t);
     const Sight& sight = scene_.eye_.sight;
-    return rows_[set].along(glm::dvec2(sight.to_screen(sight.in_eye(place))));
+    // It is within the view; rounding may say otherwise of triangles that are very much larger.
+    glm::dvec3 in_eye = sight.in_eye(place);
+    in_eye.z = std::max(in_eye.z, sight.near());
+    const HatchRows& row = rows_[piece.set];
+    return row.within_picture(piece.line, row.along(glm::dvec2(sight.to_screen(in_eye))));
   }
 
   const TonedScene& scene_;
