@@ -268,6 +268,23 @@ TEST(StrokesOnce, ACrowdFarFromTheRestIsNoMatter) {
   EXPECT_NEAR(length, 0.1 * double(drawing.parts.size()), 0.05 * 0.1 * double(drawing.parts.size()));
 }
 
+TEST(StrokesOnce, NorAreLongLinesSideBySide) {
+  using Clock = std::chrono::steady_clock;
+  const Scene scene = scene_of(prism(square));
+  const Surfaces surfaces(scene);
+  Drawing drawing;
+  constexpr int count = 3000;
+  for (int i = 0; i < count; ++i) {
+    const double y = 2000.0 * i / count;
+    drawing.edges.push_back({});
+    drawing.parts.push_back({std::uint32_t(i), 0, 1, {0, y}, {3000, y + 300}});
+  }
+  const Clock::time_point start = Clock::now();
+  EXPECT_EQ(strokes(surfaces, drawing, {.by_instance = false}).strokes.size(), std::size_t(count));
+  // 0.07 s; and minutes when lines were entered in the border cells of what they only pass.
+  EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), under_sanitizer ? 20 : 3);
+}
+
 TEST(StrokesOnce, CopiesInACrowdAreDrawnOnce) {
   const Scene scene = scene_of(prism(square));
   const Surfaces surfaces(scene);

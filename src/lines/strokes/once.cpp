@@ -111,6 +111,8 @@ class Grid {
         y1 = a.y + (b.y - a.y) * std::clamp((right - a.x) / width, 0.0, 1.0);
       }
       if (y0 > y1) std::swap(y0, y1);
+      // A divided cell has the segment whole: what of it passes above or below is not in its border cells.
+      if (y1 + near < low_.y || y0 - near > low_.y + count_.y * cell_) continue;
       for (int y = row(y0 - near); y <= row(y1 + near); ++y)
         visit(std::size_t(y) * std::size_t(count_.x) + std::size_t(x), glm::ivec2(x, y));
     }
