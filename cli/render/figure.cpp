@@ -39,8 +39,9 @@ std::function<bool(PrimitiveId)> hiding(const Job& job, const RenderContext& con
 }
 
 PaintOrder order_of(const Job& job, const RenderContext& context, const View& view) {
-  PaintOrder order = painter(context.surfaces, view, {}, context.execution);
-  return job.output.visible_only ? visible_parts(order, hiding(job, context, false), context.execution) : order;
+  if (!job.output.visible_only) return painter(context.surfaces, view, {}, context.execution);
+  const std::function<bool(PrimitiveId)> hides = hiding(job, context, false);
+  return visible_parts(painter(context.surfaces, view, {.hides = hides}, context.execution), hides, context.execution);
 }
 
 /// In the colours of the picture that the same options make.
@@ -125,7 +126,7 @@ void write_figures(const Job& job, const RenderContext& context, ViewResult& res
   watch = {};
   for (const std::string& path : job.figures) {
     stop_if_interrupted();
-    result.results.push_back({"figure", path, {}});
+    result.results.push_back({std::string(figure_name), path, {}});
     const WritingFiles writing;
     save(page, path, std::nullopt, context.execution);
   }

@@ -6,6 +6,9 @@
 
 namespace frontmost::cli {
 
+/// What a report calls them.
+inline constexpr std::string_view figure_name = "figure";
+
 /// Whether a picture's name asks for polygons.
 [[nodiscard]] bool is_figure(const std::string& path);
 

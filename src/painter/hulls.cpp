@@ -15,8 +15,12 @@ std::array<glm::dvec3, 3> axes_of(const Face& face) {
   const glm::dvec3 a(face.corners[0]), b(face.corners[1]), c(face.corners[2]);
   const glm::dvec3 normal = glm::cross(b - a, c - a), along = b - a;
   const double length = glm::length(normal), reach = glm::length(along);
-  if (!(length > 0 && reach > 0 && length < 1e150)) return {glm::dvec3(1, 0, 0), {0, 1, 0}, {0, 0, 1}};
-  const glm::dvec3 first = normal / length, second = along / reach;
+  const std::array<glm::dvec3, 3> axes{glm::dvec3(1, 0, 0), {0, 1, 0}, {0, 0, 1}};
+  if (!(length > 0 && reach > 0 && length < 1e150)) return axes;
+  // The normal of a needle may be rounded to anything, also to what is not at right angles to its side.
+  const glm::dvec3 first = normal / length, side = along / reach, across = side - first * glm::dot(first, side);
+  if (glm::length(across) < 0.5) return axes;
+  const glm::dvec3 second = glm::normalize(across);
   return {first, second, glm::cross(first, second)};
 }
 

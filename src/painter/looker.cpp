@@ -129,8 +129,8 @@ bool Looker::is_hidden_at(std::size_t slot, const glm::dvec2& at) {
     poll_.count();
     const std::uint32_t other = scenery_.slot(places[i]);
     const Extent& e = scenery_.extent(other);
-    if (at.x > e.low.x && at.x < e.high.x && at.y > e.low.y && at.y < e.high.y && scenery_.hides(other) &&
-        is_within(scenery_.outline(other), at))
+    if (at.x > e.low.x && at.x < e.high.x && at.y > e.low.y && at.y < e.high.y &&
+        is_within(scenery_.outline(other), at) && may_hide(own_place, other))
       return true;
   }
   return false;
@@ -144,6 +144,21 @@ bool Looker::is_hidden(std::size_t slot, Outline outline) {
   cutter_.begin(outline);
   return take_covers({scenery_.place(slot), scenery_.first_place(slot), kMostPartsOfHem}, box,
                      scenery_.grid().range(box));
+}
+
+/// Most are not, and their middles tell.
+bool Looker::is_all_hidden(std::size_t slot) {
+  const Extent& extent = scenery_.extent(slot);
+  const PieceGrid::Range cells = scenery_.grid().range(extent);
+  if (!is_few(cells)) return false;
+  cutter_.begin(scenery_.outline(slot));
+  cutter_.keep_within(glm::dvec2(0), scenery_.size());
+  if (cutter_.count() == 0) return false;
+  glm::dvec2 middle(0);
+  for (const PaintCorner& corner : cutter_[0]) middle += glm::dvec2(corner.at) / double(cutter_[0].size());
+  if (!is_hidden_at(slot, middle)) return false;
+  const std::uint32_t place = scenery_.place(slot);
+  return take_covers({place, place, kMostPartsOfHem}, extent, cells);
 }
 
 const OutlineList& Looker::look(std::size_t slot) {
@@ -218,8 +233,8 @@ bool Looker::take_covers(const Covers& covers, const Extent& own, const PieceGri
         poll_.count();
         const std::uint32_t other = scenery_.slot(places[i]);
         const Extent& e = scenery_.extent(other);
-        if (is_apart(e, own) || !scenery_.hides(other)) continue;
-        if (!is_one_cell && !is_first_meeting(cells, e, x, y)) continue;
+        if (is_apart(e, own) || (!is_one_cell && !is_first_meeting(cells, e, x, y))) continue;
+        if (!may_hide(covers.own, other)) continue;
         ++count;
         const Cover cover{scenery_.outline(other), glm::dvec2(e.low), glm::dvec2(e.high)};
         if (cutter_.subtract(cover, cutter_.count() <= covers.most_parts)) return true;

@@ -57,7 +57,14 @@ class Scenery {
 /// One polygon after another. Not for several threads at once.
 class Looker {
  public:
-  Looker(const Scenery& scenery, const Execution& execution) : scenery_(scenery), poll_(execution) {}
+  /// Whether a polygon is wholly behind a later one where they overlap, both by their places. None: always.
+  using IsBehind = std::function<bool(std::uint32_t place, std::uint32_t cover)>;
+
+  Looker(const Scenery& scenery, const Execution& execution, IsBehind is_behind = {})
+      : scenery_(scenery), poll_(execution), is_behind_(std::move(is_behind)) {}
+
+  /// Whether those after the polygon in a slot hide all of it, as far as that is quickly told: large ones are not.
+  [[nodiscard]] bool is_all_hidden(std::size_t slot);
 
   /// Whether those after the polygon in a slot hide an outline together, whose first and last corners are its own.
   /// Other parts of the same primitive hide it too, also those before it: it shows nothing else than they do.
@@ -84,10 +91,14 @@ class Looker {
   };
   /// Takes what is covered from what is in the cutter. \returns true when nothing is left.
   bool take_covers(const Covers& covers, const Extent& own, const PieceGrid::Range& cells);
+  [[nodiscard]] bool may_hide(std::uint32_t place, std::size_t cover) const {
+    return scenery_.hides(cover) && (!is_behind_ || is_behind_(place, scenery_.place(cover)));
+  }
   [[nodiscard]] bool is_first_meeting(const PieceGrid::Range& cells, const Extent& cover, int x, int y) const;
 
   const Scenery& scenery_;
   Poll poll_;
+  const IsBehind is_behind_;
   OutlineCutter cutter_;
   OutlineList seen_;
 };

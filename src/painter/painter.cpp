@@ -5,7 +5,9 @@
 
 #include "base/float_environment.h"
 #include "painter/depth_sort.h"
+#include "painter/emit.h"
 #include "painter/gather.h"
+#include "painter/hidden.h"
 #include "painter/partition.h"
 
 namespace frontmost {
@@ -17,6 +19,10 @@ using namespace painter_detail;
 /// takes 1.3 times as long on assemblies of parts that pass through each other, for 2 to 9 % fewer polygons, none of
 /// them seen; parting down to single pieces, as PaintMethod::bsp does, takes a third and leaves half as many again.
 constexpr std::size_t kFewer = 64;
+
+[[noreturn]] void refuse_more_than(std::size_t most) {
+  throw Error(ErrorCode::limit_exceeded, "painter: more than " + std::to_string(most) + " polygons and pieces");
+}
 
 /// Makes one list of pieces out of all, by work that is still to do, the next on top. Not by recursion: a partition may
 /// be as uneven as there are pieces.
@@ -71,9 +77,7 @@ class Orderer {
     if (steps_.cuts > options_.most_cuts)
       throw Error(ErrorCode::limit_exceeded, "painter: more than " + std::to_string(options_.most_cuts) +
                                                  " cuts: too many triangles pass through each other");
-    if (pieces_.size() > options_.most_polygons)
-      throw Error(ErrorCode::limit_exceeded,
-                  "painter: more than " + std::to_string(options_.most_polygons) + " polygons and pieces");
+    if (pieces_.size() > options_.most_polygons) refuse_more_than(options_.most_polygons);
   }
 
   void sort(const std::vector<std::uint32_t>& members) {
@@ -111,26 +115,6 @@ void sort_by_centroid(const Pieces& pieces, std::vector<std::uint32_t>& members)
   });
 }
 
-void emit(const Pieces& pieces, std::uint32_t piece, PaintOrder& order) {
-  const Face& face = pieces.face(piece);
-  const Sight& sight = pieces.sight();
-  PaintPolygon polygon{face.id, 3, order.corners.size()};
-  const auto add = [&](const glm::dvec3& at, bool is_cut) {
-    glm::dvec3 in_eye = sight.in_eye(at);
-    // Where rounding of huge coordinates takes a corner to the eye, it would be at infinity.
-    in_eye.z = std::max(in_eye.z, sight.near());
-    order.corners.push_back({sight.to_screen(in_eye), is_cut});
-  };
-  if (pieces.is_whole(piece)) {
-    for (const glm::vec3& corner : face.corners) add(glm::dvec3(corner), false);
-  } else {
-    const Shape& shape = pieces.shape(piece);
-    polygon.corner_count = std::uint32_t(shape.corners.size());
-    for (std::size_t i = 0; i < shape.corners.size(); ++i) add(shape.corners[i].at, shape.sides[i] >= Shape::first_cut);
-  }
-  order.polygons.push_back(polygon);
-}
-
 }  // namespace
 
 PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOptions& options,
@@ -142,6 +126,8 @@ PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOpti
   order.view = view;
   Pieces pieces(view);
   std::vector<std::uint32_t> members = gather(surfaces, view, pieces, execution);
+  if (pieces.size() > options.most_polygons) refuse_more_than(options.most_polygons);
+  if (options.hides) members = without_hidden(pieces, members, view, options.hides, execution);
   report_progress(execution, "painter", 0.2);
   if (options.method == PaintMethod::farthest) {
     sort_by_farthest(pieces, members);
@@ -151,13 +137,8 @@ PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOpti
     members = Orderer(pieces, options, execution, order.steps).order(std::move(members));
   }
   report_progress(execution, "painter", 0.9);
-  order.polygons.reserve(members.size());
-  order.corners.reserve(3 * members.size());
   Poll poll(execution);
-  for (const std::uint32_t piece : members) {
-    poll.count();
-    emit(pieces, piece, order);
-  }
+  emit(pieces, members, order, poll);
   report_progress(execution, "painter", 1);
   return order;
 }

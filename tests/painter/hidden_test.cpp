@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Orders from which most of what is hidden is left out beforehand.
+#include <gmock/gmock.h>
+
+#include "painter/painted.h"
+#include "support/effort.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+using testing::ElementsAre;
+
+bool all(PrimitiveId) { return true; }
+
+void add_square(Mesh& mesh, float half, float z) {
+  add_triangle(mesh, {-half, -half, z}, {half, -half, z}, {half, half, z});
+  add_triangle(mesh, {-half, -half, z}, {half, half, z}, {-half, half, z});
+}
+
+TEST(Hidden, IsNeverCut) {
+  Mesh mesh = random_mesh(Kind::sheets, 40, 1);
+  for (glm::vec3& p : mesh.positions) p = p * 0.2f;
+  add_square(mesh, 1.5f, 2);
+  const auto first = PrimitiveId(mesh.triangles.size() - 2);
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  for (const bool is_parallel : {false, true}) {
+    const View view = view_from_above(is_parallel, 256);
+    EXPECT_GT(painter(surfaces, view).steps.cuts, 0u);
+    const PaintOrder order = painter(surfaces, view, {.hides = all});
+    EXPECT_EQ(order.steps.cuts, 0u);
+    EXPECT_THAT(ids_of(order), testing::UnorderedElementsAre(first, first + 1));
+    // Behind glass everything is seen.
+    const auto is_no_glass = [&](PrimitiveId id) { return id < first; };
+    EXPECT_GT(painter(surfaces, view, {.hides = is_no_glass}).polygons.size(), 20u);
+  }
+}
+
+TEST(Hidden, InOnePlaneTheLowerIdIsLeft) {
+  Mesh mesh;
+  for (int i = 0; i < 3; ++i) add_square(mesh, 1, 0.25f);
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  for (const bool is_parallel : {false, true})
+    EXPECT_THAT(ids_of(painter(surfaces, view_from_above(is_parallel, 256), {.hides = all})), ElementsAre(1, 0));
+}
+
+/// One through another hides it on one side alone.
+TEST(Hidden, WhatComesThroughStays) {
+  Mesh mesh;
+  add_square(mesh, 1, 0);
+  add_triangle(mesh, {-0.5f, -0.6f, -0.2f}, {0.5f, -0.6f, -0.2f}, {0, 0.5f, 0.01f});
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  const PaintOrder order = painter(surfaces, view_from_above(false, 256), {.hides = all});
+  EXPECT_THAT(ids_of(order), testing::Contains(2u));
+}
+
+TEST(Hidden, ThePictureIsTheSame) {
+  std::size_t samples = 0, differing = 0, before = 0, left = 0;
+  for (const Kind kind : all_kinds)
+    for (std::uint64_t seed = 0; seed < seeds(4); ++seed) {
+      Random random(seed + 70);
+      const Scene scene = scene_of(random_mesh(kind, kind == Kind::sheets ? 20 : 150, seed));
+      const Surfaces surfaces(scene);
+      const View view = random_view(random, 120, 90);
+      const PaintOrder whole = painter(surfaces, view), order = painter(surfaces, view, {.hides = all});
+      const Visible expected = paint(surfaces, whole), found = paint(surfaces, order);
+      for (std::size_t i = 0; i < expected.primitives.size(); ++i)
+        differing += expected.primitives[i] != found.primitives[i];
+      samples += expected.primitives.size();
+      before += whole.polygons.size();
+      left += order.polygons.size();
+    }
+  EXPECT_LT(double(differing), 1e-4 * double(samples));  // snapped corners, as for visible_parts()
+  EXPECT_LT(left, before * 3 / 4);
+}
+
+TEST(Hidden, ThreadsChangeNothing) {
+  const Scene scene = scene_of(random_mesh(Kind::soup, 4000, 2));
+  const Surfaces surfaces(scene);
+  const View view = frame(surfaces, 160, 120);
+  EXPECT_EQ(ids_of(painter(surfaces, view, {.hides = all}, {.threads = 1})),
+            ids_of(painter(surfaces, view, {.hides = all}, {.threads = 3})));
+}
+
+}  // namespace
+}  // namespace frontmost::test
