@@ -8,6 +8,7 @@
 
 #include "cli/inspect/camera_report.h"
 #include "cli/rays/sight.h"
+#include "cli/render/figure.h"
 
 namespace frontmost::cli {
 namespace {
@@ -85,6 +86,7 @@ Json view_json(const ViewResult& result) {
   json["files"] = Json::array();
   for (const Result& file : result.results) {
     Json& one = json["files"].emplace_back(Json{{"what", file.what}, {"path", file.path}});
+    if (file.what == figure_name) one["method"] = "painter";
     if (file.hash) one["hash"] = hash_text(*file.hash);
   }
   if (result.reference) json["reference"] = reference_json(*result.reference);
@@ -92,8 +94,22 @@ Json view_json(const ViewResult& result) {
   return json;
 }
 
+/// Those that wrote files, and all of them polygons.
+bool has_only_figures(const std::vector<ViewResult>& views) {
+  bool has_any = false;
+  for (const ViewResult& view : views)
+    for (const Result& file : view.results) {
+      if (file.what != figure_name) return false;
+      has_any = true;
+    }
+  return has_any;
+}
+
 /// That of the picture.
-std::string_view method_name(const Settings& settings, const ModelFacts& model) {
+std::string_view method_name(const Settings& settings, const ModelFacts& model, const std::vector<ViewResult>& views) {
+  const auto is_pinhole = [](const ViewResult& view) { return view.camera_model == CameraModel::pinhole; };
+  if (std::none_of(views.begin(), views.end(), is_pinhole)) return "raycast";
+  if (has_only_figures(views)) return "painter";
   constexpr std::string_view names[] = {"zbuffer", "raycast", "abuffer"};
   const bool is_seen_through = model.lets_light_through && !settings.view.depth.is_used;
   const bool needs_layers = is_seen_through || settings.output.opacity < 1 || settings.output.layers;
@@ -104,11 +120,8 @@ std::string_view method_name(const Settings& settings, const ModelFacts& model) 
 
 Json render_json(const Settings& settings, const ModelFacts& model, const std::vector<ViewResult>& views,
                  const RunTimings& timings) {
-  const auto is_pinhole = [](const ViewResult& view) { return view.camera_model == CameraModel::pinhole; };
-  const bool by_rays = std::none_of(views.begin(), views.end(), is_pinhole);
-  Json json = {{"frontmost", FRONTMOST_VERSION},
-               {"model", settings.model},
-               {"method", by_rays ? "raycast" : method_name(settings, model)}};
+  Json json = {
+      {"frontmost", FRONTMOST_VERSION}, {"model", settings.model}, {"method", method_name(settings, model, views)}};
   json["isa"] = name(settings.run.isa);
   if (!settings.more_models.empty()) json["more_models"] = settings.more_models;
   json["triangles"] = model.triangles;
@@ -140,6 +153,7 @@ std::string hash_lines(const std::vector<ViewResult>& views, bool is_batch) {
     const std::string prefix = is_batch ? view.name + ":" : "";
     lines += fmt::format("{}visible {}\n", prefix, hash_text(view.seen->hash));
     for (const Result& result : view.results) {
+      if (!result.hash) continue;  // polygons have none
       lines += fmt::format("{}{} {} {}\n", prefix, result.what, hash_text(*result.hash), result.path);
     }
   }

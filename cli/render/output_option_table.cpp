@@ -81,8 +81,8 @@ constexpr Option table[] = {
        s.output.background_depth =
            g.text == "inf" ? std::numeric_limits<float>::infinity() : float(g.number({-3e38, 3e38}));
      }},
-    {"hash", 0, "", "Print a content hash of what is visible and of each result.", Group::output, for_render,
-     [](Settings& s, const Given&) { s.output.hash = true; }},
+    {"hash", 0, "", "Print a content hash of what is visible and of each result but .svg and .pdf.", Group::output,
+     for_render, [](Settings& s, const Given&) { s.output.hash = true; }},
     {"reference", 0, "FILE", "Compare the picture with this one; exit status 3 if it differs.", Group::output,
      for_render, [](Settings& s, const Given& g) { s.output.reference = g.string(); }},
     {"reference-threshold", 0, "T", "Largest difference that passes, 0 to 1 of a channel's range; 0 by default.",

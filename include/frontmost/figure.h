@@ -32,8 +32,8 @@ struct ColoredOrder {
 /// visible in the order's view, which shadows and colours of depth depend on. Polygons whose colour varies are cut
 /// within their own place in the order, along lines that part their colours best: those of their textures' coordinates,
 /// those along which light is the same. Pieces are as large as the tolerance allows; details narrower than about a
-/// pixel and a half are left out. Holes of alpha mode MASK are left out, too.
-/// O(pixels that polygons cover, seen or not), in parallel; the result does not depend on threads.
+/// pixel and a half are left out. Holes of alpha mode MASK are left out, too, and what lies beside the picture.
+/// O(pixels of the picture that polygons cover, seen or not), in parallel; the result does not depend on threads.
 /// \throws Error bad_argument for an order or a Visible that does not match, an opacity or a tolerance out of range;
 /// limit_exceeded for more than ColorOptions::most_polygons.
 [[nodiscard]] ColoredOrder color_order(const Surfaces& surfaces, const Visible& visible, const PaintOrder& order,

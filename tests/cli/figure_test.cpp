@@ -31,6 +31,12 @@ TEST_F(Figures, HoldVisiblePolygonsAlone) {
   EXPECT_EQ(count("all.svg", "<path"), 12u);
 }
 
+TEST_F(Figures, HaveNoHash) {
+  const std::string lines = succeed("render cube.stl -o cube.svg -o cube.png --hash --quiet").out;
+  EXPECT_THAT(lines, testing::Not(HasSubstr("figure")));
+  EXPECT_THAT(lines, HasSubstr(" cube.png"));
+}
+
 TEST_F(Figures, KeepWhatShowsThrough) {
   EXPECT_THAT(succeed("render cube.stl -o glass.svg --shading flat --opacity 0.5 --quiet").err, IsEmpty());
   EXPECT_EQ(count("glass.svg", "fill-opacity=\".502\""), 12u);
@@ -41,6 +47,9 @@ TEST_F(Figures, StandBesidePixels) {
   EXPECT_THAT(files(), testing::ElementsAre("cube.pdf", "cube.png", "cube.stl", "cube.svg"));
   EXPECT_THAT(read("cube.pdf"), StartsWith("%PDF"));
   EXPECT_EQ(outcome.json()["files"].size(), 3u);
+  EXPECT_EQ(outcome.json()["method"], "zbuffer");  // of the pixels
+  EXPECT_EQ(outcome.json()["files"][2]["method"], "painter");
+  EXPECT_EQ(succeed("render cube.stl -o {model}.svg --json --quiet").json()["method"], "painter");
 }
 
 TEST_F(Figures, ShowColoursOfTheirShading) {

@@ -156,6 +156,30 @@ TEST(ColorOrder, ShadowsAreDrawn) {
   }
 }
 
+/// Cut by the near plane it is a hundred million pixels wide: as many samples would never end.
+TEST(ColorOrder, LeavesOutWhatLiesBesideThePicture) {
+  Mesh ground;
+  ground.positions = {{-900, -1, -900}, {900, -1, -900}, {0, -1, 900}};
+  ground.triangles = {{0, 1, 2}};
+  const Scene scene = scene_of(ground);
+  const Surfaces surfaces(scene);
+  View view = front_view();
+  view.world_from_eye = look_at({0, 0, 0}, {0, 0, -1}, {0, 1, 0});
+  view.projection = make_projection(1.0, 1.0, {1e-5, 1e5});
+  const PaintOrder order = painter(surfaces, view);
+  double widest = 0;
+  for (const PaintCorner& corner : order.corners) widest = std::max(widest, std::abs(corner.at.x));
+  EXPECT_GT(widest, 1e8);
+  const ColoredOrder figure = color_order(surfaces, zbuffer(surfaces, view), order, with(Shading::lit));
+  for (const PaintCorner& corner : figure.order.corners) {
+    EXPECT_LT(std::abs(corner.at.x - 32), 32.01);
+    EXPECT_LT(std::abs(corner.at.y - 32), 32.01);
+  }
+  double area = 0;
+  for (std::size_t i = 0; i < figure.colors.size(); ++i) area += area_of(figure.order, i);
+  EXPECT_NEAR(area, 64 * 32, 5);  // nearly up to the horizon
+}
+
 TEST(ColorOrder, IsTheSameForAnyNumberOfThreads) {
   const Scene scene = builtin("gallery");
   const Surfaces surfaces(scene);

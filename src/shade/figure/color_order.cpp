@@ -29,6 +29,14 @@ void check(const Surfaces& surfaces, const Visible& visible, const PaintOrder& o
       refuse("the order is not of these surfaces");
 }
 
+/// Next to the eye polygons are millions of pixels wide, and all of them would be looked at.
+bool reaches_beyond_picture(const PaintOrder& order) {
+  const glm::dvec2 size(order.view.width, order.view.height);
+  return std::any_of(order.corners.begin(), order.corners.end(), [&](const PaintCorner& corner) {
+    return !(corner.at.x > -1 && corner.at.y > -1 && corner.at.x < size.x + 1 && corner.at.y < size.y + 1);
+  });
+}
+
 float area_of(const PaintOrder& order, const PaintPolygon& polygon) {
   const PaintCorner* const corners = order.corners.data() + polygon.first_corner;
   double twice = 0;
@@ -79,15 +87,9 @@ void append(const Part& part, std::uint32_t first_shape, ColoredOrder& into) {
   for (const std::uint32_t shape : part.shapes) into.shapes.push_back(first_shape + shape);
 }
 
-[[noreturn]] void refuse_more_than(std::size_t most) {
-  throw Error(ErrorCode::limit_exceeded, "figure: more than " + std::to_string(most) + " polygons and pieces");
-}
-
-}  // namespace
-
-ColoredOrder color_order(const Surfaces& surfaces, const Visible& visible, const PaintOrder& order,
-                         const ColorOptions& options, const Execution& execution) {
-  check(surfaces, visible, order, options);
+/// Of an order within the picture.
+ColoredOrder color_within(const Surfaces& surfaces, const Visible& visible, const PaintOrder& order,
+                          const ColorOptions& options, const Execution& execution) {
   const IeeeScope ieee;
   const FigureTriangles triangles = triangles_of(surfaces, order);
   const PointShader shader(surfaces, visible, triangles, options.shade, execution);
@@ -96,8 +98,8 @@ ColoredOrder color_order(const Surfaces& surfaces, const Visible& visible, const
   Pool<PolygonColors> colorers;
   std::atomic<std::size_t> done{0}, made{0};
   parallel_for(execution, count, kPolygonsPerPart, [&](std::size_t begin, std::size_t end) {
-    const auto colorer =
-        colorers.borrow([&] { return std::make_unique<PolygonColors>(surfaces, order.view, shader, options); });
+    const auto colorer = colorers.borrow(
+        [&] { return std::make_unique<PolygonColors>(surfaces, order.view, shader, options, execution); });
     Part& part = parts[begin / kPolygonsPerPart];
     for (std::size_t i = begin; i < end; ++i) {
       const PaintPolygon& polygon = order.polygons[i];
@@ -117,6 +119,18 @@ ColoredOrder color_order(const Surfaces& surfaces, const Visible& visible, const
     shapes += part.shape_count;
   }
   return colored;
+}
+
+}  // namespace
+
+ColoredOrder color_order(const Surfaces& surfaces, const Visible& visible, const PaintOrder& order,
+                         const ColorOptions& options, const Execution& execution) {
+  check(surfaces, visible, order, options);
+  if (reaches_beyond_picture(order)) {
+    const auto hides_nothing = [](PrimitiveId) { return false; };
+    return color_within(surfaces, visible, visible_parts(order, hides_nothing, execution), options, execution);
+  }
+  return color_within(surfaces, visible, order, options, execution);
 }
 
 }  // namespace frontmost

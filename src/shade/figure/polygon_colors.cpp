@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "base/srgb.h"
+#include "shade/figure/color_groups.h"
 #include "surfaces/cluster_set.h"
 
 namespace frontmost::shading {
@@ -55,11 +57,6 @@ double sample_count(double area, double length) {
 
 double affine_of(const View& view, double depth) { return view.projection.orthographic ? depth : 1 / depth; }
 
-float difference(const glm::vec4& a, const glm::vec4& b) {
-  const glm::vec4 d = glm::abs(a - b);
-  return std::max({d.x, d.y, d.z, d.w});
-}
-
 bool is_hole(const glm::vec4& color) { return color.w < 0; }
 
 glm::u8vec4 rounded(const glm::vec4& color) {
@@ -69,18 +66,25 @@ glm::u8vec4 rounded(const glm::vec4& color) {
 
 }  // namespace
 
+void refuse_more_than(std::size_t most) {
+  throw Error(ErrorCode::limit_exceeded, "figure: more than " + std::to_string(most) + " polygons and pieces");
+}
+
 PolygonColors::PolygonColors(const Surfaces& surfaces, const View& view, const PointShader& shader,
-                             const ColorOptions& options)
+                             const ColorOptions& options, const Execution& execution)
     : surfaces_(surfaces),
       view_(view),
       shading_(shader),
       options_(options),
+      execution_(execution),
       rays_(view),
       shader_(shader.source(), shader.colorist()) {}
 
 const ColoredPieces& PolygonColors::pieces_of(PrimitiveId id, std::span<const PaintCorner> outline) {
   begin(id, outline);
   while (!parts_.empty()) {
+    check_cancelled(execution_);
+    if (kept_.size() + parts_.size() > options_.most_polygons) refuse_more_than(options_.most_polygons);
     Part part = std::move(parts_.back());
     parts_.pop_back();
     divide(std::move(part));
@@ -238,14 +242,9 @@ void PolygonColors::keep(const Part& part, const glm::vec4& color) {
 
 /// Colours that are nearly the same become the first of them, so that pieces can be joined to larger ones.
 void PolygonColors::group_by_color() {
-  std::vector<glm::vec4> colors;
-  for (Kept& piece : kept_) {
-    const auto same = std::find_if(colors.begin(), colors.end(), [&](const glm::vec4& color) {
-      return double(difference(color, piece.color)) <= options_.tolerance * (1 - kWithin);
-    });
-    piece.shape = std::uint32_t(same - colors.begin());
-    if (same == colors.end()) colors.push_back(piece.color);
-  }
+  ColorGroups groups(options_.tolerance * (1 - kWithin));
+  for (Kept& piece : kept_) piece.shape = groups.find_or_add(piece.color);
+  const std::vector<glm::vec4>& colors = groups.colors();
   std::stable_sort(kept_.begin(), kept_.end(), [](const Kept& a, const Kept& b) { return a.shape < b.shape; });
   pieces_.pieces.clear();
   pieces_.corners.clear();

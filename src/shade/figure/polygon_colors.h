@@ -26,13 +26,17 @@ struct ColoredPieces {
   std::uint32_t shape_count = 0;
 };
 
+/// \throws Error limit_exceeded.
+[[noreturn]] void refuse_more_than(std::size_t most);
+
 /// Not for several threads at once.
 class PolygonColors {
  public:
   /// Borrows all.
-  PolygonColors(const Surfaces& surfaces, const View& view, const PointShader& shader, const ColorOptions& options);
+  PolygonColors(const Surfaces& surfaces, const View& view, const PointShader& shader, const ColorOptions& options,
+                const Execution& execution);
 
-  /// Until the next call. Precondition: three corners or more.
+  /// Until the next call. Precondition: three corners or more. \throws Error cancelled, and as refuse_more_than().
   [[nodiscard]] const ColoredPieces& pieces_of(PrimitiveId id, std::span<const PaintCorner> outline);
 
  private:
@@ -68,6 +72,7 @@ class PolygonColors {
   const View& view_;
   const PointShader& shading_;
   const ColorOptions& options_;
+  const Execution& execution_;
   const ScreenRays rays_;
   FragmentShader shader_;
 

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Colours that are nearly the same as one.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <unordered_map>
+#include <vector>
+
+namespace frontmost::shading {
+
+/// The greatest difference of any channel.
+[[nodiscard]] float difference(const glm::vec4& a, const glm::vec4& b);
+
+/// Known by their numbers, in the order in which they came. A photograph has as many colours as pieces: they are found
+/// by cells of a grid over all colours.
+class ColorGroups {
+ public:
+  /// Channels from 0 to 255 may differ by `reach`.
+  explicit ColorGroups(double reach);
+
+  /// The first that is within reach of a colour, or the colour itself as a new one.
+  std::uint32_t find_or_add(const glm::vec4& color);
+  [[nodiscard]] const std::vector<glm::vec4>& colors() const { return colors_; }
+
+ private:
+  [[nodiscard]] std::uint32_t find(const glm::ivec4& cell, const glm::vec4& color) const;
+
+  const double reach_, cell_size_;
+  std::vector<glm::vec4> colors_;
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
+};
+
+}  // namespace frontmost::shading
