@@ -75,6 +75,21 @@ void add_tiles(Mesh& mesh, int side, float share) {
     }
 }
 
+/// Cuts leave pieces without a direction. One hid all that its box lay on.
+TEST(VisibleParts, APointHidesNothing) {
+  Mesh mesh;
+  add_square(mesh, 1, 0);
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  PaintOrder order = painter(surfaces, view_from_above(true, 256));
+  for (const double size : {0.0, 1e-12, 1e-10, 1e-8}) {
+    order.polygons.push_back({0, 3, order.corners.size()});
+    for (const glm::dvec2 aside : {glm::dvec2(0), glm::dvec2(0, size), glm::dvec2(size, size)})
+      order.corners.push_back({{glm::dvec2(100.1, 90.7) + aside, 10}, true});
+    EXPECT_NEAR(area_of(visible_parts(order)), 128 * 128, 1e-3) << size;
+  }
+}
+
 TEST(VisibleParts, LargePolygonsAreCutAmongManySmallOnes) {
   Mesh mesh;
   add_square(mesh, 1, 0);
