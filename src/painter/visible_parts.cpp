@@ -81,7 +81,7 @@ PaintOrder map_polygons(const PaintOrder& order, const Scenery& scenery, const E
 struct HemShape {
   double part, inset;
 };
-constexpr HemShape kHemShapes[] = {{1, 0.5}, {1, 2}, {0.25, 0.5}, {0.25, 2}, {0.0625, 1}};
+constexpr HemShape kHemShapes[] = {{1, 0.5}, {1, 2}, {1, 6}, {0.25, 0.5}, {0.25, 2}, {0.25, 8}, {0.0625, 1}};
 
 /// What lies beside a side of an outline.
 std::array<PaintCorner, 4> hem(const PaintCorner& from, const PaintCorner& to, double width, double inset) {
