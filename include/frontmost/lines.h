@@ -70,7 +70,9 @@ struct Drawing {
 /// surface does not pass through it, and draws its own edges. Its ends are rounded, so that a
 /// plane counts as holding an end that their rounding leaves open. Surfaces that cross give lines without gaps, end to
 /// end to the bit.
-/// Near-linear: every edge is held against the triangles in the cells of a screen grid that it passes.
+/// Near-linear: every edge is held against the triangles in the cells of a screen grid that it passes, all of one size:
+/// a dense part of a large scene, or stacks and fans of thousands, takes time with its square. Triangles without area
+/// hide nothing, but their edges count as edges: where such a one fills a T-junction, it is drawn.
 /// (A. Appel. The Notion of Quantitative Invisibility and the Machine Rendering of Solids. 1967.)
 /// The result is the same to the bit for any number of threads and every instruction set.
 /// \throws Error as validate(view) does, bad_argument for an angle that is out of range, and limit_exceeded for more

@@ -94,6 +94,7 @@ struct PaintOrder {
 /// cut along a grid where they are hidden in part. Near-linear, as painter(): every polygon is held against those after
 /// it that overlap it. In a cell of the grid these are the 4,096 foremost at most, and once 48 parts are left of a
 /// polygon there, only those go that one of them hides whole: what is left too much is painted over as before.
+/// Long parallel strips share cells with many others: 30 thousand take 9 s.
 [[nodiscard]] PaintOrder visible_parts(const PaintOrder& order, const std::function<bool(PrimitiveId)>& hides = {},
                                        const Execution& execution = {});
 
