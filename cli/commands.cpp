@@ -33,7 +33,8 @@ constexpr Command table[] = {
      run_render},
     {"lines", for_lines, "MODEL", "Draw the edges of a model on paper, hidden lines removed.",
      "Outlines, creases, borders and intersections, cut exactly where they go out of sight, in millimetres, as vectors "
-     "for journals, drawing sheets and pen plotters. The layers of SVG and PDF are 5 stippling, 4 hatching, 1 hidden, 2 visible and 3 outline, "
+     "for journals, drawing sheets and pen plotters. The layers of SVG and PDF are 5 stippling, 4 hatching, 1 hidden, "
+     "2 visible and 3 outline, "
      "with a group for every object.",
      "frontmost lines part.stl --view iso --camera-orthographic --hidden dashed -o part.svg\n"
      "frontmost lines part.stl --views front,top,left,iso --hidden dashed --page a3 -o sheet.pdf\n"

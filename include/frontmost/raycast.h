@@ -43,8 +43,8 @@ class RayIndex {
   /// Follows the triangles to where they are in `surfaces`: those of the same scene after its vertices or instances
   /// have moved. Answers are to the bit those of a new index; what is kept is the order of triangles and boxes, so that
   /// queries grow slower the less of the old neighbourhoods is left. O(n) in parallel, about a third of the time of a
-  /// new index, which is made where `surfaces` has triangles to meet that this one does not hold. Ended by an error or by cancelling, the
-  /// index is empty.
+  /// new index, which is made where `surfaces` has triangles to meet that this one does not hold. Ended by an error or
+  /// by cancelling, the index is empty.
   void refit(const Surfaces& surfaces, const Execution& execution = {});
   /// On two levels: moves the instances to where they are in `scene`, whose meshes are taken to be as they were.
   /// O(instances), and what one copy of the boxes of the meshes takes. Where the index is on one level, or has other

@@ -62,10 +62,10 @@ struct Intrinsics {
 struct DepthConvention {
   double at_near, at_far;
 };
-inline constexpr DepthConvention gortler_depth{1, -1};   ///< nearer is greater; compare with GREATER
-inline constexpr DepthConvention opengl_depth{-1, 1};    ///< nearer is less; compare with LESS
+inline constexpr DepthConvention gortler_depth{1, -1};  ///< nearer is greater; compare with GREATER
+inline constexpr DepthConvention opengl_depth{-1, 1};   ///< nearer is less; compare with LESS
 inline constexpr DepthConvention zero_to_one_depth{0, 1};
-inline constexpr DepthConvention reversed_depth{1, 0};   ///< nearer is greater; exact with floats
+inline constexpr DepthConvention reversed_depth{1, 0};  ///< nearer is greater; exact with floats
 
 /// The 4x4 matrix to clip space. Infinite far planes are taken to their limit.
 [[nodiscard]] glm::dmat4 clip_from_eye(const Projection& projection, const DepthConvention& depth = opengl_depth);
@@ -97,8 +97,8 @@ inline constexpr std::size_t most_samples = std::size_t(1) << 28;
 
 /// A camera and a pixel grid: all that decides what is visible, beside the surfaces.
 struct View {
-  int width = 0, height = 0;   ///< pixels, 1 to 16384 each
-  int samples = 1;             ///< per pixel: 1, 2, 4, 8 or 16; positions as in sample_offsets()
+  int width = 0, height = 0;  ///< pixels, 1 to 16384 each
+  int samples = 1;            ///< per pixel: 1, 2, 4, 8 or 16; positions as in sample_offsets()
   glm::dmat4 world_from_eye{1.0};
   Projection projection;
   Culling culling = Culling::none;

@@ -18,10 +18,10 @@ namespace frontmost {
 [[nodiscard]] Visible zbuffer(const Surfaces& surfaces, const View& view, const Execution& execution = {});
 
 /// The same to the bit, for a single picture of a scene of which there are no Surfaces: triangles are drawn from the
-/// scene's own arrays. As fast as making Surfaces and drawing them once, and up to ten times as fast, whatever the scene;
-/// from the second picture on Surfaces and a ZBuffer win. Memory beside the result: some 30 MiB, 100 bytes for each large
-/// or clipped one of half a million triangles at a time, and the holes of MASK materials.
-/// \throws Error as Surfaces(scene) and validate(view) do.
+/// scene's own arrays. As fast as making Surfaces and drawing them once, and up to ten times as fast, whatever the
+/// scene; from the second picture on Surfaces and a ZBuffer win. Memory beside the result: some 30 MiB, 100 bytes for
+/// each large or clipped one of half a million triangles at a time, and the holes of MASK materials. \throws Error as
+/// Surfaces(scene) and validate(view) do.
 [[nodiscard]] Visible zbuffer(const Scene& scene, const View& view, const Execution& execution = {});
 
 /// The same for repeated views: frames after the first reuse the memory of those before, and allocate nothing as long

@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "frontmost/view.h"
 #include "base/exact_vector.h"
+#include "frontmost/view.h"
 
 namespace frontmost {
 

@@ -96,9 +96,7 @@ TEST(Pdf, PartsAreFilledWithTheirPath) {
   EXPECT_EQ(count(operators, "f\n"), 2u);
 }
 
-TEST(Json, SaysWhatIsAPart) {
-  EXPECT_EQ(count(saved(page_with_parts(), PageFormat::json), "\"part\": true"), 1u);
-}
+TEST(Json, SaysWhatIsAPart) { EXPECT_EQ(count(saved(page_with_parts(), PageFormat::json), "\"part\": true"), 1u); }
 
 TEST(Pdf, FindsItsObjectsAndItsSize) {
   const std::string pdf = saved(sample_page(), PageFormat::pdf);
