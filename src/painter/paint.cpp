@@ -14,8 +14,10 @@
 namespace frontmost {
 namespace {
 
-/// Pixels: by how much snapping may move a corner, and a sample may be beyond a cut that it is on.
-constexpr double kSnapping = 1.0 / 128, kOnCut = 1e-9;
+/// Pixels: by how much snapping may move a corner, and a sample may be beyond a cut that it is on. Shorter cuts do not
+/// count: where planes meet at small angles corners are not known so well that those between near ones have a
+/// direction.
+constexpr double kSnapping = 1.0 / 128, kOnCut = 1e-9, kShortest = 1.0 / 1024;
 
 /// Corners in 1/256 pixel from the image's top left corner, clockwise with y down.
 struct SnappedTriangle {
@@ -79,7 +81,7 @@ class CutOutline {
       low_ = glm::min(low_, p);
       high_ = glm::max(high_, p);
       const double length = glm::length(q - p);
-      if (corners[i].is_cut && length > kOnCut) cuts_.push_back({p, (q - p) / length});
+      if (corners[i].is_cut && length > kShortest) cuts_.push_back({p, (q - p) / length});
     }
   }
   [[nodiscard]] glm::dvec2 low() const { return low_ - kSnapping; }

@@ -194,5 +194,31 @@ TEST(Painter, OrdersOfOtherSurfacesAreRefused) {
   EXPECT_TRUE(painter(empty, view_from_above(false)).polygons.empty());
 }
 
+/// A sphere whose pole is a fan of triangles that miss each other by a rounding, and so pass through each other: cut by
+/// planes at tiny angles.
+TEST(Painter, APoleOfBowTiesIsRight) {
+  constexpr int kSectors = 8;
+  Mesh mesh;
+  const auto at = [](int ring, int sector) {
+    const float polar = 3.14159265f * float(ring) / 4, around = 6.2831853f * float(sector) / kSectors;
+    return glm::vec3(std::sin(polar) * std::cos(around), std::cos(polar), std::sin(polar) * std::sin(around));
+  };
+  for (int ring = 0; ring < 4; ++ring)
+    for (int sector = 0; sector < kSectors; ++sector) {
+      add_triangle(mesh, at(ring, sector), at(ring + 1, sector), at(ring + 1, sector + 1));
+      add_triangle(mesh, at(ring, sector), at(ring + 1, sector + 1), at(ring, sector + 1));
+    }
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  for (const NamedView pole : {NamedView::bottom, NamedView::top}) {
+    FrameOptions options;
+    options.direction = pole;
+    const View view = frame(surfaces, 200, 150, options);
+    for (const PaintMethod method : {PaintMethod::depth_sort, PaintMethod::bsp}) {
+      EXPECT_EQ(painted(surfaces, view, method).unexplained, 0u);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace frontmost::test
