@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 
 #include "frontmost/base.h"
 
@@ -13,7 +14,7 @@ inline constexpr std::size_t kSpaceLanes = 16;
   return (count + kSpaceLanes - 1) / kSpaceLanes * kSpaceLanes;
 }
 
-/// Padded to whole groups of sixteen with empty boxes.
+/// Padded to whole groups of sixteen.
 struct SpaceBoxes {
   Buffer<float> low[3], high[3];
 
@@ -22,7 +23,9 @@ struct SpaceBoxes {
       low[axis] = Buffer<float>(padded_to_lanes(count));
       high[axis] = Buffer<float>(padded_to_lanes(count));
     }
-    for (std::size_t i = count; i < low[0].size(); ++i) set(i, Box());
+    // Touched by nothing, not even by a box without end, as an empty one would be.
+    constexpr float none = std::numeric_limits<float>::quiet_NaN();
+    for (std::size_t i = count; i < low[0].size(); ++i) set(i, {glm::vec3(none), glm::vec3(none)});
   }
   [[nodiscard]] std::size_t group_count() const { return low[0].size() / kSpaceLanes; }
   void set(std::size_t i, const Box& box) {
