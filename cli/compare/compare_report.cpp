@@ -11,17 +11,14 @@ namespace {
 
 constexpr Difference causes[] = {Difference::edge, Difference::depth, Difference::translucent};
 
-std::string row(std::string_view what, const std::vector<std::string>& cells) {
-  std::string text = fmt::format("{:24}", what);
-  for (const std::string& cell : cells) text += fmt::format("{:>14}", cell);
-  return text + '\n';
-}
-
+/// One line: what it tells, then a cell for each method, under its name. Columns are as wide as the longest name needs.
 template <class Cell>
 std::string row_of(const Comparisons& all, std::string_view what, const Cell& cell) {
-  std::vector<std::string> cells;
-  for (const Compared& compared : all.methods) cells.push_back(cell(compared));
-  return row(what, cells);
+  constexpr std::size_t least = 13, gap = 2;
+  std::string text = fmt::format("{:24}", what);
+  for (const Compared& compared : all.methods)
+    text += fmt::format("{:>{}}", cell(compared), std::max(least, compared.run.method->name.size() + gap));
+  return text + '\n';
 }
 
 Json times_json(const MethodRun& run) {

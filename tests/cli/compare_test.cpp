@@ -53,6 +53,15 @@ TEST_F(Compare, ReportsEveryMethodAsJson) {
   EXPECT_FALSE(report["methods"][0].contains("fragments"));
 }
 
+TEST_F(Compare, SetsEveryMethodInAColumnOfItsOwn) {
+  const std::string table = succeed("compare cube.stl --resolution 160,120 --runs 1").out;
+  std::istringstream lines(table.substr(table.find("\n\n") + 2));
+  std::string heads;
+  std::getline(lines, heads);
+  EXPECT_THAT(heads, testing::ContainsRegex("zbuffer +raycast +abuffer +painter +painter-centroid$"));
+  for (std::string line; std::getline(lines, line) && !line.empty();) EXPECT_EQ(line.size(), heads.size()) << line;
+}
+
 TEST_F(Compare, AsksEveryMethodAtManySamples) {
   const json one = succeed("compare cube.stl --resolution 160,120 --runs 1 --json").json();
   const json report = succeed("compare cube.stl --resolution 160,120 --runs 1 --samples 4 --json -o page").json();
