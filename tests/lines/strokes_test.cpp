@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "support/effort.h"
 #include "support/random_scene.h"
@@ -283,6 +284,78 @@ TEST(StrokesOnce, NorAreLongLinesSideBySide) {
   EXPECT_EQ(strokes(surfaces, drawing, {.by_instance = false}).strokes.size(), std::size_t(count));
   // 0.07 s; and minutes when lines were entered in the border cells of what they only pass.
   EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), under_sanitizer ? 20 : 3);
+}
+
+/// Pieces of straight lines, by the line that they lie on.
+struct PiecesOfLines {
+  Drawing drawing;
+  double length = 0;  ///< of what they cover together
+};
+
+PiecesOfLines pieces_of_lines(int line_count, int piece_count, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  const auto up_to = [&](double most) { return most * double(random() >> 11) / double(1ull << 53); };
+  const auto near = [&](const glm::dvec2& place, double most) {
+    const double x = up_to(most);
+    return place + glm::dvec2(x, up_to(most));
+  };
+  PiecesOfLines result;
+  for (int line = 0; line < line_count; ++line) {
+    // Level, upright and exactly or nearly diagonal ones among them.
+    const double angle = line % 3 == 0 ? line / 3 * pi / 4 : line % 3 == 1 ? pi / 4 + up_to(0.1) - 0.05 : up_to(2 * pi);
+    const glm::dvec2 along(std::cos(angle), std::sin(angle)), middle = near(glm::dvec2(1000), 300);
+    std::vector<std::pair<double, double>> covered;
+    for (int i = 0; i < piece_count; ++i) {
+      const double length = std::pow(10, up_to(3.5) - 0.5), begin = up_to(1800 - length) - 900;
+      covered.emplace_back(begin, begin + length);
+      const auto place = [&](double at) { return near(middle + along * at, 4e-4); };
+      glm::dvec2 ends[2] = {place(begin), place(begin + length)};
+      if (random() % 2 == 0) std::swap(ends[0], ends[1]);
+      result.drawing.parts.push_back({std::uint32_t(result.drawing.edges.size()), 0, 1, ends[0], ends[1]});
+      result.drawing.edges.push_back({});
+    }
+    std::sort(covered.begin(), covered.end());
+    double end = -1e9;
+    for (const auto& [from, to] : covered) {
+      result.length += std::max(0.0, to - std::max(from, end));
+      end = std::max(end, to);
+    }
+  }
+  return result;
+}
+
+TEST(StrokesOnce, PiecesOfOneLineCoverItOnceHoweverLongTheyAre) {
+  const Scene scene = scene_of(prism(square));
+  const Surfaces surfaces(scene);
+  for (std::uint64_t seed = 0; seed < seeds(20); ++seed) {
+    PiecesOfLines pieces = pieces_of_lines(30, 40, seed);
+    std::shuffle(pieces.drawing.parts.begin(), pieces.drawing.parts.end(), std::mt19937_64(seed));
+    const Strokes all = strokes(surfaces, pieces.drawing, {.by_instance = false});
+    // A piece may go on up to the width of a point under another.
+    EXPECT_NEAR(length_of(all, false), pieces.length, 0.01 * double(all.strokes.size())) << seed;
+    EXPECT_LT(all.strokes.size(), 30u * 40u / 2) << seed;
+  }
+}
+
+TEST(StrokesOnce, LongLinesThatCrossAreNoQuadraticMatter) {
+  using Clock = std::chrono::steady_clock;
+  const Scene scene = scene_of(prism(square));
+  const Surfaces surfaces(scene);
+  const std::size_t count = under_sanitizer ? 4000 : 40000;
+  for (const bool is_star : {false, true}) {
+    const PiecesOfLines source = pieces_of_lines(int(count), 1, 7);
+    Drawing drawing = source.drawing;
+    for (std::size_t i = 0; i < count; ++i) {
+      DrawnPart& part = drawing.parts[i];
+      const double angle = 2 * pi * double(i) / double(count);
+      if (is_star) part.from = {1000, 1000};
+      part.to = part.from + 800.0 * glm::dvec2(std::cos(angle), std::sin(angle));
+    }
+    const Clock::time_point start = Clock::now();
+    EXPECT_EQ(strokes(surfaces, drawing, {.by_instance = false}).strokes.size(), count);
+    // 0.03 s; and 6 when each was held against all that cross its cells.
+    EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), under_sanitizer ? 20 : 2);
+  }
 }
 
 TEST(StrokesOnce, CopiesInACrowdAreDrawnOnce) {

@@ -3,13 +3,14 @@
 //
 // Segments are laid down by rank, each without what lies there already. What could lie there is found in the cells of a
 // grid: about one segment to the cell, and where more come together, as in a detailed part of a large scene, the cell
-// becomes a grid itself.
+// becomes a grid itself. Long segments would pass too many cells, and are found by the lines they lie on.
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numeric>
 
 #include "base/parallel.h"
+#include "lines/strokes/long_lines.h"
 #include "lines/strokes/parts.h"
 
 namespace frontmost::lines_detail {
@@ -18,21 +19,39 @@ namespace {
 /// Pixels. Places of one point differ by the rounding of floats, 1e-7 of some thousand pixels.
 constexpr double near = 2e-3;
 constexpr double shortest = 4 * near;  // of what is left, and of what is taken away
+constexpr double long_from = 16;
+/// Between a long line and what counts as lying on it. Tiny pieces point anywhere, but such lists would be too many.
+constexpr double most_slope = 1.0 / 128;
 
 struct Interval {
   double begin, end;
 };
 
-/// Where, along `segment`, `other` lies on it; empty where it does not. Lengths in pixels.
-Interval overlap(const Segment& segment, const Segment& other) {
+struct Line : Segment {
+  explicit Line(const Segment& segment)
+      : Segment(segment), length(glm::distance(from, to)), along((to - from) / length) {}
+
+  [[nodiscard]] bool is_long() const { return length > long_from; }
+
+  double length;
+  glm::dvec2 along;
+};
+
+/// How much a direction may differ from that of a long line: over its length by some times what counts as near, for
+/// the part that lies on the long line may be short.
+double slope_within(double length) { return std::min(8 * near / length, most_slope); }
+
+/// Where, along `line`, `other` lies on it; empty where it does not. Lengths in pixels.
+Interval overlap(const Line& line, const Line& other) {
   constexpr Interval nothing{0, 0};
-  const glm::dvec2 along = glm::normalize(segment.to - segment.from);
-  const glm::dvec2 a = other.from - segment.from, b = other.to - segment.from;
-  const double a_at = glm::dot(along, a), b_at = glm::dot(along, b);
-  const double begin = std::max(0.0, std::min(a_at, b_at));
-  const double end = std::min(glm::distance(segment.from, segment.to), std::max(a_at, b_at));
+  const bool has_long = line.is_long() || other.is_long();
+  if (has_long && std::abs(cross(line.along, other.along)) > slope_within(std::min(line.length, other.length)))
+    return nothing;
+  const glm::dvec2 a = other.from - line.from, b = other.to - line.from;
+  const double a_at = glm::dot(line.along, a), b_at = glm::dot(line.along, b);
+  const double begin = std::max(0.0, std::min(a_at, b_at)), end = std::min(line.length, std::max(a_at, b_at));
   if (!(end - begin > shortest)) return nothing;
-  const double a_off = cross(along, a), slope = (cross(along, b) - a_off) / (b_at - a_at);
+  const double a_off = cross(line.along, a), slope = (cross(line.along, b) - a_off) / (b_at - a_at);
   const auto off = [&](double at) { return std::abs(a_off + slope * (at - a_at)); };
   return off(begin) <= near && off(end) <= near ? Interval{begin, end} : nothing;
 }
@@ -61,7 +80,7 @@ class Grid {
   }
 
   /// Adds the last of the segments `laid`. \returns how many entries of cells are new.
-  std::size_t add(const std::vector<Segment>& laid, bool may_divide) {
+  std::size_t add(const std::vector<Line>& laid, bool may_divide) {
     const auto number = std::uint32_t(laid.size() - 1);
     std::size_t entries = 0;
     for_each(laid[number], [&](std::size_t i, const glm::ivec2& at) {
@@ -83,7 +102,7 @@ class Grid {
   static constexpr int divisions = 8;
   static constexpr double finest = 8 * near;
 
-  std::size_t divide(Cell& cell, const glm::ivec2& at, const std::vector<Segment>& laid) {
+  std::size_t divide(Cell& cell, const glm::ivec2& at, const std::vector<Line>& laid) {
     std::size_t entries = 0;
     cell.finer = std::make_unique<Grid>(low_ + glm::dvec2(at) * cell_, cell_ / divisions, glm::ivec2(divisions));
     for (const std::uint32_t number : cell.segments)
@@ -124,71 +143,84 @@ class Grid {
   std::vector<Cell> cells_;
 };
 
-/// A grid for so many segments. Precondition: not empty.
-Grid grid_for(const std::vector<Segment>& segments) {
-  glm::dvec2 low(1e300), high(-1e300);
-  double length = 0;
-  for (const Segment& s : segments) {
-    low = glm::min(low, glm::min(s.from, s.to));
-    high = glm::max(high, glm::max(s.from, s.to));
-    length += glm::distance(s.from, s.to);
+/// What lines take up, and how many are short.
+struct Extent {
+  explicit Extent(const std::vector<Segment>& segments) {
+    for (const Segment& s : segments) {
+      low = glm::min(low, glm::min(s.from, s.to));
+      high = glm::max(high, glm::max(s.from, s.to));
+      const double length = glm::distance(s.from, s.to);
+      if (length > long_from) continue;
+      short_length += length;
+      ++short_count;
+    }
   }
-  const auto count = double(segments.size());
-  const double extent = std::max({high.x - low.x, high.y - low.y, 1e-6});
-  // Never finer than what counts as one place: a drawing of one point would have ten million cells a side.
-  const double cell = std::max({length / count, extent / std::sqrt(count), extent / 4096, 8 * near});
-  return {low - near, cell, glm::ivec2((high - low + 2 * near) / cell) + 1};
-}
+
+  /// A grid for the short ones.
+  [[nodiscard]] Grid grid() const {
+    const double count = std::max(short_count, 1.0), side = std::max({high.x - low.x, high.y - low.y, 1e-6});
+    // Never finer than what counts as one place: a drawing of one point would have ten million cells a side.
+    const double cell = std::max({short_length / count, side / std::sqrt(count), side / 4096, 8 * near});
+    return {low - near, cell, glm::ivec2((high - low + 2 * near) / cell) + 1};
+  }
+
+  glm::dvec2 low{1e300}, high{-1e300};
+  double short_length = 0, short_count = 0;
+};
 
 class Sheet {
  public:
   /// Precondition: not empty.
-  explicit Sheet(const std::vector<Segment>& segments) : grid_(grid_for(segments)) {}
+  explicit Sheet(const Extent& extent) : grid_(extent.grid()), long_(extent.low, extent.high) {}
 
-  /// Adds what of `segment` is not there yet to `fresh`.
-  void lay(const Segment& segment, std::vector<Segment>& fresh) {
-    const double length = glm::distance(segment.from, segment.to);
+  /// Adds what of `line` is not there yet to `fresh`.
+  void lay(const Line& line, std::vector<Segment>& fresh) {
     covered_.clear();
     ++asking_;
-    grid_.for_each_cell(segment, [&](const std::vector<std::uint32_t>& cell) {
-      for (const std::uint32_t other : cell) {
-        if (asked_[other] == asking_) continue;
-        asked_[other] = asking_;
-        const Interval there = overlap(segment, laid_[other]);
-        if (there.end > there.begin) covered_.push_back(there);
-      }
-    });
-    if (covered_.empty()) return add(segment, fresh);
+    const auto ask = [&](const std::vector<std::uint32_t>& numbers) { find_covered(line, numbers); };
+    grid_.for_each_cell(line, ask);
+    if (!long_.is_empty()) long_.for_each(line, slope_within(line.length), near, ask);
+    if (covered_.empty()) return add(line, fresh);
     std::sort(covered_.begin(), covered_.end(), [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
-    covered_.push_back({length, length});
-    const glm::dvec2 along = (segment.to - segment.from) / length;
+    covered_.push_back({line.length, line.length});
     double at = 0;
     for (const Interval& c : covered_) {
       if (c.begin - at > shortest) {
-        // The segment's own ends to the bit, so that its neighbours find them.
-        const glm::dvec2 from = at == 0 ? segment.from : segment.from + along * at;
-        const glm::dvec2 to = c.begin == length ? segment.to : segment.from + along * c.begin;
-        add({from, to, segment.rank}, fresh);
+        // The line's own ends to the bit, so that its neighbours find them.
+        const glm::dvec2 from = at == 0 ? line.from : line.from + line.along * at;
+        const glm::dvec2 to = c.begin == line.length ? line.to : line.from + line.along * c.begin;
+        add(Line({from, to, line.rank}), fresh);
       }
       at = std::max(at, c.end);
     }
   }
 
  private:
-  void add(const Segment& segment, std::vector<Segment>& fresh) {
-    fresh.push_back(segment);
-    laid_.push_back(segment);
+  void find_covered(const Line& line, const std::vector<std::uint32_t>& numbers) {
+    for (const std::uint32_t other : numbers) {
+      if (asked_[other] == asking_) continue;
+      asked_[other] = asking_;
+      const Interval there = overlap(line, laid_[other]);
+      if (there.end > there.begin) covered_.push_back(there);
+    }
+  }
+
+  void add(const Line& line, std::vector<Segment>& fresh) {
+    fresh.push_back(line);
+    laid_.push_back(line);
     asked_.push_back(0);
+    if (line.is_long()) return long_.add(std::uint32_t(laid_.size() - 1), line);
     // Where divisions do not part them, as where all meet in a point, they would only take memory.
     entries_ += grid_.add(laid_, entries_ < most_entries * laid_.size());
   }
 
-  static constexpr std::size_t most_entries = 16;  // to the segment
+  static constexpr std::size_t most_entries = 16;  // to the line
 
   Grid grid_;
+  LongLines long_;
   std::size_t entries_ = 0;
-  std::vector<Segment> laid_;
-  std::vector<std::uint32_t> asked_;  ///< by segment: the question that it was last part of
+  std::vector<Line> laid_;
+  std::vector<std::uint32_t> asked_;  ///< by line: the question that it was last part of
   std::uint32_t asking_ = 0;
   std::vector<Interval> covered_;
 };
@@ -203,14 +235,14 @@ std::vector<Segment> draw_once(const std::vector<Segment>& segments, const Execu
                    [&](std::uint32_t a, std::uint32_t b) { return segments[a].rank < segments[b].rank; });
   std::vector<Segment> fresh;
   fresh.reserve(segments.size());
-  Sheet sheet(segments);
+  Sheet sheet{Extent(segments)};
   for (std::size_t i = 0; i < order.size(); ++i) {
     const Segment& segment = segments[order[i]];
     if (i % 4096 == 0) {
       check_cancelled(execution);
       report_progress(execution, "strokes", 0.1 + 0.4 * double(i) / double(order.size()));
     }
-    if (glm::distance(segment.from, segment.to) > near) sheet.lay(segment, fresh);
+    if (glm::distance(segment.from, segment.to) > near) sheet.lay(Line(segment), fresh);
   }
   return fresh;
 }

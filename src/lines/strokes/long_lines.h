@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Long segments, found by the line that they lie on.
+//
+// A long line passes many cells of a grid, and in them many lines that it only crosses. What lies on it meets two
+// opposite sides of the drawing, prolonged, at nearly the same heights: a place in a plane of its own, in which lines
+// that cross or run beside each other lie apart.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "lines/strokes/parts.h"
+
+namespace frontmost::lines_detail {
+
+class LongLines {
+ public:
+  /// The corners of what holds all segments. Precondition: they differ.
+  LongLines(const glm::dvec2& low, const glm::dvec2& high)
+      : low_(low), extent_(std::max(high.x - low.x, high.y - low.y)), bucket_(extent_ / 512) {}
+
+  [[nodiscard]] bool is_empty() const { return flat_.empty() && steep_.empty(); }
+
+  void add(std::uint32_t number, const Segment& segment) {
+    const glm::dvec2 d = glm::abs(segment.to - segment.from);
+    // Near the diagonal what lies on it may count as the other kind.
+    if (d.y <= 1.05 * d.x) flat_[key(heights(segment, 0))].push_back(number);
+    if (d.x <= 1.05 * d.y) steep_[key(heights(segment, 1))].push_back(number);
+  }
+
+  /// Calls visit(numbers) for lists that together hold all segments whose lines turn by at most `slope` from this
+  /// one's, and pass its middle within `off`. O(1 + slope) lists.
+  template <class Visit>
+  void for_each(const Segment& segment, double slope, double off, const Visit& visit) const {
+    const glm::dvec2 d = glm::abs(segment.to - segment.from);
+    const int axis = d.y <= d.x ? 0 : 1;
+    const Table& table = axis == 0 ? flat_ : steep_;
+    if (table.empty()) return;
+    // Turned about the middle, a line moves at the farther side by up to this, and at the nearer one by its share.
+    const glm::dvec2 at = heights(segment, axis);
+    const double middle = ((segment.from[axis] + segment.to[axis]) / 2 - low_[axis]) / extent_;
+    const int far = middle < 0.5 ? 1 : 0;
+    const double way = far == 1 ? 1 - middle : middle, share = (1 - way) / way;
+    const double play = 2 * off, spread = 2 * slope * way * extent_ + play;  // slopes are at most 1: twice the angle
+    for (int i = index(at[far] - spread); i <= index(at[far] + spread); ++i) {
+      const double low = i * bucket_ - at[far] - play, high = low + bucket_ + 2 * play;
+      const int last = index(at[1 - far] - low * share + play);
+      for (int j = index(at[1 - far] - high * share - play); j <= last; ++j) {
+        const auto found = table.find(far == 1 ? key(j, i) : key(i, j));
+        if (found != table.end()) visit(found->second);
+      }
+    }
+  }
+
+ private:
+  using Table = std::unordered_map<std::uint64_t, std::vector<std::uint32_t>>;
+
+  /// Where the segment's line meets both ends of the axis.
+  [[nodiscard]] glm::dvec2 heights(const Segment& s, int axis) const {
+    const double slope = (s.to[1 - axis] - s.from[1 - axis]) / (s.to[axis] - s.from[axis]);
+    const double first = s.from[1 - axis] + slope * (low_[axis] - s.from[axis]);
+    return glm::dvec2(first, first + slope * extent_) - low_[1 - axis];
+  }
+  [[nodiscard]] int index(double height) const { return int(std::floor(height / bucket_)); }
+  [[nodiscard]] static std::uint64_t key(int first, int second) {
+    return std::uint64_t(std::uint32_t(first)) << 32 | std::uint32_t(second);
+  }
+  [[nodiscard]] std::uint64_t key(const glm::dvec2& at) const { return key(index(at[0]), index(at[1])); }
+
+  const glm::dvec2 low_;
+  const double extent_, bucket_;
+  Table flat_, steep_;
+};
+
+}  // namespace frontmost::lines_detail
