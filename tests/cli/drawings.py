@@ -11,7 +11,9 @@ between their samples, the triangles are those of an id map of four times the re
 hold what the JSON holds. Programs that are not installed are skipped, and counted.
 """
 import json
+import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -19,7 +21,17 @@ import tempfile
 import xml.etree.ElementTree
 
 sys.dont_write_bytecode = True
+SYSTEM_PYTHON = "/usr/bin/python3"
 from rasters import read_ids, read_png, read_pnm  # noqa: E402
+
+try:
+    import ezdxf
+except ImportError:
+    # Where python3 is not the system's, Debian's package is for another one.
+    elsewhere = sys.executable != SYSTEM_PYTHON and os.path.exists(SYSTEM_PYTHON)
+    if elsewhere and subprocess.run([SYSTEM_PYTHON, "-c", "import ezdxf"], stderr=subprocess.DEVNULL).returncode == 0:
+        os.execv(SYSTEM_PYTHON, [SYSTEM_PYTHON, *sys.argv])
+    ezdxf = None
 
 WIDTH, HEIGHT = 480, 270
 FINE = 4
@@ -68,18 +80,21 @@ def check_xml(path):
 
 def check_dxf(path, page):
     """Returns whether there was something to read it with."""
-    try:
-        import ezdxf
-    except ImportError:
+    if ezdxf is None:
         return 0
     document = ezdxf.readfile(str(path))
     audit = document.audit()
     assert not audit.errors and not audit.fixes, (audit.errors, audit.fixes)
-    groups = [(layer["name"].upper().replace(" ", "_"), group) for layer in page["layers"] for group in layer["groups"]]
-    expected = {name: sum(len(group["paths"]) for layer, group in groups if layer == name) for name, _ in groups}
+    expected = {}
+    for layer in page["layers"]:
+        for group in layer["groups"]:
+            # As the page's reference has it: the class, and the object where it has a name.
+            parts = [re.sub("[^A-Z0-9-]+", "_", name.upper()) for name in (layer["name"], group["name"]) if name]
+            name = "-".join(parts)[:26]
+            expected[name] = expected.get(name, 0) + len(group["paths"])
     found = {name: 0 for name in expected}
     for entity in document.modelspace():
-        found[entity.dxf.layer] += 1
+        found[re.sub("_[0-9]+$", "", entity.dxf.layer) if entity.dxf.layer not in found else entity.dxf.layer] += 1
         assert entity.dxf.layer in document.layers and entity.dxf.linetype in document.linetypes
     # A path of arcs alone is as many arcs.
     assert all(found[name] >= expected[name] > 0 for name in expected), (found, expected)

@@ -2,6 +2,8 @@
 // DXF of AutoCAD release 12 (AC1009), which everything reads: pairs of lines, a group code and its value.
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "io/drawings/arc.h"
 #include "io/drawings/formats.h"
@@ -10,22 +12,75 @@
 namespace frontmost::detail {
 namespace {
 
-/// Release 12 takes capitals, digits, $, - and _, at most 31.
-std::string table_name(const std::string& name, std::vector<std::string>& taken) {
+/// Release 12 takes capitals, digits, $, - and _.
+std::string table_text(const std::string& name) {
   std::string clean;
   for (const char c : name) {
     const bool is_lower = c >= 'a' && c <= 'z';
-    const bool is_fine = (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
-    clean += is_lower ? char(c - 'a' + 'A') : is_fine ? c : '_';
+    const bool is_fine = (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+    if (is_lower || is_fine)
+      clean += is_lower ? char(c - 'a' + 'A') : c;
+    else if (clean.empty() || clean.back() != '_')
+      clean += '_';
   }
-  constexpr std::size_t longest = 24;  // leaves room for a number
-  clean = clean.empty() ? "LAYER" : clean.substr(0, longest);
-  std::string unique = clean;
-  for (int i = 2; std::find(taken.begin(), taken.end(), unique) != taken.end(); ++i)
-    unique = clean + "_" + std::to_string(i);
-  taken.push_back(unique);
-  return unique;
+  return clean;
 }
+
+/// Names that differ, of at most 31 characters.
+class TableNames {
+ public:
+  std::string add(const std::string& name) {
+    constexpr std::size_t longest = 26;  // leaves room for _ and a number below `most_layers`
+    const std::string clean = name.empty() ? "LAYER" : name.substr(0, longest);
+    std::string unique = clean;
+    for (int& number = next_.try_emplace(clean, 2).first->second; !taken_.insert(unique).second; ++number)
+      unique = clean + "_" + std::to_string(number);
+    return unique;
+  }
+
+ private:
+  std::set<std::string> taken_ = {"0"};  // every drawing has that one
+  std::map<std::string, int> next_;
+};
+
+/// More in one list are of no use to anybody.
+constexpr std::size_t most_layers = 1000;
+
+struct Layer {
+  std::string name;
+  Pen pen;
+};
+
+/// The DXF layers of a page, and which of them each group is on.
+struct Layers {
+  explicit Layers(const Page& page) {
+    std::size_t groups = 0;
+    for (const PageLayer& layer : page.layers) groups += layer.groups.size() + 1;
+    TableNames names;
+    for (const PageLayer& layer : page.layers) {
+      const std::string of_class = table_text(layer.name);
+      of_groups.emplace_back();
+      std::optional<std::size_t> common;
+      if (layer.groups.empty()) list.push_back({names.add(of_class), {}});
+      for (const PageGroup& group : layer.groups) {
+        if (groups <= most_layers && !group.name.empty()) {
+          of_groups.back().push_back(list.size());
+          // The class comes whole, so that programs can choose all of it.
+          list.push_back({names.add(of_class.substr(0, 11) + "-" + table_text(group.name)), group.pen});
+          continue;
+        }
+        if (!common) {
+          common = list.size();
+          list.push_back({names.add(of_class), group.pen});
+        }
+        of_groups.back().push_back(*common);
+      }
+    }
+  }
+
+  std::vector<Layer> list;
+  std::vector<std::vector<std::size_t>> of_groups;  ///< by layer of the page
+};
 
 /// The nearest of the colours that have a number everywhere.
 int color_number(const PageColor& color) {
@@ -47,13 +102,10 @@ int color_number(const PageColor& color) {
 class DxfWriter {
  public:
   DxfWriter(const Page& page, OutputFile& file, const Execution& execution)
-      : page_(page), sink_(file), out_(sink_), progress_(page, execution) {
-    std::vector<std::string> taken = {"0"};
-    for (const PageLayer& layer : page.layers) {
-      names_.push_back(table_name(layer.name, taken));
+      : page_(page), layers_(page), sink_(file), out_(sink_), progress_(page, execution) {
+    for (const PageLayer& layer : page.layers)
       for (const PageGroup& group : layer.groups)
         if (type_of(group.pen) == 0) dashes_.push_back(group.pen.dashes);
-    }
   }
 
   void write() {
@@ -64,7 +116,8 @@ class DxfWriter {
     end_section();
     section("ENTITIES");
     for (std::size_t i = 0; i < page_.layers.size(); ++i)
-      for (const PageGroup& group : page_.layers[i].groups) write_group(group, names_[i]);
+      for (std::size_t k = 0; k < page_.layers[i].groups.size(); ++k)
+        write_group(page_.layers[i].groups[k], layers_.list[layers_.of_groups[i][k]].name);
     end_section();
     text(0, "EOF");
     out_.flush();
@@ -146,15 +199,13 @@ class DxfWriter {
     line_type("CONTINUOUS", {});
     for (std::size_t i = 0; i < dashes_.size(); ++i) line_type("DASHED" + std::to_string(i + 1), dashes_[i]);
     text(0, "ENDTAB");
-    table("LAYER", names_.size());
-    for (std::size_t i = 0; i < names_.size(); ++i) {
-      const std::vector<PageGroup>& groups = page_.layers[i].groups;
-      const Pen pen = groups.empty() ? Pen{} : groups.front().pen;
+    table("LAYER", layers_.list.size());
+    for (const Layer& layer : layers_.list) {
       text(0, "LAYER");
-      text(2, names_[i]);
+      text(2, layer.name);
       integer(70, 0);
-      integer(62, color_number(pen.color));
-      text(6, type_name(pen));
+      integer(62, color_number(layer.pen.color));
+      text(6, type_name(layer.pen));
     }
     text(0, "ENDTAB");
     end_section();
@@ -224,10 +275,10 @@ class DxfWriter {
   }
 
   const Page& page_;
+  const Layers layers_;
   FileSink sink_;
   PageText out_;
   WritingProgress progress_;
-  std::vector<std::string> names_;
   std::vector<std::vector<double>> dashes_;
   std::string type_;
   int color_ = 7;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "io/drawings/sample_page.h"
@@ -212,7 +213,9 @@ TEST(Dxf, HoldsLinesArcsAndCirclesWithYUp) {
   EXPECT_EQ(kinds,
             "POLYLINE VERTEX VERTEX VERTEX SEQEND POLYLINE VERTEX VERTEX VERTEX SEQEND LINE ARC CIRCLE POINT "
             "ENDSEC EOF ");
-  EXPECT_EQ(all[0].text(8), "1_HIDDEN");
+  EXPECT_EQ(all[0].text(8), "1_HIDDEN-AXLE");
+  EXPECT_EQ(all[5].text(8), "2_VISIBLE-WHEEL");
+  EXPECT_EQ(all[12].text(8), "2_VISIBLE-RING");
   EXPECT_EQ(all[0].text(6), "DASHED1");
   EXPECT_EQ(all[0].text(70), "0");
   EXPECT_EQ(all[3].number(10), 20.5);
@@ -238,15 +241,40 @@ TEST(Dxf, BulgesTurnTheOtherWayRound) {
   slot.points = {{10, 10}, {30, 10}, {30, 20}, {10, 20}};
   slot.bulges = {0, 1, 0, 1};
   slot.paths = {{0, 4, true}};
-  page.layers = {{"slot \xC3\xA9 with a rather long name", {slot}}, {"", {}}, {"SLOT __ WITH A RATHER LO", {slot}}};
+  page.layers = {{"slot \xC3\xA9 with a rather long name", {slot}}, {"", {}}, {"SLOT __ WITH A RATHER LONG", {slot}}};
   const std::string dxf = saved(page, PageFormat::dxf);
   const std::vector<Entity> all = entities_of(dxf);
   EXPECT_EQ(all[2].number(42), -1);
   EXPECT_EQ(all[1].codes.count(42), 0u);
   // Layers that would have the same name are told apart.
-  EXPECT_TRUE(has(dxf, "2\nSLOT____WITH_A_RATHER_LO\n"));
-  EXPECT_TRUE(has(dxf, "2\nSLOT____WITH_A_RATHER_LO_2\n"));
+  EXPECT_TRUE(has(dxf, "2\nSLOT_WITH_A_RATHER_LONG_NA\n"));
+  EXPECT_TRUE(has(dxf, "2\nSLOT_WITH_A_RATHER_LONG\n"));
   EXPECT_TRUE(has(dxf, "2\nLAYER\n"));
+}
+
+/// A page of so many groups of one name.
+Page crowded_page(std::size_t count) {
+  Page page{100, 100, "", {{"2 visible", {}}}};
+  PageGroup group{"a wheel that turns about its axle", {}};
+  group.add(std::vector<glm::dvec2>{{1, 1}, {2, 3}}, false);
+  page.layers[0].groups.assign(count, group);
+  return page;
+}
+
+TEST(Dxf, EveryObjectHasItsLayerUnlessThereAreVeryMany) {
+  for (const std::size_t many : {std::size_t(3), std::size_t(999), std::size_t(1000)}) {
+    const std::string dxf = saved(crowded_page(many), PageFormat::dxf);
+    std::set<std::string> names;
+    for (const Entity& entity : entities_of(dxf))
+      if (entity.kind == "LINE") names.insert(entity.text(8));
+    EXPECT_EQ(names.size(), many < 1000 ? many : 1);
+    for (const std::string& name : names) {
+      EXPECT_TRUE(has(dxf, "0\nLAYER\n2\n" + name + "\n")) << name;
+      EXPECT_EQ(name.rfind("2_VISIBLE", 0), 0u) << name;
+      EXPECT_LE(name.size(), 31u);
+    }
+    EXPECT_EQ(count(dxf, "0\nLAYER\n"), names.size());
+  }
 }
 
 TEST(Json, HoldsThePageAsItIs) {
