@@ -71,9 +71,11 @@ struct Drawing {
 /// plane counts as holding an end that their rounding leaves open. Surfaces that cross give lines without gaps, end to
 /// end to the bit.
 /// Near-linear: every edge is held against the triangles in the cells of a screen grid that it passes, all of one size:
-/// a dense part of a large scene, or stacks and fans of thousands, takes time with its square. Triangles without area
-/// hide nothing, but their edges count as edges: where such a one fills a T-junction, it is drawn.
-/// (A. Appel. The Notion of Quantitative Invisibility and the Machine Rendering of Solids. 1967.)
+/// a dense part of a large scene, or stacks and fans of thousands, takes time with its square.
+/// Triangles whose corners lie on one line, exactly, are left out. Where such fill a T-junction, between a long side
+/// and the short ones that meet it, the long side's triangle counts as cut at the corners on it: the seam is drawn as
+/// any other edges are, once, or not at all where the surface goes on. A T-junction that nothing fills is open, and its
+/// sides are boundaries. (A. Appel. The Notion of Quantitative Invisibility and the Machine Rendering of Solids. 1967.)
 /// The result is the same to the bit for any number of threads and every instruction set.
 /// \throws Error as validate(view) does, bad_argument for an angle that is out of range, and limit_exceeded for more
 /// than 2^25 segments of intersections or 2^26 parts.

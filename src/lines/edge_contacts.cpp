@@ -81,13 +81,14 @@ class Contacts {
     const Wedge& wedge = wedges_.of(edge);
     if (wedge.count != 2 || is_drawn(edge)) return std::nullopt;
     const glm::uvec3& t = mesh_.triangles[contact.triangle];
+    const int above = turn(t.x, t.y, t.z, wedge.apexes[0]), below = turn(t.x, t.y, t.z, wedge.apexes[1]);
+    if (above == 0 && below == 0) return std::nullopt;
+    // An apex in the triangle's plane has all of its corners in one plane with the edge.
+    const std::uint32_t beside = wedge.apexes[above != 0 ? 0 : 1];
     int sides[3];  // of the triangle's corners beside the edge
-    for (int k = 0; k < 3; ++k) sides[k] = turn(edge.from, edge.to, wedge.apexes[0], t[k]);
+    for (int k = 0; k < 3; ++k) sides[k] = turn(edge.from, edge.to, beside, t[k]);
     const auto any = [&](int sign) { return sides[0] == sign || sides[1] == sign || sides[2] == sign; };
-    if (any(1) && any(-1)) {
-      const int above = turn(t.x, t.y, t.z, wedge.apexes[0]), below = turn(t.x, t.y, t.z, wedge.apexes[1]);
-      return above * below < 0 ? within(edge, wedge, contact.triangle, sides) : std::nullopt;
-    }
+    if (any(1) && any(-1)) return above * below < 0 ? within(edge, wedge, contact.triangle, sides) : std::nullopt;
     for (int k = 0; k < 3; ++k)
       if (sides[k] == 0 && sides[(k + 1) % 3] == 0) return along({edge, wedge}, t[k], t[(k + 1) % 3]);
     return std::nullopt;

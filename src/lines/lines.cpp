@@ -11,6 +11,7 @@
 #include "lines/crossings.h"
 #include "lines/hidden_parts.h"
 #include "lines/joined.h"
+#include "lines/seams.h"
 
 namespace frontmost {
 namespace {
@@ -86,6 +87,13 @@ std::vector<DrawnPart> cut_all(const Candidates& candidates, const Occlusion& oc
   return joined(lists);
 }
 
+/// Closes the mesh's seams.
+SeenMesh see_closed(WeldedMesh& mesh, const Sight& sight, const Execution& execution) {
+  SeenMesh seen = see(mesh, sight, execution);
+  if (!close_seams(mesh, seen.facing, execution)) return seen;
+  return see(mesh, sight, execution);
+}
+
 }  // namespace
 
 Drawing lines(const Surfaces& surfaces, const View& view, const LineOptions& options, const Execution& execution) {
@@ -94,9 +102,9 @@ Drawing lines(const Surfaces& surfaces, const View& view, const LineOptions& opt
     throw Error(ErrorCode::bad_argument, "crease_angle: must be from 0 to pi");
   const IeeeScope ieee;
   report_progress(execution, "lines", 0);
-  const WeldedMesh mesh = weld(surfaces, execution);
+  WeldedMesh mesh = weld(surfaces, execution);
   const Sight sight(view);
-  SeenMesh seen = see(mesh, sight, execution);
+  SeenMesh seen = see_closed(mesh, sight, execution);
   Features features = find_features(seen, surfaces, options, execution);
   // Of many at one place one hides as much as all.
   if (!options.counts_hidden)

@@ -141,5 +141,18 @@ TEST(EdgeContacts, OrderOfTrianglesAndCornersDoesNotMatter) {
   }
 }
 
+TEST(EdgeContacts, StretchesOfAFoldAreNone) {
+  // A fold's stretches lie in the planes of triangles further along it, to which one of their own two belongs.
+  const glm::vec3 top(-1, 1, 0), bottom(-2, 0.25f, 1.5f), ends[2] = {{-2, 0.5f, 1}, {-1, 1, 1}};
+  const std::vector<glm::vec3> fold = {
+      ends[0], {-1.375f, 0.8125f, 1}, {-1.25f, 0.875f, 1}, {-1.125f, 0.9375f, 1}, ends[1]};
+  Mesh mesh;
+  add_triangle(mesh, {-1.25f, 0.75f, 0}, ends[0], top);
+  for (std::size_t i = 0; i + 1 < fold.size(); ++i) add_triangle(mesh, top, fold[i], fold[i + 1]);
+  for (std::size_t i = fold.size() - 1; i > 0; --i) add_triangle(mesh, fold[i], fold[i - 1], bottom);
+  const Scene scene = scene_of(mesh);
+  EXPECT_TRUE(find_crossings(weld(Surfaces(scene), {}), {}, {}).empty());
+}
+
 }  // namespace
 }  // namespace frontmost::test
