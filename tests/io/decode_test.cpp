@@ -185,14 +185,36 @@ TEST(Decode, JpegScansWithoutEndAreRefused) {
 }
 
 TEST(Decode, OtherFormatsAreNamed) {
-  EXPECT_THAT(error_of(bytes_of(std::string_view("RIFF\0\0\0\0WEBPVP8 ", 16)), ErrorCode::unsupported),
-              HasSubstr("WebP"));
-  EXPECT_THAT(error_of(bytes_of("\xABKTX 20\xBB\r\n\x1A\n"), ErrorCode::unsupported), HasSubstr("KTX2"));
-  EXPECT_THAT(error_of(bytes_of("DDS |"), ErrorCode::unsupported), HasSubstr("DDS"));
+  using namespace std::string_view_literals;
+  const std::pair<std::string_view, const char*> files[] = {
+      {"RIFF\0\0\0\0WEBPVP8 "sv, "WebP"},
+      {"\xABKTX 20\xBB\r\n\x1A\n"sv, "KTX2"},
+      {"\xABKTX 11\xBB\r\n\x1A\n"sv, "KTX"},
+      {"DDS |"sv, "DDS"},
+      {"GIF89a"sv, "GIF"},
+      {"BM1234"sv, "BMP"},
+      {"\0\0\0\x1C"
+       "ftypavif"sv,
+       "AVIF"},
+      {"II*\0\x08\0\0\0"sv, "TIFF"},
+      {"MM\0*\0\0\0\x08"sv, "TIFF"},
+      {"8BPS\0\x01"sv, "PSD"},
+      {"\x76\x2f\x31\x01\x02\0\0\0"sv, "OpenEXR"},
+      {"#?RADIANCE\n"sv, "Radiance"},
+  };
+  for (const auto& [bytes, format] : files) {
+    EXPECT_EQ(error_of(bytes_of(bytes), ErrorCode::unsupported),
+              std::string("a.png: ") + format + " images are not supported, only PNG and JPEG");
+  }
+}
+
+TEST(Decode, TextsThatBeginLikeASignatureAreNoneOfTheseFormats) {
+  for (const char* text : {"MMXXVI", "II*x", "Bm", "GIF", "8BP", "#?RADIANT", "RIFF....WAVE", "RIFF....WEB"})
+    EXPECT_EQ(error_of(bytes_of(text)), "a.png: neither PNG nor JPEG") << text;
 }
 
 TEST(Decode, EmptyAndUnknownAreErrors) {
-  EXPECT_THAT(error_of({}), HasSubstr("empty"));
+  EXPECT_EQ(error_of({}), "a.png: the image is empty");
   EXPECT_THAT(error_of(bytes_of("hello")), HasSubstr("neither PNG nor JPEG"));
 }
 

@@ -16,7 +16,10 @@ struct Signature {
   const char* format;
 };
 
-/// Formats that models refer to in the wild and that we name instead of calling them broken.
+using namespace std::string_view_literals;
+
+/// Formats that models refer to in the wild and that we name instead of calling them broken. Literals with a zero
+/// inside say their own length: as plain ones they would end there, and "MM" begins many a text.
 constexpr Signature foreign_formats[] = {
     {8, "WEBP", "WebP"},
     {1, "KTX 20", "KTX2"},
@@ -25,8 +28,8 @@ constexpr Signature foreign_formats[] = {
     {0, "GIF8", "GIF"},
     {0, "BM", "BMP"},
     {4, "ftypavif", "AVIF"},
-    {0, "II*\0", "TIFF"},
-    {0, "MM\0*", "TIFF"},
+    {0, "II*\0"sv, "TIFF"},
+    {0, "MM\0*"sv, "TIFF"},
     {0, "8BPS", "PSD"},
     {0, "\x76\x2f\x31\x01", "OpenEXR"},
     {0, "#?RADIANCE", "Radiance"},
@@ -38,7 +41,6 @@ bool matches(std::span<const std::byte> bytes, std::size_t offset, std::string_v
 }
 
 Texture decode(std::span<const std::byte> bytes, const std::string& name, detail::ImagePart part) {
-  using namespace std::string_view_literals;
   if (matches(bytes, 0, "\x89PNG\r\n\x1a\n"sv)) return detail::decode_png(bytes, name, part);
   if (matches(bytes, 0, "\xff\xd8\xff"sv)) return detail::decode_jpeg(bytes, name, part);
   for (const Signature& foreign : foreign_formats)

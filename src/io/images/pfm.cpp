@@ -65,7 +65,10 @@ void save_pfm(const Image& image, OutputFile& file) {
 Image load_pfm(std::span<const std::byte> bytes, const std::string& name) {
   Header header(bytes, name);
   RawLayout layout;
-  layout.channels = header.word() == "PF" ? 3 : 1;
+  // Others have made more of these, as PF4 with four channels: to call one of them Pf would misread it.
+  const std::string_view kind = header.word();
+  if (kind != "PF" && kind != "Pf") fail(name, "neither PF nor Pf");
+  layout.channels = kind == "PF" ? 3 : 1;
   layout.width = header.size();
   layout.height = header.size();
   const std::string_view scale = header.word();

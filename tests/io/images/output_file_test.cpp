@@ -6,8 +6,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <string_view>
+#include <system_error>
 #include <thread>
 
 #include "frontmost/io.h"
@@ -147,6 +149,69 @@ TEST_P(Output, FoldersAndFilesWithoutPermissionAreErrors) {
   ::chmod(folder_.path().c_str(), 0555);
   EXPECT_EQ(error_of([&] { write_file(folder_.file("b.txt"), "x"); }), ErrorCode::file_unwritable);
   ::chmod(folder_.path().c_str(), 0755);
+}
+
+// Between opening and naming the folder may change under the writer's feet.
+TEST_P(Output, APlaceThatIsGoneWhenTheFileIsWhole) {
+  fs::create_directory(folder_.path() / "gone");
+  OutputFile file(folder_.file("gone/a.txt"), GetParam());
+  file.write(bytes("whole"));
+  fs::remove_all(folder_.path() / "gone");
+  std::string message;
+  EXPECT_EQ(error_of([&] { file.commit(); }, &message), ErrorCode::file_unwritable);
+  const char* doing = GetParam() == OutputFile::Staging::named ? ": cannot replace: " : ": cannot create: ";
+  EXPECT_EQ(message, folder_.file("gone/a.txt") + doing + std::generic_category().message(ENOENT));
+  EXPECT_EQ(folder_.entry_count(), 0u);
+}
+
+TEST_P(Output, AFolderThatTookThePlaceIsNotReplaced) {
+  const std::string path = folder_.file("a.txt");
+  {
+    OutputFile file(path, GetParam());
+    file.write(bytes("whole"));
+    fs::create_directory(path);
+    std::string message;
+    EXPECT_EQ(error_of([&] { file.commit(); }, &message), ErrorCode::file_unwritable);
+    EXPECT_EQ(message, path + ": cannot replace: " + std::generic_category().message(EISDIR));
+  }
+  EXPECT_TRUE(fs::is_directory(path));
+  EXPECT_EQ(folder_.entry_count(), 1u) << "the hidden file is gone";
+}
+
+TEST_P(Output, AFileThatCameMeanwhileIsReplaced) {
+  const std::string path = folder_.file("a.txt");
+  OutputFile file(path, GetParam());
+  file.write(bytes("mine"));
+  write_text(path, "somebody else's");
+  file.commit();
+  EXPECT_EQ(read_text(path), "mine");
+  EXPECT_EQ(folder_.entry_count(), 1u);
+}
+
+TEST_P(Output, ReasonsAreNamed) {
+  const auto reason = [&](const std::string& path) {
+    std::string message;
+    EXPECT_EQ(error_of([&] { write_file(path, "x"); }, &message), ErrorCode::file_unwritable);
+    return message.substr(std::min(message.size(), path.size()));
+  };
+  EXPECT_EQ(reason(folder_.path().string()), ": is a folder");
+  EXPECT_EQ(reason(folder_.file("no/")), ": is not a file name");
+  EXPECT_EQ(reason(""), ": is not a file name");
+  EXPECT_EQ(reason(folder_.file("missing/a.txt")), ": cannot create: " + std::generic_category().message(ENOENT));
+  write_text(folder_.file("file"), "");
+  EXPECT_EQ(reason(folder_.file("file/a.txt")), ": cannot write: " + std::generic_category().message(ENOTDIR));
+}
+
+// Hidden names of others who write the same file, or of a process that died, are passed over.
+TEST_P(Output, NamesThatAreTakenArePassedOver) {
+  const std::string path = folder_.file("a.txt");
+  write_text(path, "old");
+  const std::string stem = ".a.txt." + std::to_string(::getpid()) + "-";
+  for (int i = 0; i < 3; ++i) write_text(folder_.file(stem + std::to_string(i) + ".tmp"), "dead");
+  write_file(path, "new");
+  EXPECT_EQ(read_text(path), "new");
+  EXPECT_EQ(folder_.entry_count(), 4u);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(read_text(folder_.file(stem + std::to_string(i) + ".tmp")), "dead");
 }
 
 TEST_P(Output, LongNamesAreFine) {

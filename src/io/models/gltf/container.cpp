@@ -11,9 +11,11 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
+// "JSON" and "BIN\0", read as little-endian numbers as the format defines them.
 constexpr std::uint32_t json_type = 0x4E4F534A, binary_type = 0x004E4942;
 constexpr std::size_t header_size = 12, chunk_header_size = 8;
 
+// Byte by byte, so that neither alignment nor the machine's order matters.
 std::uint32_t little_endian(Bytes bytes, std::size_t at) {
   std::uint32_t value = 0;
   for (std::size_t i = 0; i < 4; ++i) value |= std::to_integer<std::uint32_t>(bytes[at + i]) << (8 * i);
@@ -46,6 +48,7 @@ void take_chunk(Container& container, std::uint32_t type, Bytes chunk, std::size
     source.fail(place, "a second JSON chunk");
   } else if (type == binary_type) {
     // Chunks of other types may follow, and are to be ignored (glTF 2.0, section 4.4).
+    // A late one is an error all the same: a buffer without a URI could mean either.
     if (number != 1) source.fail(place, "a BIN chunk that is not the second one");
     container.binary = chunk;
     container.has_binary = true;

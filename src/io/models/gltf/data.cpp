@@ -40,8 +40,11 @@ std::size_t element_size(const Shape& shape, Component component) {
 /// Whether `count` elements, `stride` apart, lie within `length` bytes from `offset` on; nothing overflows.
 bool fits(std::uint64_t offset, std::uint64_t count, std::uint64_t stride, std::uint64_t element,
           std::uint64_t length) {
+  // Written with differences of what is known to be smaller: sums and products of numbers from a file would wrap
+  // around.
   if (count == 0) return offset <= length;
   if (offset > length || element > length - offset) return false;
+  // The last element needs its own bytes only, not a whole stride: interleaved arrays end there.
   return count - 1 <= (length - offset - element) / stride;
 }
 
@@ -113,6 +116,7 @@ void Data::read_buffer(const Json& json, const Container& container, bool first)
     if (buffer.length > buffer.bytes.size())
       json.fail("byteLength is " + std::to_string(buffer.length) + ", but there are only " +
                 std::to_string(buffer.bytes.size()) + " bytes");
+    // A BIN chunk is padded to multiples of four; what is behind the stated length is not part of the buffer.
     buffer.bytes = buffer.bytes.first(buffer.length);
   }
   buffers_.push_back(buffer);
@@ -142,6 +146,7 @@ void Data::read_view(const Json& json) {
 void Data::read_accessor(const Json& json) {
   Accessor accessor;
   accessor.count = json.require("count").to_unsigned();
+  // Vertices and corners are numbered by 32 bits, and the greatest number means "none".
   if (accessor.count >= no_index) json.source().fail_limit(json.place(), std::to_string(accessor.count) + " elements");
   const std::optional<Component> component = component_of(json.require("componentType"));
   const Shape* shape = shape_of(json.require("type"));
@@ -154,6 +159,7 @@ void Data::read_accessor(const Json& json) {
     const std::optional<Json> sparse = json.find("sparse");
     if (sparse) read_sparse(*sparse, accessor, element_size(*shape, *component));
   } else {
+    // Not an error yet: extensions add accessors for their own use, which a reader that lacks them never touches.
     accessor.unreadable = "the accessor's type is unknown";
   }
   accessors_.push_back(accessor);
@@ -207,6 +213,7 @@ void Data::read_sparse(const Json& json, Accessor& accessor, std::size_t value_s
     accessor.unreadable = no_contents;
     return;
   }
+  // Strictly rising, as the format asks: replace_sparse() finds the first one of a range by bisection.
   std::uint64_t least = 0;
   for (std::size_t i = 0; i < sparse.count; ++i) {
     const std::uint32_t index = sparse.index(i);

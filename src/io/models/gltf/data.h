@@ -58,6 +58,8 @@ class Budget {
   void charge(std::uint64_t count, std::uint64_t size, const std::string& place, const ModelSource& source);
 
  private:
+  // The most that an honest byte becomes is 16: an index of one byte makes a triangle of a strip. Four times that
+  // leaves room for posed copies of a mesh; the base lets tiny files repeat what they hold.
   static constexpr std::uint64_t base = std::uint64_t(1) << 28, factor = 64;
   std::uint64_t left_;
 };

@@ -78,14 +78,17 @@ Scene read_scene(const Container& container, const ModelSource& source) {
   check_version(root);
   check_extensions(root, scene.warnings);
   check_counts(root);
+  // Ranges first: whatever follows reads through `data` and checks no length of its own.
   const Data data(root, container);
   TextureTable textures(root, data);
+  // Materials before meshes, because the base colour decides which set of texture coordinates a primitive reads.
   Materials materials = read_materials(root, textures, scene.warnings);
   const std::vector<MeshPlan> plans = plan_meshes(root, data, materials, scene.warnings);
   const NodeTree tree = read_nodes(root, data);
   scene.materials = std::move(materials.materials);
   place_meshes(root, data, plans, tree, scene);
   place_cameras(root, tree, scene);
+  // Last, and only what materials have asked for: decoding is the dearest step, and an error elsewhere makes it futile.
   textures.load(scene);
   return scene;
 }

@@ -53,6 +53,7 @@ class Placer {
     for (const std::uint32_t id : tree_.shown)
       if (tree_.nodes[id].mesh != no_index) place_node(tree_.nodes[id]);
     for (std::uint32_t i = 0; i < plans_.size(); ++i)
+      // Meshes that no node shows are read as well: they keep the file's numbers, and a user may place them.
       if (!is_read_[i]) (void)read(i, {plans_[i].weights});
   }
 
@@ -87,6 +88,7 @@ class Placer {
     // Every node compares and keeps its weights, those of its mesh too.
     budget_.charge(pose.weights.size(), sizeof(double), node.place, source_);
     if (skinned) pose.joints = skins_[node.skin];
+    // Joints are those of the skin, so its number stands for them; comparing the matrices would cost more than posing.
     const Key key{node.mesh, skinned ? node.skin : no_index, pose.weights};
     const auto known = posed_.find(key);
     if (known != posed_.end()) return known->second;
@@ -97,6 +99,7 @@ class Placer {
 
   std::uint32_t read(std::uint32_t mesh, const Pose& pose) {
     check_cancelled(source_.execution());
+    // What is odd about a mesh is said once, not for each of its poses.
     std::vector<std::string> repeated;
     Mesh posed = reader_.read(plans_[mesh], pose, is_read_[mesh] ? repeated : scene_.warnings);
     std::uint32_t number = mesh;
@@ -145,6 +148,7 @@ class Placer {
 /// A camera looks along its node's -z, y up. Scale has no meaning for it, so the axes are made unit and square again.
 std::optional<glm::dmat4> rigid(const glm::dmat4& world) {
   const glm::dvec3 back(world[2]), up(world[1]);
+  // The viewing direction is kept exactly and up gives way, as a sheared parent leaves them at an angle.
   const glm::dvec3 right = glm::cross(up, back);
   const double back_length = glm::length(back), right_length = glm::length(right);
   if (!(back_length > 0) || !(right_length > 0)) return std::nullopt;

@@ -13,9 +13,12 @@ using nlohmann::json;
 // would take thirty times its size.
 constexpr int max_depth = 256;
 constexpr std::size_t max_values = std::size_t(1) << 23;
+// Above it a double no longer tells neighbours apart, so a number with a point or an exponent has lost its last digits.
 constexpr double max_exact_integer = 9007199254740992.0;  // 2^53
 
 /// Counts brackets and commas outside of strings before a parser makes objects of them.
+// The parser recurses and allocates as the text tells it to, so depth and number are limited before it begins. Broken
+// JSON may be counted wrongly here; the parser refuses it afterwards.
 void check_shape(std::string_view text, const ModelSource& source) {
   int depth = 0;
   std::size_t values = 0;
@@ -116,6 +119,7 @@ std::uint64_t Json::to_unsigned() const {
 
 std::uint32_t Json::to_index(std::size_t count) const {
   const std::uint64_t index = to_unsigned();
+  // no_index means "none" further on, so the greatest number is no index even if a file had so many elements.
   if (index >= count || index >= no_index)
     fail(std::to_string(index) + " does not exist, there are " + std::to_string(count));
   return static_cast<std::uint32_t>(index);

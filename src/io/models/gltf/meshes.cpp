@@ -19,6 +19,7 @@ class MeshBuilder {
   }
 
   Mesh build(const Pose& pose, std::vector<std::string>& warnings) {
+    // All triangles before any vertex: only then the ranges that the blocks share are final.
     for (const Primitive& primitive : plan_.primitives) append_triangles(primitive, warnings);
     place_blocks();
     std::size_t triangle = 0;
@@ -95,6 +96,7 @@ class MeshBuilder {
       greatest = std::max({greatest, t.x, t.y, t.z});
     }
     if (!triangles.empty() && greatest >= primitive.vertex_count) fail_index(primitive, triangles);
+    // A primitive without triangles has a run as well, so that runs and primitives count alike.
     const std::size_t block_id = block_of(primitive);
     runs_.push_back({block_id, triangles.size()});
     if (triangles.empty()) return;

@@ -19,6 +19,7 @@ std::size_t size_or_zero(const Json& root, const char* key) {
 
 glm::dmat4 read_transform(const Json& json) {
   double m[16], t[3] = {0, 0, 0}, r[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
+  // The format forbids a node to have both; files that do mean the matrix.
   if (json.read_numbers("matrix", m)) {
     glm::dmat4 matrix;
     for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = m[i];
@@ -43,7 +44,9 @@ std::uint32_t copy_attribute(const Json& attributes, const char* key, int compon
   const std::uint32_t id = data.readable_accessor(*json);
   const Accessor& accessor = data.accessor(id);
   if (accessor.components != components) json->fail("the accessor's type does not fit");
-  if (copies.count != 0 && copies.count != accessor.count)
+  // Whether there was one before, not whether it had elements: what is read later goes by one count for all.
+  const bool is_first = copies.translation == no_index && copies.rotation == no_index && copies.scale == no_index;
+  if (!is_first && copies.count != accessor.count)
     json->fail("has another number of elements than the attributes before");
   copies.count = accessor.count;
   return id;
@@ -79,6 +82,8 @@ Node read_node(const Json& json, const Counts& counts, const Data& data) {
   return node;
 }
 
+// One parent for each node is what makes the graph a forest, so that world transforms are unique and loops, which then
+// are closed off from all roots, cost no search of their own.
 void find_parents(std::vector<Node>& nodes, const ModelSource& source) {
   for (std::size_t i = 0; i < nodes.size(); ++i)
     for (const std::uint32_t child : nodes[i].children) {
@@ -96,6 +101,7 @@ std::vector<std::uint32_t> walk(const std::vector<Node>& nodes, std::vector<std:
   while (!stack.empty()) {
     const std::uint32_t id = stack.back();
     stack.pop_back();
+    // A scene may name a node and its child, or one node twice: it is shown once.
     if (seen[id]) continue;
     seen[id] = true;
     order.push_back(id);
@@ -146,6 +152,7 @@ std::vector<std::uint32_t> scene_starts(const Json& root, std::size_t node_count
 
 glm::dmat4 compose(const glm::dvec3& translation, const glm::dvec4& rotation, const glm::dvec3& scale) {
   const double length = glm::length(rotation);
+  // Quaternions of files are rounded, so they are made unit; one of zeros turns nothing.
   const glm::dvec4 q = length > 0 ? rotation / length : glm::dvec4(0, 0, 0, 1);
   const double x = q.x, y = q.y, z = q.z, w = q.w;
   glm::dmat4 m(1.0);

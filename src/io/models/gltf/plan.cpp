@@ -83,6 +83,7 @@ class Planner {
       plan.primitives.push_back(*std::move(primitive));
     }
     plan.target_count = target_count.value_or(0);
+    // A mesh of points and lines alone has no plan to count targets in.
     if (!plan.weights.empty() && !plan.primitives.empty() && plan.weights.size() != plan.target_count)
       json_.fail(std::to_string(plan.weights.size()) + " weights for " + std::to_string(plan.target_count) +
                  " morph targets");
@@ -100,6 +101,7 @@ class Planner {
     primitive.place = json.place();
     const std::uint64_t mode = json.unsigned_or("mode", 4);
     primitive.material = json.index_or_none("material", materials_.materials.size());
+    // Points and lines too, although they are not drawn: what a file says wrongly is found whatever it is for.
     read_vertices(json, primitive);
     if (const auto indices = json.find("indices")) primitive.indices = read_indices(*indices);
     if (mode < 4) return skip(json, mode == 0 ? "points are not drawn" : "lines are not drawn");
@@ -121,6 +123,7 @@ class Planner {
       const std::uint32_t joints = reader.find("JOINTS_" + std::to_string(set), {4, 4, true});
       const std::uint32_t weights = reader.find("WEIGHTS_" + std::to_string(set), {4, 4, false});
       if ((joints == no_index) != (weights == no_index)) attributes.fail("joints without weights, or the reverse");
+      // Sets are numbered without gaps; a later one behind a gap is nobody's.
       if (joints == no_index) break;
       vertices.joints.push_back(joints);
       vertices.weights.push_back(weights);
@@ -130,6 +133,7 @@ class Planner {
     for (std::size_t i = 0; targets && i < targets->size(); ++i) {
       const Json target = (*targets)[i];
       AttributeReader target_reader(target, data_);
+      // Displacements are read by the ranges of the vertices that they move.
       target_reader.expect_count(primitive.vertex_count);
       vertices.targets.push_back(target_reader.read_sources());
     }

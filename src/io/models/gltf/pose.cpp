@@ -7,6 +7,7 @@ namespace {
 /// values[i] += weight * displacement i.
 template <class V>
 void add(const Data& data, const Block& block, std::uint32_t accessor, double weight, std::vector<V>& values) {
+  // Targets may add what the mesh lacks, normals to a mesh without any; there is nothing to add to.
   if (accessor == no_index || values.empty()) return;
   std::vector<V> displacements(block.range.count, V(0));
   read_floats(data.accessor(accessor), block.range, V::length(), &displacements[0][0]);
@@ -47,6 +48,7 @@ class Influences {
       sum += joints[joints_[k]] * double(weights_[k]);
       total += double(weights_[k]);
     }
+    // A vertex of no weight would fall into the world's origin; with the first joint it stays with the body.
     return total != 0 ? sum / total : joints.front();
   }
 
@@ -78,6 +80,7 @@ void apply_targets(const Data& data, const Block& block, std::span<const double>
 
 void apply_skin(const Data& data, const Block& block, std::span<const glm::dmat4> joints, const ModelSource& source,
                 Mesh& mesh) {
+  // Primitives of one mesh need not all have joints; those without stay where the mesh is.
   if (joints.empty() || block.vertices->joints.empty()) return;
   const Influences influences(data, block, joints.size(), source);
   for (std::size_t i = 0; i < block.range.count; ++i) {

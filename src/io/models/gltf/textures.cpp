@@ -41,6 +41,7 @@ std::uint32_t TextureTable::intern(const Json& index, std::vector<std::string>& 
   }
   read_sampler(texture, look);
   const auto [entry, is_new] = numbers_.emplace(look, std::uint32_t(looks_.size()));
+  // The number is one among looks, before anybody knows which images can be decoded; load() closes the gaps.
   if (is_new) looks_.push_back(look);
   return entry->second;
 }

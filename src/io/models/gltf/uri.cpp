@@ -31,6 +31,7 @@ std::vector<std::byte> decode_base64(std::string_view text, const Json& place) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const std::uint8_t digit = base64_digits[static_cast<unsigned char>(text[i])];
     if (digit == no_digit) place.fail("character " + std::to_string(i) + " of the base64 data is not in its alphabet");
+    // Older digits fall off the top of the 32 bits; at most six bits still wait for their byte.
     bits = bits << 6 | digit;
     // Six bits come in; whenever eight or more are held, the upper eight go out.
     if (i % 4 != 0) out[written++] = std::byte(bits >> (6 - 2 * (i % 4)));
@@ -38,6 +39,7 @@ std::vector<std::byte> decode_base64(std::string_view text, const Json& place) {
   return out;
 }
 
+// Not isxdigit(): that depends on the locale and is undefined for negative characters.
 int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
