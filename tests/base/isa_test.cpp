@@ -34,5 +34,36 @@ TEST(Isa, AskingForWhatTheMachineLacksIsAnError) {
   }
 }
 
+TEST(Isa, NamesAreThoseOfTheCommandLine) {
+  EXPECT_EQ(name(Isa::scalar), "scalar");
+  EXPECT_EQ(name(Isa::sse4), "sse4");
+  EXPECT_EQ(name(Isa::avx2), "avx2");
+  EXPECT_EQ(name(Isa::avx512), "avx512");
+  EXPECT_EQ(name(Isa(99)), "unknown");
+}
+
+TEST(Isa, WhatIsNoIsaIsNamedInTheError) {
+  try {
+    (void)highway_targets(Isa(99));
+    FAIL() << "there is no such instruction set";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::unsupported);
+    EXPECT_STREQ(error.what(), "isa: unknown is not available on this machine");
+  }
+}
+
+// One bit each, so that a table of kernels has one entry for each; the fallback needs none.
+TEST(Isa, TargetsAreSingleBits) {
+  std::int64_t all = 0;
+  for (const Isa isa : available_isas()) {
+    const std::int64_t bit = highway_targets(isa);
+    EXPECT_EQ(bit & (bit - 1), 0) << name(isa);
+    EXPECT_EQ(all & bit, 0) << name(isa) << ": its own";
+    all |= bit;
+  }
+  EXPECT_EQ(highway_targets(Isa::scalar), 0);
+  EXPECT_EQ(highway_targets(Isa::best), highway_targets(available_isas().back()));
+}
+
 }  // namespace
 }  // namespace frontmost
