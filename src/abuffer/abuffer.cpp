@@ -33,6 +33,8 @@ Opacities::Opacities(const Surfaces& surfaces, float opacity, const Execution& e
     differ = differ || by_material.back() != opacity;
   }
   if (!differ) return;
+  // Most scenes have one opacity for all and get here not at all: a number a primitive would be read for every
+  // fragment.
   values_.assign(surfaces.primitive_count(), opacity);
   parallel_for(execution, scene.instances.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -64,6 +66,7 @@ FragmentLists abuffer(const Surfaces& surfaces, const View& view, const AbufferO
     TilePart<Fragment> part{job.pixels, std::move(made.begin), std::move(made.fragments)};
     const std::lock_guard lock(mutex);
     total += part.items.size();
+    // Only here the sum is known. Parts before this one are held already, but each was bounded by what a tile may hold.
     if (total > max_fragments) throw Error(ErrorCode::limit_exceeded, "abuffer: more than 2^30 fragments");
     parts.push_back(std::move(part));
   });

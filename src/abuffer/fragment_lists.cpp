@@ -25,6 +25,7 @@ class Lister {
     float passes = 1;
     for (std::size_t i = 0; i < length && words[i * kGroup] != 0; ++i) {
       const std::uint32_t number = ~std::uint32_t(words[i * kGroup]);
+      // Masks may be empty here, though not where they were appended: holes have been taken out of them since.
       if (s_.nearest_of(number) < hidden || s_.arrived.mask(number) == 0) continue;
       add(number);
       // At a single sample there is no part of a pixel: what comes first hides the rest.
@@ -44,6 +45,7 @@ class Lister {
 
   /// The key behind which nothing is seen anywhere in the pixel.
   [[nodiscard]] float hidden_behind(const std::uint64_t* words, std::size_t length) const {
+    // -1 hides nothing: keys of what is there are 0 or more.
     float key = -1, passes = 1, farthest = std::numeric_limits<float>::infinity();
     if (frame_.pattern.count == 1) return key;
     for (std::size_t i = 0; i < length && words[i * kGroup] != 0; ++i) {

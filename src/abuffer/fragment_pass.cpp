@@ -67,6 +67,8 @@ void FragmentPass::paint(const Paint& paint, const Receive& receive, const Execu
   visit_tiles(frame, execution, [&](const TileJob& job, TileScratch* scratch) {
     if (!scratch) return receive(job.pixels, nullptr);
     const JobLists lists = list_fragments(frame, job, *scratch, opacities_, kNegligible);
+    // By number of arrival, as the compositor looks them up; fragments that were left out of the lists stay without
+    // effect.
     std::vector<glm::vec4> colors(scratch->arrived.count, glm::vec4(0));
     paint(job.pixels, lists, colors);
     TilePicture picture(job.pixels);

@@ -59,6 +59,7 @@ std::vector<Visible> visible_layers(const Surfaces& surfaces, const View& view, 
                                     const AbufferOptions& options, const Execution& execution) {
   if (count < 1 || count > 1024) throw Error(ErrorCode::bad_argument, "abuffer: layers: must be 1 to 1024");
   const IeeeScope ieee;
+  // Layers are Visibles, whose samples are the view's; a grid of the A-buffer's own would have no place in them.
   const PreparedFrame prepared(surfaces, view, {0, options.opacity}, execution);
   const FrameInput frame = prepared.input(execution);
   const Opacities opacities(surfaces, options.opacity, execution);

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "frontmost/abuffer.h"
+#include "support/effort.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
@@ -72,6 +73,25 @@ TEST(ManyLayers, APixelOfThousandsIsSortedAlone) {
   // Sheets a twenty thousandth apart have keys of their own, and each shows one of its two triangles.
   for (std::size_t k = 0; k < layers.size(); ++k)
     for (std::size_t i = 0; i < 15; ++i) ASSERT_EQ(layers[k].primitives[i] / 2, k) << "pixel " << i;
+}
+
+// One more than a rank of 20 bits can name is an error before anything is sorted.
+TEST(ManyLayers, APixelHasOnlySoManyFragments) {
+  Scene scene = stack_of(1);
+  Mesh& mesh = scene.meshes[0];
+  mesh.triangles.assign(std::size_t(1) << 20, glm::uvec3(0, 1, 2));
+  View view = front_view(1, 1);
+  view.world_from_eye = look_at({0.5, -0.5, 1}, {0.5, -0.5, 0}, {0, 1, 0});  // in the middle of the triangles
+  try {
+    (void)count_fragments(Surfaces(scene), view);
+    FAIL() << "no limit";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::limit_exceeded);
+    EXPECT_STREQ(error.what(), "abuffer: more than 1,048,575 fragments in one pixel");
+  }
+  if (under_sanitizer) return;  // the longest list takes a second to sort
+  mesh.triangles.pop_back();
+  EXPECT_EQ(count_fragments(Surfaces(scene), view).longest, (1u << 20) - 1);
 }
 
 TEST(Counts, AreThoseOfTheListsOfTranslucentThings) {

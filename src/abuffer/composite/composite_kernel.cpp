@@ -156,6 +156,7 @@ class TileCompositor {
 void CompositeTile(const FrameInput& frame, const TileJob& job, TileScratch& scratch, const FragmentColors& colors,
                    const PicturePlanes& out) {
   TileCompositor compositor(frame, job, scratch, colors, out);
+  // By count when compiled, so that loops over sub-samples are written out and what shows through has registers.
   switch (frame.pattern.count) {
     case 1: return compositor.Run<1>();
     case 2: return compositor.Run<2>();

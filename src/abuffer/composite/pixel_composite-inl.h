@@ -53,6 +53,7 @@ class PixelCompositor {
     const std::uint64_t* words = s_.slot(group, 0) + pixel;
     for (std::size_t i = 0; i < length && words[i * kGroup] != 0;) {
       std::size_t end = i + 1;
+      // A run is closed under changing places: whoever may change with one of it is in it too.
       for (std::size_t k = i; k < end; ++k) end = HWY_MAX(end, std::size_t(g_.reach[At(k)]) + 1);
       if (end - i == 1)
         Add(i);

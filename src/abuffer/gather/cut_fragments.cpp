@@ -28,6 +28,7 @@ void cut_fragments(const FrameInput& frame, const TileJob& job, TileScratch& scr
   for (std::size_t i = Arrived::first; i < arrived.count; ++i) {
     const PrimitiveId id = scratch.triangles.id[arrived.triangle[i]];
     if (!cutouts->has(id)) continue;
+    // Fragments arrive triangle by triangle, so the plane is set up once for all of its pixels.
     if (id != last) cutout.emplace((*cutouts)[id], rays);
     last = id;
     const glm::ivec2 pixel = glm::ivec2(job.pixels.x, job.pixels.y) + place_of(arrived.place[i] >> kRankBits);

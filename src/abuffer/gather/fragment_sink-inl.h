@@ -120,7 +120,8 @@ class FragmentSink {
   [[nodiscard]] bool HasRoom() {
     if (HWY_LIKELY(arrived.count <= kMostOfTile)) return true;
     if (width * height > 1) return false;
-    if (arrived.count > kMostOfPixel)
+    // Number 0 is no fragment.
+    if (arrived.count - Arrived::first > kMostOfPixel)
       throw Error(ErrorCode::limit_exceeded, "abuffer: more than 1,048,575 fragments in one pixel");
     arrived.grow(arrived.count + kMostAtOnce);
     return true;
@@ -133,6 +134,7 @@ class FragmentSink {
     arrived.triangle[n] = triangle;
     arrived.mask_low[n] = std::uint32_t(mask);
     arrived.mask_high[n] = std::uint32_t(mask >> 32);
+    // Written in any case and counted only where something is covered: a branch would be wrong half of the time.
     const std::uint32_t covered = mask != 0;
     arrived.place[n] = pixel << kRankBits | counts[pixel];
     counts[pixel] += covered;
@@ -143,6 +145,7 @@ class FragmentSink {
   HWY_INLINE void AppendVector(VU key, VU place, std::uint32_t triangle) {
     const DU d;
     const std::size_t n = arrived.count;
+    // Whole vectors, without a look at the room: kMostAtOnce has been set aside for what one step may add.
     hn::StoreU(key, d, arrived.key.data() + n);
     hn::StoreU(place, d, arrived.place.data() + n);
     FillIn(n, triangle);

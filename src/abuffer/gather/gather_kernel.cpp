@@ -88,6 +88,7 @@ class TileGatherer {
     MI keep = hn::And(hn::Not(hn::Gt(p.x0, p.x1)), hn::Not(hn::Gt(p.y0, p.y1)));
     if (hn::AllFalse(d, keep)) return;
 
+    // Small ones alone have products that fit 32 bits, in the area below as in the edge functions of their batch.
     const VI extent = hn::Max(hn::Sub(x_max, x_min), hn::Sub(y_max, y_min));
     const MI large = hn::And(keep, hn::Gt(extent, hn::Set(d, kSmallExtent)));
     if (!hn::AllFalse(d, large)) {
@@ -162,6 +163,7 @@ Gathered GatherTile(const FrameInput& frame, const TileJob& job, TileScratch& sc
   std::fill(scratch.counts.begin(), scratch.counts.end(), 0u);
   scratch.arrived.count = Arrived::first;
   scratch.triangles.count = 0;
+  // One sample a pixel needs no masks, and the id itself stands for the triangle: three words a fragment, not five.
   const bool fits =
       frame.is_flat ? TileGatherer<true>(frame, job, scratch).Run() : TileGatherer<false>(frame, job, scratch).Run();
   if (!fits) return Gathered::too_much;

@@ -76,6 +76,7 @@ class LargeTriangles {
       const int n = k == 2 ? 0 : k + 1;
       const std::int32_t dx = t.x[n] - t.x[k], dy = t.y[n] - t.y[k];
       Edge& e = edge_[k];
+      // In 64 bits: corners may be as far away as the guard band, whose products are beyond 32.
       e.first = (std::int64_t(dy) * t.x[k] - std::int64_t(dx) * t.y[k] - (IsTopLeft(dx, dy) ? 0 : 1)) >> 4;
       e.step_x = -dy * kStepsOfPixel;
       e.step_y = dx * kStepsOfPixel;
@@ -91,6 +92,7 @@ class LargeTriangles {
   void SetUpPlane(const ScreenTriangle& t) {
     const std::int32_t x1 = t.x[1] - t.x[0], y1 = t.y[1] - t.y[0], x2 = t.x[2] - t.x[0], y2 = t.y[2] - t.y[0];
     const float area = float(std::int64_t(x1) * y2 - std::int64_t(x2) * y1);
+    // The formula of the house, operation by operation: keys are those of the z-buffer to the bit.
     const float k1 = t.key[1] - t.key[0], k2 = t.key[2] - t.key[0];
     id_ = t.id;
     x0_ = t.x[0];

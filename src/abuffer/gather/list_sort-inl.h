@@ -29,6 +29,7 @@ HWY_INLINE void CompareExchange(std::int64_t* a, std::int64_t* b) {
   const DW d;
   for (std::size_t i = 0; i < kGroup; i += hn::Lanes(d)) {
     const auto va = hn::Load(d, a + i), vb = hn::Load(d, b + i);
+    // Empty slots are 0 and so sink to the end of their lists, whatever their lengths.
     hn::Store(hn::Max(va, vb), d, a + i);
     hn::Store(hn::Min(va, vb), d, b + i);
   }

@@ -104,6 +104,7 @@ class SmallTriangles {
     const DF df;
     const VI x1 = hn::Sub(x[1], x[0]), y1 = hn::Sub(y[1], y[0]), x2 = hn::Sub(x[2], x[0]), y2 = hn::Sub(y[2], y[0]);
     const VF area = hn::ConvertTo(df, hn::Sub(hn::Mul(x1, y2), hn::Mul(x2, y1)));
+    // As for large triangles, operation by operation: a triangle's keys must not depend on which of both draws it.
     const VF key0 = KeyOf(0), key1 = KeyOf(1), key2 = KeyOf(2);
     const VF k1 = hn::Sub(key1, key0), k2 = hn::Sub(key2, key0);
     const VF fx1 = hn::ConvertTo(df, x1), fy1 = hn::ConvertTo(df, y1);

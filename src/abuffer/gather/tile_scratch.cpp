@@ -35,6 +35,7 @@ TileScratch::TileScratch()
     : counts(kTilePixels), group_base(kGroups + 1), references(16 * 16 * 16 + 64) {
   arrived.grow(kMostOfTile + kMostAtOnce);
   arrived.count = Arrived::first;
+  // Empty slots are gathered from as if they were fragments: number 0 must be a place that may be read.
   arrived.key[0] = arrived.triangle[0] = arrived.place[0] = arrived.mask_low[0] = arrived.mask_high[0] = 0;
 }
 

@@ -43,11 +43,13 @@ std::int64_t doubled_area(const ScreenTriangle& t) {
 }
 
 /// True when the whole tile is outside of one edge.
+// Bounding boxes of long thin triangles that lie askew are mostly empty: a list of them would be read for nothing.
 bool misses(const ScreenTriangle& t, int tile_x, int tile_y) {
   constexpr std::int64_t size = kTileSize * kSubPixels;
   for (int a = 0; a < 3; ++a) {
     const int b = (a + 1) % 3;
     const std::int64_t dx = t.x[b] - t.x[a], dy = t.y[b] - t.y[a];
+    // The corner of the tile where the edge function is greatest; if even that is outside, all of the tile is.
     const std::int64_t x = (tile_x + (dy < 0 ? 1 : 0)) * size, y = (tile_y + (dx > 0 ? 1 : 0)) * size;
     if (dx * (y - t.y[a]) - dy * (x - t.x[a]) < 0) return true;
   }

@@ -32,6 +32,7 @@ SamplePattern sample_pattern(const View& view, int grid) {
   const int spacing = grid ? SamplePattern::unit / grid : 0;
   for (int y = 0; y < grid; ++y)
     for (int x = 0; x < grid; ++x) add(pattern, x * spacing + spacing / 2, y * spacing + spacing / 2);
+  // What no sample of a pixel reaches need not be looked at: triangles between the samples have no pixel at all.
   const auto xs = std::minmax_element(pattern.x.begin(), pattern.x.begin() + pattern.count);
   const auto ys = std::minmax_element(pattern.y.begin(), pattern.y.begin() + pattern.count);
   pattern.low_x = *xs.first;

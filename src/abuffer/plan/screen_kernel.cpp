@@ -29,6 +29,7 @@ class Transformer {
   void Place(std::size_t index) {
     const DI di;
     const Cluster& cluster = set_.clusters[index];
+    // The guard band bounds all that is snapped, so these are less and greater than any vertex.
     VI low_x = hn::Set(di, kGuardBand), low_y = low_x, high_x = hn::Neg(low_x), high_y = high_x;
     auto plain = hn::Eq(low_x, low_x);
     // Vertices past the last repeat it, up to a multiple of 16.
@@ -63,6 +64,8 @@ class Transformer {
     const auto plain = screen::IsPlain(t_, vertices);
     const auto is_snapped = hn::RebindMask(di, plain);
     const screen::ScreenVertices snapped = screen::Snap(t_, vertices);
+    // Zeros for what is not snapped: conversion of numbers out of range differs from target to target, and nobody reads
+    // it.
     hn::Store(hn::IfThenElseZero(plain, snapped.key), d, screen_.key.data() + v);
     hn::Store(hn::IfThenElseZero(is_snapped, snapped.x), di, screen_.x.data() + v);
     hn::Store(hn::IfThenElseZero(is_snapped, snapped.y), di, screen_.y.data() + v);

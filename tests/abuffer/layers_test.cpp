@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every layer against brute force, pictures of opaque things against the z-buffer, and how lists are run and ended.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstring>
+#include <functional>
+#include <mutex>
+
+#include "abuffer/tile_parts.h"
+#include "fragment_oracle.h"
+#include "frontmost/zbuffer.h"
+#include "support/effort.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+struct Case {
+  Scene scene;
+  View view;
+};
+Case small_case(Kind kind, std::uint64_t seed) {
+  Random random(seed + 900);
+  const bool covers_little = kind == Kind::tiny || kind == Kind::slivers;
+  const int count = (40 + random.below(80)) * (covers_little ? 8 : 1);
+  const int width = 20 + random.below(40), height = 15 + random.below(35);
+  Case made{scene_of(random_mesh(kind, count, seed)), random_view(random, width, height)};
+  made.view.culling = Culling(random.below(3));
+  return made;
+}
+
+class EveryKindOfLayer : public testing::TestWithParam<Kind> {};
+INSTANTIATE_TEST_SUITE_P(ABuffer, EveryKindOfLayer, testing::ValuesIn(all_kinds));
+
+/// What a sample sees, nearest first, whatever the pixel's own order is.
+std::vector<std::pair<float, PrimitiveId>> seen_at(const std::vector<OracleFragment>& list, const glm::ivec2& place,
+                                                   std::size_t sample) {
+  std::vector<std::pair<float, PrimitiveId>> seen;
+  for (const OracleFragment& f : list)
+    if (f.mask >> sample & 1) seen.emplace_back(-oracle_key(*f.triangle, place.x, place.y), f.id);
+  std::sort(seen.begin(), seen.end());
+  return seen;
+}
+
+TEST_P(EveryKindOfLayer, EqualsBruteForceToTheBit) {
+  constexpr int layer_count = 6;
+  constexpr int sample_counts[] = {1, 2, 4, 8, 16};
+  std::array<std::size_t, layer_count> filled{};
+  for (std::uint64_t seed = 0; seed < seeds(10); ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Case c = small_case(GetParam(), seed);
+    c.view.samples = sample_counts[seed % 5];
+    const Surfaces surfaces(c.scene);
+    const std::vector<Visible> layers = visible_layers(surfaces, c.view, layer_count, {0, 0.5f});
+    ASSERT_EQ(layers.size(), std::size_t(layer_count));
+    const auto triangles = screen_triangles(surfaces, c.view);
+    const auto samples = oracle_samples(c.view, 0);
+    for (int y = 0; y < c.view.height; ++y)
+      for (int x = 0; x < c.view.width; ++x) {
+        const auto list = oracle_fragments(triangles, samples, x, y);
+        for (std::size_t s = 0; s < samples.size(); ++s) {
+          const auto seen = seen_at(list, glm::ivec2(256 * x, 256 * y) + samples[s], s);
+          for (std::size_t k = 0; k < layer_count; ++k) {
+            const std::size_t at = layers[k].index(x, y, int(s));
+            const bool is_there = k < seen.size();
+            ASSERT_EQ(layers[k].primitives[at], is_there ? seen[k].second : no_primitive)
+                << x << ", " << y << ", " << k;
+            ASSERT_EQ(layers[k].keys[at], is_there ? -seen[k].first : 0.0f) << x << ", " << y << ", " << k;
+            filled[k] += is_there;
+          }
+        }
+      }
+  }
+  EXPECT_GT(filled[0], 50u);
+  // Grids lie flat, and what is small or thin seldom lies before something else that is.
+  if (GetParam() != Kind::shared_grid && GetParam() != Kind::tiny && GetParam() != Kind::slivers) {
+    EXPECT_GT(filled[1], 20u) << "the test has become shallow";
+  }
+}
+
+// With everything opaque a picture is what the z-buffer sees, averaged over the samples: two methods, one answer.
+TEST_P(EveryKindOfLayer, PicturesOfOpaqueThingsAreTheZBuffers) {
+  for (std::uint64_t seed = 0; seed < seeds(8); ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Case c = small_case(GetParam(), seed + 50);
+    c.view.samples = seed % 2 ? 4 : 16;
+    const Surfaces surfaces(c.scene);
+    Random random(seed);
+    std::vector<glm::vec4> colors;
+    for (std::size_t i = 0; i < surfaces.primitive_count(); ++i) {
+      const float red = random.unit(), green = random.unit();
+      colors.push_back({red, green, 0, 1});
+    }
+    const ResolvedPicture picture = resolve(surfaces, c.view, colors);
+    const Visible visible = zbuffer(surfaces, c.view);
+    for (int y = 0; y < c.view.height; ++y)
+      for (int x = 0; x < c.view.width; ++x) {
+        glm::dvec4 sum(0);
+        for (int s = 0; s < c.view.samples; ++s) {
+          const PrimitiveId id = visible.primitives[visible.index(x, y, s)];
+          if (id != no_primitive) sum += glm::dvec4(colors[id]);
+        }
+        sum /= double(c.view.samples);
+        const std::size_t at = std::size_t(y) * std::size_t(c.view.width) + std::size_t(x);
+        ASSERT_NEAR(picture.red[at], sum.r, 1e-6) << x << ", " << y;
+        ASSERT_NEAR(picture.green[at], sum.g, 1e-6) << x << ", " << y;
+        ASSERT_NEAR(picture.alpha[at], sum.a, 1e-6) << x << ", " << y;
+      }
+  }
+}
+
+void expect_same_lists(const FragmentLists& found, const FragmentLists& wanted) {
+  ASSERT_EQ(found.first.size(), wanted.first.size());
+  for (std::size_t i = 0; i < wanted.first.size(); ++i) ASSERT_EQ(found.first[i], wanted.first[i]) << "pixel " << i;
+  ASSERT_EQ(found.fragments.size(), wanted.fragments.size());
+  for (std::size_t i = 0; i < wanted.fragments.size(); ++i) {
+    const Fragment &a = found.fragments[i], &b = wanted.fragments[i];
+    ASSERT_EQ(a.mask, b.mask) << i;
+    ASSERT_EQ(a.primitive, b.primitive) << i;
+    const float numbers_a[] = {a.key, a.key_dx, a.key_dy, a.opacity},
+                numbers_b[] = {b.key, b.key_dx, b.key_dy, b.opacity};
+    ASSERT_EQ(0, std::memcmp(numbers_a, numbers_b, sizeof numbers_a)) << i;
+  }
+}
+
+TEST_P(EveryKindOfLayer, ListsLayersAndCountsAreTheSameForThreadsAndInstructionSets) {
+  for (std::uint64_t seed = 0; seed < seeds(4); ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Case c = small_case(GetParam(), seed + 150);
+    c.view.width = 150;  // several tiles
+    c.view.samples = seed % 2 ? 8 : 1;
+    const AbufferOptions options{seed < 2 ? 0 : 4, seed % 3 ? 1.0f : 0.5f};
+    const Surfaces surfaces(c.scene);
+    const FragmentLists lists = abuffer(surfaces, c.view, options, {.threads = 1});
+    const std::vector<Visible> layers = visible_layers(surfaces, c.view, 3, options, {.threads = 1});
+    const FragmentCounts counts = count_fragments(surfaces, c.view, options, {.threads = 1});
+    for (const Isa isa : available_isas()) {
+      SCOPED_TRACE(std::string(name(isa)));
+      const Execution execution{.threads = 3, .isa = isa};
+      expect_same_lists(abuffer(surfaces, c.view, options, execution), lists);
+      const std::vector<Visible> found = visible_layers(surfaces, c.view, 3, options, execution);
+      for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(content_hash(found[k]), content_hash(layers[k])) << k;
+      const FragmentCounts others = count_fragments(surfaces, c.view, options, execution);
+      EXPECT_EQ(others.fragments, counts.fragments);
+      EXPECT_EQ(others.longest, counts.longest);
+    }
+  }
+}
+
+// A triangle cut at a corner that lies on the grid of 1/256 pixel covers what it did before, each sub-sample once.
+TEST(SplitTriangles, CoverWhatTheWholeOneDid) {
+  View view;
+  view.width = 40;
+  view.height = 30;
+  view.world_from_eye = look_at({0, 0, 4}, {0, 0, 0}, {0, 1, 0});
+  view.projection = make_orthographic(0, 40, -30, 0, {1, 9});
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    Random random(seed);
+    const auto corner = [&] {
+      const int x = random.below(40 * 64), y = random.below(30 * 64);
+      return glm::vec3(float(x) / 64, -float(y) / 64, 0);
+    };
+    const glm::vec3 a = corner(), b = corner(), c = corner();
+    // On the grid, and within: a quarter of the way from a to the middle of b and c, in multiples of 1/256.
+    const glm::vec3 inner = glm::floor((2.0f * a + b + c) * 64.0f) / 256.0f;
+    Mesh whole, parts;
+    add_triangle(whole, a, b, c);
+    for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) add_triangle(parts, p, q, inner);
+    const Scene one = scene_of(whole), three = scene_of(parts);
+    for (const int grid : {0, 2, 8}) {
+      const FragmentLists lists = abuffer(Surfaces(one), view, {grid, 0.5f});
+      const FragmentLists cut = abuffer(Surfaces(three), view, {grid, 0.5f});
+      for (int y = 0; y < view.height; ++y)
+        for (int x = 0; x < view.width; ++x) {
+          std::uint64_t expected = 0, found = 0;
+          for (const Fragment& f : lists.at(x, y)) expected |= f.mask;
+          for (const Fragment& f : cut.at(x, y)) {
+            ASSERT_EQ(found & f.mask, 0u) << seed << ": twice in " << x << ", " << y;
+            found |= f.mask;
+          }
+          ASSERT_EQ(found, expected) << seed << ": " << x << ", " << y;
+        }
+    }
+  }
+}
+
+// ---- Running ----
+
+TEST(Running, IsEndedByTheWatchAndReportsAllTiles) {
+  const Case c = small_case(Kind::soup, 3);
+  const Surfaces surfaces(c.scene);
+  View view = c.view;
+  view.width = 300;
+  view.height = 200;  // 20 tiles
+  const std::vector<glm::vec4> colors(surfaces.primitive_count(), glm::vec4(0.5f));
+  const Watch ending{.progress = {}, .cancelled = [] { return true; }};
+  const Execution ended{.threads = 2, .watch = &ending};
+  const std::function<void(const Execution&)> runs[] = {
+      [&](const Execution& e) { (void)abuffer(surfaces, view, {4}, e); },
+      [&](const Execution& e) { (void)count_fragments(surfaces, view, {4}, e); },
+      [&](const Execution& e) { (void)visible_layers(surfaces, view, 2, {}, e); },
+      [&](const Execution& e) { (void)resolve(surfaces, view, colors, {4}, e); },
+  };
+  for (const auto& run : runs) {
+    try {
+      run(ended);
+      ADD_FAILURE() << "went on";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::cancelled);
+    }
+    std::mutex mutex;
+    double most = 0;
+    const Watch telling{.progress =
+                            [&](std::string_view stage, double done) {
+                              const std::lock_guard lock(mutex);
+                              if (stage == "visible") most = std::max(most, done);
+                            },
+                        .cancelled = {}};
+    run({.threads = 2, .watch = &telling});
+    EXPECT_EQ(most, 1.0);
+  }
+}
+
+TEST(Running, AResolverThatWasEndedDrawsTheNextPictureWhole) {
+  const Case full = small_case(Kind::soup, 3), few = small_case(Kind::tiny, 4);
+  const Surfaces a(full.scene), b(few.scene);
+  View view = full.view;
+  view.width = 300;
+  view.height = 200;
+  const std::vector<glm::vec4> colors_a(a.primitive_count(), glm::vec4(0.5f)),
+      colors_b(b.primitive_count(), glm::vec4(1));
+  const ResolvedPicture wanted = resolve(b, view, colors_b, {2});
+  for (int allowed = 1; allowed < 20; allowed += 3) {
+    Resolver resolver;
+    (void)resolver.draw(a, view, colors_a, {2});
+    // Ended with some tiles of the new picture drawn, and some of the old one left.
+    std::atomic<int> left{allowed};
+    const Watch watch{.progress = {}, .cancelled = [&] { return --left < 0; }};
+    EXPECT_THROW((void)resolver.draw(b, view, colors_b, {2}, {.threads = 1, .watch = &watch}), Error);
+    const ResolvedPicture& found = resolver.draw(b, view, colors_b, {2});
+    ASSERT_EQ(0, std::memcmp(found.alpha.data(), wanted.alpha.data(), view.pixel_count() * sizeof(float))) << allowed;
+    ASSERT_EQ(0, std::memcmp(found.red.data(), wanted.red.data(), view.pixel_count() * sizeof(float))) << allowed;
+  }
+}
+
+TEST(Running, WhatIsTakenOfAResolverIsItsLastPicture) {
+  const Case c = small_case(Kind::soup, 5);
+  const Surfaces surfaces(c.scene);
+  const std::vector<glm::vec4> colors(surfaces.primitive_count(), glm::vec4(0.25f));
+  const ResolvedPicture wanted = resolve(surfaces, c.view, colors);
+  Resolver resolver;
+  EXPECT_EQ(resolver.take().width, 0) << "nothing was drawn yet";
+  for (int round = 0; round < 2; ++round) {
+    (void)resolver.draw(surfaces, c.view, colors);
+    Resolver moved = std::move(resolver);
+    const ResolvedPicture taken = moved.take();
+    ASSERT_EQ(taken.width, c.view.width);
+    EXPECT_EQ(0, std::memcmp(taken.alpha.data(), wanted.alpha.data(), c.view.pixel_count() * sizeof(float)));
+    EXPECT_EQ(moved.take().width, 0) << "it is gone";
+    resolver = std::move(moved);
+  }
+}
+
+// ---- Errors, in full ----
+
+template <class Action>
+std::string error_of(Action&& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_argument);
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(Errors, NameOptionAndValue) {
+  const Case c = small_case(Kind::soup, 1);
+  const Surfaces surfaces(c.scene);
+  const std::vector<glm::vec4> colors(surfaces.primitive_count());
+  for (const int grid : {-2, 1, 3, 5, 16, 64}) {
+    const std::string words = "abuffer: grid: must be 0, 2, 4 or 8, not " + std::to_string(grid);
+    EXPECT_EQ(error_of([&] { (void)abuffer(surfaces, c.view, {grid}); }), words);
+    EXPECT_EQ(error_of([&] { (void)count_fragments(surfaces, c.view, {grid}); }), words);
+    EXPECT_EQ(error_of([&] { (void)resolve(surfaces, c.view, colors, {grid}); }), words);
+  }
+  EXPECT_EQ(error_of([&] { (void)visible_layers(surfaces, c.view, 1, {3}); }), "none") << "has no grid";
+  for (const float opacity : {-1e-6f, 1.000001f, std::numeric_limits<float>::infinity(), std::nanf("")})
+    EXPECT_EQ(error_of([&] {
+                (void)visible_layers(surfaces, c.view, 1, {0, opacity});
+              }),
+              "abuffer: opacity: must be 0 to 1");
+  for (const int count : {-1, 0, 1025})
+    EXPECT_EQ(error_of([&] { (void)visible_layers(surfaces, c.view, count); }), "abuffer: layers: must be 1 to 1024");
+  const std::string all = std::to_string(colors.size());
+  EXPECT_EQ(error_of([&] { (void)resolve(surfaces, c.view, std::span(colors).first(2)); }),
+            "resolve: colors: 2 for " + all + " primitives");
+  EXPECT_EQ(error_of([&] { (void)resolve(surfaces, c.view, {}); }), "resolve: colors: 0 for " + all + " primitives");
+}
+
+// ---- Putting lists together ----
+
+using abuffer_detail::beginnings;
+using abuffer_detail::place_items;
+using abuffer_detail::TilePart;
+
+/// A part whose pixel (x, y) of the picture has as many items as `length` says, named by pixel and number.
+template <class Length>
+TilePart<int> part_of(const abuffer_detail::Rectangle& pixels, const Length& length) {
+  TilePart<int> part{pixels, {0}, {}};
+  for (int y = pixels.y; y < pixels.y + pixels.height; ++y)
+    for (int x = pixels.x; x < pixels.x + pixels.width; ++x) {
+      for (int i = 0; i < length(x, y); ++i) part.items.push_back(100 * (10 * y + x) + i);
+      part.begin.push_back(std::uint32_t(part.items.size()));
+    }
+  return part;
+}
+
+TEST(TileParts, ComeTogetherInTheOrderOfPixelsHoweverTheyArrive) {
+  View view;
+  view.width = 7;
+  view.height = 5;
+  const auto length = [](int x, int y) { return (x * 3 + y * 5) % 4; };
+  // Pixels 5 and 6 of the third row are in no part: nothing was seen there.
+  std::vector<TilePart<int>> parts = {part_of({4, 0, 3, 2}, length), part_of({0, 0, 4, 5}, length),
+                                      part_of({4, 3, 3, 2}, length), part_of({4, 2, 1, 1}, length)};
+  std::vector<int> wanted;
+  for (int y = 0; y < 5; ++y)
+    for (int x = 0; x < 7; ++x)
+      for (int i = 0; i < (y == 2 && x > 4 ? 0 : length(x, y)); ++i) wanted.push_back(100 * (10 * y + x) + i);
+  for (int round = 0; round < 4; ++round) {
+    std::rotate(parts.begin(), parts.begin() + 1, parts.end());
+    const Buffer<std::uint64_t> first = beginnings(view, parts);
+    ASSERT_EQ(first.size(), 36u);
+    EXPECT_EQ(first[0], 0u);
+    EXPECT_EQ(first[35], wanted.size());
+    std::vector<int> items(wanted.size(), -1);
+    for (const TilePart<int>& part : parts)
+      place_items(part, view, first, [&](std::uint64_t at, int item) { items.at(at) = item; });
+    EXPECT_EQ(items, wanted);
+  }
+}
+
+}  // namespace
+}  // namespace frontmost::test
