@@ -103,6 +103,10 @@ TEST(ExrHeader, WindowsAreHeldAgainstTheFile) {
   const std::string lying = header(one_channel + window(0, 0, 9999, 9999));
   EXPECT_EQ(error_in(lying), "malformed, m: EXR: " + std::to_string(lying.size()) +
                                  " bytes cannot hold 10000 x 10000 pixels of 1 channels");
+  // Of two windows the library takes the last one.
+  const std::string twice = header(one_channel + window(0, 0, 1, 1) + window(0, 0, 9999, 9999));
+  EXPECT_EQ(error_in(twice), "malformed, m: EXR: " + std::to_string(twice.size()) +
+                                 " bytes cannot hold 10000 x 10000 pixels of 1 channels");
   // Wavelets have no bound of compression, so such a file gets some memory in any case: up to 64 MiB.
   const std::string wavelets = attribute("compression", "compression", "\4");
   const std::string large = header(one_channel + wavelets + window(0, 0, 4095, 4096));
