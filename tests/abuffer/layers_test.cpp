@@ -73,6 +73,7 @@ TEST_P(EveryKindOfLayer, EqualsBruteForceToTheBit) {
         }
       }
   }
+  if (under_sanitizer) return;  // too few seeds to be sure that they see much
   EXPECT_GT(filled[0], 50u);
   // Grids lie flat, and what is small or thin seldom lies before something else that is.
   if (GetParam() != Kind::shared_grid && GetParam() != Kind::tiny && GetParam() != Kind::slivers) {
