@@ -27,8 +27,9 @@ struct PainterOptions {
   /// bytes each.
   std::size_t most_cuts = std::size_t(1) << 20;
   /// Set: of what triangles hide together of which this is true, most is left out before the rest is put into order.
-  /// Inside of a machine that is most of the time. For visible_parts() with the same function, which leaves out what it
-  /// takes for hidden here, too; for several threads at once. Then some 300 bytes a triangle more.
+  /// Inside of a machine that is most of the time. What then overlaps nothing is not asked about at all, and painted
+  /// first. For visible_parts() with the same function, which leaves out what it takes for hidden here, too; for
+  /// several threads at once. Then some 300 bytes a triangle more.
   std::function<bool(PrimitiveId)> hides{};
 };
 
@@ -92,9 +93,10 @@ struct PaintOrder {
 /// picture. `hides(id)` says of which triangles nothing shows through, for several threads at once; empty: all hide.
 /// Parts thinner than 1/1024 pixel are left out, and those between that and 1/16 are not cut off; large polygons are
 /// cut along a grid where they are hidden in part. Near-linear, as painter(): every polygon is held against those after
-/// it that overlap it. In a cell of the grid these are the 4,096 foremost at most, and once 48 parts are left of a
-/// polygon there, only those go that one of them hides whole: what is left too much is painted over as before.
-/// Long parallel strips share cells with many others: 30 thousand take 9 s.
+/// it that overlap it, but for those of meshes that overlap nothing, which are found together. In a cell of the grid
+/// these are the 4,096 foremost at most, and once 48 parts are left of a polygon there, only those go that one of them
+/// hides whole: what is left too much is painted over as before. Long parallel strips share cells with many others: 30
+/// thousand take 9 s.
 [[nodiscard]] PaintOrder visible_parts(const PaintOrder& order, const std::function<bool(PrimitiveId)>& hides = {},
                                        const Execution& execution = {});
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "painter/by_depth.h"
 #include "painter/hulls.h"
 #include "painter/overlap.h"
 #include "painter/piece_grid.h"
@@ -193,19 +194,15 @@ class Search {
 
 }  // namespace
 
-void sort_by_farthest(const Pieces& pieces, std::vector<std::uint32_t>& members) {
-  std::sort(members.begin(), members.end(), [&](std::uint32_t a, std::uint32_t b) {
-    const float depth_a = pieces.extent(a).farthest, depth_b = pieces.extent(b).farthest;
-    if (depth_a != depth_b) return depth_a > depth_b;
-    const PrimitiveId id_a = pieces.face(a).id, id_b = pieces.face(b).id;
-    return id_a != id_b ? id_a > id_b : a < b;
-  });
+void sort_by_farthest(const Pieces& pieces, std::vector<std::uint32_t>& members, const Execution& execution) {
+  sort_by_depth(
+      pieces, members, [&](std::uint32_t piece) { return pieces.extent(piece).farthest; }, execution);
 }
 
 Groups depth_sort(const Pieces& pieces, const std::vector<std::uint32_t>& members, bool is_all, PaintSteps& steps,
                   Poll& poll) {
   std::vector<std::uint32_t> sorted = members;
-  sort_by_farthest(pieces, sorted);
+  sort_by_farthest(pieces, sorted, poll.execution());
   Search search(pieces, sorted, steps, poll);
   search.visit_all(is_all);
   return search.take();

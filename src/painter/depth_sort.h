@@ -20,6 +20,6 @@ struct Groups {
                                 PaintSteps& steps, Poll& poll);
 
 /// By farthest points, the farthest first, then by id.
-void sort_by_farthest(const Pieces& pieces, std::vector<std::uint32_t>& members);
+void sort_by_farthest(const Pieces& pieces, std::vector<std::uint32_t>& members, const Execution& execution);
 
 }  // namespace frontmost::painter_detail

@@ -13,22 +13,19 @@ constexpr std::size_t kTrianglesPerPart = 4096;
 /// Of a distance: more than rounding moves it.
 constexpr double kMargin = 1e-9;
 
-struct Gathered {
-  std::vector<Extent> extents;
-  std::vector<Face> faces;
-  std::vector<std::uint32_t> crossing;  ///< those that the near or the far plane may cut
-};
-
 class Gatherer {
  public:
   Gatherer(const Surfaces& surfaces, const View& view, const Sight& sight)
-      : surfaces_(surfaces), view_(view), sight_(sight) {}
+      : surfaces_(surfaces), view_(view), sight_(sight), empty_(sight) {}
 
-  void gather(PrimitiveId id, Gathered& to) const {
-    Face face{surfaces_.corners(id), id};
+  enum class Place : std::uint8_t { outside, inside, crossing };
+
+  /// Where a triangle is; crossing: the near or the far plane may cut it.
+  Place gather(PrimitiveId id, Extent& extent, Face& face) const {
+    face = {surfaces_.corners(id), id};
     for (const glm::vec3& corner : face.corners)
-      if (!is_finite(corner)) return;
-    ExtentBuilder box(sight_);
+      if (!is_finite(corner)) return Place::outside;
+    ExtentBuilder box = empty_;
     double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
     for (const glm::vec3& corner : face.corners) {
       const glm::dvec3 in_eye = sight_.in_eye(glm::dvec3(corner));
@@ -37,15 +34,13 @@ class Gatherer {
       box.include(in_eye);
     }
     const double slack = kMargin * std::max(std::abs(nearest), std::abs(farthest));
-    if (farthest + slack < sight_.near() || nearest - slack > sight_.far()) return;
+    if (farthest + slack < sight_.near() || nearest - slack > sight_.far()) return Place::outside;
     const bool is_crossing = nearest - slack < sight_.near() || farthest + slack > sight_.far();
-    Extent extent = is_crossing ? anywhere() : box.extent();
+    extent = is_crossing ? anywhere() : box.extent();
     extent.low = glm::max(extent.low, glm::vec2(0));
     extent.high = glm::min(extent.high, glm::vec2(view_.width, view_.height));
-    if (!(extent.low.x < extent.high.x && extent.low.y < extent.high.y) || !turn_to_eye(face)) return;
-    if (is_crossing) to.crossing.push_back(std::uint32_t(to.faces.size()));
-    to.extents.push_back(extent);
-    to.faces.push_back(face);
+    if (!(extent.low.x < extent.high.x && extent.low.y < extent.high.y) || !turn_to_eye(face)) return Place::outside;
+    return is_crossing ? Place::crossing : Place::inside;
   }
 
  private:
@@ -70,6 +65,7 @@ class Gatherer {
   const Surfaces& surfaces_;
   const View& view_;
   const Sight& sight_;
+  const ExtentBuilder empty_;
 };
 
 /// At a distance before the eye, facing away from it.
@@ -89,27 +85,49 @@ std::uint32_t clip(Pieces& pieces, std::uint32_t piece, std::uint32_t near_plane
   return at_far.both() ? pieces.cut(piece, far_plane).back : piece;
 }
 
+/// What is found of consecutive triangles, in the order of their ids.
+struct Part {
+  std::size_t count = 0;
+  std::vector<std::uint32_t> crossing;  ///< from 0 on
+};
+
+/// The triangles of every part in its own room, then close together. \returns those that cross.
+std::vector<std::uint32_t> fill(const Surfaces& surfaces, const Gatherer& gatherer, Pieces& pieces,
+                                const Execution& execution) {
+  const std::size_t all = surfaces.primitive_count();
+  pieces.resize(all);
+  std::vector<Part> parts((all + kTrianglesPerPart - 1) / kTrianglesPerPart);
+  parallel_for(execution, all, kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
+    Part& part = parts[begin / kTrianglesPerPart];
+    for (std::size_t id = begin; id < end; ++id) {
+      Extent extent;
+      Face face;
+      const Gatherer::Place place = gatherer.gather(PrimitiveId(id), extent, face);
+      if (place == Gatherer::Place::outside) continue;
+      if (place == Gatherer::Place::crossing) part.crossing.push_back(std::uint32_t(part.count));
+      pieces.set(begin + part.count++, extent, face);
+    }
+  });
+  std::size_t total = 0;
+  std::vector<std::uint32_t> crossing;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const auto first = std::uint32_t(i * kTrianglesPerPart);
+    for (const std::uint32_t k : parts[i].crossing) crossing.push_back(std::uint32_t(total) + k);
+    for (std::uint32_t k = 0; k < parts[i].count && first != total; ++k)
+      pieces.set(total + k, pieces.extent(first + k), pieces.face(first + k));
+    total += parts[i].count;
+  }
+  pieces.resize(total);
+  return crossing;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> gather(const Surfaces& surfaces, const View& view, Pieces& pieces,
                                   const Execution& execution) {
-  const std::size_t count = surfaces.primitive_count();
-  std::vector<Gathered> parts((count + kTrianglesPerPart - 1) / kTrianglesPerPart);
-  const Gatherer gatherer(surfaces, view, pieces.sight());
-  parallel_for(execution, count, kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t id = begin; id < end; ++id) gatherer.gather(PrimitiveId(id), parts[begin / kTrianglesPerPart]);
-  });
-  std::size_t total = 0;
-  for (const Gathered& part : parts) total += part.faces.size();
-  pieces.reserve(total);
-  std::vector<std::uint32_t> crossing;
-  for (Gathered& part : parts) {
-    for (const std::uint32_t i : part.crossing) crossing.push_back(pieces.size() + i);
-    for (std::size_t i = 0; i < part.faces.size(); ++i) pieces.add(part.extents[i], part.faces[i]);
-    part = {};
-  }
-  std::vector<std::uint32_t> members(total);
-  for (std::uint32_t i = 0; i < total; ++i) members[i] = i;
+  const std::vector<std::uint32_t> crossing = fill(surfaces, {surfaces, view, pieces.sight()}, pieces, execution);
+  std::vector<std::uint32_t> members(pieces.size());
+  for (std::uint32_t i = 0; i < members.size(); ++i) members[i] = i;
 
   const bool has_far = view.projection.clip.far < std::numeric_limits<double>::infinity();
   const Plane near = plane_at(view, pieces.sight().near());

@@ -8,22 +8,14 @@
 #include <algorithm>
 
 #include "base/pool.h"
-#include "painter/emit.h"
+#include "painter/by_depth.h"
 #include "painter/looker.h"
+#include "painter/seen/alone.h"
 
 namespace frontmost::painter_detail {
 namespace {
 
 constexpr std::size_t kPerPart = 1024;
-
-/// By nearest points, the nearest last: what is before another is mostly after it here.
-std::vector<std::uint32_t> sorted_by_nearest(const Pieces& pieces, std::vector<std::uint32_t> members) {
-  std::sort(members.begin(), members.end(), [&](std::uint32_t a, std::uint32_t b) {
-    const float depth_a = pieces.extent(a).nearest, depth_b = pieces.extent(b).nearest;
-    return depth_a != depth_b ? depth_a > depth_b : pieces.face(a).id > pieces.face(b).id;
-  });
-  return members;
-}
 
 /// Whether one piece is surely before another wherever they overlap on the screen.
 bool is_before(const Pieces& pieces, std::uint32_t piece, std::uint32_t other) {
@@ -36,28 +28,33 @@ bool is_before(const Pieces& pieces, std::uint32_t piece, std::uint32_t other) {
 
 }  // namespace
 
-std::vector<std::uint32_t> without_hidden(const Pieces& pieces, const std::vector<std::uint32_t>& members,
-                                          const View& view, const std::function<bool(PrimitiveId)>& hides,
-                                          const Execution& execution) {
-  const std::vector<std::uint32_t> sorted = sorted_by_nearest(pieces, members);
-  PaintOrder naive;
-  naive.view = view;
-  Poll poll(execution);
-  emit(pieces, sorted, naive, poll);
-  const Scenery scenery(naive, hides);
+Unhidden without_hidden(const Pieces& pieces, const std::vector<std::uint32_t>& members, const View& view,
+                        const std::function<bool(PrimitiveId)>& hides, const Execution& execution) {
+  // The nearest last: what is before another is mostly after it here.
+  std::vector<std::uint32_t> sorted = members;
+  sort_by_depth(
+      pieces, sorted, [&](std::uint32_t piece) { return pieces.extent(piece).nearest; }, execution);
+  const Scenery scenery(pieces, sorted, view, hides);
+  const Mosaic mosaic(scenery);
   const auto is_behind = [&](std::uint32_t place, std::uint32_t cover) {
     return is_before(pieces, sorted[cover], sorted[place]);
   };
-  std::vector<std::uint8_t> is_hidden(pieces.size(), 0);
+  std::vector<std::uint8_t> is_hidden(scenery.count(), 0);
   Pool<Looker> lookers;
   parallel_for(execution, scenery.count(), kPerPart, [&](std::size_t begin, std::size_t end) {
-    const auto looker = lookers.borrow([&] { return std::make_unique<Looker>(scenery, execution, is_behind); });
-    for (std::size_t slot = begin; slot < end; ++slot)
-      is_hidden[sorted[scenery.place(slot)]] = looker->is_all_hidden(slot);
+    const auto looker = lookers.borrow([&] { return std::make_unique<Looker>(scenery, mosaic, execution, is_behind); });
+    for (std::size_t slot = begin; slot < end; ++slot) is_hidden[slot] = looker->is_all_hidden(slot);
   });
-  std::vector<std::uint32_t> left;
+  const std::vector<std::uint8_t> is_alone = find_alone(scenery, mosaic, is_hidden, execution);
+  Unhidden left;
+  std::vector<std::uint8_t> is_other(pieces.size(), 0);
+  for (std::size_t slot = 0; slot < scenery.count(); ++slot) {
+    const std::uint32_t piece = sorted[scenery.place(slot)];
+    if (is_alone[slot]) left.alone.push_back(piece);
+    is_other[piece] = !is_hidden[slot] && !is_alone[slot];
+  }
   for (const std::uint32_t piece : members)
-    if (!is_hidden[piece]) left.push_back(piece);
+    if (is_other[piece]) left.others.push_back(piece);
   return left;
 }
 

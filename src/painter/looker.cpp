@@ -19,24 +19,6 @@ constexpr std::size_t kMostParts = 48, kMostPartsOfHem = 8;
 /// each leave a sliver of the next takes n * n.
 constexpr std::size_t kMostCovers = 4096;
 
-std::vector<Extent> extents_of(const PaintOrder& order) {
-  std::vector<Extent> extents;
-  extents.reserve(order.polygons.size());
-  const glm::vec2 most(order.view.width, order.view.height);
-  for (const PaintPolygon& polygon : order.polygons) {
-    Extent extent{most, glm::vec2(0), 0, 0};
-    for (std::size_t i = 0; i < polygon.corner_count; ++i) {
-      const glm::vec2 at(order.corners[polygon.first_corner + i].at);
-      extent.low = glm::min(extent.low, at);
-      extent.high = glm::max(extent.high, at);
-    }
-    extent.low = glm::max(extent.low, glm::vec2(0));
-    extent.high = glm::min(extent.high, most);
-    extents.push_back(extent);
-  }
-  return extents;
-}
-
 Extent box_of(Outline outline) {
   Extent box{glm::vec2(outline[0].at), glm::vec2(outline[0].at), 0, 0};
   for (const PaintCorner& corner : outline) {
@@ -46,10 +28,12 @@ Extent box_of(Outline outline) {
   return box;
 }
 
-bool is_within(Outline outline, const glm::dvec2& at) {
+/// Or up to `beside` pixels beside it.
+bool is_within(Outline outline, const glm::dvec2& at, double beside) {
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const glm::dvec2 p(outline[i].at), way = glm::dvec2(outline[i + 1 == outline.size() ? 0 : i + 1].at) - p;
-    if (way.x * (at.y - p.y) - way.y * (at.x - p.x) > OutlineCutter::thin * glm::length(way)) return false;
+    const double turn = way.x * (at.y - p.y) - way.y * (at.x - p.x);
+    if (turn > 0 && turn * turn > beside * beside * glm::dot(way, way)) return false;
   }
   return true;
 }
@@ -82,83 +66,56 @@ bool is_apart(const Extent& a, const Extent& b) {
 
 }  // namespace
 
-Scenery::Scenery(const PaintOrder& order, const std::function<bool(PrimitiveId)>& hides)
-    : Scenery(order, hides, extents_of(order)) {}
-
-Scenery::Scenery(const PaintOrder& order, const std::function<bool(PrimitiveId)>& hides,
-                 const std::vector<Extent>& extents)
-    : size_(order.view.width, order.view.height), grid_(extents) {
-  fill_slots(order, extents);
-  for (Slot& slot : slots_) slot.hides = !hides || hides(order.polygons[slot.place].id);
-}
-
-/// By counting: as many as begin in each cell.
-void Scenery::fill_slots(const PaintOrder& order, const std::vector<Extent>& extents) {
-  const auto cell_of = [&](const Extent& extent) {
-    const PieceGrid::Range cells = grid_.range(extent);
-    return grid_.number(cells.first_x, cells.first_y);
-  };
-  std::vector<std::uint32_t> next(grid_.cell_count() + 1, 0);
-  for (const Extent& extent : extents) ++next[cell_of(extent) + 1];
-  for (std::size_t cell = 1; cell < next.size(); ++cell) next[cell] += next[cell - 1];
-  slots_.resize(extents.size());
-  slot_of_.resize(extents.size());
-  std::uint32_t first_place = 0;
-  for (std::uint32_t place = 0; place < extents.size(); ++place) {
-    slot_of_[place] = next[cell_of(extents[place])]++;
-    const bool goes_on = place > 0 && order.polygons[place].id == order.polygons[place - 1].id;
-    if (!goes_on) first_place = place;
-    slots_[slot_of_[place]] = {extents[place], place, first_place, order.polygons[place].corner_count, 0, false};
-  }
-  corners_.reserve(order.corners.size());
-  for (Slot& slot : slots_) {
-    slot.first_corner = corners_.size();
-    const PaintCorner* const from = order.corners.data() + order.polygons[slot.place].first_corner;
-    corners_.insert(corners_.end(), from, from + slot.corner_count);
-  }
-  for (PaintCorner& corner : corners_) corner.at.z = affine_depth(order.view, corner.at.z);
-}
-
-bool Looker::is_hidden_at(std::size_t slot, const glm::dvec2& at) {
-  const std::uint32_t own_place = scenery_.place(slot), first_place = scenery_.first_place(slot);
-  const PieceGrid::Range cells = scenery_.grid().range({glm::vec2(at), glm::vec2(at), 0, 0});
-  const std::span<const std::uint32_t> places =
-      scenery_.grid().cell(scenery_.grid().number(cells.first_x, cells.first_y));
-  for (std::size_t i = places.size(); i-- > 0 && places[i] >= first_place;) {
-    if (places[i] == own_place) continue;
+std::uint32_t Looker::hider_at(std::size_t slot, const glm::dvec2& at) {
+  const std::uint32_t first_place = scenery_.first_place(slot);
+  const std::span<const std::uint32_t> cell = scenery_.cell_at(at);
+  for (std::size_t i = cell.size(); i-- > 0 && scenery_.place(cell[i]) >= first_place;) {
+    const std::uint32_t other = cell[i];
+    if (other == slot) continue;
     poll_.count();
-    const std::uint32_t other = scenery_.slot(places[i]);
     const Extent& e = scenery_.extent(other);
-    if (at.x > e.low.x && at.x < e.high.x && at.y > e.low.y && at.y < e.high.y &&
-        is_within(scenery_.outline(other), at) && may_hide(own_place, other))
-      return true;
+    if (at.x >= e.low.x && at.x <= e.high.x && at.y >= e.low.y && at.y <= e.high.y &&
+        is_within(scenery_.outline(other), at, OutlineCutter::thin) && may_hide(slot, other))
+      return other;
   }
-  return false;
+  return no_index;
 }
 
-/// Most are not, and one of their corners tells.
-bool Looker::is_hidden(std::size_t slot, Outline outline) {
-  for (const PaintCorner& corner : outline.subspan(1, outline.size() - 2))
-    if (!is_hidden_at(slot, glm::dvec2(corner.at))) return false;
+Spreader::Found Looker::spread(std::size_t slot, Outline outline, std::uint32_t hider, const glm::dvec2& at) {
+  // It may have been found for what lies next to it.
+  if (!is_within(scenery_.outline(hider), at, 0)) return Spreader::Found::unknown;
+  const std::uint32_t first_place = scenery_.first_place(slot);
+  return spreader_.spread(outline, hider, [&](std::uint32_t other) {
+    poll_.count();
+    return scenery_.place(other) >= first_place && other != slot && may_hide(slot, other);
+  });
+}
+
+bool Looker::is_hidden(std::size_t slot, Outline outline, std::uint32_t hider, const glm::dvec2& at) {
+  const Spreader::Found found = spread(slot, outline, hider, at);
+  if (found == Spreader::Found::hidden) return true;
+  if (found == Spreader::Found::open && hider_at(slot, spreader_.open_at()) == no_index) return false;
   const Extent box = box_of(outline);
   cutter_.begin(outline);
-  return take_covers({scenery_.place(slot), scenery_.first_place(slot), kMostPartsOfHem}, box,
-                     scenery_.grid().range(box));
+  return take_covers({slot, scenery_.first_place(slot), kMostPartsOfHem}, box, scenery_.grid().range(box));
 }
 
 /// Most are not, and their middles tell.
 bool Looker::is_all_hidden(std::size_t slot) {
   const Extent& extent = scenery_.extent(slot);
   const PieceGrid::Range cells = scenery_.grid().range(extent);
-  if (!is_few(cells)) return false;
   cutter_.begin(scenery_.outline(slot));
   cutter_.keep_within(glm::dvec2(0), scenery_.size());
   if (cutter_.count() == 0) return false;
+  const Outline outline = cutter_[0];
   glm::dvec2 middle(0);
-  for (const PaintCorner& corner : cutter_[0]) middle += glm::dvec2(corner.at) / double(cutter_[0].size());
-  if (!is_hidden_at(slot, middle)) return false;
-  const std::uint32_t place = scenery_.place(slot);
-  return take_covers({place, place, kMostPartsOfHem}, extent, cells);
+  for (const PaintCorner& corner : outline) middle += glm::dvec2(corner.at) / double(outline.size());
+  const std::uint32_t hider = hider_at(slot, middle);
+  if (hider == no_index) return false;
+  const Spreader::Found found = spread(slot, outline, hider, middle);
+  if (found == Spreader::Found::hidden) return true;
+  if (found == Spreader::Found::open && hider_at(slot, spreader_.open_at()) == no_index) return false;
+  return is_few(cells) && take_covers({slot, scenery_.place(slot), kMostPartsOfHem}, extent, cells);
 }
 
 const OutlineList& Looker::look(std::size_t slot) {
@@ -205,7 +162,7 @@ Looker::Corners Looker::part_within(const Corners& outline, const glm::dvec2& lo
 bool Looker::is_all_seen_at_once(std::size_t slot, const Extent& own, const PieceGrid::Range& cells) {
   cutter_.forget_changes();
   const Corners whole(cutter_[0].begin(), cutter_[0].end());
-  take_covers({scenery_.place(slot), scenery_.place(slot), kMostParts}, own, cells);
+  take_covers({slot, scenery_.place(slot), kMostParts}, own, cells);
   if (!cutter_.is_changed()) return true;
   for (std::size_t i = 0; i < cutter_.count(); ++i)
     if (is_narrower(cutter_[i], kNarrowest)) {
@@ -226,12 +183,13 @@ bool Looker::take_covers(const Covers& covers, const Extent& own, const PieceGri
   const bool is_one_cell = cells.first_x == cells.last_x && cells.first_y == cells.last_y;
   for (int y = cells.first_y; y <= cells.last_y; ++y)
     for (int x = cells.first_x; x <= cells.last_x; ++x) {
-      const std::span<const std::uint32_t> places = scenery_.grid().cell(scenery_.grid().number(x, y));
+      const std::span<const std::uint32_t> cell = scenery_.cell(x, y);
       std::size_t count = 0;
-      for (std::size_t i = places.size(); i-- > 0 && places[i] >= covers.first && count < kMostCovers;) {
-        if (places[i] == covers.own) continue;
+      for (std::size_t i = cell.size(); i-- > 0 && count < kMostCovers;) {
+        const std::uint32_t other = cell[i];
+        if (scenery_.place(other) < covers.first) break;
+        if (other == covers.own) continue;
         poll_.count();
-        const std::uint32_t other = scenery_.slot(places[i]);
         const Extent& e = scenery_.extent(other);
         if (is_apart(e, own) || (!is_one_cell && !is_first_meeting(cells, e, x, y))) continue;
         if (!may_hide(covers.own, other)) continue;

@@ -127,18 +127,24 @@ PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOpti
   Pieces pieces(view);
   std::vector<std::uint32_t> members = gather(surfaces, view, pieces, execution);
   if (pieces.size() > options.most_polygons) refuse_more_than(options.most_polygons);
-  if (options.hides) members = without_hidden(pieces, members, view, options.hides, execution);
+  std::vector<std::uint32_t> first;
+  if (options.hides) {
+    Unhidden left = without_hidden(pieces, members, view, options.hides, execution);
+    members = std::move(left.others);
+    first = std::move(left.alone);
+  }
   report_progress(execution, "painter", 0.2);
   if (options.method == PaintMethod::farthest) {
-    sort_by_farthest(pieces, members);
+    sort_by_farthest(pieces, members, execution);
   } else if (options.method == PaintMethod::centroid) {
     sort_by_centroid(pieces, members);
   } else {
     members = Orderer(pieces, options, execution, order.steps).order(std::move(members));
   }
   report_progress(execution, "painter", 0.9);
+  first.insert(first.end(), members.begin(), members.end());
   Poll poll(execution);
-  emit(pieces, members, order, poll);
+  emit(pieces, first, order, poll);
   report_progress(execution, "painter", 1);
   return order;
 }

@@ -13,7 +13,12 @@ namespace frontmost::painter_detail {
 /// order.
 class PieceGrid {
  public:
+  PieceGrid() = default;
   explicit PieceGrid(const std::vector<Extent>& extents);
+  /// Lists numbers[i] for the place i from now on.
+  void renumber(const std::vector<std::uint32_t>& numbers) {
+    for (std::uint32_t& entry : entries_) entry = numbers[entry];
+  }
 
   /// The cells that a box touches, from the first to the last of each axis.
   struct Range {

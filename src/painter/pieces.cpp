@@ -22,6 +22,11 @@ bool is_before(const glm::dvec3& a, const glm::dvec3& b) {
 
 }  // namespace
 
+ExtentBuilder::ExtentBuilder(const Sight& sight)
+    : sight_(sight),
+      centre_(sight.to_screen({0, 0, 1})),
+      unit_(glm::abs(glm::dvec2(sight.to_screen({1, 1, 1})) - centre_)) {}
+
 void ExtentBuilder::include(const glm::dvec3& in_eye, double error) {
   // Rounding moves a place by some 1e-15 of itself.
   error += 1e-12 * (std::abs(in_eye.x) + std::abs(in_eye.y) + std::abs(in_eye.z));
@@ -33,10 +38,9 @@ void ExtentBuilder::include(const glm::dvec3& in_eye, double error) {
     high_ = -low_;
     return;
   }
-  const glm::dvec2 at(sight_.to_screen(in_eye)), centre(sight_.to_screen({0, 0, in_eye.z}));
-  const glm::dvec2 unit = glm::abs(glm::dvec2(sight_.to_screen({1, 1, w})) - glm::dvec2(sight_.to_screen({0, 0, w})));
+  const glm::dvec2 at(sight_.to_screen(in_eye));
   const double lean = sight_.is_parallel() ? 0 : (std::abs(in_eye.x) + std::abs(in_eye.y)) / w;
-  const glm::dvec2 slack = 2 * error * (1 + lean) * unit + 1e-9 * (1.0 + glm::abs(at) + glm::abs(centre));
+  const glm::dvec2 slack = unit_ * (2 * error * (1 + lean) / w) + 1e-9 * (1.0 + glm::abs(at) + glm::abs(centre_));
   low_ = glm::min(low_, at - slack);
   high_ = glm::max(high_, at + slack);
 }

@@ -66,9 +66,14 @@ class Pieces {
     extents_.push_back(extent);
     faces_.push_back(face);
   }
-  void reserve(std::size_t count) {
-    extents_.reserve(count);
-    faces_.reserve(count);
+  /// Makes room for whole triangles, to be set, or takes away the last ones.
+  void resize(std::size_t count) {
+    extents_.resize(count);
+    faces_.resize(count);
+  }
+  void set(std::size_t piece, const Extent& extent, const Face& face) {
+    extents_[piece] = extent;
+    faces_[piece] = face;
   }
 
   /// Exactly.
@@ -104,12 +109,13 @@ class Pieces {
 /// The box around points of eye space, of which each may be `error` away, as far as they are before the eye.
 class ExtentBuilder {
  public:
-  explicit ExtentBuilder(const Sight& sight) : sight_(sight) {}
+  explicit ExtentBuilder(const Sight& sight);
   void include(const glm::dvec3& in_eye, double error = 0);
   [[nodiscard]] Extent extent() const;
 
  private:
   const Sight& sight_;
+  const glm::dvec2 centre_, unit_;  ///< on the screen: of the view, and of a length at distance 1
   glm::dvec2 low_{std::numeric_limits<double>::infinity()}, high_{-std::numeric_limits<double>::infinity()};
   double nearest_ = std::numeric_limits<double>::infinity(), farthest_ = -std::numeric_limits<double>::infinity();
 };

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "painter/looker.h"
+#include "painter/seen/alone.h"
 
 namespace frontmost {
 namespace {
@@ -52,13 +53,14 @@ PaintOrder assemble(const PaintOrder& order, const Scenery& scenery, const std::
 
 /// Makes an order of what look(looker, slot, keep) keeps of every polygon.
 template <class Look>
-PaintOrder map_polygons(const PaintOrder& order, const Scenery& scenery, const Execution& execution, const Look& look) {
+PaintOrder map_polygons(const PaintOrder& order, const Scenery& scenery, const Mosaic& mosaic,
+                        const Execution& execution, const Look& look) {
   const std::size_t count = scenery.count();
   std::vector<Parts> lists((count + kPolygonsPerPart - 1) / kPolygonsPerPart);
   Pool<Looker> lookers;
   std::atomic<std::size_t> done{0};
   parallel_for(execution, count, kPolygonsPerPart, [&](std::size_t begin, std::size_t end) {
-    const auto looker = lookers.borrow([&] { return std::make_unique<Looker>(scenery, execution); });
+    const auto looker = lookers.borrow([&] { return std::make_unique<Looker>(scenery, mosaic, execution); });
     Parts& parts = lists[begin / kPolygonsPerPart];
     for (std::size_t slot = begin; slot < end; ++slot) {
       const PrimitiveId id = order.polygons[scenery.place(slot)].id;
@@ -81,7 +83,8 @@ PaintOrder map_polygons(const PaintOrder& order, const Scenery& scenery, const E
 struct HemShape {
   double part, inset;
 };
-constexpr HemShape kHemShapes[] = {{1, 0.5}, {1, 2}, {1, 6}, {0.25, 0.5}, {0.25, 2}, {0.25, 8}, {0.0625, 1}};
+constexpr std::array<HemShape, 7> kHemShapes{
+    {{1, 0.5}, {1, 2}, {1, 6}, {0.25, 0.5}, {0.25, 2}, {0.25, 8}, {0.0625, 1}}};
 
 /// What lies beside a side of an outline.
 std::array<PaintCorner, 4> hem(const PaintCorner& from, const PaintCorner& to, double width, double inset) {
@@ -92,13 +95,22 @@ std::array<PaintCorner, 4> hem(const PaintCorner& from, const PaintCorner& to, d
   return {from, {from.at + along * inset + out, true}, {to.at - along * inset + out, true}, to};
 }
 
+/// Next to the middle of a side: within each of its hems, or at the rim of the narrowest.
+glm::dvec2 next_to(const PaintCorner& from, const PaintCorner& to, double distance) {
+  const glm::dvec2 way(to.at - from.at), out(-way.y, way.x);
+  return glm::dvec2(from.at) + 0.5 * way + out * (distance / glm::length(way));
+}
+
 }  // namespace
 
 PaintOrder visible_parts(const PaintOrder& order, const std::function<bool(PrimitiveId)>& hides,
                          const Execution& execution) {
   const IeeeScope ieee;
   const Scenery scenery(order, hides);
-  return map_polygons(order, scenery, execution, [](Looker& looker, std::size_t slot, const auto& keep) {
+  const Mosaic mosaic(scenery);
+  const std::vector<std::uint8_t> is_alone = find_alone(scenery, mosaic, {}, execution);
+  return map_polygons(order, scenery, mosaic, execution, [&](Looker& looker, std::size_t slot, const auto& keep) {
+    if (is_alone[slot]) return keep(scenery.outline(slot));
     const OutlineList& seen = looker.look(slot);
     for (std::size_t i = 0; i < seen.count(); ++i) keep(seen[i]);
   });
@@ -110,16 +122,20 @@ PaintOrder with_hems(const PaintOrder& order, double width, const std::function<
     throw Error(ErrorCode::bad_argument, "hems: must be more than 0, at most 100 pixels");
   const IeeeScope ieee;
   const Scenery scenery(order, hides);
-  return map_polygons(order, scenery, execution, [&](Looker& looker, std::size_t slot, const auto& keep) {
+  const Mosaic mosaic(scenery);
+  return map_polygons(order, scenery, mosaic, execution, [&](Looker& looker, std::size_t slot, const auto& keep) {
     const std::span<const PaintCorner> outline = scenery.outline(slot);
     std::vector<PaintCorner> hemmed;
     for (std::size_t i = 0; i < outline.size(); ++i) {
       const PaintCorner &from = outline[i], &to = outline[i + 1 == outline.size() ? 0 : i + 1];
       hemmed.push_back(from);
       if (!scenery.hides(slot) || glm::length(glm::dvec2(to.at - from.at)) < OutlineCutter::thin) continue;
+      const glm::dvec2 at = next_to(from, to, width * kHemShapes.back().part);
+      const std::uint32_t hider = looker.hider_at(slot, at);
+      if (hider == no_index) continue;
       for (const HemShape& shape : kHemShapes) {
         const std::array<PaintCorner, 4> beside = hem(from, to, width * shape.part, shape.inset);
-        if (!looker.is_hidden(slot, beside)) continue;
+        if (!looker.is_hidden(slot, beside, hider, at)) continue;
         hemmed.insert(hemmed.end(), {beside[1], beside[2]});
         break;
       }

@@ -177,6 +177,46 @@ TEST(VisibleParts, HemsReachUnderWhatHidesThem) {
   EXPECT_THROW((void)with_hems(order, 0), Error);
 }
 
+/// The last polygon over a point, by counting the sides to the right of it: hems make outlines that are not convex.
+PrimitiveId painted_at(const PaintOrder& order, const glm::dvec2& at) {
+  PrimitiveId last = no_primitive;
+  for (const PaintPolygon& polygon : order.polygons) {
+    bool is_inside = false;
+    for (std::size_t i = 0; i < polygon.corner_count; ++i) {
+      const glm::dvec2 a(order.corners[polygon.first_corner + i].at),
+          b(order.corners[polygon.first_corner + (i + 1) % polygon.corner_count].at);
+      if ((a.y <= at.y) != (b.y <= at.y) && at.x < a.x + (b.x - a.x) * (at.y - a.y) / (b.y - a.y))
+        is_inside = !is_inside;
+    }
+    if (is_inside) last = polygon.id;
+  }
+  return last;
+}
+
+TEST(VisibleParts, HemsAreNotSeen) {
+  std::size_t points = 0, differing = 0, hems = 0;
+  for (const Kind kind : {Kind::soup, Kind::fan, Kind::shared_grid, Kind::slivers, Kind::sheets})
+    for (std::uint64_t seed = 0; seed < seeds(3); ++seed) {
+      const Scene scene = scene_of(random_mesh(kind, kind == Kind::sheets ? 10 : 60, seed));
+      const Surfaces surfaces(scene);
+      Random random(seed + 11);
+      const PaintOrder seen = visible_parts(painter(surfaces, random_view(random, 100, 80)));
+      for (const double width : {0.5, 4.0}) {
+        const PaintOrder hemmed = with_hems(seen, width);
+        hems += (hemmed.corners.size() - seen.corners.size()) / 2;
+        for (int i = 0; i < 1500; ++i) {
+          const double x = random.within(0, 100);
+          const glm::dvec2 at(x, random.within(0, 80));
+          differing += painted_at(seen, at) != painted_at(hemmed, at);
+          ++points;
+        }
+      }
+    }
+  EXPECT_GT(hems, 1000u);
+  // Next to outlines: what is up to 1/1024 pixel beside a polygon counts as hidden by it.
+  EXPECT_LT(double(differing), 2e-4 * double(points));
+}
+
 TEST(VisibleParts, ThreadsChangeNothing) {
   const Scene scene = scene_of(random_mesh(Kind::soup, 600, 2));
   const Surfaces surfaces(scene);

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// How many polygons lie over a point changes only at sides without a neighbour: at all others one ends where the next
+// begins. Such open sides are few in meshes. A polygon that none of them crosses has the same number all over, and so
+// have those across its sides where none lies; where it is 1, the polygon itself is all that there is.
+#include "painter/seen/alone.h"
+
+#include <algorithm>
+
+#include "painter/poll.h"
+
+namespace frontmost::painter_detail {
+namespace {
+
+constexpr double kThin = OutlineCutter::thin;
+/// With more open sides in all of them it would take longer than it spares.
+constexpr double kMostOpen = 0.3;
+
+double turn(const glm::dvec2& way, const glm::dvec2& at) { return way.x * at.y - way.y * at.x; }
+
+/// How a way from a to b lies beside an outline.
+enum class Beside : std::uint8_t { apart, touching, crossing };
+
+/// By lines along the sides and the way: apart where one keeps them more than kThin away from each other.
+Beside beside(Outline outline, const glm::dvec2& a, const glm::dvec2& b) {
+  const glm::dvec2 across = b - a;
+  double least = std::numeric_limits<double>::infinity(), greatest = -least;
+  Beside found = Beside::crossing;
+  const auto take = [&](double turn, const glm::dvec2& way) {
+    if (turn < 0) return;
+    const bool is_far = turn * turn > kThin * kThin * glm::dot(way, way);
+    found = std::min(found, is_far ? Beside::apart : Beside::touching);
+  };
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const glm::dvec2 p(outline[i].at), way = glm::dvec2(outline[i + 1 == outline.size() ? 0 : i + 1].at) - p;
+    take(std::min(turn(way, a - p), turn(way, b - p)), way);
+    const double corner = turn(across, p - a);
+    least = std::min(least, corner);
+    greatest = std::max(greatest, corner);
+  }
+  take(std::max(least, -greatest), across);
+  return found;
+}
+
+bool is_near(const glm::dvec2& at, const glm::dvec2& a, const glm::dvec2& b) {
+  const glm::dvec2 way = b - a, from = at - a;
+  const double length = glm::dot(way, way);
+  const double t = length > 0 ? std::clamp(glm::dot(from, way) / length, 0.0, 1.0) : 0;
+  const glm::dvec2 aside = from - way * t;
+  return glm::dot(aside, aside) <= kThin * kThin;
+}
+
+bool is_within(Outline outline, const glm::dvec2& at) {
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const glm::dvec2 p(outline[i].at), way = glm::dvec2(outline[i + 1 == outline.size() ? 0 : i + 1].at) - p;
+    if (turn(way, at - p) > 0) return false;
+  }
+  return true;
+}
+
+class Finder {
+ public:
+  Finder(const Scenery& scenery, const Mosaic& mosaic, const std::vector<std::uint8_t>& gone,
+         const Execution& execution)
+      : scenery_(scenery),
+        mosaic_(mosaic),
+        gone_(gone),
+        poll_(execution),
+        state_(scenery.count(), State::unknown),
+        is_blocked_(scenery.corners().size(), 0) {}
+
+  [[nodiscard]] std::vector<std::uint8_t> find() {
+    std::vector<std::uint8_t> alone(state_.size(), 0);
+    if (!find_open_sides()) return alone;
+    for (const OpenSide& side : open_) mark_near(side);
+    for (std::uint32_t slot = 0; slot < state_.size(); ++slot)
+      if (state_[slot] == State::unknown) spread_from(slot);
+    for (std::size_t slot = 0; slot < alone.size(); ++slot) alone[slot] = state_[slot] == State::alone;
+    return alone;
+  }
+
+ private:
+  enum class State : std::uint8_t {
+    unknown,
+    crossed,  ///< by an open side, or by the border of the picture
+    shared,
+    alone,
+  };
+  struct OpenSide {
+    glm::dvec2 from, to;
+  };
+
+  [[nodiscard]] bool is_there(std::size_t slot) const { return gone_.empty() || !gone_[slot]; }
+
+  /// \returns false where there are too many.
+  bool find_open_sides() {
+    std::size_t sides = 0;
+    for (std::size_t slot = 0; slot < scenery_.count(); ++slot) {
+      state_[slot] = is_there(slot) && is_in_picture(slot) ? State::unknown : State::crossed;
+      if (!is_there(slot)) continue;
+      const Outline outline = scenery_.outline(slot);
+      const std::size_t first = scenery_.first_corner(slot);
+      sides += outline.size();
+      for (std::size_t i = 0; i < outline.size(); ++i) {
+        const std::uint32_t across = mosaic_.across(first + i);
+        if (across == no_index || !is_there(across))
+          open_.push_back({glm::dvec2(outline[i].at), glm::dvec2(outline[i + 1 == outline.size() ? 0 : i + 1].at)});
+      }
+    }
+    return double(open_.size()) <= kMostOpen * double(sides);
+  }
+
+  /// What lies beyond is not in the cells that it would be looked for in.
+  [[nodiscard]] bool is_in_picture(std::size_t slot) const {
+    const Outline outline = scenery_.outline(slot);
+    return std::all_of(outline.begin(), outline.end(), [&](const PaintCorner& corner) {
+      return corner.at.x >= 0 && corner.at.y >= 0 && corner.at.x <= scenery_.size().x &&
+             corner.at.y <= scenery_.size().y;
+    });
+  }
+
+  void mark_near(const OpenSide& side) {
+    const glm::dvec2 low = glm::min(side.from, side.to) - 2 * kThin, high = glm::max(side.from, side.to) + 2 * kThin;
+    const PieceGrid& grid = scenery_.grid();
+    const PieceGrid::Range all = grid.range({glm::vec2(low), glm::vec2(high), 0, 0});
+    for (int y = all.first_y; y <= all.last_y; ++y) {
+      const PieceGrid::Box row = grid.box(all.first_x, y);
+      const auto [row_low, row_high] = part_of(side, row.low.y - 2 * kThin, row.high.y + 2 * kThin);
+      const PieceGrid::Range cells = grid.range({{float(row_low), 0}, {float(row_high), 0}, 0, 0});
+      for (int x = cells.first_x; x <= cells.last_x; ++x) mark_near(side, low, high, scenery_.cell(x, y));
+    }
+  }
+
+  /// From where to where in x the side is between two y; and a little more.
+  struct Interval {
+    double low, high;
+  };
+  static Interval part_of(const OpenSide& side, double low, double high) {
+    const glm::dvec2 way = side.to - side.from;
+    const auto at = [&](double y) {
+      const double t = way.y == 0 ? 0 : std::clamp((y - side.from.y) / way.y, 0.0, 1.0);
+      return side.from.x + t * way.x;
+    };
+    if (way.y == 0) return {std::min(side.from.x, side.to.x) - 2 * kThin, std::max(side.from.x, side.to.x) + 2 * kThin};
+    return {std::min(at(low), at(high)) - 2 * kThin, std::max(at(low), at(high)) + 2 * kThin};
+  }
+
+  void mark_near(const OpenSide& side, const glm::dvec2& low, const glm::dvec2& high,
+                 std::span<const std::uint32_t> cell) {
+    for (const std::uint32_t slot : cell) {
+      poll_.count();
+      if (state_[slot] != State::unknown) continue;
+      const Extent& e = scenery_.extent(slot);
+      if (high.x < e.low.x || low.x > e.high.x || high.y < e.low.y || low.y > e.high.y) continue;
+      const Beside found = beside(scenery_.outline(slot), side.from, side.to);
+      if (found == Beside::crossing) state_[slot] = State::crossed;
+      if (found == Beside::touching) block(slot, side);
+    }
+  }
+
+  /// Nothing is known across the sides on whose middle an open side lies.
+  void block(std::uint32_t slot, const OpenSide& side) {
+    const Outline outline = scenery_.outline(slot);
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const glm::dvec2 p(outline[i].at), q(outline[i + 1 == outline.size() ? 0 : i + 1].at);
+      if (is_near(0.5 * (p + q), side.from, side.to)) is_blocked_[scenery_.first_corner(slot) + i] = 1;
+    }
+  }
+
+  void spread_from(std::uint32_t slot) {
+    const Outline outline = scenery_.outline(slot);
+    glm::dvec2 middle(0);
+    for (const PaintCorner& corner : outline) middle += glm::dvec2(corner.at) / double(outline.size());
+    bool is_alone = true;
+    for (const std::uint32_t other : scenery_.cell_at(middle)) {
+      poll_.count();
+      if (other == slot || !is_there(other) || beside(scenery_.outline(other), middle, middle) == Beside::apart)
+        continue;
+      // A neighbour that is only near tells nothing: the polygon is narrow here.
+      if (is_within(scenery_.outline(other), middle)) return spread(slot, State::shared);
+      is_alone = false;
+    }
+    if (is_alone) spread(slot, State::alone);
+  }
+
+  void spread(std::uint32_t first, State state) {
+    state_[first] = state;
+    found_.assign(1, first);
+    while (!found_.empty()) {
+      const std::uint32_t slot = found_.back();
+      found_.pop_back();
+      poll_.count();
+      const std::size_t corner = scenery_.first_corner(slot), count = scenery_.outline(slot).size();
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t across = mosaic_.across(corner + i);
+        if (is_blocked_[corner + i] || across == no_index || state_[across] != State::unknown) continue;
+        state_[across] = state;
+        found_.push_back(across);
+      }
+    }
+  }
+
+  const Scenery& scenery_;
+  const Mosaic& mosaic_;
+  const std::vector<std::uint8_t>& gone_;
+  Poll poll_;
+  std::vector<State> state_;
+  std::vector<std::uint8_t> is_blocked_;  ///< by corner
+  std::vector<OpenSide> open_;
+  std::vector<std::uint32_t> found_;
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> find_alone(const Scenery& scenery, const Mosaic& mosaic,
+                                     const std::vector<std::uint8_t>& gone, const Execution& execution) {
+  return Finder(scenery, mosaic, gone, execution).find();
+}
+
+}  // namespace frontmost::painter_detail

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Polygons as they lie on the screen.
+#pragma once
+
+#include <functional>
+
+#include "painter/outlines.h"
+#include "painter/piece_grid.h"
+
+namespace frontmost::painter_detail {
+
+/// Perspective: depths are not affine over the screen, their reciprocals are. Its own inverse.
+[[nodiscard]] inline double affine_depth(const View& view, double depth) {
+  return view.projection.orthographic ? depth : 1 / depth;
+}
+
+/// All polygons of an order on the screen, with depths affine. They have places in the order, and are kept in slots in
+/// the order of the grid's cells: what is near on the screen is near in memory, for every other one is read beside its
+/// neighbours.
+class Scenery {
+ public:
+  using Hides = std::function<bool(PrimitiveId)>;
+  Scenery(const PaintOrder& order, const Hides& hides);
+  /// Of pieces in the order in which they are listed.
+  Scenery(const Pieces& pieces, const std::vector<std::uint32_t>& members, const View& view, const Hides& hides);
+
+  [[nodiscard]] std::size_t count() const { return slots_.size(); }
+  /// The place of the polygon in a slot.
+  [[nodiscard]] std::uint32_t place(std::size_t slot) const { return slots_[slot].place; }
+  [[nodiscard]] std::uint32_t slot(std::uint32_t place) const { return slot_of_[place]; }
+  [[nodiscard]] Outline outline(std::size_t slot) const {
+    return {corners_.data() + slots_[slot].first_corner, slots_[slot].corner_count};
+  }
+  /// All outlines one after another, in the order of the slots, and where in there that of a slot begins.
+  [[nodiscard]] Outline corners() const { return {corners_.data(), corners_.size()}; }
+  [[nodiscard]] std::size_t first_corner(std::size_t slot) const { return slots_[slot].first_corner; }
+  /// The first of the consecutive places of the same primitive.
+  [[nodiscard]] std::uint32_t first_place(std::size_t slot) const { return slots_[slot].first_place; }
+  [[nodiscard]] const Extent& extent(std::size_t slot) const { return slots_[slot].extent; }
+  [[nodiscard]] bool hides(std::size_t slot) const { return slots_[slot].hides; }
+  [[nodiscard]] const PieceGrid& grid() const { return grid_; }
+  /// The slots of what touches a cell of the grid, in the order of their places.
+  [[nodiscard]] std::span<const std::uint32_t> cell(int x, int y) const { return grid_.cell(grid_.number(x, y)); }
+  [[nodiscard]] std::span<const std::uint32_t> cell_at(const glm::dvec2& at) const {
+    const PieceGrid::Range cells = grid_.range({glm::vec2(at), glm::vec2(at), 0, 0});
+    return cell(cells.first_x, cells.first_y);
+  }
+  [[nodiscard]] glm::dvec2 size() const { return size_; }
+
+ private:
+  struct Slot {
+    Extent extent;
+    std::size_t first_corner;
+    std::uint32_t place, first_place, corner_count;
+    bool hides;
+  };
+  template <class Polygons>
+  Scenery(const Polygons& polygons, const View& view, const Hides& hides);
+
+  const glm::dvec2 size_;
+  PieceGrid grid_;
+  Buffer<Slot> slots_;
+  std::vector<std::uint32_t> slot_of_;
+  Buffer<PaintCorner> corners_;
+};
+
+}  // namespace frontmost::painter_detail

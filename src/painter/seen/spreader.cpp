@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "painter/seen/spreader.h"
+
+#include <algorithm>
+
+namespace frontmost::painter_detail {
+namespace {
+
+constexpr double kThin = OutlineCutter::thin;
+
+double turn(const glm::dvec2& way, const glm::dvec2& at) { return way.x * at.y - way.y * at.x; }
+
+}  // namespace
+
+void SpreadOutline::set(Outline outline) {
+  sides_.clear();
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const glm::dvec2 from(outline[i].at), way = glm::dvec2(outline[i + 1 == outline.size() ? 0 : i + 1].at) - from;
+    sides_.push_back({from, way, kThin * glm::length(way)});
+  }
+}
+
+SpreadOutline::Crossing SpreadOutline::crossing(const glm::dvec2& a, const glm::dvec2& b) const {
+  constexpr Crossing none{1, 0};
+  Crossing crossing{0, 1};
+  const glm::dvec2 way = b - a;
+  double least = 0, greatest = 0;
+  for (const Side& side : sides_) {
+    const double at_a = turn(side.way, a - side.from), at_b = turn(side.way, b - side.from);
+    if (at_a >= -side.slack && at_b >= -side.slack) return none;
+    if (at_a > 0) crossing.from = std::max(crossing.from, at_a / (at_a - at_b));
+    if (at_b > 0) crossing.to = std::min(crossing.to, at_a / (at_a - at_b));
+    const double corner = turn(way, side.from - a);
+    least = std::min(least, corner);
+    greatest = std::max(greatest, corner);
+  }
+  const double depth = std::min(-least, greatest);
+  if (depth * depth <= kThin * kThin * glm::dot(way, way)) return none;
+  return crossing;
+}
+
+bool SpreadOutline::holds(const glm::dvec2& at) const {
+  return std::all_of(sides_.begin(), sides_.end(),
+                     [&](const Side& side) { return turn(side.way, at - side.from) < 0; });
+}
+
+void Spreader::begin(Outline outline, std::uint32_t first) {
+  outline_.set(outline);
+  if (++turn_ == 0) {
+    std::fill(asked_.begin(), asked_.end(), 0);
+    turn_ = 1;
+  }
+  found_.assign(1, first);
+  asked_[first] = turn_;
+}
+
+Spreader::Found Spreader::beyond(const glm::dvec2& a, const glm::dvec2& b, const SpreadOutline::Crossing& crossing) {
+  // Polygons hide what is up to kThin beside them.
+  const glm::dvec2 way = b - a, out = glm::dvec2(-way.y, way.x) * (2 * kThin / glm::length(way));
+  open_at_ = a + way * (0.5 * (crossing.from + crossing.to)) + out;
+  return outline_.holds(open_at_) ? Found::open : Found::unknown;
+}
+
+}  // namespace frontmost::painter_detail

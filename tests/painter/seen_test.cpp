@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is told of polygons that lie side by side: neighbours, what they hide together, and which overlap nothing.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "painter/painted.h"
+#include "painter/seen/alone.h"
+#include "painter/seen/spreader.h"
+#include "support/effort.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+using namespace painter_detail;
+using Points = std::vector<glm::dvec2>;
+
+/// Outlines one over the other, counter-clockwise as they are seen: with y down, (0, 0) (0, 1) (1, 1).
+PaintOrder order_of(const std::vector<Points>& outlines) {
+  PaintOrder order;
+  order.view.width = order.view.height = 100;
+  for (const Points& outline : outlines) {
+    order.polygons.push_back({PrimitiveId(order.polygons.size()), std::uint32_t(outline.size()), order.corners.size()});
+    for (const glm::dvec2& at : outline) order.corners.push_back({{at, 1}, false});
+  }
+  return order;
+}
+
+Points square(double x, double y, double size = 10) {
+  return {{x, y}, {x, y + size}, {x + size, y + size}, {x + size, y}};
+}
+
+/// `side` by `side` squares from the corner of the picture on.
+std::vector<Points> tiles(int side) {
+  std::vector<Points> all;
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) all.push_back(square(10 * x, 10 * y));
+  return all;
+}
+
+struct Laid {
+  explicit Laid(const std::vector<Points>& outlines) : scenery(order_of(outlines), {}), mosaic(scenery) {}
+  Scenery scenery;
+  Mosaic mosaic;
+
+  [[nodiscard]] std::vector<std::uint32_t> alone(const std::vector<std::uint8_t>& gone = {}) const {
+    const std::vector<std::uint8_t> found = find_alone(scenery, mosaic, gone, {});
+    std::vector<std::uint32_t> places;
+    for (std::uint32_t place = 0; place < found.size(); ++place)
+      if (found[scenery.slot(place)]) places.push_back(place);
+    return places;
+  }
+};
+
+TEST(Mosaic, FindsWhatHasTheSameSide) {
+  // Two triangles of a square, one that has only half of a side, and one that is beside the first on the wrong side.
+  const Laid laid(
+      {{{0, 0}, {0, 8}, {8, 8}}, {{0, 0}, {8, 8}, {8, 0}}, {{0, 0}, {0, -4}, {-4, 0}}, {{0, 0}, {0, 8}, {3, 8}}});
+  const auto across = [&](std::uint32_t place, std::size_t side) {
+    const std::uint32_t slot = laid.mosaic.across(laid.scenery.first_corner(laid.scenery.slot(place)) + side);
+    return slot == no_index ? no_index : laid.scenery.place(slot);
+  };
+  EXPECT_EQ(across(0, 2), 1u);
+  EXPECT_EQ(across(1, 0), 0u);
+  for (const std::uint32_t place : {2u, 3u})
+    for (std::size_t side = 0; side < 3; ++side) EXPECT_EQ(across(place, side), no_index);
+  EXPECT_EQ(across(0, 0), no_index);
+}
+
+TEST(Mosaic, TilesHaveNoOtherOpenSidesThanTheirBorder) {
+  std::vector<Points> all = tiles(10);
+  Random random(3);
+  for (std::size_t i = all.size(); i-- > 1;) std::swap(all[i], all[std::size_t(random.below(int(i) + 1))]);
+  const Laid laid(all);
+  std::size_t open = 0;
+  for (std::size_t slot = 0; slot < laid.scenery.count(); ++slot)
+    for (std::size_t side = 0; side < 4; ++side) {
+      const std::uint32_t across = laid.mosaic.across(laid.scenery.first_corner(slot) + side);
+      open += across == no_index;
+      if (across != no_index) {
+        const glm::dvec2 from(laid.scenery.outline(slot)[0].at), to(laid.scenery.outline(across)[0].at);
+        EXPECT_EQ(glm::length(from - to), 10);
+      }
+    }
+  EXPECT_EQ(open, 40u);
+}
+
+/// Begins at the tile that `outline` has its first corner in.
+Spreader::Found spread_over_tiles(const Laid& laid, Spreader& spreader, const Points& outline, std::uint32_t missing) {
+  const PaintOrder asked = order_of({outline});
+  const auto first = std::uint32_t(std::floor(outline[0].y / 10) * 10 + std::floor(outline[0].x / 10));
+  return spreader.spread(asked.corners, laid.scenery.slot(first),
+                         [&](std::uint32_t slot) { return laid.scenery.place(slot) != missing; });
+}
+
+TEST(Spreader, TellsWhereTilesHideTogether) {
+  const Laid laid(tiles(10));
+  Spreader spreader(laid.scenery, laid.mosaic);
+  const Points asked{{12, 12}, {12, 38}, {38, 38}, {38, 12}};
+  EXPECT_EQ(spread_over_tiles(laid, spreader, asked, 99), Spreader::Found::hidden);
+  EXPECT_EQ(spread_over_tiles(laid, spreader, asked, 22), Spreader::Found::open);
+  EXPECT_THAT(spreader.open_at().x, testing::AllOf(testing::Ge(20 - 1e-9), testing::Le(30 + 1e-9)));
+  EXPECT_THAT(spreader.open_at().y, testing::AllOf(testing::Ge(20 - 1e-9), testing::Le(30 + 1e-9)));
+  // Those that it does not reach may be missing.
+  for (const std::uint32_t missing : {0u, 10u, 41u, 44u, 77u})
+    EXPECT_EQ(spread_over_tiles(laid, spreader, asked, missing), Spreader::Found::hidden);
+  // Beyond the last tiles there is nothing.
+  EXPECT_EQ(spread_over_tiles(laid, spreader, {{85, 85}, {85, 95}, {105, 95}}, no_index), Spreader::Found::open);
+  EXPECT_NEAR(spreader.open_at().x, 100, 0.01);
+}
+
+TEST(Spreader, TouchingIsNotCrossing) {
+  const Laid laid(tiles(10));
+  Spreader spreader(laid.scenery, laid.mosaic);
+  // One tile exactly, all its neighbours missing.
+  const PaintOrder asked = order_of({square(50, 50)});
+  const auto none = [](std::uint32_t) { return false; };
+  EXPECT_EQ(spreader.spread(asked.corners, laid.scenery.slot(55), none), Spreader::Found::hidden);
+  const PaintOrder wider = order_of({square(50, 50, 10.01)});
+  EXPECT_EQ(spreader.spread(wider.corners, laid.scenery.slot(55), none), Spreader::Found::open);
+}
+
+TEST(Spreader, GivesUpOverTooMany) {
+  std::vector<Points> all;
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 40; ++x) all.push_back(square(2 * x, 2 * y, 2));
+  const Laid laid(all);
+  Spreader spreader(laid.scenery, laid.mosaic);
+  const PaintOrder asked = order_of({square(1, 1, 70)});
+  std::size_t asks = 0;
+  const auto every = [&](std::uint32_t) { return ++asks > 0; };
+  EXPECT_EQ(spreader.spread(asked.corners, laid.scenery.slot(0), every), Spreader::Found::unknown);
+  EXPECT_LE(asks, 256u);
+}
+
+TEST(Alone, TilesAreAndWhatLiesOverOthersIsNot) {
+  const std::vector<Points> ten = tiles(10);
+  EXPECT_EQ(Laid(ten).alone().size(), 100u);
+
+  std::vector<Points> with_small = ten;
+  with_small.push_back(square(42, 42, 3));  // within tile 44
+  std::vector<std::uint32_t> expected(100);
+  std::iota(expected.begin(), expected.end(), 0u);
+  expected.erase(expected.begin() + 44);
+  EXPECT_EQ(Laid(with_small).alone(), expected);
+
+  std::vector<Points> twice = ten;
+  twice.insert(twice.end(), ten.begin(), ten.end());
+  EXPECT_TRUE(Laid(twice).alone().empty());
+}
+
+/// The middle of a sheet has no open side near it, only its own neighbours; its number comes from where it begins.
+TEST(Alone, SheetsOverEachOtherAreNot) {
+  std::vector<Points> two = tiles(10);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x) two.push_back(square(5 + 10 * x, 5 + 10 * y));
+  const Laid laid(two);
+  const std::vector<std::uint32_t> alone = laid.alone();
+  EXPECT_THAT(alone, testing::Each(testing::Lt(100u)));
+  // The upper one ends within the tiles of the ninth column and row, so that the tenth of both are left.
+  EXPECT_EQ(alone.size(), 19u);
+  // As if the upper one were not there.
+  std::vector<std::uint8_t> gone(two.size(), 0);
+  for (std::uint32_t place = 100; place < two.size(); ++place) gone[laid.scenery.slot(place)] = 1;
+  EXPECT_EQ(laid.alone(gone).size(), 100u);
+}
+
+/// By definition: a line along a side of one has the other on its outer side.
+bool are_apart(const Outline& a, const Outline& b) {
+  const auto parts = [](const Outline& p, const Outline& q) {
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      const glm::dvec2 from(p[i].at), way = glm::dvec2(p[(i + 1) % p.size()].at) - from;
+      if (std::all_of(q.begin(), q.end(), [&](const PaintCorner& corner) {
+            return way.x * (corner.at.y - from.y) - way.y * (corner.at.x - from.x) >= -1e-9 * glm::length(way);
+          }))
+        return true;
+    }
+    return false;
+  };
+  return parts(a, b) || parts(b, a);
+}
+
+TEST(Alone, OverlapNothingInAnyScene) {
+  std::size_t alone = 0;
+  for (const Kind kind : all_kinds)
+    for (std::uint64_t seed = 0; seed < seeds(6); ++seed) {
+      SCOPED_TRACE(testing::Message() << int(kind) << " " << seed);
+      Mesh mesh = random_mesh(kind, kind == Kind::tiny ? 40 : 3, seed);
+      const Mesh grid = random_mesh(Kind::shared_grid, 600, seed + 50);
+      const auto first = std::uint32_t(mesh.positions.size());
+      mesh.positions.insert(mesh.positions.end(), grid.positions.begin(), grid.positions.end());
+      for (const glm::uvec3& triangle : grid.triangles) mesh.triangles.push_back(triangle + first);
+      const Scene scene = scene_of(std::move(mesh));
+      const Surfaces surfaces(scene);
+      Random random(seed + 7);
+      const PaintOrder order = painter(surfaces, random_view(random, 100, 80), {.method = PaintMethod::farthest});
+      const Scenery scenery(order, {});
+      const std::vector<std::uint8_t> found = find_alone(scenery, Mosaic(scenery), {}, {});
+      for (std::size_t a = 0; a < found.size(); ++a) {
+        alone += found[a];
+        for (std::size_t b = 0; found[a] && b < found.size(); ++b)
+          EXPECT_TRUE(a == b || are_apart(scenery.outline(a), scenery.outline(b))) << a << " " << b;
+      }
+    }
+  EXPECT_GT(alone, 200u);
+}
+
+Mesh sphere(int sectors) {
+  Mesh mesh;
+  const auto at = [&](int ring, int sector) {
+    const double down = 2 * M_PI * ring / sectors, around = 2 * M_PI * (sector % sectors) / sectors;
+    return glm::vec3(std::sin(down) * std::cos(around), std::cos(down), std::sin(down) * std::sin(around));
+  };
+  for (int ring = 0; 2 * ring < sectors; ++ring)
+    for (int sector = 0; sector < sectors; ++sector) {
+      add_triangle(mesh, at(ring, sector), at(ring + 1, sector), at(ring + 1, sector + 1));
+      add_triangle(mesh, at(ring, sector), at(ring + 1, sector + 1), at(ring, sector + 1));
+    }
+  return mesh;
+}
+
+/// Of a closed surface nothing is left to be put into order but what is next to its outline.
+TEST(Alone, TheFrontOfASphereIsNotAskedAbout) {
+  const Scene scene = scene_of(sphere(120));
+  const Surfaces surfaces(scene);
+  const View view = frame(surfaces, 400, 400);
+  const auto asked = [](const PaintSteps& steps) {
+    return steps.boxes_apart + steps.behind + steps.before + steps.projections_apart + steps.compared;
+  };
+  const PaintOrder all = painter(surfaces, view),
+                   front = painter(surfaces, view, {.hides = [](PrimitiveId) { return true; }});
+  EXPECT_GT(asked(all.steps), all.polygons.size());
+  EXPECT_LT(asked(front.steps), front.polygons.size() / 4);
+  EXPECT_LT(front.polygons.size(), all.polygons.size() * 0.6);
+}
+
+}  // namespace
+}  // namespace frontmost::test
