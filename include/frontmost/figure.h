@@ -15,6 +15,9 @@ struct ColorOptions {
   /// Steps of 8-bit sRGB, 0 to 255, by which the colour of a piece may differ from what is seen there. 255: a polygon
   /// has the colour of its middle, and is never cut.
   double tolerance = 6;
+  /// Pixels, 0 to 100, by which pieces of an opaque polygon reach under those of it that are painted after them, as
+  /// with_hems() lets polygons do. Then every piece is a shape of its own, and merge_neighbours() joins none.
+  double hem = 0;
   /// More polygons and pieces are an error.
   std::size_t most_polygons = std::size_t(1) << 27;
 };
@@ -26,6 +29,10 @@ struct ColoredOrder {
   /// One for each polygon, rising: consecutive polygons with the same number have the same colour, lie beside each
   /// other and nowhere above each other, so that they may be one path.
   std::vector<std::uint32_t> shapes;
+  /// What outlined() makes hems for: opaque polygons as they were before they were cut into pieces with hems, and all
+  /// other polygons. The number of its whole for each polygon, rising; empty: every polygon is one.
+  PaintOrder wholes;
+  std::vector<std::uint32_t> whole_of;
 };
 
 /// Colours as the picture of the same view has them, with textures, shadows and smooth normals; `visible` is what is

@@ -109,6 +109,79 @@ TEST(ColorOrder, PiecesFillTheirPolygonAndDifferByNoMoreThanTheTolerance) {
   EXPECT_EQ(figure_of(scene, with(Shading::flat, 255)).colors.size(), 2u);
 }
 
+/// Whether a point is within a simple polygon, by crossings.
+bool holds(const PaintOrder& order, std::size_t i, const glm::dvec2& at) {
+  const PaintPolygon& polygon = order.polygons[i];
+  bool is_within = false;
+  for (std::size_t k = 0; k < polygon.corner_count; ++k) {
+    const glm::dvec3 p = order.corners[polygon.first_corner + k].at;
+    const glm::dvec3 q = order.corners[polygon.first_corner + (k + 1) % polygon.corner_count].at;
+    if ((p.y > at.y) != (q.y > at.y) && at.x < p.x + (q.x - p.x) * (at.y - p.y) / (q.y - p.y)) is_within = !is_within;
+  }
+  return is_within;
+}
+
+/// Painted one over the other, pieces with hems look as those without: what is too much lies under later ones.
+TEST(ColorOrder, HemsOfPiecesAreHidden) {
+  Mesh mesh = square();
+  mesh.colors.values = {{0.3, 0.3, 0.3, 1}, {1, 1, 1, 1}, {1, 0.3, 0.3, 1}, {0.3, 0.3, 1, 1}};
+  const Scene scene = scene_of(mesh, colored({1, 1, 1, 1}));
+  ColorOptions options = with(Shading::flat, 10);
+  options.hem = 4;
+  const ColoredOrder figure = figure_of(scene, options);
+  ASSERT_EQ(figure.wholes.polygons.size(), 2u);
+  ASSERT_EQ(figure.whole_of.size(), figure.colors.size());
+  double with_hems = 0;
+  int painted = 0, far = 0;
+  for (std::size_t i = 0; i < figure.colors.size(); ++i) with_hems += area_of(figure.order, i);
+  EXPECT_GT(with_hems, kSquare * 1.3);
+  // Of slivers beside cuts, which are narrower than a pixel, colours are less near to the picture's.
+  const Surfaces surfaces(scene);
+  const View view = front_view();
+  const Image picture = shade(surfaces, zbuffer(surfaces, view), options.shade);
+  for (int y = 17; y < 47; ++y)
+    for (int x = 17; x < 47; ++x) {
+      const glm::dvec2 at(x + 0.51, y + 0.52);
+      std::size_t top = figure.colors.size();
+      while (top > 0 && !holds(figure.order, top - 1, at)) --top;
+      ASSERT_GT(top, 0u) << x << ' ' << y;
+      ++painted;
+      const glm::vec4 pixel = color_at(picture, x, y);
+      int furthest = 0;
+      for (int k = 0; k < 3; ++k)
+        furthest = std::max(furthest, std::abs(int(figure.colors[top - 1][k]) - int(srgb8_of_linear(pixel[k]))));
+      far += furthest > 10 + 6;
+      ASSERT_LE(furthest, 30) << x << ' ' << y;
+    }
+  EXPECT_EQ(painted, 900);
+  EXPECT_LE(far, 9);
+}
+
+TEST(ColorOrder, TranslucentPiecesHaveNoHems) {
+  Mesh mesh = square();
+  mesh.colors.values = {{0.3, 0.3, 0.3, 1}, {1, 1, 1, 1}, {1, 0.3, 0.3, 1}, {0.3, 0.3, 1, 1}};
+  const Scene scene = scene_of(mesh, colored({1, 1, 1, 1}));
+  ColorOptions options = with(Shading::flat, 10);
+  options.hem = 4;
+  options.shade.opacity = 0.5f;
+  const ColoredOrder figure = figure_of(scene, options);
+  double area = 0;
+  for (std::size_t i = 0; i < figure.colors.size(); ++i) area += area_of(figure.order, i);
+  EXPECT_NEAR(area, kSquare, 1e-6);
+  EXPECT_EQ(figure.wholes.polygons.size(), figure.colors.size());  // each is hemmed by itself
+}
+
+TEST(ColorOrder, PolygonsWithoutAreaAreColouredAsWell) {
+  const Scene scene = scene_of(square());
+  const Surfaces surfaces(scene);
+  const View view = front_view();
+  PaintOrder order = painter(surfaces, view);
+  order.polygons.resize(1);
+  for (std::size_t k = 0; k < 3; ++k) order.corners[k].at = {20.0 + 5.0 * double(k), 20.0 + 5.0 * double(k), 3};
+  const ColoredOrder figure = color_order(surfaces, zbuffer(surfaces, view), order);
+  EXPECT_EQ(figure.colors.size(), 1u);
+}
+
 TEST(ColorOrder, ColoursOfPiecesAreThoseOfThePictureThere) {
   Mesh mesh = square();
   mesh.colors.values = {{0.3, 0.3, 0.3, 1}, {1, 1, 1, 1}, {1, 0.3, 0.3, 1}, {0.3, 0.3, 1, 1}};
@@ -190,6 +263,7 @@ TEST(ColorOrder, IsTheSameForAnyNumberOfThreads) {
   const ColoredOrder three = color_order(surfaces, visible, order, {}, {.threads = 3});
   EXPECT_EQ(one.colors, three.colors);
   EXPECT_EQ(one.shapes, three.shapes);
+  EXPECT_EQ(one.whole_of, three.whole_of);
   ASSERT_EQ(one.order.corners.size(), three.order.corners.size());
   for (std::size_t i = 0; i < one.order.corners.size(); ++i)
     ASSERT_EQ(one.order.corners[i].at, three.order.corners[i].at);
@@ -207,6 +281,9 @@ TEST(ColorOrder, RefusesWhatItCannotBe) {
   refused(with(Shading::flat, -1));
   refused(with(Shading::flat, std::nan("")));
   ColorOptions options;
+  options.hem = -1;
+  refused(options);
+  options = {};
   options.shade.opacity = 2;
   refused(options);
   options = {};

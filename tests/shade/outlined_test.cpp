@@ -150,6 +150,24 @@ TEST(Outlined, HemsReachUnderLaterShapesAlone) {
   EXPECT_NEAR(area_of(merged, 1), 64, 1e-2);
 }
 
+/// Two halves of a box beside a later one: each has its part of the box's hem, and both together all of it.
+TEST(Outlined, PiecesHaveTheirPartsOfTheHemOfTheirWhole) {
+  const ColoredOrder whole = order_of({box(0, 0, 8, 8), box(8, 0, 8, 8, kBlue)});
+  ColoredOrder cut = order_of({box(0, 0, 8, 3), box(0, 3, 8, 5), box(8, 0, 8, 8, kBlue)});
+  cut.wholes = whole.order;
+  cut.whole_of = {0, 0, 1};
+  const Figure figure = outlined(cut, 1), uncut = outlined(whole, 1);
+  ASSERT_EQ(figure.shapes.size(), 3u);
+  EXPECT_GT(area_of(figure, 0), 24 + 2);
+  EXPECT_GT(area_of(figure, 1), 40 + 4);
+  EXPECT_NEAR(area_of(figure, 0) + area_of(figure, 1), area_of(uncut, 0), 1e-9);
+  EXPECT_NEAR(area_of(figure, 2), 64, 1e-9);
+  cut.whole_of = {0, 0, 2};
+  EXPECT_THROW((void)outlined(cut, 1), Error);
+  cut.whole_of = {1, 0, 1};
+  EXPECT_THROW((void)outlined(cut, 1), Error);
+}
+
 TEST(Outlined, RefusesListsThatDoNotMatch) {
   ColoredOrder tiles = order_of({box(0, 0, 1, 1)});
   tiles.colors.clear();

@@ -12,8 +12,62 @@ constexpr std::size_t kMostSamples = 256;
 constexpr int kDirections = 8;
 /// The direction across which the colour changes is found from a cut, and a better cut from that: so often.
 constexpr int kRounds = 2;
+/// The part of squared differences that a plane through the colours leaves, where they change evenly.
+constexpr double kEven = 0.1;
+constexpr std::size_t kFewestOfChange = 4;
 /// Texels: a cut that near to the border of two texels is that border.
 constexpr double kTexelReach = 0.25;
+
+/// Of the longest axis of the ellipse that a symmetric matrix stands for.
+glm::dvec2 main_axis(double xx, double xy, double yy) {
+  const double half = (xx - yy) * 0.5, root = std::sqrt(half * half + xy * xy);
+  const glm::dvec2 axis = half > 0 ? glm::dvec2(half + root, xy) : glm::dvec2(xy, root - half);
+  const double length = glm::length(axis);
+  return length > 0 ? axis / length : glm::dvec2(1, 0);
+}
+
+/// Colours as an affine function of the place.
+struct EvenChange {
+  glm::dvec4 by_x{0}, by_y{0};  ///< steps per pixel
+  glm::dvec2 direction{1, 0};   ///< in which they change most
+  [[nodiscard]] double steps_per_pixel(const glm::dvec2& way) const {
+    const glm::dvec4 change = glm::abs(by_x * way.x + by_y * way.y);
+    return std::max({change.x, change.y, change.z, change.w});
+  }
+};
+
+/// By least squares; none where much is left.
+std::optional<EvenChange> find_even_change(std::span<const ColorSample> samples) {
+  const double count = double(samples.size());
+  glm::dvec2 place(0);
+  glm::dvec4 color(0);
+  for (const ColorSample& sample : samples) {
+    place += sample.at;
+    color += glm::dvec4(sample.color);
+  }
+  place /= count;
+  color /= count;
+  double xx = 0, xy = 0, yy = 0, whole = 0;
+  glm::dvec4 with_x(0), with_y(0);
+  for (const ColorSample& sample : samples) {
+    const glm::dvec2 p = sample.at - place;
+    const glm::dvec4 c = glm::dvec4(sample.color) - color;
+    xx += p.x * p.x;
+    xy += p.x * p.y;
+    yy += p.y * p.y;
+    with_x += c * p.x;
+    with_y += c * p.y;
+    whole += glm::dot(c, c);
+  }
+  const double determinant = xx * yy - xy * xy;
+  if (!(determinant > 1e-9 * xx * yy)) return std::nullopt;
+  EvenChange change{(with_x * yy - with_y * xy) / determinant, (with_y * xx - with_x * xy) / determinant};
+  const double explained = glm::dot(change.by_x, with_x) + glm::dot(change.by_y, with_y);
+  if (!(whole - explained <= kEven * whole)) return std::nullopt;
+  change.direction = main_axis(glm::dot(change.by_x, change.by_x), glm::dot(change.by_x, change.by_y),
+                               glm::dot(change.by_y, change.by_y));
+  return change;
+}
 
 /// A cut of samples in two, by the values of a function.
 struct Split {
@@ -31,6 +85,7 @@ class CutFinder {
   }
 
   [[nodiscard]] std::optional<ScreenLine> find() {
+    if (const std::optional<ScreenLine> border = border_of_bands()) return border;
     for (const TexcoordLines& lines : texture_) try_texture(lines);
     for (int i = 0; i < kDirections; ++i) {
       const double angle = i * 3.14159265358979323846 / kDirections;
@@ -45,6 +100,24 @@ class CutFinder {
   struct Range {
     double least, greatest;
   };
+  /// The middle one where colours change evenly, across the way in which the piece goes through most of them.
+  [[nodiscard]] std::optional<ScreenLine> border_of_bands() const {
+    if (samples_.size() < kFewestOfChange) return std::nullopt;
+    const std::optional<EvenChange> change = find_even_change(samples_);
+    if (!change) return std::nullopt;
+    std::optional<ScreenLine> line;
+    double most = 0;
+    for (const glm::dvec2& way : {change->direction, glm::dvec2(-change->direction.y, change->direction.x)}) {
+      const Range all = reach({way, 0});
+      const double width = all.greatest - all.least, steps = width * change->steps_per_pixel(way);
+      const double bands = std::max(std::ceil(steps / piece_.range), 2.0);
+      if (steps <= most || !(width >= 2 * bands * piece_.least_width)) continue;
+      most = steps;
+      line = ScreenLine{way, all.least + width * std::floor(bands / 2) / bands};
+    }
+    return line;
+  }
+
   /// How far the piece reaches on either side of a line.
   [[nodiscard]] Range reach(const ScreenLine& line) const {
     Range range{line.distance(piece_.corners[0]), line.distance(piece_.corners[0])};

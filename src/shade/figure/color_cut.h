@@ -48,11 +48,13 @@ struct ColorPiece {
   /// Many are thinned out to a few hundred.
   std::span<const ColorSample> samples;
   double least_width;  ///< pixels that each side of a cut is to have across it
+  double range;        ///< steps of a channel that are one colour
 };
 
 /// Chooses among lines along `texture` coordinates, in some fixed directions, and across the way in which the colour
 /// changes, the one with the least sum of squared differences from the mean colours of both sides. None where there is
-/// none that parts the samples.
+/// none that parts the samples. Where colours change evenly, in one direction, it is a border of the fewest bands that
+/// are of one colour each.
 [[nodiscard]] std::optional<ScreenLine> best_cut(const ColorPiece& piece, std::span<const TexcoordLines> texture);
 
 }  // namespace frontmost::shading

@@ -22,6 +22,7 @@ void check(const Surfaces& surfaces, const Visible& visible, const PaintOrder& o
   if (visible.view.width != order.view.width || visible.view.height != order.view.height)
     refuse("what is visible is not of the order's view");
   if (!(options.tolerance >= 0 && options.tolerance <= 255)) refuse("tolerance: must be 0 to 255");
+  if (!(options.hem >= 0 && options.hem <= 100)) refuse("hem: must be 0 to 100 pixels");
   for (const PaintPolygon& polygon : order.polygons)
     if (polygon.id >= surfaces.primitive_count() || polygon.corner_count < 3 ||
         polygon.corner_count > order.corners.size() ||
@@ -58,33 +59,24 @@ FigureTriangles triangles_of(const Surfaces& surfaces, const PaintOrder& order) 
   return triangles;
 }
 
-/// What becomes of consecutive polygons.
-struct Part {
-  std::vector<PaintPolygon> polygons;
-  std::vector<PaintCorner> corners;
-  std::vector<glm::u8vec4> colors;
-  std::vector<std::uint32_t> shapes;  ///< from 0 on
-  std::uint32_t shape_count = 0;
-
-  void add(PrimitiveId id, const ColoredPieces& pieces) {
-    for (const ColoredPiece& piece : pieces.pieces) {
-      polygons.push_back({id, piece.corner_count, corners.size() + piece.first_corner});
-      colors.push_back(piece.color);
-      shapes.push_back(shape_count + piece.shape);
-    }
-    corners.insert(corners.end(), pieces.corners.begin(), pieces.corners.end());
-    shape_count += pieces.shape_count;
+/// Appends what became of consecutive polygons.
+void append(const PaintOrder& order, PaintOrder& into) {
+  const std::size_t corners = into.corners.size();
+  for (PaintPolygon polygon : order.polygons) {
+    polygon.first_corner += corners;
+    into.polygons.push_back(polygon);
   }
-};
+  into.corners.insert(into.corners.end(), order.corners.begin(), order.corners.end());
+}
 
-void append(const Part& part, std::uint32_t first_shape, ColoredOrder& into) {
-  for (PaintPolygon polygon : part.polygons) {
-    polygon.first_corner += into.order.corners.size();
-    into.order.polygons.push_back(polygon);
-  }
-  into.order.corners.insert(into.order.corners.end(), part.corners.begin(), part.corners.end());
+void append(const ColoredOrder& part, ColoredOrder& into) {
+  const std::uint32_t shape = into.shapes.empty() ? 0 : into.shapes.back() + 1;
+  const auto whole = std::uint32_t(into.wholes.polygons.size());
+  for (const std::uint32_t number : part.shapes) into.shapes.push_back(shape + number);
+  for (const std::uint32_t number : part.whole_of) into.whole_of.push_back(whole + number);
   into.colors.insert(into.colors.end(), part.colors.begin(), part.colors.end());
-  for (const std::uint32_t shape : part.shapes) into.shapes.push_back(first_shape + shape);
+  append(part.order, into.order);
+  append(part.wholes, into.wholes);
 }
 
 /// Of an order within the picture.
@@ -94,30 +86,21 @@ ColoredOrder color_within(const Surfaces& surfaces, const Visible& visible, cons
   const FigureTriangles triangles = triangles_of(surfaces, order);
   const PointShader shader(surfaces, visible, triangles, options.shade, execution);
   const std::size_t count = order.polygons.size();
-  std::vector<Part> parts((count + kPolygonsPerPart - 1) / kPolygonsPerPart);
+  std::vector<ColoredOrder> parts((count + kPolygonsPerPart - 1) / kPolygonsPerPart);
   Pool<PolygonColors> colorers;
   std::atomic<std::size_t> done{0}, made{0};
   parallel_for(execution, count, kPolygonsPerPart, [&](std::size_t begin, std::size_t end) {
     const auto colorer = colorers.borrow(
         [&] { return std::make_unique<PolygonColors>(surfaces, order.view, shader, options, execution); });
-    Part& part = parts[begin / kPolygonsPerPart];
-    for (std::size_t i = begin; i < end; ++i) {
-      const PaintPolygon& polygon = order.polygons[i];
-      const ColoredPieces& pieces =
-          colorer->pieces_of(polygon.id, {order.corners.data() + polygon.first_corner, polygon.corner_count});
-      part.add(polygon.id, pieces);
-      if ((made += pieces.pieces.size()) > options.most_polygons) refuse_more_than(options.most_polygons);
-    }
+    ColoredOrder& part = parts[begin / kPolygonsPerPart];
+    colorer->color(order, {order.polygons.data() + begin, end - begin}, part);
+    if ((made += part.colors.size()) > options.most_polygons) refuse_more_than(options.most_polygons);
     report_progress(execution, "colours", double(done += end - begin) / double(count));
   });
   ColoredOrder colored;
-  colored.order.view = order.view;
+  colored.order.view = colored.wholes.view = order.view;
   colored.order.steps = order.steps;
-  std::uint32_t shapes = 0;
-  for (const Part& part : parts) {
-    append(part, shapes, colored);
-    shapes += part.shape_count;
-  }
+  for (const ColoredOrder& part : parts) append(part, colored);
   return colored;
 }
 

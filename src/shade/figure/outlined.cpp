@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "base/float_environment.h"
 #include "base/parallel.h"
 #include "frontmost/figure.h"
 #include "shade/figure/side_net.h"
+#include "shade/figure/whole_hems.h"
 
 namespace frontmost {
 namespace {
@@ -12,43 +15,17 @@ using namespace shading;
 /// Of an inset hem, the part of a side that each of its ends takes at most.
 constexpr double kMostInset = 0.45;
 
-using Corners = std::span<const PaintCorner>;
-
-Corners corners_of(const PaintOrder& order, std::size_t i) {
-  return {order.corners.data() + order.polygons[i].first_corner, order.polygons[i].corner_count};
-}
-
-/// The hem of the side from one corner to another whose first corner beside it is `beside`.
-SideHem hem_between(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec2& beside) {
-  const glm::dvec2 way = (to - from) / glm::length(to - from), out = beside - from;
-  return {float(std::abs(way.x * out.y - way.y * out.x)), float(glm::dot(way, out))};
-}
-
-/// Reads hems off: where a polygon has two corners more between two of its own.
-void read_hems(Corners bare, Corners hemmed, std::vector<NetCorner>& corners) {
-  corners.clear();
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < bare.size(); ++i, ++at) {
-    const glm::dvec2 from(bare[i].at), to(bare[i + 1 == bare.size() ? 0 : i + 1].at);
-    NetCorner corner{from, {}};
-    const bool is_last = i + 1 == bare.size();
-    const bool is_hemmed = at + 2 < hemmed.size() && (is_last || glm::dvec2(hemmed[at + 1].at) != to);
-    if (is_hemmed) {
-      corner.hem = hem_between(from, to, glm::dvec2(hemmed[at + 1].at));
-      at += 2;
-    }
-    corners.push_back(corner);
-  }
-}
-
 class Outliner {
  public:
   explicit Outliner(Figure& figure) : figure_(figure) {}
 
   void begin_shape(const glm::u8vec4& color) { figure_.shapes.push_back({color, 0, figure_.rings.size()}); }
-  void add_ring(Corners corners) {
+  void add_ring(std::span<const HemmedSide> sides) {
     begin_ring();
-    for (const PaintCorner& corner : corners) add(glm::dvec2(corner.at));
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      add(sides[i].from);
+      if (sides[i].hem.width > 0) add_hem(sides[i], sides[i + 1 == sides.size() ? 0 : i + 1].from);
+    }
   }
   void add_ring(std::span<const NetCorner> corners) {
     begin_ring();
@@ -67,6 +44,23 @@ class Outliner {
     figure_.corners.push_back(corner);
     ++figure_.rings.back().corner_count;
   }
+  /// The part of a whole side's hem that lies beside a part of the side.
+  void add_hem(const HemmedSide& side, const glm::dvec2& to) {
+    const double length = glm::length(to - side.from);
+    if (!(length > 0)) return;
+    const double inset = double(side.hem.inset), width = double(side.hem.width), end = side.begin + length;
+    const glm::dvec2 along = (to - side.from) / length, out(-along.y, along.x);
+    const auto height = [&](double s) {
+      const double from_ends = std::min(s, side.whole_length - s);
+      return inset > 0 ? width * std::clamp(from_ends / inset, 0.0, 1.0) : width;
+    };
+    const auto add_at = [&](double s) { add(side.from + along * (s - side.begin) + out * height(s)); };
+    constexpr double kAtEnd = 1e-6;  // pixels
+    if (side.begin > kAtEnd) add_at(side.begin);
+    for (const double bend : {inset, side.whole_length - inset})
+      if (bend > side.begin && bend < end) add_at(bend);
+    if (end < side.whole_length - kAtEnd) add_at(end);
+  }
   /// A part of a side has the part of its hem that rises as steeply from its ends.
   void add_hem(const NetCorner& from, const glm::dvec2& to) {
     const double length = glm::length(to - from.at);
@@ -80,34 +74,26 @@ class Outliner {
   Figure& figure_;
 };
 
-/// Hems may reach over other parts of the same primitive, as if it had one colour. That is true of a shape, and of
-/// parts of a primitive that have the same; so numbers of such groups take the place of the primitive's.
-PaintOrder hemmed_by_color(const ColoredOrder& colored, double hem, const std::function<bool(PrimitiveId)>& hides,
-                           const Execution& execution) {
-  PaintOrder order = colored.order;
-  const std::vector<PaintPolygon>& polygons = colored.order.polygons;
-  std::vector<std::uint8_t> hiding;
-  for (std::size_t i = 0; i < polygons.size(); ++i) {
-    const bool goes_on =
-        i > 0 && (colored.shapes[i] == colored.shapes[i - 1] ||
-                  (polygons[i].id == polygons[i - 1].id && colored.colors[i] == colored.colors[i - 1]));
-    if (!goes_on) hiding.push_back(1);
-    hiding.back() = hiding.back() && (!hides || hides(polygons[i].id));
-    order.polygons[i].id = PrimitiveId(hiding.size() - 1);
-  }
-  return with_hems(
-      order, hem, [&](PrimitiveId shape) { return hiding[shape] != 0; }, execution);
+void check(const ColoredOrder& colored) {
+  const auto refuse = [](const char* why) { throw Error(ErrorCode::bad_argument, std::string("figure: ") + why); };
+  const std::size_t count = colored.order.polygons.size();
+  if (colored.colors.size() != count || colored.shapes.size() != count)
+    refuse("colours, shapes and polygons differ in number");
+  const std::vector<std::uint32_t>& wholes = colored.whole_of;
+  if (wholes.empty()) return;
+  if (wholes.size() != count || !std::is_sorted(wholes.begin(), wholes.end()) ||
+      wholes.back() >= colored.wholes.polygons.size())
+    refuse("polygons are pieces of what is not there");
 }
 
 }  // namespace
 
 Figure outlined(const ColoredOrder& colored, double hem, const std::function<bool(PrimitiveId)>& hides,
                 const Execution& execution) {
-  const std::size_t count = colored.order.polygons.size();
-  if (colored.colors.size() != count || colored.shapes.size() != count)
-    throw Error(ErrorCode::bad_argument, "figure: colours, shapes and polygons differ in number");
-  const PaintOrder hemmed = hemmed_by_color(colored, hem, hides, execution);
+  check(colored);
+  WholeHems hems(colored, hem, hides, execution);
   const IeeeScope ieee;
+  const std::size_t count = colored.colors.size();
   Figure figure;
   figure.view = colored.order.view;
   Outliner outliner(figure);
@@ -118,12 +104,13 @@ Figure outlined(const ColoredOrder& colored, double hem, const std::function<boo
     check_cancelled(execution);
     outliner.begin_shape(colored.colors[begin]);
     if (end == begin + 1) {
-      outliner.add_ring(corners_of(hemmed, begin));
+      outliner.add_ring(hems.sides(begin));
       continue;
     }
     net.clear();
     for (std::size_t i = begin; i < end; ++i) {
-      read_hems(corners_of(colored.order, i), corners_of(hemmed, i), corners);
+      corners.clear();
+      for (const HemmedSide& side : hems.sides(i)) corners.push_back({side.from, side.hem});
       net.add(corners, std::uint32_t(i));
     }
     net.weave();

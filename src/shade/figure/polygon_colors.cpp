@@ -12,48 +12,17 @@
 namespace frontmost::shading {
 namespace {
 
-/// Square pixels, and pixels from end to end: smaller pieces have the colour of their middle.
-constexpr double kLeastArea = 1.5, kLeastLength = 2;
-/// Pixels: narrower ones are not cut along, and what lies nearer to a cut is not asked for its colour again. Textures
+/// Pixels: narrower pieces are not cut off, and what lies nearer to a cut is not asked for its colour again. Textures
 /// and shadows are smoothed over about as much, so there a colour is neither that of one side nor that of the other.
 constexpr double kLeastWidth = 0.25, kBesideCut = 0.35;
-/// Square pixels a sample, of pieces of some size and of large ones; pixels, of slivers; and the fewest.
-constexpr double kAreaPerSample = 2, kMostAreaPerSample = 9, kLengthPerSample = 1;
-constexpr double kFewSamples = 4, kManySamples = 64;
-/// Of the tolerance: by how much pieces may differ within; colours that differ by no more than the rest become one.
+/// Of the tolerance: by how much pieces may differ within where colours that differ by no more than the rest become
+/// one.
 constexpr double kWithin = 2.0 / 3;
-/// Pixels: by how much samples of corners lie within.
-constexpr double kInset = 0.25;
-
-double area_of(std::span<const PaintCorner> corners) {
-  double twice = 0;
-  const glm::dvec2 from(corners[0].at);
-  for (std::size_t i = 2; i < corners.size(); ++i) {
-    const glm::dvec2 a = glm::dvec2(corners[i - 1].at) - from, b = glm::dvec2(corners[i].at) - from;
-    twice += a.x * b.y - a.y * b.x;
-  }
-  return std::abs(twice) * 0.5;
-}
-
-glm::dvec2 middle_of(std::span<const PaintCorner> corners) {
-  glm::dvec2 sum(0);
-  for (const PaintCorner& corner : corners) sum += glm::dvec2(corner.at);
-  return sum / double(corners.size());
-}
-
-/// At least half of the distance between the two corners that are farthest from each other.
-double length_of(std::span<const PaintCorner> corners) {
-  double most = 0;
-  for (const PaintCorner& corner : corners)
-    most = std::max(most, glm::length(glm::dvec2(corner.at) - glm::dvec2(corners[0].at)));
-  return most;
-}
-
-/// How many samples a piece is worth.
-double sample_count(double area, double length) {
-  const double wanted = std::max(area / kAreaPerSample, length / kLengthPerSample);
-  return std::max(std::clamp(wanted, kFewSamples, kManySamples), area / kMostAreaPerSample);
-}
+/// What is narrower than a pixel may differ by so much more: it is hardly seen, and there is much of it beside
+/// textures.
+constexpr double kOfSlivers = 8;
+/// Samples that are asked for together: some batches of the shader, and few enough to stay near at hand.
+constexpr std::size_t kSamplesAtOnce = 2048;
 
 double affine_of(const View& view, double depth) { return view.projection.orthographic ? depth : 1 / depth; }
 
@@ -62,6 +31,13 @@ bool is_hole(const glm::vec4& color) { return color.w < 0; }
 glm::u8vec4 rounded(const glm::vec4& color) {
   const auto part = [](float value) { return std::uint8_t(std::clamp(value + 0.5f, 0.0f, 255.0f)); };
   return {part(color.x), part(color.y), part(color.z), part(color.w)};
+}
+
+bool is_opaque(const Surfaces& surfaces, PrimitiveId id) {
+  const PrimitiveSource source = surfaces.source(id);
+  const Scene& scene = surfaces.scene();
+  const std::uint32_t material = scene.meshes[source.mesh].material_of(source.triangle);
+  return material >= scene.materials.size() || scene.materials[material].alpha == Material::Alpha::opaque;
 }
 
 }  // namespace
@@ -80,195 +56,274 @@ PolygonColors::PolygonColors(const Surfaces& surfaces, const View& view, const P
       rays_(view),
       shader_(shader.source(), shader.colorist()) {}
 
-const ColoredPieces& PolygonColors::pieces_of(PrimitiveId id, std::span<const PaintCorner> outline) {
-  begin(id, outline);
-  while (!parts_.empty()) {
+void PolygonColors::color(const PaintOrder& order, std::span<const PaintPolygon> polygons, ColoredOrder& into) {
+  begin(polygons);
+  while (started_ < polygons_.size() || !waiting_.empty()) {
     check_cancelled(execution_);
-    if (kept_.size() + parts_.size() > options_.most_polygons) refuse_more_than(options_.most_polygons);
-    Part part = std::move(parts_.back());
-    parts_.pop_back();
-    divide(std::move(part));
+    if (kept_.size() + waiting_.size() > options_.most_polygons) refuse_more_than(options_.most_polygons);
+    take_pieces(order);
+    shade_samples();
+    for (Piece& piece : looked_at_) divide(piece);
   }
-  group_by_color();
-  return pieces_;
+  for (const Polygon& polygon : polygons_) emit(order, polygon, into);
 }
 
-void PolygonColors::begin(PrimitiveId id, std::span<const PaintCorner> outline) {
-  id_ = id;
-  texture_lines_.reset();
+void PolygonColors::begin(std::span<const PaintPolygon> polygons) {
+  // A triangle is set up about its first sample: that must be one of these polygons.
+  shader_.clear();
+  polygons_.clear();
+  nodes_.clear();
   cuts_.clear();
   kept_.clear();
-  holes_.reset();
+  started_ = 0;
   const Cutouts* const cutouts = surfaces_.clusters().cutouts.get();
-  if (cutouts && cutouts->has(id)) holes_.emplace((*cutouts)[id], rays_);
-  Part& whole = parts_.emplace_back(Part{{outline.begin(), outline.end()}, no_index});
-  for (PaintCorner& corner : whole.corners) corner.at.z = affine_of(view_, corner.at.z);
-}
-
-void PolygonColors::divide(Part part) {
-  look(part);
-  const Judgement found = judge(part);
-  if (!found.is_one_color) {
-    outline_.clear();
-    for (const PaintCorner& corner : part.corners) outline_.push_back(glm::dvec2(corner.at));
-    if (const std::optional<ScreenLine> line = best_cut({outline_, samples_, kLeastWidth}, texture_lines()))
-      return cut(part, *line);
+  for (const PaintPolygon& outline : polygons) {
+    Polygon& polygon = polygons_.emplace_back(Polygon{outline});
+    if (cutouts && cutouts->has(outline.id)) polygon.holes.emplace((*cutouts)[outline.id], rays_);
+    polygon.has_hems = options_.hem > 0 && shading_.opacity() >= 1 && is_opaque(surfaces_, outline.id);
   }
-  keep(part, found.color);
 }
 
-/// Samples of the corners first, where colours go furthest; then some that lie evenly.
-void PolygonColors::look(const Part& part) {
-  samples_.clear();
-  const glm::dvec2 middle = middle_of(part.corners);
-  const double area = area_of(part.corners), length = length_of(part.corners);
-  corner_samples_ = 0;
-  if (options_.tolerance >= 255 || (area < kLeastArea && length < kLeastLength)) {
-    samples_.push_back({middle, {}});
-  } else {
-    for (const PaintCorner& corner : part.corners) {
-      const glm::dvec2 way = middle - glm::dvec2(corner.at);
-      const double inset = std::min(0.25, kInset / std::max(glm::length(way), 1e-9));
-      samples_.push_back({glm::dvec2(corner.at) + way * inset, {}});
+void PolygonColors::start(const PaintOrder& order, std::uint32_t number) {
+  Polygon& polygon = polygons_[number];
+  polygon.node = std::uint32_t(nodes_.size());
+  nodes_.emplace_back();
+  const auto first = order.corners.begin() + std::ptrdiff_t(polygon.outline.first_corner);
+  Piece& piece = looked_at_.emplace_back();
+  for (std::size_t i = 0; i < polygon.outline.corner_count; ++i) {
+    const PaintCorner& corner = first[std::ptrdiff_t(i)];
+    piece.corners.push_back({{{corner.at.x, corner.at.y, affine_of(view_, corner.at.z)}, corner.is_cut}});
+  }
+  piece.polygon = number;
+  piece.node = polygon.node;
+}
+
+/// As many as have some batches of samples, those that were cut first.
+void PolygonColors::take_pieces(const PaintOrder& order) {
+  looked_at_.clear();
+  std::size_t samples = 0;
+  while (samples < kSamplesAtOnce && (started_ < polygons_.size() || !waiting_.empty())) {
+    if (waiting_.empty()) {
+      start(order, std::uint32_t(started_++));
+    } else {
+      looked_at_.push_back(std::move(waiting_.back()));
+      waiting_.pop_back();
     }
-    corner_samples_ = samples_.size();
-    add_places(part.corners, sample_count(area, length));
-  }
-  shade_places();
-}
-
-/// A rank-1 lattice over each triangle of the fan, as many places as its part of the area asks for.
-/// (M. Roberts. The Unreasonable Effectiveness of Quasirandom Sequences. 2018.)
-void PolygonColors::add_places(std::span<const PaintCorner> corners, double count) {
-  const double area = area_of(corners);
-  double before = 0;
-  std::size_t number = 0;
-  const glm::dvec2 from(corners[0].at);
-  for (std::size_t i = 2; i < corners.size(); ++i) {
-    const glm::dvec2 a = glm::dvec2(corners[i - 1].at) - from, b = glm::dvec2(corners[i].at) - from;
-    before += std::abs(a.x * b.y - a.y * b.x) * 0.5;
-    const auto until = std::size_t(std::ceil(before / area * count));
-    for (; number < until; ++number) {
-      double u = 0.5 + 0.7548776662466927 * double(number), v = 0.5 + 0.5698402909980532 * double(number);
-      u -= std::floor(u);
-      v -= std::floor(v);
-      if (u + v > 1) {
-        u = 1 - u;
-        v = 1 - v;
-      }
-      samples_.push_back({from + a * u + b * v, {}});
-    }
+    Piece& piece = looked_at_.back();
+    place_samples(piece);
+    samples += piece.samples.size() - piece.known_samples;
   }
 }
 
-void PolygonColors::shade_places() {
+/// Whole polygons are asked at their corners, too; of others those are known, or lie beside a cut. What was asked
+/// before counts: so fewer samples are added than a piece is worth, mostly none.
+void PolygonColors::place_samples(Piece& piece) {
+  const PieceSize size(piece.corners);
+  const auto add = [&](const glm::dvec2& at) {
+    if (!is_beside_a_cut(piece, at)) piece.samples.push_back({at, {}});
+  };
+  if (options_.tolerance < 255 && !size.is_small()) {
+    const auto known = double(piece.samples.size());
+    if (piece.cut == no_index) for_each_corner_place(piece.corners, size.middle, add);
+    for_each_place(piece.corners, size.area, std::max(size.sample_count() - known, 0.0), add);
+    piece.is_sliver = piece.samples.empty();
+    if (piece.is_sliver)
+      for_each_place_along(piece.corners, size, [&](const glm::dvec2& at) { piece.samples.push_back({at, {}}); });
+  }
+  if (piece.samples.empty()) piece.samples.push_back({size.middle, {}});
+}
+
+void PolygonColors::shade_samples() {
+  asked_.clear();
   const auto hand_out = [&] {
     shader_.hand_out([&](std::uint32_t i, float, const glm::vec3& light, float alpha) {
       const float opacity = std::clamp(alpha * shading_.opacity(), 0.0f, 1.0f);
-      samples_[i].color = {float(srgb8_of_linear(light.x)), float(srgb8_of_linear(light.y)),
-                           float(srgb8_of_linear(light.z)), opacity * 255.0f};
+      asked_[i]->color = {float(srgb8_of_linear(light.x)), float(srgb8_of_linear(light.y)),
+                          float(srgb8_of_linear(light.z)), opacity * 255.0f};
     });
   };
-  for (std::size_t i = 0; i < samples_.size(); ++i) {
-    const glm::dvec2& at = samples_[i].at;
-    if (holes_ && holes_->is_hole(std::int32_t(std::floor(at.x * 256)), std::int32_t(std::floor(at.y * 256)))) {
-      samples_[i].color = hole_color;
-      continue;
+  for (Piece& piece : looked_at_) {
+    const Polygon& polygon = polygons_[piece.polygon];
+    for (; piece.known_samples < piece.samples.size(); ++piece.known_samples) {
+      ColorSample& sample = piece.samples[piece.known_samples];
+      const glm::dvec2 unit = glm::floor(sample.at * 256.0);
+      if (polygon.holes && polygon.holes->is_hole(std::int32_t(unit.x), std::int32_t(unit.y))) {
+        sample.color = hole_color;
+        continue;
+      }
+      if (shader_.is_full()) hand_out();
+      shader_.add(polygon.outline.id, std::uint32_t(asked_.size()), glm::vec2(sample.at), 1, 1.0f);
+      asked_.push_back(&sample);
     }
-    if (shader_.is_full()) hand_out();
-    shader_.add(id_, std::uint32_t(i), glm::vec2(at), 1, 1.0f);
   }
   hand_out();
 }
 
-bool PolygonColors::is_beside_a_cut(const Part& part, const glm::dvec2& at) const {
-  for (std::uint32_t i = part.cut; i != no_index; i = cuts_[i].before)
+void PolygonColors::divide(Piece& piece) {
+  const Judgement found = judge(piece);
+  if (!found.is_one_color) {
+    outline_.clear();
+    for (const PaintCorner& corner : piece.corners) outline_.push_back(glm::dvec2(corner.at));
+    if (const std::optional<ScreenLine> line =
+            best_cut({outline_, piece.samples, kLeastWidth, 2 * double(within(piece))}, texture_lines(piece)))
+      return cut(piece, *line);
+  }
+  keep(piece, found.color);
+}
+
+/// Steps by which samples may differ from the colour of their piece.
+float PolygonColors::within(const Piece& piece) const {
+  const bool is_grouped = !polygons_[piece.polygon].has_hems;
+  return float(options_.tolerance * (is_grouped ? kWithin : 1) * (piece.is_sliver ? kOfSlivers : 1));
+}
+
+bool PolygonColors::is_beside_a_cut(const Piece& piece, const glm::dvec2& at) const {
+  for (std::uint32_t i = piece.cut; i != no_index; i = cuts_[i].before)
     if (std::abs(cuts_[i].line.distance(at)) < kBesideCut) return true;
   return false;
 }
 
-PolygonColors::Judgement PolygonColors::judge(const Part& part) const {
-  // What most of the samples are; of these the mean, without corners where there are others.
-  std::size_t holes = 0, asked = 0;
-  std::vector<std::uint8_t> counts(samples_.size());
-  for (std::size_t i = 0; i < samples_.size(); ++i) {
-    counts[i] = !is_beside_a_cut(part, samples_[i].at);
-    asked += counts[i];
+/// What most of the samples are, surface or hole; of these the colour nearest to their mean that is near enough to all.
+PolygonColors::Judgement PolygonColors::judge(const Piece& piece) const {
+  std::size_t holes = 0;
+  for (const ColorSample& sample : piece.samples) holes += is_hole(sample.color);
+  const bool is_open = 2 * holes > piece.samples.size();
+  if (is_open) return {holes == piece.samples.size(), hole_color};
+  glm::vec4 sum(0), least(255), greatest(0);
+  for (const ColorSample& sample : piece.samples) {
+    if (is_hole(sample.color)) continue;
+    sum += sample.color;
+    least = glm::min(least, sample.color);
+    greatest = glm::max(greatest, sample.color);
   }
-  if (asked == 0) std::fill(counts.begin(), counts.end(), std::uint8_t(1));
-  for (std::size_t i = corner_samples_; i < samples_.size(); ++i) holes += is_hole(samples_[i].color);
-  const bool is_open = 2 * holes > samples_.size() - corner_samples_;
-  glm::vec4 sum(0), mean = hole_color;
-  float weight = 0;
-  for (std::size_t i = 0; i < samples_.size(); ++i) {
-    if (!counts[i] || is_hole(samples_[i].color) != is_open) continue;
-    const float share = i < corner_samples_ ? 1e-3f : 1.0f;
-    sum += samples_[i].color * share;
-    weight += share;
-  }
-  if (weight > 0) mean = sum / weight;
-  Judgement found{true, mean};
-  if (asked == 0) return found;
-  for (std::size_t i = 0; i < samples_.size(); ++i)
-    if (counts[i] && double(difference(samples_[i].color, mean)) > options_.tolerance * kWithin)
-      found.is_one_color = false;
-  return found;
+  const float within = this->within(piece);
+  const glm::vec4 mean = sum / float(piece.samples.size() - holes);
+  if (holes > 0 || difference(greatest, least) > 2 * within) return {false, mean};
+  return {true, glm::clamp(mean, greatest - within, least + within)};
 }
 
-/// Puts both sides of a line on the stack.
-void PolygonColors::cut(const Part& part, const ScreenLine& line) {
-  const std::size_t count = part.corners.size();
-  Part sides[2];
-  for (Part& side : sides) side.cut = std::uint32_t(cuts_.size());
-  cuts_.push_back({line, part.cut});
-  for (std::size_t i = 0; i < count; ++i) {
-    const PaintCorner &from = part.corners[i], &to = part.corners[i + 1 == count ? 0 : i + 1];
-    const double a = line.distance(glm::dvec2(from.at)), b = line.distance(glm::dvec2(to.at));
-    const int side = a > 0;
-    sides[side].corners.push_back(from);
-    if (side == (b > 0)) continue;
-    const glm::dvec3 at = from.at + (to.at - from.at) * (a / (a - b));
-    sides[side].corners.push_back({at, true});             // from here along the cut
-    sides[1 - side].corners.push_back({at, from.is_cut});  // from here along what was there
+/// Puts both sides of a line where they wait.
+void PolygonColors::cut(Piece& piece, const ScreenLine& line) {
+  const auto number = std::uint32_t(cuts_.size()), node = std::uint32_t(nodes_.size());
+  cuts_.push_back({line, piece.cut});
+  nodes_[piece.node] = {node, node + 1, no_index};
+  nodes_.resize(nodes_.size() + 2);
+  Piece below, above;
+  for (Piece* const side : {&below, &above}) {
+    side->polygon = piece.polygon;
+    side->node = node + (side == &above);
+    side->cut = number;
   }
-  parts_.push_back(std::move(sides[1]));
-  parts_.push_back(std::move(sides[0]));
+  CutOutline corners = cut_outline(piece.corners, line, number);
+  below.corners = std::move(corners.below);
+  above.corners = std::move(corners.above);
+  if (polygons_[piece.polygon].has_hems) cuts_.back().above = above.corners;
+  for (const ColorSample& sample : piece.samples) {
+    const double distance = line.distance(sample.at);
+    if (std::abs(distance) >= kBesideCut) (distance > 0 ? above : below).samples.push_back(sample);
+  }
+  for (Piece* const side : {&above, &below}) {
+    side->known_samples = side->samples.size();
+    waiting_.push_back(std::move(*side));
+  }
 }
 
-void PolygonColors::keep(const Part& part, const glm::vec4& color) {
+void PolygonColors::keep(Piece& piece, const glm::vec4& color) {
   if (is_hole(color) || color.w < 0.5f) return;
-  kept_.push_back({color, 0, part.corners});
+  nodes_[piece.node].kept = std::uint32_t(kept_.size());
+  kept_.push_back({color, std::move(piece.corners)});
+}
+
+/// In the order in which they are painted: below a cut before above it.
+void PolygonColors::list_kept(const Polygon& polygon) {
+  listed_.clear();
+  path_.assign(1, polygon.node);
+  while (!path_.empty()) {
+    const Node node = nodes_[path_.back()];
+    path_.pop_back();
+    if (node.kept != no_index) listed_.push_back(&kept_[node.kept]);
+    if (node.below != no_index) path_.insert(path_.end(), {node.above, node.below});
+  }
+}
+
+void PolygonColors::emit(const PaintOrder& order, const Polygon& polygon, ColoredOrder& into) {
+  list_kept(polygon);
+  if (polygon.has_hems)
+    emit_hemmed(order, polygon, into);
+  else
+    emit_grouped(polygon, into);
+}
+
+namespace {
+
+template <class Corners>
+void append(const PaintPolygon& polygon, const Corners& corners, const View& view, PaintOrder& into) {
+  into.polygons.push_back({polygon.id, std::uint32_t(corners.size()), into.corners.size()});
+  for (const PaintCorner& corner : corners)
+    into.corners.push_back({{corner.at.x, corner.at.y, affine_of(view, corner.at.z)}, corner.is_cut});
+}
+
+}  // namespace
+
+/// With hems along cuts, under what lies above them.
+std::vector<PaintCorner> PolygonColors::hemmed(const Kept& piece) const {
+  std::vector<PaintCorner> corners;
+  for (std::size_t i = 0; i < piece.corners.size(); ++i) {
+    const PieceCorner& from = piece.corners[i];
+    corners.push_back(from);
+    if (from.cut == no_index) continue;
+    const PieceCorner& to = piece.corners[i + 1 == piece.corners.size() ? 0 : i + 1];
+    const Cut& cut = cuts_[from.cut];
+    // What lies below has the cut's normal on the outside.
+    const glm::dvec2 way(to.at - from.at), out(-way.y, way.x);
+    if (!(glm::dot(out, cut.line.normal) > 0)) continue;
+    const auto hem = hem_within(from, to, cut.above, options_.hem);
+    if (hem) corners.insert(corners.end(), hem->begin(), hem->end());
+  }
+  return corners;
+}
+
+void PolygonColors::emit_hemmed(const PaintOrder& order, const Polygon& polygon, ColoredOrder& into) {
+  const auto whole = std::uint32_t(into.wholes.polygons.size());
+  const auto first = order.corners.begin() + std::ptrdiff_t(polygon.outline.first_corner);
+  into.wholes.polygons.push_back({polygon.outline.id, polygon.outline.corner_count, into.wholes.corners.size()});
+  into.wholes.corners.insert(into.wholes.corners.end(), first, first + polygon.outline.corner_count);
+  for (const Kept* const piece : listed_) {
+    append(polygon.outline, hemmed(*piece), view_, into.order);
+    into.colors.push_back(rounded(piece->color));
+    into.shapes.push_back(into.shapes.empty() ? 0 : into.shapes.back() + 1);
+    into.whole_of.push_back(whole);
+  }
 }
 
 /// Colours that are nearly the same become the first of them, so that pieces can be joined to larger ones.
-void PolygonColors::group_by_color() {
+void PolygonColors::emit_grouped(const Polygon& polygon, ColoredOrder& into) {
   ColorGroups groups(options_.tolerance * (1 - kWithin));
-  for (Kept& piece : kept_) piece.shape = groups.find_or_add(piece.color);
-  const std::vector<glm::vec4>& colors = groups.colors();
-  std::stable_sort(kept_.begin(), kept_.end(), [](const Kept& a, const Kept& b) { return a.shape < b.shape; });
-  pieces_.pieces.clear();
-  pieces_.corners.clear();
-  pieces_.shape_count = std::uint32_t(colors.size());
-  for (const Kept& piece : kept_) {
-    pieces_.pieces.push_back(
-        {pieces_.corners.size(), std::uint32_t(piece.corners.size()), piece.shape, rounded(colors[piece.shape])});
-    for (const PaintCorner& corner : piece.corners)
-      pieces_.corners.push_back({{corner.at.x, corner.at.y, affine_of(view_, corner.at.z)}, corner.is_cut});
+  for (Kept* const piece : listed_) piece->shape = groups.find_or_add(piece->color);
+  std::stable_sort(listed_.begin(), listed_.end(), [](const Kept* a, const Kept* b) { return a->shape < b->shape; });
+  const std::uint32_t shape = into.shapes.empty() ? 0 : into.shapes.back() + 1;
+  for (const Kept* const piece : listed_) {
+    into.whole_of.push_back(std::uint32_t(into.wholes.polygons.size()));
+    append(polygon.outline, piece->corners, view_, into.wholes);
+    append(polygon.outline, piece->corners, view_, into.order);
+    into.colors.push_back(rounded(groups.colors()[piece->shape]));
+    into.shapes.push_back(shape + piece->shape);
   }
 }
 
 /// Along the coordinates of what the picture mostly shows, the base colour's texture.
-std::span<const TexcoordLines> PolygonColors::texture_lines() {
-  if (texture_lines_) return *texture_lines_;
-  texture_lines_.emplace();
-  setup_.resize(1);
-  const NewTriangle triangle{id_, 0, glm::vec2(samples_.front().at)};
-  shading_.source().set_up({&triangle, 1}, setup_);
-  const TriangleSetup& setup = setup_[0];
+std::span<const TexcoordLines> PolygonColors::texture_lines(const Piece& piece) {
+  Polygon& polygon = polygons_[piece.polygon];
+  if (polygon.texture_lines) return *polygon.texture_lines;
+  std::vector<TexcoordLines>& lines = polygon.texture_lines.emplace();
+  std::vector<TriangleSetup> setups(1);
+  const NewTriangle triangle{polygon.outline.id, 0, glm::vec2(piece.samples.front().at)};
+  shading_.source().set_up({&triangle, 1}, setups);
+  const TriangleSetup& setup = setups[0];
   const Scene& scene = surfaces_.scene();
-  if (!setup.has_texcoord || setup.material >= scene.materials.size()) return *texture_lines_;
+  if (!setup.has_texcoord || setup.material >= scene.materials.size()) return lines;
   const TextureUse& use = scene.materials[setup.material].base_color_texture;
-  if (!use.is_set()) return *texture_lines_;
+  if (!use.is_set()) return lines;
   const Texture& texture = scene.textures[use.texture];
   const TexcoordTransform transform(use);
   std::array<double, 3> u, v;
@@ -277,9 +332,9 @@ std::span<const TexcoordLines> PolygonColors::texture_lines() {
     u[k] = double(place.x) * texture.width;
     v[k] = double(place.y) * texture.height;
   }
-  texture_lines_->emplace_back(setup, u);
-  texture_lines_->emplace_back(setup, v);
-  return *texture_lines_;
+  lines.emplace_back(setup, u);
+  lines.emplace_back(setup, v);
+  return lines;
 }
 
 }  // namespace frontmost::shading

@@ -1,72 +1,89 @@
 // SPDX-License-Identifier: Apache-2.0
-// One polygon after another in pieces of one colour each.
+// Consecutive polygons in pieces of one colour each.
 #pragma once
 
 #include <optional>
 
 #include "frontmost/figure.h"
-#include "shade/figure/color_cut.h"
+#include "shade/figure/piece_places.h"
 #include "shade/figure/point_shader.h"
 #include "view/screen_cutout.h"
 
 namespace frontmost::shading {
 
-/// A piece of a polygon: `corner_count` of ColoredPieces::corners from `first_corner` on.
-struct ColoredPiece {
-  std::size_t first_corner = 0;
-  std::uint32_t corner_count = 0;
-  std::uint32_t shape = 0;  ///< rising; pieces of one shape have one colour
-  glm::u8vec4 color{0};
-};
-
-/// The pieces of a polygon, without holes and what is wholly clear.
-struct ColoredPieces {
-  std::vector<ColoredPiece> pieces;
-  std::vector<PaintCorner> corners;
-  std::uint32_t shape_count = 0;
-};
-
 /// \throws Error limit_exceeded.
 [[noreturn]] void refuse_more_than(std::size_t most);
 
-/// Not for several threads at once.
+/// Many pieces are looked at before the next ones are, so that the shader has whole batches. Not for several threads at
+/// once.
 class PolygonColors {
  public:
   /// Borrows all.
   PolygonColors(const Surfaces& surfaces, const View& view, const PointShader& shader, const ColorOptions& options,
                 const Execution& execution);
 
-  /// Until the next call. Precondition: three corners or more. \throws Error cancelled, and as refuse_more_than().
-  [[nodiscard]] const ColoredPieces& pieces_of(PrimitiveId id, std::span<const PaintCorner> outline);
+  /// Appends some of an order's polygons in pieces, without holes and what is wholly clear. The result depends on these
+  /// polygons alone. Precondition: three corners or more each. \throws Error cancelled, and as refuse_more_than().
+  void color(const PaintOrder& order, std::span<const PaintPolygon> polygons, ColoredOrder& into);
 
  private:
   /// A piece that is still to be looked at; depths are affine over the screen.
-  struct Part {
-    std::vector<PaintCorner> corners;
+  struct Piece {
+    std::vector<PieceCorner> corners;
+    std::vector<ColorSample> samples;  ///< those of the piece that it was cut from are known already
+    std::size_t known_samples = 0;
+    bool is_sliver = false;        ///< lies beside cuts everywhere
+    std::uint32_t polygon = 0;     ///< of those that are coloured
+    std::uint32_t node = 0;        ///< of the tree of cuts
     std::uint32_t cut = no_index;  ///< the last that it was made by
   };
-  /// Cuts, each with the one before it: a part lies on one side of all of them.
+  /// Cuts, each with the one before it: a piece lies on one side of all of them.
   struct Cut {
     ScreenLine line;
     std::uint32_t before = no_index;
+    std::vector<PieceCorner> above{};  ///< what lies there, all of which is painted after what lies below
   };
-  /// What a part's samples say.
+  /// A piece that was cut, or one that is kept. Pieces are painted as they come in the tree.
+  struct Node {
+    std::uint32_t below = no_index, above = no_index;  ///< nodes
+    std::uint32_t kept = no_index;
+  };
+  struct Kept {
+    glm::vec4 color;
+    std::vector<PieceCorner> corners;
+    std::uint32_t shape = 0;
+  };
+  struct Polygon {
+    PaintPolygon outline;
+    bool has_hems = false;  ///< nothing shows through
+    std::uint32_t node = 0;
+    std::optional<ScreenCutout> holes{};
+    std::optional<std::vector<TexcoordLines>> texture_lines{};  ///< made when they are asked for
+  };
+  /// What a piece's samples say.
   struct Judgement {
     bool is_one_color = true;
     glm::vec4 color{0};
   };
 
-  void begin(PrimitiveId id, std::span<const PaintCorner> outline);
-  void divide(Part part);
-  void look(const Part& part);
-  void add_places(std::span<const PaintCorner> corners, double count);
-  void shade_places();
-  [[nodiscard]] bool is_beside_a_cut(const Part& part, const glm::dvec2& at) const;
-  [[nodiscard]] Judgement judge(const Part& part) const;
-  void cut(const Part& part, const ScreenLine& line);
-  void keep(const Part& part, const glm::vec4& color);
-  void group_by_color();
-  [[nodiscard]] std::span<const TexcoordLines> texture_lines();
+  void begin(std::span<const PaintPolygon> polygons);
+  void start(const PaintOrder& order, std::uint32_t polygon);
+  void take_pieces(const PaintOrder& order);
+  void place_samples(Piece& piece);
+  void shade_samples();
+  void divide(Piece& piece);
+  [[nodiscard]] float within(const Piece& piece) const;
+  [[nodiscard]] bool is_beside_a_cut(const Piece& piece, const glm::dvec2& at) const;
+  [[nodiscard]] Judgement judge(const Piece& piece) const;
+  void cut(Piece& piece, const ScreenLine& line);
+  void keep(Piece& piece, const glm::vec4& color);
+  [[nodiscard]] std::span<const TexcoordLines> texture_lines(const Piece& piece);
+
+  void list_kept(const Polygon& polygon);
+  void emit(const PaintOrder& order, const Polygon& polygon, ColoredOrder& into);
+  [[nodiscard]] std::vector<PaintCorner> hemmed(const Kept& piece) const;
+  void emit_hemmed(const PaintOrder& order, const Polygon& polygon, ColoredOrder& into);
+  void emit_grouped(const Polygon& polygon, ColoredOrder& into);
 
   const Surfaces& surfaces_;
   const View& view_;
@@ -76,22 +93,17 @@ class PolygonColors {
   const ScreenRays rays_;
   FragmentShader shader_;
 
-  PrimitiveId id_ = no_primitive;
-  std::optional<ScreenCutout> holes_;
-  std::optional<std::vector<TexcoordLines>> texture_lines_;  ///< made when they are asked for
-  std::vector<TriangleSetup> setup_;
-  std::vector<Part> parts_;
+  std::vector<Polygon> polygons_;
+  std::size_t started_ = 0;       ///< polygons
+  std::vector<Piece> waiting_;    ///< those that come first are last
+  std::vector<Piece> looked_at_;  ///< now
+  std::vector<ColorSample*> asked_;
+  std::vector<Node> nodes_;
   std::vector<Cut> cuts_;
-  std::vector<glm::dvec2> outline_;
-  std::vector<ColorSample> samples_;
-  std::size_t corner_samples_ = 0;  ///< the first ones
-  struct Kept {
-    glm::vec4 color;
-    std::uint32_t shape;
-    std::vector<PaintCorner> corners;
-  };
   std::vector<Kept> kept_;
-  ColoredPieces pieces_;
+  std::vector<Kept*> listed_;
+  std::vector<std::uint32_t> path_;
+  std::vector<glm::dvec2> outline_;
 };
 
 }  // namespace frontmost::shading
