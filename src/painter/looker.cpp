@@ -14,7 +14,7 @@ constexpr int kFewCells = 4;
 /// whole, and is painted over.
 constexpr double kNarrowest = 1.0 / 16;
 /// When so many parts are left of a polygon in a few cells, none is split any more: those go that are hidden whole.
-constexpr std::size_t kMostParts = 48, kMostPartsOfHem = 8;
+constexpr std::size_t kMostParts = 48;
 /// So many of those after a polygon, from the front, may hide it in a cell: without an end, a stack of n planes that
 /// each leave a sliver of the next takes n * n.
 constexpr std::size_t kMostCovers = 4096;
@@ -26,16 +26,6 @@ Extent box_of(Outline outline) {
     box.high = glm::max(box.high, glm::vec2(corner.at));
   }
   return box;
-}
-
-/// Or up to `beside` pixels beside it.
-bool is_within(Outline outline, const glm::dvec2& at, double beside) {
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const glm::dvec2 p(outline[i].at), way = glm::dvec2(outline[i + 1 == outline.size() ? 0 : i + 1].at) - p;
-    const double turn = way.x * (at.y - p.y) - way.y * (at.x - p.x);
-    if (turn > 0 && turn * turn > beside * beside * glm::dot(way, way)) return false;
-  }
-  return true;
 }
 
 /// The cells in two halves along the longer axis.
@@ -81,29 +71,38 @@ std::uint32_t Looker::hider_at(std::size_t slot, const glm::dvec2& at) {
   return no_index;
 }
 
+/// Those that may hide what is behind or beside the polygon in a slot.
+struct Looker::Hiders {
+  Looker& looker;
+  std::size_t slot;
+
+  [[nodiscard]] bool may_hide(std::uint32_t other) const {
+    looker.poll_.count();
+    const Scenery& scenery = looker.scenery_;
+    return scenery.place(other) >= scenery.first_place(slot) && other != slot && looker.may_hide(slot, other);
+  }
+  [[nodiscard]] std::uint32_t at(const glm::dvec2& place) const { return looker.hider_at(slot, place); }
+};
+
+std::uint32_t Looker::hider_beside(std::size_t slot, std::size_t side, const glm::dvec2& at) {
+  const std::uint32_t across = mosaic_.across(scenery_.first_corner(slot) + side);
+  const bool hides = across != no_index && Hiders{*this, slot}.may_hide(across);
+  return hides && is_within(scenery_.outline(across), at, 0) ? across : hider_at(slot, at);
+}
+
 Spreader::Found Looker::spread(std::size_t slot, Outline outline, std::uint32_t hider, const glm::dvec2& at) {
   // It may have been found for what lies next to it.
   if (!is_within(scenery_.outline(hider), at, 0)) return Spreader::Found::unknown;
-  const std::uint32_t first_place = scenery_.first_place(slot);
-  return spreader_.spread(outline, hider, [&](std::uint32_t other) {
-    poll_.count();
-    return scenery_.place(other) >= first_place && other != slot && may_hide(slot, other);
-  });
-}
-
-bool Looker::is_hidden(std::size_t slot, Outline outline, std::uint32_t hider, const glm::dvec2& at) {
-  const Spreader::Found found = spread(slot, outline, hider, at);
-  if (found == Spreader::Found::hidden) return true;
-  if (found == Spreader::Found::open && hider_at(slot, spreader_.open_at()) == no_index) return false;
-  const Extent box = box_of(outline);
-  cutter_.begin(outline);
-  return take_covers({slot, scenery_.first_place(slot), kMostPartsOfHem}, box, scenery_.grid().range(box));
+  spreader_.set(outline);
+  for (const glm::dvec2& open : open_)
+    if (spreader_.holds(open)) return Spreader::Found::open;
+  const Spreader::Found found = spreader_.spread(hider, Hiders{*this, slot});
+  if (found == Spreader::Found::open) open_.push_back(spreader_.open_at());
+  return found;
 }
 
 /// Most are not, and their middles tell.
 bool Looker::is_all_hidden(std::size_t slot) {
-  const Extent& extent = scenery_.extent(slot);
-  const PieceGrid::Range cells = scenery_.grid().range(extent);
   cutter_.begin(scenery_.outline(slot));
   cutter_.keep_within(glm::dvec2(0), scenery_.size());
   if (cutter_.count() == 0) return false;
@@ -112,10 +111,12 @@ bool Looker::is_all_hidden(std::size_t slot) {
   for (const PaintCorner& corner : outline) middle += glm::dvec2(corner.at) / double(outline.size());
   const std::uint32_t hider = hider_at(slot, middle);
   if (hider == no_index) return false;
+  open_.clear();
   const Spreader::Found found = spread(slot, outline, hider, middle);
-  if (found == Spreader::Found::hidden) return true;
-  if (found == Spreader::Found::open && hider_at(slot, spreader_.open_at()) == no_index) return false;
-  return is_few(cells) && take_covers({slot, scenery_.place(slot), kMostPartsOfHem}, extent, cells);
+  if (found != Spreader::Found::unknown) return found == Spreader::Found::hidden;
+  const Extent& extent = scenery_.extent(slot);
+  const PieceGrid::Range cells = scenery_.grid().range(extent);
+  return is_few(cells) && take_covers(slot, extent, cells);
 }
 
 const OutlineList& Looker::look(std::size_t slot) {
@@ -162,7 +163,7 @@ Looker::Corners Looker::part_within(const Corners& outline, const glm::dvec2& lo
 bool Looker::is_all_seen_at_once(std::size_t slot, const Extent& own, const PieceGrid::Range& cells) {
   cutter_.forget_changes();
   const Corners whole(cutter_[0].begin(), cutter_[0].end());
-  take_covers({slot, scenery_.place(slot), kMostParts}, own, cells);
+  take_covers(slot, own, cells);
   if (!cutter_.is_changed()) return true;
   for (std::size_t i = 0; i < cutter_.count(); ++i)
     if (is_narrower(cutter_[i], kNarrowest)) {
@@ -179,7 +180,7 @@ bool Looker::is_first_meeting(const PieceGrid::Range& cells, const Extent& cover
   return x == std::max(cells.first_x, other.first_x) && y == std::max(cells.first_y, other.first_y);
 }
 
-bool Looker::take_covers(const Covers& covers, const Extent& own, const PieceGrid::Range& cells) {
+bool Looker::take_covers(std::size_t slot, const Extent& own, const PieceGrid::Range& cells) {
   const bool is_one_cell = cells.first_x == cells.last_x && cells.first_y == cells.last_y;
   for (int y = cells.first_y; y <= cells.last_y; ++y)
     for (int x = cells.first_x; x <= cells.last_x; ++x) {
@@ -187,15 +188,14 @@ bool Looker::take_covers(const Covers& covers, const Extent& own, const PieceGri
       std::size_t count = 0;
       for (std::size_t i = cell.size(); i-- > 0 && count < kMostCovers;) {
         const std::uint32_t other = cell[i];
-        if (scenery_.place(other) < covers.first) break;
-        if (other == covers.own) continue;
+        if (scenery_.place(other) <= scenery_.place(slot)) break;
         poll_.count();
         const Extent& e = scenery_.extent(other);
         if (is_apart(e, own) || (!is_one_cell && !is_first_meeting(cells, e, x, y))) continue;
-        if (!may_hide(covers.own, other)) continue;
+        if (!may_hide(slot, other)) continue;
         ++count;
         const Cover cover{scenery_.outline(other), glm::dvec2(e.low), glm::dvec2(e.high)};
-        if (cutter_.subtract(cover, cutter_.count() <= covers.most_parts)) return true;
+        if (cutter_.subtract(cover, cutter_.count() <= kMostParts)) return true;
       }
     }
   return false;

@@ -17,16 +17,28 @@ class Looker {
   using IsBehind = std::function<bool(std::uint32_t place, std::uint32_t cover)>;
 
   Looker(const Scenery& scenery, const Mosaic& mosaic, const Execution& execution, IsBehind is_behind = {})
-      : scenery_(scenery), poll_(execution), is_behind_(std::move(is_behind)), spreader_(scenery, mosaic) {}
+      : scenery_(scenery),
+        mosaic_(mosaic),
+        poll_(execution),
+        is_behind_(std::move(is_behind)),
+        spreader_(scenery, mosaic) {}
 
   /// Whether those after the polygon in a slot hide all of it, as far as that is quickly told.
   [[nodiscard]] bool is_all_hidden(std::size_t slot);
 
-  /// The slot of one that hides a point beside the polygon in a slot; no_index: none. It is after the polygon or
-  /// another part of the same primitive, also one before it: that shows nothing else than they do.
-  [[nodiscard]] std::uint32_t hider_at(std::size_t slot, const glm::dvec2& at);
-  /// Whether all that hide points beside the polygon hide a convex outline together, when `hider` hides it at a point.
-  [[nodiscard]] bool is_hidden(std::size_t slot, Outline outline, std::uint32_t hider, const glm::dvec2& at);
+  /// The first of `count` convex outlines beside a side of the polygon in a slot that others hide together; count:
+  /// none. They are after the polygon, or parts of the same primitive, also before it: these show nothing else than it
+  /// does. All outlines are around a point; outline_of(k) gives one of them.
+  template <class OutlineOf>
+  [[nodiscard]] std::size_t first_hidden(std::size_t slot, std::size_t side, std::size_t count, const glm::dvec2& at,
+                                         const OutlineOf& outline_of) {
+    const std::uint32_t hider = hider_beside(slot, side, at);
+    if (hider == no_index) return count;
+    open_.clear();
+    for (std::size_t k = 0; k < count; ++k)
+      if (spread(slot, outline_of(k), hider, at) == Spreader::Found::hidden) return k;
+    return count;
+  }
 
   /// The parts of the polygon in a slot that are seen, until the next call.
   [[nodiscard]] const OutlineList& look(std::size_t slot);
@@ -40,25 +52,26 @@ class Looker {
   /// The same for what is in the cutter, where the cells are few.
   bool is_all_seen_at_once(std::size_t slot, const Extent& own, const PieceGrid::Range& cells);
   Corners part_within(const Corners& outline, const glm::dvec2& low, const glm::dvec2& high);
-  /// What may cover: all from a place on, but the polygon of a slot. Nothing is split into more parts than these.
-  struct Covers {
-    std::size_t own;
-    std::uint32_t first;
-    std::size_t most_parts;
-  };
-  /// As far as no cuts are needed for that. `hider` hides a point of the outline.
+  struct Hiders;
+  /// One that hides a point, or what is next to it; no_index: none.
+  [[nodiscard]] std::uint32_t hider_at(std::size_t slot, const glm::dvec2& at);
+  /// The same, mostly across a side.
+  [[nodiscard]] std::uint32_t hider_beside(std::size_t slot, std::size_t side, const glm::dvec2& at);
+  /// Whether an outline is hidden, by `hider` at a point. Places in open_ are not; adds one where it finds one.
   Spreader::Found spread(std::size_t slot, Outline outline, std::uint32_t hider, const glm::dvec2& at);
   /// Takes what is covered from what is in the cutter. \returns true when nothing is left.
-  bool take_covers(const Covers& covers, const Extent& own, const PieceGrid::Range& cells);
+  bool take_covers(std::size_t slot, const Extent& own, const PieceGrid::Range& cells);
   [[nodiscard]] bool may_hide(std::size_t slot, std::size_t cover) const {
     return scenery_.hides(cover) && (!is_behind_ || is_behind_(scenery_.place(slot), scenery_.place(cover)));
   }
   [[nodiscard]] bool is_first_meeting(const PieceGrid::Range& cells, const Extent& cover, int x, int y) const;
 
   const Scenery& scenery_;
+  const Mosaic& mosaic_;
   Poll poll_;
   const IsBehind is_behind_;
   Spreader spreader_;
+  std::vector<glm::dvec2> open_;
   OutlineCutter cutter_;
   OutlineList seen_;
 };

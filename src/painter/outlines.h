@@ -20,6 +20,16 @@ struct Cover {
 /// Whether an outline is narrower than `width` everywhere, by its area and border.
 [[nodiscard]] bool is_narrower(Outline outline, double width);
 
+/// Whether a point is within an outline, or up to `beside` pixels beside it.
+[[nodiscard]] inline bool is_within(Outline outline, const glm::dvec2& at, double beside) {
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const glm::dvec2 p(outline[i].at), way = glm::dvec2(outline[i + 1 == outline.size() ? 0 : i + 1].at) - p;
+    const double turn = way.x * (at.y - p.y) - way.y * (at.x - p.x);
+    if (turn > 0 && turn * turn > beside * beside * glm::dot(way, way)) return false;
+  }
+  return true;
+}
+
 /// Outlines one after another in one piece of memory.
 class OutlineList {
  public:

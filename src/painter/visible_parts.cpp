@@ -131,14 +131,12 @@ PaintOrder with_hems(const PaintOrder& order, double width, const std::function<
       hemmed.push_back(from);
       if (!scenery.hides(slot) || glm::length(glm::dvec2(to.at - from.at)) < OutlineCutter::thin) continue;
       const glm::dvec2 at = next_to(from, to, width * kHemShapes.back().part);
-      const std::uint32_t hider = looker.hider_at(slot, at);
-      if (hider == no_index) continue;
-      for (const HemShape& shape : kHemShapes) {
-        const std::array<PaintCorner, 4> beside = hem(from, to, width * shape.part, shape.inset);
-        if (!looker.is_hidden(slot, beside, hider, at)) continue;
-        hemmed.insert(hemmed.end(), {beside[1], beside[2]});
-        break;
-      }
+      std::array<PaintCorner, 4> beside;
+      const std::size_t found = looker.first_hidden(slot, i, kHemShapes.size(), at, [&](std::size_t k) {
+        beside = hem(from, to, width * kHemShapes[k].part, kHemShapes[k].inset);
+        return Outline(beside);
+      });
+      if (found < kHemShapes.size()) hemmed.insert(hemmed.end(), {beside[1], beside[2]});
     }
     keep(hemmed);
   });

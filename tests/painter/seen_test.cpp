@@ -88,52 +88,93 @@ TEST(Mosaic, TilesHaveNoOtherOpenSidesThanTheirBorder) {
   EXPECT_EQ(open, 40u);
 }
 
-/// Begins at the tile that `outline` has its first corner in.
-Spreader::Found spread_over_tiles(const Laid& laid, Spreader& spreader, const Points& outline, std::uint32_t missing) {
-  const PaintOrder asked = order_of({outline});
-  const auto first = std::uint32_t(std::floor(outline[0].y / 10) * 10 + std::floor(outline[0].x / 10));
-  return spreader.spread(asked.corners, laid.scenery.slot(first),
-                         [&](std::uint32_t slot) { return laid.scenery.place(slot) != missing; });
-}
+/// All but one hide where they lie.
+struct AllBut {
+  const Laid& laid;
+  std::uint32_t missing;
+  std::size_t* asks;
 
-TEST(Spreader, TellsWhereTilesHideTogether) {
+  [[nodiscard]] bool may_hide(std::uint32_t slot) const {
+    ++*asks;
+    return laid.scenery.place(slot) != missing;
+  }
+  [[nodiscard]] std::uint32_t at(const glm::dvec2& place) const {
+    for (const std::uint32_t slot : laid.scenery.cell_at(place))
+      if (may_hide(slot) && is_within(laid.scenery.outline(slot), place, 0)) return slot;
+    return no_index;
+  }
+};
+
+class SpreadTest : public testing::Test {
+ protected:
+  /// Begins at the polygon in which a place next to the first corner is.
+  Spreader::Found spread(const Laid& laid, const Points& outline, std::uint32_t missing = no_index) {
+    const PaintOrder asked = order_of({outline});
+    Spreader spreader(laid.scenery, laid.mosaic);
+    spreader.set(asked.corners);
+    asks_ = 0;
+    const AllBut hiders{laid, missing, &asks_};
+    const Spreader::Found found = spreader.spread(hiders.at(outline[0] * 0.9 + outline[2] * 0.1), hiders);
+    open_at_ = spreader.open_at();
+    return found;
+  }
+  std::size_t asks_ = 0;
+  glm::dvec2 open_at_{0};
+};
+
+TEST_F(SpreadTest, TellsWhereTilesHideTogether) {
   const Laid laid(tiles(10));
-  Spreader spreader(laid.scenery, laid.mosaic);
   const Points asked{{12, 12}, {12, 38}, {38, 38}, {38, 12}};
-  EXPECT_EQ(spread_over_tiles(laid, spreader, asked, 99), Spreader::Found::hidden);
-  EXPECT_EQ(spread_over_tiles(laid, spreader, asked, 22), Spreader::Found::open);
-  EXPECT_THAT(spreader.open_at().x, testing::AllOf(testing::Ge(20 - 1e-9), testing::Le(30 + 1e-9)));
-  EXPECT_THAT(spreader.open_at().y, testing::AllOf(testing::Ge(20 - 1e-9), testing::Le(30 + 1e-9)));
+  EXPECT_EQ(spread(laid, asked, 99), Spreader::Found::hidden);
+  EXPECT_EQ(spread(laid, asked, 22), Spreader::Found::open);
+  EXPECT_THAT(open_at_.x, testing::AllOf(testing::Ge(20 - 1e-9), testing::Le(30 + 1e-9)));
+  EXPECT_THAT(open_at_.y, testing::AllOf(testing::Ge(20 - 1e-9), testing::Le(30 + 1e-9)));
   // Those that it does not reach may be missing.
   for (const std::uint32_t missing : {0u, 10u, 41u, 44u, 77u})
-    EXPECT_EQ(spread_over_tiles(laid, spreader, asked, missing), Spreader::Found::hidden);
+    EXPECT_EQ(spread(laid, asked, missing), Spreader::Found::hidden);
   // Beyond the last tiles there is nothing.
-  EXPECT_EQ(spread_over_tiles(laid, spreader, {{85, 85}, {85, 95}, {105, 95}}, no_index), Spreader::Found::open);
-  EXPECT_NEAR(spreader.open_at().x, 100, 0.01);
+  EXPECT_EQ(spread(laid, {{85, 85}, {85, 95}, {105, 95}}), Spreader::Found::open);
+  EXPECT_NEAR(open_at_.x, 100, 0.01);
 }
 
-TEST(Spreader, TouchingIsNotCrossing) {
-  const Laid laid(tiles(10));
-  Spreader spreader(laid.scenery, laid.mosaic);
-  // One tile exactly, all its neighbours missing.
-  const PaintOrder asked = order_of({square(50, 50)});
-  const auto none = [](std::uint32_t) { return false; };
-  EXPECT_EQ(spreader.spread(asked.corners, laid.scenery.slot(55), none), Spreader::Found::hidden);
-  const PaintOrder wider = order_of({square(50, 50, 10.01)});
-  EXPECT_EQ(spreader.spread(wider.corners, laid.scenery.slot(55), none), Spreader::Found::open);
+TEST_F(SpreadTest, TouchingIsNotCrossing) {
+  // One tile exactly, all others missing.
+  const Laid laid({square(50, 50)});
+  EXPECT_EQ(spread(laid, square(50, 50)), Spreader::Found::hidden);
+  EXPECT_EQ(spread(laid, square(50, 50, 10.01)), Spreader::Found::open);
 }
 
-TEST(Spreader, GivesUpOverTooMany) {
+/// Bricks: few sides are those of two, but all lie beside others.
+TEST_F(SpreadTest, StepsAlongSidesThatLieBesideTwo) {
+  std::vector<Points> bricks;
+  for (int row = 0; row < 10; ++row)
+    for (int i = 0; i < 10; ++i) {
+      const double x = 10 * i - 4 * (row % 2), y = 10 * row;
+      bricks.push_back({{x, y}, {x, y + 10}, {x + 10, y + 10}, {x + 10, y}});
+    }
+  const Laid laid(bricks);
+  const Points asked{{22, 22}, {12, 44}, {31, 61}, {44, 33}};
+  EXPECT_EQ(spread(laid, asked), Spreader::Found::hidden);
+  EXPECT_LT(asks_, 300u);
+  std::size_t open = 0;
+  for (std::uint32_t missing = 0; missing < bricks.size(); ++missing) {
+    const PaintOrder brick = order_of({bricks[missing]});
+    if (is_within(brick.corners, asked[0] * 0.9 + asked[2] * 0.1, 0)) continue;
+    if (spread(laid, asked, missing) == Spreader::Found::hidden) continue;
+    ++open;
+    EXPECT_TRUE(is_within(brick.corners, open_at_, 1e-9)) << missing;
+  }
+  // Of five rows it reaches into one to four bricks each.
+  EXPECT_GE(open, 8u);
+  EXPECT_LE(open, 16u);
+}
+
+TEST_F(SpreadTest, GivesUpOverTooMany) {
   std::vector<Points> all;
   for (int y = 0; y < 40; ++y)
     for (int x = 0; x < 40; ++x) all.push_back(square(2 * x, 2 * y, 2));
-  const Laid laid(all);
-  Spreader spreader(laid.scenery, laid.mosaic);
-  const PaintOrder asked = order_of({square(1, 1, 70)});
-  std::size_t asks = 0;
-  const auto every = [&](std::uint32_t) { return ++asks > 0; };
-  EXPECT_EQ(spreader.spread(asked.corners, laid.scenery.slot(0), every), Spreader::Found::unknown);
-  EXPECT_LE(asks, 256u);
+  EXPECT_EQ(spread(Laid(all), square(1.5, 1.5, 70)), Spreader::Found::unknown);
+  EXPECT_LE(asks_, 300u);
 }
 
 TEST(Alone, TilesAreAndWhatLiesOverOthersIsNot) {

@@ -49,14 +49,6 @@ bool is_near(const glm::dvec2& at, const glm::dvec2& a, const glm::dvec2& b) {
   return glm::dot(aside, aside) <= kThin * kThin;
 }
 
-bool is_within(Outline outline, const glm::dvec2& at) {
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const glm::dvec2 p(outline[i].at), way = glm::dvec2(outline[i + 1 == outline.size() ? 0 : i + 1].at) - p;
-    if (turn(way, at - p) > 0) return false;
-  }
-  return true;
-}
-
 class Finder {
  public:
   Finder(const Scenery& scenery, const Mosaic& mosaic, const std::vector<std::uint8_t>& gone,
@@ -176,7 +168,7 @@ class Finder {
       if (other == slot || !is_there(other) || beside(scenery_.outline(other), middle, middle) == Beside::apart)
         continue;
       // A neighbour that is only near tells nothing: the polygon is narrow here.
-      if (is_within(scenery_.outline(other), middle)) return spread(slot, State::shared);
+      if (is_within(scenery_.outline(other), middle, 0)) return spread(slot, State::shared);
       is_alone = false;
     }
     if (is_alone) spread(slot, State::alone);

@@ -14,14 +14,18 @@ double turn(const glm::dvec2& way, const glm::dvec2& at) { return way.x * at.y -
 
 void SpreadOutline::set(Outline outline) {
   sides_.clear();
+  low_ = high_ = glm::dvec2(outline[0].at);
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const glm::dvec2 from(outline[i].at), way = glm::dvec2(outline[i + 1 == outline.size() ? 0 : i + 1].at) - from;
     sides_.push_back({from, way, kThin * glm::length(way)});
+    low_ = glm::min(low_, from);
+    high_ = glm::max(high_, from);
   }
 }
 
 SpreadOutline::Crossing SpreadOutline::crossing(const glm::dvec2& a, const glm::dvec2& b) const {
   constexpr Crossing none{1, 0};
+  if (is_beside_box(a, b)) return none;
   Crossing crossing{0, 1};
   const glm::dvec2 way = b - a;
   double least = 0, greatest = 0;
@@ -44,21 +48,35 @@ bool SpreadOutline::holds(const glm::dvec2& at) const {
                      [&](const Side& side) { return turn(side.way, at - side.from) < 0; });
 }
 
-void Spreader::begin(Outline outline, std::uint32_t first) {
-  outline_.set(outline);
+void Spreader::begin(std::uint32_t first) {
   if (++turn_ == 0) {
     std::fill(asked_.begin(), asked_.end(), 0);
     turn_ = 1;
   }
-  found_.assign(1, first);
-  asked_[first] = turn_;
+  found_.clear();
+  add(first, 0);
 }
 
-Spreader::Found Spreader::beyond(const glm::dvec2& a, const glm::dvec2& b, const SpreadOutline::Crossing& crossing) {
-  // Polygons hide what is up to kThin beside them.
-  const glm::dvec2 way = b - a, out = glm::dvec2(-way.y, way.x) * (2 * kThin / glm::length(way));
-  open_at_ = a + way * (0.5 * (crossing.from + crossing.to)) + out;
-  return outline_.holds(open_at_) ? Found::open : Found::unknown;
+glm::dvec2 Spreader::beyond(const glm::dvec2& way) {
+  return glm::dvec2(-way.y, way.x) * (2 * kThin / glm::length(way));
+}
+
+std::uint32_t Spreader::found_at(const glm::dvec2& place, std::size_t likely) const {
+  const auto holds = [&](std::size_t i) { return is_within(scenery_.outline(found_[i].slot), place, 0); };
+  if (holds(likely)) return found_[likely].slot;
+  for (std::size_t i = found_.size(); i-- > 0;)
+    if (i != likely && holds(i)) return found_[i].slot;
+  return no_index;
+}
+
+double Spreader::end_within(Outline outline, const glm::dvec2& from, const glm::dvec2& way) {
+  double end = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const glm::dvec2 p(outline[i].at), side = glm::dvec2(outline[i + 1 == outline.size() ? 0 : i + 1].at) - p;
+    const double beside = kThin * glm::length(side) - turn(side, from - p), change = turn(side, way);
+    if (change > 0) end = std::min(end, beside / change);
+  }
+  return end;
 }
 
 }  // namespace frontmost::painter_detail

@@ -2,6 +2,7 @@
 // Whether polygons that lie side by side hide an outline together, told without cutting anything.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "painter/seen/mosaic.h"
@@ -27,13 +28,18 @@ class SpreadOutline {
     glm::dvec2 from, way;
     double slack;  ///< of turns: where a point is OutlineCutter::thin away
   };
+  [[nodiscard]] bool is_beside_box(const glm::dvec2& a, const glm::dvec2& b) const {
+    return (a.x <= low_.x && b.x <= low_.x) || (a.x >= high_.x && b.x >= high_.x) || (a.y <= low_.y && b.y <= low_.y) ||
+           (a.y >= high_.y && b.y >= high_.y);
+  }
+
   std::vector<Side> sides_;
+  glm::dvec2 low_{0}, high_{0};
 };
 
-/// Spreads from a polygon over those across its sides as far as an outline reaches. As many of them lie over one point
-/// of it as over any other, as long as every side that crosses it is that of two, once to and once fro. So where the
-/// first one lies over a point, and none of those across is missing, they hide all of it. Not for several threads at
-/// once.
+/// Spreads from a polygon that lies over a point of an outline, across the sides of all that it comes to, as far as the
+/// outline reaches. Where there is always one that hides beyond a side, they hide all of the outline together: what
+/// they left open would have a border, and that would be such a side. Not for several threads at once.
 class Spreader {
  public:
   Spreader(const Scenery& scenery, const Mosaic& mosaic)
@@ -41,26 +47,32 @@ class Spreader {
 
   enum class Found : std::uint8_t {
     hidden,
-    open,     ///< beyond a side there is none that hides; open_at() is there
-    unknown,  ///< there are too many, or the place beyond the side is too narrow
+    open,     ///< but at open_at()
+    unknown,  ///< there are too many
   };
-  /// `first` is a slot that hides a point of the outline; may_hide(slot) says which others do where they lie.
-  template <class MayHide>
-  Found spread(Outline outline, std::uint32_t first, const MayHide& may_hide) {
-    begin(outline, first);
+  /// The outline that is asked about from now on.
+  void set(Outline outline) { outline_.set(outline); }
+  [[nodiscard]] bool holds(const glm::dvec2& at) const { return outline_.holds(at); }
+  /// `first` is a slot that hides a point of the outline. Which others do where they lie says hiders.may_hide(slot),
+  /// and hiders.at(place) the slot of one that lies there; no_index: none.
+  template <class Hiders>
+  Found spread(std::uint32_t first, const Hiders& hiders) {
+    begin(first);
     for (std::size_t i = 0; i < found_.size(); ++i) {
-      const Outline over = scenery_.outline(found_[i]);
-      const std::size_t corner = scenery_.first_corner(found_[i]);
+      const Reached reached = found_[i];
+      const Outline over = scenery_.outline(reached.slot);
+      const std::size_t corner = scenery_.first_corner(reached.slot);
       for (std::size_t side = 0; side < over.size(); ++side) {
         const std::uint32_t across = mosaic_.across(corner + side);
-        if (across != no_index && asked_[across] == turn_) continue;
+        if (across != no_index && is_found(across)) continue;
         const glm::dvec2 a(over[side].at), b(over[side + 1 == over.size() ? 0 : side + 1].at);
-        const SpreadOutline::Crossing crossing = outline_.crossing(a, b);
-        if (!crossing.is_any()) continue;
-        if (across == no_index || !may_hide(across)) return beyond(a, b, crossing);
-        if (found_.size() == most) return Found::unknown;
-        asked_[across] = turn_;
-        found_.push_back(across);
+        if (across != no_index && !outline_.crossing(a, b).is_any()) continue;
+        if (across != no_index && hiders.may_hide(across)) {
+          add(across, i);
+        } else if (const Found found = step_along(a, b, i, hiders); found != Found::hidden) {
+          return found;
+        }
+        if (found_.size() > most) return Found::unknown;
       }
     }
     return Found::hidden;
@@ -68,17 +80,54 @@ class Spreader {
   [[nodiscard]] const glm::dvec2& open_at() const { return open_at_; }
 
  private:
-  /// Polygons: those that lie over many small ones are cut by them.
+  /// Polygons, and steps along their sides.
   static constexpr std::size_t most = 256;
 
-  void begin(Outline outline, std::uint32_t first);
-  /// Sets open_at_ to a place next to the side from a to b.
-  Found beyond(const glm::dvec2& a, const glm::dvec2& b, const SpreadOutline::Crossing& crossing);
+  struct Reached {
+    std::uint32_t slot;
+    std::size_t from;  ///< the number of the one before it; the first one's own
+  };
+
+  void begin(std::uint32_t first);
+  [[nodiscard]] bool is_found(std::uint32_t slot) const { return asked_[slot] == turn_; }
+  void add(std::uint32_t slot, std::size_t from) {
+    asked_[slot] = turn_;
+    found_.push_back({slot, from});
+  }
+
+  /// Looks for what hides beyond a side of found_[number] that is not another's, one after the other: meshes that were
+  /// cut have sides that lie beside two.
+  template <class Hiders>
+  Found step_along(const glm::dvec2& a, const glm::dvec2& b, std::size_t number, const Hiders& hiders) {
+    const glm::dvec2 way = b - a, out = beyond(way), from = a + out;
+    const SpreadOutline::Crossing crossing = outline_.crossing(from, b + out);
+    const double step = OutlineCutter::thin / glm::length(way);
+    double at = crossing.from;
+    for (std::size_t steps = 0; at < crossing.to; ++steps) {
+      if (steps == most) return Found::unknown;
+      const glm::dvec2 place = from + way * std::min(at + step, 0.5 * (at + crossing.to));
+      std::uint32_t hider = found_at(place, found_[number].from);
+      if (hider == no_index) {
+        hider = hiders.at(place);
+        open_at_ = place;
+        if (hider == no_index) return Found::open;
+        if (!is_found(hider)) add(hider, number);
+      }
+      at = std::max(end_within(scenery_.outline(hider), from, way), at + step);
+    }
+    return Found::hidden;
+  }
+  /// From a side to what is certainly not on it: polygons hide what is up to OutlineCutter::thin beside them.
+  static glm::dvec2 beyond(const glm::dvec2& way);
+  /// Of those found so far, one that lies over a place, most likely this one.
+  [[nodiscard]] std::uint32_t found_at(const glm::dvec2& place, std::size_t likely) const;
+  /// How much of a way has been gone where it leaves an outline and what is OutlineCutter::thin beside it.
+  static double end_within(Outline outline, const glm::dvec2& from, const glm::dvec2& way);
 
   const Scenery& scenery_;
   const Mosaic& mosaic_;
   SpreadOutline outline_;
-  std::vector<std::uint32_t> found_;
+  std::vector<Reached> found_;
   std::vector<std::uint32_t> asked_;  ///< by slot: in which turn it was found last
   std::uint32_t turn_ = 0;
   glm::dvec2 open_at_{0};
