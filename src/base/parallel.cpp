@@ -7,8 +7,10 @@
 #include <mutex>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "base/crew.h"
 #include "base/float_environment.h"
 
 #if defined(FRONTMOST_THREADS_tbb)
@@ -61,15 +63,44 @@ class ChunkQueue {
   std::exception_ptr error_;
 };
 
+}  // namespace
+
 #if defined(FRONTMOST_THREADS_tbb)
-void drain_on(int threads, ChunkQueue& queue) {
+struct Crew::Helpers {
   // More threads than cores need both the arena and the global limit raised.
-  tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
-  tbb::task_arena arena(threads);
-  arena.execute([&] {
+  explicit Helpers(int threads)
+      : limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads)), arena(threads), most(threads) {}
+
+  tbb::global_control limit;
+  tbb::task_arena arena;
+  const int most;
+};
+#else
+struct Crew::Helpers {};
+#endif
+
+namespace {
+
+/// Those of this thread's innermost Crew; null within a loop, since who waits for the end of an inner one must not
+/// begin with the outer one's chunks.
+thread_local Crew::Helpers* current = nullptr;
+
+#if defined(FRONTMOST_THREADS_tbb)
+void drain_with(Crew::Helpers& helpers, int threads, ChunkQueue& queue) {
+  helpers.arena.execute([&] {
     tbb::parallel_for(
         0, threads, 1, [&](int) { queue.drain(); }, tbb::simple_partitioner());
   });
+}
+
+void drain_on(int threads, ChunkQueue& queue) {
+  struct Outer {
+    Crew::Helpers* const helpers = std::exchange(current, nullptr);
+    ~Outer() { current = helpers; }
+  } const outer;
+  if (outer.helpers && outer.helpers->most >= threads) return drain_with(*outer.helpers, threads, queue);
+  Crew::Helpers helpers(threads);
+  drain_with(helpers, threads, queue);
 }
 #elif defined(FRONTMOST_THREADS_std)
 void drain_on(int threads, ChunkQueue& queue) {
@@ -88,6 +119,18 @@ void drain_on(int, ChunkQueue& queue) { queue.drain(); }
 #endif
 
 }  // namespace
+
+Crew::Crew(const Execution& execution) : outer_(current) {
+  const int threads = thread_count(execution);
+#if defined(FRONTMOST_THREADS_tbb)
+  if (threads > 1) helpers_ = std::make_unique<Helpers>(threads);
+#else
+  (void)threads;
+#endif
+  if (helpers_) current = helpers_.get();
+}
+
+Crew::~Crew() { current = outer_; }
 
 void detail::run_chunks(const Execution& execution, std::size_t count, std::size_t grain, ChunkFunction function,
                         void* context) {

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <string>
 
+#include "base/crew.h"
 #include "base/float_environment.h"
 #include "base/parallel.h"
 #include "base/pool.h"
@@ -101,6 +102,7 @@ Drawing lines(const Surfaces& surfaces, const View& view, const LineOptions& opt
   if (!(options.crease_angle >= 0 && options.crease_angle <= 3.1415926535897932))
     throw Error(ErrorCode::bad_argument, "crease_angle: must be from 0 to pi");
   const IeeeScope ieee;
+  const Crew crew(execution);
   report_progress(execution, "lines", 0);
   WeldedMesh mesh = weld(surfaces, execution);
   const Sight sight(view);

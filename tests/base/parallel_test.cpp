@@ -17,6 +17,8 @@
 #include <immintrin.h>
 #endif
 
+#include "base/crew.h"
+
 namespace frontmost {
 namespace {
 
@@ -84,6 +86,25 @@ TEST(ParallelFor, RunsInsideItself) {
     });
     EXPECT_EQ(calls, 77);
   }
+}
+
+TEST(Crew, ChangesNothingOfWhatLoopsDo) {
+  const Crew outer({.threads = 3});
+  for (const int threads : {1, 2, 3, 5}) {
+    const Crew crew({.threads = threads});
+    for (const int inner_threads : {1, 2, 4}) {
+      std::atomic<int> calls{0};
+      for (int round = 0; round < 20; ++round)
+        parallel_for({.threads = inner_threads}, 7, 1, [&](std::size_t, std::size_t) {
+          const Crew own({.threads = 2});
+          parallel_for({.threads = 2}, 11, 2, [&](std::size_t begin, std::size_t end) { calls += int(end - begin); });
+        });
+      EXPECT_EQ(calls, 20 * 77);
+    }
+  }
+  EXPECT_THROW(parallel_for({.threads = 2}, 9, 1, [](std::size_t, std::size_t) { throw std::logic_error("body"); }),
+               std::logic_error);
+  EXPECT_THROW(Crew({.threads = 1025}), Error);
 }
 
 TEST(ParallelFor, RejectsANumberOfThreadsOutOfRange) {
