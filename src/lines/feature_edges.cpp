@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edges by their lower vertex, triangles side by side at each: a counting sort, and short sorts within.
+// Edges by their lower vertex. Most have two triangles that are wound alike: those are told without a sort.
 #include "lines/feature_edges.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
+#include <tuple>
 
 #include "base/parallel.h"
 #include "lines/joined.h"
+#include "lines/stars.h"
 
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr std::size_t kVerticesPerPart = 4096, kTrianglesPerPoll = 1 << 18;
+constexpr std::size_t kVerticesPerPart = 4096;
 
 /// A triangle at an edge, which is known by its lower vertex.
 struct Side {
@@ -21,76 +25,8 @@ struct Side {
   std::uint32_t triangle;
   std::uint32_t opposite;  ///< the vertex that is not on the edge
   bool is_forward;         ///< the triangle runs from the lower vertex to the upper
-};
 
-std::uint64_t key(const Side& side) { return std::uint64_t(side.upper) << 32 | side.opposite; }
-
-/// As many as most vertices have.
-constexpr std::size_t kFew = 12;
-
-/// By counting who comes before, pair by pair: nothing to guess for the processor. Equal keys stay in order.
-void sort_few(std::span<Side> sides) {
-  Side copy[kFew];
-  std::uint64_t keys[kFew];
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    copy[i] = sides[i];
-    keys[i] = key(sides[i]);
-  }
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    std::size_t before = 0;
-    for (std::size_t j = 0; j < i; ++j) before += keys[j] <= keys[i];
-    for (std::size_t j = i + 1; j < sides.size(); ++j) before += keys[j] < keys[i];
-    sides[before] = copy[i];
-  }
-}
-
-/// The sides of all edges, those of one lower vertex together.
-class SideTable {
- public:
-  SideTable(const WeldedMesh& mesh, const Execution& execution)
-      : first_(mesh.positions.size() + 1, 0), sides_(3 * mesh.triangles.size()) {
-    const auto bands = std::size_t(thread_count(execution));
-    const std::size_t vertices = mesh.positions.size();
-    // A thread counts and enters what belongs to its own vertices: it reads all triangles, which costs less than
-    // counting in common.
-    const auto for_each_side = [&](const auto& visit) {
-      parallel_for(execution, bands, 1, [&](std::size_t band, std::size_t) {
-        const std::size_t begin = vertices * band / bands, end = vertices * (band + 1) / bands;
-        for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-          if (i % kTrianglesPerPoll == 0) check_cancelled(execution);
-          const glm::uvec3& t = mesh.triangles[i];
-          for (int k = 0; k < 3; ++k) {
-            const std::uint32_t lower = std::min(t[k], t[k == 2 ? 0 : k + 1]);
-            if (lower >= begin && lower < end) visit(lower, i, k);
-          }
-        }
-      });
-    };
-    for_each_side([&](std::uint32_t lower, std::uint32_t, int) { ++first_[lower + 1]; });
-    for (std::size_t v = 0; v < vertices; ++v) first_[v + 1] += first_[v];
-    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-    for_each_side([&](std::uint32_t lower, std::uint32_t i, int k) {
-      const glm::uvec3& t = mesh.triangles[i];
-      const std::uint32_t a = t[k], b = t[k == 2 ? 0 : k + 1];
-      sides_[next[lower]++] = {std::max(a, b), i, t[k == 0 ? 2 : k - 1], a < b};
-    });
-  }
-
-  /// Sorted by edge, then by opposite vertex. For different vertices at once.
-  [[nodiscard]] std::span<Side> at(std::uint32_t vertex) {
-    const std::span<Side> sides(sides_.data() + first_[vertex], first_[vertex + 1] - first_[vertex]);
-    if (sides.size() <= kFew)
-      sort_few(sides);
-    else
-      std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-        return key(a) != key(b) ? key(a) < key(b) : a.triangle < b.triangle;
-      });
-    return sides;
-  }
-
- private:
-  std::vector<std::uint32_t> first_;
-  Buffer<Side> sides_;
+  [[nodiscard]] auto key() const { return std::make_tuple(upper, opposite, triangle); }
 };
 
 class Classifier {
@@ -102,6 +38,14 @@ class Classifier {
         options_(options),
         cosine_(std::cos(options.crease_angle)),
         has_borders_(options.borders && !is_one_surface(surfaces.scene())) {}
+
+  [[nodiscard]] const WeldedMesh& mesh() const { return mesh_; }
+  /// Edges of two triangles that are wound alike, face the same way and have SeenTriangle normals of a higher cosine
+  /// are none of the kinds.
+  [[nodiscard]] float plain_cosine() const {
+    if (has_borders_) return std::numeric_limits<float>::infinity();
+    return options_.creases ? float(cosine_) + kNormalRounding : -std::numeric_limits<float>::infinity();
+  }
 
   /// `sides` with different opposite vertices: a triangle that is there twice counts once.
   [[nodiscard]] std::optional<EdgeKind> kind_of(std::span<const Side> sides) const {
@@ -140,7 +84,7 @@ class Classifier {
 
   [[nodiscard]] bool is_crease(const Side& a, const Side& b) const {
     // Neighbours that run along their edge the same way are wound against each other.
-    const glm::dvec3 &n = seen_.normals[a.triangle], &m = seen_.normals[b.triangle];
+    const glm::dvec3 n = normal_of(mesh_, a.triangle), m = normal_of(mesh_, b.triangle);
     const double along = glm::dot(n, m) * (a.is_forward == b.is_forward ? -1.0 : 1.0);
     const double size = std::sqrt(glm::dot(n, n) * glm::dot(m, m));
     if (along > cosine_ * size) return false;
@@ -154,11 +98,49 @@ class Classifier {
   const SeenMesh& seen_;
   const Surfaces& surfaces_;
   const LineOptions& options_;
+  /// More than their product may be wrong by.
+  static constexpr float kNormalRounding = 2e-6f;
   const double cosine_;
   const bool has_borders_;
 };
 
-/// `sides` are those of the edges whose lower vertex is v.
+/// Appends the feature, if it is one, of the edge to Corner::last() of corner j of a paired star.
+void add_feature(std::uint32_t vertex, std::span<const Corner> corners, std::size_t j, const Classifier& classifier,
+                 std::vector<FeatureEdge>& features) {
+  const WeldedMesh& mesh = classifier.mesh();
+  const std::uint32_t upper = corners[j].last(mesh);
+  std::size_t i = 0;
+  while (corners[i].next(mesh) != upper) ++i;
+  Side sides[2] = {{upper, corners[i].triangle(), corners[i].last(mesh), true},
+                   {upper, corners[j].triangle(), corners[j].next(mesh), false}};
+  if (sides[1].opposite < sides[0].opposite) std::swap(sides[0], sides[1]);
+  if (const std::optional<EdgeKind> kind = classifier.kind_of(sides))
+    features.push_back({vertex, upper, sides[0].triangle, sides[1].triangle, *kind, classifier.outer_side(sides)});
+}
+
+/// Appends the features among what is asked of a paired star.
+void add_features(std::uint32_t vertex, std::span<const Corner> corners, std::uint32_t asked,
+                  const Classifier& classifier, std::vector<FeatureEdge>& features) {
+  const std::size_t begin = features.size();
+  for (; asked != 0; asked &= asked - 1)
+    add_feature(vertex, corners, std::size_t(std::countr_zero(asked)), classifier, features);
+  std::sort(features.begin() + std::ptrdiff_t(begin), features.end(),
+            [](const FeatureEdge& a, const FeatureEdge& b) { return a.to < b.to; });
+}
+
+/// The sides of the edges at a vertex to those above it, sorted by edge, then by opposite vertex.
+void find_sides(const WeldedMesh& mesh, std::uint32_t vertex, std::span<const Corner> corners,
+                std::vector<Side>& sides) {
+  sides.clear();
+  for (const Corner& corner : corners) {
+    const std::uint32_t next = corner.next(mesh), last = corner.last(mesh);
+    if (next > vertex) sides.push_back({next, corner.triangle(), last, true});
+    if (last > vertex) sides.push_back({last, corner.triangle(), next, false});
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.key() < b.key(); });
+}
+
+/// `sides` are those of find_sides().
 void add_features(std::span<Side> sides, std::uint32_t v, const Classifier& classifier, Features& features) {
   for (auto begin = sides.begin(); begin != sides.end();) {
     const auto end = std::find_if(begin, sides.end(), [&](const Side& s) { return s.upper != begin->upper; });
@@ -178,20 +160,34 @@ void add_features(std::span<Side> sides, std::uint32_t v, const Classifier& clas
 
 Features find_features(const SeenMesh& seen, const Surfaces& surfaces, const LineOptions& options,
                        const Execution& execution) {
-  SideTable table(seen.mesh, execution);
+  const CornerTable table(seen.mesh, execution);
   const Classifier classifier(seen, surfaces, options);
+  const StarsKernel find_stars = stars_kernel(execution.isa);
   const std::size_t vertices = seen.mesh.positions.size();
   const std::size_t parts = (vertices + kVerticesPerPart - 1) / kVerticesPerPart;
   std::vector<std::vector<FeatureEdge>> edges(parts);
   std::vector<std::vector<std::uint32_t>> twins(parts);
+  Buffer<std::uint8_t> is_spread(vertices);
   parallel_for(execution, vertices, kVerticesPerPart, [&](std::size_t begin, std::size_t end) {
     Features found;
-    for (std::size_t v = begin; v < end; ++v)
-      add_features(table.at(std::uint32_t(v)), std::uint32_t(v), classifier, found);
+    std::vector<Side> sides;
+    Buffer<Star> stars(end - begin);
+    find_stars(seen, table, classifier.plain_cosine(), begin, end, stars.data());
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto v = std::uint32_t(i);
+      const Star& star = stars[i - begin];
+      is_spread[v] = star.is_spread;
+      if (star.is_paired) {
+        add_features(v, table.at(v), star.asked, classifier, found.edges);
+      } else {
+        find_sides(seen.mesh, v, table.at(v), sides);
+        add_features(sides, v, classifier, found);
+      }
+    }
     edges[begin / kVerticesPerPart] = std::move(found.edges);
     twins[begin / kVerticesPerPart] = std::move(found.twins);
   });
-  Features all{joined(edges), joined(twins)};
+  Features all{joined(edges), joined(twins), std::move(is_spread)};
   std::sort(all.twins.begin(), all.twins.end());
   return all;
 }

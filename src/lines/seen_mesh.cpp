@@ -9,25 +9,28 @@ namespace {
 
 constexpr std::size_t kTrianglesPerPart = 4096;
 
-/// The side of the plane through a, b and c with normal n on which the eye is.
-int facing(const BoundedNormal& n, const glm::dvec3 (&at)[3], const Sight& sight) {
-  const Leg to_eye = sight.is_parallel() ? Leg{glm::dvec3(0), sight.forward()} : Leg{sight.eye(), at[0]};
-  const int sign = certain_sign(bounded_dot(n.value, n.error, to_eye.to - to_eye.from));
-  return sign != 2 ? sign : sign_of_determinant({at[1], at[0]}, {at[2], at[0]}, to_eye);
+/// The side of a triangle's plane on which the eye is, exactly.
+int side_of_eye(const WeldedMesh& mesh, std::size_t triangle, const Sight& sight) {
+  const glm::uvec3& t = mesh.triangles[triangle];
+  const glm::dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+  return sign_of_determinant({b, a}, {c, a},
+                             sight.is_parallel() ? Leg{glm::dvec3(0), sight.forward()} : Leg{sight.eye(), a});
 }
 
 }  // namespace
 
 SeenMesh see(const WeldedMesh& mesh, const Sight& sight, const Execution& execution) {
   const std::size_t count = mesh.triangles.size();
-  SeenMesh seen{mesh, Buffer<std::int8_t>(count), Buffer<glm::dvec3>(count)};
+  SeenMesh seen{mesh, Buffer<std::int8_t>(count), Buffer<SeenTriangle>(count)};
+  const SeeKernel see_triangles = see_kernel(execution.isa);
   parallel_for(execution, count, kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
+    see_triangles(mesh, sight, begin, end, seen.triangles.data());
     for (std::size_t i = begin; i < end; ++i) {
-      const glm::uvec3& t = mesh.triangles[i];
-      const glm::dvec3 at[3] = {mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]};
-      const BoundedNormal normal(at[1] - at[0], at[2] - at[0]);
-      seen.facing[i] = std::int8_t(facing(normal, at, sight));
-      seen.normals[i] = normal.value;
+      SeenTriangle& triangle = seen.triangles[i];
+      if (triangle.is_open())
+        triangle.bits ^= SeenTriangle::kOpen ^ std::uint32_t(side_of_eye(mesh, i, sight) + 1)
+                                                   << SeenTriangle::kFacingShift;
+      seen.facing[i] = std::int8_t(triangle.facing());
     }
   });
   return seen;

@@ -4,8 +4,6 @@
 
 #include "lines/shadow_kernel.h"
 
-#include "base/exact_vector.h"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lines/shadow_kernel.cpp"
 #include "base/isa.h"
@@ -27,20 +25,7 @@ using DF = hn::CappedTag<float, 16>;
 
 using Vector3 = Lanes3<V>;
 
-/// As BoundedNormal.
-struct Normals {
-  Vector3 value, error;
-
-  HWY_INLINE Normals(const Vector3& a, const Vector3& b) {
-    const auto minor = [](V p, V q, V r, V s) HWY_ATTR { return hn::Sub(hn::Mul(p, q), hn::Mul(r, s)); };
-    value = {minor(a.y, b.z, b.y, a.z), minor(a.z, b.x, b.z, a.x), minor(a.x, b.y, b.x, a.y)};
-    const Vector3 p = Abs(a), q = Abs(b);
-    const V rounding = hn::Set(D(), kRounding);
-    const auto bound = [&](V s, V t, V u, V v)
-                           HWY_ATTR { return hn::Mul(rounding, hn::Add(hn::Mul(s, t), hn::Mul(u, v))); };
-    error = {bound(p.y, q.z, p.z, q.y), bound(p.z, q.x, p.x, q.z), bound(p.x, q.y, p.y, q.x)};
-  }
-};
+using Normals = BoundedNormals<V>;
 
 /// Values with the signs that are certain.
 struct Values {
@@ -50,10 +35,9 @@ struct Values {
   /// n.v times `sign`; zero where `is_on`. Any coordinate of v may be wrong by `slack`.
   HWY_INLINE Values(const Normals& n, const Vector3& v, V sign, M is_on, double slack) {
     const D d;
-    const Vector3 a = Abs(v);
     value = hn::Mul(Dot(n.value, v), sign);
     const Vector3 size = Abs(n.value);
-    V error = hn::Add(Dot(n.error, a), hn::Mul(hn::Set(d, kRounding), Dot(size, a)));
+    V error = n.ErrorOfDot(v);
     if (slack > 0) error = hn::Add(error, hn::Mul(hn::Set(d, slack), hn::Add(hn::Add(size.x, size.y), size.z)));
     is_positive = hn::AndNot(is_on, hn::Gt(value, error));
     is_negative = hn::AndNot(is_on, hn::Lt(value, hn::Neg(error)));

@@ -11,6 +11,7 @@
 
 #include <glm/glm.hpp>
 
+#include "base/exact_vector.h"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -40,6 +41,27 @@ template <class V>
 HWY_INLINE V Dot(const Lanes3<V>& a, const Lanes3<V>& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
+
+/// BoundedNormal of base/exact_vector.h, operation by operation, for doubles.
+template <class V>
+struct BoundedNormals {
+  Lanes3<V> value, error;
+
+  HWY_INLINE BoundedNormals(const Lanes3<V>& a, const Lanes3<V>& b) {
+    const auto minor = [](V p, V q, V r, V s) HWY_ATTR { return hn::Sub(hn::Mul(p, q), hn::Mul(r, s)); };
+    value = {minor(a.y, b.z, b.y, a.z), minor(a.z, b.x, b.z, a.x), minor(a.x, b.y, b.x, a.y)};
+    const Lanes3<V> p = Abs(a), q = Abs(b);
+    const V rounding = hn::Set(hn::DFromV<V>(), kRounding);
+    const auto bound = [&](V s, V t, V u, V v)
+                           HWY_ATTR { return hn::Mul(rounding, hn::Add(hn::Mul(s, t), hn::Mul(u, v))); };
+    error = {bound(p.y, q.z, p.z, q.y), bound(p.z, q.x, p.x, q.z), bound(p.x, q.y, p.y, q.x)};
+  }
+  /// As bounded_dot(): by how much n.v may be wrong.
+  HWY_INLINE V ErrorOfDot(const Lanes3<V>& v) const {
+    const Lanes3<V> a = Abs(v);
+    return hn::Add(Dot(error, a), hn::Mul(hn::Set(hn::DFromV<V>(), kRounding), Dot(Abs(value), a)));
+  }
+};
 
 }  // namespace HWY_NAMESPACE
 }  // namespace frontmost::lines_detail

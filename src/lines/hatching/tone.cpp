@@ -53,11 +53,12 @@ void find_dark(const NormalAlong& normal, const glm::dvec3& to_light, double lim
 
 CornerNormals::CornerNormals(const SeenMesh& seen, const Surfaces& surfaces, double crease_angle)
     : mesh_(seen.mesh),
-      normals_(seen.normals),
+      normals_(mesh_.triangles.size()),
       surfaces_(surfaces),
       cosine_(float(std::cos(crease_angle))),
       first_(mesh_.positions.size() + 2, 0),
       triangles_(3 * mesh_.triangles.size()) {
+  for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) normals_[i] = normal_of(mesh_, i);
   // Counted two places further on, so that filling leaves the beginnings where they belong.
   for (const glm::uvec3& t : mesh_.triangles)
     for (int k = 0; k < 3; ++k) ++first_[t[k] + 2];

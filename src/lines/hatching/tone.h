@@ -36,7 +36,7 @@ class CornerNormals {
   [[nodiscard]] glm::dvec3 unit_normal(std::uint32_t triangle) const;
 
   const WeldedMesh& mesh_;
-  const Buffer<glm::dvec3>& normals_;
+  Buffer<glm::dvec3> normals_;
   const Surfaces& surfaces_;
   const double cosine_;
   Buffer<std::uint32_t> first_, triangles_;  ///< by vertex: the triangles at it
