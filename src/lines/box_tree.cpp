@@ -117,8 +117,9 @@ SpaceBoxes boxes_of_groups(std::size_t count, const BoxBelow& box_below) {
 
 }  // namespace
 
-BoxTree::BoxTree(const WeldedMesh& mesh, const std::vector<std::uint32_t>& left_out, const Execution& execution)
-    : kernels_(space_kernels(execution.isa)), triangles_(mesh.triangles.size() - left_out.size()) {
+BoxTree::BoxTree(const WeldedMesh& mesh, const Features& features, const Execution& execution)
+    : kernels_(space_kernels(execution.isa)), triangles_(mesh.triangles.size() - features.twins.size()) {
+  const std::vector<std::uint32_t>& left_out = features.twins;
   const std::size_t count = triangles_.count;
   const Curve curve(mesh);
   Buffer<std::uint64_t> keys(count);
@@ -134,13 +135,14 @@ BoxTree::BoxTree(const WeldedMesh& mesh, const std::vector<std::uint32_t>& left_
   });
   sort_by_key(keys);
   const float scale = curve.scale();
+  const bool knows_spread = !features.is_spread.empty();
   parallel_for(execution, triangles_.numbers.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto number = std::uint32_t(keys[std::min(i, count - 1)]);
       triangles_.numbers[i] = number;
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t vertex = mesh.triangles[number][k];
-        triangles_.vertices[k][i] = vertex;
+        triangles_.vertices[k][i] = knows_spread && features.is_spread[vertex] ? vertex : vertex | kNotSpread;
         for (int axis = 0; axis < 3; ++axis)
           triangles_.corners[3 * k + axis][i] = mesh.positions.places()[vertex][axis] * scale;
       }

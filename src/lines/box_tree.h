@@ -6,16 +6,16 @@
 #include <bit>
 #include <vector>
 
+#include "lines/feature_edges.h"
 #include "lines/space_lanes.h"
-#include "lines/welded_mesh.h"
 
 namespace frontmost::lines_detail {
 
 class BoxTree {
  public:
   /// O(triangles). Triangles of a like size are together, so that large ones do not widen the boxes of small ones.
-  /// Without those `left_out`, which are in order.
-  BoxTree(const WeldedMesh& mesh, const std::vector<std::uint32_t>& left_out, const Execution& execution);
+  /// Without twins.
+  BoxTree(const WeldedMesh& mesh, const Features& features, const Execution& execution);
 
   /// Groups of up to sixteen triangles.
   [[nodiscard]] std::size_t group_count() const { return triangles_.numbers.size() / kSpaceLanes; }

@@ -227,7 +227,7 @@ void order_ends(std::vector<Crossing>& crossings) {
 
 std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features, const Execution& execution) {
   if (mesh.triangles.size() < features.twins.size() + 2) return {};
-  const BoxTree tree(mesh, features.twins, execution);
+  const BoxTree tree(mesh, features, execution);
   const std::size_t parts = (tree.group_count() + kGroupsPerPart - 1) / kGroupsPerPart;
   std::vector<std::vector<Crossing>> crossings(parts);
   std::vector<std::vector<EdgeContact>> contacts(parts);

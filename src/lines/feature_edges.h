@@ -19,8 +19,8 @@ struct FeatureEdge {
 struct Features {
   std::vector<FeatureEdge> edges;    ///< in the order of their vertices
   std::vector<std::uint32_t> twins;  ///< ascending: triangles with the same corners as another before them
-  /// By vertex, whether the triangles there, as they are seen along one of the axes, lie side by side all around it: no
-  /// two of them meet but in their common corners. Not known (0) of vertices that no axis, or too many triangles, tell.
+  /// By vertex, Star::is_spread: no two of its triangles meet but in their common corners. 0, or an empty list, where
+  /// nothing is known.
   Buffer<std::uint8_t> is_spread;
 };
 

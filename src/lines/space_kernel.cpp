@@ -154,7 +154,21 @@ struct Lanes {
     return hn::RebindMask(
         D(), hn::Or(hn::Or(hn::Eq(vertex[0], wanted), hn::Eq(vertex[1], wanted)), hn::Eq(vertex[2], wanted)));
   }
-  /// Which touch the probe's box and may have corners on both sides of its plane.
+  /// Which touch the probe's box, and have no vertex in common with it around which all is known to lie side by side.
+  HWY_INLINE M MayMeet(const Probe& probe) const {
+    const DU d;
+    const auto overlaps = [&](V from, V to, int axis) HWY_ATTR {
+      return Overlaps(from, to, probe.all.low[axis][probe.lane], probe.all.high[axis][probe.lane]);
+    };
+    const M touches =
+        hn::And(hn::And(overlaps(low.x, high.x, 0), overlaps(low.y, high.y, 1)), overlaps(low.z, high.z, 2));
+    const auto has = [&](int k) HWY_ATTR {
+      const auto wanted = hn::Set(d, probe.all.spread[k][probe.lane]);
+      return hn::Or(hn::Or(hn::Eq(vertex[0], wanted), hn::Eq(vertex[1], wanted)), hn::Eq(vertex[2], wanted));
+    };
+    return hn::AndNot(hn::RebindMask(D(), hn::Or(hn::Or(has(0), has(1)), has(2))), touches);
+  }
+  /// Which may have corners on both sides of the probe's plane.
   HWY_INLINE M Straddles(const Probe& probe, float least, float most) const {
     const D d;
     M above = hn::FirstN(d, 0), below = above;
@@ -166,12 +180,7 @@ struct Lanes {
       above = hn::Or(above, hn::Not(hn::Or(shared, hn::Lt(value, hn::Set(d, least)))));
       below = hn::Or(below, hn::Not(hn::Or(shared, hn::Gt(value, hn::Set(d, most)))));
     }
-    const auto overlaps = [&](V from, V to, int axis) HWY_ATTR {
-      return Overlaps(from, to, probe.all.low[axis][probe.lane], probe.all.high[axis][probe.lane]);
-    };
-    const M touches =
-        hn::And(hn::And(overlaps(low.x, high.x, 0), overlaps(low.y, high.y, 1)), overlaps(low.z, high.z, 2));
-    return hn::And(touches, hn::And(above, below));
+    return hn::And(above, below);
   }
   /// Of whose planes the probe may have corners on both sides; none that share two vertices with it.
   HWY_INLINE M IsStraddled(const Probe& probe, const M (&has)[3]) const {
@@ -243,6 +252,10 @@ void SetProbes(const SpaceTriangles& triangles, std::size_t first, SpaceProbes& 
     store(lanes.high, probes.high);
     store(lanes.plane.normal, probes.normal);
     store(lanes.plane.size, probes.size);
+    for (int k = 0; k < 3; ++k) {
+      const auto is_spread = hn::Eq(hn::And(lanes.vertex[k], hn::Set(DU(), kNotSpread)), hn::Zero(DU()));
+      hn::Store(hn::IfThenElse(is_spread, lanes.vertex[k], hn::Set(DU(), no_index)), DU(), probes.spread[k] + i);
+    }
   }
 }
 
@@ -259,10 +272,15 @@ std::uint32_t CrossingGroups(const SpaceTriangles& triangles, std::size_t first,
     const Lanes lanes(triangles, first + i, middle);
     // Without a branch a probe: whether any lane is left is anybody's guess.
     std::uint16_t left[kSpaceLanes];
-    std::uint32_t some_left = 0;
+    std::uint32_t near = 0, some_left = 0;
     frontmost::HWY_NAMESPACE::ForEachBit(touching, [&](std::size_t p) HWY_ATTR {
+      left[p] = std::uint16_t(frontmost::HWY_NAMESPACE::BitsOf(d, lanes.MayMeet({triangles, probes, p})));
+      near |= std::uint32_t(left[p] != 0) << p;
+    });
+    if (near == 0) continue;
+    frontmost::HWY_NAMESPACE::ForEachBit(near, [&](std::size_t p) HWY_ATTR {
       const M straddles = lanes.Straddles({triangles, probes, p}, thresholds.least[p], thresholds.most[p]);
-      left[p] = std::uint16_t(frontmost::HWY_NAMESPACE::BitsOf(d, straddles));
+      left[p] &= std::uint16_t(frontmost::HWY_NAMESPACE::BitsOf(d, straddles));
       some_left |= std::uint32_t(left[p] != 0) << p;
     });
     frontmost::HWY_NAMESPACE::ForEachBit(some_left, [&](std::size_t p) HWY_ATTR {

@@ -39,11 +39,14 @@ struct SpaceBoxes {
   }
 };
 
+/// In a vertex' number: its triangles are not known to lie side by side around it.
+inline constexpr std::uint32_t kNotSpread = 0x80000000u;
+
 /// Padded by repeating the last.
 struct SpaceTriangles {
   std::size_t count = 0;
-  Buffer<float> corners[9];  ///< of any scale
-  Buffer<std::uint32_t> vertices[3];
+  Buffer<float> corners[9];           ///< of any scale
+  Buffer<std::uint32_t> vertices[3];  ///< with kNotSpread
   Buffer<std::uint32_t> numbers;
 
   explicit SpaceTriangles(std::size_t size) : count(size), numbers(padded_to_lanes(size)) {
@@ -65,6 +68,7 @@ inline constexpr float kLeastSize = 1e-32f;
 /// Sixteen triangles that others are held against, from `first` on.
 struct SpaceProbes {
   std::size_t first;
+  alignas(64) std::uint32_t spread[3][kSpaceLanes];             ///< their vertices; no_index for those with kNotSpread
   alignas(64) float low[3][kSpaceLanes], high[3][kSpaceLanes];  ///< their boxes
   alignas(64) float normal[3][kSpaceLanes];                     ///< of any length, each component to 2^-22 of `size`
   alignas(64) float size[3][kSpaceLanes];  ///< at least the absolute values that it is a difference of
@@ -78,9 +82,9 @@ struct SpaceKernels {
   /// Bit i: box first + i has a point in common with `box`.
   std::uint32_t (*touching)(const SpaceBoxes& boxes, std::size_t first, const Box& box);
   void (*set_probes)(const SpaceTriangles& triangles, std::size_t first, SpaceProbes& probes);
-  /// Triangles whose box touches a probe's, that share at most one vertex with it, and of which rounding does not rule
-  /// out that each has corners on both sides of the other's plane. `box` holds the sixteen triangles. Returns which
-  /// probes have any, and sets their masks.
+  /// Triangles whose box touches a probe's, that share no vertex with it but one with kNotSpread, and of which rounding
+  /// does not rule out that each has corners on both sides of the other's plane. `box` holds the sixteen triangles.
+  /// Returns which probes have any, and sets their masks.
   std::uint32_t (*crossing)(const SpaceTriangles& triangles, std::size_t first, const Box& box,
                             const SpaceProbes& probes, SpaceMasks& masks);
 };

@@ -129,6 +129,40 @@ TEST(EdgeContacts, BeamsThroughEachOther) {
   }
 }
 
+/// Two pairs of triangles on an edge each: one of either lies on the ground, the other stands on it. What they have in
+/// common on the ground lies along both edges, or it were no line at all.
+TEST(EdgeContacts, OnOnePlaneLieAlongBothEdges) {
+  Random random(9);
+  const auto on_ground = [&] {
+    const auto x = float(random.below(4));
+    const auto y = float(random.below(4));
+    return glm::vec3(x, y, 0);
+  };
+  std::size_t found = 0;
+  for (int trial = 0; trial < 4000; ++trial) {
+    Mesh mesh;
+    for (const float side : {-1.0f, 1.0f}) {
+      const glm::vec3 a = on_ground();
+      const glm::vec3 b = on_ground();
+      const glm::vec3 c = on_ground();
+      add_triangle(mesh, a, b, c);
+      add_triangle(mesh, b, a, {40 * side, 2, 20});
+    }
+    const auto is_along = [&](std::size_t edge, const glm::dvec3& p) {
+      const glm::dvec3 a = mesh.positions[6 * edge], b = mesh.positions[6 * edge + 1];
+      return (b.x - a.x) * (p.y - a.y) == (b.y - a.y) * (p.x - a.x);
+    };
+    const Scene scene = scene_of(mesh);
+    for (const Crossing& c : find_crossings(weld(Surfaces(scene), {}), {}, {})) {
+      if (c.from.place.z != 0 || c.to.place.z != 0) continue;
+      ++found;
+      for (const std::size_t edge : {0u, 1u})
+        EXPECT_TRUE(is_along(edge, c.from.place) && is_along(edge, c.to.place)) << trial;
+    }
+  }
+  EXPECT_GT(found, 2u);
+}
+
 TEST(EdgeContacts, OrderOfTrianglesAndCornersDoesNotMatter) {
   Random random(4);
   Mesh mesh = box(glm::vec3(-1), glm::vec3(1), false);
