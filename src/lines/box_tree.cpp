@@ -4,15 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 #include "base/parallel.h"
 #include "surfaces/hilbert.h"
+#include "surfaces/radix_sort.h"
 
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr std::size_t kPerPart = 4096;
-constexpr int kBitsAnAxis = 9;
+constexpr std::size_t kPerPart = 4096, kGroupsPerPart = 256;
+constexpr int kBitsAnAxis = 9, kKeyBits = 3 + 3 * kBitsAnAxis;
 constexpr int kExponents = 160;  // more than floats have
 
 /// The low 9 bits, two apart.
@@ -28,11 +30,13 @@ Box box_of(const WeldedMesh& mesh, std::size_t triangle) {
   return box;
 }
 
+/// As std::frexp() has it, which is many times slower, of the box's longest side. Triangles have one that is not 0.
 int exponent_of(const Box& box) {
   const glm::dvec3 size = glm::dvec3(box.high) - glm::dvec3(box.low);
-  int exponent;
-  std::frexp(std::max({size.x, size.y, size.z}), &exponent);
-  return std::clamp(exponent, -kExponents, kExponents - 1);
+  const double longest = std::max({size.x, size.y, size.z});
+  std::uint64_t bits;
+  std::memcpy(&bits, &longest, sizeof bits);
+  return std::clamp(int(bits >> 52) - 1022, -kExponents, kExponents - 1);
 }
 
 /// Sizes of triangles by exponent.
@@ -75,7 +79,7 @@ class Curve {
     const glm::dvec3 at = ((glm::dvec3(box.low) + glm::dvec3(box.high)) * 0.5 - low_) * scale_;
     const auto step = [&](double t) { return spread_[std::size_t(std::clamp(t, 0.0, kSteps))]; };
     const std::uint32_t size = classes_.of[std::size_t(exponent_of(box) + kExponents)];
-    return size << 27 | hilbert_place(step(at.x) | step(at.y) << 1 | step(at.z) << 2, kBitsAnAxis);
+    return size << 3 * kBitsAnAxis | hilbert_place(step(at.x) | step(at.y) << 1 | step(at.z) << 2, kBitsAnAxis);
   }
   /// Makes most triangles as large as 1: the kernels take products of many lengths, and what is less than floats can
   /// hold costs hundreds of cycles. A power of two rounds nothing; what it makes infinite is left open.
@@ -89,31 +93,6 @@ class Curve {
   double scale_ = 0;
   std::array<std::uint32_t, 1 << kBitsAnAxis> spread_;
 };
-
-/// By the upper half: three passes of ten bits. Equal ones stay in order.
-void sort_by_key(Buffer<std::uint64_t>& keys) {
-  constexpr std::size_t buckets = 1024;
-  Buffer<std::uint64_t> other(keys.size());
-  for (int shift = 32; shift < 62; shift += 10) {
-    std::array<std::size_t, buckets + 1> next{};
-    for (const std::uint64_t key : keys) ++next[(key >> shift) % buckets + 1];
-    for (std::size_t i = 0; i < buckets; ++i) next[i + 1] += next[i];
-    for (const std::uint64_t key : keys) other[next[(key >> shift) % buckets]++] = key;
-    keys.swap(other);
-  }
-}
-
-/// Boxes of `count` groups of what lies below.
-template <class BoxBelow>
-SpaceBoxes boxes_of_groups(std::size_t count, const BoxBelow& box_below) {
-  SpaceBoxes boxes(count);
-  for (std::size_t group = 0; group < count; ++group) {
-    Box box;
-    for (std::size_t i = 0; i < kSpaceLanes; ++i) box.include(box_below(group * kSpaceLanes + i));
-    boxes.set(group, box);
-  }
-  return boxes;
-}
 
 }  // namespace
 
@@ -133,26 +112,37 @@ BoxTree::BoxTree(const WeldedMesh& mesh, const Features& features, const Executi
       keys[i] = std::uint64_t(curve.place_of(box_of(mesh, t))) << 32 | t;
     }
   });
-  sort_by_key(keys);
+  keys = radix_sort(std::move(keys), kKeyBits, execution);
   const float scale = curve.scale();
   const bool knows_spread = !features.is_spread.empty();
-  parallel_for(execution, triangles_.numbers.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto number = std::uint32_t(keys[std::min(i, count - 1)]);
-      triangles_.numbers[i] = number;
-      for (int k = 0; k < 3; ++k) {
-        const std::uint32_t vertex = mesh.triangles[number][k];
-        triangles_.vertices[k][i] = knows_spread && features.is_spread[vertex] ? vertex : vertex | kNotSpread;
-        for (int axis = 0; axis < 3; ++axis)
-          triangles_.corners[3 * k + axis][i] = mesh.positions.places()[vertex][axis] * scale;
+  levels_.emplace_back(group_count());
+  parallel_for(execution, group_count(), kGroupsPerPart, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t group = begin; group < end; ++group) {
+      Box box;
+      for (std::size_t i = group * kSpaceLanes; i < (group + 1) * kSpaceLanes; ++i) {
+        const auto number = std::uint32_t(keys[std::min(i, count - 1)]);
+        triangles_.numbers[i] = number;
+        for (int k = 0; k < 3; ++k) {
+          const std::uint32_t vertex = (&mesh.triangles[number].x)[k];
+          const glm::vec3 corner = mesh.positions.places()[vertex] * scale;
+          triangles_.vertices[k][i] = knows_spread && features.is_spread[vertex] ? vertex : vertex | kNotSpread;
+          triangles_.corners[3 * k][i] = corner.x;
+          triangles_.corners[3 * k + 1][i] = corner.y;
+          triangles_.corners[3 * k + 2][i] = corner.z;
+          box.include(corner);
+        }
       }
+      levels_[0].set(group, box);
     }
   });
-  levels_.push_back(
-      boxes_of_groups(triangles_.numbers.size() / kSpaceLanes, [&](std::size_t i) { return triangles_.box(i); }));
   while (levels_.back().group_count() > 1) {
     const SpaceBoxes& below = levels_.back();
-    SpaceBoxes level = boxes_of_groups(below.group_count(), [&](std::size_t i) { return below.get(i); });
+    SpaceBoxes level(below.group_count());
+    for (std::size_t group = 0; group < below.group_count(); ++group) {
+      Box box;
+      for (std::size_t i = 0; i < kSpaceLanes; ++i) box.include(below.get(group * kSpaceLanes + i));
+      level.set(group, box);
+    }
     levels_.push_back(std::move(level));
   }
 }

@@ -57,17 +57,38 @@ struct Plane {
   Vector3 corner, normal, size;
 };
 
+HWY_INLINE Plane PlaneThrough(const Vector3& corner, const Vector3& one, const Vector3& other) {
+  const Vector3 a = Minus(one, corner), b = Minus(other, corner), c = Abs(a), d = Abs(b);
+  const auto minor = [](V p, V q, V r, V s) HWY_ATTR { return hn::Sub(hn::Mul(p, q), hn::Mul(r, s)); };
+  const auto bound = [](V p, V q, V r, V s)
+                         HWY_ATTR { return hn::Add(hn::Add(hn::Mul(p, q), hn::Mul(r, s)), hn::Set(D(), kLeastSize)); };
+  return {corner,
+          {minor(a.y, b.z, a.z, b.y), minor(a.z, b.x, a.x, b.z), minor(a.x, b.y, a.y, b.x)},
+          {bound(c.y, d.z, c.z, d.y), bound(c.z, d.x, c.x, d.z), bound(c.x, d.y, c.y, d.x)}};
+}
+
+/// Whether a point is above a plane, or below, whatever rounding did; neither for what is no number.
+struct Height {
+  M is_above, is_below;
+
+  HWY_INLINE Height(const Vector3& point, const Plane& plane) {
+    const D d;
+    const Vector3 along = Minus(point, plane.corner);
+    const V value = Dot(along, plane.normal);
+    const V error = hn::Add(hn::Mul(Dot(Abs(along), plane.size), hn::Set(d, kShare)), hn::Set(d, kLeast));
+    is_above = hn::Gt(value, error);
+    is_below = hn::Lt(value, hn::Neg(error));
+  }
+};
+
 /// Which corners rounding does not rule out to be above a plane, and below; its own vertices are neither.
 struct Sides {
   M above, below;
 
   HWY_INLINE void Add(const Vector3& corner, const Plane& plane, M is_shared) {
-    const D d;
-    const Vector3 along = Minus(corner, plane.corner);
-    const V value = Dot(along, plane.normal);
-    const V error = hn::Add(hn::Mul(Dot(Abs(along), plane.size), hn::Set(d, kShare)), hn::Set(d, kLeast));
-    above = hn::Or(above, hn::Not(hn::Or(is_shared, hn::Lt(value, hn::Neg(error)))));
-    below = hn::Or(below, hn::Not(hn::Or(is_shared, hn::Gt(value, error))));
+    const Height height(corner, plane);
+    above = hn::Or(above, hn::Not(hn::Or(is_shared, height.is_below)));
+    below = hn::Or(below, hn::Not(hn::Or(is_shared, height.is_above)));
   }
   HWY_INLINE M Both() const { return hn::And(above, below); }
 };
@@ -75,6 +96,23 @@ struct Sides {
 HWY_INLINE Vector3 Choose(M mask, const Vector3& yes, const Vector3& no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
+
+/// A triangle that a plane cuts: the corner that is alone on its side of it, and the other two. Of use where it
+/// `is_known` on which side each of them is.
+struct Cut {
+  Vector3 alone, one, other;
+  M is_known;
+
+  HWY_INLINE Cut(const Vector3 (&p)[3], const Plane& plane) {
+    const Height a(p[0], plane), b(p[1], plane), c(p[2], plane);
+    const auto known = [](const Height& h) HWY_ATTR { return hn::Or(h.is_above, h.is_below); };
+    is_known = hn::And(hn::And(known(a), known(b)), known(c));
+    const M is_first = hn::Not(hn::Xor(b.is_above, c.is_above)), is_second = hn::Not(hn::Xor(a.is_above, c.is_above));
+    alone = Choose(is_first, p[0], Choose(is_second, p[1], p[2]));
+    one = Choose(is_first, p[1], Choose(is_second, p[2], p[0]));
+    other = Choose(is_first, p[2], Choose(is_second, p[0], p[1]));
+  }
+};
 
 /// From a corner that lies in a plane to where the opposite side passes through it, of any length.
 struct Reach {
@@ -137,18 +175,7 @@ struct Lanes {
            least(corner[0].z, corner[1].z, corner[2].z)};
     high = {most(corner[0].x, corner[1].x, corner[2].x), most(corner[0].y, corner[1].y, corner[2].y),
             most(corner[0].z, corner[1].z, corner[2].z)};
-    SetPlane();
-  }
-  HWY_INLINE void SetPlane() {
-    const Vector3 a = Minus(corner[1], corner[0]), b = Minus(corner[2], corner[0]);
-    const auto minor = [](V p, V q, V r, V s) HWY_ATTR { return hn::Sub(hn::Mul(p, q), hn::Mul(r, s)); };
-    const auto bound = [](V p, V q, V r, V s) HWY_ATTR {
-      return hn::Add(hn::Add(hn::Mul(p, q), hn::Mul(r, s)), hn::Set(D(), kLeastSize));
-    };
-    const Vector3 p = Abs(a), q = Abs(b);
-    plane = {corner[0],
-             {minor(a.y, b.z, a.z, b.y), minor(a.z, b.x, a.x, b.z), minor(a.x, b.y, a.y, b.x)},
-             {bound(p.y, q.z, p.z, q.y), bound(p.z, q.x, p.x, q.z), bound(p.x, q.y, p.y, q.x)}};
+    plane = PlaneThrough(corner[0], corner[1], corner[2]);
   }
   HWY_INLINE M Has(hn::Vec<DU> wanted) const {
     return hn::RebindMask(
@@ -189,6 +216,18 @@ struct Lanes {
     for (int k = 0; k < 3; ++k) sides.Add(probe.Corner(k), plane, has[k]);
     const M two = hn::Or(hn::Or(hn::And(has[0], has[1]), hn::And(has[1], has[2])), hn::And(has[2], has[0]));
     return hn::AndNot(two, sides.Both());
+  }
+  /// Which certainly meet the line that their plane and the probe's have in common wholly before the probe does, or
+  /// behind: each of the two sides of one that cross the other's plane then turns the same way to each of the other's.
+  HWY_INLINE M MeetsLineApart(const Probe& probe) const {
+    const Vector3 p[3] = {probe.Corner(0), probe.Corner(1), probe.Corner(2)};
+    const Cut own(corner, {p[0], probe.Splat3(probe.all.normal), probe.Splat3(probe.all.size)}), other(p, plane);
+    const Plane one = PlaneThrough(other.alone, own.alone, own.one),
+                two = PlaneThrough(other.alone, own.alone, own.other);
+    const Height a(other.one, one), b(other.other, one), c(other.one, two), d(other.other, two);
+    const M above = hn::And(hn::And(a.is_above, b.is_above), hn::And(c.is_above, d.is_above));
+    const M below = hn::And(hn::And(a.is_below, b.is_below), hn::And(c.is_below, d.is_below));
+    return hn::And(hn::And(own.is_known, other.is_known), hn::Or(above, below));
   }
   /// Of those that share a vertex with the probe, which lie on another side of it along the planes' common line than
   /// the probe does, whatever rounding did: as most neighbours do.
@@ -292,6 +331,7 @@ std::uint32_t CrossingGroups(const SpaceTriangles& triangles, std::size_t first,
       const M shares = hn::Or(hn::Or(has[0], has[1]), has[2]);
       if ((bits & frontmost::HWY_NAMESPACE::BitsOf(d, shares)) != 0)
         bits &= ~frontmost::HWY_NAMESPACE::BitsOf(d, hn::And(shares, lanes.LiesApart(probe, has)));
+      if (bits != 0) bits &= ~frontmost::HWY_NAMESPACE::BitsOf(d, lanes.MeetsLineApart(probe));
       if (bits == 0) return;
       const auto mask = std::uint16_t(bits << i);
       masks[p] = found >> p & 1 ? std::uint16_t(masks[p] | mask) : mask;

@@ -83,8 +83,8 @@ struct SpaceKernels {
   std::uint32_t (*touching)(const SpaceBoxes& boxes, std::size_t first, const Box& box);
   void (*set_probes)(const SpaceTriangles& triangles, std::size_t first, SpaceProbes& probes);
   /// Triangles whose box touches a probe's, that share no vertex with it but one with kNotSpread, and of which rounding
-  /// does not rule out that each has corners on both sides of the other's plane. `box` holds the sixteen triangles.
-  /// Returns which probes have any, and sets their masks.
+  /// does not rule out that each has corners on both sides of the other's plane, and meets the planes' common line
+  /// where the other does. `box` holds the sixteen triangles. Returns which probes have any, and sets their masks.
   std::uint32_t (*crossing)(const SpaceTriangles& triangles, std::size_t first, const Box& box,
                             const SpaceProbes& probes, SpaceMasks& masks);
 };

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kDigitBits = 11;
 constexpr std::size_t kDigits = std::size_t(1) << kDigitBits;
-constexpr std::size_t kChunk = std::size_t(1) << 16;
+constexpr std::size_t kChunk = std::size_t(1) << 15;
 
 /// Some bits of an item.
 struct Digit {
