@@ -21,6 +21,7 @@ std::string names_of(const Image& image) {
 double difference(float a, float b) {
   if (a == b || (a != a && b != b)) return 0;
   const double result = std::fabs(double(a) - double(b));
+  // A number and NaN are as far apart as can be.
   return result == result ? result : std::numeric_limits<double>::infinity();
 }
 

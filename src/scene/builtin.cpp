@@ -17,6 +17,7 @@ constexpr std::array<Scene (*)(), kNames.size()> kMakers{make_teapot, make_cubes
 std::span<const std::string_view> builtin_names() { return kNames; }
 
 Scene builtin(std::string_view name) {
+  // Scenes are the same to the bit on every machine, so the caller's rounding mode must not matter either.
   const IeeeScope ieee;
   std::string known;
   for (std::size_t i = 0; i < kNames.size(); ++i) {

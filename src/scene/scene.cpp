@@ -108,6 +108,7 @@ void validate_besides_vertices(const Scene& scene) {
     if (scene.instances[i].mesh >= scene.meshes.size())
       throw Error(ErrorCode::file_malformed, scene.name + ": instance " + std::to_string(i) + ": mesh " +
                                                  std::to_string(scene.instances[i].mesh) + " does not exist");
+  // One id fewer than there are numbers: the greatest stands for nothing seen.
   if (triangle_count(scene) > no_primitive - 1)
     throw Error(ErrorCode::limit_exceeded, scene.name + ": more than 4294967294 triangles over all instances");
 }

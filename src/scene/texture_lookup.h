@@ -16,6 +16,7 @@ namespace frontmost {
 
 /// A texture coordinate brought into [0, 1] by its wrap rule. Non-finite and absurd ones become 0.
 [[nodiscard]] inline float wrapped(float t, Texture::Wrap wrap) {
+  // Beyond, a float has four bits for the fraction or fewer, and floor_of() would soon pass the range of int.
   if (!(std::abs(t) < 1e6f)) return 0.0f;
   switch (wrap) {
     case Texture::Wrap::clamp: return std::clamp(t, 0.0f, 1.0f);

@@ -54,6 +54,7 @@ class CellFinder {
     const auto& row = map_.rows[axis];
     const VF xy = hn::Add(hn::Mul(hn::Set(d, row[0]), x), hn::Mul(hn::Set(d, row[1]), y));
     const VF at = hn::Add(hn::Add(xy, hn::Mul(hn::Set(d, row[2]), z)), hn::Set(d, row[3]));
+    // Not a number is not greater than 0 and so lands in cell 0; conversion of it would differ from target to target.
     const VF not_before = hn::IfThenElseZero(hn::Gt(at, hn::Zero(d)), at);
     return hn::ConvertTo(DI(), hn::Min(not_before, hn::Set(d, map_.last)));
   }
@@ -72,6 +73,7 @@ bool FindCells(const MeshPart& part, const CellMap& map, Cell* cells) {
   std::size_t i = 0;
   for (; i + lanes <= count; i += lanes) hn::StoreU(finder.Find(&triangles[i].x), d, &cells[i].packed);
   if (i < count) {
+    // The last triangle again and again: reading on would pass the end of the array.
     glm::uvec3 rest[kMaxLanes];
     for (std::size_t k = 0; k < lanes; ++k) rest[k] = triangles[std::min(i + k, count - 1)];
     HWY_ALIGN_MAX std::uint32_t found[kMaxLanes];

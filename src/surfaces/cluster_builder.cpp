@@ -17,6 +17,7 @@
 namespace frontmost {
 namespace {
 
+// Large enough that the clusters cut short at the end of each part do not count, small enough to keep all threads busy.
 constexpr std::uint32_t kRunsPerPart = 1u << 13;
 
 /// Some runs of the spatial order, and the clusters made of them. Their ids are those of the runs, in order.
@@ -64,6 +65,7 @@ class PartBuilder {
     start_cluster();
     for (std::size_t i = begin; i < end; ++i) {
       prefetch(i, end);
+      // What has holes is drawn by other code, cluster by cluster: no cluster may hold both kinds.
       if (i == source_.first_cutout) start_next_cluster();
       const TriangleRun run = run_at(i);
       for (std::uint32_t k = 0; k < run.count; ++k) add(run.first + k);
@@ -110,6 +112,7 @@ class PartBuilder {
     if (!placed_.holds(id)) {
       placed_ = place_of(id);
       to_world_.emplace(source_.scene.instances[placed_.number].world_from_mesh);
+      // Where the corners stay as they are the spatial order has looked at them already.
       must_check_ = !to_world_->is_identity() || source_.order.all_finite[placed_.number] == 0;
     }
     const glm::uvec3& corners = placed_.corners(id);
@@ -190,6 +193,7 @@ class PartBuilder {
   void finish_cluster() {
     if (cluster_.triangle_count == 0) return;
     cluster_.vertex_count = static_cast<std::uint16_t>(table_.size());
+    // Kernels load whole vectors: what lies behind the last vertex or triangle is read, and must be harmless.
     const std::size_t vertices = table_.pad(), triangles = padded_to_lanes(cluster_.triangle_count);
     const Box box = table_.bounds();
     include_in_instances(box);
@@ -241,6 +245,7 @@ void place_ids(const Part& part, const SpatialOrder& order, PrimitiveId* ids) {
 }
 
 void gather(ClusterSet& set, std::vector<Part>& parts, const SpatialOrder& order, const Execution& execution) {
+  // Where everything goes is known before anything is copied, so that parts are copied at once and in any order.
   std::vector<Place> places(parts.size() + 1);
   for (std::size_t i = 0; i < parts.size(); ++i)
     places[i + 1] = {places[i].cluster + parts[i].clusters.size(), places[i].vertex + parts[i].x.size(),
@@ -254,6 +259,7 @@ void gather(ClusterSet& set, std::vector<Part>& parts, const SpatialOrder& order
 
   parallel_for(execution, parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
+      // Moved out, so that its memory is given back as soon as it is copied: the set is never there twice as a whole.
       const Part part = std::move(parts[i]);
       const Place& at = places[i];
       place(part.x, set.x, at.vertex);
@@ -334,6 +340,8 @@ ClusterSet build_clusters(const Scene& scene, const Execution& execution) {
     PartBuilder(source, parts[begin / kRunsPerPart]).build(begin, end);
   });
   report_progress(execution, "surfaces", 0.9);
+  // One part after the other: an instance may lie in several, and a union of boxes has no rounding to depend on the
+  // order.
   set.instance_bounds.resize(scene.instances.size());
   for (const Part& part : parts)
     for (const auto& [instance, box] : part.instance_boxes) set.instance_bounds[instance].include(box);

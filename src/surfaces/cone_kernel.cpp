@@ -48,6 +48,7 @@ class ConeMaker {
     if (!(widest > 0 && widest <= kMost && scale <= kMost)) return Leave(i, cones);
     FindNormals(set_.clusters[i], scale);
     const DF d;
+    // One triangle whose normal is mostly rounding could face either way, and its cluster could then never be left out.
     if (!hn::AllFalse(d, too_flat_)) return Leave(i, cones);
     const float squared_altitude = Least(least_squared_altitude_);
     if (squared_altitude == kMost) return Leave(i, cones);  // no triangle has a normal

@@ -24,6 +24,7 @@ CutoutPattern pattern_of(const Scene& scene, const Material& material) {
   pattern.wrap_u = texture.wrap_u;
   pattern.wrap_v = texture.wrap_v;
   pattern.nearest = texture.nearest;
+  // A quarter of the texture, and all that is asked for: colours stay where they are.
   pattern.alphas.reserve(texture.pixels.size());
   for (const glm::u8vec4& pixel : texture.pixels) pattern.alphas.push_back(pixel.a);
   return pattern;

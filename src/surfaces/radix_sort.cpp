@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kDigitBits = 11;
 constexpr std::size_t kDigits = std::size_t(1) << kDigitBits;
+// A chunk's counts, 8 KiB, stay in the first-level cache while its quarter of a megabyte passes by.
 constexpr std::size_t kChunk = std::size_t(1) << 15;
 
 /// Some bits of an item.
@@ -33,6 +34,7 @@ void sort_by_digit(const Buffer<std::uint64_t>& from, Buffer<std::uint64_t>& to,
     for (std::size_t i = begin; i < end; ++i) ++counts[digit.of(from[i])];
   });
   std::uint32_t place = 0;
+  // By digit first and chunk second: equal digits then keep the order of the chunks, which makes the sort stable.
   for (std::size_t value = 0; value < kDigits; ++value)
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
       std::uint32_t& entry = places[chunk * kDigits + value];

@@ -19,6 +19,7 @@ void check_transforms(const Scene& scene) {
 
 Surfaces::Surfaces(const Scene& scene, const Execution& execution) {
   const IeeeScope ieee;
+  // The door: behind it no method looks at an index or a transform again.
   validate(scene);
   check_transforms(scene);
   clusters_ = std::make_unique<const ClusterSet>(build_clusters(scene, execution));

@@ -66,6 +66,7 @@ void Extremes::include(const glm::vec3& point) {
 
 void Extremes::offer(int direction, double reach, const glm::vec3& point) {
   Kept& kept = kept_[direction];
+  // Of points that reach equally far the first in a fixed order: what is kept must not depend on who came first.
   if (reach < reach_[direction]) return;
   if (kept.is_set && reach == reach_[direction] && !comes_before(point, kept.point)) return;
   reach_[direction] = reach;

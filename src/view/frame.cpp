@@ -191,6 +191,7 @@ View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& 
   if (options.orthographic) {
     pose[3] = glm::dvec4(fit.middle(glm::dot(0.5 * (low + high), glm::dvec3(pose[2])) + diagonal), 1.0);
   } else {
+    // Some distance from what is nearest, or a model seen along its own plane would have the eye in it.
     pose[3] = glm::dvec4(fit.eye(1e-3 * diagonal), 1.0);
     if (!points.empty()) centre(pose, points);
   }

@@ -16,6 +16,7 @@ bool same_projection(const Projection& a, const Projection& b) {
 }
 
 bool same_view(const View& a, const View& b) {
+  // To the bit: keys of views that differ in the last place cannot be compared.
   return a.width == b.width && a.height == b.height && a.samples == b.samples && a.world_from_eye == b.world_from_eye &&
          a.culling == b.culling && same_projection(a.projection, b.projection);
 }
@@ -51,6 +52,7 @@ void merge(Visible& into, const Visible& other, PrimitiveId first_id, const Exec
   if (!same_view(into.view, other.view)) throw Error(ErrorCode::bad_argument, "merge: the two views are not the same");
   check_planes(into, "merge");
   check_planes(other, "merge");
+  // Asked for once a run and not for every sample: an error is rare, and what was merged by then is lost anyhow.
   std::atomic<bool> is_full{false};
   constexpr std::size_t samples_at_once = 1u << 16;
   parallel_for(execution, into.keys.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {

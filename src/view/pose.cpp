@@ -65,6 +65,7 @@ glm::dmat4 look_at(const glm::dvec3& eye, const glm::dvec3& target, const glm::d
 }
 
 glm::dmat4 world_from_eye(const glm::dmat4& pose, PoseConvention convention) {
+  // A scale in a pose would change what distances mean without anybody noticing; a mirror would turn every face round.
   check_rigid(pose);
   const glm::dmat4 world_from_camera = is_world_to_camera(convention) ? inverse_rigid(pose) : pose;
   return is_opencv(convention) ? world_from_camera * kFlipYZ : world_from_camera;

@@ -15,6 +15,7 @@ Signed with_certain_sign(const BoundedNormal& n, const glm::dvec3& v, double sla
   if (slack > 0) rounded.error += slack * (std::abs(n.value.x) + std::abs(n.value.y) + std::abs(n.value.z));
   const int sign = certain_sign(rounded);
   if (sign != 2) return {rounded.value, sign};
+  // Exact arithmetic would answer for a point that is known only within its slack.
   if (slack > 0) return {};
   return {rounded.value, exact_sign()};
 }

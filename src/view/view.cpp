@@ -86,6 +86,7 @@ void validate(const View& view) {
   check_range(view.width, 1, kLargest, "width");
   check_range(view.height, 1, kLargest, "height");
   (void)sample_offsets(view.samples);
+  // 2^28 ids and keys are 2 GiB: what a picture of the greatest size takes at one sample.
   if (view.sample_count() > most_samples)
     throw Error(ErrorCode::limit_exceeded,
                 "samples: at most " + std::to_string(most_samples) + " in all pixels together");
@@ -94,8 +95,8 @@ void validate(const View& view) {
   if (p.orthographic) {
     (void)make_orthographic(p.left, p.right, p.bottom, p.top, p.clip);
   } else {
-    const double n = p.clip.near;
-    (void)make_frustum(p.left * n, p.right * n, p.bottom * n, p.top * n, p.clip);
+    // As they are, although it would take them at the near plane: multiplied by a wrong one, the sides would be blamed.
+    (void)make_frustum(p.left, p.right, p.bottom, p.top, p.clip);
   }
   (void)world_from_eye(view.world_from_eye, PoseConvention::opengl_camera_to_world);
   check_float_range(view);
