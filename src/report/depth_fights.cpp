@@ -7,6 +7,7 @@
 #include "base/float_environment.h"
 #include "base/parallel.h"
 #include "frontmost/precision.h"
+#include "image/srgb_pixels.h"
 #include "report/exact_depth.h"
 #include "view/answer.h"
 
@@ -112,14 +113,15 @@ DepthFights depth_fights(const Surfaces& surfaces, const ExactVisible& exact, co
 }
 
 Image fight_image(const DepthFights& fights, const Image& backdrop) {
-  const Channel *red = backdrop.find("R"), *green = backdrop.find("G"), *blue = backdrop.find("B");
-  if (backdrop.width != fights.view.width || backdrop.height != fights.view.height || !red || !green || !blue)
+  validate(backdrop);
+  const std::optional<ColorPlanes> planes = color_planes(backdrop);
+  if (backdrop.width != fights.view.width || backdrop.height != fights.view.height || !planes)
     throw Error(ErrorCode::bad_argument, "fight image: the backdrop must be a picture of the same size");
   const std::size_t count = fights.view.pixel_count();
   Image image{backdrop.width, backdrop.height, {}};
   for (const char* name : {"R", "G", "B", "A"}) image.channels.push_back({name, Buffer<float>(count, 1.0f)});
   for (std::size_t i = 0; i < count; ++i) {
-    const float grey = 0.2126f * red->floats()[i] + 0.7152f * green->floats()[i] + 0.0722f * blue->floats()[i];
+    const float grey = 0.2126f * planes->color[0][i] + 0.7152f * planes->color[1][i] + 0.0722f * planes->color[2][i];
     glm::vec3 color(0.02f + 0.12f * grey);
     if (fights.errors[i] == kNothingSeen)
       color = {0.25f, 0.75f, 1.0f};
