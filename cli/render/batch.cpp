@@ -35,11 +35,17 @@ std::string text_of(const Place& place) {
   if (value.is_number()) return number_text(value);
   if (!value.is_array()) place.refuse("must be a string, a number or a list of numbers");
   std::string text;
+  const auto append = [&](const Json& element) {
+    if (!element.is_number()) place.refuse("must hold numbers alone");
+    if (!text.empty()) text += ',';
+    text += number_text(element);
+  };
   for (const Json& element : value) {
     // A matrix may be written as four rows.
-    if (!element.is_number() && !element.is_array()) place.refuse("must hold numbers alone");
-    if (!text.empty()) text += ',';
-    text += element.is_number() ? number_text(element) : text_of({element, place.path});
+    if (element.is_array())
+      for (const Json& inner : element) append(inner);
+    else
+      append(element);
   }
   return text;
 }
@@ -110,9 +116,16 @@ Settings parse_view(const Place& place, const Settings& defaults) {
   return settings;
 }
 
+/// Views, a view, its outputs, kinds of ids, a matrix and its rows: nothing is deeper than six. The JSON library copies
+/// and follows what it has read by recursion, which far deeper lists in lists would end without a word.
+constexpr int depth_limit = 16;
+
 Json parse_json(const std::string& text, const std::string& name) {
   try {
-    return Json::parse(text);
+    return Json::parse(text, [&](int depth, Json::parse_event_t, Json&) {
+      if (depth > depth_limit) throw UsageError(fmt::format("{}: is nested deeper than {}", name, depth_limit));
+      return true;
+    });
   } catch (const Json::parse_error& error) {
     const std::size_t end = std::min(error.byte, text.size());
     const auto lines = std::count(text.begin(), text.begin() + std::ptrdiff_t(end > 0 ? end - 1 : 0), '\n');
