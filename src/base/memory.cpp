@@ -68,9 +68,11 @@ void populate_pages(void* start, std::size_t bytes, const Execution& execution) 
 namespace detail {
 
 void* allocate(std::size_t bytes) {
+  // Rounded up below, such a size would wrap around to a small one.
   if (bytes > std::size_t(-1) - kLargePage) throw std::bad_alloc();
   const bool large = bytes >= kWorthLargePages;
   const std::size_t alignment = large ? kLargePage : kAlignment;
+  // One byte for none, so that every buffer has a place of its own and null means failure alone.
   const std::size_t rounded = round_up(bytes == 0 ? 1 : bytes, alignment);
   void* pointer = std::aligned_alloc(alignment, rounded);
   if (!pointer) throw std::bad_alloc();

@@ -35,6 +35,8 @@ class ChunkQueue {
   void drain() noexcept {
     const IeeeScope ieee;
     for (;;) {
+      // Relaxed: the number alone says what to do; what a body writes is seen by the caller through the end of the
+      // threads.
       const std::size_t chunk = next_.fetch_add(1, std::memory_order_relaxed);
       if (chunk >= chunk_count() || failed_.load(std::memory_order_relaxed)) return;
       try {

@@ -134,6 +134,7 @@ std::uint16_t srgb16_of_linear(float linear) {
   if (!(linear > 0)) return 0;  // NaN too
   if (linear >= 1) return 65535;
   if (double(linear) > kLinearEnd) {
+    // Made when it is first asked for: most programs write 8 bits.
     static const Parabolas parabolas;
     const double near = parabolas(linear) + 0.5, whole = double(std::uint32_t(near)), fraction = near - whole;
     // Beyond the parabola's error from the next step the answer is certain: 499 times in 500.

@@ -87,6 +87,7 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::fail(const char* doing) const {
+  // Before anything else is called: making a string may change it.
   const int code = errno;
   throw Error(ErrorCode::file_unwritable, name_ + ": " + doing + ": " + std::generic_category().message(code));
 }
@@ -99,6 +100,7 @@ void OutputFile::open_direct() {
 
 void OutputFile::open_staged(Staging staging) {
   if (!target_.has_filename()) throw Error(ErrorCode::file_unwritable, name_ + ": is not a file name");
+  // A file without a name goes by itself when the process ends, however it ends; a hidden one would stay behind.
   if (staging == Staging::named || !open_unnamed()) open_named();
 }
 
@@ -141,6 +143,7 @@ void OutputFile::write(std::span<const std::byte> bytes) {
 
 void OutputFile::commit() {
   if (kind_ == Kind::standard_output) return;
+  // Before the file has its name, so that nobody can open it with other permissions than the old one had.
   if (mode_ && kind_ != Kind::direct && ::fchmod(descriptor_, *mode_) != 0) fail("cannot set permissions");
   if (kind_ == Kind::unnamed) give_name();
   close();

@@ -15,6 +15,7 @@ using namespace std::string_view_literals;
 
 constexpr std::string_view magic = "\x93NUMPY"sv;
 constexpr std::size_t prefix_size = 10;  // magic, version, length of the dictionary
+// What NumPy itself aligns to since version 1.14, so that the numbers can be mapped where they lie.
 constexpr std::size_t alignment = 64;
 
 [[noreturn]] void fail(const std::string& name, const std::string& reason) {
@@ -37,6 +38,7 @@ Dictionary dictionary(std::span<const std::byte> bytes, const std::string& name)
   const auto byte = [&](std::size_t i) { return std::to_integer<std::size_t>(bytes[i]); };
   if (bytes.size() < prefix_size + 2) fail(name, "the header is cut short");
   const std::size_t version = byte(6);
+  // Version 3 differs from 2 in that names may be UTF-8; there are no names in what is read here.
   if (version < 1 || version > 3)
     throw Error(ErrorCode::unsupported, name + ": NPY: version " + std::to_string(version));
   // From version 2 on the length has four bytes.
@@ -49,6 +51,7 @@ Dictionary dictionary(std::span<const std::byte> bytes, const std::string& name)
 
 /// What follows `key` and a colon in the dictionary. NumPy writes keys in single quotes, always.
 std::string_view value_of(std::string_view text, std::string_view key, const std::string& name) {
+  // Not a parser of Python: keys are found as NumPy writes them, and whatever is not so written is refused.
   const std::size_t place = text.find(key);
   const std::size_t colon = place == text.npos ? text.npos : text.find(':', place);
   const std::size_t value = colon == text.npos ? text.npos : text.find_first_not_of(' ', colon + 1);
@@ -68,6 +71,7 @@ std::vector<std::size_t> shape(std::string_view text, const std::string& name) {
     if (error != std::errc() || sizes.size() == 3) fail(name, "the shape is not (height, width[, channels])");
     sizes.push_back(size);
     place = rest;
+    // A tuple of one has a comma behind it, and so may others.
     while (place < stop && (*place == ',' || *place == ' ')) ++place;
   }
   if (sizes.size() < 2) fail(name, "the shape is not (height, width[, channels])");
@@ -96,6 +100,7 @@ void save_npy(const Image& image, OutputFile& file) {
 
 Image load_npy(std::span<const std::byte> bytes, const std::string& name) {
   const Dictionary header = dictionary(bytes, name);
+  // Five characters with both quotes: longer names, as '<f16', must not pass for '<f1'.
   const std::string_view type = value_of(header.text, "'descr'", name).substr(0, 5);
   const bool floats = type == "'<f4'" || type == "'>f4'", integers = type == "'<u4'" || type == "'>u4'";
   if (!floats && !integers)

@@ -21,6 +21,7 @@ class Header {
   Header(std::span<const std::byte> bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
   std::string_view word() {
+    // A file of another kind may hold no blank for megabytes.
     constexpr std::size_t longest = 64;
     const auto* text = reinterpret_cast<const char*>(bytes_.data());
     std::size_t end = 0;
@@ -72,6 +73,7 @@ Image load_pfm(std::span<const std::byte> bytes, const std::string& name) {
   layout.width = header.size();
   layout.height = header.size();
   const std::string_view scale = header.word();
+  // 0 would leave the byte order open, as 0 and -0 are one number.
   if (scale.find_first_of("123456789") == std::string_view::npos) fail(name, "the scale is not a number");
   layout.big_endian = scale[0] != '-';  // its size is a unit that nobody agrees on, and is left aside
   layout.bottom_row_first = true;

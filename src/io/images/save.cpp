@@ -27,6 +27,7 @@ ImageFormat format_of(const std::string& path, const SaveOptions& options) {
 template <class Write>
 void write_file(const std::string& path, const Execution& execution, const Write& write) {
   report_progress(execution, "save", 0);
+  // Before the pixels are compressed: a folder that cannot be written to is told of at once.
   OutputFile file(path);
   write(file);
   // Once more before the file gets its name: whoever ended the work does not expect a new one.

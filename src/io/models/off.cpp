@@ -47,6 +47,7 @@ class OffReader {
     if (!text_.to_word()) text_.fail("the file ends before the header");
     std::int64_t count = 0;
     TextScanner ahead = text_;
+    // The keyword may be left out, by Geomview's own manual; then the file begins with the number of vertices.
     const bool has_keyword = !ahead.integer(count) || !ahead.at_blank();
     if (has_keyword) read_keyword(text_.word());
     if (!text_.to_word() || !text_.integer(count)) text_.fail("the number of vertices was expected");
@@ -139,6 +140,7 @@ class OffReader {
       polygons.add(corners, mesh.positions, mesh);
       // Colours of vertices go before those of faces.
       if (!mesh.colors.empty() || (text_.at_line_end() && colors.size() == 0)) continue;
+      // The first face with a colour: those before it get the one that stands for none.
       if (colors.size() == 0) {
         colors.add(RawColors::none());
         color_corners.resize(before, glm::uvec3(0));

@@ -142,6 +142,7 @@ void save_exr(const Image& image, OutputFile& file, const Execution& execution) 
   std::vector<Strip> strips((std::size_t(image.height) + strip_rows - 1) / strip_rows);
   Strip head;
   with_named_errors(file.name(), [&] {
+    // A file of all rows without any pixels: its header and table of offsets are those of the whole.
     head = make_strip(planes, 0, image.height, Pixels::left_out, file.name());
     parallel_for(execution, std::size_t(image.height), strip_rows, [&](std::size_t first, std::size_t end) {
       strips[first / strip_rows] = make_strip(planes, int(first), int(end), Pixels::written, file.name());
@@ -153,6 +154,7 @@ void save_exr(const Image& image, OutputFile& file, const Execution& execution) 
 }
 
 Image load_exr(std::span<const std::byte> bytes, const std::string& name) {
+  // The library asks for memory by what the header says, before it looks at whether there is as much to read.
   check_exr_header(bytes, name);
   try {
     MemoryInput memory(bytes, name);

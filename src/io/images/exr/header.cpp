@@ -61,6 +61,7 @@ struct Sizes {
 };
 
 void read_window(Cursor window, Sizes& sizes) {
+  // In 64 bits: corners may be as far apart as 32 bits reach, and one more is added.
   const std::int64_t left = window.number(), top = window.number();
   const std::int64_t right = window.number(), bottom = window.number();
   sizes.width = std::uint64_t(std::max<std::int64_t>(0, right - left + 1));

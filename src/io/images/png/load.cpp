@@ -68,6 +68,7 @@ void load_pixels(PngReader& reader, bool directions, Image& image) {
   }
   Buffer<std::uint16_t> pixels(pixel_count(image) * 4);
   reader.read(PngReader::Pixels::rgba16, pixels.data());
+  // A table of all 65536 values pays from as many pixels on.
   if (pixel_count(image) < 65536)
     return unpack(pixels, directions, image, [](std::uint16_t value) { return linear_of_srgb16(value); });
   Buffer<float> table(65536);

@@ -51,6 +51,7 @@ PngContents colors(const Bitmap& bitmap) {
   constexpr std::size_t bytes = 4;  // of a pixel
   const std::size_t size = bitmap.rgba.size();
   std::uint8_t least = 255;
+  // Without branches and without an end: that is quicker than to stop at the first that is transparent.
   for (std::size_t i = bytes - 1; i < size; i += bytes) least = std::min(least, bitmap.rgba[i]);
   const bool with_alpha = least < 255;
   PngContents contents;
@@ -103,6 +104,7 @@ DepthMapping fitted_mapping(const Buffer<float>& depths) {
     high = std::max(high, depth);
   }
   if (!(low <= high)) return {1, 0};  // nothing is seen
+  // 1 to 65535 for what is seen; 0 is kept for what is not.
   const double scale = high > low ? 65534 / (double(high) - double(low)) : 1;
   return {scale, 1 - double(low) * scale};
 }

@@ -131,6 +131,7 @@ Strip make_strip(const PngContents& contents, int first, int end, Workspace& spa
   const std::span<std::uint8_t> raw = filtered_rows(contents, first, end, space);
   Strip strip;
   strip.raw_size = raw.size();
+  // Of each strip by itself; zlib can put sums of parts together, so that no byte is summed up twice.
   strip.checksum = ::adler32(1, raw.data(), uInt(raw.size()));
   strip.chunk = Buffer<std::uint8_t>(worst_case(raw.size()));
   std::uint8_t* const type = strip.chunk.data() + 4;
@@ -168,6 +169,7 @@ std::size_t PngContents::pixel_bytes() const {
 
 void write_png(const PngContents& contents, OutputFile& file, const Execution& execution) {
   const std::size_t row_size = std::size_t(contents.width) * contents.pixel_bytes();
+  // By the size of a row alone, never by the number of threads: strips are seen in the bytes of the file.
   const std::size_t rows = std::max<std::size_t>(1, strip_bytes / (row_size + 1));
   Pool<Workspace> workspaces;
   std::vector<Strip> strips((std::size_t(contents.height) + rows - 1) / rows);

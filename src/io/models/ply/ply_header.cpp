@@ -126,6 +126,7 @@ class HeaderReader {
     // A text value takes a digit and a separator, which the last one may lack.
     const std::uint64_t least =
         header_.encoding == PlyEncoding::ascii ? 2 * element.properties.size() : element.least_row_size();
+    // Rows of no properties take no room: there may be any number, and nothing is read for them.
     if (least == 0 || element.count <= (room + 1) / least) return;
     text_.source().fail("header", std::to_string(element.count) + " rows of element " + in_quotes(element.name) +
                                       " do not fit into the " + std::to_string(room) + " bytes that follow");

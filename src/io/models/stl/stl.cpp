@@ -83,6 +83,7 @@ std::uint64_t stl_checked_count(Bytes prelude, std::uint64_t file_size, const Mo
 std::string stl_header_name(Bytes prelude) {
   std::string name(reinterpret_cast<const char*>(prelude.data()), header_size);
   name.resize(std::min(name.find('\0'), name.size()));
+  // Programs leave dates, colours and rubbish there; what cannot be read is no name.
   for (const char c : name)
     if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7E) return {};
   if (name.starts_with("solid ")) name.erase(0, 6);
@@ -105,6 +106,8 @@ void append_stl_records(Bytes records, Mesh& mesh) {
 StlEncoding stl_encoding(Bytes start, std::uint64_t file_size) {
   if (file_size >= prelude_size) {
     const std::uint64_t room = file_size - prelude_size, needed = stl_promised_count(start) * record_size;
+    // Before the words: many binary files begin with "solid", and hardly a text has just the length that its bytes 80
+    // to 83 ask for.
     if (room == needed) return StlEncoding::binary;
     if (!is_text(start)) return room > needed && needed > 0 ? StlEncoding::binary : StlEncoding::neither;
   }
