@@ -35,8 +35,7 @@ class ChunkQueue {
   void drain() noexcept {
     const IeeeScope ieee;
     for (;;) {
-      // Relaxed: the number alone says what to do; what a body writes is seen by the caller through the end of the
-      // threads.
+      // Relaxed: the number alone says what to do; the caller sees what bodies wrote by the end of the loop.
       const std::size_t chunk = next_.fetch_add(1, std::memory_order_relaxed);
       if (chunk >= chunk_count() || failed_.load(std::memory_order_relaxed)) return;
       try {
