@@ -28,9 +28,11 @@ class Judge {
     if (seen == no_primitive || nearest == no_primitive) return kNothingSeen;
     const auto a = surfaces_.corners(seen), b = surfaces_.corners(nearest);
     const DepthBounds at_seen = BoundedPlane(a, rays_).at(ray), at_nearest = BoundedPlane(b, rays_).at(ray);
+    // Exact numbers cost far more than bounds; only what the bounds leave open is asked of them.
     const bool is_decided = at_seen.low > at_nearest.high;
     if (!is_decided && compare(ExactDepth(a, rays_, ray), ExactDepth(b, rays_, ray)) <= 0) return 0;
     const double behind = middle(at_seen) - middle(at_nearest);
+    // Orthographic views may have depths of 0.
     const auto share = float(behind / std::max(std::abs(middle(at_nearest)), 1e-300));
     return std::max(share, std::numeric_limits<float>::min());
   }
@@ -48,6 +50,7 @@ class Judge {
 template <class Visit>
 void for_each_sample(const View& view, const SampleRays& rays, std::size_t row, const Visit& visit) {
   const auto height = std::size_t(view.height), width = std::size_t(view.width);
+  // Planes of samples lie behind each other: rows go through all of them.
   const glm::ivec2 offset = sample_offsets(view.samples)[row / height];
   for (std::size_t x = 0; x < width; ++x)
     visit(row * width + x, [&, x] { return rays.at(int(x), int(row % height), offset); });
@@ -89,6 +92,7 @@ DepthFights depth_fights(const Surfaces& surfaces, const ExactVisible& exact, co
       });
   });
 
+  // By one thread: what is wrong is rare, and the rest is a glance at an array.
   std::map<std::pair<std::uint32_t, std::uint32_t>, FightingPair> pairs;
   const auto object = [&](PrimitiveId id) { return id == no_primitive ? no_index : surfaces.source(id).instance; };
   for (std::size_t row = 0; row < rows; ++row)
@@ -106,6 +110,7 @@ DepthFights depth_fights(const Surfaces& surfaces, const ExactVisible& exact, co
       if (seen == no_index || nearer == no_index) return;
       pair.farthest = std::max(pair.farthest, double(fights.errors[i]) * judge.distance(nearest, ray()));
     });
+  // Out of a map and stable: pairs with as many samples stand in the order of their objects, whatever the machine.
   for (const auto& [key, pair] : pairs) fights.pairs.push_back(pair);
   std::stable_sort(fights.pairs.begin(), fights.pairs.end(),
                    [](const FightingPair& a, const FightingPair& b) { return a.samples > b.samples; });

@@ -65,6 +65,7 @@ ExactDepth::ExactDepth(const std::array<glm::vec3, 3>& corners, const SampleRays
   const ExactVector normal = cross(difference(b, a), difference(c, a));
   numerator_ = dot(normal, difference(a, ray.origin));
   denominator_ = dot(normal, exact(ray.direction));
+  // Above zero from here on: fractions are compared by multiplying both sides.
   if (denominator_.sign() < 0) {
     numerator_ = -numerator_;
     denominator_ = -denominator_;
@@ -74,6 +75,7 @@ ExactDepth::ExactDepth(const std::array<glm::vec3, 3>& corners, const SampleRays
     numerator_ = Expansion(-std::numeric_limits<float>::max());
     denominator_ = Expansion(1);
   }
+  // Within the corners' range, by the same rule as the bounds above, or the two would disagree about slivers.
   Expansion nearest, farthest;
   for (int i = 0; i < 3; ++i) {
     const Expansion depth = dot(exact(rays.forward()), difference(glm::dvec3(corners[std::size_t(i)]), rays.eye()));

@@ -28,6 +28,7 @@ struct Count {
 // For each vertex the first one at the same position.
 std::vector<std::uint32_t> weld(const std::vector<glm::vec3>& positions, const Execution& execution) {
   std::vector<std::uint32_t> first(positions.size());
+  // By bits, so that equal positions are one vertex and NaN is equal to itself.
   const auto produce = [&](std::size_t i, Keyed& item) {
     const glm::vec3 p = positions[i] + 0.0f;  // makes -0 to +0
     std::uint32_t bits[3];

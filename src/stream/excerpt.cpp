@@ -59,6 +59,7 @@ std::vector<PrimitiveId> ids_of(const KeptPieces& kept) {
 }
 
 Scene scene_of(Scene frame, KeptPieces kept) {
+  // Those of the frame are for whole meshes; each piece brings its own.
   for (Mesh& mesh : frame.meshes) mesh.material_ids.clear();
   reserve(kept, frame);
   for (auto& [number, piece] : kept) move_mesh(piece.mesh, frame.meshes[frame.instances[piece.place.object].mesh]);

@@ -23,6 +23,7 @@ Models::Models(const std::vector<std::string>& paths, const LoadOptions& options
     Model model;
     model.stream = open_model_stream(path, options, execution);
     add(std::move(model));
+    // What headers promise is enough to refuse; a file that does not tell is caught while it is read.
     known += models_.back().stream->known_count().value_or(0);
     if (known >= most_triangles) fail_too_many();
   }
@@ -37,6 +38,7 @@ void Models::add(Model model) {
   model.object = std::uint32_t(scene_.instances.size());
   model.first_material = std::uint32_t(scene_.materials.size());
   Scene without_warnings = part;
+  // Warnings may come with every piece, and are taken over one by one as they do.
   without_warnings.warnings.clear();
   append(scene_, std::move(without_warnings));
   models_.push_back(std::move(model));
@@ -95,6 +97,7 @@ void Models::parse(Piece& piece, const Place& place) const {
   const Model& model =
       *std::find_if(models_.rbegin(), models_.rend(), [&](const Model& m) { return m.object <= place.object; });
   model.stream->parse(piece);
+  // By its object, not by current_: another thread may have fetched from the next file meanwhile.
   for (std::uint32_t& material : piece.mesh.material_ids)
     if (material != no_index) material += model.first_material;
 }
@@ -117,6 +120,7 @@ class Queue {
   }
   void fail(std::size_t number) {
     const std::lock_guard lock(mutex_);
+    // The earliest piece's, as one thread alone would have met it: messages do not depend on threads.
     if (error_ && number_ <= number) return;
     error_ = std::current_exception();
     number_ = number;
@@ -138,6 +142,7 @@ class Queue {
 void for_each_piece(Models& models, const LoopOptions& options, const Execution& execution,
                     const std::function<void(int, Piece&, const Place&)>& work) {
   Queue queue(models, options.triangles_at_once);
+  // An index for each worker rather than for each piece: how many pieces there are is known only at the end.
   parallel_for(execution, std::size_t(options.workers), 1, [&](std::size_t worker, std::size_t) {
     Piece piece;
     Place place;

@@ -41,6 +41,7 @@ SampleFilter::Corner SampleFilter::corner_of(const glm::vec3& position) const {
   if (v.d < transform_.near) beyond |= near;
   if (v.d > transform_.far) beyond |= far;
   const float reach = float(kGuardBand) * (transform_.orthographic ? 1.0f : v.d);
+  // Sides are told only in front of the eye; behind it they would be turned round.
   if (v.d >= transform_.near && reach <= std::numeric_limits<float>::max()) {
     if (v.x < -reach) beyond |= left;
     if (v.x > reach) beyond |= right;
@@ -74,9 +75,11 @@ PixelBounds SampleFilter::mark(const Mesh& mesh, std::vector<std::uint8_t>& mark
     if ((a.beyond | b.beyond | c.beyond) != 0) {
       if ((a.beyond & b.beyond & c.beyond & ~std::uint32_t(unknown)) != 0) continue;
       marks[t] = 1;
+      // Where it meets the screen is for the clipper to find out.
       pixels = {0, 0, width_, height_};
       continue;
     }
+    // One unit more on each side, for what was cut off above.
     const Extent extent{std::min({a.x, b.x, c.x}) - 1, std::min({a.y, b.y, c.y}) - 1, std::max({a.x, b.x, c.x}) + 1,
                         std::max({a.y, b.y, c.y}) + 1};
     if (!may_hold_sample(extent)) continue;

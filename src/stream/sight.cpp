@@ -42,6 +42,7 @@ Sight::Sight(const std::vector<View>& views, const SightNeeds& needs) : needs_(n
     visible_.push_back(nothing_visible(view));
     sample_count_ += view.sample_count();
   }
+  // Below this, looking for hidden ones costs more than keeping them: it goes through all samples.
   limit_ = std::max<std::size_t>(std::size_t(1) << 20, sample_count_ / 2);
 }
 
@@ -59,6 +60,7 @@ std::vector<bool> Sight::merge(const std::vector<const Visible*>& piece, const P
       PrimitiveId& last_id = visible_[v].primitives[i];
       float& last_key = visible_[v].keys[i];
       const PrimitiveId new_id = place.first + selection.numbers[id];
+      // Equal keys go to the lesser id, as in a frame of all at once: then the order of pieces does not matter.
       if (key < last_key || (key == last_key && new_id >= last_id)) return;
       last_id = new_id;
       last_key = key;
@@ -75,6 +77,7 @@ void Sight::keep(Kept kept) {
   kept_.emplace(kept.place.number, std::move(kept));
   if (kept_count_ <= limit_) return;
   forget_hidden();
+  // By half of what stayed, so that what is kept is gone through a logarithmic number of times.
   limit_ = std::max(limit_, kept_count_ + kept_count_ / 2);
 }
 

@@ -98,10 +98,13 @@ std::shared_ptr<const Cutouts> Cutouts::of(const Scene& scene, const std::vector
     cutouts->patterns_.push_back(cuts ? pattern_of(scene, material) : CutoutPattern{});
     any = any || cuts;
   }
+  // Most scenes: nothing is asked of them then for any sample.
   if (!any) return nullptr;
   cutouts->words_.resize(first_primitives.back() / 64 + 1);
   for (std::size_t i = 0; i < scene.instances.size(); ++i)
     cutouts->add_mesh(scene, scene.instances[i], first_primitives[i]);
+  // A bit for each triangle and a sum for each word: an id's place is a count of bits, where a table would take four
+  // bytes for every triangle of the scene.
   std::uint32_t before = 0;
   for (Word& word : cutouts->words_) {
     word.before = before;

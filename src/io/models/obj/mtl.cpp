@@ -65,6 +65,7 @@ class MtlReader {
       if (material().base_color_texture.is_set()) textured_.push_back(number_);
     } else if (word == "map_Ke") {
       material().emissive_texture = texture();
+      // Colour and texture are multiplied; many files have the texture alone.
       if (material().emissive == glm::vec3(0)) material().emissive = glm::vec3(1);
     } else if (word == "map_d") {
       // The alpha of the colour texture is the only one there is; usually it is the same file.
@@ -74,6 +75,7 @@ class MtlReader {
     }
   }
 
+  /// Exporters write "nan" for materials without a value; the model is not refused for that.
   float value() {
     float value = 0;
     if (text_.next_is('-')) skip_option();
@@ -83,6 +85,7 @@ class MtlReader {
   /// "d -halo 0.5": an option, unless the word is a negative number.
   void skip_option() {
     float value = 0;
+    // A copy, so that a number is still there to be read.
     TextScanner ahead = text_;
     if (!ahead.number(value)) text_.word();
   }
@@ -116,6 +119,7 @@ class MtlReader {
         offset = pair(0);
       } else if (option == "-clamp") {
         if (text_.word() == "on") wrap = Texture::Wrap::clamp;
+        // Turbulence: of no use here, but its numbers must not become the file's name.
       } else if (option == "-t") {
         pair(0);
       } else if (option == "-mm") {

@@ -40,6 +40,7 @@ class ObjReader {
 
  private:
   void statement(std::string_view word) {
+    // The most frequent first; a file is mostly these.
     if (word == "v") {
       vertex();
     } else if (word == "f" || word == "fo") {
@@ -48,6 +49,7 @@ class ObjReader {
       glm::vec2 uv(0);
       if (!text_.number(uv.x)) text_.fail("a texture coordinate needs a number");
       (void)text_.number(uv.y);
+      // Down from the top, as in glTF; in the file v goes up.
       pool_.texcoords.emplace_back(uv.x, 1.0f - uv.y);
     } else if (word == "vn") {
       pool_.normals.push_back(three_numbers("a normal needs three numbers"));
@@ -92,12 +94,14 @@ class ObjReader {
     int count = 0;
     while (count < 4 && text_.number(extra[count])) ++count;
     if (count < 3) return;
+    // With a weight before the colour there are four, and the weight is of no use: it belongs to rational curves.
     const float* rgb = extra + count - 3;
     pool_.colors.resize(pool_.positions.size() - 1, glm::vec4(1));
     pool_.colors.push_back(linear_color({rgb[0], rgb[1], rgb[2], 1}));
   }
 
   void start_group(const std::string& name) {
+    // Begun by the next face only, so that groups without faces leave no empty objects.
     is_new_group_ = is_new_group_ || name != group_;
     group_ = name;
   }
@@ -161,6 +165,7 @@ class ObjReader {
   void pass_over(std::string_view word) {
     const std::string keyword(word.substr(0, 40));
     constexpr std::size_t most = 16;
+    // Each keyword once, and few: a file of another kind would give a warning for every line.
     if (passed_over_.size() >= most || !passed_over_.insert(keyword).second) return;
     if (first_odd_line_ == 0) first_odd_line_ = text_.line();
     scene_.warnings.push_back(text_.place() + ": statements " + in_quotes(word) + " are passed over");
@@ -190,6 +195,7 @@ class ObjReader {
 
   bool read_library(const std::string& name, std::string& reason) {
     constexpr std::size_t most = 256;
+    // Files are named by the model: it must not have this machine open thousands.
     if (libraries_.size() >= most) return true;
     try {
       if (!libraries_.insert(name).second) return true;
@@ -199,6 +205,7 @@ class ObjReader {
                materials_);
       return true;
     } catch (const Error& error) {
+      // A model without its colours is better than none, so anything else is a warning.
       if (error.code() == ErrorCode::cancelled) throw;
       reason = source_.without_name(error);
       return false;
@@ -213,6 +220,7 @@ class ObjReader {
   }
 
   void finish() {
+    // Any text at all is otherwise an OBJ file with some warnings.
     if (pool_.positions.empty() && first_odd_line_ != 0)
       source_.fail("line " + std::to_string(first_odd_line_), "not an OBJ statement");
     check_greatest(vertices_, pool_.positions.size());

@@ -24,6 +24,7 @@ class Renumbering {
 
   /// Renumbers all corners but missing ones. \returns the old numbers, in the new order, valid until the next call.
   const std::vector<std::uint32_t>& apply(std::vector<glm::uvec3>& triangles) {
+    // Not the whole table: a file may have as many groups as faces.
     for (const std::uint32_t old : used_) numbers_[old] = no_index;
     used_.clear();
     for (glm::uvec3& t : triangles)
@@ -89,6 +90,7 @@ void ObjMeshes::add_material(Mesh& mesh, std::size_t before, std::uint32_t mater
 }
 
 void ObjMeshes::finish(Scene& scene, ObjPool pool) {
+  // One mesh keeps the file's own numbering, unused vertices too: then numbers of vertices are those of the file.
   if (scene.meshes.size() == 1) {
     Mesh& mesh = scene.meshes[0];
     mesh.positions = std::move(pool.positions);
@@ -106,6 +108,7 @@ void ObjMeshes::finish(Scene& scene, ObjPool pool) {
     }
   }
   for (Mesh& mesh : scene.meshes) {
+    // After the positions are final: whether a list of corners is needed depends on how many there are.
     complete(mesh.texcoords, mesh);
     complete(mesh.normals, mesh);
     if (mesh.material_ids.size() == 1 && mesh.material_ids[0] == no_index) mesh.material_ids.clear();

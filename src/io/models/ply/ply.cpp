@@ -52,6 +52,7 @@ class PlyBody {
   }
 
   void skip(const PlyElement& element) {
+    // Else a header of a hundred bytes could ask for 2^64 rows of nothing.
     if (element.properties.empty()) return;
     for (std::uint64_t row = 0; row < element.count; ++row) {
       rows_.begin_row(element, row);
