@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/float_environment.h"
+#include "painter/crossings.h"
 #include "painter/depth_sort.h"
 #include "painter/emit.h"
 #include "painter/gather.h"
@@ -33,6 +34,7 @@ class Orderer {
 
   [[nodiscard]] std::vector<std::uint32_t> order(std::vector<std::uint32_t> members) {
     all_ = members.size();
+    foresee_cuts(members);
     push(std::move(members), options_.method == PaintMethod::bsp ? 0 : all_);
     while (!work_.empty()) {
       const Item item = std::move(work_.back());
@@ -73,10 +75,20 @@ class Orderer {
     push(std::move(partition.behind), item.few);
   }
 
+  [[noreturn]] void refuse_more_cuts() const {
+    throw Error(ErrorCode::limit_exceeded, "painter: more than " + std::to_string(options_.most_cuts) +
+                                               " cuts: too many triangles pass through each other");
+  }
+
+  /// The error that would come after all cuts were made; before they are sorted, for every two would be compared.
+  void foresee_cuts(const std::vector<std::uint32_t>& members) {
+    const auto count = double(members.size());
+    if (0.5 * count * count <= double(options_.most_cuts)) return;
+    if (least_crossings(pieces_, members, poll_) > double(options_.most_cuts)) refuse_more_cuts();
+  }
+
   void check_limits() const {
-    if (steps_.cuts > options_.most_cuts)
-      throw Error(ErrorCode::limit_exceeded, "painter: more than " + std::to_string(options_.most_cuts) +
-                                                 " cuts: too many triangles pass through each other");
+    if (steps_.cuts > options_.most_cuts) refuse_more_cuts();
     if (pieces_.size() > options_.most_polygons) refuse_more_than(options_.most_polygons);
   }
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "painter/plane.h"
 
+#include <algorithm>
+
+#include "painter/twice.h"
+
 namespace frontmost::painter_detail {
 
 int Plane::side_by_hand(const glm::dvec3& x) const {
@@ -52,22 +56,54 @@ Approximate Plane::meeting(const std::array<const Plane*, 3>& planes) {
   return {a.anchor_ + from_a, bound.x + bound.y + bound.z};
 }
 
-/// With planes n.x = d about a point of the first one, so that its d is 0, by Cramer's rule.
+namespace {
+
+int sign_of(const Twice& number) { return number.certain_sign(); }
+int sign_of(const Expansion& number) { return number.sign(); }
+
+/// A height above a plane, times a determinant that may be negative, and that.
+template <class Number>
+struct Meeting {
+  Number height, determinant;
+};
+
+/// A plane n.x = d about a point.
+template <class Number>
+struct LongPlane {
+  LongVector<Number> n;
+  Number d;
+};
+
+/// By Cramer's rule; the first plane goes through the point, so that its d is 0.
+template <class Number>
+Meeting<Number> meeting_of(const std::array<LongPlane<Number>, 3>& planes, const LongPlane<Number>& asked) {
+  const auto& [a, b, c] = planes;
+  const LongVector<Number> bc = cross_of(b.n, c.n), ca = cross_of(c.n, a.n), ab = cross_of(a.n, b.n);
+  const Number determinant = dot_of(a.n, bc);
+  return {b.d * dot_of(asked.n, ca) + c.d * dot_of(asked.n, ab) - asked.d * determinant, determinant};
+}
+
+}  // namespace
+
+template <class Number>
+int Plane::sign_of_meeting(const std::array<const Plane*, 3>& planes) const {
+  const auto in_full = [&](const Plane& plane) {
+    LongPlane<Number> full{
+        cross_of(difference_of<Number>(plane.u_.to, plane.u_.from), difference_of<Number>(plane.v_.to, plane.v_.from)),
+        {}};
+    full.d = dot_of(full.n, difference_of<Number>(plane.anchor_, planes[0]->anchor_));
+    return full;
+  };
+  const Meeting<Number> meeting =
+      meeting_of<Number>({in_full(*planes[0]), in_full(*planes[1]), in_full(*planes[2])}, in_full(*this));
+  const int height = sign_of(meeting.height), determinant = sign_of(meeting.determinant);
+  return height == 2 || determinant == 2 ? 2 : height * determinant;
+}
+
 int Plane::side_of_meeting(const std::array<const Plane*, 3>& planes) const {
-  struct Exact {
-    ExactVector n;
-    Expansion d;
-  };
-  const auto exactly = [&](const Plane& plane) {
-    Exact e{cross(difference(plane.u_.to, plane.u_.from), difference(plane.v_.to, plane.v_.from)), {}};
-    e.d = dot(e.n, difference(plane.anchor_, planes[0]->anchor_));
-    return e;
-  };
-  const Exact a = exactly(*planes[0]), b = exactly(*planes[1]), c = exactly(*planes[2]), asked = exactly(*this);
-  const Expansion determinant = dot(a.n, cross(b.n, c.n));
-  const Expansion height =
-      b.d * dot(asked.n, cross(c.n, a.n)) + c.d * dot(asked.n, cross(a.n, b.n)) - asked.d * determinant;
-  return height.sign() * determinant.sign();
+  if (std::any_of(planes.begin(), planes.end(), [&](const Plane* plane) { return is_same(*plane); })) return 0;
+  const int twice = sign_of_meeting<Twice>(planes);
+  return twice != 2 ? twice : sign_of_meeting<Expansion>(planes);
 }
 
 }  // namespace frontmost::painter_detail

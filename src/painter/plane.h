@@ -45,6 +45,14 @@ class Plane {
 
  private:
   [[nodiscard]] int side_by_hand(const glm::dvec3& x) const;
+  /// Known by the same points.
+  [[nodiscard]] bool is_same(const Plane& other) const {
+    const auto is_same_leg = [](const Leg& a, const Leg& b) { return a.to == b.to && a.from == b.from; };
+    return anchor_ == other.anchor_ && is_same_leg(u_, other.u_) && is_same_leg(v_, other.v_);
+  }
+  /// side_of_meeting(); 2 where numbers of this kind leave it open.
+  template <class Number>
+  [[nodiscard]] int sign_of_meeting(const std::array<const Plane*, 3>& planes) const;
 
   glm::dvec3 anchor_;
   Leg u_, v_;

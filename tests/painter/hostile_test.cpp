@@ -20,6 +20,39 @@ Scene all_crossing(int count) {
   return scene_of(mesh);
 }
 
+/// What no number of cuts within the limit can do is told before they are made; polls count the steps.
+TEST(Hostile, TooManyCutsAreForeseen) {
+  const Scene scene = all_crossing(3000);
+  const Surfaces surfaces(scene);
+  const View view = frame(surfaces, 64, 64);
+  for (const PaintMethod method : {PaintMethod::depth_sort, PaintMethod::bsp}) {
+    std::size_t polls = 0;
+    Watch watch;
+    watch.cancelled = [&] { return ++polls == 0; };
+    try {
+      (void)painter(surfaces, view, {.method = method}, {.threads = 1, .isa = Isa::best, .watch = &watch});
+      ADD_FAILURE() << "no error";
+    } catch (const Error& error) {
+      EXPECT_STREQ(error.what(), "painter: more than 1048576 cuts: too many triangles pass through each other");
+    }
+    EXPECT_LT(polls, 10u) << "4096 steps each";
+  }
+}
+
+/// As many pairs pass through each other, but all in the same two planes.
+TEST(Hostile, CopiesThroughEachOtherAreNotTooMany) {
+  Mesh mesh;
+  for (int i = 0; i < 1000; ++i) {
+    add_triangle(mesh, {-1, -1, 0.125f}, {1, -1, 0.125f}, {0, 1, 0.25f});
+    add_triangle(mesh, {-1, 1, 0.25f}, {0, -1, 0.25f}, {1, 1, 0.125f});
+  }
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  const View view = frame(surfaces, 64, 64);
+  const PaintOrder order = painter(surfaces, view, {.method = PaintMethod::bsp, .most_cuts = 2000});
+  EXPECT_GT(order.steps.cuts, 900u);
+}
+
 /// Says to stop from a moment on, and how long it took until that was heard.
 class Stopper {
  public:
