@@ -3,6 +3,7 @@
 #include "lines/corner_table.h"
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "base/parallel.h"
@@ -16,8 +17,11 @@ constexpr std::size_t kTrianglesPerPoll = 1 << 18;
 
 }  // namespace
 
-CornerTable::CornerTable(const WeldedMesh& mesh, const Execution& execution)
-    : first_(mesh.positions.size() + 1), corners_(3 * mesh.triangles.size()) {
+CornerTable::CornerTable(const WeldedMesh& mesh, const Execution& execution) {
+  if (mesh.triangles.size() > Corner::most_triangles)
+    throw Error(ErrorCode::limit_exceeded, "lines: more than " + std::to_string(Corner::most_triangles) + " triangles");
+  first_ = Buffer<std::uint32_t>(mesh.positions.size() + 1);
+  corners_ = Buffer<Corner>(3 * mesh.triangles.size());
   const std::size_t bands = std::min(std::size_t(thread_count(execution)), kMostBands);
   const std::size_t vertices = mesh.positions.size(), triangles = mesh.triangles.size();
   const auto for_each_corner = [&](const auto& visit) {

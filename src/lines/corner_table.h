@@ -11,6 +11,8 @@ namespace frontmost::lines_detail {
 /// A triangle, and which of its corners.
 class Corner {
  public:
+  static constexpr std::size_t most_triangles = std::size_t(1) << 30;
+
   Corner(std::uint32_t triangle, std::uint32_t k) : number_(triangle << 2 | k) {}
   [[nodiscard]] std::uint32_t triangle() const { return number_ >> 2; }
   [[nodiscard]] std::uint32_t k() const { return number_ & 3; }
@@ -29,7 +31,7 @@ class Corner {
 /// The corners of all triangles, those at one vertex together.
 class CornerTable {
  public:
-  /// O(triangles).
+  /// O(triangles). \throws Error limit_exceeded for more than Corner::most_triangles.
   CornerTable(const WeldedMesh& mesh, const Execution& execution);
 
   /// In the order of their triangles.

@@ -253,8 +253,8 @@ std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& fea
     crossings[begin / kGroupsPerPart] = std::move(found.crossings);
     contacts[begin / kGroupsPerPart] = std::move(found.contacts);
   });
-  std::vector<Crossing> all = joined(crossings);
-  add_contacts(mesh, features, joined(contacts), all);
+  std::vector<Crossing> all = joined(crossings, execution);
+  add_contacts(mesh, features, joined(contacts, execution), all);
   order_ends(all);
   sort_in_parts(
       all, [](const Crossing& a, const Crossing& b) { return order(a) < order(b); }, execution);

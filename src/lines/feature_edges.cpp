@@ -187,7 +187,7 @@ Features find_features(const SeenMesh& seen, const Surfaces& surfaces, const Lin
     edges[begin / kVerticesPerPart] = std::move(found.edges);
     twins[begin / kVerticesPerPart] = std::move(found.twins);
   });
-  Features all{joined(edges), joined(twins), std::move(is_spread)};
+  Features all{joined(edges, execution), joined(twins, execution), std::move(is_spread)};
   std::sort(all.twins.begin(), all.twins.end());
   return all;
 }

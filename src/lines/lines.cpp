@@ -7,6 +7,7 @@
 
 #include "base/crew.h"
 #include "base/float_environment.h"
+#include "base/large_pages.h"
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "lines/crossings.h"
@@ -65,14 +66,15 @@ class Candidates {
   const std::vector<Crossing> crossings_;
 };
 
-std::vector<DrawnPart> cut_all(const Candidates& candidates, const Occlusion& occlusion, const Execution& execution) {
+/// Fills the edges and parts of `drawing`.
+void cut_all(const Candidates& candidates, const Occlusion& occlusion, const Execution& execution, Drawing& drawing) {
   const std::size_t count = candidates.count();
+  reserve_large(drawing.edges, count, execution);
   std::vector<std::vector<DrawnPart>> lists((count + kEdgesPerPart - 1) / kEdgesPerPart);
   Pool<EdgeCutter> cutters;
   std::atomic<std::size_t> done{0}, parts{0};
-  parallel_for(execution, count, kEdgesPerPart, [&](std::size_t begin, std::size_t end) {
+  const auto cut = [&](std::vector<DrawnPart>& list, std::size_t begin, std::size_t end) {
     const auto cutter = cutters.borrow([&] { return std::make_unique<EdgeCutter>(occlusion); });
-    std::vector<DrawnPart>& list = lists[begin / kEdgesPerPart];
     std::size_t counted = 0;
     for (std::size_t i = begin; i < end; ++i) {
       if (i % kEdgesPerPoll == 0) check_cancelled(execution);
@@ -84,8 +86,15 @@ std::vector<DrawnPart> cut_all(const Candidates& candidates, const Occlusion& oc
       counted = list.size();
     }
     report_progress(execution, "lines", 1 - (1 - kCutFrom) * double(count - (done += end - begin)) / double(count));
+  };
+  // The edges are listed while others are cut.
+  parallel_for(execution, lists.size() + 1, 1, [&](std::size_t part, std::size_t) {
+    if (part > 0)
+      cut(lists[part - 1], (part - 1) * kEdgesPerPart, std::min(count, part * kEdgesPerPart));
+    else
+      for (std::size_t i = 0; i < count; ++i) drawing.edges.push_back(candidates.drawn(i));
   });
-  return joined(lists);
+  drawing.parts = joined(lists, execution);
 }
 
 /// Closes the mesh's seams.
@@ -121,11 +130,8 @@ Drawing lines(const Surfaces& surfaces, const View& view, const LineOptions& opt
 
   Drawing drawing;
   drawing.view = view;
-  drawing.edges.reserve(candidates.count());
-  for (std::size_t i = 0; i < candidates.count(); ++i) drawing.edges.push_back(candidates.drawn(i));
-  drawing.parts = cut_all(
-      candidates, {mesh, sight, view, grid, shadow_kernels(execution.isa), options.counts_hidden, options.outlines},
-      execution);
+  const ShadowKernels kernels = shadow_kernels(execution.isa);
+  cut_all(candidates, {mesh, sight, view, grid, kernels, options.counts_hidden, options.outlines}, execution, drawing);
   return drawing;
 }
 

@@ -217,17 +217,20 @@ struct Lanes {
     const M two = hn::Or(hn::Or(hn::And(has[0], has[1]), hn::And(has[1], has[2])), hn::And(has[2], has[0]));
     return hn::AndNot(two, sides.Both());
   }
-  /// Which certainly meet the line that their plane and the probe's have in common wholly before the probe does, or
-  /// behind: each of the two sides of one that cross the other's plane then turns the same way to each of the other's.
-  HWY_INLINE M MeetsLineApart(const Probe& probe) const {
+  /// Which of the lanes in `asked` certainly meet the line that their plane and the probe's have in common wholly
+  /// before the probe does, or behind: each of the two sides of one that cross the other's plane then turns the same
+  /// way to each of the other's.
+  HWY_INLINE std::uint64_t MeetsLineApart(const Probe& probe, std::uint64_t asked) const {
     const Vector3 p[3] = {probe.Corner(0), probe.Corner(1), probe.Corner(2)};
     const Cut own(corner, {p[0], probe.Splat3(probe.all.normal), probe.Splat3(probe.all.size)}), other(p, plane);
+    const std::uint64_t known = frontmost::HWY_NAMESPACE::BitsOf(D(), hn::And(own.is_known, other.is_known)) & asked;
+    if (known == 0) return 0;  // as where triangles touch
     const Plane one = PlaneThrough(other.alone, own.alone, own.one),
                 two = PlaneThrough(other.alone, own.alone, own.other);
     const Height a(other.one, one), b(other.other, one), c(other.one, two), d(other.other, two);
     const M above = hn::And(hn::And(a.is_above, b.is_above), hn::And(c.is_above, d.is_above));
     const M below = hn::And(hn::And(a.is_below, b.is_below), hn::And(c.is_below, d.is_below));
-    return hn::And(hn::And(own.is_known, other.is_known), hn::Or(above, below));
+    return frontmost::HWY_NAMESPACE::BitsOf(D(), hn::Or(above, below)) & known;
   }
   /// Of those that share a vertex with the probe, which lie on another side of it along the planes' common line than
   /// the probe does, whatever rounding did: as most neighbours do.
@@ -331,7 +334,7 @@ std::uint32_t CrossingGroups(const SpaceTriangles& triangles, std::size_t first,
       const M shares = hn::Or(hn::Or(has[0], has[1]), has[2]);
       if ((bits & frontmost::HWY_NAMESPACE::BitsOf(d, shares)) != 0)
         bits &= ~frontmost::HWY_NAMESPACE::BitsOf(d, hn::And(shares, lanes.LiesApart(probe, has)));
-      if (bits != 0) bits &= ~frontmost::HWY_NAMESPACE::BitsOf(d, lanes.MeetsLineApart(probe));
+      if (bits != 0) bits &= ~lanes.MeetsLineApart(probe, bits);
       if (bits == 0) return;
       const auto mask = std::uint16_t(bits << i);
       masks[p] = found >> p & 1 ? std::uint16_t(masks[p] | mask) : mask;

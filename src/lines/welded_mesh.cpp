@@ -5,9 +5,11 @@
 #include <atomic>
 #include <bit>
 #include <cstring>
+#include <string>
 #include <vector>
 
 #include "base/parallel.h"
+#include "lines/corner_table.h"
 #include "surfaces/cluster_set.h"
 
 namespace frontmost::lines_detail {
@@ -33,6 +35,19 @@ std::vector<std::size_t> firsts_of(const Scene& scene, const Size& size) {
   firsts.reserve(scene.instances.size() + 1);
   for (const Instance& instance : scene.instances) firsts.push_back(firsts.back() + size(scene.meshes[instance.mesh]));
   return firsts;
+}
+
+/// How many are kept in the parts before each, and of all in the end.
+template <class IsKept>
+std::vector<std::size_t> counted(std::size_t count, const IsKept& is_kept, const Execution& execution) {
+  std::vector<std::size_t> before((count + kPerPart - 1) / kPerPart + 1, 0);
+  parallel_for(execution, count, kPerPart, [&](std::size_t begin, std::size_t end) {
+    std::size_t kept = 0;
+    for (std::size_t i = begin; i < end; ++i) kept += is_kept(i);
+    before[begin / kPerPart + 1] = kept;
+  });
+  for (std::size_t i = 1; i < before.size(); ++i) before[i] += before[i - 1];
+  return before;
 }
 
 /// By open addressing, which of the vertices at one place comes first.
@@ -111,13 +126,20 @@ Buffer<std::uint32_t> number_places(const Scene& scene, Positions& positions, co
   const Buffer<glm::vec3> places = places_of(scene, execution);
   const Buffer<std::uint32_t> first = first_at_place(places, execution);
   Buffer<std::uint32_t> numbers(places.size());
-  std::uint32_t count = 0;
-  for (std::size_t v = 0; v < places.size(); ++v)
-    numbers[v] = first[v] == v ? count++ : first[v] == no_index ? no_index : numbers[first[v]];
-  Buffer<glm::vec3> kept(count);
+  const auto is_first = [&](std::size_t v) { return first[v] == v; };
+  const std::vector<std::size_t> before = counted(places.size(), is_first, execution);
+  Buffer<glm::vec3> kept(before.back());
+  parallel_for(execution, places.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
+    std::size_t next = before[begin / kPerPart];
+    for (std::size_t v = begin; v < end; ++v) {
+      if (!is_first(v)) continue;
+      kept[next] = places[v];
+      numbers[v] = std::uint32_t(next++);
+    }
+  });
   parallel_for(execution, places.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
-      if (first[v] == v) kept[numbers[v]] = places[v];
+      if (!is_first(v)) numbers[v] = first[v] == no_index ? no_index : numbers[first[v]];
   });
   positions = Positions(std::move(kept));
   return numbers;
@@ -129,6 +151,9 @@ Buffer<glm::uvec3> corners_of(const Surfaces& surfaces, const Buffer<std::uint32
   const Scene& scene = surfaces.scene();
   const std::vector<std::size_t> vertices = firsts_of(scene, [](const Mesh& mesh) { return mesh.positions.size(); });
   const std::vector<std::size_t> firsts = firsts_of(scene, [](const Mesh& mesh) { return mesh.triangles.size(); });
+  if (firsts.back() > Corner::most_triangles)
+    throw Error(ErrorCode::limit_exceeded,
+                "lines: more than " + std::to_string(Corner::most_triangles) + " triangles over all instances");
   Buffer<glm::uvec3> all(firsts.back());
   parallel_for(execution, all.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
     visit_instances(firsts, begin, end, [&](std::size_t i, std::size_t first, std::size_t last) {
@@ -151,18 +176,20 @@ WeldedMesh weld(const Surfaces& surfaces, const Execution& execution) {
   WeldedMesh welded;
   const Buffer<std::uint32_t> numbers = number_places(surfaces.scene(), welded.positions, execution);
   Buffer<glm::uvec3> all = corners_of(surfaces, numbers, execution);
-  std::size_t kept = 0;
-  for (const glm::uvec3& corners : all) kept += corners.x != no_index;
-  welded.ids = Buffer<PrimitiveId>(kept);
-  kept = 0;
-  for (std::size_t id = 0; id < all.size(); ++id)
-    if (all[id].x != no_index) welded.ids[kept++] = PrimitiveId(id);
-  if (kept == all.size()) {
-    welded.triangles = std::move(all);
-  } else {
-    welded.triangles = Buffer<glm::uvec3>(kept);
-    for (std::size_t i = 0; i < kept; ++i) welded.triangles[i] = all[welded.ids[i]];
-  }
+  const auto is_kept = [&](std::size_t id) { return all[id].x != no_index; };
+  const std::vector<std::size_t> before = counted(all.size(), is_kept, execution);
+  welded.ids = Buffer<PrimitiveId>(before.back());
+  const bool keeps_all = before.back() == all.size();
+  if (!keeps_all) welded.triangles = Buffer<glm::uvec3>(before.back());
+  parallel_for(execution, all.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
+    std::size_t next = before[begin / kPerPart];
+    for (std::size_t id = begin; id < end; ++id) {
+      if (!is_kept(id)) continue;
+      if (!keeps_all) welded.triangles[next] = all[id];
+      welded.ids[next++] = PrimitiveId(id);
+    }
+  });
+  if (keeps_all) welded.triangles = std::move(all);
   return welded;
 }
 

@@ -133,6 +133,30 @@ TEST(Crossings, FromASharedCornerOn) {
   EXPECT_EQ(crossings[0].to.place, glm::dvec3(1, 1, 0));
 }
 
+/// Scaled so that the many small ones are of size 1, the large one has no end: boxes that fill up a group of the tree
+/// must not touch that.
+TEST(Crossings, OfATriangleWithoutEndAndManySmallOnes) {
+  for (const int count : {15, 16, 17, 40, 300}) {
+    Mesh mesh;
+    const float size = 1e-20f, end = 3e38f;
+    for (int i = 0; i < count; ++i) {
+      const float x = 4 * size * float(i);
+      add_triangle(mesh, {x, 0, -size}, {x + size, 0, size}, {x, size, size});
+    }
+    add_triangle(mesh, {-end, -end, 0}, {end, -end, 0}, {0, end, 0});
+    const Scene scene = scene_of(mesh);
+    const WeldedMesh welded = weld(Surfaces(scene), {});
+    for (const Isa isa : available_isas()) {
+      const std::vector<Crossing> crossings = find_crossings(welded, {}, {.threads = 2, .isa = isa});
+      ASSERT_EQ(crossings.size(), std::size_t(count)) << name(isa);
+      for (const Crossing& c : crossings) {
+        EXPECT_EQ(c.right, std::uint32_t(count));
+        EXPECT_NEAR(glm::length(c.to.place - c.from.place), size / std::sqrt(2.0), size * 1e-3);  // x is rounded
+      }
+    }
+  }
+}
+
 TEST(Crossings, EveryInstructionSetFindsTheSame) {
   for (std::uint64_t seed = 0; seed < seeds(8); ++seed) {
     const Scene scene = scene_of(random_mesh(Kind::soup, 700, seed));
