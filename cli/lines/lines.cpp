@@ -73,9 +73,8 @@ void check(const Settings& settings) {
     if (!s.format && !format)
       throw UsageError(path == "-" ? "-o -: needs --format"
                                    : path + ": the suffix names no format; use .svg, .pdf, .dxf or .json");
-    if (s.format && format && s.format != format)
-      throw UsageError(path + ": the suffix names another format than --format, which is for files whose names do not");
   }
+  if (s.format) check_given_format(s.outputs, int(*s.format), "svg|pdf|dxf|json");
   const bool takes_output = std::find(s.outputs.begin(), s.outputs.end(), "-") != s.outputs.end();
   if (takes_output && settings.run.json) throw UsageError("--json and an output to - both want standard output");
 }

@@ -76,6 +76,9 @@ Page page_of(const Figure& figure, const Job& job) {
   if (job.output.background) layer.groups.push_back(backdrop(*job.output.background, page));
   PageGroup& group = layer.groups.emplace_back(PageGroup{"surfaces", Pen{}});
   group.pen.width = 0;
+  group.points.reserve(figure.corners.size());
+  group.paths.reserve(figure.rings.size());
+  group.fills.reserve(figure.rings.size());
   std::vector<glm::dvec2> outline;
   for (const FigureShape& shape : figure.shapes)
     for (std::uint32_t i = 0; i < shape.ring_count; ++i) {
@@ -121,6 +124,7 @@ void write_figures(const Job& job, const RenderContext& context, ViewResult& res
   ColoredOrder colored = colors_of(order, job, context);
   if (job.output.merges_neighbours) colored = merge_neighbours(colored, context.execution);
   const Figure figure = outlined(colored, kHem, hiding(job, context, true), context.execution);
+  colored = {};
   const Page page = page_of(figure, job);
   result.timings.shade += watch.milliseconds();
   if (!context.run.quiet) tell_size(job, figure);

@@ -42,8 +42,16 @@ void take_figures(const Settings& settings, const std::string& model, Job& job) 
   if (settings.view.camera_model != CameraModel::pinhole) refuse("polygons are seen by pinhole cameras alone");
 }
 
+void check_format(const OutputSettings& settings) {
+  if (!settings.format) return;
+  std::vector<std::string> paths;
+  for (const OutputRequest& request : settings.files) paths.push_back(request.path);
+  check_given_format(paths, int(*settings.format), "png|exr|pfm|npy|svg|pdf");
+}
+
 Job make_job(const Settings& settings) {
   check_view_settings(settings.view);
+  check_format(settings.output);
   if (settings.run.stream && settings.view.depth.is_used)
     throw UsageError("--stream draws with the default depth test; it excludes the options of a depth buffer");
   Job job{view_name(settings.view), settings.view, settings.output, {}, {}, {}, {}};

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "cli/failure.h"
+#include "cli/values.h"
 
 namespace frontmost::cli {
 namespace {
@@ -19,9 +20,15 @@ constexpr std::string_view kind_names[] = {"picture", "deep",          "depth", 
                                            "normals", "primitive_ids", "object_ids", "material_ids"};
 constexpr std::string_view format_names[] = {"png", "exr", "pfm", "npy"};
 
-std::optional<ImageFormat> format_by_suffix(const std::string& path) {
+/// In small letters, with its dot.
+std::string suffix_of(const std::string& path) {
   std::string suffix = fs::path(path).extension().string();
   for (char& c : suffix) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+  return suffix;
+}
+
+std::optional<ImageFormat> format_by_suffix(const std::string& path) {
+  const std::string suffix = suffix_of(path);
   for (int i = 0; i < 4; ++i) {
     if (suffix.size() == 4 && suffix.substr(1) == format_names[i]) return ImageFormat(i);
   }
@@ -133,6 +140,20 @@ std::string fill_template(std::string_view text, const std::string& model, const
     }
   }
   return result;
+}
+
+void check_given_format(const std::vector<std::string>& paths, int given, std::string_view formats) {
+  const std::vector<std::string_view> names = split(formats, '|');
+  const auto number = [&](const std::string& path) {
+    const std::string suffix = suffix_of(path);
+    const auto found = std::find(names.begin(), names.end(), std::string_view(suffix).substr(!suffix.empty()));
+    return int(found - names.begin());
+  };
+  const auto is_silent = [&](const std::string& path) { return number(path) == int(names.size()); };
+  if (std::any_of(paths.begin(), paths.end(), is_silent)) return;
+  for (const std::string& path : paths)
+    if (number(path) != given)
+      throw UsageError(path + ": the suffix names another format than --format, which is for files whose names do not");
 }
 
 std::vector<OutputFile> plan_outputs(const OutputSettings& settings, const std::string& model,

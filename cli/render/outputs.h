@@ -31,6 +31,11 @@ struct OutputFile {
 [[nodiscard]] std::string fill_template(std::string_view text, const std::string& model, const std::string& view,
                                         std::optional<int> layer = std::nullopt);
 
+/// --format is for files whose names do not say one: where all names do, one of another format contradicts it.
+/// `formats` are those that names may say, separated by '|', the given one by its place among them.
+/// \throws UsageError
+void check_given_format(const std::vector<std::string>& paths, int given, std::string_view formats);
+
 /// The files of one view. Names with {layer} make one for every layer.
 /// \throws UsageError for an unknown suffix, a format that cannot hold the kind, and a name taken twice
 [[nodiscard]] std::vector<OutputFile> plan_outputs(const OutputSettings& settings, const std::string& model,

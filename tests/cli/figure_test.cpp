@@ -82,6 +82,11 @@ TEST_F(Figures, AreTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(read("one.svg"), read("three.svg"));
 }
 
+TEST_F(Figures, StandBesideFilesWhoseFormatIsGiven) {
+  succeed("render cube.stl -o a.svg -o b.exr --depth - --format npy --quiet");
+  EXPECT_THAT(files(), testing::ElementsAre("a.svg", "b.exr", "cube.stl"));
+}
+
 TEST_F(Figures, RefuseWhatTheyCannotBe) {
   expect_failure("render cube.stl -o a.svg --most-polygons 5", 1, "6 polygons, more than --most-polygons 5");
   expect_failure("render cube.stl -o a.svg --method abuffer", 2, "without --method");
@@ -89,6 +94,8 @@ TEST_F(Figures, RefuseWhatTheyCannotBe) {
   expect_failure("render cube.stl -o a.svg --camera-model panorama", 2, "pinhole");
   expect_failure("render cube.stl -o a.svg --color-tolerance 256", 2, "--color-tolerance");
   expect_failure("render cube.stl -o a.svg -o a.svg", 2, "written twice");
+  expect_failure("render cube.stl -o a.svg --format png", 2, "a.svg: the suffix names another format");
+  expect_failure("render cube.stl -o a.png --depth b.exr --format png", 2, "b.exr: the suffix names another format");
   EXPECT_THAT(files(), testing::ElementsAre("cube.stl"));
 }
 

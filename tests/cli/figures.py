@@ -8,14 +8,19 @@ of the z-buffer.
 A pixel of a figure is a mixture of what lies around it. So every channel of it must lie between the least and the
 greatest of the z-buffer's picture within a pixel, twice as fine so as to find what is narrower than one, give or take
 a bound. Nothing is left out: at the borders of polygons hairlines would show. Away from the borders of ids the colour
-itself must be the same within the bound. Rasterisers that are not installed are skipped, and counted.
+itself must be the same within the bound. Some are looked at in half and in twice their size as well, as pages are, and by a browser.
+Rasterisers that are not installed are skipped, and counted.
 """
+import base64
+import json
 import pathlib
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
 import xml.etree.ElementTree
+import zlib
 
 sys.dont_write_bytecode = True
 from rasters import Raster, read_ids, read_png, read_pnm  # noqa: E402
@@ -31,18 +36,20 @@ FLAT = ["--shading", "flat"]
 class Case:
     """A view, and what is known of it: by how much its colours vary within a polygon, and which part of the pixels may
     be beyond the bound, by how much at most: things narrower than half a pixel, rims of translucent neighbours, which
-    viewers blend both, and details of textures and shadows that are narrower than a piece."""
+    viewers blend both, and details of textures and shadows that are narrower than a piece. `browser`: the same part for a
+    browser, which finds how much of a pixel is covered less exactly; none: it is not asked."""
 
-    def __init__(self, words, varies=0, most=0.001, furthest=50):
+    def __init__(self, words, varies=0, most=0.001, furthest=50, scales=(), browser=None):
         self.words, self.bound, self.most, self.furthest = words, BOUND + varies, most, furthest
+        self.scales, self.browser = (1, *scales), browser
 
 
 CASES = {
-    "cubes through each other": Case(["builtin:cubes", "--no-shadows"]),
-    "a ring of three": Case(["builtin:cycle", *FLAT]),
-    "ids": Case(["builtin:city", "--shading", "ids"]),
+    "cubes through each other": Case(["builtin:cubes", "--no-shadows"], scales=(0.5, 2), browser=0.001),
+    "a ring of three": Case(["builtin:cycle", *FLAT], scales=(0.5, 2)),
+    "ids": Case(["builtin:city", "--shading", "ids"], most=0.002, browser=0.06),
     "in parallel": Case(["builtin:cubes", "--view", "iso", "--camera-orthographic", "--shading", "normals"]),
-    "tiles": Case(["builtin:gallery", *FLAT], TOLERANCE, 0.02, 64),
+    "tiles": Case(["builtin:gallery", *FLAT], TOLERANCE, 0.02, 64, browser=0.06),
     "light and shadow": Case(["builtin:gallery"], TOLERANCE, 0.02, 64),
     "depths": Case(["builtin:spheres", "--shading", "depth"], TOLERANCE, 0.004),
     "normals": Case(["builtin:teapot", "--shading", "normals"], TOLERANCE, 0.005),
@@ -50,6 +57,7 @@ CASES = {
     "cubes, neighbours merged": Case(["builtin:cubes", *FLAT, MERGED]),
     "tiles, neighbours merged": Case(["builtin:gallery", *FLAT, MERGED], TOLERANCE, 0.02, 64),
     "all of glass": Case(["builtin:cubes", *FLAT, "--opacity", "0.5"], 0, 0.025),
+    "leaves": Case(["leaves.gltf", *FLAT]),
 }
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -63,6 +71,43 @@ def run(*words):
     return done.stdout
 
 
+def png_of(rows):
+    """Of rows of RGBA bytes."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    header = struct.pack(">IIBBBBB", len(rows[0]) // 4, len(rows), 8, 6, 0, 0, 0)
+    packed = zlib.compress(b"".join(b"\0" + row for row in rows))
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", packed) + chunk(b"IEND", b"")
+
+
+def write_leaves(path):
+    """Two walls, one before the other: squares of one colour are cut out of the first, a checkerboard 6 wide."""
+    def embedded(data, kind="application/octet-stream"):
+        return f"data:{kind};base64," + base64.b64encode(data).decode()
+    leaf, hole = bytes([30, 140, 60, 255]), bytes([30, 140, 60, 0])
+    board = [b"".join(leaf if (x + y) % 2 else hole for x in range(6)) for y in range(6)]
+    corners = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
+    data = b"".join(struct.pack("<3f", 1.1 * x, 1.1 * y, -0.3) for x, y in corners)
+    data += b"".join(struct.pack("<3f", x, y, 0.3 * y) for x, y in corners)
+    data += b"".join(struct.pack("<2f", (x + 1) / 2, (1 - y) / 2) for x, y in corners)
+    data += struct.pack("<6H", 0, 1, 2, 0, 2, 3)
+    views = [(0, 48), (48, 48), (96, 32), (128, 12)]
+    kinds = [(5126, 4, "VEC3"), (5126, 4, "VEC3"), (5126, 4, "VEC2"), (5123, 6, "SCALAR")]
+    limits = [{"min": [-1.1, -1.1, -0.3], "max": [1.1, 1.1, -0.3]}, {"min": [-1, -1, -0.3], "max": [1, 1, 0.3]}, {}, {}]
+    path.write_text(json.dumps({
+        "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "buffers": [{"byteLength": len(data), "uri": embedded(data)}],
+        "bufferViews": [{"buffer": 0, "byteOffset": at, "byteLength": size} for at, size in views],
+        "accessors": [{"bufferView": i, "componentType": kind, "count": count, "type": name, **limits[i]}
+                      for i, (kind, count, name) in enumerate(kinds)],
+        "images": [{"uri": embedded(png_of(board), "image/png")}], "textures": [{"source": 0, "sampler": 0}],
+        "samplers": [{"magFilter": 9728, "minFilter": 9728}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.6, 0.3, 1]}},
+                      {"alphaMode": "MASK", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 3, "material": 0},
+                                   {"attributes": {"POSITION": 1, "TEXCOORD_0": 2}, "indices": 3, "material": 1}]}]}))
+
+
 def check_xml(path):
     root = xml.etree.ElementTree.parse(path).getroot()
     allowed = {SVG + tag for tag in ("svg", "title", "g", "path")}
@@ -72,10 +117,10 @@ def check_xml(path):
 
 def reach(fine, choose):
     """The least or greatest of a picture twice as fine, within a pixel of each pixel."""
-    found = []
+    width, height, found = fine.width // 2, fine.height // 2, []
     for number in range(3):
-        across = [[choose(row[max(0, 2 * x - 2) : 2 * x + 4]) for x in range(WIDTH)] for row in fine.channel(number)]
-        found.append([[choose(column) for column in zip(*across[max(0, 2 * y - 2) : 2 * y + 4])] for y in range(HEIGHT)])
+        across = [[choose(row[max(0, 2 * x - 2) : 2 * x + 4]) for x in range(width)] for row in fine.channel(number)]
+        found.append([[choose(column) for column in zip(*across[max(0, 2 * y - 2) : 2 * y + 4])] for y in range(height)])
     return found
 
 
@@ -96,7 +141,7 @@ def laid_over_each_other(layers):
 
 def inner_pixels(ids):
     """Those whose neighbours all around show the same triangle."""
-    return [(x, y) for y in range(1, HEIGHT - 1) for x in range(1, WIDTH - 1)
+    return [(x, y) for y in range(1, len(ids) - 1) for x in range(1, len(ids[0]) - 1)
             if all(ids[y + dy][x + dx] == ids[y][x] for dy in (-1, 0, 1) for dx in (-1, 0, 1))]
 
 
@@ -117,24 +162,47 @@ def differing(raster, picture, pixels, bound):
     return [(x, y) for x, y in pixels if any(abs(a[y][x] - b[y][x]) > bound for a, b in channels)]
 
 
-def rasters_of(folder):
-    found = {}
+def browser():
+    return shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+
+
+def screenshot(folder, width, height):
+    """By the only viewer that most people have. None where it does not start, as in some containers."""
+    page, shot = folder / "page.html", folder / "page.png"
+    page.write_text(f'<!doctype html><style>body{{margin:0}}img{{display:block;width:{width}px;height:{height}px}}</style>'
+                    '<img src="a.svg">')
+    shot.unlink(missing_ok=True)
+    words = [browser(), "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--force-device-scale-factor=1",
+             f"--user-data-dir={folder}/profile", f"--window-size={width},{height}", f"--screenshot={shot}", page.as_uri()]
+    try:
+        subprocess.run([str(word) for word in words], capture_output=True, timeout=60)
+    except subprocess.TimeoutExpired:
+        return None
+    return read_png(shot) if shot.exists() else None
+
+
+def rasters_of(folder, scale, by_browser):
+    width, height, found = int(scale * WIDTH), int(scale * HEIGHT), {}
     if shutil.which("rsvg-convert"):
-        run("rsvg-convert", "-w", WIDTH, "-h", HEIGHT, folder / "a.svg", "-o", folder / "svg.png")
+        run("rsvg-convert", "-w", width, "-h", height, folder / "a.svg", "-o", folder / "svg.png")
         found["librsvg"] = read_png(folder / "svg.png")
     if shutil.which("pdftoppm"):
-        run("pdftoppm", "-r", "96", "-singlefile", folder / "a.pdf", folder / "pdf")
+        run("pdftoppm", "-r", 96 * scale, "-singlefile", folder / "a.pdf", folder / "pdf")
         found["poppler"] = read_pnm(folder / "pdf.ppm")
+    if by_browser and browser():
+        shot = screenshot(folder, width, height)
+        if shot:
+            found["Chromium"] = shot
     return found
 
 
-def check_case(program, name, case, folder):
-    """Returns how many rasterisers were there."""
-    words = case.words
+def check_scale(program, name, case, folder, scale):
+    """Returns how many rasterisers were there, and how many were not."""
+    words, width, height = case.words, int(scale * WIDTH), int(scale * HEIGHT)
 
-    def picture(scale, *more):
+    def picture(by, *more):
         def draw(file, *how):
-            run(program, "render", *words, "--samples", 1, "--resolution", f"{scale * WIDTH},{scale * HEIGHT}", "-o",
+            run(program, "render", *words, "--samples", 1, "--resolution", f"{by * width},{by * height}", "-o",
                 folder / file, *how, *more)
         if "--opacity" not in words:
             draw("a.png")
@@ -142,33 +210,44 @@ def check_case(program, name, case, folder):
         draw("{layer}.png", "--layers", LAYERS, "--background", "transparent")
         return laid_over_each_other([read_png(folder / f"{layer}.png") for layer in range(LAYERS)])
 
-    run(program, "render", *words, "--resolution", f"{WIDTH},{HEIGHT}", "--quiet", "-o", folder / "a.svg", "-o",
-        folder / "a.pdf")
-    check_xml(folder / "a.svg")
     same = picture(1)
-    run(program, "render", *words, "--resolution", f"{WIDTH},{HEIGHT}", "--ids", f"primitive={folder}/ids.npy")
+    run(program, "render", *words, "--resolution", f"{width},{height}", "--ids", f"primitive={folder}/ids.npy")
     fine = picture(2)
     low, high = reach(fine, min), reach(fine, max)
-    inner = inner_pixels(read_ids(folder / "ids.npy", WIDTH, HEIGHT))
-    found = rasters_of(folder)
+    inner = inner_pixels(read_ids(folder / "ids.npy", width, height))
+    by_browser = case.browser is not None and scale == 1
+    found = rasters_of(folder, scale, by_browser)
     for viewer, raster in found.items():
-        assert (raster.width, raster.height) == (WIDTH, HEIGHT), (raster.width, raster.height)
+        assert (raster.width, raster.height) == (width, height), (raster.width, raster.height)
         stray, wrong = strays(raster, low, high, case.bound), differing(raster, same, inner, case.bound)
-        told = (f"{name}: {viewer}: {len(stray)} of {WIDTH * HEIGHT} pixels stray, by up to "
+        told = (f"{name} at {scale:.0%}: {viewer}: {len(stray)} of {width * height} pixels stray, by up to "
                 f"{max(stray.values(), default=0)}; {len(wrong)} of {len(inner)} inner ones differ")
         print(told)
-        assert len(stray) <= case.most * WIDTH * HEIGHT and len(wrong) <= case.most * len(inner), (
+        share = case.browser if viewer == "Chromium" else case.most
+        most = share / min(scale, 1)  # of fewer pixels more are rims
+        assert len(stray) <= most * width * height and len(wrong) <= most * len(inner), (
             told, sorted(stray.items(), key=lambda e: -e[1])[:5], wrong[:5])
         assert max(stray.values(), default=0) <= case.furthest, told
-    return len(found)
+    return len(found), 2 + by_browser - len(found)
+
+
+def check_case(program, name, case, folder):
+    if case.words[0] == "leaves.gltf":
+        write_leaves(folder / "leaves.gltf")
+        case.words[0] = str(folder / "leaves.gltf")
+    run(program, "render", *case.words, "--resolution", f"{WIDTH},{HEIGHT}", "--quiet", "-o", folder / "a.svg", "-o",
+        folder / "a.pdf")
+    check_xml(folder / "a.svg")
+    return [check_scale(program, name, case, folder, scale) for scale in case.scales]
 
 
 def main():
-    program, checked = pathlib.Path(sys.argv[1]).resolve(), 0
+    program, counts = pathlib.Path(sys.argv[1]).resolve(), []
     with tempfile.TemporaryDirectory() as folder:
         for name, case in CASES.items():
-            checked += check_case(program, name, case, pathlib.Path(folder))
-    print(f"{len(CASES)} figures, {checked} rasterised, {2 * len(CASES) - checked} skipped for want of a rasteriser")
+            counts += check_case(program, name, case, pathlib.Path(folder))
+    print(f"{len(CASES)} figures, {sum(c[0] for c in counts)} rasterised, {sum(c[1] for c in counts)} skipped for want "
+          "of a rasteriser")
 
 
 main()

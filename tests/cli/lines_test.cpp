@@ -321,6 +321,12 @@ TEST_F(LinesCommand, AnEmptyDrawingIsAFileWithAWarning) {
   EXPECT_THAT(read("a.svg"), HasSubstr("</svg>"));
 }
 
+TEST_F(LinesCommand, FormatIsOfTheFileWithoutASuffix) {
+  const std::string drawn = succeed("lines cube.stl -o b.svg -o - --format dxf").out;
+  EXPECT_THAT(read("b.svg"), HasSubstr("</svg>"));
+  EXPECT_THAT(drawn, HasSubstr("AC1009"));
+}
+
 TEST_F(LinesCommand, WhatCannotBeMeantIsRefused) {
   expect_failure("lines cube.stl", 2, "nothing to do");
   expect_failure("lines cube.stl -o a.png", 2, "names no format");

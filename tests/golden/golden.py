@@ -5,10 +5,12 @@
     golden.py check PROGRAM FOLDER     renders every case into FOLDER and compares
     golden.py update PROGRAM FOLDER    renders, and stores the result as the new truth
 
+Figures are promised to the byte, too, where no function of the C library has a part in their colours.
 What is visible (ids and depths) and each map are promised to the byte, so their content hashes must be equal. Colours
 go through functions of the C library and may differ by a rounding: each channel within COLOUR_TOLERANCE. On failure
 the picture and its difference lie in FOLDER, the reference beside this script.
 """
+import hashlib
 import json
 import pathlib
 import shutil
@@ -30,6 +32,11 @@ CASES = {
     "spheres": ["builtin:spheres", *SMALL, "--background", "transparent"],
     "spheres_normals": ["builtin:spheres", *SMALL, "--shading", "normals"],
 }
+FIGURES = {
+    "cubes_figure": ["builtin:cubes", *SMALL, "--shading", "flat"],
+    "cubes_merged_figure": ["builtin:cubes", *SMALL, "--shading", "flat", "--merge-neighbours"],
+    "cycle_figure": ["builtin:cycle", *SMALL, "--shading", "ids"],
+}
 
 
 def hashes_of(text):
@@ -46,9 +53,19 @@ def render(program, folder, name, compare):
     return done, hashes_of(done.stdout)
 
 
+def draw(program, folder, name):
+    """The hash of a figure's bytes."""
+    command = [program, "render", *FIGURES[name], "-o", f"{name}.svg", "--quiet"]
+    subprocess.run([str(word) for word in command], cwd=folder, check=True)
+    return {"svg": hashlib.sha256((folder / f"{name}.svg").read_bytes()).hexdigest()[:16]}
+
+
 def check(program, folder):
     stored = json.loads(HASHES.read_text())
     failures = []
+    for name in FIGURES:
+        if draw(program, folder, name) != stored[name]:
+            failures.append(f"{name}: its bytes differ from those stored")
     for name in CASES:
         done, found = render(program, folder, name, True)
         if done.returncode != 0:
@@ -58,7 +75,7 @@ def check(program, folder):
                 failures.append(f"{name}: {key} has hash {found.get(key)}, stored is {stored[name].get(key)}")
     if failures:
         sys.exit("\n".join(failures) + f"\npictures and differences: {folder}; references: {HERE}")
-    print(f"{len(CASES)} pictures, {sum(map(len, stored.values()))} hashes")
+    print(f"{len(CASES)} pictures, {len(FIGURES)} figures, {sum(map(len, stored.values()))} hashes")
 
 
 def update(program, folder):
@@ -68,6 +85,7 @@ def update(program, folder):
         if done.returncode != 0:
             sys.exit(f"{name}: {done.stderr}")
         shutil.copy(folder / f"{name}.png", HERE / f"{name}.png")
+    stored |= {name: draw(program, folder, name) for name in FIGURES}
     HASHES.write_text(json.dumps(stored, indent=1, sort_keys=True) + "\n")
 
 

@@ -6,13 +6,9 @@
 
 #include "painter/outlines.h"
 #include "painter/piece_grid.h"
+#include "view/affine_depth.h"
 
 namespace frontmost::painter_detail {
-
-/// Perspective: depths are not affine over the screen, their reciprocals are. Its own inverse.
-[[nodiscard]] inline double affine_depth(const View& view, double depth) {
-  return view.projection.orthographic ? depth : 1 / depth;
-}
 
 /// All polygons of an order on the screen, with depths affine. They have places in the order, and are kept in slots in
 /// the order of the grid's cells: what is near on the screen is near in memory, for every other one is read beside its

@@ -17,6 +17,8 @@ constexpr double kEven = 0.1;
 constexpr std::size_t kFewestOfChange = 4;
 /// Texels: a cut that near to the border of two texels is that border.
 constexpr double kTexelReach = 0.25;
+/// Pixels: texels of that size are parted one by one.
+constexpr double kLargeTexel = 4;
 
 /// Of the longest axis of the ellipse that a symmetric matrix stands for.
 glm::dvec2 main_axis(double xx, double xy, double yy) {
@@ -86,6 +88,7 @@ class CutFinder {
 
   [[nodiscard]] std::optional<ScreenLine> find() {
     if (const std::optional<ScreenLine> border = border_of_bands()) return border;
+    if (const std::optional<ScreenLine> border = border_of_texels()) return border;
     for (const TexcoordLines& lines : texture_) try_texture(lines);
     for (int i = 0; i < kDirections; ++i) {
       const double angle = i * 3.14159265358979323846 / kDirections;
@@ -114,6 +117,30 @@ class CutFinder {
       if (steps <= most || !(width >= 2 * bands * piece_.least_width)) continue;
       most = steps;
       line = ScreenLine{way, all.least + width * std::floor(bands / 2) / bands};
+    }
+    return line;
+  }
+
+  /// Where texels are large, their border that is nearest to the middle of the piece: of a chessboard no single cut
+  /// parts the colours, and pieces of other shapes have ragged rims.
+  [[nodiscard]] std::optional<ScreenLine> border_of_texels() const {
+    std::optional<ScreenLine> line;
+    double widest = 0;
+    for (const TexcoordLines& lines : texture_) {
+      double least = lines.at(piece_.corners[0]), greatest = least;
+      for (const glm::dvec2& corner : piece_.corners) {
+        least = std::min(least, lines.at(corner));
+        greatest = std::max(greatest, lines.at(corner));
+      }
+      const double border = std::round((least + greatest) * 0.5);
+      const std::optional<ScreenLine> found = lines.line(border);
+      if (!found || !(border > least && border < greatest)) continue;
+      const Range sides = reach(*found);
+      const double texel = std::min(-sides.least / (border - least), sides.greatest / (greatest - border));
+      const bool parts = -sides.least >= piece_.least_width && sides.greatest >= piece_.least_width;
+      if (!parts || texel < kLargeTexel || sides.greatest - sides.least <= widest) continue;
+      widest = sides.greatest - sides.least;
+      line = found;
     }
     return line;
   }

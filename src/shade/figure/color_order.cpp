@@ -79,6 +79,23 @@ void append(const ColoredOrder& part, ColoredOrder& into) {
   append(part.wholes, into.wholes);
 }
 
+void reserve(const std::vector<ColoredOrder>& parts, ColoredOrder& into) {
+  std::size_t pieces = 0, corners = 0, wholes = 0, whole_corners = 0;
+  for (const ColoredOrder& part : parts) {
+    pieces += part.colors.size();
+    corners += part.order.corners.size();
+    wholes += part.wholes.polygons.size();
+    whole_corners += part.wholes.corners.size();
+  }
+  into.colors.reserve(pieces);
+  into.shapes.reserve(pieces);
+  into.whole_of.reserve(pieces);
+  into.order.polygons.reserve(pieces);
+  into.order.corners.reserve(corners);
+  into.wholes.polygons.reserve(wholes);
+  into.wholes.corners.reserve(whole_corners);
+}
+
 /// Of an order within the picture.
 ColoredOrder color_within(const Surfaces& surfaces, const Visible& visible, const PaintOrder& order,
                           const ColorOptions& options, const Execution& execution) {
@@ -100,7 +117,11 @@ ColoredOrder color_within(const Surfaces& surfaces, const Visible& visible, cons
   ColoredOrder colored;
   colored.order.view = colored.wholes.view = order.view;
   colored.order.steps = order.steps;
-  for (const ColoredOrder& part : parts) append(part, colored);
+  reserve(parts, colored);
+  for (ColoredOrder& part : parts) {
+    append(part, colored);
+    part = {};
+  }
   return colored;
 }
 

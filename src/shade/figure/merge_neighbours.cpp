@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "frontmost/figure.h"
 #include "painter/piece_grid.h"
+#include "painter/poll.h"
 #include "shade/figure/side_net.h"
 
 namespace frontmost {
@@ -43,7 +44,7 @@ bool has_side_between(Corners a, Corners b) {
 }
 
 /// For every polygon, whether none that is painted later covers a part of it.
-std::vector<bool> find_uncovered(const PaintOrder& order) {
+std::vector<bool> find_uncovered(const PaintOrder& order, const Execution& execution) {
   std::vector<Extent> extents;
   for (std::size_t i = 0; i < order.polygons.size(); ++i) {
     Extent extent{glm::vec2(std::numeric_limits<float>::infinity()), glm::vec2(-std::numeric_limits<float>::infinity()),
@@ -55,9 +56,11 @@ std::vector<bool> find_uncovered(const PaintOrder& order) {
     extents.push_back(extent);
   }
   const PieceGrid grid(extents);
+  painter_detail::Poll poll(execution);
   const auto is_covered_in = [&](std::size_t cell, std::size_t i) {
     const std::span<const std::uint32_t> entries = grid.cell(cell);
     for (std::size_t k = entries.size(); k-- > 0 && entries[k] > i;) {
+      poll.count();
       const Extent &a = extents[i], &b = extents[entries[k]];
       if (a.low.x >= b.high.x || b.low.x >= a.high.x || a.low.y >= b.high.y || b.low.y >= a.high.y) continue;
       const Corners own = corners_of(order, i), other = corners_of(order, entries[k]);
@@ -132,7 +135,7 @@ ColoredOrder merge_neighbours(const ColoredOrder& colored, const Execution& exec
   if (colored.colors.size() != count || colored.shapes.size() != count)
     throw Error(ErrorCode::bad_argument, "figure: colours, shapes and polygons differ in number");
   const IeeeScope ieee;
-  const std::vector<bool> uncovered = find_uncovered(colored.order);
+  const std::vector<bool> uncovered = find_uncovered(colored.order, execution);
   Sets sets = united(colored, uncovered, execution);
   std::vector<std::uint32_t> places(count), order(count);
   for (std::uint32_t i = 0; i < count; ++i) places[i] = sets.find(i);

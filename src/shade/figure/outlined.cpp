@@ -96,6 +96,9 @@ Figure outlined(const ColoredOrder& colored, double hem, const std::function<boo
   const std::size_t count = colored.colors.size();
   Figure figure;
   figure.view = colored.order.view;
+  figure.shapes.reserve(count);
+  figure.rings.reserve(count);
+  figure.corners.reserve(colored.order.corners.size() * 2);  // about what hems add
   Outliner outliner(figure);
   SideNet net;
   std::vector<NetCorner> corners;

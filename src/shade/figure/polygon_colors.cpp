@@ -8,6 +8,7 @@
 #include "base/srgb.h"
 #include "shade/figure/color_groups.h"
 #include "surfaces/cluster_set.h"
+#include "view/affine_depth.h"
 
 namespace frontmost::shading {
 namespace {
@@ -23,8 +24,6 @@ constexpr double kWithin = 2.0 / 3;
 constexpr double kOfSlivers = 8;
 /// Samples that are asked for together: some batches of the shader, and few enough to stay near at hand.
 constexpr std::size_t kSamplesAtOnce = 2048;
-
-double affine_of(const View& view, double depth) { return view.projection.orthographic ? depth : 1 / depth; }
 
 bool is_hole(const glm::vec4& color) { return color.w < 0; }
 
@@ -90,9 +89,10 @@ void PolygonColors::start(const PaintOrder& order, std::uint32_t number) {
   nodes_.emplace_back();
   const auto first = order.corners.begin() + std::ptrdiff_t(polygon.outline.first_corner);
   Piece& piece = looked_at_.emplace_back();
+  piece.corners.reserve(polygon.outline.corner_count);
   for (std::size_t i = 0; i < polygon.outline.corner_count; ++i) {
     const PaintCorner& corner = first[std::ptrdiff_t(i)];
-    piece.corners.push_back({{{corner.at.x, corner.at.y, affine_of(view_, corner.at.z)}, corner.is_cut}});
+    piece.corners.push_back({{{corner.at.x, corner.at.y, affine_depth(view_, corner.at.z)}, corner.is_cut}});
   }
   piece.polygon = number;
   piece.node = polygon.node;
@@ -124,6 +124,7 @@ void PolygonColors::place_samples(Piece& piece) {
   };
   if (options_.tolerance < 255 && !size.is_small()) {
     const auto known = double(piece.samples.size());
+    piece.samples.reserve(piece.corners.size() + std::size_t(std::max(size.sample_count(), known)) + 1);
     if (piece.cut == no_index) for_each_corner_place(piece.corners, size.middle, add);
     for_each_place(piece.corners, size.area, std::max(size.sample_count() - known, 0.0), add);
     piece.is_sliver = piece.samples.empty();
@@ -260,7 +261,7 @@ template <class Corners>
 void append(const PaintPolygon& polygon, const Corners& corners, const View& view, PaintOrder& into) {
   into.polygons.push_back({polygon.id, std::uint32_t(corners.size()), into.corners.size()});
   for (const PaintCorner& corner : corners)
-    into.corners.push_back({{corner.at.x, corner.at.y, affine_of(view, corner.at.z)}, corner.is_cut});
+    into.corners.push_back({{corner.at.x, corner.at.y, affine_depth(view, corner.at.z)}, corner.is_cut});
 }
 
 }  // namespace
