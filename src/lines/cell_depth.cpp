@@ -7,8 +7,10 @@
 namespace frontmost::lines_detail {
 namespace {
 
-/// Cells. Beyond, and where triangles are longer than this many times their width, roundings could matter.
-constexpr double kFarthest = 1e5, kThinnest = 1e4;
+/// Cells. Beyond, roundings could matter.
+constexpr double kFarthest = 1e5;
+/// The same for triangles longer than so many times their width: for their planes, and for which side is within.
+constexpr double kThinnest = 1e4, kThinnestSide = 1e9;
 /// Of the values: very much more than the rounding of a place in the picture.
 constexpr double kDepthSlack = 1e-9, kSideSlack = 1e-5, kFloatSlack = 1e-6;
 
@@ -24,8 +26,11 @@ CellDepth::CellDepth(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3&
   }
   const double turn = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
   const double thin = reach * reach / std::abs(turn);
-  if (!(most < kFarthest && thin < kThinnest) || (!is_parallel && !(low_ > 0))) return;
-  is_known_ = true;
+  if (!(most < kFarthest && thin < kThinnestSide) || (!is_parallel && !(low_ > 0))) return;
+  has_sides_ = true;
+  set_sides(corners, turn > 0 ? 1 : -1);
+  if (!(thin < kThinnest)) return;
+  has_plane_ = true;
   const auto value = [&](double distance) { return is_parallel ? distance : 1 / distance; };
   const double at_a = value(a.z), along_b = value(b.z) - at_a, along_c = value(c.z) - at_a;
   linear_.by_x = (along_b * (c.y - a.y) - along_c * (b.y - a.y)) / turn;
@@ -34,7 +39,6 @@ CellDepth::CellDepth(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3&
   linear_.slack = kDepthSlack * (1 + thin) *
                   (std::max(std::abs(value(low_)), std::abs(value(high_))) +
                    (std::abs(linear_.by_x) + std::abs(linear_.by_y)) * most * 1e-3);
-  set_sides(corners, turn > 0 ? 1 : -1);
 }
 
 void CellDepth::set_sides(const glm::dvec3 (&corners)[3], double turn) {
@@ -45,38 +49,53 @@ void CellDepth::set_sides(const glm::dvec3 (&corners)[3], double turn) {
   }
 }
 
-double CellDepth::nearest(int x, int y) const {
-  if (!is_known_) return low_;
-  const double value = linear_.at(x, y, is_parallel_ ? -1 : 1);
+double CellDepth::nearest(const Square& square) const {
+  if (!has_plane_) return low_;
+  const double value = linear_.at(square, is_parallel_ ? -1 : 1);
   return std::clamp(is_parallel_ ? value : 1 / value, low_, high_);
 }
 
-double CellDepth::farthest(int x, int y) const {
-  if (!is_known_) return high_;
-  const double value = linear_.at(x, y, is_parallel_ ? 1 : -1);
+double CellDepth::farthest(const Square& square) const {
+  if (!has_plane_) return high_;
+  const double value = linear_.at(square, is_parallel_ ? 1 : -1);
   if (is_parallel_) return std::clamp(value, low_, high_);
   return value > 0 ? std::clamp(1 / value, low_, high_) : high_;
 }
 
-CellDepth::Side CellDepth::side(int k, int x, int y) const {
-  const Linear& side = sides_[k];
-  const double size = std::abs(side.by_x) + std::abs(side.by_y);
-  if (!is_known_ || !(size > 0)) return {};
-  return {float(side.by_x / size), float(side.by_y / size),
-          float((side.at_0 + side.by_x * x + side.by_y * y) / size + 2 * kSideSlack)};
+bool CellDepth::is_beside(const Square& square) const {
+  return is_without(0, square) || is_without(1, square) || is_without(2, square);
 }
 
-CellDepth::Side CellDepth::plane(int x, int y) const {
-  if (!is_known_) return {0, 0, std::numeric_limits<float>::infinity()};
+bool CellDepth::covers(const Square& square) const {
+  return is_within(0, square) && is_within(1, square) && is_within(2, square);
+}
+
+bool CellDepth::is_beyond(const CellDepth& other, const Square& square) const {
+  if (!has_plane_ || !other.has_plane_) return false;
+  const Linear &a = linear_, &b = other.linear_;
+  const Linear difference{a.at_0 - b.at_0, a.by_x - b.by_x, a.by_y - b.by_y, a.slack + b.slack};
+  return is_parallel_ ? difference.at(square, -1) > 0 : difference.at(square, 1) < 0;
+}
+
+CellDepth::Side CellDepth::side(int k, const glm::dvec2& corner) const {
+  const Linear& side = sides_[k];
+  const double size = std::abs(side.by_x) + std::abs(side.by_y);
+  if (!has_sides_ || !(size > 0)) return {};
+  return {float(side.by_x / size), float(side.by_y / size),
+          float((side.at_0 + side.by_x * corner.x + side.by_y * corner.y) / size + 2 * kSideSlack)};
+}
+
+CellDepth::Side CellDepth::plane(const glm::dvec2& corner) const {
+  if (!has_plane_) return {0, 0, std::numeric_limits<float>::infinity()};
   const double sign = is_parallel_ ? -1 : 1;
   const double size = std::max(std::abs(nearness(low_, is_parallel_)), std::abs(nearness(high_, is_parallel_)));
-  const double at = sign * (linear_.at_0 + linear_.by_x * x + linear_.by_y * y) + linear_.slack;
+  const double at = sign * (linear_.at_0 + linear_.by_x * corner.x + linear_.by_y * corner.y) + linear_.slack;
   const double spread = std::abs(at) + std::abs(linear_.by_x) + std::abs(linear_.by_y);
   return {float(sign * linear_.by_x), float(sign * linear_.by_y), float(at + kFloatSlack * (size + spread))};
 }
 
 CellDepth::Columns CellDepth::covered(int y, Columns all) const {
-  if (!is_known_) return {1, 0};
+  if (!has_sides_) return {1, 0};
   for (const Linear& side : sides_) {
     const double base = side.at_0 + side.by_y * (y + double(side.by_y < 0)) - side.slack;
     const auto column = [&](double x) { return int(std::clamp(x, all.first - 2.0, all.last + 2.0)); };

@@ -12,6 +12,11 @@ namespace frontmost::lines_detail {
   return is_parallel ? -distance : 1 / distance;
 }
 
+/// Of a grid, in cells: cell (x, y) itself has a size of 1.
+struct Square {
+  double x, y, size = 1;
+};
+
 /// Bounds that hold whatever rounding did, for a triangle none of which is before the near plane.
 class CellDepth {
  public:
@@ -19,9 +24,17 @@ class CellDepth {
   /// screen.
   CellDepth(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, bool is_parallel);
 
-  /// Bounds of its distance within cell (x, y).
-  [[nodiscard]] double nearest(int x, int y) const;
-  [[nodiscard]] double farthest(int x, int y) const;
+  /// Bounds of its distance within a square.
+  [[nodiscard]] double nearest(const Square& square) const;
+  [[nodiscard]] double farthest(const Square& square) const;
+  /// Whether it surely lies beside the square; or covers it whole.
+  [[nodiscard]] bool is_beside(const Square& square) const;
+  [[nodiscard]] bool covers(const Square& square) const;
+  /// Whether the square is surely within side k, from corner k to the next; or without.
+  [[nodiscard]] bool is_within(int k, const Square& square) const { return has_sides_ && sides_[k].at(square, -1) > 0; }
+  [[nodiscard]] bool is_without(int k, const Square& square) const { return has_sides_ && sides_[k].at(square, 1) < 0; }
+  /// Whether all of its plane over the square lies beyond the other's.
+  [[nodiscard]] bool is_beyond(const CellDepth& other, const Square& square) const;
 
   struct Columns {
     int first, last;  ///< none if first > last
@@ -29,30 +42,30 @@ class CellDepth {
   /// The cells of row y that the triangle covers whole, of those from `all.first` to `all.last`.
   [[nodiscard]] Columns covered(int y, Columns all) const;
 
-  /// a * x + b * y + c, in cells from a cell's corner on: below 0 is surely outside of a side.
+  /// a * x + b * y + c, in cells from a square's corner on: below 0 is surely outside of a side.
   struct Side {
     float a = 0, b = 0, c = 1;
   };
-  /// Of cell (x, y).
-  [[nodiscard]] Side side(int k, int x, int y) const;
-  /// In the same way at least how near the triangle's plane is, by nearness().
-  [[nodiscard]] Side plane(int x, int y) const;
+  [[nodiscard]] Side side(int k, const glm::dvec2& corner) const;
+  /// In the same way at least how near the triangle's plane is, by nearness(), in a square no larger than a cell.
+  [[nodiscard]] Side plane(const glm::dvec2& corner) const;
 
  private:
   /// A function that is linear over the grid.
   struct Linear {
     double at_0 = 0, by_x = 0, by_y = 0, slack = 0;
-    /// The most (side 1) or least (-1) within a cell.
-    [[nodiscard]] double at(int x, int y, int side) const {
-      const double corner_x = x + double(by_x * side > 0), corner_y = y + double(by_y * side > 0);
+    /// The most (side 1) or least (-1) within a square.
+    [[nodiscard]] double at(const Square& s, int side) const {
+      const double corner_x = s.x + (by_x * side > 0 ? s.size : 0), corner_y = s.y + (by_y * side > 0 ? s.size : 0);
       return at_0 + by_x * corner_x + by_y * corner_y + side * slack;
     }
   };
   void set_sides(const glm::dvec3 (&corners)[3], double turn);
 
-  Linear linear_, sides_[3];             ///< the sides are positive inside
-  double low_, high_;                    ///< of all distances
-  bool is_parallel_, is_known_ = false;  ///< else it is seen from too near its edge, or reaches too far, to say more
+  Linear linear_, sides_[3];  ///< the sides are positive inside
+  double low_, high_;         ///< of all distances
+  bool is_parallel_;
+  bool has_sides_ = false, has_plane_ = false;  ///< else it is seen from too near its edge, or reaches too far
 };
 
 }  // namespace frontmost::lines_detail

@@ -81,10 +81,10 @@ struct EdgeCutter::InCell {
   ScreenPart box;
   ScreenSegment segment;
 
-  InCell(const EdgeCutter& cutter, const Interval& part, std::size_t cell) {
+  InCell(const EdgeCutter& cutter, const Interval& part, const glm::dvec2& corner) {
     const OccluderGrid& grid = cutter.o_.grid;
     const glm::dvec2 a = cutter.on_screen(part.begin) * grid.scale(), b = cutter.on_screen(part.end) * grid.scale();
-    const glm::dvec2 low = glm::min(a, b) - kEndPad, high = glm::max(a, b) + kEndPad, corner = grid.corner(cell);
+    const glm::dvec2 low = glm::min(a, b) - kEndPad, high = glm::max(a, b) + kEndPad;
     const auto distance = [&](double t) { return cutter.from_eye_.z + (cutter.to_eye_.z - cutter.from_eye_.z) * t; };
     const double from = distance(part.begin), to = distance(part.end);
     box = {{wide_low(low.x), wide_low(low.y)},
@@ -104,7 +104,7 @@ struct EdgeCutter::InCell {
 void EdgeCutter::pass_many(const OccluderGrid::Visit& cell) {
   Interval open = open_part(part_in(cell));
   if (!(open.begin < open.end)) return;
-  InCell in(*this, open, cell.cell);
+  InCell in(*this, open, cell.corner);
   const float* nearest = o_.grid.boxes(cell.first).nearest;
   const auto before =
       std::size_t(std::upper_bound(nearest, nearest + (cell.last - cell.first), in.box.farthest) - nearest);
@@ -118,13 +118,13 @@ void EdgeCutter::pass_many(const OccluderGrid::Visit& cell) {
     if (batch_.count == 0 || !flush()) continue;
     open = open_part(open);
     if (!(open.begin < open.end)) return;
-    in = InCell(*this, open, cell.cell);
+    in = InCell(*this, open, cell.corner);
   }
 }
 
 /// \returns true when all of the edge is hidden.
 bool EdgeCutter::pass(const OccluderGrid::Visit& cell) {
-  if (cell.last - cell.first >= OccluderGrid::kMany) {
+  if (o_.grid.has_sides(cell)) {
     pass_many(cell);
     return !counts_ && is_hidden(shown_);
   }
@@ -264,7 +264,9 @@ void EdgeCutter::search(const Interval& span, bool for_cover) {
   hidden_.clear();
   asked_.fill(nullptr);
   batch_.count = 0;
-  o_.grid.visit_cells(a, b, [&](const OccluderGrid::Visit& cell) { return !pass(cell); });
+  const auto vertex = [](const EndOn& on, bool is_seen) { return is_seen && on[0] == on[1] ? on[0] : no_index; };
+  const GridLine line{begin_, end_, vertex(edge_.from_on, span.begin == 0), vertex(edge_.to_on, span.end == 1)};
+  o_.grid.visit_cells(line, [&](const OccluderGrid::Visit& cell) { return !pass(cell); });
   if (batch_.count > 0) flush();
 }
 

@@ -125,7 +125,8 @@ Drawing lines(const Surfaces& surfaces, const View& view, const LineOptions& opt
   if (options.intersections) crossings = find_crossings(mesh, features, execution);
   const Candidates candidates(mesh, std::move(features.edges), std::move(crossings));
   report_progress(execution, "lines", 0.2);
-  const OccluderGrid grid(seen, view, options.counts_hidden, execution);
+  const LinesToCut to_cut{candidates.count(), [&](std::size_t i) { return candidates.sighted(i); }};
+  const OccluderGrid grid(seen, view, options.counts_hidden, to_cut, execution);
   report_progress(execution, "lines", kCutFrom);
 
   Drawing drawing;

@@ -27,7 +27,7 @@ struct Scenery {
       : view(its_view),
         sight(view),
         seen(see(mesh, sight, execution)),
-        grid(seen, view, false, execution),
+        grid(seen, view, false, {}, execution),
         occlusion{mesh, sight, view, grid, shadow_kernels(execution.isa), false, false} {}
 
   Scenery(const Scenery&) = delete;  // it looks at itself
