@@ -25,7 +25,7 @@ namespace frontmost::cli {
 namespace {
 
 constexpr double gap_between_views = 15;     // millimetres
-constexpr double arc_tolerance = 0.01;       // millimetres
+constexpr double paper_tolerance = 0.01;     // millimetres: of arcs, and of lines that count as one
 constexpr double stroke_tolerance = 0.0005;  // millimetres: half of what coordinates are rounded to
 constexpr glm::ivec2 fine_grid{3840, 2160};  // shaped as render's default picture, for the same camera
 constexpr double fine_error = 0.2;           // of its pixels: about 0.01 mm on a sheet of A4
@@ -200,11 +200,13 @@ SheetPlan place(std::vector<DrawnView>& views, const Settings& settings, const S
 StrokeOptions stroke_options(const DrawingSettings& settings, double millimetres_per_pixel) {
   StrokeOptions options;
   options.with_hidden = settings.hidden != DrawingSettings::Hidden::none;
+  options.grazing_angle = glm::radians(std::min(settings.crease_angle, 90.0));
   options.by_kind = options.by_outline = settings.style == DrawingSettings::Style::figure;
   options.by_instance = !settings.plot;
   options.nearest_first = settings.plot;
+  options.apart = std::clamp(paper_tolerance / millimetres_per_pixel, 0.002, 1.0);
   options.tolerance = std::clamp(stroke_tolerance / millimetres_per_pixel, 1e-4, 1.0);
-  options.arc_tolerance = std::min(arc_tolerance / millimetres_per_pixel, 100.0);
+  options.arc_tolerance = std::min(paper_tolerance / millimetres_per_pixel, 100.0);
   return options;
 }
 

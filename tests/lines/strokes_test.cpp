@@ -369,6 +369,54 @@ TEST(StrokesOnce, CopiesInACrowdAreDrawnOnce) {
   EXPECT_EQ(strokes(surfaces, drawing, options).points, once.points);
 }
 
+TEST(StrokesOnce, LinesBesideEachOtherAreOneWhereTheyAreAskedToBe) {
+  const Scene scene = scene_of(prism(square));
+  const Surfaces surfaces(scene);
+  Drawing drawing;
+  const auto add = [&](const glm::dvec2& from, const glm::dvec2& to) {
+    drawing.parts.push_back({std::uint32_t(drawing.edges.size()), 0, 1, from, to});
+    drawing.edges.push_back({});
+  };
+  add({100, 100}, {200, 100});
+  add({150, 100.09}, {250, 100.09});  // half of it sticks out
+  add({120, 100.03}, {130, 99.97});   // across
+  add({110, 100}, {115, 100.5});      // leaves it
+  add({210, 300}, {210.05, 300});     // small, and by itself
+  StrokeOptions options{.by_instance = false};
+  EXPECT_NEAR(length_of(strokes(surfaces, drawing, options), false), 100 + 100 + 10 + 5.02 + 0.05, 0.02);
+  options.apart = 0.1;
+  EXPECT_NEAR(length_of(strokes(surfaces, drawing, options), false), 100 + 50 + 5.02 + 0.05, 0.02);
+  options.apart = 0.07;
+  EXPECT_NEAR(length_of(strokes(surfaces, drawing, options), false), 100 + 100 + 5.02 + 0.05, 0.02);
+}
+
+/// Two tubes along z, of nearly one radius.
+Mesh bolt_in_bore() {
+  Mesh mesh = prism(regular(24)), bore = prism(regular(31));
+  for (glm::vec3& p : mesh.positions) p.z *= 1.5f;
+  const auto first = std::uint32_t(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), bore.positions.begin(), bore.positions.end());
+  for (const glm::uvec3& t : bore.triangles) mesh.triangles.push_back(t + first);
+  return mesh;
+}
+
+double intersection_length(const Strokes& all, bool hidden) {
+  double length = 0;
+  for (const Stroke& stroke : all.strokes)
+    if (stroke.kind == EdgeKind::intersection && stroke.is_hidden == hidden) length += length_of(all, stroke);
+  return length;
+}
+
+TEST(Strokes, HiddenIntersectionsAreLeftOutWhereSurfacesGraze) {
+  const View view = parallel_view({4, 5, 6});
+  const Strokes all = strokes_of(bolt_in_bore(), view), few = strokes_of(bolt_in_bore(), view, {.grazing_angle = 0.5});
+  EXPECT_GT(intersection_length(all, true), 1000);
+  // What is seen stays, and so does where the bolt comes out, square to the end of the bore.
+  EXPECT_NEAR(intersection_length(few, false), intersection_length(all, false), 1e-9);
+  EXPECT_LT(intersection_length(few, true), intersection_length(all, true) / 4);
+  EXPECT_THROW((void)strokes_of(bolt_in_bore(), view, {.grazing_angle = 1.6}), Error);
+}
+
 TEST(StrokesOrder, StopsWhenAsked) {
   const Scene scene = scene_of(prism(square));
   const Surfaces surfaces(scene);
@@ -431,6 +479,8 @@ TEST(Strokes, NothingAndNonsense) {
   EXPECT_TRUE(strokes(surfaces, lines(surfaces, parallel_view({0, 0, 5}))).strokes.empty());
   for (const double bad : {0.0, 2.0, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_THROW((void)strokes(surfaces, {}, {.tolerance = bad}), Error);
+  for (const double bad : {0.001, 1.1, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THROW((void)strokes(surfaces, {}, {.apart = bad}), Error);
   for (const double bad : {-1.0, 101.0, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_THROW((void)strokes(surfaces, {}, {.arc_tolerance = bad}), Error);
 }

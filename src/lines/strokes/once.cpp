@@ -16,9 +16,9 @@
 namespace frontmost::lines_detail {
 namespace {
 
-/// Pixels. Places of one point differ by the rounding of floats, 1e-7 of some thousand pixels.
-constexpr double near = 2e-3;
-constexpr double shortest = 4 * near;  // of what is left, and of what is taken away
+/// Pixels: what is left over or taken away is longer. Places of one point differ by the rounding of floats, 1e-7 of
+/// some thousand pixels.
+constexpr double shortest = 8e-3;
 constexpr double long_from = 16;
 /// Between a long line and what counts as lying on it. Tiny pieces point anywhere, but such lists would be too many.
 constexpr double most_slope = 1.0 / 128;
@@ -37,24 +37,37 @@ struct Line : Segment {
   glm::dvec2 along;
 };
 
-/// How much a direction may differ from that of a long line: over its length by some times what counts as near, for
-/// the part that lies on the long line may be short.
-double slope_within(double length) { return std::min(8 * near / length, most_slope); }
+/// What counts as lying on a line.
+class Nearness {
+ public:
+  explicit Nearness(double apart) : apart_(apart) {}
 
-/// Where, along `line`, `other` lies on it; empty where it does not. Lengths in pixels.
-Interval overlap(const Line& line, const Line& other) {
-  constexpr Interval nothing{0, 0};
-  const bool has_long = line.is_long() || other.is_long();
-  if (has_long && std::abs(cross(line.along, other.along)) > slope_within(std::min(line.length, other.length)))
-    return nothing;
-  const glm::dvec2 a = other.from - line.from, b = other.to - line.from;
-  const double a_at = glm::dot(line.along, a), b_at = glm::dot(line.along, b);
-  const double begin = std::max(0.0, std::min(a_at, b_at)), end = std::min(line.length, std::max(a_at, b_at));
-  if (!(end - begin > shortest)) return nothing;
-  const double a_off = cross(line.along, a), slope = (cross(line.along, b) - a_off) / (b_at - a_at);
-  const auto off = [&](double at) { return std::abs(a_off + slope * (at - a_at)); };
-  return off(begin) <= near && off(end) <= near ? Interval{begin, end} : nothing;
-}
+  [[nodiscard]] double apart() const { return apart_; }
+
+  /// How much a direction may differ from that of a long line: over its length by some times what counts as near, for
+  /// the part that lies on the long line may be short.
+  [[nodiscard]] double slope_within(double length) const { return std::min(8 * apart_ / length, most_slope); }
+
+  /// Where, along `line`, `other` lies on it; empty where it does not. Lengths in pixels.
+  [[nodiscard]] Interval overlap(const Line& line, const Line& other) const {
+    constexpr Interval nothing{0, 0};
+    const bool has_long = line.is_long() || other.is_long();
+    if (has_long && std::abs(cross(line.along, other.along)) > slope_within(std::min(line.length, other.length)))
+      return nothing;
+    const glm::dvec2 a = other.from - line.from, b = other.to - line.from;
+    const double a_at = glm::dot(line.along, a), b_at = glm::dot(line.along, b);
+    const double begin = std::max(0.0, std::min(a_at, b_at)), end = std::min(line.length, std::max(a_at, b_at));
+    if (!(end - begin > shortest)) return nothing;
+    const double a_off = cross(line.along, a), slope = (cross(line.along, b) - a_off) / (b_at - a_at);
+    const auto off = [&](double at) { return std::abs(a_off + slope * (at - a_at)); };
+    // Short ones are closer together, or all would lie on each other that start from a point.
+    const double most = std::min(apart_, (end - begin) / 4);
+    return off(begin) <= most && off(end) <= most ? Interval{begin, end} : nothing;
+  }
+
+ private:
+  double apart_;
+};
 
 /// Square cells; crowded ones are divided again.
 class Grid {
@@ -64,10 +77,10 @@ class Grid {
     std::unique_ptr<Grid> finer;  ///< has them instead
   };
 
-  Grid(const glm::dvec2& low, double cell, const glm::ivec2& count)
-      : low_(low), cell_(cell), count_(count), cells_(std::size_t(count.x) * std::size_t(count.y)) {}
+  Grid(const glm::dvec2& low, double cell, const glm::ivec2& count, double near)
+      : near_(near), low_(low), cell_(cell), count_(count), cells_(std::size_t(count.x) * std::size_t(count.y)) {}
 
-  /// Calls visit(segments) for every undivided cell that the segment passes, with `near` to spare.
+  /// Calls visit(segments) for every undivided cell that the segment passes, with what counts as near to spare.
   template <class Visit>
   void for_each_cell(const Segment& s, const Visit& visit) const {
     for_each(s, [&](std::size_t number, const glm::ivec2&) {
@@ -85,7 +98,7 @@ class Grid {
     std::size_t entries = 0;
     for_each(laid[number], [&](std::size_t i, const glm::ivec2& at) {
       Cell& cell = cells_[i];
-      if (!cell.finer && may_divide && cell.segments.size() >= crowd && cell_ > finest * divisions)
+      if (!cell.finer && may_divide && cell.segments.size() >= crowd && cell_ > 8 * near_ * divisions)
         entries += divide(cell, at, laid);
       if (cell.finer) {
         entries += cell.finer->add(laid, may_divide);
@@ -100,11 +113,10 @@ class Grid {
  private:
   static constexpr std::size_t crowd = 256;
   static constexpr int divisions = 8;
-  static constexpr double finest = 8 * near;
 
   std::size_t divide(Cell& cell, const glm::ivec2& at, const std::vector<Line>& laid) {
     std::size_t entries = 0;
-    cell.finer = std::make_unique<Grid>(low_ + glm::dvec2(at) * cell_, cell_ / divisions, glm::ivec2(divisions));
+    cell.finer = std::make_unique<Grid>(low_ + glm::dvec2(at) * cell_, cell_ / divisions, glm::ivec2(divisions), near_);
     for (const std::uint32_t number : cell.segments)
       cell.finer->for_each(laid[number], [&](std::size_t i, const glm::ivec2&) {
         cell.finer->cells_[i].segments.push_back(number);
@@ -122,21 +134,22 @@ class Grid {
   void for_each(const Segment& s, const Visit& visit) const {
     const glm::dvec2 a = s.from.x <= s.to.x ? s.from : s.to, b = s.from.x <= s.to.x ? s.to : s.from;
     const double width = b.x - a.x;
-    for (int x = column(a.x - near); x <= column(b.x + near); ++x) {
+    for (int x = column(a.x - near_); x <= column(b.x + near_); ++x) {
       double y0 = a.y, y1 = b.y;
-      if (width > 2 * near) {
-        const double left = low_.x + x * cell_ - near, right = left + cell_ + 2 * near;
+      if (width > 2 * near_) {
+        const double left = low_.x + x * cell_ - near_, right = left + cell_ + 2 * near_;
         y0 = a.y + (b.y - a.y) * std::clamp((left - a.x) / width, 0.0, 1.0);
         y1 = a.y + (b.y - a.y) * std::clamp((right - a.x) / width, 0.0, 1.0);
       }
       if (y0 > y1) std::swap(y0, y1);
       // A divided cell has the segment whole: what of it passes above or below is not in its border cells.
-      if (y1 + near < low_.y || y0 - near > low_.y + count_.y * cell_) continue;
-      for (int y = row(y0 - near); y <= row(y1 + near); ++y)
+      if (y1 + near_ < low_.y || y0 - near_ > low_.y + count_.y * cell_) continue;
+      for (int y = row(y0 - near_); y <= row(y1 + near_); ++y)
         visit(std::size_t(y) * std::size_t(count_.x) + std::size_t(x), glm::ivec2(x, y));
     }
   }
 
+  const double near_;
   const glm::dvec2 low_;
   const double cell_;
   const glm::ivec2 count_;
@@ -157,11 +170,11 @@ struct Extent {
   }
 
   /// A grid for the short ones.
-  [[nodiscard]] Grid grid() const {
+  [[nodiscard]] Grid grid(double near) const {
     const double count = std::max(short_count, 1.0), side = std::max({high.x - low.x, high.y - low.y, 1e-6});
     // Never finer than what counts as one place: a drawing of one point would have ten million cells a side.
     const double cell = std::max({short_length / count, side / std::sqrt(count), side / 4096, 8 * near});
-    return {low - near, cell, glm::ivec2((high - low + 2 * near) / cell) + 1};
+    return {low - near, cell, glm::ivec2((high - low + 2 * near) / cell) + 1, near};
   }
 
   glm::dvec2 low{1e300}, high{-1e300};
@@ -171,7 +184,7 @@ struct Extent {
 class Sheet {
  public:
   /// Precondition: not empty.
-  explicit Sheet(const Extent& extent) : grid_(extent.grid()), long_(extent.low, extent.high) {}
+  Sheet(const Extent& extent, double apart) : near_(apart), grid_(extent.grid(apart)), long_(extent.low, extent.high) {}
 
   /// Adds what of `line` is not there yet to `fresh`.
   void lay(const Line& line, std::vector<Segment>& fresh) {
@@ -179,13 +192,14 @@ class Sheet {
     ++asking_;
     const auto ask = [&](const std::vector<std::uint32_t>& numbers) { find_covered(line, numbers); };
     grid_.for_each_cell(line, ask);
-    if (!long_.is_empty()) long_.for_each(line, slope_within(line.length), near, ask);
+    if (!long_.is_empty()) long_.for_each(line, near_.slope_within(line.length), near_.apart(), ask);
     if (covered_.empty()) return add(line, fresh);
     std::sort(covered_.begin(), covered_.end(), [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
     covered_.push_back({line.length, line.length});
+    const double least = std::max(shortest, near_.apart());
     double at = 0;
     for (const Interval& c : covered_) {
-      if (c.begin - at > shortest) {
+      if (c.begin - at > least) {
         // The line's own ends to the bit, so that its neighbours find them.
         const glm::dvec2 from = at == 0 ? line.from : line.from + line.along * at;
         const glm::dvec2 to = c.begin == line.length ? line.to : line.from + line.along * c.begin;
@@ -200,7 +214,7 @@ class Sheet {
     for (const std::uint32_t other : numbers) {
       if (asked_[other] == asking_) continue;
       asked_[other] = asking_;
-      const Interval there = overlap(line, laid_[other]);
+      const Interval there = near_.overlap(line, laid_[other]);
       if (there.end > there.begin) covered_.push_back(there);
     }
   }
@@ -216,6 +230,7 @@ class Sheet {
 
   static constexpr std::size_t most_entries = 16;  // to the line
 
+  const Nearness near_;
   Grid grid_;
   LongLines long_;
   std::size_t entries_ = 0;
@@ -227,7 +242,7 @@ class Sheet {
 
 }  // namespace
 
-std::vector<Segment> draw_once(const std::vector<Segment>& segments, const Execution& execution) {
+std::vector<Segment> draw_once(const std::vector<Segment>& segments, double apart, const Execution& execution) {
   if (segments.empty()) return {};
   std::vector<std::uint32_t> order(segments.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -235,14 +250,14 @@ std::vector<Segment> draw_once(const std::vector<Segment>& segments, const Execu
                    [&](std::uint32_t a, std::uint32_t b) { return segments[a].rank < segments[b].rank; });
   std::vector<Segment> fresh;
   fresh.reserve(segments.size());
-  Sheet sheet{Extent(segments)};
+  Sheet sheet(Extent(segments), apart);
   for (std::size_t i = 0; i < order.size(); ++i) {
     const Segment& segment = segments[order[i]];
     if (i % 4096 == 0) {
       check_cancelled(execution);
       report_progress(execution, "strokes", 0.1 + 0.4 * double(i) / double(order.size()));
     }
-    if (glm::distance(segment.from, segment.to) > near) sheet.lay(Line(segment), fresh);
+    if (glm::distance(segment.from, segment.to) > shortest / 4) sheet.lay(Line(segment), fresh);
   }
   return fresh;
 }

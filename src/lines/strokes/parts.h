@@ -26,8 +26,10 @@ struct Chain {
 
 inline double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
-/// Of what lies on each other, what has the lower rank, or comes first. What is left keeps its order.
-[[nodiscard]] std::vector<Segment> draw_once(const std::vector<Segment>& segments, const Execution& execution);
+/// Of what lies on each other, within `apart` pixels, what has the lower rank, or comes first. What is left keeps its
+/// order.
+[[nodiscard]] std::vector<Segment> draw_once(const std::vector<Segment>& segments, double apart,
+                                             const Execution& execution);
 
 /// Joins segments of one rank wherever exactly two ends meet. By rank, then in the order of the segments.
 [[nodiscard]] std::vector<Chain> chained(const std::vector<Segment>& segments);

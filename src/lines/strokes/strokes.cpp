@@ -2,7 +2,9 @@
 #include "frontmost/strokes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <numbers>
 
 #include "base/float_environment.h"
 #include "base/parallel.h"
@@ -45,11 +47,45 @@ class Classes {
 };
 
 void check(const StrokeOptions& options) {
+  if (!(options.apart >= 0.002 && options.apart <= 1))
+    throw Error(ErrorCode::bad_argument, "strokes: lines that count as one must be apart by from 0.002 to 1 pixel");
   if (!(options.tolerance >= 1e-4 && options.tolerance <= 1))
     throw Error(ErrorCode::bad_argument, "strokes: the tolerance must be from 0.0001 to 1 pixel");
   if (!(options.arc_tolerance >= 0 && options.arc_tolerance <= 100))
     throw Error(ErrorCode::bad_argument, "strokes: the tolerance of arcs must be from 0 to 100 pixels");
+  if (!(options.grazing_angle >= 0 && options.grazing_angle <= std::numbers::pi / 2))
+    throw Error(ErrorCode::bad_argument, "strokes: the grazing angle must be from 0 to pi/2");
 }
+
+/// Which parts of a drawing get strokes.
+class Choice {
+ public:
+  Choice(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options)
+      : surfaces_(surfaces), drawing_(drawing), options_(options), cosine_(std::cos(options.grazing_angle)) {}
+
+  [[nodiscard]] bool has(const DrawnPart& part) const {
+    if (part.hidden_by == 0) return true;
+    return options_.with_hidden && (options_.grazing_angle == 0 || !is_grazing(drawing_.edges[part.edge]));
+  }
+
+ private:
+  /// Whichever way the triangles are turned.
+  [[nodiscard]] bool is_grazing(const DrawnEdge& edge) const {
+    if (edge.kind != EdgeKind::intersection) return false;
+    const glm::dvec3 a = normal(edge.left), b = normal(edge.right);
+    return std::abs(glm::dot(a, b)) > cosine_ * glm::length(a) * glm::length(b);
+  }
+  [[nodiscard]] glm::dvec3 normal(PrimitiveId id) const {
+    const std::array<glm::vec3, 3> corners = surfaces_.corners(id);
+    const glm::dvec3 a(corners[0]);
+    return glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a);
+  }
+
+  const Surfaces& surfaces_;
+  const Drawing& drawing_;
+  const StrokeOptions& options_;
+  const double cosine_;
+};
 
 /// The segments of all parts with their ranks, and what stands behind each rank: a stroke without points.
 struct Ranked {
@@ -70,9 +106,10 @@ Ranked ranked(const Surfaces& surfaces, const Drawing& drawing, const StrokeOpti
     entry.first = std::uint32_t(result.strokes.size());
     result.strokes.push_back(entry.second);
   }
+  const Choice choice(surfaces, drawing, options);
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const DrawnPart& part = drawing.parts[i];
-    if (part.hidden_by != 0 && !options.with_hidden) continue;
+    if (!choice.has(part)) continue;
     result.segments.push_back({part.from, part.to, known.find(keys[i])->second.first});
   }
   return result;
@@ -98,7 +135,7 @@ Strokes strokes(const Surfaces& surfaces, const Drawing& drawing, const StrokeOp
   const IeeeScope ieee;
   report_progress(execution, "strokes", 0);
   const Ranked parts = ranked(surfaces, drawing, options);
-  std::vector<Chain> chains = chained(draw_once(parts.segments, execution));
+  std::vector<Chain> chains = chained(draw_once(parts.segments, options.apart, execution));
   report_progress(execution, "strokes", 0.6);
   parallel_for(execution, chains.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
