@@ -5,7 +5,6 @@
 #include <frontmost/tessellate.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 
 #include "cli/command.h"
@@ -83,11 +82,7 @@ void check(const Settings& settings) {
 double unit_of(const Settings& settings) {
   constexpr double sizes[] = {1, 10, 1000, 25.4};
   if (settings.drawing.unit) return sizes[int(*settings.drawing.unit)];
-  std::string suffix = std::filesystem::path(settings.model).extension().string();
-  for (char& c : suffix) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
-  const bool is_gltf =
-      settings.load.format ? *settings.load.format == ModelFormat::gltf : suffix == ".glb" || suffix == ".gltf";
-  return is_gltf ? 1000 : 1;
+  return settings.load.format == ModelFormat::gltf ? 1000 : 1;
 }
 
 /// True when the user chose what is in the picture, beyond the direction from where the model is seen.
@@ -243,6 +238,7 @@ int run_lines(const Settings& given) {
   catch_interruptions(settings.run.timeout);
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
+  settings.load.found = &settings.load.format;
   const Scene scene = load_model(settings, execution, progress);
   const Surfaces surfaces(scene, execution);
   LinesTimings timings;
@@ -266,7 +262,7 @@ int run_lines(const Settings& given) {
   watch = {};
   const Page page = draw_sheet(surfaces, sheets, pens_of(settings.drawing), plan.size);
   std::optional<Page> dashed;
-  if (settings.drawing.plot) dashed = with_real_dashes(page);
+  if (settings.drawing.plot) dashed = with_real_dashes(page, execution);
   const Page& plotted = dashed ? *dashed : page;
   if (page.layers.empty() && !settings.run.quiet) {
     progress.clear();

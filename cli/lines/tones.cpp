@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/lines/tones.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "cli/failure.h"
 
@@ -18,16 +21,24 @@ ToneOptions tone_options(const DrawingSettings& settings, const View& view) {
   return tone;
 }
 
+/// Millimetres are the unit of the paper, and pixels that of the limits.
+void check_spacing(const char* option, double spacing, double least) {
+  if (spacing >= least) return;
+  throw UsageError(fmt::format(
+      "--{}: {:.6g} mm would be too many for so large a drawing; take {:.3g} or more, or a smaller --page or --scale",
+      option, spacing, std::ceil(least * 100) / 100));
+}
+
 StippleOptions stipple_options(const DrawingSettings& settings, const View& view, double millimetres_per_pixel) {
-  if (*settings.stipple < millimetres_per_pixel)
-    throw UsageError("--stipple: dots would be nearer to each other than pixels; take more, or a larger --resolution");
+  constexpr double most_dots = 2e7;  // as stipple() has it
+  const double least = std::max(1.0, std::sqrt(double(view.width) * view.height / most_dots));
+  check_spacing("stipple", *settings.stipple, least * millimetres_per_pixel);
   return {*settings.stipple / millimetres_per_pixel, tone_options(settings, view), !settings.plot, settings.plot};
 }
 
 HatchOptions hatch_options(const DrawingSettings& settings, const View& view, double millimetres_per_pixel) {
   HatchOptions options;
-  if (*settings.hatch < millimetres_per_pixel)
-    throw UsageError("--hatch: lines would be nearer to each other than pixels; take more, or a larger --resolution");
+  check_spacing("hatch", *settings.hatch, millimetres_per_pixel);
   options.sets = hatch_sets(*settings.hatch / millimetres_per_pixel, glm::radians(settings.hatch_angle.value_or(45)));
   options.tone = tone_options(settings, view);
   options.shortest = std::min(shortest_hatch / millimetres_per_pixel, 1000.0);

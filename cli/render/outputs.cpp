@@ -186,8 +186,12 @@ void check_outputs(const std::vector<std::string>& paths, const std::string& mod
       throw UsageError(fmt::format("{}: is the model itself", path));
     }
     if (!taken.insert(path == "-" ? path : canonical(path)).second) {
-      throw UsageError(path == "-" ? "standard output is given twice"
-                                   : fmt::format("{}: would be written twice; {{view}} tells views apart", path));
+      throw UsageError(
+          path == "-"
+              ? "standard output is given twice"
+              : fmt::format(
+                    "{}: would be written twice; give every output a name of its own ({{view}} stands for the view's)",
+                    path));
     }
     if (path != "-") check_writable(path);
   }

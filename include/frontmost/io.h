@@ -16,6 +16,8 @@ enum class ModelFormat : std::uint8_t { stl, ply, obj, off, gltf };
 struct LoadOptions {
   std::optional<ModelFormat> format;  ///< none: by suffix and, for memory and standard input, by content
   std::optional<Axis> up;             ///< none: the format's (z for STL, y for the others)
+  /// Where load() notes the format that it read, which may be found by content; untouched for built-in scenes.
+  std::optional<ModelFormat>* found = nullptr;
 };
 
 /// Reads a model. "-" reads standard input, "builtin:NAME" makes a built-in scene. Files named inside a model

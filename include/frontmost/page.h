@@ -69,8 +69,8 @@ struct Page {
 /// The same page with every dash of its pens as a path, for plotters, which follow paths and know no dashes. Patterns
 /// run along whole paths; from corner to corner, of 25 degrees and more, they are stretched so that both ends are drawn
 /// (ISO 128-2). What is filled stays. O(points + dashes).
-/// \throws Error as validate() does, and limit_exceeded for more than 20 million dashes.
-[[nodiscard]] Page with_real_dashes(Page page);
+/// \throws Error as validate() does, limit_exceeded for more than 20 million dashes, and cancelled.
+[[nodiscard]] Page with_real_dashes(Page page, const Execution& execution = {});
 
 enum class PageFormat : std::uint8_t { svg, pdf, dxf, json };
 

@@ -80,12 +80,20 @@ TEST_F(LinesCommand, GltfIsInMetresHoweverItsSuffixIsWritten) {
       R"("count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":)"
       // (0, 0, 0), (1, 0, 0), (0, 1, 0)
       R"([{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
-  for (const std::string name : {"metre.gltf", "METRE.GLTF"}) {
+  const std::string front = " --view front --camera-orthographic --scale 1:10 --margin 0";
+  for (const std::string name : {"metre.gltf", "METRE.GLTF", "metre.dat"}) {
     write(name, gltf);
-    const json page = drawn(name + " --view front --camera-orthographic --scale 1:10 --margin 0");
+    const json page = drawn(name + front);
     EXPECT_EQ(page["width"], 100) << name;
     EXPECT_EQ(page["height"], 100) << name;
   }
+  // Standard input has no name at all.
+  const Outcome piped = run(Call{.words = {"lines", "-", "--view", "front", "--camera-orthographic", "--scale", "1:10",
+                                           "--margin", "0", "--format", "json", "-o", "-"},
+                                 .input = gltf});
+  EXPECT_EQ(json::parse(piped.out)["width"], 100);
+  write("box.dat", box_obj(40, 30, 20));
+  EXPECT_EQ(drawn("box.dat --input-format obj" + front)["width"], 4);
 }
 
 TEST_F(LinesCommand, ABoxAtFullScaleHasItsSidesInMillimetres) {
@@ -211,7 +219,9 @@ TEST_F(LinesCommand, HatchingIsInMillimetresAndLiesBelow) {
   expect_failure("lines cube.stl -o a.svg --hatch 0.1", 2, "--hatch");
   expect_failure("lines cube.stl -o a.svg --hatch 1 --light 0,0,0", 2, "--light: the light must come from somewhere");
   expect_failure("lines cube.stl -o a.svg --hatch 1 --cast-shadows maybe", 2, "--cast-shadows");
-  expect_failure("lines cube.stl -o a.svg --hatch 1 --resolution 20,20", 2, "larger --resolution");
+  expect_failure("lines cube.stl -o a.svg --hatch 1 --resolution 20,20", 2, "take 9.5 or more");
+  expect_failure("lines cube.stl -o a.svg --views front --hatch 0.3 --scale 20000:1", 2,
+                 "take 10.3 or more, or a smaller --page or --scale");
 }
 
 TEST_F(LinesCommand, StippledOnlyWhereAskedFor) {
@@ -229,7 +239,10 @@ TEST_F(LinesCommand, StippledOnlyWhereAskedFor) {
   succeed("lines cube.stl --style figure -o none.svg");
   EXPECT_THAT(read("none.svg"), Not(HasSubstr("stippling")));
   expect_failure("lines cube.stl -o a.svg --stipple 20", 2, "--stipple");
-  expect_failure("lines cube.stl -o a.svg --stipple 1 --resolution 20,20", 2, "larger --resolution");
+  expect_failure("lines cube.stl -o a.svg --stipple 1 --resolution 20,20", 2, "take 9.5 or more");
+  // Room for 20 million dots, but not with a pixel each.
+  expect_failure("lines cube.stl -o a.svg --stipple 0.2 --resolution 16384,16384 --page 2000,2000", 2, "--stipple: 0.2 mm would");
+  expect_failure("lines cube.stl -o a.svg -o a.svg", 2, "a.svg: would be written twice; give every output a name");
 }
 
 TEST_F(LinesCommand, PlottersGetDashesAsLines) {

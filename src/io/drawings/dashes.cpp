@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "io/drawings/arc.h"
 
 namespace frontmost {
@@ -160,45 +161,80 @@ class Pattern {
   double period_ = 0;
 };
 
-/// `before` are the dashes of other groups.
-void cut_path(const PageGroup& group, const PagePath& path, const Pattern& pattern, std::size_t before,
-              PageGroup& cut) {
-  const Ruler ruler(group, path);
-  if (ruler.is_empty()) {  // a dot
-    cut.paths.push_back({std::uint32_t(cut.points.size()), 1, false});
-    cut.points.push_back(group.points[path.first]);
-    cut.bulges.push_back(0);
-    return;
+/// Turns one group's dashes into paths.
+class DashCutter {
+ public:
+  /// `most` is how many dashes there may be.
+  DashCutter(const PageGroup& group, std::size_t most, const Execution& execution)
+      : group_(group),
+        most_(double(most)),
+        execution_(execution),
+        pattern_(group.pen.dashes),
+        cut_{group.name, group.pen} {
+    cut_.pen.dashes.clear();
   }
-  if (double(before + cut.paths.size()) + pattern.count_on(ruler.length()) > double(most_dashes))
-    throw Error(ErrorCode::limit_exceeded, "dashes: more than 20000000 of them");
-  const std::vector<Span> spans = ruler.spans();
-  std::vector<Span> drawn;
-  for (const Span& span : spans) pattern.fill(span, drawn);
-  if (spans.empty()) pattern.fill_around(ruler.length(), drawn);
-  // The last dash of a closed path goes on with the first.
-  if (path.is_closed && drawn.size() > 1 && drawn.back().end == drawn.front().begin + ruler.length()) {
-    drawn.back().end = drawn.front().end + ruler.length();
-    drawn.erase(drawn.begin());
+
+  PageGroup run() {
+    for (const PagePath& path : group_.paths) cut(path);
+    if (group_.bulges.empty()) cut_.bulges.clear();
+    return std::move(cut_);
   }
-  for (const Span& span : drawn) ruler.cut(span, cut);
-}
+
+ private:
+  void cut(const PagePath& path) {
+    poll();
+    const Ruler ruler(group_, path);
+    if (ruler.is_empty()) {  // a dot
+      cut_.paths.push_back({std::uint32_t(cut_.points.size()), 1, false});
+      cut_.points.push_back(group_.points[path.first]);
+      cut_.bulges.push_back(0);
+      return;
+    }
+    if (double(cut_.paths.size()) + pattern_.count_on(ruler.length()) > most_)
+      throw Error(ErrorCode::limit_exceeded, "dashes: more than 20000000 of them");
+    for (const Span& span : drawn_of(ruler, path.is_closed)) {
+      poll();
+      ruler.cut(span, cut_);
+    }
+  }
+
+  [[nodiscard]] std::vector<Span> drawn_of(const Ruler& ruler, bool is_closed) const {
+    const std::vector<Span> spans = ruler.spans();
+    std::vector<Span> drawn;
+    for (const Span& span : spans) pattern_.fill(span, drawn);
+    if (spans.empty()) pattern_.fill_around(ruler.length(), drawn);
+    // The last dash of a closed path goes on with the first.
+    if (is_closed && drawn.size() > 1 && drawn.back().end == drawn.front().begin + ruler.length()) {
+      drawn.back().end = drawn.front().end + ruler.length();
+      drawn.erase(drawn.begin());
+    }
+    return drawn;
+  }
+
+  /// Now and then: looking at the watch takes longer than a dash.
+  void poll() {
+    if (++steps_ % 1024 == 0) check_cancelled(execution_);
+  }
+
+  const PageGroup& group_;
+  const double most_;
+  const Execution& execution_;
+  const Pattern pattern_;
+  PageGroup cut_;
+  std::size_t steps_ = 0;
+};
 
 }  // namespace
 
-Page with_real_dashes(Page page) {
+Page with_real_dashes(Page page, const Execution& execution) {
   validate(page);
+  check_cancelled(execution);
   std::size_t dashes = 0;
   for (PageLayer& layer : page.layers)
     for (PageGroup& group : layer.groups) {
       if (group.pen.dashes.empty() || !group.fills.empty()) continue;
-      const Pattern pattern(group.pen.dashes);
-      PageGroup cut{group.name, group.pen};
-      for (const PagePath& path : group.paths) cut_path(group, path, pattern, dashes, cut);
-      dashes += cut.paths.size();
-      cut.pen.dashes.clear();
-      if (group.bulges.empty()) cut.bulges.clear();
-      group = std::move(cut);
+      group = DashCutter(group, most_dashes - std::min(dashes, most_dashes), execution).run();
+      dashes += group.paths.size();
     }
   return page;
 }

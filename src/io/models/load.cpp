@@ -25,6 +25,7 @@ Scene read_any(Bytes bytes, const ModelSource& source, std::optional<ModelFormat
   if (!format)
     throw Error(ErrorCode::unsupported,
                 source.name() + ": not a model that Frontmost can read (STL, PLY, OBJ, OFF, glTF, GLB)");
+  if (options.found) *options.found = format;
   report_progress(source.execution(), "load", 0);
   Scene scene = read(*format, bytes, source);
   scene.name = source.stem();

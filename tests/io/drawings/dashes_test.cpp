@@ -134,5 +134,19 @@ TEST(RealDashes, TooManyAreRefused) {
   EXPECT_THROW((void)with_real_dashes(page_of(bad)), Error);
 }
 
+TEST(RealDashes, StopWhenAsked) {
+  PageGroup group = dashed({{0, 0}, {1e4, 0}}, false);
+  for (int i = 0; i < 100; ++i) group.add(Points{{0, 1.0 + i}, {1e4, 1.0 + i}}, false);
+  int asked = 0;
+  Watch watch;
+  watch.cancelled = [&] { return ++asked > 20; };
+  try {
+    (void)with_real_dashes(page_of(group), {.watch = &watch});
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::cancelled);
+  }
+}
+
 }  // namespace
 }  // namespace frontmost::test
