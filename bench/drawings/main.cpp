@@ -6,6 +6,6 @@
 
 int main(int count, char** arguments) {
   using namespace frontmost::bench;
-  constexpr TableEntry kTables[] = {{"lines", measure_lines}, {"painter", measure_painter}};
+  constexpr TableEntry kTables[] = {{"lines", measure_lines}, {"painter", measure_painter}, {"tones", measure_tones}};
   return run_program("drawings_bench", kTables, count, arguments);
 }

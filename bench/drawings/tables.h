@@ -12,5 +12,7 @@ namespace frontmost::bench {
 /// The painter's order beside the z-buffer, and what a figure takes beyond it. Fails where painting the order gives
 /// another picture than the z-buffer without a reason.
 [[nodiscard]] Table measure_painter(const Options& options);
+/// Hatching and dots, with and without shadows, and on all threads.
+[[nodiscard]] Table measure_tones(const Options& options);
 
 }  // namespace frontmost::bench

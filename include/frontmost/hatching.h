@@ -64,7 +64,8 @@ struct HatchLine {
 /// A. Finkelstein. Real-Time Hatching. 2001: sets that stay where darker ones come.)
 /// O(segments) beside the grids of occluders that lines() makes too; a triangle has a segment for every line over it.
 /// The result is the same to the bit for any number of threads and every instruction set.
-/// \throws Error as validate(view) does, and bad_argument for options out of range.
+/// \throws Error as validate(view) does, bad_argument for options out of range, and limit_exceeded for more than 2^26
+/// pieces, before they are joined.
 [[nodiscard]] std::vector<HatchLine> hatch(const Surfaces& surfaces, const View& view, const HatchOptions& options,
                                            const Execution& execution = {});
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <string>
 
 #include "base/parallel.h"
 #include "base/pool.h"
@@ -13,6 +14,8 @@ namespace frontmost::lines_detail {
 namespace {
 
 constexpr std::size_t triangles_per_part = 256, triangles_per_poll = 16;
+constexpr std::size_t most_pieces = std::size_t(1) << 26, pieces_per_tally = 1 << 16;
+constexpr std::uint32_t lines_per_poll = 256;
 
 /// \returns where the light is, of unit length.
 glm::dvec3 light_of(const ToneOptions& tone, const View& view) {
@@ -46,8 +49,8 @@ TonedScene::TonedScene(const Surfaces& surfaces, const View& view, const ToneOpt
 /// Hatches one triangle after another. Not for several threads at once.
 class TonedScene::Hatcher {
  public:
-  Hatcher(const TonedScene& scene, const Task& task, const std::vector<HatchRows>& rows)
-      : scene_(scene), task_(task), rows_(rows), seen_(scene.eye_.occlusion) {
+  Hatcher(const TonedScene& scene, const Task& task, const std::vector<HatchRows>& rows, const Execution& execution)
+      : scene_(scene), task_(task), rows_(rows), execution_(execution), seen_(scene.eye_.occlusion) {
     if (scene.light_) lit_.emplace(scene.light_->occlusion);
   }
 
@@ -64,6 +67,8 @@ class TonedScene::Hatcher {
     for (std::uint32_t set = 0; set < rows_.size(); ++set) {
       const HatchRows::Range range = rows_[set].range_of(triangle);
       for (std::int32_t line = range.first; line <= range.last; ++line) {
+        // A triangle may fill a very large picture.
+        if (++lines_ % lines_per_poll == 0) check_cancelled(execution_);
         const std::optional<HatchSegment> segment = rows_[set].segment(triangle, line);
         if (segment)
           (this->*(task_.dots ? &Hatcher::add_dots : &Hatcher::add_pieces))(*segment, {set, line, 0, 0, instance},
@@ -178,6 +183,8 @@ class TonedScene::Hatcher {
   const TonedScene& scene_;
   const Task task_;
   const std::vector<HatchRows>& rows_;
+  const Execution& execution_;
+  std::uint32_t lines_ = 0;
   EdgeCutter seen_;
   std::optional<EdgeCutter> lit_;
   bool has_normals_ = false, is_towards_light_ = false;
@@ -192,12 +199,19 @@ std::vector<Piece> TonedScene::pieces(const Task& task, const std::vector<HatchR
   const std::size_t count = mesh_.triangles.size();
   std::vector<std::vector<Piece>> lists((count + triangles_per_part - 1) / triangles_per_part);
   Pool<Hatcher> hatchers;
-  std::atomic<std::size_t> done{0};
+  std::atomic<std::size_t> done{0}, found{0};
   parallel_for(execution, count, triangles_per_part, [&](std::size_t begin, std::size_t end) {
-    const auto hatcher = hatchers.borrow([&] { return std::make_unique<Hatcher>(*this, task, rows); });
+    const auto hatcher = hatchers.borrow([&] { return std::make_unique<Hatcher>(*this, task, rows, execution); });
+    std::vector<Piece>& list = lists[begin / triangles_per_part];
+    std::size_t counted = 0;
     for (std::size_t i = begin; i < end; ++i) {
       if (i % triangles_per_poll == 0) check_cancelled(execution);
-      hatcher->hatch(std::uint32_t(i), lists[begin / triangles_per_part]);
+      hatcher->hatch(std::uint32_t(i), list);
+      // A triangle alone may have as many as there are others before it, for every line.
+      if (list.size() - counted < pieces_per_tally && i + 1 < end) continue;
+      if ((found += list.size() - counted) > most_pieces)
+        throw Error(ErrorCode::limit_exceeded, "hatch: more than " + std::to_string(most_pieces) + " pieces of lines");
+      counted = list.size();
     }
     report_progress(execution, "hatching", 0.2 + 0.7 * double(done += end - begin) / double(count));
   });
