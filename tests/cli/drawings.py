@@ -5,10 +5,10 @@ of the z-buffer.
 
     drawings.py PROGRAM
 
-With one millimetre to the pixel, every border between two objects, or an object and nothing, in the id map must have ink
+With one and with three pixels to the millimetre, every border between two objects, or an object and nothing, in the id map must have ink
 beside it, and all ink must lie beside a border between two triangles. Where parts are narrower than pixels and lie
 between their samples, the triangles are those of an id map of four times the resolution. DXF is read by ezdxf, and must
-hold what the JSON holds. Programs that are not installed are skipped, and counted.
+hold what the JSON holds. Views from all sides of one model are sheets' views, one by one. Programs that are not installed are skipped, and counted.
 """
 import json
 import os
@@ -37,7 +37,8 @@ WIDTH, HEIGHT = 480, 270
 FINE = 4
 NARROW = ["builtin:city"]  # parts that fall between samples: 15 pixels of ink without a border at plain resolution
 VIEWS = [["builtin:cubes"], ["builtin:cycle"], ["builtin:gallery", "--tessellation-error", "1"], ["builtin:teapot", "--tessellation-error", "1", "--crease-angle", "0"],
-         ["builtin:cubes", "--view", "iso", "--camera-orthographic"], NARROW]
+         *(["builtin:cubes", "--view", side, "--camera-orthographic"] for side in ("iso", "front", "left", "top", "bottom")), NARROW]
+SCALES = [1, 3]  # pixels to the millimetre
 REACH = 2  # pixels: half a pixel of rounding, half of a line, and smoothing
 INK = 235
 SVG = "{http://www.w3.org/2000/svg}"
@@ -69,11 +70,11 @@ def ink_of(rows):
     return {(x, y) for y in range(HEIGHT) for x in range(WIDTH) if rows[y][x] < INK}
 
 
-def check_xml(path):
+def check_xml(path, names):
     root = xml.etree.ElementTree.parse(path).getroot()
     assert root.get("width") == f"{WIDTH}mm" and root.get("viewBox") == f"0 0 {WIDTH} {HEIGHT}", root.attrib
     layers = root.findall(SVG + "g")
-    assert [layer.get(LABEL) for layer in layers] == ["1 hidden", "2 visible"], [layer.get(LABEL) for layer in layers]
+    assert [layer.get(LABEL) for layer in layers] == names, [layer.get(LABEL) for layer in layers]
     allowed = {SVG + tag for tag in ("svg", "title", "g", "path")}
     assert {element.tag for element in root.iter()} <= allowed
 
@@ -101,12 +102,16 @@ def check_dxf(path, page):
     return 1
 
 
-def check_hidden(program, drawing, folder):
+def check_formats(program, drawing, folder):
     """Returns whether there was something to read DXF with."""
-    hidden = [folder / f"hidden.{suffix}" for suffix in ("svg", "dxf", "json")]
-    run(program, "lines", *drawing, "--hidden", "dashed", *[word for path in hidden for word in ("-o", path)])
-    check_xml(hidden[0])
-    return check_dxf(hidden[1], json.loads(hidden[2].read_text()))
+    files = [folder / f"all.{suffix}" for suffix in ("svg", "dxf", "json")]
+    outputs = [word for path in files for word in ("-o", path)]
+    run(program, "lines", *drawing, "--hidden", "dashed", "--hatch", "6", *outputs)
+    page = json.loads(files[2].read_text())
+    names = [layer["name"] for layer in page["layers"]]
+    assert set(names) <= {"4 hatching", "1 hidden", "2 visible"} and "2 visible" in names, names
+    check_xml(files[0], names)
+    return check_dxf(files[1], page)
 
 
 def check_view(program, view, folder):
@@ -115,8 +120,7 @@ def check_view(program, view, folder):
     page = ["--page", f"{WIDTH},{HEIGHT}", "--margin", "0"]
     readers = 0
     if view != NARROW:  # a hundred thousand entities take half a minute to read
-        readers = check_hidden(program, [*view, *size, *page], folder)
-    run(program, "lines", *view, *size, *page, "-o", folder / "a.svg", "-o", folder / "a.pdf")
+        readers = check_formats(program, [*view, *size, *page], folder)
     camera = [word for word in view if word not in ("--crease-angle", "0")]
     run(program, "render", *camera, *size, "--ids", f"object={folder}/objects.npy")
     outlines = borders(read_ids(folder / "objects.npy", WIDTH, HEIGHT))
@@ -124,19 +128,28 @@ def check_view(program, view, folder):
     width, height = WIDTH * fine, HEIGHT * fine
     run(program, "render", *camera, "--resolution", f"{width},{height}", "--ids", f"primitive={folder}/primitives.npy")
     edges = grown(borders(read_ids(folder / "primitives.npy", width, height), fine))
+    for scale in SCALES if view != NARROW else SCALES[:1]:
+        readers += check_ink(program, [*view, *size], folder, scale, outlines, edges)
+    return readers
+
+
+def check_ink(program, drawing, folder, scale, outlines, edges):
+    """Returns how many programs were there to look at it."""
+    page = ["--page", f"{WIDTH / scale},{HEIGHT / scale}", "--margin", "0", "--pen", str(0.5 / scale)]
+    run(program, "lines", *drawing, *page, "-o", folder / "a.svg", "-o", folder / "a.pdf")
     inks = {}
     if shutil.which("rsvg-convert"):
         run("rsvg-convert", "-w", WIDTH, "-h", HEIGHT, "-b", "white", folder / "a.svg", "-o", folder / "svg.png")
         inks["librsvg"] = ink_of(read_png(folder / "svg.png").channel(0))
     if shutil.which("pdftoppm"):
-        run("pdftoppm", "-r", "25.4", "-gray", "-singlefile", folder / "a.pdf", folder / "pdf")
+        run("pdftoppm", "-r", str(25.4 * scale), "-gray", "-singlefile", folder / "a.pdf", folder / "pdf")
         inks["poppler"] = ink_of(read_pnm(folder / "pdf.pgm").rows)
     for name, ink in inks.items():
         missing, stray = outlines - grown(ink), ink - edges
-        assert len(ink) > 500, f"{view}: {name}: hardly any ink"
-        assert not missing, f"{view}: {name}: {len(missing)} border pixels without ink, such as {min(missing)}"
-        assert not stray, f"{view}: {name}: {len(stray)} ink pixels beside no border, such as {min(stray)}"
-    return readers + len(inks)
+        assert len(ink) > 500, f"{drawing}: {name}: hardly any ink"
+        assert not missing, f"{drawing}: {name}: {len(missing)} border pixels without ink, such as {min(missing)}"
+        assert not stray, f"{drawing}: {name}: {len(stray)} ink pixels beside no border, such as {min(stray)}"
+    return len(inks)
 
 
 def main():
@@ -144,7 +157,9 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         for view in VIEWS:
             checked += check_view(program, view, pathlib.Path(folder))
-    print(f"{len(VIEWS)} drawings, {checked} times read, {3 * len(VIEWS) - 1 - checked} skipped for want of a reader")
+    # Each by two programs at each scale, and as DXF; what is narrow at one scale, and not as DXF.
+    every = (2 * len(SCALES) + 1) * (len(VIEWS) - 1) + 2
+    print(f"{len(VIEWS)} drawings, {checked} times read, {every - checked} skipped for want of a reader")
 
 
 main()
