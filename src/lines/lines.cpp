@@ -10,10 +10,10 @@
 #include "base/large_pages.h"
 #include "base/parallel.h"
 #include "base/pool.h"
-#include "lines/crossings.h"
-#include "lines/hidden_parts.h"
+#include "lines/crossings/crossings.h"
+#include "lines/hiding/hidden_parts.h"
 #include "lines/joined.h"
-#include "lines/seams.h"
+#include "lines/mesh/seams.h"
 
 namespace frontmost {
 namespace {

@@ -4,12 +4,12 @@
 #include <algorithm>
 
 #include "base/float_environment.h"
-#include "painter/crossings.h"
-#include "painter/depth_sort.h"
+#include "painter/cutting/crossings.h"
 #include "painter/emit.h"
 #include "painter/gather.h"
-#include "painter/hidden.h"
-#include "painter/partition.h"
+#include "painter/order/depth_sort.h"
+#include "painter/order/partition.h"
+#include "painter/seen/hidden.h"
 
 namespace frontmost {
 namespace {

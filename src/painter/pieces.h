@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "frontmost/view.h"
-#include "painter/plane.h"
+#include "painter/cutting/plane.h"
 #include "view/sight.h"
 
 namespace frontmost::painter_detail {

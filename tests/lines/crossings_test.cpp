@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where triangles pass through each other, held against all pairs.
-#include "lines/crossings.h"
+#include "lines/crossings/crossings.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // Surfaces that pass through each other exactly along edges and diagonals: a line, once.
 #include <gtest/gtest.h>
 
-#include "lines/crossings.h"
+#include "lines/crossings/crossings.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {

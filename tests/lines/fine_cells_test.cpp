@@ -2,7 +2,7 @@
 // Cells that are divided because much meets in them: how much lines then ask, and that they get the same answers.
 #include <gtest/gtest.h>
 
-#include "lines/hidden_parts.h"
+#include "lines/hiding/hidden_parts.h"
 #include "support/crowds.h"
 #include "support/effort.h"
 

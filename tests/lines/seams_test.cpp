@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // T-junctions, filled by triangles without area and not.
-#include "lines/seams.h"
+#include "lines/mesh/seams.h"
 
 #include <gtest/gtest.h>
 

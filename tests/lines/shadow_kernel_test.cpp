@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The kernels against the plain functions, bit for bit.
-#include "lines/shadow_kernel.h"
+#include "lines/hiding/shadow_kernel.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is known of the triangles at a vertex, and what it spares.
-#include "lines/stars.h"
+#include "lines/crossings/stars.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "lines/crossings.h"
+#include "lines/crossings/crossings.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // On which side of a plane three others meet, by numbers of twice the length of doubles, and exactly.
-#include "painter/plane.h"
+#include "painter/cutting/plane.h"
 
 #include <gtest/gtest.h>
 
-#include "painter/twice.h"
+#include "painter/cutting/twice.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 

@@ -7,7 +7,7 @@
 #include "frontmost/abuffer.h"
 #include "frontmost/shade.h"
 #include "frontmost/zbuffer.h"
-#include "shade/deep_layers.h"
+#include "shade/layers/deep_layers.h"
 #include "shade/support.h"
 
 namespace frontmost {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "frontmost/surfaces.h"
-#include "lines/occluder.h"
-#include "lines/seen_mesh.h"
+#include "lines/hiding/occluder.h"
+#include "lines/mesh/seen_mesh.h"
 
 namespace frontmost::lines_detail {
 

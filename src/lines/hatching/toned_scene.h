@@ -5,7 +5,7 @@
 #include "frontmost/hatching.h"
 #include "lines/hatching/dot_grid.h"
 #include "lines/hatching/hatch_rows.h"
-#include "lines/hidden_parts.h"
+#include "lines/hiding/hidden_parts.h"
 
 namespace frontmost::lines_detail {
 

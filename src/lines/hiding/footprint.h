@@ -2,8 +2,8 @@
 // What triangles take of a grid over the picture.
 #pragma once
 
-#include "lines/cell_depth.h"
-#include "lines/seen_mesh.h"
+#include "lines/hiding/cell_depth.h"
+#include "lines/mesh/seen_mesh.h"
 
 namespace frontmost::lines_detail {
 

@@ -4,8 +4,8 @@
 
 #include <functional>
 
+#include "painter/order/piece_grid.h"
 #include "painter/outlines.h"
-#include "painter/piece_grid.h"
 #include "view/affine_depth.h"
 
 namespace frontmost::painter_detail {

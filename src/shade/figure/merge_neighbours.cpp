@@ -7,7 +7,7 @@
 #include "base/float_environment.h"
 #include "base/parallel.h"
 #include "frontmost/figure.h"
-#include "painter/piece_grid.h"
+#include "painter/order/piece_grid.h"
 #include "painter/poll.h"
 #include "shade/figure/side_net.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shade/shadow/key_shadows.h"
 
-#include "shade/opaque_part.h"
+#include "shade/layers/opaque_part.h"
 
 namespace frontmost::shading {
 namespace {

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangles in the order of a curve through space, under a tree of boxes sixteen wide.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <vector>
+
+#include "lines/crossings/space_lanes.h"
+#include "lines/mesh/feature_edges.h"
+
+namespace frontmost::lines_detail {
+
+class BoxTree {
+ public:
+  /// O(triangles). Triangles of a like size are together, so that large ones do not widen the boxes of small ones.
+  /// Without twins.
+  BoxTree(const WeldedMesh& mesh, const Features& features, const Execution& execution);
+
+  /// Groups of up to sixteen triangles.
+  [[nodiscard]] std::size_t group_count() const { return triangles_.numbers.size() / kSpaceLanes; }
+
+  /// Calls visit(a, b) for every two triangles that SpaceKernels::crossing leaves and of which one at least is of the
+  /// group; of two that both are, and of two groups, once.
+  template <class Visitor>
+  void visit_pairs(std::size_t group, const Visitor& visit) const {
+    const std::size_t begin = group * kSpaceLanes;
+    SpaceProbes probes;
+    kernels_.set_probes(triangles_, begin, probes);
+    visit_groups(group, [&](std::size_t other, const Box& other_box) {
+      const std::size_t first = other * kSpaceLanes;
+      SpaceMasks masks;
+      std::uint32_t found = kernels_.crossing(triangles_, first, other_box, probes, masks);
+      for (; found != 0; found &= found - 1) {
+        const auto i = std::size_t(std::countr_zero(found));
+        if (begin + i >= triangles_.count) break;
+        std::uint32_t bits = masks[i];
+        if (other == group) bits &= 0xFFFEu << i;
+        for (; bits != 0; bits &= bits - 1) {
+          const std::size_t j = first + std::size_t(std::countr_zero(bits));
+          if (j < triangles_.count) visit(triangles_.numbers[begin + i], triangles_.numbers[j]);
+        }
+      }
+    });
+  }
+
+ private:
+  /// Calls visit(other, its box) for every group from `group` on whose box touches that of `group`.
+  template <class Visitor>
+  void visit_groups(std::size_t group, const Visitor& visit) const {
+    const Box box = levels_[0].get(group);
+    struct Step {
+      std::size_t level, group;
+    };
+    Step open[kSpaceLanes * kMostLevels];
+    std::size_t count = 0;
+    open[count++] = {levels_.size() - 1, 0};
+    while (count > 0) {
+      const Step step = open[--count];
+      const std::size_t first = step.group * kSpaceLanes;
+      for (std::uint32_t bits = kernels_.touching(levels_[step.level], first, box); bits != 0; bits &= bits - 1) {
+        const std::size_t child = first + std::size_t(std::countr_zero(bits));
+        if (step.level > 0)
+          open[count++] = {step.level - 1, child};
+        else if (child >= group)
+          visit(child, levels_[0].get(child));
+      }
+    }
+  }
+
+  static constexpr std::size_t kMostLevels = 9;  ///< 16^8 is more than there are numbers for triangles
+  SpaceKernels kernels_;
+  SpaceTriangles triangles_;
+  std::vector<SpaceBoxes> levels_;  ///< of groups of sixteen triangles, of groups of those; the last of one group
+};
+
+}  // namespace frontmost::lines_detail

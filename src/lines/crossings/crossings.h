@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where triangles pass through each other.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "lines/mesh/feature_edges.h"
+
+namespace frontmost::lines_detail {
+
+/// Where an edge meets the plane of a triangle.
+struct CrossingEnd {
+  glm::dvec3 place{0};                ///< rounded
+  std::array<std::uint32_t, 2> on{};  ///< the edge's vertices; twice the same where one lies in the plane
+};
+
+/// The segment that two triangles have in common.
+struct Crossing {
+  CrossingEnd from, to;
+  std::uint32_t left, right;  ///< the triangles
+};
+
+/// The segments of all pairs of triangles each of which has a corner strictly on either side of the other's plane, by
+/// exact signs, and those of add_contacts(). Ends are computed from the edge and the plane that they are on, so that
+/// the next segment along a surface begins where one ends, to the bit. Triangles that are there twice give each segment
+/// once. In the order of their ends. O(triangles log triangles + pairs whose boxes touch).
+/// \throws Error limit_exceeded for more than 2^25 segments.
+[[nodiscard]] std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features,
+                                                   const Execution& execution);
+
+}  // namespace frontmost::lines_detail

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+// All of it happens in planes and along lines that the vertices hold exactly: signs of tetrahedra tell what lies where
+// in a plane, with a corner beside it as their fourth, and the order of coordinates what comes first along a line.
+#include "lines/crossings/edge_contacts.h"
+
+#include <algorithm>
+#include <optional>
+#include <tuple>
+
+#include "view/sight.h"
+
+namespace frontmost::lines_detail {
+namespace {
+
+struct Edge {
+  std::uint32_t from, to;
+  bool operator<(const Edge& other) const { return std::tie(from, to) < std::tie(other.from, other.to); }
+  bool operator==(const Edge& other) const { return from == other.from && to == other.to; }
+};
+
+/// Triangles at an edge by their third corners.
+struct Wedge {
+  std::uint32_t triangles[2] = {no_index, no_index}, apexes[2] = {no_index, no_index};
+  int count = 0;
+
+  void add(std::uint32_t triangle, std::uint32_t apex) {
+    for (int i = 0; i < std::min(count, 2); ++i)
+      if (apexes[i] == apex) return;
+    if (count < 2) {
+      triangles[count] = triangle;
+      apexes[count] = apex;
+    }
+    ++count;
+  }
+};
+
+template <class Visitor>
+void visit_edges(const glm::uvec3& t, const Visitor& visit) {
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t a = t[k], b = t[k == 2 ? 0 : k + 1];
+    visit(Edge{std::min(a, b), std::max(a, b)}, t[k == 0 ? 2 : k - 1]);
+  }
+}
+
+/// The wedges of the edges of contacts and of their triangles.
+class Wedges {
+ public:
+  Wedges(const WeldedMesh& mesh, const std::vector<EdgeContact>& contacts) {
+    for (const EdgeContact& contact : contacts) {
+      edges_.push_back({contact.from, contact.to});
+      visit_edges(mesh.triangles[contact.triangle], [&](const Edge& edge, std::uint32_t) { edges_.push_back(edge); });
+    }
+    std::sort(edges_.begin(), edges_.end());
+    edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
+    std::vector<bool> is_asked(mesh.positions.size(), false);
+    for (const Edge& edge : edges_) is_asked[edge.from] = is_asked[edge.to] = true;
+    wedges_.resize(edges_.size());
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
+      visit_edges(mesh.triangles[i], [&](const Edge& edge, std::uint32_t apex) {
+        if (!is_asked[edge.from] || !is_asked[edge.to]) return;
+        const auto it = std::lower_bound(edges_.begin(), edges_.end(), edge);
+        if (it != edges_.end() && *it == edge) wedges_[std::size_t(it - edges_.begin())].add(i, apex);
+      });
+  }
+  [[nodiscard]] const Wedge& of(const Edge& edge) const {
+    return wedges_[std::size_t(std::lower_bound(edges_.begin(), edges_.end(), edge) - edges_.begin())];
+  }
+
+ private:
+  std::vector<Edge> edges_;
+  std::vector<Wedge> wedges_;
+};
+
+class Contacts {
+ public:
+  Contacts(const WeldedMesh& mesh, const Features& features, const std::vector<EdgeContact>& contacts)
+      : mesh_(mesh), features_(features), wedges_(mesh, contacts) {}
+
+  [[nodiscard]] std::optional<Crossing> crossing(const EdgeContact& contact) const {
+    const Edge edge{contact.from, contact.to};
+    const Wedge& wedge = wedges_.of(edge);
+    if (wedge.count != 2 || is_drawn(edge)) return std::nullopt;
+    const glm::uvec3& t = mesh_.triangles[contact.triangle];
+    const int above = turn(t.x, t.y, t.z, wedge.apexes[0]), below = turn(t.x, t.y, t.z, wedge.apexes[1]);
+    if (above == 0 && below == 0) return std::nullopt;
+    // An apex in the triangle's plane has all of its corners in one plane with the edge.
+    const std::uint32_t beside = wedge.apexes[above != 0 ? 0 : 1];
+    int sides[3];  // of the triangle's corners beside the edge
+    for (int k = 0; k < 3; ++k) sides[k] = turn(edge.from, edge.to, beside, t[k]);
+    const auto any = [&](int sign) { return sides[0] == sign || sides[1] == sign || sides[2] == sign; };
+    if (any(1) && any(-1)) return above * below < 0 ? within(edge, wedge, contact.triangle, sides) : std::nullopt;
+    for (int k = 0; k < 3; ++k)
+      if (sides[k] == 0 && sides[(k + 1) % 3] == 0) return along({edge, wedge}, t[k], t[(k + 1) % 3]);
+    return std::nullopt;
+  }
+
+ private:
+  struct EdgeOfTwo {
+    Edge edge;
+    const Wedge& wedge;
+  };
+
+  [[nodiscard]] bool is_drawn(const Edge& edge) const {
+    const auto it = std::lower_bound(features_.edges.begin(), features_.edges.end(), edge,
+                                     [](const FeatureEdge& feature, const Edge& wanted) {
+                                       return Edge{feature.from, feature.to} < wanted;
+                                     });
+    return it != features_.edges.end() && Edge{it->from, it->to} == edge;
+  }
+
+  [[nodiscard]] Signed height(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t x) const {
+    if (x == a || x == b || x == c) return {};
+    const Positions& at = mesh_.positions;
+    return FacePlane(at[a], at[b], at[c]).height(at[x]);
+  }
+  [[nodiscard]] int turn(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t x) const {
+    return height(a, b, c, x).sign;
+  }
+  /// Of points of one line.
+  [[nodiscard]] bool is_before(std::uint32_t a, std::uint32_t b) const {
+    const glm::dvec3 p = mesh_.positions[a], q = mesh_.positions[b];
+    return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+  }
+  [[nodiscard]] CrossingEnd end_at(std::uint32_t vertex) const { return {mesh_.positions[vertex], {vertex, vertex}}; }
+
+  /// What of the edge lies in a triangle that has corners on both sides of it.
+  [[nodiscard]] std::optional<Crossing> within(const Edge& edge, const Wedge& wedge, std::uint32_t triangle,
+                                               const int (&sides)[3]) const {
+    const glm::uvec3& t = mesh_.triangles[triangle];
+    const std::uint32_t apex = wedge.apexes[0];
+    std::vector<CrossingEnd> ends;
+    for (const std::uint32_t vertex : {edge.from, edge.to}) {
+      const int a = turn(t.x, t.y, apex, vertex), b = turn(t.y, t.z, apex, vertex), c = turn(t.z, t.x, apex, vertex);
+      if (a * b >= 0 && b * c >= 0 && c * a >= 0) ends.push_back(end_at(vertex));
+    }
+    for (int k = 0; k < 3 && ends.size() < 2; ++k) {
+      if (sides[k] == 0) {
+        if (is_before(edge.from, t[k]) != is_before(edge.to, t[k]) && t[k] != edge.from && t[k] != edge.to)
+          ends.push_back(end_at(t[k]));
+        continue;
+      }
+      const std::uint32_t p = std::min(t[k], t[(k + 1) % 3]), q = std::max(t[k], t[(k + 1) % 3]);
+      const Signed from = height(p, q, apex, edge.from), to = height(p, q, apex, edge.to);
+      if (sides[k] * sides[(k + 1) % 3] < 0 && from.sign * to.sign < 0) ends.push_back(cut(edge, from, to));
+    }
+    if (ends.size() != 2) return std::nullopt;
+    return Crossing{ends[0], ends[1], wedge.triangles[0], triangle};
+  }
+
+  [[nodiscard]] CrossingEnd cut(const Edge& edge, const Signed& from, const Signed& to) const {
+    const glm::dvec3 a = mesh_.positions[edge.from], b = mesh_.positions[edge.to];
+    const double sum = std::abs(from.value) + std::abs(to.value), t = sum > 0 ? std::abs(from.value) / sum : 0.5;
+    return {t <= 0.5 ? a + (b - a) * t : b + (a - b) * (1 - t), {edge.from, edge.to}};
+  }
+
+  /// What two edges of one line have in common, if their triangles follow each other in turn around it.
+  [[nodiscard]] std::optional<Crossing> along(const EdgeOfTwo& one, std::uint32_t p, std::uint32_t q) const {
+    const Edge other{std::min(p, q), std::max(p, q)};
+    const Wedge& wedge = wedges_.of(other);
+    if (wedge.count != 2 || is_drawn(other)) return std::nullopt;
+    if (place_in(one, wedge, 0) * place_in(one, wedge, 1) >= 0) return std::nullopt;
+    const auto ordered = [&](Edge e) { return is_before(e.from, e.to) ? e : Edge{e.to, e.from}; };
+    const Edge a = ordered(one.edge), b = ordered(other);
+    const std::uint32_t from = is_before(a.from, b.from) ? b.from : a.from, to = is_before(a.to, b.to) ? a.to : b.to;
+    if (!is_before(from, to)) return std::nullopt;
+    return Crossing{end_at(from), end_at(to), std::min(one.wedge.triangles[0], wedge.triangles[0]),
+                    std::max(one.wedge.triangles[0], wedge.triangles[0])};
+  }
+
+  /// Whether a triangle of `other` lies between those of an edge, going round it one way (1), or the other way (-1); 0
+  /// where it lies on one of them.
+  [[nodiscard]] int place_in(const EdgeOfTwo& e, const Wedge& other, int which) const {
+    const std::uint32_t first = e.wedge.apexes[0], second = e.wedge.apexes[1], x = other.apexes[which];
+    const auto around = [&](std::uint32_t a, std::uint32_t b) { return turn(e.edge.from, e.edge.to, a, b); };
+    // Something beside the first triangle's plane tells its own half from the other.
+    std::uint32_t beside = no_index;
+    for (const std::uint32_t apex : {second, other.apexes[0], other.apexes[1]})
+      if (around(first, apex) != 0) beside = apex;
+    if (beside == no_index) return 0;
+    // 0: with the first; 1: within half a turn; 2: opposite; 3: beyond.
+    const auto quarter = [&](std::uint32_t apex) {
+      const int side = around(first, apex);
+      if (side != 0) return side > 0 ? 1 : 3;
+      return around(apex, beside) == around(first, beside) ? 0 : 2;
+    };
+    const int end = quarter(second), at = quarter(x);
+    if (end == 0 || at == 0) return 0;
+    if (at != end) return at < end ? 1 : -1;
+    return at == 2 ? 0 : around(x, second);
+  }
+
+  const WeldedMesh& mesh_;
+  const Features& features_;
+  const Wedges wedges_;
+};
+
+}  // namespace
+
+void add_contacts(const WeldedMesh& mesh, const Features& features, std::vector<EdgeContact> contacts,
+                  std::vector<Crossing>& crossings) {
+  if (contacts.empty()) return;
+  const auto key = [](const EdgeContact& c) { return std::tie(c.from, c.to, c.triangle); };
+  std::sort(contacts.begin(), contacts.end(),
+            [&](const EdgeContact& a, const EdgeContact& b) { return key(a) < key(b); });
+  contacts.erase(std::unique(contacts.begin(), contacts.end(),
+                             [&](const EdgeContact& a, const EdgeContact& b) { return key(a) == key(b); }),
+                 contacts.end());
+  const Contacts all(mesh, features, contacts);
+  for (const EdgeContact& contact : contacts)
+    if (const std::optional<Crossing> found = all.crossing(contact)) crossings.push_back(*found);
+}
+
+}  // namespace frontmost::lines_detail

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// Edges by their lower vertex. Most have two triangles that are wound alike: those are told without a sort.
+#include "lines/mesh/feature_edges.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <tuple>
+
+#include "base/parallel.h"
+#include "lines/crossings/stars.h"
+#include "lines/joined.h"
+
+namespace frontmost::lines_detail {
+namespace {
+
+constexpr std::size_t kVerticesPerPart = 4096;
+
+/// A triangle at an edge, which is known by its lower vertex.
+struct Side {
+  std::uint32_t upper;  ///< the edge's other vertex
+  std::uint32_t triangle;
+  std::uint32_t opposite;  ///< the vertex that is not on the edge
+  bool is_forward;         ///< the triangle runs from the lower vertex to the upper
+
+  [[nodiscard]] auto key() const { return std::make_tuple(upper, opposite, triangle); }
+};
+
+class Classifier {
+ public:
+  Classifier(const SeenMesh& seen, const Surfaces& surfaces, const LineOptions& options)
+      : mesh_(seen.mesh),
+        seen_(seen),
+        surfaces_(surfaces),
+        options_(options),
+        cosine_(std::cos(options.crease_angle)),
+        has_borders_(options.borders && !is_one_surface(surfaces.scene())) {}
+
+  [[nodiscard]] const WeldedMesh& mesh() const { return mesh_; }
+  /// Edges of two triangles that are wound alike, face the same way and have SeenTriangle normals of a higher cosine
+  /// are none of the kinds.
+  [[nodiscard]] float plain_cosine() const {
+    if (has_borders_) return std::numeric_limits<float>::infinity();
+    return options_.creases ? float(cosine_) + kNormalRounding : -std::numeric_limits<float>::infinity();
+  }
+
+  /// `sides` with different opposite vertices: a triangle that is there twice counts once.
+  [[nodiscard]] std::optional<EdgeKind> kind_of(std::span<const Side> sides) const {
+    if (sides.size() != 2) return options_.boundaries ? std::optional(EdgeKind::boundary) : std::nullopt;
+    const int a = side_of(sides[0]), b = side_of(sides[1]);
+    if (options_.silhouettes && (a * b > 0 || (a == 0) != (b == 0))) return EdgeKind::silhouette;
+    if (has_borders_ && !is_one_surface(sides[0].triangle, sides[1].triangle)) return EdgeKind::border;
+    if (options_.creases && is_crease(sides[0], sides[1])) return EdgeKind::crease;
+    return std::nullopt;
+  }
+
+  /// The other side than that of all triangles at the edge; 0 where they are on both.
+  [[nodiscard]] std::int8_t outer_side(std::span<const Side> sides) const {
+    int inner = 0;
+    for (const Side& side : sides) {
+      const int own = side_of(side);
+      if (own * inner < 0) return 0;
+      if (own != 0) inner = own;
+    }
+    return std::int8_t(-inner);
+  }
+
+ private:
+  /// Of the eye's plane through the edge: where the triangle lies, whichever way it is wound.
+  [[nodiscard]] int side_of(const Side& side) const { return seen_.facing[side.triangle] * (side.is_forward ? 1 : -1); }
+
+  static bool is_one_surface(const Scene& scene) {
+    return scene.instances.size() == 1 && scene.meshes[scene.instances[0].mesh].material_ids.empty();
+  }
+  [[nodiscard]] bool is_one_surface(std::uint32_t a, std::uint32_t b) const {
+    const PrimitiveSource p = surfaces_.source(mesh_.ids[a]), q = surfaces_.source(mesh_.ids[b]);
+    if (p.instance != q.instance) return false;
+    const Mesh& mesh = surfaces_.scene().meshes[p.mesh];
+    return mesh.material_of(p.triangle) == mesh.material_of(q.triangle);
+  }
+
+  [[nodiscard]] bool is_crease(const Side& a, const Side& b) const {
+    // Neighbours that run along their edge the same way are wound against each other.
+    const glm::dvec3 n = normal_of(mesh_, a.triangle), m = normal_of(mesh_, b.triangle);
+    const double along = glm::dot(n, m) * (a.is_forward == b.is_forward ? -1.0 : 1.0);
+    const double size = std::sqrt(glm::dot(n, n) * glm::dot(m, m));
+    if (along > cosine_ * size) return false;
+    if (along <= 0) return true;
+    const glm::uvec3& t = mesh_.triangles[a.triangle];
+    const Positions& at = mesh_.positions;
+    return FacePlane(at[t.x], at[t.y], at[t.z]).height(at[b.opposite]).sign != 0;
+  }
+
+  const WeldedMesh& mesh_;
+  const SeenMesh& seen_;
+  const Surfaces& surfaces_;
+  const LineOptions& options_;
+  /// More than their product may be wrong by.
+  static constexpr float kNormalRounding = 2e-6f;
+  const double cosine_;
+  const bool has_borders_;
+};
+
+/// Appends the feature, if it is one, of the edge to Corner::last() of corner j of a paired star.
+void add_feature(std::uint32_t vertex, std::span<const Corner> corners, std::size_t j, const Classifier& classifier,
+                 std::vector<FeatureEdge>& features) {
+  const WeldedMesh& mesh = classifier.mesh();
+  const std::uint32_t upper = corners[j].last(mesh);
+  std::size_t i = 0;
+  while (corners[i].next(mesh) != upper) ++i;
+  Side sides[2] = {{upper, corners[i].triangle(), corners[i].last(mesh), true},
+                   {upper, corners[j].triangle(), corners[j].next(mesh), false}};
+  if (sides[1].opposite < sides[0].opposite) std::swap(sides[0], sides[1]);
+  if (const std::optional<EdgeKind> kind = classifier.kind_of(sides))
+    features.push_back({vertex, upper, sides[0].triangle, sides[1].triangle, *kind, classifier.outer_side(sides)});
+}
+
+/// Appends the features among what is asked of a paired star.
+void add_features(std::uint32_t vertex, std::span<const Corner> corners, std::uint32_t asked,
+                  const Classifier& classifier, std::vector<FeatureEdge>& features) {
+  const std::size_t begin = features.size();
+  for (; asked != 0; asked &= asked - 1)
+    add_feature(vertex, corners, std::size_t(std::countr_zero(asked)), classifier, features);
+  std::sort(features.begin() + std::ptrdiff_t(begin), features.end(),
+            [](const FeatureEdge& a, const FeatureEdge& b) { return a.to < b.to; });
+}
+
+/// The sides of the edges at a vertex to those above it, sorted by edge, then by opposite vertex.
+void find_sides(const WeldedMesh& mesh, std::uint32_t vertex, std::span<const Corner> corners,
+                std::vector<Side>& sides) {
+  sides.clear();
+  for (const Corner& corner : corners) {
+    const std::uint32_t next = corner.next(mesh), last = corner.last(mesh);
+    if (next > vertex) sides.push_back({next, corner.triangle(), last, true});
+    if (last > vertex) sides.push_back({last, corner.triangle(), next, false});
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.key() < b.key(); });
+}
+
+/// `sides` are those of find_sides().
+void add_features(std::span<Side> sides, std::uint32_t v, const Classifier& classifier, Features& features) {
+  for (auto begin = sides.begin(); begin != sides.end();) {
+    const auto end = std::find_if(begin, sides.end(), [&](const Side& s) { return s.upper != begin->upper; });
+    for (auto side = begin; side + 1 < end; ++side)  // known at one of its three edges
+      if (side[0].opposite == side[1].opposite && side->opposite > side->upper)
+        features.twins.push_back(side[1].triangle);
+    const auto last = std::unique(begin, end, [](const Side& a, const Side& b) { return a.opposite == b.opposite; });
+    const std::span<const Side> edge(begin, last);
+    if (const std::optional<EdgeKind> kind = classifier.kind_of(edge))
+      features.edges.push_back({v, begin->upper, edge[0].triangle, edge.size() > 1 ? edge[1].triangle : no_index, *kind,
+                                classifier.outer_side(edge)});
+    begin = end;
+  }
+}
+
+}  // namespace
+
+Features find_features(const SeenMesh& seen, const Surfaces& surfaces, const LineOptions& options,
+                       const Execution& execution) {
+  const CornerTable table(seen.mesh, execution);
+  const Classifier classifier(seen, surfaces, options);
+  const StarsKernel find_stars = stars_kernel(execution.isa);
+  const std::size_t vertices = seen.mesh.positions.size();
+  const std::size_t parts = (vertices + kVerticesPerPart - 1) / kVerticesPerPart;
+  std::vector<std::vector<FeatureEdge>> edges(parts);
+  std::vector<std::vector<std::uint32_t>> twins(parts);
+  Buffer<std::uint8_t> is_spread(vertices);
+  parallel_for(execution, vertices, kVerticesPerPart, [&](std::size_t begin, std::size_t end) {
+    Features found;
+    std::vector<Side> sides;
+    Buffer<Star> stars(end - begin);
+    find_stars(seen, table, classifier.plain_cosine(), begin, end, stars.data());
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto v = std::uint32_t(i);
+      const Star& star = stars[i - begin];
+      is_spread[v] = star.is_spread;
+      if (star.is_paired) {
+        add_features(v, table.at(v), star.asked, classifier, found.edges);
+      } else {
+        find_sides(seen.mesh, v, table.at(v), sides);
+        add_features(sides, v, classifier, found);
+      }
+    }
+    edges[begin / kVerticesPerPart] = std::move(found.edges);
+    twins[begin / kVerticesPerPart] = std::move(found.twins);
+  });
+  Features all{joined(edges, execution), joined(twins, execution), std::move(is_spread)};
+  std::sort(all.twins.begin(), all.twins.end());
+  return all;
+}
+
+}  // namespace frontmost::lines_detail

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// Normals in doubles, many at once.
+
+#include "lines/mesh/seen_mesh.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "lines/mesh/seen_kernel.cpp"
+#include "base/isa.h"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+// After foreach_target.h, for each target.
+#include "lines/vector3-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::lines_detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr std::size_t kMostLanes = 8;
+using D = hn::CappedTag<double, kMostLanes>;
+using DU = hn::RebindToUnsigned<D>;
+using DF = hn::Rebind<float, D>;
+using V = hn::Vec<D>;
+using M = hn::Mask<D>;
+using Vector3 = Lanes3<V>;
+
+/// As many triangles as there are lanes, the last one again where there are fewer.
+HWY_INLINE void Load(const WeldedMesh& mesh, std::size_t begin, std::size_t end, Vector3 (&corners)[3]) {
+  HWY_ALIGN float places[9][kMostLanes];
+  for (std::size_t i = 0; i < hn::Lanes(D()); ++i) {
+    const glm::uvec3& t = mesh.triangles[begin + i < end ? begin + i : end - 1];
+    for (int k = 0; k < 3; ++k) {
+      const glm::vec3& p = mesh.positions.places()[t[k]];
+      places[3 * k][i] = p.x, places[3 * k + 1][i] = p.y, places[3 * k + 2][i] = p.z;
+    }
+  }
+  const auto load = [&](int c) HWY_ATTR { return hn::PromoteTo(D(), hn::Load(DF(), places[c])); };
+  for (int k = 0; k < 3; ++k) corners[k] = {load(3 * k), load(3 * k + 1), load(3 * k + 2)};
+}
+
+/// SeenTriangle::bits, as they come together.
+struct Bits {
+  hn::Vec<DU> all;
+  int next = 0;
+
+  HWY_INLINE void Set(M mask, int bit) {
+    const DU d;
+    all = hn::Or(all, hn::IfThenElseZero(hn::RebindMask(d, mask), hn::Set(d, std::uint64_t(1) << bit)));
+  }
+  HWY_INLINE void Append(M mask) { Set(mask, next++); }
+};
+
+/// Along each axis points have an order from below to above: by the next axis' coordinate, then by that after it.
+HWY_INLINE void AppendClimbs(const Vector3 (&p)[3], Bits& bits) {
+  M is_below[3][3];  // by corner, by axis: whether it comes before the next corner
+  for (int k = 0; k < 3; ++k) {
+    const Vector3 &a = p[k], &b = p[k == 2 ? 0 : k + 1];
+    const M x = hn::Lt(a.x, b.x), y = hn::Lt(a.y, b.y), z = hn::Lt(a.z, b.z);
+    const M same_x = hn::Eq(a.x, b.x), same_y = hn::Eq(a.y, b.y), same_z = hn::Eq(a.z, b.z);
+    is_below[k][0] = hn::Or(y, hn::And(same_y, z));
+    is_below[k][1] = hn::Or(z, hn::And(same_z, x));
+    is_below[k][2] = hn::Or(x, hn::And(same_x, y));
+  }
+  // The next corner is below this one and the last above it.
+  for (int k = 0; k < 3; ++k)
+    for (int axis = 0; axis < 3; ++axis)
+      bits.Append(hn::Not(hn::Or(is_below[k][axis], is_below[k == 0 ? 2 : k - 1][axis])));
+}
+
+/// All of a SeenTriangle's bits.
+HWY_INLINE hn::Vec<DU> BitsOfTriangles(const Vector3 (&p)[3], const BoundedNormals<V>& normal, const Sight& sight) {
+  const D d;
+  Bits bits{hn::Zero(DU())};
+  const auto append_above = [&](V value, V error) HWY_ATTR { bits.Append(hn::Gt(value, error)); };
+  append_above(normal.value.x, normal.error.x);
+  append_above(normal.value.y, normal.error.y);
+  append_above(normal.value.z, normal.error.z);
+  append_above(hn::Neg(normal.value.x), normal.error.x);
+  append_above(hn::Neg(normal.value.y), normal.error.y);
+  append_above(hn::Neg(normal.value.z), normal.error.z);
+  AppendClimbs(p, bits);
+  const Vector3 to_eye = sight.is_parallel() ? Splat(d, -sight.forward()) : Minus(Splat(d, sight.eye()), p[0]);
+  const V value = Dot(normal.value, to_eye), error = normal.ErrorOfDot(to_eye);
+  const M is_towards = hn::Gt(value, error), is_away = hn::Lt(value, hn::Neg(error));
+  const M is_zero = hn::Eq(error, hn::Zero(d));
+  // 0 for away, 1 where the error is none, 2 for towards, and 3.
+  const M is_open = hn::Not(hn::Or(hn::Or(is_towards, is_away), is_zero));
+  bits.Set(hn::Or(is_zero, is_open), SeenTriangle::kFacingShift);
+  bits.Set(hn::Or(is_towards, is_open), SeenTriangle::kFacingShift + 1);
+  return bits.all;
+}
+
+void See(const WeldedMesh& mesh, const Sight& sight, std::size_t begin, std::size_t end, SeenTriangle* seen) {
+  const D d;
+  const DF df;
+  for (std::size_t i = begin; i < end; i += hn::Lanes(d)) {
+    Vector3 p[3];
+    Load(mesh, i, end, p);
+    const BoundedNormals<V> normal(Minus(p[1], p[0]), Minus(p[2], p[0]));
+    // So that no product of two of these squares is out of range.
+    const V square = Dot(normal.value, normal.value);
+    const M is_usual = hn::And(hn::Gt(square, hn::Set(d, 1e-100)), hn::Lt(square, hn::Set(d, 1e100)));
+    const V scale = hn::IfThenElseZero(is_usual, hn::Div(hn::Set(d, 1.0), hn::Sqrt(square)));
+    const auto scaled = [&](V v) HWY_ATTR { return hn::DemoteTo(df, hn::Mul(v, scale)); };
+    HWY_ALIGN SeenTriangle block[kMostLanes];
+    const auto bits = hn::TruncateTo(hn::RebindToUnsigned<DF>(), BitsOfTriangles(p, normal, sight));
+    hn::StoreInterleaved4(scaled(normal.value.x), scaled(normal.value.y), scaled(normal.value.z), hn::BitCast(df, bits),
+                          df, &block[0].normal.x);
+    for (std::size_t k = 0; k < hn::Lanes(d) && i + k < end; ++k) seen[i + k] = block[k];
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace frontmost::lines_detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace frontmost::lines_detail {
+
+FRONTMOST_KERNELS(See);
+
+SeeKernel see_kernel(Isa isa) { return kernel_for(SeeKernels, isa); }
+
+}  // namespace frontmost::lines_detail
+#endif  // HWY_ONCE

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lines/mesh/welded_mesh.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "base/parallel.h"
+#include "lines/mesh/corner_table.h"
+#include "surfaces/cluster_set.h"
+
+namespace frontmost::lines_detail {
+namespace {
+
+constexpr std::size_t kPerPart = 8192;
+
+/// Calls visit(instance, first, last) for the pieces that the numbers from `begin` to `end`, counted over all
+/// instances, have in each; `firsts` are the instances' first numbers, and the count of all.
+template <class Visitor>
+void visit_instances(const std::vector<std::size_t>& firsts, std::size_t begin, std::size_t end, const Visitor& visit) {
+  auto i = std::size_t(std::upper_bound(firsts.begin(), firsts.end(), begin) - firsts.begin()) - 1;
+  for (; begin < end; ++i) {
+    const std::size_t last = std::min(end, firsts[i + 1]);
+    if (begin < last) visit(i, begin - firsts[i], last - firsts[i]);
+    begin = last;
+  }
+}
+
+template <class Size>
+std::vector<std::size_t> firsts_of(const Scene& scene, const Size& size) {
+  std::vector<std::size_t> firsts{0};
+  firsts.reserve(scene.instances.size() + 1);
+  for (const Instance& instance : scene.instances) firsts.push_back(firsts.back() + size(scene.meshes[instance.mesh]));
+  return firsts;
+}
+
+/// How many are kept in the parts before each, and of all in the end.
+template <class IsKept>
+std::vector<std::size_t> counted(std::size_t count, const IsKept& is_kept, const Execution& execution) {
+  std::vector<std::size_t> before((count + kPerPart - 1) / kPerPart + 1, 0);
+  parallel_for(execution, count, kPerPart, [&](std::size_t begin, std::size_t end) {
+    std::size_t kept = 0;
+    for (std::size_t i = begin; i < end; ++i) kept += is_kept(i);
+    before[begin / kPerPart + 1] = kept;
+  });
+  for (std::size_t i = 1; i < before.size(); ++i) before[i] += before[i - 1];
+  return before;
+}
+
+/// By open addressing, which of the vertices at one place comes first.
+class PlaceTable {
+ public:
+  /// Precondition: fewer than 2^31 places.
+  explicit PlaceTable(const Buffer<glm::vec3>& places)
+      : places_(places), slots_(std::bit_ceil(2 * places.size() + 2)) {}
+
+  /// \returns the slot of the vertex's place; the lowest vertex stays in it, whoever comes first. For many threads.
+  std::uint32_t enter(std::uint32_t vertex) {
+    const glm::vec3& p = places_[vertex];
+    const std::size_t mask = slots_.size() - 1;
+    for (std::size_t i = hash(p) & mask;; i = (i + 1) & mask) {
+      std::uint32_t held = slots_[i].load(std::memory_order_relaxed);
+      if (held == 0 && slots_[i].compare_exchange_strong(held, vertex + 1, std::memory_order_relaxed))
+        return std::uint32_t(i);
+      if (places_[held - 1] != p) continue;
+      while (vertex + 1 < held && !slots_[i].compare_exchange_weak(held, vertex + 1, std::memory_order_relaxed)) {
+      }
+      return std::uint32_t(i);
+    }
+  }
+  [[nodiscard]] std::uint32_t lowest_in(std::uint32_t slot) const {
+    return slots_[slot].load(std::memory_order_relaxed) - 1;
+  }
+
+ private:
+  static std::size_t hash(const glm::vec3& p) {
+    std::uint64_t h = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      std::uint32_t bits;
+      std::memcpy(&bits, &p[axis], sizeof bits);
+      h = (h ^ bits) * 0x9E3779B97F4A7C15u;
+      h ^= h >> 29;
+    }
+    return std::size_t(h);
+  }
+
+  const Buffer<glm::vec3>& places_;
+  std::vector<std::atomic<std::uint32_t>> slots_;  ///< 0: free; else a vertex + 1
+};
+
+Buffer<glm::vec3> places_of(const Scene& scene, const Execution& execution) {
+  const std::vector<std::size_t> firsts = firsts_of(scene, [](const Mesh& mesh) { return mesh.positions.size(); });
+  if (firsts.back() >= std::size_t(1) << 31)
+    throw Error(ErrorCode::limit_exceeded, "lines: more than 2147483647 vertices over all instances");
+  Buffer<glm::vec3> places(firsts.back());
+  parallel_for(execution, places.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
+    visit_instances(firsts, begin, end, [&](std::size_t i, std::size_t first, std::size_t last) {
+      const std::vector<glm::vec3>& positions = scene.meshes[scene.instances[i].mesh].positions;
+      const ToWorld to_world(scene.instances[i].world_from_mesh);
+      for (std::size_t v = first; v < last; ++v) places[firsts[i] + v] = to_world(positions[v]) + 0.0f;  // -0 is 0
+    });
+  });
+  return places;
+}
+
+/// By vertex of all instances, the first at its place; no_index where it is not finite.
+Buffer<std::uint32_t> first_at_place(const Buffer<glm::vec3>& places, const Execution& execution) {
+  PlaceTable table(places);
+  Buffer<std::uint32_t> first(places.size());
+  parallel_for(execution, places.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      first[v] = is_finite(places[v]) ? table.enter(std::uint32_t(v)) : no_index;
+  });
+  parallel_for(execution, places.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      if (first[v] != no_index) first[v] = table.lowest_in(first[v]);
+  });
+  return first;
+}
+
+/// By vertex of all instances, the number of its place; fills `positions`.
+Buffer<std::uint32_t> number_places(const Scene& scene, Positions& positions, const Execution& execution) {
+  const Buffer<glm::vec3> places = places_of(scene, execution);
+  const Buffer<std::uint32_t> first = first_at_place(places, execution);
+  Buffer<std::uint32_t> numbers(places.size());
+  const auto is_first = [&](std::size_t v) { return first[v] == v; };
+  const std::vector<std::size_t> before = counted(places.size(), is_first, execution);
+  Buffer<glm::vec3> kept(before.back());
+  parallel_for(execution, places.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
+    std::size_t next = before[begin / kPerPart];
+    for (std::size_t v = begin; v < end; ++v) {
+      if (!is_first(v)) continue;
+      kept[next] = places[v];
+      numbers[v] = std::uint32_t(next++);
+    }
+  });
+  parallel_for(execution, places.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      if (!is_first(v)) numbers[v] = first[v] == no_index ? no_index : numbers[first[v]];
+  });
+  positions = Positions(std::move(kept));
+  return numbers;
+}
+
+/// By primitive, its three places; no_index first where it is left out.
+Buffer<glm::uvec3> corners_of(const Surfaces& surfaces, const Buffer<std::uint32_t>& numbers,
+                              const Execution& execution) {
+  const Scene& scene = surfaces.scene();
+  const std::vector<std::size_t> vertices = firsts_of(scene, [](const Mesh& mesh) { return mesh.positions.size(); });
+  const std::vector<std::size_t> firsts = firsts_of(scene, [](const Mesh& mesh) { return mesh.triangles.size(); });
+  if (firsts.back() > Corner::most_triangles)
+    throw Error(ErrorCode::limit_exceeded,
+                "lines: more than " + std::to_string(Corner::most_triangles) + " triangles over all instances");
+  Buffer<glm::uvec3> all(firsts.back());
+  parallel_for(execution, all.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
+    visit_instances(firsts, begin, end, [&](std::size_t i, std::size_t first, std::size_t last) {
+      const std::vector<glm::uvec3>& triangles = scene.meshes[scene.instances[i].mesh].triangles;
+      const bool is_mirrored = surfaces.is_mirrored(std::uint32_t(i));
+      for (std::size_t t = first; t < last; ++t) {
+        glm::uvec3 c;
+        for (int k = 0; k < 3; ++k) c[k] = numbers[vertices[i] + triangles[t][is_mirrored && k > 0 ? 3 - k : k]];
+        if (c.y == no_index || c.z == no_index || c.x == c.y || c.y == c.z || c.z == c.x) c.x = no_index;
+        all[firsts[i] + t] = c;
+      }
+    });
+  });
+  return all;
+}
+
+}  // namespace
+
+WeldedMesh weld(const Surfaces& surfaces, const Execution& execution) {
+  WeldedMesh welded;
+  const Buffer<std::uint32_t> numbers = number_places(surfaces.scene(), welded.positions, execution);
+  Buffer<glm::uvec3> all = corners_of(surfaces, numbers, execution);
+  const auto is_kept = [&](std::size_t id) { return all[id].x != no_index; };
+  const std::vector<std::size_t> before = counted(all.size(), is_kept, execution);
+  welded.ids = Buffer<PrimitiveId>(before.back());
+  const bool keeps_all = before.back() == all.size();
+  if (!keeps_all) welded.triangles = Buffer<glm::uvec3>(before.back());
+  parallel_for(execution, all.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
+    std::size_t next = before[begin / kPerPart];
+    for (std::size_t id = begin; id < end; ++id) {
+      if (!is_kept(id)) continue;
+      if (!keeps_all) welded.triangles[next] = all[id];
+      welded.ids[next++] = PrimitiveId(id);
+    }
+  });
+  if (keeps_all) welded.triangles = std::move(all);
+  return welded;
+}
+
+}  // namespace frontmost::lines_detail

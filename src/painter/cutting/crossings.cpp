@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every two triangles that pass through each other take a cut of their own: along the line where they meet, and other
+// planes have other lines. So their number tells whether cutting will come to its limit, before it begins; unless many
+// lie in the same planes, whose lines are the same.
+#include "painter/cutting/crossings.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontmost::painter_detail {
+namespace {
+
+constexpr std::size_t kPairs = 512;
+/// Of the spread of such a sample.
+constexpr double kDeviations = 4;
+
+bool pierces(const glm::dvec3& from, const glm::dvec3& to, const std::array<glm::dvec3, 3>& corners) {
+  const Plane plane = Plane::through(corners[0], corners[1], corners[2]);
+  if (plane.side(from) * plane.side(to) >= 0) return false;
+  int turns = 0;
+  for (std::size_t k = 0; k < 3; ++k) turns += Plane::through(from, to, corners[k]).side(corners[k == 2 ? 0 : k + 1]);
+  return std::abs(turns) == 3;
+}
+
+/// An edge of one pierces the other.
+bool pass_through(const Face& a, const Face& b) {
+  const auto corners_of = [](const Face& face) {
+    return std::array<glm::dvec3, 3>{glm::dvec3(face.corners[0]), glm::dvec3(face.corners[1]),
+                                     glm::dvec3(face.corners[2])};
+  };
+  const std::array<glm::dvec3, 3> p = corners_of(a), q = corners_of(b);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = k == 2 ? 0 : k + 1;
+    if (pierces(p[k], p[next], q) || pierces(q[k], q[next], p)) return true;
+  }
+  return false;
+}
+
+bool are_in_one_plane(const Face& a, const Face& b) {
+  const Plane plane = a.plane();
+  return std::all_of(b.corners.begin(), b.corners.end(),
+                     [&](const glm::vec3& corner) { return plane.side(glm::dvec3(corner)) == 0; });
+}
+
+}  // namespace
+
+double least_crossings(const Pieces& pieces, const std::vector<std::uint32_t>& members, Poll& poll) {
+  const std::size_t count = members.size();
+  std::uint64_t random = 1;
+  const auto pick = [&] {
+    random = random * 6364136223846793005u + 1442695040888963407u;
+    return members[std::size_t(random >> 33) % count];
+  };
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < kPairs; ++i) {
+    poll.count(8);
+    const std::uint32_t a = pick(), b = pick();
+    if (a != b && are_in_one_plane(pieces.face(a), pieces.face(b))) return 0;
+    found += pieces.is_whole(a) && pieces.is_whole(b) && pass_through(pieces.face(a), pieces.face(b));
+  }
+  const double share = double(found) / kPairs, spread = std::sqrt(share * (1 - share) / kPairs);
+  return std::max(0.0, share - kDeviations * spread) * 0.5 * double(count) * double(count);
+}
+
+}  // namespace frontmost::painter_detail

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "painter/cutting/plane.h"
+
+#include <algorithm>
+
+#include "painter/cutting/twice.h"
+
+namespace frontmost::painter_detail {
+
+int Plane::side_by_hand(const glm::dvec3& x) const {
+  // Corners that triangles share are nearly all that rounding leaves open.
+  if (x == anchor_ || (x == u_.to && u_.from == anchor_) || (x == v_.to && v_.from == anchor_)) return 0;
+  return sign_of_determinant(u_, v_, {x, anchor_});
+}
+
+Bounded Plane::height(const glm::dvec3& x, double error) const {
+  Bounded height = bounded_dot(normal_.value, normal_.error, x - anchor_);
+  const glm::dvec3 slope = glm::abs(normal_.value) + normal_.error;
+  height.error += error * (slope.x + slope.y + slope.z);
+  return height;
+}
+
+Bounded Plane::least_height(const glm::dvec3& centre, const std::array<glm::dvec3, 3>& halves, double error) const {
+  Bounded least = height(centre, error);
+  const glm::dvec3 doubt = normal_.error + kRounding * glm::abs(normal_.value);
+  for (const glm::dvec3& half : halves) {
+    least.value -= std::abs(glm::dot(normal_.value, half));
+    least.error += glm::dot(doubt, glm::abs(half));
+  }
+  return least;
+}
+
+/// By Cramer's rule about a point of the first plane. The same sums of absolute values bound what is rounded: three
+/// normals and a distance, each wrong by at most kRounding of its own terms, and a dozen roundings more.
+Approximate Plane::meeting(const std::array<const Plane*, 3>& planes) {
+  const Plane &a = *planes[0], &b = *planes[1], &c = *planes[2];
+  const auto size = [](const Plane& plane) { return plane.normal_.error / kRounding; };
+  const auto cross_size = [](const glm::dvec3& p, const glm::dvec3& q) {
+    return glm::dvec3(p.y * q.z + p.z * q.y, p.z * q.x + p.x * q.z, p.x * q.y + p.y * q.x);
+  };
+  const auto distance = [&](const Plane& plane) { return glm::dot(plane.normal_.value, plane.anchor_ - a.anchor_); };
+  const auto distance_size = [&](const Plane& plane) {
+    return glm::dot(size(plane), glm::abs(plane.anchor_ - a.anchor_));
+  };
+  const glm::dvec3 bc = glm::cross(b.normal_.value, c.normal_.value), ca = glm::cross(c.normal_.value, a.normal_.value),
+                   ab = glm::cross(a.normal_.value, b.normal_.value);
+  const double determinant = glm::dot(a.normal_.value, bc);
+  const double doubt = 8 * kRounding * glm::dot(size(a), cross_size(size(b), size(c)));
+  if (!(std::abs(determinant) > 2 * doubt)) return {};
+  const glm::dvec3 from_a = (distance(b) * ca + distance(c) * ab) / determinant;
+  const glm::dvec3 error =
+      8 * kRounding *
+      (distance_size(b) * cross_size(size(c), size(a)) + distance_size(c) * cross_size(size(a), size(b)));
+  const glm::dvec3 bound = 2.0 * (error + doubt * glm::abs(from_a)) / std::abs(determinant) +
+                           kRounding * (glm::abs(from_a) + glm::abs(a.anchor_));
+  return {a.anchor_ + from_a, bound.x + bound.y + bound.z};
+}
+
+namespace {
+
+int sign_of(const Twice& number) { return number.certain_sign(); }
+int sign_of(const Expansion& number) { return number.sign(); }
+
+/// A height above a plane, times a determinant that may be negative, and that.
+template <class Number>
+struct Meeting {
+  Number height, determinant;
+};
+
+/// A plane n.x = d about a point.
+template <class Number>
+struct LongPlane {
+  LongVector<Number> n;
+  Number d;
+};
+
+/// By Cramer's rule; the first plane goes through the point, so that its d is 0.
+template <class Number>
+Meeting<Number> meeting_of(const std::array<LongPlane<Number>, 3>& planes, const LongPlane<Number>& asked) {
+  const auto& [a, b, c] = planes;
+  const LongVector<Number> bc = cross_of(b.n, c.n), ca = cross_of(c.n, a.n), ab = cross_of(a.n, b.n);
+  const Number determinant = dot_of(a.n, bc);
+  return {b.d * dot_of(asked.n, ca) + c.d * dot_of(asked.n, ab) - asked.d * determinant, determinant};
+}
+
+}  // namespace
+
+template <class Number>
+int Plane::sign_of_meeting(const std::array<const Plane*, 3>& planes) const {
+  const auto in_full = [&](const Plane& plane) {
+    LongPlane<Number> full{
+        cross_of(difference_of<Number>(plane.u_.to, plane.u_.from), difference_of<Number>(plane.v_.to, plane.v_.from)),
+        {}};
+    full.d = dot_of(full.n, difference_of<Number>(plane.anchor_, planes[0]->anchor_));
+    return full;
+  };
+  const Meeting<Number> meeting =
+      meeting_of<Number>({in_full(*planes[0]), in_full(*planes[1]), in_full(*planes[2])}, in_full(*this));
+  const int height = sign_of(meeting.height), determinant = sign_of(meeting.determinant);
+  return height == 2 || determinant == 2 ? 2 : height * determinant;
+}
+
+int Plane::side_of_meeting(const std::array<const Plane*, 3>& planes) const {
+  if (std::any_of(planes.begin(), planes.end(), [&](const Plane* plane) { return is_same(*plane); })) return 0;
+  const int twice = sign_of_meeting<Twice>(planes);
+  return twice != 2 ? twice : sign_of_meeting<Expansion>(planes);
+}
+
+}  // namespace frontmost::painter_detail

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "painter/order/overlap.h"
+
+#include <algorithm>
+
+namespace frontmost::painter_detail {
+namespace {
+
+bool is_within(const std::array<std::array<int, 3>, 3>& turns, std::size_t corner) {
+  return turns[0][corner] >= 0 && turns[1][corner] >= 0 && turns[2][corner] >= 0;
+}
+
+}  // namespace
+
+Coverer::Coverer(const Pieces& pieces, std::uint32_t piece)
+    : pieces_(pieces), piece_(piece), face_(pieces.face(piece)), plane_(face_.plane()) {}
+
+std::array<Plane, 3> Coverer::edges_of(const Face& face) const {
+  return {pieces_.edge_plane(face, 0), pieces_.edge_plane(face, 1), pieces_.edge_plane(face, 2)};
+}
+
+bool Coverer::covers(std::uint32_t other, PaintSteps& steps) {
+  const Face& face = pieces_.face(other);
+  const Plane other_plane = face.plane();
+  bool is_flat = false;
+  if (pieces_.keeps_off(piece_, other_plane, 1, is_flat) && !is_flat) {
+    ++steps.behind;
+    return false;
+  }
+  if (!is_flat && pieces_.keeps_off(other, plane_, -1, is_flat)) {
+    ++steps.before;
+    return false;
+  }
+  if (is_apart(other)) {
+    ++steps.projections_apart;
+    return false;
+  }
+  ++steps.compared;
+  if (is_flat) return face_.id < face.id;
+  if (pieces_.keeps_off(other, plane_, 1, is_flat) || pieces_.keeps_off(piece_, other_plane, -1, is_flat)) return true;
+  if (!pieces_.is_whole(piece_) || !pieces_.is_whole(other)) return true;
+  return is_over(face, other_plane);
+}
+
+/// Convex polygons are apart if and only if an edge of either parts them. Pieces that were cut are asked by the edges
+/// of their triangles alone.
+bool Coverer::is_apart(std::uint32_t other) {
+  if (!edges_) edges_.emplace(edges_of(face_));
+  if (is_outside(*edges_, other, other_turns_)) return true;
+  return is_outside(edges_of(pieces_.face(other)), piece_, turns_);
+}
+
+bool Coverer::is_outside(const std::array<Plane, 3>& edges, std::uint32_t piece, Turns& turns) const {
+  const Face& face = pieces_.face(piece);
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < 3; ++i) turns[k][i] = edges[k].side(glm::dvec3(face.corners[i]));
+    if (turns[k][0] <= 0 && turns[k][1] <= 0 && turns[k][2] <= 0) return true;
+    bool is_flat = false;
+    if (face.shape != no_index && pieces_.keeps_off(piece, edges[k], 1, is_flat)) return true;
+  }
+  return false;
+}
+
+/// Where two triangles overlap on the screen, which of them is nearer changes only along a line. So the corners of what
+/// they have in common there tell whether this one is anywhere.
+bool Coverer::is_over(const Face& other, const Plane& other_plane) const {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (is_within(turns_, i) && other_plane.side(glm::dvec3(face_.corners[i])) > 0) return true;
+    if (is_within(other_turns_, i) && plane_.side(glm::dvec3(other.corners[i])) < 0) return true;
+  }
+  return crosses_over(other);
+}
+
+/// Whether an edge of this triangle passes before one of the other.
+bool Coverer::crosses_over(const Face& other) const {
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t next_k = (k + 1) % 3, next_i = (i + 1) % 3;
+      if (other_turns_[k][i] * other_turns_[k][next_i] >= 0 || turns_[i][k] * turns_[i][next_k] >= 0) continue;
+      const glm::dvec3 from(face_.corners[k]), to(face_.corners[next_k]);
+      const glm::dvec3 other_from(other.corners[i]), other_to(other.corners[next_i]);
+      const int order = sign_of_determinant({to, from}, {other_from, from}, {other_to, from});
+      if (order * other_turns_[k][i] < 0) return true;
+    }
+  return false;
+}
+
+}  // namespace frontmost::painter_detail

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shade/layers/deep_layers.h"
+
+#include <mutex>
+#include <numeric>
+
+#include "abuffer/tile_parts.h"
+#include "base/parallel.h"
+#include "view/screen_transform.h"
+
+namespace frontmost::shading {
+namespace {
+
+using abuffer_detail::FragmentPass;
+using abuffer_detail::JobLists;
+using abuffer_detail::Rectangle;
+using abuffer_detail::TilePart;
+
+constexpr std::uint64_t kMostSamples = std::uint64_t(1) << 28;
+
+struct DeepSample {
+  glm::vec4 color;  ///< premultiplied
+  float z;
+  PrimitiveId primitive;
+};
+
+/// What one sub-sample sees, nearest first.
+class Order {
+ public:
+  Order(std::span<const Fragment> fragments, const KeyAt& key_at) : fragments_(fragments), key_at_(key_at) {}
+
+  [[nodiscard]] const std::vector<std::uint32_t>& at(std::size_t sample) {
+    order_.clear();
+    keys_.clear();
+    for (std::uint32_t i = 0; i < fragments_.size(); ++i) {
+      const Fragment& f = fragments_[i];
+      if (!(f.mask >> sample & 1)) continue;
+      // Nearly always the last: few fragments change places within a pixel.
+      const float key = key_at_(i, sample);
+      std::size_t at = order_.size();
+      while (at > 0 && (keys_[at - 1] < key || (keys_[at - 1] == key && id(order_[at - 1]) > f.primitive))) --at;
+      order_.insert(order_.begin() + std::ptrdiff_t(at), i);
+      keys_.insert(keys_.begin() + std::ptrdiff_t(at), key);
+    }
+    return order_;
+  }
+
+ private:
+  [[nodiscard]] PrimitiveId id(std::uint32_t i) const { return fragments_[i].primitive; }
+
+  std::span<const Fragment> fragments_;
+  const KeyAt& key_at_;
+  std::vector<std::uint32_t> order_;
+  std::vector<float> keys_;
+};
+
+/// The samples of one rectangle.
+class PartMaker {
+ public:
+  PartMaker(const View& view, const FragmentPass& pass, const LayerShader& shader)
+      : view_(view), opacity_(pass.opacity()), samples_(pass.samples()), shader_(shader) {}
+
+  [[nodiscard]] TilePart<DeepSample> make(const Rectangle& pixels, const JobLists& lists) const {
+    std::vector<std::uint32_t> numbers(lists.fragments.size());
+    std::iota(numbers.begin(), numbers.end(), 0u);
+    std::vector<glm::vec4> colors(numbers.size());
+    shader_.shade(pixels, lists, numbers, colors);
+    TilePart<DeepSample> part{pixels, {0}, {}};
+    for (std::size_t p = 0; p + 1 < lists.begin.size(); ++p) {
+      const int x = int(p) % pixels.width, y = int(p) / pixels.width;
+      add_pixel(lists, p, colors, glm::ivec2(x, y) * kSubPixels, part.items);
+      part.begin.push_back(std::uint32_t(part.items.size()));
+    }
+    return part;
+  }
+
+ private:
+  /// `corner`: of the pixel, in 1/256 pixel from the rectangle's.
+  void add_pixel(const JobLists& lists, std::size_t pixel, const std::vector<glm::vec4>& all_colors,
+                 const glm::ivec2& corner, std::vector<DeepSample>& out) const {
+    const std::size_t begin = lists.begin[pixel], count = lists.begin[pixel + 1] - begin;
+    const auto fragments = std::span(lists.fragments).subspan(begin, count);
+    const auto colors = std::span(all_colors).subspan(begin, count);
+    std::vector<float> alphas;
+    for (const glm::vec4& color : colors) alphas.push_back(color.a * opacity_);
+    const auto key_at = [&](std::size_t i, std::size_t s) {
+      return lists.key_at(begin + i, corner.x + samples_[s].x, corner.y + samples_[s].y);
+    };
+    const std::vector<float> parts = shown_parts(fragments, alphas, samples_.size(), key_at);
+    float left = 1;
+    for (std::size_t i = 0; i < fragments.size(); ++i) {
+      if (!(parts[i] > 0 && left > 0)) continue;
+      // Of what is left uncovered, so that laying over one another gives this part again.
+      const float alpha = std::min(parts[i] / left, 1.0f);
+      out.push_back({glm::vec4(glm::vec3(colors[i]) * alpha, alpha), depth_of_key(view_, fragments[i].key),
+                     fragments[i].primitive});
+      left -= parts[i];
+    }
+  }
+
+  const View& view_;
+  float opacity_;
+  std::vector<glm::ivec2> samples_;
+  const LayerShader& shader_;
+};
+
+std::vector<TilePart<DeepSample>> all_parts(const View& view, const FragmentPass& pass, const LayerShader& shader,
+                                            const Execution& execution) {
+  const PartMaker maker(view, pass, shader);
+  std::mutex mutex;
+  std::vector<TilePart<DeepSample>> parts;
+  std::uint64_t total = 0;
+  pass.look(
+      [&](const Rectangle& pixels, const JobLists& lists) {
+        TilePart<DeepSample> part = maker.make(pixels, lists);
+        const std::lock_guard lock(mutex);
+        total += part.items.size();
+        if (total > kMostSamples) throw Error(ErrorCode::limit_exceeded, "shade: more than 2^28 deep samples");
+        parts.push_back(std::move(part));
+      },
+      execution);
+  return parts;
+}
+
+/// The planes of a deep image, by sample.
+struct DeepPlanes {
+  Buffer<float> red, green, blue, alpha, z;
+  Buffer<PrimitiveId> primitive;
+
+  explicit DeepPlanes(std::size_t n) : red(n), green(n), blue(n), alpha(n), z(n), primitive(n) {}
+  void set(std::size_t i, const DeepSample& s) {
+    red[i] = s.color.r;
+    green[i] = s.color.g;
+    blue[i] = s.color.b;
+    alpha[i] = s.color.a;
+    z[i] = s.z;
+    primitive[i] = s.primitive;
+  }
+};
+
+/// The ids of one kind, given those of the primitives.
+Channel ids_of(const Surfaces& surfaces, const Buffer<PrimitiveId>& primitives, IdKind kind) {
+  return id_image(surfaces, {int(primitives.size()), 1}, {primitives.data(), primitives.size()}, kind).channels.front();
+}
+
+}  // namespace
+
+std::vector<float> shown_parts(std::span<const Fragment> fragments, std::span<const float> alphas,
+                               std::size_t sample_count, const KeyAt& key_at) {
+  std::vector<float> parts(fragments.size(), 0.0f);
+  Order order(fragments, key_at);
+  for (std::size_t s = 0; s < sample_count; ++s) {
+    float left = 1;
+    for (const std::uint32_t i : order.at(s)) {
+      parts[i] += left * alphas[i];
+      left *= 1 - alphas[i];
+    }
+  }
+  for (float& part : parts) part /= float(sample_count);
+  return parts;
+}
+
+DeepImage deep_layers(const Surfaces& surfaces, const View& view, const FragmentPass& pass, const LayerShader& shader,
+                      const Execution& execution) {
+  std::vector<TilePart<DeepSample>> parts = all_parts(view, pass, shader, execution);
+  DeepImage image{view.width, view.height, abuffer_detail::beginnings(view, parts), {}};
+  DeepPlanes planes(image.first[view.pixel_count()]);
+  constexpr std::size_t kGrain = 16;
+  parallel_for(execution, parts.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      abuffer_detail::place_items(parts[i], view, image.first,
+                                  [&](std::uint64_t at, const DeepSample& s) { planes.set(at, s); });
+      parts[i] = {};
+    }
+  });
+  image.channels.push_back({"R", std::move(planes.red)});
+  image.channels.push_back({"G", std::move(planes.green)});
+  image.channels.push_back({"B", std::move(planes.blue)});
+  image.channels.push_back({"A", std::move(planes.alpha)});
+  image.channels.push_back({"Z", planes.z});
+  image.channels.push_back({"ZBack", std::move(planes.z)});
+  for (const IdKind kind : {IdKind::primitive, IdKind::object, IdKind::material})
+    image.channels.push_back(ids_of(surfaces, planes.primitive, kind));
+  return image;
+}
+
+}  // namespace frontmost::shading
