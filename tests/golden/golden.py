@@ -5,7 +5,8 @@
     golden.py check PROGRAM FOLDER     renders every case into FOLDER and compares
     golden.py update PROGRAM FOLDER    renders, and stores the result as the new truth
 
-Figures are promised to the byte, too, where no function of the C library has a part in their colours.
+Figures are promised to the byte, too, where no function of the C library has a part in their colours, and drawings in all
+their formats, PDF before it is compressed.
 What is visible (ids and depths) and each map are promised to the byte, so their content hashes must be equal. Colours
 go through functions of the C library and may differ by a rounding: each channel within COLOUR_TOLERANCE. On failure
 the picture and its difference lie in FOLDER, the reference beside this script.
@@ -13,9 +14,11 @@ the picture and its difference lie in FOLDER, the reference beside this script.
 import hashlib
 import json
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
+import zlib
 
 HERE = pathlib.Path(__file__).resolve().parent
 HASHES = HERE / "hashes.json"
@@ -37,6 +40,11 @@ FIGURES = {
     "cubes_merged_figure": ["builtin:cubes", *SMALL, "--shading", "flat", "--merge-neighbours"],
     "cycle_figure": ["builtin:cycle", *SMALL, "--shading", "ids"],
 }
+DRAWINGS = {
+    "drawing_sheet": ["builtin:cubes", "--views", "front,top,left,iso", "--hidden", "dashed", "--page", "a4-landscape"],
+    "drawing_plot": ["builtin:cubes", "--view", "iso", "--camera-orthographic", "--plot", "--hidden", "dashed", "--hatch", "3", "--page", "a6"],
+    "drawing_figure": ["builtin:teapot", "--style", "figure", "--tessellation-error", "20", "--stipple", "3", "--page", "100,80"],
+}
 
 
 def hashes_of(text):
@@ -53,17 +61,28 @@ def render(program, folder, name, compare):
     return done, hashes_of(done.stdout)
 
 
+def inflated(data):
+    """A PDF whose streams are as before compression, without their lengths and places."""
+    data = re.sub(rb"stream\n(.*?)\nendstream", lambda found: zlib.decompress(found.group(1)), data, flags=re.S)
+    return re.sub(rb"/Length \d+|^\d{10} .*$|startxref\n\d+", b"", data, flags=re.M)
+
+
 def draw(program, folder, name):
-    """The hash of a figure's bytes."""
-    command = [program, "render", *FIGURES[name], "-o", f"{name}.svg", "--quiet"]
-    subprocess.run([str(word) for word in command], cwd=folder, check=True)
-    return {"svg": hashlib.sha256((folder / f"{name}.svg").read_bytes()).hexdigest()[:16]}
+    """The hashes of a figure's or a drawing's bytes, by format."""
+    words, formats = (["render", *FIGURES[name]], ["svg"]) if name in FIGURES else (["lines", *DRAWINGS[name]], ["svg", "pdf", "dxf", "json"])
+    outputs = [word for suffix in formats for word in ("-o", f"{name}.{suffix}")]
+    subprocess.run([str(word) for word in [program, *words, *outputs, "--quiet"]], cwd=folder, check=True)
+    hashes = {}
+    for suffix in formats:
+        data = (folder / f"{name}.{suffix}").read_bytes()
+        hashes[suffix] = hashlib.sha256(inflated(data) if suffix == "pdf" else data).hexdigest()[:16]
+    return hashes
 
 
 def check(program, folder):
     stored = json.loads(HASHES.read_text())
     failures = []
-    for name in FIGURES:
+    for name in [*FIGURES, *DRAWINGS]:
         if draw(program, folder, name) != stored[name]:
             failures.append(f"{name}: its bytes differ from those stored")
     for name in CASES:
@@ -75,7 +94,7 @@ def check(program, folder):
                 failures.append(f"{name}: {key} has hash {found.get(key)}, stored is {stored[name].get(key)}")
     if failures:
         sys.exit("\n".join(failures) + f"\npictures and differences: {folder}; references: {HERE}")
-    print(f"{len(CASES)} pictures, {len(FIGURES)} figures, {sum(map(len, stored.values()))} hashes")
+    print(f"{len(CASES)} pictures, {len(FIGURES)} figures, {len(DRAWINGS)} drawings, {sum(map(len, stored.values()))} hashes")
 
 
 def update(program, folder):
@@ -85,7 +104,7 @@ def update(program, folder):
         if done.returncode != 0:
             sys.exit(f"{name}: {done.stderr}")
         shutil.copy(folder / f"{name}.png", HERE / f"{name}.png")
-    stored |= {name: draw(program, folder, name) for name in FIGURES}
+    stored |= {name: draw(program, folder, name) for name in [*FIGURES, *DRAWINGS]}
     HASHES.write_text(json.dumps(stored, indent=1, sort_keys=True) + "\n")
 
 
