@@ -93,4 +93,6 @@ HWY_INLINE std::size_t CompactInto(V v, hn::Mask<D> mask, D, hn::TFromD<D>* to) 
 }  // namespace frontmost::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
+#undef FRONTMOST_COMPACT_BY_TABLE
+
 #endif  // include guard by target

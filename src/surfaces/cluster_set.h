@@ -88,8 +88,8 @@ class ToWorld {
 };
 
 [[nodiscard]] inline bool is_finite(const glm::vec3& p) {
-  // NaN and infinity both make x - x other than 0.
-  const glm::vec3 zero = p - p;
+  // NaN and infinity times 0 are NaN, and NaN is not 0.
+  const glm::vec3 zero = p * 0.0f;
   return zero.x == 0 && zero.y == 0 && zero.z == 0;
 }
 
