@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "lines/hiding/grid_plan.h"
 #include "lines/joined.h"
 
 namespace frontmost::lines_detail {
@@ -18,9 +19,7 @@ constexpr double kTrianglesPerCell = 32;
 constexpr double kMostCells = 1 << 22;
 /// How many cells a triangle may take, all in all: what bounds memory.
 constexpr double kEntriesPerTriangle = 16;
-constexpr std::size_t kPerPart = 4096, kCellsPerPart = 256;
-/// How many entries dividing may add: so many times those that there are, and some.
-constexpr std::size_t kMostAdded = 4, kAlwaysAdded = 1 << 22;
+constexpr std::size_t kCellsPerPart = 256;
 /// The kernels read whole vectors beyond the last entry.
 constexpr std::size_t kPadding = 64;
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -42,58 +41,7 @@ float from_ordered(std::uint32_t order) {
   return value;
 }
 
-/// What is seen of a line, before the near plane and within a picture of so many cells; nowhere if nothing is.
-GridLine on_picture(const SightedEdge& edge, const OnGrid& grid, const glm::dvec2& scale, const glm::dvec2& size) {
-  glm::dvec3 from = grid.sight.in_eye(edge.from), to = grid.sight.in_eye(edge.to);
-  double begin = 0, end = 1;
-  // Where a value that is linear along the line is not negative.
-  const auto keep = [&](double at_from, double at_to) {
-    if (at_from < 0 && at_to < 0) end = -1;
-    if (at_from < 0 && at_to >= 0) begin = std::max(begin, at_from / (at_from - at_to));
-    if (at_to < 0 && at_from >= 0) end = std::min(end, at_from / (at_from - at_to));
-  };
-  const auto cut = [&](auto& a, auto& b) {
-    const auto along = b - a;
-    if (end < 1) b = a + along * end;
-    if (begin > 0) a = a + along * begin;
-  };
-  const auto vertex = [](const EndOn& on, bool is_cut) { return is_cut || on[0] != on[1] ? no_index : on[0]; };
-  keep(from.z - grid.sight.near(), to.z - grid.sight.near());
-  if (!(begin < end)) return {};
-  cut(from, to);
-  const double near = grid.sight.near();
-  from.z = std::max(from.z, near), to.z = std::max(to.z, near);
-  bool is_from_cut = begin > 0, is_to_cut = end < 1;
-  glm::dvec2 a = glm::dvec2(grid.sight.to_screen(from)) * scale, b = glm::dvec2(grid.sight.to_screen(to)) * scale;
-  begin = 0, end = 1;
-  for (int axis = 0; axis < 2; ++axis) {
-    keep(a[axis], b[axis]);
-    keep(size[axis] - a[axis], size[axis] - b[axis]);
-  }
-  if (!(begin < end)) return {};
-  cut(a, b);
-  is_from_cut = is_from_cut || begin > 0, is_to_cut = is_to_cut || end < 1;
-  return {a, b, vertex(edge.from_on, is_from_cut), vertex(edge.to_on, is_to_cut)};
-}
-
-/// Asks now and then whether to stop, where a part of the work is all that a thread has to do.
-void poll(const Execution& execution, std::size_t i) {
-  if (i % 16384 == 0) check_cancelled(execution);
-}
-
 }  // namespace
-
-/// What the grid is made of.
-struct OccluderGrid::Plan {
-  OnGrid on_grid;
-  const Execution& execution;
-  const bool keeps_all;
-  Buffer<Footprint> footprints;
-  std::vector<std::uint32_t> large;  ///< of the footprints
-
-  [[nodiscard]] const Sight& sight() const { return on_grid.sight; }
-  [[nodiscard]] const WeldedMesh& mesh() const { return on_grid.seen.mesh; }
-};
 
 OccluderGrid::Outline OccluderGrid::outline_of(const Plan& plan, std::uint32_t triangle) const {
   const glm::uvec3& corners = plan.mesh().triangles[triangle];
@@ -148,10 +96,11 @@ Footprint OccluderGrid::footprint_of(const Plan& plan, std::uint32_t triangle) c
           triangle};
 }
 
-/// Calls visit(cell, nearest) for every cell of the band that the triangle may touch, and how near it is there.
+/// Calls visit(cell, nearest) for every cell of the band that the i-th triangle may touch, and how near it is there.
 template <class Visitor>
-void OccluderGrid::cover(const Plan& plan, const Footprint& footprint, const Band& band, const Visitor& visit) const {
-  const Extent all = extent_of(footprint);
+void OccluderGrid::cover(const Plan& plan, std::size_t i, const Band& band, const Visitor& visit) const {
+  const Footprint& footprint = plan.footprints[i];
+  const Extent& all = plan.extents[i];
   const int first_row = std::max(band.first, all.first_row), last_row = std::min(band.last, all.last_row);
   if (first_row > last_row) return;
   if (!all.is_large()) {
@@ -165,9 +114,9 @@ void OccluderGrid::cover(const Plan& plan, const Footprint& footprint, const Ban
     // Of the outline between the row's two sides alone.
     double left = infinite, right = -infinite;
     const double top = y - kPad, bottom = y + 1 + kPad;
-    for (int i = 0; i < outline.count; ++i) {
-      const glm::dvec2 &p = outline.corners[std::size_t(i)],
-                       &q = outline.corners[std::size_t(i + 1 == outline.count ? 0 : i + 1)];
+    for (int k = 0; k < outline.count; ++k) {
+      const glm::dvec2 &p = outline.corners[std::size_t(k)],
+                       &q = outline.corners[std::size_t(k + 1 == outline.count ? 0 : k + 1)];
       if (std::min(p.y, q.y) > bottom || std::max(p.y, q.y) < top) continue;
       for (const double side : {std::clamp(p.y, top, bottom), std::clamp(q.y, top, bottom)}) {
         const double x = p.y == q.y ? p.x : p.x + (q.x - p.x) * ((side - p.y) / (q.y - p.y));
@@ -192,11 +141,11 @@ OccluderGrid::Extent OccluderGrid::extent_of(const Footprint& footprint) const {
 Buffer<float> OccluderGrid::backs_of(const Plan& plan) const {
   const Buffer<Footprint>& footprints = plan.footprints;
   Buffer<float> backs(cell_count(), std::numeric_limits<float>::infinity());
-  for_each_band(plan.execution, [&](const Band& band) {
+  for_each_band(plan, [&](const Band& band) {
     for (std::size_t n = 0; n < plan.large.size(); ++n) {
       poll(plan.execution, n);
       const std::uint32_t i = plan.large[n];
-      const Extent all = extent_of(footprints[i]);
+      const Extent& all = plan.extents[i];
       if (plan.on_grid.is_near(footprints[i])) continue;
       const CellDepth depth = plan.on_grid.depth_of(footprints[i].triangle);
       const int last_row = std::min(band.last, all.last_row);
@@ -212,19 +161,38 @@ Buffer<float> OccluderGrid::backs_of(const Plan& plan) const {
   return backs;
 }
 
-/// Calls fill(band) for bands of rows, as many as there are threads. Every band reads all triangles, which costs less
-/// than counting in common.
+/// As many bands of rows as there are threads, each with its share of what begins in `cells`: where a model is narrow
+/// at one end, halves of the picture would leave one thread most of the work. One in many tells the share well enough.
+std::vector<OccluderGrid::Band> OccluderGrid::bands_of(const Plan& plan, const Buffer<std::uint32_t>& cells) const {
+  std::vector<std::size_t> of_row(std::size_t(rows_), 0);
+  std::size_t all = 0;
+  const std::size_t stride = std::max<std::size_t>(1, cells.size() >> 14);
+  for (std::size_t t = 0; t < cells.size(); t += stride) {
+    if (cells[t] == no_index) continue;
+    ++of_row[cells[t] / std::size_t(columns_)];
+    ++all;
+  }
+  const auto count = std::size_t(std::min(thread_count(plan.execution), rows_));
+  std::vector<Band> bands;
+  std::size_t sum = 0;
+  for (int y = 0, first = 0; y < rows_; ++y) {
+    sum += of_row[std::size_t(y)];
+    const bool is_full = bands.size() + 1 < count && sum * count >= all * (bands.size() + 1);
+    if (!is_full && y + 1 < rows_) continue;
+    bands.push_back({first, y});
+    first = y + 1;
+  }
+  return bands;
+}
+
+/// Calls fill(band) for the bands. Every band reads all triangles, which costs less than counting in common.
 template <class Fill>
-void OccluderGrid::for_each_band(const Execution& execution, const Fill& fill) const {
-  const int bands = std::min(thread_count(execution), rows_);
-  parallel_for(execution, std::size_t(bands), 1, [&](std::size_t begin, std::size_t) {
-    const auto start = [&](int band) { return int(std::int64_t(rows_) * band / bands); };
-    fill(Band{start(int(begin)), start(int(begin) + 1) - 1});
-  });
+void OccluderGrid::for_each_band(const Plan& plan, const Fill& fill) const {
+  parallel_for(plan.execution, plan.bands.size(), 1, [&](std::size_t i, std::size_t) { fill(plan.bands[i]); });
 }
 
 /// Of what is seen, in the order of their first cells: what lies side by side on the screen does in memory.
-Buffer<Footprint> OccluderGrid::footprints_by_cell(const Plan& plan) const {
+Buffer<Footprint> OccluderGrid::footprints_by_cell(Plan& plan) const {
   const std::size_t count = plan.mesh().triangles.size();
   Buffer<Footprint> all(count);
   Buffer<std::uint32_t> cells(count);
@@ -235,9 +203,10 @@ Buffer<Footprint> OccluderGrid::footprints_by_cell(const Plan& plan) const {
       cells[t] = is_seen ? std::uint32_t(number(column(all[t].low.x), row(all[t].low.y))) : no_index;
     }
   });
+  plan.bands = bands_of(plan, cells);
   std::vector<std::uint32_t> next(cell_count() + 1, 0);
   const auto for_each_seen = [&](const auto& visit) {
-    for_each_band(plan.execution, [&](const Band& band) {
+    for_each_band(plan, [&](const Band& band) {
       const std::size_t begin = number(0, band.first), end = number(0, band.last + 1);
       for (std::size_t t = 0; t < count; ++t) {
         poll(plan.execution, t);
@@ -279,10 +248,12 @@ void OccluderGrid::fill_cells(const Plan& plan) {
   const Buffer<float> backs =
       plan.keeps_all ? Buffer<float>(cell_count(), std::numeric_limits<float>::infinity()) : backs_of(plan);
   const auto for_each_entry = [&](const auto& visit) {
-    for_each_band(plan.execution, [&](const Band& band) {
+    for_each_band(plan, [&](const Band& band) {
       for (std::size_t i = 0; i < footprints.size(); ++i) {
         poll(plan.execution, i);
-        cover(plan, footprints[i], band, [&](std::size_t cell, float nearest) {
+        // They are in the order of their first rows, which the padding may have moved by one.
+        if (plan.extents[i].first_row > band.last + 1) break;
+        cover(plan, i, band, [&](std::size_t cell, float nearest) {
           if (nearest <= backs[cell]) visit(cell, i, nearest);
         });
       }
@@ -326,108 +297,6 @@ void OccluderGrid::set_entry(const Plan& plan, std::size_t e, const CellEntry& e
   high_y_[e] = f.high.y;
   nearest_[e] = entry.nearest;
   numbers_[e] = entry.footprint;
-}
-
-/// What is seen of the lines, cut off at the near plane and at the picture's sides.
-std::vector<GridLine> OccluderGrid::lines_on_grid(const Plan& plan, const LinesToCut& lines) const {
-  std::vector<GridLine> all(lines.count > 0 ? lines.count : plan.footprints.size());
-  const glm::dvec2 size(columns_, rows_);
-  parallel_for(plan.execution, all.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      SightedEdge edge;
-      if (lines.count > 0) {
-        edge = lines.line(i);
-      } else {
-        const glm::uvec3& t = plan.mesh().triangles[plan.footprints[i].triangle];
-        edge.from = plan.mesh().positions[t.x], edge.to = plan.mesh().positions[t.y];
-        edge.from_on = {t.x, t.x}, edge.to_on = {t.y, t.y};
-      }
-      all[i] = on_picture(edge, plan.on_grid, scale_, size);
-    }
-  });
-  return all;
-}
-
-/// Divides the cells that hold much. \returns by FineCells::cells[0] what has become of each, in their order.
-std::vector<FineCells> OccluderGrid::divide_crowds(const Plan& plan, const LinesToCut& lines) {
-  std::vector<std::size_t> crowded;
-  double squares = 0;
-  std::vector<std::uint32_t> crowd_of(cell_count(), no_index);
-  for (std::size_t cell = 0; cell < cell_count(); ++cell) {
-    const std::size_t entries = first_[cell + 1] - first_[cell];
-    if (entries < lines.crowd) continue;
-    squares += double(entries) * double(entries);
-    crowd_of[cell] = std::uint32_t(crowded.size());
-    crowded.push_back(cell);
-  }
-  if (squares <= lines.worth) return {};
-  const std::vector<GridLine> on_grid = lines_on_grid(plan, lines);
-  std::vector<std::vector<std::uint32_t>> passing(crowded.size());
-  for (std::uint32_t i = 0; i < on_grid.size(); ++i) {
-    poll(plan.execution, i);
-    if (on_grid[i].from == on_grid[i].to) continue;
-    visit_cells(on_grid[i], [&](const Visit& visited) {
-      if (crowd_of[visited.cell] != no_index) passing[crowd_of[visited.cell]].push_back(i);
-      return true;
-    });
-  }
-  double pairs = 1;
-  const auto pairs_in = [&](std::size_t i) {
-    return double(first_[crowded[i] + 1] - first_[crowded[i]]) * double(passing[i].size());
-  };
-  for (std::size_t i = 0; i < crowded.size(); ++i) pairs += pairs_in(i);
-  std::vector<FineCells> parts(crowded.size());
-  const CrowdedGrid grid{plan.on_grid, plan.footprints, on_grid, plan.keeps_all};
-  parallel_for(plan.execution, crowded.size(), 1, [&](std::size_t i, std::size_t) {
-    const std::size_t cell = crowded[i];
-    const double share = pairs_in(i) / pairs;
-    Crowd crowd{
-        {double(cell % std::size_t(columns_)), double(cell / std::size_t(columns_))}, {}, std::move(passing[i])};
-    crowd.room = std::size_t(share * double(kMostAdded * first_[cell_count()] + kAlwaysAdded));
-    for (std::size_t e = first_[cell]; e < first_[cell + 1]; ++e) crowd.entries.push_back({nearest_[e], numbers_[e]});
-    parts[i] = divide(grid, std::move(crowd), plan.execution);
-    if (parts[i].cells.size() == 1) parts[i] = {};  // as it was
-  });
-  fine_of_ = std::move(crowd_of);
-  return parts;
-}
-
-/// Numbers parts behind the cells, and their entries behind those of the cells.
-void OccluderGrid::number_parts(const std::vector<FineCells>& parts) {
-  for (std::uint32_t& number : fine_of_) {
-    if (number == no_index) continue;
-    const FineCells& part = parts[number];
-    if (part.cells.empty()) {
-      number = no_index;
-      continue;
-    }
-    const auto cells = std::uint32_t(fine_.size()), divisions = std::uint32_t(divisions_.size()),
-               slices = std::uint32_t(slices_.size());
-    number = cells;
-    const auto moved = [](std::uint32_t local, std::uint32_t by) { return local == no_index ? no_index : local + by; };
-    for (const FineCell& cell : part.cells) {
-      fine_.push_back({cell.corner, moved(cell.division, divisions), moved(cell.slices, slices)});
-      first_.push_back(first_.back() + cell.entries.size());
-    }
-    for (Division division : part.divisions) {
-      division.first_cell += cells;
-      divisions_.push_back(division);
-    }
-    for (Slices some : part.slices) {
-      some.first_cell += cells;
-      slices_.push_back(std::move(some));
-    }
-  }
-}
-
-/// The parts' entries, behind those of the cells.
-void OccluderGrid::add_entries(const Plan& plan, const std::vector<FineCells>& parts) {
-  if (parts.empty()) return;
-  std::size_t e = first_[cell_count()];
-  set_entry_count(first_.back());
-  for (const FineCells& part : parts)
-    for (const FineCell& cell : part.cells)
-      for (const CellEntry& entry : cell.entries) set_entry(plan, e++, entry);
 }
 
 void OccluderGrid::fill_sides(const Plan& plan) {
@@ -478,15 +347,16 @@ void OccluderGrid::set_cells(Plan& plan, const View& view, double cells) {
   plan.footprints = footprints_by_cell(plan);
 }
 
-/// Rather more cells than the triangles take together; tells which are large.
+/// Rather more cells than the triangles take together; tells how far each reaches, and which are large.
 double OccluderGrid::entries_of(Plan& plan) const {
   const Buffer<Footprint>& footprints = plan.footprints;
   const std::size_t parts = (footprints.size() + kPerPart - 1) / kPerPart;
+  plan.extents = Buffer<Extent>(footprints.size());
   std::vector<double> sums(parts, 0);
   std::vector<std::vector<std::uint32_t>> large(parts);
   parallel_for(plan.execution, footprints.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Extent all = extent_of(footprints[i]);
+      const Extent all = plan.extents[i] = extent_of(footprints[i]);
       const double columns = all.last_column - all.first_column + 1, rows = all.last_row - all.first_row + 1;
       double cells = columns * rows;
       if (all.is_large()) {
@@ -513,7 +383,7 @@ double OccluderGrid::area_of(const Plan& plan, std::uint32_t triangle) const {
 OccluderGrid::OccluderGrid(const SeenMesh& seen, const View& view, bool keeps_all, const LinesToCut& lines,
                            const Execution& execution) {
   const auto triangles = double(seen.mesh.triangles.size());
-  Plan plan{{seen, Sight(view), Buffer<glm::dvec3>(seen.mesh.positions.size())}, execution, keeps_all, {}, {}};
+  Plan plan{{seen, Sight(view), Buffer<glm::dvec3>(seen.mesh.positions.size())}, execution, keeps_all, {}, {}, {}, {}};
   double cells = std::clamp(triangles / kTrianglesPerCell, 1.0, kMostCells);
   set_cells(plan, view, cells);
   // Fewer cells where triangles are large: a thousand sheets before a million cells would be a thousand million.

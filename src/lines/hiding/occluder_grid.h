@@ -126,7 +126,8 @@ class OccluderGrid {
   [[nodiscard]] Outline outline_of(const Plan& plan, std::uint32_t triangle) const;
   [[nodiscard]] Footprint footprint_of(const Plan& plan, std::uint32_t triangle) const;
   [[nodiscard]] Extent extent_of(const Footprint& footprint) const;
-  [[nodiscard]] Buffer<Footprint> footprints_by_cell(const Plan& plan) const;
+  [[nodiscard]] Buffer<Footprint> footprints_by_cell(Plan& plan) const;
+  [[nodiscard]] std::vector<Band> bands_of(const Plan& plan, const Buffer<std::uint32_t>& cells) const;
   [[nodiscard]] Buffer<float> backs_of(const Plan& plan) const;
   void make_occluders(const Plan& plan);
   void fill_cells(const Plan& plan);
@@ -140,9 +141,9 @@ class OccluderGrid {
   template <class Visitor>
   bool visit_fine(std::uint32_t number, const Visit& whole, const GridLine& line, const Visitor& visit) const;
   template <class Fill>
-  void for_each_band(const Execution& execution, const Fill& fill) const;
+  void for_each_band(const Plan& plan, const Fill& fill) const;
   template <class Visitor>
-  void cover(const Plan& plan, const Footprint& footprint, const Band& band, const Visitor& visit) const;
+  void cover(const Plan& plan, std::size_t i, const Band& band, const Visitor& visit) const;
 
   void set_side(std::size_t i, int k, const CellDepth::Side& side) {
     sides_[3 * k][i] = side.a;
