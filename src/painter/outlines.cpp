@@ -10,19 +10,21 @@ namespace {
 
 std::size_t next(std::size_t i, std::size_t count) { return i + 1 == count ? 0 : i + 1; }
 
-/// Pixels: shorter sides have no direction.
-constexpr double kShort = 1e-9;
-
-/// Has no direction anywhere, so that all would be on its inner side. Cuts leave such pieces.
-bool is_point(Outline outline) {
-  for (std::size_t i = 0; i < outline.size(); ++i)
-    if (glm::length(glm::dvec2(outline[next(i, outline.size())].at - outline[i].at)) >= kShort) return false;
-  return true;
-}
-
 double turn(const glm::dvec2& along, const glm::dvec2& at) { return along.x * at.y - along.y * at.x; }
 
 }  // namespace
+
+bool is_flat(Outline outline) {
+  if (outline.empty()) return true;
+  double area = 0, border = 0;
+  const glm::dvec2 from(outline[0].at);
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const glm::dvec2 p(outline[i].at), q(outline[next(i, outline.size())].at);
+    area += turn(p - from, q - from);
+    border += std::abs(q.x - p.x) + std::abs(q.y - p.y);  // at most 1.4 times as long as it is
+  }
+  return !(std::abs(area) > shortest_side * border);
+}
 
 bool is_narrower(Outline outline, double width) {
   double area = 0, border = 0;
@@ -63,7 +65,7 @@ OutlineCutter::Place OutlineCutter::place(Outline outline, const glm::dvec2& p, 
   if (greatest <= 0) return Place::inside;
   if (least >= 0) return Place::outside;
   const double length = glm::length(way), allowed = thin * length;
-  if (length < kShort || greatest < allowed) return Place::inside;
+  if (length < shortest_side || greatest < allowed) return Place::inside;
   if (least > -allowed) return Place::outside;
   line = {p, way / length};
   return Place::both;
@@ -110,7 +112,6 @@ OutlineCutter::Place OutlineCutter::split(const Line& line) {
 
 /// \returns true where the part is to go; what is left of it was added.
 bool OutlineCutter::subtract_from(std::size_t part, Outline cover, bool may_split) {
-  if (is_point(cover)) return false;
   const Outline outline = (*this)[part];
   lines_.clear();
   for (std::size_t i = 0; i < cover.size(); ++i) {

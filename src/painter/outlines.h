@@ -17,6 +17,13 @@ struct Cover {
   glm::dvec2 low, high;
 };
 
+/// Pixels: shorter sides have no direction.
+inline constexpr double shortest_side = 1e-9;
+
+/// Whether an outline is too narrow for its sides to say what is within it: all the screen may be on their inner side.
+/// Cuts leave such pieces, and models have triangles of that size. They hide nothing.
+[[nodiscard]] bool is_flat(Outline outline);
+
 /// Whether an outline is narrower than `width` everywhere, by its area and border.
 [[nodiscard]] bool is_narrower(Outline outline, double width);
 
@@ -52,8 +59,8 @@ class OutlineList {
   std::vector<std::size_t> ends_;
 };
 
-/// Takes convex outlines apart: counter-clockwise as they are seen, z affine over the screen. Not for several threads
-/// at once.
+/// Takes convex outlines apart: counter-clockwise as they are seen, z affine over the screen. Covers must not be flat.
+/// Not for several threads at once.
 class OutlineCutter {
  public:
   /// Pixels: what is thinner is not there.

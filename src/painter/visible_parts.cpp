@@ -95,7 +95,7 @@ std::array<PaintCorner, 4> hem(const PaintCorner& from, const PaintCorner& to, d
   return {from, {from.at + along * inset + out, true}, {to.at - along * inset + out, true}, to};
 }
 
-/// Next to the middle of a side: within each of its hems, or at the rim of the narrowest.
+/// Next to the middle of a side: within each of its hems. What lies at the rim of one hides nothing of it.
 glm::dvec2 next_to(const PaintCorner& from, const PaintCorner& to, double distance) {
   const glm::dvec2 way(to.at - from.at), out(-way.y, way.x);
   return glm::dvec2(from.at) + 0.5 * way + out * (distance / glm::length(way));
@@ -130,7 +130,7 @@ PaintOrder with_hems(const PaintOrder& order, double width, const std::function<
       const PaintCorner &from = outline[i], &to = outline[i + 1 == outline.size() ? 0 : i + 1];
       hemmed.push_back(from);
       if (!scenery.hides(slot) || glm::length(glm::dvec2(to.at - from.at)) < OutlineCutter::thin) continue;
-      const glm::dvec2 at = next_to(from, to, width * kHemShapes.back().part);
+      const glm::dvec2 at = next_to(from, to, 0.5 * width * kHemShapes.back().part);
       std::array<PaintCorner, 4> beside;
       const std::size_t found = looker.first_hidden(slot, i, kHemShapes.size(), at, [&](std::size_t k) {
         beside = hem(from, to, width * kHemShapes[k].part, kHemShapes[k].inset);

@@ -57,6 +57,32 @@ TEST(Hidden, WhatComesThroughStays) {
   EXPECT_THAT(ids_of(order), testing::Contains(2u));
 }
 
+/// The border of the picture goes through a corner, which is there twice in what is within.
+TEST(Hidden, WhatReachesBeyondThePictureIsSeenBesideItsMiddle) {
+  Mesh mesh;
+  add_triangle(mesh, {-2, -1, 0}, {1, 0, 0}, {-3, 1.5f, 0});
+  add_triangle(mesh, {-1.3f, -0.6f, 1}, {-0.3f, -0.1f, 1}, {-1.2f, 0.6f, 1});
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  const PaintOrder order = painter(surfaces, view_from_above(true), {.hides = all});
+  EXPECT_THAT(ids_of(order), testing::UnorderedElementsAre(0, 1));
+}
+
+/// On the screen it is as good as a point, in the very middle of what lies behind it.
+TEST(Hidden, AGrainHidesNothing) {
+  for (const int power : {20, 30, 33, 40, 60, 120}) {
+    const float size = std::ldexp(1.0f, -power);
+    Mesh mesh;
+    add_triangle(mesh, {-1, -1, 0}, {1, -1, 0}, {0, 2, 0});
+    add_triangle(mesh, {0, 0, 1}, {size, 0, 1}, {0, size, 1});
+    const Scene scene = scene_of(mesh);
+    const Surfaces surfaces(scene);
+    const PaintOrder order = painter(surfaces, view_from_above(true), {.hides = all});
+    EXPECT_THAT(ids_of(order), testing::Contains(0u)) << power;
+    EXPECT_THAT(ids_of(visible_parts(order)), testing::Contains(0u)) << power;
+  }
+}
+
 TEST(Hidden, ThePictureIsTheSame) {
   std::size_t samples = 0, differing = 0, before = 0, left = 0;
   for (const Kind kind : all_kinds)

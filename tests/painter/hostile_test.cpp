@@ -53,6 +53,23 @@ TEST(Hostile, CopiesThroughEachOtherAreNotTooMany) {
   EXPECT_GT(order.steps.cuts, 900u);
 }
 
+/// All pass through all, but along one line: each is cut there at most once.
+TEST(Hostile, BladesAroundAnAxisAreFewCuts) {
+  Random random(4);
+  Mesh mesh;
+  const int count = 300;
+  for (int i = 0; i < count; ++i) {
+    const float around = float(M_PI) * float(i) / float(count), x = std::cos(around), z = std::sin(around);
+    const float low = random.unit();
+    add_triangle(mesh, {x, low, z}, {-x, low, -z}, {x / 2, low + 2, z / 2});
+  }
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  const PaintOrder order = painter(surfaces, frame(surfaces, 64, 64), {.most_cuts = 2000});
+  EXPECT_GE(order.steps.cuts, std::uint64_t(count) / 2);
+  EXPECT_LE(order.steps.cuts, std::uint64_t(count) * 2);
+}
+
 /// Says to stop from a moment on, and how long it took until that was heard.
 class Stopper {
  public:

@@ -88,6 +88,17 @@ TEST(Mosaic, TilesHaveNoOtherOpenSidesThanTheirBorder) {
   EXPECT_EQ(open, 40u);
 }
 
+/// Each would be held against all others.
+TEST(Mosaic, OfManyThatHaveTheSameSideAFewFindANeighbour) {
+  std::vector<Points> all(1000, square(10, 10));
+  all.resize(2000, square(20, 10));
+  const Laid laid(all);
+  std::size_t found = 0;
+  for (std::uint32_t corner = 0; corner < laid.scenery.corners().size(); ++corner)
+    found += laid.mosaic.across(corner) != no_index;
+  EXPECT_EQ(found, 2u * 64);
+}
+
 /// All but one hide where they lie.
 struct AllBut {
   const Laid& laid;
@@ -142,6 +153,13 @@ TEST_F(SpreadTest, TouchingIsNotCrossing) {
   const Laid laid({square(50, 50)});
   EXPECT_EQ(spread(laid, square(50, 50)), Spreader::Found::hidden);
   EXPECT_EQ(spread(laid, square(50, 50, 10.01)), Spreader::Found::open);
+}
+
+/// Cuts at a corner leave it twice, and nothing is on the inner side of no side.
+TEST_F(SpreadTest, ACornerMayBeThereTwice) {
+  const Laid laid({square(50, 50)});
+  EXPECT_EQ(spread(laid, {{50, 50}, {50, 70}, {70, 70}, {70, 70}, {70, 50}}), Spreader::Found::open);
+  EXPECT_EQ(spread(laid, {{50, 50}, {50, 60}, {60, 60}, {60, 60}, {60, 50}}), Spreader::Found::hidden);
 }
 
 /// Bricks: few sides are those of two, but all lie beside others.

@@ -82,7 +82,7 @@ TEST(VisibleParts, APointHidesNothing) {
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
   PaintOrder order = painter(surfaces, view_from_above(true, 256));
-  for (const double size : {0.0, 1e-12, 1e-10, 1e-8}) {
+  for (const double size : {0.0, 1e-12, 1e-10, 8e-10, 1e-8}) {
     order.polygons.push_back({0, 3, order.corners.size()});
     for (const glm::dvec2 aside : {glm::dvec2(0), glm::dvec2(0, size), glm::dvec2(size, size)})
       order.corners.push_back({{glm::dvec2(100.1, 90.7) + aside, 10}, true});
@@ -175,6 +175,23 @@ TEST(VisibleParts, HemsReachUnderWhatHidesThem) {
   // Under glass it would show.
   EXPECT_EQ(with_hems(order, 0.5, [](PrimitiveId) { return false; }).polygons[0].corner_count, 3u);
   EXPECT_THROW((void)with_hems(order, 0), Error);
+}
+
+/// Two squares, and what was painted before both fills the gap between them, once as wide as the narrowest hem.
+TEST(VisibleParts, HemsDoNotHideWhatIsSeenInGaps) {
+  for (const double gap : {0.5, 1.0, 2.0, 4.0, 16.0}) {
+    PaintOrder order;
+    order.view = view_from_above(true);
+    const auto add_box = [&](double left, double low, double right, double high) {
+      order.polygons.push_back({PrimitiveId(order.polygons.size()), 4, order.corners.size()});
+      for (const glm::dvec2 at : {glm::dvec2(left, high), {right, high}, {right, low}, {left, low}})
+        order.corners.push_back({{at, 1}, false});
+    };
+    add_box(20, 12, 20 + gap, 18);
+    add_box(10, 10, 20, 20);
+    add_box(20 + gap, 12, 30 + gap, 18);
+    EXPECT_EQ(with_hems(order, 16).polygons[1].corner_count, 4u) << gap;
+  }
 }
 
 /// The last polygon over a point, by counting the sides to the right of it: hems make outlines that are not convex.

@@ -168,6 +168,15 @@ TEST(Outlined, PiecesHaveTheirPartsOfTheHemOfTheirWhole) {
   EXPECT_THROW((void)outlined(cut, 1), Error);
 }
 
+/// A whole that has no pieces is not there, whatever its number.
+TEST(Outlined, WholesWithoutPiecesHideNothing) {
+  ColoredOrder cut = order_of({box(0, 0, 8, 8)});
+  cut.wholes = order_of({box(0, 0, 8, 8), box(8, 0, 8, 8, kBlue)}).order;
+  cut.wholes.polygons[1].id = 1u << 30;
+  cut.whole_of = {0};
+  EXPECT_NEAR(area_of(outlined(cut, 1), 0), 64, 1e-9);
+}
+
 TEST(Outlined, RefusesListsThatDoNotMatch) {
   ColoredOrder tiles = order_of({box(0, 0, 1, 1)});
   tiles.colors.clear();

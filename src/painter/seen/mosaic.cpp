@@ -12,6 +12,10 @@ std::uint64_t bits_of(double value) {
   return bits;
 }
 
+/// So many times the same side waits for a neighbour; more are taken to have none. A stack of n sheets seen from above
+/// would take n * n.
+constexpr int kMostSame = 64;
+
 /// Odd numbers without a pattern.
 constexpr std::uint64_t kMixX = 0x9e3779b97f4a7c15, kMixY = 0xc2b2ae3d27d4eb4f, kMixSum = 0xd6e8feb86659fd93;
 
@@ -33,8 +37,14 @@ class OpenSides {
   void add(std::uint32_t slot, std::uint32_t corner, std::uint64_t hash) {
     const auto tag = std::uint32_t((hash * kMixSum) >> 32);
     std::size_t i = home(tag);
+    int same = 0;
     for (; entries_[i].corner != no_index; i = following(i)) {
-      if (entries_[i].tag != tag || !is_reverse(entries_[i].corner, slot, corner)) continue;
+      if (entries_[i].tag != tag) continue;
+      if (!is_reverse(entries_[i].corner, slot, corner)) {
+        if (++same < kMostSame) continue;
+        alone_.push_back(corner);
+        return;
+      }
       // Until then, each side has its own slot across.
       std::swap(across_[entries_[i].corner], across_[corner]);
       return remove(i);
@@ -43,6 +53,7 @@ class OpenSides {
   }
   /// No side is across what is still there.
   void finish() {
+    for (const std::uint32_t corner : alone_) across_[corner] = no_index;
     for (const Entry& entry : entries_)
       if (entry.corner != no_index) across_[entry.corner] = no_index;
   }
@@ -78,6 +89,7 @@ class OpenSides {
   const Scenery& scenery_;
   std::vector<std::uint32_t>& across_;
   std::vector<Entry> entries_;
+  std::vector<std::uint32_t> alone_;  ///< sides that are not in the table
   unsigned bits_ = 1;
 };
 

@@ -95,7 +95,11 @@ Scenery::Scenery(const Polygons& polygons, const View& view, const Hides& hides)
     corners += slot.corner_count;
   }
   corners_ = Buffer<PaintCorner>(corners);
-  for (const Slot& slot : slots_) polygons.copy(slot.place, corners_.data() + slot.first_corner);
+  for (Slot& slot : slots_) {
+    PaintCorner* const first = corners_.data() + slot.first_corner;
+    polygons.copy(slot.place, first);
+    slot.hides = slot.hides && !is_flat({first, slot.corner_count});
+  }
   for (PaintCorner& corner : corners_) corner.at.z = affine_depth(view, corner.at.z);
   grid_.renumber(slot_of_);
 }

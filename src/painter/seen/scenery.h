@@ -33,6 +33,7 @@ class Scenery {
   /// The first of the consecutive places of the same primitive.
   [[nodiscard]] std::uint32_t first_place(std::size_t slot) const { return slots_[slot].first_place; }
   [[nodiscard]] const Extent& extent(std::size_t slot) const { return slots_[slot].extent; }
+  /// Hides what is behind it, and has an area.
   [[nodiscard]] bool hides(std::size_t slot) const { return slots_[slot].hides; }
   [[nodiscard]] const PieceGrid& grid() const { return grid_; }
   /// The slots of what touches a cell of the grid, in the order of their places.

@@ -17,7 +17,8 @@ void SpreadOutline::set(Outline outline) {
   low_ = high_ = glm::dvec2(outline[0].at);
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const glm::dvec2 from(outline[i].at), way = glm::dvec2(outline[i + 1 == outline.size() ? 0 : i + 1].at) - from;
-    sides_.push_back({from, way, kThin * glm::length(way)});
+    // Cuts at a corner leave it twice; nothing would be within such a side.
+    if (const double length = glm::length(way); length >= shortest_side) sides_.push_back({from, way, kThin * length});
     low_ = glm::min(low_, from);
     high_ = glm::max(high_, from);
   }

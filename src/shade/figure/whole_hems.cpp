@@ -37,6 +37,9 @@ WholeHems::WholeHems(const ColoredOrder& colored, double width, const std::funct
 PaintOrder WholeHems::grouped_by_color(std::vector<std::uint8_t>& hiding,
                                        const std::function<bool(PrimitiveId)>& hides) const {
   PaintOrder grouped = wholes_;
+  // What has no pieces is not painted: a group of its own, that hides nothing.
+  hiding.assign(1, 0);
+  for (PaintPolygon& polygon : grouped.polygons) polygon.id = 0;
   const std::size_t count = colored_.colors.size();
   bool was_cut = true;
   for (std::size_t i = 0, end; i < count; i = end) {
