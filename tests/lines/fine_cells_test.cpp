@@ -116,6 +116,39 @@ TEST(FineCells, LeaveFewerOfStacksConesAndBooks) {
   }
 }
 
+/// A triangle of the plane in which nearness or distance grows by `slope` from `value` at the apex, whose places are
+/// off by what rounding leaves of them on a large picture.
+CellDepth around_apex(Random& random, const glm::dvec2& apex, double value, const glm::dvec2& slope, bool is_parallel) {
+  glm::dvec3 corners[3];
+  const double angle = random.within(0, 6.28f), width = std::pow(10.0, random.within(-3, 0.4f));
+  for (int k = 0; k < 3; ++k) {
+    const double length = k == 0 ? 0 : std::pow(10.0, random.within(-3, 1)), at = angle + (k == 2 ? width : 0);
+    const glm::dvec2 along = glm::dvec2(std::cos(at), std::sin(at)) * length;
+    const double there = value + glm::dot(slope, along);
+    const double x = apex.x + along.x + 4e-13 * random.within(-1, 1);
+    const double y = apex.y + along.y + 4e-13 * random.within(-1, 1);
+    corners[k] = {x, y, is_parallel ? there : 1 / there};
+  }
+  return {corners[0], corners[1], corners[2], is_parallel};
+}
+
+TEST(FineCells, OfTwoTrianglesInOnePlaneNeitherIsBeyondTheOtherFarAway) {
+  Random random(11);
+  int wrong = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const bool is_parallel = trial % 2 == 0;
+    const double reach = trial % 3 == 0 ? 2000 : 8, x = reach * random.unit(), y = reach * random.unit();
+    const double steep = std::pow(10.0, random.within(-3, 3)), turn = random.within(0, 6.28f);
+    const glm::dvec2 slope = glm::dvec2(std::cos(turn), std::sin(turn)) * steep;
+    const CellDepth one = around_apex(random, {x, y}, 5, slope, is_parallel);
+    const CellDepth other = around_apex(random, {x, y}, 5, slope, is_parallel);
+    const double angle = random.within(0, 6.28f);
+    const Square far{x + 16 * std::cos(angle), y + 16 * std::sin(angle), 0};
+    wrong += one.is_beyond(other, far) || other.is_beyond(one, far);
+  }
+  EXPECT_EQ(wrong, 0);
+}
+
 TEST(FineCells, DividedAndSlicedPlacesAreFoundAgain) {
   Random random(5);
   const Division division{{2, 3, 0.25}, 0};

@@ -148,6 +148,26 @@ TEST(Stars, SpareNoCrossing) {
   EXPECT_GT(crossings, seeds(60) * 10);
 }
 
+TEST(Stars, OfAnySizeHaveTheirCreases) {
+  for (const float size : {1.0f, 1e-27f}) {  // normals of the smaller one are out of the range that is squared
+    Mesh mesh;
+    for (const glm::vec3 p : {glm::vec3(1, 1, 1), glm::vec3(1, -1, -1), glm::vec3(-1, 1, -1), glm::vec3(-1, -1, 1)})
+      mesh.positions.push_back(p * size);
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
+    const Scene scene = scene_of(mesh);
+    const Surfaces surfaces(scene);
+    View view;
+    view.world_from_eye = look_at(glm::dvec3(1, 2, 9) * double(size), glm::dvec3(0), {0, 1, 0});
+    const WeldedMesh welded = weld(surfaces, {});
+    const SeenMesh seen = see(welded, Sight(view), {});
+    for (const double angle : {0.5, 1.8, 2.0}) {  // normals differ by 1.91
+      const LineOptions options{.crease_angle = angle, .silhouettes = false};
+      EXPECT_EQ(find_features(seen, surfaces, options, {}).edges.size(), angle < 1.91 ? 6u : 0u)
+          << size << " " << angle;
+    }
+  }
+}
+
 TEST(SeenMesh, FacesAsSightSays) {
   for (const Kind kind : all_kinds)
     for (const bool parallel : {false, true}) {

@@ -36,9 +36,10 @@ CellDepth::CellDepth(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3&
   linear_.by_x = (along_b * (c.y - a.y) - along_c * (b.y - a.y)) / turn;
   linear_.by_y = (along_c * (b.x - a.x) - along_b * (c.x - a.x)) / turn;
   linear_.at_0 = at_a - linear_.by_x * a.x - linear_.by_y * a.y;
+  // What a place is off by turns the plane, the more the smaller the triangle is, and sectors ask for it far away.
   linear_.slack = kDepthSlack * (1 + thin) *
                   (std::max(std::abs(value(low_)), std::abs(value(high_))) +
-                   (std::abs(linear_.by_x) + std::abs(linear_.by_y)) * most * 1e-3);
+                   (std::abs(linear_.by_x) + std::abs(linear_.by_y)) * (most * 1e-3 + 0.1 / reach));
 }
 
 void CellDepth::set_sides(const glm::dvec3 (&corners)[3], double turn) {

@@ -44,7 +44,9 @@ class Classifier {
   /// are none of the kinds.
   [[nodiscard]] float plain_cosine() const {
     if (has_borders_) return std::numeric_limits<float>::infinity();
-    return options_.creases ? float(cosine_) + kNormalRounding : -std::numeric_limits<float>::infinity();
+    if (!options_.creases) return -std::numeric_limits<float>::infinity();
+    // Of normals that are zero nothing is known: beyond a right angle they would look plain.
+    return std::max(float(cosine_), 0.0f) + kNormalRounding;
   }
 
   /// `sides` with different opposite vertices: a triangle that is there twice counts once.
