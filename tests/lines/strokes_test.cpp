@@ -269,6 +269,19 @@ TEST(StrokesOnce, ACrowdFarFromTheRestIsNoMatter) {
   EXPECT_NEAR(length, 0.1 * double(drawing.parts.size()), 0.05 * 0.1 * double(drawing.parts.size()));
 }
 
+TEST(StrokesOnce, NorIsItWhereMoreCountsAsOneLine) {
+  using Clock = std::chrono::steady_clock;
+  const Scene scene = scene_of(prism(square));
+  const Surfaces surfaces(scene);
+  const Drawing drawing = far_crowd(under_sanitizer ? 4000 : 50000);
+  for (const double apart : {0.12, 1.0}) {
+    const Clock::time_point start = Clock::now();
+    EXPECT_FALSE(strokes(surfaces, drawing, {.by_instance = false, .apart = apart}).strokes.empty());
+    // 0.1 s; where cells were no smaller than eight times that, up to 8.
+    EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 4) << apart;
+  }
+}
+
 TEST(StrokesOnce, NorAreLongLinesSideBySide) {
   using Clock = std::chrono::steady_clock;
   const Scene scene = scene_of(prism(square));

@@ -98,7 +98,7 @@ class Grid {
     std::size_t entries = 0;
     for_each(laid[number], [&](std::size_t i, const glm::ivec2& at) {
       Cell& cell = cells_[i];
-      if (!cell.finer && may_divide && cell.segments.size() >= crowd && cell_ > 8 * near_ * divisions)
+      if (!cell.finer && may_divide && cell.segments.size() >= crowd && cell_ > finest() * divisions)
         entries += divide(cell, at, laid);
       if (cell.finer) {
         entries += cell.finer->add(laid, may_divide);
@@ -113,6 +113,13 @@ class Grid {
  private:
   static constexpr std::size_t crowd = 256;
   static constexpr int divisions = 8;
+
+  /// Most in a crowd is short, and lies on little: cells may be less than what counts as near for long ones.
+  [[nodiscard]] double finest() const { return std::max(2 * shortest, near_ / 16); }
+  /// How far from a segment what lies on it may be, as Nearness::overlap() has it.
+  [[nodiscard]] double reach_of(const Segment& s) const {
+    return std::min(near_, glm::distance(s.from, s.to) / 4 + shortest / 4);
+  }
 
   std::size_t divide(Cell& cell, const glm::ivec2& at, const std::vector<Line>& laid) {
     std::size_t entries = 0;
@@ -132,19 +139,20 @@ class Grid {
   /// Column by column, the rows that the segment passes there.
   template <class Visit>
   void for_each(const Segment& s, const Visit& visit) const {
+    const double near = reach_of(s);
     const glm::dvec2 a = s.from.x <= s.to.x ? s.from : s.to, b = s.from.x <= s.to.x ? s.to : s.from;
     const double width = b.x - a.x;
-    for (int x = column(a.x - near_); x <= column(b.x + near_); ++x) {
+    for (int x = column(a.x - near); x <= column(b.x + near); ++x) {
       double y0 = a.y, y1 = b.y;
-      if (width > 2 * near_) {
-        const double left = low_.x + x * cell_ - near_, right = left + cell_ + 2 * near_;
+      if (width > 2 * near) {
+        const double left = low_.x + x * cell_ - near, right = left + cell_ + 2 * near;
         y0 = a.y + (b.y - a.y) * std::clamp((left - a.x) / width, 0.0, 1.0);
         y1 = a.y + (b.y - a.y) * std::clamp((right - a.x) / width, 0.0, 1.0);
       }
       if (y0 > y1) std::swap(y0, y1);
       // A divided cell has the segment whole: what of it passes above or below is not in its border cells.
-      if (y1 + near_ < low_.y || y0 - near_ > low_.y + count_.y * cell_) continue;
-      for (int y = row(y0 - near_); y <= row(y1 + near_); ++y)
+      if (y1 + near < low_.y || y0 - near > low_.y + count_.y * cell_) continue;
+      for (int y = row(y0 - near); y <= row(y1 + near); ++y)
         visit(std::size_t(y) * std::size_t(count_.x) + std::size_t(x), glm::ivec2(x, y));
     }
   }
