@@ -236,7 +236,7 @@ TEST(GltfData, AccessorsOfUnknownTypesAreErrorsOnceTheyAreRead) {
 /// Two positions, of which `count` are replaced; views 0 and 1 hold `indices` bytes and `values` bytes.
 std::string sparse_outcome(int count, int component, std::size_t indices, std::size_t values) {
   GltfMaker maker;
-  std::vector<std::byte> bytes(64);
+  std::vector<std::byte> bytes(96);
   bytes[std::size_t(component == 5121 ? 1 : component == 5123 ? 2 : 4)] = std::byte(1);  // 0, 1 in any width
   maker.view(bytes.data(), indices);
   maker.view(bytes.data() + 32, values);
