@@ -184,7 +184,8 @@ bool PolygonColors::is_beside_a_cut(const Piece& piece, const glm::dvec2& at) co
   return false;
 }
 
-/// What most of the samples are, surface or hole; of these the colour nearest to their mean that is near enough to all.
+/// What most of the samples are, surface or hole; of these the mean, where it is near enough to all: the middle between
+/// the farthest ones would tint a wide field for the sake of its rim.
 PolygonColors::Judgement PolygonColors::judge(const Piece& piece) const {
   std::size_t holes = 0;
   for (const ColorSample& sample : piece.samples) holes += is_hole(sample.color);
@@ -199,8 +200,8 @@ PolygonColors::Judgement PolygonColors::judge(const Piece& piece) const {
   }
   const float within = this->within(piece);
   const glm::vec4 mean = sum / float(piece.samples.size() - holes);
-  if (holes > 0 || difference(greatest, least) > 2 * within) return {false, mean};
-  return {true, glm::clamp(mean, greatest - within, least + within)};
+  const bool is_near = std::max(difference(greatest, mean), difference(mean, least)) <= within;
+  return {holes == 0 && is_near, mean};
 }
 
 /// Puts both sides of a line where they wait.
