@@ -66,10 +66,9 @@ void check_picture(const Surfaces& surfaces, const View& view, const AbufferOpti
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  test::ViewBytes bytes;
-  if (size < sizeof(bytes)) return 0;
-  std::memcpy(&bytes, data, sizeof(bytes));
-  const Scene scene = test::scene_of(data + sizeof(bytes), size - sizeof(bytes));
+  const std::optional<test::FuzzInput> input = test::read_input(data, size);
+  if (!input) return 0;
+  const auto& [bytes, scene] = *input;
   constexpr int kGrids[] = {0, 2, 4, 8};
   const AbufferOptions options{kGrids[bytes.spare % 4], bytes.spare & 4 ? 1.0f : 0.7f};
   try {

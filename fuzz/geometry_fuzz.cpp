@@ -8,10 +8,9 @@
 using namespace frontmost;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  test::ViewBytes bytes;
-  if (size < sizeof(bytes)) return 0;
-  std::memcpy(&bytes, data, sizeof(bytes));
-  const Scene scene = test::scene_of(data + sizeof(bytes), size - sizeof(bytes));
+  const std::optional<test::FuzzInput> input = test::read_input(data, size);
+  if (!input) return 0;
+  const auto& [bytes, scene] = *input;
   try {
     const View view = test::view_of(bytes);
     const Surfaces surfaces(scene);

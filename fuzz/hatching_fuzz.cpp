@@ -46,12 +46,10 @@ bool equal(const std::vector<Stipple>& a, const std::vector<Stipple>& b) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  test::ViewBytes bytes;
-  if (size < sizeof(bytes)) return 0;
-  std::memcpy(&bytes, data, sizeof(bytes));
   // Every line is held against all triangles that it passes.
-  const std::size_t most = 64 * 3 * sizeof(glm::vec3);
-  const Scene scene = test::scene_of(data + sizeof(bytes), std::min(size - sizeof(bytes), most));
+  const std::optional<test::FuzzInput> input = test::read_input(data, size, 64);
+  if (!input) return 0;
+  const auto& [bytes, scene] = *input;
   ToneOptions tone;
   tone.casts_shadows = bytes.spare & 1;
   if (bytes.spare & 2) tone.to_light = glm::dvec3(bytes.eye_y, bytes.eye_x, 1);

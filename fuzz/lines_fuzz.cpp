@@ -32,12 +32,10 @@ void check(const Drawing& drawing) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  test::ViewBytes bytes;
-  if (size < sizeof(bytes)) return 0;
-  std::memcpy(&bytes, data, sizeof(bytes));
   // Every two triangles may cross, and every crossing may hide behind all others.
-  const std::size_t most = 64 * 3 * sizeof(glm::vec3);
-  const Scene scene = test::scene_of(data + sizeof(bytes), std::min(size - sizeof(bytes), most));
+  const std::optional<test::FuzzInput> input = test::read_input(data, size, 64);
+  if (!input) return 0;
+  const auto& [bytes, scene] = *input;
   LineOptions options;
   options.crease_angle = bytes.spare & 1 ? 0 : 0.5;
   options.counts_hidden = bytes.spare & 2;

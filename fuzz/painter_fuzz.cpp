@@ -100,8 +100,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const bool is_coarse = bytes.spare & 8;
   const std::uint8_t* const geometry = data + sizeof(bytes);
   const std::size_t length = size - sizeof(bytes);
-  const Scene scene = is_coarse ? coarse_scene_of(geometry, length)
-                                : test::scene_of(geometry, std::min(length, kMostTriangles * 3 * sizeof(glm::vec3)));
+  const Scene scene = is_coarse ? coarse_scene_of(geometry, length) : test::scene_of(geometry, length, kMostTriangles);
   const Execution two{.threads = 2, .isa = Isa::best, .watch = nullptr}, one{.threads = 1};
   const PainterOptions options{.method = PaintMethod(bytes.spare & 3), .most_polygons = 3000, .most_cuts = 2000};
   const auto hides = [&](PrimitiveId id) { return !(bytes.spare & 4) || id % 3 != 0; };

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 
 namespace frontmost::test {
 
@@ -17,16 +18,31 @@ struct ViewBytes {
 };
 inline constexpr std::size_t most_fuzzed_triangles = 256;
 
-inline Scene scene_of(const std::uint8_t* data, std::size_t size) {
+inline Scene scene_of(const std::uint8_t* data, std::size_t size, std::size_t most = most_fuzzed_triangles) {
   Scene scene;
   scene.meshes.emplace_back();
   scene.instances.emplace_back();
   Mesh& mesh = scene.meshes[0];
-  const std::size_t count = std::min(size / sizeof(glm::vec3) / 3, most_fuzzed_triangles);
+  const std::size_t count = std::min(size / sizeof(glm::vec3) / 3, most);
   mesh.positions.resize(3 * count);
   if (count > 0) std::memcpy(mesh.positions.data(), data, 3 * count * sizeof(glm::vec3));
   for (std::uint32_t i = 0; i < count; ++i) mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
   return scene;
+}
+
+struct FuzzInput {
+  ViewBytes bytes;
+  Scene scene;
+};
+
+/// None of what is too short.
+inline std::optional<FuzzInput> read_input(const std::uint8_t* data, std::size_t size,
+                                           std::size_t most = most_fuzzed_triangles) {
+  FuzzInput input;
+  if (size < sizeof(input.bytes)) return std::nullopt;
+  std::memcpy(&input.bytes, data, sizeof(input.bytes));
+  input.scene = scene_of(data + sizeof(input.bytes), size - sizeof(input.bytes), most);
+  return input;
 }
 
 inline View view_of(const ViewBytes& bytes) {
