@@ -7,23 +7,29 @@ code: a line "  shade/   words   (image, zbuffer)" allows image, zbuffer and eve
 """
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+MADE = {"build", "out", ".git"}  # by ./dev and git
 CODE = {".h", ".cpp"}
 MARKED = CODE | {".py", ".sh", ".cmake"}
 LONGEST_FILE = 800
+LARGEST_FILE = 512 * 1024  # bytes; what a command wrote is soon there by mistake, and stays in the history
 PUBLIC_HEADER_OF = {"visible": "view", "ray_camera": "raycast"}  # the others carry their room's name
 FACES = {"cli", "examples"}  # see include/frontmost alone; tests and benchmarks look inside
 
 
 def tracked_files():
-    listing = subprocess.run(["git", "-C", ROOT, "ls-files", "-co", "--exclude-standard"], capture_output=True, text=True)
-    if listing.returncode == 0:
+    listing = None
+    if shutil.which("git"):
+        command = ["git", "-C", ROOT, "ls-files", "-co", "--exclude-standard"]
+        listing = subprocess.run(command, capture_output=True, text=True)
+    if listing and listing.returncode == 0:
         names = listing.stdout.splitlines()
-    else:  # an unpacked archive has no git
-        names = [str(p.relative_to(ROOT)) for p in ROOT.rglob("*") if p.is_file() and "build" not in p.parts]
+    else:  # an unpacked archive is no repository, and a bare system has no git
+        names = [str(p.relative_to(ROOT)) for p in ROOT.rglob("*") if p.is_file() and not MADE.intersection(p.parts)]
     return sorted(pathlib.PurePosixPath(n) for n in names if (ROOT / n).is_file())
 
 
@@ -93,6 +99,8 @@ def main():
         sys.exit("docs/design.md: the house block was not understood")
     errors, sources = [], 0
     for path in tracked_files():
+        if (size := (ROOT / path).stat().st_size) > LARGEST_FILE:
+            errors.append(f"{path}: {size} bytes, more than {LARGEST_FILE}")
         if path.suffix not in MARKED:
             continue
         text = read(path)
