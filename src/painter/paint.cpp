@@ -86,7 +86,9 @@ class CutOutline {
   }
   [[nodiscard]] glm::dvec2 low() const { return low_ - kSnapping; }
   [[nodiscard]] glm::dvec2 high() const { return high_ + kSnapping; }
+  /// Slivers, whose cuts are all too short to count, hold what is in the box around them.
   [[nodiscard]] bool holds(double x, double y) const {
+    if (x < low().x || y < low().y || x > high().x || y > high().y) return false;
     return std::all_of(cuts_.begin(), cuts_.end(), [&](const Cut& cut) {
       return cut.along.x * (y - cut.from.y) - cut.along.y * (x - cut.from.x) <= kOnCut;
     });
