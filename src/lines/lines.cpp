@@ -5,6 +5,7 @@
 #include <atomic>
 #include <string>
 
+#include "base/arena.h"
 #include "base/crew.h"
 #include "base/float_environment.h"
 #include "base/large_pages.h"
@@ -22,6 +23,8 @@ using namespace lines_detail;
 
 constexpr std::size_t kEdgesPerPart = 1024, kEdgesPerPoll = 16;
 constexpr std::size_t kMostParts = std::size_t(1) << 26, kPartsPerTally = 1 << 16;
+/// The Buffers of a drawing together, and rather more: 260 for the bunny.
+constexpr std::size_t kBytesPerTriangle = 400;
 constexpr double kCutFrom = 0.3;  // of the progress
 
 /// All that is drawn, before it is cut.
@@ -112,6 +115,7 @@ Drawing lines(const Surfaces& surfaces, const View& view, const LineOptions& opt
     throw Error(ErrorCode::bad_argument, "crease_angle: must be from 0 to pi");
   const IeeeScope ieee;
   const Crew crew(execution);
+  const Arena arena(kBytesPerTriangle * surfaces.primitive_count());
   report_progress(execution, "lines", 0);
   WeldedMesh mesh = weld(surfaces, execution);
   const Sight sight(view);
