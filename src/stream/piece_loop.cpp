@@ -8,10 +8,10 @@
 namespace frontmost::streaming {
 namespace {
 
-constexpr std::uint64_t most_triangles = no_primitive;  // ids from 0 to 2^32 - 2
+constexpr std::uint64_t most_triangles = no_primitive - 1;  // as of a scene that is read as a whole
 
 [[noreturn]] void fail_too_many() {
-  throw Error(ErrorCode::limit_exceeded, "stream: more triangles than ids can tell apart (4294967295)");
+  throw Error(ErrorCode::limit_exceeded, "stream: more than 4294967294 triangles over all files");
 }
 
 }  // namespace
@@ -25,7 +25,7 @@ Models::Models(const std::vector<std::string>& paths, const LoadOptions& options
     add(std::move(model));
     // What headers promise is enough to refuse; a file that does not tell is caught while it is read.
     known += models_.back().stream->known_count().value_or(0);
-    if (known >= most_triangles) fail_too_many();
+    if (known > most_triangles) fail_too_many();
   }
 }
 
@@ -87,7 +87,7 @@ bool Models::fetch(Piece& piece, Place& place, std::uint32_t triangles) {
     model.triangle_count += piece.triangle_count;
     place = {next_number_++, PrimitiveId(next_), model.object};
     next_ += piece.triangle_count;
-    if (next_ >= most_triangles) fail_too_many();
+    if (next_ > most_triangles) fail_too_many();
     return true;
   }
   return false;

@@ -2,7 +2,7 @@
 // A stream shows to the bit what the model shows that is read whole, however small its pieces are.
 #include "frontmost/stream.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cstring>
 
@@ -107,16 +107,27 @@ TEST_F(StreamTest, OtherFormatsAreRefused) {
   EXPECT_THROW(Stream({folder_.file("missing.stl")}), Error);
 }
 
-// Three files, empty in truth, that promise 1.5e9 triangles each: more than ids can tell apart.
-TEST_F(StreamTest, MoreTrianglesThanIdsAreRefusedAtOnce) {
-  std::string header(80, '\0');
-  put(header, std::uint32_t(1'500'000'000));
-  const std::string path = file("huge.stl", header);
-  std::error_code error;
-  std::filesystem::resize_file(path, 84 + 50 * std::uint64_t(1'500'000'000), error);
-  if (error) GTEST_SKIP() << "no sparse files here";
-  EXPECT_NO_THROW(Stream({path, path}));
-  EXPECT_THROW(Stream({path, path, path}), Error);
+// Files, empty in truth, that promise 4,294,967,294 triangles together: as many as a scene may have.
+TEST_F(StreamTest, MoreTrianglesThanAScenesAreRefusedAtOnce) {
+  const auto promising = [&](const std::string& name, std::uint32_t triangles) {
+    std::string header(80, '\0');
+    put(header, triangles);
+    const std::string path = file(name, header);
+    std::error_code error;
+    std::filesystem::resize_file(path, 84 + 50 * std::uint64_t(triangles), error);
+    return error ? std::string() : path;
+  };
+  const std::string most = promising("most.stl", 1'500'000'000), rest = promising("rest.stl", 1'294'967'294),
+                    one = promising("one.stl", 1);
+  if (most.empty() || rest.empty()) GTEST_SKIP() << "no sparse files here";
+  EXPECT_NO_THROW(Stream({most, rest, most}));
+  try {
+    Stream({most, rest, most, one});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::limit_exceeded);
+    EXPECT_THAT(error.what(), testing::HasSubstr("more than 4294967294 triangles"));
+  }
 }
 
 }  // namespace
