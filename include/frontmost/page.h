@@ -89,9 +89,9 @@ void validate(const Page& page);
 /// compressed, scaled by a user unit where a side is over 5080 mm. DXF (AutoCAD release 12), lines only: LINE,
 /// POLYLINE, ARC, CIRCLE and POINT with line types, y up from the page's lower left corner; it has no widths, and no
 /// groups: each is a layer named by layer and group, "2_VISIBLE-WHEEL", or all of a layer are one where there are a
-/// thousand or more. Such names keep letters, digits and - alone, 31 at most. JSON: all of the page, as it is. Characters that a format does
-/// not allow are replaced in names. Memory is constant beside the page's own. \throws Error as validate() does;
-/// bad_argument without a format; unsupported for fills in DXF; file_unwritable.
+/// thousand or more. Such names keep letters, digits and - alone, 31 at most. JSON: all of the page, as it is.
+/// Characters that a format does not allow are replaced in names. Memory is constant beside the page's own. \throws
+/// Error as validate() does; bad_argument without a format; unsupported for fills in DXF; file_unwritable.
 void save(const Page& page, const std::string& path, std::optional<PageFormat> format = std::nullopt,
           const Execution& execution = {});
 

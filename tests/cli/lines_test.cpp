@@ -241,7 +241,8 @@ TEST_F(LinesCommand, StippledOnlyWhereAskedFor) {
   expect_failure("lines cube.stl -o a.svg --stipple 20", 2, "--stipple");
   expect_failure("lines cube.stl -o a.svg --stipple 1 --resolution 20,20", 2, "take 9.5 or more");
   // Room for 20 million dots, but not with a pixel each.
-  expect_failure("lines cube.stl -o a.svg --stipple 0.2 --resolution 16384,16384 --page 2000,2000", 2, "--stipple: 0.2 mm would");
+  expect_failure("lines cube.stl -o a.svg --stipple 0.2 --resolution 16384,16384 --page 2000,2000", 2,
+                 "--stipple: 0.2 mm would");
   expect_failure("lines cube.stl -o a.svg -o a.svg", 2, "a.svg: would be written twice; give every output a name");
 }
 
