@@ -16,7 +16,9 @@ struct StrokeOptions {
   bool by_kind = true;      ///< false: edges of all kinds may share a stroke
   bool by_outline = true;   ///< false: outlines and other lines may share a stroke
   bool by_instance = true;  ///< false: edges of several objects may share a stroke
-  double apart = 0.002;     ///< pixels, 0.002 to 1: lines that are less apart count as one, and are drawn once
+  /// Pixels, 0.002 to 1: lines that are less apart count as one, and are drawn once; strokes that stay within this of
+  /// where they begin count as points.
+  double apart = 0.002;
   double tolerance = 0.01;  ///< pixels, 0.0001 to 1: strokes leave their parts by at most this
   /// Pixels, 0 to 100. Above 0: runs of at least four parts whose corners lie within this of one circle, with at most
   /// 20 degrees between two, become arcs. A polygon of up to 17 sides stays one.
@@ -47,8 +49,8 @@ struct Strokes {
 
 /// Parts of one class (seen or hidden, outline, kind, instance) that meet end to end, where no third one does, become
 /// one stroke. Every line is drawn once: of parts that lie on each other, as an edge behind another in parallel
-/// projection, one is kept, the seen one before the hidden one. Parts that are seen as points are left out. Near-linear
-/// in the parts; thousands of long lines within a pixel's width are held against each other.
+/// projection, one is kept, the seen one before the hidden one. What is seen as a point is left out. Near-linear in the
+/// parts; thousands of long lines within a pixel's width are held against each other.
 /// \throws Error bad_argument for tolerances out of range.
 [[nodiscard]] Strokes strokes(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options = {},
                               const Execution& execution = {});

@@ -274,9 +274,10 @@ TEST(StrokesOnce, NorIsItWhereMoreCountsAsOneLine) {
   const Scene scene = scene_of(prism(square));
   const Surfaces surfaces(scene);
   const Drawing drawing = far_crowd(under_sanitizer ? 4000 : 50000);
-  for (const double apart : {0.12, 1.0}) {
+  for (const double apart : {0.09, 0.12, 1.0}) {
     const Clock::time_point start = Clock::now();
-    EXPECT_FALSE(strokes(surfaces, drawing, {.by_instance = false, .apart = apart}).strokes.empty());
+    // All are 0.1 long: within a whole pixel each is no more than a point.
+    EXPECT_EQ(strokes(surfaces, drawing, {.by_instance = false, .apart = apart}).strokes.empty(), apart == 1.0);
     // 0.1 s; where cells were no smaller than eight times that, up to 8.
     EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 4) << apart;
   }
@@ -382,25 +383,46 @@ TEST(StrokesOnce, CopiesInACrowdAreDrawnOnce) {
   EXPECT_EQ(strokes(surfaces, drawing, options).points, once.points);
 }
 
+/// A drawing of these lines, all seen.
+Drawing drawing_of(const std::vector<std::array<glm::dvec2, 2>>& parts) {
+  Drawing drawing;
+  for (const auto& [from, to] : parts) {
+    drawing.parts.push_back({std::uint32_t(drawing.edges.size()), 0, 1, from, to});
+    drawing.edges.push_back({});
+  }
+  return drawing;
+}
+
 TEST(StrokesOnce, LinesBesideEachOtherAreOneWhereTheyAreAskedToBe) {
   const Scene scene = scene_of(prism(square));
   const Surfaces surfaces(scene);
-  Drawing drawing;
-  const auto add = [&](const glm::dvec2& from, const glm::dvec2& to) {
-    drawing.parts.push_back({std::uint32_t(drawing.edges.size()), 0, 1, from, to});
-    drawing.edges.push_back({});
-  };
-  add({100, 100}, {200, 100});
-  add({150, 100.09}, {250, 100.09});  // half of it sticks out
-  add({120, 100.03}, {130, 99.97});   // across
-  add({110, 100}, {115, 100.5});      // leaves it
-  add({210, 300}, {210.05, 300});     // small, and by itself
+  const Drawing drawing = drawing_of({{{{100, 100}, {200, 100}}},
+                                      {{{150, 100.09}, {250, 100.09}}},  // half of it sticks out
+                                      {{{120, 100.03}, {130, 99.97}}},   // across
+                                      {{{110, 100}, {115, 100.5}}}});    // leaves it
   StrokeOptions options{.by_instance = false};
-  EXPECT_NEAR(length_of(strokes(surfaces, drawing, options), false), 100 + 100 + 10 + 5.02 + 0.05, 0.02);
+  EXPECT_NEAR(length_of(strokes(surfaces, drawing, options), false), 100 + 100 + 10 + 5.02, 0.01);
   options.apart = 0.1;
-  EXPECT_NEAR(length_of(strokes(surfaces, drawing, options), false), 100 + 50 + 5.02 + 0.05, 0.02);
+  EXPECT_NEAR(length_of(strokes(surfaces, drawing, options), false), 100 + 50 + 5.02, 0.01);
   options.apart = 0.07;
-  EXPECT_NEAR(length_of(strokes(surfaces, drawing, options), false), 100 + 100 + 5.02 + 0.05, 0.02);
+  EXPECT_NEAR(length_of(strokes(surfaces, drawing, options), false), 100 + 100 + 5.02, 0.01);
+}
+
+TEST(StrokesOnce, CrumbsAreNoLinesButLinesOfCrumbsAre) {
+  const Scene scene = scene_of(prism(square));
+  const Surfaces surfaces(scene);
+  std::vector<std::array<glm::dvec2, 2>> parts = {{{{210, 300}, {210.05, 300}}}};
+  for (int i = 0; i < 10; ++i) parts.push_back({{{210 + 0.05 * i, 320}, {210 + 0.05 * (i + 1), 320}}});
+  // Round and back again to where it began: no point either, for all that its ends meet.
+  parts.push_back({{{250, 250}, {251, 250}}});
+  parts.push_back({{{251, 250}, {251, 251}}});
+  parts.push_back({{{251, 251}, {250, 250}}});
+  const Drawing drawing = drawing_of(parts);
+  EXPECT_EQ(strokes(surfaces, drawing, {.apart = 0.04}).strokes.size(), 3u);
+  const Strokes few = strokes(surfaces, drawing, {.apart = 0.06});
+  ASSERT_EQ(few.strokes.size(), 2u);
+  EXPECT_NEAR(length_of(few, few.strokes[0]), 0.5, 1e-9);
+  EXPECT_NEAR(length_of(few, few.strokes[1]), 2 + std::sqrt(2.0), 1e-9);
 }
 
 /// Two tubes along z, of nearly one radius.

@@ -115,6 +115,14 @@ Ranked ranked(const Surfaces& surfaces, const Drawing& drawing, const StrokeOpti
   return result;
 }
 
+/// Lines that are less apart count as one, and so do the ends of a line: it is seen as a point. Such crumbs are what is
+/// left of two tessellations of one circle, where they pass through each other.
+bool is_point(const Chain& chain, double apart) {
+  const glm::dvec2& begin = chain.points.front();
+  return std::all_of(chain.points.begin(), chain.points.end(),
+                     [&](const glm::dvec2& p) { return glm::distance(begin, p) < apart; });
+}
+
 void append(const Chain& chain, const Stroke& like, bool with_arcs, Strokes& all) {
   Stroke stroke = like;
   stroke.first = std::uint32_t(all.points.size());
@@ -136,6 +144,7 @@ Strokes strokes(const Surfaces& surfaces, const Drawing& drawing, const StrokeOp
   report_progress(execution, "strokes", 0);
   const Ranked parts = ranked(surfaces, drawing, options);
   std::vector<Chain> chains = chained(draw_once(parts.segments, options.apart, execution));
+  std::erase_if(chains, [&](const Chain& chain) { return is_point(chain, options.apart); });
   report_progress(execution, "strokes", 0.6);
   parallel_for(execution, chains.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
