@@ -75,6 +75,8 @@ class Expansion {
 
   /// -1, 0 or 1: that of the largest term.
   [[nodiscard]] int sign() const { return terms_.empty() ? 0 : terms_.back() > 0 ? 1 : -1; }
+  /// To within two roundings of sums and products: the largest term.
+  [[nodiscard]] double rounded() const { return terms_.empty() ? 0 : terms_.back(); }
 
   friend Expansion operator+(Expansion a, const Expansion& b) {
     for (const double term : b.terms_) a.add(term);

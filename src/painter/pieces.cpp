@@ -10,6 +10,9 @@
 namespace frontmost::painter_detail {
 namespace {
 
+/// Of coordinates: corners are known so well.
+constexpr double kCornerError = 1e-11;
+
 float rounded_down(double value) {
   const float nearest = float(value);
   return double(nearest) <= value ? nearest : std::nextafter(nearest, -std::numeric_limits<float>::infinity());
@@ -119,8 +122,8 @@ Shape Pieces::shape_of(std::uint32_t piece) const {
 }
 
 /// Between the ends of the side, or where the planes meet: what is known better. The former gets worse from cut to cut,
-/// the latter where planes meet at small angles. From the end that comes first in space, so that neighbours are cut at
-/// the same point to the bit.
+/// the latter where planes meet at small angles; where both are bad, drawings would have corners pixels away. From the
+/// end that comes first in space, so that neighbours are cut at the same point to the bit.
 PieceCorner Pieces::crossing(const Face& face, const Shape& shape, std::size_t side, std::uint32_t plane) const {
   const PieceCorner *from = &shape.corners[side], *to = &shape.corners[(side + 1) % shape.corners.size()];
   if (is_before(to->at, from->at)) std::swap(from, to);
@@ -136,10 +139,14 @@ PieceCorner Pieces::crossing(const Face& face, const Shape& shape, std::size_t s
                  kRounding * (size + length);
   const std::array<Plane, 3> planes = planes_of(face, corner);
   const Approximate meeting = Plane::meeting({&planes[0], &planes[1], &planes[2]});
-  if (meeting.error < corner.error) {
-    corner.at = meeting.at;
-    corner.error = meeting.error;
-  }
+  const auto take_better = [&](const Approximate& found) {
+    if (!(found.error < corner.error)) return;
+    corner.at = found.at;
+    corner.error = found.error;
+  };
+  take_better(meeting);
+  const double allowed = kCornerError * (size + length);
+  if (corner.error > allowed) take_better(Plane::closest_meeting({&planes[0], &planes[1], &planes[2]}, allowed));
   return corner;
 }
 

@@ -79,6 +79,27 @@ TEST(PaintPlane, TheSideOfAMeetingIsExact) {
   EXPECT_LT(left_open, asked / 2);  // and few others
 }
 
+/// All through one point, which doubles lose, for the planes are next to parallel.
+TEST(PaintPlane, MeetingsAtTinyAnglesAreFoundAsNearAsDoublesAre) {
+  Random random(6);
+  std::size_t lost = 0;
+  for (std::uint64_t i = 0; i < seeds(200); ++i) {
+    const glm::dvec3 point(glm::ivec3(random.point(100)));
+    std::vector<Plane> planes;
+    for (int k = 0; k < 3; ++k) {
+      const double up = std::ldexp(1 + random.below(1000), -38), down = std::ldexp(1 + random.below(1000), -38);
+      const glm::dvec3 a(8, 0, 8 + up), b(0, 8, 8 - down);
+      planes.push_back({point + double(k + 1) * a - b, Leg{a}, Leg{b}});
+    }
+    const std::array<const Plane*, 3> three{&planes[0], &planes[1], &planes[2]};
+    const Approximate quick = Plane::meeting(three), found = Plane::closest_meeting(three, 1e-9);
+    EXPECT_LT(found.error, 1e-9);
+    EXPECT_LE(glm::length(found.at - point), found.error);
+    lost += quick.error > 1e-6;
+  }
+  EXPECT_GT(lost, seeds(200) / 2);
+}
+
 TEST(PaintPlane, NumbersBeyondTheirRangeAreLeftOpen) {
   for (const double size : {1e-130, 1e130}) {
     const Twice number = Twice::difference(size, 0);

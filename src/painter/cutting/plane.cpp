@@ -60,12 +60,8 @@ namespace {
 
 int sign_of(const Twice& number) { return number.certain_sign(); }
 int sign_of(const Expansion& number) { return number.sign(); }
-
-/// A height above a plane, times a determinant that may be negative, and that.
-template <class Number>
-struct Meeting {
-  Number height, determinant;
-};
+Bounded bounded_of(const Twice& number) { return number.bounded(); }
+Bounded bounded_of(const Expansion& number) { return {number.rounded(), 0}; }
 
 /// A plane n.x = d about a point.
 template <class Number>
@@ -74,29 +70,47 @@ struct LongPlane {
   Number d;
 };
 
-/// By Cramer's rule; the first plane goes through the point, so that its d is 0.
+/// Through `anchor`, along u and v, about `centre`.
 template <class Number>
-Meeting<Number> meeting_of(const std::array<LongPlane<Number>, 3>& planes, const LongPlane<Number>& asked) {
-  const auto& [a, b, c] = planes;
-  const LongVector<Number> bc = cross_of(b.n, c.n), ca = cross_of(c.n, a.n), ab = cross_of(a.n, b.n);
-  const Number determinant = dot_of(a.n, bc);
-  return {b.d * dot_of(asked.n, ca) + c.d * dot_of(asked.n, ab) - asked.d * determinant, determinant};
+LongPlane<Number> long_plane(const glm::dvec3& anchor, const Leg& u, const Leg& v, const glm::dvec3& centre) {
+  LongPlane<Number> plane{cross_of(difference_of<Number>(u.to, u.from), difference_of<Number>(v.to, v.from)), {}};
+  plane.d = dot_of(plane.n, difference_of<Number>(anchor, centre));
+  return plane;
+}
+
+/// Where three planes meet, by Cramer's rule: at `times` / determinant about a point of the first, whose d is 0.
+template <class Number>
+struct Meeting {
+  LongVector<Number> times;
+  Number determinant;
+
+  explicit Meeting(const std::array<LongPlane<Number>, 3>& planes) {
+    const auto& [a, b, c] = planes;
+    const LongVector<Number> bc = cross_of(b.n, c.n), ca = cross_of(c.n, a.n), ab = cross_of(a.n, b.n);
+    determinant = dot_of(a.n, bc);
+    for (std::size_t axis = 0; axis < 3; ++axis) times[axis] = b.d * ca[axis] + c.d * ab[axis];
+  }
+};
+
+/// A quotient of what is rounded, with a bound on its error; infinite where the sign of the denominator is open.
+Bounded quotient(const Bounded& above, const Bounded& below) {
+  const double least = std::abs(below.value) - below.error, value = above.value / below.value;
+  if (!(least > 0)) return {0, std::numeric_limits<double>::infinity()};
+  return {value, (above.error + std::abs(value) * below.error) / least + kRounding * std::abs(value)};
 }
 
 }  // namespace
 
 template <class Number>
 int Plane::sign_of_meeting(const std::array<const Plane*, 3>& planes) const {
+  const glm::dvec3& centre = planes[0]->anchor_;
   const auto in_full = [&](const Plane& plane) {
-    LongPlane<Number> full{
-        cross_of(difference_of<Number>(plane.u_.to, plane.u_.from), difference_of<Number>(plane.v_.to, plane.v_.from)),
-        {}};
-    full.d = dot_of(full.n, difference_of<Number>(plane.anchor_, planes[0]->anchor_));
-    return full;
+    return long_plane<Number>(plane.anchor_, plane.u_, plane.v_, centre);
   };
-  const Meeting<Number> meeting =
-      meeting_of<Number>({in_full(*planes[0]), in_full(*planes[1]), in_full(*planes[2])}, in_full(*this));
-  const int height = sign_of(meeting.height), determinant = sign_of(meeting.determinant);
+  const Meeting<Number> meeting({in_full(*planes[0]), in_full(*planes[1]), in_full(*planes[2])});
+  const LongPlane<Number> asked = in_full(*this);
+  const int height = sign_of(dot_of(asked.n, meeting.times) - asked.d * meeting.determinant),
+            determinant = sign_of(meeting.determinant);
   return height == 2 || determinant == 2 ? 2 : height * determinant;
 }
 
@@ -104,6 +118,27 @@ int Plane::side_of_meeting(const std::array<const Plane*, 3>& planes) const {
   if (std::any_of(planes.begin(), planes.end(), [&](const Plane* plane) { return is_same(*plane); })) return 0;
   const int twice = sign_of_meeting<Twice>(planes);
   return twice != 2 ? twice : sign_of_meeting<Expansion>(planes);
+}
+
+template <class Number>
+Approximate Plane::long_meeting(const std::array<const Plane*, 3>& planes) {
+  const glm::dvec3& centre = planes[0]->anchor_;
+  const auto in_full = [&](const Plane& plane) {
+    return long_plane<Number>(plane.anchor_, plane.u_, plane.v_, centre);
+  };
+  const Meeting<Number> meeting({in_full(*planes[0]), in_full(*planes[1]), in_full(*planes[2])});
+  Approximate point{centre, 0};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Bounded from_centre = quotient(bounded_of(meeting.times[std::size_t(axis)]), bounded_of(meeting.determinant));
+    point.at[axis] += from_centre.value;
+    point.error += from_centre.error + kRounding * std::abs(point.at[axis]);
+  }
+  return point;
+}
+
+Approximate Plane::closest_meeting(const std::array<const Plane*, 3>& planes, double error) {
+  const Approximate twice = long_meeting<Twice>(planes);
+  return twice.error <= error ? twice : long_meeting<Expansion>(planes);
 }
 
 }  // namespace frontmost::painter_detail

@@ -40,6 +40,9 @@ class Plane {
 
   /// Where three planes meet.
   [[nodiscard]] static Approximate meeting(const std::array<const Plane*, 3>& planes);
+  /// The same to within `error`, or as near as doubles are, whatever the angles. Slow. Precondition: they meet in one
+  /// point.
+  [[nodiscard]] static Approximate closest_meeting(const std::array<const Plane*, 3>& planes, double error);
   /// The side of the point where three planes meet, exactly. Precondition: they meet in one point.
   [[nodiscard]] int side_of_meeting(const std::array<const Plane*, 3>& planes) const;
 
@@ -53,6 +56,8 @@ class Plane {
   /// side_of_meeting(); 2 where numbers of this kind leave it open.
   template <class Number>
   [[nodiscard]] int sign_of_meeting(const std::array<const Plane*, 3>& planes) const;
+  template <class Number>
+  [[nodiscard]] static Approximate long_meeting(const std::array<const Plane*, 3>& planes);
 
   glm::dvec3 anchor_;
   Leg u_, v_;

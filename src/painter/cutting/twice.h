@@ -18,13 +18,18 @@ class Twice {
     return {value, std::abs(value.high) * (1 + 1e-15)};
   }
 
-  /// 2 where the error leaves it open. A product or sum errs by less than 2^-100 of its size, and shares of factors add
-  /// up: to less than 2^-95 after nine factors, their sums and those of the products. Beyond 10^+-250 doubles may have
-  /// lost something to the ends of their range.
+  /// A product or sum errs by less than 2^-100 of its size, and shares of factors add up: to less than 2^-95 after nine
+  /// factors, their sums and those of the products. Beyond 10^+-250 doubles may have lost something to the ends of
+  /// their range: then anything is possible.
+  [[nodiscard]] Bounded bounded() const {
+    const bool is_within_range = size_ > 1e-250 && size_ < 1e250;
+    return {value_.high + value_.low,
+            is_within_range ? size_ * 1.6e-28 : std::numeric_limits<double>::infinity()};  // 2^-92
+  }
+  /// 2 where the error leaves it open.
   [[nodiscard]] int certain_sign() const {
-    if (!(size_ > 1e-250 && size_ < 1e250)) return 2;
-    const double value = value_.high + value_.low, error = size_ * 1.6e-28;  // 2^-92
-    return value > error ? 1 : value < -error ? -1 : 2;
+    const Bounded rounded = bounded();
+    return rounded.value > rounded.error ? 1 : rounded.value < -rounded.error ? -1 : 2;
   }
 
   friend Twice operator+(const Twice& a, const Twice& b) {
