@@ -18,8 +18,11 @@ def picture(path, title):
     return f'<img{paper} src="data:image/{kind};base64,{data}" alt="{escaped(title)}" loading="lazy">'
 
 
+NO_BREAK = "\u00a0"
+
+
 def milliseconds(value):
-    return f"{value:.0f} ms" if value >= 10 else f"{value:.1f} ms"
+    return f"{value:.0f}{NO_BREAK}ms" if value >= 10 else f"{value:.1f}{NO_BREAK}ms"
 
 
 def timings(result):
@@ -36,23 +39,29 @@ def timings(result):
 
 
 def command(result):
-    return f"<pre><code>frontmost {result.show.command} {escaped(result.show.arguments)}</code></pre>"
+    """Lines end between words, and not at the hyphens of options."""
+    words = f"frontmost {result.show.command} {result.show.arguments}".split(" ")
+    return f'<pre><code>{" ".join(f"""<span class="word">{escaped(word)}</span>""" for word in words)}</code></pre>'
+
+
+def links(files):
+    return ", ".join(
+        f'<a href="{escaped(f.name)}">{escaped(f.name)}</a> <span class="size">{f.stat().st_size / 1024:.0f}{NO_BREAK}KiB</span>'
+        for f in dict.fromkeys(files))
 
 
 def card(result):
     show = result.show
+    others = f"<p>{links(result.files)}</p>" if len(result.files) > 1 else ""
     body = f"""<figcaption><h3>{escaped(show.title)}</h3><p>{escaped(show.caption)}</p>
-{command(result)}<p class="time">{escaped(timings(result))}</p></figcaption>"""
+{command(result)}{others}<p class="time">{escaped(timings(result))}</p></figcaption>"""
     kind = "card wide" if show.wide else "card"
     return f'<figure class="{kind}">{picture(result.files[0], show.title)}{body}</figure>'
 
 
 def file_rows(result):
-    links = ", ".join(
-        f'<a href="{escaped(f.name)}">{escaped(f.name)}</a> <span class="size">{f.stat().st_size / 1024:.0f} KiB</span>'
-        for f in dict.fromkeys(result.files))
     return f"""<div class="row"><h3>{escaped(result.show.title)}</h3><p>{escaped(result.show.caption)}</p>
-{command(result)}<p>{links}</p><p class="time">{escaped(timings(result))}</p></div>"""
+{command(result)}<p>{links(result.files)}</p><p class="time">{escaped(timings(result))}</p></div>"""
 
 
 def section(words, results):

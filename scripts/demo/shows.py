@@ -58,13 +58,11 @@ SECTIONS = [
         Show("For a pen plotter", "Dashes are lines of their own, from corner to corner; layers are pens.",
              "bracket.obj --up +z --view iso --camera-orthographic --plot --hidden dashed --hatch 1.5 --page 160,130 "
              "--margin 5 -o plot.svg", command="lines"),
-        Show("A drawing sheet", "Three views in line and one at an angle, to scale. The same as PDF and DXF lies beside this page.",
+        Show("A drawing sheet", "Three views in line and one at an angle, to scale. The same as PDF and DXF.",
              "bracket.obj --up +z --views front,top,left,iso --hidden dashed --page 200,175 --scale 1:1 -o sheet.svg "
              "-o sheet.pdf -o sheet.dxf", command="lines"),
-        Show("Hatched", "Lines in their exact distances, cut where the surface turns into light.",
-             "builtin:teapot --style figure --hatch 1 --page 160,110 --margin 5 -o hatched.svg", command="lines"),
-        Show("Polygons", "The painter's algorithm: what is hidden is left out or cut.",
-             "builtin:cubes --resolution 640,480 -o painted.svg"),
+        Show("Polygons", "The painter's algorithm: shaded polygons as vectors, what is hidden left out or cut.",
+             "builtin:teapot --resolution 640,480 -o painted.svg -o painted.pdf"),
     ]),
     Section("Hard cases", "What paints wrongly when triangles are sorted whole, decided here sample by sample.", [
         Show("Ring of three", "Each triangle lies over the next one: no order of painting is right.",
