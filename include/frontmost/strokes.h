@@ -50,7 +50,7 @@ struct Strokes {
 /// Parts of one class (seen or hidden, outline, kind, instance) that meet end to end, where no third one does, become
 /// one stroke. Every line is drawn once: of parts that lie on each other, as an edge behind another in parallel
 /// projection, one is kept, the seen one before the hidden one. What is seen as a point is left out. Near-linear in the
-/// parts; thousands of long lines within a pixel's width are held against each other.
+/// parts; where thousands crowd within a pixel and no grid parts them, with more than that.
 /// \throws Error bad_argument for tolerances out of range.
 [[nodiscard]] Strokes strokes(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options = {},
                               const Execution& execution = {});

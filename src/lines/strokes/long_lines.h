@@ -12,29 +12,33 @@
 #include <unordered_map>
 #include <vector>
 
-#include "lines/strokes/parts.h"
+#include "lines/strokes/near_lines.h"
 
 namespace frontmost::lines_detail {
 
 class LongLines {
  public:
   /// The corners of what holds all segments. Precondition: they differ.
-  LongLines(const glm::dvec2& low, const glm::dvec2& high)
-      : low_(low), extent_(std::max(high.x - low.x, high.y - low.y)), bucket_(extent_ / 512) {}
+  LongLines(const glm::dvec2& low, const glm::dvec2& high, const Nearness& near)
+      : low_(low), extent_(std::max(high.x - low.x, high.y - low.y)), bucket_(extent_ / 512), near_(near) {}
 
   [[nodiscard]] bool is_empty() const { return flat_.empty() && steep_.empty(); }
 
-  void add(std::uint32_t number, const Segment& segment) {
+  /// Adds the last of the lines `laid`.
+  void add(const std::vector<Line>& laid) {
+    const Line& segment = laid.back();
+    const auto number = std::uint32_t(laid.size() - 1);
     const glm::dvec2 d = glm::abs(segment.to - segment.from);
     // Near the diagonal what lies on it may count as the other kind.
-    if (d.y <= 1.05 * d.x) flat_[key(heights(segment, 0))].push_back(number);
-    if (d.x <= 1.05 * d.y) steep_[key(heights(segment, 1))].push_back(number);
+    if (d.y <= 1.05 * d.x) flat_[key(heights(segment, 0))].add(number, laid, near_);
+    if (d.x <= 1.05 * d.y) steep_[key(heights(segment, 1))].add(number, laid, near_);
   }
 
-  /// Calls visit(numbers) for lists that together hold all segments whose lines turn by at most `slope` from this
-  /// one's, and pass its middle within `off`. O(1 + slope) lists.
+  /// Calls visit(numbers) as NearLines do, in all those that may hold segments whose lines turn from this one's by at
+  /// most what Nearness allows at its length, and pass its middle as near as counts.
   template <class Visit>
-  void for_each(const Segment& segment, double slope, double off, const Visit& visit) const {
+  void for_each(const Line& segment, const SoughtLine& sought, const Visit& visit) const {
+    const double slope = near_.slope_within(segment.length), off = near_.apart();
     const glm::dvec2 d = glm::abs(segment.to - segment.from);
     const int axis = d.y <= d.x ? 0 : 1;
     const Table& table = axis == 0 ? flat_ : steep_;
@@ -50,13 +54,13 @@ class LongLines {
       const int last = index(at[1 - far] - low * share + play);
       for (int j = index(at[1 - far] - high * share - play); j <= last; ++j) {
         const auto found = table.find(far == 1 ? key(j, i) : key(i, j));
-        if (found != table.end()) visit(found->second);
+        if (found != table.end()) found->second.for_each(sought, visit);
       }
     }
   }
 
  private:
-  using Table = std::unordered_map<std::uint64_t, std::vector<std::uint32_t>>;
+  using Table = std::unordered_map<std::uint64_t, NearLines>;
 
   /// Where the segment's line meets both ends of the axis.
   [[nodiscard]] glm::dvec2 heights(const Segment& s, int axis) const {
@@ -72,6 +76,7 @@ class LongLines {
 
   const glm::dvec2 low_;
   const double extent_, bucket_;
+  const Nearness near_;
   Table flat_, steep_;
 };
 

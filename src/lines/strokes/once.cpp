@@ -11,99 +11,43 @@
 
 #include "base/parallel.h"
 #include "lines/strokes/long_lines.h"
-#include "lines/strokes/parts.h"
+#include "lines/strokes/near_lines.h"
 
 namespace frontmost::lines_detail {
 namespace {
-
-/// Pixels: what is left over or taken away is longer. Places of one point differ by the rounding of floats, 1e-7 of
-/// some thousand pixels.
-constexpr double shortest = 8e-3;
-constexpr double long_from = 16;
-/// Between a long line and what counts as lying on it. Tiny pieces point anywhere, but such lists would be too many.
-constexpr double most_slope = 1.0 / 128;
-
-struct Interval {
-  double begin, end;
-};
-
-struct Line : Segment {
-  explicit Line(const Segment& segment)
-      : Segment(segment), length(glm::distance(from, to)), along((to - from) / length) {}
-
-  [[nodiscard]] bool is_long() const { return length > long_from; }
-
-  double length;
-  glm::dvec2 along;
-};
-
-/// What counts as lying on a line.
-class Nearness {
- public:
-  explicit Nearness(double apart) : apart_(apart) {}
-
-  [[nodiscard]] double apart() const { return apart_; }
-
-  /// How much a direction may differ from that of a long line: over its length by some times what counts as near, for
-  /// the part that lies on the long line may be short.
-  [[nodiscard]] double slope_within(double length) const { return std::min(8 * apart_ / length, most_slope); }
-
-  /// Where, along `line`, `other` lies on it; empty where it does not. Lengths in pixels.
-  [[nodiscard]] Interval overlap(const Line& line, const Line& other) const {
-    constexpr Interval nothing{0, 0};
-    const bool has_long = line.is_long() || other.is_long();
-    if (has_long && std::abs(cross(line.along, other.along)) > slope_within(std::min(line.length, other.length)))
-      return nothing;
-    const glm::dvec2 a = other.from - line.from, b = other.to - line.from;
-    const double a_at = glm::dot(line.along, a), b_at = glm::dot(line.along, b);
-    const double begin = std::max(0.0, std::min(a_at, b_at)), end = std::min(line.length, std::max(a_at, b_at));
-    if (!(end - begin > shortest)) return nothing;
-    const double a_off = cross(line.along, a), slope = (cross(line.along, b) - a_off) / (b_at - a_at);
-    const auto off = [&](double at) { return std::abs(a_off + slope * (at - a_at)); };
-    // Short ones are closer together, or all would lie on each other that start from a point.
-    const double most = std::min(apart_, (end - begin) / 4);
-    return off(begin) <= most && off(end) <= most ? Interval{begin, end} : nothing;
-  }
-
- private:
-  double apart_;
-};
 
 /// Square cells; crowded ones are divided again.
 class Grid {
  public:
   struct Cell {
-    std::vector<std::uint32_t> segments;
+    NearLines lines;
     std::unique_ptr<Grid> finer;  ///< has them instead
   };
 
-  Grid(const glm::dvec2& low, double cell, const glm::ivec2& count, double near)
+  Grid(const glm::dvec2& low, double cell, const glm::ivec2& count, const Nearness& near)
       : near_(near), low_(low), cell_(cell), count_(count), cells_(std::size_t(count.x) * std::size_t(count.y)) {}
 
-  /// Calls visit(segments) for every undivided cell that the segment passes, with what counts as near to spare.
+  /// Calls visit(numbers) as NearLines do, in all cells that the line passes with what counts as near to spare.
   template <class Visit>
-  void for_each_cell(const Segment& s, const Visit& visit) const {
-    for_each(s, [&](std::size_t number, const glm::ivec2&) {
+  void for_each(const Line& line, const SoughtLine& sought, const Visit& visit) const {
+    for_each_cell(line, [&](std::size_t number, const glm::ivec2&) {
       const Cell& cell = cells_[number];
-      if (cell.finer)
-        cell.finer->for_each_cell(s, visit);
-      else
-        visit(cell.segments);
+      cell.finer ? cell.finer->for_each(line, sought, visit) : cell.lines.for_each(sought, visit);
     });
   }
 
-  /// Adds the last of the segments `laid`. \returns how many entries of cells are new.
+  /// Adds the last of the lines `laid`. \returns how many entries of cells are new.
   std::size_t add(const std::vector<Line>& laid, bool may_divide) {
     const auto number = std::uint32_t(laid.size() - 1);
     std::size_t entries = 0;
-    for_each(laid[number], [&](std::size_t i, const glm::ivec2& at) {
+    for_each_cell(laid[number], [&](std::size_t i, const glm::ivec2& at) {
       Cell& cell = cells_[i];
-      if (!cell.finer && may_divide && cell.segments.size() >= crowd && cell_ > finest() * divisions)
+      if (!cell.finer && may_divide && cell.lines.is_full() && cell_ > finest() * divisions)
         entries += divide(cell, at, laid);
       if (cell.finer) {
         entries += cell.finer->add(laid, may_divide);
       } else {
-        cell.segments.push_back(number);
+        cell.lines.add(number, laid, near_);
         ++entries;
       }
     });
@@ -111,25 +55,22 @@ class Grid {
   }
 
  private:
-  static constexpr std::size_t crowd = 256;
   static constexpr int divisions = 8;
 
   /// Most in a crowd is short, and lies on little: cells may be less than what counts as near for long ones.
-  [[nodiscard]] double finest() const { return std::max(2 * shortest, near_ / 16); }
-  /// How far from a segment what lies on it may be, as Nearness::overlap() has it.
-  [[nodiscard]] double reach_of(const Segment& s) const {
-    return std::min(near_, glm::distance(s.from, s.to) / 4 + shortest / 4);
-  }
+  [[nodiscard]] double finest() const { return std::max(2 * Nearness::shortest, near_.apart() / 16); }
+  /// How far from a segment what lies on it may be, and a little.
+  [[nodiscard]] double reach_of(const Line& s) const { return near_.reach_of(s.length + Nearness::shortest); }
 
   std::size_t divide(Cell& cell, const glm::ivec2& at, const std::vector<Line>& laid) {
     std::size_t entries = 0;
     cell.finer = std::make_unique<Grid>(low_ + glm::dvec2(at) * cell_, cell_ / divisions, glm::ivec2(divisions), near_);
-    for (const std::uint32_t number : cell.segments)
-      cell.finer->for_each(laid[number], [&](std::size_t i, const glm::ivec2&) {
-        cell.finer->cells_[i].segments.push_back(number);
+    for (const std::uint32_t number : cell.lines.numbers())
+      cell.finer->for_each_cell(laid[number], [&](std::size_t i, const glm::ivec2&) {
+        cell.finer->cells_[i].lines.add(number, laid, near_);
         ++entries;
       });
-    cell.segments = {};
+    cell.lines = {};
     return entries;
   }
 
@@ -138,7 +79,7 @@ class Grid {
 
   /// Column by column, the rows that the segment passes there.
   template <class Visit>
-  void for_each(const Segment& s, const Visit& visit) const {
+  void for_each_cell(const Line& s, const Visit& visit) const {
     const double near = reach_of(s);
     const glm::dvec2 a = s.from.x <= s.to.x ? s.from : s.to, b = s.from.x <= s.to.x ? s.to : s.from;
     const double width = b.x - a.x;
@@ -157,7 +98,7 @@ class Grid {
     }
   }
 
-  const double near_;
+  const Nearness near_;
   const glm::dvec2 low_;
   const double cell_;
   const glm::ivec2 count_;
@@ -171,18 +112,19 @@ struct Extent {
       low = glm::min(low, glm::min(s.from, s.to));
       high = glm::max(high, glm::max(s.from, s.to));
       const double length = glm::distance(s.from, s.to);
-      if (length > long_from) continue;
+      if (length > Line::long_from) continue;
       short_length += length;
       ++short_count;
     }
   }
 
   /// A grid for the short ones.
-  [[nodiscard]] Grid grid(double near) const {
+  [[nodiscard]] Grid grid(const Nearness& nearness) const {
+    const double near = nearness.apart();
     const double count = std::max(short_count, 1.0), side = std::max({high.x - low.x, high.y - low.y, 1e-6});
     // Never finer than what counts as one place: a drawing of one point would have ten million cells a side.
     const double cell = std::max({short_length / count, side / std::sqrt(count), side / 4096, 8 * near});
-    return {low - near, cell, glm::ivec2((high - low + 2 * near) / cell) + 1, near};
+    return {low - near, cell, glm::ivec2((high - low + 2 * near) / cell) + 1, nearness};
   }
 
   glm::dvec2 low{1e300}, high{-1e300};
@@ -192,21 +134,23 @@ struct Extent {
 class Sheet {
  public:
   /// Precondition: not empty.
-  Sheet(const Extent& extent, double apart) : near_(apart), grid_(extent.grid(apart)), long_(extent.low, extent.high) {}
+  Sheet(const Extent& extent, double apart)
+      : near_(apart), grid_(extent.grid(near_)), long_(extent.low, extent.high, near_) {}
 
   /// Adds what of `line` is not there yet to `fresh`.
   void lay(const Line& line, std::vector<Segment>& fresh) {
     covered_.clear();
     ++asking_;
-    const auto ask = [&](const std::vector<std::uint32_t>& numbers) { find_covered(line, numbers); };
-    grid_.for_each_cell(line, ask);
-    if (!long_.is_empty()) long_.for_each(line, near_.slope_within(line.length), near_.apart(), ask);
+    const SoughtLine sought(line, near_);
+    const auto ask = [&](std::span<const std::uint32_t> numbers) { find_covered(line, numbers); };
+    grid_.for_each(line, sought, ask);
+    if (!long_.is_empty()) long_.for_each(line, sought, ask);
     if (covered_.empty()) return add(line, fresh);
-    std::sort(covered_.begin(), covered_.end(), [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
+    std::sort(covered_.begin(), covered_.end(), [](const Stretch& a, const Stretch& b) { return a.begin < b.begin; });
     covered_.push_back({line.length, line.length});
-    const double least = std::max(shortest, near_.apart());
+    const double least = std::max(Nearness::shortest, near_.apart());
     double at = 0;
-    for (const Interval& c : covered_) {
+    for (const Stretch& c : covered_) {
       if (c.begin - at > least) {
         // The line's own ends to the bit, so that its neighbours find them.
         const glm::dvec2 from = at == 0 ? line.from : line.from + line.along * at;
@@ -218,11 +162,11 @@ class Sheet {
   }
 
  private:
-  void find_covered(const Line& line, const std::vector<std::uint32_t>& numbers) {
+  void find_covered(const Line& line, std::span<const std::uint32_t> numbers) {
     for (const std::uint32_t other : numbers) {
       if (asked_[other] == asking_) continue;
       asked_[other] = asking_;
-      const Interval there = near_.overlap(line, laid_[other]);
+      const Stretch there = near_.overlap(line, laid_[other]);
       if (there.end > there.begin) covered_.push_back(there);
     }
   }
@@ -231,7 +175,7 @@ class Sheet {
     fresh.push_back(line);
     laid_.push_back(line);
     asked_.push_back(0);
-    if (line.is_long()) return long_.add(std::uint32_t(laid_.size() - 1), line);
+    if (line.is_long()) return long_.add(laid_);
     // Where divisions do not part them, as where all meet in a point, they would only take memory.
     entries_ += grid_.add(laid_, entries_ < most_entries * laid_.size());
   }
@@ -245,7 +189,7 @@ class Sheet {
   std::vector<Line> laid_;
   std::vector<std::uint32_t> asked_;  ///< by line: the question that it was last part of
   std::uint32_t asking_ = 0;
-  std::vector<Interval> covered_;
+  std::vector<Stretch> covered_;
 };
 
 }  // namespace
@@ -261,11 +205,9 @@ std::vector<Segment> draw_once(const std::vector<Segment>& segments, double apar
   Sheet sheet(Extent(segments), apart);
   for (std::size_t i = 0; i < order.size(); ++i) {
     const Segment& segment = segments[order[i]];
-    if (i % 4096 == 0) {
-      check_cancelled(execution);
-      report_progress(execution, "strokes", 0.1 + 0.4 * double(i) / double(order.size()));
-    }
-    if (glm::distance(segment.from, segment.to) > shortest / 4) sheet.lay(Line(segment), fresh);
+    if (i % 256 == 0) check_cancelled(execution);
+    if (i % 4096 == 0) report_progress(execution, "strokes", 0.1 + 0.4 * double(i) / double(order.size()));
+    if (glm::distance(segment.from, segment.to) > Nearness::shortest / 4) sheet.lay(Line(segment), fresh);
   }
   return fresh;
 }
