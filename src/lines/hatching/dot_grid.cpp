@@ -10,42 +10,58 @@ namespace {
 
 constexpr int side = DotGrid::side, count = side * side;
 
-/// How crowded each cell is by those that are taken.
+/// How crowded each cell is by those that are taken. Its loops are as compilers take many cells at a time: in others it
+/// is most of what few dots cost.
 class Torus {
  public:
   Torus() {
-    for (int i = 0; i < count; ++i) {
-      const int x = std::min(i % side, side - i % side), y = std::min(i / side, side - i / side);
-      // As a float it is the same with every C library.
-      near_[std::size_t(i)] = float(std::exp(-(x * x + y * y) / (2 * 1.9 * 1.9)));
-    }
+    barred_[1].fill(never);
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < 2 * side; ++x) {
+        const int from_x = std::min(x % side, side - x % side), from_y = std::min(y, side - y);
+        // As a float it is the same with every C library.
+        near_[std::size_t(2 * side * y + x)] = float(std::exp(-(from_x * from_x + from_y * from_y) / (2 * 1.9 * 1.9)));
+      }
   }
 
-  [[nodiscard]] bool is_taken(int cell) const { return taken_[std::size_t(cell)]; }
+  [[nodiscard]] bool is_taken(int cell) const { return barred_[1][std::size_t(cell)] == 0; }
   void set(int cell, bool taken) {
-    taken_[std::size_t(cell)] = taken;
+    barred_[taken][std::size_t(cell)] = 0;
+    barred_[!taken][std::size_t(cell)] = never;
     const int x = cell % side, y = cell / side;
-    for (int j = 0; j < side; ++j)
-      for (int i = 0; i < side; ++i) {
-        const double near = near_[std::size_t(((j - y) & (side - 1)) * side + ((i - x) & (side - 1)))];
-        crowd_[std::size_t(j * side + i)] += taken ? near : -near;
-      }
+    const double sign = taken ? 1 : -1;
+    for (int j = 0; j < side; ++j) {
+      const float* near = near_.data() + 2 * side * ((j - y) & (side - 1)) + side - x;
+      double* crowd = crowd_.data() + side * j;
+      for (int i = 0; i < side; ++i) crowd[i] += sign * double(near[i]);
+    }
   }
   /// Of the taken cells the most crowded, or of the free ones the least; of equals the first.
   [[nodiscard]] int extreme(bool taken) const {
-    int best = -1;
-    for (int i = 0; i < count; ++i) {
-      if (is_taken(i) != taken) continue;
-      const double here = crowd_[std::size_t(i)], there = best < 0 ? 0 : crowd_[std::size_t(best)];
-      if (best < 0 || (taken ? here > there : here < there)) best = i;
-    }
-    return best;
+    const double sign = taken ? 1 : -1;
+    const auto value = [&](int cell) { return sign * crowd_[std::size_t(cell)] + barred_[taken][std::size_t(cell)]; };
+    std::array<double, side> most;
+    most.fill(never);
+    for (int j = 0; j < count; j += side)
+      for (int i = 0; i < side; ++i) {
+        const double here = value(j + i), there = most[std::size_t(i)];
+        most[std::size_t(i)] = here > there ? here : there;
+      }
+    const double best = *std::max_element(most.begin(), most.end());
+    int first = count;
+    for (int i = 0; i < side; ++i)
+      if (most[std::size_t(i)] == best)
+        for (int cell = i; cell < first; cell += side)
+          if (value(cell) == best) first = cell;
+    return first;
   }
 
  private:
-  std::array<float, count> near_{};
+  static constexpr double never = -1e300;
+
+  std::array<float, 2 * count> near_{};  ///< by the distance, from minus to plus the size of a row
   std::array<double, count> crowd_{};
-  std::array<bool, count> taken_{};
+  std::array<std::array<double, count>, 2> barred_{};  ///< of those that are free, and taken: 0, and never for others
 };
 
 /// The same numbers everywhere.
