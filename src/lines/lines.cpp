@@ -92,10 +92,11 @@ void cut_all(const Candidates& candidates, const Occlusion& occlusion, const Exe
   };
   // The edges are listed while others are cut.
   parallel_for(execution, lists.size() + 1, 1, [&](std::size_t part, std::size_t) {
-    if (part > 0)
-      cut(lists[part - 1], (part - 1) * kEdgesPerPart, std::min(count, part * kEdgesPerPart));
-    else
-      for (std::size_t i = 0; i < count; ++i) drawing.edges.push_back(candidates.drawn(i));
+    if (part > 0) return cut(lists[part - 1], (part - 1) * kEdgesPerPart, std::min(count, part * kEdgesPerPart));
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i % kPartsPerTally == 0) check_cancelled(execution);
+      drawing.edges.push_back(candidates.drawn(i));
+    }
   });
   drawing.parts = joined(lists, execution);
 }

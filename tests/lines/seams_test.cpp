@@ -337,5 +337,30 @@ TEST(Seams, ThatWouldBeTheSquareOfTheirPagesStayOpen) {
   EXPECT_EQ(closed(few).triangles.size(), 20u * count);
 }
 
+/// A strip of fillers along one line.
+TEST(Seams, AskOftenWhetherToStop) {
+  constexpr std::uint32_t count = under_sanitizer ? 40000 : 200000;
+  Buffer<glm::vec3> places(count + 2);
+  WeldedMesh mesh;
+  mesh.triangles = Buffer<glm::uvec3>(count);
+  mesh.ids = Buffer<PrimitiveId>(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    mesh.triangles[i] = {i, i + 1, i + 2};
+    mesh.ids[i] = i;
+  }
+  for (std::uint32_t i = 0; i < count + 2; ++i) places[i] = {float(i), 0.0f, 0.0f};
+  mesh.positions = Positions(std::move(places));
+  std::size_t asked = 0;
+  Watch watch;
+  watch.cancelled = [&] {
+    ++asked;
+    return false;
+  };
+  EXPECT_TRUE(close_seams(mesh, Buffer<std::int8_t>(count, 0), {.threads = 1, .watch = &watch}));
+  EXPECT_EQ(mesh.triangles.size(), 0u);
+  // Sides are sorted, three to the filler, and then their ends.
+  EXPECT_GT(asked, 6 * count / 32768);
+}
+
 }  // namespace
 }  // namespace frontmost::test

@@ -5,9 +5,11 @@
 #include "lines/mesh/seams.h"
 
 #include <algorithm>
+#include <functional>
 #include <vector>
 
 #include "base/parallel.h"
+#include "lines/sort_in_parts.h"
 
 namespace frontmost::lines_detail {
 namespace {
@@ -41,7 +43,7 @@ std::vector<std::uint32_t> fillers_of(const WeldedMesh& mesh, const Buffer<std::
 /// The lines of fillers, and the sides of fillers on them.
 class Seams {
  public:
-  Seams(const WeldedMesh& mesh, const std::vector<std::uint32_t>& fillers);
+  Seams(const WeldedMesh& mesh, const std::vector<std::uint32_t>& fillers, const Execution& execution);
 
   /// The seam that has the side between two vertices as one of its fillers'; no_index: none.
   [[nodiscard]] std::uint32_t of(std::uint32_t a, std::uint32_t b) const {
@@ -73,7 +75,7 @@ class Seams {
   [[nodiscard]] bool is_before(std::uint32_t seam, std::uint32_t a, std::uint32_t b) const {
     return positions_[a][axes_[seam]] < positions_[b][axes_[seam]];
   }
-  void sort_corners();
+  void sort_corners(const Execution& execution);
 
   const Positions& positions_;
   std::vector<Side> sides_;             ///< ascending, each once
@@ -84,7 +86,7 @@ class Seams {
   std::vector<bool> is_corner_;         ///< by vertex
 };
 
-Seams::Seams(const WeldedMesh& mesh, const std::vector<std::uint32_t>& fillers)
+Seams::Seams(const WeldedMesh& mesh, const std::vector<std::uint32_t>& fillers, const Execution& execution)
     : positions_(mesh.positions), is_corner_(mesh.positions.size(), false) {
   for (std::uint32_t i = 0; i < fillers.size(); ++i) {
     const glm::uvec3& t = mesh.triangles[fillers[i]];
@@ -94,12 +96,13 @@ Seams::Seams(const WeldedMesh& mesh, const std::vector<std::uint32_t>& fillers)
       is_corner_[a] = true;
     }
   }
-  std::sort(sides_.begin(), sides_.end());
+  // Of equal ones it does not matter which comes first: they are on one line.
+  sort_in_parts(sides_, std::less<>(), execution);
   const std::vector<std::uint32_t> seam_of = number_lines(fillers.size());
   for (Side& side : sides_) side.seam = seam_of[side.seam];
   sides_.erase(std::unique(sides_.begin(), sides_.end(), [](const Side& a, const Side& b) { return !(a < b); }),
                sides_.end());
-  sort_corners();
+  sort_corners(execution);
 }
 
 /// By filler, the number of its line. Fillers with a side in common are on one: they have two points in common.
@@ -123,7 +126,7 @@ std::vector<std::uint32_t> Seams::number_lines(std::size_t fillers) {
   return numbers;
 }
 
-void Seams::sort_corners() {
+void Seams::sort_corners(const Execution& execution) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> members;  // seam, vertex
   for (const Side& side : sides_) {
     members.emplace_back(side.seam, side.low);
@@ -132,18 +135,17 @@ void Seams::sort_corners() {
     // Any axis will do on which two points of the line differ: all of them then do.
     axes_[side.seam] = along.x > 0 ? 0 : along.y > 0 ? 1 : 2;
   }
-  std::sort(members.begin(), members.end());
+  const auto is_earlier = [&](const auto& a, const auto& b) {
+    return a.first != b.first ? a.first < b.first : is_before(a.first, a.second, b.second);
+  };
+  sort_in_parts(members, is_earlier, execution);
   members.erase(std::unique(members.begin(), members.end()), members.end());
   first_.assign(count() + 1, 0);
   for (const auto& [seam, vertex] : members) {
     ++first_[seam + 1];
     corners_.push_back(vertex);
   }
-  for (std::size_t seam = 0; seam < count(); ++seam) {
-    first_[seam + 1] += first_[seam];
-    std::sort(corners_.begin() + std::ptrdiff_t(first_[seam]), corners_.begin() + std::ptrdiff_t(first_[seam + 1]),
-              [&](std::uint32_t a, std::uint32_t b) { return is_before(std::uint32_t(seam), a, b); });
-  }
+  for (std::size_t seam = 0; seam < count(); ++seam) first_[seam + 1] += first_[seam];
 }
 
 std::size_t Seams::place_of(std::uint32_t seam, std::uint32_t vertex) const {
@@ -165,9 +167,11 @@ Seamed seamed(const Seams& seams, const glm::uvec3& t) {
 
 /// Leaves seams for which there is no room.
 /// \returns how many triangles the others add.
-std::size_t leave_crowded(Seams& seams, const WeldedMesh& mesh) {
+std::size_t leave_crowded(Seams& seams, const WeldedMesh& mesh, const Execution& execution) {
   std::vector<std::size_t> added(seams.count(), 0);
-  for (const glm::uvec3& t : mesh.triangles) {
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (i % kTrianglesPerPoll == 0) check_cancelled(execution);
+    const glm::uvec3& t = mesh.triangles[i];
     const Seamed triangle = seamed(seams, t);
     for (int k = 0; k < 3; ++k) {
       if (triangle.seams[k] == no_index) continue;
@@ -240,15 +244,15 @@ void leave_out(WeldedMesh& mesh, const std::vector<std::uint32_t>& ascending) {
 bool close_seams(WeldedMesh& mesh, const Buffer<std::int8_t>& facing, const Execution& execution) {
   const std::vector<std::uint32_t> fillers = fillers_of(mesh, facing, execution);
   if (fillers.empty()) return false;
-  Seams seams(mesh, fillers);
+  Seams seams(mesh, fillers, execution);
   leave_out(mesh, fillers);
-  const std::size_t count = mesh.triangles.size() + leave_crowded(seams, mesh);
+  const std::size_t count = mesh.triangles.size() + leave_crowded(seams, mesh, execution);
   Buffer<glm::uvec3> triangles(count);
   Buffer<PrimitiveId> ids(count);
   std::size_t filled = 0;
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (i % kTrianglesPerPoll == 0) check_cancelled(execution);
     split(seams, seamed(seams, mesh.triangles[i]), [&](const glm::uvec3& corners) {
+      if (filled % kTrianglesPerPoll == 0) check_cancelled(execution);
       triangles[filled] = corners;
       ids[filled++] = mesh.ids[i];
     });
