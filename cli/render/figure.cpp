@@ -7,6 +7,7 @@
 #include <frontmost/zbuffer.h>
 
 #include <functional>
+#include <span>
 
 #include "cli/console.h"
 #include "cli/interruption.h"
@@ -70,17 +71,30 @@ PageGroup backdrop(const glm::vec3& color, const Page& page) {
   return group;
 }
 
-Page page_of(const Figure& figure, const Job& job) {
-  Page page{figure.view.width * kMillimetres, figure.view.height * kMillimetres, job.name};
-  PageLayer& layer = page.layers.emplace_back(PageLayer{"figure"});
-  if (job.output.background) layer.groups.push_back(backdrop(*job.output.background, page));
-  PageGroup& group = layer.groups.emplace_back(PageGroup{"surfaces", Pen{}});
+/// Where a sheet of several shapes ends; of what is none, where the next one begins.
+std::size_t end_of_group(std::span<const FigureShape> shapes, std::size_t begin) {
+  const auto goes_on = [&](std::size_t i) { return i + 1 < shapes.size() && shapes[i + 1].sheet == shapes[i].sheet; };
+  std::size_t end = begin;
+  if (goes_on(begin)) {
+    while (goes_on(end)) ++end;
+    return end + 1;
+  }
+  while (end < shapes.size() && !goes_on(end)) ++end;
+  return end;
+}
+
+/// Those of one sheet have their opacity together.
+PageGroup group_of(const Figure& figure, std::span<const FigureShape> shapes) {
+  PageGroup group{"surfaces", Pen{}};
   group.pen.width = 0;
-  group.points.reserve(figure.corners.size());
-  group.paths.reserve(figure.rings.size());
-  group.fills.reserve(figure.rings.size());
+  const bool is_sheet = shapes.size() > 1 && shapes[0].sheet == shapes[1].sheet;
+  if (is_sheet) group.opacity = shapes[0].color.a;
+  const FigureShape& last = shapes.back();
+  const std::size_t ring_count = last.first_ring + last.ring_count - shapes[0].first_ring;
+  group.paths.reserve(ring_count);
+  group.fills.reserve(ring_count);
   std::vector<glm::dvec2> outline;
-  for (const FigureShape& shape : figure.shapes)
+  for (const FigureShape& shape : shapes)
     for (std::uint32_t i = 0; i < shape.ring_count; ++i) {
       const FigureRing& ring = figure.rings[shape.first_ring + i];
       outline.clear();
@@ -88,7 +102,20 @@ Page page_of(const Figure& figure, const Job& job) {
         outline.push_back(figure.corners[ring.first_corner + k] * kMillimetres);
       group.add(outline, true, i > 0);
       group.fills.push_back(page_color(shape.color));
+      if (is_sheet) group.fills.back().opacity = 255;
     }
+  return group;
+}
+
+Page page_of(const Figure& figure, const Job& job) {
+  Page page{figure.view.width * kMillimetres, figure.view.height * kMillimetres, job.name};
+  PageLayer& layer = page.layers.emplace_back(PageLayer{"figure"});
+  if (job.output.background) layer.groups.push_back(backdrop(*job.output.background, page));
+  const std::span<const FigureShape> shapes(figure.shapes);
+  for (std::size_t begin = 0, end; begin < shapes.size(); begin = end) {
+    end = end_of_group(shapes, begin);
+    layer.groups.push_back(group_of(figure, shapes.subspan(begin, end - begin)));
+  }
   return page;
 }
 
@@ -123,6 +150,7 @@ void write_figures(const Job& job, const RenderContext& context, ViewResult& res
   check_size(job, order);
   ColoredOrder colored = colors_of(order, job, context);
   if (job.output.merges_neighbours) colored = merge_neighbours(colored, context.execution);
+  colored = gather_sheets(std::move(colored), context.execution);
   const Figure figure = outlined(colored, kHem, hiding(job, context, true), context.execution);
   colored = {};
   const Page page = page_of(figure, job);

@@ -50,6 +50,8 @@ struct PageGroup {
   std::vector<double> bulges{};
   std::vector<PagePath> paths{};
   std::vector<PageColor> fills{};  ///< empty: nothing is filled; otherwise one for each path (nonzero winding rule)
+  /// Of all of the group together, 0 to 255: it is drawn on clear ground, and then laid on with it.
+  std::uint8_t opacity = 255;
 
   /// Appends a path without arcs.
   void add(std::span<const glm::dvec2> corners, bool is_closed, bool is_part = false);
@@ -86,12 +88,13 @@ void validate(const Page& page);
 ///
 /// SVG: size in millimetres, one user unit to the millimetre; layers and groups are named as Inkscape does it, paths of
 /// one pen share elements; without style sheets, clip paths, masks or transforms. PDF 1.6: layers as optional content,
-/// compressed, scaled by a user unit where a side is over 5080 mm. DXF (AutoCAD release 12), lines only: LINE,
-/// POLYLINE, ARC, CIRCLE and POINT with line types, y up from the page's lower left corner; it has no widths, and no
-/// groups: each is a layer named by layer and group, "2_VISIBLE-WHEEL", or all of a layer are one where there are a
-/// thousand or more. Such names keep letters, digits and - alone, 31 at most. JSON: all of the page, as it is.
-/// Characters that a format does not allow are replaced in names. Memory is constant beside the page's own. \throws
-/// Error as validate() does; bad_argument without a format; unsupported for fills in DXF; file_unwritable.
+/// groups with an opacity as transparency groups, compressed, scaled by a user unit where a side is over 5080 mm. DXF
+/// (AutoCAD release 12), lines only: LINE, POLYLINE, ARC, CIRCLE and POINT with line types, y up from the page's lower
+/// left corner; it has no widths, and no groups: each is a layer named by layer and group, "2_VISIBLE-WHEEL", or all of
+/// a layer are one where there are a thousand or more. Such names keep letters, digits and - alone, 31 at most. JSON:
+/// all of the page, as it is. Characters that a format does not allow are replaced in names. Memory is constant beside
+/// the page's own. \throws Error as validate() does; bad_argument without a format; unsupported for fills in DXF;
+/// file_unwritable.
 void save(const Page& page, const std::string& path, std::optional<PageFormat> format = std::nullopt,
           const Execution& execution = {});
 

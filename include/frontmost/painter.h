@@ -102,8 +102,9 @@ struct PaintOrder {
 
 /// The same order with hems: a polygon reaches under what is painted later and lies beside it, by `width` pixels or
 /// some part of it, wherever that, or another part of the same primitive, hides the hem. So viewers that blend the rims
-/// of polygons show no hairlines of the background between neighbours, and no outline grows. For drawings: with a hem
-/// an outline is not convex, and paint() does not know it. Cost and `hides` as for visible_parts(). \throws Error
+/// of polygons show no hairlines of the background between neighbours, and no outline grows. Where a side lies beside
+/// several polygons, it may have hems along parts of it, which begin and end at corners of those. For drawings: with a
+/// hem an outline is not convex, and paint() does not know it. Cost and `hides` as for visible_parts(). \throws Error
 /// bad_argument for a width of 0 or less, or over 100.
 [[nodiscard]] PaintOrder with_hems(const PaintOrder& order, double width,
                                    const std::function<bool(PrimitiveId)>& hides = {}, const Execution& execution = {});

@@ -19,6 +19,9 @@ constexpr std::size_t kMostParts = 48;
 /// each leave a sliver of the next takes n * n.
 constexpr std::size_t kMostCovers = 4096;
 
+/// Along a side, for what ends beside it.
+constexpr int kMostCells = 256;
+
 Extent box_of(Outline outline) {
   Extent box{glm::vec2(outline[0].at), glm::vec2(outline[0].at), 0, 0};
   for (const PaintCorner& corner : outline) {
@@ -99,6 +102,38 @@ Spreader::Found Looker::spread(std::size_t slot, Outline outline, std::uint32_t 
   const Spreader::Found found = spreader_.spread(hider, Hiders{*this, slot});
   if (found == Spreader::Found::open) open_.push_back(spreader_.open_at());
   return found;
+}
+
+void Looker::ends_along(std::size_t slot, std::size_t side, std::vector<double>& ends) {
+  ends.clear();
+  if (mosaic_.across(scenery_.first_corner(slot) + side) != no_index) return;
+  const Outline outline = scenery_.outline(slot);
+  const glm::dvec2 from(outline[side].at), to(outline[side + 1 == outline.size() ? 0 : side + 1].at), way = to - from;
+  const double length = glm::length(way), margin = OutlineCutter::thin / length;
+  const PieceGrid::Range cells =
+      scenery_.grid().range({glm::vec2(glm::min(from, to)), glm::vec2(glm::max(from, to)), 0, 0});
+  if (!(length > OutlineCutter::thin) || cells.last_x - cells.first_x + cells.last_y - cells.first_y > kMostCells)
+    return;
+  const std::uint32_t first_place = scenery_.first_place(slot);
+  const auto add_corners = [&](std::uint32_t other) {
+    for (const PaintCorner& corner : scenery_.outline(other)) {
+      const glm::dvec2 p = glm::dvec2(corner.at) - from;
+      const double along = glm::dot(p, way) / (length * length);
+      if (along > margin && along < 1 - margin && std::abs(way.x * p.y - way.y * p.x) < OutlineCutter::thin * length)
+        ends.push_back(along);
+    }
+  };
+  for (int y = cells.first_y; y <= cells.last_y; ++y)
+    for (int x = cells.first_x; x <= cells.last_x; ++x) {
+      const std::span<const std::uint32_t> cell = scenery_.cell(x, y);
+      for (std::size_t i = cell.size(); i-- > 0 && scenery_.place(cell[i]) >= first_place;) {
+        poll_.count();
+        if (cell[i] != slot && may_hide(slot, cell[i])) add_corners(cell[i]);
+      }
+    }
+  std::sort(ends.begin(), ends.end());
+  const auto is_same = [&](double a, double b) { return b - a < margin; };
+  ends.erase(std::unique(ends.begin(), ends.end(), is_same), ends.end());
 }
 
 /// Most are not, and their middles tell.

@@ -40,6 +40,10 @@ class Looker {
     return count;
   }
 
+  /// Sets `ends` to where along a side of the polygon in a slot, from 0 to 1, others that are after it have corners on
+  /// it; to nothing where the side is also another's, or is long beside many.
+  void ends_along(std::size_t slot, std::size_t side, std::vector<double>& ends);
+
   /// The parts of the polygon in a slot that are seen, until the next call.
   [[nodiscard]] const OutlineList& look(std::size_t slot);
 

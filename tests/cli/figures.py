@@ -26,7 +26,7 @@ sys.dont_write_bytecode = True
 from rasters import Raster, read_ids, read_png, read_pnm  # noqa: E402
 
 WIDTH, HEIGHT = 240, 160
-LAYERS = 6  # more than one behind the other
+LAYERS = 12  # more than one behind the other
 BOUND = 3  # steps of 8 bits: viewers round, and blend twice at rims
 TOLERANCE = 6  # what --color-tolerance allows by default
 MERGED = "--merge-neighbours"
@@ -56,7 +56,8 @@ CASES = {
     "ids, neighbours merged": Case(["builtin:city", "--shading", "ids", MERGED], furthest=64),
     "cubes, neighbours merged": Case(["builtin:cubes", *FLAT, MERGED]),
     "tiles, neighbours merged": Case(["builtin:gallery", *FLAT, MERGED], TOLERANCE, 0.02, 64),
-    "all of glass": Case(["builtin:cubes", *FLAT, "--opacity", "0.5"], 0, 0.025),
+    "all of glass": Case(["builtin:cubes", *FLAT, "--opacity", "0.5"], 0, 0.012, 20, browser=0.012),
+    "a teapot of glass": Case(["builtin:teapot", *FLAT, "--opacity", "0.4"], 0, 0.006, browser=0.006),
     "leaves": Case(["leaves.gltf", *FLAT]),
 }
 SVG = "{http://www.w3.org/2000/svg}"

@@ -8,7 +8,7 @@
 #include "frontmost/figure.h"
 #include "frontmost/zbuffer.h"
 #include "shade/figure/side_net.h"
-#include "shade/support.h"
+#include "shade/figure_support.h"
 
 namespace frontmost {
 namespace {
@@ -16,51 +16,6 @@ namespace {
 using namespace test;
 using shading::NetCorner;
 using shading::SideNet;
-
-/// A polygon of a figure made by hand, counter-clockwise as it is seen.
-struct Tile {
-  std::vector<glm::dvec2> corners;
-  glm::u8vec4 color{0};
-};
-constexpr glm::u8vec4 kRed(255, 0, 0, 255), kBlue(0, 0, 255, 255), kGlass(255, 0, 0, 99);
-
-Tile box(double x, double y, double width, double height, const glm::u8vec4& color = kRed) {
-  return {{{x, y}, {x, y + height}, {x + width, y + height}, {x + width, y}}, color};
-}
-
-ColoredOrder order_of(const std::vector<Tile>& tiles) {
-  ColoredOrder colored;
-  colored.order.view = front_view();
-  for (const Tile& tile : tiles) {
-    const auto id = PrimitiveId(colored.shapes.size());
-    colored.order.polygons.push_back({id, std::uint32_t(tile.corners.size()), colored.order.corners.size()});
-    for (const glm::dvec2& corner : tile.corners) colored.order.corners.push_back({{corner.x, corner.y, 1}, false});
-    colored.shapes.push_back(std::uint32_t(colored.shapes.size()));
-    colored.colors.push_back(tile.color);
-  }
-  return colored;
-}
-
-/// Without hems: nothing hides.
-Figure bare(const ColoredOrder& colored) {
-  return outlined(colored, 1, [](PrimitiveId) { return false; });
-}
-double area_of(const Figure& figure, const FigureRing& ring) {
-  double twice = 0;
-  for (std::size_t k = 0; k < ring.corner_count; ++k) {
-    const glm::dvec2 p = figure.corners[ring.first_corner + k];
-    const glm::dvec2 q = figure.corners[ring.first_corner + (k + 1) % ring.corner_count];
-    twice += q.x * p.y - p.x * q.y;
-  }
-  return twice / 2;
-}
-/// Holes turn the other way.
-double area_of(const Figure& figure, std::size_t shape) {
-  double area = 0;
-  for (std::uint32_t i = 0; i < figure.shapes[shape].ring_count; ++i)
-    area += area_of(figure, figure.rings[figure.shapes[shape].first_ring + i]);
-  return area;
-}
 
 TEST(MergeNeighbours, MakesOneSquareOfMany) {
   std::vector<Tile> tiles;
@@ -184,6 +139,38 @@ TEST(Outlined, RefusesListsThatDoNotMatch) {
   EXPECT_THROW((void)merge_neighbours(tiles), Error);
   EXPECT_THROW((void)outlined(order_of({box(0, 0, 1, 1)}), 0), Error);
   EXPECT_TRUE(bare({}).shapes.empty());
+}
+
+TEST(Outlined, RefusesPolygonsWithoutTheirCorners) {
+  for (const std::uint32_t count : {0u, 2u, 5u, 0xFFFFFFFFu}) {
+    ColoredOrder tiles = order_of({box(0, 0, 1, 1)});
+    tiles.order.polygons[0].corner_count = count;
+    EXPECT_THROW((void)bare(tiles), Error) << count;
+    EXPECT_THROW((void)merge_neighbours(tiles), Error) << count;
+    EXPECT_THROW((void)gather_sheets(tiles), Error) << count;
+  }
+  ColoredOrder tiles = order_of({box(0, 0, 1, 1)});
+  tiles.order.polygons[0].first_corner = std::size_t(-2);
+  EXPECT_THROW((void)bare(tiles), Error);
+  ColoredOrder cut = order_of({box(0, 0, 1, 1)});
+  cut.whole_of = {0};
+  cut.wholes = cut.order;
+  cut.wholes.polygons[0].first_corner = 1;
+  EXPECT_THROW((void)bare(cut), Error);
+}
+
+/// A box beside another that ends half way: what is left of its side has a hem there, whole or in pieces.
+TEST(Outlined, PartsOfSidesHaveHems) {
+  const Figure figure = outlined(order_of({box(0, 0, 8, 8), box(8, 0, 8, 4, kBlue)}), 1);
+  EXPECT_NEAR(area_of(figure, 0), 64 + 4 - 0.5, 1e-9);
+  ColoredOrder cut = order_of({box(0, 0, 8, 3), box(0, 3, 8, 5), box(8, 0, 8, 4, kBlue)});
+  cut.whole_of = {0, 0, 1};
+  cut.wholes = order_of({box(0, 0, 8, 8), box(8, 0, 8, 4, kBlue)}).order;
+  const Figure pieces = outlined(cut, 1);
+  // The same hem, in two parts.
+  EXPECT_NEAR(area_of(pieces, 0) + area_of(pieces, 1), 64 + 4 - 0.5, 1e-9);
+  EXPECT_GT(area_of(pieces, 0), 24 + 2);
+  EXPECT_GT(area_of(pieces, 1), 40);
 }
 
 TEST(SideNet, GivesEveryRingOnceWhateverWayOutlinesTouch) {

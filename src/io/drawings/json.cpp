@@ -68,6 +68,10 @@ void save_json(const Page& page, OutputFile& file, const Execution& execution) {
     for (const PageGroup& group : layer.groups) {
       out << (&group == layer.groups.data() ? "\n" : ",\n") << "{\"name\": " << json_text(group.name) << ", \"pen\": ";
       write_pen(out, group.pen);
+      if (group.opacity < 255) {
+        out << ", \"opacity\": ";
+        out.integer(group.opacity);
+      }
       out << ", \"paths\": [";
       for (std::size_t i = 0; i < group.paths.size(); ++i) {
         progress.step();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// PDF 1.6: one page, one compressed stream of drawing operators, layers as optional content. No date and no file
-// identifier, so that a page always gives the same bytes.
+// PDF 1.6: one page, one compressed stream of drawing operators, layers as optional content, groups with an opacity as
+// forms that are transparency groups. No date and no file identifier, so that a page always gives the same bytes.
 #include <zlib.h>
 
 #include <array>
@@ -49,10 +49,11 @@ class DeflateSink final : public ByteSink {
 /// The operators that draw all layers.
 class PdfContent {
  public:
-  PdfContent(const Page& page, PageText& out, double scale, const Execution& execution)
-      : page_(page), out_(out), scale_(scale), progress_(page, execution) {}
+  PdfContent(const Page& page, PageText& out, double scale, WritingProgress& progress)
+      : page_(page), out_(out), scale_(scale), progress_(progress) {}
 
   void write() {
+    std::size_t form = 0;
     // Millimetres with y down, as the page has them; round ends and corners.
     out_.fixed(std::llround(scale_ * 1e9), 9) << " 0 0 ";
     out_.fixed(-std::llround(scale_ * 1e9), 9) << " 0 ";
@@ -60,9 +61,21 @@ class PdfContent {
     for (std::size_t i = 0; i < page_.layers.size(); ++i) {
       out_ << "/OC /L";
       out_.integer(std::int64_t(i)) << " BDC\n";
-      for (const PageGroup& group : page_.layers[i].groups) write_group(group);
+      for (const PageGroup& group : page_.layers[i].groups) {
+        if (group.opacity == 255) {
+          write_group(group);
+        } else {
+          write_form(group, form++);
+        }
+      }
       out_ << "EMC\n";
     }
+  }
+
+  /// The operators of a form, which begins with the page's colours.
+  void write_alone(const PageGroup& group) {
+    out_ << "0 0 0 rg 0 0 0 RG\n";
+    write_group(group);
   }
 
   using Opacities = std::array<bool, 256>;
@@ -70,6 +83,13 @@ class PdfContent {
   [[nodiscard]] const Opacities& line_opacities() const { return line_opacities_; }
 
  private:
+  void write_form(const PageGroup& group, std::size_t number) {
+    fill_opacities_[group.opacity] = true;
+    out_ << "q /F";
+    out_.integer(group.opacity) << " gs /G";
+    out_.integer(std::int64_t(number)) << " Do Q\n";
+  }
+
   void write_group(const PageGroup& group) {
     if (group.pen.width > 0) {
       out_.fixed(thousandths(group.pen.width)) << " w [";
@@ -163,8 +183,8 @@ class PdfContent {
   const Page& page_;
   PageText& out_;
   const double scale_;
-  WritingProgress progress_;
-  PageColor fill_, line_;  ///< black and opaque, as a page begins
+  WritingProgress& progress_;
+  PageColor fill_, line_;  ///< black and opaque, as a page begins, and a form
   Opacities fill_opacities_{}, line_opacities_{};
 };
 
@@ -172,7 +192,11 @@ class PdfContent {
 class PdfWriter {
  public:
   PdfWriter(const Page& page, OutputFile& file, const Execution& execution)
-      : page_(page), sink_(file), out_(sink_), execution_(execution), places_(first_layer + page.layers.size()) {
+      : page_(page), sink_(file), out_(sink_), progress_(page, execution), places_(first_layer + page.layers.size()) {
+    for (const PageLayer& layer : page.layers)
+      for (const PageGroup& group : layer.groups)
+        if (group.opacity < 255) forms_.push_back({&group, places_.size() + 2 * forms_.size()});
+    places_.resize(places_.size() + 2 * forms_.size());
     // Viewers refuse pages of more than 14400 units.
     unit_ = std::max(1.0, std::ceil(std::max(page.width, page.height) * points_per_millimetre / 14400));
   }
@@ -180,20 +204,10 @@ class PdfWriter {
   void write() {
     out_ << "%PDF-1.6\n%\xE2\xE3\xCF\xD3\n";
     const double scale = points_per_millimetre / unit_;
-    begin(contents) << "<< /Length ";
-    out_.integer(length) << " 0 R /Filter /FlateDecode >>\nstream\n";
-    const std::uint64_t start = out_.size();
-    DeflateSink deflate(out_);
-    PageText operators(deflate);
-    PdfContent content(page_, operators, scale, execution_);
-    content.write();
-    operators.flush();
-    deflate.finish();
-    const std::uint64_t end = out_.size();
-    out_ << "\nendstream\nendobj\n";
-    begin(length);
-    out_.integer(std::int64_t(end - start)) << "\nendobj\n";
-    write_page(content, scale);
+    begin(contents) << "<< ";
+    const States states = write_stream(length, scale, [](PdfContent& content) { content.write(); });
+    write_page(states, scale);
+    for (const Form& form : forms_) write_form(form, scale);
     write_layers();
     write_end();
     out_.flush();
@@ -201,10 +215,70 @@ class PdfWriter {
 
  private:
   enum Object : std::size_t { none, catalog, page_tree, page_itself, contents, length, info, first_layer };
+  struct Form {
+    const PageGroup* group;
+    std::size_t object;  ///< that of its length follows
+  };
+  /// The opacities that a stream names.
+  struct States {
+    PdfContent::Opacities fills, lines;
+  };
 
   PageText& begin(std::size_t object) {
     places_[object] = out_.size();
     return out_.integer(std::int64_t(object)) << " 0 obj\n";
+  }
+
+  /// The end of a stream's dictionary, the stream, and its length as an object of its own.
+  template <class Write>
+  States write_stream(std::size_t length_object, double scale, const Write& write) {
+    out_ << "/Length ";
+    out_.integer(std::int64_t(length_object)) << " 0 R /Filter /FlateDecode >>\nstream\n";
+    const std::uint64_t start = out_.size();
+    DeflateSink deflate(out_);
+    PageText operators(deflate);
+    PdfContent content(page_, operators, scale, progress_);
+    write(content);
+    operators.flush();
+    deflate.finish();
+    const std::uint64_t end = out_.size();
+    out_ << "\nendstream\nendobj\n";
+    begin(length_object);
+    out_.integer(std::int64_t(end - start)) << "\nendobj\n";
+    return {content.fill_opacities(), content.line_opacities()};
+  }
+
+  /// Resources are named before it is known which a form needs: all that its group has.
+  void write_form(const Form& form, double scale) {
+    const PageGroup& group = *form.group;
+    glm::dvec2 low(0), high(page_.width, page_.height);
+    if (group.bulges.empty() && !group.points.empty()) {
+      low = high = group.points[0];
+      for (const glm::dvec2& p : group.points) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+      }
+    }
+    States states{};
+    for (std::size_t i = 0; i < group.paths.size(); ++i) {
+      const PathPaint paint = paint_of(group, i);
+      if (paint.fill) states.fills[paint.fill->opacity] = true;
+      if (paint.line) states.lines[paint.line->opacity] = true;
+    }
+    begin(form.object) << "<< /Type /XObject /Subtype /Form /BBox [";
+    for (const double side :
+         {low.x - group.pen.width, low.y - group.pen.width, high.x + group.pen.width, high.y + group.pen.width})
+      out_.fixed(thousandths(side)) << ' ';
+    out_ << "] /Group << /S /Transparency /I true >> /Resources << ";
+    write_all_states(states) << ">> ";
+    (void)write_stream(form.object + 1, scale, [&](PdfContent& content) { content.write_alone(group); });
+  }
+
+  PageText& write_all_states(const States& states) {
+    out_ << "/ExtGState << ";
+    write_states(states.fills, "/F", "/ca");
+    write_states(states.lines, "/S", "/CA");
+    return out_ << ">> ";
   }
 
   PageText& layer_references() {
@@ -221,7 +295,7 @@ class PdfWriter {
     }
   }
 
-  void write_page(const PdfContent& content, double scale) {
+  void write_page(const States& states, double scale) {
     begin(page_itself) << "<< /Type /Page /Parent 2 0 R /Contents 4 0 R /MediaBox [0 0 ";
     out_.fixed(std::int64_t(page_.width * scale * 1e6), 6) << ' ';  // rounded down: rasterisers round up
     out_.fixed(std::int64_t(page_.height * scale * 1e6), 6) << "]";
@@ -229,10 +303,18 @@ class PdfWriter {
       out_ << " /UserUnit ";
       out_.integer(std::int64_t(unit_));
     }
-    out_ << "\n/Resources << /ExtGState << ";
-    write_states(content.fill_opacities(), "/F", "/ca");
-    write_states(content.line_opacities(), "/S", "/CA");
-    out_ << ">> /Properties << ";
+    out_ << "\n/Resources << ";
+    write_all_states(states);
+    if (!forms_.empty()) {
+      out_ << "/XObject << ";
+      for (std::size_t i = 0; i < forms_.size(); ++i) {
+        out_ << "/G";
+        out_.integer(std::int64_t(i)) << ' ';
+        out_.integer(std::int64_t(forms_[i].object)) << " 0 R ";
+      }
+      out_ << ">> ";
+    }
+    out_ << "/Properties << ";
     for (std::size_t i = 0; i < page_.layers.size(); ++i) {
       out_ << "/L";
       out_.integer(std::int64_t(i)) << ' ';
@@ -267,7 +349,8 @@ class PdfWriter {
   const Page& page_;
   FileSink sink_;
   PageText out_;
-  const Execution& execution_;
+  WritingProgress progress_;
+  std::vector<Form> forms_;
   std::vector<std::uint64_t> places_;
   double unit_ = 1;
 };

@@ -45,6 +45,10 @@ class SvgWriter {
   void write_group(const PageGroup& group) {
     out_ << "<g";
     if (!group.name.empty()) out_ << " inkscape:label=\"" << xml_text(group.name) << '"';
+    if (group.opacity < 255) {
+      out_ << " opacity=\"";
+      out_.fixed(thousandths(group.opacity / 255.0)) << '"';
+    }
     const bool has_lines = group.pen.width > 0, has_line_color = has_lines && !group.pen.takes_fill_color;
     if (has_line_color) color("stroke", group.pen.color);
     if (has_lines) {

@@ -4,6 +4,7 @@
 #include "base/float_environment.h"
 #include "base/parallel.h"
 #include "frontmost/figure.h"
+#include "shade/figure/check_figure.h"
 #include "shade/figure/side_net.h"
 #include "shade/figure/whole_hems.h"
 
@@ -19,7 +20,10 @@ class Outliner {
  public:
   explicit Outliner(Figure& figure) : figure_(figure) {}
 
-  void begin_shape(const glm::u8vec4& color) { figure_.shapes.push_back({color, 0, figure_.rings.size()}); }
+  void begin_shape(const glm::u8vec4& color, bool is_beside_last) {
+    const std::uint32_t sheet = figure_.shapes.empty() ? 0 : figure_.shapes.back().sheet + !is_beside_last;
+    figure_.shapes.push_back({color, 0, figure_.rings.size(), sheet});
+  }
   void add_ring(std::span<const HemmedSide> sides) {
     begin_ring();
     for (std::size_t i = 0; i < sides.size(); ++i) {
@@ -74,23 +78,16 @@ class Outliner {
   Figure& figure_;
 };
 
-void check(const ColoredOrder& colored) {
-  const auto refuse = [](const char* why) { throw Error(ErrorCode::bad_argument, std::string("figure: ") + why); };
-  const std::size_t count = colored.order.polygons.size();
-  if (colored.colors.size() != count || colored.shapes.size() != count)
-    refuse("colours, shapes and polygons differ in number");
-  const std::vector<std::uint32_t>& wholes = colored.whole_of;
-  if (wholes.empty()) return;
-  if (wholes.size() != count || !std::is_sorted(wholes.begin(), wholes.end()) ||
-      wholes.back() >= colored.wholes.polygons.size())
-    refuse("polygons are pieces of what is not there");
+/// Whether consecutive polygons are in one translucent sheet.
+bool are_in_sheet(const ColoredOrder& colored, std::size_t first, std::size_t second) {
+  return !colored.sheets.empty() && colored.colors[first].a < 255 && colored.sheets[first] == colored.sheets[second];
 }
 
 }  // namespace
 
 Figure outlined(const ColoredOrder& colored, double hem, const std::function<bool(PrimitiveId)>& hides,
                 const Execution& execution) {
-  check(colored);
+  check_figure(colored);
   WholeHems hems(colored, hem, hides, execution);
   const IeeeScope ieee;
   const std::size_t count = colored.colors.size();
@@ -105,7 +102,7 @@ Figure outlined(const ColoredOrder& colored, double hem, const std::function<boo
   for (std::size_t begin = 0, end; begin < count; begin = end) {
     for (end = begin + 1; end < count && colored.shapes[end] == colored.shapes[begin];) ++end;
     check_cancelled(execution);
-    outliner.begin_shape(colored.colors[begin]);
+    outliner.begin_shape(colored.colors[begin], begin > 0 && are_in_sheet(colored, begin - 1, begin));
     if (end == begin + 1) {
       outliner.add_ring(hems.sides(begin));
       continue;

@@ -34,13 +34,16 @@ class WholeHems {
   using Corners = std::span<const PaintCorner>;
   [[nodiscard]] PaintOrder grouped_by_color(std::vector<std::uint8_t>& hiding,
                                             const std::function<bool(PrimitiveId)>& hides) const;
+  void hem_sheets(const PaintOrder& grouped, double width, const Execution& execution);
   [[nodiscard]] std::size_t whole_of(std::size_t polygon) const {
     return colored_.whole_of.empty() ? polygon : colored_.whole_of[polygon];
   }
   void read_whole(std::size_t whole);
+  void add_side(const glm::dvec2& from, const glm::dvec2& to);
 
   const ColoredOrder& colored_;
   const PaintOrder& wholes_;
+  const double most_beside_;  ///< pixels: of what lies on a side
   PaintOrder hemmed_;
   std::size_t read_ = std::size_t(-1);  ///< the whole that whole_sides_ are of
   std::vector<HemmedSide> whole_sides_, sides_;

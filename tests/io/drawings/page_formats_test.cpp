@@ -97,6 +97,39 @@ TEST(Pdf, PartsAreFilledWithTheirPath) {
   EXPECT_EQ(count(operators, "f\n"), 2u);
 }
 
+/// A triangle, and two that lie over each other as one.
+Page page_with_a_sheet() {
+  Page page = page_with_parts();
+  PageGroup sheet = page.layers[0].groups[0];
+  sheet.opacity = 51;
+  page.layers[0].groups.push_back(sheet);
+  return page;
+}
+
+TEST(Svg, GroupsMayHaveAnOpacity) {
+  const std::string svg = saved(page_with_a_sheet(), PageFormat::svg);
+  EXPECT_EQ(count(svg, "<g opacity=\".2\">\n<path fill=\"#ff0000\" d="), 1u) << svg;
+  EXPECT_EQ(count(svg, "opacity"), 1u);
+}
+
+TEST(Json, GroupsMayHaveAnOpacity) {
+  const auto json = nlohmann::json::parse(saved(page_with_a_sheet(), PageFormat::json));
+  EXPECT_FALSE(json["layers"][0]["groups"][0].contains("opacity"));
+  EXPECT_EQ(json["layers"][0]["groups"][1]["opacity"], 51);
+}
+
+TEST(Pdf, GroupsMayHaveAnOpacity) {
+  const std::string pdf = saved(page_with_a_sheet(), PageFormat::pdf);
+  EXPECT_TRUE(has(operators_of(pdf), "q /F51 gs /G0 Do Q\n")) << operators_of(pdf);
+  EXPECT_TRUE(has(pdf, "/F51 << /ca .2 >>"));
+  const std::size_t form =
+      pdf.find("/Type /XObject /Subtype /Form /BBox [1 1 9 9 ] /Group << /S /Transparency /I true >>");
+  ASSERT_NE(form, std::string::npos);
+  EXPECT_TRUE(has(pdf, "/XObject << /G0 8 0 R >>"));
+  EXPECT_EQ(pdf.rfind("8 0 obj\n", form) + 8 + 3, form);
+  EXPECT_EQ(count(operators_of(pdf.substr(form)), "f\n"), 2u);
+}
+
 TEST(Json, SaysWhatIsAPart) { EXPECT_EQ(count(saved(page_with_parts(), PageFormat::json), "\"part\": true"), 1u); }
 
 TEST(Pdf, FindsItsObjectsAndItsSize) {

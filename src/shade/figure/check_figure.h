@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// Figures come from callers, too.
+#pragma once
+
+#include "frontmost/figure.h"
+
+namespace frontmost::shading {
+
+/// \throws Error bad_argument where parts of a ColoredOrder do not match, or polygons have corners that are not there.
+void check_figure(const ColoredOrder& colored);
+
+}  // namespace frontmost::shading

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "base/float_environment.h"
+#include "base/parallel.h"
+#include "frontmost/figure.h"
+#include "painter/poll.h"
+#include "shade/figure/check_figure.h"
+#include "shade/figure/overlaps.h"
+#include "shade/figure/sheet_order.h"
+#include "shade/figure/side_net.h"
+
+namespace frontmost {
+namespace {
+
+using namespace shading;
+
+/// 128 MB. With more, everything stays as it is.
+constexpr std::size_t kMostPairs = std::size_t(1) << 24;
+
+/// Consecutive polygons that stay together, as one shape or as pieces of one whole.
+struct Nodes {
+  std::vector<std::uint32_t> first;     ///< polygons; at the end also how many there are
+  std::vector<std::uint32_t> of_whole;  ///< no_index: it has no pieces
+  [[nodiscard]] std::size_t count() const { return first.size() - 1; }
+};
+
+Nodes find_nodes(const ColoredOrder& colored, const PaintOrder& wholes) {
+  Nodes nodes;
+  nodes.of_whole.assign(wholes.polygons.size(), no_index);
+  const auto whole_of = [&](std::uint32_t i) { return colored.whole_of.empty() ? i : colored.whole_of[i]; };
+  const auto count = std::uint32_t(colored.colors.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const bool goes_on = i > 0 && (colored.shapes[i] == colored.shapes[i - 1] || whole_of(i) == whole_of(i - 1));
+    if (!goes_on) nodes.first.push_back(i);
+    nodes.of_whole[whole_of(i)] = std::uint32_t(nodes.first.size() - 1);
+  }
+  nodes.first.push_back(count);
+  return nodes;
+}
+
+void sort_out(std::vector<NodePair>& pairs) {
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+}
+
+/// Who is over whom, where that matters: not for opaque ones that are over nothing translucent, nor over anything that
+/// is. They go first, in the order that they had. None: there are too many.
+std::optional<std::vector<NodePair>> find_over(const PaintOrder& wholes, const Nodes& nodes,
+                                               const std::vector<std::uint8_t>& opacities, const Execution& execution) {
+  const Overlaps overlaps(wholes);
+  painter_detail::Poll poll(execution);
+  std::vector<NodePair> over;
+  std::vector<std::uint8_t> is_bound(nodes.count());
+  for (std::size_t i = 0; i < is_bound.size(); ++i) is_bound[i] = opacities[i] < 255;
+  for (std::size_t whole = 0; whole < wholes.polygons.size(); ++whole) {
+    const std::uint32_t node = nodes.of_whole[whole];
+    if (node == no_index) continue;
+    const bool is_full = overlaps.any_earlier(whole, [&](std::size_t other) {
+      poll.count();
+      const std::uint32_t below = nodes.of_whole[other];
+      if (below == no_index || below == node || !is_bound[below]) return false;
+      if (!over.empty() && over.back() == NodePair(below, node)) return false;
+      if (!overlaps.overlap(whole, other)) return false;
+      is_bound[node] = 1;
+      over.emplace_back(below, node);
+      return over.size() > kMostPairs;
+    });
+    if (is_full) return std::nullopt;
+  }
+  sort_out(over);
+  return over;
+}
+
+/// Translucent neighbours of one opacity.
+std::vector<NodePair> find_beside(const PaintOrder& wholes, const Nodes& nodes,
+                                  const std::vector<std::uint8_t>& opacities, const Execution& execution) {
+  std::vector<NodePair> beside;
+  std::array<std::vector<std::uint32_t>, 255> by_opacity;
+  for (std::uint32_t whole = 0; whole < wholes.polygons.size(); ++whole) {
+    const std::uint32_t node = nodes.of_whole[whole];
+    if (node != no_index && opacities[node] < 255) by_opacity[opacities[node]].push_back(whole);
+  }
+  SideNet net;
+  std::vector<NetCorner> corners;
+  for (const std::vector<std::uint32_t>& members : by_opacity) {
+    check_cancelled(execution);
+    if (members.size() < 2) continue;
+    net.clear();
+    for (const std::uint32_t whole : members) {
+      corners.clear();
+      for (const PaintCorner& corner : corners_of(wholes, whole)) corners.push_back({glm::dvec2(corner.at), {}});
+      net.add(corners, nodes.of_whole[whole]);
+    }
+    net.weave();
+    net.for_each_shared([&](std::uint32_t a, std::uint32_t b) {
+      if (a != b) beside.insert(beside.end(), {{a, b}, {b, a}});
+    });
+  }
+  sort_out(beside);
+  return beside;
+}
+
+ColoredOrder in_order(const ColoredOrder& colored, const Nodes& nodes, const SheetOrder& order) {
+  ColoredOrder made;
+  made.order.view = made.wholes.view = colored.order.view;
+  made.order.steps = colored.order.steps;
+  std::uint32_t shape = 0;
+  for (std::size_t k = 0; k < order.nodes.size(); ++k) {
+    const std::uint32_t first = nodes.first[order.nodes[k]], end = nodes.first[order.nodes[k] + 1];
+    for (std::uint32_t i = first; i < end; ++i) {
+      if (!made.shapes.empty()) shape += i == first || colored.shapes[i] != colored.shapes[i - 1];
+      append(colored.order, i, made.order);
+      made.colors.push_back(colored.colors[i]);
+      made.shapes.push_back(shape);
+      made.sheets.push_back(order.sheets[k]);
+      if (colored.whole_of.empty()) continue;
+      if (i == first || colored.whole_of[i] != colored.whole_of[i - 1])
+        append(colored.wholes, colored.whole_of[i], made.wholes);
+      made.whole_of.push_back(std::uint32_t(made.wholes.polygons.size() - 1));
+    }
+  }
+  return made;
+}
+
+}  // namespace
+
+ColoredOrder gather_sheets(ColoredOrder colored, const Execution& execution) {
+  check_figure(colored);
+  const auto is_translucent = [](const glm::u8vec4& color) { return color.a < 255; };
+  if (std::none_of(colored.colors.begin(), colored.colors.end(), is_translucent)) return colored;
+  const IeeeScope ieee;
+  const PaintOrder& wholes = colored.whole_of.empty() ? colored.order : colored.wholes;
+  const Nodes nodes = find_nodes(colored, wholes);
+  SheetNodes sheet_nodes;
+  for (std::size_t i = 0; i < nodes.count(); ++i) sheet_nodes.opacities.push_back(colored.colors[nodes.first[i]].a);
+  std::optional<std::vector<NodePair>> over = find_over(wholes, nodes, sheet_nodes.opacities, execution);
+  if (!over) return colored;
+  sheet_nodes.over = std::move(*over);
+  sheet_nodes.beside = find_beside(wholes, nodes, sheet_nodes.opacities, execution);
+  return in_order(colored, nodes, order_in_sheets(sheet_nodes));
+}
+
+}  // namespace frontmost

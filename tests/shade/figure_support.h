@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Figures made by hand, and the areas of what becomes of them.
+#pragma once
+
+#include "frontmost/figure.h"
+#include "shade/support.h"
+
+namespace frontmost::test {
+
+/// A polygon of a figure made by hand, counter-clockwise as it is seen.
+struct Tile {
+  std::vector<glm::dvec2> corners;
+  glm::u8vec4 color{0};
+};
+inline constexpr glm::u8vec4 kRed(255, 0, 0, 255), kBlue(0, 0, 255, 255), kGlass(255, 0, 0, 99);
+
+inline Tile box(double x, double y, double width, double height, const glm::u8vec4& color = kRed) {
+  return {{{x, y}, {x, y + height}, {x + width, y + height}, {x + width, y}}, color};
+}
+
+inline ColoredOrder order_of(const std::vector<Tile>& tiles) {
+  ColoredOrder colored;
+  colored.order.view = front_view();
+  for (const Tile& tile : tiles) {
+    const auto id = PrimitiveId(colored.shapes.size());
+    colored.order.polygons.push_back({id, std::uint32_t(tile.corners.size()), colored.order.corners.size()});
+    for (const glm::dvec2& corner : tile.corners) colored.order.corners.push_back({{corner.x, corner.y, 1}, false});
+    colored.shapes.push_back(std::uint32_t(colored.shapes.size()));
+    colored.colors.push_back(tile.color);
+  }
+  return colored;
+}
+
+/// Without hems: nothing hides.
+inline Figure bare(const ColoredOrder& colored) {
+  return outlined(colored, 1, [](PrimitiveId) { return false; });
+}
+inline double area_of(const Figure& figure, const FigureRing& ring) {
+  double twice = 0;
+  for (std::size_t k = 0; k < ring.corner_count; ++k) {
+    const glm::dvec2 p = figure.corners[ring.first_corner + k];
+    const glm::dvec2 q = figure.corners[ring.first_corner + (k + 1) % ring.corner_count];
+    twice += q.x * p.y - p.x * q.y;
+  }
+  return twice / 2;
+}
+/// Holes turn the other way.
+inline double area_of(const Figure& figure, std::size_t shape) {
+  double area = 0;
+  for (std::uint32_t i = 0; i < figure.shapes[shape].ring_count; ++i)
+    area += area_of(figure, figure.rings[figure.shapes[shape].first_ring + i]);
+  return area;
+}
+
+}  // namespace frontmost::test

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Translucent polygons in sheets: neighbours together, and everything in an order that paints the same.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "shade/figure_support.h"
+
+namespace frontmost {
+namespace {
+
+using namespace test;
+
+constexpr glm::u8vec4 kGreenGlass(0, 255, 0, 99), kClear(255, 0, 0, 50);
+
+std::vector<PrimitiveId> ids_of(const ColoredOrder& colored) {
+  std::vector<PrimitiveId> ids;
+  for (const PaintPolygon& polygon : colored.order.polygons) ids.push_back(polygon.id);
+  return ids;
+}
+
+/// A pane in two halves, another behind the second of them, and a wall before all.
+TEST(GatherSheets, HalvesOfAPaneStayTogetherWhateverIsBehind) {
+  const ColoredOrder gathered = gather_sheets(order_of(
+      {box(0, 0, 4, 4, kGlass), box(5, 1, 2, 2, kGreenGlass), box(4, 0, 4, 4, kGlass), box(3, 3, 2, 4, kBlue)}));
+  EXPECT_EQ(ids_of(gathered), (std::vector<PrimitiveId>{1, 0, 2, 3}));
+  EXPECT_NE(gathered.sheets[0], gathered.sheets[1]);
+  EXPECT_EQ(gathered.sheets[1], gathered.sheets[2]);
+  EXPECT_NE(gathered.sheets[2], gathered.sheets[3]);
+  const Figure figure = outlined(gathered, 1);
+  ASSERT_EQ(figure.shapes.size(), 4u);
+  EXPECT_EQ(figure.shapes[1].sheet, figure.shapes[2].sheet);
+  EXPECT_NE(figure.shapes[0].sheet, figure.shapes[1].sheet);
+  EXPECT_NE(figure.shapes[2].sheet, figure.shapes[3].sheet);
+  // The first half reaches under the second, and nothing else under anything.
+  EXPECT_NEAR(area_of(figure, 0), 4, 1e-9);
+  EXPECT_NEAR(area_of(figure, 1), 16 + 4 - 0.5, 1e-9);
+  EXPECT_NEAR(area_of(figure, 2), 16, 1e-9);
+}
+
+TEST(GatherSheets, OpacitiesStayApartAndOpaqueFiguresAsTheyAre) {
+  const ColoredOrder glass = gather_sheets(order_of({box(0, 0, 4, 4, kGlass), box(4, 0, 4, 4, kClear)}));
+  EXPECT_NE(glass.sheets[0], glass.sheets[1]);
+  EXPECT_NEAR(area_of(outlined(glass, 1), 1), 16, 1e-9);
+  EXPECT_TRUE(gather_sheets(order_of({box(0, 0, 4, 4), box(4, 0, 4, 4)})).sheets.empty());
+}
+
+TEST(GatherSheets, RefusesSheetsOfTwoOpacities) {
+  ColoredOrder tiles = order_of({box(0, 0, 1, 1, kGlass), box(1, 0, 1, 1, kClear)});
+  tiles.sheets = {0, 0};
+  EXPECT_THROW((void)outlined(tiles, 1), Error);
+  tiles.sheets = {0};
+  EXPECT_THROW((void)outlined(tiles, 1), Error);
+}
+
+bool overlap(const Tile& a, const Tile& b) {
+  return a.corners[0].x < b.corners[2].x && b.corners[0].x < a.corners[2].x && a.corners[0].y < b.corners[2].y &&
+         b.corners[0].y < a.corners[2].y;
+}
+
+/// By the definition: whoever lies over another still does, no sheet has two over each other, and shapes are whole.
+TEST(GatherSheets, PaintTheSame) {
+  std::size_t together = 0;
+  for (std::uint32_t seed = 1; seed <= 200; ++seed) {
+    std::mt19937 random(seed);
+    const auto below = [&](std::uint32_t end) { return std::size_t(random() % end); };
+    std::vector<Tile> tiles;
+    const std::size_t count = 2 + below(38);
+    const glm::u8vec4 colors[] = {kRed, kBlue, kGlass, kGreenGlass, kClear};
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto x = double(below(12)), y = double(below(8)), width = double(1 + below(3)),
+                 height = double(1 + below(3));
+      tiles.push_back(box(x, y, width, height, colors[below(5)]));
+    }
+    ColoredOrder colored = order_of(tiles);
+    for (std::size_t i = 1; i < count; ++i)
+      colored.shapes[i] = colored.shapes[i - 1] + !(colored.colors[i] == colored.colors[i - 1]);
+    const ColoredOrder gathered = gather_sheets(colored);
+    const std::vector<PrimitiveId> ids = ids_of(gathered);
+    ASSERT_EQ(ids.size(), count);
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_EQ(gathered.colors[i], tiles[ids[i]].color);
+      for (std::size_t k = i + 1; k < count && !gathered.sheets.empty(); ++k) {
+        const bool is_same_shape = colored.shapes[ids[i]] == colored.shapes[ids[k]];
+        EXPECT_EQ(gathered.shapes[i] == gathered.shapes[k], is_same_shape) << seed;
+        const bool is_sheet = gathered.sheets[i] == gathered.sheets[k] && gathered.colors[i].a < 255;
+        together += is_sheet && !is_same_shape;
+        if (!overlap(tiles[ids[i]], tiles[ids[k]]) || is_same_shape) continue;
+        EXPECT_LT(ids[i], ids[k]) << seed;
+        EXPECT_FALSE(is_sheet) << seed;
+      }
+    }
+  }
+  EXPECT_GT(together, 300u);
+}
+
+}  // namespace
+}  // namespace frontmost
