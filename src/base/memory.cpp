@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <memory>
 #include <mutex>
 #include <new>
 
@@ -22,7 +23,7 @@ namespace {
 constexpr std::size_t kAlignment = 64;
 constexpr std::size_t kLargePage = std::size_t(2) << 20;
 constexpr std::size_t kWorthLargePages = kLargePage;
-/// glibc keeps a piece for the next call only where, with its alignment, it has less than 32 MiB.
+/// glibc keeps a piece for the next call only where it has less than 32 MiB.
 constexpr std::size_t kMostArena = std::size_t(28) << 20;
 
 constexpr std::size_t round_up(std::size_t bytes, std::size_t unit) { return (bytes + unit - 1) / unit * unit; }
@@ -81,7 +82,7 @@ struct alignas(kAlignment) Block {
 
 /// A stack of blocks behind itself.
 struct alignas(kAlignment) Slab {
-  explicit Slab(std::size_t room) : next(reinterpret_cast<char*>(this + 1)), end(next + room) {}
+  Slab(void* whole, std::size_t room) : memory(whole), next(reinterpret_cast<char*>(this + 1)), end(next + room) {}
 
   [[nodiscard]] Block* take(std::size_t bytes) {
     const std::lock_guard lock(mutex);
@@ -98,6 +99,8 @@ struct alignas(kAlignment) Slab {
     for (; last && last->is_dropped; last = last->before) next = reinterpret_cast<char*>(last);
     return --users == 0;
   }
+
+  void* const memory;  ///< in which all this lies
 
  private:
   std::mutex mutex;
@@ -123,8 +126,22 @@ void* allocate_alone(std::size_t bytes) {
 
 void drop(Slab* slab, Block* block) noexcept {
   if (!slab->drop(block)) return;
+  void* const memory = slab->memory;
   slab->~Slab();
-  std::free(slab);
+  std::free(memory);
+}
+
+/// Not by aligned_alloc(): glibc keeps a piece that is given back for the next one only up to the size that the last
+/// one had without what its alignment took.
+Slab* make_slab(std::size_t room) {
+  const std::size_t size = sizeof(Slab) + room, alignment = size < kWorthLargePages ? kAlignment : kLargePage;
+  void* const memory = std::malloc(size + alignment);
+  if (!memory) return nullptr;
+  void* start = memory;
+  std::size_t space = size + alignment;
+  std::align(alignment, size, start, space);
+  want_large_pages(start, size / kLargePage * kLargePage);
+  return new (start) Slab(memory, room);
 }
 
 }  // namespace
@@ -151,9 +168,7 @@ void release(void* pointer) noexcept {
 }  // namespace detail
 
 Arena::Arena(std::size_t bytes) : outer_(detail::current) {
-  const std::size_t room = round_up(std::min(bytes, kMostArena), kAlignment);
-  void* pointer = has_room ? detail::allocate_alone(sizeof(detail::Slab) + room) : nullptr;
-  slab_ = pointer ? new (pointer) detail::Slab(room) : nullptr;
+  slab_ = has_room ? detail::make_slab(round_up(std::min(bytes, kMostArena), kAlignment)) : nullptr;
   if (slab_) detail::current = slab_;
 }
 

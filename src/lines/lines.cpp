@@ -21,7 +21,7 @@ namespace {
 
 using namespace lines_detail;
 
-constexpr std::size_t kEdgesPerPart = 1024, kEdgesPerPoll = 16;
+constexpr std::size_t kEdgesPerPart = 64, kEdgesPerPoll = 16;
 constexpr std::size_t kMostParts = std::size_t(1) << 26, kPartsPerTally = 1 << 16;
 /// The Buffers of a drawing together, and rather more: 260 for the bunny.
 constexpr std::size_t kBytesPerTriangle = 400;

@@ -85,17 +85,55 @@ TEST(Lines, TellProgressAndStopWhenAsked) {
   }
 }
 
+void expect_same(const Drawing& one, const Drawing& other) {
+  ASSERT_EQ(one.parts.size(), other.parts.size());
+  for (std::size_t i = 0; i < one.parts.size(); ++i) {
+    ASSERT_EQ(one.parts[i].edge, other.parts[i].edge);
+    ASSERT_EQ(one.parts[i].end, other.parts[i].end);
+    ASSERT_EQ(one.parts[i].to, other.parts[i].to);
+    ASSERT_EQ(one.parts[i].hidden_by, other.parts[i].hidden_by);
+  }
+}
+
 TEST(Lines, ThreadsChangeNothing) {
   const Scene scene = scene_of(random_mesh(Kind::soup, 3000, 5));
   const Surfaces surfaces(scene);
   const View view = frame(surfaces, 320, 240);
   const Drawing one = lines(surfaces, view, {}, {.threads = 1}), three = lines(surfaces, view, {}, {.threads = 3});
-  ASSERT_EQ(one.parts.size(), three.parts.size());
-  for (std::size_t i = 0; i < one.parts.size(); ++i) {
-    ASSERT_EQ(one.parts[i].edge, three.parts[i].edge);
-    ASSERT_EQ(one.parts[i].end, three.parts[i].end);
-    ASSERT_EQ(one.parts[i].to, three.parts[i].to);
-    ASSERT_EQ(one.parts[i].hidden_by, three.parts[i].hidden_by);
+  expect_same(one, three);
+}
+
+/// Enough for several parts of every step, and among them some that cover many cells: these lie in every part.
+TEST(Lines, PartsOfManyTrianglesAreOneGrid) {
+  Random random(7);
+  Mesh mesh;
+  for (std::uint32_t t = 0; t < 24'000; ++t) {
+    const float size = t % 400 == 0 ? 0.5f : 0.01f;
+    const glm::vec3 middle(random.within(-1, 1), random.within(-1, 1), random.within(-1, 1));
+    for (int k = 0; k < 3; ++k)
+      mesh.positions.push_back(middle +
+                               size * glm::vec3(random.within(-1, 1), random.within(-1, 1), random.within(-1, 1)));
+    mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  const View view = frame(surfaces, 320, 240);
+  for (const bool counts : {false, true}) {
+    const LineOptions options{.counts_hidden = counts, .intersections = false};
+    const Drawing drawing = lines(surfaces, view, options, {.threads = 1});
+    expect_same(drawing, lines(surfaces, view, options, {.threads = 4}));
+    const PointOracle oracle(surfaces, view);
+    std::size_t hidden = 0;
+    for (std::size_t i = 0; i < drawing.parts.size(); i += 300) {
+      const DrawnPart& part = drawing.parts[i];
+      const DrawnEdge& edge = drawing.edges[part.edge];
+      const PointOracle::Answer answer =
+          oracle.ask(edge.from + (edge.to - edge.from) * ((part.begin + part.end) / 2), edge);
+      if (!answer.is_certain) continue;
+      EXPECT_EQ(part.hidden_by, counts ? answer.hidden_by : std::min(answer.hidden_by, 1u));
+      hidden += part.hidden_by > 0;
+    }
+    EXPECT_GT(hidden, 50u);
   }
 }
 

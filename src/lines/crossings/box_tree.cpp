@@ -47,11 +47,14 @@ struct SizeClasses {
 };
 
 /// Asks every sixteenth triangle.
-SizeClasses size_classes(const WeldedMesh& mesh) {
+SizeClasses size_classes(const WeldedMesh& mesh, const Execution& execution) {
+  const std::size_t asked = (mesh.triangles.size() + 15) / 16;
+  Buffer<std::int16_t> exponents(asked);
+  parallel_for(execution, asked, kPerPart / 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) exponents[i] = std::int16_t(exponent_of(box_of(mesh, 16 * i)));
+  });
   std::array<std::size_t, 2 * kExponents> counts{};
-  std::size_t asked = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); t += 16, ++asked)
-    ++counts[std::size_t(exponent_of(box_of(mesh, t)) + kExponents)];
+  for (const std::int16_t exponent : exponents) ++counts[std::size_t(exponent + kExponents)];
   SizeClasses classes;
   std::size_t seen = 0;
   std::uint32_t above = 0;
@@ -64,12 +67,23 @@ SizeClasses size_classes(const WeldedMesh& mesh) {
   return classes;
 }
 
+Box bounds_of(const Buffer<glm::vec3>& places, const Execution& execution) {
+  std::vector<Box> parts((places.size() + kPerPart - 1) / kPerPart);
+  parallel_for(execution, places.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
+    Box box;
+    for (std::size_t i = begin; i < end; ++i) box.include(places[i]);
+    parts[begin / kPerPart] = box;
+  });
+  Box all;
+  for (const Box& box : parts) all.include(box);
+  return all;
+}
+
 /// D. Hilbert's curve: the class of size, then the place of the box's middle, as 30 bits.
 class Curve {
  public:
-  explicit Curve(const WeldedMesh& mesh) : classes_(size_classes(mesh)) {
-    Box all;
-    for (const glm::vec3& p : mesh.positions.places()) all.include(p);
+  Curve(const WeldedMesh& mesh, const Execution& execution) : classes_(size_classes(mesh, execution)) {
+    const Box all = bounds_of(mesh.positions.places(), execution);
     low_ = glm::dvec3(all.low);
     const glm::dvec3 extent = glm::dvec3(all.high) - low_;
     scale_ = kSteps / std::max({extent.x, extent.y, extent.z, 1e-300});
@@ -100,7 +114,7 @@ BoxTree::BoxTree(const WeldedMesh& mesh, const Features& features, const Executi
     : kernels_(space_kernels(execution.isa)), triangles_(mesh.triangles.size() - features.twins.size()) {
   const std::vector<std::uint32_t>& left_out = features.twins;
   const std::size_t count = triangles_.count;
-  const Curve curve(mesh);
+  const Curve curve(mesh, execution);
   Buffer<std::uint64_t> keys(count);
   parallel_for(execution, count, kPerPart, [&](std::size_t begin, std::size_t end) {
     // The i-th that is not left out is i, and as many more as are left out before it.

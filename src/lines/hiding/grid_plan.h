@@ -21,7 +21,6 @@ struct OccluderGrid::Plan {
   Buffer<Footprint> footprints;
   Buffer<Extent> extents;            ///< of the footprints
   std::vector<std::uint32_t> large;  ///< of the footprints
-  std::vector<Band> bands;           ///< of rows, a thread each
 
   [[nodiscard]] const Sight& sight() const { return on_grid.sight; }
   [[nodiscard]] const WeldedMesh& mesh() const { return on_grid.seen.mesh; }

@@ -5,10 +5,14 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "base/parallel.h"
+#include "base/prefetch.h"
 #include "lines/hiding/grid_plan.h"
 #include "lines/joined.h"
+#include "surfaces/radix_sort.h"
 
 namespace frontmost::lines_detail {
 namespace {
@@ -19,7 +23,11 @@ constexpr double kTrianglesPerCell = 32;
 constexpr double kMostCells = 1 << 22;
 /// How many cells a triangle may take, all in all: what bounds memory.
 constexpr double kEntriesPerTriangle = 16;
-constexpr std::size_t kCellsPerPart = 256;
+constexpr std::size_t kCellsPerPart = 32, kLargePerPart = 64, kSeenPerPart = 1024;
+/// Each has a number for every cell.
+constexpr std::size_t kMostParts = 16;
+/// How far ahead triangles are fetched that lie anywhere.
+constexpr std::size_t kAhead = 16;
 /// The kernels read whole vectors beyond the last entry.
 constexpr std::size_t kPadding = 64;
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -39,6 +47,13 @@ float from_ordered(std::uint32_t order) {
   float value;
   std::memcpy(&value, &bits, sizeof value);
   return value;
+}
+
+/// To `value`, if that is less.
+void lower(std::atomic<float>& least, float value) {
+  float held = least.load(std::memory_order_relaxed);
+  while (value < held && !least.compare_exchange_weak(held, value, std::memory_order_relaxed)) {
+  }
 }
 
 }  // namespace
@@ -96,21 +111,19 @@ Footprint OccluderGrid::footprint_of(const Plan& plan, std::uint32_t triangle) c
           triangle};
 }
 
-/// Calls visit(cell, nearest) for every cell of the band that the i-th triangle may touch, and how near it is there.
+/// Calls visit(cell, nearest) for every cell that the i-th triangle may touch, and how near it is there.
 template <class Visitor>
-void OccluderGrid::cover(const Plan& plan, std::size_t i, const Band& band, const Visitor& visit) const {
+void OccluderGrid::cover(const Plan& plan, std::size_t i, const Visitor& visit) const {
   const Footprint& footprint = plan.footprints[i];
   const Extent& all = plan.extents[i];
-  const int first_row = std::max(band.first, all.first_row), last_row = std::min(band.last, all.last_row);
-  if (first_row > last_row) return;
   if (!all.is_large()) {
-    for (int y = first_row; y <= last_row; ++y)
+    for (int y = all.first_row; y <= all.last_row; ++y)
       for (int x = all.first_column; x <= all.last_column; ++x) visit(number(x, y), footprint.nearest);
     return;
   }
   const Outline outline = outline_of(plan, footprint.triangle);
   const CellDepth depth = plan.on_grid.depth_of(footprint.triangle);
-  for (int y = first_row; y <= last_row; ++y) {
+  for (int y = all.first_row; y <= all.last_row; ++y) {
     // Of the outline between the row's two sides alone.
     double left = infinite, right = -infinite;
     const double top = y - kPad, bottom = y + 1 + kPad;
@@ -138,136 +151,121 @@ OccluderGrid::Extent OccluderGrid::extent_of(const Footprint& footprint) const {
 }
 
 /// By cell, how far away the nearest triangle is, at most, that covers it whole: it hides all that lies beyond.
-Buffer<float> OccluderGrid::backs_of(const Plan& plan) const {
-  const Buffer<Footprint>& footprints = plan.footprints;
-  Buffer<float> backs(cell_count(), std::numeric_limits<float>::infinity());
-  for_each_band(plan, [&](const Band& band) {
-    for (std::size_t n = 0; n < plan.large.size(); ++n) {
-      poll(plan.execution, n);
-      const std::uint32_t i = plan.large[n];
-      const Extent& all = plan.extents[i];
-      if (plan.on_grid.is_near(footprints[i])) continue;
-      const CellDepth depth = plan.on_grid.depth_of(footprints[i].triangle);
-      const int last_row = std::min(band.last, all.last_row);
-      for (int y = std::max(band.first, all.first_row); y <= last_row; ++y) {
+std::vector<std::atomic<float>> OccluderGrid::backs_of(const Plan& plan) const {
+  std::vector<std::atomic<float>> backs(cell_count());
+  for (std::atomic<float>& back : backs) back.store(std::numeric_limits<float>::infinity(), std::memory_order_relaxed);
+  if (plan.keeps_all) return backs;
+  parallel_for(plan.execution, plan.large.size(), kLargePerPart, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const Footprint& footprint = plan.footprints[plan.large[n]];
+      const Extent& all = plan.extents[plan.large[n]];
+      if (plan.on_grid.is_near(footprint)) continue;
+      const CellDepth depth = plan.on_grid.depth_of(footprint.triangle);
+      for (int y = all.first_row; y <= all.last_row; ++y) {
         const CellDepth::Columns columns = depth.covered(y, {all.first_column, all.last_column});
-        for (int x = columns.first; x <= columns.last; ++x) {
-          float& back = backs[number(x, y)];
-          back = std::min(back, rounded_up(depth.farthest({double(x), double(y)})));
-        }
+        for (int x = columns.first; x <= columns.last; ++x)
+          lower(backs[number(x, y)], rounded_up(depth.farthest({double(x), double(y)})));
       }
     }
   });
   return backs;
 }
 
-/// As many bands of rows as there are threads, each with its share of what begins in `cells`: where a model is narrow
-/// at one end, halves of the picture would leave one thread most of the work. One in many tells the share well enough.
-std::vector<OccluderGrid::Band> OccluderGrid::bands_of(const Plan& plan, const Buffer<std::uint32_t>& cells) const {
-  std::vector<std::size_t> of_row(std::size_t(rows_), 0);
-  std::size_t all = 0;
-  const std::size_t stride = std::max<std::size_t>(1, cells.size() >> 14);
-  for (std::size_t t = 0; t < cells.size(); t += stride) {
-    if (cells[t] == no_index) continue;
-    ++of_row[cells[t] / std::size_t(columns_)];
-    ++all;
-  }
-  const auto count = std::size_t(std::min(thread_count(plan.execution), rows_));
-  std::vector<Band> bands;
-  std::size_t sum = 0;
-  for (int y = 0, first = 0; y < rows_; ++y) {
-    sum += of_row[std::size_t(y)];
-    const bool is_full = bands.size() + 1 < count && sum * count >= all * (bands.size() + 1);
-    if (!is_full && y + 1 < rows_) continue;
-    bands.push_back({first, y});
-    first = y + 1;
-  }
-  return bands;
-}
-
-/// Calls fill(band) for the bands. Every band reads all triangles, which costs less than counting in common.
-template <class Fill>
-void OccluderGrid::for_each_band(const Plan& plan, const Fill& fill) const {
-  parallel_for(plan.execution, plan.bands.size(), 1, [&](std::size_t i, std::size_t) { fill(plan.bands[i]); });
-}
-
-/// Of what is seen, in the order of their first cells: what lies side by side on the screen does in memory.
-Buffer<Footprint> OccluderGrid::footprints_by_cell(Plan& plan) const {
+/// What is seen, in the order of first cells: what lies side by side on the screen does in memory. Then what becomes of
+/// each. \returns rather more cells than they take together.
+double OccluderGrid::find_footprints(Plan& plan) {
   const std::size_t count = plan.mesh().triangles.size();
   Buffer<Footprint> all(count);
-  Buffer<std::uint32_t> cells(count);
+  Buffer<std::uint64_t> keys(count);  // the first cell, then the triangle
   parallel_for(plan.execution, count, kPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       all[t] = footprint_of(plan, std::uint32_t(t));
       const bool is_seen = all[t].nearest < std::numeric_limits<float>::infinity();
-      cells[t] = is_seen ? std::uint32_t(number(column(all[t].low.x), row(all[t].low.y))) : no_index;
+      const std::size_t cell = is_seen ? number(column(all[t].low.x), row(all[t].low.y)) : cell_count();
+      keys[t] = std::uint64_t(cell) << 32 | t;
     }
   });
-  plan.bands = bands_of(plan, cells);
-  std::vector<std::uint32_t> next(cell_count() + 1, 0);
-  const auto for_each_seen = [&](const auto& visit) {
-    for_each_band(plan, [&](const Band& band) {
-      const std::size_t begin = number(0, band.first), end = number(0, band.last + 1);
-      for (std::size_t t = 0; t < count; ++t) {
-        poll(plan.execution, t);
-        if (cells[t] >= begin && cells[t] < end) visit(t);
-      }
-    });
-  };
-  for_each_seen([&](std::size_t t) { ++next[cells[t] + 1]; });
-  for (std::size_t i = 0; i + 1 < next.size(); ++i) next[i + 1] += next[i];
-  Buffer<Footprint> sorted(next.back());
-  for_each_seen([&](std::size_t t) { sorted[next[cells[t]]++] = all[t]; });
-  return sorted;
-}
-
-void OccluderGrid::make_occluders(const Plan& plan) {
-  const Buffer<Footprint>& footprints = plan.footprints;
-  occluders_ = Buffer<Occluder>(footprints.size());
-  parallel_for(plan.execution, footprints.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
+  keys = radix_sort(std::move(keys), std::bit_width(cell_count()), plan.execution);
+  const auto seen =
+      std::size_t(std::lower_bound(keys.begin(), keys.end(), std::uint64_t(cell_count()) << 32) - keys.begin());
+  plan.footprints = Buffer<Footprint>(seen);
+  plan.extents = Buffer<Extent>(seen);
+  occluders_ = Buffer<Occluder>(seen);
+  std::vector<double> sums((seen + kSeenPerPart - 1) / kSeenPerPart);
+  std::vector<std::vector<std::uint32_t>> large(sums.size());
+  parallel_for(plan.execution, seen, kSeenPerPart, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    std::vector<std::uint32_t> found;
     for (std::size_t i = begin; i < end; ++i) {
-      const std::uint32_t triangle = footprints[i].triangle;
-      glm::uvec3 v = plan.mesh().triangles[triangle];
-      int turn = plan.on_grid.seen.facing[triangle];
-      const auto order = [&](int a, int b) {
-        if (v[a] < v[b]) return;
-        std::swap(v[a], v[b]);
-        turn = -turn;
-      };
-      order(0, 1), order(1, 2), order(0, 1);
-      const auto& at = plan.mesh().positions.places();
-      occluders_[i] = {
-          {at[v.x], at[v.y], at[v.z]}, {v.x, v.y, v.z}, turn, triangle, plan.on_grid.is_near(footprints[i])};
+      const std::uint32_t ahead = std::uint32_t(keys[std::min(i + kAhead, seen - 1)]);
+      prefetch_line(&all[ahead]);
+      prefetch_line(&plan.mesh().triangles[ahead]);
+      const Footprint footprint = plan.footprints[i] = all[std::uint32_t(keys[i])];
+      const Extent extent = plan.extents[i] = extent_of(footprint);
+      occluders_[i] = occluder_of(plan, footprint);
+      const double columns = extent.last_column - extent.first_column + 1,
+                   rows = extent.last_row - extent.first_row + 1;
+      double cells = columns * rows;
+      if (extent.is_large()) {
+        found.push_back(std::uint32_t(i));
+        cells = std::min(cells, area_of(plan, footprint.triangle) + 2 * (columns + rows));
+      }
+      sum += cells;
     }
+    sums[begin / kSeenPerPart] = sum;
+    large[begin / kSeenPerPart] = std::move(found);
   });
+  plan.large = joined(large);
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
-/// What each cell holds, the nearest first.
+Occluder OccluderGrid::occluder_of(const Plan& plan, const Footprint& footprint) {
+  glm::uvec3 v = plan.mesh().triangles[footprint.triangle];
+  int turn = plan.on_grid.seen.facing[footprint.triangle];
+  // Without a branch, which would be wrong as often as not.
+  const auto order = [&](std::uint32_t& a, std::uint32_t& b) {
+    turn *= 1 - 2 * int(b < a);
+    const std::uint32_t low = std::min(a, b);
+    b = std::max(a, b);
+    a = low;
+  };
+  order(v.x, v.y), order(v.y, v.z), order(v.x, v.y);
+  const Buffer<glm::vec3>& at = plan.mesh().positions.places();
+  return {{at[v.x], at[v.y], at[v.z]}, {v.x, v.y, v.z}, turn, footprint.triangle, plan.on_grid.is_near(footprint)};
+}
+
+/// What each cell holds, the nearest first. Parts of the triangles count and place by themselves: where they do does
+/// not matter, since cells are sorted then.
 void OccluderGrid::fill_cells(const Plan& plan) {
-  const Buffer<Footprint>& footprints = plan.footprints;
-  const Buffer<float> backs =
-      plan.keeps_all ? Buffer<float>(cell_count(), std::numeric_limits<float>::infinity()) : backs_of(plan);
+  const std::size_t count = plan.footprints.size(), cells = cell_count();
+  const std::size_t parts = std::clamp(count / kPerPart, std::size_t(1), kMostParts);
+  const std::vector<std::atomic<float>> backs = backs_of(plan);
   const auto for_each_entry = [&](const auto& visit) {
-    for_each_band(plan, [&](const Band& band) {
-      for (std::size_t i = 0; i < footprints.size(); ++i) {
+    parallel_for(plan.execution, parts, 1, [&](std::size_t part, std::size_t) {
+      const std::size_t end = count * (part + 1) / parts;
+      for (std::size_t i = count * part / parts; i < end; ++i) {
         poll(plan.execution, i);
-        // They are in the order of their first rows, which the padding may have moved by one.
-        if (plan.extents[i].first_row > band.last + 1) break;
-        cover(plan, i, band, [&](std::size_t cell, float nearest) {
-          if (nearest <= backs[cell]) visit(cell, i, nearest);
+        cover(plan, i, [&](std::size_t cell, float nearest) {
+          if (nearest <= backs[cell].load(std::memory_order_relaxed)) visit(part, cell, i, nearest);
         });
       }
     });
   };
-  for_each_entry([&](std::size_t cell, std::size_t, float) { ++first_[cell + 1]; });
-  for (std::size_t i = 0; i + 1 < first_.size(); ++i) first_[i + 1] += first_[i];
+  Buffer<std::uint32_t> next(parts * cells);  // by part and cell: of the cell's entries
+  parallel_for(plan.execution, parts, 1,
+               [&](std::size_t part, std::size_t) { std::fill_n(next.data() + part * cells, cells, 0u); });
+  for_each_entry([&](std::size_t part, std::size_t cell, std::size_t, float) { ++next[part * cells + cell]; });
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    std::uint32_t sum = 0;
+    for (std::size_t place = cell; place < next.size(); place += cells) sum += std::exchange(next[place], sum);
+    first_[cell + 1] = first_[cell] + sum;
+  }
   Buffer<std::uint64_t> keys(first_.back());  // distance, then number
-  std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-  for_each_entry([&](std::size_t cell, std::size_t i, float nearest) {
-    keys[next[cell]++] = std::uint64_t(ordered(nearest)) << 32 | i;
+  for_each_entry([&](std::size_t part, std::size_t cell, std::size_t i, float nearest) {
+    keys[first_[cell] + next[part * cells + cell]++] = std::uint64_t(ordered(nearest)) << 32 | i;
   });
   set_entry_count(keys.size());
-  parallel_for(plan.execution, cell_count(), kCellsPerPart, [&](std::size_t begin, std::size_t end) {
+  parallel_for(plan.execution, cells, kCellsPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t cell = begin; cell < end; ++cell)
       std::sort(keys.data() + first_[cell], keys.data() + first_[cell + 1]);
     for (std::size_t e = first_[begin]; e < first_[end]; ++e)
@@ -330,8 +328,8 @@ void OccluderGrid::fill_sides(const Plan& plan) {
   });
 }
 
-/// So many cells, the places of vertices on them, and what triangles take of them.
-void OccluderGrid::set_cells(Plan& plan, const View& view, double cells) {
+/// So many cells, the places of vertices on them, and what triangles take of them. \returns as find_footprints().
+double OccluderGrid::set_cells(Plan& plan, const View& view, double cells) {
   const double size = std::sqrt(double(view.width) * view.height / cells);
   columns_ = std::max(1, int(std::ceil(view.width / size)));
   rows_ = std::max(1, int(std::ceil(view.height / size)));
@@ -344,32 +342,7 @@ void OccluderGrid::set_cells(Plan& plan, const View& view, double cells) {
       plan.on_grid.places[v] = {p.x * scale_.x, p.y * scale_.y, p.z};
     }
   });
-  plan.footprints = footprints_by_cell(plan);
-}
-
-/// Rather more cells than the triangles take together; tells how far each reaches, and which are large.
-double OccluderGrid::entries_of(Plan& plan) const {
-  const Buffer<Footprint>& footprints = plan.footprints;
-  const std::size_t parts = (footprints.size() + kPerPart - 1) / kPerPart;
-  plan.extents = Buffer<Extent>(footprints.size());
-  std::vector<double> sums(parts, 0);
-  std::vector<std::vector<std::uint32_t>> large(parts);
-  parallel_for(plan.execution, footprints.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Extent all = plan.extents[i] = extent_of(footprints[i]);
-      const double columns = all.last_column - all.first_column + 1, rows = all.last_row - all.first_row + 1;
-      double cells = columns * rows;
-      if (all.is_large()) {
-        large[begin / kPerPart].push_back(std::uint32_t(i));
-        cells = std::min(cells, area_of(plan, footprints[i].triangle) + 2 * (columns + rows));
-      }
-      sums[begin / kPerPart] += cells;
-    }
-  });
-  plan.large = joined(large);
-  double sum = 0;
-  for (const double part : sums) sum += part;
-  return sum;
+  return find_footprints(plan);
 }
 
 /// In cells, and infinite where it reaches behind the eye.
@@ -383,16 +356,15 @@ double OccluderGrid::area_of(const Plan& plan, std::uint32_t triangle) const {
 OccluderGrid::OccluderGrid(const SeenMesh& seen, const View& view, bool keeps_all, const LinesToCut& lines,
                            const Execution& execution) {
   const auto triangles = double(seen.mesh.triangles.size());
-  Plan plan{{seen, Sight(view), Buffer<glm::dvec3>(seen.mesh.positions.size())}, execution, keeps_all, {}, {}, {}, {}};
+  Plan plan{{seen, Sight(view), Buffer<glm::dvec3>(seen.mesh.positions.size())}, execution, keeps_all, {}, {}, {}};
   double cells = std::clamp(triangles / kTrianglesPerCell, 1.0, kMostCells);
-  set_cells(plan, view, cells);
+  double entries = set_cells(plan, view, cells);
   // Fewer cells where triangles are large: a thousand sheets before a million cells would be a thousand million.
   const double most = kEntriesPerTriangle * triangles + kMostCells;
-  for (double entries = entries_of(plan); entries > most && cells > 1; entries = entries_of(plan)) {
+  while (entries > most && cells > 1) {
     cells = std::max(1.0, std::min(cells / 2, cells * most / entries));
-    set_cells(plan, view, cells);
+    entries = set_cells(plan, view, cells);
   }
-  make_occluders(plan);
   fill_cells(plan);
   const std::vector<FineCells> parts = divide_crowds(plan, lines);
   number_parts(parts);

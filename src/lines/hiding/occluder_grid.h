@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <functional>
 #include <vector>
 
@@ -113,23 +114,18 @@ class OccluderGrid {
     return {cell, first_[cell], first_[cell + 1], {}, {}, corner};
   }
   struct Plan;
-  struct Band {
-    int first, last;  ///< rows
-  };
   struct Extent {
     int first_column, last_column, first_row, last_row;
     [[nodiscard]] bool is_large() const { return last_row - first_row >= 2 && last_column > first_column; }
   };
-  void set_cells(Plan& plan, const View& view, double cells);
-  [[nodiscard]] double entries_of(Plan& plan) const;
+  [[nodiscard]] double set_cells(Plan& plan, const View& view, double cells);
+  [[nodiscard]] double find_footprints(Plan& plan);
   [[nodiscard]] double area_of(const Plan& plan, std::uint32_t triangle) const;
   [[nodiscard]] Outline outline_of(const Plan& plan, std::uint32_t triangle) const;
   [[nodiscard]] Footprint footprint_of(const Plan& plan, std::uint32_t triangle) const;
   [[nodiscard]] Extent extent_of(const Footprint& footprint) const;
-  [[nodiscard]] Buffer<Footprint> footprints_by_cell(Plan& plan) const;
-  [[nodiscard]] std::vector<Band> bands_of(const Plan& plan, const Buffer<std::uint32_t>& cells) const;
-  [[nodiscard]] Buffer<float> backs_of(const Plan& plan) const;
-  void make_occluders(const Plan& plan);
+  [[nodiscard]] static Occluder occluder_of(const Plan& plan, const Footprint& footprint);
+  [[nodiscard]] std::vector<std::atomic<float>> backs_of(const Plan& plan) const;
   void fill_cells(const Plan& plan);
   [[nodiscard]] std::vector<FineCells> divide_crowds(const Plan& plan, const LinesToCut& lines);
   [[nodiscard]] std::vector<GridLine> lines_on_grid(const Plan& plan, const LinesToCut& lines) const;
@@ -140,10 +136,8 @@ class OccluderGrid {
   void fill_sides(const Plan& plan);
   template <class Visitor>
   bool visit_fine(std::uint32_t number, const Visit& whole, const GridLine& line, const Visitor& visit) const;
-  template <class Fill>
-  void for_each_band(const Plan& plan, const Fill& fill) const;
   template <class Visitor>
-  void cover(const Plan& plan, std::size_t i, const Band& band, const Visitor& visit) const;
+  void cover(const Plan& plan, std::size_t i, const Visitor& visit) const;
 
   void set_side(std::size_t i, int k, const CellDepth::Side& side) {
     sides_[3 * k][i] = side.a;

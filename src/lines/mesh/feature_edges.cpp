@@ -17,7 +17,7 @@
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr std::size_t kVerticesPerPart = 4096;
+constexpr std::size_t kVerticesPerPart = 1024;
 
 /// A triangle at an edge, which is known by its lower vertex.
 struct Side {
