@@ -73,10 +73,10 @@ struct PaintOrder {
 /// Depth sort: by farthest depth, then for every two that may cover each other the tests of Newell, Newell and Sancha
 /// in their order, until one decides; what has to be painted before goes first, and only where that leads in a circle
 /// are polygons cut, along the plane of one of them. Planes are compared by the signs of determinants of the vertices'
-/// floats, without tolerance. Triangles in one plane are painted as the z-buffer decides: the lower id on top.
-/// (M. Newell, R. Newell, T. Sancha. A Solution to the Hidden Surface Problem. 1972; R. Tarjan. Depth-First Search and
-/// Linear Graph Algorithms. 1972; H. Fuchs, Z. Kedem, B. Naylor. On Visible Surface Generation by A Priori Tree
-/// Structures. 1980.)
+/// floats, without tolerance. Triangles in one plane are painted as the z-buffer decides: the lower id on top; those
+/// with the same corners as one of a lower id directly below it, at no more cost than their polygons. (M. Newell, R.
+/// Newell, T. Sancha. A Solution to the Hidden Surface Problem. 1972; R. Tarjan. Depth-First Search and Linear Graph
+/// Algorithms. 1972; H. Fuchs, Z. Kedem, B. Naylor. On Visible Surface Generation by A Priori Tree Structures. 1980.)
 ///
 /// What is seen from its edge, is left out by View::culling, or lies outside of the view is not there; the near and the
 /// far plane cut what they meet, the sides of the picture do not. Triangles with holes (alpha mode MASK) are whole.

@@ -4,9 +4,11 @@
 #include <algorithm>
 
 #include "base/float_environment.h"
+#include "painter/copies.h"
 #include "painter/cutting/crossings.h"
 #include "painter/emit.h"
 #include "painter/gather.h"
+#include "painter/limits.h"
 #include "painter/order/depth_sort.h"
 #include "painter/order/partition.h"
 #include "painter/seen/hidden.h"
@@ -20,10 +22,6 @@ using namespace painter_detail;
 /// takes 1.3 times as long on assemblies of parts that pass through each other, for 2 to 9 % fewer polygons, none of
 /// them seen; parting down to single pieces, as PaintMethod::bsp does, takes a third and leaves half as many again.
 constexpr std::size_t kFewer = 64;
-
-[[noreturn]] void refuse_more_than(std::size_t most) {
-  throw Error(ErrorCode::limit_exceeded, "painter: more than " + std::to_string(most) + " polygons and pieces");
-}
 
 /// Makes one list of pieces out of all, by work that is still to do, the next on top. Not by recursion: a partition may
 /// be as uneven as there are pieces.
@@ -89,7 +87,7 @@ class Orderer {
 
   void check_limits() const {
     if (steps_.cuts > options_.most_cuts) refuse_more_cuts();
-    if (pieces_.size() > options_.most_polygons) refuse_more_than(options_.most_polygons);
+    if (pieces_.size() > options_.most_polygons) refuse_more_polygons_than(options_.most_polygons);
   }
 
   void sort(const std::vector<std::uint32_t>& members) {
@@ -138,7 +136,8 @@ PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOpti
   order.view = view;
   Pieces pieces(view);
   std::vector<std::uint32_t> members = gather(surfaces, view, pieces, execution);
-  if (pieces.size() > options.most_polygons) refuse_more_than(options.most_polygons);
+  if (pieces.size() > options.most_polygons) refuse_more_polygons_than(options.most_polygons);
+  const Copies copies(pieces, members);
   std::vector<std::uint32_t> first;
   if (options.hides) {
     Unhidden left = without_hidden(pieces, members, view, options.hides, execution);
@@ -155,6 +154,7 @@ PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOpti
   }
   report_progress(execution, "painter", 0.9);
   first.insert(first.end(), members.begin(), members.end());
+  copies.put_back(pieces, first, options.hides, options.most_polygons);
   Poll poll(execution);
   emit(pieces, first, order, poll);
   report_progress(execution, "painter", 1);

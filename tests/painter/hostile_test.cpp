@@ -40,17 +40,48 @@ TEST(Hostile, TooManyCutsAreForeseen) {
 }
 
 /// As many pairs pass through each other, but all in the same two planes.
-TEST(Hostile, CopiesThroughEachOtherAreNotTooMany) {
+TEST(Hostile, TwoPlanesThroughEachOtherAreNotTooMany) {
   Mesh mesh;
   for (int i = 0; i < 1000; ++i) {
-    add_triangle(mesh, {-1, -1, 0.125f}, {1, -1, 0.125f}, {0, 1, 0.25f});
-    add_triangle(mesh, {-1, 1, 0.25f}, {0, -1, 0.25f}, {1, 1, 0.125f});
+    const float width = 1 + float(i) / 1024;
+    add_triangle(mesh, {-width, -1, 0.125f}, {width, -1, 0.125f}, {0, 1, 0.25f});
+    add_triangle(mesh, {-width, 1, 0.1875f - 0.0625f * width}, {0, -1, 0.1875f}, {width, 1, 0.1875f + 0.0625f * width});
   }
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
   const View view = frame(surfaces, 64, 64);
   const PaintOrder order = painter(surfaces, view, {.method = PaintMethod::bsp, .most_cuts = 2000});
   EXPECT_GT(order.steps.cuts, 900u);
+}
+
+/// Two through each other, many times in the same places: as many polygons, and the work of two.
+TEST(Hostile, CopiesAreHeldAgainstOthersOnce) {
+  Mesh mesh;
+  const int count = 500;
+  for (int i = 0; i < count; ++i) {
+    add_triangle(mesh, {-1, -1, 0.125f}, {1, -1, 0.125f}, {0, 1, 0.25f});
+    // As seen from behind, and from another corner on.
+    add_triangle(mesh, {0, -1, 0.25f}, {-1, 1, 0.25f}, {1, 1, 0.125f});
+  }
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  const View view = frame(surfaces, 64, 64);
+  for (const PaintMethod method : {PaintMethod::depth_sort, PaintMethod::bsp}) {
+    const Painted found = painted(surfaces, view, method);
+    EXPECT_EQ(found.unexplained, 0u);
+    const PaintSteps& steps = found.order.steps;
+    EXPECT_LE(steps.cuts, 2u);
+    EXPECT_LT(steps.behind + steps.before + steps.projections_apart + steps.compared, 20u);
+    EXPECT_EQ(found.order.polygons.size(), count * (2 + steps.cuts));
+    // Those of one place one after another, the lowest id last.
+    for (std::size_t i = 0; i < found.order.polygons.size(); ++i) {
+      const auto from_top = PrimitiveId(count - 1 - int(i) % count);
+      EXPECT_EQ(found.order.polygons[i].id / 2, from_top) << i;
+    }
+  }
+  EXPECT_THROW((void)painter(surfaces, view, {.most_polygons = 2 * count}), Error);
+  const PaintOrder seen = painter(surfaces, view, {.hides = [](PrimitiveId) { return true; }});
+  EXPECT_LE(seen.polygons.size(), 4u);
 }
 
 /// All pass through all, but along one line: each is cut there at most once.
