@@ -82,8 +82,6 @@ class Sheet {
       group.points.push_back(view.on_page(all.points[i]));
       if (!all.bulges.empty()) group.bulges.push_back(all.bulges[i]);
     }
-    // Views with arcs and without may share a group.
-    if (!group.bulges.empty()) group.bulges.resize(group.points.size(), 0);
   }
 
   const Surfaces& surfaces_;

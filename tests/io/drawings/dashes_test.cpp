@@ -75,6 +75,18 @@ TEST(RealDashes, ThePatternGoesOnAroundGentleBends) {
   EXPECT_EQ(cut(dashed(bent, false)).size(), 3u);
 }
 
+TEST(RealDashes, BendsOfMoreThan25DegreesAreCorners) {
+  const auto first_dash = [](double degrees) {
+    const double turn = degrees * std::numbers::pi / 180;
+    const std::vector<Points> dashes =
+        cut(dashed({{0, 0}, {5.5, 0}, {5.5 + 5.5 * std::cos(turn), 5.5 * std::sin(turn)}}, false));
+    EXPECT_EQ(dashes.size(), 3u);
+    return dashes[0][1].x;
+  };
+  EXPECT_NEAR(first_dash(24), 3, 1e-12);            // three on 11, as on a straight line
+  EXPECT_NEAR(first_dash(26), 3 * 5.5 / 7, 1e-12);  // two on each half, of which one goes around the corner
+}
+
 TEST(RealDashes, LongPathsOfManyPointsTakeNoLongerThanShortOnes) {
   Points spiral;
   const int count = 200000;

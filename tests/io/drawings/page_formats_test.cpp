@@ -71,6 +71,27 @@ TEST(Svg, FillsKeepTheirOrderAndHaveAnElementEach) {
       << svg;
 }
 
+TEST(Svg, ElementsStayShortEnoughForEditors) {
+  Page page{100, 100, "", {}};
+  PageGroup group{"", {}};
+  for (int i = 0; i < 5000; ++i) group.add(std::vector<glm::dvec2>{{1, 1}, {2, 3}}, false);
+  page.layers = {{"", {group}}};
+  const std::string svg = saved(page, PageFormat::svg);
+  EXPECT_EQ(count(svg, "<path"), 3u);  // of at most 4096 points and what the last path adds
+  EXPECT_EQ(count(svg, "M1 1l1 2"), 5000u);
+}
+
+TEST(Formats, WhatIsNotSeenIsNotDrawn) {
+  Page page = sample_page();
+  for (PageLayer& layer : page.layers)
+    for (PageGroup& group : layer.groups) {
+      if (group.name == "wheel") group.pen.width = 0;
+      if (group.name != "wheel") group.pen.color.opacity = 0;
+    }
+  EXPECT_FALSE(has(saved(page, PageFormat::dxf), "LINE\n8\n"));
+  EXPECT_EQ(count(operators_of(saved(page, PageFormat::pdf)), "S\n"), 0u);
+}
+
 /// A triangle with a triangular hole, and another beside it.
 Page page_with_parts() {
   Page page{10, 10, "", {}};
@@ -266,6 +287,13 @@ TEST(Dxf, HoldsLinesArcsAndCirclesWithYUp) {
   EXPECT_EQ(std::fmod(arc.number(51), 360), 0);
   EXPECT_EQ(circle.number(10), 50);
   EXPECT_EQ(circle.number(40), 10);
+}
+
+TEST(Dxf, LineTypesHaveTheirDashesAndGaps) {
+  // Length 3.75: a dash is positive and a gap negative.
+  EXPECT_TRUE(has(saved(sample_page(), PageFormat::dxf),
+                  "2\nDASHED1\n70\n0\n3\nDashed, in millimetres\n72\n65\n73\n2\n40\n3.75\n49\n3\n49\n-0.75\n"))
+      << saved(sample_page(), PageFormat::dxf);
 }
 
 TEST(Dxf, BulgesTurnTheOtherWayRound) {

@@ -45,6 +45,8 @@ TEST(PageChecks, PensAndLists) {
     return page;
   };
   expect_refused(changed([](PageGroup& g) { g.pen.width = -1; }), "width");
+  expect_refused(changed([](PageGroup& g) { g.pen.width = 1000.1; }), "width");
+  EXPECT_NO_THROW(validate(changed([](PageGroup& g) { g.pen.width = 1000; })));
   expect_refused(changed([](PageGroup& g) { g.pen.width = nan; }), "width");
   expect_refused(changed([](PageGroup& g) { g.pen.dashes = {1}; }), "pairs");
   expect_refused(changed([](PageGroup& g) { g.pen.dashes = {1, 0}; }), "dashes and gaps");

@@ -53,6 +53,9 @@ TEST(DrawSheet, LayersGroupsAndPens) {
   EXPECT_EQ(page.layers[2].groups[0].name, "front: other");
   EXPECT_GT(page.layers[2].groups[0].pen.width, page.layers[1].groups[0].pen.width);
   EXPECT_NO_THROW(validate(page));
+  // Not where they are hidden: all of those have one pen.
+  const SheetView below{"", strokes_of({hidden, {EdgeKind::silhouette, true, false, 0, 0, 0, false}}), {0, 0}, 1};
+  EXPECT_EQ(draw_sheet(surfaces, std::span(&below, 1), figure_pens(), {100, 80}).layers[0].groups.size(), 1u);
   // In a technical drawing they share one.
   EXPECT_EQ(draw_sheet(surfaces, std::span(&view, 1), technical_pens(), {100, 80}).layers[1].groups.size(), 1u);
 }
