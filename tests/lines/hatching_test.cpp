@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 
 #include "support/effort.h"
@@ -114,6 +115,33 @@ Scene plate_over_floor(float height) {
   scene.meshes.push_back(std::move(plate));
   scene.instances.push_back({"plate", 1, glm::dmat4(1.0)});
   return scene;
+}
+
+TEST(Hatch, CopiesOfTrianglesChangeNothingAndCostNothing) {
+  using Clock = std::chrono::steady_clock;
+  const Scene once = three_faces();
+  Mesh mesh = once.meshes[0];
+  const std::vector<glm::uvec3> triangles = mesh.triangles;
+  // In all orders of their corners, and so wound either way.
+  for (int copy = 0; copy < (under_sanitizer ? 12 : 300); ++copy)
+    for (const glm::uvec3& t : triangles)
+      mesh.triangles.push_back(copy % 3 == 0   ? t
+                               : copy % 3 == 1 ? glm::uvec3(t.y, t.z, t.x)
+                                               : glm::uvec3(t.x, t.z, t.y));
+  const Scene often = scene_of(std::move(mesh));
+  const View view = view_from({5, 4, 3}, false);
+  const HatchOptions options = options_of({{0.3, 1, 0.25, 0.7}, {1.2, 1, 0.5, 0.5}}, {1, 2, 2});
+  const std::vector<HatchLine> lines = hatch(Surfaces(once), view, options);
+  const Clock::time_point start = Clock::now();
+  const std::vector<HatchLine> same = hatch(Surfaces(often), view, options);
+  // 5 ms; half a minute when all were held against all.
+  EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 5);
+  ASSERT_EQ(same.size(), lines.size());
+  EXPECT_GT(lines.size(), 100u);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    EXPECT_EQ(same[i].from, lines[i].from);
+    EXPECT_EQ(same[i].to, lines[i].to);
+  }
 }
 
 TEST(Hatch, ShadowsHaveTheirExactPlaces) {

@@ -114,8 +114,9 @@ std::vector<int> ranks() {
 DotGrid::DotGrid(double spacing, double width) : cell_(cell_of(spacing)), columns_(std::int32_t(width / cell_) + 1) {
   // A quarter of the cells at most: where more were taken their rows would show.
   constexpr double most = count / 4.0;
+  static const std::vector<int> rank_of = ranks();
   Shuffle shuffle;
-  for (const int rank : ranks()) {
+  for (const int rank : rank_of) {
     // Darkness grows with the square root of the share of dots: few that are far apart look darker than they are.
     const auto darkness = float(std::sqrt((rank + 0.5) / most));
     const float shift = 0.3f + 0.4f * float(shuffle.next() & 0xFFFF) / 65536.0f;

@@ -35,15 +35,39 @@ View view_from_light(const Surfaces& surfaces, const glm::dvec3& to_light) {
   return frame(surfaces, 1024, 1024, options);
 }
 
+/// Of triangles at one place one hides as much as all, and has the same lines: the others are not seen from anywhere.
+SeenMesh see_once(const WeldedMesh& mesh, const std::vector<std::uint32_t>& twins, const Sight& sight,
+                  const Execution& execution) {
+  SeenMesh seen = see(mesh, sight, execution);
+  for (const std::uint32_t twin : twins) seen.facing[twin] = 0;
+  return seen;
+}
+
+std::vector<std::uint32_t> twins_of(const WeldedMesh& mesh, const View& view, const Surfaces& surfaces,
+                                    const Execution& execution) {
+  LineOptions none;
+  none.boundaries = none.silhouettes = none.borders = none.creases = false;
+  return find_features(see(mesh, Sight(view), execution), surfaces, none, execution).twins;
+}
+
 }  // namespace
+
+Scenery::Scenery(const WeldedMesh& mesh, const std::vector<std::uint32_t>& twins, const View& its_view,
+                 const Execution& execution)
+    : view(its_view),
+      sight(view),
+      seen(see_once(mesh, twins, sight, execution)),
+      grid(seen, view, false, {}, execution),
+      occlusion{mesh, sight, view, grid, shadow_kernels(execution.isa), false, false} {}
 
 TonedScene::TonedScene(const Surfaces& surfaces, const View& view, const ToneOptions& tone, const Execution& execution)
     : surfaces_(surfaces),
       to_light_(light_of(tone, view)),
       mesh_(weld(surfaces, execution)),
-      eye_(mesh_, view, execution),
+      twins_(twins_of(mesh_, view, surfaces, execution)),
+      eye_(mesh_, twins_, view, execution),
       normals_(eye_.seen, surfaces, tone.crease_angle) {
-  if (tone.casts_shadows) light_.emplace(mesh_, view_from_light(surfaces, to_light_), execution);
+  if (tone.casts_shadows) light_.emplace(mesh_, twins_, view_from_light(surfaces, to_light_), execution);
 }
 
 /// Hatches one triangle after another. Not for several threads at once.

@@ -23,12 +23,9 @@ struct Piece {
 
 /// A view, and what hides in it.
 struct Scenery {
-  Scenery(const WeldedMesh& mesh, const View& its_view, const Execution& execution)
-      : view(its_view),
-        sight(view),
-        seen(see(mesh, sight, execution)),
-        grid(seen, view, false, {}, execution),
-        occlusion{mesh, sight, view, grid, shadow_kernels(execution.isa), false, false} {}
+  /// `twins` are triangles at the place of others.
+  Scenery(const WeldedMesh& mesh, const std::vector<std::uint32_t>& twins, const View& its_view,
+          const Execution& execution);
 
   Scenery(const Scenery&) = delete;  // it looks at itself
   Scenery& operator=(const Scenery&) = delete;
@@ -63,6 +60,7 @@ class TonedScene {
   const Surfaces& surfaces_;
   const glm::dvec3 to_light_;
   const WeldedMesh mesh_;
+  const std::vector<std::uint32_t> twins_;
   const Scenery eye_;
   std::optional<Scenery> light_;  ///< none: nothing stands in it
   const CornerNormals normals_;
