@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/float_environment.h"
+#include "painter/hem_shape.h"
 #include "painter/map_polygons.h"
 
 namespace frontmost {
@@ -15,21 +16,32 @@ namespace {
 
 using namespace painter_detail;
 
-/// Hems that are tried, the first that is hidden is taken: part of the width, and how far from the ends they have it,
-/// in their width. Neighbours are narrow towards their corners, and may be narrow everywhere.
-struct HemShape {
-  double part, inset;
-};
+/// The first that is hidden is taken. Long sides have more of them: on short ones they look nearly the same.
 constexpr std::array<HemShape, 7> kHemShapes{
     {{1, 0.5}, {1, 2}, {1, 6}, {0.25, 0.5}, {0.25, 2}, {0.25, 8}, {0.0625, 1}}};
+constexpr std::array<HemShape, 13> kLongShapes{{{1, 0.5},
+                                                {1, 2},
+                                                {1, 6},
+                                                {0.25, 0.5},
+                                                {0.25, 2},
+                                                {0.25, 8},
+                                                {1, 0, 0.45, 0.45},
+                                                {1, 0.5, 0, 0.85},
+                                                {1, 0.5, 0.85},
+                                                {0.25, 0, 0.45, 0.45},
+                                                {0.25, 0.5, 0, 0.85},
+                                                {0.25, 0.5, 0.85},
+                                                {0.0625, 1}}};
+/// In widths of the hem.
+constexpr double kLong = 2;
 
 /// What lies beside a side of an outline.
-std::array<PaintCorner, 4> hem(const PaintCorner& from, const PaintCorner& to, double width, double inset) {
+std::array<PaintCorner, 4> hem(const PaintCorner& from, const PaintCorner& to, double width, const HemShape& shape) {
   const glm::dvec3 way = to.at - from.at;
-  const double length = glm::length(glm::dvec2(way));
-  inset = std::min(inset * width, 0.45 * length);
-  const glm::dvec3 along = way / length, out(-along.y * width, along.x * width, 0);
-  return {from, {from.at + along * inset + out, true}, {to.at - along * inset + out, true}, to};
+  const double length = glm::length(glm::dvec2(way)), reach = width * shape.part;
+  const auto [from_inset, to_inset] = shape.insets(reach, length);
+  const glm::dvec3 along = way / length, out(-along.y * reach, along.x * reach, 0);
+  return {from, {from.at + along * from_inset + out, true}, {to.at - along * to_inset + out, true}, to};
 }
 
 /// Next to the middle of a side: within each of its hems. What lies at the rim of one hides nothing of it.
@@ -64,14 +76,18 @@ class Hemmer {
  private:
   /// \returns whether a part of a side has one.
   bool add_hem(std::size_t slot, std::size_t side, const PaintCorner& from, const PaintCorner& to) {
-    if (glm::length(glm::dvec2(to.at - from.at)) < OutlineCutter::thin) return false;
-    const glm::dvec2 at = next_to(from, to, 0.5 * width_ * kHemShapes.back().part);
+    const double length = glm::length(glm::dvec2(to.at - from.at));
+    if (length < OutlineCutter::thin) return false;
+    const bool is_long = length > kLong * width_;
+    const std::span<const HemShape> shapes =
+        is_long ? std::span<const HemShape>(kLongShapes) : std::span<const HemShape>(kHemShapes);
+    const glm::dvec2 at = next_to(from, to, 0.5 * width_ * shapes.back().part);
     std::array<PaintCorner, 4> beside;
-    const std::size_t found = looker_.first_hidden(slot, side, kHemShapes.size(), at, [&](std::size_t k) {
-      beside = hem(from, to, width_ * kHemShapes[k].part, kHemShapes[k].inset);
+    const std::size_t found = looker_.first_hidden(slot, side, shapes.size(), at, [&](std::size_t k) {
+      beside = hem(from, to, width_, shapes[k]);
       return Outline(beside);
     });
-    if (found == kHemShapes.size()) return false;
+    if (found == shapes.size()) return false;
     corners_.insert(corners_.end(), {beside[1], beside[2]});
     return true;
   }

@@ -51,7 +51,7 @@ CASES = {
     "in parallel": Case(["builtin:cubes", "--view", "iso", "--camera-orthographic", "--shading", "normals"]),
     "tiles": Case(["builtin:gallery", *FLAT], TOLERANCE, 0.02, 64, browser=0.06),
     "light and shadow": Case(["builtin:gallery"], TOLERANCE, 0.02, 64),
-    "depths": Case(["builtin:spheres", "--shading", "depth"], TOLERANCE, 0.004),
+    "depths": Case(["builtin:spheres", "--shading", "depth"], TOLERANCE, 0.0001),
     "normals": Case(["builtin:teapot", "--shading", "normals"], TOLERANCE, 0.005),
     "ids, neighbours merged": Case(["builtin:city", "--shading", "ids", MERGED], furthest=64),
     "cubes, neighbours merged": Case(["builtin:cubes", *FLAT, MERGED]),

@@ -194,6 +194,21 @@ TEST(VisibleParts, HemsDoNotHideWhatIsSeenInGaps) {
   }
 }
 
+/// What is painted after a box beside it is a wedge, with nothing beyond: its hem gets narrower with the wedge.
+TEST(VisibleParts, HemsTaperTowardsWedges) {
+  PaintOrder order;
+  order.view = view_from_above(true);
+  const auto add = [&](std::initializer_list<glm::dvec2> corners) {
+    order.polygons.push_back({PrimitiveId(order.polygons.size()), std::uint32_t(corners.size()), order.corners.size()});
+    for (const glm::dvec2 at : corners) order.corners.push_back({{at, 1}, false});
+  };
+  add({{10, 20}, {90, 20}, {90, 10}, {10, 10}});
+  add({{10, 24}, {90, 20}, {10, 20}});
+  const PaintOrder hemmed = with_hems(order, 4);
+  EXPECT_EQ(hemmed.polygons[0].corner_count, 6u);
+  EXPECT_NEAR(area_of(hemmed, 0), 800 + (80 + 8) / 2, 1e-9);
+}
+
 /// The last polygon over a point, by counting the sides to the right of it: hems make outlines that are not convex.
 PrimitiveId painted_at(const PaintOrder& order, const glm::dvec2& at) {
   PrimitiveId last = no_primitive;

@@ -157,6 +157,21 @@ TEST(ColorOrder, HemsOfPiecesAreHidden) {
   EXPECT_LE(far, 9);
 }
 
+/// Bands that are narrower than a hem: it goes on under the next ones.
+TEST(ColorOrder, HemsReachUnderMoreThanOnePiece) {
+  Mesh mesh = square();
+  mesh.colors.values = {{0, 0, 0, 1}, {1, 1, 1, 1}, {1, 1, 1, 1}, {0, 0, 0, 1}};
+  const Scene scene = scene_of(mesh, colored({1, 1, 1, 1}));
+  ColorOptions options = with(Shading::flat, 2);
+  const double bare = double(figure_of(scene, options).colors.size());
+  EXPECT_GT(bare, 40);
+  options.hem = 4;
+  const ColoredOrder figure = figure_of(scene, options);
+  double area = 0;
+  for (std::size_t i = 0; i < figure.colors.size(); ++i) area += area_of(figure.order, i);
+  EXPECT_GT(area, kSquare * 3);
+}
+
 TEST(ColorOrder, TranslucentPiecesHaveNoHems) {
   Mesh mesh = square();
   mesh.colors.values = {{0.3, 0.3, 0.3, 1}, {1, 1, 1, 1}, {1, 0.3, 0.3, 1}, {0.3, 0.3, 1, 1}};

@@ -52,24 +52,26 @@ class Outliner {
   void add_hem(const HemmedSide& side, const glm::dvec2& to) {
     const double length = glm::length(to - side.from);
     if (!(length > 0)) return;
-    const double inset = double(side.hem.inset), width = double(side.hem.width), end = side.begin + length;
+    const double width = double(side.hem.width), end = side.begin + length, last = side.whole_length;
+    const double inset = double(side.hem.inset), end_inset = double(side.hem.end_inset);
     const glm::dvec2 along = (to - side.from) / length, out(-along.y, along.x);
     const auto height = [&](double s) {
-      const double from_ends = std::min(s, side.whole_length - s);
-      return inset > 0 ? width * std::clamp(from_ends / inset, 0.0, 1.0) : width;
+      const double rising = inset > 0 ? s / inset : 1, falling = end_inset > 0 ? (last - s) / end_inset : 1;
+      return width * std::clamp(std::min(rising, falling), 0.0, 1.0);
     };
     const auto add_at = [&](double s) { add(side.from + along * (s - side.begin) + out * height(s)); };
     constexpr double kAtEnd = 1e-6;  // pixels
     if (side.begin > kAtEnd) add_at(side.begin);
-    for (const double bend : {inset, side.whole_length - inset})
+    for (const double bend : {inset, last - end_inset})
       if (bend > side.begin && bend < end) add_at(bend);
-    if (end < side.whole_length - kAtEnd) add_at(end);
+    if (end < last - kAtEnd) add_at(end);
   }
   /// A part of a side has the part of its hem that rises as steeply from its ends.
   void add_hem(const NetCorner& from, const glm::dvec2& to) {
     const double length = glm::length(to - from.at);
-    const double inset = std::min(double(from.hem.inset), kMostInset * length);
-    const double width = from.hem.inset > 0 ? double(from.hem.width) * inset / double(from.hem.inset) : 0;
+    const double most = double(std::max(from.hem.inset, from.hem.end_inset));
+    const double inset = std::min(most, kMostInset * length);
+    const double width = most > 0 ? double(from.hem.width) * inset / most : 0;
     const glm::dvec2 along = (to - from.at) / length, out = glm::dvec2(-along.y, along.x) * width;
     add(from.at + along * inset + out);
     add(to - along * inset + out);

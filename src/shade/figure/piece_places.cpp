@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "painter/hem_shape.h"
+
 namespace frontmost::shading {
 namespace {
 
@@ -13,14 +15,20 @@ constexpr double kLeastArea = 1.5, kLeastLength = 2;
 constexpr double kAreaPerSample = 2, kMostAreaPerSample = 9, kLengthPerSample = 1;
 constexpr double kFewSamples = 4, kManySamples = 64;
 
-/// Hems that are tried: part of the width, and how far from the ends they have it, in their width.
-struct HemShape {
-  double part, inset;
-};
-constexpr HemShape kHemShapes[] = {{1, 0.5},    {1, 2},    {0.5, 0.5},  {0.5, 2},
-                                   {0.25, 0.5}, {0.25, 2}, {0.0625, 1}, {0.0625, 4}};
-/// Of a side, the part that each of its ends takes at most.
-constexpr double kMostInset = 0.45;
+constexpr painter_detail::HemShape kHemShapes[] = {{1, 0.5},
+                                                   {1, 2},
+                                                   {0.5, 0.5},
+                                                   {0.5, 2},
+                                                   {0.25, 0.5},
+                                                   {0.25, 2},
+                                                   {1, 0, 0.45, 0.45},
+                                                   {1, 0.5, 0, 0.85},
+                                                   {1, 0.5, 0.85},
+                                                   {0.25, 0, 0.45, 0.45},
+                                                   {0.25, 0.5, 0, 0.85},
+                                                   {0.25, 0.5, 0.85},
+                                                   {0.0625, 1},
+                                                   {0.0625, 4}};
 /// Pixels that hems stay away from the other sides of where they lie: rims that meet are blended twice.
 constexpr double kMargin = 0.5;
 
@@ -77,28 +85,33 @@ CutOutline cut_outline(std::span<const PieceCorner> corners, const ScreenLine& l
 }
 
 std::optional<std::array<PaintCorner, 2>> hem_within(const PaintCorner& from, const PaintCorner& to,
-                                                     std::span<const PieceCorner> room, double width) {
+                                                     std::span<const ScreenLine> room, double width) {
   const glm::dvec3 way = to.at - from.at;
   const double length = glm::length(glm::dvec2(way));
   if (!(length > 1e-6)) return std::nullopt;
   const glm::dvec3 along = way / length, out(-along.y, along.x, 0);
-  // How far within all other sides a place lies; the hem's own side is the one that it begins at.
   const auto is_within = [&](const glm::dvec3& at, double margin) {
-    for (std::size_t i = 0; i < room.size(); ++i) {
-      const glm::dvec2 p(room[i].at), side = glm::dvec2(room[i + 1 == room.size() ? 0 : i + 1].at) - p;
-      const double turn = side.x * (at.y - p.y) - side.y * (at.x - p.x);
-      if (turn > -margin * glm::length(side)) return false;
-    }
-    return true;
+    return std::all_of(room.begin(), room.end(),
+                       [&](const ScreenLine& line) { return line.distance(glm::dvec2(at)) >= margin; });
   };
-  for (const HemShape& shape : kHemShapes) {
-    const double reach = width * shape.part, inset = std::min(shape.inset * reach, kMostInset * length);
-    const std::array<PaintCorner, 2> hem{PaintCorner{from.at + along * inset + out * reach, true},
-                                         PaintCorner{to.at - along * inset + out * reach, true}};
-    const double margin = std::min(kMargin, reach * 0.5);
+  for (const painter_detail::HemShape& shape : kHemShapes) {
+    const double reach = width * shape.part, margin = std::min(kMargin, reach * 0.5);
+    const auto [from_inset, to_inset] = shape.insets(reach, length);
+    const std::array<PaintCorner, 2> hem{PaintCorner{from.at + along * from_inset + out * reach, true},
+                                         PaintCorner{to.at - along * to_inset + out * reach, true}};
     if (is_within(hem[0].at, margin) && is_within(hem[1].at, margin)) return hem;
   }
   return std::nullopt;
+}
+
+void append_sides(std::span<const PaintCorner> outline, std::vector<ScreenLine>& lines) {
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const glm::dvec2 p(outline[i].at), way = glm::dvec2(outline[i + 1 == outline.size() ? 0 : i + 1].at) - p;
+    const double length = glm::length(way);
+    if (!(length > 0)) continue;
+    const glm::dvec2 within = glm::dvec2(way.y, -way.x) / length;
+    lines.push_back({within, glm::dot(within, p)});
+  }
 }
 
 }  // namespace frontmost::shading

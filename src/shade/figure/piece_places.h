@@ -87,9 +87,12 @@ struct CutOutline {
 };
 [[nodiscard]] CutOutline cut_outline(std::span<const PieceCorner> corners, const ScreenLine& line, std::uint32_t cut);
 
-/// Two corners of a hem beside the side between two corners, that lies within a convex outline on its outer side: as
-/// wide as `width` allows, and as there is room. None where there is hardly any.
+/// Two corners of a hem on the outer side of the side between two corners, that lies on the positive sides of all
+/// lines: as wide as `width` allows, and as there is room. None where there is hardly any.
 [[nodiscard]] std::optional<std::array<PaintCorner, 2>> hem_within(const PaintCorner& from, const PaintCorner& to,
-                                                                   std::span<const PieceCorner> room, double width);
+                                                                   std::span<const ScreenLine> room, double width);
+
+/// Adds the lines of a convex outline's sides, positive within.
+void append_sides(std::span<const PaintCorner> outline, std::vector<ScreenLine>& lines);
 
 }  // namespace frontmost::shading

@@ -219,7 +219,6 @@ void PolygonColors::cut(Piece& piece, const ScreenLine& line) {
   CutOutline corners = cut_outline(piece.corners, line, number);
   below.corners = std::move(corners.below);
   above.corners = std::move(corners.above);
-  if (polygons_[piece.polygon].has_hems) cuts_.back().above = above.corners;
   for (const ColorSample& sample : piece.samples) {
     const double distance = line.distance(sample.at);
     if (std::abs(distance) >= kBesideCut) (distance > 0 ? above : below).samples.push_back(sample);
@@ -233,7 +232,7 @@ void PolygonColors::cut(Piece& piece, const ScreenLine& line) {
 void PolygonColors::keep(Piece& piece, const glm::vec4& color) {
   if (is_hole(color) || color.w < 0.5f) return;
   nodes_[piece.node].kept = std::uint32_t(kept_.size());
-  kept_.push_back({color, std::move(piece.corners)});
+  kept_.push_back({color, std::move(piece.corners), piece.cut});
 }
 
 /// In the order in which they are painted: below a cut before above it.
@@ -267,6 +266,17 @@ void append(const PaintPolygon& polygon, const Corners& corners, const View& vie
 
 }  // namespace
 
+/// Sets room_: lines with all that is painted after a piece on their positive sides. Of the polygon that is what lies
+/// above all cuts that have the piece above them.
+void PolygonColors::find_room(const PaintOrder& order, const Polygon& polygon, const Kept& piece) {
+  room_.clear();
+  append_sides({order.corners.data() + polygon.outline.first_corner, polygon.outline.corner_count}, room_);
+  glm::dvec2 middle(0);
+  for (const PieceCorner& corner : piece.corners) middle += glm::dvec2(corner.at) / double(piece.corners.size());
+  for (std::uint32_t i = piece.cut; i != no_index; i = cuts_[i].before)
+    if (cuts_[i].line.distance(middle) > 0) room_.push_back(cuts_[i].line);
+}
+
 /// With hems along cuts, under what lies above them.
 std::vector<PaintCorner> PolygonColors::hemmed(const Kept& piece) const {
   std::vector<PaintCorner> corners;
@@ -279,7 +289,7 @@ std::vector<PaintCorner> PolygonColors::hemmed(const Kept& piece) const {
     // What lies below has the cut's normal on the outside.
     const glm::dvec2 way(to.at - from.at), out(-way.y, way.x);
     if (!(glm::dot(out, cut.line.normal) > 0)) continue;
-    const auto hem = hem_within(from, to, cut.above, options_.hem);
+    const auto hem = hem_within(from, to, room_, options_.hem);
     if (hem) corners.insert(corners.end(), hem->begin(), hem->end());
   }
   return corners;
@@ -291,6 +301,7 @@ void PolygonColors::emit_hemmed(const PaintOrder& order, const Polygon& polygon,
   into.wholes.polygons.push_back({polygon.outline.id, polygon.outline.corner_count, into.wholes.corners.size()});
   into.wholes.corners.insert(into.wholes.corners.end(), first, first + polygon.outline.corner_count);
   for (const Kept* const piece : listed_) {
+    find_room(order, polygon, *piece);
     append(polygon.outline, hemmed(*piece), view_, into.order);
     into.colors.push_back(rounded(piece->color));
     into.shapes.push_back(into.shapes.empty() ? 0 : into.shapes.back() + 1);

@@ -41,7 +41,6 @@ class PolygonColors {
   struct Cut {
     ScreenLine line;
     std::uint32_t before = no_index;
-    std::vector<PieceCorner> above{};  ///< what lies there, all of which is painted after what lies below
   };
   /// A piece that was cut, or one that is kept. Pieces are painted as they come in the tree.
   struct Node {
@@ -51,6 +50,7 @@ class PolygonColors {
   struct Kept {
     glm::vec4 color;
     std::vector<PieceCorner> corners;
+    std::uint32_t cut;  ///< the last that it was made by
     std::uint32_t shape = 0;
   };
   struct Polygon {
@@ -81,6 +81,7 @@ class PolygonColors {
 
   void list_kept(const Polygon& polygon);
   void emit(const PaintOrder& order, const Polygon& polygon, ColoredOrder& into);
+  void find_room(const PaintOrder& order, const Polygon& polygon, const Kept& piece);
   [[nodiscard]] std::vector<PaintCorner> hemmed(const Kept& piece) const;
   void emit_hemmed(const PaintOrder& order, const Polygon& polygon, ColoredOrder& into);
   void emit_grouped(const Polygon& polygon, ColoredOrder& into);
@@ -104,6 +105,7 @@ class PolygonColors {
   std::vector<Kept*> listed_;
   std::vector<std::uint32_t> path_;
   std::vector<glm::dvec2> outline_;
+  std::vector<ScreenLine> room_;
 };
 
 }  // namespace frontmost::shading

@@ -9,9 +9,9 @@
 
 namespace frontmost::shading {
 
-/// How far a side reaches under its neighbour, and how far from its ends it does; pixels, 0 for none.
+/// How far a side reaches under its neighbour, and how far from its beginning and its end it does; pixels, 0 for none.
 struct SideHem {
-  float width = 0, inset = 0;
+  float width = 0, inset = 0, end_inset = 0;
   friend bool operator==(const SideHem&, const SideHem&) = default;
 };
 

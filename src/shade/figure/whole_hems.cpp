@@ -18,10 +18,11 @@ double distance_from_line(const glm::dvec2& from, const glm::dvec2& to, const gl
   return std::abs(way.x * out.y - way.y * out.x);
 }
 
-/// The hem of the side from one corner to another whose first corner beside it is `beside`.
-SideHem hem_between(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec2& beside) {
-  const glm::dvec2 way = (to - from) / glm::length(to - from), out = beside - from;
-  return {float(distance_from_line(from, to, beside)), float(glm::dot(way, out))};
+/// The hem of the side from one corner to another, by its own two corners.
+SideHem hem_between(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec2& first, const glm::dvec2& last) {
+  const glm::dvec2 way = (to - from) / glm::length(to - from);
+  return {float(distance_from_line(from, to, first)), float(glm::dot(way, first - from)),
+          float(glm::dot(way, to - last))};
 }
 
 }  // namespace
@@ -114,9 +115,10 @@ void WholeHems::read_whole(std::size_t whole) {
         ++at;
         continue;
       }
+      const glm::dvec2 beside_end(hemmed[at + 1].at);
       at += 2;
       const glm::dvec2 to = is_more() ? glm::dvec2(hemmed[at++].at) : last;
-      add_until(to, hem_between(from, to, beside));
+      add_until(to, hem_between(from, to, beside, beside_end));
     }
     if (from != last || first == last) add_until(last, {});
   }
