@@ -178,6 +178,80 @@ TEST_F(LinesCommand, SheetsTakeAStandardScaleAndCentreTheirViews) {
   EXPECT_EQ(all.size(), 4u);
 }
 
+TEST_F(LinesCommand, ViewsStandApartAndTheOneAtAnAngleBeyondTheCorner) {
+  for (const bool third : {false, true}) {
+    const auto sheet = [&](const std::string& views) {
+      return boxes(drawn("box.obj --up +z --page a3-landscape --scale 1:1 --views " + views +
+                         (third ? " --projection third-angle" : " --projection first-angle")));
+    };
+    std::map<std::string, Box> all = sheet("front,top,left,back");
+    const Box front = all["front: box"], top = all["top: box"], left = all["left: box"], back = all["back: box"];
+    EXPECT_NEAR(third ? front.top - top.bottom : top.top - front.bottom, 15, 0.0011);
+    EXPECT_NEAR(third ? front.left - left.right : left.left - front.right, 15, 0.0011);
+    // What is seen from behind is on the right of all.
+    EXPECT_NEAR(back.left - (third ? front.right : left.right), 15, 0.0011);
+    all = sheet("front,left,iso");
+    const Box iso = all["iso: box"];
+    EXPECT_GT(iso.left, all["front: box"].right);
+    EXPECT_EQ(iso.top > all["front: box"].bottom, !third);
+    EXPECT_EQ(iso.bottom < all["front: box"].top, third);
+  }
+}
+
+TEST_F(LinesCommand, PapersHaveTheirSizesAndLieAsAsked) {
+  const std::tuple<const char*, double, double> papers[] = {
+      {"a0", 841, 1189},       {"A1", 594, 841},         {"a2", 420, 594}, {"a3", 297, 420},
+      {"a4", 210, 297},        {"a5", 148, 210},         {"a6", 105, 148}, {"letter", 215.9, 279.4},
+      {"Legal", 215.9, 355.6}, {"tabloid", 279.4, 431.8}};
+  // Twice as wide as high: without a word it lies down.
+  const std::string front = "box.obj --up +z --view front --camera-orthographic --page ";
+  for (const auto& [name, narrow, wide] : papers) {
+    const json upright = drawn(front + name + "-portrait"), lying = drawn(front + name + "-landscape"),
+               free = drawn(front + name);
+    EXPECT_EQ(upright["width"], narrow) << name;
+    EXPECT_EQ(upright["height"], wide) << name;
+    EXPECT_EQ(lying["width"], wide) << name;
+    EXPECT_EQ(lying["height"], narrow) << name;
+    EXPECT_EQ(free["width"], wide) << name;
+  }
+  EXPECT_EQ(drawn(front + "120x60")["width"], 120);
+}
+
+TEST_F(LinesCommand, WhatTheCameraLeavesRoundTheModelIsLeftOnThePage) {
+  const auto width_of = [&](const std::string& options) {
+    const Box box = boxes(drawn("box.obj --up +z --view front --camera-orthographic --page a4 " + options)).at("box");
+    return box.right - box.left;
+  };
+  EXPECT_NEAR(width_of(""), 277, 0.01);
+  EXPECT_LT(width_of("--camera-zoom-factor 0.5"), 160);
+  EXPECT_LT(width_of("--resolution 100,100"), 190);
+}
+
+TEST_F(LinesCommand, CastShadowsAreHatchedUnlessToldOtherwise) {
+  // A small box stands on a large one, lit from the side.
+  write(
+      "step.obj", box_obj(40, 40, 10, "floor") + "o post\n" + [] {
+        std::string text;
+        for (int i = 0; i < 8; ++i)
+          text += "v " + std::to_string(i & 1 ? 24 : 16) + " " + std::to_string(i & 2 ? 24 : 16) + " " +
+                  std::to_string(i & 4 ? 30 : 10) + "\n";
+        return text + "f 9 11 12 10\nf 13 14 16 15\nf 9 10 14 13\nf 11 15 16 12\nf 9 13 15 11\nf 10 12 16 14\n";
+      }());
+  const auto hatched = [&](const std::string& options) {
+    return succeed("lines step.obj --up +z --view top --camera-orthographic --light 1,0,1.2 --hatch 1 --json" + options)
+        .json()["layers"][0];
+  };
+  EXPECT_EQ(hatched("")["name"], "4 hatching");
+  EXPECT_GT(hatched("")["drawn_mm"].get<double>(), 100);
+  EXPECT_EQ(hatched(" --cast-shadows no")["name"], "2 visible");
+}
+
+TEST_F(LinesCommand, PlottersTakeHatchLinesInTheirOrder) {
+  const std::string hatched = "lines builtin:cubes --hatch 2 --page a4 --json";
+  const double moved = succeed(hatched).json()["moved_mm"], plotted = succeed(hatched + " --plot").json()["moved_mm"];
+  EXPECT_LT(plotted, moved / 3);
+}
+
 TEST_F(LinesCommand, HiddenEdgesAsAsked) {
   const std::string iso = "lines cube.stl --view iso --camera-orthographic -o drawing.svg --hidden ";
   succeed(iso + "none");
@@ -311,6 +385,8 @@ TEST_F(LinesCommand, PensAndTheirDashesGoTogether) {
   EXPECT_THAT(read("drawing.svg"), HasSubstr("stroke-width=\".5\" stroke-linecap=\"round\" stroke-linejoin=\"round\" "
                                              "stroke-dasharray=\"6 1.5\""));
   EXPECT_THAT(read("drawing.svg"), HasSubstr("stroke-width=\"1\""));
+  succeed("lines cube.stl --view iso --camera-orthographic --hatch 2 --stipple 2 --pen 1 -o drawing.svg");
+  EXPECT_NE(read("drawing.svg").find("5 stippling\">\n<g stroke=\"#000000\" stroke-width=\".6\""), std::string::npos);
   expect_failure("lines cube.stl --pen 0 -o drawing.svg", 2, "--pen");
 }
 
