@@ -82,7 +82,7 @@ class Orderer {
   void foresee_cuts(const std::vector<std::uint32_t>& members) {
     const auto count = double(members.size());
     if (0.5 * count * count <= double(options_.most_cuts)) return;
-    if (least_crossings(pieces_, members, poll_) > double(options_.most_cuts)) refuse_more_cuts();
+    if (least_cuts(pieces_, members, poll_) > double(options_.most_cuts)) refuse_more_cuts();
   }
 
   void check_limits() const {

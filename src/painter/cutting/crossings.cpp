@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every two triangles that pass through each other take a cut of their own: along the line where they meet, and other
-// planes have other lines. So their number tells whether cutting will come to its limit, before it begins; unless many
-// lie in the same planes or around an axis, whose lines are the same.
+// planes have other lines. So their number tells whether cutting will come to its limit, before it begins. Where the
+// planes of m triangles go through the same line, as of two in one plane or of blades around an axis, m - 1 cuts may do
+// for all their m * (m - 1) / 2 pairs.
 #include "painter/cutting/crossings.h"
 
 #include <algorithm>
@@ -10,8 +11,10 @@
 namespace frontmost::painter_detail {
 namespace {
 
-/// And with how many others each is held against that passes through.
-constexpr std::size_t kPairs = 512, kOthers = 32;
+/// And so many others are asked whether they share a line; all, where there are no more.
+constexpr std::size_t kPairs = 512, kOthers = 4096;
+/// So many more than were found may share it, of those asked, once in fifty times.
+constexpr double kUnseen = 4;
 /// Of the spread of such a sample.
 constexpr double kDeviations = 4;
 
@@ -37,49 +40,79 @@ bool pass_through(const Face& a, const Face& b) {
   return false;
 }
 
-bool are_in_one_plane(const Face& a, const Face& b) {
-  const Plane plane = a.plane();
-  return std::all_of(b.corners.begin(), b.corners.end(),
-                     [&](const glm::vec3& corner) { return plane.side(glm::dvec3(corner)) == 0; });
-}
-
 glm::dvec3 normal_of(const Face& face) {
   const glm::dvec3 a(face.corners[0]), b(face.corners[1]), c(face.corners[2]);
   return glm::cross(b - a, c - a);
 }
 
-/// Whether the planes may meet in one line. Then one cut parts several pairs, as of blades around an axis n of n * n
-/// / 2.
-bool may_share_line(const Face& a, const Face& b, const Face& c) {
-  constexpr double rounding = 1e-12;
-  const glm::dvec3 p = normal_of(a), q = normal_of(b), r = normal_of(c);
-  return !(std::abs(glm::dot(glm::cross(p, q), r)) > rounding * glm::length(p) * glm::length(q) * glm::length(r));
+/// Where the planes of two triangles meet, to ask whether others' go through there, too.
+class SharedLine {
+ public:
+  SharedLine(const Face& a, const Face& b) {
+    const glm::dvec3 p = normal_of(a), q = normal_of(b), from(a.corners[0]);
+    along_ = glm::cross(p, q);
+    const double square = glm::dot(along_, along_), sizes = glm::dot(p, p) * glm::dot(q, q);
+    at_ = from + glm::cross(along_, p) * (glm::dot(q, glm::dvec3(b.corners[0]) - from) / square);
+    rounding_ = 1e-12 * sizes / square;
+  }
+  /// True also where rounding leaves it open.
+  [[nodiscard]] bool may_be_in_plane_of(const Face& face) const {
+    const glm::dvec3 normal = normal_of(face), way = at_ - glm::dvec3(face.corners[0]);
+    const double allowed = rounding_ * glm::length(normal);
+    const double reach = glm::length(way) + glm::length(at_);
+    return !(std::abs(glm::dot(normal, along_)) > allowed * glm::length(along_)) &&
+           !(std::abs(glm::dot(normal, way)) > allowed * reach);
+  }
+
+ private:
+  glm::dvec3 along_, at_;
+  double rounding_;
+};
+
+/// Numbers below a limit, the same on every run.
+class Picker {
+ public:
+  explicit Picker(std::size_t count) : count_(count) {}
+  std::size_t next() {
+    state_ = state_ * 6364136223846793005u + 1442695040888963407u;
+    return std::size_t(state_ >> 33) % count_;
+  }
+
+ private:
+  std::size_t count_;
+  std::uint64_t state_ = 1;
+};
+
+/// The share of a cut that falls to one of the pairs that meet in a line; not too great.
+double cuts_of_pair(const Pieces& pieces, const std::vector<std::uint32_t>& members, const SharedLine& line,
+                    Picker& picker) {
+  const std::size_t count = members.size();
+  const bool is_all = count <= kOthers;
+  std::size_t found = 0;
+  for (std::size_t k = 0; k < std::min(count, kOthers); ++k)
+    found += line.may_be_in_plane_of(pieces.face(members[is_all ? k : picker.next()]));
+  const double sharing = is_all ? double(found) : (double(found) + kUnseen) * double(count) / kOthers;
+  return 2 / std::max(2.0, sharing);
 }
 
 }  // namespace
 
-double least_crossings(const Pieces& pieces, const std::vector<std::uint32_t>& members, Poll& poll) {
-  const std::size_t count = members.size();
-  std::uint64_t random = 1;
-  const auto pick = [&] {
-    random = random * 6364136223846793005u + 1442695040888963407u;
-    return members[std::size_t(random >> 33) % count];
-  };
-  std::size_t found = 0;
+double least_cuts(const Pieces& pieces, const std::vector<std::uint32_t>& members, Poll& poll) {
+  constexpr std::size_t tests_per_step = 8;
+  const auto count = double(members.size());
+  Picker picker(members.size());
+  double sum = 0, squares = 0;
   for (std::size_t i = 0; i < kPairs; ++i) {
     poll.count(8);
-    const std::uint32_t a = pick(), b = pick();
-    if (a != b && are_in_one_plane(pieces.face(a), pieces.face(b))) return 0;
+    const std::uint32_t a = members[picker.next()], b = members[picker.next()];
     if (!pieces.is_whole(a) || !pieces.is_whole(b) || !pass_through(pieces.face(a), pieces.face(b))) continue;
-    ++found;
-    poll.count(kOthers);
-    for (std::size_t k = 0; k < kOthers; ++k) {
-      const std::uint32_t c = pick();
-      if (c != a && c != b && may_share_line(pieces.face(a), pieces.face(b), pieces.face(c))) return 0;
-    }
+    poll.count(std::min(members.size(), kOthers) / tests_per_step);
+    const double cuts = cuts_of_pair(pieces, members, {pieces.face(a), pieces.face(b)}, picker);
+    sum += cuts;
+    squares += cuts * cuts;
   }
-  const double share = double(found) / kPairs, spread = std::sqrt(share * (1 - share) / kPairs);
-  return std::max(0.0, share - kDeviations * spread) * 0.5 * double(count) * double(count);
+  const double mean = sum / kPairs, spread = std::sqrt(std::max(0.0, squares / kPairs - mean * mean) / kPairs);
+  return std::max(0.0, mean - kDeviations * spread) * 0.5 * count * count;
 }
 
 }  // namespace frontmost::painter_detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many triangles pass through each other.
+// How many cuts are taken by triangles that pass through each other.
 #pragma once
 
 #include <vector>
@@ -9,9 +9,8 @@
 
 namespace frontmost::painter_detail {
 
-/// The least number of pairs of a list of whole triangles and pieces that pass through each other, as far as a few
-/// hundred pairs tell: it may be too great once in ten thousand times. 0 where some lie in one plane, or meet in
-/// parallel lines, for these may be one.
-[[nodiscard]] double least_crossings(const Pieces& pieces, const std::vector<std::uint32_t>& members, Poll& poll);
+/// The least number of cuts that a list of whole triangles and pieces takes, for those of them that pass through each
+/// other; as far as a few hundred pairs tell: it may be too great once in ten thousand times.
+[[nodiscard]] double least_cuts(const Pieces& pieces, const std::vector<std::uint32_t>& members, Poll& poll);
 
 }  // namespace frontmost::painter_detail
