@@ -298,7 +298,33 @@ TEST(Inspect, CamerasComeInWorldTerms) {
   EXPECT_EQ(report.cameras[0].position, glm::dvec3(0, 0, 7));
   EXPECT_EQ(report.cameras[0].direction, glm::dvec3(0, 0, -1));
   EXPECT_EQ(report.cameras[0].up, glm::dvec3(0, 1, 0));
+  EXPECT_EQ(report.cameras[0].vertical, scene.cameras[0].vertical);
+  EXPECT_NEAR(report.cameras[0].vertical, 1.5707963267948966, 1e-12);
   EXPECT_TRUE(report.bounds.is_empty());
+}
+
+TEST(Inspect, MaterialsSayHowTheyAreSeen) {
+  Scene scene = scene_of(tetrahedron());
+  scene.materials.resize(2);
+  scene.materials[1].name = "leaf";
+  scene.materials[1].double_sided = true;
+  scene.materials[1].alpha = Material::Alpha::mask;
+  const SceneReport report = inspect(scene);
+  EXPECT_FALSE(report.materials[0].double_sided);
+  EXPECT_EQ(report.materials[1].name, "leaf");
+  EXPECT_TRUE(report.materials[1].double_sided);
+  EXPECT_EQ(report.materials[1].alpha, Material::Alpha::mask);
+}
+
+TEST(Inspect, BoundsLeaveOutWhatInstancesCarryBeyondFloats) {
+  Scene scene = scene_of(tetrahedron());
+  scene.meshes[0].positions[0] = {3e38f, 0, 0};  // finite, and twice as much is not
+  const glm::vec3 high = inspect(scene).bounds.high;
+  scene.instances[0].world_from_mesh = glm::dmat4(2);
+  const Box bounds = inspect(scene).bounds;
+  EXPECT_EQ(high.x, 3e38f);
+  EXPECT_LT(bounds.high.x, 10);
+  EXPECT_FALSE(bounds.is_empty());
 }
 
 TEST(Inspect, SurvivesAbsurdTransforms) {
