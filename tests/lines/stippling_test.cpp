@@ -7,6 +7,7 @@
 #include <set>
 
 #include "frontmost/hatching.h"
+#include "lines/hatching/dot_grid.h"
 #include "support/effort.h"
 #include "support/hatch_oracle.h"
 #include "support/random_scene.h"
@@ -168,6 +169,17 @@ TEST(Stipple, RefusesWhatMakesNoSense) {
   EXPECT_THROW((void)stipple(surfaces, view, options_of(2, {0, 0, 0})), Error);
   EXPECT_THROW((void)stipple(surfaces, frame(surfaces, 16384, 16384), options_of(2, {0, 0, 1})), Error);
   EXPECT_TRUE(stipple(nothing, view, options_of(2, {0, 0, 1})).empty());
+}
+
+TEST(DotGrid, HasItsPlacesWithinThePicture) {
+  for (const double width : {64.0, 63.0, 0.5}) {
+    const lines_detail::DotGrid grid(4, width);
+    for (std::int32_t row = 0; row < lines_detail::DotGrid::side; ++row)
+      grid.for_each(row, -1e300, 1e300, [&](double along, double) {
+        EXPECT_GE(along, 0);
+        EXPECT_LT(along, width);
+      });
+  }
 }
 
 }  // namespace

@@ -111,7 +111,8 @@ std::vector<int> ranks() {
 
 }  // namespace
 
-DotGrid::DotGrid(double spacing, double width) : cell_(cell_of(spacing)), columns_(std::int32_t(width / cell_) + 1) {
+DotGrid::DotGrid(double spacing, double width)
+    : cell_(cell_of(spacing)), width_(width), columns_(std::int32_t(width / cell_) + 1) {
   // A quarter of the cells at most: where more were taken their rows would show.
   constexpr double most = count / 4.0;
   static const std::vector<int> rank_of = ranks();

@@ -28,7 +28,7 @@ class DotGrid {
     for (auto column = std::int32_t(first); column < std::int32_t(last); ++column) {
       const Place& place = places_[std::size_t((row & (side - 1)) * side + (column & (side - 1)))];
       const double along = (column + double(place.shift)) * cell_;
-      if (place.below > 0 && along >= low && along < high) visit(along, double(place.below));
+      if (place.below > 0 && along >= low && along < high && along < width_) visit(along, double(place.below));
     }
   }
 
@@ -38,7 +38,7 @@ class DotGrid {
     float below;
   };
 
-  double cell_;
+  double cell_, width_;
   std::int32_t columns_;
   std::vector<Place> places_;
 };
