@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hems of a figure's pieces.
-#include "shade/figure/piece_places.h"
+#include "shade/figure/coloring/piece_places.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/float_environment.h"
-#include "shade/figure/order_parts.h"
+#include "shade/figure/grouping/order_parts.h"
 
 namespace frontmost::shading {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shade/figure/color_groups.h"
+#include "shade/figure/coloring/color_groups.h"
 
 #include <algorithm>
 #include <cmath>

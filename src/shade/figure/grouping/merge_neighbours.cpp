@@ -8,8 +8,8 @@
 #include "frontmost/figure.h"
 #include "painter/poll.h"
 #include "shade/figure/check_figure.h"
-#include "shade/figure/overlaps.h"
-#include "shade/figure/sets.h"
+#include "shade/figure/grouping/overlaps.h"
+#include "shade/figure/grouping/sets.h"
 #include "shade/figure/side_net.h"
 
 namespace frontmost {

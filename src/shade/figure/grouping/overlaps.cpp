@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shade/figure/overlaps.h"
+#include "shade/figure/grouping/overlaps.h"
 
 #include <algorithm>
 

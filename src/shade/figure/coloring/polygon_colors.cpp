@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shade/figure/polygon_colors.h"
+#include "shade/figure/coloring/polygon_colors.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/parallel.h"
 #include "base/srgb.h"
-#include "shade/figure/color_groups.h"
+#include "shade/figure/coloring/color_groups.h"
 #include "surfaces/cluster_set.h"
 #include "view/affine_depth.h"
 

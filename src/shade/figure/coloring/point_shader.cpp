@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shade/figure/point_shader.h"
+#include "shade/figure/coloring/point_shader.h"
 
 namespace frontmost::shading {
 namespace {

@@ -2,14 +2,14 @@
 // Of nodes that may all be painted next none is over another, whatever order they had: one would have to wait. So any
 // of them make a sheet. Those of one surface are kept together, as patches of neighbours that grow until nothing beside
 // them has to wait.
-#include "shade/figure/sheet_order.h"
+#include "shade/figure/grouping/sheet_order.h"
 
 #include <functional>
 #include <queue>
 #include <set>
 #include <span>
 
-#include "shade/figure/sets.h"
+#include "shade/figure/grouping/sets.h"
 
 namespace frontmost::shading {
 namespace {

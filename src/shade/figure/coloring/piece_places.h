@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "frontmost/painter.h"
-#include "shade/figure/color_cut.h"
+#include "shade/figure/coloring/color_cut.h"
 
 namespace frontmost::shading {
 

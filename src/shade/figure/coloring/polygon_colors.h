@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "frontmost/figure.h"
-#include "shade/figure/piece_places.h"
-#include "shade/figure/point_shader.h"
+#include "shade/figure/coloring/piece_places.h"
+#include "shade/figure/coloring/point_shader.h"
 #include "view/screen_cutout.h"
 
 namespace frontmost::shading {

@@ -7,7 +7,7 @@
 
 #include "frontmost/painter.h"
 #include "painter/order/piece_grid.h"
-#include "shade/figure/order_parts.h"
+#include "shade/figure/grouping/order_parts.h"
 
 namespace frontmost::shading {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shade/figure/piece_places.h"
+#include "shade/figure/coloring/piece_places.h"
 
 #include <algorithm>
 #include <cmath>

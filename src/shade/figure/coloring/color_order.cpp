@@ -5,7 +5,7 @@
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "frontmost/figure.h"
-#include "shade/figure/polygon_colors.h"
+#include "shade/figure/coloring/polygon_colors.h"
 
 namespace frontmost {
 namespace {
