@@ -38,6 +38,22 @@ TEST(GatherSheets, HalvesOfAPaneStayTogetherWhateverIsBehind) {
   EXPECT_NEAR(area_of(figure, 2), 16, 1e-9);
 }
 
+/// As the front and the back of a box of glass are seen along an axis; in whatever order their halves come.
+TEST(GatherSheets, PanesInOneOutlineStayWhole) {
+  const Tile half{{{0, 0}, {0, 4}, {4, 4}}, kGlass}, other{{{0, 0}, {4, 4}, {4, 0}}, kGlass};
+  for (const std::vector<Tile>& tiles :
+       {std::vector{half, other, half, other, other, half}, std::vector{half, half, half, other, other, other}}) {
+    const ColoredOrder gathered = gather_sheets(order_of(tiles));
+    ASSERT_EQ(gathered.sheets.size(), tiles.size());
+    const Figure figure = outlined(gathered, 1);
+    for (std::size_t i = 0; i < tiles.size(); i += 2) {
+      EXPECT_EQ(gathered.sheets[i], gathered.sheets[i + 1]) << i;
+      if (i > 0) EXPECT_NE(gathered.sheets[i], gathered.sheets[i - 1]) << i;
+      EXPECT_GT(area_of(figure, i), 8 + 3) << i;  // with a hem under the other half
+    }
+  }
+}
+
 TEST(GatherSheets, OpacitiesStayApartAndOpaqueFiguresAsTheyAre) {
   const ColoredOrder glass = gather_sheets(order_of({box(0, 0, 4, 4, kGlass), box(4, 0, 4, 4, kClear)}));
   EXPECT_NE(glass.sheets[0], glass.sheets[1]);

@@ -106,16 +106,22 @@ void SideNet::weave() {
   });
 }
 
+SideNet::Pairs SideNet::pairs_at(std::size_t begin) const {
+  const auto ends = [](const Side& side) { return std::minmax(side.from, side.to); };
+  Pairs pairs{begin, begin, begin};
+  while (pairs.end < sides_.size() && ends(sides_[pairs.end]) == ends(sides_[begin]))
+    pairs.turn += sides_[pairs.end++].from == sides_[begin].from;
+  return pairs;
+}
+
 void SideNet::begin_rings() {
   left_.clear();
-  for (std::size_t i = 0, j; i < sides_.size(); i = j) {
-    // Those to first, those fro behind: as many of each as of the other go.
-    for (j = i + 1; j < sides_.size() && joins_same(sides_[i], sides_[j]);) ++j;
-    std::size_t turn = i;
-    while (turn < j && sides_[turn].from == sides_[i].from) ++turn;
-    const std::size_t pairs = std::min(turn - i, j - turn);
-    for (std::size_t k = i + pairs; k < turn; ++k) left_.push_back(sides_[k]);
-    for (std::size_t k = turn + pairs; k < j; ++k) left_.push_back(sides_[k]);
+  // As many of those to as of those fro go.
+  for (std::size_t i = 0; i < sides_.size();) {
+    const Pairs pairs = pairs_at(i);
+    for (std::size_t k = i + pairs.count(); k < pairs.turn; ++k) left_.push_back(sides_[k]);
+    for (std::size_t k = pairs.turn + pairs.count(); k < pairs.end; ++k) left_.push_back(sides_[k]);
+    i = pairs.end;
   }
   std::sort(left_.begin(), left_.end(), [](const Side& a, const Side& b) {
     return std::tie(a.from, a.to, a.outline) < std::tie(b.from, b.to, b.outline);

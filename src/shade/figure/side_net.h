@@ -32,12 +32,14 @@ class SideNet {
   /// Parts sides. All is to be added before.
   void weave();
 
-  /// Calls share(a, b) for outlines that share a side.
+  /// Calls share(a, b) for outlines that share a side. Where several lie over each other there, those with the lowest
+  /// numbers share it, and so on.
   template <class Share>
   void for_each_shared(const Share& share) const {
-    for (std::size_t i = 0, j; i < sides_.size(); i = j) {
-      for (j = i + 1; j < sides_.size() && joins_same(sides_[i], sides_[j]); ++j)
-        if (sides_[j].from != sides_[j - 1].from) share(sides_[j - 1].outline, sides_[j].outline);
+    for (std::size_t i = 0; i < sides_.size();) {
+      const Pairs pairs = pairs_at(i);
+      for (std::size_t k = 0; k < pairs.count(); ++k) share(sides_[i + k].outline, sides_[pairs.turn + k].outline);
+      i = pairs.end;
     }
   }
   /// Calls keep(corners) for every closed ring of what is left without shared sides.
@@ -59,9 +61,12 @@ class SideNet {
     SideHem hem;
   };
 
-  static bool joins_same(const Side& a, const Side& b) {
-    return std::minmax(a.from, a.to) == std::minmax(b.from, b.to);
-  }
+  /// Sides between two points: those to begin at some place, those fro at the turn.
+  struct Pairs {
+    std::size_t begin, turn, end;
+    [[nodiscard]] std::size_t count() const { return std::min(turn - begin, end - turn); }
+  };
+  [[nodiscard]] Pairs pairs_at(std::size_t begin) const;
   [[nodiscard]] std::uint32_t number(const Point& p) const;
   void sort_points();
   void find_between(const Point& from, const Point& to);
