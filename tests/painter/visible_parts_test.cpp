@@ -90,6 +90,64 @@ TEST(VisibleParts, APointHidesNothing) {
   }
 }
 
+/// Triangles, counter-clockwise as they are seen, in a picture of 64 by 64 pixels.
+PaintOrder order_of(const std::vector<std::array<glm::dvec2, 3>>& triangles) {
+  PaintOrder order;
+  order.view = view_from_above(true);
+  for (const std::array<glm::dvec2, 3>& triangle : triangles) {
+    order.polygons.push_back({PrimitiveId(order.polygons.size()), 3, order.corners.size()});
+    for (const glm::dvec2& at : triangle) order.corners.push_back({{at, 10}, false});
+  }
+  return order;
+}
+
+/// From the middle of the picture to one of its sides, of which it takes 48 pixels, and so far on.
+std::array<glm::dvec2, 3> wedge(const glm::dvec2& out, double far) {
+  const glm::dvec2 middle(32, 32), aside(-out.y, out.x);
+  return {middle, middle + far * (out + 0.75 * aside), middle + far * (out - 0.75 * aside)};
+}
+
+/// Next to the eye's plane triangles end any number of pixels away.
+TEST(VisibleParts, CornersFarOutsideLeavePlacesWithinAsTheyAre) {
+  const std::array<glm::dvec2, 3> all{{{-200, 200}, {400, 200}, {-200, -400}}};
+  for (const double far : {1e3, 1e12, 1e15, 1e17, 1e20, 1e30, 5e37})
+    for (const glm::dvec2 out : {glm::dvec2(1, 0), glm::dvec2(0, -1), glm::dvec2(-1, 0), glm::dvec2(0, 1)}) {
+      SCOPED_TRACE(testing::Message() << far << " pixels along " << out.x << ", " << out.y);
+      EXPECT_NEAR(area_of(visible_parts(order_of({wedge(out, far)}))), 0.75 * 32 * 32, 1e-7);
+      EXPECT_NEAR(area_of(visible_parts(order_of({all, wedge(out, far)}))), 64 * 64, 1e-7);
+    }
+}
+
+TEST(VisibleParts, CornersFarOutsideLeaveDepthsWithinAsTheyAre) {
+  PaintOrder order = order_of({wedge({1, 0}, 1e8)});
+  order.view = view_from_above(false);
+  for (const std::size_t far : {1, 2}) order.corners[far].at.z = 100;
+  const PaintOrder seen = visible_parts(order);
+  ASSERT_EQ(seen.corners.size(), 3u);
+  for (const PaintCorner& corner : seen.corners)
+    EXPECT_NEAR(corner.at.z, 1 / (0.1 - 0.09 * (corner.at.x - 32) / 1e8), 1e-7);  // 1 / z is even on the screen
+}
+
+/// Where all of a triangle's corners are far away, its sides are known to a few pixels alone.
+TEST(VisibleParts, NoCornerIsOutsideThePicture) {
+  Random random(9);
+  std::size_t seen = 0;
+  for (std::uint64_t i = 0; i < seeds(2000); ++i) {
+    std::array<glm::dvec2, 3> triangle;
+    for (glm::dvec2& at : triangle)
+      for (int axis = 0; axis < 2; ++axis)
+        at[axis] = (random.below(2) == 0 ? -1 : 1) * std::pow(10.0, random.below(38)) * (1 + random.below(9));
+    const glm::dvec2 u = triangle[1] - triangle[0], v = triangle[2] - triangle[0];
+    if (u.x * v.y > u.y * v.x) std::swap(triangle[1], triangle[2]);  // y points down
+    for (const PaintCorner& corner : visible_parts(order_of({triangle})).corners) {
+      ++seen;
+      EXPECT_GE(std::min(corner.at.x, corner.at.y), -1.0 / 1024);
+      EXPECT_LE(std::max(corner.at.x, corner.at.y), 64 + 1.0 / 1024);
+    }
+  }
+  EXPECT_GT(seen, seeds(2000) / 4);
+}
+
 TEST(VisibleParts, LargePolygonsAreCutAmongManySmallOnes) {
   Mesh mesh;
   add_square(mesh, 1, 0);

@@ -51,6 +51,30 @@ class PiecePolygons {
   const std::vector<std::uint32_t>& members_;
 };
 
+/// Pixels beyond the picture. Sides that reach farther, as they may next to the eye's plane, are cut there: to doubles
+/// so far away a place in the picture is known to 1e-9 pixel.
+constexpr double kReach = 1 << 22;
+
+/// What of a convex outline is on the lower side of a line along an axis, or on the upper one. Cut from the nearer end
+/// of a side: one at 1e17 pixels has no digits for a place near the picture. Where both are so far away neither has,
+/// but the cut is on the line, so that nothing is beyond it.
+std::vector<PaintCorner> cut_along_axis(Outline outline, int axis, double border, bool is_lower) {
+  std::vector<PaintCorner> left;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const PaintCorner &corner = outline[i], &after = outline[i + 1 == outline.size() ? 0 : i + 1];
+    const double a = corner.at[axis] - border, b = after.at[axis] - border;
+    const auto is_left = [&](double beyond) { return is_lower ? beyond <= 0 : beyond >= 0; };
+    if (is_left(a)) left.push_back(corner);
+    if (is_left(a) == is_left(b)) continue;
+    const bool is_nearer = std::abs(a) < std::abs(b);
+    const glm::dvec3 &near = is_nearer ? corner.at : after.at, &far = is_nearer ? after.at : corner.at;
+    PaintCorner cut{near + (far - near) * (is_nearer ? a / (a - b) : b / (b - a)), is_left(a) || corner.is_cut};
+    cut.at[axis] = border;
+    left.push_back(cut);
+  }
+  return left;
+}
+
 template <class Polygons>
 std::vector<Extent> extents_of(const Polygons& polygons) {
   std::vector<Extent> extents;
@@ -89,19 +113,62 @@ Scenery::Scenery(const Polygons& polygons, const View& view, const Hides& hides)
     slots_[slot_of_[place]] = {extents[place],     0, place, first_place, polygons.corner_count(place),
                                !hides || hides(id)};
   }
+  make_room();
+  std::vector<std::size_t> far_slots;
+  for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
+    PaintCorner* const first = corners_.data() + slots_[slot].first_corner;
+    polygons.copy(slots_[slot].place, first);
+    for (std::size_t i = 0; i < slots_[slot].corner_count; ++i) first[i].at.z = affine_depth(view, first[i].at.z);
+    if (!is_within_reach(outline(slot))) far_slots.push_back(slot);
+  }
+  if (!far_slots.empty()) cut_at_reach(far_slots);
+  for (std::size_t slot = 0; slot < slots_.size(); ++slot)
+    slots_[slot].hides = slots_[slot].hides && !is_flat(outline(slot));
+  grid_.renumber(slot_of_);
+}
+
+void Scenery::make_room() {
   std::size_t corners = 0;
   for (Slot& slot : slots_) {
     slot.first_corner = corners;
     corners += slot.corner_count;
   }
   corners_ = Buffer<PaintCorner>(corners);
-  for (Slot& slot : slots_) {
-    PaintCorner* const first = corners_.data() + slot.first_corner;
-    polygons.copy(slot.place, first);
-    slot.hides = slot.hides && !is_flat({first, slot.corner_count});
+}
+
+bool Scenery::is_within_reach(Outline outline) const {
+  return std::all_of(outline.begin(), outline.end(), [&](const PaintCorner& corner) {
+    const glm::dvec2 at(corner.at);
+    return glm::all(glm::greaterThanEqual(at, glm::dvec2(-kReach))) && glm::all(glm::lessThanEqual(at, size_ + kReach));
+  });
+}
+
+void Scenery::cut_at_reach(const std::vector<std::size_t>& far_slots) {
+  std::vector<std::vector<PaintCorner>> parts;
+  for (const std::size_t slot : far_slots) {
+    std::vector<PaintCorner> part(outline(slot).begin(), outline(slot).end());
+    for (int axis = 0; axis < 2; ++axis) {
+      part = cut_along_axis(part, axis, -kReach, false);
+      part = cut_along_axis(part, axis, size_[axis] + kReach, true);
+    }
+    // Nothing of it is nearer: then a point of the border stands for it.
+    if (part.size() < 3) {
+      part.assign(3, outline(slot)[0]);
+      for (PaintCorner& corner : part)
+        corner.at = glm::clamp(corner.at, glm::dvec3(glm::dvec2(-kReach), corner.at.z),
+                               glm::dvec3(size_ + kReach, corner.at.z));
+    }
+    parts.push_back(std::move(part));
   }
-  for (PaintCorner& corner : corners_) corner.at.z = affine_depth(view, corner.at.z);
-  grid_.renumber(slot_of_);
+  const std::vector<Slot> before(slots_.begin(), slots_.end());
+  const Buffer<PaintCorner> corners = std::move(corners_);
+  for (std::size_t i = 0; i < far_slots.size(); ++i) slots_[far_slots[i]].corner_count = std::uint32_t(parts[i].size());
+  make_room();
+  for (std::size_t slot = 0, far = 0; slot < slots_.size(); ++slot) {
+    const bool is_far = far < far_slots.size() && far_slots[far] == slot;
+    const PaintCorner* const from = is_far ? parts[far++].data() : corners.data() + before[slot].first_corner;
+    std::copy(from, from + slots_[slot].corner_count, corners_.data() + slots_[slot].first_corner);
+  }
 }
 
 Scenery::Scenery(const PaintOrder& order, const Hides& hides) : Scenery(OrderPolygons(order), order.view, hides) {}

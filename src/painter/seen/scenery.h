@@ -51,6 +51,11 @@ class Scenery {
     std::uint32_t place, first_place, corner_count;
     bool hides;
   };
+  /// For the corners of all slots.
+  void make_room();
+  [[nodiscard]] bool is_within_reach(Outline outline) const;
+  /// Cuts outlines where they are too far from the picture for their sides to have a place in it.
+  void cut_at_reach(const std::vector<std::size_t>& far_slots);
   template <class Polygons>
   Scenery(const Polygons& polygons, const View& view, const Hides& hides);
 
