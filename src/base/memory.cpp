@@ -153,7 +153,8 @@ void* allocate(std::size_t bytes) {
   if (Block* block = current ? current->take(size) : nullptr) return block + 1;
   void* pointer = allocate_alone(size);
   if (!pointer) throw std::bad_alloc();
-  return new (pointer) Block + 1;
+  auto* block = new (pointer) Block;
+  return block + 1;
 }
 
 void release(void* pointer) noexcept {
