@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cells that are divided because much meets in them: how much lines then ask, and that they get the same answers.
+#include "lines/hiding/fine_cells.h"
+
 #include <gtest/gtest.h>
 
 #include "lines/hiding/hidden_parts.h"
@@ -114,6 +116,34 @@ TEST(FineCells, LeaveFewerOfStacksConesAndBooks) {
     const View view = frame(Surfaces(scene), 640, 480);
     EXPECT_LT(Crowded(scene, view, false, true).asked(), 0.6 * Crowded(scene, view, false, false).asked());
   }
+}
+
+/// Where dividing does not pay, all of the cell's triangles are looked at once.
+TEST(FineCells, AskOftenWhetherToStop) {
+  const Scene scene = scene_of(crowd(Crowd::stack, 20000));
+  const Surfaces surfaces(scene);
+  const View view = frame(surfaces, 640, 480);
+  const WeldedMesh mesh = weld(surfaces, {});
+  const SeenMesh seen = see(mesh, Sight(view), {});
+  OnGrid on_grid{seen, Sight(view), Buffer<glm::dvec3>(mesh.positions.size())};
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+    on_grid.places[v] = on_grid.sight.to_screen(on_grid.sight.in_eye(mesh.positions[v]));
+  Buffer<Footprint> footprints(mesh.triangles.size());
+  lines_detail::Crowd held{{320, 240, 1}, {}, {0}};
+  for (std::uint32_t t = 0; t < footprints.size(); ++t) {
+    footprints[t] = {{0, 0}, {640, 480}, 1, t};
+    held.entries.push_back({1, t});
+  }
+  std::size_t asked = 0;
+  Watch watch;
+  watch.cancelled = [&] {
+    ++asked;
+    return false;
+  };
+  const std::vector<GridLine> lines = {{{320.1, 240.2}, {320.9, 240.7}}};
+  const FineCells cells = divide({on_grid, footprints, lines, true}, held, {.threads = 1, .watch = &watch});
+  EXPECT_EQ(cells.cells.size(), 1u);
+  EXPECT_GT(asked, footprints.size() / 10000);
 }
 
 /// A triangle of the plane in which nearness or distance grows by `slope` from `value` at the apex, whose places are

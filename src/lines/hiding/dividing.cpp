@@ -146,7 +146,10 @@ void OccluderGrid::add_entries(const Plan& plan, const std::vector<FineCells>& p
   set_entry_count(first_.back());
   for (const FineCells& part : parts)
     for (const FineCell& cell : part.cells)
-      for (const CellEntry& entry : cell.entries) set_entry(plan, e++, entry);
+      for (const CellEntry& entry : cell.entries) {
+        poll(plan.execution, e);
+        set_entry(plan, e++, entry);
+      }
 }
 
 }  // namespace frontmost::lines_detail

@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t kFew = 64, kFewPairs = 1 << 14;
 /// The smallest part is 2^-14 of a cell: still very much larger than kCellPad.
 constexpr int kDeepest = 7;
+constexpr std::size_t kEntriesPerPoll = 1 << 13;
 /// What visiting a cell costs, counted in occluders that are asked there.
 constexpr double kVisit = 128;
 
@@ -63,12 +64,15 @@ class CellDivider {
       for (int x = 0; x < Division::side; ++x)
         parts.of[std::size_t(y * Division::side + x)].square = parts.division.at(x, y);
     add_entries(crowd, parts);
-    for (const std::uint32_t line : crowd.lines)
+    for (std::size_t i = 0; i < crowd.lines.size(); ++i) {
+      if (i % kEntriesPerPoll == 0) check_cancelled(execution_);
+      const std::uint32_t line = crowd.lines[i];
       visit_parts(parts.division, grid_.lines[line].from, grid_.lines[line].to,
                   [&](int x, int y, const glm::dvec2&, const glm::dvec2&) {
                     parts.of[std::size_t(y * Division::side + x)].lines.push_back(line);
                     return true;
                   });
+    }
     return parts;
   }
 
@@ -83,6 +87,7 @@ class CellDivider {
     std::array<std::vector<std::size_t>, Division::count> numbers;
     std::array<Cover, Division::count> covers;
     for (std::size_t e = 0; e < crowd.entries.size(); ++e) {
+      if (e % kEntriesPerPoll == 0) check_cancelled(execution_);
       // All that follow are beyond what covers each part.
       const auto is_beyond = [&](const Cover& cover) { return crowd.entries[e].nearest > cover.farthest; };
       if (e % kFew == 0 && std::all_of(covers.begin(), covers.end(), is_beyond)) break;
