@@ -88,7 +88,8 @@ TEST(NearLines, FindAllThatLieOnALineAndAskFewOthers) {
       expect_all_found(kinds[kind], apart, under_sanitizer ? 600 : 3000, asked);
       // Where a pixel counts as one line, nearly all may lie on each other.
       if (apart < 1) {
-        EXPECT_LT(double(asked.visited), 0.25 * double(asked.all));
+        // Those that come first are gone through one by one, and are more of few.
+        EXPECT_LT(double(asked.visited), (under_sanitizer ? 0.5 : 0.25) * double(asked.all));
       }
     }
 }

@@ -276,8 +276,10 @@ TEST(StrokesOnce, NorIsItWhereMoreCountsAsOneLine) {
   const Drawing drawing = far_crowd(under_sanitizer ? 4000 : 50000);
   for (const double apart : {0.09, 0.12, 1.0}) {
     const Clock::time_point start = Clock::now();
-    // All are 0.1 long: within a whole pixel each is no more than a point.
-    EXPECT_EQ(strokes(surfaces, drawing, {.by_instance = false, .apart = apart}).strokes.empty(), apart == 1.0);
+    // All are 0.1 long: within more than that each is no more than a point, unless it meets another, as many of 50000
+    // do.
+    const bool is_empty = strokes(surfaces, drawing, {.by_instance = false, .apart = apart}).strokes.empty();
+    EXPECT_EQ(is_empty, apart == 1.0 || (under_sanitizer && apart > 0.1));
     // 0.1 s; where cells were no smaller than eight times that, up to 8.
     EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 4) << apart;
   }
