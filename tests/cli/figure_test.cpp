@@ -39,7 +39,9 @@ TEST_F(Figures, HaveNoHash) {
 
 TEST_F(Figures, KeepWhatShowsThrough) {
   EXPECT_THAT(succeed("render cube.stl -o glass.svg --shading flat --opacity 0.5 --quiet").err, IsEmpty());
-  EXPECT_EQ(count("glass.svg", "fill-opacity=\".502\""), 12u);
+  EXPECT_EQ(count("glass.svg", "<path"), 13u);                                            // and the background
+  EXPECT_EQ(count("glass.svg", "<g inkscape:label=\"surfaces\" opacity=\".502\">"), 2u);  // the far side and the near
+  EXPECT_EQ(count("glass.svg", "fill-opacity"), 0u);
 }
 
 TEST_F(Figures, StandBesidePixels) {
