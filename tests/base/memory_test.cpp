@@ -53,8 +53,14 @@ TEST(LargePages, AnyRangeMayBeAskedFor) {
 
 using Bytes = Buffer<std::uint8_t>;
 
-TEST(Arena, BuffersLieSideBySide) {
-  if (!Arena::has_room) GTEST_SKIP();
+class ArenaWithRoom : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!Arena::has_room) GTEST_SKIP() << "arenas have no room under AddressSanitizer";
+  }
+};
+
+TEST_F(ArenaWithRoom, BuffersLieSideBySide) {
   const Arena arena(4 * kMebi);
   const Bytes first(1000), second(kMebi), third(7);
   EXPECT_EQ(reinterpret_cast<std::uintptr_t>(second.data()) % 64, 0u);
@@ -64,8 +70,7 @@ TEST(Arena, BuffersLieSideBySide) {
   EXPECT_LE(third.data(), second.end() + 256);
 }
 
-TEST(Arena, RoomComesBackInWhateverOrderBuffersGo) {
-  if (!Arena::has_room) GTEST_SKIP();
+TEST_F(ArenaWithRoom, RoomComesBackInWhateverOrderBuffersGo) {
   const Arena arena(4 * kMebi);
   const std::uint8_t* start = Bytes(1).data();
   for (const std::array<int, 3> order : {std::array{0, 1, 2}, {2, 1, 0}, {1, 0, 2}, {1, 2, 0}}) {
@@ -93,8 +98,7 @@ TEST(Arena, WhatHasNoRoomLiesElsewhere) {
   EXPECT_THROW((void)detail::allocate(~std::size_t(0)), std::bad_alloc);
 }
 
-TEST(Arena, InnerOnesGoFirst) {
-  if (!Arena::has_room) GTEST_SKIP();
+TEST_F(ArenaWithRoom, InnerOnesGoFirst) {
   const Arena outer(kMebi);
   const Bytes before(1);
   std::optional<Bytes> kept;
@@ -108,8 +112,7 @@ TEST(Arena, InnerOnesGoFirst) {
   EXPECT_LE(after.data(), before.end() + 256);
 }
 
-TEST(Arena, OtherThreadsHaveNoneAndMayDrop) {
-  if (!Arena::has_room) GTEST_SKIP();
+TEST_F(ArenaWithRoom, OtherThreadsHaveNoneAndMayDrop) {
   const Arena arena(kMebi);
   std::vector<Bytes> mine, others;
   for (int i = 0; i < 100; ++i) mine.emplace_back(1000, std::uint8_t(i));
