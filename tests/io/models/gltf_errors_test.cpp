@@ -186,7 +186,8 @@ TEST(GltfData, ViewsLieWithinTheirBuffer) {
       << "the sum would be 1";
 }
 
-// Columns of matrices start at multiples of four bytes: three columns of three bytes take 12 bytes, two of two take 8.
+// Columns of matrices start at multiples of four bytes, and nothing need follow the last one: three columns of three
+// bytes take 11 bytes, two of two take 6.
 TEST(GltfData, ColumnsOfMatricesArePadded) {
   const auto matrix = [](const char* shape, int component, int bytes) {
     GltfMaker maker;
@@ -199,12 +200,12 @@ TEST(GltfData, ColumnsOfMatricesArePadded) {
     return "malformed: accessors[0]: 1 elements from byte 0 on are not within bufferViews[0], which has " +
            std::to_string(bytes) + " bytes";
   };
-  EXPECT_EQ(matrix("MAT2", 5121, 8), "read");
-  EXPECT_EQ(matrix("MAT2", 5121, 7), too_short(7));
-  EXPECT_EQ(matrix("MAT3", 5120, 12), "read");
-  EXPECT_EQ(matrix("MAT3", 5120, 11), too_short(11));
-  EXPECT_EQ(matrix("MAT3", 5123, 24), "read");
-  EXPECT_EQ(matrix("MAT3", 5123, 23), too_short(23));
+  EXPECT_EQ(matrix("MAT2", 5121, 6), "read");
+  EXPECT_EQ(matrix("MAT2", 5121, 5), too_short(5));
+  EXPECT_EQ(matrix("MAT3", 5120, 11), "read");
+  EXPECT_EQ(matrix("MAT3", 5120, 10), too_short(10));
+  EXPECT_EQ(matrix("MAT3", 5123, 22), "read");
+  EXPECT_EQ(matrix("MAT3", 5123, 21), too_short(21));
   EXPECT_EQ(matrix("MAT4", 5121, 16), "read");
   EXPECT_EQ(matrix("MAT4", 5121, 15), too_short(15));
 }

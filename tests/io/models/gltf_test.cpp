@@ -3,12 +3,14 @@
 #include <gmock/gmock.h>
 
 #include "frontmost/io.h"
+#include "io/models/gltf/data.h"
 #include "io/models/gltf_maker.h"
 
 namespace frontmost {
 namespace {
 
 using test::GltfMaker;
+using test::Type;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -140,6 +142,48 @@ TEST(Gltf, SparseAccessorsReplaceElements) {
   maker.show(indexed);
   // Without a buffer view all others are zero. Only vertices 3 to 5 are in use.
   EXPECT_THAT(read(maker).meshes[0].positions, ElementsAre(glm::vec3(0), glm::vec3(6), glm::vec3(0)));
+}
+
+/// MAT2 of bytes, MAT3 of bytes and MAT3 of shorts have padding between their columns, and none behind the last one.
+TEST(Gltf, MatricesArePaddedByColumn) {
+  const struct {
+    Type type;
+    std::vector<std::uint8_t> bytes;
+    std::vector<float> numbers;
+  } cases[] = {
+      {{"MAT2", 5121}, {1, 2, 9, 9, 3, 4, 9, 9, 5, 6, 9, 9, 7, 8}, {1, 2, 3, 4, 5, 6, 7, 8}},
+      {{"MAT3", 5120}, {1, 2, 3, 9, 4, 5, 6, 9, 7, 8, 9}, {1, 2, 3, 4, 5, 6, 7, 8, 9}},
+      {{"MAT3", 5123}, {1, 0, 2, 0, 3, 0, 9, 9, 4, 0, 5, 0, 6, 0, 9, 9, 7, 0, 8, 0, 9, 0}, {1, 2, 3, 4, 5, 6, 7, 8, 9}},
+      {{"MAT4", 5121},
+       {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16},
+       {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16}}};
+  for (const auto& c : cases) {
+    const std::size_t width = c.type.shape[3] == '2' ? 4 : c.type.shape[3] == '3' ? 9 : 16;
+    const std::size_t count = c.numbers.size() / width;
+    GltfMaker maker = points_maker();
+    const int id = maker.accessor(c.bytes, c.type, count);
+    maker.show(R"({"attributes":{"POSITION":0}})");
+    EXPECT_EQ(triangle_count(read(maker)), 1u) << c.type.shape << " of " << c.type.component;
+
+    const std::vector<std::byte> glb = maker.glb();
+    const ModelSource source("t.glb", {});
+    const gltf::Container container = gltf::open_container(glb, source);
+    const gltf::JsonDocument document(container.json, source);
+    const gltf::Data data(gltf::Json(document, source), container);
+    std::vector<float> out(c.numbers.size());
+    gltf::read_floats(data.accessor(std::uint32_t(id)), {0, count}, int(width), out.data());
+    EXPECT_EQ(out, c.numbers) << c.type.shape << " of " << c.type.component;
+
+    std::vector<std::uint8_t> short_by_one = c.bytes;
+    short_by_one.pop_back();
+    GltfMaker truncated = points_maker();
+    truncated.accessor(short_by_one, c.type, count);
+    EXPECT_THAT(error_of(truncated), HasSubstr("are not within bufferViews[1]"));
+  }
+  GltfMaker maker = points_maker();
+  maker.accessor(std::vector<float>(20), {"MAT2", 5126}, 5);
+  maker.show(R"({"attributes":{"POSITION":0,"COLOR_0":1}})");
+  EXPECT_THAT(error_of(maker), HasSubstr("COLOR_0: is of matrices")) << "four numbers, but no colour";
 }
 
 TEST(Gltf, IndicesWithoutBufferViewAreZero) {

@@ -11,7 +11,7 @@
 namespace frontmost::gltf {
 namespace {
 
-/// Where elements lie, how many of their components are wanted, and where these go.
+/// Where components lie, how many of each element are wanted, and where these go.
 template <class Out>
 struct Copy {
   const std::byte* from;
@@ -39,7 +39,7 @@ void copy_integers(const Copy<float>& copy, bool normalized) {
     copy_as<T>(copy, [](T value) { return static_cast<float>(value); });
 }
 
-void convert(const Accessor& accessor, const Copy<float>& copy) {
+void convert_columns(const Accessor& accessor, const Copy<float>& copy) {
   switch (accessor.component) {
     case Component::i8: return copy_integers<std::int8_t>(copy, accessor.normalized);
     case Component::u8: return copy_integers<std::uint8_t>(copy, accessor.normalized);
@@ -51,7 +51,7 @@ void convert(const Accessor& accessor, const Copy<float>& copy) {
   }
 }
 
-void convert(const Accessor& accessor, const Copy<std::uint32_t>& copy) {
+void convert_columns(const Accessor& accessor, const Copy<std::uint32_t>& copy) {
   const auto widen = [](auto value) { return static_cast<std::uint32_t>(value); };
   switch (accessor.component) {
     case Component::u8: return copy_as<std::uint8_t>(copy, widen);
@@ -60,6 +60,18 @@ void convert(const Accessor& accessor, const Copy<std::uint32_t>& copy) {
     case Component::i8:
     case Component::i16:
     case Component::f32: return;
+  }
+}
+
+/// Column by column, because between those of matrices there may be padding.
+template <class Out>
+void convert(const Accessor& accessor, const Copy<Out>& elements) {
+  for (int first = 0; first < elements.components; first += accessor.rows) {
+    Copy<Out> column = elements;
+    column.from += std::size_t(first / accessor.rows) * accessor.column_stride;
+    column.to += first;
+    column.components = std::min(accessor.rows, elements.components - first);
+    convert_columns(accessor, column);
   }
 }
 
@@ -84,7 +96,7 @@ void replace_sparse(const Accessor& accessor, Range range, Copy<Out> copy) {
   for (std::size_t i = lower_bound(sparse, range.first); i < sparse.count; ++i) {
     const std::size_t element = sparse.index(i) - range.first;
     if (element >= range.count) return;
-    copy.from = sparse.values.data() + i * sparse.value_size;
+    copy.from = sparse.values.data() + i * sparse.value_stride;
     copy.to = first + element * std::size_t(copy.to_stride);
     convert(accessor, copy);
   }

@@ -31,11 +31,19 @@ const Shape* shape_of(const Json& json) {
   return nullptr;
 }
 
-/// Bytes of one element. Columns of matrices start at multiples of four.
-std::size_t element_size(const Shape& shape, Component component) {
-  const std::size_t column = std::size_t(shape.rows) * size_of(component);
-  return shape.columns == 1 ? column : std::size_t(shape.columns) * ((column + 3) & ~std::size_t(3));
-}
+/// How the components of one element lie. Columns of matrices start at multiples of four, and so do packed matrices;
+/// behind the last column nothing need follow.
+struct Layout {
+  std::size_t column, column_stride;  ///< bytes of a column, and from one to the next
+  int columns;
+
+  Layout(const Shape& shape, Component component)
+      : column(std::size_t(shape.rows) * size_of(component)),
+        column_stride(shape.columns == 1 ? column : (column + 3) & ~std::size_t(3)),
+        columns(shape.columns) {}
+  [[nodiscard]] std::size_t stride() const { return std::size_t(columns) * column_stride; }
+  [[nodiscard]] std::size_t size() const { return stride() - column_stride + column; }
+};
 
 /// Whether `count` elements, `stride` apart, lie within `length` bytes from `offset` on; nothing overflows.
 bool fits(std::uint64_t offset, std::uint64_t count, std::uint64_t stride, std::uint64_t element,
@@ -153,11 +161,14 @@ void Data::read_accessor(const Json& json) {
   if (component && shape) {
     accessor.component = *component;
     accessor.components = shape->columns * shape->rows;
+    accessor.rows = shape->rows;
     accessor.normalized = json.bool_or("normalized", false);
-    accessor.stride = element_size(*shape, *component);
+    const Layout layout(*shape, *component);
+    accessor.column_stride = layout.column_stride;
+    accessor.size = layout.size();
+    accessor.stride = layout.stride();
     find_elements(json, accessor);
-    const std::optional<Json> sparse = json.find("sparse");
-    if (sparse) read_sparse(*sparse, accessor, element_size(*shape, *component));
+    if (const std::optional<Json> sparse = json.find("sparse")) read_sparse(*sparse, accessor, layout.stride());
   } else {
     // Not an error yet: extensions add accessors for their own use, which a reader that lacks them never touches.
     accessor.unreadable = "the accessor's type is unknown";
@@ -165,17 +176,17 @@ void Data::read_accessor(const Json& json) {
   accessors_.push_back(accessor);
 }
 
-/// Sets bytes and stride, which holds the size of an element before.
+/// Sets bytes and stride, which is that of packed elements before.
 void Data::find_elements(const Json& json, Accessor& accessor) const {
   const std::uint32_t id = json.index_or_none("bufferView", views_.size());
   if (id == no_index) return;
   const Extent& view = views_[id];
   const std::uint64_t offset = json.unsigned_or("byteOffset", 0);
-  const std::size_t element = accessor.stride;
   if (view.stride != 0) accessor.stride = view.stride;
-  if (accessor.stride < element)
-    json.fail("byteStride " + std::to_string(view.stride) + " is less than an element, " + std::to_string(element));
-  if (!fits(offset, accessor.count, accessor.stride, element, view.length))
+  if (accessor.stride < accessor.size)
+    json.fail("byteStride " + std::to_string(view.stride) + " is less than an element, " +
+              std::to_string(accessor.size));
+  if (!fits(offset, accessor.count, accessor.stride, accessor.size, view.length))
     json.fail(std::to_string(accessor.count) + " elements from byte " + std::to_string(offset) +
               " on are not within bufferViews[" + std::to_string(id) + "], which has " + std::to_string(view.length) +
               " bytes");
@@ -185,19 +196,19 @@ void Data::find_elements(const Json& json, Accessor& accessor) const {
     accessor.unreadable = no_contents;
 }
 
-/// The bytes of `count` packed elements in the view that `json` names; none if it has no contents.
-Bytes Data::packed(const Json& json, std::size_t count, std::size_t size) const {
+/// The bytes of packed elements, from the first one on, in the view that `json` names; none if it has no contents.
+Bytes Data::packed(const Json& json, const Packed& elements) const {
   const Extent& view = views_[json.require("bufferView").to_index(views_.size())];
   const std::uint64_t offset = json.unsigned_or("byteOffset", 0);
-  if (!fits(offset, count, size, size, view.length))
-    json.fail(std::to_string(count) + " elements from byte " + std::to_string(offset) +
+  if (!fits(offset, elements.count, elements.stride, elements.size, view.length))
+    json.fail(std::to_string(elements.count) + " elements from byte " + std::to_string(offset) +
               " on are not within the buffer view, which has " + std::to_string(view.length) + " bytes");
-  return view.present ? view.bytes.subspan(offset, count * size) : Bytes();
+  return view.present ? view.bytes.subspan(offset) : Bytes();
 }
 
-void Data::read_sparse(const Json& json, Accessor& accessor, std::size_t value_size) const {
+void Data::read_sparse(const Json& json, Accessor& accessor, std::size_t value_stride) const {
   Sparse sparse;
-  sparse.value_size = value_size;
+  sparse.value_stride = value_stride;
   sparse.count = json.require("count").to_unsigned();
   if (sparse.count > accessor.count)
     json.fail("replaces " + std::to_string(sparse.count) + " of " + std::to_string(accessor.count) + " elements");
@@ -206,8 +217,8 @@ void Data::read_sparse(const Json& json, Accessor& accessor, std::size_t value_s
   if (type != Component::u8 && type != Component::u16 && type != Component::u32)
     indices.fail("componentType is not an unsigned integer");
   sparse.index_type = *type;
-  sparse.indices = packed(indices, sparse.count, size_of(*type));
-  sparse.values = packed(values, sparse.count, value_size);
+  sparse.indices = packed(indices, {sparse.count, size_of(*type), size_of(*type)});
+  sparse.values = packed(values, {sparse.count, value_stride, accessor.size});
   if (sparse.count == 0) return;
   if (sparse.indices.empty() || sparse.values.empty()) {
     accessor.unreadable = no_contents;

@@ -27,9 +27,9 @@ struct Extent {
 
 /// Elements that replace those of an accessor.
 struct Sparse {
-  std::size_t count = 0, value_size = 0;
+  std::size_t count = 0, value_stride = 0;
   Component index_type{};
-  Bytes indices, values;                                   ///< tightly packed; values have the accessor's type
+  Bytes indices, values;                                   ///< packed; values have the accessor's type
   [[nodiscard]] std::uint32_t index(std::size_t i) const;  ///< strictly increasing
 };
 
@@ -37,9 +37,12 @@ struct Accessor {
   std::size_t count = 0;
   Component component{};
   int components = 0;
+  int rows = 0;  ///< components in a column; less than `components` for matrices
   bool normalized = false;
-  Bytes bytes;  ///< from the first element on; empty: all elements are zero
-  std::size_t stride = 0;
+  Bytes bytes;                    ///< from the first element on; empty: all elements are zero
+  std::size_t stride = 0;         ///< from one element to the next
+  std::size_t size = 0;           ///< bytes of an element, from its first component to the end of its last
+  std::size_t column_stride = 0;  ///< from one column of an element to the next
   std::optional<Sparse> sparse;
   const char* unreadable = nullptr;  ///< why its elements cannot be read, if so
 };
@@ -84,8 +87,11 @@ class Data {
   void read_view(const Json& json);
   void read_accessor(const Json& json);
   void find_elements(const Json& json, Accessor& accessor) const;
-  void read_sparse(const Json& json, Accessor& accessor, std::size_t value_size) const;
-  [[nodiscard]] Bytes packed(const Json& json, std::size_t count, std::size_t element_size) const;
+  void read_sparse(const Json& json, Accessor& accessor, std::size_t value_stride) const;
+  struct Packed {
+    std::size_t count, stride, size;
+  };
+  [[nodiscard]] Bytes packed(const Json& json, const Packed& elements) const;
 
   std::deque<std::vector<std::byte>> decoded_;  ///< contents of data URIs; a deque, so that they stay where they are
   std::map<std::string, InputFile> files_;
