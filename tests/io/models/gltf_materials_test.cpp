@@ -93,6 +93,41 @@ TEST(GltfMaterials, TheBaseColourChoosesTheTextureCoordinates) {
   EXPECT_THAT(scene.warnings.at(0), HasSubstr("materials[0].emissiveTexture: uses texture coordinates 0"));
 }
 
+/// What a material with all textures but the one that chooses the coordinates is left with, and the warnings.
+void expect_no_glow_and_no_metal(const Scene& scene, const std::string& who) {
+  const Material& m = scene.materials.at(0);
+  for (const TextureUse* use :
+       {&m.metallic_roughness_texture, &m.normal_texture, &m.occlusion_texture, &m.emissive_texture})
+    EXPECT_FALSE(use->is_set());
+  EXPECT_EQ(m.emissive, glm::vec3(0)) << "white on white";
+  EXPECT_EQ(m.metallic, 0.0f);
+  EXPECT_EQ(m.roughness, 0.75f);
+  EXPECT_THAT(scene.warnings, testing::Contains(who + ": does not glow without its emissive texture"));
+  EXPECT_THAT(scene.warnings, testing::Contains(who + ": is no metal without its metallic-roughness texture"));
+}
+
+// An emissive factor is nearly always white and its texture nearly always black: without it nothing else is seen.
+TEST(GltfMaterials, WhatATextureLimitsIsNotThereWithoutIt) {
+  const auto members = [](const std::string& use) {
+    return R"("metallicFactor":1,"roughnessFactor":0.75,"metallicRoughnessTexture":)" + use + R"(},"normalTexture":)" +
+           use + R"(,"occlusionTexture":)" + use + R"(,"emissiveTexture":)" + use + R"(,"emissiveFactor":[1,1,1]})";
+  };
+  GltfMaker other_set = textured_maker();
+  other_set.add("materials", R"({"name":"lamp","pbrMetallicRoughness":{"baseColorTexture":{"index":0},)" +
+                                 members(R"({"index":0,"texCoord":1})"));
+  expect_no_glow_and_no_metal(read(other_set), "materials[0] (lamp)");
+  EXPECT_TRUE(read(other_set).materials[0].base_color_texture.is_set());
+
+  // An image that cannot be decoded, which is found out last of all, and a texture without any.
+  for (const char* texture : {R"({"source":1})", "{}"}) {
+    GltfMaker broken = textured_maker();
+    broken.add("images", R"({"uri":"nowhere.png"})");
+    broken.add("textures", texture);
+    broken.add("materials", R"({"pbrMetallicRoughness":{)" + members(R"({"index":1})"));
+    expect_no_glow_and_no_metal(read(broken), "materials[0]");
+  }
+}
+
 TEST(GltfMaterials, ImagesAreSharedUnlessSamplersDiffer) {
   GltfMaker maker = textured_maker();
   maker.add("samplers", R"({"wrapS":33071,"wrapT":33648,"magFilter":9728})");

@@ -151,6 +151,19 @@ TEST(Obj, MaterialLibraries) {
                                           HasSubstr("usemtl \"later\": 1 material is not defined")));
 }
 
+TEST(Obj, WithoutItsTextureNothingGlows) {
+  const Folder folder;
+  const std::string path = folder.write("model.obj", "mtllib m.mtl\n" + square + "usemtl lamp\nf 1 2 3\n");
+  for (const char* lines : {"Ke 1 1 1\nmap_Ke none.png\n", "map_Ke none.png\nKe 1 1 1\n", "map_Ke none.png\n"}) {
+    folder.write("m.mtl", std::string("newmtl lamp\nKd 0 0 0\nmap_Kd none.png\n") + lines);
+    const Scene scene = load(path);
+    EXPECT_EQ(scene.materials.at(0).emissive, glm::vec3(0)) << lines;
+    EXPECT_EQ(scene.materials[0].base_color, glm::vec4(1)) << "nor is all of it black";
+    EXPECT_THAT(scene.warnings, ElementsAre("material lamp: texture left out: none.png: cannot be found",
+                                            "material lamp: does not glow without its emissive texture"));
+  }
+}
+
 TEST(Obj, ABrokenLibraryIsAWarning) {
   const Folder folder;
   folder.write("broken.mtl", "newmtl a\nd much\n");

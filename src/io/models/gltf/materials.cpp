@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/models/gltf/materials.h"
 
+#include "io/models/lost_textures.h"
+
 namespace frontmost::gltf {
 namespace {
 
@@ -25,6 +27,7 @@ class MaterialReader {
       material.occlusion_strength = float(occlusion->number_or("strength", 1));
     }
     read_emissive(json, material);
+    do_without_lost(json, material);
     read_alpha(json, material);
     material.double_sided = json.bool_or("doubleSided", false);
     material.unlit = json.extension("KHR_materials_unlit").has_value();
@@ -52,6 +55,15 @@ class MaterialReader {
     if (json.read_numbers("emissiveFactor", color))
       for (int c = 0; c < 3; ++c) material.emissive[c] = float(color[c] * factor);
     if (const auto texture = json.find("emissiveTexture")) material.emissive_texture = read_use(*texture);
+  }
+
+  void do_without_lost(const Json& json, Material& material) {
+    const std::string who = described(json);
+    const auto pbr = json.find("pbrMetallicRoughness");
+    if (pbr && pbr->find("metallicRoughnessTexture") && !material.metallic_roughness_texture.is_set())
+      lose_metallic_roughness_texture(material, who, warnings_);
+    if (json.find("emissiveTexture") && !material.emissive_texture.is_set())
+      lose_emissive_texture(material, who, warnings_);
   }
 
   void read_alpha(const Json& json, Material& material) {
@@ -96,6 +108,11 @@ class MaterialReader {
 };
 
 }  // namespace
+
+std::string described(const Json& material) {
+  const std::string name = printable(material.name());
+  return name.empty() ? material.place() : material.place() + " (" + name + ")";
+}
 
 Materials read_materials(const Json& root, TextureTable& textures, std::vector<std::string>& warnings) {
   Materials out;

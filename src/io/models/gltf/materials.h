@@ -16,6 +16,9 @@ struct Materials {
   std::vector<std::uint32_t> texcoord_sets;
 };
 
+/// Names a material of the file in warnings: "materials[2] (lamp)".
+[[nodiscard]] std::string described(const Json& material);
+
 [[nodiscard]] Materials read_materials(const Json& root, TextureTable& textures, std::vector<std::string>& warnings);
 
 }  // namespace frontmost::gltf

@@ -3,7 +3,9 @@
 
 #include "base/parallel.h"
 #include "io/images/decode.h"
+#include "io/models/gltf/materials.h"
 #include "io/models/gltf/uri.h"
+#include "io/models/lost_textures.h"
 #include "io/models/pixel_budget.h"
 
 namespace frontmost::gltf {
@@ -20,10 +22,13 @@ Texture::Wrap wrap_of(std::uint64_t code) {
 }
 constexpr std::uint64_t repeat_code = 10497, nearest_code = 9728;
 
-void remap(TextureUse& use, const std::vector<std::uint32_t>& new_numbers) {
-  if (!use.is_set()) return;
+/// False: the texture is lost.
+bool remap(TextureUse& use, const std::vector<std::uint32_t>& new_numbers) {
+  if (!use.is_set()) return true;
   use.texture = new_numbers[use.texture];
-  if (!use.is_set()) use = TextureUse{};
+  if (use.is_set()) return true;
+  use = TextureUse{};
+  return false;
 }
 
 }  // namespace
@@ -174,10 +179,15 @@ void TextureTable::load(Scene& scene) const {
     texture.wrap_v = look.wrap_v;
     texture.nearest = look.nearest;
   }
-  for (Material& material : scene.materials)
-    for (TextureUse* use : {&material.base_color_texture, &material.metallic_roughness_texture,
-                            &material.normal_texture, &material.emissive_texture, &material.occlusion_texture})
-      remap(*use, new_numbers);
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    Material& material = scene.materials[i];
+    const auto who = [&] { return described(root_.require("materials")[i]); };
+    for (TextureUse* use : {&material.base_color_texture, &material.normal_texture, &material.occlusion_texture})
+      (void)remap(*use, new_numbers);
+    if (!remap(material.metallic_roughness_texture, new_numbers))
+      lose_metallic_roughness_texture(material, who(), scene.warnings);
+    if (!remap(material.emissive_texture, new_numbers)) lose_emissive_texture(material, who(), scene.warnings);
+  }
 }
 
 }  // namespace frontmost::gltf

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "io/models/file_text.h"
+#include "io/models/lost_textures.h"
 #include "io/models/mesh_building.h"
 #include "io/models/text_scanner.h"
 
@@ -62,11 +63,10 @@ class MtlReader {
   void texture_statement(std::string_view word) {
     if (word == "map_Kd") {
       material().base_color_texture = texture();
-      if (material().base_color_texture.is_set()) textured_.push_back(number_);
+      textured_.push_back(number_);
     } else if (word == "map_Ke") {
       material().emissive_texture = texture();
-      // Colour and texture are multiplied; many files have the texture alone.
-      if (material().emissive == glm::vec3(0)) material().emissive = glm::vec3(1);
+      glowing_.push_back(number_);
     } else if (word == "map_d") {
       // The alpha of the colour texture is the only one there is; usually it is the same file.
       if (material().alpha == Material::Alpha::opaque) material().alpha = Material::Alpha::blend;
@@ -147,11 +147,18 @@ class MtlReader {
     return {values.x, values.y};
   }
 
-  /// Exporters often leave Kd black under a texture, meaning the texture as it is.
+  /// Exporters often leave Kd and Ke black under a texture, meaning the texture as it is. A base colour is then white
+  /// without it, too.
   void finish() {
     for (const std::uint32_t number : textured_) {
       glm::vec4& c = materials_[number].base_color;
       if (glm::vec3(c) == glm::vec3(0)) c = glm::vec4(1, 1, 1, c.a);
+    }
+    for (const std::uint32_t number : glowing_) {
+      Material& m = materials_[number];
+      if (m.emissive == glm::vec3(0)) m.emissive = glm::vec3(1);
+      if (!m.emissive_texture.is_set())
+        lose_emissive_texture(m, "material " + printable(m.name), materials_.warnings());
     }
   }
 
@@ -160,7 +167,7 @@ class MtlReader {
   TextureFiles& textures_;
   MaterialTable& materials_;
   std::uint32_t number_ = no_index;
-  std::vector<std::uint32_t> textured_;
+  std::vector<std::uint32_t> textured_, glowing_;  ///< materials with a map_Kd, with a map_Ke
 };
 
 }  // namespace

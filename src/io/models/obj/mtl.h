@@ -20,6 +20,7 @@ class MaterialTable {
   /// The same, noting that a library defines it.
   std::uint32_t define(const std::string& name);
   [[nodiscard]] Material& operator[](std::uint32_t number) { return scene_.materials[number]; }
+  [[nodiscard]] std::vector<std::string>& warnings() { return scene_.warnings; }
   /// Warns about names that no library defined.
   void finish();
 
