@@ -11,6 +11,7 @@
 #include "frontmost/hatching.h"      // IWYU pragma: export
 #include "frontmost/image.h"         // IWYU pragma: export
 #include "frontmost/io.h"            // IWYU pragma: export
+#include "frontmost/lettering.h"     // IWYU pragma: export
 #include "frontmost/lines.h"         // IWYU pragma: export
 #include "frontmost/page.h"          // IWYU pragma: export
 #include "frontmost/painter.h"       // IWYU pragma: export

@@ -22,21 +22,6 @@ std::optional<Lead> lead_of(unsigned char byte) {
   return std::nullopt;
 }
 
-/// Takes the first character away. A byte that begins none is taken alone, as the replacement character.
-char32_t take_character(std::string_view& text) {
-  const std::optional<Lead> lead = lead_of((unsigned char)text[0]);
-  std::size_t length = 1;
-  char32_t code = lead ? lead->bits : replacement;
-  for (; lead && int(length) <= lead->following; ++length) {
-    if (length == text.size() || ((unsigned char)text[length] & 0xC0) != 0x80) break;
-    code = code << 6 | ((unsigned char)text[length] & 0x3Fu);
-  }
-  const bool whole = lead && int(length) == lead->following + 1 && code >= lead->least && code < 0x110000 &&
-                     !(code >= 0xD800 && code < 0xE000);
-  text.remove_prefix(whole ? length : 1);
-  return whole ? code : replacement;
-}
-
 void append_utf8(char32_t code, std::string& text) {
   if (code < 0x80) {
     text += char(code);
@@ -55,6 +40,20 @@ void append_hex(unsigned value, std::string& text) {
 }
 
 }  // namespace
+
+char32_t take_character(std::string_view& text) {
+  const std::optional<Lead> lead = lead_of((unsigned char)text[0]);
+  std::size_t length = 1;
+  char32_t code = lead ? lead->bits : replacement;
+  for (; lead && int(length) <= lead->following; ++length) {
+    if (length == text.size() || ((unsigned char)text[length] & 0xC0) != 0x80) break;
+    code = code << 6 | ((unsigned char)text[length] & 0x3Fu);
+  }
+  const bool whole = lead && int(length) == lead->following + 1 && code >= lead->least && code < 0x110000 &&
+                     !(code >= 0xD800 && code < 0xE000);
+  text.remove_prefix(whole ? length : 1);
+  return whole ? code : replacement;
+}
 
 PageText& PageText::operator<<(std::string_view text) {
   while (!text.empty()) {

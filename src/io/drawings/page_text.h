@@ -67,6 +67,9 @@ class PageText {
   std::uint64_t passed_on_ = 0;
 };
 
+/// Takes the first character of UTF-8 away; not empty. A byte that begins none is taken alone, as U+FFFD.
+[[nodiscard]] char32_t take_character(std::string_view& text);
+
 /// For element content and attributes of XML 1.0. What it does not allow, and bytes that are not UTF-8, become U+FFFD.
 [[nodiscard]] std::string xml_text(std::string_view name);
 /// With its quotes.
