@@ -11,7 +11,7 @@ namespace frontmost {
 
 /// Why an edge is drawn. Where several hold, the first.
 enum class EdgeKind : std::uint8_t {
-  boundary,      ///< of one triangle alone, or of more than two
+  boundary,      ///< of one triangle alone, or of more than two between which no surface goes on
   silhouette,    ///< one of its triangles faces the eye, the other does not
   border,        ///< its triangles belong to different instances, or have different materials
   crease,        ///< its triangles meet at an angle
@@ -78,6 +78,9 @@ struct Drawing {
 /// and the short ones that meet it, the long side's triangle counts as cut at the corners on it: the seam is drawn as
 /// any other edges are, once, or not at all where the surface goes on. A T-junction that nothing fills is open, and its
 /// sides are boundaries. (A. Appel. The Notion of Quantitative Invisibility and the Machine Rendering of Solids. 1967.)
+/// A triangle that is there again, its corners in any order, counts once. Where objects have triangles in common that do
+/// not go on with the same ones, as a housing and its cover do, each goes on by itself, and the edge is what it is for
+/// that of them for which it comes first by its kind; two of one object may have triangles in common as well.
 /// The result is the same to the bit for any number of threads and every instruction set.
 /// \throws Error as validate(view) does, bad_argument for an angle that is out of range, and limit_exceeded for more
 /// than 2^25 segments of intersections or 2^26 parts.

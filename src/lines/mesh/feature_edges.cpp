@@ -8,26 +8,16 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <tuple>
 
 #include "base/parallel.h"
 #include "lines/crossings/stars.h"
 #include "lines/joined.h"
+#include "lines/mesh/sheets.h"
 
 namespace frontmost::lines_detail {
 namespace {
 
 constexpr std::size_t kVerticesPerPart = 1024;
-
-/// A triangle at an edge, which is known by its lower vertex.
-struct Side {
-  std::uint32_t upper;  ///< the edge's other vertex
-  std::uint32_t triangle;
-  std::uint32_t opposite;  ///< the vertex that is not on the edge
-  bool is_forward;         ///< the triangle runs from the lower vertex to the upper
-
-  [[nodiscard]] auto key() const { return std::make_tuple(upper, opposite, triangle); }
-};
 
 class Classifier {
  public:
@@ -49,14 +39,26 @@ class Classifier {
     return std::max(float(cosine_), 0.0f) + kNormalRounding;
   }
 
-  /// `sides` with different opposite vertices: a triangle that is there twice counts once.
-  [[nodiscard]] std::optional<EdgeKind> kind_of(std::span<const Side> sides) const {
-    if (sides.size() != 2) return options_.boundaries ? std::optional(EdgeKind::boundary) : std::nullopt;
-    const int a = side_of(sides[0]), b = side_of(sides[1]);
+  [[nodiscard]] std::optional<EdgeKind> open_kind() const {
+    return options_.boundaries ? std::optional(EdgeKind::boundary) : std::nullopt;
+  }
+  [[nodiscard]] std::optional<EdgeKind> kind_of(const Sheet& sheet) const {
+    const int a = side_of(sheet.first), b = side_of(sheet.second);
     if (options_.silhouettes && (a * b > 0 || (a == 0) != (b == 0))) return EdgeKind::silhouette;
-    if (has_borders_ && !is_one_surface(sides[0].triangle, sides[1].triangle)) return EdgeKind::border;
-    if (options_.creases && is_crease(sides[0], sides[1])) return EdgeKind::crease;
+    if (has_borders_ && !(surface_of(sheet.first.triangle) == surface_of(sheet.second.triangle)))
+      return EdgeKind::border;
+    if (options_.creases && is_crease(sheet.first, sheet.second)) return EdgeKind::crease;
     return std::nullopt;
+  }
+
+  [[nodiscard]] SurfaceOf surface_of(std::uint32_t triangle) const {
+    const PrimitiveSource source = surfaces_.source(mesh_.ids[triangle]);
+    return {source.instance, surfaces_.scene().meshes[source.mesh].material_of(source.triangle)};
+  }
+
+  [[nodiscard]] SheetQuestions questions() const {
+    return {[this](std::uint32_t triangle) { return surface_of(triangle); },
+            [this](const Side& a, const Side& b) { return overlap(a, b); }};
   }
 
   /// The other side than that of all triangles at the edge; 0 where they are on both.
@@ -77,11 +79,14 @@ class Classifier {
   static bool is_one_surface(const Scene& scene) {
     return scene.instances.size() == 1 && scene.meshes[scene.instances[0].mesh].material_ids.empty();
   }
-  [[nodiscard]] bool is_one_surface(std::uint32_t a, std::uint32_t b) const {
-    const PrimitiveSource p = surfaces_.source(mesh_.ids[a]), q = surfaces_.source(mesh_.ids[b]);
-    if (p.instance != q.instance) return false;
-    const Mesh& mesh = surfaces_.scene().meshes[p.mesh];
-    return mesh.material_of(p.triangle) == mesh.material_of(q.triangle);
+  [[nodiscard]] bool is_in_plane(const Side& a, const Side& b) const {
+    const glm::uvec3& t = mesh_.triangles[a.triangle];
+    const Positions& at = mesh_.positions;
+    return FacePlane(at[t.x], at[t.y], at[t.z]).height(at[b.opposite]).sign == 0;
+  }
+  [[nodiscard]] bool overlap(const Side& a, const Side& b) const {
+    const double along = glm::dot(normal_of(mesh_, a.triangle), normal_of(mesh_, b.triangle));
+    return along * (a.is_forward == b.is_forward ? 1 : -1) > 0 && is_in_plane(a, b);
   }
 
   [[nodiscard]] bool is_crease(const Side& a, const Side& b) const {
@@ -91,9 +96,7 @@ class Classifier {
     const double size = std::sqrt(glm::dot(n, n) * glm::dot(m, m));
     if (along > cosine_ * size) return false;
     if (along <= 0) return true;
-    const glm::uvec3& t = mesh_.triangles[a.triangle];
-    const Positions& at = mesh_.positions;
-    return FacePlane(at[t.x], at[t.y], at[t.z]).height(at[b.opposite]).sign != 0;
+    return !is_in_plane(a, b);
   }
 
   const WeldedMesh& mesh_;
@@ -116,7 +119,7 @@ void add_feature(std::uint32_t vertex, std::span<const Corner> corners, std::siz
   Side sides[2] = {{upper, corners[i].triangle(), corners[i].last(mesh), true},
                    {upper, corners[j].triangle(), corners[j].next(mesh), false}};
   if (sides[1].opposite < sides[0].opposite) std::swap(sides[0], sides[1]);
-  if (const std::optional<EdgeKind> kind = classifier.kind_of(sides))
+  if (const std::optional<EdgeKind> kind = classifier.kind_of({sides[0], sides[1]}))
     features.push_back({vertex, upper, sides[0].triangle, sides[1].triangle, *kind, classifier.outer_side(sides)});
 }
 
@@ -142,18 +145,50 @@ void find_sides(const WeldedMesh& mesh, std::uint32_t vertex, std::span<const Co
   std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.key() < b.key(); });
 }
 
+/// What is drawn of an edge, and the triangles for the sake of which it is.
+struct Drawn {
+  EdgeKind kind;
+  std::uint32_t left, right;
+};
+
+/// Of the sheets of one edge that which comes first by its kind.
+std::optional<Drawn> first_of(std::span<const Sheet> sheets, const Classifier& classifier) {
+  std::optional<Drawn> first;
+  for (const Sheet& sheet : sheets)
+    if (const std::optional<EdgeKind> kind = classifier.kind_of(sheet); kind && (!first || *kind < first->kind))
+      first = {*kind, sheet.first.triangle, sheet.second.triangle};
+  return first;
+}
+
+/// `sides` are those of one edge with every double, `distinct` each opposite vertex once.
+std::optional<Drawn> drawn_of(std::span<const Side> sides, std::span<const Side> distinct,
+                              const Classifier& classifier) {
+  if (distinct.size() == 2) {
+    const Sheet sheet(distinct[0], distinct[1]);
+    return first_of({&sheet, 1}, classifier);
+  }
+  if (distinct.size() > 2)
+    if (const auto sheets = find_sheets(sides, classifier.questions())) return first_of(*sheets, classifier);
+  const std::optional<EdgeKind> kind = classifier.open_kind();
+  if (!kind) return std::nullopt;
+  return Drawn{*kind, distinct[0].triangle, distinct.size() > 1 ? distinct[1].triangle : no_index};
+}
+
 /// `sides` are those of find_sides().
-void add_features(std::span<Side> sides, std::uint32_t v, const Classifier& classifier, Features& features) {
+void add_features(std::span<const Side> sides, std::uint32_t v, const Classifier& classifier, Features& features) {
+  std::vector<Side> distinct;
   for (auto begin = sides.begin(); begin != sides.end();) {
     const auto end = std::find_if(begin, sides.end(), [&](const Side& s) { return s.upper != begin->upper; });
-    for (auto side = begin; side + 1 < end; ++side)  // known at one of its three edges
-      if (side[0].opposite == side[1].opposite && side->opposite > side->upper)
-        features.twins.push_back(side[1].triangle);
-    const auto last = std::unique(begin, end, [](const Side& a, const Side& b) { return a.opposite == b.opposite; });
-    const std::span<const Side> edge(begin, last);
-    if (const std::optional<EdgeKind> kind = classifier.kind_of(edge))
-      features.edges.push_back({v, begin->upper, edge[0].triangle, edge.size() > 1 ? edge[1].triangle : no_index, *kind,
-                                classifier.outer_side(edge)});
+    distinct.clear();
+    for (auto side = begin; side != end; ++side) {
+      if (distinct.empty() || distinct.back().opposite != side->opposite)
+        distinct.push_back(*side);
+      else if (side->opposite > side->upper)  // known at one of its three edges
+        features.twins.push_back(side->triangle);
+    }
+    if (const std::optional<Drawn> drawn = drawn_of({begin, end}, distinct, classifier))
+      features.edges.push_back(
+          {v, begin->upper, drawn->left, drawn->right, drawn->kind, classifier.outer_side(distinct)});
     begin = end;
   }
 }

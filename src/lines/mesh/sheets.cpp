@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lines/mesh/sheets.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace frontmost::lines_detail {
+namespace {
+
+struct OwnedSide {
+  Side side;
+  SurfaceOf surface;
+};
+
+/// Sides with one opposite vertex.
+using Copies = std::span<const OwnedSide>;
+
+/// Of sides sorted by opposite vertex.
+std::vector<Copies> copies_of(std::span<const OwnedSide> sides) {
+  std::vector<Copies> all;
+  for (auto begin = sides.begin(); begin != sides.end();) {
+    const auto end =
+        std::find_if(begin, sides.end(), [&](const OwnedSide& s) { return s.side.opposite != begin->side.opposite; });
+    all.emplace_back(begin, end);
+    begin = end;
+  }
+  return all;
+}
+
+/// Copies of one object and material where there are such, else the first ones.
+Sheet sheet_of(const Copies& a, const Copies& b) {
+  for (const OwnedSide& one : a)
+    for (const OwnedSide& other : b)
+      if (one.surface == other.surface) return {one.side, other.side};
+  return {a[0].side, b[0].side};
+}
+
+/// Appends the sheets of sides that are all paired. \returns whether they are.
+bool pair_up(std::span<const OwnedSide> sides, std::vector<Sheet>& sheets) {
+  const std::vector<Copies> copies = copies_of(sides);
+  if (copies.size() < 2) return false;
+  // With two opposite vertices it does not matter how often each is there.
+  const auto centre = std::find_if(copies.begin(), copies.end(),
+                                   [&](const Copies& c) { return copies.size() == 2 || 2 * c.size() == sides.size(); });
+  if (centre == copies.end()) return false;
+  for (auto other = copies.begin(); other != copies.end(); ++other)
+    if (other != centre) sheets.push_back(sheet_of(*centre, *other));
+  return true;
+}
+
+/// Sheets by what they have in common.
+class Groups {
+ public:
+  explicit Groups(std::size_t sheets) : group_(sheets), count_(sheets) {
+    std::iota(group_.begin(), group_.end(), std::size_t(0));
+  }
+  [[nodiscard]] std::size_t count() const { return count_; }
+  [[nodiscard]] std::size_t of(std::size_t sheet) {
+    while (group_[sheet] != sheet) sheet = group_[sheet] = group_[group_[sheet]];
+    return sheet;
+  }
+  void unite(std::size_t a, std::size_t b) {
+    a = of(a), b = of(b);
+    if (a == b) return;
+    group_[std::max(a, b)] = std::min(a, b);
+    --count_;
+  }
+
+ private:
+  std::vector<std::size_t> group_;
+  std::size_t count_;
+};
+
+/// Whether from each sheet the others are reached over sides that sheets have in common or that lie on each other.
+bool is_connected(const std::vector<Sheet>& sheets, const SheetQuestions& questions) {
+  Groups groups(sheets.size());
+  std::vector<std::pair<std::uint32_t, std::size_t>> ends;  // opposite vertex, sheet
+  for (std::size_t i = 0; i < sheets.size(); ++i) {
+    ends.emplace_back(sheets[i].first.opposite, i);
+    ends.emplace_back(sheets[i].second.opposite, i);
+  }
+  std::sort(ends.begin(), ends.end());
+  for (std::size_t i = 1; i < ends.size(); ++i)
+    if (ends[i].first == ends[i - 1].first) groups.unite(ends[i].second, ends[i - 1].second);
+  for (std::size_t i = 1; i < sheets.size() && groups.count() > 1; ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      if (groups.of(i) == groups.of(j)) continue;
+      const auto& [a, b] = sheets[i];
+      const auto& [c, d] = sheets[j];
+      if (questions.overlap(a, c) || questions.overlap(a, d) || questions.overlap(b, c) || questions.overlap(b, d))
+        groups.unite(i, j);
+    }
+  return groups.count() == 1;
+}
+
+}  // namespace
+
+std::optional<std::vector<Sheet>> find_sheets(std::span<const Side> sides, const SheetQuestions& questions) {
+  std::vector<OwnedSide> owned;
+  owned.reserve(sides.size());
+  for (const Side& side : sides) owned.push_back({side, questions.surface_of(side.triangle)});
+  // Of an object those with one opposite vertex stay together, and so they do in what is left.
+  std::stable_sort(owned.begin(), owned.end(),
+                   [](const OwnedSide& a, const OwnedSide& b) { return a.surface.instance < b.surface.instance; });
+  std::vector<Sheet> sheets;
+  std::vector<OwnedSide> left;
+  for (auto begin = owned.begin(); begin != owned.end();) {
+    const auto end = std::find_if(begin, owned.end(),
+                                  [&](const OwnedSide& s) { return s.surface.instance != begin->surface.instance; });
+    if (!pair_up({begin, end}, sheets)) left.insert(left.end(), begin, end);
+    begin = end;
+  }
+  std::stable_sort(left.begin(), left.end(),
+                   [](const OwnedSide& a, const OwnedSide& b) { return a.side.opposite < b.side.opposite; });
+  if (!left.empty() && !pair_up(left, sheets)) return std::nullopt;
+  if (!is_connected(sheets, questions)) return std::nullopt;
+  return sheets;
+}
+
+}  // namespace frontmost::lines_detail
