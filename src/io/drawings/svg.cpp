@@ -10,8 +10,8 @@
 namespace frontmost::detail {
 namespace {
 
-/// Points in one element: enough to make its attributes cheap, few enough for editors to stay quick.
-constexpr std::size_t points_per_element = 4096;
+/// Nobody takes a single dot: many make an element, but few enough for editors to stay quick.
+constexpr std::size_t dots_per_element = 4096;
 
 class SvgWriter {
  public:
@@ -71,24 +71,33 @@ class SvgWriter {
     out_ << '"';
   }
 
-  /// Lines share elements. Fills do not: where they overlap, the later one lies above the earlier one.
   void write_paths(const PageGroup& group) {
-    std::size_t points = 0;
+    if (group.fills.empty()) return write_lines(group);
     for (std::size_t i = 0; i < group.paths.size(); ++i) {
       progress_.step();
-      if (!group.fills.empty()) {
-        if (!group.paths[i].is_part) write_filled(group, i);
-        continue;
-      }
-      if (points == 0) out_ << "<path d=\"";
-      write_path(group, group.paths[i]);
-      points += group.paths[i].count;
-      if (points >= points_per_element) {
+      if (!group.paths[i].is_part) write_filled(group, i);
+    }
+  }
+
+  /// Each line is an element, so that editors can take it away or bend it without its neighbours.
+  void write_lines(const PageGroup& group) {
+    std::size_t dots = 0;  // in the open element
+    for (const PagePath& path : group.paths) {
+      progress_.step();
+      const bool is_dot = path.count == 1;
+      if (dots > 0 && (!is_dot || dots == dots_per_element)) {
         out_ << "\"/>\n";
-        points = 0;
+        dots = 0;
+      }
+      if (dots == 0) out_ << "<path d=\"";
+      write_path(group, path);
+      if (is_dot) {
+        ++dots;
+      } else {
+        out_ << "\"/>\n";
       }
     }
-    if (points > 0) out_ << "\"/>\n";
+    if (dots > 0) out_ << "\"/>\n";
   }
 
   void write_filled(const PageGroup& group, std::size_t i) {

@@ -34,7 +34,7 @@ TEST(Svg, IsInRealMillimetresAndNamesItsLayersAsInkscapeDoes) {
 TEST(Svg, PathsStepFromRoundedPlaceToRoundedPlace) {
   const std::string svg = saved(sample_page(), PageFormat::svg);
   EXPECT_TRUE(has(svg, "<path d=\"M10 10l10 0 .5 2.346\"/>")) << svg;
-  EXPECT_TRUE(has(svg, "<path d=\"M0 0l5 0-5 5zM1 1l1 2\"/>")) << svg;  // one element for one pen
+  EXPECT_TRUE(has(svg, "<path d=\"M0 0l5 0-5 5z\"/>\n<path d=\"M1 1l1 2\"/>\n")) << svg;
   EXPECT_TRUE(has(svg, "M60 20a10 10 0 0 1-10 10")) << svg;
   EXPECT_TRUE(has(svg, "M40 20a10 10 0 0 1 20 0 10 10 0 0 1-20 0z")) << svg;
   EXPECT_TRUE(has(svg, "M5 5l0 0")) << svg;
@@ -71,14 +71,29 @@ TEST(Svg, FillsKeepTheirOrderAndHaveAnElementEach) {
       << svg;
 }
 
-TEST(Svg, ElementsStayShortEnoughForEditors) {
+TEST(Svg, EachLineIsAnElementAndDotsShareSome) {
+  Page page{100, 100, "", {}};
+  PageGroup group{"", {}};
+  for (int i = 0; i < 5000; ++i) {
+    group.add(std::vector<glm::dvec2>{{1, 1}, {2, 3}}, false);
+    if (i == 700) group.add(std::vector<glm::dvec2>{{4, 4}}, false);
+  }
+  for (int i = 0; i < 5000; ++i) group.add(std::vector<glm::dvec2>{{5, 5}}, false);
+  page.layers = {{"", {group}}};
+  const std::string svg = saved(page, PageFormat::svg);
+  EXPECT_EQ(count(svg, "<path d=\"M1 1l1 2\"/>\n"), 5000u);
+  EXPECT_EQ(count(svg, "<path d=\"M4 4l0 0\"/>\n"), 1u);
+  EXPECT_EQ(count(svg, "M5 5l0 0"), 5000u);
+  EXPECT_EQ(count(svg, "<path"), 5000u + 1u + 2u);  // dots by at most 4096
+  EXPECT_EQ(count(svg, "\"/>"), 5000u + 1u + 2u);
+}
+
+TEST(Dxf, EachHatchLineIsAnEntity) {
   Page page{100, 100, "", {}};
   PageGroup group{"", {}};
   for (int i = 0; i < 5000; ++i) group.add(std::vector<glm::dvec2>{{1, 1}, {2, 3}}, false);
-  page.layers = {{"", {group}}};
-  const std::string svg = saved(page, PageFormat::svg);
-  EXPECT_EQ(count(svg, "<path"), 3u);  // of at most 4096 points and what the last path adds
-  EXPECT_EQ(count(svg, "M1 1l1 2"), 5000u);
+  page.layers = {{"4 hatching", {group}}};
+  EXPECT_EQ(count(saved(page, PageFormat::dxf), "0\nLINE\n"), 5000u);
 }
 
 TEST(Formats, WhatIsNotSeenIsNotDrawn) {
