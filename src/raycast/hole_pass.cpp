@@ -31,7 +31,7 @@ struct Nearest {
 class HolePasser {
  public:
   HolePasser(const RayTree& tree, const View& view)
-      : tree_(tree), cutouts_(*tree.cutouts), culling_(view.culling), transform_(view), rays_(view) {}
+      : tree_(tree), cutouts_(*tree.cutouts), view_(view), culling_(view.culling), transform_(view), rays_(view) {}
 
   [[nodiscard]] bool is_hole(PrimitiveId id, const SamplePlace& place) {
     if (!cutouts_.has(id)) return false;
@@ -112,25 +112,20 @@ class HolePasser {
   }
 
   void meet_leaf(const RayLeaf& leaf, const SamplePlace& place) {
-    for (std::size_t lane = 0; lane < kRayLanes && leaf.id[lane] != no_primitive; ++lane) {
-      std::array<Corner, 3> corners;
-      for (std::size_t k = 0; k < 3; ++k)
-        corners[k] =
-            make_corner(transform_, {leaf.corner[k][0][lane], leaf.corner[k][1][lane], leaf.corner[k][2][lane]});
-      meet(corners, leaf.id[lane], place);
-    }
+    for (std::size_t lane = 0; lane < kRayLanes && leaf.id[lane] != no_primitive; ++lane)
+      meet(make_triangle(transform_, leaf.corners_of(lane)), leaf.id[lane], place);
   }
 
-  void meet(const std::array<Corner, 3>& corners, PrimitiveId id, const SamplePlace& place) {
+  void meet(const SampleTriangle& triangle, PrimitiveId id, const SamplePlace& place) {
     const float sx = float(place.x - transform_.centre_x), sy = float(place.y - transform_.centre_y);
-    if (!keeps(culling_, facing(transform_, corners, sx, sy))) return;
+    if (!keeps(culling_, facing(transform_, triangle.corners, sx, sy))) return;
     // The tile is part of the definition of a key: sample_rule.h.
     const auto tile_centre = [](int pixel, std::int32_t image_centre) {
       return float((pixel / kTileSize * kTileSize + kTileSize / 2) * kSubPixels - image_centre);
     };
     const float tx = tile_centre(place.pixel_x, transform_.centre_x);
     const float ty = tile_centre(place.pixel_y, transform_.centre_y);
-    const KeyPlane plane = key_plane(transform_, corners, double(tx), double(ty));
+    const KeyPlane plane = key_plane(view_, transform_, triangle, {tx, ty});
     const float raw = plane.raw(sx - tx, sy - ty);
     if (plane.is_outside || !plane.sees(raw)) return;
     const float key = plane.clamped(raw);
@@ -140,6 +135,7 @@ class HolePasser {
 
   const RayTree& tree_;
   const Cutouts& cutouts_;
+  const View& view_;
   Culling culling_;
   ScreenTransform transform_;
   ScreenRays rays_;

@@ -355,28 +355,21 @@ class LightPacket {
     --waiting_count_;
   }
 
-  static Corners CornersOf(const RayLeaf& leaf, std::size_t lane) {
-    Corners corners;
-    for (std::size_t k = 0; k < 3; ++k)
-      corners[k] = {leaf.corner[k][0][lane], leaf.corner[k][1][lane], leaf.corner[k][2][lane]};
-    return corners;
-  }
-
   /// A triangle that certainly is passed through; a lifted point may be below its own.
   void Meet(const RayLeaf& leaf, std::size_t lane, std::size_t ray) {
     const TrianglePoint& point = points_[ray];
-    if ((point.lift == glm::vec3(0) || !is_own(CornersOf(leaf, lane), point)) && !IsHole(leaf, lane, ray)) Darken(ray);
+    if ((point.lift == glm::vec3(0) || !is_own(leaf.corners_of(lane), point)) && !IsHole(leaf, lane, ray)) Darken(ray);
   }
 
   HWY_NOINLINE void Decide(const RayLeaf& leaf, std::size_t lane, std::size_t ray) {
-    if (stands_before(CornersOf(leaf, lane), points_[ray], to_light_) && !IsHole(leaf, lane, ray)) Darken(ray);
+    if (stands_before(leaf.corners_of(lane), points_[ray], to_light_) && !IsHole(leaf, lane, ray)) Darken(ray);
   }
 
   /// Whether the triangle has a hole where the ray passes.
   [[nodiscard]] HWY_INLINE bool IsHole(const RayLeaf& leaf, std::size_t lane, std::size_t ray) const {
     const Cutouts* const cutouts = tree_.cutouts.get();
     if (!cutouts || !cutouts->has(leaf.id[lane])) return false;
-    return (*cutouts)[leaf.id[lane]].is_hole_at(passed_point(CornersOf(leaf, lane), points_[ray], to_light_));
+    return (*cutouts)[leaf.id[lane]].is_hole_at(passed_point(leaf.corners_of(lane), points_[ray], to_light_));
   }
 
   const RayTree& tree_;

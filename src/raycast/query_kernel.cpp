@@ -185,14 +185,7 @@ class QueryWalker {
     if (leaf.id[lane] == no_primitive) return;
     // Deciding early costs time alone: what is farther than the end is left out again then.
     if (noted_ == kMostNoted) Settle();
-    notes_[noted_++] = {from, leaf.id[lane], CornersOf(leaf, lane)};
-  }
-
-  static std::array<glm::vec3, 3> CornersOf(const RayLeaf& leaf, std::size_t lane) {
-    std::array<glm::vec3, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k)
-      corners[k] = {leaf.corner[k][0][lane], leaf.corner[k][1][lane], leaf.corner[k][2][lane]};
-    return corners;
+    notes_[noted_++] = {from, leaf.id[lane], leaf.corners_of(lane)};
   }
 
   /// Decides what was noted.
@@ -219,7 +212,7 @@ class QueryWalker {
       for (std::uint32_t bits = candidates.possible; bits != 0; bits &= bits - 1) {
         const std::size_t lane = first + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits);
         if (leaf.id[lane] == no_primitive) continue;
-        const RayHit hit = meet(q_, CornersOf(leaf, lane), leaf.id[lane]);
+        const RayHit hit = meet(q_, leaf.corners_of(lane), leaf.id[lane]);
         if (hit.primitive == no_primitive || LooksThrough(hit)) continue;
         met = true;
         Keep(hit);

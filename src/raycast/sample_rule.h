@@ -7,6 +7,10 @@
 // this corner. The ray meets the triangle when the origin is inside the three sheared corners, edges included; the
 // signs of the three 2x2 determinants are exact.
 //
+// With the eye on a corner or an edge, or anywhere else in a triangle's plane, this says nothing: sheared, all of the
+// triangle lies on one line through the origin, or would but for rounding. Whether it is seen edge-on is decided on the
+// world's coordinates, exactly; what is covers nothing.
+//
 // S. Woop, C. Benthin, I. Wald. Watertight Ray/Triangle Intersection. Journal of Computer Graphics Techniques 2(1),
 // 2013; here the determinants are never rounded.
 #pragma once
@@ -15,6 +19,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/exact_vector.h"
 #include "view/screen_transform.h"
 
 namespace frontmost::raycast_detail {
@@ -26,7 +31,7 @@ inline constexpr int kTileSize = 32;
 /// Corners between the planes, on the guard band, and within these distances are transformed and sheared in floats:
 /// products of two sheared coordinates then stay in their range. The others take doubles.
 inline constexpr float kSingleNear = 0x1p-40f, kSingleFar = 0x1p40f;
-/// Steeper or higher key planes than this are those of triangles seen edge-on: their keys are made constant.
+/// Steeper or higher key planes than this are those of triangles as good as edge-on: their keys are made constant.
 inline constexpr float kSteepest = 0x1p60f;
 
 struct Corner {
@@ -34,13 +39,37 @@ struct Corner {
   bool is_single = false;  ///< the values are floats
 };
 
-inline Corner make_corner(const ScreenTransform& t, const glm::vec3& world) {
-  const HomogeneousVertex v = transform(t, world);
-  if (is_plain(t, v) && v.d >= kSingleNear && v.d <= kSingleFar) return {v.x, v.y, v.d, true};
+/// A homogeneous screen position in doubles.
+inline glm::dvec3 wide_place(const ScreenTransform& t, const glm::vec3& world) {
   const double dx = double(world.x) - t.eye[0], dy = double(world.y) - t.eye[1], dz = double(world.z) - t.eye[2];
   return {t.x_row[0] * dx + t.x_row[1] * dy + t.x_row[2] * dz + t.x_offset,
           t.y_row[0] * dx + t.y_row[1] * dy + t.y_row[2] * dz + t.y_offset,
-          t.d_row[0] * dx + t.d_row[1] * dy + t.d_row[2] * dz + t.d_offset, false};
+          t.d_row[0] * dx + t.d_row[1] * dy + t.d_row[2] * dz + t.d_offset};
+}
+
+inline Corner make_corner(const ScreenTransform& t, const glm::vec3& world) {
+  const HomogeneousVertex v = transform(t, world);
+  if (is_plain(t, v) && v.d >= kSingleNear && v.d <= kSingleFar) return {v.x, v.y, v.d, true};
+  const glm::dvec3 place = wide_place(t, world);
+  return {place.x, place.y, place.z, false};
+}
+
+/// Whether a plane through the triangle holds the eye, or in parallel projection the direction of view.
+inline bool is_edge_on(const View& view, const std::array<glm::vec3, 3>& world) {
+  const glm::dvec3 a(world[0]), b(world[1]), c(world[2]);
+  if (view.projection.orthographic) return sign_of_determinant({b, a}, {c, a}, {view.forward()}) == 0;
+  const glm::dvec3 eye = view.eye();
+  return sign_of_determinant({a, eye}, {b, eye}, {c, eye}) == 0;
+}
+
+/// A triangle with finite corners as the rays of a view see it.
+struct SampleTriangle {
+  std::array<glm::vec3, 3> world;
+  std::array<Corner, 3> corners;  ///< what rays are held against: the same for all triangles that share them
+};
+
+inline SampleTriangle make_triangle(const ScreenTransform& t, const std::array<glm::vec3, 3>& world) {
+  return {world, {make_corner(t, world[0]), make_corner(t, world[1]), make_corner(t, world[2])}};
 }
 
 struct Point {
@@ -95,7 +124,7 @@ struct KeyPlane {
   float gx = 0, gy = 0, k0 = 0;
   float low = 0, high = 0;  ///< the range of the corners' keys, which no key leaves
   bool is_clipped = false;  ///< not wholly between near and far: only keys in [cut, 1] are seen
-  bool is_outside = false;  ///< wholly before near or beyond far
+  bool is_outside = false;  ///< wholly before near or beyond far, or seen edge-on: covers nothing
   float cut = 0;
 
   [[nodiscard]] float raw(float u, float v) const { return (k0 + u * gx) + v * gy; }
@@ -112,22 +141,40 @@ inline void set_range(const ScreenTransform& t, const std::array<Corner, 3>& c, 
   plane.low = farthest <= t.far ? key_of_distance(t, farthest) : plane.cut;
 }
 
-/// Precondition: finite corners. (tx, ty): the tile's centre, from the image's, in 1/256 pixel.
-inline KeyPlane key_plane(const ScreenTransform& t, const std::array<Corner, 3>& c, double tx, double ty) {
+/// Where keys come from. Of a triangle that has a corner in doubles, all of them are: it may pass so near to the eye
+/// that floats would turn its plane to the other side.
+inline std::array<glm::dvec3, 3> places_of(const ScreenTransform& t, const SampleTriangle& triangle, bool is_single) {
+  std::array<glm::dvec3, 3> places;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Corner& c = triangle.corners[k];
+    places[k] = is_single || !c.is_single ? glm::dvec3(c.x, c.y, c.d) : wide_place(t, triangle.world[k]);
+  }
+  return places;
+}
+
+/// `tile`: its centre, from the image's, in 1/256 pixel.
+inline KeyPlane key_plane(const View& view, const ScreenTransform& t, const SampleTriangle& triangle,
+                          const glm::dvec2& tile) {
   KeyPlane plane;
-  set_range(t, c, plane);
-  const double px = c[1].x - c[0].x, py = c[1].y - c[0].y, pd = c[1].d - c[0].d;
-  const double qx = c[2].x - c[0].x, qy = c[2].y - c[0].y, qd = c[2].d - c[0].d;
-  const double nx = py * qd - pd * qy, ny = pd * qx - px * qd, nd = px * qy - py * qx;
-  const double det = (nx * c[0].x + ny * c[0].y) + nd * c[0].d;
-  const double across = nx * tx + ny * ty;
+  set_range(t, triangle.corners, plane);
+  // Corners that are single are before the eye: such a triangle, seen edge-on, is no wider than their rounding.
+  const bool is_single =
+      triangle.corners[0].is_single && triangle.corners[1].is_single && triangle.corners[2].is_single;
+  plane.is_outside = plane.is_outside || (!is_single && is_edge_on(view, triangle.world));
+  if (plane.is_outside) return plane;
+  const std::array<glm::dvec3, 3> c = places_of(t, triangle, is_single);
+  const glm::dvec3 p = c[1] - c[0], q = c[2] - c[0];
+  const double nx = p.y * q.z - p.z * q.y, ny = p.z * q.x - p.x * q.z, nd = p.x * q.y - p.y * q.x;
+  const double det = (nx * c[0].x + ny * c[0].y) + nd * c[0].z;
+  const double across = nx * tile.x + ny * tile.y;
   const double scale = t.orthographic ? double(t.inverse_range) / nd : double(t.near) / det;
   plane.gx = float(nx * scale);
   plane.gy = float(ny * scale);
   plane.k0 = t.orthographic ? float(double(t.far) * double(t.inverse_range) - (det - across) * scale)
                             : float((across + nd) * scale);
-  // NaN counts as too steep.
+  // NaN counts as too steep. Of what reaches beyond near or far, no sample sees the hair between them.
   if (!(std::abs(plane.gx) <= kSteepest && std::abs(plane.gy) <= kSteepest && std::abs(plane.k0) <= kSteepest)) {
+    plane.is_outside = plane.is_clipped;
     plane.gx = plane.gy = 0;
     plane.k0 = plane.low;
   }

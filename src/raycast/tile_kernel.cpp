@@ -318,10 +318,9 @@ class TileCaster {
     ForEachBit(BitsOf(DF(), wide), [&](std::size_t bit) {
       const std::size_t lane = first + bit;
       LargeTriangle<WideCorners> large;
-      for (std::size_t k = 0; k < 3; ++k)
-        large.corners.corners[k] =
-            make_corner(t_, {leaf.corner[k][0][lane], leaf.corner[k][1][lane], leaf.corner[k][2][lane]});
-      large.plane = key_plane(t_, large.corners.corners, double(place_.centre_x), double(place_.centre_y));
+      const SampleTriangle triangle = make_triangle(t_, leaf.corners_of(lane));
+      large.corners.corners = triangle.corners;
+      large.plane = key_plane(frame_.view, t_, triangle, {place_.centre_x, place_.centre_y});
       if (large.plane.is_outside || large.plane.high < buffer_.tile_farthest()) return;
       large.rect = {0, 0, place_.width - 1, place_.height - 1};
       large.id = leaf.id[lane];

@@ -20,15 +20,14 @@ class RayOracle {
   /// `cutout`: asked for holes; may be null.
   void meet(const std::array<glm::vec3, 3>& world, PrimitiveId id, const ScreenCutout* cutout = nullptr) {
     cutout_ = cutout;
-    std::array<raycast_detail::Corner, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = raycast_detail::make_corner(t_, world[k]);
+    const raycast_detail::SampleTriangle triangle = raycast_detail::make_triangle(t_, world);
     constexpr int tile = raycast_detail::kTileSize;
     for (int y = 0; y < visible_.view.height; y += tile)
       for (int x = 0; x < visible_.view.width; x += tile) {
         const float tx = float((x + tile / 2) * 256 - t_.centre_x), ty = float((y + tile / 2) * 256 - t_.centre_y);
-        const raycast_detail::KeyPlane plane = raycast_detail::key_plane(t_, corners, tx, ty);
-        if (plane.is_outside) return;
-        meet_tile({x, y}, {tx, ty}, corners, plane, id);
+        const raycast_detail::KeyPlane plane = raycast_detail::key_plane(visible_.view, t_, triangle, {tx, ty});
+        if (plane.is_outside) continue;
+        meet_tile({x, y}, {tx, ty}, triangle.corners, plane, id);
       }
   }
 

@@ -2,6 +2,7 @@
 // The inside of RayIndex: nodes of sixteen boxes, leaves of sixteen triangles, as structure of arrays.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "frontmost/raycast.h"
@@ -27,6 +28,12 @@ struct alignas(64) RayNode {
 struct alignas(64) RayLeaf {
   float corner[3][3][kRayLanes];
   PrimitiveId id[kRayLanes];
+
+  [[nodiscard]] std::array<glm::vec3, 3> corners_of(std::size_t lane) const {
+    std::array<glm::vec3, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = {corner[k][0][lane], corner[k][1][lane], corner[k][2][lane]};
+    return corners;
+  }
 };
 
 /// A tree that stands somewhere in the world: nodes and leaves in the space of a mesh.
