@@ -20,6 +20,8 @@ void move_all(std::vector<T>& from, std::vector<T>& to) {
 }  // namespace
 
 void append(Scene& scene, Scene part) {
+  if (scene.instances.empty() && scene.cameras.empty()) scene.origin = part.origin;
+  set_origin(part, scene.origin);
   // Everything is renumbered before anything is moved: the counts of what was there are what is added.
   for (Mesh& mesh : part.meshes)
     for (std::uint32_t& material : mesh.material_ids) shift(material, scene.materials.size());
