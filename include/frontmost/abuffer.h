@@ -85,6 +85,7 @@ struct ResolvedPicture {
 /// its linear colour and, straight, its opacity (which AbufferOptions::opacity multiplies); materials are not looked
 /// at. Intersecting fragments part within the pixel: at every sub-sample the order is that of the keys there.
 /// Memory does not grow with the number of layers: 10 to 20 megabytes a thread beside the picture.
+/// O(triangles + n log^2 n for lists of n fragments), also where they are the same triangle again and again.
 /// \throws Error as abuffer() does; bad_argument where `colors` has not one entry a primitive.
 [[nodiscard]] ResolvedPicture resolve(const Surfaces& surfaces, const View& view, std::span<const glm::vec4> colors,
                                       const AbufferOptions& options = {}, const Execution& execution = {});

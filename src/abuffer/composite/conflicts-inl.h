@@ -5,6 +5,11 @@
 // they share a sub-sample, the ranges of their keys overlap, and their keys at the centre differ by no more than the
 // difference of their slopes makes up for. The last holds only of planes that are not clamped within the pixel. On
 // finely tessellated models it leaves a seventh of the pixels that ranges alone would.
+//
+// Whoever lies between two that may change places is in their run (pixel_composite-inl.h), so partners are looked for
+// beyond the end of the run so far alone: the same triangle a thousand times is one run as soon as its first copy has
+// been held against the others. Long lists have a limit to how many pairs are looked at. Beyond it ranges alone decide,
+// which make the runs longer and the picture no worse.
 
 // Included once for every target.
 #if defined(FRONTMOST_ABUFFER_CONFLICTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -58,6 +63,8 @@ class GroupReader {
 
  private:
   static constexpr std::size_t kLastBit = 63;
+  /// Lists that are longer are gone through pixel by pixel, up to so many pairs a fragment.
+  static constexpr std::size_t kLong = 256, kMostPairs = 64;
 
   /// From behind. \returns, as bits, the slots whose ranges of keys meet others behind them; the last bit stands for
   /// all slots from there.
@@ -103,32 +110,83 @@ class GroupReader {
     const DI d;
     for (std::size_t i = 0; i < length_; ++i)
       hn::Store(hn::Set(d, std::int32_t(i)), d, g_.reach.data() + i * kGroup + lane);
+    if (length_ > kLong) {
+      for (std::size_t pixel = lane; pixel < lane + hn::Lanes(d); ++pixel)
+        if (!FindLongPairs(pixel)) FindOverlaps(pixel);
+      return;
+    }
+    hn::Store(hn::Zero(d), d, run_end_ + lane);
     ForEachBit(suspects, [&](std::size_t i) HWY_ATTR { FindPairsOf(i, lane); });
     if (suspects >> kLastBit != 0)
       for (std::size_t i = kLastBit + 1; i + 1 < length_; ++i) FindPairsOf(i, lane);
   }
 
+  /// Of slot i with those beyond the last that one up to it may change places with.
   HWY_INLINE void FindPairsOf(std::size_t i, std::size_t lane) {
     const DF d;
     const DU du;
+    const DI di;
     const std::size_t first = i * kGroup + lane;
     const VF farthest = hn::Load(d, g_.farthest.data() + first);
     const VU low = hn::Load(du, g_.mask_low.data() + first);
     const VU high = kWide ? hn::Load(du, g_.mask_high.data() + first) : low;
-    for (std::size_t j = i + 1; j < length_; ++j) {
-      const VF most = hn::Load(d, g_.behind.data() + (j - 1) * kGroup + lane);
-      if (hn::AllTrue(d, hn::Lt(most, farthest))) return;
+    const VI last = hn::Max(hn::Load(di, run_end_ + lane), hn::Set(di, std::int32_t(i)));
+    const VI at_last = hn::Add(hn::Mul(last, hn::Set(di, std::int32_t(kGroup))), hn::Iota(di, std::int32_t(lane)));
+    auto open = hn::Ge(hn::GatherIndex(d, g_.behind.data(), at_last), farthest);
+    if (hn::AllFalse(d, open)) return;
+    const VI none = hn::Set(di, std::int32_t(length_));
+    const VI from = hn::IfThenElse(hn::RebindMask(di, open), last, none);
+    for (auto j = std::size_t(hn::GetLane(hn::MinOfLanes(di, from))) + 1; j < length_; ++j) {
+      open = hn::And(open, hn::Ge(hn::Load(d, g_.behind.data() + (j - 1) * kGroup + lane), farthest));
+      if (hn::AllFalse(d, open)) return;
       const std::size_t at = j * kGroup + lane;
       VU shared = hn::And(low, hn::Load(du, g_.mask_low.data() + at));
       if (kWide) shared = hn::Or(shared, hn::And(high, hn::Load(du, g_.mask_high.data() + at)));
-      const auto overlap = hn::Ge(hn::Load(d, g_.nearest.data() + at), farthest);
-      const auto both = hn::And(hn::RebindMask(du, overlap), hn::Ne(shared, hn::Zero(du)));
+      const auto beyond = hn::RebindMask(du, hn::Gt(hn::Set(di, std::int32_t(j)), last));
+      const auto overlap = hn::And(open, hn::Ge(hn::Load(d, g_.nearest.data() + at), farthest));
+      const auto both = hn::And(hn::And(hn::RebindMask(du, overlap), beyond), hn::Ne(shared, hn::Zero(du)));
       ForEachBit(BitsOf(du, both), [&](std::size_t p) HWY_ATTR {
         const std::size_t pixel = lane + p;
-        if (!MayChangePlaces(i * kGroup + pixel, j * kGroup + pixel)) return;
-        g_.reach[i * kGroup + pixel] = std::int32_t(j);
-        in_conflict_ |= std::uint64_t(1) << pixel;
+        if (MayChangePlaces(i * kGroup + pixel, j * kGroup + pixel)) Join(i, j, pixel);
       });
+    }
+  }
+
+  void Join(std::size_t i, std::size_t j, std::size_t pixel) {
+    g_.reach[i * kGroup + pixel] = run_end_[pixel] = std::int32_t(j);
+    in_conflict_ |= std::uint64_t(1) << pixel;
+  }
+
+  /// \returns false where these are too many pairs. Counted by pixel, so that nothing depends on the width of vectors.
+  [[nodiscard]] bool FindLongPairs(std::size_t pixel) {
+    std::size_t pairs = length_ * kMostPairs;
+    for (std::size_t i = 0, end = 0; i < length_; ++i) {
+      const std::size_t at = i * kGroup + pixel;
+      end = std::max(end, i);
+      for (std::size_t j = end + 1; j < length_ && g_.behind[(j - 1) * kGroup + pixel] >= g_.farthest[at]; ++j) {
+        if (pairs-- == 0) return false;
+        const std::size_t other = j * kGroup + pixel;
+        if (!(g_.nearest[other] >= g_.farthest[at]) || !SharesSample(at, other) || !MayChangePlaces(at, other))
+          continue;
+        Join(i, j, pixel);
+        end = j;
+      }
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool SharesSample(std::size_t a, std::size_t b) const {
+    return (g_.mask_low[a] & g_.mask_low[b]) != 0 || (kWide && (g_.mask_high[a] & g_.mask_high[b]) != 0);
+  }
+
+  /// The runs of ranges that overlap.
+  void FindOverlaps(std::size_t pixel) {
+    float farthest = std::numeric_limits<float>::max();
+    for (std::size_t i = 0; i + 1 < length_; ++i) {
+      const std::size_t at = i * kGroup + pixel;
+      g_.reach[at] = std::int32_t(i);
+      farthest = std::min(farthest, g_.farthest[at]);
+      if (g_.behind[at] >= farthest) Join(i, i + 1, pixel);
     }
   }
 
@@ -156,6 +214,7 @@ class GroupReader {
   const bool by_fragment_;
   std::size_t group_ = 0, length_ = 0;
   std::uint64_t in_conflict_ = 0;
+  HWY_ALIGN_MAX std::int32_t run_end_[kGroup] = {};  ///< by pixel, the last slot of the run that is looked at
 };
 
 }  // namespace HWY_NAMESPACE

@@ -176,7 +176,8 @@ class PixelCompositor {
       for (std::size_t slot = begin; slot < end; ++slot)
         if (MaskAt(slot) >> sample & 1)
           order_.push_back({-s_.triangles.key_at(g_.triangle[At(slot)], x, y), IdAt(slot), slot});
-      std::sort(order_.begin(), order_.end());
+      // Mostly the order is that of the list: copies of one triangle stay as they are.
+      if (!std::is_sorted(order_.begin(), order_.end())) std::sort(order_.begin(), order_.end());
       for (const auto& [key, id, slot] : order_) {
         const glm::vec4& color = ColorAt(slot);
         const float alpha = color.a * opacity_;
