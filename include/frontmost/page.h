@@ -87,11 +87,12 @@ void validate(const Page& page);
 /// share it in the file. The bytes depend on the page alone (PDF: and the version of zlib).
 ///
 /// SVG: size in millimetres, one user unit to the millimetre; layers and groups are named as Inkscape does it, paths of
-/// one pen share elements; without style sheets, clip paths, masks or transforms. PDF 1.6: layers as optional content,
-/// groups with an opacity as transparency groups, compressed, scaled by a user unit where a side is over 5080 mm. DXF
+/// one pen share elements; without style sheets, clip paths, masks or transforms. PDF 1.5: layers as optional content,
+/// groups with an opacity as transparency groups, compressed; 1.6 where a side is over 5080 mm, scaled by a user unit. DXF
 /// (AutoCAD release 12), lines only: LINE, POLYLINE, ARC, CIRCLE and POINT with line types, y up from the page's lower
 /// left corner; it has no widths, and no groups: each is a layer named by layer and group, "2_VISIBLE-WHEEL", or all of
-/// a layer are one where there are a thousand or more. Such names keep letters, digits and - alone, 31 at most. JSON:
+/// a layer are one where there are a thousand or more. Line types and colours are those of layers: that of the pen, and
+/// where it is black one by the digit that the page's layer begins its name with. $INSUNITS says millimetres. Such names keep letters, digits and - alone, 31 at most. JSON:
 /// all of the page, as it is. Characters that a format does not allow are replaced in names. Memory is constant beside
 /// the page's own. \throws Error as validate() does; bad_argument without a format; unsupported for fills in DXF;
 /// file_unwritable.

@@ -86,6 +86,9 @@ def check_dxf(path, page):
     document = ezdxf.readfile(str(path))
     audit = document.audit()
     assert not audit.errors and not audit.fixes, (audit.errors, audit.fixes)
+    assert document.header["$INSUNITS"] == ezdxf.units.MM, document.header["$INSUNITS"]
+    colors = {layer.dxf.name[0]: layer.dxf.color for layer in document.layers}
+    assert colors["2"] == 7 and colors.get("1", 6) == 6 and colors.get("4", 8) == 8, colors
     expected = {}
     for layer in page["layers"]:
         for group in layer["groups"]:
@@ -96,7 +99,8 @@ def check_dxf(path, page):
     found = {name: 0 for name in expected}
     for entity in document.modelspace():
         found[re.sub("_[0-9]+$", "", entity.dxf.layer) if entity.dxf.layer not in found else entity.dxf.layer] += 1
-        assert entity.dxf.layer in document.layers and entity.dxf.linetype in document.linetypes
+        assert entity.dxf.layer in document.layers
+        assert entity.dxf.color == ezdxf.const.BYLAYER and entity.dxf.linetype == "BYLAYER", entity
     # A path of arcs alone is as many arcs.
     assert all(found[name] >= expected[name] > 0 for name in expected), (found, expected)
     return 1

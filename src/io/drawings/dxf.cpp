@@ -49,37 +49,7 @@ constexpr std::size_t most_layers = 1000;
 struct Layer {
   std::string name;
   Pen pen;
-};
-
-/// The DXF layers of a page, and which of them each group is on.
-struct Layers {
-  explicit Layers(const Page& page) {
-    std::size_t groups = 0;
-    for (const PageLayer& layer : page.layers) groups += layer.groups.size() + 1;
-    TableNames names;
-    for (const PageLayer& layer : page.layers) {
-      const std::string of_class = table_text(layer.name);
-      of_groups.emplace_back();
-      std::optional<std::size_t> common;
-      if (layer.groups.empty()) list.push_back({names.add(of_class), {}});
-      for (const PageGroup& group : layer.groups) {
-        if (groups <= most_layers && !group.name.empty()) {
-          of_groups.back().push_back(list.size());
-          // The class comes whole, so that programs can choose all of it.
-          list.push_back({names.add(of_class.substr(0, 11) + "-" + table_text(group.name)), group.pen});
-          continue;
-        }
-        if (!common) {
-          common = list.size();
-          list.push_back({names.add(of_class), group.pen});
-        }
-        of_groups.back().push_back(*common);
-      }
-    }
-  }
-
-  std::vector<Layer> list;
-  std::vector<std::vector<std::size_t>> of_groups;  ///< by layer of the page
+  int color = 7;
 };
 
 /// The nearest of the colours that have a number everywhere.
@@ -99,6 +69,50 @@ int color_number(const PageColor& color) {
       ->number;
 }
 
+/// What a layer's lines are coloured: black ones by their class, which a page's layers begin their names with, so that
+/// programs and lasers can tell them apart; release 12 has no widths that could.
+int layer_color(const std::string& page_layer, const Pen& pen) {
+  const int color = color_number(pen.color);
+  // Hidden, visible, outline, hatching, stippling, centre lines, dimensions, frame: all are seen on black and on white.
+  constexpr int of_classes[] = {7, 6, 7, 5, 8, 9, 1, 3, 4, 7};
+  const bool is_numbered = !page_layer.empty() && page_layer[0] >= '0' && page_layer[0] <= '9';
+  return color == 7 && is_numbered ? of_classes[page_layer[0] - '0'] : color;
+}
+
+/// The DXF layers of a page, and which of them each group is on.
+struct Layers {
+  explicit Layers(const Page& page) {
+    std::size_t groups = 0;
+    for (const PageLayer& layer : page.layers) groups += layer.groups.size() + 1;
+    TableNames names;
+    for (const PageLayer& layer : page.layers) {
+      const std::string of_class = table_text(layer.name);
+      of_groups.emplace_back();
+      std::optional<std::size_t> common;
+      if (layer.groups.empty()) list.push_back({names.add(of_class), {}, layer_color(layer.name, {})});
+      for (const PageGroup& group : layer.groups) {
+        if (groups <= most_layers && !group.name.empty()) {
+          of_groups.back().push_back(list.size());
+          // The class comes whole, so that programs can choose all of it.
+          list.push_back({names.add(of_class.substr(0, 11) + "-" + table_text(group.name)), group.pen,
+                          layer_color(layer.name, group.pen)});
+          continue;
+        }
+        if (!common) {
+          common = list.size();
+          list.push_back({names.add(of_class), group.pen, layer_color(layer.name, group.pen)});
+        }
+        of_groups.back().push_back(*common);
+      }
+    }
+  }
+
+  std::vector<Layer> list;
+  std::vector<std::vector<std::size_t>> of_groups;  ///< by layer of the page
+};
+
+constexpr int by_layer = 256;
+
 class DxfWriter {
  public:
   DxfWriter(const Page& page, OutputFile& file, const Execution& execution)
@@ -117,7 +131,7 @@ class DxfWriter {
     section("ENTITIES");
     for (std::size_t i = 0; i < page_.layers.size(); ++i)
       for (std::size_t k = 0; k < page_.layers[i].groups.size(); ++k)
-        write_group(page_.layers[i].groups[k], layers_.list[layers_.of_groups[i][k]].name);
+        write_group(page_.layers[i], page_.layers[i].groups[k], layers_.list[layers_.of_groups[i][k]]);
     end_section();
     text(0, "EOF");
     out_.flush();
@@ -150,6 +164,11 @@ class DxfWriter {
     section("HEADER");
     text(9, "$ACADVER");
     text(1, "AC1009");
+    // Later than release 12, which skips what it does not know: 4 is millimetres.
+    text(9, "$INSUNITS");
+    integer(70, 4);
+    text(9, "$MEASUREMENT");
+    integer(70, 1);
     text(9, "$EXTMIN");
     point({0, page_.height});
     text(9, "$EXTMAX");
@@ -204,28 +223,31 @@ class DxfWriter {
       text(0, "LAYER");
       text(2, layer.name);
       integer(70, 0);
-      integer(62, color_number(layer.pen.color));
+      integer(62, layer.color);
       text(6, type_name(layer.pen));
     }
     text(0, "ENDTAB");
     end_section();
   }
 
-  void write_group(const PageGroup& group, const std::string& layer) {
+  void write_group(const PageLayer& of_page, const PageGroup& group, const Layer& layer) {
     if (group.pen.width == 0 || group.pen.color.opacity == 0) return;
-    type_ = type_name(group.pen);
-    color_ = color_number(group.pen.color);
+    own_type_ = type_name(group.pen);
+    if (own_type_ == type_name(layer.pen)) own_type_.clear();
+    own_color_ = layer_color(of_page.name, group.pen);
+    if (own_color_ == layer.color) own_color_ = by_layer;
     for (const PagePath& path : group.paths) {
       progress_.step();
-      write_path(group, path, layer);
+      write_path(group, path, layer.name);
     }
   }
 
+  /// What is not said is as the layer has it, and changes with it.
   void entity(std::string_view kind, const std::string& layer) {
     text(0, kind);
     text(8, layer);
-    text(6, type_);
-    integer(62, color_);
+    if (!own_type_.empty()) text(6, own_type_);
+    if (own_color_ != by_layer) integer(62, own_color_);
   }
 
   void write_path(const PageGroup& group, const PagePath& path, const std::string& layer) {
@@ -280,8 +302,9 @@ class DxfWriter {
   PageText out_;
   WritingProgress progress_;
   std::vector<std::vector<double>> dashes_;
-  std::string type_;
-  int color_ = 7;
+  /// Of the group that is written, where it differs from its layer.
+  std::string own_type_;
+  int own_color_ = by_layer;
 };
 
 }  // namespace

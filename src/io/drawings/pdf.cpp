@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// PDF 1.6: one page, one compressed stream of drawing operators, layers as optional content, groups with an opacity as
-// forms that are transparency groups. No date and no file identifier, so that a page always gives the same bytes.
+// PDF 1.5, or 1.6 where a page needs a unit of its own: one page, one compressed stream of drawing operators, layers as
+// optional content, groups with an opacity as forms that are transparency groups. No date and no file identifier, so
+// that a page always gives the same bytes.
 #include <zlib.h>
 
 #include <array>
@@ -202,7 +203,8 @@ class PdfWriter {
   }
 
   void write() {
-    out_ << "%PDF-1.6\n%\xE2\xE3\xCF\xD3\n";
+    // Optional content came with 1.5, the unit with 1.6. pdfTeX warns of all above 1.5.
+    out_ << (unit_ > 1 ? "%PDF-1.6" : "%PDF-1.5") << "\n%\xE2\xE3\xCF\xD3\n";
     const double scale = points_per_millimetre / unit_;
     begin(contents) << "<< ";
     const States states = write_stream(length, scale, [](PdfContent& content) { content.write(); });

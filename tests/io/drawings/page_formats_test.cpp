@@ -170,7 +170,7 @@ TEST(Json, SaysWhatIsAPart) { EXPECT_EQ(count(saved(page_with_parts(), PageForma
 
 TEST(Pdf, FindsItsObjectsAndItsSize) {
   const std::string pdf = saved(sample_page(), PageFormat::pdf);
-  EXPECT_EQ(pdf.substr(0, 9), "%PDF-1.6\n");
+  EXPECT_EQ(pdf.substr(0, 9), "%PDF-1.5\n");  // pdfTeX warns of all above
   EXPECT_TRUE(has(pdf, "/MediaBox [0 0 283.464566 141.732283]"));
   EXPECT_TRUE(has(pdf, "/Type /OCG /Name <FEFF003100200068"));
   const std::size_t start = std::stoul(pdf.substr(pdf.rfind("startxref\n") + 10));
@@ -247,6 +247,7 @@ TEST(Pdf, PagesBeyondWhatViewersTakeHaveALargerUnit) {
   Page page = sample_page();
   page.width = 12000;
   const std::string pdf = saved(page, PageFormat::pdf);
+  EXPECT_EQ(pdf.substr(0, 9), "%PDF-1.6\n");
   EXPECT_TRUE(has(pdf, "/UserUnit 3"));
   EXPECT_TRUE(has(pdf, "/MediaBox [0 0 11338.582677 47.244094]"));
 }
@@ -285,12 +286,10 @@ TEST(Dxf, HoldsLinesArcsAndCirclesWithYUp) {
   EXPECT_EQ(all[0].text(8), "1_HIDDEN-AXLE");
   EXPECT_EQ(all[5].text(8), "2_VISIBLE-WHEEL");
   EXPECT_EQ(all[12].text(8), "2_VISIBLE-RING");
-  EXPECT_EQ(all[0].text(6), "DASHED1");
   EXPECT_EQ(all[0].text(70), "0");
   EXPECT_EQ(all[3].number(10), 20.5);
   EXPECT_EQ(all[3].number(20), 37.654);
   EXPECT_EQ(all[5].text(70), "1");
-  EXPECT_EQ(all[5].text(62), "1");  // red
   EXPECT_EQ(all[10].number(11), 2);
   EXPECT_EQ(all[10].number(21), 47);
   const Entity &arc = all[11], &circle = all[12];
@@ -302,6 +301,28 @@ TEST(Dxf, HoldsLinesArcsAndCirclesWithYUp) {
   EXPECT_EQ(std::fmod(arc.number(51), 360), 0);
   EXPECT_EQ(circle.number(10), 50);
   EXPECT_EQ(circle.number(40), 10);
+}
+
+TEST(Dxf, SaysItsUnitAndLeavesColoursAndLineTypesToLayers) {
+  Page page = sample_page();
+  const std::string dxf = saved(page, PageFormat::dxf);
+  EXPECT_TRUE(has(dxf, "9\n$INSUNITS\n70\n4\n"));
+  EXPECT_TRUE(has(dxf, "0\nLAYER\n2\n1_HIDDEN-AXLE\n70\n0\n62\n6\n6\nDASHED1\n"));       // black, as hidden lines are
+  EXPECT_TRUE(has(dxf, "0\nLAYER\n2\n2_VISIBLE-WHEEL\n70\n0\n62\n1\n6\nCONTINUOUS\n"));  // red, as its pen is
+  EXPECT_TRUE(has(dxf, "0\nLAYER\n2\n2_VISIBLE-RING\n70\n0\n62\n7\n6\nCONTINUOUS\n"));
+  for (const Entity& entity : entities_of(dxf)) {
+    EXPECT_EQ(entity.codes.count(6), 0u) << entity.kind;
+    EXPECT_EQ(entity.codes.count(62), 0u) << entity.kind;
+  }
+  // Groups without names share a layer: what differs from it is said.
+  for (PageGroup& group : page.layers[1].groups) group.name.clear();
+  page.layers[1].groups[1].pen.dashes = {1, 1};
+  const std::vector<Entity> all = entities_of(saved(page, PageFormat::dxf));
+  EXPECT_EQ(all[5].text(8), "2_VISIBLE");
+  EXPECT_EQ(all[5].codes.count(62), 0u);
+  EXPECT_EQ(all[11].text(8), "2_VISIBLE");
+  EXPECT_EQ(all[11].text(62), "7");
+  EXPECT_EQ(all[11].text(6), "DASHED2");
 }
 
 TEST(Dxf, LineTypesHaveTheirDashesAndGaps) {
