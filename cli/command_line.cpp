@@ -60,7 +60,7 @@ void take_leftovers(const Command& command, const std::vector<std::string>& word
     if (word == "--") continue;  // it has done its work
     if (word.size() > 1 && word[0] == '-') complain_of_unknown(command, word);
     if (command.argument.empty()) throw UsageError(fmt::format("'{}' is one word too many", word));
-    if (command.bit != for_render)
+    if (command.bit != for_render && command.bit != for_lines)
       throw UsageError(fmt::format("one model at a time: '{}' and '{}'", settings.model, word));
     settings.more_models.push_back(word);
   }

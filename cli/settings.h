@@ -154,7 +154,13 @@ struct DrawingSettings {
   enum class Style : std::uint8_t { technical, figure };
   enum class Unit : std::uint8_t { millimetre, centimetre, metre, inch };
 
+  /// What a title block says (ISO 7200); none: not given.
+  struct TitleTexts {
+    std::optional<std::string> title, number, author, date, owner;
+  };
+
   Hidden hidden = Hidden::none;
+  std::optional<std::vector<NamedView>> hidden_views;  ///< of a sheet that show hidden edges; none: all but iso
   Style style = Style::technical;
   std::optional<ScaleRule> scale_rule;
   double scale = 1;  ///< millimetres on paper to a millimetre of the model
@@ -171,13 +177,22 @@ struct DrawingSettings {
   std::optional<glm::dvec3> light;    ///< towards it: to the right, upwards and to the viewer
   std::optional<bool> casts_shadows;
   bool plot = false;
+  bool frame = false;
+  TitleTexts texts;
+  int sheet = 1, sheets = 1;  ///< where several models are given
   std::optional<PageFormat> format;
   std::vector<std::string> outputs;
+
+  /// A title block needs a frame.
+  [[nodiscard]] bool has_frame() const {
+    return frame || texts.title || texts.number || texts.author || texts.date || texts.owner;
+  }
 };
 
 struct Settings {
   std::string model;
-  std::vector<std::string> more_models;  ///< of `render`: drawn together with the first
+  std::vector<std::string>
+      more_models;  ///< of `render`: drawn together with the first; of `lines`: sheets of their own
   LoadOptions load;
   ViewSettings view;
   PrecisionSettings precision;

@@ -7,6 +7,7 @@ set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 cd "${1:-.}"
 python3 "$here/bracket.py" > bracket.obj
-frontmost lines bracket.obj --up +z --views front,top,left,iso --hidden dashed --page 200,175 --scale 1:1 -o sheet.svg -o sheet.dxf
+frontmost lines bracket.obj --up +z --views front,top,left,iso --hidden dashed --page a4-portrait \
+  --title 'Angle bracket' --number FM-0014 --author 'E. Example' --date 2026-03-01 -o sheet.svg -o sheet.dxf
 frontmost lines bracket.obj --up +z --view iso --camera-orthographic --plot --hidden dashed --hatch 1.5 --page 160,130 --margin 5 -o plot.svg -o plot.pdf
 frontmost lines builtin:gallery --style figure --hatch 1.2 --page 160,100 --margin 3 -o figure.svg -o figure.pdf

@@ -43,9 +43,19 @@ std::string file_from(const Given& given) {
   return given.string();
 }
 
+/// Text of a title block: as much as its field holds in letters that can be read.
+std::string field_text(const Given& given, std::size_t most) {
+  const auto is_first = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; };
+  const auto count = std::size_t(std::count_if(given.text.begin(), given.text.end(), is_first));
+  if (count > most) throw UsageError(fmt::format("{} characters are more than the {} that have room", count, most));
+  return given.string();
+}
+
 constexpr Option table[] = {
     {"hidden", 0, "none|dashed|thin", "How hidden edges are drawn; none by default.", Group::drawing, for_lines,
      [](Settings& s, const Given& g) { s.drawing.hidden = g.choice<DrawingSettings::Hidden>(); }},
+    {"hidden-views", 0, "V,V,...", "Views of a sheet that show hidden edges; all but iso by default.", Group::drawing,
+     for_lines, [](Settings& s, const Given& g) { s.drawing.hidden_views = views_from(g.text); }},
     {"style", 0, "technical|figure",
      "Pens of drawing standards (0.5 mm, the default), or for people: an outline heavier than contours, and those than "
      "creases.",
@@ -117,6 +127,20 @@ constexpr Option table[] = {
      "their "
      "own.",
      Group::drawing, for_lines, [](Settings& s, const Given&) { s.drawing.plot = true; }},
+    {"frame", 0, "",
+     "Frame and title block (ISO 5457, ISO 7200), also with any of the five texts below; the page is 210 x 100 mm or "
+     "more, and with a --scale of numbers alone the smallest of a4 to a0.",
+     Group::drawing, for_lines, [](Settings& s, const Given&) { s.drawing.frame = true; }},
+    {"title", 0, "TEXT", "Of the drawing, up to 80 characters; the model's name by default.", Group::drawing, for_lines,
+     [](Settings& s, const Given& g) { s.drawing.texts.title = field_text(g, 80); }},
+    {"number", 0, "TEXT", "Of the drawing, up to 30 characters.", Group::drawing, for_lines,
+     [](Settings& s, const Given& g) { s.drawing.texts.number = field_text(g, 30); }},
+    {"author", 0, "TEXT", "Who made the drawing, up to 40 characters.", Group::drawing, for_lines,
+     [](Settings& s, const Given& g) { s.drawing.texts.author = field_text(g, 40); }},
+    {"date", 0, "TEXT", "Of issue, as it is to be written, up to 20 characters; no clock is asked.", Group::drawing,
+     for_lines, [](Settings& s, const Given& g) { s.drawing.texts.date = field_text(g, 20); }},
+    {"owner", 0, "TEXT", "Legal owner, up to 80 characters.", Group::drawing, for_lines,
+     [](Settings& s, const Given& g) { s.drawing.texts.owner = field_text(g, 80); }},
     {"output", 'o', "FILE", "The drawing: .svg, .pdf, .dxf or .json; - is standard output, with --format.",
      Group::output, for_lines | may_repeat,
      [](Settings& s, const Given& g) { s.drawing.outputs.push_back(file_from(g)); }},

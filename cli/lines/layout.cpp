@@ -2,8 +2,10 @@
 #include "cli/lines/layout.h"
 
 #include <fmt/format.h>
+#include <frontmost/title_block.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "cli/failure.h"
 #include "cli/lines/paper.h"
@@ -39,11 +41,11 @@ std::vector<Layout::Line> Layout::lines_of(const std::vector<ViewCell>& cells, i
   return lines;
 }
 
-Layout::Layout(const std::vector<ViewCell>& cells, double gap) : cells_(cells), gap_(gap) {
+Layout::Layout(const std::vector<ViewCell>& cells, const glm::dvec2& gap) : cells_(cells), gap_(gap) {
   for (int axis = 0; axis < 2; ++axis) {
     lines_[axis] = lines_of(cells, axis);
     for (const Line& line : lines_[axis]) extent_[axis] += line.before + line.behind;
-    gaps_[axis] = gap * double(lines_[axis].size() - 1);
+    gaps_[axis] = gap[axis] * double(lines_[axis].size() - 1);
   }
 }
 
@@ -58,7 +60,7 @@ double Layout::place(const ViewCell& cell, int axis, double scale) const {
   double at = 0;
   for (const Line& line : lines_[axis]) {
     if (line.number == (axis == 0 ? cell.column : cell.row)) return at + line.before * scale;
-    at += (line.before + line.behind) * scale + gap_;
+    at += (line.before + line.behind) * scale + gap_[axis];
   }
   return at;
 }
@@ -70,16 +72,83 @@ std::vector<glm::dvec2> Layout::anchors(double scale, const glm::dvec2& corner) 
   return anchors;
 }
 
+bool Layout::leaves_free(const glm::dvec2& block, double scale, const glm::dvec2& corner) const {
+  const std::vector<glm::dvec2> places = anchors(scale, corner);
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    const glm::dvec2 end = places[i] + cells_[i].high * scale;
+    if (end.x > block.x && end.y > block.y) return false;
+  }
+  return true;
+}
+
 namespace {
 
 constexpr double longest_side = 1e5;  // millimetres: validate(Page)
+constexpr double widest_spread = 45;  // between views of a sheet that has room
+constexpr double slack = 1 + 1e-9;    // for rounding
+constexpr int bisections = 60;        // more than doubles have
 
-[[noreturn]] void refuse(const glm::dvec2& size, const glm::dvec2& area, double scale, double fitting) {
-  const double standard = standard_scale(fitting);
+/// Where views may stand on a page: from corner to corner, but not both to the right of `block` and below it.
+struct Area {
+  glm::dvec2 page{0}, low{0}, high{0};
+  std::optional<glm::dvec2> block;
+
+  [[nodiscard]] glm::dvec2 size() const { return high - low; }
+};
+
+Area area_on(const glm::dvec2& page, const DrawingSettings& settings) {
+  if (!settings.has_frame()) return {page, glm::dvec2(settings.margin), page - settings.margin, {}};
+  const DrawingSpace space = drawing_space(page);
+  return {page, space.low + settings.margin, space.high - settings.margin, space.block - settings.margin};
+}
+
+/// The corner of a layout that has room in the area: in its middle, or in that of what is above the block or beside it,
+/// or as far from the block as can be.
+std::optional<glm::dvec2> corner_in(const Area& area, const Layout& layout, double scale) {
+  const glm::dvec2 size = layout.size(scale);
+  const auto middle_of = [&](const glm::dvec2& high) { return area.low + (high - area.low - size) * 0.5; };
+  const auto fits = [&](const glm::dvec2& high) {
+    return glm::all(glm::lessThanEqual(size, (high - area.low) * slack));
+  };
+  if (!fits(area.high)) return std::nullopt;
+  if (!area.block || layout.leaves_free(*area.block, scale, middle_of(area.high))) return middle_of(area.high);
+  for (const glm::dvec2 high : {glm::dvec2(area.high.x, area.block->y), glm::dvec2(area.block->x, area.high.y)})
+    if (fits(high)) return middle_of(high);
+  if (layout.leaves_free(*area.block, scale, area.low)) return area.low;
+  return std::nullopt;
+}
+
+/// The largest scale that has such a corner. All smaller ones have one too.
+double largest_scale(const Area& area, const Layout& layout) {
+  double most = layout.largest_scale(area.size());
+  if (!area.block || corner_in(area, layout, most)) return most;
+  double least = std::max(layout.largest_scale({area.size().x, area.block->y - area.low.y}),
+                          layout.largest_scale({area.block->x - area.low.x, area.size().y}));
+  for (int i = 0; i < bisections; ++i) {
+    const double scale = (least + most) / 2;
+    (corner_in(area, layout, scale) ? least : most) = scale;
+  }
+  return least;
+}
+
+/// The views of a sheet with a frame share what room there is, where the title block lets them.
+Layout spread(const Layout& layout, const Area& area, double scale) {
+  const glm::dvec2 least = layout.gap(), free = area.size() - layout.with_gap(glm::dvec2(0)).size(scale);
+  const glm::dvec2 most = glm::clamp(free / (layout.counts() + 1.0), least, glm::dvec2(widest_spread));
+  for (const double share : {1.0, 0.5}) {
+    const Layout wider = layout.with_gap(glm::mix(least, most, share));
+    if (corner_in(area, wider, scale)) return wider;
+  }
+  return layout;
+}
+
+[[noreturn]] void refuse(const glm::dvec2& size, const Area& area, double scale, double fitting) {
+  const glm::dvec2 room = area.size();
   throw UsageError(
       fmt::format("--scale: at {} the drawing takes {:.1f} x {:.1f} mm, and the page has {:.1f} x {:.1f} mm "
-                  "between its margins; --scale {} would fit, or take a larger --page, or --page fit",
-                  scale_text(scale), size.x, size.y, area.x, area.y, scale_text(standard)));
+                  "between its margins{}; --scale {} would fit, or take a larger --page{}",
+                  scale_text(scale), size.x, size.y, room.x, room.y, area.block ? " and beside its title block" : "",
+                  scale_text(standard_scale(fitting)), area.block ? "" : ", or --page fit"));
 }
 
 SheetPlan fitted_page(const Layout& layout, double scale, double margin) {
@@ -92,21 +161,59 @@ SheetPlan fitted_page(const Layout& layout, double scale, double margin) {
   return plan;
 }
 
+/// The pages that may be taken, in the order of preference.
+std::vector<glm::dvec2> pages_of(const PaperSettings& paper, const DrawingSettings& settings) {
+  std::vector<glm::dvec2> pages = {paper.size};
+  if (paper.may_turn) pages.emplace_back(paper.size.y, paper.size.x);
+  if (!settings.has_frame()) return pages;
+  const auto is_small = [](const glm::dvec2& page) {
+    return page.x < least_framed_page.x || page.y < least_framed_page.y;
+  };
+  pages.erase(std::remove_if(pages.begin(), pages.end(), is_small), pages.end());
+  if (pages.empty())
+    throw UsageError(fmt::format("--page: {} x {} mm have no room for a frame and its title block, which need {} x {}",
+                                 paper.size.x, paper.size.y, least_framed_page.x, least_framed_page.y));
+  return pages;
+}
+
+/// The area on that page on which the drawing is largest, and its scale there.
+std::pair<Area, double> best_area(const std::vector<glm::dvec2>& pages, const Layout& layout,
+                                  const DrawingSettings& settings) {
+  std::pair<Area, double> best{area_on(pages[0], settings), 0};
+  for (const glm::dvec2& page : pages) {
+    const Area area = area_on(page, settings);
+    if (!(area.size().x > 0 && area.size().y > 0)) continue;
+    if (const double scale = largest_scale(area, layout); scale > best.second) best = {area, scale};
+  }
+  return best;
+}
+
+/// Of a scale of numbers: the smallest of A4 to A0 that has room, or A0.
+PaperSettings smallest_paper(const Layout& layout, const DrawingSettings& settings) {
+  PaperSettings paper;
+  for (const char* const name : {"a4", "a3", "a2", "a1", "a0"}) {
+    paper = parse_paper(name);
+    if (best_area(pages_of(paper, settings), layout, settings).second * slack >= settings.scale) break;
+  }
+  return paper;
+}
+
+PaperSettings paper_of(const Layout& layout, const DrawingSettings& settings, ScaleRule rule) {
+  if (settings.paper) return *settings.paper;
+  const bool is_given = rule == ScaleRule::given;
+  if (is_given && settings.has_frame()) return smallest_paper(layout, settings);
+  return {{210, 297}, true, is_given};
+}
+
 }  // namespace
 
 SheetPlan plan_sheet(const Layout& layout, const DrawingSettings& settings, bool has_scale) {
   const double margin = settings.margin;
   const ScaleRule rule = settings.scale_rule.value_or(settings.views.empty() ? ScaleRule::fit : ScaleRule::standard);
-  const PaperSettings paper = settings.paper.value_or(PaperSettings{{210, 297}, true, rule == ScaleRule::given});
+  const PaperSettings paper = paper_of(layout, settings, rule);
   if (paper.fits_drawing) return fitted_page(layout, settings.scale, margin);
-  glm::dvec2 page = paper.size, turned(paper.size.y, paper.size.x);
-  double most = layout.largest_scale(page - 2 * margin);
-  if (const double other = layout.largest_scale(turned - 2 * margin); paper.may_turn && other > most) {
-    most = other;
-    page = turned;
-  }
-  const glm::dvec2 area = page - 2 * margin;
-  if (!(area.x > 0 && area.y > 0))
+  const auto [area, most] = best_area(pages_of(paper, settings), layout, settings);
+  if (!(area.size().x > 0 && area.size().y > 0))
     throw UsageError(fmt::format("--margin: {} mm at each side leave nothing of a page of {} x {} mm", margin,
                                  paper.size.x, paper.size.y));
   if (!(most > 0))
@@ -115,9 +222,11 @@ SheetPlan plan_sheet(const Layout& layout, const DrawingSettings& settings, bool
   double scale = rule == ScaleRule::standard && has_scale ? standard_scale(most) : most;
   if (rule == ScaleRule::given) {
     scale = settings.scale;
-    if (scale > most * (1 + 1e-9)) refuse(layout.size(scale), area, scale, most);
+    if (scale > most * slack) refuse(layout.size(scale), area, scale, most);
   }
-  return {page, scale, layout.anchors(scale, (page - layout.size(scale)) * 0.5)};
+  const Layout placed = area.block ? spread(layout, area, scale) : layout;
+  const glm::dvec2 corner = corner_in(area, placed, scale).value_or(area.low);
+  return {area.page, scale, placed.anchors(scale, corner)};
 }
 
 }  // namespace frontmost::cli

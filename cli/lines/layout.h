@@ -23,12 +23,19 @@ struct ViewCell {
 /// Columns and rows in use, each as wide as its widest view.
 class Layout {
  public:
-  /// Precondition: not empty. `gap` in millimetres, at any scale.
-  Layout(const std::vector<ViewCell>& cells, double gap);
+  /// Precondition: not empty. `gap` in millimetres, at any scale, between columns and between rows.
+  Layout(const std::vector<ViewCell>& cells, const glm::dvec2& gap);
+  /// The same views, otherwise apart.
+  [[nodiscard]] Layout with_gap(const glm::dvec2& gap) const { return {cells_, gap}; }
 
   [[nodiscard]] glm::dvec2 size(double scale) const { return extent_ * scale + gaps_; }
   /// The largest scale at which all fits into `area`; 1 where it has no size.
   [[nodiscard]] double largest_scale(const glm::dvec2& area) const;
+  [[nodiscard]] const glm::dvec2& gap() const { return gap_; }
+  /// How many columns and rows are in use.
+  [[nodiscard]] glm::dvec2 counts() const { return {lines_[0].size(), lines_[1].size()}; }
+  /// Whether no view, with the layout's upper left corner at `corner`, reaches to the right of `block` and below it.
+  [[nodiscard]] bool leaves_free(const glm::dvec2& block, double scale, const glm::dvec2& corner) const;
   /// Where the anchors are, with the layout's upper left corner at `corner`.
   [[nodiscard]] std::vector<glm::dvec2> anchors(double scale, const glm::dvec2& corner) const;
 
@@ -42,7 +49,7 @@ class Layout {
   [[nodiscard]] double place(const ViewCell& cell, int axis, double scale) const;
 
   std::vector<ViewCell> cells_;
-  double gap_;
+  glm::dvec2 gap_;
   std::vector<Line> lines_[2];
   glm::dvec2 extent_{0}, gaps_{0};
 };
@@ -54,6 +61,8 @@ struct SheetPlan {
   std::vector<glm::dvec2> anchors;
 };
 
+/// With a frame no view lies on the title block; where room is left views stand farther apart, evenly, and a scale of
+/// numbers without a page takes the smallest of A4 to A0 on which all has room.
 /// \throws UsageError when the drawing does not fit, saying what would.
 [[nodiscard]] SheetPlan plan_sheet(const Layout& layout, const DrawingSettings& settings, bool has_scale);
 

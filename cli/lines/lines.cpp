@@ -13,7 +13,9 @@
 #include "cli/interruption.h"
 #include "cli/lines/layout.h"
 #include "cli/lines/lines_report.h"
+#include "cli/lines/titles.h"
 #include "cli/lines/tones.h"
+#include "cli/lines/units.h"
 #include "cli/model.h"
 #include "cli/render/fit.h"
 #include "cli/render/outputs.h"
@@ -34,9 +36,18 @@ constexpr std::string_view view_names[] = {"front", "back", "left", "right", "to
 
 bool is_parallel(const Settings& s) { return s.view.orthographic || !s.drawing.views.empty(); }
 
+void check_hidden_views(const DrawingSettings& s) {
+  if (!s.hidden_views) return;
+  if (s.hidden == DrawingSettings::Hidden::none) throw UsageError("--hidden-views needs --hidden dashed or thin");
+  for (const NamedView view : *s.hidden_views)
+    if (std::find(s.views.begin(), s.views.end(), view) == s.views.end())
+      throw UsageError(fmt::format("--hidden-views: {} is not among --views", view_names[int(view)]));
+}
+
 void check_views(const Settings& s) {
   if (s.drawing.views.empty()) {
     if (s.drawing.layout) throw UsageError("--projection needs --views");
+    if (s.drawing.hidden_views) throw UsageError("--hidden-views needs --views");
     return;
   }
   const ViewSettings& v = s.view;
@@ -61,6 +72,8 @@ void check(const Settings& settings) {
   const DrawingSettings& s = settings.drawing;
   check_view_settings(settings.view);
   check_views(settings);
+  check_hidden_views(s);
+  check_frame(s);
   check_tones(s);
   if (s.outputs.empty() && !settings.run.json) throw UsageError("nothing to do: give -o FILE or --json");
   if (s.scale_rule && s.scale_rule != ScaleRule::fit && !is_parallel(settings))
@@ -78,13 +91,6 @@ void check(const Settings& settings) {
   if (takes_output && settings.run.json) throw UsageError("--json and an output to - both want standard output");
 }
 
-/// Millimetres to the model's unit.
-double unit_of(const Settings& settings) {
-  constexpr double sizes[] = {1, 10, 1000, 25.4};
-  if (settings.drawing.unit) return sizes[int(*settings.drawing.unit)];
-  return settings.load.format == ModelFormat::gltf ? 1000 : 1;
-}
-
 /// True when the user chose what is in the picture, beyond the direction from where the model is seen.
 bool is_framed(const ViewSettings& s) {
   return s.pose || s.camera_index || s.position || s.intrinsics || s.resolution || s.zoom != 1;
@@ -97,6 +103,14 @@ std::optional<double> tessellation_error(const ViewSettings& settings, const Sce
   for (double error = fine_error; error <= coarsest_error; error *= 2)
     if (tessellated_count(scene, view, error) <= most_fine_triangles) return error;
   return std::nullopt;
+}
+
+/// A drafter's view at an angle shows what the thing looks like, and hidden edges would only hide that.
+bool shows_hidden(const DrawingSettings& settings, std::optional<NamedView> view) {
+  if (settings.hidden == DrawingSettings::Hidden::none) return false;
+  if (!view || settings.views.empty()) return true;
+  if (!settings.hidden_views) return *view != NamedView::iso;
+  return std::find(settings.hidden_views->begin(), settings.hidden_views->end(), *view) != settings.hidden_views->end();
 }
 
 DrawnView draw(const ViewSettings& settings, const Settings& all, const Surfaces& surfaces,
@@ -118,6 +132,7 @@ DrawnView draw(const ViewSettings& settings, const Settings& all, const Surfaces
   const Projection& p = view.projection;
   if (p.orthographic) result.millimetres_per_pixel = (p.right - p.left) / view.width * unit_of(all);
   result.keeps_frame = is_framed(settings);
+  result.shows_hidden = shows_hidden(all.drawing, settings.named);
   return result;
 }
 
@@ -156,7 +171,7 @@ struct Frame {
 
 Frame frame_of(const DrawnView& view, const Settings& settings, const Surfaces& surfaces, std::size_t number) {
   const View& camera = view.drawing.view;
-  DrawingBounds box = bounds(view.drawing, settings.drawing.hidden != DrawingSettings::Hidden::none);
+  DrawingBounds box = bounds(view.drawing, view.shows_hidden);
   if (view.keeps_frame || box.is_empty()) {
     box.low = glm::dvec2(0);
     box.high = glm::dvec2(camera.width, camera.height);
@@ -183,7 +198,7 @@ SheetPlan place(std::vector<DrawnView>& views, const Settings& settings, const S
     frames.push_back(frame_of(views[i], settings, surfaces, i));
     cells.push_back(frames.back().cell);
   }
-  SheetPlan plan = plan_sheet(Layout(cells, gap_between_views), settings.drawing, is_parallel(settings));
+  SheetPlan plan = plan_sheet(Layout(cells, glm::dvec2(gap_between_views)), settings.drawing, is_parallel(settings));
   for (std::size_t i = 0; i < views.size(); ++i) {
     SheetView& sheet = views[i].sheet;
     sheet.millimetres_per_pixel = views[i].millimetres_per_pixel * plan.scale;
@@ -192,9 +207,10 @@ SheetPlan place(std::vector<DrawnView>& views, const Settings& settings, const S
   return plan;
 }
 
-StrokeOptions stroke_options(const DrawingSettings& settings, double millimetres_per_pixel) {
+StrokeOptions stroke_options(const DrawingSettings& settings, const DrawnView& view) {
+  const double millimetres_per_pixel = view.sheet.millimetres_per_pixel;
   StrokeOptions options;
-  options.with_hidden = settings.hidden != DrawingSettings::Hidden::none;
+  options.with_hidden = view.shows_hidden;
   options.grazing_angle = glm::radians(std::min(settings.crease_angle, 90.0));
   options.by_kind = options.by_outline = settings.style == DrawingSettings::Style::figure;
   options.by_instance = !settings.plot;
@@ -227,19 +243,16 @@ void write(const Page& page, const Page& plotted, const Settings& settings, cons
   }
 }
 
-}  // namespace
+/// An STL file has no names of objects but those that programs write: one object is named as its file is.
+void name_object(Scene& scene, const Settings& settings) {
+  if (settings.load.format == ModelFormat::stl && scene.instances.size() == 1) scene.instances[0].name = scene.name;
+}
 
-int run_lines(const Settings& given) {
-  check(given);
-  Settings settings = given;
-  for (std::string& path : settings.drawing.outputs)
-    path = fill_template(path, settings.model, settings.drawing.views.empty() ? view_name(settings.view) : "sheet");
-  check_outputs(settings.drawing.outputs, settings.model);
-  catch_interruptions(settings.run.timeout);
-  Progress progress(settings.run.quiet);
-  const Execution execution = execution_for(settings.run, progress);
+/// Draws one model, and writes its files. \returns the report.
+Json draw_model(Settings settings, const Execution& execution, Progress& progress) {
   settings.load.found = &settings.load.format;
-  const Scene scene = load_model(settings, execution, progress);
+  Scene scene = load_model(settings, execution, progress);
+  name_object(scene, settings);
   const Surfaces surfaces(scene, execution);
   LinesTimings timings;
   Stopwatch watch;
@@ -248,7 +261,7 @@ int run_lines(const Settings& given) {
   watch = {};
   const SheetPlan plan = place(views, settings, surfaces);
   for (DrawnView& view : views) {
-    const StrokeOptions options = stroke_options(settings.drawing, view.sheet.millimetres_per_pixel);
+    const StrokeOptions options = stroke_options(settings.drawing, view);
     view.sheet.strokes = strokes(*view.surfaces, view.drawing, options, execution);
   }
   timings.strokes = watch.milliseconds();
@@ -260,19 +273,58 @@ int run_lines(const Settings& given) {
   }
   timings.tones = watch.milliseconds();
   watch = {};
-  const Page page = draw_sheet(surfaces, sheets, pens_of(settings.drawing), plan.size);
+  Page page = draw_sheet(surfaces, sheets, pens_of(settings.drawing), plan.size);
+  const std::optional<double> scale = is_parallel(settings) ? std::optional(plan.scale) : std::nullopt;
+  if (page.layers.empty()) show_warnings({"nothing is seen; the drawing is empty"}, settings.run, progress);
+  if (const auto hint = unit_hint(settings, plan.scale); hint && scale) show_warnings({*hint}, settings.run, progress);
+  if (settings.drawing.has_frame()) add_frame(page, settings, scale, scene.name);
   std::optional<Page> dashed;
   if (settings.drawing.plot) dashed = with_real_dashes(page, execution);
   const Page& plotted = dashed ? *dashed : page;
-  if (page.layers.empty() && !settings.run.quiet) {
-    progress.clear();
-    complain("warning: nothing is seen; the drawing is empty");
-  }
   write(page, plotted, settings, execution);
   timings.write = watch.milliseconds();
   progress.clear();
-  const std::optional<double> scale = is_parallel(settings) ? std::optional(plan.scale) : std::nullopt;
-  if (settings.run.json) print(dump(lines_json(settings, views, plotted, scale, timings)));
+  return lines_json(settings, views, plotted, scale, timings);
+}
+
+/// Every model has a sheet of its own, and files of its own. \throws UsageError where they would share them.
+std::vector<Settings> sheets_of(const Settings& given) {
+  std::vector<std::string> models = given.more_models;
+  models.insert(models.begin(), given.model);
+  std::vector<Settings> sheets;
+  std::vector<std::string> paths;
+  for (const std::string& model : models) {
+    Settings& sheet = sheets.emplace_back(given);
+    sheet.model = model;
+    sheet.more_models.clear();
+    sheet.drawing.sheet = int(sheets.size());
+    sheet.drawing.sheets = int(models.size());
+    for (std::string& path : sheet.drawing.outputs) {
+      if (models.size() > 1 && path.find("{model}") == std::string::npos)
+        throw UsageError(fmt::format("-o {}: every model has a sheet of its own; put {{model}} into the name", path));
+      path = fill_template(path, model_name(model),
+                           given.drawing.views.empty() ? view_name(given.view) : std::string("sheet"));
+      paths.push_back(path);
+    }
+  }
+  for (const std::string& model : models) check_outputs(paths, model);
+  return sheets;
+}
+
+}  // namespace
+
+int run_lines(const Settings& settings) {
+  check(settings);
+  const std::vector<Settings> sheets = sheets_of(settings);
+  catch_interruptions(settings.run.timeout);
+  Progress progress(settings.run.quiet);
+  const Execution execution = execution_for(settings.run, progress);
+  Json reports = Json::array();
+  for (const Settings& sheet : sheets) {
+    if (sheets.size() > 1) progress.set_prefix(fmt::format("sheet {} of {}: ", reports.size() + 1, sheets.size()));
+    reports.push_back(draw_model(sheet, execution, progress));
+  }
+  if (settings.run.json) print(dump(sheets.size() == 1 ? reports[0] : Json{{"sheets", reports}}));
   return exit_done;
 }
 

@@ -23,6 +23,7 @@ struct DrawnView {
   Drawing drawing;
   double millimetres_per_pixel = 1;  ///< at scale 1:1; in perspective of no meaning by itself
   bool keeps_frame = false;          ///< the camera was placed: the picture's rectangle counts, not what is in it
+  bool shows_hidden = true;          ///< where hidden edges are drawn at all
   SheetView sheet{};
 };
 

@@ -62,6 +62,17 @@ PaperSettings parse_paper(std::string_view text) {
                   text));
 }
 
+std::string paper_text(const glm::dvec2& size) {
+  const double narrow = std::min(size.x, size.y), wide = std::max(size.x, size.y);
+  for (const Paper& known : papers) {
+    if (known.width != narrow || known.height != wide) continue;
+    std::string name(known.name);
+    name[0] = char(name[0] - 'a' + 'A');
+    return name;
+  }
+  return fmt::format("{:.6g} x {:.6g}", size.x, size.y);
+}
+
 double parse_scale(std::string_view text) {
   constexpr Range range{1e-6, 1e6};
   const std::size_t colon = text.find(':');

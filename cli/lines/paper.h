@@ -13,6 +13,9 @@ namespace frontmost::cli {
 /// \throws UsageError
 [[nodiscard]] PaperSettings parse_paper(std::string_view text);
 
+/// "A3" and the like, however it lies; "420 x 200" in millimetres where it has no name.
+[[nodiscard]] std::string paper_text(const glm::dvec2& size);
+
 /// "1:5", "2:1" or "0.2". \throws UsageError
 [[nodiscard]] double parse_scale(std::string_view text);
 /// The other way round: "1:5", "2:1", "1:3.2".

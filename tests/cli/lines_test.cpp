@@ -386,7 +386,9 @@ TEST_F(LinesCommand, PensAndTheirDashesGoTogether) {
                                              "stroke-dasharray=\"6 1.5\""));
   EXPECT_THAT(read("drawing.svg"), HasSubstr("stroke-width=\"1\""));
   succeed("lines cube.stl --view iso --camera-orthographic --hatch 2 --stipple 2 --pen 1 -o drawing.svg");
-  EXPECT_NE(read("drawing.svg").find("5 stippling\">\n<g stroke=\"#000000\" stroke-width=\".6\""), std::string::npos);
+  EXPECT_NE(
+      read("drawing.svg").find("5 stippling\">\n<g inkscape:label=\"cube\" stroke=\"#000000\" stroke-width=\".6\""),
+      std::string::npos);
   expect_failure("lines cube.stl --pen 0 -o drawing.svg", 2, "--pen");
 }
 

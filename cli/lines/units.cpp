@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/lines/units.h"
+
+#include <fmt/format.h>
+
+#include "cli/lines/paper.h"
+
+namespace frontmost::cli {
+namespace {
+
+struct NamedUnit {
+  const char* name;
+  double millimetres;
+};
+/// As DrawingSettings::Unit counts them.
+constexpr NamedUnit units[] = {{"mm", 1}, {"cm", 10}, {"m", 1000}, {"in", 25.4}};
+constexpr double largest_usual = 50;                     // ISO 5455 has no enlargement above it
+constexpr double likely_least = 0.01, likely_most = 10;  // of a unit that makes sense
+
+}  // namespace
+
+double unit_of(const Settings& settings) {
+  if (settings.drawing.unit) return units[int(*settings.drawing.unit)].millimetres;
+  return settings.load.format == ModelFormat::gltf ? 1000 : 1;
+}
+
+std::optional<std::string> unit_hint(const Settings& settings, double scale) {
+  const DrawingSettings& s = settings.drawing;
+  const bool is_sheet = !s.views.empty() || s.has_frame() || s.scale_rule == ScaleRule::standard;
+  if (!is_sheet || s.unit || s.scale_rule == ScaleRule::given || settings.load.format == ModelFormat::gltf)
+    return std::nullopt;
+  if (settings.model.substr(0, 8) == "builtin:" || !(scale > largest_usual)) return std::nullopt;
+  std::string likely;
+  for (const NamedUnit& unit : units) {
+    const double other = standard_scale(scale / unit.millimetres);
+    if (other < likely_least || other > likely_most) continue;
+    likely += fmt::format("{}--unit {} ({})", likely.empty() ? "" : " or ", unit.name, scale_text(other));
+  }
+  if (likely.empty()) return std::nullopt;
+  return fmt::format("the scale is {}: the file says no unit, and millimetres were taken; {} would make sense",
+                     scale_text(scale), likely);
+}
+
+}  // namespace frontmost::cli

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the model's numbers mean on paper.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/settings.h"
+
+namespace frontmost::cli {
+
+/// Millimetres to the model's unit.
+[[nodiscard]] double unit_of(const Settings& settings);
+
+/// What to say where a sheet's scale, which nobody asked for, is larger than any that drawings have (50:1, ISO 5455),
+/// because the file says no unit and millimetres were taken: the units that would make sense. None where all is well.
+[[nodiscard]] std::optional<std::string> unit_hint(const Settings& settings, double scale);
+
+}  // namespace frontmost::cli
