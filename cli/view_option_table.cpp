@@ -52,8 +52,9 @@ glm::ivec2 resolution_from(std::string_view text) {
 constexpr Option table[] = {
     {"up", 0, "AXIS", "Which way is up in the model: +x, +y, +z, -x, -y or -z; the file format's by default.",
      Group::model, everywhere, [](Settings& s, const Given& g) { s.load.up = axis_of(parse_direction(g.text)); }},
-    {"input-format", 0, "stl|ply|obj|off|gltf", "Format of the model; by default from its name, or its first bytes.",
-     Group::model, everywhere, [](Settings& s, const Given& g) { s.load.format = g.choice<ModelFormat>(); }},
+    {"input-format", 0, "stl|ply|obj|off|gltf|3mf",
+     "Format of the model; by default from its name, or its first bytes.", Group::model, everywhere,
+     [](Settings& s, const Given& g) { s.load.format = g.choice<ModelFormat>(); }},
 
     {"view", 0, "front|back|left|right|top|bottom|iso", "Look from there, far enough away to see the whole model.",
      Group::camera, views, [](Settings& s, const Given& g) { s.view.named = g.choice<NamedView>(); }},

@@ -111,9 +111,9 @@ constexpr Option table[] = {
      "scale "
      "of ISO 5455 that fits. For parallel projection; standard by default with --views, fit otherwise.",
      Group::drawing, for_lines, set_scale},
-    {"unit", 0, "mm|cm|m|in", "What the model's unit of length is; m by default for glTF, mm for others.",
-     Group::drawing, for_lines,
-     [](Settings& s, const Given& g) { s.drawing.unit = g.choice<DrawingSettings::Unit>(); }},
+    {"unit", 0, "mm|cm|m|in",
+     "What the model's unit of length is; by default what a 3MF says, m for glTF, mm for others.", Group::drawing,
+     for_lines, [](Settings& s, const Given& g) { s.drawing.unit = g.choice<DrawingSettings::Unit>(); }},
     {"views", 0, "V,V,...",
      "Several views on one sheet, in parallel projection, aligned, at one scale: front, back, left, right, top, "
      "bottom, "

@@ -251,6 +251,7 @@ void name_object(Scene& scene, const Settings& settings) {
 /// Draws one model, and writes its files. \returns the report.
 Json draw_model(Settings settings, const Execution& execution, Progress& progress) {
   settings.load.found = &settings.load.format;
+  settings.load.metres_per_unit = &settings.metres_per_unit;
   Scene scene = load_model(settings, execution, progress);
   name_object(scene, settings);
   const Surfaces surfaces(scene, execution);

@@ -21,13 +21,13 @@ constexpr double likely_least = 0.01, likely_most = 10;  // of a unit that makes
 
 double unit_of(const Settings& settings) {
   if (settings.drawing.unit) return units[int(*settings.drawing.unit)].millimetres;
-  return settings.load.format == ModelFormat::gltf ? 1000 : 1;
+  return 1000 * settings.metres_per_unit.value_or(0.001);
 }
 
 std::optional<std::string> unit_hint(const Settings& settings, double scale) {
   const DrawingSettings& s = settings.drawing;
   const bool is_sheet = !s.views.empty() || s.has_frame() || s.scale_rule == ScaleRule::standard;
-  if (!is_sheet || s.unit || s.scale_rule == ScaleRule::given || settings.load.format == ModelFormat::gltf)
+  if (!is_sheet || s.unit || s.scale_rule == ScaleRule::given || settings.metres_per_unit)
     return std::nullopt;
   if (settings.model.substr(0, 8) == "builtin:" || !(scale > largest_usual)) return std::nullopt;
   std::string likely;

@@ -11,13 +11,16 @@
 
 namespace frontmost {
 
-enum class ModelFormat : std::uint8_t { stl, ply, obj, off, gltf };
+enum class ModelFormat : std::uint8_t { stl, ply, obj, off, gltf, threemf };
 
 struct LoadOptions {
   std::optional<ModelFormat> format;  ///< none: by suffix and, for memory and standard input, by content
-  std::optional<Axis> up;             ///< none: the format's (z for STL, y for the others)
+  std::optional<Axis> up;             ///< none: the format's (z for STL and 3MF, y for the others)
   /// Where load() notes the format that it read, which may be found by content; untouched for built-in scenes.
   std::optional<ModelFormat>* found = nullptr;
+  /// Where load() notes how long a unit of the coordinates is, where the file says: 1 for glTF, what it names for 3MF.
+  /// Untouched for all others. Nothing is scaled by it.
+  std::optional<double>* metres_per_unit = nullptr;
 };
 
 /// Reads a model. "-" reads standard input, "builtin:NAME" makes a built-in scene. Files named inside a model

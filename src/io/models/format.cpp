@@ -50,14 +50,18 @@ std::optional<ModelFormat> format_of_suffix(const std::string& path) {
   if (suffix == ".obj") return ModelFormat::obj;
   if (suffix == ".off") return ModelFormat::off;
   if (suffix == ".gltf" || suffix == ".glb") return ModelFormat::gltf;
+  if (suffix == ".3mf") return ModelFormat::threemf;
   return std::nullopt;
 }
 
-Axis default_up(ModelFormat format) { return format == ModelFormat::stl ? Axis::z : Axis::y; }
+Axis default_up(ModelFormat format) {
+  return format == ModelFormat::stl || format == ModelFormat::threemf ? Axis::z : Axis::y;
+}
 
 std::optional<ModelFormat> format_of_content(Bytes bytes) {
   const std::string_view text = first_statement(bytes);
   if (text.starts_with("glTF") || text.starts_with('{')) return ModelFormat::gltf;
+  if (text.starts_with("PK\x03\x04")) return ModelFormat::threemf;
   if (starts_with_word(text, "ply")) return ModelFormat::ply;
   if (looks_like_off(text)) return ModelFormat::off;
   if (stl_encoding(bytes) != StlEncoding::neither) return ModelFormat::stl;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // load(): finds the bytes, finds the format, calls its reader, checks what came out.
 #include "base/parallel.h"
+#include "io/models/converters.h"
 #include "io/models/reader.h"
 
 namespace frontmost {
@@ -8,26 +9,37 @@ namespace {
 
 constexpr std::string_view builtin_prefix = "builtin:";
 
-Scene read(ModelFormat format, Bytes bytes, const ModelSource& source) {
+/// Sets `metres_per_unit` for formats that say what their unit is.
+Scene read(ModelFormat format, Bytes bytes, const ModelSource& source, std::optional<double>& metres_per_unit) {
   switch (format) {
     case ModelFormat::stl: return read_stl(bytes, source);
     case ModelFormat::ply: return read_ply(bytes, source);
     case ModelFormat::obj: return read_obj(bytes, source);
     case ModelFormat::off: return read_off(bytes, source);
-    case ModelFormat::gltf: return read_gltf(bytes, source);
+    case ModelFormat::gltf: {
+      metres_per_unit = 1;
+      return read_gltf(bytes, source);
+    }
+    case ModelFormat::threemf: return read_3mf(bytes, source, metres_per_unit);
   }
   throw Error(ErrorCode::bad_argument, source.name() + ": not a model format");
+}
+
+[[noreturn]] void refuse(const ModelSource& source, const std::string& why) {
+  throw Error(ErrorCode::unsupported, source.name() + ": " + why);
 }
 
 Scene read_any(Bytes bytes, const ModelSource& source, std::optional<ModelFormat> format, const LoadOptions& options) {
   if (bytes.empty()) throw Error(ErrorCode::file_malformed, source.name() + ": the file is empty");
   if (!format) format = format_of_content(bytes);
   if (!format)
-    throw Error(ErrorCode::unsupported,
-                source.name() + ": not a model that Frontmost can read (STL, PLY, OBJ, OFF, glTF, GLB)");
+    refuse(source, conversion_by_content(bytes).value_or(
+                       "not a model that Frontmost can read (STL, PLY, OBJ, OFF, glTF, GLB, 3MF)"));
   if (options.found) *options.found = format;
   report_progress(source.execution(), "load", 0);
-  Scene scene = read(*format, bytes, source);
+  std::optional<double> metres_per_unit;
+  Scene scene = read(*format, bytes, source, metres_per_unit);
+  if (options.metres_per_unit && metres_per_unit) *options.metres_per_unit = metres_per_unit;
   scene.name = source.stem();
   scene.up = options.up.value_or(default_up(*format));
   try {
@@ -56,8 +68,10 @@ Scene load(const std::string& path, const LoadOptions& options, const Execution&
     return scene;
   }
   const InputFile file = InputFile::open(path, path);
+  const ModelSource source(path, execution, file, path);
+  if (const auto conversion = options.format ? std::nullopt : conversion_by_suffix(path)) refuse(source, *conversion);
   const auto format = options.format ? options.format : format_of_suffix(path);
-  return read_any(file.bytes(), ModelSource(path, execution, file, path), format, options);
+  return read_any(file.bytes(), source, format, options);
 }
 
 Scene load(std::span<const std::byte> bytes, const std::string& name, const LoadOptions& options,

@@ -4,6 +4,7 @@
 #include "io/models/model_stream.h"
 
 #include "base/parallel.h"
+#include "io/models/converters.h"
 #include "io/models/reader.h"
 #include "io/models/stl/stl.h"
 
@@ -24,6 +25,7 @@ std::unique_ptr<ModelStream> open(ModelFormat format, StreamStart start, const M
     case ModelFormat::obj: refuse(source, "OBJ");
     case ModelFormat::off: refuse(source, "OFF");
     case ModelFormat::gltf: refuse(source, "glTF");
+    case ModelFormat::threemf: refuse(source, "3MF");
   }
   throw Error(ErrorCode::bad_argument, source.name() + ": not a model format");
 }
@@ -69,11 +71,17 @@ std::unique_ptr<ModelStream> open_model_stream(const std::string& path, const Lo
   start.extend(enough_to_know);
   const ModelSource source(name, execution);
   if (start.start.empty()) throw Error(ErrorCode::file_malformed, name + ": the file is empty");
+  if (const auto conversion = options.format ? std::nullopt : conversion_by_suffix(path))
+    throw Error(ErrorCode::unsupported, name + ": " + *conversion);
   auto format = options.format ? options.format : path == "-" ? std::nullopt : format_of_suffix(path);
   if (!format) format = format_of_content(start.start);
   // The start of a binary STL file is no whole number of triangles, so it does not look like one.
   if (!format && stl_encoding(start.start, start.greatest_size()) == StlEncoding::binary) format = ModelFormat::stl;
-  if (!format) throw Error(ErrorCode::unsupported, name + ": not a model that can be streamed (binary STL or PLY)");
+  if (!format)
+    throw Error(
+        ErrorCode::unsupported,
+        name + ": " +
+            conversion_by_content(start.start).value_or("not a model that can be streamed (binary STL or PLY)"));
   std::unique_ptr<ModelStream> stream = open(*format, std::move(start), source);
   stream->introduce(path == "-" ? "stdin" : source.stem(), options.up.value_or(default_up(*format)));
   return stream;

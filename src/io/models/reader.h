@@ -17,6 +17,8 @@ using Bytes = std::span<const std::byte>;
 [[nodiscard]] Scene read_obj(Bytes bytes, const ModelSource& source);
 [[nodiscard]] Scene read_off(Bytes bytes, const ModelSource& source);
 [[nodiscard]] Scene read_gltf(Bytes bytes, const ModelSource& source);
+/// Sets `metres_per_unit`, too.
+[[nodiscard]] Scene read_3mf(Bytes bytes, const ModelSource& source, std::optional<double>& metres_per_unit);
 
 /// The format that a file's suffix stands for. None: not one of ours.
 [[nodiscard]] std::optional<ModelFormat> format_of_suffix(const std::string& path);

@@ -23,7 +23,7 @@ inline Scene load_text(const std::string& text, std::optional<ModelFormat> forma
 }
 
 /// The words of the error that loading ends in; "read" if there is none.
-inline std::string error_of(const std::string& text, ModelFormat format) {
+inline std::string error_of(const std::string& text, std::optional<ModelFormat> format) {
   try {
     (void)load_text(text, format);
     return "read";

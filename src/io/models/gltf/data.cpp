@@ -70,12 +70,6 @@ std::size_t size_of(Component component) {
   return 4;
 }
 
-void Budget::charge(std::uint64_t count, std::uint64_t size, const std::string& place, const ModelSource& source) {
-  if (count > left_ / size)
-    source.fail_limit(place, std::to_string(count) + " elements are far more than a file of this size should make");
-  left_ -= count * size;
-}
-
 Data::Data(const Json& root, const Container& container)
     : container_bytes_(container.json.size() + container.binary.size()) {
   const auto each = [&root](const char* key, auto&& read) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/input_file.h"
+#include "io/models/budget.h"
 #include "io/models/gltf/container.h"
 #include "io/models/gltf/json.h"
 
@@ -50,21 +51,6 @@ struct Accessor {
 /// Elements [first, first + count) of an accessor.
 struct Range {
   std::size_t first = 0, count = 0;
-};
-
-/// What a small file may make of memory: elements can be repeated, shared and left out, so that a few bytes stand for
-/// many. Honest files stay far below the limit.
-class Budget {
- public:
-  explicit Budget(std::uint64_t file_bytes) : left_(base + factor * file_bytes) {}
-  /// \throws Error limit_exceeded.
-  void charge(std::uint64_t count, std::uint64_t size, const std::string& place, const ModelSource& source);
-
- private:
-  // The most that an honest byte becomes is 16: an index of one byte makes a triangle of a strip. Four times that
-  // leaves room for posed copies of a mesh; the base lets tiny files repeat what they hold.
-  static constexpr std::uint64_t base = std::uint64_t(1) << 28, factor = 64;
-  std::uint64_t left_;
 };
 
 /// The binary part of a glTF file.

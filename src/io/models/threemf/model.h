@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one model part of a 3MF file says: objects, what they are coloured by, and what is built of them.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+
+#include "frontmost/scene.h"
+#include "io/models/threemf/package.h"
+
+namespace frontmost::threemf {
+
+/// Colours or materials that triangles refer to by the group's number and one in it.
+struct PropertyGroup {
+  enum class Kind : std::uint8_t { materials, colors, unknown };
+  Kind kind = Kind::unknown;
+  std::string element;               ///< of groups that are not known
+  std::uint32_t first_material = 0;  ///< in the scene, of groups of materials
+  std::uint32_t count = 0;
+  std::vector<glm::vec4> colors;  ///< linear, of groups of colours
+};
+
+/// One of a group for all corners, or one for each. no_index: none.
+struct Property {
+  std::uint32_t group = no_index;
+  std::array<std::uint32_t, 3> corners{no_index, no_index, no_index};
+};
+
+/// An object in a place: a component of another, or an item that is built.
+struct Placed {
+  std::string part;  ///< empty: the same part
+  std::uint32_t object = 0;
+  glm::dmat4 outer_from_object{1.0};
+  std::size_t line = 0;
+};
+
+struct Object {
+  std::string name;
+  std::size_t line = 0;
+  std::uint32_t mesh = no_index;              ///< in the scene; none for objects of components
+  glm::dvec3 origin{0};                       ///< of the mesh in the coordinates of the file
+  Property property;                          ///< of triangles that have none of their own
+  std::vector<Property> triangle_properties;  ///< one a triangle, or none at all
+  std::vector<Placed> components;
+};
+
+struct ModelPart {
+  std::string name;
+  double metres_per_unit = 0.001;
+  std::map<std::uint32_t, Object> objects;
+  std::map<std::uint32_t, PropertyGroup> groups;
+  std::vector<Placed> items;
+  std::vector<std::string> warnings;
+};
+
+/// Reads a model part. Adds its meshes, without their colours, and its materials to `scene`.
+[[nodiscard]] ModelPart read_model_part(const std::string& name, Package& package, const ModelSource& source,
+                                        Scene& scene);
+
+/// White materials for triangles that bring their colours along, made when they are asked for.
+class PlainMaterials {
+ public:
+  std::uint32_t get(bool is_see_through, Scene& scene);
+
+ private:
+  std::array<std::uint32_t, 2> numbers_{no_index, no_index};
+};
+
+/// Gives the meshes of a part the materials and colours that its triangles ask for.
+void apply_properties(const ModelPart& part, const ModelSource& source, PlainMaterials& plain, Scene& scene);
+
+}  // namespace frontmost::threemf

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tags of a model part. Those of the core specification, of the materials extension's colours and of the production
+// extension's paths are read; all others, and what is within them, are passed over.
+#include <algorithm>
+#include <set>
+
+#include "io/models/file_text.h"
+#include "io/models/mesh_building.h"
+#include "io/models/text_scanner.h"
+#include "io/models/threemf/model.h"
+#include "io/models/threemf/values.h"
+#include "io/models/threemf/xml_part.h"
+#include "scene/origin.h"
+
+namespace frontmost::threemf {
+namespace {
+
+/// Extensions that are followed, or that say nothing about what is seen.
+constexpr std::string_view supported[] = {
+    "http://schemas.microsoft.com/3dmanufacturing/core/2015/02",
+    "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
+    "http://schemas.microsoft.com/3dmanufacturing/production/2015/06",
+    "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07",
+};
+/// Tags beside meshes that change nothing that is seen, or that groups of their own refer to.
+constexpr std::string_view invisible[] = {"metadatagroup",
+                                          "trianglesets",
+                                          "texture2d",
+                                          "pbmetallicdisplayproperties",
+                                          "pbspeculardisplayproperties",
+                                          "translucentdisplayproperties"};
+
+constexpr std::string_view core = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02|";
+constexpr std::string_view materials = "http://schemas.microsoft.com/3dmanufacturing/material/2015/02|";
+constexpr std::string_view production = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06|";
+
+enum class Tag : std::uint8_t {
+  document,
+  model,
+  resources,
+  base_materials,
+  base,
+  color_group,
+  color,
+  unknown_group,
+  object,
+  mesh,
+  vertices,
+  vertex,
+  triangles,
+  triangle,
+  components,
+  component,
+  build,
+  item,
+  passed_over
+};
+
+struct Rule {
+  Tag parent;
+  std::string_view space, name;
+  Tag tag;
+};
+constexpr Rule rules[] = {
+    {Tag::triangles, core, "triangle", Tag::triangle},
+    {Tag::vertices, core, "vertex", Tag::vertex},
+    {Tag::document, core, "model", Tag::model},
+    {Tag::model, core, "resources", Tag::resources},
+    {Tag::model, core, "build", Tag::build},
+    {Tag::resources, core, "basematerials", Tag::base_materials},
+    {Tag::resources, materials, "colorgroup", Tag::color_group},
+    {Tag::resources, materials, "texture2dgroup", Tag::unknown_group},
+    {Tag::resources, materials, "compositematerials", Tag::unknown_group},
+    {Tag::resources, materials, "multiproperties", Tag::unknown_group},
+    {Tag::resources, core, "object", Tag::object},
+    {Tag::base_materials, core, "base", Tag::base},
+    {Tag::color_group, materials, "color", Tag::color},
+    {Tag::object, core, "mesh", Tag::mesh},
+    {Tag::object, core, "components", Tag::components},
+    {Tag::mesh, core, "vertices", Tag::vertices},
+    {Tag::mesh, core, "triangles", Tag::triangles},
+    {Tag::components, core, "component", Tag::component},
+    {Tag::build, core, "item", Tag::item},
+};
+
+Tag tag_of(Tag parent, std::string_view name) {
+  for (const Rule& rule : rules)
+    if (rule.parent == parent && name.size() == rule.space.size() + rule.name.size() && name.ends_with(rule.name) &&
+        name.starts_with(rule.space))
+      return rule.tag;
+  return Tag::passed_over;
+}
+
+struct Unit {
+  std::string_view name;
+  double metres;
+};
+constexpr Unit units[] = {{"micron", 1e-6}, {"millimeter", 1e-3}, {"centimeter", 1e-2},
+                          {"inch", 0.0254}, {"foot", 0.3048},     {"meter", 1}};
+
+class ModelPartReader : public XmlPart {
+ public:
+  ModelPartReader(const std::string& name, const ModelSource& source, Scene& scene)
+      : XmlPart(name, source), scene_(scene) {
+    part_.name = name;
+  }
+
+  ModelPart read(Package& package) {
+    XmlPart::read(package);
+    if (!has_model_) source().fail(name(), "is no 3MF model: its first tag is not model");
+    return std::move(part_);
+  }
+
+ protected:
+  void start(std::string_view name, const Attributes& attributes) override {
+    const Tag parent = path_.empty() ? Tag::document : path_.back();
+    const Tag tag = tag_of(parent, name);
+    path_.push_back(tag);
+    const TagReader tags(attributes, *this);
+    switch (tag) {
+      case Tag::triangle: return read_triangle(tags);
+      case Tag::vertex: return read_vertex(tags);
+      case Tag::model: return read_model(tags);
+      case Tag::base_materials: return start_group(PropertyGroup::Kind::materials, tags, name);
+      case Tag::color_group: return start_group(PropertyGroup::Kind::colors, tags, name);
+      case Tag::unknown_group: return start_group(PropertyGroup::Kind::unknown, tags, name);
+      case Tag::base: return read_base(tags);
+      case Tag::color: return read_color(tags);
+      case Tag::object: return start_object(tags);
+      case Tag::mesh: return start_mesh();
+      case Tag::component: return object_->components.push_back(read_placed(tags));
+      case Tag::item: return part_.items.push_back(read_placed(tags));
+      case Tag::passed_over: return pass_over(parent, name);
+      default: return;
+    }
+  }
+
+  void declare(std::string_view prefix, std::string_view space) override {
+    if (path_.empty()) spaces_.emplace(prefix, space);
+  }
+
+  void end() override {
+    if (path_.back() == Tag::vertices) end_vertices();
+    path_.pop_back();
+  }
+
+ private:
+  /// Values of a tag, with messages that name it.
+  class TagReader {
+   public:
+    TagReader(const Attributes& attributes, const ModelPartReader& reader) : attributes_(attributes), reader_(reader) {}
+
+    [[nodiscard]] const char* find(std::string_view name) const { return attributes_.find(name); }
+    [[nodiscard]] const char* require(std::string_view name) const {
+      const char* const value = attributes_.find(name);
+      if (value == nullptr) reader_.fail(std::string(name) + " is missing");
+      return value;
+    }
+    [[nodiscard]] double number(std::string_view name) const {
+      const std::optional<double> value = parse_number(require(name));
+      if (!value) fail(name, "is not a number");
+      return *value;
+    }
+    [[nodiscard]] std::uint32_t index(std::string_view name) const {
+      const std::optional<std::uint32_t> value = parse_index(require(name));
+      if (!value) fail(name, "is not a whole number below 4294967295");
+      return *value;
+    }
+    [[nodiscard]] std::uint32_t index_or(std::string_view name, std::uint32_t absent) const {
+      return find(name) == nullptr ? absent : index(name);
+    }
+    [[noreturn]] void fail(std::string_view name, const std::string& reason) const {
+      reader_.fail(std::string(name) + " " + in_quotes(require(name)) + " " + reason);
+    }
+
+   private:
+    const Attributes& attributes_;
+    const ModelPartReader& reader_;
+  };
+
+  void read_model(const TagReader& tags) {
+    has_model_ = true;
+    if (const char* const required = tags.find("requiredextensions")) check_extensions(required);
+    if (const char* const unit = tags.find("unit")) {
+      const auto known =
+          std::find_if(std::begin(units), std::end(units), [&](const Unit& u) { return u.name == unit; });
+      if (known == std::end(units)) tags.fail("unit", "is not a unit of length");
+      part_.metres_per_unit = known->metres;
+    }
+  }
+
+  void check_extensions(std::string_view prefixes) const {
+    while (!prefixes.empty()) {
+      const std::size_t size = std::min(prefixes.find_first_of(" \t\r\n"), prefixes.size());
+      const auto space = spaces_.find(std::string(prefixes.substr(0, size)));
+      const std::string name = space == spaces_.end() ? "" : space->second;
+      if (size > 0 && std::find(std::begin(supported), std::end(supported), name) == std::end(supported))
+        throw Error(ErrorCode::unsupported, source().name() + ": " + place() + ": requires the extension " +
+                                                printable(name.empty() ? prefixes.substr(0, size) : name) +
+                                                ", which is not supported");
+      prefixes.remove_prefix(std::min(size + 1, prefixes.size()));
+    }
+  }
+
+  /// What could be seen and is not read.
+  void pass_over(Tag parent, std::string_view name) {
+    if (parent != Tag::resources && parent != Tag::object && parent != Tag::mesh) return;
+    const std::string local(name.substr(name.rfind('|') + 1));
+    if (std::find(std::begin(invisible), std::end(invisible), local) != std::end(invisible)) return;
+    if (passed_over_.insert(local).second) part_.warnings.push_back(place() + ": " + in_quotes(local) + " is not read");
+  }
+
+  void start_group(PropertyGroup::Kind kind, const TagReader& tags, std::string_view name) {
+    const auto [entry, is_new] = part_.groups.try_emplace(tags.index("id"));
+    if (!is_new) tags.fail("id", "is that of an earlier group, too");
+    group_ = &entry->second;
+    group_->kind = kind;
+    group_->first_material = std::uint32_t(scene_.materials.size());
+    group_->element = name.substr(name.rfind('|') + 1);
+  }
+
+  glm::vec4 color(const TagReader& tags, std::string_view name) const {
+    const std::optional<glm::vec4> color = parse_color(tags.require(name));
+    if (!color) tags.fail(name, "is not a colour such as #RRGGBB or #RRGGBBAA");
+    return *color;
+  }
+
+  void read_base(const TagReader& tags) {
+    if (scene_.materials.size() >= max_objects) source().fail_limit(place(), "too many materials");
+    Material& material = scene_.materials.emplace_back();
+    material.name = name_of(tags.require("name"));
+    material.base_color = color(tags, "displaycolor");
+    if (material.base_color.a < 1) material.alpha = Material::Alpha::blend;
+    ++group_->count;
+  }
+
+  void read_color(const TagReader& tags) {
+    group_->colors.push_back(color(tags, "color"));
+    ++group_->count;
+  }
+
+  void start_object(const TagReader& tags) {
+    const auto [entry, is_new] = part_.objects.try_emplace(tags.index("id"));
+    if (!is_new) tags.fail("id", "is that of an earlier object, too");
+    if (part_.objects.size() > max_objects) source().fail_limit(place(), "too many objects");
+    object_ = &entry->second;
+    object_->line = line();
+    if (const char* const name = tags.find("name")) object_->name = name_of(name);
+    object_->property.group = tags.index_or("pid", no_index);
+    object_->property.corners.fill(tags.index_or("pindex", no_index));
+  }
+
+  void start_mesh() {
+    if (object_->mesh != no_index) fail("a second mesh in one object");
+    if (scene_.meshes.size() >= max_objects) source().fail_limit(place(), "too many meshes");
+    object_->mesh = std::uint32_t(scene_.meshes.size());
+    scene_.meshes.emplace_back().name = object_->name;
+  }
+  Mesh& mesh() { return scene_.meshes[object_->mesh]; }
+
+  void read_vertex(const TagReader& tags) {
+    if (vertices_.size() >= no_index) source().fail_limit(place(), "too many vertices");
+    vertices_.emplace_back(tags.number("x"), tags.number("y"), tags.number("z"));
+  }
+  /// Doubles are kept until all are known: then so is the origin about which floats hold the most of them.
+  void end_vertices() {
+    Mesh& mesh = this->mesh();
+    if (!mesh.positions.empty()) fail("a second list of vertices in one mesh");
+    OriginSearch search;
+    for (const glm::dvec3& vertex : vertices_) search.include(vertex);
+    object_->origin = search.origin();
+    mesh.positions.reserve(vertices_.size());
+    for (const glm::dvec3& vertex : vertices_) mesh.positions.emplace_back(vertex - object_->origin);
+    vertices_ = {};
+  }
+
+  void read_triangle(const TagReader& tags) {
+    Mesh& mesh = this->mesh();
+    const glm::uvec3 corners(tags.index("v1"), tags.index("v2"), tags.index("v3"));
+    for (int k = 0; k < 3; ++k)
+      if (corners[k] >= mesh.positions.size())
+        fail("v" + std::to_string(k + 1) + " is " + std::to_string(corners[k]) + ", but there are only " +
+             std::to_string(mesh.positions.size()) + " vertices before");
+    mesh.triangles.push_back(corners);
+    if (tags.find("pid") == nullptr && tags.find("p1") == nullptr && object_->triangle_properties.empty()) return;
+    Property property = object_->property;
+    property.group = tags.index_or("pid", property.group);
+    if (tags.find("p1") != nullptr) {
+      const std::uint32_t first = tags.index("p1");
+      property.corners = {first, tags.index_or("p2", first), tags.index_or("p3", first)};
+    }
+    object_->triangle_properties.resize(mesh.triangles.size() - 1, object_->property);
+    object_->triangle_properties.push_back(property);
+  }
+
+  Placed read_placed(const TagReader& tags) {
+    if (++placed_count_ > max_objects) source().fail_limit(place(), "too many components and items");
+    Placed placed;
+    placed.object = tags.index("objectid");
+    placed.line = line();
+    static const std::string path_name = std::string(production) + "path";
+    if (const char* const path = tags.find(path_name)) placed.part = part_name(path);
+    if (const char* const transform = tags.find("transform")) {
+      const std::optional<glm::dmat4> matrix = parse_transform(transform);
+      if (!matrix) tags.fail("transform", "is not twelve finite numbers");
+      placed.outer_from_object = *matrix;
+    }
+    return placed;
+  }
+
+  Scene& scene_;
+  ModelPart part_;
+  std::map<std::string, std::string> spaces_;  ///< that the first tag declares, by prefix
+  std::set<std::string> passed_over_;
+  std::vector<Tag> path_;
+  bool has_model_ = false;
+  PropertyGroup* group_ = nullptr;
+  Object* object_ = nullptr;
+  std::vector<glm::dvec3> vertices_;  ///< of the mesh that is being read
+  std::size_t placed_count_ = 0;
+};
+
+}  // namespace
+
+ModelPart read_model_part(const std::string& name, Package& package, const ModelSource& source, Scene& scene) {
+  return ModelPartReader(name, source, scene).read(package);
+}
+
+}  // namespace frontmost::threemf

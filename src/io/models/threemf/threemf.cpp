@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// 3MF: a zip archive of XML parts becomes a Scene. One part is the model; it may place objects of others.
+#include <set>
+
+#include "base/parallel.h"
+#include "io/models/budget.h"
+#include "io/models/file_text.h"
+#include "io/models/mesh_building.h"
+#include "io/models/reader.h"
+#include "io/models/threemf/model.h"
+#include "io/models/threemf/start_part.h"
+
+namespace frontmost {
+namespace threemf {
+namespace {
+
+constexpr int most_levels = 64;
+
+using Parts = std::map<std::string, ModelPart>;
+
+/// Reads a part and all that it refers to, each once.
+Parts read_parts(const std::string& start, Package& package, const ModelSource& source, Scene& scene) {
+  Parts parts;
+  PlainMaterials plain;
+  std::vector<std::string> names{start};
+  while (!names.empty()) {
+    const std::string name = std::move(names.back());
+    names.pop_back();
+    if (parts.count(name) > 0) continue;
+    ModelPart part = read_model_part(name, package, source, scene);
+    scene.warnings.insert(scene.warnings.end(), part.warnings.begin(), part.warnings.end());
+    apply_properties(part, source, plain, scene);
+    for (auto& [id, object] : part.objects) {
+      object.triangle_properties = {};
+      for (const Placed& component : object.components)
+        if (!component.part.empty()) names.push_back(component.part);
+    }
+    for (const Placed& item : part.items)
+      if (!item.part.empty()) names.push_back(item.part);
+    parts.emplace(name, std::move(part));
+  }
+  return parts;
+}
+
+/// Makes an instance of every mesh that is built, through all components.
+class Placer {
+ public:
+  Placer(const Parts& parts, const ModelPart& root, const Budget& budget, const ModelSource& source, Scene& scene)
+      : parts_(parts), root_(root), budget_(budget), source_(source), scene_(scene) {}
+
+  void place() {
+    for (const Placed& item : root_.items) place(root_, item, {glm::dmat4(1.0), "", 0});
+    if (root_.items.empty()) place_unused();
+  }
+
+ private:
+  /// What is above an object.
+  struct Above {
+    glm::dmat4 world_from_outer;
+    std::string name;  ///< of the nearest that has one
+    int level;
+  };
+
+  /// `above` tells of the object of `from` that holds `placed`.
+  void place(const ModelPart& from, const Placed& placed, const Above& above) {
+    check_cancelled(source_.execution());
+    const std::string place = printable(from.name) + ": line " + std::to_string(placed.line);
+    if (above.level > most_levels)
+      source_.fail_limit(
+          place, "components within more than " + std::to_string(most_levels) + " others, or within themselves");
+    // Objects of two components each, thirty levels deep, are a thousand million.
+    if (++visits_ > 4 * max_objects) source_.fail_limit(place, "too many components");
+    const ModelPart& part = placed.part.empty() ? from : parts_.at(placed.part);
+    const auto found = part.objects.find(placed.object);
+    if (found == part.objects.end())
+      source_.fail(place, "object " + std::to_string(placed.object) + " does not exist" +
+                              (placed.part.empty() ? "" : " in " + printable(part.name)));
+    const Object& object = found->second;
+    Above here{above.world_from_outer * placed.outer_from_object, object.name.empty() ? above.name : object.name,
+               above.level + 1};
+    if (object.mesh != no_index) add_instance(*found, part.metres_per_unit, here, place);
+    for (const Placed& component : object.components) this->place(part, component, here);
+  }
+
+  void add_instance(const std::pair<const std::uint32_t, Object>& numbered, double metres_per_unit, const Above& here,
+                    const std::string& place) {
+    const auto& [id, object] = numbered;
+    if (scene_.instances.size() >= max_objects) source_.fail_limit(place, "too many objects are built");
+    // No memory here, but ten times as much in whatever looks at the triangles in the world.
+    constexpr std::uint64_t least_cost = 4;
+    budget_.charge(scene_.meshes[object.mesh].triangles.size(), least_cost, place, source_);
+    budget_.charge(1, sizeof(Instance) + here.name.size(), place, source_);
+    const double scale = metres_per_unit / root_.metres_per_unit;
+    glm::dmat4 world_from_mesh = here.world_from_outer;
+    if (scale != 1)
+      for (int axis = 0; axis < 3; ++axis) world_from_mesh[axis] *= scale;
+    world_from_mesh[3] = world_from_mesh * glm::dvec4(object.origin, 1);
+    scene_.instances.push_back(
+        {here.name.empty() ? "object " + std::to_string(id) : here.name, object.mesh, world_from_mesh});
+  }
+
+  /// Nothing is built: then what no other object holds is shown.
+  void place_unused() {
+    std::set<std::uint32_t> used;
+    for (const auto& [id, object] : root_.objects)
+      for (const Placed& component : object.components)
+        if (component.part.empty()) used.insert(component.object);
+    for (const auto& [id, object] : root_.objects)
+      if (used.count(id) == 0) place(root_, {"", id, glm::dmat4(1.0), object.line}, {glm::dmat4(1.0), "", 0});
+    if (!root_.objects.empty())
+      scene_.warnings.push_back(printable(root_.name) + ": nothing is built, all objects are shown");
+  }
+
+  const Parts& parts_;
+  const ModelPart& root_;
+  Budget budget_;
+  const ModelSource& source_;
+  Scene& scene_;
+  std::uint64_t visits_ = 0;
+};
+
+}  // namespace
+}  // namespace threemf
+
+Scene read_3mf(Bytes bytes, const ModelSource& source, std::optional<double>& metres_per_unit) {
+  threemf::Package package(bytes, source);
+  Scene scene;
+  const std::string start = threemf::find_start_part(package, source);
+  const threemf::Parts parts = threemf::read_parts(start, package, source, scene);
+  const threemf::ModelPart& root = parts.at(start);
+  threemf::Placer(parts, root, Budget(bytes.size()), source, scene).place();
+  metres_per_unit = root.metres_per_unit;
+  return scene;
+}
+
+}  // namespace frontmost

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/models/threemf/values.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include "frontmost/base.h"
+#include "io/models/mesh_building.h"
+#include "io/models/number.h"
+
+namespace frontmost::threemf {
+namespace {
+
+constexpr std::string_view blanks = " \t\r\n";
+
+std::string_view trimmed(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+  return text.substr(0, text.find_last_not_of(blanks) + 1);
+}
+
+/// The value of a hexadecimal digit; 16 for anything else.
+int digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  const char lower = char(c | 0x20);
+  return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : 16;
+}
+
+}  // namespace
+
+std::optional<double> parse_number(std::string_view text) {
+  std::string_view word = trimmed(text);
+  if (word.starts_with('+')) word.remove_prefix(1);
+  double value = 0;
+#if defined(__cpp_lib_to_chars)
+  const char* const end = word.data() + word.size();
+  const auto [after, code] = std::from_chars(word.data(), end, value);
+  if (after != end || code == std::errc::invalid_argument) return std::nullopt;
+  if (code == std::errc()) return value;
+#endif
+  // Out of range, or a library without from_chars for floats (WebAssembly), which has the C locale only.
+  const std::string terminated(word);
+  char* last = nullptr;
+  value = std::strtod(terminated.c_str(), &last);
+  if (word.empty() || last != terminated.c_str() + terminated.size()) return std::nullopt;
+  return value;
+}
+
+std::optional<std::uint32_t> parse_index(std::string_view text) {
+  const std::string_view word = trimmed(text);
+  std::int64_t value = 0;
+  const char* const end = word.data() + word.size();
+  if (parse_integer(word.data(), end, value) != end || value < 0 || value >= std::int64_t(no_index))
+    return std::nullopt;
+  return std::uint32_t(value);
+}
+
+std::optional<glm::vec4> parse_color(std::string_view text) {
+  const std::string_view word = trimmed(text);
+  if ((word.size() != 7 && word.size() != 9) || word[0] != '#') return std::nullopt;
+  glm::vec4 srgb(1);
+  for (std::size_t k = 0; 2 * k + 1 < word.size(); ++k) {
+    const int high = digit(word[2 * k + 1]), low = digit(word[2 * k + 2]);
+    if (high > 15 || low > 15) return std::nullopt;
+    srgb[int(k)] = float(16 * high + low) / 255.0f;
+  }
+  return linear_color(srgb);
+}
+
+std::optional<glm::dmat4> parse_transform(std::string_view text) {
+  glm::dmat4 matrix(1.0);
+  for (int i = 0; i < 12; ++i) {
+    text = trimmed(text);
+    const std::size_t size = std::min(text.find_first_of(blanks), text.size());
+    const std::optional<double> value = parse_number(text.substr(0, size));
+    if (!value || !std::isfinite(*value)) return std::nullopt;
+    matrix[i / 3][i % 3] = *value;
+    text.remove_prefix(size);
+  }
+  return trimmed(text).empty() ? std::optional(matrix) : std::nullopt;
+}
+
+}  // namespace frontmost::threemf
