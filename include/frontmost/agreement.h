@@ -35,12 +35,12 @@ struct Agreement {
 /// - what it shows meets that square, or it shows nothing;
 /// - no triangle of the scene that contains the whole square, and is not left out by View::culling, is surely nearer
 ///   (for nothing: none contains it). Surely nearer: its least key over the square exceeds the other's greatest by more
-///   than 2^-20 of the greatest key of their corners, which is what 16 roundings of float keys amount to; in parallel
-///   projection, where keys are made of distances, also 2^-21 of that from the eye to the farthest corner.
+///   than float arithmetic makes of them: 20 roundings, 2^-24 each, of the key itself, and 6 times as many as the corner
+///   farthest aside is farther from the eye than deep (beside the guard band nothing counts; in parallel projection 20
+///   roundings of the greatest key, and 6 of the distance from the eye to the farthest corner).
 /// Two possible answers part for the reason `depth` where both triangles contain the square, otherwise for `edge` (the
 /// rim that the near and far plane cut counts as one). Any other difference is `unexplained`; and so is a key, of
-/// either answer and at any sample, that its triangle does not have in the square, with the same allowance. Where two
-/// edges of a triangle pass within 1/16 pixel, snapping may tilt it in any way: all keys between its corners' are its.
+/// either answer and at any sample, that its triangle does not have in the square, with the same allowance.
 ///
 /// Corners are the floats of Surfaces::corners(), rays the doubles of the view; from there on signs are exact, as long
 /// as coordinates are 0 or between 2^-100 and 2^100.

@@ -10,6 +10,7 @@
 #include "surfaces/cluster_set.h"
 #include "view/clip.h"
 #include "view/screen_cutout.h"
+#include "view/triangle_keys.h"
 
 namespace frontmost {
 namespace {
@@ -21,7 +22,7 @@ constexpr double kSnapping = 1.0 / 128, kOnCut = 1e-9, kShortest = 1.0 / 1024;
 
 /// Corners in 1/256 pixel from the image's top left corner, clockwise with y down.
 struct SnappedTriangle {
-  std::array<std::int64_t, 3> x, y;
+  std::array<std::int32_t, 3> x, y;
   std::array<float, 3> key;
 
   SnappedTriangle(const ScreenTransform& t, const std::array<ScreenVertex, 3>& corners) {
@@ -35,7 +36,7 @@ struct SnappedTriangle {
     std::swap(y[1], y[2]);
     std::swap(key[1], key[2]);
   }
-  [[nodiscard]] std::int64_t area() const { return (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]); }
+  [[nodiscard]] std::int64_t area() const { return doubled_area(*this); }
 
   /// Precondition: area() > 0.
   [[nodiscard]] bool covers(std::int64_t px, std::int64_t py) const {
@@ -48,28 +49,6 @@ struct SnappedTriangle {
     }
     return true;
   }
-};
-
-/// The key over a triangle, in the one order of roundings that every method has.
-class KeyPlane {
- public:
-  explicit KeyPlane(const SnappedTriangle& t) : x_(t.x[0]), y_(t.y[0]), key_(t.key[0]) {
-    const float area = float(t.area());
-    const float x1 = float(t.x[1] - t.x[0]), y1 = float(t.y[1] - t.y[0]), k1 = t.key[1] - t.key[0];
-    const float x2 = float(t.x[2] - t.x[0]), y2 = float(t.y[2] - t.y[0]), k2 = t.key[2] - t.key[0];
-    slope_x_ = (k1 * y2 - k2 * y1) / area;
-    slope_y_ = (x1 * k2 - x2 * k1) / area;
-    low_ = std::min({t.key[0], t.key[1], t.key[2]});
-    high_ = std::max({t.key[0], t.key[1], t.key[2]});
-  }
-  [[nodiscard]] float at(std::int64_t px, std::int64_t py) const {
-    const float key = (key_ + float(px - x_) * slope_x_) + float(py - y_) * slope_y_;
-    return std::min(std::max(key, low_), high_);
-  }
-
- private:
-  std::int64_t x_, y_;
-  float key_, slope_x_, slope_y_, low_, high_;
 };
 
 /// What cuts leave of a polygon's triangle.
@@ -130,7 +109,7 @@ class Canvas {
   struct Run {
     int first, last;
   };
-  static Run run(const std::array<std::int64_t, 3>& at, double low, double high, int count) {
+  static Run run(const std::array<std::int32_t, 3>& at, double low, double high, int count) {
     const auto [least, greatest] = std::minmax({at[0], at[1], at[2]});
     low = std::max({low, double(least) / kSubPixels, 0.0});
     high = std::min({high, double(greatest) / kSubPixels, count - 0.5});
@@ -139,7 +118,7 @@ class Canvas {
 
   void fill(const SnappedTriangle& triangle, const CutOutline& outline, const std::optional<ScreenCutout>& holes,
             PrimitiveId id) {
-    const KeyPlane key(triangle);
+    const TriangleKeys keys(triangle);
     const Run columns = run(triangle.x, outline.low().x, outline.high().x, order_.view.width);
     const Run rows = run(triangle.y, outline.low().y, outline.high().y, order_.view.height);
     for (std::size_t s = 0; s < samples_.size(); ++s)
@@ -150,7 +129,7 @@ class Canvas {
           if (holes && holes->is_hole(px, py)) continue;
           const std::size_t i = picture_.index(x, y, int(s));
           picture_.primitives[i] = id;
-          picture_.keys[i] = key.at(px, py);
+          picture_.keys[i] = keys.at(px, py);
         }
   }
 

@@ -89,15 +89,12 @@ class KeyCheck {
     }
     if (!triangle_) return false;
     const double nearness = question_.nearness_of(key);
-    return is_within(triangle_->plane_nearness(square), nearness) || is_within(triangle_->nearness(square), nearness);
+    const NearnessRange range = triangle_->nearness(square);
+    return nearness >= range.least.low - triangle_->resolution(range.least.low) &&
+           nearness <= range.greatest.high + triangle_->resolution(range.greatest.high);
   }
 
  private:
-  [[nodiscard]] bool is_within(const NearnessRange& range, double nearness) const {
-    const double slack = triangle_->resolution();
-    return nearness >= range.least.low - slack && nearness <= range.greatest.high + slack;
-  }
-
   const Question& question_;
   std::optional<SeenTriangle> triangle_;
   PrimitiveId id_ = no_primitive;

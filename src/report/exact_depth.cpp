@@ -3,6 +3,7 @@
 #include "report/exact_depth.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "view/screen_transform.h"
@@ -22,6 +23,10 @@ SampleRays::SampleRays(const View& view)
   const ScreenTransform t(view);
   near_ = double(t.near);
   far_ = double(t.far);
+  const double guard = double(kGuardBand) / kSubPixels;
+  widest_ =
+      glm::length(glm::dvec3((guard + 0.5 * view.width) * step_x_ + std::abs(left_ + 0.5 * view.width * step_x_),
+                             (guard + 0.5 * view.height) * step_y_ + std::abs(top_ - 0.5 * view.height * step_y_), 1));
 }
 
 SampleRay SampleRays::at(int x, int y, const glm::ivec2& offset) const {

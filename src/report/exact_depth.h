@@ -23,13 +23,15 @@ class SampleRays {
   [[nodiscard]] bool is_orthographic() const { return orthographic_; }
   [[nodiscard]] const glm::dvec3& eye() const { return eye_; }
   [[nodiscard]] const glm::dvec3& forward() const { return forward_; }
+  /// The greatest distance from the eye, by depth, of what is snapped as it is: at the guard band's corner.
+  [[nodiscard]] double widest() const { return widest_; }
   [[nodiscard]] double near() const { return near_; }
   [[nodiscard]] double far() const { return far_; }
 
  private:
   bool orthographic_;
   glm::dvec3 eye_, forward_, right_, up_;
-  double left_, top_, step_x_, step_y_, near_, far_;
+  double left_, top_, step_x_, step_y_, near_, far_, widest_;
 };
 
 /// A depth lies within.

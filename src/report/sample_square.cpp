@@ -11,20 +11,18 @@
 namespace frontmost {
 namespace {
 
-// 1/128 and 1/16 pixel in 1/256.
-constexpr int kMargin = 2, kWideMargin = 16;
-// 16 roundings of a float of the greatest key; 8 of a distance, which keys of parallel projection are made of.
-constexpr double kKeyRounding = 16 * 0x1p-24, kDistanceRounding = 8 * 0x1p-24;
-
-std::array<SampleRay, 4> rays_around(const SampleRays& rays, int x, int y, const glm::ivec2& offset, int margin) {
-  return {rays.at(x, y, offset + glm::ivec2(-margin, -margin)), rays.at(x, y, offset + glm::ivec2(margin, -margin)),
-          rays.at(x, y, offset + glm::ivec2(margin)), rays.at(x, y, offset + glm::ivec2(-margin, margin))};
-}
+// 1/128 pixel in 1/256.
+constexpr int kMargin = 2;
+// 18 roundings of a float of a key (triangle_keys.h); 8 of a corner's distance from the eye, which its depth is made
+// of.
+constexpr double kKeyRounding = 20 * 0x1p-24, kDistanceRounding = 6 * 0x1p-24;
 
 }  // namespace
 
 SampleSquare::SampleSquare(const SampleRays& rays, int x, int y, const glm::ivec2& offset)
-    : corners(rays_around(rays, x, y, offset, kMargin)), wide(rays_around(rays, x, y, offset, kWideMargin)) {}
+    : corners{rays.at(x, y, offset + glm::ivec2(-kMargin, -kMargin)),
+              rays.at(x, y, offset + glm::ivec2(kMargin, -kMargin)), rays.at(x, y, offset + glm::ivec2(kMargin)),
+              rays.at(x, y, offset + glm::ivec2(-kMargin, kMargin))} {}
 
 double SeenTriangle::of_depth(double depth) const {
   const double cut = std::min(std::max(depth, rays_->near()), rays_->far());
@@ -35,13 +33,16 @@ SeenTriangle::SeenTriangle(const std::array<glm::vec3, 3>& corners, const Sample
     : corners_{glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])},
       rays_(&rays),
       normal_(corners_[1] - corners_[0], corners_[2] - corners_[0]) {
-  double low = std::numeric_limits<double>::infinity(), high = -low, error = 0, reach = 0;
+  double low = std::numeric_limits<double>::infinity(), high = -low, error = 0, reach = 0, spread = 1;
   for (const glm::dvec3& corner : corners_) {
     const Bounded depth = bounded_dot(rays.forward(), glm::dvec3(0), corner - rays.eye());
     low = std::min(low, depth.value);
     high = std::max(high, depth.value);
     error = std::max(error, depth.error);
-    reach = std::max(reach, glm::distance(corner, rays.eye()));
+    const double from_eye = glm::distance(corner, rays.eye());
+    reach = std::max(reach, from_eye);
+    // What lies nearer or farther aside is cut off in doubles.
+    if (depth.value >= rays.near()) spread = std::max(spread, std::min(from_eye / depth.value, rays.widest()));
   }
   depths_near_ = {low - error, low + error};
   depths_far_ = {high - error, high + error};
@@ -50,8 +51,10 @@ SeenTriangle::SeenTriangle(const std::array<glm::vec3, 3>& corners, const Sample
   };
   limits_least_ = widened(of_depth(depths_far_.high), of_depth(depths_far_.low));
   limits_greatest_ = widened(of_depth(depths_near_.high), of_depth(depths_near_.low));
-  resolution_ = rays.is_orthographic() ? kKeyRounding * (rays.far() - rays.near()) + kDistanceRounding * reach
-                                       : kKeyRounding * of_depth(low);
+  if (rays.is_orthographic())
+    absolute_ = kKeyRounding * (rays.far() - rays.near()) + kDistanceRounding * reach;
+  else
+    relative_ = kKeyRounding + kDistanceRounding * spread;
   const Leg ab{corners_[1], corners_[0]}, ac{corners_[2], corners_[0]};
   facing_ = sign_of_determinant(ab, ac, rays.is_orthographic() ? Leg{rays.forward()} : Leg{corners_[0], rays.eye()});
 }
@@ -108,8 +111,9 @@ Meeting SeenTriangle::between_planes(const SampleSquare& square) const {
     most = std::max(most, nearness);
   }
   const double nearest = of_depth(rays_->near()), farthest = of_depth(rays_->far());
-  if (most < farthest - resolution_ || least > nearest + resolution_) return Meeting::misses;
-  return most < nearest - resolution_ && least > farthest + resolution_ ? Meeting::contains : Meeting::touches;
+  const double at_near = resolution(nearest), at_far = resolution(farthest);
+  if (most < farthest - at_far || least > nearest + at_near) return Meeting::misses;
+  return most < nearest - at_near && least > farthest + at_far ? Meeting::contains : Meeting::touches;
 }
 
 Meeting SeenTriangle::meeting(const SampleSquare& square) const {
@@ -135,7 +139,7 @@ DepthBounds SeenTriangle::nearness_at(const SampleRay& ray) const {
           std::min(std::max(value + error, limits_least_.high), limits_greatest_.high)};
 }
 
-NearnessRange SeenTriangle::plane_nearness(const SampleSquare& square) const {
+NearnessRange SeenTriangle::nearness(const SampleSquare& square) const {
   NearnessRange range{nearness_at(square.corners[0]), {}};
   range.greatest = range.least;
   for (std::size_t i = 1; i < 4; ++i) {
@@ -144,20 +148,6 @@ NearnessRange SeenTriangle::plane_nearness(const SampleSquare& square) const {
     range.greatest = {std::max(range.greatest.low, here.low), std::max(range.greatest.high, here.high)};
   }
   return range;
-}
-
-bool SeenTriangle::is_thin(const SampleSquare& square) const {
-  int close = 0;
-  for (std::size_t edge = 0; edge < 3; ++edge) {
-    int sum = 0;
-    for (const SampleRay& ray : square.wide) sum += edge_side(edge, ray);
-    close += std::abs(sum) < 4;
-  }
-  return close >= 2;
-}
-
-NearnessRange SeenTriangle::nearness(const SampleSquare& square) const {
-  return is_thin(square) ? NearnessRange{limits_least_, limits_greatest_} : plane_nearness(square);
 }
 
 /// A nearness; the denominator is positive.
@@ -194,7 +184,6 @@ SeenTriangle::Fraction SeenTriangle::exact_nearness(const SampleRay& ray, int ex
 
 SeenTriangle::Fraction SeenTriangle::exact_extreme(const SeenTriangle& triangle, const SampleSquare& square,
                                                    int extreme) {
-  if (triangle.is_thin(square)) return triangle.exact_limit(extreme);
   Fraction best = triangle.exact_nearness(square.corners[0], extreme);
   for (std::size_t i = 1; i < 4; ++i) {
     const Fraction here = triangle.exact_nearness(square.corners[i], extreme);
@@ -207,15 +196,16 @@ SeenTriangle::Fraction SeenTriangle::exact_extreme(const SeenTriangle& triangle,
 
 bool SeenTriangle::exactly_nearer(const SeenTriangle& a, const SeenTriangle& b, const SampleSquare& square) {
   const Fraction least = exact_extreme(a, square, -1), greatest = exact_extreme(b, square, 1);
-  // greatest + resolution, the latter being a double by definition.
-  const Expansion resolution(std::max(a.resolution_, b.resolution_));
-  const Fraction reach{greatest.numerator + resolution * greatest.denominator, greatest.denominator};
+  // greatest + resolution, whose two terms are doubles by definition.
+  const double relative = std::max(a.relative_, b.relative_), absolute = std::max(a.absolute_, b.absolute_);
+  const Fraction reach{greatest.numerator * Expansion(1 + relative) + Expansion(absolute) * greatest.denominator,
+                       greatest.denominator};
   return least.compare(reach) > 0;
 }
 
 bool is_surely_nearer(const SeenTriangle& a, const SeenTriangle& b, const SampleSquare& square) {
   const DepthBounds least = a.nearness(square).least, greatest = b.nearness(square).greatest;
-  const double resolution = std::max(a.resolution_, b.resolution_);
+  const double resolution = std::max(a.resolution(greatest.high), b.resolution(greatest.high));
   const double rounding = kRounding * (std::abs(greatest.high) + resolution);
   if (least.low > greatest.high + resolution + rounding) return true;
   if (least.high < greatest.low + resolution - rounding) return false;

@@ -3,13 +3,15 @@
 // there. Doubles with bounds decide nearly everywhere, expansions the rest.
 #pragma once
 
+#include <cmath>
+
 #include "report/exact_depth.h"
 
 namespace frontmost {
 
-/// The square, as the rays through its corners, in order around it; and one of +-1/16 pixel.
+/// The square, as the rays through its corners, in order around it.
 struct SampleSquare {
-  std::array<SampleRay, 4> corners, wide;
+  std::array<SampleRay, 4> corners;
   SampleSquare(const SampleRays& rays, int x, int y, const glm::ivec2& offset);
 };
 
@@ -27,15 +29,11 @@ class SeenTriangle {
   SeenTriangle(const std::array<glm::vec3, 3>& corners, const SampleRays& rays);
 
   [[nodiscard]] Meeting meeting(const SampleSquare& square) const;
-  /// Of its plane, within the nearness of its corners and of the near and far planes.
-  [[nodiscard]] NearnessRange plane_nearness(const SampleSquare& square) const;
-  /// The same; all that its corners allow where the triangle is thin.
+  /// Of its plane, within the nearness of its corners and of the near and far planes. Snapping moves what is seen by
+  /// less than the square is wide, however thin the triangle, so that every key of it lies in this range.
   [[nodiscard]] NearnessRange nearness(const SampleSquare& square) const;
-  /// True where two edges pass within 1/16 pixel. Snapping moves such a sliver's corners by as much as it is wide, and
-  /// its plane then rises so steeply that floats leave little of it: methods hold its keys within those of its corners.
-  [[nodiscard]] bool is_thin(const SampleSquare& square) const;
-  /// What keys of this triangle may be wrong by, as nearness.
-  [[nodiscard]] double resolution() const { return resolution_; }
+  /// What a key of this triangle may be wrong by, both as nearness.
+  [[nodiscard]] double resolution(double nearness) const { return relative_ * std::abs(nearness) + absolute_; }
   /// -1: seen from the front (counter-clockwise), 1: from behind, 0: edge-on.
   [[nodiscard]] int facing() const { return facing_; }
 
@@ -60,7 +58,7 @@ class SeenTriangle {
   BoundedNormal normal_;
   DepthBounds depths_near_, depths_far_;        // of the nearest and of the farthest corner, before the planes cut
   DepthBounds limits_least_, limits_greatest_;  // nearness of the same, between the planes
-  double resolution_;
+  double relative_ = 0, absolute_ = 0;          // resolution()
   int facing_;
 };
 

@@ -12,6 +12,7 @@
 #include "view/clip.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace frontmost {
 namespace {
@@ -94,6 +95,16 @@ ScreenVertex finish(const ScreenTransform& t, const ClipVertex& v) {
   return {snap_coordinate(v.x, w), snap_coordinate(v.y, w), std::clamp(float(key), 0.0f, 1.0f)};
 }
 
+/// Fans begin at the first corner: it must not be the one that happened to be given first, or the same triangle given
+/// otherwise would be made of other pieces.
+void begin_at_top(ClippedPolygon& polygon) {
+  const auto end = polygon.corners.begin() + polygon.count;
+  const auto top = std::min_element(polygon.corners.begin(), end, [](const ScreenVertex& a, const ScreenVertex& b) {
+    return std::tie(a.y, a.x, a.key) < std::tie(b.y, b.x, b.key);
+  });
+  std::rotate(polygon.corners.begin(), top, end);
+}
+
 double row_dot(const std::array<float, 3>& row, const glm::dvec3& d, float offset) {
   return row[0] * d.x + row[1] * d.y + row[2] * d.z + offset;
 }
@@ -123,6 +134,7 @@ ClippedPolygon clip_triangle(const ScreenTransform& t, const std::array<glm::vec
   ClippedPolygon result;
   result.count = count;
   for (int i = 0; i < count; ++i) result.corners[std::size_t(i)] = finish(t, polygon[std::size_t(i)]);
+  if (count > 3) begin_at_top(result);
   return result;
 }
 

@@ -10,7 +10,7 @@
 namespace frontmost {
 
 /// What is left of a triangle between near and far and within the guard band: a convex polygon, corners in the
-/// triangle's order. Six planes leave at most nine corners.
+/// triangle's order; of more than three the topmost comes first. Six planes leave at most nine corners.
 struct ClippedPolygon {
   static constexpr int max_corners = 9;
   std::array<ScreenVertex, max_corners> corners;

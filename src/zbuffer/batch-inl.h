@@ -13,6 +13,7 @@
 #include "base/lanes-inl.h"
 #include "frontmost/view.h"
 #include "hwy/highway.h"
+#include "view/triangle_keys.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {
@@ -89,30 +90,80 @@ HWY_INLINE Winding WindingOf(Culling culling, const Corners& a, const Corners& b
 
 /// Three edges and a depth plane for each triangle. Corners no farther apart than kSmallExtent, areas positive.
 struct Batch {
-  VI x[3], y[3];                // corners
+  VI x[3], y[3];  // corners
+  CoordinateRange columns, rows;
   VI dx[3], dy[3], bias[3];     // edge k runs from corner k
   VI area;                      // twice the area
-  VF k0, gx, gy, k_min, k_max;  // key (k0 + dx*gx) + dy*gy from the first corner, limited
+  VI x0, y0;                    // the topmost corner
+  VF k0, gx, gy, k_min, k_max;  // of triangle_keys.h
+  MI steep;                     // to be drawn one by one
 };
 
+/// The gradients, from doubles rounded once: as many lanes at a time as a vector of doubles has.
+HWY_INLINE void SetUpGradient(Batch& b, const VF key[3]) {
+  using DD = hn::ScalableTag<double>;
+  const DD d;
+  const hn::Rebind<float, DD> half_f;
+  const hn::Rebind<std::int32_t, DD> half_i;
+  // Of the sides from corner 0 to 1, and from 2 to 0.
+  HWY_ALIGN_MAX std::int32_t x1[kMaxLanes], y1[kMaxLanes], x2[kMaxLanes], y2[kMaxLanes], area[kMaxLanes];
+  HWY_ALIGN_MAX float k[3][kMaxLanes], gx[kMaxLanes], gy[kMaxLanes];
+  hn::Store(b.dx[0], DI(), x1);
+  hn::Store(b.dy[0], DI(), y1);
+  hn::Store(b.dx[2], DI(), x2);
+  hn::Store(b.dy[2], DI(), y2);
+  hn::Store(b.area, DI(), area);
+  for (int c = 0; c < 3; ++c) hn::Store(key[c], DF(), k[c]);
+  for (std::size_t i = 0; i < hn::Lanes(DF()); i += hn::Lanes(d)) {
+    const auto wide_i = [&](const std::int32_t* from) HWY_ATTR { return hn::PromoteTo(d, hn::Load(half_i, from + i)); };
+    const auto wide_f = [&](const float* from) HWY_ATTR { return hn::PromoteTo(d, hn::Load(half_f, from + i)); };
+    const auto k0 = wide_f(k[0]), k1 = hn::Sub(wide_f(k[1]), k0), k2 = hn::Sub(wide_f(k[2]), k0);
+    const auto scale = hn::Div(hn::Set(d, 1.0), wide_i(area));
+    // The second side runs the other way, which changes the sign of its products.
+    const auto across = hn::Neg(hn::Add(hn::Mul(k1, wide_i(y2)), hn::Mul(k2, wide_i(y1))));
+    const auto down = hn::Add(hn::Mul(k2, wide_i(x1)), hn::Mul(k1, wide_i(x2)));
+    hn::Store(hn::DemoteTo(half_f, hn::Mul(across, scale)), half_f, gx + i);
+    hn::Store(hn::DemoteTo(half_f, hn::Mul(down, scale)), half_f, gy + i);
+  }
+  b.gx = hn::Load(DF(), gx);
+  b.gy = hn::Load(DF(), gy);
+}
+
+/// The topmost corner, of two as high the left one.
+HWY_INLINE void SetUpAnchor(Batch& b, const VF key[3]) {
+  // How far corners 1 and 2 are below corner 0 in the order of reading; within 32 bits, as both terms are within 16.
+  const VI to_1 = hn::Add(hn::ShiftLeft<16>(b.dy[0]), b.dx[0]);
+  const VI to_2 = hn::Neg(hn::Add(hn::ShiftLeft<16>(b.dy[2]), b.dx[2]));
+  const VI zero = hn::Zero(DI());
+  const MI is_1 = hn::Lt(to_1, zero), is_2 = hn::Lt(to_2, hn::Min(to_1, zero));
+  const auto of = [&](const VI(&at)[3])
+                      HWY_ATTR { return hn::IfThenElse(is_2, at[2], hn::IfThenElse(is_1, at[1], at[0])); };
+  b.x0 = of(b.x);
+  b.y0 = of(b.y);
+  const DF df;
+  b.k0 = hn::IfThenElse(hn::RebindMask(df, is_2), key[2], hn::IfThenElse(hn::RebindMask(df, is_1), key[1], key[0]));
+}
+
+/// KeyPlane, operation by operation.
 HWY_INLINE void SetUpPlane(Batch& b, const VF key[3]) {
   const DF df;
-  const VI x1 = b.dx[0], y1 = b.dy[0];
-  const VI x2 = hn::Sub(b.x[2], b.x[0]), y2 = hn::Sub(b.y[2], b.y[0]);
-  b.area = hn::Sub(hn::Mul(x1, y2), hn::Mul(x2, y1));
-  const VF k1 = hn::Sub(key[1], key[0]), k2 = hn::Sub(key[2], key[0]);
-  const VF fx1 = hn::ConvertTo(df, x1), fy1 = hn::ConvertTo(df, y1);
-  const VF fx2 = hn::ConvertTo(df, x2), fy2 = hn::ConvertTo(df, y2);
-  const VF fa = hn::ConvertTo(df, b.area);
-  b.k0 = key[0];
-  b.gx = hn::Div(hn::Sub(hn::Mul(k1, fy2), hn::Mul(k2, fy1)), fa);
-  b.gy = hn::Div(hn::Sub(hn::Mul(fx1, k2), hn::Mul(fx2, k1)), fa);
+  b.area = hn::Sub(hn::Mul(b.dx[2], b.dy[0]), hn::Mul(b.dx[0], b.dy[2]));
+  SetUpGradient(b, key);
+  SetUpAnchor(b, key);
   b.k_min = hn::Min(key[0], hn::Min(key[1], key[2]));
   b.k_max = hn::Max(key[0], hn::Max(key[1], key[2]));
+  const VF width = hn::ConvertTo(df, hn::Sub(b.columns.greatest, b.columns.least));
+  const VF height = hn::ConvertTo(df, hn::Sub(b.rows.greatest, b.rows.least));
+  const VF change = hn::Add(hn::Mul(hn::Abs(b.gx), width), hn::Mul(hn::Abs(b.gy), height));
+  const VF limit = hn::Sub(b.k_min, hn::Set(df, KeyPlane::least_key)), twice = hn::Add(limit, limit);
+  b.steep =
+      hn::RebindMask(DI(), hn::Or(hn::Gt(change, hn::Add(twice, twice)), hn::Gt(hn::Sub(b.k_max, b.k_min), twice)));
 }
 
 /// Precondition: the corners of `b` are set.
 HWY_INLINE void SetUpBatch(Batch& b, const VF key[3]) {
+  b.columns = RangeOf(b.x[0], b.x[1], b.x[2]);
+  b.rows = RangeOf(b.y[0], b.y[1], b.y[2]);
   for (int k = 0; k < 3; ++k) {
     const int n = k == 2 ? 0 : k + 1;
     b.dx[k] = hn::Sub(b.x[n], b.x[k]);

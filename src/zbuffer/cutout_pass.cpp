@@ -27,20 +27,15 @@ class CutoutPainter {
     const PixelRect rect = common_part(pixel_rect(r, visible_.view.width, visible_.view.height), rows_);
     if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
     const ScreenCutout cutout(cutouts_[r.id], rays_);
-    const KeyPlane plane(r);
+    const TriangleKeys keys(r);
     for (std::size_t s = 0; s < samples_.size(); ++s)
       visit_covered(r, rect, samples_[s], [&](int x, int y) {
         const glm::ivec2 at = glm::ivec2(x, y) * kSubPixels + samples_[s];
-        put(r.id, key_at(plane, at), visible_.index(x, y, int(s)), [&] { return cutout.is_hole(at.x, at.y); });
+        put(r.id, keys.at(at.x, at.y), visible_.index(x, y, int(s)), [&] { return cutout.is_hole(at.x, at.y); });
       });
   }
 
  private:
-  /// Operation by operation as in tile_kernel.cpp.
-  static float key_at(const KeyPlane& p, const glm::ivec2& at) {
-    const float raw = (p.k0 + float(at.x - p.x0) * p.gx) + float(at.y - p.y0) * p.gy;
-    return std::min(std::max(raw, p.k_min), p.k_max);
-  }
   template <class IsHole>
   void put(PrimitiveId id, float key, std::size_t i, const IsHole& is_hole) {
     const bool is_nearer = key > visible_.keys[i] || (key == visible_.keys[i] && id < visible_.primitives[i]);

@@ -8,12 +8,13 @@
 #include "surfaces/cluster_set.h"
 #include "view/clip.h"
 #include "view/screen_transform.h"
+#include "view/triangle_keys.h"
 #include "zbuffer/cull.h"
 
 namespace frontmost::zbuffer_detail {
 
 /// A triangle on the screen, corners in 1/256 pixel from some origin, so turned that its area is positive (clockwise
-/// to the eye, y being down). Which corner is first is kept: the depth plane is anchored there.
+/// to the eye, y being down).
 struct TriangleRecord {
   std::int32_t x[3], y[3];
   float key[3];
@@ -21,11 +22,6 @@ struct TriangleRecord {
 
   [[nodiscard]] float nearest() const { return std::max({key[0], key[1], key[2]}); }
 };
-
-/// Twice the signed area of a snapped triangle, exact; negative is counter-clockwise to the eye: front.
-[[nodiscard]] inline std::int64_t doubled_area(const TriangleRecord& r) {
-  return std::int64_t(r.x[1] - r.x[0]) * (r.y[2] - r.y[0]) - std::int64_t(r.x[2] - r.x[0]) * (r.y[1] - r.y[0]);
-}
 
 /// Edge functions at a tile's first sample, shifted right by 8, and their steps from pixel to pixel: a sample is
 /// covered where none of the three is negative. Left and top edges include their points.
@@ -48,23 +44,6 @@ struct TriangleEdges {
       step_x[k] = -dy;
       step_y[k] = dx;
     }
-  }
-};
-
-/// The key at (x, y) is (k0 + (x - x0) * gx) + (y - y0) * gy, limited to [k_min, k_max].
-struct KeyPlane {
-  std::int32_t x0, y0;
-  float k0, gx, gy, k_min, k_max;
-
-  /// Precondition: the area is positive.
-  explicit KeyPlane(const TriangleRecord& r) : x0(r.x[0]), y0(r.y[0]), k0(r.key[0]) {
-    const auto x1 = float(r.x[1] - x0), y1 = float(r.y[1] - y0), x2 = float(r.x[2] - x0), y2 = float(r.y[2] - y0);
-    const auto area = float(doubled_area(r));
-    const float k1 = r.key[1] - k0, k2 = r.key[2] - k0;
-    gx = (k1 * y2 - k2 * y1) / area;
-    gy = (x1 * k2 - x2 * k1) / area;
-    k_min = std::min({r.key[0], r.key[1], r.key[2]});
-    k_max = r.nearest();
   }
 };
 

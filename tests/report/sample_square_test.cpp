@@ -147,7 +147,7 @@ TEST_P(SquareOfEveryKind, KnowsHowNearThePlaneIs) {
       const SampleSquare square = square_on(corners, view, rays, random);
       const SeenTriangle triangle(corners, rays);
       if (triangle.meeting(square) != Meeting::contains) continue;
-      const NearnessRange range = triangle.plane_nearness(square);
+      const NearnessRange range = triangle.nearness(square);
       Rational least, most;
       for (std::size_t i = 0; i < 4; ++i) {
         const Rational depth = hit(corners, square.corners[i]);
@@ -170,8 +170,8 @@ std::array<glm::vec3, 3> sheet(float distance) {
   return {glm::vec3(-4, -4, -distance), glm::vec3(4, -4, -distance), glm::vec3(0, 4, -distance)};
 }
 
-// Two sheets that face the eye have keys near / distance. They are told apart when these part by more than 2^-20 of
-// the greater; here, to the last bit of the farther sheet's place.
+// Two sheets that face the eye have keys near / distance. They are told apart when these part by more than what
+// roundings of keys and of the corners' depths amount to; here, to the last bit of the farther sheet's place.
 TEST(SampleSquare, TellsSheetsApartFromTheExactResolutionOn) {
   for (const bool orthographic : {false, true}) {
     View view;
@@ -186,10 +186,10 @@ TEST(SampleSquare, TellsSheetsApartFromTheExactResolutionOn) {
       ASSERT_FALSE(is_surely_nearer(back, front, square));
       if (is_surely_nearer(front, back, square)) first_apart = steps;
     }
-    // Parallel: more than 2^-20 of the 4 between the planes, 16 steps of 2^-22, and 2^-21 of the 6 from the eye to the
-    // farthest corner, 12 steps. Perspective:
-    // 1/2 - 1/(2 + g) > 2^-20 / 2, so g > 2^-19 / (1 - 2^-20): 8 steps are just too few.
-    EXPECT_EQ(first_apart, orthographic ? 29 : 9);
+    // The corners are 6 from the eye, 3 times their depth. Perspective: 20 + 6 * 3 roundings of 2^-24, so that the gap
+    // exceeds 2 * 38 * 2^-24, 19 steps of 2^-22. Parallel: 20 roundings of the 4 between the planes, 20 steps, and 6 of
+    // the distance of 6, 9 steps.
+    EXPECT_EQ(first_apart, orthographic ? 30 : 20);
   }
 }
 

@@ -75,10 +75,15 @@ class DepthOracle {
 
   [[nodiscard]] double offset(const OracleTriangle& t, double greatest, const DepthState& state) const {
     if (state.offset.factor == 0 && state.offset.units == 0) return 0;
-    const float area = float(oracle_area(t));
-    const float x1 = float(t.x[1] - t.x[0]), y1 = float(t.y[1] - t.y[0]), k1 = t.key[1] - t.key[0];
-    const float x2 = float(t.x[2] - t.x[0]), y2 = float(t.y[2] - t.y[0]), k2 = t.key[2] - t.key[0];
-    const double gx = double((k1 * y2 - k2 * y1) / area), gy = double((x1 * k2 - x2 * k1) / area);
+    // The plane's own gradient: edge functions from the farthest corner, weighted by what the others are nearer.
+    int far = 0;
+    for (int k = 1; k < 3; ++k)
+      if (t.key[k] < t.key[far]) far = k;
+    const int p = (far + 1) % 3, q = (far + 2) % 3;
+    const double a = (double(t.key[p]) - double(t.key[far])) / double(oracle_area(t));
+    const double b = (double(t.key[q]) - double(t.key[far])) / double(oracle_area(t));
+    const double gx = -(double(t.y[far] - t.y[q]) * a + double(t.y[p] - t.y[far]) * b);
+    const double gy = double(t.x[far] - t.x[q]) * a + double(t.x[p] - t.x[far]) * b;
     const double far_key = std::isfinite(view_.projection.clip.far) && !transform_.orthographic
                                ? double(transform_.near) / double(transform_.far)
                                : 0.0;

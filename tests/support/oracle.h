@@ -35,13 +35,31 @@ inline std::int64_t oracle_area(const OracleTriangle& t) {
   return (t.x[1] - t.x[0]) * (t.y[2] - t.y[0]) - (t.x[2] - t.x[0]) * (t.y[1] - t.y[0]);
 }
 
+/// Gentle planes in floats from the topmost corner, steep ones from the farthest by edge functions, in doubles.
 inline float oracle_key(const OracleTriangle& t, std::int64_t px, std::int64_t py) {
-  const float area = float(oracle_area(t));
-  const float x1 = float(t.x[1] - t.x[0]), y1 = float(t.y[1] - t.y[0]), k1 = t.key[1] - t.key[0];
-  const float x2 = float(t.x[2] - t.x[0]), y2 = float(t.y[2] - t.y[0]), k2 = t.key[2] - t.key[0];
-  const float gx = (k1 * y2 - k2 * y1) / area, gy = (x1 * k2 - x2 * k1) / area;
-  const float key = (t.key[0] + float(px - t.x[0]) * gx) + float(py - t.y[0]) * gy;
   const auto [low, high] = std::minmax({t.key[0], t.key[1], t.key[2]});
+  const auto [x_min, x_max] = std::minmax({t.x[0], t.x[1], t.x[2]});
+  const auto [y_min, y_max] = std::minmax({t.y[0], t.y[1], t.y[2]});
+  int top = 0, far = 0;
+  for (int k = 1; k < 3; ++k) {
+    if (std::pair(t.y[k], t.x[k]) < std::pair(t.y[top], t.x[top])) top = k;
+    if (t.key[k] < t.key[far]) far = k;
+  }
+  const int p = (far + 1) % 3, q = (far + 2) % 3;
+  const auto edge = [&](int a, int b, std::int64_t x, std::int64_t y) {
+    return double((t.x[b] - t.x[a]) * (y - t.y[a]) - (t.y[b] - t.y[a]) * (x - t.x[a]));
+  };
+  const double area = double(oracle_area(t)), far_key = double(t.key[far]);
+  // The gradient of a gentle plane is exact, so it may as well be taken from here.
+  const double to_p = double(t.key[p]) - far_key, to_q = double(t.key[q]) - far_key;
+  const float gx = float((to_p * double(t.y[q] - t.y[far]) - to_q * double(t.y[p] - t.y[far])) * (1 / area));
+  const float gy = float((to_q * double(t.x[p] - t.x[far]) - to_p * double(t.x[q] - t.x[far])) * (1 / area));
+  const float limit = low - 1e-30f;
+  float key;
+  if (std::abs(gx) * float(x_max - x_min) + std::abs(gy) * float(y_max - y_min) <= 4 * limit && high - low <= 2 * limit)
+    key = (t.key[top] + float(px - t.x[top]) * gx) + float(py - t.y[top]) * gy;
+  else
+    key = float(far_key + (edge(q, far, px, py) * (to_p / area) + edge(far, p, px, py) * (to_q / area)));
   return std::min(std::max(key, low), high);
 }
 

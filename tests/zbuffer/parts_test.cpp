@@ -168,26 +168,6 @@ TEST(Misses, IsRightWhereItSaysSo) {
   EXPECT_GT(missed, 500u);
 }
 
-TEST(KeyPlane, PassesThroughTheCornersAndStaysBetweenTheirKeys) {
-  Random random(7);
-  for (int i = 0; i < 500; ++i) {
-    TriangleRecord record = random_record(random, 2000);
-    if (!orient(record, Culling::none) || doubled_area(record) < 1 << 16) continue;
-    const KeyPlane plane(record);
-    EXPECT_EQ(plane.k0, record.key[0]);
-    EXPECT_EQ(plane.k_max, record.nearest());
-    for (std::size_t k = 0; k < 3; ++k) {
-      const float at = (plane.k0 + float(record.x[k] - plane.x0) * plane.gx) + float(record.y[k] - plane.y0) * plane.gy;
-      ASSERT_NEAR(at, record.key[k], 2e-3) << i;
-      ASSERT_TRUE(record.key[k] >= plane.k_min && record.key[k] <= plane.k_max);
-    }
-  }
-  // Exact where all numbers are round: one up a pixel in x, nothing in y.
-  const KeyPlane ramp(record_of({{{0, 0}, {2560, 0}, {2560, 2560}}}, {0, 0.5f, 0.5f}));
-  EXPECT_EQ(ramp.gx, 0.5f / 2560);
-  EXPECT_EQ(ramp.gy, 0.0f);
-}
-
 TEST(TileLists, HoldTheItemsOfTheirTilesInOrder) {
   TileLists lists;
   // Item i is in all tiles that it divides; tiles 10 to 14.

@@ -14,6 +14,7 @@
 
 #include "abuffer/composite/composite_kernel.h"
 #include "abuffer/gather/fragment_sink-inl.h"
+#include "view/steep_keys-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::abuffer_detail {
@@ -127,6 +128,12 @@ class PixelCompositor {
     VF key = hn::Add(hn::Set(df, t.k0[n]), hn::Mul(dx, hn::Set(df, t.gx[n])));
     key = hn::Add(key, hn::Mul(dy, hn::Set(df, t.gy[n])));
     key = hn::Min(hn::Max(key, hn::Set(df, t.low[n])), hn::Set(df, t.high[n]));
+    if (t.steep[n] != no_index) {
+      const SteepKeys& steep = t.steep_keys[t.steep[n]];
+      view_detail::HWY_NAMESPACE::SteepColumns columns;
+      columns.Set(steep, hn::Add(x, hn::Set(d, origin_x_)));
+      key = columns.At(steep, hn::Add(y, hn::Set(d, origin_y_)));
+    }
     const auto covered = hn::RebindMask(d, LanesOf(MaskAt(slot), v));
     return hn::IfThenElse(covered, hn::BitCast(d, key), hn::Set(d, -1));
   }

@@ -84,8 +84,8 @@ class SampleTable {
   std::uint64_t full_;
 };
 
-/// Keys are (k0 + dx*gx) + dy*gy from the first corner, clamped to the triangle's own range: the formula of the house.
-/// In a pixel they differ from the centre's by at most 128 units of slope and the rounding of both.
+/// Keys are those of view/triangle_keys.h. In a pixel they differ from the centre's by at most 128 units of slope and
+/// the rounding of both.
 constexpr float kHalfPixel = kSubPixels / 2;
 /// Three roundings, each of at most 2^-24 of the sum of absolute terms, twice, and some to spare; keys so small that
 /// roundings are not relative have the second.

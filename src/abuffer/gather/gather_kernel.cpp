@@ -23,7 +23,7 @@ template <bool kFlat>
 class TileGatherer {
  public:
   TileGatherer(const FrameInput& frame, const TileJob& job, TileScratch& scratch)
-      : frame_(frame), job_(job), sink_(frame, job, scratch), large_(sink_), small_(sink_, scratch) {}
+      : frame_(frame), job_(job), sink_(frame, job, scratch), large_(sink_), small_(sink_, scratch, large_) {}
 
   /// False: too much.
   bool Run() {
@@ -162,7 +162,7 @@ class TileGatherer {
 Gathered GatherTile(const FrameInput& frame, const TileJob& job, TileScratch& scratch) {
   std::fill(scratch.counts.begin(), scratch.counts.end(), 0u);
   scratch.arrived.count = Arrived::first;
-  scratch.triangles.count = 0;
+  scratch.triangles.clear();
   // One sample a pixel needs no masks, and the id itself stands for the triangle: three words a fragment, not five.
   const bool fits =
       frame.is_flat ? TileGatherer<true>(frame, job, scratch).Run() : TileGatherer<false>(frame, job, scratch).Run();

@@ -10,6 +10,7 @@
 #endif
 
 #include "abuffer/gather/fragment_sink-inl.h"
+#include "view/steep_keys-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::abuffer_detail {
@@ -90,23 +91,30 @@ class LargeTriangles {
   }
 
   void SetUpPlane(const ScreenTriangle& t) {
-    const std::int32_t x1 = t.x[1] - t.x[0], y1 = t.y[1] - t.y[0], x2 = t.x[2] - t.x[0], y2 = t.y[2] - t.y[0];
-    const float area = float(std::int64_t(x1) * y2 - std::int64_t(x2) * y1);
-    // The formula of the house, operation by operation: keys are those of the z-buffer to the bit.
-    const float k1 = t.key[1] - t.key[0], k2 = t.key[2] - t.key[0];
+    const KeyPlane plane(t);
     id_ = t.id;
-    x0_ = t.x[0];
-    y0_ = t.y[0];
-    k0_ = t.key[0];
-    gx_ = (k1 * float(y2) - k2 * float(y1)) / area;
-    gy_ = (float(x1) * k2 - float(x2) * k1) / area;
-    low_ = std::min({t.key[0], t.key[1], t.key[2]});
-    high_ = std::max({t.key[0], t.key[1], t.key[2]});
-    const float reach_x = float(std::max({std::abs(x1), std::abs(x2), std::abs(x2 - x1)})) + 2 * kSubPixels;
-    const float reach_y = float(std::max({std::abs(y1), std::abs(y2), std::abs(y2 - y1)})) + 2 * kSubPixels;
-    slack_ = (k0_ + (reach_x * std::abs(gx_) + reach_y * std::abs(gy_))) * kKeyRounding + kLeastRounding;
+    x0_ = plane.x0;
+    y0_ = plane.y0;
+    k0_ = plane.k0;
+    gx_ = plane.gx;
+    gy_ = plane.gy;
+    low_ = plane.k_min;
+    high_ = plane.k_max;
+    is_steep_ = plane.is_steep;
+    if (is_steep_) {
+      steep_ = SteepKeys(t);
+      gx_ = float(steep_.gx());
+      gy_ = float(steep_.gy());
+    }
+    const float slope = std::abs(gx_) + std::abs(gy_);
+    const auto [x_min, x_max] = std::minmax({t.x[0], t.x[1], t.x[2]});
+    const auto [y_min, y_max] = std::minmax({t.y[0], t.y[1], t.y[2]});
+    // Keys of steep triangles are good to a rounding; what is left is that of their gradients over a pixel.
+    const float reach_x = is_steep_ ? kHalfPixel : float(x_max - x_min) + 2 * kSubPixels;
+    const float reach_y = is_steep_ ? kHalfPixel : float(y_max - y_min) + 2 * kSubPixels;
+    slack_ = (high_ + (reach_x * std::abs(gx_) + reach_y * std::abs(gy_))) * kKeyRounding + kLeastRounding;
     // However steep, no key leaves the triangle's range.
-    half_ = std::min((std::abs(gx_) + std::abs(gy_)) * kHalfPixel, high_ - low_) + slack_;
+    half_ = std::min(slope * kHalfPixel, high_ - low_) + slack_;
     triangle_ = kFlat ? id_ : std::uint32_t(sink_.triangles.count);
   }
 
@@ -124,6 +132,8 @@ class LargeTriangles {
     t.slack[n] = slack_;
     t.half[n] = half_;
     t.id[n] = id_;
+    t.steep[n] = is_steep_ ? std::uint32_t(t.steep_keys.size()) : no_index;
+    if (is_steep_) t.steep_keys.push_back(steep_);
   }
 
   /// Edge functions of triangles up to 128 pixels wide and high stay below 2^28 all over the tile.
@@ -237,6 +247,13 @@ class LargeTriangles {
   [[nodiscard]] HWY_INLINE VF KeysOf(std::int32_t bx, std::int32_t by, std::int32_t first) const {
     const DF d;
     constexpr std::int32_t size = 4 * kSubPixels, half = kSubPixels / 2;
+    if (is_steep_) {
+      const VI x = hn::ConvertTo(DI(), hn::Add(hn::Load(d, centre_x_ + first), hn::Set(d, float(bx * size + half))));
+      const VI y = hn::ConvertTo(DI(), hn::Add(hn::Load(d, centre_y_ + first), hn::Set(d, float(by * size + half))));
+      view_detail::HWY_NAMESPACE::SteepColumns columns;
+      columns.Set(steep_, x);
+      return columns.At(steep_, y);
+    }
     const VF dx = hn::Add(hn::Load(d, centre_x_ + first), hn::Set(d, float(bx * size + half - x0_)));
     const VF dy = hn::Add(hn::Load(d, centre_y_ + first), hn::Set(d, float(by * size + half - y0_)));
     VF key = hn::Add(hn::Set(d, k0_), hn::Mul(dx, hn::Set(d, gx_)));
@@ -285,6 +302,8 @@ class LargeTriangles {
   std::uint32_t id_, triangle_;
   std::int32_t x0_, y0_;
   float k0_, gx_, gy_, low_, high_, slack_, half_;
+  bool is_steep_;
+  SteepKeys steep_;
 };
 
 }  // namespace HWY_NAMESPACE

@@ -10,7 +10,7 @@
 #define FRONTMOST_ABUFFER_SMALL_TRIANGLES_INL_H_
 #endif
 
-#include "abuffer/gather/fragment_sink-inl.h"
+#include "abuffer/gather/large_triangles-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::abuffer_detail {
@@ -31,8 +31,9 @@ struct TriangleQueue {
 template <bool kFlat>
 class SmallTriangles {
  public:
-  SmallTriangles(FragmentSink<kFlat>& sink, TileScratch& scratch)
-      : sink_(sink), references_(scratch.references.data()) {}
+  /// Steep triangles go to `large`.
+  SmallTriangles(FragmentSink<kFlat>& sink, TileScratch& scratch, LargeTriangles<kFlat>& large)
+      : sink_(sink), large_(large), references_(scratch.references.data()) {}
 
   HWY_INLINE void Append(const VI (&fields)[TriangleQueue::kFields], MI keep) {
     const Compactor<DI> compact(keep);
@@ -49,6 +50,8 @@ class SmallTriangles {
     const DI d;
     const std::size_t drawn = HWY_MIN(queue_.count, hn::Lanes(d));
     SetUp(drawn);
+    if (!hn::AllFalse(d, steep_))
+      ForEachBit(BitsOf(d, steep_), [&](std::size_t lane) { large_.Draw(QueuedTriangle(lane)); });
     const std::size_t found = Walk();
     if (found > 0) {
       for (std::size_t i = 0; i < drawn; ++i) sink_.ExpectColor(std::uint32_t(queue_.field[9][i]));
@@ -61,6 +64,17 @@ class SmallTriangles {
   }
 
  private:
+  [[nodiscard]] ScreenTriangle QueuedTriangle(std::size_t lane) const {
+    ScreenTriangle t;
+    for (int k = 0; k < 3; ++k) {
+      t.x[k] = queue_.field[k][lane];
+      t.y[k] = queue_.field[3 + k][lane];
+      std::memcpy(&t.key[k], &queue_.field[6 + k][lane], sizeof t.key[k]);
+    }
+    t.id = std::uint32_t(queue_.field[9][lane]);
+    return t;
+  }
+
   HWY_INLINE VF KeyOf(int corner) const { return hn::BitCast(DF(), hn::Load(DI(), queue_.field[6 + corner])); }
 
   HWY_INLINE void SetUp(std::size_t used) {
@@ -79,7 +93,9 @@ class SmallTriangles {
     px_ = p.x0;
     py_ = p.y0;
     for (int k = 0; k < 3; ++k) SetUpEdge(k, x, y);
-    SetUpPlane(x, y);
+    SetUpPlane(x, y, live);
+    // Drawn one by one.
+    width_ = hn::IfThenZeroElse(steep_, width_);
   }
 
   HWY_INLINE void SetUpEdge(int k, const VI (&x)[3], const VI (&y)[3]) {
@@ -100,27 +116,67 @@ class SmallTriangles {
     sample_max_[k] = hn::Add(most(dx, p.low_y, p.high_y), most(hn::Neg(dy), p.low_x, p.high_x));
   }
 
-  HWY_INLINE void SetUpPlane(const VI (&x)[3], const VI (&y)[3]) {
+  /// The gradients, from doubles rounded once: as many lanes at a time as a vector of doubles has.
+  HWY_INLINE void SetUpGradient(VI area) {
+    using DD = hn::ScalableTag<double>;
+    const DD d;
+    const hn::Rebind<float, DD> half_f;
+    const hn::Rebind<std::int32_t, DD> half_i;
+    HWY_ALIGN_MAX std::int32_t areas[kMaxLanes], sides[4][kMaxLanes];
+    HWY_ALIGN_MAX float key[3][kMaxLanes], gx[kMaxLanes], gy[kMaxLanes];
+    hn::Store(area, DI(), areas);
+    const VI of_sides[4] = {dx_[0], dy_[0], dx_[2], dy_[2]};
+    for (int k = 0; k < 4; ++k) hn::Store(of_sides[k], DI(), sides[k]);
+    for (int k = 0; k < 3; ++k) hn::Store(KeyOf(k), DF(), key[k]);
+    for (std::size_t i = 0; i < hn::Lanes(DF()); i += hn::Lanes(d)) {
+      const auto side = [&](int k) HWY_ATTR { return hn::PromoteTo(d, hn::Load(half_i, sides[k] + i)); };
+      const auto key_of = [&](int k) HWY_ATTR { return hn::PromoteTo(d, hn::Load(half_f, key[k] + i)); };
+      const auto k1 = hn::Sub(key_of(1), key_of(0)), k2 = hn::Sub(key_of(2), key_of(0));
+      const auto scale = hn::Div(hn::Set(d, 1.0), hn::PromoteTo(d, hn::Load(half_i, areas + i)));
+      // Side 2 runs to corner 0, which changes the sign of its products.
+      const auto across = hn::Neg(hn::Add(hn::Mul(k1, side(3)), hn::Mul(k2, side(1))));
+      const auto down = hn::Add(hn::Mul(k2, side(0)), hn::Mul(k1, side(2)));
+      hn::Store(hn::DemoteTo(half_f, hn::Mul(across, scale)), half_f, gx + i);
+      hn::Store(hn::DemoteTo(half_f, hn::Mul(down, scale)), half_f, gy + i);
+    }
+    gx_ = hn::Load(DF(), gx);
+    gy_ = hn::Load(DF(), gy);
+  }
+
+  /// The topmost corner, of two as high the left one: how far corners 1 and 2 are below corner 0 in the order of
+  /// reading fits 32 bits.
+  HWY_INLINE void SetUpAnchor(const VI (&x)[3], const VI (&y)[3]) {
+    const VI zero = hn::Zero(DI());
+    const VI to_1 = hn::Add(hn::ShiftLeft<16>(dy_[0]), dx_[0]);
+    const VI to_2 = hn::Neg(hn::Add(hn::ShiftLeft<16>(dy_[2]), dx_[2]));
+    const MI is_1 = hn::Lt(to_1, zero), is_2 = hn::Lt(to_2, hn::Min(to_1, zero));
+    const auto of = [&](VI a, VI b, VI c) HWY_ATTR { return hn::IfThenElse(is_2, c, hn::IfThenElse(is_1, b, a)); };
+    x0_ = of(x[0], x[1], x[2]);
+    y0_ = of(y[0], y[1], y[2]);
+    const auto bits = [&](int k) HWY_ATTR { return hn::Load(DI(), queue_.field[6 + k]); };
+    k0_ = hn::BitCast(DF(), of(bits(0), bits(1), bits(2)));
+  }
+
+  /// KeyPlane, operation by operation: a triangle's keys must not depend on what draws it.
+  HWY_INLINE void SetUpPlane(const VI (&x)[3], const VI (&y)[3], MI live) {
     const DF df;
-    const VI x1 = hn::Sub(x[1], x[0]), y1 = hn::Sub(y[1], y[0]), x2 = hn::Sub(x[2], x[0]), y2 = hn::Sub(y[2], y[0]);
-    const VF area = hn::ConvertTo(df, hn::Sub(hn::Mul(x1, y2), hn::Mul(x2, y1)));
-    // As for large triangles, operation by operation: a triangle's keys must not depend on which of both draws it.
-    const VF key0 = KeyOf(0), key1 = KeyOf(1), key2 = KeyOf(2);
-    const VF k1 = hn::Sub(key1, key0), k2 = hn::Sub(key2, key0);
-    const VF fx1 = hn::ConvertTo(df, x1), fy1 = hn::ConvertTo(df, y1);
-    const VF fx2 = hn::ConvertTo(df, x2), fy2 = hn::ConvertTo(df, y2);
-    x0_ = x[0];
-    y0_ = y[0];
-    k0_ = key0;
-    gx_ = hn::Div(hn::Sub(hn::Mul(k1, fy2), hn::Mul(k2, fy1)), area);
-    gy_ = hn::Div(hn::Sub(hn::Mul(fx1, k2), hn::Mul(fx2, k1)), area);
-    low_ = hn::Min(key0, hn::Min(key1, key2));
-    high_ = hn::Max(key0, hn::Max(key1, key2));
+    SetUpGradient(hn::Sub(hn::Mul(dx_[2], dy_[0]), hn::Mul(dx_[0], dy_[2])));
+    SetUpAnchor(x, y);
+    low_ = hn::Min(KeyOf(0), hn::Min(KeyOf(1), KeyOf(2)));
+    high_ = hn::Max(KeyOf(0), hn::Max(KeyOf(1), KeyOf(2)));
+    const auto extent = [&](const VI(&v)[3]) HWY_ATTR {
+      const VI most = hn::Max(v[0], hn::Max(v[1], v[2])), least = hn::Min(v[0], hn::Min(v[1], v[2]));
+      return hn::ConvertTo(df, hn::Sub(most, least));
+    };
+    const VF change = hn::Add(hn::Mul(hn::Abs(gx_), extent(x)), hn::Mul(hn::Abs(gy_), extent(y)));
+    const VF limit = hn::Sub(low_, hn::Set(df, KeyPlane::least_key)), twice = hn::Add(limit, limit);
+    const auto steep = hn::Or(hn::Gt(change, hn::Add(twice, twice)), hn::Gt(hn::Sub(high_, low_), twice));
+    steep_ = hn::And(live, hn::RebindMask(DI(), steep));
     if (kFlat) return;
     const VF slope = hn::Add(hn::Abs(gx_), hn::Abs(gy_));
     const VF reach = hn::Set(df, float(kSmallExtent + 2 * kSubPixels));
     slack_ =
-        hn::Add(hn::Mul(hn::Add(k0_, hn::Mul(slope, reach)), hn::Set(df, kKeyRounding)), hn::Set(df, kLeastRounding));
+        hn::Add(hn::Mul(hn::Add(high_, hn::Mul(slope, reach)), hn::Set(df, kKeyRounding)), hn::Set(df, kLeastRounding));
     // However steep, no key leaves the triangle's range.
     half_ = hn::Add(hn::Min(hn::Mul(slope, hn::Set(df, kHalfPixel)), hn::Sub(high_, low_)), slack_);
   }
@@ -141,6 +197,7 @@ class SmallTriangles {
     hn::StoreU(high_, df, t.high.data() + n);
     hn::StoreU(slack_, df, t.slack.data() + n);
     hn::StoreU(half_, df, t.half.data() + n);
+    hn::StoreU(hn::Set(du, no_index), du, t.steep.data() + n);
     hn::StoreU(hn::BitCast(du, hn::Load(d, queue_.field[9])), du, t.id.data() + n);
     t.count += drawn;
     HWY_ALIGN_MAX std::int32_t dx[kMaxLanes], dy[kMaxLanes];
@@ -248,11 +305,13 @@ class SmallTriangles {
   }
 
   FragmentSink<kFlat>& sink_;
+  LargeTriangles<kFlat>& large_;
   std::uint32_t* references_;
   TriangleQueue queue_;
   // One batch. Edge functions are at the corner of the first pixel of each triangle's rectangle.
   VI px_, py_, width_, height_, x0_, y0_, edge_[3], dx_[3], dy_[3], sample_max_[3];
   VF k0_, gx_, gy_, low_, high_, slack_, half_;
+  MI steep_;
   SampleSteps steps_[kMaxLanes];
   std::size_t first_ = 0;  // of the batch, in LocalTriangles
   // One vector of pairs.

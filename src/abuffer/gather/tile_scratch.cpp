@@ -20,7 +20,7 @@ void LocalTriangles::reserve(std::size_t more) {
   const std::size_t size = std::max<std::size_t>(2 * id.size(), count + more + 4096);
   for (Buffer<std::int32_t>* b : {&x0, &y0}) enlarge(*b, count, size);
   for (Buffer<float>* b : {&k0, &gx, &gy, &low, &high, &slack, &half}) enlarge(*b, count, size);
-  enlarge(id, count, size);
+  for (Buffer<std::uint32_t>* b : {&steep, &id}) enlarge(*b, count, size);
 }
 
 void Arrived::grow(std::size_t wanted) {

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "abuffer/plan/frame_plan.h"
+#include "view/triangle_keys.h"
 
 namespace frontmost::abuffer_detail {
 
@@ -26,18 +27,26 @@ inline constexpr std::size_t kMostAtOnce = kTilePixels + 64;
   return ((y >> 2) * kBlocksAcross + (x >> 2)) * 16 + (y & 3) * 4 + (x & 3);
 }
 
-/// Depth planes of the triangles of a tile: the key at a point is (k0 + dx*gx) + dy*gy from (x0, y0), in 1/256 pixel
-/// from the tile's corner, then clamped to [low, high]. `slack` bounds the rounding of the difference of two such keys
-/// of one pixel, `half` how far the keys of a pixel are from its centre's.
+/// Depth planes of the triangles of a tile, as in view/triangle_keys.h: the key at a point is (k0 + dx*gx) + dy*gy from
+/// (x0, y0), in 1/256 pixel from the tile's corner, then limited to [low, high]; of a steep one that of SteepKeys.
+/// `slack` bounds the rounding of the difference of two such keys of one pixel, `half` how far the keys of a pixel are
+/// from its centre's.
 struct LocalTriangles {
   std::size_t count = 0;
   Buffer<std::int32_t> x0, y0;
   Buffer<float> k0, gx, gy, low, high, slack, half;
+  Buffer<std::uint32_t> steep;  ///< number in `steep_keys`, or no_index
   Buffer<PrimitiveId> id;
+  std::vector<SteepKeys> steep_keys;
 
+  void clear() {
+    count = 0;
+    steep_keys.clear();
+  }
   /// Room for `more`.
   void reserve(std::size_t more);
   [[nodiscard]] float key_at(std::size_t t, std::int32_t x, std::int32_t y) const {
+    if (steep[t] != no_index) return steep_keys[steep[t]].at(x, y);
     const float key = (k0[t] + float(x - x0[t]) * gx[t]) + float(y - y0[t]) * gy[t];
     return std::min(std::max(key, low[t]), high[t]);
   }

@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "view/clip.h"
+#include "view/triangle_keys.h"
 
 namespace frontmost::abuffer_detail {
 namespace {
@@ -36,10 +37,6 @@ TileRect tiles_of(const ClusterPlace& p, const ScreenTransform& t, const View& v
 TileRect tiles_of(const ScreenTriangle& s, const View& view) {
   return tiles_of(std::min({s.x[0], s.x[1], s.x[2]}), std::min({s.y[0], s.y[1], s.y[2]}),
                   std::max({s.x[0], s.x[1], s.x[2]}), std::max({s.y[0], s.y[1], s.y[2]}), view);
-}
-
-std::int64_t doubled_area(const ScreenTriangle& t) {
-  return std::int64_t(t.x[1] - t.x[0]) * (t.y[2] - t.y[0]) - std::int64_t(t.x[2] - t.x[0]) * (t.y[1] - t.y[0]);
 }
 
 /// True when the whole tile is outside of one edge.

@@ -19,7 +19,7 @@ struct Rectangle {
 };
 
 /// A triangle on the screen, corners in 1/256 pixel from the image's top left corner, so turned that its area is
-/// positive (clockwise to the eye, y being down). Which corner is first is kept: the depth plane is anchored there.
+/// positive (clockwise to the eye, y being down).
 struct ScreenTriangle {
   std::int32_t x[3], y[3];
   float key[3];

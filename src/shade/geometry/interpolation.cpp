@@ -3,7 +3,6 @@
 // what belongs to a triangle is read once and done in one loop, and all the rest is done for the batch as a whole.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "shade/geometry/geometry.h"
 
@@ -146,37 +145,18 @@ void for_runs(const Coverage& coverage, const std::vector<TriangleSetup>& setups
   }
 }
 
-/// The same as below where squares are too large or too small for floats: powers of two round nothing.
-glm::vec3 far_direction(const glm::vec3& p) {
-  const float size = std::max(std::abs(p.x), std::max(std::abs(p.y), std::abs(p.z)));
-  if (!(size > 0 && size < std::numeric_limits<float>::infinity())) return glm::vec3(0);
-  int exponent = 0;
-  (void)std::frexp(size, &exponent);
-  const glm::vec3 q(std::ldexp(p.x, -exponent), std::ldexp(p.y, -exponent), std::ldexp(p.z, -exponent));
-  return q * (-1.0f / std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z));
-}
-
-bool has_squares(float length2) { return length2 > 1e-30f && length2 < 1e37f; }  // false for NaN
-
 void find_directions(const ScreenRays& rays, int count, Geometry& out) {
   if (rays.is_parallel()) {
     for (int k = 0; k < 3; ++k) fill(lane(out.to_viewer, k), count, float(-rays.forward()[k]));
     return;
   }
   const Lane3& p = out.position;
-  int without_squares = 0;
   for (int i = 0; i < count; ++i) {
     const float length2 = p.x[i] * p.x[i] + p.y[i] * p.y[i] + p.z[i] * p.z[i];
-    const float scale = -1.0f / std::sqrt(length2);
+    const float scale = -1.0f / std::sqrt(length2 > 1e-36f ? length2 : 1e-36f);
     out.to_viewer.x[i] = p.x[i] * scale;
     out.to_viewer.y[i] = p.y[i] * scale;
     out.to_viewer.z[i] = p.z[i] * scale;
-    without_squares += !has_squares(length2);
-  }
-  if (without_squares == 0) return;
-  for (int i = 0; i < count; ++i) {
-    const glm::vec3 at = p.at(i);
-    if (!has_squares(at.x * at.x + at.y * at.y + at.z * at.z)) out.to_viewer.set(i, far_direction(at));
   }
 }
 

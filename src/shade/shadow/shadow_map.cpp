@@ -44,7 +44,7 @@ Extent extent_of_visible(const Visible& visible, const glm::dmat3& light_axes, c
         const std::size_t i = visible.index(x, y);
         if (visible.primitives[i] == no_primitive) continue;
         const double depth = double(depth_of_key(visible.view, visible.keys[i]));
-        if (std::isfinite(depth)) part.include(light_from_world * rays.point(x + 0.5, y + 0.5, depth));
+        if (depth < 1e30) part.include(light_from_world * rays.point(x + 0.5, y + 0.5, depth));
       }
     const std::lock_guard lock(mutex);
     extent.include(part);  // in any order: minima and maxima do not round
@@ -76,9 +76,8 @@ Extent window_of(const Extent& seen, const Extent& all) {
     window.low[k] = std::max(all.low[k], seen.low[k] - spare);
     window.high[k] = std::min(all.high[k], seen.high[k] + spare);
   }
-  constexpr double least = 1e-300;  // of a single point
   const double side = std::max(
-      {window.high.x - window.low.x, window.high.y - window.low.y, 1e-6 * (window.high.z - window.low.z), least});
+      {window.high.x - window.low.x, window.high.y - window.low.y, 1e-6 * (window.high.z - window.low.z), 1e-30});
   for (int k = 0; k < 2; ++k) {
     const double centre = 0.5 * (window.low[k] + window.high[k]);
     const double half = 0.5 * side * (1 + 2 * kSpareTexels / kSize);

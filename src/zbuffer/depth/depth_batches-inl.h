@@ -69,17 +69,16 @@ class DepthBatches {
     }
     id_ = hn::Add(column(DU(), t.id.data()), hn::Set(DU(), call_.id_offset));
     SetUpBatch(batch_, key_);
-    x_range_ = RangeOf(batch_.x[0], batch_.x[1], batch_.x[2]);
-    y_range_ = RangeOf(batch_.y[0], batch_.y[1], batch_.y[2]);
-    const VI extent = hn::Max(hn::Sub(x_range_.greatest, x_range_.least), hn::Sub(y_range_.greatest, y_range_.least));
-    small_ = hn::Not(hn::Gt(extent, hn::Set(d, kSmallExtent)));
+    const VI extent = hn::Max(hn::Sub(batch_.columns.greatest, batch_.columns.least),
+                              hn::Sub(batch_.rows.greatest, batch_.rows.least));
+    small_ = hn::AndNot(batch_.steep, hn::Not(hn::Gt(extent, hn::Set(d, kSmallExtent))));
     if (call_.cutouts) small_ = hn::AndNot(HaveHoles(t, items), small_);
     live_ = hn::Lt(hn::Iota(d, 0), hn::Set(d, std::int32_t(count_)));
     std::fill_n(offset_, kMaxLanes, 0.0);
     if (call_.rules.has_offset())
       for (std::size_t k = 0; k < count_; ++k) {
-        const KeyPlane plane(t.record(items[k]));
-        offset_[k] = call_.rules.offset_of(plane.gx, plane.gy, t.low[items[k]], t.high[items[k]]);
+        const SteepKeys keys(t.record(items[k]));
+        offset_[k] = call_.rules.offset_of(keys.gx(), keys.gy(), t.low[items[k]], t.high[items[k]]);
       }
   }
 
@@ -94,8 +93,8 @@ class DepthBatches {
   HWY_INLINE void Walk(std::size_t sample) {
     const DI d;
     const glm::ivec2 offset = call_.planes.samples[sample];
-    const PixelRange columns = PixelsOf(x_range_, offset.x, offset.x, width_);
-    const PixelRange rows = PixelsOf(y_range_, offset.y, offset.y, height_);
+    const PixelRange columns = PixelsOf(batch_.columns, offset.x, offset.x, width_);
+    const PixelRange rows = PixelsOf(batch_.rows, offset.y, offset.y, height_);
     const VI one = hn::Set(d, 1), limit = hn::Set(d, kWalkLimit);
     VI width = hn::Add(hn::Sub(columns.last, columns.first), one);
     VI height = hn::Add(hn::Sub(rows.last, rows.first), one);
@@ -128,8 +127,8 @@ class DepthBatches {
     hn::Store(hn::BitCast(DU(), mask[1]), DU(), mask_[1]);
     drawn_ = by_row_ | BitsOf(d, hn::Ne(hn::Or(mask[0], mask[1]), hn::Zero(d)));
     // The keys of a pixel are found from here on.
-    from_x_ = hn::Sub(sx, batch_.x[0]);
-    from_y_ = hn::Sub(sy, batch_.y[0]);
+    from_x_ = hn::Sub(sx, batch_.x0);
+    from_y_ = hn::Sub(sy, batch_.y0);
     hn::Store(hn::Add(hn::Mul(rows.first, hn::Set(d, call_.planes.width)), columns.first), d, first_);
   }
 
@@ -225,13 +224,12 @@ class DepthBatches {
   Batch batch_;
   VF key_[3];
   VU id_;
-  CoordinateRange x_range_, y_range_;
   MI small_, live_;
   std::size_t count_ = 0;
   double offset_[kMaxLanes];
   // Of the batch at one sample.
   std::uint64_t by_row_ = 0, drawn_ = 0;         // lanes that are drawn on their own; those, and all that cover a pixel
-  VI from_x_, from_y_;                           // from the first corner to the sample of the first pixel
+  VI from_x_, from_y_;                           // from the topmost corner to the sample of the first pixel
   HWY_ALIGN_MAX std::int32_t first_[kMaxLanes];  // its place in the tile
   HWY_ALIGN_MAX std::uint32_t mask_[2][kMaxLanes];
   std::uint32_t references_[kMaxLanes * kWalkLimit * kWalkLimit + kMaxLanes];

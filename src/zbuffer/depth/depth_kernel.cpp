@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The depth test of every fragment in order.
 //
-// Coverage and keys as in tile_kernel.cpp: edge values shifted right by 8, so that a pixel's step is -dy or dx; keys
-// (k0 + dx*gx) + dy*gy, limited to the triangle's own.
+// Coverage and keys as in tile_kernel.cpp: edge values shifted right by 8, so that a pixel's step is -dy or dx.
 
 #include "zbuffer/depth/depth_kernel.h"
 

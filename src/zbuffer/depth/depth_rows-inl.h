@@ -16,6 +16,7 @@
 #include <optional>
 
 #include "hwy/highway.h"
+#include "view/steep_keys-inl.h"
 #include "zbuffer/batch-inl.h"
 #include "zbuffer/depth/depth_kernel.h"
 
@@ -125,6 +126,7 @@ class DepthRows {
     const PrimitiveId own_id = r.id - call_.id_offset;
     std::optional<ScreenCutout> cutout;
     if (call_.cutouts && call_.cutouts->has(own_id)) cutout.emplace((*call_.cutouts)[own_id], call_.rays);
+    const SteepKeys steep = plane.is_steep ? SteepKeys(r) : SteepKeys();
     const Paint paint{plane, hn::Set(DD(), offset), r.id, sample};
     const HalfI d;
     const int lanes = int(hn::Lanes(d)), first = rect.x0 / lanes * lanes;
@@ -141,8 +143,10 @@ class DepthRows {
       for (int x = first; x <= rect.x1; x += lanes) {
         auto covered = hn::RebindMask(HalfU(), hn::Gt(hn::Or(hn::Or(e0, e1), e2), hn::Set(d, -1)));
         if (cutout) covered = Solid(*cutout, covered, {x * kSubPixels + at.x, y * kSubPixels + at.y});
-        if (!hn::AllFalse(HalfU(), covered))
-          Put(paint, x, y, covered, Key(plane, x * kSubPixels + at.x - plane.x0, dy_gy));
+        if (!hn::AllFalse(HalfU(), covered)) {
+          const glm::ivec2 from = glm::ivec2(x, y) * kSubPixels + at;
+          Put(paint, x, y, covered, plane.is_steep ? KeyOf(steep, from) : Key(plane, from.x - plane.x0, dy_gy));
+        }
         e0 = hn::Add(e0, step[0]);
         e1 = hn::Add(e1, step[1]);
         e2 = hn::Add(e2, step[2]);
@@ -178,6 +182,14 @@ class DepthRows {
     const auto dx = hn::ConvertTo(d, hn::Add(hn::ShiftLeft<8>(hn::Iota(di, 0)), hn::Set(di, from_x)));
     const auto key = hn::Add(hn::Add(hn::Set(d, plane.k0), hn::Mul(dx, hn::Set(d, plane.gx))), hn::Set(d, dy_gy));
     return hn::Min(hn::Max(key, hn::Set(d, plane.k_min)), hn::Set(d, plane.k_max));
+  }
+
+  /// Of a row of samples from `first` on.
+  [[nodiscard]] static HWY_INLINE hn::Vec<HalfF> KeyOf(const SteepKeys& steep, const glm::ivec2& first) {
+    const HalfI d;
+    view_detail::HWY_NAMESPACE::SteepColumn column;
+    column.Set(steep, hn::PromoteTo(DD(), hn::Add(hn::ShiftLeft<8>(hn::Iota(d, 0)), hn::Set(d, first.x))));
+    return column.At(steep, first.y);
   }
 
   HWY_INLINE void Put(const Paint& paint, int x, int y, hn::Mask<HalfU> covered, hn::Vec<HalfF> key) const {

@@ -94,9 +94,9 @@ DepthRules rules_for(const DepthState& state, DepthFormat format, const ScreenTr
   return rules;
 }
 
-double DepthRules::offset_of(float gx, float gy, float key_low, float key_high) const {
+double DepthRules::offset_of(double gx, double gy, float key_low, float key_high) const {
   // Gradients are per 1/256 pixel, OpenGL's m is per pixel; it may be the greater of the two instead of the length.
-  const double m = std::abs(map.slope) * kSubPixels * double(std::fmax(std::abs(gx), std::abs(gy)));
+  const double m = std::abs(map.slope) * kSubPixels * std::max(std::abs(gx), std::abs(gy));
   const double r =
       format == DepthFormat::f32 ? float_step(std::max(map.of(key_low), map.of(key_high))) : 1 / steps(format);
   const double sum = m * offset.factor + r * offset.units;

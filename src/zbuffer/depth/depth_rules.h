@@ -29,7 +29,7 @@ struct DepthRules {
 
   [[nodiscard]] bool has_offset() const { return offset.factor != 0 || offset.units != 0; }
   /// Of a triangle with key gradient (gx, gy) per 1/256 pixel; `key_low` and `key_high` of its whole visible part.
-  [[nodiscard]] double offset_of(float gx, float gy, float key_low, float key_high) const;
+  [[nodiscard]] double offset_of(double gx, double gy, float key_low, float key_high) const;
 };
 
 /// \throws Error bad_argument naming what is out of range.

@@ -10,6 +10,7 @@
 #define FRONTMOST_ZBUFFER_LARGE_TRIANGLES_INL_H_
 #endif
 
+#include "view/steep_keys-inl.h"
 #include "zbuffer/tile/tile_buffer-inl.h"
 #include "zbuffer/triangle_records.h"
 
@@ -49,19 +50,66 @@ class LargeTriangles {
     const std::uint64_t touched = TileBuffer::BlocksOf(rect);
     if (buffer_.AllHide(touched, r.nearest())) return;
     const Plane plane(r);
-    Reach reach;
-    std::uint64_t open = touched & ~KnownHidden(plane, rect, reach);
-    std::uint64_t whole = open;
-    for (std::size_t s = 0; s < picture_.samples.size() && open != 0; ++s)
-      whole &= DrawSample(r, plane, rect, s, open, reach);
-    for (whole &= open; whole != 0; whole &= whole - 1)
-      KeepPlane(int(hwy::Num0BitsBelowLS1Bit_Nonzero64(whole)), plane, reach);
+    if (plane.is_steep)
+      DrawWith<SteepRows>(r, plane, rect, touched);
+    else
+      DrawWith<GentleRows>(r, plane, rect, touched);
   }
 
  private:
   struct Plane : KeyPlane {
-    explicit Plane(const TriangleRecord& r) : KeyPlane(r), not_id(~r.id) {}
+    explicit Plane(const TriangleRecord& r) : KeyPlane(r), not_id(~r.id) {
+      if (!is_steep) return;
+      steep = SteepKeys(r);
+      // What bounds the keys of blocks is the same plane, told at the tile's corner to a float's precision.
+      x0 = y0 = 0;
+      k0 = float(steep.exactly_at(0, 0));
+      gx = float(steep.gx());
+      gy = float(steep.gy());
+    }
     std::uint32_t not_id;
+    SteepKeys steep;
+  };
+
+  /// The keys of a block's pixels at one sample, a vector of a row at a time: of gentle planes.
+  class GentleRows {
+   public:
+    /// `first`: the sample of the block's first pixel, in 1/256 pixel of the tile.
+    GentleRows(const Plane& plane, const glm::ivec2& first) : plane_(plane), first_(first) {
+      const DI d;
+      const DF df;
+      for (int y = 0; y < kBlockSize; y += int(kMaxLanes)) {
+        const VI dy = hn::Add(hn::ShiftLeft<8>(hn::Iota(d, y)), hn::Set(d, first.y - plane.y0));
+        hn::Store(hn::Mul(hn::ConvertTo(df, dy), hn::Set(df, plane.gy)), df, down_ + y);
+      }
+    }
+    HWY_INLINE void SetColumns(VI column) {
+      const DF df;
+      const VI dx = hn::Add(hn::ShiftLeft<8>(column), hn::Set(DI(), first_.x - plane_.x0));
+      base_ = hn::Add(hn::Set(df, plane_.k0), hn::Mul(hn::ConvertTo(df, dx), hn::Set(df, plane_.gx)));
+    }
+    [[nodiscard]] HWY_INLINE VF At(int y) const { return Clamp(plane_, hn::Add(base_, hn::Set(DF(), down_[y]))); }
+
+   private:
+    const Plane& plane_;
+    glm::ivec2 first_;
+    VF base_;
+    HWY_ALIGN_MAX float down_[kBlockSize];
+  };
+
+  /// The same of steep ones.
+  class SteepRows {
+   public:
+    SteepRows(const Plane& plane, const glm::ivec2& first) : keys_(plane.steep), first_(first) {}
+    HWY_INLINE void SetColumns(VI column) {
+      columns_.Set(keys_, hn::Add(hn::ShiftLeft<8>(column), hn::Set(DI(), first_.x)));
+    }
+    [[nodiscard]] HWY_INLINE VF At(int y) const { return columns_.At(keys_, y * kSubPixels + first_.y); }
+
+   private:
+    const SteepKeys& keys_;
+    view_detail::HWY_NAMESPACE::SteepColumns columns_;
+    glm::ivec2 first_;
   };
 
   /// By block: how near a triangle can be there, its keys at the four outermost samples, and what rounding may add to
@@ -74,6 +122,17 @@ class LargeTriangles {
   struct Cover {
     std::uint64_t none = 0, all = 0;
   };
+
+  template <class Rows>
+  void DrawWith(const TriangleRecord& r, const Plane& plane, const PixelRect& rect, std::uint64_t touched) {
+    Reach reach;
+    std::uint64_t open = touched & ~KnownHidden(plane, rect, reach);
+    std::uint64_t whole = open;
+    for (std::size_t s = 0; s < picture_.samples.size() && open != 0; ++s)
+      whole &= DrawSample<Rows>(r, plane, rect, s, open, reach);
+    for (whole &= open; whole != 0; whole &= whole - 1)
+      KeepPlane(int(hwy::Num0BitsBelowLS1Bit_Nonzero64(whole)), plane, reach);
+  }
 
   /// Calls visit(first block, column, row of the block in each lane) for all blocks that may be of `rect`.
   template <class Visit>
@@ -103,12 +162,13 @@ class LargeTriangles {
       const VF k0 = hn::Set(df, p.k0);
       const VF key[4] = {hn::Add(hn::Add(k0, left), top), hn::Add(hn::Add(k0, right), top),
                          hn::Add(hn::Add(k0, left), bottom), hn::Add(hn::Add(k0, right), bottom)};
-      // Three roundings, each of at most 2^-24 of this sum, at the corner and at any sample: 6 * 2^-24. Some to spare,
-      // also for numbers so small that their roundings are not relative.
+      // Three roundings, each of at most 2^-24 of this sum, at the corner and at any sample: 6 * 2^-24. As many where
+      // the plane of a steep triangle was rounded and its keys are. Some to spare, also for numbers so small that their
+      // roundings are not relative.
       const VF sum =
-          hn::Add(k0, hn::Add(hn::Max(hn::Abs(left), hn::Abs(right)), hn::Max(hn::Abs(top), hn::Abs(bottom))));
+          hn::Add(hn::Abs(k0), hn::Add(hn::Max(hn::Abs(left), hn::Abs(right)), hn::Max(hn::Abs(top), hn::Abs(bottom))));
       const VF slack = hn::Add(hn::Mul(sum, hn::Set(df, 8.0f / 16777216.0f)), hn::Set(df, 1e-42f));
-      const VF nearest = Clamp(p, hn::Max(hn::Max(key[0], key[1]), hn::Max(key[2], key[3])));
+      const VF nearest = Clamp(p, hn::Add(hn::Max(hn::Max(key[0], key[1]), hn::Max(key[2], key[3])), slack));
       auto behind = hn::Lt(nearest, hn::Load(df, bounds.greatest + first));
       for (int c = 0; c < 4; ++c) {
         const VF at_most = hn::Max(hn::Add(key[c], slack), hn::Set(df, p.k_min));
@@ -171,6 +231,7 @@ class LargeTriangles {
 
   /// \returns the blocks whose every pixel is covered at this sample. The first sample closes blocks that were drawn
   /// to lately and turn out to hide the triangle.
+  template <class Rows>
   [[nodiscard]] std::uint64_t DrawSample(const TriangleRecord& r, const Plane& plane, const PixelRect& rect,
                                          std::size_t sample, std::uint64_t& open, const Reach& reach) {
     const TriangleEdges edges(r, picture_.samples[sample]);
@@ -183,34 +244,27 @@ class LargeTriangles {
         continue;
       }
       if (cover.all >> block & 1)
-        FillBlock<true>(plane, edges, rect, block, sample);
+        FillBlock<true, Rows>(plane, edges, rect, block, sample);
       else
-        FillBlock<false>(plane, edges, rect, block, sample);
+        FillBlock<false, Rows>(plane, edges, rect, block, sample);
     }
     return cover.all;
   }
 
-  template <bool kWhole>
+  template <bool kWhole, class Rows>
   HWY_INLINE void FillBlock(const Plane& p, const TriangleEdges& edges, const PixelRect& rect, int block,
                             std::size_t sample) {
     const DI d;
     const DU du;
-    const DF df;
     const int bx = block % 8, by = block / 8;
-    const glm::ivec2 offset = picture_.samples[sample];
-    HWY_ALIGN_MAX float down[kBlockSize];
-    for (int y = 0; y < kBlockSize; y += int(kMaxLanes)) {
-      const VI dy = hn::Add(hn::ShiftLeft<8>(hn::Iota(d, y)), hn::Set(d, by * kBlockUnits + offset.y - p.y0));
-      hn::Store(hn::Mul(hn::ConvertTo(df, dy), hn::Set(df, p.gy)), df, down + y);
-    }
+    Rows keys(p, picture_.samples[sample] + glm::ivec2(bx, by) * kBlockUnits);
     const int top = by * kBlockSize;
     const int y0 = kWhole ? 0 : HWY_MAX(rect.y0 - top, 0),
               y1 = kWhole ? kBlockSize - 1 : HWY_MIN(rect.y1 - top, kBlockSize - 1);
     LeastKey least;
     for (int x = 0; x < kBlockSize; x += int(kMaxLanes)) {
       const VI column = hn::Add(hn::Load(d, kPixelOrder.column), hn::Set(d, x));
-      const VI dx = hn::Add(hn::ShiftLeft<8>(column), hn::Set(d, bx * kBlockUnits + offset.x - p.x0));
-      const VF base = hn::Add(hn::Set(df, p.k0), hn::Mul(hn::ConvertTo(df, dx), hn::Set(df, p.gx)));
+      keys.SetColumns(column);
       VI e[3];
       if (!kWhole)
         for (int k = 0; k < 3; ++k) {
@@ -220,7 +274,7 @@ class LargeTriangles {
       const VU not_id = hn::Set(du, p.not_id);
       std::uint64_t* row = buffer_.Row(sample, top + y0) + bx * kBlockSize + x;
       for (int y = y0; y <= y1; ++y, row += kTileStride) {
-        const VU bits = hn::BitCast(du, Clamp(p, hn::Add(base, hn::Set(df, down[y]))));
+        const VU bits = hn::BitCast(du, keys.At(y));
         if (kWhole) {
           MergeRow(WordsOf(bits, not_id), row, least);
         } else {

@@ -76,10 +76,11 @@ class SmallTriangles {
     const std::size_t drawn = HWY_MIN(queue_.count, hn::Lanes(d));
     SmallBatch batch = SetUp(drawn);
     const MI large = hn::Or(hn::Gt(batch.width, hn::Set(d, kWalkWidth)), hn::Gt(batch.height, hn::Set(d, kWalkHeight)));
-    if (!hn::AllFalse(d, large)) {
-      ForEachBit(BitsOf(d, large), [&](std::size_t lane) { large_.Draw(QueuedRecord(lane)); });
-      batch.width = hn::IfThenZeroElse(large, batch.width);
-      batch.height = hn::IfThenZeroElse(large, batch.height);
+    const MI single = hn::Or(large, batch.steep);
+    if (!hn::AllFalse(d, single)) {
+      ForEachBit(BitsOf(d, single), [&](std::size_t lane) { large_.Draw(QueuedRecord(lane)); });
+      batch.width = hn::IfThenZeroElse(single, batch.width);
+      batch.height = hn::IfThenZeroElse(single, batch.height);
     }
     LeaveOutHidden(batch);
     const int most_x = hn::GetLane(hn::MaxOfLanes(d, batch.width));
@@ -146,13 +147,13 @@ class SmallTriangles {
     }
     b.not_id = hn::Not(hn::Load(DU(), queue_.id));
     SetUpBatch(b, key);
-    const PixelRange columns = ColumnsOf(RangeOf(b.x[0], b.x[1], b.x[2])),
-                     rows = RowsOf(RangeOf(b.y[0], b.y[1], b.y[2]));
+    const PixelRange columns = ColumnsOf(b.columns), rows = RowsOf(b.rows);
     const VI one = hn::Set(d, 1);
     const MI live = hn::Lt(hn::Iota(d, 0), hn::Set(d, std::int32_t(used)));
     b.px = columns.first;
     b.py = rows.first;
     // Lanes behind the last triangle hold what was there before: without width and height none of it is walked.
+    b.steep = hn::And(b.steep, live);
     b.width = hn::IfThenElseZero(live, hn::Add(hn::Sub(columns.last, b.px), one));
     b.height = hn::IfThenElseZero(live, hn::Add(hn::Sub(rows.last, b.py), one));
     return b;
@@ -194,8 +195,8 @@ class SmallTriangles {
     const DU du;
     const DF df;
     const glm::ivec2 offset = picture_.samples[sample];
-    const VI from_x = hn::Sub(hn::Add(hn::ShiftLeft<8>(b.px), hn::Set(d, offset.x)), b.x[0]);
-    const VI from_y = hn::Sub(hn::Add(hn::ShiftLeft<8>(b.py), hn::Set(d, offset.y)), b.y[0]);
+    const VI from_x = hn::Sub(hn::Add(hn::ShiftLeft<8>(b.px), hn::Set(d, offset.x)), b.x0);
+    const VI from_y = hn::Sub(hn::Add(hn::ShiftLeft<8>(b.py), hn::Set(d, offset.y)), b.y0);
     std::uint64_t* words = buffer_.Row(sample, 0);
     HWY_ALIGN_MAX std::uint64_t found[kMaxLanes];
     HWY_ALIGN_MAX std::uint32_t at[kMaxLanes];

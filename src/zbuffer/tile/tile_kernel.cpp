@@ -8,9 +8,7 @@
 // are 256 units apart, so an edge value may be shifted right by 8 before stepping: a step is then -dy or dx, and the
 // sign is still exact.
 //
-// The key at a sample is (k0 + dx*gx) + dy*gy from the first corner, clamped to the triangle's own range. Every
-// path evaluates exactly this, so they agree to the bit; and each rounding is monotone, so the corners of a block
-// bound the keys inside it.
+// The key at a sample is that of view/triangle_keys.h. Every path evaluates exactly this, so they agree to the bit.
 
 #include "zbuffer/tile/tile_kernel.h"
 
