@@ -26,6 +26,7 @@ constexpr SceneEntry kScenes[] = {
     {"terrain16m-fly", Camera::over_terrain, 0, true},
     {"soup1m", Camera::fit, 26},
     {"city-fly", Camera::in_city, 24},
+    {"city-street", Camera::in_street, 0},
     {"boxes-in", Camera::fit, 28},
     {"boxes-out", Camera::fit, 28},
     {"boxes-random", Camera::fit, 28},
@@ -177,7 +178,7 @@ Mesh make_mesh(std::string_view name) {
   if (name == "terrain4m") return terrain(4'000'000);
   if (name == "terrain16m") return terrain(16'000'000);
   if (name == "soup1m") return soup(1'000'000, 0.005f);
-  if (name == "city") return city(10'000);
+  if (name == "city" || name == "city-street") return city(10'000);
   if (name == "city-wall" || name == "city-no-wall") return walled_city(name == "city-wall");
   if (name == "boxes-in") return nested_boxes(500, BoxOrder::inner_first);
   if (name == "boxes-out") return nested_boxes(500, BoxOrder::outer_first);
@@ -197,6 +198,7 @@ View aim(Camera camera, const glm::dvec3& centre) {
     case Camera::fit: look(centre + glm::dvec3(3, 2, 4), centre); break;
     case Camera::over_terrain: look({0.5, 0.25, 1.05}, {0.5, 0, 0.3}); break;
     case Camera::in_city: look({50, 4, 104}, {50, 0, 60}); break;
+    case Camera::in_street: look({50.5, 0.5, 50.5}, {49, 0.4, 42}); break;
     case Camera::away: look({0.5, 0.25, 2}, {0.5, 0.25, 4}); break;
     case Camera::wall: look({150, 30, 330}, {150, 0, 220}); break;
     case Camera::close: look({0, 0, 4}, {0, 0, 0}); break;

@@ -15,6 +15,7 @@ enum class Camera : std::uint8_t {
   fit,           ///< all of it, from direction (3, 2, 4)
   over_terrain,  ///< flown through: most pixels are covered, a third of the triangles is outside
   in_city,       ///< the same between the houses
+  in_street,     ///< from a crossing, at the height of doors: walls run past the eye, and cross the near plane
   away,          ///< everything lies behind the eye
   wall,          ///< over the city, from before its wall
   close,         ///< all of the picture is covered

@@ -13,8 +13,8 @@ namespace {
 
 // 1/128 pixel in 1/256.
 constexpr int kMargin = 2;
-// 18 roundings of a float of a key (triangle_keys.h); 8 of a corner's distance from the eye, which its depth is made
-// of.
+// Roundings of a float: 16 of a key (triangle_keys.h), 2 of the corners', and 2 to spare; and 6 of a corner's distance
+// from the eye, as its depth is a sum of coordinates.
 constexpr double kKeyRounding = 20 * 0x1p-24, kDistanceRounding = 6 * 0x1p-24;
 
 }  // namespace
