@@ -3,15 +3,16 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <exception>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "base/crew.h"
 #include "base/float_environment.h"
+#include "base/spare_threads.h"
 
 #if defined(FRONTMOST_THREADS_tbb)
 #include <tbb/global_control.h>
@@ -86,7 +87,57 @@ namespace {
 /// begin with the outer one's chunks.
 thread_local Crew::Helpers* current = nullptr;
 
+#if !defined(FRONTMOST_THREADS_serial)
+/// Threads for this loop alone.
+void drain_on_own(int threads, ChunkQueue& queue) {
+  std::vector<std::thread> helpers;
+  helpers.reserve(std::size_t(threads));
+  try {
+    for (int i = 1; i < threads; ++i) helpers.emplace_back([&] { queue.drain(); });
+  } catch (const std::exception&) {
+    // The system gives no more threads, or no memory for them: those that there are do the same work.
+  }
+  queue.drain();
+  for (std::thread& helper : helpers) helper.join();
+}
+#endif
+
 #if defined(FRONTMOST_THREADS_tbb)
+/// Has TBB make its threads now, by work that waits until all have come. It may come to no more than it wants; then the
+/// rest is made when it is.
+void gather(int threads) {
+  constexpr std::chrono::milliseconds patience(50);
+  const auto until = std::chrono::steady_clock::now() + patience;
+  std::atomic<int> arrived{0};
+  Crew::Helpers helpers(threads);
+  helpers.arena.execute([&] {
+    tbb::parallel_for(
+        0, threads, 1,
+        [&](int) {
+          for (++arrived; arrived < threads && std::chrono::steady_clock::now() < until;) std::this_thread::yield();
+        },
+        tbb::simple_partitioner());
+  });
+}
+
+/// Whether TBB can be trusted with so many: a thread that the system refuses it ends the process. So as many are tried
+/// beforehand, and as many again, because those that were tried may count a little longer than they live.
+bool tbb_may_use(int threads) {
+  static std::mutex mutex;
+  static std::atomic<int> made{1};
+  static bool is_scarce = false;
+  if (threads <= made) return true;
+  const std::lock_guard lock(mutex);
+  if (threads <= made) return true;
+  const int tried = 2 * (threads - made);
+  if (!is_scarce)
+    is_scarce = count_spare_threads(tried, [](auto body) { return std::thread(std::move(body)); }) < tried;
+  if (is_scarce) return false;
+  gather(threads);
+  made = threads;
+  return true;
+}
+
 void drain_with(Crew::Helpers& helpers, int threads, ChunkQueue& queue) {
   helpers.arena.execute([&] {
     tbb::parallel_for(
@@ -100,21 +151,12 @@ void drain_on(int threads, ChunkQueue& queue) {
     ~Outer() { current = helpers; }
   } const outer;
   if (outer.helpers && outer.helpers->most >= threads) return drain_with(*outer.helpers, threads, queue);
+  if (!tbb_may_use(threads)) return drain_on_own(threads, queue);
   Crew::Helpers helpers(threads);
   drain_with(helpers, threads, queue);
 }
 #elif defined(FRONTMOST_THREADS_std)
-void drain_on(int threads, ChunkQueue& queue) {
-  std::vector<std::thread> helpers;
-  helpers.reserve(std::size_t(threads));
-  try {
-    for (int i = 1; i < threads; ++i) helpers.emplace_back([&] { queue.drain(); });
-  } catch (const std::system_error&) {
-    // The system gives no more threads: those that there are do the same work.
-  }
-  queue.drain();
-  for (std::thread& helper : helpers) helper.join();
-}
+void drain_on(int threads, ChunkQueue& queue) { drain_on_own(threads, queue); }
 #else
 void drain_on(int, ChunkQueue& queue) { queue.drain(); }
 #endif
@@ -124,7 +166,7 @@ void drain_on(int, ChunkQueue& queue) { queue.drain(); }
 Crew::Crew(const Execution& execution) : outer_(current) {
   const int threads = thread_count(execution);
 #if defined(FRONTMOST_THREADS_tbb)
-  if (threads > 1) helpers_ = std::make_unique<Helpers>(threads);
+  if (threads > 1 && tbb_may_use(threads)) helpers_ = std::make_unique<Helpers>(threads);
 #else
   (void)threads;
 #endif
