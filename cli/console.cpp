@@ -2,24 +2,28 @@
 #include "cli/console.h"
 
 #include <frontmost/base.h>
+#include <frontmost/text.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <system_error>
 
 namespace frontmost::cli {
 
 void print(std::string_view text) {
+  errno = 0;
   const bool whole = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-  if (!whole || std::fflush(stdout) != 0) {
-    throw Error(ErrorCode::file_unwritable, "standard output: could not be written");
-  }
+  if (whole && std::fflush(stdout) == 0) return;
+  const int code = errno;  // before strings are made: that may change it
+  throw Error(ErrorCode::file_unwritable,
+              "standard output: could not be written: " + std::generic_category().message(code));
 }
 
 void complain(std::string_view text) {
   // One write, so that lines of several processes do not mix.
-  const std::string line = "frontmost: " + std::string(text) + "\n";
+  const std::string line = "frontmost: " + printable_text(text) + "\n";
   (void)std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
@@ -32,11 +36,6 @@ std::optional<glm::ivec2> output_terminal() {
 
 bool error_is_terminal() { return isatty(STDERR_FILENO) != 0; }
 
-std::string printable_name(std::string name) {
-  if (name.empty()) return "(no name)";
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return (c >= 0 && c < 0x20) || c == 0x7F; }, '?');
-  return name;
-}
+std::string printable_name(std::string_view name) { return name.empty() ? "(no name)" : printable_text(name); }
 
 }  // namespace frontmost::cli

@@ -33,7 +33,7 @@ template <int n, class T>
 /// JSON has no infinity; an infinite far plane is null.
 [[nodiscard]] inline Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-/// \returns the text with a line break at the end. Names that are not UTF-8 are shown with replacement characters.
+/// \returns the text with a line break at the end. Texts are as utf8_text() writes them.
 [[nodiscard]] std::string dump(const Json& json);
 
 }  // namespace frontmost::cli

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // JSON as text: indented, but a list of numbers stays on one line, so that a matrix is four lines and not sixteen.
+#include <frontmost/text.h>
+
 #include <algorithm>
 
 #include "cli/json_numbers.h"
@@ -7,7 +9,11 @@
 namespace frontmost::cli {
 namespace {
 
-std::string scalar(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+/// Texts are the only values that may hold what is no UTF-8, and keys are all this program's own.
+std::string scalar(const Json& json) {
+  if (json.is_string()) return Json(utf8_text(json.get_ref<const std::string&>())).dump();
+  return json.dump();
+}
 
 void append(const Json& json, std::size_t indent, std::string& text) {
   const bool flat = std::none_of(json.begin(), json.end(), [](const Json& element) { return element.is_structured(); });

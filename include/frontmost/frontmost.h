@@ -26,6 +26,7 @@
 #include "frontmost/strokes.h"       // IWYU pragma: export
 #include "frontmost/surfaces.h"      // IWYU pragma: export
 #include "frontmost/tessellate.h"    // IWYU pragma: export
+#include "frontmost/text.h"          // IWYU pragma: export
 #include "frontmost/title_block.h"   // IWYU pragma: export
 #include "frontmost/version.h"       // IWYU pragma: export
 #include "frontmost/view.h"          // IWYU pragma: export

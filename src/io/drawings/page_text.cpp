@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "frontmost/text.h"
+
 namespace frontmost::detail {
 namespace {
 
@@ -20,17 +22,6 @@ std::optional<Lead> lead_of(unsigned char byte) {
   if (byte >= 0xE0 && byte < 0xF0) return Lead{2, byte & 0x0Fu, 0x800};
   if (byte >= 0xF0 && byte < 0xF5) return Lead{3, byte & 0x07u, 0x10000};
   return std::nullopt;
-}
-
-void append_utf8(char32_t code, std::string& text) {
-  if (code < 0x80) {
-    text += char(code);
-    return;
-  }
-  const int following = code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;
-  constexpr unsigned leads[] = {0, 0xC0, 0xE0, 0xF0};
-  text += char(leads[following] | code >> (6 * following));
-  for (int i = following - 1; i >= 0; --i) text += char(0x80 | (code >> (6 * i) & 0x3F));
 }
 
 constexpr char hex[] = "0123456789ABCDEF";
@@ -110,21 +101,17 @@ void PageText::pass_on() {
 
 std::string xml_text(std::string_view name) {
   std::string text;
-  while (!name.empty()) {
-    const char32_t code = take_character(name);
-    if (code == '&') {
+  for (const char c : printable_text(name)) {
+    if (c == '&') {
       text += "&amp;";
-    } else if (code == '<') {
+    } else if (c == '<') {
       text += "&lt;";
-    } else if (code == '>') {
+    } else if (c == '>') {
       text += "&gt;";
-    } else if (code == '"') {
+    } else if (c == '"') {
       text += "&quot;";
-    } else if (code == '\t' || code == '\n' || code == '\r') {
-      text += ' ';  // allowed, but attributes turn it into a blank anyway
     } else {
-      const bool is_allowed = code >= 0x20 && code != 0xFFFE && code != 0xFFFF && !(code >= 0x7F && code < 0xA0);
-      append_utf8(is_allowed ? code : replacement, text);
+      text += c;
     }
   }
   return text;
@@ -132,28 +119,29 @@ std::string xml_text(std::string_view name) {
 
 std::string json_text(std::string_view name) {
   std::string text = "\"";
-  while (!name.empty()) {
-    const char32_t code = take_character(name);
-    if (code < 0x20 || code == 0x7F) {
+  for (const char c : utf8_text(name)) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7F) {
       text += "\\u";
-      append_hex(unsigned(code), text);
+      append_hex(byte, text);
     } else {
-      if (code == '"' || code == '\\') text += '\\';
-      append_utf8(code, text);
+      if (c == '"' || c == '\\') text += '\\';
+      text += c;
     }
   }
   return text + '"';
 }
 
 std::string pdf_text(std::string_view name) {
+  const std::string shown = printable_text(name);
   std::string text = "<FEFF";
-  while (!name.empty()) {
-    const char32_t code = take_character(name);
+  for (std::string_view rest = shown; !rest.empty();) {
+    const char32_t code = take_character(rest);
     if (code >= 0x10000) {
       append_hex(0xD800 + unsigned((code - 0x10000) >> 10), text);
       append_hex(0xDC00 + unsigned((code - 0x10000) & 0x3FF), text);
     } else {
-      append_hex(code < 0x20 ? unsigned(replacement) : unsigned(code), text);
+      append_hex(unsigned(code), text);
     }
   }
   return text + '>';

@@ -70,11 +70,11 @@ class PageText {
 /// Takes the first character of UTF-8 away; not empty. A byte that begins none is taken alone, as U+FFFD.
 [[nodiscard]] char32_t take_character(std::string_view& text);
 
-/// For element content and attributes of XML 1.0. What it does not allow, and bytes that are not UTF-8, become U+FFFD.
+/// For element content and attributes of XML 1.0, as printable_text() writes what it does not allow.
 [[nodiscard]] std::string xml_text(std::string_view name);
-/// With its quotes.
+/// With its quotes, as utf8_text() writes it.
 [[nodiscard]] std::string json_text(std::string_view name);
-/// A PDF text string in UTF-16, as hexadecimal digits with their brackets.
+/// A PDF text string in UTF-16, as printable_text() writes it, as hexadecimal digits with their brackets.
 [[nodiscard]] std::string pdf_text(std::string_view name);
 
 }  // namespace frontmost::detail

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/models/file_text.h"
 
+#include "frontmost/text.h"
+
 namespace frontmost {
 namespace {
 
@@ -19,9 +21,7 @@ std::string name_of(std::string_view text) { return std::string(start_of(text, l
 
 std::string printable(std::string_view text) {
   constexpr std::size_t longest = 160;
-  std::string out(start_of(text, longest));
-  for (char& c : out)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
+  const std::string out = printable_text(start_of(text, longest));
   return text.size() > longest ? out + "..." : out;
 }
 

@@ -14,7 +14,7 @@ inline constexpr std::size_t longest_name = 1024;
 /// `text` as a name: cut at `longest_name`, not within a UTF-8 character.
 [[nodiscard]] std::string name_of(std::string_view text);
 
-/// A text of the file as it may stand in a message: short, and without control characters, which terminals would obey.
+/// A text of the file as it may stand in a message: short, and as printable_text() writes it.
 [[nodiscard]] std::string printable(std::string_view text);
 
 }  // namespace frontmost
