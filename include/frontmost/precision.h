@@ -18,13 +18,24 @@ struct DepthSetup {
   bool orthographic = false;  ///< depth is affine in distance, not in its reciprocal
 };
 
-/// The smallest gap that is always resolved: whatever lies at `distance`, a surface at least so much farther away is
-/// stored as another value. One full step of the format, carried back to distances: about
-/// distance^2 (far - near) / (far near (2^n - 1)) for integers, at most 2^-23 of the distance for reversed floats.
-/// Infinite where nothing beyond is told apart from infinity. Float buffers are never finer than the float keys from
-/// which depths are made: 2^-24 to 2^-23 of the distance.
-/// \throws Error bad_argument unless near <= distance <= far, and for planes that make_projection() refuses.
+/// The smallest gap that the format resolves: of what lies exactly at `distance`, a surface at least so much farther
+/// away is stored as another value. One full step of the format, carried back to distances: about distance^2 (far -
+/// near) / (far near (2^n - 1)) for integers, at most 2^-23 of the distance for reversed floats. Infinite where nothing
+/// beyond is told apart from infinity. Float buffers are never finer than the float keys from which depths are made:
+/// 2^-24 to 2^-23 of the distance. \throws Error bad_argument unless near <= distance <= far, and for planes that
+/// make_projection() refuses.
 [[nodiscard]] double resolvable_gap(const DepthSetup& setup, double distance);
+
+/// What positions and transforms add to it, of surfaces that face the picture. World positions are floats, and so are
+/// those relative to the eye, the rows of the transform and what is made of them: of corners at most `reach` away from
+/// the eye and from the world's origin, every distance is off by up to 9 * 2^-24 * reach, and by 2 * 2^-24 of itself as
+/// a key; that of both surfaces. Without `reach` it is twice the distance, or in parallel projection twice the planes'.
+/// Surfaces that do not face the picture are snapped to 1/256 pixel besides: each of two adds what its depth changes
+/// over 1/512 pixel along x and along y. \throws as above.
+[[nodiscard]] double rounding_gap(const DepthSetup& setup, double distance, std::optional<double> reach = {});
+
+/// Both together: the gap behind `distance` that every picture resolves at every pixel. \throws as above.
+[[nodiscard]] double certain_gap(const DepthSetup& setup, double distance, std::optional<double> reach = {});
 
 /// How much of the format's values lie between the near plane and `distance`, 0 to 1.
 [[nodiscard]] double share_of_values(const DepthSetup& setup, double distance);

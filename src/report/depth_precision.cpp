@@ -62,6 +62,22 @@ double gap_of(double distance, double step) {
   return left > 0 ? distance * distance * step / left : kInfinity;
 }
 
+/// How far corners reach where nobody says: in a picture of up to 120 degrees, twice as far as the surface is away; in
+/// parallel projection, twice as far as its planes.
+double reach_of(const DepthSetup& setup, double distance) {
+  constexpr double kTimes = 2;
+  return kTimes * (setup.orthographic ? std::max(std::abs(setup.clip.near), std::abs(setup.clip.far)) : distance);
+}
+
+/// How far off a distance may be before it is stored. A corner's differences to the eye, its row of the transform and
+/// their products are rounded once each, and so are the three sums; its world position was, and at the rim of the guard
+/// band it is cut, by two steps. Then the key is made: by a reciprocal and a product, or in parallel projection by the
+/// difference to the far plane and a product.
+double rounding(const DepthSetup& setup, double distance, double reach) {
+  constexpr double kUnit = 0x1p-24;
+  return kUnit * (9 * reach + 2 * (setup.orthographic ? setup.clip.far - distance : distance));
+}
+
 double bits_of(double depth) {
   const auto rounded = float(depth);
   std::uint32_t bits;
@@ -91,6 +107,22 @@ double resolvable_gap(const DepthSetup& setup, double distance) {
   if (setup.orthographic)
     return std::max(step, is_float ? key_step((far - distance) / (far - near)) : 0.0) * (far - near);
   return gap_of(distance, std::max(step * span(setup.clip), is_float ? key_step(near / distance) : 0.0) / near);
+}
+
+double rounding_gap(const DepthSetup& setup, double distance, std::optional<double> reach) {
+  check(setup, distance);
+  return 2 * rounding(setup, distance, reach.value_or(reach_of(setup, distance)));
+}
+
+double certain_gap(const DepthSetup& setup, double distance, std::optional<double> reach) {
+  check(setup, distance);
+  // The nearer surface seems to be at its distance and its rounding, the farther one at its own less its own.
+  const auto of = [&](double at) { return rounding(setup, at, reach.value_or(reach_of(setup, at))); };
+  const double stored = resolvable_gap(setup, std::min(distance + of(distance), setup.clip.far));
+  const double gap = stored + 2 * of(distance);
+  if (setup.orthographic || !std::isfinite(gap)) return gap;
+  // Its own grows with its distance.
+  return gap / (1 - (of(distance + 1) - of(distance)));
 }
 
 double share_of_values(const DepthSetup& setup, double distance) {
