@@ -21,6 +21,9 @@ struct LoadOptions {
   /// Where load() notes how long a unit of the coordinates is, where the file says: 1 for glTF, what it names for 3MF.
   /// Untouched for all others. Nothing is scaled by it.
   std::optional<double>* metres_per_unit = nullptr;
+  /// Where load() adds every file that it opened: the model, and the material libraries, buffers and textures that the
+  /// model names. Each once, by its path without links, in the order of their names.
+  std::vector<std::filesystem::path>* files = nullptr;
 };
 
 /// Reads a model. "-" reads standard input, "builtin:NAME" makes a built-in scene. Files named inside a model
@@ -65,6 +68,11 @@ void save(const DeepImage& image, const std::string& path, const Execution& exec
 
 /// Writes text, such as an SVG drawing, with the same care: whole or not at all. \throws Error file_unwritable.
 void save_text(std::string_view text, const std::string& path);
+
+/// Reads a whole file, or "-", which is standard input, such as a list of points; what the bytes are is not looked at.
+/// \throws Error file_unreadable; limit_exceeded for more than `most_bytes`, which is found out without reading on, so
+/// that a device or a pipe without an end does no harm.
+[[nodiscard]] std::string load_text(const std::string& path, std::uint64_t most_bytes);
 
 /// Reads PNG, EXR, PFM or NPY, told apart by content, as save() writes them; "-" reads standard input. PNGs that were
 /// not written by save() give R, G, B, A: linear, premultiplied. PFM and NPY hold no names: one channel is read as Z or

@@ -62,8 +62,8 @@ InputFile InputFile::open(const std::filesystem::path& path, const std::string& 
   return map(number, std::size_t(size), name);
 }
 
-InputFile InputFile::standard_input(const std::string& name) {
-  return read_stream(STDIN_FILENO, name, max_stream_bytes);
+InputFile InputFile::standard_input(const std::string& name, std::uint64_t max_bytes) {
+  return read_stream(STDIN_FILENO, name, std::min(max_bytes, max_stream_bytes));
 }
 
 InputFile InputFile::map(int descriptor, std::size_t size, const std::string& name) {

@@ -29,7 +29,7 @@ class InputFile {
   /// `name` stands for the file in messages. \throws Error file_unreadable or limit_exceeded.
   static InputFile open(const std::filesystem::path& path, const std::string& name,
                         std::uint64_t max_bytes = max_file_bytes);
-  static InputFile standard_input(const std::string& name);
+  static InputFile standard_input(const std::string& name, std::uint64_t max_bytes = max_stream_bytes);
 
   [[nodiscard]] std::span<const std::byte> bytes() const { return {data_.get(), size_}; }
 

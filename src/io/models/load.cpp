@@ -68,10 +68,13 @@ Scene load(const std::string& path, const LoadOptions& options, const Execution&
     return scene;
   }
   const InputFile file = InputFile::open(path, path);
-  const ModelSource source(path, execution, file, path);
+  const auto opened = std::make_shared<OpenedFiles>(path);
+  const ModelSource source(path, execution, file, path, opened);
   if (const auto conversion = options.format ? std::nullopt : conversion_by_suffix(path)) refuse(source, *conversion);
   const auto format = options.format ? options.format : format_of_suffix(path);
-  return read_any(file.bytes(), source, format, options);
+  Scene scene = read_any(file.bytes(), source, format, options);
+  opened->tell(options.files);
+  return scene;
 }
 
 Scene load(std::span<const std::byte> bytes, const std::string& name, const LoadOptions& options,

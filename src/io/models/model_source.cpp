@@ -26,8 +26,9 @@ bool leaves_folder(const std::string& reference) {
 
 }  // namespace
 
-ModelSource::ModelSource(std::string name, const Execution& execution, const InputFile& file, fs::path path)
-    : name_(std::move(name)), execution_(execution), file_(&file), path_(std::move(path)) {}
+ModelSource::ModelSource(std::string name, const Execution& execution, const InputFile& file, fs::path path,
+                         std::shared_ptr<OpenedFiles> opened)
+    : name_(std::move(name)), execution_(execution), file_(&file), path_(std::move(path)), opened_(std::move(opened)) {}
 
 std::string ModelSource::stem() const { return fs::path(name_).stem().string(); }
 
@@ -69,7 +70,9 @@ fs::path ModelSource::confined(const std::string& reference) const {
 }
 
 InputFile ModelSource::open(const std::string& reference, std::uint64_t max_bytes) const {
-  return InputFile::open(confined(reference), name_ + ": " + printable(reference), max_bytes);
+  const fs::path found = confined(reference);
+  if (opened_) opened_->add(found);
+  return InputFile::open(found, name_ + ": " + printable(reference), max_bytes);
 }
 
 }  // namespace frontmost

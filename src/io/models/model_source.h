@@ -3,20 +3,48 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <mutex>
 #include <optional>
+#include <set>
+#include <vector>
 
 #include "frontmost/base.h"
 #include "io/input_file.h"
 
 namespace frontmost {
 
+/// Files that were opened, in the order of their names. Safe to add to from several threads.
+class OpenedFiles {
+ public:
+  /// With the model's own.
+  explicit OpenedFiles(const std::filesystem::path& model) {
+    std::error_code error;
+    std::filesystem::path path = std::filesystem::canonical(model, error);
+    if (!error) paths_.insert(std::move(path));
+  }
+  void add(std::filesystem::path path) {
+    const std::lock_guard lock(mutex_);
+    paths_.insert(std::move(path));
+  }
+  /// For LoadOptions::files, where that is given.
+  void tell(std::vector<std::filesystem::path>* files) const {
+    if (files) files->insert(files->end(), paths_.begin(), paths_.end());
+  }
+
+ private:
+  std::mutex mutex_;
+  std::set<std::filesystem::path> paths_;
+};
+
 /// A model being read.
 class ModelSource {
  public:
   /// From memory or a stream: files named inside the model cannot be read.
   ModelSource(std::string name, const Execution& execution) : name_(std::move(name)), execution_(execution) {}
-  /// From `file`, which is borrowed, at `path`.
-  ModelSource(std::string name, const Execution& execution, const InputFile& file, std::filesystem::path path);
+  /// From `file`, which is borrowed, at `path`. What is opened beside it is added to `opened`, where that is given.
+  ModelSource(std::string name, const Execution& execution, const InputFile& file, std::filesystem::path path,
+              std::shared_ptr<OpenedFiles> opened = nullptr);
 
   /// Stands for the file in messages.
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -50,6 +78,7 @@ class ModelSource {
   Execution execution_;
   const InputFile* file_ = nullptr;
   std::filesystem::path path_;
+  std::shared_ptr<OpenedFiles> opened_;
 };
 
 }  // namespace frontmost

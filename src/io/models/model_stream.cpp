@@ -66,7 +66,8 @@ std::unique_ptr<ModelStream> open_model_stream(const std::string& path, const Lo
                                                const Execution& execution) {
   const std::string name = path == "-" ? "standard input" : path;
   if (path.starts_with("builtin:")) refuse(ModelSource(name, execution), "a built-in scene");
-  StreamStart start{std::make_unique<ByteStream>(path, name), {}, path};
+  const auto opened = std::make_shared<OpenedFiles>(path);
+  StreamStart start{std::make_unique<ByteStream>(path, name), {}, path, opened};
   constexpr std::size_t enough_to_know = 1024;
   start.extend(enough_to_know);
   const ModelSource source(name, execution);
@@ -83,6 +84,7 @@ std::unique_ptr<ModelStream> open_model_stream(const std::string& path, const Lo
         name + ": " +
             conversion_by_content(start.start).value_or("not a model that can be streamed (binary STL or PLY)"));
   std::unique_ptr<ModelStream> stream = open(*format, std::move(start), source);
+  opened->tell(options.files);
   stream->introduce(path == "-" ? "stdin" : source.stem(), options.up.value_or(default_up(*format)));
   return stream;
 }

@@ -65,6 +65,7 @@ struct StreamStart {
   std::unique_ptr<ByteStream> bytes;
   std::vector<std::byte> start;  ///< read already
   std::string path;
+  std::shared_ptr<OpenedFiles> opened;
   bool has_ended = false;  ///< `start` is the whole file
 
   /// None for a pipe that goes on.

@@ -317,7 +317,7 @@ std::unique_ptr<ModelStream> open_ply_stream(StreamStart start, const ModelSourc
   if (!start.bytes->can_rewind())
     return std::make_unique<PlyStream>(std::move(start), std::move(header), nullptr, source);
   auto file = std::make_unique<const InputFile>(InputFile::open(start.path, source.name()));
-  const ModelSource with_folder(source.name(), source.execution(), *file, start.path);
+  const ModelSource with_folder(source.name(), source.execution(), *file, start.path, start.opened);
   return std::make_unique<PlyStream>(std::move(start), std::move(header), std::move(file), with_folder);
 }
 
