@@ -12,12 +12,16 @@ namespace frontmost::cli {
 
 struct Command {
   std::string_view name;
-  unsigned bit;  ///< the options it takes; 0: none
-  std::string_view argument;
+  unsigned bit;               ///< the options it takes; 0: none
+  std::string_view argument;  ///< as usage lines show it; "..." at its end: several may be given
   std::string_view summary;
   std::string_view details;
   std::string_view examples;  ///< one a line: command, two blanks or more, what it does
   int (*run)(const Settings&);
+
+  /// The argument's name alone.
+  [[nodiscard]] std::string_view argument_name() const { return argument.substr(0, argument.find("...")); }
+  [[nodiscard]] bool takes_several() const { return argument.ends_with("..."); }
 };
 
 [[nodiscard]] std::span<const Command> commands();
@@ -36,6 +40,9 @@ int run_lines(const Settings& settings);
 /// Fills Settings from the words after the command's name.
 /// \throws UsageError
 [[nodiscard]] Settings parse_command_line(const Command& command, std::span<const char* const> words);
+
+/// What follows the command's name on a line of usage: "MODEL... [options]", the argument between `before` and `after`.
+[[nodiscard]] std::string usage_of(const Command& command, std::string_view before = "", std::string_view after = "");
 
 /// Texts made from the tables.
 [[nodiscard]] std::string help_overview();

@@ -60,7 +60,7 @@ void take_leftovers(const Command& command, const std::vector<std::string>& word
     if (word == "--") continue;  // it has done its work
     if (word.size() > 1 && word[0] == '-') complain_of_unknown(command, word);
     if (command.argument.empty()) throw UsageError(fmt::format("'{}' is one word too many", word));
-    if (command.bit != for_render && command.bit != for_lines)
+    if (!command.takes_several())
       throw UsageError(fmt::format("one model at a time: '{}' and '{}'", settings.model, word));
     settings.more_models.push_back(word);
   }
@@ -108,7 +108,7 @@ Settings parse_command_line(const Command& command, std::span<const char* const>
   take_leftovers(command, app.remaining(), settings);
   for (const Found& found : all) apply_found(command, found, settings);
   if (settings.model.empty() && !command.argument.empty()) {
-    throw UsageError(fmt::format("no {} given; see frontmost {} --help", command.argument, command.name));
+    throw UsageError(fmt::format("no {} given; see frontmost {} --help", command.argument_name(), command.name));
   }
   return settings;
 }

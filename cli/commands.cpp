@@ -18,9 +18,10 @@ int run_man(const Settings&) {
 }
 
 constexpr Command table[] = {
-    {"render", for_render, "MODEL", "Render pictures and maps of a model.",
+    {"render", for_render, "MODEL...", "Render pictures and maps of a model.",
      "MODEL is an STL, PLY, OBJ, OFF, glTF or GLB file, - for standard input, or builtin:teapot, cubes, cycle, city, "
-     "spheres or gallery. Without any output the picture is shown on the terminal. Outputs with the same .exr name "
+     "spheres or gallery. Several are drawn together, as they lie. Without any output the picture is shown on the "
+     "terminal. Outputs with the same .exr name "
      "share one file.",
      "frontmost render engine.glb -o engine.png\n"
      "frontmost render part.stl --view iso --camera-orthographic -o '{model}_{view}.png'\n"
@@ -31,7 +32,7 @@ constexpr Command table[] = {
      "frontmost render city.glb --json --repeat 20 --samples 1\n"
      "curl -s https://example.com/part.stl | frontmost render - -o - --format png > part.png",
      run_render},
-    {"lines", for_lines, "MODEL", "Draw the edges of a model on paper, hidden lines removed.",
+    {"lines", for_lines, "MODEL...", "Draw the edges of a model on paper, hidden lines removed.",
      "Outlines, creases, borders and intersections, cut exactly where they go out of sight, in millimetres, as vectors "
      "for journals, drawing sheets and pen plotters. The layers of SVG and PDF are 5 stippling, 4 hatching, 1 hidden, "
      "2 visible, 3 outline and 8 frame, with a group for every object. Several models have a sheet each, numbered, "

@@ -42,10 +42,17 @@ std::string option_line(const Option& option) {
 
 }  // namespace
 
+std::string usage_of(const Command& command, std::string_view before, std::string_view after) {
+  std::string text;
+  if (!command.argument.empty()) text = fmt::format("{}{}{}", before, command.argument, after);
+  if (command.bit) text += fmt::format("{}[options]", text.empty() ? "" : " ");
+  return text;
+}
+
 std::string help_overview() {
   std::string text =
       "What can be seen from here? Frontmost renders models exactly, on any CPU.\n\n"
-      "usage: frontmost COMMAND MODEL [options]\n\ncommands:\n";
+      "usage: frontmost COMMAND [MODEL...] [options]\n\ncommands:\n";
   for (const Command& command : commands()) text += fmt::format("  {:12}{}\n", command.name, command.summary);
   text += "\noptions:\n  -h, --help  this, or help on a command\n  --version   which version this is\n\nexamples:\n";
   for (const Command& command : commands()) {
@@ -56,8 +63,9 @@ std::string help_overview() {
 }
 
 std::string help_for(const Command& command) {
-  std::string text = fmt::format("{}\n\nusage: frontmost {} {}{}\n", command.summary, command.name, command.argument,
-                                 command.bit ? " [options]" : "");
+  const std::string usage = usage_of(command);
+  std::string text =
+      fmt::format("{}\n\nusage: frontmost {}{}{}\n", command.summary, command.name, usage.empty() ? "" : " ", usage);
   if (!command.details.empty()) text += fmt::format("\n{}\n", wrapped(command.details, 0));
   int last = -1;
   for_each_option([&](const Option& option) {

@@ -70,8 +70,9 @@ void catch_interruptions(std::optional<double> timeout_seconds) {
     sigaction(signal, nullptr, &before);
     if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
   }
-  // A reader of our output that goes away is a failed write, with a message, not a silent death.
-  ::signal(SIGPIPE, SIG_IGN);
+  // A reader of our output that goes away is a failed write, with a message, not a silent death; so is a file that
+  // grows beyond what `ulimit -f` allows.
+  for (const int signal : {SIGPIPE, SIGXFSZ}) ::signal(signal, SIG_IGN);
   if (timeout_seconds) {
     sigaction(SIGALRM, &action, nullptr);
     start_clock(*timeout_seconds);

@@ -9,7 +9,8 @@
 
 namespace frontmost::cli {
 
-/// Catches SIGINT, SIGTERM, SIGHUP, and starts the clock. Call once.
+/// Catches SIGINT, SIGTERM, SIGHUP, and starts the clock; a file that grows too large, and a reader that goes away, are
+/// failed writes from now on. Call once.
 void catch_interruptions(std::optional<double> timeout_seconds);
 
 /// While one of these lives, an interruption waits for the library to clean up.

@@ -10,9 +10,11 @@
 
 #include "cli/command.h"
 #include "cli/console.h"
+#include "cli/culprit.h"
 #include "cli/failure.h"
 #include "cli/interruption.h"
 #include "cli/values.h"
+#include "cli/view_options.h"
 
 namespace frontmost::cli {
 namespace {
@@ -39,6 +41,24 @@ bool asks_for_help(const Words& words) {
   throw UsageError(fmt::format("unknown command '{}'; did you mean '{}'?", word, nearest));
 }
 
+int run_command(const Command& command, Settings settings) {
+  if (!command.bit) return command.run(settings);
+  // Before the first file is read: it may be a pipe that nobody writes to.
+  catch_interruptions(settings.run.timeout);
+  try {
+    read_pose_file(settings.view);
+    return command.run(settings);
+  } catch (const Error& error) {
+    throw Error(error.code(), with_culprit(error.what(), settings));
+  } catch (const UsageError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw Error(ErrorCode::limit_exceeded, with_culprit("out of memory", settings));
+  } catch (const std::exception& error) {
+    throw Error(ErrorCode::unsupported, with_culprit(error.what(), settings));
+  }
+}
+
 int dispatch(Words words) {
   if (words.empty()) throw UsageError("no command given; see frontmost --help");
   const std::string_view first = words[0];
@@ -63,7 +83,7 @@ int dispatch(Words words) {
     print(help_for(*command));
     return exit_done;
   }
-  return command->run(parse_command_line(*command, words.subspan(1)));
+  return run_command(*command, parse_command_line(*command, words.subspan(1)));
 }
 
 int run(const Words& words) {

@@ -86,8 +86,8 @@ std::string man_page() {
       ".SH NAME\nfrontmost \\- what can be seen from here\n.SH SYNOPSIS\n",
       FRONTMOST_VERSION);
   for (const Command& command : commands()) {
-    page += fmt::format(".B frontmost {}\n\\fI{}\\fR{}\n.br\n", command.name, plain(command.argument),
-                        command.bit ? " [options]" : "");
+    const std::string usage = usage_of(command, "\\fI", "\\fR");
+    page += fmt::format(".B frontmost {}\n{}{}.br\n", command.name, usage, usage.empty() ? "" : "\n");
   }
   page +=
       ".SH DESCRIPTION\nFrontmost finds what is visible in 3D models, exactly and with the same bytes on every "

@@ -7,6 +7,7 @@
 #include <frontmost/tessellate.h>
 
 #include "cli/console.h"
+#include "cli/input_files.h"
 
 namespace frontmost::cli {
 
@@ -16,9 +17,14 @@ Execution execution_for(const RunSettings& settings, const Progress& progress) {
   return {settings.threads, settings.isa, progress.watch()};
 }
 
-Scene load_model(const Settings& settings, const Execution& execution, Progress& progress) {
-  Scene scene = load(settings.model, settings.load, execution);
-  for (const std::string& model : settings.more_models) append(scene, load(model, settings.load, execution));
+Scene load_model(const Settings& settings, const Execution& execution, Progress& progress,
+                 const std::vector<std::string>& outputs) {
+  std::vector<std::filesystem::path> used;
+  LoadOptions options = settings.load;
+  options.files = &used;
+  Scene scene = load(settings.model, options, execution);
+  for (const std::string& model : settings.more_models) append(scene, load(model, options, execution));
+  refuse_outputs_beside(used, outputs);
   show_warnings(scene.warnings, settings.run, progress);
   return scene;
 }

@@ -64,6 +64,8 @@ struct Given {
     return static_cast<Enum>(parse_choice(text, choices));
   }
   [[nodiscard]] std::string string() const { return std::string(text); }
+  /// \throws UsageError on an empty one
+  [[nodiscard]] std::string file_name() const;
 };
 
 struct Option {

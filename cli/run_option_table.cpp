@@ -25,7 +25,7 @@ Isa isa_from(const Given& given) {
 
 constexpr Option table[] = {
     {"batch", 0, "FILE", "Render many views: a JSON file of views and outputs (see frontmost(1)).", Group::run,
-     for_render, [](Settings& s, const Given& g) { s.run.batch = g.string(); }},
+     for_render, [](Settings& s, const Given& g) { s.run.batch = g.file_name(); }},
     {"method", 0, "zbuffer|raycast|abuffer",
      "Visibility method; by default the z-buffer, and the A-buffer for what can be seen through.", Group::run,
      for_render, [](Settings& s, const Given& g) { s.run.method = g.choice<Method>(); }},
@@ -54,6 +54,11 @@ constexpr Option table[] = {
 }  // namespace
 
 std::span<const Option> run_option_table() { return table; }
+
+std::string Given::file_name() const {
+  if (text.empty()) throw UsageError("the file name is empty");
+  return string();
+}
 
 void apply(const Option& option, std::string_view text, Settings& settings) {
   try {

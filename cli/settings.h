@@ -45,6 +45,7 @@ struct ViewSettings {
   std::optional<std::array<double, 4>> intrinsics;  ///< fx, fy, cx, cy
   PixelRule pixel_rule = PixelRule::centre_at_integer;
   std::optional<glm::dmat4> pose;
+  std::optional<std::string> pose_file;  ///< where it comes from; `pose` is set by read_pose_file()
   std::optional<PoseConvention> pose_convention;
   std::optional<double> near, far;
   std::optional<glm::ivec2> resolution;

@@ -8,6 +8,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <numeric>
 
 #include "cli/failure.h"
@@ -20,12 +21,16 @@ std::string_view without_plus(std::string_view text) {
   return text.size() > 1 && text[0] == '+' && text[1] != '-' ? text.substr(1) : text;
 }
 
+/// What from_chars() leaves alone: a number that rounds to infinity, or to nothing. The text is whole.
+double beyond_doubles(std::string_view text) { return std::strtod(std::string(text).c_str(), nullptr); }
+
 std::optional<double> to_double(std::string_view text) {
   text = without_plus(text);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
+  if (end != text.data() + text.size()) return std::nullopt;
+  if (error == std::errc::result_out_of_range) return beyond_doubles(text);
+  return error == std::errc() ? std::optional(value) : std::nullopt;
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -95,26 +100,28 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 
 double parse_number(std::string_view text, const Range& range) {
   const std::optional<double> value = to_double(trimmed(text));
-  if (!value) throw UsageError(fmt::format("'{}' is not a number", text));
+  if (!value) throw UsageError(fmt::format("{} is not a number", quoted(text)));
   // Written so that NaN fails.
   if (!(*value >= range.low && *value <= range.high)) {
-    if (range.low == any_number.low) throw UsageError(fmt::format("{} is not a usable number", text));
-    if (range.high == any_number.high) throw UsageError(fmt::format("{} is below {}", text, range.low));
-    throw UsageError(fmt::format("{} is not between {} and {}", text, range.low, range.high));
+    const std::string shown = shortened(text);
+    if (range.low == any_number.low) throw UsageError(fmt::format("{} is not a usable number", shown));
+    if (range.high == any_number.high) throw UsageError(fmt::format("{} is below {}", shown, range.low));
+    throw UsageError(fmt::format("{} is not between {} and {}", shown, range.low, range.high));
   }
   return *value;
 }
 
 int parse_integer(std::string_view text, const Range& range) {
   const double value = parse_number(text, range);
-  if (value != std::floor(value)) throw UsageError(fmt::format("{} is not a whole number", text));
+  if (value != std::floor(value)) throw UsageError(fmt::format("{} is not a whole number", shortened(text)));
   return int(value);
 }
 
 std::vector<double> parse_numbers(std::string_view text, std::size_t count, const Range& range) {
   const std::vector<std::string_view> parts = split(text, ',');
   if (parts.size() != count) {
-    throw UsageError(fmt::format("'{}' has {} values, {} are needed, separated by commas", text, parts.size(), count));
+    throw UsageError(
+        fmt::format("{} has {} values, {} are needed, separated by commas", quoted(text), parts.size(), count));
   }
   std::vector<double> values;
   for (const std::string_view part : parts) values.push_back(parse_number(part, range));
@@ -129,7 +136,7 @@ glm::dvec3 parse_vector(std::string_view text) {
 glm::dvec3 parse_direction(std::string_view text) {
   if (const std::optional<glm::dvec3> named = axis(trimmed(text))) return *named;
   const glm::dvec3 vector = parse_vector(text);
-  if (glm::length(vector) < 1e-30) throw UsageError(fmt::format("'{}' has no direction", text));
+  if (glm::length(vector) < 1e-30) throw UsageError(fmt::format("{} has no direction", quoted(text)));
   return vector;
 }
 
@@ -142,7 +149,7 @@ int parse_choice(std::string_view text, std::string_view choices) {
   };
   const auto found = std::find_if(words.begin(), words.end(), same);
   if (found != words.end()) return int(found - words.begin());
-  throw UsageError(fmt::format("'{}' is not one of {}", text, fmt::join(words, ", ")));
+  throw UsageError(fmt::format("{} is not one of {}", quoted(text), fmt::join(words, ", ")));
 }
 
 glm::vec3 parse_color(std::string_view text) {
@@ -159,29 +166,35 @@ glm::vec3 parse_color(std::string_view text) {
   if (const std::optional<glm::vec3> color = hex_color(text)) return *color;
   if (text.find(',') == std::string_view::npos) {
     throw UsageError(
-        fmt::format("'{}' is not a colour: #rrggbb, r,g,b from 0 to 1, or white, black, gray, red, green, "
+        fmt::format("{} is not a colour: #rrggbb, r,g,b from 0 to 1, or white, black, gray, red, green, "
                     "blue, transparent",
-                    text));
+                    quoted(text)));
   }
   const std::vector<double> values = parse_numbers(text, 3, {0, 1});
   return glm::vec3(float(values[0]), float(values[1]), float(values[2]));
 }
 
 std::optional<glm::dmat4> parse_matrix(std::string_view text) {
-  constexpr std::string_view separators = " \t\r\n,;[]()";
   std::vector<double> values;
-  for (;;) {
-    const std::size_t start = text.find_first_not_of(separators);
-    if (start == std::string_view::npos) break;
-    text.remove_prefix(start);
-    const std::size_t length = std::min(text.find_first_of(separators), text.size());
-    const std::optional<double> value = to_double(text.substr(0, length));
+  for (std::string_view word = take_matrix_word(text); !word.empty(); word = take_matrix_word(text)) {
+    const std::optional<double> value = to_double(word);
     if (!value) return std::nullopt;
     if (!std::isfinite(*value)) throw UsageError("a matrix entry is not finite");
     values.push_back(*value);
     if (values.size() > 16) throw UsageError("more than 16 numbers");
-    text.remove_prefix(length);
   }
+  return matrix_of(std::move(values));
+}
+
+std::string_view take_matrix_word(std::string_view& text) {
+  constexpr std::string_view separators = " \t\r\n,;[]()";
+  text.remove_prefix(std::min(text.find_first_not_of(separators), text.size()));
+  const std::string_view word = text.substr(0, text.find_first_of(separators));
+  text.remove_prefix(word.size());
+  return word;
+}
+
+glm::dmat4 matrix_of(std::vector<double> values) {
   if (values.size() == 12) values.insert(values.end(), {0, 0, 0, 1});
   if (values.size() != 16) throw UsageError(fmt::format("{} numbers; a pose is 16 (or 12), row by row", values.size()));
   glm::dmat4 matrix;
@@ -191,7 +204,16 @@ std::optional<glm::dmat4> parse_matrix(std::string_view text) {
   return matrix;
 }
 
+std::string shortened(std::string_view text) {
+  constexpr std::size_t longest = 80;
+  return fmt::format("{}{}", text.substr(0, longest), text.size() > longest ? "..." : "");
+}
+
+std::string quoted(std::string_view text) { return "'" + shortened(text) + "'"; }
+
 std::string_view nearest_word(std::string_view word, std::span<const std::string_view> candidates) {
+  constexpr std::size_t longest = 64;
+  if (word.size() > longest) return {};  // no word is that long, and the distance takes the product of both lengths
   std::string_view best;
   // A third of the letters wrong is still a typing mistake; more is another word.
   std::size_t best_distance = std::max<std::size_t>(word.size() / 3, 1) + 1;

@@ -34,6 +34,12 @@ inline constexpr Range any_number{-1e30, 1e30};
 /// 16 numbers (or 12: the last row is 0 0 0 1), row by row; commas, blanks, brackets and semicolons separate.
 /// None: not numbers at all.
 [[nodiscard]] std::optional<glm::dmat4> parse_matrix(std::string_view text);
+/// Its parts: takes the next number's text away, empty at the end; and makes the matrix of the numbers.
+[[nodiscard]] std::string_view take_matrix_word(std::string_view& text);
+[[nodiscard]] glm::dmat4 matrix_of(std::vector<double> values);
+/// As messages show what they complain of: its start alone where it is long; and in quotes.
+[[nodiscard]] std::string shortened(std::string_view text);
+[[nodiscard]] std::string quoted(std::string_view text);
 
 /// The candidate nearest to a mistyped word, if one is near enough to be meant; empty otherwise.
 [[nodiscard]] std::string_view nearest_word(std::string_view word, std::span<const std::string_view> candidates);

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Options that say which model and where from.
-#include <fstream>
-#include <sstream>
-
 #include "cli/failure.h"
 #include "cli/option.h"
 
@@ -21,17 +18,11 @@ Axis axis_of(const glm::dvec3& direction) {
   throw UsageError("up is one of +x, +y, +z, -x, -y, -z");
 }
 
-glm::dmat4 pose_from(std::string_view text) {
-  if (const std::optional<glm::dmat4> matrix = parse_matrix(text)) return *matrix;
-  std::ifstream file{std::string(text)};
-  if (!file) throw UsageError("'" + std::string(text) + "' is neither 16 numbers nor a file that can be read");
-  // A pose is a few hundred characters; anything longer is some other file.
-  std::string content(4096, '\0');
-  file.read(content.data(), std::streamsize(content.size()));
-  content.resize(std::size_t(file.gcount()));
-  const std::optional<glm::dmat4> matrix = parse_matrix(content);
-  if (!matrix) throw UsageError("'" + std::string(text) + "' does not hold 16 numbers");
-  return *matrix;
+void set_pose(ViewSettings& view, const Given& given) {
+  const std::string name = given.file_name();
+  view.pose = parse_matrix(name);
+  view.pose_file.reset();
+  if (!view.pose) view.pose_file = name;
 }
 
 glm::ivec2 resolution_from(std::string_view text) {
@@ -110,7 +101,7 @@ constexpr Option table[] = {
      "Where cx,cy put the centre of the first pixel: 0.5,0.5 (OpenGL) or 0,0 (OpenCV, the default).", Group::vision,
      views, [](Settings& s, const Given& g) { s.view.pixel_rule = g.choice<PixelRule>(); }},
     {"pose", 0, "FILE", "Camera pose: 16 numbers row by row, or a file that holds them. Needs --pose-convention.",
-     Group::vision, views, [](Settings& s, const Given& g) { s.view.pose = pose_from(g.text); }},
+     Group::vision, views, [](Settings& s, const Given& g) { set_pose(s.view, g); }},
     {"pose-convention", 0,
      "opengl-camera-to-world|opengl-world-to-camera|opencv-camera-to-world|opencv-world-to-camera",
      "What the pose maps, and its axes: opengl looks down -z with y up, opencv down +z with y down.", Group::vision,

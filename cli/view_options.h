@@ -11,6 +11,10 @@
 
 namespace frontmost::cli {
 
+/// Reads the file that the pose lies in, where it does and was not read yet.
+/// \throws UsageError where there is no such file; Error naming file and line for one that holds no pose.
+void read_pose_file(ViewSettings& settings);
+
 /// Finds options that exclude or need one another, before any model is read.
 /// \throws UsageError naming them
 void check_view_settings(const ViewSettings& settings);

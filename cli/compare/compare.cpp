@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // frontmost compare: every visibility method on one view, side by side.
+#include <filesystem>
+#include <optional>
+
 #include "cli/command.h"
 #include "cli/compare/compare_page.h"
 #include "cli/compare/compare_report.h"
+#include "cli/compare/staged_folder.h"
 #include "cli/console.h"
 #include "cli/failure.h"
 #include "cli/interruption.h"
 #include "cli/model.h"
+#include "cli/render/outputs.h"
 #include "cli/view_options.h"
 
 namespace frontmost::cli {
@@ -17,7 +22,15 @@ void check(const Settings& settings) {
   // Every method reads the model for itself.
   if (settings.view.samples.value_or(1) > 16) throw UsageError("--samples: compare takes 1, 2, 4, 8 or 16");
   if (settings.model == "-") throw UsageError("compare reads its model several times: give a file");
-  if (settings.compare.folder) check_page_folder(*settings.compare.folder);
+}
+
+/// The files of the page, if there is to be one.
+std::vector<std::string> outputs_of(const Settings& settings) {
+  std::vector<std::string> paths;
+  if (!settings.compare.folder) return paths;
+  for (const std::string& name : page_names())
+    paths.push_back((std::filesystem::path(*settings.compare.folder) / name).string());
+  return paths;
 }
 
 Agreement agreement_of(const MethodRun& run, const Visible& reference, const Surfaces& surfaces,
@@ -31,7 +44,10 @@ Agreement agreement_of(const MethodRun& run, const Visible& reference, const Sur
 
 int run_compare(const Settings& settings) {
   check(settings);
-  catch_interruptions(settings.run.timeout);
+  std::optional<MadeFolder> folder;
+  if (settings.compare.folder) folder.emplace(*settings.compare.folder);
+  const std::vector<std::string> outputs = outputs_of(settings);
+  check_outputs(outputs, input_files(settings));
   // The methods' processes come first: a process that has threads cannot be split.
   std::vector<MethodRun> runs;
   for (const ComparedMethod& method : compared_methods()) {
@@ -40,7 +56,7 @@ int run_compare(const Settings& settings) {
   }
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
-  const Scene scene = load_model(settings, execution, progress);
+  const Scene scene = load_model(settings, execution, progress, outputs);
   const View& view = runs.front().answer.visible.view;
   const std::optional<Scene> cut = tessellated(scene, settings.view, view);
   const Surfaces surfaces(cut ? *cut : scene, execution);
@@ -51,7 +67,8 @@ int run_compare(const Settings& settings) {
     all.methods.push_back({std::move(run), std::move(agreement)});
     stop_if_interrupted();
   }
-  if (settings.compare.folder) all.files = write_page(all, *settings.compare.folder, execution);
+  if (settings.compare.folder) write_page(all, *settings.compare.folder, execution);
+  all.files = outputs;
   progress.clear();
   print(settings.run.json ? dump(compare_json(all)) : compare_text(all));
   return exit_done;

@@ -76,10 +76,9 @@ std::string transparency(const Comparisons& all) {
 
 /// None for methods that are right.
 std::optional<std::string> mistakes(const Compared& compared, const Comparisons& all) {
-  const std::uint64_t wrong = compared.agreement.count(Difference::unexplained);
-  if (!compared.run.method->is_naive || wrong == 0) return std::nullopt;
-  return fmt::format("{}: wrong in {} of {} {}.", compared.run.method->title, grouped(wrong),
-                     grouped(all.view.sample_count()), spots(all.view));
+  if (compared.wrong_by_design() == 0) return std::nullopt;
+  return fmt::format("{}: wrong in {} of {} {}, by design.", compared.run.method->title,
+                     grouped(compared.wrong_by_design()), grouped(all.view.sample_count()), spots(all.view));
 }
 
 std::string trust(const Comparisons& all) {
@@ -88,7 +87,7 @@ std::string trust(const Comparisons& all) {
     if (compared.run.method->is_naive) continue;
     differing =
         std::max(differing, compared.agreement.count(Difference::edge) + compared.agreement.count(Difference::depth));
-    unexplained += compared.agreement.count(Difference::unexplained);
+    unexplained += compared.unexplained();
   }
   if (unexplained > 0)
     return fmt::format("{} {} are unexplained: a mistake in a method. Please report this model.", unexplained,

@@ -4,19 +4,19 @@
 #include <fmt/format.h>
 #include <frontmost/io.h>
 #include <frontmost/shade.h>
+#include <frontmost/text.h>
 #include <frontmost/version.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
+#include "cli/compare/staged_folder.h"
 #include "cli/interruption.h"
 
 namespace frontmost::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* style = R"(:root { color-scheme: light dark; --ground: #f6f5f2; --card: #fff; --ink: #1d1f23;
   --soft: #5d636e; --line: #e2e0da; --accent: #b4521b; --stage: radial-gradient(circle at 50% 35%, #fff, #e4e6ea); }
@@ -39,11 +39,11 @@ p, li { margin: 0 0 10px; color: var(--soft); }
 .card figcaption { padding: 16px 20px 10px; }
 .scroll { overflow-x: auto; background: var(--card); border: 1px solid var(--line); border-radius: 14px;
   padding: 6px 20px; margin-top: 16px; }
-table { border-collapse: collapse; width: 100%; min-width: 560px; table-layout: fixed; font-variant-numeric: tabular-nums; }
-th, td { padding: 7px 16px 7px 0; border-bottom: 1px solid var(--line); text-align: right; font-weight: 400;
+table { border-collapse: collapse; width: 100%; min-width: 700px; table-layout: fixed; font-variant-numeric: tabular-nums; }
+th, td { padding: 7px 0 7px 14px; border-bottom: 1px solid var(--line); text-align: right; font-weight: 400;
   white-space: nowrap; }
-th:first-child { text-align: left; color: var(--soft); white-space: normal; width: 34%; }
-thead th { font-weight: 650; }
+th:first-child { padding-left: 0; text-align: left; color: var(--soft); white-space: normal; width: 26%; }
+thead th { font-weight: 650; white-space: normal; vertical-align: bottom; line-height: 1.25; }
 tr:last-child > * { border-bottom: 0; }
 .part th:first-child { padding-left: 20px; }
 .bar { display: block; height: 6px; border-radius: 3px; background: var(--accent); margin: 3px 0 0 auto; }
@@ -55,18 +55,26 @@ footer { padding: 40px 24px; color: var(--soft); font-size: 0.9rem; }
 
 struct Cause {
   Difference difference;
+  bool of_naive;    ///< counted for methods that are known to be wrong, and for no others
   glm::vec3 color;  // sRGB
   const char* text;
+
+  [[nodiscard]] std::uint64_t count(const Compared& c) const {
+    if (difference != Difference::unexplained) return c.agreement.count(difference);
+    return of_naive ? c.wrong_by_design() : c.unexplained();
+  }
 };
 // Told apart in either kind of colour blindness, on dark grey.
-constexpr Cause causes[] = {{Difference::edge, {0.99f, 0.72f, 0.15f}, "edge within 1/128 pixel"},
-                            {Difference::depth, {0.31f, 0.70f, 1.0f}, "depths closer than can be told"},
-                            {Difference::translucent, {0.62f, 0.87f, 0.47f}, "seen through something translucent"},
-                            {Difference::unexplained, {1.0f, 0.15f, 0.45f}, "unexplained"}};
+constexpr Cause causes[] = {
+    {Difference::edge, false, {0.99f, 0.72f, 0.15f}, "edge within 1/128 pixel"},
+    {Difference::depth, false, {0.31f, 0.70f, 1.0f}, "depths closer than can be told"},
+    {Difference::translucent, false, {0.62f, 0.87f, 0.47f}, "seen through something translucent"},
+    {Difference::unexplained, true, {0.80f, 0.80f, 0.86f}, "wrong by design"},
+    {Difference::unexplained, false, {1.0f, 0.15f, 0.45f}, "unexplained"}};
 
 std::string escaped(std::string_view text) {
   std::string result;
-  for (const char c : text) {
+  for (const char c : printable_text(text)) {
     if (c == '&') {
       result += "&amp;";
     } else if (c == '<') {
@@ -101,12 +109,13 @@ std::string data_uri(const std::string& path) {
 float linear(float srgb) { return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f); }
 
 /// Squares, because a single pixel is not seen in a small picture. What is rarer and worse goes on top.
-void mark(const Agreement& agreement, Image& map) {
+void mark(const Compared& compared, Image& map) {
+  const Agreement& agreement = compared.agreement;
   const int reach = std::max(map.width, map.height) / 320;
   for (const Cause& cause : causes) {
-    if (agreement.count(cause.difference) == 0) continue;
+    if (cause.count(compared) == 0) continue;
     // Where most of an area differs, pixels are large enough by themselves.
-    const int side = agreement.count(cause.difference) > agreement.view.sample_count() / 100 ? 0 : reach;
+    const int side = cause.count(compared) > agreement.view.sample_count() / 100 ? 0 : reach;
     for (std::size_t sample = 0; sample < agreement.view.sample_count(); ++sample) {
       if (agreement.differences[sample] != cause.difference) continue;
       const auto pixel = int(sample % agreement.view.pixel_count()), x = pixel % map.width, y = pixel / map.width;
@@ -120,17 +129,17 @@ void mark(const Agreement& agreement, Image& map) {
 }
 
 /// The differing pixels over the picture in dim grey.
-Image difference_map(const Agreement& agreement, const Image& picture) {
+Image difference_map(const Compared& compared, const Image& picture) {
   Image map{picture.width, picture.height, {}};
   for (const char* channel : {"R", "G", "B", "A"})
-    map.channels.push_back({channel, Buffer<float>(agreement.view.pixel_count(), 1.0f)});
+    map.channels.push_back({channel, Buffer<float>(compared.agreement.view.pixel_count(), 1.0f)});
   const auto &red = picture.find("R")->floats(), &green = picture.find("G")->floats(),
              &blue = picture.find("B")->floats();
   for (std::size_t i = 0; i < red.size(); ++i) {
     const float grey = 0.015f + 0.14f * (0.2126f * red[i] + 0.7152f * green[i] + 0.0722f * blue[i]);
     for (std::size_t c = 0; c < 3; ++c) map.channels[c].floats()[i] = grey;
   }
-  mark(agreement, map);
+  mark(compared, map);
   return map;
 }
 
@@ -188,7 +197,7 @@ std::string table(const Comparisons& all) {
     plain(
         fmt::format("<span class=\"key\" style=\"background:rgb({:.0f},{:.0f},{:.0f})\"></span>{}", 255 * cause.color.r,
                     255 * cause.color.g, 255 * cause.color.b, cause.text),
-        [&](const Compared& c) { return c.agreement.count(cause.difference); }, part);
+        [&](const Compared& c) { return cause.count(c); }, part);
   return text + "</tbody></table></div>\n";
 }
 
@@ -206,27 +215,23 @@ std::string legend() {
   return text + "</p>";
 }
 
-struct Pictures {
-  std::vector<std::string> pictures, maps;  // files; the first method has no map
-};
+std::string picture_name(const ComparedMethod& method) { return std::string(method.name) + ".png"; }
+std::string map_name(const ComparedMethod& method) { return std::string(method.name) + "-differences.png"; }
 
-Pictures save_pictures(const Comparisons& all, const std::string& folder, const Execution& execution) {
-  Pictures files;
+/// The first method has no map.
+void save_pictures(const Comparisons& all, const StagedFolder& folder, const Execution& execution) {
+  bool is_first = true;
   for (const Compared& compared : all.methods) {
-    const std::string stem = (fs::path(folder) / std::string(compared.run.method->name)).string();
+    const ComparedMethod& method = *compared.run.method;
     const Image picture = shade(all.surfaces, compared.run.answer.visible,
                                 {.shading = Shading::lit, .background = std::nullopt}, execution);
-    const WritingFiles writing;
-    files.pictures.push_back(stem + ".png");
-    save(picture, files.pictures.back(), {}, execution);
-    if (files.pictures.size() == 1) continue;
-    files.maps.push_back(stem + "-differences.png");
-    save(difference_map(compared.agreement, picture), files.maps.back(), {}, execution);
+    save(picture, folder.path(picture_name(method)), {}, execution);
+    if (!std::exchange(is_first, false))
+      save(difference_map(compared, picture), folder.path(map_name(method)), {}, execution);
   }
-  return files;
 }
 
-std::string page(const Comparisons& all, const Pictures& files) {
+std::string page(const Comparisons& all, const StagedFolder& folder) {
   const std::string model = escaped(all.settings.model);
   std::string text = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
@@ -239,12 +244,12 @@ std::string page(const Comparisons& all, const Pictures& files) {
   text += "<h2>In words</h2><ul>";
   for (const std::string& sentence : advice(all)) text += "<li>" + escaped(sentence) + "</li>";
   text += "</ul>\n<h2>What they see</h2><div class=\"cards\">\n";
-  for (std::size_t i = 0; i < all.methods.size(); ++i)
-    text += card(data_uri(files.pictures[i]), all.methods[i].run.method->title, all.methods[i].run.method->how);
+  for (const Compared& c : all.methods)
+    text += card(data_uri(folder.path(picture_name(*c.run.method))), c.run.method->title, c.run.method->how);
   text += "</div>\n<h2>Where they differ</h2>" + legend() + "<div class=\"cards\">\n";
   for (std::size_t i = 1; i < all.methods.size(); ++i) {
     const Compared& c = all.methods[i];
-    text += card(data_uri(files.maps[i - 1]),
+    text += card(data_uri(folder.path(map_name(*c.run.method))),
                  fmt::format("{} and {}", c.run.method->title, all.methods[0].run.method->title),
                  fmt::format("{} {} differ; each is marked larger than it is.", grouped(c.agreement.differing()),
                              spots(all.view)));
@@ -254,20 +259,27 @@ std::string page(const Comparisons& all, const Pictures& files) {
 
 }  // namespace
 
-void check_page_folder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (!fs::is_directory(folder)) throw Error(ErrorCode::file_unwritable, folder + ": cannot be made into a folder");
+std::vector<std::string> page_names() {
+  std::vector<std::string> names;
+  for (const ComparedMethod& method : compared_methods()) {
+    names.push_back(picture_name(method));
+    if (&method != compared_methods().data()) names.push_back(map_name(method));
+  }
+  names.emplace_back("index.html");
+  return names;
 }
 
-std::vector<std::string> write_page(const Comparisons& all, const std::string& folder, const Execution& execution) {
-  const Pictures files = save_pictures(all, folder, execution);
-  std::vector<std::string> names{(fs::path(folder) / "index.html").string()};
+void write_page(const Comparisons& all, const std::string& folder, const Execution& execution) {
+  // Of all files together: what is interrupted in between takes the finished ones away too.
   const WritingFiles writing;
-  save_text(page(all, files), names.front());
-  names.insert(names.end(), files.pictures.begin(), files.pictures.end());
-  names.insert(names.end(), files.maps.begin(), files.maps.end());
-  return names;
+  const StagedFolder staged(folder);
+  try {
+    save_pictures(all, staged, execution);
+    save_text(page(all, staged), staged.path("index.html"));
+  } catch (const Error& error) {
+    throw Error(error.code(), staged.told(error.what()));
+  }
+  staged.commit(page_names());
 }
 
 }  // namespace frontmost::cli

@@ -6,10 +6,9 @@
 
 namespace frontmost::cli {
 
-/// \throws Error file_unwritable where the folder cannot be made or is something else.
-void check_page_folder(const std::string& folder);
-/// Writes index.html and the pictures that it holds. \returns their paths.
-[[nodiscard]] std::vector<std::string> write_page(const Comparisons& all, const std::string& folder,
-                                                  const Execution& execution);
+/// The names of the page's files: pictures and maps of differences, and index.html.
+[[nodiscard]] std::vector<std::string> page_names();
+/// Writes them all into the folder, or none. \throws Error file_unwritable.
+void write_page(const Comparisons& all, const std::string& folder, const Execution& execution);
 
 }  // namespace frontmost::cli

@@ -14,6 +14,7 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
+#include <system_error>
 #include <type_traits>
 
 #include "cli/failure.h"
@@ -211,9 +212,12 @@ class Child {
       close(files[0]);
       be_child(method, settings, files[1]);
     }
+    const int code = errno;
     close(files[1]);
     file_ = files[0];
-    if (process_ < 0) throw Error(ErrorCode::unsupported, "compare: no process for a method");
+    if (process_ >= 0) return;
+    close(file_);  // an object that was not made is not destroyed
+    throw Error(ErrorCode::unsupported, "compare: no process for a method: " + std::generic_category().message(code));
   }
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;

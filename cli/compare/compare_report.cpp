@@ -46,7 +46,8 @@ Json method_json(const Comparisons& all, const Compared& compared) {
                {"covered_samples", covered_samples(run.answer.visible)},
                {"differing", compared.agreement.differing()},
                {"explained", std::move(explained)},
-               {"unexplained", compared.agreement.count(Difference::unexplained)}};
+               {"wrong_by_design", compared.wrong_by_design()},
+               {"unexplained", compared.unexplained()}};
   if (run.lists) {
     json["fragments"] = run.lists->fragments;
     json["longest_list"] = run.lists->longest;
@@ -112,8 +113,10 @@ std::string compare_text(const Comparisons& all) {
                  [](const Compared& c) { return grouped(c.agreement.differing()); });
   for (const auto& [label, cause] :
        {std::pair("  edge in 1/128 pixel", Difference::edge), std::pair("  depths too close", Difference::depth),
-        std::pair("  translucent", Difference::translucent), std::pair("  unexplained", Difference::unexplained)})
+        std::pair("  translucent", Difference::translucent)})
     text += row_of(all, label, [&, counted = cause](const Compared& c) { return grouped(c.agreement.count(counted)); });
+  text += row_of(all, "  wrong by design", [](const Compared& c) { return grouped(c.wrong_by_design()); });
+  text += row_of(all, "  unexplained", [](const Compared& c) { return grouped(c.unexplained()); });
   if (!all.settings.compare.explain) return text;
   text += '\n';
   for (const std::string& sentence : advice(all)) text += sentence + '\n';

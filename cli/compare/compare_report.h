@@ -13,6 +13,13 @@ namespace frontmost::cli {
 struct Compared {
   MethodRun run;
   Agreement agreement;
+
+  /// Where nothing explains the difference: a mistake, unless the method is known to make some.
+  [[nodiscard]] std::uint64_t unexplained() const { return run.method->is_naive ? 0 : wrong(); }
+  [[nodiscard]] std::uint64_t wrong_by_design() const { return run.method->is_naive ? wrong() : 0; }
+
+ private:
+  [[nodiscard]] std::uint64_t wrong() const { return agreement.count(Difference::unexplained); }
 };
 
 struct Comparisons {

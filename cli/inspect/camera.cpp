@@ -6,7 +6,6 @@
 #include "cli/console.h"
 #include "cli/failure.h"
 #include "cli/inspect/camera_report.h"
-#include "cli/interruption.h"
 #include "cli/model.h"
 #include "cli/view_options.h"
 
@@ -14,7 +13,6 @@ namespace frontmost::cli {
 
 int run_camera(const Settings& settings) {
   check_view_settings(settings.view);
-  catch_interruptions(settings.run.timeout);
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
   const Scene scene = load_model(settings, execution, progress);

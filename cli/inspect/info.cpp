@@ -4,13 +4,11 @@
 #include "cli/console.h"
 #include "cli/failure.h"
 #include "cli/inspect/info_report.h"
-#include "cli/interruption.h"
 #include "cli/model.h"
 
 namespace frontmost::cli {
 
 int run_info(const Settings& settings) {
-  catch_interruptions(settings.run.timeout);
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
   const Scene scene = load_model(settings, execution, progress);

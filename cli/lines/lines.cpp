@@ -252,7 +252,7 @@ void name_object(Scene& scene, const Settings& settings) {
 Json draw_model(Settings settings, const Execution& execution, Progress& progress) {
   settings.load.found = &settings.load.format;
   settings.load.metres_per_unit = &settings.metres_per_unit;
-  Scene scene = load_model(settings, execution, progress);
+  Scene scene = load_model(settings, execution, progress, settings.drawing.outputs);
   name_object(scene, settings);
   const Surfaces surfaces(scene, execution);
   LinesTimings timings;
@@ -308,7 +308,7 @@ std::vector<Settings> sheets_of(const Settings& given) {
       paths.push_back(path);
     }
   }
-  for (const std::string& model : models) check_outputs(paths, model);
+  check_outputs(paths, input_files(given));
   return sheets;
 }
 
@@ -317,7 +317,6 @@ std::vector<Settings> sheets_of(const Settings& given) {
 int run_lines(const Settings& settings) {
   check(settings);
   const std::vector<Settings> sheets = sheets_of(settings);
-  catch_interruptions(settings.run.timeout);
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
   Json reports = Json::array();

@@ -11,11 +11,19 @@
 #include "cli/precision/precision_plot.h"
 #include "cli/precision/precision_report.h"
 #include "cli/rays/sight.h"
+#include "cli/render/fit.h"
 #include "cli/render/outputs.h"
 #include "cli/view_options.h"
 
 namespace frontmost::cli {
 namespace {
+
+std::vector<std::string> outputs_of(const PrecisionSettings& precision) {
+  std::vector<std::string> files;
+  for (const auto& file : {precision.plot, precision.heat_map})
+    if (file) files.push_back(*file);
+  return files;
+}
 
 void check(const Settings& settings) {
   const PrecisionSettings& precision = settings.precision;
@@ -26,10 +34,8 @@ void check(const Settings& settings) {
   if (!has_model && !settings.view.far && !precision.infinite)
     throw UsageError("give --far or --infinite, or a --model to fit the far plane to");
   if (precision.heat_map && !(has_model && precision.format)) throw UsageError("--heat-map needs --model and --format");
-  std::vector<std::string> files;
-  for (const auto& file : {precision.plot, precision.heat_map})
-    if (file) files.push_back(*file);
-  check_outputs(files, settings.model);
+  const std::vector<std::string> files = outputs_of(precision);
+  check_outputs(files, input_files(settings));
   if (settings.run.json && std::find(files.begin(), files.end(), "-") != files.end())
     throw UsageError("--json and an output to - both want standard output");
 }
@@ -85,6 +91,15 @@ void save_plot(const PrecisionRun& run) {
             *settings.precision.plot);
 }
 
+/// Of the corners of a box, from the eye or from the origin.
+double reach_of(const Box& box, const glm::dvec3& eye) {
+  const glm::dvec3 low(box.low), high(box.high);
+  const auto farthest = [&](const glm::dvec3& from) {
+    return glm::length(glm::max(glm::abs(low - from), glm::abs(high - from)));
+  };
+  return std::max(farthest(eye), farthest(glm::dvec3(0)));
+}
+
 /// Known only after a model has told where its planes lie.
 void check_wanted(const Settings& settings, const ClipDistances& clip) {
   const std::optional<glm::dvec2>& wanted = settings.precision.wanted;
@@ -118,23 +133,23 @@ Projection projection_without_model(const Settings& settings) {
 
 int run_precision(const Settings& settings) {
   check(settings);
-  catch_interruptions(settings.run.timeout);
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
   std::optional<Scene> scene;
   std::optional<Surfaces> surfaces;
-  PrecisionRun run{settings, nullptr, {}, {}};
+  PrecisionRun run{settings, nullptr, {}, {}, {}};
   if (settings.model.empty()) {
     const Projection projection = projection_without_model(settings);
     check_wanted(settings, projection.clip);
     run.results = buffers_of(settings, projection);
   } else {
-    scene = load_model(settings, execution, progress);
+    scene = load_model(settings, execution, progress, outputs_of(settings.precision));
     surfaces.emplace(*scene, execution);
     run.surfaces = &*surfaces;
     const View view = resolve_view(with_far(settings), *surfaces);
     check_wanted(settings, view.projection.clip);
     run.results = buffers_of(settings, view.projection);
+    run.reach = reach_of(visible_bounds(*surfaces).box, view.eye());
     fight(run, view, execution);
   }
   if (settings.precision.plot) {

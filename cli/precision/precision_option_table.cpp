@@ -6,14 +6,9 @@
 namespace frontmost::cli {
 namespace {
 
-std::string file_name(const Given& given) {
-  if (given.text.empty()) throw UsageError("the file name is empty");
-  return given.string();
-}
-
 constexpr Option table[] = {
     {"model", 0, "FILE", "Count the pixels of this model where the buffer shows the wrong surface.", Group::precision,
-     for_precision, [](Settings& s, const Given& g) { s.model = file_name(g); }},
+     for_precision, [](Settings& s, const Given& g) { s.model = g.file_name(); }},
     {"format", 0, "D8|D16|D24|F32",
      "Format of the depth buffer; by default D16, D24, F32 and F32 reversed are compared.", Group::precision,
      for_precision, [](Settings& s, const Given& g) { s.precision.format = g.choice<DepthFormat>(); }},
@@ -25,9 +20,9 @@ constexpr Option table[] = {
        s.precision.wanted = glm::dvec2(wanted[0], wanted[1]);
      }},
     {"plot", 0, "FILE", "Draw the gaps against distance, as SVG.", Group::precision, for_precision,
-     [](Settings& s, const Given& g) { s.precision.plot = file_name(g); }},
+     [](Settings& s, const Given& g) { s.precision.plot = g.file_name(); }},
     {"heat-map", 0, "FILE", "Paint the wrong pixels over the model, as PNG; needs --model and --format.",
-     Group::precision, for_precision, [](Settings& s, const Given& g) { s.precision.heat_map = file_name(g); }},
+     Group::precision, for_precision, [](Settings& s, const Given& g) { s.precision.heat_map = g.file_name(); }},
 };
 
 }  // namespace

@@ -50,7 +50,7 @@ std::vector<Line> lines_of(const ClipDistances& clip, bool orthographic, const s
   for (Line& line : lines) {
     for (int i = 0; i < line_points; ++i) {
       const double distance = std::clamp(near * std::pow(far / near, i / (line_points - 1.0)), clip.near, far);
-      const double gap = resolvable_gap(line.setup, distance);
+      const double gap = certain_gap(line.setup, distance);
       if (std::isfinite(gap) && gap > 0) line.points.emplace_back(distance, gap);
     }
   }

@@ -22,39 +22,66 @@ std::string object_name(const PrecisionRun& run, std::uint32_t instance) {
 }
 
 /// A single buffer, with more about it.
-std::string table_of(const DepthSetup& setup) {
-  std::string text =
-      fmt::format("{:>12}  {:>12}  {:>14}  {:>11}\n", "distance", "smallest gap", "gap / distance", "values used");
+std::string table_of(const PrecisionRun& run, const DepthSetup& setup) {
+  std::string text = fmt::format("{:>12}  {:>12}  {:>12}  {:>12}  {:>14}  {:>11}\n", "distance", "of format",
+                                 "of positions", "smallest gap", "gap / distance", "values used");
   for (const double distance : round_distances(setup.clip)) {
-    const double gap = resolvable_gap(setup, distance);
+    const double gap = certain_gap(setup, distance, run.reach);
     const std::string share = std::isfinite(gap) && distance > 0 ? fmt::format("{:.1e}", gap / distance) : "";
-    text += fmt::format("{:>12.6g}  {:>12}  {:>14}  {:>9.2f} %\n", distance, gap_text(gap), share,
-                        100 * share_of_values(setup, distance));
+    text += fmt::format("{:>12.6g}  {:>12}  {:>12}  {:>12}  {:>14}  {:>9.2f} %\n", distance,
+                        gap_text(resolvable_gap(setup, distance)), gap_text(rounding_gap(setup, distance, run.reach)),
+                        gap_text(gap), share, 100 * share_of_values(setup, distance));
   }
   return text;
 }
 
 /// Several, side by side.
-std::string table_of(const std::vector<PrecisionResult>& results) {
-  std::string text = fmt::format("{:>12}", "distance");
-  for (const PrecisionResult& result : results) text += fmt::format("  {:>12}", setup_name(result.setup));
+std::string table_of(const PrecisionRun& run) {
+  std::string text = fmt::format("{:>12}  {:>12}", "distance", "of positions");
+  for (const PrecisionResult& result : run.results) text += fmt::format("  {:>12}", setup_name(result.setup));
   text += '\n';
-  for (const double distance : round_distances(results.front().setup.clip)) {
-    text += fmt::format("{:>12.6g}", distance);
-    for (const PrecisionResult& result : results)
-      text += fmt::format("  {:>12}", gap_text(resolvable_gap(result.setup, distance)));
+  for (const double distance : round_distances(run.clip())) {
+    text += fmt::format("{:>12.6g}  {:>12}", distance,
+                        gap_text(rounding_gap(run.results.front().setup, distance, run.reach)));
+    for (const PrecisionResult& result : run.results)
+      text += fmt::format("  {:>12}", gap_text(certain_gap(result.setup, distance, run.reach)));
     text += '\n';
   }
   return text;
+}
+
+std::string reach_text(const PrecisionRun& run) {
+  const std::string reach = run.reach                                ? fmt::format("within {:.3g} of it", *run.reach)
+                            : run.results.front().setup.orthographic ? "within twice the planes' distances"
+                                                                     : "within twice their distance";
+  return fmt::format(
+      "\nA gap holds the format's step and what floats of positions and transforms add, for surfaces that face the "
+      "eye\n"
+      "and have their corners {}; slanted ones add what their depth changes over 1/256 pixel.\n",
+      reach);
+}
+
+/// The near plane with which the wanted gap is resolved, positions and all.
+std::optional<double> near_for(const PrecisionRun& run, const DepthSetup& setup) {
+  const glm::dvec2 wanted = *run.settings.precision.wanted;
+  const double rounding = rounding_gap(setup, wanted.y, run.reach);
+  // Rounding also moves where the format is asked, and grows with the distance; both by less than this share.
+  constexpr double slack = 4e-6;
+  const double left = wanted.x * (1 - slack) - rounding;
+  if (left <= 0) return std::nullopt;
+  return near_for_gap(setup, std::min(wanted.y + rounding, setup.clip.far), left);
 }
 
 std::string wanted_text(const PrecisionRun& run) {
   const glm::dvec2 wanted = *run.settings.precision.wanted;
   std::string text = fmt::format("\nto tell {:g} apart at {:g}\n", wanted.x, wanted.y);
   for (const auto& [setup, fights] : run.results) {
-    const std::optional<double> near = near_for_gap(setup, wanted.y, wanted.x);
+    const std::optional<double> near = near_for(run, setup);
     text += fmt::format("  {:14}", setup_name(setup));
-    if (!near) text += "no near plane will do\n";
+    if (rounding_gap(setup, wanted.y, run.reach) >= wanted.x)
+      text += fmt::format("no format will do: positions add {:.3g}\n", rounding_gap(setup, wanted.y, run.reach));
+    else if (!near)
+      text += "no near plane will do\n";
     if (near && *near == 0) text += "any near plane will do\n";
     if (near && *near > 0)
       text += fmt::format("near {:.4g} or farther{}\n", *near, *near <= setup.clip.near ? ": it is" : "");
@@ -110,11 +137,13 @@ Json result_json(const PrecisionRun& run, const PrecisionResult& result) {
   json["distances"] = Json::array();
   for (const double distance : round_distances(setup.clip)) {
     json["distances"].push_back({{"distance", distance},
-                                 {"gap", finite_or_null(resolvable_gap(setup, distance))},
+                                 {"format_gap", finite_or_null(resolvable_gap(setup, distance))},
+                                 {"positions_gap", rounding_gap(setup, distance, run.reach)},
+                                 {"gap", finite_or_null(certain_gap(setup, distance, run.reach))},
                                  {"values_used", share_of_values(setup, distance)}});
   }
-  if (const std::optional<glm::dvec2>& wanted = run.settings.precision.wanted) {
-    const std::optional<double> near = near_for_gap(setup, wanted->y, wanted->x);
+  if (run.settings.precision.wanted) {
+    const std::optional<double> near = near_for(run, setup);
     json["near_for_gap"] = near ? Json(*near) : Json(nullptr);
   }
   if (result.fights) json["fights"] = fights_json(run, *result.fights);
@@ -133,7 +162,8 @@ std::string precision_text(const PrecisionRun& run) {
   std::string text = single ? setup_name(run.results.front().setup) + ", " : "smallest gap that is always resolved; ";
   text += fmt::format("near {:.6g}, far {}\n\n", clip.near,
                       std::isfinite(clip.far) ? fmt::format("{:.6g}", clip.far) : "infinite");
-  text += single ? table_of(run.results.front().setup) : table_of(run.results);
+  text += single ? table_of(run, run.results.front().setup) : table_of(run);
+  text += reach_text(run);
   if (run.settings.precision.wanted) text += wanted_text(run);
   if (run.surfaces) text += fights_text(run);
   return text;

@@ -21,6 +21,9 @@ struct PrecisionRun {
   std::vector<PrecisionResult> results;
   std::vector<std::string> files;  ///< that were written
 
+  /// How far corners of the model lie from the eye or from the origin, whichever is more; none without a model.
+  std::optional<double> reach;
+
   [[nodiscard]] const ClipDistances& clip() const { return results.front().setup.clip; }
 };
 

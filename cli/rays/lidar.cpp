@@ -25,8 +25,9 @@ constexpr glm::dvec2 default_elevations{-15, 15};
 
 RayPattern read_directions(const std::string& path) {
   RayPattern pattern;
-  for (const std::vector<double>& n : read_number_lines(path, {3, "three numbers make a direction"}))
-    pattern.directions.emplace_back(glm::dvec3(n[0], n[1], n[2]));
+  const std::vector<double> n = read_number_lines(path, {3, "three numbers make a direction"});
+  pattern.directions.reserve(n.size() / 3);
+  for (std::size_t i = 0; i < n.size(); i += 3) pattern.directions.emplace_back(glm::dvec3(n[i], n[i + 1], n[i + 2]));
   if (pattern.directions.empty()) throw Error(ErrorCode::file_malformed, path + ": holds no direction");
   return pattern;
 }
@@ -42,7 +43,7 @@ void check(const Settings& settings) {
     if (suffix != ".ply" && suffix != ".exr" && suffix != ".npy")
       throw UsageError(path + ": the suffix names no format; use .ply, .exr or .npy");
   }
-  check_outputs(s.outputs, settings.model);
+  check_outputs(s.outputs, input_files(settings));
 }
 
 /// The rays, in the scanner's own axes.
@@ -110,10 +111,9 @@ Json report(const Settings& settings, const RangeScan& scan, const RayScene& ray
 int run_lidar(const Settings& settings) {
   check(settings);
   RayCamera camera = rays_of(settings.lidar);
-  catch_interruptions(settings.run.timeout);
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
-  const Scene scene = load_model(settings, execution, progress);
+  const Scene scene = load_model(settings, execution, progress, settings.lidar.outputs);
   const Surfaces surfaces(scene, execution);
   camera.world_from_eye = pose_of(settings.lidar, surfaces);
   Stopwatch watch;

@@ -12,11 +12,6 @@ glm::dvec2 elevations_from(const Given& given) {
   return {ends[0], ends[1]};
 }
 
-std::string file_from(const Given& given) {
-  if (given.text.empty()) throw UsageError("the file name is empty");
-  return given.string();
-}
-
 constexpr Option table[] = {
     {"from", 0, "X,Y,Z", "Where the scanner stands, in the model's own coordinates.", Group::lidar, for_lidar,
      [](Settings& s, const Given& g) { s.lidar.from = parse_vector(g.text); }},
@@ -33,10 +28,10 @@ constexpr Option table[] = {
        s.lidar.steps = g.integer({1, 16384});
      }},
     {"directions", 0, "FILE", "Instead of rings: three numbers a line, x right, y up, z behind; # starts a comment.",
-     Group::lidar, for_lidar, [](Settings& s, const Given& g) { s.lidar.directions = file_from(g); }},
+     Group::lidar, for_lidar, [](Settings& s, const Given& g) { s.lidar.directions = g.file_name(); }},
     {"output", 'o', "FILE", "Points (.ply), or a range image with a row for each ring (.exr, .npy: ranges alone).",
      Group::output, for_lidar | may_repeat,
-     [](Settings& s, const Given& g) { s.lidar.outputs.push_back(file_from(g)); }},
+     [](Settings& s, const Given& g) { s.lidar.outputs.push_back(g.file_name()); }},
 };
 
 }  // namespace

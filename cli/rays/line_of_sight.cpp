@@ -5,7 +5,6 @@
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/failure.h"
-#include "cli/interruption.h"
 #include "cli/json_numbers.h"
 #include "cli/model.h"
 #include "cli/rays/number_lines.h"
@@ -16,8 +15,10 @@ namespace {
 
 std::vector<Segment> read_pairs(const std::string& path) {
   std::vector<Segment> pairs;
-  for (const std::vector<double>& n : read_number_lines(path, {6, "six numbers make a pair of points"}))
-    pairs.push_back({glm::dvec3(n[0], n[1], n[2]), glm::dvec3(n[3], n[4], n[5])});
+  const std::vector<double> n = read_number_lines(path, {6, "six numbers make a pair of points"});
+  pairs.reserve(n.size() / 6);
+  for (std::size_t i = 0; i < n.size(); i += 6)
+    pairs.push_back({glm::dvec3(n[i], n[i + 1], n[i + 2]), glm::dvec3(n[i + 3], n[i + 4], n[i + 5])});
   return pairs;
 }
 
@@ -67,7 +68,6 @@ std::string pair_text(const CurvedHit& hit, const Segment& pair, const RayScene&
 
 int run_sight(const Settings& settings) {
   const std::vector<Segment> pairs = pairs_of(settings.sight);
-  catch_interruptions(settings.run.timeout);
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
   const Scene scene = load_model(settings, execution, progress);

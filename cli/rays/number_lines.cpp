@@ -2,11 +2,9 @@
 #include "cli/rays/number_lines.h"
 
 #include <fmt/format.h>
-#include <frontmost/base.h>
+#include <frontmost/io.h>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 #include "cli/failure.h"
 #include "cli/values.h"
@@ -14,36 +12,49 @@
 namespace frontmost::cli {
 namespace {
 
-std::vector<double> numbers_of(std::string line, const LineRule& rule, const std::string& place) {
-  std::replace(line.begin(), line.end(), ',', ' ');
-  std::vector<double> numbers;
-  std::istringstream words(line);
-  for (std::string word; words >> word;) {
-    try {
-      numbers.push_back(parse_number(word, {-3e38, 3e38}));
-    } catch (const UsageError& error) {
-      throw Error(ErrorCode::file_malformed, place + ": " + error.what());
-    }
+constexpr std::uint64_t most_bytes = std::uint64_t(1) << 30;
+constexpr std::size_t most_lines = std::size_t(1) << 22;
+constexpr std::string_view blanks = " \t\r\v\f,";
+
+double number_at(std::string_view word, const std::string& path, std::size_t line) {
+  try {
+    return parse_number(word, {-3e38, 3e38});
+  } catch (const UsageError& error) {
+    throw Error(ErrorCode::file_malformed, fmt::format("{}: line {}: {}", path, line, error.what()));
   }
-  if (numbers.size() != rule.count)
-    throw Error(ErrorCode::file_malformed, fmt::format("{}: {}; there are {}", place, rule.text, numbers.size()));
-  return numbers;
+}
+
+std::string_view take_word(std::string_view& line) {
+  line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
+  const std::string_view word = line.substr(0, line.find_first_of(blanks));
+  line.remove_prefix(word.size());
+  return word;
 }
 
 }  // namespace
 
-std::vector<std::vector<double>> read_number_lines(const std::string& path, const LineRule& rule) {
-  std::ifstream file(path);
-  if (!file) throw Error(ErrorCode::file_unreadable, path + ": cannot open");
-  std::vector<std::vector<double>> lines;
-  std::string line;
-  for (std::size_t number = 1; std::getline(file, line); ++number) {
-    line.resize(std::min(line.find('#'), line.size()));
-    if (line.find_first_not_of(" \t\r,") == std::string::npos) continue;
-    lines.push_back(numbers_of(line, rule, fmt::format("{}: line {}", path, number)));
+std::vector<double> read_number_lines(const std::string& path, const LineRule& rule) {
+  const std::string text = load_text(path, most_bytes);
+  std::vector<double> numbers;
+  std::size_t lines = 0;
+  std::string_view rest = text;
+  for (std::size_t number = 1; !rest.empty(); ++number) {
+    const std::size_t length = rest.find('\n');
+    std::string_view line = rest.substr(0, length);
+    rest.remove_prefix(length == std::string_view::npos ? rest.size() : length + 1);
+    line = line.substr(0, line.find('#'));
+    std::size_t count = 0;
+    for (std::string_view word = take_word(line); !word.empty(); word = take_word(line), ++count)
+      if (count < rule.count) numbers.push_back(number_at(word, path, number));
+    if (count == 0) continue;
+    if (count != rule.count)
+      throw Error(ErrorCode::file_malformed,
+                  fmt::format("{}: line {}: {}; there are {}", path, number, rule.text, count));
+    if (++lines > most_lines)
+      throw Error(ErrorCode::limit_exceeded,
+                  fmt::format("{}: line {}: more than the limit of {} lines", path, number, most_lines));
   }
-  if (file.bad()) throw Error(ErrorCode::file_unreadable, path + ": cannot read");
-  return lines;
+  return numbers;
 }
 
 }  // namespace frontmost::cli

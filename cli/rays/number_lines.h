@@ -13,8 +13,9 @@ struct LineRule {
   const char* text;
 };
 
-/// The lines that hold anything, with blanks or commas between the numbers; # starts a comment.
-/// \throws Error file_unreadable, or file_malformed naming the line.
-[[nodiscard]] std::vector<std::vector<double>> read_number_lines(const std::string& path, const LineRule& rule);
+/// The numbers of all lines that hold any, one line after the other; # starts a comment.
+/// \throws Error file_unreadable; file_malformed naming the line; limit_exceeded for more than 1 GiB or 2^22 such
+/// lines.
+[[nodiscard]] std::vector<double> read_number_lines(const std::string& path, const LineRule& rule);
 
 }  // namespace frontmost::cli

@@ -7,6 +7,7 @@
 
 #include "cli/failure.h"
 #include "cli/rays/ray_scene.h"
+#include "cli/render/contrast.h"
 #include "cli/render/output_writer.h"
 #include "cli/render/reference.h"
 #include "cli/stopwatch.h"
@@ -107,6 +108,8 @@ ViewResult render_around(const Job& job, const RenderContext& context) {
     const Stopwatch watch;
     picture = rays.shade(met, {job.output.shading, job.output.background}, context.execution);
     result.timings.shade = watch.milliseconds();
+    if (job.output.background && nothing_stands_out(*picture, around.primitives, *job.output.background))
+      result.warnings.push_back(contrast_warning());
   }
   const auto map = [&](OutputKind kind) { return map_of(kind, job, rays, around); };
   write_files({job, context.execution, map, picture ? &*picture : nullptr}, result);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Options of frontmost sight alone.
-#include "cli/failure.h"
 #include "cli/option.h"
 
 namespace frontmost::cli {
@@ -12,11 +11,7 @@ constexpr Option table[] = {
     {"to", 0, "X,Y,Z", "Look at this point.", Group::sight, for_sight,
      [](Settings& s, const Given& g) { s.sight.to = parse_vector(g.text); }},
     {"pairs", 0, "FILE", "A file of pairs of points: six numbers a line, with blanks or commas; # starts a comment.",
-     Group::sight, for_sight,
-     [](Settings& s, const Given& g) {
-       if (g.text.empty()) throw UsageError("the file name is empty");
-       s.sight.pairs = g.string();
-     }},
+     Group::sight, for_sight, [](Settings& s, const Given& g) { s.sight.pairs = g.file_name(); }},
 };
 
 }  // namespace

@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 // Batch files: JSON whose keys are the options' names, so that one table says what both may be.
 #include <fmt/format.h>
-
-#include <fstream>
-#include <sstream>
+#include <frontmost/io.h>
 
 #include "cli/failure.h"
-#include "cli/json_numbers.h"
 #include "cli/option.h"
+#include "cli/render/batch_json.h"
 #include "cli/render/jobs.h"
+#include "cli/view_options.h"
 
 namespace frontmost::cli {
 namespace {
 
-constexpr std::size_t view_limit = 100000;
+constexpr std::uint64_t most_bytes = std::uint64_t(1) << 26;
 
 /// A value and where it stands, such as "batch.json: views[2].resolution".
 struct Place {
   const Json& value;
   std::string path;
 
-  [[nodiscard]] Place at(const std::string& key) const { return {value.at(key), fmt::format("{}.{}", path, key)}; }
+  [[nodiscard]] Place at(const std::string& key) const {
+    return {value.at(key), fmt::format("{}.{}", path, shortened(key))};
+  }
   [[noreturn]] void refuse(std::string_view why) const { throw UsageError(fmt::format("{}: {}", path, why)); }
 };
 
@@ -50,7 +51,13 @@ std::string text_of(const Place& place) {
   return text;
 }
 
+/// The system ends names at the first one.
+void refuse_nul(const Place& place, const std::string& text) {
+  if (text.find('\0') != std::string::npos) place.refuse("must not hold a NUL character");
+}
+
 void apply_at(const Place& place, const Option& option, const std::string& text, Settings& settings) {
+  refuse_nul(place, text);
   try {
     option.apply(settings, {text, option.choices()});
   } catch (const UsageError& error) {
@@ -109,38 +116,28 @@ Settings parse_view(const Place& place, const Settings& defaults) {
     const Place name = place.at("name");
     if (!name.value.is_string() || name.value.get<std::string>().empty()) name.refuse("must be a string");
     settings.view.name = name.value.get<std::string>();
+    refuse_nul(name, settings.view.name);
     // It becomes part of a file's name, and must not lead elsewhere.
     if (settings.view.name.find('/') != std::string::npos) name.refuse("must not hold a /");
   }
   if (place.value.contains("outputs")) apply_object(place.at("outputs"), belongs_to_outputs, {}, settings);
-  return settings;
-}
-
-/// Views, a view, its outputs, kinds of ids, a matrix and its rows: nothing is deeper than six. The JSON library copies
-/// and follows what it has read by recursion, which far deeper lists in lists would end without a word.
-constexpr int depth_limit = 16;
-
-Json parse_json(const std::string& text, const std::string& name) {
   try {
-    return Json::parse(text, [&](int depth, Json::parse_event_t, Json&) {
-      if (depth > depth_limit) throw UsageError(fmt::format("{}: is nested deeper than {}", name, depth_limit));
-      return true;
-    });
-  } catch (const Json::parse_error& error) {
-    const std::size_t end = std::min(error.byte, text.size());
-    const auto lines = std::count(text.begin(), text.begin() + std::ptrdiff_t(end > 0 ? end - 1 : 0), '\n');
-    throw UsageError(fmt::format("{}: line {}: is not valid JSON", name, lines + 1));
+    read_pose_file(settings.view);
+  } catch (const UsageError& error) {
+    place.refuse(error.what());
   }
+  return settings;
 }
 
 }  // namespace
 
 std::vector<Settings> parse_batch(const std::string& text, const std::string& name, const Settings& defaults) {
-  const Json json = parse_json(text, name);
+  const Json json = parse_batch_json(text, name);
   const Place root{json, name};
   if (!json.is_object()) root.refuse("must be an object with views");
   for (const auto& [key, value] : json.items()) {
-    if (key != "views" && key != "outputs") root.refuse(fmt::format("{}: is not known; views and outputs are", key));
+    if (key != "views" && key != "outputs")
+      root.refuse(fmt::format("{}: is not known; views and outputs are", shortened(key)));
   }
   Settings common = defaults;
   if (json.contains("outputs")) apply_object({json.at("outputs"), name + ": outputs"}, belongs_to_outputs, {}, common);
@@ -148,8 +145,8 @@ std::vector<Settings> parse_batch(const std::string& text, const std::string& na
     root.refuse("views: must be a list of at least one view");
   }
   const Json& views = json.at("views");
-  if (views.size() > view_limit) root.refuse(fmt::format("views: more than {}", view_limit));
   std::vector<Settings> result;
+  result.reserve(views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
     const Place place{views[i], fmt::format("{}: views[{}]", name, i)};
     result.push_back(parse_view(place, common));
@@ -159,13 +156,7 @@ std::vector<Settings> parse_batch(const std::string& text, const std::string& na
 }
 
 std::vector<Settings> read_batch(const std::string& path, const Settings& defaults) {
-  std::ifstream file(path);
-  if (!file) throw Error(ErrorCode::file_unreadable, fmt::format("{}: cannot be opened", path));
-  std::stringstream text;
-  text << file.rdbuf();
-  if (file.bad() || text.str().empty())
-    throw Error(ErrorCode::file_unreadable, fmt::format("{}: cannot be read", path));
-  return parse_batch(text.str(), path, defaults);
+  return parse_batch(load_text(path, most_bytes), path, defaults);
 }
 
 }  // namespace frontmost::cli

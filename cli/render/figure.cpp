@@ -11,6 +11,7 @@
 
 #include "cli/console.h"
 #include "cli/interruption.h"
+#include "cli/render/contrast.h"
 #include "cli/stopwatch.h"
 
 namespace frontmost::cli {
@@ -155,6 +156,8 @@ void write_figures(const Job& job, const RenderContext& context, ViewResult& res
   colored = {};
   const Page page = page_of(figure, job);
   result.timings.shade += watch.milliseconds();
+  if (job.output.background && nothing_stands_out(figure, *job.output.background))
+    result.warnings.push_back(contrast_warning());
   if (!context.run.quiet) tell_size(job, figure);
   watch = {};
   for (const std::string& path : job.figures) {

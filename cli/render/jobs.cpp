@@ -76,19 +76,16 @@ Job make_job(const Settings& settings) {
 }
 
 void check_files(const std::vector<Job>& jobs, const Settings& settings) {
-  std::vector<std::string> paths, references;
+  const std::vector<std::string> paths = output_paths(jobs);
+  std::vector<std::string> references;
+  InputFiles inputs = input_files(settings);
   for (const Job& job : jobs) {
-    for (const auto* files : {&job.files, &job.layer_files})
-      for (const OutputFile& file : *files) paths.push_back(file.path);
-    paths.insert(paths.end(), job.figures.begin(), job.figures.end());
-    if (job.difference.empty()) continue;
-    paths.push_back(job.difference);
-    references.push_back(*job.output.reference);
+    if (job.view.pose_file) inputs.add(*job.view.pose_file, "is the pose file itself");
+    if (job.output.reference) references.push_back(*job.output.reference);
   }
-  check_outputs(paths, settings.model);
-  for (const std::string& model : settings.more_models) check_outputs(paths, model);
   // Comparing a picture with itself would always pass.
-  for (const std::string& reference : references) check_not_written(reference, paths);
+  check_references(references, paths);
+  check_outputs(paths, inputs);
   const bool writes_stdout = std::find(paths.begin(), paths.end(), "-") != paths.end();
   if (writes_stdout && settings.run.json) throw UsageError("--json and an output to - both want standard output");
   if (writes_stdout && settings.output.hash) throw UsageError("--hash and an output to - both want standard output");
@@ -96,10 +93,27 @@ void check_files(const std::vector<Job>& jobs, const Settings& settings) {
 
 }  // namespace
 
+std::vector<std::string> output_paths(const std::vector<Job>& jobs) {
+  std::vector<std::string> paths;
+  for (const Job& job : jobs) {
+    for (const auto* files : {&job.files, &job.layer_files})
+      for (const OutputFile& file : *files) paths.push_back(file.path);
+    paths.insert(paths.end(), job.figures.begin(), job.figures.end());
+    if (!job.difference.empty()) paths.push_back(job.difference);
+  }
+  return paths;
+}
+
 std::vector<Job> plan_jobs(const Settings& settings) {
   std::vector<Job> jobs;
   if (settings.run.batch) {
-    for (const Settings& one : read_batch(*settings.run.batch, settings)) jobs.push_back(make_job(one));
+    for (const Settings& one : read_batch(*settings.run.batch, settings)) {
+      try {
+        jobs.push_back(make_job(one));
+      } catch (const UsageError& error) {
+        throw UsageError(fmt::format("{}: views[{}]: {}", *settings.run.batch, jobs.size(), error.what()));
+      }
+    }
   } else {
     jobs.push_back(make_job(settings));
   }

@@ -24,7 +24,11 @@ struct Job {
 /// \throws UsageError and Error as plan_outputs() and check_outputs() do; the batch file's complaints name the place.
 [[nodiscard]] std::vector<Job> plan_jobs(const Settings& settings);
 
-/// The settings of each view of a batch file.
+/// All files that the jobs write.
+[[nodiscard]] std::vector<std::string> output_paths(const std::vector<Job>& jobs);
+
+/// The settings of each view of a batch file. \throws UsageError naming file and place; Error file_unreadable, or
+/// limit_exceeded for more than 64 MiB.
 [[nodiscard]] std::vector<Settings> read_batch(const std::string& path, const Settings& defaults);
 /// The same from text; `name` stands for the file in messages.
 [[nodiscard]] std::vector<Settings> parse_batch(const std::string& text, const std::string& name,

@@ -2,6 +2,7 @@
 #include "cli/render/json_report.h"
 
 #include <fmt/format.h>
+#include <frontmost/text.h>
 #include <frontmost/version.h>
 
 #include <algorithm>
@@ -150,11 +151,11 @@ std::string hash_lines(const std::vector<ViewResult>& views, bool is_batch) {
   std::string lines;
   for (const ViewResult& view : views) {
     if (!view.seen) continue;  // its hash was not asked for
-    const std::string prefix = is_batch ? view.name + ":" : "";
+    const std::string prefix = is_batch ? printable_text(view.name) + ":" : "";
     lines += fmt::format("{}visible {}\n", prefix, hash_text(view.seen->hash));
     for (const Result& result : view.results) {
       if (!result.hash) continue;  // polygons have none
-      lines += fmt::format("{}{} {} {}\n", prefix, result.what, hash_text(*result.hash), result.path);
+      lines += fmt::format("{}{} {} {}\n", prefix, result.what, hash_text(*result.hash), printable_text(result.path));
     }
   }
   return lines;

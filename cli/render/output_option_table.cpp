@@ -84,14 +84,14 @@ constexpr Option table[] = {
     {"hash", 0, "", "Print a content hash of what is visible and of each result but .svg and .pdf.", Group::output,
      for_render, [](Settings& s, const Given&) { s.output.hash = true; }},
     {"reference", 0, "FILE", "Compare the picture with this one; exit status 3 if it differs.", Group::output,
-     for_render, [](Settings& s, const Given& g) { s.output.reference = g.string(); }},
+     for_render, [](Settings& s, const Given& g) { s.output.reference = g.file_name(); }},
     {"reference-threshold", 0, "T", "Largest difference that passes, 0 to 1 of a channel's range; 0 by default.",
      Group::output, for_render,
      [](Settings& s, const Given& g) {
        s.output.reference_threshold = g.number({0, 1});
      }},
     {"reference-difference", 0, "FILE", "Where the difference goes; by default beside the picture, .difference.png.",
-     Group::output, for_render, [](Settings& s, const Given& g) { s.output.reference_difference = g.string(); }},
+     Group::output, for_render, [](Settings& s, const Given& g) { s.output.reference_difference = g.file_name(); }},
 
     {"shading", 0, "lit|flat|normals|depth|ids|uv", "What the picture shows; lit by default.", Group::look, for_render,
      [](Settings& s, const Given& g) { s.output.shading = g.choice<Shading>(); }},

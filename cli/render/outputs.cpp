@@ -89,8 +89,9 @@ void check_writable(const std::string& path) {
   const auto refuse = [&](std::string_view why) {
     throw Error(ErrorCode::file_unwritable, fmt::format("{}: {}", path, why));
   };
-  std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
+  std::error_code ignored, error;
+  const fs::file_status status = fs::status(path, error);
+  if (error == std::errc::filename_too_long) refuse("the name is too long");
   if (fs::is_directory(status)) refuse("is a folder");
   if (fs::exists(status)) {
     if (access(path.c_str(), W_OK) != 0) refuse("is not writable");
@@ -178,13 +179,10 @@ std::vector<OutputFile> plan_outputs(const OutputSettings& settings, const std::
   return files;
 }
 
-void check_outputs(const std::vector<std::string>& paths, const std::string& model) {
+void check_outputs(const std::vector<std::string>& paths, const InputFiles& inputs) {
+  inputs.refuse_outputs(paths);
   std::set<std::string> taken;
-  std::error_code ignored;
   for (const std::string& path : paths) {
-    if (path != "-" && fs::equivalent(path, model, ignored)) {
-      throw UsageError(fmt::format("{}: is the model itself", path));
-    }
     if (!taken.insert(path == "-" ? path : canonical(path)).second) {
       throw UsageError(
           path == "-"
@@ -197,12 +195,18 @@ void check_outputs(const std::vector<std::string>& paths, const std::string& mod
   }
 }
 
-void check_not_written(const std::string& path, const std::vector<std::string>& outputs) {
-  for (const std::string& output : outputs) {
-    if (output != "-" && canonical(output) == canonical(path)) {
-      throw UsageError(fmt::format("{}: is both the reference and an output", path));
-    }
+void check_references(const std::vector<std::string>& references, const std::vector<std::string>& outputs) {
+  if (references.empty()) return;
+  constexpr const char* is_both = "is both the reference and an output";
+  std::set<std::string> written;
+  for (const std::string& output : outputs)
+    if (output != "-") written.insert(canonical(output));
+  InputFiles files;
+  for (const std::string& reference : references) {
+    files.add(reference, is_both);
+    if (written.count(canonical(reference))) throw UsageError(fmt::format("{}: {}", reference, is_both));
   }
+  files.refuse_outputs(outputs);
 }
 
 std::string difference_path(const OutputSettings& settings, const std::vector<OutputFile>& files) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/input_files.h"
 #include "cli/settings.h"
 
 namespace frontmost::cli {
@@ -41,12 +42,12 @@ void check_given_format(const std::vector<std::string>& paths, int given, std::s
 [[nodiscard]] std::vector<OutputFile> plan_outputs(const OutputSettings& settings, const std::string& model,
                                                    const std::string& view);
 
-/// \throws UsageError when a file is the model itself or is written twice; Error file_unwritable when its folder is
+/// \throws UsageError when a file is one of the inputs or is written twice; Error file_unwritable when its folder is
 /// missing or not writable, or it is not a regular file.
-void check_outputs(const std::vector<std::string>& paths, const std::string& model);
+void check_outputs(const std::vector<std::string>& paths, const InputFiles& inputs);
 
-/// \throws UsageError when `path` is one of the outputs.
-void check_not_written(const std::string& path, const std::vector<std::string>& outputs);
+/// \throws UsageError when a reference is one of the outputs, even where neither is there yet.
+void check_references(const std::vector<std::string>& references, const std::vector<std::string>& outputs);
 
 /// Where the difference to a reference goes.
 [[nodiscard]] std::string difference_path(const OutputSettings& settings, const std::vector<OutputFile>& files);

@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/console.h"
+#include "cli/culprit.h"
 #include "cli/failure.h"
 #include "cli/interruption.h"
 #include "cli/model.h"
@@ -82,7 +83,12 @@ std::vector<ViewResult> render_all(const std::vector<Job>& jobs, const Settings&
   std::vector<ViewResult> results;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     if (jobs.size() > 1) progress.set_prefix(fmt::format("view {} of {}: ", i + 1, jobs.size()));
-    results.push_back(render(jobs[i]));
+    try {
+      results.push_back(render(jobs[i]));
+    } catch (const Error& error) {
+      if (!settings.run.batch || names_culprit(error.what())) throw;
+      throw Error(error.code(), fmt::format("{}: view {}: {}", *settings.run.batch, jobs[i].name, error.what()));
+    }
     tell(results.back(), settings, progress);
     results.back().picture.reset();
     stop_if_interrupted();
@@ -110,7 +116,7 @@ int render_whole(Run& run) {
   const Execution execution = execution_for(settings.run, progress);
   RunTimings timings;
   Stopwatch watch;
-  const Scene scene = load_model(settings, execution, progress);
+  const Scene scene = load_model(settings, execution, progress, output_paths(run.jobs));
   timings.load = watch.milliseconds();
   watch = {};
   const Surfaces surfaces(scene, execution);
@@ -144,7 +150,10 @@ int render_stream(const Run& run) {
   models.insert(models.end(), settings.more_models.begin(), settings.more_models.end());
   StreamOptions options;
   options.load = settings.load;
+  std::vector<std::filesystem::path> used;
+  options.load.files = &used;
   Stream stream(models, options, execution);
+  refuse_outputs_beside(used, output_paths(run.jobs));
   timings.load = watch.milliseconds();
   bool is_first = true;
   const std::vector<ViewResult> results = render_all(run.jobs, settings, progress, [&](const Job& job) {
@@ -167,7 +176,6 @@ int run_render(const Settings& settings) {
   Run run{settings, plan_jobs(settings), false, {}};
   check_method(settings, run.jobs);
   run.on_terminal = shows_on_terminal(settings, run.jobs);
-  catch_interruptions(settings.run.timeout);
   return settings.run.stream ? render_stream(run) : render_whole(run);
 }
 

@@ -12,6 +12,7 @@
 #include "cli/rays/render_around.h"
 #include "cli/rays/sight.h"
 #include "cli/render/blank.h"
+#include "cli/render/contrast.h"
 #include "cli/render/figure.h"
 #include "cli/render/output_writer.h"
 #include "cli/render/reference.h"
@@ -201,6 +202,10 @@ void finish_view(const Job& job, const RenderContext& context, const Sights& sig
     else
       picture = shade(context.surfaces, visible, options, context.execution);
     result.timings.shade += watch.milliseconds();
+    const std::optional<glm::vec3>& background = job.output.background;
+    if (background && (picture ? nothing_stands_out(*picture, visible.primitives, *background)
+                               : nothing_stands_out(*bitmap, visible.primitives, *background)))
+      result.warnings.push_back(contrast_warning());
   }
   const auto map = [&](OutputKind kind) { return map_of(kind, job, context, sights); };
   const auto deep = [&] { return shade_deep(context.surfaces, sights.picture->visible, options, context.execution); };

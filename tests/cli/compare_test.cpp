@@ -39,8 +39,9 @@ TEST_F(Compare, ReportsEveryMethodAsJson) {
     EXPECT_EQ(method["primitives"], 12);
     EXPECT_EQ(method["samples"], 160 * 120);
     EXPECT_GT(method["covered_samples"], 1000);
-    if (method["method"] == "painter-centroid") continue;  // wrong, as is known
     EXPECT_EQ(method["unexplained"], 0);
+    if (method["method"] == "painter-centroid") continue;  // wrong, as is known
+    EXPECT_EQ(method["wrong_by_design"], 0);
     EXPECT_EQ(method["differing"], method["explained"]["edge"].get<int>() + method["explained"]["depth"].get<int>() +
                                        method["explained"]["translucent"].get<int>());
   }
@@ -82,9 +83,20 @@ TEST_F(Compare, AsksEveryMethodAtManySamples) {
 TEST_F(Compare, CountsTheMistakesOfNaiveOrders) {
   const json report = succeed("compare builtin:cycle --resolution 160,120 --runs 1 --json --explain").json();
   EXPECT_EQ(report["methods"][3]["unexplained"], 0);
-  EXPECT_GT(report["methods"][4]["unexplained"], 100);
-  EXPECT_THAT(report["advice"].back(), HasSubstr("by centroids: wrong in"));
+  EXPECT_EQ(report["methods"][3]["wrong_by_design"], 0);
+  EXPECT_GT(report["methods"][4]["wrong_by_design"], 100);
+  EXPECT_EQ(report["methods"][4]["unexplained"], 0) << "what it is meant to get wrong";
+  EXPECT_THAT(report["advice"].back(), testing::ContainsRegex("by centroids: wrong in .*, by design"));
   EXPECT_THAT(report["advice"][5], testing::Not(HasSubstr("mistake")));
+}
+
+TEST_F(Compare, SaysInTableAndPageWhatIsWrongByDesign) {
+  const std::string text = succeed("compare builtin:cycle --resolution 160,120 --runs 1 -o page").out;
+  EXPECT_THAT(text, testing::ContainsRegex("\n  wrong by design +0 +0 +0 +0 +[1-9][0-9,]+\n"));
+  EXPECT_THAT(text, testing::ContainsRegex("\n  unexplained +0 +0 +0 +0 +0\n"));
+  const std::string page = read("page/index.html");
+  EXPECT_THAT(page, HasSubstr("</span>wrong by design</th>"));
+  EXPECT_THAT(page, HasSubstr("</i>wrong by design</span>"));
 }
 
 TEST_F(Compare, PrintsATable) {

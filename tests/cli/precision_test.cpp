@@ -3,6 +3,8 @@
 #include <frontmost/io.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "program.h"
 
 namespace frontmost::test {
@@ -32,10 +34,11 @@ std::string two_squares(const std::string& first, const std::string& second) {
 TEST_F(Precision, TheTableHasARowForEveryDistance) {
   const std::string text = succeed("precision --near 1 --far 100 --format D8").out;
   EXPECT_THAT(text, StartsWith("D8, near 1, far 100\n"));
-  EXPECT_THAT(text, HasSubstr("\n          10         0.404         4.0e-02      90.91 %\n"));
+  EXPECT_THAT(text,
+              HasSubstr("\n          10         0.404      2.38e-05         0.404         4.0e-02      90.91 %\n"));
   EXPECT_THAT(text, Not(HasSubstr("model")));
   const std::string all = succeed("precision --near 0.1 --infinite").out;
-  EXPECT_THAT(all, HasSubstr("    distance           D16           D24           F32  F32 reversed\n"));
+  EXPECT_THAT(all, HasSubstr("    distance  of positions           D16           D24           F32  F32 reversed\n"));
   EXPECT_THAT(all, HasSubstr("far infinite"));
 }
 
@@ -46,10 +49,14 @@ TEST_F(Precision, TheReportHasTheSameNumbers) {
   const json& buffer = report["buffers"][0];
   EXPECT_EQ(buffer["format"], "D8");
   EXPECT_EQ(buffer["distances"][3]["distance"], 10);
-  EXPECT_NEAR(buffer["distances"][3]["gap"].get<double>(), 0.40392, 1e-5);
+  EXPECT_NEAR(buffer["distances"][3]["format_gap"].get<double>(), 0.40392, 1e-5);
+  EXPECT_NEAR(buffer["distances"][3]["positions_gap"].get<double>(), 40 * std::ldexp(10, -24), 1e-9);
+  EXPECT_NEAR(buffer["distances"][3]["gap"].get<double>(), 0.40392 + 40 * std::ldexp(10, -24), 1e-5);
   EXPECT_EQ(buffer["distances"].size(), 7u);
-  // 1/n = 0.5 / (10 * 10.5) * 255 + 1/100
-  EXPECT_NEAR(buffer["near_for_gap"].get<double>(), 1 / (0.5 / 105 * 255 + 0.01), 1e-12);
+  // 1/n = 0.5 / (10 * 10.5) * 255 + 1/100, and a little more for what positions add.
+  const double near = 1 / (0.5 / 105 * 255 + 0.01);
+  EXPECT_GE(buffer["near_for_gap"], near);
+  EXPECT_LE(buffer["near_for_gap"], near * 1.0001);
   const json reversed = succeed("precision --near 0.1 --infinite --format F32 --reversed --gap 1e-9,10 --json").json();
   EXPECT_TRUE(reversed["far"].is_null());
   EXPECT_TRUE(reversed["buffers"][0]["near_for_gap"].is_null());
@@ -59,9 +66,28 @@ TEST_F(Precision, TheReportHasTheSameNumbers) {
 TEST_F(Precision, AWantedGapNamesTheNearPlane) {
   const std::string text = succeed("precision --near 0.01 --far 1000 --gap 0.01,100").out;
   EXPECT_THAT(text, HasSubstr("to tell 0.01 apart at 100\n"));
-  EXPECT_THAT(text, HasSubstr("D24           near 0.05"));
+  EXPECT_THAT(text, HasSubstr("D24           near 0.0610"));
   EXPECT_THAT(text, HasSubstr("F32 reversed  any near plane will do\n"));
   EXPECT_THAT(succeed("precision --near 1 --far 1000 --gap 0.01,100 --format D24").out, HasSubstr("or farther: it is"));
+}
+
+TEST_F(Precision, WhatPositionsAddIsSaid) {
+  const std::string line = "precision --near 100 --far 101 --format D24";
+  const json at_far = succeed(line + " --json").json()["buffers"][0]["distances"].back();
+  EXPECT_LT(at_far["format_gap"], 1e-7);
+  EXPECT_GT(at_far["gap"], 1e-4) << "floats are 7.6e-6 apart there";
+  EXPECT_THAT(succeed(line).out, HasSubstr("what floats of positions and transforms add"));
+  EXPECT_THAT(succeed(line + " --gap 1e-6,100.5").out, HasSubstr("no format will do: positions add 0.00024"));
+  EXPECT_TRUE(succeed(line + " --gap 1e-6,100.5 --json").json()["buffers"][0]["near_for_gap"].is_null());
+  // Far from the origin, positions are coarser.
+  write("far.obj", "v 1e4 0 0\nv 10001 0 0\nv 1e4 1 0\nf 1 2 3\n");
+  write("near.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string camera = " --resolution 8,8 --view front --near 1 --far 9 --format D24 --json";
+  const auto added = [&](const char* model) {
+    const json report = succeed(std::string("precision --model ") + model + camera).json();
+    return report["buffers"][0]["distances"][0]["positions_gap"].get<double>();
+  };
+  EXPECT_GT(added("far.obj"), 100 * added("near.obj"));
 }
 
 TEST_F(Precision, ThePlotIsADrawing) {

@@ -2,6 +2,7 @@
 #include "program.h"
 
 #include <fcntl.h>
+#include <grp.h>
 #include <poll.h>
 #include <pty.h>
 #include <signal.h>
@@ -43,6 +44,11 @@ std::string drain(int file) {
   }
 }
 
+void limit(__rlimit_resource resource, const std::optional<std::size_t>& most) {
+  const rlimit both{most.value_or(0), most.value_or(0)};
+  if (most && setrlimit(resource, &both) != 0) _exit(126);
+}
+
 [[noreturn]] void become_program(const Call& call, const std::string& folder) {
   std::vector<std::string> words = {FRONTMOST_PROGRAM};
   words.insert(words.end(), call.words.begin(), call.words.end());
@@ -50,10 +56,15 @@ std::string drain(int file) {
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   for (const std::string& setting : call.environment) putenv(strdup(setting.c_str()));
-  for (const int one : {SIGINT, SIGTERM, SIGALRM, SIGPIPE}) signal(one, SIG_DFL);
+  for (const int one : {SIGINT, SIGTERM, SIGALRM, SIGPIPE, SIGXFSZ}) signal(one, SIG_DFL);
   if (chdir(folder.c_str()) != 0) _exit(126);
-  const rlimit limit{call.address_space.value_or(RLIM_INFINITY), RLIM_INFINITY};
-  if (call.address_space && setrlimit(RLIMIT_AS, &limit) != 0) _exit(126);
+  limit(RLIMIT_AS, call.address_space);
+  limit(RLIMIT_FSIZE, call.file_size);
+  if (call.processes && geteuid() == 0) {
+    constexpr uid_t nobody = 65534;
+    if (setgroups(0, nullptr) != 0 || setgid(nobody) != 0 || setuid(nobody) != 0) _exit(126);
+  }
+  limit(RLIMIT_NPROC, call.processes);
   execv(FRONTMOST_PROGRAM, pointers.data());
   _exit(127);
 }
@@ -166,6 +177,12 @@ void ProgramTest::expect_failure(const std::string& line, int status, const std:
   EXPECT_EQ(outcome.err.rfind("frontmost: ", 0), 0u) << outcome.err;
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << "not one line: " << outcome.err;
   EXPECT_EQ(outcome.out, "") << line;
+}
+
+void ProgramTest::open_to_all() const {
+  std::filesystem::permissions(folder_, std::filesystem::perms::all);
+  for (const auto& entry : std::filesystem::directory_iterator(folder_))
+    std::filesystem::permissions(entry.path(), std::filesystem::perms(0644));
 }
 
 std::string ProgramTest::read(const std::string& name) const {

@@ -43,6 +43,10 @@ struct Call {
   bool terminal = false;                       ///< standard output and error are one terminal; both arrive in `out`
   std::vector<std::string> environment{};      ///< NAME=VALUE, added
   std::optional<std::size_t> address_space{};  ///< bytes, as `ulimit -v`
+  std::optional<std::size_t> file_size{};      ///< bytes, as `ulimit -f`
+  /// As `ulimit -u`. Nothing limits root, so that root runs the program as nobody then; what is read must be open to
+  /// all.
+  std::optional<std::size_t> processes{};
 };
 
 /// A folder for one test, gone with it; programs run inside it.
@@ -58,6 +62,8 @@ class ProgramTest : public testing::Test {
   /// The test fails unless the exit status is this one and standard error holds `message`.
   void expect_failure(const std::string& line, int status, const std::string& message) const;
 
+  /// Lets everybody write into the folder, and read what is there.
+  void open_to_all() const;
   [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
   [[nodiscard]] bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
   [[nodiscard]] std::string read(const std::string& name) const;

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/input_files.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <optional>
+
+#include "cli/failure.h"
+
+namespace frontmost::cli {
+namespace {
+
+std::optional<std::pair<std::uint64_t, std::uint64_t>> identity(const char* path) {
+  struct ::stat status {};
+  if (::stat(path, &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+  return std::pair(std::uint64_t(status.st_dev), std::uint64_t(status.st_ino));
+}
+
+}  // namespace
+
+void InputFiles::add(const std::filesystem::path& path, const std::string& is) {
+  if (const auto file = identity(path.c_str())) files_.try_emplace(*file, is);
+}
+
+void InputFiles::refuse_outputs(const std::vector<std::string>& outputs) const {
+  for (const std::string& output : outputs) {
+    if (output == "-") continue;
+    const auto file = identity(output.c_str());
+    const auto found = file ? files_.find(*file) : files_.end();
+    if (found != files_.end()) throw UsageError(fmt::format("{}: {}", output, found->second));
+  }
+}
+
+InputFiles input_files(const Settings& settings) {
+  InputFiles files;
+  const char* of_input = nullptr;
+  const auto add = [&](const std::optional<std::string>& path, const char* is) {
+    if (!path) return;
+    files.add(*path, is);
+    if (*path != "-") return;
+    if (of_input) throw UsageError(fmt::format("-: standard input {}, and cannot be read twice", of_input));
+    of_input = is;
+  };
+  add(settings.model, "is the model itself");
+  for (const std::string& more : settings.more_models) add(more, "is the model itself");
+  add(settings.run.batch, "is the batch file itself");
+  add(settings.sight.pairs, "is the file of pairs itself");
+  add(settings.lidar.directions, "is the file of directions itself");
+  add(settings.view.pose_file, "is the pose file itself");
+  add(settings.output.reference, "is both the reference and an output");
+  return files;
+}
+
+void refuse_outputs_beside(const std::vector<std::filesystem::path>& used, const std::vector<std::string>& outputs) {
+  InputFiles files;
+  for (const std::filesystem::path& path : used) files.add(path, "is a file that the model uses");
+  files.refuse_outputs(outputs);
+}
+
+}  // namespace frontmost::cli
