@@ -27,6 +27,20 @@ constexpr NamedCount oddities[] = {
     {"non_manifold_edges", "non-manifold edges", &Oddities::non_manifold_edges},
     {"inconsistent_edges", "edges with inconsistent winding", &Oddities::inconsistent_edges}};
 
+struct NamedUnit {
+  std::string_view name;
+  double metres;
+};
+/// Those that files name.
+constexpr NamedUnit units[] = {{"micron", 1e-6}, {"millimetre", 1e-3}, {"centimetre", 1e-2},
+                               {"inch", 0.0254}, {"foot", 0.3048},     {"metre", 1}};
+
+std::string_view name_of(const ModelUnit& unit) {
+  for (const NamedUnit& named : units)
+    if (named.metres == unit.metres) return named.name;
+  return "";
+}
+
 Json odd_json(const Oddities& odd) {
   Json json;
   for (const NamedCount& one : oddities) json[std::string(one.key)] = odd.*one.count;
@@ -37,6 +51,15 @@ Json odd_json(const Oddities& odd) {
 Json box_json(const Box& box) {
   if (box.is_empty()) return nullptr;
   return {{"low", to_json(box.low)}, {"high", to_json(box.high)}};
+}
+
+glm::dvec3 size_of(const Box& box) { return glm::dvec3(box.high) - glm::dvec3(box.low); }
+
+Json size_json(const Box& box) { return box.is_empty() ? Json(nullptr) : to_json(size_of(box)); }
+
+Json unit_json(const std::optional<ModelUnit>& unit) {
+  if (!unit) return nullptr;
+  return {{"name", name_of(*unit)}, {"metres", unit->metres}, {"guess", unit->is_guess}};
 }
 
 Json mesh_json(const MeshReport& mesh) {
@@ -64,7 +87,8 @@ Json object_json(const ObjectReport& object) {
   return {{"name", object.name},
           {"mesh", object.mesh},
           {"triangles", object.triangles},
-          {"bounds", box_json(object.bounds)}};
+          {"bounds", box_json(object.bounds)},
+          {"size", size_json(object.bounds)}};
 }
 
 Json material_json(const MaterialReport& material) {
@@ -114,24 +138,73 @@ std::string camera_line(const CameraReport& camera) {
   return fmt::format("{:24} {}, at {}", printable_name(camera.name), width, vector_text(camera.position));
 }
 
+/// The meshes that have most of an oddity, the first ones first.
+std::string odd_meshes(const SceneReport& report, std::uint64_t Oddities::*count) {
+  constexpr std::size_t meshes_shown = 5;
+  std::vector<std::size_t> odd;
+  for (std::size_t m = 0; m < report.meshes.size(); ++m)
+    if (report.meshes[m].odd.*count > 0) odd.push_back(m);
+  const auto has_more = [&](std::size_t a, std::size_t b) {
+    return report.meshes[a].odd.*count > report.meshes[b].odd.*count;
+  };
+  std::stable_sort(odd.begin(), odd.end(), has_more);
+  std::string text;
+  for (std::size_t i = 0; i < odd.size() && i < meshes_shown; ++i) {
+    const MeshReport& mesh = report.meshes[odd[i]];
+    const std::string name = mesh.name.empty() ? fmt::format("mesh {}", odd[i]) : printable_name(mesh.name);
+    text += fmt::format("{:>16}  in {}\n", mesh.odd.*count, name);
+  }
+  if (odd.size() > meshes_shown)
+    text += fmt::format("                  and in {} more; --json lists them\n", odd.size() - meshes_shown);
+  return text;
+}
+
 std::string odd_lines(const SceneReport& report) {
   std::string text;
   for (const NamedCount& one : oddities) {
-    if (report.odd.*one.count > 0) text += fmt::format("  {:>12}  {}\n", report.odd.*one.count, one.words);
+    if (report.odd.*one.count == 0) continue;
+    text += fmt::format("  {:>12}  {}\n", report.odd.*one.count, one.words);
+    // A single mesh has them all.
+    if (report.meshes.size() > 1) text += odd_meshes(report, one.count);
   }
   return text.empty() ? "\nnothing odd\n" : "\nodd\n" + text;
 }
 
+std::string unit_line(const std::optional<ModelUnit>& unit, const Box& bounds) {
+  if (!unit) return "";
+  const glm::dvec3 metres = size_of(bounds) * unit->metres;
+  const double greatest = std::max({metres.x, metres.y, metres.z});
+  const NamedUnit shown = greatest < 0.001 ? NamedUnit{"um", 1e-6}
+                          : greatest < 2   ? NamedUnit{"mm", 1e-3}
+                                           : NamedUnit{"m", 1};
+  const glm::dvec3 size = metres / shown.metres;
+  return fmt::format("  unit       {}{}: {:.4g} x {:.4g} x {:.4g} {}\n", name_of(*unit),
+                     unit->is_guess ? ", a guess" : "", size.x, size.y, size.z, shown.name);
+}
+
 }  // namespace
 
-Json info_json(const SceneReport& report) {
+std::optional<ModelUnit> unit_of_model(const SceneReport& report, std::optional<double> metres_per_unit) {
+  if (report.bounds.is_empty()) return std::nullopt;
+  if (metres_per_unit) return ModelUnit{*metres_per_unit, false};
+  const glm::dvec3 size = size_of(report.bounds);
+  const double greatest = std::max({size.x, size.y, size.z});
+  constexpr double grain = 1, least_part = 5, greatest_part = 2000, least_in_metres = 1e-3;
+  if (greatest >= least_part && greatest <= greatest_part) return ModelUnit{1e-3, true};
+  if (greatest < grain && greatest >= least_in_metres) return ModelUnit{1, true};
+  return std::nullopt;
+}
+
+Json info_json(const SceneReport& report, const std::optional<ModelUnit>& unit) {
   Json json = {{"name", report.name},
                {"up", axis_names[int(report.up)]},
                {"triangles", report.triangles},
                {"stored_triangles", report.stored_triangles},
                {"vertices", report.vertices},
                {"textures", report.texture_count},
-               {"bounds", box_json(report.bounds)}};
+               {"bounds", box_json(report.bounds)},
+               {"size", size_json(report.bounds)},
+               {"unit", unit_json(unit)}};
   json["odd"] = odd_json(report.odd);
   json["meshes"] = list(report.meshes, mesh_json);
   json["objects"] = list(report.objects, object_json);
@@ -141,7 +214,7 @@ Json info_json(const SceneReport& report) {
   return json;
 }
 
-std::string info_text(const SceneReport& report) {
+std::string info_text(const SceneReport& report, const std::optional<ModelUnit>& unit) {
   std::string text = fmt::format("{}\n  triangles  {}", printable_name(report.name), report.triangles);
   if (report.stored_triangles != report.triangles) text += fmt::format(" ({} stored)", report.stored_triangles);
   text += fmt::format("\n  vertices   {}\n  textures   {}\n  up         {}\n", report.vertices, report.texture_count,
@@ -150,6 +223,9 @@ std::string info_text(const SceneReport& report) {
     text += "  bounds     none\n";
   } else {
     text += fmt::format("  bounds     {} to {}\n", vector_text(report.bounds.low), vector_text(report.bounds.high));
+    const glm::dvec3 size = size_of(report.bounds);
+    text += fmt::format("  size       {:.6g} x {:.6g} x {:.6g}\n", size.x, size.y, size.z);
+    text += unit_line(unit, report.bounds);
   }
   const std::size_t closed = std::size_t(
       std::count_if(report.meshes.begin(), report.meshes.end(), [](const MeshReport& mesh) { return mesh.closed; }));

@@ -129,6 +129,62 @@ TEST_F(Info, OddThingsAreSaid) {
   EXPECT_THAT(succeed("info flap.stl").out, HasSubstr("3  boundary edges"));
 }
 
+/// A flap of two triangles, `size` long.
+std::string flap_obj(double size, const std::string& name = "flap") {
+  const auto number = [&](double part) { return std::to_string(part * size); };
+  return "o " + name + "\nv 0 0 0\nv " + number(1) + " 0 0\nv 0 " + number(0.5) + " 0\nv 0 0 " + number(0.25) +
+         "\nf 1 2 3\nf 2 1 4\n";
+}
+
+TEST_F(Info, TheSizeIsSaid) {
+  write("flap.obj", flap_obj(120));
+  const json info = succeed("info flap.obj --json").json();
+  EXPECT_EQ(info["size"], json({120.0, 60.0, 30.0}));
+  EXPECT_EQ(info["objects"][0]["size"], json({120.0, 60.0, 30.0}));
+  EXPECT_THAT(succeed("info flap.obj").out, HasSubstr("  size       120 x 60 x 30\n"));
+  write("none.obj", "v 0 0 0\n");
+  EXPECT_EQ(succeed("info none.obj --json").json()["size"], nullptr);
+}
+
+TEST_F(Info, TheUnitIsTheFilesOrAGuess) {
+  const auto unit = [&](const std::string& file) { return succeed("info " + file + " --json").json()["unit"]; };
+  write("part.obj", flap_obj(120));
+  EXPECT_EQ(unit("part.obj"), json({{"name", "millimetre"}, {"metres", 0.001}, {"guess", true}}));
+  EXPECT_THAT(succeed("info part.obj").out, HasSubstr("  unit       millimetre, a guess: 120 x 60 x 30 mm\n"));
+  write("scan.obj", flap_obj(0.15));
+  EXPECT_EQ(unit("scan.obj"), json({{"name", "metre"}, {"metres", 1.0}, {"guess", true}}));
+  EXPECT_THAT(succeed("info scan.obj").out, HasSubstr("  unit       metre, a guess: 150 x 75 x 37.5 mm\n"));
+  for (const double size : {2.0, 9000.0, 0.0001}) {
+    write("any.obj", flap_obj(size));
+    EXPECT_EQ(unit("any.obj"), nullptr) << size;
+  }
+  EXPECT_THAT(succeed("info any.obj").out, Not(HasSubstr("unit ")));
+  write("m.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":"data:;base64,)"
+                  R"(AAAAAAAAAAAAAAAAAACAQAAAAAAAAAAAAAAAAAAAgEAAAAAA"}],"bufferViews":[{"buffer":0,"byteLength":36}],)"
+                  R"("accessors":[{"bufferView":0,"count":3,"componentType":5126,"type":"VEC3"}],)"
+                  R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}]})");
+  EXPECT_EQ(unit("m.gltf"), json({{"name", "metre"}, {"metres", 1.0}, {"guess", false}}));
+  EXPECT_THAT(succeed("info m.gltf").out, HasSubstr("  unit       metre: 4 x 4 x 0 m\n"));
+  EXPECT_EQ(unit("builtin:teapot"), nullptr);
+}
+
+TEST_F(Info, OddEdgesAreThoseOfNamedMeshes) {
+  // Three triangles at one edge in `fin`; `flap` has four edges of one triangle.
+  write("two.obj", flap_obj(10) + "o fin\nv 0 9 0\nv 0 9 5\nv 1 9 0\nv 2 8 0\nv 2 9 1\nf 5 6 7\nf 6 5 8\nf 5 6 9\n");
+  const std::string text = succeed("info two.obj").out;
+  EXPECT_THAT(text, HasSubstr("            10  boundary edges\n               6  in fin\n               4  in flap\n"));
+  EXPECT_THAT(text, HasSubstr("             1  non-manifold edges\n               1  in fin\n"));
+  const json meshes = succeed("info two.obj --json").json()["meshes"];
+  EXPECT_EQ(meshes[0]["name"], "flap");
+  EXPECT_EQ(meshes[0]["odd"]["boundary_edges"], 4);
+  EXPECT_EQ(meshes[1]["odd"]["non_manifold_edges"], 1);
+  std::string many;
+  for (int i = 0; i < 8; ++i) many += "o flap" + std::to_string(i) + "\nf 1 2 3\nf 2 1 4\n";
+  write("many.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n" + many);
+  EXPECT_THAT(succeed("info many.obj").out,
+              HasSubstr("4  in flap4\n                  and in 3 more; --json lists them\n"));
+}
+
 TEST_F(Info, ModelsMayComeFromStandardInput) {
   const Outcome outcome = run(Call{.words = {"info", "-", "--json"}, .input = cube_stl()});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
