@@ -79,8 +79,8 @@ TEST_F(Precision, WhatPositionsAddIsSaid) {
   EXPECT_THAT(succeed(line).out, HasSubstr("what floats of positions and transforms add"));
   EXPECT_THAT(succeed(line + " --gap 1e-6,100.5").out, HasSubstr("no format will do: positions add 0.00024"));
   EXPECT_TRUE(succeed(line + " --gap 1e-6,100.5 --json").json()["buffers"][0]["near_for_gap"].is_null());
-  // Far from the origin, positions are coarser.
-  write("far.obj", "v 1e4 0 0\nv 10001 0 0\nv 1e4 1 0\nf 1 2 3\n");
+  // Far from the eye, positions are coarser.
+  write("far.obj", "v 0 0 0\nv 1e4 0 0\nv 0 1 0\nf 1 2 3\n");
   write("near.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const std::string camera = " --resolution 8,8 --view front --near 1 --far 9 --format D24 --json";
   const auto added = [&](const char* model) {
