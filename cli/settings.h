@@ -170,12 +170,13 @@ struct DrawingSettings {
   double margin = 10;  ///< millimetres
   std::vector<NamedView> views;
   std::optional<Layout> layout;
-  double crease_angle = 30;           ///< degrees
-  std::optional<double> pen;          ///< millimetres, of what is seen
-  std::optional<double> hatch;        ///< millimetres from line to line
-  std::optional<double> stipple;      ///< millimetres from dot to dot
-  std::optional<double> hatch_angle;  ///< degrees
-  std::optional<glm::dvec3> light;    ///< towards it: to the right, upwards and to the viewer
+  std::optional<double> crease_angle;     ///< degrees; none: judged by the surfaces
+  std::optional<double> shortest_stroke;  ///< millimetres
+  std::optional<double> pen;              ///< millimetres, of what is seen
+  std::optional<double> hatch;            ///< millimetres from line to line
+  std::optional<double> stipple;          ///< millimetres from dot to dot
+  std::optional<double> hatch_angle;      ///< degrees
+  std::optional<glm::dvec3> light;        ///< towards it: to the right, upwards and to the viewer
   std::optional<bool> casts_shadows;
   bool plot = false;
   bool frame = false;

@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!input) return 0;
   const auto& [bytes, scene] = *input;
   LineOptions options;
-  options.crease_angle = bytes.spare & 1 ? 0 : 0.5;
+  if (bytes.spare & 1) options.crease_angle = 0;
   options.counts_hidden = bytes.spare & 2;
   options.outlines = bytes.spare & 4;
   try {

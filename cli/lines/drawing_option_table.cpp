@@ -68,10 +68,19 @@ constexpr Option table[] = {
      [](Settings& s, const Given& g) {
        s.drawing.pen = g.number({0.01, 10});
      }},
-    {"crease-angle", 0, "DEGREES", "Edges whose faces meet at more than this are drawn, 0 to 180; 30 by default.",
+    {"crease-angle", 0, "DEGREES",
+     "Edges whose faces meet at more than this are drawn, 0 to 180; by default those where the surfaces on both sides "
+     "do.",
      Group::drawing, for_lines,
      [](Settings& s, const Given& g) {
        s.drawing.crease_angle = g.number({0, 180});
+     }},
+    {"shortest-stroke", 0, "MM",
+     "Shorter strokes are joined to others or left out, but for pieces of outlines, 0 to 10; 0.5 by default with "
+     "--plot, 0 otherwise.",
+     Group::drawing, for_lines,
+     [](Settings& s, const Given& g) {
+       s.drawing.shortest_stroke = g.number({0, 10});
      }},
     {"hatch", 0, "MM",
      "Hatches what is dark: lines this far apart, 0.2 to 50, as many between them where it is darker, crossed by "

@@ -25,6 +25,8 @@
 namespace frontmost::cli {
 namespace {
 
+constexpr double usual_crease = 30;          // degrees: of intersections
+constexpr double plotted_stroke = 0.5;       // millimetres: the shortest that is worth the pen's way
 constexpr double gap_between_views = 15;     // millimetres
 constexpr double paper_tolerance = 0.01;     // millimetres: of arcs, and of lines that count as one
 constexpr double stroke_tolerance = 0.0005;  // millimetres: half of what coordinates are rounded to
@@ -126,7 +128,7 @@ DrawnView draw(const ViewSettings& settings, const Settings& all, const Surfaces
     result.surfaces = result.own.get();
   }
   LineOptions options;
-  options.crease_angle = glm::radians(all.drawing.crease_angle);
+  if (all.drawing.crease_angle) options.crease_angle = glm::radians(*all.drawing.crease_angle);
   options.outlines = all.drawing.style == DrawingSettings::Style::figure;
   result.drawing = lines(*result.surfaces, view, options, execution);
   const Projection& p = view.projection;
@@ -211,12 +213,14 @@ StrokeOptions stroke_options(const DrawingSettings& settings, const DrawnView& v
   const double millimetres_per_pixel = view.sheet.millimetres_per_pixel;
   StrokeOptions options;
   options.with_hidden = view.shows_hidden;
-  options.grazing_angle = glm::radians(std::min(settings.crease_angle, 90.0));
+  options.grazing_angle = glm::radians(std::min(settings.crease_angle.value_or(usual_crease), 90.0));
   options.by_kind = options.by_outline = settings.style == DrawingSettings::Style::figure;
   options.by_instance = !settings.plot;
   options.nearest_first = settings.plot;
   options.apart = std::clamp(paper_tolerance / millimetres_per_pixel, 0.002, 1.0);
   options.tolerance = std::clamp(stroke_tolerance / millimetres_per_pixel, 1e-4, 1.0);
+  options.shortest =
+      std::min(settings.shortest_stroke.value_or(settings.plot ? plotted_stroke : 0) / millimetres_per_pixel, 1e4);
   options.arc_tolerance = std::min(paper_tolerance / millimetres_per_pixel, 100.0);
   return options;
 }

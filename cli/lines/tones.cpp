@@ -17,7 +17,7 @@ ToneOptions tone_options(const DrawingSettings& settings, const View& view) {
   ToneOptions tone;
   if (settings.light) tone.to_light = glm::dmat3(view.world_from_eye) * *settings.light;  // eye space looks down -z
   tone.casts_shadows = settings.casts_shadows.value_or(true);
-  tone.crease_angle = glm::radians(settings.crease_angle);
+  if (settings.crease_angle) tone.crease_angle = glm::radians(*settings.crease_angle);
   return tone;
 }
 

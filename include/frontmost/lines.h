@@ -2,6 +2,7 @@
 // Hidden lines: the feature edges of a scene, cut exactly where they go out of sight.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "frontmost/surfaces.h"
@@ -21,8 +22,11 @@ inline constexpr int edge_kind_count = 5;
 
 struct LineOptions {
   /// Radians, 0 to pi: edges whose triangles' normals differ by more are creases. Edges between triangles of one plane
-  /// never are.
-  double crease_angle = 0.5235987755982988;
+  /// never are. None: a crease is where the surfaces on both sides differ, by 18 degrees or more, once each has been
+  /// followed to the edge as it turns beside it; or by half as much where a crease goes on along them. Slivers have the
+  /// normals of their surfaces, triangles that meet at more than 34 degrees are always creases, and those at less than 15
+  /// never. One or two edges that end in the air are none but where they are longer than a twentieth of all.
+  std::optional<double> crease_angle = std::nullopt;
   /// True: DrawnPart::hidden_by counts; false: it tells 0 from more, and costs less.
   bool counts_hidden = false;
   /// Which kinds are found. Without intersections a third to a half of the time is saved.

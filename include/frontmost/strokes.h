@@ -23,6 +23,9 @@ struct StrokeOptions {
   /// Pixels, 0 to 100. Above 0: runs of at least four parts whose corners lie within this of one circle, with at most
   /// 20 degrees between two, become arcs. A polygon of up to 17 sides stays one.
   double arc_tolerance = 0;
+  /// Pixels, 0 to 10000: shorter strokes are joined to others that they touch, or left out where they end in the air or
+  /// lie between lines that go on without them. Pieces of silhouettes and boundaries that close an outline stay.
+  double shortest = 0;
   /// Each stroke begins as near as possible to the end of the one before, and goes on with it where they touch: for
   /// plotters. False: strokes come in the order of their parts.
   bool nearest_first = false;

@@ -112,7 +112,7 @@ SeenMesh see_closed(WeldedMesh& mesh, const Sight& sight, const Execution& execu
 
 Drawing lines(const Surfaces& surfaces, const View& view, const LineOptions& options, const Execution& execution) {
   validate(view);
-  if (!(options.crease_angle >= 0 && options.crease_angle <= 3.1415926535897932))
+  if (options.crease_angle && !(*options.crease_angle >= 0 && *options.crease_angle <= 3.1415926535897932))
     throw Error(ErrorCode::bad_argument, "crease_angle: must be from 0 to pi");
   const IeeeScope ieee;
   const Crew crew(execution);

@@ -438,6 +438,7 @@ TEST_F(LinesCommand, WhatCannotBeMeantIsRefused) {
   expect_failure("lines cube.stl -o a.svg --views front --view top", 2, "exclude each other");
   expect_failure("lines cube.stl -o a.svg --projection third-angle", 2, "needs --views");
   expect_failure("lines cube.stl -o a.svg --crease-angle 181", 2, "--crease-angle");
+  expect_failure("lines cube.stl -o a.svg --shortest-stroke 11", 2, "--shortest-stroke");
   expect_failure("lines cube.stl -o a.svg --hidden dotted", 2, "--hidden");
   expect_failure("lines cube.stl -o - --format svg --json", 2, "both want standard output");
   expect_failure("lines cube.stl -o a.svg --samples 4", 2, "does not belong");

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "base/parallel.h"
+#include "lines/creases/creases.h"
 #include "lines/crossings/stars.h"
 #include "lines/joined.h"
 #include "lines/mesh/sheets.h"
@@ -26,7 +27,7 @@ class Classifier {
         seen_(seen),
         surfaces_(surfaces),
         options_(options),
-        cosine_(std::cos(options.crease_angle)),
+        cosine_(std::cos(options.crease_angle.value_or(kLeastFold))),
         has_borders_(options.borders && !is_one_surface(surfaces.scene())) {}
 
   [[nodiscard]] const WeldedMesh& mesh() const { return mesh_; }
@@ -226,6 +227,7 @@ Features find_features(const SeenMesh& seen, const Surfaces& surfaces, const Lin
   });
   Features all{joined(edges, execution), joined(twins, execution), std::move(is_spread)};
   std::sort(all.twins.begin(), all.twins.end());
+  if (options.creases && !options.crease_angle) judge_creases(seen, table, all.edges, execution);
   return all;
 }
 

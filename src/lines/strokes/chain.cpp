@@ -9,7 +9,6 @@ namespace frontmost::lines_detail {
 namespace {
 
 constexpr std::uint32_t none = no_index;
-constexpr double places_per_pixel = 1000;  // ends within about this are one place
 
 /// An end of a segment: number 2 i for its from, 2 i + 1 for its to.
 struct End {
@@ -75,6 +74,7 @@ class Chaining {
     chain.points.push_back(place(end));
     while (end != none && !is_used_[end / 2]) {
       is_used_[end / 2] = true;
+      chain.is_contour |= segments_[end / 2].is_contour;
       chain.points.push_back(place(end ^ 1));
       end = partner_[end ^ 1];
     }

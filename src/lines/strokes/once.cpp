@@ -155,7 +155,7 @@ class Sheet {
         // The line's own ends to the bit, so that its neighbours find them.
         const glm::dvec2 from = at == 0 ? line.from : line.from + line.along * at;
         const glm::dvec2 to = c.begin == line.length ? line.to : line.from + line.along * c.begin;
-        add(Line({from, to, line.rank}), fresh);
+        add(Line({from, to, line.rank, line.is_contour}), fresh);
       }
       at = std::max(at, c.end);
     }

@@ -2,6 +2,7 @@
 // What strokes are made of, on their way.
 #pragma once
 
+#include <functional>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
@@ -14,6 +15,7 @@ namespace frontmost::lines_detail {
 struct Segment {
   glm::dvec2 from, to;
   std::uint32_t rank;
+  bool is_contour = false;  ///< a piece of a silhouette or a boundary
 };
 
 /// Joined segments. A closed one does not repeat its first point.
@@ -22,6 +24,7 @@ struct Chain {
   std::vector<double> bulges;  ///< empty, or one for each point
   std::uint32_t rank = 0;
   bool is_closed = false;
+  bool is_contour = false;  ///< a part of it is
 };
 
 inline double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
@@ -31,8 +34,24 @@ inline double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y
 [[nodiscard]] std::vector<Segment> draw_once(const std::vector<Segment>& segments, double apart,
                                              const Execution& execution);
 
+/// Ends within about 1 / places_per_pixel are one place.
+inline constexpr double places_per_pixel = 1000;
+
 /// Joins segments of one rank wherever exactly two ends meet. By rank, then in the order of the segments.
 [[nodiscard]] std::vector<Chain> chained(const std::vector<Segment>& segments);
+
+struct CrumbRule {
+  double shortest;  ///< pixels: of a line that is no crumb
+  double touching;  ///< pixels: what is nearer counts as touching
+  std::function<bool(std::uint32_t rank)> is_hidden;
+};
+
+/// Chains without those that are shorter than the rule has it, but for pieces of outlines: a crumb of which an end
+/// touches nothing is left out, and so is one between lines that go on without it, unless it is a contour. What holds
+/// others together is joined to one of them that has its rank, or stays. What is hidden holds nothing that is seen.
+/// Near-linear. Precondition: no arcs.
+[[nodiscard]] std::vector<Chain> without_crumbs(std::vector<Chain> chains, const CrumbRule& rule,
+                                                const Execution& execution);
 
 /// Leaves out corners that lie within `tolerance` of the line between those that stay.
 void straighten(Chain& chain, double tolerance);

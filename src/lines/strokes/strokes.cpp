@@ -53,6 +53,8 @@ void check(const StrokeOptions& options) {
     throw Error(ErrorCode::bad_argument, "strokes: the tolerance must be from 0.0001 to 1 pixel");
   if (!(options.arc_tolerance >= 0 && options.arc_tolerance <= 100))
     throw Error(ErrorCode::bad_argument, "strokes: the tolerance of arcs must be from 0 to 100 pixels");
+  if (!(options.shortest >= 0 && options.shortest <= 1e4))
+    throw Error(ErrorCode::bad_argument, "strokes: the shortest stroke must be from 0 to 10000 pixels");
   if (!(options.grazing_angle >= 0 && options.grazing_angle <= std::numbers::pi / 2))
     throw Error(ErrorCode::bad_argument, "strokes: the grazing angle must be from 0 to pi/2");
 }
@@ -110,7 +112,9 @@ Ranked ranked(const Surfaces& surfaces, const Drawing& drawing, const StrokeOpti
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const DrawnPart& part = drawing.parts[i];
     if (!choice.has(part)) continue;
-    result.segments.push_back({part.from, part.to, known.find(keys[i])->second.first});
+    const EdgeKind kind = drawing.edges[part.edge].kind;
+    result.segments.push_back({part.from, part.to, known.find(keys[i])->second.first,
+                               kind == EdgeKind::silhouette || kind == EdgeKind::boundary});
   }
   return result;
 }
@@ -146,6 +150,10 @@ Strokes strokes(const Surfaces& surfaces, const Drawing& drawing, const StrokeOp
   std::vector<Chain> chains = chained(draw_once(parts.segments, options.apart, execution));
   std::erase_if(chains, [&](const Chain& chain) { return is_point(chain, options.apart); });
   report_progress(execution, "strokes", 0.6);
+  if (options.shortest > 0) {
+    const auto is_hidden = [&](std::uint32_t rank) { return parts.strokes[rank].is_hidden; };
+    chains = without_crumbs(std::move(chains), {options.shortest, 2 * options.apart, is_hidden}, execution);
+  }
   parallel_for(execution, chains.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       straighten(chains[i], options.tolerance);

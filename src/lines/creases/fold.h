@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Folds: edges at which a surface turns, because it has a crease there or because it is curved and was cut into
+// triangles.
+#pragma once
+
+#include "lines/creases/neighbours.h"
+#include "lines/mesh/feature_edges.h"
+
+namespace frontmost::lines_detail {
+
+/// Radians: folds of less are no creases, whatever is beside them. Half the edges of a scan are folds of some degrees.
+inline constexpr double kLeastFold = 0.2617993877991494;
+
+enum class FoldGrade : std::uint8_t {
+  smooth,
+  weak,    ///< a crease where one goes on along it
+  strong,  ///< a crease
+  sharp,   ///< a crease whatever is beside it
+};
+
+struct JudgedFold {
+  FoldGrade grade = FoldGrade::smooth;
+  double jump = 0;  ///< radians: by how much the surfaces on both sides differ at the edge
+};
+
+/// What the surface jumps by is the angle between the normals of both sides, less what it would turn by if each side
+/// went on to curve as it does beyond its triangle: half of the next angle on each side. So a cylinder jumps by
+/// nothing, however few sides it has, a chamfer or a cone's rim by all of its angle, and the edge between a plane and a
+/// fillet by half. What is far in comparison with the other side's triangle counts little, and where a side turns back
+/// the fold has to be deeper by as much: it is rough. `edge` has two triangles. O(triangles at its corners).
+[[nodiscard]] JudgedFold judge_fold(const Neighbours& near, const FeatureEdge& edge);
+
+}  // namespace frontmost::lines_detail

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lines/creases/neighbours.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace frontmost::lines_detail {
+namespace {
+
+constexpr double kWidestCorner = 0.9659;  // the cosine of 15 degrees, by which slivers' corners miss a straight angle
+constexpr double kOnePlane = 0.996;       // the cosine of 5 degrees
+constexpr std::size_t kMostSlivers = 8;   // more in one plane are no sliver together
+
+}  // namespace
+
+TurnedTriangle Neighbours::beyond(const TurnedTriangle& triangle, std::uint32_t a, std::uint32_t b) const {
+  const WeldedMesh& mesh = seen_.mesh;
+  const std::uint32_t own = third_of(corners(triangle.number), a, b);
+  std::uint32_t found = no_index, opposite = no_index;
+  for (const Corner& corner : table_.at(a)) {
+    const std::uint32_t next = corner.next(mesh), last = corner.last(mesh);
+    if (next != b && last != b) continue;
+    const std::uint32_t third = next == b ? last : next;
+    if (third == own || third == opposite) continue;
+    if (found != no_index) return {};
+    found = corner.triangle();
+    opposite = third;
+  }
+  if (found == no_index) return {};
+  const bool is_alike = runs(corners(triangle.number), a, b) != runs(corners(found), a, b);
+  return {found, triangle.is_turned == is_alike};
+}
+
+Fan Neighbours::fan(std::uint32_t vertex) const {
+  Fan fan;
+  const std::span<const Corner> corners = table_.at(vertex);
+  if (corners.size() > Fan::most) return fan;
+  for (const Corner& corner : corners)
+    fan.entries_[fan.count_++] = {corner.triangle(), corner.next(seen_.mesh), corner.last(seen_.mesh)};
+  return fan;
+}
+
+Fan::Side Fan::beyond(const Side& side) const {
+  const auto has_it = [&](const Entry& entry) { return entry.triangle == side.triangle.number; };
+  const auto end = entries_.begin() + std::ptrdiff_t(count_);
+  const auto own = std::find_if(entries_.begin(), end, has_it);
+  if (own == end) return {{}, no_index};
+  const bool is_next = own->next == side.rim;
+  const std::uint32_t own_rim = is_next ? own->last : own->next;
+  Side found{{}, no_index};
+  for (auto entry = entries_.begin(); entry != end; ++entry) {
+    if (entry->next != side.rim && entry->last != side.rim) continue;
+    const bool is_alike = (entry->next == side.rim) != is_next;
+    const std::uint32_t rim = entry->next == side.rim ? entry->last : entry->next;
+    if (rim == own_rim || rim == found.rim) continue;
+    if (found.triangle.is_there()) return {{}, no_index};
+    found = {{entry->triangle, side.triangle.is_turned == is_alike}, rim};
+  }
+  return found;
+}
+
+glm::dvec3 Neighbours::normal(const TurnedTriangle& triangle) const {
+  glm::dvec3 normal(seen_.triangles[triangle.number].normal);
+  if (normal == glm::dvec3(0)) {
+    normal = normal_of(seen_.mesh, triangle.number);
+    const double length = glm::length(normal);
+    normal = length > 0 ? normal / length : glm::dvec3(0);
+  }
+  return triangle.is_turned ? -normal : normal;
+}
+
+bool Neighbours::is_sliver(std::uint32_t triangle) const {
+  const glm::uvec3& t = corners(triangle);
+  const glm::dvec3 sides[3] = {place(t.y) - place(t.x), place(t.z) - place(t.y), place(t.x) - place(t.z)};
+  for (int k = 0; k < 3; ++k) {
+    const glm::dvec3 &u = sides[k], &v = sides[k == 2 ? 0 : k + 1];
+    const double dot = glm::dot(u, v);
+    if (dot > 0 && dot * dot > kWidestCorner * kWidestCorner * glm::dot(u, u) * glm::dot(v, v)) return true;
+  }
+  return false;
+}
+
+glm::dvec3 Neighbours::surface_normal(const TurnedTriangle& triangle) const {
+  const glm::dvec3 own = normal(triangle);
+  if (!is_sliver(triangle.number)) return own;
+  std::array<TurnedTriangle, kMostSlivers> piece;  // the slivers of one plane
+  piece[0] = triangle;
+  std::size_t count = 1;
+  const auto has = [&](std::uint32_t number) {
+    return std::any_of(piece.begin(), piece.begin() + std::ptrdiff_t(count),
+                       [&](const TurnedTriangle& sliver) { return sliver.number == number; });
+  };
+  glm::dvec3 nearest = own;
+  double cosine = -2;
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::uvec3& t = corners(piece[i].number);
+    for (int k = 0; k < 3; ++k) {
+      const TurnedTriangle other = beyond(piece[i], t[k], t[k == 2 ? 0 : k + 1]);
+      if (!other.is_there() || has(other.number)) continue;
+      const bool is_thin = is_sliver(other.number);
+      const glm::dvec3 its = normal(other);
+      const double along = glm::dot(its, own);
+      if (along > kOnePlane) {
+        if (!is_thin || count == piece.size()) return own;
+        piece[count++] = other;
+      } else if (!is_thin && along > cosine) {
+        cosine = along;
+        nearest = its;
+      }
+    }
+  }
+  return nearest;
+}
+
+}  // namespace frontmost::lines_detail

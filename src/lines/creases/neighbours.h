@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangles beside triangles, and the normals of the surfaces that they are cut from.
+#pragma once
+
+#include <array>
+
+#include "lines/mesh/corner_table.h"
+#include "lines/mesh/seen_mesh.h"
+
+namespace frontmost::lines_detail {
+
+/// A triangle as its neighbours have it: turned around where the two are wound against each other.
+struct TurnedTriangle {
+  std::uint32_t number = no_index;
+  bool is_turned = false;
+
+  [[nodiscard]] bool is_there() const { return number != no_index; }
+};
+
+/// Whether the triangle runs from vertex a to vertex b, and not from b to a.
+[[nodiscard]] inline bool runs(const glm::uvec3& triangle, std::uint32_t a, std::uint32_t b) {
+  return (triangle.x == a && triangle.y == b) || (triangle.y == a && triangle.z == b) ||
+         (triangle.z == a && triangle.x == b);
+}
+/// The triangle's corner that is neither a nor b.
+[[nodiscard]] inline std::uint32_t third_of(const glm::uvec3& triangle, std::uint32_t a, std::uint32_t b) {
+  if (triangle.x != a && triangle.x != b) return triangle.x;
+  return triangle.y != a && triangle.y != b ? triangle.y : triangle.z;
+}
+
+/// The triangles around a vertex, to be walked around.
+class Fan {
+ public:
+  static constexpr std::size_t most = 32;  ///< triangles; of more none are kept
+
+  struct Side {
+    TurnedTriangle triangle;
+    std::uint32_t rim;  ///< the side's other vertex
+  };
+  /// The triangle beyond a side of one, and its other side at the vertex. Copies of a triangle count once; none where
+  /// there are several others.
+  [[nodiscard]] Side beyond(const Side& side) const;
+
+ private:
+  friend class Neighbours;
+  struct Entry {
+    std::uint32_t triangle, next, last;
+  };
+  std::array<Entry, most> entries_;
+  std::size_t count_ = 0;
+};
+
+class Neighbours {
+ public:
+  Neighbours(const SeenMesh& seen, const CornerTable& table) : seen_(seen), table_(table) {}
+
+  [[nodiscard]] const glm::uvec3& corners(std::uint32_t triangle) const { return seen_.mesh.triangles[triangle]; }
+  [[nodiscard]] glm::dvec3 place(std::uint32_t vertex) const { return seen_.mesh.positions[vertex]; }
+
+  /// Beyond the side from vertex a to vertex b. Copies of a triangle count once; none where there are several others.
+  /// O(triangles at a).
+  [[nodiscard]] TurnedTriangle beyond(const TurnedTriangle& triangle, std::uint32_t a, std::uint32_t b) const;
+
+  /// O(triangles at the vertex).
+  [[nodiscard]] Fan fan(std::uint32_t vertex) const;
+
+  /// The triangle's own, of unit length or zero.
+  [[nodiscard]] glm::dvec3 normal(const TurnedTriangle& triangle) const;
+  /// Whether the corners lie almost on a line, one between the others. On a curved surface such a triangle may have any
+  /// normal: on a chord of a cylinder's rim it lies in the rim's plane.
+  [[nodiscard]] bool is_sliver(std::uint32_t triangle) const;
+  /// Of the surface that the triangle is cut from. Slivers that are not part of something wider take the normal of one
+  /// of their neighbours, the one that their own is nearest to.
+  [[nodiscard]] glm::dvec3 surface_normal(const TurnedTriangle& triangle) const;
+
+ private:
+  const SeenMesh& seen_;
+  const CornerTable& table_;
+};
+
+}  // namespace frontmost::lines_detail

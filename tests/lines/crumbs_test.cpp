@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+// Strokes that are shorter than is worth the pen's way: what is left out, what is joined, and what must stay.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "frontmost/strokes.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+constexpr double kShortest = 5;
+
+/// A drawing of given lines in pixels.
+class Sketch {
+ public:
+  Sketch& add(EdgeKind kind, const std::vector<glm::dvec2>& points, bool is_hidden = false) {
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+      DrawnPart part;
+      part.edge = std::uint32_t(drawing_.edges.size());
+      part.from = points[i];
+      part.to = points[i + 1];
+      part.hidden_by = is_hidden;
+      drawing_.parts.push_back(part);
+      DrawnEdge edge;
+      edge.kind = kind;
+      drawing_.edges.push_back(edge);
+    }
+    return *this;
+  }
+  [[nodiscard]] Strokes strokes(double shortest = kShortest, bool by_kind = false) const {
+    const Scene scene = scene_of({});
+    StrokeOptions options;
+    options.by_kind = by_kind;
+    options.shortest = shortest;
+    return frontmost::strokes(Surfaces(scene), drawing_, options);
+  }
+
+ private:
+  Drawing drawing_;
+};
+
+double length_of(const Strokes& all) {
+  double length = 0;
+  for (const Stroke& stroke : all.strokes)
+    for (std::uint32_t i = 0; i + (stroke.is_closed ? 0 : 1) < stroke.count; ++i)
+      length += glm::distance(all.points[stroke.first + i], all.points[stroke.first + (i + 1) % stroke.count]);
+  return length;
+}
+
+TEST(Crumbs, InTheAirAreLeftOut) {
+  for (const EdgeKind kind : {EdgeKind::silhouette, EdgeKind::boundary, EdgeKind::crease, EdgeKind::intersection}) {
+    Sketch sketch;
+    sketch.add(kind, {{0, 0}, {100, 0}}).add(kind, {{20, 20}, {23, 21}}).add(kind, {{50, 0}, {52, 3}});
+    EXPECT_EQ(sketch.strokes(0).strokes.size(), 3u);
+    EXPECT_EQ(sketch.strokes().strokes.size(), 1u);
+    EXPECT_NEAR(length_of(sketch.strokes()), 100, 1e-9);
+  }
+}
+
+TEST(Crumbs, ThatEndInTheAirTogetherAreLeftOutTogether) {
+  // Three from a junction, one of them on to a second junction, and none held by anything.
+  Sketch sketch;
+  sketch.add(EdgeKind::silhouette, {{10, 10}, {12, 10}})
+      .add(EdgeKind::silhouette, {{12, 10}, {13, 12}})
+      .add(EdgeKind::silhouette, {{12, 10}, {14, 9}})
+      .add(EdgeKind::silhouette, {{14, 9}, {15, 8}})
+      .add(EdgeKind::silhouette, {{14, 9}, {16, 10}});
+  EXPECT_TRUE(sketch.strokes().strokes.empty());
+}
+
+/// An outline in four pieces, one of them a crumb between two T-junctions with longer lines.
+TEST(Crumbs, OfOutlinesStay) {
+  for (const EdgeKind kind : {EdgeKind::silhouette, EdgeKind::boundary}) {
+    Sketch sketch;
+    sketch.add(kind, {{0, 0}, {100, 0}}).add(kind, {{0, 3}, {100, 3}}).add(kind, {{50, 0}, {50, 3}});
+    EXPECT_NEAR(length_of(sketch.strokes()), 203, 1e-9);
+    // A crease there goes: both lines go on without it.
+    Sketch other;
+    other.add(kind, {{0, 0}, {100, 0}}).add(kind, {{0, 3}, {100, 3}}).add(EdgeKind::crease, {{50, 0}, {50, 3}});
+    EXPECT_NEAR(length_of(other.strokes()), 200, 1e-9);
+  }
+}
+
+TEST(Crumbs, ClosedOutlinesStayAndOtherLoopsGo) {
+  const std::vector<glm::dvec2> loop = {{10, 10}, {11, 10}, {11, 11}, {10, 11}, {10, 10}};
+  EXPECT_EQ(Sketch().add(EdgeKind::silhouette, loop).strokes().strokes.size(), 1u);
+  EXPECT_TRUE(Sketch().add(EdgeKind::crease, loop).strokes().strokes.empty());
+}
+
+TEST(Crumbs, ThatLinkLinesAreJoined) {
+  // A plate seen almost from its edge: two long lines, and at each end a short one with a third line to the corner.
+  Sketch sketch;
+  sketch.add(EdgeKind::crease, {{0, 0}, {100, 0}})
+      .add(EdgeKind::crease, {{100, 0}, {100, 3}})
+      .add(EdgeKind::crease, {{100, 3}, {0, 3}})
+      .add(EdgeKind::crease, {{100, 0}, {160, 20}})
+      .add(EdgeKind::crease, {{100, 3}, {160, 40}});
+  const Strokes whole = sketch.strokes(0), joined = sketch.strokes();
+  EXPECT_EQ(whole.strokes.size(), 5u);
+  EXPECT_EQ(joined.strokes.size(), 4u);
+  EXPECT_NEAR(length_of(joined), length_of(whole), 1e-9);
+}
+
+TEST(Crumbs, GoOnWithTheStraightestLine) {
+  Sketch sketch;
+  sketch.add(EdgeKind::crease, {{0, 0}, {100, 0}})
+      .add(EdgeKind::crease, {{100, 0}, {103, 0}})
+      .add(EdgeKind::crease, {{100, 0}, {100, 50}})
+      .add(EdgeKind::crease, {{103, 0}, {103, 50}})
+      .add(EdgeKind::crease, {{103, 0}, {150, -30}});
+  const Strokes joined = sketch.strokes();
+  EXPECT_EQ(joined.strokes.size(), 4u);
+  bool is_straight = false;
+  for (const Stroke& stroke : joined.strokes) {
+    const glm::dvec2 a = joined.points[stroke.first], b = joined.points[stroke.first + stroke.count - 1];
+    is_straight |= stroke.count == 2 && std::abs(glm::distance(a, b) - 103) < 1e-9;
+  }
+  EXPECT_TRUE(is_straight);
+}
+
+TEST(Crumbs, OfOneKindDoNotJoinAnother) {
+  Sketch sketch;
+  sketch.add(EdgeKind::silhouette, {{0, 0}, {100, 0}})
+      .add(EdgeKind::crease, {{100, 0}, {102, 2}})
+      .add(EdgeKind::silhouette, {{102, 2}, {200, 9}});
+  EXPECT_EQ(sketch.strokes(kShortest, true).strokes.size(), 3u);
+  EXPECT_NEAR(length_of(sketch.strokes(kShortest, true)), length_of(sketch.strokes(0, true)), 1e-9);
+}
+
+TEST(Crumbs, AreNotHeldByWhatIsHidden) {
+  Sketch sketch;
+  sketch.add(EdgeKind::silhouette, {{0, 0}, {100, 0}}, true)
+      .add(EdgeKind::silhouette, {{100, 0}, {102, 0}})
+      .add(EdgeKind::silhouette, {{102, 0}, {200, 0}}, true);
+  const Strokes all = sketch.strokes();
+  ASSERT_EQ(all.strokes.size(), 2u);
+  EXPECT_TRUE(all.strokes[0].is_hidden && all.strokes[1].is_hidden);
+}
+
+/// The outlines of a scene of blocks: everything that is closed stays so, whatever counts as short.
+TEST(Crumbs, NeverOpenAnOutline) {
+  const Scene scene = builtin("gallery");
+  const Surfaces surfaces(scene);
+  LineOptions options;
+  options.outlines = true;
+  const View view = frame(surfaces, 400, 300);
+  const Drawing drawing = lines(surfaces, view, options);
+  const auto outline_of = [&](double shortest) {
+    StrokeOptions all;
+    all.with_hidden = false;
+    all.shortest = shortest;
+    const Strokes found = strokes(surfaces, drawing, all);
+    double length = 0, closed = 0;
+    for (const Stroke& stroke : found.strokes) {
+      if (!stroke.is_outline) continue;
+      for (std::uint32_t i = 0; i + (stroke.is_closed ? 0 : 1) < stroke.count; ++i)
+        length += glm::distance(found.points[stroke.first + i], found.points[stroke.first + (i + 1) % stroke.count]);
+      closed += stroke.is_closed;
+    }
+    return glm::dvec2(length, closed);
+  };
+  const glm::dvec2 whole = outline_of(0), less = outline_of(4);
+  EXPECT_GT(whole.x, 100);
+  EXPECT_GT(less.x, 0.995 * whole.x);
+  EXPECT_EQ(less.y, whole.y);
+}
+
+TEST(Crumbs, TakeALimitFromZeroUp) {
+  const Sketch sketch = Sketch().add(EdgeKind::crease, {{0, 0}, {1, 0}});
+  for (const double wrong : {-1.0, 1e5, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THROW((void)sketch.strokes(wrong), Error);
+}
+
+TEST(Crumbs, ByTheThousandsTakeNoTime) {
+  Sketch sketch;
+  for (int i = 0; i < 20'000; ++i) {
+    const double x = i % 200 * 10, y = i / 200 * 10;
+    sketch.add(EdgeKind::crease, {{x, y}, {x + 1, y + 1}});
+  }
+  sketch.add(EdgeKind::crease, {{0, 0}, {2000, 1000}});
+  EXPECT_EQ(sketch.strokes().strokes.size(), 1u);
+}
+
+}  // namespace
+}  // namespace frontmost::test
