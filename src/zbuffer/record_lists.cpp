@@ -4,6 +4,7 @@
 #include "zbuffer/record_lists.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace frontmost::zbuffer_detail {
 namespace {
@@ -27,12 +28,25 @@ void visit_tiles(const TriangleRecord& record, const View& view, const TileRange
     }
 }
 
+auto place_of(const TriangleRecord& r) {
+  return std::tie(r.x[0], r.y[0], r.x[1], r.y[1], r.x[2], r.y[2], r.key[0], r.key[1], r.key[2]);
+}
+
+/// The nearer one; of those at one place, which come one after the other, the lower id.
+bool comes_before(const TriangleRecord& a, const TriangleRecord& b) {
+  if (a.nearest() != b.nearest()) return a.nearest() > b.nearest();
+  return std::tuple_cat(place_of(a), std::tie(a.id)) < std::tuple_cat(place_of(b), std::tie(b.id));
+}
+
+bool is_at_one_place(const TriangleRecord& a, const TriangleRecord& b) { return place_of(a) == place_of(b); }
+
 }  // namespace
 
 void RecordLists::plan(const View& view, std::size_t most_items) {
   // Any order gives the same picture. Nearest first, a tile may stop at the first record that all of its blocks hide.
-  std::sort(records.begin(), records.end(),
-            [](const TriangleRecord& a, const TriangleRecord& b) { return a.nearest() > b.nearest(); });
+  std::sort(records.begin(), records.end(), comes_before);
+  // A triangle that is there again is hidden by the lower id everywhere. A few bytes of glTF make a million of one.
+  records.erase(std::unique(records.begin(), records.end(), is_at_one_place), records.end());
   split_into_rounds(view, most_items);
 }
 

@@ -18,7 +18,8 @@ class RecordLists {
   /// To be filled before plan(): corners from the image's top left.
   std::vector<TriangleRecord> records;
 
-  /// Sorts the records, nearest first, and finds the rounds.
+  /// Sorts the records, nearest first, keeps the lowest id of those with the same corners, and finds the rounds.
+  /// Precondition: none has holes.
   void plan(const View& view, std::size_t most_items = kMostRecordItems);
   /// Tiles are drawn in rounds: one for any ordinary scene, but a million triangles that each fill the largest image
   /// make 16 thousand million pairs of record and tile.

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangles that are there again, twice or a million times: what is seen is the first, for the cost of the first.
+
+#include <gtest/gtest.h>
+
+#include "frontmost/zbuffer.h"
+#include "support/effort.h"
+#include "support/oracle.h"
+#include "support/random_scene.h"
+#include "support/same_visible.h"
+
+namespace frontmost::test {
+namespace {
+
+View front_view(int width, int height) {
+  View view;
+  view.width = width;
+  view.height = height;
+  view.world_from_eye = look_at({0, 0, 2}, {0, 0, 0}, {0, 1, 0});
+  view.projection = make_projection(0.9, double(width) / height, {0.1, 10});
+  return view;
+}
+
+/// Some meshes at a few places each, many of them taken, and in each mesh triangles that it has before.
+Scene crowded(Kind kind, std::uint64_t seed) {
+  Random random(seed + 9);
+  Scene scene;
+  for (std::uint64_t m = 0; m < 3; ++m) {
+    Mesh mesh = random_mesh(kind, 20 + random.below(60), seed * 3 + m);
+    for (int i = 0; i < 30; ++i) mesh.triangles.push_back(mesh.triangles[std::size_t(random.below(20))]);
+    scene.meshes.push_back(std::move(mesh));
+  }
+  for (int i = 0; i < 24; ++i) {
+    const auto mesh = std::uint32_t(random.below(3));
+    glm::dmat4 place(1.0);
+    place[3][0] = 0.25 * random.below(3);
+    if (random.below(3) == 0) place[1][1] = -1;
+    scene.instances.push_back({"object", mesh, place});
+  }
+  return scene;
+}
+
+class RepeatsOfEveryKind : public testing::TestWithParam<Kind> {};
+INSTANTIATE_TEST_SUITE_P(Repeats, RepeatsOfEveryKind, testing::ValuesIn(all_kinds));
+
+TEST_P(RepeatsOfEveryKind, ChangeNothingThatIsSeen) {
+  for (std::uint64_t seed = 0; seed < seeds(6); ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const Scene scene = crowded(GetParam(), seed);
+    const Surfaces surfaces(scene);
+    Random random(seed);
+    View view = random_view(random, 90 + 200 * int(seed % 2), 70);
+    view.culling = Culling(random.below(3));
+    const Visible expected = oracle(surfaces, view);
+    expect_same(expected, zbuffer(surfaces, view));
+    expect_same(expected, zbuffer(scene, view));
+  }
+}
+
+// Every triangle fills the picture. Drawing all of them would take minutes.
+TEST(Repeats, AMillionTakeTheTimeToCountThem) {
+  Mesh mesh;
+  for (int i = 0; i < 3; ++i) add_triangle(mesh, {-9, -9, 0}, {9, -9, 0.1f}, {0, 9, 0});
+  Scene scene = scene_of(std::move(mesh));
+  scene.instances.resize(under_sanitizer ? 1'000 : 300'000, scene.instances[0]);
+  View view = front_view(1000, 800);
+  view.samples = 4;
+  const Visible by_clusters = zbuffer(Surfaces(scene), view), at_once = zbuffer(scene, view);
+  for (const PrimitiveId id : by_clusters.primitives) ASSERT_EQ(id, 0u);
+  for (const PrimitiveId id : at_once.primitives) ASSERT_EQ(id, 0u);
+}
+
+}  // namespace
+}  // namespace frontmost::test
