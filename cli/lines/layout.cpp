@@ -83,10 +83,11 @@ bool Layout::leaves_free(const glm::dvec2& block, double scale, const glm::dvec2
 
 namespace {
 
-constexpr double longest_side = 1e5;  // millimetres: validate(Page)
-constexpr double widest_spread = 45;  // between views of a sheet that has room
-constexpr double slack = 1 + 1e-9;    // for rounding
-constexpr int bisections = 60;        // more than doubles have
+constexpr double longest_side = 1e5;   // millimetres: validate(Page)
+constexpr double widest_spread = 45;   // between views of a sheet that has room
+constexpr double upright_width = 250;  // millimetres, between A4 and A3
+constexpr double slack = 1 + 1e-9;     // for rounding
+constexpr int bisections = 60;         // more than doubles have
 
 /// Where views may stand on a page: from corner to corner, but not both to the right of `block` and below it.
 struct Area {
@@ -166,6 +167,8 @@ std::vector<glm::dvec2> pages_of(const PaperSettings& paper, const DrawingSettin
   std::vector<glm::dvec2> pages = {paper.size};
   if (paper.may_turn) pages.emplace_back(paper.size.y, paper.size.x);
   if (!settings.has_frame()) return pages;
+  // ISO 5457: A4 stands upright, all larger ones lie.
+  if (paper.may_turn && paper.size.x > upright_width) std::swap(pages[0], pages[1]);
   const auto is_small = [](const glm::dvec2& page) {
     return page.x < least_framed_page.x || page.y < least_framed_page.y;
   };
@@ -176,14 +179,17 @@ std::vector<glm::dvec2> pages_of(const PaperSettings& paper, const DrawingSettin
   return pages;
 }
 
-/// The area on that page on which the drawing is largest, and its scale there.
+/// The area on that page on which the drawing is largest, and its largest scale there. `taken` is the scale that would
+/// be taken of a largest one: of pages on which it is the same the first is best.
+template <class Taken>
 std::pair<Area, double> best_area(const std::vector<glm::dvec2>& pages, const Layout& layout,
-                                  const DrawingSettings& settings) {
+                                  const DrawingSettings& settings, const Taken& taken) {
   std::pair<Area, double> best{area_on(pages[0], settings), 0};
   for (const glm::dvec2& page : pages) {
     const Area area = area_on(page, settings);
     if (!(area.size().x > 0 && area.size().y > 0)) continue;
-    if (const double scale = largest_scale(area, layout); scale > best.second) best = {area, scale};
+    const double scale = largest_scale(area, layout);
+    if (scale > 0 && (best.second == 0 || taken(scale) > taken(best.second))) best = {area, scale};
   }
   return best;
 }
@@ -193,7 +199,8 @@ PaperSettings smallest_paper(const Layout& layout, const DrawingSettings& settin
   PaperSettings paper;
   for (const char* const name : {"a4", "a3", "a2", "a1", "a0"}) {
     paper = parse_paper(name);
-    if (best_area(pages_of(paper, settings), layout, settings).second * slack >= settings.scale) break;
+    const auto as_it_is = [](double scale) { return scale; };
+    if (best_area(pages_of(paper, settings), layout, settings, as_it_is).second * slack >= settings.scale) break;
   }
   return paper;
 }
@@ -212,7 +219,12 @@ SheetPlan plan_sheet(const Layout& layout, const DrawingSettings& settings, bool
   const ScaleRule rule = settings.scale_rule.value_or(settings.views.empty() ? ScaleRule::fit : ScaleRule::standard);
   const PaperSettings paper = paper_of(layout, settings, rule);
   if (paper.fits_drawing) return fitted_page(layout, settings.scale, margin);
-  const auto [area, most] = best_area(pages_of(paper, settings), layout, settings);
+  const auto taken = [&](double scale) {
+    if (!settings.has_frame()) return scale;  // without one the page turns to what fits better
+    if (rule == ScaleRule::given) return std::min(scale * slack, settings.scale);
+    return rule == ScaleRule::standard && has_scale ? standard_scale(scale) : scale;
+  };
+  const auto [area, most] = best_area(pages_of(paper, settings), layout, settings, taken);
   if (!(area.size().x > 0 && area.size().y > 0))
     throw UsageError(fmt::format("--margin: {} mm at each side leave nothing of a page of {} x {} mm", margin,
                                  paper.size.x, paper.size.y));

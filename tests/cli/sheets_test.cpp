@@ -182,6 +182,30 @@ TEST(SheetPlanOf, NoViewReachesTheTitleBlockAndNoLargerStandardScaleWould) {
   EXPECT_GT(beside, 10);  // views use the room beside the block too
 }
 
+TEST(SheetPlanOf, PapersLieAsStandardsHaveThemWhereTheScaleIsTheSame) {
+  // Squares of 10 mm in a row or in a column.
+  const auto is_upright = [](int columns, int rows, std::optional<double> scale, const char* paper) {
+    cli::DrawingSettings settings;
+    settings.frame = true;
+    settings.views = {NamedView::front};
+    if (scale) settings.scale_rule = cli::ScaleRule::given, settings.scale = *scale;
+    if (paper) settings.paper = cli::parse_paper(paper);
+    std::vector<cli::ViewCell> cells;
+    for (int i = 0; i < columns * rows; ++i) cells.push_back({glm::dvec2(-5), glm::dvec2(5), i % columns, i / columns});
+    const glm::dvec2 size = cli::plan_sheet(cli::Layout(cells, glm::dvec2(15)), settings, true).size;
+    return size.y > size.x;
+  };
+  EXPECT_TRUE(is_upright(1, 1, 5, "a4"));
+  EXPECT_FALSE(is_upright(1, 1, 5, "a3"));
+  EXPECT_TRUE(is_upright(1, 2, 5, nullptr));  // A4
+  EXPECT_FALSE(is_upright(1, 1, {}, "a2"));
+  // Where the scale is larger on the other side it turns, and where there is no room otherwise.
+  EXPECT_TRUE(is_upright(1, 2, {}, "a2"));
+  EXPECT_TRUE(is_upright(1, 3, 10, "a3"));
+  EXPECT_FALSE(is_upright(3, 1, 7, "a4"));
+  EXPECT_TRUE(is_upright(1, 1, 5, "a3-portrait"));
+}
+
 TEST_F(SheetsCommand, TheTitleBlockSaysWhatItIsTold) {
   const std::string sheet =
       "box.obj --up +z --views front,top,left --page a3 --number B-17 --author Erika "

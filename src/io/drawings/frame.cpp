@@ -62,7 +62,8 @@ class FrameDrawing {
   void trimming_mark(PageGroup& group, const glm::dvec2& corner) const {
     constexpr double length = 10, width = 5;
     const glm::dvec2 inwards = 1.0 - 2.0 * corner;
-    for (double in = frame_width / 2; in < width / 2; in += 0.9 * frame_width) {
+    // So near that the pen's round corners leave nothing open along the diagonals either.
+    for (double in = frame_width / 2; in < width / 2; in += 0.6 * frame_width) {
       const double far = length - in, near = width - in;
       std::vector<glm::dvec2> points = {{in, in}, {far, in}, {far, near}, {near, near}, {near, far}, {in, far}};
       for (glm::dvec2& p : points) p = corner * page_ + inwards * p;
