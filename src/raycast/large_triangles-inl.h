@@ -46,6 +46,12 @@ struct Rect {
 struct SingleCorners {
   float x[3], y[3], d[3];
 
+  [[nodiscard]] bool operator==(const SingleCorners& other) const {
+    bool same = true;
+    for (int k = 0; k < 3 && same; ++k) same = x[k] == other.x[k] && y[k] == other.y[k] && d[k] == other.d[k];
+    return same;
+  }
+
   [[nodiscard]] std::array<Corner, 3> all() const {
     std::array<Corner, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) corners[k] = {x[k], y[k], d[k], true};

@@ -196,7 +196,15 @@ class TriangleQueue {
     large.plane.low = planes.low[lane], large.plane.high = planes.high[lane];
     large.rect = {int(rect & 255), int(rect >> 8 & 255), int(rect >> 16 & 255), int(rect >> 24)};
     large.id = id_[from + lane];
-    large_.Draw(large);
+    if (large.rect.y1 - large.rect.y0 < kTileSize / 2 || !IsThereAlready(large)) large_.Draw(large);
+  }
+
+  /// Whether it is the last one again, as where objects are placed twice or a million times: the lower id hides it.
+  [[nodiscard]] bool IsThereAlready(const LargeTriangle<SingleCorners>& large) {
+    if (last_id_ < large.id && large.corners == last_) return true;
+    last_ = large.corners;
+    last_id_ = large.id;
+    return false;
   }
 
   const ScreenTransform& t_;
@@ -209,6 +217,8 @@ class TriangleQueue {
   alignas(64) float x_[3][kRoom], y_[3][kRoom], d_[3][kRoom];
   alignas(64) std::uint32_t id_[kRoom], rect_[kRoom];
   std::size_t count_ = 0;
+  SingleCorners last_{};  ///< of the last large triangle that was drawn
+  PrimitiveId last_id_ = no_primitive;
 };
 
 }  // namespace HWY_NAMESPACE
