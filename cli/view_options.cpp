@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "cli/failure.h"
+#include "cli/places.h"
 #include "cli/render/fit.h"
 
 namespace frontmost::cli {
@@ -57,20 +58,29 @@ void turn(Aim& aim, const ViewSettings& settings) {
   }
 }
 
+/// The middle of the model, brought onto the viewing axis.
+glm::dvec3 ahead_of(const View& view, const Surfaces& surfaces) {
+  const FitBounds bounds = visible_bounds(surfaces);
+  const double along = glm::dot(bounds.centre - view.eye(), view.forward());
+  return view.eye() + view.forward() * (along > 0 ? along : std::max(bounds.diagonal, 1e-6));
+}
+
 /// `base` is the library's own choice of view, from which anything not said is taken.
 Aim aim_of(const ViewSettings& settings, const Surfaces& surfaces, const View& base) {
-  Aim aim{base.world_from_eye, settings.focal_point.value_or(visible_bounds(surfaces).centre), true};
+  const glm::dvec3& origin = surfaces.scene().origin;
+  Aim aim{base.world_from_eye, settings.focal_point ? *settings.focal_point - origin : visible_bounds(surfaces).centre,
+          true};
   if (settings.pose || settings.camera_index) {
-    aim.world_from_eye = settings.pose ? world_from_eye(*settings.pose, *settings.pose_convention)
+    aim.world_from_eye = settings.pose ? in_scene(world_from_eye(*settings.pose, *settings.pose_convention), origin)
                                        : model_camera(settings, surfaces.scene()).world_from_eye;
     View view;
     view.world_from_eye = aim.world_from_eye;
-    return {aim.world_from_eye, focal_point_of(view, surfaces), false};
+    return {aim.world_from_eye, ahead_of(view, surfaces), false};
   }
   const glm::dvec3 up =
       settings.view_up.value_or(settings.position || settings.direction ? direction(surfaces.scene().up) : base.up());
   if (settings.position) {
-    const glm::dvec3& eye = *settings.position;
+    const glm::dvec3 eye = *settings.position - origin;
     if (settings.direction) aim.target = eye + *settings.direction;
     if (aim.target == eye) throw UsageError("--camera-position is where the camera looks; give --camera-direction");
     return {looking(eye, aim.target - eye, up), aim.target, false};
@@ -182,10 +192,8 @@ bool is_plain(const ViewSettings& s) {
 
 }  // namespace
 
-glm::dvec3 focal_point_of(const View& view, const Surfaces& surfaces) {
-  const FitBounds bounds = visible_bounds(surfaces);
-  const double along = glm::dot(bounds.centre - view.eye(), view.forward());
-  return view.eye() + view.forward() * (along > 0 ? along : std::max(bounds.diagonal, 1e-6));
+glm::dvec3 focal_point_of(const ViewSettings& settings, const View& view, const Surfaces& surfaces) {
+  return settings.focal_point ? *settings.focal_point - surfaces.scene().origin : ahead_of(view, surfaces);
 }
 
 bool depends_on_model(const ViewSettings& s) {

@@ -20,7 +20,7 @@ void read_pose_file(ViewSettings& settings);
 void check_view_settings(const ViewSettings& settings);
 
 /// The view for these surfaces; `samples` is left at 1. Where no position is given the model is fitted into the
-/// picture.
+/// picture. What the settings say is in the coordinates of the model's file; a view is about the scene's origin.
 /// \throws UsageError for a camera number that the model has not; Error from the library's own checks.
 [[nodiscard]] View resolve_view(const ViewSettings& settings, const Surfaces& surfaces);
 
@@ -30,7 +30,8 @@ void check_view_settings(const ViewSettings& settings);
 /// What {view} stands for: the given name, the named direction, or how the camera was told.
 [[nodiscard]] std::string view_name(const ViewSettings& settings);
 
-/// What the camera turns about: the middle of the model, brought onto the viewing axis.
-[[nodiscard]] glm::dvec3 focal_point_of(const View& view, const Surfaces& surfaces);
+/// What the camera turns about, in world space: the focal point that was given, or else the middle of the model,
+/// brought onto the viewing axis.
+[[nodiscard]] glm::dvec3 focal_point_of(const ViewSettings& settings, const View& view, const Surfaces& surfaces);
 
 }  // namespace frontmost::cli

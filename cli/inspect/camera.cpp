@@ -18,9 +18,9 @@ int run_camera(const Settings& settings) {
   const Scene scene = load_model(settings, execution, progress);
   const Surfaces surfaces(scene, execution);
   const View view = resolve_view(settings.view, surfaces);
-  const glm::dvec3 target = settings.view.focal_point.value_or(focal_point_of(view, surfaces));
+  const glm::dvec3 target = focal_point_of(settings.view, view, surfaces);
   progress.clear();
-  print(settings.run.json ? dump(camera_json(view, target)) : camera_text(view, target));
+  print(settings.run.json ? dump(camera_json(view, target, scene.origin)) : camera_text(view, target, scene.origin));
   return exit_done;
 }
 

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "cli/places.h"
+
 namespace frontmost::cli {
 namespace {
 
@@ -44,12 +46,12 @@ Json intrinsics_json(const View& view, PixelRule rule) {
                     {Json::array({k.fx, 0.0, k.cx}), Json::array({0.0, k.fy, k.cy}), Json::array({0.0, 0.0, 1.0})})}};
 }
 
-Json poses_json(const View& view) {
+Json poses_json(const glm::dmat4& world_from_eye) {
   Json poses;
-  poses["opengl"]["world_from_camera"] = to_json(pose_of(view.world_from_eye, PoseConvention::opengl_camera_to_world));
-  poses["opengl"]["camera_from_world"] = to_json(pose_of(view.world_from_eye, PoseConvention::opengl_world_to_camera));
-  poses["opencv"]["world_from_camera"] = to_json(pose_of(view.world_from_eye, PoseConvention::opencv_camera_to_world));
-  poses["opencv"]["camera_from_world"] = to_json(pose_of(view.world_from_eye, PoseConvention::opencv_world_to_camera));
+  poses["opengl"]["world_from_camera"] = to_json(pose_of(world_from_eye, PoseConvention::opengl_camera_to_world));
+  poses["opengl"]["camera_from_world"] = to_json(pose_of(world_from_eye, PoseConvention::opengl_world_to_camera));
+  poses["opencv"]["world_from_camera"] = to_json(pose_of(world_from_eye, PoseConvention::opencv_camera_to_world));
+  poses["opencv"]["camera_from_world"] = to_json(pose_of(world_from_eye, PoseConvention::opencv_world_to_camera));
   return poses;
 }
 
@@ -66,10 +68,11 @@ std::string text_of(const glm::dmat4& m) {
 
 }  // namespace
 
-std::string camera_flags(const View& view, const glm::dvec3& target) {
+std::string camera_flags(const View& view, const glm::dvec3& target, const glm::dvec3& origin) {
   const Projection& p = view.projection;
   std::string flags = fmt::format("--resolution {},{} --camera-position {} --camera-focal-point {} --camera-view-up {}",
-                                  view.width, view.height, text_of(view.eye()), text_of(target), text_of(view.up()));
+                                  view.width, view.height, text_of(in_file(view.eye(), origin)),
+                                  text_of(in_file(target, origin)), text_of(view.up()));
   if (is_centred(p)) {
     flags += fmt::format(" --camera-view-angle {}", view_angle(view, target));
     if (p.orthographic) flags += " --camera-orthographic";
@@ -80,14 +83,16 @@ std::string camera_flags(const View& view, const glm::dvec3& target) {
   return flags + fmt::format(" --near {} --far {}", p.clip.near, p.clip.far);
 }
 
-Json camera_json(const View& view, const glm::dvec3& target) {
+Json camera_json(const View& view, const glm::dvec3& target, const glm::dvec3& origin) {
   const Projection& p = view.projection;
   Json json;
   json["resolution"] = Json::array({view.width, view.height});
   json["projection"] = p.orthographic ? "orthographic" : "perspective";
-  json["look_at"] = {{"eye", to_json(view.eye())}, {"target", to_json(target)}, {"up", to_json(view.up())}};
-  json["flags"] = camera_flags(view, target);
-  json["poses"] = poses_json(view);
+  json["look_at"] = {{"eye", to_json(in_file(view.eye(), origin))},
+                     {"target", to_json(in_file(target, origin))},
+                     {"up", to_json(view.up())}};
+  json["flags"] = camera_flags(view, target, origin);
+  json["poses"] = poses_json(in_file(view.world_from_eye, origin));
   json["sides"] = {{"left", p.left}, {"right", p.right}, {"bottom", p.bottom}, {"top", p.top}};
   if (!p.orthographic) {
     json["field_of_view_degrees"] = {{"horizontal", angle(p.left, p.right)}, {"vertical", angle(p.bottom, p.top)}};
@@ -105,11 +110,12 @@ Json camera_json(const View& view, const glm::dvec3& target) {
   return json;
 }
 
-std::string camera_text(const View& view, const glm::dvec3& target) {
+std::string camera_text(const View& view, const glm::dvec3& target, const glm::dvec3& origin) {
   const Projection& p = view.projection;
-  std::string text = fmt::format(
-      "resolution  {} x {}\nprojection  {}\neye         {}\ntarget      {}\nup          {}\n", view.width, view.height,
-      p.orthographic ? "orthographic" : "perspective", text_of(view.eye()), text_of(target), text_of(view.up()));
+  std::string text =
+      fmt::format("resolution  {} x {}\nprojection  {}\neye         {}\ntarget      {}\nup          {}\n", view.width,
+                  view.height, p.orthographic ? "orthographic" : "perspective", text_of(in_file(view.eye(), origin)),
+                  text_of(in_file(target, origin)), text_of(view.up()));
   text += fmt::format("near, far   {}, {}\n", p.clip.near, p.clip.far);
   if (!p.orthographic) {
     const Intrinsics k = intrinsics_of(p, view.width, view.height, PixelRule::centre_at_integer);
@@ -118,10 +124,11 @@ std::string camera_text(const View& view, const glm::dvec3& target) {
     text += fmt::format("intrinsics  {},{},{},{} (first pixel centre at 0,0; add 0.5 to the last two for 0.5,0.5)\n",
                         k.fx, k.fy, k.cx, k.cy);
   }
-  text += "world from camera, opengl (x right, y up, looks down -z)\n" + text_of(view.world_from_eye);
+  const glm::dmat4 world_from_eye = in_file(view.world_from_eye, origin);
+  text += "world from camera, opengl (x right, y up, looks down -z)\n" + text_of(world_from_eye);
   text += "camera from world, opencv (x right, y down, looks down +z)\n" +
-          text_of(pose_of(view.world_from_eye, PoseConvention::opencv_world_to_camera));
-  return text + "flags       " + camera_flags(view, target) + "\n(--json has every convention)\n";
+          text_of(pose_of(world_from_eye, PoseConvention::opencv_world_to_camera));
+  return text + "flags       " + camera_flags(view, target, origin) + "\n(--json has every convention)\n";
 }
 
 }  // namespace frontmost::cli

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "cli/console.h"
+#include "cli/places.h"
 
 namespace frontmost::cli {
 namespace {
@@ -48,9 +49,9 @@ Json odd_json(const Oddities& odd) {
 }
 
 /// Null for a model without a finite point.
-Json box_json(const Box& box) {
+Json box_json(const Box& box, const glm::dvec3& origin) {
   if (box.is_empty()) return nullptr;
-  return {{"low", to_json(box.low)}, {"high", to_json(box.high)}};
+  return {{"low", to_json(in_file(box.low, origin))}, {"high", to_json(in_file(box.high, origin))}};
 }
 
 glm::dvec3 size_of(const Box& box) { return glm::dvec3(box.high) - glm::dvec3(box.low); }
@@ -83,11 +84,11 @@ Json mesh_json(const MeshReport& mesh) {
   return json;
 }
 
-Json object_json(const ObjectReport& object) {
+Json object_json(const ObjectReport& object, const glm::dvec3& origin) {
   return {{"name", object.name},
           {"mesh", object.mesh},
           {"triangles", object.triangles},
-          {"bounds", box_json(object.bounds)},
+          {"bounds", box_json(object.bounds, origin)},
           {"size", size_json(object.bounds)}};
 }
 
@@ -99,9 +100,9 @@ Json material_json(const MaterialReport& material) {
           {"double_sided", material.double_sided}};
 }
 
-Json camera_json(const CameraReport& camera) {
+Json camera_json(const CameraReport& camera, const glm::dvec3& origin) {
   Json json = {{"name", camera.name},
-               {"position", to_json(camera.position)},
+               {"position", to_json(in_file(camera.position, origin))},
                {"direction", to_json(camera.direction)},
                {"up", to_json(camera.up)},
                {"projection", camera.orthographic ? "orthographic" : "perspective"}};
@@ -130,12 +131,21 @@ std::string section(std::string_view heading, const std::vector<T>& elements, co
   return text;
 }
 
-std::string vector_text(const glm::dvec3& v) { return fmt::format("{:.6g},{:.6g},{:.6g}", v.x, v.y, v.z); }
-
-std::string camera_line(const CameraReport& camera) {
+std::string camera_line(const CameraReport& camera, const glm::dvec3& origin) {
   const std::string width = camera.orthographic ? fmt::format("orthographic, {:.6g} high", camera.vertical)
                                                 : fmt::format("{:.4g} degrees", camera.vertical * degrees_per_radian);
-  return fmt::format("{:24} {}, at {}", printable_name(camera.name), width, vector_text(camera.position));
+  return fmt::format("{:24} {}, at {}", printable_name(camera.name), width, place_text(camera.position, origin));
+}
+
+/// Where floats may be too coarse for what the model is made of, or an origin keeps them from being so.
+std::string rounding_line(const SceneReport& report) {
+  constexpr double coarse = 1e-6;  // of the diagonal: a thousandth of a pixel in a picture of the whole
+  constexpr double wide = 1e-3;    // whatever the unit: from 16384 units on, details may be smaller
+  const bool is_away = report.origin != glm::dvec3(0);
+  const double worth_telling = std::min(wide, coarse * double(report.bounds.diagonal()));
+  if (!is_away && report.rounding <= worth_telling) return {};
+  const std::string about = is_away ? ", kept about " + place_text(glm::dvec3(0), report.origin) : "";
+  return fmt::format("  rounding   {:.2g} at most{}\n", report.rounding, about);
 }
 
 /// The meshes that have most of an oddity, the first ones first.
@@ -202,14 +212,18 @@ Json info_json(const SceneReport& report, const std::optional<ModelUnit>& unit) 
                {"stored_triangles", report.stored_triangles},
                {"vertices", report.vertices},
                {"textures", report.texture_count},
-               {"bounds", box_json(report.bounds)},
+               {"bounds", box_json(report.bounds, report.origin)},
                {"size", size_json(report.bounds)},
-               {"unit", unit_json(unit)}};
+               {"unit", unit_json(unit)},
+               {"origin", to_json(report.origin)},
+               {"rounding", report.rounding}};
   json["odd"] = odd_json(report.odd);
   json["meshes"] = list(report.meshes, mesh_json);
-  json["objects"] = list(report.objects, object_json);
+  json["objects"] =
+      list(report.objects, [&](const ObjectReport& object) { return object_json(object, report.origin); });
   json["materials"] = list(report.materials, material_json);
-  json["cameras"] = list(report.cameras, camera_json);
+  json["cameras"] =
+      list(report.cameras, [&](const CameraReport& camera) { return camera_json(camera, report.origin); });
   json["warnings"] = report.warnings;
   return json;
 }
@@ -222,10 +236,12 @@ std::string info_text(const SceneReport& report, const std::optional<ModelUnit>&
   if (report.bounds.is_empty()) {
     text += "  bounds     none\n";
   } else {
-    text += fmt::format("  bounds     {} to {}\n", vector_text(report.bounds.low), vector_text(report.bounds.high));
+    text += fmt::format("  bounds     {} to {}\n", place_text(report.bounds.low, report.origin),
+                        place_text(report.bounds.high, report.origin));
     const glm::dvec3 size = size_of(report.bounds);
     text += fmt::format("  size       {:.6g} x {:.6g} x {:.6g}\n", size.x, size.y, size.z);
     text += unit_line(unit, report.bounds);
+    text += rounding_line(report);
   }
   const std::size_t closed = std::size_t(
       std::count_if(report.meshes.begin(), report.meshes.end(), [](const MeshReport& mesh) { return mesh.closed; }));
@@ -238,7 +254,8 @@ std::string info_text(const SceneReport& report, const std::optional<ModelUnit>&
                        material.textures, material.alpha == Material::Alpha::opaque ? "" : ", ",
                        material.alpha == Material::Alpha::opaque ? "" : alpha_names[int(material.alpha)]);
   });
-  text += section("cameras", report.cameras, camera_line);
+  text += section("cameras", report.cameras,
+                  [&](const CameraReport& camera) { return camera_line(camera, report.origin); });
   return text + odd_lines(report);
 }
 

@@ -59,7 +59,7 @@ glm::dmat4 pose_of(const LidarSettings& s, const Surfaces& surfaces) {
   front.direction = NamedView::front;
   const glm::dvec3 ahead = s.forward.value_or(frame(surfaces, 1, 1, front).forward());
   glm::dmat4 pose = look_at(glm::dvec3(0), glm::normalize(ahead), direction(surfaces.scene().up));
-  pose[3] = glm::dvec4(*s.from, 1);
+  pose[3] = glm::dvec4(*s.from - surfaces.scene().origin, 1);
   return pose;
 }
 

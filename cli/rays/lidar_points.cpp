@@ -9,7 +9,7 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr std::size_t bytes_of_point = 32;
+constexpr std::size_t bytes_of_point = 44;  // at most
 
 void append(std::string& bytes, std::uint32_t word) {
   // PLY's "little endian", whatever the machine's.
@@ -22,9 +22,24 @@ void append(std::string& bytes, float value) {
   append(bytes, word);
 }
 
-void append_point(std::string& bytes, const RangeScan& scan, const glm::ivec2& at, const PrimitiveSource& source) {
-  const glm::dvec3 point = point_of(scan, at.x, at.y);
-  for (int axis = 0; axis < 3; ++axis) append(bytes, float(point[axis]));
+void append(std::string& bytes, double value) {
+  std::uint64_t word;
+  std::memcpy(&word, &value, sizeof word);
+  append(bytes, std::uint32_t(word));
+  append(bytes, std::uint32_t(word >> 32));
+}
+
+/// Floats near zero, and doubles where those would round what the model is made of.
+void append_place(std::string& bytes, const glm::dvec3& point, const glm::dvec3& origin) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (origin == glm::dvec3(0))
+      append(bytes, float(point[axis]));
+    else
+      append(bytes, origin[axis] + point[axis]);
+  }
+}
+
+void append_ids(std::string& bytes, const RangeScan& scan, const glm::ivec2& at, const PrimitiveSource& source) {
   append(bytes, scan.ranges[scan.index(at.x, at.y)]);
   for (const std::uint32_t id : {source.instance, source.triangle, std::uint32_t(at.y), std::uint32_t(at.x)})
     append(bytes, id);
@@ -35,16 +50,20 @@ void append_point(std::string& bytes, const RangeScan& scan, const glm::ivec2& a
 std::string points_ply(const RangeScan& scan, const RayScene& rays) {
   const auto missed = std::count(scan.primitives.begin(), scan.primitives.end(), no_primitive);
   const std::size_t points = scan.primitives.size() - std::size_t(missed);
+  const glm::dvec3& origin = rays.scene().origin;
+  const char* const type = origin == glm::dvec3(0) ? "float" : "double";
   std::string bytes = fmt::format(
       "ply\nformat binary_little_endian 1.0\ncomment rays {} by {}\nelement vertex {}\n"
-      "property float x\nproperty float y\nproperty float z\nproperty float range\n"
+      "property {} x\nproperty {} y\nproperty {} z\nproperty float range\n"
       "property uint object\nproperty uint triangle\nproperty uint ring\nproperty uint step\nend_header\n",
-      scan.width, scan.height, points);
+      scan.width, scan.height, points, type, type, type);
   bytes.reserve(bytes.size() + points * bytes_of_point);
   for (int y = 0; y < scan.height; ++y)
     for (int x = 0; x < scan.width; ++x) {
       const PrimitiveId id = scan.primitives[scan.index(x, y)];
-      if (id != no_primitive) append_point(bytes, scan, {x, y}, rays.source(id));
+      if (id == no_primitive) continue;
+      append_place(bytes, point_of(scan, x, y), origin);
+      append_ids(bytes, scan, {x, y}, rays.source(id));
     }
   return bytes;
 }

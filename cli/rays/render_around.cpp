@@ -33,7 +33,7 @@ ViewResult resolve(const Job& job, const Surfaces& surfaces) {
   ViewResult result;
   result.name = job.name;
   result.view = resolve_view(settings, surfaces);
-  result.target = settings.focal_point.value_or(focal_point_of(result.view, surfaces));
+  result.target = focal_point_of(settings, result.view, surfaces);
   result.camera_model = settings.camera_model;
   result.fisheye_angle = settings.fisheye_angle.value_or(half_turn_degrees);
   return result;

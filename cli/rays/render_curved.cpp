@@ -52,7 +52,7 @@ ViewResult render_curved_view(const Job& job, const RenderContext& context) {
   ViewResult result;
   result.name = job.name;
   result.view = resolve_view(job.view, context.surfaces);
-  result.target = job.view.focal_point.value_or(focal_point_of(result.view, context.surfaces));
+  result.target = focal_point_of(job.view, result.view, context.surfaces);
   const SightPlan plan = plan_sights(job, context.run, context.keep_picture, result.view);
   const std::vector<View> views = views_of(result.view, plan);
   const std::vector<CurvedVisible> seen = cast(index, views, context, result);

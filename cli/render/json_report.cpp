@@ -68,8 +68,8 @@ Json depth_json(const DepthSettings& settings) {
 }
 
 /// As far as there is anything to say of a camera that is no pinhole.
-Json view_camera_json(const ViewResult& result) {
-  Json json = camera_json(result.view, result.target);
+Json view_camera_json(const ViewResult& result, const glm::dvec3& origin) {
+  Json json = camera_json(result.view, result.target, origin);
   if (result.camera_model == CameraModel::pinhole) return json;
   for (const char* key :
        {"flags", "sides", "field_of_view_degrees", "intrinsics", "near", "far", "projection_matrices"})
@@ -80,8 +80,8 @@ Json view_camera_json(const ViewResult& result) {
   return json;
 }
 
-Json view_json(const ViewResult& result) {
-  Json json = {{"name", result.name}, {"view", view_camera_json(result)}};
+Json view_json(const ViewResult& result, const glm::dvec3& origin) {
+  Json json = {{"name", result.name}, {"view", view_camera_json(result, origin)}};
   if (result.depth.is_used) json["depth_buffer"] = depth_json(result.depth);
   if (result.seen) json["seen"] = seen_json(*result.seen, result.view);
   json["files"] = Json::array();
@@ -132,13 +132,13 @@ Json render_json(const Settings& settings, const ModelFacts& model, const std::v
   if (settings.run.batch) {
     json["views"] = Json::array();
     for (const ViewResult& view : views) {
-      Json one = view_json(view);
+      Json one = view_json(view, model.origin);
       add_timings(view.timings, one["timings_ms"]);
       json["views"].push_back(std::move(one));
     }
     json["warnings"] = model.warnings;
   } else {
-    json.update(view_json(views.front()));
+    json.update(view_json(views.front(), model.origin));
     for (const std::string& warning : model.warnings) json["warnings"].push_back(warning);
     add_timings(views.front().timings, times);
   }

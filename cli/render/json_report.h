@@ -23,6 +23,7 @@ struct ModelFacts {
   const std::vector<std::string>& warnings;
   bool lets_light_through = false;           ///< some of its materials are blended
   std::optional<int> passes = std::nullopt;  ///< over a stream
+  glm::dvec3 origin{0};                      ///< of the scene
 };
 
 /// With one view, its facts stand at the top; with a batch, under "views".

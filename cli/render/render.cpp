@@ -136,7 +136,8 @@ int render_whole(Run& run) {
     return render_view(job, context);
   });
   timings.total = run.whole.milliseconds();
-  report(settings, {surfaces.primitive_count(), scene.warnings, lets_light_through(scene)}, results, timings);
+  report(settings, {surfaces.primitive_count(), scene.warnings, lets_light_through(scene), std::nullopt, scene.origin},
+         results, timings);
   return status_of(results);
 }
 
@@ -163,7 +164,8 @@ int render_stream(const Run& run) {
     return result;
   });
   timings.total = run.whole.milliseconds();
-  report(settings, {stream.triangle_count(), stream.scene().warnings, false, stream.passes()}, results, timings);
+  report(settings, {stream.triangle_count(), stream.scene().warnings, false, stream.passes(), stream.scene().origin},
+         results, timings);
   return status_of(results);
 }
 

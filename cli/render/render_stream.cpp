@@ -31,8 +31,9 @@ void check_one_pass(const Job& job, const StreamNeeds& needs, const Stream& stre
 }
 
 /// A scene that has these bounds, which is all that is looked at.
-Scene scene_of(const Box& bounds) {
+Scene scene_of(const Box& bounds, const glm::dvec3& origin) {
   Scene scene;
+  scene.origin = origin;
   if (bounds.is_empty()) return scene;
   Mesh& mesh = scene.meshes.emplace_back();
   mesh.positions = {bounds.low, bounds.high};
@@ -45,6 +46,7 @@ Scene scene_of(const Box& bounds) {
 View view_of_nothing(const Job& job, const Stream& stream, const Execution& execution) {
   Scene nothing;
   nothing.up = stream.scene().up;
+  nothing.origin = stream.scene().origin;
   // Framing is wide enough for the whole model; the zoom comes after it.
   ViewSettings settings = job.view;
   if (depends_on_model(settings)) settings.zoom = 1;
@@ -73,8 +75,8 @@ ViewResult render_streamed_view(const Job& job, Stream& stream, const StreamCont
   needs.unseen = [&](CornerSpan triangles) { blank_reason.add(triangles); };
   Excerpt excerpt = stream.look(views_of(result.view, plan), needs, context.execution);
   result.timings.visible.push_back(watch.milliseconds());
-  const Scene bounds = scene_of(stream.bounds());
-  result.target = job.view.focal_point.value_or(focal_point_of(result.view, Surfaces(bounds, context.execution)));
+  const Scene bounds = scene_of(stream.bounds(), stream.scene().origin);
+  result.target = focal_point_of(job.view, result.view, Surfaces(bounds, context.execution));
 
   Sights sights;
   sights.shared = plan.shared;

@@ -170,7 +170,7 @@ ViewResult render_view(const Job& job, const RenderContext& context) {
   result.name = job.name;
   result.depth = job.view.depth;
   result.view = resolve_view(job.view, context.framed_surfaces());
-  result.target = job.view.focal_point.value_or(focal_point_of(result.view, context.framed_surfaces()));
+  result.target = focal_point_of(job.view, result.view, context.framed_surfaces());
   finish_view(job, context, look(job, context, result), result);
   write_layers(job, context, result);
   write_figures(job, context, result);

@@ -81,7 +81,10 @@ struct SceneReport {
   std::uint64_t stored_triangles = 0;  ///< over all meshes
   std::uint64_t vertices = 0;          ///< stored, over all meshes
   std::uint64_t texture_count = 0;
-  Box bounds;  ///< world space
+  glm::dvec3 origin{0};  ///< of the scene: world space is about it
+  Box bounds;            ///< world space
+  /// How far from where the file has it a vertex may lie, because floats are kept: half a step of the farthest.
+  double rounding = 0;
   std::vector<MeshReport> meshes;
   std::vector<ObjectReport> objects;
   std::vector<MaterialReport> materials;

@@ -85,6 +85,14 @@ Box bounds_of(const std::vector<glm::vec3>& points, const glm::dmat4& world_from
   return bounds;
 }
 
+double rounding_within(const Box& bounds) {
+  if (bounds.is_empty()) return 0;
+  float farthest = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    farthest = std::max({farthest, std::abs(bounds.low[axis]), std::abs(bounds.high[axis])});
+  return 0.5 * (double(farthest) - double(std::nextafter(farthest, 0.0f)));
+}
+
 MaterialReport report_material(const Material& material) {
   MaterialReport report;
   report.name = material.name;
@@ -135,6 +143,7 @@ SceneReport inspect(const Scene& scene, const Execution& execution) {
   SceneReport report;
   report.name = scene.name;
   report.up = scene.up;
+  report.origin = scene.origin;
   report.texture_count = scene.textures.size();
   report.warnings = scene.warnings;
   for (const Material& material : scene.materials) report.materials.push_back(report_material(material));
@@ -151,6 +160,7 @@ SceneReport inspect(const Scene& scene, const Execution& execution) {
     add(report.odd, topology.odd);
     report_objects(scene, instances[m], topology, execution, report);
   }
+  report.rounding = rounding_within(report.bounds);
   return report;
 }
 

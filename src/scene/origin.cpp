@@ -52,8 +52,9 @@ double OriginSearch::extent() const {
 
 glm::dvec3 OriginSearch::origin() const {
   glm::dvec3 origin(0);
-  if (is_home_ || low_.x > high_.x) return origin;
   const double size = extent();
+  // One point has no details to keep.
+  if (is_home_ || !(size > 0)) return origin;
   for (int axis = 0; axis < 3; ++axis) {
     const double away = distance(axis);
     if (!(away > least_ratio * size)) continue;

@@ -41,6 +41,12 @@ void Models::add(Model model) {
   // Warnings may come with every piece, and are taken over one by one as they do.
   without_warnings.warnings.clear();
   append(scene_, std::move(without_warnings));
+  if (!part.instances.empty()) {
+    // Pieces are put in place when they are parsed, so that what is made of them has no transforms.
+    glm::dmat4& place = scene_.instances.back().world_from_mesh;
+    model.moved = glm::dvec3(place[3]);
+    place = glm::dmat4(1.0);
+  }
   models_.push_back(std::move(model));
   take_warnings(models_.back());
 }
@@ -100,6 +106,8 @@ void Models::parse(Piece& piece, const Place& place) const {
   // By its object, not by current_: another thread may have fetched from the next file meanwhile.
   for (std::uint32_t& material : piece.mesh.material_ids)
     if (material != no_index) material += model.first_material;
+  if (model.moved != glm::dvec3(0))
+    for (glm::vec3& position : piece.mesh.positions) position = glm::vec3(glm::dvec3(position) + model.moved);
 }
 
 namespace {

@@ -35,6 +35,7 @@ class Models {
   struct Model {
     std::unique_ptr<ModelStream> stream;
     std::uint32_t object = 0, first_material = 0;
+    glm::dvec3 moved{0};               ///< its mesh in world space
     std::size_t warnings = 0;          ///< taken over so far
     std::uint64_t triangle_count = 0;  ///< fetched in this pass
     bool has_ended = false;            ///< in an earlier pass or in this

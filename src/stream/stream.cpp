@@ -173,6 +173,7 @@ Scene Stream::outline(const View& direction, double margin, const Execution& exe
   Scene scene = finders.front().scene();
   scene.name = state_->models.scene().name;
   scene.up = state_->models.scene().up;
+  scene.origin = state_->models.scene().origin;
   return scene;
 }
 

@@ -100,7 +100,7 @@ TEST_F(ViewOptions, PositionFocalPointAndUpMakeTheCamera) {
 TEST_F(ViewOptions, TheDefaultFocalPointIsTheMiddle) {
   const View v = view({{"camera-position", "1,-10,3"}});
   EXPECT_NEAR(glm::distance(v.forward(), {0, 1, 0}), 0, 1e-12);
-  EXPECT_EQ(focal_point_of(v, surfaces_), glm::dvec3(1, 2, 3));
+  EXPECT_EQ(focal_point_of({}, v, surfaces_), glm::dvec3(1, 2, 3));
 }
 
 TEST_F(ViewOptions, EverythingFitsFromAnyDirection) {

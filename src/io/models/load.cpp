@@ -48,6 +48,8 @@ Scene read_any(Bytes bytes, const ModelSource& source, std::optional<ModelFormat
     // validate() knows the scene by its short name only.
     throw Error(error.code(), source.name() + ": " + error.what());
   }
+  // A reader of text has chosen one already.
+  if (scene.origin == glm::dvec3(0)) set_origin(scene, fitting_origin(scene));
   if (triangle_count(scene) == 0) scene.warnings.emplace_back("the file holds no triangles");
   report_progress(source.execution(), "load", 1);
   return scene;

@@ -31,11 +31,12 @@ const char* skip_payload(const char* at, const char* end) {
 }
 
 /// nan, nan(payload), inf, infinity, and what old Microsoft libraries print: 1.#QNAN, 1.#IND, 1.#INF.
-const char* parse_special(const char* at, const char* end, float& magnitude) {
-  constexpr float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+template <class T>
+const char* parse_special(const char* at, const char* end, T& magnitude) {
+  constexpr T nan = std::numeric_limits<T>::quiet_NaN(), inf = std::numeric_limits<T>::infinity();
   constexpr struct {
     std::string_view word;
-    float value;
+    T value;
   } words[] = {{"nan", nan},     {"inf", inf},    {"infinity", inf}, {"1.#qnan", nan},
                {"1.#snan", nan}, {"1.#ind", nan}, {"1.#inf", inf}};
   for (const auto& special : words)
@@ -79,32 +80,41 @@ const char* scan_decimal(const char* at, const char* end, bool& is_small) {
   return p;
 }
 
-/// The float nearest to the digits [at, end). False: out of range.
-bool nearest_float(const char* at, const char* end, float& value) {
+/// The number nearest to the digits [at, end). False: out of range.
+template <class T>
+bool nearest(const char* at, const char* end, T& value) {
 #if defined(__cpp_lib_to_chars)
   return std::from_chars(at, end, value).ec == std::errc();
 #else
   // Libraries without from_chars for floats (WebAssembly) have the C locale only.
-  value = std::strtof(std::string(at, end).c_str(), nullptr);
+  if constexpr (sizeof(T) == sizeof(float))
+    value = std::strtof(std::string(at, end).c_str(), nullptr);
+  else
+    value = std::strtod(std::string(at, end).c_str(), nullptr);
   return true;
 #endif
 }
 
-}  // namespace
-
-const char* parse_float_slowly(const char* at, const char* end, float& value) {
+template <class T>
+const char* parse_slowly(const char* at, const char* end, T& value) {
   const bool negative = at != end && *at == '-';
   if (at != end && (*at == '-' || *at == '+')) ++at;
-  float magnitude = 0;
+  T magnitude = 0;
   const char* after = parse_special(at, end, magnitude);
   if (after == nullptr) {
     bool is_small = false;
     after = scan_decimal(at, end, is_small);
     if (after == nullptr) return nullptr;
-    if (!nearest_float(at, after, magnitude)) magnitude = is_small ? 0.0f : std::numeric_limits<float>::infinity();
+    if (!nearest(at, after, magnitude)) magnitude = is_small ? T(0) : std::numeric_limits<T>::infinity();
   }
   value = negative ? -magnitude : magnitude;
   return after;
 }
+
+}  // namespace
+
+const char* parse_float_slowly(const char* at, const char* end, float& value) { return parse_slowly(at, end, value); }
+
+const char* parse_double_slowly(const char* at, const char* end, double& value) { return parse_slowly(at, end, value); }
 
 }  // namespace frontmost::detail

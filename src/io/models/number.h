@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decimal numbers out of text, correctly rounded to float, several times faster than strtof on what files hold.
+// Decimal numbers out of text, correctly rounded to float or double, several times faster than strtof on what files
+// hold.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +11,7 @@ namespace frontmost {
 namespace detail {
 /// The general case: many digits, large exponents, nan and inf in every spelling. Null: not a number.
 const char* parse_float_slowly(const char* at, const char* end, float& value);
+const char* parse_double_slowly(const char* at, const char* end, double& value);
 
 inline constexpr double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                            1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
@@ -26,30 +28,54 @@ inline bool rounds_once(double magnitude) {
 }
 }  // namespace detail
 
-/// Reads [+-]digits[.digits][e[+-]digits], nan or inf at `at`. Beyond the range of float: infinity or zero.
-/// \returns the first character after the number; null if there is none.
-inline const char* parse_float(const char* at, const char* end, float& value) {
+namespace detail {
+/// Reads [+-]digits[.digits], of at most 15 digits. \returns the first character after the number; null if there is
+/// none or it is longer or goes on.
+inline const char* parse_short(const char* at, const char* end, double& value) {
   const char* p = at;
   const bool negative = p != end && *p == '-';
   if (p != end && (*p == '-' || *p == '+')) ++p;
   const char* const digits = p;
   std::uint64_t whole = 0;
-  for (; p != end && detail::is_digit(*p); ++p) whole = 10 * whole + std::uint64_t(*p - '0');
+  for (; p != end && is_digit(*p); ++p) whole = 10 * whole + std::uint64_t(*p - '0');
   std::ptrdiff_t digit_count = p - digits;
   int exponent = 0;
   if (p != end && *p == '.') {
     const char* const fraction = ++p;
-    for (; p != end && detail::is_digit(*p); ++p) whole = 10 * whole + std::uint64_t(*p - '0');
+    for (; p != end && is_digit(*p); ++p) whole = 10 * whole + std::uint64_t(*p - '0');
     exponent = -int(p - fraction < 100 ? p - fraction : 100);
     digit_count += p - fraction;
   }
   const bool has_more = p != end && (*p == 'e' || *p == 'E' || *p == '#');
   // 15 digits are below 2^53, and powers of ten up to 22 are exact: one division rounds once.
-  if (digit_count == 0 || digit_count > 15 || has_more) return detail::parse_float_slowly(at, end, value);
-  const double magnitude = double(whole) / detail::powers_of_ten[-exponent];
-  if (whole != 0 && !detail::rounds_once(magnitude)) return detail::parse_float_slowly(at, end, value);
-  value = float(negative ? -magnitude : magnitude);
+  if (digit_count == 0 || digit_count > 15 || has_more) return nullptr;
+  const double magnitude = double(whole) / powers_of_ten[-exponent];
+  value = negative ? -magnitude : magnitude;
   return p;
+}
+
+/// The float nearest to the number that `exact` is the nearest double of, if that tells.
+inline bool round_to_float(double exact, float& value) {
+  value = float(exact);
+  return exact == 0 || rounds_once(exact < 0 ? -exact : exact);
+}
+}  // namespace detail
+
+/// Reads [+-]digits[.digits][e[+-]digits], nan or inf at `at`. Beyond the range of float: infinity or zero.
+/// \returns the first character after the number; null if there is none.
+inline const char* parse_float(const char* at, const char* end, float& value) {
+  double exact;
+  const char* const after = detail::parse_short(at, end, exact);
+  if (after == nullptr || !detail::round_to_float(exact, value)) return detail::parse_float_slowly(at, end, value);
+  return after;
+}
+
+/// The same number as the nearest float, and as the nearest double.
+inline const char* parse_both(const char* at, const char* end, float& value, double& exact) {
+  const char* after = detail::parse_short(at, end, exact);
+  if (after == nullptr) after = detail::parse_double_slowly(at, end, exact);
+  if (after == nullptr || detail::round_to_float(exact, value)) return after;
+  return detail::parse_float_slowly(at, end, value);
 }
 
 /// Reads [+-]digits. \returns the first character after it; null if there is none or it has over 18 digits.

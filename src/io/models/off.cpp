@@ -2,6 +2,7 @@
 // OFF, the text form, with the optional colours, normals and texture coordinates of Geomview: [ST][C][N]OFF.
 #include <algorithm>
 
+#include "io/models/coordinates.h"
 #include "io/models/mesh_building.h"
 #include "io/models/text_scanner.h"
 
@@ -31,8 +32,8 @@ class RawColors {
 
 class OffReader {
  public:
-  OffReader(Bytes bytes, const ModelSource& source)
-      : text_(bytes, source, TextScanner::Comments::hash), source_(source) {}
+  OffReader(Bytes bytes, const ModelSource& source, Coordinates& coordinates)
+      : text_(bytes, source, TextScanner::Comments::hash), source_(source), coordinates_(coordinates) {}
 
   Scene read() {
     read_header();
@@ -84,15 +85,14 @@ class OffReader {
     return std::size_t(count);
   }
 
-  float number(const char* what) {
-    float value = 0;
-    if (!text_.to_word()) text_.fail(std::string("the file ends within the ") + what);
-    if (!text_.number(value) || !text_.at_blank()) text_.fail("not a number");
-    return value;
-  }
-  glm::vec3 three(const char* what) {
-    const float x = number(what), y = number(what);
-    return {x, y, number(what)};
+  /// Of a vertex, as floats.
+  glm::vec3 three_numbers(glm::dvec3& exact) {
+    glm::vec3 rounded(0);
+    for (int k = 0; k < 3; ++k) {
+      if (!text_.to_word()) text_.fail("the file ends within the vertices");
+      if (!text_.number(rounded[k], exact[k]) || !text_.at_blank()) text_.fail("not a number");
+    }
+    return rounded;
   }
 
   void read_vertices(Mesh& mesh) {
@@ -100,8 +100,10 @@ class OffReader {
     mesh.positions.reserve(vertex_count_);
     for (std::size_t i = 0; i < vertex_count_; ++i) {
       if (!text_.next_line()) text_.fail("the file ends within the vertices");
-      mesh.positions.push_back(three("vertices"));
-      if (has_normals_) mesh.normals.values.push_back(three("vertices"));
+      glm::dvec3 exact(0);
+      const glm::vec3 rounded = three_numbers(exact);
+      mesh.positions.push_back(coordinates_(rounded, exact));
+      if (has_normals_) mesh.normals.values.push_back(three_numbers(exact));
       if (!has_colors_ && !has_texcoords_) continue;
       float extra[6];
       int count = rest_of_row(extra);
@@ -172,6 +174,7 @@ class OffReader {
 
   TextScanner text_;
   const ModelSource& source_;
+  Coordinates& coordinates_;
   Scene scene_;
   bool has_texcoords_ = false, has_colors_ = false, has_normals_ = false;
   std::size_t vertex_count_ = 0, face_count_ = 0;
@@ -179,6 +182,8 @@ class OffReader {
 
 }  // namespace
 
-Scene read_off(Bytes bytes, const ModelSource& source) { return OffReader(bytes, source).read(); }
+Scene read_off(Bytes bytes, const ModelSource& source) {
+  return read_about_origin([&](Coordinates& coordinates) { return OffReader(bytes, source, coordinates).read(); });
+}
 
 }  // namespace frontmost

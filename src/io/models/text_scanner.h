@@ -72,6 +72,11 @@ class TextScanner {
     skip_blanks();
     return move_to(parse_float(at_, end_, value));
   }
+  /// The same, and what a double holds of it.
+  bool number(float& value, double& exact) {
+    skip_blanks();
+    return move_to(parse_both(at_, end_, value, exact));
+  }
   bool integer(std::int64_t& value) {
     skip_blanks();
     return move_to(parse_integer(at_, end_, value));

@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <random>
 #include <string>
+#include <vector>
 
 namespace frontmost {
 namespace {
@@ -130,6 +133,41 @@ TEST(ParseInteger, TakesUpTo18Digits) {
   EXPECT_EQ(value, 999999999999999999);
   for (const char* text : {"", "-", "x", "1000000000000000000", "99999999999999999999999999"})
     EXPECT_EQ(parse_all(text, value), -1) << text;
+}
+
+TEST(ParseBoth, GivesTheNearestFloatAndTheNearestDouble) {
+  std::mt19937_64 random(7);
+  std::vector<std::string> texts = {"0",
+                                    "-0.0",
+                                    "nan",
+                                    "-inf",
+                                    "1e39",
+                                    "1e-50",
+                                    "5400000.25",
+                                    "100000000.01",
+                                    "16777217.000000000000000000001",
+                                    "9007199254740993",
+                                    "1e400",
+                                    "x",
+                                    "-"};
+  for (int i = 0; i < 20000; ++i) {
+    char text[64];
+    const double value = std::ldexp(double(random() >> 11), int(random() % 120) - 100);
+    std::snprintf(text, sizeof text, random() % 2 ? "%.*g" : "%.*f", int(random() % 20), value);
+    texts.emplace_back(text);
+  }
+  for (const std::string& text : texts) {
+    float rounded = 0, alone = 0;
+    double exact = 0;
+    const char* const end = text.data() + text.size();
+    const char* const after = parse_both(text.data(), end, rounded, exact);
+    ASSERT_EQ(after, parse_float(text.data(), end, alone)) << text;
+    if (after == nullptr) continue;
+    const double expected = std::strtod(text.c_str(), nullptr);
+    ASSERT_EQ(std::memcmp(&rounded, &alone, sizeof alone), 0) << text;
+    ASSERT_TRUE(exact == expected || (std::isnan(exact) && std::isnan(expected))) << text;
+    ASSERT_EQ(std::signbit(exact), std::signbit(expected)) << text;
+  }
 }
 
 }  // namespace

@@ -2,15 +2,34 @@
 #include "io/models/gltf/instances.h"
 
 #include "base/parallel.h"
+#include "scene/origin.h"
 
 namespace frontmost::gltf {
 namespace {
 
 /// world_from_joint * inverse bind matrix for each joint of a skin, joints as they rest.
-using Skin = std::vector<glm::dmat4>;
+using Joints = std::vector<glm::dmat4>;
 
-Skin read_skin(const Json& json, const Data& data, const std::vector<Node>& nodes) {
-  Skin skin;
+/// Skinned vertices are stored where they are in the world; far from its zero they are told from an origin there.
+struct Skin {
+  Joints joints;
+  glm::dvec3 origin{0};
+
+  explicit Skin(Joints in_world) : joints(std::move(in_world)) {
+    OriginSearch search;
+    for (const glm::dmat4& joint : joints) search.include(glm::dvec3(joint[3]));
+    origin = search.origin();
+    for (glm::dmat4& joint : joints) joint[3] -= glm::dvec4(origin, 0);
+  }
+  [[nodiscard]] glm::dmat4 world_from_mesh() const {
+    glm::dmat4 moved(1.0);
+    moved[3] = glm::dvec4(origin, 1);
+    return moved;
+  }
+};
+
+Joints read_joints(const Json& json, const Data& data, const std::vector<Node>& nodes) {
+  Joints skin;
   const Json joints = json.require("joints");
   for (std::size_t i = 0; i < joints.size(); ++i) skin.push_back(nodes[joints[i].to_index(nodes.size())].world);
   if (skin.empty()) joints.fail("a skin without joints");
@@ -30,7 +49,7 @@ Skin read_skin(const Json& json, const Data& data, const std::vector<Node>& node
 std::vector<Skin> read_skins(const Json& root, const Data& data, const std::vector<Node>& nodes) {
   std::vector<Skin> skins;
   const std::optional<Json> array = root.find("skins");
-  for (std::size_t i = 0; array && i < array->size(); ++i) skins.push_back(read_skin((*array)[i], data, nodes));
+  for (std::size_t i = 0; array && i < array->size(); ++i) skins.emplace_back(read_joints((*array)[i], data, nodes));
   return skins;
 }
 
@@ -72,7 +91,7 @@ class Placer {
     // No memory here, but ten times as much in whatever looks at the triangles in the world.
     constexpr std::uint64_t least_cost = 4;
     budget_.charge(copies * scene_.meshes[instance.mesh].triangles.size(), least_cost, node.place, source_);
-    instance.world_from_mesh = skinned ? glm::dmat4(1.0) : node.world;
+    instance.world_from_mesh = skinned ? skins_[node.skin].world_from_mesh() : node.world;
     if (node.copies)
       place_copies(node, instance);
     else
@@ -87,7 +106,7 @@ class Placer {
     Pose pose{node.weights.empty() ? plan.weights : node.weights};
     // Every node compares and keeps its weights, those of its mesh too.
     budget_.charge(pose.weights.size(), sizeof(double), node.place, source_);
-    if (skinned) pose.joints = skins_[node.skin];
+    if (skinned) pose.joints = skins_[node.skin].joints;
     // Joints are those of the skin, so its number stands for them; comparing the matrices would cost more than posing.
     const Key key{node.mesh, skinned ? node.skin : no_index, pose.weights};
     const auto known = posed_.find(key);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "io/models/coordinates.h"
 #include "io/models/file_text.h"
 #include "io/models/mesh_building.h"
 #include "io/models/obj/mtl.h"
@@ -25,9 +26,10 @@ struct IndexList {
 
 class ObjReader {
  public:
-  ObjReader(Bytes bytes, const ModelSource& source)
+  ObjReader(Bytes bytes, const ModelSource& source, Coordinates& coordinates)
       : text_(bytes, source, TextScanner::Comments::hash),
         source_(source),
+        coordinates_(coordinates),
         materials_(source, scene_),
         textures_(source, scene_) {}
 
@@ -52,7 +54,7 @@ class ObjReader {
       // Down from the top, as in glTF; in the file v goes up.
       pool_.texcoords.emplace_back(uv.x, 1.0f - uv.y);
     } else if (word == "vn") {
-      pool_.normals.push_back(three_numbers("a normal needs three numbers"));
+      normal();
     } else if (!word.empty()) {
       rare_statement(word);
     }
@@ -74,16 +76,19 @@ class ObjReader {
     }
   }
 
-  glm::vec3 three_numbers(const char* reason) {
-    glm::vec3 value;
+  void normal() {
+    glm::vec3& normal = pool_.normals.emplace_back();
     for (int k = 0; k < 3; ++k)
-      if (!text_.number(value[k])) text_.fail(reason);
-    return value;
+      if (!text_.number(normal[k])) text_.fail("a normal needs three numbers");
   }
 
   /// v x y z, v x y z w, v x y z r g b, v x y z w r g b
   void vertex() {
-    pool_.positions.push_back(three_numbers("a vertex needs three numbers"));
+    glm::vec3 rounded;
+    glm::dvec3 exact;
+    for (int k = 0; k < 3; ++k)
+      if (!text_.number(rounded[k], exact[k])) text_.fail("a vertex needs three numbers");
+    pool_.positions.push_back(coordinates_(rounded, exact));
     if (!text_.at_line_end()) vertex_color();
     if (!pool_.colors.empty() && pool_.colors.size() < pool_.positions.size())
       pool_.colors.resize(pool_.positions.size(), glm::vec4(1));
@@ -232,6 +237,7 @@ class ObjReader {
 
   TextScanner text_;
   const ModelSource& source_;
+  Coordinates& coordinates_;
   Scene scene_;
   MaterialTable materials_;
   TextureFiles textures_;
@@ -248,6 +254,8 @@ class ObjReader {
 
 }  // namespace
 
-Scene read_obj(Bytes bytes, const ModelSource& source) { return ObjReader(bytes, source).read(); }
+Scene read_obj(Bytes bytes, const ModelSource& source) {
+  return read_about_origin([&](Coordinates& coordinates) { return ObjReader(bytes, source, coordinates).read(); });
+}
 
 }  // namespace frontmost

@@ -15,10 +15,11 @@ using namespace ply;
 template <class Rows>
 class PlyBody {
  public:
-  PlyBody(Rows rows, const PlyHeader& header, const ModelSource& source, Scene& scene)
+  PlyBody(Rows rows, const PlyHeader& header, const ModelSource& source, Coordinates& coordinates, Scene& scene)
       : rows_(std::move(rows)),
         header_(header),
         source_(source),
+        coordinates_(coordinates),
         scene_(scene),
         mesh_(add_object(scene, "", source, "header")),
         faces_(rows_, {}, header, source, mesh_) {}
@@ -48,7 +49,7 @@ class PlyBody {
     const VertexReader vertices(element, source_);
     if (element.count + mesh_.positions.size() >= no_index) source_.fail_limit("header", "too many vertices");
     vertices.reserve(std::size_t(element.count), mesh_);
-    vertices.read(rows_, 0, element.count, mesh_);
+    vertices.read(rows_, 0, element.count, coordinates_, mesh_);
   }
 
   void skip(const PlyElement& element) {
@@ -63,6 +64,7 @@ class PlyBody {
   Rows rows_;
   const PlyHeader& header_;
   const ModelSource& source_;
+  Coordinates& coordinates_;
   Scene& scene_;
   Mesh& mesh_;
   FaceReader<Rows, AllVertices> faces_;
@@ -93,14 +95,17 @@ void PlyBinaryRows::release() {
 
 Scene read_ply(Bytes bytes, const ModelSource& source) {
   const PlyHeader header = read_ply_header(bytes, source);
-  Scene scene;
-  scene.warnings = header.warnings;
   const Bytes rows = bytes.subspan(header.size);
-  if (header.encoding == PlyEncoding::ascii) {
-    PlyBody(PlyAsciiRows(rows, header.line_count, source), header, source, scene).read();
-  } else {
-    PlyBody(PlyBinaryRows(rows, endian_of(header), source), header, source, scene).read();
-  }
+  Scene scene = read_about_origin([&](Coordinates& coordinates) {
+    Scene read;
+    read.warnings = header.warnings;
+    if (header.encoding == PlyEncoding::ascii) {
+      PlyBody(PlyAsciiRows(rows, header.line_count, source), header, source, coordinates, read).read();
+    } else {
+      PlyBody(PlyBinaryRows(rows, endian_of(header), source), header, source, coordinates, read).read();
+    }
+    return read;
+  });
   add_texture_materials(header, source, scene);
   return scene;
 }

@@ -2,6 +2,7 @@
 // The rows of a PLY file become one mesh: all of them for read_ply(), some at a time for streams.
 #pragma once
 
+#include "io/models/coordinates.h"
 #include "io/models/ply/ply_columns.h"
 #include "io/models/ply/ply_rows.h"
 
@@ -50,14 +51,16 @@ class VertexReader {
 
   /// Appends the rows from `begin` to `end`, which come next in `rows`.
   template <class Rows>
-  void read(Rows& rows, std::uint64_t begin, std::uint64_t end, Mesh& mesh) const {
+  void read(Rows& rows, std::uint64_t begin, std::uint64_t end, Coordinates& coordinates, Mesh& mesh) const {
     FloatRow row{};
     at(row, Role::alpha) = 1;
+    glm::dvec3 exact(0);
     for (std::uint64_t i = begin; i < end; ++i) {
       rows.begin_row(element_, i);
       for (const Column& column : columns_.list)
-        if (!read_float(rows, column, row)) skip_value(rows, column.property);
-      mesh.positions.push_back(three(row, Role::x));
+        if (!read_coordinate(rows, column, row, exact) && !read_float(rows, column, row))
+          skip_value(rows, column.property);
+      mesh.positions.push_back(coordinates(three(row, Role::x), exact));
       if (has_normals_) mesh.normals.values.push_back(three(row, Role::nx));
       if (has_texcoords_) mesh.texcoords.values.push_back(texcoord(at(row, Role::u), at(row, Role::v)));
       if (has_colors_) mesh.colors.values.push_back(color(row));
@@ -65,6 +68,15 @@ class VertexReader {
   }
 
  private:
+  /// A value of a row into `row` and `exact`, if it is a coordinate. \returns whether it was one.
+  template <class Rows>
+  static bool read_coordinate(Rows& rows, const Column& column, FloatRow& row, glm::dvec3& exact) {
+    if (column.role > Role::z) return false;
+    const auto axis = std::size_t(column.role);
+    row[axis] = rows.number(column.property.type, exact[int(axis)]);
+    return true;
+  }
+
   const PlyElement& element_;
   Columns columns_;
   bool has_normals_ = false, has_texcoords_ = false, has_colors_ = false;

@@ -12,6 +12,7 @@ namespace frontmost {
 /// What both kinds of rows offer:
 ///   begin_row(element, row)   before the values of a row
 ///   number(type)              the next value as a float
+///   number(type, exact)       the same, and what a double holds of it
 ///   integer(type)             the next value of an integer type
 ///   skip(type, count)         passes over values
 ///   room_for(type, count)     fails unless that many values can follow
@@ -24,6 +25,15 @@ class PlyBinaryRows {
     element_ = &element;
     row_ = row;
     if (at_ - released_ > release_step) release();
+  }
+  float number(PlyType type, double& exact) {
+    switch (type) {
+      case PlyType::int32: exact = next<std::int32_t>(); break;
+      case PlyType::uint32: exact = next<std::uint32_t>(); break;
+      case PlyType::float64: exact = next<double>(); break;
+      default: exact = double(number(type)); break;
+    }
+    return float(exact);
   }
   float number(PlyType type) {
     switch (type) {
@@ -94,6 +104,11 @@ class PlyAsciiRows {
   float number(PlyType) {
     float value = 0;
     if (!text_.number(value) || !text_.at_blank()) fail_value();
+    return value;
+  }
+  float number(PlyType, double& exact) {
+    float value = 0;
+    if (!text_.number(value, exact) || !text_.at_blank()) fail_value();
     return value;
   }
   std::int64_t integer(PlyType) {

@@ -81,10 +81,23 @@ struct VertexRows {
   const ModelSource* source = nullptr;
   Endian endian = Endian::little;
 
-  void parse(std::uint64_t begin, std::uint64_t end, Mesh& mesh) const {
+  void parse(std::uint64_t begin, std::uint64_t end, Coordinates& coordinates, Mesh& mesh) const {
     const std::size_t row = element->least_row_size();
     PlyBinaryRows part(rows.subspan(std::size_t(begin) * row, std::size_t(end - begin) * row), endian, *source);
-    reader->read(part, begin, end, mesh);
+    reader->read(part, begin, end, coordinates, mesh);
+  }
+
+  /// Of models near zero, the first block tells.
+  [[nodiscard]] glm::dvec3 fitting_origin() const {
+    constexpr std::uint64_t block = 4096;
+    Coordinates coordinates;
+    Mesh scrap;
+    for (std::uint64_t begin = 0; begin < element->count && !coordinates.is_settled(); begin += block) {
+      parse(begin, std::min(begin + block, element->count), coordinates, scrap);
+      scrap = Mesh();
+      check_cancelled(source->execution());
+    }
+    return coordinates.found();
   }
 };
 
@@ -92,8 +105,11 @@ struct VertexRows {
 /// many, the single vertices instead.
 class NamedVertices {
  public:
-  NamedVertices(const VertexRows& rows, std::size_t most_in_blocks)
-      : rows_(rows), most_in_blocks_(most_in_blocks), places_(std::size_t(count_of(rows) / block + 1), no_index) {}
+  NamedVertices(const VertexRows& rows, const glm::dvec3& origin, std::size_t most_in_blocks)
+      : rows_(rows),
+        coordinates_(origin),
+        most_in_blocks_(most_in_blocks),
+        places_(std::size_t(count_of(rows) / block + 1), no_index) {}
 
   [[nodiscard]] std::uint64_t count(const Mesh&) const { return count_of(rows_); }
   std::uint32_t operator()(std::uint64_t index, Mesh& mesh) {
@@ -101,11 +117,11 @@ class NamedVertices {
     if (place != no_index) return place + std::uint32_t(index % block);
     const auto next = std::uint32_t(mesh.positions.size());
     if (next >= most_in_blocks_) {
-      rows_.parse(index, index + 1, mesh);
+      rows_.parse(index, index + 1, coordinates_, mesh);
       return next;
     }
     const std::uint64_t begin = index - index % block;
-    rows_.parse(begin, std::min(begin + block, count_of(rows_)), mesh);
+    rows_.parse(begin, std::min(begin + block, count_of(rows_)), coordinates_, mesh);
     place = next;
     return next + std::uint32_t(index % block);
   }
@@ -115,6 +131,7 @@ class NamedVertices {
   static std::uint64_t count_of(const VertexRows& rows) { return rows.element->count; }
 
   const VertexRows& rows_;
+  Coordinates coordinates_;
   std::size_t most_in_blocks_;
   std::vector<std::uint32_t> places_;  ///< of each block in the mesh; no_index: not there
 };
@@ -133,6 +150,7 @@ class PlyStream final : public ModelStream {
     } else {
       keep_vertices();
     }
+    scene_.origin = vertices_.fitting_origin();
     scanner_.emplace(*faces_, endian());
     if (can_rewind()) rewind();
   }
@@ -163,8 +181,8 @@ class PlyStream final : public ModelStream {
 
   void parse(Piece& piece) const override {
     PlyBinaryRows rows(Bytes(piece.bytes).first(piece.used), endian(), source_);
-    FaceReader<PlyBinaryRows, NamedVertices> faces(rows, {vertices_, 2 * std::size_t(piece.row_count) + 4096}, header_,
-                                                   source_, piece.mesh);
+    FaceReader<PlyBinaryRows, NamedVertices> faces(
+        rows, {vertices_, scene_.origin, 2 * std::size_t(piece.row_count) + 4096}, header_, source_, piece.mesh);
     faces.read_faces(*faces_, Columns(*faces_), piece.first_row, piece.first_row + piece.row_count);
     faces.finish();
     if (piece.mesh.material_ids.empty()) piece.mesh.material_ids = scene_.meshes[0].material_ids;

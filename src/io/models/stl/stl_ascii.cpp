@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // ASCII STL. Every solid becomes a mesh. Words may be in any case and anywhere on a line, as in files from the wild.
+#include "io/models/coordinates.h"
 #include "io/models/file_text.h"
 #include "io/models/mesh_building.h"
 #include "io/models/stl/stl.h"
@@ -17,7 +18,8 @@ bool same_word(std::string_view word, std::string_view lower) {
 
 class AsciiStl {
  public:
-  AsciiStl(Bytes bytes, const ModelSource& source) : text_(bytes, source) {}
+  AsciiStl(Bytes bytes, const ModelSource& source, Coordinates& coordinates)
+      : text_(bytes, source), coordinates_(coordinates) {}
 
   Scene read() {
     while (text_.to_word()) statement(text_.word());
@@ -81,20 +83,24 @@ class AsciiStl {
   }
 
   glm::vec3 vertex() {
-    glm::vec3 position{0};
+    glm::vec3 rounded{0};
+    glm::dvec3 exact{0};
     for (int k = 0; k < 3; ++k)
-      if (!text_.to_word() || !text_.number(position[k]) || !text_.at_blank())
+      if (!text_.to_word() || !text_.number(rounded[k], exact[k]) || !text_.at_blank())
         text_.fail("a vertex needs three numbers");
-    return position;
+    return coordinates_(rounded, exact);
   }
 
   TextScanner text_;
+  Coordinates& coordinates_;
   Scene scene_;
   bool in_solid_ = false;
 };
 
 }  // namespace
 
-Scene read_ascii_stl(Bytes bytes, const ModelSource& source) { return AsciiStl(bytes, source).read(); }
+Scene read_ascii_stl(Bytes bytes, const ModelSource& source) {
+  return read_about_origin([&](Coordinates& coordinates) { return AsciiStl(bytes, source, coordinates).read(); });
+}
 
 }  // namespace frontmost

@@ -2,8 +2,10 @@
 // Binary STL, piece by piece: records of 50 bytes.
 #include <algorithm>
 
+#include "base/parallel.h"
 #include "io/models/model_stream.h"
 #include "io/models/stl/stl.h"
+#include "scene/origin.h"
 
 namespace frontmost {
 namespace {
@@ -24,6 +26,8 @@ class StlStream final : public ModelStream {
     Mesh& mesh = scene_.meshes.emplace_back();
     mesh.name = stl_header_name(start_);
     scene_.instances.push_back({.name = mesh.name, .mesh = 0});
+    // What can be read only once stays about zero, where its floats are: nothing more is lost of them.
+    if (can_rewind()) set_origin(scene_, fitting_origin());
   }
 
   void rewind() override {
@@ -55,6 +59,20 @@ class StlStream final : public ModelStream {
   void parse(Piece& piece) const override { append_stl_records(Bytes(piece.bytes).first(piece.used), piece.mesh); }
 
  private:
+  /// Of models near zero, the first piece tells.
+  glm::dvec3 fitting_origin() {
+    constexpr std::uint64_t triangles_at_once = 4096;
+    OriginSearch search;
+    Piece piece;
+    while (!search.is_home() && fetch(piece, triangles_at_once)) {
+      parse(piece);
+      for (const glm::vec3& position : piece.mesh.positions) search.include(glm::dvec3(position));
+      check_cancelled(source_.execution());
+    }
+    rewind();
+    return search.origin();
+  }
+
   /// What the size would have told of a file, of a pipe only its end can tell.
   void end_early(std::size_t rest) {
     if (is_open_ && rest != 0)
