@@ -7,6 +7,7 @@
 #include "frontmost/base.h"
 #include "frontmost/curved.h"        // IWYU pragma: export
 #include "frontmost/depth_buffer.h"  // IWYU pragma: export
+#include "frontmost/dimensions.h"    // IWYU pragma: export
 #include "frontmost/figure.h"        // IWYU pragma: export
 #include "frontmost/hatching.h"      // IWYU pragma: export
 #include "frontmost/image.h"         // IWYU pragma: export
@@ -19,6 +20,7 @@
 #include "frontmost/ray_camera.h"    // IWYU pragma: export
 #include "frontmost/raycast.h"       // IWYU pragma: export
 #include "frontmost/report.h"        // IWYU pragma: export
+#include "frontmost/rounds.h"        // IWYU pragma: export
 #include "frontmost/scene.h"         // IWYU pragma: export
 #include "frontmost/shade.h"         // IWYU pragma: export
 #include "frontmost/sheet.h"         // IWYU pragma: export

@@ -8,6 +8,7 @@
 
 #include "frontmost/hatching.h"
 #include "frontmost/page.h"
+#include "frontmost/rounds.h"
 #include "frontmost/strokes.h"
 
 namespace frontmost {
@@ -20,8 +21,12 @@ struct LinePens {
   Pen hidden{0.25, {}, {3, 0.75}};
   Pen hatching{0.18, {}};
   Pen stippling{0.3, {}};  ///< its width is that of the dots
+  /// Long dashes and dots. Each line has an odd number of dashes, made longer or shorter so that it begins, ends and
+  /// has its middle in one; a short one is whole.
+  Pen centre{0.25, {}, {6, 1, 0.1, 1}};
 };
-/// ISO 128: what is seen 0.5 mm, hidden lines 0.25 mm in dashes of 3 mm with gaps of 0.75 mm.
+/// ISO 128: what is seen 0.5 mm, hidden lines 0.25 mm in dashes of 3 mm with gaps of 0.75 mm, centre lines 0.25 mm in
+/// dashes of about 6 mm with a dot between two.
 [[nodiscard]] LinePens technical_pens();
 /// For people: an outline of 0.7 mm, contours within it of 0.35 mm, creases of 0.18 mm, hidden lines of 0.13 mm.
 [[nodiscard]] LinePens figure_pens();
@@ -36,13 +41,14 @@ struct SheetView {
   double millimetres_per_pixel = 1;
   std::vector<HatchLine> hatching{};
   std::vector<Stipple> stippling{};
+  std::vector<CentreLine> centre_lines{};
 
   [[nodiscard]] glm::dvec2 on_page(const glm::dvec2& pixel) const { return origin + millimetres_per_pixel * pixel; }
 };
 
-/// A page with the layers "5 stippling", "4 hatching", "1 hidden", "2 visible" and "3 outline", those that have lines,
-/// the lowest first. Each has a group for every view and object, named as they are; in the order of the strokes and of
-/// the hatching.
+/// A page with the layers "5 stippling", "4 hatching", "6 centre lines", "1 hidden", "2 visible" and "3 outline", those
+/// that have lines, the lowest first. Each has a group for every view and object, named as they are; in the order of
+/// the strokes and of the hatching. Centre lines have groups by their dashes, without names.
 [[nodiscard]] Page draw_sheet(const Surfaces& surfaces, std::span<const SheetView> views, const LinePens& pens,
                               const glm::dvec2& size);
 

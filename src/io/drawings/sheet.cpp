@@ -11,9 +11,25 @@ namespace frontmost {
 namespace {
 
 /// In the order of drawing. The numbers are names: a plotter's pens are chosen by them.
-constexpr std::size_t layer_count = 5;
-enum LayerOf : std::size_t { stippling, hatching, hidden, seen, outline };
-const char* const layer_names[layer_count] = {"5 stippling", "4 hatching", "1 hidden", "2 visible", "3 outline"};
+constexpr std::size_t layer_count = 6;
+enum LayerOf : std::size_t { stippling, hatching, centre, hidden, seen, outline };
+const char* const layer_names[layer_count] = {"5 stippling", "4 hatching", "6 centre lines",
+                                              "1 hidden",    "2 visible",  "3 outline"};
+
+/// The dashes of a pen as they are on a line of that length: an odd number of the first one, and so many of the others
+/// between them. The first is rounded, so that lines of about a length have the same pattern. None where there is room
+/// for one dash alone.
+std::vector<double> dashes_on(const Pen& pen, double length) {
+  if (pen.dashes.empty()) return {};
+  constexpr double step = 0.02;  // millimetres
+  double between = 0;
+  for (std::size_t i = 1; i < pen.dashes.size(); ++i) between += pen.dashes[i];
+  const double pairs = std::round((length - pen.dashes[0]) / (pen.dashes[0] + between) / 2);
+  if (pairs < 1) return {};
+  std::vector<double> dashes = pen.dashes;
+  dashes[0] = std::round((length - 2 * pairs * between) / (2 * pairs + 1) / step) * step;
+  return dashes;
+}
 
 /// The layers while they are filled: where the group of a view and an object is.
 class Sheet {
@@ -30,6 +46,12 @@ class Sheet {
     for (const HatchLine& line : view.hatching) {
       const glm::dvec2 ends[] = {view.on_page(line.from), view.on_page(line.to)};
       group({hatching, number, line.instance, false}, view, pens_.hatching).add(ends, false);
+    }
+    for (const CentreLine& line : view.centre_lines) {
+      const glm::dvec2 ends[] = {view.on_page(line.from), view.on_page(line.to)};
+      Pen pen = pens_.centre;
+      pen.dashes = dashes_on(pen, glm::distance(ends[0], ends[1]));
+      centre_group(pen).add(ends, false);
     }
     for (const Stroke& stroke : view.strokes.strokes) append(stroke, view, group_for(stroke, view, number));
   }
@@ -70,6 +92,13 @@ class Sheet {
     return groups[known->second];
   }
 
+  PageGroup& centre_group(const Pen& pen) {
+    std::vector<PageGroup>& groups = layers_[centre].groups;
+    const auto [known, is_new] = centre_groups_.try_emplace(pen.dashes, groups.size());
+    if (is_new) groups.push_back({"", pen});
+    return groups[known->second];
+  }
+
   [[nodiscard]] std::string name_of(const SheetView& view, std::uint32_t instance) const {
     const std::string object = instance == no_index ? "" : surfaces_.scene().instances[instance].name;
     return view.name.empty() || object.empty() ? view.name + object : view.name + ": " + object;
@@ -88,13 +117,17 @@ class Sheet {
   const LinePens& pens_;
   PageLayer layers_[layer_count];
   std::map<GroupKey, std::size_t> places_;
+  std::map<std::vector<double>, std::size_t> centre_groups_;  ///< by their dashes
 };
 
 }  // namespace
 
 LinePens technical_pens() { return {}; }
 
-LinePens figure_pens() { return {{0.7, {}}, {0.35, {}}, {0.18, {}}, {0.13, {}, {1.5, 0.75}}, {0.13, {}}, {0.25, {}}}; }
+LinePens figure_pens() {
+  return {
+      {0.7, {}}, {0.35, {}}, {0.18, {}}, {0.13, {}, {1.5, 0.75}}, {0.13, {}}, {0.25, {}}, {0.13, {}, {6, 1, 0.1, 1}}};
+}
 
 Pen thin_pen() { return {0.13, {}}; }
 

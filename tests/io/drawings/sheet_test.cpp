@@ -2,6 +2,7 @@
 // Sheets: where strokes land on the page, in which layer and group, with which pen.
 #include "frontmost/sheet.h"
 
+#include <cmath>
 #include <numbers>
 
 #include "io/drawings/sample_page.h"
@@ -114,6 +115,29 @@ TEST(BoundsOfADrawing, CountHiddenPartsWhereAskedFor) {
   EXPECT_EQ(bounds(drawing, false).high, glm::dvec2(3, 2));
   EXPECT_EQ(bounds(drawing, true).high, glm::dvec2(9, 9));
   EXPECT_EQ(bounds(drawing, true).low, glm::dvec2(1, -4));
+}
+
+TEST(DrawSheet, CentreLinesBeginAndEndInDashes) {
+  const Scene scene = two_objects();
+  const Surfaces surfaces(scene);
+  for (double length = 1; length < 400; length += 3.7) {
+    SheetView view{"front", {}, {20, 30}, 0.5};
+    view.centre_lines.push_back({{0, 0}, {2 * length, 0}});
+    const Page page = draw_sheet(surfaces, std::span(&view, 1), technical_pens(), {500, 80});
+    ASSERT_EQ(page.layers.size(), 1u);
+    EXPECT_EQ(page.layers[0].name, "6 centre lines");
+    const std::vector<double>& dashes = page.layers[0].groups.at(0).pen.dashes;
+    if (dashes.empty()) {
+      EXPECT_LT(length, 15);
+      continue;
+    }
+    ASSERT_EQ(dashes.size(), 4u);
+    const double between = dashes[1] + dashes[2] + dashes[3];
+    const double count = (length + between) / (dashes[0] + between), odd = 2 * std::round((count - 1) / 2) + 1;
+    EXPECT_GE(odd, 3) << length;
+    EXPECT_NEAR(odd * (dashes[0] + between) - between, length, 0.02 * odd / 2) << length;
+    EXPECT_NEAR(dashes[0], 6, 3.1) << length;
+  }
 }
 
 }  // namespace

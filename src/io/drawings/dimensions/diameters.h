@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Diameters on leader lines.
+#pragma once
+
+#include <string>
+
+#include "io/drawings/dimensions/dimension_pen.h"
+#include "io/drawings/dimensions/measured_view.h"
+
+namespace frontmost::detail {
+
+inline const std::string diameter_sign = "\u2300";
+
+/// The diameters of a sheet, each once.
+class Diameters {
+ public:
+  Diameters(const DimensionOptions& options, DimensionPen& pen, const Obstacles& obstacles)
+      : options_(options), pen_(pen), obstacles_(obstacles) {}
+
+  /// Counts a cylinder, and what continues it, as dimensioned. \returns false where it was.
+  bool take(const Round& round);
+  /// Those that a view shows and no view before it.
+  void add(const MeasuredView& view, Dimensions& all);
+
+ private:
+  struct Group {
+    std::string text;
+    std::vector<SeenCircle> circles;  ///< at different places
+  };
+  /// A leader from a circle to the shelf under its number.
+  struct Leader {
+    glm::dvec2 tip, knee, end;
+    TextAlign align;
+    double cost;
+  };
+
+  [[nodiscard]] std::vector<Group> groups_of(const MeasuredView& view);
+  [[nodiscard]] bool is_taken(const Round& round) const;
+  [[nodiscard]] std::optional<Leader> best_leader(const Group& group, std::string_view text) const;
+
+  const DimensionOptions& options_;
+  DimensionPen& pen_;
+  const Obstacles& obstacles_;
+  std::vector<Round> taken_;
+  std::size_t placed_ = 0;
+};
+
+}  // namespace frontmost::detail

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/drawings/dimensions/dimension_pen.h"
+
+#include <numbers>
+
+namespace frontmost::detail {
+
+DimensionPen::DimensionPen(const DimensionOptions& options, Obstacles& obstacles)
+    : options_(options), obstacles_(obstacles), lines_{"", options.pen}, texts_{"", text_pen(options.text_height)} {
+  texts_.pen.color = options.pen.color;
+}
+
+void DimensionPen::line(const glm::dvec2& from, const glm::dvec2& to) {
+  const glm::dvec2 ends[] = {from, to};
+  lines_.add(ends, false);
+  obstacles_.add(PageSegment{from, to});
+}
+
+void DimensionPen::arrow(const glm::dvec2& tip, const glm::dvec2& pointing) {
+  // Two slender triangles side by side, whose sides are so near each other that the pen fills them.
+  const double width = options_.pen.width;
+  const glm::dvec2 base = tip - arrow_length() * pointing, across(-pointing.y * width, pointing.x * width);
+  const glm::dvec2 corners[] = {tip, base - 1.5 * across, base - 0.5 * across,
+                                tip, base + 0.5 * across, base + 1.5 * across};
+  lines_.add(corners, true);
+}
+
+void DimensionPen::text(std::string_view text, const glm::dvec2& at, TextAlign align, bool is_upright) {
+  const glm::dvec2 above = is_upright ? glm::dvec2(-text_distance, 0) : glm::dvec2(0, -text_distance);
+  add_text(texts_, text, at + above,
+           {options_.text_height, is_upright ? std::numbers::pi / 2 : 0, align, TextLine::bottom});
+  if (!is_upright) return obstacles_.add(box_of(text, at, align));
+  const PageBox level = box_of(text, {0, 0}, align);
+  // A quarter turn takes (x, y) to (y, -x).
+  obstacles_.add(PageBox{at + glm::dvec2(level.low.y, -level.high.x), at + glm::dvec2(level.high.y, -level.low.x)});
+}
+
+PageBox DimensionPen::box_of(std::string_view text, const glm::dvec2& at, TextAlign align) const {
+  const double width = width_of(text);
+  const double left = align == TextAlign::left ? 0 : align == TextAlign::right ? -width : -width / 2;
+  return {at + glm::dvec2(left - text_distance, -options_.text_height - 2 * text_distance),
+          at + glm::dvec2(left + width + text_distance, -text_distance / 2)};
+}
+
+std::vector<PageGroup> DimensionPen::take() {
+  std::vector<PageGroup> groups;
+  for (PageGroup* const group : {&lines_, &texts_})
+    if (!group->paths.empty()) groups.push_back(std::move(*group));
+  return groups;
+}
+
+}  // namespace frontmost::detail

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/drawings/dimensions/measured_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace frontmost::detail {
+namespace {
+
+constexpr double square = 2e-3;           // sine: as centre lines have it
+constexpr double least_drawn = 0.2;       // likewise
+constexpr double nearly_whole = 6.2;      // radians
+constexpr double widest_sagitta = 0.016;  // of the radius: of sides of 20 degrees
+constexpr double same_place = 0.02;       // millimetres of paper
+
+}  // namespace
+
+MeasuredView::MeasuredView(const DimensionedView& view) : view_(view) {
+  const View& camera = view.drawing->view;
+  const Projection& p = camera.projection;
+  millimetres_ = camera.width / (p.right - p.left) * view.sheet->millimetres_per_pixel;
+  const DrawingBounds drawn = bounds(*view.drawing, true);
+  is_empty_ = drawn.is_empty();
+  if (is_empty_) return;
+  box_ = {view.sheet->on_page(drawn.low), view.sheet->on_page(drawn.high)};
+  if (view.rounds != nullptr) find_circles();
+}
+
+glm::dvec2 MeasuredView::on_page(const glm::dvec3& point) const {
+  return view_.sheet->on_page(on_screen(view_.drawing->view, point));
+}
+
+void MeasuredView::find_circles() {
+  const std::vector<double> lengths = drawn_lengths(*view_.rounds, *view_.drawing, view_.with_hidden);
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    const Round& round = view_.rounds->rounds[i];
+    if (glm::length(glm::cross(round.axis, view_.drawing->view.forward())) > square) continue;
+    const double radius = round.radius * millimetres_;
+    if (lengths[i] * view_.sheet->millimetres_per_pixel < least_drawn * round.turn * radius) continue;
+    circles_.push_back({&round, on_page(round.from), radius});
+  }
+}
+
+Extent MeasuredView::extent(int axis) const {
+  Extent all{box_.low[axis], box_.high[axis], 0};
+  const View& camera = view_.drawing->view;
+  const glm::dvec3 direction = axis == 0 ? camera.right() : camera.up();
+  double low = all.low, high = all.high;
+  for (const Round& round : view_.rounds != nullptr ? view_.rounds->rounds : std::vector<Round>()) {
+    const double along = glm::dot(round.axis, direction), slack = widest_sagitta * round.radius * millimetres_;
+    if (round.turn < nearly_whole) continue;
+    const double reach = round.radius * millimetres_ * std::sqrt(std::max(0.0, 1 - along * along));
+    const double from = on_page(round.from)[axis], to = on_page(round.to)[axis];
+    const double begin = std::min(from, to) - reach, end = std::max(from, to) + reach;
+    const bool is_low = begin <= box_.low[axis] + same_place && begin >= box_.low[axis] - slack - same_place;
+    const bool is_high = end >= box_.high[axis] - same_place && end <= box_.high[axis] + slack + same_place;
+    if (is_low) low = std::min(low, begin);
+    if (is_high) high = std::max(high, end);
+    const bool is_larger = all.diameter == nullptr || round.radius > all.diameter->radius;
+    if (is_low && is_high && std::abs(along) <= square && is_larger) all.diameter = &round;
+  }
+  all.low = low;
+  all.high = high;
+  all.size = all.diameter != nullptr ? 2 * all.diameter->radius : (high - low) / millimetres_;
+  return all;
+}
+
+double MeasuredView::foot_of_end(int axis, double end) const {
+  const double slack = same_place + widest_sagitta * (box_.high[axis] - box_.low[axis]) / 2;
+  const int other = 1 - axis;
+  double nearest = std::numeric_limits<double>::infinity(), foot = axis == 0 ? box_.low.y : box_.high.x;
+  const auto look_at = [&](const glm::dvec2& point) {
+    const double off = std::abs(point[axis] - end);
+    if (off > slack || off > nearest + same_place) return;
+    // Of those at one distance the one that is nearest to the dimension line.
+    const bool is_nearer = off < nearest - same_place;
+    const double at = point[other];
+    foot = is_nearer ? at : axis == 0 ? std::max(foot, at) : std::min(foot, at);
+    nearest = std::min(nearest, off);
+  };
+  for (const DrawnPart& part : view_.drawing->parts) {
+    look_at(view_.sheet->on_page(part.from));
+    look_at(view_.sheet->on_page(part.to));
+  }
+  return foot;
+}
+
+}  // namespace frontmost::detail

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// What stands on a page already: where there is room for text.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "frontmost/dimensions.h"
+
+namespace frontmost::detail {
+
+/// A straight line on the page.
+struct PageSegment {
+  glm::dvec2 from, to;
+};
+
+/// Lines and texts of a page, by the cells of a grid.
+class Obstacles {
+ public:
+  explicit Obstacles(const PageBox& area);
+
+  void add(const PageSegment& segment);
+  /// No line may cross it, and no text meet it.
+  void add(const PageBox& text);
+  /// The strokes and centre lines of a view, arcs as chords.
+  void add(const SheetView& view);
+
+  /// Whether the box lies in the area and meets nothing.
+  [[nodiscard]] bool is_free(const PageBox& box) const;
+  /// How many lines it crosses; a thousand more where it leaves the area or meets a text.
+  [[nodiscard]] int crossings(const PageSegment& segment) const;
+
+ private:
+  template <class Visit>
+  void visit_cells(const PageBox& box, const Visit& visit) const;
+
+  const PageBox area_;
+  glm::ivec2 cells_;
+  glm::dvec2 cell_size_;
+  std::vector<PageSegment> segments_;
+  std::vector<PageBox> texts_;
+  std::vector<std::vector<std::uint32_t>> segments_in_;  ///< by cell
+};
+
+}  // namespace frontmost::detail

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Circles in space.
+#pragma once
+
+#include <cmath>
+#include <glm/glm.hpp>
+#include <optional>
+
+namespace frontmost::lines_detail {
+
+struct Circle3 {
+  glm::dvec3 centre, axis;  ///< the axis of unit length; from it the circle runs anticlockwise
+  double radius;
+
+  /// From one point to the next around the axis, in (-pi, pi].
+  [[nodiscard]] double turn_between(const glm::dvec3& a, const glm::dvec3& b) const {
+    const glm::dvec3 u = a - centre, v = b - centre;
+    return std::atan2(glm::dot(axis, glm::cross(u, v)), glm::dot(u, v) - glm::dot(u, axis) * glm::dot(v, axis));
+  }
+  /// How far a point is from it, roughly: off its plane and off its radius.
+  [[nodiscard]] double distance(const glm::dvec3& point) const {
+    const glm::dvec3 u = point - centre;
+    const double height = glm::dot(u, axis);
+    return std::max(std::abs(height), std::abs(glm::length(u - height * axis) - radius));
+  }
+};
+
+[[nodiscard]] inline std::optional<Circle3> circle_through(const glm::dvec3& a, const glm::dvec3& b,
+                                                           const glm::dvec3& c) {
+  const glm::dvec3 u = b - a, v = c - a, normal = glm::cross(u, v);
+  const double square = glm::dot(normal, normal);
+  if (!(square > 0) || !std::isfinite(square)) return std::nullopt;
+  const glm::dvec3 to_centre = glm::cross(glm::dot(u, u) * v - glm::dot(v, v) * u, normal) / (2 * square);
+  const double radius = glm::length(to_centre);
+  if (!std::isfinite(radius)) return std::nullopt;
+  return Circle3{a + to_centre, normal / std::sqrt(square), radius};
+}
+
+/// How far the middle of a side is from the circle that it is a chord of.
+[[nodiscard]] inline double sagitta(double radius, double step) { return radius * (1 - std::cos(step / 2)); }
+
+}  // namespace frontmost::lines_detail

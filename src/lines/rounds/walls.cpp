@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+// A wall grows over all neighbours that are smooth, stand upright about its axis and have their corners at its radius.
+// It begins at a circle of sharp edges, or where there is none, as between fillets, at two neighbours. Those know
+// little of their axis, so that it is found anew whenever there are twice as many.
+#include "lines/rounds/walls.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "base/parallel.h"
+#include "lines/joined.h"
+#include "lines/rounds/axis_fit.h"
+#include "lines/rounds/circle3.h"
+
+namespace frontmost::lines_detail {
+namespace {
+
+constexpr std::size_t kPerPart = 4096;
+constexpr double kFlat = 0.9999999;  // cosine of 0.026 degrees: the two halves of a plane
+constexpr double kUpright = 0.01;    // the cosine of normals with the axis, of neighbours of two
+constexpr double kRoughlyUpright = 0.1;
+constexpr double kFacesOut = 0.9;  // the cosine of normals with the direction from the axis
+constexpr double kSmallestRadius = 50;
+constexpr std::size_t kFewestTriangles = 8;
+
+/// Two triangles that might lie about the axis along their common side.
+struct Seed {
+  std::uint32_t triangle;
+  int side;
+};
+
+class Seeds {
+ public:
+  explicit Seeds(const SmoothMesh& mesh) : mesh_(mesh) {}
+
+  [[nodiscard]] bool is_one(const Seed& seed) const {
+    const std::uint32_t other = mesh_.across[seed.triangle][seed.side];
+    if (other == no_index || other < seed.triangle || !mesh_.is_smooth(seed.triangle, seed.side)) return false;
+    if (glm::dot(mesh_.normals[seed.triangle], mesh_.normals[other]) > kFlat) return false;
+    const glm::dvec3 side = mesh_.corner(seed.triangle, (seed.side + 1) % 3) - mesh_.corner(seed.triangle, seed.side);
+    const glm::dvec3 axis = side / glm::length(side);
+    return goes_on(seed.triangle, other, axis) && goes_on(other, seed.triangle, axis);
+  }
+
+ private:
+  /// Beyond `triangle`, seen from `before`, there is a smooth neighbour, and all such stand upright.
+  [[nodiscard]] bool goes_on(std::uint32_t triangle, std::uint32_t before, const glm::dvec3& axis) const {
+    bool has_one = false;
+    for (int k = 0; k < 3; ++k) {
+      if (mesh_.across[triangle][k] == before || !mesh_.is_smooth(triangle, k)) continue;
+      if (std::abs(glm::dot(mesh_.normals[mesh_.across[triangle][k]], axis)) > kUpright) return false;
+      has_one = true;
+    }
+    return has_one;
+  }
+
+  const SmoothMesh& mesh_;
+};
+
+class WallGrower {
+ public:
+  explicit WallGrower(const SmoothMesh& mesh) : mesh_(mesh), is_used_(mesh.mesh.triangles.size()) {}
+
+  /// None where the seed's surface is no cylinder, or already part of one. What was looked at is not looked at again.
+  [[nodiscard]] std::optional<FoundWall> grow(const Seed& seed) {
+    const std::uint32_t other = mesh_.across[seed.triangle][seed.side];
+    if (is_used_[seed.triangle] || is_used_[other] || !start(seed, other)) return std::nullopt;
+    return grown(true);
+  }
+
+  /// Likewise from a side of a circle whose triangle stands upright on it.
+  [[nodiscard]] std::optional<FoundWall> grow(const Circle3& circle, double step, std::uint32_t triangle) {
+    if (is_used_[triangle]) return std::nullopt;
+    tube_ = {circle.centre, circle.axis, circle.radius};
+    slack_ = std::max(mesh_.noise, sagitta(circle.radius, step) / 4);
+    outside_ = glm::dot(mesh_.normals[triangle], tube_.outwards(mesh_.corner(triangle, 0))) > 0 ? 1 : -1;
+    if (!holds(triangle)) return std::nullopt;
+    triangles_.clear();
+    take(triangle);
+    return grown(false);
+  }
+
+ private:
+  /// From the triangles that are there. A circle knows the axis better than few triangles do, and is not fitted.
+  std::optional<FoundWall> grown(bool fits) {
+    std::size_t fitted = std::max(triangles_.size(), kFewestTriangles / 2);
+    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+      for (int k = 0; k < 3; ++k) reach(triangles_[i], k);
+      if (!fits || triangles_.size() < 2 * fitted) continue;
+      fitted = triangles_.size();
+      if (!fit()) break;
+    }
+    if (triangles_.size() >= kFewestTriangles) {
+      if (!fits || (fit() && holds_all())) return measured();
+      return std::nullopt;
+    }
+    // A short run of triangles may belong to another that begins with a better axis.
+    for (const std::uint32_t t : triangles_) is_used_[t] = false;
+    return std::nullopt;
+  }
+
+  bool start(const Seed& seed, std::uint32_t other) {
+    const glm::dvec3 from = mesh_.corner(seed.triangle, seed.side);
+    const glm::dvec3 to = mesh_.corner(seed.triangle, (seed.side + 1) % 3);
+    const glm::dvec3 left = mesh_.corner(seed.triangle, (seed.side + 2) % 3);
+    glm::dvec3 right = from;
+    for (int k = 0; k < 3; ++k)
+      if (const glm::dvec3 at = mesh_.corner(other, k); at != from && at != to) right = at;
+    const glm::dvec3 points[] = {from, left, right};
+    const auto tube = tube_through(points, glm::normalize(to - from));
+    if (!tube || !(tube->radius >= kSmallestRadius * mesh_.noise)) return false;
+    tube_ = *tube;
+    const double step = std::acos(std::min(1.0, glm::dot(mesh_.normals[seed.triangle], mesh_.normals[other])));
+    slack_ = std::max(mesh_.noise, sagitta(tube_.radius, step) / 4);
+    outside_ = glm::dot(mesh_.normals[seed.triangle], tube_.outwards(from)) > 0 ? 1 : -1;
+    triangles_.clear();
+    take(seed.triangle);
+    take(other);
+    return true;
+  }
+
+  void take(std::uint32_t triangle) {
+    is_used_[triangle] = true;
+    triangles_.push_back(triangle);
+  }
+
+  void reach(std::uint32_t triangle, int side) {
+    if (!mesh_.is_smooth(triangle, side)) return;
+    const std::uint32_t next = mesh_.across[triangle][side];
+    if (!is_used_[next] && holds(next)) take(next);
+  }
+
+  [[nodiscard]] bool holds(std::uint32_t triangle) const {
+    const glm::dvec3& normal = mesh_.normals[triangle];
+    if (std::abs(glm::dot(normal, tube_.axis)) > kRoughlyUpright) return false;
+    for (int k = 0; k < 3; ++k) {
+      const glm::dvec3 at = mesh_.corner(triangle, k), out = tube_.outwards(at);
+      const double length = glm::length(out);
+      if (!(std::abs(length - tube_.radius) <= slack_ && outside_ * glm::dot(normal, out) >= kFacesOut * length))
+        return false;
+    }
+    return true;
+  }
+  [[nodiscard]] bool holds_all() const {
+    return std::all_of(triangles_.begin(), triangles_.end(), [&](std::uint32_t t) { return holds(t); });
+  }
+
+  bool fit() {
+    std::vector<glm::dvec3> normals, points;
+    for (const std::uint32_t t : triangles_) {
+      normals.push_back(mesh_.normals[t]);
+      for (int k = 0; k < 3; ++k) points.push_back(mesh_.corner(t, k));
+    }
+    const auto tube = tube_through(points, common_perpendicular(normals));
+    if (tube) tube_ = *tube;
+    return tube.has_value();
+  }
+
+  [[nodiscard]] FoundWall measured() {
+    const Across across(tube_.axis);
+    std::vector<double> angles;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const std::uint32_t t : triangles_)
+      for (int k = 0; k < 3; ++k) {
+        const glm::dvec3 at = mesh_.corner(t, k), out = tube_.outwards(at);
+        angles.push_back(std::atan2(glm::dot(out, across.v), glm::dot(out, across.u)));
+        low = std::min(low, glm::dot(at - tube_.point, tube_.axis));
+        high = std::max(high, glm::dot(at - tube_.point, tube_.axis));
+      }
+    std::sort(angles.begin(), angles.end());
+    constexpr double whole = 2 * std::numbers::pi;
+    double gap = angles.front() + whole - angles.back();
+    for (std::size_t i = 1; i < angles.size(); ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
+    std::sort(triangles_.begin(), triangles_.end());
+    return {tube_.point + low * tube_.axis,
+            tube_.point + high * tube_.axis,
+            tube_.axis,
+            tube_.radius,
+            gap <= kWidestStep ? whole : whole - gap,
+            outside_ < 0,
+            triangles_};
+  }
+
+  const SmoothMesh& mesh_;
+  std::vector<bool> is_used_;
+  Tube tube_{};
+  double slack_ = 0, outside_ = 1;
+  std::vector<std::uint32_t> triangles_;
+};
+
+}  // namespace
+
+std::vector<FoundWall> find_walls(const SmoothMesh& mesh, const std::vector<FoundCircle>& circles,
+                                  const Execution& execution) {
+  std::vector<FoundWall> walls;
+  WallGrower grower(mesh);
+  const auto keep = [&](std::optional<FoundWall> wall) {
+    if (wall) walls.push_back(std::move(*wall));
+  };
+  for (const FoundCircle& circle : circles) {
+    check_cancelled(execution);
+    // Most sides have two triangles.
+    const double step = std::min(kWidestStep, 2 * covered(circle) / double(circle.triangles.size()));
+    for (const std::uint32_t triangle : circle.triangles) keep(grower.grow(circle.circle, step, triangle));
+  }
+  const std::size_t count = mesh.mesh.triangles.size();
+  std::vector<std::vector<Seed>> lists((count + kPerPart - 1) / kPerPart);
+  parallel_for(execution, count, kPerPart, [&](std::size_t begin, std::size_t end) {
+    const Seeds seeds(mesh);
+    for (auto t = std::uint32_t(begin); t < end; ++t)
+      for (int k = 0; k < 3; ++k)
+        if (const Seed seed{t, k}; seeds.is_one(seed)) lists[begin / kPerPart].push_back(seed);
+  });
+  for (const std::vector<Seed>& list : lists) {
+    check_cancelled(execution);
+    for (const Seed& seed : list) keep(grower.grow(seed));
+  }
+  return walls;
+}
+
+}  // namespace frontmost::lines_detail

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+// Dimensions of parts of known sizes: which numbers there are, each once, and that nothing lies on them.
+#include "frontmost/dimensions.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+
+#include "frontmost/lettering.h"
+#include "io/drawings/dimensions/obstacles.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+/// A box from the origin, without lids where holes are.
+void add_box(Mesh& mesh, const glm::vec3& size) {
+  const auto corner = [&](int i) { return glm::vec3(i & 1 ? size.x : 0, i & 2 ? size.y : 0, i & 4 ? size.z : 0); };
+  const int faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  for (const auto& f : faces) {
+    add_triangle(mesh, corner(f[0]), corner(f[1]), corner(f[2]));
+    add_triangle(mesh, corner(f[0]), corner(f[2]), corner(f[3]));
+  }
+}
+
+/// A peg along z with lids.
+void add_peg(Mesh& mesh, const glm::vec3& foot, float radius, float height, int sides = 36) {
+  const auto at = [&](int k, float z) {
+    const double angle = 2 * std::numbers::pi * (k % sides) / sides + 0.03;
+    return foot + glm::vec3(radius * std::cos(angle), radius * std::sin(angle), z);
+  };
+  for (int i = 0; i < sides; ++i) {
+    add_triangle(mesh, at(i, 0), at(i + 1, 0), at(i + 1, height));
+    add_triangle(mesh, at(i, 0), at(i + 1, height), at(i, height));
+    add_triangle(mesh, at(i, height), at(i + 1, height), foot + glm::vec3(0, 0, height));
+    add_triangle(mesh, at(i + 1, 0), at(i, 0), foot);
+  }
+}
+
+/// Views of a scene one below the other at full scale on a large page.
+class DimensionsTest : public testing::Test {
+ protected:
+  void draw(std::initializer_list<NamedView> directions) {
+    surfaces_ = std::make_unique<Surfaces>(scene_);
+    rounds_ = find_rounds(*surfaces_);
+    sheets_.clear();
+    drawings_.clear();
+    for (const NamedView direction : directions) {
+      FrameOptions options;
+      options.direction = direction;
+      options.orthographic = true;
+      drawings_.push_back(lines(*surfaces_, frame(*surfaces_, 2000, 2000, options)));
+      const View& view = drawings_.back().view;
+      SheetView& sheet = sheets_.emplace_back();
+      sheet.millimetres_per_pixel = (view.projection.right - view.projection.left) / view.width;
+      sheet.strokes =
+          strokes(*surfaces_, drawings_.back(), {.by_kind = false, .by_outline = false, .arc_tolerance = 0.1});
+      sheet.origin = {100, 50 + 250.0 * double(sheets_.size() - 1)};
+    }
+  }
+
+  [[nodiscard]] std::vector<DimensionedView> views() const {
+    std::vector<DimensionedView> all;
+    for (std::size_t i = 0; i < sheets_.size(); ++i) all.push_back({&sheets_[i], &drawings_[i], &rounds_});
+    return all;
+  }
+
+  [[nodiscard]] Dimensions dimensioned(const DimensionOptions& options = {}) const {
+    return dimensions(views(), {{0, 0}, {1000, 1000}}, {}, options);
+  }
+
+  Scene scene_;
+  std::unique_ptr<Surfaces> surfaces_;
+  Rounds rounds_;
+  std::vector<SheetView> sheets_;
+  std::vector<Drawing> drawings_;
+};
+
+/// Arrowheads are the closed paths among the lines.
+std::size_t arrows_of(const Dimensions& all) {
+  std::size_t count = 0;
+  if (!all.layer.groups.empty())
+    for (const PagePath& path : all.layer.groups[0].paths) count += path.is_closed;
+  return count;
+}
+
+TEST(DimensionText, HasNoTrailingZeros) {
+  EXPECT_EQ(dimension_text(50, 2), "50");
+  EXPECT_EQ(dimension_text(49.99997, 2), "50");
+  EXPECT_EQ(dimension_text(12.7, 2), "12.7");
+  EXPECT_EQ(dimension_text(33.3333333, 2), "33.33");
+  EXPECT_EQ(dimension_text(100.05, 2), "100.05");
+  EXPECT_EQ(dimension_text(0.266, 2), "0.266");
+  EXPECT_EQ(dimension_text(0.0123456, 2), "0.0123");
+  EXPECT_EQ(dimension_text(0, 2), "0");
+  // Two sides of one size are not 1.87 and 1.88.
+  EXPECT_EQ(dimension_text(1.8749999, 2), "1.875");
+  EXPECT_EQ(dimension_text(1.8750001, 2), "1.875");
+  EXPECT_EQ(dimension_text(1234.5678, 0), "1235");
+  EXPECT_EQ(dimension_text(0.9996, 2), "1");
+}
+
+TEST_F(DimensionsTest, ABoxHasThree) {
+  Mesh mesh;
+  add_box(mesh, {40, 30, 20});
+  scene_ = scene_of(mesh);
+  draw({NamedView::front, NamedView::top, NamedView::left});
+  const std::vector<OverallSizes> sizes = overall_sizes(views());
+  ASSERT_EQ(sizes.size(), 3u);
+  EXPECT_TRUE(sizes[0].width && sizes[0].height);
+  EXPECT_TRUE(!sizes[1].width && sizes[1].height);
+  EXPECT_TRUE(!sizes[2].width && !sizes[2].height);
+  const Dimensions all = dimensioned();
+  EXPECT_EQ(all.count, 3u);
+  EXPECT_EQ(all.left_out, 0u);
+  EXPECT_EQ(arrows_of(all), 6u);
+  // 40, 30 and 20 take two figures each.
+  PageGroup expected;
+  for (const char* const number : {"40", "30", "20"}) add_text(expected, number, {0, 0});
+  ASSERT_EQ(all.layer.groups.size(), 2u);
+  EXPECT_EQ(all.layer.groups[1].points.size(), expected.points.size());
+}
+
+TEST_F(DimensionsTest, StandTenMillimetresFromWhatTheyMeasure) {
+  Mesh mesh;
+  add_box(mesh, {40, 30, 20});
+  scene_ = scene_of(mesh);
+  draw({NamedView::front});
+  const DrawingBounds drawn = bounds(drawings_[0], true);
+  const glm::dvec2 low = sheets_[0].on_page(drawn.low), high = sheets_[0].on_page(drawn.high);
+  const Dimensions all = dimensioned();
+  const PageGroup& lines = all.layer.groups.at(0);
+  std::vector<std::array<double, 4>> straight;
+  for (const PagePath& path : lines.paths)
+    if (!path.is_closed)
+      straight.push_back({lines.points[path.first].x - low.x, lines.points[path.first].y - high.y,
+                          lines.points[path.first + 1].x - low.x, lines.points[path.first + 1].y - high.y});
+  const auto near = [](double a, double b, double c, double d) {
+    return ElementsAre(testing::DoubleNear(a, 1e-4), testing::DoubleNear(b, 1e-4), testing::DoubleNear(c, 1e-4),
+                       testing::DoubleNear(d, 1e-4));
+  };
+  // Extension lines from 1 mm below the corners to 2 mm beyond the dimension line, and that.
+  EXPECT_THAT(straight, testing::IsSupersetOf({near(0, 1, 0, 12), near(40, 1, 40, 12), near(0, 10, 40, 10)}));
+  EXPECT_THAT(straight, testing::Contains(near(-10, 0, -10, -30)));
+  EXPECT_GT(high.x - low.x, 39.9);
+}
+
+TEST_F(DimensionsTest, NumbersAreInTheUnitOfTheDrawing) {
+  Mesh mesh;
+  add_box(mesh, {25.4f, 50.8f, 2.54f});
+  scene_ = scene_of(mesh);
+  draw({NamedView::front});
+  PageGroup expected;
+  for (const char* const number : {"1", "2"}) add_text(expected, number, {0, 0});
+  const Dimensions all = dimensioned({.numbers_per_unit = 1 / 25.4, .decimals = 3});
+  EXPECT_EQ(all.layer.groups.at(1).points.size(), expected.points.size());
+}
+
+TEST_F(DimensionsTest, OfOneCylinderAreItsDiameterAndItsLength) {
+  Mesh mesh;
+  add_peg(mesh, {0, 0, 0}, 10, 50, 37);  // no corner lies where it is widest
+  scene_ = scene_of(mesh);
+  draw({NamedView::front, NamedView::top, NamedView::left});
+  const Dimensions all = dimensioned();
+  EXPECT_EQ(all.count, 2u);
+  PageGroup expected;
+  for (const char* const number : {"\u230020", "50"}) add_text(expected, number, {0, 0});
+  EXPECT_EQ(all.layer.groups.at(1).points.size(), expected.points.size());
+}
+
+TEST_F(DimensionsTest, DiametersOfOneSizeAreOne) {
+  Mesh mesh;
+  add_box(mesh, {100, 60, 10});
+  for (int i = 0; i < 4; ++i) add_peg(mesh, {20 + 20 * i, 30, 10}, 6, 8);
+  add_peg(mesh, {10, 10, 10}, 3, 5);
+  scene_ = scene_of(mesh);
+  draw({NamedView::front, NamedView::top});
+  const Dimensions all = dimensioned();
+  EXPECT_EQ(all.count, 3u + 2u);
+  EXPECT_EQ(arrows_of(all), 6u + 2u);
+  PageGroup expected;
+  for (const char* const number : {"100", "60", "18", "4\u00d7\u230012", "\u23006"}) add_text(expected, number, {0, 0});
+  EXPECT_EQ(all.layer.groups.at(1).points.size(), expected.points.size());
+}
+
+TEST_F(DimensionsTest, NothingLiesOnANumber) {
+  Mesh mesh;
+  add_box(mesh, {100, 60, 10});
+  for (int i = 0; i < 12; ++i) add_peg(mesh, {8 + 7.5 * i, 10 + 37 * (i % 2), 10}, 1 + 0.2f * float(i), 8);
+  scene_ = scene_of(mesh);
+  draw({NamedView::front, NamedView::top});
+  const Dimensions all = dimensioned();
+  EXPECT_GE(all.count, 10u);
+  detail::Obstacles obstacles({{0, 0}, {1000, 1000}});
+  for (const SheetView& sheet : sheets_) obstacles.add(sheet);
+  const PageGroup &drawn = all.layer.groups.at(0), &texts = all.layer.groups.at(1);
+  for (const PagePath& path : drawn.paths)
+    if (!path.is_closed) obstacles.add(detail::PageSegment{drawn.points[path.first], drawn.points[path.first + 1]});
+  for (const PagePath& path : texts.paths)
+    for (std::uint32_t i = path.first; i < path.first + path.count; ++i)
+      EXPECT_TRUE(obstacles.is_free({texts.points[i] - 0.3, texts.points[i] + 0.3})) << i;
+}
+
+TEST_F(DimensionsTest, KeepOffWhatIsTaken) {
+  Mesh mesh;
+  add_box(mesh, {100, 60, 10});
+  add_peg(mesh, {50, 30, 10}, 6, 8);
+  scene_ = scene_of(mesh);
+  draw({NamedView::front});
+  EXPECT_EQ(dimensioned().count, 3u);
+  const PageBox all_of_it{{0, 0}, {1000, 1000}};
+  const Dimensions none = dimensions(views(), all_of_it, std::span(&all_of_it, 1));
+  EXPECT_EQ(none.count, 2u);
+  EXPECT_EQ(none.left_out, 1u);
+}
+
+TEST_F(DimensionsTest, OfNothingAreNone) {
+  scene_ = scene_of({});
+  draw({NamedView::front});
+  const Dimensions all = dimensioned();
+  EXPECT_EQ(all.count, 0u);
+  EXPECT_THAT(all.layer.groups, IsEmpty());
+}
+
+TEST_F(DimensionsTest, BadOptionsAreRefused) {
+  Mesh mesh;
+  add_box(mesh, {1, 1, 1});
+  scene_ = scene_of(mesh);
+  draw({NamedView::front});
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double unit : {0.0, -1.0, infinity, std::nan("")})
+    EXPECT_THROW(static_cast<void>(dimensioned({.numbers_per_unit = unit})), Error);
+  EXPECT_THROW(static_cast<void>(dimensioned({.decimals = -1})), Error);
+  EXPECT_THROW(static_cast<void>(dimensioned({.decimals = 7})), Error);
+  EXPECT_THROW(static_cast<void>(dimensioned({.text_height = 0})), Error);
+}
+
+}  // namespace
+}  // namespace frontmost::test

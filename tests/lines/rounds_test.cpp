@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+// Circles and cylinders of known sizes are found in their triangles, nothing else is, and their centre lines are where
+// a drafter draws them.
+#include "frontmost/rounds.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "frontmost/io.h"
+#include "support/models.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// A tube about z, with sides of the same angle; a lid on either end where it is whole and `has_lids`.
+struct Tube {
+  double radius = 5, low = 0, high = 20;
+  int sides = 24;
+  double turn = 2 * pi;
+  double ratio = 1;  ///< of its y to its x: above or below 1 an ellipse
+  bool has_lids = true;
+  double top_radius = 0;  ///< 0: as below
+};
+
+void add_tube(Mesh& mesh, const Tube& tube, const glm::dmat4& place = glm::dmat4(1), bool is_hollow = false) {
+  const auto corner = [&](int k, bool is_high) {
+    const double angle = tube.turn * k / tube.sides + 0.1;
+    const double radius = is_high && tube.top_radius > 0 ? tube.top_radius : tube.radius;
+    const double z = is_high ? tube.high : tube.low;
+    const glm::dvec4 at(radius * std::cos(angle), tube.ratio * radius * std::sin(angle), z, 1);
+    return glm::vec3(glm::dvec3(place * at));
+  };
+  const auto add = [&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+    is_hollow ? add_triangle(mesh, a, c, b) : add_triangle(mesh, a, b, c);
+  };
+  const bool is_whole = tube.turn > 6.28;
+  const glm::vec3 foot(glm::dvec3(place * glm::dvec4(0, 0, tube.low, 1)));
+  const glm::vec3 head(glm::dvec3(place * glm::dvec4(0, 0, tube.high, 1)));
+  for (int i = 0; i < tube.sides; ++i) {
+    const int k = is_whole ? (i + 1) % tube.sides : i + 1;
+    add(corner(i, false), corner(k, false), corner(k, true));
+    add(corner(i, false), corner(k, true), corner(i, true));
+    if (!is_whole || !tube.has_lids) continue;
+    add(corner(k, false), corner(i, false), foot);
+    add(corner(i, true), corner(k, true), head);
+  }
+}
+
+Rounds rounds_of(const Scene& scene, const Execution& execution = {}) {
+  return find_rounds(Surfaces(scene), execution);
+}
+Rounds rounds_of(const Tube& tube, const glm::dmat4& place = glm::dmat4(1), bool is_hollow = false) {
+  Mesh mesh;
+  add_tube(mesh, tube, place, is_hollow);
+  return rounds_of(scene_of(mesh));
+}
+
+std::vector<Round> of_kind(const Rounds& all, RoundKind kind) {
+  std::vector<Round> found;
+  for (const Round& round : all.rounds)
+    if (round.kind == kind) found.push_back(round);
+  return found;
+}
+
+/// Turned and moved to no place in particular.
+glm::dmat4 anywhere() {
+  const glm::dvec3 x = glm::normalize(glm::dvec3(3, 1, -2)), z = glm::normalize(glm::cross(x, glm::dvec3(1, 4, 2)));
+  return {glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0), glm::dvec4(z, 0), glm::dvec4(40, -25, 13, 1)};
+}
+
+TEST(Rounds, ACylinderIsOneWallBetweenTwoCircles) {
+  for (const int sides : {18, 24, 60, 500}) {
+    const glm::dmat4 place = anywhere();
+    const Rounds all = rounds_of({.sides = sides}, place);
+    const std::vector<Round> walls = of_kind(all, RoundKind::cylinder), circles = of_kind(all, RoundKind::circle);
+    ASSERT_EQ(walls.size(), 1u) << sides;
+    ASSERT_EQ(circles.size(), 2u) << sides;
+    for (const Round& round : all.rounds) {
+      EXPECT_NEAR(round.radius, 5, 2e-5) << sides;
+      EXPECT_NEAR(std::abs(glm::dot(round.axis, glm::dvec3(place[2]))), 1, 1e-9) << sides;
+      EXPECT_NEAR(round.turn, 2 * pi, 1e-6) << sides;
+    }
+    const glm::dvec3 foot(place * glm::dvec4(0, 0, 0, 1)), head(place * glm::dvec4(0, 0, 20, 1));
+    const Round& wall = walls[0];
+    EXPECT_NEAR(std::min(glm::distance(wall.from, foot), glm::distance(wall.to, foot)), 0, 3e-5) << sides;
+    EXPECT_NEAR(std::min(glm::distance(wall.from, head), glm::distance(wall.to, head)), 0, 3e-5) << sides;
+    EXPECT_FALSE(wall.is_hollow);
+    EXPECT_EQ(wall.count, 2u * std::uint32_t(sides));
+    EXPECT_EQ(circles[0].count, 2u * std::uint32_t(sides));
+  }
+}
+
+TEST(Rounds, ABoreIsHollow) {
+  const std::vector<Round> walls = of_kind(rounds_of(Tube{}, anywhere(), true), RoundKind::cylinder);
+  ASSERT_EQ(walls.size(), 1u);
+  EXPECT_TRUE(walls[0].is_hollow);
+}
+
+TEST(Rounds, AnOpenTubeHasItsRims) {
+  const Rounds all = rounds_of({.has_lids = false});
+  EXPECT_EQ(of_kind(all, RoundKind::cylinder).size(), 1u);
+  EXPECT_EQ(of_kind(all, RoundKind::circle).size(), 2u);
+}
+
+TEST(Rounds, NutsAndPolygonsAreNotRound) {
+  for (const int sides : {3, 4, 6, 8, 12, 17}) EXPECT_TRUE(rounds_of({.sides = sides}).rounds.empty()) << sides;
+}
+
+TEST(Rounds, EllipsesAreNotRound) {
+  for (const double ratio : {0.5, 0.9, 1.03})
+    EXPECT_TRUE(rounds_of({.sides = 60, .ratio = ratio}, anywhere()).rounds.empty()) << ratio;
+}
+
+TEST(Rounds, AConeHasItsCircles) {
+  const Rounds all = rounds_of({.sides = 48, .top_radius = 2}, anywhere());
+  const std::vector<Round> circles = of_kind(all, RoundKind::circle);
+  ASSERT_EQ(circles.size(), 2u);
+  EXPECT_NEAR(circles[0].radius + circles[1].radius, 7, 1e-4);
+  EXPECT_TRUE(of_kind(all, RoundKind::cylinder).empty());
+}
+
+TEST(Rounds, HalvesCountAndFilletsDoNot) {
+  const std::vector<Round> half = of_kind(rounds_of({.sides = 18, .turn = pi}), RoundKind::cylinder);
+  ASSERT_EQ(half.size(), 1u);
+  EXPECT_NEAR(half[0].turn, pi, 1e-6);
+  EXPECT_TRUE(rounds_of({.sides = 18, .turn = pi / 2}).rounds.empty());
+}
+
+TEST(Rounds, SpheresAndKnotsHaveNone) {
+  for (const char* const name : {"spheres", "gallery"}) {
+    const Rounds all = rounds_of(builtin(name));
+    for (const Round& round : of_kind(all, RoundKind::cylinder)) EXPECT_GT(round.turn, 6.28) << name;
+  }
+  EXPECT_TRUE(rounds_of(builtin("cubes")).rounds.empty());
+}
+
+/// Whatever is random is not round, and nothing crashes.
+TEST(Rounds, RandomTrianglesHaveNone) {
+  for (const Kind kind : all_kinds)
+    for (const std::uint64_t seed : {1u, 2u, 3u})
+      EXPECT_TRUE(of_kind(rounds_of(scene_of(random_mesh(kind, 300, seed))), RoundKind::cylinder).empty()) << int(kind);
+}
+
+TEST(Rounds, AreTheSameForAllThreads) {
+  Mesh mesh;
+  Random random(7);
+  for (int i = 0; i < 200; ++i) {
+    glm::dmat4 place = anywhere();
+    place[3] += glm::dvec4(glm::dvec3(random.point(500)), 0);
+    add_tube(mesh, {.radius = 1.0 + i % 7, .sides = 18 + i}, place, i % 2 == 0);
+  }
+  const Scene scene = scene_of(mesh);
+  const Rounds one = rounds_of(scene, {.threads = 1}), four = rounds_of(scene, {.threads = 4});
+  EXPECT_EQ(of_kind(one, RoundKind::cylinder).size(), 200u);
+  EXPECT_EQ(of_kind(one, RoundKind::circle).size(), 400u);
+  ASSERT_EQ(one.rounds.size(), four.rounds.size());
+  for (std::size_t i = 0; i < one.rounds.size(); ++i) {
+    EXPECT_EQ(one.rounds[i].from, four.rounds[i].from);
+    EXPECT_EQ(one.rounds[i].axis, four.rounds[i].axis);
+    EXPECT_EQ(one.rounds[i].radius, four.rounds[i].radius);
+  }
+  EXPECT_EQ(one.triangles, four.triangles);
+}
+
+std::size_t count_of(const Rounds& all, RoundKind kind, double radius) {
+  const std::vector<Round> found = of_kind(all, kind);
+  return std::size_t(std::count_if(found.begin(), found.end(),
+                                   [&](const Round& r) { return std::abs(r.radius - radius) < 1e-4 * radius; }));
+}
+
+TEST(Rounds, OfPartsAreKnown) {
+  FRONTMOST_NEEDS_MODELS();
+  const Rounds as1 = rounds_of(load(model("cad/as1.stl")));
+  // The rod, six bolts and their bores in nuts, brackets and plate, and the rod's in two nuts and two brackets.
+  EXPECT_EQ(count_of(as1, RoundKind::cylinder, 5), 1u + 6 + 3 * 6 + 2 * 2);
+  EXPECT_EQ(count_of(as1, RoundKind::cylinder, 7.5), 6u);  // heads
+  EXPECT_EQ(of_kind(as1, RoundKind::cylinder).size(), 29u + 6);
+  const Rounds crank = rounds_of(load(model("cad/crank-arm.stl")));
+  for (const double radius : {6.0, 10.2, 11.0}) EXPECT_EQ(count_of(crank, RoundKind::cylinder, radius), 1u) << radius;
+  const Rounds tubes = rounds_of(load(model("cad/two-cylinders.stl")));
+  EXPECT_EQ(count_of(tubes, RoundKind::cylinder, 10), 1u);
+  EXPECT_EQ(count_of(tubes, RoundKind::cylinder, 8), 1u);
+  const Rounds block = rounds_of(load(model("cad/featuretype.stl")));
+  EXPECT_EQ(count_of(block, RoundKind::cylinder, 0.133), 8u);
+  // Counterbores, of which the file has one in two halves that share no corners.
+  EXPECT_EQ(count_of(block, RoundKind::cylinder, 0.21875), 9u);
+}
+
+TEST(Rounds, OfScansAreNone) {
+  FRONTMOST_NEEDS_MODELS();
+  for (const char* const name : {"organic/stanford-bunny.obj", "organic/armadillo-86k.obj", "cad/fandisk.obj"})
+    EXPECT_TRUE(rounds_of(load(model(name))).rounds.empty()) << name;
+}
+
+/// A drawing at ten pixels to the unit, whose centre lines reach three units beyond.
+class CentreLines : public testing::Test {
+ protected:
+  static constexpr double pixels = 10;
+
+  void draw(NamedView direction, const CentreLineOptions& options = {}) {
+    const Scene scene = scene_of(mesh_);
+    const Surfaces surfaces(scene);
+    FrameOptions frame_options;
+    frame_options.direction = direction;
+    frame_options.orthographic = true;
+    View view = frame(surfaces, 1000, 1000, frame_options);
+    view.projection.left = view.projection.bottom = -50;
+    view.projection.right = view.projection.top = 50;
+    const Drawing drawing = lines(surfaces, view);
+    lines_ = centre_lines(find_rounds(surfaces), drawing,
+                          strokes(surfaces, drawing, {.by_kind = false, .by_outline = false, .arc_tolerance = 0.1}),
+                          options);
+  }
+
+  /// Length of the only line in a direction, in units; 0 without one.
+  [[nodiscard]] double length(bool is_level) const {
+    double length = 0;
+    for (const CentreLine& line : lines_) {
+      const glm::dvec2 along = glm::abs(line.to - line.from) / pixels;
+      if ((along.x > along.y) != is_level) continue;
+      EXPECT_EQ(length, 0) << "more than one line";
+      EXPECT_NEAR(is_level ? along.y : along.x, 0, 1e-6);
+      length = is_level ? along.x : along.y;
+    }
+    return length;
+  }
+
+  Mesh mesh_;
+  std::vector<CentreLine> lines_;
+};
+
+// Without any up axis a mesh is y-up: its tubes, along z, are seen along their axes from the front.
+TEST_F(CentreLines, AreACrossOverWhatIsSeenAlongItsAxis) {
+  add_tube(mesh_, {});
+  draw(NamedView::front);
+  ASSERT_EQ(lines_.size(), 2u);
+  EXPECT_NEAR(length(true), 2 * (5 + 3), 1e-4);
+  EXPECT_NEAR(length(false), 2 * (5 + 3), 1e-4);
+}
+
+TEST_F(CentreLines, AreTheAxisOfWhatIsSeenFromTheSide) {
+  add_tube(mesh_, {});
+  draw(NamedView::top);
+  ASSERT_EQ(lines_.size(), 1u);
+  EXPECT_NEAR(length(false), 20 + 2 * 3, 1e-4);
+  draw(NamedView::left);
+  ASSERT_EQ(lines_.size(), 1u);
+  EXPECT_NEAR(length(true), 20 + 2 * 3, 1e-4);
+}
+
+TEST_F(CentreLines, OfSmallCirclesReachLessBeyond) {
+  add_tube(mesh_, {.radius = 2});
+  draw(NamedView::front);
+  EXPECT_NEAR(length(true), 2 * (2 + 2), 1e-4);
+}
+
+TEST_F(CentreLines, AreOneCrossForAllAboutOneAxis) {
+  add_tube(mesh_, {});
+  add_tube(mesh_, {.radius = 8, .low = -20, .high = 0, .sides = 50});
+  draw(NamedView::front);
+  ASSERT_EQ(lines_.size(), 2u);
+  EXPECT_NEAR(length(true), 2 * (8 + 3), 1e-4);
+  draw(NamedView::top);
+  ASSERT_EQ(lines_.size(), 1u);
+  EXPECT_NEAR(length(false), 40 + 2 * 3, 1e-4);
+}
+
+TEST_F(CentreLines, OfWhatIsHiddenGoWithIt) {
+  add_tube(mesh_, {});
+  // A plate before it.
+  for (const float z : {30.0f}) {
+    add_triangle(mesh_, {-20, -20, z}, {20, -20, z}, {20, 20, z});
+    add_triangle(mesh_, {-20, -20, z}, {20, 20, z}, {-20, 20, z});
+  }
+  draw(NamedView::front);
+  EXPECT_EQ(lines_.size(), 2u);
+  draw(NamedView::front, {.with_hidden = false});
+  EXPECT_TRUE(lines_.empty());
+  draw(NamedView::back, {.with_hidden = false});
+  EXPECT_EQ(lines_.size(), 2u);
+}
+
+TEST_F(CentreLines, AreNotDrawnAtAnAngle) {
+  add_tube(mesh_, {});
+  draw(NamedView::iso);
+  EXPECT_TRUE(lines_.empty());
+}
+
+TEST_F(CentreLines, RefuseAnOvershootThatIsNone) {
+  add_tube(mesh_, {});
+  for (const double overshoot : {0.0, -1.0, 1e7, std::nan("")})
+    EXPECT_THROW(draw(NamedView::front, {.overshoot = overshoot}), Error) << overshoot;
+}
+
+}  // namespace
+}  // namespace frontmost::test
