@@ -101,11 +101,11 @@ struct PaintOrder {
                                        const Execution& execution = {});
 
 /// The same order with hems: a polygon reaches under what is painted later and lies beside it, by `width` pixels or
-/// some part of it, wherever that, or another part of the same primitive, hides the hem. So viewers that blend the rims
-/// of polygons show no hairlines of the background between neighbours, and no outline grows. Where a side lies beside
-/// several polygons, it may have hems along parts of it, which begin and end at corners of those. For drawings: with a
-/// hem an outline is not convex, and paint() does not know it. Cost and `hides` as for visible_parts(). \throws Error
-/// bad_argument for a width of 0 or less, or over 100.
+/// less, as far as that, or other parts of the same primitive, hide the hem, and around its corners likewise. So
+/// viewers that blend the rims of polygons show nothing of the background between neighbours and where several meet:
+/// what is painted first in a pixel covers all of it. Hems end a pixel below what is open, or half of the way to it, so
+/// that outlines hardly grow bold. For drawings: with a hem an outline is not convex, and paint() does not know it.
+/// Cost and `hides` as for visible_parts(). \throws Error bad_argument for a width of 0 or less, or over 100.
 [[nodiscard]] PaintOrder with_hems(const PaintOrder& order, double width,
                                    const std::function<bool(PrimitiveId)>& hides = {}, const Execution& execution = {});
 

@@ -19,9 +19,6 @@ constexpr std::size_t kMostParts = 48;
 /// each leave a sliver of the next takes n * n.
 constexpr std::size_t kMostCovers = 4096;
 
-/// Along a side, for what ends beside it.
-constexpr int kMostCells = 256;
-
 Extent box_of(Outline outline) {
   Extent box{glm::vec2(outline[0].at), glm::vec2(outline[0].at), 0, 0};
   for (const PaintCorner& corner : outline) {
@@ -97,43 +94,24 @@ Spreader::Found Looker::spread(std::size_t slot, Outline outline, std::uint32_t 
   // It may have been found for what lies next to it.
   if (!is_within(scenery_.outline(hider), at, 0)) return Spreader::Found::unknown;
   spreader_.set(outline);
-  for (const glm::dvec2& open : open_)
-    if (spreader_.holds(open)) return Spreader::Found::open;
-  const Spreader::Found found = spreader_.spread(hider, Hiders{*this, slot});
-  if (found == Spreader::Found::open) open_.push_back(spreader_.open_at());
-  return found;
+  return spreader_.spread(hider, Hiders{*this, slot});
 }
 
-void Looker::ends_along(std::size_t slot, std::size_t side, std::vector<double>& ends) {
-  ends.clear();
-  if (mosaic_.across(scenery_.first_corner(slot) + side) != no_index) return;
-  const Outline outline = scenery_.outline(slot);
-  const glm::dvec2 from(outline[side].at), to(outline[side + 1 == outline.size() ? 0 : side + 1].at), way = to - from;
-  const double length = glm::length(way), margin = OutlineCutter::thin / length;
-  const PieceGrid::Range cells =
-      scenery_.grid().range({glm::vec2(glm::min(from, to)), glm::vec2(glm::max(from, to)), 0, 0});
-  if (!(length > OutlineCutter::thin) || cells.last_x - cells.first_x + cells.last_y - cells.first_y > kMostCells)
-    return;
-  const std::uint32_t first_place = scenery_.first_place(slot);
-  const auto add_corners = [&](std::uint32_t other) {
-    for (const PaintCorner& corner : scenery_.outline(other)) {
-      const glm::dvec2 p = glm::dvec2(corner.at) - from;
-      const double along = glm::dot(p, way) / (length * length);
-      if (along > margin && along < 1 - margin && std::abs(way.x * p.y - way.y * p.x) < OutlineCutter::thin * length)
-        ends.push_back(along);
-    }
-  };
-  for (int y = cells.first_y; y <= cells.last_y; ++y)
-    for (int x = cells.first_x; x <= cells.last_x; ++x) {
-      const std::span<const std::uint32_t> cell = scenery_.cell(x, y);
-      for (std::size_t i = cell.size(); i-- > 0 && scenery_.place(cell[i]) >= first_place;) {
-        poll_.count();
-        if (cell[i] != slot && may_hide(slot, cell[i])) add_corners(cell[i]);
-      }
-    }
-  std::sort(ends.begin(), ends.end());
-  const auto is_same = [&](double a, double b) { return b - a < margin; };
-  ends.erase(std::unique(ends.begin(), ends.end(), is_same), ends.end());
+bool Looker::is_hidden(std::size_t slot, std::size_t side, const glm::dvec2& at, Outline outline) {
+  const std::uint32_t hider = hider_beside(slot, side, at);
+  return hider != no_index && spread(slot, outline, hider, at) == Spreader::Found::hidden;
+}
+
+bool Looker::is_open_beside(std::size_t slot, std::size_t side) const {
+  const std::uint32_t across = mosaic_.across(scenery_.first_corner(slot) + side);
+  return across != no_index && (scenery_.place(across) < scenery_.first_place(slot) || !may_hide(slot, across));
+}
+
+const OutlineCutter& Looker::open_parts(std::size_t slot, Outline outline) {
+  cutter_.begin(outline);
+  const Extent box = box_of(outline);
+  take_covers(slot, scenery_.first_place(slot), box, scenery_.grid().range(box));
+  return cutter_;
 }
 
 /// Most are not, and their middles tell.
@@ -146,12 +124,11 @@ bool Looker::is_all_hidden(std::size_t slot) {
   for (const PaintCorner& corner : outline) middle += glm::dvec2(corner.at) / double(outline.size());
   const std::uint32_t hider = hider_at(slot, middle);
   if (hider == no_index) return false;
-  open_.clear();
   const Spreader::Found found = spread(slot, outline, hider, middle);
   if (found != Spreader::Found::unknown) return found == Spreader::Found::hidden;
   const Extent& extent = scenery_.extent(slot);
   const PieceGrid::Range cells = scenery_.grid().range(extent);
-  return is_few(cells) && take_covers(slot, extent, cells);
+  return is_few(cells) && take_covers(slot, scenery_.place(slot) + 1, extent, cells);
 }
 
 const OutlineList& Looker::look(std::size_t slot) {
@@ -198,7 +175,7 @@ Looker::Corners Looker::part_within(const Corners& outline, const glm::dvec2& lo
 bool Looker::is_all_seen_at_once(std::size_t slot, const Extent& own, const PieceGrid::Range& cells) {
   cutter_.forget_changes();
   const Corners whole(cutter_[0].begin(), cutter_[0].end());
-  take_covers(slot, own, cells);
+  take_covers(slot, scenery_.place(slot) + 1, own, cells);
   if (!cutter_.is_changed()) return true;
   for (std::size_t i = 0; i < cutter_.count(); ++i)
     if (is_narrower(cutter_[i], kNarrowest)) {
@@ -215,7 +192,8 @@ bool Looker::is_first_meeting(const PieceGrid::Range& cells, const Extent& cover
   return x == std::max(cells.first_x, other.first_x) && y == std::max(cells.first_y, other.first_y);
 }
 
-bool Looker::take_covers(std::size_t slot, const Extent& own, const PieceGrid::Range& cells) {
+bool Looker::take_covers(std::size_t slot, std::uint32_t first_place, const Extent& own,
+                         const PieceGrid::Range& cells) {
   const bool is_one_cell = cells.first_x == cells.last_x && cells.first_y == cells.last_y;
   for (int y = cells.first_y; y <= cells.last_y; ++y)
     for (int x = cells.first_x; x <= cells.last_x; ++x) {
@@ -223,7 +201,8 @@ bool Looker::take_covers(std::size_t slot, const Extent& own, const PieceGrid::R
       std::size_t count = 0;
       for (std::size_t i = cell.size(); i-- > 0 && count < kMostCovers;) {
         const std::uint32_t other = cell[i];
-        if (scenery_.place(other) <= scenery_.place(slot)) break;
+        if (scenery_.place(other) < first_place) break;
+        if (other == slot) continue;
         poll_.count();
         const Extent& e = scenery_.extent(other);
         if (is_apart(e, own) || (!is_one_cell && !is_first_meeting(cells, e, x, y))) continue;

@@ -26,23 +26,16 @@ class Looker {
   /// Whether those after the polygon in a slot hide all of it, as far as that is quickly told.
   [[nodiscard]] bool is_all_hidden(std::size_t slot);
 
-  /// The first of `count` convex outlines beside a side of the polygon in a slot that others hide together; count:
-  /// none. They are after the polygon, or parts of the same primitive, also before it: these show nothing else than it
-  /// does. All outlines are around a point; outline_of(k) gives one of them.
-  template <class OutlineOf>
-  [[nodiscard]] std::size_t first_hidden(std::size_t slot, std::size_t side, std::size_t count, const glm::dvec2& at,
-                                         const OutlineOf& outline_of) {
-    const std::uint32_t hider = hider_beside(slot, side, at);
-    if (hider == no_index) return count;
-    open_.clear();
-    for (std::size_t k = 0; k < count; ++k)
-      if (spread(slot, outline_of(k), hider, at) == Spreader::Found::hidden) return k;
-    return count;
-  }
+  /// Whether others hide a convex outline beside a side of the polygon in a slot, around a point, together, as far as
+  /// that is quickly told. They are after the polygon, or parts of the same primitive, also before it: these show
+  /// nothing else than it does.
+  [[nodiscard]] bool is_hidden(std::size_t slot, std::size_t side, const glm::dvec2& at, Outline outline);
 
-  /// Sets `ends` to where along a side of the polygon in a slot, from 0 to 1, others that are after it have corners on
-  /// it; to nothing where the side is also another's, or is long beside many.
-  void ends_along(std::size_t slot, std::size_t side, std::vector<double>& ends);
+  /// Whether a side is that of one other polygon which hides nothing of what lies beyond it: then it has no hem.
+  [[nodiscard]] bool is_open_beside(std::size_t slot, std::size_t side) const;
+
+  /// What of an outline beside the polygon in a slot is not hidden as for is_hidden(), until the next call.
+  [[nodiscard]] const OutlineCutter& open_parts(std::size_t slot, Outline outline);
 
   /// The parts of the polygon in a slot that are seen, until the next call.
   [[nodiscard]] const OutlineList& look(std::size_t slot);
@@ -61,10 +54,10 @@ class Looker {
   [[nodiscard]] std::uint32_t hider_at(std::size_t slot, const glm::dvec2& at);
   /// The same, mostly across a side.
   [[nodiscard]] std::uint32_t hider_beside(std::size_t slot, std::size_t side, const glm::dvec2& at);
-  /// Whether an outline is hidden, by `hider` at a point. Places in open_ are not; adds one where it finds one.
+  /// Whether an outline is hidden, by `hider` at a point.
   Spreader::Found spread(std::size_t slot, Outline outline, std::uint32_t hider, const glm::dvec2& at);
-  /// Takes what is covered from what is in the cutter. \returns true when nothing is left.
-  bool take_covers(std::size_t slot, const Extent& own, const PieceGrid::Range& cells);
+  /// Takes what those from a place on cover from what is in the cutter. \returns true when nothing is left.
+  bool take_covers(std::size_t slot, std::uint32_t first_place, const Extent& own, const PieceGrid::Range& cells);
   [[nodiscard]] bool may_hide(std::size_t slot, std::size_t cover) const {
     return scenery_.hides(cover) && (!is_behind_ || is_behind_(scenery_.place(slot), scenery_.place(cover)));
   }
@@ -75,7 +68,6 @@ class Looker {
   Poll poll_;
   const IsBehind is_behind_;
   Spreader spreader_;
-  std::vector<glm::dvec2> open_;
   OutlineCutter cutter_;
   OutlineList seen_;
 };

@@ -74,7 +74,7 @@ OutlineCutter::Place OutlineCutter::place(Outline outline, const glm::dvec2& p, 
 bool OutlineCutter::parts(Outline a, Outline b) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     const glm::dvec2 p(a[i].at), way = glm::dvec2(a[next(i, a.size())].at) - p;
-    bool is_beyond = way != glm::dvec2(0);
+    bool is_beyond = glm::dot(way, way) > thin * thin;  // cuts leave a corner twice: nothing is told by such a side
     for (std::size_t k = 0; is_beyond && k < b.size(); ++k) is_beyond = turn(way, glm::dvec2(b[k].at) - p) >= 0;
     if (is_beyond) return true;
   }

@@ -13,6 +13,7 @@ Rasterisers that are not installed are skipped, and counted.
 """
 import base64
 import json
+import math
 import pathlib
 import shutil
 import struct
@@ -60,6 +61,7 @@ CASES = {
     "a teapot of glass": Case(["builtin:teapot", *FLAT, "--opacity", "0.4"], 0, 0.006, browser=0.006),
     "leaves": Case(["leaves.gltf", *FLAT]),
 }
+LET_THROUGH = 5  # steps of 8 bits, 2 %: what viewers may show of the background within a plate
 SVG = "{http://www.w3.org/2000/svg}"
 
 
@@ -107,6 +109,55 @@ def write_leaves(path):
                       {"alphaMode": "MASK", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 3, "material": 0},
                                    {"attributes": {"POSITION": 1, "TEXCOORD_0": 2}, "indices": 3, "material": 1}]}]}))
+
+
+def write_plate(path, columns, rows, corners, radius=0.36):
+    """A plate drilled all over, its triangles around each hole: pixels in which many of them meet."""
+    places, faces, numbers = [], [], {}
+
+    def number(at):
+        return numbers.setdefault(at, len(numbers) + 1)
+    for i in range(columns):
+        for j in range(rows):
+            ring = [(i + 0.5 + radius * math.cos(a), j + 0.5 + radius * math.sin(a))
+                    for a in (2 * math.pi * (k + 0.3) / corners for k in range(corners))]
+            square = [(i + 1, j + 1), (i, j + 1), (i, j), (i + 1, j)]
+            quarters = [int(4 * ((k + 0.8) / corners % 1)) for k in range(corners)]
+            for k in range(corners):
+                after, quarter, next_quarter = (k + 1) % corners, quarters[k], quarters[(k + 1) % corners]
+                faces.append((square[quarter], ring[after], ring[k]))
+                if next_quarter != quarter:
+                    faces.append((square[quarter], square[next_quarter], ring[after]))
+    faces = [[number(at) for at in face] for face in faces]
+    places = "".join(f"v {x - columns / 2:.7g} {y - rows / 2:.7g} 0\n" for x, y in numbers)
+    path.write_text(places + "".join("f {} {} {}\n".format(*face) for face in faces))
+
+
+def check_plate(program, folder, corners, more):
+    """Away from rims nothing of the background is let through: it makes no difference whether it is black or white."""
+    write_plate(folder / "plate.obj", 7, 5, corners)
+    words = [folder / "plate.obj", "--color-tolerance", 255, "--quiet", *more]
+    pictures = {}
+    for color in ("black", "white"):
+        run(program, "render", *words, "--resolution", f"{WIDTH},{HEIGHT}", "--background", color, "-o",
+            folder / "a.svg", "-o", folder / "a.pdf")
+        pictures[color] = {scale: rasters_of(folder, scale, False) for scale in (0.5, 1, 2)}
+    for scale, found in pictures["black"].items():
+        width, height = int(scale * WIDTH), int(scale * HEIGHT)
+        run(program, "render", *words, "--resolution", f"{4 * width},{4 * height}", "--ids",
+            f"primitive={folder}/ids.npy")
+        ids = read_ids(folder / "ids.npy", 4 * width, 4 * height)
+        covered = [[all(0xFFFFFFFF not in row[4 * x - 4 : 4 * x + 8] for row in ids[4 * y - 4 : 4 * y + 8])
+                    for x in range(1, width - 1)] for y in range(1, height - 1)]
+        inner = [(x + 1, y + 1) for y, row in enumerate(covered) for x, is_inner in enumerate(row) if is_inner]
+        assert len(inner) > 100 * scale, f"{len(inner)} pixels are within the plate"
+        for viewer, black in found.items():
+            let_through = differing(black, pictures["white"][scale][viewer], inner, LET_THROUGH)
+            told = (f"a plate with holes of {corners} corners at {scale:.0%}: {viewer}: {len(let_through)} of "
+                    f"{len(inner)} pixels let the background through")
+            print(told)
+            assert not let_through, (told, let_through[:5])
+    return len(pictures["black"][1]) * 3, 6 - len(pictures["black"][1]) * 3
 
 
 def check_xml(path):
@@ -247,7 +298,9 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         for name, case in CASES.items():
             counts += check_case(program, name, case, pathlib.Path(folder))
-    print(f"{len(CASES)} figures, {sum(c[0] for c in counts)} rasterised, {sum(c[1] for c in counts)} skipped for want "
+        counts += [check_plate(program, pathlib.Path(folder), 12, []),
+                   check_plate(program, pathlib.Path(folder), 24, ["--camera-orthographic", "--camera-azimuth-angle", 20])]
+    print(f"{len(CASES) + 2} figures, {sum(c[0] for c in counts)} rasterised, {sum(c[1] for c in counts)} skipped for want "
           "of a rasteriser")
 
 

@@ -228,11 +228,69 @@ TEST(VisibleParts, HemsReachUnderWhatHidesThem) {
   EXPECT_EQ(hemmed.polygons[0].corner_count, 5u);
   EXPECT_EQ(hemmed.polygons[1].corner_count, 3u);
   const double diagonal = 32 * std::sqrt(2.0);
-  EXPECT_NEAR(area_of(hemmed, 0), 512 + 0.5 * (diagonal - 1), 1e-9);
+  EXPECT_NEAR(area_of(hemmed, 0), 512 + 0.5 * (diagonal - 1.25), 1e-9);
   EXPECT_NEAR(area_of(hemmed, 1), 512, 1e-9);
   // Under glass it would show.
   EXPECT_EQ(with_hems(order, 0.5, [](PrimitiveId) { return false; }).polygons[0].corner_count, 3u);
   EXPECT_THROW((void)with_hems(order, 0), Error);
+}
+
+/// By counting the sides to the right of a point: hems make outlines that are not convex.
+bool holds(const PaintOrder& order, const PaintPolygon& polygon, const glm::dvec2& at) {
+  bool is_inside = false;
+  for (std::size_t i = 0; i < polygon.corner_count; ++i) {
+    const glm::dvec2 a(order.corners[polygon.first_corner + i].at),
+        b(order.corners[polygon.first_corner + (i + 1) % polygon.corner_count].at);
+    if ((a.y <= at.y) != (b.y <= at.y) && at.x < a.x + (b.x - a.x) * (at.y - a.y) / (b.y - a.y)) is_inside = !is_inside;
+  }
+  return is_inside;
+}
+
+/// The last polygon over a point.
+PrimitiveId painted_at(const PaintOrder& order, const glm::dvec2& at) {
+  PrimitiveId last = no_primitive;
+  for (const PaintPolygon& polygon : order.polygons)
+    if (holds(order, polygon, at)) last = polygon.id;
+  return last;
+}
+
+PaintOrder order_of_triangles(const std::vector<std::array<glm::dvec2, 3>>& triangles) {
+  PaintOrder order;
+  order.view = view_from_above(true);
+  for (const std::array<glm::dvec2, 3>& triangle : triangles) {
+    order.polygons.push_back({PrimitiveId(order.polygons.size()), 3, order.corners.size()});
+    for (const glm::dvec2& at : triangle) order.corners.push_back({{at, 1}, false});
+  }
+  return order;
+}
+
+/// A pixel whose polygons each cover a part of it shows what is below. So the first one there goes all around a corner.
+TEST(VisibleParts, HemsGoAroundCorners) {
+  for (const int count : {3, 4, 5, 7, 12, 40}) {
+    SCOPED_TRACE(count);
+    const glm::dvec2 middle(32.3, 31.8);
+    const auto around = [&](int k, double radius) {
+      const double angle = 2 * 3.14159265358979 * k / count;
+      return middle + radius * glm::dvec2(std::cos(angle), -std::sin(angle));
+    };
+    std::vector<std::array<glm::dvec2, 3>> fan;
+    for (int k = 0; k < count; ++k) fan.push_back({middle, around(k, 25), around(k + 1, 25)});
+    const PaintOrder hemmed = with_hems(order_of_triangles(fan), 4);
+    for (int y = -8; y <= 8; ++y)
+      for (int x = -8; x <= 8; ++x) {
+        const glm::dvec2 at = glm::dvec2(x, y) * 0.17 + glm::dvec2(0.013, 0.017);
+        EXPECT_TRUE(holds(hemmed, hemmed.polygons[0], middle + at)) << at.x << "," << at.y;
+      }
+  }
+}
+
+/// Beyond a needle that ends before the side does: the hem goes as far as there is something beyond.
+TEST(VisibleParts, HemsReachBeyondNeedles) {
+  const glm::dvec2 left(5, 20), right(60, 20), end(45, 20.05);
+  const PaintOrder hemmed =
+      with_hems(order_of_triangles({{left, right, {32, 5}}, {left, end, right}, {left, {20, 45}, end}}), 4);
+  for (double x = 16; x < 40; x += 0.7) EXPECT_TRUE(holds(hemmed, hemmed.polygons[0], {x, 22.5})) << x;
+  for (double x = 46; x < 60; x += 0.7) EXPECT_FALSE(holds(hemmed, hemmed.polygons[0], {x, 20.06})) << x;
 }
 
 /// Two squares, and what was painted before both fills the gap between them, once as wide as the narrowest hem.
@@ -264,23 +322,9 @@ TEST(VisibleParts, HemsTaperTowardsWedges) {
   add({{10, 24}, {90, 20}, {10, 20}});
   const PaintOrder hemmed = with_hems(order, 4);
   EXPECT_EQ(hemmed.polygons[0].corner_count, 6u);
-  EXPECT_NEAR(area_of(hemmed, 0), 800 + (80 + 8) / 2, 1e-9);
-}
-
-/// The last polygon over a point, by counting the sides to the right of it: hems make outlines that are not convex.
-PrimitiveId painted_at(const PaintOrder& order, const glm::dvec2& at) {
-  PrimitiveId last = no_primitive;
-  for (const PaintPolygon& polygon : order.polygons) {
-    bool is_inside = false;
-    for (std::size_t i = 0; i < polygon.corner_count; ++i) {
-      const glm::dvec2 a(order.corners[polygon.first_corner + i].at),
-          b(order.corners[polygon.first_corner + (i + 1) % polygon.corner_count].at);
-      if ((a.y <= at.y) != (b.y <= at.y) && at.x < a.x + (b.x - a.x) * (at.y - a.y) / (b.y - a.y))
-        is_inside = !is_inside;
-    }
-    if (is_inside) last = polygon.id;
-  }
-  return last;
+  // A pixel below what is open, six tenths of the way where that is less, and inset by half of its height at the
+  // outline.
+  EXPECT_NEAR(area_of(hemmed, 0), 800 + 40 * (3 + 1) / 2 + 40 / 2 - 1.5 * 3 / 2, 1e-9);
 }
 
 TEST(VisibleParts, HemsAreNotSeen) {

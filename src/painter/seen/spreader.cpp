@@ -44,11 +44,6 @@ SpreadOutline::Crossing SpreadOutline::crossing(const glm::dvec2& a, const glm::
   return crossing;
 }
 
-bool SpreadOutline::holds(const glm::dvec2& at) const {
-  return std::all_of(sides_.begin(), sides_.end(),
-                     [&](const Side& side) { return turn(side.way, at - side.from) < 0; });
-}
-
 void Spreader::begin(std::uint32_t first) {
   if (++turn_ == 0) {
     std::fill(asked_.begin(), asked_.end(), 0);

@@ -21,7 +21,6 @@ class SpreadOutline {
   };
   /// None where the way is less deep in there than OutlineCutter::thin.
   [[nodiscard]] Crossing crossing(const glm::dvec2& a, const glm::dvec2& b) const;
-  [[nodiscard]] bool holds(const glm::dvec2& at) const;
 
  private:
   struct Side {
@@ -52,7 +51,6 @@ class Spreader {
   };
   /// The outline that is asked about from now on.
   void set(Outline outline) { outline_.set(outline); }
-  [[nodiscard]] bool holds(const glm::dvec2& at) const { return outline_.holds(at); }
   /// `first` is a slot that hides a point of the outline. Which others do where they lie says hiders.may_hide(slot),
   /// and hiders.at(place) the slot of one that lies there; no_index: none.
   template <class Hiders>

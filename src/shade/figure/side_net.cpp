@@ -158,8 +158,7 @@ void SideNet::straighten() {
     const glm::dvec2 in = ring_[i].at - before.at, out = ring_[i + 1 == count ? 0 : i + 1].at - ring_[i].at;
     const double turn = std::abs(in.x * out.y - in.y * out.x);
     const bool is_straight = turn <= 4 / kUnits * std::min(glm::length(in), glm::length(out)) && glm::dot(in, out) > 0;
-    const SideHem& hem_before = kept.empty() ? ring_[count - 1].hem : kept.back().hem;
-    if (!is_straight || !(hem_before == ring_[i].hem)) kept.push_back(ring_[i]);
+    if (!is_straight || before.hem != ring_[i].hem) kept.push_back(ring_[i]);
   }
   if (kept.size() >= 3) ring_ = std::move(kept);
 }

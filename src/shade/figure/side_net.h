@@ -9,16 +9,13 @@
 
 namespace frontmost::shading {
 
-/// How far a side reaches under its neighbour, and how far from its beginning and its end it does; pixels, 0 for none.
-struct SideHem {
-  float width = 0, inset = 0, end_inset = 0;
-  friend bool operator==(const SideHem&, const SideHem&) = default;
-};
+/// Of a side that has no hem.
+inline constexpr std::uint32_t no_hem = 0xFFFFFFFF;
 
-/// A corner, and the side from it to the next.
+/// A corner, and the side from it to the next: a part of one that has this hem.
 struct NetCorner {
   glm::dvec2 at{0};
-  SideHem hem;
+  std::uint32_t hem = no_hem;
 };
 
 /// Corners are rounded to 1/4096 pixel, and sides are parted where corners of others lie on them; so what lies beside
@@ -52,13 +49,11 @@ class SideNet {
  private:
   using Point = glm::i64vec2;
   struct Side {
-    std::uint32_t from, to, outline;
-    SideHem hem;
+    std::uint32_t from, to, outline, hem;
   };
   struct Raw {
     Point from, to;
-    std::uint32_t outline;
-    SideHem hem;
+    std::uint32_t outline, hem;
   };
 
   /// Sides between two points: those to begin at some place, those fro at the turn.

@@ -12,30 +12,27 @@ namespace {
 
 /// Pixels that a cut's ends may lie beside the side that was cut.
 constexpr double kOnSide = 1e-6;
+/// And those of a part of a side from the ends of the whole, of which it is all then: they may have been rounded.
+constexpr double kAtEnd = 1.0 / 1024;
 
 double distance_from_line(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec2& at) {
   const glm::dvec2 way = (to - from) / glm::length(to - from), out = at - from;
   return std::abs(way.x * out.y - way.y * out.x);
 }
 
-/// The hem of the side from one corner to another, by its own two corners.
-SideHem hem_between(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec2& first, const glm::dvec2& last) {
-  const glm::dvec2 way = (to - from) / glm::length(to - from);
-  return {float(distance_from_line(from, to, first)), float(glm::dot(way, first - from)),
-          float(glm::dot(way, to - last))};
-}
-
 }  // namespace
 
 WholeHems::WholeHems(const ColoredOrder& colored, double width, const std::function<bool(PrimitiveId)>& hides,
                      const Execution& execution)
-    : colored_(colored),
-      wholes_(colored.whole_of.empty() ? colored.order : colored.wholes),
-      most_beside_(std::min(kOnSide, width / 64)) {
+    : colored_(colored), wholes_(colored.whole_of.empty() ? colored.order : colored.wholes) {
+  if (!(width > 0 && width <= 100))
+    throw Error(ErrorCode::bad_argument, "hems: must be more than 0, at most 100 pixels");
+  const IeeeScope ieee;
   std::vector<std::uint8_t> hiding;
   const PaintOrder grouped = grouped_by_color(hiding, hides);
-  hemmed_ = with_hems(
+  hems_ = painter_detail::side_hems(
       grouped, width, [&](PrimitiveId group) { return hiding[group] != 0; }, execution);
+  for (std::size_t i = 0; i < grouped.polygons.size(); ++i) hems_of_.push_back({hems_.begin_of(i), hems_.ends[i]});
   if (!colored.sheets.empty()) hem_sheets(grouped, width, execution);
 }
 
@@ -56,12 +53,16 @@ void WholeHems::hem_sheets(const PaintOrder& grouped, double width, const Execut
       members.push_back(whole_of(i));
       append(grouped, members.back(), sheet);
     }
-    const PaintOrder hemmed = with_hems(sheet, width, {}, execution);
+    const painter_detail::HemList own = painter_detail::side_hems(sheet, width, {}, execution);
     for (std::size_t k = 0; k < members.size(); ++k) {
-      hemmed_.polygons[members[k]] = hemmed.polygons[k];
-      hemmed_.polygons[members[k]].first_corner += hemmed_.corners.size();
+      hems_of_[members[k]].begin = hems_.hems.size();
+      for (painter_detail::SideHem hem : own.of(k)) {
+        hem.first_corner += hems_.corners.size();
+        hems_.hems.push_back(hem);
+      }
+      hems_of_[members[k]].end = hems_.hems.size();
     }
-    hemmed_.corners.insert(hemmed_.corners.end(), hemmed.corners.begin(), hemmed.corners.end());
+    hems_.corners.insert(hems_.corners.end(), own.corners.begin(), own.corners.end());
   }
 }
 
@@ -91,72 +92,81 @@ PaintOrder WholeHems::grouped_by_color(std::vector<std::uint8_t>& hiding,
   return grouped;
 }
 
-/// Reads hems off: what a polygon has more between two of its own corners are the ends of hems, on the side, and the
-/// two corners of each hem.
-void WholeHems::read_whole(std::size_t whole) {
-  if (read_ == whole) return;
-  read_ = whole;
-  whole_sides_.clear();
-  const Corners bare = corners_of(wholes_, whole), hemmed = corners_of(hemmed_, whole);
-  std::size_t at = 1;
-  for (std::size_t i = 0; i < bare.size(); ++i, ++at) {
-    const bool is_last = i + 1 == bare.size();
-    glm::dvec2 from(bare[i].at);
-    const glm::dvec2 first = from, last(bare[is_last ? 0 : i + 1].at);
-    const auto is_more = [&] { return at < hemmed.size() && (is_last || glm::dvec2(hemmed[at].at) != last); };
-    const auto add_until = [&](const glm::dvec2& to, const SideHem& hem) {
-      whole_sides_.push_back({from, hem, 0, glm::length(to - from)});
-      from = to;
-    };
-    while (is_more()) {
-      const glm::dvec2 beside(hemmed[at].at);
-      if (distance_from_line(first, last, beside) < most_beside_) {
-        add_until(beside, {});
-        ++at;
-        continue;
-      }
-      const glm::dvec2 beside_end(hemmed[at + 1].at);
-      at += 2;
-      const glm::dvec2 to = is_more() ? glm::dvec2(hemmed[at++].at) : last;
-      add_until(to, hem_between(from, to, beside, beside_end));
+/// Sets sides_ to those of a whole, parted where a hem begins or ends.
+void WholeHems::list_whole(std::size_t whole) {
+  const Corners corners = corners_of(wholes_, whole);
+  auto [hem, end] = hems_of_[whole];
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const glm::dvec2 from(corners[i].at), to(corners[i + 1 == corners.size() ? 0 : i + 1].at);
+    sides_.push_back({from});
+    for (; hem < end && hems_.hems[hem].side == i; ++hem) {
+      if (sides_.back().at != hems_.hems[hem].from) sides_.push_back({hems_.hems[hem].from});
+      sides_.back().hem = std::uint32_t(hem);
+      if (hems_.hems[hem].to != to) sides_.push_back({hems_.hems[hem].to});
     }
-    if (from != last || first == last) add_until(last, {});
   }
 }
 
-std::span<const HemmedSide> WholeHems::sides(std::size_t polygon) {
+std::span<const NetCorner> WholeHems::sides(std::size_t polygon) {
   const std::size_t whole = whole_of(polygon);
-  read_whole(whole);
+  sides_.clear();
   const bool is_whole = (polygon == 0 || whole_of(polygon - 1) != whole) &&
                         (polygon + 1 == colored_.colors.size() || whole_of(polygon + 1) != whole);
-  if (is_whole) return whole_sides_;
-  sides_.clear();
+  if (is_whole) {
+    list_whole(whole);
+    return sides_;
+  }
   const Corners corners = corners_of(colored_.order, polygon);
   for (std::size_t i = 0; i < corners.size(); ++i)
-    add_side(glm::dvec2(corners[i].at), glm::dvec2(corners[i + 1 == corners.size() ? 0 : i + 1].at));
+    add_side(hems_of_[whole], glm::dvec2(corners[i].at), glm::dvec2(corners[i + 1 == corners.size() ? 0 : i + 1].at));
   return sides_;
 }
 
 /// A side of a piece, with the parts of all hems that lie beside it.
-void WholeHems::add_side(const glm::dvec2& from, const glm::dvec2& to) {
+void WholeHems::add_side(const Range& hems, const glm::dvec2& from, const glm::dvec2& to) {
   const double length = glm::length(to - from);
   double done = 0;
-  for (std::size_t k = 0; k < whole_sides_.size() && length > 0; ++k) {
-    const HemmedSide& of = whole_sides_[k];
-    if (!(of.hem.width > 0)) continue;
-    const glm::dvec2 end = whole_sides_[k + 1 == whole_sides_.size() ? 0 : k + 1].from;
-    if (distance_from_line(of.from, end, from) > kOnSide || distance_from_line(of.from, end, to) > kOnSide) continue;
+  for (std::size_t k = hems.begin; k < hems.end && length > 0; ++k) {
+    const painter_detail::SideHem& hem = hems_.hems[k];
+    if (distance_from_line(hem.from, hem.to, from) > kOnSide || distance_from_line(hem.from, hem.to, to) > kOnSide)
+      continue;
     // How far along the piece's side the hem begins and ends.
     const glm::dvec2 along = (to - from) / length;
-    const double first = glm::dot(of.from - from, along), last = glm::dot(end - from, along);
-    const double begin = std::max(first, 0.0);
-    if (!(std::min(last, length) - begin > kOnSide)) continue;
-    if (begin > done + kOnSide) sides_.push_back({from + along * done, {}, 0, 0});
-    sides_.push_back({from + along * begin, of.hem, begin - first, of.whole_length});
-    done = std::min(last, length);
+    const double begin = std::max(glm::dot(hem.from - from, along), 0.0);
+    const double end = std::min(glm::dot(hem.to - from, along), length);
+    if (!(end - begin > kOnSide)) continue;
+    if (begin > done + kOnSide) sides_.push_back({from + along * done});
+    sides_.push_back({from + along * begin, std::uint32_t(k)});
+    done = end;
   }
   if (done < length - kOnSide || done == 0)
-    sides_.push_back({length > 0 ? from + (to - from) * (done / length) : from, {}, 0, 0});
+    sides_.push_back({length > 0 ? from + (to - from) * (done / length) : from});
+}
+
+std::span<const glm::dvec2> WholeHems::part(std::uint32_t number, const glm::dvec2& from, const glm::dvec2& to) {
+  const painter_detail::SideHem& hem = hems_.hems[number];
+  const glm::dvec2 way = hem.to - hem.from, along = way / glm::length(way);
+  const auto is_beyond = [](const glm::dvec2& a, const glm::dvec2& b) { return glm::length(a - b) > kAtEnd; };
+  const std::span<const glm::dvec2> corners = hems_.corners_of(hem);
+  part_.assign(corners.begin(), corners.end());
+  const auto cut = [&](const glm::dvec2& at, const glm::dvec2& way_in, const glm::dvec2& end) {
+    // The corners that are beyond a line across the side, and where the outline comes back over it.
+    const auto within = [&](const glm::dvec2& p) { return glm::dot(p - at, way_in); };
+    std::size_t kept = 0;
+    glm::dvec2 before = end;
+    while (kept < part_.size() && within(part_[kept]) < 0) before = part_[kept++];
+    if (kept == part_.size()) return part_.clear();
+    const double a = within(before), b = within(part_[kept]);
+    part_.erase(part_.begin(), part_.begin() + std::ptrdiff_t(kept));
+    part_.insert(part_.begin(), before + (part_.front() - before) * (a / (a - b)));
+  };
+  if (is_beyond(from, hem.from)) cut(from, along, hem.from);
+  if (is_beyond(to, hem.to)) {
+    std::reverse(part_.begin(), part_.end());
+    cut(to, -along, hem.to);
+    std::reverse(part_.begin(), part_.end());
+  }
+  return part_;
 }
 
 }  // namespace frontmost::shading

@@ -7,17 +7,10 @@
 #include <vector>
 
 #include "frontmost/figure.h"
+#include "painter/side_hems.h"
 #include "shade/figure/side_net.h"
 
 namespace frontmost::shading {
-
-/// A side of a polygon, and the hem of the whole's side that it is a part of.
-struct HemmedSide {
-  glm::dvec2 from{0};
-  SideHem hem;
-  /// Where this side begins on the whole's, and how long that is; pixels.
-  double begin = 0, whole_length = 0;
-};
 
 /// Pieces that reach under each other need no hems between them, and what is beside a polygon is found once for the
 /// whole, not for each of its pieces.
@@ -28,25 +21,30 @@ class WholeHems {
             const Execution& execution);
 
   /// Of a polygon, until the next call.
-  [[nodiscard]] std::span<const HemmedSide> sides(std::size_t polygon);
+  [[nodiscard]] std::span<const NetCorner> sides(std::size_t polygon);
+  /// The corners of a hem beside a part of its side, until the next call.
+  [[nodiscard]] std::span<const glm::dvec2> part(std::uint32_t hem, const glm::dvec2& from, const glm::dvec2& to);
 
  private:
   using Corners = std::span<const PaintCorner>;
+  struct Range {
+    std::size_t begin, end;
+  };
   [[nodiscard]] PaintOrder grouped_by_color(std::vector<std::uint8_t>& hiding,
                                             const std::function<bool(PrimitiveId)>& hides) const;
   void hem_sheets(const PaintOrder& grouped, double width, const Execution& execution);
   [[nodiscard]] std::size_t whole_of(std::size_t polygon) const {
     return colored_.whole_of.empty() ? polygon : colored_.whole_of[polygon];
   }
-  void read_whole(std::size_t whole);
-  void add_side(const glm::dvec2& from, const glm::dvec2& to);
+  void list_whole(std::size_t whole);
+  void add_side(const Range& hems, const glm::dvec2& from, const glm::dvec2& to);
 
   const ColoredOrder& colored_;
   const PaintOrder& wholes_;
-  const double most_beside_;  ///< pixels: of what lies on a side
-  PaintOrder hemmed_;
-  std::size_t read_ = std::size_t(-1);  ///< the whole that whole_sides_ are of
-  std::vector<HemmedSide> whole_sides_, sides_;
+  painter_detail::HemList hems_;
+  std::vector<Range> hems_of_;  ///< by whole: of hems_.hems
+  std::vector<NetCorner> sides_;
+  std::vector<glm::dvec2> part_;
 };
 
 }  // namespace frontmost::shading

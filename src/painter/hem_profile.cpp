@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "painter/hem_profile.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontmost::painter_detail {
+namespace {
+
+/// Heights change by so much for every pixel along a side.
+constexpr double kSteepest = 1;
+/// Pixels that a hem ends before what is open above it, or that part of the way to it.
+constexpr double kMargin = 1, kMarginPart = 0.6;
+/// Of the square of the greatest height: the area that a corner must be worth.
+constexpr double kLeastGain = 1.0 / 16;
+
+}  // namespace
+
+void HemProfile::begin(const glm::dvec2& from, const glm::dvec2& way) {
+  from_ = from;
+  way_ = way;
+  corners_.clear();
+  parts_.clear();
+}
+
+void HemProfile::add_open(const OutlineCutter& open) {
+  for (std::size_t i = 0; i < open.count(); ++i) {
+    parts_.push_back({corners_.size(), open[i].size()});
+    for (const PaintCorner& corner : open[i]) {
+      const glm::dvec2 at = glm::dvec2(corner.at) - from_;
+      const double height = std::max(0.0, way_.x * at.y - way_.y * at.x);
+      corners_.push_back({glm::dot(way_, at), height - std::min(kMargin, kMarginPart * height)});
+    }
+  }
+}
+
+const std::vector<HemProfile::Knot>& HemProfile::fit(double length, double most) {
+  place_knots(length, most);
+  knots_.clear();
+  for (const double along : places_) knots_.push_back({along, height_at(along, most)});
+  leave_out(kLeastGain * most * most);
+  return knots_;
+}
+
+/// Between places the height is nowhere below the line from one to the next.
+void HemProfile::place_knots(double length, double most) {
+  places_.assign({0, length});
+  const auto add = [&](double along) {
+    if (along > 0 && along < length) places_.push_back(along);
+  };
+  for (const glm::dvec2& corner : corners_) {
+    if (corner.y >= most) continue;
+    add(corner.x);
+    add(corner.x - (most - corner.y) / kSteepest);
+    add(corner.x + (most - corner.y) / kSteepest);
+  }
+  for (const Part& part : parts_)
+    for (std::size_t i = 0; i < part.count; ++i) {
+      const glm::dvec2 &a = corners_[part.first + i], &b = corners_[part.first + (i + 1 == part.count ? 0 : i + 1)];
+      if ((a.y < most) != (b.y < most)) add(a.x + (b.x - a.x) * ((most - a.y) / (b.y - a.y)));
+    }
+  std::sort(places_.begin(), places_.end());
+  const auto is_same = [](double a, double b) { return b - a < OutlineCutter::thin; };
+  places_.erase(std::unique(places_.begin(), places_.end() - 1, is_same), places_.end() - 1);
+}
+
+double HemProfile::height_at(double along, double most) const {
+  double least = most;
+  for (const glm::dvec2& corner : corners_) least = std::min(least, corner.y + kSteepest * std::abs(along - corner.x));
+  for (const Part& part : parts_)
+    for (std::size_t i = 0; i < part.count; ++i) {
+      const glm::dvec2 &a = corners_[part.first + i], &b = corners_[part.first + (i + 1 == part.count ? 0 : i + 1)];
+      if ((a.x < along) == (b.x < along)) continue;
+      least = std::min(least, a.y + (b.y - a.y) * ((along - a.x) / (b.x - a.x)));
+    }
+  return std::max(least, 0.0);
+}
+
+/// Knots that gain the least go first, as long as the line past them is nowhere higher.
+void HemProfile::leave_out(double least_gain) {
+  while (knots_.size() > 2) {
+    std::size_t best = 0;
+    double least = least_gain;
+    for (std::size_t i = 1; i + 1 < knots_.size(); ++i) {
+      const Knot &a = knots_[i - 1], &b = knots_[i], &c = knots_[i + 1];
+      const double part = (b.along - a.along) / (c.along - a.along);
+      const double above = b.height - (a.height + (c.height - a.height) * part);
+      const double gain = 0.5 * above * (c.along - a.along);
+      if (above < -1e-9 || gain >= least) continue;
+      least = gain;
+      best = i;
+    }
+    if (best == 0) return;
+    knots_.erase(knots_.begin() + std::ptrdiff_t(best));
+  }
+}
+
+}  // namespace frontmost::painter_detail

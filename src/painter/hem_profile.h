@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far a polygon may reach out along a side, where others hide only a part of what is beside it.
+#pragma once
+
+#include <vector>
+
+#include "painter/outlines.h"
+
+namespace frontmost::painter_detail {
+
+/// Heights above a side, on straight lines between knots. Not for several threads at once.
+class HemProfile {
+ public:
+  struct Knot {
+    double along, height;  ///< pixels
+  };
+  /// For a side from a place on, whose way has unit length.
+  void begin(const glm::dvec2& from, const glm::dvec2& way);
+  /// Parts of what is beside it that are not hidden.
+  void add_open(const OutlineCutter& open);
+  /// As high as is hidden, `most` at most; less towards what is open, and some way from it, so that no rim of a hem
+  /// runs along an outline: viewers would blend both, and it would grow bold.
+  [[nodiscard]] const std::vector<Knot>& fit(double length, double most);
+
+ private:
+  struct Part {
+    std::size_t first, count;
+  };
+  [[nodiscard]] double height_at(double along, double most) const;
+  void place_knots(double length, double most);
+  void leave_out(double least_gain);
+
+  glm::dvec2 from_{0}, way_{0};
+  std::vector<glm::dvec2> corners_;  ///< along the side, and above it
+  std::vector<Part> parts_;
+  std::vector<double> places_;
+  std::vector<Knot> knots_;
+};
+
+}  // namespace frontmost::painter_detail
