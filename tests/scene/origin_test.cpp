@@ -79,7 +79,10 @@ Scene cube_at(const glm::dvec3& place) {
   mesh.triangles = {{0, 1, 2}, {5, 6, 7}};
   const std::uint32_t cube = add(scene, "cube", std::move(mesh), no_index);
   frontmost::place(scene, "cube", cube, moved(place));
-  scene.cameras.push_back({.name = "camera", .world_from_eye = moved(place + glm::dvec3(0, 0, 5))});
+  Camera camera;
+  camera.name = "camera";
+  camera.world_from_eye = moved(place + glm::dvec3(0, 0, 5));
+  scene.cameras.push_back(camera);
   return scene;
 }
 

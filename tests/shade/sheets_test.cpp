@@ -48,7 +48,9 @@ TEST(GatherSheets, PanesInOneOutlineStayWhole) {
     const Figure figure = outlined(gathered, 1);
     for (std::size_t i = 0; i < tiles.size(); i += 2) {
       EXPECT_EQ(gathered.sheets[i], gathered.sheets[i + 1]) << i;
-      if (i > 0) EXPECT_NE(gathered.sheets[i], gathered.sheets[i - 1]) << i;
+      if (i > 0) {
+        EXPECT_NE(gathered.sheets[i], gathered.sheets[i - 1]) << i;
+      }
       EXPECT_GT(area_of(figure, i), 8 + 3) << i;  // with a hem under the other half
     }
   }

@@ -63,12 +63,14 @@ TEST(Converters, LoadSaysSoBeforeItReads) {
     try {
       (void)load(path, options);
       return "read";
-    } catch (const Error& error) {
-      return error.what();
+    } catch (const Error& refusal) {
+      return refusal.what();
     }
   };
   EXPECT_THAT(error({}), HasSubstr(path + ": USD is not read; convert it first: blender -b"));
-  EXPECT_THAT(error({.format = ModelFormat::off}), HasSubstr("line 1"));
+  LoadOptions off;
+  off.format = ModelFormat::off;
+  EXPECT_THAT(error(off), HasSubstr("line 1"));
   std::filesystem::remove(path);
 }
 

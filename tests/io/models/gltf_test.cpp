@@ -271,7 +271,7 @@ TEST(Gltf, DeepTreesNeedNoStack) {
   maker.add("nodes", R"({"mesh":0})");
   const Scene scene = read(maker);
   ASSERT_EQ(scene.instances.size(), 1u);
-  EXPECT_EQ(scene.instances[0].world_from_mesh[3].x, depth);
+  EXPECT_EQ(scene.origin.x + scene.instances[0].world_from_mesh[3].x, depth);
 }
 
 TEST(Gltf, TransformsMustBeFinite) {
