@@ -103,9 +103,10 @@ struct PaintOrder {
 /// The same order with hems: a polygon reaches under what is painted later and lies beside it, by `width` pixels or
 /// less, as far as that, or other parts of the same primitive, hide the hem, and around its corners likewise. So
 /// viewers that blend the rims of polygons show nothing of the background between neighbours and where several meet:
-/// what is painted first in a pixel covers all of it. Hems end a pixel below what is open, or half of the way to it, so
-/// that outlines hardly grow bold. For drawings: with a hem an outline is not convex, and paint() does not know it.
-/// Cost and `hides` as for visible_parts(). \throws Error bad_argument for a width of 0 or less, or over 100.
+/// what is painted first in a pixel covers all of it. Hems end a pixel below what is open, or at two fifths of the way
+/// to it where that is less, so that outlines hardly grow bold. For drawings: with a hem an outline is not convex, and
+/// paint() does not know it. Cost and `hides` as for visible_parts(). \throws Error bad_argument for a width of 0 or
+/// less, or over 100.
 [[nodiscard]] PaintOrder with_hems(const PaintOrder& order, double width,
                                    const std::function<bool(PrimitiveId)>& hides = {}, const Execution& execution = {});
 

@@ -13,13 +13,15 @@
 #include "base/lanes-inl.h"
 #include "frontmost/view.h"
 #include "hwy/highway.h"
-#include "view/triangle_keys.h"
+#include "view/key_planes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace frontmost::HWY_NAMESPACE;
+using view_detail::HWY_NAMESPACE::KeyPlanes;
+using view_detail::HWY_NAMESPACE::KeyPlanesOf;
 
 // Corners no farther apart than this keep every edge value inside the triangle's box within 32 bits: two products of
 // at most 31744 * (31744 + 256).
@@ -89,79 +91,15 @@ HWY_INLINE Winding WindingOf(Culling culling, const Corners& a, const Corners& b
 }
 
 /// Three edges and a depth plane for each triangle. Corners no farther apart than kSmallExtent, areas positive.
-struct Batch {
+struct Batch : KeyPlanes {
   VI x[3], y[3];  // corners
   CoordinateRange columns, rows;
-  VI dx[3], dy[3], bias[3];     // edge k runs from corner k
-  VI area;                      // twice the area
-  VI x0, y0;                    // the topmost corner
-  VF k0, gx, gy, k_min, k_max;  // of triangle_keys.h
-  MI steep;                     // to be drawn one by one
+  VI dx[3], dy[3], bias[3];  // edge k runs from corner k
+  VI area;                   // twice the area
 };
 
-/// The gradients, from doubles rounded once: as many lanes at a time as a vector of doubles has.
-HWY_INLINE void SetUpGradient(Batch& b, const VF key[3]) {
-  using DD = hn::ScalableTag<double>;
-  const DD d;
-  const hn::Rebind<float, DD> half_f;
-  const hn::Rebind<std::int32_t, DD> half_i;
-  // Of the sides from corner 0 to 1, and from 2 to 0.
-  HWY_ALIGN_MAX std::int32_t x1[kMaxLanes], y1[kMaxLanes], x2[kMaxLanes], y2[kMaxLanes], area[kMaxLanes];
-  HWY_ALIGN_MAX float k[3][kMaxLanes], gx[kMaxLanes], gy[kMaxLanes];
-  hn::Store(b.dx[0], DI(), x1);
-  hn::Store(b.dy[0], DI(), y1);
-  hn::Store(b.dx[2], DI(), x2);
-  hn::Store(b.dy[2], DI(), y2);
-  hn::Store(b.area, DI(), area);
-  for (int c = 0; c < 3; ++c) hn::Store(key[c], DF(), k[c]);
-  for (std::size_t i = 0; i < hn::Lanes(DF()); i += hn::Lanes(d)) {
-    const auto wide_i = [&](const std::int32_t* from) HWY_ATTR { return hn::PromoteTo(d, hn::Load(half_i, from + i)); };
-    const auto wide_f = [&](const float* from) HWY_ATTR { return hn::PromoteTo(d, hn::Load(half_f, from + i)); };
-    const auto k0 = wide_f(k[0]), k1 = hn::Sub(wide_f(k[1]), k0), k2 = hn::Sub(wide_f(k[2]), k0);
-    const auto scale = hn::Div(hn::Set(d, 1.0), wide_i(area));
-    // The second side runs the other way, which changes the sign of its products.
-    const auto across = hn::Neg(hn::Add(hn::Mul(k1, wide_i(y2)), hn::Mul(k2, wide_i(y1))));
-    const auto down = hn::Add(hn::Mul(k2, wide_i(x1)), hn::Mul(k1, wide_i(x2)));
-    hn::Store(hn::DemoteTo(half_f, hn::Mul(across, scale)), half_f, gx + i);
-    hn::Store(hn::DemoteTo(half_f, hn::Mul(down, scale)), half_f, gy + i);
-  }
-  b.gx = hn::Load(DF(), gx);
-  b.gy = hn::Load(DF(), gy);
-}
-
-/// The topmost corner, of two as high the left one.
-HWY_INLINE void SetUpAnchor(Batch& b, const VF key[3]) {
-  // How far corners 1 and 2 are below corner 0 in the order of reading; within 32 bits, as both terms are within 16.
-  const VI to_1 = hn::Add(hn::ShiftLeft<16>(b.dy[0]), b.dx[0]);
-  const VI to_2 = hn::Neg(hn::Add(hn::ShiftLeft<16>(b.dy[2]), b.dx[2]));
-  const VI zero = hn::Zero(DI());
-  const MI is_1 = hn::Lt(to_1, zero), is_2 = hn::Lt(to_2, hn::Min(to_1, zero));
-  const auto of = [&](const VI(&at)[3])
-                      HWY_ATTR { return hn::IfThenElse(is_2, at[2], hn::IfThenElse(is_1, at[1], at[0])); };
-  b.x0 = of(b.x);
-  b.y0 = of(b.y);
-  const DF df;
-  b.k0 = hn::IfThenElse(hn::RebindMask(df, is_2), key[2], hn::IfThenElse(hn::RebindMask(df, is_1), key[1], key[0]));
-}
-
-/// KeyPlane, operation by operation.
-HWY_INLINE void SetUpPlane(Batch& b, const VF key[3]) {
-  const DF df;
-  b.area = hn::Sub(hn::Mul(b.dx[2], b.dy[0]), hn::Mul(b.dx[0], b.dy[2]));
-  SetUpGradient(b, key);
-  SetUpAnchor(b, key);
-  b.k_min = hn::Min(key[0], hn::Min(key[1], key[2]));
-  b.k_max = hn::Max(key[0], hn::Max(key[1], key[2]));
-  const VF width = hn::ConvertTo(df, hn::Sub(b.columns.greatest, b.columns.least));
-  const VF height = hn::ConvertTo(df, hn::Sub(b.rows.greatest, b.rows.least));
-  const VF change = hn::Add(hn::Mul(hn::Abs(b.gx), width), hn::Mul(hn::Abs(b.gy), height));
-  const VF limit = hn::Sub(b.k_min, hn::Set(df, KeyPlane::least_key)), twice = hn::Add(limit, limit);
-  b.steep =
-      hn::RebindMask(DI(), hn::Or(hn::Gt(change, hn::Add(twice, twice)), hn::Gt(hn::Sub(b.k_max, b.k_min), twice)));
-}
-
 /// Precondition: the corners of `b` are set.
-HWY_INLINE void SetUpBatch(Batch& b, const VF key[3]) {
+HWY_INLINE void SetUpBatch(Batch& b, const VF (&key)[3]) {
   b.columns = RangeOf(b.x[0], b.x[1], b.x[2]);
   b.rows = RangeOf(b.y[0], b.y[1], b.y[2]);
   for (int k = 0; k < 3; ++k) {
@@ -172,7 +110,8 @@ HWY_INLINE void SetUpBatch(Batch& b, const VF key[3]) {
     // is dy * 2^16 - dx < 0, as both are within 15 bits.
     b.bias[k] = hn::Not(hn::ShiftRight<31>(hn::Sub(hn::ShiftLeft<16>(b.dy[k]), b.dx[k])));
   }
-  SetUpPlane(b, key);
+  b.area = hn::Sub(hn::Mul(b.dx[2], b.dy[0]), hn::Mul(b.dx[0], b.dy[2]));
+  static_cast<KeyPlanes&>(b) = KeyPlanesOf(b.x, b.y, key);
 }
 
 /// Edge values at the samples (sx, sy) within the triangles' boxes: covered where none is negative. From pixel to pixel

@@ -11,6 +11,7 @@
 #endif
 
 #include "abuffer/gather/large_triangles-inl.h"
+#include "view/key_planes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::abuffer_detail {
@@ -50,8 +51,8 @@ class SmallTriangles {
     const DI d;
     const std::size_t drawn = HWY_MIN(queue_.count, hn::Lanes(d));
     SetUp(drawn);
-    if (!hn::AllFalse(d, steep_))
-      ForEachBit(BitsOf(d, steep_), [&](std::size_t lane) { large_.Draw(QueuedTriangle(lane)); });
+    if (!hn::AllFalse(d, plane_.steep))
+      ForEachBit(BitsOf(d, plane_.steep), [&](std::size_t lane) { large_.Draw(QueuedTriangle(lane)); });
     const std::size_t found = Walk();
     if (found > 0) {
       for (std::size_t i = 0; i < drawn; ++i) sink_.ExpectColor(std::uint32_t(queue_.field[9][i]));
@@ -95,7 +96,7 @@ class SmallTriangles {
     for (int k = 0; k < 3; ++k) SetUpEdge(k, x, y);
     SetUpPlane(x, y, live);
     // Drawn one by one.
-    width_ = hn::IfThenZeroElse(steep_, width_);
+    width_ = hn::IfThenZeroElse(plane_.steep, width_);
   }
 
   HWY_INLINE void SetUpEdge(int k, const VI (&x)[3], const VI (&y)[3]) {
@@ -116,69 +117,18 @@ class SmallTriangles {
     sample_max_[k] = hn::Add(most(dx, p.low_y, p.high_y), most(hn::Neg(dy), p.low_x, p.high_x));
   }
 
-  /// The gradients, from doubles rounded once: as many lanes at a time as a vector of doubles has.
-  HWY_INLINE void SetUpGradient(VI area) {
-    using DD = hn::ScalableTag<double>;
-    const DD d;
-    const hn::Rebind<float, DD> half_f;
-    const hn::Rebind<std::int32_t, DD> half_i;
-    HWY_ALIGN_MAX std::int32_t areas[kMaxLanes], sides[4][kMaxLanes];
-    HWY_ALIGN_MAX float key[3][kMaxLanes], gx[kMaxLanes], gy[kMaxLanes];
-    hn::Store(area, DI(), areas);
-    const VI of_sides[4] = {dx_[0], dy_[0], dx_[2], dy_[2]};
-    for (int k = 0; k < 4; ++k) hn::Store(of_sides[k], DI(), sides[k]);
-    for (int k = 0; k < 3; ++k) hn::Store(KeyOf(k), DF(), key[k]);
-    for (std::size_t i = 0; i < hn::Lanes(DF()); i += hn::Lanes(d)) {
-      const auto side = [&](int k) HWY_ATTR { return hn::PromoteTo(d, hn::Load(half_i, sides[k] + i)); };
-      const auto key_of = [&](int k) HWY_ATTR { return hn::PromoteTo(d, hn::Load(half_f, key[k] + i)); };
-      const auto k1 = hn::Sub(key_of(1), key_of(0)), k2 = hn::Sub(key_of(2), key_of(0));
-      const auto scale = hn::Div(hn::Set(d, 1.0), hn::PromoteTo(d, hn::Load(half_i, areas + i)));
-      // Side 2 runs to corner 0, which changes the sign of its products.
-      const auto across = hn::Neg(hn::Add(hn::Mul(k1, side(3)), hn::Mul(k2, side(1))));
-      const auto down = hn::Add(hn::Mul(k2, side(0)), hn::Mul(k1, side(2)));
-      hn::Store(hn::DemoteTo(half_f, hn::Mul(across, scale)), half_f, gx + i);
-      hn::Store(hn::DemoteTo(half_f, hn::Mul(down, scale)), half_f, gy + i);
-    }
-    gx_ = hn::Load(DF(), gx);
-    gy_ = hn::Load(DF(), gy);
-  }
-
-  /// The topmost corner, of two as high the left one: how far corners 1 and 2 are below corner 0 in the order of
-  /// reading fits 32 bits.
-  HWY_INLINE void SetUpAnchor(const VI (&x)[3], const VI (&y)[3]) {
-    const VI zero = hn::Zero(DI());
-    const VI to_1 = hn::Add(hn::ShiftLeft<16>(dy_[0]), dx_[0]);
-    const VI to_2 = hn::Neg(hn::Add(hn::ShiftLeft<16>(dy_[2]), dx_[2]));
-    const MI is_1 = hn::Lt(to_1, zero), is_2 = hn::Lt(to_2, hn::Min(to_1, zero));
-    const auto of = [&](VI a, VI b, VI c) HWY_ATTR { return hn::IfThenElse(is_2, c, hn::IfThenElse(is_1, b, a)); };
-    x0_ = of(x[0], x[1], x[2]);
-    y0_ = of(y[0], y[1], y[2]);
-    const auto bits = [&](int k) HWY_ATTR { return hn::Load(DI(), queue_.field[6 + k]); };
-    k0_ = hn::BitCast(DF(), of(bits(0), bits(1), bits(2)));
-  }
-
-  /// KeyPlane, operation by operation: a triangle's keys must not depend on what draws it.
   HWY_INLINE void SetUpPlane(const VI (&x)[3], const VI (&y)[3], MI live) {
     const DF df;
-    SetUpGradient(hn::Sub(hn::Mul(dx_[2], dy_[0]), hn::Mul(dx_[0], dy_[2])));
-    SetUpAnchor(x, y);
-    low_ = hn::Min(KeyOf(0), hn::Min(KeyOf(1), KeyOf(2)));
-    high_ = hn::Max(KeyOf(0), hn::Max(KeyOf(1), KeyOf(2)));
-    const auto extent = [&](const VI(&v)[3]) HWY_ATTR {
-      const VI most = hn::Max(v[0], hn::Max(v[1], v[2])), least = hn::Min(v[0], hn::Min(v[1], v[2]));
-      return hn::ConvertTo(df, hn::Sub(most, least));
-    };
-    const VF change = hn::Add(hn::Mul(hn::Abs(gx_), extent(x)), hn::Mul(hn::Abs(gy_), extent(y)));
-    const VF limit = hn::Sub(low_, hn::Set(df, KeyPlane::least_key)), twice = hn::Add(limit, limit);
-    const auto steep = hn::Or(hn::Gt(change, hn::Add(twice, twice)), hn::Gt(hn::Sub(high_, low_), twice));
-    steep_ = hn::And(live, hn::RebindMask(DI(), steep));
+    const VF keys[3] = {KeyOf(0), KeyOf(1), KeyOf(2)};
+    plane_ = view_detail::HWY_NAMESPACE::KeyPlanesOf(x, y, keys);
+    plane_.steep = hn::And(live, plane_.steep);
     if (kFlat) return;
-    const VF slope = hn::Add(hn::Abs(gx_), hn::Abs(gy_));
+    const VF slope = hn::Add(hn::Abs(plane_.gx), hn::Abs(plane_.gy));
     const VF reach = hn::Set(df, float(kSmallExtent + 2 * kSubPixels));
-    slack_ =
-        hn::Add(hn::Mul(hn::Add(high_, hn::Mul(slope, reach)), hn::Set(df, kKeyRounding)), hn::Set(df, kLeastRounding));
+    slack_ = hn::Add(hn::Mul(hn::Add(plane_.k_max, hn::Mul(slope, reach)), hn::Set(df, kKeyRounding)),
+                     hn::Set(df, kLeastRounding));
     // However steep, no key leaves the triangle's range.
-    half_ = hn::Add(hn::Min(hn::Mul(slope, hn::Set(df, kHalfPixel)), hn::Sub(high_, low_)), slack_);
+    half_ = hn::Add(hn::Min(hn::Mul(slope, hn::Set(df, kHalfPixel)), hn::Sub(plane_.k_max, plane_.k_min)), slack_);
   }
 
   HWY_INLINE void KeepPlanes(std::size_t drawn) {
@@ -188,13 +138,13 @@ class SmallTriangles {
     LocalTriangles& t = sink_.triangles;
     t.reserve(2 * kMaxLanes);
     const std::size_t n = first_ = t.count;
-    hn::StoreU(x0_, d, t.x0.data() + n);
-    hn::StoreU(y0_, d, t.y0.data() + n);
-    hn::StoreU(k0_, df, t.k0.data() + n);
-    hn::StoreU(gx_, df, t.gx.data() + n);
-    hn::StoreU(gy_, df, t.gy.data() + n);
-    hn::StoreU(low_, df, t.low.data() + n);
-    hn::StoreU(high_, df, t.high.data() + n);
+    hn::StoreU(plane_.x0, d, t.x0.data() + n);
+    hn::StoreU(plane_.y0, d, t.y0.data() + n);
+    hn::StoreU(plane_.k0, df, t.k0.data() + n);
+    hn::StoreU(plane_.gx, df, t.gx.data() + n);
+    hn::StoreU(plane_.gy, df, t.gy.data() + n);
+    hn::StoreU(plane_.k_min, df, t.low.data() + n);
+    hn::StoreU(plane_.k_max, df, t.high.data() + n);
     hn::StoreU(slack_, df, t.slack.data() + n);
     hn::StoreU(half_, df, t.half.data() + n);
     hn::StoreU(hn::Set(du, no_index), du, t.steep.data() + n);
@@ -241,8 +191,8 @@ class SmallTriangles {
     const DI d;
     const DU du;
     const DF df;
-    const VI from_x = hn::Sub(hn::Add(hn::ShiftLeft<8>(px_), hn::Set(d, kSubPixels / 2)), x0_);
-    const VI from_y = hn::Sub(hn::Add(hn::ShiftLeft<8>(py_), hn::Set(d, kSubPixels / 2)), y0_);
+    const VI from_x = hn::Sub(hn::Add(hn::ShiftLeft<8>(px_), hn::Set(d, kSubPixels / 2)), plane_.x0);
+    const VI from_y = hn::Sub(hn::Add(hn::ShiftLeft<8>(py_), hn::Set(d, kSubPixels / 2)), plane_.y0);
     const VI ids = hn::Load(d, queue_.field[9]);
     for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
       const VI reference = hn::BitCast(d, hn::LoadU(du, references_ + i));
@@ -254,9 +204,9 @@ class SmallTriangles {
       const VI y = hn::And(hn::ShiftRight<8>(reference), hn::Set(d, 15));
       const VF dx = hn::ConvertTo(df, hn::Add(hn::TableLookupLanes(from_x, of), hn::ShiftLeft<8>(x)));
       const VF dy = hn::ConvertTo(df, hn::Add(hn::TableLookupLanes(from_y, of), hn::ShiftLeft<8>(y)));
-      VF key = hn::Add(hn::TableLookupLanes(k0_, of_f), hn::Mul(dx, hn::TableLookupLanes(gx_, of_f)));
-      key = hn::Add(key, hn::Mul(dy, hn::TableLookupLanes(gy_, of_f)));
-      const VF low = hn::TableLookupLanes(low_, of_f), high = hn::TableLookupLanes(high_, of_f);
+      VF key = hn::Add(hn::TableLookupLanes(plane_.k0, of_f), hn::Mul(dx, hn::TableLookupLanes(plane_.gx, of_f)));
+      key = hn::Add(key, hn::Mul(dy, hn::TableLookupLanes(plane_.gy, of_f)));
+      const VF low = hn::TableLookupLanes(plane_.k_min, of_f), high = hn::TableLookupLanes(plane_.k_max, of_f);
       key = hn::Min(hn::Max(key, low), high);
       const VI px = hn::Add(hn::TableLookupLanes(px_, of), x), py = hn::Add(hn::TableLookupLanes(py_, of), y);
       hn::Store(PixelNumber(px, py), d, pixel_);
@@ -309,9 +259,9 @@ class SmallTriangles {
   std::uint32_t* references_;
   TriangleQueue queue_;
   // One batch. Edge functions are at the corner of the first pixel of each triangle's rectangle.
-  VI px_, py_, width_, height_, x0_, y0_, edge_[3], dx_[3], dy_[3], sample_max_[3];
-  VF k0_, gx_, gy_, low_, high_, slack_, half_;
-  MI steep_;
+  VI px_, py_, width_, height_, edge_[3], dx_[3], dy_[3], sample_max_[3];
+  view_detail::HWY_NAMESPACE::KeyPlanes plane_;
+  VF slack_, half_;
   SampleSteps steps_[kMaxLanes];
   std::size_t first_ = 0;  // of the batch, in LocalTriangles
   // One vector of pairs.
