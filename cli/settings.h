@@ -170,6 +170,8 @@ struct DrawingSettings {
   double margin = 10;  ///< millimetres
   std::vector<NamedView> views;
   std::optional<Layout> layout;
+  std::optional<bool> centre_lines;
+  bool dimensions = false;
   std::optional<double> crease_angle;     ///< degrees; none: judged by the surfaces
   std::optional<double> shortest_stroke;  ///< millimetres
   std::optional<double> pen;              ///< millimetres, of what is seen

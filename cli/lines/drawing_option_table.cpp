@@ -131,6 +131,14 @@ constexpr Option table[] = {
     {"projection", 0, "first-angle|third-angle",
      "Where views stand about the front one: the view from above below it (the default), or above it.", Group::drawing,
      for_lines, [](Settings& s, const Given& g) { s.drawing.layout = g.choice<DrawingSettings::Layout>(); }},
+    {"centre-lines", 0, "yes|no",
+     "Long-dashed dotted lines through the centres of circles and along the axes of cylinders, in parallel projection; "
+     "yes by default with --views, but for figures.",
+     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.centre_lines = g.choice<int>() == 0; }},
+    {"dimensions", 0, "",
+     "Sizes on sheets of --views: the whole width, height and depth, and the diameters of circles, each once, in the "
+     "unit of the drawing.",
+     Group::drawing, for_lines, [](Settings& s, const Given&) { s.drawing.dimensions = true; }},
     {"plot", 0, "",
      "For pen plotters: long strokes whatever they belong to, ordered to spare lifts of the pen; dashes are lines of "
      "their "

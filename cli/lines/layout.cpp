@@ -36,6 +36,8 @@ std::vector<Layout::Line> Layout::lines_of(const std::vector<ViewCell>& cells, i
     if (line == lines.end()) line = lines.insert(line, {number, -cell.low[axis], cell.high[axis]});
     line->before = std::max(line->before, -cell.low[axis]);
     line->behind = std::max(line->behind, cell.high[axis]);
+    line->room_before = std::max(line->room_before, cell.room_before[axis]);
+    line->room_behind = std::max(line->room_behind, cell.room_behind[axis]);
   }
   std::sort(lines.begin(), lines.end(), [](const Line& a, const Line& b) { return a.number < b.number; });
   return lines;
@@ -44,8 +46,11 @@ std::vector<Layout::Line> Layout::lines_of(const std::vector<ViewCell>& cells, i
 Layout::Layout(const std::vector<ViewCell>& cells, const glm::dvec2& gap) : cells_(cells), gap_(gap) {
   for (int axis = 0; axis < 2; ++axis) {
     lines_[axis] = lines_of(cells, axis);
-    for (const Line& line : lines_[axis]) extent_[axis] += line.before + line.behind;
     gaps_[axis] = gap[axis] * double(lines_[axis].size() - 1);
+    for (const Line& line : lines_[axis]) {
+      extent_[axis] += line.before + line.behind;
+      gaps_[axis] += line.room_before + line.room_behind;
+    }
   }
 }
 
@@ -59,8 +64,9 @@ double Layout::largest_scale(const glm::dvec2& area) const {
 double Layout::place(const ViewCell& cell, int axis, double scale) const {
   double at = 0;
   for (const Line& line : lines_[axis]) {
-    if (line.number == (axis == 0 ? cell.column : cell.row)) return at + line.before * scale;
-    at += (line.before + line.behind) * scale + gap_[axis];
+    at += line.room_before + line.before * scale;
+    if (line.number == (axis == 0 ? cell.column : cell.row)) return at;
+    at += line.behind * scale + line.room_behind + gap_[axis];
   }
   return at;
 }
@@ -75,7 +81,7 @@ std::vector<glm::dvec2> Layout::anchors(double scale, const glm::dvec2& corner) 
 bool Layout::leaves_free(const glm::dvec2& block, double scale, const glm::dvec2& corner) const {
   const std::vector<glm::dvec2> places = anchors(scale, corner);
   for (std::size_t i = 0; i < cells_.size(); ++i) {
-    const glm::dvec2 end = places[i] + cells_[i].high * scale;
+    const glm::dvec2 end = places[i] + cells_[i].high * scale + cells_[i].room_behind;
     if (end.x > block.x && end.y > block.y) return false;
   }
   return true;

@@ -14,6 +14,8 @@ namespace frontmost::cli {
 struct ViewCell {
   glm::dvec2 low{0}, high{0};
   int column = 0, row = 0;
+  /// Millimetres of paper beside it at any scale, for what is written about it: left and above, right and below.
+  glm::dvec2 room_before{0}, room_behind{0};
 };
 
 /// The cell of a named view about the front view: a view from the left stands to the right in first-angle projection,
@@ -44,6 +46,7 @@ class Layout {
   struct Line {
     int number;
     double before, behind;
+    double room_before = 0, room_behind = 0;
   };
   [[nodiscard]] static std::vector<Line> lines_of(const std::vector<ViewCell>& cells, int axis);
   [[nodiscard]] double place(const ViewCell& cell, int axis, double scale) const;

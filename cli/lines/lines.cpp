@@ -11,8 +11,10 @@
 #include "cli/console.h"
 #include "cli/failure.h"
 #include "cli/interruption.h"
+#include "cli/lines/centres.h"
 #include "cli/lines/layout.h"
 #include "cli/lines/lines_report.h"
+#include "cli/lines/sizes.h"
 #include "cli/lines/titles.h"
 #include "cli/lines/tones.h"
 #include "cli/lines/units.h"
@@ -77,6 +79,8 @@ void check(const Settings& settings) {
   check_hidden_views(s);
   check_frame(s);
   check_tones(s);
+  check_centres(settings);
+  check_dimensions(s);
   if (s.outputs.empty() && !settings.run.json) throw UsageError("nothing to do: give -o FILE or --json");
   if (s.scale_rule && s.scale_rule != ScaleRule::fit && !is_parallel(settings))
     throw UsageError("--scale: in perspective nothing has a scale; add --camera-orthographic, or --views");
@@ -189,6 +193,8 @@ Frame frame_of(const DrawnView& view, const Settings& settings, const Surfaces& 
   }
   frame.cell.low = (box.low - frame.anchor) * view.millimetres_per_pixel;
   frame.cell.high = (box.high - frame.anchor) * view.millimetres_per_pixel;
+  if (view.rounds && !view.rounds->rounds.empty())
+    frame.cell.room_before = frame.cell.room_behind = glm::dvec2(centre_overshoot);
   return frame;
 }
 
@@ -200,6 +206,7 @@ SheetPlan place(std::vector<DrawnView>& views, const Settings& settings, const S
     frames.push_back(frame_of(views[i], settings, surfaces, i));
     cells.push_back(frames.back().cell);
   }
+  keep_room(cells, views, settings);
   SheetPlan plan = plan_sheet(Layout(cells, glm::dvec2(gap_between_views)), settings.drawing, is_parallel(settings));
   for (std::size_t i = 0; i < views.size(); ++i) {
     SheetView& sheet = views[i].sheet;
@@ -230,7 +237,8 @@ LinePens pens_of(const DrawingSettings& settings) {
   if (settings.hidden == DrawingSettings::Hidden::thin) pens.hidden = thin_pen();
   if (!settings.pen) return pens;
   const double factor = *settings.pen / pens.seen.width;
-  for (Pen* const pen : {&pens.outline, &pens.seen, &pens.crease, &pens.hidden, &pens.hatching, &pens.stippling}) {
+  for (Pen* const pen :
+       {&pens.outline, &pens.seen, &pens.crease, &pens.hidden, &pens.hatching, &pens.stippling, &pens.centre}) {
     pen->width *= factor;
     for (double& dash : pen->dashes) dash *= factor;  // standards count dashes in widths
   }
@@ -264,6 +272,9 @@ Json draw_model(Settings settings, const Execution& execution, Progress& progres
   std::vector<DrawnView> views = draw_all(settings, surfaces, execution);
   timings.lines = watch.milliseconds();
   watch = {};
+  find_rounds_of(views, settings, execution);
+  timings.rounds = watch.milliseconds();
+  watch = {};
   const SheetPlan plan = place(views, settings, surfaces);
   for (DrawnView& view : views) {
     const StrokeOptions options = stroke_options(settings.drawing, view);
@@ -274,6 +285,7 @@ Json draw_model(Settings settings, const Execution& execution, Progress& progres
   std::vector<SheetView> sheets;
   for (DrawnView& view : views) {
     add_tones(view, settings.drawing, execution);
+    add_centre_lines(view, settings.drawing);
     sheets.push_back(view.sheet);
   }
   timings.tones = watch.milliseconds();
@@ -282,6 +294,9 @@ Json draw_model(Settings settings, const Execution& execution, Progress& progres
   const std::optional<double> scale = is_parallel(settings) ? std::optional(plan.scale) : std::nullopt;
   if (page.layers.empty()) show_warnings({"nothing is seen; the drawing is empty"}, settings.run, progress);
   if (const auto hint = unit_hint(settings, plan.scale); hint && scale) show_warnings({*hint}, settings.run, progress);
+  if (const std::size_t left_out = add_dimensions(page, views, settings); left_out > 0)
+    show_warnings({fmt::format("{} diameters had no room; take a larger --page or fewer views", left_out)},
+                  settings.run, progress);
   if (settings.drawing.has_frame()) add_frame(page, settings, scale, scene.name);
   std::optional<Page> dashed;
   if (settings.drawing.plot) dashed = with_real_dashes(page, execution);

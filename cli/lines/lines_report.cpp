@@ -24,6 +24,7 @@ Json view_json(const DrawnView& view) {
           {"edges_by_kind", kinds},
           {"parts", view.drawing.parts.size()},
           {"strokes", view.sheet.strokes.strokes.size()},
+          {"centre_lines", view.sheet.centre_lines.size()},
           {"visible_mm", seen},
           {"hidden_mm", hidden}};
 }
@@ -49,8 +50,11 @@ Json lines_json(const Settings& settings, const std::vector<DrawnView>& views, c
   json["drawn_mm"] = all.down;
   json["moved_mm"] = all.up;
   json["outputs"] = settings.drawing.outputs;
-  json["timings_ms"] = {
-      {"lines", timings.lines}, {"strokes", timings.strokes}, {"tones", timings.tones}, {"write", timings.write}};
+  json["timings_ms"] = {{"lines", timings.lines},
+                        {"rounds", timings.rounds},
+                        {"strokes", timings.strokes},
+                        {"tones", timings.tones},
+                        {"write", timings.write}};
   return json;
 }
 

@@ -21,14 +21,15 @@ struct DrawnView {
   std::unique_ptr<const Surfaces> own;
   const Surfaces* surfaces = nullptr;  ///< what the drawing's ids mean
   Drawing drawing;
-  double millimetres_per_pixel = 1;  ///< at scale 1:1; in perspective of no meaning by itself
-  bool keeps_frame = false;          ///< the camera was placed: the picture's rectangle counts, not what is in it
-  bool shows_hidden = true;          ///< where hidden edges are drawn at all
+  double millimetres_per_pixel = 1;      ///< at scale 1:1; in perspective of no meaning by itself
+  std::shared_ptr<const Rounds> rounds;  ///< of the surfaces; null where they are not asked for
+  bool keeps_frame = false;              ///< the camera was placed: the picture's rectangle counts, not what is in it
+  bool shows_hidden = true;              ///< where hidden edges are drawn at all
   SheetView sheet{};
 };
 
 struct LinesTimings {
-  double lines = 0, strokes = 0, tones = 0, write = 0;
+  double lines = 0, rounds = 0, strokes = 0, tones = 0, write = 0;
 };
 
 /// `scale` is null in perspective.

@@ -2,6 +2,7 @@
 // frontmost lines: real millimetres, aligned views, every line once, and nothing that a plotter would not know.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <map>
 
 #include "program.h"
@@ -127,6 +128,87 @@ TEST_F(LinesCommand, ScalesAndUnits) {
   const json standard = succeed("lines cube.stl --view front --camera-orthographic --scale standard --json").json();
   EXPECT_EQ(standard["scale"], 100);  // of 190 mm
   EXPECT_EQ(standard["scale_text"], "100:1");
+}
+
+/// A closed tube of 36 sides about z, as OBJ.
+std::string peg_obj(double radius, double height) {
+  constexpr int sides = 36;
+  std::string text = "o peg\n";
+  for (const double z : {0.0, height})
+    for (int i = 0; i < sides; ++i)
+      text += "v " + std::to_string(radius * std::cos(i * 0.174532925199433)) + " " +
+              std::to_string(radius * std::sin(i * 0.174532925199433)) + " " + std::to_string(z) + "\n";
+  std::string foot = "f", head = "f";
+  for (int i = 1; i <= sides; ++i) {
+    const int next = i % sides + 1;
+    text += "f " + std::to_string(i) + " " + std::to_string(next) + " " + std::to_string(sides + next) + " " +
+            std::to_string(sides + i) + "\n";
+    foot += " " + std::to_string(sides + 1 - i);
+    head += " " + std::to_string(sides + i);
+  }
+  return text + foot + "\n" + head + "\n";
+}
+
+const json* layer_named(const json& page, const std::string& name) {
+  for (const json& layer : page["layers"])
+    if (layer["name"] == name) return &layer;
+  return nullptr;
+}
+
+std::size_t path_count(const json& layer) {
+  std::size_t count = 0;
+  for (const json& group : layer["groups"]) count += group["paths"].size();
+  return count;
+}
+
+TEST_F(LinesCommand, SheetsHaveCentreLines) {
+  write("peg.obj", peg_obj(10, 40));
+  const std::string sheet = "peg.obj --up +z --views front,top,iso --page a3 --scale 1:1 ";
+  const json page = drawn(sheet);
+  const json* const centres = layer_named(page, "6 centre lines");
+  ASSERT_NE(centres, nullptr);
+  EXPECT_EQ(path_count(*centres), 3u);  // an axis and a cross
+  double longest = 0;
+  for (const json& group : (*centres)["groups"])
+    for (const json& path : group["paths"])
+      longest = std::max(longest, std::abs(path["points"][0][1].get<double>() - path["points"][1][1].get<double>()));
+  EXPECT_NEAR(longest, 40 + 2 * 3, 0.0011);
+  EXPECT_EQ(layer_named(drawn(sheet + "--centre-lines no"), "6 centre lines"), nullptr);
+  EXPECT_EQ(layer_named(drawn(sheet + "--style figure"), "6 centre lines"), nullptr);
+  EXPECT_NE(layer_named(drawn(sheet + "--style figure --centre-lines yes"), "6 centre lines"), nullptr);
+  const std::string single = "peg.obj --up +z --view front --camera-orthographic ";
+  EXPECT_EQ(layer_named(drawn(single), "6 centre lines"), nullptr);
+  EXPECT_NE(layer_named(drawn(single + "--centre-lines yes"), "6 centre lines"), nullptr);
+  EXPECT_EQ(layer_named(drawn("box.obj --up +z --views front,top"), "6 centre lines"), nullptr);
+  succeed("lines " + sheet + " -o peg.svg -o peg.dxf -o peg.pdf");
+  EXPECT_THAT(read("peg.svg"), HasSubstr("inkscape:label=\"6 centre lines\""));
+  EXPECT_THAT(read("peg.dxf"), HasSubstr("6_CENTRE_LINES"));
+  EXPECT_THAT(read("peg.pdf"), HasSubstr("<FEFF0036002000630065006E007400720065"));  // "6 centre", in UTF-16
+  expect_failure("lines peg.obj -o a.svg --centre-lines yes", 2, "--centre-lines: perspective has none");
+}
+
+TEST_F(LinesCommand, SheetsHaveDimensionsWhereTheyAreAskedFor) {
+  write("peg.obj", peg_obj(10, 40));
+  const std::string sheet = "peg.obj --up +z --views front,top,iso --page a3 --scale 1:1 ";
+  EXPECT_EQ(layer_named(drawn(sheet), "7 dimensions"), nullptr);
+  const json page = drawn(sheet + "--dimensions");
+  const json* const sizes = layer_named(page, "7 dimensions");
+  ASSERT_NE(sizes, nullptr);
+  ASSERT_EQ((*sizes)["groups"].size(), 2u);
+  // The height and the diameter: two extension lines each, a dimension line and two arrowheads.
+  EXPECT_EQ((*sizes)["groups"][0]["paths"].size(), 10u);
+  for (const json& group : (*sizes)["groups"])
+    for (const json& path : group["paths"])
+      for (const json& point : path["points"]) {
+        EXPECT_GE(point[0].get<double>(), 5);
+        EXPECT_GE(point[1].get<double>(), 5);
+      }
+  const json box = drawn("box.obj --up +z --views front,top,left --page a3 --scale 1:1 --dimensions");
+  ASSERT_NE(layer_named(box, "7 dimensions"), nullptr);
+  EXPECT_EQ((*layer_named(box, "7 dimensions"))["groups"][0]["paths"].size(), 15u);
+  succeed("lines " + sheet + "--dimensions -o peg.dxf --plot");
+  EXPECT_THAT(read("peg.dxf"), HasSubstr("7_DIMENSIONS"));
+  expect_failure("lines peg.obj -o a.svg --dimensions", 2, "--dimensions needs --views");
 }
 
 TEST_F(LinesCommand, ViewsStandInLine) {
