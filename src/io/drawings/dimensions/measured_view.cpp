@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 namespace frontmost::detail {
 namespace {
@@ -47,7 +48,8 @@ Extent MeasuredView::extent(int axis) const {
   const View& camera = view_.drawing->view;
   const glm::dvec3 direction = axis == 0 ? camera.right() : camera.up();
   double low = all.low, high = all.high;
-  for (const Round& round : view_.rounds != nullptr ? view_.rounds->rounds : std::vector<Round>()) {
+  for (const Round& round :
+       view_.rounds != nullptr ? std::span<const Round>(view_.rounds->rounds) : std::span<const Round>()) {
     const double along = glm::dot(round.axis, direction), slack = widest_sagitta * round.radius * millimetres_;
     if (round.turn < nearly_whole) continue;
     const double reach = round.radius * millimetres_ * std::sqrt(std::max(0.0, 1 - along * along));
