@@ -59,7 +59,7 @@ SECTIONS = [
              "bracket.obj --up +z --view iso --camera-orthographic --plot --hidden dashed --hatch 1.5 --page 160,130 "
              "--margin 5 -o plot.svg", command="lines"),
         Show("A drawing sheet", "Three views in line and one at an angle, to scale. The same as PDF and DXF.",
-             "bracket.obj --up +z --views front,top,left,iso --hidden dashed --page 200,175 --scale 1:1 -o sheet.svg "
+             "bracket.obj --up +z --views front,top,left,iso --hidden dashed --page 200,180 --scale 1:1 -o sheet.svg "
              "-o sheet.pdf -o sheet.dxf", command="lines"),
         Show("Polygons", "The painter's algorithm: shaded polygons as vectors, what is hidden left out or cut.",
              "builtin:teapot --resolution 640,480 -o painted.svg -o painted.pdf"),
