@@ -19,12 +19,13 @@ struct PrimitiveSource {
 };
 
 /// All triangles of a scene in world space, flattened over instances, in clusters, with stable ids: the id of a
-/// triangle is its running number over all instances in scene order. Immutable, and safe to share between threads.
-/// Triangles with a corner that is not finite in world space are never seen, but keep their number. Singular transforms
-/// are no error: they flatten what they place. Only the first three rows of a transform count.
-/// Triangles whose material is of alpha mode MASK have holes wherever their alpha (base colour, texture and vertices)
-/// is below the cutoff; the texture is looked up as it is stored. Every method that answers in samples sees through
-/// holes; lines() does not.
+/// triangle is its running number over all instances in scene order. World space is about Scene::origin, which models
+/// far from zero have: so are all places that are given to methods, and that they answer with. Immutable, and safe to
+/// share between threads. Triangles with a corner that is not finite in world space are never seen, but keep their
+/// number. Singular transforms are no error: they flatten what they place. Only the first three rows of a transform
+/// count. Triangles whose material is of alpha mode MASK have holes wherever their alpha (base colour, texture and
+/// vertices) is below the cutoff; the texture is looked up as it is stored. Every method that answers in samples sees
+/// through holes; lines() does not.
 class Surfaces {
  public:
   /// Borrows `scene`, which must outlive the surfaces and stay as it is.

@@ -97,9 +97,9 @@ inline constexpr std::size_t most_samples = std::size_t(1) << 28;
 
 /// A camera and a pixel grid: all that decides what is visible, beside the surfaces.
 struct View {
-  int width = 0, height = 0;  ///< pixels, 1 to 16384 each
-  int samples = 1;            ///< per pixel: 1, 2, 4, 8 or 16; positions as in sample_offsets()
-  glm::dmat4 world_from_eye{1.0};
+  int width = 0, height = 0;       ///< pixels, 1 to 16384 each
+  int samples = 1;                 ///< per pixel: 1, 2, 4, 8 or 16; positions as in sample_offsets()
+  glm::dmat4 world_from_eye{1.0};  ///< about Scene::origin: an eye in the coordinates of a file is less by it
   Projection projection;
   Culling culling = Culling::none;
 
