@@ -116,4 +116,5 @@ def main():
     (check if sys.argv[1] == "check" else update)(program, folder)
 
 
-main()
+if __name__ == "__main__":
+    main()
