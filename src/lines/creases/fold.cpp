@@ -8,25 +8,47 @@ namespace frontmost::lines_detail {
 namespace {
 
 constexpr double kDegree = 0.017453292519943295;
-/// A regular polygon of ten sides keeps its corners, and one of eleven is round.
-constexpr double kSharp = 34 * kDegree;
 constexpr double kStrong = 18 * kDegree, kWeak = 9 * kDegree;
 /// A side that turns back by more is not rough: it has a crease of its own.
 constexpr double kRoughest = 10 * kDegree;
-const double kSharpCosine = std::cos(kSharp), kLeastCosine = std::cos(kLeastFold);
+/// A regular polygon of ten sides keeps its corners, and one of eleven is round: the cosine of 34 degrees.
+constexpr double kSharpCosine = 0.82903757255504162;
 constexpr double kAhead = 0.05;      // the sine of the angle to the edge: sides of rims run along it
 constexpr double kOtherSide = 0.37;  // the cosine of 68 degrees
 constexpr double kFar = 3;           // times the width of the triangle on the other side
 constexpr int kMostTriangles = 16;   // that are looked at around a corner
 
-/// The plane across an edge: angles in it are those around the edge, and 0 is the left side's normal.
+// Angles are told by what every machine rounds alike, for drawings are the same on all: no function of the C library.
+
+/// Of half the angle whose sine and cosine are these, times any length: grows with the angle, from -pi to pi.
+double half_tangent(double sine, double cosine) {
+  const double sum = std::sqrt(sine * sine + cosine * cosine) + cosine;
+  return sum > 0 ? sine / sum : 0;
+}
+
+/// The angle with the tangent of its half, which is not less than 0. To 1e-7 for angles up to 90 degrees.
+double angle_of(double half) {
+  const double t = half / (1 + std::sqrt(1 + half * half)), square = t * t;
+  double sum = 0;
+  for (int n = 15; n > 0; n -= 2) sum = 1.0 / n - square * sum;
+  return 4 * t * sum;
+}
+
+/// Of more than a right angle: a right one.
+double angle_between(const glm::dvec3& n, const glm::dvec3& m) {
+  const double cosine = glm::dot(n, m);
+  return angle_of(cosine > 0 ? half_tangent(glm::length(glm::cross(n, m)), cosine) : 1);
+}
+
+/// The plane across an edge. A direction in it is one of the surface there as a complex number, whose argument is the
+/// angle from the left side's normal, around the edge.
 class CrossSection {
  public:
   CrossSection(const glm::dvec3& along, const glm::dvec3& left)
       : along_(along), up_(left - along * glm::dot(left, along)), side_(glm::cross(along, up_)) {}
 
-  [[nodiscard]] double angle(const glm::dvec3& normal) const {
-    return std::atan2(glm::dot(normal, side_), glm::dot(normal, up_));
+  [[nodiscard]] glm::dvec2 direction(const glm::dvec3& normal) const {
+    return {glm::dot(normal, up_), glm::dot(normal, side_)};
   }
   [[nodiscard]] const glm::dvec3& along() const { return along_; }
 
@@ -34,14 +56,20 @@ class CrossSection {
   glm::dvec3 along_, up_, side_;
 };
 
-/// How the surface on one side of a fold turns beyond its triangle: on as the fold does, and back; not less than 0.
+/// half_tangent() of the angle from one direction to another.
+double turn_between(const glm::dvec2& from, const glm::dvec2& to) {
+  return half_tangent(from.x * to.y - from.y * to.x, glm::dot(from, to));
+}
+
+/// How the surface on one side of a fold turns beyond its triangle: on as the fold does, and back. Tangents of half the
+/// angles, not less than 0.
 struct Turn {
   double on = 0, back = 0;
 
-  [[nodiscard]] bool is_beyond(double angle) const { return angle > on || -angle > back; }
-  void add(double angle) {
-    on = std::max(on, angle);
-    back = std::max(back, -angle);
+  [[nodiscard]] bool is_beyond(double half) const { return half > on || -half > back; }
+  void add(double half) {
+    on = std::max(on, half);
+    back = std::max(back, -half);
   }
 };
 
@@ -50,10 +78,11 @@ struct FoldSide {
   TurnedTriangle triangle;
   std::uint32_t tip;
   glm::dvec3 normal, ahead;  ///< `ahead`: along the surface and away from the edge
-  double angle, width;
+  glm::dvec2 direction;      ///< of the normal, in the cross-section
+  double width;
 };
 
-/// `sense` is 1 where greater angles go on as the fold does, and -1 else. What counts lies ahead of the tip.
+/// `sense` is 1 where the greater angles go on as the fold does, and -1 else. What counts lies ahead of the tip.
 Turn turn_beyond(const Neighbours& near, const FoldSide& side, const CrossSection& section, double sense) {
   const auto is_ahead = [&](std::uint32_t rim) {
     const glm::dvec3 step = near.place(rim) - near.place(side.tip);
@@ -66,12 +95,13 @@ Turn turn_beyond(const Neighbours& near, const FoldSide& side, const CrossSectio
   for (int k = 0; k < 3; ++k) {
     if (t[k] == side.tip) continue;
     // Around the tip, as long as nothing is sharp.
-    Fan::Side at{side.triangle, t[k]};
+    Fan::Side at = fan.side(side.triangle, t[k]);
     glm::dvec3 last = side.normal;
     bool was_ahead = is_ahead(at.rim);
     for (int i = 0; i < kMostTriangles; ++i) {
       at = fan.beyond(at);
-      if (!at.triangle.is_there() || at.triangle.number == side.triangle.number) break;
+      if (!at.triangle.is_there()) break;
+      if (at.triangle.number == side.triangle.number) return turn;  // once around
       const bool goes_ahead = is_ahead(at.rim), ahead = goes_ahead || was_ahead;
       was_ahead = goes_ahead;
       const glm::dvec3 normal = near.normal(at.triangle);
@@ -79,12 +109,11 @@ Turn turn_beyond(const Neighbours& near, const FoldSide& side, const CrossSectio
         if (near.is_sliver(at.triangle.number)) continue;
         break;
       }
-      // Beyond a cone's tip is another side of it.
-      const double angle = sense * (section.angle(normal) - side.angle);
-      const bool counts = ahead && glm::dot(normal, side.normal) >= kOtherSide && turn.is_beyond(angle);
-      if (counts && near.is_sliver(at.triangle.number)) continue;
-      if (counts) turn.add(angle);
       last = normal;
+      // Beyond a cone's tip is another side of it.
+      if (!ahead || glm::dot(normal, side.normal) < kOtherSide) continue;
+      const double half = sense * turn_between(side.direction, section.direction(normal));
+      if (turn.is_beyond(half) && !near.is_sliver(at.triangle.number)) turn.add(half);
     }
   }
   return turn;
@@ -98,8 +127,8 @@ JudgedFold judge_fold(const Neighbours& near, const FeatureEdge& edge) {
   const TurnedTriangle triangles[2] = {{edge.left, false}, {edge.right, !is_alike}};
   const glm::dvec3 normals[2] = {near.surface_normal(triangles[0]), near.surface_normal(triangles[1])};
   const double cosine = glm::dot(normals[0], normals[1]);
-  if (cosine < kSharpCosine) return {FoldGrade::sharp, std::acos(std::max(cosine, -1.0))};
-  if (cosine > kLeastCosine) return {};
+  if (cosine < kSharpCosine) return {FoldGrade::sharp, angle_between(normals[0], normals[1])};
+  if (cosine > kLeastFoldCosine) return {};
 
   const glm::dvec3 begin = near.place(edge.from);
   const CrossSection section(glm::normalize(near.place(edge.to) - begin), normals[0]);
@@ -109,15 +138,16 @@ JudgedFold judge_fold(const Neighbours& near, const FeatureEdge& edge) {
     const glm::dvec3 to_tip = near.place(tip) - begin;
     const glm::dvec3 across = to_tip - section.along() * glm::dot(to_tip, section.along());
     const double width = glm::length(across);
-    sides[i] = {triangles[i], tip, normals[i], across / width, section.angle(normals[i]), width};
+    sides[i] = {triangles[i], tip, normals[i], across / width, section.direction(normals[i]), width};
   }
-  const double fold = sides[1].angle - sides[0].angle, angle = std::abs(fold), sense = fold < 0 ? -1 : 1;
-  double jump = angle, back = 0;
+  const double fold = turn_between(sides[0].direction, sides[1].direction), half = std::abs(fold);
+  const double sense = fold < 0 ? -1 : 1;
+  double jump = angle_of(half), back = 0;
   for (int i = 0; i < 2; ++i) {
     const Turn turn = turn_beyond(near, sides[i], section, i == 0 ? -sense : sense);
     const double share = std::min(1.0, kFar * sides[1 - i].width / sides[i].width);
-    jump -= 0.5 * share * std::min(turn.on, angle);
-    back = std::max(back, share * std::min(turn.back, kRoughest));
+    jump -= 0.5 * share * angle_of(std::min(turn.on, half));
+    back = std::max(back, share * std::min(angle_of(turn.back), kRoughest));
     if (jump - back < kWeak) return {};
   }
   jump -= back;

@@ -8,8 +8,9 @@
 
 namespace frontmost::lines_detail {
 
-/// Radians: folds of less are no creases, whatever is beside them. Half the edges of a scan are folds of some degrees.
-inline constexpr double kLeastFold = 0.2617993877991494;
+/// The cosine of 15 degrees: folds of less are no creases, whatever is beside them. Half the edges of a scan are folds
+/// of some degrees.
+inline constexpr double kLeastFoldCosine = 0.96592582628906831;
 
 enum class FoldGrade : std::uint8_t {
   smooth,

@@ -41,21 +41,26 @@ Fan Neighbours::fan(std::uint32_t vertex) const {
   return fan;
 }
 
+Fan::Side Fan::side(const TurnedTriangle& triangle, std::uint32_t rim) const {
+  std::size_t entry = 0;
+  while (entry < count_ && entries_[entry].triangle != triangle.number) ++entry;
+  return {triangle, rim, entry};
+}
+
 Fan::Side Fan::beyond(const Side& side) const {
-  const auto has_it = [&](const Entry& entry) { return entry.triangle == side.triangle.number; };
-  const auto end = entries_.begin() + std::ptrdiff_t(count_);
-  const auto own = std::find_if(entries_.begin(), end, has_it);
-  if (own == end) return {{}, no_index};
-  const bool is_next = own->next == side.rim;
-  const std::uint32_t own_rim = is_next ? own->last : own->next;
-  Side found{{}, no_index};
-  for (auto entry = entries_.begin(); entry != end; ++entry) {
-    if (entry->next != side.rim && entry->last != side.rim) continue;
-    const bool is_alike = (entry->next == side.rim) != is_next;
-    const std::uint32_t rim = entry->next == side.rim ? entry->last : entry->next;
+  if (side.entry >= count_) return {{}, no_index, count_};
+  const Entry& own = entries_[side.entry];
+  const bool is_next = own.next == side.rim;
+  const std::uint32_t own_rim = is_next ? own.last : own.next;
+  Side found{{}, no_index, count_};
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Entry& entry = entries_[i];
+    if (entry.next != side.rim && entry.last != side.rim) continue;
+    const bool is_alike = (entry.next == side.rim) != is_next;
+    const std::uint32_t rim = entry.next == side.rim ? entry.last : entry.next;
     if (rim == own_rim || rim == found.rim) continue;
-    if (found.triangle.is_there()) return {{}, no_index};
-    found = {{entry->triangle, side.triangle.is_turned == is_alike}, rim};
+    if (found.triangle.is_there()) return {{}, no_index, count_};
+    found = {{entry.triangle, side.triangle.is_turned == is_alike}, rim, i};
   }
   return found;
 }

@@ -36,7 +36,10 @@ class Fan {
   struct Side {
     TurnedTriangle triangle;
     std::uint32_t rim;  ///< the side's other vertex
+    std::size_t entry;  ///< of the triangle
   };
+  /// Of a triangle at the vertex that fan() kept.
+  [[nodiscard]] Side side(const TurnedTriangle& triangle, std::uint32_t rim) const;
   /// The triangle beyond a side of one, and its other side at the vertex. Copies of a triangle count once; none where
   /// there are several others.
   [[nodiscard]] Side beyond(const Side& side) const;

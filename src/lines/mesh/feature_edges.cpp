@@ -27,7 +27,7 @@ class Classifier {
         seen_(seen),
         surfaces_(surfaces),
         options_(options),
-        cosine_(std::cos(options.crease_angle.value_or(kLeastFold))),
+        cosine_(options.crease_angle ? std::cos(*options.crease_angle) : kLeastFoldCosine),
         has_borders_(options.borders && !is_one_surface(surfaces.scene())) {}
 
   [[nodiscard]] const WeldedMesh& mesh() const { return mesh_; }
