@@ -23,9 +23,10 @@ inline constexpr int edge_kind_count = 5;
 struct LineOptions {
   /// Radians, 0 to pi: edges whose triangles' normals differ by more are creases. Edges between triangles of one plane
   /// never are. None: a crease is where the surfaces on both sides differ, by 18 degrees or more, once each has been
-  /// followed to the edge as it turns beside it; or by half as much where a crease goes on along them. Slivers have the
-  /// normals of their surfaces, triangles that meet at more than 34 degrees are always creases, and those at less than 15
-  /// never. One or two edges that end in the air are none but where they are longer than a twentieth of all.
+  /// followed to the edge as it turns beside it; by 12 or more where both turn evenly, and by half as much at most; or by
+  /// 9 where a crease goes on along them. Slivers have the normals of their surfaces, triangles that meet at more than 34
+  /// degrees are always creases, and those at less than 15 never. One or two edges that end in the air are none but where
+  /// they are longer than a twentieth of all.
   std::optional<double> crease_angle = std::nullopt;
   /// True: DrawnPart::hidden_by counts; false: it tells 0 from more, and costs less.
   bool counts_hidden = false;

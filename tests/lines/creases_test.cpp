@@ -125,6 +125,37 @@ TEST(Creases, FilletsRunIntoPlanesWithoutALine) {
   }
 }
 
+/// A wall on a line of two arcs, the first to the right and the second to the left, in steps of `step`; where they meet
+/// it turns by `fold`.
+Mesh two_arcs(double step, double fold) {
+  constexpr int steps = 6;
+  std::vector<glm::vec2> line = {{0, 0}};
+  double heading = 0;
+  for (int i = 0; i < 2 * steps; ++i) {
+    line.push_back(line.back() + glm::vec2(std::cos(heading), std::sin(heading)));
+    heading += i + 1 == steps ? fold : i + 1 < steps ? -step : step;
+  }
+  Mesh mesh;
+  for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+    const glm::vec3 a(line[i], 0), b(line[i + 1], 0), c(line[i + 1], 7), d(line[i], 7);
+    add_triangle(mesh, a, b, i % 2 == 0 ? c : d);
+    add_triangle(mesh, i % 2 == 0 ? a : b, c, d);
+  }
+  return mesh;
+}
+
+TEST(Creases, ACylinderAndAFilletThatMeetAtAFewDegreesHaveALine) {
+  // The open wall has 12 edges below and above, and one at each end.
+  for (const double step : {1.0, 3.0, 5.0, 6.0})
+    for (const double fold : {17.0, 19.0, 25.0}) {
+      SCOPED_TRACE(step);
+      EXPECT_EQ(creases_of(two_arcs(step * kDegree, fold * kDegree)).size(), 27u) << fold;
+    }
+  // An arc that goes over into its like without a fold has none.
+  for (const double step : {6.0, 10.0, 16.0})
+    EXPECT_EQ(creases_of(two_arcs(step * kDegree, -step * kDegree)).size(), 26u) << step;
+}
+
 TEST(Creases, SpheresAreRound) {
   for (const int sides : {16, 24, 60}) {
     std::vector<ProfilePoint> rings;

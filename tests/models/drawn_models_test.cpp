@@ -148,8 +148,8 @@ constexpr Reference references[] = {{"cad/as1.stl", {1, -1, 1}, 2444.05, 0.002},
                                     {"cad/torus.stl", {0, 0, 1}, 375.91, 0.005},
                                     {"cad/torus.stl", {1, -1, 1}, 302.41, 0.05},
                                     {"cad/torus.stl", {0.31, -0.82, 0.48}, 288.84, 0.05},
-                                    {"cad/crank-arm.stl", {1, -1, 1}, 1079.29, 0.05},
-                                    {"cad/crank-arm.stl", {0.31, -0.82, 0.48}, 1117.46, 0.05}};
+                                    {"cad/crank-arm.stl", {1, -1, 1}, 1079.29, 0.02},
+                                    {"cad/crank-arm.stl", {0.31, -0.82, 0.48}, 1117.46, 0.02}};
 
 TEST(DrawnModels, AreAsLongAsAnotherSystemDrawsThem) {
   FRONTMOST_NEEDS_MODELS();

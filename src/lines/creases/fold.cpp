@@ -9,6 +9,9 @@ namespace {
 
 constexpr double kDegree = 0.017453292519943295;
 constexpr double kStrong = 18 * kDegree, kWeak = 9 * kDegree;
+/// Beside surfaces that turn evenly, and by less than this share of it.
+constexpr double kStrongBesideEven = 12 * kDegree, kEven = 0.5;
+constexpr double kOneWay = 0.25;  // of what a side turns one way it may turn the other
 /// A side that turns back by more is not rough: it has a crease of its own.
 constexpr double kRoughest = 10 * kDegree;
 /// A regular polygon of ten sides keeps its corners, and one of eleven is round: the cosine of 34 degrees.
@@ -66,11 +69,40 @@ double turn_between(const glm::dvec2& from, const glm::dvec2& to) {
 struct Turn {
   double on = 0, back = 0;
 
+  [[nodiscard]] double most() const { return std::max(on, back); }
+  /// As a cylinder does, or a plane: what is rough turns both ways.
+  [[nodiscard]] bool is_one_way() const { return std::min(on, back) <= kOneWay * most(); }
   [[nodiscard]] bool is_beyond(double half) const { return half > on || -half > back; }
   void add(double half) {
     on = std::max(on, half);
     back = std::max(back, -half);
   }
+};
+
+/// What is left of a fold's angle.
+class Jump {
+ public:
+  explicit Jump(double half) : half_(half), angle_(angle_of(half)) {}
+
+  /// A side counts by `share`, 0 to 1.
+  void take_off(const Turn& turn, double share) {
+    angle_ -= 0.5 * share * angle_of(std::min(turn.on, half_));
+    rough_ = std::max(rough_, share * std::min(angle_of(turn.back), kRoughest));
+    most_ = std::max(most_, angle_of(turn.most()));
+    is_even_ = is_even_ && turn.is_one_way();
+  }
+  [[nodiscard]] double angle() const { return is_clear() ? angle_ : angle_ - rough_; }
+  /// Never rises as more is taken off.
+  [[nodiscard]] FoldGrade grade() const {
+    if (is_clear() || angle() >= kStrong) return FoldGrade::strong;
+    return angle() < kWeak ? FoldGrade::smooth : FoldGrade::weak;
+  }
+
+ private:
+  [[nodiscard]] bool is_clear() const { return is_even_ && angle_ >= kStrongBesideEven && most_ <= kEven * angle_; }
+
+  double half_, angle_, rough_ = 0, most_ = 0;
+  bool is_even_ = true;
 };
 
 /// One side of a fold: its triangle, of which `tip` is not on the edge.
@@ -142,16 +174,13 @@ JudgedFold judge_fold(const Neighbours& near, const FeatureEdge& edge) {
   }
   const double fold = turn_between(sides[0].direction, sides[1].direction), half = std::abs(fold);
   const double sense = fold < 0 ? -1 : 1;
-  double jump = angle_of(half), back = 0;
+  Jump jump(half);
   for (int i = 0; i < 2; ++i) {
-    const Turn turn = turn_beyond(near, sides[i], section, i == 0 ? -sense : sense);
     const double share = std::min(1.0, kFar * sides[1 - i].width / sides[i].width);
-    jump -= 0.5 * share * angle_of(std::min(turn.on, half));
-    back = std::max(back, share * std::min(angle_of(turn.back), kRoughest));
-    if (jump - back < kWeak) return {};
+    jump.take_off(turn_beyond(near, sides[i], section, i == 0 ? -sense : sense), share);
+    if (jump.grade() == FoldGrade::smooth) return {};
   }
-  jump -= back;
-  return {jump < kStrong ? FoldGrade::weak : FoldGrade::strong, jump};
+  return {jump.grade(), jump.angle()};
 }
 
 }  // namespace frontmost::lines_detail

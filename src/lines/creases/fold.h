@@ -28,7 +28,9 @@ struct JudgedFold {
 /// went on to curve as it does beyond its triangle: half of the next angle on each side. So a cylinder jumps by
 /// nothing, however few sides it has, a chamfer or a cone's rim by all of its angle, and the edge between a plane and a
 /// fillet by half. What is far in comparison with the other side's triangle counts little, and where a side turns back
-/// the fold has to be deeper by as much: it is rough. `edge` has two triangles. O(triangles at its corners).
+/// the fold has to be deeper by as much: it is rough. Where each side turns one way alone, and by half as much at most,
+/// the fold stands out, and may be fainter: a plane or a cylinder is even, not rough, whichever way it turns. `edge`
+/// has two triangles. O(triangles at its corners).
 [[nodiscard]] JudgedFold judge_fold(const Neighbours& near, const FeatureEdge& edge);
 
 }  // namespace frontmost::lines_detail
