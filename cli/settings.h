@@ -160,6 +160,12 @@ struct DrawingSettings {
     std::optional<std::string> title, number, author, date, owner;
   };
 
+  /// A view of the model cut by a plane across the direction of sight.
+  struct SectionView {
+    NamedView view = NamedView::front;
+    std::optional<double> at;  ///< its place along that direction, in the coordinates of the file; none: the middle
+  };
+
   Hidden hidden = Hidden::none;
   std::optional<std::vector<NamedView>> hidden_views;  ///< of a sheet that show hidden edges; none: all but iso
   Style style = Style::technical;
@@ -169,6 +175,7 @@ struct DrawingSettings {
   std::optional<PaperSettings> paper;
   double margin = 10;  ///< millimetres
   std::vector<NamedView> views;
+  std::vector<SectionView> sections;
   std::optional<Layout> layout;
   std::optional<bool> centre_lines;
   bool dimensions = false;
@@ -187,6 +194,7 @@ struct DrawingSettings {
   std::optional<PageFormat> format;
   std::vector<std::string> outputs;
 
+  [[nodiscard]] bool is_sheet() const { return !views.empty() || !sections.empty(); }
   /// A title block needs a frame.
   [[nodiscard]] bool has_frame() const {
     return frame || texts.title || texts.number || texts.author || texts.date || texts.owner;

@@ -7,7 +7,7 @@ namespace frontmost::cli {
 namespace {
 
 bool wants_centres(const DrawingSettings& settings) {
-  const bool is_sheet = !settings.views.empty() && settings.style == DrawingSettings::Style::technical;
+  const bool is_sheet = settings.is_sheet() && settings.style == DrawingSettings::Style::technical;
   return settings.centre_lines.value_or(is_sheet);
 }
 
@@ -17,7 +17,7 @@ bool wants_rounds(const DrawingSettings& settings) { return settings.dimensions 
 }  // namespace
 
 void check_centres(const Settings& settings) {
-  if (settings.drawing.centre_lines.value_or(false) && !settings.view.orthographic && settings.drawing.views.empty())
+  if (settings.drawing.centre_lines.value_or(false) && !settings.view.orthographic && !settings.drawing.is_sheet())
     throw UsageError("--centre-lines: perspective has none; add --camera-orthographic, or --views");
 }
 
@@ -25,7 +25,7 @@ void find_rounds_of(std::vector<DrawnView>& views, const Settings& settings, con
   if (!wants_rounds(settings.drawing)) return;
   for (std::size_t i = 0; i < views.size(); ++i) {
     // On sheets nothing is seen along its axis there.
-    if (!settings.drawing.views.empty() && settings.drawing.views[i] == NamedView::iso) continue;
+    if (views[i].named == NamedView::iso) continue;
     for (std::size_t k = 0; k < i && !views[i].rounds; ++k)
       if (views[k].surfaces == views[i].surfaces) views[i].rounds = views[k].rounds;
     if (!views[i].rounds) views[i].rounds = std::make_shared<const Rounds>(find_rounds(*views[i].surfaces, execution));

@@ -24,6 +24,24 @@ std::vector<NamedView> views_from(std::string_view text) {
   return views;
 }
 
+/// "front" or "front=12.5".
+std::vector<DrawingSettings::SectionView> sections_from(std::string_view text) {
+  constexpr std::size_t most = 24;  // letters
+  std::vector<DrawingSettings::SectionView> sections;
+  for (const std::string_view word : split(text, ',')) {
+    const std::size_t sign = word.find('=');
+    DrawingSettings::SectionView section;
+    section.view = NamedView(parse_choice(word.substr(0, sign), "front|back|left|right|top|bottom"));
+    if (sign != std::string_view::npos) section.at = parse_number(word.substr(sign + 1), any_number);
+    for (const DrawingSettings::SectionView& other : sections)
+      if (other.view == section.view && other.at == section.at)
+        throw UsageError(fmt::format("'{}' is there twice", word));
+    sections.push_back(section);
+  }
+  if (sections.size() > most) throw UsageError(fmt::format("{} are the most", most));
+  return sections;
+}
+
 void set_scale(Settings& s, const Given& g) {
   s.drawing.scale_rule = g.text == "fit"        ? ScaleRule::fit
                          : g.text == "standard" ? ScaleRule::standard
@@ -128,6 +146,10 @@ constexpr Option table[] = {
      "bottom, "
      "iso.",
      Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.views = views_from(g.text); }},
+    {"sections", 0, "V,V=C,...",
+     "Sections: what a view shows (front, back, left, right, top, bottom) behind a plane across its sight, through the "
+     "middle or at coordinate C, as front,left=12.5; cut faces are hatched, planes marked A-A, B-B.",
+     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sections = sections_from(g.text); }},
     {"projection", 0, "first-angle|third-angle",
      "Where views stand about the front one: the view from above below it (the default), or above it.", Group::drawing,
      for_lines, [](Settings& s, const Given& g) { s.drawing.layout = g.choice<DrawingSettings::Layout>(); }},

@@ -222,7 +222,7 @@ PaperSettings paper_of(const Layout& layout, const DrawingSettings& settings, Sc
 
 SheetPlan plan_sheet(const Layout& layout, const DrawingSettings& settings, bool has_scale) {
   const double margin = settings.margin;
-  const ScaleRule rule = settings.scale_rule.value_or(settings.views.empty() ? ScaleRule::fit : ScaleRule::standard);
+  const ScaleRule rule = settings.scale_rule.value_or(settings.is_sheet() ? ScaleRule::standard : ScaleRule::fit);
   const PaperSettings paper = paper_of(layout, settings, rule);
   if (paper.fits_drawing) return fitted_page(layout, settings.scale, margin);
   const auto taken = [&](double scale) {

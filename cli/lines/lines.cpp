@@ -14,6 +14,7 @@
 #include "cli/lines/centres.h"
 #include "cli/lines/layout.h"
 #include "cli/lines/lines_report.h"
+#include "cli/lines/sections.h"
 #include "cli/lines/sizes.h"
 #include "cli/lines/titles.h"
 #include "cli/lines/tones.h"
@@ -38,7 +39,7 @@ constexpr double coarsest_error = 10;
 constexpr double most_fine_triangles = 2e6;  // seconds to draw
 constexpr std::string_view view_names[] = {"front", "back", "left", "right", "top", "bottom", "iso"};
 
-bool is_parallel(const Settings& s) { return s.view.orthographic || !s.drawing.views.empty(); }
+bool is_parallel(const Settings& s) { return s.view.orthographic || s.drawing.is_sheet(); }
 
 void check_hidden_views(const DrawingSettings& s) {
   if (!s.hidden_views) return;
@@ -49,11 +50,12 @@ void check_hidden_views(const DrawingSettings& s) {
 }
 
 void check_views(const Settings& s) {
-  if (s.drawing.views.empty()) {
+  if (s.drawing.views.empty() && s.drawing.hidden_views) throw UsageError("--hidden-views needs --views");
+  if (!s.drawing.is_sheet()) {
     if (s.drawing.layout) throw UsageError("--projection needs --views");
-    if (s.drawing.hidden_views) throw UsageError("--hidden-views needs --views");
     return;
   }
+  const char* const sheet = s.drawing.views.empty() ? "--sections" : "--views";
   const ViewSettings& v = s.view;
   const std::pair<const char*, bool> others[] = {{"view", v.named.has_value()},
                                                  {"camera-position", v.position.has_value()},
@@ -69,7 +71,7 @@ void check_views(const Settings& s) {
                                                  {"pose", v.pose.has_value()},
                                                  {"resolution", v.resolution.has_value()}};
   for (const auto& [name, is_set] : others)
-    if (is_set) throw UsageError(fmt::format("--views and --{} exclude each other", name));
+    if (is_set) throw UsageError(fmt::format("{} and --{} exclude each other", sheet, name));
 }
 
 void check(const Settings& settings) {
@@ -81,6 +83,7 @@ void check(const Settings& settings) {
   check_tones(s);
   check_centres(settings);
   check_dimensions(s);
+  check_sections(s);
   if (s.outputs.empty() && !settings.run.json) throw UsageError("nothing to do: give -o FILE or --json");
   if (s.scale_rule && s.scale_rule != ScaleRule::fit && !is_parallel(settings))
     throw UsageError("--scale: in perspective nothing has a scale; add --camera-orthographic, or --views");
@@ -119,26 +122,32 @@ bool shows_hidden(const DrawingSettings& settings, std::optional<NamedView> view
   return std::find(settings.hidden_views->begin(), settings.hidden_views->end(), *view) != settings.hidden_views->end();
 }
 
-DrawnView draw(const ViewSettings& settings, const Settings& all, const Surfaces& surfaces,
-               const Execution& execution) {
-  DrawnView result;
-  const View view = resolve_view(settings, surfaces);
+/// Lets the view show the triangles of `surfaces`, made anew where they are curved.
+void take_surfaces(DrawnView& result, const ViewSettings& settings, const Surfaces& surfaces, const View& view,
+                   const Execution& execution) {
   result.surfaces = &surfaces;
   std::optional<double> error;
   if (has_curved(surfaces.scene())) error = tessellation_error(settings, surfaces.scene(), view);
-  if (error) {
-    result.cut = std::make_unique<const Scene>(tessellate(surfaces.scene(), view, *error));
-    result.own = std::make_unique<const Surfaces>(*result.cut, execution);
-    result.surfaces = result.own.get();
-  }
+  if (!error) return;
+  result.tessellated = std::make_unique<const Scene>(tessellate(surfaces.scene(), view, *error));
+  result.own = std::make_unique<const Surfaces>(*result.tessellated, execution);
+  result.surfaces = result.own.get();
+}
+
+/// `section` is its number in the settings, where the view is one.
+DrawnView draw(const ViewSettings& settings, const Settings& all, const Surfaces& surfaces,
+               std::optional<std::size_t> section, const Execution& execution) {
+  DrawnView result;
+  const View view = resolve_view(settings, surfaces);
+  take_surfaces(result, settings, surfaces, view, execution);
+  if (section) cut_view(result, *result.surfaces, all.drawing, *section, view, execution);
   LineOptions options;
   if (all.drawing.crease_angle) options.crease_angle = glm::radians(*all.drawing.crease_angle);
   options.outlines = all.drawing.style == DrawingSettings::Style::figure;
   result.drawing = lines(*result.surfaces, view, options, execution);
   const Projection& p = view.projection;
   if (p.orthographic) result.millimetres_per_pixel = (p.right - p.left) / view.width * unit_of(all);
-  result.keeps_frame = is_framed(settings);
-  result.shows_hidden = shows_hidden(all.drawing, settings.named);
+  result.shows_hidden = !section && shows_hidden(all.drawing, settings.named);
   return result;
 }
 
@@ -146,18 +155,22 @@ std::vector<DrawnView> draw_all(const Settings& settings, const Surfaces& surfac
   ViewSettings one = settings.view;
   if (!one.resolution && !one.intrinsics) one.resolution = fine_grid;
   std::vector<DrawnView> views;
-  if (settings.drawing.views.empty()) {
-    views.push_back(draw(one, settings, surfaces, execution));
+  if (!settings.drawing.is_sheet()) {
+    views.push_back(draw(one, settings, surfaces, std::nullopt, execution));
     views.back().name = view_name(settings.view);
     views.back().keeps_frame = is_framed(settings.view);
+    return views;
   }
   one.orthographic = true;
-  for (const NamedView named : settings.drawing.views) {
+  const auto add = [&](NamedView named, std::optional<std::size_t> section) {
     one.named = named;
-    views.push_back(draw(one, settings, surfaces, execution));
-    views.back().name = views.back().sheet.name = view_names[int(named)];
-    views.back().keeps_frame = false;
-  }
+    DrawnView& view = views.emplace_back(draw(one, settings, surfaces, section, execution));
+    view.named = named;
+    view.name = view.sheet.name =
+        view.cut ? fmt::format("{0}-{0}", view.cut->letter) : std::string(view_names[int(named)]);
+  };
+  for (const NamedView named : settings.drawing.views) add(named, std::nullopt);
+  for (std::size_t i = 0; i < settings.drawing.sections.size(); ++i) add(settings.drawing.sections[i].view, i);
   return views;
 }
 
@@ -175,7 +188,7 @@ struct Frame {
   glm::dvec2 anchor{0};
 };
 
-Frame frame_of(const DrawnView& view, const Settings& settings, const Surfaces& surfaces, std::size_t number) {
+Frame frame_of(const DrawnView& view, const Settings& settings, const Surfaces& surfaces) {
   const View& camera = view.drawing.view;
   DrawingBounds box = bounds(view.drawing, view.shows_hidden);
   if (view.keeps_frame || box.is_empty()) {
@@ -184,12 +197,12 @@ Frame frame_of(const DrawnView& view, const Settings& settings, const Surfaces& 
   }
   Frame frame;
   frame.anchor = (box.low + box.high) * 0.5;
-  if (!settings.drawing.views.empty()) {
-    const NamedView named = settings.drawing.views[number];
-    const glm::ivec2 cell = cell_of(named, settings.drawing.layout.value_or(DrawingSettings::Layout::first_angle));
+  if (view.named) {
+    const glm::ivec2 cell =
+        cell_of(*view.named, settings.drawing.layout.value_or(DrawingSettings::Layout::first_angle));
     frame.cell.column = cell.x;
     frame.cell.row = cell.y;
-    if (named != NamedView::iso) frame.anchor = middle_pixel(camera, surfaces);
+    if (*view.named != NamedView::iso) frame.anchor = middle_pixel(camera, surfaces);
   }
   frame.cell.low = (box.low - frame.anchor) * view.millimetres_per_pixel;
   frame.cell.high = (box.high - frame.anchor) * view.millimetres_per_pixel;
@@ -202,10 +215,12 @@ Frame frame_of(const DrawnView& view, const Settings& settings, const Surfaces& 
 SheetPlan place(std::vector<DrawnView>& views, const Settings& settings, const Surfaces& surfaces) {
   std::vector<Frame> frames;
   std::vector<ViewCell> cells;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    frames.push_back(frame_of(views[i], settings, surfaces, i));
+  for (const DrawnView& view : views) {
+    frames.push_back(frame_of(view, settings, surfaces));
     cells.push_back(frames.back().cell);
   }
+  place_sections(cells, views);
+  keep_section_room(cells, views);
   keep_room(cells, views, settings);
   SheetPlan plan = plan_sheet(Layout(cells, glm::dvec2(gap_between_views)), settings.drawing, is_parallel(settings));
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -283,6 +298,7 @@ Json draw_model(Settings settings, const Execution& execution, Progress& progres
   timings.strokes = watch.milliseconds();
   watch = {};
   std::vector<SheetView> sheets;
+  hatch_sections(views, settings, execution);
   for (DrawnView& view : views) {
     add_tones(view, settings.drawing, execution);
     add_centre_lines(view, settings.drawing);
@@ -294,7 +310,10 @@ Json draw_model(Settings settings, const Execution& execution, Progress& progres
   const std::optional<double> scale = is_parallel(settings) ? std::optional(plan.scale) : std::nullopt;
   if (page.layers.empty()) show_warnings({"nothing is seen; the drawing is empty"}, settings.run, progress);
   if (const auto hint = unit_hint(settings, plan.scale); hint && scale) show_warnings({*hint}, settings.run, progress);
-  if (const std::size_t left_out = add_dimensions(page, views, settings); left_out > 0)
+  show_warnings(open_outlines(views), settings.run, progress);
+  SectionMarks marks = marks_of(views, pens_of(settings.drawing).centre);
+  if (!marks.layer.groups.empty()) page.layers.push_back(std::move(marks.layer));
+  if (const std::size_t left_out = add_dimensions(page, views, marks.boxes, settings); left_out > 0)
     show_warnings({fmt::format("{} diameters had no room; take a larger --page or fewer views", left_out)},
                   settings.run, progress);
   if (settings.drawing.has_frame()) add_frame(page, settings, scale, scene.name);
@@ -323,7 +342,7 @@ std::vector<Settings> sheets_of(const Settings& given) {
       if (models.size() > 1 && path.find("{model}") == std::string::npos)
         throw UsageError(fmt::format("-o {}: every model has a sheet of its own; put {{model}} into the name", path));
       path = fill_template(path, model_name(model),
-                           given.drawing.views.empty() ? view_name(given.view) : std::string("sheet"));
+                           given.drawing.is_sheet() ? std::string("sheet") : view_name(given.view));
       paths.push_back(path);
     }
   }

@@ -2,6 +2,7 @@
 // What frontmost lines says about a drawing.
 #pragma once
 
+#include <frontmost/section.h>
 #include <frontmost/sheet.h>
 #include <frontmost/surfaces.h>
 
@@ -14,10 +15,18 @@
 
 namespace frontmost::cli {
 
+/// A section, and where it was cut.
+struct CutView {
+  Section section;
+  CuttingPlane plane;
+  std::string letter;  ///< "A"
+};
+
 /// One view, from its camera to its strokes.
 struct DrawnView {
   std::string name;
-  std::unique_ptr<const Scene> cut;  ///< where curved surfaces were cut for this view
+  std::unique_ptr<const Scene> tessellated;  ///< where curved surfaces were for this view
+  std::unique_ptr<const CutView> cut;        ///< where it is a section
   std::unique_ptr<const Surfaces> own;
   const Surfaces* surfaces = nullptr;  ///< what the drawing's ids mean
   Drawing drawing;
@@ -25,7 +34,9 @@ struct DrawnView {
   std::shared_ptr<const Rounds> rounds;  ///< of the surfaces; null where they are not asked for
   bool keeps_frame = false;              ///< the camera was placed: the picture's rectangle counts, not what is in it
   bool shows_hidden = true;              ///< where hidden edges are drawn at all
+  std::optional<NamedView> named;        ///< of sheets
   SheetView sheet{};
+  glm::dvec2 taken{0};  ///< millimetres of paper on its left and below it that marks of sections take
 };
 
 struct LinesTimings {

@@ -16,7 +16,8 @@ void check_dimensions(const DrawingSettings& settings);
 void keep_room(std::vector<ViewCell>& cells, const std::vector<DrawnView>& views, const Settings& settings);
 
 /// Puts dimensions on a page whose views have their places: clear of its rim, or of the frame and title block that it
-/// is to have. \returns how many diameters there was no room for.
-std::size_t add_dimensions(Page& page, const std::vector<DrawnView>& views, const Settings& settings);
+/// is to have, and of `marks`. \returns how many diameters there was no room for.
+std::size_t add_dimensions(Page& page, const std::vector<DrawnView>& views, const std::vector<PageBox>& marks,
+                           const Settings& settings);
 
 }  // namespace frontmost::cli

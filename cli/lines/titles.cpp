@@ -8,7 +8,7 @@ namespace frontmost::cli {
 namespace {
 
 ProjectionMethod method_of(const DrawingSettings& settings) {
-  if (settings.views.empty()) return ProjectionMethod::none;
+  if (!settings.is_sheet()) return ProjectionMethod::none;
   return settings.layout == DrawingSettings::Layout::third_angle ? ProjectionMethod::third_angle
                                                                  : ProjectionMethod::first_angle;
 }

@@ -26,7 +26,7 @@ double unit_of(const Settings& settings) {
 
 std::optional<std::string> unit_hint(const Settings& settings, double scale) {
   const DrawingSettings& s = settings.drawing;
-  const bool is_sheet = !s.views.empty() || s.has_frame() || s.scale_rule == ScaleRule::standard;
+  const bool is_sheet = s.is_sheet() || s.has_frame() || s.scale_rule == ScaleRule::standard;
   if (!is_sheet || s.unit || s.scale_rule == ScaleRule::given || settings.metres_per_unit) return std::nullopt;
   if (settings.model.substr(0, 8) == "builtin:" || !(scale > largest_usual)) return std::nullopt;
   std::string likely;

@@ -17,6 +17,7 @@ struct DimensionedView {
   const Rounds* rounds = nullptr;    ///< of the drawing's surfaces; null for no diameters
   bool with_hidden = true;           ///< its hidden circles have diameters
   bool is_dimensioned = true;        ///< false: only kept free, as pictures at an angle are
+  glm::dvec2 taken{0};               ///< millimetres on its left and below it that other marks take
 };
 
 /// A rectangle of the page, in millimetres.
@@ -40,11 +41,11 @@ struct OverallSizes {
 /// Each direction of space once: in the first view that shows it in true length upright or level. Views that are not
 /// dimensioned have none.
 [[nodiscard]] std::vector<OverallSizes> overall_sizes(std::span<const DimensionedView> views);
-/// Millimetres that these take beside the view, on its left and below.
+/// Millimetres that these take beside the view, on its left and below, beyond what other marks take.
 [[nodiscard]] glm::dvec2 room_for(const OverallSizes& sizes, double text_height);
 
-/// Numbers without trailing zeros, of so many decimals at most, or of three digits where that is more, and one more where
-/// that is a five: "50", "12.7", "1.875".
+/// Numbers without trailing zeros, of so many decimals at most, or of three digits where that is more, and one more
+/// where that is a five: "50", "12.7", "1.875".
 [[nodiscard]] std::string dimension_text(double number, int decimals);
 
 struct Dimensions {

@@ -31,6 +31,8 @@ struct HatchSet {
   double spacing = 10;                  ///< pixels from line to line, 0.5 to 100000
   double offset = 0;                    ///< pixels, of one of the lines from the picture's upper left corner
   double below = 0.5;                   ///< where the brightness is less than this, -1 to 1
+  /// On triangles of these materials alone, by their numbers in the scene; empty: on all.
+  std::vector<std::uint32_t> materials{};
 };
 
 /// Four tones of three sets: paper; lines `spacing` apart where it is half dark; as many between them; and crossed by

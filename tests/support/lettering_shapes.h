@@ -9,18 +9,22 @@
 
 namespace frontmost::test {
 
-/// Whether `points` hold, one after the other, those of `text` in letters of that height, wherever it stands.
-inline bool holds_text(const std::vector<glm::dvec2>& points, const std::string& text, double height) {
+/// How often `points` hold, one after the other, those of `text` in letters of that height, wherever it stands.
+inline int count_texts(const std::vector<glm::dvec2>& points, const std::string& text, double height) {
   PageGroup letters;
   add_text(letters, text, {0, 0}, {height});
   const std::vector<glm::dvec2>& wanted = letters.points;
+  int count = 0;
   for (std::size_t first = 0; first + wanted.size() <= points.size(); ++first) {
     std::size_t i = 0;
     const glm::dvec2 by = points[first] - wanted[0];
     while (i < wanted.size() && glm::distance(points[first + i], wanted[i] + by) < 0.0025) ++i;  // rounded twice
-    if (i == wanted.size()) return true;
+    count += i == wanted.size();
   }
-  return false;
+  return count;
+}
+inline bool holds_text(const std::vector<glm::dvec2>& points, const std::string& text, double height) {
+  return count_texts(points, text, height) > 0;
 }
 
 }  // namespace frontmost::test

@@ -73,8 +73,8 @@ int color_number(const PageColor& color) {
 /// programs and lasers can tell them apart; release 12 has no widths that could.
 int layer_color(const std::string& page_layer, const Pen& pen) {
   const int color = color_number(pen.color);
-  // Hidden, visible, outline, hatching, stippling, centre lines, dimensions, frame: all are seen on black and on white.
-  constexpr int of_classes[] = {7, 6, 7, 5, 8, 9, 1, 3, 4, 7};
+  // Hidden, visible, outline, hatching, stippling, centre lines, dimensions, frame, sections: all are seen on black and on white.
+  constexpr int of_classes[] = {7, 6, 7, 5, 8, 9, 1, 3, 4, 3};
   const bool is_numbered = !page_layer.empty() && page_layer[0] >= '0' && page_layer[0] <= '9';
   return color == 7 && is_numbered ? of_classes[page_layer[0] - '0'] : color;
 }

@@ -57,6 +57,20 @@ std::vector<HatchLine> in_pen_order(std::vector<HatchLine> lines, const Executio
   return lines;
 }
 
+/// As TonedScene::Task has it.
+std::vector<std::uint32_t> sets_by_material(const std::vector<HatchSet>& sets, std::size_t materials) {
+  const auto is_everywhere = [](const HatchSet& set) { return set.materials.empty(); };
+  if (std::all_of(sets.begin(), sets.end(), is_everywhere)) return {};
+  std::vector<std::uint32_t> bits(materials + 1);
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    for (const std::uint32_t material : sets[i].materials)
+      if (material < materials) bits[material] |= 1u << i;
+    if (!is_everywhere(sets[i])) continue;
+    for (std::uint32_t& all : bits) all |= 1u << i;
+  }
+  return bits;
+}
+
 void check(const HatchOptions& options) {
   const auto refuse = [](const char* what) { throw Error(ErrorCode::bad_argument, std::string("hatch: ") + what); };
   if (options.sets.size() > most_sets) refuse("more than 16 sets");
@@ -87,7 +101,9 @@ std::vector<HatchLine> hatch(const Surfaces& surfaces, const View& view, const H
   std::vector<HatchRows> rows;
   for (const HatchSet& set : options.sets) rows.emplace_back(set, view);
   std::vector<HatchLine> lines;
-  for (const Piece& piece : united(scene.pieces({options.sets, options.by_instance}, rows, execution))) {
+  const TonedScene::Task task{options.sets, options.by_instance, nullptr,
+                              sets_by_material(options.sets, surfaces.scene().materials.size())};
+  for (const Piece& piece : united(scene.pieces(task, rows, execution))) {
     if (piece.end - piece.begin < options.shortest) continue;
     const HatchRows& row = rows[piece.set];
     lines.push_back({row.point(piece.line, piece.begin), row.point(piece.line, piece.end), piece.set, piece.instance});

@@ -88,7 +88,9 @@ class TonedScene::Hatcher {
     has_normals_ = false;
     const std::uint32_t instance =
         task_.by_instance ? scene_.surfaces_.source(scene_.mesh_.ids[number]).instance : no_index;
+    const std::uint32_t sets = sets_of(number);
     for (std::uint32_t set = 0; set < rows_.size(); ++set) {
+      if ((sets >> set & 1) == 0) continue;
       const HatchRows::Range range = rows_[set].range_of(triangle);
       for (std::int32_t line = range.first; line <= range.last; ++line) {
         // A triangle may fill a very large picture.
@@ -106,6 +108,14 @@ class TonedScene::Hatcher {
   struct Dot {
     double along, t, below;
   };
+
+  /// A bit for each set that the triangle's material has.
+  [[nodiscard]] std::uint32_t sets_of(std::uint32_t triangle) const {
+    if (task_.sets_by_material.empty()) return ~0u;
+    const PrimitiveSource source = scene_.surfaces_.source(scene_.mesh_.ids[triangle]);
+    const std::uint32_t material = scene_.surfaces_.scene().meshes[source.mesh].material_of(source.triangle);
+    return task_.sets_by_material[std::min<std::size_t>(material, task_.sets_by_material.size() - 1)];
+  }
 
   void add_pieces(const HatchSegment& segment, Piece piece, std::vector<Piece>& pieces) {
     find_normals(segment.edge.own[0]);

@@ -47,6 +47,8 @@ class TonedScene {
     const std::vector<HatchSet>& sets;
     bool by_instance = true;
     const DotGrid* dots = nullptr;  ///< of sets[0]: pieces are its dots
+    /// A bit for each set that a material has, and last those of what has none. Empty: all have all.
+    std::vector<std::uint32_t> sets_by_material{};
   };
   /// In no order that matters.
   [[nodiscard]] std::vector<Piece> pieces(const Task& task, const std::vector<HatchRows>& rows,

@@ -3,6 +3,8 @@
 
 #include <numbers>
 
+#include "io/drawings/arrowhead.h"
+
 namespace frontmost::detail {
 
 DimensionPen::DimensionPen(const DimensionOptions& options, Obstacles& obstacles)
@@ -17,12 +19,7 @@ void DimensionPen::line(const glm::dvec2& from, const glm::dvec2& to) {
 }
 
 void DimensionPen::arrow(const glm::dvec2& tip, const glm::dvec2& pointing) {
-  // Two slender triangles side by side, whose sides are so near each other that the pen fills them.
-  const double width = options_.pen.width;
-  const glm::dvec2 base = tip - arrow_length() * pointing, across(-pointing.y * width, pointing.x * width);
-  const glm::dvec2 corners[] = {tip, base - 1.5 * across, base - 0.5 * across,
-                                tip, base + 0.5 * across, base + 1.5 * across};
-  lines_.add(corners, true);
+  add_arrowhead(lines_, tip, pointing, arrow_length());
 }
 
 void DimensionPen::text(std::string_view text, const glm::dvec2& at, TextAlign align, bool is_upright) {

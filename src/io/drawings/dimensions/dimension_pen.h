@@ -20,7 +20,6 @@ class DimensionPen {
   DimensionPen(const DimensionOptions& options, Obstacles& obstacles);
 
   void line(const glm::dvec2& from, const glm::dvec2& to);
-  /// Filled by strokes of the pen, so that it is the same in every format and on a plotter.
   void arrow(const glm::dvec2& tip, const glm::dvec2& pointing);
   /// Level, or turned to be read from the right; above `at`, which is the middle or an end of its line.
   void text(std::string_view text, const glm::dvec2& at, TextAlign align, bool is_upright = false);

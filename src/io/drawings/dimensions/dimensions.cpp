@@ -26,12 +26,13 @@ struct OverallSize {
 /// On the page for a level size as it is; for an upright one x and y change places, seen from the right.
 class OverallPen {
  public:
-  OverallPen(DimensionPen& pen, const MeasuredView& view) : pen_(pen), view_(view) {}
+  OverallPen(DimensionPen& pen, const MeasuredView& view, const glm::dvec2& taken)
+      : pen_(pen), view_(view), distance_(first_distance + taken) {}
 
   void draw(const OverallSize& size) {
     const bool is_level = size.axis == 0;
     const Extent& e = size.extent;
-    const double line = is_level ? view_.box().high.y + first_distance : view_.box().low.x - first_distance;
+    const double line = is_level ? view_.box().high.y + distance_.y : view_.box().low.x - distance_.x;
     const double away = is_level ? 1 : -1;
     const auto at = [&](double along, double across) {
       return is_level ? glm::dvec2(along, across) : glm::dvec2(across, along);
@@ -59,6 +60,7 @@ class OverallPen {
  private:
   DimensionPen& pen_;
   const MeasuredView& view_;
+  const glm::dvec2 distance_;  ///< of lines from the view, on its left and below it
 };
 
 void validate(const DimensionOptions& options) {
@@ -136,7 +138,7 @@ Dimensions dimensions(std::span<const DimensionedView> views, const PageBox& are
         if (!diameters.take(*extent.diameter)) continue;
         text = diameter_sign + text;
       }
-      OverallPen(pen, measured[i]).draw({axis, extent, text});
+      OverallPen(pen, measured[i], views[i].taken).draw({axis, extent, text});
       ++all.count;
     }
   }
