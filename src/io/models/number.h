@@ -70,10 +70,15 @@ inline const char* parse_float(const char* at, const char* end, float& value) {
   return after;
 }
 
+/// The same as the nearest double.
+inline const char* parse_double(const char* at, const char* end, double& exact) {
+  const char* const after = detail::parse_short(at, end, exact);
+  return after != nullptr ? after : detail::parse_double_slowly(at, end, exact);
+}
+
 /// The same number as the nearest float, and as the nearest double.
 inline const char* parse_both(const char* at, const char* end, float& value, double& exact) {
-  const char* after = detail::parse_short(at, end, exact);
-  if (after == nullptr) after = detail::parse_double_slowly(at, end, exact);
+  const char* const after = parse_double(at, end, exact);
   if (after == nullptr || detail::round_to_float(exact, value)) return after;
   return detail::parse_float_slowly(at, end, value);
 }

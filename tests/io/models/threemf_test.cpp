@@ -3,6 +3,8 @@
 #include <zlib.h>
 
 #include <atomic>
+#include <cmath>
+#include <optional>
 
 #include "base/srgb.h"
 #include "model_bytes.h"
@@ -120,6 +122,28 @@ TEST(ThreeMf, PartsNameObjectsOfOthers) {
   ASSERT_EQ(scene.instances.size(), 2u);
   EXPECT_EQ(scene.instances[0].name, "case");
   EXPECT_DOUBLE_EQ(scene.instances[0].world_from_mesh[0][0], 25.4) << "inches, in a model of millimetres";
+}
+
+// As in OBJ, and as every other text format has them.
+TEST(ThreeMf, NumbersAreSpeltAsInEveryFormat) {
+  for (const char* number :
+       {"1", "+.5", "-1.5e-3", "  2 ", "1e400", "-1e999", "1e-400", "nan", "-INF", "1.#INF", "1.#QNAN", "nan(ind)",
+        "0.1000000000000000055511151231257827", "+-1", "--1", "1.5x", "0x10", ""}) {
+    const std::string vertex = std::string("x=\"") + number + "\"";
+    const std::string model = replaced(model_of(one_object()), "x=\"1\"", vertex);
+    const auto read_obj = [&] {
+      return load_text(std::string("v 0 0 0\nv ") + number + " 0 0\nv 0 1 0\nf 1 2 3\n", ModelFormat::obj);
+    };
+    std::optional<float> wanted;
+    try {
+      wanted = read_obj().meshes.at(0).positions.at(1).x;
+    } catch (const Error&) {
+      EXPECT_THAT(error_of(model), HasSubstr("x")) << number;
+      continue;
+    }
+    const float found = read(model).meshes.at(0).positions.at(1).x;
+    EXPECT_TRUE(found == *wanted || (std::isnan(found) && std::isnan(*wanted))) << number << ": " << found;
+  }
 }
 
 TEST(ThreeMf, WithoutAnItemWhatNoneHoldsIsShown) {

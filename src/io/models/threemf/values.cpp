@@ -2,10 +2,7 @@
 #include "io/models/threemf/values.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstdlib>
-#include <string>
 
 #include "frontmost/base.h"
 #include "io/models/mesh_building.h"
@@ -31,21 +28,10 @@ int digit(char c) {
 }  // namespace
 
 std::optional<double> parse_number(std::string_view text) {
-  std::string_view word = trimmed(text);
-  if (word.starts_with('+')) word.remove_prefix(1);
+  const std::string_view word = trimmed(text);
   double value = 0;
-#if defined(__cpp_lib_to_chars)
   const char* const end = word.data() + word.size();
-  const auto [after, code] = std::from_chars(word.data(), end, value);
-  if (after != end || code == std::errc::invalid_argument) return std::nullopt;
-  if (code == std::errc()) return value;
-#endif
-  // Out of range, or a library without from_chars for floats (WebAssembly), which has the C locale only.
-  const std::string terminated(word);
-  char* last = nullptr;
-  value = std::strtod(terminated.c_str(), &last);
-  if (word.empty() || last != terminated.c_str() + terminated.size()) return std::nullopt;
-  return value;
+  return parse_double(word.data(), end, value) == end ? std::optional(value) : std::nullopt;
 }
 
 std::optional<std::uint32_t> parse_index(std::string_view text) {
