@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "io/models/reader.h"
 
 namespace frontmost::streaming {
 namespace {
@@ -53,12 +54,14 @@ void Models::add(Model model) {
 
 void Models::take_warnings(Model& model) {
   const std::vector<std::string>& all = model.stream->scene().warnings;
-  for (; model.warnings < all.size(); ++model.warnings) scene_.warnings.push_back(all[model.warnings]);
+  for (; model.warnings < all.size(); ++model.warnings)
+    scene_.warnings.push_back(model.stream->source().with_name(all[model.warnings]));
 }
 
 /// As load() warns.
 void Models::end(Model& model) {
-  if (!model.has_ended && model.triangle_count == 0) scene_.warnings.emplace_back("the file holds no triangles");
+  if (!model.has_ended && model.triangle_count == 0)
+    scene_.warnings.push_back(model.stream->source().with_name(no_triangles_warning));
   model.has_ended = true;
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // --stream: the same files, to the byte, as without it.
+#include <gmock/gmock.h>
+
 #include <array>
 #include <initializer_list>
 
@@ -82,6 +84,21 @@ TEST_F(StreamedProgram, SaysWhyNothingIsInView) {
     EXPECT_EQ(succeed(line + " --stream").err, whole.err) << line;
     EXPECT_EQ(succeed(line + " --json --quiet --stream").json()["warnings"],
               succeed(line + " --json --quiet").json()["warnings"]);
+  }
+}
+
+TEST_F(StreamedProgram, WarningsNameTheModelThatTheyAreAbout) {
+  write("empty.stl", std::string(80, ' ') + std::string(4, '\0'));
+  write("rest.stl", read("a.stl") + std::string(7, '\0'));
+  const std::string line = "render a.stl rest.stl empty.stl --resolution 32,32 -o p.png --json";
+  for (const char* options : {"", " --stream", " --stream --threads 2"}) {
+    const Outcome outcome = succeed(line + options);
+    const auto warnings = outcome.json()["warnings"].get<std::vector<std::string>>();
+    EXPECT_THAT(warnings, testing::UnorderedElementsAre(testing::StartsWith("rest.stl: byte "),
+                                                        "empty.stl: the file holds no triangles"))
+        << options;
+    for (const std::string& warning : warnings)
+      EXPECT_THAT(outcome.err, testing::HasSubstr("frontmost: warning: " + warning + "\n")) << options;
   }
 }
 

@@ -50,7 +50,8 @@ Scene read_any(Bytes bytes, const ModelSource& source, std::optional<ModelFormat
   }
   // A reader of text has chosen one already.
   if (scene.origin == glm::dvec3(0)) set_origin(scene, fitting_origin(scene));
-  if (triangle_count(scene) == 0) scene.warnings.emplace_back("the file holds no triangles");
+  if (triangle_count(scene) == 0) scene.warnings.emplace_back(no_triangles_warning);
+  for (std::string& warning : scene.warnings) warning = source.with_name(warning);
   report_progress(source.execution(), "load", 1);
   return scene;
 }

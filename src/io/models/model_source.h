@@ -64,8 +64,11 @@ class ModelSource {
     if (file_ != nullptr) file_->release(part);
   }
 
-  /// The words of an error without the model's name at their start, for Scene::warnings.
+  /// The words of an error without the model's name at their start, for a reader's warnings.
   [[nodiscard]] std::string without_name(const Error& error) const;
+
+  /// What Scene::warnings holds of a reader's "place: reason": the same with the name before it.
+  [[nodiscard]] std::string with_name(const std::string& warning) const { return name_ + ": " + warning; }
 
   /// Throws Error file_malformed "name: place: reason".
   [[noreturn]] void fail(const std::string& place, const std::string& reason) const;

@@ -31,6 +31,8 @@ class ModelStream {
   /// All but triangles: at most one mesh, without vertices, and its instance; materials, textures, up, and warnings,
   /// which are complete when the last piece was fetched.
   [[nodiscard]] const Scene& scene() const { return scene_; }
+  /// For its warnings, which scene() holds as readers make them, without the model's name.
+  [[nodiscard]] const ModelSource& source() const { return source_; }
   /// What load() adds to a reader's scene.
   void introduce(std::string name, Axis up) {
     scene_.name = std::move(name);

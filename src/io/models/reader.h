@@ -2,7 +2,7 @@
 // The readers, one a format. Each turns bytes into a scene that frontmost::validate() accepts, keeps the order and
 // number of the file's triangles (degenerate ones too), and leaves units alone; load() adds the scene's name and up
 // axis and validates. Bad bytes end in Error "name: place: reason"; what can be passed over is told in
-// Scene::warnings, each with its place but without the file's name.
+// Scene::warnings as "place: reason", before which load() puts the file's name.
 #pragma once
 
 #include "frontmost/io.h"
@@ -19,6 +19,9 @@ using Bytes = std::span<const std::byte>;
 [[nodiscard]] Scene read_gltf(Bytes bytes, const ModelSource& source);
 /// Sets `metres_per_unit`, too.
 [[nodiscard]] Scene read_3mf(Bytes bytes, const ModelSource& source, std::optional<double>& metres_per_unit);
+
+/// What is said of a model that is read, whole or streamed, and holds nothing.
+inline constexpr const char* no_triangles_warning = "the file holds no triangles";
 
 /// The format that a file's suffix stands for. None: not one of ours.
 [[nodiscard]] std::optional<ModelFormat> format_of_suffix(const std::string& path);

@@ -102,7 +102,7 @@ TEST(Obj, FacesMayComeBeforeTheirVertices) {
 TEST(Obj, LinesGoOnAfterABackslashAndCommentsEndThem) {
   const Scene scene = load_text("v 0 0 \\\n 0\r\nv 1 0 0#1\nv 0 1 0 # c\nf 1 2 \\\r\n 3\nl 1 2\nl 2 3\n# f 1 2 3\n");
   EXPECT_EQ(triangle_count(scene), 1u);
-  EXPECT_THAT(scene.warnings, ElementsAre("line 7: statements \"l\" are passed over"));
+  EXPECT_THAT(scene.warnings, ElementsAre("model: line 7: statements \"l\" are passed over"));
 }
 
 TEST(Obj, ErrorsNameTheLine) {
@@ -147,7 +147,7 @@ TEST(Obj, MaterialLibraries) {
   EXPECT_EQ(glass.alpha, Material::Alpha::blend);
   EXPECT_EQ(glass.base_color, glm::vec4(1, 1, 1, 0.25f));
   EXPECT_EQ(glass.roughness, 1.0f);
-  EXPECT_THAT(scene.warnings, ElementsAre("material paint: texture left out: sub/none.png: cannot be found",
+  EXPECT_THAT(scene.warnings, ElementsAre(path + ": material paint: texture left out: sub/none.png: cannot be found",
                                           HasSubstr("usemtl \"later\": 1 material is not defined")));
 }
 
@@ -159,18 +159,19 @@ TEST(Obj, WithoutItsTextureNothingGlows) {
     const Scene scene = load(path);
     EXPECT_EQ(scene.materials.at(0).emissive, glm::vec3(0)) << lines;
     EXPECT_EQ(scene.materials[0].base_color, glm::vec4(1)) << "nor is all of it black";
-    EXPECT_THAT(scene.warnings, ElementsAre("material lamp: texture left out: none.png: cannot be found",
-                                            "material lamp: does not glow without its emissive texture"));
+    EXPECT_THAT(scene.warnings, ElementsAre(path + ": material lamp: texture left out: none.png: cannot be found",
+                                            path + ": material lamp: does not glow without its emissive texture"));
   }
 }
 
 TEST(Obj, ABrokenLibraryIsAWarning) {
   const Folder folder;
   folder.write("broken.mtl", "newmtl a\nd much\n");
-  const Scene scene = load(folder.write("model.obj", "mtllib broken.mtl\n" + square + "f 1 2 3\n"));
+  const std::string path = folder.write("model.obj", "mtllib broken.mtl\n" + square + "f 1 2 3\n");
+  const Scene scene = load(path);
   EXPECT_EQ(triangle_count(scene), 1u);
   EXPECT_THAT(scene.warnings,
-              ElementsAre("line 1: material library left out: broken.mtl: line 2: a number was expected"));
+              ElementsAre(path + ": line 1: material library left out: broken.mtl: line 2: a number was expected"));
 }
 
 TEST(Obj, NothingOutsideTheFolderIsRead) {

@@ -60,7 +60,7 @@ TEST(Stl, CountsThatDoNotFitTheSize) {
   EXPECT_THAT(error_of(binary_stl("solid x", 10, 4), ModelFormat::stl), HasSubstr("promises 10"));
   const Scene more = load_text(binary_stl("x", 3, 4), ModelFormat::stl);
   EXPECT_EQ(triangle_count(more), 3u);
-  EXPECT_THAT(more.warnings, ElementsAre("byte 234: 50 bytes after the last triangle were passed over"));
+  EXPECT_THAT(more.warnings, ElementsAre("model: byte 234: 50 bytes after the last triangle were passed over"));
   for (const std::uint32_t open : {0u, 0xFFFFFFFFu}) {
     const Scene streamed = load_text(binary_stl("x", open, 4), ModelFormat::stl);
     EXPECT_EQ(triangle_count(streamed), 4u);
@@ -73,7 +73,7 @@ TEST(Stl, CountsThatDoNotFitTheSize) {
 TEST(Stl, AnEmptyBinaryFileIsASceneWithAWarning) {
   const Scene scene = load_text(binary_stl("x", 0, 0), ModelFormat::stl);
   EXPECT_EQ(triangle_count(scene), 0u);
-  EXPECT_THAT(scene.warnings, ElementsAre("the file holds no triangles"));
+  EXPECT_THAT(scene.warnings, ElementsAre("model: the file holds no triangles"));
 }
 
 TEST(Stl, AsciiSolidsAreObjects) {

@@ -151,7 +151,7 @@ TEST(ThreeMf, WithoutAnItemWhatNoneHoldsIsShown) {
                                     R"(</object><object id="2"><components><component objectid="1"/></components>
 </object></resources><build/>)"));
   EXPECT_EQ(scene.instances.size(), 1u);
-  EXPECT_THAT(scene.warnings, ElementsAre("3D/3dmodel.model: nothing is built, all objects are shown"));
+  EXPECT_THAT(scene.warnings, ElementsAre("model: 3D/3dmodel.model: nothing is built, all objects are shown"));
 }
 
 const std::string two_materials =
