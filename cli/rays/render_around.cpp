@@ -112,8 +112,8 @@ ViewResult render_around(const Job& job, const RenderContext& context) {
       result.warnings.push_back(contrast_warning());
   }
   const auto map = [&](OutputKind kind) { return map_of(kind, job, rays, around); };
-  write_files({job, context.execution, map, picture ? &*picture : nullptr}, result);
   if (job.output.reference) result.reference = compare_with_reference(*picture, job, context.execution);
+  write_files({job, context.execution, map, picture ? &*picture : nullptr}, result);
   if (context.keep_picture) result.picture = std::move(picture);
   return result;
 }

@@ -54,7 +54,7 @@ Job make_job(const Settings& settings) {
   check_format(settings.output);
   if (settings.run.stream && settings.view.depth.is_used)
     throw UsageError("--stream draws with the default depth test; it excludes the options of a depth buffer");
-  Job job{view_name(settings.view), settings.view, settings.output, {}, {}, {}, {}};
+  Job job{view_name(settings.view), settings.view, settings.output, {}, {}, {}, {}, {}};
   const std::string model = model_name(settings.model);
   take_figures(settings, model, job);
   for (OutputFile& file : plan_outputs(job.output, model, job.name))

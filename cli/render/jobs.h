@@ -2,6 +2,9 @@
 // What one run of `frontmost render` has to do: the views, each with its files.
 #pragma once
 
+#include <frontmost/image.h>
+
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,6 +21,7 @@ struct Job {
   std::vector<OutputFile> files, layer_files;  ///< of what is nearest, or of all; of single layers
   std::vector<std::string> figures;            ///< pictures of polygons
   std::string difference;                      ///< where the difference to the reference goes; empty: no reference
+  std::shared_ptr<const Image> reference;      ///< what output.reference holds; none: to be read again
 };
 
 /// One job, or those of the batch file; all files have been checked.

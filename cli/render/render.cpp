@@ -15,6 +15,7 @@
 #include "cli/rays/render_curved.h"
 #include "cli/render/jobs.h"
 #include "cli/render/json_report.h"
+#include "cli/render/reference.h"
 #include "cli/render/render_stream.h"
 #include "cli/render/terminal.h"
 #include "cli/stopwatch.h"
@@ -178,6 +179,7 @@ int run_render(const Settings& settings) {
   Run run{settings, plan_jobs(settings), false, {}};
   check_method(settings, run.jobs);
   run.on_terminal = shows_on_terminal(settings, run.jobs);
+  read_references(run.jobs);
   return settings.run.stream ? render_stream(run) : render_whole(run);
 }
 

@@ -209,8 +209,8 @@ void finish_view(const Job& job, const RenderContext& context, const Sights& sig
   }
   const auto map = [&](OutputKind kind) { return map_of(kind, job, context, sights); };
   const auto deep = [&] { return shade_deep(context.surfaces, sights.picture->visible, options, context.execution); };
-  write_files({job, context.execution, map, picture ? &*picture : nullptr, bitmap ? &*bitmap : nullptr, deep}, result);
   if (job.output.reference) result.reference = compare_with_reference(*picture, job, context.execution);
+  write_files({job, context.execution, map, picture ? &*picture : nullptr, bitmap ? &*bitmap : nullptr, deep}, result);
   if (context.keep_picture) result.picture = std::move(picture);
 }
 

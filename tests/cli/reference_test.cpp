@@ -50,8 +50,35 @@ TEST_F(Reference, TheThresholdForgives) {
 TEST_F(Reference, WrongReferencesAreNamed) {
   expect_failure("render cube.stl --resolution 48,32 --reference none.png", 1, "none.png");
   expect_failure("render cube.stl --resolution 40,32 --reference old.png", 1, "old.png: ");
+  write("cut.png", read("old.png").substr(0, 60));
+  for (const char* name : {"none.png", "cut.png", "cube.stl"})
+    expect_failure(std::string("render cube.stl --resolution 48,32 -o new.png --depth new.exr --reference ") + name, 1,
+                   name);
+  expect_failure("render cube.stl --resolution 40,32 -o new.png --depth new.exr --reference old.png", 1, "old.png: ");
+  expect_failure("render cube.stl --camera-model fisheye --resolution 40,32 -o new.png --reference old.png", 1,
+                 "old.png: ");
+  EXPECT_FALSE(exists("new.png") || exists("new.exr")) << "written before the reference was read";
   expect_failure("render cube.stl -o ./old.png --reference old.png", 2, "is both the reference and an output");
   expect_failure("render cube.stl --reference old.png --reference-threshold 2", 2, "--reference-threshold");
+}
+
+// All files that a run reads are read before any is written, those of the last view too.
+TEST_F(Reference, OfALaterViewIsReadBeforeAnythingIsWritten) {
+  write("views.json", R"({"views": [{"name": "old"}, {"name": "late"}]})");
+  const std::string line = "render cube.stl --batch views.json --resolution 48,32 -o new_{view}.png --reference ";
+  for (const char* bytes : {"", "no picture"}) {
+    if (*bytes) write("late.png", bytes);
+    expect_failure(line + "{view}.png", 1, "late.png: ");
+    EXPECT_FALSE(exists("new_old.png")) << bytes;
+  }
+  write("late.png", read("old.png"));
+  succeed(line + "{view}.png");
+  EXPECT_TRUE(exists("new_old.png") && exists("new_late.png"));
+  write(
+      "poses.json",
+      R"({"views": [{"name": "a"}, {"name": "b", "pose": "none.txt", "pose-convention": "opengl-camera-to-world"}]})");
+  expect_failure("render cube.stl --batch poses.json --resolution 48,32 -o new_{view}.png", 2, "none.txt");
+  EXPECT_FALSE(exists("new_a.png"));
 }
 
 }  // namespace
