@@ -2,10 +2,14 @@
 // frontmost sight: whether one point sees another, for one pair of points or a file of them.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <span>
+
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/failure.h"
-#include "cli/json_numbers.h"
+#include "cli/interruption.h"
+#include "cli/json_list.h"
 #include "cli/model.h"
 #include "cli/places.h"
 #include "cli/rays/number_lines.h"
@@ -35,7 +39,7 @@ std::vector<Pair> pairs_of(const SightSettings& sight) {
   return {{*sight.from, *sight.to}};
 }
 
-std::vector<Segment> segments_of(const std::vector<Pair>& pairs, const glm::dvec3& origin) {
+std::vector<Segment> segments_of(std::span<const Pair> pairs, const glm::dvec3& origin) {
   std::vector<Segment> segments;
   for (const Pair& pair : pairs) segments.push_back({pair.from - origin, pair.to - origin});
   return segments;
@@ -78,33 +82,57 @@ std::string pair_text(const CurvedHit& hit, const Segment& pair, const RayScene&
                      blocked.distance);
 }
 
+/// Calls `use` with every pair and what is met between its points, in order: a part of them at a time, so that memory
+/// does not grow with what is said of them.
+template <class Use>
+void for_each_pair(std::span<const Pair> pairs, const RayScene& rays, const Execution& execution, const Use& use) {
+  constexpr std::size_t at_once = 1 << 16;
+  for (std::size_t begin = 0; begin < pairs.size(); begin += at_once) {
+    stop_if_interrupted();
+    const std::span<const Pair> part = pairs.subspan(begin, std::min(at_once, pairs.size() - begin));
+    const std::vector<Segment> segments = segments_of(part, rays.scene().origin);
+    const std::vector<CurvedHit> hits = rays.closest(segments, execution);
+    for (std::size_t i = 0; i < part.size(); ++i) use(hits[i], segments[i]);
+  }
+}
+
+void print_json(const Settings& settings, std::span<const Pair> pairs, const RayScene& rays,
+                const Execution& execution) {
+  JsonListPrinter printer({{"model", settings.model}}, "pairs");
+  std::size_t clear = 0;
+  for_each_pair(pairs, rays, execution, [&](const CurvedHit& hit, const Segment& pair) {
+    clear += !hit;
+    printer.add(pair_json(hit, pair, rays));
+  });
+  printer.finish({{"clear", clear}, {"of", pairs.size()}});
+}
+
+void print_text(std::span<const Pair> pairs, const RayScene& rays, const Execution& execution) {
+  constexpr std::size_t enough = 1 << 16;
+  std::string text;
+  for_each_pair(pairs, rays, execution, [&](const CurvedHit& hit, const Segment& pair) {
+    text += pair_text(hit, pair, rays);
+    if (text.size() < enough) return;
+    print(text);
+    text.clear();
+  });
+  print(text);
+}
+
 }  // namespace
 
 int run_sight(const Settings& settings) {
-  const std::vector<Pair> given = pairs_of(settings.sight);
+  const std::vector<Pair> pairs = pairs_of(settings.sight);
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
   const Scene scene = load_model(settings, execution, progress);
   const Surfaces surfaces(scene, execution);
-  const std::vector<Segment> pairs = segments_of(given, scene.origin);
   const OwnRayScene index(surfaces, execution);
-  const RayScene rays = index.get();
-  const std::vector<CurvedHit> hits = rays.closest(pairs, execution);
   progress.clear();
-  Json list = Json::array();
-  std::string text;
-  std::size_t clear = 0;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    clear += !hits[i];
-    if (settings.run.json) {
-      list.push_back(pair_json(hits[i], pairs[i], rays));
-    } else {
-      text += pair_text(hits[i], pairs[i], rays);
-    }
-  }
   if (settings.run.json)
-    text = dump({{"model", settings.model}, {"pairs", std::move(list)}, {"clear", clear}, {"of", pairs.size()}});
-  print(text);
+    print_json(settings, pairs, index.get(), execution);
+  else
+    print_text(pairs, index.get(), execution);
   return exit_done;
 }
 

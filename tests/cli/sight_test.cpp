@@ -2,6 +2,9 @@
 // frontmost sight, and render by rays.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
+#include "cli/json_numbers.h"
 #include "program.h"
 
 namespace frontmost::test {
@@ -41,6 +44,28 @@ TEST_F(LineOfSight, ReadsAFileOfPairs) {
   const json report = succeed("sight cube.stl --pairs pairs.txt --json").json();
   EXPECT_EQ(report["of"], 2);
   EXPECT_EQ(report["clear"], 1);
+}
+
+TEST_F(LineOfSight, JsonIsWrittenAsItIsMade) {
+  std::string pairs;
+  for (const int count : {0, 1, 3, 70'000}) {
+    while (std::count(pairs.begin(), pairs.end(), '\n') < count)
+      pairs += pairs.size() % 3 == 0 ? "0.25 0.5 4 0.25 0.5 -4\n" : "2 0 0 2 1 1\n";
+    write("pairs.txt", pairs);
+    const std::string out = succeed("sight cube.stl --pairs pairs.txt --json").out;
+    const cli::Json report = cli::Json::parse(out);
+    EXPECT_EQ(cli::dump(report), out) << "text of the whole, " << count << " pairs";
+    EXPECT_EQ(report["of"], count);
+    EXPECT_EQ(report["pairs"].size(), std::size_t(count));
+    const std::string lines = succeed("sight cube.stl --pairs pairs.txt").out;
+    EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), count);
+  }
+  if (takes_all_addresses) GTEST_SKIP() << "there is nothing to limit";
+  // The report of 70,000 pairs took 170 MB.
+  const Outcome outcome = run(Call{.words = {"sight", "cube.stl", "--pairs", "pairs.txt", "--json", "--threads", "1"},
+                                   .address_space = std::size_t(120) << 20});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["of"], 70'000);
 }
 
 TEST_F(LineOfSight, NamesWhatIsWrong) {
