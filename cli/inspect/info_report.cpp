@@ -197,12 +197,8 @@ std::string unit_line(const std::optional<ModelUnit>& unit, const Box& bounds) {
 std::optional<ModelUnit> unit_of_model(const SceneReport& report, std::optional<double> metres_per_unit) {
   if (report.bounds.is_empty()) return std::nullopt;
   if (metres_per_unit) return ModelUnit{*metres_per_unit, false};
-  const glm::dvec3 size = size_of(report.bounds);
-  const double greatest = std::max({size.x, size.y, size.z});
-  constexpr double grain = 1, least_part = 5, greatest_part = 2000, least_in_metres = 1e-3;
-  if (greatest >= least_part && greatest <= greatest_part) return ModelUnit{1e-3, true};
-  if (greatest < grain && greatest >= least_in_metres) return ModelUnit{1, true};
-  return std::nullopt;
+  const std::vector<double> likely = likely_units(report.bounds);
+  return likely.size() == 1 ? std::optional(ModelUnit{likely.front(), true}) : std::nullopt;
 }
 
 Json info_json(const SceneReport& report, const std::optional<ModelUnit>& unit) {

@@ -17,8 +17,7 @@ struct ModelUnit {
   bool is_guess;
 };
 
-/// The file's own or, where it says none, what its greatest size makes likely: millimetres from 5 mm to 2 m (parts,
-/// prints), metres below a unit, where millimetres would be a grain of sand. None: anything may be meant.
+/// The file's own or, where it says none, the one that is likely by its size. None: anything may be meant.
 [[nodiscard]] std::optional<ModelUnit> unit_of_model(const SceneReport& report, std::optional<double> metres_per_unit);
 
 [[nodiscard]] Json info_json(const SceneReport& report, const std::optional<ModelUnit>& unit);

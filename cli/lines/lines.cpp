@@ -309,7 +309,8 @@ Json draw_model(Settings settings, const Execution& execution, Progress& progres
   Page page = draw_sheet(surfaces, sheets, pens_of(settings.drawing), plan.size);
   const std::optional<double> scale = is_parallel(settings) ? std::optional(plan.scale) : std::nullopt;
   if (page.layers.empty()) show_warnings({"nothing is seen; the drawing is empty"}, settings.run, progress);
-  if (const auto hint = unit_hint(settings, plan.scale); hint && scale) show_warnings({*hint}, settings.run, progress);
+  if (const auto hint = unit_hint(settings, surfaces.bounds(), plan.scale); hint && scale)
+    show_warnings({*hint}, settings.run, progress);
   show_warnings(open_outlines(views), settings.run, progress);
   SectionMarks marks = marks_of(views, pens_of(settings.drawing).centre);
   if (!marks.layer.groups.empty()) page.layers.push_back(std::move(marks.layer));

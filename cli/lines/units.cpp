@@ -2,6 +2,9 @@
 #include "cli/lines/units.h"
 
 #include <fmt/format.h>
+#include <frontmost/report.h>
+
+#include <algorithm>
 
 #include "cli/lines/paper.h"
 
@@ -14,8 +17,7 @@ struct NamedUnit {
 };
 /// As DrawingSettings::Unit counts them.
 constexpr NamedUnit units[] = {{"mm", 1}, {"cm", 10}, {"m", 1000}, {"in", 25.4}};
-constexpr double largest_usual = 50;                     // ISO 5455 has no enlargement above it
-constexpr double likely_least = 0.01, likely_most = 10;  // of a unit that makes sense
+constexpr double largest_usual = 50;  // ISO 5455 has no enlargement above it
 
 }  // namespace
 
@@ -24,20 +26,21 @@ double unit_of(const Settings& settings) {
   return 1000 * settings.metres_per_unit.value_or(0.001);
 }
 
-std::optional<std::string> unit_hint(const Settings& settings, double scale) {
+std::optional<std::string> unit_hint(const Settings& settings, const Box& bounds, double scale) {
   const DrawingSettings& s = settings.drawing;
   const bool is_sheet = s.is_sheet() || s.has_frame() || s.scale_rule == ScaleRule::standard;
   if (!is_sheet || s.unit || s.scale_rule == ScaleRule::given || settings.metres_per_unit) return std::nullopt;
   if (settings.model.substr(0, 8) == "builtin:" || !(scale > largest_usual)) return std::nullopt;
-  std::string likely;
+  const std::vector<double> likely = likely_units(bounds);
+  std::string named;
   for (const NamedUnit& unit : units) {
+    if (unit.millimetres == 1 || std::count(likely.begin(), likely.end(), unit.millimetres / 1000) == 0) continue;
     const double other = standard_scale(scale / unit.millimetres);
-    if (other < likely_least || other > likely_most) continue;
-    likely += fmt::format("{}--unit {} ({})", likely.empty() ? "" : " or ", unit.name, scale_text(other));
+    named += fmt::format("{}--unit {} ({})", named.empty() ? "" : " or ", unit.name, scale_text(other));
   }
-  if (likely.empty()) return std::nullopt;
+  if (named.empty()) return std::nullopt;
   return fmt::format("the scale is {}: the file says no unit, and millimetres were taken; {} would make sense",
-                     scale_text(scale), likely);
+                     scale_text(scale), named);
 }
 
 }  // namespace frontmost::cli

@@ -2,6 +2,8 @@
 // What the model's numbers mean on paper.
 #pragma once
 
+#include <frontmost/base.h>
+
 #include <optional>
 #include <string>
 
@@ -13,7 +15,8 @@ namespace frontmost::cli {
 [[nodiscard]] double unit_of(const Settings& settings);
 
 /// What to say where a sheet's scale, which nobody asked for, is larger than any that drawings have (50:1, ISO 5455),
-/// because the file says no unit and millimetres were taken: the units that would make sense. None where all is well.
-[[nodiscard]] std::optional<std::string> unit_hint(const Settings& settings, double scale);
+/// because the file says no unit and millimetres were taken: the units that are likely for a model of these bounds.
+/// None where all is well, or nothing else is likely.
+[[nodiscard]] std::optional<std::string> unit_hint(const Settings& settings, const Box& bounds, double scale);
 
 }  // namespace frontmost::cli

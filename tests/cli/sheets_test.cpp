@@ -297,6 +297,11 @@ TEST_F(SheetsCommand, AnAbsurdScaleNamesTheUnitsThatWouldMakeSense) {
   EXPECT_THAT(
       succeed("lines inches.obj --up +z --frame --view front --camera-orthographic --scale standard -o a.svg").err,
       HasSubstr("--unit cm (10:1) or --unit m (1:10) or --unit in (2:1) would make sense"));
+  // As `info` guesses: what is nearly a unit is in metres.
+  write("guess.obj", pitted_box_obj(0.0155));
+  EXPECT_EQ(succeed("info guess.obj --json").json()["unit"]["name"], "metre");
+  const std::string hint = succeed("lines guess.obj --up +z --views front,top,left -o a.svg").err;
+  EXPECT_THAT(hint, testing::AllOf(HasSubstr("--unit m (1:5) would make sense"), Not(HasSubstr("--unit in"))));
   EXPECT_EQ(succeed("lines box.obj --up +z --views front,top,left -o a.svg").err, "");
   // A single drawing is as large as its page, at any scale.
   EXPECT_EQ(succeed("lines metres.obj --view top --camera-orthographic -o a.svg").err, "");

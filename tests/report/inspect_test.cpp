@@ -341,6 +341,17 @@ TEST(Inspect, BadIndicesAreAnErrorNotACrash) {
   EXPECT_THROW((void)inspect(scene), Error);
 }
 
+TEST(LikelyUnits, AreThoseInWhichAPartIsAsLargeAsPartsAre) {
+  const auto of = [](float size) { return likely_units({glm::vec3(0), glm::vec3(0, size, size / 2)}); };
+  using Units = std::vector<double>;
+  for (const float size : {5.0f, 120.0f, 2000.0f}) EXPECT_EQ(of(size), Units({0.001})) << size;
+  for (const float size : {0.002f, 0.125f, 0.96875f}) EXPECT_EQ(of(size), Units({1})) << size;
+  for (const float size : {1.0f, 2.5f, 4.75f}) EXPECT_EQ(of(size), Units({0.01, 0.0254, 1})) << size;
+  for (const float size : {0.0f, 0.0005f, 2048.0f, 1e30f}) EXPECT_EQ(of(size), Units()) << size;
+  EXPECT_EQ(likely_units({glm::vec3(-3e38f), glm::vec3(3e38f)}), Units());
+  EXPECT_EQ(likely_units({}), Units());
+}
+
 TEST(Inspect, CanBeCancelled) {
   const Watch watch{.progress = {}, .cancelled = [] { return true; }};
   EXPECT_THROW((void)inspect(scene_of(torus_knot({})), {.watch = &watch}), Error);
