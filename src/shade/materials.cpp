@@ -148,7 +148,8 @@ MaterialTable::MaterialTable(const Scene& scene, const std::vector<bool>& is_see
     }
     rows_.push_back(std::move(row));
   }
-  rows_.push_back({default_material(), {}, {}, {}, {}, {}});
+  default_.factors = white_.factors = default_material();
+  white_.factors.base_color = glm::vec4(1);
 }
 
 TextureSlot MaterialTable::slot(const TextureUse& use, Encoding encoding, const Execution& execution) {
@@ -160,11 +161,12 @@ TextureSlot MaterialTable::slot(const TextureUse& use, Encoding encoding, const 
 
 void look_up_materials(const MaterialTable& table, const std::vector<TriangleSetup>& setups, Batch& batch) {
   const Coverage& coverage = batch.coverage;
-  const auto material_at = [&](int i) { return setups[coverage.triangle[i]].material; };
+  const auto row_at = [&](int i) { return &table.row_of(setups[coverage.triangle[i]]); };
   for (int begin = 0; begin < coverage.count;) {
+    const MaterialRow* const row = row_at(begin);
     int end = begin + 1;
-    while (end < coverage.count && material_at(end) == material_at(begin)) ++end;
-    Run(table[material_at(begin)], setups, batch).fill(begin, end);
+    while (end < coverage.count && row_at(end) == row) ++end;
+    Run(*row, setups, batch).fill(begin, end);
     begin = end;
   }
 }

@@ -33,16 +33,18 @@ class MaterialTable {
   /// Borrows `scene`. Makes mip levels only for the textures of materials that `is_seen`, one entry per material.
   MaterialTable(const Scene& scene, const std::vector<bool>& is_seen, const Execution& execution);
 
-  /// By material number; no_index gives the default material.
-  [[nodiscard]] const MaterialRow& operator[](std::uint32_t material) const {
-    return material < rows_.size() ? rows_[material] : rows_.back();
+  /// Without a material the default one, which is white where the mesh brings colours: its grey would dim them.
+  [[nodiscard]] const MaterialRow& row_of(const TriangleSetup& triangle) const {
+    if (triangle.material < rows_.size()) return rows_[triangle.material];
+    return triangle.has_color ? white_ : default_;
   }
 
  private:
   [[nodiscard]] TextureSlot slot(const TextureUse& use, Encoding encoding, const Execution& execution);
 
   const Scene& scene_;
-  std::vector<MaterialRow> rows_;                        ///< the last one is the default
+  std::vector<MaterialRow> rows_;  ///< by material
+  MaterialRow default_, white_;
   std::vector<std::unique_ptr<Pyramid>> srgb_, linear_;  ///< by texture; null where not used so
 };
 

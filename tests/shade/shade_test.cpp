@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/srgb.h"
+#include "frontmost/io.h"
 #include "frontmost/zbuffer.h"
 #include "shade/support.h"
 
@@ -125,6 +126,47 @@ TEST(Shade, NormalsAndTheirImage) {
   EXPECT_EQ(normals.find("N.Y")->floats()[centre], 0.0f);
   EXPECT_EQ(normals.find("N.X")->floats()[0], 0.0f);
   EXPECT_EQ(normals.find("A"), nullptr);
+}
+
+TEST(Shade, WithoutAMaterialColoursOfTheMeshAreNotDimmed) {
+  Scene scene = scene_of(square());
+  const glm::vec4 grey = color_at(picture(scene, front_view(), with(Shading::flat)), 32, 32);
+  EXPECT_LT(grey.r, 0.7f) << "a mesh without colours shows its form on a white page";
+  scene.meshes[0].colors.values.assign(4, glm::vec4(1, 0.5f, 0.25f, 1));
+  EXPECT_EQ(color_at(picture(scene, front_view(), with(Shading::flat)), 32, 32), glm::vec4(1, 0.5f, 0.25f, 1));
+  // In all but its base colour it is made of the same.
+  Material white = colored(glm::vec4(1));
+  white.roughness = 0.5f;
+  EXPECT_EQ(color_at(picture(scene, front_view()), 32, 32),
+            color_at(picture(scene_of(scene.meshes[0], white), front_view()), 32, 32));
+  // Of two meshes the one with colours alone.
+  scene.meshes.push_back(square());
+  scene.instances.push_back({"beside", 1, glm::dmat4(1)});
+  scene.instances[0].world_from_mesh[3] = {-1, 0, 0, 1};
+  scene.instances[1].world_from_mesh[3] = {1, 0, -1, 1};
+  const Image both = picture(scene, front_view(), with(Shading::flat));
+  EXPECT_EQ(color_at(both, 16, 32), glm::vec4(1, 0.5f, 0.25f, 1));
+  EXPECT_EQ(color_at(both, 56, 32), grey);
+}
+
+TEST(Shade, ColoursOfEveryFormatAreShownAsTheyAre) {
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string red = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  const std::string list = "property list uchar int vertex_indices\n";
+  const std::string files[] = {
+      ply + red + "element face 1\n" + list +
+          "end_header\n-1 -1 0 255 0 0\n1 -1 0 255 0 0\n1 1 0 255 0 0\n-1 1 0 255 0 0\n4 0 1 2 3\n",
+      ply + "element face 1\n" + list + red + "end_header\n-1 -1 0\n1 -1 0\n1 1 0\n-1 1 0\n4 0 1 2 3 255 0 0\n",
+      "v -1 -1 0 1 0 0\nv 1 -1 0 1 0 0\nv 1 1 0 1 0 0\nv -1 1 0 1 0 0\nf 1 2 3 4\n",
+      "COFF\n4 1 0\n-1 -1 0 255 0 0 255\n1 -1 0 255 0 0 255\n1 1 0 255 0 0 255\n-1 1 0 255 0 0 255\n4 0 1 2 3\n",
+      "OFF\n4 1 0\n-1 -1 0\n1 -1 0\n1 1 0\n-1 1 0\n4 0 1 2 3 255 0 0\n"};
+  for (const std::string& file : files) {
+    LoadOptions options;
+    if (file[0] == 'v') options.format = ModelFormat::obj;
+    const Scene scene = load(std::as_bytes(std::span(file)), "red", options);
+    EXPECT_EQ(color_at(picture(scene, front_view(), with(Shading::flat)), 32, 32), glm::vec4(1, 0, 0, 1)) << file;
+  }
 }
 
 TEST(Shade, BothSidesOfASurfaceAreLitAlikeAndMirroringDoesNotTurnNormals) {
