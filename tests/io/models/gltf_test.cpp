@@ -348,6 +348,43 @@ TEST(Gltf, SkinsArePosedByTheirJoints) {
   EXPECT_EQ(mesh.normals.values[1], glm::vec3(0, 0, -1));
 }
 
+/// Two primitives, the first with joints, below a node that moves them; vertices in the coordinates of the file.
+std::vector<glm::dvec3> skinned_vertices(const std::string& translation) {
+  GltfMaker maker;
+  maker.floats({0, 0, 0, 1, 0.3f, 0, 0, 1, 0.7f});
+  maker.accessor(std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, {"VEC4", 5121, ""}, 3);
+  maker.floats({1, 0, 0, 0, 1, 0, 0, 0, 0.25f, 0.25f, 0, 0}, "VEC4");
+  maker.add(
+      "meshes",
+      R"({"primitives":[{"attributes":{"POSITION":0,"JOINTS_0":1,"WEIGHTS_0":2}},{"attributes":{"POSITION":0}}]})");
+  maker.add("skins", R"({"joints":[2,3]})");
+  maker.add("nodes", R"({"mesh":0,"skin":0})");
+  maker.add("nodes", R"({"translation":[)" + translation + R"(],"children":[2,3]})");
+  maker.add("nodes", R"({"translation":[0,0,1]})");
+  maker.add("nodes", R"({"translation":[0,4.1,5],"rotation":[1,0,0,0]})");
+  maker.add("scenes", R"({"nodes":[0,1]})");
+  const Scene scene = read(maker);
+  std::vector<glm::dvec3> vertices;
+  for (const glm::vec3& p : scene.meshes.at(0).positions)
+    vertices.emplace_back(scene.origin + glm::dvec3(scene.instances.at(0).world_from_mesh * glm::dvec4(p, 1)));
+  return vertices;
+}
+
+TEST(Gltf, SkinnedMeshesFarFromZeroKeepTheirShape) {
+  const std::vector<glm::dvec3> home = skinned_vertices("0,0,0");
+  ASSERT_EQ(home.size(), 6u);
+  const std::pair<const char*, glm::dvec3> moves[] = {{"100000000,-20000000,3000000", {1e8, -2e7, 3e6}},
+                                                      {"5400123.4567,1234567.891,0", {5400123.4567, 1234567.891, 0}}};
+  for (const auto& [text, move] : moves) {
+    const std::vector<glm::dvec3> far = skinned_vertices(text);
+    ASSERT_EQ(far.size(), 6u);
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_LT(glm::length(far[i] - move - home[i]), 4e-6) << text << ", vertex " << i;
+    // Without joints they stay where the file has them, as far as floats can tell that from where the others are.
+    for (std::size_t i = 3; i < 6; ++i) EXPECT_LT(glm::length(far[i] - home[i]), 8) << text << ", vertex " << i;
+  }
+}
+
 TEST(Gltf, JointsThatTheSkinLacksAreErrors) {
   GltfMaker maker;
   maker.floats({0, 0, 0, 1, 0, 0, 0, 1, 0});

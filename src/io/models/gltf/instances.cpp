@@ -106,7 +106,7 @@ class Placer {
     Pose pose{node.weights.empty() ? plan.weights : node.weights};
     // Every node compares and keeps its weights, those of its mesh too.
     budget_.charge(pose.weights.size(), sizeof(double), node.place, source_);
-    if (skinned) pose.joints = skins_[node.skin].joints;
+    if (skinned) pose.joints = skins_[node.skin].joints, pose.origin = skins_[node.skin].origin;
     // Joints are those of the skin, so its number stands for them; comparing the matrices would cost more than posing.
     const Key key{node.mesh, skinned ? node.skin : no_index, pose.weights};
     const auto known = posed_.find(key);

@@ -157,7 +157,17 @@ class MeshBuilder {
     read_attribute(block, base.color, mesh_.colors.values);
     charge_pose(block, pose);
     apply_targets(data_, block, pose.weights, mesh_);
-    apply_skin(data_, block, pose.joints, source_, mesh_);
+    if (block.vertices->joints.empty())
+      take_off(pose.origin, block);
+    else
+      apply_skin(data_, block, pose.joints, source_, mesh_);
+  }
+
+  /// Primitives of one mesh need not all have joints; those without stay where the mesh is.
+  void take_off(const glm::dvec3& origin, const Block& block) {
+    if (origin == glm::dvec3(0)) return;
+    for (std::size_t i = block.first; i < block.first + block.range.count; ++i)
+      mesh_.positions[i] = glm::vec3(glm::dvec3(mesh_.positions[i]) - origin);
   }
 
   /// Posing keeps no memory, but many targets of many vertices would take forever.

@@ -53,6 +53,7 @@ struct MeshPlan {
 struct Pose {
   std::vector<double> weights;              ///< as many as there are targets, or none
   std::span<const glm::dmat4> joints = {};  ///< world_from_joint * inverse bind matrix; empty: no skin
+  glm::dvec3 origin{0};                     ///< what the joints lead to has its zero here
 };
 
 /// Reads the data of planned meshes.

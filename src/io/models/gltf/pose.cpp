@@ -80,8 +80,7 @@ void apply_targets(const Data& data, const Block& block, std::span<const double>
 
 void apply_skin(const Data& data, const Block& block, std::span<const glm::dmat4> joints, const ModelSource& source,
                 Mesh& mesh) {
-  // Primitives of one mesh need not all have joints; those without stay where the mesh is.
-  if (joints.empty() || block.vertices->joints.empty()) return;
+  if (joints.empty()) return;
   const Influences influences(data, block, joints.size(), source);
   for (std::size_t i = 0; i < block.range.count; ++i) {
     const glm::dmat4 matrix = influences.matrix(i, joints);

@@ -16,7 +16,8 @@ struct Block {
 
 /// Adds weighted displacements to positions, normals, texture coordinates and colours.
 void apply_targets(const Data& data, const Block& block, std::span<const double> weights, Mesh& mesh);
-/// Moves positions and normals by joints. \throws Error file_malformed for a joint that the skin does not have.
+/// Moves positions and normals by joints, which the block's vertices have.
+/// \throws Error file_malformed for a joint that the skin does not have.
 void apply_skin(const Data& data, const Block& block, std::span<const glm::dmat4> joints, const ModelSource& source,
                 Mesh& mesh);
 
