@@ -9,6 +9,7 @@
 #include "frontmost/zbuffer.h"
 #include "shade/layers/deep_layers.h"
 #include "shade/support.h"
+#include "support/effort.h"
 
 namespace frontmost {
 namespace {
@@ -118,6 +119,24 @@ TEST(DeepImage, ShownPartsAreThoseOfEverySubSample) {
   EXPECT_FLOAT_EQ(parts[0], (0.25f + 0.5f) / 2);
   EXPECT_FLOAT_EQ(parts[1], (0.5f + 0.25f) / 2);
   EXPECT_FLOAT_EQ(parts[2], 0.25f / 2);
+}
+
+// Sheets that all cross within a pixel are in one order on its left and in the opposite one on its right. Each took its
+// place among those before it: 300,000 then take minutes.
+TEST(DeepImage, ManyThatChangePlacesAreSorted) {
+  const std::size_t count = under_sanitizer ? 3'000 : 300'000;
+  const float alpha = 1e-5f;
+  const std::vector<Fragment> fragments(count, Fragment{3, 0, 0.5f, 0, 0, 1});
+  const std::vector<float> alphas(count, alpha);
+  const auto key_at = [&](std::size_t i, std::size_t s) {
+    return float(s == 0 ? count - i : i + 1) / float(2 * count);
+  };
+  const std::vector<float> parts = shading::shown_parts(fragments, alphas, 2, key_at);
+  for (std::size_t i = 0; i < count; i += count / 10) {
+    const double left = std::pow(1 - double(alpha), double(i)),
+                 right = std::pow(1 - double(alpha), double(count - 1 - i));
+    EXPECT_NEAR(parts[i], (left + right) / 2 * double(alpha), 1e-3 * double(alpha)) << i;
+  }
 }
 
 TEST(DeepImage, IsTheSameForAnyThreads) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shade/layers/deep_layers.h"
 
+#include <algorithm>
 #include <mutex>
 #include <numeric>
+#include <tuple>
 
 #include "abuffer/tile_parts.h"
 #include "base/parallel.h"
@@ -27,31 +29,24 @@ struct DeepSample {
 /// What one sub-sample sees, nearest first.
 class Order {
  public:
+  /// Ordered by the key, greatest first, and by the id.
+  using Place = std::tuple<float, PrimitiveId, std::uint32_t>;
+
   Order(std::span<const Fragment> fragments, const KeyAt& key_at) : fragments_(fragments), key_at_(key_at) {}
 
-  [[nodiscard]] const std::vector<std::uint32_t>& at(std::size_t sample) {
+  [[nodiscard]] const std::vector<Place>& at(std::size_t sample) {
     order_.clear();
-    keys_.clear();
-    for (std::uint32_t i = 0; i < fragments_.size(); ++i) {
-      const Fragment& f = fragments_[i];
-      if (!(f.mask >> sample & 1)) continue;
-      // Nearly always the last: few fragments change places within a pixel.
-      const float key = key_at_(i, sample);
-      std::size_t at = order_.size();
-      while (at > 0 && (keys_[at - 1] < key || (keys_[at - 1] == key && id(order_[at - 1]) > f.primitive))) --at;
-      order_.insert(order_.begin() + std::ptrdiff_t(at), i);
-      keys_.insert(keys_.begin() + std::ptrdiff_t(at), key);
-    }
+    for (std::uint32_t i = 0; i < fragments_.size(); ++i)
+      if (fragments_[i].mask >> sample & 1) order_.push_back({-key_at_(i, sample), fragments_[i].primitive, i});
+    // Mostly the order is that of the list: few fragments change places within a pixel.
+    if (!std::is_sorted(order_.begin(), order_.end())) std::sort(order_.begin(), order_.end());
     return order_;
   }
 
  private:
-  [[nodiscard]] PrimitiveId id(std::uint32_t i) const { return fragments_[i].primitive; }
-
   std::span<const Fragment> fragments_;
   const KeyAt& key_at_;
-  std::vector<std::uint32_t> order_;
-  std::vector<float> keys_;
+  std::vector<Place> order_;
 };
 
 /// The samples of one rectangle.
@@ -151,7 +146,7 @@ std::vector<float> shown_parts(std::span<const Fragment> fragments, std::span<co
   Order order(fragments, key_at);
   for (std::size_t s = 0; s < sample_count; ++s) {
     float left = 1;
-    for (const std::uint32_t i : order.at(s)) {
+    for (const auto& [key, id, i] : order.at(s)) {
       parts[i] += left * alphas[i];
       left *= 1 - alphas[i];
     }

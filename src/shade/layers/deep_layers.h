@@ -10,8 +10,8 @@ namespace frontmost::shading {
 
 /// The parts of a pixel that its fragments show, nearest first: how much of the whole each contributes when they are
 /// laid over each other in true order at every sub-sample. `alphas` are the fragments' own; `key_at(i, s)` is the key
-/// of fragment i at sub-sample s. O(n * sub-samples) for n fragments that keep their order, O(n^2 * sub-samples) for
-/// others.
+/// of fragment i at sub-sample s. O(n * sub-samples) for n fragments that keep their order, O(n log n * sub-samples)
+/// for others.
 using KeyAt = std::function<float(std::size_t fragment, std::size_t sample)>;
 [[nodiscard]] std::vector<float> shown_parts(std::span<const Fragment> fragments, std::span<const float> alphas,
                                              std::size_t sample_count, const KeyAt& key_at);
