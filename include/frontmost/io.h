@@ -29,10 +29,15 @@ struct LoadOptions {
 /// Reads a model. "-" reads standard input, "builtin:NAME" makes a built-in scene. Files named inside a model
 /// (material libraries, buffers, textures) are read only from the model's own folder and below.
 /// Triangle order and count are the file's. Memory while reading is at most about twice the result.
+/// A model that lies far from zero for its size, as surveys do, gets a Scene::origin: it is taken off while coordinates
+/// are still doubles, so that text and double formats lose nothing, and files of floats nothing more. Positions,
+/// instances and cameras of the scene are about it; what is at p there is at origin + p in the file. fitting_origin()
+/// says when and which. Whoever brings eyes, rays or points in the file's coordinates takes it off first.
 /// \throws Error file_unreadable, file_malformed, unsupported or limit_exceeded: "name: place: reason".
 [[nodiscard]] Scene load(const std::string& path, const LoadOptions& options = {}, const Execution& execution = {});
 
 /// Reads a model from memory; `name` stands for the file in messages. Files named inside it are not read.
+/// The origin is as above.
 [[nodiscard]] Scene load(std::span<const std::byte> bytes, const std::string& name, const LoadOptions& options = {},
                          const Execution& execution = {});
 

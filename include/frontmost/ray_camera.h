@@ -43,7 +43,7 @@ struct RayPattern {
 /// Where the rays start, and how they spread. The eye and the rays' directions are rounded to floats.
 struct RayCamera {
   std::variant<Panorama, Fisheye, Lidar, RayPattern> model;
-  glm::dmat4 world_from_eye{1.0};  ///< a rotation and a translation
+  glm::dmat4 world_from_eye{1.0};  ///< a rotation and a translation, about Scene::origin as a View's is
 };
 
 /// Elevations of `rings` rings, evenly from `highest` down to `lowest`; the middle of both for a single ring.

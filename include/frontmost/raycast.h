@@ -97,6 +97,9 @@ class RayCaster {
   std::unique_ptr<State> state_;
 };
 
+// Rays and segments are in world space, which is about Scene::origin: points in the coordinates of a file that lies far
+// from zero have it taken off first, in doubles.
+
 /// Points origin + t * direction for t > 0; the direction has any length.
 struct Ray {
   glm::vec3 origin{0}, direction{0, 0, -1};

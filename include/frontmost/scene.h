@@ -120,7 +120,7 @@ struct Instance {
   glm::dmat4 world_from_mesh{1.0};
 };
 
-/// A camera of the file. Looks down its own -z, y up.
+/// A camera of the file, about Scene::origin. Looks down its own -z, y up.
 struct Camera {
   std::string name;
   glm::dmat4 world_from_eye{1.0};
@@ -145,7 +145,7 @@ struct Scene {
   /// Where the zero of world space lies in the coordinates of the file: what is at p in the world is at origin + p
   /// there. Zero, but for models that lie far from it for their size, whose details floats could not hold there.
   glm::dvec3 origin{0};
-  std::vector<std::string> warnings;  ///< what the reader passed over, each with its place
+  std::vector<std::string> warnings;  ///< what the reader passed over: "file: place: what"
 };
 
 /// Triangles over all instances. O(instances).
