@@ -136,7 +136,7 @@ def write_plate(path, columns, rows, corners, radius=0.36):
 def check_plate(program, folder, corners, more):
     """Away from rims nothing of the background is let through: it makes no difference whether it is black or white."""
     write_plate(folder / "plate.obj", 7, 5, corners)
-    words = [folder / "plate.obj", "--color-tolerance", 255, "--quiet", *more]
+    words = [folder / "plate.obj", "--quiet", *more]
     pictures = {}
     for color in ("black", "white"):
         run(program, "render", *words, "--resolution", f"{WIDTH},{HEIGHT}", "--background", color, "-o",
