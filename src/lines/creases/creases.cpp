@@ -21,7 +21,7 @@ bool is_fold(const FeatureEdge& edge) { return edge.kind == EdgeKind::crease || 
 
 std::vector<JudgedFold> judge_folds(const SeenMesh& seen, const CornerTable& table,
                                     const std::vector<FeatureEdge>& edges, const Execution& execution) {
-  const Neighbours near(seen, table);
+  const Neighbours near(seen, table, execution);
   std::vector<JudgedFold> folds(edges.size());
   parallel_for(execution, edges.size(), kEdgesPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
@@ -112,16 +112,21 @@ void CreaseGraph::follow_strong() {
 
 /// Where a crease runs to and fro across a row of triangles, each of them has three.
 void CreaseGraph::thin() {
+  const auto for_each_side = [&](const auto& visit) {
+    for (std::size_t i = 0; i < edges_.size(); ++i)
+      if (is_drawn(i) && is_fold(edges_[i]))
+        for (const std::uint32_t triangle : {edges_[i].left, edges_[i].right}) visit(triangle, std::uint32_t(i));
+  };
+  Buffer<std::uint8_t> creases(mesh_.triangles.size(), 0);
+  for_each_side([&](std::uint32_t triangle, std::uint32_t) { ++creases[triangle]; });
   std::vector<std::pair<std::uint32_t, std::uint32_t>> sides;  // triangle, edge
-  for (std::size_t i = 0; i < edges_.size(); ++i)
-    if (is_drawn(i) && is_fold(edges_[i]))
-      for (const std::uint32_t triangle : {edges_[i].left, edges_[i].right})
-        sides.emplace_back(triangle, std::uint32_t(i));
+  for_each_side([&](std::uint32_t triangle, std::uint32_t edge) {
+    if (creases[triangle] == 3) sides.emplace_back(triangle, edge);
+  });
   std::sort(sides.begin(), sides.end());
   std::vector<std::uint32_t> faint;
-  for (std::size_t i = 0; i + 2 < sides.size(); ++i) {
-    if (sides[i].first != sides[i + 2].first) continue;
-    const auto less = [&](const auto& a, const auto& b) { return folds_[a.second].jump < folds_[b.second].jump; };
+  const auto less = [&](const auto& a, const auto& b) { return folds_[a.second].jump < folds_[b.second].jump; };
+  for (std::size_t i = 0; i + 2 < sides.size(); i += 3) {
     const auto [least, most] = std::minmax_element(&sides[i], &sides[i] + 3, less);
     const JudgedFold& fold = folds_[least->second];
     if (fold.grade == FoldGrade::strong && fold.jump < kFaintest * folds_[most->second].jump)

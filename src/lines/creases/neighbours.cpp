@@ -3,14 +3,18 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+
+#include "base/parallel.h"
 
 namespace frontmost::lines_detail {
 namespace {
 
 constexpr double kWidestCorner = 0.9659;  // the cosine of 15 degrees, by which slivers' corners miss a straight angle
 constexpr double kOnePlane = 0.996;       // the cosine of 5 degrees
-constexpr std::size_t kMostSlivers = 8;   // more in one plane are no sliver together
+constexpr std::size_t kTrianglesPerPart = 4096;
+constexpr std::size_t kMostSlivers = 8;  // more in one plane are no sliver together
 
 }  // namespace
 
@@ -47,41 +51,61 @@ Fan::Side Fan::side(const TurnedTriangle& triangle, std::uint32_t rim) const {
   return {triangle, rim, entry};
 }
 
+/// On to an entry that has the rim of `from`, and out on its other side.
+Fan::Side Fan::to(std::size_t entry, const Side& from) const {
+  const Entry& own = entries_[from.entry];
+  const Entry& other = entries_[entry];
+  const bool is_alike = (other.next == from.rim) != (own.next == from.rim);
+  const std::uint32_t rim = other.next == from.rim ? other.last : other.next;
+  return {{other.triangle, from.triangle.is_turned == is_alike}, rim, entry};
+}
+
 Fan::Side Fan::beyond(const Side& side) const {
   if (side.entry >= count_) return {{}, no_index, count_};
+  std::uint32_t beside = 0;  // bit i: entry i has the rim
+  for (std::size_t i = 0; i < count_; ++i)
+    beside |= std::uint32_t(entries_[i].next == side.rim || entries_[i].last == side.rim) << i;
+  beside &= ~(1u << side.entry);
+  const bool is_one = (beside & (beside - 1)) == 0 && beside != 0;
+  const Side found = is_one ? to(std::size_t(std::countr_zero(beside)), side) : beyond_copies(side, beside);
   const Entry& own = entries_[side.entry];
-  const bool is_next = own.next == side.rim;
-  const std::uint32_t own_rim = is_next ? own.last : own.next;
+  return found.rim == (own.next == side.rim ? own.last : own.next) ? Side{{}, no_index, count_} : found;
+}
+
+Fan::Side Fan::beyond_copies(const Side& side, std::uint32_t beside) const {
+  const Entry& own = entries_[side.entry];
+  const std::uint32_t own_rim = own.next == side.rim ? own.last : own.next;
   Side found{{}, no_index, count_};
-  for (std::size_t i = 0; i < count_; ++i) {
-    const Entry& entry = entries_[i];
-    if (entry.next != side.rim && entry.last != side.rim) continue;
-    const bool is_alike = (entry.next == side.rim) != is_next;
-    const std::uint32_t rim = entry.next == side.rim ? entry.last : entry.next;
-    if (rim == own_rim || rim == found.rim) continue;
+  for (; beside != 0; beside &= beside - 1) {
+    const Side other = to(std::size_t(std::countr_zero(beside)), side);
+    if (other.rim == own_rim || other.rim == found.rim) continue;
     if (found.triangle.is_there()) return {{}, no_index, count_};
-    found = {{entry.triangle, side.triangle.is_turned == is_alike}, rim, i};
+    found = other;
   }
   return found;
 }
 
-glm::dvec3 Neighbours::normal(const TurnedTriangle& triangle) const {
-  glm::dvec3 normal(seen_.triangles[triangle.number].normal);
-  if (normal == glm::dvec3(0)) {
-    normal = normal_of(seen_.mesh, triangle.number);
-    const double length = glm::length(normal);
-    normal = length > 0 ? normal / length : glm::dvec3(0);
-  }
-  return triangle.is_turned ? -normal : normal;
+Neighbours::Neighbours(const SeenMesh& seen, const CornerTable& table, const Execution& execution)
+    : seen_(seen), table_(table), is_sliver_(seen.mesh.triangles.size()) {
+  parallel_for(execution, is_sliver_.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) is_sliver_[i] = find_sliver(std::uint32_t(i));
+  });
 }
 
-bool Neighbours::is_sliver(std::uint32_t triangle) const {
+glm::dvec3 Neighbours::rounded_normal(std::uint32_t triangle) const {
+  const glm::dvec3 normal = normal_of(seen_.mesh, triangle);
+  const double length = glm::length(normal);
+  return length > 0 ? normal / length : glm::dvec3(0);
+}
+
+bool Neighbours::find_sliver(std::uint32_t triangle) const {
   const glm::uvec3& t = corners(triangle);
-  const glm::dvec3 sides[3] = {place(t.y) - place(t.x), place(t.z) - place(t.y), place(t.x) - place(t.z)};
+  const glm::dvec3 a = place(t.x), b = place(t.y), c = place(t.z), sides[3] = {b - a, c - b, a - c};
   for (int k = 0; k < 3; ++k) {
     const glm::dvec3 &u = sides[k], &v = sides[k == 2 ? 0 : k + 1];
     const double dot = glm::dot(u, v);
-    if (dot > 0 && dot * dot > kWidestCorner * kWidestCorner * glm::dot(u, u) * glm::dot(v, v)) return true;
+    // No other corner is wider than a right angle.
+    if (dot > 0) return dot * dot > kWidestCorner * kWidestCorner * glm::dot(u, u) * glm::dot(v, v);
   }
   return false;
 }

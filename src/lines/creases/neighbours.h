@@ -49,13 +49,17 @@ class Fan {
   struct Entry {
     std::uint32_t triangle, next, last;
   };
+  [[nodiscard]] Side to(std::size_t entry, const Side& from) const;
+  [[nodiscard]] Side beyond_copies(const Side& side, std::uint32_t beside) const;
+
   std::array<Entry, most> entries_;
   std::size_t count_ = 0;
 };
 
 class Neighbours {
  public:
-  Neighbours(const SeenMesh& seen, const CornerTable& table) : seen_(seen), table_(table) {}
+  /// O(triangles).
+  Neighbours(const SeenMesh& seen, const CornerTable& table, const Execution& execution);
 
   [[nodiscard]] const glm::uvec3& corners(std::uint32_t triangle) const { return seen_.mesh.triangles[triangle]; }
   [[nodiscard]] glm::dvec3 place(std::uint32_t vertex) const { return seen_.mesh.positions[vertex]; }
@@ -68,17 +72,25 @@ class Neighbours {
   [[nodiscard]] Fan fan(std::uint32_t vertex) const;
 
   /// The triangle's own, of unit length or zero.
-  [[nodiscard]] glm::dvec3 normal(const TurnedTriangle& triangle) const;
+  [[nodiscard]] glm::dvec3 normal(const TurnedTriangle& triangle) const {
+    const glm::vec3& kept = seen_.triangles[triangle.number].normal;
+    const glm::dvec3 normal = kept == glm::vec3(0) ? rounded_normal(triangle.number) : glm::dvec3(kept);
+    return triangle.is_turned ? -normal : normal;
+  }
   /// Whether the corners lie almost on a line, one between the others. On a curved surface such a triangle may have any
   /// normal: on a chord of a cylinder's rim it lies in the rim's plane.
-  [[nodiscard]] bool is_sliver(std::uint32_t triangle) const;
+  [[nodiscard]] bool is_sliver(std::uint32_t triangle) const { return is_sliver_[triangle] != 0; }
   /// Of the surface that the triangle is cut from. Slivers that are not part of something wider take the normal of one
   /// of their neighbours, the one that their own is nearest to.
   [[nodiscard]] glm::dvec3 surface_normal(const TurnedTriangle& triangle) const;
 
  private:
+  [[nodiscard]] bool find_sliver(std::uint32_t triangle) const;
+  [[nodiscard]] glm::dvec3 rounded_normal(std::uint32_t triangle) const;
+
   const SeenMesh& seen_;
   const CornerTable& table_;
+  Buffer<std::uint8_t> is_sliver_;  ///< by triangle
 };
 
 }  // namespace frontmost::lines_detail
