@@ -14,6 +14,7 @@
 #include "lines/crossings/crossings.h"
 #include "lines/hiding/hidden_parts.h"
 #include "lines/joined.h"
+#include "lines/mesh/gaps.h"
 #include "lines/mesh/seams.h"
 
 namespace frontmost {
@@ -128,6 +129,9 @@ Drawing lines(const Surfaces& surfaces, const View& view, const LineOptions& opt
   report_progress(execution, "lines", 0.1);
   std::vector<Crossing> crossings;
   if (options.intersections) crossings = find_crossings(mesh, features, execution);
+  std::erase_if(crossings, [&](const Crossing& crossing) {
+    return meet_at_gap(mesh, features.continued, crossing.left, crossing.right);
+  });
   const Candidates candidates(mesh, std::move(features.edges), std::move(crossings));
   report_progress(execution, "lines", 0.2);
   const LinesToCut to_cut{candidates.count(), [&](std::size_t i) { return candidates.sighted(i); }};

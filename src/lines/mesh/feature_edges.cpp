@@ -13,12 +13,14 @@
 #include "lines/creases/creases.h"
 #include "lines/crossings/stars.h"
 #include "lines/joined.h"
+#include "lines/mesh/gaps.h"
 #include "lines/mesh/sheets.h"
 
 namespace frontmost::lines_detail {
 namespace {
 
 constexpr std::size_t kVerticesPerPart = 1024;
+constexpr double kWidestGap = 1.0 / 65536;  // of the scene's diagonal: a two hundredth of a millimetre on paper of A4
 
 class Classifier {
  public:
@@ -55,6 +57,11 @@ class Classifier {
   [[nodiscard]] SurfaceOf surface_of(std::uint32_t triangle) const {
     const PrimitiveSource source = surfaces_.source(mesh_.ids[triangle]);
     return {source.instance, surfaces_.scene().meshes[source.mesh].material_of(source.triangle)};
+  }
+
+  [[nodiscard]] GapOptions gap_options(double widest, std::size_t twins) const {
+    return {cosine_, widest, mesh_.triangles.size() - twins,
+            [this](std::uint32_t triangle) { return surface_of(triangle); }};
   }
 
   [[nodiscard]] SheetQuestions questions() const {
@@ -225,9 +232,12 @@ Features find_features(const SeenMesh& seen, const Surfaces& surfaces, const Lin
     edges[begin / kVerticesPerPart] = std::move(found.edges);
     twins[begin / kVerticesPerPart] = std::move(found.twins);
   });
-  Features all{joined(edges, execution), joined(twins, execution), std::move(is_spread)};
+  Features all{joined(edges, execution), {}, joined(twins, execution), std::move(is_spread)};
   std::sort(all.twins.begin(), all.twins.end());
   if (options.creases && !options.crease_angle) judge_creases(seen, table, all.edges, execution);
+  if (options.boundaries)
+    all.continued = leave_out_gaps(
+        seen, classifier.gap_options(kWidestGap * double(surfaces.bounds().diagonal()), all.twins.size()), all.edges);
   return all;
 }
 

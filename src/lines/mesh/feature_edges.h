@@ -2,6 +2,7 @@
 // Which edges of a mesh are drawn.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "frontmost/lines.h"
@@ -16,8 +17,11 @@ struct FeatureEdge {
   std::int8_t outer;  ///< as SightedEdge::outer
 };
 
+using VertexPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
 struct Features {
   std::vector<FeatureEdge> edges;    ///< in the order of their vertices
+  VertexPairs continued;             ///< leave_out_gaps()
   std::vector<std::uint32_t> twins;  ///< ascending: triangles with the same corners as another before them
   /// By vertex, Star::is_spread: no two of its triangles meet but in their common corners. 0, or an empty list, where
   /// nothing is known.
