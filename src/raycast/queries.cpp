@@ -73,7 +73,9 @@ std::vector<RayHit> all_hits(const RayIndex& index, const Ray& ray) {
   const IeeeScope ieee;
   std::vector<RayHit> hits;
   const Query query = query_of(ray);
-  if (is_valid(query)) walk(index.tree(), query, Want::all, hits, Isa::best);
+  if (!is_valid(query)) return hits;
+  walk(index.tree(), query, Want::all, hits, Isa::best);
+  if (index.tree().copies) walk(*index.tree().copies, query, Want::all, hits, Isa::best);
   std::sort(hits.begin(), hits.end(),
             [](const RayHit& a, const RayHit& b) { return a.t != b.t ? a.t < b.t : a.primitive < b.primitive; });
   return hits;

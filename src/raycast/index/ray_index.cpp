@@ -3,25 +3,42 @@
 
 #include "base/float_environment.h"
 #include "base/parallel.h"
-#include "raycast/index/ray_tree.h"
+#include "raycast/index/copies.h"
 #include "surfaces/cluster_set.h"
 
 namespace frontmost {
 
-RayTree make_tree(const Surfaces& surfaces, const Execution& execution) {
+namespace {
+
+void build(RayTree& tree, const Execution& execution) {
+  std::vector<LeafBox> boxes = group_leaves(tree, execution);
+  report_progress(execution, "index", 0.5);
+  build_nodes(boxes, tree, execution);
+}
+
+std::size_t byte_count(const RayTree& tree) {
+  return sizeof(RayTree) + tree.nodes.size() * sizeof(RayNode) + tree.leaves.size() * sizeof(RayLeaf) +
+         tree.placed.size() * sizeof(PlacedRoot) + (tree.cutouts ? tree.cutouts->byte_count() : 0) +
+         (tree.copies ? byte_count(*tree.copies) : 0);
+}
+
+}  // namespace
+
+RayTree make_tree(const Surfaces& surfaces, Copies copies, const Execution& execution) {
   const IeeeScope ieee;
   RayTree tree;
   tree.cutouts = surfaces.clusters().cutouts;
   report_progress(execution, "index", 0);
-  std::vector<LeafBox> boxes = fill_leaves(surfaces, tree, execution);
-  report_progress(execution, "index", 0.5);
-  build_nodes(boxes, tree, execution);
+  fill_leaves(surfaces, tree, execution);
+  if (copies == Copies::apart) tree.copies = take_copies(tree, execution);
+  build(tree, execution);
+  if (tree.copies) build(*tree.copies, execution);
   report_progress(execution, "index", 1);
   return tree;
 }
 
 RayIndex::RayIndex(const Surfaces& surfaces, const Execution& execution)
-    : tree_(std::make_unique<RayTree>(make_tree(surfaces, execution))) {}
+    : tree_(std::make_unique<RayTree>(make_tree(surfaces, Copies::apart, execution))) {}
 RayIndex::RayIndex(const Scene& scene, const Execution& execution)
     : tree_(std::make_unique<RayTree>(make_placed_tree(scene, execution))) {}
 RayIndex::~RayIndex() = default;
@@ -31,7 +48,7 @@ RayIndex& RayIndex::operator=(RayIndex&&) noexcept = default;
 void RayIndex::refit(const Surfaces& surfaces, const Execution& execution) {
   const IeeeScope ieee;
   report_progress(execution, "index", 0);
-  if (!refit_tree(surfaces, *tree_, execution)) *tree_ = make_tree(surfaces, execution);
+  if (!refit_tree(surfaces, *tree_, execution)) *tree_ = make_tree(surfaces, Copies::apart, execution);
   report_progress(execution, "index", 1);
 }
 
@@ -40,13 +57,12 @@ void RayIndex::refit(const Scene& scene, const Execution& execution) {
   if (!replace_instances(scene, *tree_, execution)) *tree_ = make_placed_tree(scene, execution);
 }
 
-std::uint32_t RayIndex::triangle_count() const { return tree_->triangle_count; }
+std::uint32_t RayIndex::triangle_count() const {
+  return tree_->triangle_count + (tree_->copies ? tree_->copies->triangle_count : 0);
+}
 
 const Box& RayIndex::bounds() const { return tree_->bounds; }
 
-std::size_t RayIndex::byte_count() const {
-  return sizeof(RayTree) + tree_->nodes.size() * sizeof(RayNode) + tree_->leaves.size() * sizeof(RayLeaf) +
-         tree_->placed.size() * sizeof(PlacedRoot) + (tree_->cutouts ? tree_->cutouts->byte_count() : 0);
-}
+std::size_t RayIndex::byte_count() const { return frontmost::byte_count(*tree_); }
 
 }  // namespace frontmost

@@ -119,7 +119,7 @@ LeafBox box_of(const RayLeaf& leaf, std::uint32_t number) {
   return box;
 }
 
-std::vector<LeafBox> fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execution) {
+void fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execution) {
   const ClusterSet& set = surfaces.clusters();
   const std::size_t parts = (set.clusters.size() + kClustersPerPart - 1) / kClustersPerPart;
   std::vector<std::size_t> first(parts + 1, 0);
@@ -139,7 +139,10 @@ std::vector<LeafBox> fill_leaves(const Surfaces& surfaces, RayTree& tree, const 
     std::size_t place = first[begin / kClustersPerPart];
     for (std::size_t c = begin; c < end; ++c) fill(set, set.clusters[c], place, tree.leaves);
   });
+}
 
+std::vector<LeafBox> group_leaves(RayTree& tree, const Execution& execution) {
+  const std::size_t total = tree.triangle_count, leaf_count = tree.leaves.size();
   std::vector<LeafBox> boxes(leaf_count);
   parallel_for(execution, leaf_count, kLeavesPerPart, [&](std::size_t begin, std::size_t end) {
     // The last leaf, where it is not full, keeps its unused lanes at the end and stays as it is.

@@ -57,6 +57,9 @@ struct RayTree {
   std::uint32_t depth = 0;                 ///< nodes from the root to the deepest leaf, over both levels
   Box bounds;                              ///< on two levels, of the boxes; around those of the triangles otherwise
   std::shared_ptr<const Cutouts> cutouts;  ///< null where no triangle has holes
+  /// Triangles that are there again: each has the corners of one of this tree, in their order, and a higher id. So
+  /// whoever asks what is nearest, or whether anything is met, does without them. Null: none were taken apart.
+  std::shared_ptr<RayTree> copies;
 
   /// The most children that a depth-first walk has waiting.
   [[nodiscard]] std::size_t stack_size() const { return std::size_t(depth) * (kRayLanes - 1) + 1; }
@@ -87,8 +90,11 @@ struct LeafBox {
   std::uint32_t unused;
 };
 
-/// Fills tree.leaves in the surfaces' spatial order. \returns the box of every leaf.
-[[nodiscard]] std::vector<LeafBox> fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execution);
+/// Fills tree.leaves in the surfaces' spatial order.
+void fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execution);
+
+/// Deals the triangles out anew, a few leaves at a time, so that leaves are small. \returns the box of every leaf.
+[[nodiscard]] std::vector<LeafBox> group_leaves(RayTree& tree, const Execution& execution);
 
 /// Moves the triangles of `tree` to where they are in `surfaces`, and fits every box anew.
 /// \returns false where `surfaces` has other triangles; the tree is then empty, as it is after an error.
@@ -100,8 +106,11 @@ struct LeafBox {
 /// Fills tree.nodes over the boxes, which are reordered.
 void build_nodes(std::vector<LeafBox>& boxes, RayTree& tree, const Execution& execution);
 
+/// Whether triangles that are there again have a tree of their own.
+enum class Copies { among_all, apart };
+
 /// One level over `surfaces`.
-[[nodiscard]] RayTree make_tree(const Surfaces& surfaces, const Execution& execution);
+[[nodiscard]] RayTree make_tree(const Surfaces& surfaces, Copies copies, const Execution& execution);
 
 /// Two levels: one tree for every mesh that has instances, and one over the instances.
 [[nodiscard]] RayTree make_placed_tree(const Scene& scene, const Execution& execution);

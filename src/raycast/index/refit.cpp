@@ -75,7 +75,8 @@ void fit_nodes(const std::vector<LeafBox>& boxes, RayTree& tree) {
 }  // namespace
 
 bool refit_tree(const Surfaces& surfaces, RayTree& tree, const Execution& execution) {
-  if (!tree.placed.empty()) return false;
+  // Copies may be moved apart.
+  if (!tree.placed.empty() || tree.copies) return false;
   const ClusterSet& set = surfaces.clusters();
   TreeChange change(tree);
   tree.cutouts = set.cutouts;

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "raycast/index/copies.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "base/parallel.h"
+
+namespace frontmost {
+namespace {
+
+constexpr std::size_t kTrianglesPerPart = 16384;
+/// Fewer cost views next to nothing, and an index without a second tree can be refitted.
+constexpr std::size_t kFew = 4096;
+
+/// Whether the triangle at `place` is the one before it with a higher id: what meets it meets that one as well, at the
+/// same depth, and of the two that one is seen.
+bool is_copy(const Buffer<RayLeaf>& leaves, std::size_t place) {
+  const RayLeaf &one = leaves[(place - 1) / kRayLanes], &again = leaves[place / kRayLanes];
+  const std::size_t a = (place - 1) % kRayLanes, b = place % kRayLanes;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (one.corner[k][axis][a] != again.corner[k][axis][b]) return false;
+  return one.id[a] < again.id[b];
+}
+
+std::size_t count_copies(const RayTree& tree, const Execution& execution) {
+  std::atomic<std::size_t> count{0};
+  parallel_for(execution, tree.triangle_count, kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
+    std::size_t here = 0;
+    for (std::size_t i = std::max<std::size_t>(begin, 1); i < end; ++i) here += is_copy(tree.leaves, i);
+    count += here;
+  });
+  return count;
+}
+
+/// Fills leaves from the first lane on.
+class LeafFiller {
+ public:
+  explicit LeafFiller(std::size_t triangle_count) : leaves_((triangle_count + kRayLanes - 1) / kRayLanes) {
+    if (leaves_.empty()) return;
+    RayLeaf& last = leaves_[leaves_.size() - 1] = {};
+    std::fill_n(last.id, kRayLanes, no_primitive);
+  }
+  void add(const RayLeaf& from, std::size_t from_lane) {
+    RayLeaf& to = leaves_[next_ / kRayLanes];
+    const std::size_t lane = next_++ % kRayLanes;
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t axis = 0; axis < 3; ++axis) to.corner[k][axis][lane] = from.corner[k][axis][from_lane];
+    to.id[lane] = from.id[from_lane];
+  }
+  [[nodiscard]] Buffer<RayLeaf> take() { return std::move(leaves_); }
+
+ private:
+  Buffer<RayLeaf> leaves_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace
+
+std::shared_ptr<RayTree> take_copies(RayTree& tree, const Execution& execution) {
+  // Of copies with holes one may be open where the other is not.
+  if (tree.cutouts || tree.triangle_count <= kFew) return nullptr;
+  const std::size_t count = count_copies(tree, execution);
+  if (count <= kFew) return nullptr;
+  const auto copies = std::make_shared<RayTree>();
+  copies->triangle_count = std::uint32_t(count);
+  LeafFiller again(count), kept(tree.triangle_count - count);
+  for (std::size_t i = 0; i < tree.triangle_count; ++i)
+    (i > 0 && is_copy(tree.leaves, i) ? again : kept).add(tree.leaves[i / kRayLanes], i % kRayLanes);
+  copies->leaves = again.take();
+  tree.leaves = kept.take();
+  tree.triangle_count -= copies->triangle_count;
+  return copies;
+}
+
+}  // namespace frontmost
