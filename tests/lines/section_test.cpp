@@ -247,6 +247,38 @@ TEST(Section, RandomConvexSolidsBesideTheHullOfTheirEdges) {
   }
 }
 
+TEST(Section, CubesThatTouchInAnyPatternHaveAsManySquares) {
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    // At corners, at edges and at faces; those between two are there in both directions.
+    constexpr int side = 4;
+    Random random(seed);
+    const int share = 2 + random.below(4);
+    Mesh mesh;
+    int layers[side] = {};
+    for (int i = 0; i < side * side * side; ++i) {
+      if (random.below(6) >= share) continue;
+      const glm::ivec3 low(i % side, i / side % side, i / side / side);
+      ++layers[low.z];
+      const Mesh cube = box(glm::dvec3(low), glm::dvec3(low + 1));
+      const auto first = std::uint32_t(mesh.positions.size());
+      mesh.positions.insert(mesh.positions.end(), cube.positions.begin(), cube.positions.end());
+      for (const glm::uvec3& t : cube.triangles) mesh.triangles.push_back(t + first);
+    }
+    const Scene scene = scene_of(mesh);
+    const Surfaces surfaces(scene);
+    for (const double at : {0.5, 1.0, 1.75, 2.0, 3.0, 4.0}) {
+      // What ends at the plane is cut, what begins there is not.
+      const int below = layers[int(std::ceil(at)) - 1];
+      const Section section = cut(surfaces, {Axis::z, at});
+      EXPECT_EQ(section.faces.empty() ? 0 : section.faces[0].area, below) << seed << " at " << at;
+      if (section.faces.empty()) continue;
+      EXPECT_EQ(section.faces[0].open_count, 0u);
+      EXPECT_EQ(open_sides(section.scene.meshes[0]), 0u) << seed << " at " << at;
+      expect_filled(section, section.faces[0], {Axis::z, at});
+    }
+  }
+}
+
 TEST(Section, HollowsAndIslandsInThemAreTold) {
   // From the outside: solid, hollow, solid, hollow. Every second one is turned inside out.
   Mesh all;

@@ -41,8 +41,15 @@ class Rings {
     links_[links_[i].next].last = links_[i].last;
   }
 
-  /// A side from corner a to b and back: both are there twice from now on. \returns the second b.
-  std::uint32_t bridge(std::uint32_t a, std::uint32_t b) {
+  /// Joins the rings of two corners at one place: sides without length would have no direction.
+  void splice(std::uint32_t a, std::uint32_t b) {
+    std::swap(links_[a].next, links_[b].next);
+    links_[links_[a].next].last = a;
+    links_[links_[b].next].last = b;
+  }
+
+  /// A side from corner a to b and back: both are there twice from now on, the other ones last of all.
+  void bridge(std::uint32_t a, std::uint32_t b) {
     const auto a2 = std::uint32_t(size()), b2 = a2 + 1;
     places_.push_back(places_[a]);
     places_.push_back(places_[b]);
@@ -52,7 +59,6 @@ class Rings {
     links_[links_[b2].last].next = b2;
     links_[a].next = b;
     links_[b].last = a;
-    return b2;
   }
 
   /// Whether the side from corner i to a place runs into the polygon there, and not along its sides.
@@ -94,6 +100,10 @@ class Joiner {
       const std::uint32_t other = nearest_in_sight(corner);
       add_joined(corner);
       if (other == no_index) continue;  // the outlines cross; it is filled as if it were not there
+      if (rings_.at(other) == rings_.at(corner)) {
+        rings_.splice(other, corner);
+        continue;
+      }
       joined_.push_back(std::uint32_t(rings_.size()));
       joined_.push_back(std::uint32_t(rings_.size()) + 1);
       rings_.bridge(other, corner);
@@ -233,6 +243,7 @@ class EarCutter {
         since_cut = 0;
         patience = Patience::ears;
         corner = rings_.next(next);  // not the next one: its triangle would be as narrow again
+        while (is_cut_[corner]) corner = rings_.next(corner);
         continue;
       }
       corner = next;
@@ -271,7 +282,25 @@ class EarCutter {
     return orientation(a, b, p) > 0 && orientation(b, c, p) > 0;
   }
 
+  /// An ear, and the spikes that it leaves: without width they would hide which way the sides beside them lead.
   void cut(std::uint32_t i) {
+    std::uint32_t ends[] = {rings_.last(i), rings_.next(i)};
+    take(i);
+    for (std::uint32_t& end : ends)
+      while (left_ > 2 && !is_cut_[end] && is_spike(end)) {
+        const std::uint32_t before = rings_.last(end);
+        take(end);
+        end = before;
+      }
+  }
+
+  [[nodiscard]] bool is_spike(std::uint32_t i) const {
+    const glm::vec2 &a = rings_.at(rings_.last(i)), &b = rings_.at(i), &c = rings_.at(rings_.next(i));
+    if (a == b || b == c) return true;
+    return orientation(a, b, c) == 0 && is_left_of(a, b) == is_left_of(c, b);
+  }
+
+  void take(std::uint32_t i) {
     const glm::vec2 &a = rings_.at(rings_.last(i)), &b = rings_.at(i), &c = rings_.at(rings_.next(i));
     if (a != b && b != c && c != a) triangles_.push_back({a, b, c});
     rings_.remove(i);
