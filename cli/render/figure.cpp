@@ -55,7 +55,7 @@ ColoredOrder colors_of(const PaintOrder& order, const Job& job, const RenderCont
   options.shade = shade_options(job, context);
   options.tolerance = job.output.color_tolerance;
   options.most_polygons = job.output.most_polygons;
-  if (!job.output.merges_neighbours) options.hem = kHem;
+  options.groups_pieces = job.output.merges_neighbours;
   return color_order(context.surfaces, visible, order, options, context.execution);
 }
 

@@ -15,9 +15,10 @@ struct ColorOptions {
   /// Steps of 8-bit sRGB, 0 to 255, by which the colour of a piece may differ from what is seen there. 255: a polygon
   /// has the colour of its middle, and is never cut.
   double tolerance = 6;
-  /// Pixels, 0 to 100, by which pieces of an opaque polygon reach under those of it that are painted after them, as
-  /// with_hems() lets polygons do. Then every piece is a shape of its own; merge_neighbours() is for figures without.
-  double hem = 0;
+  /// Pieces of a polygon whose colours nearly agree get the same colour and become one shape, as merge_neighbours() can
+  /// use them; a third of the tolerance goes into that. Otherwise each piece of an opaque polygon is a shape of its own,
+  /// and there are fewer of them.
+  bool groups_pieces = true;
   /// More polygons and pieces are an error.
   std::size_t most_polygons = std::size_t(1) << 27;
 };
@@ -29,10 +30,6 @@ struct ColoredOrder {
   /// One for each polygon, rising: consecutive polygons with the same number have the same colour, lie beside each
   /// other and nowhere above each other, so that they may be one path.
   std::vector<std::uint32_t> shapes;
-  /// What outlined() makes hems for: opaque polygons as they were before they were cut into pieces with hems, and all
-  /// other polygons. The number of its whole for each polygon, rising; empty: every polygon is one.
-  PaintOrder wholes;
-  std::vector<std::uint32_t> whole_of;
   /// Set by gather_sheets(): one for each polygon, rising. Consecutive translucent polygons with the same number have
   /// the same opacity and lie nowhere above each other. Empty: each is a sheet of its own.
   std::vector<std::uint32_t> sheets;

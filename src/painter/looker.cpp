@@ -84,34 +84,11 @@ struct Looker::Hiders {
   [[nodiscard]] std::uint32_t at(const glm::dvec2& place) const { return looker.hider_at(slot, place); }
 };
 
-std::uint32_t Looker::hider_beside(std::size_t slot, std::size_t side, const glm::dvec2& at) {
-  const std::uint32_t across = mosaic_.across(scenery_.first_corner(slot) + side);
-  const bool hides = across != no_index && Hiders{*this, slot}.may_hide(across);
-  return hides && is_within(scenery_.outline(across), at, 0) ? across : hider_at(slot, at);
-}
-
 Spreader::Found Looker::spread(std::size_t slot, Outline outline, std::uint32_t hider, const glm::dvec2& at) {
   // It may have been found for what lies next to it.
   if (!is_within(scenery_.outline(hider), at, 0)) return Spreader::Found::unknown;
   spreader_.set(outline);
   return spreader_.spread(hider, Hiders{*this, slot});
-}
-
-bool Looker::is_hidden(std::size_t slot, std::size_t side, const glm::dvec2& at, Outline outline) {
-  const std::uint32_t hider = hider_beside(slot, side, at);
-  return hider != no_index && spread(slot, outline, hider, at) == Spreader::Found::hidden;
-}
-
-bool Looker::is_open_beside(std::size_t slot, std::size_t side) const {
-  const std::uint32_t across = mosaic_.across(scenery_.first_corner(slot) + side);
-  return across != no_index && (scenery_.place(across) < scenery_.first_place(slot) || !may_hide(slot, across));
-}
-
-const OutlineCutter& Looker::open_parts(std::size_t slot, Outline outline) {
-  cutter_.begin(outline);
-  const Extent box = box_of(outline);
-  take_covers(slot, scenery_.first_place(slot), box, scenery_.grid().range(box));
-  return cutter_;
 }
 
 /// Most are not, and their middles tell.

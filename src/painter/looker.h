@@ -26,17 +26,6 @@ class Looker {
   /// Whether those after the polygon in a slot hide all of it, as far as that is quickly told.
   [[nodiscard]] bool is_all_hidden(std::size_t slot);
 
-  /// Whether others hide a convex outline beside a side of the polygon in a slot, around a point, together, as far as
-  /// that is quickly told. They are after the polygon, or parts of the same primitive, also before it: these show
-  /// nothing else than it does.
-  [[nodiscard]] bool is_hidden(std::size_t slot, std::size_t side, const glm::dvec2& at, Outline outline);
-
-  /// Whether a side is that of one other polygon which hides nothing of what lies beyond it: then it has no hem.
-  [[nodiscard]] bool is_open_beside(std::size_t slot, std::size_t side) const;
-
-  /// What of an outline beside the polygon in a slot is not hidden as for is_hidden(), until the next call.
-  [[nodiscard]] const OutlineCutter& open_parts(std::size_t slot, Outline outline);
-
   /// The parts of the polygon in a slot that are seen, until the next call.
   [[nodiscard]] const OutlineList& look(std::size_t slot);
 
@@ -52,8 +41,6 @@ class Looker {
   struct Hiders;
   /// One that hides a point, or what is next to it; no_index: none.
   [[nodiscard]] std::uint32_t hider_at(std::size_t slot, const glm::dvec2& at);
-  /// The same, mostly across a side.
-  [[nodiscard]] std::uint32_t hider_beside(std::size_t slot, std::size_t side, const glm::dvec2& at);
   /// Whether an outline is hidden, by `hider` at a point.
   Spreader::Found spread(std::size_t slot, Outline outline, std::uint32_t hider, const glm::dvec2& at);
   /// Takes what those from a place on cover from what is in the cutter. \returns true when nothing is left.

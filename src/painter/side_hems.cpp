@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Most hems are hidden as a whole, or nothing of them is, and that is told without cutting anything. Where only a part
-// is hidden, what is open is cut out, and the hem ends below that.
+// What is not hidden of the strip beside a side is cut out, and the hem ends below that. Most sides of polygons that
+// are painted late have nothing next to them that hides, and that is told without cutting anything.
 //
 // Around a corner in the middle of what is seen viewers blend all that meet there, and each takes its share of what is
 // below. Only what covers all of the pixel leaves nothing of that. So the first that is painted goes around the corner:
@@ -15,7 +15,7 @@
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "painter/hem_profile.h"
-#include "painter/looker.h"
+#include "painter/surroundings.h"
 
 namespace frontmost::painter_detail {
 namespace {
@@ -61,7 +61,7 @@ struct Side {
 class Hemmer {
  public:
   Hemmer(const Scenery& scenery, const Mosaic& mosaic, double width, const Execution& execution)
-      : scenery_(scenery), looker_(scenery, mosaic, execution), width_(width) {}
+      : scenery_(scenery), surroundings_(scenery, mosaic, execution), width_(width) {}
 
   /// Adds the hems of the polygon in a slot, which has these corners.
   void add_hems(std::size_t slot, Outline given, HemList& list) {
@@ -71,7 +71,7 @@ class Hemmer {
       return glm::dvec2(a.at) == glm::dvec2(b.at);
     };
     if (scenery_.hides(slot) && std::equal(outline_.begin(), outline_.end(), given.begin(), given.end(), is_same)) {
-      slot_ = slot;
+      surroundings_.begin(slot, kReach * (width_ + kMargin));
       set_sides();
       for (std::size_t i = 0; i < outline_.size(); ++i) fit(i);
       for (std::size_t i = 0; i < outline_.size(); ++i) around_[i] = reach_around(i);
@@ -101,18 +101,15 @@ class Hemmer {
   void fit(std::size_t number) {
     Side& side = sides_[number];
     side.knots.clear();
-    if (side.length < OutlineCutter::thin || looker_.is_open_beside(slot_, number)) return;
-    const glm::dvec2 from = corner(number), way = corner(next(number)) - from, out = beside(side.along);
-    const auto strip = [&](double begin, double end) {
-      const glm::dvec2 a = from + way * begin, b = from + way * end, high = out * (width_ + kMargin);
-      return outline_of({a, a + high, b + high, b});
-    };
+    const glm::dvec2 from = corner(number), to = corner(next(number)), out = beside(side.along) * (width_ + kMargin);
+    // Few others are beside a part of a side.
+    const int parts = int(std::clamp(side.length / (kStrip * width_), 1.0, kMostStrips));
+    if (side.length < OutlineCutter::thin || surroundings_.are_open_beside(number)) return;
+    if (parts == 1 && !surroundings_.hide_beside(from, to)) return;
     profile_.begin(from, side.along);
-    if (!looker_.is_hidden(slot_, number, from + 0.5 * way + out * kNextTo, strip(0, 1))) {
-      // Few others are beside a part of a side.
-      const int parts = int(std::clamp(side.length / (kStrip * width_), 1.0, kMostStrips));
-      for (int i = 0; i < parts; ++i)
-        profile_.add_open(looker_.open_parts(slot_, strip(double(i) / parts, double(i + 1) / parts)));
+    for (int i = 0; i < parts; ++i) {
+      const glm::dvec2 a = from + (to - from) * (double(i) / parts), b = from + (to - from) * (double(i + 1) / parts);
+      profile_.add_open(surroundings_.open_parts(outline_of({a, a + out, b + out, b})));
     }
     const std::vector<HemProfile::Knot>& knots = profile_.fit(side.length, width_);
     const auto is_low = [](const HemProfile::Knot& knot) { return knot.height < kLeastHeight; };
@@ -136,9 +133,7 @@ class Hemmer {
       else
         beside_.push_back(at + turn.end(tested));
       beside_.push_back(at + beside(turn.from) * tested);
-      const glm::dvec2 within = turn.end(1);
-      if (looker_.is_hidden(slot_, number, at + within * (kNextTo / glm::length(within)), outline_of(beside_)))
-        return reach;
+      if (surroundings_.open_parts(outline_of(beside_)).count() == 0) return reach;
     }
     return 0;
   }
@@ -189,14 +184,13 @@ class Hemmer {
 
   /// Widths of hems that a part of a side is long, of the longest which are in so many.
   static constexpr double kStrip = 8, kMostStrips = 256;
-  /// Pixels beside a side: within most hems.
-  static constexpr double kNextTo = 1.0 / 8;
+  /// How far from a polygon a hem of unit width may be.
+  static constexpr double kReach = 1.5;
 
   const Scenery& scenery_;
-  Looker looker_;
+  Surroundings surroundings_;
   const double width_;
   HemProfile profile_;
-  std::size_t slot_ = 0;
   Outline outline_;
   std::vector<Side> sides_;
   std::vector<double> around_;  ///< by corner: how far hems go around it

@@ -105,33 +105,6 @@ TEST(Outlined, HemsReachUnderLaterShapesAlone) {
   EXPECT_NEAR(area_of(merged, 1), 64, 1e-2);
 }
 
-/// Two halves of a box beside a later one: each has its part of the box's hem, and both together all of it.
-TEST(Outlined, PiecesHaveTheirPartsOfTheHemOfTheirWhole) {
-  const ColoredOrder whole = order_of({box(0, 0, 8, 8), box(8, 0, 8, 8, kBlue)});
-  ColoredOrder cut = order_of({box(0, 0, 8, 3), box(0, 3, 8, 5), box(8, 0, 8, 8, kBlue)});
-  cut.wholes = whole.order;
-  cut.whole_of = {0, 0, 1};
-  const Figure figure = outlined(cut, 1), uncut = outlined(whole, 1);
-  ASSERT_EQ(figure.shapes.size(), 3u);
-  EXPECT_GT(area_of(figure, 0), 24 + 2);
-  EXPECT_GT(area_of(figure, 1), 40 + 4);
-  EXPECT_NEAR(area_of(figure, 0) + area_of(figure, 1), area_of(uncut, 0), 1e-9);
-  EXPECT_NEAR(area_of(figure, 2), 64, 1e-9);
-  cut.whole_of = {0, 0, 2};
-  EXPECT_THROW((void)outlined(cut, 1), Error);
-  cut.whole_of = {1, 0, 1};
-  EXPECT_THROW((void)outlined(cut, 1), Error);
-}
-
-/// A whole that has no pieces is not there, whatever its number.
-TEST(Outlined, WholesWithoutPiecesHideNothing) {
-  ColoredOrder cut = order_of({box(0, 0, 8, 8)});
-  cut.wholes = order_of({box(0, 0, 8, 8), box(8, 0, 8, 8, kBlue)}).order;
-  cut.wholes.polygons[1].id = 1u << 30;
-  cut.whole_of = {0};
-  EXPECT_NEAR(area_of(outlined(cut, 1), 0), 64, 1e-9);
-}
-
 TEST(Outlined, RefusesListsThatDoNotMatch) {
   ColoredOrder tiles = order_of({box(0, 0, 1, 1)});
   tiles.colors.clear();
@@ -152,26 +125,13 @@ TEST(Outlined, RefusesPolygonsWithoutTheirCorners) {
   ColoredOrder tiles = order_of({box(0, 0, 1, 1)});
   tiles.order.polygons[0].first_corner = std::size_t(-2);
   EXPECT_THROW((void)bare(tiles), Error);
-  ColoredOrder cut = order_of({box(0, 0, 1, 1)});
-  cut.whole_of = {0};
-  cut.wholes = cut.order;
-  cut.wholes.polygons[0].first_corner = 1;
-  EXPECT_THROW((void)bare(cut), Error);
 }
 
-/// A box beside another that ends half way: what is left of its side has a hem there, whole or in pieces.
+/// A box beside another that ends half way: what is left of its side has a hem there.
 TEST(Outlined, PartsOfSidesHaveHems) {
   const Figure figure = outlined(order_of({box(0, 0, 8, 8), box(8, 0, 8, 4, kBlue)}), 1);
   // Narrower by half of its height at the outline, and by all of it where it ends beside what is open.
   EXPECT_NEAR(area_of(figure, 0), 64 + 4 - 0.25 - 0.5, 1e-9);
-  ColoredOrder cut = order_of({box(0, 0, 8, 3), box(0, 3, 8, 5), box(8, 0, 8, 4, kBlue)});
-  cut.whole_of = {0, 0, 1};
-  cut.wholes = order_of({box(0, 0, 8, 8), box(8, 0, 8, 4, kBlue)}).order;
-  const Figure pieces = outlined(cut, 1);
-  // The same hem, in two parts.
-  EXPECT_NEAR(area_of(pieces, 0) + area_of(pieces, 1), 64 + 4 - 0.25 - 0.5, 1e-9);
-  EXPECT_GT(area_of(pieces, 0), 24 + 2);
-  EXPECT_GT(area_of(pieces, 1), 40);
 }
 
 TEST(SideNet, GivesEveryRingOnceWhateverWayOutlinesTouch) {

@@ -23,13 +23,7 @@ void check_figure(const ColoredOrder& colored) {
   if (colored.colors.size() != count || colored.shapes.size() != count)
     refuse("colours, shapes and polygons differ in number");
   check_corners(colored.order);
-  const std::vector<std::uint32_t>&wholes = colored.whole_of, &sheets = colored.sheets;
-  if (!wholes.empty()) {
-    if (wholes.size() != count || !std::is_sorted(wholes.begin(), wholes.end()) ||
-        wholes.back() >= colored.wholes.polygons.size())
-      refuse("polygons are pieces of what is not there");
-    check_corners(colored.wholes);
-  }
+  const std::vector<std::uint32_t>& sheets = colored.sheets;
   if (sheets.empty()) return;
   if (sheets.size() != count) refuse("sheets and polygons differ in number");
   for (std::size_t i = 1; i < count; ++i)

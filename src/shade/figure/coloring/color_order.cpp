@@ -22,7 +22,6 @@ void check(const Surfaces& surfaces, const Visible& visible, const PaintOrder& o
   if (visible.view.width != order.view.width || visible.view.height != order.view.height)
     refuse("what is visible is not of the order's view");
   if (!(options.tolerance >= 0 && options.tolerance <= 255)) refuse("tolerance: must be 0 to 255");
-  if (!(options.hem >= 0 && options.hem <= 100)) refuse("hem: must be 0 to 100 pixels");
   for (const PaintPolygon& polygon : order.polygons)
     if (polygon.id >= surfaces.primitive_count() || polygon.corner_count < 3 ||
         polygon.corner_count > order.corners.size() ||
@@ -71,29 +70,21 @@ void append(const PaintOrder& order, PaintOrder& into) {
 
 void append(const ColoredOrder& part, ColoredOrder& into) {
   const std::uint32_t shape = into.shapes.empty() ? 0 : into.shapes.back() + 1;
-  const auto whole = std::uint32_t(into.wholes.polygons.size());
   for (const std::uint32_t number : part.shapes) into.shapes.push_back(shape + number);
-  for (const std::uint32_t number : part.whole_of) into.whole_of.push_back(whole + number);
   into.colors.insert(into.colors.end(), part.colors.begin(), part.colors.end());
   append(part.order, into.order);
-  append(part.wholes, into.wholes);
 }
 
 void reserve(const std::vector<ColoredOrder>& parts, ColoredOrder& into) {
-  std::size_t pieces = 0, corners = 0, wholes = 0, whole_corners = 0;
+  std::size_t pieces = 0, corners = 0;
   for (const ColoredOrder& part : parts) {
     pieces += part.colors.size();
     corners += part.order.corners.size();
-    wholes += part.wholes.polygons.size();
-    whole_corners += part.wholes.corners.size();
   }
   into.colors.reserve(pieces);
   into.shapes.reserve(pieces);
-  into.whole_of.reserve(pieces);
   into.order.polygons.reserve(pieces);
   into.order.corners.reserve(corners);
-  into.wholes.polygons.reserve(wholes);
-  into.wholes.corners.reserve(whole_corners);
 }
 
 /// Of an order within the picture.
@@ -115,7 +106,7 @@ ColoredOrder color_within(const Surfaces& surfaces, const Visible& visible, cons
     report_progress(execution, "colours", double(done += end - begin) / double(count));
   });
   ColoredOrder colored;
-  colored.order.view = colored.wholes.view = order.view;
+  colored.order.view = order.view;
   colored.order.steps = order.steps;
   reserve(parts, colored);
   for (ColoredOrder& part : parts) {

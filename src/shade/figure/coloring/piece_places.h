@@ -2,8 +2,6 @@
 // Where a piece of a polygon is looked at, and how pieces are cut.
 #pragma once
 
-#include <array>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,14 +10,9 @@
 
 namespace frontmost::shading {
 
-/// A corner of a piece, and the side from it to the next one.
-struct PieceCorner : PaintCorner {
-  std::uint32_t cut = no_index;  ///< the number of the cut that the side lies on
-};
-
 /// A convex outline and its size.
 struct PieceSize {
-  explicit PieceSize(std::span<const PieceCorner> corners);
+  explicit PieceSize(std::span<const PaintCorner> corners);
   glm::dvec2 middle{0};
   double area = 0;    ///< square pixels
   double length = 0;  ///< pixels, at least half of the distance between the two corners farthest from each other
@@ -30,14 +23,14 @@ struct PieceSize {
 };
 
 /// The middle of what an outline has of the line through a place across a direction.
-[[nodiscard]] glm::dvec2 middle_across(std::span<const PieceCorner> corners, const glm::dvec2& at,
+[[nodiscard]] glm::dvec2 middle_across(std::span<const PaintCorner> corners, const glm::dvec2& at,
                                        const glm::dvec2& along);
 
 /// Calls add(place) beside every corner of an outline, where colours go furthest.
 template <class Add>
-void for_each_corner_place(std::span<const PieceCorner> corners, const glm::dvec2& middle, const Add& add) {
+void for_each_corner_place(std::span<const PaintCorner> corners, const glm::dvec2& middle, const Add& add) {
   constexpr double kInset = 0.25;  // pixels by which they lie within
-  for (const PieceCorner& corner : corners) {
+  for (const PaintCorner& corner : corners) {
     const glm::dvec2 way = middle - glm::dvec2(corner.at);
     add(glm::dvec2(corner.at) + way * std::min(0.25, kInset / std::max(glm::length(way), 1e-9)));
   }
@@ -45,11 +38,11 @@ void for_each_corner_place(std::span<const PieceCorner> corners, const glm::dvec
 
 /// Calls add(place) for places along the middle of an outline that is long and narrow.
 template <class Add>
-void for_each_place_along(std::span<const PieceCorner> corners, const PieceSize& size, const Add& add) {
+void for_each_place_along(std::span<const PaintCorner> corners, const PieceSize& size, const Add& add) {
   const auto count = std::size_t(std::ceil(size.length / 1.5));
   const glm::dvec2 from(corners[0].at);
   glm::dvec2 to = from;
-  for (const PieceCorner& corner : corners)
+  for (const PaintCorner& corner : corners)
     if (glm::length(glm::dvec2(corner.at) - from) > glm::length(to - from)) to = glm::dvec2(corner.at);
   const glm::dvec2 step = (to - from) / double(count);
   for (std::size_t k = 0; k < count; ++k) add(middle_across(corners, from + step * (double(k) + 0.5), step));
@@ -59,7 +52,7 @@ void for_each_place_along(std::span<const PieceCorner> corners, const PieceSize&
 /// rank-1 lattice over each triangle of its fan, as many as its part of the area asks for.
 /// (M. Roberts. The Unreasonable Effectiveness of Quasirandom Sequences. 2018.)
 template <class Add>
-void for_each_place(std::span<const PieceCorner> corners, double area, double count, const Add& add) {
+void for_each_place(std::span<const PaintCorner> corners, double area, double count, const Add& add) {
   if (!(area > 0)) return;  // no direction, though it may be long
   double before = 0;
   std::size_t number = 0;
@@ -83,16 +76,8 @@ void for_each_place(std::span<const PieceCorner> corners, double area, double co
 
 /// The two sides of a line: what lies below it, and what lies above.
 struct CutOutline {
-  std::vector<PieceCorner> below, above;
+  std::vector<PaintCorner> below, above;
 };
-[[nodiscard]] CutOutline cut_outline(std::span<const PieceCorner> corners, const ScreenLine& line, std::uint32_t cut);
-
-/// Two corners of a hem on the outer side of the side between two corners, that lies on the positive sides of all
-/// lines: as wide as `width` allows, and as there is room. None where there is hardly any.
-[[nodiscard]] std::optional<std::array<PaintCorner, 2>> hem_within(const PaintCorner& from, const PaintCorner& to,
-                                                                   std::span<const ScreenLine> room, double width);
-
-/// Adds the lines of a convex outline's sides, positive within.
-void append_sides(std::span<const PaintCorner> outline, std::vector<ScreenLine>& lines);
+[[nodiscard]] CutOutline cut_outline(std::span<const PaintCorner> corners, const ScreenLine& line);
 
 }  // namespace frontmost::shading

@@ -64,7 +64,7 @@ void PolygonColors::color(const PaintOrder& order, std::span<const PaintPolygon>
     shade_samples();
     for (Piece& piece : looked_at_) divide(piece);
   }
-  for (const Polygon& polygon : polygons_) emit(order, polygon, into);
+  for (const Polygon& polygon : polygons_) emit(polygon, into);
 }
 
 void PolygonColors::begin(std::span<const PaintPolygon> polygons) {
@@ -79,7 +79,7 @@ void PolygonColors::begin(std::span<const PaintPolygon> polygons) {
   for (const PaintPolygon& outline : polygons) {
     Polygon& polygon = polygons_.emplace_back(Polygon{outline});
     if (cutouts && cutouts->has(outline.id)) polygon.holes.emplace((*cutouts)[outline.id], rays_);
-    polygon.has_hems = options_.hem > 0 && shading_.opacity() >= 1 && is_opaque(surfaces_, outline.id);
+    polygon.is_grouped = options_.groups_pieces || shading_.opacity() < 1 || !is_opaque(surfaces_, outline.id);
   }
 }
 
@@ -92,7 +92,7 @@ void PolygonColors::start(const PaintOrder& order, std::uint32_t number) {
   piece.corners.reserve(polygon.outline.corner_count);
   for (std::size_t i = 0; i < polygon.outline.corner_count; ++i) {
     const PaintCorner& corner = first[std::ptrdiff_t(i)];
-    piece.corners.push_back({{{corner.at.x, corner.at.y, affine_depth(view_, corner.at.z)}, corner.is_cut}});
+    piece.corners.push_back({{corner.at.x, corner.at.y, affine_depth(view_, corner.at.z)}, corner.is_cut});
   }
   piece.polygon = number;
   piece.node = polygon.node;
@@ -174,8 +174,8 @@ void PolygonColors::divide(Piece& piece) {
 
 /// Steps by which samples may differ from the colour of their piece.
 float PolygonColors::within(const Piece& piece) const {
-  const bool is_grouped = !polygons_[piece.polygon].has_hems;
-  return float(options_.tolerance * (is_grouped ? kWithin : 1) * (piece.is_sliver ? kOfSlivers : 1));
+  return float(options_.tolerance * (polygons_[piece.polygon].is_grouped ? kWithin : 1) *
+               (piece.is_sliver ? kOfSlivers : 1));
 }
 
 bool PolygonColors::is_beside_a_cut(const Piece& piece, const glm::dvec2& at) const {
@@ -216,7 +216,7 @@ void PolygonColors::cut(Piece& piece, const ScreenLine& line) {
     side->node = node + (side == &above);
     side->cut = number;
   }
-  CutOutline corners = cut_outline(piece.corners, line, number);
+  CutOutline corners = cut_outline(piece.corners, line);
   below.corners = std::move(corners.below);
   above.corners = std::move(corners.above);
   for (const ColorSample& sample : piece.samples) {
@@ -232,7 +232,7 @@ void PolygonColors::cut(Piece& piece, const ScreenLine& line) {
 void PolygonColors::keep(Piece& piece, const glm::vec4& color) {
   if (is_hole(color) || color.w < 0.5f) return;
   nodes_[piece.node].kept = std::uint32_t(kept_.size());
-  kept_.push_back({color, std::move(piece.corners), piece.cut});
+  kept_.push_back({color, std::move(piece.corners)});
 }
 
 /// In the order in which they are painted: below a cut before above it.
@@ -247,79 +247,25 @@ void PolygonColors::list_kept(const Polygon& polygon) {
   }
 }
 
-void PolygonColors::emit(const PaintOrder& order, const Polygon& polygon, ColoredOrder& into) {
-  list_kept(polygon);
-  if (polygon.has_hems)
-    emit_hemmed(order, polygon, into);
-  else
-    emit_grouped(polygon, into);
-}
-
-namespace {
-
-template <class Corners>
-void append(const PaintPolygon& polygon, const Corners& corners, const View& view, PaintOrder& into) {
-  into.polygons.push_back({polygon.id, std::uint32_t(corners.size()), into.corners.size()});
-  for (const PaintCorner& corner : corners)
-    into.corners.push_back({{corner.at.x, corner.at.y, affine_depth(view, corner.at.z)}, corner.is_cut});
-}
-
-}  // namespace
-
-/// Sets room_: lines with all that is painted after a piece on their positive sides. Of the polygon that is what lies
-/// above all cuts that have the piece above them.
-void PolygonColors::find_room(const PaintOrder& order, const Polygon& polygon, const Kept& piece) {
-  room_.clear();
-  append_sides({order.corners.data() + polygon.outline.first_corner, polygon.outline.corner_count}, room_);
-  glm::dvec2 middle(0);
-  for (const PieceCorner& corner : piece.corners) middle += glm::dvec2(corner.at) / double(piece.corners.size());
-  for (std::uint32_t i = piece.cut; i != no_index; i = cuts_[i].before)
-    if (cuts_[i].line.distance(middle) > 0) room_.push_back(cuts_[i].line);
-}
-
-/// With hems along cuts, under what lies above them.
-std::vector<PaintCorner> PolygonColors::hemmed(const Kept& piece) const {
-  std::vector<PaintCorner> corners;
-  for (std::size_t i = 0; i < piece.corners.size(); ++i) {
-    const PieceCorner& from = piece.corners[i];
-    corners.push_back(from);
-    if (from.cut == no_index) continue;
-    const PieceCorner& to = piece.corners[i + 1 == piece.corners.size() ? 0 : i + 1];
-    const Cut& cut = cuts_[from.cut];
-    // What lies below has the cut's normal on the outside.
-    const glm::dvec2 way(to.at - from.at), out(-way.y, way.x);
-    if (!(glm::dot(out, cut.line.normal) > 0)) continue;
-    const auto hem = hem_within(from, to, room_, options_.hem);
-    if (hem) corners.insert(corners.end(), hem->begin(), hem->end());
-  }
-  return corners;
-}
-
-void PolygonColors::emit_hemmed(const PaintOrder& order, const Polygon& polygon, ColoredOrder& into) {
-  const auto whole = std::uint32_t(into.wholes.polygons.size());
-  const auto first = order.corners.begin() + std::ptrdiff_t(polygon.outline.first_corner);
-  into.wholes.polygons.push_back({polygon.outline.id, polygon.outline.corner_count, into.wholes.corners.size()});
-  into.wholes.corners.insert(into.wholes.corners.end(), first, first + polygon.outline.corner_count);
-  for (const Kept* const piece : listed_) {
-    find_room(order, polygon, *piece);
-    append(polygon.outline, hemmed(*piece), view_, into.order);
-    into.colors.push_back(rounded(piece->color));
-    into.shapes.push_back(into.shapes.empty() ? 0 : into.shapes.back() + 1);
-    into.whole_of.push_back(whole);
-  }
-}
-
 /// Colours that are nearly the same become the first of them, so that pieces can be joined to larger ones.
-void PolygonColors::emit_grouped(const Polygon& polygon, ColoredOrder& into) {
+void PolygonColors::group_kept() {
   ColorGroups groups(options_.tolerance * (1 - kWithin));
   for (Kept* const piece : listed_) piece->shape = groups.find_or_add(piece->color);
+  for (Kept* const piece : listed_) piece->color = groups.colors()[piece->shape];
   std::stable_sort(listed_.begin(), listed_.end(), [](const Kept* a, const Kept* b) { return a->shape < b->shape; });
+}
+
+void PolygonColors::emit(const Polygon& polygon, ColoredOrder& into) {
+  list_kept(polygon);
+  for (std::uint32_t i = 0; i < listed_.size(); ++i) listed_[i]->shape = i;
+  if (polygon.is_grouped) group_kept();
   const std::uint32_t shape = into.shapes.empty() ? 0 : into.shapes.back() + 1;
   for (const Kept* const piece : listed_) {
-    into.whole_of.push_back(std::uint32_t(into.wholes.polygons.size()));
-    append(polygon.outline, piece->corners, view_, into.wholes);
-    append(polygon.outline, piece->corners, view_, into.order);
-    into.colors.push_back(rounded(groups.colors()[piece->shape]));
+    const std::size_t first = into.order.corners.size();
+    into.order.polygons.push_back({polygon.outline.id, std::uint32_t(piece->corners.size()), first});
+    for (const PaintCorner& corner : piece->corners)
+      into.order.corners.push_back({{corner.at.x, corner.at.y, affine_depth(view_, corner.at.z)}, corner.is_cut});
+    into.colors.push_back(rounded(piece->color));
     into.shapes.push_back(shape + piece->shape);
   }
 }

@@ -29,7 +29,7 @@ class PolygonColors {
  private:
   /// A piece that is still to be looked at; depths are affine over the screen.
   struct Piece {
-    std::vector<PieceCorner> corners;
+    std::vector<PaintCorner> corners;
     std::vector<ColorSample> samples;  ///< those of the piece that it was cut from are known already
     std::size_t known_samples = 0;
     bool is_sliver = false;        ///< lies beside cuts everywhere
@@ -49,13 +49,12 @@ class PolygonColors {
   };
   struct Kept {
     glm::vec4 color;
-    std::vector<PieceCorner> corners;
-    std::uint32_t cut;  ///< the last that it was made by
+    std::vector<PaintCorner> corners;
     std::uint32_t shape = 0;
   };
   struct Polygon {
     PaintPolygon outline;
-    bool has_hems = false;  ///< nothing shows through
+    bool is_grouped = false;  ///< pieces of one colour become one shape
     std::uint32_t node = 0;
     std::optional<ScreenCutout> holes{};
     std::optional<std::vector<TexcoordLines>> texture_lines{};  ///< made when they are asked for
@@ -80,11 +79,8 @@ class PolygonColors {
   [[nodiscard]] std::span<const TexcoordLines> texture_lines(const Piece& piece);
 
   void list_kept(const Polygon& polygon);
-  void emit(const PaintOrder& order, const Polygon& polygon, ColoredOrder& into);
-  void find_room(const PaintOrder& order, const Polygon& polygon, const Kept& piece);
-  [[nodiscard]] std::vector<PaintCorner> hemmed(const Kept& piece) const;
-  void emit_hemmed(const PaintOrder& order, const Polygon& polygon, ColoredOrder& into);
-  void emit_grouped(const Polygon& polygon, ColoredOrder& into);
+  void emit(const Polygon& polygon, ColoredOrder& into);
+  void group_kept();
 
   const Surfaces& surfaces_;
   const View& view_;
@@ -105,7 +101,6 @@ class PolygonColors {
   std::vector<Kept*> listed_;
   std::vector<std::uint32_t> path_;
   std::vector<glm::dvec2> outline_;
-  std::vector<ScreenLine> room_;
 };
 
 }  // namespace frontmost::shading

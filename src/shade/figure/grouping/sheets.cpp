@@ -20,22 +20,19 @@ using namespace shading;
 /// 128 MB. With more, everything stays as it is.
 constexpr std::size_t kMostPairs = std::size_t(1) << 24;
 
-/// Consecutive polygons that stay together, as one shape or as pieces of one whole.
+/// Consecutive polygons that stay together, as one shape.
 struct Nodes {
-  std::vector<std::uint32_t> first;     ///< polygons; at the end also how many there are
-  std::vector<std::uint32_t> of_whole;  ///< no_index: it has no pieces
+  std::vector<std::uint32_t> first;  ///< polygons; at the end also how many there are
+  std::vector<std::uint32_t> of;     ///< by polygon
   [[nodiscard]] std::size_t count() const { return first.size() - 1; }
 };
 
-Nodes find_nodes(const ColoredOrder& colored, const PaintOrder& wholes) {
+Nodes find_nodes(const ColoredOrder& colored) {
   Nodes nodes;
-  nodes.of_whole.assign(wholes.polygons.size(), no_index);
-  const auto whole_of = [&](std::uint32_t i) { return colored.whole_of.empty() ? i : colored.whole_of[i]; };
   const auto count = std::uint32_t(colored.colors.size());
   for (std::uint32_t i = 0; i < count; ++i) {
-    const bool goes_on = i > 0 && (colored.shapes[i] == colored.shapes[i - 1] || whole_of(i) == whole_of(i - 1));
-    if (!goes_on) nodes.first.push_back(i);
-    nodes.of_whole[whole_of(i)] = std::uint32_t(nodes.first.size() - 1);
+    if (i == 0 || colored.shapes[i] != colored.shapes[i - 1]) nodes.first.push_back(i);
+    nodes.of.push_back(std::uint32_t(nodes.first.size() - 1));
   }
   nodes.first.push_back(count);
   return nodes;
@@ -48,22 +45,21 @@ void sort_out(std::vector<NodePair>& pairs) {
 
 /// Who is over whom, where that matters: not for opaque ones that are over nothing translucent, nor over anything that
 /// is. They go first, in the order that they had. None: there are too many.
-std::optional<std::vector<NodePair>> find_over(const PaintOrder& wholes, const Nodes& nodes,
+std::optional<std::vector<NodePair>> find_over(const PaintOrder& polygons, const Nodes& nodes,
                                                const std::vector<std::uint8_t>& opacities, const Execution& execution) {
-  const Overlaps overlaps(wholes);
+  const Overlaps overlaps(polygons);
   painter_detail::Poll poll(execution);
   std::vector<NodePair> over;
   std::vector<std::uint8_t> is_bound(nodes.count());
   for (std::size_t i = 0; i < is_bound.size(); ++i) is_bound[i] = opacities[i] < 255;
-  for (std::size_t whole = 0; whole < wholes.polygons.size(); ++whole) {
-    const std::uint32_t node = nodes.of_whole[whole];
-    if (node == no_index) continue;
-    const bool is_full = overlaps.any_earlier(whole, [&](std::size_t other) {
+  for (std::size_t i = 0; i < polygons.polygons.size(); ++i) {
+    const std::uint32_t node = nodes.of[i];
+    const bool is_full = overlaps.any_earlier(i, [&](std::size_t other) {
       poll.count();
-      const std::uint32_t below = nodes.of_whole[other];
-      if (below == no_index || below == node || !is_bound[below]) return false;
+      const std::uint32_t below = nodes.of[other];
+      if (below == node || !is_bound[below]) return false;
       if (!over.empty() && over.back() == NodePair(below, node)) return false;
-      if (!overlaps.overlap(whole, other)) return false;
+      if (!overlaps.overlap(i, other)) return false;
       is_bound[node] = 1;
       over.emplace_back(below, node);
       return over.size() > kMostPairs;
@@ -75,13 +71,13 @@ std::optional<std::vector<NodePair>> find_over(const PaintOrder& wholes, const N
 }
 
 /// Translucent neighbours of one opacity.
-std::vector<NodePair> find_beside(const PaintOrder& wholes, const Nodes& nodes,
+std::vector<NodePair> find_beside(const PaintOrder& polygons, const Nodes& nodes,
                                   const std::vector<std::uint8_t>& opacities, const Execution& execution) {
   std::vector<NodePair> beside;
   std::array<std::vector<std::uint32_t>, 255> by_opacity;
-  for (std::uint32_t whole = 0; whole < wholes.polygons.size(); ++whole) {
-    const std::uint32_t node = nodes.of_whole[whole];
-    if (node != no_index && opacities[node] < 255) by_opacity[opacities[node]].push_back(whole);
+  for (std::uint32_t i = 0; i < polygons.polygons.size(); ++i) {
+    const std::uint8_t opacity = opacities[nodes.of[i]];
+    if (opacity < 255) by_opacity[opacity].push_back(i);
   }
   SideNet net;
   std::vector<NetCorner> corners;
@@ -89,10 +85,10 @@ std::vector<NodePair> find_beside(const PaintOrder& wholes, const Nodes& nodes,
     check_cancelled(execution);
     if (members.size() < 2) continue;
     net.clear();
-    for (const std::uint32_t whole : members) {
+    for (const std::uint32_t i : members) {
       corners.clear();
-      for (const PaintCorner& corner : corners_of(wholes, whole)) corners.push_back({glm::dvec2(corner.at), {}});
-      net.add(corners, nodes.of_whole[whole]);
+      for (const PaintCorner& corner : corners_of(polygons, i)) corners.push_back({glm::dvec2(corner.at), {}});
+      net.add(corners, nodes.of[i]);
     }
     net.weave();
     net.for_each_shared([&](std::uint32_t a, std::uint32_t b) {
@@ -105,7 +101,7 @@ std::vector<NodePair> find_beside(const PaintOrder& wholes, const Nodes& nodes,
 
 ColoredOrder in_order(const ColoredOrder& colored, const Nodes& nodes, const SheetOrder& order) {
   ColoredOrder made;
-  made.order.view = made.wholes.view = colored.order.view;
+  made.order.view = colored.order.view;
   made.order.steps = colored.order.steps;
   std::uint32_t shape = 0;
   for (std::size_t k = 0; k < order.nodes.size(); ++k) {
@@ -116,10 +112,6 @@ ColoredOrder in_order(const ColoredOrder& colored, const Nodes& nodes, const She
       made.colors.push_back(colored.colors[i]);
       made.shapes.push_back(shape);
       made.sheets.push_back(order.sheets[k]);
-      if (colored.whole_of.empty()) continue;
-      if (i == first || colored.whole_of[i] != colored.whole_of[i - 1])
-        append(colored.wholes, colored.whole_of[i], made.wholes);
-      made.whole_of.push_back(std::uint32_t(made.wholes.polygons.size() - 1));
     }
   }
   return made;
@@ -132,14 +124,13 @@ ColoredOrder gather_sheets(ColoredOrder colored, const Execution& execution) {
   const auto is_translucent = [](const glm::u8vec4& color) { return color.a < 255; };
   if (std::none_of(colored.colors.begin(), colored.colors.end(), is_translucent)) return colored;
   const IeeeScope ieee;
-  const PaintOrder& wholes = colored.whole_of.empty() ? colored.order : colored.wholes;
-  const Nodes nodes = find_nodes(colored, wholes);
+  const Nodes nodes = find_nodes(colored);
   SheetNodes sheet_nodes;
   for (std::size_t i = 0; i < nodes.count(); ++i) sheet_nodes.opacities.push_back(colored.colors[nodes.first[i]].a);
-  std::optional<std::vector<NodePair>> over = find_over(wholes, nodes, sheet_nodes.opacities, execution);
+  std::optional<std::vector<NodePair>> over = find_over(colored.order, nodes, sheet_nodes.opacities, execution);
   if (!over) return colored;
   sheet_nodes.over = std::move(*over);
-  sheet_nodes.beside = find_beside(wholes, nodes, sheet_nodes.opacities, execution);
+  sheet_nodes.beside = find_beside(colored.order, nodes, sheet_nodes.opacities, execution);
   return in_order(colored, nodes, order_in_sheets(sheet_nodes));
 }
 

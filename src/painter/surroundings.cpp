@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "painter/surroundings.h"
+
+#include <algorithm>
+
+namespace frontmost::painter_detail {
+namespace {
+
+/// A polygon in more cells of the grid may have thousands around it: each outline then has a list of its own.
+constexpr int kMostCells = 64;
+/// When so many parts are left of an outline, none is split any more: those go that are hidden whole.
+constexpr std::size_t kMostParts = 48;
+/// So many of those after a polygon, from the front, may hide what is beside it in a cell: a stack of n planes would
+/// take n * n.
+constexpr std::size_t kMostHiders = 4096;
+
+Extent box_of(Outline outline) {
+  Extent box{glm::vec2(outline[0].at), glm::vec2(outline[0].at), 0, 0};
+  for (const PaintCorner& corner : outline) {
+    box.low = glm::min(box.low, glm::vec2(corner.at));
+    box.high = glm::max(box.high, glm::vec2(corner.at));
+  }
+  return box;
+}
+
+template <class A, class B>
+bool is_apart(const A& a, const B& b) {
+  return a.low.x >= b.high.x || b.low.x >= a.high.x || a.low.y >= b.high.y || b.low.y >= a.high.y;
+}
+
+/// Whether an outline has places next to the outer side of a way, OutlineCutter::thin away from it and more.
+bool is_beside(Outline outline, const glm::dvec2& from, const glm::dvec2& way) {
+  const double length = glm::length(way), thin = OutlineCutter::thin * length;
+  double near = std::numeric_limits<double>::infinity(), far = -near, first = near, last = -near;
+  for (const PaintCorner& corner : outline) {
+    const glm::dvec2 at = glm::dvec2(corner.at) - from;
+    const double out = way.x * at.y - way.y * at.x, along = glm::dot(way, at);
+    near = std::min(near, out);
+    far = std::max(far, out);
+    first = std::min(first, along);
+    last = std::max(last, along);
+  }
+  return near <= thin && far > thin && first < length * length && last > 0;
+}
+
+}  // namespace
+
+void Surroundings::begin(std::size_t slot, double reach) {
+  slot_ = slot;
+  Extent box = box_of(scenery_.outline(slot));
+  box.low -= float(reach);
+  box.high += float(reach);
+  const PieceGrid::Range cells = scenery_.grid().range(box);
+  is_listed_ = (cells.last_x - cells.first_x + 1) * (cells.last_y - cells.first_y + 1) <= kMostCells;
+  if (is_listed_) list(box);
+}
+
+void Surroundings::list(const Extent& box) {
+  if (++turn_ == 0) {
+    std::fill(listed_.begin(), listed_.end(), 0);
+    turn_ = 1;
+  }
+  hiders_.clear();
+  const std::uint32_t first_place = scenery_.first_place(slot_);
+  const PieceGrid::Range cells = scenery_.grid().range(box);
+  for (int y = cells.first_y; y <= cells.last_y; ++y)
+    for (int x = cells.first_x; x <= cells.last_x; ++x) {
+      const std::span<const std::uint32_t> cell = scenery_.cell(x, y);
+      std::size_t count = 0;
+      for (std::size_t i = cell.size(); i-- > 0 && count < kMostHiders && scenery_.place(cell[i]) >= first_place;) {
+        const std::uint32_t other = cell[i];
+        if (listed_[other] == turn_) continue;
+        listed_[other] = turn_;
+        poll_.count();
+        const Extent& e = scenery_.extent(other);
+        if (other == slot_ || is_apart(e, box) || !scenery_.hides(other)) continue;
+        hiders_.push_back({e.low, e.high, other});
+        ++count;
+      }
+    }
+}
+
+template <class Visit>
+bool Surroundings::any_of(const Extent& box, const Visit& visit) {
+  if (!is_listed_) list(box);
+  return std::any_of(hiders_.begin(), hiders_.end(), [&](const Hider& hider) {
+    if (is_apart(hider, box)) return false;
+    poll_.count();
+    return visit(hider);
+  });
+}
+
+bool Surroundings::are_open_beside(std::size_t side) const {
+  const std::uint32_t across = mosaic_.across(scenery_.first_corner(slot_) + side);
+  return across != no_index &&
+         (scenery_.place(across) < scenery_.first_place(slot_) || across == slot_ || !scenery_.hides(across));
+}
+
+bool Surroundings::hide_beside(const glm::dvec2& from, const glm::dvec2& to) {
+  Extent box{glm::min(glm::vec2(from), glm::vec2(to)), glm::max(glm::vec2(from), glm::vec2(to)), 0, 0};
+  box.low -= float(2 * OutlineCutter::thin);
+  box.high += float(2 * OutlineCutter::thin);
+  return any_of(box, [&](const Hider& hider) { return is_beside(scenery_.outline(hider.slot), from, to - from); });
+}
+
+const OutlineCutter& Surroundings::open_parts(Outline outline) {
+  cutter_.begin(outline);
+  any_of(box_of(outline), [&](const Hider& hider) {
+    const Cover cover{scenery_.outline(hider.slot), glm::dvec2(hider.low), glm::dvec2(hider.high)};
+    return cutter_.subtract(cover, cutter_.count() <= kMostParts);
+  });
+  return cutter_;
+}
+
+}  // namespace frontmost::painter_detail

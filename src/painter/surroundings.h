@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// What hides the places beside a polygon of an order.
+#pragma once
+
+#include <vector>
+
+#include "painter/outlines.h"
+#include "painter/poll.h"
+#include "painter/seen/mosaic.h"
+
+namespace frontmost::painter_detail {
+
+/// Of one polygon after another. Beside it hide those after it, and parts of the same primitive, also before it: these
+/// show nothing else than it does. They are listed once for all that is asked about a polygon, and most polygons have
+/// few. Not for several threads at once.
+class Surroundings {
+ public:
+  Surroundings(const Scenery& scenery, const Mosaic& mosaic, const Execution& execution)
+      : scenery_(scenery), mosaic_(mosaic), poll_(execution), listed_(scenery.count(), 0) {}
+
+  /// Of the polygon in a slot from now on, as far as `reach` pixels around it.
+  void begin(std::size_t slot, double reach);
+  /// Whether a side is that of one other polygon which hides nothing of what lies beyond it.
+  [[nodiscard]] bool are_open_beside(std::size_t side) const;
+  /// Whether anything hides places on the outer side of a side of the polygon, next to it.
+  [[nodiscard]] bool hide_beside(const glm::dvec2& from, const glm::dvec2& to);
+  /// What of a convex outline within reach is not hidden, until the next call.
+  [[nodiscard]] const OutlineCutter& open_parts(Outline outline);
+
+ private:
+  struct Hider {
+    glm::vec2 low, high;  ///< the box around it, in pixels
+    std::uint32_t slot;
+  };
+  /// Sets hiders_ to those whose boxes overlap this one.
+  void list(const Extent& box);
+  /// Calls visit(hider) for those whose boxes overlap this one, until it returns true. \returns whether it did.
+  template <class Visit>
+  bool any_of(const Extent& box, const Visit& visit);
+
+  const Scenery& scenery_;
+  const Mosaic& mosaic_;
+  Poll poll_;
+  OutlineCutter cutter_;
+  std::size_t slot_ = 0;
+  bool is_listed_ = false;  ///< hiders_ are all around the polygon
+  std::vector<Hider> hiders_;
+  std::vector<std::uint32_t> listed_;  ///< by slot: in which turn it was listed last
+  std::uint32_t turn_ = 0;
+};
+
+}  // namespace frontmost::painter_detail
