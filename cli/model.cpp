@@ -23,7 +23,7 @@ Scene load_model(const Settings& settings, const Execution& execution, Progress&
   LoadOptions options = settings.load;
   options.files = &used;
   Scene scene = load(settings.model, options, execution);
-  for (const std::string& model : settings.more_models) append(scene, load(model, options, execution));
+  for (const std::string& model : settings.more_models) add(scene, load(model, options, execution));
   refuse_outputs_beside(used, outputs);
   show_warnings(scene.warnings, settings.run, progress);
   return scene;

@@ -137,10 +137,7 @@ Image map_of(OutputKind kind, const Job& job, const RenderContext& context, cons
 
 void count_objects(const Surfaces& surfaces, const Image& objects, Seen& seen) {
   const std::vector<Instance>& instances = surfaces.scene().instances;
-  std::vector<std::uint64_t> pixels(instances.size());
-  for (const std::uint32_t object : objects.channels.front().integers()) {
-    if (object != no_index) ++pixels[object];
-  }
+  const std::vector<std::uint64_t> pixels = count_pixels(objects, instances.size());
   for (std::uint32_t i = 0; i < pixels.size(); ++i) {
     seen.pixels += pixels[i];
     if (pixels[i] > 0) seen.objects.push_back({i, instances[i].name, pixels[i]});

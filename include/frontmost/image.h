@@ -81,6 +81,10 @@ using SourceOfId = std::function<PrimitiveSource(PrimitiveId)>;
 [[nodiscard]] Image id_image(const Scene& scene, const SourceOfId& source, const glm::ivec2& size,
                              std::span<const PrimitiveId> primitives, IdKind kind);
 
+/// How many pixels of an id_image() show each id below `count`, such as each object of Scene::instances. O(pixels).
+/// \throws Error bad_argument unless the image has one channel of integers.
+[[nodiscard]] std::vector<std::uint64_t> count_pixels(const Image& ids, std::size_t count);
+
 /// A hash of size, channel names and values; equal for equal images on every machine.
 [[nodiscard]] std::uint64_t content_hash(const Image& image);
 /// The same, with the number of samples of every pixel.

@@ -151,10 +151,13 @@ struct Scene {
 /// Triangles over all instances. O(instances).
 [[nodiscard]] std::uint64_t triangle_count(const Scene& scene);
 
+/// Adds a mesh and places it, as an object named as the mesh is. Meshes that are not placed are not seen.
+/// \returns the object's number in Scene::instances. O(1).
+std::uint32_t add(Scene& scene, Mesh mesh, const glm::dmat4& world_from_mesh = glm::dmat4(1.0));
 /// Adds all that `part` holds to `scene`: objects, materials, textures, cameras and warnings after its own, with their
 /// numbers counted on. Name and up stay as they are, and so does the origin, of which what is added is moved to tell
 /// the same place, unless the scene has no objects yet: then it takes the part's. O(size of part).
-void append(Scene& scene, Scene part);
+void add(Scene& scene, Scene part);
 
 /// The origin with which floats hold the most of a scene that was put together: zero unless on some axis all of it lies
 /// farther from zero than four times its size and 1024 units, or than 128 times its size; else, on axes on which it is

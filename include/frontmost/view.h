@@ -103,6 +103,19 @@ struct View {
   Projection projection;
   Culling culling = Culling::none;
 
+  // Copies with one thing changed, to be chained:
+  //   make_view(intrinsics, 640, 480).placed(pose, PoseConvention::opencv_world_to_camera).between(0.1, 10)
+  /// With this pose. \throws Error singular_camera as world_from_eye() does.
+  [[nodiscard]] View placed(const glm::dmat4& pose, PoseConvention convention) const;
+  /// At `from`, turned towards `target`. \throws Error singular_camera as look_at() does.
+  [[nodiscard]] View looking(const glm::dvec3& from, const glm::dvec3& target, const glm::dvec3& up) const;
+  /// With an eye that was told in the coordinates of a file, as a pose is, told about that scene's origin.
+  [[nodiscard]] View about(const glm::dvec3& origin) const;
+  /// With these near and far planes.
+  [[nodiscard]] View between(double near, double far) const;
+  /// With the near and far planes that fit_clip() finds for `bounds` from where the eye is now.
+  [[nodiscard]] View enclosing(const Box& bounds) const;
+
   [[nodiscard]] glm::dvec3 eye() const { return glm::dvec3(world_from_eye[3]); }
   [[nodiscard]] glm::dvec3 forward() const { return -glm::dvec3(world_from_eye[2]); }
   [[nodiscard]] glm::dvec3 up() const { return glm::dvec3(world_from_eye[1]); }
@@ -110,6 +123,12 @@ struct View {
   [[nodiscard]] std::size_t pixel_count() const { return std::size_t(width) * std::size_t(height); }
   [[nodiscard]] std::size_t sample_count() const { return pixel_count() * std::size_t(samples); }
 };
+
+/// The view of a calibrated camera, at the origin, looking along -z, with one sample a pixel and the clip distances'
+/// defaults. \throws Error bad_argument as make_projection() does.
+[[nodiscard]] View make_view(const Intrinsics& intrinsics, int width, int height);
+/// The same by the smaller field of view, in radians.
+[[nodiscard]] View make_view(double min_fov, int width, int height);
 
 /// \throws Error bad_argument, limit_exceeded or singular_camera, naming the field. Vertices are transformed in floats,
 /// so a view must lie within their range: near at least 1.2e-38 in perspective, the eye within 3.4e38 of the origin.

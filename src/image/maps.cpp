@@ -116,4 +116,13 @@ Image id_image(const Scene& scene, const SourceOfId& source, const glm::ivec2& s
   return image;
 }
 
+std::vector<std::uint64_t> count_pixels(const Image& ids, std::size_t count) {
+  if (ids.channels.size() != 1 || !ids.channels[0].is_integer())
+    throw Error(ErrorCode::bad_argument, "pixel counts: the image must have one channel of integers");
+  std::vector<std::uint64_t> pixels(count);
+  for (const std::uint32_t id : ids.channels[0].integers())
+    if (id < count) ++pixels[id];
+  return pixels;
+}
+
 }  // namespace frontmost

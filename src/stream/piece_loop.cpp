@@ -41,7 +41,7 @@ void Models::add(Model model) {
   Scene without_warnings = part;
   // Warnings may come with every piece, and are taken over one by one as they do.
   without_warnings.warnings.clear();
-  append(scene_, std::move(without_warnings));
+  frontmost::add(scene_, std::move(without_warnings));
   if (!part.instances.empty()) {
     // Pieces are put in place when they are parsed, so that what is made of them has no transforms.
     glm::dmat4& place = scene_.instances.back().world_from_mesh;

@@ -76,4 +76,22 @@ glm::dmat4 pose_of(const glm::dmat4& world_from_eye, PoseConvention convention) 
   return is_world_to_camera(convention) ? inverse_rigid(world_from_camera) : world_from_camera;
 }
 
+View View::placed(const glm::dmat4& pose, PoseConvention convention) const {
+  View view = *this;
+  view.world_from_eye = frontmost::world_from_eye(pose, convention);
+  return view;
+}
+
+View View::looking(const glm::dvec3& from, const glm::dvec3& target, const glm::dvec3& up) const {
+  View view = *this;
+  view.world_from_eye = look_at(from, target, up);
+  return view;
+}
+
+View View::about(const glm::dvec3& origin) const {
+  View view = *this;
+  view.world_from_eye[3] -= glm::dvec4(origin, 0);
+  return view;
+}
+
 }  // namespace frontmost

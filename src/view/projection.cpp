@@ -102,6 +102,34 @@ Intrinsics intrinsics_of(const Projection& projection, int width, int height, Pi
   return {fx, fy, -projection.left * fx - pixel_shift(rule), projection.top * fy - pixel_shift(rule), rule};
 }
 
+View make_view(const Intrinsics& intrinsics, int width, int height) {
+  View view;
+  view.width = width;
+  view.height = height;
+  view.projection = make_projection(intrinsics, width, height, {});
+  return view;
+}
+
+View make_view(double min_fov, int width, int height) {
+  check_size(width, height);
+  View view;
+  view.width = width;
+  view.height = height;
+  view.projection = make_projection(min_fov, double(width) / height, {});
+  return view;
+}
+
+View View::between(double near, double far) const {
+  View view = *this;
+  view.projection.clip = {near, far};
+  return view;
+}
+
+View View::enclosing(const Box& bounds) const {
+  const ClipDistances clip = fit_clip(bounds, world_from_eye, projection.orthographic);
+  return between(clip.near, clip.far);
+}
+
 glm::dmat4 clip_from_eye(const Projection& projection, const DepthConvention& depth) {
   const double w = projection.right - projection.left, h = projection.top - projection.bottom;
   const double x = (projection.right + projection.left) / w, y = (projection.top + projection.bottom) / h;

@@ -139,5 +139,16 @@ TEST(Maps, OfARealPictureAgree) {
   EXPECT_GT(seen, 2000u);
 }
 
+TEST(Maps, PixelsAreCountedById) {
+  Image ids{4, 1, {}};
+  ids.channels.push_back({"object", Buffer<std::uint32_t>(4)});
+  std::uint32_t next = 0;
+  for (std::uint32_t& id : ids.channels[0].integers()) id = std::array{2u, 0u, no_index, 2u}[next++];
+  EXPECT_THAT(count_pixels(ids, 3), testing::ElementsAre(1, 0, 2));
+  EXPECT_THAT(count_pixels(ids, 1), testing::ElementsAre(1));
+  EXPECT_TRUE(count_pixels(ids, 0).empty());
+  EXPECT_THROW((void)count_pixels(depth_image(some_visible()), 3), Error);
+}
+
 }  // namespace
 }  // namespace frontmost::test

@@ -111,7 +111,7 @@ TEST(Origin, OfSeveralScenesIsTheFirstOnes) {
   for (const double place : {1e8, 1e8 + 40, 0.0}) {
     Scene part = cube_at({place, 0, 0});
     set_origin(part, fitting_origin(part));
-    append(all, std::move(part));
+    add(all, std::move(part));
   }
   EXPECT_EQ(all.origin, glm::dvec3(1e8, 0, 0));
   EXPECT_EQ(all.instances[0].world_from_mesh[3].x, 0);

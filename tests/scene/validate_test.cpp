@@ -160,13 +160,26 @@ TEST(Scene, CountsOverInstancesAndPassesOverMeshesThatDoNotExist) {
   EXPECT_EQ(triangle_count(Scene{}), 0u);
 }
 
-TEST(Scene, AppendedPartsCountOn) {
+TEST(Scene, AMeshThatIsAddedIsPlaced) {
+  Scene scene = good_scene();
+  Mesh mesh = scene.meshes[0];
+  mesh.name = "added";
+  mesh.material_ids.clear();
+  EXPECT_EQ(add(scene, mesh, glm::dmat4(2)), 1u);
+  ASSERT_EQ(scene.instances.size(), 2u);
+  EXPECT_EQ(scene.instances.back().name, "added");
+  EXPECT_EQ(scene.instances.back().mesh, scene.meshes.size() - 1);
+  EXPECT_EQ(scene.instances.back().world_from_mesh, glm::dmat4(2));
+  EXPECT_EQ(complaint(scene), "none");
+}
+
+TEST(Scene, AddedPartsCountOn) {
   Scene scene = good_scene();
   Scene part = good_scene();
   part.meshes[0].material_ids = {no_index, 1};
   part.cameras.emplace_back();
   part.warnings = {"odd"};
-  append(scene, part);
+  add(scene, part);
   ASSERT_EQ(scene.meshes.size(), 2u);
   EXPECT_EQ(scene.meshes[0].material_ids, (std::vector<std::uint32_t>{0, 1}));
   EXPECT_EQ(scene.meshes[1].material_ids, (std::vector<std::uint32_t>{no_index, 3}));

@@ -27,7 +27,7 @@ inline void expect_same(const Visible& a, const Visible& b) {
 
 inline Scene loaded(const std::vector<std::string>& paths) {
   Scene whole = load(paths.front());
-  for (std::size_t i = 1; i < paths.size(); ++i) append(whole, load(paths[i]));
+  for (std::size_t i = 1; i < paths.size(); ++i) add(whole, load(paths[i]));
   return whole;
 }
 

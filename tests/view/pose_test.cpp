@@ -63,5 +63,42 @@ TEST(Pose, RefusesWhatIsNotRigid) {
   EXPECT_THROW((void)world_from_eye(glm::dmat4(0.0), PoseConvention::opencv_world_to_camera), Error);
 }
 
+TEST(View, IsMadeByASentence) {
+  const Intrinsics intrinsics{.fx = 572.4, .fy = 573.6, .cx = 325.3, .cy = 242.0};
+  const glm::dmat4 pose = pose_of(look_at({1, 2, 3}, {4, 5, 7}, {0, 1, 0}), PoseConvention::opencv_world_to_camera);
+  const View view =
+      make_view(intrinsics, 640, 480).placed(pose, PoseConvention::opencv_world_to_camera).between(0.5, 20);
+  EXPECT_EQ(view.width, 640);
+  EXPECT_EQ(view.height, 480);
+  expect_near(view.eye(), {1, 2, 3});
+  expect_near(view.forward(), glm::normalize(glm::dvec3(3, 3, 4)));
+  EXPECT_EQ(view.projection.clip.near, 0.5);
+  EXPECT_EQ(view.projection.clip.far, 20);
+  const Intrinsics back = intrinsics_of(view.projection, 640, 480, intrinsics.rule);
+  EXPECT_NEAR(back.fx, intrinsics.fx, 1e-9);
+  EXPECT_NEAR(back.cy, intrinsics.cy, 1e-9);
+  EXPECT_NO_THROW(validate(view));
+}
+
+TEST(View, LooksFromAPointAtAnother) {
+  const View view = make_view(1.0, 200, 100).looking({100, 0, 5}, {100, 0, 0}, {0, 1, 0}).about({100, 0, 0});
+  expect_near(view.eye(), {0, 0, 5});
+  expect_near(view.forward(), {0, 0, -1});
+  EXPECT_NEAR(view.projection.top, std::tan(0.5), 1e-12);
+  EXPECT_NEAR(view.projection.right, 2 * std::tan(0.5), 1e-12);
+  const View fitted = view.enclosing({glm::vec3(-1), glm::vec3(1)});
+  EXPECT_LT(fitted.projection.clip.near, 4);
+  EXPECT_GT(fitted.projection.clip.far, 6);
+  EXPECT_LT(fitted.projection.clip.far, 6.1);
+}
+
+TEST(View, RefusesWhatIsNoCamera) {
+  EXPECT_THROW((void)make_view(1.0, 0, 100), Error);
+  EXPECT_THROW((void)make_view(4.0, 100, 100), Error);
+  EXPECT_THROW((void)make_view(Intrinsics{}, 100, 100), Error);
+  EXPECT_THROW((void)View{}.looking({1, 1, 1}, {1, 1, 1}, {0, 1, 0}), Error);
+  EXPECT_THROW((void)View{}.placed(glm::dmat4(2.0), PoseConvention::opengl_camera_to_world), Error);
+}
+
 }  // namespace
 }  // namespace frontmost::test

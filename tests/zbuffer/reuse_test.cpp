@@ -134,5 +134,25 @@ TEST(ZBuffer, FramesAfterTheFirstAllocateNothing) {
   }
 }
 
+// The flight of examples/flight.cpp: memory grows with the frame that needs most, and is there from then on.
+TEST(ZBuffer, AFlightAllocatesNothingOnceItHasBeenFlown) {
+  const Scene scene = builtin("city");
+  const Surfaces surfaces(scene);
+  const glm::dvec3 middle = surfaces.bounds().centre(), up = direction(scene.up);
+  ZBuffer buffer;
+  const auto fly = [&] {
+    View view = frame(surfaces, 640, 480);
+    const std::size_t before = allocation_count;
+    for (int i = 0; i < 300; ++i) {
+      buffer.draw(surfaces, view, {.threads = 1});
+      const glm::dvec3 eye = view.eye() + 0.02 * glm::distance(view.eye(), middle) * view.right();
+      view = view.looking(eye, middle, up).enclosing(surfaces.bounds());
+    }
+    return allocation_count - before;
+  };
+  EXPECT_LT(fly(), 300u);
+  EXPECT_EQ(fly(), 0u);
+}
+
 }  // namespace
 }  // namespace frontmost::test

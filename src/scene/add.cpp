@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several scenes in one: whatever has a number is counted on from what is there.
+// What is added to a scene: whatever has a number is counted on from what is there.
 #include <algorithm>
 #include <iterator>
 
@@ -19,7 +19,13 @@ void move_all(std::vector<T>& from, std::vector<T>& to) {
 
 }  // namespace
 
-void append(Scene& scene, Scene part) {
+std::uint32_t add(Scene& scene, Mesh mesh, const glm::dmat4& world_from_mesh) {
+  scene.instances.push_back({mesh.name, std::uint32_t(scene.meshes.size()), world_from_mesh});
+  scene.meshes.push_back(std::move(mesh));
+  return std::uint32_t(scene.instances.size() - 1);
+}
+
+void add(Scene& scene, Scene part) {
   if (scene.instances.empty() && scene.cameras.empty()) scene.origin = part.origin;
   set_origin(part, scene.origin);
   // Everything is renumbered before anything is moved: the counts of what was there are what is added.
