@@ -49,7 +49,8 @@ enum CommandBit : unsigned {
   for_sight = 32,
   for_lidar = 64,
   for_compare = 128,
-  for_lines = 256
+  for_lines = 256,
+  for_every_model = for_render | for_info | for_camera | for_precision | for_sight | for_lidar | for_compare | for_lines
 };
 
 /// The text given for an option, and the words it may be.

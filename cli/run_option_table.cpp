@@ -10,9 +10,6 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr unsigned everywhere =
-    for_render | for_info | for_camera | for_precision | for_sight | for_lidar | for_compare | for_lines;
-
 Isa isa_from(const Given& given) {
   // The words leave out Isa::best, which is the default.
   const Isa isa = Isa(parse_choice(given.text, given.choices) + int(Isa::scalar));
@@ -23,7 +20,7 @@ Isa isa_from(const Given& given) {
   throw UsageError(fmt::format("{} does not run here; {} do", given.text, fmt::join(names, ", ")));
 }
 
-constexpr Option table[] = {
+constexpr Option run_options[] = {
     {"batch", 0, "FILE", "Render many views: a JSON file of views and outputs (see frontmost(1)).", Group::run,
      for_render, [](Settings& s, const Given& g) { s.run.batch = g.file_name(); }},
     {"method", 0, "zbuffer|raycast|abuffer",
@@ -31,7 +28,7 @@ constexpr Option table[] = {
      for_render, [](Settings& s, const Given& g) { s.run.method = g.choice<Method>(); }},
     {"stream", 0, "", "Read binary STL and PLY piece by piece: files larger than memory, with the same bytes.",
      Group::run, for_render, [](Settings& s, const Given&) { s.run.stream = true; }},
-    {"threads", 0, "N", "Threads, 1 to 1024; 0, the default, is one per core.", Group::run, everywhere,
+    {"threads", 0, "N", "Threads, 1 to 1024; 0, the default, is one per core.", Group::run, for_every_model,
      [](Settings& s, const Given& g) {
        s.run.threads = g.integer({0, 1024});
      }},
@@ -41,19 +38,19 @@ constexpr Option table[] = {
      [](Settings& s, const Given& g) {
        s.run.repeat = g.integer({1, 1e6});
      }},
-    {"timeout", 0, "SECONDS", "Give up after this long, with exit status 1.", Group::run, everywhere,
+    {"timeout", 0, "SECONDS", "Give up after this long, with exit status 1.", Group::run, for_every_model,
      [](Settings& s, const Given& g) {
        s.run.timeout = g.number({1e-3, 1e7});
      }},
-    {"json", 0, "", "Report on standard output as JSON, and nothing else there.", Group::run, everywhere,
+    {"json", 0, "", "Report on standard output as JSON, and nothing else there.", Group::run, for_every_model,
      [](Settings& s, const Given&) { s.run.json = true; }},
-    {"quiet", 'q', "", "No progress and no warnings.", Group::run, everywhere,
+    {"quiet", 'q', "", "No progress and no warnings.", Group::run, for_every_model,
      [](Settings& s, const Given&) { s.run.quiet = true; }},
 };
 
 }  // namespace
 
-std::span<const Option> run_option_table() { return table; }
+std::span<const Option> run_option_table() { return run_options; }
 
 std::string Given::file_name() const {
   if (text.empty()) throw UsageError("the file name is empty");

@@ -11,6 +11,8 @@
 
 namespace frontmost::cli {
 
+inline constexpr double radians_per_degree = 0.017453292519943295, degrees_per_radian = 57.29577951308232;
+
 /// Inclusive limits of a number.
 struct Range {
   double low, high;

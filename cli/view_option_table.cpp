@@ -6,8 +6,6 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr unsigned everywhere =
-    for_render | for_info | for_camera | for_precision | for_sight | for_lidar | for_compare | for_lines;
 constexpr unsigned views = for_render | for_camera | for_precision | for_compare | for_lines;
 constexpr int max_side = 16384;
 
@@ -40,11 +38,11 @@ glm::ivec2 resolution_from(std::string_view text) {
   return {int(sides[0]), int(sides[1])};
 }
 
-constexpr Option table[] = {
+constexpr Option view_options[] = {
     {"up", 0, "AXIS", "Which way is up in the model: +x, +y, +z, -x, -y or -z; the file format's by default.",
-     Group::model, everywhere, [](Settings& s, const Given& g) { s.load.up = axis_of(parse_direction(g.text)); }},
+     Group::model, for_every_model, [](Settings& s, const Given& g) { s.load.up = axis_of(parse_direction(g.text)); }},
     {"input-format", 0, "stl|ply|obj|off|gltf|3mf",
-     "Format of the model; by default from its name, or its first bytes.", Group::model, everywhere,
+     "Format of the model; by default from its name, or its first bytes.", Group::model, for_every_model,
      [](Settings& s, const Given& g) { s.load.format = g.choice<ModelFormat>(); }},
 
     {"view", 0, "front|back|left|right|top|bottom|iso", "Look from there, far enough away to see the whole model.",
@@ -139,6 +137,6 @@ constexpr Option table[] = {
 
 }  // namespace
 
-std::span<const Option> view_option_table() { return table; }
+std::span<const Option> view_option_table() { return view_options; }
 
 }  // namespace frontmost::cli

@@ -10,11 +10,11 @@
 #include "cli/failure.h"
 #include "cli/places.h"
 #include "cli/render/fit.h"
+#include "cli/values.h"
 
 namespace frontmost::cli {
 namespace {
 
-constexpr double radians_per_degree = 0.017453292519943295;
 constexpr glm::ivec2 default_resolution{1920, 1080};
 
 /// The eye's axes, what it turns about, and whether its distance is still open.

@@ -36,3 +36,31 @@ mark_as_advanced(FRONTMOST_CCACHE)
 if(FRONTMOST_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${FRONTMOST_CCACHE})
 endif()
+
+# A first build has most of its work with headers. So those that most files include are compiled once for each target,
+# and the files of a folder together. Where there is a compiler cache neither is done: checkouts could then share less of
+# what they compiled, and a change of one file would take longer.
+set(together ON)
+if(CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_DISABLE_PRECOMPILE_HEADERS ON)
+  set(together OFF)
+endif()
+option(FRONTMOST_TOGETHER "Compile the files of a folder as one" ${together})
+
+# frontmost_together(TARGET) : the files of each folder are compiled as one. Not kernels, because they include themselves
+# once for each instruction set; nor files with compiler options of their own, which CMake leaves out.
+function(frontmost_together target)
+  get_target_property(sources ${target} SOURCES)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${FRONTMOST_TOGETHER} UNITY_BUILD_MODE GROUP)
+  foreach(source ${sources})
+    if(NOT source MATCHES "_kernel[.]cpp$")
+      cmake_path(ABSOLUTE_PATH source OUTPUT_VARIABLE path)
+      cmake_path(GET path PARENT_PATH folder)
+      cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
+      string(MAKE_C_IDENTIFIER "${folder}" group)
+      set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${group})
+    endif()
+  endforeach()
+endfunction()
+set(FRONTMOST_COMMON_HEADERS <algorithm> <array> <atomic> <cmath> <cstdint> <cstring> <functional> <limits> <map> <memory>
+  <optional> <span> <string> <string_view> <tuple> <utility> <vector> <glm/glm.hpp>)

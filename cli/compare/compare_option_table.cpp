@@ -6,7 +6,7 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr Option table[] = {
+constexpr Option compare_options[] = {
     {"output", 'o', "FOLDER", "Write index.html and its pictures there; the folder is made where it is missing.",
      Group::compare, for_compare,
      [](Settings& s, const Given& g) {
@@ -23,6 +23,6 @@ constexpr Option table[] = {
 
 }  // namespace
 
-std::span<const Option> compare_option_table() { return table; }
+std::span<const Option> compare_option_table() { return compare_options; }
 
 }  // namespace frontmost::cli

@@ -164,7 +164,7 @@ std::string bar_row(const Comparisons& all, std::string_view label, const Number
   return row(label, cells);
 }
 
-std::string table(const Comparisons& all) {
+std::string table_of(const Comparisons& all) {
   std::string text = "<div class=\"scroll\"><table><thead><tr><th></th>";
   for (const Compared& c : all.methods) text += fmt::format("<th scope=\"col\">{}</th>", c.run.method->title);
   text += "</tr></thead><tbody>\n";
@@ -240,7 +240,7 @@ std::string page(const Comparisons& all, const StagedFolder& folder) {
       "<header><h1>{}</h1><p class=\"lead\">The same question to every visibility method: what can be seen from here? "
       "{} triangles, {}, medians of {} runs, each method in a process of its own.</p></header><main>\n",
       model, style, model, grouped(all.surfaces.primitive_count()), grid_of(all.view, "×"), all.settings.compare.runs);
-  text += table(all);
+  text += table_of(all);
   text += "<h2>In words</h2><ul>";
   for (const std::string& sentence : advice(all)) text += "<li>" + escaped(sentence) + "</li>";
   text += "</ul>\n<h2>What they see</h2><div class=\"cards\">\n";

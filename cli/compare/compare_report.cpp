@@ -9,7 +9,7 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr Difference causes[] = {Difference::edge, Difference::depth, Difference::translucent};
+constexpr Difference explained_causes[] = {Difference::edge, Difference::depth, Difference::translucent};
 
 /// One line: what it tells, then a cell for each method, under its name. Columns are as wide as the longest name needs.
 template <class Cell>
@@ -37,7 +37,7 @@ Json times_json(const MethodRun& run) {
 Json method_json(const Comparisons& all, const Compared& compared) {
   const MethodRun& run = compared.run;
   Json explained = Json::object();
-  for (const Difference cause : causes) explained[std::string(name(cause))] = compared.agreement.count(cause);
+  for (const Difference cause : explained_causes) explained[std::string(name(cause))] = compared.agreement.count(cause);
   Json json = {{"method", run.method->name},
                {"timings_ms", times_json(run)},
                {"peak_bytes", run.peak_bytes},

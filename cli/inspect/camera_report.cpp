@@ -6,11 +6,10 @@
 #include <cmath>
 
 #include "cli/places.h"
+#include "cli/values.h"
 
 namespace frontmost::cli {
 namespace {
-
-constexpr double degrees_per_radian = 57.29577951308232;
 
 struct NamedDepth {
   std::string_view name;

@@ -7,11 +7,11 @@
 
 #include "cli/console.h"
 #include "cli/places.h"
+#include "cli/values.h"
 
 namespace frontmost::cli {
 namespace {
 
-constexpr double degrees_per_radian = 57.29577951308232;
 constexpr std::size_t lines_shown = 20;  // of objects, materials, cameras; JSON has all
 constexpr std::string_view axis_names[] = {"+x", "+y", "+z", "-x", "-y", "-z"};
 constexpr std::string_view alpha_names[] = {"opaque", "mask", "blend"};

@@ -11,12 +11,12 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr std::string_view view_names = "front|back|left|right|top|bottom|iso";
+constexpr std::string_view view_choices = "front|back|left|right|top|bottom|iso";
 
 std::vector<NamedView> views_from(std::string_view text) {
   std::vector<NamedView> views;
   for (const std::string_view word : split(text, ',')) {
-    const auto view = NamedView(parse_choice(word, view_names));
+    const auto view = NamedView(parse_choice(word, view_choices));
     if (std::find(views.begin(), views.end(), view) != views.end())
       throw UsageError(fmt::format("'{}' is there twice", word));
     views.push_back(view);
@@ -69,7 +69,7 @@ std::string field_text(const Given& given, std::size_t most) {
   return given.string();
 }
 
-constexpr Option table[] = {
+constexpr Option drawing_options[] = {
     {"hidden", 0, "none|dashed|thin", "How hidden edges are drawn; none by default.", Group::drawing, for_lines,
      [](Settings& s, const Given& g) { s.drawing.hidden = g.choice<DrawingSettings::Hidden>(); }},
     {"hidden-views", 0, "V,V,...", "Views of a sheet that show hidden edges; all but iso by default.", Group::drawing,
@@ -189,6 +189,6 @@ constexpr Option table[] = {
 
 }  // namespace
 
-std::span<const Option> drawing_option_table() { return table; }
+std::span<const Option> drawing_option_table() { return drawing_options; }
 
 }  // namespace frontmost::cli

@@ -6,7 +6,7 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr Option table[] = {
+constexpr Option precision_options[] = {
     {"model", 0, "FILE", "Count the pixels of this model where the buffer shows the wrong surface.", Group::precision,
      for_precision, [](Settings& s, const Given& g) { s.model = g.file_name(); }},
     {"format", 0, "D8|D16|D24|F32",
@@ -27,6 +27,6 @@ constexpr Option table[] = {
 
 }  // namespace
 
-std::span<const Option> precision_option_table() { return table; }
+std::span<const Option> precision_option_table() { return precision_options; }
 
 }  // namespace frontmost::cli

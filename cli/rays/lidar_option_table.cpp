@@ -12,7 +12,7 @@ glm::dvec2 elevations_from(const Given& given) {
   return {ends[0], ends[1]};
 }
 
-constexpr Option table[] = {
+constexpr Option lidar_options[] = {
     {"from", 0, "X,Y,Z", "Where the scanner stands, in the model's own coordinates.", Group::lidar, for_lidar,
      [](Settings& s, const Given& g) { s.lidar.from = parse_vector(g.text); }},
     {"forward", 0, "X,Y,Z", "Where it looks first; also an axis. By default the model's front view's direction.",
@@ -36,6 +36,6 @@ constexpr Option table[] = {
 
 }  // namespace
 
-std::span<const Option> lidar_option_table() { return table; }
+std::span<const Option> lidar_option_table() { return lidar_options; }
 
 }  // namespace frontmost::cli

@@ -5,7 +5,7 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr Option table[] = {
+constexpr Option sight_options[] = {
     {"from", 0, "X,Y,Z", "Look from this point, in the model's own coordinates.", Group::sight, for_sight,
      [](Settings& s, const Given& g) { s.sight.from = parse_vector(g.text); }},
     {"to", 0, "X,Y,Z", "Look at this point.", Group::sight, for_sight,
@@ -16,6 +16,6 @@ constexpr Option table[] = {
 
 }  // namespace
 
-std::span<const Option> sight_option_table() { return table; }
+std::span<const Option> sight_option_table() { return sight_options; }
 
 }  // namespace frontmost::cli

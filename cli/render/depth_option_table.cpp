@@ -12,7 +12,7 @@ DepthSettings& used(Settings& settings) {
   return settings.view.depth;
 }
 
-constexpr Option table[] = {
+constexpr Option depth_options[] = {
     {"depth-format", 0, "D8|D16|D24|F32", "Keep depths in a buffer of this format; D24 with any of the options below.",
      Group::depth, for_render, [](Settings& s, const Given& g) { used(s).format = g.choice<DepthFormat>(); }},
     {"depth-func", 0, "NEVER|LESS|EQUAL|LEQUAL|GREATER|NOTEQUAL|GEQUAL|ALWAYS",
@@ -43,6 +43,6 @@ constexpr Option table[] = {
 
 }  // namespace
 
-std::span<const Option> depth_option_table() { return table; }
+std::span<const Option> depth_option_table() { return depth_options; }
 
 }  // namespace frontmost::cli

@@ -23,7 +23,7 @@ void add_ids(Settings& settings, std::string_view text) {
 
 constexpr unsigned written = for_render | may_repeat;
 
-constexpr Option table[] = {
+constexpr Option output_options[] = {
     {"output", 'o', "FILE",
      "The picture: .png, .exr, .pfm or .npy, or its polygons: .svg or .pdf; - is standard output. {model} and {view} "
      "stand "
@@ -116,6 +116,6 @@ constexpr Option table[] = {
 
 }  // namespace
 
-std::span<const Option> output_option_table() { return table; }
+std::span<const Option> output_option_table() { return output_options; }
 
 }  // namespace frontmost::cli

@@ -10,7 +10,7 @@ namespace {
 /// Heights change by so much for every pixel along a side.
 constexpr double kSteepest = 1;
 /// Pixels that a hem ends before what is open above it, or that part of the way to it.
-constexpr double kMargin = 1, kMarginPart = 0.6;
+constexpr double kProfileMargin = 1, kProfileMarginPart = 0.6;
 /// Of the square of the greatest height: the area that a corner must be worth.
 constexpr double kLeastGain = 1.0 / 16;
 
@@ -29,7 +29,7 @@ void HemProfile::add_open(const OutlineCutter& open) {
     for (const PaintCorner& corner : open[i]) {
       const glm::dvec2 at = glm::dvec2(corner.at) - from_;
       const double height = std::max(0.0, way_.x * at.y - way_.y * at.x);
-      corners_.push_back({glm::dot(way_, at), height - std::min(kMargin, kMarginPart * height)});
+      corners_.push_back({glm::dot(way_, at), height - std::min(kProfileMargin, kProfileMarginPart * height)});
     }
   }
 }

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kFanout = 64;
 /// Of coordinates: more than rounding moves them.
-constexpr double kMargin = 1e-12;
+constexpr double kHullMargin = 1e-12;
 
 /// Three directions at right angles, the first that of a triangle's normal.
 std::array<glm::dvec3, 3> axes_of(const Face& face) {
@@ -47,7 +47,7 @@ Hulls::Box Hulls::box_of(const Pieces& all, const std::vector<std::uint32_t>& me
       high = glm::max(high, along);
       farthest = std::max(farthest, std::abs(at.x) + std::abs(at.y) + std::abs(at.z));
     }
-  Box box{glm::dvec3(0), {}, kMargin * farthest};
+  Box box{glm::dvec3(0), {}, kHullMargin * farthest};
   for (std::size_t k = 0; k < 3; ++k) {
     const int axis = int(k);
     box.centre += axes[k] * (0.5 * (low[axis] + high[axis]));

@@ -10,8 +10,6 @@ namespace {
 
 std::size_t next(std::size_t i, std::size_t count) { return i + 1 == count ? 0 : i + 1; }
 
-double turn(const glm::dvec2& along, const glm::dvec2& at) { return along.x * at.y - along.y * at.x; }
-
 }  // namespace
 
 bool is_flat(Outline outline) {

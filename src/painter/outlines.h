@@ -20,6 +20,9 @@ struct Cover {
 /// Pixels: shorter sides have no direction.
 inline constexpr double shortest_side = 1e-9;
 
+/// Positive where `at` lies on the left of `way` in a plane whose y goes up; twice the area of their triangle.
+[[nodiscard]] inline double turn(const glm::dvec2& way, const glm::dvec2& at) { return way.x * at.y - way.y * at.x; }
+
 /// Whether an outline is too narrow for its sides to say what is within it: all the screen may be on their inner side.
 /// Cuts leave such pieces, and models have triangles of that size. They hide nothing.
 [[nodiscard]] bool is_flat(Outline outline);

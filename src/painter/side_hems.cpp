@@ -20,7 +20,7 @@
 namespace frontmost::painter_detail {
 namespace {
 
-constexpr std::size_t kPolygonsPerPart = 1024;
+constexpr std::size_t kPolygonsPerHemList = 1024;
 
 /// Parts of the width to which a hem goes around a corner where it does not with all of it.
 constexpr std::array kAround{1.0, 0.5, 0.25, 0.125};
@@ -28,7 +28,7 @@ constexpr std::array kAround{1.0, 0.5, 0.25, 0.125};
 /// changes.
 constexpr double kInset = 0.5, kMostInset = 0.45;
 /// Pixels by which what is hidden has to be wider than a hem: rims that lie on each other grow bold.
-constexpr double kMargin = 1;
+constexpr double kBeyondHem = 1;
 /// Pixels: lower hems are none.
 constexpr double kLeastHeight = 1.0 / 64;
 
@@ -71,7 +71,7 @@ class Hemmer {
       return glm::dvec2(a.at) == glm::dvec2(b.at);
     };
     if (scenery_.hides(slot) && std::equal(outline_.begin(), outline_.end(), given.begin(), given.end(), is_same)) {
-      surroundings_.begin(slot, kReach * (width_ + kMargin));
+      surroundings_.begin(slot, kReach * (width_ + kBeyondHem));
       set_sides();
       for (std::size_t i = 0; i < outline_.size(); ++i) fit(i);
       for (std::size_t i = 0; i < outline_.size(); ++i) around_[i] = reach_around(i);
@@ -101,7 +101,7 @@ class Hemmer {
   void fit(std::size_t number) {
     Side& side = sides_[number];
     side.knots.clear();
-    const glm::dvec2 from = corner(number), to = corner(next(number)), out = beside(side.along) * (width_ + kMargin);
+    const glm::dvec2 from = corner(number), to = corner(next(number)), out = beside(side.along) * (width_ + kBeyondHem);
     // Few others are beside a part of a side.
     const int parts = int(std::clamp(side.length / (kStrip * width_), 1.0, kMostStrips));
     if (side.length < OutlineCutter::thin || surroundings_.are_open_beside(number)) return;
@@ -124,7 +124,7 @@ class Hemmer {
     const glm::dvec2 at = corner(number);
     const Bend turn = bend(number);
     for (const double part : kAround) {
-      const double reach = part * width_, tested = part * (width_ + kMargin);
+      const double reach = part * width_, tested = part * (width_ + kBeyondHem);
       if (reach > height) continue;
       beside_ = {at, at + beside(turn.to) * tested};
       if (turn.is_sharp())
@@ -211,8 +211,8 @@ HemList assemble(const Scenery& scenery, const std::vector<HemList>& lists) {
   all.ends.reserve(scenery.count());
   for (std::uint32_t place = 0; place < scenery.count(); ++place) {
     const std::size_t slot = scenery.slot(place);
-    const HemList& list = lists[slot / kPolygonsPerPart];
-    for (SideHem hem : list.of(slot % kPolygonsPerPart)) {
+    const HemList& list = lists[slot / kPolygonsPerHemList];
+    for (SideHem hem : list.of(slot % kPolygonsPerHemList)) {
       const std::span<const glm::dvec2> own = list.corners_of(hem);
       hem.first_corner = all.corners.size();
       all.corners.insert(all.corners.end(), own.begin(), own.end());
@@ -230,15 +230,15 @@ HemList side_hems(const PaintOrder& order, double width, const std::function<boo
   const Scenery scenery(order, hides);
   const Mosaic mosaic(scenery);
   const std::size_t count = scenery.count();
-  std::vector<HemList> lists((count + kPolygonsPerPart - 1) / kPolygonsPerPart);
+  std::vector<HemList> lists((count + kPolygonsPerHemList - 1) / kPolygonsPerHemList);
   Pool<Hemmer> hemmers;
   std::atomic<std::size_t> done{0};
-  parallel_for(execution, count, kPolygonsPerPart, [&](std::size_t begin, std::size_t end) {
+  parallel_for(execution, count, kPolygonsPerHemList, [&](std::size_t begin, std::size_t end) {
     const auto hemmer = hemmers.borrow([&] { return std::make_unique<Hemmer>(scenery, mosaic, width, execution); });
     for (std::size_t slot = begin; slot < end; ++slot) {
       const PaintPolygon& polygon = order.polygons[scenery.place(slot)];
       const Outline given(order.corners.data() + polygon.first_corner, polygon.corner_count);
-      hemmer->add_hems(slot, given, lists[begin / kPolygonsPerPart]);
+      hemmer->add_hems(slot, given, lists[begin / kPolygonsPerHemList]);
     }
     report_progress(execution, "hems", double(done += end - begin) / double(count));
   });

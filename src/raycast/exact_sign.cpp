@@ -9,18 +9,18 @@ namespace frontmost::raycast_detail {
 namespace {
 
 /// The sums themselves, as numbers that are never rounded.
-frontmost::ExactVector unrounded(const ExactVector& v) {
-  frontmost::ExactVector sums;
+ExactVector unrounded(const HighLowVector& v) {
+  ExactVector sums;
   for (std::size_t axis = 0; axis < 3; ++axis) sums[axis] = Expansion(v.low[axis]) + Expansion(v.high[axis]);
   return sums;
 }
 
 }  // namespace
 
-ExactVector exact(const glm::vec3& v) { return {{v.x, v.y, v.z}, {}}; }
+HighLowVector high_low(const glm::vec3& v) { return {{v.x, v.y, v.z}, {}}; }
 
-ExactVector exact_difference(const glm::vec3& b, const glm::vec3& a) {
-  ExactVector d;
+HighLowVector high_low_difference(const glm::vec3& b, const glm::vec3& a) {
+  HighLowVector d;
   for (int i = 0; i < 3; ++i) {
     const double to = b[i], from = a[i], difference = to - from, from_to = difference - to;
     d.high[std::size_t(i)] = difference;
@@ -29,7 +29,7 @@ ExactVector exact_difference(const glm::vec3& b, const glm::vec3& a) {
   return d;
 }
 
-int determinant_sign(const ExactVector& a, const ExactVector& b, const ExactVector& c) {
+int determinant_sign(const HighLowVector& a, const HighLowVector& b, const HighLowVector& c) {
   const std::array<double, 3>&x = a.high, &y = b.high, &z = c.high;
   double det = 0, size = 0;
   for (int i = 0; i < 3; ++i) {

@@ -11,7 +11,7 @@ namespace {
 
 bool is_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-glm::dvec3 rounded(const ExactVector& v) { return {v.high[0], v.high[1], v.high[2]}; }
+glm::dvec3 rounded(const HighLowVector& v) { return {v.high[0], v.high[1], v.high[2]}; }
 
 /// Where the plane of corners, which are counted from the origin, is met. What is met lies between the corners along
 /// every axis: of triangles that are slivers, or tiny against how far they are, rounding leaves no more than that. The
@@ -42,9 +42,9 @@ bool is_valid(const Query& q) {
 }
 
 RayHit meet(const Query& q, const std::array<glm::vec3, 3>& corners, PrimitiveId id) {
-  const ExactVector along = q.is_segment ? exact_difference(q.end, q.origin) : exact(q.direction);
-  std::array<ExactVector, 3> c;
-  for (std::size_t k = 0; k < 3; ++k) c[k] = exact_difference(corners[k], q.origin);
+  const HighLowVector along = q.is_segment ? high_low_difference(q.end, q.origin) : high_low(q.direction);
+  std::array<HighLowVector, 3> c;
+  for (std::size_t k = 0; k < 3; ++k) c[k] = high_low_difference(corners[k], q.origin);
   // Which way the line turns about each edge. Seen against the direction, counter-clockwise is negative: front.
   const int u = determinant_sign(along, c[1], c[2]), v = determinant_sign(along, c[2], c[0]),
             w = determinant_sign(along, c[0], c[1]);
@@ -54,8 +54,8 @@ RayHit meet(const Query& q, const std::array<glm::vec3, 3>& corners, PrimitiveId
   // The origin's side of the plane; a surface through it is not met.
   if (determinant_sign(c[0], c[1], c[2]) != facing) return {};
   if (q.is_segment) {
-    std::array<ExactVector, 3> e;
-    for (std::size_t k = 0; k < 3; ++k) e[k] = exact_difference(corners[k], q.end);
+    std::array<HighLowVector, 3> e;
+    for (std::size_t k = 0; k < 3; ++k) e[k] = high_low_difference(corners[k], q.end);
     if (determinant_sign(e[0], e[1], e[2]) != -facing) return {};
   }
   return {id, place_along(q, rounded(along), {rounded(c[0]), rounded(c[1]), rounded(c[2])}), facing < 0};

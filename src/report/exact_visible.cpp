@@ -25,9 +25,9 @@ struct Field {
   Buffer<DepthBounds> bounds;
 };
 
-class Contest {
+class TileContest {
  public:
-  Contest(Field& field, const PixelRect& tile) : field_(field), tile_(tile) {}
+  TileContest(Field& field, const PixelRect& tile) : field_(field), tile_(tile) {}
 
   void enter(const TriangleRecord& r) {
     const View& view = field_.answer.view;
@@ -87,7 +87,7 @@ ExactVisible exact_visible(const Surfaces& surfaces, const View& view, const Exe
               answer,   Buffer<DepthBounds>(count)};
   const TileGrid grid(view);
   submit(surfaces, view, {0, surfaces.primitive_count()}, execution, [&](std::size_t tile, const PlacedPiece& piece) {
-    Contest contest(field, grid.rect(tile));
+    TileContest contest(field, grid.rect(tile));
     for (const std::uint32_t item : piece.in_tile(tile)) contest.enter(piece.triangles.record(item));
   });
   return answer;

@@ -8,11 +8,6 @@
 #include "scene/turn.h"
 
 namespace frontmost {
-namespace {
-
-glm::dvec3 unit(const glm::dvec3& v) { return v / std::sqrt(glm::dot(v, v)); }
-
-}  // namespace
 
 Material paint(std::string name, std::uint32_t srgb, float roughness, float metallic) {
   Material material;

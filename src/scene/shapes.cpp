@@ -9,8 +9,6 @@
 namespace frontmost {
 namespace {
 
-glm::dvec3 unit(const glm::dvec3& v) { return v / std::sqrt(glm::dot(v, v)); }
-
 // The number of grid point (i, j) among the stored points.
 struct GridNumbers {
   explicit GridNumbers(const SurfaceGrid& shape)

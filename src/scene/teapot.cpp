@@ -10,7 +10,7 @@
 namespace frontmost {
 namespace {
 
-constexpr std::size_t kHandle = 24, kSpout = 28;  // first patches; what is turned comes before
+constexpr std::size_t kFirstHandlePatch = 24, kFirstSpoutPatch = 28;  // first patches; what is turned comes before
 
 struct ByCoordinates {
   bool operator()(const glm::vec3& a, const glm::vec3& b) const {
@@ -58,7 +58,7 @@ Mesh teapot(int steps) {
   const int side = steps + 1;
   std::vector<std::uint32_t> corners(std::size_t(side) * std::size_t(side));
   for (std::uint32_t p = 0; p < patches.size(); ++p) {
-    if (p == kHandle || p == kSpout) welder.start_part();
+    if (p == kFirstHandlePatch || p == kFirstSpoutPatch) welder.start_part();
     const auto first_texcoord = std::uint32_t(mesh.texcoords.values.size());
     for (int i = 0; i <= steps; ++i)
       for (int j = 0; j <= steps; ++j) {

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sine and cosine of fractions of a full turn with the same bits on every machine, which no C library promises.
+// Directions and fractions of a full turn with the same bits on every machine, which no C library promises.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
 namespace frontmost {
+
+/// Of length 1, with the same bits on every machine. Precondition: not zero.
+[[nodiscard]] inline glm::dvec3 unit(const glm::dvec3& v) { return v / std::sqrt(glm::dot(v, v)); }
 
 /// The point (cos, sin) of the unit circle at part / whole of a full turn, counter-clockwise from (1, 0), to within
 /// about 2e-16. Exact at quarters of the turn, and exactly symmetric in the eight octants. Precondition: whole > 0.

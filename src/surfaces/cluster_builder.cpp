@@ -21,7 +21,7 @@ namespace {
 constexpr std::uint32_t kRunsPerPart = 1u << 13;
 
 /// Some runs of the spatial order, and the clusters made of them. Their ids are those of the runs, in order.
-struct Part {
+struct ClusterPart {
   std::size_t begin = 0;          // of the runs
   std::vector<Cluster> clusters;  // first_vertex and first_triangle relative to the part
   std::vector<Box> boxes;
@@ -55,7 +55,7 @@ struct Placed {
 /// Fills one part, cluster by cluster.
 class PartBuilder {
  public:
-  PartBuilder(const Source& source, Part& part) : source_(source), part_(part) {}
+  PartBuilder(const Source& source, ClusterPart& part) : source_(source), part_(part) {}
 
   void build(std::size_t begin, std::size_t end) {
     const std::size_t count = 2 * (end - begin);
@@ -209,7 +209,7 @@ class PartBuilder {
   }
 
   const Source& source_;
-  Part& part_;
+  ClusterPart& part_;
   Placed placed_;  ///< of the last triangle
   std::optional<ToWorld> to_world_;
   bool must_check_ = true;  ///< that corners are finite
@@ -230,7 +230,7 @@ void place(const std::vector<T>& part, Buffer<T>& whole, std::size_t at) {
 }
 
 /// The ids of a part's clusters: those of its runs, padded like the triangles.
-void place_ids(const Part& part, const SpatialOrder& order, PrimitiveId* ids) {
+void place_ids(const ClusterPart& part, const SpatialOrder& order, PrimitiveId* ids) {
   const std::uint64_t* next = order.runs.data() + part.begin;
   TriangleRun run{0, 0};
   for (const Cluster& cluster : part.clusters) {
@@ -244,7 +244,7 @@ void place_ids(const Part& part, const SpatialOrder& order, PrimitiveId* ids) {
   }
 }
 
-void gather(ClusterSet& set, std::vector<Part>& parts, const SpatialOrder& order, const Execution& execution) {
+void gather(ClusterSet& set, std::vector<ClusterPart>& parts, const SpatialOrder& order, const Execution& execution) {
   // Where everything goes is known before anything is copied, so that parts are copied at once and in any order.
   std::vector<Place> places(parts.size() + 1);
   for (std::size_t i = 0; i < parts.size(); ++i)
@@ -260,7 +260,7 @@ void gather(ClusterSet& set, std::vector<Part>& parts, const SpatialOrder& order
   parallel_for(execution, parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       // Moved out, so that its memory is given back as soon as it is copied: the set is never there twice as a whole.
-      const Part part = std::move(parts[i]);
+      const ClusterPart part = std::move(parts[i]);
       const Place& at = places[i];
       place(part.x, set.x, at.vertex);
       place(part.y, set.y, at.vertex);
@@ -335,7 +335,7 @@ ClusterSet build_clusters(const Scene& scene, const Execution& execution) {
   report_progress(execution, "surfaces", 0.4);
   const InstanceFinder instances(set.first_primitives);
   const Source source{scene, set.first_primitives, instances, order, set.mirrored, first_cutout};
-  std::vector<Part> parts((order.runs.size() + kRunsPerPart - 1) / kRunsPerPart);
+  std::vector<ClusterPart> parts((order.runs.size() + kRunsPerPart - 1) / kRunsPerPart);
   parallel_for(execution, order.runs.size(), kRunsPerPart, [&](std::size_t begin, std::size_t end) {
     PartBuilder(source, parts[begin / kRunsPerPart]).build(begin, end);
   });
@@ -343,7 +343,7 @@ ClusterSet build_clusters(const Scene& scene, const Execution& execution) {
   // One part after the other: an instance may lie in several, and a union of boxes has no rounding to depend on the
   // order.
   set.instance_bounds.resize(scene.instances.size());
-  for (const Part& part : parts)
+  for (const ClusterPart& part : parts)
     for (const auto& [instance, box] : part.instance_boxes) set.instance_bounds[instance].include(box);
   for (const Box& box : set.instance_bounds) set.bounds.include(box);
   gather(set, parts, order, execution);

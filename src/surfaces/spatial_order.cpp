@@ -28,12 +28,12 @@ namespace {
 constexpr std::uint32_t kItemsPerPart = 1u << 15;
 
 /// Some of one instance's triangles, or of one mesh's vertices. Work is split at fixed numbers, whatever the threads.
-struct Part {
+struct ItemPart {
   std::uint32_t of = 0;
   std::uint32_t begin = 0, end = 0;
 };
 
-void append_parts(std::vector<Part>& parts, std::uint32_t of, std::uint64_t count) {
+void append_parts(std::vector<ItemPart>& parts, std::uint32_t of, std::uint64_t count) {
   for (std::uint64_t begin = 0; begin < count; begin += kItemsPerPart)
     parts.push_back({of, std::uint32_t(begin), std::uint32_t(std::min(begin + kItemsPerPart, count))});
 }
@@ -65,7 +65,7 @@ Box bounds_of(const glm::vec3* positions, std::size_t count) {
 
 /// Bounds of each mesh's finite vertices in its own space.
 std::vector<Box> bounds_of_meshes(const Scene& scene, const Execution& execution) {
-  std::vector<Part> parts;
+  std::vector<ItemPart> parts;
   for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) append_parts(parts, m, scene.meshes[m].positions.size());
   std::vector<Box> boxes(parts.size()), of_mesh(scene.meshes.size());
   parallel_for(execution, parts.size(), 1, [&](std::size_t first, std::size_t last) {
@@ -154,7 +154,7 @@ struct RunCutter {
   int bits;
   Isa isa;
 
-  void cut(const Part& part, PrimitiveId first, PartRuns& runs) const {
+  void cut(const ItemPart& part, PrimitiveId first, PartRuns& runs) const {
     constexpr std::uint32_t kAtOnce = 2048;
     std::array<Cell, kAtOnce> cells;
     runs.packed.reserve((part.end - part.begin) / 2);
@@ -204,7 +204,7 @@ SpatialOrder spatial_order(const Scene& scene, const std::vector<PrimitiveId>& f
                            const Execution& execution) {
   const int bits = bits_per_axis(first_primitives.back());
   const Grid grid(bounds_of_instances(scene, execution), bits);
-  std::vector<Part> parts;
+  std::vector<ItemPart> parts;
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
     append_parts(parts, i, scene.meshes[scene.instances[i].mesh].triangles.size());
   std::vector<PartRuns> runs(parts.size());

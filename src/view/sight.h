@@ -12,6 +12,7 @@ struct Signed {
   double value = 0;
   int sign = 0;
 };
+[[nodiscard]] inline Signed with_sign_of_value(double value) { return {value, value > 0 ? 1 : value < 0 ? -1 : 0}; }
 
 /// Planes that contain lines of sight, and where points are on the screen.
 class Sight {

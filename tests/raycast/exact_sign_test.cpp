@@ -10,8 +10,8 @@ namespace frontmost::test {
 namespace {
 
 using raycast_detail::determinant_sign;
-using raycast_detail::exact;
-using raycast_detail::exact_difference;
+using raycast_detail::high_low;
+using raycast_detail::high_low_difference;
 
 __extension__ using Int128 = __int128;
 
@@ -42,8 +42,9 @@ TEST(ExactSign, EqualsWholeNumbers) {
     p[2] = seed % 2 ? whole_point(random, reach) : glm::floor((p[0] + p[1]) * 0.5f);
     const Int128 expected = determinant(o, p);
     zeros += expected == 0;
-    ASSERT_EQ(determinant_sign(exact_difference(p[0], o), exact_difference(p[1], o), exact_difference(p[2], o)),
-              sign_of(expected))
+    ASSERT_EQ(
+        determinant_sign(high_low_difference(p[0], o), high_low_difference(p[1], o), high_low_difference(p[2], o)),
+        sign_of(expected))
         << "seed " << seed;
   }
   EXPECT_GT(zeros, 1000u);
@@ -51,16 +52,16 @@ TEST(ExactSign, EqualsWholeNumbers) {
 
 TEST(ExactSign, SeesTheLastBit) {
   const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-  EXPECT_EQ(determinant_sign(exact(x), exact(y), exact(z)), 1);
-  EXPECT_EQ(determinant_sign(exact(y), exact(x), exact(z)), -1);
-  EXPECT_EQ(determinant_sign(exact(x), exact(y), exact(glm::vec3(1, 1, 0))), 0);
+  EXPECT_EQ(determinant_sign(high_low(x), high_low(y), high_low(z)), 1);
+  EXPECT_EQ(determinant_sign(high_low(y), high_low(x), high_low(z)), -1);
+  EXPECT_EQ(determinant_sign(high_low(x), high_low(y), high_low(glm::vec3(1, 1, 0))), 0);
   // Denormals: products far below what floats hold.
   const float tiny = 1e-40f;
-  EXPECT_EQ(determinant_sign(exact(tiny * x), exact(tiny * y), exact(-tiny * z)), -1);
+  EXPECT_EQ(determinant_sign(high_low(tiny * x), high_low(tiny * y), high_low(-tiny * z)), -1);
   // Seen from 1e30 to the left, three corners in the plane x = 0; one of them 1e-30 out of it makes no difference to
   // a double: the difference is 1e30 either way. Three columns of them are dependent but for that.
   const glm::vec3 eye(-1e30f, 0, 0);
-  const auto from_eye = [&](const glm::vec3& p) { return exact_difference(p, eye); };
+  const auto from_eye = [&](const glm::vec3& p) { return high_low_difference(p, eye); };
   EXPECT_EQ(determinant_sign(from_eye({0, 1, 0}), from_eye({0, 1, 1}), from_eye({0, 1, 2})), 0);
   EXPECT_EQ(determinant_sign(from_eye({0, 1, 0}), from_eye({1e-30f, 1, 1}), from_eye({0, 1, 2})), -1);
   EXPECT_EQ(determinant_sign(from_eye({0, 1, 0}), from_eye({-1e-30f, 1, 1}), from_eye({0, 1, 2})), 1);

@@ -18,7 +18,7 @@ constexpr std::size_t prefix_size = 10;  // magic, version, length of the dictio
 // What NumPy itself aligns to since version 1.14, so that the numbers can be mapped where they lie.
 constexpr std::size_t alignment = 64;
 
-[[noreturn]] void fail(const std::string& name, const std::string& reason) {
+[[noreturn]] void fail_npy(const std::string& name, const std::string& reason) {
   throw Error(ErrorCode::file_malformed, name + ": NPY: " + reason);
 }
 
@@ -36,7 +36,7 @@ struct Dictionary {
 
 Dictionary dictionary(std::span<const std::byte> bytes, const std::string& name) {
   const auto byte = [&](std::size_t i) { return std::to_integer<std::size_t>(bytes[i]); };
-  if (bytes.size() < prefix_size + 2) fail(name, "the header is cut short");
+  if (bytes.size() < prefix_size + 2) fail_npy(name, "the header is cut short");
   const std::size_t version = byte(6);
   // Version 3 differs from 2 in that names may be UTF-8; there are no names in what is read here.
   if (version < 1 || version > 3)
@@ -45,7 +45,7 @@ Dictionary dictionary(std::span<const std::byte> bytes, const std::string& name)
   const std::size_t start = version == 1 ? prefix_size : prefix_size + 2;
   std::size_t length = byte(8) + (byte(9) << 8);
   if (version > 1) length += (byte(10) << 16) + (byte(11) << 24);
-  if (length > bytes.size() - start) fail(name, "the header is cut short");
+  if (length > bytes.size() - start) fail_npy(name, "the header is cut short");
   return {{reinterpret_cast<const char*>(bytes.data()) + start, length}, start + length};
 }
 
@@ -55,26 +55,26 @@ std::string_view value_of(std::string_view text, std::string_view key, const std
   const std::size_t place = text.find(key);
   const std::size_t colon = place == text.npos ? text.npos : text.find(':', place);
   const std::size_t value = colon == text.npos ? text.npos : text.find_first_not_of(' ', colon + 1);
-  if (value == text.npos) fail(name, "the header has no " + std::string(key));
+  if (value == text.npos) fail_npy(name, "the header has no " + std::string(key));
   return text.substr(value);
 }
 
 std::vector<std::size_t> shape(std::string_view text, const std::string& name) {
   const std::size_t end = text.find(')');
-  if (text[0] != '(' || end == text.npos) fail(name, "the shape is not a tuple");
+  if (text[0] != '(' || end == text.npos) fail_npy(name, "the shape is not a tuple");
   std::vector<std::size_t> sizes;
   const char* place = text.data() + 1;
   const char* const stop = text.data() + end;
   while (place < stop) {
     std::uint32_t size = 0;
     const auto [rest, error] = std::from_chars(place, stop, size);
-    if (error != std::errc() || sizes.size() == 3) fail(name, "the shape is not (height, width[, channels])");
+    if (error != std::errc() || sizes.size() == 3) fail_npy(name, "the shape is not (height, width[, channels])");
     sizes.push_back(size);
     place = rest;
     // A tuple of one has a comma behind it, and so may others.
     while (place < stop && (*place == ',' || *place == ' ')) ++place;
   }
-  if (sizes.size() < 2) fail(name, "the shape is not (height, width[, channels])");
+  if (sizes.size() < 2) fail_npy(name, "the shape is not (height, width[, channels])");
   return sizes;
 }
 

@@ -11,7 +11,7 @@
 namespace frontmost::detail {
 namespace {
 
-[[noreturn]] void fail(const std::string& name, const std::string& reason) {
+[[noreturn]] void fail_pfm(const std::string& name, const std::string& reason) {
   throw Error(ErrorCode::file_malformed, name + ": PFM: " + reason);
 }
 
@@ -26,7 +26,7 @@ class Header {
     const auto* text = reinterpret_cast<const char*>(bytes_.data());
     std::size_t end = 0;
     while (end < bytes_.size() && end < longest && !std::isspace(static_cast<unsigned char>(text[end]))) ++end;
-    if (end == 0 || end == bytes_.size() || end == longest) fail(name_, "the header is cut short");
+    if (end == 0 || end == bytes_.size() || end == longest) fail_pfm(name_, "the header is cut short");
     bytes_ = bytes_.subspan(end + 1);
     return {text, end};
   }
@@ -35,7 +35,7 @@ class Header {
     const std::string_view text = word();
     std::uint32_t value = 0;
     const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || rest != text.data() + text.size()) fail(name_, "a size is not a number");
+    if (error != std::errc() || rest != text.data() + text.size()) fail_pfm(name_, "a size is not a number");
     return value;
   }
 
@@ -68,13 +68,13 @@ Image load_pfm(std::span<const std::byte> bytes, const std::string& name) {
   RawLayout layout;
   // Others have made more of these, as PF4 with four channels: to call one of them Pf would misread it.
   const std::string_view kind = header.word();
-  if (kind != "PF" && kind != "Pf") fail(name, "neither PF nor Pf");
+  if (kind != "PF" && kind != "Pf") fail_pfm(name, "neither PF nor Pf");
   layout.channels = kind == "PF" ? 3 : 1;
   layout.width = header.size();
   layout.height = header.size();
   const std::string_view scale = header.word();
   // 0 would leave the byte order open, as 0 and -0 are one number.
-  if (scale.find_first_of("123456789") == std::string_view::npos) fail(name, "the scale is not a number");
+  if (scale.find_first_of("123456789") == std::string_view::npos) fail_pfm(name, "the scale is not a number");
   layout.big_endian = scale[0] != '-';  // its size is a unit that nobody agrees on, and is left aside
   layout.bottom_row_first = true;
   return read_raw(header.rest(), layout, name + ": PFM");

@@ -11,7 +11,7 @@
 namespace frontmost {
 namespace {
 
-[[noreturn]] void refuse(const ModelSource& source, const std::string& what) {
+[[noreturn]] void refuse_stream(const ModelSource& source, const std::string& what) {
   throw Error(ErrorCode::unsupported, source.name() + ": " + what + " cannot be streamed; binary STL and PLY can");
 }
 
@@ -19,13 +19,13 @@ std::unique_ptr<ModelStream> open(ModelFormat format, StreamStart start, const M
   switch (format) {
     case ModelFormat::stl:
       if (known_stl_encoding(start.start, start.greatest_size(), source) == StlEncoding::ascii)
-        refuse(source, "text STL");
+        refuse_stream(source, "text STL");
       return open_stl_stream(std::move(start), source);
     case ModelFormat::ply: return open_ply_stream(std::move(start), source);
-    case ModelFormat::obj: refuse(source, "OBJ");
-    case ModelFormat::off: refuse(source, "OFF");
-    case ModelFormat::gltf: refuse(source, "glTF");
-    case ModelFormat::threemf: refuse(source, "3MF");
+    case ModelFormat::obj: refuse_stream(source, "OBJ");
+    case ModelFormat::off: refuse_stream(source, "OFF");
+    case ModelFormat::gltf: refuse_stream(source, "glTF");
+    case ModelFormat::threemf: refuse_stream(source, "3MF");
   }
   throw Error(ErrorCode::bad_argument, source.name() + ": not a model format");
 }
@@ -65,7 +65,7 @@ void StreamStart::extend(std::size_t size) {
 std::unique_ptr<ModelStream> open_model_stream(const std::string& path, const LoadOptions& options,
                                                const Execution& execution) {
   const std::string name = path == "-" ? "standard input" : path;
-  if (path.starts_with("builtin:")) refuse(ModelSource(name, execution), "a built-in scene");
+  if (path.starts_with("builtin:")) refuse_stream(ModelSource(name, execution), "a built-in scene");
   const auto opened = std::make_shared<OpenedFiles>(path);
   StreamStart start{std::make_unique<ByteStream>(path, name), {}, path, opened};
   constexpr std::size_t enough_to_know = 1024;

@@ -13,7 +13,7 @@
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr std::size_t kPerPart = 4096, kGroupsPerPart = 256;
+constexpr std::size_t kPerPart = 4096, kBoxGroupsPerPart = 256;
 constexpr int kBitsAnAxis = 9, kKeyBits = 3 + 3 * kBitsAnAxis;
 constexpr int kExponents = 160;  // more than floats have
 
@@ -130,7 +130,7 @@ BoxTree::BoxTree(const WeldedMesh& mesh, const Features& features, const Executi
   const float scale = curve.scale();
   const bool knows_spread = !features.is_spread.empty();
   levels_.emplace_back(group_count());
-  parallel_for(execution, group_count(), kGroupsPerPart, [&](std::size_t begin, std::size_t end) {
+  parallel_for(execution, group_count(), kBoxGroupsPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t group = begin; group < end; ++group) {
       Box box;
       for (std::size_t i = group * kSpaceLanes; i < (group + 1) * kSpaceLanes; ++i) {

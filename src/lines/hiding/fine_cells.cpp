@@ -11,7 +11,7 @@ namespace frontmost::lines_detail {
 namespace {
 
 /// Cells with so few occluders, or so few pairs of them and lines, are not worth dividing.
-constexpr std::size_t kFew = 64, kFewPairs = 1 << 14;
+constexpr std::size_t kFew = 64, kFewCellPairs = 1 << 14;
 /// The smallest part is 2^-14 of a cell: still very much larger than kCellPad.
 constexpr int kDeepest = 7;
 constexpr std::size_t kEntriesPerPoll = 1 << 13;
@@ -26,7 +26,7 @@ class CellDivider {
     check_cancelled(execution_);
     fine.cells[cell].corner = {crowd.square.x, crowd.square.y};
     std::sort(crowd.entries.begin(), crowd.entries.end());
-    if (crowd.entries.size() > kFew && pairs(crowd) > kFewPairs &&
+    if (crowd.entries.size() > kFew && pairs(crowd) > kFewCellPairs &&
         (divide_by_sectors(grid_, crowd, cell, fine) || divide_by_parts(cell, crowd, depth) ||
          divide_by_strips(grid_, crowd, cell, fine)))
       return;

@@ -15,8 +15,6 @@ constexpr std::size_t kMostAtOnce = 64, kBlock = 16;
 /// Cells: less than what sides leave open, and more than the rounding of a place.
 constexpr double kEndPad = 5e-6;
 
-Signed with_sign_of_value(double value) { return {value, value > 0 ? 1 : value < 0 ? -1 : 0}; }
-
 /// A float not nearer, whatever rounding does.
 float wide_low(double value) { return float(value - 1e-6 * std::abs(value)); }
 float wide_high(double value) { return -wide_low(-value); }

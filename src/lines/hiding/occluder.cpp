@@ -10,8 +10,6 @@
 namespace frontmost::lines_detail {
 namespace {
 
-Signed with_sign_of_value(double value) { return {value, value > 0 ? 1 : value < 0 ? -1 : 0}; }
-
 Interval overlap(const Interval& a, const Interval& b) { return {std::max(a.begin, b.begin), std::min(a.end, b.end)}; }
 
 Signed times(const Signed& value, int sign) { return {value.value * sign, value.sign * sign}; }

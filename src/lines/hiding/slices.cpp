@@ -10,7 +10,7 @@
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr std::size_t kFewOccluders = 32, kFewLines = 4, kFewPairs = 1 << 10;
+constexpr std::size_t kFewOccluders = 32, kFewLines = 4, kFewSlicePairs = 1 << 10;
 /// Cells from the apex to the points that stand for a direction: the farther, the less CellDepth's margins matter.
 constexpr double kAway = 16;
 
@@ -49,7 +49,7 @@ class Slicer {
 
   void divide(Slice slice) {
     if (slice.occluders.size() > kFewOccluders && slice.lines.size() > kFewLines &&
-        slice.occluders.size() * slice.lines.size() > kFewPairs) {
+        slice.occluders.size() * slice.lines.size() > kFewSlicePairs) {
       const Range &below = slice.lines[slice.lines.size() / 2 - 1], &above = slice.lines[slice.lines.size() / 2];
       const double middle = (below.low + below.high + above.low + above.high) / 4;
       if (middle > slice.range.low && middle < slice.range.high) {

@@ -14,7 +14,7 @@
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr std::size_t kTrianglesPerPoll = 1 << 18;
+constexpr std::size_t kSeamsPerPoll = 1 << 18;
 /// As many triangles are added to those that there are, at most, and some: every seam that lies on a plane or a surface
 /// stays far below, but sides that overlap each other along a line would give as many as the square.
 constexpr std::size_t kMostAdded = 4, kAlwaysAdded = 1 << 16;
@@ -33,7 +33,7 @@ std::vector<std::uint32_t> fillers_of(const WeldedMesh& mesh, const Buffer<std::
                                       const Execution& execution) {
   std::vector<std::uint32_t> fillers;
   for (std::uint32_t i = 0; i < facing.size(); ++i) {
-    if (i % kTrianglesPerPoll == 0) check_cancelled(execution);
+    if (i % kSeamsPerPoll == 0) check_cancelled(execution);
     // What has no area is seen from its edge, wherever the eye is.
     if (facing[i] == 0 && is_straight(mesh.positions, mesh.triangles[i])) fillers.push_back(i);
   }
@@ -170,7 +170,7 @@ Seamed seamed(const Seams& seams, const glm::uvec3& t) {
 std::size_t leave_crowded(Seams& seams, const WeldedMesh& mesh, const Execution& execution) {
   std::vector<std::size_t> added(seams.count(), 0);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (i % kTrianglesPerPoll == 0) check_cancelled(execution);
+    if (i % kSeamsPerPoll == 0) check_cancelled(execution);
     const glm::uvec3& t = mesh.triangles[i];
     const Seamed triangle = seamed(seams, t);
     for (int k = 0; k < 3; ++k) {
@@ -252,7 +252,7 @@ bool close_seams(WeldedMesh& mesh, const Buffer<std::int8_t>& facing, const Exec
   std::size_t filled = 0;
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
     split(seams, seamed(seams, mesh.triangles[i]), [&](const glm::uvec3& corners) {
-      if (filled % kTrianglesPerPoll == 0) check_cancelled(execution);
+      if (filled % kSeamsPerPoll == 0) check_cancelled(execution);
       triangles[filled] = corners;
       ids[filled++] = mesh.ids[i];
     });

@@ -10,15 +10,15 @@
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr std::size_t kPerPart = 4096;
+constexpr std::size_t kSharpPerPart = 4096;
 /// More edges at one vertex belong to no circle, and take the square of their number.
 constexpr std::size_t kMostAtVertex = 16;
 
 std::vector<SharpEdge> sharp_edges(const SmoothMesh& mesh, const Execution& execution) {
   const std::size_t triangles = mesh.mesh.triangles.size();
-  std::vector<std::vector<SharpEdge>> lists((triangles + kPerPart - 1) / kPerPart);
-  parallel_for(execution, triangles, kPerPart, [&](std::size_t begin, std::size_t end) {
-    std::vector<SharpEdge>& list = lists[begin / kPerPart];
+  std::vector<std::vector<SharpEdge>> lists((triangles + kSharpPerPart - 1) / kSharpPerPart);
+  parallel_for(execution, triangles, kSharpPerPart, [&](std::size_t begin, std::size_t end) {
+    std::vector<SharpEdge>& list = lists[begin / kSharpPerPart];
     for (auto t = std::uint32_t(begin); t < end; ++t)
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t other = mesh.across[t][k];

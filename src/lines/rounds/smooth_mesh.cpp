@@ -12,12 +12,12 @@
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr std::size_t kPerPart = 4096;
+constexpr std::size_t kCornersPerPart = 4096;
 constexpr double kSixDigits = 2e-6;  // of the largest coordinate
 
 Buffer<glm::dvec3> normals_of(const WeldedMesh& mesh, const Execution& execution) {
   Buffer<glm::dvec3> normals(mesh.triangles.size());
-  parallel_for(execution, normals.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
+  parallel_for(execution, normals.size(), kCornersPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const glm::dvec3 normal = normal_of(mesh, std::uint32_t(i));
       const double length = glm::length(normal);
@@ -80,7 +80,7 @@ SmoothMesh smooth_mesh(const Surfaces& surfaces, const Execution& execution) {
   result.normals = normals_of(mesh, execution);
   result.across = Buffer<glm::uvec3>(mesh.triangles.size());
   const CornerTable table(mesh, execution);
-  parallel_for(execution, mesh.positions.size(), kPerPart, [&](std::size_t begin, std::size_t end) {
+  parallel_for(execution, mesh.positions.size(), kCornersPerPart, [&](std::size_t begin, std::size_t end) {
     std::vector<EdgeSide> sides;
     for (std::size_t v = begin; v < end; ++v) {
       list_sides(mesh, table, std::uint32_t(v), sides);

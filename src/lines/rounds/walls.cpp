@@ -15,12 +15,12 @@
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr std::size_t kPerPart = 4096;
+constexpr std::size_t kSeedsPerPart = 4096;
 constexpr double kFlat = 0.9999999;  // cosine of 0.026 degrees: the two halves of a plane
 constexpr double kUpright = 0.01;    // the cosine of normals with the axis, of neighbours of two
 constexpr double kRoughlyUpright = 0.1;
 constexpr double kFacesOut = 0.9;  // the cosine of normals with the direction from the axis
-constexpr double kSmallestRadius = 50;
+constexpr double kSmallestTube = 50;
 constexpr std::size_t kFewestTriangles = 8;
 
 /// Two triangles that might lie about the axis along their common side.
@@ -108,7 +108,7 @@ class WallGrower {
       if (const glm::dvec3 at = mesh_.corner(other, k); at != from && at != to) right = at;
     const glm::dvec3 points[] = {from, left, right};
     const auto tube = tube_through(points, glm::normalize(to - from));
-    if (!tube || !(tube->radius >= kSmallestRadius * mesh_.noise)) return false;
+    if (!tube || !(tube->radius >= kSmallestTube * mesh_.noise)) return false;
     tube_ = *tube;
     const double step = std::acos(std::min(1.0, glm::dot(mesh_.normals[seed.triangle], mesh_.normals[other])));
     slack_ = std::max(mesh_.noise, sagitta(tube_.radius, step) / 4);
@@ -204,12 +204,12 @@ std::vector<FoundWall> find_walls(const SmoothMesh& mesh, const std::vector<Foun
     for (const std::uint32_t triangle : circle.triangles) keep(grower.grow(circle.circle, step, triangle));
   }
   const std::size_t count = mesh.mesh.triangles.size();
-  std::vector<std::vector<Seed>> lists((count + kPerPart - 1) / kPerPart);
-  parallel_for(execution, count, kPerPart, [&](std::size_t begin, std::size_t end) {
+  std::vector<std::vector<Seed>> lists((count + kSeedsPerPart - 1) / kSeedsPerPart);
+  parallel_for(execution, count, kSeedsPerPart, [&](std::size_t begin, std::size_t end) {
     const Seeds seeds(mesh);
     for (auto t = std::uint32_t(begin); t < end; ++t)
       for (int k = 0; k < 3; ++k)
-        if (const Seed seed{t, k}; seeds.is_one(seed)) lists[begin / kPerPart].push_back(seed);
+        if (const Seed seed{t, k}; seeds.is_one(seed)) lists[begin / kSeedsPerPart].push_back(seed);
   });
   for (const std::vector<Seed>& list : lists) {
     check_cancelled(execution);

@@ -15,7 +15,7 @@
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr std::uint32_t none = no_index;
+constexpr std::uint32_t no_end = no_index;
 
 /// Number 2 i is the beginning of chain i, 2 i + 1 its end.
 glm::dvec2 place(const std::vector<Chain>& chains, std::uint32_t number) {
@@ -48,7 +48,7 @@ class EndTree {
     const auto at = std::find_if(ends_.begin() + leaf.begin, ends_.begin() + leaf.end,
                                  [&](const End& end) { return end.number == number; });
     std::swap(*at, ends_[--leaf.end]);
-    leaf.lowest = none;
+    leaf.lowest = no_end;
     for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) leaf.lowest = std::min(leaf.lowest, ends_[i].number);
     for (; node > 0; node = (node - 1) / 2) {
       const std::size_t parent = (node - 1) / 2;
@@ -66,17 +66,17 @@ class EndTree {
   struct Node {
     glm::dvec2 low{0}, high{0};
     std::uint32_t begin = 0, end = 0;  ///< of the ends that are left; of leaves alone
-    std::uint32_t lowest = none;
+    std::uint32_t lowest = no_end;
     bool is_leaf = true;
   };
   struct Found {
     double distance = std::numeric_limits<double>::infinity();
-    std::uint32_t number = none;
+    std::uint32_t number = no_end;
   };
 
   void build(std::size_t number, std::size_t begin, std::size_t end) {
     Node& node = nodes_[number];
-    node = {ends_[begin].at, ends_[begin].at, std::uint32_t(begin), std::uint32_t(end), none, end - begin <= few};
+    node = {ends_[begin].at, ends_[begin].at, std::uint32_t(begin), std::uint32_t(end), no_end, end - begin <= few};
     for (std::size_t i = begin; i < end; ++i) {
       node.low = glm::min(node.low, ends_[i].at);
       node.high = glm::max(node.high, ends_[i].at);
@@ -113,7 +113,7 @@ class EndTree {
     const int first = std::tie(distances[1], nodes_[below[1]].lowest) < std::tie(distances[0], nodes_[below[0]].lowest);
     for (const int i : {first, 1 - first}) {
       const std::uint32_t lowest = nodes_[below[i]].lowest;
-      if (lowest != none && std::tie(distances[i], lowest) < std::tie(best.distance, best.number))
+      if (lowest != no_end && std::tie(distances[i], lowest) < std::tie(best.distance, best.number))
         visit(below[i], from, best);
     }
   }
@@ -134,7 +134,7 @@ void reverse(Chain& chain) {
   for (double& bulge : chain.bulges) bulge = -bulge;
 }
 
-/// Goes on with `chain` where it touches the last one and none of the two is closed.
+/// Goes on with `chain` where it touches the last one and no_end of the two is closed.
 void draw(Chain&& chain, double touching, std::size_t first, std::vector<Chain>& drawn) {
   if (drawn.size() > first && !drawn.back().is_closed && !chain.is_closed &&
       glm::distance(drawn.back().points.back(), chain.points.front()) <= touching) {

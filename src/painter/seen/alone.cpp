@@ -11,23 +11,20 @@
 namespace frontmost::painter_detail {
 namespace {
 
-constexpr double kThin = OutlineCutter::thin;
 /// With more open sides in all of them it would take longer than it spares.
 constexpr double kMostOpen = 0.3;
-
-double turn(const glm::dvec2& way, const glm::dvec2& at) { return way.x * at.y - way.y * at.x; }
 
 /// How a way from a to b lies beside an outline.
 enum class Beside : std::uint8_t { apart, touching, crossing };
 
-/// By lines along the sides and the way: apart where one keeps them more than kThin away from each other.
+/// By lines along the sides and the way: apart where one keeps them more than OutlineCutter::thin away from each other.
 Beside beside(Outline outline, const glm::dvec2& a, const glm::dvec2& b) {
   const glm::dvec2 across = b - a;
   double least = std::numeric_limits<double>::infinity(), greatest = -least;
   Beside found = Beside::crossing;
   const auto take = [&](double turn, const glm::dvec2& way) {
     if (turn < 0) return;
-    const bool is_far = turn * turn > kThin * kThin * glm::dot(way, way);
+    const bool is_far = turn * turn > OutlineCutter::thin * OutlineCutter::thin * glm::dot(way, way);
     found = std::min(found, is_far ? Beside::apart : Beside::touching);
   };
   for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -46,7 +43,7 @@ bool is_near(const glm::dvec2& at, const glm::dvec2& a, const glm::dvec2& b) {
   const double length = glm::dot(way, way);
   const double t = length > 0 ? std::clamp(glm::dot(from, way) / length, 0.0, 1.0) : 0;
   const glm::dvec2 aside = from - way * t;
-  return glm::dot(aside, aside) <= kThin * kThin;
+  return glm::dot(aside, aside) <= OutlineCutter::thin * OutlineCutter::thin;
 }
 
 class Finder {
@@ -111,12 +108,14 @@ class Finder {
   }
 
   void mark_near(const OpenSide& side) {
-    const glm::dvec2 low = glm::min(side.from, side.to) - 2 * kThin, high = glm::max(side.from, side.to) + 2 * kThin;
+    const glm::dvec2 low = glm::min(side.from, side.to) - 2 * OutlineCutter::thin,
+                     high = glm::max(side.from, side.to) + 2 * OutlineCutter::thin;
     const PieceGrid& grid = scenery_.grid();
     const PieceGrid::Range all = grid.range({glm::vec2(low), glm::vec2(high), 0, 0});
     for (int y = all.first_y; y <= all.last_y; ++y) {
       const PieceGrid::Box row = grid.box(all.first_x, y);
-      const auto [row_low, row_high] = part_of(side, row.low.y - 2 * kThin, row.high.y + 2 * kThin);
+      const auto [row_low, row_high] =
+          part_of(side, row.low.y - 2 * OutlineCutter::thin, row.high.y + 2 * OutlineCutter::thin);
       const PieceGrid::Range cells = grid.range({{float(row_low), 0}, {float(row_high), 0}, 0, 0});
       for (int x = cells.first_x; x <= cells.last_x; ++x) mark_near(side, low, high, scenery_.cell(x, y));
     }
@@ -132,8 +131,11 @@ class Finder {
       const double t = way.y == 0 ? 0 : std::clamp((y - side.from.y) / way.y, 0.0, 1.0);
       return side.from.x + t * way.x;
     };
-    if (way.y == 0) return {std::min(side.from.x, side.to.x) - 2 * kThin, std::max(side.from.x, side.to.x) + 2 * kThin};
-    return {std::min(at(low), at(high)) - 2 * kThin, std::max(at(low), at(high)) + 2 * kThin};
+    if (way.y == 0)
+      return {std::min(side.from.x, side.to.x) - 2 * OutlineCutter::thin,
+              std::max(side.from.x, side.to.x) + 2 * OutlineCutter::thin};
+    return {std::min(at(low), at(high)) - 2 * OutlineCutter::thin,
+            std::max(at(low), at(high)) + 2 * OutlineCutter::thin};
   }
 
   void mark_near(const OpenSide& side, const glm::dvec2& low, const glm::dvec2& high,

@@ -8,8 +8,6 @@ namespace {
 
 constexpr double kThin = OutlineCutter::thin;
 
-double turn(const glm::dvec2& way, const glm::dvec2& at) { return way.x * at.y - way.y * at.x; }
-
 }  // namespace
 
 void SpreadOutline::set(Outline outline) {

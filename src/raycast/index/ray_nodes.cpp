@@ -32,8 +32,6 @@ struct Range {
 LeafBox as_leaf_box(const Box& box, std::uint32_t leaf) {
   return {{box.low.x, box.low.y, box.low.z}, leaf, {box.high.x, box.high.y, box.high.z}, 0};
 }
-Box as_box(const LeafBox& b) { return {{b.low[0], b.low[1], b.low[2]}, {b.high[0], b.high[1], b.high[2]}}; }
-
 /// Halves first: the sum of two large floats can overflow.
 glm::vec3 centre_of(const LeafBox& b) {
   return {0.5f * b.low[0] + 0.5f * b.high[0], 0.5f * b.low[1] + 0.5f * b.high[1], 0.5f * b.low[2] + 0.5f * b.high[2]};

@@ -89,6 +89,9 @@ struct LeafBox {
   float high[3];
   std::uint32_t unused;
 };
+[[nodiscard]] inline Box as_box(const LeafBox& b) {
+  return {{b.low[0], b.low[1], b.low[2]}, {b.high[0], b.high[1], b.high[2]}};
+}
 
 /// Fills tree.leaves in the surfaces' spatial order.
 void fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execution);

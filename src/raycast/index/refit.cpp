@@ -11,12 +11,12 @@
 namespace frontmost {
 namespace {
 
-constexpr std::size_t kLeavesPerPart = 512, kClustersPerPart = 64;
+constexpr std::size_t kRefitLeavesPerPart = 512, kRefitClustersPerPart = 64;
 
 /// Where the triangles of a tree are, by id: leaf * 16 + lane, or no_index.
 Buffer<std::uint32_t> places_of(const RayTree& tree, std::size_t id_count, const Execution& execution) {
   Buffer<std::uint32_t> places(id_count, no_index);
-  parallel_for(execution, tree.leaves.size(), kLeavesPerPart, [&](std::size_t begin, std::size_t end) {
+  parallel_for(execution, tree.leaves.size(), kRefitLeavesPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin * kRayLanes; i < end * kRayLanes; ++i) {
       const PrimitiveId id = tree.leaves[i / kRayLanes].id[i % kRayLanes];
       if (id < id_count) places[id] = std::uint32_t(i);  // no_primitive is not
@@ -51,8 +51,6 @@ Box box_of(const RayNode& node) {
   return box;
 }
 
-Box as_box(const LeafBox& b) { return {{b.low[0], b.low[1], b.low[2]}, {b.high[0], b.high[1], b.high[2]}}; }
-
 /// Children come after their parents.
 void fit_nodes(const std::vector<LeafBox>& boxes, RayTree& tree) {
   const auto box_of_child = [&](std::uint32_t child) {
@@ -82,7 +80,7 @@ bool refit_tree(const Surfaces& surfaces, RayTree& tree, const Execution& execut
   tree.cutouts = set.cutouts;
   const Buffer<std::uint32_t> places = places_of(tree, surfaces.primitive_count(), execution);
   std::atomic<std::size_t> moved{0};
-  parallel_for(execution, set.clusters.size(), kClustersPerPart, [&](std::size_t begin, std::size_t end) {
+  parallel_for(execution, set.clusters.size(), kRefitClustersPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) moved += move_triangles(set, set.clusters[c], places, tree);
   });
   // Too many where one has no place, too few where one cannot be met any more.
@@ -92,7 +90,7 @@ bool refit_tree(const Surfaces& surfaces, RayTree& tree, const Execution& execut
     return true;
   }
   std::vector<LeafBox> boxes(tree.leaves.size());
-  parallel_for(execution, tree.leaves.size(), kLeavesPerPart, [&](std::size_t begin, std::size_t end) {
+  parallel_for(execution, tree.leaves.size(), kRefitLeavesPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) boxes[i] = box_of(tree.leaves[i], std::uint32_t(i));
   });
   fit_nodes(boxes, tree);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kUnits = 4096;  ///< of a pixel
 /// Units that a corner may lie beside a side that it is on: both were rounded.
-constexpr double kOnSide = 1.5;
+constexpr double kBesideSide = 1.5;
 
 glm::dvec2 pixels(const glm::i64vec2& p) { return glm::dvec2(p) / kUnits; }
 
@@ -79,7 +79,8 @@ void SideNet::find_between(const Point& from, const Point& to) {
     for (; at != last && double(at->x) <= greatest + 2; ++at) {
       const glm::dvec2 p(*at - from);
       const double along = glm::dot(p, way) / length;
-      if (along > kOnSide && along < length - kOnSide && std::abs(way.x * p.y - way.y * p.x) <= kOnSide * length)
+      if (along > kBesideSide && along < length - kBesideSide &&
+          std::abs(way.x * p.y - way.y * p.x) <= kBesideSide * length)
         between_.push_back({along, std::uint32_t(at - points_.begin())});
     }
   }

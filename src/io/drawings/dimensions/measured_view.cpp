@@ -9,11 +9,11 @@
 namespace frontmost::detail {
 namespace {
 
-constexpr double square = 2e-3;           // sine: as centre lines have it
-constexpr double least_drawn = 0.2;       // likewise
-constexpr double nearly_whole = 6.2;      // radians
-constexpr double widest_sagitta = 0.016;  // of the radius: of sides of 20 degrees
-constexpr double same_place = 0.02;       // millimetres of paper
+constexpr double square = 2e-3;               // sine: as centre lines have it
+constexpr double least_drawn = 0.2;           // likewise
+constexpr double nearly_whole = 6.2;          // radians
+constexpr double widest_sagitta = 0.016;      // of the radius: of sides of 20 degrees
+constexpr double same_place_on_paper = 0.02;  // millimetres of paper
 
 }  // namespace
 
@@ -55,8 +55,10 @@ Extent MeasuredView::extent(int axis) const {
     const double reach = round.radius * millimetres_ * std::sqrt(std::max(0.0, 1 - along * along));
     const double from = on_page(round.from)[axis], to = on_page(round.to)[axis];
     const double begin = std::min(from, to) - reach, end = std::max(from, to) + reach;
-    const bool is_low = begin <= box_.low[axis] + same_place && begin >= box_.low[axis] - slack - same_place;
-    const bool is_high = end >= box_.high[axis] - same_place && end <= box_.high[axis] + slack + same_place;
+    const bool is_low =
+        begin <= box_.low[axis] + same_place_on_paper && begin >= box_.low[axis] - slack - same_place_on_paper;
+    const bool is_high =
+        end >= box_.high[axis] - same_place_on_paper && end <= box_.high[axis] + slack + same_place_on_paper;
     if (is_low) low = std::min(low, begin);
     if (is_high) high = std::max(high, end);
     const bool is_larger = all.diameter == nullptr || round.radius > all.diameter->radius;
@@ -69,14 +71,14 @@ Extent MeasuredView::extent(int axis) const {
 }
 
 double MeasuredView::foot_of_end(int axis, double end) const {
-  const double slack = same_place + widest_sagitta * (box_.high[axis] - box_.low[axis]) / 2;
+  const double slack = same_place_on_paper + widest_sagitta * (box_.high[axis] - box_.low[axis]) / 2;
   const int other = 1 - axis;
   double nearest = std::numeric_limits<double>::infinity(), foot = axis == 0 ? box_.low.y : box_.high.x;
   const auto look_at = [&](const glm::dvec2& point) {
     const double off = std::abs(point[axis] - end);
-    if (off > slack || off > nearest + same_place) return;
+    if (off > slack || off > nearest + same_place_on_paper) return;
     // Of those at one distance the one that is nearest to the dimension line.
-    const bool is_nearer = off < nearest - same_place;
+    const bool is_nearer = off < nearest - same_place_on_paper;
     const double at = point[other];
     foot = is_nearer ? at : axis == 0 ? std::max(foot, at) : std::min(foot, at);
     nearest = std::min(nearest, off);

@@ -14,7 +14,7 @@ namespace frontmost {
 namespace threemf {
 namespace {
 
-constexpr int most_levels = 64;
+constexpr int most_component_levels = 64;
 
 using Parts = std::map<std::string, ModelPart>;
 
@@ -65,9 +65,9 @@ class Placer {
   void place(const ModelPart& from, const Placed& placed, const Above& above) {
     check_cancelled(source_.execution());
     const std::string place = printable(from.name) + ": line " + std::to_string(placed.line);
-    if (above.level > most_levels)
-      source_.fail_limit(
-          place, "components within more than " + std::to_string(most_levels) + " others, or within themselves");
+    if (above.level > most_component_levels)
+      source_.fail_limit(place, "components within more than " + std::to_string(most_component_levels) +
+                                    " others, or within themselves");
     // Objects of two components each, thirty levels deep, are a thousand million.
     if (++visits_ > 4 * max_objects) source_.fail_limit(place, "too many components");
     const ModelPart& part = placed.part.empty() ? from : parts_.at(placed.part);

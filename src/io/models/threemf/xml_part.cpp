@@ -9,7 +9,7 @@ namespace frontmost::threemf {
 namespace {
 
 constexpr std::size_t longest_tag = std::size_t(1) << 20, most_names = 4096;
-constexpr int most_levels = 256;
+constexpr int most_tag_levels = 256;
 
 }  // namespace
 
@@ -30,8 +30,8 @@ struct XmlPart::Callbacks {
 
   static void start(void* user, const char* name, const char** attributes) {
     guarded(user, [&](XmlPart& part) {
-      if (++part.depth_ > most_levels)
-        part.source_.fail_limit(part.place(), "tags within more than " + std::to_string(most_levels) + " others");
+      if (++part.depth_ > most_tag_levels)
+        part.source_.fail_limit(part.place(), "tags within more than " + std::to_string(most_tag_levels) + " others");
       part.note_names(name, attributes);
       part.start(name, Attributes(attributes));
     });
