@@ -220,10 +220,14 @@ View resolve_view(const ViewSettings& settings, const Surfaces& surfaces) {
   return view;
 }
 
-std::string view_name(const ViewSettings& settings) {
+std::string_view view_name(NamedView view) {
   constexpr std::string_view names[] = {"front", "back", "left", "right", "top", "bottom", "iso", "three-quarter"};
+  return names[int(view)];
+}
+
+std::string view_name(const ViewSettings& settings) {
   if (!settings.name.empty()) return settings.name;
-  if (settings.named) return std::string(names[int(*settings.named)]);
+  if (settings.named) return std::string(view_name(*settings.named));
   if (settings.camera_index) return fmt::format("camera{}", *settings.camera_index);
   return is_plain(settings) ? "three-quarter" : "camera";
 }

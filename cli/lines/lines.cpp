@@ -37,7 +37,6 @@ constexpr glm::ivec2 fine_grid{3840, 2160};  // shaped as render's default pictu
 constexpr double fine_error = 0.2;           // of its pixels: about 0.01 mm on a sheet of A4
 constexpr double coarsest_error = 10;
 constexpr double most_fine_triangles = 2e6;  // seconds to draw
-constexpr std::string_view view_names[] = {"front", "back", "left", "right", "top", "bottom", "iso"};
 
 bool is_parallel(const Settings& s) { return s.view.orthographic || s.drawing.is_sheet(); }
 
@@ -46,7 +45,7 @@ void check_hidden_views(const DrawingSettings& s) {
   if (s.hidden == DrawingSettings::Hidden::none) throw UsageError("--hidden-views needs --hidden dashed or thin");
   for (const NamedView view : *s.hidden_views)
     if (std::find(s.views.begin(), s.views.end(), view) == s.views.end())
-      throw UsageError(fmt::format("--hidden-views: {} is not among --views", view_names[int(view)]));
+      throw UsageError(fmt::format("--hidden-views: {} is not among --views", view_name(view)));
 }
 
 void check_views(const Settings& s) {
@@ -166,8 +165,7 @@ std::vector<DrawnView> draw_all(const Settings& settings, const Surfaces& surfac
     one.named = named;
     DrawnView& view = views.emplace_back(draw(one, settings, surfaces, section, execution));
     view.named = named;
-    view.name = view.sheet.name =
-        view.cut ? fmt::format("{0}-{0}", view.cut->letter) : std::string(view_names[int(named)]);
+    view.name = view.sheet.name = view.cut ? fmt::format("{0}-{0}", view.cut->letter) : std::string(view_name(named));
   };
   for (const NamedView named : settings.drawing.views) add(named, std::nullopt);
   for (std::size_t i = 0; i < settings.drawing.sections.size(); ++i) add(settings.drawing.sections[i].view, i);

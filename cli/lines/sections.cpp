@@ -7,17 +7,17 @@
 #include <cmath>
 
 #include "cli/failure.h"
+#include "cli/view_options.h"
 
 namespace frontmost::cli {
 namespace {
 
 constexpr std::string_view letters = "ABCDEFGHJKLMNPQRSTUVWXYZ";  // none that looks like a number
-constexpr std::string_view view_names[] = {"front", "back", "left", "right", "top", "bottom"};
-constexpr double least_spacing = 1.2, most_spacing = 3;  // millimetres between hatch lines
-constexpr double spacing_share = 0.03;                   // of the section's diagonal
-constexpr double thinnest = 0.8;                         // millimetres: parts below it are solid
-constexpr double name_distance = 5, name_height = 5;     // millimetres above a section
-constexpr int first_own_column = 3;                      // behind those of all views
+constexpr double least_spacing = 1.2, most_spacing = 3;           // millimetres between hatch lines
+constexpr double spacing_share = 0.03;                            // of the section's diagonal
+constexpr double thinnest = 0.8;                                  // millimetres: parts below it are solid
+constexpr double name_distance = 5, name_height = 5;              // millimetres above a section
+constexpr int first_own_column = 3;                               // behind those of all views
 
 /// The axis to which a view along one looks from.
 Axis axis_towards(const glm::dvec3& direction) {
@@ -85,7 +85,7 @@ void cut_view(DrawnView& view, const Surfaces& surfaces, const DrawingSettings& 
   auto cut = std::make_unique<CutView>(
       CutView{frontmost::cut(surfaces, plane, execution), plane, std::string(1, letters[number])});
   if (cut->section.faces.empty()) {
-    const std::string_view name = view_names[int(wanted.view)];
+    const std::string_view name = view_name(wanted.view);
     const std::string place = wanted.at ? fmt::format("={:.6g}", *wanted.at) : std::string();
     if (!(low <= high)) throw UsageError(fmt::format("--sections {}{}: the model has no surface to cut", name, place));
     throw UsageError(fmt::format("--sections {}{}: the plane misses the model, which lies from {} = {:.6g} to {:.6g}",

@@ -7,7 +7,7 @@
 namespace frontmost {
 namespace {
 
-constexpr double gap = 3, thick_length = 6;          // millimetres beyond what is cut
+constexpr double gap_before = 3, thick_length = 6;   // millimetres beyond what is cut
 constexpr double arrow_place = 6;                    // likewise: in the middle of the thick end
 constexpr double arrow_length = 8, head_length = 4;  // millimetres
 constexpr double letter_distance = 1;                // from the arrow's tail
@@ -25,7 +25,7 @@ class MarkPen {
 
   void draw(const CuttingLine& line) {
     const glm::dvec2 along = glm::normalize(line.to - line.from);
-    const glm::dvec2 ends[] = {line.from - gap * along, line.to + gap * along};
+    const glm::dvec2 ends[] = {line.from - gap_before * along, line.to + gap_before * along};
     thin_.add(ends, false);
     draw_end(line, line.from, -along);
     draw_end(line, line.to, along);
@@ -45,7 +45,7 @@ class MarkPen {
 
  private:
   void draw_end(const CuttingLine& line, const glm::dvec2& end, const glm::dvec2& outwards) {
-    const glm::dvec2 thick[] = {end + gap * outwards, end + (gap + thick_length) * outwards};
+    const glm::dvec2 thick[] = {end + gap_before * outwards, end + (gap_before + thick_length) * outwards};
     thick_.add(thick, false);
     const glm::dvec2 tip = end + arrow_place * outwards, tail = tip - arrow_length * line.looking;
     const glm::dvec2 shaft[] = {tail, tip};

@@ -8,14 +8,13 @@
 
 #include "base/orientation.h"
 #include "base/parallel.h"
+#include "lines/sections/plane_axes.h"
 
 namespace frontmost::lines_detail {
 namespace {
 
 constexpr std::size_t corners_per_poll = 1 << 10;
 constexpr int most_cells = 1 << 10;  // along an axis
-
-bool is_left_of(const glm::vec2& a, const glm::vec2& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; }
 
 /// A corner of the polygon that is left.
 struct Link {

@@ -7,14 +7,13 @@
 
 #include "base/orientation.h"
 #include "base/parallel.h"
+#include "lines/sections/plane_axes.h"
 
 namespace frontmost::lines_detail {
 namespace {
 
 constexpr double joined_gap = 1e-5;  // of the size of all
 constexpr std::size_t steps_per_poll = 1 << 14;
-
-bool is_left_of(const glm::vec2& a, const glm::vec2& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; }
 
 /// A segment between two of the places.
 struct Step {

@@ -6,6 +6,11 @@
 
 namespace frontmost::lines_detail {
 
+/// Points of a plane from left to right, and from below up where neither is.
+[[nodiscard]] inline bool is_left_of(const glm::vec2& a, const glm::vec2& b) {
+  return a.x != b.x ? a.x < b.x : a.y < b.y;
+}
+
 /// Two axes within the plane and one across it, in this order right-handed with CuttingPlane::towards.
 class PlaneAxes {
  public:
