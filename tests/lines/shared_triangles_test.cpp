@@ -103,11 +103,11 @@ Mesh patch() {
 TEST(SharedTriangles, MayBeOfOneObject) {
   Mesh both = plate(5, true);
   const Mesh over = patch();
-  add(both, over);
+  append(both, over);
   EXPECT_EQ(edges_of(scene_of(both)), 20u + 8u);
   EXPECT_EQ(edges_of(scene_of(turned(both))), 20u + 8u);
   EXPECT_EQ(edges_of(scene_of_objects({plate(5, true), over})), 20u + 8u);
-  add(both, turned(both));
+  append(both, turned(both));
   EXPECT_EQ(edges_of(scene_of(both)), 20u + 8u);
   EXPECT_EQ(edges_of(scene_of_objects({both, plate(5, true), turned(both)})), 20u + 8u);
 }
