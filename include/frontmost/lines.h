@@ -23,10 +23,10 @@ inline constexpr int edge_kind_count = 5;
 struct LineOptions {
   /// Radians, 0 to pi: edges whose triangles' normals differ by more are creases. Edges between triangles of one plane
   /// never are. None: a crease is where the surfaces on both sides differ, by 18 degrees or more, once each has been
-  /// followed to the edge as it turns beside it; by 12 or more where both turn evenly, and by half as much at most; or by
-  /// 9 where a crease goes on along them. Slivers have the normals of their surfaces, triangles that meet at more than 34
-  /// degrees are always creases, and those at less than 15 never. One or two edges that end in the air are none but where
-  /// they are longer than a twentieth of all.
+  /// followed to the edge as it turns beside it; by 12 or more where both turn evenly, and by half as much at most; or
+  /// by 9 where a crease goes on along them. Slivers have the normals of their surfaces, triangles that meet at more
+  /// than 34 degrees are always creases, and those at less than 15 never. One or two edges that end in the air are none
+  /// but where they are longer than a twentieth of all.
   std::optional<double> crease_angle = std::nullopt;
   /// True: DrawnPart::hidden_by counts; false: it tells 0 from more, and costs less.
   bool counts_hidden = false;
@@ -83,12 +83,12 @@ struct Drawing {
 /// and the short ones that meet it, the long side's triangle counts as cut at the corners on it: the seam is drawn as
 /// any other edges are, once, or not at all where the surface goes on. A T-junction that nothing fills is open, and its
 /// sides are boundaries. (A. Appel. The Notion of Quantitative Invisibility and the Machine Rendering of Solids. 1967.)
-/// A triangle that is there again, its corners in any order, counts once. Where objects have triangles in common that do
-/// not go on with the same ones, as a housing and its cover do, each goes on by itself, and the edge is what it is for
-/// that of them for which it comes first by its kind; two of one object may have triangles in common as well.
-/// The result is the same to the bit for any number of threads and every instruction set.
-/// \throws Error as validate(view) does, bad_argument for an angle that is out of range, and limit_exceeded for more
-/// than 2^25 segments of intersections or 2^26 parts.
+/// A triangle that is there again, its corners in any order, counts once. Where objects have triangles in common that
+/// do not go on with the same ones, as a housing and its cover do, each goes on by itself, and the edge is what it is
+/// for that of them for which it comes first by its kind; two of one object may have triangles in common as well. The
+/// result is the same to the bit for any number of threads and every instruction set. \throws Error as validate(view)
+/// does, bad_argument for an angle that is out of range, and limit_exceeded for more than 2^25 segments of
+/// intersections or 2^26 parts.
 [[nodiscard]] Drawing lines(const Surfaces& surfaces, const View& view, const LineOptions& options = {},
                             const Execution& execution = {});
 

@@ -198,8 +198,9 @@ TEST(ThreeMf, WhatIsNotReadIsTold) {
                           R"(<m:texture2dgroup id="7" texid="8"><m:tex2coord u="0" v="0"/></m:texture2dgroup>)"),
                R"(xmlns:b="http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02")");
   model = replaced(model, "</triangles>", "</triangles><b:beamlattice><b:beams/></b:beamlattice>");
-  EXPECT_THAT(read(model).warnings, ElementsAre(HasSubstr(R"(line 6: "beamlattice" is not read)"),
-                                                "3D/3dmodel.model: group 7: colours of a texture2dgroup are not read"));
+  EXPECT_THAT(read(model).warnings,
+              ElementsAre(HasSubstr(R"(line 6: "beamlattice" is not read)"),
+                          "model: 3D/3dmodel.model: group 7: colours of a texture2dgroup are not read"));
   EXPECT_THAT(
       error_of(replaced(model, "xmlns:b", R"(requiredextensions="p b" xmlns:b)")),
       HasSubstr(
