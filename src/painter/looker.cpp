@@ -13,20 +13,9 @@ constexpr int kFewCells = 4;
 /// Pixels. Beside a narrower part nothing has room for a hem, and viewers show a hairline; what would leave one stays
 /// whole, and is painted over.
 constexpr double kNarrowest = 1.0 / 16;
-/// When so many parts are left of a polygon in a few cells, none is split any more: those go that are hidden whole.
-constexpr std::size_t kMostParts = 48;
 /// So many of those after a polygon, from the front, may hide it in a cell: without an end, a stack of n planes that
 /// each leave a sliver of the next takes n * n.
 constexpr std::size_t kMostCovers = 4096;
-
-Extent box_of(Outline outline) {
-  Extent box{glm::vec2(outline[0].at), glm::vec2(outline[0].at), 0, 0};
-  for (const PaintCorner& corner : outline) {
-    box.low = glm::min(box.low, glm::vec2(corner.at));
-    box.high = glm::max(box.high, glm::vec2(corner.at));
-  }
-  return box;
-}
 
 /// The cells in two halves along the longer axis.
 struct Halves {
@@ -186,7 +175,7 @@ bool Looker::take_covers(std::size_t slot, std::uint32_t first_place, const Exte
         if (!may_hide(slot, other)) continue;
         ++count;
         const Cover cover{scenery_.outline(other), glm::dvec2(e.low), glm::dvec2(e.high)};
-        if (cutter_.subtract(cover, cutter_.count() <= kMostParts)) return true;
+        if (cutter_.subtract(cover, cutter_.count() <= OutlineCutter::most_parts)) return true;
       }
     }
   return false;

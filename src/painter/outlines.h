@@ -68,6 +68,8 @@ class OutlineCutter {
  public:
   /// Pixels: what is thinner is not there.
   static constexpr double thin = 1.0 / 1024;
+  /// When so many parts are left, none should be split any more: those go that are hidden whole.
+  static constexpr std::size_t most_parts = 48;
 
   void begin(Outline outline);
   /// Leaves what is not within `cover`. Without `may_split` only parts that lie within it as they are go.

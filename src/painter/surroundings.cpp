@@ -8,20 +8,9 @@ namespace {
 
 /// A polygon in more cells of the grid may have thousands around it: each outline then has a list of its own.
 constexpr int kMostCells = 64;
-/// When so many parts are left of an outline, none is split any more: those go that are hidden whole.
-constexpr std::size_t kMostParts = 48;
 /// So many of those after a polygon, from the front, may hide what is beside it in a cell: a stack of n planes would
 /// take n * n.
 constexpr std::size_t kMostHiders = 4096;
-
-Extent box_of(Outline outline) {
-  Extent box{glm::vec2(outline[0].at), glm::vec2(outline[0].at), 0, 0};
-  for (const PaintCorner& corner : outline) {
-    box.low = glm::min(box.low, glm::vec2(corner.at));
-    box.high = glm::max(box.high, glm::vec2(corner.at));
-  }
-  return box;
-}
 
 template <class A, class B>
 bool is_apart(const A& a, const B& b) {
@@ -107,7 +96,7 @@ const OutlineCutter& Surroundings::open_parts(Outline outline) {
   cutter_.begin(outline);
   any_of(box_of(outline), [&](const Hider& hider) {
     const Cover cover{scenery_.outline(hider.slot), glm::dvec2(hider.low), glm::dvec2(hider.high)};
-    return cutter_.subtract(cover, cutter_.count() <= kMostParts);
+    return cutter_.subtract(cover, cutter_.count() <= OutlineCutter::most_parts);
   });
   return cutter_;
 }

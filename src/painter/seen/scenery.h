@@ -10,6 +10,16 @@
 
 namespace frontmost::painter_detail {
 
+/// On the screen alone.
+[[nodiscard]] inline Extent box_of(Outline outline) {
+  Extent box{glm::vec2(outline[0].at), glm::vec2(outline[0].at), 0, 0};
+  for (const PaintCorner& corner : outline) {
+    box.low = glm::min(box.low, glm::vec2(corner.at));
+    box.high = glm::max(box.high, glm::vec2(corner.at));
+  }
+  return box;
+}
+
 /// All polygons of an order on the screen, with depths affine. They have places in the order, and are kept in slots in
 /// the order of the grid's cells: what is near on the screen is near in memory, for every other one is read beside its
 /// neighbours.
