@@ -21,7 +21,8 @@ struct StrokeOptions {
   double apart = 0.002;
   double tolerance = 0.01;  ///< pixels, 0.0001 to 1: strokes leave their parts by at most this
   /// Pixels, 0 to 100. Above 0: runs of at least four parts whose corners lie within this of one circle, with at most
-  /// 20 degrees between two, become arcs. A polygon of up to 17 sides stays one.
+  /// 20 degrees between two, become arcs. A polygon of up to 17 sides stays one. Arcs stay within this of their parts,
+  /// too, but beside those of which two among the three before and the three after are at least half as long.
   double arc_tolerance = 0;
   /// Pixels, 0 to 10000: shorter strokes are joined to others that they touch, or left out where they end in the air or
   /// lie between lines that go on without them. Pieces of silhouettes and boundaries that close an outline stay.

@@ -64,6 +64,13 @@ TEST(Circles, OfModelsHaveTheirRadii) {
   EXPECT_NEAR(ring.at(2000), 1, 1e-3);
 }
 
+TEST(Circles, TheRodOfAnAssemblyIsStraight) {
+  FRONTMOST_NEEDS_MODELS();
+  // Nothing in it is rounder than a plate is thick, and its rod is straight, though it ends in tiny chords.
+  for (const auto& [radius, turns] : rounds_of(load(model("cad/as1.stl")), NamedView::iso))
+    if (turns > 0) EXPECT_LT(radius, 5000);
+}
+
 /// A flat ring of so many corners at its outer side, at height z.
 void add_disc(Mesh& mesh, int corners, float z) {
   for (int i = 0; i < corners; ++i) {

@@ -3,6 +3,10 @@
 //
 // An arc runs through its first, its middle and its last corner, so that it joins what comes before and after it. Runs
 // are made twice as long while they fit, and then halved: O(n log n).
+//
+// That corners lie on a circle says nothing of what is between them: a long line beside a few tiny ones has them there,
+// too, and so has the flat of a shaft. So an arc leaves a chord only where others show that the circle was cut so
+// coarsely.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -16,6 +20,11 @@ namespace {
 constexpr std::size_t fewest_joins = 4;
 constexpr double widest_join = 20.01 * std::numbers::pi / 180;  // of the circle; 18 to the whole
 constexpr double least_turn = 10 * std::numbers::pi / 180;      // less is as good a line
+/// What an arc leaves by more than the tolerance needs two chords like it, as long as half of it at least, among the
+/// three before it and the three after it. Not just the next: corners of something else may stand on the circle.
+constexpr std::size_t reach = 3;
+constexpr int fewest_alike = 2;
+constexpr double alike = 0.5;
 
 struct Circle {
   glm::dvec2 centre;
@@ -36,6 +45,41 @@ double turn_between(const Circle& circle, const glm::dvec2& a, const glm::dvec2&
   const glm::dvec2 u = a - circle.centre, v = b - circle.centre;
   return std::atan2(cross(u, v), glm::dot(u, v));
 }
+
+/// A row of corners, or a ring of them.
+class Run {
+ public:
+  Run(const std::vector<glm::dvec2>& points, std::size_t first, std::size_t chords)
+      : points_(points), first_(first), chords_(chords) {}
+
+  /// Whether an arc of the circle, which runs through all corners within the tolerance, stays within it beside all
+  /// chords but those that are evenly stepped.
+  [[nodiscard]] bool is_like(const Circle& circle, double tolerance) const {
+    for (std::size_t i = 0; i < chords_; ++i) {
+      const double to_middle = glm::distance((corner(i) + corner(i + 1)) / 2.0, circle.centre);
+      if (circle.radius - to_middle > tolerance && !is_evenly_stepped(i)) return false;
+    }
+    return true;
+  }
+
+ private:
+  [[nodiscard]] const glm::dvec2& corner(std::size_t i) const { return points_[(first_ + i) % points_.size()]; }
+  [[nodiscard]] double length(std::size_t chord) const { return glm::distance(corner(chord), corner(chord + 1)); }
+  [[nodiscard]] bool is_ring() const { return chords_ == points_.size(); }
+
+  [[nodiscard]] bool is_evenly_stepped(std::size_t chord) const {
+    const double least = alike * length(chord);
+    int found = 0;
+    for (std::size_t k = 1; k <= reach; ++k) {
+      if (is_ring() || chord >= k) found += length((chord + chords_ - k) % chords_) >= least;
+      if (is_ring() || chord + k < chords_) found += length((chord + k) % chords_) >= least;
+    }
+    return found >= fewest_alike;
+  }
+
+  const std::vector<glm::dvec2>& points_;
+  const std::size_t first_, chords_;
+};
 
 class ArcFinder {
  public:
@@ -83,6 +127,7 @@ class ArcFinder {
       turn += by;
     }
     if (std::abs(turn) < least_turn || std::abs(turn) > 6.2) return std::nullopt;
+    if (!Run(points_, first, last - first).is_like(*circle, tolerance_)) return std::nullopt;
     return Fit{*circle, turn};
   }
 
@@ -127,6 +172,7 @@ class ArcFinder {
       turn += by;
     }
     if (std::abs(std::abs(turn) - 2 * std::numbers::pi) > 1e-6) return false;
+    if (!Run(points_, 0, n).is_like(*circle, tolerance_)) return false;
     const double bulge = turn > 0 ? 1 : -1;
     points_ = {points_[0], 2.0 * circle->centre - points_[0]};
     chain_.bulges = {bulge, bulge};
