@@ -81,8 +81,10 @@ bool Surroundings::any_of(const Extent& box, const Visit& visit) {
 
 bool Surroundings::are_open_beside(std::size_t side) const {
   const std::uint32_t across = mosaic_.across(scenery_.first_corner(slot_) + side);
-  return across != no_index &&
-         (scenery_.place(across) < scenery_.first_place(slot_) || across == slot_ || !scenery_.hides(across));
+  if (across == no_index) return false;
+  const bool may_hide = scenery_.place(across) >= scenery_.first_place(slot_) && scenery_.hides(across);
+  // Beyond one without an area others begin.
+  return across == slot_ || (!may_hide && !is_flat(scenery_.outline(across)));
 }
 
 bool Surroundings::hide_beside(const glm::dvec2& from, const glm::dvec2& to) {

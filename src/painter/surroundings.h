@@ -20,7 +20,7 @@ class Surroundings {
 
   /// Of the polygon in a slot from now on, as far as `reach` pixels around it.
   void begin(std::size_t slot, double reach);
-  /// Whether a side is that of one other polygon which hides nothing of what lies beyond it.
+  /// Whether a side is that of one other polygon which has an area and hides nothing of what lies beyond it.
   [[nodiscard]] bool are_open_beside(std::size_t side) const;
   /// Whether anything hides places on the outer side of a side of the polygon, next to it.
   [[nodiscard]] bool hide_beside(const glm::dvec2& from, const glm::dvec2& to);

@@ -293,6 +293,18 @@ TEST(VisibleParts, HemsReachBeyondNeedles) {
   for (double x = 46; x < 60; x += 0.7) EXPECT_FALSE(holds(hemmed, hemmed.polygons[0], {x, 20.06})) << x;
 }
 
+/// Cuts leave pieces without an area between neighbours, which cover nothing, whenever they are painted.
+TEST(VisibleParts, HemsReachBeyondWhatHasNoArea) {
+  const glm::dvec2 left(5, 20), right(60, 20);
+  for (const bool is_first : {false, true}) {
+    std::vector<std::array<glm::dvec2, 3>> triangles{{left, right, {32, 5}}, {left, {32, 35}, right}};
+    triangles.insert(is_first ? triangles.begin() : triangles.begin() + 1, {left, right, left});
+    const PaintOrder hemmed = with_hems(order_of_triangles(triangles), 4);
+    const PaintPolygon& upper = hemmed.polygons[is_first ? 1 : 0];
+    for (double x = 20; x < 45; x += 0.7) EXPECT_TRUE(holds(hemmed, upper, {x, 23})) << is_first << " " << x;
+  }
+}
+
 /// Two squares, and what was painted before both fills the gap between them, once as wide as the narrowest hem.
 TEST(VisibleParts, HemsDoNotHideWhatIsSeenInGaps) {
   for (const double gap : {0.5, 1.0, 2.0, 4.0, 16.0}) {
