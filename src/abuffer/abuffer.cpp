@@ -50,13 +50,19 @@ Opacities::Opacities(const Surfaces& surfaces, float opacity, const Execution& e
 
 }  // namespace abuffer_detail
 
+std::uint64_t most_gathered_fragments(const View& view) {
+  constexpr std::uint64_t most_per_pixel = 64;
+  return std::max(max_fragments, most_per_pixel * view.pixel_count());
+}
+
 FragmentLists abuffer(const Surfaces& surfaces, const View& view, const AbufferOptions& options,
                       const Execution& execution) {
   using namespace abuffer_detail;
   const IeeeScope ieee;
   const PreparedFrame prepared(surfaces, view, options, execution);
-  const FrameInput frame = prepared.input(execution);
   const Opacities opacities(surfaces, options.opacity, execution);
+  const CopyRule copies = copy_rule(opacities);
+  const FrameInput frame = prepared.input(copies, execution);
   std::mutex mutex;
   std::vector<TilePart<Fragment>> parts;
   std::uint64_t total = 0;
@@ -87,7 +93,8 @@ FragmentCounts count_fragments(const Surfaces& surfaces, const View& view, const
   using namespace abuffer_detail;
   const IeeeScope ieee;
   const PreparedFrame prepared(surfaces, view, options, execution);
-  const FrameInput frame = prepared.input(execution);
+  const CopyRule all;
+  const FrameInput frame = prepared.input(all, execution);
   std::mutex mutex;
   FragmentCounts counts;
   visit_tiles(frame, execution, [&](const TileJob& /*job*/, const TileScratch* scratch) {

@@ -43,11 +43,12 @@ FragmentPass::FragmentPass(const Surfaces& surfaces, const View& view, const Abu
                            const Execution& execution)
     : opacity_(options.opacity),
       prepared_(surfaces, view, options, execution),
-      opacities_(surfaces, options.opacity, execution) {}
+      opacities_(surfaces, options.opacity, execution),
+      copies_(copy_rule(opacities_)) {}
 
 void FragmentPass::list_primitives(const Note& note, const Execution& execution) const {
   const IeeeScope ieee;
-  const FrameInput frame = prepared_.input(execution);
+  const FrameInput frame = prepared_.input(copies_, execution);
   visit_tiles(frame, execution, [&](const TileJob& /*job*/, TileScratch* scratch) {
     if (scratch) note({scratch->triangles.id.data(), scratch->triangles.count});
   });
@@ -55,7 +56,7 @@ void FragmentPass::list_primitives(const Note& note, const Execution& execution)
 
 void FragmentPass::look(const Look& look, const Execution& execution) const {
   const IeeeScope ieee;
-  const FrameInput frame = prepared_.input(execution);
+  const FrameInput frame = prepared_.input(copies_, execution);
   visit_tiles(frame, execution, [&](const TileJob& job, TileScratch* scratch) {
     if (scratch) look(job.pixels, list_fragments(frame, job, *scratch, opacities_));
   });
@@ -63,7 +64,7 @@ void FragmentPass::look(const Look& look, const Execution& execution) const {
 
 void FragmentPass::paint(const Paint& paint, const Receive& receive, const Execution& execution) const {
   const IeeeScope ieee;
-  const FrameInput frame = prepared_.input(execution);
+  const FrameInput frame = prepared_.input(copies_, execution);
   visit_tiles(frame, execution, [&](const TileJob& job, TileScratch* scratch) {
     if (!scratch) return receive(job.pixels, nullptr);
     const JobLists lists = list_fragments(frame, job, *scratch, opacities_, kNegligible);

@@ -14,6 +14,8 @@ namespace frontmost::abuffer_detail {
 class FragmentPass {
  public:
   FragmentPass(const Surfaces& surfaces, const View& view, const AbufferOptions& options, const Execution& execution);
+  FragmentPass(const FragmentPass&) = delete;  // the rule of copies refers to its opacities
+  FragmentPass& operator=(const FragmentPass&) = delete;
 
   [[nodiscard]] float opacity() const { return opacity_; }
   /// Positions of the masks' bits in 1/256 pixel.
@@ -39,6 +41,7 @@ class FragmentPass {
   float opacity_;
   PreparedFrame prepared_;
   Opacities opacities_;
+  CopyRule copies_;
 };
 
 }  // namespace frontmost::abuffer_detail

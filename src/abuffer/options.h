@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "abuffer/plan/crowd.h"
 #include "frontmost/abuffer.h"
 
 namespace frontmost::abuffer_detail {
@@ -28,5 +29,10 @@ class Opacities {
   float all_;
   std::vector<float> values_;  // none: all the same. Negative: 1, but a texture may cut holes into it
 };
+
+/// Of triangles at one place those in front of an opaque one, and it. As long as the opacities are where they are.
+[[nodiscard]] inline CopyRule copy_rule(const Opacities& opacities) {
+  return {[&opacities](PrimitiveId id) { return opacities.is_opaque(id); }};
+}
 
 }  // namespace frontmost::abuffer_detail

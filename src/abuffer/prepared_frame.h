@@ -16,8 +16,10 @@ struct PreparedFrame {
       : pattern((frontmost::validate(view), validate(options), sample_pattern(view, options.grid))),
         plan(surfaces, view, execution) {}
 
-  /// Of lists that say all. As long as this is where it is.
-  [[nodiscard]] FrameInput input(const Execution& execution) const { return {plan, pattern, false, execution.isa}; }
+  /// Of lists that say all. As long as this, and the rule, are where they are.
+  [[nodiscard]] FrameInput input(const CopyRule& copies, const Execution& execution) const {
+    return {plan, pattern, false, execution.isa, copies};
+  }
 };
 
 }  // namespace frontmost::abuffer_detail

@@ -65,7 +65,8 @@ const ResolvedPicture& Resolver::draw(const Surfaces& surfaces, const View& view
   state.prepare(view);
   // Holes are taken out of masks, which flat frames do not have.
   const bool has_holes = surfaces.clusters().cutouts != nullptr;
-  const FrameInput frame{state.plan, pattern, pattern.count == 1 && !has_holes, execution.isa, colors.data()};
+  const CopyRule copies{[&](PrimitiveId id) { return colors[id].a * options.opacity >= 1.0f; }};
+  const FrameInput frame{state.plan, pattern, pattern.count == 1 && !has_holes, execution.isa, copies, colors.data()};
   ResolvedPicture& picture = state.picture;
   const bool streams = view.pixel_count() * 4 * sizeof(float) >= kStreamFrom;
   const PicturePlanes out{

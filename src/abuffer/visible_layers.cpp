@@ -61,8 +61,11 @@ std::vector<Visible> visible_layers(const Surfaces& surfaces, const View& view, 
   const IeeeScope ieee;
   // Layers are Visibles, whose samples are the view's; a grid of the A-buffer's own would have no place in them.
   const PreparedFrame prepared(surfaces, view, {0, options.opacity}, execution);
-  const FrameInput frame = prepared.input(execution);
   const Opacities opacities(surfaces, options.opacity, execution);
+  CopyRule copies = copy_rule(opacities);
+  // Of triangles at one place, those with as many before them everywhere are in no layer.
+  copies.most = std::size_t(count);
+  const FrameInput frame = prepared.input(copies, execution);
   std::vector<Visible> layers;
   for (int k = 0; k < count; ++k) layers.push_back(nothing_visible(view));
   visit_tiles(frame, execution, [&](const TileJob& job, TileScratch* scratch) {

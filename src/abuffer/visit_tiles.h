@@ -5,20 +5,27 @@
 #include <atomic>
 
 #include "abuffer/gather/cut_fragments.h"
+#include "abuffer/plan/crowd.h"
 #include "base/parallel.h"
 #include "base/pool.h"
 
 namespace frontmost::abuffer_detail {
 
-/// Calls visit(job, scratch or null where nothing is seen) for `job`, or for parts of it.
+/// Gathers `job`, and calls visit(job, scratch or null where nothing is seen) unless it is too much. \returns whether
+/// it was not.
+template <class Visit>
+bool visit_whole(const FrameInput& frame, const TileJob& job, TileScratch& scratch, const Visit& visit) {
+  const Gathered gathered = gather_tile(frame, job, scratch);
+  if (gathered == Gathered::too_much) return false;
+  if (gathered == Gathered::something && !frame.is_flat) cut_fragments(frame, job, scratch);
+  visit(job, gathered == Gathered::something ? &scratch : nullptr);
+  return true;
+}
+
+/// The same for `job`, or for parts of it.
 template <class Visit>
 void visit_job(const FrameInput& frame, const TileJob& job, TileScratch& scratch, const Visit& visit) {
-  const Gathered gathered = gather_tile(frame, job, scratch);
-  if (gathered != Gathered::too_much) {
-    if (gathered == Gathered::something && !frame.is_flat) cut_fragments(frame, job, scratch);
-    visit(job, gathered == Gathered::something ? &scratch : nullptr);
-    return;
-  }
+  if (visit_whole(frame, job, scratch, visit)) return;
   // Parts of whole groups of pixels as long as there are groups.
   const Rectangle& r = job.pixels;
   const auto half = [](int size) { return size > 4 ? (size / 2 + 3) / 4 * 4 : (size + 1) / 2; };
@@ -34,9 +41,15 @@ template <class Visit>
 void visit_tiles(const FrameInput& frame, Pool<TileScratch>& pool, const Execution& execution, const Visit& visit) {
   std::atomic<std::size_t> done{0};
   const std::size_t tiles = frame.plan.tile_count();
+  CrowdedFrame crowded(frame.plan, frame.copies);
   parallel_for(execution, tiles, 1, [&](std::size_t begin, std::size_t end) {
     const auto scratch = pool.borrow([] { return std::make_unique<TileScratch>(); });
-    for (std::size_t tile = begin; tile < end; ++tile) visit_job(frame, {frame.plan.tile(tile), tile}, *scratch, visit);
+    for (std::size_t tile = begin; tile < end; ++tile) {
+      const TileJob job{frame.plan.tile(tile), tile};
+      if (visit_whole(frame, job, *scratch, visit)) continue;
+      const FramePlan& thinned = crowded.thinned();
+      visit_job({thinned, frame.pattern, frame.is_flat, frame.isa, frame.copies, frame.colors}, job, *scratch, visit);
+    }
     report_progress(execution, "visible", double(done += end - begin) / double(tiles));
   });
 }

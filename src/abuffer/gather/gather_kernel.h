@@ -3,6 +3,7 @@
 #pragma once
 
 #include "abuffer/gather/tile_scratch.h"
+#include "abuffer/plan/crowd.h"
 
 namespace frontmost::abuffer_detail {
 
@@ -14,6 +15,8 @@ struct FrameInput {
   /// and enough where a pixel has one sample. Only with one sample.
   bool is_flat;
   Isa isa;
+  /// What may be left out where tiles hold too much.
+  const CopyRule& copies;
   /// By primitive, where it is known; asked for ahead while triangles are drawn.
   const glm::vec4* colors = nullptr;
 };

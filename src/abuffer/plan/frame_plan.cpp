@@ -96,7 +96,7 @@ void FramePlan::make(const Surfaces& surfaces, const View& view, const Execution
   tiles_y_ = (view.height + kTileSize - 1) / kTileSize;
   transform_all(execution);
   take_apart(execution);
-  make_lists();
+  make_lists({});
 }
 
 Rectangle FramePlan::tile(std::size_t number) const {
@@ -106,21 +106,21 @@ Rectangle FramePlan::tile(std::size_t number) const {
 
 void FramePlan::transform_all(const Execution& execution) {
   constexpr std::size_t kGrain = 256;
-  if (screen_.x.size() < set_->x.size()) {
-    screen_.x = Buffer<std::int32_t>(set_->x.size());
-    screen_.y = Buffer<std::int32_t>(set_->x.size());
-    screen_.key = Buffer<float>(set_->x.size());
+  if (screen_->x.size() < set_->x.size()) {
+    screen_->x = Buffer<std::int32_t>(set_->x.size());
+    screen_->y = Buffer<std::int32_t>(set_->x.size());
+    screen_->key = Buffer<float>(set_->x.size());
   }
-  screen_.places.resize(set_->clusters.size());
+  screen_->places.resize(set_->clusters.size());
   parallel_for(execution, set_->clusters.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    transform_clusters(*set_, *transform_, execution.isa, begin, end, screen_);
+    transform_clusters(*set_, *transform_, execution.isa, begin, end, *screen_);
   });
 }
 
 void FramePlan::take_apart(const Execution& execution) {
   std::vector<std::uint32_t> apart;
-  for (std::size_t i = 0; i < screen_.places.size(); ++i) {
-    ClusterPlace& place = screen_.places[i];
+  for (std::size_t i = 0; i < screen_->places.size(); ++i) {
+    ClusterPlace& place = screen_->places[i];
     if (place.fate == ClusterFate::whole && tiles_of(place, *transform_, view_).count() > kMaxTilesOfCluster)
       place.fate = ClusterFate::spread;
     if (place.fate == ClusterFate::spread || place.fate == ClusterFate::apart) apart.push_back(std::uint32_t(i));
@@ -130,7 +130,7 @@ void FramePlan::take_apart(const Execution& execution) {
   parallel_for(execution, apart.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Cluster& cluster = set_->clusters[apart[i]];
-      if (screen_.places[apart[i]].fate == ClusterFate::spread)
+      if (screen_->places[apart[i]].fate == ClusterFate::spread)
         append_snapped(cluster, parts[begin / kGrain]);
       else
         append_clipped(cluster, parts[begin / kGrain]);
@@ -140,22 +140,26 @@ void FramePlan::take_apart(const Execution& execution) {
   for (const std::vector<ScreenTriangle>& part : parts) singles_.insert(singles_.end(), part.begin(), part.end());
 }
 
-void FramePlan::append(ScreenTriangle t, std::vector<ScreenTriangle>& triangles) const {
-  if (tiles_of(t, view_).count() > 0 && orient(t, view_.culling)) triangles.push_back(t);
+bool FramePlan::is_drawn(ScreenTriangle& t) const { return tiles_of(t, view_).count() > 0 && orient(t, view_.culling); }
+
+ScreenTriangle FramePlan::snapped(const Cluster& cluster, std::size_t triangle) const {
+  const std::size_t c = cluster.first_triangle + triangle;
+  const std::uint8_t numbers[3] = {set_->i0[c], set_->i1[c], set_->i2[c]};
+  ScreenTriangle t;
+  t.id = set_->id[c];
+  for (int k = 0; k < 3; ++k) {
+    const std::size_t v = cluster.first_vertex + numbers[k];
+    t.x[k] = screen_->x[v] + transform_->centre_x;
+    t.y[k] = screen_->y[v] + transform_->centre_y;
+    t.key[k] = screen_->key[v];
+  }
+  return t;
 }
 
 void FramePlan::append_snapped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const {
-  for (std::size_t c = cluster.first_triangle; c < cluster.first_triangle + cluster.triangle_count; ++c) {
-    const std::uint8_t numbers[3] = {set_->i0[c], set_->i1[c], set_->i2[c]};
-    ScreenTriangle t;
-    t.id = set_->id[c];
-    for (int k = 0; k < 3; ++k) {
-      const std::size_t v = cluster.first_vertex + numbers[k];
-      t.x[k] = screen_.x[v] + transform_->centre_x;
-      t.y[k] = screen_.y[v] + transform_->centre_y;
-      t.key[k] = screen_.key[v];
-    }
-    append(t, triangles);
+  for (std::size_t i = 0; i < cluster.triangle_count; ++i) {
+    ScreenTriangle t = snapped(cluster, i);
+    if (is_drawn(t)) triangles.push_back(t);
   }
 }
 
@@ -178,15 +182,55 @@ void FramePlan::append_clipped(const Cluster& cluster, std::vector<ScreenTriangl
         t.y[v] = fan[v].y + transform_->centre_y;
         t.key[v] = fan[v].key;
       }
-      append(t, triangles);
+      if (is_drawn(t)) triangles.push_back(t);
     }
   }
 }
 
-void FramePlan::make_lists() {
-  cluster_lists_ = lists_of(tile_count(), screen_.places.size(), [&](std::size_t i, const auto& add) {
-    const ClusterPlace& place = screen_.places[i];
-    if (place.fate == ClusterFate::whole)
+ScreenTriangle FramePlan::triangle(const TriangleNumber& number) const {
+  if (number.cluster == no_index) return singles_[number.index];
+  ScreenTriangle t = snapped(set_->clusters[number.cluster], number.index);
+  (void)is_drawn(t);  // turns it
+  return t;
+}
+
+FramePlan FramePlan::without(std::span<const TriangleNumber> hidden) const {
+  std::vector<TriangleNumber> sorted(hidden.begin(), hidden.end());
+  std::sort(sorted.begin(), sorted.end(), [](const TriangleNumber& a, const TriangleNumber& b) {
+    return a.cluster != b.cluster ? a.cluster < b.cluster : a.index < b.index;
+  });
+  FramePlan plan;
+  plan.set_ = set_;
+  plan.transform_ = transform_;
+  plan.view_ = view_;
+  plan.tiles_x_ = tiles_x_;
+  plan.tiles_y_ = tiles_y_;
+  plan.screen_ = screen_;
+  std::vector<bool> left_out(screen_->places.size(), false);
+  for (const TriangleNumber& n : sorted)
+    if (n.cluster != no_index) left_out[n.cluster] = true;
+  auto next = sorted.begin();
+  const auto is_hidden = [&](std::uint32_t cluster, std::uint32_t index) {
+    if (next == sorted.end() || next->cluster != cluster || next->index != index) return false;
+    ++next;
+    return true;
+  };
+  for (std::uint32_t c = 0; c < left_out.size(); ++c)
+    for (std::uint32_t i = 0; left_out[c] && i < set_->clusters[c].triangle_count; ++i) {
+      ScreenTriangle t = snapped(set_->clusters[c], i);
+      if (is_drawn(t) && !is_hidden(c, i)) plan.singles_.push_back(t);
+    }
+  // Singles have the highest number of a cluster, and so come last.
+  for (std::uint32_t i = 0; i < singles_.size(); ++i)
+    if (!is_hidden(no_index, i)) plan.singles_.push_back(singles_[i]);
+  plan.make_lists(left_out);
+  return plan;
+}
+
+void FramePlan::make_lists(const std::vector<bool>& left_out) {
+  cluster_lists_ = lists_of(tile_count(), screen_->places.size(), [&](std::size_t i, const auto& add) {
+    const ClusterPlace& place = screen_->places[i];
+    if (place.fate == ClusterFate::whole && (left_out.empty() || !left_out[i]))
       for_tiles(tiles_of(place, *transform_, view_), tiles_x_, [&](int, int, std::size_t tile) { add(tile); });
   });
   std::size_t items = 0;

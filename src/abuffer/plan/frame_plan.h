@@ -2,6 +2,7 @@
 // What is drawn where: the clusters and single triangles of every tile.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -39,6 +40,12 @@ struct TileLists {
   }
 };
 
+/// A triangle of a plan: one of a cluster, or a single.
+struct TriangleNumber {
+  std::uint32_t cluster;  ///< no_index: a single
+  std::uint32_t index;    ///< in the cluster, or of singles()
+};
+
 /// The plan of a frame: 12 bytes a vertex, and 40 for every triangle that is large or had to be clipped.
 class FramePlan {
  public:
@@ -51,7 +58,7 @@ class FramePlan {
   [[nodiscard]] const ClusterSet& set() const { return *set_; }
   [[nodiscard]] const ScreenTransform& transform() const { return *transform_; }
   [[nodiscard]] const View& view() const { return view_; }
-  [[nodiscard]] const ScreenClusters& screen() const { return screen_; }
+  [[nodiscard]] const ScreenClusters& screen() const { return *screen_; }
   [[nodiscard]] std::size_t tile_count() const { return std::size_t(tiles_x_) * std::size_t(tiles_y_); }
   [[nodiscard]] Rectangle tile(std::size_t number) const;
 
@@ -63,22 +70,48 @@ class FramePlan {
     return single_lists_->of(tile);
   }
 
+  /// Calls visit(triangle, number) for everything that may cover a sample.
+  template <class Visit>
+  void for_each(const Visit& visit) const;
+  /// Precondition: for_each() has it.
+  [[nodiscard]] ScreenTriangle triangle(const TriangleNumber& number) const;
+  /// Whether a texture may cut holes into it.
+  [[nodiscard]] bool may_have_holes(PrimitiveId id) const { return set_->cutouts && set_->cutouts->has(id); }
+  /// The same frame without some triangles, of which there is none twice. Only as long as make() is not called.
+  [[nodiscard]] FramePlan without(std::span<const TriangleNumber> hidden) const;
+
  private:
   void transform_all(const Execution& execution);
   void take_apart(const Execution& execution);
   void append_clipped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const;
   void append_snapped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const;
-  void append(ScreenTriangle triangle, std::vector<ScreenTriangle>& triangles) const;
-  void make_lists();
+  [[nodiscard]] ScreenTriangle snapped(const Cluster& cluster, std::size_t triangle) const;
+  /// Turns its area positive. \returns false for what covers nothing of the picture.
+  [[nodiscard]] bool is_drawn(ScreenTriangle& triangle) const;
+  /// `left_out`: clusters whose triangles are among the singles, or empty.
+  void make_lists(const std::vector<bool>& left_out);
 
   const ClusterSet* set_ = nullptr;
   std::optional<ScreenTransform> transform_;
   View view_;
   int tiles_x_ = 0, tiles_y_ = 0;
-  ScreenClusters screen_;
+  std::shared_ptr<ScreenClusters> screen_ = std::make_shared<ScreenClusters>();  ///< shared with what is without some
   std::vector<ScreenTriangle> singles_;
   TileLists cluster_lists_;
   std::optional<TileLists> single_lists_;
 };
+
+template <class Visit>
+void FramePlan::for_each(const Visit& visit) const {
+  for (std::uint32_t i = 0; i < singles_.size(); ++i) visit(singles_[i], TriangleNumber{no_index, i});
+  for (std::uint32_t c = 0; c < screen_->places.size(); ++c) {
+    if (screen_->places[c].fate != ClusterFate::whole) continue;
+    const Cluster& cluster = set_->clusters[c];
+    for (std::uint32_t i = 0; i < cluster.triangle_count; ++i) {
+      ScreenTriangle t = snapped(cluster, i);
+      if (is_drawn(t)) visit(t, TriangleNumber{c, i});
+    }
+  }
+}
 
 }  // namespace frontmost::abuffer_detail

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "abuffer/plan/crowd.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <tuple>
+
+#include "view/triangle_keys.h"
+
+namespace frontmost::abuffer_detail {
+namespace {
+
+/// Copies of smaller ones, in pixels, are drawn in the time that it takes to find them.
+constexpr double kLeastArea = 16;
+
+using Polygon = std::vector<glm::dvec2>;
+
+/// The part of a convex polygon where sign * p[axis] <= bound.
+Polygon cut_off(const Polygon& polygon, int axis, double sign, double bound) {
+  Polygon part;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const glm::dvec2& a = polygon[i];
+    const glm::dvec2& b = polygon[(i + 1) % polygon.size()];
+    const double da = bound - sign * a[axis], db = bound - sign * b[axis];
+    if (da >= 0) part.push_back(a);
+    if ((da < 0) != (db < 0)) part.push_back(a + (b - a) * (da / (da - db)));
+  }
+  return part;
+}
+
+/// Of what lies within the picture, in pixels.
+double area_in_picture(const ScreenTriangle& t, const View& view) {
+  const double width = view.width * kSubPixels, height = view.height * kSubPixels;
+  const auto [x_min, x_max] = std::minmax({t.x[0], t.x[1], t.x[2]});
+  const auto [y_min, y_max] = std::minmax({t.y[0], t.y[1], t.y[2]});
+  constexpr double unit = 2.0 * kSubPixels * kSubPixels;
+  if (x_min >= 0 && y_min >= 0 && x_max <= width && y_max <= height) return double(doubled_area(t)) / unit;
+  Polygon p;
+  for (int k = 0; k < 3; ++k) p.push_back({t.x[k], t.y[k]});
+  p = cut_off(cut_off(cut_off(cut_off(p, 0, -1, 0), 0, 1, width), 1, -1, 0), 1, 1, height);
+  double doubled = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const glm::dvec2& a = p[i];
+    const glm::dvec2& b = p[(i + 1) % p.size()];
+    doubled += a.x * b.y - a.y * b.x;
+  }
+  return std::abs(doubled) / unit;
+}
+
+/// Where a triangle is, whichever of its corners comes first.
+using Place = std::array<std::uint32_t, 9>;
+
+Place place_of(const ScreenTriangle& t) {
+  const auto corner = [&](int k) { return std::make_tuple(t.x[k], t.y[k], t.key[k]); };
+  int first = 0;
+  for (int k = 1; k < 3; ++k)
+    if (corner(k) < corner(first)) first = k;
+  Place place;
+  for (int i = 0; i < 3; ++i) {
+    const int k = (first + i) % 3;
+    place[std::size_t(3 * i)] = std::uint32_t(t.x[k]);
+    place[std::size_t(3 * i + 1)] = std::uint32_t(t.y[k]);
+    std::memcpy(&place[std::size_t(3 * i + 2)], &t.key[k], sizeof t.key[k]);
+  }
+  return place;
+}
+
+std::uint64_t hash_of(const Place& place) {
+  // Fowler, Noll, Vo, by words.
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const std::uint32_t word : place) hash = (hash ^ word) * 0x100000001b3;
+  return hash;
+}
+
+/// A triangle of the frame that may be there again.
+struct Candidate {
+  std::uint64_t hash;
+  PrimitiveId id;
+  TriangleNumber number;
+};
+
+class CopyFinder {
+ public:
+  CopyFinder(const FramePlan& plan, const CopyRule& rule) : plan_(plan), rule_(rule) {}
+
+  /// Those that nobody sees. Afterwards area() is that of all others.
+  std::vector<TriangleNumber> find() {
+    std::vector<Candidate> candidates;
+    plan_.for_each([&](const ScreenTriangle& t, const TriangleNumber& number) {
+      const double area = area_in_picture(t, plan_.view());
+      area_ += area;
+      if (area >= kLeastArea) candidates.push_back({hash_of(place_of(t)), t.id, number});
+    });
+    // By id where the place is the same: the lowest hide the others.
+    std::sort(candidates.begin(), candidates.end(),
+              [](const Candidate& a, const Candidate& b) { return a.hash != b.hash ? a.hash < b.hash : a.id < b.id; });
+    for (std::size_t begin = 0, end; begin < candidates.size(); begin = end) {
+      for (end = begin + 1; end < candidates.size() && candidates[end].hash == candidates[begin].hash;) ++end;
+      if (end - begin > 1) look_at(std::span(candidates).subspan(begin, end - begin));
+    }
+    return std::move(hidden_);
+  }
+  [[nodiscard]] double area() const { return area_; }
+
+ private:
+  /// Of the same hash, ids ascending.
+  void look_at(std::span<const Candidate> group) {
+    const Place place = place_of(plan_.triangle(group.front().number));
+    std::size_t kept = 0;
+    bool is_hidden = false;
+    for (const Candidate& c : group) {
+      const ScreenTriangle t = plan_.triangle(c.number);
+      if (place_of(t) != place) continue;  // the hash is the same by chance
+      if (is_hidden || kept >= rule_.most) {
+        hidden_.push_back(c.number);
+        area_ -= area_in_picture(t, plan_.view());
+        continue;
+      }
+      if (plan_.may_have_holes(c.id)) continue;  // another is seen through them
+      ++kept;
+      is_hidden = rule_.is_opaque && rule_.is_opaque(c.id);
+    }
+  }
+
+  const FramePlan& plan_;
+  const CopyRule& rule_;
+  std::vector<TriangleNumber> hidden_;
+  double area_ = 0;
+};
+
+}  // namespace
+
+const FramePlan& CrowdedFrame::thinned() {
+  const std::lock_guard lock(mutex_);
+  // Threads that wait here are told what the first one found.
+  if (error_) std::rethrow_exception(error_);
+  if (thinned_) return *thinned_;
+  try {
+    make();
+  } catch (...) {
+    error_ = std::current_exception();
+    throw;
+  }
+  return *thinned_;
+}
+
+void CrowdedFrame::make() {
+  CopyFinder finder(plan_, rule_);
+  const std::vector<TriangleNumber> hidden = finder.find();
+  const View& view = plan_.view();
+  const std::uint64_t most = most_gathered_fragments(view);
+  if (finder.area() > double(most))
+    throw Error(ErrorCode::limit_exceeded, "abuffer: about " + std::to_string(std::uint64_t(finder.area())) +
+                                               " fragments, and the most of a picture of " +
+                                               std::to_string(view.width) + " x " + std::to_string(view.height) +
+                                               " pixels are " + std::to_string(most));
+  thinned_ = hidden.empty() ? &plan_ : &made_.emplace(plan_.without(hidden));
+}
+
+}  // namespace frontmost::abuffer_detail

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// The same triangles again and again, more of them than there is time for.
+
+#include <gtest/gtest.h>
+
+#include "frontmost/abuffer.h"
+#include "frontmost/zbuffer.h"
+#include "support/cutout_scene.h"
+#include "support/effort.h"
+#include "support/same_visible.h"
+
+namespace frontmost::test {
+namespace {
+
+constexpr int crowd = under_sanitizer ? 3'000 : 100'000;
+
+View front_view(int width, int height) {
+  View view;
+  view.width = width;
+  view.height = height;
+  view.world_from_eye = look_at({0, 0, 1}, {0, 0, 0}, {0, 1, 0});
+  view.projection = make_projection(0.9, double(width) / height, {0.5, 6});
+  return view;
+}
+
+/// A square in two triangles, `count` times: as it is, and with its corners in other orders.
+Mesh squares(int count, float size) {
+  Mesh mesh;
+  mesh.positions = {{-size, -size, -0.2f}, {size, -size, 0.1f}, {size, size, -0.3f}, {-size, size, 0.2f}};
+  const glm::uvec3 first[] = {{0, 1, 2}, {1, 2, 0}, {2, 1, 0}, {1, 0, 2}};
+  for (int i = 0; i < count; ++i) {
+    mesh.triangles.push_back(first[i % 4]);
+    mesh.triangles.push_back({0, 2, 3});
+  }
+  return mesh;
+}
+
+Scene glass_scene(Mesh mesh) {
+  Scene scene = scene_of(std::move(mesh));
+  scene.materials.resize(1);
+  scene.materials[0].alpha = Material::Alpha::blend;
+  scene.materials[0].base_color.a = 0.5f;
+  scene.meshes[0].material_ids = {0};
+  return scene;
+}
+
+template <class Action>
+std::string refusal_of(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::limit_exceeded);
+    return error.what();
+  }
+  return "none";
+}
+
+// Small ones lie in a few tiles, where they are parts of clusters; large ones are drawn one by one. Of 100,000 the
+// fragments would be more than what is gone through: an hour, for what one triangle shows.
+TEST(Copies, OfOpaqueTrianglesCostAndShowWhatOneDoes) {
+  for (const float size : {0.08f, 1.5f})
+    for (const int grid : {0, 4}) {
+      SCOPED_TRACE(testing::Message() << "size " << size << ", grid " << grid);
+      const Scene many = scene_of(squares(crowd, size)), one = scene_of(squares(1, size));
+      const Surfaces surfaces(many), single(one);
+      View view = front_view(700, 500);
+      const FragmentLists lists = abuffer(surfaces, view, {grid}), wanted = abuffer(single, view, {grid});
+      ASSERT_EQ(lists.fragments.size(), wanted.fragments.size());
+      for (std::size_t i = 0; i < lists.fragments.size(); ++i) {
+        ASSERT_EQ(lists.fragments[i].primitive, wanted.fragments[i].primitive);
+        ASSERT_EQ(lists.fragments[i].mask, wanted.fragments[i].mask);
+      }
+      const std::vector<glm::vec4> colors(surfaces.primitive_count(), {0.2f, 0.4f, 0.9f, 1});
+      const ResolvedPicture picture = resolve(surfaces, view, colors, {grid});
+      const ResolvedPicture same = resolve(single, view, std::span(colors).first(2), {grid});
+      for (std::size_t i = 0; i < view.pixel_count(); ++i) {
+        ASSERT_EQ(picture.blue[i], same.blue[i]) << i;
+        ASSERT_EQ(picture.alpha[i], same.alpha[i]) << i;
+      }
+      view.samples = 4;
+      const std::vector<Visible> layers = visible_layers(surfaces, view, 3);
+      expect_same(zbuffer(single, view), layers[0]);
+      EXPECT_EQ(covered(layers[1]), 0u);
+    }
+}
+
+TEST(Copies, OfGlassAreLayersAsManyAsAreAskedFor) {
+  const Scene scene = glass_scene(squares(crowd, 1.5f));
+  const View view = front_view(300, 200);
+  const std::vector<Visible> layers = visible_layers(Surfaces(scene), view, 5);
+  expect_same(zbuffer(Surfaces(scene), view), layers[0]);
+  for (std::size_t k = 0; k < layers.size(); ++k)
+    for (std::size_t i = 0; i < view.pixel_count(); ++i) {
+      if (layers[0].primitives[i] == no_primitive) continue;
+      ASSERT_EQ(layers[k].primitives[i], layers[0].primitives[i] + 2 * k);
+      ASSERT_EQ(layers[k].keys[i], layers[0].keys[i]);
+    }
+}
+
+TEST(Copies, BehindHolesAreSeen) {
+  const Cut cuts[] = {Cut::all, Cut::half};
+  for (const Cut cut : cuts) {
+    Mesh mesh = squares(300, 1.5f);
+    // Cutout scenes have texture coordinates by vertex: each copy gets vertices of its own, and other holes.
+    Mesh apart;
+    for (const glm::uvec3& t : mesh.triangles)
+      add_triangle(apart, mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]);
+    const Scene scene = cutout_scene(std::move(apart), cut, 0.6f, 3);
+    const Surfaces surfaces(scene);
+    const View view = front_view(130, 70);
+    const std::vector<Visible> layers = visible_layers(surfaces, view, 2);
+    expect_same(zbuffer(surfaces, view), layers[0]);
+    EXPECT_GT(covered(layers[0]), 5000u);
+  }
+}
+
+TEST(Copies, OfGlassAreRefusedBeforeTheyAreGathered) {
+  if (under_sanitizer) return;
+  const Scene scene = glass_scene(squares(crowd, 1.5f));
+  const Surfaces surfaces(scene);
+  const View view = front_view(700, 500);
+  const std::vector<glm::vec4> colors(surfaces.primitive_count(), glm::vec4(0.5f));
+  // The square covers the whole picture, within the eye's 0.9 radians: 100,000 times 700 x 500.
+  const std::string wanted =
+      "abuffer: about 35000000000 fragments, and the most of a picture of 700 x 500 pixels are 1073741824";
+  EXPECT_EQ(refusal_of([&] { (void)abuffer(surfaces, view); }), wanted);
+  EXPECT_EQ(refusal_of([&] { (void)resolve(surfaces, view, colors); }), wanted);
+  EXPECT_EQ(refusal_of([&] { (void)count_fragments(surfaces, view); }), wanted);
+  // Everything may be made of glass.
+  const Scene opaque = scene_of(squares(crowd, 1.5f));
+  EXPECT_EQ(refusal_of([&] { (void)abuffer(Surfaces(opaque), view, {0, 0.5f}); }), wanted);
+}
+
+// What is large, but mostly outside of the picture, counts for what is within.
+TEST(Limit, CountsWhatThePictureShows) {
+  constexpr int count = 1000;
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const float z = -float(i) / count;
+    add_triangle(mesh, {301.8f, -300, z}, {301.8f, 300, z}, {-298.2f, 300, z});
+  }
+  const Scene scene = scene_of(std::move(mesh));
+  View view = front_view(1600, 900);
+  view.projection = make_orthographic(-1, 1, -1, 1, {0.5, 6});
+  // The line x + y = 1.8 leaves a two hundredth of the picture, which itself would be too much.
+  const std::uint64_t picture = view.pixel_count(), fragments = count_fragments(Surfaces(scene), view).fragments;
+  EXPECT_GT(picture * count, most_gathered_fragments(view));
+  EXPECT_NEAR(double(fragments), double(picture * count) / 200, 0.01 * double(picture * count) / 200);
+}
+
+TEST(Limit, GrowsWithThePicture) {
+  EXPECT_EQ(most_gathered_fragments(front_view(1920, 1080)), max_fragments);
+  EXPECT_EQ(most_gathered_fragments(front_view(8192, 8192)), std::uint64_t(1) << 32);
+}
+
+}  // namespace
+}  // namespace frontmost::test
