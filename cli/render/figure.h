@@ -14,6 +14,6 @@ inline constexpr std::string_view figure_name = "figure";
 
 /// Orders, shades and writes the figures that the job asks for, after telling how large they will be.
 /// \throws Error limit_exceeded for more polygons than the settings allow.
-void write_figures(const Job& job, const RenderContext& context, ViewResult& result);
+void write_figures(const Job& job, const RenderContext& context, const Sights& sights, ViewResult& result);
 
 }  // namespace frontmost::cli

@@ -168,9 +168,10 @@ ViewResult render_view(const Job& job, const RenderContext& context) {
   result.depth = job.view.depth;
   result.view = resolve_view(job.view, context.framed_surfaces());
   result.target = focal_point_of(job.view, result.view, context.framed_surfaces());
-  finish_view(job, context, look(job, context, result), result);
+  const Sights sights = look(job, context, result);
+  finish_view(job, context, sights, result);
   write_layers(job, context, result);
-  write_figures(job, context, result);
+  write_figures(job, context, sights, result);
   return result;
 }
 

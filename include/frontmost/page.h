@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "frontmost/base.h"
+#include "frontmost/figure.h"
 
 namespace frontmost {
 
@@ -88,15 +89,21 @@ void validate(const Page& page);
 ///
 /// SVG: size in millimetres, one user unit to the millimetre; layers and groups are named as Inkscape does it, paths of
 /// one pen share elements; without style sheets, clip paths, masks or transforms. PDF 1.5: layers as optional content,
-/// groups with an opacity as transparency groups, compressed; 1.6 where a side is over 5080 mm, scaled by a user unit. DXF
-/// (AutoCAD release 12), lines only: LINE, POLYLINE, ARC, CIRCLE and POINT with line types, y up from the page's lower
-/// left corner; it has no widths, and no groups: each is a layer named by layer and group, "2_VISIBLE-WHEEL", or all of
-/// a layer are one where there are a thousand or more. Line types and colours are those of layers: that of the pen, and
-/// where it is black one by the digit that the page's layer begins its name with. $INSUNITS says millimetres. Such names keep letters, digits and - alone, 31 at most. JSON:
-/// all of the page, as it is. Characters that a format does not allow are replaced in names. Memory is constant beside
-/// the page's own. \throws Error as validate() does; bad_argument without a format; unsupported for fills in DXF;
-/// file_unwritable.
+/// groups with an opacity as transparency groups, compressed; 1.6 where a side is over 5080 mm, scaled by a user unit.
+/// DXF (AutoCAD release 12), lines only: LINE, POLYLINE, ARC, CIRCLE and POINT with line types, y up from the page's
+/// lower left corner; it has no widths, and no groups: each is a layer named by layer and group, "2_VISIBLE-WHEEL", or
+/// all of a layer are one where there are a thousand or more. Line types and colours are those of layers: that of the
+/// pen, and where it is black one by the digit that the page's layer begins its name with. $INSUNITS says millimetres.
+/// Such names keep letters, digits and - alone, 31 at most. JSON: all of the page, as it is. Characters that a format
+/// does not allow are replaced in names. Memory is constant beside the page's own. \throws Error as validate() does;
+/// bad_argument without a format; unsupported for fills in DXF; file_unwritable.
 void save(const Page& page, const std::string& path, std::optional<PageFormat> format = std::nullopt,
+          const Execution& execution = {});
+
+/// A figure as a page of its size, where a pixel is 1/96 inch, as style sheets have it.
+[[nodiscard]] Page page_of(const Figure& figure);
+/// Writes a figure, as SVG or PDF by the name. \throws Error as save() of pages does.
+void save(const Figure& figure, const std::string& path, std::optional<PageFormat> format = std::nullopt,
           const Execution& execution = {});
 
 }  // namespace frontmost

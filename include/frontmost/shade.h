@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "frontmost/curved.h"
+#include "frontmost/figure.h"
 #include "frontmost/image.h"
 #include "frontmost/ray_camera.h"
 #include "frontmost/raycast.h"
@@ -84,6 +85,35 @@ struct ShadeOptions {
 /// \throws Error as shade() and abuffer() do, unsupported for other shadings than lit, flat and normals.
 [[nodiscard]] DeepImage shade_deep(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
                                    const Execution& execution = {});
+
+struct FigureOptions {
+  /// Shading, shadows, opacity and the background count; see-through does not: figures are translucent where the scene
+  /// is.
+  ShadeOptions shade;
+  /// Steps of 8-bit sRGB, 0 to 255, by which the colour of a polygon may differ from what is seen there. Where it
+  /// varies by more it is cut. 255: a triangle has the colour of its middle, and is never cut for it.
+  double tolerance = 6;
+  /// True: what is hidden is left out. False: all polygons are there in the order of painting, one over the other.
+  bool visible_only = true;
+  /// Neighbours of one colour become one shape, where no later polygon covers any of them.
+  bool merges_neighbours = false;
+  /// More polygons are an error.
+  std::size_t most_polygons = 2'000'000;
+};
+
+/// A picture of polygons, with the colours that shade() gives the same view, textures, shadows and smooth normals
+/// included; of alpha mode MASK holes are left out. The order is the painter's, exact where surfaces pass through each
+/// other. Against the hairlines that viewers leave between neighbours, polygons reach up to 4 pixels under what is
+/// painted over them (the print trade's trapping). `visible` is what is seen in the view with one sample a pixel.
+/// O(n log n) in the number of polygons, and the pixels that they cover. The same for any number of threads.
+/// (M. Newell, R. Newell, T. Sancha. A Solution to the Hidden Surface Problem. 1972.)
+/// \throws Error bad_argument for a Visible of more samples, an opacity or a tolerance out of range; limit_exceeded for
+/// more polygons than FigureOptions::most_polygons, or triangles that pass through each other too often.
+[[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const Visible& visible, const FigureOptions& options = {},
+                                 const Execution& execution = {});
+/// The same of a view, which need not have one sample. \throws Error as validate(view) does, too.
+[[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const View& view, const FigureOptions& options = {},
+                                 const Execution& execution = {});
 
 /// A picture of a scan, one sample a pixel: `lit` by a light at the eye, from base colours without textures and the
 /// planes of the triangles, all opaque and without shadows; `normals` are those of the planes, and `depth` is the

@@ -90,7 +90,8 @@ TEST_F(Figures, StandBesideFilesWhoseFormatIsGiven) {
 }
 
 TEST_F(Figures, RefuseWhatTheyCannotBe) {
-  expect_failure("render cube.stl -o a.svg --most-polygons 5", 1, "6 polygons, more than --most-polygons 5");
+  expect_failure("render cube.stl -o a.svg --most-polygons 5", 1,
+                 "a.svg: 6 polygons, more than 5; see --most-polygons");
   expect_failure("render cube.stl -o a.svg --method abuffer", 2, "without --method");
   expect_failure("render cube.stl -o a.svg --stream", 2, "whole model");
   expect_failure("render cube.stl -o a.svg --camera-model panorama", 2, "pinhole");

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "frontmost/figure.h"
 #include "frontmost/zbuffer.h"
+#include "shade/figure/colored_order.h"
 #include "shade/figure/side_net.h"
 #include "shade/figure_support.h"
 

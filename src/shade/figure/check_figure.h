@@ -2,7 +2,7 @@
 // Figures come from callers, too.
 #pragma once
 
-#include "frontmost/figure.h"
+#include "shade/figure/colored_order.h"
 
 namespace frontmost::shading {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "frontmost/figure.h"
 #include "painter/side_hems.h"
+#include "shade/figure/colored_order.h"
 #include "shade/figure/side_net.h"
 
 namespace frontmost::shading {

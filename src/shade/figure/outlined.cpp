@@ -3,8 +3,8 @@
 
 #include "base/float_environment.h"
 #include "base/parallel.h"
-#include "frontmost/figure.h"
 #include "shade/figure/check_figure.h"
+#include "shade/figure/colored_order.h"
 #include "shade/figure/figure_hems.h"
 #include "shade/figure/side_net.h"
 

@@ -2,6 +2,7 @@
 // What a page may be, and that its files are whole, the same every time, or not there.
 #include <limits>
 
+#include "frontmost/io.h"
 #include "io/drawings/sample_page.h"
 
 namespace frontmost::test {
@@ -110,6 +111,30 @@ TEST(PageFiles, ExtremePlacesAreWrittenRight) {
             std::string::npos);
   EXPECT_NE(saved(page, PageFormat::json).find("[[-1000000, 1000000], [1000000, -1000000], [0, 0.001]]"),
             std::string::npos);
+}
+
+TEST(Page, FiguresAreFilledPathsOnTheirBackground) {
+  Figure figure;
+  figure.view.width = 96;
+  figure.view.height = 48;
+  figure.title = "two";
+  figure.background = glm::vec3(1);
+  figure.corners = {{0, 0}, {96, 0}, {0, 48}, {96, 48}, {96, 0}, {0, 48}};
+  figure.rings = {{0, 3}, {3, 3}};
+  figure.shapes = {{glm::u8vec4(255, 0, 0, 255), 1, 0, 0}, {glm::u8vec4(0, 0, 255, 255), 1, 1, 1}};
+  const Page page = page_of(figure);
+  EXPECT_NEAR(page.width, 25.4, 1e-12);
+  EXPECT_NEAR(page.height, 12.7, 1e-12);
+  EXPECT_EQ(page.title, "two");
+  ASSERT_EQ(page.layers.size(), 1u);
+  ASSERT_EQ(page.layers[0].groups.size(), 2u) << "the background, and both shapes";
+  EXPECT_EQ(page.layers[0].groups[1].paths.size(), 2u);
+  EXPECT_EQ(page.layers[0].groups[1].fills[1], (PageColor{0, 0, 255, 255}));
+  const ScratchFolder folder;
+  save(figure, folder.file("figure.svg"));
+  save(page, folder.file("page.svg"));
+  EXPECT_EQ(load_text(folder.file("figure.svg"), 1 << 20), load_text(folder.file("page.svg"), 1 << 20));
+  EXPECT_THROW(save(figure, folder.file("figure.png")), Error);
 }
 
 }  // namespace

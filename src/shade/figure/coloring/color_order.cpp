@@ -4,7 +4,7 @@
 #include "base/float_environment.h"
 #include "base/parallel.h"
 #include "base/pool.h"
-#include "frontmost/figure.h"
+#include "shade/figure/colored_order.h"
 #include "shade/figure/coloring/polygon_colors.h"
 
 namespace frontmost {

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "frontmost/figure.h"
+#include "shade/figure/colored_order.h"
 #include "shade/figure/coloring/piece_places.h"
 #include "shade/figure/coloring/point_shader.h"
 #include "view/screen_cutout.h"

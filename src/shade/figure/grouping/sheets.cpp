@@ -5,9 +5,9 @@
 
 #include "base/float_environment.h"
 #include "base/parallel.h"
-#include "frontmost/figure.h"
 #include "painter/poll.h"
 #include "shade/figure/check_figure.h"
+#include "shade/figure/colored_order.h"
 #include "shade/figure/grouping/overlaps.h"
 #include "shade/figure/grouping/sheet_order.h"
 #include "shade/figure/side_net.h"
