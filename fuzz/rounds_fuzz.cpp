@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Arbitrary triangles, and tubes that they are joined to, into rounds. Must not crash or hang; what is found is round,
+// and made of triangles that are there; threads change no bit. Input: support/geometry_fuzz.h.
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+#include "support/geometry_fuzz.h"
+
+using namespace frontmost;
+
+namespace {
+
+void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+/// A tube about the z axis, of as many sides as said; some corners lie where the first ones of the mesh are.
+void add_tube(Mesh& mesh, std::uint32_t sides, float radius, float height, std::uint32_t moved) {
+  const auto first = std::uint32_t(mesh.positions.size());
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const float angle = 2 * std::numbers::pi_v<float> * float(i) / float(sides);
+    for (const float z : {0.0f, height})
+      mesh.positions.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+    const std::uint32_t a = first + 2 * i, b = first + 2 * ((i + 1) % sides);
+    mesh.triangles.emplace_back(a, b, b + 1);
+    mesh.triangles.emplace_back(a, b + 1, a + 1);
+  }
+  for (std::uint32_t i = 0; i < std::min({moved, first, 2 * sides}); ++i) mesh.positions[i] = mesh.positions[first + i];
+}
+
+void check(const Rounds& all, const Surfaces& surfaces) {
+  constexpr double least = 160 * std::numbers::pi / 180, rounding = 1e-9;
+  for (const Round& round : all.rounds) {
+    require(std::isfinite(round.radius) && round.radius > 0);
+    require(std::abs(glm::length(round.axis) - 1) < rounding);
+    require(round.turn >= least && round.turn <= 2 * std::numbers::pi + rounding);
+    if (round.kind == RoundKind::circle) require(round.from == round.to);
+    for (int k = 0; k < 3; ++k) require(std::isfinite(round.from[k]) && std::isfinite(round.to[k]));
+    require(round.count > 0 && round.first + round.count <= all.triangles.size());
+    for (std::uint32_t i = round.first; i < round.first + round.count; ++i) {
+      require(all.triangles[i] < surfaces.primitive_count());
+      require(i == round.first || all.triangles[i - 1] < all.triangles[i]);
+    }
+  }
+}
+
+bool equal(const Rounds& a, const Rounds& b) {
+  return a.triangles == b.triangles && std::equal(a.rounds.begin(), a.rounds.end(), b.rounds.begin(), b.rounds.end(),
+                                                  [](const Round& x, const Round& y) {
+                                                    return x.kind == y.kind && x.from == y.from && x.to == y.to &&
+                                                           x.axis == y.axis && x.radius == y.radius &&
+                                                           x.turn == y.turn && x.is_hollow == y.is_hollow &&
+                                                           x.first == y.first && x.count == y.count;
+                                                  });
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  std::optional<test::FuzzInput> input = test::read_input(data, size);
+  if (!input) return 0;
+  auto& [bytes, scene] = *input;
+  if (bytes.spare & 1) add_tube(scene.meshes[0], 3 + bytes.fov % 96, bytes.eye_x, bytes.eye_y, bytes.spare / 2);
+  try {
+    const Surfaces surfaces(scene);
+    const Rounds rounds = find_rounds(surfaces, {.threads = 2, .isa = Isa::best, .watch = nullptr});
+    check(rounds, surfaces);
+    require(equal(rounds, find_rounds(surfaces, {.threads = 1, .isa = Isa::scalar, .watch = nullptr})));
+  } catch (const Error&) {
+    // Positions that no scene may have: a stated outcome.
+  }
+  return 0;
+}
