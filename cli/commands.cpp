@@ -35,11 +35,12 @@ constexpr Command table[] = {
     {"lines", for_lines, "MODEL...", "Draw the edges of a model on paper, hidden lines removed.",
      "Outlines, creases, borders and intersections, cut exactly where they go out of sight, in millimetres, as vectors "
      "for journals, drawing sheets and pen plotters. The layers of SVG and PDF are 5 stippling, 4 hatching, 1 hidden, "
-     "2 visible, 3 outline and 8 frame, with a group for every object. Several models have a sheet each, numbered, "
-     "with {model} in the names of their files.",
+     "2 visible, 3 outline and 8 frame, with a group for every object. Several models have a sheet each, numbered: "
+     "the pages of one PDF, or files with {model} in their names.",
      "frontmost lines part.stl --view iso --camera-orthographic --hidden dashed -o part.svg\n"
      "frontmost lines part.stl --views front,top,left,iso --hidden dashed --page a3 -o sheet.pdf\n"
      "frontmost lines part.stl --views front,top,left --title Bracket --number B-17 --date 2026-03-01 -o sheet.pdf\n"
+     "frontmost lines part.stl nut.stl --views front,top --frame -o sheets.pdf\n"
      "frontmost lines part.stl --view top --camera-orthographic --scale 1:1 -o part.dxf\n"
      "frontmost lines engine.glb --style figure -o figure.pdf\n"
      "frontmost lines city.glb --plot --page a3 -o plot.svg --json",

@@ -193,6 +193,7 @@ struct DrawingSettings {
   int sheet = 1, sheets = 1;  ///< where several models are given
   std::optional<PageFormat> format;
   std::vector<std::string> outputs;
+  std::vector<std::string> books;  ///< of `outputs`, the files that hold the sheets of several models as pages
 
   [[nodiscard]] bool is_sheet() const { return !views.empty() || !sections.empty(); }
   /// A title block needs a frame.

@@ -258,13 +258,25 @@ LinePens pens_of(const DrawingSettings& settings) {
   return pens;
 }
 
+std::optional<PageFormat> format_of(const std::string& path, const DrawingSettings& settings) {
+  return page_format(path) ? page_format(path) : settings.format;
+}
+
 /// Plotters follow paths. DXF is for programs that know line types.
 void write(const Page& page, const Page& plotted, const Settings& settings, const Execution& execution) {
   for (const std::string& path : settings.drawing.outputs) {
     stop_if_interrupted();
     const WritingFiles writing;
-    const auto format = page_format(path) ? page_format(path) : settings.drawing.format;
+    const auto format = format_of(path, settings.drawing);
     save(format == PageFormat::dxf ? page : plotted, path, format, execution);
+  }
+}
+
+void write_books(const std::vector<Page>& pages, const Settings& settings, const Execution& execution) {
+  for (const std::string& path : settings.drawing.books) {
+    stop_if_interrupted();
+    const WritingFiles writing;
+    save(pages, path, format_of(path, settings.drawing), execution);
   }
 }
 
@@ -273,11 +285,13 @@ void name_object(Scene& scene, const Settings& settings) {
   if (settings.load.format == ModelFormat::stl && scene.instances.size() == 1) scene.instances[0].name = scene.name;
 }
 
-/// Draws one model, and writes its files. \returns the report.
-Json draw_model(Settings settings, const Execution& execution, Progress& progress) {
+/// Draws one model, and writes its own files; its page goes to `pages` where some file holds all. \returns the report.
+Json draw_model(Settings settings, std::vector<Page>& pages, const Execution& execution, Progress& progress) {
   settings.load.found = &settings.load.format;
   settings.load.metres_per_unit = &settings.metres_per_unit;
-  Scene scene = load_model(settings, execution, progress, settings.drawing.outputs);
+  std::vector<std::string> written = settings.drawing.outputs;
+  written.insert(written.end(), settings.drawing.books.begin(), settings.drawing.books.end());
+  Scene scene = load_model(settings, execution, progress, written);
   name_object(scene, settings);
   const Surfaces surfaces(scene, execution);
   LinesTimings timings;
@@ -322,29 +336,49 @@ Json draw_model(Settings settings, const Execution& execution, Progress& progres
   write(page, plotted, settings, execution);
   timings.write = watch.milliseconds();
   progress.clear();
-  return lines_json(settings, views, plotted, scale, timings);
+  Json report = lines_json(settings, views, plotted, scale, timings);
+  if (!settings.drawing.books.empty()) pages.push_back(dashed ? std::move(*dashed) : std::move(page));
+  return report;
 }
 
-/// Every model has a sheet of its own, and files of its own. \throws UsageError where they would share them.
+/// Parts a sheet's files from those that hold the sheets of all models as pages. \throws UsageError where they cannot.
+void part_outputs(DrawingSettings& sheet) {
+  std::vector<std::string> own;
+  for (const std::string& path : sheet.outputs) {
+    if (sheet.sheets == 1 || path.find("{model}") != std::string::npos) {
+      own.push_back(path);
+    } else if (format_of(path, sheet) == PageFormat::pdf) {
+      sheet.books.push_back(path);
+    } else {
+      throw UsageError(fmt::format(
+          "-o {}: every model has a sheet of its own; put {{model}} into the name, or make it a .pdf, which has pages",
+          path));
+    }
+  }
+  sheet.outputs = std::move(own);
+}
+
+/// Every model has a sheet of its own, and files of its own or pages of one. \throws UsageError where files are to be
+/// written twice.
 std::vector<Settings> sheets_of(const Settings& given) {
   std::vector<std::string> models = given.more_models;
   models.insert(models.begin(), given.model);
   std::vector<Settings> sheets;
   std::vector<std::string> paths;
+  const std::string view = given.drawing.is_sheet() ? std::string("sheet") : view_name(given.view);
   for (const std::string& model : models) {
     Settings& sheet = sheets.emplace_back(given);
     sheet.model = model;
     sheet.more_models.clear();
     sheet.drawing.sheet = int(sheets.size());
     sheet.drawing.sheets = int(models.size());
-    for (std::string& path : sheet.drawing.outputs) {
-      if (models.size() > 1 && path.find("{model}") == std::string::npos)
-        throw UsageError(fmt::format("-o {}: every model has a sheet of its own; put {{model}} into the name", path));
-      path = fill_template(path, model_name(model),
-                           given.drawing.is_sheet() ? std::string("sheet") : view_name(given.view));
-      paths.push_back(path);
-    }
+    part_outputs(sheet.drawing);
+    for (std::string& path : sheet.drawing.outputs)
+      paths.push_back(path = fill_template(path, model_name(model), view));
+    for (std::string& path : sheet.drawing.books) path = fill_template(path, {}, view);
   }
+  const std::vector<std::string>& books = sheets.front().drawing.books;
+  paths.insert(paths.end(), books.begin(), books.end());
   check_outputs(paths, input_files(given));
   return sheets;
 }
@@ -357,11 +391,15 @@ int run_lines(const Settings& settings) {
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
   Json reports = Json::array();
+  std::vector<Page> pages;
   for (const Settings& sheet : sheets) {
     if (sheets.size() > 1) progress.set_prefix(fmt::format("sheet {} of {}: ", reports.size() + 1, sheets.size()));
-    reports.push_back(draw_model(sheet, execution, progress));
+    reports.push_back(draw_model(sheet, pages, execution, progress));
   }
-  if (settings.run.json) print(dump(sheets.size() == 1 ? reports[0] : Json{{"sheets", reports}}));
+  write_books(pages, sheets.front(), execution);
+  progress.clear();
+  if (!settings.run.json) return exit_done;
+  print(dump(sheets.size() == 1 ? reports[0] : Json{{"sheets", reports}, {"outputs", sheets.front().drawing.books}}));
   return exit_done;
 }
 

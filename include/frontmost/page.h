@@ -100,6 +100,12 @@ void validate(const Page& page);
 void save(const Page& page, const std::string& path, std::optional<PageFormat> format = std::nullopt,
           const Execution& execution = {});
 
+/// Several pages in one file, which may differ in size. Layers of one name are switched on and off together; the file's
+/// title is that of the first page. \throws Error as the other save(); bad_argument without a page; unsupported for
+/// several in another format than PDF.
+void save(std::span<const Page> pages, const std::string& path, std::optional<PageFormat> format = std::nullopt,
+          const Execution& execution = {});
+
 /// A figure as a page of its size, where a pixel is 1/96 inch, as style sheets have it.
 [[nodiscard]] Page page_of(const Figure& figure);
 /// Writes a figure, as SVG or PDF by the name. \throws Error as save() of pages does.

@@ -266,11 +266,34 @@ TEST_F(SheetsCommand, SeveralModelsAreSheetsWithNumbers) {
     EXPECT_TRUE(says(page, std::to_string(++number) + "/3", 2.5)) << model;
     EXPECT_EQ(views_of(page).size(), 2u);
   }
-  expect_failure(sheets + " -o all.pdf", 2, "put {model} into the name");
+  expect_failure(sheets + " -o all.svg", 2,
+                 "-o all.svg: every model has a sheet of its own; put {model} into the name");
   expect_failure("lines box.obj box.obj --frame -o {model}.pdf", 2, "would be written twice");
-  EXPECT_FALSE(exists("all.pdf"));
+  EXPECT_FALSE(exists("all.svg"));
   succeed("lines box.obj -o {model}_{view}.svg");
   EXPECT_TRUE(exists("box_three-quarter.svg"));
+}
+
+TEST_F(SheetsCommand, SeveralModelsArePagesOfOnePdf) {
+  write("second.obj", pitted_box_obj(2));
+  const std::string sheets = "lines box.obj second.obj --up +z --views front,top --title Boxes --page a4";
+  const json report = succeed(sheets + " -o {view}s.pdf -o {model}.pdf --json").json();
+  EXPECT_EQ(report["outputs"], json({"sheets.pdf"}));
+  EXPECT_EQ(report["sheets"][1]["outputs"], json({"second.pdf"}));
+  const std::string pdf = read("sheets.pdf");
+  EXPECT_THAT(pdf, HasSubstr("/Count 2 >>"));
+  // A page is what the file of its model is: the same bytes, but for the numbers of its objects.
+  for (const std::string model : {"box", "second"}) {
+    const std::string alone = read(model + ".pdf");
+    const std::size_t begin = alone.find("stream\n"), end = alone.find("\nendstream");
+    EXPECT_THAT(pdf, HasSubstr(alone.substr(begin, end - begin))) << model;
+  }
+  // Without {model} in the name there is no other file; to standard output as well.
+  EXPECT_THAT(succeed("lines box.obj second.obj -o - --format pdf").out, HasSubstr("/Count 2 >>"));
+  expect_failure("lines box.obj second.obj -o - --format svg", 2, "make it a .pdf");
+  expect_failure("lines box.obj second.obj -o box.pdf -o {model}.pdf", 2, "would be written twice");
+  expect_failure("lines box.obj missing.obj -o none.pdf", 1, "missing.obj");
+  EXPECT_FALSE(exists("none.pdf"));
 }
 
 TEST_F(SheetsCommand, DxfLayersAreNamedByTheFileAndNotByTheHeaderOfAnStl) {

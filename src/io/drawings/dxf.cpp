@@ -73,7 +73,8 @@ int color_number(const PageColor& color) {
 /// programs and lasers can tell them apart; release 12 has no widths that could.
 int layer_color(const std::string& page_layer, const Pen& pen) {
   const int color = color_number(pen.color);
-  // Hidden, visible, outline, hatching, stippling, centre lines, dimensions, frame, sections: all are seen on black and on white.
+  // Hidden, visible, outline, hatching, stippling, centre lines, dimensions, frame, sections: all are seen on black and
+  // on white.
   constexpr int of_classes[] = {7, 6, 7, 5, 8, 9, 1, 3, 4, 3};
   const bool is_numbered = !page_layer.empty() && page_layer[0] >= '0' && page_layer[0] <= '9';
   return color == 7 && is_numbered ? of_classes[page_layer[0] - '0'] : color;
@@ -116,7 +117,7 @@ constexpr int by_layer = 256;
 class DxfWriter {
  public:
   DxfWriter(const Page& page, OutputFile& file, const Execution& execution)
-      : page_(page), layers_(page), sink_(file), out_(sink_), progress_(page, execution) {
+      : page_(page), layers_(page), sink_(file), out_(sink_), progress_(std::span(&page, 1), execution) {
     for (const PageLayer& layer : page.layers)
       for (const PageGroup& group : layer.groups)
         if (type_of(group.pen) == 0) dashes_.push_back(group.pen.dashes);

@@ -9,7 +9,7 @@ namespace frontmost::detail {
 
 /// Writers get pages that are valid, and do not commit the file.
 void save_svg(const Page& page, OutputFile& file, const Execution& execution);
-void save_pdf(const Page& page, OutputFile& file, const Execution& execution);
+void save_pdf(std::span<const Page> pages, OutputFile& file, const Execution& execution);
 /// \throws Error unsupported where something is filled, before anything is written.
 void save_dxf(const Page& page, OutputFile& file, const Execution& execution);
 void save_json(const Page& page, OutputFile& file, const Execution& execution);
@@ -17,7 +17,7 @@ void save_json(const Page& page, OutputFile& file, const Execution& execution);
 /// Tells the watch how far writing is, path by path.
 class WritingProgress {
  public:
-  WritingProgress(const Page& page, const Execution& execution);
+  WritingProgress(std::span<const Page> pages, const Execution& execution);
   /// One path more. \throws Error cancelled.
   void step() {
     if (++done_ % paths_between == 0) tell();

@@ -59,7 +59,7 @@ void write_path(PageText& out, const PageGroup& group, std::size_t i) {
 void save_json(const Page& page, OutputFile& file, const Execution& execution) {
   FileSink sink(file);
   PageText out(sink);
-  WritingProgress progress(page, execution);
+  WritingProgress progress(std::span(&page, 1), execution);
   out << "{\"unit\": \"mm\", \"width\": ";
   out.decimal(page.width) << ", \"height\": ";
   out.decimal(page.height) << ", \"title\": " << json_text(page.title) << ", \"layers\": [";

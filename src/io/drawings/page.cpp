@@ -69,14 +69,23 @@ std::optional<PageFormat> page_format(const std::string& path) {
 }
 
 void save(const Page& page, const std::string& path, std::optional<PageFormat> format, const Execution& execution) {
-  validate(page);
+  save(std::span(&page, 1), path, format, execution);
+}
+
+void save(std::span<const Page> pages, const std::string& path, std::optional<PageFormat> format,
+          const Execution& execution) {
+  if (pages.empty()) throw Error(ErrorCode::bad_argument, path + ": no pages");
+  for (const Page& page : pages) validate(page);
   if (!format) format = page_format(path);
   if (!format)
     throw Error(ErrorCode::bad_argument, path + ": the suffix names no format; use .svg, .pdf, .dxf or .json");
+  if (pages.size() > 1 && *format != PageFormat::pdf)
+    throw Error(ErrorCode::unsupported, path + ": of these formats PDF alone has several pages");
+  const Page& page = pages[0];
   OutputFile file(path);
   switch (*format) {
     case PageFormat::svg: detail::save_svg(page, file, execution); break;
-    case PageFormat::pdf: detail::save_pdf(page, file, execution); break;
+    case PageFormat::pdf: detail::save_pdf(pages, file, execution); break;
     case PageFormat::dxf: detail::save_dxf(page, file, execution); break;
     case PageFormat::json: detail::save_json(page, file, execution); break;
   }
@@ -86,9 +95,10 @@ void save(const Page& page, const std::string& path, std::optional<PageFormat> f
 
 namespace detail {
 
-WritingProgress::WritingProgress(const Page& page, const Execution& execution) : execution_(execution) {
-  for (const PageLayer& layer : page.layers)
-    for (const PageGroup& group : layer.groups) count_ += group.paths.size();
+WritingProgress::WritingProgress(std::span<const Page> pages, const Execution& execution) : execution_(execution) {
+  for (const Page& page : pages)
+    for (const PageLayer& layer : page.layers)
+      for (const PageGroup& group : layer.groups) count_ += group.paths.size();
   report_progress(execution, "write", 0);
 }
 

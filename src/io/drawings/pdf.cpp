@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// PDF 1.5, or 1.6 where a page needs a unit of its own: one page, one compressed stream of drawing operators, layers as
-// optional content, groups with an opacity as forms that are transparency groups. No date and no file identifier, so
+// PDF 1.5, or 1.6 where a page needs a unit of its own: of each page one compressed stream of drawing operators, layers
+// as optional content, groups with an opacity as forms that are transparency groups. No date and no file identifier, so
 // that a page always gives the same bytes.
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <new>
@@ -189,57 +190,95 @@ class PdfContent {
   Opacities fill_opacities_{}, line_opacities_{};
 };
 
+/// A page of a file, and which objects it is.
+struct PdfPage {
+  struct Form {
+    const PageGroup* group;
+    std::size_t object;  ///< that of its length follows
+  };
+
+  const Page* page;
+  std::size_t object, contents, length;
+  std::vector<std::size_t> layers;  ///< by layer of the page, its place among all layers
+  std::vector<Form> forms;
+  double unit;   ///< viewers refuse pages of more than 14400 units
+  double scale;  ///< units in a millimetre
+};
+
 /// The objects of a file, and where they begin.
 class PdfWriter {
  public:
-  PdfWriter(const Page& page, OutputFile& file, const Execution& execution)
-      : page_(page), sink_(file), out_(sink_), progress_(page, execution), places_(first_layer + page.layers.size()) {
-    for (const PageLayer& layer : page.layers)
-      for (const PageGroup& group : layer.groups)
-        if (group.opacity < 255) forms_.push_back({&group, places_.size() + 2 * forms_.size()});
-    places_.resize(places_.size() + 2 * forms_.size());
-    // Viewers refuse pages of more than 14400 units.
-    unit_ = std::max(1.0, std::ceil(std::max(page.width, page.height) * points_per_millimetre / 14400));
+  PdfWriter(std::span<const Page> pages, OutputFile& file, const Execution& execution)
+      : sink_(file), out_(sink_), progress_(pages, execution) {
+    for (const Page& page : pages) number(page);
   }
 
   void write() {
     // Optional content came with 1.5, the unit with 1.6. pdfTeX warns of all above 1.5.
-    out_ << (unit_ > 1 ? "%PDF-1.6" : "%PDF-1.5") << "\n%\xE2\xE3\xCF\xD3\n";
-    const double scale = points_per_millimetre / unit_;
-    begin(contents) << "<< ";
-    const States states = write_stream(length, scale, [](PdfContent& content) { content.write(); });
-    write_page(states, scale);
-    for (const Form& form : forms_) write_form(form, scale);
+    const bool has_unit = std::any_of(pages_.begin(), pages_.end(), [](const PdfPage& p) { return p.unit > 1; });
+    out_ << (has_unit ? "%PDF-1.6" : "%PDF-1.5") << "\n%\xE2\xE3\xCF\xD3\n";
+    for (const PdfPage& page : pages_) {
+      begin(page.contents) << "<< ";
+      write_page(page, write_stream(page, page.length, [](PdfContent& content) { content.write(); }));
+      for (const PdfPage::Form& form : page.forms) write_form(page, form);
+    }
     write_layers();
     write_end();
     out_.flush();
   }
 
  private:
-  enum Object : std::size_t { none, catalog, page_tree, page_itself, contents, length, info, first_layer };
-  struct Form {
-    const PageGroup* group;
-    std::size_t object;  ///< that of its length follows
-  };
+  enum Object : std::size_t { none, catalog, page_tree, first_page, info = first_page + 3, first_free };
   /// The opacities that a stream names.
   struct States {
     PdfContent::Opacities fills, lines;
   };
+  /// What viewers switch on and off: those of one name on several pages together.
+  struct Layer {
+    const std::string* name;
+    std::size_t object;
+  };
+
+  void number(const Page& page) {
+    const auto next = [&](std::size_t count) {
+      places_.resize(places_.size() + count);
+      return places_.size() - count;
+    };
+    const std::size_t object = pages_.empty() ? std::size_t(first_page) : next(3);
+    const double unit = std::max(1.0, std::ceil(std::max(page.width, page.height) * points_per_millimetre / 14400));
+    PdfPage& sheet =
+        pages_.emplace_back(PdfPage{&page, object, object + 1, object + 2, {}, {}, unit, points_per_millimetre / unit});
+    std::vector<bool> is_taken(layers_.size());  // a page may have several of one name
+    for (const PageLayer& layer : page.layers) {
+      std::size_t at = 0;
+      while (at < is_taken.size() && (is_taken[at] || *layers_[at].name != layer.name)) ++at;
+      if (at == layers_.size()) {
+        layers_.push_back({&layer.name, next(1)});
+        is_taken.push_back(true);
+      }
+      is_taken[at] = true;
+      sheet.layers.push_back(at);
+    }
+    for (const PageLayer& layer : page.layers)
+      for (const PageGroup& group : layer.groups)
+        if (group.opacity < 255) sheet.forms.push_back({&group, next(2)});
+  }
 
   PageText& begin(std::size_t object) {
     places_[object] = out_.size();
     return out_.integer(std::int64_t(object)) << " 0 obj\n";
   }
+  PageText& reference(std::size_t object) { return out_.integer(std::int64_t(object)) << " 0 R "; }
 
   /// The end of a stream's dictionary, the stream, and its length as an object of its own.
   template <class Write>
-  States write_stream(std::size_t length_object, double scale, const Write& write) {
+  States write_stream(const PdfPage& page, std::size_t length_object, const Write& write) {
     out_ << "/Length ";
     out_.integer(std::int64_t(length_object)) << " 0 R /Filter /FlateDecode >>\nstream\n";
     const std::uint64_t start = out_.size();
     DeflateSink deflate(out_);
     PageText operators(deflate);
-    PdfContent content(page_, operators, scale, progress_);
+    PdfContent content(*page.page, operators, page.scale, progress_);
     write(content);
     operators.flush();
     deflate.finish();
@@ -251,9 +290,9 @@ class PdfWriter {
   }
 
   /// Resources are named before it is known which a form needs: all that its group has.
-  void write_form(const Form& form, double scale) {
+  void write_form(const PdfPage& page, const PdfPage::Form& form) {
     const PageGroup& group = *form.group;
-    glm::dvec2 low(0), high(page_.width, page_.height);
+    glm::dvec2 low(0), high(page.page->width, page.page->height);
     if (group.bulges.empty() && !group.points.empty()) {
       low = high = group.points[0];
       for (const glm::dvec2& p : group.points) {
@@ -273,7 +312,7 @@ class PdfWriter {
       out_.fixed(thousandths(side)) << ' ';
     out_ << "] /Group << /S /Transparency /I true >> /Resources << ";
     write_all_states(states) << ">> ";
-    (void)write_stream(form.object + 1, scale, [&](PdfContent& content) { content.write_alone(group); });
+    (void)write_stream(page, form.object + 1, [&](PdfContent& content) { content.write_alone(group); });
   }
 
   PageText& write_all_states(const States& states) {
@@ -284,7 +323,7 @@ class PdfWriter {
   }
 
   PageText& layer_references() {
-    for (std::size_t i = 0; i < page_.layers.size(); ++i) out_.integer(std::int64_t(first_layer + i)) << " 0 R ";
+    for (const Layer& layer : layers_) reference(layer.object);
     return out_;
   }
 
@@ -297,42 +336,46 @@ class PdfWriter {
     }
   }
 
-  void write_page(const States& states, double scale) {
-    begin(page_itself) << "<< /Type /Page /Parent 2 0 R /Contents 4 0 R /MediaBox [0 0 ";
-    out_.fixed(std::int64_t(page_.width * scale * 1e6), 6) << ' ';  // rounded down: rasterisers round up
-    out_.fixed(std::int64_t(page_.height * scale * 1e6), 6) << "]";
-    if (unit_ > 1) {
+  void write_page(const PdfPage& page, const States& states) {
+    begin(page.object) << "<< /Type /Page /Parent 2 0 R /Contents ";
+    reference(page.contents) << "/MediaBox [0 0 ";
+    out_.fixed(std::int64_t(page.page->width * page.scale * 1e6), 6) << ' ';  // rounded down: rasterisers round up
+    out_.fixed(std::int64_t(page.page->height * page.scale * 1e6), 6) << "]";
+    if (page.unit > 1) {
       out_ << " /UserUnit ";
-      out_.integer(std::int64_t(unit_));
+      out_.integer(std::int64_t(page.unit));
     }
     out_ << "\n/Resources << ";
     write_all_states(states);
-    if (!forms_.empty()) {
+    if (!page.forms.empty()) {
       out_ << "/XObject << ";
-      for (std::size_t i = 0; i < forms_.size(); ++i) {
+      for (std::size_t i = 0; i < page.forms.size(); ++i) {
         out_ << "/G";
         out_.integer(std::int64_t(i)) << ' ';
-        out_.integer(std::int64_t(forms_[i].object)) << " 0 R ";
+        reference(page.forms[i].object);
       }
       out_ << ">> ";
     }
     out_ << "/Properties << ";
-    for (std::size_t i = 0; i < page_.layers.size(); ++i) {
+    for (std::size_t i = 0; i < page.layers.size(); ++i) {
       out_ << "/L";
       out_.integer(std::int64_t(i)) << ' ';
-      out_.integer(std::int64_t(first_layer + i)) << " 0 R ";
+      reference(layers_[page.layers[i]].object);
     }
     out_ << ">> >> >>\nendobj\n";
   }
 
   void write_layers() {
-    for (std::size_t i = 0; i < page_.layers.size(); ++i)
-      begin(first_layer + i) << "<< /Type /OCG /Name " << pdf_text(page_.layers[i].name) << " >>\nendobj\n";
+    for (const Layer& layer : layers_)
+      begin(layer.object) << "<< /Type /OCG /Name " << pdf_text(*layer.name) << " >>\nendobj\n";
   }
 
   void write_end() {
-    begin(page_tree) << "<< /Type /Pages /Kids [3 0 R] /Count 1 >>\nendobj\n";
-    begin(info) << "<< /Producer (Frontmost) /Title " << pdf_text(page_.title) << " >>\nendobj\n";
+    begin(page_tree) << "<< /Type /Pages /Kids [ ";
+    for (const PdfPage& page : pages_) reference(page.object);
+    out_ << "] /Count ";
+    out_.integer(std::int64_t(pages_.size())) << " >>\nendobj\n";
+    begin(info) << "<< /Producer (Frontmost) /Title " << pdf_text(pages_[0].page->title) << " >>\nendobj\n";
     begin(catalog) << "<< /Type /Catalog /Pages 2 0 R /OCProperties << /OCGs [ ";
     layer_references() << "] /D << /Order [ ";
     layer_references() << "] >> >> >>\nendobj\n";
@@ -348,19 +391,18 @@ class PdfWriter {
     out_.integer(std::int64_t(table)) << "\n%%EOF\n";
   }
 
-  const Page& page_;
   FileSink sink_;
   PageText out_;
   WritingProgress progress_;
-  std::vector<Form> forms_;
-  std::vector<std::uint64_t> places_;
-  double unit_ = 1;
+  std::vector<PdfPage> pages_;
+  std::vector<Layer> layers_;
+  std::vector<std::uint64_t> places_ = std::vector<std::uint64_t>(first_free);
 };
 
 }  // namespace
 
-void save_pdf(const Page& page, OutputFile& file, const Execution& execution) {
-  PdfWriter(page, file, execution).write();
+void save_pdf(std::span<const Page> pages, OutputFile& file, const Execution& execution) {
+  PdfWriter(pages, file, execution).write();
 }
 
 }  // namespace frontmost::detail

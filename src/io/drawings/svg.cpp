@@ -16,7 +16,7 @@ constexpr std::size_t dots_per_element = 4096;
 class SvgWriter {
  public:
   SvgWriter(const Page& page, OutputFile& file, const Execution& execution)
-      : page_(page), sink_(file), out_(sink_), progress_(page, execution) {}
+      : page_(page), sink_(file), out_(sink_), progress_(std::span(&page, 1), execution) {}
 
   void write() {
     out_ << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What each format holds, to the character where it matters.
 #include <cmath>
+#include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -12,6 +14,16 @@ namespace frontmost::test {
 namespace {
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+ErrorCode code_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.code();
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return {};
+}
 
 std::size_t count(const std::string& text, const std::string& part) {
   std::size_t n = 0;
@@ -168,28 +180,73 @@ TEST(Pdf, GroupsMayHaveAnOpacity) {
 
 TEST(Json, SaysWhatIsAPart) { EXPECT_EQ(count(saved(page_with_parts(), PageFormat::json), "\"part\": true"), 1u); }
 
-TEST(Pdf, FindsItsObjectsAndItsSize) {
-  const std::string pdf = saved(sample_page(), PageFormat::pdf);
-  EXPECT_EQ(pdf.substr(0, 9), "%PDF-1.5\n");  // pdfTeX warns of all above
-  EXPECT_TRUE(has(pdf, "/MediaBox [0 0 283.464566 141.732283]"));
-  EXPECT_TRUE(has(pdf, "/Type /OCG /Name <FEFF003100200068"));
+/// Each begins where the table says. \returns their number, and that of the table's head.
+std::size_t objects_of(const std::string& pdf) {
   const std::size_t start = std::stoul(pdf.substr(pdf.rfind("startxref\n") + 10));
   std::istringstream table(pdf.substr(start));
   std::string word, zeros, kind;
   std::size_t first = 0, size = 0, place = 0;
   table >> word >> first >> size;
   EXPECT_EQ(word, "xref");
-  EXPECT_EQ(size, 9u);  // two layers
   table >> zeros >> zeros >> kind;
   for (std::size_t i = 1; i < size; ++i) {
     table >> place >> zeros >> kind;
     const std::string head = std::to_string(i) + " 0 obj\n";
     EXPECT_EQ(pdf.substr(place, head.size()), head);
   }
+  return size;
+}
+
+TEST(Pdf, FindsItsObjectsAndItsSize) {
+  const std::string pdf = saved(sample_page(), PageFormat::pdf);
+  EXPECT_EQ(pdf.substr(0, 9), "%PDF-1.5\n");  // pdfTeX warns of all above
+  EXPECT_TRUE(has(pdf, "/MediaBox [0 0 283.464566 141.732283]"));
+  EXPECT_TRUE(has(pdf, "/Type /OCG /Name <FEFF003100200068"));
+  EXPECT_EQ(objects_of(pdf), 9u);  // two layers
   EXPECT_FALSE(has(pdf, "Date"));
   // The length that the stream says it has.
   const std::size_t begin = pdf.find("stream\n") + 7, end = pdf.find("\nendstream");
   EXPECT_TRUE(has(pdf, "5 0 obj\n" + std::to_string(end - begin) + "\nendobj"));
+}
+
+std::string saved_together(const std::vector<Page>& pages, PageFormat format) {
+  const ScratchFolder folder;
+  save(pages, folder.file("pages"), format);
+  return read_text(folder.file("pages"));
+}
+
+TEST(Pdf, HasSeveralPagesWhoseLayersOfOneNameAreOne) {
+  Page second = page_with_a_sheet(), third = sample_page();
+  second.width = 6000;  // more than viewers take without a unit
+  third.title = "Third";
+  third.layers.push_back(third.layers[1]);  // twice the same name in one page
+  const std::string pdf = saved_together({sample_page(), second, third}, PageFormat::pdf);
+  EXPECT_EQ(pdf.substr(0, 9), "%PDF-1.6\n");
+  EXPECT_TRUE(has(pdf, "/Type /Pages /Kids [ 3 0 R 9 0 R 15 0 R ] /Count 3 >>"));
+  // Two of the first page; one more of the second, with a form; one more of the third.
+  EXPECT_EQ(count(pdf, "/Type /OCG "), 4u);
+  EXPECT_EQ(objects_of(pdf), 1 + 6 + 2 + 3 + 1 + 2 + 3 + 1u);
+  EXPECT_TRUE(has(pdf, "/OCGs [ 7 0 R 8 0 R 12 0 R 18 0 R ]"));
+  EXPECT_EQ(count(pdf, "/Properties << /L0 7 0 R /L1 8 0 R >>"), 1u);
+  EXPECT_EQ(count(pdf, "/Properties << /L0 7 0 R /L1 8 0 R /L2 18 0 R >>"), 1u);
+  EXPECT_EQ(count(pdf, "/UserUnit 2"), 1u);
+  EXPECT_EQ(count(pdf, "/MediaBox [0 0 283.464566 141.732283]"), 2u);
+  EXPECT_EQ(count(pdf, "/Type /Page "), 3u);
+  // What a page draws is what it draws alone.
+  const std::string alone = saved(sample_page(), PageFormat::pdf);
+  EXPECT_EQ(operators_of(pdf), operators_of(alone));
+  EXPECT_EQ(saved_together({sample_page()}, PageFormat::pdf), alone);
+}
+
+TEST(Pages, ThatAreSeveralNeedPdf) {
+  const ScratchFolder folder;
+  const std::vector<Page> two{sample_page(), sample_page()};
+  for (const char* const name : {"a.svg", "a.dxf", "a.json"}) {
+    EXPECT_EQ(code_of([&] { save(two, folder.file(name)); }), ErrorCode::unsupported);
+    EXPECT_FALSE(std::filesystem::exists(folder.file(name)));
+  }
+  EXPECT_EQ(code_of([&] { save(std::vector<Page>(), folder.file("a.pdf")); }), ErrorCode::bad_argument);
+  EXPECT_EQ(saved_together({sample_page()}, PageFormat::svg), saved(sample_page(), PageFormat::svg));
 }
 
 TEST(Pdf, DrawsMillimetresWithYDown) {
