@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rounds: the circles and cylinders that a scene's triangles stand for, and their centre lines in a drawing.
+// Rounds: the circles, cylinders and surfaces of revolution that a scene's triangles stand for, and their centre lines
+// in a drawing.
 #pragma once
 
 #include <vector>
@@ -8,14 +9,14 @@
 
 namespace frontmost {
 
-enum class RoundKind : std::uint8_t { circle, cylinder };
+enum class RoundKind : std::uint8_t { circle, cylinder, revolved };
 
-/// A circle of sharp edges, or a cylinder of smooth triangles.
+/// A circle of sharp edges, a cylinder of smooth triangles, or all of a smooth surface that is round about an axis.
 struct Round {
   RoundKind kind = RoundKind::circle;
   glm::dvec3 from{0}, to{0};           ///< ends of the axis, in world space; of a circle both its centre
   glm::dvec3 axis{0, 0, 1};            ///< of unit length
-  double radius = 0;                   ///< of the circle on which the vertices lie
+  double radius = 0;                   ///< of the circle on which the vertices lie; revolved: of the largest
   double turn = 0;                     ///< radians, at most 2 pi: how much of it there is
   bool is_hollow = false;              ///< a cylinder: what it bounds lies outside of it, as of a bore
   std::uint32_t first = 0, count = 0;  ///< in Rounds::triangles
@@ -23,18 +24,21 @@ struct Round {
 
 struct Rounds {
   std::vector<Round> rounds;
-  /// Those with a side on the circle, or of the cylinder. In the order of the rounds, each's ascending.
+  /// Those with a side on the circle, or of the surface. In the order of the rounds, each's ascending.
   std::vector<PrimitiveId> triangles;
 };
 
-/// The circles and cylinders of a scene of which at least 160 degrees are there.
+/// The circles and cylinders of a scene of which at least 160 degrees are there, and what else is round about an axis.
 ///
 /// Surfaces are smooth where triangles meet at 20 degrees or less, so that a polygon of 18 sides and more is round, as
 /// it is to strokes(). Edges that are not smooth are followed from one to the next; where their corners lie on a circle
 /// they are one. A cylinder is grown from two neighbours over all that lie smoothly about the same axis, at the same
 /// distance. Corners may be off by a quarter of how far the middle of a side is, or by what six digits leave open where
-/// that is more; so nothing is asked of what is not tessellated from something round. Near-linear.
-/// \throws Error limit_exceeded for more than 2^30 triangles.
+/// that is more; so nothing is asked of what is not tessellated from something round. From a circle's edge a cylinder
+/// may have corners within its sides as well, where something else cuts it. Surfaces of revolution are what is smooth
+/// from one triangle to the next, goes all the way round and has its corners in rings of 18 and more: tori, domes,
+/// cones; but not cylinders, nor whole spheres, which have no axis of their own. Near-linear. \throws Error
+/// limit_exceeded for more than 2^30 triangles.
 [[nodiscard]] Rounds find_rounds(const Surfaces& surfaces, const Execution& execution = {});
 
 /// How much of each round a drawing shows, in pixels: of what is seen, and with `with_hidden` of what is not.

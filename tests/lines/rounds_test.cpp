@@ -53,6 +53,40 @@ void add_tube(Mesh& mesh, const Tube& tube, const glm::dmat4& place = glm::dmat4
   }
 }
 
+/// A strip of rings about z through those (radius, z), from the first to the last; and back to the first if `closes`.
+/// Points on the axis are poles.
+void add_revolved(Mesh& mesh, const std::vector<glm::dvec2>& profile, int sides, bool closes,
+                  const glm::dmat4& place = glm::dmat4(1), double ratio = 1) {
+  const auto corner = [&](std::size_t i, int k) {
+    const double angle = 2 * pi * (k % sides) / sides + 0.1;
+    const glm::dvec2& p = profile[i % profile.size()];
+    return glm::vec3(glm::dvec3(place * glm::dvec4(p.x * std::cos(angle), ratio * p.x * std::sin(angle), p.y, 1)));
+  };
+  for (std::size_t i = 0; i + (closes ? 0 : 1) < profile.size(); ++i)
+    for (int k = 0; k < sides; ++k) {
+      if (profile[i].x > 0) add_triangle(mesh, corner(i, k), corner(i, k + 1), corner(i + 1, k + 1));
+      if (profile[(i + 1) % profile.size()].x > 0)
+        add_triangle(mesh, corner(i, k), corner(i + 1, k + 1), corner(i + 1, k));
+    }
+}
+
+/// Of a circle: from one angle to another.
+std::vector<glm::dvec2> bow(double middle, double radius, double from, double to, int sides) {
+  std::vector<glm::dvec2> points;
+  for (int i = 0; i <= sides; ++i) {
+    const double angle = from + (to - from) * i / sides;
+    const double x = middle + radius * std::cos(angle);
+    points.emplace_back(std::abs(x) < 1e-12 ? 0 : x, radius * std::sin(angle));
+  }
+  return points;
+}
+
+std::vector<glm::dvec2> torus_profile(double middle, double radius, int sides) {
+  std::vector<glm::dvec2> points = bow(middle, radius, 0, 2 * pi, sides);
+  points.pop_back();
+  return points;
+}
+
 Rounds rounds_of(const Scene& scene, const Execution& execution = {}) {
   return find_rounds(Surfaces(scene), execution);
 }
@@ -133,6 +167,79 @@ TEST(Rounds, HalvesCountAndFilletsDoNot) {
   EXPECT_TRUE(rounds_of({.sides = 18, .turn = pi / 2}).rounds.empty());
 }
 
+TEST(Rounds, WhatIsRoundAboutAnAxisIsOne) {
+  const glm::dmat4 place = anywhere();
+  struct Case {
+    const char* name;
+    std::vector<glm::dvec2> profile;
+    bool closes;
+    double radius, low, high;
+  };
+  const Case cases[] = {{"torus", torus_profile(10, 3, 24), true, 13, -3, 3},
+                        {"dome", bow(0, 8, 0, pi / 2, 12), false, 8, 0, 8},
+                        {"cone", {{6, -1}, {0, 9}}, false, 6, -1, 9},
+                        {"frustum", {{6, -1}, {4, 9}}, false, 6, -1, 9},
+                        {"bottle", {{5, 0}, {5.2, 3}, {5, 8}, {4.2, 10}, {3, 12}, {2.2, 15}}, false, 5.2, 0, 15}};
+  for (const Case& c : cases)
+    for (const int sides : {19, 48}) {
+      SCOPED_TRACE(testing::Message() << c.name << ", " << sides << " sides");
+      Mesh mesh;
+      add_revolved(mesh, c.profile, sides, c.closes, place);
+      const Rounds all = rounds_of(scene_of(mesh));
+      const std::vector<Round> found = of_kind(all, RoundKind::revolved);
+      ASSERT_EQ(found.size(), 1u);
+      const Round& round = found[0];
+      EXPECT_NEAR(round.radius, c.radius, 3e-5);
+      EXPECT_EQ(round.count, mesh.triangles.size());
+      const glm::dvec3 foot(place * glm::dvec4(0, 0, c.low, 1)), head(place * glm::dvec4(0, 0, c.high, 1));
+      EXPECT_NEAR(std::min(glm::distance(round.from, foot), glm::distance(round.to, foot)), 0, 3e-5);
+      EXPECT_NEAR(std::min(glm::distance(round.from, head), glm::distance(round.to, head)), 0, 3e-5);
+    }
+}
+
+TEST(Rounds, WhatIsNotRoundAboutAnAxisIsNone) {
+  const auto revolved = [](const std::vector<glm::dvec2>& profile, int sides, double ratio) {
+    Mesh mesh;
+    add_revolved(mesh, profile, sides, false, anywhere(), ratio);
+    return of_kind(rounds_of(scene_of(mesh)), RoundKind::revolved).size();
+  };
+  const std::vector<glm::dvec2> dome = bow(0, 8, 0, pi / 2, 12);
+  EXPECT_EQ(revolved(dome, 48, 1), 1u);
+  for (const double ratio : {0.5, 0.9, 1.002}) EXPECT_EQ(revolved(dome, 48, ratio), 0u) << ratio;
+  for (const int sides : {6, 12, 17}) EXPECT_EQ(revolved(dome, sides, 1), 0u) << sides;
+  EXPECT_EQ(revolved(bow(0, 8, -pi / 2, pi / 2, 24), 48, 1), 0u);  // a sphere is round about any axis
+  EXPECT_EQ(revolved({{5, 0}, {5, 9}}, 48, 1), 0u);                // a cylinder
+  EXPECT_EQ(revolved({{5, 0}, {9, 0}}, 48, 1), 0u);                // flat
+}
+
+// A slanted plane cuts the sides of a bore between their ends, where its corners lie within the circle.
+TEST(Rounds, WallsMayEndAtASlantedCut) {
+  constexpr int sides = 36;
+  for (const double slope : {0.2, 1.0}) {
+    Mesh mesh;
+    const auto at = [&](double turn, double radius, double z) {
+      return glm::vec3(float(radius * std::cos(turn)), float(radius * std::sin(turn)), float(z));
+    };
+    const auto cut = [&](double turn, double radius) { return at(turn, radius, slope * radius * std::cos(turn)); };
+    for (int k = 0; k < sides; ++k) {
+      const double a = 2 * pi * k / sides, b = 2 * pi * (k + 1) / sides;
+      // A point of the side of corners a and b, a third of the way from its middle to its end.
+      const glm::dvec2 place =
+          (glm::dvec2(std::cos(a), std::sin(a)) * 1.0 + glm::dvec2(std::cos(b), std::sin(b)) * 2.0) / 3.0;
+      const double turn = std::atan2(place.y, place.x), radius = 5 * glm::length(place);
+      add_triangle(mesh, at(a, 5, 20), cut(a, 5), cut(turn, radius));
+      add_triangle(mesh, at(a, 5, 20), cut(turn, radius), at(b, 5, 20));
+      add_triangle(mesh, at(b, 5, 20), cut(turn, radius), cut(b, 5));
+      add_triangle(mesh, at(a, 5, 20), at(b, 5, 20), at(0, 0, 20));
+    }
+    const std::vector<Round> walls = of_kind(rounds_of(scene_of(mesh)), RoundKind::cylinder);
+    ASSERT_EQ(walls.size(), 1u) << slope;
+    EXPECT_NEAR(walls[0].radius, 5, 1e-5) << slope;
+    EXPECT_NEAR(walls[0].turn, 2 * pi, 1e-6) << slope;
+    EXPECT_EQ(walls[0].count, 3u * sides) << slope;
+  }
+}
+
 TEST(Rounds, SpheresAndKnotsHaveNone) {
   for (const char* const name : {"spheres", "gallery"}) {
     const Rounds all = rounds_of(builtin(name));
@@ -187,6 +294,12 @@ TEST(Rounds, OfPartsAreKnown) {
   const Rounds tubes = rounds_of(load(model("cad/two-cylinders.stl")));
   EXPECT_EQ(count_of(tubes, RoundKind::cylinder, 10), 1u);
   EXPECT_EQ(count_of(tubes, RoundKind::cylinder, 8), 1u);
+  // Three bores and two counterbores; the largest bore ends at a slanted face.
+  const Rounds angle = rounds_of(load(model("cad/angle-block.stl")));
+  for (const double radius : {0.133, 0.25, 0.07812})
+    EXPECT_EQ(count_of(angle, RoundKind::cylinder, radius), 1u) << radius;
+  const Rounds torus = rounds_of(load(model("cad/torus.stl")));
+  EXPECT_EQ(of_kind(torus, RoundKind::revolved).size(), 1u);
   const Rounds block = rounds_of(load(model("cad/featuretype.stl")));
   EXPECT_EQ(count_of(block, RoundKind::cylinder, 0.133), 8u);
   // Counterbores, of which the file has one in two halves that share no corners.
@@ -253,6 +366,24 @@ TEST_F(CentreLines, AreTheAxisOfWhatIsSeenFromTheSide) {
   draw(NamedView::left);
   ASSERT_EQ(lines_.size(), 1u);
   EXPECT_NEAR(length(true), 20 + 2 * 3, 1e-4);
+}
+
+TEST_F(CentreLines, AreTheAxesOfToriAndDomesFromTheSide) {
+  add_revolved(mesh_, torus_profile(15, 4, 32), 64, true);
+  draw(NamedView::top);
+  ASSERT_EQ(lines_.size(), 1u);
+  EXPECT_NEAR(length(false), 2 * 4 + 2 * 3, 1e-3);
+  draw(NamedView::left);
+  ASSERT_EQ(lines_.size(), 1u);
+  EXPECT_NEAR(length(true), 2 * 4 + 2 * 3, 1e-3);
+  draw(NamedView::front);
+  ASSERT_EQ(lines_.size(), 2u);
+  EXPECT_NEAR(length(true), 2 * (19 + 3), 1e-3);
+  mesh_ = {};
+  add_revolved(mesh_, bow(0, 10, 0, pi / 2, 24), 64, false);
+  draw(NamedView::top);
+  ASSERT_EQ(lines_.size(), 1u);
+  EXPECT_NEAR(length(false), 10 + 2 * 3, 1e-3);
 }
 
 TEST_F(CentreLines, OfSmallCirclesReachLessBeyond) {

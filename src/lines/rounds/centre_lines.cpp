@@ -145,6 +145,7 @@ std::vector<double> drawn_lengths(const Rounds& all, const Drawing& drawing, boo
   std::sort(owners.begin(), owners.end());
   std::vector<double> lengths(all.rounds.size());
   const auto is_on = [](const Round& round, const glm::dvec3& point) {
+    if (round.kind == RoundKind::revolved) return true;
     const glm::dvec3 u = point - round.from;
     const double height = glm::dot(u, round.axis), off = glm::length(u - height * round.axis) - round.radius;
     return std::abs(off) <= 0.02 * round.radius &&

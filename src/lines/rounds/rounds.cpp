@@ -6,6 +6,7 @@
 
 #include "base/float_environment.h"
 #include "lines/rounds/circles.h"
+#include "lines/rounds/revolved.h"
 #include "lines/rounds/walls.h"
 
 namespace frontmost {
@@ -46,6 +47,9 @@ Rounds find_rounds(const Surfaces& surfaces, const Execution& execution) {
     append({RoundKind::cylinder, wall.from, wall.to, wall.axis, wall.radius, wall.turn, wall.is_hollow}, wall.triangles,
            mesh.mesh, all);
   }
+  for (const FoundRevolved& found : find_revolved(mesh, execution))
+    append({RoundKind::revolved, found.from, found.to, found.axis, found.radius, 2 * std::numbers::pi}, found.triangles,
+           mesh.mesh, all);
   return all;
 }
 

@@ -19,7 +19,8 @@ constexpr std::size_t kSeedsPerPart = 4096;
 constexpr double kFlat = 0.9999999;  // cosine of 0.026 degrees: the two halves of a plane
 constexpr double kUpright = 0.01;    // the cosine of normals with the axis, of neighbours of two
 constexpr double kRoughlyUpright = 0.1;
-constexpr double kFacesOut = 0.9;  // the cosine of normals with the direction from the axis
+constexpr double kFacesOut = 0.9;       // the cosine of normals with the direction from the axis
+constexpr double kWholeSagitta = 1.05;  // of that of the mean side
 constexpr double kSmallestTube = 50;
 constexpr std::size_t kFewestTriangles = 8;
 
@@ -68,11 +69,14 @@ class WallGrower {
     return grown(true);
   }
 
-  /// Likewise from a side of a circle whose triangle stands upright on it.
-  [[nodiscard]] std::optional<FoundWall> grow(const Circle3& circle, double step, std::uint32_t triangle) {
+  /// Likewise from a side of a circle whose triangle stands upright on it. `may_be_cut`: corners may lie within the
+  /// wall's sides, as where something else cuts it; a circle is known well enough to allow that.
+  [[nodiscard]] std::optional<FoundWall> grow(const Circle3& circle, double step, std::uint32_t triangle,
+                                              bool may_be_cut) {
     if (is_used_[triangle]) return std::nullopt;
     tube_ = {circle.centre, circle.axis, circle.radius};
     slack_ = std::max(mesh_.noise, sagitta(circle.radius, step) / 4);
+    within_ = may_be_cut ? std::max(slack_, kWholeSagitta * sagitta(circle.radius, step)) : slack_;
     outside_ = glm::dot(mesh_.normals[triangle], tube_.outwards(mesh_.corner(triangle, 0))) > 0 ? 1 : -1;
     if (!holds(triangle)) return std::nullopt;
     triangles_.clear();
@@ -111,7 +115,7 @@ class WallGrower {
     if (!tube || !(tube->radius >= kSmallestTube * mesh_.noise)) return false;
     tube_ = *tube;
     const double step = std::acos(std::min(1.0, glm::dot(mesh_.normals[seed.triangle], mesh_.normals[other])));
-    slack_ = std::max(mesh_.noise, sagitta(tube_.radius, step) / 4);
+    slack_ = within_ = std::max(mesh_.noise, sagitta(tube_.radius, step) / 4);
     outside_ = glm::dot(mesh_.normals[seed.triangle], tube_.outwards(from)) > 0 ? 1 : -1;
     triangles_.clear();
     take(seed.triangle);
@@ -136,7 +140,8 @@ class WallGrower {
     for (int k = 0; k < 3; ++k) {
       const glm::dvec3 at = mesh_.corner(triangle, k), out = tube_.outwards(at);
       const double length = glm::length(out);
-      if (!(std::abs(length - tube_.radius) <= slack_ && outside_ * glm::dot(normal, out) >= kFacesOut * length))
+      if (!(length - tube_.radius <= slack_ && tube_.radius - length <= within_ &&
+            outside_ * glm::dot(normal, out) >= kFacesOut * length))
         return false;
     }
     return true;
@@ -184,7 +189,7 @@ class WallGrower {
   const SmoothMesh& mesh_;
   std::vector<bool> is_used_;
   Tube tube_{};
-  double slack_ = 0, outside_ = 1;
+  double slack_ = 0, within_ = 0, outside_ = 1;  ///< how far corners may be beyond the radius, and within it
   std::vector<std::uint32_t> triangles_;
 };
 
@@ -197,12 +202,16 @@ std::vector<FoundWall> find_walls(const SmoothMesh& mesh, const std::vector<Foun
   const auto keep = [&](std::optional<FoundWall> wall) {
     if (wall) walls.push_back(std::move(*wall));
   };
-  for (const FoundCircle& circle : circles) {
-    check_cancelled(execution);
-    // Most sides have two triangles.
-    const double step = std::min(kWidestStep, 2 * covered(circle) / double(circle.triangles.size()));
-    for (const std::uint32_t triangle : circle.triangles) keep(grower.grow(circle.circle, step, triangle));
-  }
+  const auto grow_from_circles = [&](bool may_be_cut) {
+    for (const FoundCircle& circle : circles) {
+      check_cancelled(execution);
+      // Most sides have two triangles.
+      const double step = std::min(kWidestStep, 2 * covered(circle) / double(circle.triangles.size()));
+      for (const std::uint32_t triangle : circle.triangles)
+        keep(grower.grow(circle.circle, step, triangle, may_be_cut));
+    }
+  };
+  grow_from_circles(false);
   const std::size_t count = mesh.mesh.triangles.size();
   std::vector<std::vector<Seed>> lists((count + kSeedsPerPart - 1) / kSeedsPerPart);
   parallel_for(execution, count, kSeedsPerPart, [&](std::size_t begin, std::size_t end) {
@@ -215,6 +224,8 @@ std::vector<FoundWall> find_walls(const SmoothMesh& mesh, const std::vector<Foun
     check_cancelled(execution);
     for (const Seed& seed : list) keep(grower.grow(seed));
   }
+  // Of what is left, so that whole walls are known as well as they can be.
+  grow_from_circles(true);
   return walls;
 }
 

@@ -36,6 +36,7 @@ void MeasuredView::find_circles() {
   const std::vector<double> lengths = drawn_lengths(*view_.rounds, *view_.drawing, view_.with_hidden);
   for (std::size_t i = 0; i < lengths.size(); ++i) {
     const Round& round = view_.rounds->rounds[i];
+    if (round.kind == RoundKind::revolved) continue;  // its largest circle is no edge
     if (glm::length(glm::cross(round.axis, view_.drawing->view.forward())) > square) continue;
     const double radius = round.radius * millimetres_;
     if (lengths[i] * view_.sheet->millimetres_per_pixel < least_drawn * round.turn * radius) continue;
