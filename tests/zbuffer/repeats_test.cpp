@@ -70,5 +70,20 @@ TEST(Repeats, AMillionTakeTheTimeToCountThem) {
   for (const PrimitiveId id : at_once.primitives) ASSERT_EQ(id, 0u);
 }
 
+// Of a few tiles each, which are not sorted beforehand: so many would take half a minute.
+TEST(Repeats, AMillionOfMiddleSizeDoToo) {
+  Mesh mesh;
+  add_triangle(mesh, {-0.4f, -0.4f, 0}, {0.4f, -0.3f, 0.1f}, {0, 0.5f, 0});
+  add_triangle(mesh, {-0.2f, -0.5f, 0.05f}, {0.3f, -0.4f, 0}, {0.2f, 0.6f, 0});
+  const Scene once = scene_of(std::move(mesh));
+  Scene often = once;
+  often.instances.resize(under_sanitizer ? 1'000 : 500'000, once.instances[0]);
+  View view = front_view(500, 400);
+  view.samples = 4;
+  const Visible expected = zbuffer(Surfaces(once), view);
+  expect_same(expected, zbuffer(Surfaces(often), view));
+  expect_same(expected, zbuffer(often, view));
+}
+
 }  // namespace
 }  // namespace frontmost::test

@@ -10,6 +10,8 @@
 #define FRONTMOST_ZBUFFER_LARGE_TRIANGLES_INL_H_
 #endif
 
+#include <cstring>
+
 #include "view/steep_keys-inl.h"
 #include "zbuffer/tile/tile_buffer-inl.h"
 #include "zbuffer/triangle_records.h"
@@ -41,6 +43,16 @@ class LargeTriangles {
       }
       Draw(record);
     }
+  }
+
+  /// Leaves out one with the corners of the last that it was asked for, and a higher id: of equal keys the lower id is
+  /// seen. Copies follow each other in clusters, so that a million of them are drawn once. Precondition as for Draw().
+  HWY_NOINLINE void DrawOnce(const TriangleRecord& r) {
+    if (last_.id < r.id && std::memcmp(last_.x, r.x, sizeof r.x) == 0 && std::memcmp(last_.y, r.y, sizeof r.y) == 0 &&
+        std::memcmp(last_.key, r.key, sizeof r.key) == 0)
+      return;
+    last_ = r;
+    Draw(r);
   }
 
   /// Precondition: oriented; corners relative to the tile.
@@ -294,6 +306,7 @@ class LargeTriangles {
   const Tile& tile_;
   TileBuffer& buffer_;
   glm::ivec2 low_, high_;  // of the sample offsets
+  TriangleRecord last_{{}, {}, {}, no_primitive};
 };
 
 }  // namespace HWY_NAMESPACE

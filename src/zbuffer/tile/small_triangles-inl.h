@@ -78,7 +78,7 @@ class SmallTriangles {
     const MI large = hn::Or(hn::Gt(batch.width, hn::Set(d, kWalkWidth)), hn::Gt(batch.height, hn::Set(d, kWalkHeight)));
     const MI single = hn::Or(large, batch.steep);
     if (!hn::AllFalse(d, single)) {
-      ForEachBit(BitsOf(d, single), [&](std::size_t lane) { large_.Draw(QueuedRecord(lane)); });
+      ForEachBit(BitsOf(d, single), [&](std::size_t lane) { large_.DrawOnce(QueuedRecord(lane)); });
       batch.width = hn::IfThenZeroElse(single, batch.width);
       batch.height = hn::IfThenZeroElse(single, batch.height);
     }

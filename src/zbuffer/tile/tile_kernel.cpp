@@ -158,7 +158,7 @@ class TilePainter {
         record.y[k] = vertices_.y[numbers[k]];
         std::memcpy(&record.key[k], &vertices_.key[numbers[k]], sizeof(float));
       }
-      if (orient(record, frame_.view.culling)) large_.Draw(record);
+      if (orient(record, frame_.view.culling)) large_.DrawOnce(record);
     });
   }
 
