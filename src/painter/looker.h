@@ -17,11 +17,7 @@ class Looker {
   using IsBehind = std::function<bool(std::uint32_t place, std::uint32_t cover)>;
 
   Looker(const Scenery& scenery, const Mosaic& mosaic, const Execution& execution, IsBehind is_behind = {})
-      : scenery_(scenery),
-        mosaic_(mosaic),
-        poll_(execution),
-        is_behind_(std::move(is_behind)),
-        spreader_(scenery, mosaic) {}
+      : scenery_(scenery), poll_(execution), is_behind_(std::move(is_behind)), spreader_(scenery, mosaic) {}
 
   /// Whether those after the polygon in a slot hide all of it, as far as that is quickly told.
   [[nodiscard]] bool is_all_hidden(std::size_t slot);
@@ -51,7 +47,6 @@ class Looker {
   [[nodiscard]] bool is_first_meeting(const PieceGrid::Range& cells, const Extent& cover, int x, int y) const;
 
   const Scenery& scenery_;
-  const Mosaic& mosaic_;
   Poll poll_;
   const IsBehind is_behind_;
   Spreader spreader_;

@@ -101,7 +101,7 @@ TEST(Arcs, OfCoarselyCutCirclesAreOne) {
           << step << " " << count;
   // Corners of something else stand on every second chord.
   std::vector<double> split;
-  for (int i = 0; i < 8; ++i) split.insert(split.end(), {15, 3 + i, 12 - i});
+  for (int i = 0; i < 8; ++i) split.insert(split.end(), {15.0, 3.0 + i, 12.0 - i});
   EXPECT_EQ(arcs_of(with_arcs(on_circle(400, split))), 2u);
 }
 
