@@ -6,7 +6,7 @@ set(FRONTMOST_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/frontmost)
 get_target_property(frontmost_kind frontmost TYPE)
 
 # What a static library makes its users link: CMake packages, pkg-config modules and Debian packages, in this order.
-# Header-only helpers (nlohmann-json, CLI11, fmt) never reach a consumer.
+# What the program alone uses (nlohmann-json, CLI11, fmt) never reaches a consumer.
 set(FRONTMOST_LINKED_CMAKE hwy Threads PNG ZLIB JPEG)
 set(FRONTMOST_LINKED_PC libhwy libpng zlib libjpeg)
 set(FRONTMOST_LINKED_DEB libhwy-dev libpng-dev zlib1g-dev libjpeg-dev)

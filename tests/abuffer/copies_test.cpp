@@ -15,12 +15,7 @@ namespace {
 constexpr int crowd = under_sanitizer ? 3'000 : 100'000;
 
 View front_view(int width, int height) {
-  View view;
-  view.width = width;
-  view.height = height;
-  view.world_from_eye = look_at({0, 0, 1}, {0, 0, 0}, {0, 1, 0});
-  view.projection = make_projection(0.9, double(width) / height, {0.5, 6});
-  return view;
+  return make_view(0.9, width, height).looking({0, 0, 1}, {0, 0, 0}, {0, 1, 0}).between(0.5, 6);
 }
 
 /// A square in two triangles, `count` times: as it is, and with its corners in other orders.

@@ -24,12 +24,7 @@ Scene stack_of(int count) {
 }
 
 View front_view(int width, int height) {
-  View view;
-  view.width = width;
-  view.height = height;
-  view.world_from_eye = look_at({0, 0, 1}, {0, 0, 0}, {0, 1, 0});
-  view.projection = make_projection(0.9, double(width) / height, {0.5, 6});
-  return view;
+  return make_view(0.9, width, height).looking({0, 0, 1}, {0, 0, 0}, {0, 1, 0}).between(0.5, 6);
 }
 
 ErrorCode code_of(const std::function<void()>& action) {

@@ -13,12 +13,7 @@ namespace frontmost::test {
 namespace {
 
 View front_view(int width, int height) {
-  View view;
-  view.width = width;
-  view.height = height;
-  view.world_from_eye = look_at({0, 0, 2}, {0, 0, 0}, {0, 1, 0});
-  view.projection = make_projection(0.9, double(width) / height, {0.1, 10});
-  return view;
+  return make_view(0.9, width, height).looking({0, 0, 2}, {0, 0, 0}, {0, 1, 0}).between(0.1, 10);
 }
 
 /// Some meshes at a few places each, many of them taken, and in each mesh triangles that it has before.
