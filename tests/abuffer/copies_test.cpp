@@ -12,7 +12,8 @@
 namespace frontmost::test {
 namespace {
 
-constexpr int crowd = under_sanitizer ? 3'000 : 100'000;
+// More than a tile has room for, also of the small squares.
+constexpr int crowd = under_sanitizer ? 12'000 : 100'000;
 
 View front_view(int width, int height) {
   return make_view(0.9, width, height).looking({0, 0, 1}, {0, 0, 0}, {0, 1, 0}).between(0.5, 6);
