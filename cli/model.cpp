@@ -19,12 +19,9 @@ Execution execution_for(const RunSettings& settings, const Progress& progress) {
 
 Scene load_model(const Settings& settings, const Execution& execution, Progress& progress,
                  const std::vector<std::string>& outputs) {
-  std::vector<std::filesystem::path> used;
-  LoadOptions options = settings.load;
-  options.files = &used;
-  Scene scene = load(settings.model, options, execution);
-  for (const std::string& model : settings.more_models) add(scene, load(model, options, execution));
-  refuse_outputs_beside(used, outputs);
+  Scene scene = load(settings.model, settings.load, execution);
+  for (const std::string& model : settings.more_models) add(scene, load(model, settings.load, execution));
+  refuse_outputs_beside(scene.source.files, outputs);
   show_warnings(scene.warnings, settings.run, progress);
   return scene;
 }

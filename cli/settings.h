@@ -207,7 +207,6 @@ struct Settings {
   std::vector<std::string>
       more_models;  ///< of `render`: drawn together with the first; of `lines`: sheets of their own
   LoadOptions load;
-  std::optional<double> metres_per_unit;  ///< of the model, once it was read and where its file says
   ViewSettings view;
   PrecisionSettings precision;
   SightSettings sight;

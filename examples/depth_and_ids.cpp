@@ -17,7 +17,7 @@ int main(int count, char** arguments) try {
   const Visible visible = zbuffer(surfaces, view);
   save(depth_image(visible), arguments[2]);
   save(id_image(surfaces, visible, IdKind::object), arguments[3]);
-  std::printf("the middle of the picture is %g units away\n", double(depths(visible)[visible.index(320, 240)]));
+  std::printf("the middle of the picture is %g units away\n", double(depths_of(visible)[visible.index(320, 240)]));
 } catch (const Error& error) {
   std::fprintf(stderr, "depth_and_ids: %s\n", error.what());
   return 1;

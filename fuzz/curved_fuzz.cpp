@@ -135,7 +135,7 @@ void check_rays(const Scene& scene, const View& view) {
     const Ray ray{glm::vec3(view.eye()), glm::vec3(aim - view.eye())};
     if (const CurvedHit hit = closest_hit(index, ray)) check_place(scene, index, ray, hit);
   }
-  const Facets shown = facets(index, scene, {&wide, 1});
+  const Facets shown = facets_of(index, scene, {&wide, 1});
   require(shown.visible[0].primitives.size() == wide.visible.primitives.size());
 }
 

@@ -43,8 +43,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const View view = test::view_of(bytes);
     const Surfaces surfaces(scene);
-    const Drawing wide = lines(surfaces, view, options, {.threads = 2, .isa = Isa::best, .watch = nullptr});
-    const Drawing plain = lines(surfaces, view, options, {.threads = 1, .isa = Isa::scalar, .watch = nullptr});
+    const Drawing wide = draw_lines(surfaces, view, options, {.threads = 2, .isa = Isa::best, .watch = nullptr});
+    const Drawing plain = draw_lines(surfaces, view, options, {.threads = 1, .isa = Isa::scalar, .watch = nullptr});
     check(wide);
     require(wide.parts.size() == plain.parts.size());
     for (std::size_t i = 0; i < wide.parts.size(); ++i) require(equal(wide.parts[i], plain.parts[i]));

@@ -44,7 +44,7 @@ void check_parts(const PaintOrder& parts) {
 
 /// Samples where one picture shows something else than the other, for no reason.
 std::vector<bool> wrong(const Surfaces& surfaces, const Visible& expected, const Visible& painted) {
-  const Agreement found = agreement(surfaces, expected, painted, {.threads = 1});
+  const Agreement found = check_agreement(surfaces, expected, painted, {.threads = 1});
   std::vector<bool> is_wrong(painted.primitives.size());
   for (std::size_t i = 0; i < is_wrong.size(); ++i)
     is_wrong[i] = painted.primitives[i] != expected.primitives[i] && found.differences[i] == Difference::unexplained;

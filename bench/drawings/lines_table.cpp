@@ -18,10 +18,10 @@ Table measure_lines(const Options& options) {
   const int all = std::max(2, int(std::thread::hardware_concurrency()));
   for (const std::string_view name : options.scenes_or(kScenes)) {
     const Stage stage(name, options.models);
-    const Drawing drawing = lines(stage.surfaces, stage.view);
+    const Drawing drawing = draw_lines(stage.surfaces, stage.view);
     const auto draw = [&](bool intersections, int threads) {
       return Contestant([&stage, intersections, threads] {
-        (void)lines(stage.surfaces, stage.view, {.intersections = intersections}, {.threads = threads});
+        (void)draw_lines(stage.surfaces, stage.view, {.intersections = intersections}, {.threads = threads});
       });
     };
     const std::vector<Time> times = race({draw(true, 1), draw(false, 1), draw(true, all)}, options.sampling);

@@ -35,7 +35,7 @@ Table measure_painter(const Options& options) {
                                           Contestant([&] { (void)with_hems(seen, kHem, {}, execution); })},
                                          options.sampling);
     const Agreement agreed =
-        agreement(stage.surfaces, zbuffer(stage.surfaces, stage.view), paint(stage.surfaces, order));
+        check_agreement(stage.surfaces, zbuffer(stage.surfaces, stage.view), paint(stage.surfaces, order));
     const std::uint64_t wrong = agreed.count(Difference::unexplained);
     const auto ms = [&](std::size_t i) { return Cell(cost(times[i], threads)); };
     table.add({name, Cell::whole(order.polygons.size()), ms(0), ms(1), ms(2), Cell::whole(seen.polygons.size()), ms(3),

@@ -63,7 +63,7 @@ RayReport compare_with_rays(const Scene& scene, const Visible& visible, RayPeer&
   const Mesh& mesh = scene.meshes.at(0);
   peer.draw();
   const PeerImage rays = peer.read();
-  const Buffer<float> our_depths = depths(visible);
+  const Buffer<float> our_depths = depths_of(visible);
   RayReport report;
   for (int y = 0; y < visible.view.height; ++y)
     for (int x = 0; x < visible.view.width; ++x) {

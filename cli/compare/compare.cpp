@@ -35,7 +35,7 @@ std::vector<std::string> outputs_of(const Settings& settings) {
 
 Agreement agreement_of(const MethodRun& run, const Visible& reference, const Surfaces& surfaces,
                        const Execution& execution) {
-  Agreement result = agreement(surfaces, reference, run.answer.visible, execution);
+  Agreement result = check_agreement(surfaces, reference, run.answer.visible, execution);
   if (run.answer.behind) see_through(result, surfaces, run.answer.visible, *run.answer.behind);
   return result;
 }

@@ -8,16 +8,14 @@
 
 namespace frontmost::cli {
 
-int run_info(const Settings& given) {
-  Settings settings = given;
-  settings.load.metres_per_unit = &settings.metres_per_unit;
+int run_info(const Settings& settings) {
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
   const Scene scene = load_model(settings, execution, progress);
   const SceneReport report = inspect(scene, execution);
   // Built-in scenes have no size in the world.
-  const bool is_file = !settings.model.starts_with("builtin:");
-  const auto unit = is_file ? unit_of_model(report, settings.metres_per_unit) : std::nullopt;
+  const bool is_file = scene.source.format.has_value();
+  const auto unit = is_file ? unit_of_model(report, scene.source.metres_per_unit) : std::nullopt;
   progress.clear();
   print(settings.run.json ? dump(info_json(report, unit)) : info_text(report, unit));
   return exit_done;

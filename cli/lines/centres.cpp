@@ -37,7 +37,7 @@ void add_centre_lines(DrawnView& view, const DrawingSettings& settings) {
   CentreLineOptions options;
   options.with_hidden = view.shows_hidden;
   options.overshoot = std::min(centre_overshoot / view.sheet.millimetres_per_pixel, 1e6);
-  view.sheet.centre_lines = centre_lines(*view.rounds, view.drawing, view.sheet.strokes, options);
+  view.sheet.centre_lines = centre_lines_of(*view.rounds, view.drawing, view.sheet.strokes, options);
 }
 
 }  // namespace frontmost::cli

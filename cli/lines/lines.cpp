@@ -143,9 +143,10 @@ DrawnView draw(const ViewSettings& settings, const Settings& all, const Surfaces
   LineOptions options;
   if (all.drawing.crease_angle) options.crease_angle = glm::radians(*all.drawing.crease_angle);
   options.outlines = all.drawing.style == DrawingSettings::Style::figure;
-  result.drawing = lines(*result.surfaces, view, options, execution);
+  result.drawing = draw_lines(*result.surfaces, view, options, execution);
+  result.millimetres_per_unit = unit_of(all.drawing, surfaces.scene().source);
   const Projection& p = view.projection;
-  if (p.orthographic) result.millimetres_per_pixel = (p.right - p.left) / view.width * unit_of(all);
+  if (p.orthographic) result.millimetres_per_pixel = (p.right - p.left) / view.width * result.millimetres_per_unit;
   result.shows_hidden = !section && shows_hidden(all.drawing, settings.named);
   return result;
 }
@@ -188,7 +189,7 @@ struct Frame {
 
 Frame frame_of(const DrawnView& view, const Settings& settings, const Surfaces& surfaces) {
   const View& camera = view.drawing.view;
-  DrawingBounds box = bounds(view.drawing, view.shows_hidden);
+  DrawingBounds box = bounds_of(view.drawing, view.shows_hidden);
   if (view.keeps_frame || box.is_empty()) {
     box.low = glm::dvec2(0);
     box.high = glm::dvec2(camera.width, camera.height);
@@ -281,18 +282,16 @@ void write_books(const std::vector<Page>& pages, const Settings& settings, const
 }
 
 /// An STL file has no names of objects but those that programs write: one object is named as its file is.
-void name_object(Scene& scene, const Settings& settings) {
-  if (settings.load.format == ModelFormat::stl && scene.instances.size() == 1) scene.instances[0].name = scene.name;
+void name_object(Scene& scene) {
+  if (scene.source.format == ModelFormat::stl && scene.instances.size() == 1) scene.instances[0].name = scene.name;
 }
 
 /// Draws one model, and writes its own files; its page goes to `pages` where some file holds all. \returns the report.
-Json draw_model(Settings settings, std::vector<Page>& pages, const Execution& execution, Progress& progress) {
-  settings.load.found = &settings.load.format;
-  settings.load.metres_per_unit = &settings.metres_per_unit;
+Json draw_model(const Settings& settings, std::vector<Page>& pages, const Execution& execution, Progress& progress) {
   std::vector<std::string> written = settings.drawing.outputs;
   written.insert(written.end(), settings.drawing.books.begin(), settings.drawing.books.end());
   Scene scene = load_model(settings, execution, progress, written);
-  name_object(scene, settings);
+  name_object(scene);
   const Surfaces surfaces(scene, execution);
   LinesTimings timings;
   Stopwatch watch;
@@ -305,7 +304,7 @@ Json draw_model(Settings settings, std::vector<Page>& pages, const Execution& ex
   const SheetPlan plan = place(views, settings, surfaces);
   for (DrawnView& view : views) {
     const StrokeOptions options = stroke_options(settings.drawing, view);
-    view.sheet.strokes = strokes(*view.surfaces, view.drawing, options, execution);
+    view.sheet.strokes = chain_strokes(*view.surfaces, view.drawing, options, execution);
   }
   timings.strokes = watch.milliseconds();
   watch = {};
@@ -321,7 +320,7 @@ Json draw_model(Settings settings, std::vector<Page>& pages, const Execution& ex
   Page page = draw_sheet(surfaces, sheets, pens_of(settings.drawing), plan.size);
   const std::optional<double> scale = is_parallel(settings) ? std::optional(plan.scale) : std::nullopt;
   if (page.layers.empty()) show_warnings({"nothing is seen; the drawing is empty"}, settings.run, progress);
-  if (const auto hint = unit_hint(settings, surfaces.bounds(), plan.scale); hint && scale)
+  if (const auto hint = unit_hint(settings.drawing, surfaces, plan.scale); hint && scale)
     show_warnings({*hint}, settings.run, progress);
   show_warnings(open_outlines(views), settings.run, progress);
   SectionMarks marks = marks_of(views, pens_of(settings.drawing).centre);

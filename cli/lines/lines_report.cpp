@@ -40,10 +40,10 @@ Json lines_json(const Settings& settings, const std::vector<DrawnView>& views, c
   for (const DrawnView& view : views) json["views"].push_back(view_json(view));
   json["layers"] = Json::array();
   for (const PageLayer& layer : page.layers) {
-    const PenTravel one = travel({page.width, page.height, "", {layer}});
+    const PenTravel one = travel_of({page.width, page.height, "", {layer}});
     json["layers"].push_back({{"name", layer.name}, {"paths", one.paths}, {"drawn_mm", one.down}});
   }
-  const PenTravel all = travel(page);
+  const PenTravel all = travel_of(page);
   json["paths"] = all.paths;
   json["points"] = all.points;
   json["arcs"] = all.arcs;

@@ -30,6 +30,7 @@ struct DrawnView {
   std::unique_ptr<const Surfaces> own;
   const Surfaces* surfaces = nullptr;  ///< what the drawing's ids mean
   Drawing drawing;
+  double millimetres_per_unit = 1;       ///< of the model
   double millimetres_per_pixel = 1;      ///< at scale 1:1; in perspective of no meaning by itself
   std::shared_ptr<const Rounds> rounds;  ///< of the surfaces; null where they are not asked for
   bool keeps_frame = false;              ///< the camera was placed: the picture's rectangle counts, not what is in it

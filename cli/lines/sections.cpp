@@ -51,7 +51,7 @@ Trace trace_in(const DrawnView& host, const DrawnView& section) {
   const glm::dvec3 forward = section.drawing.view.forward();
   Trace trace;
   trace.looking = glm::round(glm::dvec2(glm::dot(forward, camera.right()), -glm::dot(forward, camera.up())));
-  trace.box = bounds(host.drawing, host.shows_hidden);
+  trace.box = bounds_of(host.drawing, host.shows_hidden);
   glm::dvec3 point(0);
   point[int(section.cut->plane.towards) % 3] = float(section.cut->plane.at);
   const glm::dvec2 on = on_screen(camera, point);
@@ -164,7 +164,7 @@ void hatch_sections(std::vector<DrawnView>& views, const Settings& settings, con
   const std::vector<std::uint8_t> styles = hatch_styles(sections);
   double spacing = least_spacing;
   for (const DrawnView& view : views) {
-    const DrawingBounds box = bounds(view.drawing, false);
+    const DrawingBounds box = bounds_of(view.drawing, false);
     if (!view.cut || box.is_empty()) continue;
     spacing = std::max(spacing, spacing_share * glm::distance(box.low, box.high) * view.sheet.millimetres_per_pixel);
   }
@@ -195,7 +195,7 @@ SectionMarks marks_of(const std::vector<DrawnView>& views, const Pen& thin) {
   std::vector<ViewName> names;
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (!views[i].cut) continue;
-    const DrawingBounds box = bounds(views[i].drawing, false);
+    const DrawingBounds box = bounds_of(views[i].drawing, false);
     const glm::dvec2 low = views[i].sheet.on_page(box.low), high = views[i].sheet.on_page(box.high);
     bool is_host = false;
     for (std::size_t k = 0; k < hosts.size(); ++k) is_host = is_host || (views[k].cut && hosts[k] == i);
@@ -211,7 +211,7 @@ SectionMarks marks_of(const std::vector<DrawnView>& views, const Pen& thin) {
   SectionMarkOptions options;
   options.thin = thin;
   options.text_height = name_height;
-  return section_marks(lines, names, options);
+  return draw_section_marks(lines, names, options);
 }
 
 }  // namespace frontmost::cli

@@ -4,7 +4,6 @@
 #include <frontmost/title_block.h>
 
 #include "cli/failure.h"
-#include "cli/lines/units.h"
 
 namespace frontmost::cli {
 namespace {
@@ -35,7 +34,7 @@ void check_dimensions(const DrawingSettings& settings) {
 
 void keep_room(std::vector<ViewCell>& cells, const std::vector<DrawnView>& views, const Settings& settings) {
   if (!settings.drawing.dimensions) return;
-  const std::vector<OverallSizes> sizes = overall_sizes(dimensioned_views(views));
+  const std::vector<OverallSizes> sizes = overall_sizes_of(dimensioned_views(views));
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const glm::dvec2 room = room_for(sizes[i], DimensionOptions().text_height);
     if (room.x > 0) cells[i].room_before.x = std::max(cells[i].room_before.x, views[i].taken.x + room.x);
@@ -48,7 +47,7 @@ std::size_t add_dimensions(Page& page, const std::vector<DrawnView>& views, cons
   if (!settings.drawing.dimensions) return 0;
   const bool is_inch = settings.drawing.unit == DrawingSettings::Unit::inch;
   DimensionOptions options;
-  options.numbers_per_unit = unit_of(settings) / (is_inch ? inch : 1);
+  options.numbers_per_unit = views.front().millimetres_per_unit / (is_inch ? inch : 1);
   options.decimals = is_inch ? 3 : 2;
   const glm::dvec2 size(page.width, page.height);
   PageBox area{glm::dvec2(page_rim), size - page_rim};
@@ -58,7 +57,7 @@ std::size_t add_dimensions(Page& page, const std::vector<DrawnView>& views, cons
     area = {space.low, space.high};
     taken.push_back({space.block, space.high});
   }
-  Dimensions all = dimensions(dimensioned_views(views), area, taken, options);
+  Dimensions all = place_dimensions(dimensioned_views(views), area, taken, options);
   if (all.count > 0) page.layers.push_back(std::move(all.layer));
   return all.left_out;
 }

@@ -21,17 +21,17 @@ constexpr double largest_usual = 50;  // ISO 5455 has no enlargement above it
 
 }  // namespace
 
-double unit_of(const Settings& settings) {
-  if (settings.drawing.unit) return units[int(*settings.drawing.unit)].millimetres;
-  return 1000 * settings.metres_per_unit.value_or(0.001);
+double unit_of(const DrawingSettings& settings, const SceneSource& source) {
+  if (settings.unit) return units[int(*settings.unit)].millimetres;
+  return 1000 * source.metres_per_unit.value_or(0.001);
 }
 
-std::optional<std::string> unit_hint(const Settings& settings, const Box& bounds, double scale) {
-  const DrawingSettings& s = settings.drawing;
+std::optional<std::string> unit_hint(const DrawingSettings& s, const Surfaces& surfaces, double scale) {
+  const SceneSource& source = surfaces.scene().source;
   const bool is_sheet = s.is_sheet() || s.has_frame() || s.scale_rule == ScaleRule::standard;
-  if (!is_sheet || s.unit || s.scale_rule == ScaleRule::given || settings.metres_per_unit) return std::nullopt;
-  if (settings.model.substr(0, 8) == "builtin:" || !(scale > largest_usual)) return std::nullopt;
-  const std::vector<double> likely = likely_units(bounds);
+  if (!is_sheet || s.unit || s.scale_rule == ScaleRule::given || source.metres_per_unit) return std::nullopt;
+  if (!source.format || !(scale > largest_usual)) return std::nullopt;
+  const std::vector<double> likely = likely_units(surfaces.bounds());
   std::string named;
   for (const NamedUnit& unit : units) {
     if (unit.millimetres == 1 || std::count(likely.begin(), likely.end(), unit.millimetres / 1000) == 0) continue;

@@ -68,7 +68,8 @@ DepthFights fights_of(const Surfaces& surfaces, const ExactVisible& exact, const
   depth.is_used = true;
   depth.format = setup.format;
   depth.reversed = setup.reversed;
-  return depth_fights(surfaces, exact, look_at_surfaces(surfaces, exact.view, depth, execution).visible, execution);
+  return find_depth_fights(surfaces, exact, look_at_surfaces(surfaces, exact.view, depth, execution).visible,
+                           execution);
 }
 
 void save_heat_map(const PrecisionRun& run, const ExactVisible& exact, const Execution& execution) {
@@ -111,7 +112,7 @@ void check_wanted(const Settings& settings, const ClipDistances& clip) {
 
 /// Fills in what a model adds.
 void fight(PrecisionRun& run, const View& view, const Execution& execution) {
-  const ExactVisible exact = exact_visible(*run.surfaces, view, execution);
+  const ExactVisible exact = find_exact_visible(*run.surfaces, view, execution);
   for (PrecisionResult& result : run.results) {
     result.fights = fights_of(*run.surfaces, exact, result.setup, execution);
     stop_if_interrupted();

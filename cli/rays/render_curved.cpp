@@ -57,7 +57,7 @@ ViewResult render_curved_view(const Job& job, const RenderContext& context) {
   const std::vector<View> views = views_of(result.view, plan);
   const std::vector<CurvedVisible> seen = cast(index, views, context, result);
   const Stopwatch watch;
-  const Facets shown = facets(index, context.surfaces.scene(), seen);
+  const Facets shown = facets_of(index, context.surfaces.scene(), seen);
   const Surfaces surfaces(shown.scene, context.execution);
 
   Sights sights;

@@ -152,10 +152,8 @@ int render_stream(const Run& run) {
   models.insert(models.end(), settings.more_models.begin(), settings.more_models.end());
   StreamOptions options;
   options.load = settings.load;
-  std::vector<std::filesystem::path> used;
-  options.load.files = &used;
   Stream stream(models, options, execution);
-  refuse_outputs_beside(used, output_paths(run.jobs));
+  refuse_outputs_beside(stream.scene().source.files, output_paths(run.jobs));
   timings.load = watch.milliseconds();
   bool is_first = true;
   const std::vector<ViewResult> results = render_all(run.jobs, settings, progress, [&](const Job& job) {

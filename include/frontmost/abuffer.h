@@ -48,7 +48,7 @@ struct FragmentLists {
 };
 
 /// The most fragments that abuffer() returns: 2^30, 32 GiB. A pixel has at most 2^20 - 1 in every function here.
-inline constexpr std::uint64_t max_fragments = std::uint64_t(1) << 30;
+inline constexpr std::uint64_t most_fragments = std::uint64_t(1) << 30;
 
 /// The most fragments that a function here goes through, hidden ones too: 2^30, which takes minutes, or 64 for each
 /// pixel of larger pictures. They are estimated, by the areas of the triangles, before they are gathered. Of opaque

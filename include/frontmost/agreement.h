@@ -35,9 +35,9 @@ struct Agreement {
 /// - what it shows meets that square, or it shows nothing;
 /// - no triangle of the scene that contains the whole square, and is not left out by View::culling, is surely nearer
 ///   (for nothing: none contains it). Surely nearer: its least key over the square exceeds the other's greatest by more
-///   than float arithmetic makes of them: 20 roundings, 2^-24 each, of the key itself, and 6 times as many as the corner
-///   farthest aside is farther from the eye than deep (beside the guard band nothing counts; in parallel projection 20
-///   roundings of the greatest key, and 6 of the distance from the eye to the farthest corner).
+///   than float arithmetic makes of them: 20 roundings, 2^-24 each, of the key itself, and 6 times as many as the
+///   corner farthest aside is farther from the eye than deep (beside the guard band nothing counts; in parallel
+///   projection 20 roundings of the greatest key, and 6 of the distance from the eye to the farthest corner).
 /// Two possible answers part for the reason `depth` where both triangles contain the square, otherwise for `edge` (the
 /// rim that the near and far plane cut counts as one). Any other difference is `unexplained`; and so is a key, of
 /// either answer and at any sample, that its triangle does not have in the square, with the same allowance.
@@ -46,8 +46,8 @@ struct Agreement {
 /// as coordinates are 0 or between 2^-100 and 2^100.
 /// O(samples + triangles + differing samples * triangles over them), in parallel.
 /// \throws Error bad_argument when the two are of different views.
-[[nodiscard]] Agreement agreement(const Surfaces& surfaces, const Visible& a, const Visible& b,
-                                  const Execution& execution = {});
+[[nodiscard]] Agreement check_agreement(const Surfaces& surfaces, const Visible& a, const Visible& b,
+                                        const Execution& execution = {});
 
 /// Adds what shows through, for methods that answer in layers: of the samples that agree, those where `behind` shows
 /// something become `translucent` where the material of what `front` shows lets light through (alpha mode blend), and

@@ -115,6 +115,6 @@ struct Facets {
 /// are not seen from here, but throw shadows where nothing better is given (ShadeOptions::seen_by_light). Not for
 /// scenes that are seen through: shade() looks for what lies behind among triangles, which tessellate() makes.
 /// O(samples + size of the scene); about 130 bytes a facet. Precondition: the index is of this scene, the views of it.
-[[nodiscard]] Facets facets(const CurvedIndex& index, const Scene& scene, std::span<const CurvedVisible> views);
+[[nodiscard]] Facets facets_of(const CurvedIndex& index, const Scene& scene, std::span<const CurvedVisible> views);
 
 }  // namespace frontmost

@@ -40,7 +40,7 @@ struct OverallSizes {
 
 /// Each direction of space once: in the first view that shows it in true length upright or level. Views that are not
 /// dimensioned have none.
-[[nodiscard]] std::vector<OverallSizes> overall_sizes(std::span<const DimensionedView> views);
+[[nodiscard]] std::vector<OverallSizes> overall_sizes_of(std::span<const DimensionedView> views);
 /// Millimetres that these take beside the view, on its left and below, beyond what other marks take.
 [[nodiscard]] glm::dvec2 room_for(const OverallSizes& sizes, double text_height);
 
@@ -54,13 +54,14 @@ struct Dimensions {
   std::size_t left_out = 0;         ///< diameters for which there was no room
 };
 
-/// Overall sizes as overall_sizes() shares them out, and diameters of circles and cylinders that are seen along their
-/// axes, each once on the sheet, those of one size in a view together ("6x⌀10"). A size that is that of one cylinder
-/// has its sign and takes the place of the diameter. Circles that end a cone or a chamfer at a cylinder, and less than
-/// a half circle and a bit, have none. Diameters stand on leader lines, where they neither meet a line or text of the
-/// drawing nor what is in `taken` and leave `area` (the page within its frame): as near as such a place is, with as few
-/// lines crossed. At most 64 of them. O(lines + rounds). \throws Error bad_argument for options out of range.
-[[nodiscard]] Dimensions dimensions(std::span<const DimensionedView> views, const PageBox& area,
-                                    std::span<const PageBox> taken, const DimensionOptions& options = {});
+/// Overall sizes as overall_sizes_of() shares them out, and diameters of circles and cylinders that are seen along
+/// their axes, each once on the sheet, those of one size in a view together ("6x⌀10"). A size that is that of one
+/// cylinder has its sign and takes the place of the diameter. Circles that end a cone or a chamfer at a cylinder, and
+/// less than a half circle and a bit, have none. Diameters stand on leader lines, where they neither meet a line or
+/// text of the drawing nor what is in `taken` and leave `area` (the page within its frame): as near as such a place is,
+/// with as few lines crossed. At most 64 of them. O(lines + rounds). \throws Error bad_argument for options out of
+/// range.
+[[nodiscard]] Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBox& area,
+                                          std::span<const PageBox> taken, const DimensionOptions& options = {});
 
 }  // namespace frontmost

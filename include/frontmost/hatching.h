@@ -58,16 +58,16 @@ struct HatchLine {
 /// The parts of hatch lines that lie on what is seen of `surfaces`, and is dark there.
 ///
 /// Each line of a set stands for a plane through the eye. It meets every triangle that it passes in a segment, which is
-/// cut where it goes out of sight as the edges of lines() are, by the same signs; and where it comes into shadow
+/// cut where it goes out of sight as the edges of draw_lines() are, by the same signs; and where it comes into shadow
 /// likewise, in the view of the light. Where the brightness crosses HatchSet::below within a triangle is the root of a
 /// quadratic equation. So nothing is sampled. Pieces that meet are joined; all lie on their line to the rounding of
 /// doubles. By set, then by line, from one end to the other.
 /// (G. Winkenbach, D. Salesin. Computer-Generated Pen-and-Ink Illustration. 1994; E. Praun, H. Hoppe, M. Webb,
 /// A. Finkelstein. Real-Time Hatching. 2001: sets that stay where darker ones come.)
-/// O(segments) beside the grids of occluders that lines() makes too; a triangle has a segment for every line over it.
-/// The result is the same to the bit for any number of threads and every instruction set.
-/// \throws Error as validate(view) does, bad_argument for options out of range, and limit_exceeded for more than 2^26
-/// pieces, before they are joined.
+/// O(segments) beside the grids of occluders that draw_lines() makes too; a triangle has a segment for every line over
+/// it. The result is the same to the bit for any number of threads and every instruction set. \throws Error as
+/// validate(view) does, bad_argument for options out of range, and limit_exceeded for more than 2^26 pieces, before
+/// they are joined.
 [[nodiscard]] std::vector<HatchLine> hatch(const Surfaces& surfaces, const View& view, const HatchOptions& options,
                                            const Execution& execution = {});
 

@@ -2,7 +2,6 @@
 // Files: models in, images out. The only room that touches the file system.
 #pragma once
 
-#include <filesystem>
 #include <iosfwd>
 #include <optional>
 
@@ -11,19 +10,9 @@
 
 namespace frontmost {
 
-enum class ModelFormat : std::uint8_t { stl, ply, obj, off, gltf, threemf };
-
 struct LoadOptions {
   std::optional<ModelFormat> format;  ///< none: by suffix and, for memory and standard input, by content
   std::optional<Axis> up;             ///< none: the format's (z for STL and 3MF, y for the others)
-  /// Where load() notes the format that it read, which may be found by content; untouched for built-in scenes.
-  std::optional<ModelFormat>* found = nullptr;
-  /// Where load() notes how long a unit of the coordinates is, where the file says: 1 for glTF, what it names for 3MF.
-  /// Untouched for all others. Nothing is scaled by it.
-  std::optional<double>* metres_per_unit = nullptr;
-  /// Where load() adds every file that it opened: the model, and the material libraries, buffers and textures that the
-  /// model names. Each once, by its path without links, in the order of their names.
-  std::vector<std::filesystem::path>* files = nullptr;
 };
 
 /// Reads a model. "-" reads standard input, "builtin:NAME" makes a built-in scene. Files named inside a model
@@ -33,6 +22,7 @@ struct LoadOptions {
 /// are still doubles, so that text and double formats lose nothing, and files of floats nothing more. Positions,
 /// instances and cameras of the scene are about it; what is at p there is at origin + p in the file. fitting_origin()
 /// says when and which. Whoever brings eyes, rays or points in the file's coordinates takes it off first.
+/// Scene::source tells the format, the unit and the files that were read.
 /// \throws Error file_unreadable, file_malformed, unsupported or limit_exceeded: "name: place: reason".
 [[nodiscard]] Scene load(const std::string& path, const LoadOptions& options = {}, const Execution& execution = {});
 

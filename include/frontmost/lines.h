@@ -89,7 +89,7 @@ struct Drawing {
 /// result is the same to the bit for any number of threads and every instruction set. \throws Error as validate(view)
 /// does, bad_argument for an angle that is out of range, and limit_exceeded for more than 2^25 segments of
 /// intersections or 2^26 parts.
-[[nodiscard]] Drawing lines(const Surfaces& surfaces, const View& view, const LineOptions& options = {},
-                            const Execution& execution = {});
+[[nodiscard]] Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions& options = {},
+                                 const Execution& execution = {});
 
 }  // namespace frontmost

@@ -61,7 +61,8 @@ struct ExactVisible {
 
 /// O(triangles + covered samples); samples where doubles cannot decide cost microseconds each. The same on every
 /// machine. \throws Error as validate(view) does.
-[[nodiscard]] ExactVisible exact_visible(const Surfaces& surfaces, const View& view, const Execution& execution = {});
+[[nodiscard]] ExactVisible find_exact_visible(const Surfaces& surfaces, const View& view,
+                                              const Execution& execution = {});
 
 /// Two objects of which one is seen where the other is nearer.
 struct FightingPair {
@@ -85,8 +86,8 @@ struct DepthFights {
 
 /// Compares an answer, such as a DepthBuffer's, with the exact one. O(samples).
 /// \throws Error bad_argument when the two are of different views.
-[[nodiscard]] DepthFights depth_fights(const Surfaces& surfaces, const ExactVisible& exact, const Visible& answer,
-                                       const Execution& execution = {});
+[[nodiscard]] DepthFights find_depth_fights(const Surfaces& surfaces, const ExactVisible& exact, const Visible& answer,
+                                            const Execution& execution = {});
 
 /// The fights in colour, from violet (a millionth of the distance) over red to yellow (a tenth), light blue where
 /// nothing is seen, over `backdrop` in dim grey: R, G, B, A. First samples only.

@@ -101,7 +101,7 @@ struct SceneReport {
 /// The units that the coordinates of a model may be in, by its greatest extent alone, as metres to a unit: millimetres
 /// where that is then 5 mm to 2 m, as of parts and prints; metres where millimetres would be a grain of sand, below 1;
 /// in between metres, centimetres and inches, since anything may be meant. None where nothing tells: below 0.001, above
-/// 2000, or without anything. Files that say their unit need no guess: LoadOptions::metres_per_unit.
+/// 2000, or without anything. Files that say their unit need no guess: SceneSource::metres_per_unit.
 [[nodiscard]] std::vector<double> likely_units(const Box& bounds);
 
 }  // namespace frontmost

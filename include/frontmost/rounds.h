@@ -31,13 +31,13 @@ struct Rounds {
 /// The circles and cylinders of a scene of which at least 160 degrees are there, and what else is round about an axis.
 ///
 /// Surfaces are smooth where triangles meet at 20 degrees or less, so that a polygon of 18 sides and more is round, as
-/// it is to strokes(). Edges that are not smooth are followed from one to the next; where their corners lie on a circle
-/// they are one. A cylinder is grown from two neighbours over all that lie smoothly about the same axis, at the same
-/// distance. Corners may be off by a quarter of how far the middle of a side is, or by what six digits leave open where
-/// that is more; so nothing is asked of what is not tessellated from something round. From a circle's edge a cylinder
-/// may have corners within its sides as well, where something else cuts it. Surfaces of revolution are what is smooth
-/// from one triangle to the next, goes all the way round and has its corners in rings of 18 and more: tori, domes,
-/// cones; but not cylinders, nor whole spheres, which have no axis of their own. Near-linear. \throws Error
+/// it is to chain_strokes(). Edges that are not smooth are followed from one to the next; where their corners lie on a
+/// circle they are one. A cylinder is grown from two neighbours over all that lie smoothly about the same axis, at the
+/// same distance. Corners may be off by a quarter of how far the middle of a side is, or by what six digits leave open
+/// where that is more; so nothing is asked of what is not tessellated from something round. From a circle's edge a
+/// cylinder may have corners within its sides as well, where something else cuts it. Surfaces of revolution are what is
+/// smooth from one triangle to the next, goes all the way round and has its corners in rings of 18 and more: tori,
+/// domes, cones; but not cylinders, nor whole spheres, which have no axis of their own. Near-linear. \throws Error
 /// limit_exceeded for more than 2^30 triangles.
 [[nodiscard]] Rounds find_rounds(const Surfaces& surfaces, const Execution& execution = {});
 
@@ -64,7 +64,7 @@ struct CentreLine {
 /// perspective. `rounds` are those of the surfaces of the drawing. Small circles have crosses that reach beyond them by
 /// their radius alone, but by a third of the overshoot at least. In the order of their directions and places.
 /// \throws Error bad_argument for an overshoot out of range.
-[[nodiscard]] std::vector<CentreLine> centre_lines(const Rounds& rounds, const Drawing& drawing, const Strokes& strokes,
-                                                   const CentreLineOptions& options = {});
+[[nodiscard]] std::vector<CentreLine> centre_lines_of(const Rounds& rounds, const Drawing& drawing,
+                                                      const Strokes& strokes, const CentreLineOptions& options = {});
 
 }  // namespace frontmost

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <glm/glm.hpp>
 #include <optional>
 #include <span>
@@ -134,6 +135,19 @@ struct Camera {
 enum class Axis : std::uint8_t { x, y, z, minus_x, minus_y, minus_z };
 [[nodiscard]] glm::dvec3 direction(Axis axis);
 
+enum class ModelFormat : std::uint8_t { stl, ply, obj, off, gltf, threemf };
+
+/// What is known of the files that a scene was read from; nothing of a scene that was made.
+struct SceneSource {
+  std::optional<ModelFormat> format;  ///< of the first model
+  /// How long a unit of the coordinates is, where the first model's file says: 1 for glTF, what it names for 3MF.
+  /// Nothing is scaled by it.
+  std::optional<double> metres_per_unit;
+  /// Every file that was opened: the model, and the material libraries, buffers and textures that the model names. Each
+  /// once for each model, by its path without links, in the order of their names.
+  std::vector<std::filesystem::path> files;
+};
+
 struct Scene {
   std::string name;  ///< the file's name without folder and suffix, or the built-in scene's
   std::vector<Mesh> meshes;
@@ -146,6 +160,7 @@ struct Scene {
   /// there. Zero, but for models that lie far from it for their size, whose details floats could not hold there.
   glm::dvec3 origin{0};
   std::vector<std::string> warnings;  ///< what the reader passed over: "file: place: what"
+  SceneSource source;
 };
 
 /// Triangles over all instances. O(instances).
@@ -154,9 +169,9 @@ struct Scene {
 /// Adds a mesh and places it, as an object named as the mesh is. Meshes that are not placed are not seen.
 /// \returns the object's number in Scene::instances. O(1).
 std::uint32_t add(Scene& scene, Mesh mesh, const glm::dmat4& world_from_mesh = glm::dmat4(1.0));
-/// Adds all that `part` holds to `scene`: objects, materials, textures, cameras and warnings after its own, with their
-/// numbers counted on. Name and up stay as they are, and so does the origin, of which what is added is moved to tell
-/// the same place, unless the scene has no objects yet: then it takes the part's. O(size of part).
+/// Adds all that `part` holds to `scene`: objects, materials, textures, cameras, warnings and files after its own, with
+/// their numbers counted on. Name and up stay as they are, and so does the origin, of which what is added is moved to
+/// tell the same place. A scene without objects takes the origin, the format and the unit of the part. O(size of part).
 void add(Scene& scene, Scene part);
 
 /// The origin with which floats hold the most of a scene that was put together: zero unless on some axis all of it lies

@@ -39,7 +39,7 @@ struct SectionMarks {
 
 /// Cutting lines in long dashes and dots, with thick ends 3 to 9 mm beyond what they cut, an arrow at each and its
 /// letter behind it; and the names of views. All are strokes of pens, for plotters as well.
-[[nodiscard]] SectionMarks section_marks(std::span<const CuttingLine> lines, std::span<const ViewName> names,
-                                         const SectionMarkOptions& options = {});
+[[nodiscard]] SectionMarks draw_section_marks(std::span<const CuttingLine> lines, std::span<const ViewName> names,
+                                              const SectionMarkOptions& options = {});
 
 }  // namespace frontmost

@@ -58,7 +58,7 @@ struct DrawingBounds {
   glm::dvec2 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
   [[nodiscard]] bool is_empty() const { return !(low.x <= high.x && low.y <= high.y); }
 };
-[[nodiscard]] DrawingBounds bounds(const Drawing& drawing, bool with_hidden);
+[[nodiscard]] DrawingBounds bounds_of(const Drawing& drawing, bool with_hidden);
 
 /// How a plotter would draw a page, in millimetres and numbers.
 struct PenTravel {
@@ -66,6 +66,6 @@ struct PenTravel {
   double up = 0;    ///< moved between paths, from the page's corner on
   std::size_t paths = 0, points = 0, arcs = 0;
 };
-[[nodiscard]] PenTravel travel(const Page& page);
+[[nodiscard]] PenTravel travel_of(const Page& page);
 
 }  // namespace frontmost

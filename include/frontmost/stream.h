@@ -72,8 +72,9 @@ class Stream {
   Stream(Stream&&) noexcept;
   Stream& operator=(Stream&&) noexcept;
 
-  /// All but the triangles: objects, materials, textures, which way is up; warnings, complete after a pass. Its origin is
-  /// the first file's, as load() gives it, but zero of an STL file from a pipe; bounds, outline and views are about it.
+  /// All but the triangles: objects, materials, textures, which way is up; warnings, complete after a pass. Its origin
+  /// is the first file's, as load() gives it, but zero of an STL file from a pipe; bounds, outline and views are about
+  /// it.
   [[nodiscard]] const Scene& scene() const;
   /// Whether the model can be read again. \see passes()
   [[nodiscard]] bool can_repeat() const;

@@ -56,7 +56,7 @@ struct Strokes {
 /// projection, one is kept, the seen one before the hidden one. What is seen as a point is left out. Near-linear in the
 /// parts; where thousands crowd within a pixel and no grid parts them, with more than that.
 /// \throws Error bad_argument for tolerances out of range.
-[[nodiscard]] Strokes strokes(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options = {},
-                              const Execution& execution = {});
+[[nodiscard]] Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options = {},
+                                    const Execution& execution = {});
 
 }  // namespace frontmost

@@ -25,7 +25,7 @@ struct PrimitiveSource {
 /// number. Singular transforms are no error: they flatten what they place. Only the first three rows of a transform
 /// count. Triangles whose material is of alpha mode MASK have holes wherever their alpha (base colour, texture and
 /// vertices) is below the cutoff; the texture is looked up as it is stored. Every method that answers in samples sees
-/// through holes; lines() does not.
+/// through holes; draw_lines() does not.
 class Surfaces {
  public:
   /// Borrows `scene`, which must outlive the surfaces and stay as it is.

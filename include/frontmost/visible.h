@@ -24,7 +24,7 @@ struct Visible {
 [[nodiscard]] float depth_of_key(const View& view, float key);
 
 /// Planar depth at every sample, in the order of Visible; +inf where nothing is seen.
-[[nodiscard]] Buffer<float> depths(const Visible& visible);
+[[nodiscard]] Buffer<float> depths_of(const Visible& visible);
 
 /// A Visible of `view` in which nothing is seen: what merging begins with. \throws Error as validate(view) does.
 [[nodiscard]] Visible nothing_visible(const View& view);

@@ -52,7 +52,7 @@ Opacities::Opacities(const Surfaces& surfaces, float opacity, const Execution& e
 
 std::uint64_t most_gathered_fragments(const View& view) {
   constexpr std::uint64_t most_per_pixel = 64;
-  return std::max(max_fragments, most_per_pixel * view.pixel_count());
+  return std::max(most_fragments, most_per_pixel * view.pixel_count());
 }
 
 FragmentLists abuffer(const Surfaces& surfaces, const View& view, const AbufferOptions& options,
@@ -73,7 +73,7 @@ FragmentLists abuffer(const Surfaces& surfaces, const View& view, const AbufferO
     const std::lock_guard lock(mutex);
     total += part.items.size();
     // Only here the sum is known. Parts before this one are held already, but each was bounded by what a tile may hold.
-    if (total > max_fragments) throw Error(ErrorCode::limit_exceeded, "abuffer: more than 2^30 fragments");
+    if (total > most_fragments) throw Error(ErrorCode::limit_exceeded, "abuffer: more than 2^30 fragments");
     parts.push_back(std::move(part));
   });
   FragmentLists lists{view, prepared.pattern.positions(), beginnings(view, parts), {}};

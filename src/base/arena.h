@@ -12,9 +12,9 @@ struct Slab;
 
 /// While it lives, the Buffers of the thread that made it lie side by side in large pages, as long as there is room:
 /// the first touch of thousands of small pages, which Buffers of less than a large page have each by itself, was a
-/// third of lines() in a new process. Buffers may outlive it, and may be dropped in any order by any thread; their room
-/// is there again when those made after them are gone, too. To be destroyed in the opposite order of making, on the
-/// same thread.
+/// third of draw_lines() in a new process. Buffers may outlive it, and may be dropped in any order by any thread; their
+/// room is there again when those made after them are gone, too. To be destroyed in the opposite order of making, on
+/// the same thread.
 class Arena {
  public:
   /// Not under AddressSanitizer, which finds what reads beyond a Buffer's end where nothing lies beside it.

@@ -111,7 +111,7 @@ SeenMesh see_closed(WeldedMesh& mesh, const Sight& sight, const Execution& execu
 
 }  // namespace
 
-Drawing lines(const Surfaces& surfaces, const View& view, const LineOptions& options, const Execution& execution) {
+Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions& options, const Execution& execution) {
   validate(view);
   if (options.crease_angle && !(*options.crease_angle >= 0 && *options.crease_angle <= 3.1415926535897932))
     throw Error(ErrorCode::bad_argument, "crease_angle: must be from 0 to pi");

@@ -299,7 +299,7 @@ std::uint64_t Agreement::differing() const {
   return sum;
 }
 
-Agreement agreement(const Surfaces& surfaces, const Visible& a, const Visible& b, const Execution& execution) {
+Agreement check_agreement(const Surfaces& surfaces, const Visible& a, const Visible& b, const Execution& execution) {
   validate(a.view);
   check_views(a, b);
   const IeeeScope ieee;

@@ -72,8 +72,8 @@ glm::vec3 heat(float share) {
 
 }  // namespace
 
-DepthFights depth_fights(const Surfaces& surfaces, const ExactVisible& exact, const Visible& answer,
-                         const Execution& execution) {
+DepthFights find_depth_fights(const Surfaces& surfaces, const ExactVisible& exact, const Visible& answer,
+                              const Execution& execution) {
   check_views(exact, answer);
   check_answer(answer, surfaces.primitive_count(), "depth fights", execution);
   check_ids({exact.primitives.data(), exact.primitives.size()}, surfaces.primitive_count(), "depth fights", execution);

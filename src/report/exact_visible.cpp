@@ -78,7 +78,7 @@ class TileContest {
 
 }  // namespace
 
-ExactVisible exact_visible(const Surfaces& surfaces, const View& view, const Execution& execution) {
+ExactVisible find_exact_visible(const Surfaces& surfaces, const View& view, const Execution& execution) {
   validate(view);
   const IeeeScope ieee;
   const std::size_t count = view.sample_count();

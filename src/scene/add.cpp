@@ -26,7 +26,11 @@ std::uint32_t add(Scene& scene, Mesh mesh, const glm::dmat4& world_from_mesh) {
 }
 
 void add(Scene& scene, Scene part) {
-  if (scene.instances.empty() && scene.cameras.empty()) scene.origin = part.origin;
+  if (scene.instances.empty() && scene.cameras.empty()) {
+    scene.origin = part.origin;
+    scene.source.format = part.source.format;
+    scene.source.metres_per_unit = part.source.metres_per_unit;
+  }
   set_origin(part, scene.origin);
   // Everything is renumbered before anything is moved: the counts of what was there are what is added.
   for (Mesh& mesh : part.meshes)
@@ -42,6 +46,7 @@ void add(Scene& scene, Scene part) {
   move_all(part.textures, scene.textures);
   move_all(part.cameras, scene.cameras);
   move_all(part.warnings, scene.warnings);
+  move_all(part.source.files, scene.source.files);
 }
 
 }  // namespace frontmost

@@ -24,8 +24,8 @@ float depth_of_key(const View& view, float key) {
   return key > 0 ? float(double(float(clip.near)) / double(key)) : std::numeric_limits<float>::infinity();
 }
 
-Buffer<float> depths(const Visible& visible) {
-  check_planes(visible, "depths");
+Buffer<float> depths_of(const Visible& visible) {
+  check_planes(visible, "depths_of");
   Buffer<float> depth(visible.keys.size());
   for (std::size_t i = 0; i < depth.size(); ++i)
     depth[i] = visible.primitives[i] == no_primitive ? std::numeric_limits<float>::infinity()

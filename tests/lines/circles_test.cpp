@@ -44,7 +44,7 @@ Rounds rounds_of(const Scene& scene, NamedView direction) {
   const double scale = (view.projection.right - view.projection.left) / view.width;
   StrokeOptions drawn{.by_kind = false, .by_outline = false};
   drawn.apart = drawn.arc_tolerance = 0.01 / scale;
-  return rounds_of(strokes(surfaces, lines(surfaces, view), drawn), scale);
+  return rounds_of(chain_strokes(surfaces, draw_lines(surfaces, view), drawn), scale);
 }
 
 TEST(Circles, OfModelsHaveTheirRadii) {
@@ -91,12 +91,12 @@ TEST(Circles, RingsThatDifferByTheirTrianglesAreOne) {
   view.width = view.height = 400;
   view.world_from_eye = look_at({0, 0, 10}, {0, 0, 0}, {0, 1, 0});
   view.projection = make_orthographic(-2, 2, -2, 2, {0.5, 50});
-  const Drawing drawing = lines(surfaces, view);
+  const Drawing drawing = draw_lines(surfaces, view);
   // The finer one stands over the middles of the coarser one's sides, by up to a seventh of a pixel.
   StrokeOptions options{.with_hidden = false, .arc_tolerance = 0.2};
-  EXPECT_GT(strokes(surfaces, drawing, options).strokes.size(), 20u);
+  EXPECT_GT(chain_strokes(surfaces, drawing, options).strokes.size(), 20u);
   options.apart = 0.2;
-  const Strokes one = strokes(surfaces, drawing, options);
+  const Strokes one = chain_strokes(surfaces, drawing, options);
   ASSERT_EQ(one.strokes.size(), 1u);
   EXPECT_TRUE(one.strokes[0].is_closed);
   EXPECT_NEAR(rounds_of(one, 0.01).at(100), 1, 1e-6);

@@ -15,7 +15,7 @@ std::vector<DrawnEdge> creases_of(const Scene& scene, std::optional<double> angl
   LineOptions options;
   options.crease_angle = angle;
   options.silhouettes = options.intersections = false;
-  return lines(Surfaces(scene), frame(Surfaces(scene), 100, 100), options).edges;
+  return draw_lines(Surfaces(scene), frame(Surfaces(scene), 100, 100), options).edges;
 }
 std::vector<DrawnEdge> creases_of(const Mesh& mesh, std::optional<double> angle = std::nullopt) {
   return creases_of(scene_of(mesh), angle);
@@ -310,9 +310,9 @@ TEST(Creases, ThreadsAndInstructionSetsChangeNothing) {
   const Scene scene = scene_of(bent(60, 0.2f, [](float x) { return 0.3f * std::sin(20 * x); }));
   const Surfaces surfaces(scene);
   const View view = frame(surfaces, 320, 240);
-  const Drawing one = lines(surfaces, view, {}, {.threads = 1});
+  const Drawing one = draw_lines(surfaces, view, {}, {.threads = 1});
   for (const Execution& execution : {Execution{.threads = 4}, Execution{.threads = 1, .isa = Isa::scalar}}) {
-    const Drawing other = lines(surfaces, view, {}, execution);
+    const Drawing other = draw_lines(surfaces, view, {}, execution);
     ASSERT_EQ(one.edges.size(), other.edges.size());
     for (std::size_t i = 0; i < one.edges.size(); ++i) {
       EXPECT_EQ(one.edges[i].from, other.edges[i].from);
@@ -327,7 +327,7 @@ TEST(Creases, HardlyDependOnTheView) {
   const Surfaces surfaces(scene);
   Random random(5);
   for (int i = 0; i < 20; ++i) {
-    const Drawing drawing = lines(surfaces, random_view(random, 100, 100));
+    const Drawing drawing = draw_lines(surfaces, random_view(random, 100, 100));
     // The nut's own edges, and besides them silhouettes alone.
     std::size_t creases = 0;
     for (const DrawnEdge& edge : drawing.edges) creases += edge.kind == EdgeKind::crease;

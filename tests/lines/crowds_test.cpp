@@ -30,9 +30,9 @@ void expect_as_counted(const Scene& scene, const View& view) {
   const Surfaces surfaces(scene);
   LineOptions options;
   options.crease_angle = 0;
-  const std::vector<DrawnPart> parts = lines(surfaces, view, options).parts;
+  const std::vector<DrawnPart> parts = draw_lines(surfaces, view, options).parts;
   options.counts_hidden = true;
-  const std::vector<DrawnPart> counted = without_counts(lines(surfaces, view, options));
+  const std::vector<DrawnPart> counted = without_counts(draw_lines(surfaces, view, options));
   ASSERT_EQ(parts.size(), counted.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
     ASSERT_EQ(parts[i].edge, counted[i].edge);
@@ -77,8 +77,8 @@ TEST(Crowds, CopiesChangeNothing) {
           mesh.triangles.push_back(copy == 0 ? t : copy == 1 ? glm::uvec3(t.y, t.z, t.x) : glm::uvec3(t.x, t.z, t.y));
         }
       const Scene often = scene_of(std::move(mesh));
-      const Drawing one = lines(Surfaces(once), view, {.outlines = true});
-      const Drawing many = lines(Surfaces(often), view, {.outlines = true});
+      const Drawing one = draw_lines(Surfaces(once), view, {.outlines = true});
+      const Drawing many = draw_lines(Surfaces(often), view, {.outlines = true});
       ASSERT_EQ(one.edges.size(), many.edges.size());
       for (std::size_t i = 0; i < one.edges.size(); ++i) {
         ASSERT_EQ(one.edges[i].from, many.edges[i].from);
@@ -99,7 +99,7 @@ TEST(Crowds, OfTheSameTriangleAreOne) {
   for (int i = 0; i < 20000; ++i) add_triangle(mesh, {-1, -1, 0}, {1, -1, 0.3f}, {0.5f, 1, 0});
   const Scene scene = scene_of(std::move(mesh));
   const Surfaces surfaces(scene);
-  const Drawing drawing = lines(surfaces, frame(surfaces, 320, 240));
+  const Drawing drawing = draw_lines(surfaces, frame(surfaces, 320, 240));
   EXPECT_EQ(drawing.edges.size(), 3u);
   ASSERT_EQ(drawing.parts.size(), 3u);
   for (const DrawnPart& part : drawing.parts) EXPECT_EQ(part.hidden_by, 0u);
@@ -130,7 +130,7 @@ TEST(Crowds, AskOftenWhetherToStop) {
       return now - start > std::chrono::milliseconds(200);
     };
     try {
-      (void)lines(surfaces, view, {}, {.threads = 1, .watch = &watch});
+      (void)draw_lines(surfaces, view, {}, {.threads = 1, .watch = &watch});
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::cancelled);
     }

@@ -34,7 +34,7 @@ class Sketch {
     StrokeOptions options;
     options.by_kind = by_kind;
     options.shortest = shortest;
-    return frontmost::strokes(Surfaces(scene), drawing_, options);
+    return frontmost::chain_strokes(Surfaces(scene), drawing_, options);
   }
 
  private:
@@ -146,12 +146,12 @@ TEST(Crumbs, NeverOpenAnOutline) {
   LineOptions options;
   options.outlines = true;
   const View view = frame(surfaces, 400, 300);
-  const Drawing drawing = lines(surfaces, view, options);
+  const Drawing drawing = draw_lines(surfaces, view, options);
   const auto outline_of = [&](double shortest) {
     StrokeOptions all;
     all.with_hidden = false;
     all.shortest = shortest;
-    const Strokes found = strokes(surfaces, drawing, all);
+    const Strokes found = chain_strokes(surfaces, drawing, all);
     double length = 0, closed = 0;
     for (const Stroke& stroke : found.strokes) {
       if (!stroke.is_outline) continue;

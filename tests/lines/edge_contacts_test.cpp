@@ -49,7 +49,7 @@ double crossing_length(const Mesh& mesh) {
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
   double length = 0;
-  const Drawing drawing = lines(surfaces, frame(surfaces, 100, 100), {.crease_angle = 0.1});
+  const Drawing drawing = draw_lines(surfaces, frame(surfaces, 100, 100), {.crease_angle = 0.1});
   for (const DrawnEdge& edge : drawing.edges) {
     const glm::dvec3 along = edge.to - edge.from;
     // Nor does any lie along an edge that is drawn.

@@ -17,7 +17,7 @@ std::size_t count_of(const std::vector<DrawnEdge>& edges, EdgeKind kind) {
 std::vector<DrawnEdge> edges_of(const Scene& scene, std::optional<double> angle = std::nullopt) {
   LineOptions options;
   options.crease_angle = angle;
-  return lines(Surfaces(scene), frame(Surfaces(scene), 100, 100), options).edges;
+  return draw_lines(Surfaces(scene), frame(Surfaces(scene), 100, 100), options).edges;
 }
 
 /// Moves every corner by up to `by`, equal ones alike.

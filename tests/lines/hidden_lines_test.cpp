@@ -16,7 +16,7 @@ struct Checked {
 
 Checked check(const Scene& scene, const View& view, bool counts, std::uint64_t seed) {
   const Surfaces surfaces(scene);
-  const Drawing drawing = lines(surfaces, view, {.crease_angle = 0, .counts_hidden = counts, .outlines = !counts});
+  const Drawing drawing = draw_lines(surfaces, view, {.crease_angle = 0, .counts_hidden = counts, .outlines = !counts});
   const PointOracle oracle(surfaces, view);
   Random random(seed);
   Checked checked;
@@ -75,13 +75,13 @@ TEST(Lines, TellProgressAndStopWhenAsked) {
     EXPECT_GE(fraction, last);
     last = fraction;
   };
-  (void)lines(surfaces, view, {}, {.threads = 1, .watch = &watch});
+  (void)draw_lines(surfaces, view, {}, {.threads = 1, .watch = &watch});
   EXPECT_EQ(last, 1);
   watch.progress = nullptr;
   for (const int after : {0, 3, 10}) {
     int asked = 0;
     watch.cancelled = [&] { return asked++ >= after; };
-    EXPECT_THROW((void)lines(surfaces, view, {}, {.threads = 1, .watch = &watch}), Error);
+    EXPECT_THROW((void)draw_lines(surfaces, view, {}, {.threads = 1, .watch = &watch}), Error);
   }
 }
 
@@ -99,7 +99,8 @@ TEST(Lines, ThreadsChangeNothing) {
   const Scene scene = scene_of(random_mesh(Kind::soup, 3000, 5));
   const Surfaces surfaces(scene);
   const View view = frame(surfaces, 320, 240);
-  const Drawing one = lines(surfaces, view, {}, {.threads = 1}), three = lines(surfaces, view, {}, {.threads = 3});
+  const Drawing one = draw_lines(surfaces, view, {}, {.threads = 1}),
+                three = draw_lines(surfaces, view, {}, {.threads = 3});
   expect_same(one, three);
 }
 
@@ -120,8 +121,8 @@ TEST(Lines, PartsOfManyTrianglesAreOneGrid) {
   const View view = frame(surfaces, 320, 240);
   for (const bool counts : {false, true}) {
     const LineOptions options{.counts_hidden = counts, .intersections = false};
-    const Drawing drawing = lines(surfaces, view, options, {.threads = 1});
-    expect_same(drawing, lines(surfaces, view, options, {.threads = 4}));
+    const Drawing drawing = draw_lines(surfaces, view, options, {.threads = 1});
+    expect_same(drawing, draw_lines(surfaces, view, options, {.threads = 4}));
     const PointOracle oracle(surfaces, view);
     std::size_t hidden = 0;
     for (std::size_t i = 0; i < drawing.parts.size(); i += 300) {

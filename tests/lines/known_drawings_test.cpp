@@ -48,7 +48,7 @@ std::size_t count(const Drawing& drawing, EdgeKind kind) {
 TEST(KnownDrawings, ACubeHasNineEdgesSeenAndThreeHidden) {
   for (const bool is_parallel : {false, true}) {
     const Scene scene = scene_of(box(glm::vec3(-1), glm::vec3(1)));
-    const Drawing drawing = lines(Surfaces(scene), view_from({4, 5, 6}, is_parallel));
+    const Drawing drawing = draw_lines(Surfaces(scene), view_from({4, 5, 6}, is_parallel));
     EXPECT_EQ(drawing.edges.size(), 12u);
     EXPECT_EQ(count(drawing, EdgeKind::silhouette), 6u);
     EXPECT_EQ(count(drawing, EdgeKind::crease), 6u);
@@ -68,7 +68,7 @@ TEST(KnownDrawings, ACubeHasNineEdgesSeenAndThreeHidden) {
 
 TEST(KnownDrawings, ACubeFromTheFrontHidesItsBackEdgesBehindItsFrontOnes) {
   const Scene scene = scene_of(box(glm::vec3(-1), glm::vec3(1)));
-  const Drawing drawing = lines(Surfaces(scene), view_from({0, 0, 10}, true));
+  const Drawing drawing = draw_lines(Surfaces(scene), view_from({0, 0, 10}, true));
   for (const DrawnPart& part : drawing.parts) {
     const DrawnEdge& edge = drawing.edges[part.edge];
     // Exactly behind the front face's outline counts as hidden, and so do the edges that are seen as points.
@@ -101,7 +101,7 @@ TEST(KnownDrawings, StairsAndABracketHideThreeEdges) {
       const Scene scene = scene_of(prism(profile));
       View view = view_from({20, 25, 30}, is_parallel);
       if (is_parallel) view.projection = make_orthographic(-4, 4, -4, 4, {0.5, 80});
-      const Drawing drawing = lines(Surfaces(scene), view);
+      const Drawing drawing = draw_lines(Surfaces(scene), view);
       EXPECT_EQ(drawing.edges.size(), 3 * profile.size());
       ASSERT_EQ(drawing.parts.size(), drawing.edges.size());
       std::size_t hidden = 0;
@@ -123,7 +123,7 @@ TEST(KnownDrawings, APlateCutsTheEdgesBehindItWhereItEnds) {
   add_quad(mesh, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0});
   add_quad(mesh, {0.5, -0.5, 1}, {1.5, -0.5, 1}, {1.5, 0.25, 1}, {0.5, 0.25, 1});
   const Scene scene = scene_of(mesh);
-  const Drawing drawing = lines(Surfaces(scene), view_from({0, 0, 10}, true), {.counts_hidden = true});
+  const Drawing drawing = draw_lines(Surfaces(scene), view_from({0, 0, 10}, true), {.counts_hidden = true});
   EXPECT_EQ(drawing.edges.size(), 8u);  // diagonals are flat
   EXPECT_EQ(count(drawing, EdgeKind::boundary), 8u);
   EXPECT_EQ(drawing.parts.size(), 10u);
@@ -150,7 +150,7 @@ TEST(KnownDrawings, LayersAreCounted) {
     add_quad(mesh, {-1, -1, float(i)}, {1, -1, float(i)}, {1, 1, float(i)}, {-1, 1, float(i)});
   add_quad(mesh, {-0.5f, -0.5f, -1}, {0.5f, -0.5f, -1}, {0.5f, 0.5f, -1}, {-0.5f, 0.5f, -1});
   const Scene scene = scene_of(mesh);
-  const Drawing drawing = lines(Surfaces(scene), view_from({0, 0, 10}, true), {.counts_hidden = true});
+  const Drawing drawing = draw_lines(Surfaces(scene), view_from({0, 0, 10}, true), {.counts_hidden = true});
   for (const DrawnPart& part : drawing.parts) {
     const double z = drawing.edges[part.edge].from.z;
     EXPECT_EQ(part.hidden_by, std::uint32_t(z < 0 ? 5 : 4 - z));
@@ -163,7 +163,7 @@ TEST(KnownDrawings, FlatNeighboursAndTwinsDrawNothingBetween) {
   add_quad(mesh, {0, -1, 0}, {1, -1, 0}, {1, 1, 0}, {0, 1, 0});
   add_quad(mesh, {0, -1, 0}, {1, -1, 0}, {1, 1, 0}, {0, 1, 0});  // once more
   const Scene scene = scene_of(mesh);
-  const Drawing drawing = lines(Surfaces(scene), view_from({1, 2, 8}, false), {.crease_angle = 0});
+  const Drawing drawing = draw_lines(Surfaces(scene), view_from({1, 2, 8}, false), {.crease_angle = 0});
   EXPECT_EQ(drawing.edges.size(), 6u);
   for (const DrawnPart& part : drawing.parts) EXPECT_EQ(part.hidden_by, 0u);
 }
@@ -172,7 +172,7 @@ TEST(KnownDrawings, WindingDoesNotMatter) {
   Mesh mesh = box(glm::vec3(-1), glm::vec3(1));
   for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) std::swap(mesh.triangles[i].x, mesh.triangles[i].y);
   const Scene scene = scene_of(mesh);
-  const Drawing drawing = lines(Surfaces(scene), view_from({4, 5, 6}, false));
+  const Drawing drawing = draw_lines(Surfaces(scene), view_from({4, 5, 6}, false));
   EXPECT_EQ(count(drawing, EdgeKind::silhouette), 6u);
   EXPECT_EQ(count(drawing, EdgeKind::crease), 6u);
   EXPECT_EQ(drawing.edges.size(), 12u);
@@ -186,11 +186,11 @@ TEST(KnownDrawings, BordersBetweenMaterialsAndInstances) {
   Scene scene = scene_of(mesh);
   scene.materials.resize(2);
   const View view = view_from({1, 2, 8}, false);
-  EXPECT_EQ(count(lines(Surfaces(scene), view), EdgeKind::border), 1u);
+  EXPECT_EQ(count(draw_lines(Surfaces(scene), view), EdgeKind::border), 1u);
   scene.instances.push_back({"above", 0, glm::dmat4({1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 2, 0, 1})});
   const Surfaces both(scene);
   // One each, and two where the instances touch.
-  EXPECT_EQ(count(lines(both, view), EdgeKind::border), 4u);
+  EXPECT_EQ(count(draw_lines(both, view), EdgeKind::border), 4u);
 }
 
 double length_of(const Drawing& drawing, const DrawnPart& part) {
@@ -204,7 +204,7 @@ TEST(KnownDrawings, TwoBoxesThroughEachOtherMeetInTwoSquares) {
   scene.instances.push_back({"through", 1, glm::dmat4(1.0)});
   const Surfaces surfaces(scene);
   for (const bool is_parallel : {false, true}) {
-    const Drawing drawing = lines(surfaces, view_from({4, 5, 6}, is_parallel), {.counts_hidden = true});
+    const Drawing drawing = draw_lines(surfaces, view_from({4, 5, 6}, is_parallel), {.counts_hidden = true});
     double seen = 0, hidden = 0;
     for (const DrawnPart& part : drawing.parts) {
       const DrawnEdge& edge = drawing.edges[part.edge];
@@ -220,9 +220,9 @@ TEST(KnownDrawings, TwoBoxesThroughEachOtherMeetInTwoSquares) {
     }
     EXPECT_NEAR(seen, 2, 1e-12);
     EXPECT_NEAR(hidden, 6, 1e-12);
-    EXPECT_EQ(
-        count(lines(surfaces, view_from({4, 5, 6}, is_parallel), {.intersections = false}), EdgeKind::intersection),
-        0u);
+    EXPECT_EQ(count(draw_lines(surfaces, view_from({4, 5, 6}, is_parallel), {.intersections = false}),
+                    EdgeKind::intersection),
+              0u);
   }
 }
 
@@ -231,7 +231,7 @@ TEST(KnownDrawings, OutlinesHaveNothingBeside) {
   Mesh mesh = box({-0.5f, -0.5f, 0}, {0.5f, 0.5f, 1});
   add_quad(mesh, {0, -2, -1}, {2, -2, -1}, {2, 2, -1}, {0, 2, -1});
   const Scene scene = scene_of(mesh);
-  const Drawing drawing = lines(Surfaces(scene), view_from({0, 0, 10}, true), {.outlines = true});
+  const Drawing drawing = draw_lines(Surfaces(scene), view_from({0, 0, 10}, true), {.outlines = true});
   double outline = 0, contour = 0;
   for (const DrawnPart& part : drawing.parts) {
     const DrawnEdge& edge = drawing.edges[part.edge];
@@ -248,13 +248,14 @@ TEST(KnownDrawings, OutlinesHaveNothingBeside) {
   // The box's left half, and the plate but for what the box hides of it.
   EXPECT_NEAR(outline, 2 + (12 - 1), 1e-12);
   EXPECT_NEAR(contour, 2, 1e-12);
-  for (const DrawnPart& part : lines(Surfaces(scene), view_from({0, 0, 10}, true)).parts) EXPECT_FALSE(part.is_outline);
+  for (const DrawnPart& part : draw_lines(Surfaces(scene), view_from({0, 0, 10}, true)).parts)
+    EXPECT_FALSE(part.is_outline);
 }
 
 TEST(KnownDrawings, EdgesExactlyBehindTheOutlineLeaveItOne) {
   const Scene scene = scene_of(box(glm::vec3(-1), glm::vec3(1)));
   double outline = 0;
-  const Drawing drawing = lines(Surfaces(scene), view_from({0, 0, 10}, true), {.outlines = true});
+  const Drawing drawing = draw_lines(Surfaces(scene), view_from({0, 0, 10}, true), {.outlines = true});
   for (const DrawnPart& part : drawing.parts)
     if (part.is_outline) outline += length_of(drawing, part);
   EXPECT_EQ(outline, 8);
@@ -264,20 +265,20 @@ TEST(KnownDrawings, KindsThatAreNotWantedAreNotDrawn) {
   const Scene scene = scene_of(box(glm::vec3(-1), glm::vec3(1)));
   const Surfaces surfaces(scene);
   const View view = view_from({4, 5, 6}, false);
-  EXPECT_EQ(lines(surfaces, view, {.silhouettes = false}).edges.size(), 12u);  // they are creases, too
-  EXPECT_EQ(count(lines(surfaces, view, {.silhouettes = false}), EdgeKind::crease), 12u);
-  EXPECT_EQ(lines(surfaces, view, {.creases = false}).edges.size(), 6u);
+  EXPECT_EQ(draw_lines(surfaces, view, {.silhouettes = false}).edges.size(), 12u);  // they are creases, too
+  EXPECT_EQ(count(draw_lines(surfaces, view, {.silhouettes = false}), EdgeKind::crease), 12u);
+  EXPECT_EQ(draw_lines(surfaces, view, {.creases = false}).edges.size(), 6u);
   Mesh open;
   add_triangle(open, {-1, 0, 0}, {1, 0, 0}, {0, 1, 0});
   const Scene one = scene_of(open);
-  EXPECT_TRUE(lines(Surfaces(one), view, {.boundaries = false}).edges.empty());
+  EXPECT_TRUE(draw_lines(Surfaces(one), view, {.boundaries = false}).edges.empty());
 }
 
 TEST(KnownDrawings, WhatLiesOutsideOfTheViewIsCutOff) {
   Mesh mesh;
   add_triangle(mesh, {-1, 0, 0}, {100, 0, 0}, {-1, 100, 0});
   const Scene scene = scene_of(mesh);
-  const Drawing drawing = lines(Surfaces(scene), view_from({0, 0, 10}, true));
+  const Drawing drawing = draw_lines(Surfaces(scene), view_from({0, 0, 10}, true));
   ASSERT_EQ(drawing.edges.size(), 3u);
   ASSERT_EQ(drawing.parts.size(), 2u);
   for (const DrawnPart& part : drawing.parts)
@@ -294,19 +295,19 @@ TEST(KnownDrawings, WhatIsBeforeTheNearPlaneHidesNothing) {
     add_triangle(mesh, {-1, 0, 0}, {1, 0, 0}, {0, 1, 0});
     add_quad(mesh, {-3, -3, 9.8f}, {3, -3, 9.8f}, {3, 3, 9.8f}, {-3, 3, 9.8f});
     const Scene scene = scene_of(mesh);
-    for (const DrawnPart& part : lines(Surfaces(scene), view_from({0, 0, 10}, is_parallel)).parts)
+    for (const DrawnPart& part : draw_lines(Surfaces(scene), view_from({0, 0, 10}, is_parallel)).parts)
       EXPECT_EQ(part.hidden_by, 0u);
   }
 }
 
 TEST(KnownDrawings, NothingAndNonsense) {
   const Scene empty;
-  EXPECT_TRUE(lines(Surfaces(empty), view_from({0, 0, 5}, false)).edges.empty());
+  EXPECT_TRUE(draw_lines(Surfaces(empty), view_from({0, 0, 5}, false)).edges.empty());
   const Scene scene = scene_of(box(glm::vec3(-1), glm::vec3(1)));
   const Surfaces surfaces(scene);
   for (const double angle : {-0.1, 3.2, std::numeric_limits<double>::quiet_NaN()})
-    EXPECT_THROW((void)lines(surfaces, view_from({0, 0, 5}, false), {.crease_angle = angle}), Error);
-  EXPECT_EQ(lines(surfaces, view_from({0, 0, 5}, false), {.crease_angle = std::numbers::pi}).edges.size(), 4u);
+    EXPECT_THROW((void)draw_lines(surfaces, view_from({0, 0, 5}, false), {.crease_angle = angle}), Error);
+  EXPECT_EQ(draw_lines(surfaces, view_from({0, 0, 5}, false), {.crease_angle = std::numbers::pi}).edges.size(), 4u);
 }
 
 }  // namespace

@@ -326,10 +326,10 @@ class CentreLines : public testing::Test {
     View view = frame(surfaces, 1000, 1000, frame_options);
     view.projection.left = view.projection.bottom = -50;
     view.projection.right = view.projection.top = 50;
-    const Drawing drawing = lines(surfaces, view);
-    lines_ = centre_lines(find_rounds(surfaces), drawing,
-                          strokes(surfaces, drawing, {.by_kind = false, .by_outline = false, .arc_tolerance = 0.1}),
-                          options);
+    const Drawing drawing = draw_lines(surfaces, view);
+    lines_ = centre_lines_of(
+        find_rounds(surfaces), drawing,
+        chain_strokes(surfaces, drawing, {.by_kind = false, .by_outline = false, .arc_tolerance = 0.1}), options);
   }
 
   /// Length of the only line in a direction, in units; 0 without one.

@@ -31,7 +31,7 @@ View view_from(const glm::dvec3& eye) {
 using Line = std::tuple<double, double, double, double, double, double, EdgeKind, double, double, std::uint32_t>;
 std::vector<Line> lines_of(const Mesh& mesh, const View& view, const LineOptions& options) {
   const Scene scene = scene_of(mesh);
-  const Drawing drawing = lines(Surfaces(scene), view, options);
+  const Drawing drawing = draw_lines(Surfaces(scene), view, options);
   const auto rounded = [](double t) { return std::round(t * 1e9) / 1e9; };
   std::vector<Line> all;
   for (const DrawnPart& part : drawing.parts) {
@@ -59,7 +59,7 @@ struct Junction {
   void fill(std::uint32_t a, std::uint32_t b, std::uint32_t c) { mesh.triangles.push_back({a, b, c}); }
   [[nodiscard]] Drawing drawing(double crease_angle = 0) const {
     const Scene scene = scene_of(mesh);
-    return lines(Surfaces(scene), view_from({1, 3, 9}), {.crease_angle = crease_angle});
+    return draw_lines(Surfaces(scene), view_from({1, 3, 9}), {.crease_angle = crease_angle});
   }
 };
 

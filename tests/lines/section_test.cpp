@@ -398,8 +398,8 @@ TEST(Section, ADrawingShowsTheOutlineAndNoLineWithinIt) {
   options.orthographic = true;
   options.forward = {0, 1, 0};
   options.up = {0, 0, 1};
-  const Drawing drawing = lines(surfaces, frame(surfaces, 1000, 1000, options));
-  const Strokes all = strokes(surfaces, drawing, {.with_hidden = false, .by_kind = false, .by_outline = false});
+  const Drawing drawing = draw_lines(surfaces, frame(surfaces, 1000, 1000, options));
+  const Strokes all = chain_strokes(surfaces, drawing, {.with_hidden = false, .by_kind = false, .by_outline = false});
   const double pixel =
       glm::distance(drawing.parts[0].from, drawing.parts[0].to) /
       glm::distance(drawing.edges[drawing.parts[0].edge].from, drawing.edges[drawing.parts[0].edge].to);

@@ -68,7 +68,7 @@ Scene scene_of_objects(const std::vector<Mesh>& meshes) {
 }
 
 std::size_t edges_of(const Scene& scene, const LineOptions& options = {}) {
-  return lines(Surfaces(scene), view_of_all(), options).edges.size();
+  return draw_lines(Surfaces(scene), view_of_all(), options).edges.size();
 }
 
 /// Sides of the rim alone: 4 n.
@@ -130,7 +130,7 @@ TEST(SharedTriangles, KeepTheCreasesOfEachObject) {
   options.intersections = false;
   for (const bool is_turned : {false, true}) {
     const Scene scene = scene_of_objects({box, is_turned ? turned(wedge) : wedge});
-    const Drawing drawing = lines(Surfaces(scene), view_of_all(), options);
+    const Drawing drawing = draw_lines(Surfaces(scene), view_of_all(), options);
     EXPECT_EQ(drawing.edges.size(), 12u + 4u);
     for (const DrawnEdge& edge : drawing.edges) EXPECT_NE(edge.kind, EdgeKind::boundary);
   }
@@ -143,7 +143,7 @@ TEST(SharedTriangles, LeaveOpenWhatIsOpen) {
   for (const glm::vec3& tip : {glm::vec3(1, 0, 0), glm::vec3(-1, 0.1f, 0.1f), glm::vec3(0.1f, 0.2f, 1)})
     add_triangle(fans, low, high, tip);
   const auto edge_kind = [&](const Scene& scene) {
-    for (const DrawnEdge& edge : lines(Surfaces(scene), view_of_all()).edges)
+    for (const DrawnEdge& edge : draw_lines(Surfaces(scene), view_of_all()).edges)
       if (edge.from.x == 0 && edge.to.x == 0) return edge.kind;
     return EdgeKind::intersection;
   };

@@ -55,7 +55,7 @@ const std::vector<glm::dvec2> square = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
 Strokes strokes_of(const Mesh& mesh, const View& view, const StrokeOptions& options = {}, double crease = 0.5) {
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
-  return strokes(surfaces, lines(surfaces, view, {.crease_angle = crease}), options);
+  return chain_strokes(surfaces, draw_lines(surfaces, view, {.crease_angle = crease}), options);
 }
 
 double length_of(const Strokes& all, const Stroke& stroke) {
@@ -130,14 +130,14 @@ TEST(StrokesOnce, TotalLengthIsThatOfTheParts) {
     const Scene scene = scene_of(random_mesh(Kind::soup, 60, seed));
     const Surfaces surfaces(scene);
     View view = frame(surfaces, 500, 400);
-    const Drawing drawing = lines(surfaces, view);
+    const Drawing drawing = draw_lines(surfaces, view);
     double seen = 0, hidden = 0, shorter = 0;
     for (const DrawnPart& part : drawing.parts) {
       const double length = glm::distance(part.from, part.to);
       (part.hidden_by ? hidden : seen) += length;
       if (length < 0.01) shorter += length;
     }
-    const Strokes all = strokes(surfaces, drawing);
+    const Strokes all = chain_strokes(surfaces, drawing);
     // What is drawn once may be less; never more. Random soups have a few edges on each other.
     EXPECT_LE(length_of(all, false), seen * 1.0001 + 0.1);
     EXPECT_GE(length_of(all, false), (seen - shorter) * 0.9 - 1) << seed;
@@ -232,7 +232,7 @@ TEST(StrokesOrder, OfEndsAsNearTheFirst) {
   }
   const Scene scene = scene_of(prism(square));
   const Surfaces surfaces(scene);
-  const Strokes all = strokes(surfaces, drawing, {.by_instance = false, .nearest_first = true});
+  const Strokes all = chain_strokes(surfaces, drawing, {.by_instance = false, .nearest_first = true});
   // In along one, and out along the lowest that is left; from there to its neighbour's end.
   EXPECT_EQ(all.strokes.size(), std::size_t(count / 2));
   double length = 0;
@@ -261,7 +261,7 @@ TEST(StrokesOnce, ACrowdFarFromTheRestIsNoMatter) {
   const Surfaces surfaces(scene);
   const Drawing drawing = far_crowd(under_sanitizer ? 4000 : 50000);
   const Clock::time_point start = Clock::now();
-  const Strokes all = strokes(surfaces, drawing, {.by_instance = false, .nearest_first = true});
+  const Strokes all = chain_strokes(surfaces, drawing, {.by_instance = false, .nearest_first = true});
   // 0.2 s; when all was held against all, 20.
   EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 5);
   double length = 0;
@@ -278,7 +278,7 @@ TEST(StrokesOnce, NorIsItWhereMoreCountsAsOneLine) {
     const Clock::time_point start = Clock::now();
     // All are 0.1 long: within more than that each is no more than a point, unless it meets another, as many of 50000
     // do.
-    const bool is_empty = strokes(surfaces, drawing, {.by_instance = false, .apart = apart}).strokes.empty();
+    const bool is_empty = chain_strokes(surfaces, drawing, {.by_instance = false, .apart = apart}).strokes.empty();
     EXPECT_EQ(is_empty, apart == 1.0 || (under_sanitizer && apart > 0.1));
     // 0.1 s; where cells were no smaller than eight times that, up to 8.
     EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 4) << apart;
@@ -297,7 +297,7 @@ TEST(StrokesOnce, NorAreLongLinesSideBySide) {
     drawing.parts.push_back({std::uint32_t(i), 0, 1, {0, y}, {3000, y + 300}});
   }
   const Clock::time_point start = Clock::now();
-  EXPECT_EQ(strokes(surfaces, drawing, {.by_instance = false}).strokes.size(), std::size_t(count));
+  EXPECT_EQ(chain_strokes(surfaces, drawing, {.by_instance = false}).strokes.size(), std::size_t(count));
   // 0.07 s; and minutes when lines were entered in the border cells of what they only pass.
   EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), under_sanitizer ? 20 : 3);
 }
@@ -346,7 +346,7 @@ TEST(StrokesOnce, PiecesOfOneLineCoverItOnceHoweverLongTheyAre) {
   for (std::uint64_t seed = 0; seed < seeds(20); ++seed) {
     PiecesOfLines pieces = pieces_of_lines(30, 40, seed);
     std::shuffle(pieces.drawing.parts.begin(), pieces.drawing.parts.end(), std::mt19937_64(seed));
-    const Strokes all = strokes(surfaces, pieces.drawing, {.by_instance = false});
+    const Strokes all = chain_strokes(surfaces, pieces.drawing, {.by_instance = false});
     // A piece may go on up to the width of a point under another.
     EXPECT_NEAR(length_of(all, false), pieces.length, 0.01 * double(all.strokes.size())) << seed;
     EXPECT_LT(all.strokes.size(), 30u * 40u / 2) << seed;
@@ -368,7 +368,7 @@ TEST(StrokesOnce, LongLinesThatCrossAreNoQuadraticMatter) {
       part.to = part.from + 800.0 * glm::dvec2(std::cos(angle), std::sin(angle));
     }
     const Clock::time_point start = Clock::now();
-    EXPECT_EQ(strokes(surfaces, drawing, {.by_instance = false}).strokes.size(), count);
+    EXPECT_EQ(chain_strokes(surfaces, drawing, {.by_instance = false}).strokes.size(), count);
     // 0.03 s; and 6 when each was held against all that cross its cells.
     EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), under_sanitizer ? 20 : 2);
   }
@@ -379,10 +379,10 @@ TEST(StrokesOnce, CopiesInACrowdAreDrawnOnce) {
   const Surfaces surfaces(scene);
   Drawing drawing = far_crowd(3000);
   const StrokeOptions options{.by_instance = false};
-  const Strokes once = strokes(surfaces, drawing, options);
+  const Strokes once = chain_strokes(surfaces, drawing, options);
   const std::vector<DrawnPart> parts = drawing.parts;
   drawing.parts.insert(drawing.parts.end(), parts.rbegin(), parts.rend());
-  EXPECT_EQ(strokes(surfaces, drawing, options).points, once.points);
+  EXPECT_EQ(chain_strokes(surfaces, drawing, options).points, once.points);
 }
 
 /// A drawing of these lines, all seen.
@@ -403,11 +403,11 @@ TEST(StrokesOnce, LinesBesideEachOtherAreOneWhereTheyAreAskedToBe) {
                                       {{{120, 100.03}, {130, 99.97}}},   // across
                                       {{{110, 100}, {115, 100.5}}}});    // leaves it
   StrokeOptions options{.by_instance = false};
-  EXPECT_NEAR(length_of(strokes(surfaces, drawing, options), false), 100 + 100 + 10 + 5.02, 0.01);
+  EXPECT_NEAR(length_of(chain_strokes(surfaces, drawing, options), false), 100 + 100 + 10 + 5.02, 0.01);
   options.apart = 0.1;
-  EXPECT_NEAR(length_of(strokes(surfaces, drawing, options), false), 100 + 50 + 5.02, 0.01);
+  EXPECT_NEAR(length_of(chain_strokes(surfaces, drawing, options), false), 100 + 50 + 5.02, 0.01);
   options.apart = 0.07;
-  EXPECT_NEAR(length_of(strokes(surfaces, drawing, options), false), 100 + 100 + 5.02, 0.01);
+  EXPECT_NEAR(length_of(chain_strokes(surfaces, drawing, options), false), 100 + 100 + 5.02, 0.01);
 }
 
 TEST(StrokesOnce, CrumbsAreNoLinesButLinesOfCrumbsAre) {
@@ -420,8 +420,8 @@ TEST(StrokesOnce, CrumbsAreNoLinesButLinesOfCrumbsAre) {
   parts.push_back({{{251, 250}, {251, 251}}});
   parts.push_back({{{251, 251}, {250, 250}}});
   const Drawing drawing = drawing_of(parts);
-  EXPECT_EQ(strokes(surfaces, drawing, {.apart = 0.04}).strokes.size(), 3u);
-  const Strokes few = strokes(surfaces, drawing, {.apart = 0.06});
+  EXPECT_EQ(chain_strokes(surfaces, drawing, {.apart = 0.04}).strokes.size(), 3u);
+  const Strokes few = chain_strokes(surfaces, drawing, {.apart = 0.06});
   ASSERT_EQ(few.strokes.size(), 2u);
   EXPECT_NEAR(length_of(few, few.strokes[0]), 0.5, 1e-9);
   EXPECT_NEAR(length_of(few, few.strokes[1]), 2 + std::sqrt(2.0), 1e-9);
@@ -463,7 +463,7 @@ TEST(StrokesOrder, StopsWhenAsked) {
   watch.progress = [&](std::string_view, double fraction) { is_ordering = fraction >= 0.8; };
   watch.cancelled = [&] { return is_ordering; };
   try {
-    (void)strokes(surfaces, drawing, {.by_instance = false, .nearest_first = true}, {.watch = &watch});
+    (void)chain_strokes(surfaces, drawing, {.by_instance = false, .nearest_first = true}, {.watch = &watch});
     ADD_FAILURE();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::cancelled);
@@ -501,10 +501,10 @@ TEST(StrokesOrder, ArcsSurviveTurningRound) {
 TEST(Strokes, AreTheSameForAnyNumberOfThreads) {
   const Scene scene = scene_of(random_mesh(Kind::shared_grid, 400, 3));
   const Surfaces surfaces(scene);
-  const Drawing drawing = lines(surfaces, frame(surfaces, 500, 400));
+  const Drawing drawing = draw_lines(surfaces, frame(surfaces, 500, 400));
   const StrokeOptions options{.arc_tolerance = 0.2, .nearest_first = true};
-  const Strokes one = strokes(surfaces, drawing, options, {.threads = 1}),
-                many = strokes(surfaces, drawing, options, {.threads = 5});
+  const Strokes one = chain_strokes(surfaces, drawing, options, {.threads = 1}),
+                many = chain_strokes(surfaces, drawing, options, {.threads = 5});
   EXPECT_EQ(one.points, many.points);
   EXPECT_EQ(one.bulges, many.bulges);
   EXPECT_EQ(one.strokes.size(), many.strokes.size());
@@ -513,13 +513,13 @@ TEST(Strokes, AreTheSameForAnyNumberOfThreads) {
 TEST(Strokes, NothingAndNonsense) {
   const Scene empty;
   const Surfaces surfaces(empty);
-  EXPECT_TRUE(strokes(surfaces, lines(surfaces, parallel_view({0, 0, 5}))).strokes.empty());
+  EXPECT_TRUE(chain_strokes(surfaces, draw_lines(surfaces, parallel_view({0, 0, 5}))).strokes.empty());
   for (const double bad : {0.0, 2.0, std::numeric_limits<double>::quiet_NaN()})
-    EXPECT_THROW((void)strokes(surfaces, {}, {.tolerance = bad}), Error);
+    EXPECT_THROW((void)chain_strokes(surfaces, {}, {.tolerance = bad}), Error);
   for (const double bad : {0.001, 1.1, std::numeric_limits<double>::quiet_NaN()})
-    EXPECT_THROW((void)strokes(surfaces, {}, {.apart = bad}), Error);
+    EXPECT_THROW((void)chain_strokes(surfaces, {}, {.apart = bad}), Error);
   for (const double bad : {-1.0, 101.0, std::numeric_limits<double>::quiet_NaN()})
-    EXPECT_THROW((void)strokes(surfaces, {}, {.arc_tolerance = bad}), Error);
+    EXPECT_THROW((void)chain_strokes(surfaces, {}, {.arc_tolerance = bad}), Error);
 }
 
 TEST(Strokes, NeedNoMemoryForADrawingOfNextToNothing) {

@@ -30,9 +30,9 @@ TEST(AllModels, AreSeenAlikeByEveryMethod) {
     const Surfaces surfaces(scene);
     const View view = frame(surfaces, 480, 360);
     const Visible reference = zbuffer(surfaces, view);
-    rays.add(agreement(surfaces, reference, raycast(surfaces, view)));
+    rays.add(check_agreement(surfaces, reference, raycast(surfaces, view)));
     const std::vector<Visible> layer = visible_layers(surfaces, view, 2);
-    Agreement of_layers = agreement(surfaces, reference, layer[0]);
+    Agreement of_layers = check_agreement(surfaces, reference, layer[0]);
     EXPECT_EQ(of_layers.differing(), 0u) << "the nearest layer is the z-buffer's";
     see_through(of_layers, surfaces, layer[0], layer[1]);
     layers.add(of_layers);

@@ -40,7 +40,7 @@ TEST(DrawnModels, PointsOfPartsAreHiddenWhereATriangleIsBefore) {
     const Surfaces surfaces(scene);
     Random random(1);
     for (const View& view : views_of(surfaces)) {
-      const Drawing drawing = lines(surfaces, view);
+      const Drawing drawing = draw_lines(surfaces, view);
       const PointOracle oracle(surfaces, view);
       const std::size_t step = 1 + drawing.parts.size() / 150;
       for (std::size_t i = 0; i < drawing.parts.size(); i += step) {
@@ -107,7 +107,8 @@ TEST(DrawnModels, BordersOfSeenTrianglesLieOnDrawnLines) {
     const Surfaces surfaces(scene);
     for (const View& view : views_of(surfaces)) {
       const Visible visible = zbuffer(surfaces, view);
-      const std::vector<bool> near = near_lines(lines(surfaces, view, {.crease_angle = 0}), view.width, view.height);
+      const std::vector<bool> near =
+          near_lines(draw_lines(surfaces, view, {.crease_angle = 0}), view.width, view.height);
       const auto compare = [&](std::size_t a, std::size_t b) {
         if (visible.primitives[a] == visible.primitives[b] ||
             are_flat(surfaces, visible.primitives[a], visible.primitives[b]))
@@ -159,7 +160,7 @@ TEST(DrawnModels, AreAsLongAsAnotherSystemDrawsThem) {
     const View view = frame(surfaces, 1000, 1000, {.orthographic = true, .forward = -reference.towards_viewer});
     const double unit = (view.projection.right - view.projection.left) / view.width;
     double length = 0;
-    for (const DrawnPart& part : lines(surfaces, view).parts)
+    for (const DrawnPart& part : draw_lines(surfaces, view).parts)
       if (part.hidden_by == 0) length += glm::distance(part.from, part.to) * unit;
     EXPECT_NEAR(length, reference.length, reference.tolerance * reference.length) << reference.name;
     std::cout << reference.name << ": " << length << " seen, beside " << reference.length << "\n";
@@ -213,7 +214,7 @@ TEST(DrawnModels, HideAsMuchAsAnotherSystemLeavesOut) {
     const View view = frame(surfaces, 1000, 1000, {.orthographic = true, .forward = -reference.towards_viewer});
     const double unit = (view.projection.right - view.projection.left) / view.width;
     double hidden = 0;
-    for (const DrawnPart& part : lines(surfaces, view).parts)
+    for (const DrawnPart& part : draw_lines(surfaces, view).parts)
       if (part.hidden_by != 0) hidden += glm::distance(part.from, part.to) * unit;
     const double all = reference.all(reference.towards_viewer);
     EXPECT_NEAR(hidden, all - reference.seen, reference.tolerance * all) << reference.name << " of " << all;
@@ -276,7 +277,7 @@ TEST(DrawnModels, HideAsMuchOfATorusAsAnotherSystemLeavesOut) {
   for (const Reference& reference : views) {
     SCOPED_TRACE(reference.name);
     const Drawing drawing =
-        lines(surfaces, frame(surfaces, 1000, 1000, {.orthographic = true, .forward = -reference.towards_viewer}));
+        draw_lines(surfaces, frame(surfaces, 1000, 1000, {.orthographic = true, .forward = -reference.towards_viewer}));
     const std::vector<glm::dvec2> seen = points_along(drawing, false), hidden = points_along(drawing, true);
     double all = 0, left_out = 0, bare = 0;
     for (const std::vector<glm::dvec2>& curve : torus_silhouettes(reference.towards_viewer))

@@ -41,7 +41,7 @@ TEST(TeapotReference, OutlineAndDepthAreTheirs) {
   view.world_from_eye = look_at({0, 0, -2.7320508}, {0, 0, 0}, {0, 1, 0});
   view.projection = make_projection(1.0471975511965976, 1, {0.1, 100});
   const Visible visible = zbuffer(surfaces, view);
-  const Buffer<float> depth = depths(visible);
+  const Buffer<float> depth = depths_of(visible);
   const Texture outline = picture("reference/teapot/teapot_blender.png");
   const Texture stored = picture("reference/teapot/teapot_depth.png");
   ASSERT_EQ(outline.pixels.size(), depth.size());

@@ -23,7 +23,7 @@ TEST(Paint, SliversOfCutsHoldNoSampleBesideThem) {
     order.corners.push_back({glm::dvec3(at, 10), true});
   const Visible picture = paint(surfaces, order);
   EXPECT_EQ(std::count(picture.primitives.begin(), picture.primitives.end(), 1u), 0);
-  EXPECT_EQ(agreement(surfaces, zbuffer(surfaces, order.view), picture).differing(), 0u);
+  EXPECT_EQ(check_agreement(surfaces, zbuffer(surfaces, order.view), picture).differing(), 0u);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ struct Painted {
 
 inline Painted painted(const Surfaces& surfaces, const View& view, PaintMethod method = PaintMethod::depth_sort) {
   Painted result{painter(surfaces, view, {.method = method}), 0, 0};
-  const Agreement found = agreement(surfaces, zbuffer(surfaces, view), paint(surfaces, result.order));
+  const Agreement found = check_agreement(surfaces, zbuffer(surfaces, view), paint(surfaces, result.order));
   result.unexplained = found.count(Difference::unexplained);
   result.explained = found.differing() - result.unexplained;
   return result;

@@ -71,7 +71,7 @@ TEST_P(KindWithoutTies, TheOrderOfTheFileChangesNothing) {
   Visible b = paint(turned_surfaces, painter(turned_surfaces, c.view));
   for (PrimitiveId& id : b.primitives)
     if (id != no_primitive) id = surfaces.primitive_count() - 1 - id;
-  EXPECT_EQ(agreement(surfaces, a, b).count(Difference::unexplained), 0u);
+  EXPECT_EQ(check_agreement(surfaces, a, b).count(Difference::unexplained), 0u);
 }
 
 /// Boxes on a grid and through each other: faces in one plane, edges on edges, corners on faces.

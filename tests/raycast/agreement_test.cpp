@@ -18,7 +18,7 @@ namespace frontmost::test {
 namespace {
 
 Agreement expect_explained(const Surfaces& surfaces, const View& view) {
-  Agreement answer = agreement(surfaces, zbuffer(surfaces, view), raycast(surfaces, view));
+  Agreement answer = check_agreement(surfaces, zbuffer(surfaces, view), raycast(surfaces, view));
   const auto first = std::find(answer.differences.begin(), answer.differences.end(), Difference::unexplained);
   const auto sample = std::size_t(first - answer.differences.begin()), pixel = sample % view.pixel_count();
   EXPECT_EQ(answer.count(Difference::unexplained), 0u)

@@ -156,7 +156,7 @@ TEST(Facets, ShadeAsAFineTessellationDoes) {
     View view = frame(surfaces, 160, 120);
     const CurvedIndex index(scene);
     const std::vector<CurvedVisible> seen{raycast(index, view)};
-    const Facets shown = facets(index, scene, seen);
+    const Facets shown = facets_of(index, scene, seen);
     const Surfaces facet_surfaces(shown.scene);
     const Scene cut = tessellate(scene, view, 0.02);
     const Surfaces cut_surfaces(cut);
@@ -188,8 +188,8 @@ TEST(Facets, AreSharedByTheSamplesOfAPixel) {
   view.samples = 8;
   const std::vector<CurvedVisible> eight{raycast(index, view)};
   const std::size_t triangles = surfaces.primitive_count();
-  const std::size_t few = facets(index, scene, one).elements.size() - triangles;
-  const std::size_t many = facets(index, scene, eight).elements.size() - triangles;
+  const std::size_t few = facets_of(index, scene, one).elements.size() - triangles;
+  const std::size_t many = facets_of(index, scene, eight).elements.size() - triangles;
   EXPECT_GE(many, few);
   EXPECT_LT(many, 2 * few);
 }
@@ -207,7 +207,7 @@ TEST(Facets, KeepMirroredSurfacesOutsideOut) {
   view.culling = Culling::back;
   const CurvedIndex index(scene);
   const std::vector<CurvedVisible> seen{raycast(index, view)};
-  const Facets shown = facets(index, scene, seen);
+  const Facets shown = facets_of(index, scene, seen);
   const Surfaces surfaces(shown.scene);
   const Image normals = normal_image(surfaces, shown.visible[0]);
   EXPECT_GT(normals.find("N.Z")->floats()[16 * 32 + 16], 0.99f);

@@ -80,7 +80,7 @@ TEST(EyesOnSurfaces, SeeTheCityFromACornerOfIt) {
 /// Rays against another search: what differs is within rounding of an edge or of another depth. \returns how many.
 std::uint64_t expect_explained(const Surfaces& surfaces, const Visible& expected, const Visible& seen) {
   const View& view = seen.view;
-  const Agreement answer = agreement(surfaces, expected, seen);
+  const Agreement answer = check_agreement(surfaces, expected, seen);
   const auto first = std::find(answer.differences.begin(), answer.differences.end(), Difference::unexplained);
   const auto pixel = std::size_t(first - answer.differences.begin()), width = std::size_t(view.width);
   EXPECT_EQ(answer.count(Difference::unexplained), 0u) << "first at pixel " << pixel % width << ", " << pixel / width;

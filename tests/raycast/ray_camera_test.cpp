@@ -241,7 +241,7 @@ TEST(RangeScan, TheForwardPixelMeetsWhatThePinholesCentreMeets) {
   const Visible pinhole = raycast(index, view);
   const std::size_t centre = pinhole.index(32, 32);
   ASSERT_NE(pinhole.primitives[centre], no_primitive);
-  const float depth = depths(pinhole)[centre];
+  const float depth = depths_of(pinhole)[centre];
   const RayCamera cameras[] = {{Panorama{65, 33}, view.world_from_eye},
                                {Fisheye{65, 65, 1.0}, view.world_from_eye},
                                {Lidar{{0}, 7}, view.world_from_eye}};

@@ -32,8 +32,8 @@ Scene sheets(float behind) {
 }
 
 std::uint64_t unexplained(const Surfaces& surfaces, const Visible& right, const Visible& wrong) {
-  const std::uint64_t count = agreement(surfaces, right, wrong).count(Difference::unexplained);
-  EXPECT_EQ(agreement(surfaces, wrong, right).count(Difference::unexplained), count) << "it depends on the order";
+  const std::uint64_t count = check_agreement(surfaces, right, wrong).count(Difference::unexplained);
+  EXPECT_EQ(check_agreement(surfaces, wrong, right).count(Difference::unexplained), count) << "it depends on the order";
   return count;
 }
 
@@ -41,7 +41,7 @@ TEST(Agreement, AnAnswerAgreesWithItself) {
   const Scene scene = sheets(6);
   const Surfaces surfaces(scene);
   const Visible visible = zbuffer(surfaces, square_view());
-  const Agreement answer = agreement(surfaces, visible, visible);
+  const Agreement answer = check_agreement(surfaces, visible, visible);
   EXPECT_EQ(answer.differing(), 0u);
   EXPECT_EQ(answer.count(Difference::none), 64u * 64u);
 }
@@ -83,7 +83,7 @@ TEST(Agreement, AnEdgeExcusesOnlyWhatIsAtTheEdge) {
   const std::size_t at = right.index(20, 43);
   Visible other = right;
   other.primitives[at] = 1 - right.primitives[at];
-  const Agreement answer = agreement(surfaces, right, other);
+  const Agreement answer = check_agreement(surfaces, right, other);
   EXPECT_EQ(answer.differences[at], Difference::edge);
   EXPECT_EQ(answer.differing(), 1u);
   // Behind the diagonal lies another, but neither of 0 and 1 alone hides it there: together they do.
@@ -98,7 +98,7 @@ TEST(Agreement, SurfacesInOnePlaceMayBeSeenEitherWay) {
   Visible other = right;
   std::uint64_t changed = 0;
   for (int i = 0; i < 30; ++i, ++changed) other.primitives[right.index(15 + i, 10)] += 2;
-  const Agreement answer = agreement(surfaces, right, other);
+  const Agreement answer = check_agreement(surfaces, right, other);
   EXPECT_EQ(answer.count(Difference::depth), changed);
   EXPECT_EQ(answer.differing(), changed);
 }
@@ -146,10 +146,10 @@ TEST_P(MistakesInEveryKind, WrongDepthsAndForeignTrianglesAreFound) {
       if (wrong.primitives[i] == no_primitive) continue;
       places.push_back(i);
     }
-    const Agreement answer = agreement(surfaces, right, wrong);
+    const Agreement answer = check_agreement(surfaces, right, wrong);
     for (const std::size_t place : places) ASSERT_EQ(answer.differences[place], Difference::unexplained);
     planted += places.size();
-    ASSERT_EQ(agreement(surfaces, right, rays).count(Difference::unexplained), 0u);
+    ASSERT_EQ(check_agreement(surfaces, right, rays).count(Difference::unexplained), 0u);
   }
   EXPECT_GT(planted, 0u);
 }
@@ -160,7 +160,8 @@ TEST(Agreement, IsTheSameForAnyNumberOfThreads) {
   Random random(3);
   const View view = random_view(random, 200, 150);
   const Visible a = zbuffer(surfaces, view), b = raycast(surfaces, view);
-  const Agreement one = agreement(surfaces, a, b, {.threads = 1}), many = agreement(surfaces, a, b, {.threads = 5});
+  const Agreement one = check_agreement(surfaces, a, b, {.threads = 1}),
+                  many = check_agreement(surfaces, a, b, {.threads = 5});
   EXPECT_GT(one.differing(), 0u);
   EXPECT_EQ(one.counts, many.counts);
   EXPECT_TRUE(std::equal(one.differences.begin(), one.differences.end(), many.differences.begin()));
@@ -178,7 +179,7 @@ TEST(Agreement, OnlyTranslucentTrianglesAreSeenThrough) {
     behind.primitives[behind.index(x, y)] = front.primitives[front.index(x, y)] + 2;
     behind.keys[behind.index(x, y)] = 0.5f / 6;
   }
-  Agreement answer = agreement(surfaces, front, front);
+  Agreement answer = check_agreement(surfaces, front, front);
   see_through(answer, surfaces, front, behind);
   EXPECT_EQ(answer.differences[front.index(50, 50)], Difference::unexplained);
   EXPECT_EQ(answer.differences[front.index(5, 5)], Difference::translucent);
@@ -197,7 +198,8 @@ TEST(Agreement, AFlatModelInParallelProjectionHasItsDepth) {
   options.orthographic = true;
   options.direction = NamedView::front;
   const View view = frame(surfaces, 64, 48, options);
-  EXPECT_EQ(agreement(surfaces, zbuffer(surfaces, view), raycast(surfaces, view)).count(Difference::unexplained), 0u);
+  EXPECT_EQ(check_agreement(surfaces, zbuffer(surfaces, view), raycast(surfaces, view)).count(Difference::unexplained),
+            0u);
 }
 
 TEST(Agreement, RefusesAnswersOfDifferentViews) {
@@ -206,17 +208,17 @@ TEST(Agreement, RefusesAnswersOfDifferentViews) {
   View other = square_view();
   const Visible a = zbuffer(surfaces, other);
   other.width = 63;
-  EXPECT_THROW((void)agreement(surfaces, a, zbuffer(surfaces, other)), Error);
+  EXPECT_THROW((void)check_agreement(surfaces, a, zbuffer(surfaces, other)), Error);
   other = square_view();
   other.world_from_eye = look_at({1, 0, 0}, {0, 0, -1}, {0, 1, 0});
-  EXPECT_THROW((void)agreement(surfaces, a, zbuffer(surfaces, other)), Error);
+  EXPECT_THROW((void)check_agreement(surfaces, a, zbuffer(surfaces, other)), Error);
 }
 
 TEST(Agreement, OfNothingIsComplete) {
   const Scene scene;
   const Surfaces surfaces(scene);
   const Visible a = zbuffer(surfaces, square_view());
-  EXPECT_EQ(agreement(surfaces, a, a).count(Difference::none), 64u * 64u);
+  EXPECT_EQ(check_agreement(surfaces, a, a).count(Difference::none), 64u * 64u);
 }
 
 }  // namespace

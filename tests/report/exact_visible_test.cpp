@@ -59,7 +59,7 @@ TEST_P(ExactOfEveryKind, EqualsRationalArithmetic) {
     View view = random_view(random, 40, 30);
     view.samples = seed == 5 ? 2 : 1;
     const auto lists = covering(surfaces, view);
-    const ExactVisible answer = exact_visible(surfaces, view);
+    const ExactVisible answer = find_exact_visible(surfaces, view);
     const SampleRays rays(view);
     for (std::size_t i = 0; i < lists.size(); ++i) {
       const std::size_t pixel = i % view.pixel_count();
@@ -133,7 +133,7 @@ DepthFights fights_with(const Surfaces& surfaces, const View& view, DepthFormat 
   call.state.func = reversed ? DepthFunc::greater : DepthFunc::less;
   call.state.nearer_is_greater = reversed;
   buffer.draw(surfaces, view, call);
-  return depth_fights(surfaces, exact_visible(surfaces, view), buffer.visible(view));
+  return find_depth_fights(surfaces, find_exact_visible(surfaces, view), buffer.visible(view));
 }
 
 // The gap that resolvable_gap() promises is resolved in the picture; a tenth of it is not, and all of it is wrong.
@@ -201,7 +201,7 @@ TEST(DepthFights, FinerFormatsFightLessAndTheDefaultHardlyEver) {
   EXPECT_GT(d8, d16);
   EXPECT_GT(d16, d24);
   EXPECT_LE(f32, d24);
-  EXPECT_EQ(f32, depth_fights(surfaces, exact_visible(surfaces, view), zbuffer(surfaces, view)).wrong);
+  EXPECT_EQ(f32, find_depth_fights(surfaces, find_exact_visible(surfaces, view), zbuffer(surfaces, view)).wrong);
   EXPECT_LT(f32, 20u);
 }
 
@@ -217,7 +217,8 @@ TEST(DepthFights, TheSameCameraGivesTheSamePattern) {
   }();
   const auto pattern = [&](int threads) {
     const Execution execution{.threads = threads};
-    const DepthFights fights = depth_fights(surfaces, exact_visible(surfaces, view, execution), answer, execution);
+    const DepthFights fights =
+        find_depth_fights(surfaces, find_exact_visible(surfaces, view, execution), answer, execution);
     return std::vector<float>(fights.errors.begin(), fights.errors.end());
   };
   const std::vector<float> once = pattern(1);
@@ -230,9 +231,9 @@ TEST(DepthFights, OtherViewsAreRefused) {
   const Scene scene = two_squares(3, 4);
   const Surfaces surfaces(scene);
   View view = square_view(1, 10);
-  const ExactVisible exact = exact_visible(surfaces, view);
+  const ExactVisible exact = find_exact_visible(surfaces, view);
   view.width = 32;
-  EXPECT_THROW((void)depth_fights(surfaces, exact, zbuffer(surfaces, view)), Error);
+  EXPECT_THROW((void)find_depth_fights(surfaces, exact, zbuffer(surfaces, view)), Error);
 }
 
 }  // namespace

@@ -48,9 +48,9 @@ Counts unexplained(const Surfaces& surfaces, std::uint64_t count, std::uint64_t 
   for (std::uint64_t i = 0; i < count; ++i) {
     const View view = eye_within(surfaces.bounds(), random, i);
     const Visible seen = zbuffer(surfaces, view);
-    const std::uint64_t by_rays = agreement(surfaces, seen, raycast(index, view)).count(Difference::unexplained);
+    const std::uint64_t by_rays = check_agreement(surfaces, seen, raycast(index, view)).count(Difference::unexplained);
     const std::uint64_t by_layers =
-        agreement(surfaces, seen, visible_layers(surfaces, view, 1)[0]).count(Difference::unexplained);
+        check_agreement(surfaces, seen, visible_layers(surfaces, view, 1)[0]).count(Difference::unexplained);
     EXPECT_EQ(by_rays, 0u) << "eye " << i;
     EXPECT_EQ(by_layers, 0u) << "eye " << i;
     counts.rays += by_rays;
@@ -144,8 +144,8 @@ TEST(EyesInside, TheStreetOfTheCity) {
   view.world_from_eye = look_at({8, 3, 25}, {9, 3, 25}, {0, 1, 0});
   view.projection = make_projection(glm::radians(30.0), 640.0 / 360, {0.02, 200});
   const Visible seen = zbuffer(surfaces, view);
-  EXPECT_EQ(agreement(surfaces, seen, raycast(surfaces, view)).count(Difference::unexplained), 0u);
-  EXPECT_EQ(agreement(surfaces, seen, visible_layers(surfaces, view, 1)[0]).count(Difference::unexplained), 0u);
+  EXPECT_EQ(check_agreement(surfaces, seen, raycast(surfaces, view)).count(Difference::unexplained), 0u);
+  EXPECT_EQ(check_agreement(surfaces, seen, visible_layers(surfaces, view, 1)[0]).count(Difference::unexplained), 0u);
 }
 
 }  // namespace

@@ -166,7 +166,7 @@ Visible turned_back(const Visible& turned, const View& view, const From& from) {
 /// order: exact arithmetic has to find a reason for each difference, and there may be few.
 void expect_explained(const Scene& scene, const Visible& straight, const Visible& back, std::uint64_t& differing,
                       std::uint64_t& all) {
-  const Agreement found = agreement(Surfaces(scene), straight, back);
+  const Agreement found = check_agreement(Surfaces(scene), straight, back);
   EXPECT_EQ(found.count(Difference::unexplained), 0u);
   differing += found.differing();
   all += straight.view.sample_count();

@@ -88,14 +88,14 @@ TEST(RefusedReports, AnswersOfDifferentViews) {
   const Scene scene = scene_of(random_mesh(Kind::soup, 5, 1));
   const Surfaces surfaces(scene);
   const Visible a = zbuffer(surfaces, small_view()), wider = zbuffer(surfaces, small_view(6));
-  const std::string agreement_words = words([&] { (void)agreement(surfaces, a, wider); });
+  const std::string agreement_words = words([&] { (void)check_agreement(surfaces, a, wider); });
   EXPECT_EQ(agreement_words.substr(0, 11), "agreement: ");
   EXPECT_NE(agreement_words.find("different views"), std::string::npos) << agreement_words;
-  const ExactVisible exact = exact_visible(surfaces, small_view());
-  EXPECT_EQ(words([&] { (void)depth_fights(surfaces, exact, wider); }),
+  const ExactVisible exact = find_exact_visible(surfaces, small_view());
+  EXPECT_EQ(words([&] { (void)find_depth_fights(surfaces, exact, wider); }),
             "depth fights: the two answers are of different views");
-  EXPECT_EQ(words([&] { (void)depth_fights(surfaces, exact, a); }), "taken");
-  Agreement fine = agreement(surfaces, a, a);
+  EXPECT_EQ(words([&] { (void)find_depth_fights(surfaces, exact, a); }), "taken");
+  Agreement fine = check_agreement(surfaces, a, a);
   EXPECT_EQ(words([&] { see_through(fine, surfaces, wider, wider); }), "agreement: the layers are of different views");
 }
 

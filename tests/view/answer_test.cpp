@@ -40,7 +40,7 @@ TEST_F(Answer, PlanesThatWereMovedAwayAreRefusedByAllReaders) {
   const Visible& gone = visible;  // NOLINT(bugprone-use-after-move): what is left is the question
   ASSERT_EQ(gone.view.width, 40);
   const char* const size = "the planes do not have the size of their view";
-  expect_refused(size, [&] { (void)depths(gone); });
+  expect_refused(size, [&] { (void)depths_of(gone); });
   expect_refused(size, [&] { (void)depth_image(gone); });
   expect_refused(size, [&] { (void)ray_distance_image(gone); });
   for (const IdKind kind : {IdKind::primitive, IdKind::object, IdKind::material})
@@ -57,15 +57,15 @@ TEST_F(Answer, PlanesThatWereMovedAwayAreRefusedByAllReaders) {
   expect_refused(size, [&] { (void)shade_deep(surfaces, gone); });
   expect_refused(size, [&] { (void)normal_image(surfaces, gone); });
   expect_refused(size, [&] { (void)key_light_view(gone, surfaces.bounds(), Axis::y); });
-  expect_refused(size, [&] { (void)depth_fights(surfaces, exact_visible(surfaces, view), gone); });
+  expect_refused(size, [&] { (void)find_depth_fights(surfaces, find_exact_visible(surfaces, view), gone); });
 }
 
 TEST_F(Answer, PlanesOfAnotherSizeAreRefused) {
   visible.view.samples = 4;
-  expect_refused("depths: the planes", [&] { (void)depths(visible); });
+  expect_refused("depths_of: the planes", [&] { (void)depths_of(visible); });
   visible.view.samples = 1;
   visible.keys = Buffer<float>(visible.keys.size() - 1, 0.0f);
-  expect_refused("depths: the planes", [&] { (void)depths(visible); });
+  expect_refused("depths_of: the planes", [&] { (void)depths_of(visible); });
 }
 
 TEST_F(Answer, IdsOfOtherSurfacesAreRefused) {
@@ -79,10 +79,10 @@ TEST_F(Answer, IdsOfOtherSurfacesAreRefused) {
   expect_refused(other_surfaces, [&] { (void)shade_deep(surfaces, strange); });
   expect_refused(other_surfaces, [&] { (void)normal_image(surfaces, strange); });
   expect_refused(other_surfaces, [&] { (void)id_image(surfaces, strange, IdKind::object); });
-  const ExactVisible exact = exact_visible(surfaces, view);
-  expect_refused(other_surfaces, [&] { (void)depth_fights(surfaces, exact, strange); });
-  ExactVisible strange_exact = exact_visible(many, view);
-  expect_refused(other_surfaces, [&] { (void)depth_fights(surfaces, strange_exact, visible); });
+  const ExactVisible exact = find_exact_visible(surfaces, view);
+  expect_refused(other_surfaces, [&] { (void)find_depth_fights(surfaces, exact, strange); });
+  ExactVisible strange_exact = find_exact_visible(many, view);
+  expect_refused(other_surfaces, [&] { (void)find_depth_fights(surfaces, strange_exact, visible); });
 }
 
 TEST_F(Answer, TheLastIdAndNoIdAreFine) {

@@ -21,7 +21,7 @@ View eight_by_eight() {
 using Table = std::array<std::array<int, 8>, 8>;
 
 Table depth_table(const Visible& visible, int nothing, int (*number)(float depth)) {
-  const Buffer<float> depth = depths(visible);
+  const Buffer<float> depth = depths_of(visible);
   Table table{};
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 8; ++x) {
@@ -76,7 +76,7 @@ TEST(WorkedExample, DepthIsInterpolatedByItsReciprocal) {
   view.world_from_eye = glm::dmat4(1.0);
   view.projection = make_frustum(-0.2, 0.2, -0.2, 0.2, {1, 10});
   const Visible visible = zbuffer(surfaces, view);
-  EXPECT_NEAR(depths(visible)[visible.index(500, 500)], 4.0f, 1e-4f);
+  EXPECT_NEAR(depths_of(visible)[visible.index(500, 500)], 4.0f, 1e-4f);
 }
 
 // Gortler's two segments that cross in the middle of the picture: one at -1, one from -0.1 to -1000000.

@@ -70,8 +70,8 @@ class MarkPen {
 
 }  // namespace
 
-SectionMarks section_marks(std::span<const CuttingLine> lines, std::span<const ViewName> names,
-                           const SectionMarkOptions& options) {
+SectionMarks draw_section_marks(std::span<const CuttingLine> lines, std::span<const ViewName> names,
+                                const SectionMarkOptions& options) {
   if (!(options.text_height >= 0.5 && options.text_height <= 100))
     throw Error(ErrorCode::bad_argument, "text_height: must be from 0.5 to 100 millimetres");
   MarkPen pen(options);

@@ -138,7 +138,7 @@ Page draw_sheet(const Surfaces& surfaces, std::span<const SheetView> views, cons
   return {size.x, size.y, surfaces.scene().name, sheet.take()};
 }
 
-DrawingBounds bounds(const Drawing& drawing, bool with_hidden) {
+DrawingBounds bounds_of(const Drawing& drawing, bool with_hidden) {
   DrawingBounds all;
   for (const DrawnPart& part : drawing.parts) {
     if (part.hidden_by != 0 && !with_hidden) continue;
@@ -148,7 +148,7 @@ DrawingBounds bounds(const Drawing& drawing, bool with_hidden) {
   return all;
 }
 
-PenTravel travel(const Page& page) {
+PenTravel travel_of(const Page& page) {
   PenTravel sum;
   glm::dvec2 pen(0);
   for (const PageLayer& layer : page.layers)

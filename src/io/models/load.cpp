@@ -9,18 +9,14 @@ namespace {
 
 constexpr std::string_view builtin_prefix = "builtin:";
 
-/// Sets `metres_per_unit` for formats that say what their unit is.
-Scene read(ModelFormat format, Bytes bytes, const ModelSource& source, std::optional<double>& metres_per_unit) {
+Scene read(ModelFormat format, Bytes bytes, const ModelSource& source) {
   switch (format) {
     case ModelFormat::stl: return read_stl(bytes, source);
     case ModelFormat::ply: return read_ply(bytes, source);
     case ModelFormat::obj: return read_obj(bytes, source);
     case ModelFormat::off: return read_off(bytes, source);
-    case ModelFormat::gltf: {
-      metres_per_unit = 1;
-      return read_gltf(bytes, source);
-    }
-    case ModelFormat::threemf: return read_3mf(bytes, source, metres_per_unit);
+    case ModelFormat::gltf: return read_gltf(bytes, source);
+    case ModelFormat::threemf: return read_3mf(bytes, source);
   }
   throw Error(ErrorCode::bad_argument, source.name() + ": not a model format");
 }
@@ -35,11 +31,9 @@ Scene read_any(Bytes bytes, const ModelSource& source, std::optional<ModelFormat
   if (!format)
     refuse(source, conversion_by_content(bytes).value_or(
                        "not a model that Frontmost can read (STL, PLY, OBJ, OFF, glTF, GLB, 3MF)"));
-  if (options.found) *options.found = format;
   report_progress(source.execution(), "load", 0);
-  std::optional<double> metres_per_unit;
-  Scene scene = read(*format, bytes, source, metres_per_unit);
-  if (options.metres_per_unit && metres_per_unit) *options.metres_per_unit = metres_per_unit;
+  Scene scene = read(*format, bytes, source);
+  scene.source.format = format;
   scene.name = source.stem();
   scene.up = options.up.value_or(default_up(*format));
   try {
@@ -76,7 +70,7 @@ Scene load(const std::string& path, const LoadOptions& options, const Execution&
   if (const auto conversion = options.format ? std::nullopt : conversion_by_suffix(path)) refuse(source, *conversion);
   const auto format = options.format ? options.format : format_of_suffix(path);
   Scene scene = read_any(file.bytes(), source, format, options);
-  opened->tell(options.files);
+  scene.source.files = opened->paths();
   return scene;
 }
 

@@ -27,10 +27,8 @@ class OpenedFiles {
     const std::lock_guard lock(mutex_);
     paths_.insert(std::move(path));
   }
-  /// For LoadOptions::files, where that is given.
-  void tell(std::vector<std::filesystem::path>* files) const {
-    if (files) files->insert(files->end(), paths_.begin(), paths_.end());
-  }
+  /// As SceneSource::files has them.
+  [[nodiscard]] std::vector<std::filesystem::path> paths() const { return {paths_.begin(), paths_.end()}; }
 
  private:
   std::mutex mutex_;

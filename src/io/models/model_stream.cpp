@@ -84,8 +84,8 @@ std::unique_ptr<ModelStream> open_model_stream(const std::string& path, const Lo
         name + ": " +
             conversion_by_content(start.start).value_or("not a model that can be streamed (binary STL or PLY)"));
   std::unique_ptr<ModelStream> stream = open(*format, std::move(start), source);
-  opened->tell(options.files);
-  stream->introduce(path == "-" ? "stdin" : source.stem(), options.up.value_or(default_up(*format)));
+  stream->introduce(path == "-" ? "stdin" : source.stem(), options.up.value_or(default_up(*format)),
+                    {format, std::nullopt, opened->paths()});
   return stream;
 }
 

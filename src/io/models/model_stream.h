@@ -34,9 +34,10 @@ class ModelStream {
   /// For its warnings, which scene() holds as readers make them, without the model's name.
   [[nodiscard]] const ModelSource& source() const { return source_; }
   /// What load() adds to a reader's scene.
-  void introduce(std::string name, Axis up) {
+  void introduce(std::string name, Axis up, SceneSource source) {
     scene_.name = std::move(name);
     scene_.up = up;
+    scene_.source = std::move(source);
   }
   [[nodiscard]] bool can_rewind() const { return bytes_->can_rewind(); }
   /// How many triangles there will be, where the header and the size of the file say.

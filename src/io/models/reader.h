@@ -16,9 +16,9 @@ using Bytes = std::span<const std::byte>;
 [[nodiscard]] Scene read_ply(Bytes bytes, const ModelSource& source);
 [[nodiscard]] Scene read_obj(Bytes bytes, const ModelSource& source);
 [[nodiscard]] Scene read_off(Bytes bytes, const ModelSource& source);
+/// This and the next tell SceneSource::metres_per_unit.
 [[nodiscard]] Scene read_gltf(Bytes bytes, const ModelSource& source);
-/// Sets `metres_per_unit`, too.
-[[nodiscard]] Scene read_3mf(Bytes bytes, const ModelSource& source, std::optional<double>& metres_per_unit);
+[[nodiscard]] Scene read_3mf(Bytes bytes, const ModelSource& source);
 
 /// What is said of a model that is read, whole or streamed, and holds nothing.
 inline constexpr const char* no_triangles_warning = "the file holds no triangles";

@@ -168,8 +168,8 @@ std::vector<double> drawn_lengths(const Rounds& all, const Drawing& drawing, boo
   return lengths;
 }
 
-std::vector<CentreLine> centre_lines(const Rounds& rounds, const Drawing& drawing, const Strokes& strokes,
-                                     const CentreLineOptions& options) {
+std::vector<CentreLine> centre_lines_of(const Rounds& rounds, const Drawing& drawing, const Strokes& strokes,
+                                        const CentreLineOptions& options) {
   if (!(options.overshoot > 0 && options.overshoot <= 1e6))
     throw Error(ErrorCode::bad_argument, "overshoot: must be above 0, and at most a million pixels");
   if (!drawing.view.projection.orthographic) return {};

@@ -15,7 +15,8 @@ struct FoundWall {
   std::vector<std::uint32_t> triangles;  ///< ascending
 };
 
-/// Those at the circles first, in their order, and what is cut between its ends last. Each triangle belongs to one at most. O(triangles log triangles).
+/// Those at the circles first, in their order, and what is cut between its ends last. Each triangle belongs to one at
+/// most. O(triangles log triangles).
 [[nodiscard]] std::vector<FoundWall> find_walls(const SmoothMesh& mesh, const std::vector<FoundCircle>& circles,
                                                 const Execution& execution);
 

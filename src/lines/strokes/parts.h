@@ -56,8 +56,8 @@ struct CrumbRule {
 /// Leaves out corners that lie within `tolerance` of the line between those that stay.
 void straighten(Chain& chain, double tolerance);
 
-/// Puts arcs where four chords or more have their ends on a circle, within `tolerance`, and stay within it of the arc or
-/// are evenly stepped.
+/// Puts arcs where four chords or more have their ends on a circle, within `tolerance`, and stay within it of the arc
+/// or are evenly stepped.
 void find_arcs(Chain& chain, double tolerance);
 
 /// Chains of one rank, each begun at the end that is nearest to the last one's end, and joined with it where the two

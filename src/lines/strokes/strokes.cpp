@@ -141,8 +141,8 @@ void append(const Chain& chain, const Stroke& like, bool with_arcs, Strokes& all
 
 }  // namespace
 
-Strokes strokes(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options,
-                const Execution& execution) {
+Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options,
+                      const Execution& execution) {
   check(options);
   const IeeeScope ieee;
   report_progress(execution, "strokes", 0);

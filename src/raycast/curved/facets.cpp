@@ -211,7 +211,7 @@ std::vector<PrimitiveId> first_triangles(const Scene& scene) {
 
 }  // namespace
 
-Facets facets(const CurvedIndex& index, const Scene& scene, std::span<const CurvedVisible> views) {
+Facets facets_of(const CurvedIndex& index, const Scene& scene, std::span<const CurvedVisible> views) {
   const IeeeScope ieee;
   FacetMaker maker(index, scene);
   std::vector<std::vector<std::uint32_t>> numbers;

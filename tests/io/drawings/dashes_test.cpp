@@ -114,8 +114,8 @@ TEST(RealDashes, ArcsStayArcs) {
   const PageGroup& found = page.layers[0].groups[0];
   ASSERT_EQ(found.paths.size(), 8u);
   ASSERT_EQ(found.bulges.size(), found.points.size());
-  EXPECT_NEAR(travel(page).down, 24, 1e-9);
-  EXPECT_EQ(travel(page).arcs, 8u);
+  EXPECT_NEAR(travel_of(page).down, 24, 1e-9);
+  EXPECT_EQ(travel_of(page).arcs, 8u);
   for (const glm::dvec2& point : found.points) EXPECT_NEAR(glm::distance(point, {100, 50}), radius, 1e-12);
 }
 

@@ -55,12 +55,12 @@ class DimensionsTest : public testing::Test {
       FrameOptions options;
       options.direction = direction;
       options.orthographic = true;
-      drawings_.push_back(lines(*surfaces_, frame(*surfaces_, 2000, 2000, options)));
+      drawings_.push_back(draw_lines(*surfaces_, frame(*surfaces_, 2000, 2000, options)));
       const View& view = drawings_.back().view;
       SheetView& sheet = sheets_.emplace_back();
       sheet.millimetres_per_pixel = (view.projection.right - view.projection.left) / view.width;
       sheet.strokes =
-          strokes(*surfaces_, drawings_.back(), {.by_kind = false, .by_outline = false, .arc_tolerance = 0.1});
+          chain_strokes(*surfaces_, drawings_.back(), {.by_kind = false, .by_outline = false, .arc_tolerance = 0.1});
       sheet.origin = {100, 50 + 250.0 * double(sheets_.size() - 1)};
     }
   }
@@ -72,7 +72,7 @@ class DimensionsTest : public testing::Test {
   }
 
   [[nodiscard]] Dimensions dimensioned(const DimensionOptions& options = {}) const {
-    return dimensions(views(), {{0, 0}, {1000, 1000}}, {}, options);
+    return place_dimensions(views(), {{0, 0}, {1000, 1000}}, {}, options);
   }
 
   Scene scene_;
@@ -111,7 +111,7 @@ TEST_F(DimensionsTest, ABoxHasThree) {
   add_box(mesh, {40, 30, 20});
   scene_ = scene_of(mesh);
   draw({NamedView::front, NamedView::top, NamedView::left});
-  const std::vector<OverallSizes> sizes = overall_sizes(views());
+  const std::vector<OverallSizes> sizes = overall_sizes_of(views());
   ASSERT_EQ(sizes.size(), 3u);
   EXPECT_TRUE(sizes[0].width && sizes[0].height);
   EXPECT_TRUE(!sizes[1].width && sizes[1].height);
@@ -215,7 +215,7 @@ TEST_F(DimensionsTest, KeepOffWhatIsTaken) {
   draw({NamedView::front});
   EXPECT_EQ(dimensioned().count, 3u);
   const PageBox all_of_it{{0, 0}, {1000, 1000}};
-  const Dimensions none = dimensions(views(), all_of_it, std::span(&all_of_it, 1));
+  const Dimensions none = place_dimensions(views(), all_of_it, std::span(&all_of_it, 1));
   EXPECT_EQ(none.count, 2u);
   EXPECT_EQ(none.left_out, 1u);
 }

@@ -11,7 +11,7 @@
 namespace frontmost::test {
 namespace {
 
-SectionMarks one_line(const CuttingLine& line) { return section_marks(std::span(&line, 1), {}); }
+SectionMarks one_line(const CuttingLine& line) { return draw_section_marks(std::span(&line, 1), {}); }
 
 TEST(SectionMarks, ALineHasThickEndsArrowsAndLettersOnTheViewersSide) {
   // Upright, and its section looks to the right: the arrows stand on the left.
@@ -42,7 +42,7 @@ TEST(SectionMarks, ALineHasThickEndsArrowsAndLettersOnTheViewersSide) {
 
 TEST(SectionMarks, NamesStandInTheirMiddle) {
   const ViewName name{{100, 40}, "B-B"};
-  const SectionMarks marks = section_marks({}, std::span(&name, 1));
+  const SectionMarks marks = draw_section_marks({}, std::span(&name, 1));
   ASSERT_EQ(marks.layer.groups.size(), 1u);
   EXPECT_EQ(marks.layer.name, "9 sections");
   double low = 1e9, high = -1e9;
@@ -54,10 +54,10 @@ TEST(SectionMarks, NamesStandInTheirMiddle) {
   }
   EXPECT_NEAR((low + high) / 2, 100, 0.5);
   EXPECT_NEAR(high - low, text_width("B-B", 5), 2);
-  EXPECT_TRUE(section_marks({}, {}).layer.groups.empty());
+  EXPECT_TRUE(draw_section_marks({}, {}).layer.groups.empty());
   EXPECT_THROW((void)one_line({{1, 1}, {1, 1}, {1, 0}, "A"}), Error);
   EXPECT_THROW((void)one_line({{1, 1}, {std::nan(""), 1}, {1, 0}, "A"}), Error);
-  EXPECT_THROW((void)section_marks({}, {}, {.text_height = 0}), Error);
+  EXPECT_THROW((void)draw_section_marks({}, {}, {.text_height = 0}), Error);
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ TEST(DrawSheet, GroupsWithAndWithoutArcsAreWhole) {
   const Page page = draw_sheet(surfaces, std::span(&view, 1), technical_pens(), {100, 80});
   EXPECT_NO_THROW(validate(page));
   EXPECT_EQ(page.layers[0].groups[0].name, "object");
-  const PenTravel sum = travel(page);
+  const PenTravel sum = travel_of(page);
   EXPECT_EQ(sum.arcs, 1u);
   EXPECT_EQ(sum.paths, 2u);
   EXPECT_NEAR(sum.down, 5 * std::numbers::pi + 10, 1e-9);
@@ -96,7 +96,7 @@ TEST(PenTravelOf, AClosedPathEndsWhereItBegins) {
   group.add(std::vector<glm::dvec2>{{3, 4}, {6, 4}, {6, 8}}, true);
   group.add(std::vector<glm::dvec2>{{3, 5}}, false);
   page.layers = {{"", {group}}};
-  const PenTravel sum = travel(page);
+  const PenTravel sum = travel_of(page);
   EXPECT_EQ(sum.down, 3 + 4 + 5);
   EXPECT_EQ(sum.up, 5 + 1);
   EXPECT_EQ(sum.points, 4u);
@@ -104,7 +104,7 @@ TEST(PenTravelOf, AClosedPathEndsWhereItBegins) {
 
 TEST(BoundsOfADrawing, CountHiddenPartsWhereAskedFor) {
   Drawing drawing;
-  EXPECT_TRUE(bounds(drawing, true).is_empty());
+  EXPECT_TRUE(bounds_of(drawing, true).is_empty());
   DrawnPart part;
   part.from = {1, 2};
   part.to = {3, -4};
@@ -112,9 +112,9 @@ TEST(BoundsOfADrawing, CountHiddenPartsWhereAskedFor) {
   part.to = {9, 9};
   part.hidden_by = 1;
   drawing.parts.push_back(part);
-  EXPECT_EQ(bounds(drawing, false).high, glm::dvec2(3, 2));
-  EXPECT_EQ(bounds(drawing, true).high, glm::dvec2(9, 9));
-  EXPECT_EQ(bounds(drawing, true).low, glm::dvec2(1, -4));
+  EXPECT_EQ(bounds_of(drawing, false).high, glm::dvec2(3, 2));
+  EXPECT_EQ(bounds_of(drawing, true).high, glm::dvec2(9, 9));
+  EXPECT_EQ(bounds_of(drawing, true).low, glm::dvec2(1, -4));
 }
 
 TEST(DrawSheet, CentreLinesBeginAndEndInDashes) {

@@ -151,6 +151,20 @@ TEST(Obj, MaterialLibraries) {
                                           HasSubstr("usemtl \"later\": 1 material is not defined")));
 }
 
+TEST(Obj, TheSceneTellsWhatItWasReadFrom) {
+  const Folder folder;
+  const std::string library = folder.write("m.mtl", "newmtl lamp\nKd 0 0 0\n");
+  const std::string path = folder.write("model.obj", "mtllib m.mtl\n" + square + "usemtl lamp\nf 1 2 3\n");
+  Scene scene;
+  add(scene, load(path));
+  EXPECT_EQ(scene.source.format, ModelFormat::obj);
+  EXPECT_EQ(scene.source.metres_per_unit, std::nullopt);
+  EXPECT_THAT(scene.source.files, ElementsAre(std::filesystem::canonical(library), std::filesystem::canonical(path)));
+  add(scene, load(path));
+  EXPECT_EQ(scene.source.files.size(), 4u);
+  EXPECT_EQ(builtin("cubes").source.format, std::nullopt);
+}
+
 TEST(Obj, WithoutItsTextureNothingGlows) {
   const Folder folder;
   const std::string path = folder.write("model.obj", "mtllib m.mtl\n" + square + "usemtl lamp\nf 1 2 3\n");

@@ -62,11 +62,9 @@ TEST(ThreeMf, TheUnitIsThatOfTheFile) {
                                                   {R"(unit="foot")", 0.3048},
                                                   {R"(unit="meter")", 1}};
   for (const auto& [attribute, metres] : units) {
-    std::optional<double> unit;
     const std::string bytes = package_of(model_of(one_object(), attribute)).bytes();
-    const Scene scene = load(test::bytes_of(bytes), "model.3mf",
-                             {.format = std::nullopt, .up = std::nullopt, .metres_per_unit = &unit});
-    EXPECT_EQ(unit, metres);
+    const Scene scene = load(test::bytes_of(bytes), "model.3mf");
+    EXPECT_EQ(scene.source.metres_per_unit, metres);
     EXPECT_EQ(scene.meshes[0].positions[1], glm::vec3(1, 0, 0)) << "nothing is scaled";
   }
   EXPECT_THAT(error_of(model_of(one_object(), R"(unit="parsec")")),

@@ -91,7 +91,7 @@ std::string dimension_text(double number, int decimals) {
   return rest.empty() ? text : text + "." + rest;
 }
 
-std::vector<OverallSizes> overall_sizes(std::span<const DimensionedView> views) {
+std::vector<OverallSizes> overall_sizes_of(std::span<const DimensionedView> views) {
   std::vector<OverallSizes> all(views.size());
   std::vector<glm::dvec3> known;
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -113,8 +113,8 @@ glm::dvec2 room_for(const OverallSizes& sizes, double text_height) {
           sizes.width ? first_distance + extension_overshoot + text_distance : 0};
 }
 
-Dimensions dimensions(std::span<const DimensionedView> views, const PageBox& area, std::span<const PageBox> taken,
-                      const DimensionOptions& options) {
+Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBox& area, std::span<const PageBox> taken,
+                            const DimensionOptions& options) {
   validate(options);
   Obstacles obstacles(area);
   std::vector<MeasuredView> measured;
@@ -123,7 +123,7 @@ Dimensions dimensions(std::span<const DimensionedView> views, const PageBox& are
     obstacles.add(*view.sheet);
   }
   for (const PageBox& box : taken) obstacles.add(box);
-  const std::vector<OverallSizes> shares = overall_sizes(views);
+  const std::vector<OverallSizes> shares = overall_sizes_of(views);
   Dimensions all;
   DimensionPen pen(options, obstacles);
   Diameters diameters(options, pen, obstacles);

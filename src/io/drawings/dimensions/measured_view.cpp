@@ -21,7 +21,7 @@ MeasuredView::MeasuredView(const DimensionedView& view) : view_(view) {
   const View& camera = view.drawing->view;
   const Projection& p = camera.projection;
   millimetres_ = camera.width / (p.right - p.left) * view.sheet->millimetres_per_pixel;
-  const DrawingBounds drawn = bounds(*view.drawing, true);
+  const DrawingBounds drawn = bounds_of(*view.drawing, true);
   is_empty_ = drawn.is_empty();
   if (is_empty_) return;
   box_ = {view.sheet->on_page(drawn.low), view.sheet->on_page(drawn.high)};

@@ -97,7 +97,9 @@ Scene read_scene(const Container& container, const ModelSource& source) {
 }  // namespace gltf
 
 Scene read_gltf(Bytes bytes, const ModelSource& source) {
-  return gltf::read_scene(gltf::open_container(bytes, source), source);
+  Scene scene = gltf::read_scene(gltf::open_container(bytes, source), source);
+  scene.source.metres_per_unit = 1;
+  return scene;
 }
 
 }  // namespace frontmost

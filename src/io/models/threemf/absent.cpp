@@ -4,7 +4,7 @@
 
 namespace frontmost {
 
-Scene read_3mf(Bytes, const ModelSource& source, std::optional<double>&) {
+Scene read_3mf(Bytes, const ModelSource& source) {
   throw Error(ErrorCode::unsupported, source.name() + ": this Frontmost was built without 3MF (FRONTMOST_3MF)");
 }
 

@@ -122,14 +122,14 @@ class Placer {
 }  // namespace
 }  // namespace threemf
 
-Scene read_3mf(Bytes bytes, const ModelSource& source, std::optional<double>& metres_per_unit) {
+Scene read_3mf(Bytes bytes, const ModelSource& source) {
   threemf::Package package(bytes, source);
   Scene scene;
   const std::string start = threemf::find_start_part(package, source);
   const threemf::Parts parts = threemf::read_parts(start, package, source, scene);
   const threemf::ModelPart& root = parts.at(start);
   threemf::Placer(parts, root, Budget(bytes.size()), source, scene).place();
-  metres_per_unit = root.metres_per_unit;
+  scene.source.metres_per_unit = root.metres_per_unit;
   return scene;
 }
 
