@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes that are made to take long: they end at a limit, or as soon as they are told to.
-#include <chrono>
+#include <atomic>
 
 #include "painter/painted.h"
 #include "support/effort.h"
@@ -108,14 +108,16 @@ TEST(Hostile, BladesAroundAnAxisAreFewCuts) {
   EXPECT_LE(order.steps.cuts, std::uint64_t(count) * 2);
 }
 
-/// Says to stop from a moment on, and how long it took until that was heard.
+/// Counts how often it is asked whether to stop, and says so from a certain question on.
 class Stopper {
  public:
-  explicit Stopper(int milliseconds) : end_(Clock::now() + std::chrono::milliseconds(milliseconds)) {
-    watch_.cancelled = [this] { return Clock::now() >= end_; };
+  explicit Stopper(std::size_t question) {
+    watch_.cancelled = [this, question] { return ++asked_ >= question; };
+    last_ = question + kThreads;
   }
-  [[nodiscard]] Execution execution() const { return {.threads = 2, .isa = Isa::best, .watch = &watch_}; }
+  [[nodiscard]] Execution execution() const { return {.threads = kThreads, .isa = Isa::best, .watch = &watch_}; }
 
+  /// Every thread stops at the first answer that says so, and the one that began the work asks once more.
   template <class Work>
   void expect_heard(const Work& work) const {
     try {
@@ -124,13 +126,13 @@ class Stopper {
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::cancelled) << error.what();
     }
-    // A thousand times what it takes on an idle machine.
-    EXPECT_LT(std::chrono::duration<double>(Clock::now() - end_).count(), 2.0);
+    EXPECT_LE(asked_, last_);
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point end_;
+  static constexpr int kThreads = 2;
+  std::atomic<std::size_t> asked_ = 0;
+  std::size_t last_;
   Watch watch_;
 };
 
@@ -179,6 +181,21 @@ TEST(Hostile, OrdersStopWhenTold) {
     stopper.expect_heard(
         [&] { (void)painter(surfaces, view, {.method = method, .most_cuts = 1 << 30}, stopper.execution()); });
   }
+}
+
+/// They ask every few thousand tests whether to go on.
+TEST(Hostile, OrdersAskOften) {
+  const Scene scene = all_crossing(60);
+  const Surfaces surfaces(scene);
+  std::size_t asked = 0;
+  Watch watch;
+  watch.cancelled = [&] { return ++asked == 0; };
+  const PaintOrder order =
+      painter(surfaces, frame(surfaces, 256, 256), {.most_cuts = 1 << 30}, {.threads = 1, .watch = &watch});
+  const PaintSteps& steps = order.steps;
+  const std::uint64_t tests = steps.behind + steps.before + steps.projections_apart + steps.compared;
+  EXPECT_GT(tests, 1'000'000u);
+  EXPECT_GT(asked, tests / 4096);
 }
 
 TEST(Hostile, PartsAndHemsStopWhenTold) {

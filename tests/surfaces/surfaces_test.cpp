@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 #include <limits>
 
@@ -207,15 +206,13 @@ TEST(Surfaces, TellTheWatchAndStopWhenItSaysSo) {
   EXPECT_THROW(Surfaces(scene, {.watch = &watch}), Error);
 }
 
-// A small file can name the same vertices many times over.
+// A small file can name the same vertices many times over: 2e12 of them, which would take an hour.
 TEST(Surfaces, VerticesThatNoTriangleUsesCostNothingPerInstance) {
   Scene scene = scene_of(random_mesh(Kind::soup, 1, 1));
   scene.meshes[0].positions.resize(2'000'000, glm::vec3(0.5f));
-  scene.instances.resize(20'000, scene.instances[0]);
-  const auto start = std::chrono::steady_clock::now();
+  scene.instances.resize(1'000'000, scene.instances[0]);
   const Surfaces surfaces(scene, {.threads = 1});
-  EXPECT_EQ(surfaces.primitive_count(), 20'000u);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5)) << "40 thousand million vertices";
+  EXPECT_EQ(surfaces.primitive_count(), 1'000'000u);
 }
 
 TEST(Surfaces, StayWithinTheirMemory) {
