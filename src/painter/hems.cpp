@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Polygons with their hems as one outline each.
 #include "base/float_environment.h"
-#include "painter/side_hems.h"
+#include "painter/traps/make_traps.h"
 
 namespace frontmost {
 namespace {

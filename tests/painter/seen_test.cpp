@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "painter/painted.h"
-#include "painter/seen/alone.h"
-#include "painter/seen/spreader.h"
+#include "painter/seen/occluder_union.h"
+#include "painter/seen/unoverlapped.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 
@@ -42,26 +42,26 @@ std::vector<Points> tiles(int side) {
 }
 
 struct Laid {
-  explicit Laid(const std::vector<Points>& outlines) : scenery(order_of(outlines), {}), mosaic(scenery) {}
-  Scenery scenery;
-  Mosaic mosaic;
+  explicit Laid(const std::vector<Points>& outlines) : screen(order_of(outlines), {}), adjacency(screen) {}
+  ScreenPolygons screen;
+  Adjacency adjacency;
 
   [[nodiscard]] std::vector<std::uint32_t> alone(const std::vector<std::uint8_t>& gone = {}) const {
-    const std::vector<std::uint8_t> found = find_alone(scenery, mosaic, gone, {});
+    const std::vector<std::uint8_t> found = find_unoverlapped(screen, adjacency, gone, {});
     std::vector<std::uint32_t> places;
     for (std::uint32_t place = 0; place < found.size(); ++place)
-      if (found[scenery.slot(place)]) places.push_back(place);
+      if (found[screen.slot(place)]) places.push_back(place);
     return places;
   }
 };
 
-TEST(Mosaic, FindsWhatHasTheSameSide) {
+TEST(Adjacency, FindsWhatHasTheSameSide) {
   // Two triangles of a square, one that has only half of a side, and one that is beside the first on the wrong side.
   const Laid laid(
       {{{0, 0}, {0, 8}, {8, 8}}, {{0, 0}, {8, 8}, {8, 0}}, {{0, 0}, {0, -4}, {-4, 0}}, {{0, 0}, {0, 8}, {3, 8}}});
   const auto across = [&](std::uint32_t place, std::size_t side) {
-    const std::uint32_t slot = laid.mosaic.across(laid.scenery.first_corner(laid.scenery.slot(place)) + side);
-    return slot == no_index ? no_index : laid.scenery.place(slot);
+    const std::uint32_t slot = laid.adjacency.across(laid.screen.first_corner(laid.screen.slot(place)) + side);
+    return slot == no_index ? no_index : laid.screen.place(slot);
   };
   EXPECT_EQ(across(0, 2), 1u);
   EXPECT_EQ(across(1, 0), 0u);
@@ -70,18 +70,18 @@ TEST(Mosaic, FindsWhatHasTheSameSide) {
   EXPECT_EQ(across(0, 0), no_index);
 }
 
-TEST(Mosaic, TilesHaveNoOtherOpenSidesThanTheirBorder) {
+TEST(Adjacency, TilesHaveNoOtherOpenSidesThanTheirBorder) {
   std::vector<Points> all = tiles(10);
   Random random(3);
   for (std::size_t i = all.size(); i-- > 1;) std::swap(all[i], all[std::size_t(random.below(int(i) + 1))]);
   const Laid laid(all);
   std::size_t open = 0;
-  for (std::size_t slot = 0; slot < laid.scenery.count(); ++slot)
+  for (std::size_t slot = 0; slot < laid.screen.count(); ++slot)
     for (std::size_t side = 0; side < 4; ++side) {
-      const std::uint32_t across = laid.mosaic.across(laid.scenery.first_corner(slot) + side);
+      const std::uint32_t across = laid.adjacency.across(laid.screen.first_corner(slot) + side);
       open += across == no_index;
       if (across != no_index) {
-        const glm::dvec2 from(laid.scenery.outline(slot)[0].at), to(laid.scenery.outline(across)[0].at);
+        const glm::dvec2 from(laid.screen.outline(slot)[0].at), to(laid.screen.outline(across)[0].at);
         EXPECT_EQ(glm::length(from - to), 10);
       }
     }
@@ -89,13 +89,13 @@ TEST(Mosaic, TilesHaveNoOtherOpenSidesThanTheirBorder) {
 }
 
 /// Each would be held against all others.
-TEST(Mosaic, OfManyThatHaveTheSameSideAFewFindANeighbour) {
+TEST(Adjacency, OfManyThatHaveTheSameSideAFewFindANeighbour) {
   std::vector<Points> all(1000, square(10, 10));
   all.resize(2000, square(20, 10));
   const Laid laid(all);
   std::size_t found = 0;
-  for (std::uint32_t corner = 0; corner < laid.scenery.corners().size(); ++corner)
-    found += laid.mosaic.across(corner) != no_index;
+  for (std::uint32_t corner = 0; corner < laid.screen.corners().size(); ++corner)
+    found += laid.adjacency.across(corner) != no_index;
   EXPECT_EQ(found, 2u * 64);
 }
 
@@ -107,11 +107,11 @@ struct AllBut {
 
   [[nodiscard]] bool may_hide(std::uint32_t slot) const {
     ++*asks;
-    return laid.scenery.place(slot) != missing;
+    return laid.screen.place(slot) != missing;
   }
   [[nodiscard]] std::uint32_t at(const glm::dvec2& place) const {
-    for (const std::uint32_t slot : laid.scenery.cell_at(place))
-      if (may_hide(slot) && is_within(laid.scenery.outline(slot), place, 0)) return slot;
+    for (const std::uint32_t slot : laid.screen.cell_at(place))
+      if (may_hide(slot) && is_within(laid.screen.outline(slot), place, 0)) return slot;
     return no_index;
   }
 };
@@ -119,13 +119,13 @@ struct AllBut {
 class SpreadTest : public testing::Test {
  protected:
   /// Begins at the polygon in which a place next to the first corner is.
-  Spreader::Found spread(const Laid& laid, const Points& outline, std::uint32_t missing = no_index) {
+  OccluderUnion::Found spread(const Laid& laid, const Points& outline, std::uint32_t missing = no_index) {
     const PaintOrder asked = order_of({outline});
-    Spreader spreader(laid.scenery, laid.mosaic);
+    OccluderUnion spreader(laid.screen, laid.adjacency);
     spreader.set(asked.corners);
     asks_ = 0;
     const AllBut hiders{laid, missing, &asks_};
-    const Spreader::Found found = spreader.spread(hiders.at(outline[0] * 0.9 + outline[2] * 0.1), hiders);
+    const OccluderUnion::Found found = spreader.spread(hiders.at(outline[0] * 0.9 + outline[2] * 0.1), hiders);
     open_at_ = spreader.open_at();
     return found;
   }
@@ -136,30 +136,30 @@ class SpreadTest : public testing::Test {
 TEST_F(SpreadTest, TellsWhereTilesHideTogether) {
   const Laid laid(tiles(10));
   const Points asked{{12, 12}, {12, 38}, {38, 38}, {38, 12}};
-  EXPECT_EQ(spread(laid, asked, 99), Spreader::Found::hidden);
-  EXPECT_EQ(spread(laid, asked, 22), Spreader::Found::open);
+  EXPECT_EQ(spread(laid, asked, 99), OccluderUnion::Found::hidden);
+  EXPECT_EQ(spread(laid, asked, 22), OccluderUnion::Found::open);
   EXPECT_THAT(open_at_.x, testing::AllOf(testing::Ge(20 - 1e-9), testing::Le(30 + 1e-9)));
   EXPECT_THAT(open_at_.y, testing::AllOf(testing::Ge(20 - 1e-9), testing::Le(30 + 1e-9)));
   // Those that it does not reach may be missing.
   for (const std::uint32_t missing : {0u, 10u, 41u, 44u, 77u})
-    EXPECT_EQ(spread(laid, asked, missing), Spreader::Found::hidden);
+    EXPECT_EQ(spread(laid, asked, missing), OccluderUnion::Found::hidden);
   // Beyond the last tiles there is nothing.
-  EXPECT_EQ(spread(laid, {{85, 85}, {85, 95}, {105, 95}}), Spreader::Found::open);
+  EXPECT_EQ(spread(laid, {{85, 85}, {85, 95}, {105, 95}}), OccluderUnion::Found::open);
   EXPECT_NEAR(open_at_.x, 100, 0.01);
 }
 
 TEST_F(SpreadTest, TouchingIsNotCrossing) {
   // One tile exactly, all others missing.
   const Laid laid({square(50, 50)});
-  EXPECT_EQ(spread(laid, square(50, 50)), Spreader::Found::hidden);
-  EXPECT_EQ(spread(laid, square(50, 50, 10.01)), Spreader::Found::open);
+  EXPECT_EQ(spread(laid, square(50, 50)), OccluderUnion::Found::hidden);
+  EXPECT_EQ(spread(laid, square(50, 50, 10.01)), OccluderUnion::Found::open);
 }
 
 /// Cuts at a corner leave it twice, and nothing is on the inner side of no side.
 TEST_F(SpreadTest, ACornerMayBeThereTwice) {
   const Laid laid({square(50, 50)});
-  EXPECT_EQ(spread(laid, {{50, 50}, {50, 70}, {70, 70}, {70, 70}, {70, 50}}), Spreader::Found::open);
-  EXPECT_EQ(spread(laid, {{50, 50}, {50, 60}, {60, 60}, {60, 60}, {60, 50}}), Spreader::Found::hidden);
+  EXPECT_EQ(spread(laid, {{50, 50}, {50, 70}, {70, 70}, {70, 70}, {70, 50}}), OccluderUnion::Found::open);
+  EXPECT_EQ(spread(laid, {{50, 50}, {50, 60}, {60, 60}, {60, 60}, {60, 50}}), OccluderUnion::Found::hidden);
 }
 
 /// Bricks: few sides are those of two, but all lie beside others.
@@ -172,13 +172,13 @@ TEST_F(SpreadTest, StepsAlongSidesThatLieBesideTwo) {
     }
   const Laid laid(bricks);
   const Points asked{{22, 22}, {12, 44}, {31, 61}, {44, 33}};
-  EXPECT_EQ(spread(laid, asked), Spreader::Found::hidden);
+  EXPECT_EQ(spread(laid, asked), OccluderUnion::Found::hidden);
   EXPECT_LT(asks_, 300u);
   std::size_t open = 0;
   for (std::uint32_t missing = 0; missing < bricks.size(); ++missing) {
     const PaintOrder brick = order_of({bricks[missing]});
     if (is_within(brick.corners, asked[0] * 0.9 + asked[2] * 0.1, 0)) continue;
-    if (spread(laid, asked, missing) == Spreader::Found::hidden) continue;
+    if (spread(laid, asked, missing) == OccluderUnion::Found::hidden) continue;
     ++open;
     EXPECT_TRUE(is_within(brick.corners, open_at_, 1e-9)) << missing;
   }
@@ -191,7 +191,7 @@ TEST_F(SpreadTest, GivesUpOverTooMany) {
   std::vector<Points> all;
   for (int y = 0; y < 40; ++y)
     for (int x = 0; x < 40; ++x) all.push_back(square(2 * x, 2 * y, 2));
-  EXPECT_EQ(spread(Laid(all), square(1.5, 1.5, 70)), Spreader::Found::unknown);
+  EXPECT_EQ(spread(Laid(all), square(1.5, 1.5, 70)), OccluderUnion::Found::unknown);
   EXPECT_LE(asks_, 300u);
 }
 
@@ -223,7 +223,7 @@ TEST(Alone, SheetsOverEachOtherAreNot) {
   EXPECT_EQ(alone.size(), 19u);
   // As if the upper one were not there.
   std::vector<std::uint8_t> gone(two.size(), 0);
-  for (std::uint32_t place = 100; place < two.size(); ++place) gone[laid.scenery.slot(place)] = 1;
+  for (std::uint32_t place = 100; place < two.size(); ++place) gone[laid.screen.slot(place)] = 1;
   EXPECT_EQ(laid.alone(gone).size(), 100u);
 }
 
@@ -256,12 +256,12 @@ TEST(Alone, OverlapNothingInAnyScene) {
       const Surfaces surfaces(scene);
       Random random(seed + 7);
       const PaintOrder order = painter(surfaces, random_view(random, 100, 80), {.method = PaintMethod::farthest});
-      const Scenery scenery(order, {});
-      const std::vector<std::uint8_t> found = find_alone(scenery, Mosaic(scenery), {}, {});
+      const ScreenPolygons screen(order, {});
+      const std::vector<std::uint8_t> found = find_unoverlapped(screen, Adjacency(screen), {}, {});
       for (std::size_t a = 0; a < found.size(); ++a) {
         alone += found[a];
         for (std::size_t b = 0; found[a] && b < found.size(); ++b)
-          EXPECT_TRUE(a == b || are_apart(scenery.outline(a), scenery.outline(b))) << a << " " << b;
+          EXPECT_TRUE(a == b || are_apart(screen.outline(a), screen.outline(b))) << a << " " << b;
       }
     }
   EXPECT_GT(alone, 200u);

@@ -10,9 +10,9 @@
 #include <optional>
 #include <unordered_map>
 
-#include "painter/hulls.h"
 #include "painter/order/by_depth.h"
-#include "painter/order/overlap.h"
+#include "painter/order/newell_tests.h"
+#include "painter/order/piece_boxes.h"
 #include "painter/order/piece_grid.h"
 
 namespace frontmost::painter_detail {
@@ -91,36 +91,36 @@ class Search {
 
   /// The next piece that has to be painted before w.member and was not found yet; no_index: there are no more.
   std::uint32_t next_covered(Waiting& w) {
-    std::optional<Coverer> coverer;
+    std::optional<NewellTests> tests;
     for (; w.y <= w.cells.last_y; ++w.y, w.x = w.cells.first_x)
       for (; w.x <= w.cells.last_x; ++w.x, w.entry = 0) {
-        const std::uint32_t next = next_in_cell(w, coverer);
+        const std::uint32_t next = next_in_cell(w, tests);
         if (next != no_index) return next;
       }
     return no_index;
   }
 
-  std::uint32_t next_in_cell(Waiting& w, std::optional<Coverer>& coverer) {
+  std::uint32_t next_in_cell(Waiting& w, std::optional<NewellTests>& tests) {
     const std::size_t number = grid_.number(w.x, w.y);
     const std::span<const std::uint32_t> cell = grid_.cell(number);
     std::uint32_t& unpainted = unpainted_[number];
     while (unpainted < cell.size() && found_[cell[unpainted]] == kPainted) ++unpainted;
     const Extent& own = extents_[w.member];
-    const Hulls* const hulls = hulls_of(number);
+    const PieceBoxes* const boxes = boxes_of(number);
     poll_.count();
     for (w.entry = std::max(w.entry, std::size_t(unpainted)); w.entry < cell.size(); ++w.entry) {
       if (extents_[cell[w.entry]].farthest <= own.nearest) {
         steps_.depths_apart += cell.size() - w.entry;
         break;
       }
-      if (hulls) {
-        w.entry += pass_over(*hulls, w, coverer);
+      if (boxes) {
+        w.entry += pass_over(*boxes, w, tests);
         if (w.entry >= cell.size()) break;
       }
       const std::uint32_t other = cell[w.entry];
       if (found_[other] == kPainted || other == w.member || asked_by_[other] == w.member) continue;
       asked_by_[other] = w.member;
-      if (!covers(own, other, w.member, coverer)) continue;
+      if (!covers(own, other, w.member, tests)) continue;
       ++steps_.exchanges;
       if (found_[other] == kNotFound) return other;
       lowest_[w.member] = std::min(lowest_[w.member], found_[other]);
@@ -129,17 +129,17 @@ class Search {
   }
 
   /// Made when first asked for; none for a few pieces.
-  const Hulls* hulls_of(std::size_t cell) {
+  const PieceBoxes* boxes_of(std::size_t cell) {
     const std::span<const std::uint32_t> pieces = grid_.cell(cell);
     if (pieces.size() <= kManyPieces) return nullptr;
-    return &hulls_.try_emplace(cell, pieces_, members_, pieces).first->second;
+    return &boxes_.try_emplace(cell, pieces_, members_, pieces).first->second;
   }
 
   /// How many next ones this piece cannot cover, for they lie before its plane.
-  std::size_t pass_over(const Hulls& hulls, const Waiting& w, std::optional<Coverer>& coverer) {
-    if (!coverer) coverer.emplace(pieces_, members_[w.member]);
+  std::size_t pass_over(const PieceBoxes& boxes, const Waiting& w, std::optional<NewellTests>& tests) {
+    if (!tests) tests.emplace(pieces_, members_[w.member]);
     std::size_t passed = 0;
-    while (const std::size_t count = hulls.count_before(w.entry + passed, coverer->plane())) {
+    while (const std::size_t count = boxes.count_before(w.entry + passed, tests->plane())) {
       poll_.count();
       passed += count;
     }
@@ -147,15 +147,15 @@ class Search {
     return passed;
   }
 
-  bool covers(const Extent& own, std::uint32_t other, std::uint32_t member, std::optional<Coverer>& coverer) {
+  bool covers(const Extent& own, std::uint32_t other, std::uint32_t member, std::optional<NewellTests>& tests) {
     poll_.count();
     const Extent& e = extents_[other];
     if (e.low.x >= own.high.x || e.high.x <= own.low.x || e.low.y >= own.high.y || e.high.y <= own.low.y) {
       ++steps_.boxes_apart;
       return false;
     }
-    if (!coverer) coverer.emplace(pieces_, members_[member]);
-    return coverer->covers(members_[other], steps_);
+    if (!tests) tests.emplace(pieces_, members_[member]);
+    return tests->covers(members_[other], steps_);
   }
 
   /// The pieces that were found since `first`, and are not painted, are a group.
@@ -181,11 +181,11 @@ class Search {
   const PieceGrid grid_;
   PaintSteps& steps_;
   Poll& poll_;
-  std::vector<std::uint32_t> unpainted_;          ///< by cell: how many entries at its beginning are painted
-  std::vector<std::uint32_t> found_;              ///< by member: when it was found, or kPainted
-  std::vector<std::uint32_t> lowest_;             ///< of all that was found from it
-  std::vector<std::uint32_t> asked_by_;           ///< most pairs meet in several cells
-  std::unordered_map<std::size_t, Hulls> hulls_;  ///< by cell
+  std::vector<std::uint32_t> unpainted_;               ///< by cell: how many entries at its beginning are painted
+  std::vector<std::uint32_t> found_;                   ///< by member: when it was found, or kPainted
+  std::vector<std::uint32_t> lowest_;                  ///< of all that was found from it
+  std::vector<std::uint32_t> asked_by_;                ///< most pairs meet in several cells
+  std::unordered_map<std::size_t, PieceBoxes> boxes_;  ///< by cell
   std::vector<std::uint32_t> open_;
   std::vector<Waiting> waiting_;
   std::uint32_t count_ = 0;

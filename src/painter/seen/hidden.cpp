@@ -8,9 +8,9 @@
 #include <algorithm>
 
 #include "base/pool.h"
-#include "painter/looker.h"
 #include "painter/order/by_depth.h"
-#include "painter/seen/alone.h"
+#include "painter/seen/occlusion_clipper.h"
+#include "painter/seen/unoverlapped.h"
 
 namespace frontmost::painter_detail {
 namespace {
@@ -34,22 +34,23 @@ Unhidden without_hidden(const Pieces& pieces, const std::vector<std::uint32_t>& 
   std::vector<std::uint32_t> sorted = members;
   sort_by_depth(
       pieces, sorted, [&](std::uint32_t piece) { return pieces.extent(piece).nearest; }, execution);
-  const Scenery scenery(pieces, sorted, view, hides);
-  const Mosaic mosaic(scenery);
+  const ScreenPolygons screen(pieces, sorted, view, hides);
+  const Adjacency adjacency(screen);
   const auto is_behind = [&](std::uint32_t place, std::uint32_t cover) {
     return is_before(pieces, sorted[cover], sorted[place]);
   };
-  std::vector<std::uint8_t> is_hidden(scenery.count(), 0);
-  Pool<Looker> lookers;
-  parallel_for(execution, scenery.count(), kPerPart, [&](std::size_t begin, std::size_t end) {
-    const auto looker = lookers.borrow([&] { return std::make_unique<Looker>(scenery, mosaic, execution, is_behind); });
-    for (std::size_t slot = begin; slot < end; ++slot) is_hidden[slot] = looker->is_all_hidden(slot);
+  std::vector<std::uint8_t> is_hidden(screen.count(), 0);
+  Pool<OcclusionClipper> clippers;
+  parallel_for(execution, screen.count(), kPerPart, [&](std::size_t begin, std::size_t end) {
+    const auto clipper =
+        clippers.borrow([&] { return std::make_unique<OcclusionClipper>(screen, adjacency, execution, is_behind); });
+    for (std::size_t slot = begin; slot < end; ++slot) is_hidden[slot] = clipper->is_all_hidden(slot);
   });
-  const std::vector<std::uint8_t> is_alone = find_alone(scenery, mosaic, is_hidden, execution);
+  const std::vector<std::uint8_t> is_alone = find_unoverlapped(screen, adjacency, is_hidden, execution);
   Unhidden left;
   std::vector<std::uint8_t> is_other(pieces.size(), 0);
-  for (std::size_t slot = 0; slot < scenery.count(); ++slot) {
-    const std::uint32_t piece = sorted[scenery.place(slot)];
+  for (std::size_t slot = 0; slot < screen.count(); ++slot) {
+    const std::uint32_t piece = sorted[screen.place(slot)];
     if (is_alone[slot]) left.alone.push_back(piece);
     is_other[piece] = !is_hidden[slot] && !is_alone[slot];
   }

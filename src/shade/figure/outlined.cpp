@@ -5,7 +5,7 @@
 #include "base/parallel.h"
 #include "shade/figure/check_figure.h"
 #include "shade/figure/colored_order.h"
-#include "shade/figure/figure_hems.h"
+#include "shade/figure/figure_traps.h"
 #include "shade/figure/side_net.h"
 
 namespace frontmost {
@@ -15,7 +15,7 @@ using namespace shading;
 
 class Outliner {
  public:
-  Outliner(Figure& figure, FigureHems& hems) : figure_(figure), hems_(hems) {}
+  Outliner(Figure& figure, FigureTraps& hems) : figure_(figure), hems_(hems) {}
 
   void begin_shape(const glm::u8vec4& color, bool is_beside_last) {
     const std::uint32_t sheet = figure_.shapes.empty() ? 0 : figure_.shapes.back().sheet + !is_beside_last;
@@ -48,7 +48,7 @@ class Outliner {
   }
 
   Figure& figure_;
-  FigureHems& hems_;
+  FigureTraps& hems_;
 };
 
 /// Whether consecutive polygons are in one translucent sheet.
@@ -61,7 +61,7 @@ bool are_in_sheet(const ColoredOrder& colored, std::size_t first, std::size_t se
 Figure outlined(const ColoredOrder& colored, double hem, const std::function<bool(PrimitiveId)>& hides,
                 const Execution& execution) {
   check_figure(colored);
-  FigureHems hems(colored, hem, hides, execution);
+  FigureTraps hems(colored, hem, hides, execution);
   const IeeeScope ieee;
   const std::size_t count = colored.colors.size();
   Figure figure;

@@ -4,20 +4,21 @@
 
 #include <functional>
 
-#include "painter/outlines.h"
 #include "painter/poll.h"
-#include "painter/seen/spreader.h"
+#include "painter/seen/occluder_union.h"
+#include "painter/seen/outlines.h"
 
 namespace frontmost::painter_detail {
 
 /// One polygon after another. Not for several threads at once.
-class Looker {
+class OcclusionClipper {
  public:
   /// Whether a polygon is wholly behind a later one where they overlap, both by their places. None: always.
   using IsBehind = std::function<bool(std::uint32_t place, std::uint32_t cover)>;
 
-  Looker(const Scenery& scenery, const Mosaic& mosaic, const Execution& execution, IsBehind is_behind = {})
-      : scenery_(scenery), poll_(execution), is_behind_(std::move(is_behind)), spreader_(scenery, mosaic) {}
+  OcclusionClipper(const ScreenPolygons& screen, const Adjacency& adjacency, const Execution& execution,
+                   IsBehind is_behind = {})
+      : screen_(screen), poll_(execution), is_behind_(std::move(is_behind)), union_(screen, adjacency) {}
 
   /// Whether those after the polygon in a slot hide all of it, as far as that is quickly told.
   [[nodiscard]] bool is_all_hidden(std::size_t slot);
@@ -38,19 +39,19 @@ class Looker {
   /// One that hides a point, or what is next to it; no_index: none.
   [[nodiscard]] std::uint32_t hider_at(std::size_t slot, const glm::dvec2& at);
   /// Whether an outline is hidden, by `hider` at a point.
-  Spreader::Found spread(std::size_t slot, Outline outline, std::uint32_t hider, const glm::dvec2& at);
+  OccluderUnion::Found spread(std::size_t slot, Outline outline, std::uint32_t hider, const glm::dvec2& at);
   /// Takes what those from a place on cover from what is in the cutter. \returns true when nothing is left.
   bool take_covers(std::size_t slot, std::uint32_t first_place, const Extent& own, const PieceGrid::Range& cells);
   [[nodiscard]] bool may_hide(std::size_t slot, std::size_t cover) const {
-    return scenery_.hides(cover) && (!is_behind_ || is_behind_(scenery_.place(slot), scenery_.place(cover)));
+    return screen_.hides(cover) && (!is_behind_ || is_behind_(screen_.place(slot), screen_.place(cover)));
   }
   [[nodiscard]] bool is_first_meeting(const PieceGrid::Range& cells, const Extent& cover, int x, int y) const;
 
-  const Scenery& scenery_;
+  const ScreenPolygons& screen_;
   Poll poll_;
   const IsBehind is_behind_;
-  Spreader spreader_;
-  OutlineCutter cutter_;
+  OccluderUnion union_;
+  OutlineClipper cutter_;
   OutlineList seen_;
 };
 

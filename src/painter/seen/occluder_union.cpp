@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "painter/seen/spreader.h"
+#include "painter/seen/occluder_union.h"
 
 #include <algorithm>
 
 namespace frontmost::painter_detail {
 namespace {
 
-constexpr double kThin = OutlineCutter::thin;
+constexpr double kThin = OutlineClipper::thin;
 
 }  // namespace
 
-void SpreadOutline::set(Outline outline) {
+void CoveredOutline::set(Outline outline) {
   sides_.clear();
   low_ = high_ = glm::dvec2(outline[0].at);
   for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -22,7 +22,7 @@ void SpreadOutline::set(Outline outline) {
   }
 }
 
-SpreadOutline::Crossing SpreadOutline::crossing(const glm::dvec2& a, const glm::dvec2& b) const {
+CoveredOutline::Crossing CoveredOutline::crossing(const glm::dvec2& a, const glm::dvec2& b) const {
   constexpr Crossing none{1, 0};
   if (is_beside_box(a, b)) return none;
   Crossing crossing{0, 1};
@@ -42,7 +42,7 @@ SpreadOutline::Crossing SpreadOutline::crossing(const glm::dvec2& a, const glm::
   return crossing;
 }
 
-void Spreader::begin(std::uint32_t first) {
+void OccluderUnion::begin(std::uint32_t first) {
   if (++turn_ == 0) {
     std::fill(asked_.begin(), asked_.end(), 0);
     turn_ = 1;
@@ -51,19 +51,19 @@ void Spreader::begin(std::uint32_t first) {
   add(first, 0);
 }
 
-glm::dvec2 Spreader::beyond(const glm::dvec2& way) {
+glm::dvec2 OccluderUnion::beyond(const glm::dvec2& way) {
   return glm::dvec2(-way.y, way.x) * (2 * kThin / glm::length(way));
 }
 
-std::uint32_t Spreader::found_at(const glm::dvec2& place, std::size_t likely) const {
-  const auto holds = [&](std::size_t i) { return is_within(scenery_.outline(found_[i].slot), place, 0); };
+std::uint32_t OccluderUnion::found_at(const glm::dvec2& place, std::size_t likely) const {
+  const auto holds = [&](std::size_t i) { return is_within(screen_.outline(found_[i].slot), place, 0); };
   if (holds(likely)) return found_[likely].slot;
   for (std::size_t i = found_.size(); i-- > 0;)
     if (i != likely && holds(i)) return found_[i].slot;
   return no_index;
 }
 
-double Spreader::end_within(Outline outline, const glm::dvec2& from, const glm::dvec2& way) {
+double OccluderUnion::end_within(Outline outline, const glm::dvec2& from, const glm::dvec2& way) {
   double end = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const glm::dvec2 p(outline[i].at), side = glm::dvec2(outline[i + 1 == outline.size() ? 0 : i + 1].at) - p;

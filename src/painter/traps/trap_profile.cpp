@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "painter/hem_profile.h"
+#include "painter/traps/trap_profile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,14 +16,14 @@ constexpr double kLeastGain = 1.0 / 16;
 
 }  // namespace
 
-void HemProfile::begin(const glm::dvec2& from, const glm::dvec2& way) {
+void TrapProfile::begin(const glm::dvec2& from, const glm::dvec2& way) {
   from_ = from;
   way_ = way;
   corners_.clear();
   parts_.clear();
 }
 
-void HemProfile::add_open(const OutlineCutter& open) {
+void TrapProfile::add_open(const OutlineClipper& open) {
   for (std::size_t i = 0; i < open.count(); ++i) {
     parts_.push_back({corners_.size(), open[i].size()});
     for (const PaintCorner& corner : open[i]) {
@@ -34,7 +34,7 @@ void HemProfile::add_open(const OutlineCutter& open) {
   }
 }
 
-const std::vector<HemProfile::Knot>& HemProfile::fit(double length, double most) {
+const std::vector<TrapProfile::Knot>& TrapProfile::fit(double length, double most) {
   place_knots(length, most);
   knots_.clear();
   for (const double along : places_) knots_.push_back({along, height_at(along, most)});
@@ -43,7 +43,7 @@ const std::vector<HemProfile::Knot>& HemProfile::fit(double length, double most)
 }
 
 /// Between places the height is nowhere below the line from one to the next.
-void HemProfile::place_knots(double length, double most) {
+void TrapProfile::place_knots(double length, double most) {
   places_.assign({0, length});
   const auto add = [&](double along) {
     if (along > 0 && along < length) places_.push_back(along);
@@ -60,11 +60,11 @@ void HemProfile::place_knots(double length, double most) {
       if ((a.y < most) != (b.y < most)) add(a.x + (b.x - a.x) * ((most - a.y) / (b.y - a.y)));
     }
   std::sort(places_.begin(), places_.end());
-  const auto is_same = [](double a, double b) { return b - a < OutlineCutter::thin; };
+  const auto is_same = [](double a, double b) { return b - a < OutlineClipper::thin; };
   places_.erase(std::unique(places_.begin(), places_.end() - 1, is_same), places_.end() - 1);
 }
 
-double HemProfile::height_at(double along, double most) const {
+double TrapProfile::height_at(double along, double most) const {
   double least = most;
   for (const glm::dvec2& corner : corners_) least = std::min(least, corner.y + kSteepest * std::abs(along - corner.x));
   for (const Part& part : parts_)
@@ -77,7 +77,7 @@ double HemProfile::height_at(double along, double most) const {
 }
 
 /// Knots that gain the least go first, as long as the line past them is nowhere higher.
-void HemProfile::leave_out(double least_gain) {
+void TrapProfile::leave_out(double least_gain) {
   while (knots_.size() > 2) {
     std::size_t best = 0;
     double least = least_gain;

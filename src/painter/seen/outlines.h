@@ -64,7 +64,7 @@ class OutlineList {
 
 /// Takes convex outlines apart: counter-clockwise as they are seen, z affine over the screen. Covers must not be flat.
 /// Not for several threads at once.
-class OutlineCutter {
+class OutlineClipper {
  public:
   /// Pixels: what is thinner is not there.
   static constexpr double thin = 1.0 / 1024;

@@ -7,7 +7,7 @@
 
 #include "base/parallel.h"
 #include "base/pool.h"
-#include "painter/looker.h"
+#include "painter/seen/occlusion_clipper.h"
 
 namespace frontmost::painter_detail {
 
@@ -21,7 +21,7 @@ struct Parts {
 };
 
 /// In the order of their polygons.
-inline PaintOrder assemble(const PaintOrder& order, const Scenery& scenery, const std::vector<Parts>& lists) {
+inline PaintOrder assemble(const PaintOrder& order, const ScreenPolygons& screen, const std::vector<Parts>& lists) {
   PaintOrder made;
   made.view = order.view;
   made.steps = order.steps;
@@ -32,8 +32,8 @@ inline PaintOrder assemble(const PaintOrder& order, const Scenery& scenery, cons
   }
   made.polygons.reserve(polygons);
   made.corners.reserve(corners);
-  for (std::uint32_t place = 0; place < scenery.count(); ++place) {
-    const std::size_t slot = scenery.slot(place), in_part = slot % kPolygonsPerPart;
+  for (std::uint32_t place = 0; place < screen.count(); ++place) {
+    const std::size_t slot = screen.slot(place), in_part = slot % kPolygonsPerPart;
     const Parts& parts = lists[slot / kPolygonsPerPart];
     for (std::size_t i = in_part == 0 ? 0 : parts.ends[in_part - 1]; i < parts.ends[in_part]; ++i) {
       PaintPolygon polygon = parts.polygons[i];
@@ -46,20 +46,21 @@ inline PaintOrder assemble(const PaintOrder& order, const Scenery& scenery, cons
   return made;
 }
 
-/// Makes an order of what look(looker, slot, keep) keeps of every polygon.
+/// Makes an order of what look(clipper, slot, keep) keeps of every polygon.
 template <class Look>
-PaintOrder map_polygons(const PaintOrder& order, const Scenery& scenery, const Mosaic& mosaic,
+PaintOrder map_polygons(const PaintOrder& order, const ScreenPolygons& screen, const Adjacency& adjacency,
                         const Execution& execution, const Look& look) {
-  const std::size_t count = scenery.count();
+  const std::size_t count = screen.count();
   std::vector<Parts> lists((count + kPolygonsPerPart - 1) / kPolygonsPerPart);
-  Pool<Looker> lookers;
+  Pool<OcclusionClipper> clippers;
   std::atomic<std::size_t> done{0};
   parallel_for(execution, count, kPolygonsPerPart, [&](std::size_t begin, std::size_t end) {
-    const auto looker = lookers.borrow([&] { return std::make_unique<Looker>(scenery, mosaic, execution); });
+    const auto clipper =
+        clippers.borrow([&] { return std::make_unique<OcclusionClipper>(screen, adjacency, execution); });
     Parts& parts = lists[begin / kPolygonsPerPart];
     for (std::size_t slot = begin; slot < end; ++slot) {
-      const PrimitiveId id = order.polygons[scenery.place(slot)].id;
-      look(*looker, slot, [&](Outline outline) {
+      const PrimitiveId id = order.polygons[screen.place(slot)].id;
+      look(*clipper, slot, [&](Outline outline) {
         parts.polygons.push_back({id, std::uint32_t(outline.size()), parts.corners.size()});
         for (const PaintCorner& corner : outline) {
           const double depth = affine_depth(order.view, corner.at.z);  // its own inverse
@@ -70,7 +71,7 @@ PaintOrder map_polygons(const PaintOrder& order, const Scenery& scenery, const M
     }
     report_progress(execution, "visible parts", double(done += end - begin) / double(count));
   });
-  return assemble(order, scenery, lists);
+  return assemble(order, screen, lists);
 }
 
 }  // namespace frontmost::painter_detail

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Nearly all pairs of outlines that are held against each other lie beside each other or one within the other. So that
 // is found first, mostly without a root or a copy, and only what is left is cut.
-#include "painter/outlines.h"
+#include "painter/seen/outlines.h"
 
 #include <algorithm>
 
@@ -35,14 +35,14 @@ bool is_narrower(Outline outline, double width) {
   return std::abs(area) < width * border;
 }
 
-void OutlineCutter::begin(Outline outline) {
+void OutlineClipper::begin(Outline outline) {
   corners_.clear();
   parts_.clear();
   add(outline);
   is_changed_ = false;
 }
 
-void OutlineCutter::add(Outline outline) {
+void OutlineClipper::add(Outline outline) {
   Part part{corners_.size(), outline.size(), glm::dvec2(outline[0].at), glm::dvec2(outline[0].at)};
   for (const PaintCorner& corner : outline) {
     part.low = glm::min(part.low, glm::dvec2(corner.at));
@@ -52,7 +52,7 @@ void OutlineCutter::add(Outline outline) {
   parts_.push_back(part);
 }
 
-OutlineCutter::Place OutlineCutter::place(Outline outline, const glm::dvec2& p, const glm::dvec2& q, Line& line) {
+OutlineClipper::Place OutlineClipper::place(Outline outline, const glm::dvec2& p, const glm::dvec2& q, Line& line) {
   const glm::dvec2 way = q - p;
   double least = std::numeric_limits<double>::infinity(), greatest = -least;
   for (const PaintCorner& corner : outline) {
@@ -69,7 +69,7 @@ OutlineCutter::Place OutlineCutter::place(Outline outline, const glm::dvec2& p, 
   return Place::both;
 }
 
-bool OutlineCutter::parts(Outline a, Outline b) {
+bool OutlineClipper::parts(Outline a, Outline b) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     const glm::dvec2 p(a[i].at), way = glm::dvec2(a[next(i, a.size())].at) - p;
     bool is_beyond = glm::dot(way, way) > thin * thin;  // cuts leave a corner twice: nothing is told by such a side
@@ -79,7 +79,7 @@ bool OutlineCutter::parts(Outline a, Outline b) {
   return false;
 }
 
-OutlineCutter::Place OutlineCutter::split(const Line& line) {
+OutlineClipper::Place OutlineClipper::split(const Line& line) {
   const std::size_t count = inside_.size();
   distances_.resize(count);
   double least = 0, greatest = 0;
@@ -109,7 +109,7 @@ OutlineCutter::Place OutlineCutter::split(const Line& line) {
 }
 
 /// \returns true where the part is to go; what is left of it was added.
-bool OutlineCutter::subtract_from(std::size_t part, Outline cover, bool may_split) {
+bool OutlineClipper::subtract_from(std::size_t part, Outline cover, bool may_split) {
   const Outline outline = (*this)[part];
   lines_.clear();
   for (std::size_t i = 0; i < cover.size(); ++i) {
@@ -134,7 +134,7 @@ bool OutlineCutter::subtract_from(std::size_t part, Outline cover, bool may_spli
   return true;
 }
 
-bool OutlineCutter::subtract(const Cover& cover, bool may_split) {
+bool OutlineClipper::subtract(const Cover& cover, bool may_split) {
   const std::size_t count = parts_.size();
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -149,7 +149,7 @@ bool OutlineCutter::subtract(const Cover& cover, bool may_split) {
   return parts_.empty();
 }
 
-void OutlineCutter::keep_within(const glm::dvec2& low, const glm::dvec2& high) {
+void OutlineClipper::keep_within(const glm::dvec2& low, const glm::dvec2& high) {
   const Line sides[] = {{low, {0, 1}}, {low, {-1, 0}}, {high, {0, -1}}, {high, {1, 0}}};
   const std::vector<Part> before = parts_;
   parts_.clear();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "painter/order/overlap.h"
+#include "painter/order/newell_tests.h"
 
 #include <algorithm>
 
@@ -12,14 +12,14 @@ bool is_within(const std::array<std::array<int, 3>, 3>& turns, std::size_t corne
 
 }  // namespace
 
-Coverer::Coverer(const Pieces& pieces, std::uint32_t piece)
+NewellTests::NewellTests(const Pieces& pieces, std::uint32_t piece)
     : pieces_(pieces), piece_(piece), face_(pieces.face(piece)), plane_(face_.plane()) {}
 
-std::array<Plane, 3> Coverer::edges_of(const Face& face) const {
+std::array<Plane, 3> NewellTests::edges_of(const Face& face) const {
   return {pieces_.edge_plane(face, 0), pieces_.edge_plane(face, 1), pieces_.edge_plane(face, 2)};
 }
 
-bool Coverer::covers(std::uint32_t other, PaintSteps& steps) {
+bool NewellTests::covers(std::uint32_t other, PaintSteps& steps) {
   const Face& face = pieces_.face(other);
   const Plane other_plane = face.plane();
   bool is_flat = false;
@@ -44,13 +44,13 @@ bool Coverer::covers(std::uint32_t other, PaintSteps& steps) {
 
 /// Convex polygons are apart if and only if an edge of either parts them. Pieces that were cut are asked by the edges
 /// of their triangles alone.
-bool Coverer::is_apart(std::uint32_t other) {
+bool NewellTests::is_apart(std::uint32_t other) {
   if (!edges_) edges_.emplace(edges_of(face_));
   if (is_outside(*edges_, other, other_turns_)) return true;
   return is_outside(edges_of(pieces_.face(other)), piece_, turns_);
 }
 
-bool Coverer::is_outside(const std::array<Plane, 3>& edges, std::uint32_t piece, Turns& turns) const {
+bool NewellTests::is_outside(const std::array<Plane, 3>& edges, std::uint32_t piece, Turns& turns) const {
   const Face& face = pieces_.face(piece);
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t i = 0; i < 3; ++i) turns[k][i] = edges[k].side(glm::dvec3(face.corners[i]));
@@ -63,7 +63,7 @@ bool Coverer::is_outside(const std::array<Plane, 3>& edges, std::uint32_t piece,
 
 /// Where two triangles overlap on the screen, which of them is nearer changes only along a line. So the corners of what
 /// they have in common there tell whether this one is anywhere.
-bool Coverer::is_over(const Face& other, const Plane& other_plane) const {
+bool NewellTests::is_over(const Face& other, const Plane& other_plane) const {
   for (std::size_t i = 0; i < 3; ++i) {
     if (is_within(turns_, i) && other_plane.side(glm::dvec3(face_.corners[i])) > 0) return true;
     if (is_within(other_turns_, i) && plane_.side(glm::dvec3(other.corners[i])) < 0) return true;
@@ -72,7 +72,7 @@ bool Coverer::is_over(const Face& other, const Plane& other_plane) const {
 }
 
 /// Whether an edge of this triangle passes before one of the other.
-bool Coverer::crosses_over(const Face& other) const {
+bool NewellTests::crosses_over(const Face& other) const {
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t next_k = (k + 1) % 3, next_i = (i + 1) % 3;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "painter/surroundings.h"
+#include "painter/traps/nearby_occluders.h"
 
 #include <algorithm>
 
@@ -17,9 +17,9 @@ bool is_apart(const A& a, const B& b) {
   return a.low.x >= b.high.x || b.low.x >= a.high.x || a.low.y >= b.high.y || b.low.y >= a.high.y;
 }
 
-/// Whether an outline has places next to the outer side of a way, OutlineCutter::thin away from it and more.
+/// Whether an outline has places next to the outer side of a way, OutlineClipper::thin away from it and more.
 bool is_beside(Outline outline, const glm::dvec2& from, const glm::dvec2& way) {
-  const double length = glm::length(way), thin = OutlineCutter::thin * length;
+  const double length = glm::length(way), thin = OutlineClipper::thin * length;
   double near = std::numeric_limits<double>::infinity(), far = -near, first = near, last = -near;
   for (const PaintCorner& corner : outline) {
     const glm::dvec2 at = glm::dvec2(corner.at) - from;
@@ -34,35 +34,35 @@ bool is_beside(Outline outline, const glm::dvec2& from, const glm::dvec2& way) {
 
 }  // namespace
 
-void Surroundings::begin(std::size_t slot, double reach) {
+void NearbyOccluders::begin(std::size_t slot, double reach) {
   slot_ = slot;
-  Extent box = box_of(scenery_.outline(slot));
+  Extent box = box_of(screen_.outline(slot));
   box.low -= float(reach);
   box.high += float(reach);
-  const PieceGrid::Range cells = scenery_.grid().range(box);
+  const PieceGrid::Range cells = screen_.grid().range(box);
   is_listed_ = (cells.last_x - cells.first_x + 1) * (cells.last_y - cells.first_y + 1) <= kMostCells;
   if (is_listed_) list(box);
 }
 
-void Surroundings::list(const Extent& box) {
+void NearbyOccluders::list(const Extent& box) {
   if (++turn_ == 0) {
     std::fill(listed_.begin(), listed_.end(), 0);
     turn_ = 1;
   }
   hiders_.clear();
-  const std::uint32_t first_place = scenery_.first_place(slot_);
-  const PieceGrid::Range cells = scenery_.grid().range(box);
+  const std::uint32_t first_place = screen_.first_place(slot_);
+  const PieceGrid::Range cells = screen_.grid().range(box);
   for (int y = cells.first_y; y <= cells.last_y; ++y)
     for (int x = cells.first_x; x <= cells.last_x; ++x) {
-      const std::span<const std::uint32_t> cell = scenery_.cell(x, y);
+      const std::span<const std::uint32_t> cell = screen_.cell(x, y);
       std::size_t count = 0;
-      for (std::size_t i = cell.size(); i-- > 0 && count < kMostHiders && scenery_.place(cell[i]) >= first_place;) {
+      for (std::size_t i = cell.size(); i-- > 0 && count < kMostHiders && screen_.place(cell[i]) >= first_place;) {
         const std::uint32_t other = cell[i];
         if (listed_[other] == turn_) continue;
         listed_[other] = turn_;
         poll_.count();
-        const Extent& e = scenery_.extent(other);
-        if (other == slot_ || is_apart(e, box) || !scenery_.hides(other)) continue;
+        const Extent& e = screen_.extent(other);
+        if (other == slot_ || is_apart(e, box) || !screen_.hides(other)) continue;
         hiders_.push_back({e.low, e.high, other});
         ++count;
       }
@@ -70,7 +70,7 @@ void Surroundings::list(const Extent& box) {
 }
 
 template <class Visit>
-bool Surroundings::any_of(const Extent& box, const Visit& visit) {
+bool NearbyOccluders::any_of(const Extent& box, const Visit& visit) {
   if (!is_listed_) list(box);
   return std::any_of(hiders_.begin(), hiders_.end(), [&](const Hider& hider) {
     if (is_apart(hider, box)) return false;
@@ -79,26 +79,26 @@ bool Surroundings::any_of(const Extent& box, const Visit& visit) {
   });
 }
 
-bool Surroundings::are_open_beside(std::size_t side) const {
-  const std::uint32_t across = mosaic_.across(scenery_.first_corner(slot_) + side);
+bool NearbyOccluders::are_open_beside(std::size_t side) const {
+  const std::uint32_t across = adjacency_.across(screen_.first_corner(slot_) + side);
   if (across == no_index) return false;
-  const bool may_hide = scenery_.place(across) >= scenery_.first_place(slot_) && scenery_.hides(across);
+  const bool may_hide = screen_.place(across) >= screen_.first_place(slot_) && screen_.hides(across);
   // Beyond one without an area others begin.
-  return across == slot_ || (!may_hide && !is_flat(scenery_.outline(across)));
+  return across == slot_ || (!may_hide && !is_flat(screen_.outline(across)));
 }
 
-bool Surroundings::hide_beside(const glm::dvec2& from, const glm::dvec2& to) {
+bool NearbyOccluders::hide_beside(const glm::dvec2& from, const glm::dvec2& to) {
   Extent box{glm::min(glm::vec2(from), glm::vec2(to)), glm::max(glm::vec2(from), glm::vec2(to)), 0, 0};
-  box.low -= float(2 * OutlineCutter::thin);
-  box.high += float(2 * OutlineCutter::thin);
-  return any_of(box, [&](const Hider& hider) { return is_beside(scenery_.outline(hider.slot), from, to - from); });
+  box.low -= float(2 * OutlineClipper::thin);
+  box.high += float(2 * OutlineClipper::thin);
+  return any_of(box, [&](const Hider& hider) { return is_beside(screen_.outline(hider.slot), from, to - from); });
 }
 
-const OutlineCutter& Surroundings::open_parts(Outline outline) {
+const OutlineClipper& NearbyOccluders::open_parts(Outline outline) {
   cutter_.begin(outline);
   any_of(box_of(outline), [&](const Hider& hider) {
-    const Cover cover{scenery_.outline(hider.slot), glm::dvec2(hider.low), glm::dvec2(hider.high)};
-    return cutter_.subtract(cover, cutter_.count() <= OutlineCutter::most_parts);
+    const Cover cover{screen_.outline(hider.slot), glm::dvec2(hider.low), glm::dvec2(hider.high)};
+    return cutter_.subtract(cover, cutter_.count() <= OutlineClipper::most_parts);
   });
   return cutter_;
 }

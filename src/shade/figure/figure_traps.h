@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "painter/side_hems.h"
+#include "painter/traps/make_traps.h"
 #include "shade/figure/colored_order.h"
 #include "shade/figure/side_net.h"
 
@@ -14,11 +14,11 @@ namespace frontmost::shading {
 
 /// What the polygons of a figure reach under each other: opaque ones under those after them, translucent ones under
 /// others of their sheet.
-class FigureHems {
+class FigureTraps {
  public:
   /// Borrows `colored`. \throws Error as with_hems().
-  FigureHems(const ColoredOrder& colored, double width, const std::function<bool(PrimitiveId)>& hides,
-             const Execution& execution);
+  FigureTraps(const ColoredOrder& colored, double width, const std::function<bool(PrimitiveId)>& hides,
+              const Execution& execution);
 
   /// Of a polygon, until the next call.
   [[nodiscard]] std::span<const NetCorner> sides(std::size_t polygon);

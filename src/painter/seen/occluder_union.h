@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <vector>
 
-#include "painter/seen/mosaic.h"
+#include "painter/seen/adjacency.h"
 
 namespace frontmost::painter_detail {
 
 /// A convex outline, made ready to ask which sides of others cross it.
-class SpreadOutline {
+class CoveredOutline {
  public:
   void set(Outline outline);
 
@@ -19,13 +19,13 @@ class SpreadOutline {
     double from, to;
     [[nodiscard]] bool is_any() const { return from < to; }
   };
-  /// None where the way is less deep in there than OutlineCutter::thin.
+  /// None where the way is less deep in there than OutlineClipper::thin.
   [[nodiscard]] Crossing crossing(const glm::dvec2& a, const glm::dvec2& b) const;
 
  private:
   struct Side {
     glm::dvec2 from, way;
-    double slack;  ///< of turns: where a point is OutlineCutter::thin away
+    double slack;  ///< of turns: where a point is OutlineClipper::thin away
   };
   [[nodiscard]] bool is_beside_box(const glm::dvec2& a, const glm::dvec2& b) const {
     return (a.x <= low_.x && b.x <= low_.x) || (a.x >= high_.x && b.x >= high_.x) || (a.y <= low_.y && b.y <= low_.y) ||
@@ -39,10 +39,10 @@ class SpreadOutline {
 /// Spreads from a polygon that lies over a point of an outline, across the sides of all that it comes to, as far as the
 /// outline reaches. Where there is always one that hides beyond a side, they hide all of the outline together: what
 /// they left open would have a border, and that would be such a side. Not for several threads at once.
-class Spreader {
+class OccluderUnion {
  public:
-  Spreader(const Scenery& scenery, const Mosaic& mosaic)
-      : scenery_(scenery), mosaic_(mosaic), asked_(scenery.count(), 0) {}
+  OccluderUnion(const ScreenPolygons& screen, const Adjacency& adjacency)
+      : screen_(screen), adjacency_(adjacency), asked_(screen.count(), 0) {}
 
   enum class Found : std::uint8_t {
     hidden,
@@ -58,10 +58,10 @@ class Spreader {
     begin(first);
     for (std::size_t i = 0; i < found_.size(); ++i) {
       const Reached reached = found_[i];
-      const Outline over = scenery_.outline(reached.slot);
-      const std::size_t corner = scenery_.first_corner(reached.slot);
+      const Outline over = screen_.outline(reached.slot);
+      const std::size_t corner = screen_.first_corner(reached.slot);
       for (std::size_t side = 0; side < over.size(); ++side) {
-        const std::uint32_t across = mosaic_.across(corner + side);
+        const std::uint32_t across = adjacency_.across(corner + side);
         if (across != no_index && is_found(across)) continue;
         const glm::dvec2 a(over[side].at), b(over[side + 1 == over.size() ? 0 : side + 1].at);
         if (across != no_index && !outline_.crossing(a, b).is_any()) continue;
@@ -98,8 +98,8 @@ class Spreader {
   template <class Hiders>
   Found step_along(const glm::dvec2& a, const glm::dvec2& b, std::size_t number, const Hiders& hiders) {
     const glm::dvec2 way = b - a, out = beyond(way), from = a + out;
-    const SpreadOutline::Crossing crossing = outline_.crossing(from, b + out);
-    const double step = OutlineCutter::thin / glm::length(way);
+    const CoveredOutline::Crossing crossing = outline_.crossing(from, b + out);
+    const double step = OutlineClipper::thin / glm::length(way);
     double at = crossing.from;
     for (std::size_t steps = 0; at < crossing.to; ++steps) {
       if (steps == most) return Found::unknown;
@@ -111,20 +111,20 @@ class Spreader {
         if (hider == no_index) return Found::open;
         if (!is_found(hider)) add(hider, number);
       }
-      at = std::max(end_within(scenery_.outline(hider), from, way), at + step);
+      at = std::max(end_within(screen_.outline(hider), from, way), at + step);
     }
     return Found::hidden;
   }
-  /// From a side to what is certainly not on it: polygons hide what is up to OutlineCutter::thin beside them.
+  /// From a side to what is certainly not on it: polygons hide what is up to OutlineClipper::thin beside them.
   static glm::dvec2 beyond(const glm::dvec2& way);
   /// Of those found so far, one that lies over a place, most likely this one.
   [[nodiscard]] std::uint32_t found_at(const glm::dvec2& place, std::size_t likely) const;
-  /// How much of a way has been gone where it leaves an outline and what is OutlineCutter::thin beside it.
+  /// How much of a way has been gone where it leaves an outline and what is OutlineClipper::thin beside it.
   static double end_within(Outline outline, const glm::dvec2& from, const glm::dvec2& way);
 
-  const Scenery& scenery_;
-  const Mosaic& mosaic_;
-  SpreadOutline outline_;
+  const ScreenPolygons& screen_;
+  const Adjacency& adjacency_;
+  CoveredOutline outline_;
   std::vector<Reached> found_;
   std::vector<std::uint32_t> asked_;  ///< by slot: in which turn it was found last
   std::uint32_t turn_ = 0;

@@ -2,7 +2,7 @@
 // How many polygons lie over a point changes only at sides without a neighbour: at all others one ends where the next
 // begins. Such open sides are few in meshes. A polygon that none of them crosses has the same number all over, and so
 // have those across its sides where none lies; where it is 1, the polygon itself is all that there is.
-#include "painter/seen/alone.h"
+#include "painter/seen/unoverlapped.h"
 
 #include <algorithm>
 
@@ -17,14 +17,15 @@ constexpr double kMostOpen = 0.3;
 /// How a way from a to b lies beside an outline.
 enum class Beside : std::uint8_t { apart, touching, crossing };
 
-/// By lines along the sides and the way: apart where one keeps them more than OutlineCutter::thin away from each other.
+/// By lines along the sides and the way: apart where one keeps them more than OutlineClipper::thin away from each
+/// other.
 Beside beside(Outline outline, const glm::dvec2& a, const glm::dvec2& b) {
   const glm::dvec2 across = b - a;
   double least = std::numeric_limits<double>::infinity(), greatest = -least;
   Beside found = Beside::crossing;
   const auto take = [&](double turn, const glm::dvec2& way) {
     if (turn < 0) return;
-    const bool is_far = turn * turn > OutlineCutter::thin * OutlineCutter::thin * glm::dot(way, way);
+    const bool is_far = turn * turn > OutlineClipper::thin * OutlineClipper::thin * glm::dot(way, way);
     found = std::min(found, is_far ? Beside::apart : Beside::touching);
   };
   for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -43,19 +44,19 @@ bool is_near(const glm::dvec2& at, const glm::dvec2& a, const glm::dvec2& b) {
   const double length = glm::dot(way, way);
   const double t = length > 0 ? std::clamp(glm::dot(from, way) / length, 0.0, 1.0) : 0;
   const glm::dvec2 aside = from - way * t;
-  return glm::dot(aside, aside) <= OutlineCutter::thin * OutlineCutter::thin;
+  return glm::dot(aside, aside) <= OutlineClipper::thin * OutlineClipper::thin;
 }
 
 class Finder {
  public:
-  Finder(const Scenery& scenery, const Mosaic& mosaic, const std::vector<std::uint8_t>& gone,
+  Finder(const ScreenPolygons& screen, const Adjacency& adjacency, const std::vector<std::uint8_t>& gone,
          const Execution& execution)
-      : scenery_(scenery),
-        mosaic_(mosaic),
+      : screen_(screen),
+        adjacency_(adjacency),
         gone_(gone),
         poll_(execution),
-        state_(scenery.count(), State::unknown),
-        is_blocked_(scenery.corners().size(), 0) {}
+        state_(screen.count(), State::unknown),
+        is_blocked_(screen.corners().size(), 0) {}
 
   [[nodiscard]] std::vector<std::uint8_t> find() {
     std::vector<std::uint8_t> alone(state_.size(), 0);
@@ -83,14 +84,14 @@ class Finder {
   /// \returns false where there are too many.
   bool find_open_sides() {
     std::size_t sides = 0;
-    for (std::size_t slot = 0; slot < scenery_.count(); ++slot) {
+    for (std::size_t slot = 0; slot < screen_.count(); ++slot) {
       state_[slot] = is_there(slot) && is_in_picture(slot) ? State::unknown : State::crossed;
       if (!is_there(slot)) continue;
-      const Outline outline = scenery_.outline(slot);
-      const std::size_t first = scenery_.first_corner(slot);
+      const Outline outline = screen_.outline(slot);
+      const std::size_t first = screen_.first_corner(slot);
       sides += outline.size();
       for (std::size_t i = 0; i < outline.size(); ++i) {
-        const std::uint32_t across = mosaic_.across(first + i);
+        const std::uint32_t across = adjacency_.across(first + i);
         if (across == no_index || !is_there(across))
           open_.push_back({glm::dvec2(outline[i].at), glm::dvec2(outline[i + 1 == outline.size() ? 0 : i + 1].at)});
       }
@@ -100,24 +101,23 @@ class Finder {
 
   /// What lies beyond is not in the cells that it would be looked for in.
   [[nodiscard]] bool is_in_picture(std::size_t slot) const {
-    const Outline outline = scenery_.outline(slot);
+    const Outline outline = screen_.outline(slot);
     return std::all_of(outline.begin(), outline.end(), [&](const PaintCorner& corner) {
-      return corner.at.x >= 0 && corner.at.y >= 0 && corner.at.x <= scenery_.size().x &&
-             corner.at.y <= scenery_.size().y;
+      return corner.at.x >= 0 && corner.at.y >= 0 && corner.at.x <= screen_.size().x && corner.at.y <= screen_.size().y;
     });
   }
 
   void mark_near(const OpenSide& side) {
-    const glm::dvec2 low = glm::min(side.from, side.to) - 2 * OutlineCutter::thin,
-                     high = glm::max(side.from, side.to) + 2 * OutlineCutter::thin;
-    const PieceGrid& grid = scenery_.grid();
+    const glm::dvec2 low = glm::min(side.from, side.to) - 2 * OutlineClipper::thin,
+                     high = glm::max(side.from, side.to) + 2 * OutlineClipper::thin;
+    const PieceGrid& grid = screen_.grid();
     const PieceGrid::Range all = grid.range({glm::vec2(low), glm::vec2(high), 0, 0});
     for (int y = all.first_y; y <= all.last_y; ++y) {
       const PieceGrid::Box row = grid.box(all.first_x, y);
       const auto [row_low, row_high] =
-          part_of(side, row.low.y - 2 * OutlineCutter::thin, row.high.y + 2 * OutlineCutter::thin);
+          part_of(side, row.low.y - 2 * OutlineClipper::thin, row.high.y + 2 * OutlineClipper::thin);
       const PieceGrid::Range cells = grid.range({{float(row_low), 0}, {float(row_high), 0}, 0, 0});
-      for (int x = cells.first_x; x <= cells.last_x; ++x) mark_near(side, low, high, scenery_.cell(x, y));
+      for (int x = cells.first_x; x <= cells.last_x; ++x) mark_near(side, low, high, screen_.cell(x, y));
     }
   }
 
@@ -132,10 +132,10 @@ class Finder {
       return side.from.x + t * way.x;
     };
     if (way.y == 0)
-      return {std::min(side.from.x, side.to.x) - 2 * OutlineCutter::thin,
-              std::max(side.from.x, side.to.x) + 2 * OutlineCutter::thin};
-    return {std::min(at(low), at(high)) - 2 * OutlineCutter::thin,
-            std::max(at(low), at(high)) + 2 * OutlineCutter::thin};
+      return {std::min(side.from.x, side.to.x) - 2 * OutlineClipper::thin,
+              std::max(side.from.x, side.to.x) + 2 * OutlineClipper::thin};
+    return {std::min(at(low), at(high)) - 2 * OutlineClipper::thin,
+            std::max(at(low), at(high)) + 2 * OutlineClipper::thin};
   }
 
   void mark_near(const OpenSide& side, const glm::dvec2& low, const glm::dvec2& high,
@@ -143,9 +143,9 @@ class Finder {
     for (const std::uint32_t slot : cell) {
       poll_.count();
       if (state_[slot] != State::unknown) continue;
-      const Extent& e = scenery_.extent(slot);
+      const Extent& e = screen_.extent(slot);
       if (high.x < e.low.x || low.x > e.high.x || high.y < e.low.y || low.y > e.high.y) continue;
-      const Beside found = beside(scenery_.outline(slot), side.from, side.to);
+      const Beside found = beside(screen_.outline(slot), side.from, side.to);
       if (found == Beside::crossing) state_[slot] = State::crossed;
       if (found == Beside::touching) block(slot, side);
     }
@@ -153,24 +153,24 @@ class Finder {
 
   /// Nothing is known across the sides on whose middle an open side lies.
   void block(std::uint32_t slot, const OpenSide& side) {
-    const Outline outline = scenery_.outline(slot);
+    const Outline outline = screen_.outline(slot);
     for (std::size_t i = 0; i < outline.size(); ++i) {
       const glm::dvec2 p(outline[i].at), q(outline[i + 1 == outline.size() ? 0 : i + 1].at);
-      if (is_near(0.5 * (p + q), side.from, side.to)) is_blocked_[scenery_.first_corner(slot) + i] = 1;
+      if (is_near(0.5 * (p + q), side.from, side.to)) is_blocked_[screen_.first_corner(slot) + i] = 1;
     }
   }
 
   void spread_from(std::uint32_t slot) {
-    const Outline outline = scenery_.outline(slot);
+    const Outline outline = screen_.outline(slot);
     glm::dvec2 middle(0);
     for (const PaintCorner& corner : outline) middle += glm::dvec2(corner.at) / double(outline.size());
     bool is_alone = true;
-    for (const std::uint32_t other : scenery_.cell_at(middle)) {
+    for (const std::uint32_t other : screen_.cell_at(middle)) {
       poll_.count();
-      if (other == slot || !is_there(other) || beside(scenery_.outline(other), middle, middle) == Beside::apart)
+      if (other == slot || !is_there(other) || beside(screen_.outline(other), middle, middle) == Beside::apart)
         continue;
       // A neighbour that is only near tells nothing: the polygon is narrow here.
-      if (is_within(scenery_.outline(other), middle, 0)) return spread(slot, State::shared);
+      if (is_within(screen_.outline(other), middle, 0)) return spread(slot, State::shared);
       is_alone = false;
     }
     if (is_alone) spread(slot, State::alone);
@@ -183,9 +183,9 @@ class Finder {
       const std::uint32_t slot = found_.back();
       found_.pop_back();
       poll_.count();
-      const std::size_t corner = scenery_.first_corner(slot), count = scenery_.outline(slot).size();
+      const std::size_t corner = screen_.first_corner(slot), count = screen_.outline(slot).size();
       for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t across = mosaic_.across(corner + i);
+        const std::uint32_t across = adjacency_.across(corner + i);
         if (is_blocked_[corner + i] || across == no_index || state_[across] != State::unknown) continue;
         state_[across] = state;
         found_.push_back(across);
@@ -193,8 +193,8 @@ class Finder {
     }
   }
 
-  const Scenery& scenery_;
-  const Mosaic& mosaic_;
+  const ScreenPolygons& screen_;
+  const Adjacency& adjacency_;
   const std::vector<std::uint8_t>& gone_;
   Poll poll_;
   std::vector<State> state_;
@@ -205,9 +205,9 @@ class Finder {
 
 }  // namespace
 
-std::vector<std::uint8_t> find_alone(const Scenery& scenery, const Mosaic& mosaic,
-                                     const std::vector<std::uint8_t>& gone, const Execution& execution) {
-  return Finder(scenery, mosaic, gone, execution).find();
+std::vector<std::uint8_t> find_unoverlapped(const ScreenPolygons& screen, const Adjacency& adjacency,
+                                            const std::vector<std::uint8_t>& gone, const Execution& execution) {
+  return Finder(screen, adjacency, gone, execution).find();
 }
 
 }  // namespace frontmost::painter_detail

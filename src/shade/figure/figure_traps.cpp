@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shade/figure/figure_hems.h"
+#include "shade/figure/figure_traps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +15,8 @@ constexpr double kAtEnd = 1.0 / 1024;
 
 }  // namespace
 
-FigureHems::FigureHems(const ColoredOrder& colored, double width, const std::function<bool(PrimitiveId)>& hides,
-                       const Execution& execution)
+FigureTraps::FigureTraps(const ColoredOrder& colored, double width, const std::function<bool(PrimitiveId)>& hides,
+                         const Execution& execution)
     : colored_(colored) {
   if (!(width > 0 && width <= 100))
     throw Error(ErrorCode::bad_argument, "hems: must be more than 0, at most 100 pixels");
@@ -30,7 +30,7 @@ FigureHems::FigureHems(const ColoredOrder& colored, double width, const std::fun
 }
 
 /// What is translucent reaches under others of its own sheet, and under nothing else.
-void FigureHems::hem_sheets(const PaintOrder& grouped, double width, const Execution& execution) {
+void FigureTraps::hem_sheets(const PaintOrder& grouped, double width, const Execution& execution) {
   const std::size_t count = colored_.colors.size();
   PaintOrder sheet;
   sheet.view = grouped.view;
@@ -55,8 +55,8 @@ void FigureHems::hem_sheets(const PaintOrder& grouped, double width, const Execu
 
 /// Hems may reach over other parts of the same primitive, as if it had one colour. That is true of a shape, and of
 /// parts of a primitive that have the same; so numbers of such groups take the place of the primitive's.
-PaintOrder FigureHems::grouped_by_color(std::vector<std::uint8_t>& hiding,
-                                        const std::function<bool(PrimitiveId)>& hides) const {
+PaintOrder FigureTraps::grouped_by_color(std::vector<std::uint8_t>& hiding,
+                                         const std::function<bool(PrimitiveId)>& hides) const {
   PaintOrder grouped = colored_.order;
   const std::vector<PaintPolygon>& polygons = colored_.order.polygons;
   for (std::size_t i = 0; i < polygons.size(); ++i) {
@@ -71,7 +71,7 @@ PaintOrder FigureHems::grouped_by_color(std::vector<std::uint8_t>& hiding,
 }
 
 /// Parted where a hem begins or ends.
-std::span<const NetCorner> FigureHems::sides(std::size_t polygon) {
+std::span<const NetCorner> FigureTraps::sides(std::size_t polygon) {
   const std::span<const PaintCorner> corners = corners_of(colored_.order, polygon);
   auto [hem, end] = hems_of_[polygon];
   sides_.clear();
@@ -87,7 +87,7 @@ std::span<const NetCorner> FigureHems::sides(std::size_t polygon) {
   return sides_;
 }
 
-std::span<const glm::dvec2> FigureHems::part(std::uint32_t number, const glm::dvec2& from, const glm::dvec2& to) {
+std::span<const glm::dvec2> FigureTraps::part(std::uint32_t number, const glm::dvec2& from, const glm::dvec2& to) {
   const painter_detail::SideHem& hem = hems_.hems[number];
   const glm::dvec2 way = hem.to - hem.from, along = way / glm::length(way);
   const auto is_beyond = [](const glm::dvec2& a, const glm::dvec2& b) { return glm::length(a - b) > kAtEnd; };

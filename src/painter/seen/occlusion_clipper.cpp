@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A polygon in a few cells of the grid is held against all that covers it there. One in many is halved along the cells
 // until it is in few, so that it meets only what is near, and comes back together where nothing was taken away.
-#include "painter/looker.h"
+#include "painter/seen/occlusion_clipper.h"
 
 #include <algorithm>
 
@@ -45,65 +45,66 @@ bool is_apart(const Extent& a, const Extent& b) {
 
 }  // namespace
 
-std::uint32_t Looker::hider_at(std::size_t slot, const glm::dvec2& at) {
-  const std::uint32_t first_place = scenery_.first_place(slot);
-  const std::span<const std::uint32_t> cell = scenery_.cell_at(at);
-  for (std::size_t i = cell.size(); i-- > 0 && scenery_.place(cell[i]) >= first_place;) {
+std::uint32_t OcclusionClipper::hider_at(std::size_t slot, const glm::dvec2& at) {
+  const std::uint32_t first_place = screen_.first_place(slot);
+  const std::span<const std::uint32_t> cell = screen_.cell_at(at);
+  for (std::size_t i = cell.size(); i-- > 0 && screen_.place(cell[i]) >= first_place;) {
     const std::uint32_t other = cell[i];
     if (other == slot) continue;
     poll_.count();
-    const Extent& e = scenery_.extent(other);
+    const Extent& e = screen_.extent(other);
     if (at.x >= e.low.x && at.x <= e.high.x && at.y >= e.low.y && at.y <= e.high.y &&
-        is_within(scenery_.outline(other), at, OutlineCutter::thin) && may_hide(slot, other))
+        is_within(screen_.outline(other), at, OutlineClipper::thin) && may_hide(slot, other))
       return other;
   }
   return no_index;
 }
 
 /// Those that may hide what is behind or beside the polygon in a slot.
-struct Looker::Hiders {
-  Looker& looker;
+struct OcclusionClipper::Hiders {
+  OcclusionClipper& clipper;
   std::size_t slot;
 
   [[nodiscard]] bool may_hide(std::uint32_t other) const {
-    looker.poll_.count();
-    const Scenery& scenery = looker.scenery_;
-    return scenery.place(other) >= scenery.first_place(slot) && other != slot && looker.may_hide(slot, other);
+    clipper.poll_.count();
+    const ScreenPolygons& screen = clipper.screen_;
+    return screen.place(other) >= screen.first_place(slot) && other != slot && clipper.may_hide(slot, other);
   }
-  [[nodiscard]] std::uint32_t at(const glm::dvec2& place) const { return looker.hider_at(slot, place); }
+  [[nodiscard]] std::uint32_t at(const glm::dvec2& place) const { return clipper.hider_at(slot, place); }
 };
 
-Spreader::Found Looker::spread(std::size_t slot, Outline outline, std::uint32_t hider, const glm::dvec2& at) {
+OccluderUnion::Found OcclusionClipper::spread(std::size_t slot, Outline outline, std::uint32_t hider,
+                                              const glm::dvec2& at) {
   // It may have been found for what lies next to it.
-  if (!is_within(scenery_.outline(hider), at, 0)) return Spreader::Found::unknown;
-  spreader_.set(outline);
-  return spreader_.spread(hider, Hiders{*this, slot});
+  if (!is_within(screen_.outline(hider), at, 0)) return OccluderUnion::Found::unknown;
+  union_.set(outline);
+  return union_.spread(hider, Hiders{*this, slot});
 }
 
 /// Most are not, and their middles tell.
-bool Looker::is_all_hidden(std::size_t slot) {
-  cutter_.begin(scenery_.outline(slot));
-  cutter_.keep_within(glm::dvec2(0), scenery_.size());
+bool OcclusionClipper::is_all_hidden(std::size_t slot) {
+  cutter_.begin(screen_.outline(slot));
+  cutter_.keep_within(glm::dvec2(0), screen_.size());
   if (cutter_.count() == 0) return false;
   const Outline outline = cutter_[0];
   glm::dvec2 middle(0);
   for (const PaintCorner& corner : outline) middle += glm::dvec2(corner.at) / double(outline.size());
   const std::uint32_t hider = hider_at(slot, middle);
   if (hider == no_index) return false;
-  const Spreader::Found found = spread(slot, outline, hider, middle);
-  if (found != Spreader::Found::unknown) return found == Spreader::Found::hidden;
-  const Extent& extent = scenery_.extent(slot);
-  const PieceGrid::Range cells = scenery_.grid().range(extent);
-  return is_few(cells) && take_covers(slot, scenery_.place(slot) + 1, extent, cells);
+  const OccluderUnion::Found found = spread(slot, outline, hider, middle);
+  if (found != OccluderUnion::Found::unknown) return found == OccluderUnion::Found::hidden;
+  const Extent& extent = screen_.extent(slot);
+  const PieceGrid::Range cells = screen_.grid().range(extent);
+  return is_few(cells) && take_covers(slot, screen_.place(slot) + 1, extent, cells);
 }
 
-const OutlineList& Looker::look(std::size_t slot) {
+const OutlineList& OcclusionClipper::look(std::size_t slot) {
   seen_.clear();
-  const Extent& extent = scenery_.extent(slot);
+  const Extent& extent = screen_.extent(slot);
   if (!(extent.low.x < extent.high.x && extent.low.y < extent.high.y)) return seen_;
-  const PieceGrid::Range cells = scenery_.grid().range(extent);
-  cutter_.begin(scenery_.outline(slot));
-  cutter_.keep_within(glm::dvec2(0), scenery_.size());
+  const PieceGrid::Range cells = screen_.grid().range(extent);
+  cutter_.begin(screen_.outline(slot));
+  cutter_.keep_within(glm::dvec2(0), screen_.size());
   if (cutter_.count() == 0) return seen_;
   if (is_few(cells)) {
     if (is_all_seen_at_once(slot, extent, cells)) seen_.add(cutter_[0]);
@@ -114,16 +115,16 @@ const OutlineList& Looker::look(std::size_t slot) {
   return seen_;
 }
 
-bool Looker::is_all_seen(std::size_t slot, const Corners& outline, const PieceGrid::Range& cells) {
+bool OcclusionClipper::is_all_seen(std::size_t slot, const Corners& outline, const PieceGrid::Range& cells) {
   if (is_few(cells)) {
     cutter_.begin(outline);
     return is_all_seen_at_once(slot, box_of(outline), cells);
   }
   const auto [axis, low, high] = halve(cells);
-  glm::dvec2 low_end = scenery_.size(), high_begin(0);
-  low_end[axis] = high_begin[axis] = scenery_.grid().box(high.first_x, high.first_y).low[axis];
+  glm::dvec2 low_end = screen_.size(), high_begin(0);
+  low_end[axis] = high_begin[axis] = screen_.grid().box(high.first_x, high.first_y).low[axis];
   const Corners low_part = part_within(outline, glm::dvec2(0), low_end),
-                high_part = part_within(outline, high_begin, scenery_.size());
+                high_part = part_within(outline, high_begin, screen_.size());
   const bool sees_low = low_part.empty() || is_all_seen(slot, low_part, low);
   const bool sees_high = high_part.empty() || is_all_seen(slot, high_part, high);
   if (sees_low && sees_high) return true;
@@ -132,16 +133,17 @@ bool Looker::is_all_seen(std::size_t slot, const Corners& outline, const PieceGr
   return false;
 }
 
-Looker::Corners Looker::part_within(const Corners& outline, const glm::dvec2& low, const glm::dvec2& high) {
+OcclusionClipper::Corners OcclusionClipper::part_within(const Corners& outline, const glm::dvec2& low,
+                                                        const glm::dvec2& high) {
   cutter_.begin(outline);
   cutter_.keep_within(low, high);
   return cutter_.count() == 0 ? Corners() : Corners(cutter_[0].begin(), cutter_[0].end());
 }
 
-bool Looker::is_all_seen_at_once(std::size_t slot, const Extent& own, const PieceGrid::Range& cells) {
+bool OcclusionClipper::is_all_seen_at_once(std::size_t slot, const Extent& own, const PieceGrid::Range& cells) {
   cutter_.forget_changes();
   const Corners whole(cutter_[0].begin(), cutter_[0].end());
-  take_covers(slot, scenery_.place(slot) + 1, own, cells);
+  take_covers(slot, screen_.place(slot) + 1, own, cells);
   if (!cutter_.is_changed()) return true;
   for (std::size_t i = 0; i < cutter_.count(); ++i)
     if (is_narrower(cutter_[i], kNarrowest)) {
@@ -153,29 +155,29 @@ bool Looker::is_all_seen_at_once(std::size_t slot, const Extent& own, const Piec
 }
 
 /// Boxes that overlap meet in several cells; the one that both begin in, or where the later one begins, is the first.
-bool Looker::is_first_meeting(const PieceGrid::Range& cells, const Extent& cover, int x, int y) const {
-  const PieceGrid::Range other = scenery_.grid().range(cover);
+bool OcclusionClipper::is_first_meeting(const PieceGrid::Range& cells, const Extent& cover, int x, int y) const {
+  const PieceGrid::Range other = screen_.grid().range(cover);
   return x == std::max(cells.first_x, other.first_x) && y == std::max(cells.first_y, other.first_y);
 }
 
-bool Looker::take_covers(std::size_t slot, std::uint32_t first_place, const Extent& own,
-                         const PieceGrid::Range& cells) {
+bool OcclusionClipper::take_covers(std::size_t slot, std::uint32_t first_place, const Extent& own,
+                                   const PieceGrid::Range& cells) {
   const bool is_one_cell = cells.first_x == cells.last_x && cells.first_y == cells.last_y;
   for (int y = cells.first_y; y <= cells.last_y; ++y)
     for (int x = cells.first_x; x <= cells.last_x; ++x) {
-      const std::span<const std::uint32_t> cell = scenery_.cell(x, y);
+      const std::span<const std::uint32_t> cell = screen_.cell(x, y);
       std::size_t count = 0;
       for (std::size_t i = cell.size(); i-- > 0 && count < kMostCovers;) {
         const std::uint32_t other = cell[i];
-        if (scenery_.place(other) < first_place) break;
+        if (screen_.place(other) < first_place) break;
         if (other == slot) continue;
         poll_.count();
-        const Extent& e = scenery_.extent(other);
+        const Extent& e = screen_.extent(other);
         if (is_apart(e, own) || (!is_one_cell && !is_first_meeting(cells, e, x, y))) continue;
         if (!may_hide(slot, other)) continue;
         ++count;
-        const Cover cover{scenery_.outline(other), glm::dvec2(e.low), glm::dvec2(e.high)};
-        if (cutter_.subtract(cover, cutter_.count() <= OutlineCutter::most_parts)) return true;
+        const Cover cover{screen_.outline(other), glm::dvec2(e.low), glm::dvec2(e.high)};
+        if (cutter_.subtract(cover, cutter_.count() <= OutlineClipper::most_parts)) return true;
       }
     }
   return false;

@@ -10,10 +10,10 @@ namespace frontmost::painter_detail {
 
 /// A list of pieces, in boxes around 64, around 64 of those, and so on. A box lies along the plane of one of its
 /// pieces, so that parallel ones, which overlap everywhere, have flat boxes one behind the other.
-class Hulls {
+class PieceBoxes {
  public:
   /// `pieces` by their places in `members`.
-  Hulls(const Pieces& all, const std::vector<std::uint32_t>& members, std::span<const std::uint32_t> pieces);
+  PieceBoxes(const Pieces& all, const std::vector<std::uint32_t>& members, std::span<const std::uint32_t> pieces);
 
   /// How many from the `first` on surely lie wholly on the positive side of a plane. Fewer than there are: only boxes
   /// that begin there are asked.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "painter/seen/scenery.h"
+#include "painter/seen/screen_polygons.h"
 
 #include "painter/emit.h"
 
@@ -101,7 +101,7 @@ std::vector<std::uint32_t> slots_of(const std::vector<Extent>& extents, const Pi
 }  // namespace
 
 template <class Polygons>
-Scenery::Scenery(const Polygons& polygons, const View& view, const Hides& hides)
+ScreenPolygons::ScreenPolygons(const Polygons& polygons, const View& view, const Hides& hides)
     : size_(view.width, view.height), slots_(polygons.count()) {
   const std::vector<Extent> extents = extents_of(polygons);
   grid_ = PieceGrid(extents);
@@ -127,7 +127,7 @@ Scenery::Scenery(const Polygons& polygons, const View& view, const Hides& hides)
   grid_.renumber(slot_of_);
 }
 
-void Scenery::make_room() {
+void ScreenPolygons::make_room() {
   std::size_t corners = 0;
   for (Slot& slot : slots_) {
     slot.first_corner = corners;
@@ -136,14 +136,14 @@ void Scenery::make_room() {
   corners_ = Buffer<PaintCorner>(corners);
 }
 
-bool Scenery::is_within_reach(Outline outline) const {
+bool ScreenPolygons::is_within_reach(Outline outline) const {
   return std::all_of(outline.begin(), outline.end(), [&](const PaintCorner& corner) {
     const glm::dvec2 at(corner.at);
     return glm::all(glm::greaterThanEqual(at, glm::dvec2(-kReach))) && glm::all(glm::lessThanEqual(at, size_ + kReach));
   });
 }
 
-void Scenery::cut_at_reach(const std::vector<std::size_t>& far_slots) {
+void ScreenPolygons::cut_at_reach(const std::vector<std::size_t>& far_slots) {
   std::vector<std::vector<PaintCorner>> parts;
   for (const std::size_t slot : far_slots) {
     std::vector<PaintCorner> part(outline(slot).begin(), outline(slot).end());
@@ -171,9 +171,11 @@ void Scenery::cut_at_reach(const std::vector<std::size_t>& far_slots) {
   }
 }
 
-Scenery::Scenery(const PaintOrder& order, const Hides& hides) : Scenery(OrderPolygons(order), order.view, hides) {}
+ScreenPolygons::ScreenPolygons(const PaintOrder& order, const Hides& hides)
+    : ScreenPolygons(OrderPolygons(order), order.view, hides) {}
 
-Scenery::Scenery(const Pieces& pieces, const std::vector<std::uint32_t>& members, const View& view, const Hides& hides)
-    : Scenery(PiecePolygons(pieces, members), view, hides) {}
+ScreenPolygons::ScreenPolygons(const Pieces& pieces, const std::vector<std::uint32_t>& members, const View& view,
+                               const Hides& hides)
+    : ScreenPolygons(PiecePolygons(pieces, members), view, hides) {}
 
 }  // namespace frontmost::painter_detail

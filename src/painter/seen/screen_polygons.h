@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "painter/order/piece_grid.h"
-#include "painter/outlines.h"
+#include "painter/seen/outlines.h"
 #include "view/affine_depth.h"
 
 namespace frontmost::painter_detail {
@@ -23,12 +23,12 @@ namespace frontmost::painter_detail {
 /// All polygons of an order on the screen, with depths affine. They have places in the order, and are kept in slots in
 /// the order of the grid's cells: what is near on the screen is near in memory, for every other one is read beside its
 /// neighbours.
-class Scenery {
+class ScreenPolygons {
  public:
   using Hides = std::function<bool(PrimitiveId)>;
-  Scenery(const PaintOrder& order, const Hides& hides);
+  ScreenPolygons(const PaintOrder& order, const Hides& hides);
   /// Of pieces in the order in which they are listed.
-  Scenery(const Pieces& pieces, const std::vector<std::uint32_t>& members, const View& view, const Hides& hides);
+  ScreenPolygons(const Pieces& pieces, const std::vector<std::uint32_t>& members, const View& view, const Hides& hides);
 
   [[nodiscard]] std::size_t count() const { return slots_.size(); }
   /// The place of the polygon in a slot.
@@ -67,7 +67,7 @@ class Scenery {
   /// Cuts outlines where they are too far from the picture for their sides to have a place in it.
   void cut_at_reach(const std::vector<std::size_t>& far_slots);
   template <class Polygons>
-  Scenery(const Polygons& polygons, const View& view, const Hides& hides);
+  ScreenPolygons(const Polygons& polygons, const View& view, const Hides& hides);
 
   const glm::dvec2 size_;
   PieceGrid grid_;

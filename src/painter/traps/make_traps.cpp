@@ -5,7 +5,7 @@
 // Around a corner in the middle of what is seen viewers blend all that meet there, and each takes its share of what is
 // below. Only what covers all of the pixel leaves nothing of that. So the first that is painted goes around the corner:
 // the hems of its two sides end at the same place.
-#include "painter/side_hems.h"
+#include "painter/traps/make_traps.h"
 
 #include <algorithm>
 #include <array>
@@ -14,8 +14,8 @@
 
 #include "base/parallel.h"
 #include "base/pool.h"
-#include "painter/hem_profile.h"
-#include "painter/surroundings.h"
+#include "painter/traps/nearby_occluders.h"
+#include "painter/traps/trap_profile.h"
 
 namespace frontmost::painter_detail {
 namespace {
@@ -54,24 +54,24 @@ struct Bend {
 struct Side {
   glm::dvec2 along{0};
   double length = 0;
-  std::vector<HemProfile::Knot> knots;
+  std::vector<TrapProfile::Knot> knots;
 };
 
 /// Not for several threads at once.
-class Hemmer {
+class TrapMaker {
  public:
-  Hemmer(const Scenery& scenery, const Mosaic& mosaic, double width, const Execution& execution)
-      : scenery_(scenery), surroundings_(scenery, mosaic, execution), width_(width) {}
+  TrapMaker(const ScreenPolygons& screen, const Adjacency& adjacency, double width, const Execution& execution)
+      : screen_(screen), nearby_(screen, adjacency, execution), width_(width) {}
 
   /// Adds the hems of the polygon in a slot, which has these corners.
   void add_hems(std::size_t slot, Outline given, HemList& list) {
-    outline_ = scenery_.outline(slot);
+    outline_ = screen_.outline(slot);
     // What reaches millions of pixels away has been cut, and has other sides.
     const auto is_same = [](const PaintCorner& a, const PaintCorner& b) {
       return glm::dvec2(a.at) == glm::dvec2(b.at);
     };
-    if (scenery_.hides(slot) && std::equal(outline_.begin(), outline_.end(), given.begin(), given.end(), is_same)) {
-      surroundings_.begin(slot, kReach * (width_ + kBeyondHem));
+    if (screen_.hides(slot) && std::equal(outline_.begin(), outline_.end(), given.begin(), given.end(), is_same)) {
+      nearby_.begin(slot, kReach * (width_ + kBeyondHem));
       set_sides();
       for (std::size_t i = 0; i < outline_.size(); ++i) fit(i);
       for (std::size_t i = 0; i < outline_.size(); ++i) around_[i] = reach_around(i);
@@ -93,7 +93,7 @@ class Hemmer {
     for (std::size_t turn = 0, i = 0; turn < 2 * outline_.size(); ++turn, i = next(i)) {
       const glm::dvec2 way = corner(next(i)) - corner(i);
       sides_[i].length = glm::length(way);
-      sides_[i].along = sides_[i].length < OutlineCutter::thin ? sides_[before(i)].along : way / sides_[i].length;
+      sides_[i].along = sides_[i].length < OutlineClipper::thin ? sides_[before(i)].along : way / sides_[i].length;
     }
   }
 
@@ -104,15 +104,15 @@ class Hemmer {
     const glm::dvec2 from = corner(number), to = corner(next(number)), out = beside(side.along) * (width_ + kBeyondHem);
     // Few others are beside a part of a side.
     const int parts = int(std::clamp(side.length / (kStrip * width_), 1.0, kMostStrips));
-    if (side.length < OutlineCutter::thin || surroundings_.are_open_beside(number)) return;
-    if (parts == 1 && !surroundings_.hide_beside(from, to)) return;
+    if (side.length < OutlineClipper::thin || nearby_.are_open_beside(number)) return;
+    if (parts == 1 && !nearby_.hide_beside(from, to)) return;
     profile_.begin(from, side.along);
     for (int i = 0; i < parts; ++i) {
       const glm::dvec2 a = from + (to - from) * (double(i) / parts), b = from + (to - from) * (double(i + 1) / parts);
-      profile_.add_open(surroundings_.open_parts(outline_of({a, a + out, b + out, b})));
+      profile_.add_open(nearby_.open_parts(outline_of({a, a + out, b + out, b})));
     }
-    const std::vector<HemProfile::Knot>& knots = profile_.fit(side.length, width_);
-    const auto is_low = [](const HemProfile::Knot& knot) { return knot.height < kLeastHeight; };
+    const std::vector<TrapProfile::Knot>& knots = profile_.fit(side.length, width_);
+    const auto is_low = [](const TrapProfile::Knot& knot) { return knot.height < kLeastHeight; };
     if (!std::all_of(knots.begin(), knots.end(), is_low)) side.knots = knots;
   }
 
@@ -133,7 +133,7 @@ class Hemmer {
       else
         beside_.push_back(at + turn.end(tested));
       beside_.push_back(at + beside(turn.from) * tested);
-      if (surroundings_.open_parts(outline_of(beside_)).count() == 0) return reach;
+      if (nearby_.open_parts(outline_of(beside_)).count() == 0) return reach;
     }
     return 0;
   }
@@ -149,7 +149,7 @@ class Hemmer {
   }
 
   /// What ends at a corner ends before it: there its rim would run along what is open around the corner.
-  static HemProfile::Knot inset(const HemProfile::Knot& end, const HemProfile::Knot& beside) {
+  static TrapProfile::Knot inset(const TrapProfile::Knot& end, const TrapProfile::Knot& beside) {
     const double way = beside.along - end.along, part = std::min(kInset * end.height / std::abs(way), kMostInset);
     return {end.along + part * way, end.height + part * (beside.height - end.height)};
   }
@@ -171,7 +171,7 @@ class Hemmer {
       // It lies on the side, or on the way around the corner.
       if ((is_first || is_last) && (height < kLeastHeight || height == around)) continue;
       const bool ends_here = (is_first || is_last) && around == 0;
-      const HemProfile::Knot knot = ends_here ? inset(side.knots[i], side.knots[is_first ? 1 : i - 1]) : side.knots[i];
+      const TrapProfile::Knot knot = ends_here ? inset(side.knots[i], side.knots[is_first ? 1 : i - 1]) : side.knots[i];
       add(from + side.along * knot.along + out * knot.height);
     }
     if (const double reach = around_[next(number)]; reach > 0) {
@@ -187,10 +187,10 @@ class Hemmer {
   /// How far from a polygon a hem of unit width may be.
   static constexpr double kReach = 1.5;
 
-  const Scenery& scenery_;
-  Surroundings surroundings_;
+  const ScreenPolygons& screen_;
+  NearbyOccluders nearby_;
   const double width_;
-  HemProfile profile_;
+  TrapProfile profile_;
   Outline outline_;
   std::vector<Side> sides_;
   std::vector<double> around_;  ///< by corner: how far hems go around it
@@ -199,7 +199,7 @@ class Hemmer {
 };
 
 /// By place what lists have by slot.
-HemList assemble(const Scenery& scenery, const std::vector<HemList>& lists) {
+HemList assemble(const ScreenPolygons& screen, const std::vector<HemList>& lists) {
   HemList all;
   std::size_t hems = 0, corners = 0;
   for (const HemList& list : lists) {
@@ -208,9 +208,9 @@ HemList assemble(const Scenery& scenery, const std::vector<HemList>& lists) {
   }
   all.hems.reserve(hems);
   all.corners.reserve(corners);
-  all.ends.reserve(scenery.count());
-  for (std::uint32_t place = 0; place < scenery.count(); ++place) {
-    const std::size_t slot = scenery.slot(place);
+  all.ends.reserve(screen.count());
+  for (std::uint32_t place = 0; place < screen.count(); ++place) {
+    const std::size_t slot = screen.slot(place);
     const HemList& list = lists[slot / kPolygonsPerHemList];
     for (SideHem hem : list.of(slot % kPolygonsPerHemList)) {
       const std::span<const glm::dvec2> own = list.corners_of(hem);
@@ -227,22 +227,23 @@ HemList assemble(const Scenery& scenery, const std::vector<HemList>& lists) {
 
 HemList side_hems(const PaintOrder& order, double width, const std::function<bool(PrimitiveId)>& hides,
                   const Execution& execution) {
-  const Scenery scenery(order, hides);
-  const Mosaic mosaic(scenery);
-  const std::size_t count = scenery.count();
+  const ScreenPolygons screen(order, hides);
+  const Adjacency adjacency(screen);
+  const std::size_t count = screen.count();
   std::vector<HemList> lists((count + kPolygonsPerHemList - 1) / kPolygonsPerHemList);
-  Pool<Hemmer> hemmers;
+  Pool<TrapMaker> hemmers;
   std::atomic<std::size_t> done{0};
   parallel_for(execution, count, kPolygonsPerHemList, [&](std::size_t begin, std::size_t end) {
-    const auto hemmer = hemmers.borrow([&] { return std::make_unique<Hemmer>(scenery, mosaic, width, execution); });
+    const auto hemmer =
+        hemmers.borrow([&] { return std::make_unique<TrapMaker>(screen, adjacency, width, execution); });
     for (std::size_t slot = begin; slot < end; ++slot) {
-      const PaintPolygon& polygon = order.polygons[scenery.place(slot)];
+      const PaintPolygon& polygon = order.polygons[screen.place(slot)];
       const Outline given(order.corners.data() + polygon.first_corner, polygon.corner_count);
       hemmer->add_hems(slot, given, lists[begin / kPolygonsPerHemList]);
     }
     report_progress(execution, "hems", double(done += end - begin) / double(count));
   });
-  return assemble(scenery, lists);
+  return assemble(screen, lists);
 }
 
 }  // namespace frontmost::painter_detail

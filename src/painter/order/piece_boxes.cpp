@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "painter/hulls.h"
+#include "painter/order/piece_boxes.h"
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kFanout = 64;
 /// Of coordinates: more than rounding moves them.
-constexpr double kHullMargin = 1e-12;
+constexpr double kBoxMargin = 1e-12;
 
 /// Three directions at right angles, the first that of a triangle's normal.
 std::array<glm::dvec3, 3> axes_of(const Face& face) {
@@ -26,7 +26,8 @@ std::array<glm::dvec3, 3> axes_of(const Face& face) {
 
 }  // namespace
 
-Hulls::Hulls(const Pieces& all, const std::vector<std::uint32_t>& members, std::span<const std::uint32_t> pieces)
+PieceBoxes::PieceBoxes(const Pieces& all, const std::vector<std::uint32_t>& members,
+                       std::span<const std::uint32_t> pieces)
     : count_(pieces.size()) {
   for (std::size_t size = kFanout; size <= count_; size *= kFanout) {
     std::vector<Box>& boxes = levels_.emplace_back();
@@ -35,8 +36,8 @@ Hulls::Hulls(const Pieces& all, const std::vector<std::uint32_t>& members, std::
   }
 }
 
-Hulls::Box Hulls::box_of(const Pieces& all, const std::vector<std::uint32_t>& members,
-                         std::span<const std::uint32_t> pieces) {
+PieceBoxes::Box PieceBoxes::box_of(const Pieces& all, const std::vector<std::uint32_t>& members,
+                                   std::span<const std::uint32_t> pieces) {
   const std::array<glm::dvec3, 3> axes = axes_of(all.face(members[pieces[pieces.size() / 2]]));
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
   double farthest = 0;
@@ -47,7 +48,7 @@ Hulls::Box Hulls::box_of(const Pieces& all, const std::vector<std::uint32_t>& me
       high = glm::max(high, along);
       farthest = std::max(farthest, std::abs(at.x) + std::abs(at.y) + std::abs(at.z));
     }
-  Box box{glm::dvec3(0), {}, kHullMargin * farthest};
+  Box box{glm::dvec3(0), {}, kBoxMargin * farthest};
   for (std::size_t k = 0; k < 3; ++k) {
     const int axis = int(k);
     box.centre += axes[k] * (0.5 * (low[axis] + high[axis]));
@@ -56,7 +57,7 @@ Hulls::Box Hulls::box_of(const Pieces& all, const std::vector<std::uint32_t>& me
   return box;
 }
 
-std::size_t Hulls::count_before(std::size_t first, const Plane& plane) const {
+std::size_t PieceBoxes::count_before(std::size_t first, const Plane& plane) const {
   std::size_t size = kFanout, count = 0;
   for (const std::vector<Box>& boxes : levels_) {
     if (first % size != 0 || first >= count_) break;

@@ -10,9 +10,9 @@
 namespace frontmost::painter_detail {
 
 /// One piece, made ready to be held against others.
-class Coverer {
+class NewellTests {
  public:
-  Coverer(const Pieces& pieces, std::uint32_t piece);
+  NewellTests(const Pieces& pieces, std::uint32_t piece);
 
   [[nodiscard]] const Plane& plane() const { return plane_; }
   /// Whether the piece covers a point of `other`, by any of the tests but those of the extents. True also where one of

@@ -4,12 +4,12 @@
 
 #include <vector>
 
-#include "painter/outlines.h"
+#include "painter/seen/outlines.h"
 
 namespace frontmost::painter_detail {
 
 /// Heights above a side, on straight lines between knots. Not for several threads at once.
-class HemProfile {
+class TrapProfile {
  public:
   struct Knot {
     double along, height;  ///< pixels
@@ -17,7 +17,7 @@ class HemProfile {
   /// For a side from a place on, whose way has unit length.
   void begin(const glm::dvec2& from, const glm::dvec2& way);
   /// Parts of what is beside it that are not hidden.
-  void add_open(const OutlineCutter& open);
+  void add_open(const OutlineClipper& open);
   /// As high as is hidden, `most` at most; less towards what is open, and some way from it, so that no rim of a hem
   /// runs along an outline: viewers would blend both, and it would grow bold.
   [[nodiscard]] const std::vector<Knot>& fit(double length, double most);

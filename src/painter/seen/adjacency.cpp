@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "painter/seen/mosaic.h"
+#include "painter/seen/adjacency.h"
 
 #include <cstring>
 
@@ -28,7 +28,7 @@ std::uint64_t hash_of(const glm::dvec3& at) {
 /// neighbour leaves: in meshes that lie in the order of the screen few are there at a time.
 class OpenSides {
  public:
-  OpenSides(const Scenery& scenery, std::vector<std::uint32_t>& across) : scenery_(scenery), across_(across) {
+  OpenSides(const ScreenPolygons& screen, std::vector<std::uint32_t>& across) : screen_(screen), across_(across) {
     while (std::size_t(1) << bits_ < across.size() + across.size() / 4) ++bits_;
     entries_.assign(std::size_t(1) << bits_, {0, no_index});
   }
@@ -81,12 +81,12 @@ class OpenSides {
     return at(a) == at(end_of(b_slot, b)) && at(end_of(across_[a], a)) == at(b);
   }
   [[nodiscard]] std::uint32_t end_of(std::uint32_t slot, std::uint32_t corner) const {
-    const auto first = std::uint32_t(scenery_.first_corner(slot));
-    return corner + 1 == first + scenery_.outline(slot).size() ? first : corner + 1;
+    const auto first = std::uint32_t(screen_.first_corner(slot));
+    return corner + 1 == first + screen_.outline(slot).size() ? first : corner + 1;
   }
-  [[nodiscard]] glm::dvec2 at(std::uint32_t corner) const { return glm::dvec2(scenery_.corners()[corner].at); }
+  [[nodiscard]] glm::dvec2 at(std::uint32_t corner) const { return glm::dvec2(screen_.corners()[corner].at); }
 
-  const Scenery& scenery_;
+  const ScreenPolygons& screen_;
   std::vector<std::uint32_t>& across_;
   std::vector<Entry> entries_;
   std::vector<std::uint32_t> alone_;  ///< sides that are not in the table
@@ -95,12 +95,12 @@ class OpenSides {
 
 }  // namespace
 
-Mosaic::Mosaic(const Scenery& scenery) : across_(scenery.corners().size()) {
-  OpenSides open(scenery, across_);
-  for (std::uint32_t slot = 0; slot < scenery.count(); ++slot) {
-    const Outline outline = scenery.outline(slot);
+Adjacency::Adjacency(const ScreenPolygons& screen) : across_(screen.corners().size()) {
+  OpenSides open(screen, across_);
+  for (std::uint32_t slot = 0; slot < screen.count(); ++slot) {
+    const Outline outline = screen.outline(slot);
     if (outline.empty()) continue;
-    const auto first = std::uint32_t(scenery.first_corner(slot));
+    const auto first = std::uint32_t(screen.first_corner(slot));
     for (std::uint32_t i = 0; i < outline.size(); ++i) across_[first + i] = slot;
     std::uint64_t hash_before = hash_of(outline.back().at);
     std::uint32_t before = first + std::uint32_t(outline.size()) - 1;

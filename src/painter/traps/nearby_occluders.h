@@ -4,19 +4,19 @@
 
 #include <vector>
 
-#include "painter/outlines.h"
 #include "painter/poll.h"
-#include "painter/seen/mosaic.h"
+#include "painter/seen/adjacency.h"
+#include "painter/seen/outlines.h"
 
 namespace frontmost::painter_detail {
 
 /// Of one polygon after another. Beside it hide those after it, and parts of the same primitive, also before it: these
 /// show nothing else than it does. They are listed once for all that is asked about a polygon, and most polygons have
 /// few. Not for several threads at once.
-class Surroundings {
+class NearbyOccluders {
  public:
-  Surroundings(const Scenery& scenery, const Mosaic& mosaic, const Execution& execution)
-      : scenery_(scenery), mosaic_(mosaic), poll_(execution), listed_(scenery.count(), 0) {}
+  NearbyOccluders(const ScreenPolygons& screen, const Adjacency& adjacency, const Execution& execution)
+      : screen_(screen), adjacency_(adjacency), poll_(execution), listed_(screen.count(), 0) {}
 
   /// Of the polygon in a slot from now on, as far as `reach` pixels around it.
   void begin(std::size_t slot, double reach);
@@ -25,7 +25,7 @@ class Surroundings {
   /// Whether anything hides places on the outer side of a side of the polygon, next to it.
   [[nodiscard]] bool hide_beside(const glm::dvec2& from, const glm::dvec2& to);
   /// What of a convex outline within reach is not hidden, until the next call.
-  [[nodiscard]] const OutlineCutter& open_parts(Outline outline);
+  [[nodiscard]] const OutlineClipper& open_parts(Outline outline);
 
  private:
   struct Hider {
@@ -38,10 +38,10 @@ class Surroundings {
   template <class Visit>
   bool any_of(const Extent& box, const Visit& visit);
 
-  const Scenery& scenery_;
-  const Mosaic& mosaic_;
+  const ScreenPolygons& screen_;
+  const Adjacency& adjacency_;
   Poll poll_;
-  OutlineCutter cutter_;
+  OutlineClipper cutter_;
   std::size_t slot_ = 0;
   bool is_listed_ = false;  ///< hiders_ are all around the polygon
   std::vector<Hider> hiders_;
