@@ -17,7 +17,8 @@ CODE = {".h", ".cpp"}
 MARKED = CODE | {".py", ".sh", ".cmake"}
 LONGEST_FILE = 800
 LARGEST_FILE = 512 * 1024  # bytes; what a command wrote is soon there by mistake, and stays in the history
-PUBLIC_HEADER_OF = {"visible": "view", "ray_camera": "raycast"}  # the others carry their room's name
+PUBLIC_HEADER_OF = {"visible": "view", "ray_camera": "raycast", "page": "io", "sheet_view": "sheets", "dimensions": "sheets",
+                    "lettering": "sheets", "section_marks": "sheets", "title_block": "sheets"}  # the others carry their room's name
 FACES = {"cli", "examples"}  # see include/frontmost alone; tests and benchmarks look inside
 
 

@@ -317,7 +317,7 @@ Json draw_model(const Settings& settings, std::vector<Page>& pages, const Execut
   }
   timings.tones = watch.milliseconds();
   watch = {};
-  Page page = draw_sheet(surfaces, sheets, pens_of(settings.drawing), plan.size);
+  Page page = page_of(surfaces, sheets, pens_of(settings.drawing), plan.size);
   const std::optional<double> scale = is_parallel(settings) ? std::optional(plan.scale) : std::nullopt;
   if (page.layers.empty()) show_warnings({"nothing is seen; the drawing is empty"}, settings.run, progress);
   if (const auto hint = unit_hint(settings.drawing, surfaces, plan.scale); hint && scale)

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <frontmost/section.h>
-#include <frontmost/sheet.h>
+#include <frontmost/sheet_view.h>
 #include <frontmost/surfaces.h>
 
 #include <memory>

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "frontmost/sheet.h"
+#include "frontmost/sheet_view.h"
 
 namespace frontmost {
 

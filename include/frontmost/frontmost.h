@@ -25,7 +25,7 @@
 #include "frontmost/section.h"        // IWYU pragma: export
 #include "frontmost/section_marks.h"  // IWYU pragma: export
 #include "frontmost/shade.h"          // IWYU pragma: export
-#include "frontmost/sheet.h"          // IWYU pragma: export
+#include "frontmost/sheet_view.h"     // IWYU pragma: export
 #include "frontmost/stream.h"         // IWYU pragma: export
 #include "frontmost/strokes.h"        // IWYU pragma: export
 #include "frontmost/surfaces.h"       // IWYU pragma: export

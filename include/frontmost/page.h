@@ -106,6 +106,14 @@ void save(const Page& page, const std::string& path, std::optional<PageFormat> f
 void save(std::span<const Page> pages, const std::string& path, std::optional<PageFormat> format = std::nullopt,
           const Execution& execution = {});
 
+/// How a plotter would draw a page, in millimetres and numbers.
+struct PenTravel {
+  double down = 0;  ///< drawn
+  double up = 0;    ///< moved between paths, from the page's corner on
+  std::size_t paths = 0, points = 0, arcs = 0;
+};
+[[nodiscard]] PenTravel travel_of(const Page& page);
+
 /// A figure as a page of its size, where a pixel is 1/96 inch, as style sheets have it.
 [[nodiscard]] Page page_of(const Figure& figure);
 /// Writes a figure, as SVG or PDF by the name. \throws Error as save() of pages does.

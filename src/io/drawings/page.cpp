@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "base/parallel.h"
+#include "io/drawings/arc.h"
 #include "io/drawings/formats.h"
 
 namespace frontmost {
@@ -120,4 +121,24 @@ PathPaint paint_of(const PageGroup& group, std::size_t path) {
 }
 
 }  // namespace detail
+PenTravel travel_of(const Page& page) {
+  PenTravel sum;
+  glm::dvec2 pen(0);
+  for (const PageLayer& layer : page.layers)
+    for (const PageGroup& group : layer.groups)
+      for (const PagePath& path : group.paths) {
+        sum.up += glm::distance(pen, group.points[path.first]);
+        ++sum.paths;
+        sum.points += path.count;
+        for (std::uint32_t i = 0; i < detail::join_count(path); ++i) {
+          const detail::Join join = detail::join_of(group, path, i);
+          const std::optional<detail::Arc> arc = detail::arc_between(join.from, join.to, join.bulge);
+          sum.arcs += arc.has_value();
+          sum.down += arc ? arc->radius * std::abs(arc->turn) : glm::distance(join.from, join.to);
+        }
+        pen = group.points[path.is_closed ? path.first : path.first + path.count - 1];
+      }
+  return sum;
+}
+
 }  // namespace frontmost

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "frontmost/sheet.h"
+#include "frontmost/sheet_view.h"
 
 namespace frontmost::test {
 namespace {

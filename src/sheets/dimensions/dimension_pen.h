@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "frontmost/lettering.h"
-#include "io/drawings/dimensions/obstacles.h"
+#include "sheets/dimensions/obstacles.h"
 
 namespace frontmost::detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/drawings/dimensions/diameters.h"
+#include "sheets/dimensions/diameters.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/drawings/glyphs.h"
 #include "io/drawings/page_text.h"
+#include "sheets/glyphs.h"
 
 namespace frontmost {
 namespace {

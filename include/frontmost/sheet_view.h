@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawing sheets: strokes of one or several views laid on a page, with pens as drawing standards have them.
+// Views of a sheet: strokes, hatching and centre lines in their places on a page, with pens as drawing standards have
+// them.
 #pragma once
 
 #include <span>
@@ -49,8 +50,8 @@ struct SheetView {
 /// A page with the layers "5 stippling", "4 hatching", "6 centre lines", "1 hidden", "2 visible" and "3 outline", those
 /// that have lines, the lowest first. Each has a group for every view and object, named as they are; in the order of
 /// the strokes and of the hatching. Centre lines have groups by their dashes, without names.
-[[nodiscard]] Page draw_sheet(const Surfaces& surfaces, std::span<const SheetView> views, const LinePens& pens,
-                              const glm::dvec2& size);
+[[nodiscard]] Page page_of(const Surfaces& surfaces, std::span<const SheetView> views, const LinePens& pens,
+                           const glm::dvec2& size);
 
 /// What the parts of a drawing cover, hidden ones only where asked for: low and high corner, in pixels. Low is greater
 /// than high where there is nothing.
@@ -59,13 +60,5 @@ struct DrawingBounds {
   [[nodiscard]] bool is_empty() const { return !(low.x <= high.x && low.y <= high.y); }
 };
 [[nodiscard]] DrawingBounds bounds_of(const Drawing& drawing, bool with_hidden);
-
-/// How a plotter would draw a page, in millimetres and numbers.
-struct PenTravel {
-  double down = 0;  ///< drawn
-  double up = 0;    ///< moved between paths, from the page's corner on
-  std::size_t paths = 0, points = 0, arcs = 0;
-};
-[[nodiscard]] PenTravel travel_of(const Page& page);
 
 }  // namespace frontmost

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/drawings/dimensions/dimension_pen.h"
+#include "sheets/dimensions/dimension_pen.h"
 
 #include <numbers>
 
-#include "io/drawings/arrowhead.h"
+#include "sheets/arrowhead.h"
 
 namespace frontmost::detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/drawings/dimensions/obstacles.h"
+#include "sheets/dimensions/obstacles.h"
 
 #include <algorithm>
 #include <cmath>

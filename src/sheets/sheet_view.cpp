@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "frontmost/sheet.h"
+#include "frontmost/sheet_view.h"
 
 #include <cmath>
 #include <map>
 #include <tuple>
-
-#include "io/drawings/arc.h"
 
 namespace frontmost {
 namespace {
@@ -32,9 +30,9 @@ std::vector<double> dashes_on(const Pen& pen, double length) {
 }
 
 /// The layers while they are filled: where the group of a view and an object is.
-class Sheet {
+class SheetLayers {
  public:
-  Sheet(const Surfaces& surfaces, const LinePens& pens) : surfaces_(surfaces), pens_(pens) {
+  SheetLayers(const Surfaces& surfaces, const LinePens& pens) : surfaces_(surfaces), pens_(pens) {
     for (std::size_t i = 0; i < layer_count; ++i) layers_[i].name = layer_names[i];
   }
 
@@ -131,9 +129,8 @@ LinePens figure_pens() {
 
 Pen thin_pen() { return {0.13, {}}; }
 
-Page draw_sheet(const Surfaces& surfaces, std::span<const SheetView> views, const LinePens& pens,
-                const glm::dvec2& size) {
-  Sheet sheet(surfaces, pens);
+Page page_of(const Surfaces& surfaces, std::span<const SheetView> views, const LinePens& pens, const glm::dvec2& size) {
+  SheetLayers sheet(surfaces, pens);
   for (std::size_t i = 0; i < views.size(); ++i) sheet.draw(views[i], std::uint32_t(i));
   return {size.x, size.y, surfaces.scene().name, sheet.take()};
 }
@@ -146,26 +143,6 @@ DrawingBounds bounds_of(const Drawing& drawing, bool with_hidden) {
     all.high = glm::max(all.high, glm::max(part.from, part.to));
   }
   return all;
-}
-
-PenTravel travel_of(const Page& page) {
-  PenTravel sum;
-  glm::dvec2 pen(0);
-  for (const PageLayer& layer : page.layers)
-    for (const PageGroup& group : layer.groups)
-      for (const PagePath& path : group.paths) {
-        sum.up += glm::distance(pen, group.points[path.first]);
-        ++sum.paths;
-        sum.points += path.count;
-        for (std::uint32_t i = 0; i < detail::join_count(path); ++i) {
-          const detail::Join join = detail::join_of(group, path, i);
-          const std::optional<detail::Arc> arc = detail::arc_between(join.from, join.to, join.bulge);
-          sum.arcs += arc.has_value();
-          sum.down += arc ? arc->radius * std::abs(arc->turn) : glm::distance(join.from, join.to);
-        }
-        pen = group.points[path.is_closed ? path.first : path.first + path.count - 1];
-      }
-  return sum;
 }
 
 }  // namespace frontmost

@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "frontmost/lettering.h"
-#include "io/drawings/dimensions/obstacles.h"
+#include "sheets/dimensions/obstacles.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
@@ -132,7 +132,7 @@ TEST_F(DimensionsTest, StandTenMillimetresFromWhatTheyMeasure) {
   add_box(mesh, {40, 30, 20});
   scene_ = scene_of(mesh);
   draw({NamedView::front});
-  const DrawingBounds drawn = bounds(drawings_[0], true);
+  const DrawingBounds drawn = bounds_of(drawings_[0], true);
   const glm::dvec2 low = sheets_[0].on_page(drawn.low), high = sheets_[0].on_page(drawn.high);
   const Dimensions all = dimensioned();
   const PageGroup& lines = all.layer.groups.at(0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sheets: where strokes land on the page, in which layer and group, with which pen.
-#include "frontmost/sheet.h"
+#include "frontmost/sheet_view.h"
 
 #include <cmath>
 #include <numbers>
@@ -39,7 +39,7 @@ TEST(DrawSheet, LayersGroupsAndPens) {
   const Scene scene = two_objects();
   const Surfaces surfaces(scene);
   const SheetView view{"front", strokes_of({hidden, hidden, outline, seen, crease}), {20, 30}, 0.5};
-  const Page page = draw_sheet(surfaces, std::span(&view, 1), figure_pens(), {100, 80});
+  const Page page = page_of(surfaces, std::span(&view, 1), figure_pens(), {100, 80});
   EXPECT_EQ(page.width, 100);
   EXPECT_EQ(page.title, "test");
   ASSERT_EQ(page.layers.size(), 3u);
@@ -56,22 +56,22 @@ TEST(DrawSheet, LayersGroupsAndPens) {
   EXPECT_NO_THROW(validate(page));
   // Not where they are hidden: all of those have one pen.
   const SheetView below{"", strokes_of({hidden, {EdgeKind::silhouette, true, false, 0, 0, 0, false}}), {0, 0}, 1};
-  EXPECT_EQ(draw_sheet(surfaces, std::span(&below, 1), figure_pens(), {100, 80}).layers[0].groups.size(), 1u);
+  EXPECT_EQ(page_of(surfaces, std::span(&below, 1), figure_pens(), {100, 80}).layers[0].groups.size(), 1u);
   // In a technical drawing they share one.
-  EXPECT_EQ(draw_sheet(surfaces, std::span(&view, 1), technical_pens(), {100, 80}).layers[1].groups.size(), 1u);
+  EXPECT_EQ(page_of(surfaces, std::span(&view, 1), technical_pens(), {100, 80}).layers[1].groups.size(), 1u);
 }
 
 TEST(DrawSheet, ViewsAreNamedApartAndEmptyLayersAreNotThere) {
   const Scene scene = two_objects();
   const Surfaces surfaces(scene);
   const SheetView views[] = {{"front", strokes_of({seen}), {0, 0}, 1}, {"top", strokes_of({seen, seen}), {0, 50}, 1}};
-  const Page page = draw_sheet(surfaces, views, technical_pens(), {100, 80});
+  const Page page = page_of(surfaces, views, technical_pens(), {100, 80});
   ASSERT_EQ(page.layers.size(), 1u);
   EXPECT_EQ(page.layers[0].name, "2 visible");
   ASSERT_EQ(page.layers[0].groups.size(), 2u);
   EXPECT_EQ(page.layers[0].groups[1].name, "top: object");
   EXPECT_EQ(page.layers[0].groups[1].paths.size(), 2u);
-  EXPECT_TRUE(draw_sheet(surfaces, {}, technical_pens(), {100, 80}).layers.empty());
+  EXPECT_TRUE(page_of(surfaces, {}, technical_pens(), {100, 80}).layers.empty());
 }
 
 TEST(DrawSheet, GroupsWithAndWithoutArcsAreWhole) {
@@ -80,7 +80,7 @@ TEST(DrawSheet, GroupsWithAndWithoutArcsAreWhole) {
   Strokes arcs = strokes_of({seen, seen});
   arcs.bulges = {1, 0, 0, 0};
   const SheetView view{"", arcs, {0, 0}, 1};
-  const Page page = draw_sheet(surfaces, std::span(&view, 1), technical_pens(), {100, 80});
+  const Page page = page_of(surfaces, std::span(&view, 1), technical_pens(), {100, 80});
   EXPECT_NO_THROW(validate(page));
   EXPECT_EQ(page.layers[0].groups[0].name, "object");
   const PenTravel sum = travel_of(page);
@@ -123,7 +123,7 @@ TEST(DrawSheet, CentreLinesBeginAndEndInDashes) {
   for (double length = 1; length < 400; length += 3.7) {
     SheetView view{"front", {}, {20, 30}, 0.5};
     view.centre_lines.push_back({{0, 0}, {2 * length, 0}});
-    const Page page = draw_sheet(surfaces, std::span(&view, 1), technical_pens(), {500, 80});
+    const Page page = page_of(surfaces, std::span(&view, 1), technical_pens(), {500, 80});
     ASSERT_EQ(page.layers.size(), 1u);
     EXPECT_EQ(page.layers[0].name, "6 centre lines");
     const std::vector<double>& dashes = page.layers[0].groups.at(0).pen.dashes;

@@ -2,7 +2,7 @@
 #include "frontmost/section_marks.h"
 
 #include "frontmost/lettering.h"
-#include "io/drawings/arrowhead.h"
+#include "sheets/arrowhead.h"
 
 namespace frontmost {
 namespace {

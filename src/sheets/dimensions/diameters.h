@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "io/drawings/dimensions/dimension_pen.h"
-#include "io/drawings/dimensions/measured_view.h"
+#include "sheets/dimensions/dimension_pen.h"
+#include "sheets/dimensions/measured_view.h"
 
 namespace frontmost::detail {
 

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "io/drawings/dimensions/diameters.h"
-#include "io/drawings/dimensions/measured_view.h"
+#include "sheets/dimensions/diameters.h"
+#include "sheets/dimensions/measured_view.h"
 
 namespace frontmost {
 namespace {

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "frontmost/lettering.h"
-#include "io/drawings/title_lines.h"
+#include "sheets/title_lines.h"
 
 namespace frontmost::detail {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/drawings/dimensions/measured_view.h"
+#include "sheets/dimensions/measured_view.h"
 
 #include <algorithm>
 #include <cmath>

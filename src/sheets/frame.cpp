@@ -5,7 +5,7 @@
 
 #include "frontmost/lettering.h"
 #include "frontmost/title_block.h"
-#include "io/drawings/title_lines.h"
+#include "sheets/title_lines.h"
 
 namespace frontmost {
 namespace {
