@@ -17,8 +17,6 @@ CODE = {".h", ".cpp"}
 MARKED = CODE | {".py", ".sh", ".cmake"}
 LONGEST_FILE = 800
 LARGEST_FILE = 512 * 1024  # bytes; what a command wrote is soon there by mistake, and stays in the history
-PUBLIC_HEADER_OF = {"visible": "view", "ray_camera": "raycast", "page": "io", "sheet_view": "sheets", "dimensions": "sheets",
-                    "lettering": "sheets", "section_marks": "sheets", "title_block": "sheets"}  # the others carry their room's name
 FACES = {"cli", "examples"}  # see include/frontmost alone; tests and benchmarks look inside
 
 
@@ -57,24 +55,38 @@ def allowed_rooms():
     return closed
 
 
-def included_rooms(text, rooms):
-    """Rooms named by the includes of a file: "room/file.h" or "frontmost/room.h"."""
+def public_headers(rooms):
+    """Public header without ".h" -> its room: the one of its name, or that in brackets behind it in docs/design.md."""
+    block = re.search(r"^include/frontmost/ (.*?)^src/", read("docs/design.md"), re.M | re.S)[1]
+    headers = {room: room for room in rooms}
+    for names, room in re.findall(r"([^()]*)\(([a-z]+)\)", block):
+        headers.update({name: room for name in re.findall(r"([a-z_]+)\.h", names)})
+    del headers["frontmost"]  # all of them
+    return headers
+
+
+def header_errors(headers):
+    """Every header of include/frontmost is of a room, but for the one that includes them all."""
+    for path in sorted((ROOT / "include/frontmost").glob("*.h")):
+        if path.stem not in {"frontmost", *headers}:
+            yield f"include/frontmost/{path.name}: docs/design.md does not say which room it is of"
+
+
+def included_rooms(text, headers):
+    """Rooms named by the includes of a file: "room/file.h" or "frontmost/header.h"."""
     for number, line in enumerate(text.splitlines(), 1):
         match = re.match(r'\s*#\s*include\s+["<](?:(frontmost)/)?([a-z_]+)(?:/|\.h)', line)
-        if not match:
-            continue
-        room = PUBLIC_HEADER_OF.get(match[2], match[2])
-        if room in rooms:
-            yield number, room, match[1] is not None
+        if match and (match[1] or headers.get(match[2]) == match[2]) and match[2] in headers:
+            yield number, headers[match[2]], match[1] is not None
 
 
-def arrow_errors(path, text, allowed):
+def arrow_errors(path, text, allowed, headers):
     top = path.parts[0]
     home = path.parts[1] if top == "src" and len(path.parts) > 2 else None
     if top == "src" and home and home not in allowed:
         yield f"{path}: room {home} is not in docs/design.md"
         return
-    for number, room, public in included_rooms(text, allowed):
+    for number, room, public in included_rooms(text, headers):
         if home and room not in allowed[home]:
             yield f"{path}:{number}: {home} must not include {room}"
         if top in FACES and not public:
@@ -98,7 +110,8 @@ def main():
     allowed = allowed_rooms()
     if len(allowed) < 8:
         sys.exit("docs/design.md: the house block was not understood")
-    errors, sources = [], 0
+    headers = public_headers(allowed)
+    errors, sources = list(header_errors(headers)), 0
     for path in tracked_files():
         if (size := (ROOT / path).stat().st_size) > LARGEST_FILE:
             errors.append(f"{path}: {size} bytes, more than {LARGEST_FILE}")
@@ -108,7 +121,7 @@ def main():
         sources += path.suffix in CODE
         errors += file_errors(path, text)
         if path.suffix in CODE:
-            errors += arrow_errors(path, text, allowed)
+            errors += arrow_errors(path, text, allowed, headers)
     print("\n".join(errors) if errors else f"house: {sources} C++ files in order, {len(allowed)} rooms")
     sys.exit(bool(errors))
 
