@@ -15,13 +15,13 @@ namespace frontmost::cli {
 namespace {
 
 /// An option of the command and the texts it was given.
-struct Found {
+struct GivenOption {
   const Option* option;
   std::vector<std::string> texts;
   bool is_set = false;
 };
 
-void declare(CLI::App& app, Found& found) {
+void declare(CLI::App& app, GivenOption& found) {
   const Option& option = *found.option;
   std::string names = fmt::format("--{}", option.name);
   if (option.letter) names = fmt::format("-{},{}", option.letter, names);
@@ -67,7 +67,7 @@ void take_leftovers(const Command& command, const std::vector<std::string>& word
 }
 
 /// "--output --hash" forgot a file name; a file of that name can still be written as ./--hash.
-void refuse_flag_as_value(const Command& command, const Found& found) {
+void refuse_flag_as_value(const Command& command, const GivenOption& found) {
   for (const std::string& text : found.texts) {
     if (text.substr(0, 2) != "--") continue;
     for (const std::string_view flag : known_flags(command)) {
@@ -76,7 +76,7 @@ void refuse_flag_as_value(const Command& command, const Found& found) {
   }
 }
 
-void apply_found(const Command& command, const Found& found, Settings& settings) {
+void apply_found(const Command& command, const GivenOption& found, Settings& settings) {
   if (found.is_set) apply(*found.option, {}, settings);
   refuse_flag_as_value(command, found);
   if (found.texts.size() > 1 && !(found.option->commands & may_repeat)) {
@@ -93,11 +93,11 @@ Settings parse_command_line(const Command& command, std::span<const char* const>
   app.allow_extras();
   Settings settings;
   if (!command.argument.empty()) app.add_option("model", settings.model);
-  std::vector<Found> all;
+  std::vector<GivenOption> all;
   for_each_option([&](const Option& option) {
     if (option.commands & command.bit) all.push_back({&option, {}, false});
   });
-  for (Found& found : all) declare(app, found);
+  for (GivenOption& found : all) declare(app, found);
   try {
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ArgumentMismatch&) {
@@ -106,7 +106,7 @@ Settings parse_command_line(const Command& command, std::span<const char* const>
     throw UsageError(error.what());
   }
   take_leftovers(command, app.remaining(), settings);
-  for (const Found& found : all) apply_found(command, found, settings);
+  for (const GivenOption& found : all) apply_found(command, found, settings);
   if (settings.model.empty() && !command.argument.empty()) {
     throw UsageError(fmt::format("no {} given; see frontmost {} --help", command.argument_name(), command.name));
   }

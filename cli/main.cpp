@@ -19,9 +19,9 @@
 namespace frontmost::cli {
 namespace {
 
-using Words = std::span<const char* const>;
+using Arguments = std::span<const char* const>;
 
-bool asks_for_help(const Words& words) {
+bool asks_for_help(const Arguments& words) {
   for (const std::string_view word : words) {
     if (word == "--") return false;
     if (word == "--help" || word == "-h") return true;
@@ -59,7 +59,7 @@ int run_command(const Command& command, Settings settings) {
   }
 }
 
-int dispatch(Words words) {
+int dispatch(Arguments words) {
   if (words.empty()) throw UsageError("no command given; see frontmost --help");
   const std::string_view first = words[0];
   if (first == "--version") {
@@ -86,7 +86,7 @@ int dispatch(Words words) {
   return run_command(*command, parse_command_line(*command, words.subspan(1)));
 }
 
-int run(const Words& words) {
+int run(const Arguments& words) {
   try {
     return dispatch(words);
   } catch (const UsageError& error) {

@@ -57,8 +57,8 @@ enum CommandBit : unsigned {
 struct Given {
   std::string_view text, choices;
 
-  [[nodiscard]] double number(const Range& range = any_number) const { return parse_number(text, range); }
-  [[nodiscard]] int integer(const Range& range) const { return parse_integer(text, range); }
+  [[nodiscard]] double number(const NumberLimits& range = any_number) const { return parse_number(text, range); }
+  [[nodiscard]] int integer(const NumberLimits& range) const { return parse_integer(text, range); }
   /// The order of the words in the table is the order of the enumerators.
   template <class Enum>
   [[nodiscard]] Enum choice() const {

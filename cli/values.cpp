@@ -98,7 +98,7 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   }
 }
 
-double parse_number(std::string_view text, const Range& range) {
+double parse_number(std::string_view text, const NumberLimits& range) {
   const std::optional<double> value = to_double(trimmed(text));
   if (!value) throw UsageError(fmt::format("{} is not a number", quoted(text)));
   // Written so that NaN fails.
@@ -111,13 +111,13 @@ double parse_number(std::string_view text, const Range& range) {
   return *value;
 }
 
-int parse_integer(std::string_view text, const Range& range) {
+int parse_integer(std::string_view text, const NumberLimits& range) {
   const double value = parse_number(text, range);
   if (value != std::floor(value)) throw UsageError(fmt::format("{} is not a whole number", shortened(text)));
   return int(value);
 }
 
-std::vector<double> parse_numbers(std::string_view text, std::size_t count, const Range& range) {
+std::vector<double> parse_numbers(std::string_view text, std::size_t count, const NumberLimits& range) {
   const std::vector<std::string_view> parts = split(text, ',');
   if (parts.size() != count) {
     throw UsageError(

@@ -14,18 +14,18 @@ namespace frontmost::cli {
 inline constexpr double radians_per_degree = 0.017453292519943295, degrees_per_radian = 57.29577951308232;
 
 /// Inclusive limits of a number.
-struct Range {
+struct NumberLimits {
   double low, high;
 };
-inline constexpr Range any_number{-1e30, 1e30};
+inline constexpr NumberLimits any_number{-1e30, 1e30};
 
 /// Every function throws UsageError saying what is wrong with the text and what would be right; the caller puts the
 /// flag's name in front.
-[[nodiscard]] double parse_number(std::string_view text, const Range& range = any_number);
-[[nodiscard]] int parse_integer(std::string_view text, const Range& range);
+[[nodiscard]] double parse_number(std::string_view text, const NumberLimits& range = any_number);
+[[nodiscard]] int parse_integer(std::string_view text, const NumberLimits& range);
 /// Exactly `count` numbers, or between `count` and `most`, separated by commas.
 [[nodiscard]] std::vector<double> parse_numbers(std::string_view text, std::size_t count,
-                                                const Range& range = any_number);
+                                                const NumberLimits& range = any_number);
 [[nodiscard]] glm::dvec3 parse_vector(std::string_view text);
 /// As parse_vector, or an axis such as "x", "+Z" or "-y"; not zero.
 [[nodiscard]] glm::dvec3 parse_direction(std::string_view text);

@@ -35,7 +35,7 @@ Answer answer_by_painter(const Surfaces& surfaces, const View& view, const Execu
       surfaces.primitive_count()};
 }
 
-Lists lists_of_abuffer(const Surfaces& surfaces, const View& view, const Execution& execution) {
+KeptLists lists_of_abuffer(const Surfaces& surfaces, const View& view, const Execution& execution) {
   const FragmentCounts counts = count_fragments(surfaces, view, {}, execution);
   return {counts.fragments, counts.longest};
 }

@@ -47,7 +47,7 @@ struct Answer {
 };
 
 /// The lists of fragments, of methods that keep them.
-struct Lists {
+struct KeptLists {
   std::uint64_t fragments = 0, longest = 0;
 };
 
@@ -56,7 +56,7 @@ struct ComparedMethod {
   std::string_view title;  ///< as people call it
   std::string_view how;    ///< in a sentence
   Answer (*answer)(const Surfaces&, const View&, const Execution&, StageClock&);
-  Lists (*lists)(const Surfaces&, const View&, const Execution&) = nullptr;  ///< counted apart, beside the clock
+  KeptLists (*lists)(const Surfaces&, const View&, const Execution&) = nullptr;  ///< counted apart, beside the clock
   bool is_naive = false;  ///< known to be wrong: shown to be seen, and not counted among those that agree
 };
 

@@ -185,13 +185,13 @@ std::string table_of(const Comparisons& all) {
   plain("samples", [&](const Compared&) { return all.view.sample_count(); });
   plain(
       "covered", [](const Compared& c) { return covered_samples(c.run.answer.visible); }, part);
-  const auto of_lists = [&](std::string_view label, std::uint64_t Lists::*number, std::string_view kind = "") {
+  const auto of_lists = [&](std::string_view label, std::uint64_t KeptLists::*number, std::string_view kind = "") {
     std::vector<std::string> cells;
     for (const Compared& c : all.methods) cells.push_back(c.run.lists ? grouped(*c.run.lists.*number) : "");
     text += row(label, cells, kind);
   };
-  of_lists("fragments", &Lists::fragments);
-  of_lists("most of a pixel", &Lists::longest, part);
+  of_lists("fragments", &KeptLists::fragments);
+  of_lists("most of a pixel", &KeptLists::longest, part);
   plain(fmt::format("{} that differ", spots(all.view)), [](const Compared& c) { return c.agreement.differing(); });
   for (const Cause& cause : causes)
     plain(

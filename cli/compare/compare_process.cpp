@@ -197,7 +197,7 @@ MethodRun receive_run(const Receiver& receiver) {
   run.answer.primitives = receiver.number();
   run.answer.visible = receiver.visible();
   if (receiver.number() != 0) run.answer.behind = receiver.visible();
-  if (receiver.number() != 0) receiver.receive(&run.lists.emplace(), sizeof(Lists));
+  if (receiver.number() != 0) receiver.receive(&run.lists.emplace(), sizeof(KeptLists));
   return run;
 }
 

@@ -13,7 +13,7 @@ struct MethodRun {
   std::vector<Stage> stages;     ///< "load" and "surfaces" once, those of the method --runs times
   std::uint64_t peak_bytes = 0;  ///< of resident memory, beyond what model and surfaces hold
   Answer answer;
-  std::optional<Lists> lists;
+  std::optional<KeptLists> lists;
 
   /// Medians; null for a stage that it has not.
   [[nodiscard]] std::optional<double> median_of(std::string_view stage) const;

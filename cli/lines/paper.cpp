@@ -19,7 +19,7 @@ struct Paper {
 constexpr Paper papers[] = {
     {"a0", 841, 1189}, {"a1", 594, 841}, {"a2", 420, 594},         {"a3", 297, 420},        {"a4", 210, 297},
     {"a5", 148, 210},  {"a6", 105, 148}, {"letter", 215.9, 279.4}, {"legal", 215.9, 355.6}, {"tabloid", 279.4, 431.8}};
-constexpr Range side_range{1, 1e5};
+constexpr NumberLimits side_range{1, 1e5};
 
 std::string in_small_letters(std::string_view text) {
   std::string small(text);
@@ -74,7 +74,7 @@ std::string paper_text(const glm::dvec2& size) {
 }
 
 double parse_scale(std::string_view text) {
-  constexpr Range range{1e-6, 1e6};
+  constexpr NumberLimits range{1e-6, 1e6};
   const std::size_t colon = text.find(':');
   if (colon == std::string_view::npos) return parse_number(text, range);
   const double paper = parse_number(text.substr(0, colon), range), model = parse_number(text.substr(colon + 1), range);

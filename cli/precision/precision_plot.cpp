@@ -16,7 +16,7 @@ namespace {
 constexpr double width = 920, height = 580, left = 92, right = 780, top = 84, bottom = 510;
 constexpr int line_points = 480;
 
-struct Line {
+struct PlotLine {
   DepthSetup setup;
   const char* color;
   const char* dashes;              ///< lines that nearly coincide are told apart by them
@@ -35,8 +35,8 @@ struct Axes {
   }
 };
 
-std::vector<Line> lines_of(const ClipDistances& clip, bool orthographic, const std::optional<DepthSetup>& chosen) {
-  std::vector<Line> lines;
+std::vector<PlotLine> lines_of(const ClipDistances& clip, bool orthographic, const std::optional<DepthSetup>& chosen) {
+  std::vector<PlotLine> lines;
   const auto add = [&](DepthFormat format, bool reversed, const char* color, const char* dashes) {
     lines.push_back({{clip, format, reversed, orthographic}, color, dashes, {}});
   };
@@ -47,7 +47,7 @@ std::vector<Line> lines_of(const ClipDistances& clip, bool orthographic, const s
   add(DepthFormat::f32, true, "#2a8f5c", "");
   const double far = std::isfinite(clip.far) ? clip.far : clip.near * 1e6;
   const double near = clip.near > 0 ? clip.near : far * 1e-6;
-  for (Line& line : lines) {
+  for (PlotLine& line : lines) {
     for (int i = 0; i < line_points; ++i) {
       const double distance = std::clamp(near * std::pow(far / near, i / (line_points - 1.0)), clip.near, far);
       const double gap = certain_gap(line.setup, distance);
@@ -57,9 +57,9 @@ std::vector<Line> lines_of(const ClipDistances& clip, bool orthographic, const s
   return lines;
 }
 
-Axes axes_of(const std::vector<Line>& lines, const std::optional<glm::dvec2>& wanted) {
+Axes axes_of(const std::vector<PlotLine>& lines, const std::optional<glm::dvec2>& wanted) {
   double x_low = 1e300, x_high = 0, y_low = 1e300, y_high = 0;
-  for (const Line& line : lines)
+  for (const PlotLine& line : lines)
     for (const glm::dvec2& p : line.points) {
       x_low = std::min(x_low, p.x);
       x_high = std::max(x_high, p.x);
@@ -110,7 +110,7 @@ std::string grid(const Axes& axes) {
       major, labels);
 }
 
-std::string path_of(const Line& line, const Axes& axes, bool stands_back) {
+std::string path_of(const PlotLine& line, const Axes& axes, bool stands_back) {
   std::string path;
   for (const glm::dvec2& p : line.points)
     path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", axes.x(p.x), axes.y(p.y));
@@ -121,13 +121,13 @@ std::string path_of(const Line& line, const Axes& axes, bool stands_back) {
 }
 
 /// Beside the ends of the lines, in their order, far enough apart to be read.
-std::string names_of(const std::vector<Line>& lines, const Axes& axes) {
+std::string names_of(const std::vector<PlotLine>& lines, const Axes& axes) {
   struct Name {
     double y;
-    const Line* line;
+    const PlotLine* line;
   };
   std::vector<Name> names;
-  for (const Line& line : lines)
+  for (const PlotLine& line : lines)
     if (!line.points.empty()) names.push_back({std::clamp(axes.y(line.points.back().y), top, bottom), &line});
   std::stable_sort(names.begin(), names.end(), [](const Name& a, const Name& b) { return a.y < b.y; });
   double lowest = top - 18;
@@ -157,19 +157,19 @@ std::string mark(const glm::dvec2& wanted, const Axes& axes) {
 
 std::string precision_plot(const ClipDistances& clip, bool orthographic, const std::optional<DepthSetup>& chosen,
                            const std::optional<glm::dvec2>& wanted) {
-  std::vector<Line> lines = lines_of(clip, orthographic, chosen);
-  const auto is_chosen = [&](const Line& line) {
+  std::vector<PlotLine> lines = lines_of(clip, orthographic, chosen);
+  const auto is_chosen = [&](const PlotLine& line) {
     return chosen && line.setup.format == chosen->format && line.setup.reversed == chosen->reversed;
   };
   // A reversed integer buffer resolves what the other does; it takes that one's line.
   if (chosen && std::none_of(lines.begin(), lines.end(), is_chosen))
-    for (Line& line : lines)
+    for (PlotLine& line : lines)
       line.setup.reversed = line.setup.format == chosen->format ? chosen->reversed : line.setup.reversed;
   const Axes axes = axes_of(lines, wanted);
   std::string paths;
-  for (const Line& line : lines)
+  for (const PlotLine& line : lines)
     if (!is_chosen(line)) paths += path_of(line, axes, chosen.has_value());
-  for (const Line& line : lines)
+  for (const PlotLine& line : lines)
     if (is_chosen(line)) paths += path_of(line, axes, false);
   const std::string far = std::isfinite(clip.far) ? fmt::format("{:g}", clip.far) : "infinite";
   std::string svg = fmt::format(

@@ -19,12 +19,12 @@ namespace frontmost::cli {
 namespace {
 
 /// In the coordinates of the model's file.
-struct Pair {
+struct PointPair {
   glm::dvec3 from, to;
 };
 
-std::vector<Pair> read_pairs(const std::string& path) {
-  std::vector<Pair> pairs;
+std::vector<PointPair> read_pairs(const std::string& path) {
+  std::vector<PointPair> pairs;
   const std::vector<double> n = read_number_lines(path, {6, "six numbers make a pair of points"});
   pairs.reserve(n.size() / 6);
   for (std::size_t i = 0; i < n.size(); i += 6)
@@ -32,16 +32,16 @@ std::vector<Pair> read_pairs(const std::string& path) {
   return pairs;
 }
 
-std::vector<Pair> pairs_of(const SightSettings& sight) {
+std::vector<PointPair> pairs_of(const SightSettings& sight) {
   if (sight.pairs && (sight.from || sight.to)) throw UsageError("--pairs and --from, --to are two ways to say it");
   if (sight.pairs) return read_pairs(*sight.pairs);
   if (!sight.from || !sight.to) throw UsageError("give --from and --to, or --pairs");
   return {{*sight.from, *sight.to}};
 }
 
-std::vector<Segment> segments_of(std::span<const Pair> pairs, const glm::dvec3& origin) {
+std::vector<Segment> segments_of(std::span<const PointPair> pairs, const glm::dvec3& origin) {
   std::vector<Segment> segments;
-  for (const Pair& pair : pairs) segments.push_back({pair.from - origin, pair.to - origin});
+  for (const PointPair& pair : pairs) segments.push_back({pair.from - origin, pair.to - origin});
   return segments;
 }
 
@@ -85,18 +85,18 @@ std::string pair_text(const CurvedHit& hit, const Segment& pair, const RayScene&
 /// Calls `use` with every pair and what is met between its points, in order: a part of them at a time, so that memory
 /// does not grow with what is said of them.
 template <class Use>
-void for_each_pair(std::span<const Pair> pairs, const RayScene& rays, const Execution& execution, const Use& use) {
+void for_each_pair(std::span<const PointPair> pairs, const RayScene& rays, const Execution& execution, const Use& use) {
   constexpr std::size_t at_once = 1 << 16;
   for (std::size_t begin = 0; begin < pairs.size(); begin += at_once) {
     stop_if_interrupted();
-    const std::span<const Pair> part = pairs.subspan(begin, std::min(at_once, pairs.size() - begin));
+    const std::span<const PointPair> part = pairs.subspan(begin, std::min(at_once, pairs.size() - begin));
     const std::vector<Segment> segments = segments_of(part, rays.scene().origin);
     const std::vector<CurvedHit> hits = rays.closest(segments, execution);
     for (std::size_t i = 0; i < part.size(); ++i) use(hits[i], segments[i]);
   }
 }
 
-void print_json(const Settings& settings, std::span<const Pair> pairs, const RayScene& rays,
+void print_json(const Settings& settings, std::span<const PointPair> pairs, const RayScene& rays,
                 const Execution& execution) {
   JsonListPrinter printer({{"model", settings.model}}, "pairs");
   std::size_t clear = 0;
@@ -107,7 +107,7 @@ void print_json(const Settings& settings, std::span<const Pair> pairs, const Ray
   printer.finish({{"clear", clear}, {"of", pairs.size()}});
 }
 
-void print_text(std::span<const Pair> pairs, const RayScene& rays, const Execution& execution) {
+void print_text(std::span<const PointPair> pairs, const RayScene& rays, const Execution& execution) {
   constexpr std::size_t enough = 1 << 16;
   std::string text;
   for_each_pair(pairs, rays, execution, [&](const CurvedHit& hit, const Segment& pair) {
@@ -122,7 +122,7 @@ void print_text(std::span<const Pair> pairs, const RayScene& rays, const Executi
 }  // namespace
 
 int run_sight(const Settings& settings) {
-  const std::vector<Pair> pairs = pairs_of(settings.sight);
+  const std::vector<PointPair> pairs = pairs_of(settings.sight);
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
   const Scene scene = load_model(settings, execution, progress);

@@ -62,11 +62,11 @@ FragmentLists abuffer(const Surfaces& surfaces, const View& view, const AbufferO
   const PreparedFrame prepared(surfaces, view, options, execution);
   const Opacities opacities(surfaces, options.opacity, execution);
   const CopyRule copies = copy_rule(opacities);
-  const FrameInput frame = prepared.input(copies, execution);
+  const GatherInput frame = prepared.input(copies, execution);
   std::mutex mutex;
   std::vector<TilePart<Fragment>> parts;
   std::uint64_t total = 0;
-  visit_tiles(frame, execution, [&](const TileJob& job, TileScratch* scratch) {
+  visit_tiles(frame, execution, [&](const GatherJob& job, GatherScratch* scratch) {
     if (!scratch) return;
     JobLists made = list_fragments(frame, job, *scratch, opacities);
     TilePart<Fragment> part{job.pixels, std::move(made.begin), std::move(made.fragments)};
@@ -94,10 +94,10 @@ FragmentCounts count_fragments(const Surfaces& surfaces, const View& view, const
   const IeeeScope ieee;
   const PreparedFrame prepared(surfaces, view, options, execution);
   const CopyRule all;
-  const FrameInput frame = prepared.input(all, execution);
+  const GatherInput frame = prepared.input(all, execution);
   std::mutex mutex;
   FragmentCounts counts;
-  visit_tiles(frame, execution, [&](const TileJob& /*job*/, const TileScratch* scratch) {
+  visit_tiles(frame, execution, [&](const GatherJob& /*job*/, const GatherScratch* scratch) {
     if (!scratch) return;
     std::size_t longest = 0;
     for (std::size_t group = 0; group < kGroups; ++group) longest = std::max(longest, scratch->length(group));

@@ -8,7 +8,7 @@ namespace {
 
 class Lister {
  public:
-  Lister(const FrameInput& frame, TileScratch& scratch, const Opacities& opacities, float negligible)
+  Lister(const GatherInput& frame, GatherScratch& scratch, const Opacities& opacities, float negligible)
       : frame_(frame), s_(scratch), opacities_(opacities), negligible_(negligible) {
     lists_.scratch = &scratch;
     lists_.fragments.reserve(scratch.arrived.count);
@@ -72,8 +72,8 @@ class Lister {
     lists_.numbers.push_back(number);
   }
 
-  const FrameInput& frame_;
-  TileScratch& s_;
+  const GatherInput& frame_;
+  GatherScratch& s_;
   const Opacities& opacities_;
   const float negligible_;
   JobLists lists_;
@@ -81,8 +81,8 @@ class Lister {
 
 }  // namespace
 
-JobLists list_fragments(const FrameInput& frame, const TileJob& job, TileScratch& scratch, const Opacities& opacities,
-                        float negligible) {
+JobLists list_fragments(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch,
+                        const Opacities& opacities, float negligible) {
   Lister lister(frame, scratch, opacities, negligible);
   for (int y = 0; y < job.pixels.height; ++y)
     for (int x = 0; x < job.pixels.width; ++x) lister.add_pixel(x, y);

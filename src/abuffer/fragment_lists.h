@@ -11,7 +11,7 @@ struct JobLists {
   std::vector<std::uint32_t> begin;  ///< by pixel of the rectangle, row by row; and the end of the last
   std::vector<Fragment> fragments;
   std::vector<std::uint32_t> numbers;  ///< of each fragment in Arrived
-  const TileScratch* scratch = nullptr;
+  const GatherScratch* scratch = nullptr;
 
   /// The key of fragment i at a place in 1/256 pixel from the rectangle's corner, exactly as it is compared. Only as
   /// long as the scratch is as it was.
@@ -22,7 +22,7 @@ struct JobLists {
 
 /// Leaves out what lies wholly behind opaque fragments that cover the whole pixel; and what lies wholly behind
 /// fragments that cover it and together let no more pass than `negligible`. Precondition: not flat.
-[[nodiscard]] JobLists list_fragments(const FrameInput& frame, const TileJob& job, TileScratch& scratch,
+[[nodiscard]] JobLists list_fragments(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch,
                                       const Opacities& opacities, float negligible = 0);
 
 }  // namespace frontmost::abuffer_detail

@@ -48,24 +48,24 @@ FragmentPass::FragmentPass(const Surfaces& surfaces, const View& view, const Abu
 
 void FragmentPass::list_primitives(const Note& note, const Execution& execution) const {
   const IeeeScope ieee;
-  const FrameInput frame = prepared_.input(copies_, execution);
-  visit_tiles(frame, execution, [&](const TileJob& /*job*/, TileScratch* scratch) {
+  const GatherInput frame = prepared_.input(copies_, execution);
+  visit_tiles(frame, execution, [&](const GatherJob& /*job*/, GatherScratch* scratch) {
     if (scratch) note({scratch->triangles.id.data(), scratch->triangles.count});
   });
 }
 
 void FragmentPass::look(const Look& look, const Execution& execution) const {
   const IeeeScope ieee;
-  const FrameInput frame = prepared_.input(copies_, execution);
-  visit_tiles(frame, execution, [&](const TileJob& job, TileScratch* scratch) {
+  const GatherInput frame = prepared_.input(copies_, execution);
+  visit_tiles(frame, execution, [&](const GatherJob& job, GatherScratch* scratch) {
     if (scratch) look(job.pixels, list_fragments(frame, job, *scratch, opacities_));
   });
 }
 
 void FragmentPass::paint(const Paint& paint, const Receive& receive, const Execution& execution) const {
   const IeeeScope ieee;
-  const FrameInput frame = prepared_.input(copies_, execution);
-  visit_tiles(frame, execution, [&](const TileJob& job, TileScratch* scratch) {
+  const GatherInput frame = prepared_.input(copies_, execution);
+  visit_tiles(frame, execution, [&](const GatherJob& job, GatherScratch* scratch) {
     if (!scratch) return receive(job.pixels, nullptr);
     const JobLists lists = list_fragments(frame, job, *scratch, opacities_, kNegligible);
     // By number of arrival, as the compositor looks them up; fragments that were left out of the lists stay without

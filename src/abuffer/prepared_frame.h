@@ -9,7 +9,7 @@ namespace frontmost::abuffer_detail {
 
 struct PreparedFrame {
   SamplePattern pattern;
-  FramePlan plan;
+  FragmentPlan plan;
 
   /// \throws Error for a view or options out of range.
   PreparedFrame(const Surfaces& surfaces, const View& view, const AbufferOptions& options, const Execution& execution)
@@ -17,7 +17,7 @@ struct PreparedFrame {
         plan(surfaces, view, execution) {}
 
   /// Of lists that say all. As long as this, and the rule, are where they are.
-  [[nodiscard]] FrameInput input(const CopyRule& copies, const Execution& execution) const {
+  [[nodiscard]] GatherInput input(const CopyRule& copies, const Execution& execution) const {
     return {plan, pattern, false, execution.isa, copies};
   }
 };

@@ -30,8 +30,8 @@ void clear(const Rectangle& r, const PicturePlanes& out) {
 }  // namespace
 
 struct Resolver::State {
-  FramePlan plan;
-  Pool<TileScratch> scratches;
+  FragmentPlan plan;
+  Pool<GatherScratch> scratches;
   ResolvedPicture picture;
   /// By tile: nothing is seen in it, and its pixels say so. Such tiles need not be cleared again.
   std::vector<std::uint8_t> blank;
@@ -66,13 +66,13 @@ const ResolvedPicture& Resolver::draw(const Surfaces& surfaces, const View& view
   // Holes are taken out of masks, which flat frames do not have.
   const bool has_holes = surfaces.clusters().cutouts != nullptr;
   const CopyRule copies{[&](PrimitiveId id) { return colors[id].a * options.opacity >= 1.0f; }};
-  const FrameInput frame{state.plan, pattern, pattern.count == 1 && !has_holes, execution.isa, copies, colors.data()};
+  const GatherInput frame{state.plan, pattern, pattern.count == 1 && !has_holes, execution.isa, copies, colors.data()};
   ResolvedPicture& picture = state.picture;
   const bool streams = view.pixel_count() * 4 * sizeof(float) >= kStreamFrom;
   const PicturePlanes out{
       picture.red.data(), picture.green.data(), picture.blue.data(), picture.alpha.data(), view.width, 0, 0, streams};
   const FragmentColors paint{colors.data(), false, options.opacity};
-  visit_tiles(frame, state.scratches, execution, [&](const TileJob& job, TileScratch* scratch) {
+  visit_tiles(frame, state.scratches, execution, [&](const GatherJob& job, GatherScratch* scratch) {
     std::uint8_t& blank = state.blank[job.tile];
     if (scratch) {
       blank = 0;

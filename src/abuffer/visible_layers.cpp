@@ -12,7 +12,7 @@ namespace {
 
 using namespace abuffer_detail;
 
-struct Seen {
+struct SeenSample {
   float key;
   PrimitiveId id;
 };
@@ -21,10 +21,10 @@ struct Seen {
 class SampleLists {
  public:
   /// `most`: how many are wanted.
-  SampleLists(const FrameInput& frame, TileScratch& scratch, std::size_t most)
+  SampleLists(const GatherInput& frame, GatherScratch& scratch, std::size_t most)
       : frame_(frame), s_(scratch), most_(most) {}
 
-  const std::vector<Seen>& at(int x, int y, std::size_t sample) {
+  const std::vector<SeenSample>& at(int x, int y, std::size_t sample) {
     const std::uint32_t pixel = pixel_number(std::uint32_t(x), std::uint32_t(y));
     const std::size_t group = pixel / kGroup, length = s_.length(group);
     const std::uint64_t* words = s_.slot(group, 0) + pixel % kGroup;
@@ -42,15 +42,15 @@ class SampleLists {
     // Lists are sorted by the key at one place of the pixel; at other samples triangles that cross there change places.
     if (frame_.pattern.count > 1)
       std::sort(seen_.begin(), seen_.end(),
-                [](const Seen& a, const Seen& b) { return a.key != b.key ? a.key > b.key : a.id < b.id; });
+                [](const SeenSample& a, const SeenSample& b) { return a.key != b.key ? a.key > b.key : a.id < b.id; });
     return seen_;
   }
 
  private:
-  const FrameInput& frame_;
-  TileScratch& s_;
+  const GatherInput& frame_;
+  GatherScratch& s_;
   const std::size_t most_;
-  std::vector<Seen> seen_;
+  std::vector<SeenSample> seen_;
 };
 
 }  // namespace
@@ -65,10 +65,10 @@ std::vector<Visible> visible_layers(const Surfaces& surfaces, const View& view, 
   CopyRule copies = copy_rule(opacities);
   // Of triangles at one place, those with as many before them everywhere are in no layer.
   copies.most = std::size_t(count);
-  const FrameInput frame = prepared.input(copies, execution);
+  const GatherInput frame = prepared.input(copies, execution);
   std::vector<Visible> layers;
   for (int k = 0; k < count; ++k) layers.push_back(nothing_visible(view));
-  visit_tiles(frame, execution, [&](const TileJob& job, TileScratch* scratch) {
+  visit_tiles(frame, execution, [&](const GatherJob& job, GatherScratch* scratch) {
     if (!scratch) return;
     SampleLists lists(frame, *scratch, layers.size());
     for (std::size_t sample = 0; sample < std::size_t(prepared.pattern.count); ++sample)
@@ -76,7 +76,7 @@ std::vector<Visible> visible_layers(const Surfaces& surfaces, const View& view, 
         for (int x = 0; x < job.pixels.width; ++x) {
           const std::size_t at = layers[0].index(job.pixels.x + x, job.pixels.y + y, int(sample));
           std::size_t k = 0;
-          for (const Seen& seen : lists.at(x, y, sample)) {
+          for (const SeenSample& seen : lists.at(x, y, sample)) {
             if (k == layers.size()) break;
             layers[k].primitives[at] = seen.id;
             layers[k++].keys[at] = seen.key;

@@ -14,7 +14,7 @@ namespace frontmost::abuffer_detail {
 /// Gathers `job`, and calls visit(job, scratch or null where nothing is seen) unless it is too much. \returns whether
 /// it was not.
 template <class Visit>
-bool visit_whole(const FrameInput& frame, const TileJob& job, TileScratch& scratch, const Visit& visit) {
+bool visit_whole(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch, const Visit& visit) {
   const Gathered gathered = gather_tile(frame, job, scratch);
   if (gathered == Gathered::too_much) return false;
   if (gathered == Gathered::something && !frame.is_flat) cut_fragments(frame, job, scratch);
@@ -24,7 +24,7 @@ bool visit_whole(const FrameInput& frame, const TileJob& job, TileScratch& scrat
 
 /// The same for `job`, or for parts of it.
 template <class Visit>
-void visit_job(const FrameInput& frame, const TileJob& job, TileScratch& scratch, const Visit& visit) {
+void visit_job(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch, const Visit& visit) {
   if (visit_whole(frame, job, scratch, visit)) return;
   // Parts of whole groups of pixels as long as there are groups.
   const Rectangle& r = job.pixels;
@@ -38,16 +38,16 @@ void visit_job(const FrameInput& frame, const TileJob& job, TileScratch& scratch
 
 /// The same for the whole picture, in any order, on all threads. Every pixel is in one job.
 template <class Visit>
-void visit_tiles(const FrameInput& frame, Pool<TileScratch>& pool, const Execution& execution, const Visit& visit) {
+void visit_tiles(const GatherInput& frame, Pool<GatherScratch>& pool, const Execution& execution, const Visit& visit) {
   std::atomic<std::size_t> done{0};
   const std::size_t tiles = frame.plan.tile_count();
   CrowdedFrame crowded(frame.plan, frame.copies);
   parallel_for(execution, tiles, 1, [&](std::size_t begin, std::size_t end) {
-    const auto scratch = pool.borrow([] { return std::make_unique<TileScratch>(); });
+    const auto scratch = pool.borrow([] { return std::make_unique<GatherScratch>(); });
     for (std::size_t tile = begin; tile < end; ++tile) {
-      const TileJob job{frame.plan.tile(tile), tile};
+      const GatherJob job{frame.plan.tile(tile), tile};
       if (visit_whole(frame, job, *scratch, visit)) continue;
-      const FramePlan& thinned = crowded.thinned();
+      const FragmentPlan& thinned = crowded.thinned();
       visit_job({thinned, frame.pattern, frame.is_flat, frame.isa, frame.copies, frame.colors}, job, *scratch, visit);
     }
     report_progress(execution, "visible", double(done += end - begin) / double(tiles));
@@ -55,8 +55,8 @@ void visit_tiles(const FrameInput& frame, Pool<TileScratch>& pool, const Executi
 }
 
 template <class Visit>
-void visit_tiles(const FrameInput& frame, const Execution& execution, const Visit& visit) {
-  Pool<TileScratch> pool;
+void visit_tiles(const GatherInput& frame, const Execution& execution, const Visit& visit) {
+  Pool<GatherScratch> pool;
   visit_tiles(frame, pool, execution, visit);
 }
 

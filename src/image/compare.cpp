@@ -26,9 +26,9 @@ double difference(float a, float b) {
 }
 
 /// Two images that can be compared, and the difference of their pixels.
-class Pair {
+class ImagePair {
  public:
-  Pair(const Image& image, const Image& reference) : width_(image.width), height_(image.height) {
+  ImagePair(const Image& image, const Image& reference) : width_(image.width), height_(image.height) {
     validate(image);
     validate(reference);
     if (image.width != reference.width || image.height != reference.height)
@@ -93,7 +93,7 @@ class Pair {
 };
 
 /// Comparison of one row; the sum of differences in `mean`.
-Comparison compare_row(const Pair& pair, int y, double threshold) {
+Comparison compare_row(const ImagePair& pair, int y, double threshold) {
   Comparison result;
   result.y = y;
   const std::vector<double> differences = pair.row(y);
@@ -129,7 +129,7 @@ void paint(const ColorPlanes* reference, std::size_t i, double strength, float* 
 
 Comparison compare(const Image& image, const Image& reference, double threshold, const Execution& execution) {
   if (!(threshold >= 0)) throw Error(ErrorCode::bad_argument, "comparison: the threshold must not be negative");
-  const Pair pair(image, reference);
+  const ImagePair pair(image, reference);
   std::vector<Comparison> rows(std::size_t(pair.height()));
   parallel_for(execution, rows.size(), rows_at_a_time, [&](std::size_t first, std::size_t end) {
     for (std::size_t y = first; y < end; ++y) rows[y] = compare_row(pair, int(y), threshold);
@@ -149,7 +149,7 @@ Comparison compare(const Image& image, const Image& reference, double threshold,
 }
 
 Image difference_image(const Image& image, const Image& reference, double threshold, const Execution& execution) {
-  const Pair pair(image, reference);
+  const ImagePair pair(image, reference);
   const double greatest = compare(image, reference, threshold, execution).error;
   Image picture{pair.width(), pair.height(), {}};
   float* planes[4];

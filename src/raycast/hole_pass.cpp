@@ -125,7 +125,7 @@ class HolePasser {
     };
     const float tx = tile_centre(place.pixel_x, transform_.centre_x);
     const float ty = tile_centre(place.pixel_y, transform_.centre_y);
-    const KeyPlane plane = key_plane(view_, transform_, triangle, {tx, ty});
+    const TileKeyPlane plane = key_plane(view_, transform_, triangle, {tx, ty});
     const float raw = plane.raw(sx - tx, sy - ty);
     if (plane.is_outside || !plane.sees(raw)) return;
     const float key = plane.clamped(raw);

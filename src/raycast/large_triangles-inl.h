@@ -52,8 +52,8 @@ struct SingleCorners {
     return same;
   }
 
-  [[nodiscard]] std::array<Corner, 3> all() const {
-    std::array<Corner, 3> corners;
+  [[nodiscard]] std::array<SampleCorner, 3> all() const {
+    std::array<SampleCorner, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) corners[k] = {x[k], y[k], d[k], true};
     return corners;
   }
@@ -61,22 +61,22 @@ struct SingleCorners {
 
 /// Some of them may take doubles.
 struct WideCorners {
-  std::array<Corner, 3> corners;
+  std::array<SampleCorner, 3> corners;
 
-  [[nodiscard]] const std::array<Corner, 3>& all() const { return corners; }
+  [[nodiscard]] const std::array<SampleCorner, 3>& all() const { return corners; }
 };
 
 template <class Corners>
 struct LargeTriangle {
   Corners corners;
-  KeyPlane plane;
+  TileKeyPlane plane;
   Rect rect;
   PrimitiveId id;
 };
 
-class LargeTriangles {
+class LargeRayTriangles {
  public:
-  LargeTriangles(const FrameInput& frame, const TilePlace& place, TileBuffer& buffer)
+  LargeRayTriangles(const RayTileInput& frame, const TilePlace& place, RayTileBuffer& buffer)
       : t_(frame.transform), culling_(frame.view.culling), place_(place), buffer_(buffer) {}
 
   template <class Corners>
@@ -114,7 +114,7 @@ class LargeTriangles {
   }
 
   /// Blocks in which every key so far is greater than any of the triangle's.
-  [[nodiscard]] std::uint64_t Hidden(const KeyPlane& plane) const {
+  [[nodiscard]] std::uint64_t Hidden(const TileKeyPlane& plane) const {
     const DF d;
     const float slope = std::abs(plane.gx) + std::abs(plane.gy);
     // Rounding here, and of the keys: a few units in the last place of what is added up.
@@ -142,11 +142,11 @@ class LargeTriangles {
   };
 
   /// \returns false when nothing can be said in advance.
-  bool SetEdges(const std::array<Corner, 3>& corners, Edges& edges) const {
+  bool SetEdges(const std::array<SampleCorner, 3>& corners, Edges& edges) const {
     double x[3], y[3], w[3], size[3], error[3];
     const double half = double(std::max(t_.centre_x, t_.centre_y)) + kSubPixels, tile = 0.5 * kTileSize * kSubPixels;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Corner& c = corners[k];
+      const SampleCorner& c = corners[k];
       w[k] = t_.orthographic ? 1.0 : c.d;
       x[k] = c.x - double(place_.centre_x) * w[k];
       y[k] = c.y - double(place_.centre_y) * w[k];
@@ -236,7 +236,7 @@ class LargeTriangles {
   HWY_INLINE void DrawBlocks(const LargeTriangle<Corners>& large, std::uint64_t open, std::uint64_t full) {
     const DF d;
     const DU du;
-    const KeyPlane& plane = large.plane;
+    const TileKeyPlane& plane = large.plane;
     const VF gx = hn::Set(d, plane.gx), gy = hn::Set(d, plane.gy), k0 = hn::Set(d, plane.k0);
     const VF low = hn::Set(d, plane.low), high = hn::Set(d, plane.high);
     const VU id = hn::Set(du, large.id);
@@ -276,7 +276,7 @@ class LargeTriangles {
       x[k] = hn::Sub(c.x[k], hn::Mul(sx, c.w[k]));
       y[k] = hn::Sub(c.y[k], hn::Mul(sy, c.w[k]));
     }
-    const Sides sides = SidesOf(x, y);
+    const EdgeSides sides = SidesOf(x, y);
     const MF met = Kept(culling_, sides);
     if (HWY_LIKELY(hn::AllFalse(d, sides.doubtful))) return met;
     return Resolve(met, sides.doubtful, sx, sy,
@@ -296,7 +296,7 @@ class LargeTriangles {
     for (std::size_t i = 0; i < kLanes; i += kDoubles) {
       VD x[3], y[3], det[3];
       for (std::size_t k = 0; k < 3; ++k) {
-        const Corner& c = wide.corners[k];
+        const SampleCorner& c = wide.corners[k];
         const double w = t_.orthographic ? 1.0 : c.d;
         x[k] = Sheared(c.x, w, c.is_single, hn::Load(dh, fx + i));
         y[k] = Sheared(c.y, w, c.is_single, hn::Load(dh, fy + i));
@@ -330,7 +330,7 @@ class LargeTriangles {
   const ScreenTransform& t_;
   Culling culling_;
   const TilePlace& place_;
-  TileBuffer& buffer_;
+  RayTileBuffer& buffer_;
 };
 
 }  // namespace HWY_NAMESPACE

@@ -18,11 +18,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// Where the three determinants are certain: floats round products monotonically, so a difference has the right sign
 /// unless it is zero.
-struct Sides {
+struct EdgeSides {
   MF front, back, doubtful;
 };
 
-HWY_INLINE Sides SidesOf(const VF (&x)[3], const VF (&y)[3]) {
+HWY_INLINE EdgeSides SidesOf(const VF (&x)[3], const VF (&y)[3]) {
   const DF d;
   const VF u = hn::Sub(hn::Mul(x[1], y[2]), hn::Mul(y[1], x[2]));
   const VF v = hn::Sub(hn::Mul(x[2], y[0]), hn::Mul(y[2], x[0]));
@@ -33,7 +33,7 @@ HWY_INLINE Sides SidesOf(const VF (&x)[3], const VF (&y)[3]) {
   return {hn::Lt(most, zero), hn::Gt(least, zero), hn::Eq(closest, zero)};
 }
 
-HWY_INLINE MF Kept(Culling culling, const Sides& sides) {
+HWY_INLINE MF Kept(Culling culling, const EdgeSides& sides) {
   switch (culling) {
     case Culling::none: return hn::Or(sides.front, sides.back);
     case Culling::back: return sides.front;

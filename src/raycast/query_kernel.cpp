@@ -279,7 +279,7 @@ void WalkQuery(const RayTree& tree, const Query& query, Want want, std::vector<R
   while (walker.Step()) continue;
 }
 
-struct Batch {
+struct QueryBatch {
   const RayTree& tree;
   std::span<const Query> queries;
   Want want;
@@ -288,9 +288,9 @@ struct Batch {
 };
 
 /// Walks for one query of a batch after the other.
-class Turn {
+class BatchWalk {
  public:
-  Turn(Batch& batch, Entry* stack) : batch_(batch), stack_(stack) {}
+  BatchWalk(QueryBatch& batch, Entry* stack) : batch_(batch), stack_(stack) {}
 
   /// \returns false where no query is left.
   bool Begin() {
@@ -313,7 +313,7 @@ class Turn {
   }
 
  private:
-  Batch& batch_;
+  QueryBatch& batch_;
   Entry* stack_;
   std::size_t number_ = 0;
   std::vector<RayHit> hits_;
@@ -326,19 +326,19 @@ constexpr std::size_t kTurns = 8;
 constexpr std::size_t kTurnsFromBytes = std::size_t(8) << 20;
 
 void WalkBatch(const RayTree& tree, std::span<const Query> queries, Want want, std::span<RayHit> answers) {
-  Batch batch{tree, queries, want, answers};
+  QueryBatch batch{tree, queries, want, answers};
   const std::size_t bytes = tree.nodes.size() * sizeof(RayNode) + tree.leaves.size() * sizeof(RayLeaf);
   const std::size_t count = bytes < kTurnsFromBytes ? 1 : kTurns;
   Entry* const stacks = Stack(count * tree.stack_size());
-  std::vector<Turn> turns;
+  std::vector<BatchWalk> turns;
   turns.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
     turns.emplace_back(batch, stacks + k * tree.stack_size());
     if (!turns.back().Begin()) turns.pop_back();
   }
-  std::array<Turn*, kTurns> active;
+  std::array<BatchWalk*, kTurns> active;
   std::size_t active_count = 0;
-  for (Turn& turn : turns) active[active_count++] = &turn;
+  for (BatchWalk& turn : turns) active[active_count++] = &turn;
   while (active_count != 0)
     for (std::size_t k = 0; k < active_count;)
       if (active[k]->Step())

@@ -56,9 +56,9 @@ glm::dvec3 direction_of(const RayPattern& camera, int x, int) { return camera.di
 
 /// The model with its pose taken apart once.
 template <class Model>
-class Rays {
+class CameraRays {
  public:
-  Rays(const Model& model, const glm::dmat4& world_from_eye)
+  CameraRays(const Model& model, const glm::dmat4& world_from_eye)
       : model_(model), rotation_(world_from_eye), origin_(world_from_eye[3]) {}
   [[nodiscard]] Ray at(int x, int y) const { return {origin_, glm::vec3(rotation_ * direction_of(model_, x, y))}; }
 
@@ -115,7 +115,7 @@ constexpr std::size_t kRaysPerPart = 4096;
 /// Calls visit(first, rays) for the rays of every part of the grid, on all threads.
 template <class Model, class Visit>
 void for_each_part(const RangeScan& scan, const Model& model, const Execution& execution, const Visit& visit) {
-  const Rays<Model> rays_of(model, scan.camera.world_from_eye);
+  const CameraRays<Model> rays_of(model, scan.camera.world_from_eye);
   const std::size_t count = scan.ranges.size();
   parallel_for(execution, count, kRaysPerPart, [&](std::size_t begin, std::size_t end) {
     std::vector<Ray> rays;
@@ -155,7 +155,7 @@ glm::ivec2 grid_of(const RayCamera& camera) {
 
 Ray ray_of(const RayCamera& camera, int x, int y) {
   const IeeeScope ieee;
-  return std::visit([&](const auto& model) { return Rays(model, camera.world_from_eye).at(x, y); }, camera.model);
+  return std::visit([&](const auto& model) { return CameraRays(model, camera.world_from_eye).at(x, y); }, camera.model);
 }
 
 namespace raycast_detail {

@@ -28,7 +28,7 @@ glm::vec3 reach_of(const Box& bounds, const ScreenTransform& t) {
 }  // namespace
 
 struct RayCaster::State {
-  Pool<TileScratch> scratches;
+  Pool<RayTileScratch> scratches;
   Visible visible;
 
   /// Planes for the view: those of the last one where they fit. \returns true when their memory was used before.
@@ -56,14 +56,14 @@ const Visible& RayCaster::cast(const RayIndex& index, const View& view, const Ex
   const ScreenTransform transform(view);
   const bool is_used = state_->prepare_planes(view);
   Visible& visible = state_->visible;
-  const FrameInput frame{tree,
-                         transform,
-                         view,
-                         sample_offsets(view.samples),
-                         reach_of(tree.bounds, transform),
-                         visible.primitives.data(),
-                         visible.keys.data(),
-                         is_used};
+  const RayTileInput frame{tree,
+                           transform,
+                           view,
+                           sample_offsets(view.samples),
+                           reach_of(tree.bounds, transform),
+                           visible.primitives.data(),
+                           visible.keys.data(),
+                           is_used};
   const int tiles_x = (view.width + kTileSize - 1) / kTileSize, tiles_y = (view.height + kTileSize - 1) / kTileSize;
   const std::size_t tiles = std::size_t(tiles_x) * std::size_t(tiles_y);
   std::atomic<std::size_t> done{0};
@@ -71,7 +71,7 @@ const Visible& RayCaster::cast(const RayIndex& index, const View& view, const Ex
   // hold.
   constexpr std::size_t kTilesPerPart = 4;
   parallel_for(execution, tiles, kTilesPerPart, [&](std::size_t begin, std::size_t end) {
-    const auto scratch = state_->scratches.borrow([] { return std::make_unique<TileScratch>(); });
+    const auto scratch = state_->scratches.borrow([] { return std::make_unique<RayTileScratch>(); });
     scratch->reserve(tree);
     for (std::size_t i = begin; i < end; ++i)
       cast_tile(frame, int(i % std::size_t(tiles_x)), int(i / std::size_t(tiles_x)), *scratch, execution.isa);

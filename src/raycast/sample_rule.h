@@ -34,7 +34,7 @@ inline constexpr float kSingleNear = 0x1p-40f, kSingleFar = 0x1p40f;
 /// Steeper or higher key planes than this are those of triangles as good as edge-on: their keys are made constant.
 inline constexpr float kSteepest = 0x1p60f;
 
-struct Corner {
+struct SampleCorner {
   double x = 0, y = 0, d = 0;
   bool is_single = false;  ///< the values are floats
 };
@@ -47,7 +47,7 @@ inline glm::dvec3 wide_place(const ScreenTransform& t, const glm::vec3& world) {
           t.d_row[0] * dx + t.d_row[1] * dy + t.d_row[2] * dz + t.d_offset};
 }
 
-inline Corner make_corner(const ScreenTransform& t, const glm::vec3& world) {
+inline SampleCorner make_corner(const ScreenTransform& t, const glm::vec3& world) {
   const HomogeneousVertex v = transform(t, world);
   if (is_plain(t, v) && v.d >= kSingleNear && v.d <= kSingleFar) return {v.x, v.y, v.d, true};
   const glm::dvec3 place = wide_place(t, world);
@@ -65,7 +65,7 @@ inline bool is_edge_on(const View& view, const std::array<glm::vec3, 3>& world) 
 /// A triangle with finite corners as the rays of a view see it.
 struct SampleTriangle {
   std::array<glm::vec3, 3> world;
-  std::array<Corner, 3> corners;  ///< what rays are held against: the same for all triangles that share them
+  std::array<SampleCorner, 3> corners;  ///< what rays are held against: the same for all triangles that share them
 };
 
 inline SampleTriangle make_triangle(const ScreenTransform& t, const std::array<glm::vec3, 3>& world) {
@@ -76,7 +76,7 @@ struct Point {
   double x, y;
 };
 
-inline Point sheared(const ScreenTransform& t, const Corner& c, float sx, float sy) {
+inline Point sheared(const ScreenTransform& t, const SampleCorner& c, float sx, float sy) {
   if (!c.is_single) {
     const double w = t.orthographic ? 1.0 : c.d;
     return {c.x - double(sx) * w, c.y - double(sy) * w};
@@ -95,7 +95,7 @@ inline int side(const Point& a, const Point& b) {
 }
 
 /// -1: met, front-facing (counter-clockwise on the screen; y is down); 1: met from behind; 0: missed, or edge-on.
-inline int facing(const ScreenTransform& t, const std::array<Corner, 3>& corners, float sx, float sy) {
+inline int facing(const ScreenTransform& t, const std::array<SampleCorner, 3>& corners, float sx, float sy) {
   const Point a = sheared(t, corners[0], sx, sy), b = sheared(t, corners[1], sx, sy),
               c = sheared(t, corners[2], sx, sy);
   const int u = side(b, c), v = side(c, a), w = side(a, b);
@@ -120,7 +120,7 @@ inline float key_of_distance(const ScreenTransform& t, double d) {
 }
 
 /// The key of a triangle over one tile: k0 + u*gx + v*gy, (u, v) from the tile's centre in 1/256 pixel.
-struct KeyPlane {
+struct TileKeyPlane {
   float gx = 0, gy = 0, k0 = 0;
   float low = 0, high = 0;  ///< the range of the corners' keys, which no key leaves
   bool is_clipped = false;  ///< not wholly between near and far: only keys in [cut, 1] are seen
@@ -132,7 +132,7 @@ struct KeyPlane {
   [[nodiscard]] float clamped(float raw_key) const { return std::min(std::max(raw_key, low), high); }
 };
 
-inline void set_range(const ScreenTransform& t, const std::array<Corner, 3>& c, KeyPlane& plane) {
+inline void set_range(const ScreenTransform& t, const std::array<SampleCorner, 3>& c, TileKeyPlane& plane) {
   const double nearest = std::min({c[0].d, c[1].d, c[2].d}), farthest = std::max({c[0].d, c[1].d, c[2].d});
   plane.is_outside = !(farthest >= t.near && nearest <= t.far);
   plane.is_clipped = !(nearest >= t.near && farthest <= t.far);
@@ -146,16 +146,16 @@ inline void set_range(const ScreenTransform& t, const std::array<Corner, 3>& c, 
 inline std::array<glm::dvec3, 3> places_of(const ScreenTransform& t, const SampleTriangle& triangle, bool is_single) {
   std::array<glm::dvec3, 3> places;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Corner& c = triangle.corners[k];
+    const SampleCorner& c = triangle.corners[k];
     places[k] = is_single || !c.is_single ? glm::dvec3(c.x, c.y, c.d) : wide_place(t, triangle.world[k]);
   }
   return places;
 }
 
 /// `tile`: its centre, from the image's, in 1/256 pixel.
-inline KeyPlane key_plane(const View& view, const ScreenTransform& t, const SampleTriangle& triangle,
-                          const glm::dvec2& tile) {
-  KeyPlane plane;
+inline TileKeyPlane key_plane(const View& view, const ScreenTransform& t, const SampleTriangle& triangle,
+                              const glm::dvec2& tile) {
+  TileKeyPlane plane;
   set_range(t, triangle.corners, plane);
   // Corners that are single are before the eye: such a triangle, seen edge-on, is no wider than their rounding.
   const bool is_single =

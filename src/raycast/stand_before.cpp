@@ -53,9 +53,9 @@ int likely_sign(const Rounded& a, const Rounded& b, const Rounded& c) {
 }
 
 /// The corners of a triangle, from the point, and the direction of the light.
-class Sight {
+class LitTriangle {
  public:
-  Sight(const Corners& corners, const TrianglePoint& point, const glm::vec3& to_light)
+  LitTriangle(const CornerPositions& corners, const TrianglePoint& point, const glm::vec3& to_light)
       : corners_(corners), point_(point), light_(to_light) {
     for (std::size_t k = 0; k < 3; ++k) rounded_[k] = rounded_from(point, corners[k]);
     rounded_light_ = {glm::dvec3(to_light), glm::abs(glm::dvec3(to_light))};
@@ -78,7 +78,7 @@ class Sight {
  private:
   [[nodiscard]] ExactVector exact_corner(std::size_t k) const { return exact_from(point_, corners_[k]); }
 
-  const Corners& corners_;
+  const CornerPositions& corners_;
   const TrianglePoint& point_;
   const glm::vec3& light_;
   std::array<Rounded, 3> rounded_;
@@ -95,14 +95,14 @@ bool is_valid(const TrianglePoint& point) {
   return nothing == 0 && w.x >= 0 && w.y >= 0 && w.z >= 0 && (w.x > 0 || w.y > 0 || w.z > 0);
 }
 
-bool is_own(const Corners& corners, const TrianglePoint& point) {
+bool is_own(const CornerPositions& corners, const TrianglePoint& point) {
   // By positions, not by ids: the same triangle twice in a file would darken itself.
   return std::is_permutation(corners.begin(), corners.end(), point.corners.begin());
 }
 
-bool stands_before(const Corners& corners, const TrianglePoint& point, const glm::vec3& to_light) {
+bool stands_before(const CornerPositions& corners, const TrianglePoint& point, const glm::vec3& to_light) {
   if (is_own(corners, point)) return false;
-  const Sight sight(corners, point, to_light);
+  const LitTriangle sight(corners, point, to_light);
   // As meet(): all turns to one side, edges included, and the plane is yet to come.
   const int u = sight.turn(1, 2), v = sight.turn(2, 0), w = sight.turn(0, 1);
   const int least = std::min({u, v, w}), most = std::max({u, v, w});
@@ -116,7 +116,7 @@ glm::dvec3 position_of(const TrianglePoint& point) {
   return sum / (double(point.weights.x) + double(point.weights.y) + double(point.weights.z)) + glm::dvec3(point.lift);
 }
 
-glm::dvec3 passed_point(const Corners& corners, const TrianglePoint& point, const glm::vec3& to_light) {
+glm::dvec3 passed_point(const CornerPositions& corners, const TrianglePoint& point, const glm::vec3& to_light) {
   const glm::dvec3 a(corners[0]), light(to_light), from = position_of(point);
   const glm::dvec3 normal = glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a);
   return from + glm::dot(normal, a - from) / glm::dot(normal, light) * light;

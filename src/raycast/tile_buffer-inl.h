@@ -66,7 +66,7 @@ struct TilePlace {
   float centre_x, centre_y;   // of the tile
   float first_x, first_y;     // the first sample
 
-  TilePlace(const FrameInput& frame, int tile_x, int tile_y, std::size_t sample)
+  TilePlace(const RayTileInput& frame, int tile_x, int tile_y, std::size_t sample)
       : x0(tile_x * kTileSize), y0(tile_y * kTileSize) {
     const ScreenTransform& t = frame.transform;
     width = std::min(kTileSize, frame.view.width - x0);
@@ -78,12 +78,12 @@ struct TilePlace {
   }
 };
 
-class TileBuffer {
+class RayTileBuffer {
  public:
-  TileBuffer(const TilePlace& place, TileScratch& scratch)
+  RayTileBuffer(const TilePlace& place, RayTileScratch& scratch)
       : place_(place), keys_(scratch.keys), ids_(scratch.ids), farthest_(scratch.farthest) {
-    std::fill_n(keys_, TileScratch::kPixels, 0.0f);
-    std::fill_n(ids_, TileScratch::kPixels, no_primitive);
+    std::fill_n(keys_, RayTileScratch::kPixels, 0.0f);
+    std::fill_n(ids_, RayTileScratch::kPixels, no_primitive);
     std::fill_n(farthest_, kBlockCount, 0.0f);
     if (place.width == kTileSize && place.height == kTileSize) return;
     // Pixels outside the image are nearer than anything, so that they never keep a block from hiding.
@@ -131,7 +131,7 @@ class TileBuffer {
     tile_farthest_ = hn::GetLane(hn::MinOfLanes(d, least));
   }
 
-  void WriteOut(const FrameInput& frame, std::size_t sample) const {
+  void WriteOut(const RayTileInput& frame, std::size_t sample) const {
     const std::size_t plane = sample * frame.view.pixel_count();
     const bool whole = place_.width == kTileSize && frame.view.width % kBlock == 0;
     for (int y = 0; y < place_.height; ++y) {

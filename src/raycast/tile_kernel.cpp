@@ -26,14 +26,14 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// A half-space of positions relative to the eye: a*x + b*y + c*z + offset.
-struct Plane {
+struct HalfSpace {
   float n[3], offset;
   float pad;  // no rounding, here or of a corner, exceeds this
 };
 
 class TileCaster {
  public:
-  TileCaster(const FrameInput& frame, int tile_x, int tile_y, std::size_t sample, TileScratch& scratch)
+  TileCaster(const RayTileInput& frame, int tile_x, int tile_y, std::size_t sample, RayTileScratch& scratch)
       : frame_(frame),
         t_(frame.transform),
         scratch_(scratch),
@@ -55,8 +55,8 @@ class TileCaster {
 
  private:
   /// sign * (row - at * w_row), so turned that it is positive inside.
-  [[nodiscard]] Plane SidePlane(const std::array<float, 3>& row, float row_offset, double at, double sign) const {
-    Plane p{};
+  [[nodiscard]] HalfSpace SidePlane(const std::array<float, 3>& row, float row_offset, double at, double sign) const {
+    HalfSpace p{};
     const double w = t_.orthographic ? 0 : 1;
     double terms =
         std::abs(double(row_offset)) + std::abs(at) * (t_.orthographic ? 1.0 : std::abs(double(t_.d_offset)));
@@ -82,7 +82,7 @@ class TileCaster {
     depth_ = SidePlane(t_.d_row, t_.d_offset, 0, 1);
   }
 
-  [[nodiscard]] HWY_INLINE VF Distance(const Plane& p, const VF (&ends)[2][3], bool farthest) const {
+  [[nodiscard]] HWY_INLINE VF Distance(const HalfSpace& p, const VF (&ends)[2][3], bool farthest) const {
     const DF d;
     VF sum[3];
     for (int axis = 0; axis < 3; ++axis)
@@ -234,7 +234,7 @@ class TileCaster {
   }
 
   /// Puts corners into the batch, as rays see them. \returns the triangles whose corners are all single ones.
-  HWY_INLINE MF PlaceCorners(const RayLeaf& leaf, std::size_t first, TriangleQueue::Batch& to) const {
+  HWY_INLINE MF PlaceCorners(const RayLeaf& leaf, std::size_t first, RayTriangleQueue::Batch& to) const {
     const DF d;
     MF single = hn::MaskFromVec(hn::Zero(d));
     for (int k = 0; k < 3; ++k) {
@@ -255,7 +255,7 @@ class TileCaster {
     Span across, down;
     VF nearest;
   };
-  [[nodiscard]] HWY_INLINE Extent ExtentOf(const TriangleQueue::Batch& batch) const {
+  [[nodiscard]] HWY_INLINE Extent ExtentOf(const RayTriangleQueue::Batch& batch) const {
     const DF d;
     const auto least = [](const VF(&v)[3]) HWY_ATTR { return hn::Min(hn::Min(v[0], v[1]), v[2]); };
     const auto greatest = [](const VF(&v)[3]) HWY_ATTR { return hn::Max(hn::Max(v[0], v[1]), v[2]); };
@@ -287,7 +287,7 @@ class TileCaster {
   HWY_INLINE void MeetLanes(const RayLeaf& leaf, std::size_t first) {
     const DF d;
     const DU du;
-    TriangleQueue::Batch batch;
+    RayTriangleQueue::Batch batch;
     batch.id = hn::Load(du, leaf.id + first);
     const MF single = PlaceCorners(leaf, first, batch);
     const MF used = hn::RebindMask(d, hn::Ne(batch.id, hn::Set(du, no_primitive)));
@@ -328,23 +328,23 @@ class TileCaster {
     });
   }
 
-  const FrameInput& frame_;
+  const RayTileInput& frame_;
   const ScreenTransform& t_;
-  TileScratch& scratch_;
+  RayTileScratch& scratch_;
   std::size_t sample_;
   TilePlace place_;
-  TileBuffer buffer_;
-  LargeTriangles large_;
+  RayTileBuffer buffer_;
+  LargeRayTriangles large_;
   PlacedWalk walk_;
-  TriangleQueue queue_;
-  Plane planes_[4], depth_;
+  RayTriangleQueue queue_;
+  HalfSpace planes_[4], depth_;
   std::size_t waiting_ = 0;
   std::uint32_t leaves_met_ = 0;
   static constexpr int kMostCredit = 16;
   int hidden_credit_ = kMostCredit;
 };
 
-void CastTile(const FrameInput& frame, int x, int y, TileScratch& scratch) {
+void CastTile(const RayTileInput& frame, int x, int y, RayTileScratch& scratch) {
   for (std::size_t sample = 0; sample < frame.samples.size(); ++sample) TileCaster(frame, x, y, sample, scratch).Cast();
 }
 
@@ -357,7 +357,7 @@ namespace frontmost::raycast_detail {
 
 FRONTMOST_KERNELS(CastTile);
 
-void cast_tile(const FrameInput& frame, int x, int y, TileScratch& scratch, Isa isa) {
+void cast_tile(const RayTileInput& frame, int x, int y, RayTileScratch& scratch, Isa isa) {
   kernel_for(CastTileKernels, isa)(frame, x, y, scratch);
 }
 

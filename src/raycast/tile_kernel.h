@@ -12,7 +12,7 @@
 namespace frontmost::raycast_detail {
 
 /// All tiles' input, and where the answer goes.
-struct FrameInput {
+struct RayTileInput {
   const RayTree& tree;
   const ScreenTransform& transform;
   const View& view;
@@ -27,7 +27,7 @@ struct FrameInput {
 using Waiting = std::uint64_t;
 
 /// Buffers of one thread.
-struct TileScratch {
+struct RayTileScratch {
   static constexpr std::size_t kPixels = std::size_t(kTileSize) * kTileSize;
 
   void reserve(const RayTree& tree) { stack.resize(std::max(stack.size(), tree.stack_size() + kRayLanes)); }
@@ -40,6 +40,6 @@ struct TileScratch {
 };
 
 /// Fills the pixels of tile (x, y), counted in tiles, of every sample plane.
-void cast_tile(const FrameInput& frame, int x, int y, TileScratch& scratch, Isa isa);
+void cast_tile(const RayTileInput& frame, int x, int y, RayTileScratch& scratch, Isa isa);
 
 }  // namespace frontmost::raycast_detail

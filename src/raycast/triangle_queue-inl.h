@@ -22,9 +22,9 @@ using frontmost::HWY_NAMESPACE::Compactor;
 /// A triangle whose rectangle of samples is at most this wide and high is met with others at once.
 constexpr int kWalkLimit = 3;
 
-class TriangleQueue {
+class RayTriangleQueue {
  public:
-  TriangleQueue(const FrameInput& frame, const TilePlace& place, TileBuffer& buffer, LargeTriangles& large)
+  RayTriangleQueue(const RayTileInput& frame, const TilePlace& place, RayTileBuffer& buffer, LargeRayTriangles& large)
       : t_(frame.transform), culling_(frame.view.culling), place_(place), buffer_(buffer), large_(large) {}
 
   struct Batch {
@@ -155,7 +155,7 @@ class TriangleQueue {
         const VF sx = at(px, place_.first_x);
         VF x[3];
         for (int k = 0; k < 3; ++k) x[k] = hn::Sub(cx[k], hn::Mul(sx, cw[k]));
-        const Sides sides = SidesOf(x, y);
+        const EdgeSides sides = SidesOf(x, y);
         const MF here = hn::AndNot(hn::RebindMask(d, hn::Gt(hn::Set(du, column), rects.columns)), in_rows);
         MF met = hn::And(Kept(culling_, sides), here);
         const MF doubtful = hn::And(sides.doubtful, here);
@@ -210,8 +210,8 @@ class TriangleQueue {
   const ScreenTransform& t_;
   Culling culling_;
   const TilePlace& place_;
-  TileBuffer& buffer_;
-  LargeTriangles& large_;
+  RayTileBuffer& buffer_;
+  LargeRayTriangles& large_;
   // Room for one vector more than is met at a time, as Compress stores whole ones.
   static constexpr std::size_t kRoom = 3 * kRayLanes;
   alignas(64) float x_[3][kRoom], y_[3][kRoom], d_[3][kRoom];

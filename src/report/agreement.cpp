@@ -42,13 +42,13 @@ struct Question {
     return SampleSquare(rays, int(pixel % width), int(pixel / width), offsets[sample / view.pixel_count()]);
   }
   /// None for ids that no triangle has, and for triangles that are never seen.
-  [[nodiscard]] std::optional<SeenTriangle> triangle(PrimitiveId id) const {
+  [[nodiscard]] std::optional<ViewedTriangle> triangle(PrimitiveId id) const {
     if (id >= surfaces.primitive_count()) return std::nullopt;
     const std::array<glm::vec3, 3> corners = surfaces.corners(id);
     if (!is_finite(corners)) return std::nullopt;
-    return SeenTriangle(corners, rays);
+    return ViewedTriangle(corners, rays);
   }
-  [[nodiscard]] bool is_culled(const SeenTriangle& triangle, PrimitiveId id) const {
+  [[nodiscard]] bool is_culled(const ViewedTriangle& triangle, PrimitiveId id) const {
     if (view.culling == Culling::none) return false;
     const bool is_front = (triangle.facing() < 0) != surfaces.is_mirrored(surfaces.source(id).instance);
     return view.culling == Culling::both || (view.culling == Culling::front) == is_front;
@@ -63,7 +63,7 @@ struct Question {
   }
   /// As a method sees it: one that is left out is not there, except where it is so thin that snapping may turn it; nor
   /// is one that has a hole.
-  [[nodiscard]] Meeting meeting(const SeenTriangle& triangle, PrimitiveId id, const SampleSquare& square,
+  [[nodiscard]] Meeting meeting(const ViewedTriangle& triangle, PrimitiveId id, const SampleSquare& square,
                                 std::size_t sample) const {
     const Meeting meeting = triangle.meeting(square);
     if (meeting != Meeting::misses && is_hole(id, sample)) return Meeting::misses;
@@ -96,14 +96,14 @@ class KeyCheck {
 
  private:
   const Question& question_;
-  std::optional<SeenTriangle> triangle_;
+  std::optional<ViewedTriangle> triangle_;
   PrimitiveId id_ = no_primitive;
 };
 
 /// What one answer shows at a sample that differs.
 struct Claim {
   PrimitiveId id;
-  std::optional<SeenTriangle> triangle;  ///< none: nothing
+  std::optional<ViewedTriangle> triangle;  ///< none: nothing
   Meeting meeting = Meeting::contains;
 };
 
@@ -195,7 +195,7 @@ class ScreenRects {
 using Verdicts = std::vector<std::array<std::atomic<bool>, 2>>;
 
 /// What triangle `id` says about a contest, if it surely is there.
-void testify(const Question& question, PrimitiveId id, const SeenTriangle& triangle, const Contest& contest,
+void testify(const Question& question, PrimitiveId id, const ViewedTriangle& triangle, const Contest& contest,
              std::array<std::atomic<bool>, 2>& impossible) {
   bool is_there = false;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -217,7 +217,7 @@ void hear_all_triangles(const Question& question, const std::vector<Contest>& co
     for (auto id = PrimitiveId(begin); id < end; ++id) {
       const std::array<glm::vec3, 3> corners = question.surfaces.corners(id);
       if (!is_finite(corners)) continue;
-      std::optional<SeenTriangle> triangle;
+      std::optional<ViewedTriangle> triangle;
       const ScreenRect rect = rects.of(corners);
       map.in_rect(rect.low, rect.high, [&](std::size_t number) {
         if (!triangle) triangle.emplace(corners, question.rays);

@@ -16,7 +16,7 @@ namespace {
 using namespace zbuffer_detail;
 
 /// The planes being filled, and per sample the bounds of the nearest so far.
-struct Field {
+struct NearestBounds {
   const Surfaces& surfaces;
   const SampleRays rays;
   const ScreenRays screen_rays;
@@ -27,7 +27,7 @@ struct Field {
 
 class TileContest {
  public:
-  TileContest(Field& field, const PixelRect& tile) : field_(field), tile_(tile) {}
+  TileContest(NearestBounds& field, const PixelRect& tile) : field_(field), tile_(tile) {}
 
   void enter(const TriangleRecord& r) {
     const View& view = field_.answer.view;
@@ -72,7 +72,7 @@ class TileContest {
                    ExactDepth(field_.surfaces.corners(b), field_.rays, ray));
   }
 
-  Field& field_;
+  NearestBounds& field_;
   PixelRect tile_;
 };
 
@@ -83,8 +83,8 @@ ExactVisible find_exact_visible(const Surfaces& surfaces, const View& view, cons
   const IeeeScope ieee;
   const std::size_t count = view.sample_count();
   ExactVisible answer{view, Buffer<PrimitiveId>(count, no_primitive), Buffer<std::uint8_t>(count, 0)};
-  Field field{surfaces, SampleRays(view),          ScreenRays(view), sample_offsets(view.samples),
-              answer,   Buffer<DepthBounds>(count)};
+  NearestBounds field{surfaces, SampleRays(view),          ScreenRays(view), sample_offsets(view.samples),
+                      answer,   Buffer<DepthBounds>(count)};
   const TileGrid grid(view);
   submit(surfaces, view, {0, surfaces.primitive_count()}, execution, [&](std::size_t tile, const PlacedPiece& piece) {
     TileContest contest(field, grid.rect(tile));

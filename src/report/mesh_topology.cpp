@@ -44,9 +44,9 @@ std::vector<std::uint32_t> weld(const std::vector<glm::vec3>& positions, const E
 
 // Sets of numbers that can be joined from several threads. The least number of a set stands for it, so the outcome
 // does not depend on the order of joining.
-class Sets {
+class VertexSets {
  public:
-  explicit Sets(std::size_t count) : parents_(count) {
+  explicit VertexSets(std::size_t count) : parents_(count) {
     for (std::size_t i = 0; i < count; ++i) parents_[i].store(std::uint32_t(i), std::memory_order_relaxed);
   }
   void join(std::uint32_t a, std::uint32_t b) {
@@ -86,9 +86,9 @@ struct EdgeCounts {
 };
 
 // The mesh after welding. A half-edge is 3 * triangle + k, from corner k to the next.
-class WeldedMesh {
+class MeshTopology {
  public:
-  WeldedMesh(const Mesh& mesh, const Execution& execution)
+  MeshTopology(const Mesh& mesh, const Execution& execution)
       : mesh_(mesh),
         execution_(execution),
         corners_(mesh.triangles.size()),
@@ -219,7 +219,7 @@ class WeldedMesh {
   const Execution& execution_;
   std::vector<glm::uvec3> corners_;
   std::vector<Kind> kinds_;
-  Sets triangle_sets_, corner_sets_;
+  VertexSets triangle_sets_, corner_sets_;
   std::vector<std::uint32_t> twins_;
 };
 
@@ -228,7 +228,7 @@ class WeldedMesh {
 Topology examine(const Mesh& mesh, const Execution& execution) {
   if (mesh.triangles.size() > kMaxTriangles)
     throw Error(ErrorCode::limit_exceeded, "mesh " + mesh.name + ": more than 536870912 triangles to examine");
-  return WeldedMesh(mesh, execution).examine();
+  return MeshTopology(mesh, execution).examine();
 }
 
 }  // namespace frontmost

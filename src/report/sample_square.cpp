@@ -24,12 +24,12 @@ SampleSquare::SampleSquare(const SampleRays& rays, int x, int y, const glm::ivec
               rays.at(x, y, offset + glm::ivec2(kMargin, -kMargin)), rays.at(x, y, offset + glm::ivec2(kMargin)),
               rays.at(x, y, offset + glm::ivec2(-kMargin, kMargin))} {}
 
-double SeenTriangle::of_depth(double depth) const {
+double ViewedTriangle::of_depth(double depth) const {
   const double cut = std::min(std::max(depth, rays_->near()), rays_->far());
   return rays_->is_orthographic() ? -cut : 1 / cut;
 }
 
-SeenTriangle::SeenTriangle(const std::array<glm::vec3, 3>& corners, const SampleRays& rays)
+ViewedTriangle::ViewedTriangle(const std::array<glm::vec3, 3>& corners, const SampleRays& rays)
     : corners_{glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])},
       rays_(&rays),
       normal_(corners_[1] - corners_[0], corners_[2] - corners_[0]) {
@@ -59,11 +59,11 @@ SeenTriangle::SeenTriangle(const std::array<glm::vec3, 3>& corners, const Sample
   facing_ = sign_of_determinant(ab, ac, rays.is_orthographic() ? Leg{rays.forward()} : Leg{corners_[0], rays.eye()});
 }
 
-int SeenTriangle::edge_side(std::size_t edge, const SampleRay& ray) const {
+int ViewedTriangle::edge_side(std::size_t edge, const SampleRay& ray) const {
   return sign_of_determinant({corners_[edge], ray.origin}, {corners_[(edge + 1) % 3], ray.origin}, {ray.direction});
 }
 
-bool SeenTriangle::is_inside(const SampleRay& ray) const {
+bool ViewedTriangle::is_inside(const SampleRay& ray) const {
   if (facing_ == 0) return false;
   for (std::size_t edge = 0; edge < 3; ++edge)
     if (edge_side(edge, ray) != facing_) return false;
@@ -73,7 +73,7 @@ bool SeenTriangle::is_inside(const SampleRay& ray) const {
 /// Whether a plane through the eye along a side of either has the two on its two sides: then they do not meet, and two
 /// convex figures before the eye that do not meet have such a plane. Of triangles that reach behind it, a few that miss
 /// count as touching.
-bool SeenTriangle::is_separated(const SampleSquare& square) const {
+bool ViewedTriangle::is_separated(const SampleSquare& square) const {
   for (std::size_t edge = 0; edge < 3; ++edge) {
     std::array<int, 4> sides;
     for (std::size_t i = 0; i < 4; ++i) sides[i] = edge_side(edge, square.corners[i]);
@@ -98,7 +98,7 @@ bool SeenTriangle::is_separated(const SampleSquare& square) const {
 
 /// What the near and far planes leave of a triangle that contains the square. Methods cut in floats, so within their
 /// rounding of a plane either may be.
-Meeting SeenTriangle::between_planes(const SampleSquare& square) const {
+Meeting ViewedTriangle::between_planes(const SampleSquare& square) const {
   const double rim = kKeyRounding;
   if (depths_near_.low > rays_->near() * (1 + rim) && depths_far_.high < rays_->far() * (1 - rim))
     return Meeting::contains;
@@ -116,7 +116,7 @@ Meeting SeenTriangle::between_planes(const SampleSquare& square) const {
   return most < nearest - at_near && least > farthest + at_far ? Meeting::contains : Meeting::touches;
 }
 
-Meeting SeenTriangle::meeting(const SampleSquare& square) const {
+Meeting ViewedTriangle::meeting(const SampleSquare& square) const {
   if (is_separated(square)) return Meeting::misses;
   const Meeting by_planes = between_planes(square);
   if (by_planes != Meeting::contains) return by_planes;
@@ -125,7 +125,7 @@ Meeting SeenTriangle::meeting(const SampleSquare& square) const {
   return Meeting::contains;
 }
 
-DepthBounds SeenTriangle::nearness_at(const SampleRay& ray) const {
+DepthBounds ViewedTriangle::nearness_at(const SampleRay& ray) const {
   const Bounded along = bounded_dot(normal_.value, normal_.error, corners_[0] - ray.origin);
   const Bounded across = bounded_dot(normal_.value, normal_.error, ray.direction);
   const Bounded& below = rays_->is_orthographic() ? across : along;
@@ -139,7 +139,7 @@ DepthBounds SeenTriangle::nearness_at(const SampleRay& ray) const {
           std::min(std::max(value + error, limits_least_.high), limits_greatest_.high)};
 }
 
-NearnessRange SeenTriangle::nearness(const SampleSquare& square) const {
+NearnessRange ViewedTriangle::nearness(const SampleSquare& square) const {
   NearnessRange range{nearness_at(square.corners[0]), {}};
   range.greatest = range.least;
   for (std::size_t i = 1; i < 4; ++i) {
@@ -151,7 +151,7 @@ NearnessRange SeenTriangle::nearness(const SampleSquare& square) const {
 }
 
 /// A nearness; the denominator is positive.
-struct SeenTriangle::Fraction {
+struct ViewedTriangle::Fraction {
   Expansion numerator, denominator;
 
   /// The sign of this minus `other`.
@@ -161,7 +161,7 @@ struct SeenTriangle::Fraction {
 };
 
 /// Of the corner that is nearest (extreme 1) or farthest (-1), between the planes.
-SeenTriangle::Fraction SeenTriangle::exact_limit(int extreme) const {
+ViewedTriangle::Fraction ViewedTriangle::exact_limit(int extreme) const {
   Expansion depth;
   for (std::size_t i = 0; i < 3; ++i) {
     const Expansion here = dot(exact(rays_->forward()), difference(corners_[i], rays_->eye()));
@@ -173,7 +173,7 @@ SeenTriangle::Fraction SeenTriangle::exact_limit(int extreme) const {
   return rays_->is_orthographic() ? Fraction{-depth, Expansion(1)} : Fraction{Expansion(1), depth};
 }
 
-SeenTriangle::Fraction SeenTriangle::exact_nearness(const SampleRay& ray, int extreme) const {
+ViewedTriangle::Fraction ViewedTriangle::exact_nearness(const SampleRay& ray, int extreme) const {
   const ExactVector normal = cross(difference(corners_[1], corners_[0]), difference(corners_[2], corners_[0]));
   const Expansion along = dot(normal, difference(corners_[0], ray.origin)), across = dot(normal, exact(ray.direction));
   Fraction value = rays_->is_orthographic() ? Fraction{-along, across} : Fraction{across, along};
@@ -182,8 +182,8 @@ SeenTriangle::Fraction SeenTriangle::exact_nearness(const SampleRay& ray, int ex
   return value;
 }
 
-SeenTriangle::Fraction SeenTriangle::exact_extreme(const SeenTriangle& triangle, const SampleSquare& square,
-                                                   int extreme) {
+ViewedTriangle::Fraction ViewedTriangle::exact_extreme(const ViewedTriangle& triangle, const SampleSquare& square,
+                                                       int extreme) {
   Fraction best = triangle.exact_nearness(square.corners[0], extreme);
   for (std::size_t i = 1; i < 4; ++i) {
     const Fraction here = triangle.exact_nearness(square.corners[i], extreme);
@@ -194,7 +194,7 @@ SeenTriangle::Fraction SeenTriangle::exact_extreme(const SeenTriangle& triangle,
   return best.compare(greatest) > 0 ? greatest : best;
 }
 
-bool SeenTriangle::exactly_nearer(const SeenTriangle& a, const SeenTriangle& b, const SampleSquare& square) {
+bool ViewedTriangle::exactly_nearer(const ViewedTriangle& a, const ViewedTriangle& b, const SampleSquare& square) {
   const Fraction least = exact_extreme(a, square, -1), greatest = exact_extreme(b, square, 1);
   // greatest + resolution, whose two terms are doubles by definition.
   const double relative = std::max(a.relative_, b.relative_), absolute = std::max(a.absolute_, b.absolute_);
@@ -203,13 +203,13 @@ bool SeenTriangle::exactly_nearer(const SeenTriangle& a, const SeenTriangle& b, 
   return least.compare(reach) > 0;
 }
 
-bool is_surely_nearer(const SeenTriangle& a, const SeenTriangle& b, const SampleSquare& square) {
+bool is_surely_nearer(const ViewedTriangle& a, const ViewedTriangle& b, const SampleSquare& square) {
   const DepthBounds least = a.nearness(square).least, greatest = b.nearness(square).greatest;
   const double resolution = std::max(a.resolution(greatest.high), b.resolution(greatest.high));
   const double rounding = kRounding * (std::abs(greatest.high) + resolution);
   if (least.low > greatest.high + resolution + rounding) return true;
   if (least.high < greatest.low + resolution - rounding) return false;
-  return SeenTriangle::exactly_nearer(a, b, square);
+  return ViewedTriangle::exactly_nearer(a, b, square);
 }
 
 }  // namespace frontmost

@@ -24,9 +24,9 @@ struct NearnessRange {
 };
 
 /// A triangle with finite corners, as its view sees it. Borrows the rays.
-class SeenTriangle {
+class ViewedTriangle {
  public:
-  SeenTriangle(const std::array<glm::vec3, 3>& corners, const SampleRays& rays);
+  ViewedTriangle(const std::array<glm::vec3, 3>& corners, const SampleRays& rays);
 
   [[nodiscard]] Meeting meeting(const SampleSquare& square) const;
   /// Of its plane, within the nearness of its corners and of the near and far planes. Snapping moves what is seen by
@@ -38,7 +38,7 @@ class SeenTriangle {
   [[nodiscard]] int facing() const { return facing_; }
 
   /// Exactly: the least nearness of `a` exceeds the greatest of `b` by more than either's resolution.
-  friend bool is_surely_nearer(const SeenTriangle& a, const SeenTriangle& b, const SampleSquare& square);
+  friend bool is_surely_nearer(const ViewedTriangle& a, const ViewedTriangle& b, const SampleSquare& square);
 
  private:
   struct Fraction;
@@ -48,8 +48,9 @@ class SeenTriangle {
   [[nodiscard]] Meeting between_planes(const SampleSquare& square) const;
   [[nodiscard]] Fraction exact_nearness(const SampleRay& ray, int extreme) const;
   [[nodiscard]] Fraction exact_limit(int extreme) const;
-  [[nodiscard]] static Fraction exact_extreme(const SeenTriangle& triangle, const SampleSquare& square, int extreme);
-  [[nodiscard]] static bool exactly_nearer(const SeenTriangle& a, const SeenTriangle& b, const SampleSquare& square);
+  [[nodiscard]] static Fraction exact_extreme(const ViewedTriangle& triangle, const SampleSquare& square, int extreme);
+  [[nodiscard]] static bool exactly_nearer(const ViewedTriangle& a, const ViewedTriangle& b,
+                                           const SampleSquare& square);
   [[nodiscard]] double of_depth(double depth) const;
   [[nodiscard]] DepthBounds nearness_at(const SampleRay& ray) const;
 

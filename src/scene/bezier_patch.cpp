@@ -6,26 +6,28 @@
 namespace frontmost {
 namespace {
 
-using Weights = std::array<double, 4>;
-using Curve = std::array<glm::dvec3, 4>;
+using BernsteinWeights = std::array<double, 4>;
+using CubicCurve = std::array<glm::dvec3, 4>;
 
-Weights bernstein(PatchParameter t) {
+BernsteinWeights bernstein(PatchParameter t) {
   const double a = t.complement, b = t.value;
   return {a * a * a, 3 * (a * a) * b, 3 * (b * b) * a, b * b * b};
 }
 
 // The derivative of the cubic, as weights of its four points.
-Weights bernstein_slope(PatchParameter t) {
+BernsteinWeights bernstein_slope(PatchParameter t) {
   const double a = t.complement, b = t.value;
   const double first = 3 * (a * a), middle = 6 * (a * b), last = 3 * (b * b);
   return {-first, first - middle, middle - last, last};
 }
 
 // Ends with ends and middle with middle: the sum is the same for a curve and its reverse.
-glm::dvec3 blend(const Curve& p, const Weights& w) { return (p[0] * w[0] + p[3] * w[3]) + (p[1] * w[1] + p[2] * w[2]); }
+glm::dvec3 blend(const CubicCurve& p, const BernsteinWeights& w) {
+  return (p[0] * w[0] + p[3] * w[3]) + (p[1] * w[1] + p[2] * w[2]);
+}
 
-glm::dvec3 blend(const BezierPatch& patch, const Weights& u, const Weights& v) {
-  Curve across;
+glm::dvec3 blend(const BezierPatch& patch, const BernsteinWeights& u, const BernsteinWeights& v) {
+  CubicCurve across;
   for (std::size_t i = 0; i < 4; ++i) {
     const glm::dvec3* row = &patch.points[4 * i];
     across[i] = blend({row[0], row[1], row[2], row[3]}, v);
@@ -36,7 +38,7 @@ glm::dvec3 blend(const BezierPatch& patch, const Weights& u, const Weights& v) {
 bool is_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 PatchPoint evaluate_there(const BezierPatch& patch, PatchParameter u, PatchParameter v) {
-  const Weights wu = bernstein(u), wv = bernstein(v), du = bernstein_slope(u), dv = bernstein_slope(v);
+  const BernsteinWeights wu = bernstein(u), wv = bernstein(v), du = bernstein_slope(u), dv = bernstein_slope(v);
   PatchPoint point{blend(patch, wu, wv), blend(patch, du, wv), blend(patch, wu, dv), {}};
   // At a pole v moves nothing. Near it, along_v is the distance in u times d2P / du dv, whose direction is the limit;
   // from a pole at u = 1 that distance is negative.

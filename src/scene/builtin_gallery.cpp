@@ -40,7 +40,8 @@ void project_from_above(Mesh& mesh, double repeats) {
 
 double add_stage(Scene& scene) {
   const auto stone = add(scene, paint("limestone", 0xD8CFBF, 0.9f));
-  const Slab slab{.radius = 4.4, .height = 0.25, .bevel = 0.1}, inlay{.radius = 4.05, .height = 0.02, .bevel = 0.01};
+  const RoundSlab slab{.radius = 4.4, .height = 0.25, .bevel = 0.1},
+      inlay{.radius = 4.05, .height = 0.02, .bevel = 0.01};
   place(scene, "stage", add(scene, "stage", round_slab(slab, 160), stone));
   scene.textures.push_back(tiles());
   Material material = paint("tiles", 0xFFFFFF, 0.35f);
@@ -56,7 +57,7 @@ void add_teapot(Scene& scene, double floor) {
   const auto stone = add(scene, paint("travertine", 0xE3D9C6, 0.9f));
   const auto glaze = add(scene, paint("teal glaze", 0x1F7A7D, 0.18f));
   const glm::dvec3 at{-1.2, floor, 0.75};
-  const Slab plinth{.radius = 1.25, .height = 0.22, .bevel = 0.05};
+  const RoundSlab plinth{.radius = 1.25, .height = 0.22, .bevel = 0.05};
   place(scene, "plinth", add(scene, "plinth", round_slab(plinth, 96), stone), moved(at));
   place(scene, "teapot", add(scene, "teapot", teapot(12), glaze),
         moved(at + glm::dvec3(0, plinth.height, 0)) * turned(-1, 11) * scaled(0.52));
@@ -66,7 +67,7 @@ void add_knot(Scene& scene, double floor) {
   const auto marble = add(scene, paint("marble", 0xEEEBE4, 0.45f));
   const auto gold = add(scene, paint("gold", 0xF0B84A, 0.22f, 1.0f));
   const glm::dvec3 at{0.75, floor, -1.75};
-  const Slab column{.radius = 0.62, .height = 1.15, .bevel = 0.06};
+  const RoundSlab column{.radius = 0.62, .height = 1.15, .bevel = 0.06};
   place(scene, "column", add(scene, "column", round_slab(column, 72), marble), moved(at));
   place(scene, "knot", add(scene, "knot", torus_knot({}), gold),
         moved(at + glm::dvec3(0, column.height + 0.95, 0)) * turned(1, 24) * tilted(1, 4) * scaled(0.6));

@@ -31,7 +31,7 @@ constexpr int kRings = 5;
 Scene make_spheres() {
   Scene scene;
   const auto plaster = add(scene, paint("plaster", 0xE8E4DC, 0.85f));
-  const Slab stage{.radius = 4.9, .height = 0.2, .bevel = 0.08};
+  const RoundSlab stage{.radius = 4.9, .height = 0.2, .bevel = 0.08};
   place(scene, "stage", add(scene, "stage", round_slab(stage, 128), plaster));
   const Mesh ball = sphere(24);
   for (int ring = 0; ring < kRings; ++ring)

@@ -162,7 +162,7 @@ Mesh lathe(std::span<const ProfilePoint> profile, int segments) {
   return mesh;
 }
 
-Mesh round_slab(const Slab& slab, int segments) {
+Mesh round_slab(const RoundSlab& slab, int segments) {
   constexpr int kBevelSteps = 5;
   std::vector<ProfilePoint> profile{{0, slab.height, {0, 1}}};
   for (int i = 0; i <= kBevelSteps; ++i) {

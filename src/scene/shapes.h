@@ -54,10 +54,10 @@ struct ProfilePoint {
 [[nodiscard]] Mesh lathe(std::span<const ProfilePoint> profile, int segments);
 
 /// A closed round slab that stands on y = 0, its upper edge rounded.
-struct Slab {
+struct RoundSlab {
   double radius, height, bevel;
 };
-[[nodiscard]] Mesh round_slab(const Slab& slab, int segments);
+[[nodiscard]] Mesh round_slab(const RoundSlab& slab, int segments);
 
 /// Appends a part, moved, as triangles of that material. Both meshes have normals and texture coordinates.
 void append(Mesh& mesh, const Mesh& part, std::uint32_t material, const glm::dmat4& mesh_from_part = glm::dmat4(1.0));

@@ -11,51 +11,54 @@ namespace {
 
 // One ring of control points: its radius, the length of the arms that bend a quarter of it, and its height. The arms
 // are 0.56 of the radius, but for the knob, which is 0.45 / 0.8.
-struct Ring {
+struct ProfileRing {
   double radius, arm, height;
 };
 
-constexpr std::array<Ring, 4> kRim{
+constexpr std::array<ProfileRing, 4> kRim{
     {{1.4, 0.784, 2.4}, {1.3375, 0.749, 2.53125}, {1.4375, 0.805, 2.53125}, {1.5, 0.84, 2.4}}};
-constexpr std::array<Ring, 4> kUpperBody{{{1.5, 0.84, 2.4}, {1.75, 0.98, 1.875}, {2, 1.12, 1.35}, {2, 1.12, 0.9}}};
-constexpr std::array<Ring, 4> kLowerBody{{{2, 1.12, 0.9}, {2, 1.12, 0.45}, {1.5, 0.84, 0.225}, {1.5, 0.84, 0.15}}};
-constexpr std::array<Ring, 4> kKnob{{{0, 0, 3.15}, {0.8, 0.45, 3.15}, {0, 0, 2.85}, {0.2, 0.112, 2.7}}};
-constexpr std::array<Ring, 4> kLid{{{0.2, 0.112, 2.7}, {0.4, 0.224, 2.55}, {1.3, 0.728, 2.55}, {1.3, 0.728, 2.4}}};
-constexpr std::array<Ring, 4> kBottom{{{1.5, 0.84, 0.15}, {1.5, 0.84, 0.075}, {1.425, 0.798, 0}, {0, 0, 0}}};
+constexpr std::array<ProfileRing, 4> kUpperBody{
+    {{1.5, 0.84, 2.4}, {1.75, 0.98, 1.875}, {2, 1.12, 1.35}, {2, 1.12, 0.9}}};
+constexpr std::array<ProfileRing, 4> kLowerBody{
+    {{2, 1.12, 0.9}, {2, 1.12, 0.45}, {1.5, 0.84, 0.225}, {1.5, 0.84, 0.15}}};
+constexpr std::array<ProfileRing, 4> kKnob{{{0, 0, 3.15}, {0.8, 0.45, 3.15}, {0, 0, 2.85}, {0.2, 0.112, 2.7}}};
+constexpr std::array<ProfileRing, 4> kLid{
+    {{0.2, 0.112, 2.7}, {0.4, 0.224, 2.55}, {1.3, 0.728, 2.55}, {1.3, 0.728, 2.4}}};
+constexpr std::array<ProfileRing, 4> kBottom{{{1.5, 0.84, 0.15}, {1.5, 0.84, 0.075}, {1.425, 0.798, 0}, {0, 0, 0}}};
 
 // One half ring of a bent tube: a loop of four points that starts and ends in the mirror plane. Both middle points
 // lie `width` off it, beside the first and the last.
 struct Loop {
   double first_x, first_height, last_x, last_height, width;
 };
-using Tube = std::array<Loop, 7>;
+using LoopTube = std::array<Loop, 7>;
 
-constexpr Tube kHandle{{{-1.6, 2.025, -1.5, 2.25, 0.3},
-                        {-2.3, 2.025, -2.5, 2.25, 0.3},
-                        {-2.7, 2.025, -3, 2.25, 0.3},
-                        {-2.7, 1.8, -3, 1.8, 0.3},
-                        {-2.7, 1.575, -3, 1.35, 0.3},
-                        {-2.5, 1.125, -2.65, 0.9375, 0.3},
-                        {-2, 0.9, -1.9, 0.6, 0.3}}};
-constexpr Tube kSpout{{{1.7, 1.425, 1.7, 0.6, 0.66},
-                       {2.6, 1.425, 3.1, 0.825, 0.66},
-                       {2.3, 2.1, 2.4, 2.025, 0.25},
-                       {2.7, 2.4, 3.3, 2.4, 0.25},
-                       {2.8, 2.475, 3.525, 2.49375, 0.25},
-                       {2.9, 2.475, 3.45, 2.5125, 0.15},
-                       {2.8, 2.4, 3.2, 2.4, 0.15}}};
+constexpr LoopTube kHandle{{{-1.6, 2.025, -1.5, 2.25, 0.3},
+                            {-2.3, 2.025, -2.5, 2.25, 0.3},
+                            {-2.7, 2.025, -3, 2.25, 0.3},
+                            {-2.7, 1.8, -3, 1.8, 0.3},
+                            {-2.7, 1.575, -3, 1.35, 0.3},
+                            {-2.5, 1.125, -2.65, 0.9375, 0.3},
+                            {-2, 0.9, -1.9, 0.6, 0.3}}};
+constexpr LoopTube kSpout{{{1.7, 1.425, 1.7, 0.6, 0.66},
+                           {2.6, 1.425, 3.1, 0.825, 0.66},
+                           {2.3, 2.1, 2.4, 2.025, 0.25},
+                           {2.7, 2.4, 3.3, 2.4, 0.25},
+                           {2.8, 2.475, 3.525, 2.49375, 0.25},
+                           {2.9, 2.475, 3.45, 2.5125, 0.15},
+                           {2.8, 2.4, 3.2, 2.4, 0.15}}};
 
 // From Newell's axes (z up) to ours (y up); + 0.0 makes a negative zero positive.
 glm::dvec3 upright(double x, double y, double height) { return {x + 0.0, height, 0.0 - y}; }
 
-void add_turned(std::vector<BezierPatch>& patches, const std::array<Ring, 4>& profile) {
+void add_turned(std::vector<BezierPatch>& patches, const std::array<ProfileRing, 4>& profile) {
   // A quarter starts towards `from` and ends towards `to`, clockwise seen from above.
   constexpr std::array<glm::dvec2, 5> kAxes{{{1, 0}, {0, -1}, {-1, 0}, {0, 1}, {1, 0}}};
   for (std::size_t quarter = 0; quarter < 4; ++quarter) {
     const glm::dvec2 from = kAxes[quarter], to = kAxes[quarter + 1];
     BezierPatch patch;
     for (std::size_t i = 0; i < 4; ++i) {
-      const Ring& ring = profile[i];
+      const ProfileRing& ring = profile[i];
       const std::array<glm::dvec2, 4> arc{from * ring.radius, from * ring.radius + to * ring.arm,
                                           to * ring.radius + from * ring.arm, to * ring.radius};
       for (std::size_t j = 0; j < 4; ++j) patch.points[4 * i + j] = upright(arc[j].x, arc[j].y, ring.height);
@@ -64,7 +67,7 @@ void add_turned(std::vector<BezierPatch>& patches, const std::array<Ring, 4>& pr
   }
 }
 
-void add_tube(std::vector<BezierPatch>& patches, const Tube& tube) {
+void add_tube(std::vector<BezierPatch>& patches, const LoopTube& tube) {
   for (const std::size_t start : {0u, 3u})
     for (const bool mirrored : {false, true}) {
       BezierPatch patch;

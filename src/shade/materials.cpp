@@ -33,19 +33,20 @@ glm::vec3 normalized_or(const glm::vec3& v, const glm::vec3& fallback) {
 }
 
 /// One run of fragments with the same material.
-class Run {
+class MaterialRun {
  public:
-  Run(const MaterialRow& row, const std::vector<TriangleSetup>& setups, Batch& batch)
+  MaterialRun(const MaterialRow& row, const std::vector<TriangleSetup>& setups, Batch& batch)
       : row_(row), setups_(setups), batch_(batch) {}
 
   void fill(int begin, int end) {
     fill_factors(begin, end);
-    if (row_.base_color.pyramid) for_textured(begin, end, [this](int i, const Footprint& f) { base_color(i, f); });
+    if (row_.base_color.pyramid)
+      for_textured(begin, end, [this](int i, const TextureFootprint& f) { base_color(i, f); });
     if (row_.metallic_roughness.pyramid)
-      for_textured(begin, end, [this](int i, const Footprint& f) { metallic_roughness(i, f); });
-    if (row_.occlusion.pyramid) for_textured(begin, end, [this](int i, const Footprint& f) { occlusion(i, f); });
-    if (row_.emissive.pyramid) for_textured(begin, end, [this](int i, const Footprint& f) { emissive(i, f); });
-    if (row_.normal.pyramid) for_textured(begin, end, [this](int i, const Footprint& f) { turn_normal(i, f); });
+      for_textured(begin, end, [this](int i, const TextureFootprint& f) { metallic_roughness(i, f); });
+    if (row_.occlusion.pyramid) for_textured(begin, end, [this](int i, const TextureFootprint& f) { occlusion(i, f); });
+    if (row_.emissive.pyramid) for_textured(begin, end, [this](int i, const TextureFootprint& f) { emissive(i, f); });
+    if (row_.normal.pyramid) for_textured(begin, end, [this](int i, const TextureFootprint& f) { turn_normal(i, f); });
     settle_alpha(begin, end);
   }
 
@@ -71,24 +72,24 @@ class Run {
     for (int i = begin; i < end; ++i) look(i, {g.texcoord.at(i), g.texcoord_dx.at(i), g.texcoord_dy.at(i)});
   }
 
-  void base_color(int i, const Footprint& footprint) {
+  void base_color(int i, const TextureFootprint& footprint) {
     const glm::vec4 color = row_.base_color.sample(footprint);
     batch_.material.base.set(i, batch_.material.base.at(i) * glm::vec3(color));
     batch_.material.alpha[i] *= color.a;
   }
-  void metallic_roughness(int i, const Footprint& footprint) {
+  void metallic_roughness(int i, const TextureFootprint& footprint) {
     const glm::vec4 value = row_.metallic_roughness.sample(footprint);
     batch_.material.roughness[i] *= value.g;
     batch_.material.metallic[i] *= value.b;
   }
-  void occlusion(int i, const Footprint& footprint) {
+  void occlusion(int i, const TextureFootprint& footprint) {
     batch_.material.occlusion[i] = 1.0f + row_.factors.occlusion_strength * (row_.occlusion.sample(footprint).r - 1.0f);
   }
-  void emissive(int i, const Footprint& footprint) {
+  void emissive(int i, const TextureFootprint& footprint) {
     batch_.material.emissive.set(i, batch_.material.emissive.at(i) * glm::vec3(row_.emissive.sample(footprint)));
   }
 
-  void turn_normal(int i, const Footprint& footprint) {
+  void turn_normal(int i, const TextureFootprint& footprint) {
     const std::uint16_t triangle = batch_.coverage.triangle[i];
     const TriangleSetup& t = setups_[triangle];
     if (!t.has_texcoord) return;
@@ -166,7 +167,7 @@ void look_up_materials(const MaterialTable& table, const std::vector<TriangleSet
     const MaterialRow* const row = row_at(begin);
     int end = begin + 1;
     while (end < coverage.count && row_at(end) == row) ++end;
-    Run(*row, setups, batch).fill(begin, end);
+    MaterialRun(*row, setups, batch).fill(begin, end);
     begin = end;
   }
 }

@@ -15,7 +15,7 @@ struct TextureSlot {
   const Pyramid* pyramid = nullptr;  ///< null: not set
   TexcoordTransform transform{TextureUse{}};
 
-  [[nodiscard]] glm::vec4 sample(const Footprint& footprint) const {
+  [[nodiscard]] glm::vec4 sample(const TextureFootprint& footprint) const {
     return pyramid->sample(transformed(transform, footprint));
   }
 };

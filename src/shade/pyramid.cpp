@@ -177,7 +177,7 @@ glm::vec4 Pyramid::trilinear(const glm::vec2& texcoord, float level) const {
              level - float(finer));
 }
 
-glm::vec4 Pyramid::sample(const Footprint& footprint) const {
+glm::vec4 Pyramid::sample(const TextureFootprint& footprint) const {
   if (levels_.empty()) return glm::vec4(1);
   if (texture_->nearest) return nearest(footprint.texcoord);
   const glm::vec2 size(float(levels_[0].width), float(levels_[0].height));

@@ -12,11 +12,11 @@ namespace frontmost::shading {
 enum class Encoding : std::uint8_t { srgb, linear };
 
 /// Where a fragment looks, and how far that moves from pixel to pixel, in texture coordinates.
-struct Footprint {
+struct TextureFootprint {
   glm::vec2 texcoord{0}, dx{0}, dy{0};
 };
 
-[[nodiscard]] inline Footprint transformed(const TexcoordTransform& t, const Footprint& f) {
+[[nodiscard]] inline TextureFootprint transformed(const TexcoordTransform& t, const TextureFootprint& f) {
   return {t.place(f.texcoord), t.step(f.dx), t.step(f.dy)};
 }
 
@@ -31,7 +31,7 @@ class Pyramid {
 
   /// Linear RGBA: bilinear in the two nearest levels, blended; several such along a footprint that is much longer
   /// than wide, so that surfaces seen at a slant stay sharp. Textures marked `nearest` give the one texel.
-  [[nodiscard]] glm::vec4 sample(const Footprint& footprint) const;
+  [[nodiscard]] glm::vec4 sample(const TextureFootprint& footprint) const;
   /// The average of all texels, as the smallest level has it.
   [[nodiscard]] glm::vec4 average() const;
   [[nodiscard]] int level_count() const { return int(levels_.size()); }

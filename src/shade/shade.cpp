@@ -20,7 +20,7 @@ namespace {
 using namespace shading;
 
 /// A Visible and what its triangles are set up from.
-struct Layer {
+struct ShadedLayer {
   const TriangleSource& source;
   const Visible& visible;
   SampleUse use = SampleUse::all;
@@ -36,7 +36,7 @@ void shade_tile(const TileRectangle& tile, TileWork& work, const Painting& paint
 }
 
 /// Shades all tiles, one row of tiles to a thread at a time.
-void shade_tiles(const Layer& layer, const Painting& painting, const Execution& execution) {
+void shade_tiles(const ShadedLayer& layer, const Painting& painting, const Execution& execution) {
   const View& view = layer.visible.view;
   const auto rows = std::size_t((view.height + tile_height - 1) / tile_height);
   parallel_for(execution, rows, 1, [&](std::size_t begin, std::size_t end) {
@@ -72,9 +72,10 @@ struct Triangles {
 
 /// What pictures of materials need: of the primitives that a Visible shows, or, where materials can be seen through, of
 /// all layers.
-class Materials {
+class LayerMaterials {
  public:
-  Materials(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options, const Execution& execution)
+  LayerMaterials(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options,
+                 const Execution& execution)
       : visible_(visible) {
     if (wants_layers(surfaces.scene(), options))
       make_layers(surfaces, options, execution);
@@ -140,7 +141,7 @@ struct Request {
 
 /// Calls use(colorist) with what colours fragments as the options say. Precondition: shows_materials().
 template <class Use>
-void with_colorist(const Request& request, const Materials& materials, const Use& use) {
+void with_colorist(const Request& request, const LayerMaterials& materials, const Use& use) {
   const ShadeOptions& options = request.options;
   if (options.shading == Shading::flat) return use(FragmentShader::Colorist(Flat{materials.table()}));
   if (options.shading == Shading::normals) return use(FragmentShader::Colorist(Normals{materials.table()}));
@@ -151,7 +152,7 @@ void with_colorist(const Request& request, const Materials& materials, const Use
 }
 
 void paint_materials(const Request& request, Canvas& canvas) {
-  const Materials materials(request.surfaces, request.visible, request.options, request.execution);
+  const LayerMaterials materials(request.surfaces, request.visible, request.options, request.execution);
   with_colorist(request, materials, [&](const FragmentShader::Colorist& colorist) {
     materials.paint({canvas, colorist, background_color(request.options), request.options.opacity}, request.execution);
   });
@@ -203,7 +204,7 @@ DeepImage shade_deep(const Surfaces& surfaces, const Visible& visible, const Sha
   in_layers.see_through = SeeThrough::always;
   const Request request{surfaces, visible, in_layers, execution};
   check(request);
-  const Materials materials(surfaces, visible, in_layers, execution);
+  const LayerMaterials materials(surfaces, visible, in_layers, execution);
   DeepImage image;
   with_colorist(request, materials, [&](const FragmentShader::Colorist& colorist) {
     image = materials.deep(surfaces, colorist, execution);

@@ -13,7 +13,7 @@ namespace frontmost::streaming {
 
 /// Triangles of one piece, each with corners of its own.
 struct Kept {
-  Place place;
+  PiecePlace place;
   std::vector<std::uint32_t> triangles;  ///< numbers within the piece, ascending
   Mesh mesh;
 };

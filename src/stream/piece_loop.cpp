@@ -84,7 +84,7 @@ void Models::rewind() {
   next_ = 0;
 }
 
-bool Models::fetch(Piece& piece, Place& place, std::uint32_t triangles) {
+bool Models::fetch(StreamPiece& piece, PiecePlace& place, std::uint32_t triangles) {
   for (; current_ < models_.size(); ++current_) {
     Model& model = models_[current_];
     const bool got = model.stream->fetch(piece, triangles);
@@ -102,7 +102,7 @@ bool Models::fetch(Piece& piece, Place& place, std::uint32_t triangles) {
   return false;
 }
 
-void Models::parse(Piece& piece, const Place& place) const {
+void Models::parse(StreamPiece& piece, const PiecePlace& place) const {
   const Model& model =
       *std::find_if(models_.rbegin(), models_.rend(), [&](const Model& m) { return m.object <= place.object; });
   model.stream->parse(piece);
@@ -120,7 +120,7 @@ class Queue {
  public:
   Queue(Models& models, std::uint32_t triangles) : models_(models), triangles_(triangles) {}
 
-  bool fetch(Piece& piece, Place& place, const Execution& execution) {
+  bool fetch(StreamPiece& piece, PiecePlace& place, const Execution& execution) {
     const std::lock_guard lock(mutex_);
     if (error_) return false;
     place.number = fetched_;  // should this fetch fail
@@ -151,12 +151,12 @@ class Queue {
 }  // namespace
 
 void for_each_piece(Models& models, const LoopOptions& options, const Execution& execution,
-                    const std::function<void(int, Piece&, const Place&)>& work) {
+                    const std::function<void(int, StreamPiece&, const PiecePlace&)>& work) {
   Queue queue(models, options.triangles_at_once);
   // An index for each worker rather than for each piece: how many pieces there are is known only at the end.
   parallel_for(execution, std::size_t(options.workers), 1, [&](std::size_t worker, std::size_t) {
-    Piece piece;
-    Place place;
+    StreamPiece piece;
+    PiecePlace place;
     try {
       while (queue.fetch(piece, place, execution)) {
         models.parse(piece, place);

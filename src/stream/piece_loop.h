@@ -11,7 +11,7 @@
 namespace frontmost::streaming {
 
 /// Where a piece stands among all.
-struct Place {
+struct PiecePlace {
   std::size_t number = 0;    ///< of the piece
   PrimitiveId first = 0;     ///< number of its first triangle in the stream
   std::uint32_t object = 0;  ///< of its file
@@ -27,8 +27,8 @@ class Models {
   [[nodiscard]] double fraction() const;
   void rewind();
   /// \returns false at the end. \throws Error, limit_exceeded for more triangles than ids can tell apart.
-  bool fetch(Piece& piece, Place& place, std::uint32_t triangles);
-  void parse(Piece& piece, const Place& place) const;
+  bool fetch(StreamPiece& piece, PiecePlace& place, std::uint32_t triangles);
+  void parse(StreamPiece& piece, const PiecePlace& place) const;
   [[nodiscard]] std::uint64_t triangle_count() const { return next_; }
 
  private:
@@ -58,6 +58,6 @@ struct LoopOptions {
 /// Calls work(worker, piece, place) for every piece. Of several errors the one of the first piece is thrown, whatever
 /// the number of threads.
 void for_each_piece(Models& models, const LoopOptions& options, const Execution& execution,
-                    const std::function<void(int worker, Piece&, const Place&)>& work);
+                    const std::function<void(int worker, StreamPiece&, const PiecePlace&)>& work);
 
 }  // namespace frontmost::streaming

@@ -37,7 +37,7 @@ void for_covered_samples(const Visible& visible, const PixelBounds& pixels, cons
 
 }  // namespace
 
-Sight::Sight(const std::vector<View>& views, const SightNeeds& needs) : needs_(needs) {
+SightGatherer::SightGatherer(const std::vector<View>& views, const SightNeeds& needs) : needs_(needs) {
   for (const View& view : views) {
     visible_.push_back(nothing_visible(view));
     sample_count_ += view.sample_count();
@@ -46,13 +46,13 @@ Sight::Sight(const std::vector<View>& views, const SightNeeds& needs) : needs_(n
   limit_ = std::max<std::size_t>(std::size_t(1) << 20, sample_count_ / 2);
 }
 
-void Sight::include(const Box& bounds) {
+void SightGatherer::include(const Box& bounds) {
   const std::lock_guard lock(mutex_);
   bounds_.include(bounds);
 }
 
-std::vector<bool> Sight::merge(const std::vector<const Visible*>& piece, const Place& place,
-                               const Selection& selection) {
+std::vector<bool> SightGatherer::merge(const std::vector<const Visible*>& piece, const PiecePlace& place,
+                                       const Selection& selection) {
   std::vector<bool> wins(selection.numbers.size());
   const std::lock_guard lock(mutex_);
   for (std::size_t v = 0; v < visible_.size(); ++v)
@@ -70,7 +70,7 @@ std::vector<bool> Sight::merge(const std::vector<const Visible*>& piece, const P
   return wins;
 }
 
-void Sight::keep(Kept kept) {
+void SightGatherer::keep(Kept kept) {
   if (kept.triangles.empty()) return;
   const std::lock_guard lock(mutex_);
   kept_count_ += kept.triangles.size();
@@ -81,10 +81,10 @@ void Sight::keep(Kept kept) {
   limit_ = std::max(limit_, kept_count_ + kept_count_ / 2);
 }
 
-void Sight::finish() { forget_hidden(); }
+void SightGatherer::finish() { forget_hidden(); }
 
 /// In slices of ids, so that a bit for each costs 32 MiB at most, however long the stream is.
-void Sight::forget_hidden() {
+void SightGatherer::forget_hidden() {
   constexpr std::uint64_t slice = std::uint64_t(1) << 28;
   if (kept_.empty()) return;
   const Kept& last = kept_.rbegin()->second;
@@ -105,7 +105,7 @@ void Sight::forget_hidden() {
   }
 }
 
-Selection Drawer::select(const Mesh& mesh, const Sight& sight) {
+Selection Drawer::select(const Mesh& mesh, const SightGatherer& sight) {
   Selection selection;
   marks_.assign(mesh.triangles.size(), 0);
   for (std::size_t i = 0; i < sight.view_count(); ++i) {
@@ -135,12 +135,13 @@ void tell_corners(const Mesh& mesh, const std::function<void(CornerSpan)>& tell)
 
 }  // namespace
 
-void Drawer::draw(Piece& piece, const Place& place, const Scene& frame, Sight& sight, const Execution& execution) {
+void Drawer::draw(StreamPiece& piece, const PiecePlace& place, const Scene& frame, SightGatherer& sight,
+                  const Execution& execution) {
   draw_selection(piece, place, frame, sight, execution);
   if (sight.needs().unseen && sight.is_blank()) tell_corners(piece.mesh, sight.needs().unseen);
 }
 
-void Drawer::draw_selection(Piece& piece, const Place& place, const Scene& frame, Sight& sight,
+void Drawer::draw_selection(StreamPiece& piece, const PiecePlace& place, const Scene& frame, SightGatherer& sight,
                             const Execution& execution) {
   const Selection selection = select(piece.mesh, sight);
   if (sight.needs().bounds) sight.include(finite_bounds(piece.mesh, 0, piece.mesh.triangles.size()));

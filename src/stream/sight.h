@@ -29,9 +29,9 @@ struct SightNeeds {
 };
 
 /// Gathers what the workers draw.
-class Sight {
+class SightGatherer {
  public:
-  Sight(const std::vector<View>& views, const SightNeeds& needs);
+  SightGatherer(const std::vector<View>& views, const SightNeeds& needs);
 
   [[nodiscard]] std::size_t sample_count() const { return sample_count_; }
   [[nodiscard]] const SightNeeds& needs() const { return needs_; }
@@ -43,7 +43,8 @@ class Sight {
   void include(const Box& bounds);
   /// Lays one piece's answers over what was there: at every sample the greater key stays, at equal keys the lower
   /// number in the stream, as by merge(). \returns for each triangle of the selection whether it is seen now.
-  std::vector<bool> merge(const std::vector<const Visible*>& piece, const Place& place, const Selection& selection);
+  std::vector<bool> merge(const std::vector<const Visible*>& piece, const PiecePlace& place,
+                          const Selection& selection);
   void keep(Kept kept);
   /// After the last piece: forgets what was hidden by later ones.
   void finish();
@@ -69,12 +70,14 @@ class Sight {
 class Drawer {
  public:
   /// `frame` is what pieces are put into: materials and the instances.
-  void draw(Piece& piece, const Place& place, const Scene& frame, Sight& sight, const Execution& execution);
+  void draw(StreamPiece& piece, const PiecePlace& place, const Scene& frame, SightGatherer& sight,
+            const Execution& execution);
 
  private:
-  void draw_selection(Piece& piece, const Place& place, const Scene& frame, Sight& sight, const Execution& execution);
+  void draw_selection(StreamPiece& piece, const PiecePlace& place, const Scene& frame, SightGatherer& sight,
+                      const Execution& execution);
   /// Those that may hold a sample of one of the views.
-  [[nodiscard]] Selection select(const Mesh& mesh, const Sight& sight);
+  [[nodiscard]] Selection select(const Mesh& mesh, const SightGatherer& sight);
 
   Scene scene_;
   std::vector<ZBuffer> buffers_;

@@ -116,7 +116,7 @@ class NeighbourFinder {
     for (auto& [number, piece] : seen_) piece.mesh = {};
   }
 
-  void find(const Mesh& mesh, const Place& place) {
+  void find(const Mesh& mesh, const PiecePlace& place) {
     Kept found{place, {}, {}};
     const auto seen = seen_.find(place.number);
     std::size_t next = 0;
@@ -159,13 +159,14 @@ void Stream::State::pass(std::size_t samples, const Execution& execution, const 
   begin_pass();
   const LoopOptions loop = loop_options(samples, execution);
   const WorkerExecution each(execution, loop.workers);
-  for_each_piece(models, loop, execution,
-                 [&](int worker, Piece& piece, const Place& place) { work(worker, piece, place, each.execution); });
+  for_each_piece(models, loop, execution, [&](int worker, StreamPiece& piece, const PiecePlace& place) {
+    work(worker, piece, place, each.execution);
+  });
 }
 
 Scene Stream::outline(const View& direction, double margin, const Execution& execution) {
   std::vector<OutlineFinder> finders(std::size_t(thread_count(execution)), OutlineFinder(direction, margin));
-  state_->pass(0, execution, [&](int worker, Piece& piece, const Place&, const Execution&) {
+  state_->pass(0, execution, [&](int worker, StreamPiece& piece, const PiecePlace&, const Execution&) {
     finders[std::size_t(worker)].include(piece.mesh);
   });
   for (const OutlineFinder& other : finders) finders.front().include(other);
@@ -180,11 +181,12 @@ Scene Stream::outline(const View& direction, double margin, const Execution& exe
 /// The first pass of look(): what is visible, and copies of it.
 KeptPieces Stream::State::find_visible(const std::vector<View>& views, const StreamNeeds& needs, Excerpt& excerpt,
                                        const Execution& execution) {
-  Sight sight(views, {.triangles = true, .bounds = !bounds, .unseen = needs.unseen});
+  SightGatherer sight(views, {.triangles = true, .bounds = !bounds, .unseen = needs.unseen});
   std::vector<Drawer> drawers(std::size_t(thread_count(execution)));
-  pass(sight.sample_count(), execution, [&](int worker, Piece& piece, const Place& place, const Execution& each) {
-    drawers[std::size_t(worker)].draw(piece, place, models.scene(), sight, each);
-  });
+  pass(sight.sample_count(), execution,
+       [&](int worker, StreamPiece& piece, const PiecePlace& place, const Execution& each) {
+         drawers[std::size_t(worker)].draw(piece, place, models.scene(), sight, each);
+       });
   sight.finish();
   if (!bounds) bounds = sight.bounds();
   KeptPieces kept = sight.take_kept();
@@ -207,12 +209,13 @@ KeptPieces Stream::State::find_needs(KeptPieces kept, const StreamNeeds& needs, 
     if (auto touched = large_corners(kept, excerpt.visible, excerpt.stream_ids.size(), execution))
       neighbours.emplace(std::move(kept), std::move(touched));
   if (light.empty() && !neighbours) return kept;
-  Sight sight(light, {});
+  SightGatherer sight(light, {});
   std::vector<Drawer> drawers(std::size_t(thread_count(execution)));
-  pass(sight.sample_count(), execution, [&](int worker, Piece& piece, const Place& place, const Execution& each) {
-    if (neighbours) neighbours->find(piece.mesh, place);
-    if (!light.empty()) drawers[std::size_t(worker)].draw(piece, place, models.scene(), sight, each);
-  });
+  pass(sight.sample_count(), execution,
+       [&](int worker, StreamPiece& piece, const PiecePlace& place, const Execution& each) {
+         if (neighbours) neighbours->find(piece.mesh, place);
+         if (!light.empty()) drawers[std::size_t(worker)].draw(piece, place, models.scene(), sight, each);
+       });
   if (!light.empty()) excerpt.seen_by_light = std::move(sight.take_visible().front());
   if (!neighbours) return kept;
   kept = neighbours->take();

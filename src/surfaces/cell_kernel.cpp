@@ -31,7 +31,7 @@ class CellFinder {
     // Not a number where any corner is not finite, and then so for ever; a sum that overflows is taken for one.
     rest_ = hn::Add(rest_, hn::Add(hn::Sub(x, x), hn::Add(hn::Sub(y, y), hn::Sub(z, z))));
     const VI cell_x = Place(0, x, y, z), cell_y = Place(1, x, y, z), cell_z = Place(2, x, y, z);
-    const VI yz = hn::Or(hn::ShiftLeft<Cell::y_shift>(cell_y), hn::ShiftLeft<Cell::z_shift>(cell_z));
+    const VI yz = hn::Or(hn::ShiftLeft<SpaceCell::y_shift>(cell_y), hn::ShiftLeft<SpaceCell::z_shift>(cell_z));
     return hn::BitCast(DU(), hn::Or(cell_x, yz));
   }
   [[nodiscard]] bool IsFinite() const {
@@ -64,7 +64,7 @@ class CellFinder {
   VF rest_ = hn::Zero(DF());
 };
 
-bool FindCells(const MeshPart& part, const CellMap& map, Cell* cells) {
+bool FindCells(const MeshPart& part, const CellMap& map, SpaceCell* cells) {
   const DU d;
   const std::size_t lanes = hn::Lanes(d);
   const glm::uvec3* triangles = part.mesh.triangles.data() + part.begin;
@@ -92,11 +92,11 @@ namespace frontmost {
 
 FRONTMOST_KERNELS(FindCells);
 
-bool find_cells(const MeshPart& part, const CellMap& map, Isa isa, Cell* cells) {
+bool find_cells(const MeshPart& part, const CellMap& map, Isa isa, SpaceCell* cells) {
   // Beyond, three times a vertex's number passes the 31 bits of a lane.
   constexpr std::size_t kMostVertices = (std::size_t(1) << 31) / 3;
   if (part.mesh.positions.size() > kMostVertices) {
-    std::fill_n(cells, part.end - part.begin, Cell());
+    std::fill_n(cells, part.end - part.begin, SpaceCell());
     return false;
   }
   return kernel_for(FindCellsKernels, isa)(part, map, cells);

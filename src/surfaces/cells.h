@@ -10,7 +10,7 @@
 namespace frontmost {
 
 /// A cell by its place along each axis, 0 to 1023, packed: x in bits 0 to 9, y in 11 to 20, z in 22 to 31.
-struct Cell {
+struct SpaceCell {
   static constexpr int y_shift = 11, z_shift = 22;
   static constexpr std::uint32_t mask = 1023;
 
@@ -20,7 +20,7 @@ struct Cell {
   [[nodiscard]] std::uint32_t y() const { return packed >> y_shift & mask; }
   [[nodiscard]] std::uint32_t z() const { return packed >> z_shift; }
   /// True when `other` is from one cell before to two cells after this one, along every axis.
-  [[nodiscard]] bool is_near(Cell other) const {
+  [[nodiscard]] bool is_near(SpaceCell other) const {
     // One bit above each place is lent to it, so that no difference borrows from the next.
     constexpr std::uint64_t ones = 1 | 1ull << y_shift | 1ull << z_shift, lent = ones << 10;
     return (((((other.packed | lent) - packed) + ones) ^ lent) & ~(3 * ones)) == 0;
@@ -41,6 +41,6 @@ struct MeshPart {
 
 /// Finds the cells of triangles, the same ones for any instruction set; 0 along an axis along
 /// which the place is not a number. \returns false where a corner may not be finite.
-bool find_cells(const MeshPart& part, const CellMap& map, Isa isa, Cell* cells);
+bool find_cells(const MeshPart& part, const CellMap& map, Isa isa, SpaceCell* cells);
 
 }  // namespace frontmost

@@ -11,15 +11,15 @@ namespace frontmost {
 namespace hilbert_detail {
 
 /// How the curve lies in a cell: it enters at corner `entry` and leaves along axis `direction`. 24 ways.
-struct Pose {
+struct CellPose {
   std::uint32_t entry, direction;
   [[nodiscard]] constexpr std::uint32_t number() const { return entry * 3 + direction; }
 };
 
 /// Which of the eight parts of a cell comes when, and how the curve lies in it.
-struct Step {
+struct HilbertStep {
   std::uint32_t place;
-  Pose inside;
+  CellPose inside;
 };
 
 constexpr std::uint32_t rotate_left(std::uint32_t bits, std::uint32_t by) {
@@ -30,7 +30,7 @@ constexpr std::uint32_t gray(std::uint32_t i) { return i ^ i >> 1; }
 constexpr std::uint32_t trailing_ones(std::uint32_t i) { return i & 1 ? 1 + trailing_ones(i >> 1) : 0; }
 
 /// `part` is a bit an axis.
-constexpr Step step(const Pose& pose, std::uint32_t part) {
+constexpr HilbertStep step(const CellPose& pose, std::uint32_t part) {
   const std::uint32_t turned = rotate_left(part ^ pose.entry, 2 - pose.direction);
   const std::uint32_t place = (turned ^ turned >> 1 ^ turned >> 2) & 7;  // gray(place) == turned
   const std::uint32_t entry = place == 0 ? 0 : gray((place - 1) & ~1u);
@@ -43,7 +43,7 @@ inline constexpr auto kSteps = [] {
   std::array<std::uint16_t, 24 * 64> steps{};
   for (std::uint32_t pose = 0; pose < 24; ++pose)
     for (std::uint32_t parts = 0; parts < 64; ++parts) {
-      const Step outer = step({pose / 3, pose % 3}, parts >> 3), inner = step(outer.inside, parts & 7);
+      const HilbertStep outer = step({pose / 3, pose % 3}, parts >> 3), inner = step(outer.inside, parts & 7);
       steps[pose * 64 + parts] =
           static_cast<std::uint16_t>(inner.inside.number() * 64 | outer.place << 3 | inner.place);
     }

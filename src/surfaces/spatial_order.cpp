@@ -108,7 +108,9 @@ constexpr auto kSpread = [] {
   return table;
 }();
 
-std::uint32_t morton_code(Cell cell) { return kSpread[cell.x()] | kSpread[cell.y()] << 1 | kSpread[cell.z()] << 2; }
+std::uint32_t morton_code(SpaceCell cell) {
+  return kSpread[cell.x()] | kSpread[cell.y()] << 1 | kSpread[cell.z()] << 2;
+}
 
 /// Cells of equal size along all axes, so that flat models do not waste cells on their thickness.
 class Grid {
@@ -156,7 +158,7 @@ struct RunCutter {
 
   void cut(const ItemPart& part, PrimitiveId first, PartRuns& runs) const {
     constexpr std::uint32_t kAtOnce = 2048;
-    std::array<Cell, kAtOnce> cells;
+    std::array<SpaceCell, kAtOnce> cells;
     runs.packed.reserve((part.end - part.begin) / 2);
     for (std::uint32_t begin = part.begin; begin < part.end; begin += kAtOnce) {
       const std::uint32_t end = std::min(begin + kAtOnce, part.end);
@@ -166,7 +168,7 @@ struct RunCutter {
   }
 
  private:
-  void append(std::span<const Cell> cells, PrimitiveId first, std::vector<std::uint64_t>& packed) const {
+  void append(std::span<const SpaceCell> cells, PrimitiveId first, std::vector<std::uint64_t>& packed) const {
     for (std::size_t i = 0; i < cells.size();) {
       TriangleRun run{PrimitiveId(first + i), 1};
       const std::size_t most = std::min<std::size_t>(TriangleRun::max_count, cells.size() - i);

@@ -66,9 +66,9 @@ ClipVertex cut(const ScreenTransform& t, Plane plane, const ClipVertex& inside, 
 }
 
 /// Each of six planes adds at most one corner to a convex polygon, and one more is written before it is looked at.
-using Polygon = std::array<ClipVertex, ClippedPolygon::max_corners + 1>;
+using ClipCorners = std::array<ClipVertex, ClippedPolygon::max_corners + 1>;
 
-int clip_by(const ScreenTransform& t, Plane plane, const Polygon& in, int count, Polygon& out) {
+int clip_by(const ScreenTransform& t, Plane plane, const ClipCorners& in, int count, ClipCorners& out) {
   int kept = 0;
   for (int i = 0; i < count; ++i) {
     const ClipVertex& a = in[std::size_t(i)];
@@ -122,7 +122,7 @@ ClipVertex prepare(const ScreenTransform& t, const glm::vec3& world) {
 }  // namespace
 
 ClippedPolygon clip_triangle(const ScreenTransform& t, const std::array<glm::vec3, 3>& world) {
-  Polygon polygon, next;
+  ClipCorners polygon, next;
   int count = 3;
   for (std::size_t i = 0; i < 3; ++i) polygon[i] = prepare(t, world[i]);
   // Near comes first: in perspective the sides are only planes where w, the distance, is positive.

@@ -269,7 +269,7 @@ TEST(Hatch, ForPlottersOrderedAndOtherwiseTheSame) {
     return sum;
   };
   ASSERT_EQ(ordered.size(), sorted.size());
-  EXPECT_LT(2 * travel_of(ordered), travel_of(sorted));
+  EXPECT_LT(2 * travel(ordered), travel(sorted));
   for (std::uint32_t set = 0; set < 3; ++set) {
     EXPECT_NEAR(length_of(ordered, set), length_of(sorted, set), 1e-6);
     EXPECT_NEAR(length_of(apart, set), length_of(sorted, set), 1e-6);

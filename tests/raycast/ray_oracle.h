@@ -25,7 +25,7 @@ class RayOracle {
     for (int y = 0; y < visible_.view.height; y += tile)
       for (int x = 0; x < visible_.view.width; x += tile) {
         const float tx = float((x + tile / 2) * 256 - t_.centre_x), ty = float((y + tile / 2) * 256 - t_.centre_y);
-        const raycast_detail::KeyPlane plane = raycast_detail::key_plane(visible_.view, t_, triangle, {tx, ty});
+        const raycast_detail::TileKeyPlane plane = raycast_detail::key_plane(visible_.view, t_, triangle, {tx, ty});
         if (plane.is_outside) continue;
         meet_tile({x, y}, {tx, ty}, triangle.corners, plane, id);
       }
@@ -34,8 +34,9 @@ class RayOracle {
   [[nodiscard]] const Visible& visible() const { return visible_; }
 
  private:
-  void meet_tile(const glm::ivec2& first, const glm::vec2& centre, const std::array<raycast_detail::Corner, 3>& corners,
-                 const raycast_detail::KeyPlane& plane, PrimitiveId id) {
+  void meet_tile(const glm::ivec2& first, const glm::vec2& centre,
+                 const std::array<raycast_detail::SampleCorner, 3>& corners, const raycast_detail::TileKeyPlane& plane,
+                 PrimitiveId id) {
     const auto samples = sample_offsets(visible_.view.samples);
     const int x1 = std::min(first.x + raycast_detail::kTileSize, visible_.view.width);
     const int y1 = std::min(first.y + raycast_detail::kTileSize, visible_.view.height);

@@ -106,7 +106,7 @@ TEST_P(SquareOfEveryKind, MeetsAndContainsAsRationalArithmeticSays) {
     const SampleRays rays(view);
     for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
       const auto corners = surfaces.corners(id);
-      const SeenTriangle triangle(corners, rays);
+      const ViewedTriangle triangle(corners, rays);
       for (int i = 0; i < 12; ++i) {
         const SampleSquare square = square_on(corners, view, rays, random);
         const Meeting meeting = triangle.meeting(square);
@@ -145,7 +145,7 @@ TEST_P(SquareOfEveryKind, KnowsHowNearThePlaneIs) {
     for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
       const auto corners = surfaces.corners(id);
       const SampleSquare square = square_on(corners, view, rays, random);
-      const SeenTriangle triangle(corners, rays);
+      const ViewedTriangle triangle(corners, rays);
       if (triangle.meeting(square) != Meeting::contains) continue;
       const NearnessRange range = triangle.nearness(square);
       Rational least, most;
@@ -179,10 +179,10 @@ TEST(SampleSquare, TellsSheetsApartFromTheExactResolutionOn) {
     view.projection = orthographic ? make_orthographic(-1, 1, -1, 1, {0.5, 4.5}) : make_projection(1, 1, {0.5, 4.5});
     const SampleRays rays(view);
     const SampleSquare square(rays, 31, 32, {128, 128});
-    const SeenTriangle front(sheet(2), rays);
+    const ViewedTriangle front(sheet(2), rays);
     int first_apart = 0;
     for (int steps = 1; steps < 64 && first_apart == 0; ++steps) {
-      const SeenTriangle back(sheet(2 + float(steps) * 0x1p-22f), rays);
+      const ViewedTriangle back(sheet(2 + float(steps) * 0x1p-22f), rays);
       ASSERT_FALSE(is_surely_nearer(back, front, square));
       if (is_surely_nearer(front, back, square)) first_apart = steps;
     }
@@ -199,11 +199,11 @@ TEST(SampleSquare, TheNearPlaneIsARim) {
   view.projection = make_projection(1, 1, {2, 50});
   const SampleRays rays(view);
   const SampleSquare square(rays, 31, 32, {128, 128});
-  EXPECT_EQ(SeenTriangle(sheet(1.99f), rays).meeting(square), Meeting::misses);
-  EXPECT_EQ(SeenTriangle(sheet(2), rays).meeting(square), Meeting::touches);
-  EXPECT_EQ(SeenTriangle(sheet(2.01f), rays).meeting(square), Meeting::contains);
-  EXPECT_EQ(SeenTriangle(sheet(49.9f), rays).meeting(square), Meeting::contains);
-  EXPECT_EQ(SeenTriangle(sheet(50.1f), rays).meeting(square), Meeting::misses);
+  EXPECT_EQ(ViewedTriangle(sheet(1.99f), rays).meeting(square), Meeting::misses);
+  EXPECT_EQ(ViewedTriangle(sheet(2), rays).meeting(square), Meeting::touches);
+  EXPECT_EQ(ViewedTriangle(sheet(2.01f), rays).meeting(square), Meeting::contains);
+  EXPECT_EQ(ViewedTriangle(sheet(49.9f), rays).meeting(square), Meeting::contains);
+  EXPECT_EQ(ViewedTriangle(sheet(50.1f), rays).meeting(square), Meeting::misses);
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ TEST(Pyramid, RepeatingTexturesFilterAcrossTheirSeam) {
 TEST(Pyramid, ACheckerFarAwayIsHalfTheLightNotHalfTheByte) {
   const Texture texture = checker(64);
   const Pyramid colors(texture, Encoding::srgb), numbers(texture, Encoding::linear);
-  const Footprint far{{0.3f, 0.6f}, {0.5f, 0}, {0, 0.5f}};
+  const TextureFootprint far{{0.3f, 0.6f}, {0.5f, 0}, {0, 0.5f}};
   EXPECT_NEAR(colors.sample(far).r, 0.5f, 0.003f);  // sRGB byte 188
   EXPECT_EQ(srgb8_of_linear(colors.sample(far).r), 188);
   EXPECT_NEAR(numbers.sample(far).r, 0.5f, 0.003f);
@@ -91,9 +91,9 @@ TEST(Pyramid, ASlantedFootprintStaysSharpAcrossItsShortSide) {
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; x += 2) texture.pixels[std::size_t(y * 64 + x)] = {255, 255, 255, 255};
   const Pyramid pyramid(texture, Encoding::linear);
-  const Footprint slanted{{10.5f / 64, 0.5f}, {1.0f / 64, 0}, {0, 7.0f / 64}};
+  const TextureFootprint slanted{{10.5f / 64, 0.5f}, {1.0f / 64, 0}, {0, 7.0f / 64}};
   EXPECT_GT(pyramid.sample(slanted).r, 0.95f);
-  const Footprint wide{{10.5f / 64, 0.5f}, {7.0f / 64, 0}, {0, 7.0f / 64}};
+  const TextureFootprint wide{{10.5f / 64, 0.5f}, {7.0f / 64, 0}, {0, 7.0f / 64}};
   EXPECT_NEAR(pyramid.sample(wide).r, 0.5f, 0.05f);
 }
 
@@ -154,7 +154,7 @@ TEST(TexcoordTransform, FollowsTheTextureTransformExtension) {
   TextureUse use;
   use.offset = {0.5f, 0.25f};
   use.scale = {2, 3};
-  const Footprint moved = transformed(TexcoordTransform(use), {{0.1f, 0.2f}, {1, 0}, {0, 1}});
+  const TextureFootprint moved = transformed(TexcoordTransform(use), {{0.1f, 0.2f}, {1, 0}, {0, 1}});
   EXPECT_NEAR(moved.texcoord.x, 0.7f, 1e-6f);
   EXPECT_NEAR(moved.texcoord.y, 0.85f, 1e-6f);
   EXPECT_EQ(moved.dx, glm::vec2(2, 0));

@@ -48,7 +48,7 @@ Mesh tube(int sides) {
   return mesh;
 }
 
-glm::vec3 normal_at(const CornerNormals& normals, std::size_t triangle, std::size_t corner) {
+glm::vec3 normal_at(const PackedCornerNormals& normals, std::size_t triangle, std::size_t corner) {
   return glm::normalize(unpack(normals[triangle][corner]));
 }
 
@@ -74,7 +74,7 @@ TEST(PackedNormal, KeepsDirectionsToAHundredthOfADegree) {
 
 TEST(SmoothNormals, ABoxKeepsItsEdges) {
   const Mesh mesh = box();
-  const CornerNormals normals = smooth_normals(mesh, all);
+  const PackedCornerNormals normals = smooth_normals(mesh, all);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
       EXPECT_LT(glm::length(normal_at(normals, t, k) - facet_normal(mesh, t)), 1e-4f) << t << " " << k;
@@ -82,7 +82,7 @@ TEST(SmoothNormals, ABoxKeepsItsEdges) {
 
 TEST(SmoothNormals, ATubeIsRound) {
   const Mesh mesh = tube(16);
-  const CornerNormals normals = smooth_normals(mesh, all);
+  const PackedCornerNormals normals = smooth_normals(mesh, all);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
       const glm::vec3& p = mesh.positions[mesh.triangles[t][int(k)]];
@@ -103,19 +103,19 @@ TEST(SmoothNormals, TheCreaseAngleDecides) {
 TEST(SmoothNormals, NegativeZeroIsZero) {
   Mesh mesh = tube(16);
   for (glm::vec3& p : mesh.positions) p.z += 1;  // the lower rim at 0
-  const CornerNormals plain = smooth_normals(mesh, all);
+  const PackedCornerNormals plain = smooth_normals(mesh, all);
   for (std::size_t i = 0; i < mesh.positions.size(); i += 2)
     if (mesh.positions[i].z == 0) mesh.positions[i].z = -0.0f;
-  const CornerNormals mixed = smooth_normals(mesh, all);
+  const PackedCornerNormals mixed = smooth_normals(mesh, all);
   EXPECT_EQ(std::memcmp(plain.data(), mixed.data(), plain.size() * sizeof plain[0]), 0);
 }
 
 TEST(SmoothNormals, DoNotDependOnThreadsNorOnWhichTrianglesAreWanted) {
   const Mesh mesh = tube(30000);  // several chunks and buckets
-  const CornerNormals whole = smooth_normals(mesh, all, {.threads = 1});
+  const PackedCornerNormals whole = smooth_normals(mesh, all, {.threads = 1});
   const auto is_wanted = [](std::uint32_t t) { return t % 7 == 3 || t > 50000; };
   for (const int threads : {1, 2, 7}) {
-    const CornerNormals some = smooth_normals(mesh, is_wanted, {.threads = threads});
+    const PackedCornerNormals some = smooth_normals(mesh, is_wanted, {.threads = threads});
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
       if (!is_wanted(t)) continue;
       ASSERT_EQ(std::memcmp(&whole[t], &some[t], sizeof whole[t]), 0) << t;
@@ -131,7 +131,7 @@ TEST(SmoothNormals, HostileMeshesAreSafe) {
   add_quad(mesh, p, {nan, 0, 0}, {inf, inf, 0}, p);
   add_quad(mesh, {1e38f, 0, 0}, {-1e38f, 1e38f, 0}, {0, 0, 1e38f}, {3e38f, 3e38f, 3e38f});
   add_quad(mesh, {1e-30f, 0, 0}, {0, 1e-30f, 0}, {0, 0, 1e-30f}, {0, 0, 0});
-  const CornerNormals normals = smooth_normals(mesh, all);
+  const PackedCornerNormals normals = smooth_normals(mesh, all);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(glm::length(normal_at(normals, t, k)), 1.0f, 1e-5f);
   // The bad ones do not spoil their neighbours.
@@ -148,7 +148,7 @@ TEST(SmoothNormals, AFanOfAHundredThousandFacetsIsNoTrap) {
     mesh.positions.push_back({std::cos(angle), std::sin(angle), 0});
   }
   for (std::uint32_t i = 0; i < count; ++i) mesh.triangles.push_back({0, i + 1, i + 2});
-  const CornerNormals normals = smooth_normals(mesh, all);
+  const PackedCornerNormals normals = smooth_normals(mesh, all);
   EXPECT_GT(normal_at(normals, 0, 0).x, 0.6f);
   EXPECT_GT(normal_at(normals, count / 2, 0).x, -1.0f);
 }
@@ -163,7 +163,7 @@ TEST(SmoothNormals, IndexedAndSoupBunnyAgree) {
     for (int k = 0; k < 3; ++k) soup.positions.push_back(mesh.positions[t[k]]);
     soup.triangles.push_back({first, first + 1, first + 2});
   }
-  const CornerNormals a = smooth_normals(mesh, all), b = smooth_normals(soup, all);
+  const PackedCornerNormals a = smooth_normals(mesh, all), b = smooth_normals(soup, all);
   ASSERT_EQ(a.size(), b.size());
   EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]), 0);
 }

@@ -171,7 +171,7 @@ TEST_F(StreamFormats, PiecesStaySmallWhateverTheFacesAre) {
     SCOPED_TRACE(corners);
     const std::string path = file("faces.ply", equal_faces(faces, corners));
     const std::unique_ptr<ModelStream> stream = open_model_stream(path, {}, {});
-    Piece piece;
+    StreamPiece piece;
     std::uint64_t rows = 0, triangles = 0;
     while (stream->fetch(piece, 100)) {
       stream->parse(piece);

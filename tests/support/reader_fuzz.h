@@ -32,7 +32,7 @@ inline bool fuzz_mtl(std::span<const std::byte> bytes) {
   const ModelSource source("fuzz", {});
   Scene scene;
   TextureFiles textures(source, scene);
-  MaterialTable materials(source, scene);
+  NamedMaterials materials(source, scene);
   try {
     read_mtl(bytes, source, "", textures, materials);
     validate(scene);

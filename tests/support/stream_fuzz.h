@@ -57,7 +57,7 @@ inline Flat read_in_pieces(const std::string& path, const LoadOptions& options, 
   const std::unique_ptr<ModelStream> stream = open_model_stream(path, options, {.threads = 1});
   const auto read = [&] {
     flat = {};
-    Piece piece;
+    StreamPiece piece;
     std::uint64_t first = 0;
     while (stream->fetch(piece, triangles)) {
       stream->parse(piece);

@@ -12,11 +12,11 @@
 namespace frontmost::test {
 namespace {
 
-Cell cell_at(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-  return {x | y << Cell::y_shift | z << Cell::z_shift};
+SpaceCell cell_at(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+  return {x | y << SpaceCell::y_shift | z << SpaceCell::z_shift};
 }
 
-TEST(Cell, IsNearFromOneBeforeToTwoAfter) {
+TEST(SpaceCell, IsNearFromOneBeforeToTwoAfter) {
   for (const std::uint32_t at : {0u, 1u, 2u, 511u, 512u, 1021u, 1023u})
     for (int step = -4; step <= 4; ++step) {
       const int other = int(at) + step;
@@ -31,7 +31,7 @@ TEST(Cell, IsNearFromOneBeforeToTwoAfter) {
 }
 
 /// The formula of CellMap, in the same order of sums, one triangle at a time.
-Cell expected_cell(const Mesh& mesh, const CellMap& map, std::uint32_t triangle) {
+SpaceCell expected_cell(const Mesh& mesh, const CellMap& map, std::uint32_t triangle) {
   const glm::uvec3& c = mesh.triangles[triangle];
   const glm::vec3 sum = mesh.positions[c.x] + mesh.positions[c.y] + mesh.positions[c.z];
   std::uint32_t place[3];
@@ -50,7 +50,7 @@ TEST(FindCells, EqualsThePlainFormulaForEveryInstructionSet) {
     for (const std::uint32_t begin : {0u, 5u})
       for (const std::uint32_t end : {5u, 6u, 40u, 1003u}) {
         SCOPED_TRACE(testing::Message() << name(isa) << ", " << begin << " to " << end);
-        std::vector<Cell> cells(end - begin + 1, Cell{77});
+        std::vector<SpaceCell> cells(end - begin + 1, SpaceCell{77});
         EXPECT_TRUE(find_cells({mesh, begin, end}, map, isa, cells.data()));
         for (std::uint32_t t = begin; t < end; ++t)
           ASSERT_EQ(cells[t - begin].packed, expected_cell(mesh, map, t).packed) << t;
@@ -65,7 +65,7 @@ TEST(FindCells, TellsWhereACornerIsNotFinite) {
       for (const std::uint32_t at : {0u, 30u, 36u}) {
         Mesh mesh = random_mesh(Kind::soup, 37, 6);
         mesh.positions[mesh.triangles[at].y].z = bad;
-        std::vector<Cell> cells(37);
+        std::vector<SpaceCell> cells(37);
         const CellMap map{{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 1023};
         EXPECT_FALSE(find_cells({mesh, 0, 37}, map, isa, cells.data())) << name(isa) << ", " << at;
         EXPECT_LE(cells[at].z(), 1023u);

@@ -42,11 +42,11 @@ TEST(TriangleRun, KeepsItsPartsToTheLastBit) {
       }
 }
 
-TEST(Cell, UnpacksWhatWasPacked) {
+TEST(SpaceCell, UnpacksWhatWasPacked) {
   for (const std::uint32_t x : {0u, 1u, 512u, 1023u})
     for (const std::uint32_t y : {0u, 3u, 1023u})
       for (const std::uint32_t z : {0u, 700u, 1023u}) {
-        const Cell cell{x | y << Cell::y_shift | z << Cell::z_shift};
+        const SpaceCell cell{x | y << SpaceCell::y_shift | z << SpaceCell::z_shift};
         EXPECT_EQ(cell.x(), x);
         EXPECT_EQ(cell.y(), y);
         EXPECT_EQ(cell.z(), z);

@@ -27,7 +27,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 class TileCompositor {
  public:
-  TileCompositor(const FrameInput& frame, const TileJob& job, TileScratch& scratch, const FragmentColors& colors,
+  TileCompositor(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch, const FragmentColors& colors,
                  const PicturePlanes& out)
       : frame_(frame), job_(job), scratch_(scratch), colors_(colors), out_(out) {}
 
@@ -145,15 +145,15 @@ class TileCompositor {
     for (std::size_t x = 0; x < width; x += hn::Lanes(d)) hn::Stream(hn::Load(d, from + x), d, to + x);
   }
 
-  const FrameInput& frame_;
-  const TileJob& job_;
-  TileScratch& scratch_;
+  const GatherInput& frame_;
+  const GatherJob& job_;
+  GatherScratch& scratch_;
   const FragmentColors& colors_;
   const PicturePlanes& out_;
   HWY_ALIGN_MAX float strip_[4][4][kTileSize];  // four rows of each plane
 };
 
-void CompositeTile(const FrameInput& frame, const TileJob& job, TileScratch& scratch, const FragmentColors& colors,
+void CompositeTile(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch, const FragmentColors& colors,
                    const PicturePlanes& out) {
   TileCompositor compositor(frame, job, scratch, colors, out);
   // By count when compiled, so that loops over sub-samples are written out and what shows through has registers.
@@ -176,8 +176,8 @@ namespace frontmost::abuffer_detail {
 
 FRONTMOST_KERNELS(CompositeTile);
 
-void composite_tile(const FrameInput& frame, const TileJob& job, TileScratch& scratch, const FragmentColors& colors,
-                    const PicturePlanes& out) {
+void composite_tile(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch,
+                    const FragmentColors& colors, const PicturePlanes& out) {
   kernel_for(CompositeTileKernels, frame.isa)(frame, job, scratch, colors, out);
 }
 

@@ -23,7 +23,7 @@ struct PicturePlanes {
 
 /// Writes a job's pixels: premultiplied means over the sub-samples. At every sub-sample the order is that of the keys
 /// there, the lower id first where they are equal.
-void composite_tile(const FrameInput& frame, const TileJob& job, TileScratch& scratch, const FragmentColors& colors,
-                    const PicturePlanes& out);
+void composite_tile(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch,
+                    const FragmentColors& colors, const PicturePlanes& out);
 
 }  // namespace frontmost::abuffer_detail

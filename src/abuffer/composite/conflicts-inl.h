@@ -46,7 +46,7 @@ template <bool kWide>
 class GroupReader {
  public:
   /// `all`: the mask of all sub-samples. `by_fragment`: colours are numbered as in Arrived, not as in LocalTriangles.
-  GroupReader(TileScratch& scratch, std::uint64_t all, bool by_fragment)
+  GroupReader(GatherScratch& scratch, std::uint64_t all, bool by_fragment)
       : s_(scratch), g_(scratch.fragments), all_(all), by_fragment_(by_fragment) {}
 
   /// Fills GroupFragments. \returns the pixels, as bits, in which fragments may change places: none at a single sample.
@@ -208,7 +208,7 @@ class GroupReader {
     return key;
   }
 
-  TileScratch& s_;
+  GatherScratch& s_;
   GroupFragments& g_;
   const std::uint64_t all_;
   const bool by_fragment_;

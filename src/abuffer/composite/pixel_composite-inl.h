@@ -40,7 +40,7 @@ HWY_INLINE float AddHalves(D /*tag*/, hn::Vec<D> v) {
 template <int kSamples>
 class PixelCompositor {
  public:
-  PixelCompositor(const FrameInput& frame, TileScratch& scratch, const glm::vec4* table, float opacity)
+  PixelCompositor(const GatherInput& frame, GatherScratch& scratch, const glm::vec4* table, float opacity)
       : pattern_(frame.pattern), s_(scratch), g_(scratch.fragments), table_(table), opacity_(opacity) {}
 
   /// Premultiplied. Precondition: GroupFragments are those of the group, with `reach` for this pixel.
@@ -197,7 +197,7 @@ class PixelCompositor {
   }
 
   const SamplePattern& pattern_;
-  TileScratch& s_;
+  GatherScratch& s_;
   const GroupFragments& g_;
   const glm::vec4* table_;
   const float opacity_;

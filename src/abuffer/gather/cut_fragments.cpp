@@ -17,7 +17,7 @@ glm::ivec2 place_of(std::uint32_t pixel) {
 
 }  // namespace
 
-void cut_fragments(const FrameInput& frame, const TileJob& job, TileScratch& scratch) {
+void cut_fragments(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch) {
   const Cutouts* const cutouts = frame.plan.set().cutouts.get();
   if (!cutouts) return;
   const ScreenRays rays(frame.plan.view());

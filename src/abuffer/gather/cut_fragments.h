@@ -9,6 +9,6 @@ namespace frontmost::abuffer_detail {
 
 /// To be called for the lists of a job before anybody looks at their masks, some of which become 0: such fragments show
 /// nothing. O(fragments); nothing where the scene has no cut-outs. Precondition: not flat.
-void cut_fragments(const FrameInput& frame, const TileJob& job, TileScratch& scratch);
+void cut_fragments(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch);
 
 }  // namespace frontmost::abuffer_detail

@@ -35,7 +35,7 @@ constexpr std::int32_t kStepsOfPixel = kSubPixels / SamplePattern::unit;
 
 HWY_INLINE bool IsTopLeft(std::int32_t dx, std::int32_t dy) { return dy < 0 || (dy == 0 && dx > 0); }
 
-struct PixelBounds {
+struct FragmentBounds {
   VI x0, x1, y0, y1;  // both ends included
 };
 
@@ -94,7 +94,7 @@ constexpr float kKeyRounding = 16.0f / 16777216.0f, kLeastRounding = 1e-42f;
 template <bool kFlat>
 class FragmentSink {
  public:
-  FragmentSink(const FrameInput& frame, const TileJob& job, TileScratch& scratch)
+  FragmentSink(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch)
       : samples(frame.pattern),
         pattern(frame.pattern),
         width(job.pixels.width),
@@ -111,7 +111,7 @@ class FragmentSink {
   }
 
   /// The pixels of the tile whose samples may lie between corners.
-  [[nodiscard]] HWY_INLINE PixelBounds BoundsOf(VI x_min, VI x_max, VI y_min, VI y_max) const {
+  [[nodiscard]] HWY_INLINE FragmentBounds BoundsOf(VI x_min, VI x_max, VI y_min, VI y_max) const {
     return {First(x_min, pattern.high_x), Last(x_max, pattern.low_x, width), First(y_min, pattern.high_y),
             Last(y_max, pattern.low_y, height)};
   }

@@ -22,7 +22,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 template <bool kFlat>
 class TileGatherer {
  public:
-  TileGatherer(const FrameInput& frame, const TileJob& job, TileScratch& scratch)
+  TileGatherer(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch)
       : frame_(frame), job_(job), sink_(frame, job, scratch), large_(sink_), small_(sink_, scratch, large_) {}
 
   /// False: too much.
@@ -84,7 +84,7 @@ class TileGatherer {
     const Corners a = Fetch(cluster, set.i0, at), b = Fetch(cluster, set.i1, at), c = Fetch(cluster, set.i2, at);
     const VI x_min = hn::Min(a.x, hn::Min(b.x, c.x)), x_max = hn::Max(a.x, hn::Max(b.x, c.x));
     const VI y_min = hn::Min(a.y, hn::Min(b.y, c.y)), y_max = hn::Max(a.y, hn::Max(b.y, c.y));
-    const PixelBounds p = sink_.BoundsOf(x_min, x_max, y_min, y_max);
+    const FragmentBounds p = sink_.BoundsOf(x_min, x_max, y_min, y_max);
     MI keep = hn::And(hn::Not(hn::Gt(p.x0, p.x1)), hn::Not(hn::Gt(p.y0, p.y1)));
     if (hn::AllFalse(d, keep)) return;
 
@@ -105,7 +105,7 @@ class TileGatherer {
     const float* key = frame_.plan.screen().key.data() + cluster.first_vertex;
     const auto key_of = [&](VI number) HWY_ATTR { return hn::BitCast(d, hn::GatherIndex(DF(), key, number)); };
     const VI bn = hn::IfThenElse(front, c.number, b.number), cn = hn::IfThenElse(front, b.number, c.number);
-    const VI fields[TriangleQueue::kFields] = {a.x,
+    const VI fields[FragmentQueue::kFields] = {a.x,
                                                hn::IfThenElse(front, c.x, b.x),
                                                hn::IfThenElse(front, b.x, c.x),
                                                a.y,
@@ -152,14 +152,14 @@ class TileGatherer {
     }
   }
 
-  const FrameInput& frame_;
-  const TileJob& job_;
+  const GatherInput& frame_;
+  const GatherJob& job_;
   FragmentSink<kFlat> sink_;
-  LargeTriangles<kFlat> large_;
-  SmallTriangles<kFlat> small_;
+  LargeFragments<kFlat> large_;
+  SmallFragments<kFlat> small_;
 };
 
-Gathered GatherTile(const FrameInput& frame, const TileJob& job, TileScratch& scratch) {
+Gathered GatherTile(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch) {
   std::fill(scratch.counts.begin(), scratch.counts.end(), 0u);
   scratch.arrived.count = Arrived::first;
   scratch.triangles.clear();
@@ -181,7 +181,7 @@ namespace frontmost::abuffer_detail {
 
 FRONTMOST_KERNELS(GatherTile);
 
-Gathered gather_tile(const FrameInput& frame, const TileJob& job, TileScratch& scratch) {
+Gathered gather_tile(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch) {
   return kernel_for(GatherTileKernels, frame.isa)(frame, job, scratch);
 }
 

@@ -8,8 +8,8 @@
 namespace frontmost::abuffer_detail {
 
 /// What all tiles of a frame share.
-struct FrameInput {
-  const FramePlan& plan;
+struct GatherInput {
+  const FragmentPlan& plan;
   const SamplePattern& pattern;
   /// Lists hold primitive ids instead of numbers of fragments, and fragments know neither triangle nor mask: quicker,
   /// and enough where a pixel has one sample. Only with one sample.
@@ -22,7 +22,7 @@ struct FrameInput {
 };
 
 /// A rectangle of a tile, whose clusters and single triangles it looks through.
-struct TileJob {
+struct GatherJob {
   Rectangle pixels;
   std::size_t tile;
 };
@@ -31,6 +31,6 @@ enum class Gathered : std::uint8_t { nothing, something, too_much };
 
 /// Fills the scratch's sorted lists with all fragments of the rectangle. `too_much`: they are more than kMostOfTile;
 /// of rectangles of one pixel all are gathered. \throws Error limit_exceeded for more than kMostOfPixel in one pixel.
-[[nodiscard]] Gathered gather_tile(const FrameInput& frame, const TileJob& job, TileScratch& scratch);
+[[nodiscard]] Gathered gather_tile(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch);
 
 }  // namespace frontmost::abuffer_detail

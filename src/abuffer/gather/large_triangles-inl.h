@@ -22,9 +22,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr std::int64_t kEdgeLimit = std::int64_t(1) << 30;
 
 template <bool kFlat>
-class LargeTriangles {
+class LargeFragments {
  public:
-  explicit LargeTriangles(FragmentSink<kFlat>& sink) : sink_(sink) {
+  explicit LargeFragments(FragmentSink<kFlat>& sink) : sink_(sink) {
     for (std::int32_t i = 0; i < 16; ++i) {
       column_[i] = i % 4;
       row_[i] = i / 4;

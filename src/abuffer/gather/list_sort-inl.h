@@ -57,7 +57,7 @@ HWY_INLINE void SortGroup(std::uint64_t* slots, std::size_t length) {
 }
 
 /// Fragments of equal keys were put into the order of arrival: into that of ids.
-inline void OrderTies(TileScratch& s, std::size_t group, std::size_t lane) {
+inline void OrderTies(GatherScratch& s, std::size_t group, std::size_t lane) {
   const auto length = s.length(group);
   const auto at = [&](std::size_t i) -> std::uint64_t& { return s.slot(group, i)[lane]; };
   const auto id = [&](std::uint64_t word) { return s.triangles.id[s.arrived.triangle[~std::uint32_t(word)]]; };
@@ -81,7 +81,7 @@ inline void OrderTies(TileScratch& s, std::size_t group, std::size_t lane) {
   }
 }
 
-inline void FindTies(TileScratch& s, std::size_t group) {
+inline void FindTies(GatherScratch& s, std::size_t group) {
   const DW d;
   const std::size_t length = s.length(group);
   for (std::size_t lane = 0; lane < kGroup; lane += hn::Lanes(d)) {
@@ -99,7 +99,7 @@ inline void FindTies(TileScratch& s, std::size_t group) {
 }
 
 /// Makes room for the lists. Counts of pixels become the places where their lists begin, in words.
-HWY_INLINE void MakeRoom(TileScratch& s) {
+HWY_INLINE void MakeRoom(GatherScratch& s) {
   const DU d;
   std::uint32_t base = 0;
   for (std::size_t g = 0; g < kGroups; ++g) {
@@ -119,7 +119,7 @@ HWY_INLINE void MakeRoom(TileScratch& s) {
 }
 
 template <bool kFlat>
-HWY_INLINE void Place(TileScratch& s) {
+HWY_INLINE void Place(GatherScratch& s) {
   const std::uint32_t *place = s.arrived.place.data(), *key = s.arrived.key.data(), *begin = s.counts.data();
   const std::uint32_t* triangle = s.arrived.triangle.data();
   auto* slots = reinterpret_cast<char*>(s.slots.data());
@@ -132,7 +132,7 @@ HWY_INLINE void Place(TileScratch& s) {
   }
 }
 
-inline void PlaceAndSort(const FrameInput& frame, TileScratch& s) {
+inline void PlaceAndSort(const GatherInput& frame, GatherScratch& s) {
   MakeRoom(s);
   if (frame.is_flat)
     Place<true>(s);

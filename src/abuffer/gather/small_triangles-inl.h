@@ -23,22 +23,22 @@ constexpr std::int32_t kSmallExtent = 15 * kSubPixels;
 
 /// Small triangles waiting to be drawn: x, y, bits of the key of three corners, and the id. Room for one vector more
 /// than is drawn at a time.
-struct TriangleQueue {
+struct FragmentQueue {
   static constexpr int kFields = 10;
   HWY_ALIGN_MAX std::int32_t field[kFields][3 * kMaxLanes];
   std::size_t count = 0;
 };
 
 template <bool kFlat>
-class SmallTriangles {
+class SmallFragments {
  public:
   /// Steep triangles go to `large`.
-  SmallTriangles(FragmentSink<kFlat>& sink, TileScratch& scratch, LargeTriangles<kFlat>& large)
+  SmallFragments(FragmentSink<kFlat>& sink, GatherScratch& scratch, LargeFragments<kFlat>& large)
       : sink_(sink), large_(large), references_(scratch.references.data()) {}
 
-  HWY_INLINE void Append(const VI (&fields)[TriangleQueue::kFields], MI keep) {
+  HWY_INLINE void Append(const VI (&fields)[FragmentQueue::kFields], MI keep) {
     const Compactor<DI> compact(keep);
-    for (int f = 0; f < TriangleQueue::kFields; ++f) compact.Store(fields[f], queue_.field[f] + queue_.count);
+    for (int f = 0; f < FragmentQueue::kFields; ++f) compact.Store(fields[f], queue_.field[f] + queue_.count);
     queue_.count += compact.count();
   }
   [[nodiscard]] bool IsFull() const { return queue_.count >= hn::Lanes(DI()); }
@@ -85,8 +85,8 @@ class SmallTriangles {
       x[k] = hn::Load(d, queue_.field[k]);
       y[k] = hn::Load(d, queue_.field[3 + k]);
     }
-    const PixelBounds p = sink_.BoundsOf(hn::Min(x[0], hn::Min(x[1], x[2])), hn::Max(x[0], hn::Max(x[1], x[2])),
-                                         hn::Min(y[0], hn::Min(y[1], y[2])), hn::Max(y[0], hn::Max(y[1], y[2])));
+    const FragmentBounds p = sink_.BoundsOf(hn::Min(x[0], hn::Min(x[1], x[2])), hn::Max(x[0], hn::Max(x[1], x[2])),
+                                            hn::Min(y[0], hn::Min(y[1], y[2])), hn::Max(y[0], hn::Max(y[1], y[2])));
     const VI one = hn::Set(d, 1);
     const MI live = hn::Lt(hn::Iota(d, 0), hn::Set(d, std::int32_t(used)));
     width_ = hn::IfThenElseZero(live, hn::Add(hn::Sub(p.x1, p.x0), one));
@@ -255,9 +255,9 @@ class SmallTriangles {
   }
 
   FragmentSink<kFlat>& sink_;
-  LargeTriangles<kFlat>& large_;
+  LargeFragments<kFlat>& large_;
   std::uint32_t* references_;
-  TriangleQueue queue_;
+  FragmentQueue queue_;
   // One batch. Edge functions are at the corner of the first pixel of each triangle's rectangle.
   VI px_, py_, width_, height_, edge_[3], dx_[3], dy_[3], sample_max_[3];
   view_detail::HWY_NAMESPACE::KeyPlanes plane_;

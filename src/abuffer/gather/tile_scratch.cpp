@@ -30,7 +30,7 @@ void Arrived::grow(std::size_t wanted) {
   capacity = size;
 }
 
-TileScratch::TileScratch()
+GatherScratch::GatherScratch()
     // Every pixel of the largest walk for every lane, and a vector of slack for whole stores.
     : counts(kTilePixels), group_base(kGroups + 1), references(16 * 16 * 16 + 64) {
   arrived.grow(kMostOfTile + kMostAtOnce);

@@ -81,8 +81,8 @@ struct GroupFragments {
   void reserve(std::size_t slots);
 };
 
-struct TileScratch {
-  TileScratch();
+struct GatherScratch {
+  GatherScratch();
 
   LocalTriangles triangles;
   Arrived arrived;

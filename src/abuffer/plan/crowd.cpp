@@ -14,11 +14,11 @@ namespace {
 /// Copies of smaller ones, in pixels, are drawn in the time that it takes to find them.
 constexpr double kLeastArea = 16;
 
-using Polygon = std::vector<glm::dvec2>;
+using PixelPolygon = std::vector<glm::dvec2>;
 
 /// The part of a convex polygon where sign * p[axis] <= bound.
-Polygon cut_off(const Polygon& polygon, int axis, double sign, double bound) {
-  Polygon part;
+PixelPolygon cut_off(const PixelPolygon& polygon, int axis, double sign, double bound) {
+  PixelPolygon part;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const glm::dvec2& a = polygon[i];
     const glm::dvec2& b = polygon[(i + 1) % polygon.size()];
@@ -36,7 +36,7 @@ double area_in_picture(const ScreenTriangle& t, const View& view) {
   const auto [y_min, y_max] = std::minmax({t.y[0], t.y[1], t.y[2]});
   constexpr double unit = 2.0 * kSubPixels * kSubPixels;
   if (x_min >= 0 && y_min >= 0 && x_max <= width && y_max <= height) return double(doubled_area(t)) / unit;
-  Polygon p;
+  PixelPolygon p;
   for (int k = 0; k < 3; ++k) p.push_back({t.x[k], t.y[k]});
   p = cut_off(cut_off(cut_off(cut_off(p, 0, -1, 0), 0, 1, width), 1, -1, 0), 1, 1, height);
   double doubled = 0;
@@ -49,14 +49,14 @@ double area_in_picture(const ScreenTriangle& t, const View& view) {
 }
 
 /// Where a triangle is, whichever of its corners comes first.
-using Place = std::array<std::uint32_t, 9>;
+using CornerPlaces = std::array<std::uint32_t, 9>;
 
-Place place_of(const ScreenTriangle& t) {
+CornerPlaces place_of(const ScreenTriangle& t) {
   const auto corner = [&](int k) { return std::make_tuple(t.x[k], t.y[k], t.key[k]); };
   int first = 0;
   for (int k = 1; k < 3; ++k)
     if (corner(k) < corner(first)) first = k;
-  Place place;
+  CornerPlaces place;
   for (int i = 0; i < 3; ++i) {
     const int k = (first + i) % 3;
     place[std::size_t(3 * i)] = std::uint32_t(t.x[k]);
@@ -66,7 +66,7 @@ Place place_of(const ScreenTriangle& t) {
   return place;
 }
 
-std::uint64_t hash_of(const Place& place) {
+std::uint64_t hash_of(const CornerPlaces& place) {
   // Fowler, Noll, Vo, by words.
   std::uint64_t hash = 0xcbf29ce484222325;
   for (const std::uint32_t word : place) hash = (hash ^ word) * 0x100000001b3;
@@ -82,7 +82,7 @@ struct Candidate {
 
 class CopyFinder {
  public:
-  CopyFinder(const FramePlan& plan, const CopyRule& rule) : plan_(plan), rule_(rule) {}
+  CopyFinder(const FragmentPlan& plan, const CopyRule& rule) : plan_(plan), rule_(rule) {}
 
   /// Those that nobody sees. Afterwards area() is that of all others.
   std::vector<TriangleNumber> find() {
@@ -106,7 +106,7 @@ class CopyFinder {
  private:
   /// Of the same hash, ids ascending.
   void look_at(std::span<const Candidate> group) {
-    const Place place = place_of(plan_.triangle(group.front().number));
+    const CornerPlaces place = place_of(plan_.triangle(group.front().number));
     std::size_t kept = 0;
     bool is_hidden = false;
     for (const Candidate& c : group) {
@@ -123,7 +123,7 @@ class CopyFinder {
     }
   }
 
-  const FramePlan& plan_;
+  const FragmentPlan& plan_;
   const CopyRule& rule_;
   std::vector<TriangleNumber> hidden_;
   double area_ = 0;
@@ -131,7 +131,7 @@ class CopyFinder {
 
 }  // namespace
 
-const FramePlan& CrowdedFrame::thinned() {
+const FragmentPlan& CrowdedFrame::thinned() {
   const std::lock_guard lock(mutex_);
   // Threads that wait here are told what the first one found.
   if (error_) std::rethrow_exception(error_);

@@ -22,21 +22,21 @@ struct CopyRule {
 /// A frame some tile of which holds too much.
 class CrowdedFrame {
  public:
-  CrowdedFrame(const FramePlan& plan, const CopyRule& rule) : plan_(plan), rule_(rule) {}
+  CrowdedFrame(const FragmentPlan& plan, const CopyRule& rule) : plan_(plan), rule_(rule) {}
 
   /// The plan without copies that nobody sees, which may be the plan itself; made at the first call, so that frames
   /// without such tiles pay nothing. May be called by several threads at once. O(n log n) for n triangles of the frame.
   /// \throws Error limit_exceeded for more fragments than most_gathered_fragments().
-  const FramePlan& thinned();
+  const FragmentPlan& thinned();
 
  private:
   void make();
 
-  const FramePlan& plan_;
+  const FragmentPlan& plan_;
   const CopyRule& rule_;
   std::mutex mutex_;
-  const FramePlan* thinned_ = nullptr;
-  std::optional<FramePlan> made_;
+  const FragmentPlan* thinned_ = nullptr;
+  std::optional<FragmentPlan> made_;
   std::exception_ptr error_;
 };
 

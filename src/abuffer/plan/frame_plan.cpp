@@ -15,7 +15,7 @@ constexpr int kMaxTilesOfCluster = 16;
 // 256 MiB of numbers. Beyond that tiles look through all single triangles instead of through a list of theirs.
 constexpr std::size_t kMostSingleItems = std::size_t(1) << 26;
 
-struct TileRect {
+struct TileSpan {
   int x0, y0, x1, y1;
   [[nodiscard]] std::size_t count() const {
     return x1 < x0 || y1 < y0 ? 0 : std::size_t(x1 - x0 + 1) * std::size_t(y1 - y0 + 1);
@@ -23,18 +23,18 @@ struct TileRect {
 };
 
 /// The tiles that bounds in 1/256 pixel from the image's top left corner touch.
-TileRect tiles_of(std::int32_t x0, std::int32_t y0, std::int32_t x1, std::int32_t y1, const View& view) {
+TileSpan tiles_of(std::int32_t x0, std::int32_t y0, std::int32_t x1, std::int32_t y1, const View& view) {
   constexpr int shift = 8 + 6;
   static_assert(1 << shift == kTileSize * kSubPixels);
   return {std::max(x0, 0) >> shift, std::max(y0, 0) >> shift, std::min(x1, view.width * kSubPixels - 1) >> shift,
           std::min(y1, view.height * kSubPixels - 1) >> shift};
 }
 
-TileRect tiles_of(const ClusterPlace& p, const ScreenTransform& t, const View& view) {
+TileSpan tiles_of(const ClusterPlace& p, const ScreenTransform& t, const View& view) {
   return tiles_of(p.x0 + t.centre_x, p.y0 + t.centre_y, p.x1 + t.centre_x, p.y1 + t.centre_y, view);
 }
 
-TileRect tiles_of(const ScreenTriangle& s, const View& view) {
+TileSpan tiles_of(const ScreenTriangle& s, const View& view) {
   return tiles_of(std::min({s.x[0], s.x[1], s.x[2]}), std::min({s.y[0], s.y[1], s.y[2]}),
                   std::max({s.x[0], s.x[1], s.x[2]}), std::max({s.y[0], s.y[1], s.y[2]}), view);
 }
@@ -55,8 +55,8 @@ bool misses(const ScreenTriangle& t, int tile_x, int tile_y) {
 
 /// Lists of the tiles that `visit(item, add)` names by add(tile), items in their order: counted first, then filled.
 template <class Visit>
-TileLists lists_of(std::size_t tile_count, std::size_t item_count, const Visit& visit) {
-  TileLists lists;
+TileNumbers lists_of(std::size_t tile_count, std::size_t item_count, const Visit& visit) {
+  TileNumbers lists;
   // One place behind, so that filling a list moves its beginning to where it belongs.
   lists.begin.assign(tile_count + 2, 0);
   for (std::size_t i = 0; i < item_count; ++i) visit(i, [&](std::size_t tile) { ++lists.begin[tile + 2]; });
@@ -68,7 +68,7 @@ TileLists lists_of(std::size_t tile_count, std::size_t item_count, const Visit& 
 }
 
 template <class Add>
-void for_tiles(const TileRect& rect, int tiles_x, const Add& add) {
+void for_tiles(const TileSpan& rect, int tiles_x, const Add& add) {
   for (int y = rect.y0; y <= rect.y1; ++y)
     for (int x = rect.x0; x <= rect.x1; ++x) add(x, y, std::size_t(y) * std::size_t(tiles_x) + std::size_t(x));
 }
@@ -88,7 +88,7 @@ bool orient(ScreenTriangle& t, Culling culling) {
   return true;
 }
 
-void FramePlan::make(const Surfaces& surfaces, const View& view, const Execution& execution) {
+void FragmentPlan::make(const Surfaces& surfaces, const View& view, const Execution& execution) {
   set_ = &surfaces.clusters();
   transform_.emplace(view);
   view_ = view;
@@ -99,12 +99,12 @@ void FramePlan::make(const Surfaces& surfaces, const View& view, const Execution
   make_lists({});
 }
 
-Rectangle FramePlan::tile(std::size_t number) const {
+Rectangle FragmentPlan::tile(std::size_t number) const {
   const int x = int(number % std::size_t(tiles_x_)) * kTileSize, y = int(number / std::size_t(tiles_x_)) * kTileSize;
   return {x, y, std::min(kTileSize, view_.width - x), std::min(kTileSize, view_.height - y)};
 }
 
-void FramePlan::transform_all(const Execution& execution) {
+void FragmentPlan::transform_all(const Execution& execution) {
   constexpr std::size_t kGrain = 256;
   if (screen_->x.size() < set_->x.size()) {
     screen_->x = Buffer<std::int32_t>(set_->x.size());
@@ -117,20 +117,20 @@ void FramePlan::transform_all(const Execution& execution) {
   });
 }
 
-void FramePlan::take_apart(const Execution& execution) {
+void FragmentPlan::take_apart(const Execution& execution) {
   std::vector<std::uint32_t> apart;
   for (std::size_t i = 0; i < screen_->places.size(); ++i) {
     ClusterPlace& place = screen_->places[i];
-    if (place.fate == ClusterFate::whole && tiles_of(place, *transform_, view_).count() > kMaxTilesOfCluster)
-      place.fate = ClusterFate::spread;
-    if (place.fate == ClusterFate::spread || place.fate == ClusterFate::apart) apart.push_back(std::uint32_t(i));
+    if (place.fate == ScreenFate::whole && tiles_of(place, *transform_, view_).count() > kMaxTilesOfCluster)
+      place.fate = ScreenFate::spread;
+    if (place.fate == ScreenFate::spread || place.fate == ScreenFate::apart) apart.push_back(std::uint32_t(i));
   }
   constexpr std::size_t kGrain = 64;
   std::vector<std::vector<ScreenTriangle>> parts((apart.size() + kGrain - 1) / kGrain);
   parallel_for(execution, apart.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Cluster& cluster = set_->clusters[apart[i]];
-      if (screen_->places[apart[i]].fate == ClusterFate::spread)
+      if (screen_->places[apart[i]].fate == ScreenFate::spread)
         append_snapped(cluster, parts[begin / kGrain]);
       else
         append_clipped(cluster, parts[begin / kGrain]);
@@ -140,9 +140,11 @@ void FramePlan::take_apart(const Execution& execution) {
   for (const std::vector<ScreenTriangle>& part : parts) singles_.insert(singles_.end(), part.begin(), part.end());
 }
 
-bool FramePlan::is_drawn(ScreenTriangle& t) const { return tiles_of(t, view_).count() > 0 && orient(t, view_.culling); }
+bool FragmentPlan::is_drawn(ScreenTriangle& t) const {
+  return tiles_of(t, view_).count() > 0 && orient(t, view_.culling);
+}
 
-ScreenTriangle FramePlan::snapped(const Cluster& cluster, std::size_t triangle) const {
+ScreenTriangle FragmentPlan::snapped(const Cluster& cluster, std::size_t triangle) const {
   const std::size_t c = cluster.first_triangle + triangle;
   const std::uint8_t numbers[3] = {set_->i0[c], set_->i1[c], set_->i2[c]};
   ScreenTriangle t;
@@ -156,14 +158,14 @@ ScreenTriangle FramePlan::snapped(const Cluster& cluster, std::size_t triangle) 
   return t;
 }
 
-void FramePlan::append_snapped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const {
+void FragmentPlan::append_snapped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const {
   for (std::size_t i = 0; i < cluster.triangle_count; ++i) {
     ScreenTriangle t = snapped(cluster, i);
     if (is_drawn(t)) triangles.push_back(t);
   }
 }
 
-void FramePlan::append_clipped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const {
+void FragmentPlan::append_clipped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const {
   const auto position = [&](std::size_t vertex) {
     const std::size_t v = cluster.first_vertex + vertex;
     return glm::vec3(set_->x[v], set_->y[v], set_->z[v]);
@@ -187,19 +189,19 @@ void FramePlan::append_clipped(const Cluster& cluster, std::vector<ScreenTriangl
   }
 }
 
-ScreenTriangle FramePlan::triangle(const TriangleNumber& number) const {
+ScreenTriangle FragmentPlan::triangle(const TriangleNumber& number) const {
   if (number.cluster == no_index) return singles_[number.index];
   ScreenTriangle t = snapped(set_->clusters[number.cluster], number.index);
   (void)is_drawn(t);  // turns it
   return t;
 }
 
-FramePlan FramePlan::without(std::span<const TriangleNumber> hidden) const {
+FragmentPlan FragmentPlan::without(std::span<const TriangleNumber> hidden) const {
   std::vector<TriangleNumber> sorted(hidden.begin(), hidden.end());
   std::sort(sorted.begin(), sorted.end(), [](const TriangleNumber& a, const TriangleNumber& b) {
     return a.cluster != b.cluster ? a.cluster < b.cluster : a.index < b.index;
   });
-  FramePlan plan;
+  FragmentPlan plan;
   plan.set_ = set_;
   plan.transform_ = transform_;
   plan.view_ = view_;
@@ -227,10 +229,10 @@ FramePlan FramePlan::without(std::span<const TriangleNumber> hidden) const {
   return plan;
 }
 
-void FramePlan::make_lists(const std::vector<bool>& left_out) {
+void FragmentPlan::make_lists(const std::vector<bool>& left_out) {
   cluster_lists_ = lists_of(tile_count(), screen_->places.size(), [&](std::size_t i, const auto& add) {
     const ClusterPlace& place = screen_->places[i];
-    if (place.fate == ClusterFate::whole && (left_out.empty() || !left_out[i]))
+    if (place.fate == ScreenFate::whole && (left_out.empty() || !left_out[i]))
       for_tiles(tiles_of(place, *transform_, view_), tiles_x_, [&](int, int, std::size_t tile) { add(tile); });
   });
   std::size_t items = 0;

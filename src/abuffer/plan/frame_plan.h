@@ -31,7 +31,7 @@ struct ScreenTriangle {
 [[nodiscard]] bool orient(ScreenTriangle& triangle, Culling culling);
 
 /// For every tile a list of numbers, one after another in one array.
-struct TileLists {
+struct TileNumbers {
   std::vector<std::size_t> begin;  ///< by tile, and the end of the last
   std::vector<std::uint32_t> items;
 
@@ -47,10 +47,12 @@ struct TriangleNumber {
 };
 
 /// The plan of a frame: 12 bytes a vertex, and 40 for every triangle that is large or had to be clipped.
-class FramePlan {
+class FragmentPlan {
  public:
-  FramePlan() = default;
-  FramePlan(const Surfaces& surfaces, const View& view, const Execution& execution) { make(surfaces, view, execution); }
+  FragmentPlan() = default;
+  FragmentPlan(const Surfaces& surfaces, const View& view, const Execution& execution) {
+    make(surfaces, view, execution);
+  }
 
   /// Plans another frame in the memory of the last one.
   void make(const Surfaces& surfaces, const View& view, const Execution& execution);
@@ -78,7 +80,7 @@ class FramePlan {
   /// Whether a texture may cut holes into it.
   [[nodiscard]] bool may_have_holes(PrimitiveId id) const { return set_->cutouts && set_->cutouts->has(id); }
   /// The same frame without some triangles, of which there is none twice. Only as long as make() is not called.
-  [[nodiscard]] FramePlan without(std::span<const TriangleNumber> hidden) const;
+  [[nodiscard]] FragmentPlan without(std::span<const TriangleNumber> hidden) const;
 
  private:
   void transform_all(const Execution& execution);
@@ -97,15 +99,15 @@ class FramePlan {
   int tiles_x_ = 0, tiles_y_ = 0;
   std::shared_ptr<ScreenClusters> screen_ = std::make_shared<ScreenClusters>();  ///< shared with what is without some
   std::vector<ScreenTriangle> singles_;
-  TileLists cluster_lists_;
-  std::optional<TileLists> single_lists_;
+  TileNumbers cluster_lists_;
+  std::optional<TileNumbers> single_lists_;
 };
 
 template <class Visit>
-void FramePlan::for_each(const Visit& visit) const {
+void FragmentPlan::for_each(const Visit& visit) const {
   for (std::uint32_t i = 0; i < singles_.size(); ++i) visit(singles_[i], TriangleNumber{no_index, i});
   for (std::uint32_t c = 0; c < screen_->places.size(); ++c) {
-    if (screen_->places[c].fate != ClusterFate::whole) continue;
+    if (screen_->places[c].fate != ScreenFate::whole) continue;
     const Cluster& cluster = set_->clusters[c];
     for (std::uint32_t i = 0; i < cluster.triangle_count; ++i) {
       ScreenTriangle t = snapped(cluster, i);

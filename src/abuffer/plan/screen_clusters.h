@@ -9,7 +9,7 @@
 
 namespace frontmost::abuffer_detail {
 
-enum class ClusterFate : std::uint8_t {
+enum class ScreenFate : std::uint8_t {
   outside,  ///< no pixel can see it
   whole,    ///< every vertex is snapped
   spread,   ///< likewise, but over so many tiles that it is taken apart
@@ -18,7 +18,7 @@ enum class ClusterFate : std::uint8_t {
 
 /// Where a cluster is; the bounds, in 1/256 pixel from the image's centre, hold unless it is to be taken apart.
 struct ClusterPlace {
-  ClusterFate fate = ClusterFate::outside;
+  ScreenFate fate = ScreenFate::outside;
   std::int32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 

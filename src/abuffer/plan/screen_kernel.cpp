@@ -44,14 +44,14 @@ class Transformer {
       high_y = hn::Max(high_y, y);
     }
     ClusterPlace& place = screen_.places[index];
-    place.fate = hn::AllTrue(di, plain) ? ClusterFate::whole : ClusterFate::apart;
+    place.fate = hn::AllTrue(di, plain) ? ScreenFate::whole : ScreenFate::apart;
     place.x0 = hn::GetLane(hn::MinOfLanes(di, low_x));
     place.y0 = hn::GetLane(hn::MinOfLanes(di, low_y));
     place.x1 = hn::GetLane(hn::MaxOfLanes(di, high_x));
     place.y1 = hn::GetLane(hn::MaxOfLanes(di, high_y));
-    if (place.fate == ClusterFate::whole &&
+    if (place.fate == ScreenFate::whole &&
         (place.x1 < -t_.centre_x || place.x0 > t_.centre_x || place.y1 < -t_.centre_y || place.y0 > t_.centre_y))
-      place.fate = ClusterFate::outside;
+      place.fate = ScreenFate::outside;
   }
 
  private:

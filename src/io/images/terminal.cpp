@@ -16,11 +16,11 @@ constexpr const char* upper_half = "\xE2\x96\x80";
 constexpr const char* lower_half = "\xE2\x96\x84";
 
 /// One target pixel along one axis: the source pixels that it covers, the first and the last in part.
-struct Footprint {
+struct PixelSpan {
   int first = 0, end = 0;
   double first_weight = 1, last_weight = 1;  ///< of the ends; the pixels between have weight 1
 
-  Footprint(int target, int target_size, int source_size) {
+  PixelSpan(int target, int target_size, int source_size) {
     const double from = double(target) * source_size / target_size;
     const double to = double(target + 1) * source_size / target_size;
     first = std::min(int(from), source_size - 1);
@@ -31,11 +31,11 @@ struct Footprint {
   [[nodiscard]] double weight(int i) const { return i == first ? first_weight : i == end - 1 ? last_weight : 1.0; }
 };
 
-using Color = std::array<double, 4>;
+using TerminalColor = std::array<double, 4>;
 
 /// The mean of a box, in linear light and premultiplied, so that edges keep their brightness.
-Color box_mean(const ColorPlanes& planes, const Footprint& columns, const Footprint& rows) {
-  Color sum{};
+TerminalColor box_mean(const ColorPlanes& planes, const PixelSpan& columns, const PixelSpan& rows) {
+  TerminalColor sum{};
   double weights = 0;
   for (int y = rows.first; y < rows.end; ++y)
     for (int x = columns.first; x < columns.end; ++x) {
@@ -55,7 +55,7 @@ struct Dot {
   std::array<int, 3> srgb{};
 };
 
-Dot dot_of(const Color& mean) {
+Dot dot_of(const TerminalColor& mean) {
   Dot dot;
   dot.visible = mean[3] >= 0.5;  // false for NaN
   if (!dot.visible) return dot;

@@ -14,6 +14,8 @@
 
 namespace frontmost {
 
+using Bytes = std::span<const std::byte>;
+
 /// Files that were opened, in the order of their names. Safe to add to from several threads.
 class OpenedFiles {
  public:

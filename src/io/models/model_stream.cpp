@@ -33,7 +33,7 @@ std::unique_ptr<ModelStream> open(ModelFormat format, StreamStart start, const M
 }  // namespace
 
 /// Values go and memory stays: the same few pieces are filled again and again.
-void Piece::clear() {
+void StreamPiece::clear() {
   const auto clear = [](auto& attribute) {
     attribute.values.clear();
     attribute.triangles.clear();

@@ -13,7 +13,7 @@
 namespace frontmost {
 
 /// Consecutive triangles of a model. Reused from piece to piece, it keeps its memory.
-struct Piece {
+struct StreamPiece {
   std::uint64_t first_triangle = 0;  ///< in the model
   Mesh mesh;                         ///< vertices are numbered anew in every piece; no names, no face ids
   std::vector<std::byte> bytes;      ///< as in the file: the reader's own
@@ -49,9 +49,9 @@ class ModelStream {
   /// Reads the bytes of the next `triangles` or so, and says in the piece how many they hold: perhaps none, where a
   /// file has faces of two corners. For one thread at a time. \returns false at the end of the model. \throws Error as
   /// load() does.
-  virtual bool fetch(Piece& piece, std::uint64_t triangles) = 0;
+  virtual bool fetch(StreamPiece& piece, std::uint64_t triangles) = 0;
   /// Makes piece.mesh of the bytes. Several threads may, each with a piece of its own. \throws Error as load() does.
-  virtual void parse(Piece& piece) const = 0;
+  virtual void parse(StreamPiece& piece) const = 0;
 
  protected:
   ModelStream(std::unique_ptr<ByteStream> bytes, ModelSource source)

@@ -10,8 +10,6 @@
 
 namespace frontmost {
 
-using Bytes = std::span<const std::byte>;
-
 [[nodiscard]] Scene read_stl(Bytes bytes, const ModelSource& source);
 [[nodiscard]] Scene read_ply(Bytes bytes, const ModelSource& source);
 [[nodiscard]] Scene read_obj(Bytes bytes, const ModelSource& source);

@@ -6,7 +6,7 @@
 
 namespace frontmost::raycast_detail {
 
-BoxTree::BoxTree(std::span<const DoubleBox> boxes) : items_(boxes.size()) {
+DoubleBoxTree::DoubleBoxTree(std::span<const DoubleBox> boxes) : items_(boxes.size()) {
   if (boxes.empty()) return;
   std::iota(items_.begin(), items_.end(), 0u);
   nodes_.emplace_back();
@@ -20,7 +20,7 @@ BoxTree::BoxTree(std::span<const DoubleBox> boxes) : items_(boxes.size()) {
 
 /// At the median of the middles along the longest side of the middles' box. Patches are few and about equally large:
 /// the surface area heuristic would have little to gain.
-void BoxTree::split(const Range& range, std::span<const DoubleBox> boxes, std::vector<Range>& pending) {
+void DoubleBoxTree::split(const Range& range, std::span<const DoubleBox> boxes, std::vector<Range>& pending) {
   const auto middle_of = [&](std::uint32_t item) { return boxes[item].low * 0.5 + boxes[item].high * 0.5; };
   DoubleBox box, middles;
   for (std::uint32_t i = range.begin; i < range.end; ++i) {

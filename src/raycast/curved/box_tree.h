@@ -29,11 +29,11 @@ struct BoxEntry {
   double at = 0;
 };
 
-class BoxTree {
+class DoubleBoxTree {
  public:
-  BoxTree() = default;
+  DoubleBoxTree() = default;
   /// Items are the numbers of the boxes. O(n log n).
-  explicit BoxTree(std::span<const DoubleBox> boxes);
+  explicit DoubleBoxTree(std::span<const DoubleBox> boxes);
 
   /// Calls visit(item) for the items whose boxes the ray passes through, roughly nearest first; visit may lessen
   /// ray.to.
@@ -72,7 +72,7 @@ class BoxTree {
   std::vector<std::uint32_t> items_;
 };
 
-inline double BoxTree::entry(const DoubleBox& box, const DoubleRay& ray, const glm::dvec3& inverse) {
+inline double DoubleBoxTree::entry(const DoubleBox& box, const DoubleRay& ray, const glm::dvec3& inverse) {
   double enters = ray.from, leaves = ray.to;
   for (int k = 0; k < 3; ++k) {
     double a = (box.low[k] - ray.origin[k]) * inverse[k], b = (box.high[k] - ray.origin[k]) * inverse[k];
@@ -85,7 +85,7 @@ inline double BoxTree::entry(const DoubleBox& box, const DoubleRay& ray, const g
 }
 
 template <class Visit>
-void BoxTree::walk(DoubleRay& ray, const Visit& visit) const {
+void DoubleBoxTree::walk(DoubleRay& ray, const Visit& visit) const {
   if (nodes_.empty()) return;
   struct Entry {
     std::uint32_t node;
@@ -114,7 +114,8 @@ void BoxTree::walk(DoubleRay& ray, const Visit& visit) const {
 }
 
 template <class Enter, class IsPast, class Visit>
-void BoxTree::walk_together(std::uint32_t lanes, const Enter& enter, const IsPast& is_past, const Visit& visit) const {
+void DoubleBoxTree::walk_together(std::uint32_t lanes, const Enter& enter, const IsPast& is_past,
+                                  const Visit& visit) const {
   if (nodes_.empty()) return;
   struct Waiting {
     std::uint32_t node;

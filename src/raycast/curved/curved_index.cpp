@@ -46,7 +46,7 @@ CurvedParts::CurvedParts(const Scene& scene, const Execution& execution)
   boxes.reserve(spheres.size() + pieces.size());
   for (const PlacedSphere& sphere : spheres) boxes.push_back(sphere.bounds());
   for (const PatchPiece& piece : pieces) boxes.push_back(piece.bounds());
-  tree = BoxTree(boxes);
+  tree = DoubleBoxTree(boxes);
 }
 
 void CurvedParts::place_all(const Scene& scene) {
@@ -82,7 +82,7 @@ std::array<glm::vec3, 3> CurvedParts::corners_of(PrimitiveId element) const {
   return surfaces.corners(surfaces.first_primitive(from.instance) + from.triangle);
 }
 
-bool NearestHit::keep(const Meeting& met, PrimitiveId id, std::uint32_t from_item, DoubleRay& ray) {
+bool NearestHit::keep(const RayMeeting& met, PrimitiveId id, std::uint32_t from_item, DoubleRay& ray) {
   if (met.t > ray.to) return false;
   if (hit && met.t == hit.t && std::tie(id, from_item) > std::tie(hit.primitive, item)) return false;
   hit = {id, met.t, glm::dot(met.normal, ray.direction) <= 0, met.parameters, met.normal};
@@ -91,7 +91,7 @@ bool NearestHit::keep(const Meeting& met, PrimitiveId id, std::uint32_t from_ite
   return true;
 }
 
-std::optional<Meeting> CurvedParts::meet_item(std::uint32_t item, const DoubleRay& ray) const {
+std::optional<RayMeeting> CurvedParts::meet_item(std::uint32_t item, const DoubleRay& ray) const {
   return item < spheres.size() ? meet(spheres[item], ray) : meet(pieces[item - spheres.size()], ray);
 }
 
@@ -99,7 +99,7 @@ CurvedHit CurvedParts::nearest(DoubleRay& ray) const {
   NearestHit best;
   if (ray.culling == Culling::both) return best.hit;
   tree.walk(ray, [&](std::uint32_t item) {
-    if (const std::optional<Meeting> met = meet_item(item, ray)) best.keep(*met, id_of(item), item, ray);
+    if (const std::optional<RayMeeting> met = meet_item(item, ray)) best.keep(*met, id_of(item), item, ray);
   });
   return best.hit;
 }

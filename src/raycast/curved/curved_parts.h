@@ -18,7 +18,7 @@ struct NearestHit {
   std::uint32_t item = no_index;  ///< of the tree
 
   /// Shortens the ray to what is met, if that is nearer.
-  bool keep(const Meeting& met, PrimitiveId id, std::uint32_t from_item, DoubleRay& ray);
+  bool keep(const RayMeeting& met, PrimitiveId id, std::uint32_t from_item, DoubleRay& ray);
 };
 
 }  // namespace raycast_detail
@@ -31,8 +31,8 @@ struct CurvedParts {
   /// The same of up to kPacketRays rays near each other, which is several times as fast; equal to the bit.
   void nearest(std::span<raycast_detail::DoubleRay> rays, std::span<CurvedHit> hits, Isa isa) const;
   /// Of one item of the tree.
-  [[nodiscard]] std::optional<raycast_detail::Meeting> meet_item(std::uint32_t item,
-                                                                 const raycast_detail::DoubleRay& ray) const;
+  [[nodiscard]] std::optional<raycast_detail::RayMeeting> meet_item(std::uint32_t item,
+                                                                    const raycast_detail::DoubleRay& ray) const;
   [[nodiscard]] PrimitiveId id_of(std::uint32_t item) const {
     return item < spheres.size() ? spheres[item].id : pieces[item - spheres.size()].id;
   }
@@ -49,7 +49,7 @@ struct CurvedParts {
   std::vector<std::uint32_t> meshes;        ///< by instance
   std::vector<raycast_detail::PlacedSphere> spheres;
   std::vector<raycast_detail::PatchPiece> pieces;
-  raycast_detail::BoxTree tree;  ///< items: the spheres, then the pieces
+  raycast_detail::DoubleBoxTree tree;  ///< items: the spheres, then the pieces
 
  private:
   void place_all(const Scene& scene);

@@ -22,7 +22,7 @@ struct DoubleRay {
   }
 };
 
-struct Meeting {
+struct RayMeeting {
   double t = 0;
   glm::dvec2 parameters{0};
   glm::dvec3 normal{0};  ///< world space, unit length, outwards

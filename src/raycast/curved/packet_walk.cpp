@@ -54,7 +54,7 @@ class PacketWalk {
 
   void ask_alone(std::uint32_t item, std::size_t lane) { keep(item, lane, parts_.meet_item(item, rays_[lane])); }
 
-  void keep(std::uint32_t item, std::size_t lane, const std::optional<Meeting>& met) {
+  void keep(std::uint32_t item, std::size_t lane, const std::optional<RayMeeting>& met) {
     if (met && nearest_[lane].keep(*met, parts_.id_of(item), item, rays_[lane])) packet_.shorten(lane, rays_[lane]);
   }
 

@@ -248,7 +248,7 @@ BoxEntry EnterBoxLanes(const DoubleBox& box, const RayPacket& rays, std::uint32_
              b = hn::Mul(hn::Sub(hn::Set(d, high), origin), inverse);
     const PM is_swapped = hn::Gt(a, b);
     const PV near = hn::IfThenElse(is_swapped, b, a);
-    const PV far = hn::Mul(hn::IfThenElse(is_swapped, a, b), hn::Set(d, BoxTree::kRoundings));
+    const PV far = hn::Mul(hn::IfThenElse(is_swapped, a, b), hn::Set(d, DoubleBoxTree::kRoundings));
     enters = hn::IfThenElse(hn::Gt(near, enters), near, enters);
     leaves = hn::IfThenElse(hn::Lt(far, leaves), far, leaves);
   };

@@ -41,7 +41,7 @@ glm::dvec3 value_of(const ControlNet& net, const glm::dvec2& at) {
 }
 
 /// A net in the ray's frame, and its place in the piece.
-struct Part {
+struct NetPart {
   ControlNet net;
   glm::dvec2 low{0}, size{1};
 };
@@ -86,8 +86,8 @@ class PatchSearch {
   PatchSearch(const PatchPiece& piece, const DoubleRay& ray)
       : piece_(piece), ray_(ray), frame_(ray), nearest_(frame_.farthest) {}
 
-  std::optional<Meeting> run() {
-    Part whole;
+  std::optional<RayMeeting> run() {
+    NetPart whole;
     whole.net = in_frame();
     double reach = 0;
     for (const glm::dvec3& p : whole.net)
@@ -113,7 +113,7 @@ class PatchSearch {
            hull.low.z > nearest_ || hull.high.z < frame_.nearest;
   }
 
-  void search(const Part& part) {
+  void search(const NetPart& part) {
     const DoubleBox hull = bounds_of(part.net);
     if (is_clear(hull) || ++nets_ > kMostNets || culled_ > kMostCulled) return;
     if (hull.largest_side() <= finest_) {
@@ -124,13 +124,13 @@ class PatchSearch {
     if (!settle(part)) search_halves(part);
   }
 
-  void search_halves(const Part& part) {
+  void search_halves(const NetPart& part) {
     const bool along_u = longest(part.net, true) >= longest(part.net, false);
     const int axis = along_u ? 0 : 1;
-    const Halves halves = halve(part.net, along_u);
-    Part a{halves.first, part.low, part.size};
+    const NetHalves halves = halve(part.net, along_u);
+    NetPart a{halves.first, part.low, part.size};
     a.size[axis] *= 0.5;
-    Part b{halves.second, a.low, a.size};
+    NetPart b{halves.second, a.low, a.size};
     b.low[axis] += b.size[axis];
     const bool a_first = bounds_of(a.net).low.z <= bounds_of(b.net).low.z;
     search(a_first ? a : b);
@@ -150,7 +150,7 @@ class PatchSearch {
   }
 
   /// True when there is nothing more to find on this part.
-  bool settle(const Part& part) {
+  bool settle(const NetPart& part) {
     Preconditioned system;
     if (!precondition(part.net, system)) return false;
     const double tolerance = pad_ * system.reach;
@@ -166,7 +166,7 @@ class PatchSearch {
   /// From the middle towards the one root: each step leaves at most `rate` of the distance to it, and moving back onto
   /// the net, where the root must be, never adds to that. A residual that is too large for this shows that there is
   /// none.
-  void step_to_root(const Part& part, const Preconditioned& system, double rate, double tolerance) {
+  void step_to_root(const NetPart& part, const Preconditioned& system, double rate, double tolerance) {
     glm::dvec2 at(0.5);
     double distance = 0.5;
     for (int step = 0; step < kMostSteps; ++step) {
@@ -187,7 +187,7 @@ class PatchSearch {
   /// At the parameters in the piece and the distance along the ray.
   void accept(const glm::dvec2& at, double distance) {
     if (!(distance >= frame_.nearest && distance <= nearest_)) return;
-    const std::optional<Meeting> met = meeting_at(piece_, ray_, at, distance);
+    const std::optional<RayMeeting> met = meeting_at(piece_, ray_, at, distance);
     if (!met) return;
     nearest_ = distance - finest_;
     found_ = met;
@@ -202,7 +202,7 @@ class PatchSearch {
   double finest_ = 0;  ///< parts of this size are as good as points
   double pad_ = 0;     ///< how far from the ray a hull counts as holding it: many roundings
   int nets_ = 0, culled_ = 0;
-  std::optional<Meeting> found_;
+  std::optional<RayMeeting> found_;
 };
 
 /// A patch that has no sides anywhere faces the ray.
@@ -213,14 +213,14 @@ glm::dvec3 normal_at(const PatchPiece& piece, const glm::dvec2& at, const Double
 
 }  // namespace
 
-std::optional<Meeting> meeting_at(const PatchPiece& piece, const DoubleRay& ray, const glm::dvec2& at,
-                                  double distance) {
+std::optional<RayMeeting> meeting_at(const PatchPiece& piece, const DoubleRay& ray, const glm::dvec2& at,
+                                     double distance) {
   const glm::dvec3 normal = normal_at(piece, at, ray);
   if (!ray.keeps(normal)) return std::nullopt;
   const double t = std::max(distance / glm::length(ray.direction), ray.from);
-  return Meeting{t, piece.low + piece.size * at, normal};
+  return RayMeeting{t, piece.low + piece.size * at, normal};
 }
 
-std::optional<Meeting> meet(const PatchPiece& piece, const DoubleRay& ray) { return PatchSearch(piece, ray).run(); }
+std::optional<RayMeeting> meet(const PatchPiece& piece, const DoubleRay& ray) { return PatchSearch(piece, ray).run(); }
 
 }  // namespace frontmost::raycast_detail

@@ -45,7 +45,7 @@ struct Cutter {
     // Both are to be halved: the one that was halved less often comes first.
     const bool along_u = u && (!v || u_halvings <= v_halvings);
     const int axis = along_u ? 0 : 1;
-    const Halves halves = halve(piece.patch.points, along_u);
+    const NetHalves halves = halve(piece.patch.points, along_u);
     PatchPiece half = piece;
     half.size[axis] *= 0.5;
     half.patch.points = halves.first;
@@ -73,9 +73,9 @@ DoubleBox PatchPiece::bounds() const {
   return {box.low - pad, box.high + pad};
 }
 
-Halves halve(const ControlNet& net, bool along_u) {
+NetHalves halve(const ControlNet& net, bool along_u) {
   const std::size_t step = along_u ? 4 : 1, across = along_u ? 1 : 4;
-  Halves halves;
+  NetHalves halves;
   for (std::size_t line = 0; line < 4; ++line) {
     const std::size_t at = line * across;
     const glm::dvec3 &a = net[at], &b = net[at + step], &c = net[at + 2 * step], &d = net[at + 3 * step];

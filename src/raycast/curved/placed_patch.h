@@ -30,17 +30,17 @@ void cut(const BezierPatch& patch, const glm::dmat4& world_from_mesh, PrimitiveI
 
 /// The point of the piece with the parameters `at` in it, `distance` along the ray in world units; none where it shows
 /// its culled side.
-[[nodiscard]] std::optional<Meeting> meeting_at(const PatchPiece& piece, const DoubleRay& ray, const glm::dvec2& at,
-                                                double distance);
+[[nodiscard]] std::optional<RayMeeting> meeting_at(const PatchPiece& piece, const DoubleRay& ray, const glm::dvec2& at,
+                                                   double distance);
 
 /// The nearest point of the piece that the ray sees; one a rounding past the ray's end may be told too.
-[[nodiscard]] std::optional<Meeting> meet(const PatchPiece& piece, const DoubleRay& ray);
+[[nodiscard]] std::optional<RayMeeting> meet(const PatchPiece& piece, const DoubleRay& ray);
 
 /// The halves of a net, by de Casteljau; the common edge has the same bits in both.
-struct Halves {
+struct NetHalves {
   ControlNet first, second;
 };
-[[nodiscard]] Halves halve(const ControlNet& net, bool along_u);
+[[nodiscard]] NetHalves halve(const ControlNet& net, bool along_u);
 [[nodiscard]] DoubleBox bounds_of(const ControlNet& net);
 
 }  // namespace frontmost::raycast_detail

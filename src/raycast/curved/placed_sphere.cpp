@@ -62,7 +62,7 @@ DoubleBox PlacedSphere::bounds() const {
   return {centre - reach - pad, centre + reach + pad};
 }
 
-std::optional<Meeting> meet(const PlacedSphere& sphere, const DoubleRay& ray) {
+std::optional<RayMeeting> meet(const PlacedSphere& sphere, const DoubleRay& ray) {
   const glm::dvec3 origin = sphere.unit_from_world * (ray.origin - sphere.centre);
   const glm::dvec3 direction = sphere.unit_from_world * ray.direction;
   const std::optional<glm::dvec2> both = roots(origin, direction);
@@ -71,7 +71,7 @@ std::optional<Meeting> meet(const PlacedSphere& sphere, const DoubleRay& ray) {
     if (!(t >= ray.from && t <= ray.to)) continue;
     const glm::dvec3 unit = glm::normalize(origin + t * direction);
     const glm::dvec3 normal = glm::normalize(unit * sphere.unit_from_world);  // by the inverse's transpose
-    if (ray.keeps(normal)) return Meeting{t, parameters_of(unit), normal};
+    if (ray.keeps(normal)) return RayMeeting{t, parameters_of(unit), normal};
   }
   return std::nullopt;
 }

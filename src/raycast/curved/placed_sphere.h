@@ -24,6 +24,6 @@ struct PlacedSphere {
                                                 PrimitiveId id);
 
 /// The nearest point of the sphere that the ray sees.
-[[nodiscard]] std::optional<Meeting> meet(const PlacedSphere& sphere, const DoubleRay& ray);
+[[nodiscard]] std::optional<RayMeeting> meet(const PlacedSphere& sphere, const DoubleRay& ray);
 
 }  // namespace frontmost::raycast_detail

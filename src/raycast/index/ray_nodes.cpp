@@ -23,7 +23,7 @@ constexpr std::size_t kPieceLeaves = 2048;
 /// save.
 constexpr std::size_t kBinFrom = 4;
 
-struct Range {
+struct BoxRange {
   std::size_t begin = 0, end = 0;
   Box box;
   [[nodiscard]] std::size_t size() const { return end - begin; }
@@ -47,7 +47,7 @@ struct Bin {
   std::uint32_t count = 0;
 };
 
-struct Split {
+struct BoxSplit {
   int axis = -1;
   int bin = 0;  ///< the first on the right
   float cost = std::numeric_limits<float>::infinity();
@@ -73,7 +73,7 @@ struct Binning {
 
 using Bins = std::array<std::array<Bin, kBins>, 3>;
 
-void consider(const std::array<Bin, kBins>& bins, int axis, Split& best) {
+void consider(const std::array<Bin, kBins>& bins, int axis, BoxSplit& best) {
   std::array<float, kBins> right_cost;
   Box box;
   std::uint32_t count = 0;
@@ -101,8 +101,8 @@ class NodeBuilder {
   explicit NodeBuilder(std::vector<LeafBox>& boxes) : boxes_(boxes) {}
 
   /// \returns up to sixteen ranges, by splitting the largest until none can be split or `stop` leaves are left in each.
-  std::vector<Range> children_of(const Range& range) {
-    std::vector<Range> ranges{range};
+  std::vector<BoxRange> children_of(const BoxRange& range) {
+    std::vector<BoxRange> ranges{range};
     ranges.reserve(kRayLanes);
     while (ranges.size() < kRayLanes) {
       std::size_t largest = ranges.size();
@@ -120,16 +120,16 @@ class NodeBuilder {
     return ranges;
   }
 
-  [[nodiscard]] Range range_of(std::size_t begin, std::size_t end) const {
-    Range range{begin, end, {}};
+  [[nodiscard]] BoxRange range_of(std::size_t begin, std::size_t end) const {
+    BoxRange range{begin, end, {}};
     for (std::size_t i = begin; i < end; ++i) range.box.include(as_box(boxes_[i]));
     return range;
   }
 
  private:
-  std::pair<Range, Range> split(const Range& range) {
+  std::pair<BoxRange, BoxRange> split(const BoxRange& range) {
     if (range.size() >= kBinFrom) {
-      const std::pair<Range, Range> halves = split_by_area(range);
+      const std::pair<BoxRange, BoxRange> halves = split_by_area(range);
       if (halves.first.size() > 0) return halves;
     }
     const std::size_t middle = range.begin + range.size() / 2;
@@ -137,7 +137,7 @@ class NodeBuilder {
   }
 
   /// \returns an empty range when all centres are in one place, or areas beyond what floats hold.
-  std::pair<Range, Range> split_by_area(const Range& range) {
+  std::pair<BoxRange, BoxRange> split_by_area(const BoxRange& range) {
     Box centres;
     for (std::size_t i = range.begin; i < range.end; ++i) centres.include(centre_of(boxes_[i]));
     const Binning binning(centres);
@@ -151,14 +151,14 @@ class NodeBuilder {
         ++bin.count;
       }
     }
-    Split best;
+    BoxSplit best;
     for (int axis = 0; axis < 3; ++axis) consider(bins[std::size_t(axis)], axis, best);
     if (best.axis < 0) return {};
     const auto first = boxes_.begin() + std::ptrdiff_t(range.begin), last = boxes_.begin() + std::ptrdiff_t(range.end);
     const auto middle =
         std::partition(first, last, [&](const LeafBox& box) { return binning(centre_of(box), best.axis) < best.bin; });
     const auto cut = std::size_t(middle - boxes_.begin());
-    Range left{range.begin, cut, {}}, right{cut, range.end, {}};
+    BoxRange left{range.begin, cut, {}}, right{cut, range.end, {}};
     for (int i = 0; i < kBins; ++i)
       (i < best.bin ? left : right).box.include(bins[std::size_t(best.axis)][std::size_t(i)].box);
     return {left, right};
@@ -168,8 +168,8 @@ class NodeBuilder {
 };
 
 /// Nodes over one range; children are numbered within the piece.
-struct Piece {
-  Range range;
+struct NodePiece {
+  BoxRange range;
   std::vector<RayNode> nodes;
   std::uint32_t root = 0, depth = 0;
 };
@@ -184,15 +184,15 @@ void set_child(RayNode& node, std::size_t lane, const Box& box, std::uint32_t ch
 
 class PieceBuilder {
  public:
-  PieceBuilder(std::vector<LeafBox>& boxes, Piece& piece) : boxes_(boxes), builder_(boxes), piece_(piece) {}
+  PieceBuilder(std::vector<LeafBox>& boxes, NodePiece& piece) : boxes_(boxes), builder_(boxes), piece_(piece) {}
 
   void build() { piece_.root = build(piece_.range, 0); }
 
  private:
-  std::uint32_t build(const Range& range, std::uint32_t depth) {
+  std::uint32_t build(const BoxRange& range, std::uint32_t depth) {
     piece_.depth = std::max(piece_.depth, depth);
     if (range.size() == 1) return boxes_[range.begin].leaf | kLeafBit;
-    const std::vector<Range> ranges = builder_.children_of(range);
+    const std::vector<BoxRange> ranges = builder_.children_of(range);
     const std::size_t number = piece_.nodes.size();
     piece_.nodes.push_back({});
     for (std::size_t lane = 0; lane < ranges.size(); ++lane) {
@@ -205,16 +205,16 @@ class PieceBuilder {
 
   std::vector<LeafBox>& boxes_;
   NodeBuilder builder_;
-  Piece& piece_;
+  NodePiece& piece_;
 };
 
 }  // namespace
 
 void build_nodes(std::vector<LeafBox>& boxes, RayTree& tree, const Execution& execution) {
   if (boxes.empty()) return;
-  std::vector<Piece> pieces((boxes.size() + kPieceLeaves - 1) / kPieceLeaves);
+  std::vector<NodePiece> pieces((boxes.size() + kPieceLeaves - 1) / kPieceLeaves);
   parallel_for(execution, boxes.size(), kPieceLeaves, [&](std::size_t begin, std::size_t end) {
-    Piece& piece = pieces[begin / kPieceLeaves];
+    NodePiece& piece = pieces[begin / kPieceLeaves];
     piece.range = NodeBuilder(boxes).range_of(begin, end);
     PieceBuilder(boxes, piece).build();
   });
@@ -222,7 +222,7 @@ void build_nodes(std::vector<LeafBox>& boxes, RayTree& tree, const Execution& ex
   // The piece above all others; its leaves are the pieces.
   std::vector<LeafBox> roots;
   for (std::uint32_t p = 0; p < pieces.size(); ++p) roots.push_back(as_leaf_box(pieces[p].range.box, p));
-  Piece top;
+  NodePiece top;
   top.range = NodeBuilder(roots).range_of(0, roots.size());
   PieceBuilder(roots, top).build();
   tree.bounds = top.range.box;

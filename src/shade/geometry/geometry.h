@@ -71,8 +71,8 @@ class TriangleSource {
   ScreenRays rays_;
   const BitSet* large_;
   bool has_texcoords_ = true;
-  std::vector<Placement> placements_;  ///< by instance
-  std::vector<CornerNormals> smooth_;  ///< by mesh; empty where the mesh has normals of its own or is not seen
+  std::vector<Placement> placements_;        ///< by instance
+  std::vector<PackedCornerNormals> smooth_;  ///< by mesh; empty where the mesh has normals of its own or is not seen
 };
 
 /// Fills batch.geometry from batch.coverage.

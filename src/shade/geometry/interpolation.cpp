@@ -22,9 +22,9 @@ Lane& lane(Lane3& lanes, int k) { return k == 0 ? lanes.x : k == 1 ? lanes.y : l
 void fill(Lane& lane, int count, float value) { std::fill_n(lane.values, count, value); }
 
 /// Fragments [begin, end) of a batch, all of one triangle.
-class TriangleRun {
+class FragmentRun {
  public:
-  TriangleRun(const TriangleSetup& triangle, int begin, int end, Weights& weights)
+  FragmentRun(const TriangleSetup& triangle, int begin, int end, Weights& weights)
       : t_(triangle), begin_(begin), end_(end), weight_(weights.weight), divisor_(weights.divisor) {}
 
   /// Weights, position, the plane's normal, and the corner normals where they differ from that.
@@ -140,7 +140,7 @@ void for_runs(const Coverage& coverage, const std::vector<TriangleSetup>& setups
     int end = begin + 1;
     while (end < coverage.count && coverage.triangle[end] == coverage.triangle[begin]) ++end;
     const TriangleSetup& triangle = setups[coverage.triangle[begin]];
-    visit(triangle, TriangleRun(triangle, begin, end, weights));
+    visit(triangle, FragmentRun(triangle, begin, end, weights));
     begin = end;
   }
 }
@@ -168,7 +168,7 @@ void interpolate_geometry(const ScreenRays& rays, const std::vector<TriangleSetu
   const int count = coverage.count;
   Weights weights;
   bool any_smooth = false, any_texcoord = false, any_color = false;
-  for_runs(coverage, setups, weights, [&](const TriangleSetup& t, TriangleRun run) {
+  for_runs(coverage, setups, weights, [&](const TriangleSetup& t, FragmentRun run) {
     run.place(coverage.screen, out);
     any_smooth = any_smooth || t.is_smooth;
     any_texcoord = any_texcoord || t.has_texcoord;
@@ -182,7 +182,7 @@ void interpolate_geometry(const ScreenRays& rays, const std::vector<TriangleSetu
   if (!any_color)
     for (Lane* channel : {&out.color.x, &out.color.y, &out.color.z, &out.alpha}) fill(*channel, count, 1.0f);
   if (!any_smooth && !any_texcoord && !any_color) return;
-  for_runs(coverage, setups, weights, [&](const TriangleSetup&, TriangleRun run) {
+  for_runs(coverage, setups, weights, [&](const TriangleSetup&, FragmentRun run) {
     run.smooth(out);
     if (any_texcoord) run.find_texcoords(out);
     if (any_color) run.find_colors(out);

@@ -86,7 +86,7 @@ class Smoother {
     wanted_count_ = count;
   }
 
-  CornerNormals run() && {
+  PackedCornerNormals run() && {
     if (mesh_.triangles.size() > kMostTriangles) {
       for_wanted([&](std::size_t t) { keep_facet(t); });
     } else if (wanted_count_ > 0) {
@@ -182,7 +182,7 @@ class Smoother {
   const Execution& execution_;
   BitSet wanted_;
   std::size_t wanted_count_ = 0;
-  CornerNormals normals_;
+  PackedCornerNormals normals_;
   BitSet touched_;  ///< hashes of positions that a wanted triangle has
   std::uint32_t touched_mask_ = 0;
   int bucket_bits_ = 1;
@@ -280,8 +280,8 @@ glm::vec3 unpack(PackedNormal packed) {
   return {(1.0f - std::abs(p.y)) * sign_of(p.x), (1.0f - std::abs(p.x)) * sign_of(p.y), z};
 }
 
-CornerNormals smooth_normals(const Mesh& mesh, const std::function<bool(std::uint32_t)>& is_wanted,
-                             const Execution& execution) {
+PackedCornerNormals smooth_normals(const Mesh& mesh, const std::function<bool(std::uint32_t)>& is_wanted,
+                                   const Execution& execution) {
   return Smoother(mesh, is_wanted, execution).run();
 }
 

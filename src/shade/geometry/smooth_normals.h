@@ -23,12 +23,12 @@ struct PackedNormal {
 inline constexpr double crease_cosine = 0.766044443118978;  // 40 degrees
 
 /// Corner normals in the mesh's own space, by triangle. Those of triangles that were not asked for are undefined.
-using CornerNormals = Buffer<std::array<PackedNormal, 3>>;
+using PackedCornerNormals = Buffer<std::array<PackedNormal, 3>>;
 
 /// For each corner of the triangles for which `is_wanted` says so: the mean of the normals of all facets that share
 /// the corner's position, to the bit, and lie within the crease angle of the corner's own facet, weighted by area and
 /// by the angle at the corner. Degenerate facets count for nothing and point anywhere. O(triangles).
-[[nodiscard]] CornerNormals smooth_normals(const Mesh& mesh, const std::function<bool(std::uint32_t)>& is_wanted,
-                                           const Execution& execution = {});
+[[nodiscard]] PackedCornerNormals smooth_normals(const Mesh& mesh, const std::function<bool(std::uint32_t)>& is_wanted,
+                                                 const Execution& execution = {});
 
 }  // namespace frontmost::shading

@@ -72,7 +72,7 @@ void TriangleSource::set_up(std::span<const NewTriangle> triangles, std::vector<
   for (const NewTriangle& t : triangles) {
     placement = &placement_with(t.id, *placement);
     prefetch_line(&placement->mesh->triangles[t.id - placement->first]);
-    const CornerNormals& smooth = smooth_[placement->mesh_number];
+    const PackedCornerNormals& smooth = smooth_[placement->mesh_number];
     if (!smooth.empty()) prefetch_line(&smooth[t.id - placement->first]);
   }
   for (const NewTriangle& t : triangles) {

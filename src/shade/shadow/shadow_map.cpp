@@ -16,14 +16,14 @@ constexpr double kSpareTexels = 12;  ///< around what is seen: the filter, and w
 constexpr int kStride = 4;           ///< every fourth pixel in x and y shows where the visible surfaces are
 
 /// A rectangle across the light's direction, and a range along it.
-struct Extent {
+struct LightExtent {
   glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
 
   void include(const glm::dvec3& p) {
     low = glm::min(low, p);
     high = glm::max(high, p);
   }
-  void include(const Extent& other) {
+  void include(const LightExtent& other) {
     low = glm::min(low, other.low);
     high = glm::max(high, other.high);
   }
@@ -31,14 +31,14 @@ struct Extent {
 };
 
 /// Of the points that are seen, in the axes of `light` (x, y across; z towards the light), from the eye.
-Extent extent_of_visible(const Visible& visible, const glm::dmat3& light_axes, const Execution& execution) {
+LightExtent extent_of_visible(const Visible& visible, const glm::dmat3& light_axes, const Execution& execution) {
   const ScreenRays rays(visible.view);
   const glm::dmat3 light_from_world = glm::transpose(light_axes);
   const int rows = (visible.view.height + kStride - 1) / kStride;
-  Extent extent;
+  LightExtent extent;
   std::mutex mutex;
   parallel_for(execution, std::size_t(rows), 16, [&](std::size_t begin, std::size_t end) {
-    Extent part;
+    LightExtent part;
     for (int y = int(begin) * kStride; y < std::min(int(end) * kStride, visible.view.height); y += kStride)
       for (int x = 0; x < visible.view.width; x += kStride) {
         const std::size_t i = visible.index(x, y);
@@ -52,8 +52,8 @@ Extent extent_of_visible(const Visible& visible, const glm::dmat3& light_axes, c
   return extent;
 }
 
-Extent extent_of_box(const Box& box, const glm::dvec3& eye, const glm::dmat3& light_axes) {
-  Extent extent;
+LightExtent extent_of_box(const Box& box, const glm::dvec3& eye, const glm::dmat3& light_axes) {
+  LightExtent extent;
   for (int k = 0; k < 8; ++k) {
     const glm::dvec3 corner(k & 1 ? box.high.x : box.low.x, k & 2 ? box.high.y : box.low.y,
                             k & 4 ? box.high.z : box.low.z);
@@ -69,8 +69,8 @@ glm::dmat3 axes_of_light(const glm::dvec3& to_light, const View& view) {
 }
 
 /// The window of the light's view: what is seen, but no more than there is, with room for the filter.
-Extent window_of(const Extent& seen, const Extent& all) {
-  Extent window = all;
+LightExtent window_of(const LightExtent& seen, const LightExtent& all) {
+  LightExtent window = all;
   for (int k = 0; k < 2; ++k) {
     const double spare = 0.02 * (seen.high[k] - seen.low[k]);
     window.low[k] = std::max(all.low[k], seen.low[k] - spare);
@@ -87,7 +87,7 @@ Extent window_of(const Extent& seen, const Extent& all) {
   return window;
 }
 
-View view_of_window(const Extent& window, const glm::dmat3& axes, const glm::dvec3& eye) {
+View view_of_window(const LightExtent& window, const glm::dmat3& axes, const glm::dvec3& eye) {
   View view;
   view.width = view.height = kSize;
   const double depth = std::max(window.high.z - window.low.z, 1e-6 * (window.high.x - window.low.x));
@@ -102,7 +102,7 @@ View view_of_window(const Extent& window, const glm::dmat3& axes, const glm::dve
 std::optional<View> view_of_light(const Visible& visible, const Box& bounds, const glm::dvec3& to_light,
                                   const Execution& execution) {
   const glm::dmat3 axes = axes_of_light(to_light, visible.view);
-  const Extent seen = extent_of_visible(visible, axes, execution);
+  const LightExtent seen = extent_of_visible(visible, axes, execution);
   if (seen.is_empty() || bounds.is_empty()) return std::nullopt;
   const glm::dvec3 eye = visible.view.eye();
   return view_of_window(window_of(seen, extent_of_box(bounds, eye, axes)), axes, eye);

@@ -38,9 +38,9 @@ EdgePoints edge_of(const BezierPatch& patch, std::size_t edge) {
 }
 
 /// A place on a patch in steps of a lattice that has all points of the grid and of its edges, and the middles of cells.
-struct Place {
+struct LatticePlace {
   int u, v;
-  friend auto operator<=>(const Place&, const Place&) = default;
+  friend auto operator<=>(const LatticePlace&, const LatticePlace&) = default;
 };
 
 class GridBuilder {
@@ -81,13 +81,13 @@ class GridBuilder {
       add_triangle(around_[k], around_[(k + 1) % around_.size()], middle);
   }
 
-  void walk(Place from, const Place& to, int step) {
-    const Place by{(to.u > from.u) - (to.u < from.u), (to.v > from.v) - (to.v < from.v)};
+  void walk(LatticePlace from, const LatticePlace& to, int step) {
+    const LatticePlace by{(to.u > from.u) - (to.u < from.u), (to.v > from.v) - (to.v < from.v)};
     for (; from != to; from.u += by.u * step, from.v += by.v * step) around_.push_back(vertex(from));
   }
 
   /// Fractions of powers of two: the same point from both sides of an edge, however fine their lattices are.
-  std::uint32_t vertex(const Place& place) {
+  std::uint32_t vertex(const LatticePlace& place) {
     const auto [entry, is_new] = numbers_.try_emplace(place, std::uint32_t(mesh_.positions.size()));
     if (!is_new) return entry->second;
     const PatchParameter u = fraction(place.u, lattice_.u), v = fraction(place.v, lattice_.v);
@@ -109,7 +109,7 @@ class GridBuilder {
   EdgeLevels edges_;
   PatchLevel lattice_;
   Mesh& mesh_;
-  std::map<Place, std::uint32_t> numbers_;
+  std::map<LatticePlace, std::uint32_t> numbers_;
   std::vector<std::uint32_t> around_;
 };
 

@@ -169,7 +169,7 @@ TEST(Gltf, MatricesArePaddedByColumn) {
     const ModelSource source("t.glb", {});
     const gltf::Container container = gltf::open_container(glb, source);
     const gltf::JsonDocument document(container.json, source);
-    const gltf::Data data(gltf::Json(document, source), container);
+    const gltf::Data data(gltf::JsonValue(document, source), container);
     std::vector<float> out(c.numbers.size());
     gltf::read_floats(data.accessor(std::uint32_t(id)), {0, count}, int(width), out.data());
     EXPECT_EQ(out, c.numbers) << c.type.shape << " of " << c.type.component;

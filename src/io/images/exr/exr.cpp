@@ -89,21 +89,21 @@ Image empty_image(const Imf::Header& header, const std::string& name) {
 constexpr int chunk_rows = 16;  // of ZIP compression
 
 /// A file with some rows of an image.
-struct Strip {
+struct RowStrip {
   std::vector<std::byte> bytes;
   std::size_t start = 0;  ///< of the compressed rows: behind the header and a table of one offset for every chunk
 };
 
 enum class Pixels : bool { left_out, written };
 
-Strip make_strip(Image& image, int first, int end, Pixels pixels, const std::string& name) {
+RowStrip make_strip(Image& image, int first, int end, Pixels pixels, const std::string& name) {
   Imf::Header header(image.width, image.height);
   header.dataWindow() = Imath::Box2i({0, first}, {image.width - 1, end - 1});
   header.compression() = Imf::ZIP_COMPRESSION;
   header.zipCompressionLevel() = 1;  // 18 % faster than the library's 4, and 4 % larger
   for (const Channel& channel : image.channels) header.channels().insert(channel.name, Imf::Channel(type_of(channel)));
   MemoryOutput memory(name);
-  Strip strip;
+  RowStrip strip;
   {
     Imf::OutputFile out(memory, header, 0);
     strip.start = std::size_t(memory.tellp());
@@ -117,11 +117,11 @@ Strip make_strip(Image& image, int first, int end, Pixels pixels, const std::str
 }
 
 /// Fills in the table of offsets that ends the header. Every chunk begins with its first row and its size.
-void fill_in_offsets(Strip& head, const std::vector<Strip>& strips, int height) {
+void fill_in_offsets(RowStrip& head, const std::vector<RowStrip>& strips, int height) {
   const std::size_t count = (std::size_t(height) + chunk_rows - 1) / chunk_rows;
   std::byte* entry = head.bytes.data() + head.start - 8 * count;
   std::uint64_t place = head.start;
-  for (const Strip& strip : strips)
+  for (const RowStrip& strip : strips)
     for (std::size_t at = strip.start; at < strip.bytes.size(); entry += 8) {
       std::memcpy(entry, &place, sizeof place);
       std::int32_t size;
@@ -139,8 +139,8 @@ void save_exr(const Image& image, OutputFile& file, const Execution& execution) 
     throw Error(ErrorCode::unsupported, file.name() + ": EXR: more than 1024 channels");
   constexpr int strip_rows = 4 * chunk_rows;
   auto& planes = const_cast<Image&>(image);  // which are only read
-  std::vector<Strip> strips((std::size_t(image.height) + strip_rows - 1) / strip_rows);
-  Strip head;
+  std::vector<RowStrip> strips((std::size_t(image.height) + strip_rows - 1) / strip_rows);
+  RowStrip head;
   with_named_errors(file.name(), [&] {
     // A file of all rows without any pixels: its header and table of offsets are those of the whole.
     head = make_strip(planes, 0, image.height, Pixels::left_out, file.name());
@@ -150,7 +150,7 @@ void save_exr(const Image& image, OutputFile& file, const Execution& execution) 
   });
   fill_in_offsets(head, strips, image.height);
   file.write(std::span(head.bytes).first(head.start));
-  for (const Strip& strip : strips) file.write(std::span(strip.bytes).subspan(strip.start));
+  for (const RowStrip& strip : strips) file.write(std::span(strip.bytes).subspan(strip.start));
 }
 
 Image load_exr(std::span<const std::byte> bytes, const std::string& name) {

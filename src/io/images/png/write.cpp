@@ -19,14 +19,14 @@
 namespace frontmost::detail {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+using ByteVector = std::vector<std::uint8_t>;
 
 /// Filtered bytes in a strip: enough to make its start-up costs small, few enough to keep all threads busy.
 constexpr std::size_t strip_bytes = std::size_t(1) << 18;
 
 enum class Filter : std::uint8_t { sub = 1, up = 2 };
 
-void append_word(Bytes& bytes, std::uint32_t word) {
+void append_word(ByteVector& bytes, std::uint32_t word) {
   for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(std::uint8_t(word >> shift));
 }
 
@@ -34,7 +34,7 @@ void store_word(std::uint8_t* place, std::uint32_t word) {
   for (int i = 0; i < 4; ++i) place[i] = std::uint8_t(word >> (24 - 8 * i));
 }
 
-void append_chunk(Bytes& bytes, std::string_view type, std::string_view data) {
+void append_chunk(ByteVector& bytes, std::string_view type, std::string_view data) {
   append_word(bytes, std::uint32_t(data.size()));
   const std::size_t checked = bytes.size();
   bytes.insert(bytes.end(), type.begin(), type.end());
@@ -42,18 +42,20 @@ void append_chunk(Bytes& bytes, std::string_view type, std::string_view data) {
   append_word(bytes, std::uint32_t(::crc32(0, bytes.data() + checked, uInt(bytes.size() - checked))));
 }
 
-std::string_view as_text(const Bytes& bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+std::string_view as_text(const ByteVector& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
 
 /// Signature and all chunks before the pixels.
-Bytes head(const PngContents& contents) {
-  Bytes header;
+ByteVector head(const PngContents& contents) {
+  ByteVector header;
   append_word(header, std::uint32_t(contents.width));
   append_word(header, std::uint32_t(contents.height));
   header.push_back(std::uint8_t(contents.bits));
   header.push_back(std::uint8_t(contents.color));
   header.insert(header.end(), {0, 0, 0});  // deflate, the five filters, not interlaced
 
-  Bytes bytes = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
+  ByteVector bytes = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
   append_chunk(bytes, "IHDR", as_text(header));
   if (contents.is_srgb) append_chunk(bytes, "sRGB", std::string_view("\0", 1));
   for (const PngContents::Text& text : contents.texts)
@@ -150,10 +152,10 @@ Strip make_strip(const PngContents& contents, int first, int end, Workspace& spa
 }
 
 /// The end of the zlib stream, and of the file.
-Bytes tail(const std::vector<Strip>& strips) {
+ByteVector tail(const std::vector<Strip>& strips) {
   uLong checksum = 1;  // of nothing
   for (const Strip& strip : strips) checksum = ::adler32_combine(checksum, strip.checksum, z_off_t(strip.raw_size));
-  Bytes word, bytes;
+  ByteVector word, bytes;
   append_word(word, std::uint32_t(checksum));
   append_chunk(bytes, "IDAT", as_text(word));
   append_chunk(bytes, "IEND", {});
@@ -177,10 +179,10 @@ void write_png(const PngContents& contents, OutputFile& file, const Execution& e
     const auto space = workspaces.borrow([&] { return std::make_unique<Workspace>(rows, row_size); });
     strips[first / rows] = make_strip(contents, int(first), int(end), *space);
   });
-  const Bytes start = head(contents);
+  const ByteVector start = head(contents);
   file.write(std::as_bytes(std::span(start)));
   for (const Strip& strip : strips) file.write(std::as_bytes(std::span(strip.chunk.data(), strip.chunk_size)));
-  const Bytes end = tail(strips);
+  const ByteVector end = tail(strips);
   file.write(std::as_bytes(std::span(end)));
 }
 

@@ -89,7 +89,7 @@ std::size_t lower_bound(const Sparse& sparse, std::size_t element) {
 }
 
 template <class Out>
-void replace_sparse(const Accessor& accessor, Range range, Copy<Out> copy) {
+void replace_sparse(const Accessor& accessor, ElementRange range, Copy<Out> copy) {
   const Sparse& sparse = *accessor.sparse;
   Out* const first = copy.to;
   copy.count = 1;
@@ -103,7 +103,7 @@ void replace_sparse(const Accessor& accessor, Range range, Copy<Out> copy) {
 }
 
 template <class Out>
-void read(const Accessor& accessor, Range range, int width, Out* out) {
+void read(const Accessor& accessor, ElementRange range, int width, Out* out) {
   const int components = std::min(accessor.components, width);
   Copy<Out> copy{nullptr, accessor.stride, range.count, components, out, width};
   if (accessor.bytes.empty()) {
@@ -127,9 +127,11 @@ std::uint32_t Sparse::index(std::size_t i) const {
   }
 }
 
-void read_floats(const Accessor& accessor, Range range, int width, float* out) { read(accessor, range, width, out); }
+void read_floats(const Accessor& accessor, ElementRange range, int width, float* out) {
+  read(accessor, range, width, out);
+}
 
-void read_integers(const Accessor& accessor, Range range, int width, std::uint32_t* out) {
+void read_integers(const Accessor& accessor, ElementRange range, int width, std::uint32_t* out) {
   read(accessor, range, width, out);
 }
 

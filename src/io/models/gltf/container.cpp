@@ -9,8 +9,6 @@
 namespace frontmost::gltf {
 namespace {
 
-using Bytes = std::span<const std::byte>;
-
 // "JSON" and "BIN\0", read as little-endian numbers as the format defines them.
 constexpr std::uint32_t json_type = 0x4E4F534A, binary_type = 0x004E4942;
 constexpr std::size_t header_size = 12, chunk_header_size = 8;

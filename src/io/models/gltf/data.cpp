@@ -10,7 +10,7 @@ constexpr const char* no_contents = "its buffer has no contents in this file";
 constexpr std::uint32_t component_codes[] = {5120, 5121, 5122, 5123, 5125, 5126};
 
 /// None: a code of the future.
-std::optional<Component> component_of(const Json& json) {
+std::optional<Component> component_of(const JsonValue& json) {
   const std::uint64_t code = json.to_unsigned();
   for (const std::uint32_t known : component_codes)
     if (code == known) return Component(known);
@@ -24,7 +24,7 @@ struct Shape {
 constexpr Shape shapes[] = {{"SCALAR", 1, 1}, {"VEC2", 1, 2}, {"VEC3", 1, 3}, {"VEC4", 1, 4},
                             {"MAT2", 2, 2},   {"MAT3", 3, 3}, {"MAT4", 4, 4}};
 
-const Shape* shape_of(const Json& json) {
+const Shape* shape_of(const JsonValue& json) {
   const std::string name = json.to_string();
   for (const Shape& shape : shapes)
     if (name == shape.name) return &shape;
@@ -33,11 +33,11 @@ const Shape* shape_of(const Json& json) {
 
 /// How the components of one element lie. Columns of matrices start at multiples of four, and so do packed matrices;
 /// behind the last column nothing need follow.
-struct Layout {
+struct RowLayout {
   std::size_t column, column_stride;  ///< bytes of a column, and from one to the next
   int columns;
 
-  Layout(const Shape& shape, Component component)
+  RowLayout(const Shape& shape, Component component)
       : column(std::size_t(shape.rows) * size_of(component)),
         column_stride(shape.columns == 1 ? column : (column + 3) & ~std::size_t(3)),
         columns(shape.columns) {}
@@ -70,15 +70,15 @@ std::size_t size_of(Component component) {
   return 4;
 }
 
-Data::Data(const Json& root, const Container& container)
+Data::Data(const JsonValue& root, const Container& container)
     : container_bytes_(container.json.size() + container.binary.size()) {
   const auto each = [&root](const char* key, auto&& read) {
-    const std::optional<Json> array = root.find(key);
+    const std::optional<JsonValue> array = root.find(key);
     for (std::size_t i = 0; array && i < array->size(); ++i) read((*array)[i], i);
   };
-  each("buffers", [&](const Json& json, std::size_t i) { read_buffer(json, container, i == 0); });
-  each("bufferViews", [&](const Json& json, std::size_t) { read_view(json); });
-  each("accessors", [&](const Json& json, std::size_t) { read_accessor(json); });
+  each("buffers", [&](const JsonValue& json, std::size_t i) { read_buffer(json, container, i == 0); });
+  each("bufferViews", [&](const JsonValue& json, std::size_t) { read_view(json); });
+  each("accessors", [&](const JsonValue& json, std::size_t) { read_accessor(json); });
 }
 
 std::uint64_t Data::byte_count() const {
@@ -87,22 +87,22 @@ std::uint64_t Data::byte_count() const {
   return count;
 }
 
-Bytes Data::view_bytes(std::uint32_t i, const Json& user) const {
+Bytes Data::view_bytes(std::uint32_t i, const JsonValue& user) const {
   if (!views_[i].present) user.fail(no_contents);
   return views_[i].bytes;
 }
 
-std::uint32_t Data::readable_accessor(const Json& user) const {
+std::uint32_t Data::readable_accessor(const JsonValue& user) const {
   const std::uint32_t id = user.to_index(accessors_.size());
   if (accessors_[id].unreadable != nullptr) user.fail(accessors_[id].unreadable);
   return id;
 }
 
-void Data::read_buffer(const Json& json, const Container& container, bool first) {
-  Extent buffer;
+void Data::read_buffer(const JsonValue& json, const Container& container, bool first) {
+  ByteExtent buffer;
   buffer.length = json.require("byteLength").to_unsigned();
   buffer.present = true;
-  if (const std::optional<Json> uri = json.find("uri")) {
+  if (const std::optional<JsonValue> uri = json.find("uri")) {
     const std::string text = uri->to_string();
     if (is_data_uri(text))
       buffer.bytes = decoded_.emplace_back(decode_data_uri(text, *uri));
@@ -131,10 +131,10 @@ Bytes Data::file_bytes(const std::string& path, const ModelSource& source) {
   return found->second.bytes();
 }
 
-void Data::read_view(const Json& json) {
-  const Extent& buffer = buffers_[json.require("buffer").to_index(buffers_.size())];
+void Data::read_view(const JsonValue& json) {
+  const ByteExtent& buffer = buffers_[json.require("buffer").to_index(buffers_.size())];
   const std::uint64_t offset = json.unsigned_or("byteOffset", 0);
-  Extent view;
+  ByteExtent view;
   view.length = json.require("byteLength").to_unsigned();
   view.stride = json.unsigned_or("byteStride", 0);
   view.present = buffer.present;
@@ -145,7 +145,7 @@ void Data::read_view(const Json& json) {
   views_.push_back(view);
 }
 
-void Data::read_accessor(const Json& json) {
+void Data::read_accessor(const JsonValue& json) {
   Accessor accessor;
   accessor.count = json.require("count").to_unsigned();
   // Vertices and corners are numbered by 32 bits, and the greatest number means "none".
@@ -157,12 +157,12 @@ void Data::read_accessor(const Json& json) {
     accessor.components = shape->columns * shape->rows;
     accessor.rows = shape->rows;
     accessor.normalized = json.bool_or("normalized", false);
-    const Layout layout(*shape, *component);
+    const RowLayout layout(*shape, *component);
     accessor.column_stride = layout.column_stride;
     accessor.size = layout.size();
     accessor.stride = layout.stride();
     find_elements(json, accessor);
-    if (const std::optional<Json> sparse = json.find("sparse")) read_sparse(*sparse, accessor, layout.stride());
+    if (const std::optional<JsonValue> sparse = json.find("sparse")) read_sparse(*sparse, accessor, layout.stride());
   } else {
     // Not an error yet: extensions add accessors for their own use, which a reader that lacks them never touches.
     accessor.unreadable = "the accessor's type is unknown";
@@ -171,10 +171,10 @@ void Data::read_accessor(const Json& json) {
 }
 
 /// Sets bytes and stride, which is that of packed elements before.
-void Data::find_elements(const Json& json, Accessor& accessor) const {
+void Data::find_elements(const JsonValue& json, Accessor& accessor) const {
   const std::uint32_t id = json.index_or_none("bufferView", views_.size());
   if (id == no_index) return;
-  const Extent& view = views_[id];
+  const ByteExtent& view = views_[id];
   const std::uint64_t offset = json.unsigned_or("byteOffset", 0);
   if (view.stride != 0) accessor.stride = view.stride;
   if (accessor.stride < accessor.size)
@@ -191,8 +191,8 @@ void Data::find_elements(const Json& json, Accessor& accessor) const {
 }
 
 /// The bytes of packed elements, from the first one on, in the view that `json` names; none if it has no contents.
-Bytes Data::packed(const Json& json, const Packed& elements) const {
-  const Extent& view = views_[json.require("bufferView").to_index(views_.size())];
+Bytes Data::packed(const JsonValue& json, const Packed& elements) const {
+  const ByteExtent& view = views_[json.require("bufferView").to_index(views_.size())];
   const std::uint64_t offset = json.unsigned_or("byteOffset", 0);
   if (!fits(offset, elements.count, elements.stride, elements.size, view.length))
     json.fail(std::to_string(elements.count) + " elements from byte " + std::to_string(offset) +
@@ -200,13 +200,13 @@ Bytes Data::packed(const Json& json, const Packed& elements) const {
   return view.present ? view.bytes.subspan(offset) : Bytes();
 }
 
-void Data::read_sparse(const Json& json, Accessor& accessor, std::size_t value_stride) const {
+void Data::read_sparse(const JsonValue& json, Accessor& accessor, std::size_t value_stride) const {
   Sparse sparse;
   sparse.value_stride = value_stride;
   sparse.count = json.require("count").to_unsigned();
   if (sparse.count > accessor.count)
     json.fail("replaces " + std::to_string(sparse.count) + " of " + std::to_string(accessor.count) + " elements");
-  const Json indices = json.require("indices"), values = json.require("values");
+  const JsonValue indices = json.require("indices"), values = json.require("values");
   const std::optional<Component> type = component_of(indices.require("componentType"));
   if (type != Component::u8 && type != Component::u16 && type != Component::u32)
     indices.fail("componentType is not an unsigned integer");

@@ -13,13 +13,11 @@
 
 namespace frontmost::gltf {
 
-using Bytes = std::span<const std::byte>;
-
 enum class Component : std::uint16_t { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, u32 = 5125, f32 = 5126 };
 [[nodiscard]] std::size_t size_of(Component component);
 
 /// A buffer, or a view of one.
-struct Extent {
+struct ByteExtent {
   Bytes bytes;               ///< empty when not present
   std::uint64_t length = 0;  ///< as stated
   std::size_t stride = 0;    ///< of views; 0: elements are tightly packed
@@ -49,39 +47,39 @@ struct Accessor {
 };
 
 /// Elements [first, first + count) of an accessor.
-struct Range {
+struct ElementRange {
   std::size_t first = 0, count = 0;
 };
 
 /// The binary part of a glTF file.
 class Data {
  public:
-  Data(const Json& root, const Container& container);
+  Data(const JsonValue& root, const Container& container);
 
   [[nodiscard]] std::size_t view_count() const { return views_.size(); }
   [[nodiscard]] const Accessor& accessor(std::uint32_t i) const { return accessors_[i]; }
   /// The accessor that `user` names, which must be readable.
-  [[nodiscard]] std::uint32_t readable_accessor(const Json& user) const;
+  [[nodiscard]] std::uint32_t readable_accessor(const JsonValue& user) const;
   /// The bytes of a view, which must have contents. `user` is the place that refers to it.
-  [[nodiscard]] Bytes view_bytes(std::uint32_t i, const Json& user) const;
+  [[nodiscard]] Bytes view_bytes(std::uint32_t i, const JsonValue& user) const;
   /// All bytes that belong to the model.
   [[nodiscard]] std::uint64_t byte_count() const;
 
  private:
-  void read_buffer(const Json& json, const Container& container, bool first);
+  void read_buffer(const JsonValue& json, const Container& container, bool first);
   [[nodiscard]] Bytes file_bytes(const std::string& path, const ModelSource& source);
-  void read_view(const Json& json);
-  void read_accessor(const Json& json);
-  void find_elements(const Json& json, Accessor& accessor) const;
-  void read_sparse(const Json& json, Accessor& accessor, std::size_t value_stride) const;
+  void read_view(const JsonValue& json);
+  void read_accessor(const JsonValue& json);
+  void find_elements(const JsonValue& json, Accessor& accessor) const;
+  void read_sparse(const JsonValue& json, Accessor& accessor, std::size_t value_stride) const;
   struct Packed {
     std::size_t count, stride, size;
   };
-  [[nodiscard]] Bytes packed(const Json& json, const Packed& elements) const;
+  [[nodiscard]] Bytes packed(const JsonValue& json, const Packed& elements) const;
 
   std::deque<std::vector<std::byte>> decoded_;  ///< contents of data URIs; a deque, so that they stay where they are
   std::map<std::string, InputFile> files_;
-  std::vector<Extent> buffers_, views_;
+  std::vector<ByteExtent> buffers_, views_;
   std::vector<Accessor> accessors_;
   std::uint64_t container_bytes_ = 0;
 };
@@ -89,8 +87,8 @@ class Data {
 /// Reads a range of an accessor as floats, `width` of them for each element: normalised integers are mapped to
 /// [0, 1] or [-1, 1], others are taken as they are. Values beyond the accessor's own components are left as they are in
 /// `out`, components beyond `width` are passed over.
-void read_floats(const Accessor& accessor, Range range, int width, float* out);
+void read_floats(const Accessor& accessor, ElementRange range, int width, float* out);
 /// The same for unsigned integers. Precondition: an unsigned type.
-void read_integers(const Accessor& accessor, Range range, int width, std::uint32_t* out);
+void read_integers(const Accessor& accessor, ElementRange range, int width, std::uint32_t* out);
 
 }  // namespace frontmost::gltf

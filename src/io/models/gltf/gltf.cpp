@@ -26,9 +26,9 @@ bool is_supported(const std::string& extension) {
          std::end(supported_extensions);
 }
 
-void check_version(const Json& root) {
-  const Json asset = root.require("asset");
-  const Json version = asset.find("minVersion").value_or(asset.require("version"));
+void check_version(const JsonValue& root) {
+  const JsonValue asset = root.require("asset");
+  const JsonValue version = asset.find("minVersion").value_or(asset.require("version"));
   const std::string text = version.to_string();
   // A later 2.x only adds what older readers may pass over, unless minVersion says otherwise.
   const bool fits = version.place() == "asset.version" ? text.starts_with("2.") : text == "2.0";
@@ -37,9 +37,9 @@ void check_version(const Json& root) {
                                             " is not supported, only 2.0");
 }
 
-std::vector<std::string> unsupported(const Json& root, const char* key) {
+std::vector<std::string> unsupported(const JsonValue& root, const char* key) {
   std::vector<std::string> names;
-  const std::optional<Json> array = root.find(key);
+  const std::optional<JsonValue> array = root.find(key);
   for (std::size_t i = 0; array && i < array->size(); ++i) {
     const std::string name = (*array)[i].to_string();
     if (!is_supported(name)) names.push_back(printable(name));
@@ -47,7 +47,7 @@ std::vector<std::string> unsupported(const Json& root, const char* key) {
   return names;
 }
 
-void check_extensions(const Json& root, std::vector<std::string>& warnings) {
+void check_extensions(const JsonValue& root, std::vector<std::string>& warnings) {
   std::string list;
   for (const std::string& name : unsupported(root, "extensionsRequired")) list += (list.empty() ? "" : ", ") + name;
   if (!list.empty())
@@ -58,10 +58,10 @@ void check_extensions(const Json& root, std::vector<std::string>& warnings) {
 }
 
 /// Every element costs some hundred bytes, whether a file says anything about it ("{}") or not.
-void check_counts(const Json& root) {
+void check_counts(const JsonValue& root) {
   for (const char* key : {"accessors", "bufferViews", "buffers", "cameras", "images", "materials", "meshes", "nodes",
                           "samplers", "skins", "textures"}) {
-    const std::optional<Json> array = root.find(key);
+    const std::optional<JsonValue> array = root.find(key);
     if (array && array->size() > max_objects)
       root.source().fail_limit(key, std::to_string(array->size()) + " are more than " + std::to_string(max_objects));
   }
@@ -73,7 +73,7 @@ std::string_view without_byte_order_mark(std::string_view text) {
 
 Scene read_scene(const Container& container, const ModelSource& source) {
   const JsonDocument document(without_byte_order_mark(container.json), source);
-  const Json root(document, source);
+  const JsonValue root(document, source);
   Scene scene;
   check_version(root);
   check_extensions(root, scene.warnings);
@@ -82,7 +82,7 @@ Scene read_scene(const Container& container, const ModelSource& source) {
   const Data data(root, container);
   TextureTable textures(root, data);
   // Materials before meshes, because the base colour decides which set of texture coordinates a primitive reads.
-  Materials materials = read_materials(root, textures, scene.warnings);
+  MaterialList materials = read_materials(root, textures, scene.warnings);
   const std::vector<MeshPlan> plans = plan_meshes(root, data, materials, scene.warnings);
   const NodeTree tree = read_nodes(root, data);
   scene.materials = std::move(materials.materials);

@@ -28,12 +28,12 @@ struct Skin {
   }
 };
 
-Joints read_joints(const Json& json, const Data& data, const std::vector<Node>& nodes) {
+Joints read_joints(const JsonValue& json, const Data& data, const std::vector<Node>& nodes) {
   Joints skin;
-  const Json joints = json.require("joints");
+  const JsonValue joints = json.require("joints");
   for (std::size_t i = 0; i < joints.size(); ++i) skin.push_back(nodes[joints[i].to_index(nodes.size())].world);
   if (skin.empty()) joints.fail("a skin without joints");
-  const std::optional<Json> bind = json.find("inverseBindMatrices");
+  const std::optional<JsonValue> bind = json.find("inverseBindMatrices");
   if (!bind) return skin;
   const Accessor& accessor = data.accessor(data.readable_accessor(*bind));
   if (accessor.components != 16 || accessor.component != Component::f32)
@@ -46,17 +46,18 @@ Joints read_joints(const Json& json, const Data& data, const std::vector<Node>& 
   return skin;
 }
 
-std::vector<Skin> read_skins(const Json& root, const Data& data, const std::vector<Node>& nodes) {
+std::vector<Skin> read_skins(const JsonValue& root, const Data& data, const std::vector<Node>& nodes) {
   std::vector<Skin> skins;
-  const std::optional<Json> array = root.find("skins");
+  const std::optional<JsonValue> array = root.find("skins");
   for (std::size_t i = 0; array && i < array->size(); ++i) skins.emplace_back(read_joints((*array)[i], data, nodes));
   return skins;
 }
 
 /// Reads every mesh once for every way in which it is posed.
-class Placer {
+class PosedMeshes {
  public:
-  Placer(const Json& root, const Data& data, const std::vector<MeshPlan>& plans, const NodeTree& tree, Scene& scene)
+  PosedMeshes(const JsonValue& root, const Data& data, const std::vector<MeshPlan>& plans, const NodeTree& tree,
+              Scene& scene)
       : source_(root.source()),
         data_(data),
         plans_(plans),
@@ -103,7 +104,7 @@ class Placer {
     if (!node.weights.empty() && node.weights.size() != plan.target_count)
       source_.fail(node.place + ".weights", std::to_string(node.weights.size()) + " weights for " +
                                                 std::to_string(plan.target_count) + " morph targets");
-    Pose pose{node.weights.empty() ? plan.weights : node.weights};
+    VertexPose pose{node.weights.empty() ? plan.weights : node.weights};
     // Every node compares and keeps its weights, those of its mesh too.
     budget_.charge(pose.weights.size(), sizeof(double), node.place, source_);
     if (skinned) pose.joints = skins_[node.skin].joints, pose.origin = skins_[node.skin].origin;
@@ -116,7 +117,7 @@ class Placer {
     return number;
   }
 
-  std::uint32_t read(std::uint32_t mesh, const Pose& pose) {
+  std::uint32_t read(std::uint32_t mesh, const VertexPose& pose) {
     check_cancelled(source_.execution());
     // What is odd about a mesh is said once, not for each of its poses.
     std::vector<std::string> repeated;
@@ -133,7 +134,7 @@ class Placer {
 
   /// EXT_mesh_gpu_instancing: one instance for every element of its attributes.
   void place_copies(const Node& node, const Instance& first) {
-    const Copies& copies = *node.copies;
+    const InstancingAccessors& copies = *node.copies;
     budget_.charge(copies.count, sizeof(Instance) + first.name.size() + 64, node.place, source_);
     const std::vector<glm::vec4> translations = elements(copies.translation, copies.count, glm::vec4(0));
     const std::vector<glm::vec4> rotations = elements(copies.rotation, copies.count, glm::vec4(0, 0, 0, 1));
@@ -175,17 +176,17 @@ std::optional<glm::dmat4> rigid(const glm::dmat4& world) {
   return glm::dmat4(glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0), glm::dvec4(z, 0), world[3]);
 }
 
-std::optional<double> positive(const Json& json, const char* key) {
+std::optional<double> positive(const JsonValue& json, const char* key) {
   const double value = json.number_or(key, 0);
   return value > 0 ? std::optional(value) : std::nullopt;
 }
 
 /// The lens of a camera. None: a type of the future, or sizes that are not positive.
-std::optional<Camera> read_camera(const Json& json) {
+std::optional<Camera> read_camera(const JsonValue& json) {
   Camera camera;
   camera.name = json.name();
   camera.orthographic = json.require("type").to_string() == "orthographic";
-  const std::optional<Json> lens = json.find(camera.orthographic ? "orthographic" : "perspective");
+  const std::optional<JsonValue> lens = json.find(camera.orthographic ? "orthographic" : "perspective");
   if (!lens) return std::nullopt;
   camera.near = positive(*lens, "znear");
   camera.far = positive(*lens, "zfar");
@@ -206,16 +207,16 @@ std::optional<Camera> read_camera(const Json& json) {
 
 }  // namespace
 
-void place_meshes(const Json& root, const Data& data, const std::vector<MeshPlan>& plans, const NodeTree& tree,
+void place_meshes(const JsonValue& root, const Data& data, const std::vector<MeshPlan>& plans, const NodeTree& tree,
                   Scene& scene) {
-  Placer(root, data, plans, tree, scene).place();
+  PosedMeshes(root, data, plans, tree, scene).place();
 }
 
-void place_cameras(const Json& root, const NodeTree& tree, Scene& scene) {
+void place_cameras(const JsonValue& root, const NodeTree& tree, Scene& scene) {
   for (const std::uint32_t id : tree.shown) {
     const Node& node = tree.nodes[id];
     if (node.camera == no_index) continue;
-    const Json json = root.require("cameras")[node.camera];
+    const JsonValue json = root.require("cameras")[node.camera];
     std::optional<Camera> camera = read_camera(json);
     const std::optional<glm::dmat4> pose = rigid(node.world);
     if (!camera || !pose) {

@@ -64,52 +64,54 @@ JsonDocument::JsonDocument(std::string_view text, const ModelSource& source) {
 
 JsonDocument::~JsonDocument() = default;
 
-void Json::fail(const std::string& reason) const { source_->fail(place_.empty() ? "JSON" : place_, reason); }
+void JsonValue::fail(const std::string& reason) const { source_->fail(place_.empty() ? "JSON" : place_, reason); }
 
-Json Json::member(const json& value, const char* key) const {
+JsonValue JsonValue::member(const json& value, const char* key) const {
   return {value, place_.empty() ? std::string(key) : place_ + "." + key, *source_};
 }
 
-std::optional<Json> Json::find(const char* key) const {
+std::optional<JsonValue> JsonValue::find(const char* key) const {
   if (!value_->is_object()) fail(std::string("an object is expected, not ") + type_name(*value_));
   const auto found = value_->find(key);
   if (found == value_->end()) return std::nullopt;
   return member(*found, key);
 }
 
-Json Json::require(const char* key) const {
-  if (std::optional<Json> found = find(key)) return *std::move(found);
+JsonValue JsonValue::require(const char* key) const {
+  if (std::optional<JsonValue> found = find(key)) return *std::move(found);
   fail(std::string("'") + key + "' is missing");
 }
 
-std::optional<Json> Json::extension(const char* name) const {
-  const std::optional<Json> extensions = find("extensions");
+std::optional<JsonValue> JsonValue::extension(const char* name) const {
+  const std::optional<JsonValue> extensions = find("extensions");
   return extensions ? extensions->find(name) : std::nullopt;
 }
 
-std::size_t Json::size() const {
+std::size_t JsonValue::size() const {
   if (!value_->is_array()) fail(std::string("an array is expected, not ") + type_name(*value_));
   return value_->size();
 }
 
-Json Json::operator[](std::size_t i) const { return {(*value_)[i], place_ + "[" + std::to_string(i) + "]", *source_}; }
+JsonValue JsonValue::operator[](std::size_t i) const {
+  return {(*value_)[i], place_ + "[" + std::to_string(i) + "]", *source_};
+}
 
-bool Json::to_bool() const {
+bool JsonValue::to_bool() const {
   if (!value_->is_boolean()) fail(std::string("true or false is expected, not ") + type_name(*value_));
   return value_->get<bool>();
 }
 
-double Json::to_number() const {
+double JsonValue::to_number() const {
   if (!value_->is_number()) fail(std::string("a number is expected, not ") + type_name(*value_));
   return value_->get<double>();
 }
 
-std::string Json::to_string() const {
+std::string JsonValue::to_string() const {
   if (!value_->is_string()) fail(std::string("a string is expected, not ") + type_name(*value_));
   return value_->get<std::string>();
 }
 
-std::uint64_t Json::to_unsigned() const {
+std::uint64_t JsonValue::to_unsigned() const {
   if (value_->is_number_unsigned()) return value_->get<std::uint64_t>();
   const double number = to_number();
   if (!(number >= 0 && number <= max_exact_integer) || number != std::floor(number))
@@ -117,7 +119,7 @@ std::uint64_t Json::to_unsigned() const {
   return static_cast<std::uint64_t>(number);
 }
 
-std::uint32_t Json::to_index(std::size_t count) const {
+std::uint32_t JsonValue::to_index(std::size_t count) const {
   const std::uint64_t index = to_unsigned();
   // no_index means "none" further on, so the greatest number is no index even if a file had so many elements.
   if (index >= count || index >= no_index)
@@ -125,40 +127,40 @@ std::uint32_t Json::to_index(std::size_t count) const {
   return static_cast<std::uint32_t>(index);
 }
 
-void Json::to_numbers(std::span<double> out) const {
+void JsonValue::to_numbers(std::span<double> out) const {
   if (size() != out.size()) fail(std::to_string(out.size()) + " numbers are expected, not " + std::to_string(size()));
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = (*this)[i].to_number();
 }
 
-bool Json::bool_or(const char* key, bool absent) const {
-  const std::optional<Json> found = find(key);
+bool JsonValue::bool_or(const char* key, bool absent) const {
+  const std::optional<JsonValue> found = find(key);
   return found ? found->to_bool() : absent;
 }
 
-double Json::number_or(const char* key, double absent) const {
-  const std::optional<Json> found = find(key);
+double JsonValue::number_or(const char* key, double absent) const {
+  const std::optional<JsonValue> found = find(key);
   return found ? found->to_number() : absent;
 }
 
-std::string Json::string_or_empty(const char* key) const {
-  const std::optional<Json> found = find(key);
+std::string JsonValue::string_or_empty(const char* key) const {
+  const std::optional<JsonValue> found = find(key);
   return found ? found->to_string() : std::string();
 }
 
-std::string Json::name() const { return name_of(string_or_empty("name")); }
+std::string JsonValue::name() const { return name_of(string_or_empty("name")); }
 
-std::uint64_t Json::unsigned_or(const char* key, std::uint64_t absent) const {
-  const std::optional<Json> found = find(key);
+std::uint64_t JsonValue::unsigned_or(const char* key, std::uint64_t absent) const {
+  const std::optional<JsonValue> found = find(key);
   return found ? found->to_unsigned() : absent;
 }
 
-std::uint32_t Json::index_or_none(const char* key, std::size_t count) const {
-  const std::optional<Json> found = find(key);
+std::uint32_t JsonValue::index_or_none(const char* key, std::size_t count) const {
+  const std::optional<JsonValue> found = find(key);
   return found ? found->to_index(count) : no_index;
 }
 
-bool Json::read_numbers(const char* key, std::span<double> out) const {
-  const std::optional<Json> found = find(key);
+bool JsonValue::read_numbers(const char* key, std::span<double> out) const {
+  const std::optional<JsonValue> found = find(key);
   if (found) found->to_numbers(out);
   return found.has_value();
 }

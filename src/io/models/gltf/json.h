@@ -31,22 +31,22 @@ class JsonDocument {
 };
 
 /// A borrowed value of a document.
-class Json {
+class JsonValue {
  public:
-  Json(const JsonDocument& document, const ModelSource& source) : Json(document.root(), {}, source) {}
+  JsonValue(const JsonDocument& document, const ModelSource& source) : JsonValue(document.root(), {}, source) {}
 
   [[nodiscard]] const std::string& place() const { return place_; }
   [[nodiscard]] const ModelSource& source() const { return *source_; }
   [[noreturn]] void fail(const std::string& reason) const;
 
   /// A member of an object, if it is there.
-  [[nodiscard]] std::optional<Json> find(const char* key) const;
-  [[nodiscard]] Json require(const char* key) const;
+  [[nodiscard]] std::optional<JsonValue> find(const char* key) const;
+  [[nodiscard]] JsonValue require(const char* key) const;
   /// The object `extensions.NAME`, if it is there.
-  [[nodiscard]] std::optional<Json> extension(const char* name) const;
+  [[nodiscard]] std::optional<JsonValue> extension(const char* name) const;
   /// Number of elements of an array, which this must be.
   [[nodiscard]] std::size_t size() const;
-  [[nodiscard]] Json operator[](std::size_t i) const;
+  [[nodiscard]] JsonValue operator[](std::size_t i) const;
 
   [[nodiscard]] bool to_bool() const;
   [[nodiscard]] double to_number() const;
@@ -70,9 +70,9 @@ class Json {
   bool read_numbers(const char* key, std::span<double> out) const;
 
  private:
-  Json(const nlohmann::json& value, std::string place, const ModelSource& source)
+  JsonValue(const nlohmann::json& value, std::string place, const ModelSource& source)
       : value_(&value), place_(std::move(place)), source_(&source) {}
-  [[nodiscard]] Json member(const nlohmann::json& value, const char* key) const;
+  [[nodiscard]] JsonValue member(const nlohmann::json& value, const char* key) const;
 
   const nlohmann::json* value_;
   std::string place_;

@@ -12,7 +12,7 @@ class MaterialReader {
   MaterialReader(TextureTable& textures, std::vector<std::string>& warnings)
       : textures_(textures), warnings_(warnings) {}
 
-  Material read(const Json& json) {
+  Material read(const JsonValue& json) {
     Material material;
     material.name = json.name();
     // glTF's defaults, which differ from those of a material of our own.
@@ -37,7 +37,7 @@ class MaterialReader {
   [[nodiscard]] std::uint32_t texcoord_set() const { return set_ == no_index ? 0 : set_; }
 
  private:
-  void read_metallic_roughness(const Json& json, Material& material) {
+  void read_metallic_roughness(const JsonValue& json, Material& material) {
     double color[4];
     if (json.read_numbers("baseColorFactor", color))
       for (int c = 0; c < 4; ++c) material.base_color[c] = float(color[c]);
@@ -48,7 +48,7 @@ class MaterialReader {
       material.metallic_roughness_texture = read_use(*texture);
   }
 
-  void read_emissive(const Json& json, Material& material) {
+  void read_emissive(const JsonValue& json, Material& material) {
     double color[3];
     const auto strength = json.extension("KHR_materials_emissive_strength");
     const double factor = strength ? strength->number_or("emissiveStrength", 1) : 1;
@@ -57,7 +57,7 @@ class MaterialReader {
     if (const auto texture = json.find("emissiveTexture")) material.emissive_texture = read_use(*texture);
   }
 
-  void do_without_lost(const Json& json, Material& material) {
+  void do_without_lost(const JsonValue& json, Material& material) {
     const std::string who = described(json);
     const auto pbr = json.find("pbrMetallicRoughness");
     if (pbr && pbr->find("metallicRoughnessTexture") && !material.metallic_roughness_texture.is_set())
@@ -66,7 +66,7 @@ class MaterialReader {
       lose_emissive_texture(material, who, warnings_);
   }
 
-  void read_alpha(const Json& json, Material& material) {
+  void read_alpha(const JsonValue& json, Material& material) {
     const std::string mode = json.string_or_empty("alphaMode");
     if (mode == "MASK")
       material.alpha = Material::Alpha::mask;
@@ -77,7 +77,7 @@ class MaterialReader {
     material.alpha_cutoff = float(json.number_or("alphaCutoff", 0.5));
   }
 
-  TextureUse read_use(const Json& json) {
+  TextureUse read_use(const JsonValue& json) {
     const auto transform = json.extension("KHR_texture_transform");
     std::uint64_t set = json.unsigned_or("texCoord", 0);
     if (transform) set = transform->unsigned_or("texCoord", set);
@@ -93,7 +93,7 @@ class MaterialReader {
   }
 
   /// The first texture of a material, the base colour's if there is one, decides about the set.
-  bool agrees(std::uint64_t set, const Json& json) {
+  bool agrees(std::uint64_t set, const JsonValue& json) {
     if (set_ == no_index && set < max_texcoord_sets) set_ = std::uint32_t(set);
     if (set == set_) return true;
     warnings_.push_back(json.place() + ": uses texture coordinates " + std::to_string(set) +
@@ -109,14 +109,14 @@ class MaterialReader {
 
 }  // namespace
 
-std::string described(const Json& material) {
+std::string described(const JsonValue& material) {
   const std::string name = printable(material.name());
   return name.empty() ? material.place() : material.place() + " (" + name + ")";
 }
 
-Materials read_materials(const Json& root, TextureTable& textures, std::vector<std::string>& warnings) {
-  Materials out;
-  const std::optional<Json> array = root.find("materials");
+MaterialList read_materials(const JsonValue& root, TextureTable& textures, std::vector<std::string>& warnings) {
+  MaterialList out;
+  const std::optional<JsonValue> array = root.find("materials");
   for (std::size_t i = 0; array && i < array->size(); ++i) {
     MaterialReader reader(textures, warnings);
     out.materials.push_back(reader.read((*array)[i]));

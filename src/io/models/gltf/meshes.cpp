@@ -18,19 +18,19 @@ class MeshBuilder {
     mesh_.name = plan.name;
   }
 
-  Mesh build(const Pose& pose, std::vector<std::string>& warnings) {
+  Mesh build(const VertexPose& pose, std::vector<std::string>& warnings) {
     // All triangles before any vertex: only then the ranges that the blocks share are final.
     for (const Primitive& primitive : plan_.primitives) append_triangles(primitive, warnings);
     place_blocks();
     std::size_t triangle = 0;
     for (const Run& run : runs_) {
-      const Block& block = blocks_[run.block];
+      const VertexRun& block = blocks_[run.block];
       // Wraps around where the mesh's vertices start before the accessor's; the sum is right nevertheless.
       const auto shift = std::uint32_t(block.first - block.range.first);
       for (const std::size_t end = triangle + run.triangle_count; triangle < end; ++triangle)
         mesh_.triangles[triangle] += shift;
     }
-    for (const Block& block : blocks_) read_vertices(block, pose);
+    for (const VertexRun& block : blocks_) read_vertices(block, pose);
     return std::move(mesh_);
   }
 
@@ -58,7 +58,7 @@ class MeshBuilder {
     include(primitive, triangles);
   }
 
-  void read_corners(const Primitive& primitive, Range range, std::uint32_t* out) const {
+  void read_corners(const Primitive& primitive, ElementRange range, std::uint32_t* out) const {
     if (primitive.indices != no_index)
       read_integers(data_.accessor(primitive.indices), range, 1, out);
     else
@@ -100,7 +100,7 @@ class MeshBuilder {
     const std::size_t block_id = block_of(primitive);
     runs_.push_back({block_id, triangles.size()});
     if (triangles.empty()) return;
-    Range& range = blocks_[block_id].range;
+    ElementRange& range = blocks_[block_id].range;
     const std::size_t end = std::max(range.first + range.count, std::size_t(greatest) + 1);
     range.first = range.count == 0 ? least : std::min<std::size_t>(range.first, least);
     range.count = end - range.first;
@@ -125,7 +125,7 @@ class MeshBuilder {
   void place_blocks() {
     std::size_t total = 0;
     bool normals = false, texcoords = false, colors = false;
-    for (Block& block : blocks_) {
+    for (VertexRun& block : blocks_) {
       const VertexSources& base = block.vertices->base;
       block.first = total;
       total += block.range.count;
@@ -144,11 +144,11 @@ class MeshBuilder {
   }
 
   template <class V>
-  void read_attribute(const Block& block, std::uint32_t accessor, std::vector<V>& values) const {
+  void read_attribute(const VertexRun& block, std::uint32_t accessor, std::vector<V>& values) const {
     if (accessor != no_index) read_floats(data_.accessor(accessor), block.range, V::length(), &values[block.first][0]);
   }
 
-  void read_vertices(const Block& block, const Pose& pose) {
+  void read_vertices(const VertexRun& block, const VertexPose& pose) {
     if (block.range.count == 0) return;
     const VertexSources& base = block.vertices->base;
     read_attribute(block, base.position, mesh_.positions);
@@ -164,14 +164,14 @@ class MeshBuilder {
   }
 
   /// Primitives of one mesh need not all have joints; those without stay where the mesh is.
-  void take_off(const glm::dvec3& origin, const Block& block) {
+  void take_off(const glm::dvec3& origin, const VertexRun& block) {
     if (origin == glm::dvec3(0)) return;
     for (std::size_t i = block.first; i < block.first + block.range.count; ++i)
       mesh_.positions[i] = glm::vec3(glm::dvec3(mesh_.positions[i]) - origin);
   }
 
   /// Posing keeps no memory, but many targets of many vertices would take forever.
-  void charge_pose(const Block& block, const Pose& pose) {
+  void charge_pose(const VertexRun& block, const VertexPose& pose) {
     const auto targets =
         std::size_t(std::count_if(pose.weights.begin(), pose.weights.end(), [](double w) { return w != 0; }));
     const std::size_t passes = targets + (pose.joints.empty() ? 0 : block.vertices->joints.size());
@@ -184,13 +184,13 @@ class MeshBuilder {
   const ModelSource& source_;
   Mesh mesh_;
   std::vector<Run> runs_;
-  std::vector<Block> blocks_;
+  std::vector<VertexRun> blocks_;
   std::map<VertexSet, std::size_t> block_numbers_;
 };
 
 }  // namespace
 
-Mesh MeshReader::read(const MeshPlan& plan, const Pose& pose, std::vector<std::string>& warnings) {
+Mesh MeshReader::read(const MeshPlan& plan, const VertexPose& pose, std::vector<std::string>& warnings) {
   return MeshBuilder(plan, data_, budget_, source_).build(pose, warnings);
 }
 

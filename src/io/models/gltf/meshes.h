@@ -46,11 +46,11 @@ struct MeshPlan {
 };
 
 /// Checks primitives and their accessors. Points, lines and primitives without positions become warnings.
-[[nodiscard]] std::vector<MeshPlan> plan_meshes(const Json& root, const Data& data, const Materials& materials,
+[[nodiscard]] std::vector<MeshPlan> plan_meshes(const JsonValue& root, const Data& data, const MaterialList& materials,
                                                 std::vector<std::string>& warnings);
 
 /// How vertices are moved: by morph targets, then by joints.
-struct Pose {
+struct VertexPose {
   std::vector<double> weights;              ///< as many as there are targets, or none
   std::span<const glm::dmat4> joints = {};  ///< world_from_joint * inverse bind matrix; empty: no skin
   glm::dvec3 origin{0};                     ///< what the joints lead to has its zero here
@@ -61,7 +61,7 @@ class MeshReader {
  public:
   MeshReader(const Data& data, Budget& budget, const ModelSource& source)
       : data_(data), budget_(budget), source_(source) {}
-  [[nodiscard]] Mesh read(const MeshPlan& plan, const Pose& pose, std::vector<std::string>& warnings);
+  [[nodiscard]] Mesh read(const MeshPlan& plan, const VertexPose& pose, std::vector<std::string>& warnings);
 
  private:
   const Data& data_;

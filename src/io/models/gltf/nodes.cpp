@@ -12,12 +12,12 @@ struct Counts {
   std::size_t nodes, meshes, skins, cameras;
 };
 
-std::size_t size_or_zero(const Json& root, const char* key) {
-  const std::optional<Json> array = root.find(key);
+std::size_t size_or_zero(const JsonValue& root, const char* key) {
+  const std::optional<JsonValue> array = root.find(key);
   return array ? array->size() : 0;
 }
 
-glm::dmat4 read_transform(const Json& json) {
+glm::dmat4 read_transform(const JsonValue& json) {
   double m[16], t[3] = {0, 0, 0}, r[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
   // The format forbids a node to have both; files that do mean the matrix.
   if (json.read_numbers("matrix", m)) {
@@ -37,9 +37,9 @@ glm::dmat4 read_transform(const Json& json) {
   return compose({t[0], t[1], t[2]}, {r[0], r[1], r[2], r[3]}, {s[0], s[1], s[2]});
 }
 
-std::uint32_t copy_attribute(const Json& attributes, const char* key, int components, const Data& data,
-                             Copies& copies) {
-  const std::optional<Json> json = attributes.find(key);
+std::uint32_t copy_attribute(const JsonValue& attributes, const char* key, int components, const Data& data,
+                             InstancingAccessors& copies) {
+  const std::optional<JsonValue> json = attributes.find(key);
   if (!json) return no_index;
   const std::uint32_t id = data.readable_accessor(*json);
   const Accessor& accessor = data.accessor(id);
@@ -52,18 +52,18 @@ std::uint32_t copy_attribute(const Json& attributes, const char* key, int compon
   return id;
 }
 
-std::optional<Copies> read_copies(const Json& node, const Data& data) {
-  const std::optional<Json> extension = node.extension("EXT_mesh_gpu_instancing");
+std::optional<InstancingAccessors> read_copies(const JsonValue& node, const Data& data) {
+  const std::optional<JsonValue> extension = node.extension("EXT_mesh_gpu_instancing");
   if (!extension) return std::nullopt;
-  const Json attributes = extension->require("attributes");
-  Copies copies;
+  const JsonValue attributes = extension->require("attributes");
+  InstancingAccessors copies;
   copies.translation = copy_attribute(attributes, "TRANSLATION", 3, data, copies);
   copies.rotation = copy_attribute(attributes, "ROTATION", 4, data, copies);
   copies.scale = copy_attribute(attributes, "SCALE", 3, data, copies);
   return copies;
 }
 
-Node read_node(const Json& json, const Counts& counts, const Data& data) {
+Node read_node(const JsonValue& json, const Counts& counts, const Data& data) {
   Node node;
   node.place = json.place();
   node.name = json.name();
@@ -72,10 +72,10 @@ Node read_node(const Json& json, const Counts& counts, const Data& data) {
   node.camera = json.index_or_none("camera", counts.cameras);
   node.world = read_transform(json);  // of its parent's space, until all parents are known
   node.copies = read_copies(json, data);
-  const std::optional<Json> children = json.find("children");
+  const std::optional<JsonValue> children = json.find("children");
   for (std::size_t i = 0; children && i < children->size(); ++i)
     node.children.push_back((*children)[i].to_index(counts.nodes));
-  if (const std::optional<Json> weights = json.find("weights")) {
+  if (const std::optional<JsonValue> weights = json.find("weights")) {
     node.weights.resize(weights->size());
     weights->to_numbers(node.weights);
   }
@@ -138,12 +138,13 @@ std::vector<std::uint32_t> place_in_world(std::vector<Node>& nodes, const ModelS
 }
 
 /// Where the shown scene starts. A start that is not a root of the tree stays where its parents put it.
-std::vector<std::uint32_t> scene_starts(const Json& root, std::size_t node_count, std::vector<std::uint32_t> roots) {
-  const std::optional<Json> scenes = root.find("scenes");
+std::vector<std::uint32_t> scene_starts(const JsonValue& root, std::size_t node_count,
+                                        std::vector<std::uint32_t> roots) {
+  const std::optional<JsonValue> scenes = root.find("scenes");
   const std::uint32_t chosen = root.index_or_none("scene", scenes ? scenes->size() : 0);
   if (!scenes || scenes->size() == 0) return roots;
   std::vector<std::uint32_t> starts;
-  const std::optional<Json> nodes = (*scenes)[chosen == no_index ? 0 : chosen].find("nodes");
+  const std::optional<JsonValue> nodes = (*scenes)[chosen == no_index ? 0 : chosen].find("nodes");
   for (std::size_t i = 0; nodes && i < nodes->size(); ++i) starts.push_back((*nodes)[i].to_index(node_count));
   return starts;
 }
@@ -163,9 +164,9 @@ glm::dmat4 compose(const glm::dvec3& translation, const glm::dvec4& rotation, co
   return m;
 }
 
-NodeTree read_nodes(const Json& root, const Data& data) {
+NodeTree read_nodes(const JsonValue& root, const Data& data) {
   NodeTree tree;
-  const std::optional<Json> array = root.find("nodes");
+  const std::optional<JsonValue> array = root.find("nodes");
   const Counts counts{array ? array->size() : 0, size_or_zero(root, "meshes"), size_or_zero(root, "skins"),
                       size_or_zero(root, "cameras")};
   for (std::size_t i = 0; i < counts.nodes; ++i) tree.nodes.push_back(read_node((*array)[i], counts, data));

@@ -9,7 +9,7 @@
 namespace frontmost::gltf {
 
 /// Accessors of EXT_mesh_gpu_instancing.
-struct Copies {
+struct InstancingAccessors {
   std::size_t count = 0;
   std::uint32_t translation = no_index, rotation = no_index, scale = no_index;
 };
@@ -20,7 +20,7 @@ struct Node {
   std::uint32_t mesh = no_index, skin = no_index, camera = no_index;
   std::vector<std::uint32_t> children;
   std::vector<double> weights;
-  std::optional<Copies> copies;
+  std::optional<InstancingAccessors> copies;
   glm::dmat4 world{1.0};  ///< world_from_node
 };
 
@@ -32,7 +32,7 @@ struct NodeTree {
 
 /// Reads all nodes and finds their places in the world. Shown is the scene that the file names, or its first one, or,
 /// in a file without scenes, everything. \throws Error for nodes with two parents and for loops.
-[[nodiscard]] NodeTree read_nodes(const Json& root, const Data& data);
+[[nodiscard]] NodeTree read_nodes(const JsonValue& root, const Data& data);
 
 /// A rigid body's transform from translation, rotation (x, y, z, w; any length) and scale.
 [[nodiscard]] glm::dmat4 compose(const glm::dvec3& translation, const glm::dvec4& rotation, const glm::dvec3& scale);

@@ -19,11 +19,11 @@ struct Allowed {
 /// Reads the attributes of one primitive or morph target.
 class AttributeReader {
  public:
-  AttributeReader(const Json& json, const Data& data) : json_(json), data_(data) {}
+  AttributeReader(const JsonValue& json, const Data& data) : json_(json), data_(data) {}
 
   /// The accessor of an attribute, if it is there and can be read as asked.
   std::uint32_t find(const std::string& name, Allowed allowed) {
-    const std::optional<Json> found = json_.find(name.c_str());
+    const std::optional<JsonValue> found = json_.find(name.c_str());
     if (!found) return no_index;
     const std::uint32_t id = data_.readable_accessor(*found);
     const Accessor& accessor = data_.accessor(id);
@@ -52,14 +52,14 @@ class AttributeReader {
   [[nodiscard]] std::size_t count() const { return count_.value_or(0); }
 
  private:
-  const Json& json_;
+  const JsonValue& json_;
   const Data& data_;
   std::optional<std::size_t> count_;
 };
 
 class Planner {
  public:
-  Planner(const Json& json, const Data& data, const Materials& materials, std::vector<std::string>& warnings)
+  Planner(const JsonValue& json, const Data& data, const MaterialList& materials, std::vector<std::string>& warnings)
       : json_(json), data_(data), materials_(materials), warnings_(warnings) {}
 
   MeshPlan plan() {
@@ -70,7 +70,7 @@ class Planner {
       plan.weights.resize(weights->size());
       weights->to_numbers(plan.weights);
     }
-    const Json primitives = json_.require("primitives");
+    const JsonValue primitives = json_.require("primitives");
     std::optional<std::size_t> target_count;
     for (std::size_t i = 0; i < primitives.size(); ++i) {
       std::optional<Primitive> primitive = read(primitives[i]);
@@ -92,12 +92,12 @@ class Planner {
   }
 
  private:
-  std::optional<Primitive> skip(const Json& json, const std::string& reason) {
+  std::optional<Primitive> skip(const JsonValue& json, const std::string& reason) {
     warnings_.push_back(json.place() + ": " + reason);
     return std::nullopt;
   }
 
-  std::optional<Primitive> read(const Json& json) {
+  std::optional<Primitive> read(const JsonValue& json) {
     Primitive primitive;
     primitive.place = json.place();
     const std::uint64_t mode = json.unsigned_or("mode", 4);
@@ -114,8 +114,8 @@ class Planner {
     return primitive;
   }
 
-  void read_vertices(const Json& json, Primitive& primitive) {
-    const Json attributes = json.require("attributes");
+  void read_vertices(const JsonValue& json, Primitive& primitive) {
+    const JsonValue attributes = json.require("attributes");
     AttributeReader reader(attributes, data_);
     VertexSet& vertices = primitive.vertices;
     vertices.base = reader.read_sources();
@@ -130,9 +130,9 @@ class Planner {
       vertices.weights.push_back(weights);
     }
     primitive.vertex_count = reader.count();
-    const std::optional<Json> targets = json.find("targets");
+    const std::optional<JsonValue> targets = json.find("targets");
     for (std::size_t i = 0; targets && i < targets->size(); ++i) {
-      const Json target = (*targets)[i];
+      const JsonValue target = (*targets)[i];
       AttributeReader target_reader(target, data_);
       // Displacements are read by the ranges of the vertices that they move.
       target_reader.expect_count(primitive.vertex_count);
@@ -140,7 +140,7 @@ class Planner {
     }
   }
 
-  std::uint32_t read_indices(const Json& json) const {
+  std::uint32_t read_indices(const JsonValue& json) const {
     const std::uint32_t id = data_.readable_accessor(json);
     const Accessor& accessor = data_.accessor(id);
     const bool is_unsigned = accessor.component == Component::u8 || accessor.component == Component::u16 ||
@@ -149,20 +149,20 @@ class Planner {
     return id;
   }
 
-  const Json& json_;
+  const JsonValue& json_;
   const Data& data_;
-  const Materials& materials_;
+  const MaterialList& materials_;
   std::vector<std::string>& warnings_;
 };
 
 }  // namespace
 
-std::vector<MeshPlan> plan_meshes(const Json& root, const Data& data, const Materials& materials,
+std::vector<MeshPlan> plan_meshes(const JsonValue& root, const Data& data, const MaterialList& materials,
                                   std::vector<std::string>& warnings) {
   std::vector<MeshPlan> plans;
-  const std::optional<Json> array = root.find("meshes");
+  const std::optional<JsonValue> array = root.find("meshes");
   for (std::size_t i = 0; array && i < array->size(); ++i) {
-    const Json json = (*array)[i];
+    const JsonValue json = (*array)[i];
     plans.push_back(Planner(json, data, materials, warnings).plan());
   }
   return plans;

@@ -6,7 +6,7 @@ namespace {
 
 /// values[i] += weight * displacement i.
 template <class V>
-void add(const Data& data, const Block& block, std::uint32_t accessor, double weight, std::vector<V>& values) {
+void add(const Data& data, const VertexRun& block, std::uint32_t accessor, double weight, std::vector<V>& values) {
   // Targets may add what the mesh lacks, normals to a mesh without any; there is nothing to add to.
   if (accessor == no_index || values.empty()) return;
   std::vector<V> displacements(block.range.count, V(0));
@@ -17,7 +17,7 @@ void add(const Data& data, const Block& block, std::uint32_t accessor, double we
 /// The weighted joints of a block's vertices, all sets of four side by side.
 class Influences {
  public:
-  Influences(const Data& data, const Block& block, std::size_t joint_count, const ModelSource& source)
+  Influences(const Data& data, const VertexRun& block, std::size_t joint_count, const ModelSource& source)
       : sets_(block.vertices->joints.size()), width_(4 * sets_) {
     joints_.resize(block.range.count * width_);
     weights_.resize(block.range.count * width_);
@@ -66,7 +66,7 @@ glm::dmat3 normal_matrix(const glm::dmat3& m) {
 
 }  // namespace
 
-void apply_targets(const Data& data, const Block& block, std::span<const double> weights, Mesh& mesh) {
+void apply_targets(const Data& data, const VertexRun& block, std::span<const double> weights, Mesh& mesh) {
   const VertexSet& vertices = *block.vertices;
   for (std::size_t i = 0; i < weights.size() && i < vertices.targets.size(); ++i) {
     if (weights[i] == 0) continue;
@@ -78,7 +78,7 @@ void apply_targets(const Data& data, const Block& block, std::span<const double>
   }
 }
 
-void apply_skin(const Data& data, const Block& block, std::span<const glm::dmat4> joints, const ModelSource& source,
+void apply_skin(const Data& data, const VertexRun& block, std::span<const glm::dmat4> joints, const ModelSource& source,
                 Mesh& mesh) {
   if (joints.empty()) return;
   const Influences influences(data, block, joints.size(), source);

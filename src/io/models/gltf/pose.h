@@ -7,18 +7,18 @@
 namespace frontmost::gltf {
 
 /// A run of vertices of a mesh that come from one vertex set.
-struct Block {
+struct VertexRun {
   const VertexSet* vertices = nullptr;
-  Range range;            ///< of the accessors' elements; empty: no triangle uses them
+  ElementRange range;     ///< of the accessors' elements; empty: no triangle uses them
   std::size_t first = 0;  ///< where they are in the mesh
   std::string place;      ///< of the first primitive that uses them
 };
 
 /// Adds weighted displacements to positions, normals, texture coordinates and colours.
-void apply_targets(const Data& data, const Block& block, std::span<const double> weights, Mesh& mesh);
+void apply_targets(const Data& data, const VertexRun& block, std::span<const double> weights, Mesh& mesh);
 /// Moves positions and normals by joints, which the block's vertices have.
 /// \throws Error file_malformed for a joint that the skin does not have.
-void apply_skin(const Data& data, const Block& block, std::span<const glm::dmat4> joints, const ModelSource& source,
+void apply_skin(const Data& data, const VertexRun& block, std::span<const glm::dmat4> joints, const ModelSource& source,
                 Mesh& mesh);
 
 }  // namespace frontmost::gltf

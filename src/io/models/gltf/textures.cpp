@@ -33,11 +33,11 @@ bool remap(TextureUse& use, const std::vector<std::uint32_t>& new_numbers) {
 
 }  // namespace
 
-std::uint32_t TextureTable::intern(const Json& index, std::vector<std::string>& warnings) {
-  const std::optional<Json> textures = root_.find("textures");
+std::uint32_t TextureTable::intern(const JsonValue& index, std::vector<std::string>& warnings) {
+  const std::optional<JsonValue> textures = root_.find("textures");
   const std::uint32_t id = index.to_index(textures ? textures->size() : 0);
-  const Json texture = (*textures)[id];
-  const std::optional<Json> images = root_.find("images");
+  const JsonValue texture = (*textures)[id];
+  const std::optional<JsonValue> images = root_.find("images");
   Look look;
   look.image = texture.index_or_none("source", images ? images->size() : 0);
   if (look.image == no_index) {
@@ -51,18 +51,18 @@ std::uint32_t TextureTable::intern(const Json& index, std::vector<std::string>& 
   return entry->second;
 }
 
-void TextureTable::read_sampler(const Json& texture, Look& look) const {
-  const std::optional<Json> samplers = root_.find("samplers");
+void TextureTable::read_sampler(const JsonValue& texture, Look& look) const {
+  const std::optional<JsonValue> samplers = root_.find("samplers");
   const std::uint32_t id = texture.index_or_none("sampler", samplers ? samplers->size() : 0);
   if (id == no_index) return;
-  const Json sampler = (*samplers)[id];
+  const JsonValue sampler = (*samplers)[id];
   look.wrap_u = wrap_of(sampler.unsigned_or("wrapS", repeat_code));
   look.wrap_v = wrap_of(sampler.unsigned_or("wrapT", repeat_code));
   look.nearest = sampler.unsigned_or("magFilter", 0) == nearest_code;
 }
 
 TextureTable::Encoded TextureTable::find_image(std::uint32_t id) const {
-  const Json image = root_.require("images")[id];
+  const JsonValue image = root_.require("images")[id];
   Encoded encoded;
   encoded.name = image.name();
   encoded.place = image.place();
@@ -71,7 +71,7 @@ TextureTable::Encoded TextureTable::find_image(std::uint32_t id) const {
     encoded.bytes = data_.view_bytes(view, image);
     return encoded;
   }
-  const Json uri = image.require("uri");
+  const JsonValue uri = image.require("uri");
   const std::string text = uri.to_string();
   if (is_data_uri(text)) {
     encoded.decoded_uri = decode_data_uri(text, uri);

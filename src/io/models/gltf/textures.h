@@ -13,11 +13,11 @@ namespace frontmost::gltf {
 /// Collects the textures that materials name, then decodes each image once.
 class TextureTable {
  public:
-  TextureTable(const Json& root, const Data& data) : root_(root), data_(data) {}
+  TextureTable(const JsonValue& root, const Data& data) : root_(root), data_(data) {}
 
   /// The number that a texture of the file will have in the scene; textures alike in image and sampler share one.
   /// no_index: it has no image that could be read, which `warnings` tells.
-  [[nodiscard]] std::uint32_t intern(const Json& index, std::vector<std::string>& warnings);
+  [[nodiscard]] std::uint32_t intern(const JsonValue& index, std::vector<std::string>& warnings);
 
   /// Decodes in parallel and fills scene.textures. Images that cannot be decoded become warnings, and the materials go
   /// without them.
@@ -49,7 +49,7 @@ class TextureTable {
     std::map<std::uint32_t, std::uint32_t> first_alike;  ///< for every image the first one with the same bytes
   };
 
-  void read_sampler(const Json& texture, Look& look) const;
+  void read_sampler(const JsonValue& texture, Look& look) const;
   [[nodiscard]] Encoded find_image(std::uint32_t image) const;
   template <class Use>
   auto with_bytes(const Encoded& encoded, Use use) const;
@@ -57,7 +57,7 @@ class TextureTable {
   void check_sizes(Jobs& jobs) const;
   void decode(Jobs& jobs) const;
 
-  const Json& root_;
+  const JsonValue& root_;
   const Data& data_;
   std::vector<Look> looks_;
   std::map<Look, std::uint32_t> numbers_;

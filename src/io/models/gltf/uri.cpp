@@ -22,7 +22,7 @@ constexpr std::array<std::uint8_t, 256> make_base64_digits() {
 
 constexpr std::array<std::uint8_t, 256> base64_digits = make_base64_digits();
 
-std::vector<std::byte> decode_base64(std::string_view text, const Json& place) {
+std::vector<std::byte> decode_base64(std::string_view text, const JsonValue& place) {
   while (!text.empty() && text.back() == '=') text.remove_suffix(1);
   if (text.size() % 4 == 1) place.fail("base64 data end within a byte");
   std::vector<std::byte> out(text.size() / 4 * 3 + (text.size() % 4 == 0 ? 0 : text.size() % 4 - 1));
@@ -51,7 +51,7 @@ int hex_digit(char c) {
 
 bool is_data_uri(std::string_view uri) { return uri.starts_with("data:"); }
 
-std::vector<std::byte> decode_data_uri(std::string_view uri, const Json& place) {
+std::vector<std::byte> decode_data_uri(std::string_view uri, const JsonValue& place) {
   const std::size_t comma = uri.find(',');
   if (comma == std::string_view::npos) place.fail("a data URI without a comma");
   const std::string_view payload = uri.substr(comma + 1);

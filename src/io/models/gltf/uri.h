@@ -13,7 +13,7 @@ namespace frontmost::gltf {
 
 [[nodiscard]] bool is_data_uri(std::string_view uri);
 /// The bytes of "data:[TYPE][;base64],...". `place` is the value that holds the URI.
-[[nodiscard]] std::vector<std::byte> decode_data_uri(std::string_view uri, const Json& place);
+[[nodiscard]] std::vector<std::byte> decode_data_uri(std::string_view uri, const JsonValue& place);
 /// %20 and the like to bytes; what is not an escape stays.
 [[nodiscard]] std::string percent_decode(std::string_view text);
 

@@ -17,7 +17,7 @@ namespace {
 class MtlReader {
  public:
   MtlReader(Bytes bytes, const ModelSource& library, const std::string& folder, TextureFiles& textures,
-            MaterialTable& materials)
+            NamedMaterials& materials)
       : text_(bytes, library, TextScanner::Comments::hash),
         folder_(folder),
         textures_(textures),
@@ -165,14 +165,14 @@ class MtlReader {
   TextScanner text_;
   const std::string& folder_;
   TextureFiles& textures_;
-  MaterialTable& materials_;
+  NamedMaterials& materials_;
   std::uint32_t number_ = no_index;
   std::vector<std::uint32_t> textured_, glowing_;  ///< materials with a map_Kd, with a map_Ke
 };
 
 }  // namespace
 
-std::uint32_t MaterialTable::number(const std::string& name) {
+std::uint32_t NamedMaterials::number(const std::string& name) {
   const auto [entry, is_new] = numbers_.try_emplace(name, std::uint32_t(scene_.materials.size()));
   if (is_new) {
     if (scene_.materials.size() >= max_objects) source_.fail_limit("material " + printable(name), "too many materials");
@@ -182,13 +182,13 @@ std::uint32_t MaterialTable::number(const std::string& name) {
   return entry->second;
 }
 
-std::uint32_t MaterialTable::define(const std::string& name) {
+std::uint32_t NamedMaterials::define(const std::string& name) {
   const std::uint32_t number = this->number(name);
   is_defined_[number] = true;
   return number;
 }
 
-void MaterialTable::finish() {
+void NamedMaterials::finish() {
   std::size_t undefined = 0, first = 0;
   for (std::size_t i = is_defined_.size(); i-- > 0;)
     if (!is_defined_[i]) ++undefined, first = i;
@@ -199,7 +199,7 @@ void MaterialTable::finish() {
 }
 
 void read_mtl(Bytes bytes, const ModelSource& library, const std::string& folder, TextureFiles& textures,
-              MaterialTable& materials) {
+              NamedMaterials& materials) {
   MtlReader(bytes, library, folder, textures, materials).read();
 }
 

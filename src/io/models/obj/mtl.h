@@ -11,9 +11,9 @@
 namespace frontmost {
 
 /// The materials of a scene by name. A name may be used before, after or without its definition.
-class MaterialTable {
+class NamedMaterials {
  public:
-  MaterialTable(const ModelSource& source, Scene& scene) : source_(source), scene_(scene) {}
+  NamedMaterials(const ModelSource& source, Scene& scene) : source_(source), scene_(scene) {}
 
   /// The number of the material called `name`. \throws Error limit_exceeded.
   std::uint32_t number(const std::string& name);
@@ -34,6 +34,6 @@ class MaterialTable {
 /// Reads a material library. `library` stands for it in errors, `folder` is where it lies, relative to the model.
 /// \throws Error file_malformed.
 void read_mtl(Bytes bytes, const ModelSource& library, const std::string& folder, TextureFiles& textures,
-              MaterialTable& materials);
+              NamedMaterials& materials);
 
 }  // namespace frontmost

@@ -239,7 +239,7 @@ class ObjReader {
   const ModelSource& source_;
   Coordinates& coordinates_;
   Scene scene_;
-  MaterialTable materials_;
+  NamedMaterials materials_;
   TextureFiles textures_;
   ObjPool pool_;
   IndexList vertices_{"vertex", {}, 0, 0}, uvs_{"texture coordinate", {}, 0, 0}, normals_{"normal", {}, 0, 0};

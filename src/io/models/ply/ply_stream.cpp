@@ -165,7 +165,7 @@ class PlyStream final : public ModelStream {
     return double(next_row_) / double(std::max<std::uint64_t>(faces_->count, 1));
   }
 
-  bool fetch(Piece& piece, std::uint64_t triangles) override {
+  bool fetch(StreamPiece& piece, std::uint64_t triangles) override {
     piece.clear();
     piece.first_triangle = next_triangle_;
     piece.first_row = next_row_;
@@ -179,7 +179,7 @@ class PlyStream final : public ModelStream {
     return piece.row_count > 0;
   }
 
-  void parse(Piece& piece) const override {
+  void parse(StreamPiece& piece) const override {
     PlyBinaryRows rows(Bytes(piece.bytes).first(piece.used), endian(), source_);
     FaceReader<PlyBinaryRows, NamedVertices> faces(
         rows, {vertices_, scene_.origin, 2 * std::size_t(piece.row_count) + 4096}, header_, source_, piece.mesh);
@@ -263,7 +263,7 @@ class PlyStream final : public ModelStream {
   /// Fills the piece with whole rows. What is left of the bytes waits for the next piece, and counts for it: polygons
   /// make more triangles of their bytes than triangles do. `again`: a row longer than all of them was found, so that
   /// twice as much is read.
-  void fetch_rows(Piece& piece, std::uint64_t triangles, bool again) {
+  void fetch_rows(StreamPiece& piece, std::uint64_t triangles, bool again) {
     const std::size_t row = faces_->least_row_size() + 3 * corner_size();
     const std::size_t enough = std::max<std::size_t>(std::size_t(triangles) * row, 4096);
     const std::size_t wanted = again ? std::max(enough, left_.size()) : enough - std::min(enough, left_.size());

@@ -38,7 +38,7 @@ class StlStream final : public ModelStream {
 
   [[nodiscard]] double fraction() const override { return double(next_) / double(std::max<std::uint64_t>(count_, 1)); }
 
-  bool fetch(Piece& piece, std::uint64_t triangles) override {
+  bool fetch(StreamPiece& piece, std::uint64_t triangles) override {
     piece.clear();
     piece.first_triangle = next_;
     const std::size_t wanted = std::size_t(std::min(triangles, count_ - next_)) * stl_record_size;
@@ -56,14 +56,16 @@ class StlStream final : public ModelStream {
     return got > 0;
   }
 
-  void parse(Piece& piece) const override { append_stl_records(Bytes(piece.bytes).first(piece.used), piece.mesh); }
+  void parse(StreamPiece& piece) const override {
+    append_stl_records(Bytes(piece.bytes).first(piece.used), piece.mesh);
+  }
 
  private:
   /// Of models near zero, the first piece tells.
   glm::dvec3 fitting_origin() {
     constexpr std::uint64_t triangles_at_once = 4096;
     OriginSearch search;
-    Piece piece;
+    StreamPiece piece;
     while (!search.is_home() && fetch(piece, triangles_at_once)) {
       parse(piece);
       for (const glm::vec3& position : piece.mesh.positions) search.include(glm::dvec3(position));

@@ -28,7 +28,7 @@ struct Property {
 };
 
 /// An object in a place: a component of another, or an item that is built.
-struct Placed {
+struct PlacedObject {
   std::string part;  ///< empty: the same part
   std::uint32_t object = 0;
   glm::dmat4 outer_from_object{1.0};
@@ -42,7 +42,7 @@ struct Object {
   glm::dvec3 origin{0};                       ///< of the mesh in the coordinates of the file
   Property property;                          ///< of triangles that have none of their own
   std::vector<Property> triangle_properties;  ///< one a triangle, or none at all
-  std::vector<Placed> components;
+  std::vector<PlacedObject> components;
 };
 
 struct ModelPart {
@@ -50,7 +50,7 @@ struct ModelPart {
   double metres_per_unit = 0.001;
   std::map<std::uint32_t, Object> objects;
   std::map<std::uint32_t, PropertyGroup> groups;
-  std::vector<Placed> items;
+  std::vector<PlacedObject> items;
   std::vector<std::string> warnings;
 };
 

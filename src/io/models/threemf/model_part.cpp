@@ -293,9 +293,9 @@ class ModelPartReader : public XmlPart {
     object_->triangle_properties.push_back(property);
   }
 
-  Placed read_placed(const TagReader& tags) {
+  PlacedObject read_placed(const TagReader& tags) {
     if (++placed_count_ > max_objects) source().fail_limit(place(), "too many components and items");
-    Placed placed;
+    PlacedObject placed;
     placed.object = tags.index("objectid");
     placed.line = line();
     static const std::string path_name = std::string(production) + "path";

@@ -16,11 +16,11 @@ namespace {
 
 constexpr int most_component_levels = 64;
 
-using Parts = std::map<std::string, ModelPart>;
+using ModelParts = std::map<std::string, ModelPart>;
 
 /// Reads a part and all that it refers to, each once.
-Parts read_parts(const std::string& start, Package& package, const ModelSource& source, Scene& scene) {
-  Parts parts;
+ModelParts read_parts(const std::string& start, Package& package, const ModelSource& source, Scene& scene) {
+  ModelParts parts;
   PlainMaterials plain;
   std::vector<std::string> names{start};
   while (!names.empty()) {
@@ -32,10 +32,10 @@ Parts read_parts(const std::string& start, Package& package, const ModelSource& 
     apply_properties(part, source, plain, scene);
     for (auto& [id, object] : part.objects) {
       object.triangle_properties = {};
-      for (const Placed& component : object.components)
+      for (const PlacedObject& component : object.components)
         if (!component.part.empty()) names.push_back(component.part);
     }
-    for (const Placed& item : part.items)
+    for (const PlacedObject& item : part.items)
       if (!item.part.empty()) names.push_back(item.part);
     parts.emplace(name, std::move(part));
   }
@@ -43,13 +43,14 @@ Parts read_parts(const std::string& start, Package& package, const ModelSource& 
 }
 
 /// Makes an instance of every mesh that is built, through all components.
-class Placer {
+class ItemPlacer {
  public:
-  Placer(const Parts& parts, const ModelPart& root, const Budget& budget, const ModelSource& source, Scene& scene)
+  ItemPlacer(const ModelParts& parts, const ModelPart& root, const Budget& budget, const ModelSource& source,
+             Scene& scene)
       : parts_(parts), root_(root), budget_(budget), source_(source), scene_(scene) {}
 
   void place() {
-    for (const Placed& item : root_.items) place(root_, item, {glm::dmat4(1.0), "", 0});
+    for (const PlacedObject& item : root_.items) place(root_, item, {glm::dmat4(1.0), "", 0});
     if (root_.items.empty()) place_unused();
   }
 
@@ -62,7 +63,7 @@ class Placer {
   };
 
   /// `above` tells of the object of `from` that holds `placed`.
-  void place(const ModelPart& from, const Placed& placed, const Above& above) {
+  void place(const ModelPart& from, const PlacedObject& placed, const Above& above) {
     check_cancelled(source_.execution());
     const std::string place = printable(from.name) + ": line " + std::to_string(placed.line);
     if (above.level > most_component_levels)
@@ -79,7 +80,7 @@ class Placer {
     Above here{above.world_from_outer * placed.outer_from_object, object.name.empty() ? above.name : object.name,
                above.level + 1};
     if (object.mesh != no_index) add_instance(*found, part.metres_per_unit, here, place);
-    for (const Placed& component : object.components) this->place(part, component, here);
+    for (const PlacedObject& component : object.components) this->place(part, component, here);
   }
 
   void add_instance(const std::pair<const std::uint32_t, Object>& numbered, double metres_per_unit, const Above& here,
@@ -103,7 +104,7 @@ class Placer {
   void place_unused() {
     std::set<std::uint32_t> used;
     for (const auto& [id, object] : root_.objects)
-      for (const Placed& component : object.components)
+      for (const PlacedObject& component : object.components)
         if (component.part.empty()) used.insert(component.object);
     for (const auto& [id, object] : root_.objects)
       if (used.count(id) == 0) place(root_, {"", id, glm::dmat4(1.0), object.line}, {glm::dmat4(1.0), "", 0});
@@ -111,7 +112,7 @@ class Placer {
       scene_.warnings.push_back(printable(root_.name) + ": nothing is built, all objects are shown");
   }
 
-  const Parts& parts_;
+  const ModelParts& parts_;
   const ModelPart& root_;
   Budget budget_;
   const ModelSource& source_;
@@ -126,9 +127,9 @@ Scene read_3mf(Bytes bytes, const ModelSource& source) {
   threemf::Package package(bytes, source);
   Scene scene;
   const std::string start = threemf::find_start_part(package, source);
-  const threemf::Parts parts = threemf::read_parts(start, package, source, scene);
+  const threemf::ModelParts parts = threemf::read_parts(start, package, source, scene);
   const threemf::ModelPart& root = parts.at(start);
-  threemf::Placer(parts, root, Budget(bytes.size()), source, scene).place();
+  threemf::ItemPlacer(parts, root, Budget(bytes.size()), source, scene).place();
   scene.source.metres_per_unit = root.metres_per_unit;
   return scene;
 }
