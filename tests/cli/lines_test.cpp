@@ -453,12 +453,12 @@ TEST_F(LinesCommand, CurvedModelsAreDrawnFromWithin) {
 }
 
 TEST_F(LinesCommand, TheSameBytesForAnyNumberOfThreads) {
-  for (const char* const format : {"svg", "pdf", "dxf", "json"}) {
-    const std::string name = std::string("a.") + format, other = std::string("b.") + format;
-    succeed("lines builtin:teapot --plot --hidden dashed --threads 1 -o " + name);
-    succeed("lines builtin:teapot --plot --hidden dashed --threads 3 -o " + other);
-    EXPECT_EQ(read(name), read(other));
-    succeed("lines builtin:teapot --plot --hidden dashed --format " + std::string(format) + " -o -");
+  const std::string drawing = "lines builtin:teapot --plot --hidden dashed --threads ";
+  succeed(drawing + "1 -o a.svg -o a.pdf -o a.dxf -o a.json");
+  succeed(drawing + "3 -o b.svg -o b.pdf -o b.dxf -o b.json");
+  for (const std::string format : {"svg", "pdf", "dxf", "json"}) {
+    EXPECT_EQ(read("a." + format), read("b." + format));
+    succeed("lines cube.stl --plot --format " + format + " -o -");
   }
 }
 
