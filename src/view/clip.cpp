@@ -24,6 +24,8 @@ struct ClipVertex {
 };
 
 enum class Plane { near, far, left, right, top, bottom };
+/// Near comes first: in perspective the sides are only planes where w, the distance, is positive.
+constexpr Plane kPlanes[] = {Plane::near, Plane::far, Plane::left, Plane::right, Plane::top, Plane::bottom};
 
 double w_of(const ScreenTransform& t, const ClipVertex& v) { return t.orthographic ? 1.0 : v.d; }
 
@@ -67,6 +69,16 @@ ClipVertex cut(const ScreenTransform& t, Plane plane, const ClipVertex& inside, 
 
 /// Each of six planes adds at most one corner to a convex polygon, and one more is written before it is looked at.
 using ClipCorners = std::array<ClipVertex, ClippedPolygon::max_corners + 1>;
+
+/// Corners that are all outside of a plane have nothing inside between them. Cuts at planes before that one would be
+/// rounded, by much where corners are 1e20 times as far away as others, and could come to lie in the picture.
+bool is_outside(const ScreenTransform& t, const ClipCorners& triangle) {
+  const auto all_outside = [&](Plane plane) {
+    return std::all_of(triangle.begin(), triangle.begin() + 3,
+                       [&](const ClipVertex& v) { return distance(t, plane, v) < 0; });
+  };
+  return std::any_of(std::begin(kPlanes), std::end(kPlanes), all_outside);
+}
 
 int clip_by(const ScreenTransform& t, Plane plane, const ClipCorners& in, int count, ClipCorners& out) {
   int kept = 0;
@@ -125,8 +137,8 @@ ClippedPolygon clip_triangle(const ScreenTransform& t, const std::array<glm::vec
   ClipCorners polygon, next;
   int count = 3;
   for (std::size_t i = 0; i < 3; ++i) polygon[i] = prepare(t, world[i]);
-  // Near comes first: in perspective the sides are only planes where w, the distance, is positive.
-  for (const Plane plane : {Plane::near, Plane::far, Plane::left, Plane::right, Plane::top, Plane::bottom}) {
+  if (is_outside(t, polygon)) return {};
+  for (const Plane plane : kPlanes) {
     count = clip_by(t, plane, polygon, count, next);
     if (count < 3) return {};
     std::swap(polygon, next);

@@ -112,6 +112,18 @@ TEST(CurvedSphere, IsMetWithinTheStatedBound) {
   EXPECT_GT(met, 5000);
 }
 
+// Of the way from the centre to where it is met, rounding leaves nothing.
+TEST(CurvedSphere, ThatIsSmallerThanARoundingHasANormal) {
+  const CurvedIndex index(one_sphere({{0, 0, 0}, 0x1p-200}));
+  const float far = 0x1p117f;
+  const CurvedHit hit = closest_hit(index, Ray{{-far, -far, 3}, {far, far, -3}});
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit.t, 1);
+  EXPECT_TRUE(hit.is_front);
+  EXPECT_NEAR(glm::dot(hit.normal, glm::dvec3(1, 1, 0)), -std::sqrt(2.0), 1e-12);
+  EXPECT_TRUE(hit.parameters.x >= 0 && hit.parameters.x <= 1 && hit.parameters.y >= 0 && hit.parameters.y <= 1);
+}
+
 TEST(CurvedPatch, ThatIsFlatIsMetWhereItIs) {
   const CurvedIndex index(one_patch(sheet([](int, int) { return 2.0; })));
   const CurvedHit hit = closest_hit(index, Ray{{0.75f, 1.5f, -1}, {0, 0, 2}});

@@ -110,6 +110,20 @@ TEST(Clip, NeighboursAgreeOnTheirCommonEdge) {
   EXPECT_GT(compared, 1000u);
 }
 
+// Cut at the near plane first, the edge between the first two corners would end 1e16 to either side of the first.
+TEST(Clip, TrianglesBesideTheViewVanishHoweverFarTheyReach) {
+  const std::array<glm::vec3, 3> triangle{glm::vec3(1.31398e11f, -1.08918e8f, 84.1228f),
+                                          glm::vec3(2.08206e32f, -4.1612e-35f, -3.12502e35f),
+                                          glm::vec3(2.20249e22f, 6.90475e15f, 1.11124e18f)};
+  for (const double up : {0.0, 1.0}) {
+    const glm::dmat4 eye = look_at({0.302734, 0.577447, 3}, {0, 0, 0}, {0, up, 1});
+    const View view{32, 32, 1, eye, make_orthographic(-1, 1, -1, 1, {0.5, 100}), {}};
+    for (const glm::vec3& corner : triangle)
+      EXPECT_GT(std::abs(glm::dot(glm::dvec3(corner) - view.eye(), view.right())), 1e10) << "all on one side";
+    EXPECT_EQ(clip_triangle(ScreenTransform(view), triangle).count, 0);
+  }
+}
+
 TEST(Clip, HugeCoordinatesStayWithinTheGuardBand) {
   Random random(9);
   for (int i = 0; i < 2000; ++i) {

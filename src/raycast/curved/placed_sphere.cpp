@@ -69,7 +69,9 @@ std::optional<RayMeeting> meet(const PlacedSphere& sphere, const DoubleRay& ray)
   if (!both) return std::nullopt;
   for (const double t : {both->x, both->y}) {
     if (!(t >= ray.from && t <= ray.to)) continue;
-    const glm::dvec3 unit = glm::normalize(origin + t * direction);
+    const glm::dvec3 point = origin + t * direction, through_centre = t == both->x ? -direction : direction;
+    // From so far away that rounding leaves nothing of the radius, the ray passes through the centre.
+    const glm::dvec3 unit = glm::normalize(point == glm::dvec3(0) ? through_centre : point);
     const glm::dvec3 normal = glm::normalize(unit * sphere.unit_from_world);  // by the inverse's transpose
     if (ray.keeps(normal)) return RayMeeting{t, parameters_of(unit), normal};
   }
