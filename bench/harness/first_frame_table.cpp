@@ -17,8 +17,8 @@ constexpr std::string_view kScenes[] = {"teapot",       "bunny",         "sphere
 }  // namespace
 
 Table measure_surfaces(const Options& options) {
-  Table table("surfaces: making ready, alone and with the first frame, and a frame from the scene's own arrays",
-              {"scene", "threads", "surfaces", "ns/tri", "and a frame", "one shot", "times"});
+  Table table("surfaces: making ready, with clusters and a frame of them, and a frame from the scene's own arrays",
+              {"scene", "threads", "surfaces", "clusters", "ns/tri", "and a frame", "one shot", "times"});
   for (const std::string_view name : options.scenes_or(kScenes)) {
     const Stage stage(name, options.models);
     for (const int threads : {1, std::max(2, int(std::thread::hardware_concurrency()))}) {
@@ -26,13 +26,23 @@ Table measure_surfaces(const Options& options) {
       const std::vector<Time> times =
           race({Contestant([&] { const Surfaces surfaces(stage.scene, execution); }), Contestant([&] {
                   const Surfaces surfaces(stage.scene, execution);
-                  const Visible visible = zbuffer(surfaces, stage.view, execution);
+                  (void)surfaces.clusters(execution);
                 }),
-                Contestant([&] { const Visible visible = zbuffer(stage.scene, stage.view, execution); })},
+                Contestant([&] {
+                  const Surfaces surfaces(stage.scene, execution);
+                  ZBuffer buffer;
+                  buffer.draw(surfaces, stage.view, execution);
+                }),
+                Contestant([&] {
+                  const Surfaces surfaces(stage.scene, execution);
+                  const Visible visible = zbuffer(surfaces, stage.view, execution);
+                })},
                options.sampling);
-      const double ready = cost(times[0], threads), framed = cost(times[1], threads), once = cost(times[2], threads);
+      const double placed = cost(times[0], threads), ready = cost(times[1], threads), framed = cost(times[2], threads),
+                   once = cost(times[3], threads);
       table.add({name,
                  Cell::whole(unsigned(threads)),
+                 {placed},
                  {ready},
                  {1e6 * ready / stage.surfaces.primitive_count(), 0},
                  {framed},

@@ -77,6 +77,21 @@ int status_of(const std::vector<ViewResult>& results) {
   return std::any_of(results.begin(), results.end(), differs) ? exit_differs : exit_done;
 }
 
+/// What both ways to render begin with.
+struct Run {
+  const Settings& settings;
+  std::vector<Job> jobs;
+  bool on_terminal = false;
+  Stopwatch whole;
+};
+
+/// Whether the z-buffer draws the model so often, shadows aside, that clusters had better be there from the beginning.
+bool is_drawn_often(const Run& run) {
+  std::size_t count = 0;
+  for (const Job& job : run.jobs) count += views_of({}, plan_sights(job, run.settings.run, run.on_terminal, {})).size();
+  return count * std::size_t(run.settings.run.repeat) > 1;
+}
+
 /// Renders every job by `render`, and tells of each.
 template <class Render>
 std::vector<ViewResult> render_all(const std::vector<Job>& jobs, const Settings& settings, Progress& progress,
@@ -103,14 +118,6 @@ void report(const Settings& settings, const ModelFacts& model, const std::vector
   if (!settings.run.json) print(hash_lines(results, settings.run.batch.has_value()));
 }
 
-/// What both ways to render begin with.
-struct Run {
-  const Settings& settings;
-  std::vector<Job> jobs;
-  bool on_terminal = false;
-  Stopwatch whole;
-};
-
 int render_whole(Run& run) {
   const Settings& settings = run.settings;
   Progress progress(settings.run.quiet);
@@ -121,6 +128,7 @@ int render_whole(Run& run) {
   timings.load = watch.milliseconds();
   watch = {};
   const Surfaces surfaces(scene, execution);
+  if (is_drawn_often(run)) (void)surfaces.clusters(execution);
   timings.surfaces = watch.milliseconds();
   watch = {};
   plan_curved(scene, settings.run, run.jobs);

@@ -9,7 +9,8 @@
 
 namespace frontmost {
 
-struct ClusterSet;  // src/surfaces/cluster_set.h: what the methods read
+struct PlacedScene;  // src/surfaces/placed_scene.h, and
+struct ClusterSet;   // src/surfaces/cluster_set.h: what the methods read
 
 /// Where a primitive id comes from.
 struct PrimitiveSource {
@@ -18,8 +19,8 @@ struct PrimitiveSource {
   std::uint32_t triangle = no_index;  ///< within the mesh
 };
 
-/// All triangles of a scene in world space, flattened over instances, in clusters, with stable ids: the id of a
-/// triangle is its running number over all instances in scene order. World space is about Scene::origin, which models
+/// All triangles of a scene in world space, flattened over instances, with stable ids: the id of a triangle is its
+/// running number over all instances in scene order. World space is about Scene::origin, which models
 /// far from zero have: so are all places that are given to methods, and that they answer with. Immutable, and safe to
 /// share between threads. Triangles with a corner that is not finite in world space are never seen, but keep their
 /// number. Singular transforms are no error: they flatten what they place. Only the first three rows of a transform
@@ -29,7 +30,9 @@ struct PrimitiveSource {
 class Surfaces {
  public:
   /// Borrows `scene`, which must outlive the surfaces and stay as it is.
-  /// O(triangles), in parallel; about 20 bytes a triangle kept, 40 while it is built.
+  /// O(triangles), in parallel; half a byte a triangle. Whatever looks at the triangles often (a ZBuffer, rays, the
+  /// third zbuffer()) first brings them into clusters, once, which takes ten times as long and 20 bytes a triangle, 40
+  /// while they are made.
   /// \throws Error as validate(scene) does, and bad_argument for a non-finite instance transform.
   explicit Surfaces(const Scene& scene, const Execution& execution = {});
   explicit Surfaces(Scene&&, const Execution& = {}) = delete;  // it would be gone at once
@@ -53,13 +56,19 @@ class Surfaces {
   /// True when the instance's transform mirrors. Its front faces are then clockwise in the order of corners(): what is
   /// outside of a mesh stays outside (glTF 2.0, 3.7.4).
   [[nodiscard]] bool is_mirrored(std::uint32_t instance) const;
-  /// Bytes held beside the scene's own arrays.
+  /// Bytes held beside the scene's own arrays; those of the clusters count once they are made.
   [[nodiscard]] std::size_t byte_count() const;
 
-  [[nodiscard]] const ClusterSet& clusters() const { return *clusters_; }
+  // For the methods.
+  [[nodiscard]] const PlacedScene& placed() const;
+  /// Made now where they are not there.
+  [[nodiscard]] const ClusterSet& clusters(const Execution& execution = {}) const;
+  /// Null where a single picture is drawn sooner without.
+  [[nodiscard]] const ClusterSet* clusters_for_picture(const Execution& execution) const;
 
  private:
-  std::unique_ptr<const ClusterSet> clusters_;
+  struct State;
+  std::unique_ptr<const State> state_;
 };
 
 }  // namespace frontmost

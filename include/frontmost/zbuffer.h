@@ -13,19 +13,15 @@ namespace frontmost {
 /// The front-most triangle at every sample. Vertices are snapped to 1/256 pixel, coverage is exact by the top-left
 /// rule, depth keys are interpolated in screen space, where they are affine; at equal keys the lower id wins.
 /// The result is the same to the bit for any number of threads and any instruction set.
-/// O(triangles + covered samples) time; 8 bytes a sample for the result.
+/// O(triangles + covered samples) time; 8 bytes a sample for the result. The first two pictures of surfaces that have
+/// no clusters yet are drawn from the scene's own arrays: up to ten times as fast as clusters and a picture of them,
+/// wherever a scene is shown once or twice. The third makes the clusters; for many pictures take a ZBuffer.
 /// \throws Error as validate(view) does.
 [[nodiscard]] Visible zbuffer(const Surfaces& surfaces, const View& view, const Execution& execution = {});
 
-/// The same to the bit, for a single picture of a scene of which there are no Surfaces: triangles are drawn from the
-/// scene's own arrays. As fast as making Surfaces and drawing them once, and up to ten times as fast, whatever the
-/// scene; from the second picture on Surfaces and a ZBuffer win. Memory beside the result: some 30 MiB, 100 bytes for
-/// each large or clipped one of half a million triangles at a time, and the holes of MASK materials. \throws Error as
-/// Surfaces(scene) and validate(view) do.
-[[nodiscard]] Visible zbuffer(const Scene& scene, const View& view, const Execution& execution = {});
-
-/// The same for repeated views: frames after the first reuse the memory of those before, and allocate nothing as long
-/// as no frame needs more. Not for several threads at once; each draw() uses the threads it is given.
+/// The same for repeated views, from the surfaces' clusters, which the first frame makes where they are not there yet.
+/// Frames after the first reuse the memory of those before, and allocate nothing as long as no frame needs more. Not
+/// for several threads at once; each draw() uses the threads it is given.
 class ZBuffer {
  public:
   ZBuffer();

@@ -64,7 +64,7 @@ const ResolvedPicture& Resolver::draw(const Surfaces& surfaces, const View& view
   state.plan.make(surfaces, view, execution);
   state.prepare(view);
   // Holes are taken out of masks, which flat frames do not have.
-  const bool has_holes = surfaces.clusters().cutouts != nullptr;
+  const bool has_holes = surfaces.placed().cutouts != nullptr;
   const CopyRule copies{[&](PrimitiveId id) { return colors[id].a * options.opacity >= 1.0f; }};
   const GatherInput frame{state.plan, pattern, pattern.count == 1 && !has_holes, execution.isa, copies, colors.data()};
   ResolvedPicture& picture = state.picture;

@@ -94,7 +94,7 @@ class Canvas {
   void paint(const PaintPolygon& polygon) {
     const CutOutline outline({order_.corners.data() + polygon.first_corner, polygon.corner_count});
     const ClippedPolygon clipped = clip_triangle(transform_, surfaces_.corners(polygon.id));
-    const Cutouts* const cutouts = surfaces_.clusters().cutouts.get();
+    const Cutouts* const cutouts = surfaces_.placed().cutouts.get();
     std::optional<ScreenCutout> holes;
     if (cutouts && cutouts->has(polygon.id)) holes.emplace((*cutouts)[polygon.id], rays_);
     for (std::size_t k = 2; k < std::size_t(clipped.count); ++k) {

@@ -55,7 +55,7 @@ struct Question {
   }
   /// Whether a triangle with holes lets the ray of a sample pass: asked as the methods ask.
   [[nodiscard]] bool is_hole(PrimitiveId id, std::size_t sample) const {
-    const Cutouts* const cutouts = surfaces.clusters().cutouts.get();
+    const Cutouts* const cutouts = surfaces.placed().cutouts.get();
     if (!cutouts || !cutouts->has(id)) return false;
     const std::size_t pixel = sample % view.pixel_count(), width = std::size_t(view.width);
     const glm::ivec2 at = glm::ivec2(pixel % width, pixel / width) * kSubPixels + offsets[sample / view.pixel_count()];

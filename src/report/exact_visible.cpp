@@ -34,7 +34,7 @@ class TileContest {
     const PixelRect rect = common_part(pixel_rect(r, view.width, view.height), tile_);
     if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
     const BoundedPlane plane(field_.surfaces.corners(r.id), field_.rays);
-    const Cutouts* const cutouts = field_.surfaces.clusters().cutouts.get();
+    const Cutouts* const cutouts = field_.surfaces.placed().cutouts.get();
     std::optional<ScreenCutout> cutout;
     if (cutouts && cutouts->has(r.id)) cutout.emplace((*cutouts)[r.id], field_.screen_rays);
     for (std::size_t s = 0; s < field_.samples.size(); ++s) {

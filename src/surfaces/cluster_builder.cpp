@@ -27,16 +27,13 @@ struct ClusterPart {
   std::vector<Box> boxes;
   std::vector<float> x, y, z;
   std::array<std::vector<std::uint8_t>, 3> corners;
-  std::vector<std::pair<std::uint32_t, Box>> instance_boxes;  // of runs of one instance's triangles
 };
 
 /// What all parts are made from.
 struct Source {
-  const Scene& scene;
-  const std::vector<PrimitiveId>& first_primitives;
+  const PlacedScene& placed;
   const InstanceFinder& instances;
   const SpatialOrder& order;
-  const std::vector<std::uint8_t>& mirrored;
   std::size_t first_cutout;  ///< in the order: clusters hold triangles from before, or from there on
 };
 
@@ -85,9 +82,10 @@ class PartBuilder {
 
   [[nodiscard]] Placed place_of(PrimitiveId id) const {
     const std::uint32_t number = source_.instances.find(id);
-    const Mesh& mesh = source_.scene.meshes[source_.scene.instances[number].mesh];
-    const PrimitiveId first = source_.first_primitives[number];
-    return {number, first, source_.first_primitives[number + 1] - first, mesh.triangles.data(), mesh.positions.data()};
+    const Scene& scene = *source_.placed.scene;
+    const Mesh& mesh = scene.meshes[scene.instances[number].mesh];
+    const std::vector<PrimitiveId>& firsts = source_.placed.first_primitives;
+    return {number, firsts[number], firsts[number + 1] - firsts[number], mesh.triangles.data(), mesh.positions.data()};
   }
 
   /// Runs that are neighbours in space are often far apart in memory: the corner numbers are asked for well ahead, and
@@ -111,7 +109,7 @@ class PartBuilder {
   bool read(PrimitiveId id, std::array<glm::vec3, 3>& world) {
     if (!placed_.holds(id)) {
       placed_ = place_of(id);
-      to_world_.emplace(source_.scene.instances[placed_.number].world_from_mesh);
+      to_world_.emplace(source_.placed.scene->instances[placed_.number].world_from_mesh);
       // Where the corners stay as they are the spatial order has looked at them already.
       must_check_ = !to_world_->is_identity() || source_.order.all_finite[placed_.number] == 0;
     }
@@ -125,7 +123,7 @@ class PartBuilder {
     std::array<std::uint8_t, 3> numbers{};  // not finite: degenerate, three times vertex 0, whatever that is or will be
     if (!read(id, world)) {
       if (cluster_.triangle_count == Cluster::max_triangles) start_next_cluster();
-      append(numbers, no_index);
+      append(numbers);
       return;
     }
     if (cluster_.triangle_count == Cluster::max_triangles || !intern_into_rest(world, numbers)) {
@@ -133,8 +131,8 @@ class PartBuilder {
       intern(world, numbers);
     }
     // A mirror turns counter-clockwise into clockwise, but what was outside stays outside.
-    if (source_.mirrored[placed_.number]) std::swap(numbers[1], numbers[2]);
-    append(numbers, placed_.number);
+    if (source_.placed.mirrored[placed_.number]) std::swap(numbers[1], numbers[2]);
+    append(numbers);
   }
 
   void intern(const std::array<glm::vec3, 3>& world, std::array<std::uint8_t, 3>& numbers) {
@@ -156,11 +154,9 @@ class PartBuilder {
     return true;
   }
 
-  /// `instance` is no_index where the triangle counts for no box.
-  void append(const std::array<std::uint8_t, 3>& numbers, std::uint32_t instance) {
+  void append(const std::array<std::uint8_t, 3>& numbers) {
     const std::size_t t = cluster_.triangle_count++;
     for (std::size_t k = 0; k < 3; ++k) corners_[k][t] = numbers[k];
-    instances_[t] = instance;
   }
 
   void start_next_cluster() {
@@ -168,35 +164,11 @@ class PartBuilder {
     start_cluster();
   }
 
-  void include(std::uint32_t instance, const Box& box) {
-    if (part_.instance_boxes.empty() || part_.instance_boxes.back().first != instance)
-      part_.instance_boxes.emplace_back(instance, Box{});
-    part_.instance_boxes.back().second.include(box);
-  }
-
-  /// Adds the cluster to the boxes of its instances: as a whole where there is one, else triangle by triangle.
-  void include_in_instances(const Box& box) {
-    const std::uint32_t* first = instances_.data();
-    const std::uint32_t* end = first + cluster_.triangle_count;
-    if (std::all_of(first, end, [&](std::uint32_t i) { return i == *first; })) {
-      if (*first != no_index) include(*first, box);
-      return;
-    }
-    for (std::size_t t = 0; t < cluster_.triangle_count; ++t) {
-      if (instances_[t] == no_index) continue;
-      Box triangle;
-      for (const auto& corners : corners_) triangle.include(table_[corners[t]]);
-      include(instances_[t], triangle);
-    }
-  }
-
   void finish_cluster() {
     if (cluster_.triangle_count == 0) return;
     cluster_.vertex_count = static_cast<std::uint16_t>(table_.size());
     // Kernels load whole vectors: what lies behind the last vertex or triangle is read, and must be harmless.
     const std::size_t vertices = table_.pad(), triangles = padded_to_lanes(cluster_.triangle_count);
-    const Box box = table_.bounds();
-    include_in_instances(box);
     part_.x.insert(part_.x.end(), table_.x(), table_.x() + vertices);
     part_.y.insert(part_.y.end(), table_.y(), table_.y() + vertices);
     part_.z.insert(part_.z.end(), table_.z(), table_.z() + vertices);
@@ -205,7 +177,7 @@ class PartBuilder {
       part_.corners[k].insert(part_.corners[k].end(), corners_[k].begin(), corners_[k].begin() + triangles);
     }
     part_.clusters.push_back(cluster_);
-    part_.boxes.push_back(box);
+    part_.boxes.push_back(table_.bounds());
   }
 
   const Source& source_;
@@ -216,7 +188,6 @@ class PartBuilder {
   VertexTable table_;
   Cluster cluster_;
   std::array<std::array<std::uint8_t, padded_to_lanes(Cluster::max_triangles)>, 3> corners_;
-  std::array<std::uint32_t, Cluster::max_triangles> instances_;
 };
 
 /// Where each part's clusters, vertices and triangles go in the whole.
@@ -319,33 +290,20 @@ void BoxArrays::set(std::size_t i, const Box& box) {
   high_x[i] = box.high.x, high_y[i] = box.high.y, high_z[i] = box.high.z;
 }
 
-ClusterSet build_clusters(const Scene& scene, const Execution& execution) {
+ClusterSet build_clusters(const PlacedScene& placed, const Execution& execution) {
   ClusterSet set;
-  set.scene = &scene;
-  set.first_primitives.push_back(0);
-  for (const Instance& instance : scene.instances)
-    set.first_primitives.push_back(set.first_primitives.back() +
-                                   static_cast<PrimitiveId>(scene.meshes[instance.mesh].triangles.size()));
-
+  set.cutouts = placed.cutouts;
   // The fractions are about what the steps take of the time.
-  for (const Instance& instance : scene.instances) set.mirrored.push_back(mirrors(instance.world_from_mesh));
-  set.cutouts = Cutouts::of(scene, set.first_primitives);
-  SpatialOrder order = spatial_order(scene, set.first_primitives, execution);
+  SpatialOrder order = spatial_order(placed, execution);
   const std::size_t first_cutout = part_cutouts(set.cutouts.get(), order.runs);
   report_progress(execution, "surfaces", 0.4);
-  const InstanceFinder instances(set.first_primitives);
-  const Source source{scene, set.first_primitives, instances, order, set.mirrored, first_cutout};
+  const InstanceFinder instances(placed.first_primitives);
+  const Source source{placed, instances, order, first_cutout};
   std::vector<ClusterPart> parts((order.runs.size() + kRunsPerPart - 1) / kRunsPerPart);
   parallel_for(execution, order.runs.size(), kRunsPerPart, [&](std::size_t begin, std::size_t end) {
     PartBuilder(source, parts[begin / kRunsPerPart]).build(begin, end);
   });
   report_progress(execution, "surfaces", 0.9);
-  // One part after the other: an instance may lie in several, and a union of boxes has no rounding to depend on the
-  // order.
-  set.instance_bounds.resize(scene.instances.size());
-  for (const ClusterPart& part : parts)
-    for (const auto& [instance, box] : part.instance_boxes) set.instance_bounds[instance].include(box);
-  for (const Box& box : set.instance_bounds) set.bounds.include(box);
   gather(set, parts, order, execution);
   set.first_cutout = first_cutout < order.runs.size()
                          ? clusters_before(set, TriangleRun::unpacked(order.runs[first_cutout]).first)

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inside of Surfaces: clusters of triangles as structure of arrays, the form in which every method reads geometry.
+// Clusters of triangles as structure of arrays: the form in which methods read geometry that they look at often.
 #pragma once
 
+#include <mutex>
 #include <vector>
 
 #include "frontmost/surfaces.h"
 #include "surfaces/cones.h"
-#include "surfaces/cutouts.h"
+#include "surfaces/placed_scene.h"
 
 namespace frontmost {
 
@@ -37,12 +38,6 @@ struct BoxArrays {
 };
 
 struct ClusterSet {
-  const Scene* scene = nullptr;
-  std::vector<PrimitiveId> first_primitives;  ///< by instance, and the total at the end
-  std::vector<Box> instance_bounds;
-  std::vector<std::uint8_t> mirrored;  ///< by instance: its triangles have their last two corners swapped
-  Box bounds;
-
   std::vector<Cluster> clusters;
   std::size_t first_cutout = 0;  ///< clusters from here on hold what may have holes, those before nothing of it
   std::shared_ptr<const Cutouts> cutouts;  ///< null where nothing may
@@ -55,42 +50,27 @@ struct ClusterSet {
 
 /// Cuts all triangles into clusters, every one into one. Triangles with a non-finite world-space corner become
 /// degenerate (three times the same corner number), so that no method sees them.
-[[nodiscard]] ClusterSet build_clusters(const Scene& scene, const Execution& execution);
+[[nodiscard]] ClusterSet build_clusters(const PlacedScene& placed, const Execution& execution);
 
-/// \throws Error bad_argument for a transform that is not finite.
-void check_transforms(const Scene& scene);
-
-/// True for a transform that turns counter-clockwise into clockwise.
-[[nodiscard]] inline bool mirrors(const glm::dmat4& world_from_mesh) {
-  return glm::determinant(glm::dmat3(world_from_mesh)) < 0;
-}
-
-/// The world-space position of a vertex, in the one rounding that every part of the house uses.
-[[nodiscard]] inline glm::vec3 to_world(const glm::dmat4& world_from_mesh, const glm::vec3& p) {
-  const glm::dvec3 q(p);
-  const glm::dmat4& m = world_from_mesh;
-  return {float(m[0][0] * q.x + m[1][0] * q.y + m[2][0] * q.z + m[3][0]),
-          float(m[0][1] * q.x + m[1][1] * q.y + m[2][1] * q.z + m[3][1]),
-          float(m[0][2] * q.x + m[1][2] * q.y + m[2][2] * q.z + m[3][2])};
-}
-
-/// to_world() for many vertices of one instance, for which most files have no transform at all.
-class ToWorld {
+/// The clusters of a scene, made when they have been asked for often enough to pay. May be asked by several threads at
+/// once.
+class LazyClusters {
  public:
-  explicit ToWorld(const glm::dmat4& world_from_mesh)
-      : matrix_(world_from_mesh), is_identity_(world_from_mesh == glm::dmat4(1.0)) {}
-  [[nodiscard]] glm::vec3 operator()(const glm::vec3& p) const { return is_identity_ ? p : to_world(matrix_, p); }
-  [[nodiscard]] bool is_identity() const { return is_identity_; }
+  /// A picture without clusters takes a third to a half of the time that it takes to make them and one with them. So
+  /// the first two calls give null, unless the clusters are there.
+  [[nodiscard]] const ClusterSet* get(const PlacedScene& placed, const Execution& execution) const;
+  /// At the first call, too.
+  [[nodiscard]] const ClusterSet& get_now(const PlacedScene& placed, const Execution& execution) const;
+  /// Null where they have not been made.
+  [[nodiscard]] const ClusterSet* made() const { return made_.load(); }
 
  private:
-  const glm::dmat4& matrix_;
-  bool is_identity_;
-};
+  static constexpr int kCallsWithout = 2;
 
-[[nodiscard]] inline bool is_finite(const glm::vec3& p) {
-  // NaN and infinity times 0 are NaN, and NaN is not 0.
-  const glm::vec3 zero = p * 0.0f;
-  return zero.x == 0 && zero.y == 0 && zero.z == 0;
-}
+  mutable std::atomic<int> calls_{0};
+  mutable std::mutex mutex_;
+  mutable std::unique_ptr<const ClusterSet> set_;
+  mutable std::atomic<const ClusterSet*> made_{nullptr};
+};
 
 }  // namespace frontmost

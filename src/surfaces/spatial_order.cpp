@@ -18,7 +18,6 @@
 
 #include "base/parallel.h"
 #include "surfaces/cells.h"
-#include "surfaces/cluster_set.h"
 #include "surfaces/hilbert.h"
 #include "surfaces/radix_sort.h"
 
@@ -27,71 +26,15 @@ namespace {
 
 constexpr std::uint32_t kItemsPerPart = 1u << 15;
 
-/// Some of one instance's triangles, or of one mesh's vertices. Work is split at fixed numbers, whatever the threads.
-struct ItemPart {
-  std::uint32_t of = 0;
+/// Some of one instance's triangles. Work is split at fixed numbers, whatever the threads.
+struct InstancePart {
+  std::uint32_t instance = 0;
   std::uint32_t begin = 0, end = 0;
 };
 
-void append_parts(std::vector<ItemPart>& parts, std::uint32_t of, std::uint64_t count) {
+void append_parts(std::vector<InstancePart>& parts, std::uint32_t instance, std::uint64_t count) {
   for (std::uint64_t begin = 0; begin < count; begin += kItemsPerPart)
-    parts.push_back({of, std::uint32_t(begin), std::uint32_t(std::min(begin + kItemsPerPart, count))});
-}
-
-/// Bounds of untransformed positions. Several boxes side by side, as flat arrays, so that the compiler can use vectors
-/// and no comparison waits for the one before.
-Box bounds_of(const glm::vec3* positions, std::size_t count) {
-  constexpr std::size_t kBoxes = 16, kFloats = 3 * kBoxes;
-  constexpr float kMost = std::numeric_limits<float>::max();
-  std::array<float, kFloats> low, high;
-  low.fill(kMost);
-  high.fill(-kMost);
-  const std::size_t whole = count / kBoxes * kBoxes;
-  for (std::size_t i = 0; i < whole; i += kBoxes) {
-    const float* p = &positions[i].x;
-    for (std::size_t k = 0; k < kFloats; ++k) {
-      const bool finite = std::abs(p[k]) <= kMost;
-      low[k] = finite && p[k] < low[k] ? p[k] : low[k];
-      high[k] = finite && p[k] > high[k] ? p[k] : high[k];
-    }
-  }
-  Box box;
-  for (std::size_t k = 0; whole > 0 && k < kFloats; k += 3)
-    box.include(Box{{low[k], low[k + 1], low[k + 2]}, {high[k], high[k + 1], high[k + 2]}});
-  for (std::size_t i = whole; i < count; ++i)
-    if (is_finite(positions[i])) box.include(positions[i]);
-  return box;
-}
-
-/// Bounds of each mesh's finite vertices in its own space.
-std::vector<Box> bounds_of_meshes(const Scene& scene, const Execution& execution) {
-  std::vector<ItemPart> parts;
-  for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) append_parts(parts, m, scene.meshes[m].positions.size());
-  std::vector<Box> boxes(parts.size()), of_mesh(scene.meshes.size());
-  parallel_for(execution, parts.size(), 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i)
-      boxes[i] = bounds_of(scene.meshes[parts[i].of].positions.data() + parts[i].begin, parts[i].end - parts[i].begin);
-  });
-  for (std::size_t i = 0; i < parts.size(); ++i) of_mesh[parts[i].of].include(boxes[i]);
-  return of_mesh;
-}
-
-/// World-space bounds by the corners of the meshes' boxes, not by their vertices: good enough to lay a grid, and a mesh
-/// of many vertices costs nothing more for being placed many times.
-Box bounds_of_instances(const Scene& scene, const Execution& execution) {
-  const std::vector<Box> of_mesh = bounds_of_meshes(scene, execution);
-  Box bounds;
-  for (const Instance& instance : scene.instances) {
-    const Box& box = of_mesh[instance.mesh];
-    if (box.is_empty() || scene.meshes[instance.mesh].triangles.empty()) continue;
-    const ToWorld world(instance.world_from_mesh);
-    for (int k = 0; k < 8; ++k) {
-      const glm::vec3 p =
-          world({k & 1 ? box.high.x : box.low.x, k & 2 ? box.high.y : box.low.y, k & 4 ? box.high.z : box.low.z});
-      if (is_finite(p)) bounds.include(p);
-    }
-  }
-  return bounds;
+    parts.push_back({instance, std::uint32_t(begin), std::uint32_t(std::min(begin + kItemsPerPart, count))});
 }
 
 /// Spreads the low 10 bits to every third place.
@@ -156,7 +99,7 @@ struct RunCutter {
   int bits;
   Isa isa;
 
-  void cut(const ItemPart& part, PrimitiveId first, PartRuns& runs) const {
+  void cut(const InstancePart& part, PrimitiveId first, PartRuns& runs) const {
     constexpr std::uint32_t kAtOnce = 2048;
     std::array<SpaceCell, kAtOnce> cells;
     runs.packed.reserve((part.end - part.begin) / 2);
@@ -202,24 +145,25 @@ InstanceFinder::InstanceFinder(const std::vector<PrimitiveId>& first_primitives)
   }
 }
 
-SpatialOrder spatial_order(const Scene& scene, const std::vector<PrimitiveId>& first_primitives,
-                           const Execution& execution) {
-  const int bits = bits_per_axis(first_primitives.back());
-  const Grid grid(bounds_of_instances(scene, execution), bits);
-  std::vector<ItemPart> parts;
+SpatialOrder spatial_order(const PlacedScene& placed, const Execution& execution) {
+  const Scene& scene = *placed.scene;
+  const int bits = bits_per_axis(placed.first_primitives.back());
+  const Grid grid(placed.bounds, bits);
+  std::vector<InstancePart> parts;
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
     append_parts(parts, i, scene.meshes[scene.instances[i].mesh].triangles.size());
   std::vector<PartRuns> runs(parts.size());
   parallel_for(execution, parts.size(), 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      const Instance& instance = scene.instances[parts[i].of];
+      const Instance& instance = scene.instances[parts[i].instance];
       const RunCutter cutter{scene.meshes[instance.mesh], grid.map_for(instance.world_from_mesh), bits, execution.isa};
-      cutter.cut(parts[i], first_primitives[parts[i].of], runs[i]);
+      cutter.cut(parts[i], placed.first_primitives[parts[i].instance], runs[i]);
     }
   });
   SpatialOrder order;
   order.all_finite.assign(scene.instances.size(), 1);
-  for (std::size_t i = 0; i < parts.size(); ++i) order.all_finite[parts[i].of] &= std::uint8_t(runs[i].all_finite);
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    order.all_finite[parts[i].instance] &= std::uint8_t(runs[i].all_finite);
   order.runs = radix_sort(joined(runs, execution), 3 * bits, execution);
   return order;
 }

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "frontmost/surfaces.h"
+#include "surfaces/placed_scene.h"
 
 namespace frontmost {
 
@@ -47,7 +47,6 @@ struct SpatialOrder {
 
 /// Runs by the cells of their first triangles' centroids along Hilbert's curve; within a cell in id order.
 /// Cells hold some tens of triangles of an ordinary surface. O(triangles), 5 to 16 bytes a triangle while it runs.
-[[nodiscard]] SpatialOrder spatial_order(const Scene& scene, const std::vector<PrimitiveId>& first_primitives,
-                                         const Execution& execution);
+[[nodiscard]] SpatialOrder spatial_order(const PlacedScene& placed, const Execution& execution);
 
 }  // namespace frontmost

@@ -1,50 +1,68 @@
 // SPDX-License-Identifier: Apache-2.0
+// Surfaces: a scene that was checked and numbered, and its clusters, which may have to be made yet.
 #include "frontmost/surfaces.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/float_environment.h"
+#include "scene/validation.h"
 #include "surfaces/cluster_set.h"
 
 namespace frontmost {
-void check_transforms(const Scene& scene) {
-  for (std::size_t i = 0; i < scene.instances.size(); ++i)
-    for (int column = 0; column < 4; ++column)
-      for (int row = 0; row < 4; ++row)
-        if (!std::isfinite(scene.instances[i].world_from_mesh[column][row]))
-          throw Error(ErrorCode::bad_argument, scene.name + ": instance " + std::to_string(i) + " (" +
-                                                   scene.instances[i].name + "): its transform is not finite");
+namespace {
+
+std::size_t byte_count(const ClusterSet& set) {
+  return sizeof set + set.clusters.size() * (sizeof(Cluster) + sizeof(Box)) + 3 * set.x.size() * sizeof(float) +
+         (3 + sizeof(PrimitiveId)) * set.id.size() + set.cones.byte_count();
 }
+
+}  // namespace
+
+struct Surfaces::State {
+  PlacedScene placed;
+  LazyClusters clusters;
+};
 
 Surfaces::Surfaces(const Scene& scene, const Execution& execution) {
   const IeeeScope ieee;
   // The door: behind it no method looks at an index or a transform again.
-  validate(scene);
+  validate_besides_vertices(scene);
   check_transforms(scene);
-  clusters_ = std::make_unique<const ClusterSet>(build_clusters(scene, execution));
+  auto state = std::make_unique<State>();
+  state->placed = place_scene(scene, execution);
+  state_ = std::move(state);
 }
 
 Surfaces::~Surfaces() = default;
 Surfaces::Surfaces(Surfaces&&) noexcept = default;
 Surfaces& Surfaces::operator=(Surfaces&&) noexcept = default;
 
-const Scene& Surfaces::scene() const { return *clusters_->scene; }
+const PlacedScene& Surfaces::placed() const { return state_->placed; }
 
-std::uint32_t Surfaces::primitive_count() const { return clusters_->first_primitives.back(); }
+const ClusterSet& Surfaces::clusters(const Execution& execution) const {
+  return state_->clusters.get_now(placed(), execution);
+}
+
+const ClusterSet* Surfaces::clusters_for_picture(const Execution& execution) const {
+  return state_->clusters.get(placed(), execution);
+}
+
+const Scene& Surfaces::scene() const { return *placed().scene; }
+
+std::uint32_t Surfaces::primitive_count() const { return placed().first_primitives.back(); }
 
 PrimitiveSource Surfaces::source(PrimitiveId id) const {
-  const std::vector<PrimitiveId>& first = clusters_->first_primitives;
+  const std::vector<PrimitiveId>& first = placed().first_primitives;
   const auto next = std::upper_bound(first.begin(), first.end(), id);
   const auto instance = static_cast<std::uint32_t>(next - first.begin() - 1);
   return {instance, scene().instances[instance].mesh, id - first[instance]};
 }
 
-PrimitiveId Surfaces::first_primitive(std::uint32_t instance) const { return clusters_->first_primitives[instance]; }
+PrimitiveId Surfaces::first_primitive(std::uint32_t instance) const { return placed().first_primitives[instance]; }
 
-const Box& Surfaces::bounds() const { return clusters_->bounds; }
+const Box& Surfaces::bounds() const { return placed().bounds; }
 
-const Box& Surfaces::bounds(std::uint32_t instance) const { return clusters_->instance_bounds[instance]; }
+const Box& Surfaces::bounds(std::uint32_t instance) const { return placed().instance_bounds[instance]; }
 
 std::array<glm::vec3, 3> Surfaces::corners(PrimitiveId id) const {
   const PrimitiveSource from = source(id);
@@ -54,14 +72,30 @@ std::array<glm::vec3, 3> Surfaces::corners(PrimitiveId id) const {
   return {world(mesh.positions[corners.x]), world(mesh.positions[corners.y]), world(mesh.positions[corners.z])};
 }
 
-bool Surfaces::is_mirrored(std::uint32_t instance) const { return clusters_->mirrored[instance] != 0; }
+bool Surfaces::is_mirrored(std::uint32_t instance) const { return placed().mirrored[instance] != 0; }
 
 std::size_t Surfaces::byte_count() const {
-  const ClusterSet& set = *clusters_;
-  return sizeof set + set.first_primitives.size() * sizeof(PrimitiveId) + set.instance_bounds.size() * sizeof(Box) +
-         set.clusters.size() * (sizeof(Cluster) + sizeof(Box)) + 3 * set.x.size() * sizeof(float) +
-         (3 + sizeof(PrimitiveId)) * set.id.size() + set.cones.byte_count() +
-         (set.cutouts ? set.cutouts->byte_count() : 0);
+  const PlacedScene& p = placed();
+  const ClusterSet* const made = state_->clusters.made();
+  return sizeof(State) + p.first_primitives.size() * sizeof(PrimitiveId) + p.mirrored.size() +
+         p.ranges.size() * sizeof(MeshRange) + (p.boxes.size() + p.instance_bounds.size()) * sizeof(Box) +
+         (p.cutouts ? p.cutouts->byte_count() : 0) + (made ? frontmost::byte_count(*made) : 0);
+}
+
+const ClusterSet* LazyClusters::get(const PlacedScene& placed, const Execution& execution) const {
+  if (!made() && calls_.fetch_add(1) < kCallsWithout) return nullptr;
+  return &get_now(placed, execution);
+}
+
+const ClusterSet& LazyClusters::get_now(const PlacedScene& placed, const Execution& execution) const {
+  if (const ClusterSet* const made = made_.load()) return *made;
+  const std::lock_guard lock(mutex_);
+  if (!set_) {
+    const IeeeScope ieee;
+    set_ = std::make_unique<const ClusterSet>(build_clusters(placed, execution));
+    made_ = set_.get();
+  }
+  return *set_;
 }
 
 }  // namespace frontmost

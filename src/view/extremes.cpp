@@ -4,6 +4,7 @@
 #include "view/extremes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -45,8 +46,7 @@ struct Extremes::Projected {
   double across[2], towards;
 };
 
-Extremes::Projected Extremes::projected(const glm::vec3& point) const {
-  const glm::dvec3 p(point);
+Extremes::Projected Extremes::projected(const glm::dvec3& p) const {
   return {{glm::dot(p, across_[0]), glm::dot(p, across_[1])}, glm::dot(p, back_)};
 }
 
@@ -60,7 +60,7 @@ double Extremes::reach(int direction, const Projected& point) const {
 
 void Extremes::include(const glm::vec3& point) {
   if (!may_change_by({point, point})) return;
-  const Projected along = projected(point);
+  const Projected along = projected(glm::dvec3(point));
   for (int i = 0; i < direction_count; ++i) offer(i, reach(i, along), point);
 }
 
@@ -112,73 +112,158 @@ bool Extremes::may_change_by(const Box& box) const {
   return false;
 }
 
-/// Looks for the farthest vertex of one direction after the other: first where the boxes reach farthest, then wherever
-/// they reach as far as what was found.
-class Extremes::Search {
+bool Extremes::may_change_by(const Projected& point) const {
+  for (int plane = 0; plane < 2; ++plane) {
+    const double across = point.across[plane], towards = point.towards;
+    const double* const reached = reach_ + plane * in_plane;
+    // As above: without branches.
+    double beyond[around];
+    for (int k = 0; k < around; ++k) beyond[k] = across * cosine_[k] + towards * sine_[k] - reached[k];
+    bool may = false;
+    for (const double distance : beyond) may |= distance >= 0;
+    for (int k = around; k < in_plane; ++k) may |= reach(plane * in_plane + k, point) >= reached[k];
+    if (may) return true;
+  }
+  return false;
+}
+
+/// What lies within the lines that the points kept do not pass, in each of the two planes: a polygon around its middle,
+/// by the slopes of the rays from there. A point that is in both reaches nowhere as far as the points that are kept.
+class Extremes::Core {
  public:
-  Search(const ClusterSet& set, Extremes& extremes) : set_(set), extremes_(extremes) {
-    for (std::size_t first = 0; first < set.clusters.size(); first += group_size) {
-      Box box;
-      const std::size_t end = std::min(first + group_size, set.clusters.size());
-      for (std::size_t i = first; i < end; ++i) box.include(set.boxes.get(i));
-      if (!box.is_empty()) groups_.push_back({first, end, Extent(box)});
+  explicit Core(const Extremes& extremes) {
+    for (int plane = 0; plane < 2; ++plane) {
+      const double* const reached = extremes.reach_ + plane * in_plane;
+      const double right = reached[0], far = reached[around / 4], left = reached[around / 2],
+                   near = reached[3 * around / 4];
+      polygons_[plane] = {{(right - left) / 2, (far - near) / 2}, {(right + left) / 2, (far + near) / 2}, {}};
+      Polygon& polygon = polygons_[plane];
+      polygon.inverse_radius.fill(polygon.half.x > 0 && polygon.half.y > 0 ? 0 : kInfinity);
+      for (int k = 0; k < in_plane; ++k) {
+        const double sign = k == around ? 1 : -1;
+        const glm::dvec2 normal = k < around ? glm::dvec2(extremes.cosine_[k], extremes.sine_[k])
+                                             : glm::dvec2(sign / extremes.spread_[plane], 1);
+        polygon.cut(normal * polygon.half, reached[k] - glm::dot(normal, polygon.middle));
+      }
     }
-    reaches_.resize(groups_.size());
   }
 
-  void run() {
-    for (int i = 0; i < direction_count && !groups_.empty(); ++i) {
-      for (std::size_t g = 0; g < groups_.size(); ++g) reaches_[g] = extremes_.reach(i, groups_[g].extent);
-      const auto farthest = std::max_element(reaches_.begin(), reaches_.end());
-      look_at_farthest(i, groups_[std::size_t(farthest - reaches_.begin())]);
-      for (std::size_t g = 0; g < groups_.size(); ++g)
-        if (reaches_[g] >= extremes_.reach_[i]) look_at(i, groups_[g]);
-      // Near the farthest in neighbouring directions too, so that these begin with something to hold boxes against.
-      const glm::vec3 point = extremes_.kept_[i].point;
-      extremes_.include(point);
-    }
+  [[nodiscard]] bool holds(const Projected& point) const {
+    return polygons_[0].holds({point.across[0], point.towards}) && polygons_[1].holds({point.across[1], point.towards});
+  }
+  /// Of all points whose coordinates differ from those of `middle` by at most `half`.
+  [[nodiscard]] bool holds_all(const Projected& middle, const Projected& half) const {
+    for (const double x : {-1.0, 1.0})
+      for (const double towards : {-1.0, 1.0})
+        if (!holds({{middle.across[0] + x * half.across[0], middle.across[1] + x * half.across[1]},
+                    middle.towards + towards * half.towards}))
+          return false;
+    return true;
   }
 
  private:
-  /// Clusters are neighbours in space, and so are runs of them.
-  static constexpr std::size_t group_size = 32;
-  struct Group {
-    std::size_t first, end;  ///< of the clusters
-    Extent extent;
+  struct Polygon {
+    static constexpr int slopes = 64;  ///< on each side of the rectangle around the middle
+
+    glm::dvec2 middle{0}, half{0};
+    /// By slope: what lies nearer to the middle than the inverse of this, in units of `half`, is in the polygon.
+    std::array<double, 4 * slopes> inverse_radius;
+
+    /// Away goes what is farther than `distance` along `normal`, in units of `half`.
+    void cut(const glm::dvec2& normal, double distance) {
+      for (int i = 0; i < 4 * slopes; ++i) {
+        const int side = i / slopes;
+        double most = 0;
+        for (const int end : {0, 1}) {
+          const double minor = 2.0 * (i % slopes + end) / slopes - 1, major = side % 2 ? -1 : 1;
+          most = std::max(most, glm::dot(normal, side < 2 ? glm::dvec2(major, minor) : glm::dvec2(minor, major)));
+        }
+        double& inverse = inverse_radius[std::size_t(i)];
+        inverse = distance > 0 ? std::max(inverse, most / distance) : kInfinity;
+      }
+    }
+    [[nodiscard]] bool holds(const glm::dvec2& p) const {
+      const glm::dvec2 q = (p - middle) / half;
+      const bool is_steep = std::abs(q.y) > std::abs(q.x);
+      const double major = is_steep ? q.y : q.x, minor = is_steep ? q.x : q.y, size = std::abs(major);
+      if (!(size > 0)) return false;
+      const int slope = std::min(int((minor / size + 1) * (slopes / 2)), slopes - 1);
+      const int side = (is_steep ? 2 : 0) + (major < 0 ? 1 : 0);
+      return size * inverse_radius[std::size_t(side * slopes + slope)] < 1 - 1e-6;  // by far more than rounding
+    }
   };
-
-  void look_at_farthest(int direction, const Group& group) {
-    std::size_t farthest = group.first;
-    double most = -kInfinity;
-    for (std::size_t c = group.first; c < group.end; ++c) {
-      const double reach = reach_of_cluster(direction, c);
-      if (reach > most) most = reach, farthest = c;
-    }
-    if (most >= extremes_.reach_[direction]) offer_vertices(direction, farthest);
-  }
-  void look_at(int direction, const Group& group) {
-    for (std::size_t c = group.first; c < group.end; ++c)
-      if (reach_of_cluster(direction, c) >= extremes_.reach_[direction]) offer_vertices(direction, c);
-  }
-  [[nodiscard]] double reach_of_cluster(int direction, std::size_t cluster) const {
-    const Box box = set_.boxes.get(cluster);
-    return box.is_empty() ? -kInfinity : extremes_.reach(direction, Extent(box));
-  }
-  void offer_vertices(int direction, std::size_t cluster) {
-    const std::size_t first = set_.clusters[cluster].first_vertex;
-    for (std::size_t v = first; v < first + set_.clusters[cluster].vertex_count; ++v) {
-      const glm::vec3 point(set_.x[v], set_.y[v], set_.z[v]);
-      extremes_.offer(direction, extremes_.reach(direction, extremes_.projected(point)), point);
-    }
-  }
-
-  const ClusterSet& set_;
-  Extremes& extremes_;
-  std::vector<Group> groups_;
-  std::vector<double> reaches_;  ///< of the groups, in one direction
+  Polygon polygons_[2];
 };
 
-void Extremes::include(const ClusterSet& set) { Search(set, *this).run(); }
+/// Looks into the boxes that reach farthest in each direction, and then into all that are not within the core of what
+/// was found.
+class Extremes::Search {
+ public:
+  Search(const PlacedScene& placed, Extremes& extremes)
+      : placed_(placed), extremes_(extremes), core_(extremes), is_done_(placed.boxes.size(), false) {}
+
+  void run() {
+    look_at_farthest();
+    core_ = Core(extremes_);
+    for (std::size_t box = 0; box < placed_.boxes.size(); ++box)
+      if (!placed_.boxes[box].is_empty() && !is_held(placed_.boxes[box])) offer_vertices(box);
+  }
+
+ private:
+  void look_at_farthest() {
+    std::array<double, direction_count> most;
+    std::array<std::size_t, direction_count> farthest{};
+    most.fill(-kInfinity);
+    // Some of them are as good a beginning as all.
+    const std::size_t step = placed_.boxes.size() / 4096 + 1;
+    for (std::size_t box = 0; box < placed_.boxes.size(); box += step) {
+      if (placed_.boxes[box].is_empty()) continue;
+      const Extent extent(placed_.boxes[box]);
+      for (std::size_t i = 0; i < direction_count; ++i)
+        if (const double reach = extremes_.reach(int(i), extent); reach > most[i]) most[i] = reach, farthest[i] = box;
+    }
+    for (std::size_t i = 0; i < direction_count; ++i)
+      if (most[i] > -kInfinity) offer_vertices(farthest[i]);
+  }
+
+  [[nodiscard]] bool is_held(const Box& box) const {
+    const Extent extent(box);
+    const auto reach = [&](const glm::dvec3& axis) { return glm::dot(extent.half, glm::abs(axis)); };
+    return core_.holds_all(extremes_.projected(extent.middle),
+                           {{reach(extremes_.across_[0]), reach(extremes_.across_[1])}, reach(extremes_.back_)});
+  }
+
+  void offer_vertices(std::size_t box) {
+    if (is_done_[box]) return;
+    is_done_[box] = true;
+    placed_.visit_box(box, [&](const glm::vec3& vertex) { offer(vertex); });
+    if (!is_changed_ || missed_ < missed_at_most) return;
+    core_ = Core(extremes_);
+    missed_ = 0;
+    is_changed_ = false;
+  }
+  void offer(const glm::vec3& vertex) {
+    const Projected along = extremes_.projected(glm::dvec3(vertex));
+    if (core_.holds(along)) return;
+    if (!extremes_.may_change_by(along)) {
+      ++missed_;
+      return;
+    }
+    is_changed_ = true;
+    for (int i = 0; i < direction_count; ++i) extremes_.offer(i, extremes_.reach(i, along), vertex);
+  }
+
+  static constexpr int missed_at_most = 1024;  ///< so many full tests cost more than another core
+
+  const PlacedScene& placed_;
+  Extremes& extremes_;
+  Core core_;
+  std::vector<bool> is_done_;  ///< by box
+  int missed_ = 0;             ///< points that the core did not hold, since it was made
+  bool is_changed_ = false;    ///< what is kept, since then
+};
+
+void Extremes::include(const PlacedScene& placed) { Search(placed, *this).run(); }
 
 std::vector<glm::vec3> Extremes::points() const {
   std::vector<glm::vec3> points;

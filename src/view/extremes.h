@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "frontmost/base.h"
-#include "surfaces/cluster_set.h"
+#include "surfaces/placed_scene.h"
 
 namespace frontmost {
 
@@ -20,8 +20,9 @@ class Extremes {
 
   /// Precondition: finite.
   void include(const glm::vec3& point);
-  /// All vertices of finite triangles. 1 to 3 ms for a million triangles: most are passed over by boxes.
-  void include(const ClusterSet& set);
+  /// All vertices of finite triangles. 1 to 3 ms for a million triangles: most are passed over by boxes, and where
+  /// these say nothing, as in files whose order is random, by a polygon.
+  void include(const PlacedScene& placed);
   /// False when no point within the box would be kept.
   [[nodiscard]] bool may_change_by(const Box& box) const;
   /// Without repetition, in an order of their own.
@@ -33,14 +34,17 @@ class Extremes {
   static constexpr int direction_count = 2 * in_plane;
   struct Extent;
   struct Projected;
+  class Core;
   class Search;
 
-  [[nodiscard]] Projected projected(const glm::vec3& point) const;
+  [[nodiscard]] Projected projected(const glm::dvec3& point) const;
   /// How far a point reaches in a direction, in the one rounding that decides.
   [[nodiscard]] double reach(int direction, const Projected& point) const;
   /// Not less than that of any point within a box.
   [[nodiscard]] double reach(int direction, const Extent& extent) const;
   void offer(int direction, double reach, const glm::vec3& point);
+  /// False when the point would not be kept.
+  [[nodiscard]] bool may_change_by(const Projected& point) const;
 
   struct Kept {
     glm::vec3 point{0};

@@ -20,7 +20,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 class Placer {
  public:
-  Placer(const PlaceTarget& target, const PieceGeometry& piece, PieceVertices& vertices, PlacedTriangles& placed)
+  Placer(const PlaceTarget& target, const WorldTriangles& piece, PieceVertices& vertices, PlacedTriangles& placed)
       : target_(target), piece_(piece), vertices_(vertices), placed_(placed) {}
 
   void Place() {
@@ -109,33 +109,14 @@ class Placer {
   }
 
   const PlaceTarget& target_;
-  const PieceGeometry& piece_;
+  const WorldTriangles& piece_;
   PieceVertices& vertices_;
   PlacedTriangles& placed_;
 };
 
-void PlaceTriangles(const PlaceTarget& target, const PieceGeometry& piece, PieceVertices& scratch,
+void PlaceTriangles(const PlaceTarget& target, const WorldTriangles& piece, PieceVertices& scratch,
                     PlacedTriangles& placed) {
   Placer(target, piece, scratch, placed).Place();
-}
-
-NumberRange RangeOfNumbers(std::span<const glm::uvec3> corners) {
-  const DU d;
-  const std::uint32_t* numbers = &corners.front().x;
-  const std::size_t count = 3 * corners.size(), lanes = hn::Lanes(d);
-  NumberRange range{no_index, 0};
-  std::size_t i = 0;
-  if (count >= lanes) {
-    VU low = hn::Set(d, no_index), high = hn::Zero(d);
-    for (; i + lanes <= count; i += lanes) {
-      const VU number = hn::LoadU(d, numbers + i);
-      low = hn::Min(low, number);
-      high = hn::Max(high, number);
-    }
-    range = {hn::GetLane(hn::MinOfLanes(d, low)), hn::GetLane(hn::MaxOfLanes(d, high))};
-  }
-  for (; i < count; ++i) range = {HWY_MIN(range.low, numbers[i]), HWY_MAX(range.high, numbers[i])};
-  return range;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -145,15 +126,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace frontmost::zbuffer_detail {
 
-FRONTMOST_KERNELS(RangeOfNumbers);
-
-NumberRange range_of_numbers(std::span<const glm::uvec3> corners, Isa isa) {
-  return kernel_for(RangeOfNumbersKernels, isa)(corners);
-}
-
 FRONTMOST_KERNELS(PlaceTriangles);
 
-void place_triangles(const PlaceTarget& target, const PieceGeometry& piece, PieceVertices& scratch,
+void place_triangles(const PlaceTarget& target, const WorldTriangles& piece, PieceVertices& scratch,
                      PlacedTriangles& placed) {
   kernel_for(PlaceTrianglesKernels, target.isa)(target, piece, scratch, placed);
 }

@@ -11,7 +11,6 @@
 #include "base/float_environment.h"
 #include "base/parallel.h"
 #include "base/pool.h"
-#include "scene/validation.h"
 #include "surfaces/cluster_set.h"
 #include "zbuffer/cutout_pass.h"
 #include "zbuffer/direct/direct_frame.h"
@@ -56,7 +55,7 @@ ZBuffer& ZBuffer::operator=(ZBuffer&&) noexcept = default;
 const Visible& ZBuffer::draw(const Surfaces& surfaces, const View& view, const Execution& execution) {
   validate(view);
   const IeeeScope ieee;
-  const ClusterSet& set = surfaces.clusters();
+  const ClusterSet& set = surfaces.clusters(execution);
   const ScreenTransform transform(view);
   FramePlan& plan = state_->plan;
   plan.make(set, transform, view, execution);
@@ -95,23 +94,14 @@ const Visible& ZBuffer::draw(const Surfaces& surfaces, const View& view, const E
 Visible ZBuffer::take() { return std::move(state_->visible); }
 
 Visible zbuffer(const Surfaces& surfaces, const View& view, const Execution& execution) {
+  validate(view);
+  if (!surfaces.clusters_for_picture(execution)) {
+    const IeeeScope ieee;
+    return draw_directly(surfaces.placed(), view, execution);
+  }
   ZBuffer buffer;
   buffer.draw(surfaces, view, execution);
   return buffer.take();
-}
-
-Visible zbuffer(const Scene& scene, const View& view, const Execution& execution) {
-  validate(view);
-  const IeeeScope ieee;
-  // Drawing meets every vertex and checks it; only what has holes is looked at before.
-  const bool may_cut = std::any_of(scene.materials.begin(), scene.materials.end(),
-                                   [](const Material& m) { return m.alpha == Material::Alpha::mask; });
-  if (may_cut)
-    validate(scene);
-  else
-    validate_besides_vertices(scene);
-  check_transforms(scene);
-  return draw_directly(scene, view, execution);
 }
 
 }  // namespace frontmost

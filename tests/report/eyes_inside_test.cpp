@@ -9,6 +9,7 @@
 #include "frontmost/io.h"
 #include "frontmost/raycast.h"
 #include "frontmost/zbuffer.h"
+#include "support/both_ways.h"
 #include "support/effort.h"
 #include "support/models.h"
 #include "support/random_scene.h"
@@ -125,8 +126,7 @@ TEST_P(FacesGivenTwice, ShowTheFirst) {
       }
     };
     for (const View& view : {random_view(random, 120, 90), eye_within(surfaces.bounds(), random, seed)}) {
-      expect_first(zbuffer(surfaces, view));
-      expect_first(zbuffer(scene, view));
+      expect_first(draw_both_ways(surfaces, view));
       expect_first(visible_layers(surfaces, view, 1)[0]);
       expect_first(raycast(surfaces, view));
     }

@@ -21,8 +21,8 @@ struct Method {
   Visible (*see)(const Scene& scene, const View& view);
 };
 
-Visible by_zbuffer(const Scene& scene, const View& view) { return zbuffer(Surfaces(scene), view); }
-Visible by_single_picture(const Scene& scene, const View& view) { return zbuffer(scene, view); }
+Visible by_zbuffer(const Scene& scene, const View& view) { return ZBuffer().draw(Surfaces(scene), view); }
+Visible by_single_picture(const Scene& scene, const View& view) { return zbuffer(Surfaces(scene), view); }
 Visible by_raycast(const Scene& scene, const View& view) { return raycast(Surfaces(scene), view); }
 Visible by_two_levels(const Scene& scene, const View& view) { return raycast(RayIndex(scene), view); }
 Visible by_depth_buffer(const Scene& scene, const View& view) {

@@ -33,7 +33,7 @@ Scene one_triangle(std::vector<std::uint8_t> alphas, int width) {
 
 bool is_hole(const Scene& scene, const glm::dvec3& point) {
   const Surfaces surfaces(scene);
-  return (*surfaces.clusters().cutouts)[0].is_hole_at(point);
+  return (*surfaces.placed().cutouts)[0].is_hole_at(point);
 }
 
 TEST(Cutouts, FollowTheTexels) {

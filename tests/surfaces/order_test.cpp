@@ -70,7 +70,7 @@ TEST(SpatialOrder, HoldsEveryPrimitiveOnceInRunsOfOneInstance) {
     scene.instances.push_back({"second", 1, glm::dmat4(2.0)});
     scene.instances.push_back({"again", 0, glm::dmat4(0.5)});
     const std::vector<PrimitiveId> first = first_primitives_of(scene);
-    const SpatialOrder order = spatial_order(scene, first, {});
+    const SpatialOrder order = spatial_order(place_scene(scene, {}), {});
     std::vector<int> seen(first.back(), 0);
     const InstanceFinder finder(first);
     for (const std::uint64_t bits : order.runs) {
@@ -87,9 +87,9 @@ TEST(SpatialOrder, HoldsEveryPrimitiveOnceInRunsOfOneInstance) {
 TEST(SpatialOrder, DoesNotDependOnThreadsOrInstructionSet) {
   const Scene scene = scene_of(random_mesh(Kind::shared_grid, 70'000, 3));
   const std::vector<PrimitiveId> first = first_primitives_of(scene);
-  const SpatialOrder plain = spatial_order(scene, first, {.threads = 1, .isa = Isa::scalar});
+  const SpatialOrder plain = spatial_order(place_scene(scene, {}), {.threads = 1, .isa = Isa::scalar});
   for (const Isa isa : available_isas()) {
-    const SpatialOrder other = spatial_order(scene, first, {.threads = 3, .isa = isa});
+    const SpatialOrder other = spatial_order(place_scene(scene, {.isa = isa}), {.threads = 3, .isa = isa});
     ASSERT_EQ(other.runs.size(), plain.runs.size());
     EXPECT_TRUE(std::equal(plain.runs.begin(), plain.runs.end(), other.runs.begin())) << name(isa);
   }
@@ -101,7 +101,7 @@ TEST(SpatialOrder, BringsNeighboursTogether) {
   const std::vector<PrimitiveId> first = first_primitives_of(scene);
   const Mesh& mesh = scene.meshes[0];
   const auto place_of = [&](PrimitiveId id) { return mesh.positions[mesh.triangles[id].x]; };
-  const SpatialOrder order = spatial_order(scene, first, {});
+  const SpatialOrder order = spatial_order(place_scene(scene, {}), {});
   double in_order = 0, in_file = 0;
   for (std::size_t i = 1; i < order.runs.size(); ++i)
     in_order += glm::distance(place_of(TriangleRun::unpacked(order.runs[i - 1]).first),
@@ -116,7 +116,7 @@ TEST(SpatialOrder, TellsWhichInstancesHaveCornersThatAreNotFinite) {
   scene.meshes[1].positions[7].y = std::nanf("");
   scene.instances.push_back({"broken", 1, glm::dmat4(1.0)});
   scene.instances.push_back({"whole", 0, glm::dmat4(1.0)});
-  const SpatialOrder order = spatial_order(scene, first_primitives_of(scene), {});
+  const SpatialOrder order = spatial_order(place_scene(scene, {}), {});
   EXPECT_NE(order.all_finite[0], 0);
   EXPECT_EQ(order.all_finite[1], 0);
   EXPECT_NE(order.all_finite[2], 0);

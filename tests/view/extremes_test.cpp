@@ -17,7 +17,7 @@ const glm::dvec2 kSpread(0.7, 0.4);
 
 glm::dmat4 turned() { return look_at({3, -2, 1.5}, {0, 0, 0}, {0, 0, 1}); }
 
-/// Vertices in as many clusters as it takes.
+/// Vertices in as many boxes as it takes.
 Scene cloud(const std::vector<glm::vec3>& points) {
   Mesh mesh;
   for (std::size_t i = 0; i + 2 < points.size(); i += 3) add_triangle(mesh, points[i], points[i + 1], points[i + 2]);
@@ -30,12 +30,12 @@ std::vector<glm::vec3> one_by_one(const std::vector<glm::vec3>& points, const gl
   return extremes.points();
 }
 
-void expect_clusters_give_the_same(std::vector<glm::vec3> points, const glm::dmat4& axes) {
+void expect_boxes_give_the_same(std::vector<glm::vec3> points, const glm::dmat4& axes) {
   const std::vector<glm::vec3> expected = one_by_one(points, axes);
   const Scene scene = cloud(points);
   const Surfaces surfaces(scene);
   Extremes whole(axes, kSpread);
-  whole.include(surfaces.clusters());
+  whole.include(surfaces.placed());
   EXPECT_EQ(whole.points(), expected);
   std::shuffle(points.begin(), points.end(), std::mt19937(5));
   EXPECT_EQ(one_by_one(points, axes), expected);
@@ -49,14 +49,14 @@ std::vector<glm::vec3> random_points(std::size_t count, unsigned seed) {
   return points;
 }
 
-TEST(Extremes, OfClustersAreThoseOfAllVertices) {
+TEST(Extremes, OfBoxesAreThoseOfAllVertices) {
   for (const unsigned seed : {1u, 2u, 3u}) {
     std::vector<glm::vec3> points = random_points(30000, seed);
-    expect_clusters_give_the_same(points, turned());
-    for (glm::vec3& p : points) p = glm::normalize(p);  // a sphere: every cluster is near the outside
-    expect_clusters_give_the_same(points, turned());
+    expect_boxes_give_the_same(points, turned());
+    for (glm::vec3& p : points) p = glm::normalize(p);  // a sphere: every box is near the outside
+    expect_boxes_give_the_same(points, turned());
     for (glm::vec3& p : points) p = p * 1e-3f + glm::vec3(1000, -4000, 70);  // many are equal in floats
-    expect_clusters_give_the_same(points, turned());
+    expect_boxes_give_the_same(points, turned());
   }
 }
 
@@ -64,7 +64,7 @@ TEST(Extremes, TiesGoToTheLesserPosition) {
   std::vector<glm::vec3> grid;
   for (int y = 0; y < 99; ++y)
     for (int x = 0; x < 99; ++x) grid.emplace_back(x, y, 7);
-  for (const glm::dmat4& axes : {glm::dmat4(1.0), turned()}) expect_clusters_give_the_same(grid, axes);
+  for (const glm::dmat4& axes : {glm::dmat4(1.0), turned()}) expect_boxes_give_the_same(grid, axes);
   // Seen along z all of them are nearest: of those, the least, and the corners of the sides' directions.
   const std::vector<glm::vec3> kept = one_by_one(grid, glm::dmat4(1.0));
   EXPECT_EQ(kept.front(), glm::vec3(0, 0, 7));

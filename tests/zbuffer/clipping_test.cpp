@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "frontmost/zbuffer.h"
+#include "support/both_ways.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 
@@ -83,7 +84,7 @@ TEST(Clipping, EqualsHomogeneousRasterisationWithoutClipping) {
     add_triangle(mesh, world[0], world[1], world[2]);
     const Scene scene = scene_of(mesh);
     const Surfaces surfaces(scene);
-    const Visible visible = zbuffer(surfaces, view);
+    const Visible visible = draw_both_ways(surfaces, view);
     const HomogeneousTriangle triangle(view, world);
     for (int y = 0; y < view.height; ++y)
       for (int x = 0; x < view.width; ++x) {

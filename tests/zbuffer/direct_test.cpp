@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <limits>
-#include <string>
+#include <thread>
 
-#include "frontmost/zbuffer.h"
+#include "support/both_ways.h"
 #include "support/cutout_scene.h"
 #include "support/effort.h"
-#include "support/same_visible.h"
-#include "zbuffer/direct/direct_frame.h"
+#include "support/random_scene.h"
 
 namespace frontmost::test {
 namespace {
@@ -20,12 +19,12 @@ using zbuffer_detail::draw_directly;
 /// \returns how many samples are covered.
 std::size_t expect_same_both_ways(const Scene& scene, const View& view, int threads) {
   const Surfaces surfaces(scene);
-  const Visible expected = zbuffer(surfaces, view);
+  const Visible expected = draw_clusters(surfaces, view);
   for (const Isa isa : available_isas()) {
     SCOPED_TRACE(name(isa));
-    expect_same(expected, draw_directly(scene, view, {.threads = threads, .isa = isa}));
+    expect_same(expected,
+                draw_directly(Surfaces(scene, {.isa = isa}).placed(), view, {.threads = threads, .isa = isa}));
   }
-  expect_same(expected, zbuffer(scene, view));
   return covered(expected);
 }
 
@@ -131,36 +130,35 @@ TEST(Direct, NothingAtAll) {
   EXPECT_EQ(expect_same_both_ways(scene_of(Mesh{}), view, 1), 0u);
 }
 
-// What is wrong with a vertex is found while drawing, and said as if it had been looked for before.
-TEST(Direct, BadScenesAreRefusedAsBySurfaces) {
-  const auto reason = [](const auto& act) -> std::string {
-    try {
-      act();
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
-  };
+// The first pictures need no clusters; the third makes them, and every one is the same.
+TEST(Direct, ThirdPictureMakesClusters) {
+  const Scene scene = scene_of(random_mesh(Kind::shared_grid, 9'000, 1));
   Random random(1);
-  View view = random_view(random, 20, 20);
-  Scene good = scene_of(random_mesh(Kind::shared_grid, 9'000, 1));
-  good.meshes.push_back(random_mesh(Kind::soup, 3, 1));  // not placed
-  std::vector<Scene> bad(6, good);
-  bad[0].instances[0].world_from_mesh[1][1] = std::numeric_limits<double>::infinity();
-  bad[1].meshes[0].triangles[8'000].y = 1'000'000;
-  bad[2].meshes[1].triangles[2].x = 9;
-  bad[3].instances[0].mesh = 2;
-  bad[4].meshes[0].material_ids.push_back(7);
-  bad[5].meshes[0].triangles[4'000].z = no_index;
-  bad[5].materials.emplace_back().alpha = Material::Alpha::mask;
-  for (const Scene& scene : bad) {
-    const std::string expected = reason([&] { const Surfaces surfaces(scene); });
-    EXPECT_NE(expected, "");
-    EXPECT_EQ(expected, reason([&] { (void)zbuffer(scene, view, {.threads = 2}); }));
-  }
-  EXPECT_EQ("", reason([&] { (void)zbuffer(good, view); }));
-  view.width = 0;
-  EXPECT_NE("", reason([&] { (void)zbuffer(good, view); }));
+  const View view = random_view(random, 200, 160);
+  const Surfaces surfaces(scene), many(scene);
+  const std::size_t without = surfaces.byte_count();
+  const Visible first = zbuffer(surfaces, view);
+  expect_same(first, zbuffer(surfaces, view));
+  EXPECT_EQ(surfaces.byte_count(), without);
+  expect_same(first, zbuffer(surfaces, view));
+  EXPECT_GT(surfaces.byte_count(), without + 9'000 * 7);
+  ZBuffer buffer;
+  expect_same(first, buffer.draw(many, view));
+  EXPECT_EQ(many.byte_count(), surfaces.byte_count());
+}
+
+// Whoever comes first makes the clusters, and all see the same picture.
+TEST(Direct, ThreadsMayAskForClustersAtOnce) {
+  const Scene scene = scene_of(random_mesh(Kind::shared_grid, 9'000, 1));
+  Random random(1);
+  const View view = random_view(random, 100, 80);
+  const Visible expected = draw_clusters(Surfaces(scene), view);
+  const Surfaces surfaces(scene);
+  std::vector<Visible> found(8);
+  std::vector<std::thread> threads;
+  for (Visible& visible : found) threads.emplace_back([&] { visible = zbuffer(surfaces, view, {.threads = 2}); });
+  for (std::thread& thread : threads) thread.join();
+  for (const Visible& visible : found) expect_same(expected, visible);
 }
 
 // A wall before a crowd, last in the file: parcels behind it are left out, which nothing must show.

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "frontmost/zbuffer.h"
+#include "support/both_ways.h"
 #include "support/oracle.h"
 #include "support/random_scene.h"
 
@@ -24,7 +25,7 @@ int samples_seen(const Scene& scene, const View& view) {
   try {
     validate(view);
   } catch (const Error&) {
-    EXPECT_THROW((void)zbuffer(surfaces, view), Error);
+    EXPECT_THROW((void)draw_both_ways(surfaces, view), Error);
     return -1;
   }
   const Visible expected = oracle(surfaces, view);
@@ -34,7 +35,7 @@ int samples_seen(const Scene& scene, const View& view) {
     seen += expected.primitives[i] != no_primitive;
   }
   for (const Isa isa : available_isas()) {
-    const Visible found = zbuffer(surfaces, view, {.threads = 1, .isa = isa});
+    const Visible found = draw_both_ways(surfaces, view, {.threads = 1, .isa = isa});
     EXPECT_EQ(std::memcmp(expected.keys.data(), found.keys.data(), 4 * expected.keys.size()), 0) << name(isa);
     EXPECT_EQ(std::memcmp(expected.primitives.data(), found.primitives.data(), 4 * expected.keys.size()), 0)
         << name(isa);

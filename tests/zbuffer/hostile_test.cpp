@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "frontmost/zbuffer.h"
+#include "support/both_ways.h"
 #include "support/effort.h"
 #include "support/oracle.h"
 #include "support/random_scene.h"
@@ -124,7 +125,7 @@ void add_hostile_triangle(Mesh& mesh, Random& random, const View& view, const Se
 
 void expect_equal_on_every_isa(const Surfaces& surfaces, const View& view, const Visible& expected) {
   for (const Isa isa : available_isas()) {
-    const Visible found = zbuffer(surfaces, view, {.threads = 1, .isa = isa});
+    const Visible found = draw_both_ways(surfaces, view, {.threads = 1, .isa = isa});
     for (std::size_t i = 0; i < expected.keys.size(); ++i)
       ASSERT_TRUE(expected.primitives[i] == found.primitives[i] &&
                   std::memcmp(&expected.keys[i], &found.keys[i], sizeof(float)) == 0)

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "frontmost/zbuffer.h"
+#include "support/both_ways.h"
 #include "support/effort.h"
 #include "support/oracle_on_every_isa.h"
 #include "support/random_scene.h"
@@ -23,7 +24,9 @@ INSTANTIATE_TEST_SUITE_P(ZBuffer, EveryKind, testing::ValuesIn(all_kinds));
 TEST_P(EveryKind, EqualsTheOracleOnEveryInstructionSet) {
   expect_oracle_on_every_isa(
       GetParam(), [](const Surfaces& surfaces, const View& view) { return oracle(surfaces, view); },
-      [](const Surfaces& surfaces, const View& view, const Execution& how) { return zbuffer(surfaces, view, how); });
+      [](const Surfaces& surfaces, const View& view, const Execution& how) {
+        return draw_both_ways(surfaces, view, how);
+      });
 }
 
 TEST(ZBuffer, EqualsTheOracleWithEverySampleCount) {
@@ -35,7 +38,7 @@ TEST(ZBuffer, EqualsTheOracleWithEverySampleCount) {
     View view = random_view(random, 150, 140);
     view.samples = samples;
     const Visible expected = oracle(surfaces, view);
-    for (const Isa isa : available_isas()) expect_same(expected, zbuffer(surfaces, view, {.isa = isa}));
+    for (const Isa isa : available_isas()) expect_same(expected, draw_both_ways(surfaces, view, {.isa = isa}));
   }
 }
 
@@ -48,7 +51,7 @@ TEST(ZBuffer, SheetsARoundingErrorApartAreToldApart) {
     const Surfaces surfaces(scene);
     View view = random_view(random, 128, 96);
     view.samples = seed % 8 == 0 ? 4 : 1;
-    expect_same(oracle(surfaces, view), zbuffer(surfaces, view, {.threads = 1}));
+    expect_same(oracle(surfaces, view), draw_both_ways(surfaces, view, {.threads = 1}));
   }
 }
 
@@ -57,8 +60,9 @@ TEST(ZBuffer, DoesNotDependOnThreads) {
   const Surfaces surfaces(scene);
   Random random(11);
   const View view = random_view(random, 700, 500);
-  const std::uint64_t one = content_hash(zbuffer(surfaces, view, {.threads = 1}));
-  for (const int threads : {2, 3, 8}) EXPECT_EQ(content_hash(zbuffer(surfaces, view, {.threads = threads})), one);
+  const std::uint64_t one = content_hash(draw_both_ways(surfaces, view, {.threads = 1}));
+  for (const int threads : {2, 3, 8})
+    EXPECT_EQ(content_hash(draw_both_ways(surfaces, view, {.threads = threads})), one);
 }
 
 TEST(ZBuffer, DoesNotDependOnTheCallersRoundingMode) {
@@ -66,9 +70,9 @@ TEST(ZBuffer, DoesNotDependOnTheCallersRoundingMode) {
   const Surfaces surfaces(scene);
   Random random(12);
   const View view = random_view(random, 300, 200);
-  const std::uint64_t expected = content_hash(zbuffer(surfaces, view));
+  const std::uint64_t expected = content_hash(draw_both_ways(surfaces, view));
   std::fesetround(FE_UPWARD);
-  const std::uint64_t upward = content_hash(zbuffer(surfaces, view));
+  const std::uint64_t upward = content_hash(draw_both_ways(surfaces, view));
   std::fesetround(FE_TONEAREST);
   EXPECT_EQ(upward, expected);
 }
@@ -87,7 +91,7 @@ TEST(ZBuffer, PermutedTrianglesShowTheSameSurfaces) {
     const Scene scene = scene_of(mesh), scene_shuffled = scene_of(shuffled);
     const Surfaces a(scene), b(scene_shuffled);
     const View view = random_view(random, 320, 240);
-    const Visible in_order = zbuffer(a, view), in_disorder = zbuffer(b, view);
+    const Visible in_order = draw_both_ways(a, view), in_disorder = draw_both_ways(b, view);
     std::size_t ties = 0;
     for (std::size_t i = 0; i < in_order.keys.size(); ++i) {
       ASSERT_EQ(in_order.keys[i], in_disorder.keys[i]);
@@ -119,10 +123,10 @@ TEST(ZBuffer, SharedEdgesLeaveNoGapAndNoOverlap) {
       Scene single = scene;
       single.meshes[0].triangles = {scene.meshes[0].triangles[id]};
       const Surfaces one(single);
-      total += covered(zbuffer(one, view));
+      total += covered(draw_both_ways(one, view));
     }
     EXPECT_EQ(total, 128u * 128u);
-    EXPECT_EQ(covered(zbuffer(surfaces, view)), 128u * 128u);
+    EXPECT_EQ(covered(draw_both_ways(surfaces, view)), 128u * 128u);
   }
 }
 
@@ -138,7 +142,7 @@ TEST(ZBuffer, NonFiniteVerticesAreNeverSeenAndKeepTheirNumbers) {
   Random random(4);
   View view = random_view(random, 100, 100);
   view.world_from_eye = look_at({0, 0, 3}, {0, 0, 0}, {0, 1, 0});
-  const Visible visible = zbuffer(surfaces, view);
+  const Visible visible = draw_both_ways(surfaces, view);
   EXPECT_EQ(visible.primitives[visible.index(50, 50)], 1u);
   for (const PrimitiveId id : visible.primitives) EXPECT_TRUE(id == no_primitive || id == 1 || id == 3);
   expect_same(oracle(surfaces, view), visible);
@@ -150,11 +154,11 @@ TEST(ZBuffer, OnePixelAndTheLargestImage) {
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
   View view{1, 1, 1, look_at({0, 0, 2}, {0, 0, 0}, {0, 1, 0}), make_orthographic(-1, 1, -1, 1, {1, 3}), {}};
-  expect_same(oracle(surfaces, view), zbuffer(surfaces, view));
+  expect_same(oracle(surfaces, view), draw_both_ways(surfaces, view));
   for (const glm::ivec2 size : {glm::ivec2(16384, 3), glm::ivec2(2, 16384)}) {
     view.width = size.x;
     view.height = size.y;
-    expect_same(oracle(surfaces, view), zbuffer(surfaces, view));
+    expect_same(oracle(surfaces, view), draw_both_ways(surfaces, view));
   }
 }
 
@@ -165,7 +169,7 @@ TEST(ZBuffer, BadViewsAreRefusedWithTheFieldsName) {
   const View good = random_view(random, 10, 10);
   const auto message = [&](View view) -> std::string {
     try {
-      (void)zbuffer(surfaces, view);
+      (void)draw_both_ways(surfaces, view);
     } catch (const Error& error) {
       return error.what();
     }
@@ -192,7 +196,7 @@ TEST(ZBuffer, NothingToSeeIsNothing) {
   const Scene scene;
   const Surfaces surfaces(scene);
   Random random(1);
-  const Visible visible = zbuffer(surfaces, random_view(random, 33, 17));
+  const Visible visible = draw_both_ways(surfaces, random_view(random, 33, 17));
   EXPECT_EQ(covered(visible), 0u);
   EXPECT_EQ(visible.primitives.size(), 33u * 17u);
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "frontmost/zbuffer.h"
+#include "support/both_ways.h"
 #include "support/effort.h"
 #include "support/oracle.h"
 #include "support/random_scene.h"
@@ -47,8 +48,7 @@ TEST_P(RepeatsOfEveryKind, ChangeNothingThatIsSeen) {
     View view = random_view(random, 90 + 200 * int(seed % 2), 70);
     view.culling = Culling(random.below(3));
     const Visible expected = oracle(surfaces, view);
-    expect_same(expected, zbuffer(surfaces, view));
-    expect_same(expected, zbuffer(scene, view));
+    expect_same(expected, draw_both_ways(surfaces, view));
   }
 }
 
@@ -60,9 +60,8 @@ TEST(Repeats, AMillionTakeTheTimeToCountThem) {
   scene.instances.resize(under_sanitizer ? 1'000 : 300'000, scene.instances[0]);
   View view = front_view(1000, 800);
   view.samples = 4;
-  const Visible by_clusters = zbuffer(Surfaces(scene), view), at_once = zbuffer(scene, view);
-  for (const PrimitiveId id : by_clusters.primitives) ASSERT_EQ(id, 0u);
-  for (const PrimitiveId id : at_once.primitives) ASSERT_EQ(id, 0u);
+  const Visible visible = draw_both_ways(Surfaces(scene), view);
+  for (const PrimitiveId id : visible.primitives) ASSERT_EQ(id, 0u);
 }
 
 // Of a few tiles each, which are not sorted beforehand: so many would take half a minute.
@@ -75,9 +74,8 @@ TEST(Repeats, AMillionOfMiddleSizeDoToo) {
   often.instances.resize(under_sanitizer ? 1'000 : 500'000, once.instances[0]);
   View view = front_view(500, 400);
   view.samples = 4;
-  const Visible expected = zbuffer(Surfaces(once), view);
-  expect_same(expected, zbuffer(Surfaces(often), view));
-  expect_same(expected, zbuffer(often, view));
+  const Visible expected = draw_both_ways(Surfaces(once), view);
+  expect_same(expected, draw_both_ways(Surfaces(often), view));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "frontmost/zbuffer.h"
+#include "support/both_ways.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
@@ -40,7 +41,7 @@ TEST(WorkedExample, IntegerDepthTable) {
   add_triangle(mesh, {0, 0, -127}, {5.4f, 0, -127}, {0.6f, 4.8f, -127});
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
-  const Visible visible = zbuffer(surfaces, eight_by_eight());
+  const Visible visible = draw_both_ways(surfaces, eight_by_eight());
   const Table expected{{{64, 64, 64, 64, 64, 64, 64, 255},
                         {64, 64, 64, 64, 64, 64, 255, 255},
                         {64, 64, 64, 64, 64, 255, 255, 255},
@@ -58,7 +59,7 @@ TEST(WorkedExample, IntegerDepthTableTheOtherWay) {
   add_triangle(mesh, {0, 8, -250}, {0, 0.6f, -250}, {7.4f, 8, -250});
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
-  const Visible visible = zbuffer(surfaces, eight_by_eight());
+  const Visible visible = draw_both_ways(surfaces, eight_by_eight());
   const Table table = depth_table(visible, 0, [](float d) { return int(std::lround(255 - d)); });
   for (std::size_t y = 0; y < 8; ++y)
     for (std::size_t x = 0; x < 8; ++x) EXPECT_EQ(table[y][x], x + y < 7 ? 5 : 0) << x << ", " << y;
@@ -75,7 +76,7 @@ TEST(WorkedExample, DepthIsInterpolatedByItsReciprocal) {
   view.width = view.height = 1001;  // odd: a pixel centre on the axis
   view.world_from_eye = glm::dmat4(1.0);
   view.projection = make_frustum(-0.2, 0.2, -0.2, 0.2, {1, 10});
-  const Visible visible = zbuffer(surfaces, view);
+  const Visible visible = draw_both_ways(surfaces, view);
   EXPECT_NEAR(depths_of(visible)[visible.index(500, 500)], 4.0f, 1e-4f);
 }
 
@@ -94,7 +95,7 @@ TEST(WorkedExample, SegmentsCrossMidScreen) {
   view.width = 64;
   view.height = 64;
   view.projection = make_frustum(-0.1, 0.1, -0.1, 0.1, {0.1, 2e6});
-  const Visible visible = zbuffer(surfaces, view);
+  const Visible visible = draw_both_ways(surfaces, view);
   for (int y = 0; y < 64; ++y) {
     const PrimitiveId id = visible.primitives[visible.index(31, y)];
     EXPECT_EQ(id >= 2, y >= 32) << "row " << y;
@@ -113,7 +114,7 @@ TEST(WorkedExample, SegmentFromATenthToAMillion) {
   View view;
   view.width = view.height = 200;
   view.projection = make_frustum(-0.05, 0.05, -0.05, 0.05, {0.05, 4e6});
-  const Visible visible = zbuffer(surfaces, view);
+  const Visible visible = draw_both_ways(surfaces, view);
   // 1/z runs linearly from 10 to 1e-6 over the picture, so it passes 1 at nine tenths of the way up: row 20.
   for (int y = 0; y < 200; ++y) EXPECT_EQ(visible.primitives[visible.index(100, y)] >= 2, y >= 20) << "row " << y;
 }
@@ -133,7 +134,7 @@ TEST(WorkedExample, RingOfThreeHasNoOrderYetIsRight) {
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
   View view{301, 301, 1, look_at({0, 0, 3}, {0, 0, 0}, {0, 1, 0}), make_orthographic(-1.2, 1.2, -1.2, 1.2, {1, 5}), {}};
-  const Visible visible = zbuffer(surfaces, view);
+  const Visible visible = draw_both_ways(surfaces, view);
   // Bars 0 and 1 cross where both lines y = -0.5 turned by 0 and 120 degrees meet; likewise the others, turned.
   int over[3] = {};
   for (int i = 0; i < 3; ++i) {

@@ -89,7 +89,7 @@ bool orient(ScreenTriangle& t, Culling culling) {
 }
 
 void FragmentPlan::make(const Surfaces& surfaces, const View& view, const Execution& execution) {
-  set_ = &surfaces.clusters();
+  set_ = &surfaces.clusters(execution);
   transform_.emplace(view);
   view_ = view;
   tiles_x_ = (view.width + kTileSize - 1) / kTileSize;

@@ -27,7 +27,7 @@ std::size_t byte_count(const RayTree& tree) {
 RayTree make_tree(const Surfaces& surfaces, Copies copies, const Execution& execution) {
   const IeeeScope ieee;
   RayTree tree;
-  tree.cutouts = surfaces.clusters().cutouts;
+  tree.cutouts = surfaces.placed().cutouts;
   report_progress(execution, "index", 0);
   fill_leaves(surfaces, tree, execution);
   if (copies == Copies::apart) tree.copies = take_copies(tree, execution);

@@ -75,7 +75,7 @@ void fit_nodes(const std::vector<LeafBox>& boxes, RayTree& tree) {
 bool refit_tree(const Surfaces& surfaces, RayTree& tree, const Execution& execution) {
   // Copies may be moved apart.
   if (!tree.placed.empty() || tree.copies) return false;
-  const ClusterSet& set = surfaces.clusters();
+  const ClusterSet& set = surfaces.clusters(execution);
   TreeChange change(tree);
   tree.cutouts = set.cutouts;
   const Buffer<std::uint32_t> places = places_of(tree, surfaces.primitive_count(), execution);

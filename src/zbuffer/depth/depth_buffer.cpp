@@ -58,7 +58,7 @@ void DepthBuffer::draw(const Surfaces& surfaces, const View& view, const DepthDr
   if (!rules.passes_less && !rules.passes_equal && !rules.passes_greater) return;  // never
   const DepthPlanes planes{stored_.data(), primitives_.data(), keys_.data(), width_, height_, sample_offsets(samples_)};
   const ScreenRays rays(view);
-  const DepthCall target{planes, rules, call.id_offset, surfaces.clusters().cutouts.get(), rays};
+  const DepthCall target{planes, rules, call.id_offset, surfaces.placed().cutouts.get(), rays};
   const TileGrid grid(view);
   submit(surfaces, view, {call.begin, end}, execution, [&](std::size_t tile, const PlacedPiece& piece) {
     draw_depths(target, grid.rect(tile), piece.triangles, piece.in_tile(tile), execution.isa);

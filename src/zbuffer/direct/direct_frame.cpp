@@ -22,24 +22,17 @@ namespace {
 // Half a million triangles; of a large scene at first fewer, so that those behind them need not be looked at.
 constexpr std::size_t kParcelsAtOnce = 256, kParcelsAtFirst = 32, kFewParcels = 128;
 
-std::vector<PrimitiveId> first_primitives_of(const Scene& scene) {
-  std::vector<PrimitiveId> first{0};
-  for (const Instance& instance : scene.instances)
-    first.push_back(first.back() + PrimitiveId(scene.meshes[instance.mesh].triangles.size()));
-  return first;
-}
-
 /// Pieces [begin, end).
 struct PieceRange {
   std::size_t begin, end;
 };
 
 /// Consecutive pieces that go into one parcel together: most scenes have a few large instances, some many small ones.
-std::vector<PieceRange> parcels_of(std::span<const Piece> pieces) {
+std::vector<PieceRange> parcels_of(std::span<const MeshRange> pieces) {
   std::vector<PieceRange> parcels;
   std::size_t count = Parcel::most_triangles;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const std::size_t more = pieces[i].end - pieces[i].begin;
+    const std::size_t more = pieces[i].count();
     if (count + more > Parcel::most_triangles) {
       parcels.push_back({i, i});
       count = 0;
@@ -69,11 +62,10 @@ struct Near {
 
 class DirectFrame {
  public:
-  DirectFrame(const Scene& scene, const View& view, const Execution& execution)
+  DirectFrame(const PlacedScene& scene, const View& view, const Execution& execution)
       : scene_(scene),
         execution_(execution),
-        first_primitives_(first_primitives_of(scene)),
-        cutouts_(Cutouts::of(scene, first_primitives_)),
+        cutouts_(scene.cutouts.get()),
         transform_(view),
         target_(transform_, view, execution.isa),
         visible_{view, Buffer<PrimitiveId>(view.sample_count()), Buffer<float>(view.sample_count())},
@@ -81,7 +73,6 @@ class DirectFrame {
         farthest_(is_drawn_.size() * BlockBounds::count, 0.0f) {}
 
   Visible draw() {
-    check_unplaced();
     survey();
     std::size_t next = 0, at_once = order_.size() > kFewParcels ? kParcelsAtFirst : kParcelsAtOnce;
     do {
@@ -97,22 +88,10 @@ class DirectFrame {
   }
 
  private:
-  /// Vertices of placed triangles are checked as they are met.
-  void check_unplaced() const {
-    std::vector<bool> is_placed(scene_.meshes.size(), false);
-    for (const Instance& instance : scene_.instances) is_placed[instance.mesh] = true;
-    for (std::size_t m = 0; m < is_placed.size(); ++m) {
-      const Mesh& mesh = scene_.meshes[m];
-      if (is_placed[m] || mesh.triangles.empty()) continue;
-      if (range_of_numbers(mesh.triangles, execution_.isa).high >= mesh.positions.size()) validate(scene_);
-    }
-  }
-
   /// Parcels, and in which order to draw them: near ones first, as far as a few triangles of each tell.
   void survey() {
     constexpr std::size_t kGrain = 64;
-    pieces_ = pieces_of(scene_, first_primitives_, {0, first_primitives_.back()}, Parcel::most_triangles);
-    parcel_pieces_ = parcels_of(pieces_);
+    parcel_pieces_ = parcels_of(scene_.ranges);
     order_.resize(parcel_pieces_.size());
     parallel_for(execution_, order_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) order_[i] = Near(nearest_of(parcel_pieces_[i]), i);
@@ -127,14 +106,14 @@ class DirectFrame {
     constexpr std::size_t kTriangles = 4;
     float nearest = 0;
     for (std::size_t k = 0; k < kTriangles; ++k) {
-      const Piece& piece = pieces_[pieces.begin + (2 * k + 1) * (pieces.end - pieces.begin) / (2 * kTriangles)];
-      const std::span<const glm::uvec3> corners = corners_of(scene_, piece);
+      const MeshRange& piece =
+          scene_.ranges[pieces.begin + (2 * k + 1) * (pieces.end - pieces.begin) / (2 * kTriangles)];
+      const std::span<const glm::uvec3> corners = scene_.corners(piece);
       const glm::uvec3& triangle = corners[(2 * k + 1) * corners.size() / (2 * kTriangles)];
-      const Instance& instance = scene_.instances[piece.instance];
-      const std::vector<glm::vec3>& positions = scene_.meshes[instance.mesh].positions;
+      const ToWorld world(scene_.scene->instances[piece.instance].world_from_mesh);
+      const std::vector<glm::vec3>& positions = scene_.mesh(piece).positions;
       for (int c = 0; c < 3; ++c) {
-        if (triangle[c] >= positions.size()) validate(scene_);  // says what is wrong
-        const HomogeneousVertex v = transform(transform_, ToWorld(instance.world_from_mesh)(positions[triangle[c]]));
+        const HomogeneousVertex v = transform(transform_, world(positions[triangle[c]]));
         if (v.d < transform_.near) return 2;
         if (is_plain(transform_, v)) nearest = std::max(nearest, snap(transform_, v).key);
       }
@@ -161,10 +140,8 @@ class DirectFrame {
     return false;
   }
 
-  void place_piece(const Piece& piece, ParcelScratch& scratch, Parcel& parcel) const {
-    const NumberRange numbers = range_of_numbers(corners_of(scene_, piece), execution_.isa);
-    if (numbers.high >= scene_.meshes[scene_.instances[piece.instance].mesh].positions.size()) validate(scene_);
-    const PieceGeometry geometry = geometry_of(scene_, piece, numbers, scratch);
+  void place_piece(const MeshRange& piece, ParcelScratch& scratch, Parcel& parcel) const {
+    const WorldTriangles geometry = world_triangles(scene_, piece, scratch);
     const PieceExtent extent = snap_piece(target_, geometry, scratch.vertices);
     if (may_be_seen(extent)) place_in_parcel(target_, geometry, scratch.vertices, extent.all_plain, parcel);
   }
@@ -177,7 +154,7 @@ class DirectFrame {
         const PieceRange& pieces = parcel_pieces_[chosen[i].parcel];
         parcels_[i].clear();
         for (std::size_t piece = pieces.begin; piece < pieces.end; ++piece)
-          place_piece(pieces_[piece], *scratch, parcels_[i]);
+          place_piece(scene_.ranges[piece], *scratch, parcels_[i]);
         if (!cutouts_) parcels_[i].bin(scratch->spare);
       }
     });
@@ -238,16 +215,14 @@ class DirectFrame {
     }
   }
 
-  const Scene& scene_;
+  const PlacedScene& scene_;
   const Execution& execution_;
-  std::vector<PrimitiveId> first_primitives_;  // by instance, and the total at the end
-  std::shared_ptr<const Cutouts> cutouts_;
+  const Cutouts* cutouts_;
   ScreenTransform transform_;
   PlaceTarget target_;
   Visible visible_;
   std::vector<std::uint8_t> is_drawn_;  // by tile
   std::vector<float> farthest_;         // by tile and block: no sample of it is farther than this key
-  std::vector<Piece> pieces_;
   std::vector<PieceRange> parcel_pieces_;
   std::vector<Near> order_;
   // Of the parcels that are placed.
@@ -263,7 +238,7 @@ class DirectFrame {
 
 }  // namespace
 
-Visible draw_directly(const Scene& scene, const View& view, const Execution& execution) {
+Visible draw_directly(const PlacedScene& scene, const View& view, const Execution& execution) {
   return DirectFrame(scene, view, execution).draw();
 }
 

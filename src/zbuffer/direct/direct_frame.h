@@ -2,15 +2,13 @@
 // One picture of a scene, straight from its own arrays.
 #pragma once
 
-#include "frontmost/scene.h"
 #include "frontmost/visible.h"
+#include "surfaces/placed_scene.h"
 
 namespace frontmost::zbuffer_detail {
 
-/// What zbuffer(Surfaces(scene), view) gives, to the bit. Precondition: the view is valid, and the scene but for the
-/// vertices that triangles name. \throws Error as validate(scene) does where it is not.
-/// O(triangles + covered samples). Memory beside the result: some ten MiB, 100 bytes a large or clipped triangle of
-/// half a million in a row, and the holes of MASK materials.
-[[nodiscard]] Visible draw_directly(const Scene& scene, const View& view, const Execution& execution);
+/// What ZBuffer::draw() gives of the clusters, to the bit. O(triangles + covered samples). Memory beside the result:
+/// some 30 MiB, and 100 bytes for each large or clipped triangle of half a million in a row.
+[[nodiscard]] Visible draw_directly(const PlacedScene& scene, const View& view, const Execution& execution);
 
 }  // namespace frontmost::zbuffer_detail

@@ -31,7 +31,7 @@ struct TileRun {
 
 class Parcel {
  public:
-  static constexpr std::size_t most_triangles = 2048;
+  static constexpr std::size_t most_triangles = MeshRange::most_triangles;
 
   // Filled by place_in_parcel().
   std::size_t count = 0;                ///< of the columns

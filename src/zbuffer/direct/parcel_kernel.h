@@ -15,10 +15,10 @@ namespace frontmost::zbuffer_detail {
 inline constexpr std::int32_t kOutside = 63;
 
 /// Puts the vertices of a piece on the screen.
-[[nodiscard]] PieceExtent snap_piece(const PlaceTarget& target, const PieceGeometry& piece, PieceVertices& vertices);
+[[nodiscard]] PieceExtent snap_piece(const PlaceTarget& target, const WorldTriangles& piece, PieceVertices& vertices);
 /// Appends what of the piece's triangles may cover a sample, in no particular order; vertices and `all_plain` are of
 /// snap_piece(). Precondition: there is room in the columns.
-void place_in_parcel(const PlaceTarget& target, const PieceGeometry& piece, const PieceVertices& vertices,
+void place_in_parcel(const PlaceTarget& target, const WorldTriangles& piece, const PieceVertices& vertices,
                      bool all_plain, Parcel& parcel);
 
 /// What all tiles have in common that are drawn from the same parcels.

@@ -70,7 +70,7 @@ class OutCodes {
 
 class ParcelPlacer {
  public:
-  ParcelPlacer(const PlaceTarget& target, const PieceGeometry& piece, const PieceVertices& vertices, Parcel& parcel)
+  ParcelPlacer(const PlaceTarget& target, const WorldTriangles& piece, const PieceVertices& vertices, Parcel& parcel)
       : target_(target), piece_(piece), vertices_(vertices), parcel_(parcel) {}
 
   void Place(bool all_plain) {
@@ -129,7 +129,7 @@ class ParcelPlacer {
     const MI clipped = hn::AndNot(hn::Or(plain, OutCodes::Outside(ka, kb, kc)), live);
     ForEachBit(BitsOf(d, clipped), [&](std::size_t lane) {
       const std::size_t triangle = first + lane;
-      const std::array<glm::vec3, 3> world = piece_.world(triangle);
+      const std::array<glm::vec3, 3> world = piece_[triangle];
       if (!is_finite(world[0]) || !is_finite(world[1]) || !is_finite(world[2])) return;
       append_polygon(clip_triangle(target_.transform, world), target_.transform,
                      piece_.first_id + PrimitiveId(triangle), target_.view, parcel_.records);
@@ -189,7 +189,7 @@ class ParcelPlacer {
   }
 
   const PlaceTarget& target_;
-  const PieceGeometry& piece_;
+  const WorldTriangles& piece_;
   const PieceVertices& vertices_;
   Parcel& parcel_;
   bool all_plain_ = false;
@@ -197,12 +197,12 @@ class ParcelPlacer {
   VI nearest_;                                      // bits of keys
 };
 
-PieceExtent SnapPiece(const PlaceTarget& target, const PieceGeometry& piece, PieceVertices& vertices) {
+PieceExtent SnapPiece(const PlaceTarget& target, const WorldTriangles& piece, PieceVertices& vertices) {
   return SnapVertices(target.transform, piece.positions, vertices, OutCodes(target.transform));
 }
 
-void PlaceInParcel(const PlaceTarget& target, const PieceGeometry& piece, const PieceVertices& vertices, bool all_plain,
-                   Parcel& parcel) {
+void PlaceInParcel(const PlaceTarget& target, const WorldTriangles& piece, const PieceVertices& vertices,
+                   bool all_plain, Parcel& parcel) {
   ParcelPlacer(target, piece, vertices, parcel).Place(all_plain);
 }
 
@@ -216,11 +216,11 @@ namespace frontmost::zbuffer_detail {
 FRONTMOST_KERNELS(SnapPiece);
 FRONTMOST_KERNELS(PlaceInParcel);
 
-PieceExtent snap_piece(const PlaceTarget& target, const PieceGeometry& piece, PieceVertices& vertices) {
+PieceExtent snap_piece(const PlaceTarget& target, const WorldTriangles& piece, PieceVertices& vertices) {
   return kernel_for(SnapPieceKernels, target.isa)(target, piece, vertices);
 }
 
-void place_in_parcel(const PlaceTarget& target, const PieceGeometry& piece, const PieceVertices& vertices,
+void place_in_parcel(const PlaceTarget& target, const WorldTriangles& piece, const PieceVertices& vertices,
                      bool all_plain, Parcel& parcel) {
   kernel_for(PlaceInParcelKernels, target.isa)(target, piece, vertices, all_plain, parcel);
 }

@@ -75,7 +75,7 @@ void PolygonColors::begin(std::span<const PaintPolygon> polygons) {
   cuts_.clear();
   kept_.clear();
   started_ = 0;
-  const Cutouts* const cutouts = surfaces_.clusters().cutouts.get();
+  const Cutouts* const cutouts = surfaces_.placed().cutouts.get();
   for (const PaintPolygon& outline : polygons) {
     Polygon& polygon = polygons_.emplace_back(Polygon{outline});
     if (cutouts && cutouts->has(outline.id)) polygon.holes.emplace((*cutouts)[outline.id], rays_);

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// What Surfaces finds out of a scene at once: the number of every triangle, and where in the world it is.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "frontmost/surfaces.h"
+#include "surfaces/cutouts.h"
+
+namespace frontmost {
+
+/// True for a transform that turns counter-clockwise into clockwise.
+[[nodiscard]] inline bool mirrors(const glm::dmat4& world_from_mesh) {
+  return glm::determinant(glm::dmat3(world_from_mesh)) < 0;
+}
+
+/// The world-space position of a vertex, in the one rounding that every part of the house uses.
+[[nodiscard]] inline glm::vec3 to_world(const glm::dmat4& world_from_mesh, const glm::vec3& p) {
+  const glm::dvec3 q(p);
+  const glm::dmat4& m = world_from_mesh;
+  return {float(m[0][0] * q.x + m[1][0] * q.y + m[2][0] * q.z + m[3][0]),
+          float(m[0][1] * q.x + m[1][1] * q.y + m[2][1] * q.z + m[3][1]),
+          float(m[0][2] * q.x + m[1][2] * q.y + m[2][2] * q.z + m[3][2])};
+}
+
+/// to_world() for many vertices of one instance, for which most files have no transform at all.
+class ToWorld {
+ public:
+  explicit ToWorld(const glm::dmat4& world_from_mesh)
+      : matrix_(world_from_mesh), is_identity_(world_from_mesh == glm::dmat4(1.0)) {}
+  [[nodiscard]] glm::vec3 operator()(const glm::vec3& p) const { return is_identity_ ? p : to_world(matrix_, p); }
+  [[nodiscard]] bool is_identity() const { return is_identity_; }
+
+ private:
+  const glm::dmat4& matrix_;
+  bool is_identity_;
+};
+
+[[nodiscard]] inline bool is_finite(const glm::vec3& p) {
+  // NaN and infinity times 0 are NaN, and NaN is not 0.
+  const glm::vec3 zero = p * 0.0f;
+  return zero.x == 0 && zero.y == 0 && zero.z == 0;
+}
+
+/// The least and the greatest of some numbers.
+struct NumberRange {
+  std::uint32_t low, high;
+
+  /// Whether vertices of so many triangles are best read from the one to the other, as in files whose order is not
+  /// random.
+  [[nodiscard]] bool is_dense(std::size_t triangle_count) const { return high - low < 6 * triangle_count; }
+};
+
+/// Consecutive triangles of one instance.
+struct MeshRange {
+  /// Long to draw beside being handed to a thread, and their vertices stay in the second-level cache.
+  static constexpr std::uint32_t most_triangles = 2048;
+  /// In a box of PlacedScene::boxes.
+  static constexpr std::uint32_t triangles_in_box = 64;
+
+  std::uint32_t instance;
+  std::uint32_t begin, end;  ///< within the mesh
+  NumberRange vertices;      ///< of all corners; may be wider than they are
+  std::uint32_t first_box;
+
+  [[nodiscard]] std::uint32_t count() const { return end - begin; }
+  [[nodiscard]] std::uint32_t box_count() const { return (count() + triangles_in_box - 1) / triangles_in_box; }
+};
+
+/// A scene whose indices have all been checked.
+struct PlacedScene {
+  const Scene* scene = nullptr;
+  std::vector<PrimitiveId> first_primitives;  ///< by instance, and the total at the end
+  std::vector<std::uint8_t> mirrored;         ///< by instance: its triangles have their last two corners swapped
+  std::shared_ptr<const Cutouts> cutouts;     ///< null where no triangle may have holes
+  std::vector<MeshRange> ranges;              ///< of all triangles, in the order of their ids
+  std::vector<Box> boxes;                     ///< of those with finite corners, a few consecutive ones each
+  std::vector<Box> instance_bounds;
+  Box bounds;
+
+  [[nodiscard]] const Mesh& mesh(const MeshRange& range) const {
+    return scene->meshes[scene->instances[range.instance].mesh];
+  }
+  [[nodiscard]] std::span<const glm::uvec3> corners(const MeshRange& range) const {
+    return std::span(mesh(range).triangles).subspan(range.begin, range.count());
+  }
+  [[nodiscard]] PrimitiveId first_id(const MeshRange& range) const {
+    return first_primitives[range.instance] + range.begin;
+  }
+  /// Calls visit(vertex) for the world-space corners of a box's triangles; those that a triangle shares with the one
+  /// before are not visited again.
+  template <class Visit>
+  void visit_box(std::size_t box, const Visit& visit) const;
+};
+
+/// Numbers the triangles and finds their boxes. Precondition: validate_besides_vertices(scene) and
+/// check_transforms(scene) have passed. O(triangles), in parallel: 3 ns a triangle on one thread.
+/// \throws Error as validate(scene) does for the number of a vertex that does not exist.
+[[nodiscard]] PlacedScene place_scene(const Scene& scene, const Execution& execution);
+
+/// \throws Error bad_argument for a transform that is not finite.
+void check_transforms(const Scene& scene);
+
+/// Triangles of a range in world space. Borrows from the scene, or from what was given to find them.
+struct WorldTriangles {
+  std::span<const glm::vec3> positions;
+  std::span<const glm::uvec3> corners;  ///< numbers of positions
+  std::uint32_t first_position = 0;     ///< the number of positions[0]
+  bool is_mirrored = false;             ///< the last two corners change places
+  PrimitiveId first_id = 0;
+
+  [[nodiscard]] std::array<glm::vec3, 3> operator[](std::size_t triangle) const {
+    const glm::uvec3& c = corners[triangle];
+    std::array<glm::vec3, 3> world{positions[c.x - first_position], positions[c.y - first_position],
+                                   positions[c.z - first_position]};
+    if (is_mirrored) std::swap(world[1], world[2]);
+    return world;
+  }
+};
+
+template <class Visit>
+void PlacedScene::visit_box(std::size_t box, const Visit& visit) const {
+  const auto next = std::upper_bound(ranges.begin(), ranges.end(), box,
+                                     [](std::size_t b, const MeshRange& range) { return b < range.first_box; });
+  const MeshRange& range = *std::prev(next);
+  const ToWorld world(scene->instances[range.instance].world_from_mesh);
+  const std::vector<glm::vec3>& positions = mesh(range).positions;
+  const std::span<const glm::uvec3> all = corners(range);
+  const std::size_t first = (box - range.first_box) * MeshRange::triangles_in_box;
+  glm::uvec3 last(no_index);
+  for (std::size_t i = first; i < std::min<std::size_t>(first + MeshRange::triangles_in_box, all.size()); ++i) {
+    const glm::uvec3& c = all[i];
+    const glm::vec3 corner[3] = {world(positions[c.x]), world(positions[c.y]), world(positions[c.z])};
+    if (!is_finite(corner[0]) || !is_finite(corner[1]) || !is_finite(corner[2])) continue;
+    for (int k = 0; k < 3; ++k)
+      if (c[k] != last.x && c[k] != last.y && c[k] != last.z) visit(corner[k]);
+    last = c;
+  }
+}
+
+/// What finding them needs of memory, one a thread.
+struct WorldScratch {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::uvec3> corners;
+};
+
+/// Every vertex once where their numbers are dense; else every corner by itself.
+[[nodiscard]] WorldTriangles world_triangles(const PlacedScene& placed, const MeshRange& range, WorldScratch& scratch);
+
+/// Precondition: not empty.
+[[nodiscard]] NumberRange range_of_numbers(std::span<const glm::uvec3> corners, Isa isa);
+/// One box for each MeshRange::triangles_in_box triangles with finite corners; the others are in none.
+void find_boxes(const WorldTriangles& triangles, Isa isa, Box* boxes);
+
+}  // namespace frontmost
