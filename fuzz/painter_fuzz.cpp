@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "painter/trapped.h"
 #include "support/geometry_fuzz.h"
 
 using namespace frontmost;
@@ -27,7 +28,9 @@ Scene coarse_scene_of(const std::uint8_t* data, std::size_t size) {
   return test::scene_of(reinterpret_cast<const std::uint8_t*>(corners.data()), corners.size() * sizeof(glm::vec3));
 }
 
-void check(const Surfaces& surfaces, const PaintOrder& order) {
+/// Of an order, or of parts.
+template <class Order>
+void check(const Surfaces& surfaces, const Order& order) {
   for (const PaintPolygon& polygon : order.polygons) {
     require(polygon.id < surfaces.primitive_count() && polygon.corner_count >= 3);
     require(polygon.first_corner + polygon.corner_count <= order.corners.size());
@@ -35,7 +38,7 @@ void check(const Surfaces& surfaces, const PaintOrder& order) {
   for (const PaintCorner& corner : order.corners) require(corner.at == corner.at);
 }
 
-void check_parts(const PaintOrder& parts) {
+void check_parts(const VisibleParts& parts) {
   for (const PaintCorner& corner : parts.corners) {
     require(corner.at.x >= -1e-3 && corner.at.x <= parts.view.width + 1e-3);
     require(corner.at.y >= -1e-3 && corner.at.y <= parts.view.height + 1e-3);
@@ -80,7 +83,8 @@ void check_picture(const Surfaces& surfaces, const PaintOrder& order) {
       }
 }
 
-bool equal(const PaintOrder& a, const PaintOrder& b) {
+template <class Order>
+bool equal(const Order& a, const Order& b) {
   const auto same_polygon = [](const PaintPolygon& p, const PaintPolygon& q) {
     return p.id == q.id && p.corner_count == q.corner_count && p.first_corner == q.first_corner;
   };
@@ -103,18 +107,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Scene scene = is_coarse ? coarse_scene_of(geometry, length) : test::scene_of(geometry, length, kMostTriangles);
   const Execution two{.threads = 2, .isa = Isa::best, .watch = nullptr}, one{.threads = 1};
   const PainterOptions options{.method = PaintMethod(bytes.spare & 3), .most_polygons = 3000, .most_cuts = 2000};
-  const auto hides = [&](PrimitiveId id) { return !(bytes.spare & 4) || id % 3 != 0; };
+  const Occluders occluders = Occluders::where([&](PrimitiveId id) { return !(bytes.spare & 4) || id % 3 != 0; });
   try {
     const View view = test::view_of(bytes);
     const Surfaces surfaces(scene);
     const PaintOrder order = painter(surfaces, view, options, two);
     require(equal(order, painter(surfaces, view, options, one)));
     check(surfaces, order);
-    const PaintOrder parts = visible_parts(order, hides, two);
-    require(equal(parts, visible_parts(order, hides, one)));
+    const VisibleParts parts = visible_parts(order, occluders, two);
+    require(equal(parts, visible_parts(order, occluders, one)));
     check(surfaces, parts);
     check_parts(parts);
-    check(surfaces, with_hems(parts, 1, hides, two));
+    for (const test::PolygonCorners& outline : test::trapped(parts, 1, occluders, two))
+      for (const glm::dvec2& at : outline) require(at == at);
     const bool is_right = options.method == PaintMethod::depth_sort || options.method == PaintMethod::bsp;
     if (!is_right || !is_coarse || !(std::abs(bytes.eye_x) < 100 && std::abs(bytes.eye_y) < 100)) return 0;
     check_picture(surfaces, order);

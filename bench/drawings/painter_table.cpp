@@ -10,8 +10,6 @@ namespace frontmost::bench {
 namespace {
 
 constexpr std::string_view kScenes[] = {"teapot", "bunny", "sphere1m", "terrain1m", "city-fly", "boxes-random"};
-/// Pixels, as figures have it.
-constexpr double kHem = 4;
 /// Beyond the default: BSP trees cut a terrain of a million triangles more often.
 constexpr std::size_t kMostCuts = std::size_t(1) << 26;
 
@@ -20,7 +18,7 @@ constexpr std::size_t kMostCuts = std::size_t(1) << 26;
 Table measure_painter(const Options& options) {
   const int threads = options.threads;
   Table table(std::string("painter's order, ms, threads: ").append(std::to_string(threads)),
-              {"scene", "polygons", "order", "BSP", "seen parts", "left", "hems", "wrong"});
+              {"scene", "polygons", "order", "BSP", "seen parts", "left", "figure", "wrong"});
   for (const std::string_view name : options.scenes_or(kScenes)) {
     const Stage stage(name, options.models);
     const Execution execution{.threads = threads};
@@ -28,12 +26,13 @@ Table measure_painter(const Options& options) {
       return painter(stage.surfaces, stage.view, {.method = method, .most_cuts = kMostCuts}, execution);
     };
     const PaintOrder order = order_by(PaintMethod::depth_sort);
-    const PaintOrder seen = visible_parts(order, {}, execution);
-    const std::vector<Time> times = race({Contestant([&] { (void)order_by(PaintMethod::depth_sort); }),
-                                          Contestant([&] { (void)order_by(PaintMethod::bsp); }),
-                                          Contestant([&] { (void)visible_parts(order, {}, execution); }),
-                                          Contestant([&] { (void)with_hems(seen, kHem, {}, execution); })},
-                                         options.sampling);
+    const VisibleParts seen = visible_parts(order, Occluders::all(), execution);
+    const std::vector<Time> times =
+        race({Contestant([&] { (void)order_by(PaintMethod::depth_sort); }),
+              Contestant([&] { (void)order_by(PaintMethod::bsp); }),
+              Contestant([&] { (void)visible_parts(order, Occluders::all(), execution); }),
+              Contestant([&] { (void)draw_figure(stage.surfaces, stage.view, {}, execution); })},
+             options.sampling);
     const Agreement agreed =
         check_agreement(stage.surfaces, zbuffer(stage.surfaces, stage.view), paint(stage.surfaces, order));
     const std::uint64_t wrong = agreed.count(Difference::unexplained);

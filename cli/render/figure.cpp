@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <frontmost/page.h>
 #include <frontmost/shade.h>
+#include <frontmost/zbuffer.h>
 
 #include "cli/console.h"
 #include "cli/interruption.h"
@@ -18,20 +19,24 @@ FigureOptions figure_options(const Job& job, const RenderContext& context) {
           job.output.merges_neighbours, job.output.most_polygons};
 }
 
-/// At pixel centres, where the z-buffer was asked for that already. Null: nowhere.
-const Visible* seen_by_zbuffer(const Job& job, const RenderContext& context, const Sights& sights) {
-  if (context.run.method || job.view.depth.is_used || !(sights.shared || sights.maps)) return nullptr;
-  return &sights.for_maps().visible;
+/// What the z-buffer has seen at pixel centres.
+bool is_there(const Job& job, const RenderContext& context, const Sights& sights) {
+  return !context.run.method && !job.view.depth.is_used && (sights.shared || sights.maps);
+}
+Visible seen_at_centres(const RenderContext& context, View view) {
+  view.samples = 1;
+  return zbuffer(context.surfaces, view, context.execution);
 }
 
 /// In the colours of the picture that the same options make. \throws Error that names the file and the option, where
 /// there are too many polygons.
 Figure figure_of(const Job& job, const RenderContext& context, const Sights& sights, const View& view) {
   const FigureOptions options = figure_options(job, context);
-  const Visible* const seen = seen_by_zbuffer(job, context, sights);
+  std::optional<Visible> seen;
+  if (!is_there(job, context, sights)) seen = seen_at_centres(context, view);
   try {
-    Figure figure = seen ? draw_figure(context.surfaces, *seen, options, context.execution)
-                         : draw_figure(context.surfaces, view, options, context.execution);
+    Figure figure = draw_figure(context.surfaces, {seen ? *seen : sights.for_maps().visible, nullptr, context.index},
+                                options, context.execution);
     figure.title = job.name;
     return figure;
   } catch (const Error& error) {

@@ -34,7 +34,7 @@ void write_layer(const Layer& layer, const RenderContext& context, ViewResult& r
     const Stopwatch watch;
     ShadeOptions options = shade_options(layer.job, context);
     options.see_through = SeeThrough::never;
-    picture = shade(context.surfaces, *layer.picture, options, context.execution);
+    picture = shade(context.surfaces, {*layer.picture, nullptr, context.index}, options, context.execution);
     result.timings.shade += watch.milliseconds();
   }
   Sights sights;

@@ -176,8 +176,7 @@ ViewResult render_view(const Job& job, const RenderContext& context) {
 }
 
 ShadeOptions shade_options(const Job& job, const RenderContext& context) {
-  ShadeOptions options{job.output.shading, job.output.background, job.output.shadows, nullptr,
-                       context.index,      job.output.opacity};
+  ShadeOptions options{job.output.shading, job.output.background, job.output.shadows, job.output.opacity};
   const std::optional<Method> method = context.run.method;
   if (method) options.see_through = *method == Method::abuffer ? SeeThrough::always : SeeThrough::never;
   if (job.view.depth.is_used) options.see_through = SeeThrough::never;  // what its state lets through
@@ -188,17 +187,17 @@ ShadeOptions shade_options(const Job& job, const RenderContext& context) {
 void finish_view(const Job& job, const RenderContext& context, const Sights& sights, ViewResult& result) {
   if (job.output.hash || context.run.json) result.seen = summary(context.surfaces, sights);
   warn_if_blank(sights, context, result);
-  ShadeOptions options = shade_options(job, context);
-  options.seen_by_light = sights.seen_by_light;
+  const ShadeOptions options = shade_options(job, context);
+  const auto input = [&] { return ShadeInput(sights.picture->visible, sights.seen_by_light, context.index); };
   std::optional<Image> picture;
   std::optional<Bitmap> bitmap;
   if (wants_picture(job, context.keep_picture)) {
     const Stopwatch watch;
     const Visible& visible = sights.picture->visible;
     if (!context.keep_picture && needs_only_bitmap(job))
-      bitmap = shade_bitmap(context.surfaces, visible, options, context.execution);
+      bitmap = shade_bitmap(context.surfaces, input(), options, context.execution);
     else
-      picture = shade(context.surfaces, visible, options, context.execution);
+      picture = shade(context.surfaces, input(), options, context.execution);
     result.timings.shade += watch.milliseconds();
     const std::optional<glm::vec3>& background = job.output.background;
     if (background && (picture ? nothing_stands_out(*picture, visible.primitives, *background)
@@ -206,7 +205,7 @@ void finish_view(const Job& job, const RenderContext& context, const Sights& sig
       result.warnings.push_back(contrast_warning());
   }
   const auto map = [&](OutputKind kind) { return map_of(kind, job, context, sights); };
-  const auto deep = [&] { return shade_deep(context.surfaces, sights.picture->visible, options, context.execution); };
+  const auto deep = [&] { return shade_deep(context.surfaces, input(), options, context.execution); };
   if (job.output.reference) result.reference = compare_with_reference(*picture, job, context.execution);
   write_files({job, context.execution, map, picture ? &*picture : nullptr, bitmap ? &*bitmap : nullptr, deep}, result);
   if (context.keep_picture) result.picture = std::move(picture);

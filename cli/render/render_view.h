@@ -108,7 +108,7 @@ void finish_view(const Job& job, const RenderContext& context, const Sights& sig
 
 /// Samples of a picture: without an answer of the user's 4, or as many as the largest pictures can have.
 [[nodiscard]] int picture_samples(const Job& job, const View& view);
-/// What a picture of the job looks like. The light is to be found by shade() itself.
+/// What a picture of the job looks like.
 [[nodiscard]] ShadeOptions shade_options(const Job& job, const RenderContext& context);
 /// One channel, or a few that belong together.
 [[nodiscard]] Image map_of(OutputKind kind, const Job& job, const RenderContext& context, const Sights& sights);

@@ -112,7 +112,7 @@ struct Facets {
 /// plane, with the normal and about it the texture coordinates of the surface. (R. Cook, L. Carpenter, E. Catmull. The
 /// Reyes Image Rendering Architecture. 1987: micropolygons, here made only where they are seen.) Instances, materials
 /// and triangles that are not curved are those of `scene`; curved meshes also keep the triangles that they have, which
-/// are not seen from here, but throw shadows where nothing better is given (ShadeOptions::seen_by_light). Not for
+/// are not seen from here, but throw shadows where nothing better is given (ShadeInput::seen_by_light). Not for
 /// scenes that are seen through: shade() looks for what lies behind among triangles, which tessellate() makes.
 /// O(samples + size of the scene); about 130 bytes a facet. Precondition: the index is of this scene, the views of it.
 [[nodiscard]] Facets facets_of(const CurvedIndex& index, const Scene& scene, std::span<const CurvedVisible> views);

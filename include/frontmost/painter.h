@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The painter's algorithm: polygons in an order in which painting one over the other is right everywhere.
+//
+//   Surfaces, View --painter()--> PaintOrder --paint()----------> Visible, for comparison with other methods
+//                                     |
+//                                     +-------visible_parts()---> VisibleParts, for drawings; see draw_figure()
 #pragma once
 
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "frontmost/surfaces.h"
@@ -19,6 +24,27 @@ enum class PaintMethod : std::uint8_t {
   centroid,    ///< by their centroids alone: likewise, elsewhere
 };
 
+/// Which triangles hide what lies behind them: nothing is seen through these.
+class Occluders {
+ public:
+  [[nodiscard]] static Occluders none() { return Occluders({}, false); }
+  [[nodiscard]] static Occluders all() { return Occluders({}, true); }
+  /// Those of which `is_occluder` is true. Several threads ask at once.
+  [[nodiscard]] static Occluders where(std::function<bool(PrimitiveId)> is_occluder) {
+    return Occluders(std::move(is_occluder), false);
+  }
+  /// False where surely no triangle is one.
+  [[nodiscard]] bool may_exist() const { return is_occluder_ || is_each_; }
+  [[nodiscard]] bool contain(PrimitiveId id) const { return is_occluder_ ? is_occluder_(id) : is_each_; }
+
+ private:
+  Occluders(std::function<bool(PrimitiveId)> is_occluder, bool is_each)
+      : is_occluder_(std::move(is_occluder)), is_each_(is_each) {}
+
+  std::function<bool(PrimitiveId)> is_occluder_;
+  bool is_each_;
+};
+
 struct PainterOptions {
   PaintMethod method = PaintMethod::depth_sort;
   /// More polygons, whole ones and pieces, are an error.
@@ -26,11 +52,11 @@ struct PainterOptions {
   /// More cuts are one, too: where all of n triangles pass through each other there may be n * n and more. About 400
   /// bytes each.
   std::size_t most_cuts = std::size_t(1) << 20;
-  /// Set: of what triangles hide together of which this is true, most is left out before the rest is put into order.
-  /// Inside of a machine that is most of the time. What then overlaps nothing is not asked about at all, and painted
-  /// first. For visible_parts() with the same function, which leaves out what it takes for hidden here, too; for
-  /// several threads at once. Then some 300 bytes a triangle more.
-  std::function<bool(PrimitiveId)> hides{};
+  /// Most triangles that these hide together are left out before the rest is put into order. That saves most of the
+  /// time inside of a machine, and takes some 300 bytes a triangle more. Triangles that overlap no other one on the
+  /// screen come first, and take no part in the sorting. For visible_parts() with the same occluders, which leaves out
+  /// what is hidden here, too.
+  Occluders occluders = Occluders::none();
 };
 
 /// A corner of a polygon, and the side from it to the next one.
@@ -61,11 +87,20 @@ struct PaintSteps {
   std::uint64_t cuts = 0;               ///< polygons that were cut in two
 };
 
+/// Polygons in an order of painting: where two overlap, the later one is before the other. paint() paints it.
 struct PaintOrder {
   View view;
   std::vector<PaintPolygon> polygons;  ///< the first is painted first
   std::vector<PaintCorner> corners;
   PaintSteps steps;
+};
+
+/// What is seen of an order: convex polygons within the picture, in the same order. No two overlap where both hide what
+/// is behind them, but for what visible_parts() leaves too much.
+struct VisibleParts {
+  View view;
+  std::vector<PaintPolygon> polygons;
+  std::vector<PaintCorner> corners;
 };
 
 /// All triangles that `view` may show, in the order of painting.
@@ -88,27 +123,18 @@ struct PaintOrder {
 [[nodiscard]] PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOptions& options = {},
                                  const Execution& execution = {});
 
-/// What is seen of an order, for drawings: without polygons that those after them hide together, and with what is left
-/// of those that are hidden in part, as convex pieces in the same place of the order; also cut at the sides of the
-/// picture. `hides(id)` says of which triangles nothing shows through, for several threads at once; empty: all hide.
-/// Parts thinner than 1/1024 pixel are left out, and those between that and 1/16 are not cut off; large polygons are
-/// cut along a grid where they are hidden in part. Near-linear, as painter(): every polygon is held against those after
-/// it that overlap it, but for those of meshes that overlap nothing, which are found together. In a cell of the grid
-/// these are the 4,096 foremost at most, and once 48 parts are left of a polygon there, only those go that one of them
-/// hides whole: what is left too much is painted over as before. Long parallel strips share cells with many others: 30
-/// thousand take 9 s.
-[[nodiscard]] PaintOrder visible_parts(const PaintOrder& order, const std::function<bool(PrimitiveId)>& hides = {},
-                                       const Execution& execution = {});
-
-/// The same order with hems: a polygon reaches under what is painted later and lies beside it, by `width` pixels or
-/// less, as far as that, or other parts of the same primitive, hide the hem, and around its corners likewise. So
-/// viewers that blend the rims of polygons show nothing of the background between neighbours and where several meet:
-/// what is painted first in a pixel covers all of it. Hems end a pixel below what is open, or at two fifths of the way
-/// to it where that is less, so that outlines hardly grow bold. For drawings: with a hem an outline is not convex, and
-/// paint() does not know it. Cost and `hides` as for visible_parts(). \throws Error bad_argument for a width of 0 or
-/// less, or over 100.
-[[nodiscard]] PaintOrder with_hems(const PaintOrder& order, double width,
-                                   const std::function<bool(PrimitiveId)>& hides = {}, const Execution& execution = {});
+/// What is seen of an order, for drawings. Polygons that later occluders hide together are left out. Of a polygon that
+/// is hidden in part, what is left stays in its place of the order, as convex pieces. Polygons are cut at the sides of
+/// the picture, too.
+///
+/// Parts thinner than 1/1024 pixel are left out, and those between that and 1/16 are not cut off. Large polygons are
+/// cut along a grid where they are hidden in part. Near-linear, as painter(): every polygon is held against the later
+/// ones that overlap it, but for those of meshes that overlap nothing, which are found together. A polygon is held
+/// against the 4,096 foremost in each cell of a grid at most, and where 48 parts of it are left in one, a part goes
+/// only if one occluder hides it whole. What is left too much is painted over, as in the order itself. Long parallel
+/// strips share cells with many others: 30 thousand take 9 s.
+[[nodiscard]] VisibleParts visible_parts(const PaintOrder& order, const Occluders& occluders = Occluders::all(),
+                                         const Execution& execution = {});
 
 /// Paints an order: every polygon over those before it, at the samples that its primitive covers in the z-buffer and
 /// that lie on the polygon's side of all cuts. Wrong orders give wrong pictures. Holes are left open.

@@ -45,16 +45,23 @@ struct ShadeOptions {
   /// sRGB, 0 to 1. None: transparent.
   std::optional<glm::vec3> background = glm::vec3(1.0f);
   Shadows shadows = Shadows::map;
-  /// What is visible in key_light_view(), borrowed. Null: that of the surfaces, found by shade() itself.
-  const Visible* seen_by_light = nullptr;
-  /// Of the surfaces, for Shadows::rays, borrowed. Null: made by shade() itself, as it is where materials are
-  /// see-through.
-  const RayIndex* index = nullptr;
   /// Multiplies the opacity of everything, 0 to 1. Lit, flat and normals alone.
   float opacity = 1.0f;
   SeeThrough see_through = SeeThrough::where_needed;
   /// The A-buffer's sub-samples: as AbufferOptions::grid.
   int grid = 0;
+};
+
+/// What is to be shaded, and what a caller may have found already of what shadows need. Borrows everything.
+struct ShadeInput {
+  ShadeInput(const Visible& what_is_visible, const Visible* light_sees = nullptr, const RayIndex* ray_index = nullptr)
+      : visible(what_is_visible), seen_by_light(light_sees), index(ray_index) {}
+
+  const Visible& visible;  ///< front-most
+  /// For Shadows::map: what is visible in key_light_view(). Null: shade() finds what is visible of the surfaces there.
+  const Visible* seen_by_light;
+  /// For Shadows::rays: that of the surfaces. Null: shade() makes one, as it does where materials are see-through.
+  const RayIndex* index;
 };
 
 /// The view in which the key light sees what `visible` shows: whatever is visible in it is lit, the rest in shadow. For
@@ -64,16 +71,16 @@ struct ShadeOptions {
                                                  const Execution& execution = {});
 
 /// A picture with channels R, G, B, A. Shades once per pixel and primitive and averages over the samples.
-/// `visible` says what is front-most. Where materials are blended, or the opacity is below 1, the A-buffer of the same
+/// Where materials are blended, or the opacity is below 1, the A-buffer of the same
 /// view says all that is seen through, in true order at every sample.
 /// \throws Error bad_argument for an opacity or a grid out of range.
 /// Borrows everything; O(covered pixels). The bytes do not depend on threads or instruction set.
-[[nodiscard]] Image shade(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
+[[nodiscard]] Image shade(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options = {},
                           const Execution& execution = {});
 
 /// The same picture as a PNG file of shade()'s holds it, to the byte, without the planes of floats that are four times
 /// as large: for pictures that are only to be shown or saved.
-[[nodiscard]] Bitmap shade_bitmap(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
+[[nodiscard]] Bitmap shade_bitmap(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options = {},
                                   const Execution& execution = {});
 
 /// Every fragment of the picture by itself, nearest first: channels R, G, B (multiplied by A), A, Z and ZBack, and the
@@ -83,7 +90,7 @@ struct ShadeOptions {
 /// have no thickness, so ZBack is the same.
 /// O(fragments * sub-samples); 36 bytes a fragment, twice that while it works. Options as for shade().
 /// \throws Error as shade() and abuffer() do, unsupported for other shadings than lit, flat and normals.
-[[nodiscard]] DeepImage shade_deep(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
+[[nodiscard]] DeepImage shade_deep(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options = {},
                                    const Execution& execution = {});
 
 struct FigureOptions {
@@ -104,12 +111,12 @@ struct FigureOptions {
 /// A picture of polygons, with the colours that shade() gives the same view, textures, shadows and smooth normals
 /// included; of alpha mode MASK holes are left out. The order is the painter's, exact where surfaces pass through each
 /// other. Against the hairlines that viewers leave between neighbours, polygons reach up to 4 pixels under what is
-/// painted over them (the print trade's trapping). `visible` is what is seen in the view with one sample a pixel.
+/// painted over them (the print trade's trapping). What is visible has one sample a pixel.
 /// O(n log n) in the number of polygons, and the pixels that they cover. The same for any number of threads.
 /// (M. Newell, R. Newell, T. Sancha. A Solution to the Hidden Surface Problem. 1972.)
 /// \throws Error bad_argument for a Visible of more samples, an opacity or a tolerance out of range; limit_exceeded for
 /// more polygons than FigureOptions::most_polygons, or triangles that pass through each other too often.
-[[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const Visible& visible, const FigureOptions& options = {},
+[[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const ShadeInput& input, const FigureOptions& options = {},
                                  const Execution& execution = {});
 /// The same of a view, which need not have one sample. \throws Error as validate(view) does, too.
 [[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const View& view, const FigureOptions& options = {},

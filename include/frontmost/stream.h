@@ -32,7 +32,7 @@ class Excerpt {
   [[nodiscard]] const Surfaces& surfaces() const;
   /// One for each view. Their ids are those of surfaces().
   std::vector<Visible> visible;
-  /// For ShadeOptions::seen_by_light, if it was asked for; of the first view.
+  /// For ShadeInput::seen_by_light, if it was asked for; of the first view.
   std::optional<Visible> seen_by_light;
   /// The numbers of the triangles in the stream, by id of surfaces(); ascending.
   std::vector<PrimitiveId> stream_ids;

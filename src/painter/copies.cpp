@@ -94,24 +94,25 @@ Copies::Copies(const Pieces& pieces, std::vector<std::uint32_t>& members) {
   std::stable_sort(copies_.begin(), copies_.end(), [](const Copy& a, const Copy& b) { return a.of < b.of; });
 }
 
-Copies::Range Copies::of(PrimitiveId id, const Hides& hides) const {
+Copies::Range Copies::of(PrimitiveId id, const Occluders& occluders) const {
   const auto is_before = [](const Copy& copy, PrimitiveId other) { return copy.of < other; };
   Range range{std::lower_bound(copies_.begin(), copies_.end(), id, is_before), {}};
   range.end = range.begin;
   while (range.end != copies_.end() && range.end->of == id) ++range.end;
-  if (range.count() > 0 && hides && hides(id)) range.end = range.begin;
+  if (range.count() > 0 && occluders.contain(id)) range.end = range.begin;
   return range;
 }
 
-void Copies::put_back(Pieces& pieces, std::vector<std::uint32_t>& members, const Hides& hides, std::size_t most) const {
+void Copies::put_back(Pieces& pieces, std::vector<std::uint32_t>& members, const Occluders& occluders,
+                      std::size_t most) const {
   if (copies_.empty()) return;
   std::size_t count = members.size();
-  for (const std::uint32_t piece : members) count += of(pieces.face(piece).id, hides).count();
+  for (const std::uint32_t piece : members) count += of(pieces.face(piece).id, occluders).count();
   if (count > most) refuse_more_polygons_than(most);
   std::vector<std::uint32_t> all;
   all.reserve(count);
   for (const std::uint32_t piece : members) {
-    const Range copies = of(pieces.face(piece).id, hides);
+    const Range copies = of(pieces.face(piece).id, occluders);
     for (auto copy = copies.end; copy != copies.begin;) {
       --copy;
       all.push_back(copy->piece);

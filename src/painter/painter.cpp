@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// The way of triangles through the room:
+//
+//   gather --> copies out --> [hidden out] --> order: depth sort, cycles cut --> copies back --> emit --> PaintOrder
+//   gather.h   copies.h       seen/hidden.h    order/, cutting/                                  emit.h       |
+//                                                                                                             v
+//                             a figure's traps <-- traps/make_traps.h    VisibleParts <-- seen/visible_parts.cpp
 #include "frontmost/painter.h"
 
 #include <algorithm>
@@ -139,10 +145,10 @@ PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOpti
   if (pieces.size() > options.most_polygons) refuse_more_polygons_than(options.most_polygons);
   const Copies copies(pieces, members);
   std::vector<std::uint32_t> first;
-  if (options.hides) {
-    Unhidden left = without_hidden(pieces, members, view, options.hides, execution);
+  if (options.occluders.may_exist()) {
+    Unhidden left = without_hidden(pieces, members, view, options.occluders, execution);
     members = std::move(left.others);
-    first = std::move(left.alone);
+    first = std::move(left.unoverlapped);
   }
   report_progress(execution, "painter", 0.2);
   if (options.method == PaintMethod::farthest) {
@@ -154,7 +160,7 @@ PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOpti
   }
   report_progress(execution, "painter", 0.9);
   first.insert(first.end(), members.begin(), members.end());
-  copies.put_back(pieces, first, options.hides, options.most_polygons);
+  copies.put_back(pieces, first, options.occluders, options.most_polygons);
   Poll poll(execution);
   emit(pieces, first, order, poll);
   report_progress(execution, "painter", 1);

@@ -134,7 +134,7 @@ class LayerMaterials {
 /// All that a picture is made from.
 struct Request {
   const Surfaces& surfaces;
-  const Visible& visible;
+  const ShadeInput& input;
   const ShadeOptions& options;
   const Execution& execution;
 };
@@ -145,21 +145,21 @@ void with_colorist(const Request& request, const LayerMaterials& materials, cons
   const ShadeOptions& options = request.options;
   if (options.shading == Shading::flat) return use(FragmentShader::Colorist(Flat{materials.table()}));
   if (options.shading == Shading::normals) return use(FragmentShader::Colorist(Normals{materials.table()}));
-  const Lighting lighting = lighting_for(request.visible.view, request.surfaces.scene().up);
+  const Lighting lighting = lighting_for(request.input.visible.view, request.surfaces.scene().up);
   const std::vector<glm::ivec2> samples = materials.samples();
-  const KeyShadows shadows({request.surfaces, request.visible, options, samples}, lighting.to_key, request.execution);
+  const KeyShadows shadows({request.surfaces, request.input, options, samples}, lighting.to_key, request.execution);
   use(FragmentShader::Colorist(Lit{materials.table(), lighting, shadows.map(), shadows.rays(), request.execution.isa}));
 }
 
 void paint_materials(const Request& request, Canvas& canvas) {
-  const LayerMaterials materials(request.surfaces, request.visible, request.options, request.execution);
+  const LayerMaterials materials(request.surfaces, request.input.visible, request.options, request.execution);
   with_colorist(request, materials, [&](const FragmentShader::Colorist& colorist) {
     materials.paint({canvas, colorist, background_color(request.options), request.options.opacity}, request.execution);
   });
 }
 
 void paint_map(const Request& request, Canvas& canvas) {
-  const Visible& visible = request.visible;
+  const Visible& visible = request.input.visible;
   const ShadeOptions& options = request.options;
   const TriangleSource source(request.surfaces, visible.view, nullptr, request.execution);
   const auto paint = [&](const TileWork::Colorist& colorist) {
@@ -173,7 +173,7 @@ void paint_map(const Request& request, Canvas& canvas) {
 
 void check(const Request& request) {
   check_opacity(request.options);
-  check_answer(request.visible, request.surfaces.primitive_count(), "shade", request.execution);
+  check_answer(request.input.visible, request.surfaces.primitive_count(), "shade", request.execution);
 }
 
 void paint(const Request& request, Canvas& canvas) {
@@ -183,28 +183,29 @@ void paint(const Request& request, Canvas& canvas) {
 
 }  // namespace
 
-Image shade(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options, const Execution& execution) {
-  PlanesCanvas canvas(visible.view, {"R", "G", "B", "A"});
-  paint({surfaces, visible, options, execution}, canvas);
+Image shade(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options,
+            const Execution& execution) {
+  PlanesCanvas canvas(input.visible.view, {"R", "G", "B", "A"});
+  paint({surfaces, input, options, execution}, canvas);
   return canvas.take();
 }
 
-Bitmap shade_bitmap(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options,
+Bitmap shade_bitmap(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options,
                     const Execution& execution) {
-  BitmapCanvas canvas(visible.view);
-  paint({surfaces, visible, options, execution}, canvas);
+  BitmapCanvas canvas(input.visible.view);
+  paint({surfaces, input, options, execution}, canvas);
   return canvas.take();
 }
 
-DeepImage shade_deep(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options,
+DeepImage shade_deep(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options,
                      const Execution& execution) {
   if (!shows_materials(options.shading))
     throw Error(ErrorCode::unsupported, "shade: deep images are lit, flat, or of normals");
   ShadeOptions in_layers = options;
   in_layers.see_through = SeeThrough::always;
-  const Request request{surfaces, visible, in_layers, execution};
+  const Request request{surfaces, input, in_layers, execution};
   check(request);
-  const LayerMaterials materials(surfaces, visible, in_layers, execution);
+  const LayerMaterials materials(surfaces, input.visible, in_layers, execution);
   DeepImage image;
   with_colorist(request, materials, [&](const FragmentShader::Colorist& colorist) {
     image = materials.deep(surfaces, colorist, execution);

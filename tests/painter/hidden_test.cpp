@@ -11,8 +11,6 @@ namespace {
 
 using testing::ElementsAre;
 
-bool all(PrimitiveId) { return true; }
-
 void add_square(Mesh& mesh, float half, float z) {
   add_triangle(mesh, {-half, -half, z}, {half, -half, z}, {half, half, z});
   add_triangle(mesh, {-half, -half, z}, {half, half, z}, {-half, half, z});
@@ -28,12 +26,12 @@ TEST(Hidden, IsNeverCut) {
   for (const bool is_parallel : {false, true}) {
     const View view = view_from_above(is_parallel, 256);
     EXPECT_GT(painter(surfaces, view).steps.cuts, 0u);
-    const PaintOrder order = painter(surfaces, view, {.hides = all});
+    const PaintOrder order = painter(surfaces, view, {.occluders = Occluders::all()});
     EXPECT_EQ(order.steps.cuts, 0u);
     EXPECT_THAT(ids_of(order), testing::UnorderedElementsAre(first, first + 1));
     // Behind glass everything is seen.
     const auto is_no_glass = [&](PrimitiveId id) { return id < first; };
-    EXPECT_GT(painter(surfaces, view, {.hides = is_no_glass}).polygons.size(), 20u);
+    EXPECT_GT(painter(surfaces, view, {.occluders = Occluders::where(is_no_glass)}).polygons.size(), 20u);
   }
 }
 
@@ -43,7 +41,8 @@ TEST(Hidden, InOnePlaneTheLowerIdIsLeft) {
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
   for (const bool is_parallel : {false, true})
-    EXPECT_THAT(ids_of(painter(surfaces, view_from_above(is_parallel, 256), {.hides = all})), ElementsAre(1, 0));
+    EXPECT_THAT(ids_of(painter(surfaces, view_from_above(is_parallel, 256), {.occluders = Occluders::all()})),
+                ElementsAre(1, 0));
 }
 
 /// One through another hides it on one side alone.
@@ -53,7 +52,7 @@ TEST(Hidden, WhatComesThroughStays) {
   add_triangle(mesh, {-0.5f, -0.6f, -0.2f}, {0.5f, -0.6f, -0.2f}, {0, 0.5f, 0.01f});
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
-  const PaintOrder order = painter(surfaces, view_from_above(false, 256), {.hides = all});
+  const PaintOrder order = painter(surfaces, view_from_above(false, 256), {.occluders = Occluders::all()});
   EXPECT_THAT(ids_of(order), testing::Contains(2u));
 }
 
@@ -64,7 +63,7 @@ TEST(Hidden, WhatReachesBeyondThePictureIsSeenBesideItsMiddle) {
   add_triangle(mesh, {-1.3f, -0.6f, 1}, {-0.3f, -0.1f, 1}, {-1.2f, 0.6f, 1});
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
-  const PaintOrder order = painter(surfaces, view_from_above(true), {.hides = all});
+  const PaintOrder order = painter(surfaces, view_from_above(true), {.occluders = Occluders::all()});
   EXPECT_THAT(ids_of(order), testing::UnorderedElementsAre(0, 1));
 }
 
@@ -77,7 +76,7 @@ TEST(Hidden, AGrainHidesNothing) {
     add_triangle(mesh, {0, 0, 1}, {size, 0, 1}, {0, size, 1});
     const Scene scene = scene_of(mesh);
     const Surfaces surfaces(scene);
-    const PaintOrder order = painter(surfaces, view_from_above(true), {.hides = all});
+    const PaintOrder order = painter(surfaces, view_from_above(true), {.occluders = Occluders::all()});
     EXPECT_THAT(ids_of(order), testing::Contains(0u)) << power;
     EXPECT_THAT(ids_of(visible_parts(order)), testing::Contains(0u)) << power;
   }
@@ -91,7 +90,8 @@ TEST(Hidden, ThePictureIsTheSame) {
       const Scene scene = scene_of(random_mesh(kind, kind == Kind::sheets ? 20 : 150, seed));
       const Surfaces surfaces(scene);
       const View view = random_view(random, 120, 90);
-      const PaintOrder whole = painter(surfaces, view), order = painter(surfaces, view, {.hides = all});
+      const PaintOrder whole = painter(surfaces, view),
+                       order = painter(surfaces, view, {.occluders = Occluders::all()});
       const Visible expected = paint(surfaces, whole), found = paint(surfaces, order);
       for (std::size_t i = 0; i < expected.primitives.size(); ++i)
         differing += expected.primitives[i] != found.primitives[i];
@@ -107,8 +107,8 @@ TEST(Hidden, ThreadsChangeNothing) {
   const Scene scene = scene_of(random_mesh(Kind::soup, 4000, 2));
   const Surfaces surfaces(scene);
   const View view = frame(surfaces, 160, 120);
-  EXPECT_EQ(ids_of(painter(surfaces, view, {.hides = all}, {.threads = 1})),
-            ids_of(painter(surfaces, view, {.hides = all}, {.threads = 3})));
+  EXPECT_EQ(ids_of(painter(surfaces, view, {.occluders = Occluders::all()}, {.threads = 1})),
+            ids_of(painter(surfaces, view, {.occluders = Occluders::all()}, {.threads = 3})));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <atomic>
 
 #include "painter/painted.h"
+#include "painter/trapped.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 
@@ -87,7 +88,7 @@ TEST(Hostile, CopiesAreHeldAgainstOthersOnce) {
     }
   }
   EXPECT_THROW((void)painter(surfaces, view, {.most_polygons = 2 * count}), Error);
-  const PaintOrder seen = painter(surfaces, view, {.hides = [](PrimitiveId) { return true; }});
+  const PaintOrder seen = painter(surfaces, view, {.occluders = Occluders::all()});
   EXPECT_LE(seen.polygons.size(), 4u);
 }
 
@@ -198,14 +199,14 @@ TEST(Hostile, OrdersAskOften) {
   }
 }
 
-TEST(Hostile, PartsAndHemsStopWhenTold) {
+TEST(Hostile, PartsAndTrapsStopWhenTold) {
   const Scene scene = scene_of(random_mesh(Kind::soup, 40000, 1));
   const Surfaces surfaces(scene);
   const PaintOrder order = painter(surfaces, frame(surfaces, 256, 256), {.method = PaintMethod::centroid});
   const Stopper parts(30);
-  parts.expect_heard([&] { (void)visible_parts(order, {}, parts.execution()); });
-  const Stopper hems(30);
-  hems.expect_heard([&] { (void)with_hems(order, 1, {}, hems.execution()); });
+  parts.expect_heard([&] { (void)visible_parts(order, Occluders::all(), parts.execution()); });
+  const Stopper traps(30);
+  traps.expect_heard([&] { (void)trapped(order, 1, Occluders::all(), traps.execution()); });
 }
 
 }  // namespace

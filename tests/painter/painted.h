@@ -24,7 +24,9 @@ inline Painted painted(const Surfaces& surfaces, const View& view, PaintMethod m
   return result;
 }
 
-inline std::vector<PrimitiveId> ids_of(const PaintOrder& order) {
+/// Of an order, or of parts.
+template <class Order>
+std::vector<PrimitiveId> ids_of(const Order& order) {
   std::vector<PrimitiveId> ids;
   for (const PaintPolygon& polygon : order.polygons) ids.push_back(polygon.id);
   return ids;

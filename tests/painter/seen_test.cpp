@@ -42,7 +42,8 @@ std::vector<Points> tiles(int side) {
 }
 
 struct Laid {
-  explicit Laid(const std::vector<Points>& outlines) : screen(order_of(outlines), {}), adjacency(screen) {}
+  explicit Laid(const std::vector<Points>& outlines)
+      : screen(order_of(outlines), Occluders::all()), adjacency(screen) {}
   ScreenPolygons screen;
   Adjacency adjacency;
 
@@ -256,7 +257,7 @@ TEST(Alone, OverlapNothingInAnyScene) {
       const Surfaces surfaces(scene);
       Random random(seed + 7);
       const PaintOrder order = painter(surfaces, random_view(random, 100, 80), {.method = PaintMethod::farthest});
-      const ScreenPolygons screen(order, {});
+      const ScreenPolygons screen(order, Occluders::all());
       const std::vector<std::uint8_t> found = find_unoverlapped(screen, Adjacency(screen), {}, {});
       for (std::size_t a = 0; a < found.size(); ++a) {
         alone += found[a];
@@ -289,8 +290,7 @@ TEST(Alone, TheFrontOfASphereIsNotAskedAbout) {
   const auto asked = [](const PaintSteps& steps) {
     return steps.boxes_apart + steps.behind + steps.before + steps.projections_apart + steps.compared;
   };
-  const PaintOrder all = painter(surfaces, view),
-                   front = painter(surfaces, view, {.hides = [](PrimitiveId) { return true; }});
+  const PaintOrder all = painter(surfaces, view), front = painter(surfaces, view, {.occluders = Occluders::all()});
   EXPECT_GT(asked(all.steps), all.polygons.size());
   EXPECT_LT(asked(front.steps), front.polygons.size() / 4);
   EXPECT_LT(front.polygons.size(), all.polygons.size() * 0.6);

@@ -14,7 +14,8 @@ namespace {
 using testing::ElementsAre;
 
 /// Square pixels.
-double area_of(const PaintOrder& order, std::size_t polygon) {
+template <class Order>
+double area_of(const Order& order, std::size_t polygon) {
   const PaintPolygon& p = order.polygons[polygon];
   double area = 0;
   for (std::size_t i = 0; i < p.corner_count; ++i) {
@@ -40,7 +41,7 @@ TEST(VisibleParts, WhatOthersHideTogetherIsLeftOut) {
   EXPECT_EQ(order.polygons.size(), 3u);
   EXPECT_THAT(ids_of(visible_parts(order)), testing::UnorderedElementsAre(1, 2));
   // Glass hides nothing, nor do two together of which one is glass.
-  EXPECT_EQ(visible_parts(order, [](PrimitiveId id) { return id != 1; }).polygons.size(), 3u);
+  EXPECT_EQ(visible_parts(order, Occluders::where([](PrimitiveId id) { return id != 1; })).polygons.size(), 3u);
 }
 
 TEST(VisibleParts, WhatIsHiddenInPartIsCut) {
@@ -49,7 +50,7 @@ TEST(VisibleParts, WhatIsHiddenInPartIsCut) {
   add_triangle(mesh, {-1.5f, 0, 1}, {1.5f, 0, 1}, {0, 1.9f, 1});  // the half above y = 0, and more
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
-  const PaintOrder seen = visible_parts(painter(surfaces, view_from_above(true)));
+  const VisibleParts seen = visible_parts(painter(surfaces, view_from_above(true)));
   ASSERT_EQ(seen.polygons.back().id, 1u);
   double left = 0;
   for (std::size_t i = 0; i + 1 < seen.polygons.size(); ++i) left += area_of(seen, i);
@@ -58,7 +59,8 @@ TEST(VisibleParts, WhatIsHiddenInPartIsCut) {
   EXPECT_LT(left, 256 * 1.75);
 }
 
-double area_of(const PaintOrder& order) {
+template <class Order>
+double area_of(const Order& order) {
   double area = 0;
   for (std::size_t i = 0; i < order.polygons.size(); ++i) area += area_of(order, i);
   return area;
@@ -122,7 +124,7 @@ TEST(VisibleParts, CornersFarOutsideLeaveDepthsWithinAsTheyAre) {
   PaintOrder order = order_of({wedge({1, 0}, 1e8)});
   order.view = view_from_above(false);
   for (const std::size_t far : {1, 2}) order.corners[far].at.z = 100;
-  const PaintOrder seen = visible_parts(order);
+  const VisibleParts seen = visible_parts(order);
   ASSERT_EQ(seen.corners.size(), 3u);
   for (const PaintCorner& corner : seen.corners)
     EXPECT_NEAR(corner.at.z, 1 / (0.1 - 0.09 * (corner.at.x - 32) / 1e8), 1e-7);  // 1 / z is even on the screen
@@ -154,7 +156,7 @@ TEST(VisibleParts, LargePolygonsAreCutAmongManySmallOnes) {
   add_tiles(mesh, 32, 0.5f);
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
-  const PaintOrder seen = visible_parts(painter(surfaces, view_from_above(true, 256)));
+  const VisibleParts seen = visible_parts(painter(surfaces, view_from_above(true, 256)));
   double square = 0;
   for (std::size_t i = 0; i < seen.polygons.size(); ++i)
     if (seen.polygons[i].id < 2) square += area_of(seen, i);
@@ -169,7 +171,7 @@ TEST(VisibleParts, LargePolygonsGoWhereManySmallOnesHideThem) {
   add_tiles(mesh, 32, 1);
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
-  const PaintOrder seen = visible_parts(painter(surfaces, view_from_above(true, 256)));
+  const VisibleParts seen = visible_parts(painter(surfaces, view_from_above(true, 256)));
   EXPECT_EQ(seen.polygons.size(), 2048u);
   for (const PaintPolygon& polygon : seen.polygons) EXPECT_GE(polygon.id, 2u);
 }
@@ -201,8 +203,10 @@ TEST(VisibleParts, ThePictureIsTheSame) {
       const Scene scene = scene_of(random_mesh(kind, kind == Kind::sheets ? 12 : 50, seed));
       const Surfaces surfaces(scene);
       const View view = random_view(random, 120, 90);
-      const PaintOrder order = painter(surfaces, view), seen = visible_parts(order);
-      const Visible whole = paint(surfaces, order), parts = paint(surfaces, seen);
+      const PaintOrder order = painter(surfaces, view);
+      const VisibleParts seen = visible_parts(order);
+      const Visible whole = paint(surfaces, order),
+                    parts = paint(surfaces, {seen.view, seen.polygons, seen.corners, {}});
       for (std::size_t i = 0; i < whole.primitives.size(); ++i) {
         differing += whole.primitives[i] != parts.primitives[i];
         ++samples;
@@ -217,157 +221,12 @@ TEST(VisibleParts, ThePictureIsTheSame) {
   EXPECT_GT(samples, 10000u);
 }
 
-TEST(VisibleParts, HemsReachUnderWhatHidesThem) {
-  Mesh mesh;
-  add_square(mesh, 1, 0);
-  const Scene scene = scene_of(mesh);
-  const Surfaces surfaces(scene);
-  const PaintOrder order = painter(surfaces, view_from_above(true)), hemmed = with_hems(order, 0.5);
-  ASSERT_EQ(hemmed.polygons.size(), 2u);
-  // The diagonal has one, under the other half; the outline of the square has none.
-  EXPECT_EQ(hemmed.polygons[0].corner_count, 5u);
-  EXPECT_EQ(hemmed.polygons[1].corner_count, 3u);
-  const double diagonal = 32 * std::sqrt(2.0);
-  EXPECT_NEAR(area_of(hemmed, 0), 512 + 0.5 * (diagonal - 1.25), 1e-9);
-  EXPECT_NEAR(area_of(hemmed, 1), 512, 1e-9);
-  // Under glass it would show.
-  EXPECT_EQ(with_hems(order, 0.5, [](PrimitiveId) { return false; }).polygons[0].corner_count, 3u);
-  EXPECT_THROW((void)with_hems(order, 0), Error);
-}
-
-/// By counting the sides to the right of a point: hems make outlines that are not convex.
-bool holds(const PaintOrder& order, const PaintPolygon& polygon, const glm::dvec2& at) {
-  bool is_inside = false;
-  for (std::size_t i = 0; i < polygon.corner_count; ++i) {
-    const glm::dvec2 a(order.corners[polygon.first_corner + i].at),
-        b(order.corners[polygon.first_corner + (i + 1) % polygon.corner_count].at);
-    if ((a.y <= at.y) != (b.y <= at.y) && at.x < a.x + (b.x - a.x) * (at.y - a.y) / (b.y - a.y)) is_inside = !is_inside;
-  }
-  return is_inside;
-}
-
-/// The last polygon over a point.
-PrimitiveId painted_at(const PaintOrder& order, const glm::dvec2& at) {
-  PrimitiveId last = no_primitive;
-  for (const PaintPolygon& polygon : order.polygons)
-    if (holds(order, polygon, at)) last = polygon.id;
-  return last;
-}
-
-PaintOrder order_of_triangles(const std::vector<std::array<glm::dvec2, 3>>& triangles) {
-  PaintOrder order;
-  order.view = view_from_above(true);
-  for (const std::array<glm::dvec2, 3>& triangle : triangles) {
-    order.polygons.push_back({PrimitiveId(order.polygons.size()), 3, order.corners.size()});
-    for (const glm::dvec2& at : triangle) order.corners.push_back({{at, 1}, false});
-  }
-  return order;
-}
-
-/// A pixel whose polygons each cover a part of it shows what is below. So the first one there goes all around a corner.
-TEST(VisibleParts, HemsGoAroundCorners) {
-  for (const int count : {3, 4, 5, 7, 12, 40}) {
-    SCOPED_TRACE(count);
-    const glm::dvec2 middle(32.3, 31.8);
-    const auto around = [&](int k, double radius) {
-      const double angle = 2 * 3.14159265358979 * k / count;
-      return middle + radius * glm::dvec2(std::cos(angle), -std::sin(angle));
-    };
-    std::vector<std::array<glm::dvec2, 3>> fan;
-    for (int k = 0; k < count; ++k) fan.push_back({middle, around(k, 25), around(k + 1, 25)});
-    const PaintOrder hemmed = with_hems(order_of_triangles(fan), 4);
-    for (int y = -8; y <= 8; ++y)
-      for (int x = -8; x <= 8; ++x) {
-        const glm::dvec2 at = glm::dvec2(x, y) * 0.17 + glm::dvec2(0.013, 0.017);
-        EXPECT_TRUE(holds(hemmed, hemmed.polygons[0], middle + at)) << at.x << "," << at.y;
-      }
-  }
-}
-
-/// Beyond a needle that ends before the side does: the hem goes as far as there is something beyond.
-TEST(VisibleParts, HemsReachBeyondNeedles) {
-  const glm::dvec2 left(5, 20), right(60, 20), end(45, 20.05);
-  const PaintOrder hemmed =
-      with_hems(order_of_triangles({{left, right, {32, 5}}, {left, end, right}, {left, {20, 45}, end}}), 4);
-  for (double x = 16; x < 40; x += 0.7) EXPECT_TRUE(holds(hemmed, hemmed.polygons[0], {x, 22.5})) << x;
-  for (double x = 46; x < 60; x += 0.7) EXPECT_FALSE(holds(hemmed, hemmed.polygons[0], {x, 20.06})) << x;
-}
-
-/// Cuts leave pieces without an area between neighbours, which cover nothing, whenever they are painted.
-TEST(VisibleParts, HemsReachBeyondWhatHasNoArea) {
-  const glm::dvec2 left(5, 20), right(60, 20);
-  for (const bool is_first : {false, true}) {
-    std::vector<std::array<glm::dvec2, 3>> triangles{{left, right, {32, 5}}, {left, {32, 35}, right}};
-    triangles.insert(is_first ? triangles.begin() : triangles.begin() + 1, {left, right, left});
-    const PaintOrder hemmed = with_hems(order_of_triangles(triangles), 4);
-    const PaintPolygon& upper = hemmed.polygons[is_first ? 1 : 0];
-    for (double x = 20; x < 45; x += 0.7) EXPECT_TRUE(holds(hemmed, upper, {x, 23})) << is_first << " " << x;
-  }
-}
-
-/// Two squares, and what was painted before both fills the gap between them, once as wide as the narrowest hem.
-TEST(VisibleParts, HemsDoNotHideWhatIsSeenInGaps) {
-  for (const double gap : {0.5, 1.0, 2.0, 4.0, 16.0}) {
-    PaintOrder order;
-    order.view = view_from_above(true);
-    const auto add_box = [&](double left, double low, double right, double high) {
-      order.polygons.push_back({PrimitiveId(order.polygons.size()), 4, order.corners.size()});
-      for (const glm::dvec2 at : {glm::dvec2(left, high), {right, high}, {right, low}, {left, low}})
-        order.corners.push_back({{at, 1}, false});
-    };
-    add_box(20, 12, 20 + gap, 18);
-    add_box(10, 10, 20, 20);
-    add_box(20 + gap, 12, 30 + gap, 18);
-    EXPECT_EQ(with_hems(order, 16).polygons[1].corner_count, 4u) << gap;
-  }
-}
-
-/// What is painted after a box beside it is a wedge, with nothing beyond: its hem gets narrower with the wedge.
-TEST(VisibleParts, HemsTaperTowardsWedges) {
-  PaintOrder order;
-  order.view = view_from_above(true);
-  const auto add = [&](std::initializer_list<glm::dvec2> corners) {
-    order.polygons.push_back({PrimitiveId(order.polygons.size()), std::uint32_t(corners.size()), order.corners.size()});
-    for (const glm::dvec2 at : corners) order.corners.push_back({{at, 1}, false});
-  };
-  add({{10, 20}, {90, 20}, {90, 10}, {10, 10}});
-  add({{10, 24}, {90, 20}, {10, 20}});
-  const PaintOrder hemmed = with_hems(order, 4);
-  EXPECT_EQ(hemmed.polygons[0].corner_count, 6u);
-  // A pixel below what is open, six tenths of the way where that is less, and inset by half of its height at the
-  // outline.
-  EXPECT_NEAR(area_of(hemmed, 0), 800 + 40 * (3 + 1) / 2 + 40 / 2 - 1.5 * 3 / 2, 1e-9);
-}
-
-TEST(VisibleParts, HemsAreNotSeen) {
-  std::size_t points = 0, differing = 0, hems = 0;
-  for (const Kind kind : {Kind::soup, Kind::fan, Kind::shared_grid, Kind::slivers, Kind::sheets})
-    for (std::uint64_t seed = 0; seed < seeds(3); ++seed) {
-      const Scene scene = scene_of(random_mesh(kind, kind == Kind::sheets ? 10 : 60, seed));
-      const Surfaces surfaces(scene);
-      Random random(seed + 11);
-      const PaintOrder seen = visible_parts(painter(surfaces, random_view(random, 100, 80)));
-      for (const double width : {0.5, 4.0}) {
-        const PaintOrder hemmed = with_hems(seen, width);
-        hems += (hemmed.corners.size() - seen.corners.size()) / 2;
-        for (int i = 0; i < 1500; ++i) {
-          const double x = random.within(0, 100);
-          const glm::dvec2 at(x, random.within(0, 80));
-          differing += painted_at(seen, at) != painted_at(hemmed, at);
-          ++points;
-        }
-      }
-    }
-  EXPECT_GT(hems, 1000u);
-  // Next to outlines: what is up to 1/1024 pixel beside a polygon counts as hidden by it.
-  EXPECT_LT(double(differing), 2e-4 * double(points));
-}
-
 TEST(VisibleParts, ThreadsChangeNothing) {
   const Scene scene = scene_of(random_mesh(Kind::soup, 600, 2));
   const Surfaces surfaces(scene);
   const PaintOrder order = painter(surfaces, frame(surfaces, 160, 120));
-  const PaintOrder one = visible_parts(order, {}, {.threads = 1}), three = visible_parts(order, {}, {.threads = 3});
+  const VisibleParts one = visible_parts(order, Occluders::all(), {.threads = 1}),
+                     three = visible_parts(order, Occluders::all(), {.threads = 3});
   EXPECT_EQ(ids_of(one), ids_of(three));
   ASSERT_EQ(one.corners.size(), three.corners.size());
   for (std::size_t i = 0; i < one.corners.size(); ++i) ASSERT_EQ(one.corners[i].at, three.corners[i].at);

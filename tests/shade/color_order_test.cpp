@@ -18,10 +18,12 @@ using namespace test;
 /// 16 pixels to the unit.
 constexpr double kSquare = 32 * 32;
 
+/// Hidden or not.
+VisibleParts all_parts(const PaintOrder& order) { return visible_parts(order, Occluders::none()); }
 ColoredOrder figure_of(const Scene& scene, const ColorOptions& options, const Execution& execution = {}) {
   const Surfaces surfaces(scene);
   const View view = front_view();
-  return color_order(surfaces, zbuffer(surfaces, view), painter(surfaces, view), options, execution);
+  return color_order(surfaces, zbuffer(surfaces, view), all_parts(painter(surfaces, view)), options, execution);
 }
 ColorOptions with(Shading shading, double tolerance = 6) {
   ColorOptions options;
@@ -30,12 +32,11 @@ ColorOptions with(Shading shading, double tolerance = 6) {
   return options;
 }
 
-double area_of(const PaintOrder& order, std::size_t i) {
-  const PaintPolygon& polygon = order.polygons[i];
+double area_of(const ColoredOrder& figure, const PaintPolygon& polygon) {
+  const std::span<const glm::dvec2> corners = figure.corners_of(polygon);
   double twice = 0;
-  for (std::size_t k = 0; k < polygon.corner_count; ++k) {
-    const glm::dvec3 p = order.corners[polygon.first_corner + k].at;
-    const glm::dvec3 q = order.corners[polygon.first_corner + (k + 1) % polygon.corner_count].at;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const glm::dvec2 p = corners[k], q = corners[(k + 1) % corners.size()];
     twice += q.x * p.y - p.x * q.y;
   }
   return twice / 2;
@@ -43,8 +44,24 @@ double area_of(const PaintOrder& order, std::size_t i) {
 /// Square pixels by red.
 std::map<int, double> areas_by_red(const ColoredOrder& figure) {
   std::map<int, double> areas;
-  for (std::size_t i = 0; i < figure.colors.size(); ++i) areas[figure.colors[i].r] += area_of(figure.order, i);
+  for (const ColoredShape& shape : figure.shapes)
+    for (const PaintPolygon& polygon : figure.polygons_of(shape)) areas[shape.color.r] += area_of(figure, polygon);
   return areas;
+}
+
+/// Of the polygons that lie over a point.
+std::vector<PrimitiveId> ids_over(const ColoredOrder& figure, const glm::dvec2& at) {
+  std::vector<PrimitiveId> ids;
+  for (const PaintPolygon& polygon : figure.polygons) {
+    const std::span<const glm::dvec2> corners = figure.corners_of(polygon);
+    bool is_within = true;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const glm::dvec2 from = at - corners[k], way = corners[(k + 1) % corners.size()] - corners[k];
+      is_within = is_within && way.x * from.y - way.y * from.x <= 0;  // y points down
+    }
+    if (is_within) ids.push_back(polygon.id);
+  }
+  return ids;
 }
 
 Scene textured_square(Texture texture, Material::Alpha alpha = Material::Alpha::opaque) {
@@ -68,16 +85,17 @@ TEST(ColorOrder, HasTheColoursOfThePicture) {
     const Image picture = shade(surfaces, visible, with(shading).shade);
     const glm::vec4 pixel = color_at(picture, 32, 30);
     const ColoredOrder figure = figure_of(scene, with(shading));
-    ASSERT_EQ(figure.colors.size(), 2u);
-    for (int k = 0; k < 3; ++k) EXPECT_NEAR(figure.colors[0][k], srgb8_of_linear(pixel[k]), 1) << int(shading) << k;
-    EXPECT_EQ(figure.colors[0].a, 255);
+    ASSERT_EQ(figure.polygons.size(), 2u);
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(figure.shapes[0].color[k], srgb8_of_linear(pixel[k]), 1) << int(shading) << k;
+    EXPECT_EQ(figure.shapes[0].color.a, 255);
   }
 }
 
 TEST(ColorOrder, OpacityMultiplies) {
   ColorOptions options;
   options.shade.opacity = 0.5f;
-  for (const glm::u8vec4& color : figure_of(scene_of(square()), options).colors) EXPECT_EQ(color.a, 128);
+  for (const ColoredShape& shape : figure_of(scene_of(square()), options).shapes) EXPECT_EQ(shape.color.a, 128);
 }
 
 TEST(ColorOrder, CutsAlongTheBordersOfTexels) {
@@ -87,7 +105,7 @@ TEST(ColorOrder, CutsAlongTheBordersOfTexels) {
   // Beside borders textures are smoothed over a pixel: what lies there may have a colour between.
   EXPECT_NEAR(areas.at(20), kSquare / 2, 8);
   EXPECT_NEAR(areas.at(230), kSquare / 2, 8);
-  EXPECT_LE(figure.colors.size(), 20u);
+  EXPECT_LE(figure.polygons.size(), 20u);
 }
 
 TEST(ColorOrder, PiecesFillTheirPolygonAndDifferByNoMoreThanTheTolerance) {
@@ -98,15 +116,15 @@ TEST(ColorOrder, PiecesFillTheirPolygonAndDifferByNoMoreThanTheTolerance) {
   for (const double tolerance : {255.0, 40.0, 20.0, 10.0}) {
     const ColoredOrder figure = figure_of(scene, with(Shading::flat, tolerance));
     double area = 0;
-    for (std::size_t i = 0; i < figure.colors.size(); ++i) {
-      EXPECT_GT(area_of(figure.order, i), 0);
-      area += area_of(figure.order, i);
+    for (const PaintPolygon& polygon : figure.polygons) {
+      EXPECT_GT(area_of(figure, polygon), 0);
+      area += area_of(figure, polygon);
     }
     EXPECT_NEAR(area, kSquare, 1e-6);
-    EXPECT_GT(figure.colors.size(), before);
-    before = figure.colors.size();
+    EXPECT_GT(figure.polygons.size(), before);
+    before = figure.polygons.size();
   }
-  EXPECT_EQ(figure_of(scene, with(Shading::flat, 255)).colors.size(), 2u);
+  EXPECT_EQ(figure_of(scene, with(Shading::flat, 255)).polygons.size(), 2u);
 }
 
 /// Whether a point is within a shape of one ring, by crossings.
@@ -121,18 +139,18 @@ bool holds(const Figure& figure, std::size_t shape, const glm::dvec2& at) {
   return is_within;
 }
 
-/// Painted one over the other, pieces with hems look as those without: what is too much lies under later ones.
-TEST(ColorOrder, HemsOfPiecesAreHidden) {
+/// Painted one over the other, pieces with traps look as those without: what is too much lies under later ones.
+TEST(ColorOrder, TrapsOfPiecesAreHidden) {
   Mesh mesh = square();
   mesh.colors.values = {{0.3, 0.3, 0.3, 1}, {1, 1, 1, 1}, {1, 0.3, 0.3, 1}, {0.3, 0.3, 1, 1}};
   const Scene scene = scene_of(mesh, colored({1, 1, 1, 1}));
   ColorOptions options = with(Shading::flat, 10);
   options.groups_pieces = false;
   const Figure figure = outlined(figure_of(scene, options), 4);
-  double with_hems = 0;
+  double with_traps = 0;
   int painted = 0, far = 0;
-  for (std::size_t i = 0; i < figure.shapes.size(); ++i) with_hems += test::area_of(figure, i);
-  EXPECT_GT(with_hems, kSquare * 1.3);
+  for (std::size_t i = 0; i < figure.shapes.size(); ++i) with_traps += test::area_of(figure, i);
+  EXPECT_GT(with_traps, kSquare * 1.3);
   // Of slivers beside cuts, which are narrower than a pixel, colours are less near to the picture's.
   const Surfaces surfaces(scene);
   const View view = front_view();
@@ -155,8 +173,8 @@ TEST(ColorOrder, HemsOfPiecesAreHidden) {
   EXPECT_LE(far, 9);
 }
 
-/// Bands that are narrower than a hem: it goes on under the next ones.
-TEST(ColorOrder, HemsReachUnderMoreThanOnePiece) {
+/// Bands that are narrower than a trap: it goes on under the next ones.
+TEST(ColorOrder, TrapsReachUnderMoreThanOnePiece) {
   Mesh mesh = square();
   mesh.colors.values = {{0, 0, 0, 1}, {1, 1, 1, 1}, {1, 1, 1, 1}, {0, 0, 0, 1}};
   const Scene scene = scene_of(mesh, colored({1, 1, 1, 1}));
@@ -169,7 +187,7 @@ TEST(ColorOrder, HemsReachUnderMoreThanOnePiece) {
   EXPECT_GT(area, kSquare * 3);
 }
 
-TEST(ColorOrder, TranslucentPiecesHaveNoHems) {
+TEST(ColorOrder, TranslucentPiecesHaveNoTraps) {
   Mesh mesh = square();
   mesh.colors.values = {{0.3, 0.3, 0.3, 1}, {1, 1, 1, 1}, {1, 0.3, 0.3, 1}, {0.3, 0.3, 1, 1}};
   const Scene scene = scene_of(mesh, colored({1, 1, 1, 1}));
@@ -186,11 +204,11 @@ TEST(ColorOrder, PolygonsWithoutAreaAreColouredAsWell) {
   const Scene scene = scene_of(square());
   const Surfaces surfaces(scene);
   const View view = front_view();
-  PaintOrder order = painter(surfaces, view);
-  order.polygons.resize(1);
-  for (std::size_t k = 0; k < 3; ++k) order.corners[k].at = {20.0 + 5.0 * double(k), 20.0 + 5.0 * double(k), 3};
-  const ColoredOrder figure = color_order(surfaces, zbuffer(surfaces, view), order);
-  EXPECT_EQ(figure.colors.size(), 1u);
+  VisibleParts parts = all_parts(painter(surfaces, view));
+  parts.polygons.resize(1);
+  for (std::size_t k = 0; k < 3; ++k) parts.corners[k].at = {20.0 + 5.0 * double(k), 20.0 + 5.0 * double(k), 3};
+  const ColoredOrder figure = color_order(surfaces, zbuffer(surfaces, view), parts);
+  EXPECT_EQ(figure.polygons.size(), 1u);
 }
 
 TEST(ColorOrder, ColoursOfPiecesAreThoseOfThePictureThere) {
@@ -199,22 +217,23 @@ TEST(ColorOrder, ColoursOfPiecesAreThoseOfThePictureThere) {
   const Scene scene = scene_of(mesh, colored({1, 1, 1, 1}));
   const Surfaces surfaces(scene);
   const View view = front_view();
-  const Image picture = shade(surfaces, zbuffer(surfaces, view), with(Shading::flat).shade);
+  const Visible visible = zbuffer(surfaces, view);
+  const Image picture = shade(surfaces, visible, with(Shading::flat).shade);
   const ColoredOrder figure = figure_of(scene, with(Shading::flat, 10));
-  const Visible painted = paint(surfaces, figure.order);
   std::size_t asked = 0;
-  for (std::size_t i = 0; i < figure.colors.size(); ++i) {
-    glm::dvec2 middle(0);
-    const PaintPolygon& polygon = figure.order.polygons[i];
-    for (std::size_t k = 0; k < polygon.corner_count; ++k)
-      middle += glm::dvec2(figure.order.corners[polygon.first_corner + k].at) / double(polygon.corner_count);
-    const glm::vec4 pixel = color_at(picture, int(middle.x), int(middle.y));
-    if (area_of(figure.order, i) < 4) continue;
-    ++asked;
-    for (int k = 0; k < 3; ++k) EXPECT_NEAR(figure.colors[i][k], srgb8_of_linear(pixel[k]), 10 + 6) << i;
-  }
+  for (const ColoredShape& shape : figure.shapes)
+    for (const PaintPolygon& polygon : figure.polygons_of(shape)) {
+      glm::dvec2 middle(0);
+      for (const glm::dvec2& corner : figure.corners_of(polygon)) middle += corner / double(polygon.corner_count);
+      const glm::vec4 pixel = color_at(picture, int(middle.x), int(middle.y));
+      if (area_of(figure, polygon) < 4) continue;
+      ++asked;
+      for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(shape.color[k], srgb8_of_linear(pixel[k]), 10 + 6) << polygon.first_corner;
+    }
   EXPECT_GT(asked, 20u);
-  EXPECT_EQ(painted.primitives[32 * 64 + 20], zbuffer(surfaces, view).primitives[32 * 64 + 20]);
+  const std::vector<PrimitiveId> over = ids_over(figure, {20.5, 32.5});
+  EXPECT_EQ(over, std::vector<PrimitiveId>{visible.primitives[32 * 64 + 20]});
 }
 
 TEST(ColorOrder, LeavesHolesOut) {
@@ -236,7 +255,7 @@ TEST(ColorOrder, ShadowsAreDrawn) {
     options.shade.shadows = Shadows::off;
     const ColoredOrder bare = figure_of(scene, options);
     EXPECT_LT(areas_by_red(lit).begin()->first + 30, areas_by_red(bare).begin()->first);
-    EXPECT_GT(lit.colors.size(), bare.colors.size());
+    EXPECT_GT(lit.polygons.size(), bare.polygons.size());
   }
 }
 
@@ -254,13 +273,13 @@ TEST(ColorOrder, LeavesOutWhatLiesBesideThePicture) {
   double widest = 0;
   for (const PaintCorner& corner : order.corners) widest = std::max(widest, std::abs(corner.at.x));
   EXPECT_GT(widest, 1e8);
-  const ColoredOrder figure = color_order(surfaces, zbuffer(surfaces, view), order, with(Shading::lit));
-  for (const PaintCorner& corner : figure.order.corners) {
-    EXPECT_LT(std::abs(corner.at.x - 32), 32.01);
-    EXPECT_LT(std::abs(corner.at.y - 32), 32.01);
+  const ColoredOrder figure = color_order(surfaces, zbuffer(surfaces, view), all_parts(order), with(Shading::lit));
+  for (const glm::dvec2& corner : figure.corners) {
+    EXPECT_LT(std::abs(corner.x - 32), 32.01);
+    EXPECT_LT(std::abs(corner.y - 32), 32.01);
   }
   double area = 0;
-  for (std::size_t i = 0; i < figure.colors.size(); ++i) area += area_of(figure.order, i);
+  for (const PaintPolygon& polygon : figure.polygons) area += area_of(figure, polygon);
   EXPECT_NEAR(area, 64 * 32, 5);  // nearly up to the horizon
 }
 
@@ -269,36 +288,28 @@ TEST(ColorOrder, IsTheSameForAnyNumberOfThreads) {
   const Surfaces surfaces(scene);
   const View view = frame(surfaces, 160, 90);
   const Visible visible = zbuffer(surfaces, view);
-  const PaintOrder order = visible_parts(painter(surfaces, view));
-  const ColoredOrder one = color_order(surfaces, visible, order, {}, {.threads = 1});
-  const ColoredOrder three = color_order(surfaces, visible, order, {}, {.threads = 3});
-  EXPECT_EQ(one.colors, three.colors);
-  EXPECT_EQ(one.shapes, three.shapes);
-  ASSERT_EQ(one.order.corners.size(), three.order.corners.size());
-  for (std::size_t i = 0; i < one.order.corners.size(); ++i)
-    ASSERT_EQ(one.order.corners[i].at, three.order.corners[i].at);
+  const VisibleParts parts = visible_parts(painter(surfaces, view));
+  const ColoredOrder one = color_order(surfaces, visible, parts, {}, {.threads = 1});
+  const ColoredOrder three = color_order(surfaces, visible, parts, {}, {.threads = 3});
+  EXPECT_EQ(one.shapes_of_polygons(), three.shapes_of_polygons());
+  ASSERT_EQ(one.shapes.size(), three.shapes.size());
+  for (std::size_t i = 0; i < one.shapes.size(); ++i) ASSERT_EQ(one.shapes[i].color, three.shapes[i].color);
+  EXPECT_EQ(one.corners, three.corners);
 }
 
 TEST(ColorOrder, RefusesWhatItCannotBe) {
-  const Scene scene = scene_of(square()), other = scene_of(Mesh{});
-  const Surfaces surfaces(scene), empty(other);
+  const Scene scene = scene_of(square()), nothing = scene_of(Mesh{});
+  const Surfaces surfaces(scene), empty(nothing);
   const View view = front_view();
   const Visible visible = zbuffer(surfaces, view);
-  const PaintOrder order = painter(surfaces, view);
-  const auto refused = [&](const ColorOptions& options) {
-    EXPECT_THROW((void)color_order(surfaces, visible, order, options), Error);
-  };
-  refused(with(Shading::flat, -1));
-  refused(with(Shading::flat, std::nan("")));
+  const VisibleParts parts = all_parts(painter(surfaces, view));
   ColorOptions options;
   options.shade.opacity = 2;
-  refused(options);
+  EXPECT_THROW((void)color_order(surfaces, visible, parts, options), Error);
   options = {};
   options.most_polygons = 1;
-  refused(options);
-  EXPECT_THROW((void)color_order(empty, visible, order), Error);
-  EXPECT_THROW((void)color_order(surfaces, zbuffer(surfaces, front_view(32)), order), Error);
-  EXPECT_TRUE(color_order(surfaces, visible, painter(empty, view)).colors.empty());
+  EXPECT_THROW((void)color_order(surfaces, visible, parts, options), Error);
+  EXPECT_TRUE(color_order(surfaces, visible, all_parts(painter(empty, view))).polygons.empty());
 }
 
 }  // namespace

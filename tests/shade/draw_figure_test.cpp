@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "frontmost/frontmost.h"
 #include "shade/figure_support.h"
@@ -34,7 +35,7 @@ TEST(DrawFigure, ShowsWhatIsSeenAlone) {
   const Visible visible = zbuffer(surfaces, view);
   const auto covered = std::count_if(visible.primitives.begin(), visible.primitives.end(),
                                      [](PrimitiveId id) { return id != no_primitive; });
-  // What hems take under neighbours comes on top of it: 4 pixels along each side.
+  // What traps take under neighbours comes on top of it: 4 pixels along each side.
   EXPECT_GE(painted_area(seen), 0.99 * double(covered));
   EXPECT_LT(painted_area(seen), 1.35 * double(covered));
   EXPECT_GT(painted_area(all), 1.5 * double(covered));
@@ -76,6 +77,11 @@ TEST(DrawFigure, RefusesWhatIsTooManyAndWhatHasMoreSamples) {
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::limit_exceeded);
     EXPECT_THAT(error.what(), testing::EndsWith(" polygons, more than 3"));
+  }
+  for (const double tolerance : {-1.0, 256.0, std::nan("")}) {
+    options = flat();
+    options.tolerance = tolerance;
+    EXPECT_THROW((void)draw_figure(surfaces, view, options), Error) << tolerance;
   }
   view.samples = 4;
   EXPECT_THROW((void)draw_figure(surfaces, zbuffer(surfaces, view)), Error);

@@ -18,23 +18,19 @@ inline Tile box(double x, double y, double width, double height, const glm::u8ve
   return {{{x, y}, {x, y + height}, {x + width, y + height}, {x + width, y}}, color};
 }
 
+/// Each a shape by itself.
 inline ColoredOrder order_of(const std::vector<Tile>& tiles) {
   ColoredOrder colored;
-  colored.order.view = front_view();
+  colored.view = front_view();
   for (const Tile& tile : tiles) {
-    const auto id = PrimitiveId(colored.shapes.size());
-    colored.order.polygons.push_back({id, std::uint32_t(tile.corners.size()), colored.order.corners.size()});
-    for (const glm::dvec2& corner : tile.corners) colored.order.corners.push_back({{corner.x, corner.y, 1}, false});
-    colored.shapes.push_back(std::uint32_t(colored.shapes.size()));
-    colored.colors.push_back(tile.color);
+    colored.begin_shape(tile.color);
+    colored.add_polygon(PrimitiveId(colored.polygons.size()), tile.corners);
   }
   return colored;
 }
 
-/// Without hems: nothing hides.
-inline Figure bare(const ColoredOrder& colored) {
-  return outlined(colored, 1, [](PrimitiveId) { return false; });
-}
+/// Without traps: nothing hides.
+inline Figure bare(const ColoredOrder& colored) { return outlined(colored, 1, Occluders::none()); }
 inline double area_of(const Figure& figure, const FigureRing& ring) {
   double twice = 0;
   for (std::size_t k = 0; k < ring.corner_count; ++k) {

@@ -118,7 +118,7 @@ TEST(RayShadows, TheSameForAnyThreadsInstructionSetAndIndex) {
   const Visible visible = zbuffer(surfaces, frame(surfaces, 240, 160, four));
   const RayIndex index(surfaces);
   const Image first = shade(surfaces, visible, {.shadows = Shadows::rays}, {.threads = 1});
-  const Image with_index = shade(surfaces, visible, {.shadows = Shadows::rays, .index = &index}, {.threads = 3});
+  const Image with_index = shade(surfaces, {visible, nullptr, &index}, {.shadows = Shadows::rays}, {.threads = 3});
   const Image scalar = shade(surfaces, visible, {.shadows = Shadows::rays}, {.isa = Isa::scalar});
   EXPECT_EQ(differing(first, with_index), 0u);
   EXPECT_EQ(differing(first, scalar), 0u);

@@ -54,9 +54,8 @@ inline void expect_streams_as_whole(const std::vector<std::string>& paths, std::
   expect_same(excerpt.in_stream(excerpt.visible[0]), whole);
   expect_same(excerpt.in_stream(excerpt.visible[1]), whole_map);
 
-  ShadeOptions options;
-  if (excerpt.seen_by_light) options.seen_by_light = &*excerpt.seen_by_light;
-  EXPECT_EQ(content_hash(shade(excerpt.surfaces(), excerpt.visible[0], options)), content_hash(shade(surfaces, whole)));
+  const ShadeInput input(excerpt.visible[0], excerpt.seen_by_light ? &*excerpt.seen_by_light : nullptr);
+  EXPECT_EQ(content_hash(shade(excerpt.surfaces(), input)), content_hash(shade(surfaces, whole)));
   EXPECT_EQ(content_hash(normal_image(excerpt.surfaces(), excerpt.visible[1])),
             content_hash(normal_image(surfaces, whole_map)));
   EXPECT_EQ(content_hash(id_image(excerpt.surfaces(), excerpt.visible[1], IdKind::object)),

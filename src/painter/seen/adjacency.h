@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Polygons that lie side by side, as those of a mesh do.
+// Which polygons share a side, as those of a mesh do.
 #pragma once
 
 #include "painter/seen/screen_polygons.h"
 
 namespace frontmost::painter_detail {
 
-/// Which polygon lies across a side of another: one that has the same side, to the bit, in the other direction. Both
-/// are convex and counter-clockwise, so they touch there and do not overlap.
+/// The adjacency of polygons on the screen. Two are adjacent where both have the same side, to the bit, in opposite
+/// directions. Both are convex and counter-clockwise, so they touch there and do not overlap.
 class Adjacency {
  public:
   explicit Adjacency(const ScreenPolygons& screen);

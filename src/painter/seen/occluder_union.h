@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether polygons that lie side by side hide an outline together, told without cutting anything.
+// Whether the union of adjacent occluders hides an outline, told without any clipping.
 #pragma once
 
 #include <algorithm>
@@ -36,9 +36,9 @@ class CoveredOutline {
   glm::dvec2 low_{0}, high_{0};
 };
 
-/// Spreads from a polygon that lies over a point of an outline, across the sides of all that it comes to, as far as the
-/// outline reaches. Where there is always one that hides beyond a side, they hide all of the outline together: what
-/// they left open would have a border, and that would be such a side. Not for several threads at once.
+/// Grows a union of occluders, from one that lies over a point of an outline, across those of its sides that cross the
+/// outline. Where an occluder lies beyond each such side, the union hides all of the outline: whatever it left open
+/// would have a border, and that would be a side with no occluder beyond it. Not for several threads at once.
 class OccluderUnion {
  public:
   OccluderUnion(const ScreenPolygons& screen, const Adjacency& adjacency)
@@ -51,8 +51,8 @@ class OccluderUnion {
   };
   /// The outline that is asked about from now on.
   void set(Outline outline) { outline_.set(outline); }
-  /// `first` is a slot that hides a point of the outline. Which others do where they lie says hiders.may_hide(slot),
-  /// and hiders.at(place) the slot of one that lies there; no_index: none.
+  /// Grows from the slot `first`, which hides a point of the outline. hiders.may_hide(slot) says whether a polygon is
+  /// an occluder of it, and hiders.at(place) gives the slot of one that lies there; no_index: none does.
   template <class Hiders>
   Found spread(std::uint32_t first, const Hiders& hiders) {
     begin(first);

@@ -82,7 +82,7 @@ OccluderUnion::Found OcclusionClipper::spread(std::size_t slot, Outline outline,
 }
 
 /// Most are not, and their middles tell.
-bool OcclusionClipper::is_all_hidden(std::size_t slot) {
+bool OcclusionClipper::is_hidden(std::size_t slot) {
   cutter_.begin(screen_.outline(slot));
   cutter_.keep_within(glm::dvec2(0), screen_.size());
   if (cutter_.count() == 0) return false;
@@ -98,7 +98,7 @@ bool OcclusionClipper::is_all_hidden(std::size_t slot) {
   return is_few(cells) && take_covers(slot, screen_.place(slot) + 1, extent, cells);
 }
 
-const OutlineList& OcclusionClipper::look(std::size_t slot) {
+const OutlineList& OcclusionClipper::clip(std::size_t slot) {
   seen_.clear();
   const Extent& extent = screen_.extent(slot);
   if (!(extent.low.x < extent.high.x && extent.low.y < extent.high.y)) return seen_;

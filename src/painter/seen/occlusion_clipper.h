@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is seen of one polygon of an order beside those after it.
+// Clipping of one polygon of an order by the union of the occluders that are painted after it.
 #pragma once
 
 #include <functional>
@@ -10,27 +10,28 @@
 
 namespace frontmost::painter_detail {
 
-/// One polygon after another. Not for several threads at once.
+/// Clips one polygon after another. Not for several threads at once.
 class OcclusionClipper {
  public:
-  /// Whether a polygon is wholly behind a later one where they overlap, both by their places. None: always.
+  /// Whether a polygon is wholly behind a later one where they overlap, both by their places. Without such a function
+  /// it always is: the order says so.
   using IsBehind = std::function<bool(std::uint32_t place, std::uint32_t cover)>;
 
   OcclusionClipper(const ScreenPolygons& screen, const Adjacency& adjacency, const Execution& execution,
                    IsBehind is_behind = {})
       : screen_(screen), poll_(execution), is_behind_(std::move(is_behind)), union_(screen, adjacency) {}
 
-  /// Whether those after the polygon in a slot hide all of it, as far as that is quickly told.
-  [[nodiscard]] bool is_all_hidden(std::size_t slot);
+  /// Whether the polygon in a slot is hidden wholly. False also where that takes long to tell.
+  [[nodiscard]] bool is_hidden(std::size_t slot);
 
-  /// The parts of the polygon in a slot that are seen, until the next call.
-  [[nodiscard]] const OutlineList& look(std::size_t slot);
+  /// The visible parts of the polygon in a slot, which stay until the next call.
+  [[nodiscard]] const OutlineList& clip(std::size_t slot);
 
  private:
   using Corners = std::vector<PaintCorner>;
 
-  /// Looks at the part of a polygon that lies in some cells. \returns true where all of it is seen; then it was not
-  /// added to seen_.
+  /// Clips the part of a polygon that lies in some cells, and adds what is seen to seen_. \returns true where all of it
+  /// is seen; then nothing was added.
   bool is_all_seen(std::size_t slot, const Corners& outline, const PieceGrid::Range& cells);
   /// The same for what is in the cutter, where the cells are few.
   bool is_all_seen_at_once(std::size_t slot, const Extent& own, const PieceGrid::Range& cells);

@@ -2,53 +2,100 @@
 #include "painter/seen/screen_polygons.h"
 
 #include "painter/emit.h"
+#include "view/affine_depth.h"
 
 namespace frontmost::painter_detail {
 namespace {
 
+glm::vec2 place_of(const PaintCorner& corner) { return glm::vec2(corner.at); }
+glm::vec2 place_of(const glm::dvec2& corner) { return glm::vec2(corner); }
+
+/// The box around corners, as far as it lies in the picture.
+template <class Corner>
+Extent extent_within(const glm::vec2& size, std::span<const Corner> corners) {
+  Extent extent{size, glm::vec2(0), 0, 0};
+  for (const Corner& corner : corners) {
+    const glm::vec2 at = place_of(corner);
+    extent.low = glm::min(extent.low, at);
+    extent.high = glm::max(extent.high, at);
+  }
+  extent.low = glm::max(extent.low, glm::vec2(0));
+  extent.high = glm::min(extent.high, size);
+  return extent;
+}
+
+/// The polygons of ScreenPolygons's constructors, by place. Consecutive ones with the same group belong together.
 class OrderPolygons {
  public:
-  explicit OrderPolygons(const PaintOrder& order) : order_(order), most_(order.view.width, order.view.height) {}
+  OrderPolygons(const PaintOrder& order, const Occluders& occluders) : order_(order), occluders_(occluders) {}
 
   [[nodiscard]] std::size_t count() const { return order_.polygons.size(); }
-  [[nodiscard]] PrimitiveId id(std::size_t place) const { return order_.polygons[place].id; }
+  [[nodiscard]] std::uint32_t group(std::size_t place) const { return order_.polygons[place].id; }
+  [[nodiscard]] bool is_occluder(std::size_t place) const { return occluders_.contain(order_.polygons[place].id); }
   [[nodiscard]] std::uint32_t corner_count(std::size_t place) const { return order_.polygons[place].corner_count; }
   void copy(std::size_t place, PaintCorner* corners) const {
-    const PaintCorner* const from = order_.corners.data() + order_.polygons[place].first_corner;
-    std::copy(from, from + corner_count(place), corners);
+    for (PaintCorner corner : corners_of(place)) {
+      corner.at.z = affine_depth(order_.view, corner.at.z);
+      *corners++ = corner;
+    }
   }
   [[nodiscard]] Extent extent(std::size_t place) const {
-    Extent extent{most_, glm::vec2(0), 0, 0};
-    for (std::size_t i = 0; i < corner_count(place); ++i) {
-      const glm::vec2 at(order_.corners[order_.polygons[place].first_corner + i].at);
-      extent.low = glm::min(extent.low, at);
-      extent.high = glm::max(extent.high, at);
-    }
-    extent.low = glm::max(extent.low, glm::vec2(0));
-    extent.high = glm::min(extent.high, most_);
-    return extent;
+    return extent_within({order_.view.width, order_.view.height}, corners_of(place));
   }
 
  private:
+  [[nodiscard]] Outline corners_of(std::size_t place) const {
+    return {order_.corners.data() + order_.polygons[place].first_corner, corner_count(place)};
+  }
+
   const PaintOrder& order_;
-  const glm::vec2 most_;
+  const Occluders& occluders_;
 };
 
 class PiecePolygons {
  public:
-  PiecePolygons(const Pieces& pieces, const std::vector<std::uint32_t>& members) : pieces_(pieces), members_(members) {}
+  PiecePolygons(const Pieces& pieces, const std::vector<std::uint32_t>& members, const View& view,
+                const Occluders& occluders)
+      : pieces_(pieces), members_(members), view_(view), occluders_(occluders) {}
 
   [[nodiscard]] std::size_t count() const { return members_.size(); }
-  [[nodiscard]] PrimitiveId id(std::size_t place) const { return pieces_.face(members_[place]).id; }
+  [[nodiscard]] std::uint32_t group(std::size_t place) const { return pieces_.face(members_[place]).id; }
+  [[nodiscard]] bool is_occluder(std::size_t place) const { return occluders_.contain(group(place)); }
   [[nodiscard]] std::uint32_t corner_count(std::size_t place) const {
     return painter_detail::corner_count(pieces_, members_[place]);
   }
-  void copy(std::size_t place, PaintCorner* corners) const { emit(pieces_, members_[place], corners); }
+  void copy(std::size_t place, PaintCorner* corners) const {
+    emit(pieces_, members_[place], corners);
+    for (std::size_t i = 0; i < corner_count(place); ++i) corners[i].at.z = affine_depth(view_, corners[i].at.z);
+  }
   [[nodiscard]] const Extent& extent(std::size_t place) const { return pieces_.extent(members_[place]); }
 
  private:
   const Pieces& pieces_;
   const std::vector<std::uint32_t>& members_;
+  const View& view_;
+  const Occluders& occluders_;
+};
+
+class ListedPolygons {
+ public:
+  ListedPolygons(std::span<const ScreenPolygon> polygons, const View& view)
+      : polygons_(polygons), size_(view.width, view.height) {}
+
+  [[nodiscard]] std::size_t count() const { return polygons_.size(); }
+  [[nodiscard]] std::uint32_t group(std::size_t place) const { return polygons_[place].group; }
+  [[nodiscard]] bool is_occluder(std::size_t place) const { return polygons_[place].is_occluder; }
+  [[nodiscard]] std::uint32_t corner_count(std::size_t place) const {
+    return std::uint32_t(polygons_[place].corners.size());
+  }
+  void copy(std::size_t place, PaintCorner* corners) const {
+    for (const glm::dvec2& at : polygons_[place].corners) *corners++ = {glm::dvec3(at, 1), false};
+  }
+  [[nodiscard]] Extent extent(std::size_t place) const { return extent_within(size_, polygons_[place].corners); }
+
+ private:
+  const std::span<const ScreenPolygon> polygons_;
+  const glm::vec2 size_;
 };
 
 /// Pixels beyond the picture. Sides that reach farther, as they may next to the eye's plane, are cut there: to doubles
@@ -101,24 +148,21 @@ std::vector<std::uint32_t> slots_of(const std::vector<Extent>& extents, const Pi
 }  // namespace
 
 template <class Polygons>
-ScreenPolygons::ScreenPolygons(const Polygons& polygons, const View& view, const Hides& hides)
+ScreenPolygons::ScreenPolygons(const Polygons& polygons, const View& view)
     : size_(view.width, view.height), slots_(polygons.count()) {
   const std::vector<Extent> extents = extents_of(polygons);
   grid_ = PieceGrid(extents);
   slot_of_ = slots_of(extents, grid_);
   std::uint32_t first_place = 0;
   for (std::uint32_t place = 0; place < slot_of_.size(); ++place) {
-    const PrimitiveId id = polygons.id(place);
-    if (place == 0 || id != polygons.id(place - 1)) first_place = place;
-    slots_[slot_of_[place]] = {extents[place],     0, place, first_place, polygons.corner_count(place),
-                               !hides || hides(id)};
+    if (place == 0 || polygons.group(place) != polygons.group(place - 1)) first_place = place;
+    slots_[slot_of_[place]] = {
+        extents[place], 0, place, first_place, polygons.corner_count(place), polygons.is_occluder(place)};
   }
   make_room();
   std::vector<std::size_t> far_slots;
   for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
-    PaintCorner* const first = corners_.data() + slots_[slot].first_corner;
-    polygons.copy(slots_[slot].place, first);
-    for (std::size_t i = 0; i < slots_[slot].corner_count; ++i) first[i].at.z = affine_depth(view, first[i].at.z);
+    polygons.copy(slots_[slot].place, corners_.data() + slots_[slot].first_corner);
     if (!is_within_reach(outline(slot))) far_slots.push_back(slot);
   }
   if (!far_slots.empty()) cut_at_reach(far_slots);
@@ -171,11 +215,14 @@ void ScreenPolygons::cut_at_reach(const std::vector<std::size_t>& far_slots) {
   }
 }
 
-ScreenPolygons::ScreenPolygons(const PaintOrder& order, const Hides& hides)
-    : ScreenPolygons(OrderPolygons(order), order.view, hides) {}
+ScreenPolygons::ScreenPolygons(const PaintOrder& order, const Occluders& occluders)
+    : ScreenPolygons(OrderPolygons(order, occluders), order.view) {}
 
 ScreenPolygons::ScreenPolygons(const Pieces& pieces, const std::vector<std::uint32_t>& members, const View& view,
-                               const Hides& hides)
-    : ScreenPolygons(PiecePolygons(pieces, members), view, hides) {}
+                               const Occluders& occluders)
+    : ScreenPolygons(PiecePolygons(pieces, members, view, occluders), view) {}
+
+ScreenPolygons::ScreenPolygons(std::span<const ScreenPolygon> polygons, const View& view)
+    : ScreenPolygons(ListedPolygons(polygons, view), view) {}
 
 }  // namespace frontmost::painter_detail

@@ -1,12 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// Polygons as they lie on the screen.
+// Polygons as they lie on the screen: what every question of this folder is asked about. The folder tells what hides
+// what.
+//
+//   place in the order     1 ____________        An occluder is a polygon that nothing is seen through. It hides what
+//   of painting              |   2 ______|___    lies under it and is painted earlier.
+//                            |    |      |   |
+//                            |    |   3 _|___|_  - clip: what is seen of 1 is 1 without the union of the occluders 2
+//                            |    |    | |   | |   and 3 (occlusion_clipper.h, by outlines.h)
+//                            |____|____|_|   | | - union of occluders: 2 and 3 may hide a polygon together that none
+//                                 |____|_____| |   of them hides alone (occluder_union.h)
+//                                      |_______| - adjacency: polygons of a mesh share sides, so a union is followed
+//                                                  from side to side (adjacency.h), and where no side without a
+//                                                  neighbour crosses, nothing begins or ends (unoverlapped.h)
+//
+//   visible_parts.cpp   clips every polygon of an order by the later ones
+//   hidden.h            leaves out what is hidden before there is an order, by plane tests for which of two is before
 #pragma once
-
-#include <functional>
 
 #include "painter/order/piece_grid.h"
 #include "painter/seen/outlines.h"
-#include "view/affine_depth.h"
 
 namespace frontmost::painter_detail {
 
@@ -20,15 +32,24 @@ namespace frontmost::painter_detail {
   return box;
 }
 
-/// All polygons of an order on the screen, with depths affine. They have places in the order, and are kept in slots in
-/// the order of the grid's cells: what is near on the screen is near in memory, for every other one is read beside its
-/// neighbours.
+/// A polygon that is told by its outline alone: convex, and counter-clockwise as it is seen.
+struct ScreenPolygon {
+  std::span<const glm::dvec2> corners;  ///< pixels, at most some thousand beyond the picture
+  std::uint32_t group = 0;              ///< consecutive polygons of one group look the same
+  bool is_occluder = true;              ///< nothing is seen through it
+};
+
+/// All polygons of an order on the screen, with depths affine. A polygon has a place in the order of painting. It is
+/// kept in a slot, and slots are in the order of the grid's cells: what is near on the screen is near in memory,
+/// because a polygon is always read together with its neighbours.
 class ScreenPolygons {
  public:
-  using Hides = std::function<bool(PrimitiveId)>;
-  ScreenPolygons(const PaintOrder& order, const Hides& hides);
+  ScreenPolygons(const PaintOrder& order, const Occluders& occluders);
   /// Of pieces in the order in which they are listed.
-  ScreenPolygons(const Pieces& pieces, const std::vector<std::uint32_t>& members, const View& view, const Hides& hides);
+  ScreenPolygons(const Pieces& pieces, const std::vector<std::uint32_t>& members, const View& view,
+                 const Occluders& occluders);
+  /// Without depths.
+  ScreenPolygons(std::span<const ScreenPolygon> polygons, const View& view);
 
   [[nodiscard]] std::size_t count() const { return slots_.size(); }
   /// The place of the polygon in a slot.
@@ -40,7 +61,7 @@ class ScreenPolygons {
   /// All outlines one after another, in the order of the slots, and where in there that of a slot begins.
   [[nodiscard]] Outline corners() const { return {corners_.data(), corners_.size()}; }
   [[nodiscard]] std::size_t first_corner(std::size_t slot) const { return slots_[slot].first_corner; }
-  /// The first of the consecutive places of the same primitive.
+  /// The first of the consecutive places of the same primitive, or of the same group.
   [[nodiscard]] std::uint32_t first_place(std::size_t slot) const { return slots_[slot].first_place; }
   [[nodiscard]] const Extent& extent(std::size_t slot) const { return slots_[slot].extent; }
   /// Hides what is behind it, and has an area.
@@ -67,7 +88,7 @@ class ScreenPolygons {
   /// Cuts outlines where they are too far from the picture for their sides to have a place in it.
   void cut_at_reach(const std::vector<std::size_t>& far_slots);
   template <class Polygons>
-  ScreenPolygons(const Polygons& polygons, const View& view, const Hides& hides);
+  ScreenPolygons(const Polygons& polygons, const View& view);
 
   const glm::dvec2 size_;
   PieceGrid grid_;

@@ -1,77 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
-// Orders made of what is kept of every polygon of another.
+// Lists of what is made of each polygon on the screen: made slot by slot, in several threads, and put together in the
+// order of painting.
 #pragma once
 
 #include <atomic>
+#include <type_traits>
 #include <vector>
 
 #include "base/parallel.h"
 #include "base/pool.h"
-#include "painter/seen/occlusion_clipper.h"
+#include "painter/seen/screen_polygons.h"
 
 namespace frontmost::painter_detail {
 
-inline constexpr std::size_t kPolygonsPerPart = 1024;
+inline constexpr std::size_t slots_per_list = 1024;
 
-/// What is kept of consecutive slots.
-struct Parts {
-  std::vector<PaintPolygon> polygons;
-  std::vector<PaintCorner> corners;
-  std::vector<std::size_t> ends;  ///< by slot: of its polygons
-};
-
-/// In the order of their polygons.
-inline PaintOrder assemble(const PaintOrder& order, const ScreenPolygons& screen, const std::vector<Parts>& lists) {
-  PaintOrder made;
-  made.view = order.view;
-  made.steps = order.steps;
-  std::size_t polygons = 0, corners = 0;
-  for (const Parts& parts : lists) {
-    polygons += parts.polygons.size();
-    corners += parts.corners.size();
+/// Calls add(worker, slot, list) for every slot, which adds what is made of one polygon to a List; each thread has a
+/// worker of its own, made by new_worker(). \returns the list of all, by place. `name` is that of the progress.
+///
+/// A List has add_polygon(other, i), which adds what the list `other` has of its i-th polygon, and reserve(lists).
+template <class List, class NewWorker, class Add>
+List list_by_place(const ScreenPolygons& screen, const Execution& execution, const char* name,
+                   const NewWorker& new_worker, const Add& add) {
+  const std::size_t count = screen.count();
+  std::vector<List> lists((count + slots_per_list - 1) / slots_per_list);
+  Pool<typename std::invoke_result_t<NewWorker>::element_type> workers;
+  std::atomic<std::size_t> done{0};
+  parallel_for(execution, count, slots_per_list, [&](std::size_t begin, std::size_t end) {
+    const auto worker = workers.borrow(new_worker);
+    for (std::size_t slot = begin; slot < end; ++slot) add(*worker, slot, lists[begin / slots_per_list]);
+    report_progress(execution, name, double(done += end - begin) / double(count));
+  });
+  List all;
+  all.reserve(lists);
+  for (std::uint32_t place = 0; place < count; ++place) {
+    const std::size_t slot = screen.slot(place);
+    all.add_polygon(lists[slot / slots_per_list], slot % slots_per_list);
   }
-  made.polygons.reserve(polygons);
-  made.corners.reserve(corners);
-  for (std::uint32_t place = 0; place < screen.count(); ++place) {
-    const std::size_t slot = screen.slot(place), in_part = slot % kPolygonsPerPart;
-    const Parts& parts = lists[slot / kPolygonsPerPart];
-    for (std::size_t i = in_part == 0 ? 0 : parts.ends[in_part - 1]; i < parts.ends[in_part]; ++i) {
-      PaintPolygon polygon = parts.polygons[i];
-      const PaintCorner* const from = parts.corners.data() + polygon.first_corner;
-      polygon.first_corner = made.corners.size();
-      made.polygons.push_back(polygon);
-      made.corners.insert(made.corners.end(), from, from + polygon.corner_count);
-    }
-  }
-  return made;
+  return all;
 }
 
-/// Makes an order of what look(clipper, slot, keep) keeps of every polygon.
-template <class Look>
-PaintOrder map_polygons(const PaintOrder& order, const ScreenPolygons& screen, const Adjacency& adjacency,
-                        const Execution& execution, const Look& look) {
-  const std::size_t count = screen.count();
-  std::vector<Parts> lists((count + kPolygonsPerPart - 1) / kPolygonsPerPart);
-  Pool<OcclusionClipper> clippers;
-  std::atomic<std::size_t> done{0};
-  parallel_for(execution, count, kPolygonsPerPart, [&](std::size_t begin, std::size_t end) {
-    const auto clipper =
-        clippers.borrow([&] { return std::make_unique<OcclusionClipper>(screen, adjacency, execution); });
-    Parts& parts = lists[begin / kPolygonsPerPart];
-    for (std::size_t slot = begin; slot < end; ++slot) {
-      const PrimitiveId id = order.polygons[screen.place(slot)].id;
-      look(*clipper, slot, [&](Outline outline) {
-        parts.polygons.push_back({id, std::uint32_t(outline.size()), parts.corners.size()});
-        for (const PaintCorner& corner : outline) {
-          const double depth = affine_depth(order.view, corner.at.z);  // its own inverse
-          parts.corners.push_back({{corner.at.x, corner.at.y, depth}, corner.is_cut});
-        }
-      });
-      parts.ends.push_back(parts.polygons.size());
-    }
-    report_progress(execution, "visible parts", double(done += end - begin) / double(count));
-  });
-  return assemble(order, screen, lists);
+/// Room for all that lists have in one of their vectors.
+template <class T, class List>
+void reserve_sum(std::vector<T>& all, const std::vector<List>& lists, std::vector<T> List::*member) {
+  std::size_t sum = 0;
+  for (const List& list : lists) sum += (list.*member).size();
+  all.reserve(sum);
 }
 
 }  // namespace frontmost::painter_detail

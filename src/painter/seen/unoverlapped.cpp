@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many polygons lie over a point changes only at sides without a neighbour: at all others one ends where the next
-// begins. Such open sides are few in meshes. A polygon that none of them crosses has the same number all over, and so
-// have those across its sides where none lies; where it is 1, the polygon itself is all that there is.
+// The number of polygons over a point of the screen changes only at open sides, those without an adjacent polygon: at
+// all others one polygon ends where the next begins. Meshes have few open sides. So the number is the same all over a
+// polygon that no open side crosses, and all over those across its sides where no open side lies. Where the number is
+// 1, the polygon itself is all that there is.
 #include "painter/seen/unoverlapped.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Polygons that nothing lies over or under, told by the few sides where surfaces end.
+// Polygons that no other polygon overlaps on the screen, told by the few sides that have no neighbour.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace frontmost::painter_detail {
 
-/// By slot: 1 where surely no other polygon overlaps any part of it on the screen, those with `gone[slot]` apart, which
-/// are not there; `gone` empty: all are. Of scenes with few neighbours none is found.
+/// By slot: 1 where surely no other polygon overlaps the one in it. Polygons with `gone[slot]` do not count; an empty
+/// `gone` stands for none. Finds nothing in scenes whose polygons share few sides.
 [[nodiscard]] std::vector<std::uint8_t> find_unoverlapped(const ScreenPolygons& screen, const Adjacency& adjacency,
                                                           const std::vector<std::uint8_t>& gone,
                                                           const Execution& execution);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What hides the places beside a polygon of an order.
+// The occluders beside a polygon: under these it may have traps.
 #pragma once
 
 #include <vector>
@@ -10,9 +10,9 @@
 
 namespace frontmost::painter_detail {
 
-/// Of one polygon after another. Beside it hide those after it, and parts of the same primitive, also before it: these
-/// show nothing else than it does. They are listed once for all that is asked about a polygon, and most polygons have
-/// few. Not for several threads at once.
+/// Answers questions about one polygon after another. A trap is hidden by occluders that are painted after the polygon,
+/// and by those of its own group wherever they are in the order, because they look the same. They are listed once for
+/// all questions about a polygon, and most polygons have few. Not for several threads at once.
 class NearbyOccluders {
  public:
   NearbyOccluders(const ScreenPolygons& screen, const Adjacency& adjacency, const Execution& execution)

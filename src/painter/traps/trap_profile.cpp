@@ -9,7 +9,7 @@ namespace {
 
 /// Heights change by so much for every pixel along a side.
 constexpr double kSteepest = 1;
-/// Pixels that a hem ends before what is open above it, or that part of the way to it.
+/// Pixels that a trap ends before what is open above it, or that part of the way to it.
 constexpr double kProfileMargin = 1, kProfileMarginPart = 0.6;
 /// Of the square of the greatest height: the area that a corner must be worth.
 constexpr double kLeastGain = 1.0 / 16;
@@ -34,7 +34,7 @@ void TrapProfile::add_open(const OutlineClipper& open) {
   }
 }
 
-const std::vector<TrapProfile::Knot>& TrapProfile::fit(double length, double most) {
+const std::vector<TrapKnot>& TrapProfile::fit(double length, double most) {
   place_knots(length, most);
   knots_.clear();
   for (const double along : places_) knots_.push_back({along, height_at(along, most)});
@@ -82,7 +82,7 @@ void TrapProfile::leave_out(double least_gain) {
     std::size_t best = 0;
     double least = least_gain;
     for (std::size_t i = 1; i + 1 < knots_.size(); ++i) {
-      const Knot &a = knots_[i - 1], &b = knots_[i], &c = knots_[i + 1];
+      const TrapKnot &a = knots_[i - 1], &b = knots_[i], &c = knots_[i + 1];
       const double part = (b.along - a.along) / (c.along - a.along);
       const double above = b.height - (a.height + (c.height - a.height) * part);
       const double gain = 0.5 * above * (c.along - a.along);

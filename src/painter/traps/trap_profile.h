@@ -1,26 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a polygon may reach out along a side, where others hide only a part of what is beside it.
+// How high a trap may be along a side, where occluders hide only a part of what is beside it.
 #pragma once
 
 #include <vector>
 
 #include "painter/seen/outlines.h"
+#include "painter/traps/trap.h"
 
 namespace frontmost::painter_detail {
 
 /// Heights above a side, on straight lines between knots. Not for several threads at once.
 class TrapProfile {
  public:
-  struct Knot {
-    double along, height;  ///< pixels
-  };
   /// For a side from a place on, whose way has unit length.
   void begin(const glm::dvec2& from, const glm::dvec2& way);
   /// Parts of what is beside it that are not hidden.
   void add_open(const OutlineClipper& open);
-  /// As high as is hidden, `most` at most; less towards what is open, and some way from it, so that no rim of a hem
-  /// runs along an outline: viewers would blend both, and it would grow bold.
-  [[nodiscard]] const std::vector<Knot>& fit(double length, double most);
+  /// As high as is hidden, `most` at most; less towards what is open, and some way from it, so that no rim of a
+  /// trap runs along an outline: viewers would blend both, and it would grow bold.
+  [[nodiscard]] const std::vector<TrapKnot>& fit(double length, double most);
 
  private:
   struct Part {
@@ -34,7 +32,7 @@ class TrapProfile {
   std::vector<glm::dvec2> corners_;  ///< along the side, and above it
   std::vector<Part> parts_;
   std::vector<double> places_;
-  std::vector<Knot> knots_;
+  std::vector<TrapKnot> knots_;
 };
 
 }  // namespace frontmost::painter_detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The whole way from surfaces to a figure: the painter's order, what is seen of it, colours, shapes and outlines.
-#include <functional>
+#include <algorithm>
 
 #include "frontmost/shade.h"
 #include "frontmost/zbuffer.h"
@@ -11,28 +11,41 @@ namespace {
 
 /// Pixels that a polygon reaches under its neighbours, against the hairlines of viewers that blend rims. No lines
 /// around polygons: they make everything wider, in poppler by much more than they are wide.
-constexpr double kHem = 4;
+constexpr double kTrap = 4;
 
-using Hides = std::function<bool(PrimitiveId)>;
+/// A triangle with holes is no occluder as long as they are not cut out.
+enum class Holes : std::uint8_t { in_triangles, cut_out };
 
-/// Of which triangles nothing behind is seen: neither through them nor, as long as holes are not cut out, through
-/// their holes.
-Hides hiding(const Surfaces& surfaces, const FigureOptions& options, bool has_cut_holes) {
-  const bool is_clear = options.shade.opacity < 1;
-  return [=, &surfaces](PrimitiveId id) {
+Occluders occluders_of(const Surfaces& surfaces, const FigureOptions& options, Holes holes) {
+  if (options.shade.opacity < 1) return Occluders::none();
+  return Occluders::where([&surfaces, holes](PrimitiveId id) {
     const Scene& scene = surfaces.scene();
     const PrimitiveSource source = surfaces.source(id);
     const std::uint32_t material = scene.meshes[source.mesh].material_of(source.triangle);
     const Material::Alpha alpha = material == no_index ? Material::Alpha::opaque : scene.materials[material].alpha;
-    return !is_clear && (alpha == Material::Alpha::opaque || (has_cut_holes && alpha == Material::Alpha::mask));
-  };
+    return alpha == Material::Alpha::opaque || (holes == Holes::cut_out && alpha == Material::Alpha::mask);
+  });
 }
 
-PaintOrder order_of(const Surfaces& surfaces, const View& view, const FigureOptions& options,
-                    const Execution& execution) {
-  if (!options.visible_only) return painter(surfaces, view, {}, execution);
-  const Hides hides = hiding(surfaces, options, false);
-  return visible_parts(painter(surfaces, view, {.hides = hides}, execution), hides, execution);
+/// Next to the eye polygons are millions of pixels wide, and all of them would be looked at.
+bool reaches_beyond_picture(const PaintOrder& order) {
+  const glm::dvec2 size(order.view.width, order.view.height);
+  return std::any_of(order.corners.begin(), order.corners.end(), [&](const PaintCorner& corner) {
+    return !(corner.at.x > -1 && corner.at.y > -1 && corner.at.x < size.x + 1 && corner.at.y < size.y + 1);
+  });
+}
+
+/// All of an order within the picture, hidden or not.
+VisibleParts all_parts(PaintOrder order, const Execution& execution) {
+  if (reaches_beyond_picture(order)) return visible_parts(order, Occluders::none(), execution);
+  return {order.view, std::move(order.polygons), std::move(order.corners)};
+}
+
+VisibleParts parts_of(const Surfaces& surfaces, const View& view, const FigureOptions& options,
+                      const Execution& execution) {
+  if (!options.visible_only) return all_parts(painter(surfaces, view, {}, execution), execution);
+  const Occluders occluders = occluders_of(surfaces, options, Holes::in_triangles);
+  return visible_parts(painter(surfaces, view, {.occluders = occluders}, execution), occluders, execution);
 }
 
 void check_count(std::size_t polygons, const FigureOptions& options) {
@@ -43,17 +56,19 @@ void check_count(std::size_t polygons, const FigureOptions& options) {
 
 }  // namespace
 
-Figure draw_figure(const Surfaces& surfaces, const Visible& visible, const FigureOptions& options,
+Figure draw_figure(const Surfaces& surfaces, const ShadeInput& input, const FigureOptions& options,
                    const Execution& execution) {
-  if (visible.view.samples != 1)
+  if (input.visible.view.samples != 1)
     throw Error(ErrorCode::bad_argument, "figure: what is visible must have one sample a pixel");
-  const PaintOrder order = order_of(surfaces, visible.view, options, execution);
-  check_count(order.polygons.size(), options);
+  if (!(options.tolerance >= 0 && options.tolerance <= 255))
+    throw Error(ErrorCode::bad_argument, "figure: tolerance: must be 0 to 255");
+  const VisibleParts parts = parts_of(surfaces, input.visible.view, options, execution);
+  check_count(parts.polygons.size(), options);
   const ColorOptions coloring{options.shade, options.tolerance, options.merges_neighbours, options.most_polygons};
-  ColoredOrder colored = color_order(surfaces, visible, order, coloring, execution);
+  ColoredOrder colored = color_order(surfaces, input, parts, coloring, execution);
   if (options.merges_neighbours) colored = merge_neighbours(colored, execution);
   colored = gather_sheets(std::move(colored), execution);
-  Figure figure = outlined(colored, kHem, hiding(surfaces, options, true), execution);
+  Figure figure = outlined(colored, kTrap, occluders_of(surfaces, options, Holes::cut_out), execution);
   figure.title = surfaces.scene().name;
   figure.background = options.shade.background;
   return figure;

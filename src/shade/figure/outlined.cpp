@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-
 #include "base/float_environment.h"
 #include "base/parallel.h"
-#include "shade/figure/check_figure.h"
-#include "shade/figure/colored_order.h"
 #include "shade/figure/figure_traps.h"
 #include "shade/figure/side_net.h"
 
@@ -12,79 +8,59 @@ namespace frontmost {
 namespace {
 
 using namespace shading;
+using painter_detail::TrapList;
+using painter_detail::TrappedCorner;
 
+/// Writes outlines with their traps into a figure.
 class Outliner {
  public:
-  Outliner(Figure& figure, FigureTraps& hems) : figure_(figure), hems_(hems) {}
+  Outliner(Figure& figure, const TrapList& traps) : figure_(figure), traps_(traps) {}
 
-  void begin_shape(const glm::u8vec4& color, bool is_beside_last) {
-    const std::uint32_t sheet = figure_.shapes.empty() ? 0 : figure_.shapes.back().sheet + !is_beside_last;
+  void begin_shape(const glm::u8vec4& color, bool is_in_last_sheet) {
+    const std::uint32_t sheet = figure_.shapes.empty() ? 0 : figure_.shapes.back().sheet + !is_in_last_sheet;
     figure_.shapes.push_back({color, 0, figure_.rings.size(), sheet});
   }
-  void add_ring(std::span<const NetCorner> sides) {
-    figure_.rings.push_back({figure_.corners.size(), 0});
+  void add_ring(std::span<const TrappedCorner> outline) {
+    const std::size_t first = figure_.corners.size();
+    write_outline(traps_, outline, figure_.corners);
+    figure_.rings.push_back({first, std::uint32_t(figure_.corners.size() - first)});
     ++figure_.shapes.back().ring_count;
-    for (std::size_t i = 0; i < sides.size(); ++i) {
-      add(sides[i].at);
-      if (sides[i].hem != no_hem) add_hem(sides[i], sides[i + 1 == sides.size() ? 0 : i + 1].at);
-    }
   }
 
  private:
-  void add(const glm::dvec2& corner) {
-    figure_.corners.push_back(corner);
-    ++figure_.rings.back().corner_count;
-  }
-  /// Around a corner two hems come from the same place: the corner is within them.
-  void add_hem(const NetCorner& from, const glm::dvec2& to) {
-    std::span<const glm::dvec2> hem = hems_.part(from.hem, from.at, to);
-    std::vector<glm::dvec2>& corners = figure_.corners;
-    if (!hem.empty() && figure_.rings.back().corner_count > 1 && corners[corners.size() - 2] == hem[0]) {
-      corners.pop_back();
-      --figure_.rings.back().corner_count;
-      hem = hem.subspan(1);
-    }
-    for (const glm::dvec2& corner : hem) add(corner);
-  }
-
   Figure& figure_;
-  FigureTraps& hems_;
+  const TrapList& traps_;
 };
-
-/// Whether consecutive polygons are in one translucent sheet.
-bool are_in_sheet(const ColoredOrder& colored, std::size_t first, std::size_t second) {
-  return !colored.sheets.empty() && colored.colors[first].a < 255 && colored.sheets[first] == colored.sheets[second];
-}
 
 }  // namespace
 
-Figure outlined(const ColoredOrder& colored, double hem, const std::function<bool(PrimitiveId)>& hides,
-                const Execution& execution) {
-  check_figure(colored);
-  FigureTraps hems(colored, hem, hides, execution);
+Figure outlined(const ColoredOrder& colored, double width, const Occluders& occluders, const Execution& execution) {
+  const TrapList traps = figure_traps(colored, width, occluders, execution);
   const IeeeScope ieee;
-  const std::size_t count = colored.colors.size();
   Figure figure;
-  figure.view = colored.order.view;
-  figure.shapes.reserve(count);
-  figure.rings.reserve(count);
-  figure.corners.reserve(colored.order.corners.size() * 2);  // about what hems add
-  Outliner outliner(figure, hems);
+  figure.view = colored.view;
+  figure.shapes.reserve(colored.shapes.size());
+  figure.rings.reserve(colored.shapes.size());
+  figure.corners.reserve(colored.corners.size() * 2);  // about what traps add
+  Outliner outliner(figure, traps);
   SideNet net;
-  for (std::size_t begin = 0, end; begin < count; begin = end) {
-    for (end = begin + 1; end < count && colored.shapes[end] == colored.shapes[begin];) ++end;
+  std::vector<TrappedCorner> corners;
+  const ColoredShape* before = nullptr;
+  for (const ColoredShape& shape : colored.shapes) {
     check_cancelled(execution);
-    outliner.begin_shape(colored.colors[begin], begin > 0 && are_in_sheet(colored, begin - 1, begin));
-    if (end == begin + 1) {
-      outliner.add_ring(hems.sides(begin));
+    outliner.begin_shape(shape.color, before && shape.color.a < 255 && before->sheet == shape.sheet);
+    before = &shape;
+    net.clear();
+    for (std::size_t i = shape.first_polygon; i < shape.first_polygon + shape.polygon_count; ++i) {
+      traps.set_corners(i, colored.corners_of(colored.polygons[i]), corners);
+      if (shape.polygon_count > 1) net.add(corners, std::uint32_t(i));
+    }
+    if (shape.polygon_count == 1) {
+      outliner.add_ring(corners);
       continue;
     }
-    net.clear();
-    for (std::size_t i = begin; i < end; ++i) {
-      net.add(hems.sides(i), std::uint32_t(i));
-    }
     net.weave();
-    net.for_each_ring([&](std::span<const NetCorner> ring) { outliner.add_ring(ring); });
+    net.for_each_ring([&](std::span<const TrappedCorner> ring) { outliner.add_ring(ring); });
   }
   return figure;
 }

@@ -16,14 +16,21 @@ glm::dvec2 pixels(const glm::i64vec2& p) { return glm::dvec2(p) / kUnits; }
 
 }  // namespace
 
-void SideNet::add(std::span<const NetCorner> corners, std::uint32_t outline) {
+void SideNet::add_side(const glm::dvec2& from, const glm::dvec2& to, std::uint32_t outline, std::uint32_t trap) {
   const auto rounded = [](const glm::dvec2& p) {
     return Point(std::llround(p.x * kUnits), std::llround(p.y * kUnits));
   };
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Point from = rounded(corners[i].at), to = rounded(corners[i + 1 == corners.size() ? 0 : i + 1].at);
-    if (from != to) raw_.push_back({from, to, outline, corners[i].hem});
-  }
+  if (rounded(from) != rounded(to)) raw_.push_back({rounded(from), rounded(to), outline, trap});
+}
+
+void SideNet::add(std::span<const Corner> corners, std::uint32_t outline) {
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    add_side(corners[i].at, corners[i + 1 == corners.size() ? 0 : i + 1].at, outline, corners[i].trap);
+}
+
+void SideNet::add(std::span<const glm::dvec2> corners, std::uint32_t outline) {
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    add_side(corners[i], corners[i + 1 == corners.size() ? 0 : i + 1], outline, painter_detail::no_trap);
 }
 
 void SideNet::sort_points() {
@@ -95,10 +102,10 @@ void SideNet::weave() {
     find_between(side.from, side.to);
     std::uint32_t from = number(side.from);
     for (const auto& [along, point] : between_) {
-      sides_.push_back({from, point, side.outline, side.hem});
+      sides_.push_back({from, point, side.outline, side.trap});
       from = point;
     }
-    sides_.push_back({from, number(side.to), side.outline, side.hem});
+    sides_.push_back({from, number(side.to), side.outline, side.trap});
   }
   std::sort(sides_.begin(), sides_.end(), [](const Side& a, const Side& b) {
     const auto [a_low, a_high] = std::minmax(a.from, a.to);
@@ -139,7 +146,7 @@ bool SideNet::next_ring() {
   std::size_t side = next_;
   while (true) {
     is_used_[side] = 1;
-    ring_.push_back({pixels(points_[left_[side].from]), left_[side].hem});
+    ring_.push_back({pixels(points_[left_[side].from]), left_[side].trap});
     if (left_[side].to == left_[next_].from) break;
     side = std::size_t(std::lower_bound(left_.begin(), left_.end(), left_[side].to,
                                         [](const Side& s, std::uint32_t point) { return s.from < point; }) -
@@ -152,14 +159,14 @@ bool SideNet::next_ring() {
 
 /// Leaves corners out where nothing turns.
 void SideNet::straighten() {
-  std::vector<NetCorner> kept;
+  std::vector<Corner> kept;
   const std::size_t count = ring_.size();
   for (std::size_t i = 0; i < count; ++i) {
-    const NetCorner& before = kept.empty() ? ring_[count - 1] : kept.back();
+    const Corner& before = kept.empty() ? ring_[count - 1] : kept.back();
     const glm::dvec2 in = ring_[i].at - before.at, out = ring_[i + 1 == count ? 0 : i + 1].at - ring_[i].at;
     const double turn = std::abs(in.x * out.y - in.y * out.x);
     const bool is_straight = turn <= 4 / kUnits * std::min(glm::length(in), glm::length(out)) && glm::dot(in, out) > 0;
-    if (!is_straight || before.hem != ring_[i].hem) kept.push_back(ring_[i]);
+    if (!is_straight || before.trap != ring_[i].trap) kept.push_back(ring_[i]);
   }
   if (kept.size() >= 3) ring_ = std::move(kept);
 }

@@ -3,28 +3,23 @@
 #pragma once
 
 #include <algorithm>
-#include <glm/glm.hpp>
 #include <span>
 #include <vector>
 
+#include "painter/traps/trap.h"
+
 namespace frontmost::shading {
-
-/// Of a side that has no hem.
-inline constexpr std::uint32_t no_hem = 0xFFFFFFFF;
-
-/// A corner, and the side from it to the next: a part of one that has this hem.
-struct NetCorner {
-  glm::dvec2 at{0};
-  std::uint32_t hem = no_hem;
-};
 
 /// Corners are rounded to 1/4096 pixel, and sides are parted where corners of others lie on them; so what lies beside
 /// each other has the same sides there, once to and once fro. O(n log n) in the number of corners, for sides that are
 /// short beside the whole.
 class SideNet {
  public:
+  using Corner = painter_detail::TrappedCorner;
+
   /// Adds a closed outline, as number `outline` of the caller's.
-  void add(std::span<const NetCorner> corners, std::uint32_t outline);
+  void add(std::span<const Corner> corners, std::uint32_t outline);
+  void add(std::span<const glm::dvec2> corners, std::uint32_t outline);
   void clear() { raw_.clear(); }
   /// Parts sides. All is to be added before.
   void weave();
@@ -43,17 +38,17 @@ class SideNet {
   template <class Keep>
   void for_each_ring(const Keep& keep) {
     begin_rings();
-    while (next_ring()) keep(std::span<const NetCorner>(ring_));
+    while (next_ring()) keep(std::span<const Corner>(ring_));
   }
 
  private:
   using Point = glm::i64vec2;
   struct Side {
-    std::uint32_t from, to, outline, hem;
+    std::uint32_t from, to, outline, trap;
   };
   struct Raw {
     Point from, to;
-    std::uint32_t outline, hem;
+    std::uint32_t outline, trap;
   };
 
   /// Sides between two points: those to begin at some place, those fro at the turn.
@@ -61,6 +56,7 @@ class SideNet {
     std::size_t begin, turn, end;
     [[nodiscard]] std::size_t count() const { return std::min(turn - begin, end - turn); }
   };
+  void add_side(const glm::dvec2& from, const glm::dvec2& to, std::uint32_t outline, std::uint32_t trap);
   [[nodiscard]] Pairs pairs_at(std::size_t begin) const;
   [[nodiscard]] std::uint32_t number(const Point& p) const;
   void sort_points();
@@ -78,7 +74,7 @@ class SideNet {
   std::vector<Side> left_;   ///< by where they begin
   std::vector<std::uint8_t> is_used_;
   std::size_t next_ = 0;
-  std::vector<NetCorner> ring_;
+  std::vector<Corner> ring_;
 };
 
 }  // namespace frontmost::shading

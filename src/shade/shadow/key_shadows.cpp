@@ -28,19 +28,19 @@ class Casters {
 
 KeyShadows::KeyShadows(const ShadedPicture& picture, const glm::vec3& to_key, const Execution& execution) {
   const ShadeOptions& options = picture.options;
-  const View& view = picture.visible.view;
+  const View& view = picture.input.visible.view;
   if (options.shadows == Shadows::off) return;
-  if (options.shadows == Shadows::map && options.seen_by_light) {
-    map_.emplace(*options.seen_by_light, view.eye(), execution);
+  if (options.shadows == Shadows::map && picture.input.seen_by_light) {
+    map_.emplace(*picture.input.seen_by_light, view.eye(), execution);
     return;
   }
   const Casters casters(picture.surfaces, execution);
   if (options.shadows == Shadows::map) {
-    map_.emplace(casters.surfaces(), picture.visible, glm::dvec3(to_key), execution);
+    map_.emplace(casters.surfaces(), picture.input.visible, glm::dvec3(to_key), execution);
     return;
   }
-  if (!casters.are_all() || !options.index) index_.emplace(casters.surfaces(), execution);
-  rays_.emplace(index_ ? *index_ : *options.index, picture.samples, to_key, execution.isa);
+  if (!casters.are_all() || !picture.input.index) index_.emplace(casters.surfaces(), execution);
+  rays_.emplace(index_ ? *index_ : *picture.input.index, picture.samples, to_key, execution.isa);
   if (!casters.are_all()) rays_->forget_ids();
 }
 

@@ -14,7 +14,7 @@ namespace frontmost::shading {
 /// What is to be shaded.
 struct ShadedPicture {
   const Surfaces& surfaces;
-  const Visible& visible;
+  const ShadeInput& input;
   const ShadeOptions& options;
   std::span<const glm::ivec2> samples;  ///< of a pixel, in 1/256
 };

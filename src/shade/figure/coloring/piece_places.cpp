@@ -15,11 +15,11 @@ constexpr double kFewSamples = 4, kManySamples = 64;
 
 }  // namespace
 
-PieceSize::PieceSize(std::span<const PaintCorner> corners) {
-  const glm::dvec2 from(corners[0].at);
+PieceSize::PieceSize(std::span<const glm::dvec2> corners) {
+  const glm::dvec2 from = corners[0];
   glm::dvec2 sum(0), before(0);
-  for (const PaintCorner& corner : corners) {
-    const glm::dvec2 way = glm::dvec2(corner.at) - from;
+  for (const glm::dvec2& corner : corners) {
+    const glm::dvec2 way = corner - from;
     area += before.x * way.y - before.y * way.x;
     length = std::max(length, glm::length(way));
     sum += way;
@@ -36,11 +36,11 @@ double PieceSize::sample_count() const {
   return std::max(std::clamp(wanted, kFewSamples, kManySamples), area / kMostAreaPerSample);
 }
 
-glm::dvec2 middle_across(std::span<const PaintCorner> corners, const glm::dvec2& at, const glm::dvec2& along) {
+glm::dvec2 middle_across(std::span<const glm::dvec2> corners, const glm::dvec2& at, const glm::dvec2& along) {
   glm::dvec2 sum(0);
   int count = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const glm::dvec2 p(corners[i].at), q(corners[i + 1 == corners.size() ? 0 : i + 1].at);
+    const glm::dvec2 &p = corners[i], &q = corners[i + 1 == corners.size() ? 0 : i + 1];
     const double a = glm::dot(p - at, along), b = glm::dot(q - at, along);
     if ((a > 0) == (b > 0)) continue;
     sum += p + (q - p) * (a / (a - b));
@@ -49,18 +49,17 @@ glm::dvec2 middle_across(std::span<const PaintCorner> corners, const glm::dvec2&
   return count > 0 ? sum / double(count) : at;
 }
 
-CutOutline cut_outline(std::span<const PaintCorner> corners, const ScreenLine& line) {
+CutOutline cut_outline(std::span<const glm::dvec2> corners, const ScreenLine& line) {
   CutOutline sides;
   const std::size_t count = corners.size();
   for (std::size_t i = 0; i < count; ++i) {
-    const PaintCorner &from = corners[i], &to = corners[i + 1 == count ? 0 : i + 1];
-    const double a = line.distance(glm::dvec2(from.at)), b = line.distance(glm::dvec2(to.at));
-    std::vector<PaintCorner>&here = a > 0 ? sides.above : sides.below, &there = a > 0 ? sides.below : sides.above;
-    here.push_back(from);
+    const glm::dvec2 &from = corners[i], &to = corners[i + 1 == count ? 0 : i + 1];
+    const double a = line.distance(from), b = line.distance(to);
+    (a > 0 ? sides.above : sides.below).push_back(from);
     if ((a > 0) == (b > 0)) continue;
-    const glm::dvec3 at = from.at + (to.at - from.at) * (a / (a - b));
-    here.push_back({at, true});          // from here along the cut
-    there.push_back({at, from.is_cut});  // from here along what was there
+    const glm::dvec2 at = from + (to - from) * (a / (a - b));
+    sides.below.push_back(at);
+    sides.above.push_back(at);
   }
   return sides;
 }

@@ -5,14 +5,13 @@
 #include <span>
 #include <vector>
 
-#include "frontmost/painter.h"
 #include "shade/figure/coloring/color_cut.h"
 
 namespace frontmost::shading {
 
 /// A convex outline and its size.
 struct PieceSize {
-  explicit PieceSize(std::span<const PaintCorner> corners);
+  explicit PieceSize(std::span<const glm::dvec2> corners);
   glm::dvec2 middle{0};
   double area = 0;    ///< square pixels
   double length = 0;  ///< pixels, at least half of the distance between the two corners farthest from each other
@@ -23,27 +22,27 @@ struct PieceSize {
 };
 
 /// The middle of what an outline has of the line through a place across a direction.
-[[nodiscard]] glm::dvec2 middle_across(std::span<const PaintCorner> corners, const glm::dvec2& at,
+[[nodiscard]] glm::dvec2 middle_across(std::span<const glm::dvec2> corners, const glm::dvec2& at,
                                        const glm::dvec2& along);
 
 /// Calls add(place) beside every corner of an outline, where colours go furthest.
 template <class Add>
-void for_each_corner_place(std::span<const PaintCorner> corners, const glm::dvec2& middle, const Add& add) {
+void for_each_corner_place(std::span<const glm::dvec2> corners, const glm::dvec2& middle, const Add& add) {
   constexpr double kInset = 0.25;  // pixels by which they lie within
-  for (const PaintCorner& corner : corners) {
-    const glm::dvec2 way = middle - glm::dvec2(corner.at);
-    add(glm::dvec2(corner.at) + way * std::min(0.25, kInset / std::max(glm::length(way), 1e-9)));
+  for (const glm::dvec2& corner : corners) {
+    const glm::dvec2 way = middle - corner;
+    add(corner + way * std::min(0.25, kInset / std::max(glm::length(way), 1e-9)));
   }
 }
 
 /// Calls add(place) for places along the middle of an outline that is long and narrow.
 template <class Add>
-void for_each_place_along(std::span<const PaintCorner> corners, const PieceSize& size, const Add& add) {
+void for_each_place_along(std::span<const glm::dvec2> corners, const PieceSize& size, const Add& add) {
   const auto count = std::size_t(std::ceil(size.length / 1.5));
-  const glm::dvec2 from(corners[0].at);
+  const glm::dvec2 from = corners[0];
   glm::dvec2 to = from;
-  for (const PaintCorner& corner : corners)
-    if (glm::length(glm::dvec2(corner.at) - from) > glm::length(to - from)) to = glm::dvec2(corner.at);
+  for (const glm::dvec2& corner : corners)
+    if (glm::length(corner - from) > glm::length(to - from)) to = corner;
   const glm::dvec2 step = (to - from) / double(count);
   for (std::size_t k = 0; k < count; ++k) add(middle_across(corners, from + step * (double(k) + 0.5), step));
 }
@@ -52,13 +51,13 @@ void for_each_place_along(std::span<const PaintCorner> corners, const PieceSize&
 /// rank-1 lattice over each triangle of its fan, as many as its part of the area asks for.
 /// (M. Roberts. The Unreasonable Effectiveness of Quasirandom Sequences. 2018.)
 template <class Add>
-void for_each_place(std::span<const PaintCorner> corners, double area, double count, const Add& add) {
+void for_each_place(std::span<const glm::dvec2> corners, double area, double count, const Add& add) {
   if (!(area > 0)) return;  // no direction, though it may be long
   double before = 0;
   std::size_t number = 0;
-  const glm::dvec2 from(corners[0].at);
+  const glm::dvec2 from = corners[0];
   for (std::size_t i = 2; i < corners.size(); ++i) {
-    const glm::dvec2 a = glm::dvec2(corners[i - 1].at) - from, b = glm::dvec2(corners[i].at) - from;
+    const glm::dvec2 a = corners[i - 1] - from, b = corners[i] - from;
     before += std::abs(a.x * b.y - a.y * b.x) * 0.5;
     const auto until = std::size_t(std::ceil(std::min(before / area, 1.0) * count));
     for (; number < until; ++number) {
@@ -76,8 +75,8 @@ void for_each_place(std::span<const PaintCorner> corners, double area, double co
 
 /// The two sides of a line: what lies below it, and what lies above.
 struct CutOutline {
-  std::vector<PaintCorner> below, above;
+  std::vector<glm::dvec2> below, above;
 };
-[[nodiscard]] CutOutline cut_outline(std::span<const PaintCorner> corners, const ScreenLine& line);
+[[nodiscard]] CutOutline cut_outline(std::span<const glm::dvec2> corners, const ScreenLine& line);
 
 }  // namespace frontmost::shading

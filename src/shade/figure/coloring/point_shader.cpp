@@ -17,15 +17,15 @@ std::unique_ptr<const KeyShadows> shadows_for(const ShadedPicture& picture, cons
 
 }  // namespace
 
-PointShader::PointShader(const Surfaces& surfaces, const Visible& visible, const FigureTriangles& triangles,
+PointShader::PointShader(const Surfaces& surfaces, const ShadeInput& input, const FigureTriangles& triangles,
                          const ShadeOptions& options, const Execution& execution)
-    : source_(surfaces, visible.view, &triangles.large, execution),
+    : source_(surfaces, input.visible.view, &triangles.large, execution),
       table_(surfaces.scene(),
              needed_materials(
                  surfaces, [&]() -> const BitSet& { return triangles.seen; }, execution),
              execution),
-      lighting_(lighting_for(visible.view, surfaces.scene().up)),
-      shadows_(shadows_for({surfaces, visible, options, kAtPoint}, lighting_, execution)),
+      lighting_(lighting_for(input.visible.view, surfaces.scene().up)),
+      shadows_(shadows_for({surfaces, input, options, kAtPoint}, lighting_, execution)),
       opacity_(shows_materials(options.shading) ? options.opacity : 1.0f) {
   check_opacity(options);
   switch (options.shading) {
@@ -35,8 +35,8 @@ PointShader::PointShader(const Surfaces& surfaces, const Visible& visible, const
     case Shading::ids: colorist_ = Ids{}; break;
     case Shading::uv: colorist_ = Texcoords{}; break;
     case Shading::depth: {
-      const DepthRange range = depth_range(visible, execution);
-      colorist_ = Depths{glm::vec3(visible.view.forward()), range.nearest, range.farthest};
+      const DepthRange range = depth_range(input.visible, execution);
+      colorist_ = Depths{glm::vec3(input.visible.view.forward()), range.nearest, range.farthest};
       break;
     }
   }

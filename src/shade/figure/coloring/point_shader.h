@@ -21,7 +21,7 @@ struct FigureTriangles {
 class PointShader {
  public:
   /// Borrows all but the options. \throws Error as check_opacity().
-  PointShader(const Surfaces& surfaces, const Visible& visible, const FigureTriangles& triangles,
+  PointShader(const Surfaces& surfaces, const ShadeInput& input, const FigureTriangles& triangles,
               const ShadeOptions& options, const Execution& execution);
 
   [[nodiscard]] const TriangleSource& source() const { return source_; }

@@ -8,7 +8,6 @@
 #include "base/srgb.h"
 #include "shade/figure/coloring/color_groups.h"
 #include "surfaces/cluster_set.h"
-#include "view/affine_depth.h"
 
 namespace frontmost::shading {
 namespace {
@@ -48,19 +47,18 @@ void refuse_more_than(std::size_t most) {
 PolygonColors::PolygonColors(const Surfaces& surfaces, const View& view, const PointShader& shader,
                              const ColorOptions& options, const Execution& execution)
     : surfaces_(surfaces),
-      view_(view),
       shading_(shader),
       options_(options),
       execution_(execution),
       rays_(view),
       shader_(shader.source(), shader.colorist()) {}
 
-void PolygonColors::color(const PaintOrder& order, std::span<const PaintPolygon> polygons, ColoredOrder& into) {
+void PolygonColors::color(const VisibleParts& parts, std::span<const PaintPolygon> polygons, ColoredOrder& into) {
   begin(polygons);
   while (started_ < polygons_.size() || !waiting_.empty()) {
     check_cancelled(execution_);
     if (kept_.size() + waiting_.size() > options_.most_polygons) refuse_more_than(options_.most_polygons);
-    take_pieces(order);
+    take_pieces(parts);
     shade_samples();
     for (Piece& piece : looked_at_) divide(piece);
   }
@@ -83,28 +81,25 @@ void PolygonColors::begin(std::span<const PaintPolygon> polygons) {
   }
 }
 
-void PolygonColors::start(const PaintOrder& order, std::uint32_t number) {
+void PolygonColors::start(const VisibleParts& parts, std::uint32_t number) {
   Polygon& polygon = polygons_[number];
   polygon.node = std::uint32_t(nodes_.size());
   nodes_.emplace_back();
-  const auto first = order.corners.begin() + std::ptrdiff_t(polygon.outline.first_corner);
+  const PaintCorner* const first = parts.corners.data() + polygon.outline.first_corner;
   Piece& piece = looked_at_.emplace_back();
   piece.corners.reserve(polygon.outline.corner_count);
-  for (std::size_t i = 0; i < polygon.outline.corner_count; ++i) {
-    const PaintCorner& corner = first[std::ptrdiff_t(i)];
-    piece.corners.push_back({{corner.at.x, corner.at.y, affine_depth(view_, corner.at.z)}, corner.is_cut});
-  }
+  for (std::size_t i = 0; i < polygon.outline.corner_count; ++i) piece.corners.push_back(glm::dvec2(first[i].at));
   piece.polygon = number;
   piece.node = polygon.node;
 }
 
 /// As many as have some batches of samples, those that were cut first.
-void PolygonColors::take_pieces(const PaintOrder& order) {
+void PolygonColors::take_pieces(const VisibleParts& parts) {
   looked_at_.clear();
   std::size_t samples = 0;
   while (samples < kSamplesAtOnce && (started_ < polygons_.size() || !waiting_.empty())) {
     if (waiting_.empty()) {
-      start(order, std::uint32_t(started_++));
+      start(parts, std::uint32_t(started_++));
     } else {
       looked_at_.push_back(std::move(waiting_.back()));
       waiting_.pop_back();
@@ -163,10 +158,8 @@ void PolygonColors::shade_samples() {
 void PolygonColors::divide(Piece& piece) {
   const Judgement found = judge(piece);
   if (!found.is_one_color) {
-    outline_.clear();
-    for (const PaintCorner& corner : piece.corners) outline_.push_back(glm::dvec2(corner.at));
     if (const std::optional<ScreenLine> line =
-            best_cut({outline_, piece.samples, kLeastWidth, 2 * double(within(piece))}, texture_lines(piece)))
+            best_cut({piece.corners, piece.samples, kLeastWidth, 2 * double(within(piece))}, texture_lines(piece)))
       return cut(piece, *line);
   }
   keep(piece, found.color);
@@ -250,23 +243,19 @@ void PolygonColors::list_kept(const Polygon& polygon) {
 /// Colours that are nearly the same become the first of them, so that pieces can be joined to larger ones.
 void PolygonColors::group_kept() {
   ColorGroups groups(options_.tolerance * (1 - kWithin));
-  for (Kept* const piece : listed_) piece->shape = groups.find_or_add(piece->color);
-  for (Kept* const piece : listed_) piece->color = groups.colors()[piece->shape];
-  std::stable_sort(listed_.begin(), listed_.end(), [](const Kept* a, const Kept* b) { return a->shape < b->shape; });
+  for (Kept* const piece : listed_) piece->group = groups.find_or_add(piece->color);
+  for (Kept* const piece : listed_) piece->color = groups.colors()[piece->group];
+  std::stable_sort(listed_.begin(), listed_.end(), [](const Kept* a, const Kept* b) { return a->group < b->group; });
 }
 
 void PolygonColors::emit(const Polygon& polygon, ColoredOrder& into) {
   list_kept(polygon);
-  for (std::uint32_t i = 0; i < listed_.size(); ++i) listed_[i]->shape = i;
+  for (std::uint32_t i = 0; i < listed_.size(); ++i) listed_[i]->group = i;
   if (polygon.is_grouped) group_kept();
-  const std::uint32_t shape = into.shapes.empty() ? 0 : into.shapes.back() + 1;
-  for (const Kept* const piece : listed_) {
-    const std::size_t first = into.order.corners.size();
-    into.order.polygons.push_back({polygon.outline.id, std::uint32_t(piece->corners.size()), first});
-    for (const PaintCorner& corner : piece->corners)
-      into.order.corners.push_back({{corner.at.x, corner.at.y, affine_depth(view_, corner.at.z)}, corner.is_cut});
-    into.colors.push_back(rounded(piece->color));
-    into.shapes.push_back(shape + piece->shape);
+  for (std::size_t i = 0; i < listed_.size(); ++i) {
+    const Kept& piece = *listed_[i];
+    if (i == 0 || listed_[i - 1]->group != piece.group) into.begin_shape(rounded(piece.color));
+    into.add_polygon(polygon.outline.id, piece.corners);
   }
 }
 

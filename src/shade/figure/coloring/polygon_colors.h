@@ -18,18 +18,18 @@ namespace frontmost::shading {
 /// once.
 class PolygonColors {
  public:
-  /// Borrows all.
+  /// Borrows all but the view.
   PolygonColors(const Surfaces& surfaces, const View& view, const PointShader& shader, const ColorOptions& options,
                 const Execution& execution);
 
-  /// Appends some of an order's polygons in pieces, without holes and what is wholly clear. The result depends on these
+  /// Appends some of these parts in pieces, without holes and what is wholly clear. The result depends on these
   /// polygons alone. Precondition: three corners or more each. \throws Error cancelled, and as refuse_more_than().
-  void color(const PaintOrder& order, std::span<const PaintPolygon> polygons, ColoredOrder& into);
+  void color(const VisibleParts& parts, std::span<const PaintPolygon> polygons, ColoredOrder& into);
 
  private:
-  /// A piece that is still to be looked at; depths are affine over the screen.
+  /// A piece that is still to be looked at.
   struct Piece {
-    std::vector<PaintCorner> corners;
+    std::vector<glm::dvec2> corners;
     std::vector<ColorSample> samples;  ///< those of the piece that it was cut from are known already
     std::size_t known_samples = 0;
     bool is_sliver = false;        ///< lies beside cuts everywhere
@@ -49,8 +49,8 @@ class PolygonColors {
   };
   struct Kept {
     glm::vec4 color;
-    std::vector<PaintCorner> corners;
-    std::uint32_t shape = 0;
+    std::vector<glm::dvec2> corners;
+    std::uint32_t group = 0;  ///< of pieces of nearly one colour
   };
   struct Polygon {
     PaintPolygon outline;
@@ -66,8 +66,8 @@ class PolygonColors {
   };
 
   void begin(std::span<const PaintPolygon> polygons);
-  void start(const PaintOrder& order, std::uint32_t polygon);
-  void take_pieces(const PaintOrder& order);
+  void start(const VisibleParts& parts, std::uint32_t polygon);
+  void take_pieces(const VisibleParts& parts);
   void place_samples(Piece& piece);
   void shade_samples();
   void divide(Piece& piece);
@@ -83,7 +83,6 @@ class PolygonColors {
   void group_kept();
 
   const Surfaces& surfaces_;
-  const View& view_;
   const PointShader& shading_;
   const ColorOptions& options_;
   const Execution& execution_;
@@ -100,7 +99,6 @@ class PolygonColors {
   std::vector<Kept> kept_;
   std::vector<Kept*> listed_;
   std::vector<std::uint32_t> path_;
-  std::vector<glm::dvec2> outline_;
 };
 
 }  // namespace frontmost::shading

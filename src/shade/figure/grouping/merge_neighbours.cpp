@@ -6,7 +6,6 @@
 #include "base/float_environment.h"
 #include "base/parallel.h"
 #include "painter/poll.h"
-#include "shade/figure/check_figure.h"
 #include "shade/figure/colored_order.h"
 #include "shade/figure/grouping/overlaps.h"
 #include "shade/figure/grouping/sets.h"
@@ -18,7 +17,7 @@ namespace {
 using namespace shading;
 
 /// For every polygon, whether none that is painted later covers a part of it.
-std::vector<bool> find_uncovered(const PaintOrder& order, const Execution& execution) {
+std::vector<bool> find_uncovered(const ColoredOrder& order, const Execution& execution) {
   const Overlaps overlaps(order);
   painter_detail::Poll poll(execution);
   std::vector<bool> uncovered(order.polygons.size());
@@ -34,27 +33,29 @@ std::uint32_t code_of(const glm::u8vec4& c) {
   return std::uint32_t(c.r) << 24 | std::uint32_t(c.g) << 16 | std::uint32_t(c.b) << 8 | c.a;
 }
 
+/// The shape of every polygon of a figure, and whether later ones cover none of it.
+struct Polygons {
+  std::vector<std::uint32_t> shapes;
+  std::vector<bool> uncovered;
+};
+
 /// Unites uncovered polygons of one colour that share a part of a side, and those of one shape.
-Sets united(const ColoredOrder& colored, const std::vector<bool>& uncovered, const Execution& execution) {
+Sets united(const ColoredOrder& colored, const Polygons& polygons, const Execution& execution) {
+  const auto& [shapes, uncovered] = polygons;
   Sets sets(uncovered.size());
   for (std::uint32_t i = 1; i < uncovered.size(); ++i)
-    if (colored.shapes[i] == colored.shapes[i - 1] && uncovered[i] && uncovered[i - 1]) sets.unite(i, i - 1);
+    if (shapes[i] == shapes[i - 1] && uncovered[i] && uncovered[i - 1]) sets.unite(i, i - 1);
   std::vector<std::uint32_t> members;
   for (std::uint32_t i = 0; i < uncovered.size(); ++i)
     if (uncovered[i]) members.push_back(i);
-  const auto code = [&](std::uint32_t i) { return code_of(colored.colors[i]); };
+  const auto code = [&](std::uint32_t i) { return code_of(colored.shapes[polygons.shapes[i]].color); };
   std::stable_sort(members.begin(), members.end(), [&](auto a, auto b) { return code(a) < code(b); });
   SideNet net;
-  std::vector<NetCorner> corners;
   for (std::size_t begin = 0, end; begin < members.size(); begin = end) {
     check_cancelled(execution);
     net.clear();
-    for (end = begin; end < members.size() && code(members[end]) == code(members[begin]); ++end) {
-      corners.clear();
-      for (const PaintCorner& corner : corners_of(colored.order, members[end]))
-        corners.push_back({glm::dvec2(corner.at), {}});
-      net.add(corners, members[end]);
-    }
+    for (end = begin; end < members.size() && code(members[end]) == code(members[begin]); ++end)
+      net.add(colored.corners_of(colored.polygons[members[end]]), members[end]);
     if (end == begin + 1) continue;
     net.weave();
     net.for_each_shared([&](std::uint32_t a, std::uint32_t b) { sets.unite(a, b); });
@@ -65,30 +66,25 @@ Sets united(const ColoredOrder& colored, const std::vector<bool>& uncovered, con
 }  // namespace
 
 ColoredOrder merge_neighbours(const ColoredOrder& colored, const Execution& execution) {
-  check_figure(colored);
-  const std::size_t count = colored.order.polygons.size();
+  const std::size_t count = colored.polygons.size();
   const IeeeScope ieee;
-  const std::vector<bool> uncovered = find_uncovered(colored.order, execution);
-  Sets sets = united(colored, uncovered, execution);
+  const Polygons polygons{colored.shapes_of_polygons(), find_uncovered(colored, execution)};
+  Sets sets = united(colored, polygons, execution);
   std::vector<std::uint32_t> places(count), order(count);
   for (std::uint32_t i = 0; i < count; ++i) places[i] = sets.find(i);
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(),
             [&](auto a, auto b) { return std::tie(places[a], a) < std::tie(places[b], b); });
+  const auto are_one = [&](std::uint32_t a, std::uint32_t b) {
+    return places[a] == places[b] ||
+           (polygons.shapes[a] == polygons.shapes[b] && !polygons.uncovered[a] && !polygons.uncovered[b]);
+  };
   ColoredOrder merged;
-  merged.order.view = colored.order.view;
-  merged.order.steps = colored.order.steps;
-  std::uint32_t shape = 0;
+  merged.view = colored.view;
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t i = order[k];
-    if (k > 0) {
-      const std::uint32_t before = order[k - 1];
-      const bool was_one = colored.shapes[before] == colored.shapes[i] && !uncovered[before] && !uncovered[i];
-      shape += places[before] != places[i] && !was_one;
-    }
-    append(colored.order, i, merged.order);
-    merged.colors.push_back(colored.colors[i]);
-    merged.shapes.push_back(shape);
+    if (k == 0 || !are_one(order[k - 1], i)) merged.begin_shape(colored.shapes[polygons.shapes[i]].color);
+    merged.add_polygon(colored.polygons[i].id, colored.corners_of(colored.polygons[i]));
   }
   return merged;
 }

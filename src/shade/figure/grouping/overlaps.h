@@ -5,16 +5,15 @@
 #include <span>
 #include <vector>
 
-#include "frontmost/painter.h"
 #include "painter/order/piece_grid.h"
-#include "shade/figure/grouping/order_parts.h"
+#include "shade/figure/colored_order.h"
 
 namespace frontmost::shading {
 
 /// The polygons of an order on the screen. Borrows it.
 class Overlaps {
  public:
-  explicit Overlaps(const PaintOrder& order);
+  explicit Overlaps(const ColoredOrder& order);
 
   /// Whether two polygons overlap by more than a rounding.
   [[nodiscard]] bool overlap(std::size_t a, std::size_t b) const;
@@ -47,7 +46,7 @@ class Overlaps {
     return false;
   }
 
-  const PaintOrder& order_;
+  const ColoredOrder& order_;
   std::vector<painter_detail::Extent> extents_;
   painter_detail::PieceGrid grid_;
 };
