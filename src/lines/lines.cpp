@@ -13,7 +13,7 @@
 #include "base/pool.h"
 #include "lines/crossings/crossings.h"
 #include "lines/hiding/hidden_parts.h"
-#include "lines/joined.h"
+#include "lines/lists.h"
 #include "lines/mesh/gaps.h"
 #include "lines/mesh/seams.h"
 
@@ -134,8 +134,7 @@ Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions
   });
   const Candidates candidates(mesh, std::move(features.edges), std::move(crossings));
   report_progress(execution, "lines", 0.2);
-  const LinesToCut to_cut{candidates.count(), [&](std::size_t i) { return candidates.sighted(i); }};
-  const OccluderGrid grid(seen, view, options.counts_hidden, to_cut, execution);
+  const OccluderGrid grid(seen, view, options.counts_hidden, execution);
   report_progress(execution, "lines", kCutFrom);
 
   Drawing drawing;

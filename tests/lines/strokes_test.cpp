@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -242,7 +241,8 @@ TEST(StrokesOrder, OfEndsAsNearTheFirst) {
   EXPECT_EQ(all.points[2], drawing.parts[0].to);
 }
 
-/// Short lines within a three-hundredth of the picture, and one on its other side.
+/// Short lines within a three-hundredth of the picture, and one on its other side. How many lines are looked at in such
+/// crowds, and in those of long lines below, is counted by the tests of LaidLines.
 Drawing far_crowd(int count) {
   Drawing drawing;
   Random random(4);
@@ -256,37 +256,28 @@ Drawing far_crowd(int count) {
 }
 
 TEST(StrokesOnce, ACrowdFarFromTheRestIsNoMatter) {
-  using Clock = std::chrono::steady_clock;
   const Scene scene = scene_of(prism(square));
   const Surfaces surfaces(scene);
   const Drawing drawing = far_crowd(under_sanitizer ? 4000 : 50000);
-  const Clock::time_point start = Clock::now();
   const Strokes all = chain_strokes(surfaces, drawing, {.by_instance = false, .nearest_first = true});
-  // 0.2 s; when all was held against all, 20.
-  EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 5);
   double length = 0;
   for (const Stroke& stroke : all.strokes) length += length_of(all, stroke);
   EXPECT_NEAR(length, 0.1 * double(drawing.parts.size()), 0.05 * 0.1 * double(drawing.parts.size()));
 }
 
 TEST(StrokesOnce, NorIsItWhereMoreCountsAsOneLine) {
-  using Clock = std::chrono::steady_clock;
   const Scene scene = scene_of(prism(square));
   const Surfaces surfaces(scene);
   const Drawing drawing = far_crowd(under_sanitizer ? 4000 : 50000);
   for (const double apart : {0.09, 0.12, 1.0}) {
-    const Clock::time_point start = Clock::now();
     // All are 0.1 long: within more than that each is no more than a point, unless it meets another, as many of 50000
     // do.
     const bool is_empty = chain_strokes(surfaces, drawing, {.by_instance = false, .apart = apart}).strokes.empty();
     EXPECT_EQ(is_empty, apart == 1.0 || (under_sanitizer && apart > 0.1));
-    // 0.1 s; where cells were no smaller than eight times that, up to 8.
-    EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 4) << apart;
   }
 }
 
 TEST(StrokesOnce, NorAreLongLinesSideBySide) {
-  using Clock = std::chrono::steady_clock;
   const Scene scene = scene_of(prism(square));
   const Surfaces surfaces(scene);
   Drawing drawing;
@@ -296,10 +287,7 @@ TEST(StrokesOnce, NorAreLongLinesSideBySide) {
     drawing.edges.push_back({});
     drawing.parts.push_back({std::uint32_t(i), 0, 1, {0, y}, {3000, y + 300}});
   }
-  const Clock::time_point start = Clock::now();
   EXPECT_EQ(chain_strokes(surfaces, drawing, {.by_instance = false}).strokes.size(), std::size_t(count));
-  // 0.07 s; and minutes when lines were entered in the border cells of what they only pass.
-  EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), under_sanitizer ? 20 : 3);
 }
 
 /// Pieces of straight lines, by the line that they lie on.
@@ -354,7 +342,6 @@ TEST(StrokesOnce, PiecesOfOneLineCoverItOnceHoweverLongTheyAre) {
 }
 
 TEST(StrokesOnce, LongLinesThatCrossAreNoQuadraticMatter) {
-  using Clock = std::chrono::steady_clock;
   const Scene scene = scene_of(prism(square));
   const Surfaces surfaces(scene);
   const std::size_t count = under_sanitizer ? 4000 : 40000;
@@ -367,10 +354,7 @@ TEST(StrokesOnce, LongLinesThatCrossAreNoQuadraticMatter) {
       if (is_star) part.from = {1000, 1000};
       part.to = part.from + 800.0 * glm::dvec2(std::cos(angle), std::sin(angle));
     }
-    const Clock::time_point start = Clock::now();
     EXPECT_EQ(chain_strokes(surfaces, drawing, {.by_instance = false}).strokes.size(), count);
-    // 0.03 s; and 6 when each was held against all that cross its cells.
-    EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), under_sanitizer ? 20 : 2);
   }
 }
 

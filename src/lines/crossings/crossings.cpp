@@ -15,8 +15,7 @@
 #include "base/parallel.h"
 #include "lines/crossings/box_tree.h"
 #include "lines/crossings/edge_contacts.h"
-#include "lines/joined.h"
-#include "lines/sort_in_parts.h"
+#include "lines/lists.h"
 #include "view/sight.h"
 
 namespace frontmost::lines_detail {

@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/pool.h"
-#include "lines/joined.h"
+#include "lines/lists.h"
 
 namespace frontmost::lines_detail {
 namespace {
@@ -57,7 +57,7 @@ Scenery::Scenery(const WeldedMesh& mesh, const std::vector<std::uint32_t>& twins
     : view(its_view),
       sight(view),
       seen(see_once(mesh, twins, sight, execution)),
-      grid(seen, view, false, {}, execution),
+      grid(seen, view, false, execution),
       occlusion{mesh, sight, view, grid, shadow_kernels(execution.isa), false, false} {}
 
 TonedScene::TonedScene(const Surfaces& surfaces, const View& view, const ToneOptions& tone, const Execution& execution)

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <glm/glm.hpp>
 
+#include "lines/cell_tree.h"
+
 namespace frontmost::lines_detail {
 
 /// Linear on the screen, and the larger the nearer.
@@ -12,10 +14,8 @@ namespace frontmost::lines_detail {
   return is_parallel ? -distance : 1 / distance;
 }
 
-/// Of a grid, in cells: cell (x, y) itself has a size of 1.
-struct Square {
-  double x, y, size = 1;
-};
+/// Cells: more than the rounding of any place in the picture.
+inline constexpr double kCellPad = 1e-6;
 
 /// Bounds that hold whatever rounding did, for a triangle none of which is before the near plane.
 class CellDepth {

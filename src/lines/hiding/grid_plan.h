@@ -1,29 +1,128 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an occluder grid is made of: known while it is made, and not after.
+// What an occluder grid is made from: how fine it is, and what each triangle takes of it. Known while it is made, and
+// not after.
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "base/parallel.h"
-#include "lines/hiding/occluder_grid.h"
+#include "lines/crowded_cells.h"
+#include "lines/hiding/cell_depth.h"
+#include "lines/hiding/occluder.h"
+#include "lines/mesh/seen_mesh.h"
 
 namespace frontmost::lines_detail {
 
-constexpr std::size_t kPerPart = 4096;
+/// Below the value, by up to 2^-22 of it: whatever it is rounded to.
+inline float rounded_down(double value) { return float(value - std::abs(value) * 2e-7); }
+inline float rounded_up(double value) { return -rounded_down(-value); }
 
-/// Asks now and then whether to stop, where a part of the work is all that a thread has to do.
-inline void poll(const Execution& execution, std::size_t i) {
-  if (i % 16384 == 0) check_cancelled(execution);
-}
-
-struct OccluderGrid::Plan {
-  OnGrid on_grid;
-  const Execution& execution;
-  const bool keeps_all;
-  Buffer<Footprint> footprints;
-  Buffer<Extent> extents;            ///< of the footprints
-  std::vector<std::uint32_t> large;  ///< of the footprints
-
-  [[nodiscard]] const Sight& sight() const { return on_grid.sight; }
-  [[nodiscard]] const WeldedMesh& mesh() const { return on_grid.seen.mesh; }
+/// A triangle's box in cells; `nearest` is infinite where it is not seen.
+struct Footprint {
+  glm::vec2 low, high;
+  float nearest;
+  std::uint32_t triangle;
 };
+
+/// The columns and rows of cells that a box touches.
+struct CellRange {
+  int first_column, last_column, first_row, last_row;
+  /// Whether its outline leaves out some of the cells.
+  [[nodiscard]] bool is_large() const { return last_row - first_row >= 2 && last_column > first_column; }
+};
+
+/// A triangle in a cell. Sorted by nearness.
+struct CellEntry {
+  float nearest;  ///< planar distance of what of it may lie in the cell
+  std::uint32_t footprint;
+  friend bool operator<(const CellEntry& a, const CellEntry& b) {
+    return a.nearest != b.nearest ? a.nearest < b.nearest : a.footprint < b.footprint;
+  }
+};
+
+class GridPlan {
+ public:
+  /// Borrows all. Takes fewer cells where triangles are large: a thousand sheets before a million cells would be a
+  /// thousand million entries. O(triangles).
+  GridPlan(const SeenMesh& seen, const View& view, bool keeps_all, const Execution& execution);
+
+  const SeenMesh& seen;
+  const Sight sight;
+  const bool keeps_all;  ///< as OccluderGrid has it
+  const Execution& execution;
+  SquareGrid grid;                   ///< over the picture, with squares of size 1
+  double scale = 1;                  ///< cells a pixel
+  Buffer<Footprint> footprints;      ///< of what is seen, in the order of first cells
+  Buffer<CellRange> ranges;          ///< of the footprints
+  Buffer<Occluder> occluders;        ///< of the footprints
+  std::vector<std::uint32_t> large;  ///< the footprints whose ranges are
+
+  [[nodiscard]] CellDepth depth_of(std::uint32_t triangle) const {
+    const glm::uvec3& t = seen.mesh.triangles[triangle];
+    return {places_[t.x], places_[t.y], places_[t.z], sight.is_parallel()};
+  }
+  /// Whether some of the triangle may lie before the near plane.
+  [[nodiscard]] bool is_near(const Footprint& footprint) const {
+    return double(footprint.nearest) <= sight.near() + 1e-6 * std::abs(sight.near());
+  }
+  /// Calls visit(cell, nearest) for every cell that the triangle of that footprint may touch, and how near it is there.
+  template <class Visitor>
+  void visit_cells(std::size_t number, const Visitor& visit) const {
+    const CellRange& all = ranges[number];
+    const Footprint& footprint = footprints[number];
+    if (all.is_large()) return visit_rows(footprint, all, visit);
+    for (int y = all.first_row; y <= all.last_row; ++y)
+      for (int x = all.first_column; x <= all.last_column; ++x) visit(grid.number(x, y), footprint.nearest);
+  }
+
+ private:
+  /// What a triangle leaves between the near and far planes, in cells.
+  struct Outline {
+    std::array<glm::dvec2, 5> corners;
+    int count = 0;
+    double nearest = 0;
+  };
+  /// Left and right, in cells; none if it is empty.
+  struct Span {
+    double left, right;
+  };
+  void set_cells(const View& view, double cells);
+  void find_footprints();
+  [[nodiscard]] Footprint footprint_of(std::uint32_t triangle) const;
+  [[nodiscard]] CellRange range_of(const Footprint& footprint) const;
+  [[nodiscard]] Outline outline_of(std::uint32_t triangle) const;
+  [[nodiscard]] Occluder occluder_of(const Footprint& footprint) const;
+  [[nodiscard]] double area_of(std::uint32_t triangle) const;
+  [[nodiscard]] double entries_of(const Footprint& footprint, const CellRange& range) const;
+  [[nodiscard]] static Span within_row(const Outline& outline, int row);
+  [[nodiscard]] int column(double x) const { return int(std::clamp(x, 0.0, double(grid.columns - 1))); }
+  [[nodiscard]] int row(double y) const { return int(std::clamp(y, 0.0, double(grid.rows - 1))); }
+
+  /// Row by row, what of the outline lies in each.
+  template <class Visitor>
+  void visit_rows(const Footprint& footprint, const CellRange& all, const Visitor& visit) const {
+    const Outline outline = outline_of(footprint.triangle);
+    const CellDepth depth = depth_of(footprint.triangle);
+    for (int y = all.first_row; y <= all.last_row; ++y) {
+      const Span span = within_row(outline, y);
+      const int last = column(std::min(double(footprint.high.x), span.right) + kCellPad);
+      for (int x = column(std::max(double(footprint.low.x), span.left) - kCellPad); x <= last; ++x)
+        visit(grid.number(x, y), std::max(footprint.nearest, rounded_down(depth.nearest(grid.square(x, y)))));
+    }
+  }
+
+  Buffer<glm::dvec3> places_;  ///< of vertices: x and y in cells, z the planar distance
+  double entries_ = 0;         ///< rather more cells than the footprints take together
+};
+
+/// Divides a cell that holds these triangles as long as that leaves less to ask to as many edges. Unless the plan keeps
+/// all, a part that a triangle covers whole holds none whose planes lie beyond it there. (J. Warnock. A Hidden Surface
+/// Algorithm for Computer Generated Halftone Pictures. 1969.)
+///
+/// Cost: as divide_cell() says. Where n triangles lie upon each other, as in a stack of sheets of which each is seen,
+/// or around a vertex or an edge that all share, every edge there is held against every triangle by the boxes and sides
+/// of the kernels, 16 at a time.
+[[nodiscard]] DividedCell<CellEntry> divide_entries(const GridPlan& plan, CrowdedCell<CellEntry> cell);
 
 }  // namespace frontmost::lines_detail

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cell by cell along the edge, the nearest occluders first, eight at a time. A cell is left as soon as what of the edge
 // lies in it is hidden: what else it holds could only hide the same again.
+//
+//   edge ----> cells that it passes ----> boxes that overlap it ----> triangles that hide it ----> intervals
+//              (OccluderGrid)             (kernels, 16 at once)       (kernels, 8 at once)         (HiddenIntervals)
 
 #include "lines/hiding/hidden_parts.h"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -19,207 +21,212 @@ constexpr double kEndPad = 5e-6;
 float wide_low(double value) { return float(value - 1e-6 * std::abs(value)); }
 float wide_high(double value) { return -wide_low(-value); }
 
-}  // namespace
+Interval overlap(const Interval& a, const Interval& b) { return {std::max(a.begin, b.begin), std::min(a.end, b.end)}; }
 
-Interval EdgeCutter::within_view() const {
+/// An edge and its ends in eye space, with the planar distance in place of z.
+struct EdgeInEye {
+  SightedEdge edge;
+  glm::dvec3 from, to;
+
+  EdgeInEye(const SightedEdge& its_edge, const Sight& sight)
+      : edge(its_edge), from(sight.in_eye(edge.from)), to(sight.in_eye(edge.to)) {
+    edge.from_distance = from.z;
+    edge.to_distance = to.z;
+  }
+  [[nodiscard]] double distance(double t) const { return from.z + (to.z - from.z) * t; }
+};
+
+Interval within_view(const EdgeInEye& edge, const Projection& p) {
   Interval shown{0, 1};
   const auto keep = [&](double at_0, double at_1) {
-    const Interval in = where_positive(with_sign_of_value(at_0), with_sign_of_value(at_1), false);
-    shown = {std::max(shown.begin, in.begin), std::min(shown.end, in.end)};
+    shown = overlap(shown, where_positive(with_sign_of_value(at_0), with_sign_of_value(at_1), false));
   };
-  const Projection& p = o_.view.projection;
-  const double w0 = p.orthographic ? 1 : from_eye_.z, w1 = p.orthographic ? 1 : to_eye_.z;
-  keep(from_eye_.z - p.clip.near, to_eye_.z - p.clip.near);
-  if (p.clip.far < std::numeric_limits<double>::infinity()) keep(p.clip.far - from_eye_.z, p.clip.far - to_eye_.z);
-  keep(from_eye_.x - p.left * w0, to_eye_.x - p.left * w1);
-  keep(p.right * w0 - from_eye_.x, p.right * w1 - to_eye_.x);
-  keep(from_eye_.y - p.bottom * w0, to_eye_.y - p.bottom * w1);
-  keep(p.top * w0 - from_eye_.y, p.top * w1 - to_eye_.y);
+  const double w0 = p.orthographic ? 1 : edge.from.z, w1 = p.orthographic ? 1 : edge.to.z;
+  keep(edge.from.z - p.clip.near, edge.to.z - p.clip.near);
+  if (p.clip.far < std::numeric_limits<double>::infinity()) keep(p.clip.far - edge.from.z, p.clip.far - edge.to.z);
+  keep(edge.from.x - p.left * w0, edge.to.x - p.left * w1);
+  keep(p.right * w0 - edge.from.x, p.right * w1 - edge.to.x);
+  keep(edge.from.y - p.bottom * w0, edge.to.y - p.bottom * w1);
+  keep(p.top * w0 - edge.from.y, p.top * w1 - edge.to.y);
   return shown;
 }
 
-glm::dvec2 EdgeCutter::on_screen(double t) const {
+/// In pixels, for t within the view.
+glm::dvec2 on_screen(const EdgeInEye& edge, double t, const Occlusion& o) {
   // From the nearer end, so that both ends are met.
-  glm::dvec3 p = t <= 0.5 ? from_eye_ + (to_eye_ - from_eye_) * t : to_eye_ + (from_eye_ - to_eye_) * (1 - t);
+  glm::dvec3 p = t <= 0.5 ? edge.from + (edge.to - edge.from) * t : edge.to + (edge.from - edge.to) * (1 - t);
   // It is within the view; rounding may say otherwise of edges that are very much longer than their part in it.
-  p.z = std::max(p.z, o_.sight.near());
-  return glm::clamp(glm::dvec2(o_.sight.to_screen(p)), glm::dvec2(0), glm::dvec2(o_.view.width, o_.view.height));
+  p.z = std::max(p.z, o.sight.near());
+  return glm::clamp(glm::dvec2(o.sight.to_screen(p)), glm::dvec2(0), glm::dvec2(o.view.width, o.view.height));
 }
+
+enum class Asked { what_hides, what_covers_the_outer_side };
+
+/// What is asked about a span of an edge.
+struct Question {
+  const Occlusion& o;
+  const EdgeInEye& edge;
+  const Interval span;
+  const Asked asked;
+  const glm::dvec2 begin, end;  ///< of the span, in cells
+  const float farthest;         ///< what is no nearer does not matter
+
+  Question(const Occlusion& occlusion, const EdgeInEye& its_edge, const Interval& its_span, Asked what)
+      : o(occlusion),
+        edge(its_edge),
+        span(its_span),
+        asked(what),
+        begin(on_screen(edge, span.begin, o) * o.grid.scale()),
+        end(on_screen(edge, span.end, o) * o.grid.scale()),
+        farthest(hides() ? wide_high(std::max(edge.from.z, edge.to.z)) : std::numeric_limits<float>::infinity()) {}
+
+  [[nodiscard]] bool hides() const { return asked == Asked::what_hides; }
+};
 
 /// What of the edge may lie in a cell: rather more.
-Interval EdgeCutter::part_in(const OccluderGrid::Visit& cell) const {
-  const glm::dvec2 along = end_ - begin_;
+Interval part_in(const PassedCell& cell, const Question& question) {
+  const Interval& span = question.span;
+  const glm::dvec2 along = question.end - question.begin;
   const int axis = std::abs(along.y) > std::abs(along.x);
-  if (std::abs(along[axis]) < 1e-3) return shown_;
+  if (std::abs(along[axis]) < 1e-3) return span;
+  const EdgeInEye& edge = question.edge;
   const auto at = [&](double coordinate, double margin) {
-    const double s = std::clamp((coordinate - begin_[axis]) / along[axis] + margin / std::abs(along[axis]), 0.0, 1.0);
-    const double w0 = o_.sight.to_weight(from_eye_, to_eye_, shown_.begin),
-                 w1 = o_.sight.to_weight(from_eye_, to_eye_, shown_.end);
+    const double s =
+        std::clamp((coordinate - question.begin[axis]) / along[axis] + margin / std::abs(along[axis]), 0.0, 1.0);
+    const double w0 = question.o.sight.to_weight(edge.from, edge.to, span.begin),
+                 w1 = question.o.sight.to_weight(edge.from, edge.to, span.end);
     const double share = s * w0 / (s * w0 + (1 - s) * w1);
-    return shown_.begin + share * (shown_.end - shown_.begin);
+    return span.begin + share * (span.end - span.begin);
   };
   const bool is_forward = along[axis] > 0;
-  return {at(is_forward ? cell.low[axis] : cell.high[axis], -2e-6) - 1e-12,
-          at(is_forward ? cell.high[axis] : cell.low[axis], 2e-6) + 1e-12};
-}
-
-/// From the first to the last point of `part` that is not hidden so far; empty where all of it is.
-Interval EdgeCutter::open_part(Interval part) const {
-  part = {std::max(part.begin, shown_.begin), std::min(part.end, shown_.end)};
-  if (counts_) return part;
-  if (const auto at = first_to(part.begin); at != hidden_.end() && at->interval.begin <= part.begin)
-    part.begin = at->interval.end;
-  if (const auto at = first_to(part.end); at != hidden_.end() && at->interval.begin < part.end)
-    part.end = at->interval.begin;
-  return part;
+  return overlap(span, {at(is_forward ? cell.low[axis] : cell.high[axis], -2e-6) - 1e-12,
+                        at(is_forward ? cell.high[axis] : cell.low[axis], 2e-6) + 1e-12});
 }
 
 /// A part of the edge as it is seen in a cell.
-struct EdgeCutter::InCell {
+struct PartInCell {
   ScreenPart box;
   ScreenSegment segment;
-
-  InCell(const EdgeCutter& cutter, const Interval& part, const glm::dvec2& corner) {
-    const OccluderGrid& grid = cutter.o_.grid;
-    const glm::dvec2 a = cutter.on_screen(part.begin) * grid.scale(), b = cutter.on_screen(part.end) * grid.scale();
-    const glm::dvec2 low = glm::min(a, b) - kEndPad, high = glm::max(a, b) + kEndPad;
-    const auto distance = [&](double t) { return cutter.from_eye_.z + (cutter.to_eye_.z - cutter.from_eye_.z) * t; };
-    const double from = distance(part.begin), to = distance(part.end);
-    box = {{wide_low(low.x), wide_low(low.y)},
-           {wide_high(high.x), wide_high(high.y)},
-           cutter.is_for_cover_ ? cutter.farthest_ : std::min(cutter.farthest_, wide_high(std::max(from, to)))};
-    const auto near = [&](double planar) {
-      // What covers may lie behind.
-      if (cutter.is_for_cover_) return -std::numeric_limits<float>::infinity();
-      return float(nearness(planar, cutter.o_.sight.is_parallel()));
-    };
-    segment = {glm::vec2(a - corner), glm::vec2(b - corner), near(from), near(to)};
-  }
 };
+
+PartInCell seen_in(const PassedCell& cell, const Interval& part, const Question& question) {
+  const double scale = question.o.grid.scale();
+  const glm::dvec2 a = on_screen(question.edge, part.begin, question.o) * scale,
+                   b = on_screen(question.edge, part.end, question.o) * scale;
+  const glm::dvec2 low = glm::min(a, b) - kEndPad, high = glm::max(a, b) + kEndPad;
+  const glm::dvec2 corner(cell.square.x, cell.square.y);
+  const double from = question.edge.distance(part.begin), to = question.edge.distance(part.end);
+  float farthest = question.farthest;
+  // What covers may lie behind.
+  float from_nearness = -std::numeric_limits<float>::infinity(), to_nearness = from_nearness;
+  if (question.hides()) {
+    farthest = std::min(farthest, wide_high(std::max(from, to)));
+    from_nearness = float(nearness(from, question.o.sight.is_parallel()));
+    to_nearness = float(nearness(to, question.o.sight.is_parallel()));
+  }
+  return {{{wide_low(low.x), wide_low(low.y)}, {wide_high(high.x), wide_high(high.y)}, farthest},
+          {glm::vec2(a - corner), glm::vec2(b - corner), from_nearness, to_nearness}};
+}
+
+/// Holds what is in the batch against the edge. \returns true when more is hidden than before.
+bool hold_against_batch(const Question& question, EdgeSearch& search) {
+  const SightedEdge& edge = question.edge.edge;
+  HiddenBatch found;
+  (question.hides() ? question.o.kernels.hide : question.o.kernels.cover)(search.batch, edge, question.o.sight, found);
+  for (std::uint32_t bits = found.hides | found.open; bits != 0; bits &= bits - 1) {
+    const auto i = std::size_t(std::countr_zero(bits));
+    const Occluder& occluder = *search.batch.occluders[i];
+    Interval interval{found.begin[i], found.end[i]};
+    if ((found.open >> i & 1) || occluder.is_near || edge.slack > 0)
+      interval = (question.hides() ? hidden_by : covered_by)(occluder, edge, question.o.sight);
+    search.hidden.add(overlap(interval, question.span), occluder.triangle);
+  }
+  search.batch.count = 0;
+  return (found.hides | found.open) != 0;
+}
+
+/// Puts those of the entries from `first` on that have a bit into the batch, and asks when it is full. \returns false
+/// when nothing is left to hide in this cell.
+bool ask_entries(std::uint64_t bits, std::size_t first, const PassedCell& cell, const Question& question,
+                 EdgeSearch& search) {
+  for (; bits != 0; bits &= bits - 1) {
+    const Occluder& occluder = question.o.grid.occluder(first + std::size_t(std::countr_zero(bits)));
+    const std::uintptr_t place = reinterpret_cast<std::uintptr_t>(&occluder) / sizeof(Occluder);
+    if (std::exchange(search.asked[place % search.asked.size()], &occluder) == &occluder) continue;
+    search.batch.add(occluder);
+    if (search.batch.count == OccluderBatch::most && hold_against_batch(question, search) &&
+        search.hidden.cover(part_in(cell, question)))
+      return false;
+  }
+  return true;
+}
 
 /// For cells of many entries: the nearest first, then those just before the edge. Of a stack of sheets the ones between
 /// hide ever less than the next one, and are asked no more when that has left nothing where they are.
-void EdgeCutter::pass_many(const OccluderGrid::Visit& cell) {
-  Interval open = open_part(part_in(cell));
+void ask_many(const OccluderGrid::Visit& cell, const Question& question, EdgeSearch& search) {
+  const OccluderGrid& grid = question.o.grid;
+  Interval open = search.hidden.open_part(part_in(cell, question));
   if (!(open.begin < open.end)) return;
-  InCell in(*this, open, cell.corner);
-  const float* nearest = o_.grid.boxes(cell.first).nearest;
+  PartInCell in = seen_in(cell, open, question);
+  const float* nearest = grid.boxes(cell.first).nearest;
   const auto before =
       std::size_t(std::upper_bound(nearest, nearest + (cell.last - cell.first), in.box.farthest) - nearest);
   const std::size_t blocks = (before + kBlock - 1) / kBlock;
   for (std::size_t i = 0; i < blocks; ++i) {
     const std::size_t offset = (i == 0 ? 0 : blocks - i) * kBlock, count = std::min(kBlock, before - offset);
-    std::uint64_t bits = o_.kernels.overlapping(o_.grid.boxes(cell.first + offset), count, in.box);
-    if (bits != 0) bits &= o_.kernels.within_sides(o_.grid.sides(cell.cell, offset), count, in.segment);
+    search.boxes += count;
+    std::uint64_t bits = question.o.kernels.overlapping(grid.boxes(cell.first + offset), count, in.box);
+    if (bits != 0) bits &= question.o.kernels.within_sides(grid.sides(cell.cell, offset), count, in.segment);
     if (bits == 0) continue;
-    if (!ask(bits, cell.first + offset, cell)) return;
-    if (batch_.count == 0 || !flush()) continue;
-    open = open_part(open);
+    if (!ask_entries(bits, cell.first + offset, cell, question, search)) return;
+    if (search.batch.count == 0 || !hold_against_batch(question, search)) continue;
+    open = search.hidden.open_part(open);
     if (!(open.begin < open.end)) return;
-    in = InCell(*this, open, cell.corner);
+    in = seen_in(cell, open, question);
   }
 }
 
-/// \returns true when all of the edge is hidden.
-bool EdgeCutter::pass(const OccluderGrid::Visit& cell) {
-  if (o_.grid.has_sides(cell)) {
-    pass_many(cell);
-    return !counts_ && is_hidden(shown_);
-  }
-  const glm::dvec2 pad(OccluderGrid::kPad);
-  const glm::dvec2 low = cell.low - pad, high = cell.high + pad;
-  const ScreenPart part{{wide_low(low.x), wide_low(low.y)}, {wide_high(high.x), wide_high(high.y)}, farthest_};
+/// For cells of few entries.
+void ask_few(const OccluderGrid::Visit& cell, const Question& question, EdgeSearch& search) {
+  const glm::dvec2 low = cell.low - kCellPad, high = cell.high + kCellPad;
+  const ScreenPart part{{wide_low(low.x), wide_low(low.y)}, {wide_high(high.x), wide_high(high.y)}, question.farthest};
   for (std::size_t first = cell.first; first < cell.last; first += kMostAtOnce) {
-    const ScreenBoxes boxes = o_.grid.boxes(first);
-    if (*boxes.nearest > farthest_) break;
-    const std::uint64_t bits = o_.kernels.overlapping(boxes, std::min(kMostAtOnce, cell.last - first), part);
-    if (!ask(bits, first, cell)) break;
-  }
-  return !counts_ && is_hidden(shown_);
-}
-
-/// \returns false when nothing is left to hide in this cell.
-bool EdgeCutter::ask(std::uint64_t bits, std::size_t first, const OccluderGrid::Visit& cell) {
-  for (; bits != 0; bits &= bits - 1) {
-    const Occluder& occluder = o_.grid.occluder(first + std::size_t(std::countr_zero(bits)));
-    const Occluder*& last = asked_[(reinterpret_cast<std::uintptr_t>(&occluder) / sizeof(Occluder)) % asked_.size()];
-    if (last == &occluder) continue;
-    last = &occluder;
-    batch_.add(occluder);
-    if (batch_.count == OccluderBatch::most && flush() && is_hidden(part_in(cell))) return false;
-  }
-  return true;
-}
-
-/// \returns true when more is hidden than before, and it matters.
-bool EdgeCutter::flush() {
-  HiddenBatch found;
-  (is_for_cover_ ? o_.kernels.cover : o_.kernels.hide)(batch_, edge_, o_.sight, found);
-  for (std::uint32_t bits = found.hides | found.open; bits != 0; bits &= bits - 1) {
-    const auto i = std::size_t(std::countr_zero(bits));
-    const Occluder& occluder = *batch_.occluders[i];
-    if ((found.open >> i & 1) || occluder.is_near || edge_.slack > 0)
-      hide((is_for_cover_ ? covered_by : hidden_by)(occluder, edge_, o_.sight), occluder.triangle);
-    else
-      hide({found.begin[i], found.end[i]}, occluder.triangle);
-  }
-  batch_.count = 0;
-  return !counts_ && (found.hides | found.open) != 0;
-}
-
-void EdgeCutter::hide(const Interval& interval, std::uint32_t triangle) {
-  Interval in{std::max(interval.begin, shown_.begin), std::min(interval.end, shown_.end)};
-  if (!(in.begin < in.end)) return;
-  if (counts_) {
-    hidden_.push_back({in, triangle});
-    return;
-  }
-  const auto first = hidden_.begin() + (first_to(in.begin) - hidden_.begin());
-  auto last = first;
-  for (; last != hidden_.end() && last->interval.begin <= in.end; ++last)
-    in = {std::min(in.begin, last->interval.begin), std::max(in.end, last->interval.end)};
-  if (first == last) {
-    hidden_.insert(first, {in, triangle});
-  } else {
-    first->interval = in;
-    hidden_.erase(first + 1, last);
+    const ScreenBoxes boxes = question.o.grid.boxes(first);
+    if (*boxes.nearest > question.farthest) return;
+    const std::size_t count = std::min(kMostAtOnce, cell.last - first);
+    search.boxes += count;
+    if (!ask_entries(question.o.kernels.overlapping(boxes, count, part), first, cell, question, search)) return;
   }
 }
 
-bool EdgeCutter::is_hidden(const Interval& part) const {
-  const double begin = std::max(part.begin, shown_.begin), end = std::min(part.end, shown_.end);
-  const auto at = first_to(end);
-  return at != hidden_.end() && at->interval.begin <= begin;
+/// Finds all that is hidden, or covered, of the question's span.
+void answer(const Question& question, EdgeSearch& search) {
+  search.hidden.restart(question.o.counts && question.hides());
+  search.asked.fill(nullptr);
+  search.batch.count = 0;
+  question.o.grid.visit_cells(question.begin, question.end, [&](const OccluderGrid::Visit& cell) {
+    question.o.grid.has_sides(cell) ? ask_many(cell, question, search) : ask_few(cell, question, search);
+    return !search.hidden.cover(question.span);
+  });
+  if (search.batch.count > 0) (void)hold_against_batch(question, search);
 }
 
-/// Of what is hidden, without counts, the first that reaches t.
-std::deque<EdgeCutter::Hidden>::const_iterator EdgeCutter::first_to(double t) const {
-  return std::lower_bound(hidden_.begin(), hidden_.end(), t,
-                          [](const Hidden& hidden, double place) { return hidden.interval.end < place; });
-}
-
-/// A triangle that was asked in two cells counts once.
-void EdgeCutter::drop_doubles() {
-  std::sort(hidden_.begin(), hidden_.end(), [](const Hidden& a, const Hidden& b) { return a.triangle < b.triangle; });
-  hidden_.erase(std::unique(hidden_.begin(), hidden_.end(),
-                            [](const Hidden& a, const Hidden& b) { return a.triangle == b.triangle; }),
-                hidden_.end());
-}
-
-void EdgeCutter::emit(std::uint32_t number, std::vector<DrawnPart>& parts) {
-  changes_.clear();
-  for (const Hidden& hidden : hidden_) {
-    changes_.emplace_back(hidden.interval.begin, 1);
-    changes_.emplace_back(hidden.interval.end, -1);
+/// Appends the parts of a span between the beginnings and ends of what hides it.
+void append_parts(const Question& question, EdgeSearch& search, std::uint32_t number, std::vector<DrawnPart>& parts) {
+  std::vector<std::pair<double, int>>& changes = search.changes;
+  changes.clear();
+  for (const HiddenIntervals::Hidden& one : search.hidden.intervals()) {
+    changes.emplace_back(one.interval.begin, 1);
+    changes.emplace_back(one.interval.end, -1);
   }
-  changes_.emplace_back(shown_.end, 0);
-  std::sort(changes_.begin(), changes_.end());
+  changes.emplace_back(question.span.end, 0);
+  std::sort(changes.begin(), changes.end());
   const std::size_t first = parts.size();
-  double begin = shown_.begin;
+  double begin = question.span.begin;
   int depth = 0;
-  for (const auto& [t, change] : changes_) {
+  for (const auto& [t, change] : changes) {
     if (t > begin) {
-      const auto hidden_by = std::uint32_t(counts_ ? depth : std::min(depth, 1));
+      const auto hidden_by = std::uint32_t(question.o.counts ? depth : std::min(depth, 1));
       if (parts.size() > first && parts.back().hidden_by == hidden_by)
         parts.back().end = t;
       else
@@ -229,74 +236,55 @@ void EdgeCutter::emit(std::uint32_t number, std::vector<DrawnPart>& parts) {
     depth += change;
   }
   for (std::size_t i = first; i < parts.size(); ++i) {
-    parts[i].from = i == first ? on_screen(parts[i].begin) : parts[i - 1].to;
-    parts[i].to = on_screen(parts[i].end);
+    parts[i].from = i == first ? on_screen(question.edge, parts[i].begin, question.o) : parts[i - 1].to;
+    parts[i].to = on_screen(question.edge, parts[i].end, question.o);
   }
 }
 
-void EdgeCutter::cut(const SightedEdge& edge, std::uint32_t number, std::vector<DrawnPart>& parts) {
-  edge_ = edge;
-  from_eye_ = o_.sight.in_eye(edge.from);
-  to_eye_ = o_.sight.in_eye(edge.to);
-  edge_.from_distance = from_eye_.z;
-  edge_.to_distance = to_eye_.z;
-  const Interval shown = within_view();
+/// Appends a seen part, cut where what lies beside it begins and ends.
+void append_outline(DrawnPart part, const Question& question, HiddenIntervals& covered,
+                    std::vector<DrawnPart>& pieces) {
+  const DrawnPart whole = part;
+  const auto cut_at = [&](double t, bool is_outline) {
+    if (!(part.begin < t)) return;
+    DrawnPart piece = part;
+    piece.is_outline = is_outline;
+    piece.end = t;
+    piece.to = t < whole.end ? on_screen(question.edge, t, question.o) : whole.to;
+    part.begin = t;
+    part.from = piece.to;
+    pieces.push_back(piece);
+  };
+  for (const HiddenIntervals::Hidden& one : covered.intervals()) {
+    cut_at(one.interval.begin, true);
+    cut_at(one.interval.end, false);
+  }
+  cut_at(whole.end, true);
+}
+
+}  // namespace
+
+void EdgeCutter::cut(const SightedEdge& sighted, std::uint32_t number, std::vector<DrawnPart>& parts) {
+  const EdgeInEye edge(sighted, o_.sight);
+  const Interval shown = within_view(edge, o_.view.projection);
   if (!(shown.begin < shown.end)) return;
-  search(shown, false);
-  if (counts_) drop_doubles();
+  const Question hiding(o_, edge, shown, Asked::what_hides);
+  answer(hiding, search_);
   const std::size_t first = parts.size();
-  emit(number, parts);
-  if (o_.outlines && edge.outer != 0) split_outline(first, parts);
-}
-
-/// Fills `hidden_` for what of the edge lies in `span`.
-void EdgeCutter::search(const Interval& span, bool for_cover) {
-  shown_ = span;
-  is_for_cover_ = for_cover;
-  counts_ = o_.counts && !for_cover;
-  const glm::dvec2 a = on_screen(span.begin), b = on_screen(span.end);
-  begin_ = a * o_.grid.scale();
-  end_ = b * o_.grid.scale();
-  const double farthest = std::max(from_eye_.z, to_eye_.z);
-  farthest_ = for_cover ? std::numeric_limits<float>::infinity() : wide_high(farthest);
-  hidden_.clear();
-  asked_.fill(nullptr);
-  batch_.count = 0;
-  const auto vertex = [](const EndOn& on, bool is_seen) { return is_seen && on[0] == on[1] ? on[0] : no_index; };
-  const GridLine line{begin_, end_, vertex(edge_.from_on, span.begin == 0), vertex(edge_.to_on, span.end == 1)};
-  o_.grid.visit_cells(line, [&](const OccluderGrid::Visit& cell) { return !pass(cell); });
-  if (batch_.count > 0) flush();
-}
-
-/// Cuts the seen parts from `first` on where what lies beside them begins and ends.
-void EdgeCutter::split_outline(std::size_t first, std::vector<DrawnPart>& parts) {
-  split_.clear();
+  append_parts(hiding, search_, number, parts);
+  if (!o_.outlines || sighted.outer == 0) return;
+  std::vector<DrawnPart> pieces;
   for (std::size_t i = first; i < parts.size(); ++i) {
-    DrawnPart part = parts[i];
-    if (part.hidden_by == 0) {
-      search({part.begin, part.end}, true);
-      const auto cut_at = [&](double t, bool is_outline) {
-        if (!(part.begin < t)) return;
-        DrawnPart piece = part;
-        piece.is_outline = is_outline;
-        piece.end = t;
-        if (t < part.end) piece.to = on_screen(t);
-        part.begin = t;
-        part.from = piece.to;
-        split_.push_back(piece);
-      };
-      const double end = part.end;
-      for (const Hidden& covered : hidden_) {
-        cut_at(covered.interval.begin, true);
-        cut_at(covered.interval.end, false);
-      }
-      cut_at(end, true);
+    if (parts[i].hidden_by == 0) {
+      const Question covering(o_, edge, {parts[i].begin, parts[i].end}, Asked::what_covers_the_outer_side);
+      answer(covering, search_);
+      append_outline(parts[i], covering, search_.hidden, pieces);
     } else {
-      split_.push_back(part);
+      pieces.push_back(parts[i]);
     }
   }
   parts.resize(first);
-  parts.insert(parts.end(), split_.begin(), split_.end());
+  parts.insert(parts.end(), pieces.begin(), pieces.end());
 }
 
 }  // namespace frontmost::lines_detail

@@ -12,7 +12,7 @@
 #include "base/parallel.h"
 #include "lines/creases/creases.h"
 #include "lines/crossings/stars.h"
-#include "lines/joined.h"
+#include "lines/lists.h"
 #include "lines/mesh/gaps.h"
 #include "lines/mesh/sheets.h"
 

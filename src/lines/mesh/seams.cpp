@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "lines/sort_in_parts.h"
+#include "lines/lists.h"
 
 namespace frontmost::lines_detail {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "base/parallel.h"
-#include "lines/joined.h"
+#include "lines/lists.h"
 
 namespace frontmost::lines_detail {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "base/parallel.h"
-#include "lines/joined.h"
+#include "lines/lists.h"
 #include "lines/rounds/axis_fit.h"
 #include "lines/rounds/circle3.h"
 

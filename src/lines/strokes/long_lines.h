@@ -12,7 +12,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "lines/strokes/near_lines.h"
+#include "lines/strokes/nearness.h"
 
 namespace frontmost::lines_detail {
 
@@ -24,25 +24,24 @@ class LongLines {
 
   [[nodiscard]] bool is_empty() const { return flat_.empty() && steep_.empty(); }
 
-  /// Adds the last of the lines `laid`.
-  void add(const std::vector<Line>& laid) {
-    const Line& segment = laid.back();
-    const auto number = std::uint32_t(laid.size() - 1);
+  void add(std::uint32_t number, const Line& segment) {
+    const BriefLine brief(segment, number);
     const glm::dvec2 d = glm::abs(segment.to - segment.from);
     // Near the diagonal what lies on it may count as the other kind.
-    if (d.y <= 1.05 * d.x) flat_[key(heights(segment, 0))].add(number, laid, near_);
-    if (d.x <= 1.05 * d.y) steep_[key(heights(segment, 1))].add(number, laid, near_);
+    if (d.y <= 1.05 * d.x) flat_[key(heights(segment, 0))].push_back(brief);
+    if (d.x <= 1.05 * d.y) steep_[key(heights(segment, 1))].push_back(brief);
   }
 
-  /// Calls visit(numbers) as NearLines do, in all those that may hold segments whose lines turn from this one's by at
-  /// most what Nearness allows at its length, and pass its middle as near as counts.
+  /// Calls visit(numbers) for those that may lie on the segment, of all whose lines turn from this one's by at most
+  /// what Nearness allows at its length, and pass its middle as near as counts. \returns how many were looked at.
   template <class Visit>
-  void for_each(const Line& segment, const SoughtLine& sought, const Visit& visit) const {
+  std::size_t for_each(const Line& segment, const SoughtLine& sought, const Visit& visit) const {
     const double slope = near_.slope_within(segment.length), off = near_.apart();
     const glm::dvec2 d = glm::abs(segment.to - segment.from);
     const int axis = d.y <= d.x ? 0 : 1;
     const Table& table = axis == 0 ? flat_ : steep_;
-    if (table.empty()) return;
+    std::size_t looked_at = 0;
+    if (table.empty()) return looked_at;
     // Turned about the middle, a line moves at the farther side by up to this, and at the nearer one by its share.
     const glm::dvec2 at = heights(segment, axis);
     const double middle = ((segment.from[axis] + segment.to[axis]) / 2 - low_[axis]) / extent_;
@@ -54,13 +53,16 @@ class LongLines {
       const int last = index(at[1 - far] - low * share + play);
       for (int j = index(at[1 - far] - high * share - play); j <= last; ++j) {
         const auto found = table.find(far == 1 ? key(j, i) : key(i, j));
-        if (found != table.end()) found->second.for_each(sought, visit);
+        if (found == table.end()) continue;
+        looked_at += found->second.size();
+        visit_likely(found->second, sought, visit);
       }
     }
+    return looked_at;
   }
 
  private:
-  using Table = std::unordered_map<std::uint64_t, NearLines>;
+  using Table = std::unordered_map<std::uint64_t, std::vector<BriefLine>>;
 
   /// Where the segment's line meets both ends of the axis.
   [[nodiscard]] glm::dvec2 heights(const Segment& s, int axis) const {

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "lines/strokes/parts.h"
 
@@ -66,5 +68,56 @@ class Nearness {
  private:
   double apart_;
 };
+
+/// A line for which others are sought that may lie on it.
+struct SoughtLine {
+  SoughtLine(const Line& line, const Nearness& nearness)
+      : middle((line.from + line.to) / 2.0),
+        along(line.along),
+        half(line.length / 2),
+        reach(nearness.reach_of(line.length)),
+        turn(line.is_long() ? Nearness::most_slope * (1 + 1e-4) : Nearness::most_short_slope) {}
+
+  glm::dvec2 middle, along;
+  double half;   ///< of the length
+  double reach;  ///< how far away they may lie
+  double turn;   ///< the tangent of the angle to them, at most
+};
+
+/// As much of a line as tells that it does not lie on another, in 20 bytes.
+struct BriefLine {
+  BriefLine(const Line& line, std::uint32_t its_number)
+      : middle((line.from + line.to) / 2.0), half((line.to - line.from) / 2.0), number(its_number) {}
+
+  glm::vec2 middle, half;
+  std::uint32_t number;
+
+  /// False only where Nearness::overlap() is empty.
+  [[nodiscard]] bool may_lie_on(const SoughtLine& line) const {
+    const glm::dvec2 other(half), apart = glm::dvec2(middle) - line.middle;
+    const double across = std::abs(cross(line.along, other)), along = std::abs(glm::dot(line.along, other));
+    // What floats leave of the place, and more.
+    const double slack = 1e-6 * (1 + std::abs(double(middle.x)) + std::abs(double(middle.y)) + along + across);
+    return !(std::abs(cross(line.along, apart)) > line.reach + across + slack) &
+           !(std::abs(glm::dot(line.along, apart)) > line.half + along + slack) &
+           !(across > line.turn * along * (1 + 1e-6) + slack);
+  }
+};
+
+/// Calls visit(numbers) for those of some lines that may lie on a line, a few hundred at a time.
+template <class Visit>
+void visit_likely(std::span<const BriefLine> lines, const SoughtLine& sought, const Visit& visit) {
+  std::array<std::uint32_t, 256> found;
+  while (!lines.empty()) {
+    std::size_t count = 0;
+    const auto some = lines.first(std::min(lines.size(), found.size()));
+    for (const BriefLine& one : some) {
+      found[count] = one.number;
+      count += one.may_lie_on(sought);
+    }
+    visit(std::span<const std::uint32_t>(found.data(), count));
+    lines = lines.subspan(some.size());
+  }
+}
 
 }  // namespace frontmost::lines_detail

@@ -1,15 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sorting on many threads, and so that it can be stopped.
+// Lists that many threads make, put together and sorted.
 #pragma once
 
 #include <algorithm>
 #include <vector>
 
+#include "base/large_pages.h"
 #include "base/parallel.h"
 
 namespace frontmost::lines_detail {
 
-/// As std::sort for an order without equals, or of which equals are the same.
+/// One list after the other, as one list.
+template <class T>
+[[nodiscard]] std::vector<T> joined(const std::vector<std::vector<T>>& lists,
+                                    const Execution& execution = {.threads = 1}) {
+  std::size_t size = 0;
+  for (const std::vector<T>& list : lists) size += list.size();
+  std::vector<T> all;
+  reserve_large(all, size, execution);
+  for (const std::vector<T>& list : lists) all.insert(all.end(), list.begin(), list.end());
+  return all;
+}
+
+/// Sorts as std::sort does by an order without equals, or of which equals are the same, and can be stopped. Parts are
+/// sorted by themselves, and neighbours merged until one is left: O(n log n) on one thread, n on many.
 template <class T, class Less>
 void sort_in_parts(std::vector<T>& values, const Less& less, const Execution& execution) {
   constexpr std::size_t part = 1 << 15;

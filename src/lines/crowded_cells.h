@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// A cell in which much comes together, divided: what both indices of this room do with their crowds.
+//
+// Details of a large scene are tiny, and all of their triangles and lines share a few cells, where each would be held
+// against all others. In the parts of such a cell they meet only what is near them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "lines/cell_tree.h"
+
+namespace frontmost::lines_detail {
+
+/// A cell and what it holds.
+template <class Item>
+struct CrowdedCell {
+  Square square;
+  std::vector<Item> items;
+};
+
+/// The parts of a cell, row by row. Items may be in several of them.
+template <class Item>
+using CellParts = std::array<CrowdedCell<Item>, CellTree::parts>;
+
+/// What has become of a cell: cell 0 of the tree.
+template <class Item>
+struct DividedCell {
+  CellTree cells;
+  std::vector<std::vector<Item>> items;  ///< by cell; none of those that are divided
+};
+
+/// When cells are left as they are.
+struct DivisionLimits {
+  std::size_t few = 64;       ///< items that are not worth dividing
+  double least_size = 0;      ///< of a cell's square
+  std::size_t most_held = 9;  ///< so many times as many items as there are may the parts hold: what bounds memory
+};
+
+/// What asking in a cell costs if there is a question for each of its items: each is held against all, and visiting the
+/// cell costs as much as a hundred more.
+template <class Item>
+double cost_of_asking(const CrowdedCell<Item>& cell) {
+  constexpr double visit = 128;
+  return double(cell.items.size()) * (double(cell.items.size()) + visit);
+}
+
+/// Whether parts cost less than the whole: all of them together, or all but one, which may be divided again.
+template <class Item>
+bool is_worth_dividing(const CrowdedCell<Item>& whole, const CellParts<Item>& parts) {
+  double sum = 0, most = 0;
+  for (const CrowdedCell<Item>& part : parts) {
+    sum += cost_of_asking(part);
+    most = std::max(most, cost_of_asking(part));
+  }
+  return sum < 0.75 * cost_of_asking(whole) || sum - most < 0.5 * cost_of_asking(whole);
+}
+
+/// Divides a cell, its parts, and theirs, as long as that leaves less to ask. `split(CrowdedCell)` gives the CellParts.
+///
+/// Cost: n items that lie apart in small enough parts leave O(n log n) to ask. Where n lie upon each other within all
+/// parts, n^2 remains.
+template <class Item, class Split>
+[[nodiscard]] DividedCell<Item> divide_cell(CrowdedCell<Item> cell, const DivisionLimits& limits, const Split& split) {
+  DividedCell<Item> divided{CellTree({{cell.square.x, cell.square.y}, cell.square.size, 1, 1}), {}};
+  divided.items.resize(1);
+  // `room`: how many items the parts may hold.
+  const auto divide = [&](const auto& self, std::uint32_t number, CrowdedCell<Item> whole, std::size_t room) -> void {
+    if (whole.items.size() > limits.few && whole.square.size >= limits.least_size) {
+      CellParts<Item> parts = split(whole);
+      std::size_t held = 0;
+      double costs = 1;
+      for (const CrowdedCell<Item>& part : parts) {
+        held += part.items.size();
+        costs += cost_of_asking(part);
+      }
+      if (held <= room && is_worth_dividing(whole, parts)) {
+        const std::uint32_t first = divided.cells.divide(number);
+        divided.items.resize(divided.cells.count());
+        whole.items = {};
+        // Each may hold what it has, and of what is left of the room as much as there is to gain.
+        for (std::uint32_t i = 0; i < parts.size(); ++i) {
+          const std::size_t own = parts[i].items.size();
+          const auto share = std::size_t(double(room - held) * (cost_of_asking(parts[i]) / costs));
+          self(self, first + i, std::move(parts[i]), own + share);
+        }
+        return;
+      }
+    }
+    divided.items[number] = std::move(whole.items);
+  };
+  const std::size_t room = limits.most_held * cell.items.size();
+  divide(divide, 0, std::move(cell), room);
+  return divided;
+}
+
+}  // namespace frontmost::lines_detail

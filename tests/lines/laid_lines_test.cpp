@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// The lines that are drawn so far: whoever may lie on a line is found, and far fewer are looked at than there are.
+#include "lines/strokes/laid_lines.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "support/effort.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+using namespace lines_detail;
+
+using MakeSegment = std::function<Segment(Random&)>;
+
+Segment towards(const glm::dvec2& begin, double angle, double length) {
+  return {begin, begin + length * glm::dvec2(std::cos(angle), std::sin(angle)), 0};
+}
+
+/// Through the sheet, within a pixel's width.
+Segment long_in_a_pixel(Random& random) {
+  return {
+      {random.within(0, 10), 1000 + random.within(0, 1)}, {3830 + random.within(0, 10), 1000 + random.within(0, 1)}, 0};
+}
+
+/// Of all lengths, some turned around.
+Segment short_in_a_pixel(Random& random) {
+  const glm::dvec2 begin{random.within(0, 3000), 1000 + random.within(0, 1)};
+  const glm::dvec2 end{begin.x + random.within(1, 500), 1000 + random.within(0, 1)};
+  return random.below(2) == 0 ? Segment{begin, end, 0} : Segment{end, begin, 0};
+}
+
+/// From one point everywhere.
+Segment from_a_point(Random& random) {
+  const double angle = random.within(0, 6.3f);
+  return towards({500, 500}, angle, random.within(1, 16));
+}
+
+/// Tiny ones, of every direction.
+Segment in_a_heap(Random& random) {
+  const glm::dvec2 begin{100 + random.within(0, 4), 200 + random.within(0, 4)};
+  const double angle = random.within(0, 6.3f);
+  return towards(begin, angle, random.within(0.01f, 0.2f));
+}
+
+/// On a few lines, again and again; level and upright ones among them.
+Segment on_few_lines(Random& random) {
+  const double angle = double(random.below(8)) * 0.39269908169872414, at = random.within(0, 20);
+  return towards(towards({800, 600}, angle, at).to, angle, random.within(1, 40));
+}
+
+/// Anywhere in the picture, of all lengths.
+Segment anywhere(Random& random) {
+  const glm::dvec2 begin{random.within(0, 3000), random.within(0, 2000)};
+  const double angle = random.within(0, 6.3f);
+  return towards(begin, angle, std::pow(10.0, random.within(-1, 3)));
+}
+
+/// In a three-hundredth of a picture that is as large as one far line makes it.
+Segment in_a_far_heap(Random& random) {
+  if (random.below(100) == 0) return {{3000, 3000}, {3000, 3000.1}, 0};
+  const glm::dvec2 begin{random.within(0, 10), random.within(0, 10)};
+  const double angle = random.within(0, 6.3f);
+  return towards(begin, angle, 0.1);
+}
+
+/// Side by side, two thirds of a pixel apart, all through the sheet.
+Segment side_by_side(Random& random) {
+  const double y = 2.0 / 3.0 * double(random.below(3000));
+  return {{0, y}, {3000, y + 300}, 0};
+}
+
+/// Through the sheet, everywhere.
+Segment across(Random& random) {
+  const glm::dvec2 begin{random.within(0, 3000), random.within(0, 2000)};
+  const double angle = random.within(0, 6.3f);
+  return towards(begin, angle, 800);
+}
+
+Segment in_a_star(Random& random) {
+  const double angle = random.within(0, 6.3f);
+  return towards({1500, 1000}, angle, 800);
+}
+
+/// Of two long lines those are sought whose lines turn by no more than counts as one, and pass the middle near.
+bool is_sought(const Line& line, const Line& other, const Nearness& nearness) {
+  if (!line.is_long() || !other.is_long()) return true;
+  const double turn = std::abs(cross(line.along, other.along));
+  const double off = std::abs(cross(other.along, (line.from + line.to) / 2.0 - other.from));
+  return turn <= nearness.slope_within(line.length) && off <= nearness.apart();
+}
+
+/// Every line is held against all before it. \returns how many were found that lie on others.
+std::size_t expect_all_found(const std::vector<Line>& lines, double apart) {
+  const Nearness nearness(apart);
+  LaidLines laid(lines, nearness);
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    std::vector<bool> is_visited(i, false);
+    (void)laid.for_each(lines[i], [&](std::span<const std::uint32_t> numbers) {
+      for (const std::uint32_t number : numbers) is_visited[number] = true;
+    });
+    for (std::size_t k = 0; k < i; ++k) {
+      const Stretch stretch = nearness.overlap(lines[i], lines[k]);
+      if (!(stretch.end > stretch.begin) || !is_sought(lines[i], lines[k], nearness)) continue;
+      EXPECT_TRUE(is_visited[k]) << i << " on " << k;
+      ++found;
+    }
+    laid.add(std::uint32_t(i), lines[i]);
+  }
+  return found;
+}
+
+std::vector<Line> lines_of(const MakeSegment& make, std::size_t count) {
+  Random random(7);
+  std::vector<Line> lines;
+  while (lines.size() < count) lines.emplace_back(make(random));
+  return lines;
+}
+
+TEST(LaidLines, AllThatLieOnALineAreFound) {
+  const MakeSegment kinds[] = {long_in_a_pixel, short_in_a_pixel, from_a_point, in_a_heap, on_few_lines,
+                               anywhere,        in_a_far_heap,    side_by_side, across,    in_a_star};
+  std::size_t found = 0;
+  for (std::size_t kind = 0; kind < std::size(kinds); ++kind)
+    for (const double apart : {0.002, 0.13, 1.0}) {
+      SCOPED_TRACE(int(kind) * 1000 + int(apart * 100));
+      found += expect_all_found(lines_of(kinds[kind], under_sanitizer ? 600 : 2000), apart);
+    }
+  EXPECT_GT(found, 10000u);
+}
+
+/// A piece of a long line may be short, and then short ones may lie on it at any angle.
+TEST(LaidLines, PiecesOfLongLinesAreFoundAsWhatTheyAre) {
+  const Line whole({{0, 0}, {1000, 0}, 0}), piece({{500, 0}, {510, 0}, 0}), other({{500, -0.3}, {510, 0.4}, 0});
+  const Nearness nearness(1.0);
+  LaidLines laid({whole, other}, nearness);
+  laid.add(0, piece);
+  std::size_t found = 0;
+  (void)laid.for_each(other, [&](std::span<const std::uint32_t> numbers) { found += numbers.size(); });
+  EXPECT_GT(nearness.overlap(other, piece).end, 9);
+  EXPECT_GE(found, 1u);
+}
+
+std::size_t looked_at(const std::vector<Line>& lines, double apart) {
+  LaidLines laid(lines, Nearness(apart));
+  std::size_t sum = 0;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    sum += laid.for_each(lines[i], [](std::span<const std::uint32_t>) {});
+    laid.add(std::uint32_t(i), lines[i]);
+  }
+  return sum;
+}
+
+/// Of 20 thousand lines each would be held against ten thousand others, if they were not told apart by their places.
+TEST(LaidLines, LookAtFewOthers) {
+  struct Case {
+    MakeSegment make;
+    std::size_t most;  ///< to the line
+  };
+  const Case cases[] = {{anywhere, 30},      {across, 30},     {in_a_star, 30},
+                        {side_by_side, 100}, {in_a_heap, 200}, {in_a_far_heap, 200}};
+  constexpr std::size_t count = 20000;
+  for (std::size_t kind = 0; kind < std::size(cases); ++kind)
+    for (const double apart : {0.002, 0.12}) {
+      SCOPED_TRACE(int(kind) * 1000 + int(apart * 100));
+      EXPECT_LT(looked_at(lines_of(cases[kind].make, count), apart), cases[kind].most * count);
+    }
+}
+
+/// As the header states: in the width of a pixel each may be looked at for each other, but no more than that.
+TEST(LaidLines, LookAtNoMoreThanAllWithinAPixel) {
+  constexpr std::size_t count = 4000;
+  for (const MakeSegment& make : {MakeSegment(long_in_a_pixel), MakeSegment(short_in_a_pixel)})
+    EXPECT_LT(looked_at(lines_of(make, count), 0.002), 4 * count * count);
+}
+
+}  // namespace
+}  // namespace frontmost::test
