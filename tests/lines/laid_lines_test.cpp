@@ -14,53 +14,53 @@ namespace {
 
 using namespace lines_detail;
 
-using MakeSegment = std::function<Segment(Random&)>;
+using MakeSegment = std::function<LineSegment(Random&)>;
 
-Segment towards(const glm::dvec2& begin, double angle, double length) {
+LineSegment towards(const glm::dvec2& begin, double angle, double length) {
   return {begin, begin + length * glm::dvec2(std::cos(angle), std::sin(angle)), 0};
 }
 
 /// Through the sheet, within a pixel's width.
-Segment long_in_a_pixel(Random& random) {
+LineSegment long_in_a_pixel(Random& random) {
   return {
       {random.within(0, 10), 1000 + random.within(0, 1)}, {3830 + random.within(0, 10), 1000 + random.within(0, 1)}, 0};
 }
 
 /// Of all lengths, some turned around.
-Segment short_in_a_pixel(Random& random) {
+LineSegment short_in_a_pixel(Random& random) {
   const glm::dvec2 begin{random.within(0, 3000), 1000 + random.within(0, 1)};
   const glm::dvec2 end{begin.x + random.within(1, 500), 1000 + random.within(0, 1)};
-  return random.below(2) == 0 ? Segment{begin, end, 0} : Segment{end, begin, 0};
+  return random.below(2) == 0 ? LineSegment{begin, end, 0} : LineSegment{end, begin, 0};
 }
 
 /// From one point everywhere.
-Segment from_a_point(Random& random) {
+LineSegment from_a_point(Random& random) {
   const double angle = random.within(0, 6.3f);
   return towards({500, 500}, angle, random.within(1, 16));
 }
 
 /// Tiny ones, of every direction.
-Segment in_a_heap(Random& random) {
+LineSegment in_a_heap(Random& random) {
   const glm::dvec2 begin{100 + random.within(0, 4), 200 + random.within(0, 4)};
   const double angle = random.within(0, 6.3f);
   return towards(begin, angle, random.within(0.01f, 0.2f));
 }
 
 /// On a few lines, again and again; level and upright ones among them.
-Segment on_few_lines(Random& random) {
+LineSegment on_few_lines(Random& random) {
   const double angle = double(random.below(8)) * 0.39269908169872414, at = random.within(0, 20);
   return towards(towards({800, 600}, angle, at).to, angle, random.within(1, 40));
 }
 
 /// Anywhere in the picture, of all lengths.
-Segment anywhere(Random& random) {
+LineSegment anywhere(Random& random) {
   const glm::dvec2 begin{random.within(0, 3000), random.within(0, 2000)};
   const double angle = random.within(0, 6.3f);
   return towards(begin, angle, std::pow(10.0, random.within(-1, 3)));
 }
 
 /// In a three-hundredth of a picture that is as large as one far line makes it.
-Segment in_a_far_heap(Random& random) {
+LineSegment in_a_far_heap(Random& random) {
   if (random.below(100) == 0) return {{3000, 3000}, {3000, 3000.1}, 0};
   const glm::dvec2 begin{random.within(0, 10), random.within(0, 10)};
   const double angle = random.within(0, 6.3f);
@@ -68,19 +68,19 @@ Segment in_a_far_heap(Random& random) {
 }
 
 /// Side by side, two thirds of a pixel apart, all through the sheet.
-Segment side_by_side(Random& random) {
+LineSegment side_by_side(Random& random) {
   const double y = 2.0 / 3.0 * double(random.below(3000));
   return {{0, y}, {3000, y + 300}, 0};
 }
 
 /// Through the sheet, everywhere.
-Segment across(Random& random) {
+LineSegment across(Random& random) {
   const glm::dvec2 begin{random.within(0, 3000), random.within(0, 2000)};
   const double angle = random.within(0, 6.3f);
   return towards(begin, angle, 800);
 }
 
-Segment in_a_star(Random& random) {
+LineSegment in_a_star(Random& random) {
   const double angle = random.within(0, 6.3f);
   return towards({1500, 1000}, angle, 800);
 }

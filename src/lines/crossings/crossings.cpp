@@ -24,9 +24,9 @@ namespace {
 constexpr std::size_t kGroupsPerPart = 16, kPairsPerPoll = 16384;
 
 /// A triangle with its vertices in ascending order, so that whoever asks its plane gets the same bits.
-class Face {
+class CrossedFace {
  public:
-  Face(const WeldedMesh& mesh, std::uint32_t number)
+  CrossedFace(const WeldedMesh& mesh, std::uint32_t number)
       : triangle(number),
         vertices(ascending(mesh.triangles[number])),
         plane(mesh.positions[vertices.x], mesh.positions[vertices.y], mesh.positions[vertices.z]) {}
@@ -67,7 +67,7 @@ struct Heights {
   }
 };
 
-Heights heights(const WeldedMesh& mesh, const Face& face, const Face& over) {
+Heights heights(const WeldedMesh& mesh, const CrossedFace& face, const CrossedFace& over) {
   Heights heights;
   for (int k = 0; k < 3; ++k)
     if (!over.has(face.vertices[k])) heights.of[k] = over.plane.height(mesh.positions[face.vertices[k]]);
@@ -75,14 +75,14 @@ Heights heights(const WeldedMesh& mesh, const Face& face, const Face& over) {
 }
 
 /// Where a face's outline meets the plane of another: one end of its interval.
-struct Meeting {
+struct EdgeMeeting {
   CrossingEnd end;
   std::uint32_t p, q;  ///< the edge that passes through the plane, or ends in it
 };
 
 /// The two meetings of a face that straddles. An edge that ends in the plane stands for its end.
-std::array<Meeting, 2> meetings(const WeldedMesh& mesh, const Face& face, const Heights& heights) {
-  std::array<Meeting, 2> found;
+std::array<EdgeMeeting, 2> meetings(const WeldedMesh& mesh, const CrossedFace& face, const Heights& heights) {
+  std::array<EdgeMeeting, 2> found;
   std::size_t count = 0;
   for (int i = 0; i < 3 && count < 2; ++i) {
     if (heights.of[i].sign != 0) continue;
@@ -110,7 +110,7 @@ int turn(const WeldedMesh& mesh, std::uint32_t p, std::uint32_t q, std::uint32_t
 }
 
 /// Whether the line through the meeting's edge, which is not in the face's plane, passes through the face.
-bool is_within(const WeldedMesh& mesh, const Meeting& meeting, const Face& face) {
+bool is_within(const WeldedMesh& mesh, const EdgeMeeting& meeting, const CrossedFace& face) {
   const glm::uvec3& v = face.vertices;
   const int a = turn(mesh, meeting.p, meeting.q, v.x, v.y), b = turn(mesh, meeting.p, meeting.q, v.y, v.z);
   if (a * b < 0) return false;
@@ -118,7 +118,7 @@ bool is_within(const WeldedMesh& mesh, const Meeting& meeting, const Face& face)
   return b * c >= 0 && c * a >= 0;
 }
 
-std::optional<std::uint32_t> shared_vertex(const Face& a, const Face& b) {
+std::optional<std::uint32_t> shared_vertex(const CrossedFace& a, const CrossedFace& b) {
   for (int k = 0; k < 3; ++k)
     if (b.has(a.vertices[k])) return a.vertices[k];
   return std::nullopt;
@@ -127,7 +127,7 @@ std::optional<std::uint32_t> shared_vertex(const Face& a, const Face& b) {
 /// Of two that share a vertex and straddle each other's planes, whether they lie on different sides of it along the
 /// planes' common line, as most neighbours do. That line meets the first's opposite edge; seen along that edge, the
 /// second is then turned the wrong way. `heights` are the first's over the second.
-bool lie_apart(const WeldedMesh& mesh, const std::array<const Face*, 2>& faces, const Heights& heights,
+bool lie_apart(const WeldedMesh& mesh, const std::array<const CrossedFace*, 2>& faces, const Heights& heights,
                std::uint32_t shared) {
   const glm::uvec3 &a = faces[0]->vertices, &b = faces[1]->vertices;
   const int from = a.x == shared ? 1 : 0, to = a.z == shared ? 1 : 2;
@@ -143,7 +143,7 @@ struct Found {
   std::vector<Crossing> crossings;
   std::vector<EdgeContact> contacts;
 
-  void add_contact(const Face& face, int beside, std::uint32_t triangle) {
+  void add_contact(const CrossedFace& face, int beside, std::uint32_t triangle) {
     if (beside < 0) return;
     const glm::uvec3& v = face.vertices;
     contacts.push_back({beside == 0 ? v.y : v.x, beside == 2 ? v.y : v.z, triangle});
@@ -151,7 +151,7 @@ struct Found {
 };
 
 /// The segment of two triangles that share one vertex or none.
-std::optional<Crossing> crossing(const WeldedMesh& mesh, const std::array<const Face*, 2>& faces, Found& found) {
+std::optional<Crossing> crossing(const WeldedMesh& mesh, const std::array<const CrossedFace*, 2>& faces, Found& found) {
   const Heights first = heights(mesh, *faces[0], *faces[1]);
   const int first_beside = first.beside();
   if (!first.straddle() && first_beside < 0) return std::nullopt;
@@ -163,17 +163,17 @@ std::optional<Crossing> crossing(const WeldedMesh& mesh, const std::array<const 
   if (first_beside >= 0 || second_beside >= 0) return std::nullopt;
   const std::optional<std::uint32_t> shared = shared_vertex(*faces[0], *faces[1]);
   if (shared && lie_apart(mesh, faces, first, *shared)) return std::nullopt;
-  const std::array<Meeting, 2> ends[2] = {meetings(mesh, *faces[0], first), meetings(mesh, *faces[1], second)};
-  const Meeting* within[2][2];
+  const std::array<EdgeMeeting, 2> ends[2] = {meetings(mesh, *faces[0], first), meetings(mesh, *faces[1], second)};
+  const EdgeMeeting* within[2][2];
   std::size_t count[2] = {0, 0};
   for (std::size_t k = 0; k < 2; ++k)
-    for (const Meeting& end : ends[k])
+    for (const EdgeMeeting& end : ends[k])
       if (is_within(mesh, end, *faces[1 - k])) within[k][count[k]++] = &end;
   // Where edges meet, both have an end there: both of one triangle say all.
   for (std::size_t k = 0; k < 2; ++k)
     if (count[k] == 2) return Crossing{within[k][0]->end, within[k][1]->end, 0, 0};
   if (count[0] == 0 || count[1] == 0) return std::nullopt;
-  const Meeting &a = *within[0][0], &b = *within[1][0];
+  const EdgeMeeting &a = *within[0][0], &b = *within[1][0];
   if (turn(mesh, a.p, a.q, b.p, b.q) == 0) return std::nullopt;  // they touch in a point
   return Crossing{a.end, b.end, 0, 0};
 }
@@ -203,7 +203,7 @@ class Tally {
 
 /// Appends the segment of two triangles, if there is one.
 void add_crossing(const WeldedMesh& mesh, std::uint32_t left, std::uint32_t right, Found& found) {
-  const Face one(mesh, left), two(mesh, right);
+  const CrossedFace one(mesh, left), two(mesh, right);
   std::optional<Crossing> segment = crossing(mesh, {&one, &two}, found);
   if (!segment) return;
   segment->left = left;

@@ -19,12 +19,12 @@ constexpr std::size_t most_sets = 16;
 constexpr double touching = 0.01;  // pixels: the same line goes on
 
 /// Sorted, without what lies on what came before, and joined where it goes on.
-std::vector<Piece> united(std::vector<Piece> pieces) {
+std::vector<HatchPiece> united(std::vector<HatchPiece> pieces) {
   std::sort(pieces.begin(), pieces.end());
-  std::vector<Piece> whole;
-  for (Piece piece : pieces) {
+  std::vector<HatchPiece> whole;
+  for (HatchPiece piece : pieces) {
     if (!whole.empty() && whole.back().set == piece.set && whole.back().line == piece.line) {
-      Piece& last = whole.back();
+      HatchPiece& last = whole.back();
       if (last.instance == piece.instance && piece.begin <= last.end + touching) {
         last.end = std::max(last.end, piece.end);
         continue;
@@ -103,7 +103,7 @@ std::vector<HatchLine> hatch(const Surfaces& surfaces, const View& view, const H
   std::vector<HatchLine> lines;
   const TonedScene::Task task{options.sets, options.by_instance, nullptr,
                               sets_by_material(options.sets, surfaces.scene().materials.size())};
-  for (const Piece& piece : united(scene.pieces(task, rows, execution))) {
+  for (const HatchPiece& piece : united(scene.pieces(task, rows, execution))) {
     if (piece.end - piece.begin < options.shortest) continue;
     const HatchRows& row = rows[piece.set];
     lines.push_back({row.point(piece.line, piece.begin), row.point(piece.line, piece.end), piece.set, piece.instance});

@@ -17,9 +17,9 @@ using namespace lines_detail;
 constexpr double most_dots = 2e7;
 
 /// By row, from the left; each once where surfaces coincide.
-void sort(std::vector<Piece>& dots) {
+void sort(std::vector<HatchPiece>& dots) {
   std::sort(dots.begin(), dots.end());
-  const auto is_same = [](const Piece& a, const Piece& b) { return a.line == b.line && a.begin == b.begin; };
+  const auto is_same = [](const HatchPiece& a, const HatchPiece& b) { return a.line == b.line && a.begin == b.begin; };
   dots.erase(std::unique(dots.begin(), dots.end(), is_same), dots.end());
 }
 
@@ -51,10 +51,10 @@ std::vector<Stipple> stipple(const Surfaces& surfaces, const View& view, const S
   const std::vector<HatchSet> sets = {{0, cell, cell / 2, 1}};
   const std::vector<HatchRows> rows = {HatchRows(sets[0], view)};
   const DotGrid grid(options.spacing, view.width);
-  std::vector<Piece> pieces = scene.pieces({sets, options.by_instance, &grid}, rows, execution);
+  std::vector<HatchPiece> pieces = scene.pieces({sets, options.by_instance, &grid}, rows, execution);
   sort(pieces);
   std::vector<Stipple> dots;
-  for (const Piece& piece : pieces) dots.push_back({rows[0].point(piece.line, piece.begin), piece.instance});
+  for (const HatchPiece& piece : pieces) dots.push_back({rows[0].point(piece.line, piece.begin), piece.instance});
   if (options.nearest_first) dots = in_pen_order(dots, execution);
   report_progress(execution, "hatching", 1);
   return dots;

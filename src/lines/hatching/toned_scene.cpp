@@ -78,7 +78,7 @@ class TonedScene::Hatcher {
     if (scene.light_) lit_.emplace(scene.light_->occlusion);
   }
 
-  void hatch(std::uint32_t number, std::vector<Piece>& pieces) {
+  void hatch(std::uint32_t number, std::vector<HatchPiece>& pieces) {
     if (scene_.eye_.seen.facing[number] == 0) return;
     HatchedTriangle triangle{number, scene_.mesh_.triangles[number], {}, {}};
     for (int k = 0; k < 3; ++k) {
@@ -117,7 +117,7 @@ class TonedScene::Hatcher {
     return task_.sets_by_material[std::min<std::size_t>(material, task_.sets_by_material.size() - 1)];
   }
 
-  void add_pieces(const HatchSegment& segment, Piece piece, std::vector<Piece>& pieces) {
+  void add_pieces(const HatchSegment& segment, HatchPiece piece, std::vector<HatchPiece>& pieces) {
     find_normals(segment.edge.own[0]);
     const double below = task_.sets[piece.set].below;
     find_dark({HatchSegment::at(segment.from, normals_), HatchSegment::at(segment.to, normals_)}, scene_.to_light_,
@@ -140,7 +140,7 @@ class TonedScene::Hatcher {
   }
 
   /// Dots on the segment whose place is seen, and darker than they ask for.
-  void add_dots(const HatchSegment& segment, Piece piece, std::vector<Piece>& pieces) {
+  void add_dots(const HatchSegment& segment, HatchPiece piece, std::vector<HatchPiece>& pieces) {
     find_dots(segment.edge, piece);
     if (dots_.empty()) return;
     find_normals(segment.edge.own[0]);
@@ -160,7 +160,7 @@ class TonedScene::Hatcher {
   }
 
   /// Those from the segment's one end to its other.
-  void find_dots(const SightedEdge& edge, const Piece& piece) {
+  void find_dots(const SightedEdge& edge, const HatchPiece& piece) {
     dots_.clear();
     const Sight& sight = scene_.eye_.sight;
     const glm::dvec3 from = sight.in_eye(edge.from), to = sight.in_eye(edge.to);
@@ -202,7 +202,7 @@ class TonedScene::Hatcher {
       if (part.hidden_by != 0) dark_.push_back({part.begin, part.end});
   }
 
-  [[nodiscard]] double along(const SightedEdge& edge, double t, const Piece& piece) const {
+  [[nodiscard]] double along(const SightedEdge& edge, double t, const HatchPiece& piece) const {
     // From the nearer end, so that both ends are met.
     const glm::dvec3 place =
         t <= 0.5 ? edge.from + (edge.to - edge.from) * t : edge.to + (edge.from - edge.to) * (1 - t);
@@ -228,15 +228,15 @@ class TonedScene::Hatcher {
   std::vector<Dot> dots_;
 };
 
-std::vector<Piece> TonedScene::pieces(const Task& task, const std::vector<HatchRows>& rows,
-                                      const Execution& execution) const {
+std::vector<HatchPiece> TonedScene::pieces(const Task& task, const std::vector<HatchRows>& rows,
+                                           const Execution& execution) const {
   const std::size_t count = mesh_.triangles.size();
-  std::vector<std::vector<Piece>> lists((count + triangles_per_part - 1) / triangles_per_part);
+  std::vector<std::vector<HatchPiece>> lists((count + triangles_per_part - 1) / triangles_per_part);
   Pool<Hatcher> hatchers;
   std::atomic<std::size_t> done{0}, found{0};
   parallel_for(execution, count, triangles_per_part, [&](std::size_t begin, std::size_t end) {
     const auto hatcher = hatchers.borrow([&] { return std::make_unique<Hatcher>(*this, task, rows, execution); });
-    std::vector<Piece>& list = lists[begin / triangles_per_part];
+    std::vector<HatchPiece>& list = lists[begin / triangles_per_part];
     std::size_t counted = 0;
     for (std::size_t i = begin; i < end; ++i) {
       if (i % triangles_per_poll == 0) check_cancelled(execution);

@@ -10,13 +10,13 @@
 namespace frontmost::lines_detail {
 
 /// A piece of line `line` of a set, in pixels along it; a dot where it has no length.
-struct Piece {
+struct HatchPiece {
   std::uint32_t set;
   std::int32_t line;
   double begin, end;
   std::uint32_t instance;
 
-  friend bool operator<(const Piece& a, const Piece& b) {
+  friend bool operator<(const HatchPiece& a, const HatchPiece& b) {
     return std::tie(a.set, a.line, a.begin, a.end, a.instance) < std::tie(b.set, b.line, b.begin, b.end, b.instance);
   }
 };
@@ -51,8 +51,8 @@ class TonedScene {
     std::vector<std::uint32_t> sets_by_material{};
   };
   /// In no order that matters.
-  [[nodiscard]] std::vector<Piece> pieces(const Task& task, const std::vector<HatchRows>& rows,
-                                          const Execution& execution) const;
+  [[nodiscard]] std::vector<HatchPiece> pieces(const Task& task, const std::vector<HatchRows>& rows,
+                                               const Execution& execution) const;
 
   [[nodiscard]] const WeldedMesh& mesh() const { return mesh_; }
 

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a large triangle does in the cells of a grid: which it covers, and how far away it is there.
+// What a triangle does in the squares of a plane: which of them it covers, and how far away it is there.
+//
+// A triangle that covers a cell whole hides all that lies beyond it there, and what lies beside a cell need not be
+// listed in it. Both are asked of rounded places, so each answer leaves room for what rounding may do: "covers" and "is
+// beside" are true only where that is certain.
 #pragma once
 
 #include <algorithm>

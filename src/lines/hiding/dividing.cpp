@@ -13,7 +13,7 @@ constexpr double kLeastSize = 1.0 / (1 << 12);
 constexpr std::size_t kEntriesPerPoll = 1 << 13, kEntriesPerLook = 64;
 
 /// The nearest triangle that covers a part whole: an entry of the cell.
-struct Cover {
+struct NearestCover {
   float farthest = std::numeric_limits<float>::infinity();
   std::size_t entry = 0;
 };
@@ -21,7 +21,7 @@ struct Cover {
 /// Leaves out what lies beyond the part's cover: by its distances, or by its plane. `numbers` are those of the part's
 /// entries among the cell's, which have `depths`.
 void leave_beyond(const GridPlan& plan, const std::vector<CellDepth>& depths, const std::vector<std::size_t>& numbers,
-                  const Cover& cover, CrowdedCell<CellEntry>& part) {
+                  const NearestCover& cover, CrowdedCell<CellEntry>& part) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const CellEntry& entry = part.items[i];
@@ -40,11 +40,11 @@ CellParts<CellEntry> split_entries(const GridPlan& plan, const CrowdedCell<CellE
   for (std::size_t i = 0; i < parts.size(); ++i) parts[i].square = grid.square(i);
   std::vector<CellDepth> depths;
   std::array<std::vector<std::size_t>, CellTree::parts> numbers;
-  std::array<Cover, CellTree::parts> covers;
+  std::array<NearestCover, CellTree::parts> covers;
   for (std::size_t e = 0; e < whole.items.size(); ++e) {
     if (e % kEntriesPerPoll == 0) check_cancelled(plan.execution);
     // All that follow are beyond what covers each part.
-    const auto is_beyond = [&](const Cover& cover) { return whole.items[e].nearest > cover.farthest; };
+    const auto is_beyond = [&](const NearestCover& cover) { return whole.items[e].nearest > cover.farthest; };
     if (e % kEntriesPerLook == 0 && std::all_of(covers.begin(), covers.end(), is_beyond)) break;
     const Footprint& footprint = plan.footprints[whole.items[e].footprint];
     const bool is_near = plan.is_near(footprint);
@@ -53,7 +53,7 @@ CellParts<CellEntry> split_entries(const GridPlan& plan, const CrowdedCell<CellE
     grid.visit_box(footprint.low, footprint.high, kCellPad, [&](int x, int y) {
       const std::size_t i = grid.number(x, y);
       CrowdedCell<CellEntry>& part = parts[i];
-      Cover& cover = covers[i];
+      NearestCover& cover = covers[i];
       if (!is_near && depth.is_beside(part.square)) return;
       const float nearest =
           is_near ? footprint.nearest : std::max(footprint.nearest, rounded_down(depth.nearest(part.square)));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an occluder grid is made from: how fine it is, and what each triangle takes of it. Known while it is made, and
-// not after.
+// not after. A small triangle takes the cells that its box touches. A large one takes, row by row, the cells that its
+// outline touches, which may be far fewer, and each at its own distance.
 #pragma once
 
 #include <array>

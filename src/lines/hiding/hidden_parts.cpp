@@ -63,7 +63,7 @@ glm::dvec2 on_screen(const EdgeInEye& edge, double t, const Occlusion& o) {
 enum class Asked { what_hides, what_covers_the_outer_side };
 
 /// What is asked about a span of an edge.
-struct Question {
+struct EdgeQuestion {
   const Occlusion& o;
   const EdgeInEye& edge;
   const Interval span;
@@ -71,7 +71,7 @@ struct Question {
   const glm::dvec2 begin, end;  ///< of the span, in cells
   const float farthest;         ///< what is no nearer does not matter
 
-  Question(const Occlusion& occlusion, const EdgeInEye& its_edge, const Interval& its_span, Asked what)
+  EdgeQuestion(const Occlusion& occlusion, const EdgeInEye& its_edge, const Interval& its_span, Asked what)
       : o(occlusion),
         edge(its_edge),
         span(its_span),
@@ -84,7 +84,7 @@ struct Question {
 };
 
 /// What of the edge may lie in a cell: rather more.
-Interval part_in(const PassedCell& cell, const Question& question) {
+Interval part_in(const PassedCell& cell, const EdgeQuestion& question) {
   const Interval& span = question.span;
   const glm::dvec2 along = question.end - question.begin;
   const int axis = std::abs(along.y) > std::abs(along.x);
@@ -109,7 +109,7 @@ struct PartInCell {
   ScreenSegment segment;
 };
 
-PartInCell seen_in(const PassedCell& cell, const Interval& part, const Question& question) {
+PartInCell seen_in(const PassedCell& cell, const Interval& part, const EdgeQuestion& question) {
   const double scale = question.o.grid.scale();
   const glm::dvec2 a = on_screen(question.edge, part.begin, question.o) * scale,
                    b = on_screen(question.edge, part.end, question.o) * scale;
@@ -129,7 +129,7 @@ PartInCell seen_in(const PassedCell& cell, const Interval& part, const Question&
 }
 
 /// Holds what is in the batch against the edge. \returns true when more is hidden than before.
-bool hold_against_batch(const Question& question, EdgeSearch& search) {
+bool hold_against_batch(const EdgeQuestion& question, EdgeSearch& search) {
   const SightedEdge& edge = question.edge.edge;
   HiddenBatch found;
   (question.hides() ? question.o.kernels.hide : question.o.kernels.cover)(search.batch, edge, question.o.sight, found);
@@ -147,7 +147,7 @@ bool hold_against_batch(const Question& question, EdgeSearch& search) {
 
 /// Puts those of the entries from `first` on that have a bit into the batch, and asks when it is full. \returns false
 /// when nothing is left to hide in this cell.
-bool ask_entries(std::uint64_t bits, std::size_t first, const PassedCell& cell, const Question& question,
+bool ask_entries(std::uint64_t bits, std::size_t first, const PassedCell& cell, const EdgeQuestion& question,
                  EdgeSearch& search) {
   for (; bits != 0; bits &= bits - 1) {
     const Occluder& occluder = question.o.grid.occluder(first + std::size_t(std::countr_zero(bits)));
@@ -163,7 +163,7 @@ bool ask_entries(std::uint64_t bits, std::size_t first, const PassedCell& cell, 
 
 /// For cells of many entries: the nearest first, then those just before the edge. Of a stack of sheets the ones between
 /// hide ever less than the next one, and are asked no more when that has left nothing where they are.
-void ask_many(const OccluderGrid::Visit& cell, const Question& question, EdgeSearch& search) {
+void ask_many(const OccluderGrid::Visit& cell, const EdgeQuestion& question, EdgeSearch& search) {
   const OccluderGrid& grid = question.o.grid;
   Interval open = search.hidden.open_part(part_in(cell, question));
   if (!(open.begin < open.end)) return;
@@ -187,7 +187,7 @@ void ask_many(const OccluderGrid::Visit& cell, const Question& question, EdgeSea
 }
 
 /// For cells of few entries.
-void ask_few(const OccluderGrid::Visit& cell, const Question& question, EdgeSearch& search) {
+void ask_few(const OccluderGrid::Visit& cell, const EdgeQuestion& question, EdgeSearch& search) {
   const glm::dvec2 low = cell.low - kCellPad, high = cell.high + kCellPad;
   const ScreenPart part{{wide_low(low.x), wide_low(low.y)}, {wide_high(high.x), wide_high(high.y)}, question.farthest};
   for (std::size_t first = cell.first; first < cell.last; first += kMostAtOnce) {
@@ -200,7 +200,7 @@ void ask_few(const OccluderGrid::Visit& cell, const Question& question, EdgeSear
 }
 
 /// Finds all that is hidden, or covered, of the question's span.
-void answer(const Question& question, EdgeSearch& search) {
+void answer(const EdgeQuestion& question, EdgeSearch& search) {
   search.hidden.restart(question.o.counts && question.hides());
   search.asked.fill(nullptr);
   search.batch.count = 0;
@@ -212,7 +212,8 @@ void answer(const Question& question, EdgeSearch& search) {
 }
 
 /// Appends the parts of a span between the beginnings and ends of what hides it.
-void append_parts(const Question& question, EdgeSearch& search, std::uint32_t number, std::vector<DrawnPart>& parts) {
+void append_parts(const EdgeQuestion& question, EdgeSearch& search, std::uint32_t number,
+                  std::vector<DrawnPart>& parts) {
   std::vector<std::pair<double, int>>& changes = search.changes;
   changes.clear();
   for (const HiddenIntervals::Hidden& one : search.hidden.intervals()) {
@@ -242,7 +243,7 @@ void append_parts(const Question& question, EdgeSearch& search, std::uint32_t nu
 }
 
 /// Appends a seen part, cut where what lies beside it begins and ends.
-void append_outline(DrawnPart part, const Question& question, HiddenIntervals& covered,
+void append_outline(DrawnPart part, const EdgeQuestion& question, HiddenIntervals& covered,
                     std::vector<DrawnPart>& pieces) {
   const DrawnPart whole = part;
   const auto cut_at = [&](double t, bool is_outline) {
@@ -268,7 +269,7 @@ void EdgeCutter::cut(const SightedEdge& sighted, std::uint32_t number, std::vect
   const EdgeInEye edge(sighted, o_.sight);
   const Interval shown = within_view(edge, o_.view.projection);
   if (!(shown.begin < shown.end)) return;
-  const Question hiding(o_, edge, shown, Asked::what_hides);
+  const EdgeQuestion hiding(o_, edge, shown, Asked::what_hides);
   answer(hiding, search_);
   const std::size_t first = parts.size();
   append_parts(hiding, search_, number, parts);
@@ -276,7 +277,7 @@ void EdgeCutter::cut(const SightedEdge& sighted, std::uint32_t number, std::vect
   std::vector<DrawnPart> pieces;
   for (std::size_t i = first; i < parts.size(); ++i) {
     if (parts[i].hidden_by == 0) {
-      const Question covering(o_, edge, {parts[i].begin, parts[i].end}, Asked::what_covers_the_outer_side);
+      const EdgeQuestion covering(o_, edge, {parts[i].begin, parts[i].end}, Asked::what_covers_the_outer_side);
       answer(covering, search_);
       append_outline(parts[i], covering, search_.hidden, pieces);
     } else {

@@ -28,11 +28,11 @@ Interval beyond_near(const Occluder& occluder, const SightedEdge& edge, const Si
   return where_positive(beyond(edge.from, edge.from_distance), beyond(edge.to, edge.to_distance), false);
 }
 
-struct Corners {
+struct OccluderCorners {
   glm::dvec3 at[3];
   const std::uint32_t (&vertices)[3];
 
-  explicit Corners(const Occluder& o)
+  explicit OccluderCorners(const Occluder& o)
       : at{glm::dvec3(o.corners[0]), glm::dvec3(o.corners[1]), glm::dvec3(o.corners[2])}, vertices(o.vertices) {}
   [[nodiscard]] bool has(std::uint32_t vertex, int a, int b) const {
     return vertex == vertices[a] || vertex == vertices[b];
@@ -44,7 +44,7 @@ struct Corners {
 template <class Along>
 Interval in_shadow(const Occluder& occluder, const SightedEdge& edge, const Sight& sight, Interval hidden,
                    const Along& along) {
-  const Corners corners(occluder);
+  const OccluderCorners corners(occluder);
   constexpr int sides[3][2] = {{0, 1}, {1, 2}, {0, 2}};
   for (int k = 0; k < 3 && hidden.begin < hidden.end; ++k) {
     const int a = sides[k][0], b = sides[k][1];
@@ -85,7 +85,7 @@ Interval where_positive(const Signed& at_0, const Signed& at_1, bool is_strict) 
 
 Interval hidden_by(const Occluder& occluder, const SightedEdge& edge, const Sight& sight) {
   if (is_own(occluder, edge)) return {};
-  const Corners corners(occluder);
+  const OccluderCorners corners(occluder);
   const FacePlane plane(corners.at[0], corners.at[1], corners.at[2]);
   const auto is_corner = [&](std::uint32_t vertex) {
     return corners.has(vertex, 0, 1) || vertex == occluder.vertices[2];

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a triangle hides of an edge.
+// What a triangle hides of an edge: what lies in its shadow, as if the eye were a lamp.
+//
+//            ____        The shadow is bounded by the triangle's own plane and by three planes through the eye, one
+//   eye  .--|    |.....  along each side. Each of them is a function that is linear along the edge, so that its signs
+//        '--|____|.....  at both ends, and its root between them, say where the edge is inside. What is inside all
+//                        four, from the last entry to the first exit, is hidden.
 #pragma once
 
 #include <algorithm>

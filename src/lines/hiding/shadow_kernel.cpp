@@ -69,7 +69,7 @@ struct Rest {
   HWY_INLINE bool IsAllGone() const { return hn::AllTrue(D(), is_gone); }
 };
 
-struct Corner {
+struct CornerLanes {
   Vector3 place;
   M is_from, is_to;  // the edge's ends
 };
@@ -85,7 +85,7 @@ HWY_INLINE void Ask(const OccluderBatch& batch, const SightedEdge& edge, const S
   const Vector3 axis = Splat(D(), sight.is_parallel() ? sight.forward() : sight.eye());
   hidden.hides = hidden.open = 0;
   for (std::size_t i = 0; i < batch.count; i += hn::Lanes(d)) {
-    Corner corner[3];
+    CornerLanes corner[3];
     for (int k = 0; k < 3; ++k) {
       const auto load = [&](int c) HWY_ATTR { return hn::Load(d, batch.corners[3 * k + c] + i); };
       const V vertex = hn::Load(d, batch.vertices[k] + i);
@@ -103,7 +103,7 @@ HWY_INLINE void Ask(const OccluderBatch& batch, const SightedEdge& edge, const S
           Values(face, to_0, against, any(corner[0].is_to, corner[1].is_to, corner[2].is_to), edge.slack));
     }
     // A turn is the negative product with the plane's normal.
-    const auto keep_within = [&](const Corner& p, const Corner& q, V sign) HWY_ATTR {
+    const auto keep_within = [&](const CornerLanes& p, const CornerLanes& q, V sign) HWY_ATTR {
       if (rest.IsAllGone()) return;
       const Normals side(sight.is_parallel() ? axis : Minus(p.place, axis), Minus(q.place, p.place));
       rest.Keep<needs_depth ? Rest::Along::kept : Rest::Along::open>(

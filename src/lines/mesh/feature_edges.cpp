@@ -45,7 +45,7 @@ class Classifier {
   [[nodiscard]] std::optional<EdgeKind> open_kind() const {
     return options_.boundaries ? std::optional(EdgeKind::boundary) : std::nullopt;
   }
-  [[nodiscard]] std::optional<EdgeKind> kind_of(const Sheet& sheet) const {
+  [[nodiscard]] std::optional<EdgeKind> kind_of(const SidesOfSheet& sheet) const {
     const int a = side_of(sheet.first), b = side_of(sheet.second);
     if (options_.silhouettes && (a * b > 0 || (a == 0) != (b == 0))) return EdgeKind::silhouette;
     if (has_borders_ && !(surface_of(sheet.first.triangle) == surface_of(sheet.second.triangle)))
@@ -160,9 +160,9 @@ struct Drawn {
 };
 
 /// Of the sheets of one edge that which comes first by its kind.
-std::optional<Drawn> first_of(std::span<const Sheet> sheets, const Classifier& classifier) {
+std::optional<Drawn> first_of(std::span<const SidesOfSheet> sheets, const Classifier& classifier) {
   std::optional<Drawn> first;
-  for (const Sheet& sheet : sheets)
+  for (const SidesOfSheet& sheet : sheets)
     if (const std::optional<EdgeKind> kind = classifier.kind_of(sheet); kind && (!first || *kind < first->kind))
       first = {*kind, sheet.first.triangle, sheet.second.triangle};
   return first;
@@ -172,7 +172,7 @@ std::optional<Drawn> first_of(std::span<const Sheet> sheets, const Classifier& c
 std::optional<Drawn> drawn_of(std::span<const Side> sides, std::span<const Side> distinct,
                               const Classifier& classifier) {
   if (distinct.size() == 2) {
-    const Sheet sheet(distinct[0], distinct[1]);
+    const SidesOfSheet sheet(distinct[0], distinct[1]);
     return first_of({&sheet, 1}, classifier);
   }
   if (distinct.size() > 2)

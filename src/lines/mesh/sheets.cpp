@@ -13,11 +13,11 @@ struct OwnedSide {
 };
 
 /// Sides with one opposite vertex.
-using Copies = std::span<const OwnedSide>;
+using SidesOfCopy = std::span<const OwnedSide>;
 
 /// Of sides sorted by opposite vertex.
-std::vector<Copies> copies_of(std::span<const OwnedSide> sides) {
-  std::vector<Copies> all;
+std::vector<SidesOfCopy> copies_of(std::span<const OwnedSide> sides) {
+  std::vector<SidesOfCopy> all;
   for (auto begin = sides.begin(); begin != sides.end();) {
     const auto end =
         std::find_if(begin, sides.end(), [&](const OwnedSide& s) { return s.side.opposite != begin->side.opposite; });
@@ -28,7 +28,7 @@ std::vector<Copies> copies_of(std::span<const OwnedSide> sides) {
 }
 
 /// Copies of one object and material where there are such, else the first ones.
-Sheet sheet_of(const Copies& a, const Copies& b) {
+SidesOfSheet sheet_of(const SidesOfCopy& a, const SidesOfCopy& b) {
   for (const OwnedSide& one : a)
     for (const OwnedSide& other : b)
       if (one.surface == other.surface) return {one.side, other.side};
@@ -36,12 +36,13 @@ Sheet sheet_of(const Copies& a, const Copies& b) {
 }
 
 /// Appends the sheets of sides that are all paired. \returns whether they are.
-bool pair_up(std::span<const OwnedSide> sides, std::vector<Sheet>& sheets) {
-  const std::vector<Copies> copies = copies_of(sides);
+bool pair_up(std::span<const OwnedSide> sides, std::vector<SidesOfSheet>& sheets) {
+  const std::vector<SidesOfCopy> copies = copies_of(sides);
   if (copies.size() < 2) return false;
   // With two opposite vertices it does not matter how often each is there.
-  const auto centre = std::find_if(copies.begin(), copies.end(),
-                                   [&](const Copies& c) { return copies.size() == 2 || 2 * c.size() == sides.size(); });
+  const auto centre = std::find_if(copies.begin(), copies.end(), [&](const SidesOfCopy& c) {
+    return copies.size() == 2 || 2 * c.size() == sides.size();
+  });
   if (centre == copies.end()) return false;
   for (auto other = copies.begin(); other != copies.end(); ++other)
     if (other != centre) sheets.push_back(sheet_of(*centre, *other));
@@ -49,9 +50,9 @@ bool pair_up(std::span<const OwnedSide> sides, std::vector<Sheet>& sheets) {
 }
 
 /// Sheets by what they have in common.
-class Groups {
+class SheetGroups {
  public:
-  explicit Groups(std::size_t sheets) : group_(sheets), count_(sheets) {
+  explicit SheetGroups(std::size_t sheets) : group_(sheets), count_(sheets) {
     std::iota(group_.begin(), group_.end(), std::size_t(0));
   }
   [[nodiscard]] std::size_t count() const { return count_; }
@@ -72,8 +73,8 @@ class Groups {
 };
 
 /// Whether from each sheet the others are reached over sides that sheets have in common or that lie on each other.
-bool is_connected(const std::vector<Sheet>& sheets, const SheetQuestions& questions) {
-  Groups groups(sheets.size());
+bool is_connected(const std::vector<SidesOfSheet>& sheets, const SheetQuestions& questions) {
+  SheetGroups groups(sheets.size());
   std::vector<std::pair<std::uint32_t, std::size_t>> ends;  // opposite vertex, sheet
   for (std::size_t i = 0; i < sheets.size(); ++i) {
     ends.emplace_back(sheets[i].first.opposite, i);
@@ -95,14 +96,14 @@ bool is_connected(const std::vector<Sheet>& sheets, const SheetQuestions& questi
 
 }  // namespace
 
-std::optional<std::vector<Sheet>> find_sheets(std::span<const Side> sides, const SheetQuestions& questions) {
+std::optional<std::vector<SidesOfSheet>> find_sheets(std::span<const Side> sides, const SheetQuestions& questions) {
   std::vector<OwnedSide> owned;
   owned.reserve(sides.size());
   for (const Side& side : sides) owned.push_back({side, questions.surface_of(side.triangle)});
   // Of an object those with one opposite vertex stay together, and so they do in what is left.
   std::stable_sort(owned.begin(), owned.end(),
                    [](const OwnedSide& a, const OwnedSide& b) { return a.surface.instance < b.surface.instance; });
-  std::vector<Sheet> sheets;
+  std::vector<SidesOfSheet> sheets;
   std::vector<OwnedSide> left;
   for (auto begin = owned.begin(); begin != owned.end();) {
     const auto end = std::find_if(begin, owned.end(),

@@ -24,7 +24,7 @@ struct Side {
 };
 
 /// Two sides between which a surface goes on.
-using Sheet = std::pair<Side, Side>;
+using SidesOfSheet = std::pair<Side, Side>;
 
 /// Which object and material a triangle belongs to.
 struct SurfaceOf {
@@ -46,7 +46,7 @@ struct SheetQuestions {
 /// \returns none where a side stays without a partner or has too many, and where sheets neither have sides in common
 /// nor lie on each other: there surfaces meet. O(sides log sides), and the square of the sheets that have none in
 /// common.
-[[nodiscard]] std::optional<std::vector<Sheet>> find_sheets(std::span<const Side> sides,
-                                                            const SheetQuestions& questions);
+[[nodiscard]] std::optional<std::vector<SidesOfSheet>> find_sheets(std::span<const Side> sides,
+                                                                   const SheetQuestions& questions);
 
 }  // namespace frontmost::lines_detail

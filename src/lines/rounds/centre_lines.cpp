@@ -21,14 +21,14 @@ constexpr double kWidestGap = 10.0 / 3;    // of the overshoot: between bores of
 constexpr double kWidestGapInRadii = 4.0;  // where that is more
 
 /// A part of a straight line.
-struct Piece {
+struct AxisPiece {
   glm::dvec2 direction;  ///< of unit length
   double offset;         ///< of the line, to the left of its direction
   double begin, end;     ///< along it
   double radius;         ///< of what it is drawn for
 };
 
-Piece piece_between(const glm::dvec2& from, const glm::dvec2& to, double radius) {
+AxisPiece piece_between(const glm::dvec2& from, const glm::dvec2& to, double radius) {
   glm::dvec2 d = glm::normalize(to - from);
   if (std::abs(d.x) < kSameDirection) d = {0, 1};
   if (std::abs(d.y) < kSameDirection) d = {1, 0};
@@ -40,17 +40,18 @@ Piece piece_between(const glm::dvec2& from, const glm::dvec2& to, double radius)
 
 /// Joins pieces of one line where `joins` says so of a gap between two; in the order of directions and places.
 template <class Joins>
-std::vector<Piece> joined_pieces(std::vector<Piece> pieces, double same_line, const Joins& joins) {
-  const auto angle = [](const Piece& p) { return std::atan2(p.direction.y, p.direction.x); };
-  std::sort(pieces.begin(), pieces.end(), [&](const Piece& a, const Piece& b) { return angle(a) < angle(b); });
-  std::vector<Piece> all;
+std::vector<AxisPiece> joined_pieces(std::vector<AxisPiece> pieces, double same_line, const Joins& joins) {
+  const auto angle = [](const AxisPiece& p) { return std::atan2(p.direction.y, p.direction.x); };
+  std::sort(pieces.begin(), pieces.end(), [&](const AxisPiece& a, const AxisPiece& b) { return angle(a) < angle(b); });
+  std::vector<AxisPiece> all;
   for (auto turned = pieces.begin(); turned != pieces.end();) {
-    const auto other =
-        std::find_if(turned, pieces.end(), [&](const Piece& p) { return angle(p) - angle(*turned) > kSameDirection; });
-    std::sort(turned, other, [](const Piece& a, const Piece& b) { return a.offset < b.offset; });
+    const auto other = std::find_if(turned, pieces.end(),
+                                    [&](const AxisPiece& p) { return angle(p) - angle(*turned) > kSameDirection; });
+    std::sort(turned, other, [](const AxisPiece& a, const AxisPiece& b) { return a.offset < b.offset; });
     for (auto line = turned; line != other;) {
-      const auto end = std::find_if(line, other, [&](const Piece& p) { return p.offset - line->offset > same_line; });
-      std::sort(line, end, [](const Piece& a, const Piece& b) {
+      const auto end =
+          std::find_if(line, other, [&](const AxisPiece& p) { return p.offset - line->offset > same_line; });
+      std::sort(line, end, [](const AxisPiece& a, const AxisPiece& b) {
         return std::tie(a.begin, a.end, a.radius) < std::tie(b.begin, b.end, b.radius);
       });
       const std::size_t first = all.size();
@@ -98,19 +99,19 @@ class CentreLiner {
 
   [[nodiscard]] std::vector<CentreLine> run() const {
     const double same_line = kSameLine * overshoot_;
-    std::vector<Piece> pieces = joined_pieces(axes_, same_line, [&](const Piece& a, const Piece& b) {
+    std::vector<AxisPiece> pieces = joined_pieces(axes_, same_line, [&](const AxisPiece& a, const AxisPiece& b) {
       return b.begin - a.end <= std::max(kWidestGap * overshoot_, kWidestGapInRadii * std::min(a.radius, b.radius));
     });
-    std::erase_if(pieces, [](const Piece& p) { return p.end - p.begin < 1e-3; });
-    for (Piece& piece : pieces) {
+    std::erase_if(pieces, [](const AxisPiece& p) { return p.end - p.begin < 1e-3; });
+    for (AxisPiece& piece : pieces) {
       piece.begin -= beyond(piece.radius);
       piece.end += beyond(piece.radius);
     }
     pieces.insert(pieces.end(), crosses_.begin(), crosses_.end());
-    pieces =
-        joined_pieces(std::move(pieces), same_line, [](const Piece& a, const Piece& b) { return b.begin <= a.end; });
+    pieces = joined_pieces(std::move(pieces), same_line,
+                           [](const AxisPiece& a, const AxisPiece& b) { return b.begin <= a.end; });
     std::vector<CentreLine> lines;
-    for (const Piece& p : pieces) {
+    for (const AxisPiece& p : pieces) {
       const glm::dvec2 foot = p.offset * glm::dvec2(p.direction.y, -p.direction.x);
       lines.push_back({foot + p.begin * p.direction, foot + p.end * p.direction});
     }
@@ -125,7 +126,7 @@ class CentreLiner {
   const View& view_;
   const double overshoot_;
   double pixels_;  ///< to the unit of the scene
-  std::vector<Piece> axes_, crosses_;
+  std::vector<AxisPiece> axes_, crosses_;
 };
 
 }  // namespace

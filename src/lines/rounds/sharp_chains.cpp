@@ -31,7 +31,7 @@ std::vector<SharpEdge> sharp_edges(const SmoothMesh& mesh, const Execution& exec
 }
 
 /// An end of an edge: of edge i the ends 2 i and 2 i + 1.
-using End = std::uint32_t;
+using ChainEnd = std::uint32_t;
 
 class Chainer {
  public:
@@ -54,18 +54,20 @@ class Chainer {
   }
 
  private:
-  [[nodiscard]] std::uint32_t vertex(End end) const { return end % 2 == 0 ? edges_[end / 2].from : edges_[end / 2].to; }
+  [[nodiscard]] std::uint32_t vertex(ChainEnd end) const {
+    return end % 2 == 0 ? edges_[end / 2].from : edges_[end / 2].to;
+  }
 
   /// Away from the end, along its edge.
-  [[nodiscard]] glm::dvec3 direction(End end) const {
+  [[nodiscard]] glm::dvec3 direction(ChainEnd end) const {
     const glm::dvec3 along = mesh_.mesh.positions[vertex(end ^ 1)] - mesh_.mesh.positions[vertex(end)];
     const double length = glm::length(along);
     return length > 0 ? along / length : glm::dvec3(0);
   }
 
   void join_all(const Execution& execution) {
-    std::vector<std::pair<std::uint32_t, End>> ends(2 * edges_.size());
-    for (End end = 0; end < ends.size(); ++end) ends[end] = {vertex(end), end};
+    std::vector<std::pair<std::uint32_t, ChainEnd>> ends(2 * edges_.size());
+    for (ChainEnd end = 0; end < ends.size(); ++end) ends[end] = {vertex(end), end};
     std::sort(ends.begin(), ends.end());
     std::size_t steps = 0;
     for (auto begin = ends.begin(); begin != ends.end();) {
@@ -77,10 +79,10 @@ class Chainer {
   }
 
   /// Those that turn least first.
-  void join(std::span<const std::pair<std::uint32_t, End>> ends) {
+  void join(std::span<const std::pair<std::uint32_t, ChainEnd>> ends) {
     struct Pair {
       double cosine;
-      End a, b;
+      ChainEnd a, b;
     };
     std::vector<Pair> pairs;
     for (std::size_t i = 0; i < ends.size(); ++i)
@@ -101,7 +103,7 @@ class Chainer {
   }
 
   /// From the edge of which `ahead` is the far end.
-  void follow(End ahead, bool closed, std::vector<bool>& is_done) {
+  void follow(ChainEnd ahead, bool closed, std::vector<bool>& is_done) {
     SharpChain chain;
     chain.is_closed = closed;
     while (!is_done[ahead / 2]) {
@@ -120,7 +122,7 @@ class Chainer {
   const SmoothMesh& mesh_;
   const std::vector<SharpEdge>& edges_;
   std::vector<SharpChain>& chains_;
-  std::vector<End> next_;  ///< by end the one that it goes on from, or no_index
+  std::vector<ChainEnd> next_;  ///< by end the one that it goes on from, or no_index
 };
 
 }  // namespace

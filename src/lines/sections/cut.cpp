@@ -104,7 +104,7 @@ CutFace close(const std::vector<CutSegment>& segments, const PlaneAxes& plane, s
     fill(region, triangles, execution);
     face.area += region.area;
     region.holes.insert(region.holes.begin(), std::move(region.outer));
-    for (const Outline& outline : region.holes) {
+    for (const SectionOutline& outline : region.holes) {
       std::vector<glm::vec3>& points = face.outlines.emplace_back();
       for (const glm::vec2& p : outline) points.push_back(plane.in_space(p));
     }

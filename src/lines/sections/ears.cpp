@@ -26,7 +26,7 @@ class Rings {
  public:
   explicit Rings(const Region& region) {
     add(region.outer);
-    for (const Outline& hole : region.holes) add(hole);
+    for (const SectionOutline& hole : region.holes) add(hole);
   }
 
   [[nodiscard]] std::size_t size() const { return links_.size(); }
@@ -68,7 +68,7 @@ class Rings {
   }
 
  private:
-  void add(const Outline& outline) {
+  void add(const SectionOutline& outline) {
     const auto first = std::uint32_t(size()), count = std::uint32_t(outline.size());
     firsts_.push_back(first);
     for (std::uint32_t i = 0; i < count; ++i) {

@@ -91,7 +91,7 @@ class Walker {
     for (std::uint32_t i = 0; i < steps_.size(); ++i) walk(i);
   }
 
-  std::vector<Outline> closed, open;
+  std::vector<SectionOutline> closed, open;
   bool is_wound_alike = true;
 
  private:
@@ -118,8 +118,8 @@ class Walker {
     path_.resize(begin + 1);
   }
 
-  [[nodiscard]] Outline points_from(std::size_t begin) const {
-    Outline points;
+  [[nodiscard]] SectionOutline points_from(std::size_t begin) const {
+    SectionOutline points;
     for (std::size_t i = begin; i < path_.size(); ++i) points.push_back(places_[path_[i]]);
     return points;
   }
@@ -162,7 +162,7 @@ class Walker {
 };
 
 /// Which of the lines begins nearest to the end of each, no farther than `gap`; none begins after two of them.
-std::vector<std::uint32_t> successors(const std::vector<Outline>& lines, double gap) {
+std::vector<std::uint32_t> successors(const std::vector<SectionOutline>& lines, double gap) {
   std::vector<std::uint32_t> order(lines.size()), next(lines.size(), no_index);
   std::iota(order.begin(), order.end(), 0u);
   const auto start_x = [&](std::uint32_t i) { return lines[i].front().x; };
@@ -185,24 +185,24 @@ std::vector<std::uint32_t> successors(const std::vector<Outline>& lines, double 
 }
 
 /// Joins lines over small gaps. \returns those that close; `open_count` is of the others.
-std::vector<Outline> close_gaps(const std::vector<Outline>& lines, double gap, std::size_t& open_count) {
+std::vector<SectionOutline> close_gaps(const std::vector<SectionOutline>& lines, double gap, std::size_t& open_count) {
   const std::vector<std::uint32_t> next = successors(lines, gap);
   std::vector<std::uint8_t> is_done(lines.size()), has_before(lines.size());
   for (const std::uint32_t k : next)
     if (k != no_index) has_before[k] = 1;
-  const auto follow = [&](std::uint32_t k, Outline& line) {
+  const auto follow = [&](std::uint32_t k, SectionOutline& line) {
     for (; k != no_index && !is_done[k]; k = next[k]) {
       is_done[k] = 1;
       line.insert(line.end(), lines[k].begin(), lines[k].end());
     }
   };
-  Outline line;
+  SectionOutline line;
   for (std::uint32_t i = 0; i < lines.size(); ++i) {
     if (has_before[i]) continue;
     ++open_count;
     follow(i, line);
   }
-  std::vector<Outline> closed;
+  std::vector<SectionOutline> closed;
   for (std::uint32_t i = 0; i < lines.size(); ++i) {
     line.clear();
     follow(i, line);
@@ -225,7 +225,7 @@ Outlines find_outlines(const std::vector<CutSegment>& segments, const Execution&
     low = glm::min(low, glm::dvec2(place));
     high = glm::max(high, glm::dvec2(place));
   }
-  for (Outline& line : close_gaps(walker.open, joined_gap * glm::distance(low, high), all.open_count))
+  for (SectionOutline& line : close_gaps(walker.open, joined_gap * glm::distance(low, high), all.open_count))
     all.closed.push_back(std::move(line));
   return all;
 }

@@ -14,10 +14,10 @@ struct CutSegment {
 };
 
 /// The last point is joined to the first. No point is there twice.
-using Outline = std::vector<glm::vec2>;
+using SectionOutline = std::vector<glm::vec2>;
 
 struct Outlines {
-  std::vector<Outline> closed;
+  std::vector<SectionOutline> closed;
   std::size_t open_count = 0;
   bool is_wound_alike = true;  ///< no segment had to be turned round
 };

@@ -14,12 +14,12 @@ constexpr double area_rounding = 1e-12;  // of the sum of what it is the sum of
 
 /// A closed line, and what is asked of it.
 struct Ring {
-  Outline points;
+  SectionOutline points;
   double area = 0;  ///< negative where it runs clockwise
   glm::vec2 low{0}, high{0};
 };
 
-Ring ring_of(Outline points) {
+Ring ring_of(SectionOutline points) {
   Ring ring;
   ring.low = ring.high = points[0];
   double size = 0;
@@ -37,20 +37,20 @@ Ring ring_of(Outline points) {
   return ring;
 }
 
-enum class Place : std::uint8_t { outside, on, inside };
+enum class RegionPlace : std::uint8_t { outside, on, inside };
 
-Place place_in(const Outline& ring, const glm::vec2& p) {
+RegionPlace place_in(const SectionOutline& ring, const glm::vec2& p) {
   bool is_inside = false;
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const glm::vec2 &a = ring[i], &b = ring[i + 1 < ring.size() ? i + 1 : 0];
-    if (a == p) return Place::on;
-    if (a.y == p.y && b.y == p.y && (a.x > p.x) != (b.x > p.x)) return Place::on;
+    if (a == p) return RegionPlace::on;
+    if (a.y == p.y && b.y == p.y && (a.x > p.x) != (b.x > p.x)) return RegionPlace::on;
     if ((a.y > p.y) == (b.y > p.y)) continue;
     const int side = orientation(a, b, p);
-    if (side == 0) return Place::on;
+    if (side == 0) return RegionPlace::on;
     if ((side > 0) == (b.y > a.y)) is_inside = !is_inside;
   }
-  return is_inside ? Place::inside : Place::outside;
+  return is_inside ? RegionPlace::inside : RegionPlace::outside;
 }
 
 /// Of two that do not cross.
@@ -59,7 +59,8 @@ bool lies_in(const Ring& inner, const Ring& outer) {
                    inner.high.y <= outer.high.y;
   if (!may) return false;
   for (const glm::vec2& p : inner.points)
-    if (const Place place = place_in(outer.points, p); place != Place::on) return place == Place::inside;
+    if (const RegionPlace place = place_in(outer.points, p); place != RegionPlace::on)
+      return place == RegionPlace::inside;
   return std::abs(inner.area) < std::abs(outer.area);
 }
 
@@ -89,7 +90,7 @@ int boundary_of(const std::vector<Ring>& rings, const std::vector<std::uint32_t>
 
 std::vector<Region> regions_of(Outlines outlines, const Execution& execution) {
   std::vector<Ring> rings;
-  for (Outline& outline : outlines.closed)
+  for (SectionOutline& outline : outlines.closed)
     if (Ring ring = ring_of(std::move(outline)); ring.area != 0) rings.push_back(std::move(ring));
   const std::vector<std::vector<std::uint32_t>> around = rings_around(rings, execution);
   std::vector<int> boundary;

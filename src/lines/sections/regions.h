@@ -10,8 +10,8 @@ namespace frontmost::lines_detail {
 
 /// A part of the plane in one piece.
 struct Region {
-  Outline outer;               ///< counter-clockwise
-  std::vector<Outline> holes;  ///< clockwise
+  SectionOutline outer;               ///< counter-clockwise
+  std::vector<SectionOutline> holes;  ///< clockwise
   double area = 0;
 };
 

@@ -11,12 +11,12 @@ constexpr int style_count = 6;
 constexpr std::size_t most_compared = 2048;
 constexpr double spacings[] = {1, 0.7, 1.4};  // two angles of each
 
-struct Extent {
+struct HatchExtent {
   glm::vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
 };
 
-Extent extent_of(const CutFace& face) {
-  Extent extent;
+HatchExtent extent_of(const CutFace& face) {
+  HatchExtent extent;
   for (const std::vector<glm::vec3>& outline : face.outlines)
     for (const glm::vec3& p : outline) {
       extent.low = glm::min(extent.low, p);
@@ -25,7 +25,7 @@ Extent extent_of(const CutFace& face) {
   return extent;
 }
 
-bool may_touch(const Extent& a, const Extent& b) {
+bool may_touch(const HatchExtent& a, const HatchExtent& b) {
   return glm::all(glm::lessThanEqual(a.low, b.high)) && glm::all(glm::lessThanEqual(b.low, a.high));
 }
 
@@ -42,7 +42,7 @@ double thickness_of(const CutFace& face) {
 struct PlacedFace {
   std::uint32_t instance;
   std::size_t section;
-  Extent extent;
+  HatchExtent extent;
 };
 
 std::vector<PlacedFace> faces_of(std::span<const Section* const> sections) {

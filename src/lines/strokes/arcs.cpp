@@ -47,9 +47,9 @@ double turn_between(const Circle& circle, const glm::dvec2& a, const glm::dvec2&
 }
 
 /// A row of corners, or a ring of them.
-class Run {
+class ChordRun {
  public:
-  Run(const std::vector<glm::dvec2>& points, std::size_t first, std::size_t chords)
+  ChordRun(const std::vector<glm::dvec2>& points, std::size_t first, std::size_t chords)
       : points_(points), first_(first), chords_(chords) {}
 
   /// Whether an arc of the circle, which runs through all corners within the tolerance, stays within it beside all
@@ -127,7 +127,7 @@ class ArcFinder {
       turn += by;
     }
     if (std::abs(turn) < least_turn || std::abs(turn) > 6.2) return std::nullopt;
-    if (!Run(points_, first, last - first).is_like(*circle, tolerance_)) return std::nullopt;
+    if (!ChordRun(points_, first, last - first).is_like(*circle, tolerance_)) return std::nullopt;
     return Fit{*circle, turn};
   }
 
@@ -172,7 +172,7 @@ class ArcFinder {
       turn += by;
     }
     if (std::abs(std::abs(turn) - 2 * std::numbers::pi) > 1e-6) return false;
-    if (!Run(points_, 0, n).is_like(*circle, tolerance_)) return false;
+    if (!ChordRun(points_, 0, n).is_like(*circle, tolerance_)) return false;
     const double bulge = turn > 0 ? 1 : -1;
     points_ = {points_[0], 2.0 * circle->centre - points_[0]};
     chain_.bulges = {bulge, bulge};

@@ -11,12 +11,12 @@ namespace {
 constexpr std::uint32_t none = no_index;
 
 /// An end of a segment: number 2 i for its from, 2 i + 1 for its to.
-struct End {
+struct SegmentEnd {
   std::int64_t x, y;
   std::uint32_t rank, number;
 
-  [[nodiscard]] bool meets(const End& o) const { return rank == o.rank && x == o.x && y == o.y; }
-  friend bool operator<(const End& a, const End& b) {
+  [[nodiscard]] bool meets(const SegmentEnd& o) const { return rank == o.rank && x == o.x && y == o.y; }
+  friend bool operator<(const SegmentEnd& a, const SegmentEnd& b) {
     if (a.rank != b.rank) return a.rank < b.rank;
     if (a.x != b.x) return a.x < b.x;
     if (a.y != b.y) return a.y < b.y;
@@ -25,8 +25,8 @@ struct End {
 };
 
 /// For every end the one other end that it meets, or none.
-std::vector<std::uint32_t> partners(const std::vector<Segment>& segments) {
-  std::vector<End> ends;
+std::vector<std::uint32_t> partners(const std::vector<LineSegment>& segments) {
+  std::vector<SegmentEnd> ends;
   ends.reserve(2 * segments.size());
   for (std::size_t i = 0; i < segments.size(); ++i)
     for (int k = 0; k < 2; ++k) {
@@ -50,7 +50,7 @@ std::vector<std::uint32_t> partners(const std::vector<Segment>& segments) {
 
 class Chaining {
  public:
-  explicit Chaining(const std::vector<Segment>& segments)
+  explicit Chaining(const std::vector<LineSegment>& segments)
       : segments_(segments), partner_(partners(segments)), is_used_(segments.size()) {}
 
   std::vector<Chain> run() {
@@ -83,7 +83,7 @@ class Chaining {
     chains_.push_back(std::move(chain));
   }
 
-  const std::vector<Segment>& segments_;
+  const std::vector<LineSegment>& segments_;
   std::vector<std::uint32_t> partner_;
   std::vector<bool> is_used_;
   std::vector<Chain> chains_;
@@ -140,7 +140,7 @@ class Cone {
 
 }  // namespace
 
-std::vector<Chain> chained(const std::vector<Segment>& segments) { return Chaining(segments).run(); }
+std::vector<Chain> chained(const std::vector<LineSegment>& segments) { return Chaining(segments).run(); }
 
 void straighten(Chain& chain, double tolerance) {
   std::vector<glm::dvec2>& points = chain.points;

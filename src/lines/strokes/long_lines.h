@@ -4,6 +4,12 @@
 // A long line passes many cells of a grid, and in them many lines that it only crosses. What lies on it meets two
 // opposite sides of the drawing, prolonged, at nearly the same heights: a place in a plane of its own, in which lines
 // that cross or run beside each other lie apart.
+//
+//     drawing          its plane      The plane is a table of buckets. Lines that may lie on a line have their places
+//     near
+//    |            _b    |   . b       its own: a line that turns about its middle moves there along a straight way.
+//   a|  ___-----  |     |
+//    |--          |     +------ a
 #pragma once
 
 #include <algorithm>
@@ -65,7 +71,7 @@ class LongLines {
   using Table = std::unordered_map<std::uint64_t, std::vector<BriefLine>>;
 
   /// Where the segment's line meets both ends of the axis.
-  [[nodiscard]] glm::dvec2 heights(const Segment& s, int axis) const {
+  [[nodiscard]] glm::dvec2 heights(const LineSegment& s, int axis) const {
     const double slope = (s.to[1 - axis] - s.from[1 - axis]) / (s.to[axis] - s.from[axis]);
     const double first = s.from[1 - axis] + slope * (low_[axis] - s.from[axis]);
     return glm::dvec2(first, first + slope * extent_) - low_[1 - axis];

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which lines count as lying on each other.
+//
+//     a --------------------------      Of two lines that run side by side, nearer to each other than `apart` and at
+//            b -----------------------  nearly one angle, the later one is drawn only where the earlier one is not. The
+//            |<-- overlap -->|          overlap is the stretch of a line on which another lies.
+//
+// A long line and another may differ less in their angle than two short ones: else long lines that cross at a small
+// angle would lose what lies between them.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +18,9 @@
 
 namespace frontmost::lines_detail {
 
-struct Line : Segment {
-  explicit Line(const Segment& segment)
-      : Segment(segment), length(glm::distance(from, to)), along((to - from) / length) {}
+struct Line : LineSegment {
+  explicit Line(const LineSegment& segment)
+      : LineSegment(segment), length(glm::distance(from, to)), along((to - from) / length) {}
 
   static constexpr double long_from = 16;  // pixels
   [[nodiscard]] bool is_long() const { return length > long_from; }

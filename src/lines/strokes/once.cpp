@@ -9,13 +9,13 @@
 namespace frontmost::lines_detail {
 namespace {
 
-class Sheet {
+class OverlapRemover {
  public:
   /// For these lines. Precondition: not empty.
-  Sheet(const std::vector<Line>& lines, double apart) : near_(apart), index_(lines, near_) {}
+  OverlapRemover(const std::vector<Line>& lines, double apart) : near_(apart), index_(lines, near_) {}
 
   /// Adds what of `line` is not there yet to `fresh`.
-  void lay(const Line& line, std::vector<Segment>& fresh) {
+  void lay(const Line& line, std::vector<LineSegment>& fresh) {
     find_covered(line);
     if (covered_.empty()) return add(line, fresh);
     std::sort(covered_.begin(), covered_.end(), [](const Stretch& a, const Stretch& b) { return a.begin < b.begin; });
@@ -47,7 +47,7 @@ class Sheet {
     });
   }
 
-  void add(const Line& line, std::vector<Segment>& fresh) {
+  void add(const Line& line, std::vector<LineSegment>& fresh) {
     fresh.push_back(line);
     index_.add(std::uint32_t(laid_.size()), line);
     laid_.push_back(line);
@@ -64,7 +64,7 @@ class Sheet {
 
 }  // namespace
 
-std::vector<Segment> draw_once(const std::vector<Segment>& segments, double apart, const Execution& execution) {
+std::vector<LineSegment> draw_once(const std::vector<LineSegment>& segments, double apart, const Execution& execution) {
   std::vector<std::uint32_t> order(segments.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),
@@ -73,14 +73,14 @@ std::vector<Segment> draw_once(const std::vector<Segment>& segments, double apar
   lines.reserve(segments.size());
   for (const std::uint32_t i : order)
     if (glm::distance(segments[i].from, segments[i].to) > Nearness::shortest / 4) lines.emplace_back(segments[i]);
-  std::vector<Segment> fresh;
+  std::vector<LineSegment> fresh;
   if (lines.empty()) return fresh;
   fresh.reserve(lines.size());
-  Sheet sheet(lines, apart);
+  OverlapRemover overlaps(lines, apart);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (i % 256 == 0) check_cancelled(execution);
     if (i % 4096 == 0) report_progress(execution, "strokes", 0.1 + 0.4 * double(i) / double(lines.size()));
-    sheet.lay(lines[i], fresh);
+    overlaps.lay(lines[i], fresh);
   }
   return fresh;
 }

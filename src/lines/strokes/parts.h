@@ -12,7 +12,7 @@
 namespace frontmost::lines_detail {
 
 /// A straight piece on the screen; what differs in rank is never joined. Lower ranks are drawn over higher ones.
-struct Segment {
+struct LineSegment {
   glm::dvec2 from, to;
   std::uint32_t rank;
   bool is_contour = false;  ///< a piece of a silhouette or a boundary
@@ -31,14 +31,14 @@ inline double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y
 
 /// Of what lies on each other, within `apart` pixels, what has the lower rank, or comes first. What is left keeps its
 /// order.
-[[nodiscard]] std::vector<Segment> draw_once(const std::vector<Segment>& segments, double apart,
-                                             const Execution& execution);
+[[nodiscard]] std::vector<LineSegment> draw_once(const std::vector<LineSegment>& segments, double apart,
+                                                 const Execution& execution);
 
 /// Ends within about 1 / places_per_pixel are one place.
 inline constexpr double places_per_pixel = 1000;
 
 /// Joins segments of one rank wherever exactly two ends meet. By rank, then in the order of the segments.
-[[nodiscard]] std::vector<Chain> chained(const std::vector<Segment>& segments);
+[[nodiscard]] std::vector<Chain> chained(const std::vector<LineSegment>& segments);
 
 struct CrumbRule {
   double shortest;  ///< pixels: of a line that is no crumb

@@ -91,7 +91,7 @@ class Choice {
 
 /// The segments of all parts with their ranks, and what stands behind each rank: a stroke without points.
 struct Ranked {
-  std::vector<Segment> segments;
+  std::vector<LineSegment> segments;
   std::vector<Stroke> strokes;
 };
 
