@@ -128,18 +128,21 @@ int render_whole(Run& run) {
   timings.load = watch.milliseconds();
   watch = {};
   const Surfaces surfaces(scene, execution);
-  if (is_drawn_often(run)) (void)surfaces.clusters(execution);
+  const bool is_often = is_drawn_often(run);
+  if (is_often) (void)surfaces.clusters(execution);
   timings.surfaces = watch.milliseconds();
   watch = {};
   plan_curved(scene, settings.run, run.jobs);
   const RayIndexes indexes(run.jobs, settings.run, surfaces, execution);
   if (indexes.triangles || indexes.curved) timings.index = watch.milliseconds();
+  SharedBuffers buffers;
   const std::vector<ViewResult> results = render_all(run.jobs, settings, progress, [&](const Job& job) {
     const bool is_met = meets_curved(job, settings.run, scene);
     RenderContext context{surfaces, settings.run, execution, run.on_terminal};
     context.by_rays = settings.run.method == Method::raycast;
     if (indexes.triangles) context.index = &*indexes.triangles;
     if (is_met) context.curved = &*indexes.curved;
+    if (is_often) context.buffers = &buffers;
     if (job.view.tessellation_error) return render_tessellated_view(job, context);
     if (is_met && job.view.camera_model == CameraModel::pinhole) return render_curved_view(job, context);
     return render_view(job, context);

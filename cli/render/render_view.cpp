@@ -34,19 +34,25 @@ bool wants_maps(const Job& job) {
                      [](const OutputFile& file) { return std::any_of(file.kinds.begin(), file.kinds.end(), is_map); });
 }
 
-Sight look_once(const View& view, const DepthSettings& depth, const RenderContext& context) {
+Sight look_once(const View& view, const DepthSettings& depth, const RenderContext& context, ZBuffer* buffer) {
   if (context.run.method == Method::abuffer)
     return {visible_layers(context.surfaces, view, 1, {}, context.execution).front(), {}};
   const RayIndex* index = context.by_rays ? context.index : nullptr;
+  if (buffer && !index && !depth.is_used) {
+    buffer->draw(context.surfaces, view, context.execution);
+    return {buffer->take(), {}};
+  }
   return look_at_surfaces(context.surfaces, view, depth, context.execution, index);
 }
 
-Sight timed(const View& view, const DepthSettings& depth, const RenderContext& context, std::vector<double>& times) {
+Sight timed(const View& view, const DepthSettings& depth, const RenderContext& context, ZBuffer* buffer,
+            std::vector<double>& times) {
   for (int i = 1;; ++i) {
     const Stopwatch watch;
-    Sight sight = look_once(view, depth, context);
+    Sight sight = look_once(view, depth, context, buffer);
     times.push_back(watch.milliseconds());
     if (i >= context.run.repeat) return sight;
+    if (buffer) buffer->give_back(std::move(sight.visible));
   }
 }
 
@@ -57,12 +63,14 @@ Sights look(const Job& job, const RenderContext& context, ViewResult& result) {
   sights.shared = plan.shared;
   if (plan.picture_samples) {
     view.samples = *plan.picture_samples;
-    sights.picture = timed(view, job.view.depth, context, result.timings.visible);
+    ZBuffer* const buffer = context.buffers ? &context.buffers->picture : nullptr;
+    sights.picture = timed(view, job.view.depth, context, buffer, result.timings.visible);
   }
   if (plan.maps && !plan.shared) {
     view.samples = 1;
     std::vector<double> times;
-    sights.maps = timed(view, job.view.depth, context, plan.picture_samples ? times : result.timings.visible);
+    ZBuffer* const buffer = context.buffers ? &context.buffers->maps : nullptr;
+    sights.maps = timed(view, job.view.depth, context, buffer, plan.picture_samples ? times : result.timings.visible);
     if (plan.picture_samples) result.timings.visible_maps = times.front();
   }
   return sights;
@@ -168,10 +176,12 @@ ViewResult render_view(const Job& job, const RenderContext& context) {
   result.depth = job.view.depth;
   result.view = resolve_view(job.view, context.framed_surfaces());
   result.target = focal_point_of(job.view, result.view, context.framed_surfaces());
-  const Sights sights = look(job, context, result);
+  Sights sights = look(job, context, result);
   finish_view(job, context, sights, result);
   write_layers(job, context, result);
   write_figures(job, context, sights, result);
+  if (context.buffers && sights.picture) context.buffers->picture.give_back(std::move(sights.picture->visible));
+  if (context.buffers && sights.maps) context.buffers->maps.give_back(std::move(sights.maps->visible));
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <frontmost/curved.h>
 #include <frontmost/surfaces.h>
 #include <frontmost/visible.h>
+#include <frontmost/zbuffer.h>
 
 #include <optional>
 #include <string>
@@ -64,6 +65,11 @@ struct ViewResult {
   std::optional<Image> picture;  ///< kept for the terminal
 };
 
+/// The z-buffer's planes, which views and repeats use one after the other.
+struct SharedBuffers {
+  ZBuffer picture, maps;
+};
+
 /// What all views share.
 struct RenderContext {
   const Surfaces& surfaces;
@@ -75,6 +81,7 @@ struct RenderContext {
   const CurvedIndex* curved = nullptr;  ///< where cameras that are no pinholes meet curved surfaces; then no `index`
   /// Whose bounds the camera goes by, where it is not these surfaces'.
   const Surfaces* framed = nullptr;
+  SharedBuffers* buffers = nullptr;  ///< null where a single picture is drawn
 
   [[nodiscard]] const Surfaces& framed_surfaces() const { return framed ? *framed : surfaces; }
 };

@@ -34,8 +34,10 @@ class ZBuffer {
   /// What zbuffer() gives. The result stays as it is until the next draw() or take(); after an error it is unspecified.
   /// \throws Error as validate(view) does.
   const Visible& draw(const Surfaces& surfaces, const View& view, const Execution& execution = {});
-  /// Moves the last result out; the next draw() allocates another.
+  /// Moves the last result out; the next draw() allocates another, unless one is given back.
   [[nodiscard]] Visible take();
+  /// Planes of whatever size, for the next draw() to use again where they fit.
+  void give_back(Visible&& planes);
 
  private:
   struct State;

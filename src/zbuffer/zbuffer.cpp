@@ -34,7 +34,7 @@ struct ZBuffer::State {
 
 bool ZBuffer::State::prepare_planes(const View& view) {
   const View& last = visible.view;
-  const bool fits = visible.primitives.size() == view.sample_count();
+  const bool fits = visible.primitives.size() == view.sample_count() && visible.keys.size() == view.sample_count();
   // Whatever fails for want of memory, planes, their view and `blank` go together.
   if (!fits) {
     visible = {};
@@ -92,6 +92,11 @@ const Visible& ZBuffer::draw(const Surfaces& surfaces, const View& view, const E
 }
 
 Visible ZBuffer::take() { return std::move(state_->visible); }
+
+void ZBuffer::give_back(Visible&& planes) {
+  state_->visible = std::move(planes);
+  state_->blank.clear();  // whatever they hold now
+}
 
 Visible zbuffer(const Surfaces& surfaces, const View& view, const Execution& execution) {
   validate(view);

@@ -86,6 +86,29 @@ TEST(ZBuffer, TakenPlanesAreLeftAlone) {
   EXPECT_EQ(content_hash(buffer.draw(surfaces, view)), hash);
 }
 
+// Whatever was done to them in between.
+TEST(ZBuffer, PlanesGivenBackAreUsedAgain) {
+  const Scene scene = scene_of(random_mesh(Kind::tiny, 200, 1));
+  const Surfaces surfaces(scene);
+  Random random(3);
+  View view = random_view(random, 300, 200);
+  ZBuffer buffer;
+  const Visible expected = buffer.draw(surfaces, view);
+  Visible taken = buffer.take();
+  const PrimitiveId* const primitives = taken.primitives.data();
+  std::fill(taken.primitives.begin(), taken.primitives.end(), 7u);
+  std::fill(taken.keys.begin(), taken.keys.end(), 0.5f);
+  buffer.give_back(std::move(taken));
+  const Visible& again = buffer.draw(surfaces, view);
+  EXPECT_EQ(content_hash(again), content_hash(expected));
+  EXPECT_EQ(again.primitives.data(), primitives);
+  // Of another size, or with a plane missing: as if there were none.
+  Visible other = nothing_visible(random_view(random, 30, 20));
+  other.keys = {};
+  buffer.give_back(std::move(other));
+  EXPECT_EQ(content_hash(buffer.draw(surfaces, view)), content_hash(expected));
+}
+
 TEST(ZBuffer, RefusesABadViewAndGoesOn) {
   const Scene scene = scene_of(random_mesh(Kind::tiny, 50, 1));
   const Surfaces surfaces(scene);
