@@ -11,7 +11,7 @@
 #include "cli/failure.h"
 #include "cli/interruption.h"
 #include "cli/model.h"
-#include "cli/render/outputs.h"
+#include "cli/outputs.h"
 #include "cli/view_options.h"
 
 namespace frontmost::cli {

@@ -20,8 +20,8 @@
 #include "cli/lines/tones.h"
 #include "cli/lines/units.h"
 #include "cli/model.h"
+#include "cli/outputs.h"
 #include "cli/render/fit.h"
-#include "cli/render/outputs.h"
 #include "cli/stopwatch.h"
 #include "cli/view_options.h"
 

@@ -8,11 +8,11 @@
 #include "cli/failure.h"
 #include "cli/interruption.h"
 #include "cli/model.h"
+#include "cli/outputs.h"
 #include "cli/precision/precision_plot.h"
 #include "cli/precision/precision_report.h"
-#include "cli/rays/sight.h"
 #include "cli/render/fit.h"
-#include "cli/render/outputs.h"
+#include "cli/render/sight.h"
 #include "cli/view_options.h"
 
 namespace frontmost::cli {

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "cli/console.h"
-#include "cli/rays/sight.h"
+#include "cli/render/sight.h"
 
 namespace frontmost::cli {
 namespace {

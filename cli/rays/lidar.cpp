@@ -12,9 +12,9 @@
 #include "cli/interruption.h"
 #include "cli/json_numbers.h"
 #include "cli/model.h"
+#include "cli/outputs.h"
 #include "cli/rays/lidar_points.h"
 #include "cli/rays/number_lines.h"
-#include "cli/render/outputs.h"
 #include "cli/stopwatch.h"
 
 namespace frontmost::cli {

@@ -6,9 +6,9 @@
 #include <algorithm>
 
 #include "cli/failure.h"
-#include "cli/rays/render_around.h"
 #include "cli/render/figure.h"
 #include "cli/render/output_writer.h"
+#include "cli/render/render_around.h"
 #include "cli/view_options.h"
 
 namespace frontmost::cli {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/render/outputs.h"
+#include "cli/outputs.h"
 #include "cli/settings.h"
 
 namespace frontmost::cli {

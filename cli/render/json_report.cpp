@@ -8,8 +8,8 @@
 #include <algorithm>
 
 #include "cli/inspect/camera_report.h"
-#include "cli/rays/sight.h"
 #include "cli/render/figure.h"
+#include "cli/render/sight.h"
 
 namespace frontmost::cli {
 namespace {

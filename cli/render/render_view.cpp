@@ -9,14 +9,14 @@
 
 #include <algorithm>
 
-#include "cli/rays/render_around.h"
-#include "cli/rays/sight.h"
 #include "cli/render/blank.h"
 #include "cli/render/contrast.h"
 #include "cli/render/figure.h"
 #include "cli/render/output_writer.h"
 #include "cli/render/reference.h"
+#include "cli/render/render_around.h"
 #include "cli/render/render_layers.h"
+#include "cli/render/sight.h"
 #include "cli/stopwatch.h"
 #include "cli/view_options.h"
 

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/rays/sight.h"
 #include "cli/render/blank.h"
 #include "cli/render/jobs.h"
+#include "cli/render/sight.h"
 
 namespace frontmost::cli {
 

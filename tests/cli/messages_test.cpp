@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 
 #include "cli/failure.h"
+#include "cli/outputs.h"
 #include "cli/render/blank.h"
 #include "cli/render/jobs.h"
-#include "cli/render/outputs.h"
 #include "cli/values.h"
 #include "program.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // File names: templates, formats, and what may not share a name.
-#include "cli/render/outputs.h"
+#include "cli/outputs.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

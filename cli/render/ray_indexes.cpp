@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/rays/ray_indexes.h"
+#include "cli/render/ray_indexes.h"
 
 #include <algorithm>
 

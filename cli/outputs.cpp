@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/render/outputs.h"
+#include "cli/outputs.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/rays/render_curved.h"
+#include "cli/render/render_curved.h"
 
 #include <frontmost/shade.h>
 
 #include <algorithm>
 
 #include "cli/model.h"
-#include "cli/rays/ray_indexes.h"
+#include "cli/render/ray_indexes.h"
 #include "cli/stopwatch.h"
 #include "cli/view_options.h"
 
 namespace frontmost::cli {
 namespace {
 
-CurvedVisible timed(const CurvedIndex& index, const View& view, const RenderContext& context,
-                    std::vector<double>& times) {
+CurvedVisible timed_cast(const CurvedIndex& index, const View& view, const RenderContext& context,
+                         std::vector<double>& times) {
   for (int i = 1;; ++i) {
     const Stopwatch watch;
     CurvedVisible seen = raycast(index, view, context.execution);
@@ -26,10 +26,10 @@ CurvedVisible timed(const CurvedIndex& index, const View& view, const RenderCont
 std::vector<CurvedVisible> cast(const CurvedIndex& index, const std::vector<View>& views, const RenderContext& context,
                                 ViewResult& result) {
   std::vector<CurvedVisible> seen;
-  seen.push_back(timed(index, views.front(), context, result.timings.visible));
+  seen.push_back(timed_cast(index, views.front(), context, result.timings.visible));
   if (views.size() > 1) {
     std::vector<double> times;
-    seen.push_back(timed(index, views.back(), context, times));
+    seen.push_back(timed_cast(index, views.back(), context, times));
     result.timings.visible_maps = times.front();
   }
   return seen;

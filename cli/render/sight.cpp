@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/rays/sight.h"
+#include "cli/render/sight.h"
 
 #include <frontmost/zbuffer.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/rays/render_around.h"
+#include "cli/render/render_around.h"
 
 #include <fmt/format.h>
 #include <frontmost/ray_camera.h>
@@ -58,7 +58,7 @@ Image ranges(const RangeScan& around, const char* name, float background) {
   return image;
 }
 
-Image map_of(OutputKind kind, const Job& job, const RayScene& rays, const RangeScan& around) {
+Image map_around(OutputKind kind, const Job& job, const RayScene& rays, const RangeScan& around) {
   const float background = job.output.background_depth;
   switch (kind) {
     // There is no image plane that a depth could be measured from.
@@ -75,7 +75,7 @@ Image map_of(OutputKind kind, const Job& job, const RayScene& rays, const RangeS
   return {};
 }
 
-Seen summary(const RayScene& rays, const RangeScan& around) {
+Seen summary_around(const RayScene& rays, const RangeScan& around) {
   Seen seen;
   Image both = rays.ids(around, IdKind::primitive);
   both.channels.push_back({"distance", around.ranges});
@@ -100,7 +100,7 @@ ViewResult render_around(const Job& job, const RenderContext& context) {
   const CurvedScan met = timed_scan(rays, camera_of(result), context, result.timings.visible);
   const RangeScan& around = met.scan;
   const bool reports = job.output.hash || context.run.json;
-  const Seen seen = summary(rays, around);
+  const Seen seen = summary_around(rays, around);
   if (reports) result.seen = seen;
   if (seen.pixels == 0) result.warnings.emplace_back("nothing is in view: no ray meets the model");
   std::optional<Image> picture;
@@ -111,7 +111,7 @@ ViewResult render_around(const Job& job, const RenderContext& context) {
     if (job.output.background && nothing_stands_out(*picture, around.primitives, *job.output.background))
       result.warnings.push_back(contrast_warning());
   }
-  const auto map = [&](OutputKind kind) { return map_of(kind, job, rays, around); };
+  const auto map = [&](OutputKind kind) { return map_around(kind, job, rays, around); };
   if (job.output.reference) result.reference = compare_with_reference(*picture, job, context.execution);
   write_files({job, context.execution, map, picture ? &*picture : nullptr}, result);
   if (context.keep_picture) result.picture = std::move(picture);
