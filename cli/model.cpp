@@ -2,7 +2,6 @@
 #include "cli/model.h"
 
 #include <fmt/format.h>
-#include <frontmost/curved.h>
 #include <frontmost/io.h>
 #include <frontmost/tessellate.h>
 

@@ -8,6 +8,7 @@
 #include <frontmost/io.h>
 #include <frontmost/page.h>
 #include <frontmost/shade.h>
+#include <frontmost/sheet.h>
 #include <frontmost/view.h>
 
 #include <array>
@@ -138,64 +139,26 @@ struct LidarSettings {
   std::vector<std::string> outputs;
 };
 
-/// How frontmost lines finds the scale of a drawing.
-enum class ScaleRule : std::uint8_t { fit, standard, given };
-
-/// A sheet of paper, before it is known how large the drawing is.
-struct PaperSettings {
-  glm::dvec2 size{210, 297};  ///< millimetres
-  bool may_turn = true;       ///< landscape where that is better
-  bool fits_drawing = false;  ///< as large as the drawing and its margins; the size does not count
-};
-
 /// What frontmost lines draws, and on what.
 struct DrawingSettings {
-  enum class Hidden : std::uint8_t { none, dashed, thin };
-  enum class Layout : std::uint8_t { first_angle, third_angle };
-  enum class Style : std::uint8_t { technical, figure };
-  enum class Unit : std::uint8_t { millimetre, centimetre, metre, inch };
-
   /// What a title block says (ISO 7200); none: not given.
   struct TitleTexts {
     std::optional<std::string> title, number, author, date, owner;
   };
 
-  /// A view of the model cut by a plane across the direction of sight.
-  struct SectionView {
-    NamedView view = NamedView::front;
-    std::optional<double> at;  ///< its place along that direction, in the coordinates of the file; none: the middle
-  };
-
-  Hidden hidden = Hidden::none;
-  std::optional<std::vector<NamedView>> hidden_views;  ///< of a sheet that show hidden edges; none: all but iso
-  Style style = Style::technical;
-  std::optional<ScaleRule> scale_rule;
-  double scale = 1;  ///< millimetres on paper to a millimetre of the model
-  std::optional<Unit> unit;
-  std::optional<PaperSettings> paper;
-  double margin = 10;  ///< millimetres
-  std::vector<NamedView> views;
-  std::vector<SectionView> sections;
-  std::optional<Layout> layout;
-  std::optional<bool> centre_lines;
-  bool dimensions = false;
-  std::optional<double> crease_angle;     ///< degrees; none: judged by the surfaces
-  std::optional<double> shortest_stroke;  ///< millimetres
-  std::optional<double> pen;              ///< millimetres, of what is seen
-  std::optional<double> hatch;            ///< millimetres from line to line
-  std::optional<double> stipple;          ///< millimetres from dot to dot
-  std::optional<double> hatch_angle;      ///< degrees
-  std::optional<glm::dvec3> light;        ///< towards it: to the right, upwards and to the viewer
+  SheetOptions sheet;  ///< all that the library is told as it was said
+  std::optional<ProjectionMethod> projection;
+  std::optional<double> hatch_angle;  ///< radians
+  std::optional<glm::dvec3> light;    ///< towards it: to the right, upwards and to the viewer
   std::optional<bool> casts_shadows;
-  bool plot = false;
   bool frame = false;
   TitleTexts texts;
-  int sheet = 1, sheets = 1;  ///< where several models are given
+  int number = 1, count = 1;  ///< of the sheet, where several models are given
   std::optional<PageFormat> format;
   std::vector<std::string> outputs;
   std::vector<std::string> books;  ///< of `outputs`, the files that hold the sheets of several models as pages
 
-  [[nodiscard]] bool is_sheet() const { return !views.empty() || !sections.empty(); }
+  [[nodiscard]] bool is_sheet() const { return !sheet.views.empty() || !sheet.sections.empty(); }
   /// A title block needs a frame.
   [[nodiscard]] bool has_frame() const {
     return frame || texts.title || texts.number || texts.author || texts.date || texts.owner;

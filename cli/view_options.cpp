@@ -220,11 +220,6 @@ View resolve_view(const ViewSettings& settings, const Surfaces& surfaces) {
   return view;
 }
 
-std::string_view view_name(NamedView view) {
-  constexpr std::string_view names[] = {"front", "back", "left", "right", "top", "bottom", "iso", "three-quarter"};
-  return names[int(view)];
-}
-
 std::string view_name(const ViewSettings& settings) {
   if (!settings.name.empty()) return settings.name;
   if (settings.named) return std::string(view_name(*settings.named));

@@ -27,9 +27,6 @@ void check_view_settings(const ViewSettings& settings);
 /// False when resolve_view() gives the same for all surfaces: the camera is placed, and both planes are told.
 [[nodiscard]] bool depends_on_model(const ViewSettings& settings);
 
-/// "front", "three-quarter", ...: as options name a direction.
-[[nodiscard]] std::string_view view_name(NamedView view);
-
 /// What {view} stands for: the given name, the named direction, or how the camera was told.
 [[nodiscard]] std::string view_name(const ViewSettings& settings);
 

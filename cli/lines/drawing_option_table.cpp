@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "cli/failure.h"
-#include "cli/lines/paper.h"
+#include "cli/lines/units.h"
 #include "cli/option.h"
 
 namespace frontmost::cli {
@@ -15,38 +15,59 @@ constexpr std::string_view view_choices = "front|back|left|right|top|bottom|iso"
 
 std::vector<NamedView> views_from(std::string_view text) {
   std::vector<NamedView> views;
-  for (const std::string_view word : split(text, ',')) {
-    const auto view = NamedView(parse_choice(word, view_choices));
-    if (std::find(views.begin(), views.end(), view) != views.end())
-      throw UsageError(fmt::format("'{}' is there twice", word));
-    views.push_back(view);
-  }
+  for (const std::string_view word : split(text, ',')) views.push_back(NamedView(parse_choice(word, view_choices)));
   return views;
 }
 
 /// "front" or "front=12.5".
-std::vector<DrawingSettings::SectionView> sections_from(std::string_view text) {
-  constexpr std::size_t most = 24;  // letters
-  std::vector<DrawingSettings::SectionView> sections;
+std::vector<SectionView> sections_from(std::string_view text) {
+  std::vector<SectionView> sections;
   for (const std::string_view word : split(text, ',')) {
     const std::size_t sign = word.find('=');
-    DrawingSettings::SectionView section;
-    section.view = NamedView(parse_choice(word.substr(0, sign), "front|back|left|right|top|bottom"));
+    SectionView& section = sections.emplace_back();
+    section.direction = NamedView(parse_choice(word.substr(0, sign), "front|back|left|right|top|bottom"));
     if (sign != std::string_view::npos) section.at = parse_number(word.substr(sign + 1), any_number);
-    for (const DrawingSettings::SectionView& other : sections)
-      if (other.view == section.view && other.at == section.at)
-        throw UsageError(fmt::format("'{}' is there twice", word));
-    sections.push_back(section);
   }
-  if (sections.size() > most) throw UsageError(fmt::format("{} are the most", most));
   return sections;
 }
 
+/// A name of paper, "210,297" or "210x297" in millimetres, or "fit".
+Paper paper_from(std::string_view text) {
+  std::string small(text);
+  for (char& c : small) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+  if (small == "fit") return {.fits_drawing = true};
+  if (!small.empty() && small[0] >= '0' && small[0] <= '9') {
+    std::replace(small.begin(), small.end(), 'x', ',');
+    const std::vector<double> sides = parse_numbers(small, 2, {1, 1e5});
+    return {{sides[0], sides[1]}, false, false};
+  }
+  try {
+    return named_paper(text);
+  } catch (const Error& error) {
+    throw UsageError(fmt::format("{}; W,H in millimetres; or fit", error.what()));
+  }
+}
+
+/// "1:5", "2:1" or "0.2".
+double scale_from(std::string_view text) {
+  constexpr NumberLimits range{1e-6, 1e6};
+  const std::size_t colon = text.find(':');
+  if (colon == std::string_view::npos) return parse_number(text, range);
+  const double paper = parse_number(text.substr(0, colon), range), model = parse_number(text.substr(colon + 1), range);
+  return paper / model;
+}
+
 void set_scale(Settings& s, const Given& g) {
-  s.drawing.scale_rule = g.text == "fit"        ? ScaleRule::fit
-                         : g.text == "standard" ? ScaleRule::standard
-                                                : ScaleRule::given;
-  if (s.drawing.scale_rule == ScaleRule::given) s.drawing.scale = parse_scale(g.text);
+  SheetOptions& sheet = s.drawing.sheet;
+  sheet.scale.reset();
+  sheet.standard_scale = g.text == "standard";
+  if (g.text != "fit" && g.text != "standard") sheet.scale = scale_from(g.text);
+}
+
+void set_unit(Settings& s, const Given& g) {
+  const LengthUnit& unit = length_units[g.choice<int>()];
+  s.drawing.sheet.millimetres_per_unit = unit.millimetres;
+  s.drawing.sheet.in_inches = std::string_view(unit.name) == "in";
 }
 
 glm::dvec3 light_from(std::string_view text) {
@@ -71,52 +92,40 @@ std::string field_text(const Given& given, std::size_t most) {
 
 constexpr Option drawing_options[] = {
     {"hidden", 0, "none|dashed|thin", "How hidden edges are drawn; none by default.", Group::drawing, for_lines,
-     [](Settings& s, const Given& g) { s.drawing.hidden = g.choice<DrawingSettings::Hidden>(); }},
+     [](Settings& s, const Given& g) { s.drawing.sheet.hidden = g.choice<HiddenLines>(); }},
     {"hidden-views", 0, "V,V,...", "Views of a sheet that show hidden edges; all but iso by default.", Group::drawing,
-     for_lines, [](Settings& s, const Given& g) { s.drawing.hidden_views = views_from(g.text); }},
+     for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.hidden_views = views_from(g.text); }},
     {"style", 0, "technical|figure",
      "Pens of drawing standards (0.5 mm, the default), or for people: an outline heavier than contours, and those than "
      "creases.",
-     Group::drawing, for_lines,
-     [](Settings& s, const Given& g) { s.drawing.style = g.choice<DrawingSettings::Style>(); }},
+     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.style = g.choice<DrawingStyle>(); }},
     {"pen", 0, "MM",
      "Width of the lines that are seen, 0.01 to 10; 0.5 by default, 0.35 for figures. Other pens and dashes go with "
      "it.",
-     Group::drawing, for_lines,
-     [](Settings& s, const Given& g) {
-       s.drawing.pen = g.number({0.01, 10});
-     }},
+     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.pen = g.number(); }},
     {"crease-angle", 0, "DEGREES",
      "Edges whose faces meet at more than this are drawn, 0 to 180; by default those where the surfaces on both sides "
      "do.",
      Group::drawing, for_lines,
      [](Settings& s, const Given& g) {
-       s.drawing.crease_angle = g.number({0, 180});
+       s.drawing.sheet.crease_angle = glm::radians(g.number({0, 180}));
      }},
     {"shortest-stroke", 0, "MM",
      "Shorter strokes are joined to others or left out, but for pieces of outlines, 0 to 10; 0.5 by default with "
      "--plot, 0 otherwise.",
-     Group::drawing, for_lines,
-     [](Settings& s, const Given& g) {
-       s.drawing.shortest_stroke = g.number({0, 10});
-     }},
+     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.shortest_stroke = g.number(); }},
     {"hatch", 0, "MM",
      "Hatches what is dark: lines this far apart, 0.2 to 50, as many between them where it is darker, crossed by "
      "others "
      "in shadow.",
-     Group::drawing, for_lines,
-     [](Settings& s, const Given& g) {
-       s.drawing.hatch = g.number({0.2, 50});
-     }},
+     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.hatch = g.number(); }},
     {"hatch-angle", 0, "DEGREES", "Of hatch lines, counter-clockwise from level; 45 by default.", Group::drawing,
      for_lines,
      [](Settings& s, const Given& g) {
-       s.drawing.hatch_angle = g.number({-360, 360});
+       s.drawing.hatch_angle = glm::radians(g.number({-360, 360}));
      }},
     {"stipple", 0, "MM", "Dots where it is dark, at least about this far apart, 0.2 to 10.", Group::drawing, for_lines,
-     [](Settings& s, const Given& g) {
-       s.drawing.stipple = g.number({0.2, 10});
-     }},
+     [](Settings& s, const Given& g) { s.drawing.sheet.stipple = g.number(); }},
     {"light", 0, "X,Y,Z",
      "Where the light of --hatch and --stipple comes from, as the viewer sees it: X to the right, Y upwards, Z towards "
      "the viewer; "
@@ -128,11 +137,9 @@ constexpr Option drawing_options[] = {
      "a0 to a6, letter, legal or tabloid, perhaps with -portrait or -landscape; W,H in millimetres; or fit: as large "
      "as "
      "the drawing. a4 by default; fit with a --scale of numbers.",
-     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.paper = parse_paper(g.text); }},
+     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.page = paper_from(g.text); }},
     {"margin", 0, "MM", "Room at the sides of the page, 0 to 1000; 10 by default.", Group::drawing, for_lines,
-     [](Settings& s, const Given& g) {
-       s.drawing.margin = g.number({0, 1000});
-     }},
+     [](Settings& s, const Given& g) { s.drawing.sheet.margin = g.number(); }},
     {"scale", 0, "A:B",
      "Length on paper to that of the model, as 1:5 or 0.2; fit: as large as the page allows; standard: the largest "
      "scale "
@@ -140,32 +147,33 @@ constexpr Option drawing_options[] = {
      Group::drawing, for_lines, set_scale},
     {"unit", 0, "mm|cm|m|in",
      "What the model's unit of length is; by default what a 3MF says, m for glTF, mm for others.", Group::drawing,
-     for_lines, [](Settings& s, const Given& g) { s.drawing.unit = g.choice<DrawingSettings::Unit>(); }},
+     for_lines, set_unit},
     {"views", 0, "V,V,...",
      "Several views on one sheet, in parallel projection, aligned, at one scale: front, back, left, right, top, "
      "bottom, "
      "iso.",
-     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.views = views_from(g.text); }},
+     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.views = views_from(g.text); }},
     {"sections", 0, "V,V=C,...",
      "Sections: what a view shows (front, back, left, right, top, bottom) behind a plane across its sight, through the "
      "middle or at coordinate C, as front,left=12.5; cut faces are hatched, planes marked A-A, B-B.",
-     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sections = sections_from(g.text); }},
+     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.sections = sections_from(g.text); }},
     {"projection", 0, "first-angle|third-angle",
      "Where views stand about the front one: the view from above below it (the default), or above it.", Group::drawing,
-     for_lines, [](Settings& s, const Given& g) { s.drawing.layout = g.choice<DrawingSettings::Layout>(); }},
+     for_lines, [](Settings& s, const Given& g) { s.drawing.projection = ProjectionMethod(1 + g.choice<int>()); }},
     {"centre-lines", 0, "yes|no",
      "Long-dashed dotted lines through the centres of circles and along the axes of cylinders, in parallel projection; "
      "yes by default with --views, but for figures.",
-     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.centre_lines = g.choice<int>() == 0; }},
+     Group::drawing, for_lines,
+     [](Settings& s, const Given& g) { s.drawing.sheet.centre_lines = g.choice<int>() == 0; }},
     {"dimensions", 0, "",
      "Sizes on sheets of --views: the whole width, height and depth, and the diameters of circles, each once, in the "
      "unit of the drawing.",
-     Group::drawing, for_lines, [](Settings& s, const Given&) { s.drawing.dimensions = true; }},
+     Group::drawing, for_lines, [](Settings& s, const Given&) { s.drawing.sheet.dimensions = true; }},
     {"plot", 0, "",
      "For pen plotters: long strokes whatever they belong to, ordered to spare lifts of the pen; dashes are lines of "
      "their "
      "own.",
-     Group::drawing, for_lines, [](Settings& s, const Given&) { s.drawing.plot = true; }},
+     Group::drawing, for_lines, [](Settings& s, const Given&) { s.drawing.sheet.plot = true; }},
     {"frame", 0, "",
      "Frame and title block (ISO 5457, ISO 7200), also with any of the five texts below; the page is 210 x 100 mm or "
      "more, and with a --scale of numbers alone the smallest of a4 to a0.",

@@ -11,8 +11,12 @@
 
 namespace frontmost::cli {
 
-/// Millimetres to the model's unit.
-[[nodiscard]] double unit_of(const DrawingSettings& settings, const SceneSource& source);
+struct LengthUnit {
+  const char* name;
+  double millimetres;
+};
+/// In the order of --unit.
+inline constexpr LengthUnit length_units[] = {{"mm", 1}, {"cm", 10}, {"m", 1000}, {"in", 25.4}};
 
 /// What to say where a sheet's scale, which nobody asked for, is larger than any that drawings have (50:1, ISO 5455),
 /// because the file says no unit and millimetres were taken: the units that are likely for a model of this size.

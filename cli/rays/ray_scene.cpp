@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/rays/ray_scene.h"
 
+#include <frontmost/tessellate.h>
+
 namespace frontmost::cli {
 
 CurvedScan RayScene::scan(const RayCamera& camera, const Execution& execution) const {

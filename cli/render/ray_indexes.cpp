@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/render/ray_indexes.h"
 
+#include <frontmost/tessellate.h>
+
 #include <algorithm>
 
 #include "cli/render/output_writer.h"

@@ -52,9 +52,6 @@ class CurvedIndex {
   std::unique_ptr<const CurvedParts> parts_;
 };
 
-/// True when a mesh of the scene that is placed is curved.
-[[nodiscard]] bool has_curved(const Scene& scene);
-
 /// Where a ray meets an element.
 struct CurvedHit {
   PrimitiveId primitive = no_primitive;  ///< no_primitive: nothing is met

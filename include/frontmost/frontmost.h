@@ -16,6 +16,7 @@
 #include "frontmost/lines.h"          // IWYU pragma: export
 #include "frontmost/page.h"           // IWYU pragma: export
 #include "frontmost/painter.h"        // IWYU pragma: export
+#include "frontmost/paper.h"          // IWYU pragma: export
 #include "frontmost/precision.h"      // IWYU pragma: export
 #include "frontmost/ray_camera.h"     // IWYU pragma: export
 #include "frontmost/raycast.h"        // IWYU pragma: export
@@ -25,6 +26,7 @@
 #include "frontmost/section.h"        // IWYU pragma: export
 #include "frontmost/section_marks.h"  // IWYU pragma: export
 #include "frontmost/shade.h"          // IWYU pragma: export
+#include "frontmost/sheet.h"          // IWYU pragma: export
 #include "frontmost/sheet_view.h"     // IWYU pragma: export
 #include "frontmost/stream.h"         // IWYU pragma: export
 #include "frontmost/strokes.h"        // IWYU pragma: export

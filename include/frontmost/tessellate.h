@@ -7,6 +7,9 @@
 
 namespace frontmost {
 
+/// True when a mesh of the scene that is placed is curved.
+[[nodiscard]] bool has_curved(const Scene& scene);
+
 /// The scene with its curved meshes cut into triangles anew, so fine that in `view` no point of a triangle is farther
 /// than `pixels` from the point of the curved surface that it stands for; so every outline is where it should be to
 /// that many pixels. The bound is proven from second derivatives, and mostly two to four times too large; snapping of

@@ -14,12 +14,12 @@ enum class ProjectionMethod : std::uint8_t { none, first_angle, third_angle };
 /// What the fields of a title block say, in UTF-8; empty ones stay empty. Text too long for its field at 1.8 mm is
 /// written smaller.
 struct TitleBlock {
-  std::string title;   ///< in up to two lines
-  std::string number;  ///< of the drawing
-  std::string author, date, owner;
-  std::string scale;  ///< as "1:2"
-  std::string unit;   ///< of what is written on the drawing, as "mm"
-  std::string paper;  ///< as "A3"
+  std::string title{};   ///< in up to two lines
+  std::string number{};  ///< of the drawing
+  std::string author{}, date{}, owner{};
+  std::string scale{};  ///< as "1:2"
+  std::string unit{};   ///< of what is written on the drawing, as "mm"
+  std::string paper{};  ///< as "A3"
   ProjectionMethod projection = ProjectionMethod::none;
   int sheet = 1, sheets = 1;
 };

@@ -377,7 +377,7 @@ TEST_F(LinesCommand, HatchingIsInMillimetresAndLiesBelow) {
   expect_failure("lines cube.stl -o a.svg --hatch 1 --cast-shadows maybe", 2, "--cast-shadows");
   expect_failure("lines cube.stl -o a.svg --hatch 1 --resolution 20,20", 2, "take 9.5 or more");
   expect_failure("lines cube.stl -o a.svg --views front --hatch 0.3 --scale 20000:1", 2,
-                 "take 10.3 or more, or a smaller --page or --scale");
+                 "take 10.3 or more, or a smaller page or scale");
 }
 
 TEST_F(LinesCommand, StippledOnlyWhereAskedFor) {
@@ -510,7 +510,7 @@ TEST_F(LinesCommand, WhatCannotBeMeantIsRefused) {
   expect_failure("lines cube.stl -o a.svg --camera-orthographic --scale big", 2, "--scale: 'big'");
   expect_failure("lines cube.stl -o a.svg --page a9", 2, "--page: 'a9' is no paper");
   expect_failure("lines cube.stl -o a.svg --page 10,0", 2, "--page");
-  expect_failure("lines cube.stl -o a.svg --page fit", 2, "needs a --scale");
+  expect_failure("lines cube.stl -o a.svg --page fit", 2, "needs a scale");
   expect_failure("lines cube.stl -o a.svg --margin 200", 2,
                  "--margin: 200 mm at each side leave nothing of a page of 210 x 297 mm");
   expect_failure("lines cube.stl -o a.svg --views front,top,left --page 25,25 --margin 5", 2, "--page: 25 x 25 mm");
@@ -529,7 +529,7 @@ TEST_F(LinesCommand, WhatCannotBeMeantIsRefused) {
 
 TEST_F(LinesCommand, TooLargeADrawingSaysWhatWouldFit) {
   expect_failure("lines box.obj --camera-orthographic --view front --scale 50:1 --page a4 -o a.svg", 2,
-                 "--scale 5:1 would fit");
+                 "; 5:1 would fit");
   expect_failure("lines box.obj --camera-orthographic --view front --scale 1000000:1 -o a.svg", 2, "100 m a side");
   // Tiny and huge, but possible.
   succeed("lines box.obj --camera-orthographic --view front --scale 1:1000000 -o a.svg");

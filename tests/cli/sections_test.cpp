@@ -186,7 +186,7 @@ TEST_F(SectionsCommand, WhatCannotBeMeantIsRefused) {
   expect_failure("lines box.obj --sections front=1x -o a.svg", 2, "--sections");
   expect_failure("lines box.obj --sections front,front -o a.svg", 2, "'front' is there twice");
   expect_failure("lines box.obj --sections front --view top -o a.svg", 2, "--sections and --view exclude each other");
-  expect_failure("lines box.obj --sections front --hatch 1 -o a.svg", 2, "--hatch");
+  expect_failure("lines box.obj --sections front --hatch 1 -o a.svg", 2, "leave out hatch");
   expect_failure("lines box.obj --sections front --style figure -o a.svg", 2, "figures");
   EXPECT_THAT(succeed("lines open.obj --sections front=1,left=1 --up +y -o a.svg").err,
               testing::HasSubstr("do not close"));

@@ -3,12 +3,8 @@
 #include <gmock/gmock.h>
 
 #include <map>
-#include <random>
 
 #include "cli/failure.h"
-#include "cli/lines/layout.h"
-#include "cli/lines/paper.h"
-#include "cli/lines/units.h"
 #include "program.h"
 #include "support/lettering_shapes.h"
 
@@ -97,10 +93,10 @@ TEST_F(SheetsCommand, TheViewAtAnAngleHasHiddenLinesOnlyWhereAskedFor) {
   EXPECT_THAT(hidden_in(drawn(sheet + " --hidden-views front,iso")), testing::ElementsAre("front: box", "iso: box"));
   // Not of a sheet: the only view shows what it is told to.
   EXPECT_FALSE(hidden_in(drawn("box.obj --up +z --view iso --camera-orthographic --hidden dashed")).empty());
-  expect_failure("lines box.obj --views front --hidden-views front -o a.svg", 2, "needs --hidden");
+  expect_failure("lines box.obj --views front --hidden-views front -o a.svg", 2, "--hidden-views: needs hidden lines");
   expect_failure("lines box.obj --hidden dashed --hidden-views front -o a.svg", 2, "needs --views");
   expect_failure("lines box.obj --views front --hidden dashed --hidden-views top -o a.svg", 2,
-                 "top is not among --views");
+                 "--hidden-views: top is not among the views");
 }
 
 TEST_F(SheetsCommand, FrameBlockAndViewsKeepClearOnEveryPaper) {
@@ -139,73 +135,6 @@ TEST_F(SheetsCommand, FrameBlockAndViewsKeepClearOnEveryPaper) {
       }
 }
 
-TEST(SheetPlanOf, NoViewReachesTheTitleBlockAndNoLargerStandardScaleWould) {
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> side(1, 300);
-  int beside = 0;
-  for (int round = 0; round < 500; ++round) {
-    cli::DrawingSettings settings;
-    settings.frame = true;
-    settings.views = {NamedView::front};
-    settings.paper = cli::parse_paper(round % 5 < 3 ? "a2" : "a4");
-    const double width = side(random), height = side(random), depth = side(random);
-    std::vector<cli::ViewCell> cells;
-    const auto add = [&](double w, double h, int column, int row) {
-      cells.push_back({glm::dvec2(-w / 2, -h / 2), glm::dvec2(w / 2, h / 2), column, row});
-    };
-    add(width, height, 0, 0);
-    if (round % 2) add(width, depth, 0, round % 4 == 1 ? 1 : -1);
-    if (round % 3) add(depth, height, 1, 0);
-    const cli::Layout layout(cells, glm::dvec2(15));
-    const cli::SheetPlan plan = cli::plan_sheet(layout, settings, true);
-    const glm::dvec2 block = plan.size - glm::dvec2(190, 46) - 10.0, high = plan.size - 20.0;
-    EXPECT_EQ(plan.scale, cli::standard_scale(plan.scale));
-    bool is_beside = false;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      const glm::dvec2 from = plan.anchors[i] + cells[i].low * plan.scale,
-                       to = plan.anchors[i] + cells[i].high * plan.scale;
-      EXPECT_TRUE(from.x > 29.999 && from.y > 19.999 && to.x < high.x + 0.001 && to.y < high.y + 0.001) << round;
-      EXPECT_FALSE(to.x > block.x + 0.001 && to.y > block.y + 0.001) << round;
-      is_beside |= to.y > block.y + 0.001;
-    }
-    beside += is_beside;
-    // All of it at the next scale has no room even as far from the block as can be, on neither side of the paper.
-    const double next = cli::standard_scale(plan.scale * 2.6);
-    ASSERT_GT(next, plan.scale);
-    const glm::dvec2 upright = settings.paper->size;
-    for (const glm::dvec2 page : {upright, glm::dvec2(upright.y, upright.x)}) {
-      const glm::dvec2 low(30, 20);
-      const bool fits = glm::all(glm::lessThanEqual(layout.size(next), page - 20.0 - low));
-      EXPECT_FALSE(fits && layout.leaves_free(page - glm::dvec2(200, 56), next, low)) << round;
-    }
-  }
-  EXPECT_GT(beside, 10);  // views use the room beside the block too
-}
-
-TEST(SheetPlanOf, PapersLieAsStandardsHaveThemWhereTheScaleIsTheSame) {
-  // Squares of 10 mm in a row or in a column.
-  const auto is_upright = [](int columns, int rows, std::optional<double> scale, const char* paper) {
-    cli::DrawingSettings settings;
-    settings.frame = true;
-    settings.views = {NamedView::front};
-    if (scale) settings.scale_rule = cli::ScaleRule::given, settings.scale = *scale;
-    if (paper) settings.paper = cli::parse_paper(paper);
-    std::vector<cli::ViewCell> cells;
-    for (int i = 0; i < columns * rows; ++i) cells.push_back({glm::dvec2(-5), glm::dvec2(5), i % columns, i / columns});
-    const glm::dvec2 size = cli::plan_sheet(cli::Layout(cells, glm::dvec2(15)), settings, true).size;
-    return size.y > size.x;
-  };
-  EXPECT_TRUE(is_upright(1, 1, 5, "a4"));
-  EXPECT_FALSE(is_upright(1, 1, 5, "a3"));
-  EXPECT_TRUE(is_upright(1, 2, 5, nullptr));  // A4
-  EXPECT_FALSE(is_upright(1, 1, {}, "a2"));
-  // Where the scale is larger on the other side it turns, and where there is no room otherwise.
-  EXPECT_TRUE(is_upright(1, 2, {}, "a2"));
-  EXPECT_TRUE(is_upright(1, 3, 10, "a3"));
-  EXPECT_FALSE(is_upright(3, 1, 7, "a4"));
-  EXPECT_TRUE(is_upright(1, 1, 5, "a3-portrait"));
-}
-
 TEST_F(SheetsCommand, TheTitleBlockSaysWhatItIsTold) {
   const std::string sheet =
       "box.obj --up +z --views front,top,left --page a3 --number B-17 --author Erika "
@@ -232,12 +161,12 @@ TEST_F(SheetsCommand, AFrameAsksForAPageWithRoom) {
   expect_failure("lines box.obj --frame --views front --page a5-portrait -o a.svg", 2,
                  "--page: 148 x 210 mm have no room for a frame and its title block, which need 210 x 100");
   succeed("lines box.obj --frame --views front --page a5 -o a.svg");  // lies down
-  expect_failure("lines box.obj --frame --views front --page fit --scale 1:1 -o a.svg", 2, "--page fit: a frame needs");
+  expect_failure("lines box.obj --frame --views front --page fit --scale 1:1 -o a.svg", 2, "--page: a frame needs");
   expect_failure("lines box.obj --frame --views front --margin 90 -o a.svg", 2, "--margin: 90 mm at each side leave");
   expect_failure("lines box.obj --views front --title " + std::string(81, 'x') + " -o a.svg", 2,
                  "--title: 81 characters are more than the 80 that have room");
   expect_failure("lines box.obj --up +z --views front --frame --scale 50:1 --page a4 -o a.svg", 2,
-                 "--scale 5:1 would fit, or take a larger --page\n");
+                 "; 5:1 would fit, or take a larger page\n");
 }
 
 TEST_F(SheetsCommand, AScaleOfNumbersTakesTheSmallestPaper) {

@@ -32,12 +32,6 @@ std::uint64_t element_count_of(const Mesh& mesh) {
 
 }  // namespace
 
-bool has_curved(const Scene& scene) {
-  return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
-    return instance.mesh < scene.meshes.size() && scene.meshes[instance.mesh].is_curved();
-  });
-}
-
 CurvedParts::CurvedParts(const Scene& scene, const Execution& execution)
     : flat(flat_part(scene)), surfaces(flat, execution), triangles(surfaces, execution) {
   const IeeeScope ieee;

@@ -132,6 +132,12 @@ double tessellated_count(const Scene& scene, const View& view, double pixels) {
   return Plan(scene, view, pixels).triangle_count();
 }
 
+bool has_curved(const Scene& scene) {
+  return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
+    return instance.mesh < scene.meshes.size() && scene.meshes[instance.mesh].is_curved();
+  });
+}
+
 Scene tessellate(const Scene& scene, const View& view, double pixels) {
   const IeeeScope ieee;
   const Plan plan(scene, view, pixels);

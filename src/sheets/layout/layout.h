@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the views of a sheet stand, and how large.
+// Where the views of a sheet stand, in columns and rows about the front one; its size and its scale.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "cli/settings.h"
+#include "frontmost/sheet.h"
 
-namespace frontmost::cli {
+namespace frontmost::detail {
 
 /// What a view takes around its anchor, in millimetres at scale 1:1, y down; and its cell, of which views in line share
 /// the row or the column. Anchors in a row are at one height, in a column below each other.
@@ -20,15 +20,15 @@ struct ViewCell {
 
 /// The cell of a named view about the front view: a view from the left stands to the right in first-angle projection,
 /// and to the left in third-angle projection.
-[[nodiscard]] glm::ivec2 cell_of(NamedView view, DrawingSettings::Layout layout);
+[[nodiscard]] glm::ivec2 cell_of(NamedView view, ProjectionMethod method);
 
 /// Columns and rows in use, each as wide as its widest view.
-class Layout {
+class SheetLayout {
  public:
   /// Precondition: not empty. `gap` in millimetres, at any scale, between columns and between rows.
-  Layout(const std::vector<ViewCell>& cells, const glm::dvec2& gap);
+  SheetLayout(const std::vector<ViewCell>& cells, const glm::dvec2& gap);
   /// The same views, otherwise apart.
-  [[nodiscard]] Layout with_gap(const glm::dvec2& gap) const { return {cells_, gap}; }
+  [[nodiscard]] SheetLayout with_gap(const glm::dvec2& gap) const { return {cells_, gap}; }
 
   [[nodiscard]] glm::dvec2 size(double scale) const { return extent_ * scale + gaps_; }
   /// The largest scale at which all fits into `area`; 1 where it has no size.
@@ -64,9 +64,9 @@ struct SheetPlan {
   std::vector<glm::dvec2> anchors;
 };
 
-/// With a frame no view lies on the title block; where room is left views stand farther apart, evenly, and a scale of
-/// numbers without a page takes the smallest of A4 to A0 on which all has room.
-/// \throws UsageError when the drawing does not fit, saying what would.
-[[nodiscard]] SheetPlan plan_sheet(const Layout& layout, const DrawingSettings& settings, bool has_scale);
+/// With a title block no view lies on it; where room is left views stand farther apart, evenly, and a given scale
+/// without a page takes the smallest of A4 to A0 on which all has room. `has_scale` is false in perspective.
+/// \throws Error when the drawing does not fit, saying what would.
+[[nodiscard]] SheetPlan plan_sheet(const SheetLayout& layout, const SheetOptions& options, bool has_scale);
 
-}  // namespace frontmost::cli
+}  // namespace frontmost::detail

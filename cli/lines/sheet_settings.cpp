@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/lines/sheet_settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/failure.h"
+#include "cli/option.h"
+#include "cli/view_options.h"
+
+namespace frontmost::cli {
+namespace {
+
+constexpr glm::ivec2 fine_grid{3840, 2160};  // shaped as render's default picture, for the same camera
+
+/// Calls `work`; what the library complains of in a field of the options is one about the flag of that name.
+template <class Work>
+auto with_flags(const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    const std::string_view what = error.what();
+    std::string flag(what.substr(0, what.find_first_of(" :")));
+    std::replace(flag.begin(), flag.end(), '_', '-');
+    const std::span<const Option> table = drawing_option_table();
+    const bool is_flag = std::any_of(table.begin(), table.end(), [&](const Option& o) { return o.name == flag; });
+    const bool is_of_value = error.code() == ErrorCode::bad_argument || error.code() == ErrorCode::limit_exceeded;
+    if (!is_flag || !is_of_value) throw;
+    throw UsageError(fmt::format("--{}{}", flag, what.substr(flag.size())));
+  }
+}
+
+void check_views(const Settings& s) {
+  if (s.drawing.sheet.views.empty() && s.drawing.sheet.hidden_views) throw UsageError("--hidden-views needs --views");
+  if (!s.drawing.is_sheet()) {
+    if (s.drawing.projection) throw UsageError("--projection needs --views");
+    if (s.drawing.sheet.dimensions) throw UsageError("--dimensions needs --views");
+    return;
+  }
+  const char* const sheet = s.drawing.sheet.views.empty() ? "--sections" : "--views";
+  const ViewSettings& v = s.view;
+  const std::pair<const char*, bool> others[] = {{"view", v.named.has_value()},
+                                                 {"camera-position", v.position.has_value()},
+                                                 {"camera-focal-point", v.focal_point.has_value()},
+                                                 {"camera-direction", v.direction.has_value()},
+                                                 {"camera-view-up", v.view_up.has_value()},
+                                                 {"camera-view-angle", v.view_angle.has_value()},
+                                                 {"camera-zoom-factor", v.zoom != 1},
+                                                 {"camera-azimuth-angle", v.azimuth != 0},
+                                                 {"camera-elevation-angle", v.elevation != 0},
+                                                 {"camera-index", v.camera_index.has_value()},
+                                                 {"intrinsics", v.intrinsics.has_value()},
+                                                 {"pose", v.pose.has_value()},
+                                                 {"resolution", v.resolution.has_value()}};
+  for (const auto& [name, is_set] : others)
+    if (is_set) throw UsageError(fmt::format("{} and --{} exclude each other", sheet, name));
+}
+
+/// Of drawings in perspective.
+void check_projection(const Settings& s) {
+  if (s.view.orthographic || s.view.camera_index || s.drawing.is_sheet()) return;
+  const SheetOptions& sheet = s.drawing.sheet;
+  if (sheet.scale || sheet.standard_scale.value_or(false))
+    throw UsageError("--scale: in perspective nothing has a scale; add --camera-orthographic, or --views");
+  if (sheet.centre_lines.value_or(false))
+    throw UsageError("--centre-lines: perspective has none; add --camera-orthographic, or --views");
+}
+
+void check_light(const DrawingSettings& s) {
+  if (s.hatch_angle && !s.sheet.hatch) throw UsageError("--hatch-angle needs --hatch");
+  if (s.sheet.hatch || s.sheet.stipple) return;
+  if (s.light) throw UsageError("--light needs --hatch or --stipple");
+  if (s.casts_shadows) throw UsageError("--cast-shadows needs --hatch or --stipple");
+}
+
+/// True when the user chose what is in the picture, beyond the direction from where the model is seen.
+bool is_framed(const ViewSettings& s) {
+  return s.pose || s.camera_index || s.position || s.intrinsics || s.resolution || s.zoom != 1;
+}
+
+}  // namespace
+
+void check_drawing_settings(const Settings& settings) {
+  check_view_settings(settings.view);
+  check_views(settings);
+  check_projection(settings);
+  check_light(settings.drawing);
+  with_flags([&] { validate(sheet_options(settings, {})); });
+}
+
+SheetOptions sheet_options(const Settings& settings, const std::string& model) {
+  const DrawingSettings& drawing = settings.drawing;
+  SheetOptions options = drawing.sheet;
+  options.projection = drawing.projection.value_or(options.projection);
+  options.hatch_angle = drawing.hatch_angle.value_or(options.hatch_angle);
+  options.light = drawing.light;
+  options.casts_shadows = drawing.casts_shadows.value_or(true);
+  options.tessellation_error = settings.view.tessellation_error;
+  options.near = settings.view.near;
+  options.far = settings.view.far;
+  options.keeps_picture = is_framed(settings.view);
+  if (!drawing.has_frame()) return options;
+  TitleBlock& block = options.title_block.emplace();
+  block.title = drawing.texts.title.value_or(model);
+  block.number = drawing.texts.number.value_or("");
+  block.author = drawing.texts.author.value_or("");
+  block.date = drawing.texts.date.value_or("");
+  block.owner = drawing.texts.owner.value_or("");
+  block.sheet = drawing.number;
+  block.sheets = drawing.count;
+  return options;
+}
+
+Sheet draw_from_settings(const Settings& settings, const Surfaces& surfaces, const Execution& execution) {
+  const SheetOptions options = sheet_options(settings, surfaces.scene().name);
+  if (settings.drawing.is_sheet()) return with_flags([&] { return draw_sheet(surfaces, options, execution); });
+  ViewSettings camera = settings.view;
+  if (!camera.resolution && !camera.intrinsics) camera.resolution = fine_grid;
+  const View view = resolve_view(camera, surfaces);
+  return with_flags([&] { return draw_view(surfaces, view, options, execution); });
+}
+
+}  // namespace frontmost::cli

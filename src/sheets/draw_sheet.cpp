@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// A sheet from its options to its page: views, their places, their lines, and what is written about them.
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "frontmost/dimensions.h"
+#include "sheets/options.h"
+#include "sheets/sections.h"
+
+namespace frontmost {
+namespace {
+
+using namespace detail;
+
+constexpr double gap_between_views = 15;  // millimetres
+constexpr double inch = 25.4;             // millimetres
+constexpr double page_rim = 5;            // millimetres, in which printers do not print
+
+std::vector<DimensionedView> dimensioned_views(const std::vector<PlannedView>& views) {
+  std::vector<DimensionedView> all;
+  for (const PlannedView& planned : views) {
+    DimensionedView& view = all.emplace_back();
+    view.sheet = &planned.placed;
+    view.drawing = &planned.drawing;
+    view.rounds = planned.rounds.get();
+    view.with_hidden = planned.shows_hidden;
+    // What is cut is not all of the model.
+    view.is_dimensioned = !is_at_an_angle(*planned.direction) && !planned.section;
+    view.taken = planned.taken;
+  }
+  return all;
+}
+
+/// Lets cells keep room for the overall sizes of their views.
+void keep_room_for_sizes(std::vector<ViewCell>& cells, const std::vector<PlannedView>& views) {
+  const std::vector<OverallSizes> sizes = overall_sizes_of(dimensioned_views(views));
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const glm::dvec2 room = room_for(sizes[i], DimensionOptions().text_height);
+    if (room.x > 0) cells[i].room_before.x = std::max(cells[i].room_before.x, views[i].taken.x + room.x);
+    if (room.y > 0) cells[i].room_behind.y = std::max(cells[i].room_behind.y, views[i].taken.y + room.y);
+  }
+}
+
+/// Lays the views out. \returns the plan; the views know their places from now on.
+SheetPlan place_views(std::vector<PlannedView>& views, const Surfaces& surfaces, const SheetOptions& options) {
+  Cells all = cells_of(views, surfaces, options);
+  place_sections(all.cells, views);
+  keep_section_room(all.cells, views);
+  if (options.dimensions) keep_room_for_sizes(all.cells, views);
+  const bool has_scale = views[0].drawing.view.projection.orthographic;
+  SheetPlan plan = plan_sheet(SheetLayout(all.cells, glm::dvec2(gap_between_views)), options, has_scale);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    SheetView& placed = views[i].placed;
+    placed.millimetres_per_pixel = views[i].millimetres_per_pixel * plan.scale;
+    placed.origin = plan.anchors[i] - all.anchors[i] * placed.millimetres_per_pixel;
+  }
+  return plan;
+}
+
+void draw_in_places(std::vector<PlannedView>& views, const SheetOptions& options, const Execution& execution) {
+  for (PlannedView& view : views) place_strokes(view, options, execution);
+  report_progress(execution, "tones", 0);
+  hatch_sections(views, options, execution);
+  for (PlannedView& view : views) {
+    place_tones(view, options, execution);
+    place_centre_lines(view, options);
+  }
+}
+
+/// Puts dimensions on the page, clear of its rim, or of the frame and title block that it is to have, and of `marks`.
+/// \returns how many diameters there was no room for.
+std::size_t add_dimensions(Page& page, const std::vector<PlannedView>& views, const std::vector<PageBox>& marks,
+                           const Scene& scene, const SheetOptions& options) {
+  DimensionOptions numbers;
+  numbers.numbers_per_unit = millimetres_per_unit(options, scene) / (options.in_inches ? inch : 1);
+  numbers.decimals = options.in_inches ? 3 : 2;
+  const glm::dvec2 size(page.width, page.height);
+  PageBox area{glm::dvec2(page_rim), size - page_rim};
+  std::vector<PageBox> taken = marks;
+  if (options.title_block) {
+    const DrawingSpace space = drawing_space(size);
+    area = {space.low, space.high};
+    taken.push_back({space.block, space.high});
+  }
+  Dimensions all = place_dimensions(dimensioned_views(views), area, taken, numbers);
+  if (all.count > 0) page.layers.push_back(std::move(all.layer));
+  return all.left_out;
+}
+
+void add_frame(Page& page, const SheetOptions& options, std::optional<double> scale) {
+  TitleBlock block = *options.title_block;
+  page.title = block.title;
+  block.scale = scale ? scale_text(*scale) : "\xE2\x80\x93";  // a dash: in perspective nothing has one
+  block.unit = options.in_inches ? "in" : "mm";
+  block.paper = paper_name({page.width, page.height});
+  block.projection = has_named_views(options) ? options.projection : ProjectionMethod::none;
+  page.layers.push_back(draw_frame({page.width, page.height}, block));
+}
+
+/// From views that were drawn to the sheet.
+Sheet finish(std::vector<PlannedView> views, const Surfaces& surfaces, const SheetOptions& options,
+             const Execution& execution) {
+  report_progress(execution, "rounds", 0);
+  find_rounds_of(views, options, execution);
+  report_progress(execution, "layout", 0);
+  const SheetPlan plan = place_views(views, surfaces, options);
+  draw_in_places(views, options, execution);
+  report_progress(execution, "page", 0);
+  const LinePens pens = pens_of(options);
+  std::vector<SheetView> placed;
+  for (const PlannedView& view : views) placed.push_back(view.placed);
+  Sheet sheet;
+  sheet.page = page_of(surfaces, placed, pens, plan.size);
+  sheet.is_empty = sheet.page.layers.empty();
+  if (views[0].drawing.view.projection.orthographic) sheet.scale = plan.scale;
+  SectionMarks marks = section_marks_of(views, pens.centre);
+  if (!marks.layer.groups.empty()) sheet.page.layers.push_back(std::move(marks.layer));
+  if (options.dimensions) sheet.left_out = add_dimensions(sheet.page, views, marks.boxes, surfaces.scene(), options);
+  if (options.title_block) add_frame(sheet.page, options, sheet.scale);
+  for (PlannedView& view : views) sheet.views.push_back(std::move(view));
+  return sheet;
+}
+
+}  // namespace
+
+Sheet draw_sheet(const Surfaces& surfaces, const SheetOptions& options, const Execution& execution) {
+  validate(options);
+  if (!has_named_views(options)) throw Error(ErrorCode::bad_argument, "views: there is none, nor a section");
+  report_progress(execution, "views", 0);
+  return finish(draw_named_views(surfaces, options, execution), surfaces, options, execution);
+}
+
+Sheet draw_view(const Surfaces& surfaces, const View& view, const SheetOptions& options, const Execution& execution) {
+  validate(options);
+  validate_for_view(options, view.projection);
+  report_progress(execution, "views", 0);
+  std::vector<PlannedView> views;
+  views.push_back(draw_given_view(surfaces, view, options, execution));
+  return finish(std::move(views), surfaces, options, execution);
+}
+
+}  // namespace frontmost

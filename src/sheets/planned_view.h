@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// A view of a sheet on its way from the camera to its place on the page.
+#pragma once
+
+#include "frontmost/rounds.h"
+#include "sheets/layout/layout.h"
+
+namespace frontmost::detail {
+
+struct PlannedView : DrawnView {
+  std::optional<NamedView> direction;    ///< none where the view was given
+  CuttingPlane plane;                    ///< of a section
+  std::string letter;                    ///< likewise: "A"
+  double millimetres_per_pixel = 1;      ///< at scale 1:1; in perspective of no meaning by itself
+  std::shared_ptr<const Rounds> rounds;  ///< of the surfaces; null where nothing asks for them
+  /// Millimetres of paper on its left and below it that marks of sections take.
+  glm::dvec2 taken{0};
+};
+
+/// Whether a view looks at the model at an angle, and shows nothing in its true length.
+[[nodiscard]] inline bool is_at_an_angle(NamedView direction) {
+  return direction == NamedView::iso || direction == NamedView::three_quarter;
+}
+
+/// The views of the options, then the sections, each with its lines and without a place.
+/// \throws Error as draw_sheet() does.
+[[nodiscard]] std::vector<PlannedView> draw_named_views(const Surfaces& surfaces, const SheetOptions& options,
+                                                        const Execution& execution);
+/// A view that is given, likewise.
+[[nodiscard]] PlannedView draw_given_view(const Surfaces& surfaces, const View& view, const SheetOptions& options,
+                                          const Execution& execution);
+
+/// Finds what is round in the views that are to show it: once for those that draw the same surfaces.
+void find_rounds_of(std::vector<PlannedView>& views, const SheetOptions& options, const Execution& execution);
+
+/// What the views take of the page, and the pixel of each about which its cell stands.
+struct Cells {
+  std::vector<ViewCell> cells;
+  std::vector<glm::dvec2> anchors;
+};
+[[nodiscard]] Cells cells_of(const std::vector<PlannedView>& views, const Surfaces& surfaces,
+                             const SheetOptions& options);
+
+// Of a view whose place on the page is settled.
+void place_strokes(PlannedView& view, const SheetOptions& options, const Execution& execution);
+/// Hatching and dots, where they are asked for. \throws Error limit_exceeded where its pixels are too few for them.
+void place_tones(PlannedView& view, const SheetOptions& options, const Execution& execution);
+/// Beside strokes, which must be there.
+void place_centre_lines(PlannedView& view, const SheetOptions& options);
+
+}  // namespace frontmost::detail

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sheets/sections.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sheets/number_text.h"
+
+namespace frontmost::detail {
+namespace {
+
+constexpr double least_spacing = 1.2, most_spacing = 3;  // millimetres between hatch lines
+constexpr double spacing_share = 0.03;                   // of the section's diagonal
+constexpr double thinnest = 0.8;                         // millimetres: parts below it are solid
+constexpr double name_distance = 5, name_height = 5;     // millimetres above a section
+constexpr int first_own_column = 3;                      // behind those of all views
+
+[[noreturn]] void refuse_section(const SectionView& wanted, const std::string& reason) {
+  throw Error(ErrorCode::bad_argument, "sections " + std::string(view_name(wanted.direction)) +
+                                           (wanted.at ? "=" + number_text(*wanted.at) : "") + ": " + reason);
+}
+
+/// The axis to which a view along one looks from.
+Axis axis_towards(const glm::dvec3& direction) {
+  int axis = 0;
+  for (int k = 1; k < 3; ++k)
+    if (std::abs(direction[k]) > std::abs(direction[axis])) axis = k;
+  return Axis(direction[axis] > 0 ? axis : axis + 3);
+}
+
+/// The view in which each section's plane is marked: the first that sees it from its edge, if need be another section.
+std::vector<std::size_t> hosts_of(const std::vector<PlannedView>& views) {
+  std::vector<std::size_t> hosts(views.size(), views.size());
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!views[i].section) continue;
+    const auto sees_edge = [&](const PlannedView& view) {
+      return std::abs(glm::dot(view.drawing.view.forward(), views[i].drawing.view.forward())) < 1e-6;
+    };
+    hosts[i] = std::size_t(std::find_if(views.begin(), views.end(), sees_edge) - views.begin());
+  }
+  return hosts;
+}
+
+/// A cutting line in the pixels of its host.
+struct Trace {
+  glm::dvec2 from{0}, to{0}, looking{0};
+  DrawingBounds box;
+};
+
+Trace trace_in(const PlannedView& host, const PlannedView& section) {
+  const View& camera = host.drawing.view;
+  const glm::dvec3 forward = section.drawing.view.forward();
+  Trace trace;
+  trace.looking = glm::round(glm::dvec2(glm::dot(forward, camera.right()), -glm::dot(forward, camera.up())));
+  trace.box = bounds_of(host.drawing, host.shows_hidden);
+  glm::dvec3 point(0);
+  point[int(section.plane.towards) % 3] = float(section.plane.at);
+  const glm::dvec2 on = on_screen(camera, point);
+  const int across = trace.looking.x != 0 ? 0 : 1;
+  trace.from = trace.box.low;
+  trace.to = trace.box.high;
+  trace.from[across] = trace.to[across] = on[across];
+  return trace;
+}
+
+bool is_empty(const Trace& trace) { return trace.box.is_empty() || !(glm::distance(trace.from, trace.to) > 0); }
+
+}  // namespace
+
+std::shared_ptr<const Surfaces> surfaces_of(std::shared_ptr<const Scene> scene, const Execution& execution) {
+  struct Owner {
+    std::shared_ptr<const Scene> scene;
+    Surfaces surfaces;
+  };
+  const std::shared_ptr<const Owner> owner(new Owner{scene, Surfaces(*scene, execution)});
+  return {owner, &owner->surfaces};
+}
+
+CutScene cut_for(const SectionView& wanted, const Surfaces& surfaces, const View& camera, const Execution& execution) {
+  CutScene result;
+  result.plane.towards = axis_towards(-camera.forward());
+  const int axis = int(result.plane.towards) % 3;
+  const Box& box = surfaces.bounds();
+  const double origin = surfaces.scene().origin[axis], low = box.low[axis], high = box.high[axis];
+  result.plane.at = wanted.at ? *wanted.at - origin : (low + high) / 2;
+  result.section = std::make_shared<const Section>(cut(surfaces, result.plane, execution));
+  if (result.section->faces.empty()) {
+    if (!(low <= high)) refuse_section(wanted, "the model has no surface to cut");
+    refuse_section(wanted, "the plane misses the model, which lies from " + std::string(1, "xyz"[axis]) + " = " +
+                               number_text(low + origin) + " to " + number_text(high + origin));
+  }
+  result.surfaces = surfaces_of({result.section, &result.section->scene}, execution);
+  return result;
+}
+
+void place_sections(std::vector<ViewCell>& cells, const std::vector<PlannedView>& views) {
+  int next = first_own_column;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!views[i].section) continue;
+    for (std::size_t k = 0; k < views.size(); ++k) {
+      if (k == i || (views[k].section && k > i)) continue;
+      if (cells[k].column != cells[i].column || cells[k].row != cells[i].row) continue;
+      cells[i].column = next++;
+      cells[i].row = 0;
+      break;
+    }
+  }
+}
+
+void keep_section_room(std::vector<ViewCell>& cells, std::vector<PlannedView>& views) {
+  const std::vector<std::size_t> hosts = hosts_of(views);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!views[i].section) continue;
+    cells[i].room_before.y = std::max(cells[i].room_before.y, name_distance + name_height);
+    if (hosts[i] == views.size()) continue;
+    PlannedView& host = views[hosts[i]];
+    ViewCell& cell = cells[hosts[i]];
+    const Trace trace = trace_in(host, views[i]);
+    if (is_empty(trace)) continue;
+    const int across = trace.looking.x != 0 ? 0 : 1, along = 1 - across;
+    cell.room_before[along] = std::max(
+        cell.room_before[along], cutting_line_room + (along == 1 && host.section ? name_distance + name_height : 0));
+    cell.room_behind[along] = std::max(cell.room_behind[along], cutting_line_room);
+    // Arrows stand where the viewer of the section does.
+    const bool is_behind = trace.looking[across] < 0;
+    const double size = trace.box.high[across] - trace.box.low[across];
+    const double rest =
+        is_behind ? trace.box.high[across] - trace.from[across] : trace.from[across] - trace.box.low[across];
+    const bool reaches_out = rest < size / 4;
+    double& side = is_behind ? cell.room_behind[across] : cell.room_before[across];
+    if (reaches_out) side = std::max(side, section_arrow_room);
+    const bool is_left = along == 0 || (reaches_out && !is_behind), is_below = along == 1 || (reaches_out && is_behind);
+    if (is_left) host.taken.x = std::max(host.taken.x, along == 0 ? cutting_line_room : section_arrow_room);
+    if (is_below) host.taken.y = std::max(host.taken.y, along == 1 ? cutting_line_room : section_arrow_room);
+  }
+}
+
+void hatch_sections(std::vector<PlannedView>& views, const SheetOptions& options, const Execution& execution) {
+  std::vector<const Section*> sections;
+  for (const PlannedView& view : views)
+    if (view.section) sections.push_back(view.section.get());
+  if (sections.empty()) return;
+  const std::vector<std::uint8_t> styles = hatch_styles(sections);
+  double spacing = least_spacing;
+  for (const PlannedView& view : views) {
+    const DrawingBounds box = bounds_of(view.drawing, false);
+    if (!view.section || box.is_empty()) continue;
+    spacing = std::max(spacing, spacing_share * glm::distance(box.low, box.high) * view.placed.millimetres_per_pixel);
+  }
+  spacing = std::min(spacing, most_spacing);
+  const double pen = LinePens().hatching.width * options.pen.value_or(LinePens().seen.width) / LinePens().seen.width;
+  for (PlannedView& view : views) {
+    if (!view.section) continue;
+    const double millimetres = view.placed.millimetres_per_pixel;
+    const View& camera = view.drawing.view;
+    SectionHatching lines;
+    lines.spacing = std::clamp(spacing / millimetres, 2.0, 5e4);
+    lines.solid_spacing = std::clamp(0.8 * pen / millimetres, 0.5, 1e5);
+    const double pixel = (camera.projection.right - camera.projection.left) / camera.width;
+    lines.thinnest = thinnest / millimetres * pixel;
+    HatchOptions hatching;
+    hatching.sets = section_hatch_sets(*view.section, styles, lines);
+    hatching.tone = section_tone(view.plane);
+    hatching.by_instance = !options.plot;
+    hatching.nearest_first = options.plot;
+    view.placed.hatching = hatch(*view.surfaces, camera, hatching, execution);
+  }
+}
+
+SectionMarks section_marks_of(const std::vector<PlannedView>& views, const Pen& thin) {
+  const std::vector<std::size_t> hosts = hosts_of(views);
+  std::vector<CuttingLine> lines;
+  std::vector<ViewName> names;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!views[i].section) continue;
+    const DrawingBounds box = bounds_of(views[i].drawing, false);
+    const glm::dvec2 low = views[i].placed.on_page(box.low), high = views[i].placed.on_page(box.high);
+    bool is_host = false;
+    for (std::size_t k = 0; k < hosts.size(); ++k) is_host = is_host || (views[k].section && hosts[k] == i);
+    const double above = name_distance + (is_host ? cutting_line_room : 0);
+    names.push_back({{(low.x + high.x) / 2, low.y - above}, views[i].name});
+    if (hosts[i] == views.size()) continue;
+    const PlannedView& host = views[hosts[i]];
+    const Trace trace = trace_in(host, views[i]);
+    if (is_empty(trace)) continue;
+    lines.push_back({host.placed.on_page(trace.from), host.placed.on_page(trace.to), trace.looking, views[i].letter});
+  }
+  SectionMarkOptions options;
+  options.thin = thin;
+  options.text_height = name_height;
+  return draw_section_marks(lines, names, options);
+}
+
+}  // namespace frontmost::detail

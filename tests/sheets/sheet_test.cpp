@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whole sheets by one call: sizes that can be worked out, what a sheet tells of itself, and what it refuses.
+#include "frontmost/sheet.h"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "frontmost/scene.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+using V = NamedView;
+
+/// 40 wide, 30 deep and 20 high, z up.
+Scene block(const glm::vec3& size = {40, 30, 20}) {
+  Mesh mesh;
+  const auto corner = [&](int i) { return glm::vec3(i & 1 ? size.x : 0, i & 2 ? size.y : 0, i & 4 ? size.z : 0); };
+  const int faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  for (const auto& f : faces) {
+    add_triangle(mesh, corner(f[0]), corner(f[1]), corner(f[2]));
+    add_triangle(mesh, corner(f[0]), corner(f[2]), corner(f[3]));
+  }
+  Scene scene = scene_of(mesh);
+  scene.up = Axis::z;
+  return scene;
+}
+
+class SheetOfBlock : public testing::Test {
+ protected:
+  [[nodiscard]] Sheet drawn(const SheetOptions& options) const { return draw_sheet(surfaces_, options); }
+
+  /// What a view covers, in millimetres of the page.
+  [[nodiscard]] static DrawingBounds box_of(const DrawnView& view) {
+    const DrawingBounds box = bounds_of(view.drawing, view.shows_hidden);
+    return {view.placed.on_page(box.low), view.placed.on_page(box.high)};
+  }
+  static void expect_box(const DrawingBounds& box, const glm::dvec2& low, const glm::dvec2& high) {
+    for (int axis = 0; axis < 2; ++axis) {
+      EXPECT_NEAR(box.low[axis], low[axis], 1e-6);
+      EXPECT_NEAR(box.high[axis], high[axis], 1e-6);
+    }
+  }
+
+  const Scene scene_ = block();
+  const Surfaces surfaces_{scene_};
+};
+
+TEST_F(SheetOfBlock, ViewsStandInLineFifteenMillimetresApart) {
+  const Sheet sheet = drawn({.views = {V::front, V::top, V::left}, .scale = 1});
+  EXPECT_NEAR(sheet.page.width, 10 + 40 + 15 + 30 + 10, 1e-6);
+  EXPECT_NEAR(sheet.page.height, 10 + 20 + 15 + 30 + 10, 1e-6);
+  EXPECT_EQ(sheet.scale, 1);
+  ASSERT_EQ(sheet.views.size(), 3u);
+  expect_box(box_of(sheet.views[0]), {10, 10}, {50, 30});
+  expect_box(box_of(sheet.views[1]), {10, 45}, {50, 75});
+  expect_box(box_of(sheet.views[2]), {65, 10}, {95, 30});
+  const Sheet third = drawn({.views = {V::front, V::top}, .projection = ProjectionMethod::third_angle, .scale = 2});
+  expect_box(box_of(third.views[0]), {10, 85}, {90, 125});
+  expect_box(box_of(third.views[1]), {10, 10}, {90, 70});
+}
+
+TEST_F(SheetOfBlock, AViewAloneIsInMillimetresWithDashes) {
+  const View view = frame(surfaces_, 800, 600, {.direction = V::iso, .orthographic = true});
+  const Sheet plain = draw_view(surfaces_, view, {.scale = 2});
+  const Sheet dashed = draw_view(surfaces_, view, {.hidden = HiddenLines::dashed, .scale = 2});
+  // Seen along the diagonal of a cube an edge of 1 is sqrt(2/3) long; width and depth lie at 30 degrees.
+  EXPECT_NEAR(plain.page.width, 20 + 2 * (40 + 30) * std::sqrt(2.0 / 3) * std::cos(std::numbers::pi / 6), 1e-3);
+  ASSERT_EQ(plain.page.layers.size(), 1u);
+  ASSERT_EQ(dashed.page.layers.size(), 2u);
+  EXPECT_EQ(dashed.page.layers[0].name, "1 hidden");
+  EXPECT_EQ(dashed.page.layers[0].groups[0].pen.dashes, (std::vector<double>{3, 0.75}));
+  EXPECT_EQ(travel_of({100, 100, "", {dashed.page.layers[0]}}).paths, 3u);  // edges that meet in one corner
+  EXPECT_EQ(dashed.views[0].name, "");
+  EXPECT_EQ(dashed.views[0].surfaces.get(), &surfaces_);
+}
+
+TEST_F(SheetOfBlock, PerspectiveHasNoScaleAndKeepsItsPictureWhereAsked) {
+  const View view = frame(surfaces_, 400, 200);
+  const Sheet sheet = draw_view(surfaces_, view, {.page = Paper{{120, 70}, false}, .keeps_picture = true});
+  EXPECT_FALSE(sheet.scale);
+  EXPECT_NEAR(sheet.views[0].placed.millimetres_per_pixel, 0.25, 1e-12);
+  EXPECT_NEAR(sheet.views[0].placed.origin.x, 10, 1e-9);
+  EXPECT_NEAR(sheet.views[0].placed.origin.y, 10, 1e-9);
+}
+
+TEST_F(SheetOfBlock, UnitsAreOfTheFileOrAsTold) {
+  Scene scene = block();
+  const auto width = [&](const SheetOptions& options) {
+    const Surfaces surfaces(scene);
+    return draw_sheet(surfaces, options).page.width;
+  };
+  EXPECT_NEAR(width({.views = {V::front}, .scale = 1}), 60, 1e-6);
+  EXPECT_NEAR(width({.views = {V::front}, .scale = 1, .millimetres_per_unit = 25.4}), 20 + 40 * 25.4, 1e-3);
+  scene.source.metres_per_unit = 1;
+  EXPECT_NEAR(width({.views = {V::front}, .scale = 0.01}), 20 + 400, 1e-4);
+  EXPECT_NEAR(width({.views = {V::front}, .scale = 1, .millimetres_per_unit = 1}), 60, 1e-6);
+}
+
+TEST_F(SheetOfBlock, TheTitleBlockSaysWhatTheSheetIs) {
+  const Sheet sheet = drawn({.views = {V::front, V::top, V::left, V::iso},
+                             .sections = {{V::left, 10.0}},
+                             .dimensions = true,
+                             .hidden = HiddenLines::dashed,
+                             .page = named_paper("a3"),
+                             .title_block = TitleBlock{.title = "Block"}});
+  EXPECT_EQ(sheet.page.title, "Block");
+  EXPECT_EQ(glm::dvec2(sheet.page.width, sheet.page.height), glm::dvec2(420, 297));
+  EXPECT_EQ(sheet.scale, standard_scale(*sheet.scale));
+  std::vector<std::string> layers, views;
+  for (const PageLayer& layer : sheet.page.layers) layers.push_back(layer.name);
+  for (const DrawnView& view : sheet.views) views.push_back(view.name);
+  EXPECT_THAT(layers, testing::ElementsAre("4 hatching", "2 visible", "9 sections", "7 dimensions", "8 frame"));
+  EXPECT_THAT(views, testing::ElementsAre("front", "top", "left", "iso", "A-A"));
+  ASSERT_TRUE(sheet.views[4].section);
+  EXPECT_NEAR(sheet.views[4].section->faces[0].area, 600, 1e-3);
+  EXPECT_FALSE(sheet.views[0].section);
+  EXPECT_EQ(sheet.left_out, 0u);
+  EXPECT_FALSE(sheet.is_empty);
+}
+
+TEST(SheetOfSpheres, CurvedSurfacesAreMadeAnewAndStay) {
+  std::optional<Sheet> sheet;
+  {
+    const Scene scene = builtin("spheres");
+    const Surfaces surfaces(scene);
+    sheet = draw_sheet(surfaces, {.views = {V::front, V::top}});
+    EXPECT_GT(sheet->views[0].surfaces->primitive_count(), surfaces.primitive_count());
+  }
+  // The numbers of triangles mean something after what was given has gone.
+  for (const DrawnView& view : sheet->views) {
+    ASSERT_FALSE(view.drawing.edges.empty());
+    for (const DrawnEdge& edge : view.drawing.edges)
+      EXPECT_TRUE(edge.left == no_primitive || edge.left < view.surfaces->primitive_count());
+  }
+}
+
+TEST(SheetOfNothing, IsEmpty) {
+  const Scene scene;
+  const Surfaces surfaces(scene);
+  const Sheet sheet = draw_sheet(surfaces, {.views = {V::front}});
+  EXPECT_TRUE(sheet.is_empty);
+  EXPECT_TRUE(sheet.page.layers.empty());
+}
+
+TEST_F(SheetOfBlock, TheStepsAreTold) {
+  std::vector<std::string> told;
+  Watch watch;
+  watch.progress = [&](std::string_view stage, double) {
+    if (told.empty() || told.back() != stage) told.emplace_back(stage);
+  };
+  (void)draw_sheet(surfaces_, {.views = {V::front}}, {1, Isa::best, &watch});
+  EXPECT_THAT(told, testing::IsSupersetOf({"views", "rounds", "layout", "tones", "page"}));
+}
+
+TEST_F(SheetOfBlock, WhatCannotBeMeantIsRefusedByTheNameOfItsField) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const Paper fitting{.fits_drawing = true};
+  const std::pair<SheetOptions, const char*> refused[] = {
+      {{}, "views: "},
+      {{.views = {V::front, V::front}}, "views: 'front' is there twice"},
+      {{.views = {V::iso, V::three_quarter}}, "views: 'iso' and 'three-quarter' have one place"},
+      {{.sections = {{V::iso}}}, "sections: 'iso'"},
+      {{.sections = {{V::left, nan}}}, "sections: "},
+      {{.sections = {{V::left, 3.0}, {V::left, 3.0}}}, "sections: 'left' is there twice"},
+      {{.sections = std::vector<SectionView>(25)}, "sections: 24"},
+      {{.sections = {{V::left}}, .style = DrawingStyle::figure}, "sections: figures"},
+      {{.sections = {{V::left}}, .stipple = 1}, "sections: hatching"},
+      {{.sections = {{V::left, 50.0}}}, "sections left=50: the plane misses the model, which lies from x = 0 to 40"},
+      {{.sections = {{V::left}}, .dimensions = true}, "dimensions: "},
+      {{.views = {V::front}, .hidden_views = std::vector{V::front}}, "hidden_views: needs"},
+      {{.views = {V::front}, .hidden = HiddenLines::thin, .hidden_views = std::vector{V::top}}, "hidden_views: top"},
+      {{.views = {V::front}, .pen = 0}, "pen: must be from 0.01 to 10"},
+      {{.views = {V::front}, .crease_angle = 4}, "crease_angle: "},
+      {{.views = {V::front}, .shortest_stroke = -1}, "shortest_stroke: "},
+      {{.views = {V::front}, .page = Paper{{0, 9}}}, "page: "},
+      {{.views = {V::front}, .page = fitting}, "page: one that fits the drawing needs a scale"},
+      {{.views = {V::front}, .page = fitting, .scale = 1, .title_block = TitleBlock{}}, "page: a frame"},
+      {{.views = {V::front}, .page = Paper{{100, 90}}, .title_block = TitleBlock{}}, "page: 100 x 90 mm have no room"},
+      {{.views = {V::front, V::top}, .page = Paper{{25, 25}}, .margin = 6},
+       "page: 25 x 25 mm have no room for so many"},
+      {{.views = {V::front}, .margin = nan}, "margin: "},
+      {{.views = {V::front}, .margin = 150}, "margin: 150 mm at each side leave nothing of a page of 210 x 297 mm"},
+      {{.views = {V::front}, .scale = 0}, "scale: must be"},
+      {{.views = {V::front}, .page = Paper{}, .scale = 50},
+       "scale: at 50:1 the drawing takes 2000.0 x 1000.0 mm, and the page has 277.0 x 190.0 mm between its margins; "
+       "5:1 "
+       "would fit"},
+      {{.views = {V::front}, .scale = 1e4}, "scale: at 10000:1 the page would be 400 x 200 m"},
+      {{.views = {V::front}, .millimetres_per_unit = -1}, "millimetres_per_unit: "},
+      {{.views = {V::front}, .hatch = 0.1}, "hatch: "},
+      {{.views = {V::front}, .scale = 2000, .hatch = 0.2}, "hatch: 0.2 mm would be too many"},
+      {{.views = {V::front}, .scale = 2000, .stipple = 0.2}, "stipple: 0.2 mm would be too many"},
+      {{.views = {V::front}, .tessellation_error = nan}, "tessellation_error: "},
+  };
+  for (const auto& [options, reason] : refused) {
+    try {
+      (void)drawn(options);
+      ADD_FAILURE() << reason;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), StartsWith(reason));
+    }
+  }
+}
+
+TEST_F(SheetOfBlock, AGivenViewHasNothingOfNamedOnes) {
+  const View perspective = frame(surfaces_, 64, 48);
+  const std::pair<SheetOptions, const char*> refused[] = {{{.views = {V::front}}, "views: "},
+                                                          {{.sections = {{V::front}}}, "views: "},
+                                                          {{.dimensions = true}, "dimensions: "},
+                                                          {{.scale = 1}, "scale: in perspective"},
+                                                          {{.standard_scale = true}, "scale: in perspective"},
+                                                          {{.centre_lines = true}, "centre_lines: perspective"}};
+  for (const auto& [options, reason] : refused) {
+    try {
+      (void)draw_view(surfaces_, perspective, options);
+      ADD_FAILURE() << reason;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::bad_argument);
+      EXPECT_THAT(error.what(), StartsWith(reason));
+    }
+  }
+}
+
+TEST(NamedPaper, HasItsSizeAndItsName) {
+  EXPECT_EQ(named_paper("A3").size, glm::dvec2(297, 420));
+  EXPECT_TRUE(named_paper("a3").may_turn);
+  EXPECT_EQ(named_paper("a5-landscape").size, glm::dvec2(210, 148));
+  EXPECT_FALSE(named_paper("letter-portrait").may_turn);
+  EXPECT_EQ(paper_name({420, 297}), "A3");
+  EXPECT_EQ(paper_name({215.9, 355.6}), "Legal");
+  EXPECT_EQ(paper_name({420, 200.5}), "420 x 200.5");
+  for (const char* const none : {"", "a9", "a4-", "-landscape", "a4-landscape-portrait", "fit"})
+    EXPECT_THROW((void)named_paper(none), Error) << none;
+  EXPECT_EQ(scale_text(0.2), "1:5");
+  EXPECT_EQ(scale_text(2), "2:1");
+  EXPECT_EQ(scale_text(1 / 3.2), "1:3.2");
+  EXPECT_EQ(standard_scale(4.9), 2);
+  EXPECT_EQ(standard_scale(0.2), 0.2);
+  EXPECT_EQ(standard_scale(1e-20), 1e-20);
+}
+
+}  // namespace
+}  // namespace frontmost::test
