@@ -63,6 +63,8 @@ class Surfaces {
   [[nodiscard]] const PlacedScene& placed() const;
   /// Made now where they are not there.
   [[nodiscard]] const ClusterSet& clusters(const Execution& execution = {}) const;
+  /// Null where they have not been made yet.
+  [[nodiscard]] const ClusterSet* made_clusters() const;
   /// Null where a single picture is drawn sooner without.
   [[nodiscard]] const ClusterSet* clusters_for_picture(const Execution& execution) const;
 

@@ -43,6 +43,8 @@ const ClusterSet& Surfaces::clusters(const Execution& execution) const {
   return state_->clusters.get_now(placed(), execution);
 }
 
+const ClusterSet* Surfaces::made_clusters() const { return state_->clusters.made(); }
+
 const ClusterSet* Surfaces::clusters_for_picture(const Execution& execution) const {
   return state_->clusters.get(placed(), execution);
 }

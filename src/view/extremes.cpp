@@ -183,6 +183,7 @@ class Extremes::Core {
       }
     }
     [[nodiscard]] bool holds(const glm::dvec2& p) const {
+      if (!(half.x > 0 && half.y > 0)) return false;  // flat, or nothing is kept yet
       const glm::dvec2 q = (p - middle) / half;
       const bool is_steep = std::abs(q.y) > std::abs(q.x);
       const double major = is_steep ? q.y : q.x, minor = is_steep ? q.x : q.y, size = std::abs(major);
@@ -197,16 +198,17 @@ class Extremes::Core {
 
 /// Looks into the boxes that reach farthest in each direction, and then into all that are not within the core of what
 /// was found.
+template <class Parts>
 class Extremes::Search {
  public:
-  Search(const PlacedScene& placed, Extremes& extremes)
-      : placed_(placed), extremes_(extremes), core_(extremes), is_done_(placed.boxes.size(), false) {}
+  Search(const Parts& parts, Extremes& extremes)
+      : parts_(parts), extremes_(extremes), core_(extremes), is_done_(parts.count(), false) {}
 
   void run() {
     look_at_farthest();
     core_ = Core(extremes_);
-    for (std::size_t box = 0; box < placed_.boxes.size(); ++box)
-      if (!placed_.boxes[box].is_empty() && !is_held(placed_.boxes[box])) offer_vertices(box);
+    for (std::size_t i = 0; i < parts_.count(); ++i)
+      if (const Box box = parts_.box(i); !box.is_empty() && !is_held(box)) offer_vertices(i);
   }
 
  private:
@@ -215,12 +217,13 @@ class Extremes::Search {
     std::array<std::size_t, direction_count> farthest{};
     most.fill(-kInfinity);
     // Some of them are as good a beginning as all.
-    const std::size_t step = placed_.boxes.size() / 4096 + 1;
-    for (std::size_t box = 0; box < placed_.boxes.size(); box += step) {
-      if (placed_.boxes[box].is_empty()) continue;
-      const Extent extent(placed_.boxes[box]);
+    const std::size_t step = parts_.count() / 4096 + 1;
+    for (std::size_t part = 0; part < parts_.count(); part += step) {
+      const Box box = parts_.box(part);
+      if (box.is_empty()) continue;
+      const Extent extent(box);
       for (std::size_t i = 0; i < direction_count; ++i)
-        if (const double reach = extremes_.reach(int(i), extent); reach > most[i]) most[i] = reach, farthest[i] = box;
+        if (const double reach = extremes_.reach(int(i), extent); reach > most[i]) most[i] = reach, farthest[i] = part;
     }
     for (std::size_t i = 0; i < direction_count; ++i)
       if (most[i] > -kInfinity) offer_vertices(farthest[i]);
@@ -233,10 +236,10 @@ class Extremes::Search {
                            {{reach(extremes_.across_[0]), reach(extremes_.across_[1])}, reach(extremes_.back_)});
   }
 
-  void offer_vertices(std::size_t box) {
-    if (is_done_[box]) return;
-    is_done_[box] = true;
-    placed_.visit_box(box, [&](const glm::vec3& vertex) { offer(vertex); });
+  void offer_vertices(std::size_t part) {
+    if (is_done_[part]) return;
+    is_done_[part] = true;
+    parts_.visit(part, [&](const glm::vec3& vertex) { offer(vertex); });
     if (!is_changed_ || missed_ < missed_at_most) return;
     core_ = Core(extremes_);
     missed_ = 0;
@@ -255,15 +258,46 @@ class Extremes::Search {
 
   static constexpr int missed_at_most = 1024;  ///< so many full tests cost more than another core
 
-  const PlacedScene& placed_;
+  const Parts parts_;
   Extremes& extremes_;
   Core core_;
-  std::vector<bool> is_done_;  ///< by box
+  std::vector<bool> is_done_;  ///< by part
   int missed_ = 0;             ///< points that the core did not hold, since it was made
   bool is_changed_ = false;    ///< what is kept, since then
 };
 
-void Extremes::include(const PlacedScene& placed) { Search(placed, *this).run(); }
+namespace {
+
+/// Neighbours in the file.
+struct PlacedParts {
+  const PlacedScene& placed;
+
+  [[nodiscard]] std::size_t count() const { return placed.boxes.size(); }
+  [[nodiscard]] Box box(std::size_t i) const { return placed.boxes[i]; }
+  template <class Visit>
+  void visit(std::size_t i, const Visit& vertex) const {
+    placed.visit_box(i, vertex);
+  }
+};
+
+/// Neighbours in space.
+struct ClusterParts {
+  const ClusterSet& set;
+
+  [[nodiscard]] std::size_t count() const { return set.clusters.size(); }
+  [[nodiscard]] Box box(std::size_t i) const { return set.boxes.get(i); }
+  template <class Visit>
+  void visit(std::size_t i, const Visit& vertex) const {
+    const std::size_t first = set.clusters[i].first_vertex;
+    for (std::size_t v = first; v < first + set.clusters[i].vertex_count; ++v)
+      vertex(glm::vec3(set.x[v], set.y[v], set.z[v]));
+  }
+};
+
+}  // namespace
+
+void Extremes::include(const PlacedScene& placed) { Search<PlacedParts>({placed}, *this).run(); }
+void Extremes::include(const ClusterSet& set) { Search<ClusterParts>({set}, *this).run(); }
 
 std::vector<glm::vec3> Extremes::points() const {
   std::vector<glm::vec3> points;

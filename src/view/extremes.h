@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "frontmost/base.h"
-#include "surfaces/placed_scene.h"
+#include "surfaces/cluster_set.h"
 
 namespace frontmost {
 
@@ -23,6 +23,8 @@ class Extremes {
   /// All vertices of finite triangles. 1 to 3 ms for a million triangles: most are passed over by boxes, and where
   /// these say nothing, as in files whose order is random, by a polygon.
   void include(const PlacedScene& placed);
+  /// The same, sooner: clusters are neighbours in space, whatever the order of the file.
+  void include(const ClusterSet& set);
   /// False when no point within the box would be kept.
   [[nodiscard]] bool may_change_by(const Box& box) const;
   /// Without repetition, in an order of their own.
@@ -35,6 +37,7 @@ class Extremes {
   struct Extent;
   struct Projected;
   class Core;
+  template <class Parts>
   class Search;
 
   [[nodiscard]] Projected projected(const glm::dvec3& point) const;

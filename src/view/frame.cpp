@@ -178,7 +178,10 @@ View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& 
   Projection projection = make_projection(options.min_fov, aspect, {});
   const glm::dvec2 spread(projection.right * filled, projection.top * filled);
   Extremes extremes(pose, spread);
-  extremes.include(surfaces.placed());
+  if (const ClusterSet* const clusters = surfaces.made_clusters())
+    extremes.include(*clusters);
+  else
+    extremes.include(surfaces.placed());
   const std::vector<glm::vec3> points = extremes.points();
   Fit fit(pose, spread);
   for (const glm::vec3& p : points) fit.include(glm::dvec3(p));

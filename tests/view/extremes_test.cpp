@@ -37,6 +37,9 @@ void expect_boxes_give_the_same(std::vector<glm::vec3> points, const glm::dmat4&
   Extremes whole(axes, kSpread);
   whole.include(surfaces.placed());
   EXPECT_EQ(whole.points(), expected);
+  Extremes by_clusters(axes, kSpread);
+  by_clusters.include(surfaces.clusters());
+  EXPECT_EQ(by_clusters.points(), expected);
   std::shuffle(points.begin(), points.end(), std::mt19937(5));
   EXPECT_EQ(one_by_one(points, axes), expected);
 }
