@@ -52,10 +52,11 @@ ImageFormat format_of(const OutputSettings& settings, const std::string& path) {
   throw UsageError(fmt::format("{}: the suffix names no format; use .png, .exr, .pfm or .npy, or --format", path));
 }
 
-void add(std::vector<OutputFile>& files, const OutputFile& added) {
+void add(std::vector<FileToWrite>& files, const FileToWrite& added) {
   const std::string& path = added.path;
   const OutputKind kind = added.kinds.front();
-  const auto same = std::find_if(files.begin(), files.end(), [&](const OutputFile& file) { return file.path == path; });
+  const auto same =
+      std::find_if(files.begin(), files.end(), [&](const FileToWrite& file) { return file.path == path; });
   if (same == files.end()) {
     files.push_back(added);
     return;
@@ -157,9 +158,9 @@ void check_given_format(const std::vector<std::string>& paths, int given, std::s
       throw UsageError(path + ": the suffix names another format than --format, which is for files whose names do not");
 }
 
-std::vector<OutputFile> plan_outputs(const OutputSettings& settings, const std::string& model,
-                                     const std::string& view) {
-  std::vector<OutputFile> files;
+std::vector<FileToWrite> plan_outputs(const OutputSettings& settings, const std::string& model,
+                                      const std::string& view) {
+  std::vector<FileToWrite> files;
   bool any_layers = false;
   for (const OutputRequest& request : settings.files) {
     const auto plan = [&](std::optional<int> layer) {
@@ -209,9 +210,9 @@ void check_references(const std::vector<std::string>& references, const std::vec
   files.refuse_outputs(outputs);
 }
 
-std::string difference_path(const OutputSettings& settings, const std::vector<OutputFile>& files) {
+std::string difference_path(const OutputSettings& settings, const std::vector<FileToWrite>& files) {
   if (settings.reference_difference) return *settings.reference_difference;
-  for (const OutputFile& file : files) {
+  for (const FileToWrite& file : files) {
     if (file.path == "-" || file.kinds.front() != OutputKind::picture) continue;
     return fs::path(file.path).replace_extension(".difference.png").string();
   }

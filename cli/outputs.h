@@ -15,7 +15,7 @@
 namespace frontmost::cli {
 
 /// A file to write. Several kinds share one only as channels of an OpenEXR file.
-struct OutputFile {
+struct FileToWrite {
   std::string path;  ///< "-" is standard output
   ImageFormat format;
   std::vector<OutputKind> kinds;
@@ -39,8 +39,8 @@ void check_given_format(const std::vector<std::string>& paths, int given, std::s
 
 /// The files of one view. Names with {layer} make one for every layer.
 /// \throws UsageError for an unknown suffix, a format that cannot hold the kind, and a name taken twice
-[[nodiscard]] std::vector<OutputFile> plan_outputs(const OutputSettings& settings, const std::string& model,
-                                                   const std::string& view);
+[[nodiscard]] std::vector<FileToWrite> plan_outputs(const OutputSettings& settings, const std::string& model,
+                                                    const std::string& view);
 
 /// \throws UsageError when a file is one of the inputs or is written twice; Error file_unwritable when its folder is
 /// missing or not writable, or it is not a regular file.
@@ -50,6 +50,6 @@ void check_outputs(const std::vector<std::string>& paths, const InputFiles& inpu
 void check_references(const std::vector<std::string>& references, const std::vector<std::string>& outputs);
 
 /// Where the difference to a reference goes.
-[[nodiscard]] std::string difference_path(const OutputSettings& settings, const std::vector<OutputFile>& files);
+[[nodiscard]] std::string difference_path(const OutputSettings& settings, const std::vector<FileToWrite>& files);
 
 }  // namespace frontmost::cli

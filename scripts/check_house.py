@@ -17,6 +17,7 @@ CODE = {".h", ".cpp"}
 MARKED = CODE | {".py", ".sh", ".cmake"}
 LONGEST_FILE = 800
 LARGEST_FILE = 512 * 1024  # bytes; what a command wrote is soon there by mistake, and stays in the history
+LIBRARY = {"include", "src", "cli"}  # a name has one meaning in all of these
 FACES = {"cli", "examples"}  # see include/frontmost alone; tests and benchmarks look inside
 
 
@@ -93,6 +94,26 @@ def arrow_errors(path, text, allowed, headers):
             yield f"{path}:{number}: {top} sees include/frontmost alone, not {room}'s own headers"
 
 
+def types_of(text):
+    """(line number, name, meaning) of the types that a file defines at namespace scope; of an alias the meaning is what
+    it stands for, of all others it is their place."""
+    for number, line in enumerate(text.splitlines(), 1):
+        if match := re.match(r"using ([A-Z]\w\w+) = (.*);", line):
+            yield number, match[1], match[2]
+        elif match := re.match(r"(?:template <.*> )?(?:class|struct|enum class|union) (?:\w+\(.*?\) )?([A-Z]\w\w+)(?= [^;]*\{| :)", line):
+            yield number, match[1], None
+
+
+def name_errors(places):
+    """A name at namespace scope means one thing in the whole library. `places`: (path, line number, name, meaning)."""
+    by_name = {}
+    for path, number, name, meaning in places:
+        by_name.setdefault(name, {})[meaning or path] = f"{path}:{number}"
+    for name, meanings in sorted(by_name.items()):
+        if len(meanings) > 1:
+            yield f"{name} means {len(meanings)} things: {', '.join(meanings.values())}"
+
+
 def file_errors(path, text):
     lines = text.splitlines()
     if path.suffix in CODE and len(lines) > LONGEST_FILE:
@@ -111,7 +132,7 @@ def main():
     if len(allowed) < 8:
         sys.exit("docs/design.md: the house block was not understood")
     headers = public_headers(allowed)
-    errors, sources = list(header_errors(headers)), 0
+    errors, sources, types = list(header_errors(headers)), 0, []
     for path in tracked_files():
         if (size := (ROOT / path).stat().st_size) > LARGEST_FILE:
             errors.append(f"{path}: {size} bytes, more than {LARGEST_FILE}")
@@ -122,6 +143,9 @@ def main():
         errors += file_errors(path, text)
         if path.suffix in CODE:
             errors += arrow_errors(path, text, allowed, headers)
+            if path.parts[0] in LIBRARY:
+                types += [(path, *found) for found in types_of(text)]
+    errors += name_errors(types)
     print("\n".join(errors) if errors else f"house: {sources} C++ files in order, {len(allowed)} rooms")
     sys.exit(bool(errors))
 

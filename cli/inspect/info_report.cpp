@@ -28,16 +28,16 @@ constexpr NamedCount oddities[] = {
     {"non_manifold_edges", "non-manifold edges", &Oddities::non_manifold_edges},
     {"inconsistent_edges", "edges with inconsistent winding", &Oddities::inconsistent_edges}};
 
-struct LengthUnit {
+struct NamedLength {
   std::string_view name;
   double metres;
 };
 /// Those that files name.
-constexpr LengthUnit units[] = {{"micron", 1e-6}, {"millimetre", 1e-3}, {"centimetre", 1e-2},
-                                {"inch", 0.0254}, {"foot", 0.3048},     {"metre", 1}};
+constexpr NamedLength units[] = {{"micron", 1e-6}, {"millimetre", 1e-3}, {"centimetre", 1e-2},
+                                 {"inch", 0.0254}, {"foot", 0.3048},     {"metre", 1}};
 
 std::string_view name_of(const ModelUnit& unit) {
-  for (const LengthUnit& named : units)
+  for (const NamedLength& named : units)
     if (named.metres == unit.metres) return named.name;
   return "";
 }
@@ -184,9 +184,9 @@ std::string unit_line(const std::optional<ModelUnit>& unit, const Box& bounds) {
   if (!unit) return "";
   const glm::dvec3 metres = size_of(bounds) * unit->metres;
   const double greatest = std::max({metres.x, metres.y, metres.z});
-  const LengthUnit shown = greatest < 0.001 ? LengthUnit{"um", 1e-6}
-                           : greatest < 2   ? LengthUnit{"mm", 1e-3}
-                                            : LengthUnit{"m", 1};
+  const NamedLength shown = greatest < 0.001 ? NamedLength{"um", 1e-6}
+                            : greatest < 2   ? NamedLength{"mm", 1e-3}
+                                             : NamedLength{"m", 1};
   const glm::dvec3 size = metres / shown.metres;
   return fmt::format("  unit       {}{}: {:.4g} x {:.4g} x {:.4g} {}\n", name_of(*unit),
                      unit->is_guess ? ", a guess" : "", size.x, size.y, size.z, shown.name);

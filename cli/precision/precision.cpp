@@ -74,7 +74,7 @@ DepthFights fights_of(const Surfaces& surfaces, const ExactVisible& exact, const
 
 void save_heat_map(const PrecisionRun& run, const ExactVisible& exact, const Execution& execution) {
   const Surfaces& surfaces = *run.surfaces;
-  const Sight sight = look_at_surfaces(surfaces, exact.view, {}, execution);
+  const SeenView sight = look_at_surfaces(surfaces, exact.view, {}, execution);
   const Image backdrop =
       shade(surfaces, sight.visible, {.shading = Shading::lit, .background = glm::vec3(0.0f)}, execution);
   SaveOptions options;

@@ -15,11 +15,11 @@ namespace {
 constexpr std::uint64_t most_bytes = std::uint64_t(1) << 26;
 
 /// A value and where it stands, such as "batch.json: views[2].resolution".
-struct Place {
+struct JsonPlace {
   const Json& value;
   std::string path;
 
-  [[nodiscard]] Place at(const std::string& key) const {
+  [[nodiscard]] JsonPlace at(const std::string& key) const {
     return {value.at(key), fmt::format("{}.{}", path, shortened(key))};
   }
   [[noreturn]] void refuse(std::string_view why) const { throw UsageError(fmt::format("{}: {}", path, why)); }
@@ -30,7 +30,7 @@ std::string number_text(const Json& value) {
 }
 
 /// What the value would be on a command line.
-std::string text_of(const Place& place) {
+std::string text_of(const JsonPlace& place) {
   const Json& value = place.value;
   if (value.is_string()) return value.get<std::string>();
   if (value.is_number()) return number_text(value);
@@ -52,11 +52,11 @@ std::string text_of(const Place& place) {
 }
 
 /// The system ends names at the first one.
-void refuse_nul(const Place& place, const std::string& text) {
+void refuse_nul(const JsonPlace& place, const std::string& text) {
   if (text.find('\0') != std::string::npos) place.refuse("must not hold a NUL character");
 }
 
-void apply_at(const Place& place, const Option& option, const std::string& text, Settings& settings) {
+void apply_at(const JsonPlace& place, const Option& option, const std::string& text, Settings& settings) {
   refuse_nul(place, text);
   try {
     option.apply(settings, {text, option.choices()});
@@ -65,13 +65,13 @@ void apply_at(const Place& place, const Option& option, const std::string& text,
   }
 }
 
-void apply_value(const Place& place, const Option& option, Settings& settings) {
+void apply_value(const JsonPlace& place, const Option& option, Settings& settings) {
   if (option.is_switch()) {
     if (!place.value.is_boolean()) place.refuse("must be true or false");
     if (place.value.get<bool>()) apply_at(place, option, {}, settings);
   } else if (option.name == "ids" && place.value.is_object()) {
     for (const auto& [kind, file] : place.value.items()) {
-      const Place inner = place.at(kind);
+      const JsonPlace inner = place.at(kind);
       if (!file.is_string()) inner.refuse("must be a file name");
       apply_at(inner, option, kind + "=" + file.get<std::string>(), settings);
     }
@@ -88,7 +88,7 @@ bool belongs_to_outputs(const Option& option) { return option.group == Group::ou
 
 /// Applies every key of an object; `belongs` says which options it may hold.
 template <class Belongs>
-void apply_object(const Place& place, const Belongs& belongs, std::vector<std::string_view> other_keys,
+void apply_object(const JsonPlace& place, const Belongs& belongs, std::vector<std::string_view> other_keys,
                   Settings& settings) {
   if (!place.value.is_object()) place.refuse("must be an object");
   for (const auto& item : place.value.items()) {
@@ -109,11 +109,11 @@ void apply_object(const Place& place, const Belongs& belongs, std::vector<std::s
   }
 }
 
-Settings parse_view(const Place& place, const Settings& defaults) {
+Settings parse_view(const JsonPlace& place, const Settings& defaults) {
   Settings settings = defaults;
   apply_object(place, belongs_to_view, {"name", "outputs"}, settings);
   if (place.value.contains("name")) {
-    const Place name = place.at("name");
+    const JsonPlace name = place.at("name");
     if (!name.value.is_string() || name.value.get<std::string>().empty()) name.refuse("must be a string");
     settings.view.name = name.value.get<std::string>();
     refuse_nul(name, settings.view.name);
@@ -133,7 +133,7 @@ Settings parse_view(const Place& place, const Settings& defaults) {
 
 std::vector<Settings> parse_batch(const std::string& text, const std::string& name, const Settings& defaults) {
   const Json json = parse_batch_json(text, name);
-  const Place root{json, name};
+  const JsonPlace root{json, name};
   if (!json.is_object()) root.refuse("must be an object with views");
   for (const auto& [key, value] : json.items()) {
     if (key != "views" && key != "outputs")
@@ -148,7 +148,7 @@ std::vector<Settings> parse_batch(const std::string& text, const std::string& na
   std::vector<Settings> result;
   result.reserve(views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const Place place{views[i], fmt::format("{}: views[{}]", name, i)};
+    const JsonPlace place{views[i], fmt::format("{}: views[{}]", name, i)};
     result.push_back(parse_view(place, common));
     if (result.back().view.name.empty() && !views[i].contains("view")) result.back().view.name = std::to_string(i);
   }

@@ -23,11 +23,11 @@ constexpr std::array<std::string_view, 7> clauses = {"has corners that are not f
                                                      "faces the way that --cull leaves out",
                                                      "is smaller than a pixel or seen edge-on"};
 
-using Corners = std::array<glm::dvec3, 3>;
+using WorldCorners = std::array<glm::dvec3, 3>;
 
 /// Corners in eye space, z turned into distance.
-Corners in_eye(const std::array<glm::vec3, 3>& corners, const View& view) {
-  Corners result;
+WorldCorners in_eye(const std::array<glm::vec3, 3>& corners, const View& view) {
+  WorldCorners result;
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::dvec3 offset = glm::dvec3(corners[i]) - view.eye();
     result[i] = {glm::dot(offset, view.right()), glm::dot(offset, view.up()), glm::dot(offset, view.forward())};
@@ -36,11 +36,11 @@ Corners in_eye(const std::array<glm::vec3, 3>& corners, const View& view) {
 }
 
 template <class Test>
-bool all(const Corners& corners, const Test& test) {
+bool all(const WorldCorners& corners, const Test& test) {
   return std::all_of(corners.begin(), corners.end(), test);
 }
 
-bool is_outside(const Corners& c, const Projection& p) {
+bool is_outside(const WorldCorners& c, const Projection& p) {
   const auto reach = [&](const glm::dvec3& v) { return p.orthographic ? 1.0 : v.z; };
   return all(c, [&](const glm::dvec3& v) { return v.x < p.left * reach(v); }) ||
          all(c, [&](const glm::dvec3& v) { return v.x > p.right * reach(v); }) ||
@@ -48,7 +48,7 @@ bool is_outside(const Corners& c, const Projection& p) {
          all(c, [&](const glm::dvec3& v) { return v.y > p.top * reach(v); });
 }
 
-bool is_culled(const Corners& c, const View& view) {
+bool is_culled(const WorldCorners& c, const View& view) {
   if (view.culling == Culling::none) return false;
   if (view.culling == Culling::both) return true;
   // Positive when the corners run counter-clockwise as seen from the eye: y up, looking along +distance.
@@ -58,7 +58,7 @@ bool is_culled(const Corners& c, const View& view) {
 }
 
 Cause cause_of(const std::array<glm::vec3, 3>& corners, const View& view) {
-  const Corners c = in_eye(corners, view);
+  const WorldCorners c = in_eye(corners, view);
   if (!all(c, [](const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); })) {
     return non_finite;
   }

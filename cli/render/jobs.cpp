@@ -57,7 +57,7 @@ Job make_job(const Settings& settings) {
   Job job{view_name(settings.view), settings.view, settings.output, {}, {}, {}, {}, {}};
   const std::string model = model_name(settings.model);
   take_figures(settings, model, job);
-  for (OutputFile& file : plan_outputs(job.output, model, job.name))
+  for (FileToWrite& file : plan_outputs(job.output, model, job.name))
     (file.layer ? job.layer_files : job.files).push_back(std::move(file));
   check_layers(settings, job);
   check_outputs_around(job);
@@ -97,7 +97,7 @@ std::vector<std::string> output_paths(const std::vector<Job>& jobs) {
   std::vector<std::string> paths;
   for (const Job& job : jobs) {
     for (const auto* files : {&job.files, &job.layer_files})
-      for (const OutputFile& file : *files) paths.push_back(file.path);
+      for (const FileToWrite& file : *files) paths.push_back(file.path);
     paths.insert(paths.end(), job.figures.begin(), job.figures.end());
     if (!job.difference.empty()) paths.push_back(job.difference);
   }

@@ -18,10 +18,10 @@ struct Job {
   std::string name;  ///< {view}
   ViewSettings view;
   OutputSettings output;
-  std::vector<OutputFile> files, layer_files;  ///< of what is nearest, or of all; of single layers
-  std::vector<std::string> figures;            ///< pictures of polygons
-  std::string difference;                      ///< where the difference to the reference goes; empty: no reference
-  std::shared_ptr<const Image> reference;      ///< what output.reference holds; none: to be read again
+  std::vector<FileToWrite> files, layer_files;  ///< of what is nearest, or of all; of single layers
+  std::vector<std::string> figures;             ///< pictures of polygons
+  std::string difference;                       ///< where the difference to the reference goes; empty: no reference
+  std::shared_ptr<const Image> reference;       ///< what output.reference holds; none: to be read again
 };
 
 /// One job, or those of the batch file; all files have been checked.

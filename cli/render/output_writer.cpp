@@ -9,7 +9,7 @@
 namespace frontmost::cli {
 namespace {
 
-bool is_picture_alone(const OutputFile& file) {
+bool is_picture_alone(const FileToWrite& file) {
   return file.kinds.size() == 1 && file.kinds.front() == OutputKind::picture;
 }
 
@@ -26,7 +26,7 @@ void append(Image& image, Image part) {
   for (Channel& channel : part.channels) image.channels.push_back(std::move(channel));
 }
 
-SaveOptions save_options(const OutputFile& file, const OutputSettings& settings) {
+SaveOptions save_options(const FileToWrite& file, const OutputSettings& settings) {
   SaveOptions options;
   options.format = file.format;
   options.bits = settings.bits;
@@ -34,13 +34,13 @@ SaveOptions save_options(const OutputFile& file, const OutputSettings& settings)
   return options;
 }
 
-void note(const Image& part, OutputKind kind, const OutputFile& file, const OutputSource& source, ViewResult& result) {
+void note(const Image& part, OutputKind kind, const FileToWrite& file, const OutputSource& source, ViewResult& result) {
   Result& one = result.results.emplace_back(Result{std::string(kind_name(kind)), file.path, {}});
   if (source.job.output.hash) one.hash = content_hash(part);
 }
 
 /// The channels of every kind that the file holds.
-Image compose(const OutputFile& file, const OutputSource& source, ViewResult& result) {
+Image compose(const FileToWrite& file, const OutputSource& source, ViewResult& result) {
   Image image;
   for (const OutputKind kind : file.kinds) {
     Image part;
@@ -56,14 +56,14 @@ Image compose(const OutputFile& file, const OutputSource& source, ViewResult& re
 }
 
 template <class Picture>
-void save_image(const Picture& image, const OutputFile& file, const OutputSource& source, ViewResult& result) {
+void save_image(const Picture& image, const FileToWrite& file, const OutputSource& source, ViewResult& result) {
   const Stopwatch watch;
   const WritingFiles writing;
   save(image, file.path, save_options(file, source.job.output), source.execution);
   result.timings.save += watch.milliseconds();
 }
 
-void write_deep(const OutputFile& file, const OutputSource& source, ViewResult& result) {
+void write_deep(const FileToWrite& file, const OutputSource& source, ViewResult& result) {
   const DeepImage image = source.deep();
   Result& one = result.results.emplace_back(Result{std::string(kind_name(OutputKind::deep)), file.path, {}});
   if (source.job.output.hash) one.hash = content_hash(image);
@@ -73,7 +73,7 @@ void write_deep(const OutputFile& file, const OutputSource& source, ViewResult& 
   result.timings.save += watch.milliseconds();
 }
 
-void write(const OutputFile& file, const OutputSource& source, ViewResult& result) {
+void write(const FileToWrite& file, const OutputSource& source, ViewResult& result) {
   if (file.kinds.front() == OutputKind::deep) return write_deep(file, source, result);
   // A picture on its own is saved as it is: copying one takes as long as finding what is visible.
   const bool as_it_is = is_picture_alone(file) && file.format != ImageFormat::pfm;
@@ -91,7 +91,7 @@ void write(const OutputFile& file, const OutputSource& source, ViewResult& resul
 }  // namespace
 
 bool wants(const Job& job, OutputKind kind) {
-  for (const OutputFile& file : job.files) {
+  for (const FileToWrite& file : job.files) {
     if (std::find(file.kinds.begin(), file.kinds.end(), kind) != file.kinds.end()) return true;
   }
   return false;
@@ -99,14 +99,14 @@ bool wants(const Job& job, OutputKind kind) {
 
 bool needs_only_bitmap(const Job& job) {
   if (job.output.reference || job.output.hash || job.output.bits != 8) return false;
-  return std::all_of(job.files.begin(), job.files.end(), [](const OutputFile& file) {
+  return std::all_of(job.files.begin(), job.files.end(), [](const FileToWrite& file) {
     if (is_picture_alone(file)) return file.format == ImageFormat::png;
     return std::find(file.kinds.begin(), file.kinds.end(), OutputKind::picture) == file.kinds.end();
   });
 }
 
 void write_files(const OutputSource& source, ViewResult& result) {
-  for (const OutputFile& file : source.job.files) {
+  for (const FileToWrite& file : source.job.files) {
     stop_if_interrupted();
     write(file, source, result);
   }

@@ -64,10 +64,10 @@ ViewResult render_curved_view(const Job& job, const RenderContext& context) {
   sights.shared = plan.shared;
   std::optional<Visible> light;
   if (plan.picture_samples) {
-    sights.picture = Sight{shown.visible.front(), {}};
+    sights.picture = SeenView{shown.visible.front(), {}};
     light = seen_by_light(job, context, index, sights.picture->visible);
   }
-  if (plan.maps && !plan.shared) sights.maps = Sight{shown.visible.back(), {}};
+  if (plan.maps && !plan.shared) sights.maps = SeenView{shown.visible.back(), {}};
   sights.stream_ids = &shown.elements;
   if (light) sights.seen_by_light = &*light;
   result.timings.shade = watch.milliseconds();

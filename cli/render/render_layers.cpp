@@ -22,13 +22,13 @@ std::vector<Visible> layers_of(const Job& job, const RenderContext& context, con
 }
 
 /// One layer with its files.
-struct Layer {
+struct LayerFiles {
   Job job;
   const Visible* picture;  ///< null where no file shows it
   const Visible* maps;     ///< likewise
 };
 
-void write_layer(const Layer& layer, const RenderContext& context, ViewResult& result) {
+void write_layer(const LayerFiles& layer, const RenderContext& context, ViewResult& result) {
   std::optional<Image> picture;
   if (wants(layer.job, OutputKind::picture)) {
     const Stopwatch watch;
@@ -38,12 +38,12 @@ void write_layer(const Layer& layer, const RenderContext& context, ViewResult& r
     result.timings.shade += watch.milliseconds();
   }
   Sights sights;
-  if (layer.maps) sights.maps = Sight{*layer.maps, {}};
+  if (layer.maps) sights.maps = SeenView{*layer.maps, {}};
   const auto map = [&](OutputKind kind) { return map_of(kind, layer.job, context, sights); };
   write_files({layer.job, context.execution, map, picture ? &*picture : nullptr}, result);
 }
 
-bool shows_only_picture(const OutputFile& file) {
+bool shows_only_picture(const FileToWrite& file) {
   return file.kinds.size() == 1 && file.kinds.front() == OutputKind::picture;
 }
 
@@ -64,10 +64,10 @@ void write_layers(const Job& job, const RenderContext& context, ViewResult& resu
     maps = layers_of(job, context, view);
   }
   for (int k = 0; k < *job.output.layers; ++k) {
-    Layer layer{job, pictures.empty() ? nullptr : &pictures[std::size_t(k)],
-                maps.empty() ? nullptr : &maps[std::size_t(k)]};
+    LayerFiles layer{job, pictures.empty() ? nullptr : &pictures[std::size_t(k)],
+                     maps.empty() ? nullptr : &maps[std::size_t(k)]};
     layer.job.files.clear();
-    for (const OutputFile& file : job.layer_files)
+    for (const FileToWrite& file : job.layer_files)
       if (file.layer == k) layer.job.files.push_back(file);
     write_layer(layer, context, result);
   }

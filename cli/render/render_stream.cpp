@@ -80,8 +80,8 @@ ViewResult render_streamed_view(const Job& job, Stream& stream, const StreamCont
 
   Sights sights;
   sights.shared = plan.shared;
-  if (plan.picture_samples) sights.picture = Sight{std::move(excerpt.visible.front()), {}};
-  if (plan.maps && !plan.shared) sights.maps = Sight{std::move(excerpt.visible.back()), {}};
+  if (plan.picture_samples) sights.picture = SeenView{std::move(excerpt.visible.front()), {}};
+  if (plan.maps && !plan.shared) sights.maps = SeenView{std::move(excerpt.visible.back()), {}};
   sights.stream_ids = &excerpt.stream_ids;
   sights.blank_reason = &blank_reason;
   if (excerpt.seen_by_light) sights.seen_by_light = &*excerpt.seen_by_light;

@@ -31,10 +31,10 @@ bool is_map(OutputKind kind) { return kind != OutputKind::picture && kind != Out
 
 bool wants_maps(const Job& job) {
   return std::any_of(job.files.begin(), job.files.end(),
-                     [](const OutputFile& file) { return std::any_of(file.kinds.begin(), file.kinds.end(), is_map); });
+                     [](const FileToWrite& file) { return std::any_of(file.kinds.begin(), file.kinds.end(), is_map); });
 }
 
-Sight look_once(const View& view, const DepthSettings& depth, const RenderContext& context, ZBuffer* buffer) {
+SeenView look_once(const View& view, const DepthSettings& depth, const RenderContext& context, ZBuffer* buffer) {
   if (context.run.method == Method::abuffer)
     return {visible_layers(context.surfaces, view, 1, {}, context.execution).front(), {}};
   const RayIndex* index = context.by_rays ? context.index : nullptr;
@@ -45,11 +45,11 @@ Sight look_once(const View& view, const DepthSettings& depth, const RenderContex
   return look_at_surfaces(context.surfaces, view, depth, context.execution, index);
 }
 
-Sight timed(const View& view, const DepthSettings& depth, const RenderContext& context, ZBuffer* buffer,
-            std::vector<double>& times) {
+SeenView timed(const View& view, const DepthSettings& depth, const RenderContext& context, ZBuffer* buffer,
+               std::vector<double>& times) {
   for (int i = 1;; ++i) {
     const Stopwatch watch;
-    Sight sight = look_once(view, depth, context, buffer);
+    SeenView sight = look_once(view, depth, context, buffer);
     times.push_back(watch.milliseconds());
     if (i >= context.run.repeat) return sight;
     if (buffer) buffer->give_back(std::move(sight.visible));
@@ -100,7 +100,7 @@ Seen summary(const Surfaces& surfaces, const Sights& sights) {
   return seen;
 }
 
-Image window_depth_image(const Sight& sight) {
+Image window_depth_image(const SeenView& sight) {
   Image image{sight.visible.view.width, sight.visible.view.height, {}};
   image.channels.push_back({"window_depth", sight.window_depths});
   return image;

@@ -88,14 +88,14 @@ struct RenderContext {
 
 /// The visibility that a view needs: of the picture, of the maps, or of both at once.
 struct Sights {
-  std::optional<Sight> picture, maps;
+  std::optional<SeenView> picture, maps;
   bool shared = false;  ///< the maps are those of the picture
   /// Of a stream: the numbers of the triangles, by id of the surfaces, and what throws shadows. Both borrowed.
   const std::vector<PrimitiveId>* stream_ids = nullptr;
   const Visible* seen_by_light = nullptr;
   const BlankReason* blank_reason = nullptr;  ///< counted while the stream was read; borrowed
 
-  [[nodiscard]] const Sight& for_maps() const { return shared ? *picture : *maps; }
+  [[nodiscard]] const SeenView& for_maps() const { return shared ? *picture : *maps; }
   [[nodiscard]] const Visible& any() const { return (picture ? *picture : *maps).visible; }
 };
 

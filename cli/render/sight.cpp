@@ -18,8 +18,8 @@ DepthState depth_state(const DepthSettings& settings) {
 
 double depth_clear(const DepthSettings& settings) { return settings.clear.value_or(settings.reversed ? 0.0 : 1.0); }
 
-Sight look_at_surfaces(const Surfaces& surfaces, const View& view, const DepthSettings& settings,
-                       const Execution& execution, const RayIndex* index) {
+SeenView look_at_surfaces(const Surfaces& surfaces, const View& view, const DepthSettings& settings,
+                          const Execution& execution, const RayIndex* index) {
   if (index) return {raycast(*index, view, execution), {}};
   if (!settings.is_used) return {zbuffer(surfaces, view, execution), {}};
   DepthBuffer buffer(view.width, view.height, view.samples, settings.format);

@@ -12,7 +12,7 @@
 
 namespace frontmost::cli {
 
-struct Sight {
+struct SeenView {
   Visible visible;
   Buffer<float> window_depths;  ///< of a depth buffer, in the order of Visible; empty without one
 };
@@ -22,8 +22,8 @@ struct Sight {
 [[nodiscard]] double depth_clear(const DepthSettings& settings);
 
 /// By rays where there is an index.
-[[nodiscard]] Sight look_at_surfaces(const Surfaces& surfaces, const View& view, const DepthSettings& settings,
-                                     const Execution& execution, const RayIndex* index = nullptr);
+[[nodiscard]] SeenView look_at_surfaces(const Surfaces& surfaces, const View& view, const DepthSettings& settings,
+                                        const Execution& execution, const RayIndex* index = nullptr);
 
 /// "D8", "LESS" and so on, as on the command line.
 [[nodiscard]] std::string_view name(DepthFormat format);

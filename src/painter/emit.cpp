@@ -21,9 +21,9 @@ void emit(const Pieces& pieces, std::uint32_t piece, PaintCorner* corners) {
     for (const glm::vec3& corner : pieces.face(piece).corners) *corners++ = {place(glm::dvec3(corner)), false};
     return;
   }
-  const Shape& shape = pieces.shape(piece);
+  const PieceShape& shape = pieces.shape(piece);
   for (std::size_t i = 0; i < shape.corners.size(); ++i)
-    *corners++ = {place(shape.corners[i].at), shape.sides[i] >= Shape::first_cut};
+    *corners++ = {place(shape.corners[i].at), shape.sides[i] >= PieceShape::first_cut};
 }
 
 void emit(const Pieces& pieces, const std::vector<std::uint32_t>& members, PaintOrder& order, Poll& poll) {

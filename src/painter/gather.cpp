@@ -21,7 +21,7 @@ class Gatherer {
   enum class Place : std::uint8_t { outside, inside, crossing };
 
   /// Where a triangle is; crossing: the near or the far plane may cut it.
-  Place gather(PrimitiveId id, Extent& extent, Face& face) const {
+  Place gather(PrimitiveId id, PolygonExtent& extent, Face& face) const {
     face = {surfaces_.corners(id), id};
     for (const glm::vec3& corner : face.corners)
       if (!is_finite(corner)) return Place::outside;
@@ -44,7 +44,7 @@ class Gatherer {
   }
 
  private:
-  static Extent anywhere() {
+  static PolygonExtent anywhere() {
     const float infinite = std::numeric_limits<float>::infinity();
     return {glm::vec2(-infinite), glm::vec2(infinite), -infinite, infinite};
   }
@@ -100,7 +100,7 @@ std::vector<std::uint32_t> fill(const Surfaces& surfaces, const Gatherer& gather
   parallel_for(execution, all, kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
     Part& part = parts[begin / kTrianglesPerPart];
     for (std::size_t id = begin; id < end; ++id) {
-      Extent extent;
+      PolygonExtent extent;
       Face face;
       const Gatherer::Place place = gatherer.gather(PrimitiveId(id), extent, face);
       if (place == Gatherer::Place::outside) continue;

@@ -52,9 +52,9 @@ struct SnappedTriangle {
 };
 
 /// What cuts leave of a polygon's triangle.
-class CutOutline {
+class CutTriangle {
  public:
-  explicit CutOutline(std::span<const PaintCorner> corners) {
+  explicit CutTriangle(std::span<const PaintCorner> corners) {
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const glm::dvec2 p(corners[i].at), q(corners[i + 1 == corners.size() ? 0 : i + 1].at);
       low_ = glm::min(low_, p);
@@ -92,7 +92,7 @@ class Canvas {
         picture_(nothing_visible(order.view)) {}
 
   void paint(const PaintPolygon& polygon) {
-    const CutOutline outline({order_.corners.data() + polygon.first_corner, polygon.corner_count});
+    const CutTriangle outline({order_.corners.data() + polygon.first_corner, polygon.corner_count});
     const ClippedPolygon clipped = clip_triangle(transform_, surfaces_.corners(polygon.id));
     const Cutouts* const cutouts = surfaces_.placed().cutouts.get();
     std::optional<ScreenCutout> holes;
@@ -116,7 +116,7 @@ class Canvas {
     return {int(std::min(low, double(count))), int(std::max(high, -1.0))};
   }
 
-  void fill(const SnappedTriangle& triangle, const CutOutline& outline, const std::optional<ScreenCutout>& holes,
+  void fill(const SnappedTriangle& triangle, const CutTriangle& outline, const std::optional<ScreenCutout>& holes,
             PrimitiveId id) {
     const TriangleKeys keys(triangle);
     const Run columns = run(triangle.x, outline.low().x, outline.high().x, order_.view.width);

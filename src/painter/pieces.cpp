@@ -48,7 +48,7 @@ void ExtentBuilder::include(const glm::dvec3& in_eye, double error) {
   high_ = glm::max(high_, at + slack);
 }
 
-Extent ExtentBuilder::extent() const {
+PolygonExtent ExtentBuilder::extent() const {
   return {{rounded_down(low_.x), rounded_down(low_.y)},
           {rounded_up(high_.x), rounded_up(high_.y)},
           rounded_down(nearest_),
@@ -63,7 +63,7 @@ Plane Pieces::edge_plane(const Face& face, std::uint32_t edge) const {
 
 std::array<Plane, 3> Pieces::planes_of(const Face& face, const PieceCorner& corner) const {
   const auto of_side = [&](std::uint32_t side) {
-    return side < Shape::first_cut ? edge_plane(face, side) : planes_[side - Shape::first_cut];
+    return side < PieceShape::first_cut ? edge_plane(face, side) : planes_[side - PieceShape::first_cut];
   };
   return {face.plane(), of_side(corner.sides[0]), of_side(corner.sides[1])};
 }
@@ -110,10 +110,10 @@ std::uint32_t Pieces::add_plane(const Plane& plane) {
   return std::uint32_t(planes_.size() - 1);
 }
 
-Shape Pieces::shape_of(std::uint32_t piece) const {
+PieceShape Pieces::shape_of(std::uint32_t piece) const {
   const Face& face = faces_[piece];
   if (face.shape != no_index) return shapes_[face.shape];
-  Shape whole;
+  PieceShape whole;
   for (std::uint32_t k = 0; k < 3; ++k) {
     whole.corners.push_back({glm::dvec3(face.corners[k])});
     whole.sides.push_back(k);
@@ -124,14 +124,14 @@ Shape Pieces::shape_of(std::uint32_t piece) const {
 /// Between the ends of the side, or where the planes meet: what is known better. The former gets worse from cut to cut,
 /// the latter where planes meet at small angles; where both are bad, drawings would have corners pixels away. From the
 /// end that comes first in space, so that neighbours are cut at the same point to the bit.
-PieceCorner Pieces::crossing(const Face& face, const Shape& shape, std::size_t side, std::uint32_t plane) const {
+PieceCorner Pieces::crossing(const Face& face, const PieceShape& shape, std::size_t side, std::uint32_t plane) const {
   const PieceCorner *from = &shape.corners[side], *to = &shape.corners[(side + 1) % shape.corners.size()];
   if (is_before(to->at, from->at)) std::swap(from, to);
   const Bounded a = planes_[plane].height(from->at, from->error), b = planes_[plane].height(to->at, to->error);
   const double span = std::abs(a.value) + std::abs(b.value), doubt = a.error + b.error;
   const double t = span > 0 ? std::abs(a.value) / span : 0.5;
   const glm::dvec3 way = to->at - from->at;
-  PieceCorner corner{from->at + t * way, 0, {shape.sides[side], Shape::first_cut + plane}};
+  PieceCorner corner{from->at + t * way, 0, {shape.sides[side], PieceShape::first_cut + plane}};
   const double length = std::abs(way.x) + std::abs(way.y) + std::abs(way.z);
   const double size = std::abs(corner.at.x) + std::abs(corner.at.y) + std::abs(corner.at.z);
   // The true one is on the side, so never farther away than the side is long.
@@ -151,13 +151,13 @@ PieceCorner Pieces::crossing(const Face& face, const Shape& shape, std::size_t s
 }
 
 Pieces::Halves Pieces::cut(std::uint32_t piece, std::uint32_t plane) {
-  const Shape whole = shape_of(piece);
+  const PieceShape whole = shape_of(piece);
   const std::size_t count = whole.corners.size();
-  const std::uint32_t cut = Shape::first_cut + plane;
+  const std::uint32_t cut = PieceShape::first_cut + plane;
   std::vector<int> at(count);
   for (std::size_t i = 0; i < count; ++i) at[i] = side_of_corner(faces_[piece], whole.corners[i], planes_[plane]);
-  Shape front, back;
-  const auto extend = [](Shape& half, const PieceCorner& corner, std::uint32_t side) {
+  PieceShape front, back;
+  const auto extend = [](PieceShape& half, const PieceCorner& corner, std::uint32_t side) {
     half.corners.push_back(corner);
     half.sides.push_back(side);
   };
@@ -172,8 +172,8 @@ Pieces::Halves Pieces::cut(std::uint32_t piece, std::uint32_t plane) {
     extend(front, corner, next < 0 ? cut : side);
     extend(back, corner, next > 0 ? cut : side);
   }
-  Extent& extent = extents_[piece];
-  const Extent back_extent = extent_of(back, extent);
+  PolygonExtent& extent = extents_[piece];
+  const PolygonExtent back_extent = extent_of(back, extent);
   extent = extent_of(front, extent);
   Face face = faces_[piece];
   const auto back_shape = std::uint32_t(shapes_.size());
@@ -189,10 +189,10 @@ Pieces::Halves Pieces::cut(std::uint32_t piece, std::uint32_t plane) {
   return {piece, size() - 1};
 }
 
-Extent Pieces::extent_of(const Shape& half, const Extent& whole) const {
+PolygonExtent Pieces::extent_of(const PieceShape& half, const PolygonExtent& whole) const {
   ExtentBuilder box(sight_);
   for (const PieceCorner& corner : half.corners) box.include(sight_.in_eye(corner.at), corner.error);
-  const Extent own = box.extent();
+  const PolygonExtent own = box.extent();
   return {glm::max(own.low, whole.low), glm::min(own.high, whole.high), std::max(own.nearest, whole.nearest),
           std::min(own.farthest, whole.farthest)};
 }

@@ -12,7 +12,7 @@
 namespace frontmost::painter_detail {
 
 /// Boxes around a piece: on the screen in pixels, and of planar distances. Rounded outwards.
-struct Extent {
+struct PolygonExtent {
   glm::vec2 low, high;
   float nearest, farthest;
 };
@@ -36,7 +36,7 @@ struct PieceCorner {
 };
 
 /// The outline of a piece that was cut, in the order of its triangle.
-struct Shape {
+struct PieceShape {
   /// Side i leads from corner i to the next: 0 to 2 is an edge of the triangle, first_cut + k is Pieces::planes[k].
   static constexpr std::uint32_t first_cut = 3;
   std::vector<PieceCorner> corners;
@@ -57,12 +57,12 @@ class Pieces {
 
   [[nodiscard]] std::uint32_t size() const { return std::uint32_t(faces_.size()); }
   [[nodiscard]] const Sight& sight() const { return sight_; }
-  [[nodiscard]] const Extent& extent(std::uint32_t piece) const { return extents_[piece]; }
+  [[nodiscard]] const PolygonExtent& extent(std::uint32_t piece) const { return extents_[piece]; }
   [[nodiscard]] const Face& face(std::uint32_t piece) const { return faces_[piece]; }
   [[nodiscard]] bool is_whole(std::uint32_t piece) const { return faces_[piece].shape == no_index; }
-  [[nodiscard]] const Shape& shape(std::uint32_t piece) const { return shapes_[faces_[piece].shape]; }
+  [[nodiscard]] const PieceShape& shape(std::uint32_t piece) const { return shapes_[faces_[piece].shape]; }
 
-  void add(const Extent& extent, const Face& face) {
+  void add(const PolygonExtent& extent, const Face& face) {
     extents_.push_back(extent);
     faces_.push_back(face);
   }
@@ -71,7 +71,7 @@ class Pieces {
     extents_.resize(count);
     faces_.resize(count);
   }
-  void set(std::size_t piece, const Extent& extent, const Face& face) {
+  void set(std::size_t piece, const PolygonExtent& extent, const Face& face) {
     extents_[piece] = extent;
     faces_[piece] = face;
   }
@@ -94,15 +94,16 @@ class Pieces {
 
  private:
   [[nodiscard]] int side_of_corner(const Face& face, const PieceCorner& corner, const Plane& plane) const;
-  [[nodiscard]] Shape shape_of(std::uint32_t piece) const;
+  [[nodiscard]] PieceShape shape_of(std::uint32_t piece) const;
   [[nodiscard]] std::array<Plane, 3> planes_of(const Face& face, const PieceCorner& corner) const;
-  [[nodiscard]] PieceCorner crossing(const Face& face, const Shape& shape, std::size_t side, std::uint32_t plane) const;
-  [[nodiscard]] Extent extent_of(const Shape& half, const Extent& whole) const;
+  [[nodiscard]] PieceCorner crossing(const Face& face, const PieceShape& shape, std::size_t side,
+                                     std::uint32_t plane) const;
+  [[nodiscard]] PolygonExtent extent_of(const PieceShape& half, const PolygonExtent& whole) const;
 
   Sight sight_;
-  std::vector<Extent> extents_;
+  std::vector<PolygonExtent> extents_;
   std::vector<Face> faces_;
-  std::deque<Shape> shapes_;
+  std::deque<PieceShape> shapes_;
   std::deque<Plane> planes_;
 };
 
@@ -111,7 +112,7 @@ class ExtentBuilder {
  public:
   explicit ExtentBuilder(const Sight& sight);
   void include(const glm::dvec3& in_eye, double error = 0);
-  [[nodiscard]] Extent extent() const;
+  [[nodiscard]] PolygonExtent extent() const;
 
  private:
   const Sight& sight_;

@@ -63,11 +63,11 @@ struct Question {
   }
   /// As a method sees it: one that is left out is not there, except where it is so thin that snapping may turn it; nor
   /// is one that has a hole.
-  [[nodiscard]] Meeting meeting(const ViewedTriangle& triangle, PrimitiveId id, const SampleSquare& square,
-                                std::size_t sample) const {
-    const Meeting meeting = triangle.meeting(square);
-    if (meeting != Meeting::misses && is_hole(id, sample)) return Meeting::misses;
-    return meeting == Meeting::contains && is_culled(triangle, id) ? Meeting::misses : meeting;
+  [[nodiscard]] LineMeeting meeting(const ViewedTriangle& triangle, PrimitiveId id, const SampleSquare& square,
+                                    std::size_t sample) const {
+    const LineMeeting meeting = triangle.meeting(square);
+    if (meeting != LineMeeting::misses && is_hole(id, sample)) return LineMeeting::misses;
+    return meeting == LineMeeting::contains && is_culled(triangle, id) ? LineMeeting::misses : meeting;
   }
   /// A key as nearness.
   [[nodiscard]] double nearness_of(float key) const {
@@ -104,7 +104,7 @@ class KeyCheck {
 struct Claim {
   PrimitiveId id;
   std::optional<ViewedTriangle> triangle;  ///< none: nothing
-  Meeting meeting = Meeting::contains;
+  LineMeeting meeting = LineMeeting::contains;
 };
 
 /// A sample where the answers differ. Only `impossible` changes, and only ever to true.
@@ -201,7 +201,7 @@ void testify(const Question& question, PrimitiveId id, const ViewedTriangle& tri
   for (std::size_t i = 0; i < 2; ++i) {
     const Claim& claim = contest.claims[i];
     if (claim.id == id || impossible[i].load(std::memory_order_relaxed)) continue;
-    is_there = is_there || question.meeting(triangle, id, contest.square, contest.sample) == Meeting::contains;
+    is_there = is_there || question.meeting(triangle, id, contest.square, contest.sample) == LineMeeting::contains;
     if (!is_there) return;
     if (!claim.triangle || is_surely_nearer(triangle, *claim.triangle, contest.square))
       impossible[i].store(true, std::memory_order_relaxed);
@@ -233,7 +233,7 @@ Contest contest_at(const Question& question, std::size_t sample, PrimitiveId a, 
     if (claim.id == no_primitive) continue;
     claim.triangle = question.triangle(claim.id);
     claim.meeting =
-        claim.triangle ? question.meeting(*claim.triangle, claim.id, contest.square, sample) : Meeting::misses;
+        claim.triangle ? question.meeting(*claim.triangle, claim.id, contest.square, sample) : LineMeeting::misses;
   }
   return contest;
 }
@@ -242,8 +242,8 @@ Difference verdict(const Contest& contest, const std::array<std::atomic<bool>, 2
   bool all_contain = true;
   for (std::size_t i = 0; i < 2; ++i) {
     const Claim& claim = contest.claims[i];
-    if (impossible[i] || claim.meeting == Meeting::misses) return Difference::unexplained;
-    all_contain = all_contain && claim.meeting == Meeting::contains && claim.id != no_primitive;
+    if (impossible[i] || claim.meeting == LineMeeting::misses) return Difference::unexplained;
+    all_contain = all_contain && claim.meeting == LineMeeting::contains && claim.id != no_primitive;
   }
   return all_contain ? Difference::depth : Difference::edge;
 }

@@ -98,10 +98,10 @@ bool ViewedTriangle::is_separated(const SampleSquare& square) const {
 
 /// What the near and far planes leave of a triangle that contains the square. Methods cut in floats, so within their
 /// rounding of a plane either may be.
-Meeting ViewedTriangle::between_planes(const SampleSquare& square) const {
+LineMeeting ViewedTriangle::between_planes(const SampleSquare& square) const {
   const double rim = kKeyRounding;
   if (depths_near_.low > rays_->near() * (1 + rim) && depths_far_.high < rays_->far() * (1 - rim))
-    return Meeting::contains;
+    return LineMeeting::contains;
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const SampleRay& ray : square.corners) {
     const double across = glm::dot(normal_.value, ray.direction),
@@ -112,17 +112,17 @@ Meeting ViewedTriangle::between_planes(const SampleSquare& square) const {
   }
   const double nearest = of_depth(rays_->near()), farthest = of_depth(rays_->far());
   const double at_near = resolution(nearest), at_far = resolution(farthest);
-  if (most < farthest - at_far || least > nearest + at_near) return Meeting::misses;
-  return most < nearest - at_near && least > farthest + at_far ? Meeting::contains : Meeting::touches;
+  if (most < farthest - at_far || least > nearest + at_near) return LineMeeting::misses;
+  return most < nearest - at_near && least > farthest + at_far ? LineMeeting::contains : LineMeeting::touches;
 }
 
-Meeting ViewedTriangle::meeting(const SampleSquare& square) const {
-  if (is_separated(square)) return Meeting::misses;
-  const Meeting by_planes = between_planes(square);
-  if (by_planes != Meeting::contains) return by_planes;
+LineMeeting ViewedTriangle::meeting(const SampleSquare& square) const {
+  if (is_separated(square)) return LineMeeting::misses;
+  const LineMeeting by_planes = between_planes(square);
+  if (by_planes != LineMeeting::contains) return by_planes;
   for (const SampleRay& ray : square.corners)
-    if (!is_inside(ray)) return Meeting::touches;
-  return Meeting::contains;
+    if (!is_inside(ray)) return LineMeeting::touches;
+  return LineMeeting::contains;
 }
 
 DepthBounds ViewedTriangle::nearness_at(const SampleRay& ray) const {

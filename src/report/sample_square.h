@@ -15,7 +15,7 @@ struct SampleSquare {
   SampleSquare(const SampleRays& rays, int x, int y, const glm::ivec2& offset);
 };
 
-enum class Meeting : std::uint8_t { misses, touches, contains };
+enum class LineMeeting : std::uint8_t { misses, touches, contains };
 
 /// Bounds of the least and of the greatest nearness over a square. Nearness grows as depth shrinks and is affine over
 /// the screen: 1 / depth in perspective, -depth in parallel projection.
@@ -28,7 +28,7 @@ class ViewedTriangle {
  public:
   ViewedTriangle(const std::array<glm::vec3, 3>& corners, const SampleRays& rays);
 
-  [[nodiscard]] Meeting meeting(const SampleSquare& square) const;
+  [[nodiscard]] LineMeeting meeting(const SampleSquare& square) const;
   /// Of its plane, within the nearness of its corners and of the near and far planes. Snapping moves what is seen by
   /// less than the square is wide, however thin the triangle, so that every key of it lies in this range.
   [[nodiscard]] NearnessRange nearness(const SampleSquare& square) const;
@@ -45,7 +45,7 @@ class ViewedTriangle {
   [[nodiscard]] bool is_separated(const SampleSquare& square) const;
   [[nodiscard]] bool is_inside(const SampleRay& ray) const;
   [[nodiscard]] int edge_side(std::size_t edge, const SampleRay& ray) const;
-  [[nodiscard]] Meeting between_planes(const SampleSquare& square) const;
+  [[nodiscard]] LineMeeting between_planes(const SampleSquare& square) const;
   [[nodiscard]] Fraction exact_nearness(const SampleRay& ray, int extreme) const;
   [[nodiscard]] Fraction exact_limit(int extreme) const;
   [[nodiscard]] static Fraction exact_extreme(const ViewedTriangle& triangle, const SampleSquare& square, int extreme);

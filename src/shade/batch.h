@@ -65,7 +65,7 @@ struct Reflectance {
   Lane unlit;  ///< 1 or 0
 };
 
-struct Batch {
+struct FragmentBatch {
   Coverage coverage;
   Geometry geometry;
   Reflectance material;

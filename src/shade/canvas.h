@@ -11,9 +11,9 @@
 namespace frontmost::shading {
 
 /// Different tiles may be painted from different threads at once.
-class Canvas {
+class TileCanvas {
  public:
-  virtual ~Canvas() = default;
+  virtual ~TileCanvas() = default;
   /// `pixels` of the tile, row by row, premultiplied, are laid over the background.
   virtual void write(const TileRectangle& tile, const std::vector<glm::vec4>& pixels, const glm::vec4& background) = 0;
   virtual void fill(const TileRectangle& tile, const glm::vec4& value) = 0;
@@ -21,14 +21,14 @@ class Canvas {
 
 /// How a picture is made of what is seen.
 struct Painting {
-  Canvas& canvas;
+  TileCanvas& canvas;
   const FragmentShader::Colorist& colorist;
   glm::vec4 background;  ///< what an empty pixel gets
   float opacity = 1;     ///< of everything, where it is not the A-buffer's
 };
 
 /// An image of up to four channels, named as they are to be.
-class PlanesCanvas final : public Canvas {
+class PlanesCanvas final : public TileCanvas {
  public:
   PlanesCanvas(const View& view, std::initializer_list<const char*> names);
   void write(const TileRectangle& tile, const std::vector<glm::vec4>& pixels, const glm::vec4& background) override;
@@ -41,7 +41,7 @@ class PlanesCanvas final : public Canvas {
   Image image_;
 };
 
-class BitmapCanvas final : public Canvas {
+class BitmapCanvas final : public TileCanvas {
  public:
   explicit BitmapCanvas(const View& view);
   void write(const TileRectangle& tile, const std::vector<glm::vec4>& pixels, const glm::vec4& background) override;

@@ -21,7 +21,7 @@ const std::array<float, kSteps + 1>& shown_table() {
   return table;
 }
 
-void make_opaque(Batch& batch) {
+void make_opaque(FragmentBatch& batch) {
   for (int i = 0; i < batch.coverage.count; ++i) {
     batch.material.alpha[i] = 1.0f;
   }
@@ -74,7 +74,7 @@ glm::vec3 color_of_object(std::uint32_t object) {
   return {part(5.0f), part(3.0f), part(1.0f)};
 }
 
-void Lit::operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const {
+void Lit::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
   look_up_materials(materials, setups, batch);
   const Geometry& g = batch.geometry;
   bool faces_key[batch_capacity];
@@ -91,24 +91,24 @@ void Lit::operator()(const std::vector<TriangleSetup>& setups, Batch& batch) con
   light_batch(lighting, batch, isa);
 }
 
-void Flat::operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const {
+void Flat::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
   look_up_materials(materials, setups, batch);
   for (int i = 0; i < batch.coverage.count; ++i) batch.light.set(i, clamped(batch.material.base.at(i)));
 }
 
-void Normals::operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const {
+void Normals::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
   look_up_materials(materials, setups, batch);
   for (int i = 0; i < batch.coverage.count; ++i)
     batch.light.set(i, linear_of_shown(batch.geometry.normal.at(i) * 0.5f + 0.5f));
 }
 
-void RawNormals::operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const {
+void RawNormals::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
   look_up_materials(materials, setups, batch);
   for (int i = 0; i < batch.coverage.count; ++i) batch.light.set(i, batch.geometry.normal.at(i));
   make_opaque(batch);
 }
 
-void Depths::operator()(const std::vector<TriangleSetup>&, Batch& batch) const {
+void Depths::operator()(const std::vector<TriangleSetup>&, FragmentBatch& batch) const {
   const float range = farthest - nearest;
   for (int i = 0; i < batch.coverage.count; ++i) {
     const float depth = glm::dot(batch.geometry.position.at(i), forward);
@@ -118,13 +118,13 @@ void Depths::operator()(const std::vector<TriangleSetup>&, Batch& batch) const {
   make_opaque(batch);
 }
 
-void Ids::operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const {
+void Ids::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
   for (int i = 0; i < batch.coverage.count; ++i)
     batch.light.set(i, linear_of_shown(color_of_object(setups[batch.coverage.triangle[i]].instance)));
   make_opaque(batch);
 }
 
-void Texcoords::operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const {
+void Texcoords::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
   for (int i = 0; i < batch.coverage.count; ++i) {
     const glm::vec2 uv = batch.geometry.texcoord.at(i);
     const bool has = setups[batch.coverage.triangle[i]].has_texcoord;

@@ -18,37 +18,37 @@ struct Lit {
   const ShadowMap* map;
   const RayShadows* rays;
   Isa isa;
-  void operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const;
+  void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
 };
 
 struct Flat {
   const MaterialTable& materials;
-  void operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const;
+  void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
 };
 
 struct Normals {
   const MaterialTable& materials;
-  void operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const;
+  void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
 };
 
 /// World normals as they are, for normal_image.
 struct RawNormals {
   const MaterialTable& materials;
-  void operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const;
+  void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
 };
 
 struct Depths {
   glm::vec3 forward;
   float nearest, farthest;
-  void operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const;
+  void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
 };
 
 struct Ids {
-  void operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const;
+  void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
 };
 
 struct Texcoords {
-  void operator()(const std::vector<TriangleSetup>& setups, Batch& batch) const;
+  void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
 };
 
 /// The linear value that is shown as `value` of 0 to 1 in sRGB, to well within 1/1000 of a step of 8 bits.

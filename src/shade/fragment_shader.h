@@ -50,7 +50,7 @@ class TriangleCache {
 class FragmentShader {
  public:
   /// Colours a batch: reads coverage and geometry, fills batch.light and batch.material.alpha.
-  using Colorist = std::function<void(const std::vector<TriangleSetup>&, Batch&)>;
+  using Colorist = std::function<void(const std::vector<TriangleSetup>&, FragmentBatch&)>;
 
   FragmentShader(const TriangleSource& source, const Colorist& colorist) : source_(source), colorist_(colorist) {}
 
@@ -83,7 +83,7 @@ class FragmentShader {
   std::vector<NewTriangle> new_triangles_;  ///< of the batch, not set up yet
   Coverage arrived_;                        ///< in the order of arrival; `pixel` is the caller's number
   std::uint16_t place_[batch_capacity];     ///< of each that arrived, in the batch
-  Batch batch_;                             ///< by triangles
+  FragmentBatch batch_;                     ///< by triangles
 };
 
 }  // namespace frontmost::shading

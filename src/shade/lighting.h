@@ -28,6 +28,6 @@ struct Lighting {
 /// Fills batch.light: metallic-roughness with GGX highlights (Schlick's Fresnel, Smith's correlated masking), the key
 /// light weakened by batch.shadow, and the surrounding by its occlusion. Unlit materials give their base colour.
 /// Values are cut off at 1.
-void light_batch(const Lighting& lighting, Batch& batch, Isa isa = Isa::best);
+void light_batch(const Lighting& lighting, FragmentBatch& batch, Isa isa = Isa::best);
 
 }  // namespace frontmost::shading

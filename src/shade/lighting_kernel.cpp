@@ -62,7 +62,7 @@ inline float ggx(const LobeInput& in) {
   return 0.5f * alpha2 / (t * t * at_least(view + light, 1e-6f));
 }
 
-inline Terms terms_of(const Lighting& lighting, const Batch& batch, int i) {
+inline Terms terms_of(const Lighting& lighting, const FragmentBatch& batch, int i) {
   const Direction n = direction_of(batch.geometry.normal, i), v = direction_of(batch.geometry.to_viewer, i);
   const Direction l = direction_of(lighting.to_key), up = direction_of(lighting.up);
   const Direction sum{v.x + l.x, v.y + l.y, v.z + l.z};
@@ -111,7 +111,7 @@ inline float shaded(const Terms& t, const Colors& light, const Response& m) {
 
 }  // namespace
 
-void LightBatch(const Lighting& lighting, Batch& batch) {
+void LightBatch(const Lighting& lighting, FragmentBatch& batch) {
   const Reflectance& m = batch.material;
   for (int i = 0; i < batch.coverage.count; ++i) {
     const Terms t = terms_of(lighting, batch, i);
@@ -146,7 +146,7 @@ Lighting lighting_for(const View& view, Axis up) {
   return lighting;
 }
 
-void light_batch(const Lighting& lighting, Batch& batch, Isa isa) {
+void light_batch(const Lighting& lighting, FragmentBatch& batch, Isa isa) {
   kernel_for(LightBatchKernels, isa)(lighting, batch);
 }
 

@@ -35,7 +35,7 @@ glm::vec3 normalized_or(const glm::vec3& v, const glm::vec3& fallback) {
 /// One run of fragments with the same material.
 class MaterialRun {
  public:
-  MaterialRun(const MaterialRow& row, const std::vector<TriangleSetup>& setups, Batch& batch)
+  MaterialRun(const MaterialRow& row, const std::vector<TriangleSetup>& setups, FragmentBatch& batch)
       : row_(row), setups_(setups), batch_(batch) {}
 
   void fill(int begin, int end) {
@@ -121,7 +121,7 @@ class MaterialRun {
 
   const MaterialRow& row_;
   const std::vector<TriangleSetup>& setups_;
-  Batch& batch_;
+  FragmentBatch& batch_;
   int framed_ = -1;  ///< the triangle that frame_ belongs to
   TangentFrame frame_;
 };
@@ -160,7 +160,7 @@ TextureSlot MaterialTable::slot(const TextureUse& use, Encoding encoding, const 
   return {pyramid.get(), TexcoordTransform(use)};
 }
 
-void look_up_materials(const MaterialTable& table, const std::vector<TriangleSetup>& setups, Batch& batch) {
+void look_up_materials(const MaterialTable& table, const std::vector<TriangleSetup>& setups, FragmentBatch& batch) {
   const Coverage& coverage = batch.coverage;
   const auto row_at = [&](int i) { return &table.row_of(setups[coverage.triangle[i]]); };
   for (int begin = 0; begin < coverage.count;) {

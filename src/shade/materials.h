@@ -50,6 +50,6 @@ class MaterialTable {
 
 /// Looks up the materials of a batch, run by run of equal ones, and turns its normals by normal maps.
 /// `setups` are the triangles that batch.coverage.triangle numbers.
-void look_up_materials(const MaterialTable& table, const std::vector<TriangleSetup>& setups, Batch& batch);
+void look_up_materials(const MaterialTable& table, const std::vector<TriangleSetup>& setups, FragmentBatch& batch);
 
 }  // namespace frontmost::shading

@@ -151,14 +151,14 @@ void with_colorist(const Request& request, const LayerMaterials& materials, cons
   use(FragmentShader::Colorist(Lit{materials.table(), lighting, shadows.map(), shadows.rays(), request.execution.isa}));
 }
 
-void paint_materials(const Request& request, Canvas& canvas) {
+void paint_materials(const Request& request, TileCanvas& canvas) {
   const LayerMaterials materials(request.surfaces, request.input.visible, request.options, request.execution);
   with_colorist(request, materials, [&](const FragmentShader::Colorist& colorist) {
     materials.paint({canvas, colorist, background_color(request.options), request.options.opacity}, request.execution);
   });
 }
 
-void paint_map(const Request& request, Canvas& canvas) {
+void paint_map(const Request& request, TileCanvas& canvas) {
   const Visible& visible = request.input.visible;
   const ShadeOptions& options = request.options;
   const TriangleSource source(request.surfaces, visible.view, nullptr, request.execution);
@@ -176,7 +176,7 @@ void check(const Request& request) {
   check_answer(request.input.visible, request.surfaces.primitive_count(), "shade", request.execution);
 }
 
-void paint(const Request& request, Canvas& canvas) {
+void paint(const Request& request, TileCanvas& canvas) {
   check(request);
   shows_materials(request.options.shading) ? paint_materials(request, canvas) : paint_map(request, canvas);
 }

@@ -20,17 +20,17 @@ namespace frontmost {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-struct Vector3 {
+struct ConeVector {
   VF x, y, z;
 };
 
-HWY_INLINE Vector3 Sub(const Vector3& a, const Vector3& b) {
+HWY_INLINE ConeVector Sub(const ConeVector& a, const ConeVector& b) {
   return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
 }
-HWY_INLINE VF Dot(const Vector3& a, const Vector3& b) {
+HWY_INLINE VF Dot(const ConeVector& a, const ConeVector& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
-HWY_INLINE Vector3 Cross(const Vector3& a, const Vector3& b) {
+HWY_INLINE ConeVector Cross(const ConeVector& a, const ConeVector& b) {
   return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
           hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
 }
@@ -67,7 +67,7 @@ class ConeMaker {
  private:
   static constexpr float kMost = std::numeric_limits<float>::max();
 
-  HWY_INLINE Vector3 Fetch(const Cluster& cluster, VI number) const {
+  HWY_INLINE ConeVector Fetch(const Cluster& cluster, VI number) const {
     const DF d;
     return {hn::GatherIndex(d, set_.x.data() + cluster.first_vertex, number),
             hn::GatherIndex(d, set_.y.data() + cluster.first_vertex, number),
@@ -96,13 +96,13 @@ class ConeMaker {
     }
   }
 
-  HWY_INLINE void AddNormals(const Vector3& a, const Vector3& b, const Vector3& c, MF none, float scale) {
+  HWY_INLINE void AddNormals(const ConeVector& a, const ConeVector& b, const ConeVector& c, MF none, float scale) {
     const DF d;
     const VF s = hn::Set(d, scale), most = hn::Set(d, kMost);
-    Vector3 ab = Sub(b, a), ac = Sub(c, a);
+    ConeVector ab = Sub(b, a), ac = Sub(c, a);
     ab = {hn::Mul(ab.x, s), hn::Mul(ab.y, s), hn::Mul(ab.z, s)};
     ac = {hn::Mul(ac.x, s), hn::Mul(ac.y, s), hn::Mul(ac.z, s)};
-    const Vector3 bc = Sub(ac, ab), normal = Cross(ab, ac);
+    const ConeVector bc = Sub(ac, ab), normal = Cross(ab, ac);
     const VF squared = Dot(normal, normal);  // of altitude times longest edge
     const VF longest = hn::Max(Dot(ab, ab), hn::Max(Dot(ac, ac), Dot(bc, bc)));
     // 2^-100 is far from what a float can no longer hold to full precision.
@@ -143,10 +143,10 @@ class ConeMaker {
 
   [[nodiscard]] float LeastCosine(const glm::vec3& axis) const {
     const DF d;
-    const Vector3 a{hn::Set(d, axis.x), hn::Set(d, axis.y), hn::Set(d, axis.z)};
+    const ConeVector a{hn::Set(d, axis.x), hn::Set(d, axis.y), hn::Set(d, axis.z)};
     VF least = hn::Set(d, 1.0f);
     for (std::size_t i = 0; i < count_; i += hn::Lanes(d)) {
-      const Vector3 n{hn::Load(d, normals_[0] + i), hn::Load(d, normals_[1] + i), hn::Load(d, normals_[2] + i)};
+      const ConeVector n{hn::Load(d, normals_[0] + i), hn::Load(d, normals_[1] + i), hn::Load(d, normals_[2] + i)};
       const MF none = hn::Eq(Dot(n, n), hn::Zero(d));
       least = hn::Min(least, hn::IfThenElse(none, least, Dot(n, a)));
     }
@@ -158,7 +158,7 @@ class ConeMaker {
   const ClusterSet& set_;
   HWY_ALIGN_MAX float normals_[3][kRoom];
   std::size_t count_ = 0;
-  Vector3 low_, high_;
+  ConeVector low_, high_;
   VF least_squared_altitude_;
   MF too_flat_;
 };

@@ -23,28 +23,29 @@ struct ClipVertex {
   bool is_plain;  // `plain` holds
 };
 
-enum class Plane { near, far, left, right, top, bottom };
+enum class ClipPlane { near, far, left, right, top, bottom };
 /// Near comes first: in perspective the sides are only planes where w, the distance, is positive.
-constexpr Plane kPlanes[] = {Plane::near, Plane::far, Plane::left, Plane::right, Plane::top, Plane::bottom};
+constexpr ClipPlane kPlanes[] = {ClipPlane::near,  ClipPlane::far, ClipPlane::left,
+                                 ClipPlane::right, ClipPlane::top, ClipPlane::bottom};
 
 double w_of(const ScreenTransform& t, const ClipVertex& v) { return t.orthographic ? 1.0 : v.d; }
 
 /// Not negative inside. A vertex that can be snapped is inside every plane, whatever double arithmetic says.
-double distance(const ScreenTransform& t, Plane plane, const ClipVertex& v) {
+double distance(const ScreenTransform& t, ClipPlane plane, const ClipVertex& v) {
   const double reach = kGuardBand * w_of(t, v);
   double distance = 0;
   switch (plane) {
-    case Plane::near: distance = v.d - t.near; break;
-    case Plane::far: distance = double(t.far) - v.d; break;
-    case Plane::left: distance = reach + v.x; break;
-    case Plane::right: distance = reach - v.x; break;
-    case Plane::top: distance = reach + v.y; break;
-    case Plane::bottom: distance = reach - v.y; break;
+    case ClipPlane::near: distance = v.d - t.near; break;
+    case ClipPlane::far: distance = double(t.far) - v.d; break;
+    case ClipPlane::left: distance = reach + v.x; break;
+    case ClipPlane::right: distance = reach - v.x; break;
+    case ClipPlane::top: distance = reach + v.y; break;
+    case ClipPlane::bottom: distance = reach - v.y; break;
   }
   return v.is_plain ? std::max(distance, 0.0) : distance;
 }
 
-ClipVertex cut(const ScreenTransform& t, Plane plane, const ClipVertex& inside, const ClipVertex& outside) {
+ClipVertex cut(const ScreenTransform& t, ClipPlane plane, const ClipVertex& inside, const ClipVertex& outside) {
   const double a = distance(t, plane, inside), b = distance(t, plane, outside);
   // a >= 0 > b: never 0 / 0, and s is within [0, 1].
   const double s = a / (a - b);
@@ -57,12 +58,12 @@ ClipVertex cut(const ScreenTransform& t, Plane plane, const ClipVertex& inside, 
                false};
   // Exactly on its plane: rounding must not make it an outer one of the plane that made it.
   switch (plane) {
-    case Plane::near: v.d = t.near; break;
-    case Plane::far: v.d = t.far; break;
-    case Plane::left: v.x = -kGuardBand * w_of(t, v); break;
-    case Plane::right: v.x = kGuardBand * w_of(t, v); break;
-    case Plane::top: v.y = -kGuardBand * w_of(t, v); break;
-    case Plane::bottom: v.y = kGuardBand * w_of(t, v); break;
+    case ClipPlane::near: v.d = t.near; break;
+    case ClipPlane::far: v.d = t.far; break;
+    case ClipPlane::left: v.x = -kGuardBand * w_of(t, v); break;
+    case ClipPlane::right: v.x = kGuardBand * w_of(t, v); break;
+    case ClipPlane::top: v.y = -kGuardBand * w_of(t, v); break;
+    case ClipPlane::bottom: v.y = kGuardBand * w_of(t, v); break;
   }
   return v;
 }
@@ -73,14 +74,14 @@ using ClipCorners = std::array<ClipVertex, ClippedPolygon::max_corners + 1>;
 /// Corners that are all outside of a plane have nothing inside between them. Cuts at planes before that one would be
 /// rounded, by much where corners are 1e20 times as far away as others, and could come to lie in the picture.
 bool is_outside(const ScreenTransform& t, const ClipCorners& triangle) {
-  const auto all_outside = [&](Plane plane) {
+  const auto all_outside = [&](ClipPlane plane) {
     return std::all_of(triangle.begin(), triangle.begin() + 3,
                        [&](const ClipVertex& v) { return distance(t, plane, v) < 0; });
   };
   return std::any_of(std::begin(kPlanes), std::end(kPlanes), all_outside);
 }
 
-int clip_by(const ScreenTransform& t, Plane plane, const ClipCorners& in, int count, ClipCorners& out) {
+int clip_by(const ScreenTransform& t, ClipPlane plane, const ClipCorners& in, int count, ClipCorners& out) {
   int kept = 0;
   for (int i = 0; i < count; ++i) {
     const ClipVertex& a = in[std::size_t(i)];
@@ -138,7 +139,7 @@ ClippedPolygon clip_triangle(const ScreenTransform& t, const std::array<glm::vec
   int count = 3;
   for (std::size_t i = 0; i < 3; ++i) polygon[i] = prepare(t, world[i]);
   if (is_outside(t, polygon)) return {};
-  for (const Plane plane : kPlanes) {
+  for (const ClipPlane plane : kPlanes) {
     count = clip_by(t, plane, polygon, count, next);
     if (count < 3) return {};
     std::swap(polygon, next);

@@ -39,7 +39,7 @@ RowTerms MakeRow(const std::array<float, 3>& row, float offset, const glm::vec3&
   return {row[0], row[1], row[2], offset, std::abs(offset) + 2 * sum};
 }
 
-struct Vector3 {
+struct CullVector {
   VF x, y, z;
 };
 
@@ -96,9 +96,9 @@ constexpr float kFacingRounding = kConeRounding + 1.0f / 1024.0f;
 
 /// The ray to what faces away, and what the altitude on the screen is compared with.
 struct Rays {
-  Vector3 low, high;  // range of p - E over the box; in parallel projection the axis, twice
-  VF farthest;        // |p - E|, at most
-  VF needed;          // altitude * sine, at least
+  CullVector low, high;  // range of p - E over the box; in parallel projection the axis, twice
+  VF farthest;           // |p - E|, at most
+  VF needed;             // altitude * sine, at least
 };
 
 class FacingCull {
@@ -298,7 +298,7 @@ class Cull {
   }
   [[nodiscard]] HWY_INLINE Rays ParallelRays(VF error) const {
     const DF d;
-    const Vector3 axis{hn::Set(d, t.d_row[0]), hn::Set(d, t.d_row[1]), hn::Set(d, t.d_row[2])};
+    const CullVector axis{hn::Set(d, t.d_row[0]), hn::Set(d, t.d_row[1]), hn::Set(d, t.d_row[2])};
     const float length = glm::length(glm::vec3(t.d_row[0], t.d_row[1], t.d_row[2]));
     return {axis, axis, hn::Set(d, length), hn::Mul(error, hn::Set(d, 2 * inverse_scale))};
   }

@@ -13,7 +13,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-std::vector<OutputFile> plan(std::vector<OutputRequest> requests, std::optional<ImageFormat> format = {}) {
+std::vector<FileToWrite> plan(std::vector<OutputRequest> requests, std::optional<ImageFormat> format = {}) {
   OutputSettings settings;
   settings.files = std::move(requests);
   settings.format = format;

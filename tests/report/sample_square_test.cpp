@@ -109,17 +109,17 @@ TEST_P(SquareOfEveryKind, MeetsAndContainsAsRationalArithmeticSays) {
       const ViewedTriangle triangle(corners, rays);
       for (int i = 0; i < 12; ++i) {
         const SampleSquare square = square_on(corners, view, rays, random);
-        const Meeting meeting = triangle.meeting(square);
+        const LineMeeting meeting = triangle.meeting(square);
         const bool meets = !within(corners, square, rays).empty();
         const bool contains = std::all_of(square.corners.begin(), square.corners.end(),
                                           [&](const SampleRay& ray) { return hit(corners, ray) > 0; });
         if (!is_between_planes(corners, rays)) {
-          ASSERT_TRUE(meeting != Meeting::contains || contains) << "seed " << seed << " triangle " << id;
-          ASSERT_TRUE(meeting != Meeting::misses || !meets) << "seed " << seed << " triangle " << id;
+          ASSERT_TRUE(meeting != LineMeeting::contains || contains) << "seed " << seed << " triangle " << id;
+          ASSERT_TRUE(meeting != LineMeeting::misses || !meets) << "seed " << seed << " triangle " << id;
           continue;
         }
-        ASSERT_EQ(meeting != Meeting::misses, meets) << "seed " << seed << " triangle " << id;
-        ASSERT_EQ(meeting == Meeting::contains, contains) << "seed " << seed << " triangle " << id;
+        ASSERT_EQ(meeting != LineMeeting::misses, meets) << "seed " << seed << " triangle " << id;
+        ASSERT_EQ(meeting == LineMeeting::contains, contains) << "seed " << seed << " triangle " << id;
         missed += !meets;
         contained += contains;
         touched += meets && !contains;
@@ -146,7 +146,7 @@ TEST_P(SquareOfEveryKind, KnowsHowNearThePlaneIs) {
       const auto corners = surfaces.corners(id);
       const SampleSquare square = square_on(corners, view, rays, random);
       const ViewedTriangle triangle(corners, rays);
-      if (triangle.meeting(square) != Meeting::contains) continue;
+      if (triangle.meeting(square) != LineMeeting::contains) continue;
       const NearnessRange range = triangle.nearness(square);
       Rational least, most;
       for (std::size_t i = 0; i < 4; ++i) {
@@ -199,11 +199,11 @@ TEST(SampleSquare, TheNearPlaneIsARim) {
   view.projection = make_projection(1, 1, {2, 50});
   const SampleRays rays(view);
   const SampleSquare square(rays, 31, 32, {128, 128});
-  EXPECT_EQ(ViewedTriangle(sheet(1.99f), rays).meeting(square), Meeting::misses);
-  EXPECT_EQ(ViewedTriangle(sheet(2), rays).meeting(square), Meeting::touches);
-  EXPECT_EQ(ViewedTriangle(sheet(2.01f), rays).meeting(square), Meeting::contains);
-  EXPECT_EQ(ViewedTriangle(sheet(49.9f), rays).meeting(square), Meeting::contains);
-  EXPECT_EQ(ViewedTriangle(sheet(50.1f), rays).meeting(square), Meeting::misses);
+  EXPECT_EQ(ViewedTriangle(sheet(1.99f), rays).meeting(square), LineMeeting::misses);
+  EXPECT_EQ(ViewedTriangle(sheet(2), rays).meeting(square), LineMeeting::touches);
+  EXPECT_EQ(ViewedTriangle(sheet(2.01f), rays).meeting(square), LineMeeting::contains);
+  EXPECT_EQ(ViewedTriangle(sheet(49.9f), rays).meeting(square), LineMeeting::contains);
+  EXPECT_EQ(ViewedTriangle(sheet(50.1f), rays).meeting(square), LineMeeting::misses);
 }
 
 }  // namespace

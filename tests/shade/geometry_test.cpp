@@ -176,7 +176,7 @@ TEST(InterpolateGeometry, AgreesWithTheFormulaOneByOne) {
   View view = front_view();
   view.projection = make_projection(0.5, 1, {1, 20});
   const World world(scene_of(mesh), view);
-  const auto batch = std::make_unique<Batch>();
+  const auto batch = std::make_unique<FragmentBatch>();
   const std::vector<TriangleSetup> setups{world.set_up(0, {36, 36}), world.set_up(1, {28, 28})};
   // Runs of 23, 1 and 16 fragments.
   for (int i = 0; i < 40; ++i) {

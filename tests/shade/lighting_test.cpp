@@ -23,7 +23,7 @@ struct Surface {
   bool unlit = false;
 };
 
-void set(Batch& batch, int i, const Surface& s) {
+void set(FragmentBatch& batch, int i, const Surface& s) {
   batch.geometry.normal.set(i, glm::normalize(s.normal));
   batch.geometry.to_viewer.set(i, glm::normalize(s.to_viewer));
   batch.material.base.set(i, s.base);
@@ -36,7 +36,7 @@ void set(Batch& batch, int i, const Surface& s) {
 }
 
 glm::vec3 lit(const Surface& surface, const Lighting& lighting = {}) {
-  const auto batch = std::make_unique<Batch>();
+  const auto batch = std::make_unique<FragmentBatch>();
   batch->coverage.count = 1;
   set(*batch, 0, surface);
   light_batch(lighting, *batch);
@@ -193,7 +193,7 @@ TEST(Lighting, AnyInputGivesColoursBetweenZeroAndOne) {
       const glm::vec3 color = lit(s);
       for (int k = 0; k < 3; ++k) EXPECT_TRUE(color[k] >= 0 && color[k] <= 1) << bad;
     }
-    const auto batch = std::make_unique<Batch>();
+    const auto batch = std::make_unique<FragmentBatch>();
     batch->coverage.count = 1;
     set(*batch, 0, {});
     batch->geometry.normal.set(0, glm::vec3(bad));
@@ -215,7 +215,7 @@ TEST(Lighting, AFragmentsColourDoesNotDependOnItsPlaceInTheBatchNorOnTheInstruct
                         .roughness = unit(random),
                         .occlusion = unit(random),
                         .shadow = unit(random)});
-  const auto batch = std::make_unique<Batch>();
+  const auto batch = std::make_unique<FragmentBatch>();
   batch->coverage.count = int(surfaces.size());
   for (int i = 0; i < batch->coverage.count; ++i) set(*batch, i, surfaces[std::size_t(i)]);
   for (const Isa isa : available_isas()) {

@@ -48,7 +48,7 @@ std::map<std::pair<int, int>, std::vector<Seen>> fragments(const Fake& fake) {
   std::map<std::pair<int, int>, std::vector<Seen>> result;
   const TriangleSource source(fake.surfaces, fake.visible.view, nullptr, {});
   TileRectangle tile;
-  const TileWork::Colorist colorist = [&](const std::vector<TriangleSetup>& setups, Batch& batch) {
+  const TileWork::Colorist colorist = [&](const std::vector<TriangleSetup>& setups, FragmentBatch& batch) {
     for (int i = 0; i < batch.coverage.count; ++i) {
       const int pixel = int(batch.coverage.pixel[i]);
       result[{tile.x + pixel % tile.width, tile.y + pixel / tile.width}].push_back(

@@ -53,11 +53,11 @@ std::uint32_t Touching(const SpaceBoxes& boxes, std::size_t first, const Box& bo
 
 using Vector3 = Lanes3<V>;
 
-struct Plane {
+struct LanePlane {
   Vector3 corner, normal, size;
 };
 
-HWY_INLINE Plane PlaneThrough(const Vector3& corner, const Vector3& one, const Vector3& other) {
+HWY_INLINE LanePlane PlaneThrough(const Vector3& corner, const Vector3& one, const Vector3& other) {
   const Vector3 a = Minus(one, corner), b = Minus(other, corner), c = Abs(a), d = Abs(b);
   const auto minor = [](V p, V q, V r, V s) HWY_ATTR { return hn::Sub(hn::Mul(p, q), hn::Mul(r, s)); };
   const auto bound = [](V p, V q, V r, V s)
@@ -71,7 +71,7 @@ HWY_INLINE Plane PlaneThrough(const Vector3& corner, const Vector3& one, const V
 struct Height {
   M is_above, is_below;
 
-  HWY_INLINE Height(const Vector3& point, const Plane& plane) {
+  HWY_INLINE Height(const Vector3& point, const LanePlane& plane) {
     const D d;
     const Vector3 along = Minus(point, plane.corner);
     const V value = Dot(along, plane.normal);
@@ -82,10 +82,10 @@ struct Height {
 };
 
 /// Which corners rounding does not rule out to be above a plane, and below; its own vertices are neither.
-struct Sides {
+struct LaneSides {
   M above, below;
 
-  HWY_INLINE void Add(const Vector3& corner, const Plane& plane, M is_shared) {
+  HWY_INLINE void Add(const Vector3& corner, const LanePlane& plane, M is_shared) {
     const Height height(corner, plane);
     above = hn::Or(above, hn::Not(hn::Or(is_shared, height.is_below)));
     below = hn::Or(below, hn::Not(hn::Or(is_shared, height.is_above)));
@@ -103,7 +103,7 @@ struct Cut {
   Vector3 alone, one, other;
   M is_known;
 
-  HWY_INLINE Cut(const Vector3 (&p)[3], const Plane& plane) {
+  HWY_INLINE Cut(const Vector3 (&p)[3], const LanePlane& plane) {
     const Height a(p[0], plane), b(p[1], plane), c(p[2], plane);
     const auto known = [](const Height& h) HWY_ATTR { return hn::Or(h.is_above, h.is_below); };
     is_known = hn::And(hn::And(known(a), known(b)), known(c));
@@ -115,11 +115,11 @@ struct Cut {
 };
 
 /// From a corner that lies in a plane to where the opposite side passes through it, of any length.
-struct Reach {
+struct LaneReach {
   Vector3 to, error;
 
   /// The other two corners from that one. Only of use where they are not on one side of the plane.
-  HWY_INLINE Reach(const Vector3& a, const Vector3& b, const Plane& plane) {
+  HWY_INLINE LaneReach(const Vector3& a, const Vector3& b, const LanePlane& plane) {
     const D d;
     const Vector3 far_a = Abs(a), far_b = Abs(b);
     const V high_a = hn::Abs(Dot(a, plane.normal)), high_b = hn::Abs(Dot(b, plane.normal));
@@ -158,7 +158,7 @@ struct Lanes {
   Vector3 corner[3], from_middle[3];
   Vector3 low, high;
   hn::Vec<DU> vertex[3];
-  Plane plane;
+  LanePlane plane;
 
   HWY_INLINE Lanes(const SpaceTriangles& t, std::size_t first, const glm::vec3& middle) {
     const D d;
@@ -212,7 +212,7 @@ struct Lanes {
   /// Of whose planes the probe may have corners on both sides; none that share two vertices with it.
   HWY_INLINE M IsStraddled(const Probe& probe, const M (&has)[3]) const {
     const D d;
-    Sides sides{hn::FirstN(d, 0), hn::FirstN(d, 0)};
+    LaneSides sides{hn::FirstN(d, 0), hn::FirstN(d, 0)};
     for (int k = 0; k < 3; ++k) sides.Add(probe.Corner(k), plane, has[k]);
     const M two = hn::Or(hn::Or(hn::And(has[0], has[1]), hn::And(has[1], has[2])), hn::And(has[2], has[0]));
     return hn::AndNot(two, sides.Both());
@@ -225,8 +225,8 @@ struct Lanes {
     const Cut own(corner, {p[0], probe.Splat3(probe.all.normal), probe.Splat3(probe.all.size)}), other(p, plane);
     const std::uint64_t known = frontmost::HWY_NAMESPACE::BitsOf(D(), hn::And(own.is_known, other.is_known)) & asked;
     if (known == 0) return 0;  // as where triangles touch
-    const Plane one = PlaneThrough(other.alone, own.alone, own.one),
-                two = PlaneThrough(other.alone, own.alone, own.other);
+    const LanePlane one = PlaneThrough(other.alone, own.alone, own.one),
+                    two = PlaneThrough(other.alone, own.alone, own.other);
     const Height a(other.one, one), b(other.other, one), c(other.one, two), d(other.other, two);
     const M above = hn::And(hn::And(a.is_above, b.is_above), hn::And(c.is_above, d.is_above));
     const M below = hn::And(hn::And(a.is_below, b.is_below), hn::And(c.is_below, d.is_below));
@@ -242,10 +242,10 @@ struct Lanes {
       return hn::And(hn::And(hn::Eq(corner[k].x, shared.x), hn::Eq(corner[k].y, shared.y)),
                      hn::Eq(corner[k].z, shared.z));
     };
-    const Reach own(Minus(Choose(is_shared(0), corner[1], corner[0]), shared),
-                    Minus(Choose(is_shared(2), corner[1], corner[2]), shared),
-                    {p[0], probe.Splat3(probe.all.normal), probe.Splat3(probe.all.size)});
-    const Reach other(Minus(Choose(has[0], p[1], p[0]), shared), Minus(Choose(has[2], p[1], p[2]), shared), plane);
+    const LaneReach own(Minus(Choose(is_shared(0), corner[1], corner[0]), shared),
+                        Minus(Choose(is_shared(2), corner[1], corner[2]), shared),
+                        {p[0], probe.Splat3(probe.all.normal), probe.Splat3(probe.all.size)});
+    const LaneReach other(Minus(Choose(has[0], p[1], p[0]), shared), Minus(Choose(has[2], p[1], p[2]), shared), plane);
     const Vector3 size = Abs(own.to), other_size = Abs(other.to);
     const Vector3 most{hn::Add(size.x, own.error.x), hn::Add(size.y, own.error.y), hn::Add(size.z, own.error.z)};
     const V error = hn::Add(hn::Add(Dot(most, other.error), Dot(own.error, other_size)),

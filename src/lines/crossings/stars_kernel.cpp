@@ -19,13 +19,13 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using DU = hn::CappedTag<std::uint32_t, Star::most>;
 
-struct Corners {
+struct StarCorners {
   std::size_t count;
   HWY_ALIGN std::uint32_t next[Star::most], last[Star::most];
   HWY_ALIGN std::uint32_t partner[Star::most];  ///< the corner beyond the edge to `last`
   const SeenTriangle* triangle[Star::most];
 
-  HWY_INLINE Corners(const SeenMesh& seen, std::span<const Corner> corners) : count(corners.size()) {
+  HWY_INLINE StarCorners(const SeenMesh& seen, std::span<const Corner> corners) : count(corners.size()) {
     for (std::size_t i = 0; i < count; ++i) {
       next[i] = corners[i].next(seen.mesh);
       last[i] = corners[i].last(seen.mesh);
@@ -89,7 +89,7 @@ void Stars(const SeenMesh& seen, const CornerTable& table, float plain_cosine, s
     star = {false, false, 0};
     const std::span<const Corner> at = table.at(v);
     if (at.size() > Star::most) continue;
-    Corners corners(seen, at);
+    StarCorners corners(seen, at);
     if (!corners.Pair()) continue;
     star = {true, corners.IsSpread(at), corners.Asked(std::uint32_t(v), plain_cosine)};
   }

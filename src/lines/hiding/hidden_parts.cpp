@@ -21,8 +21,6 @@ constexpr double kEndPad = 5e-6;
 float wide_low(double value) { return float(value - 1e-6 * std::abs(value)); }
 float wide_high(double value) { return -wide_low(-value); }
 
-Interval overlap(const Interval& a, const Interval& b) { return {std::max(a.begin, b.begin), std::min(a.end, b.end)}; }
-
 /// An edge and its ends in eye space, with the planar distance in place of z.
 struct EdgeInEye {
   SightedEdge edge;

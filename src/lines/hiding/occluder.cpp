@@ -10,8 +10,6 @@
 namespace frontmost::lines_detail {
 namespace {
 
-Interval overlap(const Interval& a, const Interval& b) { return {std::max(a.begin, b.begin), std::min(a.end, b.end)}; }
-
 Signed times(const Signed& value, int sign) { return {value.value * sign, value.sign * sign}; }
 
 /// Where the triangle is not between the eye and the near plane: with its normal n, a point A of it and the eye E, the

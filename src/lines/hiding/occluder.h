@@ -49,6 +49,11 @@ struct Interval {
   double begin = 1, end = 0;
 };
 
+/// What both hold; empty where it ends before it begins.
+inline Interval overlap(const Interval& a, const Interval& b) {
+  return {std::max(a.begin, b.begin), std::min(a.end, b.end)};
+}
+
 /// Where a function that is linear from 0 to 1, with these ends, is not negative; `is_strict`: where it is positive.
 [[nodiscard]] Interval where_positive(const Signed& at_0, const Signed& at_1, bool is_strict);
 

@@ -25,7 +25,7 @@ using DF = hn::CappedTag<float, 16>;
 
 using Vector3 = Lanes3<V>;
 
-using Normals = BoundedNormals<V>;
+using LaneNormals = BoundedNormals<V>;
 
 /// Values with the signs that are certain.
 struct Values {
@@ -33,7 +33,7 @@ struct Values {
   M is_positive, is_negative, is_zero;
 
   /// n.v times `sign`; zero where `is_on`. Any coordinate of v may be wrong by `slack`.
-  HWY_INLINE Values(const Normals& n, const Vector3& v, V sign, M is_on, double slack) {
+  HWY_INLINE Values(const LaneNormals& n, const Vector3& v, V sign, M is_on, double slack) {
     const D d;
     value = hn::Mul(Dot(n.value, v), sign);
     const Vector3 size = Abs(n.value);
@@ -95,7 +95,7 @@ HWY_INLINE void Ask(const OccluderBatch& batch, const SightedEdge& edge, const S
     const M none = hn::FirstN(d, 0);
     Rest rest{hn::Zero(d), hn::Set(d, 1.0), none, none};
     if (needs_depth) {
-      const Normals face(Minus(corner[1].place, corner[0].place), Minus(corner[2].place, corner[0].place));
+      const LaneNormals face(Minus(corner[1].place, corner[0].place), Minus(corner[2].place, corner[0].place));
       const Vector3 from_0 = Minus(from, corner[0].place), to_0 = Minus(to, corner[0].place);
       const auto any = [](M a, M b, M c) HWY_ATTR { return hn::Or(hn::Or(a, b), c); };
       rest.Keep<Rest::Along::gone>(
@@ -105,7 +105,7 @@ HWY_INLINE void Ask(const OccluderBatch& batch, const SightedEdge& edge, const S
     // A turn is the negative product with the plane's normal.
     const auto keep_within = [&](const CornerLanes& p, const CornerLanes& q, V sign) HWY_ATTR {
       if (rest.IsAllGone()) return;
-      const Normals side(sight.is_parallel() ? axis : Minus(p.place, axis), Minus(q.place, p.place));
+      const LaneNormals side(sight.is_parallel() ? axis : Minus(p.place, axis), Minus(q.place, p.place));
       rest.Keep<needs_depth ? Rest::Along::kept : Rest::Along::open>(
           Values(side, Minus(from, p.place), sign, hn::Or(p.is_from, q.is_from), edge.slack),
           Values(side, Minus(to, p.place), sign, hn::Or(p.is_to, q.is_to), edge.slack));

@@ -58,8 +58,8 @@ class Search {
     std::size_t entry;
   };
 
-  static std::vector<Extent> extents_of(const Pieces& pieces, const std::vector<std::uint32_t>& members) {
-    std::vector<Extent> extents;
+  static std::vector<PolygonExtent> extents_of(const Pieces& pieces, const std::vector<std::uint32_t>& members) {
+    std::vector<PolygonExtent> extents;
     extents.reserve(members.size());
     for (const std::uint32_t piece : members) extents.push_back(pieces.extent(piece));
     return extents;
@@ -105,7 +105,7 @@ class Search {
     const std::span<const std::uint32_t> cell = grid_.cell(number);
     std::uint32_t& unpainted = unpainted_[number];
     while (unpainted < cell.size() && found_[cell[unpainted]] == kPainted) ++unpainted;
-    const Extent& own = extents_[w.member];
+    const PolygonExtent& own = extents_[w.member];
     const PieceBoxes* const boxes = boxes_of(number);
     poll_.count();
     for (w.entry = std::max(w.entry, std::size_t(unpainted)); w.entry < cell.size(); ++w.entry) {
@@ -147,9 +147,9 @@ class Search {
     return passed;
   }
 
-  bool covers(const Extent& own, std::uint32_t other, std::uint32_t member, std::optional<NewellTests>& tests) {
+  bool covers(const PolygonExtent& own, std::uint32_t other, std::uint32_t member, std::optional<NewellTests>& tests) {
     poll_.count();
-    const Extent& e = extents_[other];
+    const PolygonExtent& e = extents_[other];
     if (e.low.x >= own.high.x || e.high.x <= own.low.x || e.low.y >= own.high.y || e.high.y <= own.low.y) {
       ++steps_.boxes_apart;
       return false;
@@ -177,7 +177,7 @@ class Search {
 
   const Pieces& pieces_;
   const std::vector<std::uint32_t>& members_;
-  const std::vector<Extent> extents_;
+  const std::vector<PolygonExtent> extents_;
   const PieceGrid grid_;
   PaintSteps& steps_;
   Poll& poll_;

@@ -15,7 +15,7 @@ constexpr double kMostColumns = 4096;
 
 }  // namespace
 
-PieceGrid::PieceGrid(const std::vector<Extent>& extents) {
+PieceGrid::PieceGrid(const std::vector<PolygonExtent>& extents) {
   choose_cells(extents);
   first_.assign(std::size_t(columns_.x) * std::size_t(columns_.y) + 1, 0);
   const auto for_each = [&](const auto& visit) {
@@ -34,11 +34,11 @@ PieceGrid::PieceGrid(const std::vector<Extent>& extents) {
 
 /// Square cells, as small as the number of pieces asks for and the size of their boxes allows: a box of w x h pixels
 /// touches about (1 + w s) (1 + h s) cells of size 1 / s.
-void PieceGrid::choose_cells(const std::vector<Extent>& extents) {
+void PieceGrid::choose_cells(const std::vector<PolygonExtent>& extents) {
   if (extents.size() <= kFewPieces) return;
   glm::vec2 low(std::numeric_limits<float>::infinity()), high(-low);
   // Pieces may reach far beyond the picture; the grid covers where the middle of most is.
-  for (const Extent& e : extents) {
+  for (const PolygonExtent& e : extents) {
     const glm::vec2 middle = (e.low + e.high) * 0.5f;
     if (!(middle.x - middle.x == 0 && middle.y - middle.y == 0)) continue;
     low = glm::min(low, middle);
@@ -47,7 +47,7 @@ void PieceGrid::choose_cells(const std::vector<Extent>& extents) {
   if (!(low.x < high.x && low.y < high.y)) return;
   const double width = double(high.x) - low.x, height = double(high.y) - low.y, count = double(extents.size());
   double sides = 0, areas = 0;
-  for (const Extent& e : extents) {
+  for (const PolygonExtent& e : extents) {
     const double w = std::clamp(double(e.high.x) - e.low.x, 0.0, width);
     const double h = std::clamp(double(e.high.y) - e.low.y, 0.0, height);
     sides += w + h;

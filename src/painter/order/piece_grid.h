@@ -14,7 +14,7 @@ namespace frontmost::painter_detail {
 class PieceGrid {
  public:
   PieceGrid() = default;
-  explicit PieceGrid(const std::vector<Extent>& extents);
+  explicit PieceGrid(const std::vector<PolygonExtent>& extents);
   /// Lists numbers[i] for the place i from now on.
   void renumber(const std::vector<std::uint32_t>& numbers) {
     for (std::uint32_t& entry : entries_) entry = numbers[entry];
@@ -24,7 +24,7 @@ class PieceGrid {
   struct Range {
     int first_x, last_x, first_y, last_y;
   };
-  [[nodiscard]] Range range(const Extent& extent) const {
+  [[nodiscard]] Range range(const PolygonExtent& extent) const {
     return {index(extent.low.x, 0), index(extent.high.x, 0), index(extent.low.y, 1), index(extent.high.y, 1)};
   }
   [[nodiscard]] std::size_t number(int x, int y) const {
@@ -47,7 +47,7 @@ class PieceGrid {
   [[nodiscard]] std::size_t cell_count() const { return first_.size() - 1; }
 
  private:
-  void choose_cells(const std::vector<Extent>& extents);
+  void choose_cells(const std::vector<PolygonExtent>& extents);
   /// Rounding is monotonic: boxes that overlap meet in a cell.
   [[nodiscard]] int index(float place, int axis) const {
     const float cell = (place - low_[axis]) * scale_[axis];

@@ -39,7 +39,7 @@ bool is_few(const PieceGrid::Range& cells) {
   return (cells.last_x - cells.first_x + 1) * (cells.last_y - cells.first_y + 1) <= kFewCells;
 }
 
-bool is_apart(const Extent& a, const Extent& b) {
+bool is_apart(const PolygonExtent& a, const PolygonExtent& b) {
   return a.low.x >= b.high.x || b.low.x >= a.high.x || a.low.y >= b.high.y || b.low.y >= a.high.y;
 }
 
@@ -52,7 +52,7 @@ std::uint32_t OcclusionClipper::hider_at(std::size_t slot, const glm::dvec2& at)
     const std::uint32_t other = cell[i];
     if (other == slot) continue;
     poll_.count();
-    const Extent& e = screen_.extent(other);
+    const PolygonExtent& e = screen_.extent(other);
     if (at.x >= e.low.x && at.x <= e.high.x && at.y >= e.low.y && at.y <= e.high.y &&
         is_within(screen_.outline(other), at, OutlineClipper::thin) && may_hide(slot, other))
       return other;
@@ -93,14 +93,14 @@ bool OcclusionClipper::is_hidden(std::size_t slot) {
   if (hider == no_index) return false;
   const OccluderUnion::Found found = spread(slot, outline, hider, middle);
   if (found != OccluderUnion::Found::unknown) return found == OccluderUnion::Found::hidden;
-  const Extent& extent = screen_.extent(slot);
+  const PolygonExtent& extent = screen_.extent(slot);
   const PieceGrid::Range cells = screen_.grid().range(extent);
   return is_few(cells) && take_covers(slot, screen_.place(slot) + 1, extent, cells);
 }
 
 const OutlineList& OcclusionClipper::clip(std::size_t slot) {
   seen_.clear();
-  const Extent& extent = screen_.extent(slot);
+  const PolygonExtent& extent = screen_.extent(slot);
   if (!(extent.low.x < extent.high.x && extent.low.y < extent.high.y)) return seen_;
   const PieceGrid::Range cells = screen_.grid().range(extent);
   cutter_.begin(screen_.outline(slot));
@@ -140,7 +140,7 @@ OcclusionClipper::Corners OcclusionClipper::part_within(const Corners& outline, 
   return cutter_.count() == 0 ? Corners() : Corners(cutter_[0].begin(), cutter_[0].end());
 }
 
-bool OcclusionClipper::is_all_seen_at_once(std::size_t slot, const Extent& own, const PieceGrid::Range& cells) {
+bool OcclusionClipper::is_all_seen_at_once(std::size_t slot, const PolygonExtent& own, const PieceGrid::Range& cells) {
   cutter_.forget_changes();
   const Corners whole(cutter_[0].begin(), cutter_[0].end());
   take_covers(slot, screen_.place(slot) + 1, own, cells);
@@ -155,12 +155,12 @@ bool OcclusionClipper::is_all_seen_at_once(std::size_t slot, const Extent& own, 
 }
 
 /// Boxes that overlap meet in several cells; the one that both begin in, or where the later one begins, is the first.
-bool OcclusionClipper::is_first_meeting(const PieceGrid::Range& cells, const Extent& cover, int x, int y) const {
+bool OcclusionClipper::is_first_meeting(const PieceGrid::Range& cells, const PolygonExtent& cover, int x, int y) const {
   const PieceGrid::Range other = screen_.grid().range(cover);
   return x == std::max(cells.first_x, other.first_x) && y == std::max(cells.first_y, other.first_y);
 }
 
-bool OcclusionClipper::take_covers(std::size_t slot, std::uint32_t first_place, const Extent& own,
+bool OcclusionClipper::take_covers(std::size_t slot, std::uint32_t first_place, const PolygonExtent& own,
                                    const PieceGrid::Range& cells) {
   const bool is_one_cell = cells.first_x == cells.last_x && cells.first_y == cells.last_y;
   for (int y = cells.first_y; y <= cells.last_y; ++y)
@@ -172,7 +172,7 @@ bool OcclusionClipper::take_covers(std::size_t slot, std::uint32_t first_place, 
         if (screen_.place(other) < first_place) break;
         if (other == slot) continue;
         poll_.count();
-        const Extent& e = screen_.extent(other);
+        const PolygonExtent& e = screen_.extent(other);
         if (is_apart(e, own) || (!is_one_cell && !is_first_meeting(cells, e, x, y))) continue;
         if (!may_hide(slot, other)) continue;
         ++count;

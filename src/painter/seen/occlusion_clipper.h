@@ -34,7 +34,7 @@ class OcclusionClipper {
   /// is seen; then nothing was added.
   bool is_all_seen(std::size_t slot, const Corners& outline, const PieceGrid::Range& cells);
   /// The same for what is in the cutter, where the cells are few.
-  bool is_all_seen_at_once(std::size_t slot, const Extent& own, const PieceGrid::Range& cells);
+  bool is_all_seen_at_once(std::size_t slot, const PolygonExtent& own, const PieceGrid::Range& cells);
   Corners part_within(const Corners& outline, const glm::dvec2& low, const glm::dvec2& high);
   struct Hiders;
   /// One that hides a point, or what is next to it; no_index: none.
@@ -42,11 +42,12 @@ class OcclusionClipper {
   /// Whether an outline is hidden, by `hider` at a point.
   OccluderUnion::Found spread(std::size_t slot, Outline outline, std::uint32_t hider, const glm::dvec2& at);
   /// Takes what those from a place on cover from what is in the cutter. \returns true when nothing is left.
-  bool take_covers(std::size_t slot, std::uint32_t first_place, const Extent& own, const PieceGrid::Range& cells);
+  bool take_covers(std::size_t slot, std::uint32_t first_place, const PolygonExtent& own,
+                   const PieceGrid::Range& cells);
   [[nodiscard]] bool may_hide(std::size_t slot, std::size_t cover) const {
     return screen_.hides(cover) && (!is_behind_ || is_behind_(screen_.place(slot), screen_.place(cover)));
   }
-  [[nodiscard]] bool is_first_meeting(const PieceGrid::Range& cells, const Extent& cover, int x, int y) const;
+  [[nodiscard]] bool is_first_meeting(const PieceGrid::Range& cells, const PolygonExtent& cover, int x, int y) const;
 
   const ScreenPolygons& screen_;
   Poll poll_;

@@ -12,8 +12,8 @@ glm::vec2 place_of(const glm::dvec2& corner) { return glm::vec2(corner); }
 
 /// The box around corners, as far as it lies in the picture.
 template <class Corner>
-Extent extent_within(const glm::vec2& size, std::span<const Corner> corners) {
-  Extent extent{size, glm::vec2(0), 0, 0};
+PolygonExtent extent_within(const glm::vec2& size, std::span<const Corner> corners) {
+  PolygonExtent extent{size, glm::vec2(0), 0, 0};
   for (const Corner& corner : corners) {
     const glm::vec2 at = place_of(corner);
     extent.low = glm::min(extent.low, at);
@@ -39,7 +39,7 @@ class OrderPolygons {
       *corners++ = corner;
     }
   }
-  [[nodiscard]] Extent extent(std::size_t place) const {
+  [[nodiscard]] PolygonExtent extent(std::size_t place) const {
     return extent_within({order_.view.width, order_.view.height}, corners_of(place));
   }
 
@@ -68,7 +68,7 @@ class PiecePolygons {
     emit(pieces_, members_[place], corners);
     for (std::size_t i = 0; i < corner_count(place); ++i) corners[i].at.z = affine_depth(view_, corners[i].at.z);
   }
-  [[nodiscard]] const Extent& extent(std::size_t place) const { return pieces_.extent(members_[place]); }
+  [[nodiscard]] const PolygonExtent& extent(std::size_t place) const { return pieces_.extent(members_[place]); }
 
  private:
   const Pieces& pieces_;
@@ -91,7 +91,7 @@ class ListedPolygons {
   void copy(std::size_t place, PaintCorner* corners) const {
     for (const glm::dvec2& at : polygons_[place].corners) *corners++ = {glm::dvec3(at, 1), false};
   }
-  [[nodiscard]] Extent extent(std::size_t place) const { return extent_within(size_, polygons_[place].corners); }
+  [[nodiscard]] PolygonExtent extent(std::size_t place) const { return extent_within(size_, polygons_[place].corners); }
 
  private:
   const std::span<const ScreenPolygon> polygons_;
@@ -123,19 +123,19 @@ std::vector<PaintCorner> cut_along_axis(Outline outline, int axis, double border
 }
 
 template <class Polygons>
-std::vector<Extent> extents_of(const Polygons& polygons) {
-  std::vector<Extent> extents;
+std::vector<PolygonExtent> extents_of(const Polygons& polygons) {
+  std::vector<PolygonExtent> extents;
   extents.reserve(polygons.count());
   for (std::size_t place = 0; place < polygons.count(); ++place) extents.push_back(polygons.extent(place));
   return extents;
 }
 
 /// The slots of places, by counting how many begin in each cell.
-std::vector<std::uint32_t> slots_of(const std::vector<Extent>& extents, const PieceGrid& grid) {
+std::vector<std::uint32_t> slots_of(const std::vector<PolygonExtent>& extents, const PieceGrid& grid) {
   std::vector<std::uint32_t> slots;
   slots.reserve(extents.size());
   std::vector<std::uint32_t> next(grid.cell_count() + 1, 0);
-  for (const Extent& extent : extents) {
+  for (const PolygonExtent& extent : extents) {
     const PieceGrid::Range cells = grid.range(extent);
     slots.push_back(std::uint32_t(grid.number(cells.first_x, cells.first_y)));
     ++next[slots.back() + 1];
@@ -150,7 +150,7 @@ std::vector<std::uint32_t> slots_of(const std::vector<Extent>& extents, const Pi
 template <class Polygons>
 ScreenPolygons::ScreenPolygons(const Polygons& polygons, const View& view)
     : size_(view.width, view.height), slots_(polygons.count()) {
-  const std::vector<Extent> extents = extents_of(polygons);
+  const std::vector<PolygonExtent> extents = extents_of(polygons);
   grid_ = PieceGrid(extents);
   slot_of_ = slots_of(extents, grid_);
   std::uint32_t first_place = 0;

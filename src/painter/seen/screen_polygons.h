@@ -23,8 +23,8 @@
 namespace frontmost::painter_detail {
 
 /// On the screen alone.
-[[nodiscard]] inline Extent box_of(Outline outline) {
-  Extent box{glm::vec2(outline[0].at), glm::vec2(outline[0].at), 0, 0};
+[[nodiscard]] inline PolygonExtent box_of(Outline outline) {
+  PolygonExtent box{glm::vec2(outline[0].at), glm::vec2(outline[0].at), 0, 0};
   for (const PaintCorner& corner : outline) {
     box.low = glm::min(box.low, glm::vec2(corner.at));
     box.high = glm::max(box.high, glm::vec2(corner.at));
@@ -63,7 +63,7 @@ class ScreenPolygons {
   [[nodiscard]] std::size_t first_corner(std::size_t slot) const { return slots_[slot].first_corner; }
   /// The first of the consecutive places of the same primitive, or of the same group.
   [[nodiscard]] std::uint32_t first_place(std::size_t slot) const { return slots_[slot].first_place; }
-  [[nodiscard]] const Extent& extent(std::size_t slot) const { return slots_[slot].extent; }
+  [[nodiscard]] const PolygonExtent& extent(std::size_t slot) const { return slots_[slot].extent; }
   /// Hides what is behind it, and has an area.
   [[nodiscard]] bool hides(std::size_t slot) const { return slots_[slot].hides; }
   [[nodiscard]] const PieceGrid& grid() const { return grid_; }
@@ -77,7 +77,7 @@ class ScreenPolygons {
 
  private:
   struct Slot {
-    Extent extent;
+    PolygonExtent extent;
     std::size_t first_corner;
     std::uint32_t place, first_place, corner_count;
     bool hides;

@@ -144,7 +144,7 @@ class Finder {
     for (const std::uint32_t slot : cell) {
       poll_.count();
       if (state_[slot] != State::unknown) continue;
-      const Extent& e = screen_.extent(slot);
+      const PolygonExtent& e = screen_.extent(slot);
       if (high.x < e.low.x || low.x > e.high.x || high.y < e.low.y || low.y > e.high.y) continue;
       const Beside found = beside(screen_.outline(slot), side.from, side.to);
       if (found == Beside::crossing) state_[slot] = State::crossed;

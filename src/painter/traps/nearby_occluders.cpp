@@ -36,7 +36,7 @@ bool is_beside(Outline outline, const glm::dvec2& from, const glm::dvec2& way) {
 
 void NearbyOccluders::begin(std::size_t slot, double reach) {
   slot_ = slot;
-  Extent box = box_of(screen_.outline(slot));
+  PolygonExtent box = box_of(screen_.outline(slot));
   box.low -= float(reach);
   box.high += float(reach);
   const PieceGrid::Range cells = screen_.grid().range(box);
@@ -44,7 +44,7 @@ void NearbyOccluders::begin(std::size_t slot, double reach) {
   if (is_listed_) list(box);
 }
 
-void NearbyOccluders::list(const Extent& box) {
+void NearbyOccluders::list(const PolygonExtent& box) {
   if (++turn_ == 0) {
     std::fill(listed_.begin(), listed_.end(), 0);
     turn_ = 1;
@@ -61,7 +61,7 @@ void NearbyOccluders::list(const Extent& box) {
         if (listed_[other] == turn_) continue;
         listed_[other] = turn_;
         poll_.count();
-        const Extent& e = screen_.extent(other);
+        const PolygonExtent& e = screen_.extent(other);
         if (other == slot_ || is_apart(e, box) || !screen_.hides(other)) continue;
         hiders_.push_back({e.low, e.high, other});
         ++count;
@@ -70,7 +70,7 @@ void NearbyOccluders::list(const Extent& box) {
 }
 
 template <class Visit>
-bool NearbyOccluders::any_of(const Extent& box, const Visit& visit) {
+bool NearbyOccluders::any_of(const PolygonExtent& box, const Visit& visit) {
   if (!is_listed_) list(box);
   return std::any_of(hiders_.begin(), hiders_.end(), [&](const Hider& hider) {
     if (is_apart(hider, box)) return false;
@@ -88,7 +88,7 @@ bool NearbyOccluders::are_open_beside(std::size_t side) const {
 }
 
 bool NearbyOccluders::hide_beside(const glm::dvec2& from, const glm::dvec2& to) {
-  Extent box{glm::min(glm::vec2(from), glm::vec2(to)), glm::max(glm::vec2(from), glm::vec2(to)), 0, 0};
+  PolygonExtent box{glm::min(glm::vec2(from), glm::vec2(to)), glm::max(glm::vec2(from), glm::vec2(to)), 0, 0};
   box.low -= float(2 * OutlineClipper::thin);
   box.high += float(2 * OutlineClipper::thin);
   return any_of(box, [&](const Hider& hider) { return is_beside(screen_.outline(hider.slot), from, to - from); });

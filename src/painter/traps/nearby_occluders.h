@@ -33,10 +33,10 @@ class NearbyOccluders {
     std::uint32_t slot;
   };
   /// Sets hiders_ to those whose boxes overlap this one.
-  void list(const Extent& box);
+  void list(const PolygonExtent& box);
   /// Calls visit(hider) for those whose boxes overlap this one, until it returns true. \returns whether it did.
   template <class Visit>
-  bool any_of(const Extent& box, const Visit& visit);
+  bool any_of(const PolygonExtent& box, const Visit& visit);
 
   const ScreenPolygons& screen_;
   const Adjacency& adjacency_;

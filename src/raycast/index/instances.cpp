@@ -22,7 +22,7 @@ RayTree tree_of(const Mesh& mesh, const Execution& execution) {
   shape.positions = mesh.positions;
   shape.triangles = mesh.triangles;
   alone.instances.push_back({});
-  return make_tree(Surfaces(alone, execution), Copies::among_all, execution);
+  return make_tree(Surfaces(alone, execution), RepeatedTriangles::among_all, execution);
 }
 
 /// Trees one after the other in the arrays of one.

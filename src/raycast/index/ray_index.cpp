@@ -24,13 +24,13 @@ std::size_t byte_count(const RayTree& tree) {
 
 }  // namespace
 
-RayTree make_tree(const Surfaces& surfaces, Copies copies, const Execution& execution) {
+RayTree make_tree(const Surfaces& surfaces, RepeatedTriangles copies, const Execution& execution) {
   const IeeeScope ieee;
   RayTree tree;
   tree.cutouts = surfaces.placed().cutouts;
   report_progress(execution, "index", 0);
   fill_leaves(surfaces, tree, execution);
-  if (copies == Copies::apart) tree.copies = take_copies(tree, execution);
+  if (copies == RepeatedTriangles::apart) tree.copies = take_copies(tree, execution);
   build(tree, execution);
   if (tree.copies) build(*tree.copies, execution);
   report_progress(execution, "index", 1);
@@ -38,7 +38,7 @@ RayTree make_tree(const Surfaces& surfaces, Copies copies, const Execution& exec
 }
 
 RayIndex::RayIndex(const Surfaces& surfaces, const Execution& execution)
-    : tree_(std::make_unique<RayTree>(make_tree(surfaces, Copies::apart, execution))) {}
+    : tree_(std::make_unique<RayTree>(make_tree(surfaces, RepeatedTriangles::apart, execution))) {}
 RayIndex::RayIndex(const Scene& scene, const Execution& execution)
     : tree_(std::make_unique<RayTree>(make_placed_tree(scene, execution))) {}
 RayIndex::~RayIndex() = default;
@@ -48,7 +48,7 @@ RayIndex& RayIndex::operator=(RayIndex&&) noexcept = default;
 void RayIndex::refit(const Surfaces& surfaces, const Execution& execution) {
   const IeeeScope ieee;
   report_progress(execution, "index", 0);
-  if (!refit_tree(surfaces, *tree_, execution)) *tree_ = make_tree(surfaces, Copies::apart, execution);
+  if (!refit_tree(surfaces, *tree_, execution)) *tree_ = make_tree(surfaces, RepeatedTriangles::apart, execution);
   report_progress(execution, "index", 1);
 }
 

@@ -110,10 +110,10 @@ void fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execu
 void build_nodes(std::vector<LeafBox>& boxes, RayTree& tree, const Execution& execution);
 
 /// Whether triangles that are there again have a tree of their own.
-enum class Copies { among_all, apart };
+enum class RepeatedTriangles { among_all, apart };
 
 /// One level over `surfaces`.
-[[nodiscard]] RayTree make_tree(const Surfaces& surfaces, Copies copies, const Execution& execution);
+[[nodiscard]] RayTree make_tree(const Surfaces& surfaces, RepeatedTriangles copies, const Execution& execution);
 
 /// Two levels: one tree for every mesh that has instances, and one over the instances.
 [[nodiscard]] RayTree make_placed_tree(const Scene& scene, const Execution& execution);

@@ -36,13 +36,13 @@ std::vector<ScreenPolygon> polygons_in_groups(const ColoredOrder& colored, const
 }
 
 /// Consecutive shapes of one sheet.
-struct Sheet {
+struct PaintedSheet {
   std::size_t begin, end;  ///< of ColoredOrder::polygons
   bool has_traps;          ///< translucent, and of several shapes
 };
 
-std::vector<Sheet> sheets_of(const ColoredOrder& colored) {
-  std::vector<Sheet> sheets;
+std::vector<PaintedSheet> sheets_of(const ColoredOrder& colored) {
+  std::vector<PaintedSheet> sheets;
   const ColoredShape* first = nullptr;
   for (const ColoredShape& shape : colored.shapes) {
     const std::size_t end = shape.first_polygon + shape.polygon_count;
@@ -63,11 +63,12 @@ TrapList figure_traps(const ColoredOrder& colored, double width, const Occluders
   const IeeeScope ieee;
   std::vector<ScreenPolygon> polygons = polygons_in_groups(colored, occluders);
   TrapList opaque = painter_detail::make_traps(polygons, colored.view, width, execution);
-  const std::vector<Sheet> sheets = sheets_of(colored);
-  if (std::none_of(sheets.begin(), sheets.end(), [](const Sheet& sheet) { return sheet.has_traps; })) return opaque;
+  const std::vector<PaintedSheet> sheets = sheets_of(colored);
+  if (std::none_of(sheets.begin(), sheets.end(), [](const PaintedSheet& sheet) { return sheet.has_traps; }))
+    return opaque;
   for (ScreenPolygon& polygon : polygons) polygon.is_occluder = true;
   TrapList all;
-  for (const Sheet& sheet : sheets) {
+  for (const PaintedSheet& sheet : sheets) {
     const std::span<const ScreenPolygon> members(polygons.data() + sheet.begin, sheet.end - sheet.begin);
     const TrapList own =
         sheet.has_traps ? painter_detail::make_traps(members, colored.view, width, execution) : TrapList();

@@ -76,6 +76,6 @@ class TriangleSource {
 };
 
 /// Fills batch.geometry from batch.coverage.
-void interpolate_geometry(const ScreenRays& rays, const std::vector<TriangleSetup>& setups, Batch& batch);
+void interpolate_geometry(const ScreenRays& rays, const std::vector<TriangleSetup>& setups, FragmentBatch& batch);
 
 }  // namespace frontmost::shading

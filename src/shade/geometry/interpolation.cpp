@@ -162,7 +162,7 @@ void find_directions(const ScreenRays& rays, int count, Geometry& out) {
 
 }  // namespace
 
-void interpolate_geometry(const ScreenRays& rays, const std::vector<TriangleSetup>& setups, Batch& batch) {
+void interpolate_geometry(const ScreenRays& rays, const std::vector<TriangleSetup>& setups, FragmentBatch& batch) {
   const Coverage& coverage = batch.coverage;
   Geometry& out = batch.geometry;
   const int count = coverage.count;

@@ -12,7 +12,7 @@ namespace frontmost::shading {
 /// Points that wait to be asked about together, and the fragments that they are of.
 class RayShadows::Questions {
  public:
-  Questions(const RayShadows& shadows, Batch& batch) : shadows_(shadows), batch_(batch) {}
+  Questions(const RayShadows& shadows, FragmentBatch& batch) : shadows_(shadows), batch_(batch) {}
 
   void add(const TrianglePoint& point, int fragment) {
     points_[count_] = point;
@@ -33,7 +33,7 @@ class RayShadows::Questions {
   static constexpr std::size_t kAtOnce = 4 * raycast_detail::kLightRays;
 
   const RayShadows& shadows_;
-  Batch& batch_;
+  FragmentBatch& batch_;
   std::size_t count_ = 0;
   std::array<TrianglePoint, kAtOnce> points_;
   std::array<int, kAtOnce> fragments_;
@@ -44,7 +44,8 @@ RayShadows::RayShadows(const RayIndex& index, std::span<const glm::ivec2> sample
   for (const glm::ivec2& sample : samples) offsets_.push_back(glm::vec2(sample) / 256.0f);
 }
 
-void RayShadows::find_light(const std::vector<TriangleSetup>& setups, const bool* is_asked, Batch& batch) const {
+void RayShadows::find_light(const std::vector<TriangleSetup>& setups, const bool* is_asked,
+                            FragmentBatch& batch) const {
   const Coverage& coverage = batch.coverage;
   const Geometry& g = batch.geometry;
   Questions questions(*this, batch);

@@ -27,7 +27,7 @@ class RayShadows {
   void ask_at_points() { at_points_ = true; }
 
   /// Fills batch.shadow where `is_asked`: the part of each fragment's samples that the light reaches.
-  void find_light(const std::vector<TriangleSetup>& setups, const bool* is_asked, Batch& batch) const;
+  void find_light(const std::vector<TriangleSetup>& setups, const bool* is_asked, FragmentBatch& batch) const;
 
  private:
   class Questions;

@@ -6,16 +6,16 @@
 namespace frontmost::shading {
 namespace {
 
-using painter_detail::Extent;
+using painter_detail::PolygonExtent;
 
 /// Pixels by which polygons must overlap to cover each other: those that were cut at each other's sides do so by a
 /// rounding.
 constexpr double kThin = 1.0 / 512;
 
-using Corners = std::span<const glm::dvec2>;
+using PolygonCorners = std::span<const glm::dvec2>;
 
 /// Whether a side of `a` has all of `b` on its outside. Both are counter-clockwise as they are seen, y is down.
-bool has_side_between(Corners a, Corners b) {
+bool has_side_between(PolygonCorners a, PolygonCorners b) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     const glm::dvec2 from = a[i], way = a[i + 1 == a.size() ? 0 : i + 1] - from;
     const double length = glm::length(way);
@@ -29,12 +29,12 @@ bool has_side_between(Corners a, Corners b) {
   return false;
 }
 
-std::vector<Extent> extents_of(const ColoredOrder& order) {
-  std::vector<Extent> extents;
+std::vector<PolygonExtent> extents_of(const ColoredOrder& order) {
+  std::vector<PolygonExtent> extents;
   extents.reserve(order.polygons.size());
   for (const PaintPolygon& polygon : order.polygons) {
-    Extent extent{glm::vec2(std::numeric_limits<float>::infinity()), glm::vec2(-std::numeric_limits<float>::infinity()),
-                  0, 0};
+    PolygonExtent extent{glm::vec2(std::numeric_limits<float>::infinity()),
+                         glm::vec2(-std::numeric_limits<float>::infinity()), 0, 0};
     for (const glm::dvec2& corner : order.corners_of(polygon)) {
       extent.low = glm::min(extent.low, glm::vec2(corner));
       extent.high = glm::max(extent.high, glm::vec2(corner));
@@ -49,9 +49,9 @@ std::vector<Extent> extents_of(const ColoredOrder& order) {
 Overlaps::Overlaps(const ColoredOrder& order) : order_(order), extents_(extents_of(order)), grid_(extents_) {}
 
 bool Overlaps::overlap(std::size_t i, std::size_t k) const {
-  const Extent &a = extents_[i], &b = extents_[k];
+  const PolygonExtent &a = extents_[i], &b = extents_[k];
   if (a.low.x >= b.high.x || b.low.x >= a.high.x || a.low.y >= b.high.y || b.low.y >= a.high.y) return false;
-  const Corners own = order_.corners_of(order_.polygons[i]), other = order_.corners_of(order_.polygons[k]);
+  const PolygonCorners own = order_.corners_of(order_.polygons[i]), other = order_.corners_of(order_.polygons[k]);
   return !has_side_between(own, other) && !has_side_between(other, own);
 }
 

@@ -47,7 +47,7 @@ class Overlaps {
   }
 
   const ColoredOrder& order_;
-  std::vector<painter_detail::Extent> extents_;
+  std::vector<painter_detail::PolygonExtent> extents_;
   painter_detail::PieceGrid grid_;
 };
 
