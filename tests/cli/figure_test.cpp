@@ -78,43 +78,9 @@ TEST_F(Figures, MergeNeighboursOnRequest) {
   EXPECT_THAT(read("joined.pdf"), StartsWith("%PDF"));
 }
 
-TEST_F(Figures, StandBesidePixels) {
-  const Outcome outcome = succeed("render cube.stl -o {model}.svg -o {model}.pdf -o {model}.png --json --quiet");
-  EXPECT_THAT(files(), testing::ElementsAre("cube.pdf", "cube.png", "cube.stl", "cube.svg"));
-  EXPECT_THAT(read("cube.pdf"), StartsWith("%PDF"));
-  EXPECT_EQ(outcome.json()["files"].size(), 3u);
-  EXPECT_EQ(outcome.json()["method"], "zbuffer");  // of the pixels
-  EXPECT_EQ(outcome.json()["files"][2]["method"], "painter");
-  EXPECT_EQ(succeed("render cube.stl -o {model}.svg --json --quiet").json()["method"], "painter");
-}
-
-TEST_F(Figures, ShowColoursOfTheirShading) {
-  succeed("render cube.stl -o ids.svg --shading ids --background red --quiet");
-  EXPECT_THAT(read("ids.svg"), HasSubstr("#ff0000"));
-  EXPECT_EQ(count("ids.svg", "<path"), 7u);
-}
-
-TEST_F(Figures, AreCutWhereColoursVary) {
-  succeed("render builtin:gallery --resolution 320,180 -o coarse.svg --shading flat --color-tolerance 255 --quiet");
-  succeed("render builtin:gallery --resolution 320,180 -o fine.svg --shading flat --quiet");
-  EXPECT_GT(count("fine.svg", "<path"), count("coarse.svg", "<path") + 200);
-  succeed("render cube.stl -o depths.svg --shading depth --quiet");
-  EXPECT_GT(count("depths.svg", "<path"), 10u);
-}
-
-TEST_F(Figures, MergeNeighboursOnRequest) {
-  succeed("render builtin:gallery -o apart.svg --shading ids --resolution 320,180 --quiet");
-  succeed(
-      "render builtin:gallery -o joined.svg -o joined.pdf --shading ids --resolution 320,180 --merge-neighbours "
-      "--quiet");
-  EXPECT_LT(3 * count("joined.svg", "<path"), count("apart.svg", "<path"));
-  EXPECT_LT(2 * read("joined.svg").size(), read("apart.svg").size());
-  EXPECT_THAT(read("joined.pdf"), StartsWith("%PDF"));
-}
-
 TEST_F(Figures, AreTheSameForAnyNumberOfThreads) {
-  succeed("render builtin:gallery --resolution 320,180 -o one.svg --threads 1 --quiet");
-  succeed("render builtin:gallery --resolution 320,180 -o three.svg --threads 3 --quiet");
+  succeed("render builtin:gallery --resolution 160,90 -o one.svg --threads 1 --quiet");
+  succeed("render builtin:gallery --resolution 160,90 -o three.svg --threads 3 --quiet");
   EXPECT_EQ(read("one.svg"), read("three.svg"));
 }
 
