@@ -78,7 +78,7 @@ struct Drawing {
 /// Near-linear: every edge is held against the triangles in the cells of a screen grid that it passes, all of one size;
 /// cells in which many triangles come together are divided into smaller ones. Where edges and triangles lie upon each
 /// other all along, as in stacks of which every sheet is seen or around a vertex of thousands of slivers, and with
-/// counts, time goes with the square of their number in a cell: a cone of 4,000 slivers takes 0.5 s, one of 20,000 11 s.
+/// counts, time goes with the square of their number in a cell: a cone of 20,000 slivers takes 11 s.
 /// Triangles whose corners lie on one line, exactly, are left out. Where such fill a T-junction, between a long side
 /// and the short ones that meet it, the long side's triangle counts as cut at the corners on it: the seam is drawn as
 /// any other edges are, once, or not at all where the surface goes on. A T-junction that nothing fills is open, and its

@@ -73,10 +73,10 @@ void fit_nodes(const std::vector<LeafBox>& boxes, RayTree& tree) {
 }  // namespace
 
 bool refit_tree(const Surfaces& surfaces, RayTree& tree, const Execution& execution) {
+  TreeChange change(tree);
   // Copies may be moved apart.
   if (!tree.placed.empty() || tree.copies) return false;
   const ClusterSet& set = surfaces.clusters(execution);
-  TreeChange change(tree);
   tree.cutouts = set.cutouts;
   const Buffer<std::uint32_t> places = places_of(tree, surfaces.primitive_count(), execution);
   std::atomic<std::size_t> moved{0};
