@@ -71,8 +71,8 @@ struct ShadeInput {
                                                  const Execution& execution = {});
 
 /// A picture with channels R, G, B, A. Shades once per pixel and primitive and averages over the samples.
-/// Where materials are blended, or the opacity is below 1, the A-buffer of the same
-/// view says all that is seen through, in true order at every sample.
+/// Where materials are blended, or the opacity is below 1, the A-buffer of the same view says all that is seen through,
+/// in true order at every sample.
 /// \throws Error bad_argument for an opacity or a grid out of range.
 /// Borrows everything; O(covered pixels). The bytes do not depend on threads or instruction set.
 [[nodiscard]] Image shade(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options = {},
