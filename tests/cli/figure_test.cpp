@@ -61,17 +61,17 @@ TEST_F(Figures, ShowColoursOfTheirShading) {
 }
 
 TEST_F(Figures, AreCutWhereColoursVary) {
-  succeed("render builtin:gallery --resolution 320,180 -o coarse.svg --shading flat --color-tolerance 255 --quiet");
-  succeed("render builtin:gallery --resolution 320,180 -o fine.svg --shading flat --quiet");
+  succeed("render builtin:gallery --resolution 160,90 -o coarse.svg --shading flat --color-tolerance 255 --quiet");
+  succeed("render builtin:gallery --resolution 160,90 -o fine.svg --shading flat --quiet");
   EXPECT_GT(count("fine.svg", "<path"), count("coarse.svg", "<path") + 200);
   succeed("render cube.stl -o depths.svg --shading depth --quiet");
   EXPECT_GT(count("depths.svg", "<path"), 10u);
 }
 
 TEST_F(Figures, MergeNeighboursOnRequest) {
-  succeed("render builtin:gallery -o apart.svg --shading ids --resolution 320,180 --quiet");
+  succeed("render builtin:gallery -o apart.svg --shading ids --resolution 160,90 --quiet");
   succeed(
-      "render builtin:gallery -o joined.svg -o joined.pdf --shading ids --resolution 320,180 --merge-neighbours "
+      "render builtin:gallery -o joined.svg -o joined.pdf --shading ids --resolution 160,90 --merge-neighbours "
       "--quiet");
   EXPECT_LT(3 * count("joined.svg", "<path"), count("apart.svg", "<path"));
   EXPECT_LT(2 * read("joined.svg").size(), read("apart.svg").size());

@@ -6,6 +6,7 @@
 
 #include "cli/json_numbers.h"
 #include "program.h"
+#include "support/effort.h"
 
 namespace frontmost::test {
 namespace {
@@ -47,10 +48,10 @@ TEST_F(LineOfSight, ReadsAFileOfPairs) {
 }
 
 TEST_F(LineOfSight, JsonIsWrittenAsItIsMade) {
-  std::string pairs;
-  for (const int count : {0, 1, 3, 70'000}) {
-    while (std::count(pairs.begin(), pairs.end(), '\n') < count)
-      pairs += pairs.size() % 3 == 0 ? "0.25 0.5 4 0.25 0.5 -4\n" : "2 0 0 2 1 1\n";
+  const int many = under_sanitizer ? 3'000 : 70'000;
+  for (const int count : {0, 1, 3, many}) {
+    std::string pairs;
+    for (int i = 0; i < count; ++i) pairs += i % 3 == 0 ? "0.25 0.5 4 0.25 0.5 -4\n" : "2 0 0 2 1 1\n";
     write("pairs.txt", pairs);
     const std::string out = succeed("sight cube.stl --pairs pairs.txt --json").out;
     const cli::Json report = cli::Json::parse(out);
@@ -65,7 +66,7 @@ TEST_F(LineOfSight, JsonIsWrittenAsItIsMade) {
   const Outcome outcome = run(Call{.words = {"sight", "cube.stl", "--pairs", "pairs.txt", "--json", "--threads", "1"},
                                    .address_space = std::size_t(120) << 20});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.json()["of"], 70'000);
+  EXPECT_EQ(outcome.json()["of"], many);
 }
 
 TEST_F(LineOfSight, NamesWhatIsWrong) {

@@ -14,8 +14,8 @@ inline constexpr bool under_sanitizer = __has_feature(address_sanitizer) || __ha
 inline constexpr bool under_sanitizer = false;
 #endif
 
-/// All the seeds that are asked for; a quarter under a sanitizer, which is ten to thirty times slower and looks for
+/// All the seeds that are asked for; an eighth under a sanitizer, which is ten to thirty times slower and looks for
 /// other faults than wrong results.
-inline constexpr std::uint64_t seeds(std::uint64_t count) { return under_sanitizer ? (count + 3) / 4 : count; }
+inline constexpr std::uint64_t seeds(std::uint64_t count) { return under_sanitizer ? (count + 7) / 8 : count; }
 
 }  // namespace frontmost::test
