@@ -61,10 +61,10 @@ struct Triangles {
   std::optional<BitSet> large;
   std::optional<TriangleSource> source;
 
-  /// `find_large()` gives those worth a smooth normal where the model has none.
-  template <class FindLarge>
-  Triangles(const Surfaces& surfaces, const View& view, const FindLarge& find_large, const Execution& execution) {
-    if (lacks_normals(surfaces.scene())) large = find_large();
+  /// `worth_smoothing`: those worth a smooth normal where the model has none; none where no normal is looked at.
+  Triangles(const Surfaces& surfaces, const View& view, std::optional<BitSet> worth_smoothing,
+            const Execution& execution)
+      : large(std::move(worth_smoothing)) {
     source.emplace(surfaces, view, large ? &*large : nullptr, execution);
     if (!has_textures(surfaces.scene())) source->leave_out_texcoords();
   }
@@ -76,7 +76,7 @@ class LayerMaterials {
  public:
   LayerMaterials(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options,
                  const Execution& execution)
-      : visible_(visible) {
+      : visible_(visible), wants_normals_(options.shading != Shading::flat && lacks_normals(surfaces.scene())) {
     if (wants_layers(surfaces.scene(), options))
       make_layers(surfaces, options, execution);
     else
@@ -112,20 +112,30 @@ class LayerMaterials {
   }
 
   void make_front(const Surfaces& surfaces, const Execution& execution) {
-    const auto large = [&] { return large_primitives(surfaces.primitive_count(), visible_, execution); };
+    std::optional<BitSet> large;
+    if (wants_normals_) large = large_primitives(surfaces.primitive_count(), visible_, execution);
     const auto seen = [&] { return seen_primitives(surfaces, visible_, execution); };
-    triangles_.emplace(surfaces, visible_.view, large, execution);
+    triangles_.emplace(surfaces, visible_.view, std::move(large), execution);
     table_.emplace(surfaces.scene(), needed_materials(surfaces, seen, execution), execution);
   }
 
   void make_layers(const Surfaces& surfaces, const ShadeOptions& options, const Execution& execution) {
     layers_.emplace(surfaces, visible_.view, AbufferOptions{options.grid, options.opacity}, execution);
-    const auto seen = [&] { return seen_primitives(surfaces, *layers_, execution); };
-    triangles_.emplace(surfaces, visible_.view, seen, execution);
+    std::optional<BitSet> found;
+    const auto seen = [&]() -> const BitSet& {
+      if (!found) found = seen_primitives(surfaces, *layers_, execution);
+      return *found;
+    };
     table_.emplace(surfaces.scene(), needed_materials(surfaces, seen, execution), execution);
+    if (wants_normals_)
+      (void)seen();
+    else
+      found.reset();
+    triangles_.emplace(surfaces, visible_.view, std::move(found), execution);
   }
 
   const Visible& visible_;
+  const bool wants_normals_;  ///< and the model does not have them
   std::optional<abuffer_detail::FragmentPass> layers_;
   std::optional<Triangles> triangles_;
   std::optional<MaterialTable> table_;
@@ -220,10 +230,11 @@ std::optional<View> key_light_view(const Visible& visible, const Box& bounds, Ax
 
 Image normal_image(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {
   check_answer(visible, surfaces.primitive_count(), "normal image", execution);
-  const auto large = [&] { return large_primitives(surfaces.primitive_count(), visible, execution); };
+  std::optional<BitSet> large;
+  if (lacks_normals(surfaces.scene())) large = large_primitives(surfaces.primitive_count(), visible, execution);
   const auto seen = [&] { return seen_primitives(surfaces, visible, execution); };
   const MaterialTable table(surfaces.scene(), needed_materials(surfaces, seen, execution), execution);
-  const Triangles triangles(surfaces, visible.view, large, execution);
+  const Triangles triangles(surfaces, visible.view, std::move(large), execution);
   const TileWork::Colorist colorist = RawNormals{table};
   PlanesCanvas canvas(visible.view, {"N.X", "N.Y", "N.Z"});
   shade_tiles({*triangles.source, visible, SampleUse::first}, {canvas, colorist, glm::vec4(0)}, execution);
