@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arbitrary geometry and an arbitrary camera into the A-buffer. Must not crash or hang; lists are in order and their
-// nearest layer is the z-buffer's; threads and instruction sets change no bit. Input: support/geometry_fuzz.h.
+// Arbitrary geometry and an arbitrary camera into the A-buffer, and into pictures of its layers. Must not crash or
+// hang; lists are in order and their nearest layer is the z-buffer's; threads and instruction sets change no bit.
+// Input: support/geometry_fuzz.h.
 #include <cstdlib>
 
+#include "support/flat_picture.h"
 #include "support/geometry_fuzz.h"
 
 using namespace frontmost;
@@ -16,20 +18,16 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-bool equal(const Buffer<float>& a, const Buffer<float>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
-}
-
 bool equal(const Fragment& a, const Fragment& b) {
   const float found[] = {a.key, a.key_dx, a.key_dy, a.opacity}, wanted[] = {b.key, b.key_dx, b.key_dy, b.opacity};
   return a.mask == b.mask && a.primitive == b.primitive && std::memcmp(found, wanted, sizeof found) == 0;
 }
 
 /// Some opaque, some nearly invisible.
-std::vector<glm::vec4> colors_of(PrimitiveId count, std::uint8_t seed) {
+std::vector<glm::vec4> colors_of(std::size_t count, std::uint8_t seed) {
   std::vector<glm::vec4> colors;
-  for (PrimitiveId id = 0; id < count; ++id) {
-    const std::uint32_t mixed = (id + 1) * 2654435761u + seed;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t mixed = (std::uint32_t(i) + 1) * 2654435761u + seed;
     colors.emplace_back(float(mixed & 15) / 15, float(mixed >> 8 & 15) / 15, float(mixed >> 16 & 15) / 15,
                         float(mixed >> 24 & 3) / 3);
   }
@@ -53,14 +51,11 @@ void check_lists(const Surfaces& surfaces, const View& view, const AbufferOption
     }
 }
 
-void check_picture(const Surfaces& surfaces, const View& view, const AbufferOptions& options, std::uint8_t seed) {
-  const std::vector<glm::vec4> colors = colors_of(surfaces.primitive_count(), seed);
-  const ResolvedPicture wide = resolve(surfaces, view, colors, options, kWide);
-  const ResolvedPicture plain = resolve(surfaces, view, colors, options, kPlain);
-  require(equal(wide.red, plain.red) && equal(wide.green, plain.green) && equal(wide.blue, plain.blue) &&
-          equal(wide.alpha, plain.alpha));
-  for (const Buffer<float>* plane : {&wide.red, &wide.green, &wide.blue, &wide.alpha})
-    for (const float value : *plane) require(value >= 0 && value <= 1.00001f);
+void check_picture(const Surfaces& surfaces, const View& view, const AbufferOptions& options) {
+  const Image wide = test::flat_picture(surfaces, view, options, kWide);
+  require(content_hash(wide) == content_hash(test::flat_picture(surfaces, view, options, kPlain)));
+  for (const Channel& channel : wide.channels)
+    for (const float value : channel.floats()) require(value >= 0 && value <= 1.00001f);
 }
 
 }  // namespace
@@ -73,9 +68,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const AbufferOptions options{kGrids[bytes.spare % 4], bytes.spare & 4 ? 1.0f : 0.7f};
   try {
     const View view = test::view_of(bytes);
-    const Surfaces surfaces(scene);
+    const Scene colored = test::painted(scene, colors_of(scene.meshes[0].triangles.size(), bytes.spare));
+    const Surfaces surfaces(colored);
     check_lists(surfaces, view, options);
-    check_picture(surfaces, view, options, bytes.spare);
+    check_picture(surfaces, view, options);
     const std::vector<Visible> layers = visible_layers(surfaces, view, 2, options, kWide);
     require(content_hash(layers[0]) == content_hash(zbuffer(surfaces, view, kWide)));
   } catch (const Error&) {

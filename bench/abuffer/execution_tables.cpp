@@ -13,13 +13,11 @@ Table measure_abuffer_threads(const Options& options) {
   Table table("threads", {"scene", "sub-samples", "threads", "1 thread", "all threads", "times"});
   for (const SceneEntry& entry : translucent_entries()) {
     if (!options.wants_scene(entry)) continue;
-    const Stage stage(entry.name, options.models);
-    Pictures pictures(stage);
-    pictures.draw(0, {});
+    const Stage stage = make_lit(entry.name, options.models);
     for (const int grid : grids(options)) {
-      const std::vector<Time> times = race({Contestant([&] { pictures.draw_unlit(grid, {.threads = 1}); }),
-                                            Contestant([&] { pictures.draw_unlit(grid, {.threads = threads}); })},
-                                           options.sampling);
+      const auto draw = [&](int count) { (void)draw_layers(stage, {grid, opacity_of_copies}, {.threads = count}); };
+      const std::vector<Time> times =
+          race({Contestant([&] { draw(1); }), Contestant([&] { draw(threads); })}, options.sampling);
       table.add({entry.name,
                  Cell::whole(unsigned(samples_of(grid))),
                  Cell::whole(unsigned(threads)),
@@ -35,12 +33,13 @@ Table measure_abuffer_isas(const Options& options) {
   Table table("instruction sets, one thread", {"scene", "sub-samples", "set", "ms", "speed"});
   for (const SceneEntry& entry : translucent_entries()) {
     if (!options.wants_scene(entry)) continue;
-    const Stage stage(entry.name, options.models);
-    Pictures pictures(stage);
+    const Stage stage = make_lit(entry.name, options.models);
     for (const int grid : grids(options)) {
       std::vector<Contestant> contestants;
       for (const Isa isa : available_isas())
-        contestants.emplace_back([&pictures, grid, isa] { pictures.draw(grid, {.threads = 1, .isa = isa}); });
+        contestants.emplace_back([&stage, grid, isa] {
+          (void)draw_layers(stage, {grid, opacity_of_copies}, {.threads = 1, .isa = isa});
+        });
       const std::vector<Time> times = race(contestants, options.sampling);
       for (std::size_t i = 0; i < times.size(); ++i)
         table.add({entry.name,

@@ -9,25 +9,14 @@
 namespace frontmost::bench {
 namespace {
 
-/// How many times as fast as peeling a scene shall be.
-double target_of(std::string_view scene, int grid) {
-  const bool is_bunnies = scene == "bunnies";
-  switch (grid) {
-    case 0: return is_bunnies ? 120 : 80;
-    case 4: return is_bunnies ? 40 : 25;
-    case 8: return is_bunnies ? 20 : 12;
-    default: return std::nan("");
-  }
-}
-
 /// Pixels whose channels differ by more than three eighth bits: every layer of peeling is rounded to one.
-std::size_t differing(const ResolvedPicture& ours, const std::vector<glm::vec4>& theirs) {
+std::size_t differing(const Image& ours, const std::vector<glm::vec4>& theirs) {
   constexpr float kMost = 3 / 255.0f;
   std::size_t count = 0;
   for (std::size_t i = 0; i < theirs.size(); ++i) {
-    const glm::vec4 found(ours.red[i], ours.green[i], ours.blue[i], ours.alpha[i]);
     bool differs = false;
-    for (int k = 0; k < 4; ++k) differs = differs || std::abs(found[k] - theirs[i][k]) > kMost;
+    for (int k = 0; k < 4; ++k)
+      differs = differs || std::abs(ours.channels[std::size_t(k)].floats()[i] - theirs[i][k]) > kMost;
     count += differs;
   }
   return count;
@@ -38,12 +27,13 @@ struct Comparison {
   int layers = 0;
   double differing = std::nan("");  ///< of a million pixels
 
-  Comparison(const Stage& stage, Pictures& pictures) {
+  explicit Comparison(const Stage& stage) {
     const auto peer = make_peeling({stage.scene, stage.view, 1});
     if (!peer) return;
     peer->draw();
     layers = peer->layer_count();
-    const double count = double(bench::differing(pictures.draw(0, {.threads = 1}), peer->read()));
+    const Image ours = draw_layers(stage, {0, opacity_of_copies}, {.threads = 1});
+    const double count = double(bench::differing(ours, peer->read()));
     differing = 1e6 * count / double(stage.view.pixel_count());
   }
 };
@@ -51,12 +41,16 @@ struct Comparison {
 void measure(std::string_view scene, const Options& options, Table& table) {
   // Edges of snapped triangles are elsewhere than those of llvmpipe's in so many pixels of a million.
   constexpr double kMostDiffering = 2000;
-  const Stage stage(scene, options.models);
-  Pictures pictures(stage);
+  const Stage stage = make_lit(scene, options.models);
   const Execution execution{.threads = options.threads};
   std::vector<Contestant> contestants;
   const std::vector<int> sides = grids(options);
-  for (const int grid : sides) contestants.emplace_back([&, grid] { pictures.draw(grid, execution); });
+  for (const int grid : sides) {
+    contestants.emplace_back([&, grid] { (void)draw_layers(stage, {grid, opacity_of_copies}, execution); });
+    contestants.emplace_back([&, grid] {
+      (void)abuffer(stage.surfaces, stage.view, {grid, opacity_of_copies}, execution);
+    });
+  }
   std::unique_ptr<PeerProcess> peer;
   if (options.llvmpipe)
     peer = std::make_unique<PeerProcess>(PeerRequest{"peeling", std::string(scene), options.threads, false}, options);
@@ -65,17 +59,17 @@ void measure(std::string_view scene, const Options& options, Table& table) {
   const std::vector<Time> times = race(contestants, options.sampling);
   const double peeling = has_peer ? cost(times.back(), options.threads) : std::nan("");
   for (std::size_t i = 0; i < sides.size(); ++i) {
-    const double ms = cost(times[i], options.threads);
+    const double ms = cost(times[2 * i], options.threads);
     table.add({scene,
                Cell::whole(stage.surfaces.primitive_count()),
                Cell::whole(unsigned(samples_of(sides[i]))),
                {ms},
                {peeling, 0},
                {peeling / ms, 1},
-               {options.threads == 1 ? target_of(scene, sides[i]) : std::nan(""), 0}});
+               {cost(times[2 * i + 1], options.threads)}});
   }
   if (!has_peer) return;
-  const Comparison comparison(stage, pictures);
+  const Comparison comparison(stage);
   table.add({std::string("  ").append(std::to_string(comparison.layers)).append(" layers; pixels of a million"),
              "",
              "that differ",
@@ -87,7 +81,7 @@ void measure(std::string_view scene, const Options& options, Table& table) {
 
 Table measure_peeling(const Options& options) {
   Table table("beside depth peeling, threads: " + std::to_string(options.threads),
-              {"scene", "triangles", "sub-samples", "ms", "peeling, ms", "times", "target"});
+              {"scene", "triangles", "sub-samples", "ms", "peeling, ms", "times", "lists alone, ms"});
   for (const SceneEntry& entry : translucent_entries())
     if (options.wants_scene(entry)) measure(entry.name, options, table);
   return table;

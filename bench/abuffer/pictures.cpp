@@ -5,32 +5,23 @@
 
 namespace frontmost::bench {
 
-const ResolvedPicture& Pictures::draw(int grid, const Execution& execution) {
-  light();
-  return draw_unlit(grid, execution);
-}
-
-const ResolvedPicture& Pictures::draw_unlit(int grid, const Execution& execution) {
-  return resolver_.draw(stage_.surfaces, stage_.view, colors_, {grid, 1.0f}, execution);
-}
-
-void Pictures::light() {
-  constexpr float kOpacity = 0.4f;
-  const View& view = stage_.view;
+Stage make_lit(std::string_view scene_name, const std::string& models) {
+  Stage plain(scene_name, models);
+  const View& view = plain.view;
   const glm::vec3 light = glm::normalize(glm::vec3(-view.forward() + 0.5 * view.up() - 0.3 * view.right()));
-  colors_.resize(stage_.surfaces.primitive_count());
-  std::size_t id = 0;
-  for (const Instance& instance : stage_.scene.instances) {
-    // Copies are shifted, not turned.
-    const Mesh& mesh = stage_.scene.meshes[instance.mesh];
-    for (const glm::uvec3& t : mesh.triangles) {
-      const glm::vec3& corner = mesh.positions[t.x];
-      const glm::vec3 normal = glm::cross(mesh.positions[t.y] - corner, mesh.positions[t.z] - corner);
+  Scene lit = std::move(plain.scene);
+  // Copies are shifted, not turned.
+  for (Mesh& mesh : lit.meshes)
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      const glm::uvec3& corners = mesh.triangles[t];
+      const glm::vec3& first = mesh.positions[corners.x];
+      const glm::vec3 normal = glm::cross(mesh.positions[corners.y] - first, mesh.positions[corners.z] - first);
       const float length = glm::length(normal);
       const float cosine = length > 0 ? std::abs(glm::dot(normal, light)) / length : 0.0f;
-      colors_[id++] = glm::vec4(glm::vec3(0.15f + 0.85f * cosine), kOpacity);
+      mesh.colors.values.emplace_back(glm::vec3(0.15f + 0.85f * cosine), 1.0f);
+      mesh.colors.triangles.emplace_back(t);
     }
-  }
+  return Stage(std::move(lit), view);
 }
 
 Stage make_sheets(int count, int width, int height) {
@@ -49,6 +40,14 @@ Stage make_sheets(int count, int width, int height) {
   view.world_from_eye = look_at({0, 0, 1}, {0, 0, 0}, {0, 1, 0});
   view.projection = make_projection(1, double(width) / height, {0.5, 3});
   return Stage(std::move(scene), view);
+}
+
+Image draw_layers(const Stage& stage, const AbufferOptions& options, const Execution& execution) {
+  ShadeOptions flat{.shading = Shading::flat, .background = std::nullopt};
+  flat.opacity = options.opacity;
+  flat.see_through = SeeThrough::always;
+  flat.grid = options.grid;
+  return shade(stage.surfaces, zbuffer(stage.surfaces, stage.view, execution), flat, execution);
 }
 
 }  // namespace frontmost::bench

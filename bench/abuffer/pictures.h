@@ -13,24 +13,17 @@ namespace frontmost::bench {
 }
 [[nodiscard]] inline int samples_of(int grid) { return grid == 0 ? 1 : grid * grid; }
 
-/// Draws one view again and again, in the same memory. Everything has opacity 0.4 and the colour that one light at the
-/// camera's upper left gives it, worked out for every picture, as the shaders of depth peeling do.
-class Pictures {
- public:
-  explicit Pictures(const Stage& stage) : stage_(stage) {}
-  const ResolvedPicture& draw(int grid, const Execution& execution);
-  /// With the colours of the last draw(): the A-buffer alone, as lighting is done by one thread.
-  const ResolvedPicture& draw_unlit(int grid, const Execution& execution);
-
- private:
-  void light();
-
-  const Stage& stage_;
-  std::vector<glm::vec4> colors_;
-  Resolver resolver_;
-};
+/// One of translucent_entries(). Every triangle has the colour that one light at the camera's upper left gives it, once
+/// for all pictures.
+[[nodiscard]] Stage make_lit(std::string_view scene_name, const std::string& models);
 
 /// `count` sheets that fill the picture, one behind the other.
 [[nodiscard]] Stage make_sheets(int count, int width, int height);
+
+/// What is visible, and the picture of all layers in their own colours, everything with this opacity.
+[[nodiscard]] Image draw_layers(const Stage& stage, const AbufferOptions& options, const Execution& execution);
+
+/// Of translucent copies, here and in depth peeling.
+inline constexpr float opacity_of_copies = 0.4f;
 
 }  // namespace frontmost::bench

@@ -4,7 +4,6 @@
 // L. Carpenter. The A-buffer, an Antialiased Hidden Surface Method. SIGGRAPH 1984.
 #pragma once
 
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -70,7 +69,7 @@ struct FragmentCounts {
 };
 
 /// Counts without keeping: what a picture's depth complexity is, and before abuffer() is called an upper bound of its
-/// fragments. Takes about as long as resolve(). `options.opacity` has no meaning here.
+/// fragments. O(triangles + fragments), in 10 to 20 megabytes a thread. `options.opacity` has no meaning here.
 /// \throws Error as abuffer() does.
 [[nodiscard]] FragmentCounts count_fragments(const Surfaces& surfaces, const View& view,
                                              const AbufferOptions& options = {}, const Execution& execution = {});
@@ -81,42 +80,5 @@ struct FragmentCounts {
 /// \throws Error as abuffer() does; bad_argument unless `count` is 1 to 1024.
 [[nodiscard]] std::vector<Visible> visible_layers(const Surfaces& surfaces, const View& view, int count,
                                                   const AbufferOptions& options = {}, const Execution& execution = {});
-
-/// A picture of linear light, colours multiplied by alpha, rows from the top.
-struct ResolvedPicture {
-  int width = 0, height = 0;
-  Buffer<float> red, green, blue, alpha;
-};
-
-/// Antialiased picture of flat-coloured triangles with transparency in true order. `colors` holds for every primitive
-/// its linear colour and, straight, its opacity (which AbufferOptions::opacity multiplies); materials are not looked
-/// at. Intersecting fragments part within the pixel: at every sub-sample the order is that of the keys there.
-/// Memory does not grow with the number of layers: 10 to 20 megabytes a thread beside the picture.
-/// O(triangles + n log^2 n for lists of n fragments), also where they are the same triangle again and again.
-/// \throws Error as abuffer() does; bad_argument where `colors` has not one entry a primitive.
-[[nodiscard]] ResolvedPicture resolve(const Surfaces& surfaces, const View& view, std::span<const glm::vec4> colors,
-                                      const AbufferOptions& options = {}, const Execution& execution = {});
-
-/// The same for repeated views: pictures after the first reuse the memory of those before. Not for several threads at
-/// once; each draw() uses the threads it is given.
-class Resolver {
- public:
-  Resolver();
-  ~Resolver();
-  Resolver(Resolver&&) noexcept;
-  Resolver& operator=(Resolver&&) noexcept;
-  Resolver(const Resolver&) = delete;
-  Resolver& operator=(const Resolver&) = delete;
-
-  /// What resolve() gives. The result stays as it is until the next draw() or take(); after an error it is unspecified.
-  const ResolvedPicture& draw(const Surfaces& surfaces, const View& view, std::span<const glm::vec4> colors,
-                              const AbufferOptions& options = {}, const Execution& execution = {});
-  /// Moves the last result out; the next draw() allocates another.
-  [[nodiscard]] ResolvedPicture take();
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
-};
 
 }  // namespace frontmost

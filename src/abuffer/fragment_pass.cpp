@@ -4,37 +4,85 @@
 #include "abuffer/fragment_pass.h"
 
 #include "abuffer/composite/composite_kernel.h"
-#include "abuffer/visit_tiles.h"
-#include "base/float_environment.h"
 
 namespace frontmost::abuffer_detail {
-
 namespace {
 
 /// Far below what rounding leaves of a sum of floats.
 constexpr float kNegligible = 0x1p-40f;
 
-/// What composite_tile() writes of one rectangle.
-class TilePicture {
+/// From sorted lists to the fragments that somebody may see: what is hidden in the whole pixel is left out.
+class Lister {
  public:
-  explicit TilePicture(const Rectangle& pixels)
-      : rectangle_(pixels), size_(std::size_t(pixels.width) * std::size_t(pixels.height)), values_(4 * size_) {}
-
-  [[nodiscard]] PicturePlanes planes() {
-    float* const plane = values_.data();
-    return {plane, plane + size_, plane + 2 * size_, plane + 3 * size_, rectangle_.width, rectangle_.x, rectangle_.y};
+  Lister(const SamplePattern& pattern, const GatherScratch& scratch, const Opacities& opacities, float negligible)
+      : pattern_(pattern), s_(scratch), opacities_(opacities), negligible_(negligible) {
+    lists_.scratch = &scratch;
+    lists_.fragments.reserve(scratch.arrived.count);
+    lists_.numbers.reserve(scratch.arrived.count);
+    lists_.begin.push_back(0);
   }
-  [[nodiscard]] std::vector<glm::vec4> pixels() const {
-    std::vector<glm::vec4> result(size_);
-    for (std::size_t i = 0; i < size_; ++i)
-      for (int k = 0; k < 4; ++k) result[i][k] = values_[std::size_t(k) * size_ + i];
-    return result;
+  [[nodiscard]] PixelLists take() { return std::move(lists_); }
+
+  void add_pixel(int x, int y) {
+    const std::uint32_t pixel = pixel_number(std::uint32_t(x), std::uint32_t(y));
+    const std::size_t group = pixel / kGroup, length = s_.length(group);
+    const std::uint64_t* words = s_.slot(group, 0) + pixel % kGroup;
+    const float hidden = hidden_behind(words, length);
+    float passes = 1;
+    for (std::size_t i = 0; i < length && words[i * kGroup] != 0; ++i) {
+      const std::uint32_t number = ~std::uint32_t(words[i * kGroup]);
+      // Masks may be empty here, though not where they were appended: holes have been taken out of them since.
+      if (s_.nearest_of(number) < hidden || s_.arrived.mask(number) == 0) continue;
+      add(number);
+      // At a single sample there is no part of a pixel: what comes first hides the rest.
+      if (pattern_.count == 1 && hides_rest(id_of(number), passes)) break;
+    }
+    lists_.begin.push_back(std::uint32_t(lists_.fragments.size()));
   }
 
  private:
-  Rectangle rectangle_;
-  std::size_t size_;
-  std::vector<float> values_;
+  /// Whether behind another fragment that covers the pixel nothing is seen, or next to nothing. `passes`: what all
+  /// before it let pass.
+  [[nodiscard]] bool hides_rest(PrimitiveId id, float& passes) const {
+    passes *= 1 - opacities_.least(id);
+    return opacities_.is_opaque(id) || passes < negligible_;
+  }
+  [[nodiscard]] PrimitiveId id_of(std::uint32_t number) const { return s_.triangles.id[s_.arrived.triangle[number]]; }
+
+  /// The key behind which nothing is seen anywhere in the pixel.
+  [[nodiscard]] float hidden_behind(const std::uint64_t* words, std::size_t length) const {
+    // -1 hides nothing: keys of what is there are 0 or more.
+    float key = -1, passes = 1, farthest = std::numeric_limits<float>::infinity();
+    if (pattern_.count == 1) return key;
+    for (std::size_t i = 0; i < length && words[i * kGroup] != 0; ++i) {
+      const std::uint32_t number = ~std::uint32_t(words[i * kGroup]);
+      if (s_.arrived.mask(number) != pattern_.full()) continue;
+      // Clear ones hide only together, so only what is behind all of them.
+      farthest = std::min(farthest, s_.farthest_of(number));
+      if (hides_rest(id_of(number), passes))
+        key = std::max(key, opacities_.is_opaque(id_of(number)) ? s_.farthest_of(number) : farthest);
+    }
+    return key;
+  }
+
+  void add(std::uint32_t number) {
+    const std::size_t t = s_.arrived.triangle[number];
+    Fragment f;
+    f.mask = s_.arrived.mask(number);
+    f.primitive = s_.triangles.id[t];
+    f.key = s_.arrived.key_of(number);
+    f.key_dx = s_.triangles.gx[t] * kSubPixels;
+    f.key_dy = s_.triangles.gy[t] * kSubPixels;
+    f.opacity = opacities_.of(f.primitive);
+    lists_.fragments.push_back(f);
+    lists_.numbers.push_back(number);
+  }
+
+  const SamplePattern& pattern_;
+  const GatherScratch& s_;
+  const Opacities& opacities_;
+  const float negligible_;
+  PixelLists lists_;
 };
 
 }  // namespace
@@ -42,41 +90,43 @@ class TilePicture {
 FragmentPass::FragmentPass(const Surfaces& surfaces, const View& view, const AbufferOptions& options,
                            const Execution& execution)
     : opacity_(options.opacity),
-      prepared_(surfaces, view, options, execution),
+      frame_(surfaces, view, options, execution),
       opacities_(surfaces, options.opacity, execution),
       copies_(copy_rule(opacities_)) {}
 
+PixelLists FragmentPass::lists_of(const Rectangle& pixels, const GatherScratch& fragments, float negligible) const {
+  Lister lister(frame_.pattern(), fragments, opacities_, negligible);
+  for (int y = 0; y < pixels.height; ++y)
+    for (int x = 0; x < pixels.width; ++x) lister.add_pixel(x, y);
+  return lister.take();
+}
+
 void FragmentPass::list_primitives(const Note& note, const Execution& execution) const {
-  const IeeeScope ieee;
-  const GatherInput frame = prepared_.input(copies_, execution);
-  visit_tiles(frame, execution, [&](const GatherJob& /*job*/, GatherScratch* scratch) {
-    if (scratch) note({scratch->triangles.id.data(), scratch->triangles.count});
-  });
+  const auto visit = [&](const Rectangle& /*pixels*/, const GatherScratch* fragments) {
+    if (fragments) note({fragments->triangles.id.data(), fragments->triangles.count});
+  };
+  frame_.visit_tiles(copies_, visit, execution);
 }
 
 void FragmentPass::look(const Look& look, const Execution& execution) const {
-  const IeeeScope ieee;
-  const GatherInput frame = prepared_.input(copies_, execution);
-  visit_tiles(frame, execution, [&](const GatherJob& job, GatherScratch* scratch) {
-    if (scratch) look(job.pixels, list_fragments(frame, job, *scratch, opacities_));
-  });
+  const auto visit = [&](const Rectangle& pixels, const GatherScratch* fragments) {
+    if (fragments) look(pixels, lists_of(pixels, *fragments, 0));
+  };
+  frame_.visit_lists(copies_, visit, execution);
 }
 
 void FragmentPass::paint(const Paint& paint, const Receive& receive, const Execution& execution) const {
-  const IeeeScope ieee;
-  const GatherInput frame = prepared_.input(copies_, execution);
-  visit_tiles(frame, execution, [&](const GatherJob& job, GatherScratch* scratch) {
-    if (!scratch) return receive(job.pixels, nullptr);
-    const JobLists lists = list_fragments(frame, job, *scratch, opacities_, kNegligible);
-    // By number of arrival, as the compositor looks them up; fragments that were left out of the lists stay without
+  const CompositeInput input{frame_.pattern(), opacity_, execution.isa};
+  const auto visit = [&](const Rectangle& pixels, const GatherScratch* fragments) {
+    if (!fragments) return receive(pixels, nullptr);
+    // By number of arrival, as the compositor looks them up; fragments that are left out of the lists stay without
     // effect.
-    std::vector<glm::vec4> colors(scratch->arrived.count, glm::vec4(0));
-    paint(job.pixels, lists, colors);
-    TilePicture picture(job.pixels);
-    composite_tile(frame, job, *scratch, {colors.data(), true, opacity_}, picture.planes());
-    const std::vector<glm::vec4> pixels = picture.pixels();
-    receive(job.pixels, &pixels);
-  });
+    std::vector<glm::vec4> colors(fragments->arrived.count, glm::vec4(0));
+    paint(pixels, lists_of(pixels, *fragments, kNegligible), colors);
+    const std::vector<glm::vec4> painted = composite_tile(input, pixels, *fragments, colors);
+    receive(pixels, &painted);
+  };
+  frame_.visit_lists(copies_, visit, execution);
 }
 
 }  // namespace frontmost::abuffer_detail

@@ -4,13 +4,26 @@
 
 #include <functional>
 
-#include "abuffer/fragment_lists.h"
 #include "abuffer/prepared_frame.h"
 
 namespace frontmost::abuffer_detail {
 
-/// One view, gone through as often as wanted. Memory is bounded as in resolve(). Callbacks are called for one rectangle
-/// of pixels after another, in any order, by several threads at once.
+/// The lists of one rectangle of pixels.
+struct PixelLists {
+  std::vector<std::uint32_t> begin;  ///< by pixel of the rectangle, row by row; and the end of the last
+  std::vector<Fragment> fragments;
+  std::vector<std::uint32_t> numbers;  ///< of each fragment in Arrived
+  const GatherScratch* scratch = nullptr;
+
+  /// The key of fragment i at a place in 1/256 pixel from the rectangle's corner, exactly as it is compared. Only until
+  /// the callback that was given the lists returns.
+  [[nodiscard]] float key_at(std::size_t i, std::int32_t x, std::int32_t y) const {
+    return scratch->triangles.key_at(scratch->arrived.triangle[numbers[i]], x, y);
+  }
+};
+
+/// One view, gone through as often as wanted, in 10 to 20 megabytes a thread however many layers there are. Callbacks
+/// are called for one rectangle of pixels after another, in any order, by several threads at once.
 class FragmentPass {
  public:
   FragmentPass(const Surfaces& surfaces, const View& view, const AbufferOptions& options, const Execution& execution);
@@ -19,27 +32,32 @@ class FragmentPass {
 
   [[nodiscard]] float opacity() const { return opacity_; }
   /// Positions of the masks' bits in 1/256 pixel.
-  [[nodiscard]] std::vector<glm::ivec2> samples() const { return prepared_.pattern.positions(); }
+  [[nodiscard]] std::vector<glm::ivec2> samples() const { return frame_.pattern().positions(); }
 
   /// The primitives in one part of the picture after another: all that are seen, some hidden ones, some several times.
   /// Quicker than looking at their fragments.
   using Note = std::function<void(std::span<const PrimitiveId> primitives)>;
   void list_primitives(const Note& note, const Execution& execution) const;
 
-  using Look = std::function<void(const Rectangle& pixels, const JobLists& lists)>;
+  /// Takes the lists without what lies wholly behind opaque fragments that cover the whole pixel.
+  using Look = std::function<void(const Rectangle& pixels, PixelLists lists)>;
   void look(const Look& look, const Execution& execution) const;
 
   /// Sets colors[lists.numbers[i]], straight alpha, for every fragment i. The rest is 0: what is hidden, and what adds
   /// less than 1e-12 of itself to its pixel because of what is before it.
-  using Paint = std::function<void(const Rectangle& pixels, const JobLists& lists, std::vector<glm::vec4>& colors)>;
+  using Paint = std::function<void(const Rectangle& pixels, const PixelLists& lists, std::vector<glm::vec4>& colors)>;
   /// Takes the finished pixels of the rectangle, row by row, premultiplied; null where nothing is seen.
   using Receive = std::function<void(const Rectangle& pixels, const std::vector<glm::vec4>* colors)>;
   /// Lays the colours over each other, every alpha multiplied by the options' opacity.
   void paint(const Paint& paint, const Receive& receive, const Execution& execution) const;
 
  private:
+  /// Leaves out what lies wholly behind opaque fragments that cover the whole pixel; and what lies wholly behind
+  /// fragments that cover it and together let no more pass than `negligible`.
+  [[nodiscard]] PixelLists lists_of(const Rectangle& pixels, const GatherScratch& fragments, float negligible) const;
+
   float opacity_;
-  PreparedFrame prepared_;
+  PreparedFrame frame_;
   Opacities opacities_;
   CopyRule copies_;
 };

@@ -1,25 +1,58 @@
 // SPDX-License-Identifier: Apache-2.0
-// A view looked into before its tiles are gathered.
+// A view made ready for gathering, and gone through tile by tile; what materials say of primitives.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
 #include "abuffer/gather/gather_kernel.h"
-#include "abuffer/options.h"
+#include "abuffer/plan/crowd.h"
+#include "frontmost/abuffer.h"
 
 namespace frontmost::abuffer_detail {
 
-struct PreparedFrame {
-  SamplePattern pattern;
-  FragmentPlan plan;
+/// By primitive, how far it hides what is behind.
+class Opacities {
+ public:
+  Opacities(const Surfaces& surfaces, float opacity, const Execution& execution);
 
+  [[nodiscard]] float of(PrimitiveId id) const { return values_.empty() ? all_ : std::abs(values_[id]); }
+  /// What it hides at least, whatever its texture says.
+  [[nodiscard]] float least(PrimitiveId id) const { return std::max(values_.empty() ? all_ : values_[id], 0.0f); }
+  /// Nothing is seen through it, whatever its texture says.
+  [[nodiscard]] bool is_opaque(PrimitiveId id) const { return (values_.empty() ? all_ : values_[id]) >= 1.0f; }
+
+ private:
+  float all_;
+  std::vector<float> values_;  // none: all the same. Negative: 1, but a texture may cut holes into it
+};
+
+/// Of triangles at one place those in front of an opaque one, and it. As long as the opacities are where they are.
+[[nodiscard]] inline CopyRule copy_rule(const Opacities& opacities) {
+  return {[&opacities](PrimitiveId id) { return opacities.is_opaque(id); }};
+}
+
+class PreparedFrame {
+ public:
   /// \throws Error for a view or options out of range.
-  PreparedFrame(const Surfaces& surfaces, const View& view, const AbufferOptions& options, const Execution& execution)
-      : pattern((frontmost::validate(view), validate(options), sample_pattern(view, options.grid))),
-        plan(surfaces, view, execution) {}
+  PreparedFrame(const Surfaces& surfaces, const View& view, const AbufferOptions& options, const Execution& execution);
 
-  /// Of lists that say all. As long as this, and the rule, are where they are.
-  [[nodiscard]] GatherInput input(const CopyRule& copies, const Execution& execution) const {
-    return {plan, pattern, false, execution.isa, copies};
-  }
+  [[nodiscard]] const SamplePattern& pattern() const { return pattern_; }
+
+  /// Takes a rectangle of the picture and its fragments; null where nothing is seen.
+  using Visit = std::function<void(const Rectangle& pixels, GatherScratch* fragments)>;
+  /// Calls `visit` for rectangles that make up the picture, in any order, from several threads at once. They are the
+  /// tiles, and parts of those that have too many fragments: this is what bounds memory. `copies` says what may be left
+  /// out of such tiles. Fragments are in the order of arrival, and holes count as covered.
+  void visit_tiles(const CopyRule& copies, const Visit& visit, const Execution& execution) const;
+  /// The same with fragments in sorted lists, without their holes.
+  void visit_lists(const CopyRule& copies, const Visit& visit, const Execution& execution) const;
+
+ private:
+  SamplePattern pattern_;
+  FragmentPlan plan_;
 };
 
 }  // namespace frontmost::abuffer_detail

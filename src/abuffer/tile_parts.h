@@ -2,10 +2,11 @@
 // From lists of tiles, which come in any order, to the lists of a picture, pixel by pixel in one array.
 #pragma once
 
-#include <algorithm>
+#include <mutex>
 #include <vector>
 
 #include "abuffer/plan/frame_plan.h"
+#include "base/parallel.h"
 
 namespace frontmost::abuffer_detail {
 
@@ -17,30 +18,73 @@ struct TilePart {
   std::vector<T> items;
 };
 
-/// By pixel of the picture, where its list begins; and the end of the last. Every pixel is in one part at most.
+/// The parts of a picture as they are made. Every pixel is in one part at most.
 template <class T>
-[[nodiscard]] Buffer<std::uint64_t> beginnings(const View& view, const std::vector<TilePart<T>>& parts) {
-  Buffer<std::uint64_t> first(view.pixel_count() + 1, 0);
-  for (const TilePart<T>& part : parts)
+class TileParts {
+ public:
+  /// More than `most` items are an error, which says `error`.
+  TileParts(const View& view, std::uint64_t most, const char* error) : view_(view), most_(most), error_(error) {}
+
+  /// May be called by several threads at once. \throws Error limit_exceeded.
+  void add(TilePart<T> part) {
+    const std::lock_guard lock(mutex_);
+    item_count_ += part.items.size();
+    // Only here the sum is known. Parts before this one are held already, but each was bounded by what a tile may hold.
+    if (item_count_ > most_) throw Error(ErrorCode::limit_exceeded, error_);
+    parts_.push_back(std::move(part));
+  }
+
+  /// By pixel of the picture, where its list begins; and the end of the last.
+  [[nodiscard]] Buffer<std::uint64_t> beginnings() const;
+
+  /// Calls put(place, item) for every item of every part, each at its place behind `first`, which are the beginnings;
+  /// on all threads. Gives the memory of the parts back one by one.
+  template <class Put>
+  void place(const Buffer<std::uint64_t>& first, const Put& put, const Execution& execution) {
+    constexpr std::size_t kGrain = 16;
+    parallel_for(execution, parts_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        place_part(parts_[i], first, put);
+        parts_[i] = {};
+      }
+    });
+  }
+
+ private:
+  template <class Put>
+  void place_part(const TilePart<T>& part, const Buffer<std::uint64_t>& first, const Put& put) const;
+
+  const View& view_;
+  const std::uint64_t most_;
+  const char* const error_;
+  std::mutex mutex_;
+  std::uint64_t item_count_ = 0;
+  std::vector<TilePart<T>> parts_;
+};
+
+template <class T>
+Buffer<std::uint64_t> TileParts<T>::beginnings() const {
+  Buffer<std::uint64_t> first(view_.pixel_count() + 1, 0);
+  for (const TilePart<T>& part : parts_)
     for (int y = 0; y < part.pixels.height; ++y)
       for (int x = 0; x < part.pixels.width; ++x) {
         const std::size_t at =
-            std::size_t(part.pixels.y + y) * std::size_t(view.width) + std::size_t(part.pixels.x + x);
+            std::size_t(part.pixels.y + y) * std::size_t(view_.width) + std::size_t(part.pixels.x + x);
         const std::size_t p = std::size_t(y) * std::size_t(part.pixels.width) + std::size_t(x);
         // Lengths first, one place behind, then their sums: parts may come in any order.
         first[at + 1] = part.begin[p + 1] - part.begin[p];
       }
-  for (std::size_t i = 0; i < view.pixel_count(); ++i) first[i + 1] += first[i];
+  for (std::size_t i = 0; i < view_.pixel_count(); ++i) first[i + 1] += first[i];
   return first;
 }
 
-/// Calls put(place, item) for every item of a part.
-template <class T, class Put>
-void place_items(const TilePart<T>& part, const View& view, const Buffer<std::uint64_t>& first, const Put& put) {
+template <class T>
+template <class Put>
+void TileParts<T>::place_part(const TilePart<T>& part, const Buffer<std::uint64_t>& first, const Put& put) const {
   const auto width = std::size_t(part.pixels.width);
   for (std::size_t y = 0; y < std::size_t(part.pixels.height); ++y) {
     // The lists of a row are neighbours in both.
-    const std::size_t at = (std::size_t(part.pixels.y) + y) * std::size_t(view.width) + std::size_t(part.pixels.x);
+    const std::size_t at = (std::size_t(part.pixels.y) + y) * std::size_t(view_.width) + std::size_t(part.pixels.x);
     std::uint64_t place = first[at];
     for (std::size_t i = part.begin[y * width]; i < part.begin[(y + 1) * width]; ++i) put(place++, part.items[i]);
   }

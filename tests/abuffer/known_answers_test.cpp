@@ -3,8 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "frontmost/abuffer.h"
-#include "frontmost/zbuffer.h"
+#include "support/flat_picture.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
@@ -33,10 +32,29 @@ void add_left_of(Mesh& mesh, float edge, float z) {
   add_triangle(mesh, {edge, -64, z}, {edge, 64, z}, {edge - 96, 0, z});
 }
 
-glm::vec4 at(const ResolvedPicture& picture, int x, int y) {
-  const std::size_t i = std::size_t(y) * std::size_t(picture.width) + std::size_t(x);
-  return {picture.red[i], picture.green[i], picture.blue[i], picture.alpha[i]};
-}
+/// Pixels of triangles in these colours: of the picture, and of the fragments laid over each other, which are the same.
+class Answers {
+ public:
+  Answers(const Mesh& mesh, std::vector<glm::vec4> colors)
+      : colors_(std::move(colors)), scene_(painted(scene_of(mesh), colors_)), surfaces_(scene_) {}
+
+  void draw(const View& view, const AbufferOptions& options) {
+    picture_ = flat_picture(surfaces_, view, options);
+    lists_ = abuffer(surfaces_, view, options);
+  }
+  [[nodiscard]] glm::vec4 at(int x, int y) const {
+    const glm::vec4 found = pixel_of(picture_, x, y), by_fragments(laid_over(lists_, x, y, colors_));
+    EXPECT_EQ(found, by_fragments) << x << ", " << y;
+    return found;
+  }
+
+ private:
+  std::vector<glm::vec4> colors_;
+  Scene scene_;
+  Surfaces surfaces_;
+  Image picture_;
+  FragmentLists lists_;
+};
 
 TEST(KnownAnswers, SubSamplesOfGridsAreTheMiddlesOfTheirCells) {
   const Scene scene = scene_of(Mesh());
@@ -97,17 +115,16 @@ TEST(KnownAnswers, GlassOverGlassOverNothing) {
   Mesh mesh;
   add_plane(mesh, 1, 0);
   add_plane(mesh, 0, 0);
-  const Scene scene = scene_of(std::move(mesh));
-  const Surfaces surfaces(scene);
-  const std::vector<glm::vec4> colors = {{1, 0, 0, 0.5f}, {0, 0, 1, 0.5f}};
+  Answers glass(mesh, {{1, 0, 0, 0.5f}, {0, 0, 1, 0.5f}});
   for (const int grid : {0, 2, 4, 8}) {
-    const ResolvedPicture picture = resolve(surfaces, pixel_view(5, 3), colors, {grid});
+    SCOPED_TRACE(testing::Message() << "grid " << grid);
+    glass.draw(pixel_view(5, 3), {grid});
     // Half of red, and half of blue through the half that is left.
-    EXPECT_EQ(at(picture, 2, 1), glm::vec4(0.5f, 0, 0.25f, 0.75f)) << "grid " << grid;
-    const ResolvedPicture fainter = resolve(surfaces, pixel_view(5, 3), colors, {grid, 0.5f});
-    EXPECT_EQ(at(fainter, 2, 1), glm::vec4(0.25f, 0, 0.1875f, 0.4375f)) << "grid " << grid;
-    const ResolvedPicture clear = resolve(surfaces, pixel_view(5, 3), colors, {grid, 0});
-    EXPECT_EQ(at(clear, 2, 1), glm::vec4(0)) << "grid " << grid;
+    EXPECT_EQ(glass.at(2, 1), glm::vec4(0.5f, 0, 0.25f, 0.75f));
+    glass.draw(pixel_view(5, 3), {grid, 0.5f});
+    EXPECT_EQ(glass.at(2, 1), glm::vec4(0.25f, 0, 0.1875f, 0.4375f));
+    glass.draw(pixel_view(5, 3), {grid, 0});
+    EXPECT_EQ(glass.at(2, 1), glm::vec4(0));
   }
 }
 
@@ -116,18 +133,16 @@ TEST(KnownAnswers, CrossingPlanesShareThePixelInWhichTheyCross) {
   Mesh mesh;
   add_plane(mesh, 0, 1.0f / 64);
   add_plane(mesh, 0, -1.0f / 64);
-  const Scene scene = scene_of(std::move(mesh));
-  const Surfaces surfaces(scene);
+  Answers solid(mesh, {{1, 0, 0, 1}, {0, 0, 1, 1}}), glass(mesh, {{1, 0, 0, 0.5f}, {0, 0, 1, 0.5f}});
   for (const int grid : {2, 4, 8}) {
-    const ResolvedPicture solid =
-        resolve(surfaces, pixel_view(4, 4), std::vector<glm::vec4>{{1, 0, 0, 1}, {0, 0, 1, 1}}, {grid});
-    EXPECT_EQ(at(solid, 0, 2), glm::vec4(0.5f, 0, 0.5f, 1)) << "grid " << grid;
-    EXPECT_EQ(at(solid, 1, 2), glm::vec4(1, 0, 0, 1)) << "red is nearer to the right";
-    const ResolvedPicture glass =
-        resolve(surfaces, pixel_view(4, 4), std::vector<glm::vec4>{{1, 0, 0, 0.5f}, {0, 0, 1, 0.5f}}, {grid});
+    SCOPED_TRACE(testing::Message() << "grid " << grid);
+    solid.draw(pixel_view(4, 4), {grid});
+    EXPECT_EQ(solid.at(0, 2), glm::vec4(0.5f, 0, 0.5f, 1));
+    EXPECT_EQ(solid.at(1, 2), glm::vec4(1, 0, 0, 1)) << "red is nearer to the right";
+    glass.draw(pixel_view(4, 4), {grid});
     // In front 1/2, behind 1/4, each for half of the pixel.
-    EXPECT_EQ(at(glass, 0, 2), glm::vec4(0.375f, 0, 0.375f, 0.75f)) << "grid " << grid;
-    EXPECT_EQ(at(glass, 3, 2), glm::vec4(0.5f, 0, 0.25f, 0.75f)) << "grid " << grid;
+    EXPECT_EQ(glass.at(0, 2), glm::vec4(0.375f, 0, 0.375f, 0.75f));
+    EXPECT_EQ(glass.at(3, 2), glm::vec4(0.5f, 0, 0.25f, 0.75f));
   }
 }
 
@@ -246,8 +261,8 @@ TEST(KnownAnswers, AnEmptySceneHasEmptyLists) {
   const FragmentCounts counts = count_fragments(surfaces, view);
   EXPECT_EQ(counts.fragments, 0u);
   EXPECT_EQ(counts.longest, 0u);
-  const ResolvedPicture picture = resolve(surfaces, view, {});
-  for (const float alpha : picture.alpha) EXPECT_EQ(alpha, 0.0f);
+  const Image picture = flat_picture(surfaces, view);
+  for (std::size_t i = 0; i < view.pixel_count(); ++i) EXPECT_EQ(pixel_of(picture, i), glm::vec4(0));
 }
 
 }  // namespace

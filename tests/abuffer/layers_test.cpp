@@ -3,15 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cstring>
 #include <functional>
 #include <mutex>
 
 #include "abuffer/tile_parts.h"
 #include "fragment_oracle.h"
-#include "frontmost/zbuffer.h"
 #include "support/effort.h"
+#include "support/flat_picture.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
@@ -87,14 +86,15 @@ TEST_P(EveryKindOfLayer, PicturesOfOpaqueThingsAreTheZBuffers) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Case c = small_case(GetParam(), seed + 50);
     c.view.samples = seed % 2 ? 4 : 16;
-    const Surfaces surfaces(c.scene);
     Random random(seed);
     std::vector<glm::vec4> colors;
-    for (std::size_t i = 0; i < surfaces.primitive_count(); ++i) {
+    for (std::size_t i = 0; i < c.scene.meshes[0].triangles.size(); ++i) {
       const float red = random.unit(), green = random.unit();
       colors.push_back({red, green, 0, 1});
     }
-    const ResolvedPicture picture = resolve(surfaces, c.view, colors);
+    c.scene = painted(std::move(c.scene), colors);
+    const Surfaces surfaces(c.scene);
+    const Image picture = flat_picture(surfaces, c.view);
     const Visible visible = zbuffer(surfaces, c.view);
     for (int y = 0; y < c.view.height; ++y)
       for (int x = 0; x < c.view.width; ++x) {
@@ -104,10 +104,8 @@ TEST_P(EveryKindOfLayer, PicturesOfOpaqueThingsAreTheZBuffers) {
           if (id != no_primitive) sum += glm::dvec4(colors[id]);
         }
         sum /= double(c.view.samples);
-        const std::size_t at = std::size_t(y) * std::size_t(c.view.width) + std::size_t(x);
-        ASSERT_NEAR(picture.red[at], sum.r, 1e-6) << x << ", " << y;
-        ASSERT_NEAR(picture.green[at], sum.g, 1e-6) << x << ", " << y;
-        ASSERT_NEAR(picture.alpha[at], sum.a, 1e-6) << x << ", " << y;
+        const glm::dvec4 found(pixel_of(picture, x, y));
+        for (int k = 0; k < 4; ++k) ASSERT_NEAR(found[k], sum[k], 1e-6) << x << ", " << y << ", channel " << k;
       }
   }
 }
@@ -195,14 +193,13 @@ TEST(Running, IsEndedByTheWatchAndReportsAllTiles) {
   View view = c.view;
   view.width = 300;
   view.height = 200;  // 20 tiles
-  const std::vector<glm::vec4> colors(surfaces.primitive_count(), glm::vec4(0.5f));
   const Watch ending{.progress = {}, .cancelled = [] { return true; }};
   const Execution ended{.threads = 2, .watch = &ending};
   const std::function<void(const Execution&)> runs[] = {
       [&](const Execution& e) { (void)abuffer(surfaces, view, {4}, e); },
       [&](const Execution& e) { (void)count_fragments(surfaces, view, {4}, e); },
       [&](const Execution& e) { (void)visible_layers(surfaces, view, 2, {}, e); },
-      [&](const Execution& e) { (void)resolve(surfaces, view, colors, {4}, e); },
+      [&](const Execution& e) { (void)flat_picture(surfaces, view, {4}, e); },
   };
   for (const auto& run : runs) {
     try {
@@ -224,46 +221,6 @@ TEST(Running, IsEndedByTheWatchAndReportsAllTiles) {
   }
 }
 
-TEST(Running, AResolverThatWasEndedDrawsTheNextPictureWhole) {
-  const Case full = small_case(Kind::soup, 3), few = small_case(Kind::tiny, 4);
-  const Surfaces a(full.scene), b(few.scene);
-  View view = full.view;
-  view.width = 300;
-  view.height = 200;
-  const std::vector<glm::vec4> colors_a(a.primitive_count(), glm::vec4(0.5f)),
-      colors_b(b.primitive_count(), glm::vec4(1));
-  const ResolvedPicture wanted = resolve(b, view, colors_b, {2});
-  for (int allowed = 1; allowed < 20; allowed += 3) {
-    Resolver resolver;
-    (void)resolver.draw(a, view, colors_a, {2});
-    // Ended with some tiles of the new picture drawn, and some of the old one left.
-    std::atomic<int> left{allowed};
-    const Watch watch{.progress = {}, .cancelled = [&] { return --left < 0; }};
-    EXPECT_THROW((void)resolver.draw(b, view, colors_b, {2}, {.threads = 1, .watch = &watch}), Error);
-    const ResolvedPicture& found = resolver.draw(b, view, colors_b, {2});
-    ASSERT_EQ(0, std::memcmp(found.alpha.data(), wanted.alpha.data(), view.pixel_count() * sizeof(float))) << allowed;
-    ASSERT_EQ(0, std::memcmp(found.red.data(), wanted.red.data(), view.pixel_count() * sizeof(float))) << allowed;
-  }
-}
-
-TEST(Running, WhatIsTakenOfAResolverIsItsLastPicture) {
-  const Case c = small_case(Kind::soup, 5);
-  const Surfaces surfaces(c.scene);
-  const std::vector<glm::vec4> colors(surfaces.primitive_count(), glm::vec4(0.25f));
-  const ResolvedPicture wanted = resolve(surfaces, c.view, colors);
-  Resolver resolver;
-  EXPECT_EQ(resolver.take().width, 0) << "nothing was drawn yet";
-  for (int round = 0; round < 2; ++round) {
-    (void)resolver.draw(surfaces, c.view, colors);
-    Resolver moved = std::move(resolver);
-    const ResolvedPicture taken = moved.take();
-    ASSERT_EQ(taken.width, c.view.width);
-    EXPECT_EQ(0, std::memcmp(taken.alpha.data(), wanted.alpha.data(), c.view.pixel_count() * sizeof(float)));
-    EXPECT_EQ(moved.take().width, 0) << "it is gone";
-    resolver = std::move(moved);
-  }
-}
-
 // ---- Errors, in full ----
 
 template <class Action>
@@ -280,12 +237,11 @@ std::string error_of(Action&& action) {
 TEST(Errors, NameOptionAndValue) {
   const Case c = small_case(Kind::soup, 1);
   const Surfaces surfaces(c.scene);
-  const std::vector<glm::vec4> colors(surfaces.primitive_count());
   for (const int grid : {-2, 1, 3, 5, 16, 64}) {
     const std::string words = "abuffer: grid: must be 0, 2, 4 or 8, not " + std::to_string(grid);
     EXPECT_EQ(error_of([&] { (void)abuffer(surfaces, c.view, {grid}); }), words);
     EXPECT_EQ(error_of([&] { (void)count_fragments(surfaces, c.view, {grid}); }), words);
-    EXPECT_EQ(error_of([&] { (void)resolve(surfaces, c.view, colors, {grid}); }), words);
+    EXPECT_EQ(error_of([&] { (void)flat_picture(surfaces, c.view, {grid}); }), words);
   }
   EXPECT_EQ(error_of([&] { (void)visible_layers(surfaces, c.view, 1, {3}); }), "none") << "has no grid";
   for (const float opacity : {-1e-6f, 1.000001f, std::numeric_limits<float>::infinity(), std::nanf("")})
@@ -295,17 +251,12 @@ TEST(Errors, NameOptionAndValue) {
               "abuffer: opacity: must be 0 to 1");
   for (const int count : {-1, 0, 1025})
     EXPECT_EQ(error_of([&] { (void)visible_layers(surfaces, c.view, count); }), "abuffer: layers: must be 1 to 1024");
-  const std::string all = std::to_string(colors.size());
-  EXPECT_EQ(error_of([&] { (void)resolve(surfaces, c.view, std::span(colors).first(2)); }),
-            "resolve: colors: 2 for " + all + " primitives");
-  EXPECT_EQ(error_of([&] { (void)resolve(surfaces, c.view, {}); }), "resolve: colors: 0 for " + all + " primitives");
 }
 
 // ---- Putting lists together ----
 
-using abuffer_detail::beginnings;
-using abuffer_detail::place_items;
 using abuffer_detail::TilePart;
+using abuffer_detail::TileParts;
 
 /// A part whose pixel (x, y) of the picture has as many items as `length` says, named by pixel and number.
 template <class Length>
@@ -333,14 +284,18 @@ TEST(TileParts, ComeTogetherInTheOrderOfPixelsHoweverTheyArrive) {
       for (int i = 0; i < (y == 2 && x > 4 ? 0 : length(x, y)); ++i) wanted.push_back(100 * (10 * y + x) + i);
   for (int round = 0; round < 4; ++round) {
     std::rotate(parts.begin(), parts.begin() + 1, parts.end());
-    const Buffer<std::uint64_t> first = beginnings(view, parts);
+    TileParts<int> all(view, wanted.size(), "too many");
+    for (const TilePart<int>& part : parts) all.add(part);
+    const Buffer<std::uint64_t> first = all.beginnings();
     ASSERT_EQ(first.size(), 36u);
     EXPECT_EQ(first[0], 0u);
     EXPECT_EQ(first[35], wanted.size());
     std::vector<int> items(wanted.size(), -1);
-    for (const TilePart<int>& part : parts)
-      place_items(part, view, first, [&](std::uint64_t at, int item) { items.at(at) = item; });
+    all.place(first, [&](std::uint64_t at, int item) { items.at(at) = item; }, {.threads = 2});
     EXPECT_EQ(items, wanted);
+    TileParts<int> too_many(view, wanted.size() - 1, "too many");
+    for (std::size_t i = 0; i + 1 < parts.size(); ++i) too_many.add(parts[i]);
+    EXPECT_THROW(too_many.add(parts.back()), Error);
   }
 }
 

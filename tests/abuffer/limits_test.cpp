@@ -5,8 +5,8 @@
 
 #include <functional>
 
-#include "frontmost/abuffer.h"
 #include "support/effort.h"
+#include "support/flat_picture.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
@@ -39,8 +39,6 @@ ErrorCode code_of(const std::function<void()>& action) {
 
 TEST(ManyLayers, TilesInPartsGiveWhatEverySheetAddsUpTo) {
   constexpr int count = 700;  // 2.8 million fragments in a tile of 64 x 64, ten times what is kept at once
-  const Scene scene = stack_of(count);
-  const Surfaces surfaces(scene);
   const View view = front_view(70, 66);
   Random random(1);
   std::vector<glm::vec4> colors;
@@ -51,11 +49,13 @@ TEST(ManyLayers, TilesInPartsGiveWhatEverySheetAddsUpTo) {
     red += left * double(color.a) * double(color.r);
     left *= 1 - double(color.a);
   }
+  const Scene scene = painted(stack_of(count), colors);
+  const Surfaces surfaces(scene);
   for (const int grid : {0, 4}) {
-    const ResolvedPicture picture = resolve(surfaces, view, colors, {grid});
+    const Image picture = flat_picture(surfaces, view, {grid});
     for (std::size_t i = 0; i < view.pixel_count(); ++i) {
-      ASSERT_NEAR(picture.red[i], red, 1e-5) << "pixel " << i;
-      ASSERT_NEAR(picture.alpha[i], 1 - left, 1e-5) << "pixel " << i;
+      ASSERT_NEAR(pixel_of(picture, i).r, red, 1e-5) << "pixel " << i;
+      ASSERT_NEAR(pixel_of(picture, i).a, 1 - left, 1e-5) << "pixel " << i;
     }
   }
 }
@@ -159,12 +159,23 @@ TEST(Values, OutOfRangeAreRefused) {
   const Scene scene = stack_of(1);
   const Surfaces surfaces(scene);
   const View view = front_view(8, 8);
-  const std::vector<glm::vec4> colors(2, glm::vec4(1));
   for (const int grid : {-1, 1, 3, 16})
     EXPECT_EQ(code_of([&] { (void)abuffer(surfaces, view, {grid}); }), ErrorCode::bad_argument);
   for (const float opacity : {-0.1f, 1.1f, std::numeric_limits<float>::quiet_NaN()})
-    EXPECT_EQ(code_of([&] { (void)resolve(surfaces, view, colors, {0, opacity}); }), ErrorCode::bad_argument);
-  EXPECT_EQ(code_of([&] { (void)resolve(surfaces, view, std::span(colors).first(1)); }), ErrorCode::bad_argument);
+    for (const auto& action :
+         std::initializer_list<std::function<void()>>{[&] {
+                                                        (void)abuffer(surfaces, view, {0, opacity});
+                                                      },
+                                                      [&] {
+                                                        (void)count_fragments(surfaces, view, {0, opacity});
+                                                      },
+                                                      [&] {
+                                                        (void)visible_layers(surfaces, view, 1, {0, opacity});
+                                                      },
+                                                      [&] {
+                                                        (void)flat_picture(surfaces, view, {0, opacity});
+                                                      }})
+      EXPECT_EQ(code_of(action), ErrorCode::bad_argument);
   EXPECT_EQ(code_of([&] { (void)visible_layers(surfaces, view, 0); }), ErrorCode::bad_argument);
   EXPECT_EQ(code_of([&] { (void)visible_layers(surfaces, view, 1025); }), ErrorCode::bad_argument);
 }
@@ -192,36 +203,21 @@ TEST(LargePictures, EqualTheirParts) {
     }
     add_triangle(mesh, corners[0], corners[1], corners[2]);
   }
-  const Scene scene = scene_of(std::move(mesh));
+  const std::vector<glm::vec4> blue = {{0.2f, 0.4f, 0.9f, 0.3f}};
+  const Scene scene = painted(scene_of(std::move(mesh)), blue);
   const Surfaces surfaces(scene);
-  const std::vector<glm::vec4> colors(surfaces.primitive_count(), {0.2f, 0.4f, 0.9f, 0.3f});
-  // Written past the cache, where rows begin at whole lines of it: all of 1024 pixels, some of 1004, few of 1001.
+  // The last tile of a row has 64 pixels, 44 or 41: whole groups of pixels, and one of which there is a column alone.
   constexpr int height = 512, step = 128;
   for (const int width : {1024, 1004, 1001})
     for (const int grid : {0, 2}) {
-      const ResolvedPicture whole = resolve(surfaces, crop(0, 0, width, height), colors, {grid});
+      const Image whole = flat_picture(surfaces, crop(0, 0, width, height), {grid});
       for (int top = 0; top < height; top += step) {
-        const ResolvedPicture part = resolve(surfaces, crop(0, top, width, step), colors, {grid});
-        for (std::size_t i = 0; i < part.red.size(); ++i) {
+        const Image part = flat_picture(surfaces, crop(0, top, width, step), {grid});
+        for (std::size_t i = 0; i < std::size_t(width * step); ++i) {
           const std::size_t at = std::size_t(top) * std::size_t(width) + i;
-          ASSERT_EQ(part.blue[i], whole.blue[at]) << width << ": " << at;
-          ASSERT_EQ(part.alpha[i], whole.alpha[at]) << width << ": " << at;
+          ASSERT_EQ(pixel_of(part, i), pixel_of(whole, at)) << width << ": " << at;
         }
       }
-    }
-}
-
-TEST(Resolver, GivesTheSameAfterOtherPictures) {
-  const Scene many = stack_of(12), one = scene_of(random_mesh(Kind::tiny, 40, 2)), none = scene_of(Mesh());
-  const Surfaces a(many), b(one), c(none);
-  Resolver resolver;
-  for (const Surfaces* surfaces : {&a, &b, &a, &c, &b, &a})
-    for (const int grid : {0, 4}) {
-      const View view = front_view(130, 70);
-      const std::vector<glm::vec4> colors(surfaces->primitive_count(), glm::vec4(0.5f));
-      const ResolvedPicture& found = resolver.draw(*surfaces, view, colors, {grid});
-      const ResolvedPicture wanted = resolve(*surfaces, view, colors, {grid});
-      for (std::size_t i = 0; i < view.pixel_count(); ++i) ASSERT_EQ(found.alpha[i], wanted.alpha[i]) << i;
     }
 }
 

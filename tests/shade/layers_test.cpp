@@ -10,6 +10,7 @@
 #include "shade/layers/deep_layers.h"
 #include "shade/support.h"
 #include "support/effort.h"
+#include "support/flat_picture.h"
 
 namespace frontmost {
 namespace {
@@ -204,11 +205,13 @@ TEST(SeeThrough, WhatNextToNothingPassesToIsNotMissed) {
     options.opacity = 0.5f;
     const Image picture = shade(surfaces, zbuffer(surfaces, view), options);
     const std::vector<glm::vec4> colors(surfaces.primitive_count(), glm::vec4(1, 0.25f, 0, 1));
-    const ResolvedPicture expected = resolve(surfaces, view, colors, {0, 0.5f});
-    for (std::size_t i = 0; i < view.pixel_count(); ++i) {
-      ASSERT_NEAR(picture.find("R")->floats()[i], expected.red[i], 1e-6);
-      ASSERT_NEAR(picture.find("A")->floats()[i], expected.alpha[i], 1e-6);
-    }
+    const FragmentLists all = abuffer(surfaces, view, {0, 0.5f});
+    EXPECT_EQ(all.at(32, 30).size(), 60u);
+    for (int y = 0; y < view.height; ++y)
+      for (int x = 0; x < view.width; ++x) {
+        const glm::dvec4 expected = laid_over(all, x, y, colors), found(pixel_of(picture, x, y));
+        for (int k = 0; k < 4; ++k) ASSERT_NEAR(found[k], expected[k], 1e-6) << x << ", " << y;
+      }
   }
 }
 

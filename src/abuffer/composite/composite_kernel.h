@@ -1,29 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours of one tile's fragments, laid over each other in the order of depth.
+// Colours of the fragments of one rectangle of pixels, laid over each other in the order of depth.
 #pragma once
 
 #include "abuffer/gather/gather_kernel.h"
 
 namespace frontmost::abuffer_detail {
 
-/// Linear colours with straight alpha, 0 to 1.
-struct FragmentColors {
-  const glm::vec4* table;
-  bool by_fragment;  ///< numbered as in Arrived; otherwise by primitive. Never of flat frames.
-  float opacity;     ///< multiplies every alpha
+/// The fragments of one group of pixels while it is composited: of pixel p in slot s at s * 16 + p.
+struct GroupFragments {
+  Buffer<std::uint32_t> mask_low, mask_high;  ///< all samples where there is no fragment
+  Buffer<std::uint32_t> triangle;             ///< number in LocalTriangles
+  Buffer<std::uint32_t> number;               ///< in Arrived
+  Buffer<float> nearest, farthest, behind;    ///< the range of its keys; the nearest of all behind it
+  Buffer<std::int32_t> reach;                 ///< the last slot that one up to this may change places with
+
+  /// Room for lists of so many slots. What was there is lost.
+  void reserve(std::size_t slots) {
+    const std::size_t wanted = slots * kGroup, size = 2 * wanted;
+    if (reach.size() >= wanted) return;
+    for (Buffer<std::uint32_t>* b : {&mask_low, &mask_high, &triangle, &number}) *b = Buffer<std::uint32_t>(size);
+    for (Buffer<float>* b : {&nearest, &farthest, &behind}) *b = Buffer<float>(size);
+    reach = Buffer<std::int32_t>(size);
+  }
 };
 
-/// Planes of the whole picture, or of a part of it.
-struct PicturePlanes {
-  float *red, *green, *blue, *alpha;
-  int width;
-  int x = 0, y = 0;      ///< of the picture's pixel that comes first
-  bool streams = false;  ///< write them past the cache: they are too large to stay in it
+/// What all rectangles of a picture share.
+struct CompositeInput {
+  const SamplePattern& pattern;
+  float opacity;  ///< multiplies every alpha
+  Isa isa;
 };
 
-/// Writes a job's pixels: premultiplied means over the sub-samples. At every sub-sample the order is that of the keys
-/// there, the lower id first where they are equal.
-void composite_tile(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch,
-                    const FragmentColors& colors, const PicturePlanes& out);
+/// The pixels of a rectangle, row by row: premultiplied means over the sub-samples. At every sub-sample the order is
+/// that of the keys there, the lower id first where they are equal. `fragments` are those of the rectangle; `colors`,
+/// linear with straight alpha of 0 to 1, are numbered as in Arrived.
+[[nodiscard]] std::vector<glm::vec4> composite_tile(const CompositeInput& input, const Rectangle& pixels,
+                                                    const GatherScratch& fragments,
+                                                    const std::vector<glm::vec4>& colors);
 
 }  // namespace frontmost::abuffer_detail

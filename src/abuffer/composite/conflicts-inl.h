@@ -19,6 +19,7 @@
 #define FRONTMOST_ABUFFER_CONFLICTS_INL_H_
 #endif
 
+#include "abuffer/composite/composite_kernel.h"
 #include "abuffer/gather/fragment_sink-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -45,9 +46,9 @@ HWY_INLINE SlotHalves HalvesOf(const std::uint64_t* words) {
 template <bool kWide>
 class GroupReader {
  public:
-  /// `all`: the mask of all sub-samples. `by_fragment`: colours are numbered as in Arrived, not as in LocalTriangles.
-  GroupReader(GatherScratch& scratch, std::uint64_t all, bool by_fragment)
-      : s_(scratch), g_(scratch.fragments), all_(all), by_fragment_(by_fragment) {}
+  /// `all`: the mask of all sub-samples.
+  GroupReader(const GatherScratch& scratch, GroupFragments& fragments, std::uint64_t all)
+      : s_(scratch), g_(fragments), all_(all) {}
 
   /// Fills GroupFragments. \returns the pixels, as bits, in which fragments may change places: none at a single sample.
   /// In these `reach` holds, for every fragment, the last slot that one up to it may change places with.
@@ -95,7 +96,7 @@ class GroupReader {
       hn::Store(nearest, df, g_.nearest.data() + at);
       hn::Store(farthest, df, g_.farthest.data() + at);
       hn::Store(hn::BitCast(du, triangle), du, g_.triangle.data() + at);
-      hn::Store(hn::BitCast(du, by_fragment_ ? number : triangle), du, g_.paint.data() + at);
+      hn::Store(hn::BitCast(du, number), du, g_.number.data() + at);
       // Where there is no fragment, nothing is covered in part.
       const auto mask_of = [&](const std::int32_t* masks, std::uint32_t all) HWY_ATTR {
         return hn::IfThenElse(valid, hn::BitCast(du, hn::GatherIndex(d, masks, number)), hn::Set(du, all));
@@ -208,10 +209,9 @@ class GroupReader {
     return key;
   }
 
-  GatherScratch& s_;
+  const GatherScratch& s_;
   GroupFragments& g_;
   const std::uint64_t all_;
-  const bool by_fragment_;
   std::size_t group_ = 0, length_ = 0;
   std::uint64_t in_conflict_ = 0;
   HWY_ALIGN_MAX std::int32_t run_end_[kGroup] = {};  ///< by pixel, the last slot of the run that is looked at

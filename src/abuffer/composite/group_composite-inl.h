@@ -175,7 +175,7 @@ class GroupCompositor {
   /// The colours of a slot. \returns opacities: 0 where there is no fragment.
   HWY_INLINE VF Fetch(std::size_t at) {
     const DF d;
-    slot_ = ColorsOf(table_, g_.paint.data() + at);
+    slot_ = ColorsOf(table_, g_.number.data() + at);
     const VF nearest = hn::Load(d, g_.nearest.data() + at);
     return hn::IfThenElseZero(hn::Gt(nearest, hn::Set(d, -1.0f)), hn::Mul(slot_.alpha, hn::Set(d, opacity_)));
   }

@@ -40,8 +40,9 @@ HWY_INLINE float AddHalves(D /*tag*/, hn::Vec<D> v) {
 template <int kSamples>
 class PixelCompositor {
  public:
-  PixelCompositor(const GatherInput& frame, GatherScratch& scratch, const glm::vec4* table, float opacity)
-      : pattern_(frame.pattern), s_(scratch), g_(scratch.fragments), table_(table), opacity_(opacity) {}
+  PixelCompositor(const CompositeInput& input, const GatherScratch& scratch, const GroupFragments& fragments,
+                  const glm::vec4* colors)
+      : pattern_(input.pattern), s_(scratch), g_(fragments), table_(colors), opacity_(input.opacity) {}
 
   /// Premultiplied. Precondition: GroupFragments are those of the group, with `reach` for this pixel.
   HWY_NOINLINE glm::vec4 Composite(std::size_t group, std::size_t pixel) {
@@ -81,7 +82,7 @@ class PixelCompositor {
     return kSamples > 32 ? std::uint64_t(g_.mask_high[At(slot)]) << 32 | g_.mask_low[At(slot)] : g_.mask_low[At(slot)];
   }
   [[nodiscard]] HWY_INLINE PrimitiveId IdAt(std::size_t slot) const { return s_.triangles.id[g_.triangle[At(slot)]]; }
-  [[nodiscard]] HWY_INLINE const glm::vec4& ColorAt(std::size_t slot) const { return table_[g_.paint[At(slot)]]; }
+  [[nodiscard]] HWY_INLINE const glm::vec4& ColorAt(std::size_t slot) const { return table_[g_.number[At(slot)]]; }
 
   static HWY_INLINE hn::Mask<DF> LanesOf(std::uint64_t mask, std::size_t v) {
     const std::uint64_t bits = mask >> (v * kLanes);
@@ -197,7 +198,7 @@ class PixelCompositor {
   }
 
   const SamplePattern& pattern_;
-  GatherScratch& s_;
+  const GatherScratch& s_;
   const GroupFragments& g_;
   const glm::vec4* table_;
   const float opacity_;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "abuffer/gather/cut_fragments.h"
+// Holes in fragments: sub-samples that look through are taken out of their masks.
 
 #include <bit>
 #include <optional>
 
+#include "abuffer/gather/gather_kernel.h"
+#include "view/ray_volumes.h"
 #include "view/screen_cutout.h"
 
 namespace frontmost::abuffer_detail {
@@ -17,7 +19,7 @@ glm::ivec2 place_of(std::uint32_t pixel) {
 
 }  // namespace
 
-void cut_fragments(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch) {
+void cut_fragments(const GatherInput& frame, const Rectangle& pixels, GatherScratch& scratch) {
   const Cutouts* const cutouts = frame.plan.set().cutouts.get();
   if (!cutouts) return;
   const ScreenRays rays(frame.plan.view());
@@ -31,7 +33,7 @@ void cut_fragments(const GatherInput& frame, const GatherJob& job, GatherScratch
     // Fragments arrive triangle by triangle, so the plane is set up once for all of its pixels.
     if (id != last) cutout.emplace((*cutouts)[id], rays);
     last = id;
-    const glm::ivec2 pixel = glm::ivec2(job.pixels.x, job.pixels.y) + place_of(arrived.place[i] >> kRankBits);
+    const glm::ivec2 pixel = glm::ivec2(pixels.x, pixels.y) + place_of(arrived.place[i] >> kRankBits);
     std::uint64_t mask = arrived.mask(i);
     for (std::uint64_t left = mask; left != 0; left &= left - 1) {
       const glm::ivec2 at = pixel * kSubPixels + samples[std::size_t(std::countr_zero(left))];

@@ -22,7 +22,6 @@
 #include "base/compactor-inl.h"
 #include "base/lane_types-inl.h"
 #include "base/lanes-inl.h"
-#include "base/prefetch.h"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -91,7 +90,6 @@ constexpr float kHalfPixel = kSubPixels / 2;
 /// roundings are not relative have the second.
 constexpr float kKeyRounding = 16.0f / 16777216.0f, kLeastRounding = 1e-42f;
 
-template <bool kFlat>
 class FragmentSink {
  public:
   FragmentSink(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch)
@@ -101,14 +99,7 @@ class FragmentSink {
         height(job.pixels.height),
         triangles(scratch.triangles),
         arrived(scratch.arrived),
-        counts(scratch.counts.data()),
-        colors_(frame.colors) {}
-
-  /// Colours are read from all over the table when the tile is composited: late for every one that is not asked for
-  /// now.
-  HWY_INLINE void ExpectColor(PrimitiveId id) const {
-    if (colors_) prefetch_line(colors_ + id);
-  }
+        counts(scratch.counts.data()) {}
 
   /// The pixels of the tile whose samples may lie between corners.
   [[nodiscard]] HWY_INLINE FragmentBounds BoundsOf(VI x_min, VI x_max, VI y_min, VI y_max) const {
@@ -174,7 +165,6 @@ class FragmentSink {
   HWY_INLINE void FillIn(std::size_t n, std::uint32_t triangle) {
     const DU d;
     hn::StoreU(hn::Set(d, triangle), d, arrived.triangle.data() + n);
-    if (kFlat) return;
     hn::StoreU(hn::Set(d, std::uint32_t(samples.full())), d, arrived.mask_low.data() + n);
     hn::StoreU(hn::Set(d, std::uint32_t(samples.full() >> 32)), d, arrived.mask_high.data() + n);
   }
@@ -187,8 +177,6 @@ class FragmentSink {
     const DI d;
     return hn::Min(hn::ShiftRight<8>(hn::Sub(maximum, hn::Set(d, first * SamplePattern::unit))), hn::Set(d, size - 1));
   }
-
-  const glm::vec4* const colors_;
 };
 
 }  // namespace HWY_NAMESPACE

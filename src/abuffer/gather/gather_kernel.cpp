@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fragments of one tile: rasterised, counted and appended in one go, then placed into lists and sorted.
+// The fragments of one tile: rasterised, counted and appended in one go; then placed into lists and sorted.
 
 #include "abuffer/gather/gather_kernel.h"
 
@@ -19,7 +19,6 @@ namespace frontmost::abuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-template <bool kFlat>
 class TileGatherer {
  public:
   TileGatherer(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch)
@@ -154,22 +153,17 @@ class TileGatherer {
 
   const GatherInput& frame_;
   const GatherJob& job_;
-  FragmentSink<kFlat> sink_;
-  LargeFragments<kFlat> large_;
-  SmallFragments<kFlat> small_;
+  FragmentSink sink_;
+  LargeFragments large_;
+  SmallFragments small_;
 };
 
 Gathered GatherTile(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch) {
   std::fill(scratch.counts.begin(), scratch.counts.end(), 0u);
   scratch.arrived.count = Arrived::first;
   scratch.triangles.clear();
-  // One sample a pixel needs no masks, and the id itself stands for the triangle: three words a fragment, not five.
-  const bool fits =
-      frame.is_flat ? TileGatherer<true>(frame, job, scratch).Run() : TileGatherer<false>(frame, job, scratch).Run();
-  if (!fits) return Gathered::too_much;
-  if (scratch.arrived.count == Arrived::first) return Gathered::nothing;
-  PlaceAndSort(frame, scratch);
-  return Gathered::something;
+  if (!TileGatherer(frame, job, scratch).Run()) return Gathered::too_much;
+  return scratch.arrived.count == Arrived::first ? Gathered::nothing : Gathered::something;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -180,10 +174,13 @@ HWY_AFTER_NAMESPACE();
 namespace frontmost::abuffer_detail {
 
 FRONTMOST_KERNELS(GatherTile);
+FRONTMOST_KERNELS(SortLists);
 
 Gathered gather_tile(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch) {
   return kernel_for(GatherTileKernels, frame.isa)(frame, job, scratch);
 }
+
+void sort_lists(Isa isa, GatherScratch& scratch) { kernel_for(SortListsKernels, isa)(scratch); }
 
 }  // namespace frontmost::abuffer_detail
 #endif  // HWY_ONCE

@@ -1,24 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gathering the fragments of one tile.
+// Gathering the fragments of one rectangle of pixels, sorting them into lists, and taking holes out of them.
 #pragma once
 
+#include <array>
+
 #include "abuffer/gather/tile_scratch.h"
-#include "abuffer/plan/crowd.h"
 
 namespace frontmost::abuffer_detail {
+
+/// Where the sub-samples of a pixel are, from its top left corner. Every pattern lies on multiples of 1/16 pixel, so
+/// that edge functions may be shifted right by 4 before stepping from sample to sample: exact, and a step is a multiple
+/// of dx or -dy.
+struct SamplePattern {
+  static constexpr int max_count = 64;
+  static constexpr int unit = 16;  ///< 1/256 pixels in a step
+
+  int count = 1;
+  std::array<std::int32_t, max_count> x{}, y{};  ///< in 1/16 pixel
+  std::int32_t low_x = 0, high_x = 0, low_y = 0, high_y = 0;
+
+  [[nodiscard]] std::uint64_t full() const {
+    return count == max_count ? ~std::uint64_t(0) : (std::uint64_t(1) << count) - 1;
+  }
+  /// In 1/256 pixel.
+  [[nodiscard]] std::vector<glm::ivec2> positions() const;
+};
+
+/// The view's own samples for grid 0. \throws Error bad_argument unless the grid is 0, 2, 4 or 8.
+[[nodiscard]] SamplePattern sample_pattern(const View& view, int grid);
 
 /// What all tiles of a frame share.
 struct GatherInput {
   const FragmentPlan& plan;
   const SamplePattern& pattern;
-  /// Lists hold primitive ids instead of numbers of fragments, and fragments know neither triangle nor mask: quicker,
-  /// and enough where a pixel has one sample. Only with one sample.
-  bool is_flat;
   Isa isa;
-  /// What may be left out where tiles hold too much.
-  const CopyRule& copies;
-  /// By primitive, where it is known; asked for ahead while triangles are drawn.
-  const glm::vec4* colors = nullptr;
 };
 
 /// A rectangle of a tile, whose clusters and single triangles it looks through.
@@ -29,8 +44,16 @@ struct GatherJob {
 
 enum class Gathered : std::uint8_t { nothing, something, too_much };
 
-/// Fills the scratch's sorted lists with all fragments of the rectangle. `too_much`: they are more than kMostOfTile;
-/// of rectangles of one pixel all are gathered. \throws Error limit_exceeded for more than kMostOfPixel in one pixel.
+/// Fills the scratch with all fragments of the rectangle, in the order of arrival. `too_much`: they are more than
+/// kMostOfTile; of rectangles of one pixel all are gathered.
+/// \throws Error limit_exceeded for more than kMostOfPixel in one pixel.
 [[nodiscard]] Gathered gather_tile(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch);
+
+/// Puts gathered fragments into sorted lists, once. O(n log^2 n) for lists of n fragments.
+void sort_lists(Isa isa, GatherScratch& scratch);
+
+/// Takes the sub-samples that look through holes out of the masks, some of which become 0: such fragments show nothing.
+/// `pixels` is the rectangle that was gathered. O(fragments); nothing where the scene has no cut-outs.
+void cut_fragments(const GatherInput& frame, const Rectangle& pixels, GatherScratch& scratch);
 
 }  // namespace frontmost::abuffer_detail

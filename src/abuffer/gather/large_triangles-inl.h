@@ -21,10 +21,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 // stays right and its sums stay within 32 bits.
 constexpr std::int64_t kEdgeLimit = std::int64_t(1) << 30;
 
-template <bool kFlat>
 class LargeFragments {
  public:
-  explicit LargeFragments(FragmentSink<kFlat>& sink) : sink_(sink) {
+  explicit LargeFragments(FragmentSink& sink) : sink_(sink) {
     for (std::int32_t i = 0; i < 16; ++i) {
       column_[i] = i % 4;
       row_[i] = i / 4;
@@ -37,7 +36,6 @@ class LargeFragments {
   void Draw(const ScreenTriangle& t) {
     const Bounds rect = BoundsOf(t);
     if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
-    sink_.ExpectColor(t.id);
     SetUpEdges(t);
     SetUpPlane(t);
     const std::size_t before = sink_.arrived.count;
@@ -45,7 +43,7 @@ class LargeFragments {
       DrawNarrow(rect);
     else
       DrawWide(rect);
-    if (!kFlat && sink_.arrived.count > before) KeepPlane();
+    if (sink_.arrived.count > before) KeepPlane();
   }
 
  private:
@@ -86,7 +84,7 @@ class LargeFragments {
       e.block_max = e.sample_max + 3 * (std::max(e.step_x, 0) + std::max(e.step_y, 0));
       e.block_min = e.sample_min + 3 * (std::min(e.step_x, 0) + std::min(e.step_y, 0));
       for (int i = 0; i < 16; ++i) e.pixel[i] = column_[i] * e.step_x + row_[i] * e.step_y;
-      if (!kFlat) sink_.samples.Fill(steps_, k, dx, dy);
+      sink_.samples.Fill(steps_, k, dx, dy);
     }
   }
 
@@ -115,7 +113,7 @@ class LargeFragments {
     slack_ = (high_ + (reach_x * std::abs(gx_) + reach_y * std::abs(gy_))) * kKeyRounding + kLeastRounding;
     // However steep, no key leaves the triangle's range.
     half_ = std::min(slope * kHalfPixel, high_ - low_) + slack_;
-    triangle_ = kFlat ? id_ : std::uint32_t(sink_.triangles.count);
+    triangle_ = std::uint32_t(sink_.triangles.count);
   }
 
   void KeepPlane() {
@@ -224,21 +222,20 @@ class LargeFragments {
       VI least = hn::Zero(d), most = hn::Zero(d);
       for (int k = 0; k < 3; ++k) {
         const VI at = hn::Add(hn::Set(d, e[k]), hn::Load(d, edge_[k].pixel + first));
-        if (!kFlat) hn::Store(at, d, corner_[k]);
+        hn::Store(at, d, corner_[k]);
         most = hn::Or(most, hn::Add(at, hn::Set(d, edge_[k].sample_max)));
-        if (!kFlat) least = hn::Or(least, hn::Add(at, hn::Set(d, edge_[k].sample_min)));
+        least = hn::Or(least, hn::Add(at, hn::Set(d, edge_[k].sample_min)));
       }
       const VI x = hn::Add(hn::Load(d, column_ + first), hn::Set(d, 4 * bx));
       const VI y = hn::Add(hn::Load(d, row_ + first), hn::Set(d, 4 * by));
       touched = hn::And(hn::Lt(x, hn::Set(d, sink_.width)), hn::Lt(y, hn::Set(d, sink_.height)));
       touched = hn::And(touched, hn::Gt(most, hn::Set(d, -1)));
-      if (!kFlat) covered = hn::And(touched, hn::Gt(least, hn::Set(d, -1)));
+      covered = hn::And(touched, hn::Gt(least, hn::Set(d, -1)));
       if (hn::AllFalse(d, touched)) return;
     }
     const VF key = KeysOf(bx, by, first);
     const std::uint32_t pixel = std::uint32_t((by * kBlocksAcross + bx) * 16 + first);
     if (kFull) return AppendFull(pixel, key);
-    if (kFlat) return AppendWhole(pixel, key, touched);
     if (!hn::AllFalse(d, covered)) AppendWhole(pixel, key, covered);
     AppendParts(pixel, key, BitsOf(d, hn::AndNot(covered, touched)));
   }
@@ -292,7 +289,7 @@ class LargeFragments {
     });
   }
 
-  FragmentSink<kFlat>& sink_;
+  FragmentSink& sink_;
   // Of a block's pixels: place in the block, in pixels and in 1/256 pixel.
   HWY_ALIGN_MAX std::int32_t column_[16], row_[16];
   HWY_ALIGN_MAX float centre_x_[16], centre_y_[16];

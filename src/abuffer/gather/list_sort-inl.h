@@ -118,29 +118,24 @@ HWY_INLINE void MakeRoom(GatherScratch& s) {
   std::fill_n(s.slots.data(), words, std::uint64_t(0));
 }
 
-template <bool kFlat>
 HWY_INLINE void Place(GatherScratch& s) {
   const std::uint32_t *place = s.arrived.place.data(), *key = s.arrived.key.data(), *begin = s.counts.data();
-  const std::uint32_t* triangle = s.arrived.triangle.data();
   auto* slots = reinterpret_cast<char*>(s.slots.data());
   const std::size_t count = s.arrived.count;
   for (std::size_t n = Arrived::first; n < count; ++n) {
     const std::size_t rank = place[n] & kMostOfPixel;
-    const std::uint64_t word = std::uint64_t(key[n]) << 32 | (kFlat ? ~triangle[n] : ~std::uint32_t(n));
+    const std::uint64_t word = std::uint64_t(key[n]) << 32 | ~std::uint32_t(n);
     // As bytes, which may be those of any other array: g++ would make a scatter of it that takes longer.
     std::memcpy(slots + (begin[place[n] >> kRankBits] + rank * kGroup) * sizeof word, &word, sizeof word);
   }
 }
 
-inline void PlaceAndSort(const GatherInput& frame, GatherScratch& s) {
+inline void SortLists(GatherScratch& s) {
   MakeRoom(s);
-  if (frame.is_flat)
-    Place<true>(s);
-  else
-    Place<false>(s);
+  Place(s);
   for (std::size_t g = 0; g < kGroups; ++g) {
     SortGroup(s.slot(g, 0), s.length(g));
-    if (!frame.is_flat) FindTies(s, g);
+    FindTies(s, g);
   }
 }
 

@@ -29,11 +29,10 @@ struct FragmentQueue {
   std::size_t count = 0;
 };
 
-template <bool kFlat>
 class SmallFragments {
  public:
   /// Steep triangles go to `large`.
-  SmallFragments(FragmentSink<kFlat>& sink, GatherScratch& scratch, LargeFragments<kFlat>& large)
+  SmallFragments(FragmentSink& sink, GatherScratch& scratch, LargeFragments& large)
       : sink_(sink), large_(large), references_(scratch.references.data()) {}
 
   HWY_INLINE void Append(const VI (&fields)[FragmentQueue::kFields], MI keep) {
@@ -55,8 +54,7 @@ class SmallFragments {
       ForEachBit(BitsOf(d, plane_.steep), [&](std::size_t lane) { large_.Draw(QueuedTriangle(lane)); });
     const std::size_t found = Walk();
     if (found > 0) {
-      for (std::size_t i = 0; i < drawn; ++i) sink_.ExpectColor(std::uint32_t(queue_.field[9][i]));
-      if (!kFlat) KeepPlanes(drawn);
+      KeepPlanes(drawn);
       AppendFound(found);
     }
     queue_.count -= drawn;
@@ -122,7 +120,6 @@ class SmallFragments {
     const VF keys[3] = {KeyOf(0), KeyOf(1), KeyOf(2)};
     plane_ = view_detail::HWY_NAMESPACE::KeyPlanesOf(x, y, keys);
     plane_.steep = hn::And(live, plane_.steep);
-    if (kFlat) return;
     const VF slope = hn::Add(hn::Abs(plane_.gx), hn::Abs(plane_.gy));
     const VF reach = hn::Set(df, float(kSmallExtent + 2 * kSubPixels));
     slack_ = hn::Add(hn::Mul(hn::Add(plane_.k_max, hn::Mul(slope, reach)), hn::Set(df, kKeyRounding)),
@@ -193,7 +190,6 @@ class SmallFragments {
     const DF df;
     const VI from_x = hn::Sub(hn::Add(hn::ShiftLeft<8>(px_), hn::Set(d, kSubPixels / 2)), plane_.x0);
     const VI from_y = hn::Sub(hn::Add(hn::ShiftLeft<8>(py_), hn::Set(d, kSubPixels / 2)), plane_.y0);
-    const VI ids = hn::Load(d, queue_.field[9]);
     for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
       const VI reference = hn::BitCast(d, hn::LoadU(du, references_ + i));
       // Beyond the last there may be anything: lanes stay within the vector.
@@ -211,10 +207,6 @@ class SmallFragments {
       const VI px = hn::Add(hn::TableLookupLanes(px_, of), x), py = hn::Add(hn::TableLookupLanes(py_, of), y);
       hn::Store(PixelNumber(px, py), d, pixel_);
       const std::size_t live = HWY_MIN(count - i, hn::Lanes(d));
-      if (kFlat) {
-        AppendFlat(hn::BitCast(d, key), hn::TableLookupLanes(ids, of), live);
-        continue;
-      }
       hn::Store(hn::BitCast(du, key), du, key_);
       hn::Store(lane, d, lane_);
       for (int k = 0; k < 3; ++k) {
@@ -233,19 +225,6 @@ class SmallFragments {
     return hn::Add(hn::ShiftLeft<4>(block), hn::Add(hn::ShiftLeft<2>(hn::And(y, three)), hn::And(x, three)));
   }
 
-  HWY_INLINE void AppendFlat(VI key, VI ids, std::size_t live) {
-    const DU du;
-    Arrived& out = sink_.arrived;
-    const std::size_t n = out.count;
-    hn::StoreU(hn::BitCast(du, key), du, out.key.data() + n);
-    hn::StoreU(hn::BitCast(du, ids), du, out.triangle.data() + n);
-    for (std::size_t k = 0; k < live; ++k) {
-      const auto pixel = std::uint32_t(pixel_[k]);
-      out.place[n + k] = pixel << kRankBits | sink_.counts[pixel]++;
-    }
-    out.count += live;
-  }
-
   HWY_INLINE void AppendMasked(std::size_t live) {
     for (std::size_t k = 0; k < live; ++k) {
       const auto lane = std::size_t(lane_[k]);
@@ -254,8 +233,8 @@ class SmallFragments {
     }
   }
 
-  FragmentSink<kFlat>& sink_;
-  LargeFragments<kFlat>& large_;
+  FragmentSink& sink_;
+  LargeFragments& large_;
   std::uint32_t* references_;
   FragmentQueue queue_;
   // One batch. Edge functions are at the corner of the first pixel of each triangle's rectangle.

@@ -39,12 +39,4 @@ GatherScratch::GatherScratch()
   arrived.key[0] = arrived.triangle[0] = arrived.place[0] = arrived.mask_low[0] = arrived.mask_high[0] = 0;
 }
 
-void GroupFragments::reserve(std::size_t slots) {
-  const std::size_t size = 2 * slots * kGroup;
-  if (reach.size() >= size / 2) return;
-  for (Buffer<std::uint32_t>* b : {&mask_low, &mask_high, &triangle, &paint}) *b = Buffer<std::uint32_t>(size);
-  for (Buffer<float>* b : {&nearest, &farthest, &behind}) *b = Buffer<float>(size);
-  reach = Buffer<std::int32_t>(size);
-}
-
 }  // namespace frontmost::abuffer_detail

@@ -58,7 +58,7 @@ struct Arrived {
   std::size_t count = 0, capacity = 0;
   Buffer<std::uint32_t> key;                  ///< bits of the float
   Buffer<std::uint32_t> place;                ///< pixel << kRankBits | rank
-  Buffer<std::uint32_t> triangle;             ///< number in LocalTriangles; of flat tiles the primitive id
+  Buffer<std::uint32_t> triangle;             ///< number in LocalTriangles
   Buffer<std::uint32_t> mask_low, mask_high;  ///< sub-samples 0 to 31 and 32 to 63
 
   void grow(std::size_t wanted);
@@ -70,32 +70,18 @@ struct Arrived {
   }
 };
 
-/// The fragments of one group while it is composited: of pixel p in slot s at s * 16 + p.
-struct GroupFragments {
-  Buffer<std::uint32_t> mask_low, mask_high;  ///< all samples where there is no fragment
-  Buffer<std::uint32_t> triangle;             ///< number in LocalTriangles
-  Buffer<std::uint32_t> paint;                ///< number of the colour
-  Buffer<float> nearest, farthest, behind;    ///< the range of its keys; the nearest of all behind it
-  Buffer<std::int32_t> reach;                 ///< the last slot that one up to this may change places with
-
-  void reserve(std::size_t slots);
-};
-
 struct GatherScratch {
   GatherScratch();
 
   LocalTriangles triangles;
   Arrived arrived;
-  Buffer<std::uint32_t> counts;      ///< by pixel; of sorted lists, where they begin
+  Buffer<std::uint32_t> counts;      ///< by pixel; once the lists are sorted, where they begin
   Buffer<std::uint32_t> group_base;  ///< by group, in slots; and the end of the last
-  /// Slot-major: slot s of pixel p of a group at (base + s) * 16 + p. Each is key bits << 32 | ~number of the fragment
-  /// (flat: ~primitive id), descending; 0 is empty.
+  /// Slot-major: slot s of pixel p of a group at (base + s) * 16 + p. Each is key bits << 32 | ~number of the
+  /// fragment, descending; 0 is empty.
   Buffer<std::uint64_t> slots;
   std::vector<std::uint64_t> run;    ///< equal keys of one pixel
   Buffer<std::uint32_t> references;  ///< covered (triangle, pixel) pairs of one batch
-
-  GroupFragments fragments;  ///< of one group
-  Buffer<glm::vec4> colors;  ///< of the local triangles
 
   [[nodiscard]] std::size_t length(std::size_t group) const { return group_base[group + 1] - group_base[group]; }
   /// The keys of a fragment within its pixel.
@@ -108,6 +94,9 @@ struct GatherScratch {
     return std::max(arrived.key_of(number) - triangles.half[t], triangles.low[t]);
   }
   [[nodiscard]] std::uint64_t* slot(std::size_t group, std::size_t s) {
+    return slots.data() + (group_base[group] + s) * kGroup;
+  }
+  [[nodiscard]] const std::uint64_t* slot(std::size_t group, std::size_t s) const {
     return slots.data() + (group_base[group] + s) * kGroup;
   }
 };

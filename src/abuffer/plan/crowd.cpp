@@ -6,6 +6,7 @@
 #include <cstring>
 #include <tuple>
 
+#include "frontmost/abuffer.h"
 #include "view/triangle_keys.h"
 
 namespace frontmost::abuffer_detail {

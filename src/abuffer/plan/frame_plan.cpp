@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/float_environment.h"
 #include "base/parallel.h"
 #include "view/clip.h"
 #include "view/triangle_keys.h"
@@ -88,40 +89,42 @@ bool orient(ScreenTriangle& t, Culling culling) {
   return true;
 }
 
-void FragmentPlan::make(const Surfaces& surfaces, const View& view, const Execution& execution) {
-  set_ = &surfaces.clusters(execution);
-  transform_.emplace(view);
-  view_ = view;
-  tiles_x_ = (view.width + kTileSize - 1) / kTileSize;
-  tiles_y_ = (view.height + kTileSize - 1) / kTileSize;
+FragmentPlan::FragmentPlan(const Surfaces& surfaces, const View& view, const Execution& execution) {
+  const IeeeScope ieee;
+  const auto tiles_along = [](int pixels) { return (pixels + kTileSize - 1) / kTileSize; };
+  frame_ = std::make_shared<Frame>(Frame{surfaces.clusters(execution),
+                                         ScreenTransform(view),
+                                         view,
+                                         tiles_along(view.width),
+                                         tiles_along(view.height),
+                                         {}});
   transform_all(execution);
   take_apart(execution);
   make_lists({});
 }
 
 Rectangle FragmentPlan::tile(std::size_t number) const {
-  const int x = int(number % std::size_t(tiles_x_)) * kTileSize, y = int(number / std::size_t(tiles_x_)) * kTileSize;
-  return {x, y, std::min(kTileSize, view_.width - x), std::min(kTileSize, view_.height - y)};
+  const int x = int(number % std::size_t(frame_->tiles_x)) * kTileSize,
+            y = int(number / std::size_t(frame_->tiles_x)) * kTileSize;
+  return {x, y, std::min(kTileSize, view().width - x), std::min(kTileSize, view().height - y)};
 }
 
 void FragmentPlan::transform_all(const Execution& execution) {
   constexpr std::size_t kGrain = 256;
-  if (screen_->x.size() < set_->x.size()) {
-    screen_->x = Buffer<std::int32_t>(set_->x.size());
-    screen_->y = Buffer<std::int32_t>(set_->x.size());
-    screen_->key = Buffer<float>(set_->x.size());
-  }
-  screen_->places.resize(set_->clusters.size());
-  parallel_for(execution, set_->clusters.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    transform_clusters(*set_, *transform_, execution.isa, begin, end, *screen_);
+  const std::size_t vertices = set().x.size(), clusters = set().clusters.size();
+  ScreenClusters& screen = frame_->screen;
+  screen = {Buffer<std::int32_t>(vertices), Buffer<std::int32_t>(vertices), Buffer<float>(vertices),
+            std::vector<ClusterPlace>(clusters)};
+  parallel_for(execution, clusters, kGrain, [&](std::size_t begin, std::size_t end) {
+    transform_clusters(set(), transform(), execution.isa, begin, end, screen);
   });
 }
 
 void FragmentPlan::take_apart(const Execution& execution) {
   std::vector<std::uint32_t> apart;
-  for (std::size_t i = 0; i < screen_->places.size(); ++i) {
-    ClusterPlace& place = screen_->places[i];
-    if (place.fate == ScreenFate::whole && tiles_of(place, *transform_, view_).count() > kMaxTilesOfCluster)
+  for (std::size_t i = 0; i < screen().places.size(); ++i) {
+    ClusterPlace& place = frame_->screen.places[i];
+    if (place.fate == ScreenFate::whole && tiles_of(place, transform(), view()).count() > kMaxTilesOfCluster)
       place.fate = ScreenFate::spread;
     if (place.fate == ScreenFate::spread || place.fate == ScreenFate::apart) apart.push_back(std::uint32_t(i));
   }
@@ -129,31 +132,30 @@ void FragmentPlan::take_apart(const Execution& execution) {
   std::vector<std::vector<ScreenTriangle>> parts((apart.size() + kGrain - 1) / kGrain);
   parallel_for(execution, apart.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Cluster& cluster = set_->clusters[apart[i]];
-      if (screen_->places[apart[i]].fate == ScreenFate::spread)
+      const Cluster& cluster = set().clusters[apart[i]];
+      if (screen().places[apart[i]].fate == ScreenFate::spread)
         append_snapped(cluster, parts[begin / kGrain]);
       else
         append_clipped(cluster, parts[begin / kGrain]);
     }
   });
-  singles_.clear();
   for (const std::vector<ScreenTriangle>& part : parts) singles_.insert(singles_.end(), part.begin(), part.end());
 }
 
 bool FragmentPlan::is_drawn(ScreenTriangle& t) const {
-  return tiles_of(t, view_).count() > 0 && orient(t, view_.culling);
+  return tiles_of(t, view()).count() > 0 && orient(t, view().culling);
 }
 
 ScreenTriangle FragmentPlan::snapped(const Cluster& cluster, std::size_t triangle) const {
   const std::size_t c = cluster.first_triangle + triangle;
-  const std::uint8_t numbers[3] = {set_->i0[c], set_->i1[c], set_->i2[c]};
+  const std::uint8_t numbers[3] = {set().i0[c], set().i1[c], set().i2[c]};
   ScreenTriangle t;
-  t.id = set_->id[c];
+  t.id = set().id[c];
   for (int k = 0; k < 3; ++k) {
     const std::size_t v = cluster.first_vertex + numbers[k];
-    t.x[k] = screen_->x[v] + transform_->centre_x;
-    t.y[k] = screen_->y[v] + transform_->centre_y;
-    t.key[k] = screen_->key[v];
+    t.x[k] = screen().x[v] + transform().centre_x;
+    t.y[k] = screen().y[v] + transform().centre_y;
+    t.key[k] = screen().key[v];
   }
   return t;
 }
@@ -168,20 +170,20 @@ void FragmentPlan::append_snapped(const Cluster& cluster, std::vector<ScreenTria
 void FragmentPlan::append_clipped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const {
   const auto position = [&](std::size_t vertex) {
     const std::size_t v = cluster.first_vertex + vertex;
-    return glm::vec3(set_->x[v], set_->y[v], set_->z[v]);
+    return glm::vec3(set().x[v], set().y[v], set().z[v]);
   };
   for (std::size_t c = cluster.first_triangle; c < cluster.first_triangle + cluster.triangle_count; ++c) {
-    if (set_->i0[c] == set_->i1[c]) continue;  // has a corner that is not finite, or no area
+    if (set().i0[c] == set().i1[c]) continue;  // has a corner that is not finite, or no area
     const ClippedPolygon polygon =
-        clip_triangle(*transform_, {position(set_->i0[c]), position(set_->i1[c]), position(set_->i2[c])});
+        clip_triangle(transform(), {position(set().i0[c]), position(set().i1[c]), position(set().i2[c])});
     for (int k = 2; k < polygon.count; ++k) {
       const ScreenVertex fan[3] = {polygon.corners[0], polygon.corners[std::size_t(k - 1)],
                                    polygon.corners[std::size_t(k)]};
       ScreenTriangle t;
-      t.id = set_->id[c];
+      t.id = set().id[c];
       for (int v = 0; v < 3; ++v) {
-        t.x[v] = fan[v].x + transform_->centre_x;
-        t.y[v] = fan[v].y + transform_->centre_y;
+        t.x[v] = fan[v].x + transform().centre_x;
+        t.y[v] = fan[v].y + transform().centre_y;
         t.key[v] = fan[v].key;
       }
       if (is_drawn(t)) triangles.push_back(t);
@@ -191,7 +193,7 @@ void FragmentPlan::append_clipped(const Cluster& cluster, std::vector<ScreenTria
 
 ScreenTriangle FragmentPlan::triangle(const TriangleNumber& number) const {
   if (number.cluster == no_index) return singles_[number.index];
-  ScreenTriangle t = snapped(set_->clusters[number.cluster], number.index);
+  ScreenTriangle t = snapped(set().clusters[number.cluster], number.index);
   (void)is_drawn(t);  // turns it
   return t;
 }
@@ -201,14 +203,8 @@ FragmentPlan FragmentPlan::without(std::span<const TriangleNumber> hidden) const
   std::sort(sorted.begin(), sorted.end(), [](const TriangleNumber& a, const TriangleNumber& b) {
     return a.cluster != b.cluster ? a.cluster < b.cluster : a.index < b.index;
   });
-  FragmentPlan plan;
-  plan.set_ = set_;
-  plan.transform_ = transform_;
-  plan.view_ = view_;
-  plan.tiles_x_ = tiles_x_;
-  plan.tiles_y_ = tiles_y_;
-  plan.screen_ = screen_;
-  std::vector<bool> left_out(screen_->places.size(), false);
+  FragmentPlan plan(frame_);
+  std::vector<bool> left_out(screen().places.size(), false);
   for (const TriangleNumber& n : sorted)
     if (n.cluster != no_index) left_out[n.cluster] = true;
   auto next = sorted.begin();
@@ -218,8 +214,8 @@ FragmentPlan FragmentPlan::without(std::span<const TriangleNumber> hidden) const
     return true;
   };
   for (std::uint32_t c = 0; c < left_out.size(); ++c)
-    for (std::uint32_t i = 0; left_out[c] && i < set_->clusters[c].triangle_count; ++i) {
-      ScreenTriangle t = snapped(set_->clusters[c], i);
+    for (std::uint32_t i = 0; left_out[c] && i < set().clusters[c].triangle_count; ++i) {
+      ScreenTriangle t = snapped(set().clusters[c], i);
       if (is_drawn(t) && !is_hidden(c, i)) plan.singles_.push_back(t);
     }
   // Singles have the highest number of a cluster, and so come last.
@@ -230,18 +226,17 @@ FragmentPlan FragmentPlan::without(std::span<const TriangleNumber> hidden) const
 }
 
 void FragmentPlan::make_lists(const std::vector<bool>& left_out) {
-  cluster_lists_ = lists_of(tile_count(), screen_->places.size(), [&](std::size_t i, const auto& add) {
-    const ClusterPlace& place = screen_->places[i];
+  cluster_lists_ = lists_of(tile_count(), screen().places.size(), [&](std::size_t i, const auto& add) {
+    const ClusterPlace& place = screen().places[i];
     if (place.fate == ScreenFate::whole && (left_out.empty() || !left_out[i]))
-      for_tiles(tiles_of(place, *transform_, view_), tiles_x_, [&](int, int, std::size_t tile) { add(tile); });
+      for_tiles(tiles_of(place, transform(), view()), frame_->tiles_x, [&](int, int, std::size_t tile) { add(tile); });
   });
   std::size_t items = 0;
-  for (const ScreenTriangle& t : singles_) items += tiles_of(t, view_).count();
-  single_lists_.reset();
+  for (const ScreenTriangle& t : singles_) items += tiles_of(t, view()).count();
   if (items > kMostSingleItems) return;
   single_lists_ = lists_of(tile_count(), singles_.size(), [&](std::size_t i, const auto& add) {
     const ScreenTriangle& t = singles_[i];
-    for_tiles(tiles_of(t, view_), tiles_x_, [&](int x, int y, std::size_t tile) {
+    for_tiles(tiles_of(t, view()), frame_->tiles_x, [&](int x, int y, std::size_t tile) {
       if (!misses(t, x, y)) add(tile);
     });
   });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is drawn where: the clusters and single triangles of every tile.
+// What is drawn where: clusters put on the screen, and the clusters and single triangles of every tile.
 #pragma once
 
 #include <memory>
@@ -7,10 +7,36 @@
 #include <span>
 #include <vector>
 
-#include "abuffer/plan/sample_pattern.h"
-#include "abuffer/plan/screen_clusters.h"
+#include "surfaces/cluster_set.h"
+#include "view/screen_transform.h"
 
 namespace frontmost::abuffer_detail {
+
+enum class ScreenFate : std::uint8_t {
+  outside,  ///< no pixel can see it
+  whole,    ///< every vertex is snapped
+  spread,   ///< likewise, but over so many tiles that it is taken apart
+  apart,    ///< some triangle may need clipping
+};
+
+/// Where a cluster is; the bounds, in 1/256 pixel from the image's centre, hold unless it is to be taken apart.
+struct ClusterPlace {
+  ScreenFate fate = ScreenFate::outside;
+  std::int32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+/// Snapped vertices, from the image's centre, at the places where ClusterSet has them. Those of vertices that cannot be
+/// snapped are 0.
+struct ScreenClusters {
+  Buffer<std::int32_t> x, y;
+  Buffer<float> key;
+  std::vector<ClusterPlace> places;
+};
+
+/// Transforms the vertices of clusters [begin, end) and says where the clusters are. Exact: bounds are those of the
+/// snapped vertices, so no margin for rounding is needed.
+void transform_clusters(const ClusterSet& set, const ScreenTransform& transform, Isa isa, std::size_t begin,
+                        std::size_t end, ScreenClusters& screen);
 
 inline constexpr int kTileSize = 64;
 
@@ -49,19 +75,13 @@ struct TriangleNumber {
 /// The plan of a frame: 12 bytes a vertex, and 40 for every triangle that is large or had to be clipped.
 class FragmentPlan {
  public:
-  FragmentPlan() = default;
-  FragmentPlan(const Surfaces& surfaces, const View& view, const Execution& execution) {
-    make(surfaces, view, execution);
-  }
+  FragmentPlan(const Surfaces& surfaces, const View& view, const Execution& execution);
 
-  /// Plans another frame in the memory of the last one.
-  void make(const Surfaces& surfaces, const View& view, const Execution& execution);
-
-  [[nodiscard]] const ClusterSet& set() const { return *set_; }
-  [[nodiscard]] const ScreenTransform& transform() const { return *transform_; }
-  [[nodiscard]] const View& view() const { return view_; }
-  [[nodiscard]] const ScreenClusters& screen() const { return *screen_; }
-  [[nodiscard]] std::size_t tile_count() const { return std::size_t(tiles_x_) * std::size_t(tiles_y_); }
+  [[nodiscard]] const ClusterSet& set() const { return frame_->set; }
+  [[nodiscard]] const ScreenTransform& transform() const { return frame_->transform; }
+  [[nodiscard]] const View& view() const { return frame_->view; }
+  [[nodiscard]] const ScreenClusters& screen() const { return frame_->screen; }
+  [[nodiscard]] std::size_t tile_count() const { return std::size_t(frame_->tiles_x) * std::size_t(frame_->tiles_y); }
   [[nodiscard]] Rectangle tile(std::size_t number) const;
 
   [[nodiscard]] std::span<const std::uint32_t> clusters(std::size_t tile) const { return cluster_lists_.of(tile); }
@@ -78,11 +98,20 @@ class FragmentPlan {
   /// Precondition: for_each() has it.
   [[nodiscard]] ScreenTriangle triangle(const TriangleNumber& number) const;
   /// Whether a texture may cut holes into it.
-  [[nodiscard]] bool may_have_holes(PrimitiveId id) const { return set_->cutouts && set_->cutouts->has(id); }
-  /// The same frame without some triangles, of which there is none twice. Only as long as make() is not called.
+  [[nodiscard]] bool may_have_holes(PrimitiveId id) const { return set().cutouts && set().cutouts->has(id); }
+  /// The same frame without some triangles, of which there is none twice.
   [[nodiscard]] FragmentPlan without(std::span<const TriangleNumber> hidden) const;
 
  private:
+  /// What all plans of a frame share, whichever of its triangles they leave out.
+  struct Frame {
+    const ClusterSet& set;
+    ScreenTransform transform;
+    View view;
+    int tiles_x, tiles_y;
+    ScreenClusters screen;
+  };
+  explicit FragmentPlan(std::shared_ptr<Frame> frame) : frame_(std::move(frame)) {}
   void transform_all(const Execution& execution);
   void take_apart(const Execution& execution);
   void append_clipped(const Cluster& cluster, std::vector<ScreenTriangle>& triangles) const;
@@ -93,11 +122,7 @@ class FragmentPlan {
   /// `left_out`: clusters whose triangles are among the singles, or empty.
   void make_lists(const std::vector<bool>& left_out);
 
-  const ClusterSet* set_ = nullptr;
-  std::optional<ScreenTransform> transform_;
-  View view_;
-  int tiles_x_ = 0, tiles_y_ = 0;
-  std::shared_ptr<ScreenClusters> screen_ = std::make_shared<ScreenClusters>();  ///< shared with what is without some
+  std::shared_ptr<Frame> frame_;
   std::vector<ScreenTriangle> singles_;
   TileNumbers cluster_lists_;
   std::optional<TileNumbers> single_lists_;
@@ -106,9 +131,9 @@ class FragmentPlan {
 template <class Visit>
 void FragmentPlan::for_each(const Visit& visit) const {
   for (std::uint32_t i = 0; i < singles_.size(); ++i) visit(singles_[i], TriangleNumber{no_index, i});
-  for (std::uint32_t c = 0; c < screen_->places.size(); ++c) {
-    if (screen_->places[c].fate != ScreenFate::whole) continue;
-    const Cluster& cluster = set_->clusters[c];
+  for (std::uint32_t c = 0; c < screen().places.size(); ++c) {
+    if (screen().places[c].fate != ScreenFate::whole) continue;
+    const Cluster& cluster = set().clusters[c];
     for (std::uint32_t i = 0; i < cluster.triangle_count; ++i) {
       ScreenTriangle t = snapped(cluster, i);
       if (is_drawn(t)) visit(t, TriangleNumber{c, i});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // All vertices of clusters put on the screen, and what their clusters cover there.
 
-#include "abuffer/plan/screen_clusters.h"
+#include "abuffer/plan/frame_plan.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "abuffer/plan/screen_kernel.cpp"

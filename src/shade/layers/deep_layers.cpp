@@ -2,21 +2,20 @@
 #include "shade/layers/deep_layers.h"
 
 #include <algorithm>
-#include <mutex>
 #include <numeric>
 #include <tuple>
 
 #include "abuffer/tile_parts.h"
-#include "base/parallel.h"
 #include "view/screen_transform.h"
 
 namespace frontmost::shading {
 namespace {
 
 using abuffer_detail::FragmentPass;
-using abuffer_detail::JobLists;
+using abuffer_detail::PixelLists;
 using abuffer_detail::Rectangle;
 using abuffer_detail::TilePart;
+using abuffer_detail::TileParts;
 
 constexpr std::uint64_t kMostSamples = std::uint64_t(1) << 28;
 
@@ -55,7 +54,7 @@ class PartMaker {
   PartMaker(const View& view, const FragmentPass& pass, const LayerShader& shader)
       : view_(view), opacity_(pass.opacity()), samples_(pass.samples()), shader_(shader) {}
 
-  [[nodiscard]] TilePart<DeepSample> make(const Rectangle& pixels, const JobLists& lists) const {
+  [[nodiscard]] TilePart<DeepSample> make(const Rectangle& pixels, const PixelLists& lists) const {
     std::vector<std::uint32_t> numbers(lists.fragments.size());
     std::iota(numbers.begin(), numbers.end(), 0u);
     std::vector<glm::vec4> colors(numbers.size());
@@ -71,7 +70,7 @@ class PartMaker {
 
  private:
   /// `corner`: of the pixel, in 1/256 pixel from the rectangle's.
-  void add_pixel(const JobLists& lists, std::size_t pixel, const std::vector<glm::vec4>& all_colors,
+  void add_pixel(const PixelLists& lists, std::size_t pixel, const std::vector<glm::vec4>& all_colors,
                  const glm::ivec2& corner, std::vector<DeepSample>& out) const {
     const std::size_t begin = lists.begin[pixel], count = lists.begin[pixel + 1] - begin;
     const auto fragments = std::span(lists.fragments).subspan(begin, count);
@@ -98,24 +97,6 @@ class PartMaker {
   std::vector<glm::ivec2> samples_;
   const LayerShader& shader_;
 };
-
-std::vector<TilePart<DeepSample>> all_parts(const View& view, const FragmentPass& pass, const LayerShader& shader,
-                                            const Execution& execution) {
-  const PartMaker maker(view, pass, shader);
-  std::mutex mutex;
-  std::vector<TilePart<DeepSample>> parts;
-  std::uint64_t total = 0;
-  pass.look(
-      [&](const Rectangle& pixels, const JobLists& lists) {
-        TilePart<DeepSample> part = maker.make(pixels, lists);
-        const std::lock_guard lock(mutex);
-        total += part.items.size();
-        if (total > kMostSamples) throw Error(ErrorCode::limit_exceeded, "shade: more than 2^28 deep samples");
-        parts.push_back(std::move(part));
-      },
-      execution);
-  return parts;
-}
 
 /// The planes of a deep image, by sample.
 struct DeepPlanes {
@@ -157,17 +138,13 @@ std::vector<float> shown_parts(std::span<const Fragment> fragments, std::span<co
 
 DeepImage deep_layers(const Surfaces& surfaces, const View& view, const FragmentPass& pass, const LayerShader& shader,
                       const Execution& execution) {
-  std::vector<TilePart<DeepSample>> parts = all_parts(view, pass, shader, execution);
-  DeepImage image{view.width, view.height, abuffer_detail::beginnings(view, parts), {}};
+  const PartMaker maker(view, pass, shader);
+  TileParts<DeepSample> parts(view, kMostSamples, "shade: more than 2^28 deep samples");
+  pass.look([&](const Rectangle& pixels, const PixelLists& lists) { parts.add(maker.make(pixels, lists)); }, execution);
+  DeepImage image{view.width, view.height, parts.beginnings(), {}};
   DeepPlanes planes(image.first[view.pixel_count()]);
-  constexpr std::size_t kGrain = 16;
-  parallel_for(execution, parts.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      abuffer_detail::place_items(parts[i], view, image.first,
-                                  [&](std::uint64_t at, const DeepSample& s) { planes.set(at, s); });
-      parts[i] = {};
-    }
-  });
+  parts.place(
+      image.first, [&](std::uint64_t at, const DeepSample& s) { planes.set(at, s); }, execution);
   image.channels.push_back({"R", std::move(planes.red)});
   image.channels.push_back({"G", std::move(planes.green)});
   image.channels.push_back({"B", std::move(planes.blue)});

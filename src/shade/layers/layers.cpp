@@ -4,7 +4,7 @@
 namespace frontmost::shading {
 
 using abuffer_detail::FragmentPass;
-using abuffer_detail::JobLists;
+using abuffer_detail::PixelLists;
 using abuffer_detail::Rectangle;
 
 LayerShader::LayerShader(const TriangleSource& source, const FragmentPass& pass,
@@ -24,7 +24,7 @@ glm::vec2 LayerShader::centroid(std::uint64_t mask) const {
   return sum / count;
 }
 
-void LayerShader::shade(const Rectangle& pixels, const JobLists& lists, std::span<const std::uint32_t> numbers,
+void LayerShader::shade(const Rectangle& pixels, const PixelLists& lists, std::span<const std::uint32_t> numbers,
                         std::vector<glm::vec4>& colors) const {
   const auto shader = shaders_.borrow([&] { return std::make_unique<FragmentShader>(source_, colorist_); });
   const auto receive = [&](std::uint32_t number, float, const glm::vec3& light, float alpha) {
@@ -55,7 +55,7 @@ BitSet seen_primitives(const Surfaces& surfaces, const FragmentPass& pass, const
 void shade_layers(const TriangleSource& source, const FragmentPass& pass, const Painting& painting,
                   const Execution& execution) {
   const LayerShader shader(source, pass, painting.colorist);
-  const auto paint = [&](const Rectangle& pixels, const JobLists& lists, std::vector<glm::vec4>& colors) {
+  const auto paint = [&](const Rectangle& pixels, const PixelLists& lists, std::vector<glm::vec4>& colors) {
     shader.shade(pixels, lists, lists.numbers, colors);
   };
   const auto receive = [&](const Rectangle& r, const std::vector<glm::vec4>* pixels) {

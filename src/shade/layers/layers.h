@@ -21,7 +21,7 @@ class LayerShader {
 
   /// Sets colors[numbers[i]], straight alpha, for every fragment i: shaded at the middle of what it covers of its
   /// pixel.
-  void shade(const abuffer_detail::Rectangle& pixels, const abuffer_detail::JobLists& lists,
+  void shade(const abuffer_detail::Rectangle& pixels, const abuffer_detail::PixelLists& lists,
              std::span<const std::uint32_t> numbers, std::vector<glm::vec4>& colors) const;
 
  private:

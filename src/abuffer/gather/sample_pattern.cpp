@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "abuffer/plan/sample_pattern.h"
+// Where the sub-samples of a pixel are.
 
 #include <algorithm>
 #include <string>
+
+#include "abuffer/gather/gather_kernel.h"
 
 namespace frontmost::abuffer_detail {
 namespace {
