@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "fragment_oracle.h"
@@ -29,6 +30,10 @@ Polygon clipped(const Polygon& in, int axis, double limit, bool keep_greater) {
 }
 
 double area_in_pixel(const OracleTriangle& t, int x, int y) {
+  const auto is_beside = [](const std::int64_t(&at)[3], std::int64_t pixel) {
+    return *std::max_element(at, at + 3) < pixel * 256 || *std::min_element(at, at + 3) > (pixel + 1) * 256;
+  };
+  if (is_beside(t.x, x) || is_beside(t.y, y)) return 0;
   Polygon p;
   for (int k = 0; k < 3; ++k) p.push_back(glm::dvec2(double(t.x[k]), double(t.y[k])) / 256.0);
   p = clipped(clipped(clipped(clipped(p, 0, x, true), 0, x + 1, false), 1, y, true), 1, y + 1, false);

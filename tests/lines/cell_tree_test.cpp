@@ -6,6 +6,7 @@
 
 #include <map>
 
+#include "support/effort.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
@@ -63,7 +64,7 @@ TEST(CellTree, SegmentsVisitWhatTheyPassAndLittleMore) {
   Random random(5);
   const CellTree tree = divided_tree();
   ASSERT_EQ(tree.count(), 10u + 3 * 16);
-  for (int trial = 0; trial < 300; ++trial) {
+  for (int trial = 0; trial < int(seeds(300)); ++trial) {
     const glm::dvec2 a = random_point(random);
     glm::dvec2 b = random_point(random);
     if (trial % 5 == 1) b.y = a.y;

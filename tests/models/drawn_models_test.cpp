@@ -10,6 +10,7 @@
 #include <iostream>
 
 #include "frontmost/frontmost.h"
+#include "support/effort.h"
 #include "support/models.h"
 #include "support/point_oracle.h"
 #include "support/random_scene.h"
@@ -42,7 +43,7 @@ TEST(DrawnModels, PointsOfPartsAreHiddenWhereATriangleIsBefore) {
     for (const View& view : views_of(surfaces)) {
       const Drawing drawing = draw_lines(surfaces, view);
       const PointOracle oracle(surfaces, view);
-      const std::size_t step = 1 + drawing.parts.size() / 150;
+      const std::size_t step = 1 + drawing.parts.size() / (under_sanitizer ? 20 : 150);
       for (std::size_t i = 0; i < drawing.parts.size(); i += step) {
         const DrawnPart& part = drawing.parts[i];
         const DrawnEdge& edge = drawing.edges[part.edge];
