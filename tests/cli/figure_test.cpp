@@ -61,17 +61,17 @@ TEST_F(Figures, ShowColoursOfTheirShading) {
 }
 
 TEST_F(Figures, AreCutWhereColoursVary) {
-  succeed("render builtin:gallery --resolution 160,90 -o coarse.svg --shading flat --color-tolerance 255 --quiet");
-  succeed("render builtin:gallery --resolution 160,90 -o fine.svg --shading flat --quiet");
+  succeed("render builtin:gallery --resolution 96,54 -o coarse.svg --shading flat --color-tolerance 255 --quiet");
+  succeed("render builtin:gallery --resolution 96,54 -o fine.svg --shading flat --quiet");
   EXPECT_GT(count("fine.svg", "<path"), count("coarse.svg", "<path") + 200);
   succeed("render cube.stl -o depths.svg --shading depth --quiet");
   EXPECT_GT(count("depths.svg", "<path"), 10u);
 }
 
 TEST_F(Figures, MergeNeighboursOnRequest) {
-  succeed("render builtin:gallery -o apart.svg --shading ids --resolution 160,90 --quiet");
+  succeed("render builtin:gallery -o apart.svg --shading ids --resolution 96,54 --quiet");
   succeed(
-      "render builtin:gallery -o joined.svg -o joined.pdf --shading ids --resolution 160,90 --merge-neighbours "
+      "render builtin:gallery -o joined.svg -o joined.pdf --shading ids --resolution 96,54 --merge-neighbours "
       "--quiet");
   EXPECT_LT(3 * count("joined.svg", "<path"), count("apart.svg", "<path"));
   EXPECT_LT(2 * read("joined.svg").size(), read("apart.svg").size());
@@ -79,8 +79,8 @@ TEST_F(Figures, MergeNeighboursOnRequest) {
 }
 
 TEST_F(Figures, AreTheSameForAnyNumberOfThreads) {
-  succeed("render builtin:gallery --resolution 160,90 -o one.svg --threads 1 --quiet");
-  succeed("render builtin:gallery --resolution 160,90 -o three.svg --threads 3 --quiet");
+  succeed("render builtin:gallery --resolution 96,54 -o one.svg --threads 1 --quiet");
+  succeed("render builtin:gallery --resolution 96,54 -o three.svg --threads 3 --quiet");
   EXPECT_EQ(read("one.svg"), read("three.svg"));
 }
 

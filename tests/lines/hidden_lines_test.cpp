@@ -47,7 +47,7 @@ class EveryKind : public testing::TestWithParam<Kind> {};
 
 TEST_P(EveryKind, IsHiddenWhereATriangleIsBefore) {
   Checked all;
-  for (std::uint64_t seed = 0; seed < seeds(8); ++seed) {
+  for (std::uint64_t seed = 0; seed < (under_sanitizer ? 2u : 8u); ++seed) {
     SCOPED_TRACE(seed);
     Random random(seed + 100);
     // Sheets all pass through each other: hundreds of thousands of segments.
@@ -134,7 +134,7 @@ TEST(Lines, PartsOfManyTrianglesAreOneGrid) {
       EXPECT_EQ(part.hidden_by, counts ? answer.hidden_by : std::min(answer.hidden_by, 1u));
       hidden += part.hidden_by > 0;
     }
-    EXPECT_GT(hidden, 50u);
+    EXPECT_GT(hidden, under_sanitizer ? 5u : 50u);
   }
 }
 
