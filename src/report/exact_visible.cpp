@@ -8,7 +8,7 @@
 #include "report/exact_depth.h"
 #include "view/screen_cutout.h"
 #include "zbuffer/covered_pixels.h"
-#include "zbuffer/submission.h"
+#include "zbuffer/place/submission.h"
 
 namespace frontmost {
 namespace {
@@ -32,7 +32,7 @@ class TileContest {
   void enter(const TriangleRecord& r) {
     const View& view = field_.answer.view;
     const PixelRect rect = common_part(pixel_rect(r, view.width, view.height), tile_);
-    if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
+    if (rect.is_empty()) return;
     const BoundedPlane plane(field_.surfaces.corners(r.id), field_.rays);
     const Cutouts* const cutouts = field_.surfaces.placed().cutouts.get();
     std::optional<ScreenCutout> cutout;
@@ -85,10 +85,15 @@ ExactVisible find_exact_visible(const Surfaces& surfaces, const View& view, cons
   ExactVisible answer{view, Buffer<PrimitiveId>(count, no_primitive), Buffer<std::uint8_t>(count, 0)};
   NearestBounds field{surfaces, SampleRays(view),          ScreenRays(view), sample_offsets(view.samples),
                       answer,   Buffer<DepthBounds>(count)};
-  const TileGrid grid(view);
-  submit(surfaces, view, {0, surfaces.primitive_count()}, execution, [&](std::size_t tile, const PlacedPiece& piece) {
-    TileContest contest(field, grid.rect(tile));
-    for (const std::uint32_t item : piece.in_tile(tile)) contest.enter(piece.triangles.record(item));
+  submit(surfaces, view, {0, surfaces.primitive_count()}, execution, [&](const Tile& tile, const OrderedBatch& batch) {
+    TileContest contest(field, tile.rect());
+    batch.visit_tile(
+        tile,
+        [&](std::span<const TileRun> runs) {
+          for (const TileRun& run : runs)
+            for (std::size_t i = 0; i < run.count; ++i) contest.enter(batch.small().record(run.first + i));
+        },
+        [&](const SingleTriangle& single) { contest.enter(single.record); });
   });
   return answer;
 }

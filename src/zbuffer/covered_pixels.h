@@ -30,9 +30,4 @@ void visit_covered(const TriangleRecord& r, const PixelRect& rect, const glm::iv
   }
 }
 
-/// What two rectangles have in common; empty (x1 < x0 or y1 < y0) where that is nothing.
-[[nodiscard]] inline PixelRect common_part(const PixelRect& a, const PixelRect& b) {
-  return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
-}
-
 }  // namespace frontmost::zbuffer_detail

@@ -6,6 +6,7 @@
 
 #include "surfaces/cluster_set.h"
 #include "view/screen_transform.h"
+#include "zbuffer/tile/tile.h"
 
 namespace frontmost::zbuffer_detail {
 
@@ -13,11 +14,6 @@ enum class ClusterFate : std::uint8_t {
   culled,  ///< no sample can see it
   whole,   ///< every vertex can be snapped as it is
   apart,   ///< some triangle may need clipping: taken apart
-};
-
-/// Pixels [x0, x1] x [y0, y1], both ends included.
-struct PixelRect {
-  std::int32_t x0, y0, x1, y1;
 };
 
 /// One entry a cluster, padded to whole vectors. `rect` and `nearest` hold where the fate is `whole`.

@@ -25,7 +25,7 @@ class CutoutPainter {
 
   void draw(const TriangleRecord& r) {
     const PixelRect rect = common_part(pixel_rect(r, visible_.view.width, visible_.view.height), rows_);
-    if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
+    if (rect.is_empty()) return;
     const ScreenCutout cutout(cutouts_[r.id], rays_);
     const TriangleKeys keys(r);
     for (std::size_t s = 0; s < samples_.size(); ++s)

@@ -9,25 +9,6 @@
 namespace frontmost::zbuffer_detail {
 namespace {
 
-/// Calls add(tile) for the tiles of `range` in which a record may be seen.
-template <class Add>
-void visit_tiles(const TriangleRecord& record, const View& view, const TileRange& range, const Add& add) {
-  const PixelRect rect = pixel_rect(record, view.width, view.height);
-  if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
-  const TileRect tiles(rect);
-  const std::size_t across = Tile::tiles_across(view);
-  const int first_row = int(range.begin / across), last_row = int((range.end - 1) / across);
-  for (int y = std::max(tiles.y0, first_row); y <= std::min(tiles.y1, last_row); ++y)
-    for (int x = tiles.x0; x <= tiles.x1; ++x) {
-      const std::size_t tile = std::size_t(y) * across + std::size_t(x);
-      if (tile < range.begin || tile >= range.end) continue;
-      const PixelRect pixels{x * kTileSize, y * kTileSize, (x + 1) * kTileSize - 1, (y + 1) * kTileSize - 1};
-      // Of a single tile the outermost corners were asked already; a long diagonal touches few of those in its
-      // rectangle.
-      if (tiles.count() == 1 || !misses(record, pixels)) add(tile);
-    }
-}
-
 auto place_of(const TriangleRecord& r) {
   return std::tie(r.x[0], r.y[0], r.x[1], r.y[1], r.x[2], r.y[2], r.key[0], r.key[1], r.key[2]);
 }

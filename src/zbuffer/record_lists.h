@@ -2,8 +2,11 @@
 // Large and clipped triangles, nearest first, and in which tiles they may be seen.
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "base/parallel.h"
+#include "base/pool.h"
 #include "zbuffer/tile/tile_lists.h"
 #include "zbuffer/triangle_records.h"
 
@@ -35,5 +38,38 @@ class RecordLists {
   TileLists lists_;
   std::vector<TileRange> rounds_;
 };
+
+/// Calls draw(tile, scratch) for every tile, many at the same time, when its records are listed.
+template <class Draw>
+void draw_tiles(RecordLists& records, const View& view, const Execution& execution, Pool<TileScratch>& scratches,
+                const Draw& draw) {
+  for (const TileRange& round : records.rounds()) {
+    records.list(round, view);
+    parallel_for(execution, round.end - round.begin, 1, [&](std::size_t begin, std::size_t end) {
+      const auto scratch = scratches.borrow([] { return std::make_unique<TileScratch>(); });
+      scratch->reserve(std::size_t(view.samples));
+      for (std::size_t tile = round.begin + begin; tile < round.begin + end; ++tile) draw(tile, *scratch);
+    });
+  }
+}
+
+/// Calls add(tile) for the tiles of `range` in which a record may be seen; corners from the image's top left.
+template <class Add>
+void visit_tiles(const TriangleRecord& record, const View& view, const TileRange& range, const Add& add) {
+  const PixelRect rect = pixel_rect(record, view.width, view.height);
+  if (rect.is_empty()) return;
+  const TileRect tiles(rect);
+  const std::size_t across = Tile::tiles_across(view);
+  const int first_row = int(range.begin / across), last_row = int((range.end - 1) / across);
+  for (int y = std::max(tiles.y0, first_row); y <= std::min(tiles.y1, last_row); ++y)
+    for (int x = tiles.x0; x <= tiles.x1; ++x) {
+      const std::size_t tile = std::size_t(y) * across + std::size_t(x);
+      if (tile < range.begin || tile >= range.end) continue;
+      const PixelRect pixels{x * kTileSize, y * kTileSize, (x + 1) * kTileSize - 1, (y + 1) * kTileSize - 1};
+      // Of a single tile the outermost corners were asked already; a long diagonal touches few of those in its
+      // rectangle.
+      if (tiles.count() == 1 || !misses(record, pixels)) add(tile);
+    }
+}
 
 }  // namespace frontmost::zbuffer_detail

@@ -86,7 +86,7 @@ void append_polygon(const ClippedPolygon& polygon, const ScreenTransform& t, Pri
                     std::vector<TriangleRecord>& records) {
   for_each_of_fan(polygon, t, id, [&](TriangleRecord& record) {
     const PixelRect rect = pixel_rect(record, view.width, view.height);
-    if (rect.x0 <= rect.x1 && rect.y0 <= rect.y1 && orient(record, view.culling)) records.push_back(record);
+    if (!rect.is_empty() && orient(record, view.culling)) records.push_back(record);
   });
 }
 

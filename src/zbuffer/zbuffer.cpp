@@ -68,22 +68,16 @@ const Visible& ZBuffer::draw(const Surfaces& surfaces, const View& view, const E
   const Picture picture{view, sample_offsets(view.samples), visible.primitives.data(), visible.keys.data(), streams};
   const FrameInput frame{picture, set, transform, plan.culled(), plan.records().records};
   std::atomic<std::size_t> drawn{0};
-  for (const TileRange& round : plan.records().rounds()) {
-    plan.records().list(round, view);
-    parallel_for(execution, round.end - round.begin, 1, [&](std::size_t begin, std::size_t end) {
-      const auto scratch = state_->scratches.borrow([] { return std::make_unique<TileScratch>(); });
-      scratch->reserve(frame.samples.size());
-      for (std::size_t i = begin; i < end; ++i) {
-        const TileJob job = plan.job(round.begin + i, view);
-        std::uint8_t& blank = state_->blank[round.begin + i];
-        if (blank && job.is_empty()) continue;
-        blank = 0;  // while it is being drawn: an error may end the frame here
-        draw_tile(frame, job, *scratch, execution.isa);
-        blank = job.is_empty();
-      }
-      report_progress(execution, "visible", double(drawn += end - begin) / double(Tile::count(view)));
-    });
-  }
+  draw_tiles(plan.records(), view, execution, state_->scratches, [&](std::size_t tile, TileScratch& scratch) {
+    const TileJob job = plan.job(tile, view);
+    std::uint8_t& blank = state_->blank[tile];
+    if (!blank || !job.is_empty()) {
+      blank = 0;  // while it is being drawn: an error may end the frame here
+      draw_tile(frame, job, scratch, execution.isa);
+      blank = job.is_empty();
+    }
+    report_progress(execution, "visible", double(++drawn) / double(Tile::count(view)));
+  });
   if (set.cutouts) {
     draw_cutouts(set, transform, visible, execution);
     std::fill(state_->blank.begin(), state_->blank.end(), std::uint8_t(0));  // of tiles that it may have drawn to

@@ -47,7 +47,7 @@ TEST_P(DirectOfEveryKind, EqualsTheClusters) {
   EXPECT_GT(seen, 1'000u) << "the scenes have become empty";
 }
 
-// More parcels than are drawn at a time, so that tiles are taken up again.
+// More batches than are drawn at a time, so that tiles are taken up again.
 TEST(Direct, TakesUpTilesAgain) {
   for (const Kind kind : {Kind::tiny, Kind::shared_grid}) {
     Scene scene = scene_of(random_mesh(kind, under_sanitizer ? 9'000 : 90'000, 3));
@@ -161,7 +161,7 @@ TEST(Direct, ThreadsMayAskForClustersAtOnce) {
   for (const Visible& visible : found) expect_same(expected, visible);
 }
 
-// A wall before a crowd, last in the file: parcels behind it are left out, which nothing must show.
+// A wall before a crowd, last in the file: batches behind it are left out, which nothing must show.
 TEST(Direct, WhatAWallHides) {
   for (const int holes : {0, 1}) {
     Scene scene = scene_of(random_mesh(Kind::tiny, 300'000, 9));

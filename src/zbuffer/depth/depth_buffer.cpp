@@ -7,7 +7,6 @@
 
 #include "base/float_environment.h"
 #include "zbuffer/depth/depth_kernel.h"
-#include "zbuffer/submission.h"
 
 namespace frontmost {
 namespace {
@@ -59,10 +58,8 @@ void DepthBuffer::draw(const Surfaces& surfaces, const View& view, const DepthDr
   const DepthPlanes planes{stored_.data(), primitives_.data(), keys_.data(), width_, height_, sample_offsets(samples_)};
   const ScreenRays rays(view);
   const DepthCall target{planes, rules, call.id_offset, surfaces.placed().cutouts.get(), rays};
-  const TileGrid grid(view);
-  submit(surfaces, view, {call.begin, end}, execution, [&](std::size_t tile, const PlacedPiece& piece) {
-    draw_depths(target, grid.rect(tile), piece.triangles, piece.in_tile(tile), execution.isa);
-  });
+  submit(surfaces, view, {call.begin, end}, execution,
+         [&](const Tile& tile, const OrderedBatch& batch) { draw_depths(target, tile, batch, execution.isa); });
 }
 
 Buffer<float> DepthBuffer::depths() const {

@@ -10,18 +10,17 @@
 #include "base/isa.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
-#include "zbuffer/depth/depth_batches-inl.h"
+#include "zbuffer/depth/depth_packets-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {
 namespace HWY_NAMESPACE {
 
-void DrawDepths(const DepthCall& call, const PixelRect& tile, const PlacedTriangles& triangles,
-                std::span<const std::uint32_t> items) {
+void DrawDepths(const DepthCall& call, const Tile& tile, const OrderedBatch& batch) {
   if (call.rules.format == DepthFormat::f32)
-    DepthBatches<true>(call, tile).Draw(triangles, items);
+    DepthPackets<true>(call, tile).Draw(batch);
   else
-    DepthBatches<false>(call, tile).Draw(triangles, items);
+    DepthPackets<false>(call, tile).Draw(batch);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -33,9 +32,8 @@ namespace frontmost::zbuffer_detail {
 
 FRONTMOST_KERNELS(DrawDepths);
 
-void draw_depths(const DepthCall& call, const PixelRect& tile, const PlacedTriangles& triangles,
-                 std::span<const std::uint32_t> items, Isa isa) {
-  kernel_for(DrawDepthsKernels, isa)(call, tile, triangles, items);
+void draw_depths(const DepthCall& call, const Tile& tile, const OrderedBatch& batch, Isa isa) {
+  kernel_for(DrawDepthsKernels, isa)(call, tile, batch);
 }
 
 }  // namespace frontmost::zbuffer_detail

@@ -6,7 +6,7 @@
 
 #include "view/screen_cutout.h"
 #include "zbuffer/depth/depth_rules.h"
-#include "zbuffer/placed_triangles.h"
+#include "zbuffer/place/submission.h"
 
 namespace frontmost::zbuffer_detail {
 
@@ -28,8 +28,7 @@ struct DepthCall {
   const ScreenRays& rays;
 };
 
-/// Draws the triangles that `items` names, one after the other, into the pixels of `tile`; touches no other pixel.
-void draw_depths(const DepthCall& call, const PixelRect& tile, const PlacedTriangles& triangles,
-                 std::span<const std::uint32_t> items, Isa isa);
+/// Draws what a batch has in a tile, one triangle after the other; touches no pixel of other tiles.
+void draw_depths(const DepthCall& call, const Tile& tile, const OrderedBatch& batch, Isa isa);
 
 }  // namespace frontmost::zbuffer_detail

@@ -17,8 +17,8 @@
 
 #include "hwy/highway.h"
 #include "view/steep_keys-inl.h"
-#include "zbuffer/batch-inl.h"
 #include "zbuffer/depth/depth_kernel.h"
+#include "zbuffer/packet-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {
@@ -113,14 +113,14 @@ struct Cell {
 template <bool is_float>
 class DepthRows {
  public:
-  DepthRows(const DepthCall& call, const PixelRect& tile, const DepthTest<is_float>& test)
-      : call_(call), tile_(tile), test_(test), width_(tile.x1 - tile.x0 + 1), height_(tile.y1 - tile.y0 + 1) {}
+  DepthRows(const DepthCall& call, const Tile& tile, const DepthTest<is_float>& test)
+      : call_(call), tile_(tile), test_(test) {}
 
   /// Draws one triangle at one of a pixel's samples. Corners relative to the tile.
   void Draw(const TriangleRecord& r, double offset, std::size_t sample) {
     const glm::ivec2 at = call_.planes.samples[sample];
-    const PixelRect rect = sampled_rect(r, at, at, width_, height_);
-    if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
+    const PixelRect rect = sampled_rect(r, at, at, tile_.width, tile_.height);
+    if (rect.is_empty()) return;
     const KeyPlane plane(r);
     const TriangleEdges edges(r, at);
     const PrimitiveId own_id = r.id - call_.id_offset;
@@ -170,7 +170,7 @@ class DepthRows {
     const HalfU d;
     HWY_ALIGN_MAX std::uint32_t lanes[kHalfLanes];
     hn::Store(hn::VecFromMask(d, covered), d, lanes);
-    const glm::ivec2 from = first + glm::ivec2(tile_.x0, tile_.y0) * kSubPixels;
+    const glm::ivec2 from = first + glm::ivec2(tile_.x, tile_.y) * kSubPixels;
     for (std::size_t i = 0; i < hn::Lanes(d); ++i)
       if (lanes[i] != 0 && cutout.is_hole(from.x + int(i) * kSubPixels, from.y)) lanes[i] = 0;
     return hn::MaskFromVec(hn::Load(d, lanes));
@@ -194,10 +194,10 @@ class DepthRows {
 
   HWY_INLINE void Put(const Paint& paint, int x, int y, hn::Mask<HalfU> covered, hn::Vec<HalfF> key) const {
     const DepthPlanes& p = call_.planes;
-    const std::size_t i = (paint.sample * std::size_t(p.height) + std::size_t(tile_.y0 + y)) * std::size_t(p.width) +
-                          std::size_t(tile_.x0 + x);
+    const std::size_t i = (paint.sample * std::size_t(p.height) + std::size_t(tile_.y + y)) * std::size_t(p.width) +
+                          std::size_t(tile_.x + x);
     const Cell cell{p.stored + i, p.primitives + i, p.keys + i};
-    const int count = HWY_MIN(int(kHalfLanes), width_ - x);
+    const int count = HWY_MIN(int(kHalfLanes), tile_.width - x);
     if (count == int(hn::Lanes(DD()))) {
       PutWhole(paint, cell, covered, key);
       return;
@@ -232,9 +232,8 @@ class DepthRows {
   }
 
   const DepthCall& call_;
-  PixelRect tile_;
+  const Tile& tile_;
   const DepthTest<is_float>& test_;
-  int width_, height_;
 };
 
 }  // namespace HWY_NAMESPACE

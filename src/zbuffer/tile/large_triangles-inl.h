@@ -58,7 +58,7 @@ class LargeTriangles {
   /// Precondition: oriented; corners relative to the tile.
   void Draw(const TriangleRecord& r) {
     const PixelRect rect = pixel_rect(r, tile_.width, tile_.height);
-    if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
+    if (rect.is_empty()) return;
     const std::uint64_t touched = TileBuffer::BlocksOf(rect);
     if (buffer_.AllHide(touched, r.nearest())) return;
     const Plane plane(r);

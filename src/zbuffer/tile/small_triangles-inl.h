@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles of a few pixels, as many at once as the vector holds: all of a batch are walked pixel by pixel in step,
+// Triangles of a few pixels, as many at once as the vector holds: all of a packet are walked pixel by pixel in step,
 // and the covered pixels of all are then merged into the tile together.
 
 // Included once for every target.
@@ -11,7 +11,7 @@
 #endif
 
 #include "base/compactor-inl.h"
-#include "zbuffer/batch-inl.h"
+#include "zbuffer/packet-inl.h"
 #include "zbuffer/tile/large_triangles-inl.h"
 #include "zbuffer/tile/tile_buffer-inl.h"
 
@@ -38,7 +38,7 @@ struct TriangleQueue {
 };
 
 /// Those that are drawn together, with their pixel rectangles within the tile.
-struct SmallBatch : Batch {
+struct SmallPacket : Packet {
   VI px, py, width, height;
   VU not_id;
 };
@@ -74,41 +74,42 @@ class SmallTriangles {
   void DrawQueued() {
     const DI d;
     const std::size_t drawn = HWY_MIN(queue_.count, hn::Lanes(d));
-    SmallBatch batch = SetUp(drawn);
-    const MI large = hn::Or(hn::Gt(batch.width, hn::Set(d, kWalkWidth)), hn::Gt(batch.height, hn::Set(d, kWalkHeight)));
-    const MI single = hn::Or(large, batch.steep);
+    SmallPacket packet = SetUp(drawn);
+    const MI large =
+        hn::Or(hn::Gt(packet.width, hn::Set(d, kWalkWidth)), hn::Gt(packet.height, hn::Set(d, kWalkHeight)));
+    const MI single = hn::Or(large, packet.steep);
     if (!hn::AllFalse(d, single)) {
       ForEachBit(BitsOf(d, single), [&](std::size_t lane) { large_.DrawOnce(QueuedRecord(lane)); });
-      batch.width = hn::IfThenZeroElse(single, batch.width);
-      batch.height = hn::IfThenZeroElse(single, batch.height);
+      packet.width = hn::IfThenZeroElse(single, packet.width);
+      packet.height = hn::IfThenZeroElse(single, packet.height);
     }
-    LeaveOutHidden(batch);
-    const int most_x = hn::GetLane(hn::MaxOfLanes(d, batch.width));
-    const int most_y = hn::GetLane(hn::MaxOfLanes(d, batch.height));
+    LeaveOutHidden(packet);
+    const int most_x = hn::GetLane(hn::MaxOfLanes(d, packet.width));
+    const int most_y = hn::GetLane(hn::MaxOfLanes(d, packet.height));
     for (std::size_t s = 0; s < picture_.samples.size(); ++s) {
-      const std::size_t found = Walk(batch, most_x, most_y, s);
-      Merge(batch, found, s);
+      const std::size_t found = Walk(packet, most_x, most_y, s);
+      Merge(packet, found, s);
     }
     Shift(drawn);
   }
 
   /// Of those that take long to walk.
-  HWY_INLINE void LeaveOutHidden(SmallBatch& batch) {
+  HWY_INLINE void LeaveOutHidden(SmallPacket& packet) {
     const DI d;
-    const MI asked = hn::Gt(hn::Mul(batch.width, batch.height), hn::Set(d, kWalkUnseen));
+    const MI asked = hn::Gt(hn::Mul(packet.width, packet.height), hn::Set(d, kWalkUnseen));
     if (hn::AllFalse(d, asked)) return;
     HWY_ALIGN_MAX std::int32_t x[kMaxLanes], y[kMaxLanes], width[kMaxLanes], height[kMaxLanes];
     HWY_ALIGN_MAX float nearest[kMaxLanes];
-    hn::Store(batch.px, d, x);
-    hn::Store(batch.py, d, y);
-    hn::Store(batch.width, d, width);
-    hn::Store(batch.height, d, height);
-    hn::Store(batch.k_max, DF(), nearest);
+    hn::Store(packet.px, d, x);
+    hn::Store(packet.py, d, y);
+    hn::Store(packet.width, d, width);
+    hn::Store(packet.height, d, height);
+    hn::Store(packet.k_max, DF(), nearest);
     ForEachBit(BitsOf(d, asked), [&](std::size_t i) {
       const PixelRect rect{x[i], y[i], x[i] + width[i] - 1, y[i] + height[i] - 1};
       if (buffer_.AllHide(TileBuffer::BlocksOf(rect), nearest[i])) width[i] = 0;
     });
-    batch.width = hn::Load(d, width);
+    packet.width = hn::Load(d, width);
   }
 
   [[nodiscard]] TriangleRecord QueuedRecord(std::size_t lane) const {
@@ -136,9 +137,9 @@ class SmallTriangles {
     hn::Store(hn::LoadU(du, queue_.id + drawn), du, queue_.id);
   }
 
-  HWY_INLINE SmallBatch SetUp(std::size_t used) const {
+  HWY_INLINE SmallPacket SetUp(std::size_t used) const {
     const DI d;
-    SmallBatch b;
+    SmallPacket b;
     VF key[3];
     for (int k = 0; k < 3; ++k) {
       b.x[k] = hn::Load(d, queue_.x[k]);
@@ -146,7 +147,7 @@ class SmallTriangles {
       key[k] = hn::BitCast(DF(), hn::Load(d, queue_.key[k]));
     }
     b.not_id = hn::Not(hn::Load(DU(), queue_.id));
-    SetUpBatch(b, key);
+    SetUpPacket(b, key);
     const PixelRange columns = ColumnsOf(b.columns), rows = RowsOf(b.rows);
     const VI one = hn::Set(d, 1);
     const MI live = hn::Lt(hn::Iota(d, 0), hn::Set(d, std::int32_t(used)));
@@ -159,15 +160,15 @@ class SmallTriangles {
     return b;
   }
 
-  /// Walks the rectangles of all triangles of a batch at once, one pixel position a step, and notes the covered
+  /// Walks the rectangles of all triangles of a packet at once, one pixel position a step, and notes the covered
   /// (pixel, triangle) pairs as word offset << 13 | y << 8 | x << 4 | lane. \returns how many.
-  HWY_INLINE std::size_t Walk(const SmallBatch& b, int most_x, int most_y, std::size_t sample) {
+  HWY_INLINE std::size_t Walk(const SmallPacket& b, int most_x, int most_y, std::size_t sample) {
     const DI d;
     const DU du;
     const glm::ivec2 offset = picture_.samples[sample];
     const VI sx = hn::Add(hn::ShiftLeft<8>(b.px), hn::Set(d, offset.x));
     const VI sy = hn::Add(hn::ShiftLeft<8>(b.py), hn::Set(d, offset.y));
-    BatchEdges row = EdgesAt(b, sx, sy);
+    PacketEdges row = EdgesAt(b, sx, sy);
     const VI first = hn::Add(hn::Mul(b.py, hn::Set(d, kTileStride)), b.px);
     const VI base = hn::Or(hn::ShiftLeft<13>(first), hn::Iota(d, 0));
     std::uint32_t* out = references_;
@@ -190,7 +191,7 @@ class SmallTriangles {
   }
 
   /// Finds the keys of the covered pairs, as many at a time as the vector holds, and keeps the greater words.
-  HWY_INLINE void Merge(const SmallBatch& b, std::size_t count, std::size_t sample) {
+  HWY_INLINE void Merge(const SmallPacket& b, std::size_t count, std::size_t sample) {
     const DI d;
     const DU du;
     const DF df;

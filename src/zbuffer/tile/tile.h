@@ -2,6 +2,7 @@
 // Tiles of the picture: where they are, what they are drawn to, and the memory that drawing one takes.
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "frontmost/visible.h"
@@ -17,6 +18,18 @@ inline constexpr std::size_t kTileWords = std::size_t(kTileSize) * kTileStride;
 /// The greatest pixel rectangle of triangles that are drawn many at a time, in x and y.
 inline constexpr glm::ivec2 kMostWalked{16, 32};
 
+/// Pixels [x0, x1] x [y0, y1], both ends included.
+struct PixelRect {
+  std::int32_t x0, y0, x1, y1;
+
+  [[nodiscard]] bool is_empty() const { return x1 < x0 || y1 < y0; }
+};
+
+/// What two rectangles have in common.
+[[nodiscard]] inline PixelRect common_part(const PixelRect& a, const PixelRect& b) {
+  return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+}
+
 /// The picture that tiles are drawn to. Borrows everything.
 struct Picture {
   const View& view;
@@ -28,12 +41,13 @@ struct Picture {
 
 /// The pixels of one tile.
 struct Tile {
-  int x = 0, y = 0, width = 0, height = 0;
+  std::size_t number;  ///< counted row by row
+  int x, y, width, height;
 
-  /// Tiles are counted row by row.
-  Tile(std::size_t number, const View& view)
-      : x(int(number % tiles_across(view)) * kTileSize),
-        y(int(number / tiles_across(view)) * kTileSize),
+  Tile(std::size_t n, const View& view)
+      : number(n),
+        x(int(n % tiles_across(view)) * kTileSize),
+        y(int(n / tiles_across(view)) * kTileSize),
         width(std::min(kTileSize, view.width - x)),
         height(std::min(kTileSize, view.height - y)) {}
 
@@ -43,6 +57,9 @@ struct Tile {
   [[nodiscard]] static std::size_t count(const View& view) {
     return tiles_across(view) * ((std::size_t(view.height) + kTileSize - 1) / kTileSize);
   }
+  [[nodiscard]] PixelRect rect() const { return {x, y, x + width - 1, y + height - 1}; }
+  [[nodiscard]] int column() const { return x / kTileSize; }
+  [[nodiscard]] int row() const { return y / kTileSize; }
 };
 
 /// What is known of the 64 blocks of a tile, row by row.
@@ -65,7 +82,7 @@ struct TileScratch {
   /// By sample, kTileWords each: key bits << 32 | ~id, the greatest wins. 0 is "nothing".
   Buffer<std::uint64_t> words;
   Buffer<BlockBounds> bounds;        ///< one
-  Buffer<std::uint32_t> references;  ///< covered (triangle, pixel) pairs of one batch
+  Buffer<std::uint32_t> references;  ///< covered (triangle, pixel) pairs of one packet
 };
 
 }  // namespace frontmost::zbuffer_detail

@@ -16,8 +16,8 @@
 
 #include "hwy/cache_control.h"
 #include "hwy/highway.h"
-#include "zbuffer/batch-inl.h"
 #include "zbuffer/cull.h"
+#include "zbuffer/packet-inl.h"
 #include "zbuffer/tile/tile.h"
 
 HWY_BEFORE_NAMESPACE();

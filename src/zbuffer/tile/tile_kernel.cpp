@@ -59,6 +59,37 @@ class TilePainter {
     buffer_.WriteOut();
   }
 
+  // What SortOut() asks for.
+
+  [[nodiscard]] HWY_INLINE PixelRange ColumnsOf(const CoordinateRange& x) const { return small_.ColumnsOf(x); }
+  [[nodiscard]] HWY_INLINE PixelRange RowsOf(const CoordinateRange& y) const { return small_.RowsOf(y); }
+  HWY_NOINLINE void PutLarge(MI large) {
+    ForEachBit(BitsOf(DI(), large), [&](std::size_t lane) {
+      const std::size_t at = first_ + lane;
+      const std::uint8_t numbers[3] = {frame_.set.i0[at], frame_.set.i1[at], frame_.set.i2[at]};
+      TriangleRecord record;
+      record.id = frame_.set.id[at];
+      for (int k = 0; k < 3; ++k) {
+        record.x[k] = vertices_.x[numbers[k]];
+        record.y[k] = vertices_.y[numbers[k]];
+        std::memcpy(&record.key[k], &vertices_.key[numbers[k]], sizeof(float));
+      }
+      if (orient(record, frame_.view.culling)) large_.DrawOnce(record);
+    });
+  }
+  HWY_INLINE void PutSmall(const PlacedPacket& placed) {
+    const Compactor<DI> compact(placed.kept);
+    TriangleQueue& queue = small_.queue();
+    const std::size_t n = queue.count;
+    for (int k = 0; k < 3; ++k) {
+      compact.Store(placed.corners[k].x, queue.x[k] + n);
+      compact.Store(placed.corners[k].y, queue.y[k] + n);
+      compact.Store(LookUp64(vertices_.key, placed.corners[k].number), queue.key[k] + n);
+    }
+    compact.Store(hn::LoadU(DU(), frame_.set.id.data() + first_), queue.id + n);
+    queue.count += compact.count();
+  }
+
  private:
   HWY_INLINE void Prefetch(std::uint32_t index) const {
     const Cluster& cluster = frame_.set.clusters[index];
@@ -112,54 +143,10 @@ class TilePainter {
 
   /// Puts the triangles that may cover a sample of this tile into the queue; large ones are drawn at once.
   HWY_INLINE void Gather(const Cluster& cluster, std::size_t first) {
-    const DI d;
-    const std::size_t at = cluster.first_triangle + first;
-    const Corners a = Fetch(frame_.set.i0, at), b = Fetch(frame_.set.i1, at), c = Fetch(frame_.set.i2, at);
-
-    const CoordinateRange x = RangeOf(a.x, b.x, c.x), y = RangeOf(a.y, b.y, c.y);
-    const PixelRange columns = small_.ColumnsOf(x), rows = small_.RowsOf(y);
-    MI keep = hn::And(hn::Not(hn::Gt(columns.first, columns.last)), hn::Not(hn::Gt(rows.first, rows.last)));
-    if (hn::AllFalse(d, keep)) return;
-
-    const VI extent = hn::Max(hn::Sub(x.greatest, x.least), hn::Sub(y.greatest, y.least));
-    const MI large = hn::And(keep, hn::Gt(extent, hn::Set(d, kSmallExtent)));
-    if (!hn::AllFalse(d, large)) {
-      DrawLargeLanes(cluster, first, large);
-      keep = hn::AndNot(large, keep);
-    }
-
-    const Winding winding = WindingOf(frame_.view.culling, a, b, c);
-    keep = hn::And(keep, winding.kept);
-    if (hn::AllFalse(d, keep)) return;
-
-    const Compactor<DI> compact(keep);
-    TriangleQueue& queue = small_.queue();
-    const std::size_t n = queue.count;
-    const auto store = [&](int k, const Corners& corner) HWY_ATTR {
-      compact.Store(corner.x, queue.x[k] + n);
-      compact.Store(corner.y, queue.y[k] + n);
-      compact.Store(LookUp64(vertices_.key, corner.number), queue.key[k] + n);
-    };
-    store(0, a);
-    store(1, Chosen(winding.front, c, b));
-    store(2, Chosen(winding.front, b, c));
-    compact.Store(hn::LoadU(DU(), frame_.set.id.data() + at), queue.id + n);
-    queue.count += compact.count();
-  }
-
-  void DrawLargeLanes(const Cluster& cluster, std::size_t first, MI large) {
-    ForEachBit(BitsOf(DI(), large), [&](std::size_t lane) {
-      const std::size_t at = cluster.first_triangle + first + lane;
-      const std::uint8_t numbers[3] = {frame_.set.i0[at], frame_.set.i1[at], frame_.set.i2[at]};
-      TriangleRecord record;
-      record.id = frame_.set.id[at];
-      for (int k = 0; k < 3; ++k) {
-        record.x[k] = vertices_.x[numbers[k]];
-        record.y[k] = vertices_.y[numbers[k]];
-        std::memcpy(&record.key[k], &vertices_.key[numbers[k]], sizeof(float));
-      }
-      if (orient(record, frame_.view.culling)) large_.DrawOnce(record);
-    });
+    first_ = cluster.first_triangle + first;
+    const Corners corners[3] = {Fetch(frame_.set.i0, first_), Fetch(frame_.set.i1, first_),
+                                Fetch(frame_.set.i2, first_)};
+    SortOut(corners, AllLanes(), frame_.view.culling, *this);
   }
 
   const FrameInput& frame_;
@@ -168,6 +155,7 @@ class TilePainter {
   LargeTriangles large_;
   SmallTriangles small_;
   ScreenCluster vertices_;
+  std::size_t first_ = 0;  // of the packet, in the columns of the set
 };
 
 void DrawTile(const FrameInput& frame, const TileJob& job, TileScratch& scratch) {

@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "zbuffer/cull.h"
 #include "zbuffer/tile/tile.h"
 
 namespace frontmost::zbuffer_detail {
@@ -22,6 +21,7 @@ struct TileRect {
   explicit TileRect(const PixelRect& rect)
       : x0(rect.x0 / kTileSize), y0(rect.y0 / kTileSize), x1(rect.x1 / kTileSize), y1(rect.y1 / kTileSize) {}
   [[nodiscard]] int count() const { return (x1 - x0 + 1) * (y1 - y0 + 1); }
+  [[nodiscard]] bool holds(int column, int row) const { return x0 <= column && column <= x1 && y0 <= row && row <= y1; }
 };
 
 /// The lists stand one after another in one array.

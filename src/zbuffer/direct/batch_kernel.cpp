@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawing one tile from parcels: the same triangles into the same buffer as tile_kernel.cpp, from another source.
+// Drawing one tile from batches: the same triangles into the same buffer as tile_kernel.cpp, from another source.
 
-#include "zbuffer/direct/parcel_kernel.h"
+#include "zbuffer/direct/batch_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "zbuffer/direct/parcel_draw_kernel.cpp"
+#define HWY_TARGET_INCLUDE "zbuffer/direct/batch_kernel.cpp"
 #include "base/isa.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
 // After Highway: a block of its own.
 #include "base/compactor-inl.h"
+#include "zbuffer/place/run_reader-inl.h"
 #include "zbuffer/tile/large_triangles-inl.h"
 #include "zbuffer/tile/small_triangles-inl.h"
 #include "zbuffer/tile/tile_buffer-inl.h"
@@ -23,9 +24,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr std::size_t kWindow = 512;
 constexpr int kMostIdle = 7;
 
-class ParcelPainter {
+class BatchPainter {
  public:
-  ParcelPainter(const ParcelFrame& frame, const ParcelJob& job, TileScratch& scratch)
+  BatchPainter(const BatchFrame& frame, const BatchJob& job, TileScratch& scratch)
       : frame_(frame),
         job_(job),
         buffer_(frame, job, scratch),
@@ -36,55 +37,29 @@ class ParcelPainter {
     buffer_.Clear();
     if (job_.is_drawn) buffer_.ReadBack(job_.farthest);
     large_.DrawAll(frame_.records, job_.records);
-    for (const std::uint32_t i : job_.parcels) DrawParcel(*frame_.parcels[i]);
+    for (const std::uint32_t i : job_.batches) DrawBatch(*frame_.batches[i]);
     small_.Finish();
     buffer_.WriteOut();
     if (!job_.is_last) buffer_.FindFarthest(job_.farthest);
   }
 
  private:
-  HWY_INLINE void DrawParcel(const Parcel& parcel) {
-    blocks_ = buffer_.BlocksInTile(parcel.rect);
+  HWY_INLINE void DrawBatch(const TriangleBatch& batch) {
+    blocks_ = buffer_.BlocksInTile(batch.rect);
     float nearest;
-    std::memcpy(&nearest, &parcel.nearest, sizeof nearest);
+    std::memcpy(&nearest, &batch.nearest, sizeof nearest);
     if (buffer_.AllHide(blocks_, nearest)) return;
-    for (const TileRun& run : parcel.in_tile(job_.x / kTileSize, job_.y / kTileSize)) AppendRun(parcel.columns(), run);
-    AppendPending(parcel.columns());
-    // Triangles in the queue stay within the parcel's blocks, whenever they are drawn.
+    const BatchColumns& from = batch.columns();
+    const auto append = [&](std::size_t count, const auto& fetch) HWY_ATTR { Append(count, fetch, from); };
+    for (const TileRun& run : batch.in_tile(job_.column(), job_.row())) reader_.Read(run, append);
+    reader_.Finish(append);
+    // Triangles in the queue stay within the batch's blocks, whenever they are drawn.
     buffer_.MarkDrawn(blocks_);
-  }
-
-  /// Whole vectors of a run as they stand; what is left of it is gathered, with others, when it fills a vector.
-  HWY_INLINE void AppendRun(const ParcelColumns& from, const TileRun& run) {
-    const DI d;
-    std::size_t i = run.first;
-    const std::size_t end = i + run.count;
-    for (; pending_ == 0 && i + hn::Lanes(d) <= end; i += hn::Lanes(d))
-      Append(
-          hn::Lanes(d), [&](auto tag, const auto* column) HWY_ATTR { return hn::LoadU(tag, column + i); }, from);
-    while (i < end) {
-      const std::size_t taken = HWY_MIN(hn::Lanes(d) - pending_, end - i);
-      hn::StoreU(hn::Iota(d, std::int32_t(i)), d, numbers_ + pending_);
-      pending_ += taken;
-      i += taken;
-      if (pending_ == hn::Lanes(d)) AppendPending(from);
-    }
-  }
-
-  HWY_INLINE void AppendPending(const ParcelColumns& from) {
-    if (pending_ == 0) return;
-    const DI d;
-    // The rest of the vector repeats the first: what is asked of it holds within the tile alone.
-    const MI live = hn::Lt(hn::Iota(d, 0), hn::Set(d, std::int32_t(pending_)));
-    const VI number = hn::IfThenElse(live, hn::Load(d, numbers_), hn::Set(d, numbers_[0]));
-    Append(
-        pending_, [&](auto tag, const auto* column) HWY_ATTR { return hn::GatherIndex(tag, column, number); }, from);
-    pending_ = 0;
   }
 
   /// `fetch` reads a vector of a column.
   template <class Fetch>
-  HWY_INLINE void Append(std::size_t count, const Fetch& fetch, const ParcelColumns& from) {
+  HWY_INLINE void Append(std::size_t count, const Fetch& fetch, const BatchColumns& from) {
     const DI d;
     const DU du;
     const VI left = hn::Set(d, job_.x * kSubPixels), top = hn::Set(d, job_.y * kSubPixels);
@@ -142,25 +117,24 @@ class ParcelPainter {
     buffer_.Refresh();
   }
 
-  const ParcelFrame& frame_;
-  const ParcelJob& job_;
+  const BatchFrame& frame_;
+  const BatchJob& job_;
   TileBuffer buffer_;
   LargeTriangles large_;
   SmallTriangles small_;
-  HWY_ALIGN_MAX std::int32_t numbers_[2 * kMaxLanes];  // triangles of the parcel that wait for others
-  std::size_t pending_ = 0;
-  std::uint64_t blocks_ = 0;  // of the parcel
+  RunReader reader_;
+  std::uint64_t blocks_ = 0;  // of the batch
   // Of this window: triangles, those that were hidden, and whether that is asked.
   std::size_t met_ = 0, hidden_ = 0;
   bool asks_ = false;
   int idle_ = kMostIdle;  // windows in which it was not
 };
 
-void DrawParcels(const ParcelFrame& frame, const ParcelJob& job, TileScratch& scratch) {
+void DrawBatches(const BatchFrame& frame, const BatchJob& job, TileScratch& scratch) {
   if (job.is_empty() && !job.is_drawn)
     FillTile(frame, job);
   else
-    ParcelPainter(frame, job, scratch).Draw();
+    BatchPainter(frame, job, scratch).Draw();
 }
 
 }  // namespace HWY_NAMESPACE
@@ -170,10 +144,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace frontmost::zbuffer_detail {
 
-FRONTMOST_KERNELS(DrawParcels);
+FRONTMOST_KERNELS(DrawBatches);
 
-void draw_parcels(const ParcelFrame& frame, const ParcelJob& job, TileScratch& scratch, Isa isa) {
-  kernel_for(DrawParcelsKernels, isa)(frame, job, scratch);
+void draw_batches(const BatchFrame& frame, const BatchJob& job, TileScratch& scratch, Isa isa) {
+  kernel_for(DrawBatchesKernels, isa)(frame, job, scratch);
 }
 
 }  // namespace frontmost::zbuffer_detail

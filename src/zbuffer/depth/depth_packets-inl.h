@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles of a few pixels drawn into a depth buffer, as many at once as the vector holds, and yet in their order: all
-// of a batch are walked pixel by pixel in step, which gives each its own mask of covered pixels; the masks are then
+// of a packet are walked pixel by pixel in step, which gives each its own mask of covered pixels; the masks are then
 // taken one after the other.
 
 // Included once for every target.
-#if defined(FRONTMOST_ZBUFFER_DEPTH_BATCHES_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef FRONTMOST_ZBUFFER_DEPTH_BATCHES_INL_H_
-#undef FRONTMOST_ZBUFFER_DEPTH_BATCHES_INL_H_
+#if defined(FRONTMOST_ZBUFFER_DEPTH_PACKETS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FRONTMOST_ZBUFFER_DEPTH_PACKETS_INL_H_
+#undef FRONTMOST_ZBUFFER_DEPTH_PACKETS_INL_H_
 #else
-#define FRONTMOST_ZBUFFER_DEPTH_BATCHES_INL_H_
+#define FRONTMOST_ZBUFFER_DEPTH_PACKETS_INL_H_
 #endif
 
 #include <cstring>
 
 #include "hwy/highway.h"
-#include "zbuffer/batch-inl.h"
 #include "zbuffer/depth/depth_kernel.h"
 #include "zbuffer/depth/depth_rows-inl.h"
+#include "zbuffer/packet-inl.h"
+#include "zbuffer/place/run_reader-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::zbuffer_detail {
@@ -24,68 +25,89 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 template <bool is_float>
-class DepthBatches {
+class DepthPackets {
  public:
-  DepthBatches(const DepthCall& call, const PixelRect& tile)
-      : call_(call),
-        tile_(tile),
-        width_(tile.x1 - tile.x0 + 1),
-        height_(tile.y1 - tile.y0 + 1),
-        test_(call.rules),
-        rows_(call, tile, test_) {}
+  DepthPackets(const DepthCall& call, const Tile& tile)
+      : call_(call), tile_(tile), test_(call.rules), rows_(call, tile, test_) {}
 
-  void Draw(const PlacedTriangles& triangles, std::span<const std::uint32_t> items) {
-    const std::size_t lanes = hn::Lanes(DI());
-    for (std::size_t i = 0; i < items.size(); i += lanes) {
-      Load(triangles, items.subspan(i, HWY_MIN(items.size() - i, lanes)));
-      for (std::size_t s = 0; s < call_.planes.samples.size(); ++s) {
-        Walk(s);
-        Empty(s);
-      }
-    }
+  void Draw(const OrderedBatch& batch) {
+    const BatchColumns& from = batch.small().columns();
+    const auto draw = [&](std::size_t count, const auto& fetch) HWY_ATTR { DrawPacket(count, fetch, from); };
+    batch.visit_tile(
+        tile_,
+        [&](std::span<const TileRun> runs) HWY_ATTR {
+          for (const TileRun& run : runs) reader_.Read(run, draw);
+        },
+        [&](const SingleTriangle& single) HWY_ATTR {
+          reader_.Finish(draw);
+          DrawSingle(single);
+        });
+    reader_.Finish(draw);
   }
 
  private:
   // A triangle whose pixel rectangle is at most this wide and high is drawn with others at once: 64 pixels, a bit each.
   static constexpr int kWalkLimit = 8;
 
-  void Load(const PlacedTriangles& t, std::span<const std::uint32_t> items) {
-    const DI d;
-    HWY_ALIGN_MAX std::int32_t numbers[kMaxLanes];
-    for (std::size_t k = 0; k < hn::Lanes(d); ++k) numbers[k] = std::int32_t(items[HWY_MIN(k, items.size() - 1)]);
-    const VI number = hn::Load(d, numbers);
-    // Mostly they are neighbours, and can be loaded as such.
-    // A gather takes a load for every lane.
-    const bool in_line = items.size() == hn::Lanes(d) && items.back() - items.front() + 1 == hn::Lanes(d);
-    const auto column = [&](auto tag, const auto* from) HWY_ATTR {
-      return in_line ? hn::LoadU(tag, from + numbers[0]) : hn::GatherIndex(tag, from, number);
-    };
-    const VI left = hn::Set(d, tile_.x0 * kSubPixels), top = hn::Set(d, tile_.y0 * kSubPixels);
-    count_ = items.size();
-    for (std::size_t k = 0; k < 3; ++k) {
-      batch_.x[k] = hn::Sub(column(d, t.x[k].data()), left);
-      batch_.y[k] = hn::Sub(column(d, t.y[k].data()), top);
-      key_[k] = column(DF(), t.key[k].data());
-    }
-    id_ = hn::Add(column(DU(), t.id.data()), hn::Set(DU(), call_.id_offset));
-    SetUpBatch(batch_, key_);
-    const VI extent = hn::Max(hn::Sub(batch_.columns.greatest, batch_.columns.least),
-                              hn::Sub(batch_.rows.greatest, batch_.rows.least));
-    small_ = hn::AndNot(batch_.steep, hn::Not(hn::Gt(extent, hn::Set(d, kSmallExtent))));
-    if (call_.cutouts) small_ = hn::AndNot(HaveHoles(t, items), small_);
-    live_ = hn::Lt(hn::Iota(d, 0), hn::Set(d, std::int32_t(count_)));
-    std::fill_n(offset_, kMaxLanes, 0.0);
+  template <class Fetch>
+  HWY_INLINE void DrawPacket(std::size_t count, const Fetch& fetch, const BatchColumns& from) {
+    Load(count, fetch, from);
+    DrawLoaded();
+  }
+
+  HWY_NOINLINE void DrawLoaded() {
+    SetUpPacket(packet_, key_);
+    walkable_ = hn::Not(packet_.steep);
+    if (call_.cutouts) walkable_ = hn::AndNot(HaveHoles(), walkable_);
     if (call_.rules.has_offset())
       for (std::size_t k = 0; k < count_; ++k) {
-        const SteepKeys keys(t.record(items[k]));
-        offset_[k] = call_.rules.offset_of(keys.gx(), keys.gy(), t.low[items[k]], t.high[items[k]]);
+        const TriangleRecord record = RecordOf(k);
+        const auto [low, high] = std::minmax({record.key[0], record.key[1], record.key[2]});
+        offset_[k] = OffsetOf(record, low, high);
       }
+    for (std::size_t s = 0; s < call_.planes.samples.size(); ++s) {
+      Walk(s);
+      Empty(s);
+    }
+  }
+
+  /// `fetch` reads a vector of a column.
+  template <class Fetch>
+  HWY_INLINE void Load(std::size_t count, const Fetch& fetch, const BatchColumns& from) {
+    const DI d;
+    const VI left = hn::Set(d, tile_.x * kSubPixels), top = hn::Set(d, tile_.y * kSubPixels);
+    for (int k = 0; k < 3; ++k) {
+      packet_.x[k] = hn::Sub(fetch(d, from.x[k]), left);
+      packet_.y[k] = hn::Sub(fetch(d, from.y[k]), top);
+      key_[k] = hn::BitCast(DF(), fetch(d, from.key[k]));
+    }
+    id_ = hn::Add(fetch(DU(), from.id), hn::Set(DU(), call_.id_offset));
+    count_ = count;
+  }
+
+  /// One by one, row by row.
+  void DrawSingle(const SingleTriangle& single) {
+    TriangleRecord record = single.record;
+    record.id += call_.id_offset;
+    for (int k = 0; k < 3; ++k) {
+      record.x[k] -= tile_.x * kSubPixels;
+      record.y[k] -= tile_.y * kSubPixels;
+    }
+    const double offset = call_.rules.has_offset() ? OffsetOf(record, single.low, single.high) : 0.0;
+    for (std::size_t s = 0; s < call_.planes.samples.size(); ++s) rows_.Draw(record, offset, s);
+  }
+
+  [[nodiscard]] double OffsetOf(const TriangleRecord& record, float low, float high) const {
+    const SteepKeys keys(record);
+    return call_.rules.offset_of(keys.gx(), keys.gy(), low, high);
   }
 
   /// Those that must ask for holes, which rows do.
-  [[nodiscard]] HWY_NOINLINE MI HaveHoles(const PlacedTriangles& t, std::span<const std::uint32_t> items) const {
+  [[nodiscard]] HWY_NOINLINE MI HaveHoles() const {
+    HWY_ALIGN_MAX std::uint32_t id[kMaxLanes];
     HWY_ALIGN_MAX std::int32_t lanes[kMaxLanes] = {};
-    for (std::size_t k = 0; k < items.size(); ++k) lanes[k] = call_.cutouts->has(t.id[items[k]]) ? -1 : 0;
+    hn::Store(id_, DU(), id);
+    for (std::size_t k = 0; k < count_; ++k) lanes[k] = call_.cutouts->has(id[k] - call_.id_offset) ? -1 : 0;
     return hn::MaskFromVec(hn::Load(DI(), lanes));
   }
 
@@ -93,20 +115,21 @@ class DepthBatches {
   HWY_INLINE void Walk(std::size_t sample) {
     const DI d;
     const glm::ivec2 offset = call_.planes.samples[sample];
-    const PixelRange columns = PixelsOf(batch_.columns, offset.x, offset.x, width_);
-    const PixelRange rows = PixelsOf(batch_.rows, offset.y, offset.y, height_);
+    const PixelRange columns = PixelsOf(packet_.columns, offset.x, offset.x, tile_.width);
+    const PixelRange rows = PixelsOf(packet_.rows, offset.y, offset.y, tile_.height);
     const VI one = hn::Set(d, 1), limit = hn::Set(d, kWalkLimit);
     VI width = hn::Add(hn::Sub(columns.last, columns.first), one);
     VI height = hn::Add(hn::Sub(rows.last, rows.first), one);
-    const MI any = hn::And(live_, hn::Gt(hn::Min(width, height), hn::Zero(d)));
-    const MI walked = hn::And(hn::And(any, small_), hn::Not(hn::Gt(hn::Max(width, height), limit)));
+    const MI live = hn::Lt(hn::Iota(d, 0), hn::Set(d, std::int32_t(count_)));
+    const MI any = hn::And(live, hn::Gt(hn::Min(width, height), hn::Zero(d)));
+    const MI walked = hn::And(hn::And(any, walkable_), hn::Not(hn::Gt(hn::Max(width, height), limit)));
     by_row_ = BitsOf(d, hn::AndNot(walked, any));
     width = hn::IfThenElseZero(walked, width);
     height = hn::IfThenElseZero(walked, height);
     const VI sx = hn::Add(hn::ShiftLeft<8>(columns.first), hn::Set(d, offset.x));
     const VI sy = hn::Add(hn::ShiftLeft<8>(rows.first), hn::Set(d, offset.y));
     const int most_x = hn::GetLane(hn::MaxOfLanes(d, width)), most_y = hn::GetLane(hn::MaxOfLanes(d, height));
-    BatchEdges row = EdgesAt(batch_, sx, sy);
+    PacketEdges row = EdgesAt(packet_, sx, sy);
     VI mask[2] = {hn::Zero(d), hn::Zero(d)};  // of four rows each
     for (int y = 0; y < most_y; ++y) {
       const VI row_width = hn::IfThenElseZero(hn::Gt(height, hn::Set(d, y)), width);
@@ -116,19 +139,19 @@ class DepthBatches {
         const MI covered = hn::And(hn::Gt(hn::Or(hn::Or(e0, e1), e2), hn::Set(d, -1)), inside);
         bits = hn::Or(bits, hn::IfThenElseZero(covered, bit));
         bit = hn::Add(bit, bit);
-        e0 = hn::Sub(e0, batch_.dy[0]);
-        e1 = hn::Sub(e1, batch_.dy[1]);
-        e2 = hn::Sub(e2, batch_.dy[2]);
+        e0 = hn::Sub(e0, packet_.dy[0]);
+        e1 = hn::Sub(e1, packet_.dy[1]);
+        e2 = hn::Sub(e2, packet_.dy[2]);
       }
       mask[y / 4] = bits;
-      for (int k = 0; k < 3; ++k) row.e[k] = hn::Add(row.e[k], batch_.dx[k]);
+      for (int k = 0; k < 3; ++k) row.e[k] = hn::Add(row.e[k], packet_.dx[k]);
     }
     hn::Store(hn::BitCast(DU(), mask[0]), DU(), mask_[0]);
     hn::Store(hn::BitCast(DU(), mask[1]), DU(), mask_[1]);
     drawn_ = by_row_ | BitsOf(d, hn::Ne(hn::Or(mask[0], mask[1]), hn::Zero(d)));
     // The keys of a pixel are found from here on.
-    from_x_ = hn::Sub(sx, batch_.x0);
-    from_y_ = hn::Sub(sy, batch_.y0);
+    from_x_ = hn::Sub(sx, packet_.x0);
+    from_y_ = hn::Sub(sy, packet_.y0);
     hn::Store(hn::Add(hn::Mul(rows.first, hn::Set(d, call_.planes.width)), columns.first), d, first_);
   }
 
@@ -168,9 +191,9 @@ class DepthBatches {
       const VI x = hn::And(hn::ShiftRight<4>(reference), hn::Set(d, 7)), y = hn::ShiftRight<7>(reference);
       const VF dx = hn::ConvertTo(df, hn::Add(hn::TableLookupLanes(from_x_, of_i), hn::ShiftLeft<8>(x)));
       const VF dy = hn::ConvertTo(df, hn::Add(hn::TableLookupLanes(from_y_, of_i), hn::ShiftLeft<8>(y)));
-      VF k = hn::Add(hn::TableLookupLanes(batch_.k0, of_f), hn::Mul(dx, hn::TableLookupLanes(batch_.gx, of_f)));
-      k = hn::Add(k, hn::Mul(dy, hn::TableLookupLanes(batch_.gy, of_f)));
-      k = hn::Min(hn::Max(k, hn::TableLookupLanes(batch_.k_min, of_f)), hn::TableLookupLanes(batch_.k_max, of_f));
+      VF k = hn::Add(hn::TableLookupLanes(packet_.k0, of_f), hn::Mul(dx, hn::TableLookupLanes(packet_.gx, of_f)));
+      k = hn::Add(k, hn::Mul(dy, hn::TableLookupLanes(packet_.gy, of_f)));
+      k = hn::Min(hn::Max(k, hn::TableLookupLanes(packet_.k_min, of_f)), hn::TableLookupLanes(packet_.k_max, of_f));
       hn::Store(k, df, key);
       hn::Store(hn::TableLookupLanes(id_, hn::IndicesFromVec(du, lane)), du, id);
       if (call_.rules.has_offset())
@@ -184,8 +207,8 @@ class DepthBatches {
 
   [[nodiscard]] HWY_INLINE std::size_t PlaceOf(std::size_t sample, std::uint32_t reference) const {
     const DepthPlanes& p = call_.planes;
-    const std::size_t tile = (sample * std::size_t(p.height) + std::size_t(tile_.y0)) * std::size_t(p.width) +
-                             std::size_t(tile_.x0) + std::size_t(first_[reference & 15]);
+    const std::size_t tile = (sample * std::size_t(p.height) + std::size_t(tile_.y)) * std::size_t(p.width) +
+                             std::size_t(tile_.x) + std::size_t(first_[reference & 15]);
     return tile + std::size_t(reference >> 7) * std::size_t(p.width) + (reference >> 4 & 7);
   }
 
@@ -203,8 +226,8 @@ class DepthBatches {
     HWY_ALIGN_MAX std::uint32_t id[kMaxLanes];
     TriangleRecord record;
     for (int k = 0; k < 3; ++k) {
-      hn::Store(batch_.x[k], DI(), x);
-      hn::Store(batch_.y[k], DI(), y);
+      hn::Store(packet_.x[k], DI(), x);
+      hn::Store(packet_.y[k], DI(), y);
       hn::Store(key_[k], DF(), key);
       record.x[k] = x[lane];
       record.y[k] = y[lane];
@@ -216,18 +239,18 @@ class DepthBatches {
   }
 
   const DepthCall& call_;
-  PixelRect tile_;
-  int width_, height_;
+  const Tile& tile_;
   DepthTest<is_float> test_;
   DepthRows<is_float> rows_;
-  // Of the batch.
-  Batch batch_;
+  RunReader reader_;
+  // Of the packet.
+  Packet packet_;
   VF key_[3];
   VU id_;
-  MI small_, live_;
+  MI walkable_;  // many at once
   std::size_t count_ = 0;
-  double offset_[kMaxLanes];
-  // Of the batch at one sample.
+  double offset_[kMaxLanes] = {};
+  // Of the packet at one sample.
   std::uint64_t by_row_ = 0, drawn_ = 0;         // lanes that are drawn on their own; those, and all that cover a pixel
   VI from_x_, from_y_;                           // from the topmost corner to the sample of the first pixel
   HWY_ALIGN_MAX std::int32_t first_[kMaxLanes];  // its place in the tile

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists by tile of a parcel: runs of triangles where neighbours in the file lie in the same tiles.
+// Lists by tile of a batch: runs of triangles where neighbours in the file lie in the same tiles.
 
-#include "zbuffer/direct/parcel.h"
+#include "zbuffer/place/triangle_batch.h"
 
 #include <cstring>
 
 namespace frontmost::zbuffer_detail {
 namespace {
 
-/// ParcelColumns::tiles, taken apart: two by two at most.
+/// BatchColumns::tiles, taken apart: two by two at most.
 struct SmallTiles {
   explicit SmallTiles(std::uint32_t t)
       : x0(int(t & 255)), y0(int(t >> 8 & 255)), x1(int(t >> 16 & 255)), y1(int(t >> 24)) {}
@@ -17,16 +17,15 @@ struct SmallTiles {
 
 }  // namespace
 
-void Parcel::clear() {
+void TriangleBatch::clear() {
   constexpr std::int32_t kFar = 1 << 30;
   count = 0;
   rect = {kFar, kFar, -1, -1};
   nearest = 0;
-  records.clear();
 }
 
-TriangleRecord Parcel::record(std::size_t i) const {
-  const ParcelColumns& c = columns();
+TriangleRecord TriangleBatch::record(std::size_t i) const {
+  const BatchColumns& c = columns();
   TriangleRecord record;
   record.id = c.id[i];
   for (int k = 0; k < 3; ++k) {
@@ -39,7 +38,7 @@ TriangleRecord Parcel::record(std::size_t i) const {
 
 /// Calls visit(tiles, run). \returns how many runs there are.
 template <class Visit>
-std::size_t Parcel::visit_runs(const Visit& visit) const {
+std::size_t TriangleBatch::visit_runs(const Visit& visit) const {
   const std::uint32_t* tiles = columns().tiles;
   std::size_t runs = 0;
   for (std::size_t i = 0; i < count; ++runs) {
@@ -51,14 +50,16 @@ std::size_t Parcel::visit_runs(const Visit& visit) const {
   return runs;
 }
 
-void Parcel::bin(Buffer<ParcelColumns>& spare) {
+void TriangleBatch::gather_strewn(Buffer<BatchColumns>& spare) {
   // Runs of fewer than this on average are gathered lane by lane when drawn, which costs more than sorting once.
   constexpr std::size_t kShortRun = 4;
+  if (visit_runs([](const SmallTiles&, const TileRun&) {}) <= count / kShortRun) return;
+  sort_by_tiles(spare[0]);
+  columns_.swap(spare);
+}
+
+void TriangleBatch::list_tiles() {
   if (count == 0) return;
-  if (visit_runs([](const SmallTiles&, const TileRun&) {}) > count / kShortRun) {
-    sort_by_tiles(spare[0]);
-    columns_.swap(spare);
-  }
   const TileRect all = tiles();
   const int across = all.x1 - all.x0 + 1;
   const auto visit = [&](const auto& add) {
@@ -77,9 +78,9 @@ void Parcel::bin(Buffer<ParcelColumns>& spare) {
 }
 
 /// By the first tile, and among those by whether they reach into the next ones.
-void Parcel::sort_by_tiles(ParcelColumns& sorted) {
+void TriangleBatch::sort_by_tiles(BatchColumns& sorted) {
   const TileRect all = tiles();
-  const ParcelColumns& from = columns();
+  const BatchColumns& from = columns();
   const auto place_of = [&](std::size_t i) {
     const SmallTiles t(from.tiles[i]);
     const int tile = (t.y0 - all.y0) * (all.x1 - all.x0 + 1) + t.x0 - all.x0;
@@ -98,6 +99,21 @@ void Parcel::sort_by_tiles(ParcelColumns& sorted) {
     sorted.id[to] = from.id[i];
     sorted.tiles[to] = from.tiles[i];
   }
+}
+
+std::vector<BatchSource> batch_sources(std::span<const MeshRange> ranges) {
+  std::vector<BatchSource> sources;
+  std::size_t count = TriangleBatch::most_triangles;
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const std::size_t more = ranges[i].count();
+    if (count + more > TriangleBatch::most_triangles) {
+      sources.push_back({i, i});
+      count = 0;
+    }
+    count += more;
+    sources.back().end = i + 1;
+  }
+  return sources;
 }
 
 }  // namespace frontmost::zbuffer_detail

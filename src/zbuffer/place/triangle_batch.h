@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A parcel: a few thousand triangles as they stand in the scene, put on the screen and sorted into tiles.
+// A batch: some two thousand triangles as they stand in the scene, put on the screen and sorted into tiles.
 //
-// Drawing a scene once needs no clusters. Neighbours in a file are mostly neighbours on the screen, too, and where they
-// are not a parcel is merely in more tiles.
+// Neighbours in a file are mostly neighbours on the screen, too, so that most tiles of a batch hold long runs of its
+// columns; where they are not, the batch is merely in more tiles.
 #pragma once
 
 #include <vector>
 
+#include "surfaces/placed_scene.h"
 #include "zbuffer/tile/tile_lists.h"
 #include "zbuffer/triangle_records.h"
 
@@ -14,8 +15,8 @@ namespace frontmost::zbuffer_detail {
 
 /// Triangles with corners no farther apart than 124 pixels, set apart by corner; from the image's top left, areas
 /// positive, each with a sample within its bounds.
-struct ParcelColumns {
-  static constexpr std::size_t room = 2048 + 16;  ///< a store may write a whole vector
+struct BatchColumns {
+  static constexpr std::size_t room = MeshRange::most_triangles + 16;  ///< a store may write a whole vector
 
   alignas(64) std::int32_t x[3][room], y[3][room];
   alignas(64) std::int32_t key[3][room];  ///< bits of the float
@@ -24,37 +25,40 @@ struct ParcelColumns {
   alignas(64) std::uint32_t tiles[room];
 };
 
-/// Consecutive triangles of a parcel that touch the same tiles.
+/// Consecutive triangles of a batch that touch the same tiles.
 struct TileRun {
   std::uint16_t first, count;
 };
 
-class Parcel {
+class TriangleBatch {
  public:
   static constexpr std::size_t most_triangles = MeshRange::most_triangles;
 
-  // Filled by place_in_parcel().
-  std::size_t count = 0;                ///< of the columns
-  PixelRect rect{0, 0, -1, -1};         ///< no pixel of those lies outside
-  std::int32_t nearest = 0;             ///< bits of their greatest key
-  std::vector<TriangleRecord> records;  ///< all others: large ones, and those that were clipped
+  // Filled by place_triangles().
+  std::size_t count = 0;         ///< of the columns
+  PixelRect rect{0, 0, -1, -1};  ///< no pixel of those lies outside
+  std::int32_t nearest = 0;      ///< bits of their greatest key
 
-  Parcel() : columns_(1) {}
+  TriangleBatch() : columns_(1) {}
   void clear();
-  [[nodiscard]] ParcelColumns& columns() { return columns_[0]; }
-  [[nodiscard]] const ParcelColumns& columns() const { return columns_[0]; }
+  [[nodiscard]] BatchColumns& columns() { return columns_[0]; }
+  [[nodiscard]] const BatchColumns& columns() const { return columns_[0]; }
   [[nodiscard]] TriangleRecord record(std::size_t i) const;
   /// Takes out those for which `is_out(id)`, and hands over what they are.
   template <class IsOut>
   void extract(const IsOut& is_out, std::vector<TriangleRecord>& out);
 
-  /// Makes the lists by tile, when all triangles are there. Where neighbours are strewn over the picture, as in a soup,
-  /// they are first put together by tile, in `spare`, which takes the place of the columns.
-  void bin(Buffer<ParcelColumns>& spare);
+  /// Where neighbours are strewn over the picture, as in a soup, puts together those of one tile, in `spare`, which
+  /// takes the place of the columns. Their order is lost.
+  void gather_strewn(Buffer<BatchColumns>& spare);
+  /// Makes the lists by tile, when all triangles are there.
+  void list_tiles();
   [[nodiscard]] TileRect tiles() const { return TileRect(rect); }
-  /// Precondition: the tile is one of tiles(), and count > 0.
+  /// Of a tile, once they are listed: runs from the first triangle to the last.
   [[nodiscard]] std::span<const TileRun> in_tile(int column, int row) const {
+    if (count == 0) return {};
     const TileRect all = tiles();
+    if (!all.holds(column, row)) return {};
     const std::size_t tile = std::size_t((row - all.y0) * (all.x1 - all.x0 + 1) + column - all.x0);
     return std::span(runs_).subspan(begin_[tile], begin_[tile + 1] - begin_[tile]);
   }
@@ -62,20 +66,24 @@ class Parcel {
  private:
   template <class Visit>
   std::size_t visit_runs(const Visit& visit) const;
-  void sort_by_tiles(ParcelColumns& sorted);
+  void sort_by_tiles(BatchColumns& sorted);
 
-  Buffer<ParcelColumns> columns_;
+  Buffer<BatchColumns> columns_;
   std::vector<std::uint32_t> begin_;  // by tile
   std::vector<TileRun> runs_;
 };
 
+/// What goes into one batch: ranges [begin, end) of the scene.
+struct BatchSource {
+  std::size_t begin, end;
+};
+
+/// Consecutive ranges go into one batch together: most scenes have a few large instances, some many small ones.
+[[nodiscard]] std::vector<BatchSource> batch_sources(std::span<const MeshRange> ranges);
+
 template <class IsOut>
-void Parcel::extract(const IsOut& is_out, std::vector<TriangleRecord>& out) {
-  const auto first_out =
-      std::partition(records.begin(), records.end(), [&](const TriangleRecord& r) { return !is_out(r.id); });
-  out.insert(out.end(), first_out, records.end());
-  records.erase(first_out, records.end());
-  ParcelColumns& c = columns();
+void TriangleBatch::extract(const IsOut& is_out, std::vector<TriangleRecord>& out) {
+  BatchColumns& c = columns();
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i) {
     if (is_out(c.id[i])) {

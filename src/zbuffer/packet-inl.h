@@ -2,11 +2,11 @@
 // As many triangles at once as the vector holds: what all ways to draw them have in common.
 
 // Included once for every target.
-#if defined(FRONTMOST_ZBUFFER_BATCH_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef FRONTMOST_ZBUFFER_BATCH_INL_H_
-#undef FRONTMOST_ZBUFFER_BATCH_INL_H_
+#if defined(FRONTMOST_ZBUFFER_PACKET_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FRONTMOST_ZBUFFER_PACKET_INL_H_
+#undef FRONTMOST_ZBUFFER_PACKET_INL_H_
 #else
-#define FRONTMOST_ZBUFFER_BATCH_INL_H_
+#define FRONTMOST_ZBUFFER_PACKET_INL_H_
 #endif
 
 #include "base/lane_types-inl.h"
@@ -90,8 +90,39 @@ HWY_INLINE Winding WindingOf(Culling culling, const Corners& a, const Corners& b
   return {front, Facing(culling, front, hn::Gt(area, zero))};
 }
 
+HWY_INLINE MI AllLanes() { return hn::Eq(hn::Zero(DI()), hn::Zero(DI())); }
+
+/// Of a packet of triangles those that may cover a sample, so turned that their areas are positive.
+struct PlacedPacket {
+  MI kept;
+  const Corners corners[3];
+  PixelRange columns, rows;
+};
+
+/// Sorts out what of the `live` triangles may cover a sample, for whatever draws them. `sink` has ColumnsOf(range) and
+/// RowsOf(range), the pixels that samples within the triangles' bounds belong to; PutLarge(mask), which is given those
+/// whose corners are farther apart than kSmallExtent, neither turned nor culled; and PutSmall(placed).
+template <class Sink>
+HWY_INLINE void SortOut(const Corners (&c)[3], MI live, Culling culling, Sink& sink) {
+  const DI d;
+  const CoordinateRange x = RangeOf(c[0].x, c[1].x, c[2].x), y = RangeOf(c[0].y, c[1].y, c[2].y);
+  const PixelRange columns = sink.ColumnsOf(x), rows = sink.RowsOf(y);
+  MI keep = hn::AndNot(hn::Or(hn::Gt(columns.first, columns.last), hn::Gt(rows.first, rows.last)), live);
+  if (hn::AllFalse(d, keep)) return;
+  const VI extent = hn::Max(hn::Sub(x.greatest, x.least), hn::Sub(y.greatest, y.least));
+  const MI large = hn::And(keep, hn::Gt(extent, hn::Set(d, kSmallExtent)));
+  if (!hn::AllFalse(d, large)) {
+    sink.PutLarge(large);
+    keep = hn::AndNot(large, keep);
+  }
+  const Winding winding = WindingOf(culling, c[0], c[1], c[2]);
+  keep = hn::And(keep, winding.kept);
+  if (hn::AllFalse(d, keep)) return;
+  sink.PutSmall({keep, {c[0], Chosen(winding.front, c[2], c[1]), Chosen(winding.front, c[1], c[2])}, columns, rows});
+}
+
 /// Three edges and a depth plane for each triangle. Corners no farther apart than kSmallExtent, areas positive.
-struct Batch : KeyPlanes {
+struct Packet : KeyPlanes {
   VI x[3], y[3];  // corners
   CoordinateRange columns, rows;
   VI dx[3], dy[3], bias[3];  // edge k runs from corner k
@@ -99,7 +130,7 @@ struct Batch : KeyPlanes {
 };
 
 /// Precondition: the corners of `b` are set.
-HWY_INLINE void SetUpBatch(Batch& b, const VF (&key)[3]) {
+HWY_INLINE void SetUpPacket(Packet& b, const VF (&key)[3]) {
   b.columns = RangeOf(b.x[0], b.x[1], b.x[2]);
   b.rows = RangeOf(b.y[0], b.y[1], b.y[2]);
   for (int k = 0; k < 3; ++k) {
@@ -116,11 +147,11 @@ HWY_INLINE void SetUpBatch(Batch& b, const VF (&key)[3]) {
 
 /// Edge values at the samples (sx, sy) within the triangles' boxes: covered where none is negative. From pixel to pixel
 /// they grow by -dy and dx.
-struct BatchEdges {
+struct PacketEdges {
   VI e[3];
 };
-HWY_INLINE BatchEdges EdgesAt(const Batch& b, VI sx, VI sy) {
-  BatchEdges at;
+HWY_INLINE PacketEdges EdgesAt(const Packet& b, VI sx, VI sy) {
+  PacketEdges at;
   for (int k = 0; k < 2; ++k)
     at.e[k] = hn::Sub(hn::Mul(b.dx[k], hn::Sub(sy, b.y[k])), hn::Mul(b.dy[k], hn::Sub(sx, b.x[k])));
   // The three edge functions of a point add up to twice the area.

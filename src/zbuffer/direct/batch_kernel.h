@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drawing one tile from batches.
+#pragma once
+
+#include <span>
+
+#include "base/isa.h"
+#include "zbuffer/place/triangle_batch.h"
+#include "zbuffer/tile/tile.h"
+
+namespace frontmost::zbuffer_detail {
+
+/// What all tiles have in common that are drawn from the same batches.
+struct BatchFrame : Picture {
+  std::span<const TriangleBatch* const> batches;  ///< nearest first
+  std::span<const TriangleRecord> records;        ///< likewise
+};
+
+/// One tile, and what may be seen in it.
+struct BatchJob : Tile {
+  std::span<const std::uint32_t> records, batches;
+  bool is_drawn;    ///< it shows something already, which the planes hold
+  bool is_last;     ///< nothing will be drawn to it any more
+  float* farthest;  ///< of the 64 blocks: what was found before, and is found now unless this is the last time
+
+  [[nodiscard]] bool is_empty() const { return records.empty() && batches.empty(); }
+};
+
+/// Draws a tile and writes it to the planes.
+void draw_batches(const BatchFrame& frame, const BatchJob& job, TileScratch& scratch, Isa isa);
+
+}  // namespace frontmost::zbuffer_detail

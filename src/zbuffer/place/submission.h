@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Batches of triangles in the order of their ids, for what must draw them so: in the order of submission, as OpenGL
+// calls it.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/parallel.h"
+#include "base/pool.h"
+#include "zbuffer/place/place_kernel.h"
+
+namespace frontmost::zbuffer_detail {
+
+/// Primitives [begin, end).
+struct PrimitiveRange {
+  PrimitiveId begin, end;
+};
+
+/// A large triangle, or one of those that clipping has made of one.
+struct SingleTriangle {
+  TriangleRecord record;  ///< corners from the image's top left
+  float low, high;        ///< keys of the primitive's whole visible part
+};
+
+/// A batch of triangles of any size.
+class OrderedBatch {
+ public:
+  void clear();
+  /// Transforms, clips, culls and appends triangles whose ids follow those of the ones before.
+  void place(const PlaceTarget& target, const WorldTriangles& triangles, PlaceScratch& scratch);
+  /// Makes the lists by tile, when all triangles are there.
+  void list_tiles(const View& view);
+
+  [[nodiscard]] const TriangleBatch& small() const { return small_; }
+  [[nodiscard]] bool is_in(const Tile& tile) const {
+    return !small_.in_tile(tile.column(), tile.row()).empty() || !singles_in(tile).empty();
+  }
+  /// Calls visit_runs(runs) for small triangles of the columns, and visit_single(triangle), in order of ids, for all
+  /// that may touch a tile.
+  template <class VisitRuns, class VisitSingle>
+  void visit_tile(const Tile& tile, const VisitRuns& visit_runs, const VisitSingle& visit_single) const;
+
+ private:
+  void append_single(const PlaceTarget& target, const ClippedPolygon& polygon, PrimitiveId id);
+  [[nodiscard]] std::span<const std::uint32_t> singles_in(const Tile& tile) const {
+    if (singles_.empty()) return {};
+    return lists_.of(tile.number);
+  }
+
+  TriangleBatch small_;
+  std::vector<SingleTriangle> singles_;
+  TileLists lists_;  // of single ones
+};
+
+template <class VisitRuns, class VisitSingle>
+void OrderedBatch::visit_tile(const Tile& tile, const VisitRuns& visit_runs, const VisitSingle& visit_single) const {
+  const std::span<const TileRun> runs = small_.in_tile(tile.column(), tile.row());
+  const std::span<const std::uint32_t> singles = singles_in(tile);
+  if (singles.empty()) return visit_runs(runs);
+  std::size_t next = 0;
+  for (TileRun run : runs) {
+    for (; next < singles.size() && run.count > 0; ++next) {
+      const SingleTriangle& single = singles_[singles[next]];
+      const PrimitiveId* const ids = small_.columns().id + run.first;
+      const auto before = std::uint16_t(std::lower_bound(ids, ids + run.count, single.record.id) - ids);
+      if (before == run.count) break;
+      const TileRun part{run.first, before};
+      visit_runs(std::span(&part, 1));
+      visit_single(single);
+      run = {std::uint16_t(run.first + before), std::uint16_t(run.count - before)};
+    }
+    visit_runs(std::span<const TileRun>(&run, 1));
+  }
+  for (; next < singles.size(); ++next) visit_single(singles_[singles[next]]);
+}
+
+/// What of the scene's ranges lies within `range`, in order.
+[[nodiscard]] std::vector<MeshRange> ranges_within(const PlacedScene& placed, const PrimitiveRange& range);
+/// How many batches may be placed at once: their lists stay within 256 MiB even where every triangle fills the image.
+[[nodiscard]] std::size_t batches_at_once(const View& view);
+
+/// Calls draw(tile, batch) for every tile and every batch of the range that is in it. In each tile batches come in
+/// order; different tiles are drawn at the same time.
+template <class Draw>
+void submit(const Surfaces& surfaces, const View& view, const PrimitiveRange& range, const Execution& execution,
+            const Draw& draw) {
+  const ScreenTransform transform(view);
+  const PlaceTarget target(transform, view, execution.isa);
+  const PlacedScene& scene = surfaces.placed();
+  const std::vector<MeshRange> ranges = ranges_within(scene, range);
+  const std::vector<BatchSource> sources = batch_sources(ranges);
+  const std::size_t at_once = batches_at_once(view);
+  std::vector<OrderedBatch> batches(std::min(at_once, sources.size()));
+  Pool<PlaceScratch> scratches;
+  for (std::size_t first = 0; first < sources.size(); first += at_once) {
+    const std::size_t count = std::min(at_once, sources.size() - first);
+    parallel_for(execution, count, 1, [&](std::size_t begin, std::size_t end) {
+      const auto scratch = scratches.borrow([] { return std::make_unique<PlaceScratch>(); });
+      for (std::size_t i = begin; i < end; ++i) {
+        batches[i].clear();
+        for (std::size_t k = sources[first + i].begin; k < sources[first + i].end; ++k)
+          batches[i].place(target, world_triangles(scene, ranges[k], *scratch), *scratch);
+        batches[i].list_tiles(view);
+      }
+    });
+    parallel_for(execution, Tile::count(view), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t number = begin; number < end; ++number) {
+        const Tile tile(number, view);
+        for (std::size_t i = 0; i < count; ++i)
+          if (batches[i].is_in(tile)) draw(tile, batches[i]);
+      }
+    });
+    report_progress(execution, "visible", double(first + count) / double(sources.size()));
+  }
+}
+
+}  // namespace frontmost::zbuffer_detail
