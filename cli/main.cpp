@@ -14,7 +14,7 @@
 #include "cli/failure.h"
 #include "cli/interruption.h"
 #include "cli/values.h"
-#include "cli/view_options.h"
+#include "cli/view/view_options.h"
 
 namespace frontmost::cli {
 namespace {

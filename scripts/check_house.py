@@ -94,6 +94,29 @@ def arrow_errors(path, text, allowed, headers):
             yield f"{path}:{number}: {top} sees include/frontmost alone, not {room}'s own headers"
 
 
+def cli_folder_errors(texts):
+    """Folders of cli include each other one way only. `texts`: path -> text. Files beside the folders are everybody's."""
+    included = {}  # folder -> {folder: where}
+    for path, text in texts.items():
+        if path.parts[0] != "cli" or len(path.parts) < 3:
+            continue
+        for number, line in enumerate(text.splitlines(), 1):
+            if (match := re.match(r'#include "cli/(\w+)/', line)) and match[1] != path.parts[1]:
+                included.setdefault(path.parts[1], {}).setdefault(match[1], f"{path}:{number}")
+
+    def reached(folder, seen):
+        for other in included.get(folder, {}):
+            if other not in seen:
+                seen.add(other)
+                reached(other, seen)
+        return seen
+
+    for folder, others in included.items():
+        for other, place in others.items():
+            if folder in reached(other, set()):
+                yield f"{place}: cli/{other} includes cli/{folder}, so cli/{folder} must not include cli/{other}"
+
+
 def types_of(text):
     """(line number, name, meaning) of the types that a file defines at namespace scope; of an alias the meaning is what
     it stands for, of all others it is their place."""
@@ -132,7 +155,7 @@ def main():
     if len(allowed) < 8:
         sys.exit("docs/design.md: the house block was not understood")
     headers = public_headers(allowed)
-    errors, sources, types = list(header_errors(headers)), 0, []
+    errors, sources, types, texts = list(header_errors(headers)), 0, [], {}
     for path in tracked_files():
         if (size := (ROOT / path).stat().st_size) > LARGEST_FILE:
             errors.append(f"{path}: {size} bytes, more than {LARGEST_FILE}")
@@ -143,9 +166,11 @@ def main():
         errors += file_errors(path, text)
         if path.suffix in CODE:
             errors += arrow_errors(path, text, allowed, headers)
+            texts[path] = text
             if path.parts[0] in LIBRARY:
                 types += [(path, *found) for found in types_of(text)]
     errors += name_errors(types)
+    errors += cli_folder_errors(texts)
     print("\n".join(errors) if errors else f"house: {sources} C++ files in order, {len(allowed)} rooms")
     sys.exit(bool(errors))
 

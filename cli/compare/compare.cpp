@@ -12,7 +12,7 @@
 #include "cli/interruption.h"
 #include "cli/model.h"
 #include "cli/outputs.h"
-#include "cli/view_options.h"
+#include "cli/view/view_options.h"
 
 namespace frontmost::cli {
 namespace {

@@ -20,7 +20,7 @@
 #include "cli/failure.h"
 #include "cli/model.h"
 #include "cli/progress.h"
-#include "cli/view_options.h"
+#include "cli/view/view_options.h"
 
 namespace frontmost::cli {
 namespace {

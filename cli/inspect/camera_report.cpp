@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "cli/places.h"
 #include "cli/values.h"
+#include "cli/view/places.h"
 
 namespace frontmost::cli {
 namespace {

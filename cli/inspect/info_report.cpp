@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "cli/console.h"
-#include "cli/places.h"
 #include "cli/values.h"
+#include "cli/view/places.h"
 
 namespace frontmost::cli {
 namespace {

@@ -15,7 +15,7 @@
 #include "cli/lines/units.h"
 #include "cli/model.h"
 #include "cli/outputs.h"
-#include "cli/view_options.h"
+#include "cli/view/view_options.h"
 
 namespace frontmost::cli {
 namespace {

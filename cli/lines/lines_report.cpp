@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "cli/view_options.h"
+#include "cli/view/view_options.h"
 
 namespace frontmost::cli {
 namespace {

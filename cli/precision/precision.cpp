@@ -11,9 +11,8 @@
 #include "cli/outputs.h"
 #include "cli/precision/precision_plot.h"
 #include "cli/precision/precision_report.h"
-#include "cli/render/fit.h"
-#include "cli/render/sight.h"
-#include "cli/view_options.h"
+#include "cli/view/sight.h"
+#include "cli/view/view_options.h"
 
 namespace frontmost::cli {
 namespace {
@@ -150,7 +149,7 @@ int run_precision(const Settings& settings) {
     const View view = resolve_view(with_far(settings), *surfaces);
     check_wanted(settings, view.projection.clip);
     run.results = buffers_of(settings, view.projection);
-    run.reach = reach_of(visible_bounds(*surfaces).box, view.eye());
+    run.reach = reach_of(framed_box(*surfaces), view.eye());
     fight(run, view, execution);
   }
   if (settings.precision.plot) {

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "cli/console.h"
-#include "cli/render/sight.h"
+#include "cli/view/sight.h"
 
 namespace frontmost::cli {
 namespace {

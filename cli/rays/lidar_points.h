@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "cli/rays/ray_scene.h"
+#include "cli/view/ray_scene.h"
 
 namespace frontmost::cli {
 

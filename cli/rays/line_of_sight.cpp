@@ -11,9 +11,9 @@
 #include "cli/interruption.h"
 #include "cli/json_list.h"
 #include "cli/model.h"
-#include "cli/places.h"
 #include "cli/rays/number_lines.h"
-#include "cli/rays/ray_scene.h"
+#include "cli/view/places.h"
+#include "cli/view/ray_scene.h"
 
 namespace frontmost::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include "cli/option.h"
 #include "cli/render/batch_json.h"
 #include "cli/render/jobs.h"
-#include "cli/view_options.h"
+#include "cli/view/view_options.h"
 
 namespace frontmost::cli {
 namespace {

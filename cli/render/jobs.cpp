@@ -9,7 +9,7 @@
 #include "cli/render/figure.h"
 #include "cli/render/output_writer.h"
 #include "cli/render/render_around.h"
-#include "cli/view_options.h"
+#include "cli/view/view_options.h"
 
 namespace frontmost::cli {
 namespace {

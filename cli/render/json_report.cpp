@@ -9,7 +9,7 @@
 
 #include "cli/inspect/camera_report.h"
 #include "cli/render/figure.h"
-#include "cli/render/sight.h"
+#include "cli/view/sight.h"
 
 namespace frontmost::cli {
 namespace {

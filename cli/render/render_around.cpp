@@ -6,12 +6,12 @@
 #include <frontmost/shade.h>
 
 #include "cli/failure.h"
-#include "cli/rays/ray_scene.h"
 #include "cli/render/contrast.h"
 #include "cli/render/output_writer.h"
 #include "cli/render/reference.h"
 #include "cli/stopwatch.h"
-#include "cli/view_options.h"
+#include "cli/view/ray_scene.h"
+#include "cli/view/view_options.h"
 
 namespace frontmost::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include "cli/model.h"
 #include "cli/render/ray_indexes.h"
 #include "cli/stopwatch.h"
-#include "cli/view_options.h"
+#include "cli/view/view_options.h"
 
 namespace frontmost::cli {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "cli/render/output_writer.h"
 #include "cli/stopwatch.h"
-#include "cli/view_options.h"
+#include "cli/view/view_options.h"
 
 namespace frontmost::cli {
 namespace {

@@ -16,9 +16,9 @@
 #include "cli/render/reference.h"
 #include "cli/render/render_around.h"
 #include "cli/render/render_layers.h"
-#include "cli/render/sight.h"
 #include "cli/stopwatch.h"
-#include "cli/view_options.h"
+#include "cli/view/sight.h"
+#include "cli/view/view_options.h"
 
 namespace frontmost::cli {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "cli/render/blank.h"
 #include "cli/render/jobs.h"
-#include "cli/render/sight.h"
+#include "cli/view/sight.h"
 
 namespace frontmost::cli {
 

@@ -152,9 +152,15 @@ struct FrameOptions {
   Culling culling = Culling::none;
   /// Looks along this, with that upwards, where set; instead of the named direction's. Any length but zero.
   std::optional<glm::dvec3> forward = std::nullopt, up = std::nullopt;
+  /// This point is in the middle of the picture, where set; instead of the model. About Scene::origin, as the eye is.
+  std::optional<glm::dvec3> target = std::nullopt;
+  /// The pinhole camera, where set; instead of min_fov. Its image may lie off the axis. Not with `orthographic`.
+  std::optional<Intrinsics> intrinsics = std::nullopt;
 };
 
-/// A view that shows all of `surfaces`, with near and far fitted. Empty surfaces: a unit box about the origin.
+/// A view that shows all of `surfaces` from as near as the margin allows, with near and far fitted. Empty surfaces: a
+/// unit box about the origin. 1 to 3 ms for a million triangles.
+/// \throws Error bad_argument for options out of range; as look_at(), make_projection() and validate() do.
 [[nodiscard]] View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& options = {});
 
 /// Near and far planes that enclose what of `bounds` lies before the eye, with 1 % to spare, and near at least

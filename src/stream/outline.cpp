@@ -6,17 +6,9 @@
 #include "stream/finite_triangles.h"
 
 namespace frontmost::streaming {
-namespace {
-
-glm::dvec2 spread_of(const View& view, double margin) {
-  const double filled = 1 - 2 * margin;
-  return {view.projection.right * filled, view.projection.top * filled};
-}
-
-}  // namespace
 
 OutlineFinder::OutlineFinder(const View& direction, double margin)
-    : extremes_(direction.world_from_eye, spread_of(direction, margin)) {}
+    : extremes_(FilledFrustum(direction.world_from_eye, direction.projection, margin)) {}
 
 void OutlineFinder::include(const Mesh& mesh) {
   constexpr std::size_t run = 64;  // neighbours mostly: few runs reach out, and only their corners are looked at

@@ -4,7 +4,7 @@
 
 #include "frontmost/scene.h"
 #include "frontmost/view.h"
-#include "view/extremes.h"
+#include "view/camera/extremes.h"
 
 namespace frontmost::streaming {
 

@@ -1,16 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where on a triangle a viewing ray meets its plane.
+// The viewing rays of a picture, and where on a triangle each meets its plane.
 //
-// The barycentric weights of that point are, up to a common factor, the volumes that the ray spans with two corners
-// each: triple products that are affine in the screen position. They stay valid for triangles that cross the eye plane,
-// and their ratios are perspective-correct without ever dividing by a depth of 0.
+// Where a ray starts and where it goes is affine in the screen position. The barycentric weights of the point that it
+// meets are, up to a common factor, the volumes that the ray spans with two corners each: triple products, and so
+// affine as well. They stay valid for triangles that cross the eye plane, and their ratios are perspective-correct
+// without ever dividing by a depth of 0.
 #pragma once
 
 #include <array>
 
-#include "view/screen_rays.h"
+#include "frontmost/view.h"
 
 namespace frontmost {
+
+/// For a point on the screen, where its ray starts and where it goes, in world axes.
+class ScreenRays {
+ public:
+  explicit ScreenRays(const View& view);
+
+  [[nodiscard]] bool is_parallel() const { return parallel_; }
+  [[nodiscard]] const glm::dvec3& eye() const { return eye_; }
+  [[nodiscard]] const glm::dvec3& forward() const { return forward_; }
+  /// Perspective: the direction of the ray through (x, y), not normalised, one unit along the viewing axis.
+  /// Parallel: where the ray starts, from the eye.
+  [[nodiscard]] glm::dvec3 at(double x, double y) const { return corner_ + x * step_x_ + y * step_y_; }
+  [[nodiscard]] const glm::dvec3& step_x() const { return step_x_; }
+  [[nodiscard]] const glm::dvec3& step_y() const { return step_y_; }
+
+  /// The point seen at (x, y) at a planar depth, from the eye.
+  [[nodiscard]] glm::dvec3 point(double x, double y, double depth) const {
+    return parallel_ ? at(x, y) + depth * forward_ : depth * at(x, y);
+  }
+
+ private:
+  bool parallel_;
+  glm::dvec3 eye_, forward_;
+  glm::dvec3 corner_;  ///< at the screen's origin
+  glm::dvec3 step_x_, step_y_;
+};
+
+inline ScreenRays::ScreenRays(const View& view)
+    : parallel_(view.projection.orthographic), eye_(view.eye()), forward_(view.forward()) {
+  const Projection& p = view.projection;
+  corner_ = p.left * view.right() + p.top * view.up() + (parallel_ ? glm::dvec3(0) : forward_);
+  step_x_ = (p.right - p.left) / view.width * view.right();
+  step_y_ = (p.bottom - p.top) / view.height * view.up();
+}
 
 /// Of each corner the volume without it, at some screen position, and its change from there per pixel.
 struct RayVolumes {

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depths of what is seen, and a hash that stands for a whole picture in tests.
+// What is seen of a view: its depths, a hash that stands for a whole picture in tests, and several made into one by the
+// z-buffer's own comparison, sample by sample.
 
 #include "frontmost/visible.h"
 
+#include <algorithm>
+#include <atomic>
 #include <cstring>
 
+#include "base/parallel.h"
 #include "view/answer.h"
 
 namespace frontmost {
@@ -14,6 +18,36 @@ namespace {
 constexpr std::uint64_t kOffset = 0xCBF29CE484222325u, kPrime = 0x100000001B3u;
 
 void hash_word(std::uint64_t& hash, std::uint64_t word) { hash = (hash ^ word) * kPrime; }
+
+bool same_projection(const Projection& a, const Projection& b) {
+  return a.orthographic == b.orthographic && a.left == b.left && a.right == b.right && a.bottom == b.bottom &&
+         a.top == b.top && a.clip.near == b.clip.near && a.clip.far == b.clip.far;
+}
+
+bool same_view(const View& a, const View& b) {
+  // To the bit: keys of views that differ in the last place cannot be compared.
+  return a.width == b.width && a.height == b.height && a.samples == b.samples && a.world_from_eye == b.world_from_eye &&
+         a.culling == b.culling && same_projection(a.projection, b.projection);
+}
+
+/// Without branches, so that the compiler takes several samples at a time. \returns the greatest new id of all seen.
+std::uint64_t merge_run(Visible& into, const Visible& other, PrimitiveId first_id, std::size_t begin, std::size_t end) {
+  PrimitiveId* ids = into.primitives.data();
+  float* keys = into.keys.data();
+  const PrimitiveId* other_ids = other.primitives.data();
+  const float* other_keys = other.keys.data();
+  PrimitiveId greatest = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    const bool is_seen = other_ids[i] != no_primitive;
+    greatest = std::max(greatest, is_seen ? other_ids[i] : 0u);
+    const PrimitiveId id = is_seen ? other_ids[i] + first_id : no_primitive;
+    // Bitwise, not logical: both sides are cheap, and a jump is not.
+    const bool wins = (other_keys[i] > keys[i]) | ((other_keys[i] == keys[i]) & (id < ids[i]));
+    ids[i] = wins ? id : ids[i];
+    keys[i] = wins ? other_keys[i] : keys[i];
+  }
+  return std::uint64_t(greatest) + first_id;
+}
 
 }  // namespace
 
@@ -45,6 +79,25 @@ std::uint64_t content_hash(const Visible& visible) {
     hash_word(hash, std::uint64_t(key) << 32 | visible.primitives[i]);
   }
   return hash;
+}
+
+Visible nothing_visible(const View& view) {
+  validate(view);
+  const std::size_t count = view.sample_count();
+  return {view, Buffer<PrimitiveId>(count, no_primitive), Buffer<float>(count, 0.0f)};
+}
+
+void merge(Visible& into, const Visible& other, PrimitiveId first_id, const Execution& execution) {
+  if (!same_view(into.view, other.view)) throw Error(ErrorCode::bad_argument, "merge: the two views are not the same");
+  check_planes(into, "merge");
+  check_planes(other, "merge");
+  // Asked for once a run and not for every sample: an error is rare, and what was merged by then is lost anyhow.
+  std::atomic<bool> is_full{false};
+  constexpr std::size_t samples_at_once = 1u << 16;
+  parallel_for(execution, into.keys.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
+    if (merge_run(into, other, first_id, begin, end) >= no_primitive) is_full = true;
+  });
+  if (is_full) throw Error(ErrorCode::limit_exceeded, "merge: more triangles than ids can tell apart (4294967294)");
 }
 
 }  // namespace frontmost

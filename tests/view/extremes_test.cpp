@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "view/extremes.h"
+#include "view/camera/extremes.h"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,13 @@
 namespace frontmost::test {
 namespace {
 
-const glm::dvec2 kSpread(0.7, 0.4);
-
-glm::dmat4 turned() { return look_at({3, -2, 1.5}, {0, 0, 0}, {0, 0, 1}); }
+/// From the origin along -z.
+FilledFrustum straight() { return {glm::dmat4(1.0), {false, -0.7, 0.7, -0.4, 0.4, {}}, 0}; }
+FilledFrustum turned() { return {look_at({3, -2, 1.5}, {0, 0, 0}, {0, 0, 1}), {false, -0.7, 0.7, -0.4, 0.4, {}}, 0}; }
+/// With an image that lies off the axis.
+FilledFrustum sheared() {
+  return {look_at({3, -2, 1.5}, {0, 0, 0}, {0, 0, 1}), {false, -0.2, 1.2, 0.1, 0.9, {}}, 0.05};
+}
 
 /// Vertices in as many boxes as it takes.
 Scene cloud(const std::vector<glm::vec3>& points) {
@@ -24,24 +28,24 @@ Scene cloud(const std::vector<glm::vec3>& points) {
   return scene_of(mesh);
 }
 
-std::vector<glm::vec3> one_by_one(const std::vector<glm::vec3>& points, const glm::dmat4& axes) {
-  Extremes extremes(axes, kSpread);
+std::vector<glm::vec3> one_by_one(const std::vector<glm::vec3>& points, const FilledFrustum& frustum) {
+  Extremes extremes(frustum);
   for (const glm::vec3& point : points) extremes.include(point);
   return extremes.points();
 }
 
-void expect_boxes_give_the_same(std::vector<glm::vec3> points, const glm::dmat4& axes) {
-  const std::vector<glm::vec3> expected = one_by_one(points, axes);
+void expect_boxes_give_the_same(std::vector<glm::vec3> points, const FilledFrustum& frustum) {
+  const std::vector<glm::vec3> expected = one_by_one(points, frustum);
   const Scene scene = cloud(points);
   const Surfaces surfaces(scene);
-  Extremes whole(axes, kSpread);
+  Extremes whole(frustum);
   whole.include(surfaces.placed());
   EXPECT_EQ(whole.points(), expected);
-  Extremes by_clusters(axes, kSpread);
+  Extremes by_clusters(frustum);
   by_clusters.include(surfaces.clusters());
   EXPECT_EQ(by_clusters.points(), expected);
   std::shuffle(points.begin(), points.end(), std::mt19937(5));
-  EXPECT_EQ(one_by_one(points, axes), expected);
+  EXPECT_EQ(one_by_one(points, frustum), expected);
 }
 
 std::vector<glm::vec3> random_points(std::size_t count, unsigned seed) {
@@ -55,7 +59,7 @@ std::vector<glm::vec3> random_points(std::size_t count, unsigned seed) {
 TEST(Extremes, OfBoxesAreThoseOfAllVertices) {
   for (const unsigned seed : {1u, 2u, 3u}) {
     std::vector<glm::vec3> points = random_points(30000, seed);
-    expect_boxes_give_the_same(points, turned());
+    for (const FilledFrustum& frustum : {turned(), sheared()}) expect_boxes_give_the_same(points, frustum);
     for (glm::vec3& p : points) p = glm::normalize(p);  // a sphere: every box is near the outside
     expect_boxes_give_the_same(points, turned());
     for (glm::vec3& p : points) p = p * 1e-3f + glm::vec3(1000, -4000, 70);  // many are equal in floats
@@ -67,9 +71,9 @@ TEST(Extremes, TiesGoToTheLesserPosition) {
   std::vector<glm::vec3> grid;
   for (int y = 0; y < 99; ++y)
     for (int x = 0; x < 99; ++x) grid.emplace_back(x, y, 7);
-  for (const glm::dmat4& axes : {glm::dmat4(1.0), turned()}) expect_boxes_give_the_same(grid, axes);
+  for (const FilledFrustum& frustum : {straight(), turned()}) expect_boxes_give_the_same(grid, frustum);
   // Seen along z all of them are nearest: of those, the least, and the corners of the sides' directions.
-  const std::vector<glm::vec3> kept = one_by_one(grid, glm::dmat4(1.0));
+  const std::vector<glm::vec3> kept = one_by_one(grid, straight());
   EXPECT_EQ(kept.front(), glm::vec3(0, 0, 7));
   EXPECT_LE(kept.size(), 4u);
 }
@@ -77,11 +81,11 @@ TEST(Extremes, TiesGoToTheLesserPosition) {
 TEST(Extremes, FewDirectionsKeepFewPoints) {
   const std::vector<glm::vec3> points = random_points(5000, 9);
   EXPECT_LE(one_by_one(points, turned()).size(), 132u);
-  EXPECT_TRUE(Extremes(turned(), kSpread).points().empty());
+  EXPECT_TRUE(Extremes(turned()).points().empty());
 }
 
 TEST(Extremes, ABoxMayChangeThemOnlyIfItReachesOut) {
-  Extremes extremes(turned(), kSpread);
+  Extremes extremes(turned());
   EXPECT_TRUE(extremes.may_change_by({glm::vec3(0), glm::vec3(0)}));
   for (const glm::vec3& p : random_points(5000, 11)) extremes.include(glm::normalize(p));
   EXPECT_FALSE(extremes.may_change_by({glm::vec3(-0.5f), glm::vec3(0.5f)}));

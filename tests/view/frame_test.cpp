@@ -62,6 +62,80 @@ TEST(Frame, FitsTheModelNotItsBox) {
   }
 }
 
+/// Where a point lies in the picture, from its middle: -1 and 1 are its sides. Doubles, not snapped.
+glm::dvec2 place_in_picture(const View& view, const glm::dvec3& point) {
+  const glm::dvec3 d = point - view.eye();
+  const Projection& p = view.projection;
+  const double reach = p.orthographic ? 1 : glm::dot(d, view.forward());
+  const glm::dvec2 at(glm::dot(d, view.right()) / reach, glm::dot(d, view.up()) / reach);
+  return (at - glm::dvec2(p.right + p.left, p.top + p.bottom) / 2.0) /
+         (glm::dvec2(p.right - p.left, p.top - p.bottom) / 2.0);
+}
+
+/// The least and the greatest place of a mesh's vertices.
+std::pair<glm::dvec2, glm::dvec2> extent_in_picture(const View& view, const Mesh& mesh) {
+  glm::dvec2 low(1e9), high(-1e9);
+  for (const glm::vec3& p : mesh.positions) {
+    const glm::dvec2 at = place_in_picture(view, glm::dvec3(p));
+    low = glm::min(low, at);
+    high = glm::max(high, at);
+  }
+  return {low, high};
+}
+
+// Principal points in the middle, off it, and outside of the picture.
+constexpr Intrinsics kCameras[] = {{300, 300, 99.5, 49.5}, {300, 310, 10, 60}, {250, 400, 260, -30}};
+
+TEST(Frame, ATargetIsInTheMiddleAndTheModelReachesTheMargin) {
+  const Scene scene = scene_of(random_mesh(Kind::soup, 300, 11));
+  const Surfaces surfaces(scene);
+  for (const glm::dvec3& target : {glm::dvec3(0.3, -0.2, 0.1), glm::dvec3(4, 0, 0), glm::dvec3(-1, 2, 30)})
+    for (int camera = -2; camera < 3; ++camera) {
+      SCOPED_TRACE(testing::Message() << "camera " << camera << ", target " << target.x);
+      FrameOptions options{.orthographic = camera == -2, .target = target};
+      if (camera >= 0) options.intrinsics = kCameras[camera];
+      const View view = frame(surfaces, 200, 100, options);
+      EXPECT_LT(glm::length(place_in_picture(view, target)), 1e-9);
+      const auto [low, high] = extent_in_picture(view, scene.meshes[0]);
+      const double reach = std::max({-low.x, -low.y, high.x, high.y});
+      EXPECT_LE(reach, 0.9 + 1e-9);
+      // As near as that, unless the target lies before the model: the eye must be behind it.
+      if (target.z < 30) {
+        EXPECT_NEAR(reach, 0.9, 1e-9);
+      }
+      EXPECT_GT(glm::dot(target - view.eye(), view.forward()), 0);
+    }
+}
+
+TEST(Frame, ACameraWhoseImageLiesOffItsAxisIsFilled) {
+  const Scene scene = scene_of(random_mesh(Kind::soup, 300, 12));
+  const Surfaces surfaces(scene);
+  for (const Intrinsics& camera : kCameras) {
+    const View view = frame(surfaces, 200, 100, {.intrinsics = camera});
+    EXPECT_NEAR(intrinsics_of(view.projection, 200, 100, camera.rule).cx, camera.cx, 1e-9);
+    const auto [low, high] = extent_in_picture(view, scene.meshes[0]);
+    EXPECT_NEAR(std::max(high.x - low.x, high.y - low.y) / 2, 0.9, 2e-3);
+    EXPECT_LE(std::max({-low.x, -low.y, high.x, high.y}), 0.9 + 2e-3);
+    EXPECT_NEAR(glm::length(low + high), 0, 2e-3);
+  }
+}
+
+TEST(Frame, RefusesWhatExcludesAnother) {
+  const Scene scene = box_scene(glm::vec3(-1), glm::vec3(1), Axis::y);
+  const Surfaces surfaces(scene);
+  const auto refused = [&](const FrameOptions& options) -> std::string {
+    try {
+      (void)frame(surfaces, 10, 10, options);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refused({.orthographic = true, .intrinsics = kCameras[0]}), "intrinsics: a parallel projection has none");
+  EXPECT_EQ(refused({.target = glm::dvec3(0, std::nan(""), 0)}), "target: must be finite numbers");
+  EXPECT_EQ(refused({.intrinsics = Intrinsics{0, 1, 2, 3}}), "intrinsics: focal lengths must be greater than 0");
+}
+
 TEST(Frame, ShowsTheWholeModelFromEverySide) {
   for (const Axis up : {Axis::y, Axis::z, Axis::x, Axis::minus_z})
     for (const glm::ivec2& size : {glm::ivec2(640, 480), glm::ivec2(100, 900)})

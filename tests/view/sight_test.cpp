@@ -10,7 +10,6 @@
 #include "support/rational_vector.h"
 #include "surfaces/cutouts.h"
 #include "view/ray_volumes.h"
-#include "view/screen_rays.h"
 #include "view/screen_transform.h"
 
 namespace frontmost::test {

@@ -45,7 +45,7 @@ class OcclusionClipper {
   bool take_covers(std::size_t slot, std::uint32_t first_place, const PolygonExtent& own,
                    const PieceGrid::Range& cells);
   [[nodiscard]] bool may_hide(std::size_t slot, std::size_t cover) const {
-    return screen_.hides(cover) && (!is_behind_ || is_behind_(screen_.place(slot), screen_.place(cover)));
+    return screen_.is_occluder(cover) && (!is_behind_ || is_behind_(screen_.place(slot), screen_.place(cover)));
   }
   [[nodiscard]] bool is_first_meeting(const PieceGrid::Range& cells, const PolygonExtent& cover, int x, int y) const;
 

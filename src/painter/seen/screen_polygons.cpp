@@ -2,7 +2,6 @@
 #include "painter/seen/screen_polygons.h"
 
 #include "painter/emit.h"
-#include "view/affine_depth.h"
 
 namespace frontmost::painter_detail {
 namespace {

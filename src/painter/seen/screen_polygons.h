@@ -22,6 +22,12 @@
 
 namespace frontmost::painter_detail {
 
+/// Depths of corners, so that what lies between them on the screen has the mean of them. In perspective depths are not
+/// affine over the screen, their reciprocals are. Its own inverse.
+[[nodiscard]] inline double affine_depth(const View& view, double depth) {
+  return view.projection.orthographic ? depth : 1 / depth;
+}
+
 /// On the screen alone.
 [[nodiscard]] inline PolygonExtent box_of(Outline outline) {
   PolygonExtent box{glm::vec2(outline[0].at), glm::vec2(outline[0].at), 0, 0};
@@ -65,7 +71,7 @@ class ScreenPolygons {
   [[nodiscard]] std::uint32_t first_place(std::size_t slot) const { return slots_[slot].first_place; }
   [[nodiscard]] const PolygonExtent& extent(std::size_t slot) const { return slots_[slot].extent; }
   /// Hides what is behind it, and has an area.
-  [[nodiscard]] bool hides(std::size_t slot) const { return slots_[slot].hides; }
+  [[nodiscard]] bool is_occluder(std::size_t slot) const { return slots_[slot].hides; }
   [[nodiscard]] const PieceGrid& grid() const { return grid_; }
   /// The slots of what touches a cell of the grid, in the order of their places.
   [[nodiscard]] std::span<const std::uint32_t> cell(int x, int y) const { return grid_.cell(grid_.number(x, y)); }

@@ -2,9 +2,9 @@
 // Every polygon is clipped by itself, by the union of the occluders after it.
 #include "base/float_environment.h"
 #include "painter/seen/occlusion_clipper.h"
+#include "painter/seen/screen_polygons.h"
 #include "painter/seen/slot_lists.h"
 #include "painter/seen/unoverlapped.h"
-#include "view/affine_depth.h"
 
 namespace frontmost {
 namespace {

@@ -42,7 +42,7 @@ class TrapMaker {
   /// Adds the traps of the polygon in a slot.
   void add_traps(std::size_t slot, TrapList& list) {
     outline_ = screen_.outline(slot);
-    if (screen_.hides(slot)) {
+    if (screen_.is_occluder(slot)) {
       nearby_.begin(slot, kFarthest * (width_ + kBeyondTrap));
       set_sides();
       for (std::size_t i = 0; i < outline_.size(); ++i) fit(i);
@@ -152,7 +152,7 @@ TrapList make_traps(std::span<const ScreenPolygon> polygons, const View& view, d
   const ScreenPolygons screen(polygons, view);
   const Adjacency adjacency(screen);
   return list_by_place<TrapList>(
-      screen, execution, "hems", [&] { return std::make_unique<TrapMaker>(screen, adjacency, width, execution); },
+      screen, execution, "traps", [&] { return std::make_unique<TrapMaker>(screen, adjacency, width, execution); },
       [](TrapMaker& maker, std::size_t slot, TrapList& list) { maker.add_traps(slot, list); });
 }
 

@@ -62,7 +62,7 @@ void NearbyOccluders::list(const PolygonExtent& box) {
         listed_[other] = turn_;
         poll_.count();
         const PolygonExtent& e = screen_.extent(other);
-        if (other == slot_ || is_apart(e, box) || !screen_.hides(other)) continue;
+        if (other == slot_ || is_apart(e, box) || !screen_.is_occluder(other)) continue;
         hiders_.push_back({e.low, e.high, other});
         ++count;
       }
@@ -82,7 +82,7 @@ bool NearbyOccluders::any_of(const PolygonExtent& box, const Visit& visit) {
 bool NearbyOccluders::are_open_beside(std::size_t side) const {
   const std::uint32_t across = adjacency_.across(screen_.first_corner(slot_) + side);
   if (across == no_index) return false;
-  const bool may_hide = screen_.place(across) >= screen_.first_place(slot_) && screen_.hides(across);
+  const bool may_hide = screen_.place(across) >= screen_.first_place(slot_) && screen_.is_occluder(across);
   // Beyond one without an area others begin.
   return across == slot_ || (!may_hide && !is_flat(screen_.outline(across)));
 }

@@ -7,7 +7,7 @@
 #include "frontmost/surfaces.h"
 #include "frontmost/visible.h"
 #include "shade/shadow/shadow_filter.h"
-#include "view/screen_rays.h"
+#include "view/ray_volumes.h"
 
 namespace frontmost::shading {
 

@@ -7,7 +7,7 @@
 
 #include "cli/failure.h"
 #include "cli/values.h"
-#include "cli/view_options.h"
+#include "cli/view/view_options.h"
 
 namespace frontmost::cli {
 namespace {

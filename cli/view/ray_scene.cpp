@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/rays/ray_scene.h"
+#include "cli/view/ray_scene.h"
 
 #include <frontmost/tessellate.h>
 

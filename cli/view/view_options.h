@@ -24,6 +24,9 @@ void check_view_settings(const ViewSettings& settings);
 /// \throws UsageError for a camera number that the model has not; Error from the library's own checks.
 [[nodiscard]] View resolve_view(const ViewSettings& settings, const Surfaces& surfaces);
 
+/// The bounds that views are fitted to: the model's, or those of a unit box about the origin for a model without any.
+[[nodiscard]] Box framed_box(const Surfaces& surfaces);
+
 /// False when resolve_view() gives the same for all surfaces: the camera is placed, and both planes are told.
 [[nodiscard]] bool depends_on_model(const ViewSettings& settings);
 

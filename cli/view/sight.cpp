@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/render/sight.h"
+#include "cli/view/sight.h"
 
 #include <frontmost/zbuffer.h>
 

@@ -6,17 +6,27 @@
 #include <vector>
 
 #include "frontmost/base.h"
+#include "frontmost/view.h"
 #include "surfaces/cluster_set.h"
 
 namespace frontmost {
+
+/// The part of a frustum that a model is to fill, in axes in which opposite sides have opposite slopes: where the image
+/// lies off the viewing axis, x and y are sheared along it, so that both are 0 in the middle of the image.
+struct FilledFrustum {
+  glm::dmat4 axes;            ///< right and up, sheared, and back
+  glm::dvec2 middle, spread;  ///< slopes
+
+  /// Of the sides of a perspective, less `margin` of the picture on each.
+  FilledFrustum(const glm::dmat4& world_from_eye, const Projection& sides, double margin);
+};
 
 /// Keeps, of any number of points, those that lie farthest in some fixed directions: those in which the sides of a
 /// frustum move, exactly, and 64 around each of the two planes in which its sides can be drawn. The points kept depend
 /// on the set of points alone, not on their order, so a model seen in pieces is framed to the bit as one seen whole.
 class Extremes {
  public:
-  /// For a frustum that looks along -z of `axes`, with sides at slopes of `spread` in x and y.
-  Extremes(const glm::dmat4& axes, const glm::dvec2& spread);
+  explicit Extremes(const FilledFrustum& frustum);
 
   /// Precondition: finite.
   void include(const glm::vec3& point);

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "frontmost/view.h"
-#include "view/extremes.h"
+#include "view/camera/extremes.h"
 
 namespace frontmost {
 namespace {
@@ -53,65 +53,90 @@ std::array<glm::dvec3, 8> corners_of(const Box& box) {
 /// What is framed where a scene has nothing to show.
 Box unit_box() { return {glm::vec3(-0.5f), glm::vec3(0.5f)}; }
 
-/// The frustum of a pinhole that looks along `axes`, moved so that it just holds every point it is shown. With
-/// p = (x, y, towards) along the axes, a point is left of the right side when x <= spread * (eye_towards - towards), so
-/// each side asks for one sum of eye coordinates to be at least the greatest of the points'; two opposite sides give
-/// the eye's place across and how far back it must stand.
+/// A frustum moved so that it just holds every point it is shown. With p = (x, y, towards) along its axes, a point is
+/// left of the right side when x <= spread * (eye_towards - towards) + eye_x, so each side asks for one sum of eye
+/// coordinates to be at least the greatest of the points'. Two opposite sides give the eye's place across and how far
+/// back it must stand; or only the latter, where a target in the middle of the picture gives the place across.
 class Fit {
  public:
-  Fit(const glm::dmat4& axes, const glm::dvec2& spread) : axes_(axes), x_{spread.x}, y_{spread.y} {}
+  Fit(const FilledFrustum& frustum, const std::optional<glm::dvec3>& target)
+      : frustum_(frustum), x_{frustum.spread.x}, y_{frustum.spread.y} {
+    if (!target) return;
+    const glm::dvec3 at = along_axes(*target);
+    x_.centre = at.x;
+    y_.centre = at.y;
+    nearest_ = at.z;
+  }
 
   void include(const glm::dvec3& p) {
-    const double towards = glm::dot(p, glm::dvec3(axes_[2]));
-    x_.include(glm::dot(p, glm::dvec3(axes_[0])), towards);
-    y_.include(glm::dot(p, glm::dvec3(axes_[1])), towards);
+    const glm::dvec3 at = along_axes(p);
+    x_.include(at.x, at.z);
+    y_.include(at.y, at.z);
+    nearest_ = std::max(nearest_, at.z);
   }
   /// Where a perspective eye stands, at least `closest` before the nearest point.
   [[nodiscard]] glm::dvec3 eye(double closest) const {
-    const double back = std::max({x_.back(), y_.back(), x_.nearest + closest});
-    return in_world(x_.across(), y_.across(), back);
+    return in_world(x_.across(), y_.across(), std::max({x_.back(), y_.back(), nearest_ + closest}));
   }
-  /// The middle of the points' extent across the view, and the halves of that extent.
-  [[nodiscard]] glm::dvec3 middle(double towards) const { return in_world(x_.middle(), y_.middle(), towards); }
+  /// Where the eye of a parallel projection stands, `before` the middle of `box` and the target.
+  [[nodiscard]] glm::dvec3 parallel_eye(const Box& box, double before) const {
+    const double middle = along_axes(0.5 * (glm::dvec3(box.low) + glm::dvec3(box.high))).z;
+    return in_world(x_.middle(), y_.middle(), (x_.centre ? std::max(middle, nearest_) : middle) + before);
+  }
+  /// From the middle of its picture to the farthest points.
   [[nodiscard]] glm::dvec2 half_extent() const { return {x_.half_extent(), y_.half_extent()}; }
 
  private:
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   struct Direction {
     double spread;
+    std::optional<double> centre = std::nullopt;   // of the picture, where it is given
     double plus = -kInfinity, minus = -kInfinity;  // of +-x / spread + towards
-    double low = kInfinity, high = -kInfinity, nearest = -kInfinity;
+    double low = kInfinity, high = -kInfinity;
 
     void include(double x, double towards) {
       plus = std::max(plus, x / spread + towards);
       minus = std::max(minus, -x / spread + towards);
       low = std::min(low, x);
       high = std::max(high, x);
-      nearest = std::max(nearest, towards);
     }
-    [[nodiscard]] double back() const { return (plus + minus) / 2; }
-    [[nodiscard]] double across() const { return spread * (plus - minus) / 2; }
-    [[nodiscard]] double middle() const { return (low + high) / 2; }
-    [[nodiscard]] double half_extent() const { return (high - low) / 2; }
+    [[nodiscard]] double across() const { return centre.value_or(spread * (plus - minus) / 2); }
+    [[nodiscard]] double back() const {
+      return centre ? std::max(plus - *centre / spread, minus + *centre / spread) : (plus + minus) / 2;
+    }
+    [[nodiscard]] double middle() const { return centre.value_or((low + high) / 2); }
+    [[nodiscard]] double half_extent() const {
+      return centre ? std::max(high - *centre, *centre - low) : (high - low) / 2;
+    }
   };
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+  [[nodiscard]] glm::dvec3 along_axes(const glm::dvec3& p) const {
+    const glm::dmat4& axes = frustum_.axes;
+    return {glm::dot(p, glm::dvec3(axes[0])), glm::dot(p, glm::dvec3(axes[1])), glm::dot(p, glm::dvec3(axes[2]))};
+  }
+  /// The inverse: along axes that are not sheared.
   [[nodiscard]] glm::dvec3 in_world(double x, double y, double towards) const {
-    return x * glm::dvec3(axes_[0]) + y * glm::dvec3(axes_[1]) + towards * glm::dvec3(axes_[2]);
+    const glm::dvec3 back(frustum_.axes[2]);
+    const glm::dvec2& middle = frustum_.middle;
+    const glm::dvec3 right = glm::dvec3(frustum_.axes[0]) - middle.x * back,
+                     up = glm::dvec3(frustum_.axes[1]) - middle.y * back;
+    return (x - middle.x * towards) * right + (y - middle.y * towards) * up + towards * back;
   }
 
-  glm::dmat4 axes_;
+  FilledFrustum frustum_;
   Direction x_, y_;
+  double nearest_ = -kInfinity;
 };
 
-/// The extremes of a model in the picture of an eye, as slopes y / distance, and how far away they are.
+/// The extremes of a model in the picture of an eye, as slopes from the picture's middle, and how far away they are.
 class Spread {
  public:
-  Spread(const glm::dmat4& pose, int axis) : pose_(pose), axis_(axis) {}
+  Spread(const glm::dvec3& eye, const glm::dvec3& across, const glm::dvec3& back)
+      : eye_(eye), across_(across), back_(back) {}
 
   void include(const glm::dvec3& p) {
-    const glm::dvec3 d = p - glm::dvec3(pose_[3]);
-    const double distance = -glm::dot(d, glm::dvec3(pose_[2])),
-                 slope = glm::dot(d, glm::dvec3(pose_[axis_])) / distance;
+    const glm::dvec3 d = p - eye_;
+    const double distance = -glm::dot(d, back_), slope = glm::dot(d, across_) / distance;
     if (slope < low_.slope) low_ = {slope, distance};
     if (slope > high_.slope) high_ = {slope, distance};
   }
@@ -125,21 +150,38 @@ class Spread {
   struct Extreme {
     double slope, distance;
   };
-  glm::dmat4 pose_;
-  int axis_;
+  glm::dvec3 eye_, across_, back_;
   Extreme low_{std::numeric_limits<double>::infinity(), 1}, high_{-std::numeric_limits<double>::infinity(), 1};
 };
 
 /// Moves the eye across until the model is in the middle of the picture. Only the looser direction moves: the tight
 /// one is in the middle already.
-void centre(glm::dmat4& pose, const std::vector<glm::vec3>& points) {
+void centre(glm::dmat4& pose, const FilledFrustum& frustum, const std::vector<glm::vec3>& points) {
   constexpr int kSteps = 3;  // each leaves the change of the extremes' distances, a small part
   for (int step = 0; step < kSteps; ++step)
     for (int axis = 0; axis < 2; ++axis) {
-      Spread spread(pose, axis);
+      Spread spread(glm::dvec3(pose[3]), glm::dvec3(frustum.axes[axis]), glm::dvec3(frustum.axes[2]));
       for (const glm::vec3& p : points) spread.include(glm::dvec3(p));
       pose[3] += pose[axis] * spread.to_centre();
     }
+}
+
+std::vector<glm::vec3> extremes_of(const Surfaces& surfaces, const FilledFrustum& frustum) {
+  Extremes extremes(frustum);
+  if (const ClusterSet* const clusters = surfaces.made_clusters())
+    extremes.include(*clusters);
+  else
+    extremes.include(surfaces.placed());
+  return extremes.points();
+}
+
+void check(int width, int height, const FrameOptions& options) {
+  if (width < 1 || height < 1) throw Error(ErrorCode::bad_argument, "resolution: width and height must be at least 1");
+  if (!(options.margin >= 0 && options.margin < 0.5)) throw Error(ErrorCode::bad_argument, "margin: must be 0 to 0.5");
+  if (options.orthographic && options.intrinsics)
+    throw Error(ErrorCode::bad_argument, "intrinsics: a parallel projection has none");
+  for (int axis = 0; options.target && axis < 3; ++axis)
+    if (!std::isfinite((*options.target)[axis])) throw Error(ErrorCode::bad_argument, "target: must be finite numbers");
 }
 
 }  // namespace
@@ -167,23 +209,18 @@ ClipDistances fit_clip(const Box& bounds, const glm::dmat4& world_from_eye, bool
 }
 
 View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& options) {
-  if (width < 1 || height < 1) throw Error(ErrorCode::bad_argument, "resolution: width and height must be at least 1");
-  if (!(options.margin >= 0 && options.margin < 0.5)) throw Error(ErrorCode::bad_argument, "margin: must be 0 to 0.5");
+  check(width, height, options);
   const Box box = surfaces.bounds().is_empty() ? unit_box() : surfaces.bounds();
   const Gaze look = gaze(options.direction, model_axes(surfaces.scene().up));
   const glm::dvec3 forward = options.forward.value_or(-look.towards_viewer);
   glm::dmat4 pose = look_at(-glm::normalize(forward), glm::dvec3(0), options.up.value_or(look.up));
 
-  const double aspect = double(width) / height, filled = 1 - 2 * options.margin;
-  Projection projection = make_projection(options.min_fov, aspect, {});
-  const glm::dvec2 spread(projection.right * filled, projection.top * filled);
-  Extremes extremes(pose, spread);
-  if (const ClusterSet* const clusters = surfaces.made_clusters())
-    extremes.include(*clusters);
-  else
-    extremes.include(surfaces.placed());
-  const std::vector<glm::vec3> points = extremes.points();
-  Fit fit(pose, spread);
+  const double aspect = double(width) / height;
+  Projection projection = options.intrinsics ? make_projection(*options.intrinsics, width, height, {})
+                                             : make_projection(options.min_fov, aspect, {});
+  const FilledFrustum frustum(pose, projection, options.margin);
+  const std::vector<glm::vec3> points = extremes_of(surfaces, frustum);
+  Fit fit(frustum, options.target);
   for (const glm::vec3& p : points) fit.include(glm::dvec3(p));
   if (points.empty())
     for (const glm::dvec3& corner : corners_of(box)) fit.include(corner);
@@ -191,18 +228,18 @@ View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& 
   // A single point far from the origin has to be stood back from by more than rounding.
   const double diagonal = std::max({glm::length(high - low), 1e-5 * glm::length(high), 1e-30});
   if (options.orthographic) {
-    pose[3] = glm::dvec4(fit.middle(glm::dot(0.5 * (low + high), glm::dvec3(pose[2])) + diagonal), 1.0);
+    pose[3] = glm::dvec4(fit.parallel_eye(box, diagonal), 1.0);
   } else {
     // Some distance from what is nearest, or a model seen along its own plane would have the eye in it.
     pose[3] = glm::dvec4(fit.eye(1e-3 * diagonal), 1.0);
-    if (!points.empty()) centre(pose, points);
+    if (!points.empty() && !options.target) centre(pose, frustum, points);
   }
 
   const ClipDistances clip = fit_clip(box, pose, options.orthographic);
   if (options.orthographic) {
     const glm::dvec2 extent = fit.half_extent();
     // A model of no extent across, a point or a line seen from its end, still needs a picture with sides.
-    const double half = std::max({extent.y, extent.x / aspect, 1e-3 * diagonal}) / filled;
+    const double half = std::max({extent.y, extent.x / aspect, 1e-3 * diagonal}) / (1 - 2 * options.margin);
     projection = make_orthographic(-half * aspect, half * aspect, -half, half, clip);
   } else {
     projection.clip = clip;

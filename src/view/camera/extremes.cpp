@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The farthest points of a model in directions all around, found without looking at all of them.
 
-#include "view/extremes.h"
+#include "view/camera/extremes.h"
 
 #include <algorithm>
 #include <array>
@@ -17,8 +17,16 @@ bool comes_before(const glm::vec3& a, const glm::vec3& b) { return std::tie(a.x,
 
 }  // namespace
 
-Extremes::Extremes(const glm::dmat4& axes, const glm::dvec2& spread)
-    : across_{axes[0], axes[1]}, back_(axes[2]), spread_(spread) {
+FilledFrustum::FilledFrustum(const glm::dmat4& world_from_eye, const Projection& sides, double margin)
+    : axes(world_from_eye),
+      middle((sides.right + sides.left) / 2, (sides.top + sides.bottom) / 2),
+      spread(glm::dvec2(sides.right - sides.left, sides.top - sides.bottom) / 2.0 * (1 - 2 * margin)) {
+  axes[0] += middle.x * axes[2];
+  axes[1] += middle.y * axes[2];
+}
+
+Extremes::Extremes(const FilledFrustum& frustum)
+    : across_{frustum.axes[0], frustum.axes[1]}, back_(frustum.axes[2]), spread_(frustum.spread) {
   constexpr double step = 6.283185307179586 / around;
   for (int k = 0; k < around; ++k) {
     // Rounded to floats: the last bits of sine and cosine differ between C libraries.

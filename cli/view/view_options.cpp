@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // From what was said about the camera to a View: first where it looks, then how wide, then how far away, then the
 // planes.
-#include "cli/view_options.h"
+#include "cli/view/view_options.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "cli/failure.h"
-#include "cli/places.h"
-#include "cli/render/fit.h"
 #include "cli/values.h"
+#include "cli/view/places.h"
 
 namespace frontmost::cli {
 namespace {
@@ -58,17 +57,22 @@ void turn(Aim& aim, const ViewSettings& settings) {
   }
 }
 
+glm::dvec3 middle_of(const Box& box) {
+  const glm::dvec3 low(box.low), high(box.high);
+  return low + (high - low) * 0.5;
+}
+
 /// The middle of the model, brought onto the viewing axis.
 glm::dvec3 ahead_of(const View& view, const Surfaces& surfaces) {
-  const FitBounds bounds = visible_bounds(surfaces);
-  const double along = glm::dot(bounds.centre - view.eye(), view.forward());
-  return view.eye() + view.forward() * (along > 0 ? along : std::max(bounds.diagonal, 1e-6));
+  const Box box = framed_box(surfaces);
+  const double along = glm::dot(middle_of(box) - view.eye(), view.forward());
+  return view.eye() + view.forward() * (along > 0 ? along : std::max(double(box.diagonal()), 1e-6));
 }
 
 /// `base` is the library's own choice of view, from which anything not said is taken.
 Aim aim_of(const ViewSettings& settings, const Surfaces& surfaces, const View& base) {
   const glm::dvec3& origin = surfaces.scene().origin;
-  Aim aim{base.world_from_eye, settings.focal_point ? *settings.focal_point - origin : visible_bounds(surfaces).centre,
+  Aim aim{base.world_from_eye, settings.focal_point ? *settings.focal_point - origin : middle_of(framed_box(surfaces)),
           true};
   if (settings.pose || settings.camera_index) {
     aim.world_from_eye = settings.pose ? in_scene(world_from_eye(*settings.pose, *settings.pose_convention), origin)
@@ -91,13 +95,17 @@ Aim aim_of(const ViewSettings& settings, const Surfaces& surfaces, const View& b
   return aim;
 }
 
+std::optional<Intrinsics> intrinsics_of(const ViewSettings& settings) {
+  if (!settings.intrinsics) return std::nullopt;
+  const auto& [fx, fy, cx, cy] = *settings.intrinsics;
+  return Intrinsics{fx, fy, cx, cy, settings.pixel_rule};
+}
+
 /// The sides at unit distance; in parallel projection, of what a perspective camera would see at the focal point.
 Projection shape_of(const ViewSettings& settings, const glm::ivec2& size, const View& base) {
   const double aspect = double(size.x) / size.y;
-  if (settings.intrinsics) {
-    const auto& [fx, fy, cx, cy] = *settings.intrinsics;
-    return make_projection(Intrinsics{fx, fy, cx, cy, settings.pixel_rule}, size.x, size.y, base.projection.clip);
-  }
+  if (const auto intrinsics = intrinsics_of(settings))
+    return make_projection(*intrinsics, size.x, size.y, base.projection.clip);
   Projection projection;
   projection.orthographic = settings.orthographic;
   const double min_half = std::tan(15 * radians_per_degree);  // FrameOptions::min_fov
@@ -135,16 +143,16 @@ void zoom(Projection& projection, double factor) {
 
 /// What the model's own camera says, then what the user says, over what fits.
 ClipDistances clip_of(const ViewSettings& settings, const Surfaces& surfaces, const View& view) {
-  const FitBounds bounds = visible_bounds(surfaces);
+  const Box box = framed_box(surfaces);
   const bool orthographic = view.projection.orthographic;
-  ClipDistances clip = fit_clip(bounds.box, view.world_from_eye, orthographic);
+  ClipDistances clip = fit_clip(box, view.world_from_eye, orthographic);
   std::optional<double> near = settings.near, far = settings.far;
   if (settings.camera_index) {
     const Camera& camera = model_camera(settings, surfaces.scene());
     if (!near) near = camera.near;
     if (!far) far = camera.far;
   }
-  const double depth = std::max(bounds.diagonal, 1.0);
+  const double depth = std::max(double(box.diagonal()), 1.0);
   if (near) clip.near = *near;
   if (far) clip.far = *far;
   // Only one was given, and lies beyond the other one that was fitted.
@@ -154,12 +162,14 @@ ClipDistances clip_of(const ViewSettings& settings, const Surfaces& surfaces, co
   return clip;
 }
 
-/// The library's own framing; `axes`, where given, instead of the named direction.
-View framed(const ViewSettings& settings, const Surfaces& surfaces, const glm::ivec2& size, const Aim* axes = nullptr) {
+/// The library's own framing. `aim`, where given, says the direction in place of the named one, and is in the middle.
+View framed(const ViewSettings& settings, const Surfaces& surfaces, const glm::ivec2& size, const Aim* aim = nullptr) {
   FrameOptions options;
-  if (axes) {
-    options.forward = -axis(axes->world_from_eye, 2);
-    options.up = axis(axes->world_from_eye, 1);
+  if (aim) {
+    options.forward = -axis(aim->world_from_eye, 2);
+    options.up = axis(aim->world_from_eye, 1);
+    if (settings.focal_point) options.target = aim->target;
+    options.intrinsics = intrinsics_of(settings);
   }
   options.direction = settings.named.value_or(NamedView::three_quarter);
   options.orthographic = settings.orthographic;
@@ -171,17 +181,14 @@ View framed(const ViewSettings& settings, const Surfaces& surfaces, const glm::i
   return frame(surfaces, size.x, size.y, options);
 }
 
-/// A camera that was told, or that is to see all from in line with a focal point or with given intrinsics.
+/// A camera whose eye was told.
 void place(View& view, const Aim& aim, const ViewSettings& settings, const Surfaces& surfaces) {
   const glm::ivec2 size(view.width, view.height);
   view.world_from_eye = aim.world_from_eye;
   view.projection =
       settings.camera_index ? shape_of(model_camera(settings, surfaces.scene()), size) : shape_of(settings, size, view);
-  if (aim.fitted) {
-    fit(view, aim.target, visible_bounds(surfaces));
-  } else if (view.projection.orthographic && !settings.camera_index) {
+  if (view.projection.orthographic && !settings.camera_index)
     scale(view.projection, glm::distance(aim.target, view.eye()));
-  }
 }
 
 /// True when the library's own framing is all that was asked for.
@@ -191,6 +198,11 @@ bool is_plain(const ViewSettings& s) {
 }
 
 }  // namespace
+
+Box framed_box(const Surfaces& surfaces) {
+  const Box& bounds = surfaces.bounds();
+  return bounds.is_empty() ? Box{glm::vec3(-0.5f), glm::vec3(0.5f)} : bounds;
+}
 
 glm::dvec3 focal_point_of(const ViewSettings& settings, const View& view, const Surfaces& surfaces) {
   return settings.focal_point ? *settings.focal_point - surfaces.scene().origin : ahead_of(view, surfaces);
@@ -207,11 +219,10 @@ View resolve_view(const ViewSettings& settings, const Surfaces& surfaces) {
   if (!is_plain(settings)) {
     Aim aim = aim_of(settings, surfaces, view);
     turn(aim, settings);
-    if (aim.fitted && !settings.focal_point && !settings.intrinsics) {
+    if (aim.fitted)
       view = framed(settings, surfaces, size, &aim);
-    } else {
+    else
       place(view, aim, settings, surfaces);
-    }
   }
   zoom(view.projection, settings.zoom);
   view.projection.clip = clip_of(settings, surfaces, view);
