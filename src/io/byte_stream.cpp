@@ -11,7 +11,7 @@
 #include <system_error>
 
 #include "frontmost/base.h"
-#include "io/read_errors.h"
+#include "io/input_file.h"
 
 namespace frontmost {
 ByteStream::ByteStream(const std::string& path, std::string name) : name_(std::move(name)) {

@@ -13,8 +13,7 @@
 #include <cstdlib>
 #include <system_error>
 
-#include "frontmost/base.h"
-#include "io/read_errors.h"
+#include "frontmost/io.h"
 
 namespace frontmost {
 namespace {
@@ -112,6 +111,23 @@ void InputFile::release(std::span<const std::byte> part) const {
   const std::size_t begin = (first + page - 1) / page * page;
   const std::size_t end = (first + part.size()) / page * page;
   if (begin < end) ::madvise(const_cast<std::byte*>(data_.get()) + begin, end - begin, MADV_DONTNEED);
+}
+
+std::string load_text(const std::string& path, std::uint64_t most_bytes) {
+  const bool is_input = path == "-";
+  const InputFile file =
+      is_input ? InputFile::standard_input("standard input", most_bytes) : InputFile::open(path, path, most_bytes);
+  const std::span<const std::byte> bytes = file.bytes();
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+void fail_to_read(const std::string& name, const std::string& reason) {
+  throw Error(ErrorCode::file_unreadable, name + ": " + reason);
+}
+
+void fail_to_read_by_errno(const std::string& name, const char* doing) {
+  const int code = errno;  // before strings are made: that may change it
+  fail_to_read(name, std::string(doing) + ": " + std::generic_category().message(code));
 }
 
 }  // namespace frontmost

@@ -13,7 +13,7 @@
 #include <cstdio>
 #include <system_error>
 
-#include "frontmost/base.h"
+#include "frontmost/io.h"
 
 namespace frontmost {
 namespace {
@@ -171,6 +171,12 @@ void OutputFile::close() {
   const int descriptor = descriptor_;
   descriptor_ = -1;
   if (::close(descriptor) != 0 && errno != EINTR) fail("cannot write");
+}
+
+void save_text(std::string_view text, const std::string& path) {
+  OutputFile file(path);
+  file.write(std::as_bytes(std::span(text.data(), text.size())));
+  file.commit();
 }
 
 }  // namespace frontmost

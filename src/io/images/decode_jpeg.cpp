@@ -10,7 +10,6 @@
 #include <cstring>
 
 #include "io/images/decode.h"
-#include "io/images/decoders.h"
 
 namespace frontmost::detail {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "io/images/decoders.h"
+#include "io/images/decode.h"
 #include "io/images/formats.h"
 
 namespace frontmost::detail {

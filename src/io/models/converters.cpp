@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/converters.h"
-
 #include <algorithm>
 
-#include "io/models/file_text.h"
+#include "io/models/reader.h"
+#include "io/models/text/file_text.h"
 
 namespace frontmost {
 namespace {

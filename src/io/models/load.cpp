@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // load(): finds the bytes, finds the format, calls its reader, checks what came out.
 #include "base/parallel.h"
-#include "io/models/converters.h"
 #include "io/models/reader.h"
 
 namespace frontmost {

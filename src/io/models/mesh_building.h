@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "io/models/polygons/triangulate.h"
 #include "io/models/reader.h"
-#include "io/models/triangulate.h"
 
 namespace frontmost {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "io/models/file_text.h"
+#include "io/models/text/file_text.h"
 
 namespace frontmost {
 namespace fs = std::filesystem;

@@ -4,7 +4,6 @@
 #include "io/models/model_stream.h"
 
 #include "base/parallel.h"
-#include "io/models/converters.h"
 #include "io/models/reader.h"
 #include "io/models/stl/stl.h"
 

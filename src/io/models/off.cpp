@@ -4,7 +4,7 @@
 
 #include "io/models/coordinates.h"
 #include "io/models/mesh_building.h"
-#include "io/models/text_scanner.h"
+#include "io/models/text/text_scanner.h"
 
 namespace frontmost {
 namespace {

@@ -5,6 +5,9 @@
 // Scene::warnings as "place: reason", before which load() puts the file's name.
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "frontmost/io.h"
 #include "io/models/model_source.h"
 
@@ -27,5 +30,13 @@ inline constexpr const char* no_triangles_warning = "the file holds no triangles
 [[nodiscard]] Axis default_up(ModelFormat format);
 /// The format that the contents look like. None: none of ours.
 [[nodiscard]] std::optional<ModelFormat> format_of_content(Bytes bytes);
+
+// Formats that are not read, and which programs make models of them that are.
+
+/// What to say of a file in a format that is known but not read, with the command line that converts it: by the suffix
+/// of `path`. None: not one of those.
+[[nodiscard]] std::optional<std::string> conversion_by_suffix(const std::string& path);
+/// The same by the first bytes, for what has no suffix, such as standard input.
+[[nodiscard]] std::optional<std::string> conversion_by_content(Bytes bytes);
 
 }  // namespace frontmost

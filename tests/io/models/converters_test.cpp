@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Formats that are not read: the message names the program that converts them, ready to be pasted into a shell.
-#include "io/models/converters.h"
-
 #include <unistd.h>
 
 #include <fstream>
 
+#include "io/models/reader.h"
 #include "model_bytes.h"
 
 namespace frontmost {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/number.h"
+#include "io/models/text/number.h"
 
 #include <gtest/gtest.h>
 

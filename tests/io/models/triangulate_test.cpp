@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/triangulate.h"
+#include "io/models/polygons/triangulate.h"
 
 #include <gtest/gtest.h>
 

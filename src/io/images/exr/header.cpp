@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "frontmost/base.h"
-#include "io/images/decoders.h"
+#include "io/images/decode.h"
 
 namespace frontmost::detail {
 namespace {

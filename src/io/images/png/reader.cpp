@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/images/decoders.h"
+#include "io/images/decode.h"
 
 namespace frontmost::detail {
 namespace {

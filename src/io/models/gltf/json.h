@@ -11,8 +11,8 @@
 #include <string>
 #include <string_view>
 
-#include "io/models/file_text.h"
 #include "io/models/model_source.h"
+#include "io/models/text/file_text.h"
 
 namespace frontmost::gltf {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/models/gltf/materials.h"
 
-#include "io/models/lost_textures.h"
+#include "io/models/textures.h"
 
 namespace frontmost::gltf {
 namespace {

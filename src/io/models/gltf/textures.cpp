@@ -3,10 +3,10 @@
 
 #include "base/parallel.h"
 #include "io/images/decode.h"
+#include "io/models/budget.h"
 #include "io/models/gltf/materials.h"
 #include "io/models/gltf/uri.h"
-#include "io/models/lost_textures.h"
-#include "io/models/pixel_budget.h"
+#include "io/models/textures.h"
 
 namespace frontmost::gltf {
 namespace {

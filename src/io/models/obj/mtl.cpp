@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/models/file_text.h"
-#include "io/models/lost_textures.h"
 #include "io/models/mesh_building.h"
-#include "io/models/text_scanner.h"
+#include "io/models/text/file_text.h"
+#include "io/models/text/text_scanner.h"
+#include "io/models/textures.h"
 
 namespace frontmost {
 namespace {

@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "io/models/texture_files.h"
+#include "io/models/textures.h"
 
 namespace frontmost {
 

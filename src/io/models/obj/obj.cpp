@@ -5,11 +5,11 @@
 #include <set>
 
 #include "io/models/coordinates.h"
-#include "io/models/file_text.h"
 #include "io/models/mesh_building.h"
 #include "io/models/obj/mtl.h"
 #include "io/models/obj/obj_meshes.h"
-#include "io/models/text_scanner.h"
+#include "io/models/text/file_text.h"
+#include "io/models/text/text_scanner.h"
 
 namespace frontmost {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "base/parallel.h"
 #include "io/models/ply/ply_mesh.h"
-#include "io/models/texture_files.h"
+#include "io/models/textures.h"
 
 namespace frontmost {
 namespace {

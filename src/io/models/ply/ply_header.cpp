@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "io/models/text_scanner.h"
+#include "io/models/text/text_scanner.h"
 
 namespace frontmost {
 namespace {

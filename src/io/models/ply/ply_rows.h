@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "io/models/ply/ply_header.h"
-#include "io/models/text_scanner.h"
+#include "io/models/text/text_scanner.h"
 
 namespace frontmost {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // ASCII STL. Every solid becomes a mesh. Words may be in any case and anywhere on a line, as in files from the wild.
 #include "io/models/coordinates.h"
-#include "io/models/file_text.h"
 #include "io/models/mesh_building.h"
 #include "io/models/stl/stl.h"
-#include "io/models/text_scanner.h"
+#include "io/models/text/file_text.h"
+#include "io/models/text/text_scanner.h"
 
 namespace frontmost {
 namespace {

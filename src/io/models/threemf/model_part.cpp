@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <set>
 
-#include "io/models/file_text.h"
 #include "io/models/mesh_building.h"
-#include "io/models/text_scanner.h"
+#include "io/models/text/file_text.h"
+#include "io/models/text/text_scanner.h"
 #include "io/models/threemf/model.h"
 #include "io/models/threemf/values.h"
 #include "io/models/threemf/xml_part.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "io/models/file_text.h"
+#include "io/models/text/file_text.h"
 
 namespace frontmost::threemf {
 namespace {

@@ -3,8 +3,8 @@
 // on a plain material of their own.
 #include <unordered_map>
 
-#include "io/models/file_text.h"
 #include "io/models/model_source.h"
+#include "io/models/text/file_text.h"
 #include "io/models/threemf/model.h"
 
 namespace frontmost::threemf {

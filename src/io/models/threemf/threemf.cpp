@@ -4,9 +4,9 @@
 
 #include "base/parallel.h"
 #include "io/models/budget.h"
-#include "io/models/file_text.h"
 #include "io/models/mesh_building.h"
 #include "io/models/reader.h"
+#include "io/models/text/file_text.h"
 #include "io/models/threemf/model.h"
 #include "io/models/threemf/start_part.h"
 

@@ -6,7 +6,7 @@
 
 #include "frontmost/base.h"
 #include "io/models/mesh_building.h"
-#include "io/models/number.h"
+#include "io/models/text/number.h"
 
 namespace frontmost::threemf {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <expat.h>
 
-#include "io/models/file_text.h"
+#include "io/models/text/file_text.h"
 
 namespace frontmost::threemf {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/file_text.h"
+#include "io/models/text/file_text.h"
 
 #include "frontmost/text.h"
 
@@ -23,6 +23,11 @@ std::string printable(std::string_view text) {
   constexpr std::size_t longest = 160;
   const std::string out = printable_text(start_of(text, longest));
   return text.size() > longest ? out + "..." : out;
+}
+
+std::string in_quotes(std::string_view word) {
+  constexpr std::size_t longest = 40;
+  return '"' + printable(word.substr(0, longest)) + (word.size() > longest ? "...\"" : "\"");
 }
 
 }  // namespace frontmost

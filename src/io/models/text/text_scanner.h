@@ -4,13 +4,11 @@
 
 #include <string_view>
 
-#include "io/models/number.h"
 #include "io/models/reader.h"
+#include "io/models/text/file_text.h"
+#include "io/models/text/number.h"
 
 namespace frontmost {
-
-/// A word of a file for a message: in quotes, and not longer than a line.
-[[nodiscard]] std::string in_quotes(std::string_view word);
 
 /// Lines end with \n, \r\n or \r. A word that starts with '#' ends its line where `comments` says so. A backslash at
 /// the end of a line joins it with the next one. Every step stays within the bytes; none looks for a terminator.

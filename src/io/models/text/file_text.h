@@ -17,4 +17,7 @@ inline constexpr std::size_t longest_name = 1024;
 /// A text of the file as it may stand in a message: short, and as printable_text() writes it.
 [[nodiscard]] std::string printable(std::string_view text);
 
+/// A word of a file for a message: in quotes, and not longer than a line.
+[[nodiscard]] std::string in_quotes(std::string_view word);
+
 }  // namespace frontmost

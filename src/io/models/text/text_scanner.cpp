@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/text_scanner.h"
+#include "io/models/text/text_scanner.h"
 
 #include "base/parallel.h"
-#include "io/models/file_text.h"
+#include "io/models/text/file_text.h"
 
 namespace frontmost {
-
-std::string in_quotes(std::string_view word) {
-  constexpr std::size_t longest = 40;
-  return '"' + printable(word.substr(0, longest)) + (word.size() > longest ? "...\"" : "\"");
-}
 
 bool TextScanner::join_lines() {
   const char* p = at_ + 1;

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "io/models/corner_tree.h"
+#include "io/models/polygons/corner_tree.h"
 
 namespace frontmost {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/texture_files.h"
+#include "io/models/textures.h"
 
 #include "io/images/decode.h"
-#include "io/models/file_text.h"
+#include "io/models/text/file_text.h"
 
 namespace frontmost {
 namespace {
@@ -39,6 +39,20 @@ std::uint32_t TextureFiles::read(const std::string& reference, const std::string
     return no_index;
   }
   return std::uint32_t(scene_.textures.size() - 1);
+}
+
+void lose_emissive_texture(Material& material, const std::string& who, std::vector<std::string>& warnings) {
+  material.emissive_texture = {};
+  if (material.emissive == glm::vec3(0)) return;
+  material.emissive = glm::vec3(0);
+  warnings.push_back(who + ": does not glow without its emissive texture");
+}
+
+void lose_metallic_roughness_texture(Material& material, const std::string& who, std::vector<std::string>& warnings) {
+  material.metallic_roughness_texture = {};
+  if (material.metallic == 0) return;
+  material.metallic = 0;
+  warnings.push_back(who + ": is no metal without its metallic-roughness texture");
 }
 
 }  // namespace frontmost

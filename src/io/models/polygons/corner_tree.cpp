@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/corner_tree.h"
+#include "io/models/polygons/corner_tree.h"
 
 #include <algorithm>
 #include <numeric>

@@ -6,7 +6,7 @@
 // attempt, a fan whose triangles all turn left, needs no further test; it serves all convex polygons.
 // What may block an ear is found by place, so that cutting takes time in proportion to the corners and the logarithm of
 // their number, unless ears are far apart: looking for one takes O(n) tests at worst.
-#include "io/models/triangulate.h"
+#include "io/models/polygons/triangulate.h"
 
 #include <algorithm>
 #include <cmath>
