@@ -7,14 +7,48 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "frontmost/paper.h"
 #include "frontmost/section.h"
 #include "frontmost/sheet_view.h"
-#include "frontmost/title_block.h"
 
 namespace frontmost {
+
+/// A sheet of paper, before it is known how large the drawing on it is.
+struct Paper {
+  glm::dvec2 size{210, 297};  ///< millimetres, 1 to 100000 each
+  bool may_turn = true;       ///< the sides change places where that suits the drawing better
+  bool fits_drawing = false;  ///< as large as the drawing and its margins; the size does not count
+};
+
+/// The paper of a name: "a0" to "a6", "letter", "legal" or "tabloid", in small letters or capitals. With "-portrait" or
+/// "-landscape" behind the name it does not turn. \throws Error bad_argument for any other name.
+[[nodiscard]] Paper named_paper(std::string_view name);
+/// The name of paper of that size in millimetres, whichever way it lies: "A3"; "420 x 200" where it has none.
+[[nodiscard]] std::string paper_name(const glm::dvec2& size);
+
+/// A scale as drawings write it: "1:5", "2:1", "1:3.2".
+[[nodiscard]] std::string scale_text(double scale);
+/// The largest scale of ISO 5455 (1, 2 and 5 times powers of ten, and their reciprocals) that is not above `most`: from
+/// 5e9:1 to 1:1e10; `most` itself where that is below them.
+[[nodiscard]] double standard_scale(double most);
+
+/// Where views stand about the front one; its symbol (ISO 5456-2) stands in the title block.
+enum class ProjectionMethod : std::uint8_t { none, first_angle, third_angle };
+
+/// What the fields of a title block say, in UTF-8; empty ones stay empty. Text too long for its field at 1.8 mm is
+/// written smaller.
+struct TitleBlock {
+  std::string title{};   ///< in up to two lines
+  std::string number{};  ///< of the drawing
+  std::string author{}, date{}, owner{};
+  std::string scale{};  ///< as "1:2"
+  std::string unit{};   ///< of what is written on the drawing, as "mm"
+  std::string paper{};  ///< as "A3"
+  ProjectionMethod projection = ProjectionMethod::none;
+  int sheet = 1, sheets = 1;
+};
 
 /// "front", "back", ..., "three-quarter".
 [[nodiscard]] std::string_view view_name(NamedView view);
@@ -40,7 +74,7 @@ struct SheetOptions {
   /// Named A-A, B-B and so on in their order; at most 24. The first view that sees a plane from its edge marks it.
   std::vector<SectionView> sections{};
   ProjectionMethod projection = ProjectionMethod::first_angle;  ///< where views stand about the front one
-  /// Overall sizes, and diameters, as place_dimensions() has them; needs views.
+  /// Overall sizes, and diameters, as ISO 129 has them; needs views.
   bool dimensions = false;
 
   // How lines are drawn.

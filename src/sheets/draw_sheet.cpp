@@ -3,9 +3,10 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "frontmost/dimensions.h"
-#include "sheets/options.h"
-#include "sheets/sections.h"
+#include "sheets/dimensions/dimensions.h"
+#include "sheets/frame/title_block.h"
+#include "sheets/planned_view.h"
+#include "sheets/sections/sections.h"
 
 namespace frontmost {
 namespace {

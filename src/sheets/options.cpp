@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // The door of sheets: options that cannot be meant are refused here, by the names of their fields.
-#include "sheets/options.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "sheets/number_text.h"
+#include "sheets/page_marks.h"
 #include "sheets/planned_view.h"
-#include "sheets/sections.h"
+#include "sheets/sections/sections.h"
 
 namespace frontmost {
-namespace {
 
-[[noreturn]] void refuse_option(const std::string& field, const std::string& reason) {
+void detail::refuse_option(const std::string& field, const std::string& reason) {
   throw Error(ErrorCode::bad_argument, field + ": " + reason);
 }
+
+namespace {
+
+using detail::refuse_option;
 
 void check_range(const char* field, std::optional<double> value, double least, double most) {
   // Written so that NaN fails.

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "frontmost/paper.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "frontmost/base.h"
-#include "sheets/number_text.h"
+#include "frontmost/sheet.h"
+#include "sheets/page_marks.h"
 
 namespace frontmost {
 namespace {

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sheets/number_text.h"
-#include "sheets/options.h"
+#include "sheets/page_marks.h"
 #include "sheets/planned_view.h"
 
 namespace frontmost::detail {

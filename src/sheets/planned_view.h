@@ -1,11 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// A view of a sheet on its way from the camera to its place on the page.
+// Views of a sheet on their way from the camera to their places on the page, and what the options of the sheet mean for
+// them.
 #pragma once
 
 #include "frontmost/rounds.h"
 #include "sheets/layout/layout.h"
 
 namespace frontmost::detail {
+
+/// How far centre lines reach beyond what they are drawn for, in millimetres.
+inline constexpr double centre_overshoot = 3;
+
+[[nodiscard]] inline bool has_named_views(const SheetOptions& options) {
+  return !options.views.empty() || !options.sections.empty();
+}
+[[nodiscard]] inline bool wants_centre_lines(const SheetOptions& options) {
+  return options.centre_lines.value_or(has_named_views(options) && options.style == DrawingStyle::technical);
+}
+/// Of the model's unit of length.
+[[nodiscard]] double millimetres_per_unit(const SheetOptions& options, const Scene& scene);
+/// The pens of the style, as wide as asked for.
+[[nodiscard]] LinePens pens_of(const SheetOptions& options);
+/// \throws Error bad_argument: "field: reason".
+[[noreturn]] void refuse_option(const std::string& field, const std::string& reason);
+/// \throws Error bad_argument for what a drawing in this projection, of no named views, cannot have.
+void validate_for_view(const SheetOptions& options, const Projection& projection);
 
 struct PlannedView : DrawnView {
   std::optional<NamedView> direction;    ///< none where the view was given

@@ -3,8 +3,9 @@
 #include <algorithm>
 
 #include "frontmost/tessellate.h"
-#include "sheets/options.h"
-#include "sheets/sections.h"
+#include "sheets/page_marks.h"
+#include "sheets/planned_view.h"
+#include "sheets/sections/sections.h"
 
 namespace frontmost {
 
@@ -58,10 +59,19 @@ PlannedView draw_planned(std::shared_ptr<const Surfaces> surfaces, const View& v
   return result;
 }
 
+/// What is given in place of the planes that enclose the model.
+ClipDistances planes_of(const ClipDistances& fitted, NamedView direction, const SheetOptions& options) {
+  const ClipDistances planes{options.near.value_or(fitted.near), options.far.value_or(fitted.far)};
+  if (!(planes.near < planes.far) && !(options.near && options.far))
+    refuse_option(options.near ? "near" : "far", "leaves nothing of the " + std::string(view_name(direction)) +
+                                                     " view, in which the model lies from " +
+                                                     number_text(fitted.near, 3) + " to " + number_text(fitted.far, 3));
+  return planes;
+}
+
 View camera_of(const Surfaces& surfaces, NamedView direction, const SheetOptions& options) {
   View view = frame(surfaces, fine_grid.x, fine_grid.y, {.direction = direction, .orthographic = true});
-  if (options.near) view.projection.clip.near = *options.near;
-  if (options.far) view.projection.clip.far = *options.far;
+  view.projection.clip = planes_of(view.projection.clip, direction, options);
   return view;
 }
 

@@ -5,7 +5,7 @@
 
 #include "cli/failure.h"
 #include "cli/render/jobs.h"
-#include "cli/view_options.h"
+#include "cli/view/view_options.h"
 
 namespace frontmost::cli {
 namespace {

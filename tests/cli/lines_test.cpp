@@ -442,6 +442,29 @@ TEST_F(LinesCommand, ThePicturesFrameIsThePageWhereTheCameraIsPlaced) {
   EXPECT_NEAR(box.top, 50 - half, 0.01);
 }
 
+// Two edges of 1 m and one of the root of 2, before a camera whose picture is 3 m high.
+TEST_F(LinesCommand, AModelsOwnParallelCameraHasAScale) {
+  write("own.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],
+    "nodes":[{"mesh":0},{"camera":0,"translation":[0.5,0.5,9]}],
+    "cameras":[{"type":"orthographic","orthographic":{"xmag":2,"ymag":1.5,"znear":1,"zfar":20}}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+    "bufferViews":[{"buffer":0,"byteLength":36}],
+    "buffers":[{"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})");
+  const json fitted = succeed("lines own.gltf --camera-index 0 --resolution 400,300 --json -o a.svg").json();
+  // 3 m between the margins of A4 that lies.
+  EXPECT_NEAR(fitted["scale"].get<double>(), 190.0 / 3000, 1e-9);
+  const json given =
+      succeed("lines own.gltf --camera-index 0 --resolution 400,300 --scale 1:50 --json -o b.svg").json();
+  EXPECT_EQ(given["scale_text"], "1:50");
+  EXPECT_NEAR(given["page_mm"][0].get<double>(), 4000.0 / 50 + 20, 1e-6);
+  EXPECT_NEAR(given["page_mm"][1].get<double>(), 3000.0 / 50 + 20, 1e-6);
+  EXPECT_NEAR(given["layers"][0]["drawn_mm"].get<double>(), (2 + std::sqrt(2.0)) * 1000 / 50, 1e-3);
+  const Outcome refused = run({"lines", "cube.stl", "--scale", "1:50", "-o", "c.svg"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("in perspective nothing has a scale"));
+}
+
 TEST_F(LinesCommand, CurvedModelsAreDrawnFromWithin) {
   const json page = drawn("builtin:teapot --camera-position 0,1.5,0 --camera-direction +x");
   EXPECT_FALSE(boxes(page).empty());

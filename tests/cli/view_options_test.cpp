@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // From camera options to views: what they mean, checked against each other and against points of known place.
-#include "cli/view_options.h"
+#include "cli/view/view_options.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Dimensions of parts of known sizes: which numbers there are, each once, and that nothing lies on them.
-#include "frontmost/dimensions.h"
+#include "sheets/dimensions/dimensions.h"
 
 #include <gmock/gmock.h>
 
@@ -16,6 +16,7 @@
 namespace frontmost::test {
 namespace {
 
+using namespace detail;
 using testing::ElementsAre;
 using testing::IsEmpty;
 

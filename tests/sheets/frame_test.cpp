@@ -2,12 +2,14 @@
 // Frames and title blocks: ISO 5457's sizes on every paper, and fields that hold what they are told.
 #include <set>
 
-#include "frontmost/title_block.h"
 #include "io/drawings/sample_page.h"
+#include "sheets/frame/title_block.h"
 #include "support/lettering_shapes.h"
 
 namespace frontmost::test {
 namespace {
+
+using namespace detail;
 
 struct Sheet {
   glm::dvec2 size;

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cutting lines and the names of sections have the parts that ISO 128-3 asks for, at their places.
-#include "frontmost/section_marks.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "frontmost/lettering.h"
+#include "sheets/sections/sections.h"
 
 namespace frontmost::test {
 namespace {
+
+using namespace detail;
 
 SectionMarks one_line(const CuttingLine& line) { return draw_section_marks(std::span(&line, 1), {}); }
 

@@ -147,6 +147,29 @@ TEST(SheetOfNothing, IsEmpty) {
   EXPECT_TRUE(sheet.page.layers.empty());
 }
 
+/// Half of the block is before the plane, and half behind it.
+TEST_F(SheetOfBlock, PlanesMayCrossTheModel) {
+  const SheetOptions whole_options{.views = {V::front}, .hidden = HiddenLines::dashed, .page = Paper{}};
+  const Sheet whole = drawn(whole_options);
+  const ClipDistances fitted = whole.views[0].drawing.view.projection.clip;
+  const double middle = (fitted.near + fitted.far) / 2;
+  for (const bool is_near : {true, false}) {
+    SheetOptions options = whole_options;
+    (is_near ? options.near : options.far) = middle;
+    const Sheet half = drawn(options);
+    EXPECT_FALSE(half.is_empty);
+    EXPECT_EQ(half.scale, whole.scale);
+    // The face across the sight that is left has its four edges; those along it are seen from their ends.
+    const DrawingBounds box = box_of(half.views[0]), all = box_of(whole.views[0]);
+    expect_box(box, all.low, all.high);
+    for (const DrawnPart& part : half.views[0].drawing.parts) EXPECT_EQ(part.hidden_by, 0u);
+  }
+  SheetOptions options{.sections = {{V::front}}, .far = fitted.near + 0.1};
+  const Sheet nothing = drawn(options);
+  EXPECT_TRUE(nothing.is_empty) << "the section lies behind the far plane";
+  EXPECT_TRUE(nothing.page.layers.empty());
+}
+
 TEST_F(SheetOfBlock, TheStepsAreTold) {
   std::vector<std::string> told;
   Watch watch;
@@ -196,6 +219,9 @@ TEST_F(SheetOfBlock, WhatCannotBeMeantIsRefusedByTheNameOfItsField) {
       {{.views = {V::front}, .scale = 2000, .hatch = 0.2}, "hatch: 0.2 mm would be too many"},
       {{.views = {V::front}, .scale = 2000, .stipple = 0.2}, "stipple: 0.2 mm would be too many"},
       {{.views = {V::front}, .tessellation_error = nan}, "tessellation_error: "},
+      {{.views = {V::front}, .near = 1e4}, "near: leaves nothing of the front view, in which the model lies from "},
+      {{.views = {V::front}, .far = -1e4}, "far: leaves nothing of the front view, in which the model lies from "},
+      {{.views = {V::front}, .near = 2, .far = 1}, "far: must be greater than near"},
   };
   for (const auto& [options, reason] : refused) {
     try {

@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "sheets/arrowhead.h"
+#include "sheets/page_marks.h"
 
 namespace frontmost::detail {
 

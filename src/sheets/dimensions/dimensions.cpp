@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Dimensions: overall sizes first, then diameters where there is room.
-#include "frontmost/dimensions.h"
+#include "sheets/dimensions/dimensions.h"
 
 #include <algorithm>
 #include <array>
@@ -9,10 +9,8 @@
 #include "sheets/dimensions/diameters.h"
 #include "sheets/dimensions/measured_view.h"
 
-namespace frontmost {
+namespace frontmost::detail {
 namespace {
-
-using namespace detail;
 
 constexpr double same_direction = 0.9999;  // cosine
 
@@ -148,4 +146,4 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
   return all;
 }
 
-}  // namespace frontmost
+}  // namespace frontmost::detail

@@ -2,7 +2,7 @@
 // A view with what can be measured in it.
 #pragma once
 
-#include "frontmost/dimensions.h"
+#include "sheets/dimensions/dimensions.h"
 
 namespace frontmost::detail {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "frontmost/dimensions.h"
+#include "sheets/dimensions/dimensions.h"
 
 namespace frontmost::detail {
 

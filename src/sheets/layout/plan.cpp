@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <optional>
 
+#include "sheets/frame/title_block.h"
 #include "sheets/layout/layout.h"
-#include "sheets/number_text.h"
+#include "sheets/page_marks.h"
 
 namespace frontmost::detail {
 namespace {

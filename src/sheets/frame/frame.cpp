@@ -4,10 +4,9 @@
 #include <cmath>
 
 #include "frontmost/lettering.h"
-#include "frontmost/title_block.h"
-#include "sheets/title_lines.h"
+#include "sheets/frame/title_block.h"
 
-namespace frontmost {
+namespace frontmost::detail {
 namespace {
 
 constexpr double filing_margin = 20, margin = 10;  // millimetres, of paper outside the frame
@@ -48,7 +47,7 @@ class FrameDrawing {
     for (const glm::dvec2 corner : {glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(1, 1), glm::dvec2(0, 1)})
       trimming_mark(trimming, corner);
     PageGroup frame{"frame", {frame_width, {}}};
-    frame.add(detail::rectangle(space_.low, space_.high), true);
+    frame.add(rectangle(space_.low, space_.high), true);
     centring_marks(frame);
     PageGroup zones{"zones", {zone_width, {}}};
     zones_border(zones);
@@ -93,7 +92,7 @@ class FrameDrawing {
     if (is_narrow_)
       group.add(std::vector<glm::dvec2>{{space_.low.x, low.y}, {high.x, low.y}, {high.x, space_.high.y}}, false);
     else
-      group.add(detail::rectangle(low, high), true);
+      group.add(rectangle(low, high), true);
   }
 
   /// Figures from left to right, and letters downwards.
@@ -128,15 +127,15 @@ DrawingSpace drawing_space(const glm::dvec2& page) {
   if (!(page.x >= least_framed_page.x && page.y >= least_framed_page.y))
     throw Error(ErrorCode::bad_argument, "page: a frame and its title block need 210 x 100 mm or more");
   DrawingSpace space{{filing_margin, margin}, page - margin};
-  space.block = space.high - detail::title_block_size;
+  space.block = space.high - title_block_size;
   return space;
 }
 
 PageLayer draw_frame(const glm::dvec2& page, const TitleBlock& block) {
   PageLayer layer{"8 frame"};
   FrameDrawing(page).draw(layer);
-  detail::draw_title_block(block, drawing_space(page).block, layer);
+  draw_title_block(block, drawing_space(page).block, layer);
   return layer;
 }
 
-}  // namespace frontmost
+}  // namespace frontmost::detail

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fields of a title block after ISO 7200, with their names in small letters above what they say.
+#include "sheets/frame/title_block.h"
+
 #include <algorithm>
 #include <map>
 
 #include "frontmost/lettering.h"
-#include "sheets/title_lines.h"
 
 namespace frontmost::detail {
 namespace {

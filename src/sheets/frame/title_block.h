@@ -2,27 +2,11 @@
 // Frames and title blocks of drawing sheets, after ISO 5457 and ISO 7200.
 #pragma once
 
-#include <string>
+#include <vector>
 
-#include "frontmost/page.h"
+#include "frontmost/sheet.h"
 
-namespace frontmost {
-
-/// Where views stand about the front one; its symbol (ISO 5456-2) stands in the title block.
-enum class ProjectionMethod : std::uint8_t { none, first_angle, third_angle };
-
-/// What the fields of a title block say, in UTF-8; empty ones stay empty. Text too long for its field at 1.8 mm is
-/// written smaller.
-struct TitleBlock {
-  std::string title{};   ///< in up to two lines
-  std::string number{};  ///< of the drawing
-  std::string author{}, date{}, owner{};
-  std::string scale{};  ///< as "1:2"
-  std::string unit{};   ///< of what is written on the drawing, as "mm"
-  std::string paper{};  ///< as "A3"
-  ProjectionMethod projection = ProjectionMethod::none;
-  int sheet = 1, sheets = 1;
-};
+namespace frontmost::detail {
 
 /// What the frame leaves for views: from corner to corner, but for the title block in its lower right corner.
 struct DrawingSpace {
@@ -43,4 +27,13 @@ inline constexpr glm::dvec2 least_framed_page{210, 100};
 /// its text. Everything is lines of pens, for plotters and DXF as well. \throws Error as drawing_space() does.
 [[nodiscard]] PageLayer draw_frame(const glm::dvec2& page, const TitleBlock& block);
 
-}  // namespace frontmost
+inline constexpr glm::dvec2 title_block_size{180, 36};
+
+/// Appends the groups of a title block whose upper left corner is `corner`.
+void draw_title_block(const TitleBlock& block, const glm::dvec2& corner, PageLayer& layer);
+
+[[nodiscard]] inline std::vector<glm::dvec2> rectangle(const glm::dvec2& low, const glm::dvec2& high) {
+  return {low, {high.x, low.y}, high, {low.x, high.y}};
+}
+
+}  // namespace frontmost::detail

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "frontmost/section_marks.h"
-
 #include "frontmost/lettering.h"
-#include "sheets/arrowhead.h"
+#include "sheets/page_marks.h"
+#include "sheets/sections/sections.h"
 
-namespace frontmost {
+namespace frontmost::detail {
 namespace {
 
 constexpr double gap_before = 3, thick_length = 6;   // millimetres beyond what is cut
@@ -50,7 +49,7 @@ class MarkPen {
     const glm::dvec2 tip = end + arrow_place * outwards, tail = tip - arrow_length * line.looking;
     const glm::dvec2 shaft[] = {tail, tip};
     heads_.add(shaft, false);
-    detail::add_arrowhead(heads_, tip, line.looking, head_length);
+    add_arrowhead(heads_, tip, line.looking, head_length);
     const double half = options_.text_height / 2;
     const glm::dvec2 letter = tail - (letter_distance + half) * line.looking;
     add_text(texts_, line.letter, letter, {options_.text_height, 0, TextAlign::centre, TextLine::middle});
@@ -83,4 +82,4 @@ SectionMarks draw_section_marks(std::span<const CuttingLine> lines, std::span<co
   return pen.take();
 }
 
-}  // namespace frontmost
+}  // namespace frontmost::detail

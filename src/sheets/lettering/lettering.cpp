@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "io/drawings/page_text.h"
-#include "sheets/glyphs.h"
+#include "sheets/lettering/glyphs.h"
 
 namespace frontmost {
 namespace {

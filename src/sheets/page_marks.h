@@ -1,12 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers as scales, names of papers and complaints have them, whatever the locale.
+// What stands on a page beside the lines of a model: numbers, arrowheads, and the boxes that they cover.
 #pragma once
 
 #include <charconv>
-#include <glm/glm.hpp>
 #include <string>
 
+#include "frontmost/page.h"
+
 namespace frontmost::detail {
+
+/// A rectangle of the page, in millimetres.
+struct PageBox {
+  glm::dvec2 low{0}, high{0};
+};
+
+/// Three pens wide, and `length` millimetres long.
+/// Filled by strokes of the pen, so that it is the same in every format and on a plotter: two slender triangles side by
+/// side, whose sides are so near each other that the pen fills them.
+inline void add_arrowhead(PageGroup& group, const glm::dvec2& tip, const glm::dvec2& pointing, double length) {
+  const double width = group.pen.width;
+  const glm::dvec2 base = tip - length * pointing, across(-pointing.y * width, pointing.x * width);
+  const glm::dvec2 corners[] = {tip, base - 1.5 * across, base - 0.5 * across,
+                                tip, base + 0.5 * across, base + 1.5 * across};
+  group.add(corners, true);
+}
 
 /// Of so many digits that count, without zeros behind the point at its end: "0.25", "1e+07".
 [[nodiscard]] inline std::string number_text(double value, int digits = 6) {

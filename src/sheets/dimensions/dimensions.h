@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "frontmost/sheet_view.h"
+#include "sheets/page_marks.h"
 
-namespace frontmost {
+namespace frontmost::detail {
 
 /// A view of a sheet that is to have dimensions.
 struct DimensionedView {
@@ -18,11 +19,6 @@ struct DimensionedView {
   bool with_hidden = true;           ///< its hidden circles have diameters
   bool is_dimensioned = true;        ///< false: only kept free, as pictures at an angle are
   glm::dvec2 taken{0};               ///< millimetres on its left and below it that other marks take
-};
-
-/// A rectangle of the page, in millimetres.
-struct PageBox {
-  glm::dvec2 low{0}, high{0};
 };
 
 struct DimensionOptions {
@@ -64,4 +60,4 @@ struct Dimensions {
 [[nodiscard]] Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBox& area,
                                           std::span<const PageBox> taken, const DimensionOptions& options = {});
 
-}  // namespace frontmost
+}  // namespace frontmost::detail

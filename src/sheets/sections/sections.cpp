@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sheets/sections.h"
+#include "sheets/sections/sections.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "sheets/number_text.h"
+#include "sheets/page_marks.h"
 
 namespace frontmost::detail {
 namespace {
@@ -172,8 +172,8 @@ SectionMarks section_marks_of(const std::vector<PlannedView>& views, const Pen& 
   std::vector<CuttingLine> lines;
   std::vector<ViewName> names;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    if (!views[i].section) continue;
     const DrawingBounds box = bounds_of(views[i].drawing, false);
+    if (!views[i].section || box.is_empty()) continue;  // the near and far planes may leave nothing of it
     const glm::dvec2 low = views[i].placed.on_page(box.low), high = views[i].placed.on_page(box.high);
     bool is_host = false;
     for (std::size_t k = 0; k < hosts.size(); ++k) is_host = is_host || (views[k].section && hosts[k] == i);

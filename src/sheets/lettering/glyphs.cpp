@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Letters of one stroke's width, upright, in the proportions of ISO 3098-1 type B: drawn for this library, of lines and
 // circular arcs that meet without corners, as templates have them.
-#include "sheets/glyphs.h"
+#include "sheets/lettering/glyphs.h"
 
 #include <algorithm>
 #include <iterator>
