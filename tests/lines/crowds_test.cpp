@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "frontmost/lines.h"
+#include "support/counting_watch.h"
 #include "support/effort.h"
 
 namespace frontmost::test {
@@ -108,18 +109,15 @@ std::size_t questions_of(const Mesh& mesh, std::size_t last, std::size_t& edges)
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
   const View view = frame(surfaces, 640, 480);
-  std::size_t asked = 0;
-  Watch watch;
-  watch.cancelled = [&] { return ++asked == last; };
-  const Execution execution{.threads = 1, .watch = &watch};
+  const CountingWatch watch(last);
   try {
-    edges = draw_lines(surfaces, view, {.crease_angle = 0}, execution).edges.size();
-    EXPECT_EQ(last, 0u) << "it went on";
+    edges = draw_lines(surfaces, view, {.crease_angle = 0}, watch.execution()).edges.size();
+    EXPECT_EQ(last, CountingWatch::never) << "it went on";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::cancelled);
-    EXPECT_EQ(asked, last) << "it was told to stop, and asked again";
+    EXPECT_EQ(watch.asked(), last) << "it was told to stop, and asked again";
   }
-  return asked;
+  return watch.asked();
 }
 
 /// Between two questions no more than sixteen edges are cut, and no more than some thousand triangles are looked at.
@@ -135,7 +133,7 @@ TEST(Crowds, AskOftenWhetherToStop) {
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     SCOPED_TRACE(i);
     std::size_t edges = 0;
-    const std::size_t asked = questions_of(meshes[i], 0, edges);
+    const std::size_t asked = questions_of(meshes[i], CountingWatch::never, edges);
     ASSERT_GT(edges, 500u);
     EXPECT_GT(asked, edges / 16);
     for (const std::size_t last : {std::size_t(1), asked / 3, asked / 2, asked - 1, asked})

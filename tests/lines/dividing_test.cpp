@@ -4,6 +4,7 @@
 
 #include "lines/hiding/grid_plan.h"
 #include "lines/hiding/hidden_parts.h"
+#include "support/counting_watch.h"
 #include "support/crowds.h"
 #include "support/effort.h"
 
@@ -133,25 +134,20 @@ TEST(DividedCells, AskOftenWhetherToStop) {
   const WeldedMesh mesh = weld(surfaces, {});
   const View view = frame(surfaces, 640, 480);
   const SeenMesh seen = see(mesh, Sight(view), {});
-  std::size_t asked = 0;
-  Watch watch;
-  watch.cancelled = [&] {
-    ++asked;
-    return false;
-  };
-  const Execution execution{.threads = 1, .watch = &watch};
+  CountingWatch watch;
+  const Execution execution = watch.execution();
   const GridPlan plan(seen, view, true, execution);
   std::vector<CellEntry> entries;
   for (std::uint32_t i = 0; i < plan.footprints.size(); ++i) entries.push_back({1, i});
   ASSERT_GT(entries.size(), 30000u);
   const Square middle = plan.grid.square(plan.grid.columns / 2, plan.grid.rows / 2);
-  asked = 0;
+  watch.restart();
   const std::size_t count = entries.size();
   const DividedCell<CellEntry> divided =
       divide_entries(plan, {{middle.x + 0.4, middle.y + 0.1, 0.2}, std::move(entries)});
   EXPECT_EQ(divided.cells.count(), 1u);
   EXPECT_EQ(divided.items[0].size(), count);
-  EXPECT_GT(asked, count / 10000);
+  EXPECT_GT(watch.asked(), count / 10000);
 }
 
 /// A triangle of the plane in which nearness or distance grows by `slope` from `value` at the apex, whose places are

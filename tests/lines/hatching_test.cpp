@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "support/counting_watch.h"
 #include "support/effort.h"
 #include "support/hatch_oracle.h"
 #include "support/random_scene.h"
@@ -131,19 +132,14 @@ TEST(Hatch, CopiesOfTrianglesChangeNothingAndCostNothing) {
   const View view = view_from({5, 4, 3}, false);
   const HatchOptions options = options_of({{0.3, 1, 0.25, 0.7}, {1.2, 1, 0.5, 0.5}}, {1, 2, 2});
   // While it hatches it asks whether to stop after so many triangles, and after so many lines of them.
-  std::size_t asked = 0;
-  Watch watch;
-  watch.cancelled = [&] {
-    ++asked;
-    return false;
-  };
-  const Execution execution{.threads = 1, .watch = &watch};
-  const std::vector<HatchLine> lines = hatch(Surfaces(once), view, options, execution);
-  const std::size_t asked_once = std::exchange(asked, 0);
+  CountingWatch watch;
+  const std::vector<HatchLine> lines = hatch(Surfaces(once), view, options, watch.execution());
+  const std::size_t asked_once = watch.asked();
+  watch.restart();
   const Surfaces copies(often);
-  const std::vector<HatchLine> same = hatch(copies, view, options, execution);
+  const std::vector<HatchLine> same = hatch(copies, view, options, watch.execution());
   const std::size_t most = asked_once + 2 * copies.primitive_count() / triangles_per_question;
-  EXPECT_LT(asked, most);
+  EXPECT_LT(watch.asked(), most);
   if (!under_sanitizer) {
     // Were the copies hatched, too, it would ask more often.
     EXPECT_GT(copies.primitive_count() / triangles.size() * lines.size() / lines_per_question, most);
@@ -366,10 +362,8 @@ TEST(Hatch, StopsWhenAsked) {
   const Surfaces surfaces(scene);
   HatchOptions options;
   options.sets = hatch_sets(5, 0.7);
-  int asked = 0;
-  Watch watch;
-  watch.cancelled = [&] { return ++asked > 5; };
-  EXPECT_THROW((void)hatch(surfaces, frame(surfaces, 320, 240), options, {.watch = &watch}), Error);
+  const CountingWatch watch(6);
+  EXPECT_THROW((void)hatch(surfaces, frame(surfaces, 320, 240), options, watch.execution(0)), Error);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "frontmost/lines.h"
+#include "support/counting_watch.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 
@@ -350,16 +351,11 @@ TEST(Seams, AskOftenWhetherToStop) {
   }
   for (std::uint32_t i = 0; i < count + 2; ++i) places[i] = {float(i), 0.0f, 0.0f};
   mesh.positions = Positions(std::move(places));
-  std::size_t asked = 0;
-  Watch watch;
-  watch.cancelled = [&] {
-    ++asked;
-    return false;
-  };
-  EXPECT_TRUE(close_seams(mesh, Buffer<std::int8_t>(count, 0), {.threads = 1, .watch = &watch}));
+  const CountingWatch watch;
+  EXPECT_TRUE(close_seams(mesh, Buffer<std::int8_t>(count, 0), watch.execution()));
   EXPECT_EQ(mesh.triangles.size(), 0u);
   // Sides are sorted, three to the filler, and then their ends.
-  EXPECT_GT(asked, 6 * count / 32768);
+  EXPECT_GT(watch.asked(), 6 * count / 32768);
 }
 
 }  // namespace

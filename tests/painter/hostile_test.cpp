@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes that are made to take long: they end at a limit, or as soon as they are told to.
-#include <atomic>
 
 #include "painter/painted.h"
 #include "painter/trapped.h"
+#include "support/counting_watch.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 
@@ -34,16 +34,14 @@ TEST_P(Foreseen, TooManyCuts) {
   const Surfaces surfaces(scene);
   const View view = frame(surfaces, 64, 64);
   for (const PaintMethod method : {PaintMethod::depth_sort, PaintMethod::bsp}) {
-    std::size_t polls = 0;
-    Watch watch;
-    watch.cancelled = [&] { return ++polls == 0; };
+    const CountingWatch watch;
     try {
-      (void)painter(surfaces, view, {.method = method}, {.threads = 1, .isa = Isa::best, .watch = &watch});
+      (void)painter(surfaces, view, {.method = method}, watch.execution());
       ADD_FAILURE() << "no error";
     } catch (const Error& error) {
       EXPECT_STREQ(error.what(), "painter: more than 1048576 cuts: too many triangles pass through each other");
     }
-    EXPECT_LT(polls, 100u) << "4096 steps each";
+    EXPECT_LT(watch.asked(), 100u) << "4096 steps each";
   }
 }
 
@@ -109,14 +107,11 @@ TEST(Hostile, BladesAroundAnAxisAreFewCuts) {
   EXPECT_LE(order.steps.cuts, std::uint64_t(count) * 2);
 }
 
-/// Counts how often it is asked whether to stop, and says so from a certain question on.
+/// Says that work is to stop, from a certain question on.
 class Stopper {
  public:
-  explicit Stopper(std::size_t question) {
-    watch_.cancelled = [this, question] { return ++asked_ >= question; };
-    last_ = question + kThreads;
-  }
-  [[nodiscard]] Execution execution() const { return {.threads = kThreads, .isa = Isa::best, .watch = &watch_}; }
+  explicit Stopper(std::size_t question) : watch_(question), last_(question + kThreads) {}
+  [[nodiscard]] Execution execution() const { return watch_.execution(kThreads); }
 
   /// Every thread stops at the first answer that says so, and the one that began the work asks once more.
   template <class Work>
@@ -127,14 +122,13 @@ class Stopper {
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::cancelled) << error.what();
     }
-    EXPECT_LE(asked_, last_);
+    EXPECT_LE(watch_.asked(), last_);
   }
 
  private:
   static constexpr int kThreads = 2;
-  std::atomic<std::size_t> asked_ = 0;
+  CountingWatch watch_;
   std::size_t last_;
-  Watch watch_;
 };
 
 TEST(Hostile, CutsEndAtTheirLimit) {
@@ -188,14 +182,11 @@ TEST(Hostile, OrdersStopWhenTold) {
 TEST(Hostile, OrdersAskOften) {
   for (const Scene& scene : {stack(20000), all_crossing(60)}) {
     const Surfaces surfaces(scene);
-    std::size_t asked = 0;
-    Watch watch;
-    watch.cancelled = [&] { return ++asked == 0; };
-    const PaintOrder order =
-        painter(surfaces, frame(surfaces, 256, 256), {.most_cuts = 1 << 30}, {.threads = 1, .watch = &watch});
+    const CountingWatch watch;
+    const PaintOrder order = painter(surfaces, frame(surfaces, 256, 256), {.most_cuts = 1 << 30}, watch.execution());
     const std::uint64_t tests = order.steps.behind, cuts = order.steps.cuts;
     EXPECT_GT(tests + cuts, 20'000u);
-    EXPECT_GT(asked, tests / 4096 + cuts / 256);
+    EXPECT_GT(watch.asked(), tests / 4096 + cuts / 256);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "frontmost/raycast.h"
+#include "support/counting_watch.h"
 #include "support/cutout_scene.h"
 #include "support/random_scene.h"
 #include "support/same_visible.h"
@@ -104,15 +105,6 @@ TEST(Refit, OtherTrianglesMakeANewIndex) {
   expect_followed("something");
 }
 
-/// Says "cancelled" from a certain question on.
-struct Impatience {
-  explicit Impatience(int patience) : left(patience) {
-    watch.cancelled = [this] { return left.fetch_sub(1) <= 0; };
-  }
-  std::atomic<int> left;
-  Watch watch;
-};
-
 /// Asks for everything that an index can be asked for: where something were left of two scenes, this would meet it.
 void expect_empty(const RayIndex& index) {
   EXPECT_EQ(index.triangle_count(), 0u);
@@ -130,11 +122,11 @@ TEST(Refit, OneThatIsEndedHalfwayLeavesNothing) {
   const Scene few = cutout_scene(random_mesh(Kind::soup, 40, 2), Cut::all, 0.5f, 2);
   const Surfaces before(many), after(few);
   bool was_ended = false, was_whole = false;
-  for (int patience = 0; patience < 40 && !was_whole; ++patience) {
+  for (std::size_t last = 1; last <= 40 && !was_whole; ++last) {
     RayIndex index(before);
-    const Impatience impatience(patience);
+    const CountingWatch watch(last);
     try {
-      index.refit(after, {.threads = 1, .watch = &impatience.watch});
+      index.refit(after, watch.execution());
       was_whole = true;
       expect_same_answers(index, after, 7);
     } catch (const Error& error) {
@@ -153,8 +145,8 @@ TEST(Refit, InstancesThatAreMovedHalfwayLeaveNothing) {
   Scene scene = three_of(Kind::soup, 9);
   RayIndex index(scene);
   scene.instances[1].world_from_mesh[3] += glm::dvec4(0.5, 0, 0, 0);
-  const Impatience impatience(0);
-  EXPECT_THROW(index.refit(scene, {.threads = 1, .watch = &impatience.watch}), Error);
+  const CountingWatch watch(1);
+  EXPECT_THROW(index.refit(scene, watch.execution()), Error);
   expect_empty(index);
   index.refit(scene);
   expect_same_answers(index, RayIndex(scene), 3);

@@ -10,6 +10,7 @@
 #include <new>
 
 #include "frontmost/frontmost.h"
+#include "support/counting_watch.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 
@@ -126,11 +127,9 @@ TEST(ZBuffer, GoesOnAfterAFrameWasCancelled) {
   Random random(3);
   const View view = random_view(random, 600, 400);
   ZBuffer buffer;
-  for (int polls = 0; polls < 40; ++polls) {
-    int left = polls;
-    const Watch watch{{}, [&] { return left-- <= 0; }};
+  for (std::size_t polls = 0; polls < 40; ++polls) {
     try {
-      buffer.draw(surfaces, view, {.threads = 1, .watch = &watch});
+      buffer.draw(surfaces, view, CountingWatch(polls + 1).execution());
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::cancelled);
     }

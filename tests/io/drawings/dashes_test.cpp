@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "frontmost/sheet_view.h"
+#include "support/counting_watch.h"
 
 namespace frontmost::test {
 namespace {
@@ -145,11 +146,9 @@ TEST(RealDashes, TooManyAreRefused) {
 TEST(RealDashes, StopWhenAsked) {
   PageGroup group = dashed({{0, 0}, {1e4, 0}}, false);
   for (int i = 0; i < 100; ++i) group.add(Points{{0, 1.0 + i}, {1e4, 1.0 + i}}, false);
-  int asked = 0;
-  Watch watch;
-  watch.cancelled = [&] { return ++asked > 20; };
+  const CountingWatch watch(21);
   try {
-    (void)with_real_dashes(page_of(group), {.watch = &watch});
+    (void)with_real_dashes(page_of(group), watch.execution(0));
     ADD_FAILURE();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::cancelled);

@@ -2,12 +2,12 @@
 // 3MF by parts: small packages made here, with answers known beforehand.
 #include <zlib.h>
 
-#include <atomic>
 #include <cmath>
 #include <optional>
 
 #include "base/srgb.h"
 #include "model_bytes.h"
+#include "support/counting_watch.h"
 #include "support/threemf_maker.h"
 
 namespace frontmost {
@@ -333,13 +333,11 @@ TEST(ThreeMf, ReadingCanBeStopped) {
   std::string vertices;
   for (int i = 0; i < 100'000; ++i) vertices += R"(<vertex x="1" y="2" z="3"/>)";
   const std::string bytes = package_of(replaced(model_of(one_object()), "<vertices>", "<vertices>" + vertices)).bytes();
-  std::atomic<int> asked{0};
-  Watch stop;
-  stop.cancelled = [&] { return ++asked > 20; };
+  const test::CountingWatch watch(21);
   EXPECT_THROW(
       {
         try {
-          (void)load(test::bytes_of(bytes), "model.3mf", {}, {.threads = 1, .watch = &stop});
+          (void)load(test::bytes_of(bytes), "model.3mf", {}, watch.execution());
         } catch (const Error& error) {
           EXPECT_EQ(error.code(), ErrorCode::cancelled);
           throw;
