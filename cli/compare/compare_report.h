@@ -5,7 +5,7 @@
 #include <frontmost/agreement.h>
 
 #include "cli/compare/compare_process.h"
-#include "cli/json_numbers.h"
+#include "cli/json.h"
 
 namespace frontmost::cli {
 

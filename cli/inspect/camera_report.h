@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "cli/json_numbers.h"
+#include "cli/json.h"
 
 namespace frontmost::cli {
 

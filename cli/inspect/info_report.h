@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "cli/json_numbers.h"
+#include "cli/json.h"
 
 namespace frontmost::cli {
 

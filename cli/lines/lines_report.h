@@ -2,7 +2,7 @@
 // What frontmost lines says about a drawing.
 #pragma once
 
-#include "cli/json_numbers.h"
+#include "cli/json.h"
 #include "cli/lines/step_times.h"
 #include "cli/settings.h"
 

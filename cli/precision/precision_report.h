@@ -4,7 +4,7 @@
 
 #include <frontmost/precision.h>
 
-#include "cli/json_numbers.h"
+#include "cli/json.h"
 #include "cli/settings.h"
 
 namespace frontmost::cli {

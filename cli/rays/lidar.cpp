@@ -10,7 +10,7 @@
 #include "cli/console.h"
 #include "cli/failure.h"
 #include "cli/interruption.h"
-#include "cli/json_numbers.h"
+#include "cli/json.h"
 #include "cli/model.h"
 #include "cli/outputs.h"
 #include "cli/rays/lidar_points.h"

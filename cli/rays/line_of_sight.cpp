@@ -9,7 +9,7 @@
 #include "cli/console.h"
 #include "cli/failure.h"
 #include "cli/interruption.h"
-#include "cli/json_list.h"
+#include "cli/json.h"
 #include "cli/model.h"
 #include "cli/rays/number_lines.h"
 #include "cli/view/places.h"

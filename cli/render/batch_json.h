@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "cli/json_numbers.h"
+#include "cli/json.h"
 
 namespace frontmost::cli {
 

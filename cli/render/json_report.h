@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/json_numbers.h"
+#include "cli/json.h"
 #include "cli/render/render_view.h"
 
 namespace frontmost::cli {

@@ -7,7 +7,6 @@
 
 #include "cli/command.h"
 #include "cli/console.h"
-#include "cli/culprit.h"
 #include "cli/failure.h"
 #include "cli/interruption.h"
 #include "cli/model.h"

@@ -8,7 +8,7 @@
 #include "base/srgb.h"
 #include "shade/canvas.h"
 #include "shade/colorists.h"
-#include "shade/layers/deep_layers.h"
+#include "shade/layers/layers.h"
 #include "shade/layers/opaque_part.h"
 #include "shade/picture_parts.h"
 #include "shade/shadow/key_shadows.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "stream/excerpt.h"
-
 #include "stream/id_map.h"
+#include "stream/kept_triangles.h"
 
 namespace frontmost {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Copies of the triangles of a stream that are seen so far.
+// Copies of the triangles of a stream that are seen so far, and the scene that is made of them.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "frontmost/scene.h"
+#include "frontmost/stream.h"
 #include "stream/piece_loop.h"
 
 namespace frontmost::streaming {
@@ -37,3 +38,22 @@ void thin_out(Kept& kept, const IsWanted& is_wanted) {
 using KeptPieces = std::map<std::size_t, Kept>;
 
 }  // namespace frontmost::streaming
+
+namespace frontmost {
+
+struct Excerpt::Parts {
+  Parts(Scene kept, const Execution& execution) : scene(std::move(kept)), surfaces(scene, execution) {}
+  const Scene scene;
+  const Surfaces surfaces;
+};
+
+namespace streaming {
+
+/// Ascending.
+[[nodiscard]] std::vector<PrimitiveId> ids_of(const KeptPieces& kept);
+/// `frame` with the triangles that were kept, in the order of the stream.
+[[nodiscard]] Scene scene_of(Scene frame, KeptPieces kept);
+
+}  // namespace streaming
+
+}  // namespace frontmost

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "cli/json_numbers.h"
+#include "cli/json.h"
 #include "program.h"
 #include "support/effort.h"
 

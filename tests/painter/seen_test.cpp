@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "painter/painted.h"
+#include "painter/seen/adjacency.h"
 #include "painter/seen/occluder_union.h"
-#include "painter/seen/unoverlapped.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Layers: single ones, and all of them as a deep image, which laid over each other are the picture again.
+#include "shade/layers/layers.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,7 +9,6 @@
 #include "frontmost/abuffer.h"
 #include "frontmost/shade.h"
 #include "frontmost/zbuffer.h"
-#include "shade/layers/deep_layers.h"
 #include "shade/support.h"
 #include "support/effort.h"
 #include "support/flat_picture.h"

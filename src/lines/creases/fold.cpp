@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lines/creases/fold.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "lines/creases/creases.h"
 
 namespace frontmost::lines_detail {
 namespace {

@@ -14,7 +14,6 @@
 
 #include "base/parallel.h"
 #include "lines/crossings/box_tree.h"
-#include "lines/crossings/edge_contacts.h"
 #include "lines/lists.h"
 #include "view/sight.h"
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // All of it happens in planes and along lines that the vertices hold exactly: signs of tetrahedra tell what lies where
 // in a plane, with a corner beside it as their fourth, and the order of coordinates what comes first along a line.
-#include "lines/crossings/edge_contacts.h"
-
 #include <algorithm>
 #include <optional>
 #include <tuple>
 
+#include "lines/crossings/crossings.h"
 #include "view/sight.h"
 
 namespace frontmost::lines_detail {

@@ -2,14 +2,13 @@
 // Runs of corners on a circle are made twice as long while they fit, and then halved, as those of arcs on paper are:
 // a circle through its first, its middle and its last corner is right to the rounding of corners, one through three
 // neighbours is not.
-#include "lines/rounds/circles.h"
-
 #include <algorithm>
 #include <map>
 #include <numbers>
 #include <tuple>
 
 #include "base/parallel.h"
+#include "lines/rounds/found_rounds.h"
 #include "lines/rounds/sharp_chains.h"
 
 namespace frontmost::lines_detail {

@@ -2,8 +2,6 @@
 // Rings with corners at equal angles weigh the same in all directions across their axis. So the axis goes through the
 // mean of the corners, in the direction that their second moments tell from two others that are equal. Scans fail that
 // test, and most else; what passes it is looked at ring by ring.
-#include "lines/rounds/revolved.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -11,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "lines/rounds/axis_fit.h"
+#include "lines/rounds/found_rounds.h"
 
 namespace frontmost::lines_detail {
 namespace {

@@ -5,9 +5,7 @@
 #include <numbers>
 
 #include "base/float_environment.h"
-#include "lines/rounds/circles.h"
-#include "lines/rounds/revolved.h"
-#include "lines/rounds/walls.h"
+#include "lines/rounds/found_rounds.h"
 
 namespace frontmost {
 namespace {

@@ -2,8 +2,6 @@
 // A wall grows over all neighbours that are smooth, stand upright about its axis and have their corners at its radius.
 // It begins at a circle of sharp edges, or where there is none, as between fillets, at two neighbours. Those know
 // little of their axis, so that it is found anew whenever there are twice as many.
-#include "lines/rounds/walls.h"
-
 #include <algorithm>
 #include <numbers>
 
@@ -11,6 +9,7 @@
 #include "lines/lists.h"
 #include "lines/rounds/axis_fit.h"
 #include "lines/rounds/circle3.h"
+#include "lines/rounds/found_rounds.h"
 
 namespace frontmost::lines_detail {
 namespace {

@@ -6,8 +6,8 @@
 #include "base/float_environment.h"
 #include "base/parallel.h"
 #include "frontmost/section.h"
-#include "lines/sections/ears.h"
 #include "lines/sections/plane_axes.h"
+#include "lines/sections/regions.h"
 #include "surfaces/cluster_set.h"
 
 namespace frontmost {

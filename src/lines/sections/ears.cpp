@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Holes are joined to the outer line by a side that is there twice; then ears are cut off, corners between whose
 // neighbours one sees, until three corners are left (G. Meisters. Polygons Have Ears. 1975).
-#include "lines/sections/ears.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/orientation.h"
 #include "base/parallel.h"
 #include "lines/sections/plane_axes.h"
+#include "lines/sections/regions.h"
 
 namespace frontmost::lines_detail {
 namespace {

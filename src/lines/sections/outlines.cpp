@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lines/sections/outlines.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -8,6 +6,7 @@
 #include "base/orientation.h"
 #include "base/parallel.h"
 #include "lines/sections/plane_axes.h"
+#include "lines/sections/regions.h"
 
 namespace frontmost::lines_detail {
 namespace {

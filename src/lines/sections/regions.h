@@ -1,12 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// What closed lines go around.
+// What a plane leaves of triangles: their segments in it put together to closed lines, the regions that these go
+// around, and triangles that fill the regions.
 #pragma once
 
+#include <array>
 #include <vector>
 
-#include "lines/sections/outlines.h"
+#include "frontmost/base.h"
 
 namespace frontmost::lines_detail {
+
+/// With what is cut on its left, where its triangle is wound outwards.
+struct CutSegment {
+  glm::vec2 from, to;
+};
+
+/// The last point is joined to the first. No point is there twice.
+using SectionOutline = std::vector<glm::vec2>;
+
+struct Outlines {
+  std::vector<SectionOutline> closed;
+  std::size_t open_count = 0;
+  bool is_wound_alike = true;  ///< no segment had to be turned round
+};
+
+/// Where lines touch, those to the left are taken first, so that they do not cross. Segments that are there in both
+/// directions cancel each other. O(n log n).
+[[nodiscard]] Outlines find_outlines(const std::vector<CutSegment>& segments, const Execution& execution);
 
 /// A part of the plane in one piece.
 struct Region {
@@ -19,5 +39,12 @@ struct Region {
 /// may. Lines whose area is nothing but rounding, and those with the same on both sides, bound nothing.
 /// O(points), times the lines that lie around each.
 [[nodiscard]] std::vector<Region> regions_of(Outlines outlines, const Execution& execution);
+
+using FlatTriangle = std::array<glm::vec2, 3>;
+
+/// Appends triangles that fill the region, counter-clockwise, each side with the corners of another or of an outline;
+/// where corners lie on one line also some without area. All signs are exact. What crosses itself is filled somehow, by
+/// triangles that may overlap. O(n log n) for what looks like a part, at worst O(n^2).
+void fill(const Region& region, std::vector<FlatTriangle>& triangles, const Execution& execution);
 
 }  // namespace frontmost::lines_detail

@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "painter/limits.h"
 #include "painter/pieces.h"
-#include "painter/poll.h"
 
 namespace frontmost::painter_detail {
 

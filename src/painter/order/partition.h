@@ -5,8 +5,8 @@
 #pragma once
 
 #include "frontmost/painter.h"
+#include "painter/limits.h"
 #include "painter/pieces.h"
-#include "painter/poll.h"
 
 namespace frontmost::painter_detail {
 

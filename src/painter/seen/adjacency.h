@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which polygons share a side, as those of a mesh do.
+// Which polygons share a side, as those of a mesh do; and which no other one overlaps on the screen, told by the few
+// sides that have no neighbour.
 #pragma once
 
+#include <vector>
+
+#include "base/parallel.h"
 #include "painter/seen/screen_polygons.h"
 
 namespace frontmost::painter_detail {
@@ -19,5 +23,11 @@ class Adjacency {
  private:
   std::vector<std::uint32_t> across_;
 };
+
+/// By slot: 1 where surely no other polygon overlaps the one in it. Polygons with `gone[slot]` do not count; an empty
+/// `gone` stands for none. Finds nothing in scenes whose polygons share few sides.
+[[nodiscard]] std::vector<std::uint8_t> find_unoverlapped(const ScreenPolygons& screen, const Adjacency& adjacency,
+                                                          const std::vector<std::uint8_t>& gone,
+                                                          const Execution& execution);
 
 }  // namespace frontmost::painter_detail

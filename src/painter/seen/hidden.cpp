@@ -9,8 +9,8 @@
 
 #include "base/pool.h"
 #include "painter/order/by_depth.h"
+#include "painter/seen/adjacency.h"
 #include "painter/seen/occlusion_clipper.h"
-#include "painter/seen/unoverlapped.h"
 
 namespace frontmost::painter_detail {
 namespace {

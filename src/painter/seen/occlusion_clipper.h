@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "painter/poll.h"
+#include "painter/limits.h"
 #include "painter/seen/occluder_union.h"
 #include "painter/seen/outlines.h"
 

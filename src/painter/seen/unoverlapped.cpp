@@ -3,11 +3,10 @@
 // all others one polygon ends where the next begins. Meshes have few open sides. So the number is the same all over a
 // polygon that no open side crosses, and all over those across its sides where no open side lies. Where the number is
 // 1, the polygon itself is all that there is.
-#include "painter/seen/unoverlapped.h"
-
 #include <algorithm>
 
-#include "painter/poll.h"
+#include "painter/limits.h"
+#include "painter/seen/adjacency.h"
 
 namespace frontmost::painter_detail {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every polygon is clipped by itself, by the union of the occluders after it.
 #include "base/float_environment.h"
+#include "painter/seen/adjacency.h"
 #include "painter/seen/occlusion_clipper.h"
 #include "painter/seen/screen_polygons.h"
 #include "painter/seen/slot_lists.h"
-#include "painter/seen/unoverlapped.h"
 
 namespace frontmost {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "painter/poll.h"
+#include "painter/limits.h"
 #include "painter/seen/adjacency.h"
 #include "painter/seen/outlines.h"
 

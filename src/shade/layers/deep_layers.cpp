@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shade/layers/deep_layers.h"
+#include "shade/layers/layers.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The outer shape of a glTF file: plain JSON text, or the chunks of a GLB.
+// The outer shape of a glTF file: plain JSON text, or the chunks of a GLB; and the URIs in it, which hold data
+// themselves or name a file beside the model.
 #pragma once
 
+#include <cstddef>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
+#include "io/models/gltf/json.h"
 #include "io/models/model_source.h"
 
 namespace frontmost::gltf {
@@ -18,5 +23,11 @@ struct Container {
 
 /// Borrows `bytes`. Bytes after a GLB's stated length are passed over, chunks of unknown types too, as the format asks.
 [[nodiscard]] Container open_container(std::span<const std::byte> bytes, const ModelSource& source);
+
+[[nodiscard]] bool is_data_uri(std::string_view uri);
+/// The bytes of "data:[TYPE][;base64],...". `place` is the value that holds the URI.
+[[nodiscard]] std::vector<std::byte> decode_data_uri(std::string_view uri, const JsonValue& place);
+/// %20 and the like to bytes; what is not an escape stays.
+[[nodiscard]] std::string percent_decode(std::string_view text);
 
 }  // namespace frontmost::gltf

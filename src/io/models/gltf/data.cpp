@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/models/gltf/data.h"
 
-#include "io/models/gltf/uri.h"
+#include "io/models/gltf/container.h"
 
 namespace frontmost::gltf {
 namespace {

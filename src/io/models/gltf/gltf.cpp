@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "io/models/gltf/instances.h"
+#include "io/models/gltf/nodes.h"
 #include "io/models/mesh_building.h"
 #include "io/models/reader.h"
 

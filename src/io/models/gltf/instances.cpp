@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/gltf/instances.h"
-
 #include "base/parallel.h"
+#include "io/models/gltf/nodes.h"
 #include "scene/origin.h"
 
 namespace frontmost::gltf {

@@ -7,8 +7,6 @@
 namespace frontmost::gltf {
 namespace {
 
-using nlohmann::json;
-
 // glTF itself needs a depth of about ten. Values cost up to a hundred bytes each, so that a text of empty brackets
 // would take thirty times its size.
 constexpr int max_depth = 256;
@@ -41,22 +39,22 @@ void check_shape(std::string_view text, const ModelSource& source) {
   if (values > max_values) source.fail_limit("JSON", "more than " + std::to_string(max_values) + " values");
 }
 
-std::string reason_of(const json::exception& error) {
+std::string reason_of(const nlohmann::json::exception& error) {
   // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."; the number says nothing to users.
   const std::string_view what = error.what();
   const std::size_t start = what.find("] ");
   return printable(start == std::string_view::npos ? what : what.substr(start + 2));
 }
 
-const char* type_name(const json& value) { return value.type_name(); }
+const char* type_name(const nlohmann::json& value) { return value.type_name(); }
 
 }  // namespace
 
 JsonDocument::JsonDocument(std::string_view text, const ModelSource& source) {
   check_shape(text, source);
   try {
-    root_ = std::make_unique<const json>(json::parse(text.begin(), text.end()));
-  } catch (const json::exception& error) {
+    root_ = std::make_unique<const nlohmann::json>(nlohmann::json::parse(text.begin(), text.end()));
+  } catch (const nlohmann::json::exception& error) {
     source.fail("JSON", reason_of(error));
   }
   if (!root_->is_object()) source.fail("JSON", std::string("an object is expected, not ") + type_name(*root_));
@@ -66,7 +64,7 @@ JsonDocument::~JsonDocument() = default;
 
 void JsonValue::fail(const std::string& reason) const { source_->fail(place_.empty() ? "JSON" : place_, reason); }
 
-JsonValue JsonValue::member(const json& value, const char* key) const {
+JsonValue JsonValue::member(const nlohmann::json& value, const char* key) const {
   return {value, place_.empty() ? std::string(key) : place_ + "." + key, *source_};
 }
 

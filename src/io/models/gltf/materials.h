@@ -1,10 +1,67 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials of a glTF file.
+// Materials of a glTF file; and its textures: which images and samplers materials use, and their pixels.
 #pragma once
 
-#include "io/models/gltf/textures.h"
+#include <map>
+#include <tuple>
+
+#include "frontmost/scene.h"
+#include "io/models/gltf/data.h"
 
 namespace frontmost::gltf {
+
+/// Collects the textures that materials name, then decodes each image once.
+class TextureTable {
+ public:
+  TextureTable(const JsonValue& root, const Data& data) : root_(root), data_(data) {}
+
+  /// The number that a texture of the file will have in the scene; textures alike in image and sampler share one.
+  /// no_index: it has no image that could be read, which `warnings` tells.
+  [[nodiscard]] std::uint32_t intern(const JsonValue& index, std::vector<std::string>& warnings);
+
+  /// Decodes in parallel and fills scene.textures. Images that cannot be decoded become warnings, and the materials go
+  /// without them.
+  void load(Scene& scene) const;
+
+ private:
+  struct Look {
+    std::uint32_t image = no_index;
+    Texture::Wrap wrap_u = Texture::Wrap::repeat, wrap_v = Texture::Wrap::repeat;
+    bool nearest = false;
+    auto operator<=>(const Look&) const = default;
+  };
+  /// An encoded image, or where it is.
+  struct Encoded {
+    std::string place, name;
+    Bytes bytes;
+    std::vector<std::byte> decoded_uri;
+    std::string path;  ///< of a file beside the model; empty: `bytes` holds the image
+  };
+  /// An image that textures use.
+  struct Job {
+    std::size_t uses = 0;  ///< textures that differ in their samplers, each of which gets the pixels
+    Encoded encoded;
+    Texture texture;
+    std::string problem;  ///< why it cannot be decoded
+  };
+  struct Jobs {
+    std::map<std::uint32_t, Job> by_image;
+    std::map<std::uint32_t, std::uint32_t> first_alike;  ///< for every image the first one with the same bytes
+  };
+
+  void read_sampler(const JsonValue& texture, Look& look) const;
+  [[nodiscard]] Encoded find_image(std::uint32_t image) const;
+  template <class Use>
+  auto with_bytes(const Encoded& encoded, Use use) const;
+  [[nodiscard]] Jobs find_images() const;
+  void check_sizes(Jobs& jobs) const;
+  void decode(Jobs& jobs) const;
+
+  const JsonValue& root_;
+  const Data& data_;
+  std::vector<Look> looks_;
+  std::map<Look, std::uint32_t> numbers_;
+};
 
 /// Texture coordinate sets that are told apart; more than these hardly occur.
 inline constexpr std::uint32_t max_texcoord_sets = 4;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The node tree of a glTF file.
+// The node tree of a glTF file, and what its nodes place in the world: meshes, posed or not, and cameras.
 #pragma once
 
 #include <glm/glm.hpp>
 
 #include "io/models/gltf/data.h"
+#include "io/models/gltf/meshes.h"
 
 namespace frontmost::gltf {
 
@@ -36,5 +37,13 @@ struct NodeTree {
 
 /// A rigid body's transform from translation, rotation (x, y, z, w; any length) and scale.
 [[nodiscard]] glm::dmat4 compose(const glm::dvec3& translation, const glm::dvec4& rotation, const glm::dvec3& scale);
+
+/// Fills scene.meshes and scene.instances. Meshes keep the file's numbers; a mesh that is posed in several ways is
+/// there several times, the others at the end. Meshes that no shown node uses are read, but not placed.
+void place_meshes(const JsonValue& root, const Data& data, const std::vector<MeshPlan>& plans, const NodeTree& tree,
+                  Scene& scene);
+
+/// Fills scene.cameras, one for each shown node that has one.
+void place_cameras(const JsonValue& root, const NodeTree& tree, Scene& scene);
 
 }  // namespace frontmost::gltf

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/gltf/textures.h"
+#include "io/models/textures.h"
 
 #include "base/parallel.h"
 #include "io/images/decode.h"
 #include "io/models/budget.h"
+#include "io/models/gltf/container.h"
 #include "io/models/gltf/materials.h"
-#include "io/models/gltf/uri.h"
-#include "io/models/textures.h"
 
 namespace frontmost::gltf {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/gltf/uri.h"
-
 #include <array>
 #include <cstdint>
+
+#include "io/models/gltf/container.h"
 
 namespace frontmost::gltf {
 namespace {

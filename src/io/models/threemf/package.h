@@ -43,4 +43,8 @@ class Package {
   std::uint64_t most_, unpacked_ = 0;
 };
 
+/// By the package's relationships or, where they name none, its content types.
+/// \throws Error file_malformed where no part is a model.
+[[nodiscard]] std::string find_start_part(Package& package, const ModelSource& source);
+
 }  // namespace frontmost::threemf

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/threemf/start_part.h"
-
+#include "io/models/threemf/package.h"
 #include "io/models/threemf/xml_part.h"
 
 namespace frontmost::threemf {

@@ -8,7 +8,7 @@
 #include "io/models/reader.h"
 #include "io/models/text/file_text.h"
 #include "io/models/threemf/model.h"
-#include "io/models/threemf/start_part.h"
+#include "io/models/threemf/package.h"
 
 namespace frontmost {
 namespace threemf {

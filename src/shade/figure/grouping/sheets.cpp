@@ -5,7 +5,7 @@
 
 #include "base/float_environment.h"
 #include "base/parallel.h"
-#include "painter/poll.h"
+#include "painter/limits.h"
 #include "shade/figure/colored_order.h"
 #include "shade/figure/grouping/overlaps.h"
 #include "shade/figure/grouping/sheet_order.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/culprit.h"
+#include "cli/failure.h"
 
 namespace frontmost::cli {
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors and matrices as JSON.
+// JSON as reports print it: vectors and matrices, the text of all of it, and long lists that are printed while they are
+// made.
 #pragma once
 
 #include <frontmost/base.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
 
 namespace frontmost::cli {
 
@@ -35,5 +37,23 @@ template <int n, class T>
 
 /// \returns the text with a line break at the end. Texts are as utf8_text() writes them.
 [[nodiscard]] std::string dump(const Json& json);
+
+/// Prints an object that holds a long list, an element at a time: the text that dump() makes of the whole, without ever
+/// holding it.
+class JsonListPrinter {
+ public:
+  /// `before` are the members before the list, at least one.
+  JsonListPrinter(const Json& before, const std::string& list);
+  /// What was added is printed when enough has come together.
+  void add(const Json& element);
+  /// `after` are the members behind the list, at least one. Prints what is left.
+  void finish(const Json& after);
+
+ private:
+  void append(const Json& element);
+
+  std::string text_;
+  bool is_empty_ = true;
+};
 
 }  // namespace frontmost::cli
