@@ -126,8 +126,8 @@ TEST_P(SquareOfEveryKind, MeetsAndContainsAsRationalArithmeticSays) {
       }
     }
   }
-  // Those reach behind the eye.
-  if (GetParam() == Kind::huge || GetParam() == Kind::through_eye) return;
+  // One seed need not have all of them, nor what reaches behind the eye.
+  if (under_sanitizer || GetParam() == Kind::huge || GetParam() == Kind::through_eye) return;
   EXPECT_GT(missed, 0u);
   EXPECT_GT(contained, GetParam() == Kind::slivers ? 0u : seeds(6));
   EXPECT_GT(touched, 0u);

@@ -60,7 +60,7 @@ TEST(Sight, FacingIsExactHoweverFlatATriangleIsSeen) {
     ASSERT_EQ(sight.facing(b, a, c), -expected) << seed << ": the other way round";
     ++signs[std::size_t(expected + 1)];
   }
-  for (const int count : signs) EXPECT_GT(count, int(seeds(150)));
+  for (const int count : signs) EXPECT_GE(count, int(seeds(150)));
 }
 
 // With slack the sign is open where the point may lie on either side, and certain as soon as it cannot.
@@ -93,7 +93,7 @@ TEST(FacePlane, HeightsAreExact) {
     ASSERT_EQ(FacePlane(a, b, c).height(b).sign, 0) << seed << ": a corner lies in the plane";
     ++signs[std::size_t(expected + 1)];
   }
-  for (const int count : signs) EXPECT_GT(count, int(seeds(150)));
+  for (const int count : signs) EXPECT_GE(count, int(seeds(150)));
 }
 
 // A ray through (x, y) goes to where Sight says that (x, y) is: both go by the same view, in opposite directions.
