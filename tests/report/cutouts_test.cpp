@@ -4,6 +4,7 @@
 
 #include "frontmost/frontmost.h"
 #include "support/cutout_scene.h"
+#include "support/flat_picture.h"
 #include "surfaces/cluster_set.h"
 #include "view/screen_cutout.h"
 #include "view/screen_transform.h"
@@ -204,13 +205,10 @@ TEST(Holes, AreTakenOutOfCoverageMasks) {
     }
   // Half red over blue, and nothing of the order in which they came.
   const std::vector<glm::vec4> colors = {{1, 0, 0, 1}, {1, 0, 0, 1}, {0, 0, 1, 1}, {0, 0, 1, 1}};
-  const ResolvedPicture smooth = resolve(surfaces, view, colors, {8});
-  EXPECT_FLOAT_EQ(smooth.red[0], 0.5f);
-  EXPECT_FLOAT_EQ(smooth.blue[0], 0.5f);
-  const ResolvedPicture plain = resolve(surfaces, front_view(1), colors);
-  EXPECT_EQ(plain.red[0], 1);
-  EXPECT_EQ(plain.red[2], 0);
-  EXPECT_EQ(plain.blue[2], 1);
+  EXPECT_EQ(laid_over(lists, 0, 0, colors), glm::dvec4(0.5, 0, 0.5, 1));
+  const FragmentLists plain = abuffer(surfaces, front_view(1));
+  EXPECT_EQ(laid_over(plain, 0, 0, colors), glm::dvec4(1, 0, 0, 1));
+  EXPECT_EQ(laid_over(plain, 2, 0, colors), glm::dvec4(0, 0, 1, 1));
 }
 
 TEST(Holes, AreTheSameForAnyThreadsAndInstructionSet) {
