@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/crew.h"
 #include "base/float_environment.h"
 #include "base/spare_threads.h"
 
@@ -65,28 +64,6 @@ class ChunkQueue {
   std::exception_ptr error_;
 };
 
-}  // namespace
-
-#if defined(FRONTMOST_THREADS_tbb)
-struct Crew::Helpers {
-  // More threads than cores need both the arena and the global limit raised.
-  explicit Helpers(int threads)
-      : limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads)), arena(threads), most(threads) {}
-
-  tbb::global_control limit;
-  tbb::task_arena arena;
-  const int most;
-};
-#else
-struct Crew::Helpers {};
-#endif
-
-namespace {
-
-/// Those of this thread's innermost Crew; null within a loop, since who waits for the end of an inner one must not
-/// begin with the outer one's chunks.
-thread_local Crew::Helpers* current = nullptr;
-
 #if !defined(FRONTMOST_THREADS_serial)
 /// Threads for this loop alone.
 void drain_on_own(int threads, ChunkQueue& queue) {
@@ -103,13 +80,22 @@ void drain_on_own(int threads, ChunkQueue& queue) {
 #endif
 
 #if defined(FRONTMOST_THREADS_tbb)
+/// A place for that many threads: more than cores need both an arena of their own and a higher global limit.
+struct Helpers {
+  explicit Helpers(int threads)
+      : limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads)), arena(threads) {}
+
+  tbb::global_control limit;
+  tbb::task_arena arena;
+};
+
 /// Has TBB make its threads now, by work that waits until all have come. It may come to no more than it wants; then the
 /// rest is made when it is.
 void gather(int threads) {
   constexpr std::chrono::milliseconds patience(50);
   const auto until = std::chrono::steady_clock::now() + patience;
   std::atomic<int> arrived{0};
-  Crew::Helpers helpers(threads);
+  Helpers helpers(threads);
   helpers.arena.execute([&] {
     tbb::parallel_for(
         0, threads, 1,
@@ -138,22 +124,20 @@ bool tbb_may_use(int threads) {
   return true;
 }
 
-void drain_with(Crew::Helpers& helpers, int threads, ChunkQueue& queue) {
-  helpers.arena.execute([&] {
-    tbb::parallel_for(
-        0, threads, 1, [&](int) { queue.drain(); }, tbb::simple_partitioner());
-  });
+void drain_here(int threads, ChunkQueue& queue) {
+  tbb::parallel_for(
+      0, threads, 1, [&](int) { queue.drain(); }, tbb::simple_partitioner());
 }
 
 void drain_on(int threads, ChunkQueue& queue) {
-  struct Outer {
-    Crew::Helpers* const helpers = std::exchange(current, nullptr);
-    ~Outer() { current = helpers; }
-  } const outer;
-  if (outer.helpers && outer.helpers->most >= threads) return drain_with(*outer.helpers, threads, queue);
   if (!tbb_may_use(threads)) return drain_on_own(threads, queue);
-  Crew::Helpers helpers(threads);
-  drain_with(helpers, threads, queue);
+  // In the arena that the caller is in anyway helpers look for the next loop for some 50 us before they go to sleep: to
+  // wake one takes as long as many a loop, 40 us. Who waits for the end of an inner loop must not begin with the outer
+  // one's chunks meanwhile.
+  if (threads <= tbb::this_task_arena::max_concurrency())
+    return tbb::this_task_arena::isolate([&] { drain_here(threads, queue); });
+  Helpers helpers(threads);
+  helpers.arena.execute([&] { drain_here(threads, queue); });
 }
 #elif defined(FRONTMOST_THREADS_std)
 void drain_on(int threads, ChunkQueue& queue) { drain_on_own(threads, queue); }
@@ -162,18 +146,6 @@ void drain_on(int, ChunkQueue& queue) { queue.drain(); }
 #endif
 
 }  // namespace
-
-Crew::Crew(const Execution& execution) : outer_(current) {
-  const int threads = thread_count(execution);
-#if defined(FRONTMOST_THREADS_tbb)
-  if (threads > 1 && tbb_may_use(threads)) helpers_ = std::make_unique<Helpers>(threads);
-#else
-  (void)threads;
-#endif
-  if (helpers_) current = helpers_.get();
-}
-
-Crew::~Crew() { current = outer_; }
 
 void detail::run_chunks(const Execution& execution, std::size_t count, std::size_t grain, ChunkFunction function,
                         void* context) {

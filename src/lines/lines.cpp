@@ -6,7 +6,6 @@
 #include <string>
 
 #include "base/arena.h"
-#include "base/crew.h"
 #include "base/float_environment.h"
 #include "base/large_pages.h"
 #include "base/parallel.h"
@@ -116,7 +115,6 @@ Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions
   if (options.crease_angle && !(*options.crease_angle >= 0 && *options.crease_angle <= 3.1415926535897932))
     throw Error(ErrorCode::bad_argument, "crease_angle: must be from 0 to pi");
   const IeeeScope ieee;
-  const Crew crew(execution);
   const Arena arena(kBytesPerTriangle * surfaces.primitive_count());
   report_progress(execution, "lines", 0);
   WeldedMesh mesh = weld(surfaces, execution);

@@ -7,6 +7,7 @@
 #include <array>
 #include <atomic>
 #include <cfenv>
+#include <chrono>
 #include <limits>
 #include <mutex>
 #include <set>
@@ -16,8 +17,6 @@
 #if defined(__SSE2__)
 #include <immintrin.h>
 #endif
-
-#include "base/crew.h"
 
 namespace frontmost {
 namespace {
@@ -88,23 +87,37 @@ TEST(ParallelFor, RunsInsideItself) {
   }
 }
 
-TEST(Crew, ChangesNothingOfWhatLoopsDo) {
-  const Crew outer({.threads = 3});
-  for (const int threads : {1, 2, 3, 5}) {
-    const Crew crew({.threads = threads});
+TEST(ParallelFor, RunsInsideItselfOnAnyNumbersOfThreads) {
+  for (const int threads : {1, 2, 3, 5})
     for (const int inner_threads : {1, 2, 4}) {
       std::atomic<int> calls{0};
       for (int round = 0; round < 20; ++round)
-        parallel_for({.threads = inner_threads}, 7, 1, [&](std::size_t, std::size_t) {
-          const Crew own({.threads = 2});
-          parallel_for({.threads = 2}, 11, 2, [&](std::size_t begin, std::size_t end) { calls += int(end - begin); });
+        parallel_for({.threads = threads}, 7, 1, [&](std::size_t, std::size_t) {
+          parallel_for({.threads = inner_threads}, 11, 2,
+                       [&](std::size_t begin, std::size_t end) { calls += int(end - begin); });
         });
       EXPECT_EQ(calls, 20 * 77);
     }
+}
+
+// Else scratch memory of the outer chunk would be used by two at once, and chunks would lie in each other without end.
+// Who sleeps leaves the others to wait, who would then look for something to do.
+TEST(ParallelFor, WhoWaitsForAnInnerLoopBeginsNoChunkOfTheOuterOne) {
+  for (const int threads : {2, 5}) {
+    std::atomic<int> nested{0}, calls{0};
+    for (int round = 0; round < 10; ++round)
+      parallel_for({.threads = threads}, 64, 1, [&](std::size_t, std::size_t) {
+        thread_local int depth = 0;
+        nested += depth++;
+        parallel_for({.threads = 2}, 4, 1, [&](std::size_t, std::size_t) {
+          std::this_thread::sleep_for(std::chrono::microseconds(50));
+          ++calls;
+        });
+        --depth;
+      });
+    EXPECT_EQ(nested, 0);
+    EXPECT_EQ(calls, 10 * 64 * 4);
   }
-  EXPECT_THROW(parallel_for({.threads = 2}, 9, 1, [](std::size_t, std::size_t) { throw std::logic_error("body"); }),
-               std::logic_error);
-  EXPECT_THROW(Crew({.threads = 1025}), Error);
 }
 
 TEST(ParallelFor, RejectsANumberOfThreadsOutOfRange) {
