@@ -266,16 +266,22 @@ class QueryWalker {
   Noted notes_[kMostNoted];
 };
 
-/// Kept from call to call, so that a million queries do not allocate a million times.
-Entry* Stack(std::size_t size) {
-  thread_local std::vector<Entry> stack;
-  if (stack.size() < size) stack.resize(size);
-  return stack.data();
-}
+/// Room for what a walk has put off, which takes memory of its own in uncommonly deep trees alone.
+class WalkStack {
+ public:
+  explicit WalkStack(const RayTree& tree) : deep_(tree.stack_size() > kUsual ? tree.stack_size() : 0) {}
+  [[nodiscard]] Entry* data() { return deep_.empty() ? usual_ : deep_.data(); }
+
+ private:
+  static constexpr std::size_t kUsual = 256;
+  Entry usual_[kUsual];
+  std::vector<Entry> deep_;
+};
 
 void WalkQuery(const RayTree& tree, const Query& query, Want want, std::vector<RayHit>& hits) {
   if (tree.root == no_index) return;
-  QueryWalker walker(tree, query, want, Stack(tree.stack_size()), hits);
+  WalkStack stack(tree);
+  QueryWalker walker(tree, query, want, stack.data(), hits);
   while (walker.Step()) continue;
 }
 
@@ -290,7 +296,7 @@ struct QueryBatch {
 /// Walks for one query of a batch after the other.
 class BatchWalk {
  public:
-  BatchWalk(QueryBatch& batch, Entry* stack) : batch_(batch), stack_(stack) {}
+  explicit BatchWalk(QueryBatch& batch) : batch_(batch), stack_(batch.tree) {}
 
   /// \returns false where no query is left.
   bool Begin() {
@@ -299,7 +305,7 @@ class BatchWalk {
       batch_.answers[number_] = {};
       if (batch_.tree.root == no_index || !is_valid(batch_.queries[number_])) continue;
       hits_.clear();
-      walker_.emplace(batch_.tree, batch_.queries[number_], batch_.want, stack_, hits_);
+      walker_.emplace(batch_.tree, batch_.queries[number_], batch_.want, stack_.data(), hits_);
       return true;
     }
     return false;
@@ -314,7 +320,7 @@ class BatchWalk {
 
  private:
   QueryBatch& batch_;
-  Entry* stack_;
+  WalkStack stack_;
   std::size_t number_ = 0;
   std::vector<RayHit> hits_;
   std::optional<QueryWalker> walker_;
@@ -328,12 +334,17 @@ constexpr std::size_t kTurnsFromBytes = std::size_t(8) << 20;
 void WalkBatch(const RayTree& tree, std::span<const Query> queries, Want want, std::span<RayHit> answers) {
   QueryBatch batch{tree, queries, want, answers};
   const std::size_t bytes = tree.nodes.size() * sizeof(RayNode) + tree.leaves.size() * sizeof(RayLeaf);
-  const std::size_t count = bytes < kTurnsFromBytes ? 1 : kTurns;
-  Entry* const stacks = Stack(count * tree.stack_size());
+  const std::size_t count = bytes < kTurnsFromBytes ? 1 : HWY_MIN(kTurns, queries.size());
+  if (count == 1) {
+    BatchWalk only(batch);
+    if (only.Begin())
+      while (only.Step()) continue;
+    return;
+  }
   std::vector<BatchWalk> turns;
   turns.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
-    turns.emplace_back(batch, stacks + k * tree.stack_size());
+    turns.emplace_back(batch);
     if (!turns.back().Begin()) turns.pop_back();
   }
   std::array<BatchWalk*, kTurns> active;
