@@ -144,9 +144,11 @@ class Extremes::Core {
       const double* const reached = extremes.reach_ + plane * in_plane;
       const double right = reached[0], far = reached[around / 4], left = reached[around / 2],
                    near = reached[3 * around / 4];
-      polygons_[plane] = {{(right - left) / 2, (far - near) / 2}, {(right + left) / 2, (far + near) / 2}, {}};
+      polygons_[plane] = {{(right - left) / 2, (far - near) / 2}, {(right + left) / 2, (far + near) / 2}, {}, {}};
       Polygon& polygon = polygons_[plane];
-      polygon.inverse_radius.fill(polygon.half.x > 0 && polygon.half.y > 0 ? 0 : kInfinity);
+      const bool is_flat = !(polygon.half.x > 0 && polygon.half.y > 0);
+      polygon.inverse_radius.fill(is_flat ? kInfinity : 0);
+      if (!is_flat) polygon.inverse_half = 1.0 / polygon.half;
       for (int k = 0; k < in_plane; ++k) {
         const double sign = k == around ? 1 : -1;
         const glm::dvec2 normal = k < around ? glm::dvec2(extremes.cosine_[k], extremes.sine_[k])
@@ -174,6 +176,7 @@ class Extremes::Core {
     static constexpr int slopes = 64;  ///< on each side of the rectangle around the middle
 
     glm::dvec2 middle{0}, half{0};
+    glm::dvec2 inverse_half{0};  ///< 0 where it is flat, or nothing is kept yet
     /// By slope: what lies nearer to the middle than the inverse of this, in units of `half`, is in the polygon.
     std::array<double, 4 * slopes> inverse_radius;
 
@@ -191,8 +194,7 @@ class Extremes::Core {
       }
     }
     [[nodiscard]] bool holds(const glm::dvec2& p) const {
-      if (!(half.x > 0 && half.y > 0)) return false;  // flat, or nothing is kept yet
-      const glm::dvec2 q = (p - middle) / half;
+      const glm::dvec2 q = (p - middle) * inverse_half;
       const bool is_steep = std::abs(q.y) > std::abs(q.x);
       const double major = is_steep ? q.y : q.x, minor = is_steep ? q.x : q.y, size = std::abs(major);
       if (!(size > 0)) return false;
