@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "fragment_oracle.h"
 #include "support/cutout_scene.h"
 #include "support/effort.h"
 #include "support/flat_picture.h"
@@ -12,11 +13,7 @@ namespace frontmost::test {
 namespace {
 
 // More than a tile has room for, also of the small squares.
-constexpr int crowd = under_sanitizer ? 12'000 : 100'000;
-
-View front_view(int width, int height) {
-  return make_view(0.9, width, height).looking({0, 0, 1}, {0, 0, 0}, {0, 1, 0}).between(0.5, 6);
-}
+constexpr int kCrowd = under_sanitizer ? 12'000 : 100'000;
 
 /// A square in two triangles, `count` times: as it is, and with its corners in other orders.
 Mesh squares(int count, float size) {
@@ -57,7 +54,8 @@ TEST(Copies, OfOpaqueTrianglesCostAndShowWhatOneDoes) {
     for (const int grid : {0, 4}) {
       SCOPED_TRACE(testing::Message() << "size " << size << ", grid " << grid);
       const std::vector<glm::vec4> blue = {{0.2f, 0.4f, 0.9f, 1}};
-      const Scene many = painted(scene_of(squares(crowd, size)), blue), one = painted(scene_of(squares(1, size)), blue);
+      const Scene many = painted(scene_of(squares(kCrowd, size)), blue),
+                  one = painted(scene_of(squares(1, size)), blue);
       const Surfaces surfaces(many), single(one);
       View view = front_view(700, 500);
       const FragmentLists lists = abuffer(surfaces, view, {grid}), wanted = abuffer(single, view, {grid});
@@ -75,7 +73,7 @@ TEST(Copies, OfOpaqueTrianglesCostAndShowWhatOneDoes) {
 }
 
 TEST(Copies, OfGlassAreLayersAsManyAsAreAskedFor) {
-  const Scene scene = glass_scene(squares(crowd, 1.5f));
+  const Scene scene = glass_scene(squares(kCrowd, 1.5f));
   const View view = front_view(300, 200);
   const std::vector<Visible> layers = visible_layers(Surfaces(scene), view, 5);
   expect_same(zbuffer(Surfaces(scene), view), layers[0]);
@@ -106,7 +104,7 @@ TEST(Copies, BehindHolesAreSeen) {
 
 TEST(Copies, OfGlassAreRefusedBeforeTheyAreGathered) {
   if (under_sanitizer) return;
-  const Scene scene = glass_scene(squares(crowd, 1.5f));
+  const Scene scene = glass_scene(squares(kCrowd, 1.5f));
   const Surfaces surfaces(scene);
   const View view = front_view(700, 500);
   // The square covers the whole picture, within the eye's 0.9 radians: 100,000 times 700 x 500.
@@ -116,7 +114,7 @@ TEST(Copies, OfGlassAreRefusedBeforeTheyAreGathered) {
   EXPECT_EQ(refusal_of([&] { (void)flat_picture(surfaces, view); }), wanted);
   EXPECT_EQ(refusal_of([&] { (void)count_fragments(surfaces, view); }), wanted);
   // Everything may be made of glass.
-  const Scene opaque = scene_of(squares(crowd, 1.5f));
+  const Scene opaque = scene_of(squares(kCrowd, 1.5f));
   EXPECT_EQ(refusal_of([&] { (void)abuffer(Surfaces(opaque), view, {0, 0.5f}); }), wanted);
 }
 

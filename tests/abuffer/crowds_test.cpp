@@ -11,10 +11,6 @@
 namespace frontmost::test {
 namespace {
 
-View front_view(int width, int height) {
-  return make_view(0.9, width, height).looking({0, 0, 1}, {0, 0, 0}, {0, 1, 0}).between(0.5, 6);
-}
-
 /// Two triangles that share an edge within the picture, both leaning, `count` times.
 Scene copies_of_a_leaf(int count) {
   Mesh mesh;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The A-buffer by brute force: every sub-sample of every pixel against every triangle.
+// The A-buffer by brute force: every sub-sample of every pixel against every triangle; and a view that its tests share.
 #pragma once
 
 #include <algorithm>
@@ -76,6 +76,11 @@ inline glm::dvec4 oracle_pixel(const std::vector<OracleFragment>& list, const st
     sum.a += 1 - left;
   }
   return sum / double(samples.size());
+}
+
+/// From (0, 0, 1) to the origin.
+inline View front_view(int width, int height) {
+  return make_view(0.9, width, height).looking({0, 0, 1}, {0, 0, 0}, {0, 1, 0}).between(0.5, 6);
 }
 
 }  // namespace frontmost::test

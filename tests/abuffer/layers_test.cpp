@@ -16,16 +16,12 @@
 namespace frontmost::test {
 namespace {
 
-struct Case {
-  Scene scene;
-  View view;
-};
-Case small_case(Kind kind, std::uint64_t seed) {
+RandomCase small_case(Kind kind, std::uint64_t seed) {
   Random random(seed + 900);
   const bool covers_little = kind == Kind::tiny || kind == Kind::slivers;
   const int count = (40 + random.below(80)) * (covers_little ? 8 : 1);
   const int width = 20 + random.below(40), height = 15 + random.below(35);
-  Case made{scene_of(random_mesh(kind, count, seed)), random_view(random, width, height)};
+  RandomCase made{scene_of(random_mesh(kind, count, seed)), random_view(random, width, height)};
   made.view.culling = Culling(random.below(3));
   return made;
 }
@@ -49,7 +45,7 @@ TEST_P(EveryKindOfLayer, EqualsBruteForceToTheBit) {
   std::array<std::size_t, layer_count> filled{};
   for (std::uint64_t seed = 0; seed < seeds(10); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    Case c = small_case(GetParam(), seed);
+    RandomCase c = small_case(GetParam(), seed);
     c.view.samples = sample_counts[seed % 5];
     const Surfaces surfaces(c.scene);
     const std::vector<Visible> layers = visible_layers(surfaces, c.view, layer_count, {0, 0.5f});
@@ -84,7 +80,7 @@ TEST_P(EveryKindOfLayer, EqualsBruteForceToTheBit) {
 TEST_P(EveryKindOfLayer, PicturesOfOpaqueThingsAreTheZBuffers) {
   for (std::uint64_t seed = 0; seed < seeds(8); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    Case c = small_case(GetParam(), seed + 50);
+    RandomCase c = small_case(GetParam(), seed + 50);
     c.view.samples = seed % 2 ? 4 : 16;
     Random random(seed);
     std::vector<glm::vec4> colors;
@@ -127,7 +123,7 @@ void expect_same_lists(const FragmentLists& found, const FragmentLists& wanted) 
 TEST_P(EveryKindOfLayer, ListsLayersAndCountsAreTheSameForThreadsAndInstructionSets) {
   for (std::uint64_t seed = 0; seed < seeds(4); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    Case c = small_case(GetParam(), seed + 150);
+    RandomCase c = small_case(GetParam(), seed + 150);
     c.view.width = 150;  // several tiles
     c.view.samples = seed % 2 ? 8 : 1;
     const AbufferOptions options{seed < 2 ? 0 : 4, seed % 3 ? 1.0f : 0.5f};
@@ -188,7 +184,7 @@ TEST(SplitTriangles, CoverWhatTheWholeOneDid) {
 // ---- Running ----
 
 TEST(Running, IsEndedByTheWatchAndReportsAllTiles) {
-  const Case c = small_case(Kind::soup, 3);
+  const RandomCase c = small_case(Kind::soup, 3);
   const Surfaces surfaces(c.scene);
   View view = c.view;
   view.width = 300;
@@ -235,7 +231,7 @@ std::string error_of(Action&& action) {
 }
 
 TEST(Errors, NameOptionAndValue) {
-  const Case c = small_case(Kind::soup, 1);
+  const RandomCase c = small_case(Kind::soup, 1);
   const Surfaces surfaces(c.scene);
   for (const int grid : {-2, 1, 3, 5, 16, 64}) {
     const std::string words = "abuffer: grid: must be 0, 2, 4 or 8, not " + std::to_string(grid);

@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "fragment_oracle.h"
 #include "support/effort.h"
 #include "support/flat_picture.h"
 #include "support/random_scene.h"
@@ -21,10 +22,6 @@ Scene stack_of(int count) {
     add_triangle(mesh, {-2, -2, z}, {2, 2, z}, {-2, 2, z});
   }
   return scene_of(std::move(mesh));
-}
-
-View front_view(int width, int height) {
-  return make_view(0.9, width, height).looking({0, 0, 1}, {0, 0, 0}, {0, 1, 0}).between(0.5, 6);
 }
 
 ErrorCode code_of(const std::function<void()>& action) {

@@ -24,15 +24,11 @@ std::vector<glm::vec4> random_colors(std::size_t count, std::uint64_t seed) {
   return colors;
 }
 
-struct Case {
-  Scene scene;
-  View view;
-};
-Case random_case(Kind kind, std::uint64_t seed, const Sampling& sampling) {
+RandomCase sampled_case(Kind kind, std::uint64_t seed, const Sampling& sampling) {
   Random random(seed + 77);
   const bool covers_little = kind == Kind::tiny || kind == Kind::slivers;
-  Case c{scene_of(random_mesh(kind, (10 + random.below(60)) * (covers_little ? 6 : 1), seed)),
-         random_view(random, 1 + random.below(90), 1 + random.below(80))};
+  RandomCase c{scene_of(random_mesh(kind, (10 + random.below(60)) * (covers_little ? 6 : 1), seed)),
+               random_view(random, 1 + random.below(90), 1 + random.below(80))};
   c.view.culling = Culling(random.below(3));
   c.view.samples = sampling.samples;
   return c;
@@ -41,7 +37,7 @@ Case random_case(Kind kind, std::uint64_t seed, const Sampling& sampling) {
 class EveryKind : public testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(ABuffer, EveryKind, testing::ValuesIn(all_kinds));
 
-void expect_same(std::span<const Fragment> found, const std::vector<OracleFragment>& wanted) {
+void expect_as_oracle(std::span<const Fragment> found, const std::vector<OracleFragment>& wanted) {
   ASSERT_EQ(found.size(), wanted.size());
   for (std::size_t i = 0; i < found.size(); ++i) {
     ASSERT_EQ(found[i].primitive, wanted[i].id) << "fragment " << i;
@@ -56,7 +52,7 @@ TEST_P(EveryKind, ListsEqualBruteForce) {
     const Sampling& sampling = all_samplings[seed % 8];
     SCOPED_TRACE(testing::Message() << "seed " << seed << ", samples " << sampling.samples << ", grid "
                                     << sampling.grid);
-    const Case c = random_case(GetParam(), seed, sampling);
+    const RandomCase c = sampled_case(GetParam(), seed, sampling);
     const Surfaces surfaces(c.scene);
     const FragmentLists lists = abuffer(surfaces, c.view, {sampling.grid, 0.5f});
     const auto triangles = screen_triangles(surfaces, c.view);
@@ -65,7 +61,7 @@ TEST_P(EveryKind, ListsEqualBruteForce) {
     for (int y = 0; y < c.view.height; ++y)
       for (int x = 0; x < c.view.width; ++x) {
         SCOPED_TRACE(testing::Message() << "pixel " << x << ", " << y);
-        expect_same(lists.at(x, y), oracle_fragments(triangles, samples, x, y));
+        expect_as_oracle(lists.at(x, y), oracle_fragments(triangles, samples, x, y));
         if (HasFatalFailure()) return;
       }
     fragments += lists.fragments.size();
@@ -78,7 +74,7 @@ TEST_P(EveryKind, PicturesEqualBruteForce) {
   for (std::uint64_t seed = 0; seed < 16; ++seed) {
     const Sampling& sampling = all_samplings[seed % 8];
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    Case c = random_case(GetParam(), seed + 100, sampling);
+    RandomCase c = sampled_case(GetParam(), seed + 100, sampling);
     const std::vector<glm::vec4> colors = random_colors(c.scene.meshes[0].triangles.size(), seed);
     c.scene = painted(std::move(c.scene), colors);
     const Surfaces surfaces(c.scene);
@@ -104,7 +100,7 @@ TEST_P(EveryKind, PicturesEqualBruteForce) {
 TEST_P(EveryKind, NearestLayerEqualsTheZBufferToTheBit) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const Case c = random_case(GetParam(), seed + 200, all_samplings[seed % 5]);
+    const RandomCase c = sampled_case(GetParam(), seed + 200, all_samplings[seed % 5]);
     const Surfaces surfaces(c.scene);
     const Visible wanted = zbuffer(surfaces, c.view);
     for (const float opacity : {1.0f, 0.5f}) {
@@ -118,7 +114,7 @@ TEST_P(EveryKind, BytesDependOnNeitherThreadsNorInstructionSet) {
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
     const Sampling& sampling = all_samplings[seed];
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    Case c = random_case(GetParam(), seed + 300, sampling);
+    RandomCase c = sampled_case(GetParam(), seed + 300, sampling);
     c.scene = painted(std::move(c.scene), random_colors(c.scene.meshes[0].triangles.size(), seed));
     const Surfaces surfaces(c.scene);
     const AbufferOptions options{sampling.grid, 0.9f};

@@ -9,11 +9,10 @@
 
 #include "base/prefetch.h"
 #include "frontmost/base.h"
+#include "support/odd_numbers.h"
 
 namespace frontmost {
 namespace {
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 TEST(Box, IsEmptyUntilSomethingIsInIt) {
   Box box;
@@ -65,7 +64,7 @@ TEST(Box, TheCentreOfTheGreatestBoxes) {
   const Box far{glm::vec3(most / 2), glm::vec3(most)};
   EXPECT_EQ(far.centre(), glm::vec3(most / 2 + most / 4));
   EXPECT_EQ((Box{glm::vec3(-most / 2), glm::vec3(most / 2)}).centre(), glm::vec3(0));
-  EXPECT_TRUE(std::isinf((Box{glm::vec3(0), glm::vec3(infinity)}).diagonal()));
+  EXPECT_TRUE(std::isinf((Box{glm::vec3(0), glm::vec3(test::kFloatInfinity)}).diagonal()));
 }
 
 TEST(Error, KeepsItsCodeAndWords) {

@@ -5,7 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
+
+#include "support/odd_numbers.h"
 
 namespace frontmost {
 namespace {
@@ -42,12 +43,11 @@ TEST(Srgb, BytesEqualTheFormulaAllOverTheRange) {
 }
 
 TEST(Srgb, OddValuesAreClamped) {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
-  for (const float low : {0.0f, -0.0f, -1.0f, -infinity, std::nanf(""), -std::nanf(""), 1e-40f}) {
+  for (const float low : {0.0f, -0.0f, -1.0f, -test::kFloatInfinity, std::nanf(""), -std::nanf(""), 1e-40f}) {
     EXPECT_EQ(srgb8_of_linear(low), 0);
     EXPECT_EQ(srgb16_of_linear(low), 0);
   }
-  for (const float high : {1.0f, 2.0f, 1e30f, infinity}) {
+  for (const float high : {1.0f, 2.0f, 1e30f, test::kFloatInfinity}) {
     EXPECT_EQ(srgb8_of_linear(high), 255);
     EXPECT_EQ(srgb16_of_linear(high), 65535);
   }

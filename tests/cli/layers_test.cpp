@@ -19,49 +19,48 @@ class Layers : public ProgramTest {
   [[nodiscard]] Image image(const std::string& name) const { return load_image(path(name)); }
 };
 
-// As in render_test.cpp: the near side is 10 x 10 pixels, 10 units away, the far one 11.
-const std::string front =
-    "render cube.stl --camera-position 0.5,-10,0.5 --camera-direction y "
-    "--intrinsics 100,100,32,32 --pixel-center half --resolution 64,64 ";
-constexpr std::size_t middle = 32 * 64 + 33;
+constexpr std::size_t beside_middle = 32 * 64 + 33;
 
 TEST_F(Layers, AreWrittenOneByOne) {
-  EXPECT_THAT(succeed(front + "--opacity 0.5 --layers 3 --background transparent --samples 1 --shading flat "
-                              "-o {model}{layer}.exr --depth {model}{layer}.exr --ids primitive=p{layer}.npy")
+  EXPECT_THAT(succeed(render_cube + "--opacity 0.5 --layers 3 --background transparent --samples 1 --shading flat "
+                                    "-o {model}{layer}.exr --depth {model}{layer}.exr --ids primitive=p{layer}.npy")
                   .err,
               IsEmpty());
   EXPECT_THAT(files(), ElementsAre("cube.stl", "cube0.exr", "cube1.exr", "cube2.exr", "p0.npy", "p1.npy", "p2.npy"));
-  EXPECT_FLOAT_EQ(image("cube0.exr").find("Z")->floats()[middle], 10);
-  EXPECT_FLOAT_EQ(image("cube1.exr").find("Z")->floats()[middle], 11);
-  EXPECT_TRUE(std::isinf(image("cube2.exr").find("Z")->floats()[middle]));
-  EXPECT_FLOAT_EQ(image("cube1.exr").find("A")->floats()[middle], 0.5f);
-  EXPECT_FLOAT_EQ(image("cube2.exr").find("A")->floats()[middle], 0);
-  EXPECT_NE(image("p0.npy").channels[0].integers()[middle], image("p1.npy").channels[0].integers()[middle]);
-  EXPECT_EQ(image("p2.npy").channels[0].integers()[middle], no_index);
+  EXPECT_FLOAT_EQ(image("cube0.exr").find("Z")->floats()[beside_middle], 10);
+  EXPECT_FLOAT_EQ(image("cube1.exr").find("Z")->floats()[beside_middle], 11);
+  EXPECT_TRUE(std::isinf(image("cube2.exr").find("Z")->floats()[beside_middle]));
+  EXPECT_FLOAT_EQ(image("cube1.exr").find("A")->floats()[beside_middle], 0.5f);
+  EXPECT_FLOAT_EQ(image("cube2.exr").find("A")->floats()[beside_middle], 0);
+  EXPECT_NE(image("p0.npy").channels[0].integers()[beside_middle],
+            image("p1.npy").channels[0].integers()[beside_middle]);
+  EXPECT_EQ(image("p2.npy").channels[0].integers()[beside_middle], no_index);
 }
 
 TEST_F(Layers, EndBehindWhatIsOpaque) {
-  succeed(front + "--layers 2 --depth d{layer}.exr --depth nearest.exr");
-  EXPECT_FLOAT_EQ(image("d0.exr").find("Z")->floats()[middle], 10);
-  EXPECT_TRUE(std::isinf(image("d1.exr").find("Z")->floats()[middle]));
+  succeed(render_cube + "--layers 2 --depth d{layer}.exr --depth nearest.exr");
+  EXPECT_FLOAT_EQ(image("d0.exr").find("Z")->floats()[beside_middle], 10);
+  EXPECT_TRUE(std::isinf(image("d1.exr").find("Z")->floats()[beside_middle]));
   EXPECT_EQ(read("d0.exr"), read("nearest.exr"));
 }
 
 TEST_F(Layers, OpacityLetsTheBackgroundThrough) {
-  succeed(front + "--opacity 0.5 --shading flat --background transparent -o o.exr");
-  EXPECT_FLOAT_EQ(image("o.exr").find("A")->floats()[middle], 0.75f);
-  succeed(front + "--opacity 0 --background red -o nothing.exr");
-  EXPECT_EQ(image("nothing.exr").find("R")->floats()[middle], 1);
-  EXPECT_EQ(image("nothing.exr").find("G")->floats()[middle], 0);
+  succeed(render_cube + "--opacity 0.5 --shading flat --background transparent -o o.exr");
+  EXPECT_FLOAT_EQ(image("o.exr").find("A")->floats()[beside_middle], 0.75f);
+  succeed(render_cube + "--opacity 0 --background red -o nothing.exr");
+  EXPECT_EQ(image("nothing.exr").find("R")->floats()[beside_middle], 1);
+  EXPECT_EQ(image("nothing.exr").find("G")->floats()[beside_middle], 0);
 }
 
 TEST_F(Layers, DeepFilesAreWritten) {
-  const Outcome outcome = succeed(front + "--opacity 0.5 --deep all.exr --json");
+  const Outcome outcome = succeed(render_cube + "--opacity 0.5 --deep all.exr --json");
   EXPECT_EQ(outcome.json()["files"][0]["what"], "deep");
   EXPECT_EQ(read("all.exr").substr(0, 4), "\x76\x2f\x31\x01");
   EXPECT_GT(read("all.exr").size(), 1000u);
   // The hash does not depend on threads.
-  const auto hashes = [&](const std::string& options) { return succeed(front + "--deep h.exr --hash " + options).out; };
+  const auto hashes = [&](const std::string& options) {
+    return succeed(render_cube + "--deep h.exr --hash " + options).out;
+  };
   EXPECT_EQ(hashes("--threads 1"), hashes("--threads 3"));
   EXPECT_NE(hashes("").find("deep "), std::string::npos);
 }
@@ -97,7 +96,7 @@ TEST_F(Layers, FiveHundredFitIntoTheMemoryOfFew) {
 
 TEST_F(Layers, TheMethodIsNamed) {
   const auto method = [&](const std::string& options) {
-    return succeed(front + "-o m.png --json " + options).json()["method"].get<std::string>();
+    return succeed(render_cube + "-o m.png --json " + options).json()["method"].get<std::string>();
   };
   EXPECT_EQ(method(""), "zbuffer");
   EXPECT_EQ(method("--opacity 0.5"), "abuffer");
@@ -106,25 +105,25 @@ TEST_F(Layers, TheMethodIsNamed) {
 }
 
 TEST_F(Layers, EveryMethodSeesTheSameSolid) {
-  const auto hash = [&](const std::string& method) { return succeed(front + "--hash --method " + method).out; };
+  const auto hash = [&](const std::string& method) { return succeed(render_cube + "--hash --method " + method).out; };
   EXPECT_EQ(hash("abuffer"), hash("zbuffer"));
-  succeed(front + "-o z.png --samples 16");
-  succeed(front + "-o a.png --samples 16 --method abuffer --reference z.png --reference-threshold 0.02");
-  succeed(front + "-o fine.png --samples 64 --method abuffer --reference z.png --reference-threshold 0.2");
+  succeed(render_cube + "-o z.png --samples 16");
+  succeed(render_cube + "-o a.png --samples 16 --method abuffer --reference z.png --reference-threshold 0.02");
+  succeed(render_cube + "-o fine.png --samples 64 --method abuffer --reference z.png --reference-threshold 0.2");
 }
 
 TEST_F(Layers, ContradictionsAreRefused) {
-  expect_failure(front + "-o a.png --method zbuffer --opacity 0.5", 2, "need the A-buffer");
-  expect_failure(front + "-o a.png --depth-format D16 --opacity 0.5", 2, "need the A-buffer");
-  expect_failure(front + "--deep a.exr --method raycast", 2, "need the A-buffer");
-  expect_failure(front + "-o a.png --samples 64", 2, "needs --method abuffer");
-  expect_failure(front + "-o a.png --layers 2", 2, "no output has {layer}");
-  expect_failure(front + "-o a{layer}.png", 2, "{layer} with --layers");
-  expect_failure(front + "--deep a{layer}.exr --layers 2", 2, "one such file");
-  expect_failure(front + "--deep a.png", 2, "only .exr files are deep");
-  expect_failure(front + "--deep a.exr --depth a.exr", 2, "two outputs have this name");
-  expect_failure(front + "-o a{layer}.png --layers 0", 2, "layers");
-  expect_failure(front + "-o a.png --stream --opacity 0.5", 2, "--stream keeps only what is nearest");
+  expect_failure(render_cube + "-o a.png --method zbuffer --opacity 0.5", 2, "need the A-buffer");
+  expect_failure(render_cube + "-o a.png --depth-format D16 --opacity 0.5", 2, "need the A-buffer");
+  expect_failure(render_cube + "--deep a.exr --method raycast", 2, "need the A-buffer");
+  expect_failure(render_cube + "-o a.png --samples 64", 2, "needs --method abuffer");
+  expect_failure(render_cube + "-o a.png --layers 2", 2, "no output has {layer}");
+  expect_failure(render_cube + "-o a{layer}.png", 2, "{layer} with --layers");
+  expect_failure(render_cube + "--deep a{layer}.exr --layers 2", 2, "one such file");
+  expect_failure(render_cube + "--deep a.png", 2, "only .exr files are deep");
+  expect_failure(render_cube + "--deep a.exr --depth a.exr", 2, "two outputs have this name");
+  expect_failure(render_cube + "-o a{layer}.png --layers 0", 2, "layers");
+  expect_failure(render_cube + "-o a.png --stream --opacity 0.5", 2, "--stream keeps only what is nearest");
   expect_failure("render cube.stl --camera-model panorama -o a.png --opacity 0.5", 2, "--camera-model excludes");
   expect_failure("render cube.stl -o a{layer}.png --layers 1024 --resolution 4096,4096", 1, "2^30 samples");
   EXPECT_THAT(files(), ElementsAre("cube.stl"));

@@ -24,7 +24,7 @@ std::string box_obj(double x, double y, double z, const std::string& name = "box
   return text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
 }
 
-struct Box {
+struct PathBox {
   double left = 1e9, top = 1e9, right = -1e9, bottom = -1e9;
   std::size_t paths = 0;
   void include(const json& points) {
@@ -51,8 +51,8 @@ class LinesCommand : public ProgramTest {
   }
 
   /// What each group covers, by its name.
-  [[nodiscard]] static std::map<std::string, Box> boxes(const json& page) {
-    std::map<std::string, Box> all;
+  [[nodiscard]] static std::map<std::string, PathBox> boxes(const json& page) {
+    std::map<std::string, PathBox> all;
     for (const json& layer : page["layers"])
       for (const json& group : layer["groups"])
         for (const json& path : group["paths"]) all[group["name"]].include(path["points"]);
@@ -108,7 +108,7 @@ TEST_F(LinesCommand, ABoxAtFullScaleHasItsSidesInMillimetres) {
   ASSERT_EQ(path.size(), 1u);
   EXPECT_EQ(path[0]["closed"], true);
   ASSERT_EQ(path[0]["points"].size(), 4u);
-  const Box box = boxes(page)["box"];
+  const PathBox box = boxes(page)["box"];
   EXPECT_EQ(box.left, 5);
   EXPECT_EQ(box.right, 45);
   EXPECT_EQ(box.top, 5);
@@ -214,12 +214,12 @@ TEST_F(LinesCommand, SheetsHaveDimensionsWhereTheyAreAskedFor) {
 TEST_F(LinesCommand, ViewsStandInLine) {
   const std::string sheet = "box.obj --up +z --views front,top,left,right,bottom,back --page a3 --scale 1:1 ";
   for (const bool third : {false, true}) {
-    const std::map<std::string, Box> all =
+    const std::map<std::string, PathBox> all =
         boxes(drawn(sheet + "--projection " + (third ? "third-angle" : "first-angle")));
     ASSERT_EQ(all.size(), 6u);
     const auto of = [&](const char* view) { return all.at(std::string(view) + ": box"); };
-    const Box front = of("front"), top = of("top"), left = of("left"), right = of("right"), bottom = of("bottom");
-    const auto expect_size = [](const Box& box, double width, double height) {
+    const PathBox front = of("front"), top = of("top"), left = of("left"), right = of("right"), bottom = of("bottom");
+    const auto expect_size = [](const PathBox& box, double width, double height) {
       EXPECT_NEAR(box.right - box.left, width, 0.0011);
       EXPECT_NEAR(box.bottom - box.top, height, 0.0011);
       EXPECT_EQ(box.paths, 1u);
@@ -230,11 +230,11 @@ TEST_F(LinesCommand, ViewsStandInLine) {
     expect_size(bottom, 40, 30);
     expect_size(left, 30, 20);
     expect_size(right, 30, 20);
-    for (const Box& beside : {left, right, of("back")}) {
+    for (const PathBox& beside : {left, right, of("back")}) {
       EXPECT_EQ(beside.top, front.top);
       EXPECT_EQ(beside.bottom, front.bottom);
     }
-    for (const Box& in_column : {top, bottom}) {
+    for (const PathBox& in_column : {top, bottom}) {
       EXPECT_EQ(in_column.left, front.left);
       EXPECT_EQ(in_column.right, front.right);
     }
@@ -250,8 +250,8 @@ TEST_F(LinesCommand, SheetsTakeAStandardScaleAndCentreTheirViews) {
   EXPECT_EQ(report["scale"], 2);
   const json page = json::parse(read("sheet.json"));
   EXPECT_EQ(page["width"], 297);  // turned, as it fits better
-  const std::map<std::string, Box> all = boxes(page);
-  Box whole;
+  const std::map<std::string, PathBox> all = boxes(page);
+  PathBox whole;
   for (const auto& [name, box] : all) {
     whole.left = std::min(whole.left, box.left);
     whole.right = std::max(whole.right, box.right);
@@ -266,14 +266,14 @@ TEST_F(LinesCommand, ViewsStandApartAndTheOneAtAnAngleBeyondTheCorner) {
       return boxes(drawn("box.obj --up +z --page a3-landscape --scale 1:1 --views " + views +
                          (third ? " --projection third-angle" : " --projection first-angle")));
     };
-    std::map<std::string, Box> all = sheet("front,top,left,back");
-    const Box front = all["front: box"], top = all["top: box"], left = all["left: box"], back = all["back: box"];
+    std::map<std::string, PathBox> all = sheet("front,top,left,back");
+    const PathBox front = all["front: box"], top = all["top: box"], left = all["left: box"], back = all["back: box"];
     EXPECT_NEAR(third ? front.top - top.bottom : top.top - front.bottom, 15, 0.0011);
     EXPECT_NEAR(third ? front.left - left.right : left.left - front.right, 15, 0.0011);
     // What is seen from behind is on the right of all.
     EXPECT_NEAR(back.left - (third ? front.right : left.right), 15, 0.0011);
     all = sheet("front,left,iso");
-    const Box iso = all["iso: box"];
+    const PathBox iso = all["iso: box"];
     EXPECT_GT(iso.left, all["front: box"].right);
     EXPECT_EQ(iso.top > all["front: box"].bottom, !third);
     EXPECT_EQ(iso.bottom < all["front: box"].top, third);
@@ -301,7 +301,8 @@ TEST_F(LinesCommand, PapersHaveTheirSizesAndLieAsAsked) {
 
 TEST_F(LinesCommand, WhatTheCameraLeavesRoundTheModelIsLeftOnThePage) {
   const auto width_of = [&](const std::string& options) {
-    const Box box = boxes(drawn("box.obj --up +z --view front --camera-orthographic --page a4 " + options)).at("box");
+    const PathBox box =
+        boxes(drawn("box.obj --up +z --view front --camera-orthographic --page a4 " + options)).at("box");
     return box.right - box.left;
   };
   EXPECT_NEAR(width_of(""), 277, 0.01);
@@ -436,7 +437,7 @@ TEST_F(LinesCommand, ThePicturesFrameIsThePageWhereTheCameraIsPlaced) {
   const json page = drawn("cube.stl --camera-position 0.5,-4,0.5 --resolution 200,100 --page 200,100 --margin 0");
   // Straight before the camera, 30 degrees high: the near face is 1 wide at a distance of 4.
   const double half = 50 * 0.5 / (4 * std::tan(0.26179938779914943));
-  const Box box = boxes(page).begin()->second;
+  const PathBox box = boxes(page).begin()->second;
   EXPECT_NEAR(box.left, 100 - half, 0.01);
   EXPECT_NEAR(box.right, 100 + half, 0.01);
   EXPECT_NEAR(box.top, 50 - half, 0.01);

@@ -77,6 +77,10 @@ class ProgramTest : public testing::Test {
 
 /// A binary STL of the unit cube, z up, lower corner at `low`, sides of 1; 12 triangles.
 [[nodiscard]] std::string cube_stl(float low = 0);
+/// Renders that cube seen along +y from 10 before its near side, where 1 unit is 10 pixels wide.
+inline const std::string render_cube =
+    "render cube.stl --camera-position 0.5,-10,0.5 --camera-direction y "
+    "--intrinsics 100,100,32,32 --pixel-center half --resolution 64,64 ";
 /// A binary STL of one triangle in the plane z = 0, counter-clockwise seen from +z.
 [[nodiscard]] std::string triangle_stl();
 

@@ -24,13 +24,8 @@ class Render : public ProgramTest {
   [[nodiscard]] Image image(const std::string& name) const { return load_image(path(name)); }
 };
 
-// The cube seen along +y from 10 before its near side, 1 unit 10 pixels wide there.
-const std::string front =
-    "render cube.stl --camera-position 0.5,-10,0.5 --camera-direction y "
-    "--intrinsics 100,100,32,32 --pixel-center half --resolution 64,64 ";
-
 TEST_F(Render, DepthIsPlanarAndInSceneUnits) {
-  EXPECT_THAT(succeed(front + "--depth d.exr --ray-distance r.npy").err, IsEmpty());
+  EXPECT_THAT(succeed(render_cube + "--depth d.exr --ray-distance r.npy").err, IsEmpty());
   const Image depth = image("d.exr");
   const Buffer<float>& z = depth.find("Z")->floats();
   EXPECT_FLOAT_EQ(z[32 * 64 + 32], 10);
@@ -45,14 +40,14 @@ TEST_F(Render, DepthIsPlanarAndInSceneUnits) {
 }
 
 TEST_F(Render, BackgroundDepthAndDepthScale) {
-  succeed(front + "--depth d.pfm --background-depth 0");
+  succeed(render_cube + "--depth d.pfm --background-depth 0");
   EXPECT_EQ(image("d.pfm").channels[0].floats()[0], 0);
-  succeed(front + "--depth d.png --depth-scale 1000");
+  succeed(render_cube + "--depth d.png --depth-scale 1000");
   EXPECT_NEAR(image("d.png").find("Z")->floats()[32 * 64 + 32], 10, 1e-3);
 }
 
 TEST_F(Render, IdsOfEveryKind) {
-  succeed(front + "--ids primitive=p.exr --ids object=o.npy --ids material=m.png --normals n.exr");
+  succeed(render_cube + "--ids primitive=p.exr --ids object=o.npy --ids material=m.png --normals n.exr");
   const Image primitives = image("p.exr");
   const std::uint32_t id = primitives.find("primitive")->integers()[32 * 64 + 32];
   EXPECT_TRUE(id == 4 || id == 5) << id;  // the side at low y comes third in the file
@@ -64,7 +59,7 @@ TEST_F(Render, IdsOfEveryKind) {
 }
 
 TEST_F(Render, OneExrHoldsEverything) {
-  succeed(front + "-o all.exr --depth all.exr --normals all.exr --ids object=all.exr");
+  succeed(render_cube + "-o all.exr --depth all.exr --normals all.exr --ids object=all.exr");
   const Image all = image("all.exr");
   for (const char* channel : {"R", "G", "B", "A", "Z", "N.X", "N.Y", "N.Z", "object"}) {
     EXPECT_TRUE(all.find(channel)) << channel;
@@ -74,17 +69,17 @@ TEST_F(Render, OneExrHoldsEverything) {
 
 TEST_F(Render, PicturesInEveryFormat) {
   for (const char* name : {"a.png", "a.exr", "a.pfm", "a.npy"}) {
-    succeed(front + "-o " + name);
+    succeed(render_cube + "-o " + name);
     const Image picture = image(name);
     EXPECT_EQ(picture.width, 64);
     EXPECT_NEAR(picture.channels[0].floats()[0], 1, 1e-6) << "white background in " << name;
   }
-  succeed(front + "-o b.png --bits 16 --background transparent");
+  succeed(render_cube + "-o b.png --bits 16 --background transparent");
   EXPECT_EQ(image("b.png").find("A")->floats()[0], 0);
-  succeed(front + "-o c.png --background #ff0000");
+  succeed(render_cube + "-o c.png --background #ff0000");
   EXPECT_EQ(image("c.png").find("G")->floats()[0], 0);
   for (const char* shading : {"lit", "flat", "normals", "depth", "ids", "uv"}) {
-    succeed(front + "-o s.png --no-shadows --shading " + shading);
+    succeed(render_cube + "-o s.png --no-shadows --shading " + shading);
   }
 }
 
@@ -119,7 +114,7 @@ TEST_F(Render, TemplatesNameFiles) {
 }
 
 TEST_F(Render, JsonSaysWhatWasSeen) {
-  const Outcome outcome = succeed(front + "--json --repeat 3 -o a.png --depth d.exr");
+  const Outcome outcome = succeed(render_cube + "--json --repeat 3 -o a.png --depth d.exr");
   const json report = outcome.json();
   EXPECT_EQ(report["seen"]["covered_pixels"], 100);
   EXPECT_EQ(report["seen"]["pixels"], 4096);
@@ -210,7 +205,7 @@ TEST_F(Render, OutputsAreCheckedBeforeAnyWork) {
 }
 
 TEST_F(Render, DevicesAreWrittenAsTheyAre) {
-  succeed(front + "-o /dev/null --format png");
+  succeed(render_cube + "-o /dev/null --format png");
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
 }
 

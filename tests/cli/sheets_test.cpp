@@ -31,7 +31,7 @@ std::string pitted_box_obj(double size = 1) {
   return text + "f 9 10 12 11\nf 9 13 14 10\nf 11 12 16 15\nf 9 11 15 13\nf 10 14 16 12\n";
 }
 
-struct Box {
+struct ViewBox {
   glm::dvec2 low{1e9}, high{-1e9};
 };
 
@@ -59,13 +59,13 @@ class SheetsCommand : public ProgramTest {
   }
 
   /// What each view covers, of all layers but the frame's.
-  [[nodiscard]] static std::map<std::string, Box> views_of(const json& page) {
-    std::map<std::string, Box> views;
+  [[nodiscard]] static std::map<std::string, ViewBox> views_of(const json& page) {
+    std::map<std::string, ViewBox> views;
     for (const json& layer : page["layers"])
       for (const json& group : layer["groups"]) {
         if (layer["name"] == "8 frame") continue;
         const auto name = group["name"].get<std::string>();
-        Box& box = views[name.substr(0, name.find(':'))];
+        ViewBox& box = views[name.substr(0, name.find(':'))];
         for (const json& path : group["paths"])
           for (const json& p : path["points"]) {
             const glm::dvec2 point(p[0].get<double>(), p[1].get<double>());
@@ -117,10 +117,10 @@ TEST_F(SheetsCommand, FrameBlockAndViewsKeepClearOnEveryPaper) {
         const std::string name = paper + lie + " " + set;
         EXPECT_EQ(lie == "-portrait", size.x < size.y) << name;
         EXPECT_FALSE(points_of(page, "8 frame").empty()) << name;
-        const std::map<std::string, Box> views = views_of(page);
+        const std::map<std::string, ViewBox> views = views_of(page);
         EXPECT_EQ(views.size(), std::size_t(std::count(set.begin(), set.end(), ',')) + 1) << name;
         for (auto view = views.begin(); view != views.end(); ++view) {
-          const Box& box = view->second;
+          const ViewBox& box = view->second;
           EXPECT_GE(box.low.x, 30 - 0.001) << name;
           EXPECT_GE(box.low.y, 20 - 0.001) << name;
           EXPECT_LE(box.high.x, size.x - 20 + 0.001) << name;

@@ -5,12 +5,11 @@
 #include "frontmost/image.h"
 #include "frontmost/surfaces.h"
 #include "frontmost/zbuffer.h"
+#include "support/odd_numbers.h"
 #include "support/test_images.h"
 
 namespace frontmost::test {
 namespace {
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// Four by two pixels; near 1, 90 degrees high.
 Visible some_visible(int samples = 1) {
@@ -42,8 +41,8 @@ TEST(Maps, DepthIsPlanarAndInfiniteWhereNothingIsSeen) {
   EXPECT_EQ(map.width, 4);
   EXPECT_EQ(map.height, 2);
   EXPECT_EQ(map.channels.at(0).name, "Z");
-  EXPECT_THAT(values(map),
-              testing::ElementsAre(infinity, infinity, 4, infinity, infinity, infinity, infinity, infinity));
+  EXPECT_THAT(values(map), testing::ElementsAre(kFloatInfinity, kFloatInfinity, 4, kFloatInfinity, kFloatInfinity,
+                                                kFloatInfinity, kFloatInfinity, kFloatInfinity));
   EXPECT_THAT(values(depth_image(visible, -1)), testing::ElementsAre(-1, -1, 4, -1, -1, -1, -1, -1));
 }
 
@@ -67,7 +66,7 @@ TEST(Maps, RayDistanceIsLongerTowardsTheCorners) {
   const std::vector<float> distances = values(ray_distance_image(visible));
   for (std::size_t i = 0; i < 8; ++i) EXPECT_NEAR(distances[i], i % 4 == 1 || i % 4 == 2 ? near : far, 1e-6) << i;
   visible.primitives[5] = no_primitive;
-  EXPECT_EQ(values(ray_distance_image(visible))[5], infinity);
+  EXPECT_EQ(values(ray_distance_image(visible))[5], kFloatInfinity);
   EXPECT_EQ(values(ray_distance_image(visible, 0))[5], 0.0f);
 }
 

@@ -14,7 +14,8 @@ namespace {
 
 using lines_detail::Chain;
 
-constexpr double pi = std::numbers::pi, degree = pi / 180, tolerance = 0.1;
+using std::numbers::pi;
+constexpr double degree = pi / 180, tolerance = 0.1;
 
 Chain with_arcs(const std::vector<glm::dvec2>& points, bool is_closed = false) {
   Chain chain;

@@ -15,13 +15,13 @@
 namespace frontmost::test {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// How many times around, by radius in hundredths of the model's unit.
-using Rounds = std::map<int, double>;
+using TurnsByRadius = std::map<int, double>;
 
-Rounds rounds_of(const Strokes& all, double units_per_pixel) {
-  Rounds rounds;
+TurnsByRadius turns_of(const Strokes& all, double units_per_pixel) {
+  TurnsByRadius rounds;
   for (const Stroke& stroke : all.strokes)
     for (std::uint32_t i = 0; i + (stroke.is_closed ? 0 : 1) < stroke.count; ++i) {
       const double bulge = std::abs(all.bulges[stroke.first + i]);
@@ -35,7 +35,7 @@ Rounds rounds_of(const Strokes& all, double units_per_pixel) {
 }
 
 /// A model in parallel projection, as a drawing at full scale has it.
-Rounds rounds_of(const Scene& scene, NamedView direction) {
+TurnsByRadius turns_of(const Scene& scene, NamedView direction) {
   const Surfaces surfaces(scene);
   FrameOptions options;
   options.direction = direction;
@@ -44,22 +44,22 @@ Rounds rounds_of(const Scene& scene, NamedView direction) {
   const double scale = (view.projection.right - view.projection.left) / view.width;
   StrokeOptions drawn{.by_kind = false, .by_outline = false};
   drawn.apart = drawn.arc_tolerance = 0.01 / scale;
-  return rounds_of(chain_strokes(surfaces, draw_lines(surfaces, view), drawn), scale);
+  return turns_of(chain_strokes(surfaces, draw_lines(surfaces, view), drawn), scale);
 }
 
 TEST(Circles, OfModelsHaveTheirRadii) {
   FRONTMOST_NEEDS_MODELS();
   const Scene as1 = load(model("cad/as1.stl"));
   // Six bolts of 10 mm, whose heads of 15 lie free but for two below the rod.
-  const Rounds bolts = rounds_of(as1, NamedView::top);
+  const TurnsByRadius bolts = turns_of(as1, NamedView::top);
   EXPECT_NEAR(bolts.at(500), 6, 1e-3);
   EXPECT_NEAR(bolts.at(750), 4, 1e-3);
   const Scene tubes = load(model("cad/two-cylinders.stl"));
-  const Rounds ends = rounds_of(tubes, NamedView::top);
+  const TurnsByRadius ends = turns_of(tubes, NamedView::top);
   EXPECT_NEAR(ends.at(1000), 1, 1e-3);
   EXPECT_NEAR(ends.at(800), 1, 1e-3);
   const Scene torus = load(model("cad/torus.stl"));
-  const Rounds ring = rounds_of(torus, NamedView::top);
+  const TurnsByRadius ring = turns_of(torus, NamedView::top);
   EXPECT_NEAR(ring.at(4000), 1, 1e-3);
   EXPECT_NEAR(ring.at(2000), 1, 1e-3);
 }
@@ -67,8 +67,10 @@ TEST(Circles, OfModelsHaveTheirRadii) {
 TEST(Circles, TheRodOfAnAssemblyIsStraight) {
   FRONTMOST_NEEDS_MODELS();
   // Nothing in it is rounder than a plate is thick, and its rod is straight, though it ends in tiny chords.
-  for (const auto& [radius, turns] : rounds_of(load(model("cad/as1.stl")), NamedView::iso))
-    if (turns > 0) EXPECT_LT(radius, 5000);
+  for (const auto& [radius, turns] : turns_of(load(model("cad/as1.stl")), NamedView::iso))
+    if (turns > 0) {
+      EXPECT_LT(radius, 5000);
+    }
 }
 
 /// A flat ring of so many corners at its outer side, at height z.
@@ -99,7 +101,7 @@ TEST(Circles, RingsThatDifferByTheirTrianglesAreOne) {
   const Strokes one = chain_strokes(surfaces, drawing, options);
   ASSERT_EQ(one.strokes.size(), 1u);
   EXPECT_TRUE(one.strokes[0].is_closed);
-  EXPECT_NEAR(rounds_of(one, 0.01).at(100), 1, 1e-6);
+  EXPECT_NEAR(turns_of(one, 0.01).at(100), 1, 1e-6);
 }
 
 }  // namespace

@@ -3,18 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "lines/crossings/crossings.h"
-#include "support/random_scene.h"
+#include "support/small_meshes.h"
 
 namespace frontmost::test {
 namespace {
 
 using namespace lines_detail;
-
-/// With the diagonal from a to c.
-void add_quad(Mesh& mesh, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d) {
-  add_triangle(mesh, a, b, c);
-  add_triangle(mesh, a, c, d);
-}
 
 /// Every face with one diagonal or the other.
 Mesh box(const glm::vec3& low, const glm::vec3& high, bool turned) {

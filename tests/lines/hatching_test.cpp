@@ -15,7 +15,7 @@
 namespace frontmost::test {
 namespace {
 
-View view_from(const glm::dvec3& eye, bool is_parallel) {
+View view_with_z_up(const glm::dvec3& eye, bool is_parallel) {
   View view;
   view.width = view.height = 200;
   view.world_from_eye = look_at(eye, glm::dvec3(0), glm::dvec3(0, 0, 1));
@@ -24,7 +24,7 @@ View view_from(const glm::dvec3& eye, bool is_parallel) {
 }
 
 /// Counter-clockwise seen from its front, cut into `n` by `n` pieces.
-void add_quad(Mesh& mesh, const glm::vec3& corner, const glm::vec3& along, const glm::vec3& up, int n = 1) {
+void add_cut_quad(Mesh& mesh, const glm::vec3& corner, const glm::vec3& along, const glm::vec3& up, int n = 1) {
   for (int y = 0; y < n; ++y)
     for (int x = 0; x < n; ++x) {
       const auto at = [&](int i, int j) { return corner + along * (float(i) / float(n)) + up * (float(j) / float(n)); };
@@ -36,9 +36,9 @@ void add_quad(Mesh& mesh, const glm::vec3& corner, const glm::vec3& along, const
 /// The faces x = 1, y = 1 and z = 1 of the cube from -1 to 1.
 Scene three_faces(int n = 1) {
   Mesh mesh;
-  add_quad(mesh, {1, -1, -1}, {0, 2, 0}, {0, 0, 2}, n);
-  add_quad(mesh, {1, 1, -1}, {-2, 0, 0}, {0, 0, 2}, n);
-  add_quad(mesh, {-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, n);
+  add_cut_quad(mesh, {1, -1, -1}, {0, 2, 0}, {0, 0, 2}, n);
+  add_cut_quad(mesh, {1, 1, -1}, {-2, 0, 0}, {0, 0, 2}, n);
+  add_cut_quad(mesh, {-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, n);
   return scene_of(std::move(mesh));
 }
 
@@ -61,7 +61,7 @@ TEST(Hatch, TheFacesOfACubeHaveTheirTones) {
   const Scene scene = three_faces();
   const Surfaces surfaces(scene);
   // Along the diagonal: each face is a rhombus of 4 / sqrt(3) units of area, 2500 pixels each.
-  const View view = view_from({5, 5, 5}, true);
+  const View view = view_with_z_up({5, 5, 5}, true);
   const double face = 4 / std::sqrt(3.0) * 2500;
   // Of length 1: brightnesses of 1/3, 2/3 and 2/3; then 2/3, 1/3 and 2/3.
   const std::vector<HatchSet> sets = {{0.3, 1, 0.25, 0.7}, {0.3, 1, 0.75, 0.5}, {1.2, 1, 0.5, 0.3}};
@@ -83,7 +83,7 @@ TEST(Hatch, LinesAreTheirSpacingApart) {
     const HatchSet set{2.1, 3.7, -1.3, 0.8};
     const glm::dvec2 across(std::sin(set.angle), std::cos(set.angle));
     const std::vector<HatchLine> lines =
-        hatch(surfaces, view_from({3, 4, 2}, is_parallel), options_of({set}, {1, 1, 3}));
+        hatch(surfaces, view_with_z_up({3, 4, 2}, is_parallel), options_of({set}, {1, 1, 3}));
     EXPECT_GT(lines.size(), 100u);
     for (const HatchLine& line : lines)
       for (const glm::dvec2& end : {line.from, line.to}) {
@@ -94,7 +94,7 @@ TEST(Hatch, LinesAreTheirSpacingApart) {
 }
 
 TEST(Hatch, IsTheSameHoweverAFaceIsCut) {
-  const View view = view_from({4, 3, 6}, false);
+  const View view = view_with_z_up({4, 3, 6}, false);
   const Scene whole = three_faces(), cut = three_faces(8);
   const HatchOptions options = options_of({{0.9, 5, 1, 0.7}, {2, 5, 2, 0.4}}, {1, 2, 2});
   const Surfaces few(whole), many(cut);
@@ -109,8 +109,8 @@ TEST(Hatch, IsTheSameHoweverAFaceIsCut) {
 /// A floor, and a plate of half its size above it.
 Scene plate_over_floor(float height) {
   Mesh floor, plate;
-  add_quad(floor, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
-  add_quad(plate, {-0.5f, -0.5f, height}, {1, 0, 0}, {0, 1, 0});
+  add_cut_quad(floor, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
+  add_cut_quad(plate, {-0.5f, -0.5f, height}, {1, 0, 0}, {0, 1, 0});
   Scene scene = scene_of(std::move(floor));
   scene.meshes.push_back(std::move(plate));
   scene.instances.push_back({"plate", 1, glm::dmat4(1.0)});
@@ -129,7 +129,7 @@ TEST(Hatch, CopiesOfTrianglesChangeNothingAndCostNothing) {
                                : copy % 3 == 1 ? glm::uvec3(t.y, t.z, t.x)
                                                : glm::uvec3(t.x, t.z, t.y));
   const Scene often = scene_of(std::move(mesh));
-  const View view = view_from({5, 4, 3}, false);
+  const View view = view_with_z_up({5, 4, 3}, false);
   const HatchOptions options = options_of({{0.3, 1, 0.25, 0.7}, {1.2, 1, 0.5, 0.5}}, {1, 2, 2});
   // While it hatches it asks whether to stop after so many triangles, and after so many lines of them.
   CountingWatch watch;
@@ -175,7 +175,7 @@ TEST(Hatch, ShadowsHaveTheirExactPlaces) {
 }
 
 /// A sphere of radius 1 about the origin: rings of quads.
-Scene sphere(int rings) {
+Scene ball_scene(int rings) {
   Mesh mesh;
   const auto at = [&](int i, int j) {
     const double a = std::numbers::pi * i / rings, b = std::numbers::pi * j / rings;
@@ -190,9 +190,9 @@ Scene sphere(int rings) {
 }
 
 TEST(Hatch, EndsOnASphereWhereItIsAsBrightAsThat) {
-  const Scene scene = sphere(under_sanitizer ? 24 : 48);
+  const Scene scene = ball_scene(under_sanitizer ? 24 : 48);
   const Surfaces surfaces(scene);
-  const View view = view_from({0, -8, 0}, true);
+  const View view = view_with_z_up({0, -8, 0}, true);
   const glm::dvec3 light = glm::normalize(glm::dvec3(-1, -1, 1));
   const std::vector<HatchLine> lines = hatch(surfaces, view, options_of({{0.7, 2, 0, 0.4}}, light));
   std::size_t within = 0;
@@ -264,7 +264,7 @@ TEST(Hatch, ThreadsAndInstructionSetsChangeNothing) {
 TEST(Hatch, ForPlottersOrderedAndOtherwiseTheSame) {
   const Scene scene = plate_over_floor(0.25f);
   const Surfaces surfaces(scene);
-  const View view = view_from({3, 4, 5}, false);
+  const View view = view_with_z_up({3, 4, 5}, false);
   HatchOptions options = options_of(hatch_sets(4, 0.7), {-1, 0.2, 0.3});
   const std::vector<HatchLine> apart = hatch(surfaces, view, options);
   options.by_instance = false;
@@ -286,7 +286,7 @@ TEST(Hatch, ForPlottersOrderedAndOtherwiseTheSame) {
 }
 
 TEST(Hatch, StaysWithinThePictureOnWhatReachesFarBeyond) {
-  View view = view_from({0, -1, 0.1}, false);
+  View view = view_with_z_up({0, -1, 0.1}, false);
   view.projection.clip.far = std::numeric_limits<double>::infinity();
   for (const float reach : {1e6f, 1e12f, 1e20f, 1e30f}) {
     Mesh floor;
@@ -318,7 +318,7 @@ TEST(Hatch, ShortLinesAreLeftOutWhereAskedFor) {
 TEST(Hatch, RefusesWhatMakesNoSense) {
   const Scene scene = three_faces();
   const Surfaces surfaces(scene);
-  const View view = view_from({4, 3, 6}, false);
+  const View view = view_with_z_up({4, 3, 6}, false);
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const auto expect_refused = [&](const HatchOptions& options) {
     EXPECT_THROW((void)hatch(surfaces, view, options), Error);

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "frontmost/lines.h"
-#include "support/random_scene.h"
+#include "support/small_meshes.h"
 
 namespace frontmost::test {
 namespace {
@@ -17,11 +17,6 @@ View view_from(const glm::dvec3& eye, bool is_parallel) {
       look_at(eye, glm::dvec3(0), std::abs(eye.y) > 0.9 * glm::length(eye) ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0));
   view.projection = is_parallel ? make_orthographic(-2, 2, -2, 2, {0.5, 50}) : make_projection(0.6, 1, {0.5, 50});
   return view;
-}
-
-void add_quad(Mesh& mesh, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d) {
-  add_triangle(mesh, a, b, c);
-  add_triangle(mesh, a, c, d);
 }
 
 /// Outside out, without shared vertices.

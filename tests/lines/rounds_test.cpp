@@ -17,7 +17,7 @@
 namespace frontmost::test {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// A tube about z, with sides of the same angle; a lid on either end where it is whole and `has_lids`.
 struct Tube {

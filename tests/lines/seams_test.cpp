@@ -19,7 +19,7 @@ namespace {
 
 using namespace lines_detail;
 
-View view_from(const glm::dvec3& eye) {
+View junction_view(const glm::dvec3& eye) {
   View view;
   view.width = view.height = 200;
   view.world_from_eye = look_at(eye, glm::dvec3(0), {0, 1, 0});
@@ -60,7 +60,7 @@ struct Junction {
   void fill(std::uint32_t a, std::uint32_t b, std::uint32_t c) { mesh.triangles.push_back({a, b, c}); }
   [[nodiscard]] Drawing drawing(double crease_angle = 0) const {
     const Scene scene = scene_of(mesh);
-    return draw_lines(Surfaces(scene), view_from({1, 3, 9}), {.crease_angle = crease_angle});
+    return draw_lines(Surfaces(scene), junction_view({1, 3, 9}), {.crease_angle = crease_angle});
   }
 };
 

@@ -23,7 +23,7 @@
 namespace frontmost::test {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Section cut_of(const Scene& scene, const CuttingPlane& plane) { return cut(Surfaces(scene), plane); }
 Section cut_of(Mesh mesh, const CuttingPlane& plane) { return cut_of(scene_of(std::move(mesh)), plane); }

@@ -6,7 +6,7 @@
 
 #include "frontmost/lines.h"
 #include "lines/mesh/sheets.h"
-#include "support/random_scene.h"
+#include "support/small_meshes.h"
 
 namespace frontmost::test {
 namespace {
@@ -17,11 +17,6 @@ View view_of_all() {
   view.world_from_eye = look_at({3, 4, 9}, glm::dvec3(0), glm::dvec3(0, 1, 0));
   view.projection = make_projection(0.6, 1, {0.5, 50});
   return view;
-}
-
-void add_quad(Mesh& mesh, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d) {
-  add_triangle(mesh, a, b, c);
-  add_triangle(mesh, a, c, d);
 }
 
 /// A plate of n x n squares with sides of 1/4 around the origin, with the diagonals of each as `is_rising` says. The
@@ -67,16 +62,16 @@ Scene scene_of_objects(const std::vector<Mesh>& meshes) {
   return scene;
 }
 
-std::size_t edges_of(const Scene& scene, const LineOptions& options = {}) {
+std::size_t edge_count(const Scene& scene, const LineOptions& options = {}) {
   return draw_lines(Surfaces(scene), view_of_all(), options).edges.size();
 }
 
 /// Sides of the rim alone: 4 n.
 TEST(SharedTriangles, LeaveNoEdgesBetweenTwoPlates) {
   const Mesh one = plate(5, true), other = plate(5, false);
-  EXPECT_EQ(edges_of(scene_of_objects({one})), 20u);
-  EXPECT_EQ(edges_of(scene_of_objects({one, other})), 20u);
-  EXPECT_EQ(edges_of(scene_of_objects({other, one, turned(one), turned(other), one})), 20u);
+  EXPECT_EQ(edge_count(scene_of_objects({one})), 20u);
+  EXPECT_EQ(edge_count(scene_of_objects({one, other})), 20u);
+  EXPECT_EQ(edge_count(scene_of_objects({other, one, turned(one), turned(other), one})), 20u);
 }
 
 TEST(SharedTriangles, MayBeMirroredCopies) {
@@ -84,7 +79,7 @@ TEST(SharedTriangles, MayBeMirroredCopies) {
   // The plate's mirror image has its diagonals the other way, but for those of the middle square.
   scene.instances.push_back({"mirrored", 0, glm::scale(glm::dmat4(1.0), {-1, 1, 1})});
   scene.instances.push_back({"turned", 1, glm::scale(glm::dmat4(1.0), {-1, -1, 1})});
-  EXPECT_EQ(edges_of(scene), 20u);
+  EXPECT_EQ(edge_count(scene), 20u);
 }
 
 /// The middle square of plate(5, ...) with a triangle on each of its sides, up to tips that no plate has.
@@ -104,12 +99,12 @@ TEST(SharedTriangles, MayBeOfOneObject) {
   Mesh both = plate(5, true);
   const Mesh over = patch();
   append(both, over);
-  EXPECT_EQ(edges_of(scene_of(both)), 20u + 8u);
-  EXPECT_EQ(edges_of(scene_of(turned(both))), 20u + 8u);
-  EXPECT_EQ(edges_of(scene_of_objects({plate(5, true), over})), 20u + 8u);
+  EXPECT_EQ(edge_count(scene_of(both)), 20u + 8u);
+  EXPECT_EQ(edge_count(scene_of(turned(both))), 20u + 8u);
+  EXPECT_EQ(edge_count(scene_of_objects({plate(5, true), over})), 20u + 8u);
   append(both, turned(both));
-  EXPECT_EQ(edges_of(scene_of(both)), 20u + 8u);
-  EXPECT_EQ(edges_of(scene_of_objects({both, plate(5, true), turned(both)})), 20u + 8u);
+  EXPECT_EQ(edge_count(scene_of(both)), 20u + 8u);
+  EXPECT_EQ(edge_count(scene_of_objects({both, plate(5, true), turned(both)})), 20u + 8u);
 }
 
 /// A box and a wedge on one half of its top, which have a triangle of it in common, and each a side of their own.

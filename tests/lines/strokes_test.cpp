@@ -9,12 +9,12 @@
 #include <random>
 
 #include "support/effort.h"
-#include "support/random_scene.h"
+#include "support/small_meshes.h"
 
 namespace frontmost::test {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 View parallel_view(const glm::dvec3& eye) {
   View view;
@@ -23,11 +23,6 @@ View parallel_view(const glm::dvec3& eye) {
   view.world_from_eye = look_at(eye, glm::dvec3(0), is_steep ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0));
   view.projection = make_orthographic(-2, 2, -2, 2, {0.5, 50});
   return view;
-}
-
-void add_quad(Mesh& mesh, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d) {
-  add_triangle(mesh, a, b, c);
-  add_triangle(mesh, a, c, d);
 }
 
 /// The prism over a polygon in the plane z = -1, to z = 1, with flat ends about the origin.

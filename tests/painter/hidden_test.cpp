@@ -4,17 +4,12 @@
 
 #include "painter/painted.h"
 #include "support/effort.h"
-#include "support/random_scene.h"
+#include "support/small_meshes.h"
 
 namespace frontmost::test {
 namespace {
 
 using testing::ElementsAre;
-
-void add_square(Mesh& mesh, float half, float z) {
-  add_triangle(mesh, {-half, -half, z}, {half, -half, z}, {half, half, z});
-  add_triangle(mesh, {-half, -half, z}, {half, half, z}, {-half, half, z});
-}
 
 TEST(Hidden, IsNeverCut) {
   Mesh mesh = random_mesh(Kind::sheets, 40, 1);

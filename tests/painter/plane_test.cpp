@@ -12,7 +12,7 @@ namespace frontmost::test {
 namespace {
 
 using namespace painter_detail;
-using Points = std::array<glm::dvec3, 3>;
+using ThreePoints = std::array<glm::dvec3, 3>;
 
 template <class Number>
 struct Equation {
@@ -21,7 +21,7 @@ struct Equation {
 };
 
 template <class Number>
-Equation<Number> equation(const Points& p) {
+Equation<Number> equation(const ThreePoints& p) {
   Equation<Number> e{cross_of(difference_of<Number>(p[1], p[0]), difference_of<Number>(p[2], p[0])), {}};
   e.d = dot_of(e.n, difference_of<Number>(p[0], glm::dvec3(0)));
   return e;
@@ -29,31 +29,31 @@ Equation<Number> equation(const Points& p) {
 
 /// The determinant of all four planes, along the last column.
 template <class Number>
-Number determinant(const std::array<Points, 4>& planes) {
+Number determinant(const std::array<ThreePoints, 4>& planes) {
   const Equation<Number> a = equation<Number>(planes[0]), b = equation<Number>(planes[1]),
                          c = equation<Number>(planes[2]), e = equation<Number>(planes[3]);
   return b.d * dot_of(e.n, cross_of(c.n, a.n)) + a.d * dot_of(e.n, cross_of(b.n, c.n)) +
          c.d * dot_of(e.n, cross_of(a.n, b.n)) - e.d * dot_of(a.n, cross_of(b.n, c.n));
 }
 
-int exact_side(const std::array<Points, 4>& planes) {
+int exact_side(const std::array<ThreePoints, 4>& planes) {
   const Expansion three = dot_of(equation<Expansion>(planes[0]).n,
                                  cross_of(equation<Expansion>(planes[1]).n, equation<Expansion>(planes[2]).n));
   return determinant<Expansion>(planes).sign() * three.sign();
 }
 
 /// Through points that are whole numbers, a few units of the last place beside them, or shared.
-std::array<Points, 4> random_planes(Random& random, int kind) {
-  std::array<Points, 4> planes;
+std::array<ThreePoints, 4> random_planes(Random& random, int kind) {
+  std::array<ThreePoints, 4> planes;
   const glm::dvec3 shared(glm::ivec3(random.point(5)));
-  for (Points& points : planes)
+  for (ThreePoints& points : planes)
     for (glm::dvec3& point : points) {
       const glm::vec3 at = random.point(4), aside = random.point(1e-6f);
       point = kind == 0 ? glm::dvec3(at) : glm::dvec3(glm::ivec3(at));
       if (kind == 2) point += glm::dvec3(glm::vec3(point) + aside) - point;
     }
   if (kind >= 2)
-    for (Points& points : planes) points[0] = kind == 2 ? shared + glm::dvec3(random.point(1e-7f)) : shared;
+    for (ThreePoints& points : planes) points[0] = kind == 2 ? shared + glm::dvec3(random.point(1e-7f)) : shared;
   return planes;
 }
 
@@ -62,9 +62,9 @@ TEST(PaintPlane, TheSideOfAMeetingIsExact) {
   std::size_t asked = 0, zeros = 0, left_open = 0;
   for (int kind = 0; kind < 4; ++kind)
     for (std::uint64_t i = 0; i < seeds(400); ++i) {
-      const std::array<Points, 4> points = random_planes(random, kind);
+      const std::array<ThreePoints, 4> points = random_planes(random, kind);
       std::vector<Plane> planes;
-      for (const Points& p : points) planes.push_back(Plane::through(p[0], p[1], p[2]));
+      for (const ThreePoints& p : points) planes.push_back(Plane::through(p[0], p[1], p[2]));
       const int expected = exact_side(points);
       EXPECT_EQ(planes[3].side_of_meeting({&planes[0], &planes[1], &planes[2]}), expected) << kind << " " << i;
       const int twice = determinant<Twice>(points).certain_sign();

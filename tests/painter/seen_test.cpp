@@ -16,33 +16,33 @@ namespace frontmost::test {
 namespace {
 
 using namespace painter_detail;
-using Points = std::vector<glm::dvec2>;
+using OutlinePoints = std::vector<glm::dvec2>;
 
 /// Outlines one over the other, counter-clockwise as they are seen: with y down, (0, 0) (0, 1) (1, 1).
-PaintOrder order_of(const std::vector<Points>& outlines) {
+PaintOrder order_of(const std::vector<OutlinePoints>& outlines) {
   PaintOrder order;
   order.view.width = order.view.height = 100;
-  for (const Points& outline : outlines) {
+  for (const OutlinePoints& outline : outlines) {
     order.polygons.push_back({PrimitiveId(order.polygons.size()), std::uint32_t(outline.size()), order.corners.size()});
     for (const glm::dvec2& at : outline) order.corners.push_back({{at, 1}, false});
   }
   return order;
 }
 
-Points square(double x, double y, double size = 10) {
+OutlinePoints square(double x, double y, double size = 10) {
   return {{x, y}, {x, y + size}, {x + size, y + size}, {x + size, y}};
 }
 
 /// `side` by `side` squares from the corner of the picture on.
-std::vector<Points> tiles(int side) {
-  std::vector<Points> all;
+std::vector<OutlinePoints> tiles(int side) {
+  std::vector<OutlinePoints> all;
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x) all.push_back(square(10 * x, 10 * y));
   return all;
 }
 
 struct Laid {
-  explicit Laid(const std::vector<Points>& outlines)
+  explicit Laid(const std::vector<OutlinePoints>& outlines)
       : screen(order_of(outlines), Occluders::all()), adjacency(screen) {}
   ScreenPolygons screen;
   Adjacency adjacency;
@@ -72,7 +72,7 @@ TEST(Adjacency, FindsWhatHasTheSameSide) {
 }
 
 TEST(Adjacency, TilesHaveNoOtherOpenSidesThanTheirBorder) {
-  std::vector<Points> all = tiles(10);
+  std::vector<OutlinePoints> all = tiles(10);
   Random random(3);
   for (std::size_t i = all.size(); i-- > 1;) std::swap(all[i], all[std::size_t(random.below(int(i) + 1))]);
   const Laid laid(all);
@@ -91,7 +91,7 @@ TEST(Adjacency, TilesHaveNoOtherOpenSidesThanTheirBorder) {
 
 /// Each would be held against all others.
 TEST(Adjacency, OfManyThatHaveTheSameSideAFewFindANeighbour) {
-  std::vector<Points> all(1000, square(10, 10));
+  std::vector<OutlinePoints> all(1000, square(10, 10));
   all.resize(2000, square(20, 10));
   const Laid laid(all);
   std::size_t found = 0;
@@ -120,7 +120,7 @@ struct AllBut {
 class SpreadTest : public testing::Test {
  protected:
   /// Begins at the polygon in which a place next to the first corner is.
-  OccluderUnion::Found spread(const Laid& laid, const Points& outline, std::uint32_t missing = no_index) {
+  OccluderUnion::Found spread(const Laid& laid, const OutlinePoints& outline, std::uint32_t missing = no_index) {
     const PaintOrder asked = order_of({outline});
     OccluderUnion spreader(laid.screen, laid.adjacency);
     spreader.set(asked.corners);
@@ -136,7 +136,7 @@ class SpreadTest : public testing::Test {
 
 TEST_F(SpreadTest, TellsWhereTilesHideTogether) {
   const Laid laid(tiles(10));
-  const Points asked{{12, 12}, {12, 38}, {38, 38}, {38, 12}};
+  const OutlinePoints asked{{12, 12}, {12, 38}, {38, 38}, {38, 12}};
   EXPECT_EQ(spread(laid, asked, 99), OccluderUnion::Found::hidden);
   EXPECT_EQ(spread(laid, asked, 22), OccluderUnion::Found::open);
   EXPECT_THAT(open_at_.x, testing::AllOf(testing::Ge(20 - 1e-9), testing::Le(30 + 1e-9)));
@@ -165,14 +165,14 @@ TEST_F(SpreadTest, ACornerMayBeThereTwice) {
 
 /// Bricks: few sides are those of two, but all lie beside others.
 TEST_F(SpreadTest, StepsAlongSidesThatLieBesideTwo) {
-  std::vector<Points> bricks;
+  std::vector<OutlinePoints> bricks;
   for (int row = 0; row < 10; ++row)
     for (int i = 0; i < 10; ++i) {
       const double x = 10 * i - 4 * (row % 2), y = 10 * row;
       bricks.push_back({{x, y}, {x, y + 10}, {x + 10, y + 10}, {x + 10, y}});
     }
   const Laid laid(bricks);
-  const Points asked{{22, 22}, {12, 44}, {31, 61}, {44, 33}};
+  const OutlinePoints asked{{22, 22}, {12, 44}, {31, 61}, {44, 33}};
   EXPECT_EQ(spread(laid, asked), OccluderUnion::Found::hidden);
   EXPECT_LT(asks_, 300u);
   std::size_t open = 0;
@@ -189,7 +189,7 @@ TEST_F(SpreadTest, StepsAlongSidesThatLieBesideTwo) {
 }
 
 TEST_F(SpreadTest, GivesUpOverTooMany) {
-  std::vector<Points> all;
+  std::vector<OutlinePoints> all;
   for (int y = 0; y < 40; ++y)
     for (int x = 0; x < 40; ++x) all.push_back(square(2 * x, 2 * y, 2));
   EXPECT_EQ(spread(Laid(all), square(1.5, 1.5, 70)), OccluderUnion::Found::unknown);
@@ -197,24 +197,24 @@ TEST_F(SpreadTest, GivesUpOverTooMany) {
 }
 
 TEST(Alone, TilesAreAndWhatLiesOverOthersIsNot) {
-  const std::vector<Points> ten = tiles(10);
+  const std::vector<OutlinePoints> ten = tiles(10);
   EXPECT_EQ(Laid(ten).alone().size(), 100u);
 
-  std::vector<Points> with_small = ten;
+  std::vector<OutlinePoints> with_small = ten;
   with_small.push_back(square(42, 42, 3));  // within tile 44
   std::vector<std::uint32_t> expected(100);
   std::iota(expected.begin(), expected.end(), 0u);
   expected.erase(expected.begin() + 44);
   EXPECT_EQ(Laid(with_small).alone(), expected);
 
-  std::vector<Points> twice = ten;
+  std::vector<OutlinePoints> twice = ten;
   twice.insert(twice.end(), ten.begin(), ten.end());
   EXPECT_TRUE(Laid(twice).alone().empty());
 }
 
 /// The middle of a sheet has no open side near it, only its own neighbours; its number comes from where it begins.
 TEST(Alone, SheetsOverEachOtherAreNot) {
-  std::vector<Points> two = tiles(10);
+  std::vector<OutlinePoints> two = tiles(10);
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 8; ++x) two.push_back(square(5 + 10 * x, 5 + 10 * y));
   const Laid laid(two);

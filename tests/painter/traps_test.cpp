@@ -7,7 +7,7 @@
 #include "painter/painted.h"
 #include "painter/trapped.h"
 #include "support/effort.h"
-#include "support/random_scene.h"
+#include "support/small_meshes.h"
 
 namespace frontmost::test {
 namespace {
@@ -20,11 +20,6 @@ double area_of(const PolygonCorners& outline) {
     area -= 0.5 * (a.x * b.y - a.y * b.x);  // y points down
   }
   return area;
-}
-
-void add_square(Mesh& mesh, float half, float z) {
-  add_triangle(mesh, {-half, -half, z}, {half, -half, z}, {half, half, z});
-  add_triangle(mesh, {-half, -half, z}, {half, half, z}, {-half, half, z});
 }
 
 TEST(Traps, ReachUnderWhatHidesThem) {

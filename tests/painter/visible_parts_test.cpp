@@ -6,7 +6,7 @@
 
 #include "painter/painted.h"
 #include "support/effort.h"
-#include "support/random_scene.h"
+#include "support/small_meshes.h"
 
 namespace frontmost::test {
 namespace {
@@ -24,11 +24,6 @@ double area_of(const Order& order, std::size_t polygon) {
     area -= 0.5 * (a.x * b.y - a.y * b.x);  // y points down
   }
   return area;
-}
-
-void add_square(Mesh& mesh, float half, float z) {
-  add_triangle(mesh, {-half, -half, z}, {half, -half, z}, {half, half, z});
-  add_triangle(mesh, {-half, -half, z}, {half, half, z}, {-half, half, z});
 }
 
 TEST(VisibleParts, WhatOthersHideTogetherIsLeftOut) {

@@ -26,11 +26,6 @@ View view_from(const glm::dvec3& eye, const glm::dvec3& along, double near = 1e-
   return view;
 }
 
-std::size_t covered(const Visible& visible) {
-  return std::size_t(std::count_if(visible.primitives.begin(), visible.primitives.end(),
-                                   [](PrimitiveId id) { return id != no_primitive; }));
-}
-
 /// A triangle in the plane z = 0, with a wall behind it at y = 4.
 Scene triangle_before_a_wall() {
   Mesh mesh;

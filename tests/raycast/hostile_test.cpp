@@ -12,13 +12,11 @@
 
 #include "ray_oracle.h"
 #include "support/effort.h"
+#include "support/odd_numbers.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
 namespace {
-
-constexpr float inf = std::numeric_limits<float>::infinity();
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 void expect_the_oracle(const Scene& scene, const View& view) {
   const Surfaces surfaces(scene);
@@ -27,7 +25,7 @@ void expect_the_oracle(const Scene& scene, const View& view) {
     EXPECT_EQ(content_hash(raycast(surfaces, view, {.threads = 1, .isa = isa})), expected) << name(isa);
 }
 
-View from_the_front(double near = 0.5, double far = inf) {
+View from_the_front(double near = 0.5, double far = kFloatInfinity) {
   View view;
   view.width = 70, view.height = 50;
   view.world_from_eye = look_at({0, 0, 3}, {0, 0, 0}, {0, 1, 0});
@@ -48,8 +46,8 @@ TEST(HostileRayCast, NothingAtAll) {
 
 TEST(HostileRayCast, CoordinatesThatAreNoNumbersAreNeverSeen) {
   Mesh mesh;
-  add_triangle(mesh, {-1, -1, 0}, {1, -1, 0}, {nan, 1, 0});
-  add_triangle(mesh, {-1, -1, 0}, {inf, -1, 0}, {0, 1, 0});
+  add_triangle(mesh, {-1, -1, 0}, {1, -1, 0}, {kNan, 1, 0});
+  add_triangle(mesh, {-1, -1, 0}, {kFloatInfinity, -1, 0}, {0, 1, 0});
   add_triangle(mesh, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0});
   add_triangle(mesh, {-1, -1, 0}, {-1, -1, 0}, {0, 1, 0});
   const Scene scene = scene_of(mesh);

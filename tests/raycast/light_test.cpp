@@ -8,6 +8,7 @@
 #include "frontmost/raycast.h"
 #include "indexed_scene.h"
 #include "support/effort.h"
+#include "support/odd_numbers.h"
 #include "support/random_scene.h"
 #include "support/rational_vector.h"
 
@@ -212,20 +213,19 @@ TEST(Light, ScalingByPowersOfTwoChangesNothing) {
 }
 
 TEST(Light, NonsenseIsLit) {
-  constexpr float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   const Lit of(floors({0, 1})), empty{Scene{}};
   const TrianglePoint good = of.point(0, {1, 1, 1});
   std::vector<TrianglePoint> points(10, good);
   points[1].weights = glm::vec3(0);
   points[2].weights = {1, -1, 1};
-  points[3].weights = {1, nan, 1};
-  points[4].corners[2].y = nan;
-  points[5].corners[0].x = -inf;
-  points[6].lift = {inf, 0, 0};
-  points[7].weights = {inf, 1, 1};
+  points[3].weights = {1, kNan, 1};
+  points[4].corners[2].y = kNan;
+  points[5].corners[0].x = -kFloatInfinity;
+  points[6].lift = {kFloatInfinity, 0, 0};
+  points[7].weights = {kFloatInfinity, 1, 1};
   const std::vector<std::uint8_t> expected{0, 1, 1, 1, 1, 1, 1, 1, 0, 0};
   EXPECT_EQ(of.lit(points, {0, 0, 1}), expected);
-  for (const glm::vec3& no_light : {glm::vec3(0), glm::vec3(nan, 0, 1), glm::vec3(0, inf, 0)})
+  for (const glm::vec3& no_light : {glm::vec3(0), glm::vec3(kNan, 0, 1), glm::vec3(0, kFloatInfinity, 0)})
     EXPECT_TRUE(of.is_lit(good, no_light));
   EXPECT_TRUE(empty.is_lit(good, {0, 0, 1}));
   EXPECT_TRUE(of.lit({}, {0, 0, 1}).empty());

@@ -8,13 +8,11 @@
 #include "frontmost/raycast.h"
 #include "indexed_scene.h"
 #include "raycast/query_kernel.h"
+#include "support/odd_numbers.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
 namespace {
-
-constexpr float inf = std::numeric_limits<float>::infinity();
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 TEST(Query, MeetsTheNearestFloorAndCountsThemAll) {
   const Indexed of(floors({0, 1, 2, 3}));
@@ -101,12 +99,13 @@ TEST(Query, TheLengthOfADirectionSaysNothing) {
 TEST(Query, NonsenseMeetsNothing) {
   const Indexed of(floors({0})), empty{Scene{}};
   const glm::vec3 origin(0.5f, -0.25f, 1), down(0, 0, -1);
-  for (const Ray& ray : {Ray{origin, glm::vec3(0)}, Ray{origin, {0, 0, nan}}, Ray{origin, {0, 0, -inf}},
-                         Ray{{nan, 0, 0}, down}, Ray{{0, inf, 0}, down}}) {
+  for (const Ray& ray : {Ray{origin, glm::vec3(0)}, Ray{origin, {0, 0, kNan}}, Ray{origin, {0, 0, -kFloatInfinity}},
+                         Ray{{kNan, 0, 0}, down}, Ray{{0, kFloatInfinity, 0}, down}}) {
     EXPECT_FALSE(closest_hit(of.index, ray));
     EXPECT_TRUE(all_hits(of.index, ray).empty());
   }
-  for (const Segment& segment : {Segment{origin, origin}, Segment{origin, {nan, 0, 0}}, Segment{{inf, 0, 0}, origin}})
+  for (const Segment& segment :
+       {Segment{origin, origin}, Segment{origin, {kNan, 0, 0}}, Segment{{kFloatInfinity, 0, 0}, origin}})
     EXPECT_TRUE(is_clear(of.index, segment));
   EXPECT_FALSE(closest_hit(empty.index, Ray{origin, down}));
   EXPECT_TRUE(is_clear(empty.index, {origin, -origin}));

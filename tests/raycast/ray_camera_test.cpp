@@ -9,14 +9,13 @@
 #include "frontmost/io.h"
 #include "indexed_scene.h"
 #include "support/effort.h"
+#include "support/odd_numbers.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr float inf = std::numeric_limits<float>::infinity();
-
 /// The six sides of [-r, r]^3, two triangles each: ids 0-3 at -x, +x, 4-7 at -y, +y, 8-11 at -z, +z.
 Scene box_room(float r) {
   Mesh mesh;
@@ -142,7 +141,7 @@ TEST(RangeScan, BeyondAFisheyesCircleNothingIsSeen) {
   const RangeScan result = scan(room.index, {Fisheye{64, 64, 2 * pi}});
   int seen = 0;
   for (std::size_t i = 0; i < result.ranges.size(); ++i) {
-    EXPECT_EQ(result.primitives[i] == no_primitive, result.ranges[i] == inf);
+    EXPECT_EQ(result.primitives[i] == no_primitive, result.ranges[i] == kFloatInfinity);
     seen += result.primitives[i] != no_primitive;
   }
   EXPECT_EQ(result.primitives[result.index(0, 0)], no_primitive);
@@ -161,7 +160,7 @@ TEST(RangeScan, PlanarDepthIsThatOfAPinholeAndEndsAtTheSide) {
       if (direction.z < 0) {
         EXPECT_NEAR(depths[i], -point_of(result, x, y).z, 1e-6);
       } else {
-        EXPECT_EQ(depths[i], inf);
+        EXPECT_EQ(depths[i], kFloatInfinity);
       }
     }
   // All that is seen on the wall ahead is 2 away along the axis.
@@ -272,11 +271,10 @@ TEST(RangeScan, NothingIsMetInAnEmptySceneOrWithoutADirection) {
   const Indexed empty{Scene{}}, room(box_room(1));
   const RangeScan none = scan(empty.index, {Panorama{8, 4}});
   EXPECT_THAT(values_of(none.primitives), testing::Each(no_primitive));
-  EXPECT_THAT(values_of(none.ranges), testing::Each(inf));
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  const RangeScan nonsense = scan(room.index, {RayPattern{{{0, 0, 0}, {nan, 0, 1}, {inf, 0, 0}}}});
+  EXPECT_THAT(values_of(none.ranges), testing::Each(kFloatInfinity));
+  const RangeScan nonsense = scan(room.index, {RayPattern{{{0, 0, 0}, {kNan, 0, 1}, {kFloatInfinity, 0, 0}}}});
   EXPECT_THAT(values_of(nonsense.primitives), testing::Each(no_primitive));
-  EXPECT_THAT(values_of(planar_depths(nonsense)), testing::Each(inf));
+  EXPECT_THAT(values_of(planar_depths(nonsense)), testing::Each(kFloatInfinity));
 }
 
 ErrorCode refusal(const RayCamera& camera) {

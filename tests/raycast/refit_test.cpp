@@ -21,7 +21,7 @@ Scene three_of(Kind kind, std::uint64_t seed) {
   return scene;
 }
 
-void expect_same_answers(const RayIndex& index, const RayIndex& anew, std::uint64_t seed) {
+void expect_as_built_anew(const RayIndex& index, const RayIndex& anew, std::uint64_t seed) {
   EXPECT_EQ(index.triangle_count(), anew.triangle_count());
   EXPECT_EQ(index.bounds().low, anew.bounds().low);
   EXPECT_EQ(index.bounds().high, anew.bounds().high);
@@ -42,8 +42,8 @@ void expect_same_answers(const RayIndex& index, const RayIndex& anew, std::uint6
   }
 }
 
-void expect_same_answers(const RayIndex& index, const Surfaces& surfaces, std::uint64_t seed) {
-  expect_same_answers(index, RayIndex(surfaces), seed);
+void expect_as_built_anew(const RayIndex& index, const Surfaces& surfaces, std::uint64_t seed) {
+  expect_as_built_anew(index, RayIndex(surfaces), seed);
 }
 
 TEST(Refit, AnswersEqualThoseOfANewIndex) {
@@ -57,7 +57,7 @@ TEST(Refit, AnswersEqualThoseOfANewIndex) {
       scene.instances[step].world_from_mesh[3] += glm::dvec4(0.1, -0.2, 0.05, 0);
       const Surfaces surfaces(scene);
       index.refit(surfaces, {.threads = 1 + int(step)});
-      expect_same_answers(index, surfaces, step);
+      expect_as_built_anew(index, surfaces, step);
     }
   }
 }
@@ -74,7 +74,7 @@ TEST(Refit, KeepsItsMemoryAndGoesBack) {
   const Surfaces again(scene);
   index.refit(again);
   EXPECT_EQ(index.byte_count(), bytes);
-  expect_same_answers(index, again, 1);
+  expect_as_built_anew(index, again, 1);
 }
 
 TEST(Refit, OtherTrianglesMakeANewIndex) {
@@ -84,7 +84,7 @@ TEST(Refit, OtherTrianglesMakeANewIndex) {
     SCOPED_TRACE(what);
     const Surfaces surfaces(scene);
     index.refit(surfaces);
-    expect_same_answers(index, surfaces, 2);
+    expect_as_built_anew(index, surfaces, 2);
   };
   scene.instances.pop_back();
   expect_followed("an instance less");
@@ -128,13 +128,13 @@ TEST(Refit, OneThatIsEndedHalfwayLeavesNothing) {
     try {
       index.refit(after, watch.execution());
       was_whole = true;
-      expect_same_answers(index, after, 7);
+      expect_as_built_anew(index, after, 7);
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::cancelled);
       was_ended = true;
       expect_empty(index);
       index.refit(after);
-      expect_same_answers(index, after, 7);
+      expect_as_built_anew(index, after, 7);
     }
   }
   EXPECT_TRUE(was_ended);
@@ -149,7 +149,7 @@ TEST(Refit, InstancesThatAreMovedHalfwayLeaveNothing) {
   EXPECT_THROW(index.refit(scene, watch.execution()), Error);
   expect_empty(index);
   index.refit(scene);
-  expect_same_answers(index, RayIndex(scene), 3);
+  expect_as_built_anew(index, RayIndex(scene), 3);
 }
 
 TEST(Refit, ABadTransformLeavesTheIndexAsItWas) {
@@ -158,7 +158,7 @@ TEST(Refit, ABadTransformLeavesTheIndexAsItWas) {
   Scene bad = scene;
   bad.instances[2].world_from_mesh[0][0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(index.refit(bad), Error);
-  expect_same_answers(index, RayIndex(scene), 3);
+  expect_as_built_anew(index, RayIndex(scene), 3);
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ void expect_same_hit(const RayHit& a, const RayHit& b) {
   ASSERT_EQ(a.is_front, b.is_front);
 }
 
-void expect_same_answers(const RayIndex& index, const Surfaces& surfaces, std::uint64_t seed,
+void expect_as_one_level(const RayIndex& index, const Surfaces& surfaces, std::uint64_t seed,
                          const Execution& execution = {}) {
   const RayIndex flat(surfaces);
   EXPECT_EQ(index.triangle_count() == 0, flat.triangle_count() == 0);
@@ -94,7 +94,7 @@ TEST(TwoLevels, AnswerAsOneLevelForEveryKind) {
     SCOPED_TRACE(int(kind));
     for (std::uint64_t seed = 0; seed < seeds(4); ++seed) {
       const Scene scene = many_of(kind, seed);
-      expect_same_answers(RayIndex(scene), Surfaces(scene), seed);
+      expect_as_one_level(RayIndex(scene), Surfaces(scene), seed);
     }
   }
 }
@@ -106,7 +106,7 @@ TEST(TwoLevels, ThreadsAndInstructionSetsChangeNothing) {
     for (const int threads : {1, 3}) {
       SCOPED_TRACE(name(isa));
       const Execution execution{.threads = threads, .isa = isa};
-      expect_same_answers(RayIndex(scene, execution), surfaces, 4, execution);
+      expect_as_one_level(RayIndex(scene, execution), surfaces, 4, execution);
     }
 }
 
@@ -117,7 +117,7 @@ TEST(TwoLevels, FollowTheInstances) {
     scene.instances[step].world_from_mesh[3] += glm::dvec4(0.1, -0.2, 0.05, 0);
     scene.instances[step].world_from_mesh[step % 3] *= -1.5;
     index.refit(scene);
-    expect_same_answers(index, Surfaces(scene), step);
+    expect_as_one_level(index, Surfaces(scene), step);
   }
 }
 
@@ -127,7 +127,7 @@ TEST(TwoLevels, OtherInstancesMakeANewIndex) {
   const auto expect_followed = [&](const char* what) {
     SCOPED_TRACE(what);
     index.refit(scene);
-    expect_same_answers(index, Surfaces(scene), 2);
+    expect_as_one_level(index, Surfaces(scene), 2);
   };
   scene.instances.pop_back();
   expect_followed("an instance less");
@@ -142,9 +142,9 @@ TEST(TwoLevels, OtherInstancesMakeANewIndex) {
   scene = many_of(Kind::fan, 1);
   expect_followed("something");
   index.refit(Surfaces(scene));
-  expect_same_answers(index, Surfaces(scene), 3);
+  expect_as_one_level(index, Surfaces(scene), 3);
   index.refit(scene);
-  expect_same_answers(index, Surfaces(scene), 3);
+  expect_as_one_level(index, Surfaces(scene), 3);
 }
 
 TEST(TwoLevels, GrowByAMatrixAnInstance) {
@@ -170,7 +170,7 @@ TEST(TwoLevels, SurviveWhatFloatsDoNotHold) {
     Scene scene = many_of(scale == 1e30 ? Kind::huge : Kind::soup, 9);
     for (int axis = 0; axis < 3; ++axis) scene.instances[3].world_from_mesh[axis] *= scale;
     scene.instances[4].world_from_mesh[3] = {scale, -scale, 0.1, 1};
-    expect_same_answers(RayIndex(scene), Surfaces(scene), 11);
+    expect_as_one_level(RayIndex(scene), Surfaces(scene), 11);
   }
 }
 
@@ -178,7 +178,7 @@ TEST(TwoLevels, CornersThatAreNotFinite) {
   Scene scene = many_of(Kind::soup, 2);
   scene.meshes[0].positions[3].y = std::numeric_limits<float>::quiet_NaN();
   scene.meshes[0].positions[100].x = std::numeric_limits<float>::infinity();
-  expect_same_answers(RayIndex(scene), Surfaces(scene), 1);
+  expect_as_one_level(RayIndex(scene), Surfaces(scene), 1);
 }
 
 TEST(TwoLevels, BadScenesAreRefused) {

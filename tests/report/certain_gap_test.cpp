@@ -6,12 +6,11 @@
 
 #include "frontmost/depth_buffer.h"
 #include "frontmost/precision.h"
+#include "support/odd_numbers.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double uniform(Random& random, double low, double high) { return low + (high - low) * double(random.unit()); }
 

@@ -6,12 +6,12 @@
 
 #include <cmath>
 
+#include "support/odd_numbers.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr DepthFormat integers[] = {DepthFormat::d8, DepthFormat::d16, DepthFormat::d24};
 
 double depth_at(const DepthSetup& setup, double distance) {

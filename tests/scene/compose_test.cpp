@@ -4,11 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace frontmost {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 TEST(Compose, CameraAtPutsTheTargetOnTheAxis) {
   const Camera camera = camera_at("test", {3, 4, 5}, {-1, 2, 0.5}, 90);
@@ -16,7 +15,7 @@ TEST(Compose, CameraAtPutsTheTargetOnTheAxis) {
   EXPECT_NEAR(target.x, 0, 1e-12);
   EXPECT_NEAR(target.y, 0, 1e-12);
   EXPECT_NEAR(target.z, -glm::length(glm::dvec3(4, 2, 4.5)), 1e-12);
-  EXPECT_NEAR(camera.vertical, kPi / 2, 1e-15);
+  EXPECT_NEAR(camera.vertical, std::numbers::pi / 2, 1e-15);
 }
 
 TEST(Compose, TurnedIsCounterClockwiseSeenFromAbove) {

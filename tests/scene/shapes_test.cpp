@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "scene/compose.h"
 #include "scene/topology.h"
@@ -12,14 +13,12 @@
 namespace frontmost {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 TEST(Turn, IsTheCircleToTheLastBitsAndExactAtItsQuarters) {
   for (int whole = 1; whole <= 360; ++whole)
     for (int part = -whole; part <= 2 * whole; ++part) {
       const glm::dvec2 t = turn(part, whole);
-      ASSERT_NEAR(t.x, std::cos(2 * kPi * part / whole), 4e-15) << part << "/" << whole;
-      ASSERT_NEAR(t.y, std::sin(2 * kPi * part / whole), 4e-15) << part << "/" << whole;
+      ASSERT_NEAR(t.x, std::cos(2 * std::numbers::pi * part / whole), 4e-15) << part << "/" << whole;
+      ASSERT_NEAR(t.y, std::sin(2 * std::numbers::pi * part / whole), 4e-15) << part << "/" << whole;
     }
   EXPECT_EQ(turn(0, 7), glm::dvec2(1, 0));
   EXPECT_EQ(turn(1, 4), glm::dvec2(0, 1));
@@ -52,7 +51,7 @@ TEST(Shapes, SphereIsClosedRoundAndOutward) {
     EXPECT_EQ(mesh.positions.front(), glm::vec3(0, 1, 0));
     EXPECT_EQ(mesh.positions.back(), glm::vec3(0, -1, 0));
   }
-  EXPECT_NEAR(test::signed_volume(sphere(128)) / 6, 4 * kPi / 3, 0.004);
+  EXPECT_NEAR(test::signed_volume(sphere(128)) / 6, 4 * std::numbers::pi / 3, 0.004);
 }
 
 TEST(Shapes, TorusKnotIsAClosedTube) {
@@ -90,8 +89,8 @@ TEST(Shapes, RoundSlabIsClosedAndRoundedOnTop) {
   for (const glm::vec3& p : mesh.positions) bounds.include(p);
   EXPECT_EQ(bounds.low, glm::vec3(-2, 0, -2));
   EXPECT_EQ(bounds.high, glm::vec3(2, 1, 2));
-  EXPECT_GT(test::signed_volume(mesh) / 6, kPi * 4 * 0.95);
-  EXPECT_LT(test::signed_volume(mesh) / 6, kPi * 4);
+  EXPECT_GT(test::signed_volume(mesh) / 6, std::numbers::pi * 4 * 0.95);
+  EXPECT_LT(test::signed_volume(mesh) / 6, std::numbers::pi * 4);
   EXPECT_GT(test::worst_normal(mesh), 0.97);
 }
 

@@ -25,14 +25,14 @@ ColoredOrder figure_of(const Scene& scene, const ColorOptions& options, const Ex
   const View view = front_view();
   return color_order(surfaces, zbuffer(surfaces, view), all_parts(painter(surfaces, view)), options, execution);
 }
-ColorOptions with(Shading shading, double tolerance = 6) {
+ColorOptions coloring(Shading shading, double tolerance = 6) {
   ColorOptions options;
   options.shade.shading = shading;
   options.tolerance = tolerance;
   return options;
 }
 
-double area_of(const ColoredOrder& figure, const PaintPolygon& polygon) {
+double polygon_area(const ColoredOrder& figure, const PaintPolygon& polygon) {
   const std::span<const glm::dvec2> corners = figure.corners_of(polygon);
   double twice = 0;
   for (std::size_t k = 0; k < corners.size(); ++k) {
@@ -45,7 +45,7 @@ double area_of(const ColoredOrder& figure, const PaintPolygon& polygon) {
 std::map<int, double> areas_by_red(const ColoredOrder& figure) {
   std::map<int, double> areas;
   for (const ColoredShape& shape : figure.shapes)
-    for (const PaintPolygon& polygon : figure.polygons_of(shape)) areas[shape.color.r] += area_of(figure, polygon);
+    for (const PaintPolygon& polygon : figure.polygons_of(shape)) areas[shape.color.r] += polygon_area(figure, polygon);
   return areas;
 }
 
@@ -82,9 +82,9 @@ TEST(ColorOrder, HasTheColoursOfThePicture) {
   const View view = front_view();
   const Visible visible = zbuffer(surfaces, view);
   for (const Shading shading : {Shading::lit, Shading::flat, Shading::normals, Shading::ids, Shading::depth}) {
-    const Image picture = shade(surfaces, visible, with(shading).shade);
+    const Image picture = shade(surfaces, visible, coloring(shading).shade);
     const glm::vec4 pixel = color_at(picture, 32, 30);
-    const ColoredOrder figure = figure_of(scene, with(shading));
+    const ColoredOrder figure = figure_of(scene, coloring(shading));
     ASSERT_EQ(figure.polygons.size(), 2u);
     for (int k = 0; k < 3; ++k)
       EXPECT_NEAR(figure.shapes[0].color[k], srgb8_of_linear(pixel[k]), 1) << int(shading) << k;
@@ -100,7 +100,7 @@ TEST(ColorOrder, OpacityMultiplies) {
 
 TEST(ColorOrder, CutsAlongTheBordersOfTexels) {
   const Scene scene = textured_square(texture_of(2, 2, {kDark, kBright, kBright, kDark}));
-  const ColoredOrder figure = figure_of(scene, with(Shading::flat));
+  const ColoredOrder figure = figure_of(scene, coloring(Shading::flat));
   const std::map<int, double> areas = areas_by_red(figure);
   // Beside borders textures are smoothed over a pixel: what lies there may have a colour between.
   EXPECT_NEAR(areas.at(20), kSquare / 2, 8);
@@ -114,17 +114,17 @@ TEST(ColorOrder, PiecesFillTheirPolygonAndDifferByNoMoreThanTheTolerance) {
   const Scene scene = scene_of(mesh, colored({1, 1, 1, 1}));
   std::size_t before = 0;
   for (const double tolerance : {255.0, 40.0, 20.0, 10.0}) {
-    const ColoredOrder figure = figure_of(scene, with(Shading::flat, tolerance));
+    const ColoredOrder figure = figure_of(scene, coloring(Shading::flat, tolerance));
     double area = 0;
     for (const PaintPolygon& polygon : figure.polygons) {
-      EXPECT_GT(area_of(figure, polygon), 0);
-      area += area_of(figure, polygon);
+      EXPECT_GT(polygon_area(figure, polygon), 0);
+      area += polygon_area(figure, polygon);
     }
     EXPECT_NEAR(area, kSquare, 1e-6);
     EXPECT_GT(figure.polygons.size(), before);
     before = figure.polygons.size();
   }
-  EXPECT_EQ(figure_of(scene, with(Shading::flat, 255)).polygons.size(), 2u);
+  EXPECT_EQ(figure_of(scene, coloring(Shading::flat, 255)).polygons.size(), 2u);
 }
 
 /// Whether a point is within a shape of one ring, by crossings.
@@ -144,7 +144,7 @@ TEST(ColorOrder, TrapsOfPiecesAreHidden) {
   Mesh mesh = square();
   mesh.colors.values = {{0.3, 0.3, 0.3, 1}, {1, 1, 1, 1}, {1, 0.3, 0.3, 1}, {0.3, 0.3, 1, 1}};
   const Scene scene = scene_of(mesh, colored({1, 1, 1, 1}));
-  ColorOptions options = with(Shading::flat, 10);
+  ColorOptions options = coloring(Shading::flat, 10);
   options.groups_pieces = false;
   const Figure figure = outlined(figure_of(scene, options), 4);
   double with_traps = 0;
@@ -178,7 +178,7 @@ TEST(ColorOrder, TrapsReachUnderMoreThanOnePiece) {
   Mesh mesh = square();
   mesh.colors.values = {{0, 0, 0, 1}, {1, 1, 1, 1}, {1, 1, 1, 1}, {0, 0, 0, 1}};
   const Scene scene = scene_of(mesh, colored({1, 1, 1, 1}));
-  ColorOptions options = with(Shading::flat, 2);
+  ColorOptions options = coloring(Shading::flat, 2);
   options.groups_pieces = false;
   const Figure figure = outlined(figure_of(scene, options), 4);
   EXPECT_GT(figure.shapes.size(), 40u);
@@ -191,7 +191,7 @@ TEST(ColorOrder, TranslucentPiecesHaveNoTraps) {
   Mesh mesh = square();
   mesh.colors.values = {{0.3, 0.3, 0.3, 1}, {1, 1, 1, 1}, {1, 0.3, 0.3, 1}, {0.3, 0.3, 1, 1}};
   const Scene scene = scene_of(mesh, colored({1, 1, 1, 1}));
-  ColorOptions options = with(Shading::flat, 10);
+  ColorOptions options = coloring(Shading::flat, 10);
   options.groups_pieces = false;
   options.shade.opacity = 0.5f;
   const Figure figure = outlined(figure_of(scene, options), 4);
@@ -218,15 +218,15 @@ TEST(ColorOrder, ColoursOfPiecesAreThoseOfThePictureThere) {
   const Surfaces surfaces(scene);
   const View view = front_view();
   const Visible visible = zbuffer(surfaces, view);
-  const Image picture = shade(surfaces, visible, with(Shading::flat).shade);
-  const ColoredOrder figure = figure_of(scene, with(Shading::flat, 10));
+  const Image picture = shade(surfaces, visible, coloring(Shading::flat).shade);
+  const ColoredOrder figure = figure_of(scene, coloring(Shading::flat, 10));
   std::size_t asked = 0;
   for (const ColoredShape& shape : figure.shapes)
     for (const PaintPolygon& polygon : figure.polygons_of(shape)) {
       glm::dvec2 middle(0);
       for (const glm::dvec2& corner : figure.corners_of(polygon)) middle += corner / double(polygon.corner_count);
       const glm::vec4 pixel = color_at(picture, int(middle.x), int(middle.y));
-      if (area_of(figure, polygon) < 4) continue;
+      if (polygon_area(figure, polygon) < 4) continue;
       ++asked;
       for (int k = 0; k < 3; ++k)
         EXPECT_NEAR(shape.color[k], srgb8_of_linear(pixel[k]), 10 + 6) << polygon.first_corner;
@@ -238,7 +238,7 @@ TEST(ColorOrder, ColoursOfPiecesAreThoseOfThePictureThere) {
 
 TEST(ColorOrder, LeavesHolesOut) {
   const Scene scene = textured_square(texture_of(4, 1, {kDark, kClear, kBright, kClear}), Material::Alpha::mask);
-  const std::map<int, double> areas = areas_by_red(figure_of(scene, with(Shading::flat)));
+  const std::map<int, double> areas = areas_by_red(figure_of(scene, coloring(Shading::flat)));
   ASSERT_EQ(areas.size(), 2u);
   EXPECT_NEAR(areas.at(20), kSquare / 4, 0.5);
   EXPECT_NEAR(areas.at(230), kSquare / 4, 0.5);
@@ -273,13 +273,13 @@ TEST(ColorOrder, LeavesOutWhatLiesBesideThePicture) {
   double widest = 0;
   for (const PaintCorner& corner : order.corners) widest = std::max(widest, std::abs(corner.at.x));
   EXPECT_GT(widest, 1e8);
-  const ColoredOrder figure = color_order(surfaces, zbuffer(surfaces, view), all_parts(order), with(Shading::lit));
+  const ColoredOrder figure = color_order(surfaces, zbuffer(surfaces, view), all_parts(order), coloring(Shading::lit));
   for (const glm::dvec2& corner : figure.corners) {
     EXPECT_LT(std::abs(corner.x - 32), 32.01);
     EXPECT_LT(std::abs(corner.y - 32), 32.01);
   }
   double area = 0;
-  for (const PaintPolygon& polygon : figure.polygons) area += area_of(figure, polygon);
+  for (const PaintPolygon& polygon : figure.polygons) area += polygon_area(figure, polygon);
   EXPECT_NEAR(area, 64 * 32, 5);  // nearly up to the horizon
 }
 

@@ -10,10 +10,12 @@
 #include <memory>
 #include <random>
 
+#include "support/odd_numbers.h"
+
 namespace frontmost::shading {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+using test::kNan;
 
 struct Surface {
   glm::vec3 normal{0, 0, 1}, to_viewer{0, 0, 1};

@@ -5,20 +5,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "base/srgb.h"
 #include "frontmost/io.h"
 #include "frontmost/zbuffer.h"
 #include "shade/support.h"
 #include "support/effort.h"
+#include "support/odd_numbers.h"
 
 namespace frontmost {
 namespace {
 
 using namespace test;
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 Image picture(const Scene& scene, const View& view, const ShadeOptions& options = {}, const Execution& execution = {}) {
   const Surfaces surfaces(scene);

@@ -11,7 +11,7 @@ namespace {
 
 using namespace test;
 
-constexpr glm::u8vec4 kGreenGlass(0, 255, 0, 99), kClear(255, 0, 0, 50);
+constexpr glm::u8vec4 kGreenGlass(0, 255, 0, 99), kThinGlass(255, 0, 0, 50);
 
 std::vector<PrimitiveId> ids_of(const ColoredOrder& colored) {
   std::vector<PrimitiveId> ids;
@@ -57,7 +57,7 @@ TEST(GatherSheets, PanesInOneOutlineStayWhole) {
 }
 
 TEST(GatherSheets, OpacitiesStayApartAndOpaqueFiguresAsTheyAre) {
-  const ColoredOrder glass = gather_sheets(order_of({box(0, 0, 4, 4, kGlass), box(4, 0, 4, 4, kClear)}));
+  const ColoredOrder glass = gather_sheets(order_of({box(0, 0, 4, 4, kGlass), box(4, 0, 4, 4, kThinGlass)}));
   EXPECT_NE(glass.shapes[0].sheet, glass.shapes[1].sheet);
   EXPECT_NEAR(area_of(outlined(glass, 1), 1), 16, 1e-9);
   const ColoredOrder opaque = gather_sheets(order_of({box(0, 0, 4, 4), box(4, 0, 4, 4)}));
@@ -78,7 +78,7 @@ TEST(GatherSheets, PaintTheSame) {
     const auto below = [&](std::uint32_t end) { return std::size_t(random() % end); };
     std::vector<Tile> tiles;
     const std::size_t count = 2 + below(38);
-    const glm::u8vec4 colors[] = {kRed, kBlue, kGlass, kGreenGlass, kClear};
+    const glm::u8vec4 colors[] = {kRed, kBlue, kGlass, kGreenGlass, kThinGlass};
     for (std::size_t i = 0; i < count; ++i) {
       const auto x = double(below(12)), y = double(below(8)), width = double(1 + below(3)),
                  height = double(1 + below(3));

@@ -6,26 +6,19 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numbers>
 #include <random>
 
 #include "frontmost/io.h"
 #include "support/models.h"
+#include "support/small_meshes.h"
 
 namespace frontmost::shading {
 namespace {
 
-constexpr double kPi = 3.14159265358979;
-
 bool all(std::uint32_t) { return true; }
 
-/// A soup: every corner has a position of its own, as STL files have.
-void add_quad(Mesh& mesh, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d) {
-  for (const auto& t : {std::array{a, b, c}, std::array{a, c, d}}) {
-    const auto first = std::uint32_t(mesh.positions.size());
-    mesh.positions.insert(mesh.positions.end(), t.begin(), t.end());
-    mesh.triangles.push_back({first, first + 1, first + 2});
-  }
-}
+using test::add_quad;
 
 Mesh box() {
   Mesh mesh;
@@ -41,7 +34,7 @@ Mesh box() {
 Mesh tube(int sides) {
   Mesh mesh;
   const auto at = [&](int i, float z) {
-    const double angle = 2 * kPi * (i % sides) / sides;
+    const double angle = 2 * std::numbers::pi * (i % sides) / sides;
     return glm::vec3(std::cos(angle), std::sin(angle), z);
   };
   for (int i = 0; i < sides; ++i) add_quad(mesh, at(i, -1), at(i + 1, -1), at(i + 1, 1), at(i, 1));
@@ -63,7 +56,7 @@ TEST(PackedNormal, KeepsDirectionsToAHundredthOfADegree) {
   std::normal_distribution<float> component;
   for (int i = 0; i < 20000; ++i) {
     const glm::vec3 n = glm::normalize(glm::vec3(component(random), component(random), component(random)));
-    ASSERT_LT(glm::length(glm::normalize(unpack(pack(n))) - n), 0.01 * kPi / 180);
+    ASSERT_LT(glm::length(glm::normalize(unpack(pack(n))) - n), 0.01 * std::numbers::pi / 180);
   }
   for (int axis = 0; axis < 6; ++axis) {
     glm::vec3 n(0);
@@ -144,7 +137,7 @@ TEST(SmoothNormals, AFanOfAHundredThousandFacetsIsNoTrap) {
   constexpr std::uint32_t count = 100000;
   mesh.positions.push_back({0, 0, 1});
   for (std::uint32_t i = 0; i <= count; ++i) {
-    const double angle = 2 * kPi * i / count;
+    const double angle = 2 * std::numbers::pi * i / count;
     mesh.positions.push_back({std::cos(angle), std::sin(angle), 0});
   }
   for (std::uint32_t i = 0; i < count; ++i) mesh.triangles.push_back({0, i + 1, i + 2});

@@ -2,11 +2,10 @@
 // Small scenes and views for the tests of shading.
 #pragma once
 
-#include <optional>
-
 #include "frontmost/image.h"
 #include "frontmost/scene.h"
 #include "frontmost/view.h"
+#include "support/random_scene.h"
 
 namespace frontmost::test {
 
@@ -25,14 +24,10 @@ inline Mesh square() {
   return mesh;
 }
 
-inline Scene scene_of(Mesh mesh, std::optional<Material> material = std::nullopt) {
-  Scene scene;
-  if (material) {
-    scene.materials.push_back(*material);
-    mesh.material_ids = {0};
-  }
-  scene.meshes.push_back(std::move(mesh));
-  scene.instances.push_back({"one", 0, glm::dmat4(1)});
+inline Scene scene_of(Mesh mesh, const Material& material) {
+  mesh.material_ids = {0};
+  Scene scene = scene_of(std::move(mesh));
+  scene.materials.push_back(material);
   return scene;
 }
 

@@ -4,13 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
+
+#include "support/odd_numbers.h"
 
 namespace frontmost::shading {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+using test::kNan;
 
 /// 200 x 100 pixels; the eye at the origin looks down -z, one unit at distance 1 spans 50 pixels.
 View view_at_origin() {

@@ -11,13 +11,13 @@ namespace {
 
 using namespace detail;
 
-struct Sheet {
+struct SheetZones {
   glm::dvec2 size;
   int columns, rows;  // of zones, as the standard's table has them
 };
-constexpr Sheet sheets[] = {{{841, 1189}, 16, 24}, {{1189, 841}, 24, 16}, {{594, 841}, 12, 16}, {{841, 594}, 16, 12},
-                            {{420, 594}, 8, 12},   {{594, 420}, 12, 8},   {{297, 420}, 6, 8},   {{420, 297}, 8, 6},
-                            {{210, 297}, 4, 6},    {{297, 210}, 6, 4}};
+constexpr SheetZones sheets[] = {
+    {{841, 1189}, 16, 24}, {{1189, 841}, 24, 16}, {{594, 841}, 12, 16}, {{841, 594}, 16, 12}, {{420, 594}, 8, 12},
+    {{594, 420}, 12, 8},   {{297, 420}, 6, 8},    {{420, 297}, 8, 6},   {{210, 297}, 4, 6},   {{297, 210}, 6, 4}};
 
 const TitleBlock full{"Angle bracket",
                       "AB-17",
@@ -44,7 +44,7 @@ bool says(const PageLayer& layer, const std::string& text, double height) {
 }
 
 TEST(Frame, LeavesTwentyMillimetresForFilingAndTenElsewhere) {
-  for (const Sheet& sheet : sheets) {
+  for (const SheetZones& sheet : sheets) {
     const DrawingSpace space = drawing_space(sheet.size);
     EXPECT_EQ(space.low, glm::dvec2(20, 10));
     EXPECT_EQ(space.high, sheet.size - 10.0);
@@ -59,7 +59,7 @@ TEST(Frame, LeavesTwentyMillimetresForFilingAndTenElsewhere) {
 }
 
 TEST(Frame, ZonesAreFiftyMillimetresFromTheMiddleAndNamed) {
-  for (const Sheet& sheet : sheets) {
+  for (const SheetZones& sheet : sheets) {
     const PageLayer layer = draw_frame(sheet.size, full);
     const DrawingSpace space = drawing_space(sheet.size);
     const PageGroup zones = group_of(layer, "zones");
@@ -87,7 +87,7 @@ TEST(Frame, ZonesAreFiftyMillimetresFromTheMiddleAndNamed) {
 }
 
 TEST(Frame, CentringMarksStandInTheMiddleAndOutOfTheTitleBlock) {
-  for (const Sheet& sheet : sheets) {
+  for (const SheetZones& sheet : sheets) {
     const PageGroup frame = group_of(draw_frame(sheet.size, full), "frame");
     const DrawingSpace space = drawing_space(sheet.size);
     int marks = 0;
@@ -103,7 +103,7 @@ TEST(Frame, CentringMarksStandInTheMiddleAndOutOfTheTitleBlock) {
 }
 
 TEST(Frame, EverythingLiesOnThePage) {
-  for (const Sheet& sheet : sheets) {
+  for (const SheetZones& sheet : sheets) {
     Page page{sheet.size.x, sheet.size.y, "", {draw_frame(sheet.size, full)}};
     EXPECT_EQ(page.layers[0].name, "8 frame");
     EXPECT_NO_THROW(validate(page));

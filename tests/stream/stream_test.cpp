@@ -130,7 +130,6 @@ TEST_F(StreamTest, MoreTrianglesThanAScenesAreRefusedAtOnce) {
   }
 }
 
-}  // namespace
 TEST_F(StreamTest, SaysHowOftenItWasReadAndGoesOnWhereItIsMoved) {
   const Mesh mesh = test::bumpy_ball(20, 0.1f, 1);
   const std::string path = file("bumps.stl", stl_of(mesh));
@@ -168,4 +167,5 @@ TEST_F(StreamTest, PiecesHaveASize) {
     }
 }
 
+}  // namespace
 }  // namespace frontmost

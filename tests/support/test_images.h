@@ -91,4 +91,21 @@ inline ErrorCode error_of(const std::function<void()>& action, std::string* mess
   return ErrorCode::bad_argument;
 }
 
+/// The code and the message of the error that reading ends in; "read" if there is none. The bytes lie in memory of
+/// exactly their size, so that AddressSanitizer sees every byte too many.
+inline std::string image_error(const std::string& bytes) {
+  const auto* first = reinterpret_cast<const std::byte*>(bytes.data());
+  const std::vector<std::byte> exact(first, first + bytes.size());
+  try {
+    (void)load_image(exact, "m");
+    return "read";
+  } catch (const Error& error) {
+    const char* code = error.code() == ErrorCode::file_malformed   ? "malformed, "
+                       : error.code() == ErrorCode::limit_exceeded ? "limit, "
+                       : error.code() == ErrorCode::unsupported    ? "unsupported, "
+                                                                   : "another code, ";
+    return code + std::string(error.what());
+  }
+}
+
 }  // namespace frontmost::test

@@ -7,12 +7,12 @@
 #include <string>
 
 #include "frontmost/view.h"
+#include "support/odd_numbers.h"
 
 namespace frontmost::test {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr DepthConvention kConventions[] = {gortler_depth, opengl_depth, zero_to_one_depth, reversed_depth};
+constexpr DepthConvention kDepthConventions[] = {gortler_depth, opengl_depth, zero_to_one_depth, reversed_depth};
 
 glm::dvec3 divide(const glm::dvec4& clip) { return glm::dvec3(clip) / clip.w; }
 
@@ -25,7 +25,7 @@ TEST(Projection, FrustumCornersLandOnTheCubesCorners) {
   const Projection frustum = make_frustum(-0.3, 0.5, -0.2, 0.4, {0.5, 40});
   const Projection parallel = make_orthographic(-3, 5, -2, 4, {-1, 40});
   for (const Projection& p : {frustum, parallel})
-    for (const DepthConvention& depth : kConventions)
+    for (const DepthConvention& depth : kDepthConventions)
       for (const bool at_far : {false, true})
         for (int corner = 0; corner < 4; ++corner) {
           const double distance = at_far ? p.clip.far : p.clip.near, spread = p.orthographic ? 1 : distance;
@@ -77,7 +77,7 @@ TEST(Projection, SmallerFieldOfViewIsTheSmallerOne) {
 }
 
 TEST(Projection, InfiniteFarIsTheLimitOfFarPlanes) {
-  for (const DepthConvention& depth : kConventions)
+  for (const DepthConvention& depth : kDepthConventions)
     expect_near(clip_from_eye(make_projection(1, 1.5, {0.1, kInfinity}), depth),
                 clip_from_eye(make_projection(1, 1.5, {0.1, 1e12}), depth), 1e-11);
 }
@@ -86,7 +86,7 @@ TEST(Projection, DistanceUndoesDepth) {
   const Projection projections[] = {make_projection(1, 1, {0.1, 50}), make_projection(1, 1, {0.1, kInfinity}),
                                     make_orthographic(-1, 1, -1, 1, {-2, 50})};
   for (const Projection& p : projections)
-    for (const DepthConvention& depth : kConventions)
+    for (const DepthConvention& depth : kDepthConventions)
       for (const double distance : {0.1, 0.5, 3.0, 49.0}) {
         const glm::dvec3 ndc = divide(clip_from_eye(p, depth) * glm::dvec4(0, 0, -distance, 1));
         EXPECT_NEAR(distance_of_depth(p, depth, ndc.z), distance, 1e-9 * distance / 0.01);

@@ -16,7 +16,7 @@ View straight_on(int size, Culling culling) {
   return {size, size, 1, look_at({0, 0, 3}, {0, 0, 0}, {0, 1, 0}), make_projection(0.8, 1, {1, 10}), culling};
 }
 
-std::size_t covered(const Scene& scene, const View& view) {
+std::size_t covered_samples(const Scene& scene, const View& view) {
   const Surfaces surfaces(scene);
   std::size_t count = 0;
   for (const PrimitiveId id : zbuffer(surfaces, view).primitives) count += id != no_primitive;
@@ -27,14 +27,14 @@ TEST(Culling, CounterClockwiseIsFront) {
   Mesh front, back;
   add_triangle(front, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0});
   add_triangle(back, {-1, -1, 0}, {0, 1, 0}, {1, -1, 0});
-  const std::size_t all = covered(scene_of(front), straight_on(64, Culling::none));
+  const std::size_t all = covered_samples(scene_of(front), straight_on(64, Culling::none));
   EXPECT_GT(all, 500u);
-  EXPECT_EQ(covered(scene_of(front), straight_on(64, Culling::back)), all);
-  EXPECT_EQ(covered(scene_of(front), straight_on(64, Culling::front)), 0u);
-  EXPECT_EQ(covered(scene_of(front), straight_on(64, Culling::both)), 0u);
-  EXPECT_EQ(covered(scene_of(back), straight_on(64, Culling::none)), all);
-  EXPECT_EQ(covered(scene_of(back), straight_on(64, Culling::back)), 0u);
-  EXPECT_EQ(covered(scene_of(back), straight_on(64, Culling::front)), all);
+  EXPECT_EQ(covered_samples(scene_of(front), straight_on(64, Culling::back)), all);
+  EXPECT_EQ(covered_samples(scene_of(front), straight_on(64, Culling::front)), 0u);
+  EXPECT_EQ(covered_samples(scene_of(front), straight_on(64, Culling::both)), 0u);
+  EXPECT_EQ(covered_samples(scene_of(back), straight_on(64, Culling::none)), all);
+  EXPECT_EQ(covered_samples(scene_of(back), straight_on(64, Culling::back)), 0u);
+  EXPECT_EQ(covered_samples(scene_of(back), straight_on(64, Culling::front)), all);
 }
 
 // glTF 2.0, 3.7.4: a transform with a negative determinant turns the winding round, so that outside stays outside.
@@ -43,8 +43,8 @@ TEST(Culling, MirroredInstancesKeepTheirFrontFaces) {
   add_triangle(front, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0});
   Scene scene = scene_of(front);
   scene.instances[0].world_from_mesh[0][0] = -1;
-  EXPECT_GT(covered(scene, straight_on(64, Culling::back)), 500u);
-  EXPECT_EQ(covered(scene, straight_on(64, Culling::front)), 0u);
+  EXPECT_GT(covered_samples(scene, straight_on(64, Culling::back)), 500u);
+  EXPECT_EQ(covered_samples(scene, straight_on(64, Culling::front)), 0u);
 }
 
 // N.V = 0: neither front nor back, and covers nothing, whatever is culled.
@@ -52,7 +52,7 @@ TEST(Culling, EdgeOnFacesNobody) {
   Mesh mesh;
   add_triangle(mesh, {0, -1, -1}, {0, 1, -1}, {0, 0, 1});  // in the plane x = 0 that holds the eye
   for (const Culling culling : {Culling::none, Culling::back, Culling::front})
-    EXPECT_EQ(covered(scene_of(mesh), straight_on(64, culling)), 0u);
+    EXPECT_EQ(covered_samples(scene_of(mesh), straight_on(64, culling)), 0u);
 }
 
 TEST(Culling, ObjectSpaceAndScreenSpaceAgreeUpToSnapping) {

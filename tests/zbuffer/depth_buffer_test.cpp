@@ -17,7 +17,7 @@ namespace {
 
 constexpr DepthFormat all_formats[] = {DepthFormat::d8, DepthFormat::d16, DepthFormat::d24, DepthFormat::f32};
 
-void expect_same(const DepthOracle& expected, const DepthBuffer& actual, const View& view) {
+void expect_as_oracle(const DepthOracle& expected, const DepthBuffer& actual, const View& view) {
   const Visible& a = expected.visible();
   const Visible b = actual.visible(view);
   std::size_t differing = 0, first = 0;
@@ -82,7 +82,7 @@ TEST_P(DepthOfEveryKind, EqualsTheStateMachineOnEveryInstructionSet) {
       DepthBuffer buffer(view.width, view.height, view.samples, format);
       buffer.clear(clear);
       for (const DepthDraw& call : calls) buffer.draw(surfaces, view, call, {.threads = 1 + int(seed % 3), .isa = isa});
-      expect_same(oracle, buffer, view);
+      expect_as_oracle(oracle, buffer, view);
     }
   }
   EXPECT_GT(seen, covers_little ? 200u : 1'000u) << "the scenes have become empty";
@@ -107,7 +107,7 @@ TEST(DepthBuffer, EveryFunctionOnEveryFormat) {
           DepthBuffer buffer(view.width, view.height, 1, format);
           buffer.clear(0.5);
           buffer.draw(surfaces, view, {.state = state}, {.isa = isa});
-          expect_same(oracle, buffer, view);
+          expect_as_oracle(oracle, buffer, view);
         }
         seen += covered(oracle.visible());
       }
@@ -226,7 +226,7 @@ TEST(DepthBuffer, TheLargestImageAndTheSmallest) {
     oracle.draw(surfaces, {});
     DepthBuffer buffer(size.x, size.y);
     buffer.draw(surfaces, view);
-    expect_same(oracle, buffer, view);
+    expect_as_oracle(oracle, buffer, view);
   }
 }
 

@@ -7,13 +7,12 @@
 
 #include "frontmost/zbuffer.h"
 #include "support/both_ways.h"
+#include "support/odd_numbers.h"
 #include "support/oracle.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 View straight_on(const Projection& projection, double distance = 3) {
   return {40, 30, 1, look_at({0, 0, distance}, {0, 0, 0}, {0, 1, 0}), projection, {}};

@@ -9,13 +9,12 @@
 #include "frontmost/zbuffer.h"
 #include "support/both_ways.h"
 #include "support/effort.h"
+#include "support/odd_numbers.h"
 #include "support/oracle.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The picture plane of a view: where a point of the image, 0 to 1 both ways, lies at a distance.
 glm::vec3 in_world(const View& view, double u, double v, double distance) {

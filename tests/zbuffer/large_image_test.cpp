@@ -10,7 +10,7 @@
 namespace frontmost::test {
 namespace {
 
-constexpr int kSide = 16384;
+constexpr int kLargestSide = 16384;
 
 /// Some rows of the picture, sample by sample, as the oracle's rules have them.
 class RowOracle {
@@ -60,13 +60,17 @@ TEST(LargestImage, ComesOutRightInEveryCorner) {
   add_triangle(mesh, {0.5f, -0.5f, 0.8f}, {0.50001f, -0.49999f, 0.8f}, {0.5f, -0.49998f, 0.8f});
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
-  const View view{kSide, kSide, 1, look_at({0, 0, 3}, {0, 0, 0}, {0, 1, 0}), make_frustum(-0.4, 0.4, -0.4, 0.4, {1, 9}),
+  const View view{kLargestSide,
+                  kLargestSide,
+                  1,
+                  look_at({0, 0, 3}, {0, 0, 0}, {0, 1, 0}),
+                  make_frustum(-0.4, 0.4, -0.4, 0.4, {1, 9}),
                   {}};
   const Visible visible = zbuffer(surfaces, view);
   const RowOracle oracle(surfaces, view);
   std::size_t seen[4] = {};
   for (int y : {0, 1, 127, 128, 4095, 8191, 8192, 8193, 12000, 16256, 16382, 16383})
-    for (int x = 0; x < kSide; ++x) {
+    for (int x = 0; x < kLargestSide; ++x) {
       const PrimitiveId id = visible.primitives[visible.index(x, y)];
       ASSERT_EQ(id, oracle.at(x, y)) << x << ", " << y;
       ++seen[id == no_primitive ? 3 : id];

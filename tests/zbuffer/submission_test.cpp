@@ -25,7 +25,7 @@ Mesh mixed_mesh(int count, std::uint64_t seed) {
   return mesh;
 }
 
-bool same(const DepthOracle& expected, const DepthBuffer& actual, const View& view) {
+bool is_as_oracle(const DepthOracle& expected, const DepthBuffer& actual, const View& view) {
   return std::memcmp(expected.stored().data(), actual.stored().data(), 4 * expected.stored().size()) == 0 &&
          content_hash(expected.visible()) == content_hash(actual.visible(view));
 }
@@ -47,7 +47,7 @@ TEST(Submission, OrderIsKeptAcrossSizesTilesAndClipping) {
     for (const Isa isa : available_isas()) {
       DepthBuffer buffer(view.width, view.height, view.samples, DepthFormat::f32);
       buffer.draw(surfaces, view, call, {.threads = 2, .isa = isa});
-      EXPECT_TRUE(same(oracle, buffer, view)) << name(isa);
+      EXPECT_TRUE(is_as_oracle(oracle, buffer, view)) << name(isa);
     }
   }
 }
@@ -70,7 +70,7 @@ TEST(Submission, InstancesAreTransformedAndMirrored) {
     for (const Isa isa : available_isas()) {
       DepthBuffer buffer(180, 140);
       buffer.draw(surfaces, view, {}, {.isa = isa});
-      EXPECT_TRUE(same(oracle, buffer, view)) << name(isa);
+      EXPECT_TRUE(is_as_oracle(oracle, buffer, view)) << name(isa);
     }
   }
 }

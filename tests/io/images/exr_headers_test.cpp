@@ -15,22 +15,6 @@
 namespace frontmost::test {
 namespace {
 
-/// "code, message" of the error; "read" if there is none.
-std::string error_in(const std::string& bytes) {
-  const auto* first = reinterpret_cast<const std::byte*>(bytes.data());
-  const std::vector<std::byte> exact(first, first + bytes.size());
-  try {
-    (void)load_image(exact, "m");
-    return "read";
-  } catch (const Error& error) {
-    const char* code = error.code() == ErrorCode::file_malformed   ? "malformed, "
-                       : error.code() == ErrorCode::limit_exceeded ? "limit, "
-                       : error.code() == ErrorCode::unsupported    ? "unsupported, "
-                                                                   : "another code, ";
-    return code + std::string(error.what());
-  }
-}
-
 std::string number(std::int32_t value) {
   std::string bytes(4, '\0');
   std::memcpy(bytes.data(), &value, 4);
@@ -58,61 +42,62 @@ const std::string one_channel = attribute("channels", "chlist", channel("Z") + '
 
 TEST(ExrHeader, KindsOfFilesThatAreNotRead) {
   for (const std::int32_t flag : {0x200, 0x800, 0x1000})
-    EXPECT_EQ(error_in(header("", 2 | flag)), "unsupported, m: EXR: tiled, deep and multi-part files are not read");
+    EXPECT_EQ(image_error(header("", 2 | flag)), "unsupported, m: EXR: tiled, deep and multi-part files are not read");
 }
 
 TEST(ExrHeader, AttributesAreAsLongAsTheirTypeIs) {
-  EXPECT_EQ(error_in(header(attribute("x", "v2f", std::string(7, '\0')))),
+  EXPECT_EQ(image_error(header(attribute("x", "v2f", std::string(7, '\0')))),
             "malformed, m: EXR: an attribute's size does not fit its type v2f");
-  EXPECT_EQ(error_in(header(attribute("x", "box2i", std::string(17, '\0')))),
+  EXPECT_EQ(image_error(header(attribute("x", "box2i", std::string(17, '\0')))),
             "malformed, m: EXR: an attribute's size does not fit its type box2i");
-  EXPECT_EQ(error_in(header(attribute("x", "preview", "12345678"))),
+  EXPECT_EQ(image_error(header(attribute("x", "preview", "12345678"))),
             "unsupported, m: EXR: attributes of type preview are not read");
-  EXPECT_EQ(error_in(header(std::string("x\0int\0", 6) + number(-4))),
+  EXPECT_EQ(image_error(header(std::string("x\0int\0", 6) + number(-4))),
             "malformed, m: EXR: attribute x has a negative size");
-  EXPECT_EQ(error_in(header(std::string("x\0string\0", 9) + number(1000) + "short")),
+  EXPECT_EQ(image_error(header(std::string("x\0string\0", 9) + number(1000) + "short")),
             "malformed, m: EXR: the header is cut short");
-  EXPECT_EQ(error_in("\x76\x2f\x31\x01" + number(2) + "no zero"), "malformed, m: EXR: the header is cut short");
+  EXPECT_EQ(image_error("\x76\x2f\x31\x01" + number(2) + "no zero"), "malformed, m: EXR: the header is cut short");
 }
 
 TEST(ExrHeader, ChannelListsAreCounted) {
-  EXPECT_EQ(error_in(header(attribute("channels", "chlist", channel("Z") + '\0' + "more"))),
+  EXPECT_EQ(image_error(header(attribute("channels", "chlist", channel("Z") + '\0' + "more"))),
             "malformed, m: EXR: the channel list ends before its attribute");
-  EXPECT_EQ(error_in(header(attribute("channels", "chlist", channel("Z").substr(0, 9)))),
+  EXPECT_EQ(image_error(header(attribute("channels", "chlist", channel("Z").substr(0, 9)))),
             "malformed, m: EXR: the header is cut short");
-  EXPECT_EQ(error_in(header(window(0, 0, 1, 1))), "limit, m: EXR: 0 channels, not 1 to 1024");
+  EXPECT_EQ(image_error(header(window(0, 0, 1, 1))), "limit, m: EXR: 0 channels, not 1 to 1024");
   std::string many;
   for (int i = 0; i < 1025; ++i) many += channel("c" + std::to_string(i));
-  EXPECT_EQ(error_in(header(window(0, 0, 1, 1) + attribute("channels", "chlist", many + '\0'))),
+  EXPECT_EQ(image_error(header(window(0, 0, 1, 1) + attribute("channels", "chlist", many + '\0'))),
             "limit, m: EXR: 1025 channels, not 1 to 1024");
   // Two lists of 600: the library would add them up.
   std::string half;
   for (int i = 0; i < 600; ++i) half += channel("c" + std::to_string(i));
   const std::string list = attribute("channels", "chlist", half + '\0'),
                     more = attribute("others", "chlist", half + '\0');
-  EXPECT_EQ(error_in(header(window(0, 0, 1, 1) + list + more)), "limit, m: EXR: 1200 channels, not 1 to 1024");
+  EXPECT_EQ(image_error(header(window(0, 0, 1, 1) + list + more)), "limit, m: EXR: 1200 channels, not 1 to 1024");
 }
 
 TEST(ExrHeader, WindowsAreHeldAgainstTheFile) {
   constexpr std::int32_t most = 0x7FFFFFFF, least = -most - 1;
-  EXPECT_EQ(error_in(header(one_channel + window(0, 0, -1, 0))), "malformed, m: EXR: an image of 0 x 1 pixels");
-  EXPECT_EQ(error_in(header(one_channel + window(5, 5, 4, 3))), "malformed, m: EXR: an image of 0 x 0 pixels");
-  EXPECT_EQ(error_in(header(one_channel + window(least, 0, most, 0))).substr(0, 35),
+  EXPECT_EQ(image_error(header(one_channel + window(0, 0, -1, 0))), "malformed, m: EXR: an image of 0 x 1 pixels");
+  EXPECT_EQ(image_error(header(one_channel + window(5, 5, 4, 3))), "malformed, m: EXR: an image of 0 x 0 pixels");
+  EXPECT_EQ(image_error(header(one_channel + window(least, 0, most, 0))).substr(0, 35),
             "limit, m: EXR: 4294967296 x 1 pixel");
-  EXPECT_EQ(error_in(header(one_channel + window(-16384, 0, 0, 0))).substr(0, 29), "limit, m: EXR: 16385 x 1 pixe");
+  EXPECT_EQ(image_error(header(one_channel + window(-16384, 0, 0, 0))).substr(0, 29), "limit, m: EXR: 16385 x 1 pixe");
   const std::string lying = header(one_channel + window(0, 0, 9999, 9999));
-  EXPECT_EQ(error_in(lying), "malformed, m: EXR: " + std::to_string(lying.size()) +
-                                 " bytes cannot hold 10000 x 10000 pixels of 1 channels");
+  EXPECT_EQ(image_error(lying), "malformed, m: EXR: " + std::to_string(lying.size()) +
+                                    " bytes cannot hold 10000 x 10000 pixels of 1 channels");
   // Of two windows the library takes the last one.
   const std::string twice = header(one_channel + window(0, 0, 1, 1) + window(0, 0, 9999, 9999));
-  EXPECT_EQ(error_in(twice), "malformed, m: EXR: " + std::to_string(twice.size()) +
-                                 " bytes cannot hold 10000 x 10000 pixels of 1 channels");
+  EXPECT_EQ(image_error(twice), "malformed, m: EXR: " + std::to_string(twice.size()) +
+                                    " bytes cannot hold 10000 x 10000 pixels of 1 channels");
   // Wavelets have no bound of compression, so such a file gets some memory in any case: up to 64 MiB.
   const std::string wavelets = attribute("compression", "compression", "\4");
   const std::string large = header(one_channel + wavelets + window(0, 0, 4095, 4096));
-  EXPECT_EQ(error_in(large), "malformed, m: EXR: " + std::to_string(large.size()) +
-                                 " bytes cannot hold 4096 x 4097 pixels of 1 channels");
-  EXPECT_EQ(error_in(header(one_channel + wavelets + window(0, 0, 4095, 4095))).find("cannot hold"), std::string::npos)
+  EXPECT_EQ(image_error(large), "malformed, m: EXR: " + std::to_string(large.size()) +
+                                    " bytes cannot hold 4096 x 4097 pixels of 1 channels");
+  EXPECT_EQ(image_error(header(one_channel + wavelets + window(0, 0, 4095, 4095))).find("cannot hold"),
+            std::string::npos)
       << "that is for the library to refuse";
 }
 
@@ -188,7 +173,7 @@ TEST(ExrFiles, SubsampledChannelsAreNamed) {
     out.setFrameBuffer(frame);
     out.writePixels(4);
   }
-  EXPECT_EQ(error_in(read_text(path)), "unsupported, m: EXR: channel BY is subsampled");
+  EXPECT_EQ(image_error(read_text(path)), "unsupported, m: EXR: channel BY is subsampled");
 }
 
 TEST(ExrFiles, TiledFilesAreNamed) {
@@ -205,7 +190,7 @@ TEST(ExrFiles, TiledFilesAreNamed) {
     out.setFrameBuffer(frame);
     out.writeTiles(0, 1, 0, 1);
   }
-  EXPECT_EQ(error_in(read_text(path)), "unsupported, m: EXR: tiled, deep and multi-part files are not read");
+  EXPECT_EQ(image_error(read_text(path)), "unsupported, m: EXR: tiled, deep and multi-part files are not read");
 }
 
 TEST(ExrFiles, AttributesOfOthersDoNoHarm) {

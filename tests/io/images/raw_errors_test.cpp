@@ -29,18 +29,6 @@ Outcome read(const std::string& bytes) {
   return outcome;
 }
 
-/// The error alone, with its code; "read" if there is none.
-std::string error_in(const std::string& bytes) {
-  const Outcome outcome = read(bytes);
-  if (outcome.error.empty()) return "read";
-  switch (outcome.code) {
-    case ErrorCode::file_malformed: return "malformed, " + outcome.error;
-    case ErrorCode::limit_exceeded: return "limit, " + outcome.error;
-    case ErrorCode::unsupported: return "unsupported, " + outcome.error;
-    default: return "another code, " + outcome.error;
-  }
-}
-
 template <class T>
 std::string raw(std::initializer_list<T> values, bool big_endian = false) {
   std::string bytes;
@@ -75,14 +63,14 @@ TEST(NpyHeader, VersionsOneToThree) {
     EXPECT_EQ(outcome.image.height, 1);
     EXPECT_EQ(outcome.image.channels[0].floats()[1], -2.0f);
   }
-  EXPECT_EQ(error_in(npy(dictionary, numbers, 0)), "unsupported, m: NPY: version 0");
-  EXPECT_EQ(error_in(npy(dictionary, numbers, 4)), "unsupported, m: NPY: version 4");
+  EXPECT_EQ(image_error(npy(dictionary, numbers, 0)), "unsupported, m: NPY: version 0");
+  EXPECT_EQ(image_error(npy(dictionary, numbers, 4)), "unsupported, m: NPY: version 4");
   // From version 2 on the length has four bytes; the upper two count as well.
   std::string large = npy(dictionary, numbers, 2);
   large[10] = 1;
-  EXPECT_EQ(error_in(large), "malformed, m: NPY: the header is cut short");
-  EXPECT_EQ(error_in(npy(dictionary, numbers).substr(0, 11)), "malformed, m: NPY: the header is cut short");
-  EXPECT_EQ(error_in(npy(dictionary, "").substr(0, 30)), "malformed, m: NPY: the header is cut short");
+  EXPECT_EQ(image_error(large), "malformed, m: NPY: the header is cut short");
+  EXPECT_EQ(image_error(npy(dictionary, numbers).substr(0, 11)), "malformed, m: NPY: the header is cut short");
+  EXPECT_EQ(image_error(npy(dictionary, "").substr(0, 30)), "malformed, m: NPY: the header is cut short");
 }
 
 TEST(NpyHeader, BothByteOrdersAndTypes) {
@@ -126,37 +114,38 @@ TEST(NpyHeader, ChannelsGetTheNamesOfTheirNumber) {
 
 TEST(NpyHeader, KeysThatAreMissing) {
   const std::string four = raw<float>({1});
-  EXPECT_EQ(error_in(npy("{'fortran_order': False, 'shape': (1, 1), }", four)),
+  EXPECT_EQ(image_error(npy("{'fortran_order': False, 'shape': (1, 1), }", four)),
             "malformed, m: NPY: the header has no 'descr'");
-  EXPECT_EQ(error_in(npy("{'descr': '<f4', 'shape': (1, 1), }", four)),
+  EXPECT_EQ(image_error(npy("{'descr': '<f4', 'shape': (1, 1), }", four)),
             "malformed, m: NPY: the header has no 'fortran_order'");
-  EXPECT_EQ(error_in(npy("{'descr': '<f4', 'fortran_order': False, }", four)),
+  EXPECT_EQ(image_error(npy("{'descr': '<f4', 'fortran_order': False, }", four)),
             "malformed, m: NPY: the header has no 'shape'");
-  EXPECT_EQ(error_in(npy("{'descr': '<f4', 'fortran_order': False, 'shape'", four)),
+  EXPECT_EQ(image_error(npy("{'descr': '<f4', 'fortran_order': False, 'shape'", four)),
             "malformed, m: NPY: the header has no 'shape'");
-  EXPECT_EQ(error_in(npy("{'descr': '<f4', 'fortran_order': False, 'shape':   ", four)),
+  EXPECT_EQ(image_error(npy("{'descr': '<f4', 'fortran_order': False, 'shape':   ", four)),
             "malformed, m: NPY: the header has no 'shape'");
-  EXPECT_EQ(error_in(npy("{'shape': (1, 1), 'fortran_order': False, 'descr': '<f4'}", four)), "read") << "in any order";
-  EXPECT_EQ(error_in(npy("{'descr': '<f4', 'fortran_order': True, 'shape': (1, 1), }", four)),
+  EXPECT_EQ(image_error(npy("{'shape': (1, 1), 'fortran_order': False, 'descr': '<f4'}", four)), "read")
+      << "in any order";
+  EXPECT_EQ(image_error(npy("{'descr': '<f4', 'fortran_order': True, 'shape': (1, 1), }", four)),
             "unsupported, m: NPY: arrays in Fortran order are not read");
 }
 
 TEST(NpyHeader, Shapes) {
   const std::string four = raw<float>({1});
-  EXPECT_EQ(error_in(npy_of_shape("(1, 1)", four)), "read");
-  EXPECT_EQ(error_in(npy_of_shape("(1,1,1,)", four)), "read");
+  EXPECT_EQ(image_error(npy_of_shape("(1, 1)", four)), "read");
+  EXPECT_EQ(image_error(npy_of_shape("(1,1,1,)", four)), "read");
   for (const char* shape : {"1", "[1, 1]", "(1, 1"})
-    EXPECT_EQ(error_in(npy_of_shape(shape, four)), "malformed, m: NPY: the shape is not a tuple") << shape;
+    EXPECT_EQ(image_error(npy_of_shape(shape, four)), "malformed, m: NPY: the shape is not a tuple") << shape;
   for (const char* shape : {"()", "(1,)", "(1, 1, 1, 1)", "(-1, 1)", "(1.0, 1)", "(a, b)", "(4294967296, 1)"})
-    EXPECT_EQ(error_in(npy_of_shape(shape, four)), "malformed, m: NPY: the shape is not (height, width[, channels])")
+    EXPECT_EQ(image_error(npy_of_shape(shape, four)), "malformed, m: NPY: the shape is not (height, width[, channels])")
         << shape;
-  EXPECT_EQ(error_in(npy_of_shape("(0, 3)", "")), "malformed, m: NPY: an image of 3 x 0 pixels");
-  EXPECT_EQ(error_in(npy_of_shape("(3, 0)", "")), "malformed, m: NPY: an image of 0 x 3 pixels");
-  EXPECT_EQ(error_in(npy_of_shape("(1, 2)", four)),
+  EXPECT_EQ(image_error(npy_of_shape("(0, 3)", "")), "malformed, m: NPY: an image of 3 x 0 pixels");
+  EXPECT_EQ(image_error(npy_of_shape("(3, 0)", "")), "malformed, m: NPY: an image of 0 x 3 pixels");
+  EXPECT_EQ(image_error(npy_of_shape("(1, 2)", four)),
             "malformed, m: NPY: the header asks for 8 bytes of numbers, but 4 follow");
-  EXPECT_EQ(error_in(npy_of_shape("(16384, 16384, 1024)", four)),
+  EXPECT_EQ(image_error(npy_of_shape("(16384, 16384, 1024)", four)),
             "malformed, m: NPY: the header asks for 1099511627776 bytes of numbers, but 4 follow");
-  EXPECT_EQ(error_in(npy_of_shape("(1, 16385)", four)).substr(0, 32), "limit, m: NPY: 16385 x 1 pixels,");
+  EXPECT_EQ(image_error(npy_of_shape("(1, 16385)", four)).substr(0, 32), "limit, m: NPY: 16385 x 1 pixels,");
 }
 
 TEST(PfmHeader, WordsEndWithOneBlankEach) {
@@ -167,7 +156,7 @@ TEST(PfmHeader, WordsEndWithOneBlankEach) {
     EXPECT_EQ(outcome.image.channels[0].floats()[0], 0.5f);
   }
   // A second blank belongs to the numbers, which may begin with any byte.
-  EXPECT_EQ(error_in("Pf\n1 1\n-1.0\n\n" + one),
+  EXPECT_EQ(image_error("Pf\n1 1\n-1.0\n\n" + one),
             "malformed, m: PFM: the header asks for 4 bytes of numbers, but 5 follow");
   const float blanks = read("Pf\n1 1\n-1.0\n    ").image.channels.at(0).floats()[0];
   EXPECT_EQ(raw<float>({blanks}), "    ");
@@ -175,23 +164,23 @@ TEST(PfmHeader, WordsEndWithOneBlankEach) {
 
 TEST(PfmHeader, OtherKindsAreNotTakenForOneOfThese) {
   const std::string one = raw<float>({0.5f});
-  EXPECT_EQ(error_in("PF4\n1 1\n-1.0\n" + one + one + one + one), "malformed, m: PFM: neither PF nor Pf");
-  EXPECT_EQ(error_in("Pfx\n1 1\n-1.0\n" + one), "malformed, m: PFM: neither PF nor Pf");
+  EXPECT_EQ(image_error("PF4\n1 1\n-1.0\n" + one + one + one + one), "malformed, m: PFM: neither PF nor Pf");
+  EXPECT_EQ(image_error("Pfx\n1 1\n-1.0\n" + one), "malformed, m: PFM: neither PF nor Pf");
 }
 
 TEST(PfmHeader, WhatIsNotANumber) {
   const std::string one = raw<float>({0.5f});
-  EXPECT_EQ(error_in("Pf\nx 1\n-1.0\n" + one), "malformed, m: PFM: a size is not a number");
-  EXPECT_EQ(error_in("Pf\n1 1x\n-1.0\n" + one), "malformed, m: PFM: a size is not a number");
-  EXPECT_EQ(error_in("Pf\n1 -1\n-1.0\n" + one), "malformed, m: PFM: a size is not a number");
-  EXPECT_EQ(error_in("Pf\n4294967296 1\n-1.0\n" + one), "malformed, m: PFM: a size is not a number");
-  EXPECT_EQ(error_in("Pf\n1 1\n-0.0\n" + one), "malformed, m: PFM: the scale is not a number");
-  EXPECT_EQ(error_in("Pf\n1 1\nless\n" + one), "malformed, m: PFM: the scale is not a number");
-  EXPECT_EQ(error_in("Pf\n1 1"), "malformed, m: PFM: the header is cut short");
-  EXPECT_EQ(error_in("Pf\n1 1\n"), "malformed, m: PFM: the header is cut short");
-  EXPECT_EQ(error_in("Pf\n1  1\n-1.0\n" + one), "malformed, m: PFM: the header is cut short");
-  EXPECT_EQ(error_in("Pf\n" + std::string(64, '1') + " 1\n-1.0\n"), "malformed, m: PFM: the header is cut short");
-  EXPECT_EQ(error_in("PF\n1 0\n-1.0\n"), "malformed, m: PFM: an image of 1 x 0 pixels");
+  EXPECT_EQ(image_error("Pf\nx 1\n-1.0\n" + one), "malformed, m: PFM: a size is not a number");
+  EXPECT_EQ(image_error("Pf\n1 1x\n-1.0\n" + one), "malformed, m: PFM: a size is not a number");
+  EXPECT_EQ(image_error("Pf\n1 -1\n-1.0\n" + one), "malformed, m: PFM: a size is not a number");
+  EXPECT_EQ(image_error("Pf\n4294967296 1\n-1.0\n" + one), "malformed, m: PFM: a size is not a number");
+  EXPECT_EQ(image_error("Pf\n1 1\n-0.0\n" + one), "malformed, m: PFM: the scale is not a number");
+  EXPECT_EQ(image_error("Pf\n1 1\nless\n" + one), "malformed, m: PFM: the scale is not a number");
+  EXPECT_EQ(image_error("Pf\n1 1"), "malformed, m: PFM: the header is cut short");
+  EXPECT_EQ(image_error("Pf\n1 1\n"), "malformed, m: PFM: the header is cut short");
+  EXPECT_EQ(image_error("Pf\n1  1\n-1.0\n" + one), "malformed, m: PFM: the header is cut short");
+  EXPECT_EQ(image_error("Pf\n" + std::string(64, '1') + " 1\n-1.0\n"), "malformed, m: PFM: the header is cut short");
+  EXPECT_EQ(image_error("PF\n1 0\n-1.0\n"), "malformed, m: PFM: an image of 1 x 0 pixels");
 }
 
 TEST(PfmHeader, ThreeChannelsLieSideBySide) {

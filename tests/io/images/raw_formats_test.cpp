@@ -9,10 +9,7 @@
 namespace frontmost::test {
 namespace {
 
-struct Size {
-  int width, height;
-};
-constexpr Size sizes[] = {{1, 1}, {3, 5}, {17, 1}, {1, 17}, {64, 33}, {16384, 2}};
+constexpr std::pair<int, int> raw_sizes[] = {{1, 1}, {3, 5}, {17, 1}, {1, 17}, {64, 33}, {16384, 2}};
 
 class RawFormats : public testing::Test {
  protected:
@@ -25,7 +22,7 @@ class RawFormats : public testing::Test {
 
 #ifdef FRONTMOST_HAS_OPENEXR
 TEST_F(RawFormats, ExrKeepsAllChannelsToTheBit) {
-  for (const auto [width, height] : sizes) {
+  for (const auto& [width, height] : raw_sizes) {
     Image image = random_floats(width, height, {"R", "G", "B", "A", "Z", "N.X", "N.Y", "N.Z"}, -10, 10);
     add_odd_values(image);
     image.channels.push_back(std::move(random_ids(width, height, {"primitive"}).channels[0]));
@@ -64,7 +61,7 @@ TEST_F(RawFormats, ExrIsRefusedByBuildsWithoutIt) {
 #endif
 
 TEST_F(RawFormats, NpyAndPfmKeepEveryBit) {
-  for (const auto [width, height] : sizes) {
+  for (const auto& [width, height] : raw_sizes) {
     for (const auto& names : {std::vector<std::string>{"Z"}, {"R", "G", "B"}}) {
       Image image = random_floats(width, height, names, -1e6, 1e6);
       add_odd_values(image);

@@ -30,7 +30,7 @@ std::string outcome(const std::vector<std::byte>& bytes) {
 }
 std::string outcome(const GltfMaker& maker) { return outcome(maker.glb()); }
 std::string outcome_of_json(const std::string& members) {
-  return outcome(test::bytes_of(R"({"asset":{"version":"2.0"})" + members + "}"));
+  return outcome(test::byte_vector(R"({"asset":{"version":"2.0"})" + members + "}"));
 }
 
 // ---- The container ----
@@ -117,8 +117,8 @@ TEST(GltfJson, ValuesOfTheWrongKindNameTheirPlace) {
   };
   for (const auto& [members, words] : cases)
     EXPECT_EQ(outcome_of_json(members), std::string("malformed: ") + words) << members;
-  EXPECT_EQ(outcome(test::bytes_of("[]")), "malformed: JSON: an object is expected, not array");
-  EXPECT_EQ(outcome(test::bytes_of("{}")), "malformed: JSON: 'asset' is missing");
+  EXPECT_EQ(outcome(test::byte_vector("[]")), "malformed: JSON: an object is expected, not array");
+  EXPECT_EQ(outcome(test::byte_vector("{}")), "malformed: JSON: 'asset' is missing");
   EXPECT_EQ(outcome_of_json(R"(,"nodes":[{"children":[0.0]}])"), "malformed: nodes[0]: is part of a loop of nodes")
       << "0.0 is a whole number";
 }
@@ -290,7 +290,7 @@ TEST(GltfData, DataUrisKnowBothAlphabets) {
                              R"("}],"bufferViews":[{"buffer":0,"byteLength":12,"byteStride":4}],"accessors":[
         {"bufferView":0,"count":3,"type":"VEC3","componentType":5121}],"meshes":[{"primitives":[
         {"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}]})";
-    return load(test::bytes_of(text), "t.gltf").meshes[0].positions.at(0);
+    return load(test::byte_vector(text), "t.gltf").meshes[0].positions.at(0);
   };
   // 255 239 190 is "/+++" or "_---": the digits 63 and 62 of base64 (RFC 4648, sections 4 and 5).
   EXPECT_EQ(first_position("data:;base64,/+++AAAAAAAAAAAA"), glm::vec3(255, 239, 190));

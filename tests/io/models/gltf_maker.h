@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "frontmost/io.h"
+
 namespace frontmost::test {
 
 /// What an accessor's numbers are.
@@ -99,9 +101,11 @@ class GltfMaker {
   std::vector<std::byte> binary_;
 };
 
-inline std::vector<std::byte> bytes_of(const std::string& text) {
+inline std::vector<std::byte> byte_vector(const std::string& text) {
   const auto* first = reinterpret_cast<const std::byte*>(text.data());
   return {first, first + text.size()};
 }
+
+inline Scene load_glb(const GltfMaker& maker) { return load(maker.glb(), "t.glb"); }
 
 }  // namespace frontmost::test

@@ -14,6 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::GltfMaker;
+using test::load_glb;
 using testing::HasSubstr;
 using testing::SizeIs;
 
@@ -33,8 +34,6 @@ GltfMaker textured_maker() {
   return maker;
 }
 
-Scene read(const GltfMaker& maker) { return load(maker.glb(), "t.glb"); }
-
 TEST(GltfMaterials, AllMembersAreRead) {
   GltfMaker maker = textured_maker();
   maker.add("materials", R"({"name":"m","doubleSided":true,"alphaMode":"MASK","alphaCutoff":0.25,
@@ -44,7 +43,7 @@ TEST(GltfMaterials, AllMembersAreRead) {
       "normalTexture":{"index":0,"scale":2},"occlusionTexture":{"index":0,"strength":0.5},
       "emissiveTexture":{"index":0},"emissiveFactor":[0.5,1,0],
       "extensions":{"KHR_materials_unlit":{},"KHR_materials_emissive_strength":{"emissiveStrength":4}}})");
-  const Scene scene = read(maker);
+  const Scene scene = load_glb(maker);
   EXPECT_THAT(scene.warnings, SizeIs(0));
   ASSERT_THAT(scene.textures, SizeIs(1));
   EXPECT_EQ(scene.textures[0].name, "red");
@@ -72,7 +71,7 @@ TEST(GltfMaterials, AllMembersAreRead) {
 TEST(GltfMaterials, DefaultsAreThoseOfTheFormat) {
   GltfMaker maker = textured_maker();
   maker.add("materials", "{}");
-  const Material m = read(maker).materials.at(0);
+  const Material m = load_glb(maker).materials.at(0);
   EXPECT_EQ(m.base_color, glm::vec4(1));
   EXPECT_EQ(m.metallic, 1.0f);
   EXPECT_EQ(m.roughness, 1.0f);
@@ -86,7 +85,7 @@ TEST(GltfMaterials, TheBaseColourChoosesTheTextureCoordinates) {
   GltfMaker maker = textured_maker();
   maker.add("materials", R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":1}},
       "emissiveTexture":{"index":0,"texCoord":0}})");
-  const Scene scene = read(maker);
+  const Scene scene = load_glb(maker);
   EXPECT_EQ(scene.meshes[0].texcoords.values.at(0), glm::vec2(5, 5));
   EXPECT_TRUE(scene.materials[0].base_color_texture.is_set());
   EXPECT_FALSE(scene.materials[0].emissive_texture.is_set());
@@ -116,8 +115,8 @@ TEST(GltfMaterials, WhatATextureLimitsIsNotThereWithoutIt) {
   GltfMaker other_set = textured_maker();
   other_set.add("materials", R"({"name":"lamp","pbrMetallicRoughness":{"baseColorTexture":{"index":0},)" +
                                  members(R"({"index":0,"texCoord":1})"));
-  expect_no_glow_and_no_metal(read(other_set), "materials[0] (lamp)");
-  EXPECT_TRUE(read(other_set).materials[0].base_color_texture.is_set());
+  expect_no_glow_and_no_metal(load_glb(other_set), "materials[0] (lamp)");
+  EXPECT_TRUE(load_glb(other_set).materials[0].base_color_texture.is_set());
 
   // An image that cannot be decoded, which is found out last of all, and a texture without any.
   for (const char* texture : {R"({"source":1})", "{}"}) {
@@ -125,7 +124,7 @@ TEST(GltfMaterials, WhatATextureLimitsIsNotThereWithoutIt) {
     broken.add("images", R"({"uri":"nowhere.png"})");
     broken.add("textures", texture);
     broken.add("materials", R"({"pbrMetallicRoughness":{)" + members(R"({"index":1})"));
-    expect_no_glow_and_no_metal(read(broken), "materials[0]");
+    expect_no_glow_and_no_metal(load_glb(broken), "materials[0]");
   }
 }
 
@@ -137,7 +136,7 @@ TEST(GltfMaterials, ImagesAreSharedUnlessSamplersDiffer) {
   maker.add("textures", R"({"source":0,"sampler":1})");
   for (int i = 0; i < 3; ++i)
     maker.add("materials", R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":)" + std::to_string(i) + "}}}");
-  const Scene scene = read(maker);
+  const Scene scene = load_glb(maker);
   ASSERT_THAT(scene.textures, SizeIs(2)) << "an explicit repeat is the default";
   EXPECT_EQ(scene.materials[0].base_color_texture.texture, scene.materials[2].base_color_texture.texture);
   const Texture& clamped = scene.textures[scene.materials[1].base_color_texture.texture];
@@ -164,7 +163,7 @@ TEST(GltfMaterials, ImagesThatGrowTooMuchAreLeftOut) {
       maker.add("textures", R"({"source":0,"sampler":)" + std::to_string(i % sampler_count) + "}");
       maker.add("materials", R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":)" + std::to_string(i) + "}}}");
     }
-    const Scene scene = read(maker);
+    const Scene scene = load_glb(maker);
     EXPECT_THAT(scene.textures, SizeIs(sampler_count == 1 ? 1 : 0));
     if (sampler_count == 2) {
       EXPECT_THAT(scene.warnings.at(0), HasSubstr("images[0]: too many pixels"));
@@ -179,7 +178,7 @@ TEST(GltfMaterials, ImagesThatLieInOnePlaceAreReadOnce) {
   maker.add("textures", R"({"source":1})");
   for (int i = 0; i < 2; ++i)
     maker.add("materials", R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":)" + std::to_string(i) + "}}}");
-  const Scene scene = read(maker);
+  const Scene scene = load_glb(maker);
   EXPECT_THAT(scene.warnings, SizeIs(0));
   ASSERT_THAT(scene.textures, SizeIs(2));
   EXPECT_EQ(scene.textures[1].name, "red");
@@ -198,7 +197,7 @@ TEST(GltfMaterials, ImagesThatCannotBeReadAreWarnings) {
   // The good image is the last that is used, so that its number changes.
   for (const int i : {1, 2, 3, 4, 0})
     maker.add("materials", R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":)" + std::to_string(i) + "}}}");
-  const Scene scene = read(maker);
+  const Scene scene = load_glb(maker);
   ASSERT_THAT(scene.warnings, SizeIs(4));
   EXPECT_THAT(scene.warnings[0], HasSubstr("textures[4]: has no PNG or JPEG image"));
   EXPECT_THAT(scene.warnings[1], testing::AllOf(HasSubstr("images[1]: WebP"), HasSubstr("go without")));
@@ -222,7 +221,7 @@ TEST(GltfMaterials, FilesBesideTheModelAreRead) {
   maker.add("materials", R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":1}}})");
   write("my textures/red.png", red_png());
   write("data.bin", maker.binary());
-  write("model.gltf", test::bytes_of(maker.json(R"(,"uri":"data.bin")")));
+  write("model.gltf", test::byte_vector(maker.json(R"(,"uri":"data.bin")")));
   const Scene scene = load((folder / "model.gltf").string());
   EXPECT_EQ(scene.name, "model");
   EXPECT_THAT(scene.warnings, SizeIs(0));
@@ -236,7 +235,7 @@ TEST(GltfMaterials, WrongReferencesAreErrors) {
   GltfMaker maker = textured_maker();
   maker.add("materials", R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":7}}})");
   try {
-    (void)read(maker);
+    (void)load_glb(maker);
     ADD_FAILURE();
   } catch (const Error& error) {
     EXPECT_THAT(error.what(),

@@ -20,13 +20,13 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 /// A row of the models' README: counted by others, with other programs.
-struct Known {
+struct KnownGltf {
   const char* file;
   std::uint64_t triangles;
   std::size_t objects, cameras;
 };
 
-constexpr Known known[] = {
+constexpr KnownGltf known[] = {
     {"assembly/2-cylinder-engine.glb", 121496, 67, 1},
     {"assembly/as1.glb", 10124, 18, 0},
     {"assembly/cesium-milk-truck.glb", 3624, 3, 0},
@@ -55,7 +55,7 @@ constexpr Known known[] = {
 
 TEST(GltfModels, HoldWhatTheirTableSays) {
   FRONTMOST_NEEDS_MODELS();
-  for (const Known& row : known) {
+  for (const KnownGltf& row : known) {
     SCOPED_TRACE(row.file);
     const Scene scene = load(test::model(row.file));
     EXPECT_EQ(triangle_count(scene), row.triangles);

@@ -10,13 +10,12 @@ namespace frontmost {
 namespace {
 
 using test::GltfMaker;
+using test::load_glb;
 using test::Type;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
 constexpr const char* indexed = R"({"attributes":{"POSITION":0},"indices":1})";
-
-Scene read(const GltfMaker& maker) { return load(maker.glb(), "t.glb"); }
 
 std::string error_of(const std::vector<std::byte>& bytes, ErrorCode code = ErrorCode::file_malformed) {
   try {
@@ -48,7 +47,7 @@ TEST(Gltf, StripsAndFansKeepTheirWinding) {
     GltfMaker maker = points_maker();
     maker.shorts({4, 3, 2, 1, 0});
     maker.show(R"({"attributes":{"POSITION":0},"indices":1,"mode":)" + std::to_string(mode) + "}");
-    const Scene scene = read(maker);
+    const Scene scene = load_glb(maker);
     EXPECT_EQ(scene.meshes[0].triangles, triangles) << "mode " << mode;
     EXPECT_EQ(scene.warnings.size(), mode == 4 ? 1u : 0u) << "five corners are not whole triangles";
   }
@@ -57,7 +56,7 @@ TEST(Gltf, StripsAndFansKeepTheirWinding) {
 TEST(Gltf, WithoutIndicesCornersFollowEachOther) {
   GltfMaker maker = points_maker();
   maker.show(R"({"attributes":{"POSITION":0},"mode":5})");
-  EXPECT_THAT(read(maker).meshes[0].triangles,
+  EXPECT_THAT(load_glb(maker).meshes[0].triangles,
               ElementsAre(glm::uvec3(0, 1, 2), glm::uvec3(1, 3, 2), glm::uvec3(2, 3, 4)));
 }
 
@@ -65,7 +64,7 @@ TEST(Gltf, PointsAndLinesArePassedOver) {
   for (int mode = 0; mode < 4; ++mode) {
     GltfMaker maker = points_maker();
     maker.show(R"({"attributes":{"POSITION":0},"mode":)" + std::to_string(mode) + "}");
-    const Scene scene = read(maker);
+    const Scene scene = load_glb(maker);
     EXPECT_EQ(triangle_count(scene), 0u);
     EXPECT_THAT(scene.warnings.at(0), HasSubstr("meshes[0].primitives[0]: "));
   }
@@ -79,7 +78,7 @@ TEST(Gltf, PrimitivesBecomeOneMeshInOrder) {
   maker.accessor(std::vector<std::uint8_t>{0, 1, 0}, {"SCALAR", 5121, ""}, 3);
   maker.add("materials", R"({"name":"red"})");
   maker.show(indexed + std::string(R"(,{"attributes":{"POSITION":3,"NORMAL":2},"indices":4,"material":0},)") + indexed);
-  const Mesh mesh = read(maker).meshes[0];
+  const Mesh mesh = load_glb(maker).meshes[0];
   // The first and the last share their vertices, of which only 2 to 4 are used.
   EXPECT_THAT(mesh.positions,
               ElementsAre(glm::vec3(2, 0, 0), glm::vec3(3, 0, 0), glm::vec3(4, 0, 0), glm::vec3(9), glm::vec3(8)));
@@ -96,7 +95,7 @@ TEST(Gltf, VertexColoursOfAllTypes) {
     maker.shorts({0, 0, 0});
     maker.accessor(numbers, {shape, component, component == 5126 ? "" : R"(,"normalized":true)"}, 1);
     maker.show(R"({"attributes":{"POSITION":0,"COLOR_0":2},"indices":1})");
-    return read(maker).meshes[0].colors.values.at(0);
+    return load_glb(maker).meshes[0].colors.values.at(0);
   };
   EXPECT_EQ(colour(std::vector<float>{0.25f, 0.5f, 1}, 5126, "VEC3"), glm::vec4(0.25f, 0.5f, 1, 1));
   EXPECT_EQ(colour(std::vector<float>{0.25f, 0.5f, 1, 0.75f}, 5126, "VEC4"), glm::vec4(0.25f, 0.5f, 1, 0.75f));
@@ -112,7 +111,7 @@ TEST(Gltf, QuantisedPositionsAndNormals) {
   maker.shorts({0, 0, 0});
   maker.accessor(std::vector<std::int8_t>{-128, 0, 127, 0}, {"VEC3", 5120, R"(,"normalized":true)"}, 1);
   maker.show(R"({"attributes":{"POSITION":0,"NORMAL":2},"indices":1})");
-  const Mesh mesh = read(maker).meshes[0];
+  const Mesh mesh = load_glb(maker).meshes[0];
   EXPECT_EQ(mesh.positions.at(0), glm::vec3(-32768, -3, 32767));
   EXPECT_EQ(mesh.normals.values.at(0), glm::vec3(-1, 0, 1));
 }
@@ -124,7 +123,7 @@ TEST(Gltf, InterleavedVerticesAreTakenByStride) {
   maker.bare_accessor({"VEC3", 5126, ""}, 3, R"(,"bufferView":0)");
   maker.bare_accessor({"VEC2", 5126, ""}, 3, R"(,"bufferView":0,"byteOffset":12)");
   maker.show(R"({"attributes":{"POSITION":0,"TEXCOORD_0":1}})");
-  const Mesh mesh = read(maker).meshes[0];
+  const Mesh mesh = load_glb(maker).meshes[0];
   EXPECT_THAT(mesh.positions, ElementsAre(glm::vec3(0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)));
   EXPECT_THAT(mesh.texcoords.values, ElementsAre(glm::vec2(7), glm::vec2(8), glm::vec2(9)));
 }
@@ -141,7 +140,7 @@ TEST(Gltf, SparseAccessorsReplaceElements) {
   maker.shorts({3, 4, 5});
   maker.show(indexed);
   // Without a buffer view all others are zero. Only vertices 3 to 5 are in use.
-  EXPECT_THAT(read(maker).meshes[0].positions, ElementsAre(glm::vec3(0), glm::vec3(6), glm::vec3(0)));
+  EXPECT_THAT(load_glb(maker).meshes[0].positions, ElementsAre(glm::vec3(0), glm::vec3(6), glm::vec3(0)));
 }
 
 /// MAT2 of bytes, MAT3 of bytes and MAT3 of shorts have padding between their columns, and none behind the last one.
@@ -163,7 +162,7 @@ TEST(Gltf, MatricesArePaddedByColumn) {
     GltfMaker maker = points_maker();
     const int id = maker.accessor(c.bytes, c.type, count);
     maker.show(R"({"attributes":{"POSITION":0}})");
-    EXPECT_EQ(triangle_count(read(maker)), 1u) << c.type.shape << " of " << c.type.component;
+    EXPECT_EQ(triangle_count(load_glb(maker)), 1u) << c.type.shape << " of " << c.type.component;
 
     const std::vector<std::byte> glb = maker.glb();
     const ModelSource source("t.glb", {});
@@ -190,7 +189,7 @@ TEST(Gltf, IndicesWithoutBufferViewAreZero) {
   GltfMaker maker = points_maker();
   maker.bare_accessor({"SCALAR", 5125, ""}, 3);
   maker.show(indexed);
-  EXPECT_THAT(read(maker).meshes[0].triangles, ElementsAre(glm::uvec3(0)));
+  EXPECT_THAT(load_glb(maker).meshes[0].triangles, ElementsAre(glm::uvec3(0)));
 }
 
 TEST(Gltf, SparseIndicesMustRise) {
@@ -221,7 +220,7 @@ TEST(Gltf, NodesArePlacedByAllTheirParents) {
   // A quarter turn about z, not normalised.
   maker.add("nodes", R"({"name":"turned","mesh":0,"rotation":[0,0,3,3],"translation":[1,0,0]})");
   maker.add("nodes", R"({"mesh":0,"matrix":[-1,0,0,0, 0,1,0,0, 0,0,1,0, 5,6,7,1]})");
-  const Scene scene = read(maker);
+  const Scene scene = load_glb(maker);
   ASSERT_EQ(scene.instances.size(), 2u);
   EXPECT_EQ(scene.meshes.size(), 1u);
   EXPECT_EQ(scene.instances[0].name, "turned");
@@ -269,7 +268,7 @@ TEST(Gltf, DeepTreesNeedNoStack) {
   for (int i = 0; i < depth; ++i)
     maker.add("nodes", R"({"translation":[1,0,0],"children":[)" + std::to_string(i + 1) + "]}");
   maker.add("nodes", R"({"mesh":0})");
-  const Scene scene = read(maker);
+  const Scene scene = load_glb(maker);
   ASSERT_EQ(scene.instances.size(), 1u);
   EXPECT_EQ(scene.origin.x + scene.instances[0].world_from_mesh[3].x, depth);
 }
@@ -288,7 +287,7 @@ TEST(Gltf, CopiesOfOneNode) {
   maker.set("extensionsRequired", R"(["EXT_mesh_gpu_instancing"])");
   maker.add("nodes", R"({"mesh":0,"name":"n","translation":[0,0,10],"extensions":{"EXT_mesh_gpu_instancing":
       {"attributes":{"TRANSLATION":1,"ROTATION":2}}}})");
-  const Scene scene = read(maker);
+  const Scene scene = load_glb(maker);
   ASSERT_EQ(scene.instances.size(), 2u);
   EXPECT_EQ(scene.instances[1].name, "n[1]");
   EXPECT_EQ(scene.instances[0].world_from_mesh * glm::dvec4(1, 0, 0, 1), glm::dvec4(2, 2, 13, 1));
@@ -303,7 +302,7 @@ TEST(Gltf, CamerasHaveRigidPoses) {
   maker.add("nodes", R"({"camera":0,"name":"eye","translation":[1,2,3],"scale":[5,-6,7],"rotation":[0,1,0,0]})");
   maker.add("nodes", R"({"camera":1})");
   maker.add("nodes", R"({"camera":2})");
-  const Scene scene = read(maker);
+  const Scene scene = load_glb(maker);
   ASSERT_EQ(scene.cameras.size(), 2u);
   const Camera& eye = scene.cameras[0];
   EXPECT_EQ(eye.name, "eye");
@@ -337,7 +336,7 @@ TEST(Gltf, SkinsArePosedByTheirJoints) {
   maker.add("nodes", R"({"translation":[0,0,1]})");
   maker.add("nodes", R"({"translation":[0,4,5],"rotation":[1,0,0,0]})");  // half a turn about x
   maker.add("scenes", R"({"nodes":[0]})");
-  const Scene scene = read(maker);
+  const Scene scene = load_glb(maker);
   ASSERT_EQ(scene.instances.size(), 1u);
   EXPECT_EQ(scene.instances[0].world_from_mesh, glm::dmat4(1.0)) << "the node of a skinned mesh does not move it";
   const Mesh& mesh = scene.meshes[0];
@@ -363,7 +362,7 @@ std::vector<glm::dvec3> skinned_vertices(const std::string& translation) {
   maker.add("nodes", R"({"translation":[0,0,1]})");
   maker.add("nodes", R"({"translation":[0,4.1,5],"rotation":[1,0,0,0]})");
   maker.add("scenes", R"({"nodes":[0,1]})");
-  const Scene scene = read(maker);
+  const Scene scene = load_glb(maker);
   std::vector<glm::dvec3> vertices;
   for (const glm::vec3& p : scene.meshes.at(0).positions)
     vertices.emplace_back(scene.origin + glm::dvec3(scene.instances.at(0).world_from_mesh * glm::dvec4(p, 1)));
@@ -407,7 +406,7 @@ TEST(Gltf, MorphTargetsApplyWithTheirDefaultWeights) {
   maker.add("nodes", R"({"mesh":0})");
   maker.add("nodes", R"({"mesh":0,"weights":[0,2]})");
   maker.add("nodes", R"({"mesh":0,"weights":[0.5,0]})");
-  const Scene scene = read(maker);
+  const Scene scene = load_glb(maker);
   ASSERT_EQ(scene.meshes.size(), 2u) << "equal poses share one mesh";
   EXPECT_EQ(scene.meshes[scene.instances[0].mesh].positions[1], glm::vec3(1, 0, 4));
   EXPECT_EQ(scene.meshes[scene.instances[1].mesh].positions[1], glm::vec3(3, 0, 0));
@@ -467,7 +466,7 @@ TEST(Gltf, AFewBytesSharedByManyAreRefused) {
 TEST(Gltf, RequiredExtensionsThatWeLackAreNamed) {
   GltfMaker maker = triangle_maker();
   maker.set("extensionsUsed", R"(["KHR_draco_mesh_compression","KHR_texture_transform","EXT_other"])");
-  EXPECT_THAT(read(maker).warnings,
+  EXPECT_THAT(load_glb(maker).warnings,
               ElementsAre(HasSubstr("KHR_draco_mesh_compression"), HasSubstr("EXT_other"), HasSubstr("no triangles")));
   maker.set("extensionsRequired", R"(["KHR_texture_transform","KHR_draco_mesh_compression","EXT_other"])");
   EXPECT_THAT(error_of(maker, ErrorCode::unsupported),
@@ -476,11 +475,11 @@ TEST(Gltf, RequiredExtensionsThatWeLackAreNamed) {
 
 TEST(Gltf, OtherVersionsAreNamed) {
   const auto version = [](const std::string& asset) {
-    return error_of(test::bytes_of(R"({"asset":)" + asset + "}"), ErrorCode::unsupported);
+    return error_of(test::byte_vector(R"({"asset":)" + asset + "}"), ErrorCode::unsupported);
   };
   EXPECT_THAT(version(R"({"version":"1.0"})"), HasSubstr("asset.version: glTF 1.0"));
   EXPECT_THAT(version(R"({"version":"2.1","minVersion":"2.1"})"), HasSubstr("asset.minVersion: glTF 2.1"));
-  EXPECT_NO_THROW((void)load(test::bytes_of(R"({"asset":{"version":"2.1","minVersion":"2.0"}})"), "t.gltf"));
+  EXPECT_NO_THROW((void)load(test::byte_vector(R"({"asset":{"version":"2.1","minVersion":"2.0"}})"), "t.gltf"));
 }
 
 TEST(Gltf, DataUrisHoldBuffers) {
@@ -491,11 +490,12 @@ TEST(Gltf, DataUrisHoldBuffers) {
         std::string(R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":12,"uri":")") + uri +
         R"("}],"bufferViews":[{"buffer":0,"byteLength":12,"byteStride":4}],"accessors":[{"bufferView":0,"count":3,
         "type":"VEC3","componentType":5121}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}]})";
-    const Scene scene = load(test::bytes_of(text), "t.gltf");
+    const Scene scene = load(test::byte_vector(text), "t.gltf");
     EXPECT_EQ(scene.meshes[0].positions.size(), 3u);
   }
   const auto refused = [](const std::string& uri) {
-    return error_of(test::bytes_of(R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":1,"uri":")" + uri + "\"}]}"));
+    return error_of(
+        test::byte_vector(R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":1,"uri":")" + uri + "\"}]}"));
   };
   EXPECT_THAT(refused("data:;base64,A?=="), HasSubstr("buffers[0].uri: character 1"));
   EXPECT_THAT(refused("data:;base64,A"), HasSubstr("buffers[0].uri: base64"));
@@ -505,13 +505,14 @@ TEST(Gltf, DataUrisHoldBuffers) {
 
 TEST(Gltf, FilesAreNotReadForModelsInMemory) {
   const std::string text = R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":1,"uri":"..%2Fsecret%20file.bin"}]})";
-  EXPECT_THAT(error_of(test::bytes_of(text), ErrorCode::file_unreadable), HasSubstr("../secret file.bin"));
+  EXPECT_THAT(error_of(test::byte_vector(text), ErrorCode::file_unreadable), HasSubstr("../secret file.bin"));
 }
 
 TEST(Gltf, DeeplyNestedJsonIsRefused) {
   const std::string open(1000000, '[');
-  EXPECT_THAT(error_of(test::bytes_of(R"({"asset":)" + open), ErrorCode::limit_exceeded), HasSubstr("nested deeper"));
-  EXPECT_THAT(error_of(test::bytes_of(R"({"asset":"[[[[)")), HasSubstr("JSON: parse error"));
+  EXPECT_THAT(error_of(test::byte_vector(R"({"asset":)" + open), ErrorCode::limit_exceeded),
+              HasSubstr("nested deeper"));
+  EXPECT_THAT(error_of(test::byte_vector(R"({"asset":"[[[[)")), HasSubstr("JSON: parse error"));
 }
 
 // ---- Every prefix, and many mutations ----

@@ -18,12 +18,12 @@ using test::load_text;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-const std::string off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-const std::string ply =
+const std::string one_obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+const std::string one_off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+const std::string one_ply =
     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
     "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-const std::string stl =
+const std::string one_stl =
     "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
 
 std::string temporary(const std::string& name) {
@@ -42,11 +42,11 @@ std::string failure(const std::string& path, ErrorCode code) {
 }
 
 TEST(Load, KnowsFormatsByContent) {
-  for (const std::string& text : {obj, off, ply, stl, "\xEF\xBB\xBF# bom\n" + obj}) {
+  for (const std::string& text : {one_obj, one_off, one_ply, one_stl, "\xEF\xBB\xBF# bom\n" + one_obj}) {
     const Scene scene = load_text(text);
     EXPECT_EQ(triangle_count(scene), 1u);
     EXPECT_EQ(scene.name, "model");
-    EXPECT_EQ(scene.up, &text == &stl || text == stl ? Axis::z : Axis::y);
+    EXPECT_EQ(scene.up, &text == &one_stl || text == one_stl ? Axis::z : Axis::y);
   }
 }
 
@@ -64,7 +64,8 @@ TEST(Load, RefusesWhatIsNoModel) {
 }
 
 TEST(Load, SuffixInAnyCaseThenContent) {
-  for (const auto& [name, text] : {std::pair{"a.OBJ", obj}, {"b.oFF", off}, {"c.unknown", stl}, {"d", ply}}) {
+  for (const auto& [name, text] :
+       {std::pair{"a.OBJ", one_obj}, {"b.oFF", one_off}, {"c.unknown", one_stl}, {"d", one_ply}}) {
     const std::string path = temporary(name);
     std::ofstream(path) << text;
     EXPECT_EQ(triangle_count(load(path)), 1u) << name;
@@ -73,9 +74,9 @@ TEST(Load, SuffixInAnyCaseThenContent) {
 }
 
 TEST(Load, UpIsTheFormatsUnlessGiven) {
-  EXPECT_EQ(load_text(stl).up, Axis::z);
-  EXPECT_EQ(load_text(ply).up, Axis::y);
-  EXPECT_EQ(load(test::bytes_of(ply), "x.ply", {.format = {}, .up = Axis::minus_x}).up, Axis::minus_x);
+  EXPECT_EQ(load_text(one_stl).up, Axis::z);
+  EXPECT_EQ(load_text(one_ply).up, Axis::y);
+  EXPECT_EQ(load(test::bytes_of(one_ply), "x.ply", {.format = {}, .up = Axis::minus_x}).up, Axis::minus_x);
 }
 
 TEST(Load, UnreadablePathsSayWhy) {
@@ -99,7 +100,7 @@ TEST(Load, PipesAreStreams) {
   // More than the pipe and the first block hold.
   std::string text = "solid\n";
   const std::size_t count = 3000;
-  for (std::size_t i = 0; i < count; ++i) text += stl.substr(6, stl.size() - 15);
+  for (std::size_t i = 0; i < count; ++i) text += one_stl.substr(6, one_stl.size() - 15);
   std::thread writer([&] { std::ofstream(path) << text + "endsolid\n"; });
   EXPECT_EQ(triangle_count(load(path)), count);
   writer.join();
@@ -108,7 +109,7 @@ TEST(Load, PipesAreStreams) {
 
 TEST(Load, StandardInput) {
   const std::string path = temporary("stdin");
-  std::ofstream(path) << obj;
+  std::ofstream(path) << one_obj;
   const int saved = ::dup(STDIN_FILENO), file = ::open(path.c_str(), O_RDONLY);
   ::dup2(file, STDIN_FILENO);
   const Scene scene = load("-");

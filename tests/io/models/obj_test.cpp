@@ -14,7 +14,7 @@ using test::load_text;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+const std::string square_corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 /// A folder of its own that vanishes with the test.
 class Folder {
@@ -38,7 +38,7 @@ class Folder {
 };
 
 TEST(Obj, SeparateIndicesNegativeIndicesAndFaces) {
-  const Scene scene = load_text(square +
+  const Scene scene = load_text(square_corners +
                                 "vt 0 0\nvt 1 0.25\nvn 0 0 1\nvn 0 0 -1\n"
                                 "f 1/1/1 2/2/1 3/2/1 4/1/2\nf -4//-1 -3//-1 -2//-2\n");
   const Mesh& mesh = scene.meshes.at(0);
@@ -52,14 +52,14 @@ TEST(Obj, SeparateIndicesNegativeIndicesAndFaces) {
 }
 
 TEST(Obj, EqualIndicesAreStoredOnce) {
-  const Scene scene = load_text(square + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 5 5\nf 1/1 2/2 3/3 4/4\n");
+  const Scene scene = load_text(square_corners + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 5 5\nf 1/1 2/2 3/3 4/4\n");
   EXPECT_TRUE(scene.meshes.at(0).texcoords.triangles.empty());
   EXPECT_EQ(scene.meshes[0].texcoords.values.size(), 5u);
 }
 
 TEST(Obj, ObjectsAndGroupsAreMeshesWithTheirOwnVertices) {
   const Scene scene =
-      load_text("o unused\no first\n" + square + "f 1 2 3\ng second part\nf 3 4 1\nf 3 2 1\ng\nf 4 1 2\n");
+      load_text("o unused\no first\n" + square_corners + "f 1 2 3\ng second part\nf 3 4 1\nf 3 2 1\ng\nf 4 1 2\n");
   ASSERT_EQ(scene.meshes.size(), 3u);
   EXPECT_EQ(scene.instances[0].name, "first");
   EXPECT_EQ(scene.instances[1].name, "second part");
@@ -71,14 +71,14 @@ TEST(Obj, ObjectsAndGroupsAreMeshesWithTheirOwnVertices) {
 }
 
 TEST(Obj, NamesThatStayStartNoMesh) {
-  const Scene scene = load_text(square + "g a\nf 1 2 3\ng a\nf 3 4 1\ns 1\nusemtl m\nf 1 2 4\n");
+  const Scene scene = load_text(square_corners + "g a\nf 1 2 3\ng a\nf 3 4 1\ns 1\nusemtl m\nf 1 2 4\n");
   ASSERT_EQ(scene.meshes.size(), 1u);
   EXPECT_EQ(scene.meshes[0].triangles.size(), 3u);
 }
 
 TEST(Obj, MaterialsByTriangle) {
   const Scene scene =
-      load_text(square + "f 1 2 3\nusemtl red\nf 1 2 3 4\nusemtl dark blue\nf 1 2 3\no next\nf 1 2 3\n");
+      load_text(square_corners + "f 1 2 3\nusemtl red\nf 1 2 3 4\nusemtl dark blue\nf 1 2 3\no next\nf 1 2 3\n");
   ASSERT_EQ(scene.materials.size(), 2u);
   EXPECT_EQ(scene.materials[1].name, "dark blue");
   EXPECT_THAT(scene.meshes[0].material_ids, ElementsAre(no_index, 0, 0, 1));
@@ -95,7 +95,7 @@ TEST(Obj, VertexColors) {
 }
 
 TEST(Obj, FacesMayComeBeforeTheirVertices) {
-  const Scene scene = load_text("f 1 2 3\nf 1 2 3 4\n" + square);
+  const Scene scene = load_text("f 1 2 3\nf 1 2 3 4\n" + square_corners);
   EXPECT_EQ(triangle_count(scene), 3u);
 }
 
@@ -110,22 +110,23 @@ TEST(Obj, ErrorsNameTheLine) {
   EXPECT_EQ(error("v 0 0\n"), "model: line 1: a vertex needs three numbers");
   EXPECT_EQ(error("v 0 0 0\nvn 0 1 up\n"), "model: line 2: a normal needs three numbers");
   EXPECT_EQ(error("vt\n"), "model: line 1: a texture coordinate needs a number");
-  EXPECT_EQ(error(square + "f 1 2 5\nf 1 2 3\n"), "model: line 5: vertex index 5 is out of range, there are 4");
-  EXPECT_EQ(error(square + "f 1 2 0\n"), "model: line 5: vertex index out of range, there are 4 so far");
-  EXPECT_EQ(error(square + "f 1 2 -5\n"), "model: line 5: vertex index out of range, there are 4 so far");
-  EXPECT_EQ(error(square + "f 1 2 99999999999\n"), "model: line 5: vertex index out of range, there are 4 so far");
-  EXPECT_EQ(error(square + "f 1/1 2/1 3/1\n"),
+  EXPECT_EQ(error(square_corners + "f 1 2 5\nf 1 2 3\n"), "model: line 5: vertex index 5 is out of range, there are 4");
+  EXPECT_EQ(error(square_corners + "f 1 2 0\n"), "model: line 5: vertex index out of range, there are 4 so far");
+  EXPECT_EQ(error(square_corners + "f 1 2 -5\n"), "model: line 5: vertex index out of range, there are 4 so far");
+  EXPECT_EQ(error(square_corners + "f 1 2 99999999999\n"),
+            "model: line 5: vertex index out of range, there are 4 so far");
+  EXPECT_EQ(error(square_corners + "f 1/1 2/1 3/1\n"),
             "model: line 5: texture coordinate index 1 is out of range, there are 0");
-  EXPECT_EQ(error(square + "f 1//1 2//1 3//1\n"), "model: line 5: normal index 1 is out of range, there are 0");
-  EXPECT_EQ(error(square + "f 1 2 x\n"), "model: line 5: not a corner of a face");
-  EXPECT_EQ(error(square + "f 1 2 3.5\n"), "model: line 5: not a corner of a face");
+  EXPECT_EQ(error(square_corners + "f 1//1 2//1 3//1\n"), "model: line 5: normal index 1 is out of range, there are 0");
+  EXPECT_EQ(error(square_corners + "f 1 2 x\n"), "model: line 5: not a corner of a face");
+  EXPECT_EQ(error(square_corners + "f 1 2 3.5\n"), "model: line 5: not a corner of a face");
   EXPECT_EQ(error("\nbinary rubbish\n"), "model: line 2: not an OBJ statement");
 }
 
 TEST(Obj, MaterialLibraries) {
   const Folder folder;
   const std::string path =
-      folder.write("model.obj", "mtllib sub/a library.mtl\n" + square +
+      folder.write("model.obj", "mtllib sub/a library.mtl\n" + square_corners +
                                     "usemtl paint\nf 1 2 3\nusemtl glass\nf 1 2 3\nusemtl later\nf 1 2 3\n");
   folder.write(
       "sub/a library.mtl",
@@ -154,7 +155,7 @@ TEST(Obj, MaterialLibraries) {
 TEST(Obj, TheSceneTellsWhatItWasReadFrom) {
   const Folder folder;
   const std::string library = folder.write("m.mtl", "newmtl lamp\nKd 0 0 0\n");
-  const std::string path = folder.write("model.obj", "mtllib m.mtl\n" + square + "usemtl lamp\nf 1 2 3\n");
+  const std::string path = folder.write("model.obj", "mtllib m.mtl\n" + square_corners + "usemtl lamp\nf 1 2 3\n");
   Scene scene;
   add(scene, load(path));
   EXPECT_EQ(scene.source.format, ModelFormat::obj);
@@ -167,7 +168,7 @@ TEST(Obj, TheSceneTellsWhatItWasReadFrom) {
 
 TEST(Obj, WithoutItsTextureNothingGlows) {
   const Folder folder;
-  const std::string path = folder.write("model.obj", "mtllib m.mtl\n" + square + "usemtl lamp\nf 1 2 3\n");
+  const std::string path = folder.write("model.obj", "mtllib m.mtl\n" + square_corners + "usemtl lamp\nf 1 2 3\n");
   for (const char* lines : {"Ke 1 1 1\nmap_Ke none.png\n", "map_Ke none.png\nKe 1 1 1\n", "map_Ke none.png\n"}) {
     folder.write("m.mtl", std::string("newmtl lamp\nKd 0 0 0\nmap_Kd none.png\n") + lines);
     const Scene scene = load(path);
@@ -181,7 +182,7 @@ TEST(Obj, WithoutItsTextureNothingGlows) {
 TEST(Obj, ABrokenLibraryIsAWarning) {
   const Folder folder;
   folder.write("broken.mtl", "newmtl a\nd much\n");
-  const std::string path = folder.write("model.obj", "mtllib broken.mtl\n" + square + "f 1 2 3\n");
+  const std::string path = folder.write("model.obj", "mtllib broken.mtl\n" + square_corners + "f 1 2 3\n");
   const Scene scene = load(path);
   EXPECT_EQ(triangle_count(scene), 1u);
   EXPECT_THAT(scene.warnings,
@@ -197,7 +198,7 @@ TEST(Obj, NothingOutsideTheFolderIsRead) {
        {std::string("../outside.mtl"), (folder.path / "outside.mtl").string(), std::string("link.mtl"),
         std::string("..\\outside.mtl"), std::string("sub/../../outside.mtl"), std::string("C:\\outside.mtl"),
         std::string("/dev/zero"), std::string(".")}) {
-    const Scene scene = load(folder.write("model/model.obj", "mtllib " + name + "\n" + square + "f 1 2 3\n"));
+    const Scene scene = load(folder.write("model/model.obj", "mtllib " + name + "\n" + square_corners + "f 1 2 3\n"));
     EXPECT_EQ(triangle_count(scene), 1u);
     EXPECT_TRUE(scene.materials.empty()) << name;
     EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("left out"))) << name;

@@ -18,13 +18,13 @@ std::string header(const std::string& elements, const std::string& format = "asc
   return "ply\nformat " + format + " 1.0\n" + elements + "end_header\n";
 }
 
-std::string square(const std::string& faces, int face_count) {
+std::string square_with(const std::string& faces, int face_count) {
   return header("element vertex 4\n" + xyz + "element face " + std::to_string(face_count) + "\n" + corner_list) +
          "0 0 0\n1 0 0\n1 1 0\n0 1 0\n" + faces;
 }
 
 TEST(Ply, PolygonsRememberTheirFace) {
-  const Scene scene = load_text(square("3 0 1 2\n4 0 1 2 3\n2 0 1\n3 2 3 0\n", 4));
+  const Scene scene = load_text(square_with("3 0 1 2\n4 0 1 2 3\n2 0 1\n3 2 3 0\n", 4));
   const Mesh& mesh = scene.meshes.at(0);
   EXPECT_THAT(mesh.triangles,
               ElementsAre(glm::uvec3(0, 1, 2), glm::uvec3(0, 1, 2), glm::uvec3(0, 2, 3), glm::uvec3(2, 3, 0)));
@@ -34,7 +34,7 @@ TEST(Ply, PolygonsRememberTheirFace) {
 }
 
 TEST(Ply, TrianglesAloneNeedNoFaceIds) {
-  const Scene scene = load_text(square("3 0 1 2\n3 2 3 0\n", 2));
+  const Scene scene = load_text(square_with("3 0 1 2\n3 2 3 0\n", 2));
   EXPECT_TRUE(scene.meshes.at(0).face_ids.empty());
   EXPECT_EQ(scene.meshes[0].face_of(1), 1u);
 }
@@ -185,7 +185,7 @@ TEST(Ply, FaceColorsAndWedges) {
 }
 
 TEST(Ply, LineEndsOfEverySystem) {
-  const std::string unix_text = square("3 0 1 2\n", 1);
+  const std::string unix_text = square_with("3 0 1 2\n", 1);
   for (const std::string& end : {std::string("\r\n"), std::string("\r")}) {
     std::string text;
     for (const char c : unix_text) text += c == '\n' ? end : std::string(1, c);
@@ -210,11 +210,11 @@ TEST(Ply, ErrorsNameHeaderLineOrRow) {
   EXPECT_EQ(error("ply\nformat ascii 1.0\nelement vertex -3\n"), "model: line 3: an element needs a name and a count");
   EXPECT_THAT(error("ply\nformat ascii 1.0\nelement vertex 3\n"), HasSubstr("before \"end_header\""));
   EXPECT_EQ(error("ply\nend_header\n"), "model: line 2: the header names no format");
-  EXPECT_EQ(error(square("3 0 1 4\n", 1)), "model: line 14: face 0: vertex 4 is out of range, there are 4");
-  EXPECT_EQ(error(square("3 0 1 -1\n", 1)), "model: line 14: face 0: vertex -1 is out of range, there are 4");
-  EXPECT_EQ(error(square("3 0 1\n3 0 1 2\n", 2)), "model: line 14: face 0: the row has too few values");
-  EXPECT_EQ(error(square("-3 0 1 2\n", 1)), "model: line 14: face 0: a list of negative length");
-  EXPECT_THAT(error(square("3 0 1 2\n", 2)), HasSubstr("face 1: the file ends before the row"));
+  EXPECT_EQ(error(square_with("3 0 1 4\n", 1)), "model: line 14: face 0: vertex 4 is out of range, there are 4");
+  EXPECT_EQ(error(square_with("3 0 1 -1\n", 1)), "model: line 14: face 0: vertex -1 is out of range, there are 4");
+  EXPECT_EQ(error(square_with("3 0 1\n3 0 1 2\n", 2)), "model: line 14: face 0: the row has too few values");
+  EXPECT_EQ(error(square_with("-3 0 1 2\n", 1)), "model: line 14: face 0: a list of negative length");
+  EXPECT_THAT(error(square_with("3 0 1 2\n", 2)), HasSubstr("face 1: the file ends before the row"));
   EXPECT_EQ(error(header("element face 1\n" + corner_list + "element vertex 1\n" + xyz) + "3 0 1 2\n0 0 0\n"),
             "model: line 10: face 0: vertex 0 is out of range, there are 0 before the faces");
   EXPECT_EQ(error(header("element vertex 1\nproperty float x\n") + "1\n"),

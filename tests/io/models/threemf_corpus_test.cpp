@@ -14,7 +14,7 @@
 namespace frontmost {
 namespace {
 
-std::map<std::string, std::string> seeds() {
+std::map<std::string, std::string> packages() {
   std::map<std::string, std::string> all;
   for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(FRONTMOST_CORPUS) / "threemf")) {
     std::ifstream in(entry.path(), std::ios::binary);
@@ -24,7 +24,7 @@ std::map<std::string, std::string> seeds() {
 }
 
 TEST(ThreeMfCorpus, SeedsAreRead) {
-  const auto all = seeds();
+  const auto all = packages();
   EXPECT_GE(all.size(), 4u);
   for (const auto& [name, bytes] : all) EXPECT_TRUE(fuzz_3mf(bytes)) << name;
 }
@@ -32,7 +32,7 @@ TEST(ThreeMfCorpus, SeedsAreRead) {
 TEST(ThreeMfCorpus, PrefixesAndMutationsAreReadOrRefused) {
   std::mt19937 random(3);
   std::size_t good = 0, bad = 0;
-  for (const auto& [name, bytes] : seeds()) {
+  for (const auto& [name, bytes] : packages()) {
     SCOPED_TRACE(name);
     for (std::size_t size = 0; size < bytes.size(); ++size) (void)fuzz_3mf(bytes.substr(0, size));
     for (int round = 0; round < 600; ++round) {
