@@ -47,17 +47,23 @@ if(CMAKE_CXX_COMPILER_LAUNCHER)
 endif()
 option(FRONTMOST_TOGETHER "Compile the files of a folder as one" ${together})
 
-# frontmost_together(TARGET) : the files of each folder are compiled as one. Not kernels, because they include themselves
-# once for each instruction set; nor files with compiler options of their own, which CMake leaves out.
+# frontmost_together(TARGET [MOST]) : the files of each folder are compiled as one, or so many at a time. Not kernels, because
+# they include themselves once for each instruction set; nor files with compiler options of their own, which CMake leaves out.
 function(frontmost_together target)
   get_target_property(sources ${target} SOURCES)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${FRONTMOST_TOGETHER} UNITY_BUILD_MODE GROUP)
+  set(count 0)
+  set(part 0)
   foreach(source ${sources})
     if(NOT source MATCHES "_kernel[.]cpp$")
       cmake_path(ABSOLUTE_PATH source OUTPUT_VARIABLE path)
       cmake_path(GET path PARENT_PATH folder)
       cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
-      string(MAKE_C_IDENTIFIER "${folder}" group)
+      if(ARGC GREATER 1)
+        math(EXPR part "${count} / ${ARGV1}")
+        math(EXPR count "${count} + 1")
+      endif()
+      string(MAKE_C_IDENTIFIER "${folder}_${part}" group)
       set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${group})
     endif()
   endforeach()
