@@ -67,9 +67,9 @@ std::optional<double> near_for(const PrecisionRun& run, const DepthSetup& setup)
   const double rounding = rounding_gap(setup, wanted.y, run.reach);
   // Rounding also moves where the format is asked, and grows with the distance; both by less than this share.
   constexpr double slack = 4e-6;
-  const double left = wanted.x * (1 - slack) - rounding;
-  if (left <= 0) return std::nullopt;
-  return near_for_gap(setup, std::min(wanted.y + rounding, setup.clip.far), left);
+  const double left_over = wanted.x * (1 - slack) - rounding;
+  if (left_over <= 0) return std::nullopt;
+  return near_for_gap(setup, std::min(wanted.y + rounding, setup.clip.far), left_over);
 }
 
 std::string wanted_text(const PrecisionRun& run) {

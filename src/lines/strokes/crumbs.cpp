@@ -42,19 +42,19 @@ class EndGrid {
 
   void add(const CrumbEnd& end) { cells_[key(column(end.at.x), column(end.at.y))].push_back(end); }
 
-  /// Calls visit(end) for those within `reach`, less than a cell, of the segment's cells, and others nearby.
+  /// Calls visit(end) for those within `distance`, less than a cell, of the segment's cells, and others nearby.
   template <class Visit>
-  void for_each(const glm::dvec2& a, const glm::dvec2& b, double reach, const Visit& visit) const {
-    const glm::dvec2 low = glm::min(a, b) - reach, high = glm::max(a, b) + reach;
+  void for_each(const glm::dvec2& a, const glm::dvec2& b, double distance, const Visit& visit) const {
+    const glm::dvec2 low = glm::min(a, b) - distance, high = glm::max(a, b) + distance;
     for (std::int64_t x = column(low.x); x <= column(high.x); ++x) {
       // Of a long slanting segment only the rows that it passes in this column.
       double y0 = a.y, y1 = b.y;
       if (std::abs(b.x - a.x) > cell_) {
         const auto y_at = [&](double at) { return a.y + (b.y - a.y) * std::clamp((at - a.x) / (b.x - a.x), 0.0, 1.0); };
-        y0 = y_at(double(x) * cell_ - reach);
-        y1 = y_at(double(x + 1) * cell_ + reach);
+        y0 = y_at(double(x) * cell_ - distance);
+        y1 = y_at(double(x + 1) * cell_ + distance);
       }
-      for (std::int64_t y = column(std::min(y0, y1) - reach); y <= column(std::max(y0, y1) + reach); ++y)
+      for (std::int64_t y = column(std::min(y0, y1) - distance); y <= column(std::max(y0, y1) + distance); ++y)
         if (const auto found = cells_.find(key(x, y)); found != cells_.end())
           for (const CrumbEnd& end : found->second) visit(end);
     }
