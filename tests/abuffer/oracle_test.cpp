@@ -115,7 +115,8 @@ TEST_P(EveryKind, BytesDependOnNeitherThreadsNorInstructionSet) {
     const Sampling& sampling = all_samplings[seed];
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     RandomCase c = sampled_case(GetParam(), seed + 300, sampling);
-    c.scene = painted(std::move(c.scene), random_colors(c.scene.meshes[0].triangles.size(), seed));
+    const std::vector<glm::vec4> colors = random_colors(c.scene.meshes[0].triangles.size(), seed);
+    c.scene = painted(std::move(c.scene), colors);
     const Surfaces surfaces(c.scene);
     const AbufferOptions options{sampling.grid, 0.9f};
     const Image wanted = flat_picture(surfaces, c.view, options, {.threads = 1});
