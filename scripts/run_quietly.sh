@@ -12,5 +12,5 @@ if [ "$status" = 0 ]; then
 else
   cat "$log"
   echo "FAILED $1 with $status"
-  exit 255 # xargs stops at once
+  exit 1 # the others still run: one run tells of all faults
 fi
