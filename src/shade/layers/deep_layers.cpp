@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shade/layers/layers.h"
-
 #include <algorithm>
 #include <numeric>
 #include <tuple>
 
 #include "abuffer/tile_parts.h"
+#include "shade/layers/layers.h"
 #include "view/screen_transform.h"
 
 namespace frontmost::shading {
