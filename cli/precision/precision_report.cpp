@@ -112,7 +112,7 @@ std::string fights_text(const PrecisionRun& run) {
 }
 
 Json object_json(const PrecisionRun& run, std::uint32_t instance) {
-  if (instance == no_index) return nullptr;
+  if (instance == no_index || !run.surfaces) return nullptr;
   return {{"object", instance}, {"name", run.surfaces->scene().instances[instance].name}};
 }
 

@@ -61,7 +61,7 @@ void tell(const ViewResult& result, const Settings& settings, Progress& progress
   progress.clear();
   const std::string prefix = settings.run.batch ? result.name + ": " : "";
   if (!settings.run.quiet) {
-    for (const std::string& warning : result.warnings) complain(prefix + "warning: " + warning);
+    for (const std::string& warning : result.warnings) complain(fmt::format("{}warning: {}", prefix, warning));
   }
   if (result.reference && !result.reference->passed) {
     const ReferenceResult& reference = *result.reference;

@@ -105,9 +105,10 @@ struct BriefLine {
     const double across = std::abs(cross(line.along, other)), along = std::abs(glm::dot(line.along, other));
     // What floats leave of the place, and more.
     const double slack = 1e-6 * (1 + std::abs(double(middle.x)) + std::abs(double(middle.y)) + along + across);
-    return !(std::abs(cross(line.along, apart)) > line.reach + across + slack) &
-           !(std::abs(glm::dot(line.along, apart)) > line.half + along + slack) &
-           !(across > line.turn * along * (1 + 1e-6) + slack);
+    const bool is_beside = std::abs(cross(line.along, apart)) > line.reach + across + slack;
+    const bool is_beyond = std::abs(glm::dot(line.along, apart)) > line.half + along + slack;
+    const bool is_turned = across > line.turn * along * (1 + 1e-6) + slack;
+    return (int(is_beside) | int(is_beyond) | int(is_turned)) == 0;  // without branches
   }
 };
 
