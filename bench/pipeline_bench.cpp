@@ -55,6 +55,18 @@ void shading(benchmark::State& state) {
   state.SetLabel(std::string(scene_names[state.range(0)]) + ", " + std::to_string(state.range(1)) + " samples");
 }
 
+// A PNG on one thread: what it adds to visibility and colour.
+void saving_on_one_thread(benchmark::State& state) {
+  const Stage stage(state, 4);
+  const Bitmap picture = shade_bitmap(stage.surfaces, zbuffer(stage.surfaces, stage.view));
+  SaveOptions options;
+  options.format = ImageFormat::png;
+  Execution execution;
+  execution.threads = 1;
+  for (auto _ : state) save(picture, "/dev/null", options, execution);
+  describe(state, stage);
+}
+
 // Every instruction set of this machine: the table of kernels is chosen at run time.
 void scenes_and_isas(benchmark::internal::Benchmark* bench) {
   for (const Isa isa : available_isas()) bench->Args({2, std::int64_t(isa)});
@@ -64,5 +76,6 @@ BENCHMARK(surfaces)->DenseRange(0, 3)->Unit(benchmark::kMillisecond)->UseRealTim
 BENCHMARK(visible)->DenseRange(0, 3)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(visible_on_one_thread)->Apply(scenes_and_isas)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(shading)->ArgsProduct({{0, 1, 2, 3}, {1, 4}})->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(saving_on_one_thread)->DenseRange(0, 3)->Unit(benchmark::kMillisecond);
 
 }  // namespace
