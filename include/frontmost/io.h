@@ -71,11 +71,26 @@ void save_text(std::string_view text, const std::string& path);
 
 /// Reads PNG, EXR, PFM or NPY, told apart by content, as save() writes them; "-" reads standard input. PNGs that were
 /// not written by save() give R, G, B, A: linear, premultiplied. PFM and NPY hold no names: one channel is read as Z or
-/// (integers) primitive, three or four float channels as R, G, B, A, others as 0, 1, 2...
+/// (integers) primitive, three or four float channels as R, G, B, A, others as 0, 1, 2... Radiance pictures (.hdr) give
+/// R, G, B as they are stored, whatever exposure they tell of.
 /// \throws Error file_unreadable, file_malformed, unsupported, limit_exceeded (16384 pixels a side).
 [[nodiscard]] Image load_image(const std::string& path);
 /// Reads an image from memory; `name` stands for the file in messages.
 [[nodiscard]] Image load_image(std::span<const std::byte> bytes, const std::string& name);
+
+/// The greatest value of an environment's pixel: sums over all pixels stay far within a float.
+inline constexpr float max_environment_value = 16777216.0f;
+
+/// Reads the light that comes from all around: an equirectangular picture of any format that load_image() reads, above
+/// all Radiance (.hdr) and OpenEXR. Rows go from straight up to straight down, columns once around to the right, as of
+/// a Panorama. The result has the channels R, G, B and no others, as floats: linear light, 0 to max_environment_value.
+/// Alpha is left aside; of a grey picture (Y) all three are the same. NaN and negative values are read as 0, infinity
+/// as 65504, which is the greatest half float and what it was made of, and greater values as the greatest. \throws
+/// Error as load_image() does; unsupported where there are no such channels, or where the picture is not twice as wide
+/// as high: cubes and mirror balls are no environments.
+[[nodiscard]] Image load_environment(const std::string& path);
+/// The same from memory; `name` stands for the file in messages.
+[[nodiscard]] Image load_environment(std::span<const std::byte> bytes, const std::string& name);
 
 /// The picture as text for a terminal, two pixels a character (half blocks, UTF-8), in 24-bit colours or those of the
 /// 256-colour palette. Keeps its proportions and fits `columns` x `rows` characters; every line ends with a reset and a

@@ -24,6 +24,7 @@ void save_npy(const Image& image, OutputFile& file);
 [[nodiscard]] Image load_png(std::span<const std::byte> bytes, const std::string& name);
 [[nodiscard]] Image load_exr(std::span<const std::byte> bytes, const std::string& name);
 [[nodiscard]] Image load_pfm(std::span<const std::byte> bytes, const std::string& name);
+[[nodiscard]] Image load_radiance(std::span<const std::byte> bytes, const std::string& name);
 [[nodiscard]] Image load_npy(std::span<const std::byte> bytes, const std::string& name);
 
 /// The channel names of formats that hold none: see load_image().

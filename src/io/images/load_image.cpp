@@ -22,7 +22,8 @@ Image load_image(std::span<const std::byte> bytes, const std::string& name) {
   if (text.starts_with("\x76\x2f\x31\x01"sv)) return detail::load_exr(bytes, name);
   if (text.starts_with("\x93NUMPY"sv)) return detail::load_npy(bytes, name);
   if (text.starts_with("PF"sv) || text.starts_with("Pf"sv)) return detail::load_pfm(bytes, name);
-  throw Error(ErrorCode::file_malformed, name + ": neither PNG nor OpenEXR, PFM or NPY");
+  if (text.starts_with("#?"sv)) return detail::load_radiance(bytes, name);
+  throw Error(ErrorCode::file_malformed, name + ": neither PNG nor OpenEXR, Radiance, PFM or NPY");
 }
 
 }  // namespace frontmost

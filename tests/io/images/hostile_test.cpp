@@ -2,6 +2,7 @@
 // Truncated, mutated and lying image files: an error or an image, never a crash and never much memory.
 #include <functional>
 
+#include "support/radiance_maker.h"
 #include "support/scratch_folder.h"
 #include "support/test_images.h"
 
@@ -23,6 +24,8 @@ std::vector<Sample> samples() {
   SaveOptions deep;
   deep.bits = 16;
   const Image colors = random_floats(7, 5, {"R", "G", "B", "A"}), depth = random_floats(7, 5, {"Z"});
+  RadianceRows radiance(4, std::vector<RadiancePixel>(9, {90, 80, 70, 130}));
+  radiance[2][3] = radiance[3][8] = {10, 20, 30, 127};
   std::vector<Sample> all = {
       {"colours", encoded(colors, "a.png")},
       {"16-bit colours", encoded(colors, "a.png", deep)},
@@ -31,6 +34,9 @@ std::vector<Sample> samples() {
       {"normals", encoded(random_floats(7, 5, {"N.X", "N.Y", "N.Z"}), "a.png")},
       {"PFM", encoded(depth, "a.pfm")},
       {"NPY", encoded(colors, "a.npy")},
+      {"plain Radiance", plain_radiance(radiance)},
+      {"repeating Radiance", repeating_radiance(radiance)},
+      {"packed Radiance", packed_radiance(radiance)},
   };
 #ifdef FRONTMOST_HAS_OPENEXR
   Image many = colors;
@@ -115,7 +121,7 @@ TEST(HostileImages, OtherFilesAreNamedAsSuch) {
   const std::string text = "solid teapot";
   EXPECT_EQ(error_of([&] { (void)load_image(std::as_bytes(std::span(text)), "a.png"); }, &message),
             ErrorCode::file_malformed);
-  EXPECT_EQ(message, "a.png: neither PNG nor OpenEXR, PFM or NPY");
+  EXPECT_EQ(message, "a.png: neither PNG nor OpenEXR, Radiance, PFM or NPY");
 }
 
 }  // namespace

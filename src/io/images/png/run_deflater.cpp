@@ -218,11 +218,10 @@ std::span<const std::uint8_t> RunDeflater::compress(std::span<const std::uint8_t
     const std::span<const std::uint16_t> tokens(tokens_.data(), split_into_tokens(block, tokens_.data()));
     put_block(tokens, last && block.size() == raw.size(), bits);
   }
-  if (!last) bits.put(0, 3);  // the head of an empty block without compression, which begins on the next byte
-  std::uint8_t* end = bits.finish();
-  if (!last)
-    for (const std::uint8_t byte : {0x00, 0x00, 0xFF, 0xFF}) *end++ = byte;
-  return {out_.data(), end};
+  if (last) return {out_.data(), bits.finish()};
+  constexpr std::uint8_t no_bytes[] = {0x00, 0x00, 0xFF, 0xFF};  // the length of an empty block, and its complement
+  bits.put(0, 3);  // its head, without compression: what follows begins on a byte
+  return {out_.data(), std::copy(std::begin(no_bytes), std::end(no_bytes), bits.finish())};
 }
 
 }  // namespace frontmost::detail
