@@ -1,7 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
+// The handlers may run at any instruction, so they only store to lock-free atomics, write() and _exit().
+//
+// Leaving at once is safe because only saving makes files: a reader stuck on a slow pipe, or a kernel in the middle of
+// a huge picture, has nothing to clean up, and no library call needs to be fast in noticing.
 #include "cli/failure.h"
 
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cmath>
+
+#include "cli/console.h"
+
 namespace frontmost::cli {
+namespace {
+
+std::atomic<bool> writing{false}, line_shown{false};
+std::atomic<int> caught{0};
+// Prepared beforehand: formatting is not allowed in a handler.
+char timeout_line[96] = "";
+std::size_t timeout_line_length = 0;
+
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+
+int status_of(int signal) { return signal == SIGALRM ? exit_could_not : exit_interrupted; }
+
+void put(const char* text, std::size_t length) {
+  const ssize_t written = write(STDERR_FILENO, text, length);
+  (void)written;  // nothing can be done about it here
+}
+
+void say(int signal) {
+  if (line_shown) put("\r\033[K", 4);
+  if (signal == SIGALRM) put(timeout_line, timeout_line_length);
+}
+
+void on_signal(int signal) {
+  // A second Ctrl-C means now.
+  const bool again = caught.exchange(signal) != 0;
+  if (writing && !again) return;
+  say(signal);
+  _exit(status_of(signal));
+}
+
+void start_clock(double seconds) {
+  const auto line =
+      fmt::format_to_n(timeout_line, sizeof timeout_line, "frontmost: gave up after {} s (--timeout)\n", seconds);
+  timeout_line_length = line.size;
+  itimerval timer{};
+  timer.it_value.tv_sec = time_t(std::floor(seconds));
+  timer.it_value.tv_usec = suseconds_t(std::floor((seconds - std::floor(seconds)) * 1e6));
+  setitimer(ITIMER_REAL, &timer, nullptr);
+}
+
+}  // namespace
 
 bool names_culprit(std::string_view message) {
   const std::string_view first = message.substr(0, message.find(": "));
@@ -17,6 +72,46 @@ std::string with_culprit(const std::string& message, const Settings& settings) {
                               : settings.view.pose_file ? *settings.view.pose_file
                                                         : std::string("--pose");
   return culprit + ": " + message;
+}
+
+void catch_interruptions(std::optional<double> timeout_seconds) {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  sigemptyset(&action.sa_mask);
+  action.sa_flags = SA_RESTART;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    // What a parent such as nohup ignores stays ignored.
+    struct sigaction before {};
+    sigaction(signal, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
+  // A reader of our output that goes away is a failed write, with a message, not a silent death; so is a file that
+  // grows beyond what `ulimit -f` allows.
+  for (const int signal : {SIGPIPE, SIGXFSZ}) ::signal(signal, SIG_IGN);
+  if (timeout_seconds) {
+    sigaction(SIGALRM, &action, nullptr);
+    start_clock(*timeout_seconds);
+  }
+}
+
+WritingFiles::WritingFiles() {
+  writing = true;
+  stop_if_interrupted();
+}
+
+WritingFiles::~WritingFiles() { writing = false; }
+
+void clear_line_when_interrupted(bool shown) { line_shown = shown; }
+
+bool is_interrupted() { return caught != 0; }
+
+void stop_if_interrupted() {
+  if (is_interrupted()) throw Error(ErrorCode::cancelled, "interrupted");
+}
+
+int report_interruption() {
+  say(caught);
+  return status_of(caught);
 }
 
 }  // namespace frontmost::cli

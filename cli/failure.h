@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exit statuses; bad usage, which is the one error type that the library does not have; and which file an error is
-// about.
+// How a run ends before it is done: by bad usage, by an error about some file, or by Ctrl-C, termination and --timeout.
+// Those end the program at once, except while a file is being written, when the library is asked to stop and takes the
+// unfinished file away.
 #pragma once
 
+#include <frontmost/base.h>
+
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -25,5 +29,28 @@ class UsageError : public std::runtime_error {
 
 /// The message with the file in front that it is about: the pose file, or the model, where it names none.
 [[nodiscard]] std::string with_culprit(const std::string& message, const Settings& settings);
+
+/// Catches SIGINT, SIGTERM, SIGHUP, and starts the clock; a file that grows too large, and a reader that goes away, are
+/// failed writes from now on. Call once.
+void catch_interruptions(std::optional<double> timeout_seconds);
+
+/// While one of these lives, an interruption waits for the library to clean up.
+class WritingFiles {
+ public:
+  WritingFiles();
+  /// Does not throw; an interruption that came meanwhile is found by stop_if_interrupted().
+  ~WritingFiles();
+  WritingFiles(const WritingFiles&) = delete;
+  WritingFiles& operator=(const WritingFiles&) = delete;
+};
+
+/// Whether a line of progress stands on the terminal that must go first.
+void clear_line_when_interrupted(bool shown);
+
+[[nodiscard]] bool is_interrupted();
+/// \throws Error cancelled
+void stop_if_interrupted();
+/// Says why on standard error where there is something to say. \returns the exit status.
+int report_interruption();
 
 }  // namespace frontmost::cli

@@ -11,7 +11,6 @@
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/failure.h"
-#include "cli/interruption.h"
 #include "cli/values.h"
 #include "cli/view/view_options.h"
 

@@ -85,7 +85,8 @@ struct Option {
   }
 };
 
-/// The tables, in the order of the help; each lives in its own file.
+/// The tables, in the order of the help; each stands with the command that it is of, or in a file of its own where
+/// several share it.
 [[nodiscard]] std::span<const Option> view_option_table();
 [[nodiscard]] std::span<const Option> depth_option_table();
 [[nodiscard]] std::span<const Option> precision_option_table();

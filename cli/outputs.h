@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/input_files.h"
+#include "cli/inputs.h"
 #include "cli/settings.h"
 
 namespace frontmost::cli {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <thread>
 
-#include "abuffer/pictures.h"
 #include "abuffer/tables.h"
 
 namespace frontmost::bench {

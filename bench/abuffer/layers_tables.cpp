@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Depth complexity: what it costs in time and in memory.
-#include "abuffer/pictures.h"
 #include "abuffer/tables.h"
-#include "harness/machine.h"
+#include "harness/measure.h"
 
 namespace frontmost::bench {
 namespace {

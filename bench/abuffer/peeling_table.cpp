@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
-#include "abuffer/pictures.h"
 #include "abuffer/tables.h"
 #include "harness/peer_process.h"
 #include "peers/peer.h"

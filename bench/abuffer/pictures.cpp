@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "abuffer/pictures.h"
-
 #include <cmath>
+
+#include "abuffer/tables.h"
 
 namespace frontmost::bench {
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/coverage.h"
-#include "harness/ray_coverage.h"
 #include "harness/stage.h"
 #include "harness/tables.h"
 

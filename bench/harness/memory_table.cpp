@@ -2,7 +2,7 @@
 // How much memory is asked for, and how near a frame comes to what memory and processor allow.
 #include <cmath>
 
-#include "harness/machine.h"
+#include "harness/measure.h"
 #include "harness/stage.h"
 #include "harness/tables.h"
 

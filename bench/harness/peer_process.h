@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <string>
 
-#include "harness/options.h"
+#include "harness/program.h"
 
 namespace frontmost::bench {
 

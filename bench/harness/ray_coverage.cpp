@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/ray_coverage.h"
-
 #include <algorithm>
 #include <cmath>
 
+#include "harness/coverage.h"
 #include "view/screen_transform.h"
 
 namespace frontmost::bench {

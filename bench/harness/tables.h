@@ -2,7 +2,7 @@
 // What is measured, one function a table.
 #pragma once
 
-#include "harness/options.h"
+#include "harness/program.h"
 #include "harness/table.h"
 
 namespace frontmost::bench {

@@ -4,18 +4,32 @@
 #include <optional>
 
 #include "cli/command.h"
-#include "cli/compare/compare_page.h"
 #include "cli/compare/compare_report.h"
 #include "cli/compare/staged_folder.h"
 #include "cli/console.h"
 #include "cli/failure.h"
-#include "cli/interruption.h"
-#include "cli/model.h"
+#include "cli/inputs.h"
+#include "cli/option.h"
 #include "cli/outputs.h"
 #include "cli/view/view_options.h"
 
 namespace frontmost::cli {
 namespace {
+
+constexpr Option compare_options[] = {
+    {"output", 'o', "FOLDER", "Write index.html and its pictures there; the folder is made where it is missing.",
+     Group::compare, for_compare,
+     [](Settings& s, const Given& g) {
+       if (g.text.empty()) throw UsageError("the folder's name is empty");
+       s.compare.folder = g.string();
+     }},
+    {"runs", 0, "N", "Run every method N times, for medians; 5 by default.", Group::compare, for_compare,
+     [](Settings& s, const Given& g) {
+       s.compare.runs = g.integer({1, 1e4});
+     }},
+    {"explain", 0, "", "Say in words which method suits this scene and machine.", Group::compare, for_compare,
+     [](Settings& s, const Given&) { s.compare.explain = true; }},
+};
 
 void check(const Settings& settings) {
   check_view_settings(settings.view);
@@ -41,6 +55,8 @@ Agreement agreement_of(const MethodRun& run, const Visible& reference, const Sur
 }
 
 }  // namespace
+
+std::span<const Option> compare_option_table() { return compare_options; }
 
 int run_compare(const Settings& settings) {
   check(settings);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The methods that frontmost compare lays side by side, and how each is run and timed.
+// The methods that frontmost compare lays side by side, how each is run and timed, and the run of one in a process of
+// its own, so that the memory it takes can be told from everybody else's.
 #pragma once
 
 #include <frontmost/surfaces.h>
@@ -11,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/settings.h"
 #include "cli/stopwatch.h"
 
 namespace frontmost::cli {
@@ -64,5 +66,21 @@ struct ComparedMethod {
 [[nodiscard]] std::span<const ComparedMethod> compared_methods();
 
 [[nodiscard]] double median(std::vector<double> values);
+
+/// How it went.
+struct MethodRun {
+  const ComparedMethod* method = nullptr;
+  std::vector<Stage> stages;     ///< "load" and "surfaces" once, those of the method --runs times
+  std::uint64_t peak_bytes = 0;  ///< of resident memory, beyond what model and surfaces hold
+  Answer answer;
+  std::optional<KeptLists> lists;
+
+  /// Medians; null for a stage that it has not.
+  [[nodiscard]] std::optional<double> median_of(std::string_view stage) const;
+};
+
+/// Reads the model and runs the method. Precondition: this process has no threads yet.
+/// \throws what the method throws there; Error unsupported when it ends otherwise.
+[[nodiscard]] MethodRun run_alone(const ComparedMethod& method, const Settings& settings);
 
 }  // namespace frontmost::cli

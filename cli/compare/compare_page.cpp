@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/compare/compare_page.h"
-
 #include <fmt/format.h>
 #include <frontmost/io.h>
 #include <frontmost/shade.h>
@@ -12,8 +10,9 @@
 #include <iterator>
 #include <utility>
 
+#include "cli/compare/compare_report.h"
 #include "cli/compare/staged_folder.h"
-#include "cli/interruption.h"
+#include "cli/failure.h"
 
 namespace frontmost::cli {
 namespace {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The child runs, and sends what it found through a pipe: first how it ended, then numbers and planes as they lie in
 // memory.
-#include "cli/compare/compare_process.h"
-
 #include <fmt/format.h>
 #include <frontmost/io.h>
 #include <malloc.h>
@@ -17,9 +15,10 @@
 #include <system_error>
 #include <type_traits>
 
+#include "cli/compare/compare_methods.h"
+#include "cli/console.h"
 #include "cli/failure.h"
-#include "cli/model.h"
-#include "cli/progress.h"
+#include "cli/inputs.h"
 #include "cli/view/view_options.h"
 
 namespace frontmost::cli {

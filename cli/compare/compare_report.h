@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What frontmost compare found out: as text, as JSON, in words.
+// What frontmost compare found out: as text, as JSON, in words, and as a page, one HTML file that holds its pictures.
 #pragma once
 
 #include <frontmost/agreement.h>
 
-#include "cli/compare/compare_process.h"
+#include "cli/compare/compare_methods.h"
 #include "cli/json.h"
 
 namespace frontmost::cli {
@@ -45,5 +45,10 @@ struct Comparisons {
 [[nodiscard]] Json compare_json(const Comparisons& all);
 /// Which method suits, from these figures: sentences.
 [[nodiscard]] std::vector<std::string> advice(const Comparisons& all);
+
+/// The names of the page's files: pictures and maps of differences, and index.html.
+[[nodiscard]] std::vector<std::string> page_names();
+/// Writes them all into the folder, or none. \throws Error file_unwritable.
+void write_page(const Comparisons& all, const std::string& folder, const Execution& execution);
 
 }  // namespace frontmost::cli

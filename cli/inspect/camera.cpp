@@ -5,8 +5,8 @@
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/failure.h"
-#include "cli/inspect/camera_report.h"
-#include "cli/model.h"
+#include "cli/inputs.h"
+#include "cli/view/camera_report.h"
 #include "cli/view/view_options.h"
 
 namespace frontmost::cli {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "cli/failure.h"
-#include "cli/lines/units.h"
+#include "cli/lines/sheet_settings.h"
 #include "cli/option.h"
 
 namespace frontmost::cli {
@@ -75,11 +75,6 @@ glm::dvec3 light_from(std::string_view text) {
   const glm::dvec3 light(parts[0], parts[1], parts[2]);
   if (!(glm::length(light) > 1e-6)) throw UsageError("the light must come from somewhere");
   return light;
-}
-
-std::string file_from(const Given& given) {
-  if (given.text.empty()) throw UsageError("the file name is empty");
-  return given.string();
 }
 
 /// Text of a title block: as much as its field holds in letters that can be read.
@@ -190,7 +185,7 @@ constexpr Option drawing_options[] = {
      [](Settings& s, const Given& g) { s.drawing.texts.owner = field_text(g, 80); }},
     {"output", 'o', "FILE", "The drawing: .svg, .pdf, .dxf or .json; - is standard output, with --format.",
      Group::output, for_lines | may_repeat,
-     [](Settings& s, const Given& g) { s.drawing.outputs.push_back(file_from(g)); }},
+     [](Settings& s, const Given& g) { s.drawing.outputs.push_back(g.file_name()); }},
     {"format", 0, "svg|pdf|dxf|json", "Format of files whose names do not say, such as -.", Group::output, for_lines,
      [](Settings& s, const Given& g) { s.drawing.format = g.choice<PageFormat>(); }},
 };

@@ -1,10 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// From what was said about a drawing to the library's options, and from its complaints to the flags.
+// From what was said about a drawing to the library's options, and from its complaints to the flags; and what the
+// model's numbers mean on paper.
 #pragma once
+
+#include <frontmost/surfaces.h>
+
+#include <optional>
+#include <string>
 
 #include "cli/settings.h"
 
 namespace frontmost::cli {
+
+struct LengthUnit {
+  const char* name;
+  double millimetres;
+};
+/// In the order of --unit.
+inline constexpr LengthUnit length_units[] = {{"mm", 1}, {"cm", 10}, {"m", 1000}, {"in", 25.4}};
+
+/// What to say where a sheet's scale, which nobody asked for, is larger than any that drawings have (50:1, ISO 5455),
+/// because the file says no unit and millimetres were taken: the units that are likely for a model of this size.
+/// None where all is well, or nothing else is likely.
+[[nodiscard]] std::optional<std::string> unit_hint(const DrawingSettings& settings, const Surfaces& surfaces,
+                                                   double scale);
 
 /// Finds options that exclude or need one another, before any model is read. \throws UsageError naming them
 void check_drawing_settings(const Settings& settings);

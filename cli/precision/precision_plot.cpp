@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Both axes are logarithmic: a gap that grows with the square of the distance is a line of slope two.
-#include "cli/precision/precision_plot.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What frontmost precision found out: as text and as JSON.
+// What frontmost precision found out: as text, as JSON, and as an SVG drawing of gaps against distance.
 #pragma once
 
 #include <frontmost/precision.h>
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
 
 #include "cli/json.h"
 #include "cli/settings.h"
@@ -32,5 +36,10 @@ struct PrecisionRun {
 
 [[nodiscard]] std::string precision_text(const PrecisionRun& run);
 [[nodiscard]] Json precision_json(const PrecisionRun& run);
+
+/// `chosen` stands out from the formats in use; none: all are drawn alike. `wanted`: a gap and a distance to mark.
+[[nodiscard]] std::string precision_plot(const ClipDistances& clip, bool orthographic,
+                                         const std::optional<DepthSetup>& chosen,
+                                         const std::optional<glm::dvec2>& wanted);
 
 }  // namespace frontmost::cli

@@ -8,15 +8,24 @@
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/failure.h"
-#include "cli/interruption.h"
+#include "cli/inputs.h"
 #include "cli/json.h"
-#include "cli/model.h"
-#include "cli/rays/number_lines.h"
-#include "cli/view/places.h"
-#include "cli/view/ray_scene.h"
+#include "cli/option.h"
+#include "cli/rays/ray_files.h"
+#include "cli/view/camera_report.h"
+#include "cli/view/sight.h"
 
 namespace frontmost::cli {
 namespace {
+
+constexpr Option sight_options[] = {
+    {"from", 0, "X,Y,Z", "Look from this point, in the model's own coordinates.", Group::sight, for_sight,
+     [](Settings& s, const Given& g) { s.sight.from = parse_vector(g.text); }},
+    {"to", 0, "X,Y,Z", "Look at this point.", Group::sight, for_sight,
+     [](Settings& s, const Given& g) { s.sight.to = parse_vector(g.text); }},
+    {"pairs", 0, "FILE", "A file of pairs of points: six numbers a line, with blanks or commas; # starts a comment.",
+     Group::sight, for_sight, [](Settings& s, const Given& g) { s.sight.pairs = g.file_name(); }},
+};
 
 /// In the coordinates of the model's file.
 struct PointPair {
@@ -120,6 +129,8 @@ void print_text(std::span<const PointPair> pairs, const RayScene& rays, const Ex
 }
 
 }  // namespace
+
+std::span<const Option> sight_option_table() { return sight_options; }
 
 int run_sight(const Settings& settings) {
   const std::vector<PointPair> pairs = pairs_of(settings.sight);

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/render/figure.h"
-
 #include <fmt/format.h>
 #include <frontmost/page.h>
 #include <frontmost/shade.h>
 #include <frontmost/zbuffer.h>
 
 #include "cli/console.h"
-#include "cli/interruption.h"
-#include "cli/render/contrast.h"
+#include "cli/failure.h"
+#include "cli/render/blank.h"
+#include "cli/render/output_writer.h"
 #include "cli/stopwatch.h"
 
 namespace frontmost::cli {

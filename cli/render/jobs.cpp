@@ -6,9 +6,8 @@
 #include <algorithm>
 
 #include "cli/failure.h"
-#include "cli/render/figure.h"
 #include "cli/render/output_writer.h"
-#include "cli/render/render_around.h"
+#include "cli/render/render_view.h"
 #include "cli/view/view_options.h"
 
 namespace frontmost::cli {

@@ -7,8 +7,8 @@
 
 #include <algorithm>
 
-#include "cli/inspect/camera_report.h"
-#include "cli/render/figure.h"
+#include "cli/render/output_writer.h"
+#include "cli/view/camera_report.h"
 #include "cli/view/sight.h"
 
 namespace frontmost::cli {

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/render/output_writer.h"
 
-#include <algorithm>
+#include <frontmost/io.h>
 
-#include "cli/interruption.h"
+#include <algorithm>
+#include <cstdlib>
+#include <string_view>
+
+#include "cli/console.h"
+#include "cli/failure.h"
 #include "cli/stopwatch.h"
 
 namespace frontmost::cli {
@@ -88,6 +93,26 @@ void write(const FileToWrite& file, const OutputSource& source, ViewResult& resu
   }
 }
 
+/// Sizes or channels that are not the same are the reference's fault.
+Comparison compared(const Image& picture, const Image& reference, const Job& job, const Execution& execution) {
+  try {
+    return compare(picture, reference, job.output.reference_threshold, execution);
+  } catch (const Error& error) {
+    throw Error(error.code(), *job.output.reference + ": " + error.what());
+  }
+}
+
+// Room below the picture for the prompt that comes next.
+constexpr int rows_kept = 2;
+
+glm::ivec2 room(const glm::ivec2& terminal) { return {std::max(terminal.x, 1), std::max(terminal.y - rows_kept, 1)}; }
+
+/// Terminals say so in COLORTERM; the others are given the 256-colour palette, which all know.
+bool has_true_color() {
+  const char* const value = std::getenv("COLORTERM");
+  return value && (std::string_view(value) == "truecolor" || std::string_view(value) == "24bit");
+}
+
 }  // namespace
 
 bool wants(const Job& job, OutputKind kind) {
@@ -110,6 +135,43 @@ void write_files(const OutputSource& source, ViewResult& result) {
     stop_if_interrupted();
     write(file, source, result);
   }
+}
+
+void read_references(std::vector<Job>& jobs) {
+  constexpr std::size_t most_pixels = std::size_t(1) << 26;
+  std::size_t pixels = 0;
+  for (Job& job : jobs) {
+    if (!job.output.reference) continue;
+    stop_if_interrupted();
+    auto reference = std::make_shared<const Image>(load_image(*job.output.reference));
+    pixels += std::size_t(reference->width) * std::size_t(reference->height);
+    if (pixels <= most_pixels) job.reference = std::move(reference);
+  }
+}
+
+ReferenceResult compare_with_reference(const Image& picture, const Job& job, const Execution& execution) {
+  const auto kept = job.reference ? job.reference : std::make_shared<const Image>(load_image(*job.output.reference));
+  const Image& reference = *kept;
+  const Comparison comparison = compared(picture, reference, job, execution);
+  ReferenceResult result{*job.output.reference, {}, comparison.error, comparison.mean, comparison.differing, true};
+  if (comparison.differing == 0) return result;
+  result.passed = false;
+  result.difference_path = job.difference;
+  const Image difference = difference_image(picture, reference, job.output.reference_threshold, execution);
+  const WritingFiles writing;
+  save(difference, job.difference, {}, execution);
+  return result;
+}
+
+void prepare_for_terminal(Job& job, const glm::ivec2& terminal) {
+  // Two pixels a character; the samples do the smoothing.
+  if (!job.view.resolution && !job.view.intrinsics) job.view.resolution = room(terminal) * glm::ivec2(1, 2);
+  if (!job.output.background_given) job.output.background = std::nullopt;
+}
+
+void show_on_terminal(const Image& picture) {
+  const glm::ivec2 size = room(output_terminal().value_or(glm::ivec2(80, 24)));
+  print(terminal_picture(picture, size.x, size.y, has_true_color()));
 }
 
 }  // namespace frontmost::cli

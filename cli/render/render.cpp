@@ -8,15 +8,12 @@
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/failure.h"
-#include "cli/interruption.h"
-#include "cli/model.h"
+#include "cli/inputs.h"
 #include "cli/render/jobs.h"
 #include "cli/render/json_report.h"
-#include "cli/render/ray_indexes.h"
-#include "cli/render/reference.h"
+#include "cli/render/output_writer.h"
 #include "cli/render/render_curved.h"
-#include "cli/render/render_stream.h"
-#include "cli/render/terminal.h"
+#include "cli/render/render_view.h"
 #include "cli/stopwatch.h"
 
 namespace frontmost::cli {

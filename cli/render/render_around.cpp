@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/render/render_around.h"
-
 #include <fmt/format.h>
 #include <frontmost/ray_camera.h>
 #include <frontmost/shade.h>
 
 #include "cli/failure.h"
-#include "cli/render/contrast.h"
+#include "cli/render/blank.h"
 #include "cli/render/output_writer.h"
-#include "cli/render/reference.h"
+#include "cli/render/render_view.h"
 #include "cli/stopwatch.h"
-#include "cli/view/ray_scene.h"
+#include "cli/view/sight.h"
 #include "cli/view/view_options.h"
 
 namespace frontmost::cli {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/render/render_layers.h"
-
 #include <frontmost/abuffer.h>
 #include <frontmost/shade.h>
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/render/render_stream.h"
-
 #include <frontmost/shade.h>
 
 #include "cli/render/output_writer.h"
+#include "cli/render/render_view.h"
 #include "cli/stopwatch.h"
 #include "cli/view/view_options.h"
 

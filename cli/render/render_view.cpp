@@ -10,12 +10,7 @@
 #include <algorithm>
 
 #include "cli/render/blank.h"
-#include "cli/render/contrast.h"
-#include "cli/render/figure.h"
 #include "cli/render/output_writer.h"
-#include "cli/render/reference.h"
-#include "cli/render/render_around.h"
-#include "cli/render/render_layers.h"
 #include "cli/stopwatch.h"
 #include "cli/view/sight.h"
 #include "cli/view/view_options.h"

@@ -1,8 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rendering one view, and what there is to say about it afterwards.
+//
+//   Job ──> plan_sights ──> Sights ──> finish_view ──> files, and a ViewResult
+//           what to look     what is     shades, and
+//           for, how finely  visible     makes the maps
+//
+// There are several ways to find what is visible: render_view() looks at the model's triangles through a pinhole,
+// render_around() through cameras that are none, by rays; render_streamed_view() at a model that is read piece by
+// piece. Those for curved surfaces are in render_curved.h. All end in finish_view(), or write their files as it does.
 #pragma once
 
 #include <frontmost/curved.h>
+#include <frontmost/stream.h>
 #include <frontmost/surfaces.h>
 #include <frontmost/visible.h>
 #include <frontmost/zbuffer.h>
@@ -125,5 +134,23 @@ void count_objects(const Surfaces& surfaces, const Image& objects, Seen& seen);
 
 /// Finds what is visible, shades, and writes every file of the job.
 [[nodiscard]] ViewResult render_view(const Job& job, const RenderContext& context);
+
+/// \throws UsageError for outputs that only a pinhole has.
+void check_outputs_around(const Job& job);
+
+/// As render_view(), for a job whose camera is no pinhole. Precondition: the context has an index.
+[[nodiscard]] ViewResult render_around(const Job& job, const RenderContext& context);
+
+/// How a stream is rendered: the part of a RenderContext that there is before anything has been read.
+struct StreamContext {
+  const RunSettings& run;
+  Execution execution;
+  bool keep_picture = false;
+};
+
+/// As render_view(): a pass to find the camera, unless it was told; one to find what is visible; and one for shadows
+/// and smooth normals, where the picture has them.
+/// \throws Error unsupported where standard input would have to be read again
+[[nodiscard]] ViewResult render_streamed_view(const Job& job, Stream& stream, const StreamContext& context);
 
 }  // namespace frontmost::cli

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finding what is visible, by the default z-buffer, by rays, or by a depth buffer with the state that the user asked
-// for.
+// Finding what is visible: in every pixel of a view, by the default z-buffer, by rays, or by a depth buffer with the
+// state that the user asked for; and along single rays, which meet the curved surfaces of a model themselves.
 #pragma once
 
+#include <frontmost/curved.h>
 #include <frontmost/depth_buffer.h>
 #include <frontmost/raycast.h>
+#include <frontmost/shade.h>
 
 #include <optional>
+#include <string_view>
 
 #include "cli/settings.h"
 
@@ -28,5 +31,42 @@ struct SeenView {
 /// "D8", "LESS" and so on, as on the command line.
 [[nodiscard]] std::string_view name(DepthFormat format);
 [[nodiscard]] std::string_view name(DepthFunc func);
+
+/// An element that rays meet, by its object.
+struct RayElement {
+  std::uint32_t instance = 0;
+  std::string_view kind;  ///< "triangle", "sphere" or "patch"
+  std::uint32_t number = 0;
+};
+
+/// Borrows an index of the surfaces' triangles, or one of their scene, whichever is not null.
+struct RayScene {
+  const Surfaces& surfaces;
+  const RayIndex* triangles = nullptr;
+  const CurvedIndex* curved = nullptr;
+
+  [[nodiscard]] const Scene& scene() const { return surfaces.scene(); }
+  /// Normals are empty without curved surfaces.
+  [[nodiscard]] CurvedScan scan(const RayCamera& camera, const Execution& execution) const;
+  [[nodiscard]] std::vector<CurvedHit> closest(std::span<const Segment> segments, const Execution& execution) const;
+  [[nodiscard]] PrimitiveSource source(PrimitiveId id) const;
+  [[nodiscard]] RayElement element(PrimitiveId id) const;
+  [[nodiscard]] Image ids(const RangeScan& scan, IdKind kind) const;
+  [[nodiscard]] Image shade(const CurvedScan& scan, const ShadeOptions& options, const Execution& execution) const;
+};
+
+/// The index of whatever the scene has, for single rays.
+class OwnRayScene {
+ public:
+  OwnRayScene(const Surfaces& surfaces, const Execution& execution);
+  [[nodiscard]] RayScene get() const {
+    return {surfaces_, triangles_ ? &*triangles_ : nullptr, curved_ ? &*curved_ : nullptr};
+  }
+
+ private:
+  const Surfaces& surfaces_;
+  std::optional<RayIndex> triangles_;
+  std::optional<CurvedIndex> curved_;
+};
 
 }  // namespace frontmost::cli

@@ -9,7 +9,7 @@
 
 #include "cli/failure.h"
 #include "cli/values.h"
-#include "cli/view/places.h"
+#include "cli/view/camera_report.h"
 
 namespace frontmost::cli {
 namespace {

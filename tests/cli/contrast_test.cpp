@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A picture in whose frame nothing stands out from the background says so; others do not.
-#include "cli/render/contrast.h"
-
 #include <gmock/gmock.h>
 
+#include "cli/render/blank.h"
 #include "program.h"
 
 namespace frontmost::test {

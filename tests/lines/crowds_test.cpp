@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Many triangles at one place: one behind the other, around one edge, the same again and again.
-#include "support/crowds.h"
-
 #include <gtest/gtest.h>
 
 #include "frontmost/lines.h"
-#include "support/counting_watch.h"
 #include "support/effort.h"
+#include "support/meshes.h"
 
 namespace frontmost::test {
 namespace {

@@ -4,9 +4,8 @@
 
 #include "lines/hiding/grid_plan.h"
 #include "lines/hiding/hidden_parts.h"
-#include "support/counting_watch.h"
-#include "support/crowds.h"
 #include "support/effort.h"
+#include "support/meshes.h"
 
 namespace frontmost::test {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "lines/crossings/crossings.h"
-#include "support/small_meshes.h"
+#include "support/meshes.h"
 
 namespace frontmost::test {
 namespace {

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "support/counting_watch.h"
 #include "support/effort.h"
 #include "support/hatch_oracle.h"
 #include "support/random_scene.h"

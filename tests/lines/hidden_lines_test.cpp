@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "frontmost/lines.h"
-#include "support/counting_watch.h"
 #include "support/effort.h"
 #include "support/point_oracle.h"
 #include "support/random_scene.h"

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "frontmost/lines.h"
-#include "support/small_meshes.h"
+#include "support/meshes.h"
 
 namespace frontmost::test {
 namespace {

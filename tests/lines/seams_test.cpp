@@ -10,7 +10,6 @@
 #include <tuple>
 
 #include "frontmost/lines.h"
-#include "support/counting_watch.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 

@@ -6,7 +6,7 @@
 
 #include "frontmost/lines.h"
 #include "lines/mesh/sheets.h"
-#include "support/small_meshes.h"
+#include "support/meshes.h"
 
 namespace frontmost::test {
 namespace {

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "support/effort.h"
-#include "support/small_meshes.h"
+#include "support/meshes.h"
 
 namespace frontmost::test {
 namespace {

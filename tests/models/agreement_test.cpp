@@ -4,8 +4,8 @@
 #include <iostream>
 
 #include "frontmost/frontmost.h"
-#include "good_models.h"
-#include "support/both_ways.h"
+#include "support/models.h"
+#include "support/same_visible.h"
 
 namespace frontmost::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <iostream>
 
 #include "frontmost/frontmost.h"
-#include "good_models.h"
+#include "support/models.h"
 #include "support/oracle.h"
 #include "support/same_visible.h"
 

@@ -4,7 +4,7 @@
 
 #include "painter/painted.h"
 #include "support/effort.h"
-#include "support/small_meshes.h"
+#include "support/meshes.h"
 
 namespace frontmost::test {
 namespace {

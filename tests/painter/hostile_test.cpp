@@ -3,7 +3,6 @@
 
 #include "painter/painted.h"
 #include "painter/trapped.h"
-#include "support/counting_watch.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 

@@ -6,7 +6,6 @@
 #include "ray_oracle.h"
 #include "support/cutout_scene.h"
 #include "support/effort.h"
-#include "support/oracle_on_every_isa.h"
 #include "support/random_scene.h"
 #include "support/same_visible.h"
 

@@ -5,8 +5,8 @@
 #include <atomic>
 
 #include "frontmost/raycast.h"
-#include "support/counting_watch.h"
 #include "support/cutout_scene.h"
+#include "support/effort.h"
 #include "support/random_scene.h"
 #include "support/same_visible.h"
 

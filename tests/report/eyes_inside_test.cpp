@@ -9,10 +9,10 @@
 #include "frontmost/io.h"
 #include "frontmost/raycast.h"
 #include "frontmost/zbuffer.h"
-#include "support/both_ways.h"
 #include "support/effort.h"
 #include "support/models.h"
 #include "support/random_scene.h"
+#include "support/same_visible.h"
 
 namespace frontmost::test {
 namespace {

@@ -10,8 +10,8 @@
 #include <random>
 
 #include "frontmost/io.h"
+#include "support/meshes.h"
 #include "support/models.h"
-#include "support/small_meshes.h"
 
 namespace frontmost::shading {
 namespace {

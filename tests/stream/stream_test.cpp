@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "stream/as_whole.h"
-#include "support/bumpy_mesh.h"
+#include "support/meshes.h"
 #include "support/random_scene.h"
 
 namespace frontmost {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Comparing two answers of a method, bit by bit.
+// Answers of methods compared bit by bit: two of any methods; those of the z-buffer's two ways to draw; and those of a
+// method and its oracle, on every instruction set of this machine.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -7,7 +8,12 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/float_environment.h"
 #include "frontmost/visible.h"
+#include "frontmost/zbuffer.h"
+#include "support/effort.h"
+#include "support/random_scene.h"
+#include "zbuffer/direct/direct_frame.h"
 
 namespace frontmost::test {
 
@@ -30,6 +36,39 @@ inline void expect_same(const Visible& expected, const Visible& actual) {
 inline std::size_t covered(const Visible& visible) {
   return visible.primitives.size() -
          std::size_t(std::count(visible.primitives.begin(), visible.primitives.end(), no_primitive));
+}
+
+inline Visible draw_clusters(const Surfaces& surfaces, const View& view, const Execution& execution = {}) {
+  ZBuffer buffer;
+  buffer.draw(surfaces, view, execution);
+  return buffer.take();
+}
+
+/// What both show, which must be the same.
+inline Visible draw_both_ways(const Surfaces& surfaces, const View& view, const Execution& execution = {}) {
+  Visible visible = draw_clusters(surfaces, view, execution);
+  const IeeeScope ieee;
+  expect_same(visible, zbuffer_detail::draw_directly(surfaces.placed(), view, execution));
+  return visible;
+}
+
+/// `oracle(surfaces, view)` says what is right, `method(surfaces, view, execution)` is tested: over random scenes of a
+/// kind that must not have become empty.
+template <class Oracle, class Method>
+void expect_oracle_on_every_isa(Kind kind, const Oracle& oracle, const Method& method) {
+  std::size_t seen = 0;
+  for (std::uint64_t seed = 0; seed < seeds(24); ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const RandomCase random = random_case(kind, seed);
+    const Surfaces surfaces(random.scene);
+    const Visible expected = oracle(surfaces, random.view);
+    seen += covered(expected);
+    for (const Isa isa : available_isas()) {
+      SCOPED_TRACE(name(isa));
+      expect_same(expected, method(surfaces, random.view, Execution{.threads = 1, .isa = isa}));
+    }
+  }
+  EXPECT_GT(seen, seeds(24) * 20) << "the scenes have become empty";
 }
 
 }  // namespace frontmost::test

@@ -7,7 +7,7 @@
 #include <set>
 #include <thread>
 
-#include "support/bumpy_mesh.h"
+#include "support/meshes.h"
 #include "surfaces/cluster_set.h"
 
 namespace frontmost::test {

@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "frontmost/zbuffer.h"
-#include "support/both_ways.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
+#include "support/same_visible.h"
 
 namespace frontmost::test {
 namespace {

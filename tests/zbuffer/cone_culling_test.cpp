@@ -7,10 +7,10 @@
 #include <cmath>
 
 #include "frontmost/zbuffer.h"
-#include "support/both_ways.h"
-#include "support/bumpy_mesh.h"
 #include "support/effort.h"
+#include "support/meshes.h"
 #include "support/oracle.h"
+#include "support/same_visible.h"
 #include "view/clip.h"
 #include "zbuffer/frame_plan.h"
 

@@ -6,10 +6,10 @@
 #include <limits>
 #include <thread>
 
-#include "support/both_ways.h"
 #include "support/cutout_scene.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
+#include "support/same_visible.h"
 
 namespace frontmost::test {
 namespace {

@@ -6,10 +6,10 @@
 #include <cstring>
 
 #include "frontmost/zbuffer.h"
-#include "support/both_ways.h"
 #include "support/odd_numbers.h"
 #include "support/oracle.h"
 #include "support/random_scene.h"
+#include "support/same_visible.h"
 
 namespace frontmost::test {
 namespace {

@@ -9,9 +9,7 @@
 #include <numeric>
 
 #include "frontmost/zbuffer.h"
-#include "support/both_ways.h"
 #include "support/effort.h"
-#include "support/oracle_on_every_isa.h"
 #include "support/random_scene.h"
 #include "support/same_visible.h"
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "frontmost/zbuffer.h"
-#include "support/both_ways.h"
 #include "support/effort.h"
 #include "support/oracle.h"
 #include "support/random_scene.h"

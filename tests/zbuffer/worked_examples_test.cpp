@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "frontmost/zbuffer.h"
-#include "support/both_ways.h"
 #include "support/random_scene.h"
+#include "support/same_visible.h"
 
 namespace frontmost::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "frontmost/sheet_view.h"
-#include "support/counting_watch.h"
+#include "support/effort.h"
 
 namespace frontmost::test {
 namespace {

@@ -9,7 +9,7 @@
 #include <map>
 #include <random>
 
-#include "support/threemf_fuzz.h"
+#include "support/reader_fuzz.h"
 
 namespace frontmost {
 namespace {

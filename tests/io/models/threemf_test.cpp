@@ -7,7 +7,7 @@
 
 #include "base/srgb.h"
 #include "model_bytes.h"
-#include "support/counting_watch.h"
+#include "support/effort.h"
 #include "support/threemf_maker.h"
 
 namespace frontmost {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points as users know them, in the coordinates of the model's file, and as scenes have them, about their origin.
+// Points and cameras as users know them, in the coordinates of the model's file, where scenes and views have them about
+// the scene's origin; and one camera in every convention.
 #pragma once
 
 #include <frontmost/view.h>
 
 #include <string>
+
+#include "cli/json.h"
 
 namespace frontmost::cli {
 
@@ -23,5 +26,12 @@ namespace frontmost::cli {
 
 /// For people: six digits, and all that a double holds where the model lies far from zero.
 [[nodiscard]] std::string place_text(const glm::dvec3& in_scene, const glm::dvec3& origin);
+
+/// `target` is the focal point that the look-at form names. The view and it are about the scene's `origin`; what is
+/// reported is in the coordinates of the model's file.
+[[nodiscard]] Json camera_json(const View& view, const glm::dvec3& target, const glm::dvec3& origin);
+/// The options that make this view again.
+[[nodiscard]] std::string camera_flags(const View& view, const glm::dvec3& target, const glm::dvec3& origin);
+[[nodiscard]] std::string camera_text(const View& view, const glm::dvec3& target, const glm::dvec3& origin);
 
 }  // namespace frontmost::cli

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/inspect/camera_report.h"
+#include "cli/view/camera_report.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "cli/values.h"
-#include "cli/view/places.h"
 
 namespace frontmost::cli {
 namespace {
@@ -66,6 +65,12 @@ std::string text_of(const glm::dmat4& m) {
 }
 
 }  // namespace
+
+std::string place_text(const glm::dvec3& in_scene, const glm::dvec3& origin) {
+  const glm::dvec3 p = in_file(in_scene, origin);
+  return origin == glm::dvec3(0) ? fmt::format("{:.6g},{:.6g},{:.6g}", p.x, p.y, p.z)
+                                 : fmt::format("{},{},{}", p.x, p.y, p.z);
+}
 
 std::string camera_flags(const View& view, const glm::dvec3& target, const glm::dvec3& origin) {
   const Projection& p = view.projection;

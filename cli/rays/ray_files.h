@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of numbers, a few on every line.
+// What rays are read from and written to: files of numbers, a few on every line, and a scan as a file of points.
 #pragma once
 
 #include <string>
 #include <vector>
+
+#include "cli/view/sight.h"
 
 namespace frontmost::cli {
 
@@ -17,5 +19,10 @@ struct LineRule {
 /// \throws Error file_unreadable; file_malformed naming the line; limit_exceeded for more than 1 GiB or 2^22 such
 /// lines.
 [[nodiscard]] std::vector<double> read_number_lines(const std::string& path, const LineRule& rule);
+
+/// A binary PLY with a vertex for every ray that meets something, by rings and then by steps: x, y, z and range
+/// (floats, in the model's own coordinates; where they lie far from zero x, y and z are doubles), object, triangle
+/// (within its object; of a curved one its sphere or patch), ring and step (32 bits).
+[[nodiscard]] std::string points_ply(const RangeScan& scan, const RayScene& rays);
 
 }  // namespace frontmost::cli

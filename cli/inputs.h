@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files that a run reads, which none of its outputs may replace.
+// What a run reads: the model, and the other files, none of which an output may replace.
 #pragma once
+
+#include <frontmost/scene.h>
 
 #include <filesystem>
 #include <map>
@@ -8,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/console.h"
 #include "cli/settings.h"
 
 namespace frontmost::cli {
@@ -31,5 +34,16 @@ class InputFiles {
 /// What a model turned out to use, known when it has been read: its material libraries, buffers and textures.
 /// \throws UsageError when one of them is an output.
 void refuse_outputs_beside(const std::vector<std::filesystem::path>& used, const std::vector<std::string>& outputs);
+
+/// How the library is to run: with the threads and instructions that were asked for, and told of interruptions.
+[[nodiscard]] Execution execution_for(const RunSettings& settings, const Progress& progress);
+/// Loads, and prints the reader's warnings to standard error unless quiet: a few, then how many more.
+/// \throws UsageError when a file that a model uses, such as a texture, is one of `outputs`.
+[[nodiscard]] Scene load_model(const Settings& settings, const Execution& execution, Progress& progress,
+                               const std::vector<std::string>& outputs = {});
+/// The same of warnings alone.
+void show_warnings(const std::vector<std::string>& warnings, const RunSettings& run, Progress& progress);
+/// The scene with its curved meshes cut for `view`, where --tessellation-error says how finely; none otherwise.
+[[nodiscard]] std::optional<Scene> tessellated(const Scene& scene, const ViewSettings& settings, const View& view);
 
 }  // namespace frontmost::cli
