@@ -2,6 +2,7 @@
 // Shading: colour for what a method found visible, decided last and only where something is seen.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -121,6 +122,42 @@ struct FigureOptions {
 /// The same of a view, which need not have one sample. \throws Error as validate(view) does, too.
 [[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const View& view, const FigureOptions& options = {},
                                  const Execution& execution = {});
+
+/// Shades pictures of the same surfaces one after another, each as the function of that name gives it, to the byte.
+/// What does not depend on the view is made when the first picture needs it, and kept: textures' mip levels, smooth
+/// normals, what throws shadows; and the key light's map as long as the light sees the same. From the second picture of
+/// a size on, opaque scenes without rays for shadows allocate nothing, as long as no picture needs more than those
+/// before. Memory: a third of the textures' texels that were seen, 12 bytes a triangle of meshes without normals, 8 MiB
+/// of maps. Not for several threads at once; each call uses the threads that it is given.
+class Shader {
+ public:
+  /// Borrows the surfaces and their scene, which must stay as they are. O(instances + materials).
+  explicit Shader(const Surfaces& surfaces);
+  ~Shader();
+  Shader(Shader&&) noexcept;
+  Shader& operator=(Shader&&) noexcept;
+  Shader(const Shader&) = delete;
+  Shader& operator=(const Shader&) = delete;
+
+  /// The result stays as it is until the next shade() or take().
+  const Image& shade(const ShadeInput& input, const ShadeOptions& options = {}, const Execution& execution = {});
+  /// The result stays as it is until the next shade_bitmap() or take_bitmap().
+  const Bitmap& shade_bitmap(const ShadeInput& input, const ShadeOptions& options = {},
+                             const Execution& execution = {});
+  [[nodiscard]] DeepImage shade_deep(const ShadeInput& input, const ShadeOptions& options = {},
+                                     const Execution& execution = {});
+  [[nodiscard]] Image normal_image(const Visible& visible, const Execution& execution = {});
+  [[nodiscard]] Figure draw_figure(const ShadeInput& input, const FigureOptions& options = {},
+                                   const Execution& execution = {});
+
+  /// Move the last result out; the next one is allocated.
+  [[nodiscard]] Image take();
+  [[nodiscard]] Bitmap take_bitmap();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 /// A picture of a scan, one sample a pixel: `lit` by a light at the eye, from base colours without textures and the
 /// planes of the triangles, all opaque and without shadows; `normals` are those of the planes, and `depth` is the

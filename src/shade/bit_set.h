@@ -23,6 +23,18 @@ class BitSet {
   [[nodiscard]] bool contains(std::size_t i) const {
     return (words_[i / 64].load(std::memory_order_relaxed) >> (i % 64)) & 1;
   }
+  /// Whether it has everything that `other`, of the same size, has. Not while others add to either.
+  [[nodiscard]] bool holds(const BitSet& other) const {
+    std::uint64_t missing = 0;
+    for (std::size_t w = 0; w < words_.size(); ++w)
+      missing |= other.words_[w].load(std::memory_order_relaxed) & ~words_[w].load(std::memory_order_relaxed);
+    return missing == 0;
+  }
+  /// Empties it, for numbers below `size`. Allocates nothing where the size stays.
+  void clear(std::size_t size) {
+    if (words_.size() != (size + 63) / 64) words_ = std::vector<std::atomic<std::uint64_t>>((size + 63) / 64);
+    for (std::atomic<std::uint64_t>& word : words_) word.store(0, std::memory_order_relaxed);
+  }
 
  private:
   std::vector<std::atomic<std::uint64_t>> words_;

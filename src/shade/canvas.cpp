@@ -25,8 +25,10 @@ void store(const glm::vec4& color, std::uint8_t* out) {
 
 }  // namespace
 
-PlanesCanvas::PlanesCanvas(const View& view, std::initializer_list<const char*> names)
-    : image_{view.width, view.height, {}} {
+PlanesCanvas::PlanesCanvas(const View& view, std::initializer_list<const char*> names, Image memory)
+    : image_(std::move(memory)) {
+  if (image_.width == view.width && image_.height == view.height && image_.channels.size() == names.size()) return;
+  image_ = {view.width, view.height, {}};
   for (const char* name : names) image_.channels.push_back({name, Buffer<float>(view.pixel_count())});
 }
 
@@ -51,8 +53,10 @@ void PlanesCanvas::fill(const TileRectangle& tile, const glm::vec4& value) {
       std::fill_n(image_.channels[std::size_t(k)].floats().data() + row(tile, y), tile.width, value[k]);
 }
 
-BitmapCanvas::BitmapCanvas(const View& view)
-    : bitmap_{view.width, view.height, Buffer<std::uint8_t>(kBytes * view.pixel_count())} {}
+BitmapCanvas::BitmapCanvas(const View& view, Bitmap memory) : bitmap_(std::move(memory)) {
+  if (bitmap_.width == view.width && bitmap_.height == view.height && !bitmap_.rgba.empty()) return;
+  bitmap_ = {view.width, view.height, Buffer<std::uint8_t>(kBytes * view.pixel_count())};
+}
 
 std::uint8_t* BitmapCanvas::row(const TileRectangle& tile, int y) {
   return bitmap_.rgba.data() + kBytes * (std::size_t(tile.y + y) * std::size_t(bitmap_.width) + std::size_t(tile.x));

@@ -30,7 +30,8 @@ struct Painting {
 /// An image of up to four channels, named as they are to be.
 class PlanesCanvas final : public TileCanvas {
  public:
-  PlanesCanvas(const View& view, std::initializer_list<const char*> names);
+  /// `memory` is that of the image, where it fits.
+  PlanesCanvas(const View& view, std::initializer_list<const char*> names, Image memory = {});
   void write(const TileRectangle& tile, const std::vector<glm::vec4>& pixels, const glm::vec4& background) override;
   void fill(const TileRectangle& tile, const glm::vec4& value) override;
   [[nodiscard]] Image take() { return std::move(image_); }
@@ -43,7 +44,7 @@ class PlanesCanvas final : public TileCanvas {
 
 class BitmapCanvas final : public TileCanvas {
  public:
-  explicit BitmapCanvas(const View& view);
+  explicit BitmapCanvas(const View& view, Bitmap memory = {});
   void write(const TileRectangle& tile, const std::vector<glm::vec4>& pixels, const glm::vec4& background) override;
   void fill(const TileRectangle& tile, const glm::vec4& value) override;
   [[nodiscard]] Bitmap take() { return std::move(bitmap_); }

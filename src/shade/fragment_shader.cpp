@@ -43,11 +43,11 @@ void FragmentShader::sort_by_triangle() {
 }
 
 void FragmentShader::shade_arrived() {
-  source_.set_up(new_triangles_, cache_.setups());
+  source_->set_up(new_triangles_, cache_.setups());
   new_triangles_.clear();
   sort_by_triangle();
-  interpolate_geometry(source_.rays(), cache_.setups(), batch_);
-  colorist_(cache_.setups(), batch_);
+  interpolate_geometry(source_->rays(), cache_.setups(), batch_);
+  (*colorist_)(cache_.setups(), batch_);
 }
 
 }  // namespace frontmost::shading

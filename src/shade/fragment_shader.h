@@ -46,14 +46,19 @@ class TriangleCache {
   int count_ = 0;
 };
 
-/// Reused by one thread. About half a megabyte.
+/// Reused by one thread, from picture to picture. About half a megabyte.
 class FragmentShader {
  public:
   /// Colours a batch: reads coverage and geometry, fills batch.light and batch.material.alpha.
   using Colorist = std::function<void(const std::vector<TriangleSetup>&, FragmentBatch&)>;
 
-  FragmentShader(const TriangleSource& source, const Colorist& colorist) : source_(source), colorist_(colorist) {}
-
+  /// Starts anew, for triangles and colours that are borrowed. Precondition for all else.
+  void begin(const TriangleSource& source, const Colorist& colorist) {
+    source_ = &source;
+    colorist_ = &colorist;
+    arrived_.count = 0;
+    clear();
+  }
   /// A fragment that hand_out() is to be called for before another is added.
   [[nodiscard]] bool is_full() const { return arrived_.count == batch_capacity || cache_.is_full(); }
   /// `number` is the caller's own; `screen` the position that is shaded, within the pixel of the `samples` (a bit
@@ -71,14 +76,17 @@ class FragmentShader {
     if (cache_.is_full()) cache_.clear();
   }
   /// Forgets triangles. Precondition: everything was handed out.
-  void clear() { cache_.clear(); }
+  void clear() {
+    cache_.clear();
+    new_triangles_.clear();
+  }
 
  private:
   void sort_by_triangle();
   void shade_arrived();
 
-  const TriangleSource& source_;
-  const Colorist& colorist_;
+  const TriangleSource* source_ = nullptr;
+  const Colorist* colorist_ = nullptr;
   TriangleCache cache_;
   std::vector<NewTriangle> new_triangles_;  ///< of the batch, not set up yet
   Coverage arrived_;                        ///< in the order of arrival; `pixel` is the caller's number

@@ -126,6 +126,11 @@ class MaterialRun {
   TangentFrame frame_;
 };
 
+bool uses_textures(const Material& m) {
+  return m.base_color_texture.is_set() || m.metallic_roughness_texture.is_set() || m.normal_texture.is_set() ||
+         m.emissive_texture.is_set() || m.occlusion_texture.is_set();
+}
+
 }  // namespace
 
 Material default_material() {
@@ -135,22 +140,31 @@ Material default_material() {
   return material;
 }
 
-MaterialTable::MaterialTable(const Scene& scene, const std::vector<bool>& is_seen, const Execution& execution)
+MaterialTable::MaterialTable(const Scene& scene)
     : scene_(scene), srgb_(scene.textures.size()), linear_(scene.textures.size()) {
-  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-    const Material& m = scene.materials[i];
-    MaterialRow row{m, {}, {}, {}, {}, {}};
-    if (is_seen[i]) {
-      row.base_color = slot(m.base_color_texture, Encoding::srgb, execution);
-      row.emissive = slot(m.emissive_texture, Encoding::srgb, execution);
-      row.metallic_roughness = slot(m.metallic_roughness_texture, Encoding::linear, execution);
-      row.normal = slot(m.normal_texture, Encoding::linear, execution);
-      row.occlusion = slot(m.occlusion_texture, Encoding::linear, execution);
-    }
-    rows_.push_back(std::move(row));
+  for (const Material& m : scene.materials) {
+    rows_.push_back({m, {}, {}, {}, {}, {}});
+    is_ready_.push_back(!uses_textures(m));
+    unready_ += !is_ready_.back();
   }
+  has_textures_ = unready_ > 0;
   default_.factors = white_.factors = default_material();
   white_.factors.base_color = glm::vec4(1);
+}
+
+void MaterialTable::make_ready(const std::vector<bool>& is_needed, const Execution& execution) {
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (is_ready_[i] || !is_needed[i]) continue;
+    MaterialRow& row = rows_[i];
+    const Material& m = row.factors;
+    row.base_color = slot(m.base_color_texture, Encoding::srgb, execution);
+    row.emissive = slot(m.emissive_texture, Encoding::srgb, execution);
+    row.metallic_roughness = slot(m.metallic_roughness_texture, Encoding::linear, execution);
+    row.normal = slot(m.normal_texture, Encoding::linear, execution);
+    row.occlusion = slot(m.occlusion_texture, Encoding::linear, execution);
+    is_ready_[i] = true;
+    --unready_;
+  }
 }
 
 TextureSlot MaterialTable::slot(const TextureUse& use, Encoding encoding, const Execution& execution) {

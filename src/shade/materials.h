@@ -30,8 +30,16 @@ struct MaterialRow {
 
 class MaterialTable {
  public:
-  /// Borrows `scene`. Makes mip levels only for the textures of materials that `is_seen`, one entry per material.
-  MaterialTable(const Scene& scene, const std::vector<bool>& is_seen, const Execution& execution);
+  /// Borrows `scene`. No textures are made ready yet.
+  explicit MaterialTable(const Scene& scene);
+
+  /// Makes the mip levels of the textures of materials that `is_needed`, one entry per material, where they are not
+  /// there yet. What was there stays in its place. O(texels), in parallel.
+  void make_ready(const std::vector<bool>& is_needed, const Execution& execution);
+  /// Whether any material has a texture.
+  [[nodiscard]] bool has_textures() const { return has_textures_; }
+  /// Nothing is left that make_ready() could make.
+  [[nodiscard]] bool is_ready() const { return unready_ == 0; }
 
   /// Without a material the default one, which is white where the mesh brings colours: its grey would dim them.
   [[nodiscard]] const MaterialRow& row_of(const TriangleSetup& triangle) const {
@@ -44,6 +52,9 @@ class MaterialTable {
 
   const Scene& scene_;
   std::vector<MaterialRow> rows_;  ///< by material
+  std::vector<bool> is_ready_;     ///< by material
+  std::size_t unready_ = 0;        ///< materials with textures that are not ready
+  bool has_textures_ = false;
   MaterialRow default_, white_;
   std::vector<std::unique_ptr<Pyramid>> srgb_, linear_;  ///< by texture; null where not used so
 };

@@ -24,14 +24,6 @@ DepthRange depth_range(const Visible& visible, const Execution& execution) {
   return {depth_of_key(visible.view, keys.farthest), depth_of_key(visible.view, keys.nearest)};
 }
 
-bool has_textures(const Scene& scene) {
-  const auto uses = [](const Material& m) {
-    return m.base_color_texture.is_set() || m.metallic_roughness_texture.is_set() || m.normal_texture.is_set() ||
-           m.emissive_texture.is_set() || m.occlusion_texture.is_set();
-  };
-  return std::any_of(scene.materials.begin(), scene.materials.end(), uses);
-}
-
 bool lacks_normals(const Scene& scene) {
   return std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh& m) { return m.normals.empty(); });
 }

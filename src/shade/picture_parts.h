@@ -2,10 +2,9 @@
 // What pictures and figures ask of a scene and a view before they shade.
 #pragma once
 
-#include <vector>
+#include <limits>
 
 #include "frontmost/shade.h"
-#include "shade/geometry/geometry.h"
 
 namespace frontmost::shading {
 
@@ -21,21 +20,11 @@ struct DepthRange {
 /// Of what is visible; both 0 where nothing is. O(samples), in parallel.
 [[nodiscard]] DepthRange depth_range(const Visible& visible, const Execution& execution);
 
-[[nodiscard]] bool has_textures(const Scene& scene);
 /// Of any mesh.
 [[nodiscard]] bool lacks_normals(const Scene& scene);
 /// Colours come from materials.
 [[nodiscard]] bool shows_materials(Shading shading);
 /// \throws Error bad_argument.
 void check_opacity(const ShadeOptions& options);
-
-/// For every material, whether a texture of it will be looked at. `seen()` gives the primitives that are.
-template <class Seen>
-[[nodiscard]] std::vector<bool> needed_materials(const Surfaces& surfaces, const Seen& seen,
-                                                 const Execution& execution) {
-  const Scene& scene = surfaces.scene();
-  if (!has_textures(scene)) return std::vector<bool>(scene.materials.size());
-  return seen_materials(surfaces, seen(), execution);
-}
 
 }  // namespace frontmost::shading

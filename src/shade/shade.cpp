@@ -2,29 +2,24 @@
 #include "frontmost/shade.h"
 
 #include <algorithm>
-#include <cmath>
+#include <functional>
 
 #include "base/parallel.h"
+#include "base/pool.h"
 #include "base/srgb.h"
 #include "shade/canvas.h"
 #include "shade/colorists.h"
+#include "shade/figure/colored_order.h"
 #include "shade/layers/layers.h"
 #include "shade/layers/opaque_part.h"
 #include "shade/picture_parts.h"
-#include "shade/shadow/key_shadows.h"
+#include "shade/prepared_scene.h"
 #include "view/answer.h"
 
 namespace frontmost {
 namespace {
 
 using namespace shading;
-
-/// A Visible and what its triangles are set up from.
-struct ShadedLayer {
-  const TriangleSource& source;
-  const Visible& visible;
-  SampleUse use = SampleUse::all;
-};
 
 void shade_tile(const TileRectangle& tile, TileWork& work, const Painting& painting) {
   if (work.shade(tile)) {
@@ -36,15 +31,16 @@ void shade_tile(const TileRectangle& tile, TileWork& work, const Painting& paint
 }
 
 /// Shades all tiles, one row of tiles to a thread at a time.
-void shade_tiles(const ShadedLayer& layer, const Painting& painting, const Execution& execution) {
+void shade_tiles(const ShadedLayer& layer, const Painting& painting, PreparedScene& scene, const Execution& execution) {
   const View& view = layer.visible.view;
   const auto rows = std::size_t((view.height + tile_height - 1) / tile_height);
   parallel_for(execution, rows, 1, [&](std::size_t begin, std::size_t end) {
-    TileWork work(layer.source, layer.visible, layer.use, painting.colorist);
+    const auto work = scene.works.borrow([] { return std::make_unique<TileWork>(); });
+    work->begin(layer, painting.colorist);
     for (std::size_t row = begin; row < end; ++row)
       for (int x = 0; x < view.width; x += tile_width) {
         const int y = int(row) * tile_height;
-        shade_tile({x, y, std::min(tile_width, view.width - x), std::min(tile_height, view.height - y)}, work,
+        shade_tile({x, y, std::min(tile_width, view.width - x), std::min(tile_height, view.height - y)}, *work,
                    painting);
       }
   });
@@ -56,134 +52,122 @@ glm::vec4 background_color(const ShadeOptions& options) {
   return {linear_of_shown(c.x), linear_of_shown(c.y), linear_of_shown(c.z), 1.0f};
 }
 
-/// The triangles of a picture of materials.
-struct Triangles {
-  std::optional<BitSet> large;
-  std::optional<TriangleSource> source;
-
-  /// `worth_smoothing`: those worth a smooth normal where the model has none; none where no normal is looked at.
-  Triangles(const Surfaces& surfaces, const View& view, std::optional<BitSet> worth_smoothing,
-            const Execution& execution)
-      : large(std::move(worth_smoothing)) {
-    source.emplace(surfaces, view, large ? &*large : nullptr, execution);
-    if (!has_textures(surfaces.scene())) source->leave_out_texcoords();
-  }
-};
-
-/// What pictures of materials need: of the primitives that a Visible shows, or, where materials can be seen through, of
-/// all layers.
-class LayerMaterials {
- public:
-  LayerMaterials(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options,
-                 const Execution& execution)
-      : visible_(visible), wants_normals_(options.shading != Shading::flat && lacks_normals(surfaces.scene())) {
-    if (wants_layers(surfaces.scene(), options))
-      make_layers(surfaces, options, execution);
-    else
-      make_front(surfaces, execution);
-  }
-
-  [[nodiscard]] const MaterialTable& table() const { return *table_; }
-  /// Where a fragment's samples lie within its pixel, in 1/256.
-  [[nodiscard]] std::vector<glm::ivec2> samples() const {
-    if (layers_) return layers_->samples();
-    const auto offsets = sample_offsets(visible_.view.samples);
-    return {offsets.begin(), offsets.end()};
-  }
-
-  /// Precondition: with layers.
-  [[nodiscard]] DeepImage deep(const Surfaces& surfaces, const FragmentShader::Colorist& colorist,
-                               const Execution& execution) const {
-    const LayerShader shader(*triangles_->source, *layers_, colorist);
-    return deep_layers(surfaces, visible_.view, *layers_, shader, execution);
-  }
-
-  void paint(const Painting& painting, const Execution& execution) const {
-    if (layers_)
-      shade_layers(*triangles_->source, *layers_, painting, execution);
-    else
-      shade_tiles({*triangles_->source, visible_}, painting, execution);
-  }
-
- private:
-  static bool wants_layers(const Scene& scene, const ShadeOptions& options) {
-    if (options.see_through != SeeThrough::where_needed) return options.see_through == SeeThrough::always;
-    return has_see_through(scene) || options.opacity < 1.0f;
-  }
-
-  void make_front(const Surfaces& surfaces, const Execution& execution) {
-    std::optional<BitSet> large;
-    if (wants_normals_) large = large_primitives(surfaces.primitive_count(), visible_, execution);
-    const auto seen = [&] { return seen_primitives(surfaces, visible_, execution); };
-    triangles_.emplace(surfaces, visible_.view, std::move(large), execution);
-    table_.emplace(surfaces.scene(), needed_materials(surfaces, seen, execution), execution);
-  }
-
-  void make_layers(const Surfaces& surfaces, const ShadeOptions& options, const Execution& execution) {
-    layers_.emplace(surfaces, visible_.view, AbufferOptions{options.grid, options.opacity}, execution);
-    std::optional<BitSet> found;
-    const auto seen = [&]() -> const BitSet& {
-      if (!found) found = seen_primitives(surfaces, *layers_, execution);
-      return *found;
-    };
-    table_.emplace(surfaces.scene(), needed_materials(surfaces, seen, execution), execution);
-    if (wants_normals_)
-      (void)seen();
-    else
-      found.reset();
-    triangles_.emplace(surfaces, visible_.view, std::move(found), execution);
-  }
-
-  const Visible& visible_;
-  const bool wants_normals_;  ///< and the model does not have them
-  std::optional<abuffer_detail::FragmentPass> layers_;
-  std::optional<Triangles> triangles_;
-  std::optional<MaterialTable> table_;
-};
-
 /// All that a picture is made from.
 struct Request {
-  const Surfaces& surfaces;
+  PreparedScene& scene;
   const ShadeInput& input;
   const ShadeOptions& options;
   const Execution& execution;
 };
 
+/// What a picture of materials is made of: what a Visible shows, or, where materials can be seen through, all layers.
+class ShownMaterials {
+ public:
+  /// Makes ready what the scene does not have yet.
+  explicit ShownMaterials(const Request& request)
+      : visible_(request.input.visible), scene_(request.scene), large_(std::move(scene_.primitives)) {
+    const bool wants_normals =
+        request.options.shading != Shading::flat && lacks_normals(request.scene.surfaces.scene());
+    wants_layers(request) ? find_layers(request, wants_normals) : find_front(request, wants_normals);
+    if (wants_normals) scene_.triangles.smooth(large_, request.execution);
+    source_.emplace(scene_.triangles, visible_.view, wants_normals ? &large_ : nullptr);
+    if (!scene_.materials.has_textures()) source_->leave_out_texcoords();
+  }
+
+  ~ShownMaterials() { scene_.primitives = std::move(large_); }
+  ShownMaterials(const ShownMaterials&) = delete;
+  ShownMaterials& operator=(const ShownMaterials&) = delete;
+
+  /// Where a fragment's samples lie within its pixel, in 1/256.
+  [[nodiscard]] std::span<const glm::ivec2> samples() const {
+    return layers_ ? std::span(layer_samples_) : sample_offsets(visible_.view.samples);
+  }
+
+  /// Precondition: with layers.
+  [[nodiscard]] DeepImage deep(const Surfaces& surfaces, const FragmentShader::Colorist& colorist,
+                               const Execution& execution) const {
+    const LayerShader shader(*source_, *layers_, colorist);
+    return deep_layers(surfaces, visible_.view, *layers_, shader, execution);
+  }
+
+  void paint(const Painting& painting, const Execution& execution) const {
+    if (layers_)
+      shade_layers(*source_, *layers_, painting, execution);
+    else
+      shade_tiles({*source_, visible_}, painting, scene_, execution);
+  }
+
+ private:
+  static bool wants_layers(const Request& request) {
+    if (request.options.see_through != SeeThrough::where_needed)
+      return request.options.see_through == SeeThrough::always;
+    return has_see_through(request.scene.surfaces.scene()) || request.options.opacity < 1.0f;
+  }
+
+  void find_front(const Request& request, bool wants_normals) {
+    const Surfaces& surfaces = request.scene.surfaces;
+    if (wants_normals)
+      large_ = large_primitives(surfaces.primitive_count(), visible_, request.execution, std::move(large_));
+    request.scene.make_materials_ready([&] { return seen_primitives(surfaces, visible_, request.execution); },
+                                       request.execution);
+  }
+
+  void find_layers(const Request& request, bool wants_normals) {
+    const Surfaces& surfaces = request.scene.surfaces;
+    layers_.emplace(surfaces, visible_.view, AbufferOptions{request.options.grid, request.options.opacity},
+                    request.execution);
+    layer_samples_ = layers_->samples();
+    if (!wants_normals && scene_.materials.is_ready()) return;
+    large_ = seen_primitives(surfaces, *layers_, request.execution);
+    request.scene.make_materials_ready([&]() -> const BitSet& { return large_; }, request.execution);
+  }
+
+  const Visible& visible_;
+  PreparedScene& scene_;
+  std::optional<abuffer_detail::FragmentPass> layers_;
+  std::vector<glm::ivec2> layer_samples_;
+  BitSet large_;  ///< primitives that are worth a smooth normal where the model has none
+  std::optional<TriangleSource> source_;
+};
+
 /// Calls use(colorist) with what colours fragments as the options say. Precondition: shows_materials().
 template <class Use>
-void with_colorist(const Request& request, const LayerMaterials& materials, const Use& use) {
+void with_colorist(const Request& request, const ShownMaterials& shown, const Use& use) {
   const ShadeOptions& options = request.options;
-  if (options.shading == Shading::flat) return use(FragmentShader::Colorist(Flat{materials.table()}));
-  if (options.shading == Shading::normals) return use(FragmentShader::Colorist(Normals{materials.table()}));
-  const Lighting lighting = lighting_for(request.input.visible.view, request.surfaces.scene().up);
-  const std::vector<glm::ivec2> samples = materials.samples();
-  const KeyShadows shadows({request.surfaces, request.input, options, samples}, lighting.to_key, request.execution);
-  use(FragmentShader::Colorist(Lit{materials.table(), lighting, shadows.map(), shadows.rays(), request.execution.isa}));
+  const MaterialTable& materials = request.scene.materials;
+  const auto use_it = [&](const auto& colorist) { use(FragmentShader::Colorist(std::cref(colorist))); };
+  if (options.shading == Shading::flat) return use_it(Flat{materials});
+  if (options.shading == Shading::normals) return use_it(Normals{materials});
+  const Lighting lighting = lighting_for(request.input.visible.view, request.scene.surfaces.scene().up);
+  KeyShadows& shadows = request.scene.shadows;
+  shadows.find({request.input, options, shown.samples()}, lighting.to_key, request.execution);
+  use_it(Lit{materials, lighting, shadows.map(), shadows.rays(), request.execution.isa});
+}
+
+void check(const Request& request) {
+  check_opacity(request.options);
+  check_answer(request.input.visible, request.scene.surfaces.primitive_count(), "shade", request.execution);
 }
 
 void paint_materials(const Request& request, TileCanvas& canvas) {
-  const LayerMaterials materials(request.surfaces, request.input.visible, request.options, request.execution);
-  with_colorist(request, materials, [&](const FragmentShader::Colorist& colorist) {
-    materials.paint({canvas, colorist, background_color(request.options), request.options.opacity}, request.execution);
+  const ShownMaterials shown(request);
+  with_colorist(request, shown, [&](const FragmentShader::Colorist& colorist) {
+    shown.paint({canvas, colorist, background_color(request.options), request.options.opacity}, request.execution);
   });
 }
 
 void paint_map(const Request& request, TileCanvas& canvas) {
   const Visible& visible = request.input.visible;
   const ShadeOptions& options = request.options;
-  const TriangleSource source(request.surfaces, visible.view, nullptr, request.execution);
+  const TriangleSource source(request.scene.triangles, visible.view, nullptr);
   const auto paint = [&](const TileWork::Colorist& colorist) {
-    shade_tiles({source, visible}, {canvas, colorist, background_color(options)}, request.execution);
+    shade_tiles({source, visible}, {canvas, colorist, background_color(options)}, request.scene, request.execution);
   };
   if (options.shading == Shading::ids) return paint(Ids{});
   if (options.shading == Shading::uv) return paint(Texcoords{});
   const DepthRange range = depth_range(visible, request.execution);
-  paint(Depths{glm::vec3(visible.view.forward()), range.nearest, range.farthest});
-}
-
-void check(const Request& request) {
-  check_opacity(request.options);
-  check_answer(request.input.visible, request.surfaces.primitive_count(), "shade", request.execution);
+  const Depths depths{glm::vec3(visible.view.forward()), range.nearest, range.farthest};
+  paint(std::cref(depths));
 }
 
 void paint(const Request& request, TileCanvas& canvas) {
@@ -191,54 +175,104 @@ void paint(const Request& request, TileCanvas& canvas) {
   shows_materials(request.options.shading) ? paint_materials(request, canvas) : paint_map(request, canvas);
 }
 
+DeepImage deep_image(const Request& request) {
+  check(request);
+  const ShownMaterials shown(request);
+  DeepImage image;
+  with_colorist(request, shown, [&](const FragmentShader::Colorist& colorist) {
+    image = shown.deep(request.scene.surfaces, colorist, request.execution);
+  });
+  return image;
+}
+
+void paint_normals(PreparedScene& scene, const Visible& visible, const Execution& execution, TileCanvas& canvas) {
+  std::optional<BitSet> large;
+  if (lacks_normals(scene.surfaces.scene())) {
+    large = large_primitives(scene.surfaces.primitive_count(), visible, execution);
+    scene.triangles.smooth(*large, execution);
+  }
+  scene.make_materials_ready([&] { return seen_primitives(scene.surfaces, visible, execution); }, execution);
+  TriangleSource source(scene.triangles, visible.view, large ? &*large : nullptr);
+  if (!scene.materials.has_textures()) source.leave_out_texcoords();
+  const TileWork::Colorist colorist = RawNormals{scene.materials};
+  shade_tiles({source, visible, SampleUse::first}, {canvas, colorist, glm::vec4(0)}, scene, execution);
+}
+
 }  // namespace
 
-Image shade(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options,
-            const Execution& execution) {
-  PlanesCanvas canvas(input.visible.view, {"R", "G", "B", "A"});
-  paint({surfaces, input, options, execution}, canvas);
-  return canvas.take();
+struct Shader::State {
+  explicit State(const Surfaces& surfaces) : scene(surfaces) {}
+
+  PreparedScene scene;
+  Image image;
+  Bitmap bitmap;
+};
+
+Shader::Shader(const Surfaces& surfaces) : state_(std::make_unique<State>(surfaces)) {}
+Shader::~Shader() = default;
+Shader::Shader(Shader&&) noexcept = default;
+Shader& Shader::operator=(Shader&&) noexcept = default;
+
+const Image& Shader::shade(const ShadeInput& input, const ShadeOptions& options, const Execution& execution) {
+  PlanesCanvas canvas(input.visible.view, {"R", "G", "B", "A"}, std::move(state_->image));
+  paint({state_->scene, input, options, execution}, canvas);
+  return state_->image = canvas.take();
 }
 
-Bitmap shade_bitmap(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options,
-                    const Execution& execution) {
-  BitmapCanvas canvas(input.visible.view);
-  paint({surfaces, input, options, execution}, canvas);
-  return canvas.take();
+const Bitmap& Shader::shade_bitmap(const ShadeInput& input, const ShadeOptions& options, const Execution& execution) {
+  BitmapCanvas canvas(input.visible.view, std::move(state_->bitmap));
+  paint({state_->scene, input, options, execution}, canvas);
+  return state_->bitmap = canvas.take();
 }
 
-DeepImage shade_deep(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options,
-                     const Execution& execution) {
+DeepImage Shader::shade_deep(const ShadeInput& input, const ShadeOptions& options, const Execution& execution) {
   if (!shows_materials(options.shading))
     throw Error(ErrorCode::unsupported, "shade: deep images are lit, flat, or of normals");
   ShadeOptions in_layers = options;
   in_layers.see_through = SeeThrough::always;
-  const Request request{surfaces, input, in_layers, execution};
-  check(request);
-  const LayerMaterials materials(surfaces, input.visible, in_layers, execution);
-  DeepImage image;
-  with_colorist(request, materials, [&](const FragmentShader::Colorist& colorist) {
-    image = materials.deep(surfaces, colorist, execution);
-  });
-  return image;
+  return deep_image({state_->scene, input, in_layers, execution});
+}
+
+Image Shader::normal_image(const Visible& visible, const Execution& execution) {
+  check_answer(visible, state_->scene.surfaces.primitive_count(), "normal image", execution);
+  PlanesCanvas canvas(visible.view, {"N.X", "N.Y", "N.Z"});
+  paint_normals(state_->scene, visible, execution, canvas);
+  return canvas.take();
+}
+
+Figure Shader::draw_figure(const ShadeInput& input, const FigureOptions& options, const Execution& execution) {
+  return figure_of(state_->scene, input, options, execution);
+}
+
+Image Shader::take() { return std::move(state_->image); }
+Bitmap Shader::take_bitmap() { return std::move(state_->bitmap); }
+
+Image shade(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options,
+            const Execution& execution) {
+  Shader shader(surfaces);
+  shader.shade(input, options, execution);
+  return shader.take();
+}
+
+Bitmap shade_bitmap(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options,
+                    const Execution& execution) {
+  Shader shader(surfaces);
+  shader.shade_bitmap(input, options, execution);
+  return shader.take_bitmap();
+}
+
+DeepImage shade_deep(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options,
+                     const Execution& execution) {
+  return Shader(surfaces).shade_deep(input, options, execution);
+}
+
+Image normal_image(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {
+  return Shader(surfaces).normal_image(visible, execution);
 }
 
 std::optional<View> key_light_view(const Visible& visible, const Box& bounds, Axis up, const Execution& execution) {
   check_planes(visible, "light");
   return view_of_light(visible, bounds, glm::dvec3(lighting_for(visible.view, up).to_key), execution);
-}
-
-Image normal_image(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {
-  check_answer(visible, surfaces.primitive_count(), "normal image", execution);
-  std::optional<BitSet> large;
-  if (lacks_normals(surfaces.scene())) large = large_primitives(surfaces.primitive_count(), visible, execution);
-  const auto seen = [&] { return seen_primitives(surfaces, visible, execution); };
-  const MaterialTable table(surfaces.scene(), needed_materials(surfaces, seen, execution), execution);
-  const Triangles triangles(surfaces, visible.view, std::move(large), execution);
-  const TileWork::Colorist colorist = RawNormals{table};
-  PlanesCanvas canvas(visible.view, {"N.X", "N.Y", "N.Z"});
-  shade_tiles({*triangles.source, visible, SampleUse::first}, {canvas, colorist, glm::vec4(0)}, execution);
-  return canvas.take();
 }
 
 }  // namespace frontmost

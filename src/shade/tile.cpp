@@ -8,21 +8,23 @@
 
 namespace frontmost::shading {
 
-TileWork::TileWork(const TriangleSource& source, const Visible& visible, SampleUse use, const Colorist& colorist)
-    : visible_(visible),
-      samples_(use == SampleUse::first ? 1 : visible.view.samples),
-      fragments_(source, colorist),
-      pixels_(tile_pixels) {
-  const auto all = sample_offsets(visible.view.samples);
-  for (int s = 0; s < samples_; ++s) offsets_.push_back(glm::vec2(all[std::size_t(s)]) / 256.0f);
-  for (const glm::vec2& offset : offsets_) centre_ += offset / float(samples_);
+void TileWork::begin(const ShadedLayer& layer, const Colorist& colorist) {
+  visible_ = &layer.visible;
+  samples_ = layer.use == SampleUse::first ? 1 : layer.visible.view.samples;
+  const auto all = sample_offsets(layer.visible.view.samples);
+  centre_ = glm::vec2(0);
+  for (std::size_t s = 0; s < std::size_t(samples_); ++s) {
+    offsets_[s] = glm::vec2(all[s]) / 256.0f;
+    centre_ += offsets_[s] / float(samples_);
+  }
+  fragments_.begin(layer.source, colorist);
 }
 
 bool TileWork::shade(const TileRectangle& tile) {
   fragments_.clear();
   bool anything = false;
   for (int y = 0; y < tile.height; ++y)
-    anything = find_seen(visible_.index(tile.x, tile.y + y), tile.width, y) || anything;
+    anything = find_seen(visible_->index(tile.x, tile.y + y), tile.width, y) || anything;
   if (!anything) return false;
   // Most of a picture is background: nothing is cleared before something is found.
   std::fill(pixels_.begin(), pixels_.end(), glm::vec4(0));
@@ -44,7 +46,7 @@ bool TileWork::find_seen(std::size_t row, int width, int y) {
   PrimitiveId ids[tile_width];
   std::fill(std::begin(ids), std::end(ids), no_primitive);
   for (int s = 0; s < samples_; ++s) {
-    const PrimitiveId* plane = visible_.primitives.data() + row + std::size_t(s) * visible_.view.pixel_count();
+    const PrimitiveId* plane = visible_->primitives.data() + row + std::size_t(s) * visible_->view.pixel_count();
     // The same row of the next tile: steps of a row are too long for the processor to foresee.
     constexpr int line = 64 / sizeof(PrimitiveId);
     for (int x = 0; x < tile_width; x += line) prefetch_line(plane + tile_width + x);
@@ -62,7 +64,7 @@ void TileWork::add_pixel(int x, int y, std::uint32_t pixel) {
   PrimitiveId ids[16];
   bool same = true;
   for (int s = 0; s < samples_; ++s) {
-    ids[s] = visible_.primitives[visible_.index(x, y, s)];
+    ids[s] = visible_->primitives[visible_->index(x, y, s)];
     same = same && ids[s] == ids[0];
   }
   const glm::vec2 corner{float(x), float(y)};

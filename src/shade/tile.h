@@ -2,6 +2,7 @@
 // A rectangle of pixels shaded by one thread: finds its fragments, hands them out in batches, and sums the answers.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "frontmost/visible.h"
@@ -19,12 +20,21 @@ struct TileRectangle {
 /// Which of a Visible's samples count.
 enum class SampleUse : std::uint8_t { all, first };
 
-/// Reused from tile to tile by one thread. About half a megabyte.
+/// A Visible and what its triangles are set up from.
+struct ShadedLayer {
+  const TriangleSource& source;
+  const Visible& visible;
+  SampleUse use = SampleUse::all;
+};
+
+/// Reused from tile to tile and from picture to picture by one thread. About half a megabyte.
 class TileWork {
  public:
   using Colorist = FragmentShader::Colorist;
 
-  TileWork(const TriangleSource& source, const Visible& visible, SampleUse use, const Colorist& colorist);
+  TileWork() : pixels_(tile_pixels) {}
+  /// Starts a picture; borrows everything. Precondition of shade().
+  void begin(const ShadedLayer& layer, const Colorist& colorist);
 
   /// Premultiplied sums over the samples of each pixel, row by row of the tile. False where nothing is seen at all.
   bool shade(const TileRectangle& tile);
@@ -40,10 +50,10 @@ class TileWork {
   void add_fragment(PrimitiveId id, std::uint32_t pixel, const glm::vec2& screen, unsigned samples);
   void flush();
 
-  const Visible& visible_;
-  int samples_;
-  std::vector<glm::vec2> offsets_;  ///< of the samples within a pixel
-  glm::vec2 centre_{0};             ///< their mean
+  const Visible* visible_ = nullptr;
+  int samples_ = 1;
+  std::array<glm::vec2, 16> offsets_{};  ///< of the samples within a pixel
+  glm::vec2 centre_{0};                  ///< their mean
   FragmentShader fragments_;
   std::vector<glm::vec4> pixels_;
   bool seen_[tile_height][tile_width] = {};

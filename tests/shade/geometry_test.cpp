@@ -29,6 +29,7 @@ struct World {
   Surfaces surfaces;
   Visible visible;
   BitSet large;
+  TriangleStore store;
   TriangleSource source;
 
   explicit World(Scene s, const View& view = front_view())
@@ -36,7 +37,10 @@ struct World {
         surfaces(scene),
         visible(zbuffer(surfaces, view)),
         large(large_primitives(surfaces.primitive_count(), visible, {})),
-        source(surfaces, view, &large, {}) {}
+        store(surfaces),
+        source(store, view, &large) {
+    store.smooth(large, {});
+  }
 
   [[nodiscard]] TriangleSetup set_up(PrimitiveId id, const glm::vec2& reference = {32, 32}) const {
     return set_up_one(source, id, reference);
@@ -108,7 +112,7 @@ TEST(TriangleSource, MeshesWithoutNormalsAreSmoothOnlyWhereLarge) {
   EXPECT_TRUE(large.is_smooth);
   EXPECT_NEAR(large.normal[1].x, 0.0f, 0.02f);  // on the ridge: straight up
   EXPECT_LT(large.normal[0].x, -0.2f);          // at the eaves: the facet's own
-  const TriangleSource flat(world.surfaces, front_view(), nullptr, {});
+  const TriangleSource flat(world.store, front_view(), nullptr);
   const TriangleSetup setup = set_up_one(flat, 0, {32, 32});
   EXPECT_FALSE(setup.is_smooth);
   EXPECT_EQ(setup.normal[1], setup.plane_normal);

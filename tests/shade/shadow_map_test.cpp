@@ -8,6 +8,7 @@
 
 #include "frontmost/zbuffer.h"
 #include "shade/support.h"
+#include "support/key_light_map.h"
 
 namespace frontmost::shading {
 namespace {
@@ -34,7 +35,7 @@ struct Shadowed {
       : scene(std::move(s)),
         surfaces(scene),
         visible(zbuffer(surfaces, view)),
-        map(surfaces, visible, glm::normalize(to_light), execution) {}
+        map(light_map(surfaces, visible, glm::normalize(to_light), execution)) {}
 
   [[nodiscard]] float at(const glm::dvec3& world, const glm::vec3& normal = {0, 0, 1}) const {
     return map.light_at(glm::vec3(world - visible.view.eye()), normal);

@@ -46,7 +46,8 @@ struct Seen {
 /// All fragments of a picture by pixel, and the sums that the tiles gave.
 std::map<std::pair<int, int>, std::vector<Seen>> fragments(const Fake& fake) {
   std::map<std::pair<int, int>, std::vector<Seen>> result;
-  const TriangleSource source(fake.surfaces, fake.visible.view, nullptr, {});
+  const TriangleStore store(fake.surfaces);
+  const TriangleSource source(store, fake.visible.view, nullptr);
   TileRectangle tile;
   const TileWork::Colorist colorist = [&](const std::vector<TriangleSetup>& setups, FragmentBatch& batch) {
     for (int i = 0; i < batch.coverage.count; ++i) {
@@ -57,7 +58,8 @@ std::map<std::pair<int, int>, std::vector<Seen>> fragments(const Fake& fake) {
       batch.light.set(i, glm::vec3(1, 0.5f, 0));
     }
   };
-  TileWork work(source, fake.visible, SampleUse::all, colorist);
+  TileWork work;
+  work.begin({source, fake.visible}, colorist);
   const View& view = fake.visible.view;
   for (int y = 0; y < view.height; y += tile_height)
     for (int x = 0; x < view.width; x += tile_width) {

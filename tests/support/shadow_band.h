@@ -12,7 +12,7 @@
 #include "frontmost/zbuffer.h"
 #include "shade/geometry/triangle_setup.h"
 #include "shade/lighting.h"
-#include "shade/shadow/shadow_map.h"
+#include "support/key_light_map.h"
 
 namespace frontmost::test {
 
@@ -33,7 +33,7 @@ class ShadowBandMeter {
         visible_(zbuffer(surfaces, view, execution)),
         index_(surfaces, execution),
         to_key_(shading::lighting_for(view, surfaces.scene().up).to_key),
-        map_(surfaces, visible_, glm::dvec3(to_key_), execution) {
+        map_(light_map(surfaces, visible_, glm::dvec3(to_key_), execution)) {
     const auto light = shading::view_of_light(visible_, surfaces.bounds(), glm::dvec3(to_key_), execution);
     if (!light) return;
     axes_ = glm::dmat3(light->world_from_eye);

@@ -5,32 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <cstdlib>
-#include <new>
 
 #include "frontmost/frontmost.h"
+#include "support/allocation_count.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
-
-namespace {
-
-std::atomic<std::size_t> allocation_count{0};
-
-void* counted(std::size_t bytes) {
-  ++allocation_count;
-  if (void* pointer = std::malloc(bytes == 0 ? 1 : bytes)) return pointer;
-  throw std::bad_alloc();
-}
-
-}  // namespace
-
-void* operator new(std::size_t bytes) { return counted(bytes); }
-void* operator new[](std::size_t bytes) { return counted(bytes); }
-void operator delete(void* pointer) noexcept { std::free(pointer); }
-void operator delete[](void* pointer) noexcept { std::free(pointer); }
-void operator delete(void* pointer, std::size_t) noexcept { std::free(pointer); }
-void operator delete[](void* pointer, std::size_t) noexcept { std::free(pointer); }
 
 namespace frontmost::test {
 namespace {
@@ -147,9 +126,9 @@ TEST(ZBuffer, FramesAfterTheFirstAllocateNothing) {
     const Visible& visible = buffer.draw(surfaces, view, execution);
     const PrimitiveId* primitives = visible.primitives.data();
     const float* keys = visible.keys.data();
-    const std::size_t before = allocation_count;
+    const std::size_t before = allocation_count();
     for (int i = 0; i < 5; ++i) buffer.draw(surfaces, view, execution);
-    EXPECT_EQ(allocation_count, before);
+    EXPECT_EQ(allocation_count(), before);
     EXPECT_EQ(visible.primitives.data(), primitives);
     EXPECT_EQ(visible.keys.data(), keys);
   }
@@ -164,13 +143,13 @@ TEST(ZBuffer, AFlightAllocatesNothingOnceItHasBeenFlown) {
   ZBuffer buffer;
   const auto fly = [&] {
     View view = frame(surfaces, 640, 480);
-    const std::size_t before = allocation_count;
+    const std::size_t before = allocation_count();
     for (int i = 0; i < 300; ++i) {
       buffer.draw(surfaces, view, {.threads = 1});
       const glm::dvec3 eye = view.eye() + 0.02 * glm::distance(view.eye(), middle) * view.right();
       view = view.looking(eye, middle, up).enclosing(surfaces.bounds());
     }
-    return allocation_count - before;
+    return allocation_count() - before;
   };
   EXPECT_LT(fly(), 300u);
   EXPECT_EQ(fly(), 0u);

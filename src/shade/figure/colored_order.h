@@ -12,6 +12,10 @@
 
 namespace frontmost {
 
+namespace shading {
+struct PreparedScene;
+}
+
 struct ColorOptions {
   /// Shading, shadows and opacity count; see-through and the background do not.
   ShadeOptions shade;
@@ -78,6 +82,10 @@ struct ColoredOrder {
 /// \throws Error bad_argument for an opacity out of range; limit_exceeded for more than ColorOptions::most_polygons.
 [[nodiscard]] ColoredOrder color_order(const Surfaces& surfaces, const ShadeInput& input, const VisibleParts& parts,
                                        const ColorOptions& options = {}, const Execution& execution = {});
+/// The same with what pictures before made ready.
+[[nodiscard]] ColoredOrder color_order(shading::PreparedScene& scene, const ShadeInput& input,
+                                       const VisibleParts& parts, const ColorOptions& options,
+                                       const Execution& execution);
 
 /// The same picture of fewer shapes: polygons of one colour that share a part of a side become one shape, where no
 /// later polygon covers any of them, so that their place in the order does not matter; it is then that of the last.
@@ -91,6 +99,10 @@ struct ColoredOrder {
 /// O(n log n) in the number of polygons and of pairs that overlap, on one thread; with more than 16 million such pairs
 /// that have translucent ones between or under them the figure stays as it is.
 [[nodiscard]] ColoredOrder gather_sheets(ColoredOrder colored, const Execution& execution = {});
+
+/// What draw_figure() gives, with what pictures before made ready.
+[[nodiscard]] Figure figure_of(shading::PreparedScene& scene, const ShadeInput& input, const FigureOptions& options,
+                               const Execution& execution);
 
 /// The outlines of all shapes, without the sides that their own polygons share, and with traps of `width` pixels under
 /// later shapes; `occluders` are told by the polygons' ids, and translucent shapes are none. Translucent shapes have

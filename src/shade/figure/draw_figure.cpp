@@ -5,6 +5,7 @@
 #include "frontmost/shade.h"
 #include "frontmost/zbuffer.h"
 #include "shade/figure/colored_order.h"
+#include "shade/prepared_scene.h"
 
 namespace frontmost {
 namespace {
@@ -56,8 +57,9 @@ void check_count(std::size_t polygons, const FigureOptions& options) {
 
 }  // namespace
 
-Figure draw_figure(const Surfaces& surfaces, const ShadeInput& input, const FigureOptions& options,
-                   const Execution& execution) {
+Figure figure_of(shading::PreparedScene& scene, const ShadeInput& input, const FigureOptions& options,
+                 const Execution& execution) {
+  const Surfaces& surfaces = scene.surfaces;
   if (input.visible.view.samples != 1)
     throw Error(ErrorCode::bad_argument, "figure: what is visible must have one sample a pixel");
   if (!(options.tolerance >= 0 && options.tolerance <= 255))
@@ -65,13 +67,19 @@ Figure draw_figure(const Surfaces& surfaces, const ShadeInput& input, const Figu
   const VisibleParts parts = parts_of(surfaces, input.visible.view, options, execution);
   check_count(parts.polygons.size(), options);
   const ColorOptions coloring{options.shade, options.tolerance, options.merges_neighbours, options.most_polygons};
-  ColoredOrder colored = color_order(surfaces, input, parts, coloring, execution);
+  ColoredOrder colored = color_order(scene, input, parts, coloring, execution);
   if (options.merges_neighbours) colored = merge_neighbours(colored, execution);
   colored = gather_sheets(std::move(colored), execution);
   Figure figure = outlined(colored, kTrap, occluders_of(surfaces, options, Holes::cut_out), execution);
   figure.title = surfaces.scene().name;
   figure.background = options.shade.background;
   return figure;
+}
+
+Figure draw_figure(const Surfaces& surfaces, const ShadeInput& input, const FigureOptions& options,
+                   const Execution& execution) {
+  shading::PreparedScene scene(surfaces);
+  return figure_of(scene, input, options, execution);
 }
 
 Figure draw_figure(const Surfaces& surfaces, const View& view, const FigureOptions& options,

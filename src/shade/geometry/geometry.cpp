@@ -42,8 +42,10 @@ BitSet seen_primitives(const Surfaces& surfaces, const Visible& visible, const E
   return seen;
 }
 
-BitSet large_primitives(std::size_t primitive_count, const Visible& visible, const Execution& execution) {
-  BitSet large(primitive_count);
+BitSet large_primitives(std::size_t primitive_count, const Visible& visible, const Execution& execution,
+                        BitSet memory) {
+  BitSet large = std::move(memory);
+  large.clear(primitive_count);
   const View& view = visible.view;
   parallel_for(execution, std::size_t(view.height), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y) {

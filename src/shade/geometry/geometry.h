@@ -11,7 +11,6 @@
 #include "shade/bit_set.h"
 #include "shade/geometry/smooth_normals.h"
 #include "shade/geometry/triangle_setup.h"
-#include "shade/materials.h"
 #include "surfaces/cluster_set.h"
 
 namespace frontmost::shading {
@@ -21,8 +20,9 @@ namespace frontmost::shading {
 
 /// Every primitive whose first samples cover three pixels in a row or around a corner. On smaller ones a smooth
 /// normal could hardly be told from a flat one: scans of millions of triangles are spared it.
-/// O(pixels), in parallel.
-[[nodiscard]] BitSet large_primitives(std::size_t primitive_count, const Visible& visible, const Execution& execution);
+/// O(pixels + primitives / 64), in parallel. `memory` is that of the result, where it fits.
+[[nodiscard]] BitSet large_primitives(std::size_t primitive_count, const Visible& visible, const Execution& execution,
+                                      BitSet memory = {});
 
 /// For every material of the scene, whether one of the seen triangles has it.
 [[nodiscard]] std::vector<bool> seen_materials(const Surfaces& surfaces, const BitSet& seen,
@@ -35,20 +35,10 @@ struct NewTriangle {
   glm::vec2 reference{0};  ///< a screen position on the triangle
 };
 
-/// Sets up triangles with their attributes in world space.
-class TriangleSource {
+/// What the triangles of surfaces are set up from in every view: where their meshes stand, and smooth normals for
+/// meshes that have none.
+class TriangleStore {
  public:
-  /// Borrows `surfaces` and `large`; makes smooth normals for the large primitives of meshes that have none. Others of
-  /// those meshes, and all of them with no `large`, stay flat.
-  TriangleSource(const Surfaces& surfaces, const View& view, const BitSet* large, const Execution& execution);
-
-  /// From now on no triangle has texture coordinates: for pictures that look at none.
-  void leave_out_texcoords() { has_texcoords_ = false; }
-  /// Fills setups[number] of each triangle. Many at once are quicker than one by one.
-  void set_up(std::span<const NewTriangle> triangles, std::vector<TriangleSetup>& setups) const;
-  [[nodiscard]] const ScreenRays& rays() const { return rays_; }
-
- private:
   struct Placement {
     std::uint32_t instance;
     PrimitiveId first;
@@ -62,17 +52,54 @@ class TriangleSource {
     [[nodiscard]] bool holds(PrimitiveId id) const { return id - first < count; }  // wraps for ids below
   };
 
-  static Placement placement_of(const Surfaces& surfaces, std::uint32_t number);
+  /// Borrows the surfaces and their scene. O(instances).
+  explicit TriangleStore(const Surfaces& surfaces);
+
+  /// Makes smooth normals for the large primitives of meshes that have none. Those that were not asked for before are
+  /// made alone the first time; whoever asks again will ask for more, so that the second time makes the whole mesh's.
+  void smooth(const BitSet& large, const Execution& execution);
+
+  /// The placement that holds `id`; `guess` is looked at first.
   [[nodiscard]] const Placement& placement_with(PrimitiveId id, const Placement& guess) const;
+  [[nodiscard]] const Placement& first_placement() const { return placements_.front(); }
+  /// Those of a mesh: empty where it has normals of its own, or none were asked for.
+  [[nodiscard]] const PackedCornerNormals& smooth_normals_of(std::uint32_t mesh) const { return smooth_[mesh]; }
+
+ private:
+  void smooth_mesh(std::uint32_t mesh, const BitSet& large, const Execution& execution);
+
+  const Scene& scene_;
+  std::vector<Placement> placements_;             ///< by instance
+  std::vector<std::vector<PrimitiveId>> firsts_;  ///< by mesh: the first primitive of each of its instances
+  std::vector<PackedCornerNormals> smooth_;       ///< by mesh
+  BitSet smoothed_;                               ///< primitives whose normals are there
+};
+
+/// Sets up triangles with their attributes in world space, for one view.
+class TriangleSource {
+ public:
+  /// Borrows `store` and `large`. The large primitives of meshes without normals are smooth, and the store has smooth
+  /// normals for them; others of those meshes, and all of them with no `large`, stay flat.
+  TriangleSource(const TriangleStore& store, const View& view, const BitSet* large)
+      : rays_(view), large_(large), store_(store) {}
+
+  /// From now on no triangle has texture coordinates: for pictures that look at none.
+  void leave_out_texcoords() { has_texcoords_ = false; }
+  /// Fills setups[number] of each triangle. Many at once are quicker than one by one.
+  void set_up(std::span<const NewTriangle> triangles, std::vector<TriangleSetup>& setups) const;
+  [[nodiscard]] const ScreenRays& rays() const { return rays_; }
+
+ private:
+  using Placement = TriangleStore::Placement;
+
   void set_up(const NewTriangle& triangle, const Placement& placement, TriangleSetup& setup) const;
   void set_normals(PrimitiveId id, const Placement& placement, TriangleSetup& setup) const;
   void set_attributes(const Mesh& mesh, TriangleSetup& setup) const;
 
   ScreenRays rays_;
   const BitSet* large_;
+  const TriangleStore& store_;
   bool has_texcoords_ = true;
-  std::vector<Placement> placements_;        ///< by instance
-  std::vector<PackedCornerNormals> smooth_;  ///< by mesh; empty where the mesh has normals of its own or is not seen
 };
 
 /// Fills batch.geometry from batch.coverage.

@@ -21,30 +21,7 @@ glm::vec3 unit_or_zero(const glm::vec3& v) {
 
 bool lacks_normals(const Mesh& mesh) { return mesh.normals.empty(); }
 
-}  // namespace
-
-TriangleSource::TriangleSource(const Surfaces& surfaces, const View& view, const BitSet* large,
-                               const Execution& execution)
-    : rays_(view), large_(large), smooth_(surfaces.scene().meshes.size()) {
-  const Scene& scene = surfaces.scene();
-  std::vector<std::vector<PrimitiveId>> first_of_mesh(scene.meshes.size());
-  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-    placements_.push_back(placement_of(surfaces, i));
-    first_of_mesh[scene.instances[i].mesh].push_back(surfaces.first_primitive(i));
-  }
-  if (!large) return;
-  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    if (!lacks_normals(scene.meshes[m]) || first_of_mesh[m].empty()) continue;
-    const auto is_large = [&](std::uint32_t triangle) {
-      for (const PrimitiveId first : first_of_mesh[m])
-        if (large->contains(first + triangle)) return true;
-      return false;
-    };
-    smooth_[m] = smooth_normals(scene.meshes[m], is_large, execution);
-  }
-}
-
-TriangleSource::Placement TriangleSource::placement_of(const Surfaces& surfaces, std::uint32_t number) {
+TriangleStore::Placement placement_of(const Surfaces& surfaces, std::uint32_t number) {
   const Instance& instance = surfaces.scene().instances[number];
   const Mesh& mesh = surfaces.scene().meshes[instance.mesh];
   // The cofactors are the inverse transpose times the determinant, and exist for singular matrices too.
@@ -58,7 +35,45 @@ TriangleSource::Placement TriangleSource::placement_of(const Surfaces& surfaces,
           instance.mesh, ToWorld(instance.world_from_mesh), glm::mat3(cofactors * scale),         is_mirrored};
 }
 
-const TriangleSource::Placement& TriangleSource::placement_with(PrimitiveId id, const Placement& guess) const {
+}  // namespace
+
+TriangleStore::TriangleStore(const Surfaces& surfaces)
+    : scene_(surfaces.scene()),
+      firsts_(scene_.meshes.size()),
+      smooth_(scene_.meshes.size()),
+      smoothed_(surfaces.primitive_count()) {
+  for (std::uint32_t i = 0; i < scene_.instances.size(); ++i) {
+    placements_.push_back(placement_of(surfaces, i));
+    firsts_[scene_.instances[i].mesh].push_back(surfaces.first_primitive(i));
+  }
+}
+
+void TriangleStore::smooth(const BitSet& large, const Execution& execution) {
+  if (smoothed_.holds(large)) return;
+  for (std::uint32_t m = 0; m < scene_.meshes.size(); ++m)
+    if (lacks_normals(scene_.meshes[m]) && !firsts_[m].empty()) smooth_mesh(m, large, execution);
+}
+
+void TriangleStore::smooth_mesh(std::uint32_t mesh, const BitSet& large, const Execution& execution) {
+  const std::vector<PrimitiveId>& firsts = firsts_[mesh];
+  const auto count = std::uint32_t(scene_.meshes[mesh].triangles.size());
+  const auto is_large = [&](std::uint32_t triangle) {
+    return std::any_of(firsts.begin(), firsts.end(),
+                       [&](PrimitiveId first) { return large.contains(first + triangle); });
+  };
+  const auto is_smoothed = [&](std::uint32_t triangle) { return smoothed_.contains(firsts.front() + triangle); };
+  bool has_new = false;
+  for (std::uint32_t t = 0; t < count && !has_new; ++t) has_new = is_large(t) && !is_smoothed(t);
+  if (!has_new) return;
+  const bool is_first_time = smooth_[mesh].empty();
+  const auto is_wanted = [&](std::uint32_t triangle) { return !is_first_time || is_large(triangle); };
+  smooth_[mesh] = smooth_normals(scene_.meshes[mesh], is_wanted, execution);
+  for (std::uint32_t t = 0; t < count; ++t)
+    if (is_wanted(t))
+      for (const PrimitiveId first : firsts) smoothed_.add(first + t);
+}
+
+const TriangleStore::Placement& TriangleStore::placement_with(PrimitiveId id, const Placement& guess) const {
   if (guess.holds(id)) return guess;
   const auto starts_after = [](PrimitiveId wanted, const Placement& p) { return wanted < p.first; };
   return *(std::upper_bound(placements_.begin(), placements_.end(), id, starts_after) - 1);
@@ -68,20 +83,20 @@ void TriangleSource::set_up(std::span<const NewTriangle> triangles, std::vector<
   if (triangles.empty()) return;
   // What neighbours on the screen need is often far apart in memory, so that all of it is asked for first: corner
   // numbers, then the positions that they lead to.
-  const Placement* placement = &placements_.front();
+  const Placement* placement = &store_.first_placement();
   for (const NewTriangle& t : triangles) {
-    placement = &placement_with(t.id, *placement);
+    placement = &store_.placement_with(t.id, *placement);
     prefetch_line(&placement->mesh->triangles[t.id - placement->first]);
-    const PackedCornerNormals& smooth = smooth_[placement->mesh_number];
+    const PackedCornerNormals& smooth = store_.smooth_normals_of(placement->mesh_number);
     if (!smooth.empty()) prefetch_line(&smooth[t.id - placement->first]);
   }
   for (const NewTriangle& t : triangles) {
-    placement = &placement_with(t.id, *placement);
+    placement = &store_.placement_with(t.id, *placement);
     const glm::uvec3& corners = placement->mesh->triangles[t.id - placement->first];
     for (int k = 0; k < 3; ++k) prefetch_line(&placement->mesh->positions[corners[k]]);
   }
   for (const NewTriangle& t : triangles) {
-    placement = &placement_with(t.id, *placement);
+    placement = &store_.placement_with(t.id, *placement);
     set_up(t, *placement, setups[t.number]);
   }
 }
@@ -112,7 +127,7 @@ void TriangleSource::set_normals(PrimitiveId id, const Placement& placement, Tri
   const glm::mat3& normal_matrix = placement.normal_matrix;
   glm::vec3 sum(0);
   for (std::size_t k = 0; k < 3; ++k) {
-    const glm::vec3 own = lacks_normals(mesh) ? unpack(smooth_[setup.mesh][setup.triangle][k])
+    const glm::vec3 own = lacks_normals(mesh) ? unpack(store_.smooth_normals_of(setup.mesh)[setup.triangle][k])
                                               : mesh.normals.values[mesh.corners(mesh.normals, setup.triangle)[int(k)]];
     setup.normal[k] = unit_or_zero(normal_matrix * own);
     sum += setup.normal[k];

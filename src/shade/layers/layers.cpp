@@ -26,11 +26,11 @@ glm::vec2 LayerShader::centroid(std::uint64_t mask) const {
 
 void LayerShader::shade(const Rectangle& pixels, const PixelLists& lists, std::span<const std::uint32_t> numbers,
                         std::vector<glm::vec4>& colors) const {
-  const auto shader = shaders_.borrow([&] { return std::make_unique<FragmentShader>(source_, colorist_); });
+  const auto shader = shaders_.borrow([] { return std::make_unique<FragmentShader>(); });
   const auto receive = [&](std::uint32_t number, float, const glm::vec3& light, float alpha) {
     colors[number] = glm::vec4(light, alpha);
   };
-  shader->clear();
+  shader->begin(source_, colorist_);
   for (std::size_t p = 0; p + 1 < lists.begin.size(); ++p) {
     const glm::vec2 corner(float(pixels.x + int(p) % pixels.width), float(pixels.y + int(p) / pixels.width));
     for (std::size_t i = lists.begin[p]; i < lists.begin[p + 1]; ++i) {

@@ -6,42 +6,68 @@
 namespace frontmost::shading {
 namespace {
 
-/// What throws shadows: the surfaces, or those of their opaque part.
-class Casters {
- public:
-  Casters(const Surfaces& all, const Execution& execution) : all_(all) {
-    if (!has_see_through(all.scene())) return;
-    scene_ = opaque_part(all.scene());
-    opaque_.emplace(scene_, execution);
-  }
-
-  [[nodiscard]] const Surfaces& surfaces() const { return opaque_ ? *opaque_ : all_; }
-  [[nodiscard]] bool are_all() const { return !opaque_; }
-
- private:
-  const Surfaces& all_;
-  Scene scene_;
-  std::optional<Surfaces> opaque_;
-};
+/// Of two views of lights, which are orthographic and have as many pixels each.
+bool are_equal(const View& a, const View& b) {
+  const Projection &p = a.projection, &q = b.projection;
+  return a.world_from_eye == b.world_from_eye && p.left == q.left && p.right == q.right && p.bottom == q.bottom &&
+         p.top == q.top && p.clip.near == q.clip.near && p.clip.far == q.clip.far;
+}
 
 }  // namespace
 
-KeyShadows::KeyShadows(const ShadedPicture& picture, const glm::vec3& to_key, const Execution& execution) {
-  const ShadeOptions& options = picture.options;
-  const View& view = picture.input.visible.view;
-  if (options.shadows == Shadows::off) return;
-  if (options.shadows == Shadows::map && picture.input.seen_by_light) {
-    map_.emplace(*picture.input.seen_by_light, view.eye(), execution);
-    return;
+void KeyShadows::find(const ShadedPicture& picture, const glm::vec3& to_key, const Execution& execution) {
+  shows_map_ = false;
+  rays_.reset();
+  const ShadeInput& input = picture.input;
+  if (picture.options.shadows == Shadows::off) return;
+  if (picture.options.shadows == Shadows::rays) return aim_rays(picture, to_key, execution);
+  if (input.seen_by_light) {
+    has_drawn_ = false;
+    map_.draw(*input.seen_by_light, execution);
+    map_.measure_from(input.visible.view.eye());
+  } else {
+    draw_map(input.visible, to_key, execution);
   }
-  const Casters casters(picture.surfaces, execution);
-  if (options.shadows == Shadows::map) {
-    map_.emplace(casters.surfaces(), picture.input.visible, glm::dvec3(to_key), execution);
-    return;
+  shows_map_ = true;
+}
+
+const Surfaces& KeyShadows::casters(const Execution& execution) {
+  if (!knows_casters_ && has_see_through(all_.scene())) {
+    opaque_scene_ = opaque_part(all_.scene());
+    opaque_.emplace(opaque_scene_, execution);
   }
-  if (!casters.are_all() || !picture.input.index) index_.emplace(casters.surfaces(), execution);
-  rays_.emplace(index_ ? *index_ : *picture.input.index, picture.samples, to_key, execution.isa);
-  if (!casters.are_all()) rays_->forget_ids();
+  knows_casters_ = true;
+  return opaque_ ? *opaque_ : all_;
+}
+
+void KeyShadows::draw_map(const Visible& visible, const glm::vec3& to_key, const Execution& execution) {
+  const Surfaces& surfaces = casters(execution);
+  const std::optional<View> light = view_of_light(visible, surfaces.bounds(), glm::dvec3(to_key), execution);
+  has_drawn_ = has_drawn_ && light && are_equal(map_.view(), *light);
+  if (!light) return map_.clear();
+  if (!has_drawn_) {
+    // The first map may be the only one: a ZBuffer would make clusters for it.
+    if (!surfaces.made_clusters()) {
+      Visible planes = zbuffer(surfaces, *light, execution);
+      map_.draw(planes, execution);
+      light_.give_back(std::move(planes));
+    } else {
+      map_.draw(light_.draw(surfaces, *light, execution), execution);
+    }
+    has_drawn_ = true;
+  }
+  map_.measure_from(visible.view.eye());
+}
+
+void KeyShadows::aim_rays(const ShadedPicture& picture, const glm::vec3& to_key, const Execution& execution) {
+  const Surfaces& surfaces = casters(execution);
+  const RayIndex* index = picture.input.index;
+  if (opaque_ || !index) {
+    if (!index_) index_.emplace(surfaces, execution);
+    index = &*index_;
+  }
+  rays_.emplace(*index, picture.samples, to_key, execution.isa);
+  if (opaque_) rays_->forget_ids();
 }
 
 }  // namespace frontmost::shading

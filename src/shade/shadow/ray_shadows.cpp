@@ -39,11 +39,6 @@ class RayShadows::Questions {
   std::array<int, kAtOnce> fragments_;
 };
 
-RayShadows::RayShadows(const RayIndex& index, std::span<const glm::ivec2> samples, const glm::vec3& to_key, Isa isa)
-    : index_(index), to_key_(to_key), isa_(isa) {
-  for (const glm::ivec2& sample : samples) offsets_.push_back(glm::vec2(sample) / 256.0f);
-}
-
 void RayShadows::find_light(const std::vector<TriangleSetup>& setups, const bool* is_asked,
                             FragmentBatch& batch) const {
   const Coverage& coverage = batch.coverage;
@@ -60,7 +55,7 @@ void RayShadows::find_light(const std::vector<TriangleSetup>& setups, const bool
     if (setup.is_smooth) point.lift = g.smooth_position.at(i) - g.position.at(i);
     const glm::vec2 corner = at_points_ ? coverage.screen.at(i) : glm::floor(coverage.screen.at(i));
     for (std::uint64_t left = coverage.samples[i]; left != 0; left &= left - 1) {
-      const glm::vec2 sample = corner + offsets_[std::size_t(std::countr_zero(left))];
+      const glm::vec2 sample = corner + glm::vec2(samples_[std::size_t(std::countr_zero(left))]) / 256.0f;
       point.weights = barycentric(setup, sample.x, sample.y).weight;
       questions.add(point, i);
     }

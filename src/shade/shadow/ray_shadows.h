@@ -17,8 +17,9 @@ namespace frontmost::shading {
 
 class RayShadows {
  public:
-  /// Borrows the index, which holds what throws shadows. `samples` of a pixel, in 1/256 of it.
-  RayShadows(const RayIndex& index, std::span<const glm::ivec2> samples, const glm::vec3& to_key, Isa isa);
+  /// Borrows both. The index holds what throws shadows; `samples` of a pixel are in 1/256 of it.
+  RayShadows(const RayIndex& index, std::span<const glm::ivec2> samples, const glm::vec3& to_key, Isa isa)
+      : index_(index), to_key_(to_key), isa_(isa), samples_(samples) {}
 
   /// The ids of the index are not those of what is shaded. Slower: a triangle is then known by its corners.
   void forget_ids() { knows_ids_ = false; }
@@ -36,7 +37,7 @@ class RayShadows {
   glm::vec3 to_key_;
   Isa isa_;
   bool knows_ids_ = true, at_points_ = false;
-  std::vector<glm::vec2> offsets_;  ///< of the samples within a pixel
+  std::span<const glm::ivec2> samples_;
 };
 
 }  // namespace frontmost::shading

@@ -6,7 +6,6 @@
 #include <mutex>
 
 #include "base/parallel.h"
-#include "frontmost/zbuffer.h"
 
 namespace frontmost::shading {
 namespace {
@@ -108,48 +107,40 @@ std::optional<View> view_of_light(const Visible& visible, const Box& bounds, con
   return view_of_window(window_of(seen, extent_of_box(bounds, eye, axes)), axes, eye);
 }
 
-ShadowMap::ShadowMap(const Surfaces& surfaces, const Visible& visible, const glm::dvec3& to_light,
-                     const Execution& execution)
-    : filter_(shadow_filter(execution.isa)) {
-  const std::optional<View> light = view_of_light(visible, surfaces.bounds(), to_light, execution);
-  if (!light) return;
-  set_up(*light, visible.view.eye());
-  keys_ = std::move(zbuffer(surfaces, *light, execution).keys);
-  find_nearest(execution);
-  transpose(execution);
+void ShadowMap::draw(const Visible& seen_by_light, const Execution& execution) {
+  clear();  // an error leaves everything lit
+  filter_ = shadow_filter(execution.isa);
+  light_ = seen_by_light.view;
+  constexpr std::size_t texels = std::size_t(kSize) * kSize;
+  if (keys_.size() != texels) keys_ = Buffer<float>(texels);
+  if (nearest_.size() != texels) nearest_ = Buffer<float>(texels);
+  find_nearest(seen_by_light.keys, execution);
+  transpose(seen_by_light.keys, execution);
+  size_ = kSize;
 }
 
-ShadowMap::ShadowMap(const Visible& seen_by_light, const glm::dvec3& eye, const Execution& execution)
-    : filter_(shadow_filter(execution.isa)), keys_(seen_by_light.keys) {
-  set_up(seen_by_light.view, eye);
-  find_nearest(execution);
-  transpose(execution);
-}
-
-void ShadowMap::set_up(const View& light, const glm::dvec3& eye) {
-  const glm::dmat3 axes(light.world_from_eye);
-  const Projection& window = light.projection;
+void ShadowMap::measure_from(const glm::dvec3& eye) {
+  const glm::dmat3 axes(light_.world_from_eye);
+  const Projection& window = light_.projection;
   const double texel = (window.right - window.left) / kSize, depth = window.clip.far - window.clip.near;
   to_light_ = glm::vec3(axes[2]);
   texel_x_ = glm::vec3(axes[0] / texel);
   texel_y_ = glm::vec3(axes[1] * (-1 / texel));
   key_ = glm::vec3(axes[2] / depth);
   // The light's eye is before all that it sees; key 1 is there.
-  at_eye_ = glm::vec3(-window.left / texel, window.top / texel, 1 - glm::dot(axes[2], light.eye() - eye) / depth);
+  at_eye_ = glm::vec3(-window.left / texel, window.top / texel, 1 - glm::dot(axes[2], light_.eye() - eye) / depth);
   key_bias_ = float(0.75 * texel / depth + 2e-6);
   key_slope_bias_ = float((0.5 * taps + 1) * texel / depth);
-  size_ = kSize;
 }
 
-void ShadowMap::find_nearest(const Execution& execution) {
+void ShadowMap::find_nearest(const Buffer<float>& rows, const Execution& execution) {
   // Windows of 2, 4 and 8 texels, each from two of the size before; those past the last texel stay short and unused.
   static_assert(taps == 8);
-  const auto size = std::size_t(size_);
-  nearest_ = Buffer<float>(size * size);
+  constexpr std::size_t size = kSize;
   parallel_for(execution, size, 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y) {
       float* row = nearest_.data() + y * size;
-      std::copy_n(keys_.data() + y * size, size, row);
+      std::copy_n(rows.data() + y * size, size, row);
       for (const std::size_t step : {1, 2, 4})
         for (std::size_t x = 0; x + step < size; ++x) row[x] = std::max(row[x], row[x + step]);
     }
@@ -166,25 +157,16 @@ void ShadowMap::find_nearest(const Execution& execution) {
   });
 }
 
-void ShadowMap::transpose(const Execution& execution) {
+void ShadowMap::transpose(const Buffer<float>& rows, const Execution& execution) {
   // Squares of one cache line a row, by way of a copy: rows 4 KiB apart share the same few sets of the cache.
-  constexpr std::size_t side = 16;
-  const auto size = std::size_t(size_);
-  const auto take = [&](std::size_t x, std::size_t y, float(&square)[side][side]) {
-    for (std::size_t j = 0; j < side; ++j) std::copy_n(keys_.data() + (y + j) * size + x, side, square[j]);
-  };
-  const auto put = [&](std::size_t x, std::size_t y, const float(&square)[side][side]) {
-    for (std::size_t j = 0; j < side; ++j)
-      for (std::size_t i = 0; i < side; ++i) keys_[(y + j) * size + x + i] = square[i][j];
-  };
+  constexpr std::size_t side = 16, size = kSize;
   parallel_for(execution, size / side, 1, [&](std::size_t begin, std::size_t end) {
-    float here[side][side], there[side][side];
+    float square[side][side];
     for (std::size_t y = begin * side; y < end * side; y += side)
-      for (std::size_t x = 0; x <= y; x += side) {
-        take(x, y, here);
-        take(y, x, there);
-        put(x, y, there);
-        put(y, x, here);
+      for (std::size_t x = 0; x < size; x += side) {
+        for (std::size_t j = 0; j < side; ++j) std::copy_n(rows.data() + (y + j) * size + x, side, square[j]);
+        for (std::size_t j = 0; j < side; ++j)
+          for (std::size_t i = 0; i < side; ++i) keys_[(x + j) * size + y + i] = square[i][j];
       }
   });
 }

@@ -16,13 +16,17 @@ namespace frontmost::shading {
 [[nodiscard]] std::optional<View> view_of_light(const Visible& visible, const Box& bounds, const glm::dvec3& to_light,
                                                 const Execution& execution);
 
+/// At first everything is lit. Maps that are drawn one after another use the same memory.
 class ShadowMap {
  public:
-  /// Of what is visible in view_of_light(), for points that are measured from `eye`.
-  ShadowMap(const Visible& seen_by_light, const glm::dvec3& eye, const Execution& execution);
-  /// Looks along -to_light at what `visible` shows of the surfaces; whatever stands between that and the light counts.
-  /// Nothing visible, or nothing to throw a shadow: everything is lit.
-  ShadowMap(const Surfaces& surfaces, const Visible& visible, const glm::dvec3& to_light, const Execution& execution);
+  /// Takes what the light sees: of what is visible in view_of_light().
+  void draw(const Visible& seen_by_light, const Execution& execution);
+  /// Points are measured from here. Precondition: something was drawn.
+  void measure_from(const glm::dvec3& eye);
+  /// From now on everything is lit.
+  void clear() { size_ = 0; }
+  /// The view that was drawn; of no pixels where everything is lit.
+  [[nodiscard]] const View& view() const { return light_; }
 
   /// The part of the light that arrives at a point, 0 to 1, with soft edges a few texels wide.
   /// `position` in world axes from the eye of `visible`; `plane_normal` of the flat surface there.
@@ -31,12 +35,12 @@ class ShadowMap {
  private:
   static constexpr int taps = shadow_taps;
 
-  void set_up(const View& light, const glm::dvec3& eye);
-  void find_nearest(const Execution& execution);
-  void transpose(const Execution& execution);
+  void find_nearest(const Buffer<float>& rows, const Execution& execution);
+  void transpose(const Buffer<float>& rows, const Execution& execution);
   [[nodiscard]] float filtered(const glm::vec2& texel, float key) const;
 
-  ShadowFilter filter_;
+  ShadowFilter filter_ = nullptr;
+  View light_;
   int size_ = 0;           ///< texels along each side; 0: no map
   Buffer<float> keys_;     ///< by columns; greater is nearer to the light
   Buffer<float> nearest_;  ///< the greatest of the filter's keys, by its first texel: most points are lit by all

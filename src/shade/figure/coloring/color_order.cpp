@@ -68,9 +68,16 @@ void reserve(const std::vector<ColoredOrder>& parts, ColoredOrder& into) {
 
 ColoredOrder color_order(const Surfaces& surfaces, const ShadeInput& input, const VisibleParts& parts,
                          const ColorOptions& options, const Execution& execution) {
+  PreparedScene scene(surfaces);
+  return color_order(scene, input, parts, options, execution);
+}
+
+ColoredOrder color_order(PreparedScene& scene, const ShadeInput& input, const VisibleParts& parts,
+                         const ColorOptions& options, const Execution& execution) {
   const IeeeScope ieee;
+  const Surfaces& surfaces = scene.surfaces;
   const FigureTriangles triangles = triangles_of(surfaces, parts);
-  const PointShader shader(surfaces, input, triangles, options.shade, execution);
+  const PointShader shader(scene, input, triangles, options.shade, execution);
   const std::size_t count = parts.polygons.size();
   std::vector<ColoredOrder> lists((count + kPolygonsPerPart - 1) / kPolygonsPerPart);
   Pool<PolygonColors> colorers;

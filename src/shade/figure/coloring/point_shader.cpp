@@ -7,31 +7,32 @@ namespace {
 /// Points have one sample, where they are.
 constexpr glm::ivec2 kAtPoint[] = {{0, 0}};
 
-std::unique_ptr<const KeyShadows> shadows_for(const ShadedPicture& picture, const Lighting& lighting,
-                                              const Execution& execution) {
-  if (picture.options.shading != Shading::lit) return nullptr;
-  auto shadows = std::make_unique<KeyShadows>(picture, lighting.to_key, execution);
-  shadows->ask_at_points();
-  return shadows;
+/// The scene's triangles, with smooth normals of those that are large.
+const TriangleStore& smoothed(PreparedScene& scene, const BitSet& large, const Execution& execution) {
+  scene.triangles.smooth(large, execution);
+  return scene.triangles;
+}
+
+Lit lit_by_key(PreparedScene& scene, const ShadedPicture& picture, const Lighting& lighting,
+               const Execution& execution) {
+  scene.shadows.find(picture, lighting.to_key, execution);
+  scene.shadows.ask_at_points();
+  return {scene.materials, lighting, scene.shadows.map(), scene.shadows.rays(), execution.isa};
 }
 
 }  // namespace
 
-PointShader::PointShader(const Surfaces& surfaces, const ShadeInput& input, const FigureTriangles& triangles,
+PointShader::PointShader(PreparedScene& scene, const ShadeInput& input, const FigureTriangles& triangles,
                          const ShadeOptions& options, const Execution& execution)
-    : source_(surfaces, input.visible.view, &triangles.large, execution),
-      table_(surfaces.scene(),
-             needed_materials(
-                 surfaces, [&]() -> const BitSet& { return triangles.seen; }, execution),
-             execution),
-      lighting_(lighting_for(input.visible.view, surfaces.scene().up)),
-      shadows_(shadows_for({surfaces, input, options, kAtPoint}, lighting_, execution)),
+    : source_(smoothed(scene, triangles.large, execution), input.visible.view, &triangles.large),
+      lighting_(lighting_for(input.visible.view, scene.surfaces.scene().up)),
       opacity_(shows_materials(options.shading) ? options.opacity : 1.0f) {
   check_opacity(options);
+  scene.make_materials_ready([&]() -> const BitSet& { return triangles.seen; }, execution);
   switch (options.shading) {
-    case Shading::lit: colorist_ = Lit{table_, lighting_, shadows_->map(), shadows_->rays(), execution.isa}; break;
-    case Shading::flat: colorist_ = Flat{table_}; break;
-    case Shading::normals: colorist_ = Normals{table_}; break;
+    case Shading::lit: colorist_ = lit_by_key(scene, {input, options, kAtPoint}, lighting_, execution); break;
+    case Shading::flat: colorist_ = Flat{scene.materials}; break;
+    case Shading::normals: colorist_ = Normals{scene.materials}; break;
     case Shading::ids: colorist_ = Ids{}; break;
     case Shading::uv: colorist_ = Texcoords{}; break;
     case Shading::depth: {

@@ -2,12 +2,10 @@
 // Everything that the colours of single points are made from.
 #pragma once
 
-#include <memory>
-
 #include "shade/colorists.h"
 #include "shade/fragment_shader.h"
 #include "shade/picture_parts.h"
-#include "shade/shadow/key_shadows.h"
+#include "shade/prepared_scene.h"
 
 namespace frontmost::shading {
 
@@ -20,8 +18,8 @@ struct FigureTriangles {
 /// For several threads at once: each has a FragmentShader of its own.
 class PointShader {
  public:
-  /// Borrows all but the options. \throws Error as check_opacity().
-  PointShader(const Surfaces& surfaces, const ShadeInput& input, const FigureTriangles& triangles,
+  /// Borrows all but the options; makes ready what the scene does not have yet. \throws Error as check_opacity().
+  PointShader(PreparedScene& scene, const ShadeInput& input, const FigureTriangles& triangles,
               const ShadeOptions& options, const Execution& execution);
 
   [[nodiscard]] const TriangleSource& source() const { return source_; }
@@ -30,9 +28,7 @@ class PointShader {
 
  private:
   const TriangleSource source_;
-  const MaterialTable table_;
   const Lighting lighting_;
-  std::unique_ptr<const KeyShadows> shadows_;
   FragmentShader::Colorist colorist_;
   const float opacity_;
 };

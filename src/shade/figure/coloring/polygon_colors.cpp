@@ -46,12 +46,9 @@ void refuse_more_than(std::size_t most) {
 
 PolygonColors::PolygonColors(const Surfaces& surfaces, const View& view, const PointShader& shader,
                              const ColorOptions& options, const Execution& execution)
-    : surfaces_(surfaces),
-      shading_(shader),
-      options_(options),
-      execution_(execution),
-      rays_(view),
-      shader_(shader.source(), shader.colorist()) {}
+    : surfaces_(surfaces), shading_(shader), options_(options), execution_(execution), rays_(view) {
+  shader_.begin(shader.source(), shader.colorist());
+}
 
 void PolygonColors::color(const VisibleParts& parts, std::span<const PaintPolygon> polygons, ColoredOrder& into) {
   begin(polygons);
