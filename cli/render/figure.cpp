@@ -34,8 +34,8 @@ Figure figure_of(const Job& job, const RenderContext& context, const Sights& sig
   std::optional<Visible> seen;
   if (!is_there(job, context, sights)) seen = seen_at_centres(context, view);
   try {
-    Figure figure = draw_figure(context.surfaces, {seen ? *seen : sights.for_maps().visible, nullptr, context.index},
-                                options, context.execution);
+    Figure figure = context.shader.draw_figure({seen ? *seen : sights.for_maps().visible, nullptr, context.index},
+                                               options, context.execution);
     figure.title = job.name;
     return figure;
   } catch (const Error& error) {

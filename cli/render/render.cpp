@@ -132,9 +132,10 @@ int render_whole(Run& run) {
   const RayIndexes indexes(run.jobs, settings.run, surfaces, execution);
   if (indexes.triangles || indexes.curved) timings.index = watch.milliseconds();
   SharedBuffers buffers;
+  Shader shader(surfaces);
   const std::vector<ViewResult> results = render_all(run.jobs, settings, progress, [&](const Job& job) {
     const bool is_met = meets_curved(job, settings.run, scene);
-    RenderContext context{surfaces, settings.run, execution, run.on_terminal};
+    RenderContext context{surfaces, shader, settings.run, execution, run.on_terminal};
     context.by_rays = settings.run.method == Method::raycast;
     if (indexes.triangles) context.index = &*indexes.triangles;
     if (is_met) context.curved = &*indexes.curved;

@@ -117,7 +117,8 @@ ViewResult render_curved_view(const Job& job, const RenderContext& context) {
   sights.stream_ids = &shown.elements;
   if (light) sights.seen_by_light = &*light;
   result.timings.shade = watch.milliseconds();
-  finish_view(job, {surfaces, context.run, context.execution, context.keep_picture}, sights, result);
+  Shader shader(surfaces);
+  finish_view(job, {surfaces, shader, context.run, context.execution, context.keep_picture}, sights, result);
   return result;
 }
 
@@ -127,8 +128,9 @@ ViewResult render_tessellated_view(const Job& job, const RenderContext& context)
   const Surfaces surfaces(*scene, context.execution);
   std::optional<RayIndex> index;
   if (needs_index(job, context.run)) index.emplace(surfaces, context.execution);
-  return render_view(job, {surfaces, context.run, context.execution, context.keep_picture, index ? &*index : nullptr,
-                           context.by_rays, nullptr, &context.surfaces});
+  Shader shader(surfaces);
+  return render_view(job, {surfaces, shader, context.run, context.execution, context.keep_picture,
+                           index ? &*index : nullptr, context.by_rays, nullptr, &context.surfaces});
 }
 
 }  // namespace frontmost::cli

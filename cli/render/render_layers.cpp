@@ -27,18 +27,18 @@ struct LayerFiles {
 };
 
 void write_layer(const LayerFiles& layer, const RenderContext& context, ViewResult& result) {
-  std::optional<Image> picture;
+  const Image* picture = nullptr;
   if (wants(layer.job, OutputKind::picture)) {
     const Stopwatch watch;
     ShadeOptions options = shade_options(layer.job, context);
     options.see_through = SeeThrough::never;
-    picture = shade(context.surfaces, {*layer.picture, nullptr, context.index}, options, context.execution);
+    picture = &context.shader.shade({*layer.picture, nullptr, context.index}, options, context.execution);
     result.timings.shade += watch.milliseconds();
   }
   Sights sights;
   if (layer.maps) sights.maps = SeenView{*layer.maps, {}};
   const auto map = [&](OutputKind kind) { return map_of(kind, layer.job, context, sights); };
-  write_files({layer.job, context.execution, map, picture ? &*picture : nullptr}, result);
+  write_files({layer.job, context.execution, map, picture}, result);
 }
 
 bool shows_only_picture(const FileToWrite& file) {

@@ -84,7 +84,8 @@ ViewResult render_streamed_view(const Job& job, Stream& stream, const StreamCont
   sights.stream_ids = &excerpt.stream_ids;
   sights.blank_reason = &blank_reason;
   if (excerpt.seen_by_light) sights.seen_by_light = &*excerpt.seen_by_light;
-  finish_view(job, {excerpt.surfaces(), context.run, context.execution, context.keep_picture, nullptr}, sights, result);
+  Shader shader(excerpt.surfaces());
+  finish_view(job, {excerpt.surfaces(), shader, context.run, context.execution, context.keep_picture}, sights, result);
   return result;
 }
 

@@ -128,7 +128,7 @@ Image map_of(OutputKind kind, const Job& job, const RenderContext& context, cons
     case OutputKind::depth: return depth_image(visible, background);
     case OutputKind::ray_distance: return ray_distance_image(visible, background);
     case OutputKind::window_depth: return window_depth_image(sights.for_maps());
-    case OutputKind::normals: return normal_image(context.surfaces, visible, context.execution);
+    case OutputKind::normals: return context.shader.normal_image(visible, context.execution);
     case OutputKind::primitive_ids: return primitive_ids(context, sights);
     case OutputKind::object_ids: return id_image(context.surfaces, visible, IdKind::object);
     case OutputKind::material_ids: return id_image(context.surfaces, visible, IdKind::material);
@@ -194,15 +194,15 @@ void finish_view(const Job& job, const RenderContext& context, const Sights& sig
   warn_if_blank(sights, context, result);
   const ShadeOptions options = shade_options(job, context);
   const auto input = [&] { return ShadeInput(sights.picture->visible, sights.seen_by_light, context.index); };
-  std::optional<Image> picture;
-  std::optional<Bitmap> bitmap;
+  const Image* picture = nullptr;
+  const Bitmap* bitmap = nullptr;
   if (wants_picture(job, context.keep_picture)) {
     const Stopwatch watch;
     const Visible& visible = sights.picture->visible;
     if (!context.keep_picture && needs_only_bitmap(job))
-      bitmap = shade_bitmap(context.surfaces, input(), options, context.execution);
+      bitmap = &context.shader.shade_bitmap(input(), options, context.execution);
     else
-      picture = shade(context.surfaces, input(), options, context.execution);
+      picture = &context.shader.shade(input(), options, context.execution);
     result.timings.shade += watch.milliseconds();
     const std::optional<glm::vec3>& background = job.output.background;
     if (background && (picture ? nothing_stands_out(*picture, visible.primitives, *background)
@@ -210,10 +210,10 @@ void finish_view(const Job& job, const RenderContext& context, const Sights& sig
       result.warnings.push_back(contrast_warning());
   }
   const auto map = [&](OutputKind kind) { return map_of(kind, job, context, sights); };
-  const auto deep = [&] { return shade_deep(context.surfaces, input(), options, context.execution); };
+  const auto deep = [&] { return context.shader.shade_deep(input(), options, context.execution); };
   if (job.output.reference) result.reference = compare_with_reference(*picture, job, context.execution);
-  write_files({job, context.execution, map, picture ? &*picture : nullptr, bitmap ? &*bitmap : nullptr, deep}, result);
-  if (context.keep_picture) result.picture = std::move(picture);
+  write_files({job, context.execution, map, picture, bitmap, deep}, result);
+  if (context.keep_picture && picture) result.picture = context.shader.take();
 }
 
 }  // namespace frontmost::cli

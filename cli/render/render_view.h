@@ -82,6 +82,7 @@ struct SharedBuffers {
 /// What all views share.
 struct RenderContext {
   const Surfaces& surfaces;
+  Shader& shader;  ///< of the surfaces
   const RunSettings& run;
   Execution execution;
   bool keep_picture = false;
