@@ -94,6 +94,23 @@ def arrow_errors(path, text, allowed, headers):
             yield f"{path}:{number}: {top} sees include/frontmost alone, not {room}'s own headers"
 
 
+def lost_includes(texts):
+    """Every include in quotes of a header of the house names one that is there: a header that was merged into another one
+    may still be asked for by a file that was written meanwhile. `texts`: path -> text."""
+    there = {str(path) for path in texts}
+    homes = ("", "src/", "include/", "tests/", "bench/")
+    ours = {path.parts[0] for path in texts} | {path.parts[1] for path in texts if len(path.parts) > 2}
+    for path, text in texts.items():
+        for number, line in enumerate(text.splitlines(), 1):
+            match = re.match(r'\s*#\s*include\s+(?:"([^"]+)"|<(frontmost/[^>]+)>)', line)
+            if not match or (name := match[1] or match[2]) == "frontmost/version.h":  # which the build makes
+                continue
+            if "/" in name and name.split("/")[0] not in ours:  # another library's
+                continue
+            if not any(f"{home}{name}" in there for home in (*homes, f"{path.parent}/")):
+                yield f"{path}:{number}: there is no {name}"
+
+
 def cli_folder_errors(texts):
     """Folders of cli include each other one way only. `texts`: path -> text. Files beside the folders are everybody's."""
     included = {}  # folder -> {folder: where}
@@ -170,6 +187,7 @@ def main():
             if path.parts[0] in LIBRARY:
                 types += [(path, *found) for found in types_of(text)]
     errors += name_errors(types)
+    errors += lost_includes(texts)
     errors += cli_folder_errors(texts)
     print("\n".join(errors) if errors else f"house: {sources} C++ files in order, {len(allowed)} rooms")
     sys.exit(bool(errors))
