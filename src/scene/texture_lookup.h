@@ -66,6 +66,15 @@ class TexcoordTransform {
   [[nodiscard]] glm::vec2 place(const glm::vec2& uv) const { return step(uv) + offset_; }
   [[nodiscard]] glm::vec2 step(const glm::vec2& v) const { return across_ * v.x + down_ * v.y; }
 
+  // For kernels, which do the same to many at once.
+  [[nodiscard]] const glm::vec2& across() const { return across_; }
+  [[nodiscard]] const glm::vec2& down() const { return down_; }
+  [[nodiscard]] const glm::vec2& offset() const { return offset_; }
+
+  friend bool operator==(const TexcoordTransform& a, const TexcoordTransform& b) {
+    return a.across_ == b.across_ && a.down_ == b.down_ && a.offset_ == b.offset_;
+  }
+
  private:
   glm::vec2 across_, down_;  ///< where one step in u, and in v, leads
   glm::vec2 offset_;

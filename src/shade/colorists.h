@@ -23,17 +23,20 @@ struct Lit {
 
 struct Flat {
   const MaterialTable& materials;
+  Isa isa;
   void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
 };
 
 struct Normals {
   const MaterialTable& materials;
+  Isa isa;
   void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
 };
 
 /// World normals as they are, for normal_image.
 struct RawNormals {
   const MaterialTable& materials;
+  Isa isa;
   void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
 };
 

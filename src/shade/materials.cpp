@@ -38,15 +38,10 @@ class MaterialRun {
   MaterialRun(const MaterialRow& row, const std::vector<TriangleSetup>& setups, FragmentBatch& batch)
       : row_(row), setups_(setups), batch_(batch) {}
 
-  void fill(int begin, int end) {
+  void fill(int begin, int end, TextureSampler& sampler) {
     fill_factors(begin, end);
-    if (row_.base_color.pyramid)
-      for_textured(begin, end, [this](int i, const TextureFootprint& f) { base_color(i, f); });
-    if (row_.metallic_roughness.pyramid)
-      for_textured(begin, end, [this](int i, const TextureFootprint& f) { metallic_roughness(i, f); });
-    if (row_.occlusion.pyramid) for_textured(begin, end, [this](int i, const TextureFootprint& f) { occlusion(i, f); });
-    if (row_.emissive.pyramid) for_textured(begin, end, [this](int i, const TextureFootprint& f) { emissive(i, f); });
-    if (row_.normal.pyramid) for_textured(begin, end, [this](int i, const TextureFootprint& f) { turn_normal(i, f); });
+    for (int first = begin; first < end && row_.has_textures(); first += sampled_at_once)
+      look_up(first, std::min(first + sampled_at_once, end), sampler);
     settle_alpha(begin, end);
   }
 
@@ -66,30 +61,33 @@ class MaterialRun {
   }
 
   /// Fragments of triangles without texture coordinates look at the origin, as if all their coordinates were 0.
-  template <class Look>
-  void for_textured(int begin, int end, const Look& look) {
-    const Geometry& g = batch_.geometry;
-    for (int i = begin; i < end; ++i) look(i, {g.texcoord.at(i), g.texcoord_dx.at(i), g.texcoord_dy.at(i)});
+  void look_up(int begin, int end, TextureSampler& sampler) {
+    Reflectance& out = batch_.material;
+    glm::vec4 values[sampled_at_once];
+    sampler.begin(batch_.geometry, begin, end);
+    const auto sample = [&](const TextureSlot& slot, const auto& use) {
+      if (!slot.pyramid) return;
+      sampler.sample(*slot.pyramid, slot.transform, values);
+      for (int i = begin; i < end; ++i) use(i, values[i - begin]);
+    };
+    sample(row_.base_color, [&](int i, const glm::vec4& color) {
+      out.base.set(i, out.base.at(i) * glm::vec3(color));
+      out.alpha[i] *= color.a;
+    });
+    sample(row_.metallic_roughness, [&](int i, const glm::vec4& value) {
+      out.roughness[i] *= value.g;
+      out.metallic[i] *= value.b;
+    });
+    sample(row_.occlusion, [&](int i, const glm::vec4& value) {
+      out.occlusion[i] = 1.0f + row_.factors.occlusion_strength * (value.r - 1.0f);
+    });
+    sample(row_.emissive,
+           [&](int i, const glm::vec4& color) { out.emissive.set(i, out.emissive.at(i) * glm::vec3(color)); });
+    sample(row_.normal, [&](int i, const glm::vec4& value) { turn_normal(i, glm::vec3(value) * 2.0f - 1.0f); });
   }
 
-  void base_color(int i, const TextureFootprint& footprint) {
-    const glm::vec4 color = row_.base_color.sample(footprint);
-    batch_.material.base.set(i, batch_.material.base.at(i) * glm::vec3(color));
-    batch_.material.alpha[i] *= color.a;
-  }
-  void metallic_roughness(int i, const TextureFootprint& footprint) {
-    const glm::vec4 value = row_.metallic_roughness.sample(footprint);
-    batch_.material.roughness[i] *= value.g;
-    batch_.material.metallic[i] *= value.b;
-  }
-  void occlusion(int i, const TextureFootprint& footprint) {
-    batch_.material.occlusion[i] = 1.0f + row_.factors.occlusion_strength * (row_.occlusion.sample(footprint).r - 1.0f);
-  }
-  void emissive(int i, const TextureFootprint& footprint) {
-    batch_.material.emissive.set(i, batch_.material.emissive.at(i) * glm::vec3(row_.emissive.sample(footprint)));
-  }
-
-  void turn_normal(int i, const TextureFootprint& footprint) {
+  /// `map`: what the normal map holds, from -1 to 1.
+  void turn_normal(int i, const glm::vec3& map) {
     const std::uint16_t triangle = batch_.coverage.triangle[i];
     const TriangleSetup& t = setups_[triangle];
     if (!t.has_texcoord) return;
@@ -100,7 +98,6 @@ class MaterialRun {
     const glm::vec3 n = batch_.geometry.normal.at(i);
     const glm::vec3 u = frame_.along_u - n * glm::dot(n, frame_.along_u);
     const glm::vec3 v = frame_.along_v - n * glm::dot(n, frame_.along_v);
-    const glm::vec3 map = glm::vec3(row_.normal.sample(footprint)) * 2.0f - 1.0f;
     // Green points up in the picture, against v. The back of a surface has its bumps the other way round.
     const float side = (t.is_backside ? -1.0f : 1.0f) * row_.factors.normal_scale;
     const glm::vec3 turned = normalized_or(u, u) * (map.x * side) - normalized_or(v, v) * (map.y * side) + n * map.z;
@@ -174,14 +171,16 @@ TextureSlot MaterialTable::slot(const TextureUse& use, Encoding encoding, const 
   return {pyramid.get(), TexcoordTransform(use)};
 }
 
-void look_up_materials(const MaterialTable& table, const std::vector<TriangleSetup>& setups, FragmentBatch& batch) {
+void look_up_materials(const MaterialTable& table, const std::vector<TriangleSetup>& setups, FragmentBatch& batch,
+                       Isa isa) {
+  TextureSampler sampler(isa);
   const Coverage& coverage = batch.coverage;
   const auto row_at = [&](int i) { return &table.row_of(setups[coverage.triangle[i]]); };
   for (int begin = 0; begin < coverage.count;) {
     const MaterialRow* const row = row_at(begin);
     int end = begin + 1;
     while (end < coverage.count && row_at(end) == row) ++end;
-    MaterialRun(*row, setups, batch).fill(begin, end);
+    MaterialRun(*row, setups, batch).fill(begin, end, sampler);
     begin = end;
   }
 }

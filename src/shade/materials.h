@@ -7,22 +7,22 @@
 
 #include "shade/batch.h"
 #include "shade/geometry/triangle_setup.h"
-#include "shade/pyramid.h"
+#include "shade/texture_sampler.h"
 
 namespace frontmost::shading {
 
 struct TextureSlot {
   const Pyramid* pyramid = nullptr;  ///< null: not set
   TexcoordTransform transform{TextureUse{}};
-
-  [[nodiscard]] glm::vec4 sample(const TextureFootprint& footprint) const {
-    return pyramid->sample(transformed(transform, footprint));
-  }
 };
 
 struct MaterialRow {
   Material factors;
   TextureSlot base_color, metallic_roughness, normal, emissive, occlusion;
+
+  [[nodiscard]] bool has_textures() const {
+    return base_color.pyramid || metallic_roughness.pyramid || normal.pyramid || emissive.pyramid || occlusion.pyramid;
+  }
 };
 
 /// What triangles without a material are made of: a light neutral grey that shows its form on a white page.
@@ -61,6 +61,7 @@ class MaterialTable {
 
 /// Looks up the materials of a batch, run by run of equal ones, and turns its normals by normal maps.
 /// `setups` are the triangles that batch.coverage.triangle numbers.
-void look_up_materials(const MaterialTable& table, const std::vector<TriangleSetup>& setups, FragmentBatch& batch);
+void look_up_materials(const MaterialTable& table, const std::vector<TriangleSetup>& setups, FragmentBatch& batch,
+                       Isa isa);
 
 }  // namespace frontmost::shading

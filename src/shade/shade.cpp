@@ -136,8 +136,8 @@ void with_colorist(const Request& request, const ShownMaterials& shown, const Us
   const ShadeOptions& options = request.options;
   const MaterialTable& materials = request.scene.materials;
   const auto use_it = [&](const auto& colorist) { use(FragmentShader::Colorist(std::cref(colorist))); };
-  if (options.shading == Shading::flat) return use_it(Flat{materials});
-  if (options.shading == Shading::normals) return use_it(Normals{materials});
+  if (options.shading == Shading::flat) return use_it(Flat{materials, request.execution.isa});
+  if (options.shading == Shading::normals) return use_it(Normals{materials, request.execution.isa});
   const Lighting lighting = lighting_for(request.input.visible.view, request.scene.surfaces.scene().up);
   KeyShadows& shadows = request.scene.shadows;
   shadows.find({request.input, options, shown.samples()}, lighting.to_key, request.execution);
@@ -194,7 +194,7 @@ void paint_normals(PreparedScene& scene, const Visible& visible, const Execution
   scene.make_materials_ready([&] { return seen_primitives(scene.surfaces, visible, execution); }, execution);
   TriangleSource source(scene.triangles, visible.view, large ? &*large : nullptr);
   if (!scene.materials.has_textures()) source.leave_out_texcoords();
-  const TileWork::Colorist colorist = RawNormals{scene.materials};
+  const TileWork::Colorist colorist = RawNormals{scene.materials, execution.isa};
   shade_tiles({source, visible, SampleUse::first}, {canvas, colorist, glm::vec4(0)}, scene, execution);
 }
 

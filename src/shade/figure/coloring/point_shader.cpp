@@ -31,8 +31,8 @@ PointShader::PointShader(PreparedScene& scene, const ShadeInput& input, const Fi
   scene.make_materials_ready([&]() -> const BitSet& { return triangles.seen; }, execution);
   switch (options.shading) {
     case Shading::lit: colorist_ = lit_by_key(scene, {input, options, kAtPoint}, lighting_, execution); break;
-    case Shading::flat: colorist_ = Flat{scene.materials}; break;
-    case Shading::normals: colorist_ = Normals{scene.materials}; break;
+    case Shading::flat: colorist_ = Flat{scene.materials, execution.isa}; break;
+    case Shading::normals: colorist_ = Normals{scene.materials, execution.isa}; break;
     case Shading::ids: colorist_ = Ids{}; break;
     case Shading::uv: colorist_ = Texcoords{}; break;
     case Shading::depth: {
