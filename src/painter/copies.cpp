@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "painter/copies.h"
-
 #include <algorithm>
 #include <cstring>
 
 #include "base/prefetch.h"
-#include "painter/limits.h"
+#include "painter/stages.h"
 
 namespace frontmost::painter_detail {
 namespace {

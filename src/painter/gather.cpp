@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "painter/gather.h"
-
 #include <algorithm>
 #include <limits>
 
+#include "painter/stages.h"
 #include "surfaces/cluster_set.h"
 
 namespace frontmost::painter_detail {

@@ -1,23 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The way of triangles through the room:
+// Runs the stages of stages.h one after another, and what is left of cycles again until every piece has its place:
 //
-//   gather --> copies out --> [hidden out] --> order: depth sort, cycles cut --> copies back --> emit --> PaintOrder
-//   gather.h   copies.h       seen/hidden.h    order/, cutting/                                  emit.h       |
-//                                                                                                             v
-//                             a figure's traps <-- traps/make_traps.h    VisibleParts <-- seen/visible_parts.cpp
+//   members --push--> work, the next on top      sort: pieces that may have an order    -> paint and part
+//                       |          ^             part: a cycle, cut in two by a plane   -> part and sort
+//                       +---run----+             paint: pieces in their order           -> the result
 #include "frontmost/painter.h"
 
 #include <algorithm>
 
 #include "base/float_environment.h"
-#include "painter/copies.h"
-#include "painter/cutting/crossings.h"
-#include "painter/emit.h"
-#include "painter/gather.h"
-#include "painter/limits.h"
-#include "painter/order/depth_sort.h"
-#include "painter/order/partition.h"
-#include "painter/seen/hidden.h"
+#include "painter/stages.h"
 
 namespace frontmost {
 namespace {
@@ -131,6 +123,21 @@ void sort_by_centroid(const Pieces& pieces, std::vector<std::uint32_t>& members)
   });
 }
 
+/// Appends pieces as polygons, in the order in which they are listed.
+void append(const Pieces& pieces, const std::vector<std::uint32_t>& members, PaintOrder& order, Poll& poll) {
+  std::size_t corners = 0;
+  order.polygons.reserve(members.size());
+  for (const std::uint32_t piece : members) {
+    order.polygons.push_back({pieces.face(piece).id, pieces.corner_count(piece), corners});
+    corners += order.polygons.back().corner_count;
+  }
+  order.corners.resize(corners);
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    poll.count();
+    pieces.copy_corners(members[i], order.corners.data() + order.polygons[i].first_corner);
+  }
+}
+
 }  // namespace
 
 PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOptions& options,
@@ -162,7 +169,7 @@ PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOpti
   first.insert(first.end(), members.begin(), members.end());
   copies.put_back(pieces, first, options.occluders, options.most_polygons);
   Poll poll(execution);
-  emit(pieces, first, order, poll);
+  append(pieces, first, order, poll);
   report_progress(execution, "painter", 1);
   return order;
 }

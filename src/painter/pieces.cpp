@@ -55,6 +55,22 @@ PolygonExtent ExtentBuilder::extent() const {
           rounded_up(farthest_)};
 }
 
+void Pieces::copy_corners(std::uint32_t piece, PaintCorner* corners) const {
+  const auto place = [&](const glm::dvec3& at) {
+    glm::dvec3 in_eye = sight_.in_eye(at);
+    // Where rounding of huge coordinates takes a corner to the eye, it would be at infinity.
+    in_eye.z = std::max(in_eye.z, sight_.near());
+    return sight_.to_screen(in_eye);
+  };
+  if (is_whole(piece)) {
+    for (const glm::vec3& corner : faces_[piece].corners) *corners++ = {place(glm::dvec3(corner)), false};
+    return;
+  }
+  const PieceShape& own = shape(piece);
+  for (std::size_t i = 0; i < own.corners.size(); ++i)
+    *corners++ = {place(own.corners[i].at), own.sides[i] >= PieceShape::first_cut};
+}
+
 Plane Pieces::edge_plane(const Face& face, std::uint32_t edge) const {
   const glm::dvec3 p(face.corners[edge]), q(face.corners[edge == 2 ? 0 : edge + 1]);
   const Leg sight = sight_.is_parallel() ? Leg{sight_.forward()} : Leg{p, sight_.eye()};

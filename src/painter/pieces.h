@@ -5,7 +5,7 @@
 #include <deque>
 #include <vector>
 
-#include "frontmost/view.h"
+#include "frontmost/painter.h"
 #include "painter/cutting/plane.h"
 #include "view/sight.h"
 
@@ -61,6 +61,11 @@ class Pieces {
   [[nodiscard]] const Face& face(std::uint32_t piece) const { return faces_[piece]; }
   [[nodiscard]] bool is_whole(std::uint32_t piece) const { return faces_[piece].shape == no_index; }
   [[nodiscard]] const PieceShape& shape(std::uint32_t piece) const { return shapes_[faces_[piece].shape]; }
+  [[nodiscard]] std::uint32_t corner_count(std::uint32_t piece) const {
+    return is_whole(piece) ? 3 : std::uint32_t(shape(piece).corners.size());
+  }
+  /// Sets corner_count() corners: the piece as a polygon of an order.
+  void copy_corners(std::uint32_t piece, PaintCorner* corners) const;
 
   void add(const PolygonExtent& extent, const Face& face) {
     extents_.push_back(extent);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The cuts that are foreseen beside those that are made.
-#include "painter/cutting/crossings.h"
 
-#include "painter/gather.h"
 #include "painter/painted.h"
+#include "painter/stages.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {

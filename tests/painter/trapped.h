@@ -3,7 +3,7 @@
 #pragma once
 
 #include "frontmost/painter.h"
-#include "painter/traps/make_traps.h"
+#include "painter/traps/trap.h"
 
 namespace frontmost::test {
 

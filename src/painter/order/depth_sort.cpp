@@ -4,16 +4,14 @@
 // between the two have no order: Tarjan's strongly connected components. Pieces come from far to near, so that almost
 // everything that one covers is painted already and needs no test; and neighbours are looked for when a piece's turn
 // comes, so that no pair is ever stored.
-#include "painter/order/depth_sort.h"
-
 #include <algorithm>
 #include <optional>
 #include <unordered_map>
 
 #include "painter/order/by_depth.h"
 #include "painter/order/newell_tests.h"
-#include "painter/order/piece_boxes.h"
 #include "painter/order/piece_grid.h"
+#include "painter/stages.h"
 
 namespace frontmost::painter_detail {
 namespace {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "painter/order/partition.h"
-
+// Pieces parted by the plane of one of them.
+//
+// H. Fuchs, Z. Kedem, B. Naylor. On Visible Surface Generation by A Priori Tree Structures. 1980.
 #include <algorithm>
+
+#include "painter/stages.h"
 
 namespace frontmost::painter_detail {
 namespace {

@@ -13,6 +13,24 @@ constexpr double kPiecesPerCell = 2;
 constexpr std::size_t kFewPieces = 16;
 constexpr double kMostColumns = 4096;
 
+constexpr std::size_t kFanout = 64;
+/// Of coordinates: more than rounding moves them.
+constexpr double kBoxMargin = 1e-12;
+
+/// Three directions at right angles, the first that of a triangle's normal.
+std::array<glm::dvec3, 3> axes_of(const Face& face) {
+  const glm::dvec3 a(face.corners[0]), b(face.corners[1]), c(face.corners[2]);
+  const glm::dvec3 normal = glm::cross(b - a, c - a), along = b - a;
+  const double length = glm::length(normal), reach = glm::length(along);
+  const std::array<glm::dvec3, 3> axes{glm::dvec3(1, 0, 0), {0, 1, 0}, {0, 0, 1}};
+  if (!(length > 0 && reach > 0 && length < 1e150)) return axes;
+  // The normal of a needle may be rounded to anything, also to what is not at right angles to its side.
+  const glm::dvec3 first = normal / length, side = along / reach, across = side - first * glm::dot(first, side);
+  if (glm::length(across) < 0.5) return axes;
+  const glm::dvec3 second = glm::normalize(across);
+  return {first, second, glm::cross(first, second)};
+}
+
 }  // namespace
 
 PieceGrid::PieceGrid(const std::vector<PolygonExtent>& extents) {
@@ -60,6 +78,50 @@ void PieceGrid::choose_cells(const std::vector<PolygonExtent>& extents) {
   low_ = low;
   scale_ = glm::vec2(float(scale));
   columns_ = {std::max(1, int(std::ceil(width * scale))), std::max(1, int(std::ceil(height * scale)))};
+}
+
+PieceBoxes::PieceBoxes(const Pieces& all, const std::vector<std::uint32_t>& members,
+                       std::span<const std::uint32_t> pieces)
+    : count_(pieces.size()) {
+  for (std::size_t size = kFanout; size <= count_; size *= kFanout) {
+    std::vector<Box>& boxes = levels_.emplace_back();
+    for (std::size_t first = 0; first < count_; first += size)
+      boxes.push_back(box_of(all, members, pieces.subspan(first, std::min(size, count_ - first))));
+  }
+}
+
+PieceBoxes::Box PieceBoxes::box_of(const Pieces& all, const std::vector<std::uint32_t>& members,
+                                   std::span<const std::uint32_t> pieces) {
+  const std::array<glm::dvec3, 3> axes = axes_of(all.face(members[pieces[pieces.size() / 2]]));
+  glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+  double farthest = 0;
+  for (const std::uint32_t piece : pieces)
+    for (const glm::vec3& corner : all.face(members[piece]).corners) {
+      const glm::dvec3 at(corner), along(glm::dot(axes[0], at), glm::dot(axes[1], at), glm::dot(axes[2], at));
+      low = glm::min(low, along);
+      high = glm::max(high, along);
+      farthest = std::max(farthest, std::abs(at.x) + std::abs(at.y) + std::abs(at.z));
+    }
+  Box box{glm::dvec3(0), {}, kBoxMargin * farthest};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int axis = int(k);
+    box.centre += axes[k] * (0.5 * (low[axis] + high[axis]));
+    box.halves[k] = axes[k] * (0.5 * (high[axis] - low[axis]));
+  }
+  return box;
+}
+
+std::size_t PieceBoxes::count_before(std::size_t first, const Plane& plane) const {
+  std::size_t size = kFanout, count = 0;
+  for (const std::vector<Box>& boxes : levels_) {
+    if (first % size != 0 || first >= count_) break;
+    const Box& box = boxes[first / size];
+    const Bounded height = plane.least_height(box.centre, box.halves, box.slack);
+    if (!(height.value > height.error)) break;
+    count = std::min(size, count_ - first);
+    size *= kFanout;
+  }
+  return count;
 }
 
 }  // namespace frontmost::painter_detail

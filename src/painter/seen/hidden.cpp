@@ -3,14 +3,13 @@
 // pass through each other there. A plane test of Newell's often tells which of two pieces is before the other wherever
 // they overlap, and then no order is needed. A hidden piece may count as an occluder of others: at any point of the
 // screen the foremost piece is hidden by nothing, so never all of them go.
-#include "painter/seen/hidden.h"
-
 #include <algorithm>
 
 #include "base/pool.h"
 #include "painter/order/by_depth.h"
 #include "painter/seen/adjacency.h"
 #include "painter/seen/occlusion_clipper.h"
+#include "painter/stages.h"
 
 namespace frontmost::painter_detail {
 namespace {

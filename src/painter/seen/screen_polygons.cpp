@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "painter/seen/screen_polygons.h"
 
-#include "painter/emit.h"
-
 namespace frontmost::painter_detail {
 namespace {
 
@@ -60,11 +58,9 @@ class PiecePolygons {
   [[nodiscard]] std::size_t count() const { return members_.size(); }
   [[nodiscard]] std::uint32_t group(std::size_t place) const { return pieces_.face(members_[place]).id; }
   [[nodiscard]] bool is_occluder(std::size_t place) const { return occluders_.contain(group(place)); }
-  [[nodiscard]] std::uint32_t corner_count(std::size_t place) const {
-    return painter_detail::corner_count(pieces_, members_[place]);
-  }
+  [[nodiscard]] std::uint32_t corner_count(std::size_t place) const { return pieces_.corner_count(members_[place]); }
   void copy(std::size_t place, PaintCorner* corners) const {
-    emit(pieces_, members_[place], corners);
+    pieces_.copy_corners(members_[place], corners);
     for (std::size_t i = 0; i < corner_count(place); ++i) corners[i].at.z = affine_depth(view_, corners[i].at.z);
   }
   [[nodiscard]] const PolygonExtent& extent(std::size_t place) const { return pieces_.extent(members_[place]); }

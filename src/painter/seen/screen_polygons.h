@@ -14,7 +14,7 @@
 //                                                  neighbour crosses, nothing begins or ends (unoverlapped.h)
 //
 //   visible_parts.cpp   clips every polygon of an order by the later ones
-//   hidden.h            leaves out what is hidden before there is an order, by plane tests for which of two is before
+//   hidden.cpp          leaves out what is hidden before there is an order, by plane tests for which of two is before
 #pragma once
 
 #include "painter/order/piece_grid.h"

@@ -5,8 +5,6 @@
 // Around a corner in the middle of what is seen viewers blend all that meet there, and each takes its share of what is
 // below. Only what covers all of the pixel leaves nothing of that. So the first that is painted goes around the corner:
 // the traps of its two sides end at the same place.
-#include "painter/traps/make_traps.h"
-
 #include <algorithm>
 #include <array>
 

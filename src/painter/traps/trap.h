@@ -13,10 +13,7 @@
 //             from         side            to
 #pragma once
 
-#include <cstdint>
-#include <glm/glm.hpp>
-#include <span>
-#include <vector>
+#include "painter/seen/screen_polygons.h"
 
 namespace frontmost::painter_detail {
 
@@ -88,5 +85,12 @@ inline constexpr double least_trap_height = 1.0 / 64;
 /// Appends the corners of a closed outline, and those of the strips beside its sides. Of a strip whose side is there in
 /// part, what lies beside the rest of the side is cut off.
 void write_outline(const TrapList& list, std::span<const TrappedCorner> outline, std::vector<glm::dvec2>& corners);
+
+/// The traps of polygons in the order of painting. A polygon reaches under what is painted later and lies beside it, by
+/// `width` pixels or less, as far as that, or other polygons of its group, hide the trap, and around its corners
+/// likewise. So what is painted first in a pixel covers all of it. Traps end a pixel below what is open, or at two
+/// fifths of the way to it where that is less, so that outlines hardly grow bold. Cost as for visible_parts().
+[[nodiscard]] TrapList make_traps(std::span<const ScreenPolygon> polygons, const View& view, double width,
+                                  const Execution& execution);
 
 }  // namespace frontmost::painter_detail

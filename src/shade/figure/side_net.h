@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -75,6 +76,25 @@ class SideNet {
   std::vector<std::uint8_t> is_used_;
   std::size_t next_ = 0;
   std::vector<Corner> ring_;
+};
+
+/// Numbers that are put together into sets, as those of polygons that share sides. Each set is known by its greatest
+/// number.
+class Sets {
+ public:
+  explicit Sets(std::size_t count) : above_(count) { std::iota(above_.begin(), above_.end(), 0u); }
+  std::uint32_t find(std::uint32_t i) {
+    while (above_[i] != i) i = above_[i] = above_[above_[i]];
+    return i;
+  }
+  void unite(std::uint32_t a, std::uint32_t b) {
+    a = find(a);
+    b = find(b);
+    above_[std::min(a, b)] = std::max(a, b);
+  }
+
+ private:
+  std::vector<std::uint32_t> above_;
 };
 
 }  // namespace frontmost::shading

@@ -8,7 +8,6 @@
 #include "painter/limits.h"
 #include "shade/figure/colored_order.h"
 #include "shade/figure/grouping/overlaps.h"
-#include "shade/figure/grouping/sets.h"
 #include "shade/figure/side_net.h"
 
 namespace frontmost {

@@ -3,10 +3,10 @@
 // planes have other lines. So their number tells whether cutting will come to its limit, before it begins. Where the
 // planes of m triangles go through the same line, as of two in one plane or of blades around an axis, m - 1 cuts may do
 // for all their m * (m - 1) / 2 pairs.
-#include "painter/cutting/crossings.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "painter/stages.h"
 
 namespace frontmost::painter_detail {
 namespace {
