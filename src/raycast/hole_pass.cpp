@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The definition of sample_rule.h, ray by ray: only rays that ended in a hole come here, so nothing is done many at a
 // time. Boxes are met in doubles, padded by more than the rounding of a corner's place.
-#include "raycast/hole_pass.h"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -10,7 +8,7 @@
 
 #include "base/parallel.h"
 #include "raycast/index/placement.h"
-#include "raycast/sample_rule.h"
+#include "raycast/tile_kernel.h"
 #include "view/screen_cutout.h"
 
 namespace frontmost::raycast_detail {

@@ -6,14 +6,12 @@
 // neighbours seen through their common edge, is decided by stands_before(). So the answers do not depend on the order
 // of the rays, nor on the instruction set.
 
-#include "raycast/light_kernel.h"
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "raycast/index/placement.h"
-#include "raycast/stand_before.h"
+#include "raycast/queries.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raycast/light_kernel.cpp"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What users ask of single rays and segments, one by one or in batches.
 
+#include "raycast/queries.h"
+
 #include <algorithm>
 
 #include "base/float_environment.h"
 #include "base/parallel.h"
-#include "raycast/light_kernel.h"
-#include "raycast/query_kernel.h"
 
 namespace frontmost {
 namespace {

@@ -3,8 +3,6 @@
 // lies behind what is certainly met; what remains, one or two triangles a ray, is decided by meet(). Rays of a batch go
 // through large trees in turns, one fetching while the others work.
 
-#include "raycast/query_kernel.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +10,7 @@
 #include <optional>
 
 #include "raycast/index/placement.h"
+#include "raycast/queries.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raycast/query_kernel.cpp"

@@ -13,7 +13,7 @@
 
 #include "base/compactor-inl.h"
 #include "hwy/highway.h"
-#include "raycast/query_kernel.h"
+#include "raycast/queries.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::raycast_detail {

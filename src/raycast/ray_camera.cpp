@@ -11,7 +11,7 @@
 
 #include "base/float_environment.h"
 #include "base/parallel.h"
-#include "raycast/scan_parts.h"
+#include "raycast/queries.h"
 #include "scene/turn.h"
 
 namespace frontmost {

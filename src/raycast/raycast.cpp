@@ -10,7 +10,6 @@
 #include "base/float_environment.h"
 #include "base/parallel.h"
 #include "base/pool.h"
-#include "raycast/hole_pass.h"
 #include "raycast/tile_kernel.h"
 
 namespace frontmost {

@@ -2,12 +2,11 @@
 // With weights w and corners c of its own triangle, the point is (sum of w c) / (sum of w) + lift: no float, but a
 // fraction. So a corner q of another triangle lies at (sum of w (q - c - lift)) / (sum of w) from it; signs of
 // determinants do not change when the division is left out, and what is left are sums of products.
-#include "raycast/stand_before.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/exact_vector.h"
+#include "raycast/query_rule.h"
 
 namespace frontmost::raycast_detail {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Casting the rays of one tile together.
+// Pictures by rays: casting the rays of one tile together, and those on that went into a hole.
 #pragma once
 
 #include <algorithm>
@@ -41,5 +41,9 @@ struct RayTileScratch {
 
 /// Fills the pixels of tile (x, y), counted in tiles, of every sample plane.
 void cast_tile(const RayTileInput& frame, int x, int y, RayTileScratch& scratch, Isa isa);
+
+/// Of a Visible that takes triangles with holes for whole: replaces what has a hole at its sample by what the ray meets
+/// next. O(samples), and O(log n) and more for each ray that goes on.
+void pass_holes(const RayTree& tree, Visible& visible, const Execution& execution);
 
 }  // namespace frontmost::raycast_detail

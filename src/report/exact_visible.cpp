@@ -7,8 +7,8 @@
 #include "frontmost/precision.h"
 #include "report/exact_depth.h"
 #include "view/screen_cutout.h"
-#include "zbuffer/covered_pixels.h"
 #include "zbuffer/place/submission.h"
+#include "zbuffer/triangle_records.h"
 
 namespace frontmost {
 namespace {

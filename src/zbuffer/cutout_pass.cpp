@@ -2,13 +2,11 @@
 // Triangles with holes, behind all others: no order, no tiles, no vectors. A look into a texture costs many depth
 // tests, so all that counts is to look only where the fragment would be seen.
 
-#include "zbuffer/cutout_pass.h"
-
 #include <algorithm>
 
 #include "base/parallel.h"
 #include "view/screen_cutout.h"
-#include "zbuffer/covered_pixels.h"
+#include "zbuffer/triangle_records.h"
 
 namespace frontmost::zbuffer_detail {
 namespace {

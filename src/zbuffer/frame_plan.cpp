@@ -40,7 +40,7 @@ void FramePlan::make(const ClusterSet& set, const ScreenTransform& transform, co
   parallel_for(execution, set.clusters.size(), kCullGrain, [&](std::size_t begin, std::size_t end) {
     cull_clusters(input, execution.isa, {begin, end}, culled_);
   });
-  // What may have holes is drawn afterwards: cutout_pass.h.
+  // What may have holes is drawn afterwards, by draw_cutouts().
   std::fill(culled_.fate.begin() + std::ptrdiff_t(set.first_cutout), culled_.fate.end(),
             static_cast<std::uint8_t>(ClusterFate::culled));
   choose_apart(set.clusters.size());

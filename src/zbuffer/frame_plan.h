@@ -1,14 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is drawn where: the work of one frame, sorted into tiles.
+// What is drawn where: the work of one frame, sorted into tiles, and the kernel that draws one of them.
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "surfaces/cluster_set.h"
 #include "zbuffer/cull.h"
 #include "zbuffer/record_lists.h"
-#include "zbuffer/tile/tile_kernel.h"
+#include "zbuffer/tile/tile.h"
+#include "zbuffer/triangle_records.h"
 
 namespace frontmost::zbuffer_detail {
+
+/// What all tiles of a frame have in common. Borrows everything.
+struct FrameInput : Picture {
+  const ClusterSet& set;
+  const ScreenTransform& transform;
+  const CullResult& culled;
+  std::span<const TriangleRecord> records;  ///< corners from the image's top left
+};
+
+/// One tile, and what may be seen in it, near things first.
+struct TileJob : Tile {
+  std::span<const std::uint32_t> records, clusters;
+
+  [[nodiscard]] bool is_empty() const { return records.empty() && clusters.empty(); }
+};
+
+/// Draws a tile and writes it to the output planes.
+void draw_tile(const FrameInput& frame, const TileJob& job, TileScratch& scratch, Isa isa);
 
 /// The plan of a frame. Planning the next one reuses its memory.
 class FramePlan {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles on the screen, set up one by one: the large ones, and those that had to be clipped.
+// Triangles on the screen, set up one by one: the large ones, those that had to be clipped, and those with holes.
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
+#include "frontmost/visible.h"
 #include "surfaces/cluster_set.h"
 #include "view/clip.h"
 #include "view/screen_transform.h"
@@ -85,5 +87,39 @@ void for_each_of_fan(const ClippedPolygon& polygon, const ScreenTransform& t, Pr
 
 /// True when no sample of the rectangle's pixels lies inside all three edges: a quick test by corners.
 [[nodiscard]] bool misses(const TriangleRecord& record, const PixelRect& rect);
+
+/// Calls visit(x, y) for the pixels of `rect` whose sample, `offset` from the pixel's corner, is covered.
+template <class Visit>
+void visit_covered(const TriangleRecord& r, const PixelRect& rect, const glm::ivec2& offset, const Visit& visit) {
+  // Exact: coordinates within the guard band have 22 bits, their differences 23, a product and a sum of such 47.
+  std::int64_t row[3], step_x[3], step_y[3];
+  for (int k = 0; k < 3; ++k) {
+    const int n = k == 2 ? 0 : k + 1;
+    const std::int64_t dx = r.x[n] - r.x[k], dy = r.y[n] - r.y[k];
+    const bool is_top_left = dy < 0 || (dy == 0 && dx > 0);
+    row[k] = dx * (rect.y0 * kSubPixels + offset.y - r.y[k]) - dy * (rect.x0 * kSubPixels + offset.x - r.x[k]) -
+             (is_top_left ? 0 : 1);
+    step_x[k] = -dy * kSubPixels;
+    step_y[k] = dx * kSubPixels;
+  }
+  for (int y = rect.y0; y <= rect.y1; ++y) {
+    std::int64_t e[3] = {row[0], row[1], row[2]};
+    for (int x = rect.x0; x <= rect.x1; ++x) {
+      if ((e[0] | e[1] | e[2]) >= 0) visit(x, y);
+      for (int k = 0; k < 3; ++k) e[k] += step_x[k];
+    }
+    for (int k = 0; k < 3; ++k) row[k] += step_y[k];
+  }
+}
+
+/// Merges the set's triangles with holes into `visible`, which shows everything else: what is seen is the minimum over
+/// the fragments that are there, so they may come last, and only those that are nearer than what they meet are looked
+/// up in their texture. Precondition: there are some. O(fragments of cut-outs), and as often as there are strips of
+/// rows a look at each of these triangles.
+void draw_cutouts(const ClusterSet& set, const ScreenTransform& transform, Visible& visible,
+                  const Execution& execution);
+/// The same of triangles that are on the screen already, all of them of `cutouts`.
+void draw_cutouts(const Cutouts& cutouts, std::span<const TriangleRecord> records, Visible& visible,
+                  const Execution& execution);
 
 }  // namespace frontmost::zbuffer_detail

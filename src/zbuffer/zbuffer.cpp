@@ -12,9 +12,9 @@
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "surfaces/cluster_set.h"
-#include "zbuffer/cutout_pass.h"
 #include "zbuffer/direct/direct_frame.h"
 #include "zbuffer/frame_plan.h"
+#include "zbuffer/triangle_records.h"
 
 namespace frontmost {
 

@@ -10,7 +10,7 @@
 #include "frontmost/tessellate.h"
 #include "frontmost/zbuffer.h"
 #include "raycast/curved/curved_parts.h"
-#include "raycast/curved/view_rays.h"
+#include "raycast/curved/double_ray.h"
 #include "scene/shapes.h"
 
 namespace frontmost::test {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Signs of determinants, against whole numbers of 128 bits.
-#include "raycast/exact_sign.h"
-
 #include <gtest/gtest.h>
 
+#include "raycast/query_rule.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {

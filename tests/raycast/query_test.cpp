@@ -7,7 +7,7 @@
 
 #include "frontmost/raycast.h"
 #include "indexed_scene.h"
-#include "raycast/query_kernel.h"
+#include "raycast/queries.h"
 #include "support/odd_numbers.h"
 #include "support/random_scene.h"
 

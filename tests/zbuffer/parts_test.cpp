@@ -7,7 +7,6 @@
 #include "frontmost/depth_buffer.h"
 #include "support/oracle.h"
 #include "support/random_scene.h"
-#include "zbuffer/covered_pixels.h"
 #include "zbuffer/tile/tile_lists.h"
 #include "zbuffer/triangle_records.h"
 

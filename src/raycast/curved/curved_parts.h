@@ -4,8 +4,7 @@
 
 #include "frontmost/curved.h"
 #include "raycast/curved/box_tree.h"
-#include "raycast/curved/placed_patch.h"
-#include "raycast/curved/placed_sphere.h"
+#include "raycast/curved/placed_curves.h"
 
 namespace frontmost {
 

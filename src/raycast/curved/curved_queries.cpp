@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "raycast/curved/curved_parts.h"
 #include "raycast/curved/patch_packet.h"
-#include "raycast/scan_parts.h"
+#include "raycast/queries.h"
 
 namespace frontmost {
 

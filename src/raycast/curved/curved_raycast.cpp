@@ -6,8 +6,8 @@
 #include "base/float_environment.h"
 #include "base/parallel.h"
 #include "raycast/curved/curved_parts.h"
+#include "raycast/curved/double_ray.h"
 #include "raycast/curved/patch_packet.h"
-#include "raycast/curved/view_rays.h"
 
 namespace frontmost {
 

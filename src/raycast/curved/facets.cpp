@@ -5,7 +5,7 @@
 
 #include "base/float_environment.h"
 #include "raycast/curved/curved_parts.h"
-#include "raycast/curved/view_rays.h"
+#include "raycast/curved/double_ray.h"
 #include "scene/bezier_patch.h"
 
 namespace frontmost {

@@ -68,6 +68,25 @@ class PacketWalk {
 
 }  // namespace
 
+void raycast_detail::RayPacket::set(std::size_t lane, const DoubleRay& ray) {
+  const RayFrame frame(ray);
+  origin.set(lane, ray.origin);
+  inverse.set(lane, 1.0 / ray.direction);
+  across_x.set(lane, frame.across_x);
+  across_y.set(lane, frame.across_y);
+  along.set(lane, frame.along);
+  from[lane] = ray.from;
+  to[lane] = ray.to;
+  nearest[lane] = frame.nearest;
+  farthest[lane] = frame.farthest;
+  length_[lane] = frame.length;
+}
+
+void raycast_detail::RayPacket::shorten(std::size_t lane, const DoubleRay& ray) {
+  to[lane] = ray.to;
+  farthest[lane] = ray.to * length_[lane] * kPastTheEnd;
+}
+
 void CurvedParts::nearest(std::span<DoubleRay> rays, std::span<CurvedHit> hits, Isa isa) const {
   std::fill(hits.begin(), hits.end(), CurvedHit());
   if (rays.empty() || rays[0].culling == Culling::both) return;

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "raycast/curved/placed_patch.h"
+#include "raycast/curved/placed_curves.h"
 
 namespace frontmost::raycast_detail {
 

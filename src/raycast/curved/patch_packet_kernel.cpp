@@ -5,7 +5,6 @@
 // answers are equal to the bit with any instruction set. What is left out is halving: neighbouring rays rarely need it
 // at the same place, and those that do are asked one by one.
 #include "raycast/curved/patch_packet.h"
-#include "raycast/curved/patch_rules.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raycast/curved/patch_packet_kernel.cpp"

@@ -10,9 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raycast/curved/patch_rules.h"
-#include "raycast/curved/placed_patch.h"
-#include "raycast/curved/ray_frame.h"
+#include "raycast/curved/placed_curves.h"
 #include "scene/bezier_patch.h"
 
 namespace frontmost::raycast_detail {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "raycast/curved/placed_patch.h"
-
 #include <cmath>
+
+#include "raycast/curved/placed_curves.h"
 
 namespace frontmost::raycast_detail {
 namespace {

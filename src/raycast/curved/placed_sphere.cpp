@@ -3,9 +3,9 @@
 //
 // E. Haines, J. Guenther, T. Akenine-Moeller. Precision Improvements for Ray/Sphere Intersection. Ray Tracing Gems,
 // chapter 7, 2019.
-#include "raycast/curved/placed_sphere.h"
-
 #include <cmath>
+
+#include "raycast/curved/placed_curves.h"
 
 namespace frontmost::raycast_detail {
 namespace {

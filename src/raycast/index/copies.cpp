@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "raycast/index/copies.h"
-
 #include <algorithm>
 #include <atomic>
 
 #include "base/parallel.h"
+#include "raycast/index/build.h"
 
 namespace frontmost {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "base/float_environment.h"
 #include "base/parallel.h"
+#include "raycast/index/build.h"
 #include "raycast/index/placement.h"
-#include "surfaces/cluster_set.h"
 
 namespace frontmost {
 namespace {

@@ -3,8 +3,7 @@
 
 #include "base/float_environment.h"
 #include "base/parallel.h"
-#include "raycast/index/copies.h"
-#include "surfaces/cluster_set.h"
+#include "raycast/index/build.h"
 
 namespace frontmost {
 

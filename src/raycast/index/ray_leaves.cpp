@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "raycast/index/leaf_triangles.h"
+#include "raycast/index/build.h"
 
 namespace frontmost {
 namespace {

@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "base/parallel.h"
-#include "raycast/index/ray_tree.h"
+#include "raycast/index/build.h"
 
 namespace frontmost {
 namespace {

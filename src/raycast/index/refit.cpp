@@ -6,7 +6,7 @@
 #include <atomic>
 
 #include "base/parallel.h"
-#include "raycast/index/leaf_triangles.h"
+#include "raycast/index/build.h"
 
 namespace frontmost {
 namespace {

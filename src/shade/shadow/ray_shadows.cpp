@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-#include "raycast/light_kernel.h"
+#include "raycast/queries.h"
 
 namespace frontmost::shading {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/float_environment.h"
-#include "zbuffer/depth/depth_kernel.h"
+#include "zbuffer/depth/depth_call.h"
 
 namespace frontmost {
 namespace {

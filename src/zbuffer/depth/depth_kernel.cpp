@@ -3,7 +3,7 @@
 //
 // Coverage and keys as in tile_kernel.cpp: edge values shifted right by 8, so that a pixel's step is -dy or dx.
 
-#include "zbuffer/depth/depth_kernel.h"
+#include "zbuffer/depth/depth_call.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "zbuffer/depth/depth_kernel.cpp"

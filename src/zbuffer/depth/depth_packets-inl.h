@@ -14,7 +14,7 @@
 #include <cstring>
 
 #include "hwy/highway.h"
-#include "zbuffer/depth/depth_kernel.h"
+#include "zbuffer/depth/depth_call.h"
 #include "zbuffer/depth/depth_rows-inl.h"
 #include "zbuffer/packet-inl.h"
 #include "zbuffer/place/run_reader-inl.h"

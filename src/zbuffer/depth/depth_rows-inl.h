@@ -17,7 +17,7 @@
 
 #include "hwy/highway.h"
 #include "view/steep_keys-inl.h"
-#include "zbuffer/depth/depth_kernel.h"
+#include "zbuffer/depth/depth_call.h"
 #include "zbuffer/packet-inl.h"
 
 HWY_BEFORE_NAMESPACE();

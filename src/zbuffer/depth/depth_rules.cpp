@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // From the state to constants of a draw call, and the formats' roundings.
 
-#include "zbuffer/depth/depth_rules.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+
+#include "zbuffer/depth/depth_call.h"
 
 namespace frontmost {
 

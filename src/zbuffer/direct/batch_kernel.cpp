@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Drawing one tile from batches: the same triangles into the same buffer as tile_kernel.cpp, from another source.
 
-#include "zbuffer/direct/batch_kernel.h"
+#include "zbuffer/direct/direct_frame.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "zbuffer/direct/batch_kernel.cpp"

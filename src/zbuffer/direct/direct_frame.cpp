@@ -11,8 +11,6 @@
 
 #include "base/parallel.h"
 #include "base/pool.h"
-#include "zbuffer/cutout_pass.h"
-#include "zbuffer/direct/batch_kernel.h"
 #include "zbuffer/place/place_kernel.h"
 #include "zbuffer/record_lists.h"
 

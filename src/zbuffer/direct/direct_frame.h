@@ -1,14 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
-// One picture of a scene, straight from its own arrays.
+// One picture of a scene, straight from its own arrays, and the kernel that draws a tile of it from batches.
 #pragma once
 
-#include "frontmost/visible.h"
+#include <span>
+
+#include "base/isa.h"
 #include "surfaces/placed_scene.h"
+#include "zbuffer/place/triangle_batch.h"
+#include "zbuffer/tile/tile.h"
 
 namespace frontmost::zbuffer_detail {
 
 /// What ZBuffer::draw() gives of the clusters, to the bit. O(triangles + covered samples). Memory beside the result:
 /// some 30 MiB, and 100 bytes for each large or clipped triangle of half a million in a row.
 [[nodiscard]] Visible draw_directly(const PlacedScene& scene, const View& view, const Execution& execution);
+
+/// What all tiles have in common that are drawn from the same batches.
+struct BatchFrame : Picture {
+  std::span<const TriangleBatch* const> batches;  ///< nearest first
+  std::span<const TriangleRecord> records;        ///< likewise
+};
+
+/// One tile, and what may be seen in it.
+struct BatchJob : Tile {
+  std::span<const std::uint32_t> records, batches;
+  bool is_drawn;    ///< it shows something already, which the planes hold
+  bool is_last;     ///< nothing will be drawn to it any more
+  float* farthest;  ///< of the 64 blocks: what was found before, and is found now unless this is the last time
+
+  [[nodiscard]] bool is_empty() const { return records.empty() && batches.empty(); }
+};
+
+/// Draws a tile and writes it to the planes.
+void draw_batches(const BatchFrame& frame, const BatchJob& job, TileScratch& scratch, Isa isa);
 
 }  // namespace frontmost::zbuffer_detail

@@ -75,9 +75,12 @@ struct BlockBounds {
 
 /// The private memory of one thread, reused from tile to tile.
 struct TileScratch {
-  TileScratch();
+  /// References: every pixel of the largest walk for every lane, and a vector of slack for whole stores.
+  TileScratch() : bounds(1), references(std::size_t(16 * kMostWalked.x * kMostWalked.y) + 64) {}
   /// Makes room for that many samples a pixel.
-  void reserve(std::size_t sample_count);
+  void reserve(std::size_t sample_count) {
+    if (words.size() < sample_count * kTileWords) words = Buffer<std::uint64_t>(sample_count * kTileWords);
+  }
 
   /// By sample, kTileWords each: key bits << 32 | ~id, the greatest wins. 0 is "nothing".
   Buffer<std::uint64_t> words;

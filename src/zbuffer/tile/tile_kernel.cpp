@@ -10,7 +10,7 @@
 //
 // The key at a sample is that of view/triangle_keys.h. Every path evaluates exactly this, so they agree to the bit.
 
-#include "zbuffer/tile/tile_kernel.h"
+#include "zbuffer/frame_plan.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "zbuffer/tile/tile_kernel.cpp"

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a DepthState means for one view and one format, worked out once a draw call.
+// A draw call of a depth buffer: what a DepthState means for one view and one format, worked out once a call, and the
+// kernel that draws placed triangles by it into one tile.
 #pragma once
 
-#include <array>
+#include <span>
 
 #include "frontmost/depth_buffer.h"
+#include "view/screen_cutout.h"
 #include "view/screen_transform.h"
+#include "zbuffer/place/submission.h"
 
 namespace frontmost::zbuffer_detail {
 
@@ -34,5 +37,26 @@ struct DepthRules {
 
 /// \throws Error bad_argument naming what is out of range.
 [[nodiscard]] DepthRules rules_for(const DepthState& state, DepthFormat format, const ScreenTransform& transform);
+
+/// The planes of a depth buffer, [sample][y][x].
+struct DepthPlanes {
+  std::uint32_t* stored;
+  PrimitiveId* primitives;
+  float* keys;
+  int width, height;
+  std::span<const glm::ivec2> samples;
+};
+
+/// What all tiles of a draw call have in common.
+struct DepthCall {
+  DepthPlanes planes;
+  DepthRules rules;
+  PrimitiveId id_offset;
+  const Cutouts* cutouts;  ///< null where no triangle has holes, through which nothing is drawn
+  const ScreenRays& rays;
+};
+
+/// Draws what a batch has in a tile, one triangle after the other; touches no pixel of other tiles.
+void draw_depths(const DepthCall& call, const Tile& tile, const OrderedBatch& batch, Isa isa);
 
 }  // namespace frontmost::zbuffer_detail
