@@ -20,13 +20,18 @@ constexpr double kSquare = 32 * 32;
 
 /// Hidden or not.
 VisibleParts all_parts(const PaintOrder& order) { return visible_parts(order, Occluders::none()); }
-ColoredOrder figure_of(const Scene& scene, const ColorOptions& options, const Execution& execution = {}) {
+FigureOptions merging() {
+  FigureOptions options;
+  options.merges_neighbours = true;
+  return options;
+}
+ColoredOrder figure_of(const Scene& scene, const FigureOptions& options, const Execution& execution = {}) {
   const Surfaces surfaces(scene);
   const View view = front_view();
   return color_order(surfaces, zbuffer(surfaces, view), all_parts(painter(surfaces, view)), options, execution);
 }
-ColorOptions coloring(Shading shading, double tolerance = 6) {
-  ColorOptions options;
+FigureOptions coloring(Shading shading, double tolerance = 6) {
+  FigureOptions options = merging();
   options.shade.shading = shading;
   options.tolerance = tolerance;
   return options;
@@ -93,7 +98,7 @@ TEST(ColorOrder, HasTheColoursOfThePicture) {
 }
 
 TEST(ColorOrder, OpacityMultiplies) {
-  ColorOptions options;
+  FigureOptions options = merging();
   options.shade.opacity = 0.5f;
   for (const ColoredShape& shape : figure_of(scene_of(square()), options).shapes) EXPECT_EQ(shape.color.a, 128);
 }
@@ -144,8 +149,8 @@ TEST(ColorOrder, TrapsOfPiecesAreHidden) {
   Mesh mesh = square();
   mesh.colors.values = {{0.3, 0.3, 0.3, 1}, {1, 1, 1, 1}, {1, 0.3, 0.3, 1}, {0.3, 0.3, 1, 1}};
   const Scene scene = scene_of(mesh, colored({1, 1, 1, 1}));
-  ColorOptions options = coloring(Shading::flat, 10);
-  options.groups_pieces = false;
+  FigureOptions options = coloring(Shading::flat, 10);
+  options.merges_neighbours = false;
   const Figure figure = outlined(figure_of(scene, options), 4);
   double with_traps = 0;
   int painted = 0, far = 0;
@@ -178,8 +183,8 @@ TEST(ColorOrder, TrapsReachUnderMoreThanOnePiece) {
   Mesh mesh = square();
   mesh.colors.values = {{0, 0, 0, 1}, {1, 1, 1, 1}, {1, 1, 1, 1}, {0, 0, 0, 1}};
   const Scene scene = scene_of(mesh, colored({1, 1, 1, 1}));
-  ColorOptions options = coloring(Shading::flat, 2);
-  options.groups_pieces = false;
+  FigureOptions options = coloring(Shading::flat, 2);
+  options.merges_neighbours = false;
   const Figure figure = outlined(figure_of(scene, options), 4);
   EXPECT_GT(figure.shapes.size(), 40u);
   double area = 0;
@@ -191,8 +196,8 @@ TEST(ColorOrder, TranslucentPiecesHaveNoTraps) {
   Mesh mesh = square();
   mesh.colors.values = {{0.3, 0.3, 0.3, 1}, {1, 1, 1, 1}, {1, 0.3, 0.3, 1}, {0.3, 0.3, 1, 1}};
   const Scene scene = scene_of(mesh, colored({1, 1, 1, 1}));
-  ColorOptions options = coloring(Shading::flat, 10);
-  options.groups_pieces = false;
+  FigureOptions options = coloring(Shading::flat, 10);
+  options.merges_neighbours = false;
   options.shade.opacity = 0.5f;
   const Figure figure = outlined(figure_of(scene, options), 4);
   double area = 0;
@@ -207,7 +212,7 @@ TEST(ColorOrder, PolygonsWithoutAreaAreColouredAsWell) {
   VisibleParts parts = all_parts(painter(surfaces, view));
   parts.polygons.resize(1);
   for (std::size_t k = 0; k < 3; ++k) parts.corners[k].at = {20.0 + 5.0 * double(k), 20.0 + 5.0 * double(k), 3};
-  const ColoredOrder figure = color_order(surfaces, zbuffer(surfaces, view), parts);
+  const ColoredOrder figure = color_order(surfaces, zbuffer(surfaces, view), parts, merging());
   EXPECT_EQ(figure.polygons.size(), 1u);
 }
 
@@ -249,7 +254,7 @@ TEST(ColorOrder, ShadowsAreDrawn) {
   scene.instances.push_back({"above", 0, glm::dmat4(0.3)});
   scene.instances[1].world_from_mesh[3] = {0, 0, 0.5, 1};
   for (const Shadows shadows : {Shadows::map, Shadows::rays}) {
-    ColorOptions options;
+    FigureOptions options = merging();
     options.shade.shadows = shadows;
     const ColoredOrder lit = figure_of(scene, options);
     options.shade.shadows = Shadows::off;
@@ -289,8 +294,8 @@ TEST(ColorOrder, IsTheSameForAnyNumberOfThreads) {
   const View view = frame(surfaces, 160, 90);
   const Visible visible = zbuffer(surfaces, view);
   const VisibleParts parts = visible_parts(painter(surfaces, view));
-  const ColoredOrder one = color_order(surfaces, visible, parts, {}, {.threads = 1});
-  const ColoredOrder three = color_order(surfaces, visible, parts, {}, {.threads = 3});
+  const ColoredOrder one = color_order(surfaces, visible, parts, merging(), {.threads = 1});
+  const ColoredOrder three = color_order(surfaces, visible, parts, merging(), {.threads = 3});
   EXPECT_EQ(one.shapes_of_polygons(), three.shapes_of_polygons());
   ASSERT_EQ(one.shapes.size(), three.shapes.size());
   for (std::size_t i = 0; i < one.shapes.size(); ++i) ASSERT_EQ(one.shapes[i].color, three.shapes[i].color);
@@ -303,13 +308,13 @@ TEST(ColorOrder, RefusesWhatItCannotBe) {
   const View view = front_view();
   const Visible visible = zbuffer(surfaces, view);
   const VisibleParts parts = all_parts(painter(surfaces, view));
-  ColorOptions options;
+  FigureOptions options = merging();
   options.shade.opacity = 2;
   EXPECT_THROW((void)color_order(surfaces, visible, parts, options), Error);
-  options = {};
+  options = merging();
   options.most_polygons = 1;
   EXPECT_THROW((void)color_order(surfaces, visible, parts, options), Error);
-  EXPECT_TRUE(color_order(surfaces, visible, all_parts(painter(empty, view))).polygons.empty());
+  EXPECT_TRUE(color_order(surfaces, visible, all_parts(painter(empty, view)), merging()).polygons.empty());
 }
 
 }  // namespace

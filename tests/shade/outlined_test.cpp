@@ -76,7 +76,8 @@ TEST(MergeNeighbours, NothingIsLostOfAScene) {
   const Scene scene = builtin("gallery");
   const Surfaces surfaces(scene);
   const View view = frame(surfaces, 160, 90);
-  ColorOptions options;
+  FigureOptions options;
+  options.merges_neighbours = true;
   options.shade.shading = Shading::ids;
   const ColoredOrder colored =
       color_order(surfaces, zbuffer(surfaces, view), visible_parts(painter(surfaces, view)), options);

@@ -7,7 +7,7 @@
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr std::uint32_t most_at_vertex = 256;  // the tip of a cone of more sides is flat: its normal means nothing
+constexpr std::size_t most_at_vertex = 256;  // the tip of a cone of more sides is flat: its normal means nothing
 
 glm::dvec3 unit(const glm::dvec3& v, const glm::dvec3& otherwise) {
   const double length = glm::length(v);
@@ -51,20 +51,14 @@ void find_dark(const NormalAlong& normal, const glm::dvec3& to_light, double lim
   }
 }
 
-CornerNormals::CornerNormals(const SeenMesh& seen, const Surfaces& surfaces, double crease_angle)
+CornerNormals::CornerNormals(const SeenMesh& seen, const Surfaces& surfaces, double crease_angle,
+                             const Execution& execution)
     : mesh_(seen.mesh),
       normals_(mesh_.triangles.size()),
       surfaces_(surfaces),
       cosine_(float(std::cos(crease_angle))),
-      first_(mesh_.positions.size() + 2, 0),
-      triangles_(3 * mesh_.triangles.size()) {
+      corners_(mesh_, execution) {
   for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) normals_[i] = normal_of(mesh_, i);
-  // Counted two places further on, so that filling leaves the beginnings where they belong.
-  for (const glm::uvec3& t : mesh_.triangles)
-    for (int k = 0; k < 3; ++k) ++first_[t[k] + 2];
-  for (std::size_t v = 2; v < first_.size(); ++v) first_[v] += first_[v - 1];
-  for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i)
-    for (int k = 0; k < 3; ++k) triangles_[first_[mesh_.triangles[i][k] + 1]++] = i;
 }
 
 glm::dvec3 CornerNormals::unit_normal(std::uint32_t triangle) const { return unit(normals_[triangle], glm::dvec3(0)); }
@@ -73,21 +67,19 @@ glm::dvec3 CornerNormals::unit_normal(std::uint32_t triangle) const { return uni
 /// are cut.
 glm::dvec3 CornerNormals::at(std::uint32_t triangle, int corner, const glm::dvec3& own) const {
   const std::uint32_t vertex = mesh_.triangles[triangle][corner];
-  const std::uint32_t begin = first_[vertex], end = first_[vertex + 1];
-  if (end - begin > most_at_vertex) return own;
+  const std::span<const Corner> around = corners_.at(vertex);
+  if (around.size() > most_at_vertex) return own;
   const std::uint32_t instance = surfaces_.source(mesh_.ids[triangle]).instance;
   glm::dvec3 sum(0);
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const std::uint32_t other = triangles_[i];
-    const glm::uvec3& t = mesh_.triangles[other];
+  for (const Corner& one : around) {
+    const std::uint32_t other = one.triangle();
     const glm::dvec3& normal = normals_[other];
     const double cosine = glm::dot(unit(normal, glm::dvec3(0)), own);
     // Where neighbours are wound otherwise, they are turned around.
     if (other != triangle && (std::abs(cosine) < cosine_ || surfaces_.source(mesh_.ids[other]).instance != instance))
       continue;
-    const int k = t.x == vertex ? 0 : t.y == vertex ? 1 : 2;
-    const glm::dvec3 &place = mesh_.positions[vertex], &next = mesh_.positions[t[(k + 1) % 3]],
-                     &last = mesh_.positions[t[(k + 2) % 3]];
+    const glm::dvec3 &place = mesh_.positions[vertex], &next = mesh_.positions[one.next(mesh_)],
+                     &last = mesh_.positions[one.last(mesh_)];
     const double weight = glm::dot(next - place, next - place) * glm::dot(last - place, last - place);
     if (weight > 0) sum += normal * (std::copysign(1.0, cosine) / weight);
   }

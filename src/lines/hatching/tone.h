@@ -7,7 +7,7 @@
 
 #include "frontmost/surfaces.h"
 #include "lines/hiding/occluder.h"
-#include "lines/mesh/seen_mesh.h"
+#include "lines/mesh/corner_table.h"
 
 namespace frontmost::lines_detail {
 
@@ -25,7 +25,7 @@ void find_dark(const NormalAlong& normal, const glm::dvec3& to_light, double lim
 /// Normals at the corners of triangles, across edges that are no creases.
 class CornerNormals {
  public:
-  CornerNormals(const SeenMesh& seen, const Surfaces& surfaces, double crease_angle);
+  CornerNormals(const SeenMesh& seen, const Surfaces& surfaces, double crease_angle, const Execution& execution);
 
   /// Of unit length, at the corners of a triangle, on the side from which it is counter-clockwise. O(triangles at its
   /// vertices); where there are very many, the triangle's own.
@@ -39,7 +39,7 @@ class CornerNormals {
   Buffer<glm::dvec3> normals_;
   const Surfaces& surfaces_;
   const double cosine_;
-  Buffer<std::uint32_t> first_, triangles_;  ///< by vertex: the triangles at it
+  const CornerTable corners_;
 };
 
 }  // namespace frontmost::lines_detail

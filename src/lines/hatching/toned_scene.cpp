@@ -66,7 +66,7 @@ TonedScene::TonedScene(const Surfaces& surfaces, const View& view, const ToneOpt
       mesh_(weld(surfaces, execution)),
       twins_(twins_of(mesh_, view, surfaces, execution)),
       eye_(mesh_, twins_, view, execution),
-      normals_(eye_.seen, surfaces, tone.crease_angle) {
+      normals_(eye_.seen, surfaces, tone.crease_angle, execution) {
   if (tone.casts_shadows) light_.emplace(mesh_, twins_, view_from_light(surfaces, to_light_), execution);
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <limits>
 
 #include "frontmost/section.h"
 
@@ -11,21 +10,14 @@ constexpr int style_count = 6;
 constexpr std::size_t most_compared = 2048;
 constexpr double spacings[] = {1, 0.7, 1.4};  // two angles of each
 
-struct HatchExtent {
-  glm::vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
-};
-
-HatchExtent extent_of(const CutFace& face) {
-  HatchExtent extent;
+Box box_of(const CutFace& face) {
+  Box box;
   for (const std::vector<glm::vec3>& outline : face.outlines)
-    for (const glm::vec3& p : outline) {
-      extent.low = glm::min(extent.low, p);
-      extent.high = glm::max(extent.high, p);
-    }
-  return extent;
+    for (const glm::vec3& p : outline) box.include(p);
+  return box;
 }
 
-bool may_touch(const HatchExtent& a, const HatchExtent& b) {
+bool may_touch(const Box& a, const Box& b) {
   return glm::all(glm::lessThanEqual(a.low, b.high)) && glm::all(glm::lessThanEqual(b.low, a.high));
 }
 
@@ -42,13 +34,13 @@ double thickness_of(const CutFace& face) {
 struct PlacedFace {
   std::uint32_t instance;
   std::size_t section;
-  HatchExtent extent;
+  Box box;
 };
 
 std::vector<PlacedFace> faces_of(std::span<const Section* const> sections) {
   std::vector<PlacedFace> faces;
   for (std::size_t i = 0; i < sections.size(); ++i)
-    for (const CutFace& face : sections[i]->faces) faces.push_back({face.instance, i, extent_of(face)});
+    for (const CutFace& face : sections[i]->faces) faces.push_back({face.instance, i, box_of(face)});
   std::stable_sort(faces.begin(), faces.end(),
                    [](const PlacedFace& a, const PlacedFace& b) { return a.instance < b.instance; });
   return faces;
@@ -65,7 +57,7 @@ std::vector<std::uint8_t> hatch_styles(std::span<const Section* const> sections)
     std::size_t uses[style_count] = {};
     for (; end < faces.size() && faces[end].instance == instance; ++end)
       for (std::size_t k = begin - std::min(begin, most_compared); k < begin; ++k)
-        if (faces[k].section == faces[end].section && may_touch(faces[k].extent, faces[end].extent))
+        if (faces[k].section == faces[end].section && may_touch(faces[k].box, faces[end].box))
           ++uses[styles[faces[k].instance]];
     styles[instance] = std::uint8_t(std::min_element(std::begin(uses), std::end(uses)) - std::begin(uses));
   }

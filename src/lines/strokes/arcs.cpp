@@ -119,16 +119,22 @@ class ArcFinder {
   [[nodiscard]] std::optional<Fit> fit(std::size_t first, std::size_t last) const {
     const std::optional<Circle> circle = circle_through(points_[first], points_[(first + last) / 2], points_[last]);
     if (!circle) return std::nullopt;
+    const std::optional<double> turn = turn_along(*circle, first, last);
+    if (!turn || std::abs(*turn) < least_turn || std::abs(*turn) > 6.2) return std::nullopt;
+    if (!ChordRun(points_, first, last - first).is_like(*circle, tolerance_)) return std::nullopt;
+    return Fit{*circle, *turn};
+  }
+
+  /// Around the circle from corner to corner, all of them on it and none far from the next; else none.
+  [[nodiscard]] std::optional<double> turn_along(const Circle& circle, std::size_t first, std::size_t last) const {
     double turn = 0;
     for (std::size_t i = first; i < last; ++i) {
-      if (std::abs(glm::distance(points_[i], circle->centre) - circle->radius) > tolerance_) return std::nullopt;
-      const double by = turn_between(*circle, points_[i], points_[i + 1]);
+      if (std::abs(glm::distance(points_[i], circle.centre) - circle.radius) > tolerance_) return std::nullopt;
+      const double by = turn_between(circle, points_[i], points_[i + 1 == points_.size() ? 0 : i + 1]);
       if (std::abs(by) > widest_join || by * turn < 0) return std::nullopt;
       turn += by;
     }
-    if (std::abs(turn) < least_turn || std::abs(turn) > 6.2) return std::nullopt;
-    if (!ChordRun(points_, first, last - first).is_like(*circle, tolerance_)) return std::nullopt;
-    return Fit{*circle, turn};
+    return turn;
   }
 
   [[nodiscard]] std::size_t longest_run(std::size_t first) const {
@@ -164,16 +170,10 @@ class ArcFinder {
     if (n < 18) return false;
     const std::optional<Circle> circle = circle_through(points_[0], points_[n / 3], points_[2 * n / 3]);
     if (!circle) return false;
-    double turn = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (std::abs(glm::distance(points_[i], circle->centre) - circle->radius) > tolerance_) return false;
-      const double by = turn_between(*circle, points_[i], points_[(i + 1) % n]);
-      if (std::abs(by) > widest_join || by * turn < 0) return false;
-      turn += by;
-    }
-    if (std::abs(std::abs(turn) - 2 * std::numbers::pi) > 1e-6) return false;
+    const std::optional<double> turn = turn_along(*circle, 0, n);
+    if (!turn || std::abs(std::abs(*turn) - 2 * std::numbers::pi) > 1e-6) return false;
     if (!ChordRun(points_, 0, n).is_like(*circle, tolerance_)) return false;
-    const double bulge = turn > 0 ? 1 : -1;
+    const double bulge = *turn > 0 ? 1 : -1;
     points_ = {points_[0], 2.0 * circle->centre - points_[0]};
     chain_.bulges = {bulge, bulge};
     return true;

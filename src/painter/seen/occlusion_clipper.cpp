@@ -146,7 +146,7 @@ bool OcclusionClipper::is_all_seen_at_once(std::size_t slot, const PolygonExtent
   take_covers(slot, screen_.place(slot) + 1, own, cells);
   if (!cutter_.is_changed()) return true;
   for (std::size_t i = 0; i < cutter_.count(); ++i)
-    if (is_narrower(cutter_[i], kNarrowest)) {
+    if (is_narrow(cutter_[i], kNarrowest)) {
       seen_.add(whole);
       return false;
     }

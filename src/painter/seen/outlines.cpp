@@ -12,19 +12,7 @@ std::size_t next(std::size_t i, std::size_t count) { return i + 1 == count ? 0 :
 
 }  // namespace
 
-bool is_flat(Outline outline) {
-  if (outline.empty()) return true;
-  double area = 0, border = 0;
-  const glm::dvec2 from(outline[0].at);
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const glm::dvec2 p(outline[i].at), q(outline[next(i, outline.size())].at);
-    area += turn(p - from, q - from);
-    border += std::abs(q.x - p.x) + std::abs(q.y - p.y);  // at most 1.4 times as long as it is
-  }
-  return !(std::abs(area) > shortest_side * border);
-}
-
-bool is_narrower(Outline outline, double width) {
+bool is_narrow(Outline outline, double width) {
   double area = 0, border = 0;
   const glm::dvec2 from(outline[0].at);
   for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -32,7 +20,7 @@ bool is_narrower(Outline outline, double width) {
     area += turn(p - from, q - from);
     border += glm::length(q - p);
   }
-  return std::abs(area) < width * border;
+  return !(std::abs(area) > width * border);
 }
 
 void OutlineClipper::begin(Outline outline) {
@@ -129,7 +117,7 @@ bool OutlineClipper::subtract_from(std::size_t part, Outline cover, bool may_spl
       corners_.resize(corners_before);
       return false;
     }
-    if (found == Place::both && !is_narrower(outside_, thin)) add(outside_);
+    if (found == Place::both && !is_narrow(outside_, thin)) add(outside_);
   }
   return true;
 }
@@ -163,7 +151,7 @@ void OutlineClipper::keep_within(const glm::dvec2& low, const glm::dvec2& high) 
                    corners_.begin() + std::ptrdiff_t(part.first + part.count));
     if (std::all_of(std::begin(sides), std::end(sides),
                     [&](const Line& side) { return split(side) != Place::outside; }) &&
-        !is_narrower(inside_, thin))
+        !is_narrow(inside_, thin))
       add(inside_);
   }
 }

@@ -23,12 +23,12 @@ inline constexpr double shortest_side = 1e-9;
 /// Positive where `at` lies on the left of `way` in a plane whose y goes up; twice the area of their triangle.
 [[nodiscard]] inline double turn(const glm::dvec2& way, const glm::dvec2& at) { return way.x * at.y - way.y * at.x; }
 
+/// Whether an outline is not wider than `width` anywhere, by its area and border.
+[[nodiscard]] bool is_narrow(Outline outline, double width);
+
 /// Whether an outline is too narrow for its sides to say what is within it: all the screen may be on their inner side.
 /// Cuts leave such pieces, and models have triangles of that size. They hide nothing.
-[[nodiscard]] bool is_flat(Outline outline);
-
-/// Whether an outline is narrower than `width` everywhere, by its area and border.
-[[nodiscard]] bool is_narrower(Outline outline, double width);
+[[nodiscard]] inline bool is_flat(Outline outline) { return outline.empty() || is_narrow(outline, shortest_side); }
 
 /// Whether a point is within an outline, or up to `beside` pixels beside it.
 [[nodiscard]] inline bool is_within(Outline outline, const glm::dvec2& at, double beside) {

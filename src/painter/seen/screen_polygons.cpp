@@ -21,78 +21,6 @@ PolygonExtent extent_within(const glm::vec2& size, std::span<const Corner> corne
   return extent;
 }
 
-/// The polygons of ScreenPolygons's constructors, by place. Consecutive ones with the same group belong together.
-class OrderPolygons {
- public:
-  OrderPolygons(const PaintOrder& order, const Occluders& occluders) : order_(order), occluders_(occluders) {}
-
-  [[nodiscard]] std::size_t count() const { return order_.polygons.size(); }
-  [[nodiscard]] std::uint32_t group(std::size_t place) const { return order_.polygons[place].id; }
-  [[nodiscard]] bool is_occluder(std::size_t place) const { return occluders_.contain(order_.polygons[place].id); }
-  [[nodiscard]] std::uint32_t corner_count(std::size_t place) const { return order_.polygons[place].corner_count; }
-  void copy(std::size_t place, PaintCorner* corners) const {
-    for (PaintCorner corner : corners_of(place)) {
-      corner.at.z = affine_depth(order_.view, corner.at.z);
-      *corners++ = corner;
-    }
-  }
-  [[nodiscard]] PolygonExtent extent(std::size_t place) const {
-    return extent_within({order_.view.width, order_.view.height}, corners_of(place));
-  }
-
- private:
-  [[nodiscard]] Outline corners_of(std::size_t place) const {
-    return {order_.corners.data() + order_.polygons[place].first_corner, corner_count(place)};
-  }
-
-  const PaintOrder& order_;
-  const Occluders& occluders_;
-};
-
-class PiecePolygons {
- public:
-  PiecePolygons(const Pieces& pieces, const std::vector<std::uint32_t>& members, const View& view,
-                const Occluders& occluders)
-      : pieces_(pieces), members_(members), view_(view), occluders_(occluders) {}
-
-  [[nodiscard]] std::size_t count() const { return members_.size(); }
-  [[nodiscard]] std::uint32_t group(std::size_t place) const { return pieces_.face(members_[place]).id; }
-  [[nodiscard]] bool is_occluder(std::size_t place) const { return occluders_.contain(group(place)); }
-  [[nodiscard]] std::uint32_t corner_count(std::size_t place) const { return pieces_.corner_count(members_[place]); }
-  void copy(std::size_t place, PaintCorner* corners) const {
-    pieces_.copy_corners(members_[place], corners);
-    for (std::size_t i = 0; i < corner_count(place); ++i) corners[i].at.z = affine_depth(view_, corners[i].at.z);
-  }
-  [[nodiscard]] const PolygonExtent& extent(std::size_t place) const { return pieces_.extent(members_[place]); }
-
- private:
-  const Pieces& pieces_;
-  const std::vector<std::uint32_t>& members_;
-  const View& view_;
-  const Occluders& occluders_;
-};
-
-class ListedPolygons {
- public:
-  ListedPolygons(std::span<const ScreenPolygon> polygons, const View& view)
-      : polygons_(polygons), size_(view.width, view.height) {}
-
-  [[nodiscard]] std::size_t count() const { return polygons_.size(); }
-  [[nodiscard]] std::uint32_t group(std::size_t place) const { return polygons_[place].group; }
-  [[nodiscard]] bool is_occluder(std::size_t place) const { return polygons_[place].is_occluder; }
-  [[nodiscard]] std::uint32_t corner_count(std::size_t place) const {
-    return std::uint32_t(polygons_[place].corners.size());
-  }
-  void copy(std::size_t place, PaintCorner* corners) const {
-    for (const glm::dvec2& at : polygons_[place].corners) *corners++ = {glm::dvec3(at, 1), false};
-  }
-  [[nodiscard]] PolygonExtent extent(std::size_t place) const { return extent_within(size_, polygons_[place].corners); }
-
- private:
-  const std::span<const ScreenPolygon> polygons_;
-  const glm::vec2 size_;
-};
-
 /// Pixels beyond the picture. Sides that reach farther, as they may next to the eye's plane, are cut there: to doubles
 /// so far away a place in the picture is known to 1e-9 pixel.
 constexpr double kReach = 1 << 22;
@@ -117,14 +45,6 @@ std::vector<PaintCorner> cut_along_axis(Outline outline, int axis, double border
   return left;
 }
 
-template <class Polygons>
-std::vector<PolygonExtent> extents_of(const Polygons& polygons) {
-  std::vector<PolygonExtent> extents;
-  extents.reserve(polygons.count());
-  for (std::size_t place = 0; place < polygons.count(); ++place) extents.push_back(polygons.extent(place));
-  return extents;
-}
-
 /// The slots of places, by counting how many begin in each cell.
 std::vector<std::uint32_t> slots_of(const std::vector<PolygonExtent>& extents, const PieceGrid& grid) {
   std::vector<std::uint32_t> slots;
@@ -142,28 +62,85 @@ std::vector<std::uint32_t> slots_of(const std::vector<PolygonExtent>& extents, c
 
 }  // namespace
 
-template <class Polygons>
-ScreenPolygons::ScreenPolygons(const Polygons& polygons, const View& view)
-    : size_(view.width, view.height), slots_(polygons.count()) {
-  const std::vector<PolygonExtent> extents = extents_of(polygons);
+/// Takes polygons by their places: `extents` are the boxes around them, describe(place) tells of one what a Description
+/// holds, and copy(place, corners) sets its corners.
+template <class Describe, class Copy>
+void ScreenPolygons::take(const std::vector<PolygonExtent>& extents, const Describe& describe, const Copy& copy) {
+  slots_ = Buffer<Slot>(extents.size());
   grid_ = PieceGrid(extents);
   slot_of_ = slots_of(extents, grid_);
-  std::uint32_t first_place = 0;
+  std::uint32_t first_place = 0, group = 0;
   for (std::uint32_t place = 0; place < slot_of_.size(); ++place) {
-    if (place == 0 || polygons.group(place) != polygons.group(place - 1)) first_place = place;
-    slots_[slot_of_[place]] = {
-        extents[place], 0, place, first_place, polygons.corner_count(place), polygons.is_occluder(place)};
+    const Description polygon = describe(place);
+    if (place == 0 || polygon.group != group) first_place = place;
+    group = polygon.group;
+    slots_[slot_of_[place]] = {extents[place], 0, place, first_place, polygon.corner_count, polygon.is_occluder};
   }
   make_room();
   std::vector<std::size_t> far_slots;
   for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
-    polygons.copy(slots_[slot].place, corners_.data() + slots_[slot].first_corner);
+    copy(slots_[slot].place, corners_.data() + slots_[slot].first_corner);
     if (!is_within_reach(outline(slot))) far_slots.push_back(slot);
   }
   if (!far_slots.empty()) cut_at_reach(far_slots);
   for (std::size_t slot = 0; slot < slots_.size(); ++slot)
     slots_[slot].hides = slots_[slot].hides && !is_flat(outline(slot));
   grid_.renumber(slot_of_);
+}
+
+ScreenPolygons::ScreenPolygons(const PaintOrder& order, const Occluders& occluders)
+    : size_(order.view.width, order.view.height) {
+  const auto corners_of = [&](const PaintPolygon& polygon) {
+    return Outline(order.corners.data() + polygon.first_corner, polygon.corner_count);
+  };
+  std::vector<PolygonExtent> extents;
+  extents.reserve(order.polygons.size());
+  for (const PaintPolygon& polygon : order.polygons) extents.push_back(extent_within(size_, corners_of(polygon)));
+  take(
+      extents,
+      [&](std::size_t place) {
+        const PaintPolygon& polygon = order.polygons[place];
+        return Description{polygon.id, polygon.corner_count, occluders.contain(polygon.id)};
+      },
+      [&](std::size_t place, PaintCorner* corners) {
+        for (const PaintCorner& from : corners_of(order.polygons[place]))
+          *corners++ = {{from.at.x, from.at.y, affine_depth(order.view, from.at.z)}, from.is_cut};
+      });
+}
+
+ScreenPolygons::ScreenPolygons(const Pieces& pieces, const std::vector<std::uint32_t>& members, const View& view,
+                               const Occluders& occluders)
+    : size_(view.width, view.height) {
+  std::vector<PolygonExtent> extents;
+  extents.reserve(members.size());
+  for (const std::uint32_t piece : members) extents.push_back(pieces.extent(piece));
+  take(
+      extents,
+      [&](std::size_t place) {
+        const PrimitiveId id = pieces.face(members[place]).id;
+        return Description{id, pieces.corner_count(members[place]), occluders.contain(id)};
+      },
+      [&](std::size_t place, PaintCorner* corners) {
+        pieces.copy_corners(members[place], corners);
+        for (std::size_t i = 0; i < pieces.corner_count(members[place]); ++i)
+          corners[i].at.z = affine_depth(view, corners[i].at.z);
+      });
+}
+
+ScreenPolygons::ScreenPolygons(std::span<const ScreenPolygon> polygons, const View& view)
+    : size_(view.width, view.height) {
+  std::vector<PolygonExtent> extents;
+  extents.reserve(polygons.size());
+  for (const ScreenPolygon& polygon : polygons) extents.push_back(extent_within(size_, polygon.corners));
+  take(
+      extents,
+      [&](std::size_t place) {
+        const ScreenPolygon& polygon = polygons[place];
+        return Description{polygon.group, std::uint32_t(polygon.corners.size()), polygon.is_occluder};
+      },
+      [&](std::size_t place, PaintCorner* corners) {
+        for (const glm::dvec2& at : polygons[place].corners) *corners++ = {glm::dvec3(at, 1), false};
+      });
 }
 
 void ScreenPolygons::make_room() {
@@ -209,15 +186,5 @@ void ScreenPolygons::cut_at_reach(const std::vector<std::size_t>& far_slots) {
     std::copy(from, from + slots_[slot].corner_count, corners_.data() + slots_[slot].first_corner);
   }
 }
-
-ScreenPolygons::ScreenPolygons(const PaintOrder& order, const Occluders& occluders)
-    : ScreenPolygons(OrderPolygons(order, occluders), order.view) {}
-
-ScreenPolygons::ScreenPolygons(const Pieces& pieces, const std::vector<std::uint32_t>& members, const View& view,
-                               const Occluders& occluders)
-    : ScreenPolygons(PiecePolygons(pieces, members, view, occluders), view) {}
-
-ScreenPolygons::ScreenPolygons(std::span<const ScreenPolygon> polygons, const View& view)
-    : ScreenPolygons(ListedPolygons(polygons, view), view) {}
 
 }  // namespace frontmost::painter_detail

@@ -93,8 +93,13 @@ class ScreenPolygons {
   [[nodiscard]] bool is_within_reach(Outline outline) const;
   /// Cuts outlines where they are too far from the picture for their sides to have a place in it.
   void cut_at_reach(const std::vector<std::size_t>& far_slots);
-  template <class Polygons>
-  ScreenPolygons(const Polygons& polygons, const View& view);
+  /// What is told of a polygon beside its corners. Consecutive ones of one group belong together.
+  struct Description {
+    std::uint32_t group, corner_count;
+    bool is_occluder;
+  };
+  template <class Describe, class Copy>
+  void take(const std::vector<PolygonExtent>& extents, const Describe& describe, const Copy& copy);
 
   const glm::dvec2 size_;
   PieceGrid grid_;

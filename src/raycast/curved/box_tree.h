@@ -86,31 +86,13 @@ inline double DoubleBoxTree::entry(const DoubleBox& box, const DoubleRay& ray, c
 
 template <class Visit>
 void DoubleBoxTree::walk(DoubleRay& ray, const Visit& visit) const {
-  if (nodes_.empty()) return;
-  struct Entry {
-    std::uint32_t node;
-    double at;
-  };
   const glm::dvec3 inverse = 1.0 / ray.direction;
-  std::array<Entry, kDeepest> stack;
-  std::size_t size = 0;
-  const auto push = [&](std::uint32_t node) {
-    const double at = entry(nodes_[node].box, ray, inverse);
-    if (at <= ray.to && at < std::numeric_limits<double>::infinity()) stack[size++] = {node, at};
+  const auto enter = [&](const DoubleBox& box, std::uint32_t) {
+    const double at = entry(box, ray, inverse);
+    return BoxEntry{at <= ray.to && at < std::numeric_limits<double>::infinity(), at};
   };
-  push(0);
-  while (size > 0) {
-    const Entry next = stack[--size];
-    if (next.at > ray.to) continue;
-    const Node& node = nodes_[next.node];
-    for (std::uint32_t i = 0; i < node.count; ++i) visit(items_[node.first + i]);
-    if (node.count > 0) continue;
-    push(node.first);
-    push(node.first + 1);
-    if (size >= 2 && stack[size - 1].node == node.first + 1 && stack[size - 2].node == node.first &&
-        stack[size - 1].at > stack[size - 2].at)
-      std::swap(stack[size - 1], stack[size - 2]);
-  }
+  const auto is_past = [&](const BoxEntry& entry) { return entry.at > ray.to; };
+  walk_together(1, enter, is_past, [&](std::uint32_t item, std::uint32_t) { visit(item); });
 }
 
 template <class Enter, class IsPast, class Visit>

@@ -16,20 +16,6 @@ namespace shading {
 struct PreparedScene;
 }
 
-struct ColorOptions {
-  /// Shading, shadows and opacity count; see-through and the background do not.
-  ShadeOptions shade;
-  /// Steps of 8-bit sRGB, 0 to 255, by which the colour of a piece may differ from what is seen there. 255: a polygon
-  /// has the colour of its middle, and is never cut.
-  double tolerance = 6;
-  /// Pieces of a polygon whose colours nearly agree get the same colour and become one shape, as merge_neighbours() can
-  /// use them; a third of the tolerance goes into that. Otherwise each piece of an opaque polygon is a shape of its
-  /// own, and there are fewer of them.
-  bool groups_pieces = true;
-  /// More polygons and pieces are an error.
-  std::size_t most_polygons = std::size_t(1) << 27;
-};
-
 /// Polygons of one colour that lie beside each other and nowhere above each other, so that they may be one path:
 /// `polygon_count` of ColoredOrder::polygons from `first_polygon` on.
 struct ColoredShape {
@@ -78,13 +64,18 @@ struct ColoredOrder {
 /// within their own place in the order, along lines that part their colours best: those of their textures' coordinates,
 /// those along which light is the same. Pieces are as large as the tolerance allows; details narrower than about a
 /// pixel and a half are left out, and so are holes of alpha mode MASK. Each shape is a sheet by itself.
+///
+/// Where neighbours are to be merged afterwards, pieces of a polygon whose colours nearly agree get the same colour and
+/// become one shape, as merge_neighbours() can use them; a third of the tolerance goes into that. Otherwise each piece
+/// of an opaque polygon is a shape of its own, and there are fewer of them.
 /// O(pixels of the picture that polygons cover, seen or not), in parallel; the result does not depend on threads.
-/// \throws Error bad_argument for an opacity out of range; limit_exceeded for more than ColorOptions::most_polygons.
+/// \throws Error bad_argument for an opacity out of range; limit_exceeded for more polygons and pieces
+/// than FigureOptions::most_polygons.
 [[nodiscard]] ColoredOrder color_order(const Surfaces& surfaces, const ShadeInput& input, const VisibleParts& parts,
-                                       const ColorOptions& options = {}, const Execution& execution = {});
+                                       const FigureOptions& options = {}, const Execution& execution = {});
 /// The same with what pictures before made ready.
 [[nodiscard]] ColoredOrder color_order(shading::PreparedScene& scene, const ShadeInput& input,
-                                       const VisibleParts& parts, const ColorOptions& options,
+                                       const VisibleParts& parts, const FigureOptions& options,
                                        const Execution& execution);
 
 /// The same picture of fewer shapes: polygons of one colour that share a part of a side become one shape, where no

@@ -66,8 +66,7 @@ Figure figure_of(shading::PreparedScene& scene, const ShadeInput& input, const F
     throw Error(ErrorCode::bad_argument, "figure: tolerance: must be 0 to 255");
   const VisibleParts parts = parts_of(surfaces, input.visible.view, options, execution);
   check_count(parts.polygons.size(), options);
-  const ColorOptions coloring{options.shade, options.tolerance, options.merges_neighbours, options.most_polygons};
-  ColoredOrder colored = color_order(scene, input, parts, coloring, execution);
+  ColoredOrder colored = color_order(scene, input, parts, options, execution);
   if (options.merges_neighbours) colored = merge_neighbours(colored, execution);
   colored = gather_sheets(std::move(colored), execution);
   Figure figure = outlined(colored, kTrap, occluders_of(surfaces, options, Holes::cut_out), execution);

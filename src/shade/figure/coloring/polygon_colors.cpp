@@ -45,7 +45,7 @@ void refuse_more_than(std::size_t most) {
 }
 
 PolygonColors::PolygonColors(const Surfaces& surfaces, const View& view, const PointShader& shader,
-                             const ColorOptions& options, const Execution& execution)
+                             const FigureOptions& options, const Execution& execution)
     : surfaces_(surfaces), shading_(shader), options_(options), execution_(execution), rays_(view) {
   shader_.begin(shader.source(), shader.colorist());
 }
@@ -74,7 +74,7 @@ void PolygonColors::begin(std::span<const PaintPolygon> polygons) {
   for (const PaintPolygon& outline : polygons) {
     Polygon& polygon = polygons_.emplace_back(Polygon{outline});
     if (cutouts && cutouts->has(outline.id)) polygon.holes.emplace((*cutouts)[outline.id], rays_);
-    polygon.is_grouped = options_.groups_pieces || shading_.opacity() < 1 || !is_opaque(surfaces_, outline.id);
+    polygon.is_grouped = options_.merges_neighbours || shading_.opacity() < 1 || !is_opaque(surfaces_, outline.id);
   }
 }
 

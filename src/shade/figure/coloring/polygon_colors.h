@@ -19,7 +19,7 @@ namespace frontmost::shading {
 class PolygonColors {
  public:
   /// Borrows all but the view.
-  PolygonColors(const Surfaces& surfaces, const View& view, const PointShader& shader, const ColorOptions& options,
+  PolygonColors(const Surfaces& surfaces, const View& view, const PointShader& shader, const FigureOptions& options,
                 const Execution& execution);
 
   /// Appends some of these parts in pieces, without holes and what is wholly clear. The result depends on these
@@ -84,7 +84,7 @@ class PolygonColors {
 
   const Surfaces& surfaces_;
   const PointShader& shading_;
-  const ColorOptions& options_;
+  const FigureOptions& options_;
   const Execution& execution_;
   const ScreenRays rays_;
   FragmentShader shader_;
