@@ -13,8 +13,7 @@
 #include "lines/crossings/crossings.h"
 #include "lines/hiding/hidden_parts.h"
 #include "lines/lists.h"
-#include "lines/mesh/gaps.h"
-#include "lines/mesh/seams.h"
+#include "lines/mesh/feature_edges.h"
 
 namespace frontmost {
 namespace {

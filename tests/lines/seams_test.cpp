@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // T-junctions, filled by triangles without area and not.
-#include "lines/mesh/seams.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <tuple>
 
 #include "frontmost/lines.h"
+#include "lines/mesh/welded_mesh.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 

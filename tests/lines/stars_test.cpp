@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is known of the triangles at a vertex, and what it spares.
-#include "lines/crossings/stars.h"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
 
 #include "lines/crossings/crossings.h"
+#include "lines/mesh/corner_table.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles meet at a vertex.
+// Which triangles meet at a vertex, and how they lie to each other there.
 #pragma once
 
 #include <span>
 
-#include "lines/mesh/welded_mesh.h"
+#include "lines/mesh/seen_mesh.h"
 
 namespace frontmost::lines_detail {
 
@@ -43,5 +43,25 @@ class CornerTable {
   Buffer<std::uint32_t> first_;  ///< by vertex
   Buffer<Corner> corners_;
 };
+
+/// The triangles at a vertex, as they lie to each other.
+struct Star {
+  /// As many triangles as most vertices have: with more of them nothing is found.
+  static constexpr std::size_t most = 16;
+
+  /// Whether every edge at the vertex belongs to two triangles with different third corners that are wound alike.
+  bool is_paired;
+  /// Whether besides along one of the axes all of them turn the same way, and once around the vertex: seen from there
+  /// they lie side by side.
+  bool is_spread;
+  /// Of what is paired, bit j: the edge to Corner::last() of corner j, whose number is higher, is not plain.
+  std::uint16_t asked;
+};
+
+/// For the vertices from `begin` to `end`. An edge is plain where both triangles face the same way and the cosine of
+/// their angle, in floats, is more than `plain_cosine`.
+using StarsKernel = void (*)(const SeenMesh& seen, const CornerTable& table, float plain_cosine, std::size_t begin,
+                             std::size_t end, Star* stars);
+[[nodiscard]] StarsKernel stars_kernel(Isa isa);
 
 }  // namespace frontmost::lines_detail

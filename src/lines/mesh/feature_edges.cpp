@@ -11,9 +11,8 @@
 
 #include "base/parallel.h"
 #include "lines/creases/creases.h"
-#include "lines/crossings/stars.h"
 #include "lines/lists.h"
-#include "lines/mesh/gaps.h"
+#include "lines/mesh/corner_table.h"
 #include "lines/mesh/sheets.h"
 
 namespace frontmost::lines_detail {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lines/mesh/gaps.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
 #include "lines/creases/neighbours.h"
+#include "lines/mesh/feature_edges.h"
 
 namespace frontmost::lines_detail {
 namespace {

@@ -2,14 +2,14 @@
 // Fillers that share sides lie on one line: a seam, with all of their corners in order. Whatever the fillers' pattern,
 // each of them has every stretch between two neighbouring corners twice, on its long side and on one of its short ones.
 // So the other triangles' sides, cut at all corners, pair up as well without the fillers as they did with them.
-#include "lines/mesh/seams.h"
-
 #include <algorithm>
 #include <functional>
 #include <vector>
 
+#include "base/exact_vector.h"
 #include "base/parallel.h"
 #include "lines/lists.h"
+#include "lines/mesh/welded_mesh.h"
 
 namespace frontmost::lines_detail {
 namespace {

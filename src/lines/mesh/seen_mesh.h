@@ -43,9 +43,4 @@ struct SeenMesh {
   return glm::cross(mesh.positions[t.y] - at, mesh.positions[t.z] - at);
 }
 
-/// The function of one instruction set for the triangles from `begin` to `end`, but for what is left open.
-using SeeKernel = void (*)(const WeldedMesh& mesh, const Sight& sight, std::size_t begin, std::size_t end,
-                           SeenTriangle* seen);
-[[nodiscard]] SeeKernel see_kernel(Isa isa);
-
 }  // namespace frontmost::lines_detail

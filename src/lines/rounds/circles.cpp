@@ -9,7 +9,6 @@
 
 #include "base/parallel.h"
 #include "lines/rounds/found_rounds.h"
-#include "lines/rounds/sharp_chains.h"
 
 namespace frontmost::lines_detail {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "lines/rounds/circle3.h"
+#include "lines/rounds/round_fit.h"
 #include "lines/rounds/smooth_mesh.h"
 
 namespace frontmost::lines_detail {

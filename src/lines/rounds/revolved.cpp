@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "base/parallel.h"
-#include "lines/rounds/axis_fit.h"
 #include "lines/rounds/found_rounds.h"
 
 namespace frontmost::lines_detail {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lines/rounds/sharp_chains.h"
-
 #include <algorithm>
 #include <span>
 
 #include "base/parallel.h"
 #include "lines/lists.h"
+#include "lines/rounds/smooth_mesh.h"
 
 namespace frontmost::lines_detail {
 namespace {

@@ -7,7 +7,6 @@
 
 #include "base/parallel.h"
 #include "lines/mesh/corner_table.h"
-#include "lines/mesh/seams.h"
 
 namespace frontmost::lines_detail {
 namespace {

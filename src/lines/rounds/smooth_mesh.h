@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh with its triangles' neighbours, and what is smooth between them.
+// A mesh with its triangles' neighbours, what is smooth between them, and its edges that are not, one after the other.
 #pragma once
+
+#include <vector>
 
 #include "lines/mesh/seen_mesh.h"
 
@@ -30,5 +32,27 @@ struct SmoothMesh {
 
 /// O(triangles log triangles at a vertex). \throws Error limit_exceeded as CornerTable does.
 [[nodiscard]] SmoothMesh smooth_mesh(const Surfaces& surfaces, const Execution& execution);
+
+/// An edge and the triangles at it; `right` may be no_index.
+struct SharpEdge {
+  std::uint32_t from, to, left, right;
+};
+
+struct SharpChain {
+  std::vector<std::uint32_t> vertices;  ///< of a closed one the first comes once
+  std::vector<std::uint32_t> edges;     ///< the i-th goes from the i-th vertex to the next
+  bool is_closed = false;
+};
+
+struct SharpChains {
+  std::vector<SharpEdge> edges;
+  std::vector<SharpChain> chains;
+};
+
+inline constexpr std::size_t kFewestSides = 4;  ///< of an arc
+
+/// Each edge is in one chain, but for those of chains that are shorter than an arc. Where several meet, those go on in
+/// each other that turn least, and none by more than kWidestStep. O(edges log edges at a vertex).
+[[nodiscard]] SharpChains sharp_chains(const SmoothMesh& mesh, const Execution& execution);
 
 }  // namespace frontmost::lines_detail

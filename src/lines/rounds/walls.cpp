@@ -7,8 +7,6 @@
 
 #include "base/parallel.h"
 #include "lines/lists.h"
-#include "lines/rounds/axis_fit.h"
-#include "lines/rounds/circle3.h"
 #include "lines/rounds/found_rounds.h"
 
 namespace frontmost::lines_detail {

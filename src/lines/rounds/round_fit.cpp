@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lines/rounds/axis_fit.h"
+#include "lines/rounds/round_fit.h"
 
 namespace frontmost::lines_detail {
 

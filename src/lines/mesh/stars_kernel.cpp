@@ -2,10 +2,10 @@
 // Partners are found by comparing all with all, and everything is asked of all corners: nearly without a branch, since
 // which of them matter is anybody's guess.
 
-#include "lines/crossings/stars.h"
+#include "lines/mesh/corner_table.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "lines/crossings/stars_kernel.cpp"
+#define HWY_TARGET_INCLUDE "lines/mesh/stars_kernel.cpp"
 #include "base/isa.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
