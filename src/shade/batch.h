@@ -10,8 +10,10 @@ namespace frontmost::shading {
 
 inline constexpr int batch_capacity = 256;  ///< all arrays together stay within a second-level cache
 
+inline constexpr int batch_room = batch_capacity + 16;  ///< a vector may begin at the last
+
 struct alignas(64) Lane {
-  float values[batch_capacity + 16];  ///< lanes a power of two apart would share the same few sets of the cache
+  float values[batch_room];  ///< lanes a power of two apart would share the same few sets of the cache
   float& operator[](int i) { return values[i]; }
   const float& operator[](int i) const { return values[i]; }
 };
@@ -35,14 +37,14 @@ struct Lane3 {
   }
 };
 
-/// Where the fragments are: made from a Visible.
+/// Where the fragments are: made from a Visible. Whoever writes or reads several at a time may go on behind the last.
 struct Coverage {
   int count = 0;
-  std::uint32_t pixel[batch_capacity];     ///< within the tile
-  std::uint16_t triangle[batch_capacity];  ///< number of the set-up triangle
-  std::uint64_t samples[batch_capacity];   ///< which of the pixel's, a bit each
-  Lane weight;                             ///< their part of all
-  Lane2 screen;                            ///< mean position of those samples
+  std::uint32_t pixel[batch_room];          ///< within the tile
+  std::uint16_t triangle[batch_room] = {};  ///< number of the set-up triangle
+  std::uint64_t samples[batch_room];        ///< which of the pixel's, a bit each
+  Lane weight;                              ///< their part of all
+  Lane2 screen;                             ///< mean position of those samples
 };
 
 /// What the geometry says of each fragment. Positions are in world axes, measured from the eye, so that scenes far

@@ -13,40 +13,29 @@ TriangleCache::Found TriangleCache::find_or_add(PrimitiveId id) {
   return {slots_[slot].number, true};
 }
 
-void FragmentShader::add(PrimitiveId id, std::uint32_t number, const glm::vec2& screen, std::uint64_t samples,
-                         float weight) {
+void FragmentShader::add_row(PrimitiveId id, int count, const RowStart& start) {
   const TriangleCache::Found found = cache_.find_or_add(id);
-  if (found.is_new) new_triangles_.push_back({id, found.number, screen});
-  const int i = arrived_.count++;
-  arrived_.pixel[i] = number;
-  arrived_.triangle[i] = found.number;
-  arrived_.samples[i] = samples;
-  arrived_.weight[i] = weight;
-  arrived_.screen.set(i, screen);
-}
-
-void FragmentShader::sort_by_triangle() {
-  // Fragments arrive pixel by pixel. What belongs to a triangle is read once for each run of its fragments.
-  std::uint16_t next[TriangleCache::capacity + 1] = {};
-  for (int i = 0; i < arrived_.count; ++i) ++next[arrived_.triangle[i] + 1];
-  for (int t = 0; t < TriangleCache::capacity; ++t) next[t + 1] = std::uint16_t(next[t + 1] + next[t]);
-  Coverage& sorted = batch_.coverage;
-  sorted.count = arrived_.count;
-  for (int i = 0; i < arrived_.count; ++i) {
-    const std::uint16_t place = place_[i] = next[arrived_.triangle[i]]++;
-    sorted.pixel[place] = arrived_.pixel[i];
-    sorted.triangle[place] = arrived_.triangle[i];
-    sorted.samples[place] = arrived_.samples[i];
-    sorted.weight[place] = arrived_.weight[i];
-    sorted.screen.set(place, arrived_.screen.at(i));
-  }
+  if (found.is_new) new_triangles_.push_back({id, found.number, start.screen});
+  Coverage& out = batch_.coverage;
+  // Four at a time: most rows are as short, and what is written too much is written over by the next.
+  constexpr int at_once = 4;
+  for (int k = 0; k < count; k += at_once)
+    for (int lane = 0; lane < at_once; ++lane) {
+      const int i = out.count + k + lane;
+      out.pixel[i] = start.number + std::uint32_t(k + lane);
+      out.triangle[i] = found.number;
+      out.samples[i] = start.samples;
+      out.weight[i] = start.weight;
+      out.screen.x[i] = start.screen.x + float(k + lane);
+      out.screen.y[i] = start.screen.y;
+    }
+  out.count += count;
 }
 
 void FragmentShader::shade_arrived() {
   source_->set_up(new_triangles_, cache_.setups());
   new_triangles_.clear();
-  sort_by_triangle();
-  interpolate_geometry(source_->rays(), cache_.setups(), batch_);
+  interpolate_geometry(source_->rays(), cache_.setups(), batch_, isa_);
   (*colorist_)(cache_.setups(), batch_);
 }
 

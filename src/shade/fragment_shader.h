@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fragments in, colours out: collects them into batches, sorts each by triangle, and hands the answers back in the
-// order of arrival.
+// Fragments in, colours out: collects them into batches, sets up the triangles that are new to them, and hands the
+// answers back in the order of arrival.
 #pragma once
 
 #include <functional>
@@ -53,26 +53,38 @@ class FragmentShader {
   using Colorist = std::function<void(const std::vector<TriangleSetup>&, FragmentBatch&)>;
 
   /// Starts anew, for triangles and colours that are borrowed. Precondition for all else.
-  void begin(const TriangleSource& source, const Colorist& colorist) {
+  void begin(const TriangleSource& source, const Colorist& colorist, Isa isa) {
+    isa_ = isa;
     source_ = &source;
     colorist_ = &colorist;
-    arrived_.count = 0;
+    batch_.coverage.count = 0;
     clear();
   }
-  /// A fragment that hand_out() is to be called for before another is added.
-  [[nodiscard]] bool is_full() const { return arrived_.count == batch_capacity || cache_.is_full(); }
+  /// How many fragments can be added before hand_out() is to be called.
+  [[nodiscard]] int room() const { return cache_.is_full() ? 0 : batch_capacity - batch_.coverage.count; }
+  [[nodiscard]] bool is_full() const { return room() == 0; }
   /// `number` is the caller's own; `screen` the position that is shaded, within the pixel of the `samples` (a bit
   /// each). Precondition: not full.
-  void add(PrimitiveId id, std::uint32_t number, const glm::vec2& screen, std::uint64_t samples, float weight);
+  void add(PrimitiveId id, std::uint32_t number, const glm::vec2& screen, std::uint64_t samples, float weight) {
+    add_row(id, 1, {number, screen, samples, weight});
+  }
+  /// What pixels side by side share, and the number and position of the first.
+  struct RowStart {
+    std::uint32_t number;
+    glm::vec2 screen;
+    std::uint64_t samples;
+    float weight;
+  };
+  /// The same for `count` pixels side by side, whose numbers are consecutive. Precondition: as much room.
+  void add_row(PrimitiveId id, int count, const RowStart& start);
   /// Shades what was added and calls receive(number, weight, light, alpha) for each, in the order of arrival.
   template <class Receive>
   void hand_out(const Receive& receive) {
-    if (arrived_.count > 0) shade_arrived();
-    for (int k = 0; k < arrived_.count; ++k) {
-      const int i = place_[k];
-      receive(arrived_.pixel[k], arrived_.weight[k], batch_.light.at(i), batch_.material.alpha[i]);
-    }
-    arrived_.count = 0;
+    Coverage& coverage = batch_.coverage;
+    if (coverage.count > 0) shade_arrived();
+    for (int i = 0; i < coverage.count; ++i)
+      receive(coverage.pixel[i], coverage.weight[i], batch_.light.at(i), batch_.material.alpha[i]);
+    coverage.count = 0;
     if (cache_.is_full()) cache_.clear();
   }
   /// Forgets triangles. Precondition: everything was handed out.
@@ -82,16 +94,14 @@ class FragmentShader {
   }
 
  private:
-  void sort_by_triangle();
   void shade_arrived();
 
   const TriangleSource* source_ = nullptr;
   const Colorist* colorist_ = nullptr;
+  Isa isa_ = Isa::best;
   TriangleCache cache_;
   std::vector<NewTriangle> new_triangles_;  ///< of the batch, not set up yet
-  Coverage arrived_;                        ///< in the order of arrival; `pixel` is the caller's number
-  std::uint16_t place_[batch_capacity];     ///< of each that arrived, in the batch
-  FragmentBatch batch_;                     ///< by triangles
+  FragmentBatch batch_;                     ///< in the order of arrival; `pixel` is the caller's number
 };
 
 }  // namespace frontmost::shading

@@ -36,7 +36,7 @@ void shade_tiles(const ShadedLayer& layer, const Painting& painting, PreparedSce
   const auto rows = std::size_t((view.height + tile_height - 1) / tile_height);
   parallel_for(execution, rows, 1, [&](std::size_t begin, std::size_t end) {
     const auto work = scene.works.borrow([] { return std::make_unique<TileWork>(); });
-    work->begin(layer, painting.colorist);
+    work->begin(layer, painting.colorist, execution.isa);
     for (std::size_t row = begin; row < end; ++row)
       for (int x = 0; x < view.width; x += tile_width) {
         const int y = int(row) * tile_height;
@@ -86,7 +86,7 @@ class ShownMaterials {
   /// Precondition: with layers.
   [[nodiscard]] DeepImage deep(const Surfaces& surfaces, const FragmentShader::Colorist& colorist,
                                const Execution& execution) const {
-    const LayerShader shader(*source_, *layers_, colorist);
+    const LayerShader shader(*source_, *layers_, colorist, execution.isa);
     return deep_layers(surfaces, visible_.view, *layers_, shader, execution);
   }
 

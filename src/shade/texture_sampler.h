@@ -36,9 +36,9 @@ struct Taps {
   std::uint8_t count[sampled_at_once];  ///< of each fragment
   std::uint8_t level[sampled_at_once];  ///< the finer one
   float blend[sampled_at_once];         ///< how much of the next
-  Fours place;               ///< texture coordinates; then how far from the first texel to the second
-  Fours size;                ///< of the levels, in texels
-  FourTexels first, second;  ///< texels on either side
+  Fours place;                          ///< texture coordinates; then how far from the first texel to the second
+  Fours size;                           ///< of the levels, in texels
+  FourTexels first, second;             ///< texels on either side
 };
 
 /// What taps are found from: places of the fragments [begin, begin + count) of a geometry, and the levels of a texture.

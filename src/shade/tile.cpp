@@ -8,7 +8,7 @@
 
 namespace frontmost::shading {
 
-void TileWork::begin(const ShadedLayer& layer, const Colorist& colorist) {
+void TileWork::begin(const ShadedLayer& layer, const Colorist& colorist, Isa isa) {
   visible_ = &layer.visible;
   samples_ = layer.use == SampleUse::first ? 1 : layer.visible.view.samples;
   const auto all = sample_offsets(layer.visible.view.samples);
@@ -17,23 +17,24 @@ void TileWork::begin(const ShadedLayer& layer, const Colorist& colorist) {
     offsets_[s] = glm::vec2(all[s]) / 256.0f;
     centre_ += offsets_[s] / float(samples_);
   }
-  fragments_.begin(layer.source, colorist);
+  fragments_.begin(layer.source, colorist, isa);
 }
 
 bool TileWork::shade(const TileRectangle& tile) {
   fragments_.clear();
   bool anything = false;
-  for (int y = 0; y < tile.height; ++y)
-    anything = find_seen(visible_->index(tile.x, tile.y + y), tile.width, y) || anything;
+  for (int y = 0; y < tile.height; ++y) {
+    look_at_row(visible_->index(tile.x, tile.y + y), tile.width, rows_[y]);
+    anything = anything || !rows_[y].is_empty;
+  }
   if (!anything) return false;
   // Most of a picture is background: nothing is cleared before something is found.
   std::fill(pixels_.begin(), pixels_.end(), glm::vec4(0));
-  // Column by column: what is shaded at once then lies together on the surface, as rays that are cast at once should.
-  constexpr int column = 4;
-  for (int left = 0; left < tile.width; left += column)
+  // Block by block: what is shaded at once then lies together on the surface, as rays that are cast at once should.
+  constexpr int block = 16;
+  for (int left = 0; left < tile.width; left += block)
     for (int y = 0; y < tile.height; ++y)
-      for (int x = left; x < std::min(left + column, tile.width); ++x)
-        if (seen_[y][x]) add_pixel(tile.x + x, tile.y + y, std::uint32_t(y * tile.width + x));
+      if (!rows_[y].is_empty) add_pixels(tile, y, left, std::min(left + block, tile.width));
   flush();
   return true;
 }
@@ -42,60 +43,74 @@ void TileWork::fade(float opacity) {
   for (glm::vec4& pixel : pixels_) pixel *= opacity;
 }
 
-bool TileWork::find_seen(std::size_t row, int width, int y) {
-  PrimitiveId ids[tile_width];
-  std::fill(std::begin(ids), std::end(ids), no_primitive);
-  for (int s = 0; s < samples_; ++s) {
-    const PrimitiveId* plane = visible_->primitives.data() + row + std::size_t(s) * visible_->view.pixel_count();
-    // The same row of the next tile: steps of a row are too long for the processor to foresee.
-    constexpr int line = 64 / sizeof(PrimitiveId);
-    for (int x = 0; x < tile_width; x += line) prefetch_line(plane + tile_width + x);
-    for (int x = 0; x < width; ++x) ids[x] &= plane[x];
-  }
+void TileWork::look_at_row(std::size_t begin, int width, Row& row) const {
+  // The same row of the next tile: steps of a row are too long for the processor to foresee.
+  constexpr int line = 64 / sizeof(PrimitiveId);
+  const PrimitiveId* plane = visible_->primitives.data() + begin;
+  for (int x = 0; x < tile_width; x += line) prefetch_line(plane + tile_width + x);
   PrimitiveId all = no_primitive;
   for (int x = 0; x < width; ++x) {
-    all &= ids[x];
-    seen_[y][x] = ids[x] != no_primitive;
+    row.first[x] = plane[x];
+    row.differing[x] = 0;
+    all &= plane[x];
   }
-  return all != no_primitive;
+  for (int s = 1; s < samples_; ++s) {
+    plane += visible_->view.pixel_count();
+    for (int x = 0; x < tile_width; x += line) prefetch_line(plane + tile_width + x);
+    for (int x = 0; x < width; ++x) {
+      row.differing[x] |= plane[x] ^ row.first[x];
+      all &= plane[x];
+    }
+  }
+  row.is_empty = all == no_primitive;
 }
 
-void TileWork::add_pixel(int x, int y, std::uint32_t pixel) {
+void TileWork::add_pixels(const TileRectangle& tile, int y, int left, int right) {
+  const Row& row = rows_[y];
+  for (int x = left; x < right;) {
+    const auto pixel = std::uint32_t(y * tile.width + x);
+    const glm::ivec2 at(tile.x + x, tile.y + y);
+    if (row.differing[x] != 0) {
+      add_mixed_pixel(at, pixel);
+      ++x;
+      continue;
+    }
+    const PrimitiveId id = row.first[x];
+    const int begin = x++;
+    while (x < right && row.first[x] == id && row.differing[x] == 0) ++x;
+    if (id != no_primitive) add_row(id, x - begin, pixel, glm::vec2(at) + centre_);
+  }
+}
+
+void TileWork::add_row(PrimitiveId id, int count, std::uint32_t pixel, glm::vec2 screen) {
+  while (count > 0) {
+    if (fragments_.is_full()) flush();
+    const int part = std::min(count, fragments_.room());
+    fragments_.add_row(id, part, {pixel, screen, (1u << samples_) - 1, 1.0f});
+    pixel += std::uint32_t(part);
+    screen.x += float(part);
+    count -= part;
+  }
+}
+
+void TileWork::add_mixed_pixel(const glm::ivec2& at, std::uint32_t pixel) {
   PrimitiveId ids[16];
-  bool same = true;
-  for (int s = 0; s < samples_; ++s) {
-    ids[s] = visible_->primitives[visible_->index(x, y, s)];
-    same = same && ids[s] == ids[0];
-  }
-  const glm::vec2 corner{float(x), float(y)};
-  if (same) {
-    add_fragment(ids[0], pixel, corner + centre_, (1u << samples_) - 1);
-  } else {
-    add_mixed_pixel(ids, corner, pixel);
-  }
-}
-
-void TileWork::add_mixed_pixel(const PrimitiveId* ids, const glm::vec2& corner, std::uint32_t pixel) {
+  for (int s = 0; s < samples_; ++s) ids[s] = visible_->primitives[visible_->index(at.x, at.y, s)];
   unsigned done = 0;
   for (int s = 0; s < samples_; ++s) {
     if (ids[s] == no_primitive || (done >> s) & 1) continue;
     glm::vec2 sum(0);
-    int count = 0;
     unsigned own = 0;
     for (int other = s; other < samples_; ++other)
       if (ids[other] == ids[s]) {
         sum += offsets_[std::size_t(other)];
-        ++count;
         own |= 1u << other;
       }
     done |= own;
-    add_fragment(ids[s], pixel, corner + sum / float(count), own);
+    const auto count = float(std::popcount(own));
+    if (fragments_.is_full()) flush();
+    fragments_.add(ids[s], pixel, glm::vec2(at) + sum / count, own, count / float(samples_));
   }
-}
-
-void TileWork::add_fragment(PrimitiveId id, std::uint32_t pixel, const glm::vec2& screen, unsigned samples) {
-  if (fragments_.is_full()) flush();
-  fragments_.add(id, pixel, screen, samples, float(std::popcount(samples)) / float(samples_));
 }
 
 void TileWork::flush() {

@@ -34,7 +34,7 @@ class TileWork {
 
   TileWork() : pixels_(tile_pixels) {}
   /// Starts a picture; borrows everything. Precondition of shade().
-  void begin(const ShadedLayer& layer, const Colorist& colorist);
+  void begin(const ShadedLayer& layer, const Colorist& colorist, Isa isa);
 
   /// Premultiplied sums over the samples of each pixel, row by row of the tile. False where nothing is seen at all.
   bool shade(const TileRectangle& tile);
@@ -43,11 +43,18 @@ class TileWork {
   [[nodiscard]] const std::vector<glm::vec4>& pixels() const { return pixels_; }
 
  private:
-  /// Sets seen_[y] for a row of pixels from `row` on. False when nothing is seen in any. O(samples), many at a time.
-  bool find_seen(std::size_t row, int width, int y);
-  void add_pixel(int x, int y, std::uint32_t pixel);
-  void add_mixed_pixel(const PrimitiveId* ids, const glm::vec2& corner, std::uint32_t pixel);
-  void add_fragment(PrimitiveId id, std::uint32_t pixel, const glm::vec2& screen, unsigned samples);
+  /// What the samples of a row of pixels see.
+  struct Row {
+    PrimitiveId first[tile_width];      ///< sample 0
+    PrimitiveId differing[tile_width];  ///< not 0 where samples see different primitives
+    bool is_empty;
+  };
+
+  void look_at_row(std::size_t begin, int width, Row& row) const;
+  /// Fragments of the pixels [left, right) of a row of the tile.
+  void add_pixels(const TileRectangle& tile, int y, int left, int right);
+  void add_row(PrimitiveId id, int count, std::uint32_t pixel, glm::vec2 screen);
+  void add_mixed_pixel(const glm::ivec2& at, std::uint32_t pixel);
   void flush();
 
   const Visible* visible_ = nullptr;
@@ -56,7 +63,7 @@ class TileWork {
   glm::vec2 centre_{0};                  ///< their mean
   FragmentShader fragments_;
   std::vector<glm::vec4> pixels_;
-  bool seen_[tile_height][tile_width] = {};
+  Row rows_[tile_height];
 };
 
 }  // namespace frontmost::shading

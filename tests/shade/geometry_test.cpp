@@ -189,21 +189,28 @@ TEST(InterpolateGeometry, AgreesWithTheFormulaOneByOne) {
     batch->coverage.screen.set(i, triangle == 0 ? glm::vec2(34 + i % 7, 36 + i % 5) : glm::vec2(26, 25));
   }
   batch->coverage.count = 40;
-  interpolate_geometry(world.source.rays(), setups, *batch);
-  for (int i = 0; i < 40; ++i) {
-    const TriangleSetup& t = setups[batch->coverage.triangle[i]];
-    const glm::vec2 screen = batch->coverage.screen.at(i);
-    const Barycentric b = barycentric(t, screen.x, screen.y);
-    const Geometry& g = batch->geometry;
-    const glm::vec3 point = interpolate(t.corner, b.weight);
-    ASSERT_EQ(g.position.at(i), point) << i;
-    ASSERT_LT(glm::length(g.to_viewer.at(i) + glm::normalize(point)), 1e-6f);
-    ASSERT_LT(glm::length(g.normal.at(i) - glm::normalize(interpolate(t.normal, b.weight))), 1e-6f);
-    ASSERT_EQ(g.texcoord.at(i), interpolate(t.texcoord, b.weight));
-    ASSERT_EQ(glm::vec4(g.color.at(i), g.alpha[i]), interpolate(t.color, b.weight));
-    ASSERT_EQ(g.plane_normal.at(i), t.plane_normal);
-    // Normals that spread apart mean a bulge: the lifted point is before the flat one.
-    ASSERT_GT(g.smooth_position.at(i).z, point.z);
+  for (const Isa isa : available_isas()) {
+    SCOPED_TRACE(name(isa));
+    interpolate_geometry(world.source.rays(), setups, *batch, isa);
+    for (int i = 0; i < 40; ++i) {
+      const TriangleSetup& t = setups[batch->coverage.triangle[i]];
+      const glm::vec2 screen = batch->coverage.screen.at(i);
+      const Barycentric b = barycentric(t, screen.x, screen.y);
+      const Geometry& g = batch->geometry;
+      const glm::vec3 point = interpolate(t.corner, b.weight);
+      ASSERT_EQ(g.position.at(i), point) << i;
+      ASSERT_LT(glm::length(g.to_viewer.at(i) + glm::normalize(point)), 1e-6f);
+      ASSERT_LT(glm::length(g.normal.at(i) - glm::normalize(interpolate(t.normal, b.weight))), 1e-6f);
+      const glm::vec2 texcoord = interpolate(t.texcoord, b.weight);
+      const Gradient change = gradient(t, t.texcoord, texcoord, b);
+      ASSERT_EQ(g.texcoord.at(i), texcoord);
+      ASSERT_EQ(g.texcoord_dx.at(i), change.dx);
+      ASSERT_EQ(g.texcoord_dy.at(i), change.dy);
+      ASSERT_EQ(glm::vec4(g.color.at(i), g.alpha[i]), interpolate(t.color, b.weight));
+      ASSERT_EQ(g.plane_normal.at(i), t.plane_normal);
+      // Normals that spread apart mean a bulge: the lifted point is before the flat one.
+      ASSERT_GT(g.smooth_position.at(i).z, point.z);
+    }
   }
 }
 

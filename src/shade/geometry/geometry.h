@@ -102,7 +102,8 @@ class TriangleSource {
   bool has_texcoords_ = true;
 };
 
-/// Fills batch.geometry from batch.coverage.
-void interpolate_geometry(const ScreenRays& rays, const std::vector<TriangleSetup>& setups, FragmentBatch& batch);
+/// Fills batch.geometry from batch.coverage. Quickest where the fragments of a triangle lie together.
+void interpolate_geometry(const ScreenRays& rays, const std::vector<TriangleSetup>& setups, FragmentBatch& batch,
+                          Isa isa);
 
 }  // namespace frontmost::shading

@@ -8,8 +8,8 @@ using abuffer_detail::PixelLists;
 using abuffer_detail::Rectangle;
 
 LayerShader::LayerShader(const TriangleSource& source, const FragmentPass& pass,
-                         const FragmentShader::Colorist& colorist)
-    : source_(source), colorist_(colorist) {
+                         const FragmentShader::Colorist& colorist, Isa isa)
+    : source_(source), colorist_(colorist), isa_(isa) {
   for (const glm::ivec2& s : pass.samples()) positions_.push_back(glm::vec2(s) / 256.0f);
 }
 
@@ -30,7 +30,7 @@ void LayerShader::shade(const Rectangle& pixels, const PixelLists& lists, std::s
   const auto receive = [&](std::uint32_t number, float, const glm::vec3& light, float alpha) {
     colors[number] = glm::vec4(light, alpha);
   };
-  shader->begin(source_, colorist_);
+  shader->begin(source_, colorist_, isa_);
   for (std::size_t p = 0; p + 1 < lists.begin.size(); ++p) {
     const glm::vec2 corner(float(pixels.x + int(p) % pixels.width), float(pixels.y + int(p) / pixels.width));
     for (std::size_t i = lists.begin[p]; i < lists.begin[p + 1]; ++i) {
@@ -54,7 +54,7 @@ BitSet seen_primitives(const Surfaces& surfaces, const FragmentPass& pass, const
 
 void shade_layers(const TriangleSource& source, const FragmentPass& pass, const Painting& painting,
                   const Execution& execution) {
-  const LayerShader shader(source, pass, painting.colorist);
+  const LayerShader shader(source, pass, painting.colorist, execution.isa);
   const auto paint = [&](const Rectangle& pixels, const PixelLists& lists, std::vector<glm::vec4>& colors) {
     shader.shade(pixels, lists, lists.numbers, colors);
   };

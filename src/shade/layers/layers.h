@@ -19,7 +19,7 @@ namespace frontmost::shading {
 class LayerShader {
  public:
   LayerShader(const TriangleSource& source, const abuffer_detail::FragmentPass& pass,
-              const FragmentShader::Colorist& colorist);
+              const FragmentShader::Colorist& colorist, Isa isa);
 
   /// Sets colors[numbers[i]], straight alpha, for every fragment i: shaded at the middle of what it covers of its
   /// pixel.
@@ -32,6 +32,7 @@ class LayerShader {
 
   const TriangleSource& source_;
   const FragmentShader::Colorist& colorist_;
+  Isa isa_;
   std::vector<glm::vec2> positions_;  ///< of the masks' bits
   mutable Pool<FragmentShader> shaders_;
 };

@@ -47,7 +47,7 @@ void refuse_more_than(std::size_t most) {
 PolygonColors::PolygonColors(const Surfaces& surfaces, const View& view, const PointShader& shader,
                              const FigureOptions& options, const Execution& execution)
     : surfaces_(surfaces), shading_(shader), options_(options), execution_(execution), rays_(view) {
-  shader_.begin(shader.source(), shader.colorist());
+  shader_.begin(shader.source(), shader.colorist(), execution.isa);
 }
 
 void PolygonColors::color(const VisibleParts& parts, std::span<const PaintPolygon> polygons, ColoredOrder& into) {

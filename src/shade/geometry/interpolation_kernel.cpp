@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+// From set-up triangles to fragments, a whole vector at a time. The fragments of a vector may be of several triangles:
+// each number that a formula takes from its triangle is then put together lane by lane, before the formula is evaluated
+// once:
+//
+//   triangles      A A A B B C C C
+//   corner.x       a a a b b c c c
+//   formula        x x x x x x x x
+
+#include "shade/geometry/geometry.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "shade/geometry/interpolation_kernel.cpp"
+#include "base/isa.h"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+// After Highway: a block of its own.
+#include "base/lane_types-inl.h"
+#include "base/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::shading {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+using namespace frontmost::HWY_NAMESPACE;
+namespace {
+
+HWY_INLINE VF All(float value) { return hn::Set(DF(), value); }
+HWY_INLINE VF AtLeastZero(VF value) {  // 0 for NaN
+  return hn::IfThenElseZero(hn::Gt(value, hn::Zero(DF())), value);
+}
+
+struct Vector3 {
+  VF x, y, z;
+};
+
+HWY_INLINE VF Dot(const Vector3& a, const Vector3& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+HWY_INLINE Vector3 Minus(const Vector3& a, const Vector3& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE Vector3 PlusScaled(const Vector3& a, const Vector3& b, VF scale) {
+  return {hn::Add(a.x, hn::Mul(b.x, scale)), hn::Add(a.y, hn::Mul(b.y, scale)), hn::Add(a.z, hn::Mul(b.z, scale))};
+}
+HWY_INLINE void Store(const Vector3& v, Lane3& lanes, int i) {
+  const DF d;
+  hn::StoreU(v.x, d, &lanes.x[i]);
+  hn::StoreU(v.y, d, &lanes.y[i]);
+  hn::StoreU(v.z, d, &lanes.z[i]);
+}
+HWY_INLINE void Store(VF x, VF y, Lane2& lanes, int i) {
+  hn::StoreU(x, DF(), &lanes.x[i]);
+  hn::StoreU(y, DF(), &lanes.y[i]);
+}
+
+/// The triangles of a vector of fragments.
+class VectorTriangles {
+ public:
+  VectorTriangles(const std::uint16_t* numbers, const std::vector<TriangleSetup>& setups) {
+    const DU d;
+    const hn::Rebind<std::uint16_t, DU> d16;
+    const VU lanes = hn::PromoteTo(d, hn::LoadU(d16, numbers));
+    for (std::uint64_t left = (std::uint64_t(1) << hn::Lanes(d)) - 1; left != 0; ++count_) {
+      const std::uint16_t number = numbers[hwy::Num0BitsBelowLS1Bit_Nonzero64(left)];
+      const auto is_it = hn::Eq(lanes, hn::Set(d, number));
+      left &= ~BitsOf(d, is_it);
+      masks_[count_] = hn::RebindMask(DF(), is_it);
+      triangles_[count_] = &setups[number];
+    }
+  }
+
+  /// What get(triangle) gives of each lane's.
+  template <class Get>
+  [[nodiscard]] HWY_INLINE VF operator()(const Get& get) const {
+    VF value = All(get(*triangles_[0]));
+    for (std::size_t t = 1; t < count_; ++t) value = hn::IfThenElse(masks_[t], All(get(*triangles_[t])), value);
+    return value;
+  }
+  /// The same of a vector of three.
+  template <class Get>
+  [[nodiscard]] HWY_INLINE Vector3 three(const Get& get) const {
+    return {(*this)([&](const TriangleSetup& t) { return get(t).x; }),
+            (*this)([&](const TriangleSetup& t) { return get(t).y; }),
+            (*this)([&](const TriangleSetup& t) { return get(t).z; })};
+  }
+  [[nodiscard]] HWY_INLINE bool any_smooth() const {
+    bool any = false;
+    for (std::size_t t = 0; t < count_; ++t) any = any || triangles_[t]->is_smooth;
+    return any;
+  }
+
+ private:
+  std::size_t count_ = 0;
+  MF masks_[kMaxLanes];
+  const TriangleSetup* triangles_[kMaxLanes];
+};
+
+/// Barycentric weights as barycentric() of triangle_setup.h gives them.
+struct Weights {
+  Vector3 weight;
+  VF divisor;
+};
+
+HWY_INLINE VF AffineAt(const VectorTriangles& of, std::size_t k, VF dx, VF dy) {
+  const VF start = of([k](const TriangleSetup& t) { return t.weight[k].at_reference; });
+  const VF step_x = of([k](const TriangleSetup& t) { return t.weight[k].step_x; });
+  const VF step_y = of([k](const TriangleSetup& t) { return t.weight[k].step_y; });
+  return AtLeastZero(hn::Add(hn::Add(start, hn::Mul(dx, step_x)), hn::Mul(dy, step_y)));
+}
+
+HWY_INLINE Weights WeightsAt(const VectorTriangles& of, const Lane2& screen, int i) {
+  const DF d;
+  const VF dx = hn::Sub(hn::LoadU(d, &screen.x[i]), of([](const TriangleSetup& t) { return t.reference.x; }));
+  const VF dy = hn::Sub(hn::LoadU(d, &screen.y[i]), of([](const TriangleSetup& t) { return t.reference.y; }));
+  const VF a = AffineAt(of, 0, dx, dy), b = AffineAt(of, 1, dx, dy), c = AffineAt(of, 2, dx, dy);
+  const VF sum = hn::Add(hn::Add(a, b), c);
+  const MF is_valid = hn::Gt(sum, All(1e-30f));
+  const VF divisor = hn::IfThenElse(is_valid, sum, All(1.0f));
+  const VF scale = hn::IfThenElseZero(is_valid, hn::Div(All(1.0f), divisor));
+  const VF rest = hn::IfThenZeroElse(is_valid, All(1.0f / 3));
+  const auto weight = [&](VF value) { return hn::Add(hn::Mul(value, scale), rest); };
+  return {{weight(a), weight(b), weight(c)}, divisor};
+}
+
+HWY_INLINE VF Between(VF a, VF b, VF c, const Vector3& weight) {
+  return hn::Add(hn::Add(hn::Mul(a, weight.x), hn::Mul(b, weight.y)), hn::Mul(c, weight.z));
+}
+
+/// Three vectors of the corners of each lane's triangle.
+struct Corners {
+  Vector3 a, b, c;
+};
+template <class Get>
+HWY_INLINE Corners CornersOf(const VectorTriangles& of, const Get& get) {
+  return {of.three([&](const TriangleSetup& t) { return get(t)[0]; }),
+          of.three([&](const TriangleSetup& t) { return get(t)[1]; }),
+          of.three([&](const TriangleSetup& t) { return get(t)[2]; })};
+}
+HWY_INLINE Vector3 Between(const Corners& corner, const Vector3& weight) {
+  return {Between(corner.a.x, corner.b.x, corner.c.x, weight), Between(corner.a.y, corner.b.y, corner.c.y, weight),
+          Between(corner.a.z, corner.b.z, corner.c.z, weight)};
+}
+
+HWY_INLINE Vector3 Chosen(MF mask, const Vector3& yes, const Vector3& no) {
+  return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
+}
+
+/// The normal between those of the corners, at unit length; the plane's where they cancel out.
+HWY_INLINE Vector3 SmoothNormal(const Corners& normals, const Vector3& plane, const Vector3& weight) {
+  const Vector3 n = Between(normals, weight);
+  // Of unit vectors: shorter than one, never long.
+  const VF length2 = Dot(n, n);
+  const MF is_valid = hn::Gt(length2, All(1e-12f));
+  const VF scale = hn::IfThenElseZero(is_valid, hn::Div(All(1.0f), hn::Sqrt(length2)));
+  const VF rest = hn::IfThenZeroElse(is_valid, All(1.0f));
+  const auto mixed = [&](VF own, VF of_plane) { return hn::Add(hn::Mul(own, scale), hn::Mul(of_plane, rest)); };
+  return {mixed(n.x, plane.x), mixed(n.y, plane.y), mixed(n.z, plane.z)};
+}
+
+/// Towards where the point would lie on the curved surface that the corner normals suggest: the mean of its projections
+/// onto the corners' tangent planes, taken only outwards. Shadows looked up there do not show the facets along the
+/// terminator. (J. Hanika, Hacking the Shadow Terminator, in Ray Tracing Gems II, 2021.)
+HWY_INLINE Vector3 Lifted(const Corners& corners, const Corners& normals, const Vector3& position,
+                          const Vector3& weight) {
+  Vector3 lifted = position;
+  const auto lift = [&](const Vector3& corner, const Vector3& normal, VF of_corner) {
+    const VF height = Dot(Minus(position, corner), normal);
+    lifted = PlusScaled(lifted, normal, hn::Mul(AtLeastZero(hn::Neg(height)), of_corner));
+  };
+  lift(corners.a, normals.a, weight.x);
+  lift(corners.b, normals.b, weight.y);
+  lift(corners.c, normals.c, weight.z);
+  return lifted;
+}
+
+/// The unit vector from a point, measured from the eye, to the eye.
+HWY_INLINE Vector3 ToEye(const Vector3& p) {
+  const VF length2 = Dot(p, p), least = All(1e-36f);
+  const VF scale = hn::Div(All(-1.0f), hn::Sqrt(hn::IfThenElse(hn::Gt(length2, least), length2, least)));
+  return {hn::Mul(p.x, scale), hn::Mul(p.y, scale), hn::Mul(p.z, scale)};
+}
+
+/// One coordinate, and its change per pixel in x and y: exact derivatives of the quotient.
+struct Coordinate {
+  VF value, dx, dy;
+};
+HWY_INLINE Coordinate CoordinateAt(const VectorTriangles& of, float glm::vec2::*axis, const Weights& w) {
+  const VF a = of([axis](const TriangleSetup& t) { return t.texcoord[0].*axis; });
+  const VF b = of([axis](const TriangleSetup& t) { return t.texcoord[1].*axis; });
+  const VF c = of([axis](const TriangleSetup& t) { return t.texcoord[2].*axis; });
+  const VF value = Between(a, b, c, w.weight), scale = hn::Div(All(1.0f), w.divisor);
+  const VF from_a = hn::Sub(a, value), from_b = hn::Sub(b, value), from_c = hn::Sub(c, value);
+  const auto change = [&](float Affine::*step) {
+    const VF first = hn::Mul(from_a, of([step](const TriangleSetup& t) { return t.weight[0].*step; }));
+    const VF second = hn::Mul(from_b, of([step](const TriangleSetup& t) { return t.weight[1].*step; }));
+    const VF third = hn::Mul(from_c, of([step](const TriangleSetup& t) { return t.weight[2].*step; }));
+    return hn::Mul(hn::Add(hn::Add(first, second), third), scale);
+  };
+  return {value, change(&Affine::step_x), change(&Affine::step_y)};
+}
+
+HWY_INLINE void StoreTexcoords(const VectorTriangles& of, const Weights& w, Geometry& out, int i) {
+  const Coordinate u = CoordinateAt(of, &glm::vec2::x, w), v = CoordinateAt(of, &glm::vec2::y, w);
+  Store(u.value, v.value, out.texcoord, i);
+  Store(u.dx, v.dx, out.texcoord_dx, i);
+  Store(u.dy, v.dy, out.texcoord_dy, i);
+}
+
+/// Triangles without colours have white corners.
+void StoreColors(const VectorTriangles& of, const Vector3& weight, Geometry& out, int i) {
+  Lane* lanes[4] = {&out.color.x, &out.color.y, &out.color.z, &out.alpha};
+  for (int k = 0; k < 4; ++k) {
+    const VF a = of([k](const TriangleSetup& t) { return t.color[0][k]; });
+    const VF b = of([k](const TriangleSetup& t) { return t.color[1][k]; });
+    const VF c = of([k](const TriangleSetup& t) { return t.color[2][k]; });
+    hn::StoreU(Between(a, b, c, weight), DF(), &(*lanes[k])[i]);
+  }
+}
+
+/// Which attributes any triangle of a batch has.
+struct Attributes {
+  bool texcoord = false, color = false;
+};
+
+void InterpolateVector(const std::vector<TriangleSetup>& setups, int i, const Attributes& attributes,
+                       FragmentBatch& batch) {
+  Geometry& out = batch.geometry;
+  const VectorTriangles of(batch.coverage.triangle + i, setups);
+  const Weights w = WeightsAt(of, batch.coverage.screen, i);
+  const Corners corners = CornersOf(
+      of, [](const TriangleSetup& t) -> const auto& { return t.corner; });
+  const Vector3 plane = of.three([](const TriangleSetup& t) { return t.plane_normal; });
+  const Vector3 position = Between(corners, w.weight);
+  Vector3 normal = plane, lifted = position;
+  if (of.any_smooth()) {
+    const Corners normals = CornersOf(
+        of, [](const TriangleSetup& t) -> const auto& { return t.normal; });
+    const MF is_smooth = hn::Gt(of([](const TriangleSetup& t) { return float(t.is_smooth); }), hn::Zero(DF()));
+    normal = Chosen(is_smooth, SmoothNormal(normals, plane, w.weight), plane);
+    lifted = Chosen(is_smooth, Lifted(corners, normals, position, w.weight), position);
+  }
+  Store(position, out.position, i);
+  Store(plane, out.plane_normal, i);
+  Store(normal, out.normal, i);
+  Store(lifted, out.smooth_position, i);
+  Store(ToEye(position), out.to_viewer, i);
+  if (attributes.texcoord) StoreTexcoords(of, w, out, i);
+  if (attributes.color) StoreColors(of, w.weight, out, i);
+}
+
+Attributes AttributesOf(const Coverage& coverage, const std::vector<TriangleSetup>& setups) {
+  Attributes attributes;
+  for (int i = 0; i < coverage.count; ++i) {
+    const TriangleSetup& t = setups[coverage.triangle[i]];
+    attributes.texcoord = attributes.texcoord || t.has_texcoord;
+    attributes.color = attributes.color || t.has_color;
+  }
+  return attributes;
+}
+
+void Fill(std::initializer_list<Lane*> lanes, int count, float value) {
+  for (Lane* lane : lanes) std::fill_n(lane->values, count, value);
+}
+
+}  // namespace
+
+void Interpolate(const ScreenRays& rays, const std::vector<TriangleSetup>& setups, FragmentBatch& batch) {
+  const Coverage& coverage = batch.coverage;
+  Geometry& out = batch.geometry;
+  const int count = coverage.count;
+  const Attributes attributes = AttributesOf(coverage, setups);
+  for (int i = 0; i < count; i += int(hn::Lanes(DF()))) InterpolateVector(setups, i, attributes, batch);
+  if (!attributes.texcoord)
+    Fill({&out.texcoord.x, &out.texcoord.y, &out.texcoord_dx.x, &out.texcoord_dx.y, &out.texcoord_dy.x,
+          &out.texcoord_dy.y},
+         count, 0.0f);
+  if (!attributes.color) Fill({&out.color.x, &out.color.y, &out.color.z, &out.alpha}, count, 1.0f);
+  if (!rays.is_parallel()) return;
+  Fill({&out.to_viewer.x}, count, float(-rays.forward().x));
+  Fill({&out.to_viewer.y}, count, float(-rays.forward().y));
+  Fill({&out.to_viewer.z}, count, float(-rays.forward().z));
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace frontmost::shading
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace frontmost::shading {
+
+FRONTMOST_KERNELS(Interpolate);
+
+void interpolate_geometry(const ScreenRays& rays, const std::vector<TriangleSetup>& setups, FragmentBatch& batch,
+                          Isa isa) {
+  kernel_for(InterpolateKernels, isa)(rays, setups, batch);
+}
+
+}  // namespace frontmost::shading
+#endif  // HWY_ONCE
