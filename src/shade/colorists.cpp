@@ -75,7 +75,7 @@ glm::vec3 color_of_object(std::uint32_t object) {
 }
 
 void Lit::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
-  look_up_materials(materials, setups, batch, isa);
+  look_up_materials(materials, MaterialPart::all, setups, batch, isa);
   const Geometry& g = batch.geometry;
   bool faces_key[batch_capacity];
   for (int i = 0; i < batch.coverage.count; ++i) {
@@ -92,18 +92,18 @@ void Lit::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& ba
 }
 
 void Flat::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
-  look_up_materials(materials, setups, batch, isa);
+  look_up_materials(materials, MaterialPart::color, setups, batch, isa);
   for (int i = 0; i < batch.coverage.count; ++i) batch.light.set(i, clamped(batch.material.base.at(i)));
 }
 
 void Normals::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
-  look_up_materials(materials, setups, batch, isa);
+  look_up_materials(materials, MaterialPart::normal, setups, batch, isa);
   for (int i = 0; i < batch.coverage.count; ++i)
     batch.light.set(i, linear_of_shown(batch.geometry.normal.at(i) * 0.5f + 0.5f));
 }
 
 void RawNormals::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
-  look_up_materials(materials, setups, batch, isa);
+  look_up_materials(materials, MaterialPart::normal, setups, batch, isa);
   for (int i = 0; i < batch.coverage.count; ++i) batch.light.set(i, batch.geometry.normal.at(i));
   make_opaque(batch);
 }

@@ -38,10 +38,10 @@ class MaterialRun {
   MaterialRun(const MaterialRow& row, const std::vector<TriangleSetup>& setups, FragmentBatch& batch)
       : row_(row), setups_(setups), batch_(batch) {}
 
-  void fill(int begin, int end, TextureSampler& sampler) {
+  void fill(int begin, int end, MaterialPart part, TextureSampler& sampler) {
     fill_factors(begin, end);
     for (int first = begin; first < end && row_.has_textures(); first += sampled_at_once)
-      look_up(first, std::min(first + sampled_at_once, end), sampler);
+      look_up(first, std::min(first + sampled_at_once, end), part, sampler);
     settle_alpha(begin, end);
   }
 
@@ -61,7 +61,7 @@ class MaterialRun {
   }
 
   /// Fragments of triangles without texture coordinates look at the origin, as if all their coordinates were 0.
-  void look_up(int begin, int end, TextureSampler& sampler) {
+  void look_up(int begin, int end, MaterialPart part, TextureSampler& sampler) {
     Reflectance& out = batch_.material;
     glm::vec4 values[sampled_at_once];
     sampler.begin(batch_.geometry, begin, end);
@@ -70,20 +70,26 @@ class MaterialRun {
       sampler.sample(*slot.pyramid, slot.transform, values);
       for (int i = begin; i < end; ++i) use(i, values[i - begin]);
     };
-    sample(row_.base_color, [&](int i, const glm::vec4& color) {
-      out.base.set(i, out.base.at(i) * glm::vec3(color));
-      out.alpha[i] *= color.a;
-    });
-    sample(row_.metallic_roughness, [&](int i, const glm::vec4& value) {
-      out.roughness[i] *= value.g;
-      out.metallic[i] *= value.b;
-    });
-    sample(row_.occlusion, [&](int i, const glm::vec4& value) {
-      out.occlusion[i] = 1.0f + row_.factors.occlusion_strength * (value.r - 1.0f);
-    });
-    sample(row_.emissive,
-           [&](int i, const glm::vec4& color) { out.emissive.set(i, out.emissive.at(i) * glm::vec3(color)); });
-    sample(row_.normal, [&](int i, const glm::vec4& value) { turn_normal(i, glm::vec3(value) * 2.0f - 1.0f); });
+    const bool shows_color = part != MaterialPart::normal || row_.factors.alpha == Material::Alpha::blend;
+    if (shows_color) {
+      sample(row_.base_color, [&](int i, const glm::vec4& color) {
+        out.base.set(i, out.base.at(i) * glm::vec3(color));
+        out.alpha[i] *= color.a;
+      });
+    }
+    if (part == MaterialPart::all) {
+      sample(row_.metallic_roughness, [&](int i, const glm::vec4& value) {
+        out.roughness[i] *= value.g;
+        out.metallic[i] *= value.b;
+      });
+      sample(row_.occlusion, [&](int i, const glm::vec4& value) {
+        out.occlusion[i] = 1.0f + row_.factors.occlusion_strength * (value.r - 1.0f);
+      });
+      sample(row_.emissive,
+             [&](int i, const glm::vec4& color) { out.emissive.set(i, out.emissive.at(i) * glm::vec3(color)); });
+    }
+    if (part != MaterialPart::color)
+      sample(row_.normal, [&](int i, const glm::vec4& value) { turn_normal(i, glm::vec3(value) * 2.0f - 1.0f); });
   }
 
   /// `map`: what the normal map holds, from -1 to 1.
@@ -171,8 +177,8 @@ TextureSlot MaterialTable::slot(const TextureUse& use, Encoding encoding, const 
   return {pyramid.get(), TexcoordTransform(use)};
 }
 
-void look_up_materials(const MaterialTable& table, const std::vector<TriangleSetup>& setups, FragmentBatch& batch,
-                       Isa isa) {
+void look_up_materials(const MaterialTable& table, MaterialPart part, const std::vector<TriangleSetup>& setups,
+                       FragmentBatch& batch, Isa isa) {
   TextureSampler sampler(isa);
   const Coverage& coverage = batch.coverage;
   const auto row_at = [&](int i) { return &table.row_of(setups[coverage.triangle[i]]); };
@@ -180,7 +186,7 @@ void look_up_materials(const MaterialTable& table, const std::vector<TriangleSet
     const MaterialRow* const row = row_at(begin);
     int end = begin + 1;
     while (end < coverage.count && row_at(end) == row) ++end;
-    MaterialRun(*row, setups, batch).fill(begin, end, sampler);
+    MaterialRun(*row, setups, batch).fill(begin, end, part, sampler);
     begin = end;
   }
 }

@@ -59,9 +59,16 @@ class MaterialTable {
   std::vector<std::unique_ptr<Pyramid>> srgb_, linear_;  ///< by texture; null where not used so
 };
 
-/// Looks up the materials of a batch, run by run of equal ones, and turns its normals by normal maps.
-/// `setups` are the triangles that batch.coverage.triangle numbers.
-void look_up_materials(const MaterialTable& table, const std::vector<TriangleSetup>& setups, FragmentBatch& batch,
-                       Isa isa);
+/// What of materials a picture shows.
+enum class MaterialPart : std::uint8_t {
+  all,
+  color,   ///< base colour and alpha
+  normal,  ///< the normal, and alpha
+};
+
+/// Looks up the materials of a batch, run by run of equal ones, and turns its normals by normal maps; what the picture
+/// does not show is undefined. `setups` are the triangles that batch.coverage.triangle numbers.
+void look_up_materials(const MaterialTable& table, MaterialPart part, const std::vector<TriangleSetup>& setups,
+                       FragmentBatch& batch, Isa isa);
 
 }  // namespace frontmost::shading

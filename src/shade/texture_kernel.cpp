@@ -166,17 +166,24 @@ void PlaceTaps(const Texture& texture, Taps& taps) {
   }
 }
 
-/// R, G, B, A of a texel in the finer level and in the next: in one vector, or in as many parts as it takes.
-using DPart = hn::CappedTag<float, 8>;
+/// Two texels side by side in the finer level and two in the next, of four channels each, in one vector or in as many
+/// parts as it takes. Sums of both levels are half as long.
+constexpr int kLanes = 16;
+using DPart = hn::CappedTag<float, kLanes>;
 using VPart = hn::Vec<DPart>;
 using MPart = hn::Mask<DPart>;
-constexpr int kPartLanes = int(hn::MaxLanes(DPart())), kParts = 8 / kPartLanes;
+constexpr int kPartLanes = int(hn::MaxLanes(DPart())), kParts = kLanes / kPartLanes;
+using DSum = hn::CappedTag<float, kLanes / 2>;
+using VSum = hn::Vec<DSum>;
+constexpr int kSumLanes = int(hn::MaxLanes(DSum())), kSums = kLanes / 2 / kSumLanes;
 
-/// Lanes of the part that begins at lane `first` of the eight where `pattern` is 1.
-HWY_INLINE MPart LanesOf(const float (&pattern)[8], int first) {
-  return hn::Gt(hn::LoadU(DPart(), pattern + first), hn::Zero(DPart()));
+/// Lanes of a vector that begins at lane `first` where `pattern` is 1.
+template <class D>
+HWY_INLINE hn::Mask<D> LanesOf(D d, const float* pattern, int first) {
+  return hn::Gt(hn::LoadU(d, pattern + first), hn::Zero(d));
 }
-constexpr float kAlpha[8] = {0, 0, 0, 1, 0, 0, 0, 1}, kFiner[8] = {1, 1, 1, 1, 0, 0, 0, 0};
+constexpr float kAlpha[kLanes] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+constexpr float kFiner[kLanes] = {1, 1, 1, 1, 0, 0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 0};
 
 /// Bytes to light: as sRGB but for alpha, or all in proportion.
 template <Encoding encoding>
@@ -184,22 +191,26 @@ HWY_INLINE VPart Light(VPart bytes, MPart is_alpha) {
   const DPart d;
   const auto x = hn::Mul(bytes, hn::Set(d, 1.0f / 255));
   if constexpr (encoding == Encoding::linear) return x;
-  // Fitted to the 245 bytes above the straight part, by steps of the byte.
-  auto curve = hn::Set(d, 0.08137072720290678f);
-  curve = hn::Add(hn::Mul(curve, x), hn::Set(d, -0.29497277940558636f));
-  curve = hn::Add(hn::Mul(curve, x), hn::Set(d, 0.6581674908340178f));
-  curve = hn::Add(hn::Mul(curve, x), hn::Set(d, 0.5220791693039427f));
-  curve = hn::Add(hn::Mul(curve, x), hn::Set(d, 0.03242692474211127f));
-  curve = hn::Add(hn::Mul(curve, x), hn::Set(d, 0.00092852696f));
+  // Fitted to the 245 bytes above the straight part, by steps of the byte. Pairs of terms do not wait for each other.
+  const auto pair = [&](float constant, float slope) {
+    return hn::Add(hn::Mul(x, hn::Set(d, slope)), hn::Set(d, constant));
+  };
+  const auto x2 = hn::Mul(x, x);
+  const auto upper = hn::Add(hn::Mul(pair(-0.29497277940558636f, 0.08137072720290678f), x2),
+                             pair(0.5220791693039427f, 0.6581674908340178f));
+  const auto curve = hn::Add(hn::Mul(upper, x2), pair(0.00092852696f, 0.03242692474211127f));
   const auto color = hn::IfThenElse(hn::Gt(x, hn::Set(d, 0.04045f)), curve, hn::Mul(x, hn::Set(d, 1.0f / 12.92f)));
   return hn::IfThenElse(is_alpha, x, color);
 }
 
-HWY_INLINE VPart Mix(VPart a, VPart b, VPart t) { return hn::Add(a, hn::Mul(hn::Sub(b, a), t)); }
+template <class V>
+HWY_INLINE V Mix(V a, V b, V t) {
+  return hn::Add(a, hn::Mul(hn::Sub(b, a), t));
+}
 
-/// The four texels around a tap, those of the finer level in the lower halves.
+/// Two texels side by side in the upper row around a tap, and the two below: each of one level in the lower half.
 struct Quad {
-  std::uint64_t a, b, c, d;
+  std::uint64_t upper[2], lower[2];
 };
 
 HWY_INLINE std::uint64_t Bits(const glm::u8vec4& texel) {
@@ -211,58 +222,75 @@ HWY_INLINE std::uint64_t Bits(const glm::u8vec4& texel) {
 HWY_INLINE Quad QuadAt(const Pyramid::Level& level, const std::int32_t* first, const std::int32_t* second) {
   const glm::u8vec4* const upper = level.texels + std::size_t(first[1]) * std::size_t(level.width);
   const glm::u8vec4* const lower = level.texels + std::size_t(second[1]) * std::size_t(level.width);
-  return {Bits(upper[first[0]]), Bits(upper[second[0]]), Bits(lower[first[0]]), Bits(lower[second[0]])};
+  return {{Bits(upper[first[0]]), Bits(upper[second[0]])}, {Bits(lower[first[0]]), Bits(lower[second[0]])}};
 }
 
 HWY_INLINE Quad Joined(const Quad& fine, const Quad& coarse) {
-  return {fine.a | coarse.a << 32, fine.b | coarse.b << 32, fine.c | coarse.c << 32, fine.d | coarse.d << 32};
+  return {{fine.upper[0] | coarse.upper[0] << 32, fine.upper[1] | coarse.upper[1] << 32},
+          {fine.lower[0] | coarse.lower[0] << 32, fine.lower[1] | coarse.lower[1] << 32}};
 }
 
-/// Eight bytes' part that begins at byte `first`.
-HWY_INLINE VPart PartOf(std::uint64_t bytes, int first) {
-  using Word = std::conditional_t<kPartLanes == 8, std::uint64_t,
-                                  std::conditional_t<kPartLanes == 4, std::uint32_t, std::uint8_t>>;
-  const hn::Rebind<std::uint8_t, DPart> d8;
-  const hn::RebindToSigned<DPart> di;
-  const auto word = hn::Set(hn::CappedTag<Word, 1>(), Word(bytes >> (8 * first)));
-  return hn::ConvertTo(DPart(), hn::PromoteTo(di, hn::BitCast(d8, word)));
+/// The part of sixteen bytes that begins at byte `first`.
+template <class D>
+HWY_INLINE hn::Vec<D> PartOf(D d, const std::uint64_t (&bytes)[2], int first) {
+  constexpr std::size_t lanes = hn::MaxLanes(D());
+  const hn::Rebind<std::uint8_t, D> d8;
+  const hn::RebindToSigned<D> di;
+  const auto floats = [&](auto part) { return hn::ConvertTo(d, hn::PromoteTo(di, hn::BitCast(d8, part))); };
+#if HWY_TARGET != HWY_SCALAR  // which has no such function
+  if constexpr (lanes == 16) {
+    const hn::Repartition<std::uint64_t, decltype(d8)> d64;
+    return floats(hn::InterleaveLower(d64, hn::Set(d64, bytes[0]), hn::Set(d64, bytes[1])));
+  } else
+#endif
+  {
+    using Word =
+        std::conditional_t<lanes == 8, std::uint64_t, std::conditional_t<lanes == 4, std::uint32_t, std::uint8_t>>;
+    return floats(hn::Set(hn::CappedTag<Word, 1>(), Word(bytes[first / 8] >> (8 * (first % 8)))));
+  }
 }
 
-/// Bilinear, of both levels.
+/// Bilinear, of both levels: added to eight lanes of sums.
 template <Encoding encoding>
-HWY_INLINE VPart Filtered(const Quad& q, const float* fraction, int first) {
+HWY_INLINE void AddFiltered(const Quad& quad, const float* fraction, VSum* sums) {
   const DPart d;
-  const MPart is_alpha = LanesOf(kAlpha, first), is_finer = LanesOf(kFiner, first);
-  const auto load = [&](std::uint64_t bytes) { return Light<encoding>(PartOf(bytes, first), is_alpha); };
-  const auto x = hn::IfThenElse(is_finer, hn::Set(d, fraction[0]), hn::Set(d, fraction[2]));
-  const auto y = hn::IfThenElse(is_finer, hn::Set(d, fraction[1]), hn::Set(d, fraction[3]));
-  return Mix(Mix(load(q.a), load(q.b), x), Mix(load(q.c), load(q.d), x), y);
+  const DSum ds;
+  alignas(64) float columns[kLanes];
+  for (int first = 0; first < kLanes; first += kPartLanes) {
+    const MPart is_alpha = LanesOf(d, kAlpha, first);
+    const auto y = hn::IfThenElse(LanesOf(d, kFiner, first), hn::Set(d, fraction[1]), hn::Set(d, fraction[3]));
+    const auto upper = Light<encoding>(PartOf(d, quad.upper, first), is_alpha);
+    const auto lower = Light<encoding>(PartOf(d, quad.lower, first), is_alpha);
+    hn::Store(Mix(upper, lower, y), d, columns + first);
+  }
+  for (int s = 0; s < kSums; ++s) {
+    const int first = s * kSumLanes;
+    const auto x = hn::IfThenElse(LanesOf(ds, kFiner, first), hn::Set(ds, fraction[0]), hn::Set(ds, fraction[2]));
+    const auto left = hn::Load(ds, columns + first), right = hn::Load(ds, columns + kLanes / 2 + first);
+    sums[s] = hn::Add(sums[s], Mix(left, right, x));
+  }
 }
 
 template <Encoding encoding>
 void FilterAs(const Pyramid& pyramid, const Taps& taps, glm::vec4* out) {
-  const DPart d;
+  const DSum d;
   const Pyramid::Level* const levels = pyramid.levels().data();
-  int tap = 0;
+  int at = 0;
   for (int k = 0; k < taps.fragments; ++k) {
-    const int count = taps.count[k];
     const float blend = taps.blend[k];
     const bool is_blended = blend > 0;  // never in the last level
     const Pyramid::Level &fine = levels[taps.level[k]], &coarse = (&fine)[int(is_blended)];
-    const int parts = is_blended || kParts == 1 ? kParts : kParts / 2;
-    VPart sums[kParts];
-    for (int p = 0; p < kParts; ++p) sums[p] = hn::Zero(d);
-    for (int t = 0; t < count; ++t, ++tap) {
-      const int at = 4 * tap;
+    VSum sums[kSums];
+    for (VSum& sum : sums) sum = hn::Zero(d);
+    for (int t = 0; t < taps.count[k]; ++t, at += 4) {
       const std::int32_t *first = taps.first.values + at, *second = taps.second.values + at;
       Quad quad = QuadAt(fine, first, second);
       if (is_blended) quad = Joined(quad, QuadAt(coarse, first + 2, second + 2));
-      for (int p = 0; p < parts; ++p)
-        sums[p] = hn::Add(sums[p], Filtered<encoding>(quad, taps.place.values + at, p * kPartLanes));
+      AddFiltered<encoding>(quad, taps.place.values + at, sums);
     }
     alignas(64) float mean[8];
-    for (int p = 0; p < kParts; ++p) hn::StoreU(sums[p], d, mean + p * kPartLanes);
-    const float scale = 1.0f / float(count);
+    for (int s = 0; s < kSums; ++s) hn::Store(sums[s], d, mean + s * kSumLanes);
+    const float scale = 1.0f / float(taps.count[k]);
     for (int c = 0; c < 4; ++c) out[k][c] = (mean[c] + (mean[c + 4] - mean[c]) * blend) * scale;
   }
 }

@@ -10,8 +10,11 @@ namespace {
 
 float dot3(const glm::vec3& a, const glm::vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/// Whatever its length: scaled first, so that squares of large and small ones stay finite. Zero when it has none.
+/// Whatever its length: very long and short ones are scaled first, so that their squares stay finite. Zero when it has
+/// none.
 glm::vec3 unit_or_zero(const glm::vec3& v) {
+  const float length2 = dot3(v, v);
+  if (length2 > 1e-20f && length2 < 1e20f) return v * (1.0f / std::sqrt(length2));
   const float size = std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
   if (!(size > 0 && size < std::numeric_limits<float>::infinity())) return glm::vec3(0);
   const glm::vec3 scaled = v / size;
