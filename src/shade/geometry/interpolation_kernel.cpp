@@ -30,20 +30,18 @@ HWY_INLINE VF AtLeastZero(VF value) {  // 0 for NaN
   return hn::IfThenElseZero(hn::Gt(value, hn::Zero(DF())), value);
 }
 
-struct Vector3 {
+struct VF3 {
   VF x, y, z;
 };
 
-HWY_INLINE VF Dot(const Vector3& a, const Vector3& b) {
+HWY_INLINE VF Dot(const VF3& a, const VF3& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
-HWY_INLINE Vector3 Minus(const Vector3& a, const Vector3& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE Vector3 PlusScaled(const Vector3& a, const Vector3& b, VF scale) {
+HWY_INLINE VF3 Minus(const VF3& a, const VF3& b) { return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)}; }
+HWY_INLINE VF3 PlusScaled(const VF3& a, const VF3& b, VF scale) {
   return {hn::Add(a.x, hn::Mul(b.x, scale)), hn::Add(a.y, hn::Mul(b.y, scale)), hn::Add(a.z, hn::Mul(b.z, scale))};
 }
-HWY_INLINE void Store(const Vector3& v, Lane3& lanes, int i) {
+HWY_INLINE void Store(const VF3& v, Lane3& lanes, int i) {
   const DF d;
   hn::StoreU(v.x, d, &lanes.x[i]);
   hn::StoreU(v.y, d, &lanes.y[i]);
@@ -79,7 +77,7 @@ class VectorTriangles {
   }
   /// The same of a vector of three.
   template <class Get>
-  [[nodiscard]] HWY_INLINE Vector3 three(const Get& get) const {
+  [[nodiscard]] HWY_INLINE VF3 three(const Get& get) const {
     return {(*this)([&](const TriangleSetup& t) { return get(t).x; }),
             (*this)([&](const TriangleSetup& t) { return get(t).y; }),
             (*this)([&](const TriangleSetup& t) { return get(t).z; })};
@@ -98,7 +96,7 @@ class VectorTriangles {
 
 /// Barycentric weights as barycentric() of triangle_setup.h gives them.
 struct Weights {
-  Vector3 weight;
+  VF3 weight;
   VF divisor;
 };
 
@@ -123,32 +121,32 @@ HWY_INLINE Weights WeightsAt(const VectorTriangles& of, const Lane2& screen, int
   return {{weight(a), weight(b), weight(c)}, divisor};
 }
 
-HWY_INLINE VF Between(VF a, VF b, VF c, const Vector3& weight) {
+HWY_INLINE VF Between(VF a, VF b, VF c, const VF3& weight) {
   return hn::Add(hn::Add(hn::Mul(a, weight.x), hn::Mul(b, weight.y)), hn::Mul(c, weight.z));
 }
 
 /// Three vectors of the corners of each lane's triangle.
-struct Corners {
-  Vector3 a, b, c;
+struct VF3Corners {
+  VF3 a, b, c;
 };
 template <class Get>
-HWY_INLINE Corners CornersOf(const VectorTriangles& of, const Get& get) {
+HWY_INLINE VF3Corners CornersOf(const VectorTriangles& of, const Get& get) {
   return {of.three([&](const TriangleSetup& t) { return get(t)[0]; }),
           of.three([&](const TriangleSetup& t) { return get(t)[1]; }),
           of.three([&](const TriangleSetup& t) { return get(t)[2]; })};
 }
-HWY_INLINE Vector3 Between(const Corners& corner, const Vector3& weight) {
+HWY_INLINE VF3 Between(const VF3Corners& corner, const VF3& weight) {
   return {Between(corner.a.x, corner.b.x, corner.c.x, weight), Between(corner.a.y, corner.b.y, corner.c.y, weight),
           Between(corner.a.z, corner.b.z, corner.c.z, weight)};
 }
 
-HWY_INLINE Vector3 Chosen(MF mask, const Vector3& yes, const Vector3& no) {
+HWY_INLINE VF3 Chosen(MF mask, const VF3& yes, const VF3& no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
 
 /// The normal between those of the corners, at unit length; the plane's where they cancel out.
-HWY_INLINE Vector3 SmoothNormal(const Corners& normals, const Vector3& plane, const Vector3& weight) {
-  const Vector3 n = Between(normals, weight);
+HWY_INLINE VF3 SmoothNormal(const VF3Corners& normals, const VF3& plane, const VF3& weight) {
+  const VF3 n = Between(normals, weight);
   // Of unit vectors: shorter than one, never long.
   const VF length2 = Dot(n, n);
   const MF is_valid = hn::Gt(length2, All(1e-12f));
@@ -161,10 +159,9 @@ HWY_INLINE Vector3 SmoothNormal(const Corners& normals, const Vector3& plane, co
 /// Towards where the point would lie on the curved surface that the corner normals suggest: the mean of its projections
 /// onto the corners' tangent planes, taken only outwards. Shadows looked up there do not show the facets along the
 /// terminator. (J. Hanika, Hacking the Shadow Terminator, in Ray Tracing Gems II, 2021.)
-HWY_INLINE Vector3 Lifted(const Corners& corners, const Corners& normals, const Vector3& position,
-                          const Vector3& weight) {
-  Vector3 lifted = position;
-  const auto lift = [&](const Vector3& corner, const Vector3& normal, VF of_corner) {
+HWY_INLINE VF3 Lifted(const VF3Corners& corners, const VF3Corners& normals, const VF3& position, const VF3& weight) {
+  VF3 lifted = position;
+  const auto lift = [&](const VF3& corner, const VF3& normal, VF of_corner) {
     const VF height = Dot(Minus(position, corner), normal);
     lifted = PlusScaled(lifted, normal, hn::Mul(AtLeastZero(hn::Neg(height)), of_corner));
   };
@@ -175,7 +172,7 @@ HWY_INLINE Vector3 Lifted(const Corners& corners, const Corners& normals, const 
 }
 
 /// The unit vector from a point, measured from the eye, to the eye.
-HWY_INLINE Vector3 ToEye(const Vector3& p) {
+HWY_INLINE VF3 ToEye(const VF3& p) {
   const VF length2 = Dot(p, p), least = All(1e-36f);
   const VF scale = hn::Div(All(-1.0f), hn::Sqrt(hn::IfThenElse(hn::Gt(length2, least), length2, least)));
   return {hn::Mul(p.x, scale), hn::Mul(p.y, scale), hn::Mul(p.z, scale)};
@@ -208,7 +205,7 @@ HWY_INLINE void StoreTexcoords(const VectorTriangles& of, const Weights& w, Geom
 }
 
 /// Triangles without colours have white corners.
-void StoreColors(const VectorTriangles& of, const Vector3& weight, Geometry& out, int i) {
+void StoreColors(const VectorTriangles& of, const VF3& weight, Geometry& out, int i) {
   Lane* lanes[4] = {&out.color.x, &out.color.y, &out.color.z, &out.alpha};
   for (int k = 0; k < 4; ++k) {
     const VF a = of([k](const TriangleSetup& t) { return t.color[0][k]; });
@@ -219,22 +216,22 @@ void StoreColors(const VectorTriangles& of, const Vector3& weight, Geometry& out
 }
 
 /// Which attributes any triangle of a batch has.
-struct Attributes {
+struct BatchAttributes {
   bool texcoord = false, color = false;
 };
 
-void InterpolateVector(const std::vector<TriangleSetup>& setups, int i, const Attributes& attributes,
+void InterpolateVector(const std::vector<TriangleSetup>& setups, int i, const BatchAttributes& attributes,
                        FragmentBatch& batch) {
   Geometry& out = batch.geometry;
   const VectorTriangles of(batch.coverage.triangle + i, setups);
   const Weights w = WeightsAt(of, batch.coverage.screen, i);
-  const Corners corners = CornersOf(
+  const VF3Corners corners = CornersOf(
       of, [](const TriangleSetup& t) -> const auto& { return t.corner; });
-  const Vector3 plane = of.three([](const TriangleSetup& t) { return t.plane_normal; });
-  const Vector3 position = Between(corners, w.weight);
-  Vector3 normal = plane, lifted = position;
+  const VF3 plane = of.three([](const TriangleSetup& t) { return t.plane_normal; });
+  const VF3 position = Between(corners, w.weight);
+  VF3 normal = plane, lifted = position;
   if (of.any_smooth()) {
-    const Corners normals = CornersOf(
+    const VF3Corners normals = CornersOf(
         of, [](const TriangleSetup& t) -> const auto& { return t.normal; });
     const MF is_smooth = hn::Gt(of([](const TriangleSetup& t) { return float(t.is_smooth); }), hn::Zero(DF()));
     normal = Chosen(is_smooth, SmoothNormal(normals, plane, w.weight), plane);
@@ -249,8 +246,8 @@ void InterpolateVector(const std::vector<TriangleSetup>& setups, int i, const At
   if (attributes.color) StoreColors(of, w.weight, out, i);
 }
 
-Attributes AttributesOf(const Coverage& coverage, const std::vector<TriangleSetup>& setups) {
-  Attributes attributes;
+BatchAttributes AttributesOf(const Coverage& coverage, const std::vector<TriangleSetup>& setups) {
+  BatchAttributes attributes;
   for (int i = 0; i < coverage.count; ++i) {
     const TriangleSetup& t = setups[coverage.triangle[i]];
     attributes.texcoord = attributes.texcoord || t.has_texcoord;
@@ -269,7 +266,7 @@ void Interpolate(const ScreenRays& rays, const std::vector<TriangleSetup>& setup
   const Coverage& coverage = batch.coverage;
   Geometry& out = batch.geometry;
   const int count = coverage.count;
-  const Attributes attributes = AttributesOf(coverage, setups);
+  const BatchAttributes attributes = AttributesOf(coverage, setups);
   for (int i = 0; i < count; i += int(hn::Lanes(DF()))) InterpolateVector(setups, i, attributes, batch);
   if (!attributes.texcoord)
     Fill({&out.texcoord.x, &out.texcoord.y, &out.texcoord_dx.x, &out.texcoord_dx.y, &out.texcoord_dy.x,
