@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Copies are found by a table of the triangles that came first, with open addressing. Corners are compared by their
+// floats, and the hash does not depend on which corner comes first:
+//
+//    hash of a triangle  =  sum over its corners of  mix(x, y, z)
+//
+// Faces are counter-clockwise as they are seen, so two triangles with the same corners list them in the same order
+// around, and a comparison tries three turns. A triangle that the near plane has cut is a piece by itself and is never
+// taken for a copy.
+//
+// A copy that comes back gets the outline of the piece that stayed, under its own id. Higher ids come first, so the
+// lowest id, which is seen at equal depths, is on top.
 #include <algorithm>
 #include <cstring>
 

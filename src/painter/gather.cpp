@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// All triangles are put before the eye in parallel, each part of them into its own stretch of the list, and the
+// stretches are then pushed together. So the list is in the order of ids, whatever threads did.
+//
+//    ids        0 ........ 4095 | 4096 ...... 8191 | ...
+//    filled     ####----------- | ######---------- |          part by part
+//    closed up  ##########                                    in the order of ids
+//
+// A triangle is left out where it is certainly before the near plane, beyond the far plane, beside the picture, seen
+// from its edge, or culled. The side from which it is seen is an exact sign. One that may cross the near or the far
+// plane is cut there afterwards, exactly, by the same cuts as cycles are; until then it may be anywhere on the screen.
 #include <algorithm>
 #include <limits>
 

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // How much work an order may be, and how often it asks whether it is still wanted.
+//
+// Cycles are cut until none is left, and where thousands of triangles pass through each other that takes millions of
+// pieces: so their number is limited, and the error says what the limit was. A caller that cancels a run waits for a
+// millisecond at most: loops count their steps in a Poll, because asking the caller at every step would cost more than
+// many of these steps do.
 #pragma once
 
 #include <string>

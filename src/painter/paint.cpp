@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Coverage and keys are those of the z-buffer: from corners snapped to 1/256 pixel, by the top-left rule. So where an
 // order is right, its picture is the z-buffer's, samples at the rims of cuts apart.
+//
+// A polygon that was cut is filled as its triangle is, and a sample belongs to it if it also lies on the polygon's side
+// of every cut: so pieces of one triangle together cover the samples that it covers, and none twice, except on the cuts
+// themselves, where both pieces have the same id.
 #include <algorithm>
 #include <cmath>
 #include <optional>

@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles as a view sees them, and the convex pieces that they are cut into.
+//
+//        whole            cut by a plane          A piece is known by its triangle and, if it was cut, by
+//          /\                  /\                 the sides of its outline. A side is an edge of the triangle
+//         /  \                /  \.....           (0 to 2) or a plane that was kept (first_cut + k). A corner
+//        /    \              / front              is where two sides meet: its place is rounded, with a bound,
+//       /______\            /__________           and its exact place is that of three planes.
+//
+// Pieces are numbered and never moved. Of a piece that is cut the front half keeps the number and the back half gets a
+// new one at the end, so lists of numbers stay valid.
 #pragma once
 
 #include <deque>

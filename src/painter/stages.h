@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stages of painter(), each a function from pieces to pieces:
 //
-//   Surfaces   gather       Copies         without_hidden      sort          Copies::put_back
-//   --------> [......] --> [. . . .] --> [ unoverlapped, .. ] --> [order] --> [order, with copies] --> PaintOrder
-//              gather.cpp   copies.cpp    seen/hidden.cpp    |   ^             copies.cpp
-//                                                            v   |
-//                                             depth_sort: groups of one piece, and cycles
-//                                                            |   ^
-//                                                            v   |
-//                                             part: a cycle in two halves, by a plane
+//   Surfaces, View
+//        |  gather            the triangles that the view may show, cut at the near and the far plane
+//        |  Copies            triangles in one another's place are taken out, all but one
+//        |  without_hidden    for figures: what is hidden is left out, what nothing overlaps goes first
+//        v
+//     pieces --depth_sort--> groups: of one piece, painted as it is
+//        ^                           of several without an order among them --part--> two halves, and what is within
+//        |                                                                                |        the plane
+//        +--------------------------------------------------------------------------------+
+//        |
+//        |  put_back          copies come back, directly below the one that stayed
+//        v
+//     PaintOrder
 //
 // Pieces stay where they are, in Pieces; what goes from stage to stage are lists of their numbers, here `members`.
 #pragma once

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// A question about a side is asked again, by numbers that cost more, until the answer is certain:
+//
+//    doubles with a bound on their error     nearly always enough
+//    numbers of twice the length (Twice)     for points where three planes meet
+//    expansions, which are never rounded     for what lies in the plane, or next to it
+//
+// A plane is n.x = d with n = u x v, where u and v are differences of given points: n has degree 2 in what was given.
+// Where three planes meet is a quotient by Cramer's rule, of degree 7 above and 6 below; its side of a fourth plane is
+// the sign of a polynomial of degree 9. All coordinates are taken about a point of the first plane, so that its d is 0.
 #include "painter/cutting/plane.h"
 
 #include <algorithm>

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Planes that are never rounded: they are known by points and vectors as they were given.
+//
+//            u.to            A plane stands for the points x with ((u x v) . (x - anchor)) = 0. Its
+//             /              legs u and v are kept as pairs of points, because their differences
+//    anchor  /               would be rounded. So the same question has the same answer whoever
+//      +--- u.from           asks it, and answers about several planes never contradict each other:
+//       .                    that is what lets the painter cut pieces again and again.
+//        . v
 #pragma once
 
 #include <array>

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers of twice the length of doubles, with a bound on their error.
+// Numbers of twice the length of doubles, with a bound on their error: the middle way between doubles, which leave the
+// sides of many corners open, and expansions, which are much slower.
+//
+// A number is kept as a sum of two doubles, together with the sum of the absolute values of its terms. Its error is at
+// most a share of that sum, whatever cancels in the number itself. So the sign of a polynomial is certain as soon as
+// its value exceeds the share; only where it does not are expansions asked.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists of pieces by depth.
+// Lists of pieces by depth, the farthest first.
+//
+// Depths are floats. Their bits are turned into integers that rise where depths fall, so that a radix sort of (depth,
+// piece) needs no comparison. Runs of equal depths, which are short in most scenes, are then sorted by id, so that the
+// order is the same for any number of threads and for any order in which the pieces came.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// The tests from the cheapest to the dearest, each of which may end the question:
+//
+//    is all of this piece behind the plane of the other?      it cannot cover it
+//    is all of the other before the plane of this one?        likewise
+//    does a side of either part them on the screen?           they do not overlap
+//    (two whole triangles) which is nearer where they do?     by corners within, then by sides that cross
+//
+// The first two decide most pairs. Signs of corners beside sides are kept from the third test for the fourth, so that
+// no sign is worked out twice. All signs are exact: a pair that is asked about in two cells, or from both sides, gets
+// one answer.
 #include "painter/order/newell_tests.h"
 
 #include <algorithm>

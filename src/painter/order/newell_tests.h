@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether one piece may cover another: the tests of Newell, Newell and Sancha.
+//
+//    eye                  P covers Q at a point of the screen where both are and P is nearer. It is
+//     .                   then painted after Q. If neither covers the other, their order does not
+//     . .   P ____        matter; if each covers the other somewhere, one of them has to be cut.
+//     .   .    Q ____
 #pragma once
 
 #include <optional>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Cells are chosen so that a piece is listed about four times and a cell lists about two pieces. Where boxes are large
+// that is not possible, and cells grow until the lists fit: more entries would cost more than they spare.
+//
+// Boxes in space lie along the plane of one of their pieces. A stack of parallel sheets overlaps on the screen
+// everywhere, so the grid tells nothing apart there; but every box of 64 sheets is flat, and one question about its
+// nearest corner passes over all of them.
 #include "painter/order/piece_grid.h"
 
 #include <algorithm>

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which polygons share a side, as those of a mesh do; and which no other one overlaps on the screen, told by the few
 // sides that have no neighbour.
+//
+//           ____ ____          The side that both squares have runs down in one and up in the other: across it lies
+//          |    ^    |         the neighbour, and a walk over the screen goes on there. Sides at the rim have no
+//          |   | |   |         neighbour, they are open: only at an open side may something begin or end, so only
+//          |____v____|         there may the number of polygons over a point of the screen change.
 #pragma once
 
 #include <vector>

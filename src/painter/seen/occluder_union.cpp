@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+// The geometry that the walk over a union asks for: how deep a side runs through an outline, which of the occluders
+// found so far lies over a place, and where a way leaves an occluder. All of it has the same slack: what reaches less
+// than OutlineClipper::thin into an outline does not count as within, and what ends less than that beside a side counts
+// as at it. So hairlines between neighbours, which rounding leaves, do not open a union.
 #include "painter/seen/occluder_union.h"
 
 #include <algorithm>

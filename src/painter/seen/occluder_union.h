@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether the union of adjacent occluders hides an outline, told without any clipping.
+//
+// Clipping would tell the same, but it makes parts and their corners for every occluder. Most polygons that are hidden
+// at all are hidden by a piece of one mesh, whose sides lead from triangle to triangle; then nothing has to be cut.
+//
+//        +---------------+       The outline is hidden at one point by the occluder 1. Its sides lead to 2, from
+//        |  1  / 2 \ 3   |       there to 3, and so on, as long as they cross the outline. Where a side that
+//        |    / ..... \  |       crosses has no occluder beyond it, that is a place at which the outline shows.
+//        |   / outline \ |
+//        +---------------+
 #pragma once
 
 #include <algorithm>

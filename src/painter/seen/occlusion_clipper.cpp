@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // A polygon in a few cells of the grid is held against all that covers it there. One in many is halved along the cells
 // until it is in few, so that it meets only what is near, and comes back together where nothing was taken away.
+//
+//    polygon --> in few cells?  --yes-->  clipped by what covers it in these cells
+//                     |
+//                     no --> halved along the cells, both halves likewise
+//                            both seen whole: the polygon stays as it was
+//
+// What would leave a part narrower than 1/16 pixel is not cut: the polygon stays whole there and is painted over, which
+// shows the same.
 #include "painter/seen/occlusion_clipper.h"
 
 #include <algorithm>

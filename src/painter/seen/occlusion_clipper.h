@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clipping of one polygon of an order by the union of the occluders that are painted after it.
+//
+// It is used twice. Before there is an order it asks only whether polygons are hidden, by occluders that a plane test
+// has told to be before them. Of an order it makes the visible parts, and there the order itself tells: whatever comes
+// later lies before.
 #pragma once
 
 #include <functional>

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Nearly all pairs of outlines that are held against each other lie beside each other or one within the other. So that
 // is found first, mostly without a root or a copy, and only what is left is cut.
+//
+//     ____________________     A part that a cover meets is split along the lines of the cover's sides, one after the
+//    |      kept 1        |    other. What is outside of a line is kept as a part of its own; what is inside goes on to
+//    |--------------------|    the next line; what is inside of all of them is hidden.
+//    | kept 2 |  hidden   |
+//    |________|___________|    Convex parts stay convex, so a part needs no structure but its corners.
 #include "painter/seen/outlines.h"
 
 #include <algorithm>

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Convex outlines on the screen, and what is left of them beside others.
+//
+// Places are doubles in pixels and depths are affine over the screen, so that a corner that a cut makes has the mean of
+// the depths beside it. Nothing here is exact: pieces were cut exactly before, and what is drawn is looked at in
+// pixels. Every comparison therefore has a slack of a thousandth of a pixel (OutlineClipper::thin), always to the side
+// on which a polygon stays visible.
 #pragma once
 
 #include <span>

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Polygons come from three sources: an order, a list of pieces, or outlines alone. Each source says how to get the box,
+// the description and the corners of the polygon at a place; all else is the same. Slots are dealt out by counting how
+// many polygons begin in each cell of the grid.
+//
+//    place in the order   0   1   2   3   4        painted in this order
+//    first cell           7   2   7   0   2
+//    slot                 3   1   4   0   2        by cell, then by place
+//
+// A polygon that reaches millions of pixels beyond the picture, next to the eye's plane, is cut there first: so far
+// away doubles have no digits left for places in the picture.
 #include "painter/seen/screen_polygons.h"
 
 namespace frontmost::painter_detail {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lists of what is made of each polygon on the screen: made slot by slot, in several threads, and put together in the
 // order of painting.
+//
+// Threads take slots, because neighbours on the screen share what they read. What they make is wanted in the order of
+// painting, so each list remembers where the results of every slot end, and the lists are read by place afterwards. The
+// result does not depend on which thread made which list.
 #pragma once
 
 #include <atomic>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every polygon is clipped by itself, by the union of the occluders after it.
+//
+// Polygons that overlap nothing are found together, across the sides that they share, and need no clipper. In a scan or
+// a terrain these are most.
 #include "base/float_environment.h"
 #include "painter/seen/adjacency.h"
 #include "painter/seen/occlusion_clipper.h"

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Occluders around a polygon are listed once, from the cells that its box touches, and each question then goes through
+// the list. A polygon that covers a large part of the grid would list most of the picture; its questions each make a
+// list of their own, for the small box that they are about.
+//
+// The nearest in the order come first, and at most 4,096 of them are taken in a cell: in a stack of planes thousands
+// lie under each other, and a trap that is not hidden by the first thousands is not made.
 #include "painter/traps/nearby_occluders.h"
 
 #include <algorithm>

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Traps as corners of an outline. Everything is measured along a side and across it:
+//
+//    along 0                              along = length of the side
+//       |      .____________.                |        Between two corners the outline follows the knots. A strip
+//       |    ./              \.              |        that goes around a corner shares its last point with the
+//    ===+===================================+===      strip of the next side, and the corner itself is left out.
+//     from                                   to
+//
+// Where neighbours have been merged, only a part of a side may be left. Its strip is written whole and then cut at the
+// ends of that part, across the side.
 #include "painter/traps/trap.h"
 
 #include <algorithm>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+// The height of a trap is found at the few places where it can change: at the corners of what is open, and where lines
+// of the steepest slope from these reach the full height. Between such places the highest trap is never lower than the
+// line from one to the next, so the knots there suffice. Knots that gain little area are then left out, because every
+// knot is two numbers in the file.
 #include "painter/traps/trap_profile.h"
 
 #include <algorithm>

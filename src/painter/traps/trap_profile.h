@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // How high a trap may be along a side, where occluders hide only a part of what is beside it.
+//
+//    most  ________            __________________       Above the side some parts are open (o): there a trap
+//                  \          /                         would be seen. The trap stays below them, by a pixel or
+//             ooo   \________/    oo                    six tenths of the way, and rises and falls by at most
+//            ooooo   knot  knot   oooo                  one pixel for every pixel along the side, so that its
+//    ==========================================         rim never runs along an outline.
+//                      the side
 #pragma once
 
 #include <vector>

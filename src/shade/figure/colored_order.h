@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The steps from what is seen of an order of painting to a figure: colours, neighbours in one, sheets, outlines. See
 // draw_figure().
+//
+//    VisibleParts --color_order()--> one shape for each colour of each polygon
+//                 --merge_neighbours()--> fewer shapes, where neighbours have one colour
+//                 --gather_sheets()--> translucent neighbours in sheets
+//                 --outlined()--> Figure: closed rings, with traps
+//
+// Each step takes a ColoredOrder and gives one, so each can be tested, and left out, by itself. The order of painting
+// is that of the shapes throughout.
 #pragma once
 
 #include <span>

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The whole way from surfaces to a figure: the painter's order, what is seen of it, colours, shapes and outlines.
+//
+//    surfaces --painter()--> order --visible_parts()--> parts --colours, shapes, outlines (colored_order.h)--> Figure
+//
+// What hides is asked for twice, and not with the same answer. While the order is made, a triangle whose texture has
+// holes hides nothing: its polygon still covers its holes. After colouring, its holes are cut out, and what is left of
+// it hides what is behind.
 #include <algorithm>
 
 #include "frontmost/shade.h"

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Corners are put on a grid of 1/4096 pixel first. Points are sorted by rows of the picture and by x within a row; the
+// points that may lie on a side are found by going through the rows that the side passes, in each only from where the
+// side enters it to where it leaves it.
+//
+//    A ------------------ B           B's neighbour has a corner C on the side A-B. The side becomes A-C and C-B,
+//    |         C          |           so that each of the three polygons has the same sides as its neighbours,
+//    +---------+----------+           once to and once fro, and what is shared can be found by comparing numbers.
 #include "shade/figure/side_net.h"
 
 #include <algorithm>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Outlines that lie beside each other, without the sides that two of them share.
+//
+// What is left after shared sides have gone in pairs closes to rings by itself: every outline that was added was
+// closed, so as many sides end at a point as begin there.
 #pragma once
 
 #include <algorithm>

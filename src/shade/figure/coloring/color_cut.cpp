@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// A cut is looked for in this order, and the first that is found is taken:
+//
+//    colours change evenly (a plane through them leaves a tenth)    the border of the middle band
+//    texels are 4 pixels wide and more                              their border nearest to the middle
+//    else: texture coordinates, eight directions, and the           the line that leaves the least sum of
+//    direction in which the colours of the best cut differ          squared differences on both sides
+//
+// For the last, samples are sorted by their distance from a line of that direction; running sums then give what every
+// place of the line would gain, so a direction costs one sort. Equal gains go to the line that was tried first,
+// whatever rounding says, because files must not depend on the machine.
 #include "shade/figure/coloring/color_cut.h"
 
 #include <algorithm>

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which line parts the colours of a piece best.
+//
+//        +---------+         Samples (x dark, o light) are spread over a piece. One straight line is
+//        | x x /o o|         chosen; both sides are looked at again, and cut again where they must be.
+//        | x  / o o|         The line is a place in the picture and nothing else: pieces lie in their
+//        |x  /o o  |         polygon's place of the order, so a cut never changes what hides what.
+//        +---------+
 #pragma once
 
 #include <optional>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+// Cells are a little wider than the reach, so a colour that is near enough lies in the same cell or in one beside it:
+// 81 cells of four channels. That many look-ups cost more than going through a few colours, so the cells are asked only
+// from 64 colours on. Whichever way is taken, the first colour that is near enough is the answer; so the result depends
+// on the order in which colours come, and not on how they are found.
 #include "shade/figure/coloring/color_groups.h"
 
 #include <algorithm>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Colours that are nearly the same as one.
+//
+// Pieces of a polygon that differ by less than can be seen become one colour, so that they can be one shape of the
+// file. A colour joins the first group whose first colour is near enough: groups never drift, however many join them.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Polygons are coloured in parts of 256, each part by one thread and into a list of its own, and the lists are put
+// together in order. The shader works in batches, and a batch never holds samples of two parts: so colours do not
+// depend on threads.
+//
+// A smooth normal is worth its time only where a triangle is seen on three square pixels and more. The areas that are
+// seen of each triangle are added up before anything is coloured, because a triangle may be seen in many parts.
 #include <atomic>
 
 #include "base/float_environment.h"

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a piece of a polygon is looked at, and how pieces are cut.
+//
+// Places are a lattice of rank 1 over each triangle of the piece's fan: evenly spread for any number, so that more can
+// be added later without moving those that were asked. A piece that was cut keeps the samples of the whole that lie in
+// it, and asks only for those that are missing.
 #pragma once
 
 #include <span>

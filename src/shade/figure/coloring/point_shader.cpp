@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// The parts of a picture's shading without its pixels. Shadows are asked for at points that lie anywhere in a pixel, in
+// groups, as samples of a picture are; colours of depth need the range of depths in the picture, which the input holds.
 #include "shade/figure/coloring/point_shader.h"
 
 namespace frontmost::shading {

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Everything that the colours of single points are made from.
+//
+// A picture is shaded where samples are, a figure where its pieces are looked at: at any place, of polygons that a
+// picture may not show. Both use the same triangles, materials, lights and shadows, so that a figure has the colours of
+// the picture of the same view. What all threads share is here; each thread has a FragmentShader for its batches.
 #pragma once
 
 #include "shade/colorists.h"

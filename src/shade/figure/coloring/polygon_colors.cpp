@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// The life of a piece:
+//
+//    polygon --start--> looked at --judge--> of one colour ----------------> kept
+//                          ^                    | not
+//                          |                 best_cut --> two halves ---> waiting
+//                          +------------------------------------------------+
+//
+// Pieces are taken from the waiting ones first, the last first, so that few wait at a time. Samples of many pieces are
+// shaded together, about 2,048 at a time: the shader has whole batches, and they stay in the cache. Which half comes
+// first is kept in a tree of cuts, so that pieces are written in the same order however they were taken.
+//
+// Holes are a colour far from all others, and so are parted from the surface by the same cuts.
 #include "shade/figure/coloring/polygon_colors.h"
 
 #include <algorithm>

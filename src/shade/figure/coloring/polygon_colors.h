@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Consecutive polygons in pieces of one colour each.
+//
+// Pieces are of one polygon, and never cross into another: a figure keeps every visible polygon, whole or in pieces, in
+// its place of the order of painting.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// A shape may be drawn at the place of its last polygon if nothing that comes between its polygons covers any of them.
+// So only polygons that no later one covers are united, by the sides that they share; the sharing is found for each
+// colour by itself, in one net.
+//
+//    order    1  2  3  4  5        2 and 5 share a side and have one colour. If neither 3 nor 4 covers
+//    colour   a  b  a  c  b        a part of 2, both can be painted together where 5 is.
 #include <algorithm>
 #include <numeric>
 #include <tuple>

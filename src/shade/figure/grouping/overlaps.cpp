@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Two convex polygons overlap unless a side of one of them has all of the other on its outer side. Sides that lie
+// beside each other, as those of neighbours do, count as apart when they overlap by less than 1/512 pixel: that is what
+// the rounding of cuts leaves.
 #include "shade/figure/grouping/overlaps.h"
 
 #include <algorithm>

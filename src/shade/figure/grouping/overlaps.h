@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which polygons of a figure lie over each other on the screen.
+//
+// Each polygon is listed in the cells of a grid that its box touches, in the order of painting. So those after a
+// polygon are found from the end of a cell's list, those before it from the beginning, and a search ends where the
+// polygon itself comes.
 #pragma once
 
 #include <span>
