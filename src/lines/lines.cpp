@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// The whole way to a drawing:
+//
+//    Surfaces --weld--> mesh --close_seams--> --see--> facing of every triangle
+//                                                 |
+//                        find_features <----------+----> OccluderGrid
+//                        find_crossings                      |
+//                              |                             |
+//                              +--> candidates --EdgeCutter--+--> parts, seen and hidden
+//
+// Edges are cut in parts of 64, in parallel, and the parts' lists are joined in order: so a drawing is the same for any
+// number of threads.
 #include "frontmost/lines.h"
 
 #include <algorithm>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists that many threads make, put together and sorted.
+// Lists that many threads make, put together and sorted. Whoever makes a list by parts joins them in the order of the
+// parts, so that results do not depend on which thread made which part; sorting in parts has the same result as sorting
+// at once, but can be stopped between two parts and uses all threads.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors of three coordinates, many side by side.
+// Vectors of three coordinates, each of which is a vector of lanes, with what kernels of this room do with them:
+// differences, products, and normals with bounds on what rounding did to them.
 
 // Included once for every target.
 #if defined(FRONTMOST_LINES_VECTOR3_INL_H_) == defined(HWY_TARGET_TOGGLE)

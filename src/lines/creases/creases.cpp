@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// Folds are judged one by one, by the surfaces beside them (fold.cpp), and then together, as a graph of edges that
+// share vertices:
+//
+//    judged      strong ---- weak ---- weak      smooth      follow_strong: weak ones on which a strong one goes on
+//    followed    strong --- strong --- strong                thin: the faintest of a triangle's three creases goes
+//    thinned, and what ends in the air after one or two edges is cut off, unless it is long
+//
+// Grades only ever change from weak to strong, and from strong to smooth, so every pass comes to an end.
 #include "lines/creases/creases.h"
 
 #include <algorithm>

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Creases told from the edges of a tessellation.
+//
+//           ____ ____            A mesh is folded at all of its edges: at some because the object has an edge
+//          /    |    \           there, at most because a curved surface was cut into triangles. The angle of the
+//     ____/     |     \____      fold alone does not tell the two apart: a cylinder of twelve sides is folded by 30
+//                                degrees everywhere. What tells them apart is whether the surface goes on to
+//       curved       creased     turn beyond the fold by as much as it does in it.
 #pragma once
 
 #include <vector>

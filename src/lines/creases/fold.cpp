@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// A fold is looked at in the plane across its edge:
+//
+//     left normal   right normal        The angle between both normals is what the surface turns by at the fold.
+//             \      /                  Beyond each triangle it goes on to turn by some angle, which is found by
+//       _______\____/                   walking around the triangle's tip. Half of that on each side is taken off:
+//      /        edge \                  what is left is the jump, 0 on a cylinder however few sides it has.
+//     /               .
+//
+// All angles are told by tangents of half angles and sums of arctangents that use nothing but what every machine rounds
+// alike: drawings have to be the same on all of them.
 #include <algorithm>
 #include <cmath>
 

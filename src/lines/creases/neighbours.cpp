@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// A neighbour across a side is the only other triangle there, copies aside. Walking around a vertex over a table of all
+// its triangles takes a few comparisons a step, so a fan of up to 32 triangles is copied out of the table once. Of
+// vertices with more triangles nothing is told: the tip of a cone has no normal that means anything.
 #include "lines/creases/neighbours.h"
 
 #include <algorithm>

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles beside triangles, and the normals of the surfaces that they are cut from.
+//
+// Files wind neighbours against each other, and hold copies of triangles. So a triangle is known together with whether
+// it is turned: as its neighbour sees it, both are wound alike. Slivers, whose corners lie almost on one line, have
+// normals that mean nothing; they take that of a neighbour.
 #pragma once
 
 #include <array>

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// Triangles are sorted once by (class of size, place on D. Hilbert's curve), and the tree is then nothing but groups of
+// sixteen of them, groups of sixteen groups, and so on: nothing has to be decided while it is built.
+//
+//    key    | size: 3 bits | place on the curve: 27 bits |
+//
+// Nine tenths of the triangles are one class. The few larger ones have classes of their own, by factors of 4, because
+// one large triangle in a group would make the group's box as large as itself. Corners are scaled by a power of two, so
+// that products of many lengths stay within the range of floats; nothing is rounded by that.
 #include "lines/crossings/box_tree.h"
 
 #include <algorithm>

@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles in the order of a curve through space, under a tree of boxes sixteen wide.
+//
+// Each group of sixteen triangles is held against all groups whose boxes touch its own, from itself on, so that every
+// pair of groups is met once. Both the walk through the tree and the comparison of two groups take sixteen boxes or
+// triangles at a time.
+//
+//            level 2        [ 16 boxes ]
+//                           /     |    .
+//            level 1   [16 boxes] ...  [16 boxes]
+//                       /    .
+//            level 0  [16]  [16] ...                 one box for a group of sixteen triangles
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where triangles pass through each other.
+//
+//           /|             The segment that two triangles share ends where an edge of one of them passes through
+//      ____/_|___          the other (o). An end is known by the edge that it is on, so that the next triangle of
+//     /   o--o  /          the same surface, which has that edge too, begins its segment at the same place to the
+//    /_______ _/           bit: segments join to lines without any tolerance.
 #pragma once
 
 #include <array>

@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // All of it happens in planes and along lines that the vertices hold exactly: signs of tetrahedra tell what lies where
 // in a plane, with a corner beside it as their fourth, and the order of coordinates what comes first along a line.
+//
+// find_crossings() finds where a triangle has corners on both sides of another's plane. Where a surface passes through
+// a plane exactly along an edge, neither of the edge's two triangles does, and yet the surfaces cross there:
+//
+//        \     |               The edge (o) lies in the plane of a third triangle, and its own two lie on different
+//    -----o----- plane         sides of it. Such edges are listed on the way, with the triangles in whose planes they
+//         |                    lie, and decided here, all together, because their neighbours have to be known.
 #include <algorithm>
 #include <optional>
 #include <tuple>

@@ -1,5 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // In floats: what they leave open is decided exactly afterwards.
+//
+//    sixteen triangles against sixteen probes
+//      boxes touch, and no vertex in common around which all lies side by side      MayMeet
+//      the lanes may have corners on both sides of the probe's plane               Straddles
+//      the probe may have corners on both sides of the lanes' planes               IsStraddled
+//      neighbours lie on one side of the shared vertex along the common line        LiesApart
+//      both meet the planes' common line in overlapping stretches                  MeetsLineApart
+//    what is left is asked exactly, one pair at a time                              crossings.cpp
+//
+// Each step answers "certainly not" or "perhaps", with a bound on all roundings, so nothing is lost. The steps are in
+// the order of what they cost for what they leave out.
 
 #include "lines/crossings/space_lanes.h"
 

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boxes and triangles in space, sixteen side by side.
+// Boxes and triangles in space, sixteen side by side: the plain data that the kernel of crossings works on, without any
+// vector type, so that everybody may include it.
+//
+// Arrays are padded to whole groups of sixteen. Boxes are padded by such that nothing touches, triangles by repeating
+// the last one, whose pairs are left out by their number.
 #pragma once
 
 #include <array>

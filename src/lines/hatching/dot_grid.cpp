@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // R. Ulichney. The Void-and-Cluster Method for Dither Array Generation. 1993: ranks for the cells of a torus, so that
 // those below any rank are spread evenly.
+//
+// Dots are put where the largest gap is, again and again, and the order in which they came is their rank. Below any
+// rank they are spread evenly, so one table serves for every darkness. The table is made once for all threads, and is
+// the same with every C library: exponentials are rounded to floats before they are added up.
 #include "lines/hatching/dot_grid.h"
 
 #include <array>

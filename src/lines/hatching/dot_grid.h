@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where dots may be, and how dark it has to be for each: blue noise, the same everywhere.
+//
+//    row 3   .  o    .   o      Each square cell holds one place, a little off its middle so that no columns
+//    row 2     .   o  .   .     show. A place has a dot (o) where it is darker than the place asks for; the
+//    row 1   o   .    o   .     places ask in the order of their ranks, so dots thin out evenly.
 #pragma once
 
 #include <algorithm>

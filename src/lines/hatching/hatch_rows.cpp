@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A line on the screen is a plane through the eye, and a corner's height over it a function that is linear in eye
 // space: its signs at the corners say which sides of the triangle the line crosses, also where some lie behind the eye.
+//
+// Corners exactly on a line count as above it. So a line passes a triangle through two of its sides or not at all, and
+// goes through every fan of triangles without a gap: both triangles at a side get the same place on it, from the side's
+// lower vertex.
 #include "lines/hatching/hatch_rows.h"
 
 #include <algorithm>

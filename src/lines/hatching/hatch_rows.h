@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lines of a hatch set on the screen, and where they meet triangles.
+//
+//      line 2  - - -/- - -\- - -      Lines are parallel and evenly spaced, and are numbered across their direction.
+//      line 1  - - / - - - \ - -      Where a line meets a triangle is a segment in space, with both ends on sides of
+//      line 0  - -/_________\- -      the triangle, so that its visible parts and its light are found in space too.
 #pragma once
 
 #include <optional>

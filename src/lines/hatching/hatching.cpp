@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Each line is cut out of every triangle that it passes, then cut again where it is hidden or bright (toned_scene.h).
+// The pieces of one line are sorted along it and united where they lie on each other or go on from triangle to
+// triangle: rounding parts them by less than a hundredth of a pixel.
 #include "frontmost/hatching.h"
 
 #include <algorithm>

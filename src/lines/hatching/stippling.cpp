@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Dots are points of lines that are hatched as far as they are seen.
+//
+// A row of the grid of dots is a hatch line of its own, so that what is hidden or bright is found as for hatching. The
+// darkness at a dot is asked for on its line, at the dot's place, and the dot is drawn if its place in the grid asks
+// for no more.
 #include <algorithm>
 #include <tuple>
 

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// A normal that changes evenly along a segment is darker than a limit where a quadratic function is negative, so the
+// ends of dark stretches are roots and no sampling is needed. Which side of a root is dark is asked in the middle
+// between two of them.
+//
+// Normals at corners are means over the triangles around them, left out where the surface folds by more than the crease
+// angle. The weights are those that are exact on a sphere, however it is cut into triangles.
 #include "lines/hatching/tone.h"
 
 #include <algorithm>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How bright the points of a triangle are, but for what stands in the light.
+// How bright the points of a triangle are, but for what stands in the light. Brightness is the cosine of the angle
+// between the normal and the direction to the light, with normals that go smoothly across edges that are no creases: so
+// hatching follows a curved surface and not its triangles.
 #pragma once
 
 #include <array>

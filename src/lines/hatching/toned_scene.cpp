@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+//    line in a triangle --seen from the eye?--> visible parts --dark?--> dark parts --lit?--> pieces, each for its set
+//
+// What is seen and what is lit is the same question from two eyes: the light's view has an occluder grid and cutters of
+// its own. A triangle is asked for its normals only when one of its lines is seen at all. Triangles at one place are
+// hatched once: the others are taken for seen from no side.
 #include "lines/hatching/toned_scene.h"
 
 #include <algorithm>

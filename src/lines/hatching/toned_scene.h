@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines over a scene, as far as they are seen and dark; and points of them.
+// A scene as hatching sees it: what the eye sees of its triangles, and what the light does.
 #pragma once
 
 #include "frontmost/hatching.h"

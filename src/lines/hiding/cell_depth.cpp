@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// A triangle's plane and sides are linear functions over the cells. A function's least and greatest value over a square
+// is at one of two corners, which the signs of its slopes tell, so every question costs a few multiplications.
+//
+// Triangles that are seen almost from their edge, that are very thin, or that reach very far have planes whose rounding
+// could matter: they keep only the range of their distances, and their sides if these are certain. So a careless bound
+// is never used; what is given up is only that such a triangle hides nothing early.
 #include "lines/hiding/cell_depth.h"
 
 #include <cmath>

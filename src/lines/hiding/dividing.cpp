@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A cell of an occluder grid in which many triangles come together, divided.
+//
+//        +----+----+----+----+     A cell is divided into 4 x 4 parts, and these again as long as that pays. A triangle
+//        |....|    |    |    |     is listed in the parts that it touches. If it covers a part wholly, what lies beyond
+//        |....|----+----+----|     it there, by distances or by its plane, hides nothing more: it is left out of the
+//        |    |    |    |    |     part. So a crowd of sheets behind one sheet takes one entry.
+//        +----+----+----+----+
 #include <array>
 #include <limits>
 

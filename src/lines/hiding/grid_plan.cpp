@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// The grid is first made as fine as the number of triangles asks for, and its entries are counted. Where large
+// triangles would take too many cells it is made coarser until they fit: memory is bounded by sixteen entries for each
+// triangle and some millions.
+//
+// Footprints are sorted by their first cell, so that triangles that lie side by side on the screen do so in memory,
+// too: the order of a file may be anything. Places are rounded to floats outwards, and every comparison of places in
+// cells has a pad that is much larger than what rounding can do.
 #include "lines/hiding/grid_plan.h"
 
 #include <bit>

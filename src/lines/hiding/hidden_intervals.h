@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What of an edge is hidden so far, while one triangle after another is held against it.
+//
+//    t = 0                              1        United intervals tell what is still open, and asking ends
+//    ---[======]------[===]--[========]---       where nothing is. With counts every triangle has its own
+//       hidden        hidden  hidden             interval, and the number over a place is how many hide it.
+//
+// An edge passes cells from one end to the other, so new intervals mostly lengthen the last one or follow it; a deque
+// is also quick at the other end.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where an edge goes out of sight.
+// Where an edge goes out of sight, found edge by edge: each is held against the occluders in the cells that it passes,
+// and cut where what hides it begins and ends. Cutters have memory that they keep from edge to edge, so each thread has
+// one.
 #pragma once
 
 #include <array>

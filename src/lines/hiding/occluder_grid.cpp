@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// Cells are filled in two passes over the triangles, as all lists of this room are: entries are counted, and then put
+// where they belong. Each of up to sixteen parts of the triangles has counters of its own, so that threads need no
+// locks; cells are then sorted, and whoever filled them makes no difference.
+//
+//    first_      |  cell 0  | cell 1 |    cell 2     | ...     where each cell's entries begin
+//    nearest_    | 1.2  3.4 |  2.0   | 0.5  0.9  7.1 |         the nearest first
+//    low_x_ ...  |  boxes, one array for each side   |         as kernels read them: many at a time
+//
+// Large triangles are asked first which cells they cover wholly. What lies behind that is never listed.
 #include "lines/hiding/occluder_grid.h"
 
 #include <cstring>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Many occluders at once: which may meet an edge, and what they hide of it.
+//
+// The kernels answer in floats or doubles with bounds on their errors. What they leave open is asked again by
+// hidden_by() or covered_by(), which are exact; so a drawing has the same lines with every instruction set.
 #pragma once
 
 #include "lines/hiding/occluder.h"

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A counting sort in bands of triangles, each of which has its own counters.
+//
+//    triangles     | band 0     | band 1     | band 2     |        each band counts the corners at every vertex
+//    counters      band 0: v0 v1 v2 ...   band 1: v0 v1 v2 ...     sums over bands say where each band's corners go
+//
+// So bands fill the table at the same time and without locks, and the corners at a vertex come in the order of their
+// triangles, whatever number of bands there is.
 #include "lines/mesh/corner_table.h"
 
 #include <algorithm>

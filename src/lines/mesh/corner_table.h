@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which triangles meet at a vertex, and how they lie to each other there.
+//
+//             .  |  /            A vertex whose triangles lie side by side all around it is "spread": no two of
+//              . | /             these can pass through each other. Whether it is asked once for a vertex saves
+//         ------ v ------        asking about all pairs of its triangles.
+//              / | .
+//             /  |  .
 #pragma once
 
 #include <span>

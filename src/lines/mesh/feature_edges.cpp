@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Edges by their lower vertex. Most have two triangles that are wound alike: those are told without a sort.
+//
+// An edge is asked by its lower vertex: the sides at a vertex are sorted by their other end, and sides with the same
+// end are one edge.
+//
+//    triangles at the edge     what is drawn
+//    one                       boundary
+//    two                       silhouette where only one faces the eye; border; crease by their angle
+//    more                      sheets of them (sheets.h), each judged as two; else surfaces meet there
+//
+// Vertices at which nothing can be a feature are told by a kernel, many corners at a time, and skipped.
 #include "lines/mesh/feature_edges.h"
 
 #include <algorithm>

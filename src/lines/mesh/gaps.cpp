@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+//     patch A  | |  patch B       Rims of both patches lie beside each other, nearer than the widest gap and than a
+//              | |                sixteenth of their length, and their triangles are on different sides. A rim is a
+//     ---------+ +---------       gap if such rims lie beside it all along: their stretches have to cover its length.
+//
+// Open sides are found by a tree of boxes. Which of them are beside a rim does not depend on the order in which the
+// tree gives them, and where more than 64 are, nothing is decided.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh as it is seen.
+// A mesh as it is seen: for every triangle what all further steps ask, in sixteen bytes. Which way it faces is exact;
+// its normal is rounded, and known to be so. What is not certain in doubles has a mark, and is asked again with exact
+// numbers.
 #pragma once
 
 #include "lines/mesh/welded_mesh.h"

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Sides that have the same third vertex are copies. Two groups of copies are a sheet. Three and more are sheets only if
+// one of the groups is there as often as all others together: it is what the others have in common, as the wall between
+// two rooms.
+//
+//        A       B            three sides at an edge (o), S twice: the sheets are A-S and B-S
+//         \     /
+//          \   /              sheets that have no side in common must at least lie on each other; else surfaces
+//           \ /               meet at the edge, and it is drawn
+//            o
+//            |  S (twice)
 #include "lines/mesh/sheets.h"
 
 #include <algorithm>

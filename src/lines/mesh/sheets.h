@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sheets: which of the sides of an edge belong together where triangles are there more than once.
+//
+// Assemblies are exported part by part, and parts that touch have the same triangles at the place where they do. An
+// edge there has three or four sides, and yet every part is smooth: no line is to be drawn. Which two sides are one
+// surface is told from how often each is there and whose it is.
 #pragma once
 
 #include <functional>

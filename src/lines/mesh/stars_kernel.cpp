@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Partners are found by comparing all with all, and everything is asked of all corners: nearly without a branch, since
 // which of them matter is anybody's guess.
+//
+//    corners of a vertex     next:  b c d a        Corner i runs from `next` to `last` around the vertex. Its partner
+//                            last:  c d a b        is the corner whose `next` is its `last`: the triangle beyond
+//                                                  that edge. In a closed star everybody has one partner.
 
 #include "lines/mesh/corner_table.h"
 

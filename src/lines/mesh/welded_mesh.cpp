@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Equal places are found by a table that all threads fill at once. A place belongs to the lowest vertex that lies
+// there: whoever comes first, the lowest stays, by compare and exchange. So numbers do not depend on threads.
+//
+//    vertices of all instances --places--> first at each place --counted in parts--> numbers of places
+//    triangles of all instances --------------- by these numbers --------------> triangles, without those that collapse
+//
+// Everything is counted in parts first and then written at its place, so no list grows and no thread waits.
 #include "lines/mesh/welded_mesh.h"
 
 #include <algorithm>

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // All triangles of a scene over vertices that are shared wherever they lie at one place, and seams closed in it: where
 // triangles without area fill T-junctions.
+//
+//          C                  C            A filler A-M-B has its corners on one line, and no area: it was put there to
+//         / .                /|.           hold the long side A-B against the two short ones. It goes, and the triangle
+//        /   .              / | .          A-B-C beside it is split at M, so that every side has one neighbour again
+//       A--M--B      ->    A--M--B         and surfaces go on across it.
 #pragma once
 
 #include "frontmost/surfaces.h"

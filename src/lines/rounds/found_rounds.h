@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is round in a mesh: circles among its sharp edges, cylinders among its smooth surfaces, and other surfaces of
 // revolution.
+//
+//    sharp edges --chains--> arcs --on one circle--> circles ------+
+//                                                                  v
+//    smooth neighbours ------------------------------> walls: cylinders that begin at circles, then the others
+//    what is left, and closes around an axis --------> surfaces of revolution
+//
+// Meshes hold polygons where there were circles. What was round is told by steps that are even, corners that lie on one
+// circle as exactly as the file's digits say, and sides that are all alike.
 #pragma once
 
 #include <vector>

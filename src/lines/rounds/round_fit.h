@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Circles and cylinders in space, and those through points.
+//
+//          axis                  A tube is all points at one distance from an axis. outwards(p) leads from the axis
+//           |     p              to p at a right angle; its length less the radius is how far p is off the tube.
+//           |--->.
+//           |  outwards
 #pragma once
 
 #include <cmath>

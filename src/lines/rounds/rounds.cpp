@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// What users are given of all that was found: rounds that are there for most of their circumference, each with its
+// triangles by their ids. Less than 160 degrees of a circle are a fillet or a corner, and nobody puts a diameter to it.
 #include "frontmost/rounds.h"
 
 #include <algorithm>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// At a vertex where several sharp edges meet, those go on in each other that turn least, pair by pair: so the rim of a
+// hole is followed across the edges that end in it. Chains are followed from their open ends first; what is left
+// closes.
+//
+//       |                  at the vertex (o) the edges from left and right go on in each other, the one from
+//    ---o---               above ends
 #include <algorithm>
 #include <span>
 

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Neighbours are paired from the table of corners, vertex by vertex: all sides to higher vertices are sorted by their
+// other end, and exactly two that run against each other are neighbours. Anything else, as copies or sides of three
+// triangles, counts as a border, because nothing smooth goes on there.
 #include "lines/rounds/smooth_mesh.h"
 
 #include <algorithm>

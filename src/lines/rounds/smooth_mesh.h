@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A mesh with its triangles' neighbours, what is smooth between them, and its edges that are not, one after the other.
+//
+// An edge is smooth where its two triangles turn by no more than one step of a circle of eighteen sides. All smooth
+// neighbours together are one surface, from which rounds are told; sharp edges are its rims, among which circles are
+// looked for.
 #pragma once
 
 #include <vector>

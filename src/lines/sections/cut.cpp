@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// Each object is cut by itself, and closed with a face where the plane passed through it:
+//
+//        before            behind the plane        A triangle with one corner behind leaves a triangle, one with two
+//      /\      .           /|                      leaves two. The side along the plane is kept as a segment, with what
+//     /  \     .  plane   / |  cut face            was cut on its left; all segments of an object make its outlines,
+//    /____\    .         /__|                      and these the regions that the face is made of.
+//
+// Where an edge meets the plane is worked out from its lesser end, so that both triangles at the edge get the same
+// place to the bit: outlines close without a tolerance.
 #include <algorithm>
 #include <cmath>
 #include <tuple>

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Segments are joined at places that are equal to the bit. At a place where several go on, the leftmost is taken, so
+// that outlines touch but never cross:
+//
+//        \ | /          coming from below, the left one is taken; the others are taken when a walk
+//         \|/           comes by again, or begins there
+//          o
+//          |
+//
+// Models have gaps. A line that does not close is closed with the end of another, or its own, that is nearer than a
+// hundred-thousandth of the section's size; what is still open is counted and left out.
 #include <algorithm>
 #include <cmath>
 #include <numeric>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coordinates in a cutting plane.
+// Coordinates in a cutting plane. Planes lie across one of the axes of the world, so coordinates are picked and never
+// worked out: what lies in the plane stays there to the bit, and corners of the cut face are corners of the walls
+// beside it.
 #pragma once
 
 #include "frontmost/section.h"

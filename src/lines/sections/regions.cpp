@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+//        +-----------+          Lines lie in each other, and every line is told how many times the plane winds
+//        |  +-----+  |          around what is left and right of it. It bounds a region where one side is filled
+//        |  | (o) |  |          and the other is not: the outer line of a region, or a hole in the smallest
+//        |  +-----+  |          region around it.
+//        +-----------+
+//
+// Areas are summed about a point of the line; what is no more than the rounding of that sum counts as nothing.
 #include "lines/sections/regions.h"
 
 #include <algorithm>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parts that touch have different hatching, as drawing standards ask for: two angles and three spacings, six styles.
+// Parts get them in the order of their numbers, each the style that is used least by the parts beside it, in all
+// sections together, so that a part looks the same wherever it is cut. Thin walls are hatched so closely that they look
+// filled, because few lines of the wide hatching would pass through them.
 #include <algorithm>
 
 #include "frontmost/section.h"

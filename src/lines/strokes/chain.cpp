@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // From segments to chains, and fewer corners on them.
+//
+// Ends are put on a grid of a thousandth of a pixel and sorted; two ends of one rank at one place, and no third, are
+// joined. Where more meet, all of them end: which one goes on would be a guess.
+//
+// Corners are left out by a cone from the last corner that stayed: it holds all directions that pass every point since
+// at less than the tolerance.
+//
+//            . - '       p4 lies outside of the cone: p3 becomes
+//    p0 <====.  p2  p3   a corner, and a new cone begins there
+//            ' - .    p4
 #include <algorithm>
 #include <cmath>
 

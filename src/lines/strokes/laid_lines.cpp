@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// The grid is as fine as the short lines are long, about one line to a cell, and never finer than what counts as one
+// place. All lines are known before the first is laid, so crowded cells are found by counting and are divided
+// beforehand, by where lines will be; what is laid later is only ever a piece of these lines.
 #include "lines/strokes/laid_lines.h"
 
 namespace frontmost::lines_detail {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lines that are drawn so far, found by where they lie: short ones in the cells of a grid that they pass, long
 // ones, which would pass too many, by the lines that they lie on.
+//
+//    short lines    cells that they pass               a cell holds a few lines, and each is looked at
+//    long lines     a plane of heights (long_lines.h)  a line crosses hundreds of others, and lies on one or two
 #pragma once
 
 #include <span>

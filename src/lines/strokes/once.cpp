@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lines that lie on each other are drawn once: segments are laid down by rank, each without what lies there already.
+//
+//    there already       ======      =====
+//    the new line    ----------------------------
+//    what is added   ----      ------     ------        its stretches that nothing covers yet
+//
+// Ranks say what is above: seen lines before hidden ones, outlines before the rest. Within a rank the line that comes
+// first stays whole, so the result depends on the order of edges alone, which is the same for any number of threads.
 #include <algorithm>
 #include <numeric>
 

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What strokes are made of, on their way.
+// What strokes are made of, on their way:
+//
+//    parts of a drawing --> segments --draw_once--> --chained--> chains --without_crumbs-->
+//        --straighten--> --find_arcs--> --nearest_first--> Strokes
+//
+// Each step takes what the one before gave, and none looks back: a chain knows its rank and its points, and nothing of
+// the edges that it came from.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// A rank is a number for everything that parts must have in common to be one stroke: whether they are hidden, whether
+// they are an outline, their kind and their instance, as far as the options ask for it. Ranks are dealt out in that
+// order, so that sorting by rank is sorting by what is drawn above.
 #include "frontmost/strokes.h"
 
 #include <algorithm>
