@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // One frame gone through several times: first to learn what is seen, then to paint it.
+//
+// A fragment is left out of a list where something before it hides all of the pixel. Which fragments hide depends on
+// the opacities of materials alone, because colours are not known yet; a texture may still cut holes, so a blended
+// material hides nothing. Clear fragments hide together, once no more than a negligible share passes through all of
+// them.
 
 #include "abuffer/fragment_pass.h"
 

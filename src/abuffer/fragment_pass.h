@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fragments for those who give them colours: the order and the coverage are this room's, the colours are not.
+//
+//    first   list_primitives(): which triangles have to be prepared for shading
+//    then    look() or paint(): lists, tile by tile; paint() takes a colour for each fragment and gives pixels back
+//
+// Tiles are gathered anew in every pass: keeping them would take as much memory as there are fragments, of which a
+// pixel may have any number.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+// A tile that holds too many fragments is thinned first, without copies that nobody sees, and then halved along both
+// axes until its parts have room; a part of one pixel always has. Parts are whole blocks of 4 x 4 pixels as long as
+// they can be, because lists are sorted block by block.
+//
+//    64 x 64  --too much-->  copies out  --too much-->  four of 32 x 32  --too much-->  ...  --> one pixel
 #include "abuffer/prepared_frame.h"
 
 #include <atomic>

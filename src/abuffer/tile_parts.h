@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // From lists of tiles, which come in any order, to the lists of a picture, pixel by pixel in one array.
+//
+//    parts, as tiles end    [tile 5 | lists]  [tile 0 | lists]  [tile 2 | lists] ...
+//    first                  pixel 0: 0   pixel 1: 3   pixel 2: 3   ...   the running sum of all lengths
+//    result                 | pixel 0 | pixel 1 | pixel 2 | ...           each list at its pixel's place
 #pragma once
 
 #include <mutex>

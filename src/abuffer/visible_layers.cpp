@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Layers: at every sample the nearest primitive, the second, and so on.
+//
+// Lists are sorted by the key at the centre of a pixel. At other samples the order may be another where triangles
+// cross, so with several samples each sample's list is sorted by the keys at that sample. Behind an opaque primitive
+// there is no layer: nobody sees what is there.
 
 #include <algorithm>
 

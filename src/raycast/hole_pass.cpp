@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The definition of sample_rule.h, ray by ray: only rays that ended in a hole come here, so nothing is done many at a
 // time. Boxes are met in doubles, padded by more than the rounding of a corner's place.
+//
+// Going on from the hole would need the place where the ray is, which is rounded. So the ray begins at the eye again
+// and leaves out every hit that is a hole: the nearest that is left is by definition what is seen, and a hole in what
+// it met first is only one of them.
 #include <algorithm>
 #include <cmath>
 #include <optional>

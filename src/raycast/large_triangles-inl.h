@@ -1,6 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles of more than a few pixels, one at a time, by blocks of 4 x 4 pixels: blocks that are hidden, or clear of
 // every edge, are told apart first, many at a time.
+//
+//    +--+--+--+--+      The tile is 8 x 8 blocks. It is told of all of them at once whether what is there hides the
+//    |  |o |o |  |      triangle (H), whether the block is wholly outside of an edge (o), and whether it is wholly
+//    |H |  |F |o |      inside of all three (F). Blocks that are full need no edges any more, only depths.
+//    |H |F |F |  |
+//    +--+--+--+--+
+//
+// Edges are affine over the tile. A bound of what shearing and products round is taken off on both sides, so a block is
+// classified only where every sample in it would be decided the same way by the rule itself.
 
 // Included once for every target.
 #if defined(FRONTMOST_RAYCAST_LARGE_TRIANGLES_INL_H_) == defined(HWY_TARGET_TOGGLE)

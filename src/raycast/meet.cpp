@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a ray or segment meets: decided exactly on the floats of the query and of the corners.
+//
+// The sign of a determinant is asked in doubles first, with a bound; what is left goes through numbers that are not
+// rounded. Which triangle is met therefore never depends on rounding. Only the place along the ray is rounded, and it
+// is kept between the triangle's corners along every axis: of slivers rounding leaves no more than that.
 
 #include <algorithm>
 #include <cmath>

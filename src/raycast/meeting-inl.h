@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which rays meet which triangles, many at a time: sample_rule.h in vectors.
+//
+// A product of two floats is rounded monotonically. So where two rounded products differ, their exact values differ in
+// the same direction, and only where they are equal is anything in doubt. These lanes are asked one by one, by the rule
+// itself; they are few, on edges that pass exactly through samples.
 
 // Included once for every target.
 #if defined(FRONTMOST_RAYCAST_MEETING_INL_H_) == defined(HWY_TARGET_TOGGLE)

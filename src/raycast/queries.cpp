@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What users ask of single rays and segments, one by one or in batches.
+//
+// Many queries are asked in parts of 256, each part by one thread through one kernel call. A single query takes the
+// same way with a part of one, so that it gets the same answer.
 
 #include "raycast/queries.h"
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays that are asked for one by one or in batches: what the kernels of single rays and of rays to a light offer, and
 // the parts of a scan.
+//
+//    closest_hit, is_clear, all_hits, closest_hits ...   --> queries.cpp --> walk(), walk_batch()   query_kernel.cpp
+//    are_lit, and shade's shadows by rays                --> find_lit()                              light_kernel.cpp
+//    scan of a RayCamera                                 --> ray_camera.cpp --> cast_parts()
 #pragma once
 
 #include <functional>

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // How one ray passes many triangles: by their sides, or through them and where.
+//
+//    sheared along the ray       The triangle is moved so that the ray's origin is at zero, and sheared so that the ray
+//        v |   c                 runs along one axis of the world. The ray passes through it where zero lies inside of
+//          |  / .                the sheared corners: the three edges then turn about it in one way. All of this is in
+//     -----o-/---.--- u          floats with a bound on the error; what is not certain is asked again by meet().
+//          a-------b
 
 // Included once for every target.
 #if defined(FRONTMOST_RAYCAST_RAY_AXIS_INL_H_) == defined(HWY_TARGET_TOGGLE)

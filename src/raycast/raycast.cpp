@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ray casting: one tile of rays after another, on all threads.
+//
+// A picture is cast in tiles of 32 x 32 pixels, a few neighbours to a part, so that threads share the nodes that they
+// fetch. Planes and scratch memory are kept by the RayCaster from picture to picture.
 
 #include "frontmost/raycast.h"
 

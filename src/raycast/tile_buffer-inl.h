@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // One tile's answer while its rays are cast: the nearest key and id of every pixel, and the farthest key of every
 // block.
+//
+//    tile     32 x 32 pixels, 8 x 8 blocks           Within a block pixels lie row by row, so that a vector of sixteen
+//    block    4 x 4 pixels, one vector of keys       lanes is a block. `farthest` has the farthest key of each block:
+//                                                    a triangle or box that is farther everywhere is not looked at.
 
 // Included once for every target.
 #if defined(FRONTMOST_RAYCAST_TILE_BUFFER_INL_H_) == defined(HWY_TARGET_TOGGLE)

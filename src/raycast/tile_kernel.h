@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures by rays: casting the rays of one tile together, and those on that went into a hole.
+//
+//    boxes and leaves, nearest first --> triangles --few pixels--> queue, many at a time --+--> keys and ids
+//                                            |                                             |    of the tile
+//                                            +------more pixels--> blocks of the tile -----+
 #pragma once
 
 #include <algorithm>

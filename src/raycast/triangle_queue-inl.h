@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles whose corners floats serve, many at a time. They wait in a queue until they fill a vector; those of a few
 // pixels are then met one pixel of each per step.
+//
+//    waiting   x, y, d of three corners, id, rect     | t0 | t1 | ... | t15 |   full: all are set up together
+//    walk      step 1: the first pixel of each of them; step 2: the second of each; ... up to 3 x 3
+//
+// Triangles of a scan often cover one sample or none. One after the other each would use a lane of a vector; side by
+// side they use all lanes, and the loop is as long as the largest of them asks for.
 
 // Included once for every target.
 #if defined(FRONTMOST_RAYCAST_TRIANGLE_QUEUE_INL_H_) == defined(HWY_TARGET_TOGGLE)

@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Colours of the fragments of one rectangle of pixels, laid over each other in the order of depth.
+//
+//    slot 0   ffffffffffffffff      The lists of sixteen neighbouring pixels stand side by side, the nearest fragments
+//    slot 1   ff.ffff.ffffff.f      in slot 0. A slot is laid under those before it in all sixteen pixels at once; a
+//    slot 2   f..f..f.....f...      pixel whose list has ended takes part with nothing.
+//    pixel    0 ........... 15
+//
+// Where two fragments of a pixel cross within it, their order is not that of the list everywhere: such pixels are taken
+// again, with an order for each sub-sample.
 #pragma once
 
 #include "abuffer/gather/gather_kernel.h"

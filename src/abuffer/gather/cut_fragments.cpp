@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Holes in fragments: sub-samples that look through are taken out of their masks.
+//
+// Holes are asked for after sorting, fragment by fragment and sample by sample, in doubles and by the code that all
+// methods share (view/screen_cutout.h). Only scenes with cutouts pay for that, and the kernels that gather know nothing
+// of textures. A mask that becomes empty stays in its list: removing it would move all that follow.
 
 #include <bit>
 #include <optional>

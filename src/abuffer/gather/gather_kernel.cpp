@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fragments of one tile: rasterised, counted and appended in one go; then placed into lists and sorted.
+//
+//    singles of the tile ------------------------> LargeFragments --+
+//    clusters --fetch, bounds, facing--> small --> SmallFragments --+--> FragmentSink: masks, keys, numbers of arrival
+//                                        large --> LargeFragments --+
+//
+// After every vector the sink is asked whether it has room. When it has none the tile is given back as too much, and
+// the caller halves it: so the memory of a thread is bounded whatever the scene is.
 
 #include "abuffer/gather/gather_kernel.h"
 

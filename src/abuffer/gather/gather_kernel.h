@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gathering the fragments of one rectangle of pixels, sorting them into lists, and taking holes out of them.
+//
+//    gather_tile   fragments in the order of arrival; how many each pixel has is counted on the way
+//    sort_lists    lists of pixels, sixteen pixels side by side, nearest first
+//    cut_fragments holes out of the masks
 #pragma once
 
 #include <array>

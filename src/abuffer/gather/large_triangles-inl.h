@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles of more than a few pixels, one at a time, in blocks of 4 x 4 pixels.
+//
+// A triangle is held against blocks of 4 x 4 pixels: a block is wholly outside of an edge, wholly inside of all three,
+// or neither, which the least and greatest edge value over all of its samples tell. Pixels that are covered wholly get
+// full masks; of the others the samples are asked, many pixels together.
+//
+// Edge values of triangles of up to 128 pixels fit 32 bits all over the tile, so that whole rows of blocks are
+// classified together. Those of larger ones are worked out in 64 bits at the corner of each block and clamped there:
+// within a block their signs stay right.
 
 // Included once for every target.
 #if defined(FRONTMOST_ABUFFER_LARGE_TRIANGLES_INL_H_) == defined(HWY_TARGET_TOGGLE)

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the sub-samples of a pixel are.
+//
+//    grid 0: the view's own samples        grid 2, 4, 8: that many rows and columns, in the middles of equal squares
+//
+// A pattern also knows how far its samples reach: triangles that lie between the outermost samples of neighbouring
+// pixels cover nothing, and are left out by their boxes.
 
 #include <algorithm>
 #include <string>

@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles of a few pixels, as many at once as the vector holds: all of a batch are walked pixel by pixel in step, and
 // the pixels found are then given keys and masks together.
+//
+//    queue     a vector of triangles, set up together: edges, planes of depth
+//    walk      pixel 0 of each, pixel 1 of each, ...: which are touched at all
+//    found     (triangle, pixel) pairs, a vector at a time: masks over all samples, keys, appended together
+//
+// The walk keeps only pairs, because most pixels of a small triangle's box are not covered; masks are worked out where
+// there is something to be masked, in vectors that are full again.
 
 // Included once for every target.
 #if defined(FRONTMOST_ABUFFER_SMALL_TRIANGLES_INL_H_) == defined(HWY_TARGET_TOGGLE)

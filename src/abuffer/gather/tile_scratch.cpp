@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Buffers grow to twice their size and never shrink, so that after the first tiles nothing is allocated any more. The
+// number of fragments at which a tile is given back, not the size of a buffer, is what bounds them. Fragment 0 stands
+// for none, so that empty slots may be read like others.
 #include "abuffer/gather/tile_scratch.h"
 
 #include <algorithm>

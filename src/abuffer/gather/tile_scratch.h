@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The private memory of one thread: the fragments of one tile, as they arrive and sorted.
+//
+//    counts      pixel 0   1   2  ...                   how many fragments each pixel has so far
+//    arrived     key | place | triangle | mask          one entry a fragment, in the order of arrival
+//    slots       group 0: slot 0 of 16 pixels, slot 1 of 16 pixels, ... | group 1: ...       once they are sorted
+//
+// A slot is 64 bits: the bits of the key above the complement of the fragment's number. So sorting by key is a
+// comparison of integers; equal keys are put into the order of ids afterwards.
 #pragma once
 
 #include <cstring>

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// Triangles that cover much are the ones whose copies cost, so only those of 16 pixels and more are compared. Their
+// places on the screen are hashed, whichever corner comes first, and equal hashes are sorted by id; places are then
+// compared themselves.
+//
+//    same place     id 3 (opaque)   id 8   id 9         8 and 9 are hidden by 3 wherever they are: left out
+//    same place     id 4 (clear)    id 5   id 6 ...     all count, or as many as layers are asked for
+//
+// The areas of what is left add up to the number of fragments. A frame with too many is refused before it is gathered.
 #include "abuffer/plan/crowd.h"
 
 #include <algorithm>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames with more fragments than a tile holds: what is there again is left out, and what would take hours is refused.
+//
+// This is asked for only when a tile holds more than there is room for. Then it is made once, by the first thread that
+// needs it, and others wait for it.
 #pragma once
 
 #include <exception>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+//    cluster on the screen     whole           listed in the tiles that its box touches
+//                              over 16 tiles   taken apart: every tile would look at all of its triangles
+//                              to be clipped   taken apart, triangle by triangle, and clipped
+//    triangles of the last two are "singles", listed in the tiles that they touch themselves
+//
+// Lists are counted first and then filled, into one array for all tiles. Where the singles' lists would be too long,
+// tiles go through all singles instead.
 #include "abuffer/plan/frame_plan.h"
 
 #include <algorithm>

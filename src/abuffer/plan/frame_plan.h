@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is drawn where: clusters put on the screen, and the clusters and single triangles of every tile.
+//
+// Nothing is culled by depth here, as the z-buffer does: what is behind counts, too. So vertices of all clusters in the
+// picture are put on the screen at once, before any tile begins, and tiles read them by their numbers.
 #pragma once
 
 #include <memory>

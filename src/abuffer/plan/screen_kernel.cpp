@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // All vertices of clusters put on the screen, and what their clusters cover there.
+//
+// A cluster's box is that of its snapped vertices, so it needs no margin. Vertices beyond the guard band, or too near
+// to the eye to be snapped, make their cluster one that is taken apart; their places are never read.
 
 #include "abuffer/plan/frame_plan.h"
 

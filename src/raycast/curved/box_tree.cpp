@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+// The tree is made from the top: a range of items is halved at the median of the boxes' middles, along the axis on
+// which these are spread most, until two are left. All halves have the same size, so no walk is deeper than 32 levels
+// and its stack has a fixed size. Items at equal places are parted by their numbers, so that the tree is the same
+// everywhere.
 #include "raycast/curved/box_tree.h"
 
 #include <algorithm>

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A small hierarchy of boxes in doubles, for the few primitives that are curved. Triangles have a wider one of their
 // own (ray_tree.h).
+//
+// A single ray is a packet of one: both walks are one function, which takes the nearer child first and leaves out what
+// begins behind everything that was met.
 #pragma once
 
 #include <array>

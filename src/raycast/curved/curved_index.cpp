@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The index of a scene with curved meshes: curved primitives in world space, each a leaf or several; and triangles.
+//
+//    ids       instance 0: 0 ... 11 | instance 1: 12 ... 2059 | ...     elements count over all instances in order
+//    items     spheres in their places, then pieces of patches          the tree's numbers; pieces share ids
+//
+// Meshes without curves go into an index of triangles by themselves, and its answers are taken from triangle to
+// element. So triangles are met by the kernels for triangles, and only what is curved pays for being curved.
 #include <algorithm>
 #include <tuple>
 

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a CurvedIndex holds.
+// What a CurvedIndex holds: an index of the triangles, the curved primitives in world space, and a tree of boxes around
+// these.
+//
+// A ray asks the triangles first. What they give ends the ray, so that curved primitives behind it are never searched;
+// of two hits at the same place the lower id is seen, as everywhere.
 #pragma once
 
 #include "frontmost/curved.h"

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Single rays, segments and scans among curved surfaces and triangles: the nearer of what each of the two indexes has.
+//
+//    ray --closest_hit() of triangles--> ends there --curved primitives before it--> the nearer of the two
+//
+// Segments are closed at neither end: what is met exactly at its beginning or end does not count, as for triangles. So
+// their rays begin at the least number above 0 and end at the greatest below 1.
 #include <cmath>
 
 #include "base/float_environment.h"

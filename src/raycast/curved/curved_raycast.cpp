@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Views of scenes with curved surfaces: triangles first, tiles of rays at a time; then every ray against what is curved
 // and not hidden by them.
+//
+// The key of what triangles show is a float, which several distances have. So a ray goes on a little beyond the
+// distance of that key, and keys are compared again: what is curved and has the same key is seen if its id is lower.
 #include <atomic>
 
 #include "base/float_environment.h"

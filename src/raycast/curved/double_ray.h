@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays in doubles, those of a view among them, and where they meet a curved primitive.
+//
+// Curved primitives are met in doubles throughout. Rays of a view have no unit length; their t is the planar distance,
+// as everything that is compared with the keys of triangles needs.
 #pragma once
 
 #include <algorithm>

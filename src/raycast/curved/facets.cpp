@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A triangle of its own for every pixel of a curved surface.
+//
+//    a pixel on a sphere       Shading works on triangles. So every pixel that shows a curved primitive gets a triangle
+//        ____                  of its own in the tangent plane at the point that is seen there, with the normal and the
+//      /  /\  .                texture coordinates of the surface about that point.
+//     |  /__\  |
 #include <array>
 #include <cmath>
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eight rays through the boxes together. What each meets is what it would meet alone: the nearest, and of several at
 // the same place the lowest, in whatever order they come.
+//
+// Rays that a piece's kernel leaves open, because the piece has to be halved for them, as at outlines, are asked one by
+// one. Each ray is shortened as soon as it has met something, so that the packet ends where its last ray does.
 #include <algorithm>
 
 #include "raycast/curved/curved_parts.h"

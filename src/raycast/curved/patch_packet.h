@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eight rays at once against one piece of a patch: the same arithmetic as meet() of a single ray, lane by lane.
+//
+// All arithmetic of a lane is that of a ray by itself, in the same order, so a picture does not depend on which rays
+// went together. Lanes that have nothing to ask are masked and their values are never read.
 #pragma once
 
 #include <array>

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Spheres and Bezier patches in their places, and where rays meet them. A sphere becomes an ellipsoid; a patch is cut
 // into pieces that are nearly flat.
+//
+//       patch               pieces         A piece that is nearly flat has one root for a ray or none, and steps find
+//     .-------.          .---.---.         it at once. So patches are cut beforehand, at most three times along each
+//    /         .   ->   /    |    .        parameter, until the derivatives of a piece hardly change; what is left to
+//    '---------'        '----'----'        halve while rays are traced are outlines.
 #pragma once
 
 #include <cmath>

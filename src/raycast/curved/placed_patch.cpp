@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// A patch is placed by its control points, because what is affine may be applied to these: rays then need no transform.
+// It is halved by de Casteljau's construction, whose middle points are the same to the bit for both halves, so
+// neighbouring pieces leave no crack between them.
+//
+// How much a piece bends along a parameter is the largest difference of its derivatives from their mean, as a share of
+// the shorter of both means. The parameter that bends is halved; where both do, the one that was halved less often.
 #include <cmath>
 
 #include "raycast/curved/placed_curves.h"

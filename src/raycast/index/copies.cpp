@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// Copies follow each other in the spatial order of the surfaces, so one pass over neighbouring lanes finds them:
+//
+//    lanes    a  a' a'' b  c  c' ...        a' has the corners of a and a higher id: whoever meets a' meets a as well,
+//    stay     a         b  c                at the same place, and a is seen
+//    go          a' a''       c'
+//
+// They go only where there are thousands: a second tree costs every build a little, and an index that has one is made
+// anew instead of being refitted. Triangles with holes stay, because a copy may be seen through the hole of the other.
 #include <algorithm>
 #include <atomic>
 

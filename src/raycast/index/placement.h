@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Trees of meshes, brought into the world where a walk comes to them: boxes with room for rounding, triangles to the
 // bit as Surfaces places them. Inlined into kernels, so that each instruction set has its own.
+//
+//    mesh space                world space              A box of a mesh is placed by the interval arithmetic of its
+//     +-----+                   .--------.              matrix, and padded by more than the roundings of any corner
+//     |     |   world_from_mesh |  /  \  |              within it. So a placed box always holds the placed triangles,
+//     +-----+   ------------->  |  \  /  |              whose corners have the very bits that Surfaces gives them.
+//                               '--------'
 #pragma once
 
 #include <cmath>

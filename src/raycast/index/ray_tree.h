@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The inside of RayIndex: nodes of sixteen boxes, leaves of sixteen triangles, as structure of arrays.
+//
+//    node   low x   [ . . . . . . . . . . . . . . . . ]       A vector of the widest instruction set asks all sixteen
+//           low y   [ ................................ ]       boxes or triangles at once; narrower sets take 4 or 8 of
+//           ...                                                them in turn, and give the same bits.
+//           child   [ leaf | node | node | leaf ... ]
+//
+// Nodes that wide leave few of them between the root and a leaf, and a walk waits for memory that often. Lanes that are
+// not used hold zeros and come last.
 #pragma once
 
 #include <array>

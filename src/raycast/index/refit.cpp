@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // A RayIndex after its triangles have moved: leaves keep their triangles and nodes their children, boxes are fitted
 // anew from the leaves upwards.
+//
+//    clusters, as they moved --by id--> lane of a leaf        all triangles have a place in the old leaves
+//    leaves --> boxes --> nodes, from the last to the first    children come after their parents
+//
+// Where a triangle has no place, or one has gone, the index has to be built anew: refitting never changes which
+// triangles share a leaf.
 
 #include <algorithm>
 #include <atomic>
