@@ -30,7 +30,7 @@ enum class Shading : std::uint8_t {
 /// How the shadows of the key light are found.
 enum class Shadows : std::uint8_t {
   off,   ///< none
-  map,   ///< what the light sees on 1024 x 1024 texels, with edges a few of them wide
+  map,   ///< what the light sees on 256 to 1024 texels squared, as the picture needs, with edges a few of them wide
   rays,  ///< a ray to the light from every sample, exact: as sharp as the picture
 };
 
@@ -127,7 +127,7 @@ struct FigureOptions {
 /// What does not depend on the view is made when the first picture needs it, and kept: textures' mip levels, smooth
 /// normals, what throws shadows; and the key light's map as long as the light sees the same. From the second picture of
 /// a size on, opaque scenes without rays for shadows allocate nothing, as long as no picture needs more than those
-/// before. Memory: a third of the textures' texels that were seen, 12 bytes a triangle of meshes without normals, 8 MiB
+/// before. Memory: a third of the textures' texels that were seen, 12 bytes a triangle of meshes without normals, 4 MiB
 /// of maps. Not for several threads at once; each call uses the threads that it is given.
 class Shader {
  public:

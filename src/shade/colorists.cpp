@@ -77,15 +77,20 @@ glm::vec3 color_of_object(std::uint32_t object) {
 void Lit::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
   look_up_materials(materials, MaterialPart::all, setups, batch, isa);
   const Geometry& g = batch.geometry;
+  const int count = batch.coverage.count;
   bool faces_key[batch_capacity];
-  for (int i = 0; i < batch.coverage.count; ++i) {
+  for (int i = 0; i < count; ++i) {
     faces_key[i] = glm::dot(g.normal.at(i), lighting.to_key) > 0;
     batch.shadow[i] = 1;
     if ((map || rays) && faces_key[i] && comes_through(g, i, lighting.to_key)) {
       batch.shadow[i] = 0;
       faces_key[i] = false;
     }
-    if (map && faces_key[i]) batch.shadow[i] = map->light_at(g.smooth_position.at(i), g.plane_normal.at(i));
+  }
+  const Lane3 &at = g.smooth_position, &normal = g.plane_normal;
+  if (map) {
+    map->find_light({at.x.values, at.y.values, at.z.values, normal.x.values, normal.y.values, normal.z.values, count},
+                    faces_key, batch.shadow.values, isa);
   }
   if (rays) rays->find_light(setups, faces_key, batch);
   light_batch(lighting, batch, isa);

@@ -29,23 +29,24 @@ struct Shadowed {
   Scene scene;
   Surfaces surfaces;
   Visible visible;
+  Visible planes;  ///< of the map
   ShadowMap map;
 
   Shadowed(Scene s, const glm::dvec3& to_light, const View& view = front_view(256), const Execution& execution = {})
       : scene(std::move(s)),
         surfaces(scene),
         visible(zbuffer(surfaces, view)),
-        map(light_map(surfaces, visible, glm::normalize(to_light), execution)) {}
+        map(light_map(surfaces, visible, glm::normalize(to_light), planes, execution)) {}
 
   [[nodiscard]] float at(const glm::dvec3& world, const glm::vec3& normal = {0, 0, 1}) const {
-    return map.light_at(glm::vec3(world - visible.view.eye()), normal);
+    return light_at(map, glm::vec3(world - visible.view.eye()), normal);
   }
 };
 
 TEST(ShadowMap, AgreesWithRaysAwayFromTheEdge) {
   for (const glm::dvec3 to_light : {glm::dvec3(0, 0, 1), glm::dvec3(-1, 1, 2), glm::dvec3(2, 0.5, 1)}) {
     const double height = 0.4;
-    const Shadowed shadowed(floor_and_roof(height), to_light);
+    const Shadowed shadowed(floor_and_roof(height), to_light, front_view(640));
     int in_shadow = 0;
     for (double x = -1.8; x < 1.8; x += 0.07)
       for (double y = -1.8; y < 1.8; y += 0.07) {
@@ -111,6 +112,49 @@ TEST(ShadowMap, DoesNotDependOnThreads) {
   const Shadowed one(floor_and_roof(0.4), {-1, 1, 2}, front_view(256), {.threads = 1});
   const Shadowed many(floor_and_roof(0.4), {-1, 1, 2}, front_view(256), {.threads = 4});
   for (double x = -1; x < 1; x += 0.01) ASSERT_EQ(one.at({x, 0.3 * x, 0}), many.at({x, 0.3 * x, 0})) << x;
+}
+
+/// The tent over the texels around a point, one by one in doubles.
+double filtered_one_by_one(const ShadowGrid& grid, const glm::vec3& position, const glm::vec3& normal) {
+  const double x = glm::dot(grid.texel_x, position) + grid.at_eye.x,
+               y = glm::dot(grid.texel_y, position) + grid.at_eye.y;
+  const double cosine = std::abs(glm::dot(normal, grid.to_light));
+  const double slope = std::min(8.0, std::sqrt(std::max(0.0, 1 - cosine * cosine)) / std::max(cosine, 1e-9));
+  const double key = double(glm::dot(grid.key, position)) + grid.at_eye.z + grid.key_bias + slope * grid.key_slope_bias;
+  double sum = 0;
+  for (int v = int(y) - 6; v < int(y) + 7; ++v)
+    for (int u = int(x) - 6; u < int(x) + 7; ++u) {
+      const double weight = std::max(0.0, 4 - std::abs(u + 0.5 - x)) * std::max(0.0, 4 - std::abs(v + 0.5 - y));
+      if (weight > 0 && grid.keys[v * grid.size + u] <= key) sum += weight;
+    }
+  return sum / 256;
+}
+
+TEST(ShadowMap, IsATentOverTheTexelsAroundAPointOnEveryInstructionSet) {
+  const Shadowed shadowed(floor_and_roof(0.4), {-1, 1, 2});
+  const glm::vec3 normal = glm::normalize(glm::vec3(0.3f, 0.2f, 1));
+  int partly = 0;
+  for (double x = -1; x < 1; x += 0.017)
+    for (double y = -1; y < 1; y += 0.013) {
+      const glm::vec3 at(glm::dvec3(x, y, 0.001) - shadowed.visible.view.eye());
+      const float light = light_at(shadowed.map, at, normal);
+      ASSERT_NEAR(light, filtered_one_by_one(shadowed.map.grid(), at, normal), 1e-4) << x << ", " << y;
+      for (const Isa isa : available_isas()) ASSERT_EQ(light_at(shadowed.map, at, normal, isa), light) << name(isa);
+      partly += light > 0 && light < 1;
+    }
+  EXPECT_GT(partly, 200);
+}
+
+TEST(ShadowMap, IsAsFineAsThePictureNeeds) {
+  const auto texels = [](int size) {
+    const Scene scene = floor_and_roof(0.4);
+    const Surfaces surfaces(scene);
+    return view_of_light(zbuffer(surfaces, front_view(size)), surfaces.bounds(), {0, 0, 1}, {})->width;
+  };
+  EXPECT_EQ(texels(40), 256);
+  EXPECT_EQ(texels(256), 448);
+  EXPECT_EQ(texels(640), 1024);
+  EXPECT_EQ(texels(2000), 1024);
 }
 
 }  // namespace

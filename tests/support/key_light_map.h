@@ -7,15 +7,31 @@
 
 namespace frontmost::test {
 
-/// `to_light` is a unit vector.
+/// `to_light` is a unit vector; the map borrows `planes`.
 [[nodiscard]] inline shading::ShadowMap light_map(const Surfaces& surfaces, const Visible& visible,
-                                                  const glm::dvec3& to_light, const Execution& execution = {}) {
+                                                  const glm::dvec3& to_light, Visible& planes,
+                                                  const Execution& execution = {}) {
   shading::ShadowMap map;
   const auto light = shading::view_of_light(visible, surfaces.bounds(), to_light, execution);
   if (!light) return map;
-  map.draw(zbuffer(surfaces, *light, execution), execution);
+  planes = zbuffer(surfaces, *light, execution);
+  map.draw(planes, execution);
   map.measure_from(visible.view.eye());
   return map;
+}
+
+/// The part of the light that arrives at one point, given as ShadowPoints are.
+[[nodiscard]] inline float light_at(const shading::ShadowMap& map, const glm::vec3& position, const glm::vec3& normal,
+                                    Isa isa = Isa::best) {
+  float values[6][16] = {};
+  for (int k = 0; k < 3; ++k) {
+    values[k][0] = position[k];
+    values[3 + k][0] = normal[k];
+  }
+  const bool is_asked = true;
+  float light = 0;
+  map.find_light({values[0], values[1], values[2], values[3], values[4], values[5], 1}, &is_asked, &light, isa);
+  return light;
 }
 
 }  // namespace frontmost::test

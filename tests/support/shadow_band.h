@@ -33,7 +33,7 @@ class ShadowBandMeter {
         visible_(zbuffer(surfaces, view, execution)),
         index_(surfaces, execution),
         to_key_(shading::lighting_for(view, surfaces.scene().up).to_key),
-        map_(light_map(surfaces, visible_, glm::dvec3(to_key_), execution)) {
+        map_(light_map(surfaces, visible_, glm::dvec3(to_key_), planes_, execution)) {
     const auto light = shading::view_of_light(visible_, surfaces.bounds(), glm::dvec3(to_key_), execution);
     if (!light) return;
     axes_ = glm::dmat3(light->world_from_eye);
@@ -69,7 +69,7 @@ class ShadowBandMeter {
     are_lit(index_, {&point, 1}, to_key_, {&is_lit, 1}, {.threads = 1});
     band.in_shadow += is_lit == 0;
     const glm::vec3 position = shading::interpolate(setup.corner, weights);
-    const float by_map = map_.light_at(position, setup.plane_normal);
+    const float by_map = light_at(map_, position, setup.plane_normal);
     if (by_map == float(is_lit)) return;
     ++band.differing;
     band.opposite += by_map == float(1 - is_lit);
@@ -119,6 +119,7 @@ class ShadowBandMeter {
   Visible visible_;
   RayIndex index_;
   glm::vec3 to_key_;
+  Visible planes_;  ///< of the map
   shading::ShadowMap map_;
   glm::dmat3 axes_{1};
   glm::dvec3 corner_{0};  ///< of the map: its first texel's

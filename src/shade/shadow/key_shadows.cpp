@@ -50,7 +50,7 @@ void KeyShadows::draw_map(const Visible& visible, const glm::vec3& to_key, const
     if (!surfaces.made_clusters()) {
       Visible planes = zbuffer(surfaces, *light, execution);
       map_.draw(planes, execution);
-      light_.give_back(std::move(planes));
+      light_.give_back(std::move(planes));  // moved planes stay where they are
     } else {
       map_.draw(light_.draw(surfaces, *light, execution), execution);
     }
