@@ -16,7 +16,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME frontmost)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
 "Pictures, depth and id maps of 3D models from the command line, without a
-GPU or a display, the same bytes on every machine. Reads STL, PLY, OBJ, OFF,
+GPU or a display, the same pixels on every machine. Reads STL, PLY, OBJ, OFF,
 glTF and 3MF; writes PNG, OpenEXR, PFM and NPY.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libfrontmost-dev)
