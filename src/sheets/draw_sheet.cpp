@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A sheet from its options to its page: views, their places, their lines, and what is written about them.
+//
+//    options --> views are drawn --> cells --> plan: paper, scale, places
+//                                                 --> strokes, hatching, dimensions, frame --> Page
+//
+// Lines are found before the scale is known, because what is drawn says how much room it takes. Whatever is measured in
+// millimetres of paper comes after the plan: dashes, hatching, numbers.
 #include <algorithm>
 
 #include "base/parallel.h"

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The door of sheets: options that cannot be meant are refused here, by the names of their fields.
+//
+// Everything is checked before anything is drawn, and an error names the field and says what it may be. What comes
+// after this door needs no error paths but for what only the drawing itself can tell, as that a plane misses the model.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

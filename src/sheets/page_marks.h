@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What stands on a page beside the lines of a model: numbers, arrowheads, and the boxes that they cover.
+//
+// Marks are strokes of pens like the lines of the model, so that plotters and DXF have them, too: an arrowhead is two
+// slender triangles that the pen fills by drawing them.
 #pragma once
 
 #include <charconv>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Papers are those of ISO 216 and the American ones. Scales are those of ISO 5455, 1, 2 and 5 times a power of ten: the
+// largest that is not above a given one. Reductions are made by dividing whole numbers, so that 1:5 is the double
+// nearest to a fifth.
 #include <algorithm>
 #include <cmath>
 

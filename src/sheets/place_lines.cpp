@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is drawn in a view whose place on the page is settled: strokes, hatching, dots and centre lines.
+//
+// Strokes are chained in pixels of the view, and their tolerances are lengths on paper: so they are made when the scale
+// is known, and a sheet at 1:10 has no details that a pen could not draw.
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Lines of views as layers of a page. Layers are what kinds of line there are, in the order of drawing, so that what is
+// seen lies over what is hidden; their names begin with the number of a plotter's pen. Within a layer each object of
+// each view is a group by itself.
+//
+//    dashes on a line     |=====  ==  =====  ==  =====|      it begins and ends with a whole long dash: the long ones
+//                                                            are stretched to fit the length
 #include "frontmost/sheet_view.h"
 
 #include <cmath>

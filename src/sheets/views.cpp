@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Views of a sheet from their cameras to their lines, and what they take of the page.
+//
+//    camera --> surfaces (tessellated anew where they are curved, cut for a section) --> lines --> what they take
+//
+// Curved surfaces are made into triangles for each view, as fine as paper shows it; where the eye is so near that this
+// would be millions, they are made coarser.
 #include <algorithm>
 
 #include "frontmost/tessellate.h"

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which clusters can be seen at all, and where on the screen.
+//
+//       the frustum          A cluster is left out where all eight corners of its box lie outside of one side of the
+//     .   [c]      /         frustum, or where its cone of normals says that every triangle faces away. Others are
+//      .     [w]  /          drawn whole (w), or are taken apart triangle by triangle (a) where some of them may reach
+//   [a] .        /           the near plane or the guard band. What floats cannot tell is kept.
 #pragma once
 
 #include <vector>

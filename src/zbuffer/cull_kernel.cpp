@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Culling of clusters, as many at a time as the vector holds: by the frustum, over the eight corners of their boxes,
 // and by facing.
+//
+// Boxes are kept as columns, so that a vector of clusters is asked at once, and nothing is asked twice: the pixel
+// rectangle and the nearest key, which order and bin the clusters afterwards, come from the same eight corners.
 
 #include "zbuffer/cull.h"
 

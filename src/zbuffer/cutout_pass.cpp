@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles with holes, behind all others: no order, no tiles, no vectors. A look into a texture costs many depth
 // tests, so all that counts is to look only where the fragment would be seen.
+//
+// What is seen is a minimum, and a minimum may be taken in any order. So everything without holes is drawn first, by
+// the kernels that know nothing of textures, and a triangle with holes then meets a picture in which most of its
+// fragments are hidden: these are never looked up.
 
 #include <algorithm>
 

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is drawn where: the work of one frame, sorted into tiles, and the kernel that draws one of them.
+//
+//    clusters --cull--> whole ------ order by 32 slices of depth ------> cluster lists --+
+//                   +-> apart ------ triangles, clipped: records ------> record lists ---+--> a TileJob for each tile
+//
+// Both lists of a tile are nearest first. That is never needed for the picture; it makes the hierarchical depth hide
+// what comes later.
 #pragma once
 
 #include <span>

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // As many triangles at once as the vector holds: what all ways to draw them have in common.
+//
+//    lane        0     1     2    ...           A packet is as many triangles as the vector has lanes. Edges and key
+//    edge 0      e0    e0    e0                 planes are set up for all at once, and then all are walked in step: in
+//    edge 1      e1    e1    e1                 step k each lane asks about the k-th pixel of its own rectangle.
+//    key plane   k     k     k
 
 // Included once for every target.
 #if defined(FRONTMOST_ZBUFFER_PACKET_INL_H_) == defined(HWY_TARGET_TOGGLE)

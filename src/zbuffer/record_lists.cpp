@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which large triangles are drawn in which tiles, in rounds that keep the lists within a bound.
+//
+// Sorting is by nearness and then by corners, so that triangles with the same corners follow each other and all but the
+// lowest id go. The order never decides what is seen; without it a tile would draw what it overdraws later.
 
 #include "zbuffer/record_lists.h"
 

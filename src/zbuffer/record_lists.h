@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Large and clipped triangles, nearest first, and in which tiles they may be seen.
+//
+//    records    nearest first
+//    round 0    tiles 0 ... 40      lists of at most 2^26 items together
+//    round 1    tiles 41 ... 90     made when round 0 is drawn, in the same memory
+//
+// Large triangles are in many tiles, so lists are what could grow without bound: they are made round by round.
 #pragma once
 
 #include <memory>

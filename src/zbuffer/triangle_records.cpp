@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Setting up single triangles: those of clusters that cannot be drawn as a whole.
+//
+// A record is made where a cluster cannot be drawn as a whole: its corners are transformed and clipped one triangle
+// after the other, and what clipping leaves is a fan of triangles, whose inner edges the top-left rule covers once.
+// Snapping, culling and keys are those of the kernels to the bit.
 
 #include "zbuffer/triangle_records.h"
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles on the screen, set up one by one: the large ones, those that had to be clipped, and those with holes.
+//
+// Edge values are exact: corners have 22 bits, so products have 46 and fit 64-bit integers. Over a tile they are
+// shifted and limited to 32 bits in such a way that every sign stays what it was.
 #pragma once
 
 #include <algorithm>

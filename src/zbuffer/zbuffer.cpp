@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The z-buffer: plan the frame, then draw its tiles on all threads.
+//
+// A ZBuffer keeps its planes, its plan and its scratch memory from frame to frame. Tiles that stay empty are not even
+// filled again: `blank` knows which of the planes' tiles hold nothing. Where an error ends a frame, tiles that were
+// being drawn count as not blank.
 
 #include "frontmost/zbuffer.h"
 

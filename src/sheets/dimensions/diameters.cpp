@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// Circles of one size in a view share one number ("6x"). Places for it are tried around each circle, in twelve
+// directions and from near to far; the way of the leader costs its length, and more for every line that it crosses. The
+// cheapest place at which the number meets nothing is taken:
+//
+//             __6x...__            knee and shelf with the number
+//            /
+//           /                      leader, in one of twelve directions
+//      .--<'                       tip on the circle
+//     (  o  )
+//
+// The largest sizes go first, because their leaders have the longest ways around what lies within them. What has no
+// place is counted, so that the caller can say so.
 #include "sheets/dimensions/diameters.h"
 
 #include <algorithm>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Diameters on leader lines.
+// Diameters on leader lines: which circles of the views get one, each once on the sheet, and where its number stands.
+//
+// A cylinder that is cut by something else is found in several parts; parts about one axis with one radius count as
+// one. Circles that only end a chamfer at a wall have no diameter of their own.
 #pragma once
 
 #include <string>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Lines and numbers are kept in two groups, because they have pens of different widths. Everything that is drawn is at
+// once an obstacle for what comes later, so no number is put on a line that a dimension has drawn before.
 #include "sheets/dimensions/dimension_pen.h"
 
 #include <numbers>

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts that dimensions are drawn of: lines, arrowheads and numbers.
+// The parts that dimensions are drawn of, in the proportions of ISO 129:
+//
+//      |             |          extension lines begin 1 mm from what is measured
+//      |<---- 50 --->|          and end 2 mm beyond the dimension line
+//      |             |
 #pragma once
 
 #include <string_view>

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Dimensions: overall sizes first, then diameters where there is room.
+//
+//    views --> overall sizes: width below, height on the left, each direction of space once
+//          --> diameters, view by view, where there is room
+//
+// Upright sizes are drawn by the same code as level ones: x and y change places, and what is "below" becomes "left".
+// Numbers are rounded to as many digits as a drawing shows, and never by a half that only noise decides.
 #include "sheets/dimensions/dimensions.h"
 
 #include <algorithm>

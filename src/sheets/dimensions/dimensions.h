@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Dimensions of drawing sheets: overall sizes and diameters, as ISO 129 has them.
+//
+// Overall sizes are taken of what is drawn and not of the model's box, in the direction in which the view looks. A
+// cylinder of which both ends are outermost is measured by its diameter: the corners of its polygon would give a little
+// less.
 #pragma once
 
 #include <span>

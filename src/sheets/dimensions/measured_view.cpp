@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// A circle of twenty sides reaches a little less far than the circle that it stands for. So where a round surface is
+// the outermost thing, within what a side of 20 degrees leaves out, its own radius says how far the view reaches.
+// Extension lines begin at what is drawn at that end, the nearest to the dimension line.
 #include "sheets/dimensions/measured_view.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A view with what can be measured in it.
+// A view with what can be measured in it: how far it reaches along its axes, in units of the scene and on the page, and
+// which circles are seen along their axes.
 #pragma once
 
 #include "sheets/dimensions/dimensions.h"

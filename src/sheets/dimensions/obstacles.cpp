@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Lines are cut into pieces of about a cell, arcs into chords, and each piece is listed in the cells that its box
+// touches. A place for a number is asked in a few cells then. Texts are few and are gone through one by one.
 #include "sheets/dimensions/obstacles.h"
 
 #include <algorithm>

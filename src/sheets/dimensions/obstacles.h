@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What stands on a page already: where there is room for text.
+//
+//    +----+----+----+----+      Cells are about as large as a number. A box is free where it lies on the page and meets
+//    |  __|____|___ |    |      neither a line of its cells nor a text; a leader may cross lines, each at a cost, and
+//    | /  | 50 |   \|    |      never a text.
+//    +----+----+----+----+
 #pragma once
 
 #include <span>

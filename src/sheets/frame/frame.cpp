@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The frame of a sheet after ISO 5457: border, zones, centring and trimming marks.
+//
+//      1   2   3   4          Zones are counted from the middle of each side, an even number on each. Their border lies
+//    +---+---+---+---+        outside of the frame, so that the drawing space stays whole; pages as narrow as A4 have
+//  A |               | A      letters and figures on two sides alone.
+//    +               +
+//  B |               | B
+//    +---+---+---+---+
 #include <algorithm>
 #include <cmath>
 

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fields of a title block after ISO 7200, with their names in small letters above what they say.
+//
+//    +--------------+--------------+-------------+
+//    | Legal owner  | Created by   | Doc. type   |   Letters have the heights of ISO 3098. A text that is too wide for
+//    |              | Approved by  | Number      |   its field goes into two lines before it gets smaller letters, and
+//    | Scale | Pro- | Title        |             |   below the smallest height it is made as small as it has to be:
+//    | Unit  | jec. |              | Date | Sheet|   nothing is cut off.
+//    +--------------+--------------+-------------+
 #include "sheets/frame/title_block.h"
 
 #include <algorithm>

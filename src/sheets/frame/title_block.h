@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames and title blocks of drawing sheets, after ISO 5457 and ISO 7200.
+//
+//    +--------------------------+     The frame leaves a drawing space, from corner to corner. The title block stands
+//    | +----------------------+ |     in its lower right corner; views stand above it or beside it.
+//    | |  drawing space       | |
+//    | |             +--------+ |
+//    | |             | block  | |
+//    +-+-------------+--------+-+
 #pragma once
 
 #include <vector>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Along an axis a line of cells is as wide as the widest view before its anchor and the widest behind it, at the scale,
+// and the room for what is written beside them, which does not scale. So the size of a layout is linear in the scale,
+// and the largest scale for an area is a division.
 #include "sheets/layout/layout.h"
 
 #include <algorithm>

@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the views of a sheet stand, in columns and rows about the front one; its size and its scale.
+//
+//               column -1   0     1             third-angle projection: what is seen from a side stands on that side
+//    row -1                 top   iso           first-angle projection: on the other side
+//    row  0     left     front  right  back
+//    row  1              bottom
+//
+// Views in line share an axis: anchors of a row are at one height, so that an edge is at the same height in all of
+// them.
 #pragma once
 
 #include <string>

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The paper of a sheet and its scale: the largest that has room, or what was asked for.
+//
+//    pages in question, in the order of preference --> the largest scale on each
+//        --> rounded to ISO 5455, or as asked for --> views spread over what room is left
+//
+// Where a title block stands in a corner, whether a layout has room depends on where it stands, and the largest scale
+// has no formula. It is found by halving: a layout that has room at a scale has room at every smaller one.
 #include <algorithm>
 #include <optional>
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Letters of one stroke's width, upright, in the proportions of ISO 3098-1 type B: drawn for this library, of lines and
 // circular arcs that meet without corners, as templates have them.
+//
+// Strokes are the way of a pen's middle, as in ISO 3098: letters have one width of line, can be plotted, and are the
+// same on every machine because no font is needed.
 #include "sheets/lettering/glyphs.h"
 
 #include <algorithm>

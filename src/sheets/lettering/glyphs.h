@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shapes of letters.
+// The shapes of letters, as text that can be read and mended beside a letter on squared paper.
+//
+//     9 |      /.        capitals     "A" is  0,0 3,9 6,0;1,3 5,3  : up and down again, and the bar
+//     6 |     /  .       small
+//     3 |    /----.                   An arc is told by how many eighths of a circle it turns on the way to the
+//     0 |   /      .     baseline     next point; that and its ends are all that there is to it.
 #pragma once
 
 namespace frontmost::detail {

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// A text is set letter by letter: the strokes of each are scaled and turned, and the next letter begins at a fixed
+// distance behind them. Letters with marks are put together from a base and a mark, which stands higher on tall
+// letters. For what has no letter stands missing_glyph(), so that nothing disappears from a drawing in silence.
 #include "frontmost/lettering.h"
 
 #include <algorithm>

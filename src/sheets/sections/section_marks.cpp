@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+//    A               A          A cutting line is thin, with long dashes and dots, and has thick ends beyond what it
+//    |               |          cuts. Arrows at the ends point the way the section looks, with its letter behind them:
+//    v               v          the same letter, twice, is the name of the view.
+//    ===- - - . - ===
 #include "frontmost/lettering.h"
 #include "sheets/page_marks.h"
 #include "sheets/sections/sections.h"

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+// A section is a view of what its plane leaves of the model. The plane is seen from its edge in views that look along
+// another axis: the first of these gets the cutting line, and that may be another section. The section stands where the
+// view would stand that looks the same way, if that place is free, and otherwise in a column of its own behind those of
+// all views.
 #include "sheets/sections/sections.h"
 
 #include <algorithm>

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The depth buffer: planes that outlive draw calls.
+//
+// A draw call is in three steps: the state becomes rules for this view and format, the triangles become batches in the
+// order of their ids, and every batch is drawn into the tiles that it is in. Tiles are independent, so threads share no
+// sample, and within a tile all batches come in order.
 #include "frontmost/depth_buffer.h"
 
 #include <algorithm>

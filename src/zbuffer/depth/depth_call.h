@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // A draw call of a depth buffer: what a DepthState means for one view and one format, worked out once a call, and the
 // kernel that draws placed triangles by it into one tile.
+//
+//    DepthState, view, format --rules_for()--> DepthRules: a line from keys to depths, three flags for eight functions
+//    triangle --offset_of()--> its polygon offset                  depth of a sample = limited(line(key) + offset)
+//
+// The kernel thus knows no depth function, no direction and no format but whether depths are floats: everything else is
+// numbers.
 #pragma once
 
 #include <span>

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // From the state to constants of a draw call, and the formats' roundings.
+//
+//    key      0 ............................ 1          0: at infinity, or at the far plane in parallel projection
+//    depth    at_far ................. at_near          the depth range, either way round; limited to it
+//
+// Keys are affine over the screen, and so are depths, because one is a line over the other. Depths are worked out in
+// double and rounded once, to 8, 16 or 24 bits or to a float, so that every machine stores the same.
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Drawing one tile from batches: the same triangles into the same buffer as tile_kernel.cpp, from another source.
+//
+// A batch is left out of a tile where its nearest key is hidden in all of the blocks that it touches there. Its
+// triangles come from columns, in runs; small ones are queued as those of clusters are, large ones are records and come
+// first.
 
 #include "zbuffer/direct/direct_frame.h"
 

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // One picture of a scene, straight from its own arrays, and the kernel that draws a tile of it from batches.
+//
+//    scene's arrays --survey--> batches, nearest first --place--> on the screen --lists--> tiles --draw_batches-->
+//       again for the next some hundred batches, on what the planes and `farthest` hold by then
+//
+// Clusters are worth their making from the second picture on. The first one is drawn without them, from the arrays as
+// they were loaded, and has the same bits.
 #pragma once
 
 #include <span>

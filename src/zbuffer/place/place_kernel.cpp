@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Putting triangles into batches: vertices, pixel rectangles and facing, many at a time.
+//
+//    vertices     each once, snapped to 1/256 pixel, with a mark where it cannot be
+//    triangles    corners gathered --> bounds, facing, samples between them?
+//                 small and whole:   turned, and appended to the columns of the batch
+//                 anything else:     its number goes to `apart`, and it is clipped by itself
+//
+// A triangle that has no sample between its bounds is left out at once.
 
 #include "zbuffer/place/place_kernel.h"
 

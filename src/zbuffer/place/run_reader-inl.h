@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reading the triangles of a batch that lie in one tile, a packet at a time and in their order.
+//
+//    run of 20, vectors of 16    [ whole vector as it stands ][4 numbers wait]
+//    next run of 7               [4 + 7 numbers wait]
+//    next run of 9               [16 numbers: gathered together][4 wait]
+//
+// Long runs are read as they stand in memory; what is left of them waits, so that vectors are always full. The order of
+// triangles stays that of the runs, which the depth buffer needs.
 
 // Included once for every target.
 #if defined(FRONTMOST_ZBUFFER_RUN_READER_INL_H_) == defined(HWY_TARGET_TOGGLE)

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // From the scene's own arrays to triangles on the screen, in the order of their ids.
+//
+// A batch is placed in one call for each range of a mesh that it holds. Triangles that must be clipped, or are large,
+// are single ones with lists of their own; where a tile has some, its runs of small triangles are parted at their ids,
+// so that all come in the order of submission.
 
 #include "zbuffer/place/submission.h"
 

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Batches of triangles in the order of their ids, for what must draw them so: in the order of submission, as OpenGL
 // calls it.
+//
+//    ids         0 1 2 3 4 5 6 7 8 9 ...
+//    small       0 1 2   4 5   7 8 9            runs of the columns
+//    single            3     6                  large, or clipped
+//    drawn       [0 1 2] 3 [4 5] 6 [7 8 9]      in the order of ids, in every tile
 #pragma once
 
 #include <algorithm>

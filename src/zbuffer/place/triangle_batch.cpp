@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lists by tile of a batch: runs of triangles where neighbours in the file lie in the same tiles.
+//
+//    triangle    0     1     2     3     4          consecutive triangles that touch the same tiles are one run
+//    tiles       A     A     A,B   A,B   B          runs of A: [0,1] [2,3]      runs of B: [2,3] [4]
+//
+// Where triangles are strewn, every run has one of them, and lists get as long as the batch. Then triangles are sorted
+// by their tiles first. That loses their order, which only the picture without an order of submission can afford.
 
 #include "zbuffer/place/triangle_batch.h"
 

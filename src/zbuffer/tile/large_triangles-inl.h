@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles of more than a few pixels, one at a time: all blocks of the tile are classified at once, and what is left
 // of them is filled in whole rows.
+//
+//    +--+--+--+--+      Of the 64 blocks of a tile one bit each tells which the triangle touches (t), which lie inside
+//    |  |tt|tt|  |      of all three edges (f), and which are hidden by what is there. Hidden blocks are left out, full
+//    |tt|ff|ff|tt|      ones need no edges, and what is left is filled a row of samples at a time. A block that the
+//    |tt|tt|tt|  |      triangle covers wholly also bounds what may be seen behind it.
+//    +--+--+--+--+
 
 // Included once for every target.
 #if defined(FRONTMOST_ZBUFFER_LARGE_TRIANGLES_INL_H_) == defined(HWY_TARGET_TOGGLE)

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles of a few pixels, as many at once as the vector holds: all of a packet are walked pixel by pixel in step,
 // and the covered pixels of all are then merged into the tile together.
+//
+//    queue --full--> packet: edges, planes, rectangles --> walk --> (triangle, pixel) pairs --> merged together
+//                       +-- too large, or steep --> LargeTriangles, one by one
+//
+// Pairs of different triangles may be of one pixel. They are merged as words of key and id of which the greater stays,
+// so the order in which they come does not matter.
 
 // Included once for every target.
 #if defined(FRONTMOST_ZBUFFER_SMALL_TRIANGLES_INL_H_) == defined(HWY_TARGET_TOGGLE)

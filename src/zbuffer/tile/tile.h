@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tiles of the picture: where they are, what they are drawn to, and the memory that drawing one takes.
+//
+//    picture      tiles of 128 x 128 pixels, row by row, each drawn by one thread
+//    tile         8 x 8 blocks of 16 x 16 pixels, one bit each in masks of 64 bits
+//    word         | key: 32 bits | ~id: 32 bits |      the greater word is nearer, or as near with the lower id
+//
+// A tile's words are the private memory of a thread until the tile is written out: threads never share a sample, and
+// nothing is locked.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // For every tile of a range a list of numbers.
+//
+//    begin    tile 0: 0    tile 1: 3    tile 2: 3    tile 3: 7 ...
+//    items    | a b c |    |            | a d e f |  ...
+//
+// Items are counted by tile first and then filled, in their own order: so lists need no memory of their own, and what
+// was sorted stays sorted.
 #pragma once
 
 #include <span>
