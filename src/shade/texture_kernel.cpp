@@ -16,26 +16,43 @@
 #include "base/isa.h"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
+// After Highway: a block of its own.
+#include "base/lane_types-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::shading {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace frontmost::HWY_NAMESPACE;
 namespace {
 
-inline float Log2(float value) {
-  std::uint32_t bits;
-  std::memcpy(&bits, &value, sizeof bits);
-  const float exponent = float(int(bits >> 23) - 127);
-  bits = (bits & 0x007FFFFFu) | 0x3F800000u;
-  float mantissa;
-  std::memcpy(&mantissa, &bits, sizeof mantissa);
+HWY_INLINE VF All(float value) { return hn::Set(DF(), value); }
+
+/// log2 of positive numbers to within 0.01, by operations that every machine rounds alike.
+HWY_INLINE VF Log2(VF value) {
+  const DF d;
+  const DI di;
+  const VI bits = hn::BitCast(di, value);
+  const VF exponent = hn::ConvertTo(d, hn::Sub(hn::ShiftRight<23>(bits), hn::Set(di, 127)));
+  const VI mantissa = hn::Or(hn::And(bits, hn::Set(di, 0x007FFFFF)), hn::Set(di, 0x3F800000));
   // A parabola through the exact values at 1 and 2, so that there is no step between octaves.
-  const float t = mantissa - 1.0f;
-  return exponent + t * (1.3465f - 0.3465f * t);
+  const VF t = hn::Sub(hn::BitCast(d, mantissa), All(1.0f));
+  return hn::Add(exponent, hn::Mul(t, hn::Sub(All(1.3465f), hn::Mul(All(0.3465f), t))));
 }
 
-inline float Length(float x, float y) { return std::sqrt(x * x + y * y); }
+HWY_INLINE VF Length(VF x, VF y) { return hn::Sqrt(hn::Add(hn::Mul(x, x), hn::Mul(y, y))); }
+
+/// Coordinates of a texture, or steps of them.
+struct UV {
+  VF u, v;
+};
+HWY_INLINE UV Turned(const TexcoordTransform& transform, const Lane2& lanes, int i) {
+  const DF d;
+  const VF x = hn::LoadU(d, &lanes.x[i]), y = hn::LoadU(d, &lanes.y[i]);
+  const glm::vec2 across = transform.across(), down = transform.down();
+  return {hn::Add(hn::Mul(All(across.x), x), hn::Mul(All(down.x), y)),
+          hn::Add(hn::Mul(All(across.y), x), hn::Mul(All(down.y), y))};
+}
 
 /// Places of fragments in a texture, the axis along which their footprints reach farthest, and how far.
 struct Footprints {
@@ -46,37 +63,38 @@ struct Footprints {
 };
 
 void FindFootprints(const TapRequest& request, Footprints& out) {
+  const DF d;
   const Geometry& g = request.geometry;
-  const glm::vec2 across = request.transform.across(), down = request.transform.down();
-  const glm::vec2 offset = request.transform.offset();
   const Pyramid::Level& finest = request.pyramid.levels().front();
-  const float width = float(finest.width), height = float(finest.height);
-  const float last = float(request.pyramid.levels().size() - 1);
-  const bool is_nearest = request.pyramid.texture().nearest;
-  for (int k = 0; k < request.count; ++k) {
+  const VF width = All(float(finest.width)), height = All(float(finest.height));
+  const VF last = All(float(request.pyramid.levels().size() - 1)), one = All(1.0f), zero = hn::Zero(d);
+  const MF is_filtered = hn::Gt(All(request.pyramid.texture().nearest ? 0.0f : 1.0f), zero);
+  for (int k = 0; k < request.count; k += int(hn::Lanes(d))) {
     const int i = request.begin + k;
-    const float s = g.texcoord.x[i], t = g.texcoord.y[i];
-    const float sx = g.texcoord_dx.x[i], tx = g.texcoord_dx.y[i], sy = g.texcoord_dy.x[i], ty = g.texcoord_dy.y[i];
-    out.u[k] = (across.x * s + down.x * t) + offset.x;
-    out.v[k] = (across.y * s + down.y * t) + offset.y;
-    const float ux = across.x * sx + down.x * tx, vx = across.y * sx + down.y * tx;
-    const float uy = across.x * sy + down.x * ty, vy = across.y * sy + down.y * ty;
-    const float along_x = Length(ux * width, vx * height), along_y = Length(uy * width, vy * height);
-    const bool is_x = along_x > along_y;
-    const float longer = is_x ? along_x : along_y, least = is_x ? along_y : along_x;
-    const float shorter = least > 1.0f ? least : 1.0f;
-    const bool is_small = !(longer > 1.0f), is_huge = !is_small && !(longer < 1e30f);
-    const bool is_plain = is_small || is_huge || is_nearest;
-    const float ratio = is_plain ? 1.0f : longer / shorter;
-    const int count = ratio < float(most_taps) ? int(ratio + 0.999f) : most_taps;
-    const float widest = longer * (1.0f / most_taps);
-    const float wanted = Log2(is_plain ? 1.0f : (shorter > widest ? shorter : widest));
-    const float level = is_huge ? last : (wanted > 0.0f ? (wanted < last ? wanted : last) : 0.0f);
-    const bool is_spread = count > 1;
-    out.count[k] = count;
-    out.level[k] = level;
-    out.axis_u[k] = is_spread ? (is_x ? ux : uy) : 0.0f;
-    out.axis_v[k] = is_spread ? (is_x ? vx : vy) : 0.0f;
+    const UV at = Turned(request.transform, g.texcoord, i);
+    const UV dx = Turned(request.transform, g.texcoord_dx, i), dy = Turned(request.transform, g.texcoord_dy, i);
+    const VF along_x = Length(hn::Mul(dx.u, width), hn::Mul(dx.v, height));
+    const VF along_y = Length(hn::Mul(dy.u, width), hn::Mul(dy.v, height));
+    const MF is_x = hn::Gt(along_x, along_y);
+    const VF longer = hn::IfThenElse(is_x, along_x, along_y), least = hn::IfThenElse(is_x, along_y, along_x);
+    const VF shorter = hn::IfThenElse(hn::Gt(least, one), least, one);
+    // Magnified ones have one tap in the finest level; beyond all numbers they have the average, which is the last.
+    const MF is_minified = hn::And(is_filtered, hn::Gt(longer, one)), is_finite = hn::Lt(longer, All(1e30f));
+    const MF is_plain = hn::Not(hn::And(is_minified, is_finite));
+    const VF ratio = hn::IfThenElse(is_plain, one, hn::Div(longer, shorter));
+    const VF count = hn::IfThenElse(hn::Lt(ratio, All(float(most_taps))), hn::Floor(hn::Add(ratio, All(0.999f))),
+                                    All(float(most_taps)));
+    const VF widest = hn::Mul(longer, All(1.0f / most_taps));
+    const VF reach = hn::IfThenElse(hn::Gt(shorter, widest), shorter, widest);
+    const VF wanted = Log2(hn::IfThenElse(is_plain, one, reach));
+    const VF within = hn::IfThenElse(hn::Lt(wanted, last), hn::IfThenElseZero(hn::Gt(wanted, zero), wanted), last);
+    const MF is_spread = hn::Gt(count, one);
+    hn::StoreU(hn::Add(at.u, All(request.transform.offset().x)), d, out.u + k);
+    hn::StoreU(hn::Add(at.v, All(request.transform.offset().y)), d, out.v + k);
+    hn::StoreU(hn::IfThenElseZero(is_spread, hn::IfThenElse(is_x, dx.u, dy.u)), d, out.axis_u + k);
+    hn::StoreU(hn::IfThenElseZero(is_spread, hn::IfThenElse(is_x, dx.v, dy.v)), d, out.axis_v + k);
+    hn::StoreU(hn::IfThenElse(hn::And(is_minified, hn::Not(is_finite)), last, within), d, out.level + k);
+    hn::StoreU(hn::ConvertTo(DI(), count), DI(), out.count + k);
   }
 }
 
@@ -89,8 +107,9 @@ void SpreadTaps(const TapRequest& request, const Footprints& footprints, Taps& t
     taps.level[k] = std::uint8_t(level);
     taps.blend[k] = footprints.level[k] - float(level);
     const std::array<float, 4> sizes = request.pyramid.sizes_from(level);
+    const float step = 1.0f / float(count);
     for (int t = 0; t < count; ++t, ++n) {
-      const float at = (float(t) + 0.5f) / float(count) - 0.5f;
+      const float at = (float(t) + 0.5f) * step - 0.5f;
       const float u = footprints.u[k] + footprints.axis_u[k] * at, v = footprints.v[k] + footprints.axis_v[k] * at;
       float* const place = taps.place.values + 4 * n;
       place[0] = place[2] = u;
