@@ -8,7 +8,7 @@
 namespace frontmost::test {
 namespace {
 
-Image read(const std::string& bytes) { return load_image(std::as_bytes(std::span(bytes)), "m"); }
+Image read_hdr(const std::string& bytes) { return load_image(std::as_bytes(std::span(bytes)), "m"); }
 
 /// Noise, and long and short runs of pixels and of single components.
 RadianceRows random_rows(std::size_t width, std::size_t height, unsigned seed) {
@@ -42,7 +42,7 @@ void expect_values(const Image& image, const RadianceRows& rows) {
 
 TEST(Radiance, KnownValues) {
   const Image image =
-      read(plain_radiance({{{128, 64, 255, 129}, {200, 100, 50, 0}, {1, 255, 0, 1}, {255, 1, 0, 255}}}));
+      read_hdr(plain_radiance({{{128, 64, 255, 129}, {200, 100, 50, 0}, {1, 255, 0, 1}, {255, 1, 0, 255}}}));
   const Buffer<float>&r = image.find("R")->floats(), &g = image.find("G")->floats(), &b = image.find("B")->floats();
   EXPECT_EQ(r[0], 1.0f);
   EXPECT_EQ(g[0], 0.5f);
@@ -56,13 +56,13 @@ TEST(Radiance, RowsOfEveryKind) {
   for (const std::size_t width : {1u, 2u, 7u, 8u, 9u, 127u, 128u, 129u, 255u, 256u, 257u, 700u, 1024u}) {
     SCOPED_TRACE(width);
     const RadianceRows rows = random_rows(width, 5, unsigned(width));
-    expect_values(read(plain_radiance(rows)), rows);
-    expect_values(read(repeating_radiance(rows)), rows);
-    if (width >= 8) expect_values(read(packed_radiance(rows)), rows);
+    expect_values(read_hdr(plain_radiance(rows)), rows);
+    expect_values(read_hdr(repeating_radiance(rows)), rows);
+    if (width >= 8) expect_values(read_hdr(packed_radiance(rows)), rows);
   }
   const RadianceRows black(2, std::vector<RadiancePixel>(16384, {0, 0, 0, 0}));
-  expect_values(read(repeating_radiance(black)), black);
-  expect_values(read(packed_radiance(black)), black);
+  expect_values(read_hdr(repeating_radiance(black)), black);
+  expect_values(read_hdr(packed_radiance(black)), black);
 }
 
 TEST(Radiance, RowsMayBePackedEachInItsWay) {
@@ -72,14 +72,14 @@ TEST(Radiance, RowsMayBePackedEachInItsWay) {
   bytes += plain_radiance({rows[0]}).substr(header);
   bytes += packed_radiance({rows[1]}).substr(header);
   bytes += repeating_radiance({rows[2]}).substr(header);
-  expect_values(read(bytes), rows);
+  expect_values(read_hdr(bytes), rows);
 }
 
 TEST(Radiance, PicturesMayBeginAtAnyCorner) {
   const std::string pixels =
       bytes_of({10, 0, 0, 136}) + bytes_of({20, 0, 0, 136}) + bytes_of({30, 0, 0, 136}) + bytes_of({40, 0, 0, 136});
   const auto red = [&](const std::string& size) {
-    const Image image = read(radiance_header(size) + pixels);
+    const Image image = read_hdr(radiance_header(size) + pixels);
     const Buffer<float>& values = image.channels[0].floats();
     return std::vector<float>(values.begin(), values.end());
   };
@@ -97,7 +97,7 @@ TEST(Radiance, HeadersAsTheyAreWritten) {
   for (const char* header : {"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n", "#?RGBE\n\n-Y 1 +X 1\n",
                              "#?RADIANCE\r\nFORMAT=32-bit_rle_rgbe\r\n\r\n-Y 1 +X 1\r\n",
                              "#?RADIANCE\nGAMMA=1\nVIEW= -vtl\n# any\n\n-Y 1 +X 1\n"})
-    EXPECT_EQ(read(header + pixel).channels[0].floats()[0], 1.0f) << header;
+    EXPECT_EQ(read_hdr(header + pixel).channels[0].floats()[0], 1.0f) << header;
 }
 
 TEST(Radiance, ErrorsSayWhere) {
