@@ -4,6 +4,9 @@
 //   members --push--> work, the next on top      sort: pieces that may have an order    -> paint and part
 //                       |          ^             part: a cycle, cut in two by a plane   -> part and sort
 //                       +---run----+             paint: pieces in their order           -> the result
+//
+// Parting stops as soon as groups are small enough to be sorted again: a plane that parts a cycle mostly leaves pieces
+// that have an order, and every further plane would cut pieces that need no cut.
 #include "frontmost/painter.h"
 
 #include <algorithm>

@@ -2,6 +2,14 @@
 // A piece's corners are known twice: as doubles with a bound on their error, and as the planes that meet there. The
 // planes are always those of triangles and of sight, never of what was worked out, so that an exact sign stays a
 // polynomial of the ninth degree in what was given, however often a piece was cut.
+//
+//    cut by a plane       corners     front  0  back       A corner in the plane belongs to both halves. A side between
+//                         front:      + + 0 (cut)           a corner on one side and one on the other gets a new corner
+//                         back:       (cut) 0 - -           in both, the same to the bit.
+//
+// A new corner's place is told twice, between the ends of its side and where three planes meet, and the better one is
+// kept, with its bound. Its side of any plane is asked by that place as long as the bound allows, and else exactly by
+// its planes.
 #include "painter/pieces.h"
 
 #include <algorithm>

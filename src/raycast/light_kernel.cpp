@@ -5,6 +5,15 @@
 // Vectors decide with a bound on all rounding what is certainly missed and certainly met; what is left, mostly
 // neighbours seen through their common edge, is decided by stands_before(). So the answers do not depend on the order
 // of the rays, nor on the instruction set.
+//
+//           light                   rays as points       All rays go the same way, so each is a point (u, v) of the
+//             \   \   \               . . . .            sheared plane with a height d at which it starts. A triangle
+//        tri __\___\                 . /\ .              is met by the points inside of its outline whose start lies
+//               \   \   \            ./  \.              below it.
+//          ______\___\___\ points    '----'
+//
+// Rays that have met something take no further part, and a packet ends when all of its rays have. A start that is not
+// valid is lit: nothing stands before what is nowhere.
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,10 @@
 // One ray through the tree: sixteen boxes or triangles at a time. Vectors only leave out what is certainly missed, or
 // lies behind what is certainly met; what remains, one or two triangles a ray, is decided by meet(). Rays of a batch go
 // through large trees in turns, one fetching while the others work.
+//
+//    ray 0   fetch ------> work   fetch ------> work       Nodes of large trees come from memory. While one ray's next
+//    ray 1      fetch ------> work   fetch ------>         node is on its way others look into theirs, so that the
+//    ray 2         fetch ------> work   fetch ------>      waiting overlaps.
 
 #include <algorithm>
 #include <array>

@@ -3,6 +3,13 @@
 //
 // Sines and cosines come from turn(), which has the same bits on every machine and is exact at quarters: a scanner's
 // ray straight to the right is (1, 0, 0), not off by the rounding of pi.
+//
+//    panorama   columns are azimuths, rows are elevations
+//    fisheye    the angle from the axis grows with the distance from the middle; beyond the rim there is no ray
+//    lidar      columns are steps, rows are its rings
+//    pattern    one row of directions, as they are given
+//
+// All of them give rays for a grid of columns and rows, in parts of a few thousand, so one scan serves them all.
 #include "frontmost/ray_camera.h"
 
 #include <algorithm>

@@ -3,6 +3,9 @@
 //
 // Strokes are chained in pixels of the view, and their tolerances are lengths on paper: so they are made when the scale
 // is known, and a sheet at 1:10 has no details that a pen could not draw.
+//
+// Whatever is shorter or nearer together than a pen can draw is left out here, not when a file is written: all formats
+// then have the same strokes.
 #include <algorithm>
 #include <cmath>
 

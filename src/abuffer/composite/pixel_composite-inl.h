@@ -3,6 +3,10 @@
 //
 // Weights, their sums and the order in which colours are added are those of group_composite-inl.h. So the bits are the
 // same where the fragments do not change places after all.
+//
+//    list        a   b   c   d            b and c cross in the pixel: they are a run, and each sub-sample sorts the run
+//    run             [b   c]              by its own keys. What lies before and behind a run has one order everywhere.
+//    samples     b c | c b | b c ...
 
 // Included once for every target.
 #if defined(FRONTMOST_ABUFFER_PIXEL_COMPOSITE_INL_H_) == defined(HWY_TARGET_TOGGLE)

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The arithmetic of hidden_by() and of the bounds of exact_vector.h, operation by operation, so that every lane has
 // their bits.
+//
+// Boxes and sides are floats in cells, sixteen at a time: they only leave out. What they leave is held against the edge
+// in doubles, eight triangles at a time, with bounds on the errors of all four functions: it hides nothing, hides an
+// interval for certain, or is left open.
 
 #include "lines/hiding/shadow_kernel.h"
 

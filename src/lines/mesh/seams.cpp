@@ -2,6 +2,13 @@
 // Fillers that share sides lie on one line: a seam, with all of their corners in order. Whatever the fillers' pattern,
 // each of them has every stretch between two neighbouring corners twice, on its long side and on one of its short ones.
 // So the other triangles' sides, cut at all corners, pair up as well without the fillers as they did with them.
+//
+//    fillers that share sides      A-M-B, A-N-M ...      one line each, found by uniting fillers with a side in common
+//    corners of the line           A N M B               in order: any axis will do on which two of them differ
+//    a triangle with the side A-B  becomes A-N-C, N-M-C, M-B-C
+//
+// Lines are exact, because whether a triangle has no area is an exact sign; and the order along a line is that of one
+// coordinate, without any arithmetic.
 #include <algorithm>
 #include <functional>
 #include <vector>

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Normals in doubles, many at once. Which way a triangle faces is on which side of its plane the eye is: that takes its
 // normal, which creases need, too. Where rounding could matter, the side is asked for again, exactly.
+//
+//    bits of a triangle   turns left along x, y, z | turns right along x, y, z | climbs, by corner and axis | facing
+//
+// All of these are told for as many triangles as there are lanes, without branches; only the facing of those that
+// rounding leaves open is worked out one by one.
 
 #include "base/parallel.h"
 #include "lines/mesh/seen_mesh.h"

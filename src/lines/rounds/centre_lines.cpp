@@ -1,6 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Centre lines of a view. All are pieces of straight lines: those along one line are joined where they meet, or where a
 // drafter would not lift the pen, so that concentric circles have one cross and a stepped bore one axis.
+//
+//           |                 A circle that is seen along its axis has a cross, a cylinder from the side has its axis,
+//        .--+--.              both a little longer than what they are drawn for. All are pieces of lines: sorted by
+//     --(---+---)--           direction, by how far the line is from the corner of the picture, and along it.
+//        '--+--'
+//           |
+//
+// A piece is joined with the one before it on the same line if the gap is one over which a drafter would draw on. Axes
+// are joined before they are made longer, so that their gaps are those of the bores themselves.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

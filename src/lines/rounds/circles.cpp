@@ -2,6 +2,16 @@
 // Runs of corners on a circle are made twice as long while they fit, and then halved, as those of arcs on paper are:
 // a circle through its first, its middle and its last corner is right to the rounding of corners, one through three
 // neighbours is not.
+//
+//    corners of a chain     0   1   2   3   4   5   6   7   8   9 ...
+//    tried                  |---------------|  4 sides fit
+//                           |-------------------------------|  8 fit
+//                           |---------------------------------------- ...  16 do not
+//    then halved            the longest run that fits, in a number of tries that grows with its logarithm
+//
+// Arcs of one circle are then put together, in whatever chains they were found: a rim is parted wherever another edge
+// meets it. Circles are looked up by the cells of a grid that their centres lie in; what counts as the same is less
+// than half a cell apart, so eight cells are asked.
 #include <algorithm>
 #include <map>
 #include <numbers>

@@ -2,6 +2,13 @@
 // A wall grows over all neighbours that are smooth, stand upright about its axis and have their corners at its radius.
 // It begins at a circle of sharp edges, or where there is none, as between fillets, at two neighbours. Those know
 // little of their axis, so that it is found anew whenever there are twice as many.
+//
+//    circle ==> triangles at it that stand upright ==> their smooth neighbours, whose corners lie on the tube
+//    seed   ==> two triangles that turn about a common side ==> the same; the tube is fitted anew as they get more
+//
+// Walls from circles come first, because a circle says where the axis is better than a few triangles do. What was
+// looked at by a wall that came to nothing is free for another, if it was short: it may belong to one that begins with
+// a better axis.
 #include <algorithm>
 #include <numbers>
 

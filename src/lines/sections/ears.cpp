@@ -1,6 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Holes are joined to the outer line by a side that is there twice; then ears are cut off, corners between whose
 // neighbours one sees, until three corners are left (G. Meisters. Polygons Have Ears. 1975).
+//
+//      outer line with a hole                after the bridge           an ear at b: a, b, c turn left, and no other
+//     +-----------------+                   +-----------------+         corner lies in the triangle that they make
+//     |      +---+      |                   |------+---+      |
+//     |      |   |      |        ->         |      |   |      |              b
+//     |      +---+      |                   |      +---+      |             / .
+//     +-----------------+                   +-----------------+            a   c
+//
+// All turns are exact signs, so no ear overlaps another. Only corners at which the polygon turns right may lie in an
+// ear, and those are looked for in the cells of a grid. Where outlines cross there may be no ear at all: then flat
+// corners are cut, then any corner that turns left, so that the loop always ends.
 #include <algorithm>
 #include <cmath>
 

@@ -3,6 +3,10 @@
 //
 // A crumb that ends in the air is left out, and then what ended in it alone. What is left of them joins a line that
 // begins where they end.
+//
+//        a ________________ b          c ends in the air: it goes. d holds a line that would end in the air without it:
+//              |    d/                 it stays, or becomes the end of that line. Whether an end touches something is
+//             c     /________ e        told once for all crumbs, by the lines that pass near their ends.
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -4,6 +4,11 @@
 // Ends lie in a tree of boxes whose nodes know the lowest end in them that is left: those that are empty are not
 // entered, nor those where only higher numbers are as near. So crowds of ends, also at one place, cost no more than
 // others.
+//
+//    ends left in a box    lowest     A pen asks for the end nearest to where it is; of several at one distance the
+//    [ 3 7 9 | 4 5 ]         3        one with the lowest number is drawn. A box is entered only if it may hold a
+//      /         .                    nearer end, or one as near with a lower number. Both ends of a chain leave the
+//    [3 7 9]   [4 5]                  tree when it is drawn, and the lowest numbers are mended on the way up.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -4,6 +4,15 @@
 // between the two have no order: Tarjan's strongly connected components. Pieces come from far to near, so that almost
 // everything that one covers is painted already and needs no test; and neighbours are looked for when a piece's turn
 // comes, so that no pair is ever stored.
+//
+//    far                                         near
+//    [painted ......][ P waits -> Q waits -> R ][ not found yet ...]
+//                         ^                |
+//                         +---- covers ----+       R covers P, which is waiting: P, Q and R have no order
+//
+// The search keeps its own stack, because chains of pieces that cover one another may be as long as there are pieces.
+// In each cell the pieces at the beginning that are painted already are skipped at once, and the search ends where
+// pieces are wholly nearer.
 #include <algorithm>
 #include <optional>
 #include <unordered_map>

@@ -3,6 +3,12 @@
 // all others one polygon ends where the next begins. Meshes have few open sides. So the number is the same all over a
 // polygon that no open side crosses, and all over those across its sides where no open side lies. Where the number is
 // 1, the polygon itself is all that there is.
+//
+//       ____________
+//      /  /  /  /  /     Of a sheet over the background only the rim has open sides. All polygons that no open side
+//     /__/__/__/__/      crosses have the same number of polygons over them, and hand it on across their sides: one
+//    /  /  /  /  /       look at the middle of one of them tells it for all. Nothing is handed on across a side on
+//   /__/__/__/__/        whose middle an open side lies.
 #include <algorithm>
 
 #include "painter/limits.h"

@@ -4,6 +4,11 @@
 // Every lane does what patch_search.cpp does for a single ray, operation by operation in the same order, so that the
 // answers are equal to the bit with any instruction set. What is left out is halving: neighbouring rays rarely need it
 // at the same place, and those that do are asked one by one.
+//
+//    lanes asked --hull holds the ray?--> --Jacobian has an inverse, and it contracts?--> step to the root, all lanes
+//                     no: missed                     no: open, asked alone                together until none is left
+//
+// A lane that is done keeps its answer by masks while others step on; steps of lanes that are done change nothing.
 #include "raycast/curved/patch_packet.h"
 
 #undef HWY_TARGET_INCLUDE

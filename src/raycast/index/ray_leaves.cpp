@@ -4,6 +4,10 @@
 // Clusters already are in spatial order, and cutting their run into sixteens costs no sort of our own. The place of a
 // triangle depends on how many go before it, so that they are counted first. Dealing groups of sixteen leaves out anew
 // doubles the time of a build, and makes single rays 20 to 40 % and views up to 10 % faster.
+//
+//    clusters     [.......][......][........]         counted in parts, so that every part knows where its triangles go
+//    leaves       [ 16 ][ 16 ][ 16 ][ 16 ] ...        their runs, cut into sixteens
+//    dealt anew   sixteen leaves at a time            so that each leaf is small
 
 #include <algorithm>
 

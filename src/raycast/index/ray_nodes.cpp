@@ -4,6 +4,10 @@
 //
 // Runs of the spatial order of a fixed length are pieces of their own, built by whichever thread comes; the nodes above
 // are built over the pieces' boxes in the same way. So the tree is the same for any number of threads.
+//
+//    leaves of a piece         [ A ][ B ][ C ][ D ] ...
+//    a range is halved         [ A  B | C  D  ... ]     where the surfaces of both halves, each times its leaves,
+//    the larger one, too       [ A  B | C | D ... ]     are least; until a node has sixteen children
 
 #include <algorithm>
 #include <array>

@@ -2,6 +2,9 @@
 // Along an axis a line of cells is as wide as the widest view before its anchor and the widest behind it, at the scale,
 // and the room for what is written beside them, which does not scale. So the size of a layout is linear in the scale,
 // and the largest scale for an area is a division.
+//
+//    before  anchor  behind   gap   before  anchor  behind
+//    |---------+--------|           |-----------+------|        one line of cells, along one axis
 #include "sheets/layout/layout.h"
 
 #include <algorithm>

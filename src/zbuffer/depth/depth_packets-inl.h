@@ -2,6 +2,13 @@
 // Triangles of a few pixels drawn into a depth buffer, as many at once as the vector holds, and yet in their order: all
 // of a packet are walked pixel by pixel in step, which gives each its own mask of covered pixels; the masks are then
 // taken one after the other.
+//
+//    walk      lane 0: mask of 8 x 8 pixels     lane 1: mask     ...        all lanes in step
+//    draw      fragments of triangle 0, then those of triangle 1, ...       in the order of submission
+//
+// Coverage does not depend on the order of triangles, so it is found for all of them together. Fragments are then
+// listed in their order; keys and depths of a vector of them are worked out together, and the tests come one after the
+// other.
 
 // Included once for every target.
 #if defined(FRONTMOST_ZBUFFER_DEPTH_PACKETS_INL_H_) == defined(HWY_TARGET_TOGGLE)

@@ -2,6 +2,10 @@
 // One picture without clusters: batches of triangles in the scene's order are put on the screen, sorted into tiles,
 // and drawn, some hundred batches at a time. What is seen is a minimum, so the picture may be taken up again for the
 // next ones.
+//
+// The first batches are the nearest, as far as a few triangles of each tell. What they show hides most of what comes
+// later, which is then left out by batches: `farthest` keeps, for every block of the picture, how far the farthest of
+// its samples is.
 
 #include "zbuffer/direct/direct_frame.h"
 
