@@ -2,6 +2,11 @@
 // With weights w and corners c of its own triangle, the point is (sum of w c) / (sum of w) + lift: no float, but a
 // fraction. So a corner q of another triangle lies at (sum of w (q - c - lift)) / (sum of w) from it; signs of
 // determinants do not change when the division is left out, and what is left are sums of products.
+//
+//    w0 (q - c0 - lift) + w1 (q - c1 - lift) + w2 (q - c2 - lift)     a corner q seen from the point, times their sum
+//
+// In doubles first, with a bound; and where that leaves a sign open, as sums of products that are never rounded. A
+// point of a triangle that lies in the plane of its neighbour is thus never dark by rounding.
 #include <algorithm>
 #include <cmath>
 

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Views of a sheet on their way from the camera to their places on the page, and what the options of the sheet mean for
 // them.
+//
+//    draw_named_views --> drawing, in pixels of its own picture
+//    cells_of, plan   --> placed: the view's origin on the page and its millimetres per pixel
+//    place_...        --> strokes, tones and centre lines of `placed`
+//
+// A view is filled in that order; what a step needs of the one before is there when it begins.
 #pragma once
 
 #include "frontmost/rounds.h"

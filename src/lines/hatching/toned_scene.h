@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A scene as hatching sees it: what the eye sees of its triangles, and what the light does.
+//
+//    eye's view     what is seen of a triangle's lines      an occluder grid and a cutter, as for edges
+//    light's view   what of that is lit                     the same, seen from where the light is
+//    normals        what of that is dark by its angle       a quadratic function along each line
+//
+// Hatching and stippling ask for the same pieces, for lines of several sets at once or for rows of dots.
 #pragma once
 
 #include "frontmost/hatching.h"

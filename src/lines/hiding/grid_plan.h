@@ -2,6 +2,13 @@
 // What an occluder grid is made from: how fine it is, and what each triangle takes of it. Known while it is made, and
 // not after. A small triangle takes the cells that its box touches. A large one takes, row by row, the cells that its
 // outline touches, which may be far fewer, and each at its own distance.
+//
+//    small: all cells of its box      large: row by row, from its left side to its right
+//    +--+--+--+                       +--+--+--+--+--+
+//    |##|##|  |                       |  |  |##|  |  |
+//    |##|##|  |                       |  |##|##|##|  |      each cell with the distance at which the triangle
+//    +--+--+--+                       |##|##|##|##|##|      is nearest within it
+//                                     +--+--+--+--+--+
 #pragma once
 
 #include <array>

@@ -2,6 +2,12 @@
 // Four functions that are linear along the edge, so that their signs at both ends say all. A corner of the triangle is
 // in the planes through it by its number, not by arithmetic, and so is a point between two corners in the planes
 // through both.
+//
+//    function over the edge       negative at 0, positive at 1: from the root to the end
+//    of two ends alone            positive at both: all of it       negative or 0 at both: none
+//
+// The value at a root may be rounded, a sign never is: an edge that only touches a shadow is told apart from one that
+// enters it.
 #include "lines/hiding/occluder.h"
 
 #include <algorithm>

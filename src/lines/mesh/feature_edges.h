@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which edges of a mesh are drawn, and which are not because they are gaps: where patches of one surface end beside
 // each other, and only rounding keeps them apart.
+//
+//    edge  =  (lower vertex, upper vertex)  +  the triangles on its left and right, or none  +  why it is drawn
+//
+// Whatever comes later, creases that are none and gaps, takes edges out of this list and never puts one in.
 #pragma once
 
 #include <functional>

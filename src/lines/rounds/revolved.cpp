@@ -2,6 +2,11 @@
 // Rings with corners at equal angles weigh the same in all directions across their axis. So the axis goes through the
 // mean of the corners, in the direction that their second moments tell from two others that are equal. Scans fail that
 // test, and most else; what passes it is looked at ring by ring.
+//
+//    smooth region --> its corners, each once --> mean and moments --> axis --> rings about it?
+//                                                     no odd direction: none       discs, walls and whole spheres: none
+//
+// Moments are sums, so the axis is as good as all corners together, and nothing has to be tried.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a plane leaves of triangles: their segments in it put together to closed lines, the regions that these go
 // around, and triangles that fill the regions.
+//
+//    segments --find_outlines--> closed lines --regions_of--> outer lines with their holes --fill--> triangles
+//
+// Coordinates are those of the plane, as floats; the same corners come back, so a face that is filled has the corners
+// of the walls beside it to the bit.
 #pragma once
 
 #include <array>

@@ -2,6 +2,12 @@
 // Pieces parted by the plane of one of them.
 //
 // H. Fuchs, Z. Kedem, B. Naylor. On Visible Surface Generation by A Priori Tree Structures. 1980.
+//
+//    planes of a few members are tried against a few others, spread evenly over the list
+//    the best one cuts few of them and leaves both sides about as large
+//
+// What lies in the plane needs no order but that of ids, and the plane's own triangle is always among it: so neither
+// side is as large as the whole, and parting comes to an end.
 #include <algorithm>
 
 #include "painter/stages.h"

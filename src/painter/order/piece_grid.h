@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pieces by place, to find those that may cover another: by the parts of the screen that their boxes touch, and by
 // boxes in space around many at a time, where a part of the screen holds too many.
+//
+//    +---+---+---+       cell: the pieces whose boxes touch it, in the order of their list. Two pieces that overlap on
+//    | 1 |1 4|   |       the screen share a cell, because the same rounding puts both into it; they may share several,
+//    +---+---+---+       and whoever asks has to ask only once.
+//    |   |4 7| 7 |
+//    +---+---+---+
 #pragma once
 
 #include <span>

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The occluders beside a polygon: under these it may have traps.
+//
+//          ______
+//       . |      | .        What lies around a polygon as far as its traps reach is listed once, from the cells of
+//       . | poly | .        the grid; each of its sides and corners then asks about its own small part of the list.
+//       . |______| .
 #pragma once
 
 #include <vector>

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sections of sheets: what they cut, where they stand, how they are hatched, and the marks that lead to them: cutting
 // planes, and the names of the views (ISO 128-3).
+//
+//    views of a sheet         +------+   A|   |A   cutting lines in the first view that sees the plane from its edge
+//                             |      |    |---|
+//                             +------+
+//                               A-A                the section, under the name of its line
 #pragma once
 
 #include <span>

@@ -2,6 +2,11 @@
 // The private buffer of one tile: a 64-bit word for every sample, and how far the farthest of each block lies.
 //
 // N. Greene, M. Kass, G. Miller. Hierarchical Z-Buffer Visibility. 1993.
+//
+//    words      one a sample, row by row; rows are 8 words longer than the tile is wide, so that samples of a column
+//               do not fall onto the same lines of the cache
+//    farthest   of each block, the farthest key of all of its samples
+//    corner     of a triangle that covers a block wholly, its plane: what is behind it is hidden, too
 
 // Included once for every target.
 #if defined(FRONTMOST_ZBUFFER_TILE_BUFFER_INL_H_) == defined(HWY_TARGET_TOGGLE)
