@@ -179,6 +179,22 @@ TEST(Obj, WithoutItsTextureNothingGlows) {
   }
 }
 
+TEST(Obj, AGreyBesideATextureDoesNotDarkenItAndAHueDoes) {
+  const Folder folder;
+  const std::string path = folder.write("model.obj", "mtllib m.mtl\n" + square_corners + "usemtl wall\nf 1 2 3\n");
+  save(Image{1, 1, {{"R", Buffer<float>(1, 1.0f)}, {"G", Buffer<float>(1, 1.0f)}, {"B", Buffer<float>(1, 1.0f)}}},
+       (folder.path / "wall.png").string());
+  const auto base_color = [&](const std::string& lines) {
+    folder.write("m.mtl", "newmtl wall\n" + lines);
+    return load(path).materials.at(0).base_color;
+  };
+  EXPECT_EQ(base_color("Kd 0.64 0.64 0.64\nmap_Kd wall.png\n"), glm::vec4(1));
+  EXPECT_EQ(base_color("map_Kd wall.png\nKd 0.8\nd 0.5\n"), glm::vec4(1, 1, 1, 0.5f));
+  EXPECT_EQ(base_color("map_Kd wall.png\nKd 0 0 0\n"), glm::vec4(1));
+  EXPECT_EQ(base_color("Kd 1 0 0\nmap_Kd wall.png\n"), glm::vec4(1, 0, 0, 1));
+  EXPECT_EQ(base_color("Kd 0.5 0.5 0.5\nmap_Kd none.png\n"), glm::vec4(glm::vec3(linear_of_srgb16(32768)), 1));
+}
+
 TEST(Obj, ABrokenLibraryIsAWarning) {
   const Folder folder;
   folder.write("broken.mtl", "newmtl a\nd much\n");

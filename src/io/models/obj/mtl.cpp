@@ -147,12 +147,14 @@ class MtlReader {
     return {values.x, values.y};
   }
 
-  /// Exporters often leave Kd and Ke black under a texture, meaning the texture as it is. A base colour is then white
-  /// without it, too.
+  /// Exporters write their own grey as Kd beside a texture, or black, and mean the texture as it is; MTL's own text
+  /// multiplies the two, and whoever means that gives a hue. Black is white where the texture cannot be read, too; so
+  /// is a black Ke.
   void finish() {
     for (const std::uint32_t number : textured_) {
       glm::vec4& c = materials_[number].base_color;
-      if (glm::vec3(c) == glm::vec3(0)) c = glm::vec4(1, 1, 1, c.a);
+      const bool is_grey = c.r == c.g && c.g == c.b, is_black = glm::vec3(c) == glm::vec3(0);
+      if (is_black || (is_grey && materials_[number].base_color_texture.is_set())) c = glm::vec4(1, 1, 1, c.a);
     }
     for (const std::uint32_t number : glowing_) {
       Material& m = materials_[number];
