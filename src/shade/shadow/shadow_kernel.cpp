@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Points are taken to the map's texels a vector at a time. Most are nearer to the light than everything around them,
 // which nine numbers say; for the others a window of eight by eight texels is compared, eight columns side by side.
-// Their sums are made row by row, and then added up from left to right, so that every instruction set gives the same
-// bits.
+// Their sums are made row by row and then added up in one order, so that every instruction set gives the same bits.
 
 #include "shade/shadow/shadow_map.h"
 
@@ -68,20 +67,23 @@ bool IsBeforeAll(const ShadowGrid& grid, int x, int y, float key) {
   return key >= most;
 }
 
-/// A tent, so that edges fade without steps. Its weights at whole texels always sum to kHalf * kHalf.
-void FindWeights(int first, float at, float (&weights)[kTaps]) {
-  for (int k = 0; k < kTaps; ++k) {
-    const float weight = kHalf - std::abs(float(first + k) + 0.5f - at);
-    weights[k] = weight > 0.0f ? weight : 0.0f;
-  }
+/// As many columns of a window as there is room for.
+using DColumns = hn::CappedTag<float, kTaps>;
+using VColumns = hn::Vec<DColumns>;
+
+/// A tent, so that edges fade without steps. Its weights at whole texels always sum to kHalf * kHalf. Of the texels
+/// from `first` on, for a point at `at`.
+HWY_INLINE VColumns WeightsFrom(int first, float at) {
+  const DColumns d;
+  const auto texel = hn::Add(hn::Iota(d, 0.0f), hn::Set(d, float(first) + 0.5f));
+  return hn::Max(hn::Sub(hn::Set(d, kHalf), hn::Abs(hn::Sub(texel, hn::Set(d, at)))), hn::Zero(d));
 }
 
 float FilterWindow(const ShadowGrid& grid, int x0, int y0, const glm::vec3& place) {
-  const hn::CappedTag<float, kTaps> d;
-  float across[kTaps], down[kTaps];
-  FindWeights(x0, place.x, across);
-  FindWeights(y0, place.y, down);
+  const DColumns d;
   const float* const window = grid.keys + std::size_t(y0) * std::size_t(grid.size) + std::size_t(x0);
+  HWY_ALIGN float down[kTaps];
+  for (int j = 0; j < kTaps; j += int(hn::Lanes(d))) hn::Store(WeightsFrom(y0 + j, place.y), d, down + j);
   const auto key = hn::Set(d, place.z);
   HWY_ALIGN float lit[kTaps];
   for (int i = 0; i < kTaps; i += int(hn::Lanes(d))) {
@@ -90,10 +92,9 @@ float FilterWindow(const ShadowGrid& grid, int x0, int y0, const glm::vec3& plac
       const auto is_lit = hn::Le(hn::LoadU(d, window + std::size_t(j) * std::size_t(grid.size) + i), key);
       sum = hn::Add(sum, hn::IfThenElseZero(is_lit, hn::Set(d, down[j])));
     }
-    hn::Store(sum, d, lit + i);
+    hn::Store(hn::Mul(sum, WeightsFrom(x0 + i, place.x)), d, lit + i);
   }
-  float sum = 0;
-  for (int i = 0; i < kTaps; ++i) sum += lit[i] * across[i];
+  const float sum = ((lit[0] + lit[1]) + (lit[2] + lit[3])) + ((lit[4] + lit[5]) + (lit[6] + lit[7]));
   return sum * (1.0f / (kHalf * kHalf * kHalf * kHalf));
 }
 
