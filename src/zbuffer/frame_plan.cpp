@@ -28,7 +28,9 @@ std::uint32_t bits_of(float key) {
 }  // namespace
 
 TileJob FramePlan::job(std::size_t tile, const View& view) const {
-  return {Tile(tile, view), records_.of(tile), cluster_lists_.of(tile)};
+  const PartedList records = records_.of(tile);
+  const PartedList clusters(cluster_lists_.of(tile), [&](std::uint32_t cluster) { return cluster >= first_cutout_; });
+  return {Tile(tile, view), {records.solid, clusters.solid}, {records.cutouts, clusters.cutouts}};
 }
 
 void FramePlan::make(const ClusterSet& set, const ScreenTransform& transform, const View& view,
@@ -40,12 +42,10 @@ void FramePlan::make(const ClusterSet& set, const ScreenTransform& transform, co
   parallel_for(execution, set.clusters.size(), kCullGrain, [&](std::size_t begin, std::size_t end) {
     cull_clusters(input, execution.isa, {begin, end}, culled_);
   });
-  // What may have holes is drawn afterwards, by draw_cutouts().
-  std::fill(culled_.fate.begin() + std::ptrdiff_t(set.first_cutout), culled_.fate.end(),
-            static_cast<std::uint8_t>(ClusterFate::culled));
+  first_cutout_ = set.first_cutout;
   choose_apart(set.clusters.size());
   take_apart(set, transform, view, execution);
-  records_.plan(view, most_record_items);
+  records_.plan(view, set.cutouts.get(), most_record_items);
   order_whole(set.clusters.size());
   list_clusters(view);
 }
@@ -85,14 +85,14 @@ void FramePlan::order_whole(std::size_t cluster_count) {
   }
   const double scale = greatest > least ? double(kSlices - 1) / double(greatest - least) : 0.0;
   const auto slice_of = [&](std::size_t i) {
-    return std::size_t(double(greatest - bits_of(culled_.nearest[i])) * scale);
+    return std::size_t(double(greatest - bits_of(culled_.nearest[i])) * scale) + (i < first_cutout_ ? 0 : kSlices);
   };
 
-  std::array<std::size_t, kSlices + 1> begin{};
+  std::array<std::size_t, 2 * kSlices + 1> begin{};
   for (std::size_t i = 0; i < cluster_count; ++i)
     if (culled_.fate_of(i) == ClusterFate::whole) ++begin[slice_of(i) + 1];
-  for (std::size_t s = 0; s < kSlices; ++s) begin[s + 1] += begin[s];
-  order_.resize(begin[kSlices]);
+  for (std::size_t s = 0; s < 2 * kSlices; ++s) begin[s + 1] += begin[s];
+  order_.resize(begin.back());
   for (std::size_t i = 0; i < cluster_count; ++i)
     if (culled_.fate_of(i) == ClusterFate::whole) order_[begin[slice_of(i)]++] = static_cast<std::uint32_t>(i);
 }

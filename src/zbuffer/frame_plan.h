@@ -4,8 +4,8 @@
 //    clusters --cull--> whole ------ order by 32 slices of depth ------> cluster lists --+
 //                   +-> apart ------ triangles, clipped: records ------> record lists ---+--> a TileJob for each tile
 //
-// Both lists of a tile are nearest first. That is never needed for the picture; it makes the hierarchical depth hide
-// what comes later.
+// Both lists of a tile are nearest first, and what has holes stands behind all else. That is never needed for the
+// picture; it makes the hierarchical depth hide what comes later.
 #pragma once
 
 #include <span>
@@ -27,11 +27,17 @@ struct FrameInput : Picture {
   std::span<const TriangleRecord> records;  ///< corners from the image's top left
 };
 
-/// One tile, and what may be seen in it, near things first.
+/// One tile, and what may be seen in it.
 struct TileJob : Tile {
-  std::span<const std::uint32_t> records, clusters;
+  /// Near things first.
+  struct Items {
+    std::span<const std::uint32_t> records, clusters;
 
-  [[nodiscard]] bool is_empty() const { return records.empty() && clusters.empty(); }
+    [[nodiscard]] bool is_empty() const { return records.empty() && clusters.empty(); }
+  };
+  Items solid, cutouts;
+
+  [[nodiscard]] bool is_empty() const { return solid.is_empty() && cutouts.is_empty(); }
 };
 
 /// Draws a tile and writes it to the output planes.
@@ -62,7 +68,8 @@ class FramePlan {
   std::vector<std::uint32_t> apart_;                      // clusters to be taken apart
   std::vector<std::vector<TriangleRecord>> apart_parts_;  // what threads made of them
   RecordLists records_;
-  std::vector<std::uint32_t> order_;  // clusters drawn whole, nearer slices first
+  std::size_t first_cutout_ = 0;      // of the set's clusters
+  std::vector<std::uint32_t> order_;  // clusters drawn whole, cutouts behind all others, nearer slices first
   TileLists cluster_lists_;
 };
 

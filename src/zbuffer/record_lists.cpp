@@ -26,11 +26,16 @@ bool is_at_one_place(const TriangleRecord& a, const TriangleRecord& b) { return 
 
 }  // namespace
 
-void RecordLists::plan(const View& view, std::size_t most_items) {
+void RecordLists::plan(const View& view, const Cutouts* cutouts, std::size_t most_items) {
+  const auto is_solid = [&](const TriangleRecord& r) { return !cutouts || !cutouts->has(r.id); };
+  auto first_cutout = std::partition(records.begin(), records.end(), is_solid);
   // Any order gives the same picture. Nearest first, a tile may stop at the first record that all of its blocks hide.
-  std::sort(records.begin(), records.end(), comes_before);
-  // A triangle that is there again is hidden by the lower id everywhere. A few bytes of glTF make a million of one.
-  records.erase(std::unique(records.begin(), records.end(), is_at_one_place), records.end());
+  std::sort(records.begin(), first_cutout, comes_before);
+  std::sort(first_cutout, records.end(), comes_before);
+  // A triangle that is there again is hidden by the lower id everywhere, unless that has holes. A few bytes of glTF
+  // make a million of one.
+  first_cutout = records.erase(std::unique(records.begin(), first_cutout, is_at_one_place), first_cutout);
+  first_cutout_ = std::size_t(first_cutout - records.begin());
   split_into_rounds(view, most_items);
 }
 

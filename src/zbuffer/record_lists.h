@@ -27,20 +27,23 @@ class RecordLists {
   /// To be filled before plan(): corners from the image's top left.
   std::vector<TriangleRecord> records;
 
-  /// Sorts the records, nearest first, keeps the lowest id of those with the same corners, and finds the rounds.
-  /// Precondition: none has holes.
-  void plan(const View& view, std::size_t most_items = kMostRecordItems);
+  /// Sorts the records, nearest first, those of `cutouts` behind all others, and finds the rounds. Of others with the
+  /// same corners it keeps the lowest id.
+  void plan(const View& view, const Cutouts* cutouts, std::size_t most_items = kMostRecordItems);
   /// Tiles are drawn in rounds: one for any ordinary scene, but a million triangles that each fill the largest image
   /// make 16 thousand million pairs of record and tile.
   [[nodiscard]] std::span<const TileRange> rounds() const { return rounds_; }
   /// Lists the records that may be seen in each tile of a round, in place of those of the round before.
   void list(const TileRange& round, const View& view);
   /// Precondition: `tile` is of the round listed last.
-  [[nodiscard]] std::span<const std::uint32_t> of(std::size_t tile) const { return lists_.of(tile); }
+  [[nodiscard]] PartedList of(std::size_t tile) const {
+    return {lists_.of(tile), [&](std::uint32_t i) { return i >= first_cutout_; }};
+  }
 
  private:
   void split_into_rounds(const View& view, std::size_t most_items);
 
+  std::size_t first_cutout_ = 0;
   TileLists lists_;
   std::vector<TileRange> rounds_;
 };

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles on the screen, set up one by one: the large ones, those that had to be clipped, and those with holes.
+// Triangles on the screen, set up one by one: the large ones, and those that had to be clipped.
 //
 // Edge values are exact: corners have 22 bits, so products have 46 and fit 64-bit integers. Over a tile they are
 // shifted and limited to 32 bits in such a way that every sign stays what it was.
 #pragma once
 
 #include <algorithm>
-#include <span>
 #include <vector>
 
-#include "frontmost/visible.h"
 #include "surfaces/cluster_set.h"
 #include "view/clip.h"
 #include "view/screen_transform.h"
@@ -114,15 +112,5 @@ void visit_covered(const TriangleRecord& r, const PixelRect& rect, const glm::iv
     for (int k = 0; k < 3; ++k) row[k] += step_y[k];
   }
 }
-
-/// Merges the set's triangles with holes into `visible`, which shows everything else: what is seen is the minimum over
-/// the fragments that are there, so they may come last, and only those that are nearer than what they meet are looked
-/// up in their texture. Precondition: there are some. O(fragments of cut-outs), and as often as there are strips of
-/// rows a look at each of these triangles.
-void draw_cutouts(const ClusterSet& set, const ScreenTransform& transform, Visible& visible,
-                  const Execution& execution);
-/// The same of triangles that are on the screen already, all of them of `cutouts`.
-void draw_cutouts(const Cutouts& cutouts, std::span<const TriangleRecord> records, Visible& visible,
-                  const Execution& execution);
 
 }  // namespace frontmost::zbuffer_detail

@@ -69,7 +69,13 @@ const Visible& ZBuffer::draw(const Surfaces& surfaces, const View& view, const E
   const std::size_t stream_from = std::size_t(state_->prepare_planes(view) ? 2 : 32) << 20;
   const bool streams = view.sample_count() * (sizeof(PrimitiveId) + sizeof(float)) >= stream_from;
   Visible& visible = state_->visible;
-  const Picture picture{view, sample_offsets(view.samples), visible.primitives.data(), visible.keys.data(), streams};
+  const Picture picture{view,
+                        sample_offsets(view.samples),
+                        visible.primitives.data(),
+                        visible.keys.data(),
+                        streams,
+                        set.cutouts.get(),
+                        ScreenRays(view)};
   const FrameInput frame{picture, set, transform, plan.culled(), plan.records().records};
   std::atomic<std::size_t> drawn{0};
   draw_tiles(plan.records(), view, execution, state_->scratches, [&](std::size_t tile, TileScratch& scratch) {
@@ -82,10 +88,6 @@ const Visible& ZBuffer::draw(const Surfaces& surfaces, const View& view, const E
     }
     report_progress(execution, "visible", double(++drawn) / double(Tile::count(view)));
   });
-  if (set.cutouts) {
-    draw_cutouts(set, transform, visible, execution);
-    std::fill(state_->blank.begin(), state_->blank.end(), std::uint8_t(0));  // of tiles that it may have drawn to
-  }
   return visible;
 }
 

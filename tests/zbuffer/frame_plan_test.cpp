@@ -20,7 +20,7 @@ std::vector<std::vector<std::uint32_t>> lists_of(FramePlan& plan, const View& vi
     plan.records().list(round, view);
     std::size_t items = 0;
     for (std::size_t tile = round.begin; tile < round.end; ++tile) {
-      const auto list = plan.job(tile, view).records;
+      const auto list = plan.job(tile, view).solid.records;
       lists.emplace_back(list.begin(), list.end());
       items += list.size();
     }

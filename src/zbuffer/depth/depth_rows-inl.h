@@ -103,11 +103,12 @@ class DepthTest {
   int passing_;
 };
 
-/// Where a vector of samples is kept.
+/// Where a vector of samples is kept, and where on the screen the first of them is, in 1/256 pixel.
 struct Cell {
   std::uint32_t* stored;
   PrimitiveId* primitives;
   float* keys;
+  glm::ivec2 place;
 };
 
 template <bool is_float>
@@ -127,7 +128,7 @@ class DepthRows {
     std::optional<ScreenCutout> cutout;
     if (call_.cutouts && call_.cutouts->has(own_id)) cutout.emplace((*call_.cutouts)[own_id], call_.rays);
     const SteepKeys steep = plane.is_steep ? SteepKeys(r) : SteepKeys();
-    const Paint paint{plane, hn::Set(DD(), offset), r.id, sample};
+    const Paint paint{plane, hn::Set(DD(), offset), r.id, sample, cutout ? &*cutout : nullptr};
     const HalfI d;
     const int lanes = int(hn::Lanes(d)), first = rect.x0 / lanes * lanes;
     hn::Vec<HalfI> row[3], step[3];
@@ -141,8 +142,7 @@ class DepthRows {
       const float dy_gy = float(y * kSubPixels + at.y - plane.y0) * plane.gy;
       auto e0 = row[0], e1 = row[1], e2 = row[2];
       for (int x = first; x <= rect.x1; x += lanes) {
-        auto covered = hn::RebindMask(HalfU(), hn::Gt(hn::Or(hn::Or(e0, e1), e2), hn::Set(d, -1)));
-        if (cutout) covered = Solid(*cutout, covered, {x * kSubPixels + at.x, y * kSubPixels + at.y});
+        const auto covered = hn::RebindMask(HalfU(), hn::Gt(hn::Or(hn::Or(e0, e1), e2), hn::Set(d, -1)));
         if (!hn::AllFalse(HalfU(), covered)) {
           const glm::ivec2 from = glm::ivec2(x, y) * kSubPixels + at;
           Put(paint, x, y, covered, plane.is_steep ? KeyOf(steep, from) : Key(plane, from.x - plane.x0, dy_gy));
@@ -162,17 +162,17 @@ class DepthRows {
     hn::Vec<DD> offset;
     PrimitiveId id;
     std::size_t sample;
+    const ScreenCutout* cutout;  ///< null where it has no holes
   };
 
-  /// The covered lanes that look into no hole; `first` is the place of the first of them, in 1/256 pixel of the tile.
-  [[nodiscard]] HWY_NOINLINE hn::Mask<HalfU> Solid(const ScreenCutout& cutout, hn::Mask<HalfU> covered,
-                                                   const glm::ivec2& first) const {
+  /// Of samples from `place` on those that look into no hole.
+  [[nodiscard]] static HWY_NOINLINE hn::Mask<HalfU> Solid(const ScreenCutout& cutout, const glm::ivec2& place,
+                                                          hn::Mask<HalfU> seen) {
     const HalfU d;
     HWY_ALIGN_MAX std::uint32_t lanes[kHalfLanes];
-    hn::Store(hn::VecFromMask(d, covered), d, lanes);
-    const glm::ivec2 from = first + glm::ivec2(tile_.x, tile_.y) * kSubPixels;
+    hn::Store(hn::VecFromMask(d, seen), d, lanes);
     for (std::size_t i = 0; i < hn::Lanes(d); ++i)
-      if (lanes[i] != 0 && cutout.is_hole(from.x + int(i) * kSubPixels, from.y)) lanes[i] = 0;
+      if (lanes[i] != 0 && cutout.is_hole(place.x + int(i) * kSubPixels, place.y)) lanes[i] = 0;
     return hn::MaskFromVec(hn::Load(d, lanes));
   }
 
@@ -196,7 +196,8 @@ class DepthRows {
     const DepthPlanes& p = call_.planes;
     const std::size_t i = (paint.sample * std::size_t(p.height) + std::size_t(tile_.y + y)) * std::size_t(p.width) +
                           std::size_t(tile_.x + x);
-    const Cell cell{p.stored + i, p.primitives + i, p.keys + i};
+    const glm::ivec2 place = glm::ivec2(tile_.x + x, tile_.y + y) * kSubPixels + p.samples[paint.sample];
+    const Cell cell{p.stored + i, p.primitives + i, p.keys + i, place};
     const int count = HWY_MIN(int(kHalfLanes), tile_.width - x);
     if (count == int(hn::Lanes(DD()))) {
       PutWhole(paint, cell, covered, key);
@@ -205,7 +206,7 @@ class DepthRows {
     // The other lanes' memory is another tile's, or nobody's.
     HWY_ALIGN_MAX std::uint32_t stored[kHalfLanes] = {}, primitives[kHalfLanes] = {};
     HWY_ALIGN_MAX float keys[kHalfLanes] = {};
-    const Cell copy{stored, primitives, keys};
+    const Cell copy{stored, primitives, keys, place};
     Copy(cell, copy, count);
     PutWhole(paint, copy, covered, key);
     Copy(copy, cell, count);
@@ -223,7 +224,9 @@ class DepthRows {
     const HalfU du;
     const HalfF df;
     const auto stored = test_.Stored(key, paint.offset), kept = hn::LoadU(du, cell.stored);
-    const auto pass = hn::And(covered, test_.Passes(stored, kept));
+    auto pass = hn::And(covered, test_.Passes(stored, kept));
+    // Last: a look into a texture costs as much as many depth tests.
+    if (paint.cutout != nullptr) pass = Solid(*paint.cutout, cell.place, pass);
     if (hn::AllFalse(du, pass)) return;
     if (test_.rules().mask) hn::StoreU(hn::IfThenElse(pass, stored, kept), du, cell.stored);
     const auto id = hn::IfThenElse(pass, hn::Set(du, paint.id), hn::LoadU(du, cell.primitives));

@@ -40,14 +40,30 @@ class BatchPainter {
   void Draw() {
     buffer_.Clear();
     if (job_.is_drawn) buffer_.ReadBack(job_.farthest);
-    large_.DrawAll(frame_.records, job_.records);
-    for (const std::uint32_t i : job_.batches) DrawBatch(*frame_.batches[i]);
-    small_.Finish();
+    DrawItems(job_.solid);
+    if (!job_.cutouts.is_empty()) {
+      TileHoles holes(frame_, job_);
+      buffer_.MindHoles(holes);
+      LookForHidden();
+      DrawItems(job_.cutouts);
+    }
     buffer_.WriteOut();
     if (!job_.is_last) buffer_.FindFarthest(job_.farthest);
   }
 
  private:
+  void DrawItems(const BatchJob::Items& items) {
+    large_.DrawAll(frame_.records, items.records);
+    for (const std::uint32_t i : items.batches) DrawBatch(*frame_.batches[i]);
+    small_.Finish();
+  }
+
+  /// What was drawn hides much of what comes now.
+  void LookForHidden() {
+    idle_ = kMostIdle;
+    NextWindow();
+  }
+
   HWY_INLINE void DrawBatch(const TriangleBatch& batch) {
     blocks_ = buffer_.BlocksInTile(batch.rect);
     float nearest;

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstring>
 #include <memory>
+#include <optional>
 
 #include "base/parallel.h"
 #include "base/pool.h"
@@ -27,8 +28,8 @@ constexpr std::size_t kBatchesAtOnce = 256, kBatchesAtFirst = 32, kFewBatches = 
 /// A batch, and what of its source does not fit into columns.
 struct DirectBatch {
   TriangleBatch small;
-  std::vector<TriangleRecord> records;  ///< large ones, and those that were clipped
-  std::vector<TriangleRecord> cutouts;  ///< of any size
+  std::optional<TriangleBatch> cutouts;  ///< those of the small ones that may have holes
+  std::vector<TriangleRecord> records;   ///< large ones, and those that were clipped
 };
 
 /// What filling a batch needs of memory, one a thread.
@@ -71,7 +72,6 @@ class DirectFrame {
       report_progress(execution_, "visible", order_.empty() ? 1 : double(next) / double(order_.size()));
       at_once = kBatchesAtOnce;
     } while (next < order_.size());
-    if (cutouts_) draw_cutouts(*cutouts_, cutout_records_, visible_, execution_);
     return std::move(visible_);
   }
 
@@ -151,35 +151,41 @@ class DirectFrame {
         for (std::size_t range = source.begin; range < source.end; ++range)
           place_range(scene_.ranges[range], *scratch, batches_[i]);
         if (cutouts_) extract_cutouts(batches_[i]);
-        batches_[i].small.gather_strewn(scratch->spare);
-        batches_[i].small.list_tiles();
+        list_tiles(batches_[i].small, *scratch);
+        if (cutouts_) list_tiles(*batches_[i].cutouts, *scratch);
       }
     });
     sort_out(chosen.size());
   }
 
   void extract_cutouts(DirectBatch& batch) const {
-    const auto is_cutout = [&](PrimitiveId id) { return cutouts_->has(id); };
-    const auto first_out = std::partition(batch.records.begin(), batch.records.end(),
-                                          [&](const TriangleRecord& r) { return !is_cutout(r.id); });
-    batch.cutouts.assign(first_out, batch.records.end());
-    batch.records.erase(first_out, batch.records.end());
-    batch.small.extract(is_cutout, batch.cutouts);
+    if (!batch.cutouts) batch.cutouts.emplace();
+    batch.cutouts->clear();
+    batch.small.extract([&](PrimitiveId id) { return cutouts_->has(id); }, *batch.cutouts);
+  }
+
+  static void list_tiles(TriangleBatch& batch, DirectScratch& scratch) {
+    batch.gather_strewn(scratch.spare);
+    batch.list_tiles();
   }
 
   /// What was placed, by kind, near things first.
   void sort_out(std::size_t count) {
+    const std::span<const DirectBatch> placed(batches_.data(), count);
     records_.records.clear();
     nearest_first_.clear();
-    for (std::size_t i = 0; i < count; ++i) {
-      const DirectBatch& batch = batches_[i];
+    for (const DirectBatch& batch : placed) {
       records_.records.insert(records_.records.end(), batch.records.begin(), batch.records.end());
-      cutout_records_.insert(cutout_records_.end(), batch.cutouts.begin(), batch.cutouts.end());
       if (batch.small.count > 0) nearest_first_.push_back(&batch.small);
     }
-    std::sort(nearest_first_.begin(), nearest_first_.end(),
-              [](const TriangleBatch* a, const TriangleBatch* b) { return a->nearest > b->nearest; });
-    records_.plan(visible_.view);
+    first_cutout_ = nearest_first_.size();
+    for (const DirectBatch& batch : placed)
+      if (batch.cutouts && batch.cutouts->count > 0) nearest_first_.push_back(&*batch.cutouts);
+    const auto is_nearer = [](const TriangleBatch* a, const TriangleBatch* b) { return a->nearest > b->nearest; };
+    const auto first_cutout = nearest_first_.begin() + std::ptrdiff_t(first_cutout_);
+    std::sort(nearest_first_.begin(), first_cutout, is_nearer);
+    std::sort(first_cutout, nearest_first_.end(), is_nearer);
+    records_.plan(visible_.view, cutouts_);
     list_batches();
   }
 
@@ -199,12 +205,23 @@ class DirectFrame {
     const View& view = visible_.view;
     // As in zbuffer.cpp: memory that is touched for the first time.
     const bool streams = view.sample_count() * (sizeof(PrimitiveId) + sizeof(float)) >= std::size_t(32) << 20;
-    const Picture picture{view, sample_offsets(view.samples), visible_.primitives.data(), visible_.keys.data(),
-                          streams};
+    const Picture picture{view,
+                          sample_offsets(view.samples),
+                          visible_.primitives.data(),
+                          visible_.keys.data(),
+                          streams,
+                          cutouts_,
+                          ScreenRays(view)};
     const BatchFrame frame{picture, nearest_first_, records_.records};
     draw_tiles(records_, view, execution_, tile_scratches_, [&](std::size_t tile, TileScratch& scratch) {
-      const BatchJob job{Tile(tile, view),     records_.of(tile), batch_lists_.of(tile),
-                         is_drawn_[tile] != 0, is_last,           &farthest_[tile * BlockBounds::count]};
+      const PartedList records = records_.of(tile);
+      const PartedList batches(batch_lists_.of(tile), [&](std::uint32_t batch) { return batch >= first_cutout_; });
+      const BatchJob job{Tile(tile, view),
+                         {records.solid, batches.solid},
+                         {records.cutouts, batches.cutouts},
+                         is_drawn_[tile] != 0,
+                         is_last,
+                         &farthest_[tile * BlockBounds::count]};
       if (job.is_empty() && (job.is_drawn || !is_last)) return;
       draw_batches(frame, job, scratch, execution_.isa);
       is_drawn_[tile] = 1;
@@ -223,10 +240,10 @@ class DirectFrame {
   std::vector<Near> order_;
   // Of the batches that are placed.
   std::vector<DirectBatch> batches_;
-  std::vector<const TriangleBatch*> nearest_first_;
+  std::vector<const TriangleBatch*> nearest_first_;  // from `first_cutout_` on those of cutouts
+  std::size_t first_cutout_ = 0;
   RecordLists records_;
   TileLists batch_lists_;
-  std::vector<TriangleRecord> cutout_records_;  // of all so far
   Pool<DirectScratch> scratches_;
   Pool<TileScratch> tile_scratches_;
 };

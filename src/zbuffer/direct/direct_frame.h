@@ -18,23 +18,30 @@
 namespace frontmost::zbuffer_detail {
 
 /// What ZBuffer::draw() gives of the clusters, to the bit. O(triangles + covered samples). Memory beside the result:
-/// some 30 MiB, and 100 bytes for each large or clipped triangle of half a million in a row.
+/// some 30 MiB, at most as much again for triangles with holes, and 100 bytes for each large or clipped triangle of
+/// half a million in a row.
 [[nodiscard]] Visible draw_directly(const PlacedScene& scene, const View& view, const Execution& execution);
 
 /// What all tiles have in common that are drawn from the same batches.
 struct BatchFrame : Picture {
-  std::span<const TriangleBatch* const> batches;  ///< nearest first
-  std::span<const TriangleRecord> records;        ///< likewise
+  std::span<const TriangleBatch* const> batches;
+  std::span<const TriangleRecord> records;
 };
 
 /// One tile, and what may be seen in it.
 struct BatchJob : Tile {
-  std::span<const std::uint32_t> records, batches;
+  /// Near things first.
+  struct Items {
+    std::span<const std::uint32_t> records, batches;
+
+    [[nodiscard]] bool is_empty() const { return records.empty() && batches.empty(); }
+  };
+  Items solid, cutouts;
   bool is_drawn;    ///< it shows something already, which the planes hold
   bool is_last;     ///< nothing will be drawn to it any more
   float* farthest;  ///< of the 64 blocks: what was found before, and is found now unless this is the last time
 
-  [[nodiscard]] bool is_empty() const { return records.empty() && batches.empty(); }
+  [[nodiscard]] bool is_empty() const { return solid.is_empty() && cutouts.is_empty(); }
 };
 
 /// Draws a tile and writes it to the planes.

@@ -97,13 +97,7 @@ void TriangleBatch::sort_by_tiles(BatchColumns& sorted) {
   for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t to = begin_[place_of(i)]++;
-    for (int k = 0; k < 3; ++k) {
-      sorted.x[k][to] = from.x[k][i];
-      sorted.y[k][to] = from.y[k][i];
-      sorted.key[k][to] = from.key[k][i];
-    }
-    sorted.id[to] = from.id[i];
-    sorted.tiles[to] = from.tiles[i];
+    from.copy_triangle(i, sorted, to);
   }
 }
 

@@ -23,6 +23,16 @@ struct BatchColumns {
   alignas(64) std::uint32_t id[room];
   /// The first and the last tile column and row that it may touch: x0 | y0 << 8 | x1 << 16 | y1 << 24.
   alignas(64) std::uint32_t tiles[room];
+
+  void copy_triangle(std::size_t i, BatchColumns& to, std::size_t place) const {
+    for (int k = 0; k < 3; ++k) {
+      to.x[k][place] = x[k][i];
+      to.y[k][place] = y[k][i];
+      to.key[k][place] = key[k][i];
+    }
+    to.id[place] = id[i];
+    to.tiles[place] = tiles[i];
+  }
 };
 
 /// Consecutive triangles of a batch that touch the same tiles.
@@ -44,9 +54,9 @@ class TriangleBatch {
   [[nodiscard]] BatchColumns& columns() { return columns_[0]; }
   [[nodiscard]] const BatchColumns& columns() const { return columns_[0]; }
   [[nodiscard]] TriangleRecord record(std::size_t i) const;
-  /// Takes out those for which `is_out(id)`, and hands over what they are.
+  /// Moves those for which `is_out(id)` to another batch, which is empty.
   template <class IsOut>
-  void extract(const IsOut& is_out, std::vector<TriangleRecord>& out);
+  void extract(const IsOut& is_out, TriangleBatch& out);
 
   /// Where neighbours are strewn over the picture, as in a soup, puts together those of one tile, in `spare`, which
   /// takes the place of the columns. Their order is lost.
@@ -82,21 +92,18 @@ struct BatchSource {
 [[nodiscard]] std::vector<BatchSource> batch_sources(std::span<const MeshRange> ranges);
 
 template <class IsOut>
-void TriangleBatch::extract(const IsOut& is_out, std::vector<TriangleRecord>& out) {
-  BatchColumns& c = columns();
+void TriangleBatch::extract(const IsOut& is_out, TriangleBatch& out) {
   std::size_t kept = 0;
+  out.rect = rect;
+  out.nearest = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    if (is_out(c.id[i])) {
-      out.push_back(record(i));
+    const BatchColumns& c = columns();
+    if (!is_out(c.id[i])) {
+      c.copy_triangle(i, columns(), kept++);
       continue;
     }
-    for (int k = 0; k < 3; ++k) {
-      c.x[k][kept] = c.x[k][i];
-      c.y[k][kept] = c.y[k][i];
-      c.key[k][kept] = c.key[k][i];
-    }
-    c.id[kept] = c.id[i];
-    c.tiles[kept++] = c.tiles[i];
+    c.copy_triangle(i, out.columns(), out.count++);
+    for (const auto& key : c.key) out.nearest = std::max(out.nearest, key[i]);
   }
   count = kept;
 }

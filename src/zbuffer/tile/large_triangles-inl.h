@@ -52,10 +52,11 @@ class LargeTriangles {
   }
 
   /// Leaves out one with the corners of the last that it was asked for, and a higher id: of equal keys the lower id is
-  /// seen. Copies follow each other in clusters, so that a million of them are drawn once. Precondition as for Draw().
+  /// seen. Copies follow each other in clusters, so that a million of them are drawn once. With holes they may have
+  /// different ones. Precondition as for Draw().
   HWY_NOINLINE void DrawOnce(const TriangleRecord& r) {
-    if (last_.id < r.id && std::memcmp(last_.x, r.x, sizeof r.x) == 0 && std::memcmp(last_.y, r.y, sizeof r.y) == 0 &&
-        std::memcmp(last_.key, r.key, sizeof r.key) == 0)
+    if (!buffer_.minds_holes() && last_.id < r.id && std::memcmp(last_.x, r.x, sizeof r.x) == 0 &&
+        std::memcmp(last_.y, r.y, sizeof r.y) == 0 && std::memcmp(last_.key, r.key, sizeof r.key) == 0)
       return;
     last_ = r;
     Draw(r);
@@ -141,6 +142,9 @@ class LargeTriangles {
     std::uint64_t none = 0, all = 0;
   };
 
+  /// What is kept of a block: every sample that is nearer, those that are covered, or of these the solid ones.
+  enum class Filling { whole, covered, solid };
+
   template <class Rows>
   void DrawWith(const TriangleRecord& r, const Plane& plane, const PixelRect& rect, std::uint64_t touched) {
     Reach reach;
@@ -148,6 +152,7 @@ class LargeTriangles {
     std::uint64_t whole = open;
     for (std::size_t s = 0; s < picture_.samples.size() && open != 0; ++s)
       whole &= DrawSample<Rows>(r, plane, rect, s, open, reach);
+    if (buffer_.minds_holes()) return;  // what lies behind them is not hidden
     for (whole &= open; whole != 0; whole &= whole - 1)
       KeepPlane(int(hwy::Num0BitsBelowLS1Bit_Nonzero64(whole)), plane, reach);
   }
@@ -261,21 +266,25 @@ class LargeTriangles {
         open &= ~(std::uint64_t(1) << block);
         continue;
       }
-      if (cover.all >> block & 1)
-        FillBlock<true, Rows>(plane, edges, rect, block, sample);
+      if (buffer_.minds_holes())
+        FillBlock<Filling::solid, Rows>(plane, edges, rect, block, sample);
+      else if (cover.all >> block & 1)
+        FillBlock<Filling::whole, Rows>(plane, edges, rect, block, sample);
       else
-        FillBlock<false, Rows>(plane, edges, rect, block, sample);
+        FillBlock<Filling::covered, Rows>(plane, edges, rect, block, sample);
     }
     return cover.all;
   }
 
-  template <bool kWhole, class Rows>
+  template <Filling kFilling, class Rows>
   HWY_INLINE void FillBlock(const Plane& p, const TriangleEdges& edges, const PixelRect& rect, int block,
                             std::size_t sample) {
     const DI d;
     const DU du;
+    constexpr bool kWhole = kFilling == Filling::whole;
     const int bx = block % 8, by = block / 8;
-    Rows keys(p, picture_.samples[sample] + glm::ivec2(bx, by) * kBlockUnits);
+    const glm::ivec2 first_sample = picture_.samples[sample] + glm::ivec2(bx, by) * kBlockUnits;
+    Rows keys(p, first_sample);
     const int top = by * kBlockSize;
     const int y0 = kWhole ? 0 : HWY_MAX(rect.y0 - top, 0),
               y1 = kWhole ? kBlockSize - 1 : HWY_MIN(rect.y1 - top, kBlockSize - 1);
@@ -297,7 +306,11 @@ class LargeTriangles {
           MergeRow(WordsOf(bits, not_id), row, least);
         } else {
           const auto covered = hn::RebindMask(du, hn::Gt(hn::Or(hn::Or(e[0], e[1]), e[2]), hn::Set(d, -1)));
-          MergeRow(WordsOf(hn::IfThenElseZero(covered, bits), hn::IfThenElseZero(covered, not_id)), row, least);
+          const Words words = WordsOf(hn::IfThenElseZero(covered, bits), hn::IfThenElseZero(covered, not_id));
+          if (kFilling == Filling::solid)
+            buffer_.KeepSolidRow(words, row, first_sample + glm::ivec2(x, y) * kSubPixels, least);
+          else
+            MergeRow(words, row, least);
           for (int k = 0; k < 3; ++k) e[k] = hn::Add(e[k], hn::Set(d, edges.step_y[k]));
         }
       }

@@ -223,12 +223,21 @@ class SmallTriangles {
       key = hn::Min(hn::Max(key, hn::TableLookupLanes(b.k_min, lane_f)), hn::TableLookupLanes(b.k_max, lane_f));
       StoreWords(WordsOf(hn::BitCast(du, key), hn::TableLookupLanes(b.not_id, lane_u)), found);
       const std::size_t live = HWY_MIN(count - i, hn::Lanes(d));
+      if (buffer_.minds_holes()) {
+        for (std::size_t k = 0; k < live; ++k) buffer_.KeepSolid(found[k], words[at[k]], PlaceOf(at[k]) + offset);
+        continue;
+      }
       for (std::size_t k = 0; k < live; ++k) {
         // One by one: two of the triangles may have covered the same pixel.
         std::uint64_t& kept = words[at[k]];
         kept = HWY_MAX(kept, found[k]);
       }
     }
+  }
+
+  /// The corner of a pixel, by the offset of its word.
+  [[nodiscard]] static HWY_INLINE glm::ivec2 PlaceOf(std::uint32_t word) {
+    return glm::ivec2(int(word % kTileStride), int(word / kTileStride)) * kSubPixels;
   }
 
   const Picture& picture_;

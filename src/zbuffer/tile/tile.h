@@ -10,9 +10,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <span>
 
 #include "frontmost/visible.h"
+#include "view/screen_cutout.h"
 #include "view/screen_transform.h"
 
 namespace frontmost::zbuffer_detail {
@@ -43,7 +46,9 @@ struct Picture {
   std::span<const glm::ivec2> samples;  ///< offsets within a pixel
   PrimitiveId* primitives;              ///< planes, [sample][y][x]
   float* keys;
-  bool streams;  ///< write them past the cache: they are too large to stay in it
+  bool streams;            ///< write them past the cache: they are too large to stay in it
+  const Cutouts* cutouts;  ///< null where no triangle has holes
+  ScreenRays rays;         ///< of the view: they find the holes
 };
 
 /// The pixels of one tile.
@@ -93,6 +98,34 @@ struct TileScratch {
   Buffer<std::uint64_t> words;
   Buffer<BlockBounds> bounds;        ///< one
   Buffer<std::uint32_t> references;  ///< covered (triangle, pixel) pairs of one packet
+};
+
+/// Whether samples of a tile look through holes: asked only where a triangle with holes would be seen. Keeps how the
+/// last triangles lie on the screen, for fragments of a few come in turn.
+class TileHoles {
+ public:
+  /// Borrows the picture. Precondition: it has cutouts.
+  TileHoles(const Picture& picture, const Tile& tile)
+      : picture_(picture), first_(glm::ivec2(tile.x, tile.y) * kSubPixels) {
+    ids_.fill(no_primitive);
+  }
+  /// Whether the triangle has a hole at a place of the tile, in 1/256 pixel. Precondition: it is a cutout.
+  [[nodiscard]] bool has(PrimitiveId id, const glm::ivec2& place) {
+    const std::size_t slot = id % kSlots;
+    if (ids_[slot] != id) {
+      cutouts_[slot].emplace((*picture_.cutouts)[id], picture_.rays);
+      ids_[slot] = id;
+    }
+    return cutouts_[slot]->is_hole(first_.x + place.x, first_.y + place.y);
+  }
+
+ private:
+  static constexpr std::size_t kSlots = 32;
+
+  const Picture& picture_;
+  glm::ivec2 first_;  // the tile's first place in the image
+  std::array<PrimitiveId, kSlots> ids_;
+  std::array<std::optional<ScreenCutout>, kSlots> cutouts_;
 };
 
 }  // namespace frontmost::zbuffer_detail

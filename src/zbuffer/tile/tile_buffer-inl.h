@@ -277,6 +277,33 @@ class TileBuffer {
     return true;
   }
 
+  // -- holes --------------------------------------------------------------------------------------------------------
+
+  /// What is drawn from now on has holes.
+  void MindHoles(TileHoles& holes) { holes_ = &holes; }
+  [[nodiscard]] HWY_INLINE bool minds_holes() const { return holes_ != nullptr; }
+
+  /// Keeps a word that is the greater one, unless its sample looks through a hole.
+  HWY_INLINE void KeepSolid(std::uint64_t word, std::uint64_t& kept, const glm::ivec2& place) const {
+    if (word > kept && !holes_->has(~std::uint32_t(word), place)) kept = word;
+  }
+
+  /// The same of a row of pixels; folds what is kept into `least`. `place`: of the first sample.
+  HWY_INLINE void KeepSolidRow(const Words& words, std::uint64_t* row, const glm::ivec2& place, LeastKey& least) const {
+    const DWI d;
+    HWY_ALIGN_MAX std::uint64_t word[kMaxLanes];
+    StoreWords(words, word);
+    for (std::size_t v = 0; v < Words::kVectors; ++v) {
+      const std::size_t first = v * hn::Lanes(d);
+      const auto* kept = reinterpret_cast<const std::int64_t*>(row + first);
+      ForEachBit(BitsOf(d, hn::Gt(words.word[v], hn::Load(d, kept))), [&](std::size_t lane) {
+        const std::size_t i = first + lane;
+        KeepSolid(word[i], row[i], place + glm::ivec2(int(i) * kSubPixels, 0));
+      });
+      least.Fold(hn::Load(d, kept));
+    }
+  }
+
   // -- the way out --------------------------------------------------------------------------------------------------
 
   void WriteOut() const {
@@ -364,6 +391,7 @@ class TileBuffer {
   const Tile& tile_;
   std::uint64_t* words_;
   BlockBounds& bounds_;
+  TileHoles* holes_ = nullptr;
   std::uint64_t dirty_ = 0;  // blocks drawn to since their farthest key was found
 };
 

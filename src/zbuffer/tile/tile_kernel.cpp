@@ -45,17 +45,12 @@ class TilePainter {
 
   void Draw() {
     buffer_.Clear();
-    large_.DrawAll(frame_.records, job_.records);
-    for (std::size_t i = 0; i < job_.clusters.size(); ++i) {
-      if (i + 2 < job_.clusters.size()) Prefetch(job_.clusters[i + 2]);
-      const std::uint32_t cluster = job_.clusters[i];
-      const std::uint64_t blocks = buffer_.BlocksInTile(frame_.culled.rect(cluster));
-      if (buffer_.AllHide(blocks, frame_.culled.nearest[cluster])) continue;
-      DrawCluster(frame_.set.clusters[cluster]);
-      // Triangles in the queue stay within the cluster's blocks, whenever they are drawn.
-      buffer_.MarkDrawn(blocks);
+    DrawItems(job_.solid);
+    if (!job_.cutouts.is_empty()) {
+      TileHoles holes(frame_, job_);
+      buffer_.MindHoles(holes);
+      DrawItems(job_.cutouts);
     }
-    small_.Finish();
     buffer_.WriteOut();
   }
 
@@ -106,6 +101,20 @@ class TilePainter {
     }
     for (std::size_t i = 0; i < cluster.triangle_count; i += 16)
       hwy::Prefetch(set.id.data() + cluster.first_triangle + i);
+  }
+
+  void DrawItems(const TileJob::Items& items) {
+    large_.DrawAll(frame_.records, items.records);
+    for (std::size_t i = 0; i < items.clusters.size(); ++i) {
+      if (i + 2 < items.clusters.size()) Prefetch(items.clusters[i + 2]);
+      const std::uint32_t cluster = items.clusters[i];
+      const std::uint64_t blocks = buffer_.BlocksInTile(frame_.culled.rect(cluster));
+      if (buffer_.AllHide(blocks, frame_.culled.nearest[cluster])) continue;
+      DrawCluster(frame_.set.clusters[cluster]);
+      // Triangles in the queue stay within the cluster's blocks, whenever they are drawn.
+      buffer_.MarkDrawn(blocks);
+    }
+    small_.Finish();
   }
 
   HWY_INLINE void TransformVertices(const Cluster& cluster) {

@@ -8,6 +8,7 @@
 // was sorted stays sorted.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,18 @@ struct TileRect {
       : x0(rect.x0 / kTileSize), y0(rect.y0 / kTileSize), x1(rect.x1 / kTileSize), y1(rect.y1 / kTileSize) {}
   [[nodiscard]] int count() const { return (x1 - x0 + 1) * (y1 - y0 + 1); }
   [[nodiscard]] bool holds(int column, int row) const { return x0 <= column && column <= x1 && y0 <= row && row <= y1; }
+};
+
+/// A list in which cutouts stand behind everything else, taken apart.
+struct PartedList {
+  std::span<const std::uint32_t> solid, cutouts;
+
+  template <class IsCutout>
+  PartedList(std::span<const std::uint32_t> list, const IsCutout& is_cutout) {
+    const auto first = std::partition_point(list.begin(), list.end(), [&](std::uint32_t i) { return !is_cutout(i); });
+    solid = list.first(std::size_t(first - list.begin()));
+    cutouts = list.subspan(solid.size());
+  }
 };
 
 /// The lists stand one after another in one array.
