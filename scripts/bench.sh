@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # bench.sh FOLDER [ARGS]: says what machine this is, then runs every benchmark program of FOLDER.
 # bench.sh FOLDER zbuffer|abuffer|drawings [ARGS]: the tables of one method alone; stream [ARGS]: models of growing length,
-# streamed.
+# streamed; shade MODEL... : pictures of models one after another, beside llvmpipe's.
 set -euo pipefail
 folder=$1
 shift
@@ -19,6 +19,10 @@ case "${1:-}" in
   stream)
     shift
     exec "$folder/stream_table" "$@"
+    ;;
+  shade)
+    shift
+    exec "$folder/shade_table" "$@"
     ;;
 esac
 "$folder/zbuffer_bench"

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// shade_table [--size W,H] [--frames N] [--samples N] [--picture FILE.png] MODEL... : pictures of models one after
+// another while the camera turns about them, on one thread, beside llvmpipe with base colours alone, in turns of one
+// frame each.
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <functional>
+
+#include "harness/table.h"
+#include "shade/textured_gl.h"
+
+namespace frontmost::bench {
+namespace {
+
+struct Request {
+  int width = 640, height = 480, frames = 15, samples = 1;
+  std::string picture;  ///< of the peer's last frame
+  std::vector<std::string> models;
+};
+
+/// Processor milliseconds of this thread.
+double milliseconds(const std::function<void()>& work) {
+  const auto now = [] {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return double(time.tv_sec) * 1e3 + double(time.tv_nsec) * 1e-6;
+  };
+  const double start = now();
+  work();
+  return now() - start;
+}
+
+/// Times of the first frame and of those after it.
+struct Times {
+  std::vector<double> all;
+
+  [[nodiscard]] double first() const { return all.front(); }
+  [[nodiscard]] double median() const {
+    std::vector<double> later(all.begin() + 1, all.end());
+    std::nth_element(later.begin(), later.begin() + std::ptrdiff_t(later.size() / 2), later.end());
+    return later[later.size() / 2];
+  }
+};
+
+/// Our frames: what is visible, then colours.
+class Pictures {
+ public:
+  Pictures(const Surfaces& surfaces, Shadows shadows) : surfaces_(surfaces), shader_(surfaces) {
+    options_.shadows = shadows;
+  }
+  void draw(const View& view, Times& visibility, Times& colors) {
+    const Execution execution{.threads = 1};
+    const Visible* visible = nullptr;
+    visibility.all.push_back(milliseconds([&] { visible = &buffer_.draw(surfaces_, view, execution); }));
+    colors.all.push_back(milliseconds([&] { shader_.shade_bitmap(*visible, options_, execution); }));
+  }
+
+ private:
+  const Surfaces& surfaces_;
+  ZBuffer buffer_;
+  Shader shader_;
+  ShadeOptions options_;
+};
+
+void measure(const std::string& path, const Request& request, Table& table) {
+  const Scene scene = load(path);
+  const Surfaces surfaces(scene);
+  Pictures plain(surfaces, Shadows::off), shadowed(surfaces, Shadows::map);
+  TexturedGl peer(scene, request.width, request.height, 1);
+  View view = frame(surfaces, request.width, request.height);
+  view.samples = request.samples;
+  const glm::dvec3 middle = surfaces.bounds().centre();
+  Times visible, again, colors, with_shadows, theirs;
+  for (int i = 0; i < request.frames; ++i) {
+    theirs.all.push_back(milliseconds([&] { peer.draw(view); }));
+    plain.draw(view, visible, colors);
+    shadowed.draw(view, again, with_shadows);
+    const glm::dvec3 eye = view.eye() + 0.03 * glm::distance(view.eye(), middle) * view.right();
+    view = view.looking(eye, middle, direction(scene.up)).enclosing(surfaces.bounds());
+  }
+  if (!request.picture.empty()) save(peer.read(), request.picture);
+  const double ours = visible.median() + colors.median(), all = visible.median() + with_shadows.median();
+  table.add({std::filesystem::path(path).stem().string(),
+             Cell::whole(surfaces.primitive_count()),
+             {visible.median()},
+             {colors.median(), 1},
+             {with_shadows.median(), 1},
+             {with_shadows.first(), 1},
+             {1000 / all, 0},
+             {theirs.median(), 1},
+             {theirs.median() / ours, 2}});
+}
+
+Request request_of(int count, char** arguments) {
+  Request request;
+  for (int i = 1; i < count; ++i) {
+    const std::string option = arguments[i];
+    const char* const value = i + 1 < count ? arguments[i + 1] : "";
+    if (option.rfind("--", 0) != 0) {
+      request.models.push_back(option);
+      continue;
+    }
+    ++i;
+    if (option == "--size" && std::sscanf(value, "%d,%d", &request.width, &request.height) == 2) continue;
+    if (option == "--frames" && std::sscanf(value, "%d", &request.frames) == 1 && request.frames > 1) continue;
+    if (option == "--samples" && std::sscanf(value, "%d", &request.samples) == 1) continue;
+    if (option == "--picture" && *value) {
+      request.picture = value;
+      continue;
+    }
+    throw Error(ErrorCode::bad_argument, option + ": not an option with a value");
+  }
+  if (request.models.empty()) throw Error(ErrorCode::bad_argument, "give models");
+  return request;
+}
+
+}  // namespace
+}  // namespace frontmost::bench
+
+int main(int count, char** arguments) try {
+  using namespace frontmost::bench;
+  const Request request = request_of(count, arguments);
+  Table table("pictures one after another, one thread, ms",
+              {"model", "triangles", "visible", "colours", "with shadows", "first", "a second", "llvmpipe", "times"});
+  for (const std::string& model : request.models) measure(model, request, table);
+} catch (const frontmost::Error& error) {
+  std::fprintf(stderr, "shade_table: %s\n", error.what());
+  return 1;
+}
