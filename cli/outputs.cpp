@@ -18,21 +18,15 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kind_names[] = {"picture", "deep",          "depth",      "ray_distance", "window_depth",
                                            "normals", "primitive_ids", "object_ids", "material_ids"};
-constexpr std::string_view format_names[] = {"png", "exr", "pfm", "npy"};
+constexpr std::string_view format_names[] = {"png", "exr", "pfm", "npy", "jpg", "webp"};
+constexpr std::string_view given_formats = "png, exr, pfm, npy, jpg or webp";
 
-/// In small letters, with its dot.
+/// In small letters, without its dot; of the two of JPEG the shorter one.
 std::string suffix_of(const std::string& path) {
   std::string suffix = fs::path(path).extension().string();
   for (char& c : suffix) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
-  return suffix;
-}
-
-std::optional<ImageFormat> format_by_suffix(const std::string& path) {
-  const std::string suffix = suffix_of(path);
-  for (int i = 0; i < 4; ++i) {
-    if (suffix.size() == 4 && suffix.substr(1) == format_names[i]) return ImageFormat(i);
-  }
-  return std::nullopt;
+  suffix.erase(0, 1);
+  return suffix == "jpeg" ? "jpg" : suffix;
 }
 
 bool is_id(OutputKind kind) { return kind >= OutputKind::primitive_ids; }
@@ -43,13 +37,16 @@ void check_format(OutputKind kind, ImageFormat format, const std::string& path) 
   }
   if (kind == OutputKind::deep && format != ImageFormat::exr)
     throw UsageError(fmt::format("{}: only .exr files are deep", path));
+  if (kind != OutputKind::picture && holds_pictures_alone(format))
+    throw UsageError(fmt::format("{}: JPEG and WebP hold pictures alone; use .exr, .npy or .png", path));
 }
 
 ImageFormat format_of(const OutputSettings& settings, const std::string& path) {
   if (const std::optional<ImageFormat> format = format_by_suffix(path)) return *format;
   if (settings.format) return *settings.format;
-  if (path == "-") throw UsageError("standard output needs --format png, exr, pfm or npy");
-  throw UsageError(fmt::format("{}: the suffix names no format; use .png, .exr, .pfm or .npy, or --format", path));
+  if (path == "-") throw UsageError(fmt::format("standard output needs --format {}", given_formats));
+  throw UsageError(
+      fmt::format("{}: the suffix names no format; use .png, .exr, .pfm, .npy, .jpg or .webp, or --format", path));
 }
 
 void add(std::vector<FileToWrite>& files, const FileToWrite& added) {
@@ -108,6 +105,14 @@ void check_writable(const std::string& path) {
 
 }  // namespace
 
+std::optional<ImageFormat> format_by_suffix(const std::string& path) {
+  const auto found = std::find(std::begin(format_names), std::end(format_names), suffix_of(path));
+  if (found == std::end(format_names)) return std::nullopt;
+  return ImageFormat(found - std::begin(format_names));
+}
+
+bool holds_pictures_alone(ImageFormat format) { return format == ImageFormat::jpeg || format == ImageFormat::webp; }
+
 std::string_view kind_name(OutputKind kind) { return kind_names[int(kind)]; }
 
 std::string model_name(const std::string& model) {
@@ -148,8 +153,7 @@ void check_given_format(const std::vector<std::string>& paths, int given, std::s
   const std::vector<std::string_view> names = split(formats, '|');
   const auto number = [&](const std::string& path) {
     const std::string suffix = suffix_of(path);
-    const auto found = std::find(names.begin(), names.end(), std::string_view(suffix).substr(!suffix.empty()));
-    return int(found - names.begin());
+    return int(std::find(names.begin(), names.end(), suffix) - names.begin());
   };
   const auto is_silent = [&](const std::string& path) { return number(path) == int(names.size()); };
   if (std::any_of(paths.begin(), paths.end(), is_silent)) return;
@@ -167,6 +171,8 @@ std::vector<FileToWrite> plan_outputs(const OutputSettings& settings, const std:
       const std::string path = request.path == "-" ? "-" : fill_template(request.path, model, view, layer);
       const ImageFormat format = format_of(settings, path);
       check_format(request.kind, format, path);
+      if (format == ImageFormat::jpeg && !settings.background)
+        throw UsageError(fmt::format("{}: JPEG holds no alpha; use .png or .webp, or another --background", path));
       add(files, {path, format, {request.kind}, layer});
     };
     if (!settings.layers || !is_of_layers(request)) {

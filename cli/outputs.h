@@ -22,6 +22,11 @@ struct FileToWrite {
   std::optional<int> layer = std::nullopt;  ///< of --layers
 };
 
+/// None where the suffix names no format of images.
+[[nodiscard]] std::optional<ImageFormat> format_by_suffix(const std::string& path);
+/// Whether it is a format for looking at, which has no place for depths, ids and directions: JPEG and WebP.
+[[nodiscard]] bool holds_pictures_alone(ImageFormat format);
+
 /// "picture", "depth", "ray_distance", "normals", "primitive_ids", ...: as reports and hashes name them.
 [[nodiscard]] std::string_view kind_name(OutputKind kind);
 

@@ -77,7 +77,7 @@ struct OutputRequest {
 struct OutputSettings {
   std::vector<OutputRequest> files;
   std::optional<ImageFormat> format;
-  int bits = 8;
+  int bits = 8, quality = 90;
   std::optional<double> depth_scale;
   float background_depth = std::numeric_limits<float>::infinity();
   std::optional<std::string> reference, reference_difference;

@@ -25,6 +25,11 @@ if(FRONTMOST_ISAL)
   list(APPEND FRONTMOST_LINKED_PC libisal)
   list(APPEND FRONTMOST_LINKED_DEB libisal-dev)
 endif()
+if(FRONTMOST_WEBP)
+  list(APPEND FRONTMOST_LINKED_CMAKE WebP)
+  list(APPEND FRONTMOST_LINKED_PC libwebp)
+  list(APPEND FRONTMOST_LINKED_DEB libwebp-dev)
+endif()
 if(FRONTMOST_3MF)
   list(APPEND FRONTMOST_LINKED_CMAKE LibZip EXPAT)
   list(APPEND FRONTMOST_LINKED_PC libzip expat)
@@ -44,7 +49,7 @@ configure_package_config_file(cmake/frontmostConfig.cmake.in ${PROJECT_BINARY_DI
   INSTALL_DESTINATION ${FRONTMOST_CMAKE_DIR})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/frontmostConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/frontmostConfig.cmake ${PROJECT_BINARY_DIR}/frontmostConfigVersion.cmake
-  cmake/FindISAL.cmake cmake/FindLibZip.cmake
+  cmake/FindISAL.cmake cmake/FindLibZip.cmake cmake/FindWebP.cmake
   DESTINATION ${FRONTMOST_CMAKE_DIR} COMPONENT development)
 
 # A static library cannot be linked without what it links itself, so there these are plain requirements: consumers

@@ -31,7 +31,8 @@ constexpr Option precision_options[] = {
      }},
     {"plot", 0, "FILE", "Draw the gaps against distance, as SVG.", Group::precision, for_precision,
      [](Settings& s, const Given& g) { s.precision.plot = g.file_name(); }},
-    {"heat-map", 0, "FILE", "Paint the wrong pixels over the model, as PNG; needs --model and --format.",
+    {"heat-map", 0, "FILE",
+     "Paint the wrong pixels over the model, as PNG or what the suffix says; needs --model and --format.",
      Group::precision, for_precision, [](Settings& s, const Given& g) { s.precision.heat_map = g.file_name(); }},
 };
 
@@ -95,7 +96,8 @@ void save_heat_map(const PrecisionRun& run, const ExactVisible& exact, const Exe
   const Image backdrop =
       shade(surfaces, sight.visible, {.shading = Shading::lit, .background = glm::vec3(0.0f)}, execution);
   SaveOptions options;
-  options.format = ImageFormat::png;
+  options.format = format_by_suffix(*run.settings.precision.heat_map).value_or(ImageFormat::png);
+  options.quality = run.settings.output.quality;
   const WritingFiles writing;
   save(fight_image(*run.results.front().fights, backdrop), *run.settings.precision.heat_map, options, execution);
 }

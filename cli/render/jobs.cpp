@@ -45,7 +45,7 @@ void check_format(const OutputSettings& settings) {
   if (!settings.format) return;
   std::vector<std::string> paths;
   for (const OutputRequest& request : settings.files) paths.push_back(request.path);
-  check_given_format(paths, int(*settings.format), "png|exr|pfm|npy|svg|pdf");
+  check_given_format(paths, int(*settings.format), "png|exr|pfm|npy|jpg|webp|svg|pdf");
 }
 
 Job make_job(const Settings& settings) {

@@ -25,9 +25,8 @@ constexpr unsigned written = for_render | may_repeat;
 
 constexpr Option output_options[] = {
     {"output", 'o', "FILE",
-     "The picture: .png, .exr, .pfm or .npy, or its polygons: .svg or .pdf; - is standard output. {model} and {view} "
-     "stand "
-     "for names.",
+     "The picture: .png, .jpg, .webp, .exr, .pfm or .npy, or its polygons: .svg or .pdf; - is standard output. {model} "
+     "and {view} stand for names.",
      Group::output, written, [](Settings& s, const Given& g) { add_file(s, OutputKind::picture, g.text); }},
     {"depth", 0, "FILE", "Distance along the viewing axis, in scene units.", Group::output, written,
      [](Settings& s, const Given& g) { add_file(s, OutputKind::depth, g.text); }},
@@ -67,10 +66,15 @@ constexpr Option output_options[] = {
      [](Settings& s, const Given& g) {
        s.output.most_polygons = std::size_t(g.integer({1, 1000000000}));
      }},
-    {"format", 0, "png|exr|pfm|npy", "Format of files whose names do not say, such as -.", Group::output, for_render,
-     [](Settings& s, const Given& g) { s.output.format = g.choice<ImageFormat>(); }},
+    {"format", 0, "png|exr|pfm|npy|jpg|webp", "Format of files whose names do not say, such as -.", Group::output,
+     for_render, [](Settings& s, const Given& g) { s.output.format = g.choice<ImageFormat>(); }},
     {"bits", 0, "8|16", "Bits a channel of PNG pictures; 8 by default.", Group::output, for_render,
      [](Settings& s, const Given& g) { s.output.bits = g.choice<int>() == 0 ? 8 : 16; }},
+    {"quality", 0, "Q", "How near .jpg and .webp come to the picture, 1 to 100; 90 by default.", Group::output,
+     for_render | for_precision,
+     [](Settings& s, const Given& g) {
+       s.output.quality = g.integer({1, 100});
+     }},
     {"depth-scale", 0, "FACTOR", "PNG depth is distance times this, rounded; by default the range seen fills 16 bits.",
      Group::output, for_render,
      [](Settings& s, const Given& g) {

@@ -35,6 +35,7 @@ SaveOptions save_options(const FileToWrite& file, const OutputSettings& settings
   SaveOptions options;
   options.format = file.format;
   options.bits = settings.bits;
+  options.quality = settings.quality;
   options.depth_scale = settings.depth_scale;
   return options;
 }
@@ -125,7 +126,7 @@ bool wants(const Job& job, OutputKind kind) {
 bool needs_only_bitmap(const Job& job) {
   if (job.output.reference || job.output.hash || job.output.bits != 8) return false;
   return std::all_of(job.files.begin(), job.files.end(), [](const FileToWrite& file) {
-    if (is_picture_alone(file)) return file.format == ImageFormat::png;
+    if (is_picture_alone(file)) return file.format == ImageFormat::png || holds_pictures_alone(file.format);
     return std::find(file.kinds.begin(), file.kinds.end(), OutputKind::picture) == file.kinds.end();
   });
 }

@@ -25,7 +25,7 @@ struct OutputSource {
 /// Whether the job writes this.
 [[nodiscard]] bool wants(const Job& job, OutputKind kind);
 
-/// Whether the picture goes nowhere but into PNG files of 8 bits, each its own.
+/// Whether the picture goes nowhere but into files of 8 bits (PNG, JPEG, WebP), each its own.
 [[nodiscard]] bool needs_only_bitmap(const Job& job);
 
 /// Writes every file of the job, and notes it in the result.

@@ -31,13 +31,14 @@ struct LoadOptions {
 [[nodiscard]] Scene load(std::span<const std::byte> bytes, const std::string& name, const LoadOptions& options = {},
                          const Execution& execution = {});
 
-enum class ImageFormat : std::uint8_t { png, exr, pfm, npy };
+enum class ImageFormat : std::uint8_t { png, exr, pfm, npy, jpeg, webp };
 
 struct SaveOptions {
   std::optional<ImageFormat> format;  ///< none: by suffix; needed for "-"
   int bits = 8;                       ///< PNG: 8 or 16 for colours; ids and depths are always 16
   /// PNG of a depth channel: stored value = depth * scale, rounded. None: the seen range fills 1 to 65535.
   std::optional<double> depth_scale;
+  int quality = 90;  ///< JPEG and WebP: 1 to 100; more is nearer to the picture, and larger
 };
 
 /// Nothing is seen at `path` before the file is whole, and a file that was there stays as it is when writing fails.
@@ -46,14 +47,17 @@ struct SaveOptions {
 /// grey, 0 where nothing is seen, or N.X, N.Y, N.Z with 0 as the middle value. Text chunks tell load_image() which.
 /// EXR takes any channels (floats as 32-bit float, ids as uint32). PFM takes one or three float channels. NPY takes
 /// channels of one type, shape (height, width) or (height, width, channels).
+/// JPEG and WebP take colours (sRGB; WebP with straight alpha, JPEG where all is opaque), which they change a little:
+/// what is read back is within a few steps of 255 of what was saved, at quality 90 within 3 on the mean.
 /// The bytes do not depend on the number of threads.
-/// \throws Error file_unwritable, unsupported (channels that the format cannot hold, EXR in a build without it),
-/// limit_exceeded (id over 65534, depth over 65535 / depth_scale).
+/// \throws Error file_unwritable, unsupported (channels or alpha that the format cannot hold, EXR or WebP in a build
+/// without it), limit_exceeded (id over 65534, depth over 65535 / depth_scale, JPEG over 65500 pixels a side, WebP over
+/// 16383), bad_argument (bits, quality).
 void save(const Image& image, const std::string& path, const SaveOptions& options = {},
           const Execution& execution = {});
 
-/// The same for a bitmap, which only PNG takes; the file is that of the image to the byte. Of the options, only the
-/// format counts.
+/// The same for a bitmap, which only PNG, JPEG and WebP take; the file is that of the image to the byte. Of the
+/// options, only the format and the quality count.
 void save(const Bitmap& bitmap, const std::string& path, const SaveOptions& options = {},
           const Execution& execution = {});
 

@@ -53,12 +53,27 @@ TEST(Outputs, FormatsComeFromSuffixesInAnyCase) {
   EXPECT_EQ(plan({{OutputKind::depth, "a.pfm"}}).front().format, ImageFormat::pfm);
   EXPECT_EQ(plan({{OutputKind::depth, "a.npy"}}).front().format, ImageFormat::npy);
   EXPECT_EQ(plan({{OutputKind::picture, "-"}}, ImageFormat::exr).front().format, ImageFormat::exr);
-  EXPECT_THAT(complaint({{OutputKind::picture, "a.jpg"}}), HasSubstr("names no format"));
+  EXPECT_EQ(plan({{OutputKind::picture, "a.jpg"}}).front().format, ImageFormat::jpeg);
+  EXPECT_EQ(plan({{OutputKind::picture, "a.JPEG"}}).front().format, ImageFormat::jpeg);
+  EXPECT_EQ(plan({{OutputKind::picture, "a.webp"}}).front().format, ImageFormat::webp);
+  EXPECT_EQ(plan({{OutputKind::picture, "-"}}, ImageFormat::jpeg).front().format, ImageFormat::jpeg);
+  for (const char* name : {"a.tif", "a.", "a", ".png", "jpg"})
+    EXPECT_THAT(complaint({{OutputKind::picture, name}}), HasSubstr("names no format")) << name;
   EXPECT_THAT(complaint({{OutputKind::picture, "-"}}), HasSubstr("--format"));
 }
 
 TEST(Outputs, FormatsThatCannotHoldAKindAreRefusedEarly) {
   EXPECT_THAT(complaint({{OutputKind::object_ids, "a.pfm"}}), HasSubstr("PFM cannot hold ids"));
+  for (const char* name : {"a.jpg", "a.jpeg", "a.webp"})
+    for (const OutputKind kind : {OutputKind::depth, OutputKind::ray_distance, OutputKind::window_depth,
+                                  OutputKind::normals, OutputKind::primitive_ids, OutputKind::object_ids})
+      EXPECT_THAT(complaint({{kind, name}}), HasSubstr("JPEG and WebP hold pictures alone; use .exr, .npy or .png"));
+  OutputSettings transparent;
+  transparent.background = std::nullopt;
+  transparent.files = {{OutputKind::picture, "a.webp"}};
+  EXPECT_EQ(plan_outputs(transparent, "m", "v").size(), 1u);
+  transparent.files = {{OutputKind::picture, "a.jpg"}};
+  EXPECT_THROW((void)plan_outputs(transparent, "m", "v"), UsageError);
 }
 
 TEST(Outputs, ExrFilesAreSharedAndNoOthers) {

@@ -83,6 +83,27 @@ TEST_F(Render, PicturesInEveryFormat) {
   }
 }
 
+TEST_F(Render, PicturesInJpegAndWebp) {
+  succeed(render_cube + "-o a.png -o a.jpg -o b.jpeg");
+  EXPECT_EQ(read("a.jpg").substr(0, 3), "\xff\xd8\xff");
+  EXPECT_EQ(read("a.jpg"), read("b.jpeg"));
+  EXPECT_EQ(succeed(render_cube + "-o - --format jpg").out, read("a.jpg"));
+  succeed(render_cube + "-o hashed.jpg --hash");
+  EXPECT_EQ(read("hashed.jpg"), read("a.jpg")) << "by way of floats";
+  succeed(render_cube + "-o coarse.jpg --quality 10");
+  EXPECT_LT(read("coarse.jpg").size(), read("a.jpg").size());
+  succeed("precision --model cube.stl --format D16 --resolution 64,64 --heat-map h.jpg");
+  EXPECT_EQ(read("h.jpg").substr(0, 3), "\xff\xd8\xff");
+#ifdef FRONTMOST_HAS_WEBP
+  succeed(render_cube + "-o a.webp");
+  EXPECT_EQ(read("a.webp").substr(8, 4), "WEBP");
+  succeed(render_cube + "-o clear.webp --background transparent");
+  EXPECT_EQ(read("clear.webp").find("ALPH"), std::string("RIFF....WEBPVP8X..............").size()) << "it has alpha";
+#else
+  expect_failure(render_cube + "-o a.webp", 1, "libwebp-dev");
+#endif
+}
+
 TEST_F(Render, ShadowsByMapByRaysAndNone) {
   const std::string teapot = "render builtin:teapot --resolution 160,120 ";
   succeed(teapot + "-o default.png");
@@ -182,7 +203,11 @@ TEST_F(Render, BatchComplaintsComeBeforeAnyWork) {
 TEST_F(Render, OutputsAreCheckedBeforeAnyWork) {
   // The model does not exist: were it read first, the complaint would be about it.
   expect_failure("render none.stl -o missing/a.png", 1, "the folder missing does not exist");
-  expect_failure("render none.stl -o a.jpg", 2, "a.jpg: the suffix names no format");
+  expect_failure("render none.stl -o a.tif", 2, "a.tif: the suffix names no format");
+  expect_failure("render none.stl --depth a.jpg", 2, "a.jpg: JPEG and WebP hold pictures alone");
+  expect_failure("render none.stl -o a.jpeg --background transparent", 2, "a.jpeg: JPEG holds no alpha");
+  expect_failure("render none.stl -o a.jpg --quality 0", 2, "--quality");
+  expect_failure("render none.stl -o a.jpeg --format png", 2, "the suffix names another format than --format");
   expect_failure("render none.stl -o -", 2, "--format");
   expect_failure("render none.stl -o a.png --depth a.png", 2, "two outputs have this name");
   expect_failure("render none.stl -o a.exr --depth ./a.exr", 2, "would be written twice");

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 #include "base/parallel.h"
 #include "io/images/formats.h"
+#include "io/images/lossy/lossy.h"
 
 namespace frontmost {
 namespace {
@@ -20,8 +22,23 @@ ImageFormat format_of(const std::string& path, const SaveOptions& options) {
   if (suffix == ".exr") return ImageFormat::exr;
   if (suffix == ".pfm") return ImageFormat::pfm;
   if (suffix == ".npy") return ImageFormat::npy;
+  if (suffix == ".jpg" || suffix == ".jpeg") return ImageFormat::jpeg;
+  if (suffix == ".webp") return ImageFormat::webp;
   throw Error(ErrorCode::unsupported,
-              path + ": an image file ends in .png, .exr, .pfm or .npy, not in \"" + suffix + "\"");
+              path + ": an image file ends in .png, .exr, .pfm, .npy, .jpg or .webp, not in \"" + suffix + "\"");
+}
+
+/// \returns it. Precondition: a format that has a quality.
+int checked_quality(const SaveOptions& options, const std::string& name) {
+  if (options.quality < 1 || options.quality > 100)
+    throw Error(ErrorCode::bad_argument, name + ": the quality is 1 to 100, not " + std::to_string(options.quality));
+  return options.quality;
+}
+
+detail::PictureRows lossy_rows(const Image& image, const char* format, const std::string& name) {
+  if (std::optional<detail::PictureRows> rows = detail::picture_rows(image)) return std::move(*rows);
+  throw Error(ErrorCode::unsupported, name + ": " + format + " holds pictures, of R, G, B and A, not " +
+                                          detail::channel_list(image) + "; write EXR, NPY or PNG");
 }
 
 template <class Write>
@@ -66,15 +83,27 @@ void save(const Image& image, const std::string& path, const SaveOptions& option
       case ImageFormat::exr: return detail::save_exr(image, file, execution);
       case ImageFormat::pfm: return detail::save_pfm(image, file);
       case ImageFormat::npy: return detail::save_npy(image, file);
+      case ImageFormat::jpeg:
+        return detail::save_jpeg(lossy_rows(image, "JPEG", file.name()), checked_quality(options, file.name()), file,
+                                 execution);
+      case ImageFormat::webp:
+        return detail::save_webp(lossy_rows(image, "WebP", file.name()), checked_quality(options, file.name()), file,
+                                 execution);
     }
   });
 }
 
 void save(const Bitmap& bitmap, const std::string& path, const SaveOptions& options, const Execution& execution) {
-  if (format_of(path, options) != ImageFormat::png)
-    throw Error(ErrorCode::unsupported, path + ": only PNG holds the 8 bits of a bitmap");
+  const ImageFormat format = format_of(path, options);
+  if (format != ImageFormat::png && format != ImageFormat::jpeg && format != ImageFormat::webp)
+    throw Error(ErrorCode::unsupported, path + ": only PNG, JPEG and WebP hold the 8 bits of a bitmap");
   validate(bitmap);
-  write_file(path, execution, [&](OutputFile& file) { detail::save_png(bitmap, file, execution); });
+  write_file(path, execution, [&](OutputFile& file) {
+    if (format == ImageFormat::png) return detail::save_png(bitmap, file, execution);
+    const int quality = checked_quality(options, file.name());
+    const auto save_lossy = format == ImageFormat::jpeg ? detail::save_jpeg : detail::save_webp;
+    save_lossy(detail::picture_rows(bitmap), quality, file, execution);
+  });
 }
 
 void save(const DeepImage& image, const std::string& path, const Execution& execution) {

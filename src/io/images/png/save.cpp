@@ -4,9 +4,11 @@
 #include <cmath>
 #include <locale>
 #include <sstream>
+#include <utility>
 
 #include "image/srgb_pixels.h"
 #include "io/images/formats.h"
+#include "io/images/picture_rows.h"
 #include "io/images/png/text.h"
 #include "io/images/png/write.h"
 
@@ -29,42 +31,22 @@ std::string digits(double number) {
   return text.str();
 }
 
-std::function<void(int, std::uint8_t*)> color_rows(const ColorPlanes& planes, bool with_alpha, int bits) {
-  if (bits == 8) return [=](int y, std::uint8_t* row) { srgb8_row(planes, y, with_alpha, row); };
-  return [=](int y, std::uint8_t* row) {
-    Buffer<std::uint16_t> values(std::size_t(planes.width) * (with_alpha ? 4 : 3));
-    srgb16_row(planes, y, with_alpha, values.data());
-    for (std::size_t i = 0; i < values.size(); ++i) store_big_endian(row + 2 * i, values[i]);
-  };
-}
-
-PngContents colors(const ColorPlanes& planes, int bits) {
+PngContents colors(PictureRows rows) {
   PngContents contents;
-  const bool with_alpha = !planes.is_opaque();
-  contents.color = with_alpha ? Color::rgba : Color::rgb;
-  contents.bits = bits;
-  contents.row = color_rows(planes, with_alpha, bits);
+  contents.color = rows.with_alpha ? Color::rgba : Color::rgb;
+  contents.row = std::move(rows.row);
   return contents;
 }
 
-PngContents colors(const Bitmap& bitmap) {
-  constexpr std::size_t bytes = 4;  // of a pixel
-  const std::size_t size = bitmap.rgba.size();
-  std::uint8_t least = 255;
-  // Without branches and without an end: that is quicker than to stop at the first that is transparent.
-  for (std::size_t i = bytes - 1; i < size; i += bytes) least = std::min(least, bitmap.rgba[i]);
-  const bool with_alpha = least < 255;
+PngContents deep_colors(const ColorPlanes& planes) {
   PngContents contents;
+  const bool with_alpha = !planes.is_opaque();
   contents.color = with_alpha ? Color::rgba : Color::rgb;
-  contents.row = [&bitmap, with_alpha](int y, std::uint8_t* row) {
-    const std::size_t width = std::size_t(bitmap.width);
-    const std::uint8_t* in = bitmap.rgba.data() + bytes * width * std::size_t(y);
-    if (with_alpha) {
-      std::copy_n(in, bytes * width, row);
-    } else {
-      for (std::size_t x = 0; x < width; ++x)
-        for (std::size_t k = 0; k < 3; ++k) row[3 * x + k] = in[bytes * x + k];
-    }
+  contents.bits = 16;
+  contents.row = [=](int y, std::uint8_t* row) {
+    Buffer<std::uint16_t> values(std::size_t(planes.width) * (with_alpha ? 4 : 3));
+    srgb16_row(planes, y, with_alpha, values.data());
+    for (std::size_t i = 0; i < values.size(); ++i) store_big_endian(row + 2 * i, values[i]);
   };
   return contents;
 }
@@ -175,7 +157,8 @@ PngContents contents_of(const Image& image, const SaveOptions& options, const st
     return image.channels[0].is_integer() ? id_map(image, name) : depth_map(image, options.depth_scale, name);
   if (holds_directions(image)) return directions(image, options.bits);
   const std::optional<ColorPlanes> planes = color_planes(image);
-  if (planes && image.channels.size() == (planes->alpha ? 4u : 3u)) return colors(*planes, options.bits);
+  if (planes && image.channels.size() == (planes->alpha ? 4u : 3u))
+    return options.bits == 8 ? colors(*picture_rows(image)) : deep_colors(*planes);
   throw Error(ErrorCode::unsupported,
               name + ": PNG holds R, G, B and A, or N.X, N.Y, N.Z, or one channel, not " + channel_list(image));
 }
@@ -192,7 +175,7 @@ void save_png(const Image& image, const SaveOptions& options, OutputFile& file, 
 }
 
 void save_png(const Bitmap& bitmap, OutputFile& file, const Execution& execution) {
-  PngContents contents = colors(bitmap);
+  PngContents contents = colors(picture_rows(bitmap));
   contents.width = bitmap.width;
   contents.height = bitmap.height;
   write_png(contents, file, execution);
