@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sub-commands, and what help says of them.
+//
+//   words --parse_command_line()--> Settings --run_...()--> exit status
+//              |                                                 |
+//              options' tables                                   the library, and files
+//
+// The table of commands and the tables of options are all there is: the parser, --help, the manual page, completion and
+// batch files are read from them, so that none can say something else than the others.
 #pragma once
 
 #include <span>

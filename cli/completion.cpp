@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shell completion scripts, from the tables. Values: words for choices, files for files, nothing for numbers.
+//
+// Each shell has its own way to say that; what they share is made once: names of commands, spellings of options, and
+// words in quotes.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// A failed write to standard output is an error like that of any file: a full disk behind a redirection must not end in
+// success. Standard error has nowhere to complain to.
 #include "cli/console.h"
 
 #include <fmt/format.h>
 #include <frontmost/base.h>
-#include <frontmost/text.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 

@@ -3,6 +3,10 @@
 //
 // Leaving at once is safe because only saving makes files: a reader stuck on a slow pipe, or a kernel in the middle of
 // a huge picture, has nothing to clean up, and no library call needs to be fast in noticing.
+//
+//   signal --while nothing is written--> a line on the terminal, and _exit()
+//          --while a WritingFiles lives--> noted: the library is asked to stop, and takes the unfinished file away
+//          --a second time--> now
 #include "cli/failure.h"
 
 #include <fmt/format.h>

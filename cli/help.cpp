@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Help on the terminal, from the tables of commands and options.
+//
+//     -o, --output FILE               The picture: .png, .exr, .pfm or .npy, or its polygons: ...
+//         --depth FILE                Distance along the viewing axis, in scene units.
+//   ^                                 ^
+//   one column for names              one for texts, which are broken at blanks
 #include <fmt/format.h>
 
 #include "cli/command.h"

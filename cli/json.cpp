@@ -2,12 +2,13 @@
 // JSON as text: indented, but a list of numbers stays on one line, so that a matrix is four lines and not sixteen.
 #include "cli/json.h"
 
-#include <frontmost/text.h>
+#include <frontmost/base.h>
 
 #include <algorithm>
 #include <string_view>
 
 #include "cli/console.h"
+#include "cli/stopwatch.h"
 
 namespace frontmost::cli {
 namespace {
@@ -48,6 +49,11 @@ std::string text_of(const Json& json) {
 }
 
 }  // namespace
+
+Json times_json(const std::vector<double>& times) {
+  const auto [low, high] = std::minmax_element(times.begin(), times.end());
+  return {{"min", *low}, {"median", median(times)}, {"max", *high}};
+}
 
 std::string dump(const Json& json) {
   std::string text;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 namespace frontmost::cli {
 
@@ -34,6 +35,9 @@ template <int n, class T>
 
 /// JSON has no infinity; an infinite far plane is null.
 [[nodiscard]] inline Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+/// The least, the median and the greatest of the times that something took. Precondition: not empty.
+[[nodiscard]] Json times_json(const std::vector<double>& times);
 
 /// \returns the text with a line break at the end. Texts are as utf8_text() writes them.
 [[nodiscard]] std::string dump(const Json& json);

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// Names of files, checked as far as they can be before anything is drawn: a run of an hour must not end in "no such
+// folder". Suffixes say the format, --format what they do not say; two kinds in one file are channels of an OpenEXR
+// file.
 #include "cli/outputs.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the user asked for, as said: filled from flags or from a batch file, resolved later.
+//
+// Nothing here is checked against anything else, or against a model. A value that was not given is none, so that code
+// which resolves it later can tell "not said" from the default, and a view of a batch can take what the command line
+// said.
 #pragma once
 
 #include <frontmost/base.h>

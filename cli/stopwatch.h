@@ -4,11 +4,20 @@
 
 #include <frontmost/base.h>
 
+#include <algorithm>
 #include <chrono>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace frontmost::cli {
+
+/// The middle one of them, or the mean of the two in the middle. Precondition: not empty.
+[[nodiscard]] inline double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 ? values[middle] : (values[middle - 1] + values[middle]) * 0.5;
+}
 
 /// Milliseconds since it was made.
 class Stopwatch {

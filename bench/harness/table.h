@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Results: printed as they come, kept for a JSON file.
+// Results: printed as they come, because a table may take an hour, and kept for a JSON file. All columns but the first
+// have one width.
 #pragma once
 
 #include <string>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is measured, one function a table.
+// What is measured, one function a table. Each makes its scenes, measures our methods and the peers in turn, and says
+// by Table::fail() where a promise does not hold; docs/performance.md says what the columns mean.
 #pragma once
 
 #include "harness/program.h"

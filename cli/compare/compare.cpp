@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // frontmost compare: every visibility method on one view, side by side.
+//
+//   for each method: a process of its own --answer, times, memory--> agreement with the first --> text, JSON, or a page
+//
+// The processes come before this one has threads, because a process with threads cannot be split safely; the answers
+// are compared afterwards, here.
 #include <filesystem>
 #include <optional>
 

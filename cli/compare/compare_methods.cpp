@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// The methods as functions of one type, called as users of the library call them. What a method prepares (an index) and
+// what it does for a view are timed apart, since many views of one model pay for the first once.
 #include "cli/compare/compare_methods.h"
 
 #include <frontmost/abuffer.h>
@@ -64,12 +66,6 @@ void StageClock::note(std::string_view name, double milliseconds) {
   const auto found = std::find_if(stages_.begin(), stages_.end(), [&](const Stage& s) { return s.name == name; });
   Stage& stage = found != stages_.end() ? *found : stages_.emplace_back(Stage{std::string(name), {}});
   stage.times.push_back(milliseconds);
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 ? values[middle] : (values[middle - 1] + values[middle]) * 0.5;
 }
 
 }  // namespace frontmost::cli

@@ -65,8 +65,6 @@ struct ComparedMethod {
 /// The first is the one that the others are compared with.
 [[nodiscard]] std::span<const ComparedMethod> compared_methods();
 
-[[nodiscard]] double median(std::vector<double> values);
-
 /// How it went.
 struct MethodRun {
   const ComparedMethod* method = nullptr;

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// The page: one HTML file with everything in it (styles, tables, pictures as data URIs), so that it can be mailed or
+// kept.
+//
+// Pictures are there as files as well. All of them are written into a hidden folder first and moved when all are whole:
+// a page whose pictures belong to another run would be worse than none.
 #include <fmt/format.h>
+#include <frontmost/base.h>
 #include <frontmost/io.h>
 #include <frontmost/shade.h>
-#include <frontmost/text.h>
 #include <frontmost/version.h>
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// The same figures twice: as a table for people, with a column for each method, and as JSON for programs. Text rounds,
+// JSON does not.
 #include "cli/compare/compare_report.h"
 
 #include <fmt/format.h>
@@ -21,15 +23,11 @@ std::string row_of(const Comparisons& all, std::string_view what, const Cell& ce
   return text + '\n';
 }
 
-Json times_json(const MethodRun& run) {
+Json stages_json(const MethodRun& run) {
   Json json = Json::object();
   for (const Stage& stage : run.stages) {
-    const auto [low, high] = std::minmax_element(stage.times.begin(), stage.times.end());
-    if (stage.times.size() == 1 && stage.name != "visible") {
-      json[stage.name] = stage.times.front();
-    } else {
-      json[stage.name] = {{"min", *low}, {"median", median(stage.times)}, {"max", *high}};
-    }
+    const bool is_single = stage.times.size() == 1 && stage.name != "visible";
+    json[stage.name] = is_single ? Json(stage.times.front()) : times_json(stage.times);
   }
   return json;
 }
@@ -39,7 +37,7 @@ Json method_json(const Comparisons& all, const Compared& compared) {
   Json explained = Json::object();
   for (const Difference cause : explained_causes) explained[std::string(name(cause))] = compared.agreement.count(cause);
   Json json = {{"method", run.method->name},
-               {"timings_ms", times_json(run)},
+               {"timings_ms", stages_json(run)},
                {"peak_bytes", run.peak_bytes},
                {"primitives", run.answer.primitives},
                {"samples", all.view.sample_count()},

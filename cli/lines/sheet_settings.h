@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // From what was said about a drawing to the library's options, and from its complaints to the flags; and what the
 // model's numbers mean on paper.
+//
+// The library names a field of SheetOptions in what it complains of; a flag has that field's name with other dashes, so
+// a complaint about one is an error of usage that names the flag.
 #pragma once
 
 #include <frontmost/surfaces.h>

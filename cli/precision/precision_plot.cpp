@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Both axes are logarithmic: a gap that grows with the square of the distance is a line of slope two.
+//
+//   gap |            .'      fixed point: distance^2
+//       |         .'
+//       |      .'   __.--    reversed floats: distance
+//       |   _.--''''
+//       +-----------------> distance
 #include <fmt/format.h>
 
 #include <algorithm>

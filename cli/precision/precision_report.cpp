@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Tables of gaps: of one buffer with its parts, of several side by side; and with a model, which objects fight.
 #include "cli/precision/precision_report.h"
 
 #include <fmt/format.h>

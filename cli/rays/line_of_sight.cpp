@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // frontmost sight: whether one point sees another, for one pair of points or a file of them.
+//
+//   from o-------------------x - - - - - o to      clear, or blocked: by which object, and where (x)
+//
+// Points are told in the coordinates of the model's file; the library's are about the scene's origin.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Text in, one line after the other, and bytes out. A line that is not as it should be is named by its number; a file
+// that never ends is found out by its size before it is held.
 #include "cli/rays/ray_files.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What rays are read from and written to: files of numbers, a few on every line, and a scan as a file of points.
+//
+//   # from            to            a pair of points a line, or a direction: LineRule says how many numbers
+//   0, -5, 1.8        4, 20, 1.8
 #pragma once
 
 #include <string>

@@ -60,7 +60,7 @@ bool is_culled(const WorldCorners& c, const View& view) {
 
 Cause cause_of(const std::array<glm::vec3, 3>& corners, const View& view) {
   const WorldCorners c = in_eye(corners, view);
-  if (!all(c, [](const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); })) {
+  if (!all(c, [](const glm::dvec3& v) { return is_finite(v); })) {
     return non_finite;
   }
   if (!view.projection.orthographic && all(c, [](const glm::dvec3& v) { return v.z <= 0; })) return behind;

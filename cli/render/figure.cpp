@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+// render -o FILE.svg or .pdf: a picture of polygons, painted one over the other.
+//
+// What is visible is known already where maps were asked for; a figure asks at pixel centres alone, so that it does not
+// have to be found again. How large files will be is told before they are written: a model of a million triangles makes
+// a file that few viewers open.
 #include <fmt/format.h>
 #include <frontmost/page.h>
 #include <frontmost/shade.h>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Which views and files a run has, and which wishes exclude each other: layers and streams, polygons and depth buffers.
+// A wish that cannot be granted is an error that names both options, never a file that is silently something else.
 #include "cli/render/jobs.h"
 
 #include <fmt/format.h>

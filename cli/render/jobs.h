@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What one run of `frontmost render` has to do: the views, each with its files.
+//
+//   command line ---------------------> one Job
+//   batch file ----> view 0, 1, 2 ... > a Job each: what the file does not say is taken from the command line
+//
+// Jobs are planned before the model is read. Whatever can be refused is refused then, for all of them.
 #pragma once
 
 #include <frontmost/image.h>

@@ -2,7 +2,7 @@
 #include "cli/render/json_report.h"
 
 #include <fmt/format.h>
-#include <frontmost/text.h>
+#include <frontmost/base.h>
 #include <frontmost/version.h>
 
 #include <algorithm>
@@ -16,17 +16,6 @@ namespace {
 
 // As text: JSON numbers lose bits above 2^53 in many readers.
 std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 ? values[middle] : (values[middle - 1] + values[middle]) * 0.5;
-}
-
-Json visible_json(const std::vector<double>& times) {
-  const auto [low, high] = std::minmax_element(times.begin(), times.end());
-  return {{"min", *low}, {"median", median(times)}, {"max", *high}};
-}
 
 Json seen_json(const Seen& seen, const View& view) {
   Json objects = Json::array();
@@ -50,7 +39,7 @@ Json reference_json(const ReferenceResult& reference) {
 }
 
 void add_timings(const Timings& timings, Json& json) {
-  json["visible"] = visible_json(timings.visible);
+  json["visible"] = times_json(timings.visible);
   if (timings.visible_maps) json["visible_maps"] = *timings.visible_maps;
   json["shade"] = timings.shade;
   json["save"] = timings.save;

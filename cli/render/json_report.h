@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a run of `frontmost render` reports: as JSON, or as lines of hashes.
+//
+//   {"model": ..., "triangles": ...,            one view: what there is to say of it stands beside that of the model
+//    "name": ..., "view": {...}, "seen": {...}, "files": [...], "timings_ms": {...}}
+//
+//   {"model": ..., "triangles": ...,            a batch: the same for each
+//    "views": [{"name": ..., "view": {...}, ...}, ...], "timings_ms": {...}}
 #pragma once
 
 #include <optional>

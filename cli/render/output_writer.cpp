@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+// Files of a view, each composed of what it holds and saved as soon as it is whole; then what else becomes of a
+// picture: it is held against a reference, or shown on the terminal.
+//
+// Maps are made when a file asks for them, one at a time, since each takes as much memory as what is visible. A picture
+// that goes into a PNG file alone is never made in floats.
 #include "cli/render/output_writer.h"
 
 #include <frontmost/io.h>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Panoramas and fisheyes: rays instead of a view, ranges instead of depths, one answer a pixel. Everything that follows
+// is what a pinhole's picture goes through, with the maps that such a camera can have.
 #include <fmt/format.h>
 #include <frontmost/ray_camera.h>
 #include <frontmost/shade.h>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// render --layers: the A-buffer finds the nearest K surfaces of every sample at once, and each layer is then a picture,
+// and maps, of its own, shaded as if nothing were before it.
 #include <frontmost/abuffer.h>
 #include <frontmost/shade.h>
 

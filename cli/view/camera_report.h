@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Points and cameras as users know them, in the coordinates of the model's file, where scenes and views have them about
 // the scene's origin; and one camera in every convention.
+//
+//   file's zero o------- origin ------->o zero of the scene ---- in_scene ---->x
+//               o--------------------------- in_file ------------------------->x
 #pragma once
 
 #include <frontmost/view.h>

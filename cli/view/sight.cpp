@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// The ways to look, behind two faces: at all pixels of a view (look_at_surfaces) and along single rays (RayScene).
+// Callers name the way once, by an index or by settings, and do not branch again.
 #include "cli/view/sight.h"
 
 #include <frontmost/tessellate.h>

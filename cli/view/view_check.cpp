@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which view options exclude or need one another.
+//
+// A camera can be told in four ways: by a name, by places and directions, by a pose, by a camera of the model. Two of
+// them at once contradict each other, and a parameter of one means nothing to the others; so each pair is an error that
+// names both flags, rather than a rule about which one wins.
 #include <fmt/format.h>
 
 #include <vector>

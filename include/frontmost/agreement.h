@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Why two methods see different things at a sample, and whether both may be right.
+//
+// The z-buffer snaps corners to 1/256 pixel, rays snap nothing, and the A-buffer answers in layers. So along edges and
+// where surfaces nearly coincide their answers differ, and an exact comparison of pictures would prove nothing. Here
+// every sample that differs is put to exact arithmetic: either it is shown why both answers are possible, or one of
+// them is wrong.
 #pragma once
 
 #include "frontmost/surfaces.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every room shares: errors, how to run (threads, instruction set, watching long work), boxes, buffers.
+// What every room shares: errors, how to run (threads, instruction set, watching long work), boxes, buffers, and names
+// as texts.
 #pragma once
 
 #include <cstddef>
@@ -67,6 +68,16 @@ using PrimitiveId = std::uint32_t;
 inline constexpr std::uint32_t no_primitive = 0xFFFFFFFFu;
 /// "None" for materials, textures, objects and every other index.
 inline constexpr std::uint32_t no_index = 0xFFFFFFFFu;
+
+/// True unless a coordinate is NaN or infinite: those times 0 are NaN, and NaN is not 0.
+[[nodiscard]] inline bool is_finite(const glm::vec3& p) {
+  const glm::vec3 zero = p * 0.0f;
+  return zero.x == 0 && zero.y == 0 && zero.z == 0;
+}
+[[nodiscard]] inline bool is_finite(const glm::dvec3& p) {
+  const glm::dvec3 zero = p * 0.0;
+  return zero.x == 0 && zero.y == 0 && zero.z == 0;
+}
 
 /// An axis-aligned box. Default: empty.
 struct Box {
@@ -137,5 +148,13 @@ class Buffer {
   std::unique_ptr<T[], Release> data_;
   std::size_t size_ = 0;
 };
+
+// Names come from files, and may be any bytes.
+
+/// `text` as UTF-8, whatever bytes it holds: one that is no part of a character is written as four, such as \xE9. For
+/// JSON, which has its own way to write control characters. O(size).
+[[nodiscard]] std::string utf8_text(std::string_view text);
+/// The same for terminals and pages, with control characters written likewise: a line feed is \x0A.
+[[nodiscard]] std::string printable_text(std::string_view text);
 
 }  // namespace frontmost

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Figure: a picture of polygons, for vector files, as Image is one of pixels. draw_figure() makes it, save() writes it.
+//
+// A million polygons are three arrays, each of which names a run of the next:
+//
+//   shapes   | shape 0           | shape 1 | ...    filled one after the other, each with one colour
+//   rings    | ring 0  | ring 1  | ring 2  | ...    the outlines of a shape: its rim, its holes, its other parts
+//   corners  | a b c d | e f g   | h i j k | ...    the corners of a ring, which closes by itself
 #pragma once
 
 #include <optional>

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// All of Frontmost.
+// All of Frontmost. Each header can be included by itself as well. The shortest way from a file to a picture:
+//
+//   const Scene scene = load("engine.glb");          // io.h: or builtin("teapot"), or meshes of your own
+//   const Surfaces surfaces(scene);                  // surfaces.h: its triangles, each with a number
+//   const View view = frame(surfaces, 1920, 1080);   // view.h: a camera and a grid of pixels
+//   const Visible visible = zbuffer(surfaces, view); // zbuffer.h; raycast() and others answer in the same type
+//   save(shade(surfaces, visible), "engine.png");    // shade.h, io.h: colour is decided last
 #pragma once
 
-#include "frontmost/abuffer.h"    // IWYU pragma: export
-#include "frontmost/agreement.h"  // IWYU pragma: export
-#include "frontmost/base.h"
+#include "frontmost/abuffer.h"       // IWYU pragma: export
+#include "frontmost/agreement.h"     // IWYU pragma: export
+#include "frontmost/base.h"          // IWYU pragma: export
 #include "frontmost/curved.h"        // IWYU pragma: export
 #include "frontmost/depth_buffer.h"  // IWYU pragma: export
 #include "frontmost/figure.h"        // IWYU pragma: export
@@ -29,7 +35,6 @@
 #include "frontmost/strokes.h"       // IWYU pragma: export
 #include "frontmost/surfaces.h"      // IWYU pragma: export
 #include "frontmost/tessellate.h"    // IWYU pragma: export
-#include "frontmost/text.h"          // IWYU pragma: export
 #include "frontmost/version.h"       // IWYU pragma: export
 #include "frontmost/view.h"          // IWYU pragma: export
 #include "frontmost/visible.h"       // IWYU pragma: export

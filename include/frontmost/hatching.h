@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hatching and stippling: how dark surfaces are, in pen lines and dots on what is seen of them.
+//
+//    bright      half dark      darker        in shadow
+//                /   /   /    / / / / / /     X X X X X X
+//                  /   /   /  / / / / / /     X X X X X X
+//                /   /   /    / / / / / /     X X X X X X
+//
+// The lines of a HatchSet come where the brightness falls below its threshold, and stay where it is darker still.
 #pragma once
 
 #include <numbers>

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Image: named planes of pixels, the one type that is written to and read from image files.
+// Image: named planes of pixels, the one type that is written to and read from image files; and the maps of depths and
+// ids that are made of what is visible.
+//
+//   Image       a plane of width * height values for each channel: "R", "G", "B", "A"; "Z"; "object"; ...
+//   DeepImage   any number of samples a pixel: `first` says where those of each pixel begin in every channel
+//   Bitmap      R, G, B, A of each pixel side by side, as bytes: what a screen wants
 #pragma once
 
 #include <functional>

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files: models in, images out. The only room that touches the file system.
+//
+// Formats differ in what they hold and how they break; here they do not. A model of any format becomes a Scene that
+// validate() passes, or an Error that names file, place and reason. A file that is written is there whole, or not at
+// all: its bytes go to a temporary file beside it, which takes the name when it is whole.
 #pragma once
 
 #include <iosfwd>

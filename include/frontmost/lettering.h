@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lettering: text as strokes of one pen, the same in every format and on every machine.
+//
+// Formats of pages have fonts of their own, which look otherwise in every viewer, and plotters have none. So a text
+// becomes paths of lines and arcs, and is placed by one of nine points of the box around its capitals:
+//
+//   left         centre         right
+//    x-------------x-------------x     top: the upper edge of capitals
+//    |  A  4      1 2 . 5    m m  |     middle
+//    x-------------x-------------x     bottom: the line on which letters stand
 #pragma once
 
 #include <string_view>

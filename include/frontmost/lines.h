@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hidden lines: the feature edges of a scene, cut exactly where they go out of sight.
+//
+//         from                                          to       DrawnEdge: between two points of the world
+//          o-----------------o - - - - - - o-------------o
+//          begin 0     end 0.4 = begin     0.7          1        DrawnParts: seen, hidden, seen
+//                            |  something  |
+//                            |  before it  |
 #pragma once
 
 #include <optional>

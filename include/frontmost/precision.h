@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a depth buffer can tell apart: as a function of distance, and in a picture.
+//
+//    near                                                          far
+//     | | | |  |  |   |    |     |       |            |             |
+//                                        <------------>  the gap at this distance
+//
+// The values of a fixed-point format lie close together before the eye, and ever farther apart behind.
+// Two surfaces that are nearer to each other than the gap may be stored as one value; then the order of drawing decides
+// which is seen, and they are said to fight.
 #pragma once
 
 #include <optional>

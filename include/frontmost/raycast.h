@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ray casting: visibility by asking, for every sample, which triangle its ray meets first.
+// Ray casting: visibility by asking, for every sample, which triangle its ray meets first. The same index answers
+// single questions: what is met along a ray, whether two points see each other, and what a light reaches.
+//
+//   RayIndex           a hierarchy of boxes             views     raycast(), RayCaster
+//      [            ]  boxes of boxes                   rays      closest_hit(), all_hits()
+//      [   ] [      ]  boxes of triangles               sight     is_clear(), are_clear()
+//       ///   / \ //   triangles                        light     are_lit()
 #pragma once
 
 #include <array>

@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is in a scene, and what is odd in it.
+//
+// Files in the wild have holes, faces that stand twice, and faces that are inside out; printers, solvers and drawings
+// care. Everything here is counted by the positions of corners as they are stored, bit for bit, so that two programs
+// that look at the same file find the same numbers:
+//
+//    +---+---+     an edge of two triangles joins them to a shell
+//    | / | / |     an edge of one is a boundary: the rim of a hole
+//    +---+---+     an edge of three and more is not manifold
 #pragma once
 
 #include <optional>

@@ -1,6 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rounds: the circles, cylinders and surfaces of revolution that a scene's triangles stand for, and their centre lines
 // in a drawing.
+//
+//            |
+//         .-~|~-.         +-----------------+
+//   - - /- - + - -\ - -   |- - - - - - - - -|- -
+//       \    |    /       +-----------------+
+//         `-~|~-'
+//            |
+//
+// A file of triangles has a polygon where its maker had a circle. Drawings need the circle: a cross over it when it is
+// seen along its axis, an axis when it is seen from the side, and a diameter among the dimensions.
 #pragma once
 
 #include <vector>

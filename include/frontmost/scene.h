@@ -186,6 +186,8 @@ void set_origin(Scene& scene, const glm::dvec3& origin);
 /// Checks what a reader promises: array sizes that belong together, indices in range, at most 2^32 - 2 triangles.
 /// \throws Error file_malformed or limit_exceeded naming the mesh and triangle. O(size of the scene).
 void validate(const Scene& scene);
+/// The same but for the vertices that triangles name: for Surfaces, which look at all of those anyway.
+void validate_besides_vertices(const Scene& scene);
 
 /// A scene made by code: teapot, cubes, cycle, city, spheres, gallery.
 /// \throws Error bad_argument naming the known ones.

@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sections: a scene cut by a plane, with the faces of the cut, and how drafters hatch them.
+//
+//       taken away  |  what is left           seen from the side that is taken away
+//                  _|__________
+//    viewer       | |          |                +-----------+
+//      >          | |    ...   |                |/ / ___ / /|     the face of the cut, hatched
+//                 |_|__________|                | / |   | / |     around a hole in it
+//                   |                           |/ /|___|/ /|
+//                   at                          +-----------+
 #pragma once
 
 #include <cstdint>

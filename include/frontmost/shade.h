@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shading: colour for what a method found visible, decided last and only where something is seen.
+//
+//   Visible ----> once for every pixel and primitive in it ----> normal, texture, light ----> R, G, B, A
+//                     |                                              |
+//                     Surfaces: attributes and materials             shadows: a map, or rays
+//
+// How dear a material is thus does not depend on how much lies behind what is seen. Colours are linear while they are
+// computed.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Drawings on paper by one call: the views of a model on a sheet, at a scale, with sections, dimensions and title
 // block.
+//
+//    +--------------------------------------+
+//    |   front         left                 |     First-angle projection: what is seen from the left stands to the
+//    |                                      |     right of the front view, and what is seen from above below it.
+//    |   top           three-quarter        |     Third angle is the other way round.
+//    |               +----------------------+
+//    |               |     title block      |
+//    +---------------+----------------------+
 #pragma once
 
 #include <memory>

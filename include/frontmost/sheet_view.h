@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Views of a sheet: strokes, hatching and centre lines in their places on a page, with pens as drawing standards have
 // them.
+//
+//   Drawing --chain_strokes()--> Strokes ----+
+//   hatch(), stipple(), centre_lines_of() ----+--> SheetView --page_of()--> Page --save()--> file
+//                                                  a place and a scale
+//
+// draw_sheet() does all of it; these are the steps, for those who lay out pages of their own.
 #pragma once
 
 #include <span>

@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Streams: models of any length, drawn without ever being in memory as a whole.
+//
+//   file --a piece of triangles--> drawn into the views, merged, forgotten --the next piece--> ...
+//                                         |
+//                                         +-- triangles that are seen so far are kept --> Excerpt, a small scene
+//
+// The minimum over (depth, primitive id) does not care in which order triangles come, so pieces give to the bit what
+// the whole model gives. What is seen in the end is at most a triangle for each sample; shading, maps and reports take
+// those for the model.
 #pragma once
 
 #include <array>

@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Strokes: the parts of a drawing put together to long lines, as a pen draws them.
+//
+// A drawing has a part for every side of a triangle that is drawn, cut wherever something hides it. A pen that drew
+// them one by one would be lifted at the end of each, and dashes would begin anew at every corner:
+//
+//   parts     o--o--o--o--o       o--o
+//             |                   |
+//             o--o--o             o--o--o
+//   strokes   .-----------        .---            two lines, each drawn without a lift of the pen
+//             '-----              '-----
 #pragma once
 
 #include <vector>

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces: a scene made ready for every visibility method.
+// Surfaces: a scene made ready for every visibility method. Its triangles are numbered over all instances, in the order
+// of the scene, and these numbers are all that methods answer with:
+//
+//   instance       0: a cube        1: the same cube again    2: a floor
+//   triangle       0 ... 11         0 ... 11                  0    1
+//   primitive id   0 ... 11         12 ... 23                 24   25          source(13) is instance 1, triangle 1
 #pragma once
 
 #include <memory>

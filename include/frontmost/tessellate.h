@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Curved surfaces as triangles, as fine as a view needs them: how the methods for triangles draw spheres and patches.
+//
+//         ____
+//     .-~'    `~-.       the curved surface
+//   /--------------\     a side of a triangle between two of its points
+//          |
+//          at most so many pixels, as the eye sees them: near parts are cut finely, distant ones coarsely
 #pragma once
 
 #include "frontmost/scene.h"

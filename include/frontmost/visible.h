@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Visible: what every method answers, one primitive and one depth for every sample of a view.
+//
+//   primitives, keys   | sample 0 of all pixels          | sample 1 of all pixels          | ...
+//                      | row 0       | row 1       | ... | row 0       | row 1       | ... |
+//                        x = 0, 1, ...
+//
+// Sample 0 alone is thus a plane of its own, as maps want it. What is visible is the minimum over (depth, primitive
+// id), so that parts of a scene can be answered one by one, in any order and on any machine, and merged.
 #pragma once
 
 #include "frontmost/base.h"

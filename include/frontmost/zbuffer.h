@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The z-buffer: visibility by rasterisation into tiles.
+//
+//   triangles --place--> snapped to 1/256 pixel, sorted into the tiles that they touch --draw--> each tile by itself
+//
+// A tile is drawn by one thread, in the processor's cache. What it shows is the nearest key of each sample, and
+// at equal keys the lower id, which is the same in whatever order its triangles come.
+// (E. Catmull. A Subdivision Algorithm for Computer Display of Curved Surfaces. 1974.)
 #pragma once
 
 #include <memory>

@@ -8,7 +8,6 @@
 
 #include <atomic>
 
-#include "base/float_environment.h"
 #include "base/parallel.h"
 #include "base/pool.h"
 

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Vectors of expansions: differences, products and determinants of doubles without rounding.
+//
+// A sign is looked for in steps, each of which is taken only where the one before leaves it open. Almost all signs are
+// plain, so that nearly everything ends at the first:
+//
+//   doubles, with a bound of their error        |value| > error: the sign of the value
+//   pairs of doubles, of twice their length     likewise, with a bound of 2^-92
+//   expansions                                  certain
 #pragma once
 
 #include <array>

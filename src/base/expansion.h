@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sums and products of doubles without rounding.
 //
+// A sum of doubles that do not overlap holds any number of bits. The product 0.1 * 0.1 of two doubles, for instance, is
+// the rounded product and what was rounded away, which is again a double:
+//
+//   0.1 * 0.1  =  0.010000000000000002  +  (-8.3e-19)       largest term: the value to within rounding, and the sign
+//
+// Terms are kept smallest first, so the last one decides the sign of the whole. Products take an fma, which is written
+// out here: it is the exact error that is wanted, not a faster product, and it has the same bits on every machine.
+//
 // J. Shewchuk. Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates. 1997.
 #pragma once
 

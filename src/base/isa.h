@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Choosing a kernel by Execution::isa. Include after hwy/highway.h.
+//
+// A *_kernel.cpp is compiled once for each instruction set, by foreach_target.h, and leaves a table of functions:
+//
+//   Kernels[]  = { ..., AVX-512, AVX2, ..., SSE4, ..., none }   one entry for each of Highway's targets, the best first
+//   kernel_for(Kernels, isa)  ->  the entry of the highest target that `isa` allows
+//
+// Highway's own dispatch chooses once for the whole process. Here every call chooses by its Execution, so that tests
+// can compare instruction sets, and nothing global is written.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names for whole vectors of 32-bit numbers, for kernels that work on as many at once as the machine has room for.
+//
+//   D  a tag: which numbers, and how many of them     F  float
+//   V  a vector of them                               I  32-bit integer with a sign
+//   M  a mask: for each of them yes or no             U  32-bit integer without
+//
+// Kernels that want a fixed number of lanes (raycast's rays, hidden lines' occluders) name types of their own instead.
 
 // Included once for every target.
 #if defined(FRONTMOST_BASE_LANE_TYPES_INL_H_) == defined(HWY_TARGET_TOGGLE)

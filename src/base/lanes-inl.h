@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What Highway 1.0.3 lacks or does by way of memory: masks as bits, and counting lanes from a number known at run time.
+//
+//   a mask of four lanes         set    -    set   set
+//   its bits, lane 0 lowest      0b1101, of which ForEachBit() gives 0, 2 and 3
 
 // Included once for every target.
 #if defined(FRONTMOST_BASE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)

@@ -2,14 +2,14 @@
 // Memory for large planes. The first touch of a 4 KiB page costs about as much as writing it several times: with
 // large pages, 32 MiB are ready in 5 ms instead of 15.
 
+#include "base/memory.h"
+
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
 #include <mutex>
 #include <new>
 
-#include "base/arena.h"
-#include "base/large_pages.h"
 #include "base/parallel.h"
 #include "frontmost/base.h"
 

@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which way three points turn, exactly.
+//
+//        c                    +1: c lies to the left of the way from a to b
+//       /                      0: c lies on the line through a and b
+//      /                      -1: c lies to its right
+//     a --------> b
+//
+// (x to the right, y up: on a screen, where y runs down, the signs are the other way round.) The area of the triangle
+// has this sign too, but a float or a double of it rounds, and three points that a file has on one line would turn by
+// chance. So a filter in doubles decides where the error bound allows, and exact sums of products decide the rest.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// Loops over chunks on threads: those of TBB, where it is built in and can be trusted, or threads made for one loop.
+//
+//   caller    --- check --- chunk 0 --- chunk 2 --- chunk 5 ---+
+//   helper    ------------- chunk 1 --- chunk 4 ---------------+--- the first exception is thrown again, or go on
+//   helper    ------------- chunk 3 --- chunk 6 ---------------+
+//
+// Whoever is free takes the next number from one counter. That balances chunks of any length, and since no chunk knows
+// who runs it, results cannot depend on it.
 #include "base/parallel.h"
 
 #include <algorithm>
@@ -10,7 +18,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/float_environment.h"
 #include "base/spare_threads.h"
 
 #if defined(FRONTMOST_THREADS_tbb)

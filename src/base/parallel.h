@@ -1,11 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only road to threads. Chunk boundaries depend on the range and the grain, never on the number of threads, so
-// that work split by chunk gives the same result however many threads there are.
+// The only road to threads, and the setting of the processor that every result depends on.
+//
+// Chunk boundaries depend on the range and the grain, never on the number of threads, so that work split by chunk gives
+// the same result however many threads there are:
+//
+//   indices   0        grain     2 grain   3 grain       count
+//             |---------|---------|---------|-----...-----|
+//             chunk 0    chunk 1   chunk 2                    taken in this order by whichever thread is free
+//
+// Rounding mode and flush-to-zero change the last bits of everything. Bodies of loops run with the IEEE defaults
+// already; what computes outside of a loop makes an IeeeScope first.
 #pragma once
 
+#include <cfenv>
 #include <cstddef>
 
 #include "frontmost/base.h"
+
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
 
 namespace frontmost {
 
@@ -35,5 +49,27 @@ void parallel_for(const Execution& execution, std::size_t count, std::size_t gra
 void check_cancelled(const Execution& execution);
 /// Tells the watch, if there is one.
 void report_progress(const Execution& execution, std::string_view stage, double fraction);
+
+class IeeeScope {
+ public:
+#if defined(__SSE2__)
+  IeeeScope() : saved_(_mm_getcsr()) { _mm_setcsr(kDefault); }
+  ~IeeeScope() { _mm_setcsr(saved_); }
+
+ private:
+  static constexpr unsigned kDefault = 0x1F80;  // all exceptions masked, round to nearest, no FTZ, no DAZ
+  unsigned saved_;
+#else
+  IeeeScope() : saved_(std::fegetround()) { std::fesetround(FE_TONEAREST); }
+  ~IeeeScope() { std::fesetround(saved_); }
+
+ private:
+  int saved_;
+#endif
+
+ public:
+  IeeeScope(const IeeeScope&) = delete;
+  IeeeScope& operator=(const IeeeScope&) = delete;
+};
 
 }  // namespace frontmost

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Things that are costly to make, lent to one thread at a time and kept for the next.
+//
+// Threads of a loop come and go, so nothing may be kept by thread; what a chunk of work needs (scratch arrays, a set of
+// tiles) is borrowed for the chunk. There are never more things than were lent at the same time. Which of them a chunk
+// gets must not change what it computes.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// The sRGB function by roots instead of powers, and its tables, which are made when this is compiled.
+//
+// srgb8_of_linear() looks up a float by the upper half of its bits. From one byte to the next there is a threshold; a
+// bucket holds one at most, and its entry is made such that adding the lower half of the bits carries into the byte
+// just from the threshold on:
+//
+//   entry            | byte     | 65536 - threshold |
+//   + lower half     | 0        | bits              |
+//   = upper half     byte, or byte + 1 where the bits reach the threshold
 #include "base/srgb.h"
 
 #include <cmath>

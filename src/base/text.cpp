@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names come from files and may be any bytes; what shows them wants UTF-8, and some of it obeys control characters.
-#include "frontmost/text.h"
+#include "frontmost/base.h"
 
 namespace frontmost {
 namespace {

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bytes in, from front to back, of files that need not fit into memory.
+//
+// InputFile maps a file as a whole, which suits readers that go back and forth; a ByteStream reads on and on, which
+// suits pipes and models longer than memory.
 #pragma once
 
 #include <cstddef>

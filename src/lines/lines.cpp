@@ -16,9 +16,7 @@
 #include <atomic>
 #include <string>
 
-#include "base/arena.h"
-#include "base/float_environment.h"
-#include "base/large_pages.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "lines/crossings/crossings.h"

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "base/large_pages.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 
 namespace frontmost::lines_detail {

@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "base/prefetch.h"
+#include "base/memory.h"
 #include "painter/stages.h"
 
 namespace frontmost::painter_detail {

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <optional>
 
-#include "base/float_environment.h"
+#include "base/parallel.h"
 #include "frontmost/painter.h"
 #include "surfaces/cluster_set.h"
 #include "view/clip.h"

@@ -11,7 +11,7 @@
 
 #include <algorithm>
 
-#include "base/float_environment.h"
+#include "base/parallel.h"
 #include "painter/stages.h"
 
 namespace frontmost {

@@ -21,8 +21,6 @@ ExactVector unrounded(const HighLowVector& v) {
   return sums;
 }
 
-bool is_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
 glm::dvec3 rounded(const HighLowVector& v) { return {v.high[0], v.high[1], v.high[2]}; }
 
 /// Where the plane of corners, which are counted from the origin, is met. What is met lies between the corners along

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 
-#include "base/float_environment.h"
 #include "base/parallel.h"
 
 namespace frontmost {

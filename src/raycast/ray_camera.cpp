@@ -16,7 +16,6 @@
 #include <atomic>
 #include <cmath>
 
-#include "base/float_environment.h"
 #include "base/parallel.h"
 #include "raycast/queries.h"
 #include "scene/turn.h"

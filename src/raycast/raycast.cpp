@@ -10,7 +10,6 @@
 #include <memory>
 #include <vector>
 
-#include "base/float_environment.h"
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "raycast/tile_kernel.h"

@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // First every sample is looked at alone: do ids differ, are keys right. Then every triangle of the scene is held
 // against the samples that differ, whatever the methods made of it, for a surface that rules an answer out.
+//
+//   samples   --ids differ--> Contest: two claims --every triangle over them--> is a claim impossible?
+//                                                                                    neither: edge or depth
+//                                                                                    one:     unexplained
+//
+// Few samples differ, and all triangles must be asked; so the samples are kept by cells of 16 x 16 pixels, in which a
+// triangle finds those that it may cover.
 #include "frontmost/agreement.h"
 
 #include <algorithm>
@@ -9,7 +16,6 @@
 #include <optional>
 #include <vector>
 
-#include "base/float_environment.h"
 #include "base/parallel.h"
 #include "report/sample_square.h"
 #include "surfaces/cluster_set.h"
@@ -24,9 +30,7 @@ constexpr std::size_t kRowGrain = 8, kTriangleGrain = 8192;
 constexpr int kCell = 16;
 
 bool is_finite(const std::array<glm::vec3, 3>& corners) {
-  for (const glm::vec3& c : corners)
-    if (!(std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z))) return false;
-  return true;
+  return frontmost::is_finite(corners[0]) && frontmost::is_finite(corners[1]) && frontmost::is_finite(corners[2]);
 }
 
 /// Everything that is asked about one view of one scene.

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The depth of a triangle's plane at a sample: quickly within bounds, and exactly where bounds do not decide.
+//
+//   BoundedPlane   doubles, with a bound of their error       |----[ depth ]----|
+//   ExactDepth     a fraction of two expansions, compared by multiplication, never divided
+//
+// Two planes are compared by their bounds first. Where these overlap, which happens at a few samples of a picture, the
+// fractions decide; so "exact" costs little more than doubles.
 #pragma once
 
 #include <array>

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The nearest triangle at every sample, exactly: bounds in doubles decide nearly everywhere, expansions the rest.
+//
+// Which triangles cover a sample is the z-buffer's question, and its answer is exact already: integers, and the top-
+// left rule. So its tiles and coverage are used as they are (zbuffer/place), and only the depths, which it rounds to
+// keys, are worked out anew.
 #include <algorithm>
 #include <optional>
 
-#include "base/float_environment.h"
+#include "base/parallel.h"
 #include "frontmost/precision.h"
 #include "report/exact_depth.h"
 #include "view/screen_cutout.h"

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
+// Topology of a mesh by sorting and joining, in parallel.
+//
+//   positions --same bits--> one number for each point (weld)
+//   half-edges --sorted by their two points--> groups: one is a boundary, two are joined, more are not manifold
+//   joined triangles --union-find--> shells; joined corners --union-find--> pieces
+//
+// Groups come from sorted keys and sets are named by their least member, so no result depends on which thread came
+// first. The genus follows from Euler's formula where the mesh is closed and every edge has two triangles.
 #include "report/mesh_topology.h"
 
 #include <atomic>
 #include <cmath>
 #include <cstring>
 
-#include "report/collinear.h"
+#include "base/orientation.h"
 #include "report/group.h"
 
 namespace frontmost {
@@ -14,8 +22,6 @@ namespace {
 constexpr std::size_t kMaxTriangles = std::size_t(1) << 29;  // so that a half-edge's number leaves a bit free
 constexpr std::size_t kGrain = std::size_t(1) << 14;
 constexpr std::uint32_t kUnpaired = no_index;
-
-bool is_finite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 struct Count {
   std::uint64_t value = 0;
@@ -229,6 +235,11 @@ Topology examine(const Mesh& mesh, const Execution& execution) {
   if (mesh.triangles.size() > kMaxTriangles)
     throw Error(ErrorCode::limit_exceeded, "mesh " + mesh.name + ": more than 536870912 triangles to examine");
   return MeshTopology(mesh, execution).examine();
+}
+
+bool are_collinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+  return orientation({a.x, a.y}, {b.x, b.y}, {c.x, c.y}) == 0 && orientation({a.y, a.z}, {b.y, b.z}, {c.y, c.z}) == 0 &&
+         orientation({a.z, a.x}, {b.z, b.x}, {c.z, c.x}) == 0;
 }
 
 }  // namespace frontmost

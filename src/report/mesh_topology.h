@@ -1,7 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the triangles of one mesh hang together.
+// How the triangles of one mesh hang together: over which edges, in how many pieces, and whether they close.
+//
+//      +---+---+
+//      | / | / |      one shell: joined over an edge
+//      +---+---+---+
+//              | / |      another one of the same piece: joined in a corner alone
+//              +---+
+//
+// Corners are the same when their positions are, whatever their numbers, so that a file without shared vertices is
+// examined as one with them.
 #pragma once
 
+#include <glm/glm.hpp>
 #include <vector>
 
 #include "frontmost/report.h"
@@ -18,5 +28,8 @@ struct Topology {
 
 /// Precondition: indices in range. \throws Error limit_exceeded.
 [[nodiscard]] Topology examine(const Mesh& mesh, const Execution& execution);
+
+/// True when the triangle's area is exactly zero, for the floats as they are. Precondition: finite.
+[[nodiscard]] bool are_collinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
 
 }  // namespace frontmost

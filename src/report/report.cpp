@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// What is in a scene, counted mesh by mesh and object by object; and what unit a file may mean that says none.
 #include "frontmost/report.h"
 
 #include <algorithm>
@@ -77,7 +78,7 @@ Box bounds_of(const std::vector<glm::vec3>& points, const glm::dmat4& world_from
     Box part;
     for (std::size_t i = begin; i < end; ++i) {
       const glm::vec3 p(world_from_mesh * glm::dvec4(glm::dvec3(points[i]), 1));
-      if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) part.include(p);
+      if (is_finite(p)) part.include(p);
     }
     const std::lock_guard lock(mutex);
     bounds.include(part);
@@ -136,6 +137,8 @@ void report_objects(const Scene& scene, const std::vector<std::uint32_t>& instan
   }
 }
 
+constexpr double millimetre = 0.001, centimetre = 0.01, inch = 0.0254, metre = 1;
+
 }  // namespace
 
 SceneReport inspect(const Scene& scene, const Execution& execution) {
@@ -162,6 +165,17 @@ SceneReport inspect(const Scene& scene, const Execution& execution) {
   }
   report.rounding = rounding_within(report.bounds);
   return report;
+}
+
+std::vector<double> likely_units(const Box& bounds) {
+  if (bounds.is_empty()) return {};
+  const glm::dvec3 size = glm::dvec3(bounds.high) - glm::dvec3(bounds.low);
+  const double greatest = std::max({size.x, size.y, size.z});
+  constexpr double least_part = 5, greatest_part = 2000, grain = 1, least_in_metres = 0.001;
+  if (!(greatest >= least_in_metres && greatest <= greatest_part)) return {};
+  if (greatest >= least_part) return {millimetre};
+  if (greatest < grain) return {metre};
+  return {centimetre, inch, metre};
 }
 
 }  // namespace frontmost

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // A triangle against the square of +-1/128 pixel about a sample: whether it meets it, contains it, and how near it is
 // there. Doubles with bounds decide nearly everywhere, expansions the rest.
+//
+//       +-----------+            misses     no ray through the square meets the triangle
+//       |        /  |            touches    some do: methods that place corners a little differently may disagree
+//       |   x   /   |            contains   all do: whatever a method does to the corners, it covers the sample
+//       |      /    |
+//       +-----/-----+
 #pragma once
 
 #include <cmath>

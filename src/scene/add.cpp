@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is added to a scene: whatever has a number is counted on from what is there.
+//
+//   scene   meshes 0 1 2      materials 0 1          part   meshes 0 1 -> 3 4      materials 0 -> 2
+//           instances name meshes, meshes name materials, materials name textures: all by the new numbers
 #include <algorithm>
 #include <iterator>
 

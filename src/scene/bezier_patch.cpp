@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+// Points and normals of a patch, from Bernstein's polynomials.
+//
+// A neighbour may run along a shared edge the other way, with u or v counted from the other end. So every sum pairs
+// what changes places with what it changes places with: the first point with the last and the second with the third, a
+// parameter with its complement. Both sides then add the same numbers in the same order.
 #include "scene/bezier_patch.h"
 
 #include <cmath>
@@ -34,8 +39,6 @@ glm::dvec3 blend(const BezierPatch& patch, const BernsteinWeights& u, const Bern
   }
   return blend(across, u);
 }
-
-bool is_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 PatchPoint evaluate_there(const BezierPatch& patch, PatchParameter u, PatchParameter v) {
   const BernsteinWeights wu = bernstein(u), wv = bernstein(v), du = bernstein_slope(u), dv = bernstein_slope(v);

@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bicubic Bezier patches: exact enough for equal bits on both sides of a shared edge, and the teapot made of them.
+//
+//            v = 0                  v = 1
+//   u = 0    p[0]   p[1]   p[2]   p[3]
+//            p[4]   p[5]   p[6]   p[7]
+//            p[8]   p[9]   p[10]  p[11]
+//   u = 1    p[12]  p[13]  p[14]  p[15]
+//
+// The four corners lie on the patch, the other points pull at it. An edge is the curve of its own four points alone, so
+// that two patches with the same four have the same edge.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The built-in scenes by name.
+// The built-in scenes by name; and the small classics of visibility among them: the teapot, two cubes through one
+// another, three triangles in a ring.
 #include <array>
 
-#include "base/float_environment.h"
-#include "scene/builtin_scenes.h"
+#include "base/parallel.h"
+#include "scene/compose.h"
+#include "scene/shapes.h"
+#include "scene/turn.h"
 
 namespace frontmost {
 namespace {
@@ -29,6 +32,52 @@ Scene builtin(std::string_view name) {
     known += (i == 0 ? "" : ", ") + std::string(kNames[i]);
   }
   throw Error(ErrorCode::bad_argument, "builtin:" + std::string(name) + ": no such scene; there are " + known);
+}
+
+Scene make_teapot() {
+  Scene scene;
+  const auto porcelain = add(scene, paint("porcelain", 0xEDE6D8, 0.28f));
+  place(scene, "teapot", add(scene, "teapot", teapot(10), porcelain));
+  scene.cameras.push_back(camera_at("classic", {2.6, 4.9, 8.4}, {0.2, 1.4, 0}, 32));
+  return scene;
+}
+
+// The second cube is turned by the angle of the 3-4-5 triangle about y, and pushed half its width along every axis, so
+// each cuts a corner out of the other and no face lies in a face.
+Scene make_cubes() {
+  Scene scene;
+  const auto clay = add(scene, paint("clay", 0xC8553D));
+  const auto slate = add(scene, paint("slate", 0x3D6B8C));
+  const Mesh cube = box({-1, -1, -1}, {1, 1, 1});
+  place(scene, "clay cube", add(scene, "clay cube", cube, clay), moved({-0.5, 1, 0.25}));
+  glm::dmat4 second = moved({0.75, 1.75, -0.5});
+  second[0] = {0.8, 0, -0.6, 0};
+  second[2] = {0.6, 0, 0.8, 0};
+  place(scene, "slate cube", add(scene, "slate cube", cube, slate), second);
+  scene.cameras.push_back(camera_at("corner", {2.2, 5.0, 8.4}, {0.15, 1.35, -0.3}, 30));
+  return scene;
+}
+
+// Each triangle is a long wedge that comes nearer towards its tip. Its tip lies over the base of the next, all the way
+// round: drawn in any order, one is wrong. Faces look along +z.
+Scene make_cycle() {
+  Scene scene;
+  constexpr std::uint32_t kColors[3] = {0xD1495B, 0xEDAE49, 0x2E8B8B};
+  const char* const names[3] = {"red", "yellow", "teal"};
+  for (int k = 0; k < 3; ++k) {
+    const auto paint_id = add(scene, paint(names[k], kColors[k]));
+    scene.materials[paint_id].double_sided = true;
+    const glm::dvec2 along = turn(k, 3), across{0 - along.y, along.x};
+    const auto corner = [&](double forward, double sideways, double z) {
+      return glm::vec3(glm::dvec3(along * forward + across * sideways, z));
+    };
+    Mesh mesh;
+    mesh.positions = {corner(-1.3, -0.9, -0.35), corner(1.75, -0.5, 0.35), corner(-1.3, -0.1, -0.35)};
+    mesh.triangles = {{0, 1, 2}};
+    place(scene, names[k], add(scene, names[k], mesh, paint_id));
+  }
+  scene.cameras.push_back(camera_at("front", {0, 0, 7}, {0, 0, 0}, 36));
+  return scene;
 }
 
 }  // namespace frontmost

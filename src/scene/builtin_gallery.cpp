@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "scene/builtin_scenes.h"
 #include "scene/compose.h"
 #include "scene/shapes.h"
 #include "scene/turn.h"

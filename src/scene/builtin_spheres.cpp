@@ -3,7 +3,6 @@
 // metal, and from the middle outwards they go from polished to matte.
 #include <cmath>
 
-#include "scene/builtin_scenes.h"
 #include "scene/compose.h"
 #include "scene/shapes.h"
 #include "scene/turn.h"

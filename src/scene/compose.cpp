@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Matrices of movements, turns and sizes by hand, because glm's go through the C library's sine and cosine, whose last
+// bits differ from one system to the next.
 #include "scene/compose.h"
 
 #include <cmath>

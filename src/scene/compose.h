@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Putting a scene together: paint, places and cameras. Bit-identical on every machine, as shapes.h says.
+// Putting a scene together (paint, places and cameras), and the scenes behind builtin() that are put together so. All
+// are bit-identical on every machine, as shapes.h says.
+//
+//   paint() --add()--> a material's number --add(mesh)--> a mesh's number --place()--> an instance, which is seen
 #pragma once
 
 #include <string>
@@ -29,5 +32,12 @@ void place(Scene& scene, std::string name, std::uint32_t mesh, const glm::dmat4&
 
 /// From a colour as designers write it (0xRRGGBB, sRGB) to linear light.
 [[nodiscard]] glm::vec4 color(std::uint32_t srgb, double alpha = 1);
+
+[[nodiscard]] Scene make_teapot();
+[[nodiscard]] Scene make_cubes();
+[[nodiscard]] Scene make_cycle();
+[[nodiscard]] Scene make_city();
+[[nodiscard]] Scene make_spheres();
+[[nodiscard]] Scene make_gallery();
 
 }  // namespace frontmost

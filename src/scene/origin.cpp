@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// Where the zero of a scene should lie: the bounds of all points decide, in doubles.
+//
+//   file's zero                                      low        high
+//        |--------------- distance ------------------|- extent --|
+//                                                    ^ the roundest number near here
+//
+// It becomes the origin where the distance is so much greater than the extent that floats would round the details. The
+// search is over as soon as one point lies so near to zero, or so far from the others, that nothing else can matter.
 #include "scene/origin.h"
 
 #include <algorithm>
@@ -80,7 +88,7 @@ class PlacedPoints {
     for (const glm::vec3& p : scene_.meshes[instance.mesh].positions) {
       search.include(placed(instance.world_from_mesh, glm::dvec3(p)));
       if (search.is_home()) return;
-      if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) bounds->include(p);
+      if (is_finite(p)) bounds->include(p);
     }
   }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+// What a scene promises to everything behind it: lists that match each other, and numbers of things that exist.
+//
+// validate() is the door between readers (and callers who make scenes by hand) and the rest of the house. It names the
+// mesh and the triangle, since whoever reads the message has a file of millions of them.
 #include "frontmost/scene.h"
-
-#include "scene/validation.h"
 
 namespace frontmost {
 namespace {

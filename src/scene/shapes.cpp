@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// Shapes as grids of points: a sphere, a torus knot and what a lathe turns are one grid each, bent so that its first
+// and its last row, or column, are the same, or one point.
+//
+//   rows i       0 ------ j ------ columns
+//     |          +---+---+---+
+//     |          | / | / | / |      poles: row 0 and the last row are one point each, and a quad there is one triangle
+//     |          +---+---+---+
+//   rows         | / | / | / |      closed: the last row or column has the numbers of the first, so there is no seam
+//                +---+---+---+
 #include "scene/shapes.h"
 
 #include <cmath>

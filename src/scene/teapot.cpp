@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The teapot as triangles: every patch a grid, and points that two patches share stored once.
+//
+// Patches of one part (body with lid and bottom, handle, spout) are welded where their points agree to the bit, which
+// evaluate() promises along shared edges. Parts are not welded to each other: the handle touches the body in one point,
+// at an angle.
 #include <algorithm>
 #include <map>
 #include <tuple>

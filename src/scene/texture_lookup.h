@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where in a texture a coordinate lies: the rules of wrapping and turning that all who look into one share.
+//
+//    u:     0                               1
+//           |   0   |   1   |   2   |   3   |
+//                     ^first    ^second
+//
+// Texel i covers [i, i + 1) / size, and its middle is at (i + 0.5) / size. So a coordinate lies between the middles of
+// two texels: texel_pair() gives both, and the share of the second.
 #pragma once
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "base/prefetch.h"
+#include "base/memory.h"
 
 namespace frontmost::shading {
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // From numbers of triangles in a stream to their places among those that are kept.
+//
+//   ids kept     3   17   20   21   |  130  131  |  ...        ascending; few of many
+//   buckets      by upper bits: where the ids of each begin, so that a look-up is one step and a short search
 #pragma once
 
 #include <algorithm>

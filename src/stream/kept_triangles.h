@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copies of the triangles of a stream that are seen so far, and the scene that is made of them.
+//
+// A triangle is kept when it is seen after its piece was merged, and may be hidden by a later piece; so what is kept is
+// thinned out from time to time, and at the end. Each has three vertices of its own: the piece that it came from is
+// gone, with the numbers that its vertices had there.
 #pragma once
 
 #include <cstdint>

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Looks for the outline of a piece without looking at all of it: runs of 64 neighbours have a box, and a box within
+// what is known already has no point of the outline. A few triangles from all over the piece go first, so that much is
+// known when the runs are asked.
 #include "stream/outline.h"
 
 #include <algorithm>
-
-#include "stream/finite_triangles.h"
 
 namespace frontmost::streaming {
 

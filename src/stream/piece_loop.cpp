@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+// Several files as one stream, and the loop over their pieces.
+//
+// Errors must not depend on which thread was first. So a worker that fails notes the number of its piece, no later
+// piece is begun, and when all have ended the error of the earliest piece is thrown: the one that reading from front to
+// back would have met.
 #include "stream/piece_loop.h"
 
 #include <algorithm>

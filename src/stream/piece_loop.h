@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // One pass over all files of a stream: pieces are fetched in order, and worked on by several threads at once.
+//
+//   fetch (one at a time)      piece 0    piece 1    piece 2    piece 3    ...
+//   parse and work             +-- worker 0 --------+           +-- worker 0 ...
+//                                         +-- worker 1 ---------------+
+//
+// What is fetched one after the other is only bytes, so the file is read from front to back. A worker has memory of its
+// own, which its pieces use one after the other.
 #pragma once
 
 #include <exception>

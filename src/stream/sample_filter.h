@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which triangles may hold a sample of a view at all. Of a stream as long as these are for, most are smaller than what
 // lies between samples, or outside of the picture: they need not be made into surfaces.
+//
+//      .       .       .        samples
+//         /\                    holds none of them: its box lies between two columns and two rows
+//      .  --   .       .
+//           ____
+//      .   / .  \      .        may hold one: its box does
 #pragma once
 
 #include <cstdint>

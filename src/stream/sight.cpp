@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Drawing a piece, and laying its answer over what was there. A lock is held for as long as that takes: it goes through
+// the pixels that the piece may cover, which are few when pieces are parts of a large model.
 #include "stream/sight.h"
 
 #include <algorithm>
 
-#include "stream/finite_triangles.h"
+#include "stream/outline.h"
 
 namespace frontmost::streaming {
 namespace {

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What views show of the pieces so far.
+//
+//   piece --SampleFilter--> triangles that may be seen --ZBuffer--> its Visible --merge--> Visible of all so far
+//                                                                                    |
+//                                                               triangles that win a sample are kept (Kept)
+//
+// The first part is a Drawer's, of which every worker has one; merging and keeping are the SightGatherer's, under a
+// lock.
 #pragma once
 
 #include <atomic>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// A table with open addressing, filled once and then only counted in. Counts are atomic, because several threads ask at
+// the same time; positions are not written any more by then.
 #include "stream/touched_positions.h"
 
 #include <cstring>

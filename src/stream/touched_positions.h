@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which triangles of a stream touch some others: what smooth normals are made of.
+//
+// The normal at a corner is a mean over all triangles that have a corner in the same place. Those that are not seen are
+// gone when the first pass ends, so a second one goes through the stream again and asks of every triangle whether it
+// touches one that is seen:
+//
+//   corner --hash--> a bit of the filter:  0, the usual answer: no
+//                                          1: look into the table of positions
 #pragma once
 
 #include <array>

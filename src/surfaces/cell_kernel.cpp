@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds the cells of triangles, as many at a time as the vector holds.
+//
+// A triangle's place is that of the sum of its corners; the factor of a third, the transform of the instance and the
+// size of a cell are one matrix for all (CellMap), so that no step is taken for one of them alone. The order that is
+// made of the cells says nothing about where a triangle is drawn, so floats will do.
 
 #include <algorithm>
 

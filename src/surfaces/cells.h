@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The cells of a grid over a scene, and which of them triangles lie in.
+//
+//   bit  31        22 21 20        11 10 9         0
+//        |  z        | 0 |  y        | 0 |  x       |      the gaps keep a carry of one axis out of the next, so that
+//                                                          three places are compared with one subtraction
 #pragma once
 
 #include <array>

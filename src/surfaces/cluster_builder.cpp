@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cuts triangles, in spatial order, into clusters of at most 64 distinct vertices.
 //
+//   spatial order  | t t t t t t t t t t t t t t t t t t t ...
+//                  |<- cluster 0 ->|<- cluster 1 ->|      each ends before the triangle that has no room in it
+//                  |<----------- part ------------>|      by one thread
+//
 // Work is split at fixed places of the order, so the clusters do not depend on the number of threads.
 
 #include <algorithm>
@@ -8,8 +12,8 @@
 #include <optional>
 #include <utility>
 
+#include "base/memory.h"
 #include "base/parallel.h"
-#include "base/prefetch.h"
 #include "surfaces/cluster_set.h"
 #include "surfaces/spatial_order.h"
 #include "surfaces/vertex_table.h"
@@ -115,7 +119,7 @@ class PartBuilder {
     }
     const glm::uvec3& corners = placed_.corners(id);
     for (int k = 0; k < 3; ++k) world[std::size_t(k)] = (*to_world_)(placed_.positions[corners[k]]);
-    return !must_check_ || std::all_of(world.begin(), world.end(), is_finite);
+    return !must_check_ || (is_finite(world[0]) && is_finite(world[1]) && is_finite(world[2]));
   }
 
   void add(PrimitiveId id) {

@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clusters of triangles as structure of arrays: the form in which methods read geometry that they look at often.
+//
+//   clusters    | 0           | 1           | ...
+//   x, y, z     | v v v ... v | v v ...     |        at most 64 vertices each, in world space
+//   i0, i1, i2  | t t t t ... | t t t ...   |        at most 124 triangles each: numbers of its vertices, a byte each
+//   id          | t t t t ... | t t t ...   |        which triangle of the scene it is
+//   boxes       | box         | box         |        what is outside of the picture is left out as a whole
+//
+// Everything is padded to 16, so that kernels read whole vectors and have no loop for the rest.
 #pragma once
 
 #include <mutex>

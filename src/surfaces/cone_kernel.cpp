@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makes normal cones, a vector of triangles at a time.
+//
+// In two passes over a cluster: one for the unit normals, the box around which has the axis in its middle, and one for
+// the least cosine between the axis and a normal. A cone must never be too narrow, so whatever rounding could turn
+// round leaves the cluster without one: needles, boxes without extent, and normals that open to a half turn.
 
 #include <cmath>
 #include <limits>

@@ -1,6 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which way the triangles of each cluster face, at most: what tells that none of them faces the eye.
-// L. A. Shirman, S. S. Abi-Ezzi. The Cone of Normals Technique for Fast Processing of Curved Patches. 1993.
+// (L. A. Shirman, S. S. Abi-Ezzi. The Cone of Normals Technique for Fast Processing of Curved Patches. 1993.)
+//
+//         \  axis  /
+//          \  ^   /
+//           \ | /          All normals of the cluster lie in the cone.
+//            \|/
+//       ------+------ surface
+//
+// Where even the direction in the cone that is turned most towards the eye faces away from it, from every place of the
+// cluster's box, all of its triangles face away.
 #pragma once
 
 #include <atomic>

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What Surfaces finds out of a scene at once: the number of every triangle, and where in the world it is.
+//
+//   scene      instance 0 of mesh a    instance 1 of mesh a    instance 2 of mesh b
+//   ranges     | 2048 | 2048 | rest |  | 2048 | 2048 | rest |  | rest |           triangles that follow one another
+//   boxes      one for 64 triangles each, in world space
+//
+// Nothing is copied: positions stay in the scene's meshes and go through to_world() whenever they are read. What reads
+// them often asks for clusters.
 #pragma once
 
 #include <algorithm>
@@ -39,12 +46,6 @@ class ToWorld {
   const glm::dmat4& matrix_;
   bool is_identity_;
 };
-
-[[nodiscard]] inline bool is_finite(const glm::vec3& p) {
-  // NaN and infinity times 0 are NaN, and NaN is not 0.
-  const glm::vec3 zero = p * 0.0f;
-  return zero.x == 0 && zero.y == 0 && zero.z == 0;
-}
 
 /// The least and the greatest of some numbers.
 struct NumberRange {

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Least significant digit first. Each chunk counts its digits; a prefix sum over (digit, chunk) tells every chunk where
 // its items go, so chunks scatter independently and stably.
+//
+//             chunk 0   chunk 1                 chunk 0   chunk 1
+//   digit 0      2         1                       0         2
+//   digit 1      1         3      --sums-->        3         4        where the first of each goes
+//   digit 2      0         2                       7         7
 
 #include "surfaces/radix_sort.h"
 

@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The order in which triangles are put into clusters: neighbours in space are neighbours in the order.
+//
+//   centroid --CellMap--> cell of a grid --hilbert_place()--> a number on Hilbert's curve --radix_sort()--> the order
+//
+//     +--+  +--+
+//     |  |  |  |
+//     +  +--+  +      The curve goes through all cells of the grid, and leaves no block before it has been through
+//     |        |      all of it: what is near on the curve is near in space.
+//     +--+  +--+
+//        |  |
+//     +--+  +--+
 #pragma once
 
 #include <vector>

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Surfaces: a scene that was checked and numbered, and its clusters, which may have to be made yet.
+//
+// Most of what a method needs is made here once and only read afterwards. Clusters are the exception: they pay from the
+// third picture on, and who asks for a third cannot be known; so they are made then, under a lock, behind an interface
+// that is constant.
 #include "frontmost/surfaces.h"
 
 #include <algorithm>
 
-#include "base/float_environment.h"
-#include "scene/validation.h"
+#include "base/parallel.h"
+#include "frontmost/scene.h"
 #include "surfaces/cluster_set.h"
 
 namespace frontmost {

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which of a cluster's vertices a corner is.
+//
+//   position --hash--> guesses_[4096] --> a number --> x_, y_, z_ of that number: the same bits?
+//                                                      yes: that is the vertex; no: a new one, and the guess is of it
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether a Visible that comes from outside can be read: the door for all that take one.
+//
+// Callers can put any Visible together with any surfaces: planes of another size than their view, planes that were
+// moved away, ids of surfaces that have gone or were edited since. Behind this door every id is looked up without a
+// check, so each public function that takes a Visible passes here first, and what it says begins with that function's
+// name.
 #pragma once
 
 #include <span>

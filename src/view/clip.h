@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clipping of triangles that cannot be snapped whole.
+//
+//   - - - - - - - - - - - - - - - - - - - -
+//   |        .-'|                         |      guard band: 8192 pixels from the middle of the image. What leaves
+//   |     .-'   |  +-----------+          |      only the image is not clipped, but drawn where it is within it.
+//   |   -'------+--|   image   |          |
+//   |              +-----------+          |
+//   - - - - - - - - - - - - - - - - - - - -
+//
+// So only two kinds of triangles come here, and both are rare: those that reach over the guard band, and those that
+// cross the near or the far plane. Behind the eye the divide by the distance would turn them inside out.
 #pragma once
 
 #include <array>

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The key planes of small triangles (KeyPlane of triangle_keys.h), as many at a time as the vector holds: operation by
 // operation, and so the same bits.
+//
+// Only the gradients need doubles. They are worked out half a vector at a time, by way of memory: a vector of doubles
+// has half as many lanes.
 
 // Included once for every target.
 #if defined(FRONTMOST_VIEW_KEY_PLANES_INL_H_) == defined(HWY_TARGET_TOGGLE)

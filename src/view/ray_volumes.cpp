@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// The triple products of a viewing ray with two corners each, and how they change from pixel to pixel.
+//
+//           a
+//          /.\           The ray d from the eye meets the triangle a b c at weights in the ratio of
+//         / d \          d . (b x c)  :  d . (c x a)  :  d . (a x b)
+//        b-----c
+//
+// These are six times the volumes that the ray spans with the sides. In perspective d changes from pixel to pixel, and
+// the sides do not; in parallel projection it is the place where the ray starts.
 #include "view/ray_volumes.h"
 
 namespace frontmost {

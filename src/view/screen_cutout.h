@@ -1,11 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // The holes of a cut-out triangle as a view sees them: asked at samples, answered alike to every method.
+//
+//   place on the screen --RayVolumes--> weights of the three corners --texture--> alpha: a hole if below the cutoff
+//
+// The weights come from the ray through the place, not from snapped corners, so that the z-buffer, which snaps, and the
+// ray caster, which does not, look at the same texel.
 #pragma once
 
 #include "surfaces/cutouts.h"
 #include "view/ray_volumes.h"
+#include "view/screen_transform.h"
 
 namespace frontmost {
+
+namespace detail {
+[[nodiscard]] inline std::array<glm::dvec3, 3> corners_from_eye(const CutoutTriangle& triangle,
+                                                                const ScreenRays& rays) {
+  const auto corner = [&](std::size_t k) { return glm::dvec3(triangle.corner[k]) - rays.eye(); };
+  return {corner(0), corner(1), corner(2)};
+}
+}  // namespace detail
 
 class ScreenCutout {
  public:
@@ -19,5 +33,17 @@ class ScreenCutout {
   const CutoutTriangle* triangle_;
   RayVolumes volumes_;  ///< from the image's top left corner
 };
+
+inline ScreenCutout::ScreenCutout(const CutoutTriangle& triangle, const ScreenRays& rays)
+    : triangle_(&triangle), volumes_(ray_volumes(rays, detail::corners_from_eye(triangle, rays), 0, 0)) {}
+
+inline bool ScreenCutout::is_hole(std::int32_t x, std::int32_t y) const {
+  // From the same corner each time, never by steps from the sample before: the answer is that of the place alone,
+  // whoever asks in whatever order.
+  constexpr double kPixel = 1.0 / kSubPixels;
+  const glm::dvec3 at =
+      volumes_.value + (double(x) * kPixel) * volumes_.step_x + (double(y) * kPixel) * volumes_.step_y;
+  return triangle_->is_hole(normalized_weights(at));
+}
 
 }  // namespace frontmost

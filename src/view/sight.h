@@ -1,5 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lines of sight of a view: what lies left and right of them, before and behind, by exact signs.
+//
+//   eye                p
+//    o - - - - - - - - + - - - -          EyePlane: through the eye and the edge from p to q. turn(x) says on
+//     \ - - - - - - - -| - - - - x        which side of the edge x is seen.
+//      \               |
+//       ` - - - - - - -+ - - - -          FacePlane: through a triangle. height(x) says on which side of it x lies.
+//                      q
+//
+// Both signs together decide what hides what, and both are those of determinants of the coordinates as they are stored:
+// nothing is projected, so nothing is rounded. Values beside the signs are rounded; they tell where something is, never
+// whether.
 #pragma once
 
 #include "base/exact_vector.h"

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The vertex formula of screen_transform.h, as many vertices at a time as the vector holds: the same bits.
+//
+//   world --Transform--> X, Y, D before the divide --IsPlain--> lanes that can be --Snap--> 1/256 pixels and keys
+//                                                       |
+//                                                       +-----> all others are clipped one by one, see clip.h
+//
+// No step may be fused or reordered: ((a*x + b*y) + c*z) + offset is what a scalar loop computes, too, and a vertex
+// that two triangles share must come to lie at one place whichever code drew which of them.
 
 // Included once for every target.
 #if defined(FRONTMOST_VIEW_SNAP_INL_H_) == defined(HWY_TARGET_TOGGLE)

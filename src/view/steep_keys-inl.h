@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The keys of steep triangles (triangle_keys.h), as many samples at a time as the vector holds: the same bits.
+//
+// Along a row only x changes, and along a column only y; each product with one of them is worked out once for a column
+// (Set) or once for a row (At), and a sample is left with two subtractions and one sum of products.
 
 // Included once for every target.
 #if defined(FRONTMOST_VIEW_STEEP_KEYS_INL_H_) == defined(HWY_TARGET_TOGGLE)

@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is seen of a view: its depths, a hash that stands for a whole picture in tests, and several made into one by the
-// z-buffer's own comparison, sample by sample.
+// What is seen of a view: whether it can be read, its depths, a hash that stands for it in tests, and several made into
+// one by the z-buffer's own comparison, sample by sample:
+//
+//   (key, id) wins over (key', id')  where  key > key',  or  key == key' and id < id'
+//
+// The rule does not care which comes first or how often, so parts of a scene may be merged in any order, twice, or by a
+// tree of machines.
 
 #include "frontmost/visible.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cstring>
+#include <string>
 
 #include "base/parallel.h"
 #include "view/answer.h"
@@ -50,6 +56,31 @@ std::uint64_t merge_run(Visible& into, const Visible& other, PrimitiveId first_i
 }
 
 }  // namespace
+
+void check_planes(const Visible& visible, const char* who) {
+  const std::size_t count = visible.view.sample_count();
+  if (visible.primitives.size() != count || visible.keys.size() != count)
+    throw Error(ErrorCode::bad_argument, std::string(who) + ": the planes do not have the size of their view");
+}
+
+void check_ids(std::span<const PrimitiveId> ids, std::uint32_t primitive_count, const char* who,
+               const Execution& execution) {
+  std::atomic<bool> is_of_others{false};
+  constexpr std::size_t ids_at_once = 1u << 17;
+  parallel_for(execution, ids.size(), ids_at_once, [&](std::size_t begin, std::size_t end) {
+    // One more than each id, so that no_primitive becomes the least: one maximum, without a branch.
+    std::uint32_t most = 0;
+    for (std::size_t i = begin; i < end; ++i) most = std::max(most, ids[i] + 1);
+    if (most > primitive_count) is_of_others = true;
+  });
+  if (is_of_others)
+    throw Error(ErrorCode::bad_argument, std::string(who) + ": the surfaces are not those that were seen");
+}
+
+void check_answer(const Visible& visible, std::uint32_t primitive_count, const char* who, const Execution& execution) {
+  check_planes(visible, who);
+  check_ids({visible.primitives.data(), visible.primitives.size()}, primitive_count, who, execution);
+}
 
 float depth_of_key(const View& view, float key) {
   const ClipDistances& clip = view.projection.clip;

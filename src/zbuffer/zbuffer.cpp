@@ -12,7 +12,6 @@
 #include <memory>
 #include <vector>
 
-#include "base/float_environment.h"
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "surfaces/cluster_set.h"

@@ -7,6 +7,7 @@
 #include "support/cutout_scene.h"
 #include "support/effort.h"
 #include "support/flat_picture.h"
+#include "support/refusal.h"
 #include "support/same_visible.h"
 
 namespace frontmost::test {
@@ -34,17 +35,6 @@ Scene glass_scene(Mesh mesh) {
   scene.materials[0].base_color.a = 0.5f;
   scene.meshes[0].material_ids = {0};
   return scene;
-}
-
-template <class Action>
-std::string refusal_of(const Action& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::limit_exceeded);
-    return error.what();
-  }
-  return "none";
 }
 
 // Small ones lie in a few tiles, where they are parts of clusters; large ones are drawn one by one. Of 100,000 the
@@ -110,12 +100,12 @@ TEST(Copies, OfGlassAreRefusedBeforeTheyAreGathered) {
   // The square covers the whole picture, within the eye's 0.9 radians: 100,000 times 700 x 500.
   const std::string wanted =
       "abuffer: about 35000000000 fragments, and the most of a picture of 700 x 500 pixels are 1073741824";
-  EXPECT_EQ(refusal_of([&] { (void)abuffer(surfaces, view); }), wanted);
-  EXPECT_EQ(refusal_of([&] { (void)flat_picture(surfaces, view); }), wanted);
-  EXPECT_EQ(refusal_of([&] { (void)count_fragments(surfaces, view); }), wanted);
+  EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded, [&] { (void)abuffer(surfaces, view); }), wanted);
+  EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded, [&] { (void)flat_picture(surfaces, view); }), wanted);
+  EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded, [&] { (void)count_fragments(surfaces, view); }), wanted);
   // Everything may be made of glass.
   const Scene opaque = scene_of(squares(kCrowd, 1.5f));
-  EXPECT_EQ(refusal_of([&] { (void)abuffer(Surfaces(opaque), view, {0, 0.5f}); }), wanted);
+  EXPECT_EQ(refusal_of(ErrorCode::limit_exceeded, [&] { (void)abuffer(Surfaces(opaque), view, {0, 0.5f}); }), wanted);
 }
 
 // What is large, but mostly outside of the picture, counts for what is within.

@@ -12,6 +12,7 @@
 #include "support/effort.h"
 #include "support/flat_picture.h"
 #include "support/random_scene.h"
+#include "support/refusal.h"
 
 namespace frontmost::test {
 namespace {
@@ -219,34 +220,26 @@ TEST(Running, IsEndedByTheWatchAndReportsAllTiles) {
 
 // ---- Errors, in full ----
 
-template <class Action>
-std::string error_of(Action&& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_argument);
-    return error.what();
-  }
-  return "none";
-}
-
 TEST(Errors, NameOptionAndValue) {
   const RandomCase c = small_case(Kind::soup, 1);
   const Surfaces surfaces(c.scene);
   for (const int grid : {-2, 1, 3, 5, 16, 64}) {
     const std::string words = "abuffer: grid: must be 0, 2, 4 or 8, not " + std::to_string(grid);
-    EXPECT_EQ(error_of([&] { (void)abuffer(surfaces, c.view, {grid}); }), words);
-    EXPECT_EQ(error_of([&] { (void)count_fragments(surfaces, c.view, {grid}); }), words);
-    EXPECT_EQ(error_of([&] { (void)flat_picture(surfaces, c.view, {grid}); }), words);
+    EXPECT_EQ(refusal_of(ErrorCode::bad_argument, [&] { (void)abuffer(surfaces, c.view, {grid}); }), words);
+    EXPECT_EQ(refusal_of(ErrorCode::bad_argument, [&] { (void)count_fragments(surfaces, c.view, {grid}); }), words);
+    EXPECT_EQ(refusal_of(ErrorCode::bad_argument, [&] { (void)flat_picture(surfaces, c.view, {grid}); }), words);
   }
-  EXPECT_EQ(error_of([&] { (void)visible_layers(surfaces, c.view, 1, {3}); }), "none") << "has no grid";
+  EXPECT_EQ(refusal_of(ErrorCode::bad_argument, [&] { (void)visible_layers(surfaces, c.view, 1, {3}); }), "none")
+      << "has no grid";
   for (const float opacity : {-1e-6f, 1.000001f, std::numeric_limits<float>::infinity(), std::nanf("")})
-    EXPECT_EQ(error_of([&] {
-                (void)visible_layers(surfaces, c.view, 1, {0, opacity});
-              }),
+    EXPECT_EQ(refusal_of(ErrorCode::bad_argument,
+                         [&] {
+                           (void)visible_layers(surfaces, c.view, 1, {0, opacity});
+                         }),
               "abuffer: opacity: must be 0 to 1");
   for (const int count : {-1, 0, 1025})
-    EXPECT_EQ(error_of([&] { (void)visible_layers(surfaces, c.view, count); }), "abuffer: layers: must be 1 to 1024");
+    EXPECT_EQ(refusal_of(ErrorCode::bad_argument, [&] { (void)visible_layers(surfaces, c.view, count); }),
+              "abuffer: layers: must be 1 to 1024");
 }
 
 // ---- Putting lists together ----

@@ -9,6 +9,7 @@
 #include "support/effort.h"
 #include "support/flat_picture.h"
 #include "support/random_scene.h"
+#include "support/refusal.h"
 
 namespace frontmost::test {
 namespace {
@@ -22,16 +23,6 @@ Scene stack_of(int count) {
     add_triangle(mesh, {-2, -2, z}, {2, 2, z}, {-2, 2, z});
   }
   return scene_of(std::move(mesh));
-}
-
-ErrorCode code_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.code();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return {};
 }
 
 TEST(ManyLayers, TilesInPartsGiveWhatEverySheetAddsUpTo) {

@@ -7,7 +7,7 @@
 #include <new>
 #include <numeric>
 
-#include "base/prefetch.h"
+#include "base/memory.h"
 #include "frontmost/base.h"
 #include "support/odd_numbers.h"
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "base/memory.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,8 +11,6 @@
 #include <thread>
 #include <vector>
 
-#include "base/arena.h"
-#include "base/large_pages.h"
 #include "frontmost/base.h"
 
 namespace frontmost {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names of any bytes become UTF-8, in a way that says what they were.
-#include "frontmost/text.h"
-
 #include <gtest/gtest.h>
+
+#include "frontmost/base.h"
 
 namespace frontmost {
 namespace {

@@ -6,6 +6,7 @@
 #include "cli/failure.h"
 #include "cli/render/jobs.h"
 #include "cli/view/view_options.h"
+#include "program.h"
 
 namespace frontmost::cli {
 namespace {
@@ -14,12 +15,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 std::string complaint(const std::string& text) {
-  try {
-    (void)parse_batch(text, "b.json", {});
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "nothing";
+  return test::complaint([&] { return parse_batch(text, "b.json", {}); });
 }
 
 TEST(Batch, ViewsTakeWhatTheySayAndKeepTheRest) {

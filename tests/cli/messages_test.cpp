@@ -155,16 +155,6 @@ TEST_F(Messages, OfStreams) {
 
 // ---- By parts, without a process ----
 
-template <class Work>
-std::string complaint(const Work& work) {
-  try {
-    (void)work();
-  } catch (const cli::UsageError& error) {
-    return error.what();
-  }
-  return "none";
-}
-
 TEST(FillTemplate, NamesAndBraces) {
   const auto fill = [](std::string_view text, std::optional<int> layer = std::nullopt) {
     return cli::fill_template(text, "cube", "front", layer);

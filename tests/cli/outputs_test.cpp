@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "cli/failure.h"
+#include "program.h"
 
 namespace frontmost::cli {
 namespace {
@@ -21,12 +22,7 @@ std::vector<FileToWrite> plan(std::vector<OutputRequest> requests, std::optional
 }
 
 std::string complaint(std::vector<OutputRequest> requests) {
-  try {
-    (void)plan(std::move(requests));
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "nothing";
+  return test::complaint([&] { return plan(std::move(requests)); });
 }
 
 TEST(Outputs, TemplatesAreFilledIn) {

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/failure.h"
+
 namespace frontmost::test {
 
 /// A sanitizer takes all addresses for itself, so that there is nothing to limit.
@@ -74,6 +76,17 @@ class ProgramTest : public testing::Test {
  private:
   std::filesystem::path folder_;
 };
+
+/// The words of the complaint that `work` ends in; "none" where it has none.
+template <class Work>
+std::string complaint(const Work& work) {
+  try {
+    (void)work();
+  } catch (const cli::UsageError& error) {
+    return error.what();
+  }
+  return "none";
+}
 
 /// A binary STL of the unit cube, z up, lower corner at `low`, sides of 1; 12 triangles.
 [[nodiscard]] std::string cube_stl(float low = 0);

@@ -5,22 +5,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/failure.h"
+#include "program.h"
 
 namespace frontmost::cli {
 namespace {
 
+using test::complaint;
 using testing::HasSubstr;
-
-template <class Work>
-std::string complaint(const Work& work) {
-  try {
-    (void)work();
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "nothing";
-}
 
 TEST(Values, NumbersAreTakenWhole) {
   EXPECT_EQ(parse_number("1.5"), 1.5);

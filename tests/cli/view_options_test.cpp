@@ -7,8 +7,8 @@
 
 #include <cmath>
 
-#include "cli/failure.h"
 #include "cli/option.h"
+#include "program.h"
 
 namespace frontmost::cli {
 namespace {
@@ -47,12 +47,7 @@ class ViewOptions : public testing::Test {
     return resolve_view(parsed, surfaces_);
   }
   std::string complaint(const Pairs& pairs) const {
-    try {
-      (void)view(pairs);
-    } catch (const UsageError& error) {
-      return error.what();
-    }
-    return "nothing";
+    return test::complaint([&] { return view(pairs); });
   }
 
   static glm::dvec3 eye_space(const View& view, const glm::dvec3& point) {

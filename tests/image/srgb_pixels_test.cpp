@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "support/refusal.h"
 #include "support/test_images.h"
 
 namespace frontmost::test {
@@ -98,13 +99,7 @@ TEST(SrgbRows, StraightColoursDoNotDependOnAlpha) {
 
 template <class AnyImage>
 std::string complaint(const AnyImage& image) {
-  try {
-    validate(image);
-    return "none";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_argument);
-    return error.what();
-  }
+  return refusal_of(ErrorCode::bad_argument, [&] { validate(image); });
 }
 
 TEST(RefusedImages, SayWhatIsWrong) {

@@ -11,6 +11,7 @@
 #include "support/effort.h"
 #include "support/odd_numbers.h"
 #include "support/random_scene.h"
+#include "support/refusal.h"
 
 namespace frontmost::test {
 namespace {
@@ -278,13 +279,7 @@ TEST(RangeScan, NothingIsMetInAnEmptySceneOrWithoutADirection) {
 }
 
 ErrorCode refusal(const RayCamera& camera) {
-  try {
-    validate(camera);
-  } catch (const Error& error) {
-    return error.code();
-  }
-  ADD_FAILURE() << "was accepted";
-  return ErrorCode::cancelled;
+  return code_of([&] { validate(camera); });
 }
 
 TEST(RayCamera, RefusesWhatIsOutOfRange) {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "frontmost/scene.h"
-#include "scene/validation.h"
+#include "support/refusal.h"
 
 namespace frontmost {
 namespace {
@@ -38,13 +38,7 @@ Scene good_scene() {
 }
 
 std::string complaint(const Scene& scene, ErrorCode code = ErrorCode::file_malformed) {
-  try {
-    validate(scene);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), code) << error.what();
-    return error.what();
-  }
-  return "none";
+  return test::refusal_of(code, [&] { validate(scene); });
 }
 
 struct Fault {

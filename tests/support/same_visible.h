@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "base/float_environment.h"
+#include "base/parallel.h"
 #include "frontmost/visible.h"
 #include "frontmost/zbuffer.h"
 #include "support/effort.h"

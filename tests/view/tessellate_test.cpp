@@ -12,7 +12,7 @@
 #include "frontmost/surfaces.h"
 #include "scene/bezier_patch.h"
 #include "scene/shapes.h"
-#include "view/tessellate/patch_grid.h"
+#include "view/tessellate/level.h"
 
 namespace frontmost::test {
 namespace {

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 
-#include "base/float_environment.h"
 #include "base/parallel.h"
 #include "view/clip.h"
 #include "view/triangle_keys.h"

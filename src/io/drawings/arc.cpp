@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// From a bulge to the circle, and back from arcs that follow one another to the one circle that they are parts of.
+//
+// Which angles and radii are the same is asked in millimetres of paper, with what rounding to thousandths leaves open.
 #include "io/drawings/arc.h"
 
 #include <cmath>

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Circular arcs from the bulges of pages.
+//
+//              . - .
+//          .-'   |   '-.         1 at a half circle: the height of the arc over half of its chord
+//        from ---+--- to         0 on a straight line
+//
+// The bulge of a join is the tangent of a quarter of the angle through which its arc turns. Formats want other numbers:
+// a radius and flags, a centre and angles, or curves that come near.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -3,6 +3,12 @@
 //
 // A path is a ruler from corner to corner; between two corners the pattern is stretched so that it begins and ends with
 // a dash (ISO 128-2, 5.2), which then meets the next one around the corner.
+//
+//   corner                                     corner
+//     +-----  -----  -----  -----  -----  -------+        one span: a whole number of periods, and a dash more
+//                                                |
+//                                                |        around the corner the two dashes are one path
+//   a closed path without corners has no span: its pattern goes around a whole number of times
 #include <algorithm>
 #include <cmath>
 

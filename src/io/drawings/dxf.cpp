@@ -1,5 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // DXF of AutoCAD release 12 (AC1009), which everything reads: pairs of lines, a group code and its value.
+//
+//   0           a group code: what follows is the kind of an entity
+//   LINE
+//   8           the layer that it is on
+//   2_VISIBLE
+//   10          its first x
+//   297.000
+//
+// Release 12 has neither groups nor widths, so what a page says by them is said by layers: each group is one, and has
+// its line type and colour from there. Layers have names of 31 characters at most, in which the page's layer comes
+// first, so that programs can choose all of it. A page's y runs down and DXF's up: places are turned over, and arcs
+// change their direction.
 #include <algorithm>
 #include <cmath>
 #include <map>

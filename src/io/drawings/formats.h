@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The formats behind save(page), and how they walk over a page.
+//
+//   Page --validate()--> layers --> groups --> paths --paint_of()--> is it filled, has it a line, which colours?
+//
+// A writer is a class over one page that appends text to a PageText; none of them keeps the page in another form. What
+// a path looks like is worked out in one place for all formats, so that a picture is the same in each.
 #pragma once
 
 #include "frontmost/page.h"

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A page as JSON, for programs that do something else with it.
+//
+//   {"width": ..., "layers": [{"name": ..., "groups": [{"pen": {...}, "paths": [{"points": [[x, y], ...]}, ...]}]}]}
+//
+// Everything that a page holds is there under the names of the library's types, with as many digits as other formats
+// have.
 #include "io/drawings/formats.h"
 #include "io/drawings/page_text.h"
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pages are checked at this door, so that their writers have no error paths.
+// Pages are checked at this door, so that their writers have no error paths. What is checked is what a format could not
+// write: numbers that are not finite or have too many digits, lists that do not belong together, paths of points that
+// are not there.
 #include "frontmost/page.h"
 
 #include <cmath>

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Numbers by hand, digit by digit, and names as each format may hold them.
+//
+// A drawing is millions of numbers of a few digits. They are integers by then (thousandths of a millimetre), so writing
+// them needs no library that rounds, and gives the same bytes everywhere.
 #include "io/drawings/page_text.h"
 
 #include <algorithm>
 #include <optional>
 
-#include "frontmost/text.h"
+#include "frontmost/base.h"
 
 namespace frontmost::detail {
 namespace {

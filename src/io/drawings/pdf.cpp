@@ -2,6 +2,15 @@
 // PDF 1.5, or 1.6 where a page needs a unit of its own: of each page one compressed stream of drawing operators, layers
 // as optional content, groups with an opacity as forms that are transparency groups. No date and no file identifier, so
 // that a page always gives the same bytes.
+//
+//   content of a page      /OC /L0 BDC                layer 0 begins
+//                            0.5 w [] 0 d             a group: its pen
+//                            10 20 m 30 40 l S        a path: move, line, stroke
+//                            q /F128 gs /G0 Do Q      a group with an opacity: form 0, laid on as a whole
+//                          EMC
+//
+// Objects are written as they come, and where each begins is noted for the table at the end; so memory does not grow
+// with the page, but for the places of a few objects.
 #include <zlib.h>
 
 #include <algorithm>

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SVG 1.1, without anything that a plotter's or a journal's software might not know.
 //
+//   <g inkscape:groupmode="layer">        a layer
+//     <g stroke="#000000" ...>            a group: what its paths have in common
+//       <path d="M10 20l5 0 0 5z"/>       a path: a place, and steps from there
+//
 // Paths run in steps from point to point (lower case commands), which takes half the bytes of places. Steps are
-// differences of rounded places, so that nothing adds up.
+// differences of rounded places, so that nothing adds up. A command that is the one before is left out, and so is a
+// blank before a minus sign.
 #include "io/drawings/arc.h"
 #include "io/drawings/formats.h"
 #include "io/drawings/page_text.h"

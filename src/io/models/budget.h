@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a small file may make of memory and time.
+//
+//   honest:    1 byte of the file ---> at most 16 bytes of the scene
+//   hostile:   a vertex that is named again and again by indices of a byte, a mesh of two triangles that is placed a
+//              million times, an image of one colour
+//
+// So every reader that can multiply asks a budget first, which is as large as an honest file of that size could need
+// several times over.
 #pragma once
 
 #include <cstdint>

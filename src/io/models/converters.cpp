@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// What to say to somebody with a file in a format that is not read: which program makes one of it that is, and the
+// command line. Reading these formats is the work of large libraries; naming the way takes a table.
 #include <algorithm>
 
+#include "io/models/model_source.h"
 #include "io/models/reader.h"
-#include "io/models/text/file_text.h"
 
 namespace frontmost {
 namespace {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which format a file is in, by its name and by its contents.
+// Which format a file is in, by its name and by its contents. A name is taken at its word; standard input and memory
+// have none, so the first bytes decide: formats with a magic word first, then those that must be guessed from what they
+// hold.
 #include <algorithm>
 #include <array>
 #include <cstring>

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // load(): finds the bytes, finds the format, calls its reader, checks what came out.
+//
+//   path --> bytes (mapped, or all of a pipe) --> format --> reader --> validate() --> an origin, warnings with names
+//            "builtin:" has none                  by name,
+//                                                 else by content
+//
+// Whatever a reader leaves undone is done here, the same for all formats, so that readers stay about their bytes.
 #include "base/parallel.h"
 #include "io/models/reader.h"
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// The steps that readers of polygons share. Most files hold triangles alone, so those take the short way: no copy of
+// their corners, no cutting, and no list of faces as long as every polygon so far was one triangle.
 #include "io/models/mesh_building.h"
 
 #include <algorithm>

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// Files beside a model are opened here, and nowhere else. A name inside a model is untrusted: "../../etc/passwd", an
+// absolute path and a link that leads out of the folder are all refused, by comparing real paths.
 #include "io/models/model_source.h"
 
 #include <algorithm>
 
-#include "io/models/text/file_text.h"
+#include "frontmost/base.h"
 
 namespace frontmost {
-namespace fs = std::filesystem;
 namespace {
+
+namespace fs = std::filesystem;
 
 /// Whether `path` is `folder` or below it. Both canonical.
 bool is_within(const fs::path& path, const fs::path& folder) {
@@ -22,6 +25,15 @@ bool leaves_folder(const std::string& reference) {
   if (path.is_absolute() || (reference.size() > 1 && reference[1] == ':')) return true;
   const fs::path normal = path.lexically_normal();
   return !normal.empty() && *normal.begin() == "..";
+}
+
+/// The start of `text`, of at most `longest` bytes and without a part of a character at its end.
+std::string_view start_of(std::string_view text, std::size_t longest) {
+  if (text.size() <= longest) return text;
+  const auto continues = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xC0) == 0x80; };
+  std::size_t end = longest;
+  while (end > longest - 3 && continues(end)) --end;
+  return text.substr(0, end);
 }
 
 }  // namespace
@@ -73,6 +85,19 @@ InputFile ModelSource::open(const std::string& reference, std::uint64_t max_byte
   const fs::path found = confined(reference);
   if (opened_) opened_->add(found);
   return InputFile::open(found, name_ + ": " + printable(reference), max_bytes);
+}
+
+std::string name_of(std::string_view text) { return std::string(start_of(text, longest_name)); }
+
+std::string printable(std::string_view text) {
+  constexpr std::size_t longest = 160;
+  const std::string out = printable_text(start_of(text, longest));
+  return text.size() > longest ? out + "..." : out;
+}
+
+std::string in_quotes(std::string_view word) {
+  constexpr std::size_t longest = 40;
+  return '"' + printable(word.substr(0, longest)) + (word.size() > longest ? "...\"" : "\"");
 }
 
 }  // namespace frontmost

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a reader is handed beside a model's bytes: its name, the files beside it, and how to run.
+// What a reader is handed beside a model's bytes (its name, the files beside it, and how to run), and texts of the file
+// on their way out of it, as names in a scene and as parts of messages.
+//
+// A model is somebody else's: it may name any file, and hold any bytes as a name. So files beside it are opened here
+// alone, which keeps them within the model's folder, and texts leave through name_of(), printable() and in_quotes(),
+// which keep them short and free of control characters where a terminal would obey them.
 #pragma once
 
 #include <filesystem>
@@ -7,6 +12,8 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "frontmost/base.h"
@@ -83,5 +90,18 @@ class ModelSource {
   std::filesystem::path path_;
   std::shared_ptr<OpenedFiles> opened_;
 };
+
+/// Bytes that a name keeps. One name stands for many objects (instances of a mesh, groups of an object) and begins many
+/// warnings, so that a file of a megabyte with one name as long would take gigabytes.
+inline constexpr std::size_t longest_name = 1024;
+
+/// `text` as a name: cut at `longest_name`, not within a UTF-8 character.
+[[nodiscard]] std::string name_of(std::string_view text);
+
+/// A text of the file as it may stand in a message: short, and as printable_text() writes it.
+[[nodiscard]] std::string printable(std::string_view text);
+
+/// A word of a file for a message: in quotes, and not longer than a line.
+[[nodiscard]] std::string in_quotes(std::string_view word);
 
 }  // namespace frontmost

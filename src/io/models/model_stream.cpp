@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which files can be read piece by piece, told from their first bytes.
+// Which files can be read piece by piece, told from their first bytes. Those bytes cannot be read again where they came
+// through a pipe, so they go along to whoever reads on.
 
 #include "io/models/model_stream.h"
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Models that are read piece by piece, from front to back, so that only the piece at hand is in memory. The parsing is
 // that of the readers which read files whole; a stream gives the same triangles in the same order, and the same errors.
+//
+//   fetch()   the bytes of so many triangles: one thread at a time, in order
+//   parse()   a mesh of those bytes: any number of threads, each with its own piece
 #pragma once
 
 #include <memory>

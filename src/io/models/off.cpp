@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // OFF, the text form, with the optional colours, normals and texture coordinates of Geomview: [ST][C][N]OFF.
+//
+//   COFF
+//   4 2 0                        vertices, faces, edges (nobody needs the last)
+//   0 0 0   1 0 0 1              a vertex; behind it with N a normal, with C a colour, with ST u v
+//   ...
+//   3 0 1 2   0.5 0.5 0.5        a face: how many corners, which, and perhaps a colour of its own
+//
+// Colours go from 0 to 1 or from 0 to 255, and only the greatest of all tells which. Counts are held against the length
+// of the file before memory is asked for.
 #include <algorithm>
 
 #include "io/models/coordinates.h"

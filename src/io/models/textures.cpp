@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Each texture is read once, however many materials name it. A model is worth showing without a texture, so whatever is
+// wrong with one becomes a warning that says where it is named and why it was left out.
 #include "io/models/textures.h"
 
 #include "io/images/decode.h"
-#include "io/models/text/file_text.h"
+#include "io/models/model_source.h"
 
 namespace frontmost {
 namespace {

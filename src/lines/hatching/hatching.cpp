@@ -8,7 +8,6 @@
 #include <cmath>
 #include <tuple>
 
-#include "base/float_environment.h"
 #include "base/parallel.h"
 #include "lines/hatching/toned_scene.h"
 #include "lines/strokes/parts.h"

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <tuple>
 
-#include "base/float_environment.h"
 #include "base/parallel.h"
 #include "frontmost/hatching.h"
 #include "lines/hatching/toned_scene.h"

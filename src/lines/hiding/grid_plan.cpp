@@ -13,7 +13,7 @@
 #include <limits>
 #include <numeric>
 
-#include "base/prefetch.h"
+#include "base/memory.h"
 #include "lines/lists.h"
 #include "surfaces/radix_sort.h"
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "base/float_environment.h"
+#include "base/parallel.h"
 #include "lines/rounds/found_rounds.h"
 
 namespace frontmost {

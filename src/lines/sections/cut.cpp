@@ -12,7 +12,6 @@
 #include <cmath>
 #include <tuple>
 
-#include "base/float_environment.h"
 #include "base/parallel.h"
 #include "frontmost/section.h"
 #include "lines/sections/plane_axes.h"

@@ -9,7 +9,6 @@
 #include <map>
 #include <numbers>
 
-#include "base/float_environment.h"
 #include "base/parallel.h"
 #include "lines/strokes/parts.h"
 

@@ -3,7 +3,7 @@
 //
 // Polygons that overlap nothing are found together, across the sides that they share, and need no clipper. In a scan or
 // a terrain these are most.
-#include "base/float_environment.h"
+#include "base/parallel.h"
 #include "painter/seen/adjacency.h"
 #include "painter/seen/occlusion_clipper.h"
 #include "painter/seen/screen_polygons.h"

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "base/float_environment.h"
+#include "base/parallel.h"
 #include "raycast/curved/curved_parts.h"
 
 namespace frontmost {

@@ -7,7 +7,6 @@
 // their rays begin at the least number above 0 and end at the greatest below 1.
 #include <cmath>
 
-#include "base/float_environment.h"
 #include "base/parallel.h"
 #include "raycast/curved/curved_parts.h"
 #include "raycast/curved/patch_packet.h"
@@ -20,8 +19,6 @@ using namespace raycast_detail;
 namespace {
 
 constexpr std::size_t kQueriesPerPart = 256;
-
-bool is_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 /// Of what was met on a line of curved surfaces and of triangles, the nearer.
 CurvedHit nearer(const CurvedParts& parts, const CurvedHit& curved, const RayHit& flat) {

@@ -6,7 +6,6 @@
 // distance of that key, and keys are compared again: what is curved and has the same key is seen if its id is lower.
 #include <atomic>
 
-#include "base/float_environment.h"
 #include "base/parallel.h"
 #include "raycast/curved/curved_parts.h"
 #include "raycast/curved/double_ray.h"

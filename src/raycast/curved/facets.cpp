@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-#include "base/float_environment.h"
+#include "base/parallel.h"
 #include "raycast/curved/curved_parts.h"
 #include "raycast/curved/double_ray.h"
 #include "scene/bezier_patch.h"

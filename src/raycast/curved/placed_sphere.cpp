@@ -12,8 +12,6 @@ namespace {
 
 constexpr double kTurn = 6.283185307179586477;
 
-bool is_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
 /// What squares of products stay finite of. Not NaN.
 bool is_moderate(const glm::dvec3& v) {
   constexpr double kFarthest = 0x1p250;

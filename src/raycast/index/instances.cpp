@@ -7,7 +7,6 @@
 
 #include <algorithm>
 
-#include "base/float_environment.h"
 #include "base/parallel.h"
 #include "raycast/index/build.h"
 #include "raycast/index/placement.h"

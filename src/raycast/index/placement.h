@@ -12,7 +12,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/prefetch.h"
+#include "base/memory.h"
 #include "hwy/base.h"
 #include "raycast/index/ray_tree.h"
 

@@ -4,7 +4,6 @@
 // An index on one level is built over Surfaces. On two levels each mesh has one tree, where it is modelled, however
 // often it is placed, and a tree over the instances leads into them: so a forest of one tree takes the memory of one.
 
-#include "base/float_environment.h"
 #include "base/parallel.h"
 #include "raycast/index/build.h"
 

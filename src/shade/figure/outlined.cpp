@@ -7,7 +7,6 @@
 //            cancelled out where two share them                  (one polygon is a ring as it is)
 #include <algorithm>
 
-#include "base/float_environment.h"
 #include "base/parallel.h"
 #include "painter/traps/trap.h"
 #include "shade/figure/colored_order.h"

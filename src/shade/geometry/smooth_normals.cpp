@@ -11,8 +11,8 @@
 #include <cstring>
 #include <utility>
 
+#include "base/memory.h"
 #include "base/parallel.h"
-#include "base/prefetch.h"
 #include "shade/bit_set.h"
 
 namespace frontmost::shading {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/prefetch.h"
+#include "base/memory.h"
 #include "shade/geometry/geometry.h"
 
 namespace frontmost::shading {

@@ -1,5 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // The farthest points of a model in directions all around, found without looking at all of them.
+//
+// First the boxes of the model that reach farthest in each direction are looked into. What was found bounds a polygon
+// in each of two planes (Core): a point within both reaches nowhere as far as those that are kept. Most boxes lie in
+// the core as a whole and are passed over; of the others each vertex is asked, and the core is made anew when it has
+// become too small.
+//
+//     . - - - - - - *   --> direction k: the farthest point is kept
+//    /             /
+//   *     core    /    points and whole boxes within the core are passed over
+//    \           /
+//     . _ _ _ _ *
+//
+// A core only saves work. What is kept is decided by the one rounding of reach(), so that it does not depend on the
+// order in which points come, on boxes or on clusters.
 
 #include "view/camera/extremes.h"
 

@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Views that show a whole model.
+//
+//           eye             A plane across the picture, seen from above: each side of the frustum is a line.
+//          / | \            Moved until it touches the model, the left and the right one meet where the eye must stand
+//         /  |  \           to see it exactly.
+//        / . * . \    (the points are the model)
+//       *  . . .  *
+//
+// The upper and the lower side ask for another place. The eye takes the one that is farther back, and is then moved
+// across until the model is in the middle of the looser direction, too.
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Camera poses: looking at a point, and the conventions of other programs.
+//
+//        y                            z (forward)
+//        |                           /
+//        |     x                    o------ x
+//        o------                    |
+//       /                           |
+//      z (backward)                 y
+//
+//    OpenGL, and this house         OpenCV
+//
+// They differ by the signs of y and z, and each may be told from the camera to the world or the other way round.
 
 #include <cmath>
 
@@ -7,8 +18,6 @@
 
 namespace frontmost {
 namespace {
-
-bool is_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 // y and z change sign between OpenGL's camera axes (y up, z back) and OpenCV's (y down, z forward).
 const glm::dmat4 kFlipYZ(1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1);

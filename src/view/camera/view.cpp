@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+// What a view may be: the patterns of its samples, and the limits within which every method can draw it.
+//
+// Everything is checked here, so that methods have no error paths. The last check makes the transform that vertices
+// will go through and looks whether its floats are finite: a view may be right in doubles, and still be out of their
+// range.
 #include "frontmost/view.h"
 
 #include <algorithm>

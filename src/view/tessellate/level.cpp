@@ -2,6 +2,13 @@
 // Bounds on how far triangles are from what they stand for, and the coarsest grids that keep within them.
 //
 // D. Filip, R. Magedson, R. Markot. Surface Algorithms Using Bounds on Derivatives. 1986 (patches).
+//
+//   how far a displacement shows:   pixels  ->  world units, by the distance from the eye (ScreenTolerance)
+//   how far a grid is off:          second derivatives of a patch, over 8 u^2, 4 u v and 8 v^2 (PatchBending);
+//                                   of a sphere the height of the cap over a cell of its globe (globe_error)
+//
+// A level is the first at which the second is not above the first. Both are bounds from above, never estimates, because
+// a drawing may be asked to be right to so many pixels.
 
 #include "view/tessellate/level.h"
 

@@ -1,5 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// How finely curved primitives are to be cut.
+// How finely curved primitives are to be cut, and the triangles of a mesh of patches, without gaps between patches of
+// different fineness.
+//
+//   a cell of a patch's grid beside a neighbour that is twice as fine: a fan about the cell's middle joins all points
+//
+//     +---------------+
+//     | \           / |         Every edge has the points of the finest patch that has it, at fractions of powers of
+//     |   \       /   |         two, so that both sides compute the same ones to the bit. Cells without finer
+//     |     \   /     |         neighbours are two triangles.
+//     |       +       |
+//     |     / | \     |
+//     |   /   |   \   |
+//     | /     |     \ |
+//     +-------+-------+  here the neighbour has a point more
 #pragma once
 
 #include <compare>
@@ -69,5 +82,20 @@ class PatchBending {
 inline constexpr int finest_level = 1 << 13;
 
 [[nodiscard]] MeshLevel level_of(const Mesh& mesh, const glm::dmat4& world_from_mesh, const ScreenTolerance& tolerance);
+
+/// Whether there is anything to cut.
+[[nodiscard]] bool is_finite(const BezierPatch& patch);
+
+/// Steps along the four edges of a patch, each at least those of its grid: u = 0, u = 1 (both along v), v = 0, v = 1.
+using EdgeLevels = std::array<int, 4>;
+
+/// Each edge is as fine as the finest patch that has it.
+/// Those of patches that are not finite are anything.
+[[nodiscard]] std::vector<EdgeLevels> edge_levels(std::span<const BezierPatch> patches,
+                                                  std::span<const PatchLevel> levels);
+
+/// Appends the triangles of one patch as those of face `face`, with normals and texture coordinates.
+void append_grid(const BezierPatch& patch, const PatchLevel& level, const EdgeLevels& edges, std::uint32_t face,
+                 Mesh& mesh);
 
 }  // namespace frontmost

@@ -2,8 +2,6 @@
 // A grid over a patch whose rims are as fine as the neighbours need: rows of quads inside, fans of triangles along rims
 // that are finer.
 
-#include "view/tessellate/patch_grid.h"
-
 #include <algorithm>
 #include <cmath>
 #include <compare>
@@ -11,6 +9,7 @@
 #include <tuple>
 
 #include "scene/bezier_patch.h"
+#include "view/tessellate/level.h"
 
 namespace frontmost {
 namespace {

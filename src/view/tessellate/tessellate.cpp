@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Curved meshes as triangles fine enough for one view: first how fine, so that limits are known, then the triangles.
+//
+//   scene, view --Plan--> a level for every instance of a curved mesh --> one mesh for every pair of mesh and level
+//                         count of triangles, or an error                 instances point to theirs
+//
+// A model may place a sphere a thousand times at the same size; instances that need the same fineness share their mesh.
 
 #include "frontmost/tessellate.h"
 
@@ -9,9 +14,9 @@
 #include <optional>
 #include <set>
 
-#include "base/float_environment.h"
+#include "base/parallel.h"
 #include "scene/shapes.h"
-#include "view/tessellate/patch_grid.h"
+#include "view/tessellate/level.h"
 
 namespace frontmost {
 namespace {

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/float_environment.h"
+#include "base/parallel.h"
 #include "zbuffer/depth/depth_call.h"
 
 namespace frontmost {

@@ -2,7 +2,7 @@
 // Small files that would cost much: every one must be refused or read at a cost in proportion to its size. Each of
 // these took gigabytes, or minutes, once; with those costs back, this test does not end.
 #include "io/input_file.h"
-#include "io/models/text/file_text.h"
+#include "io/models/model_source.h"
 #include "model_bytes.h"
 
 namespace frontmost {

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reading of accessor elements. All ranges were checked when the accessor was.
+//
+//   element 0          element 1                       stride from one to the next
+//   | c c c | other    | c c c | other    | ...        components of one of six types, as floats or as whole numbers
+//
+// Sparse accessors are read as if they were none, and then the elements that they replace are put in their places; both
+// lists are in order, so the first that matters is found by halving.
 #include <algorithm>
 #include <cstdint>
 #include <cstring>

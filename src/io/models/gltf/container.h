@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The outer shape of a glTF file: plain JSON text, or the chunks of a GLB; and the URIs in it, which hold data
 // themselves or name a file beside the model.
+//
+//   GLB   | "glTF" | 2 | length |   | size | "JSON" | text ... |   | size | "BIN" | bytes ... |   | others
+//           12 bytes                  8 bytes                        8 bytes; may be missing         passed over
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// Checks every range of a glTF file before anything is read through it.
+//
+//   buffer      bytes of the file, of a URI or of the GLB's second chunk
+//   view        a part of a buffer
+//   accessor    elements in a view: offset + (count - 1) * stride + size of an element must not pass its end
+//
+// All numbers come from the file and may be anything, so sums and products are replaced by differences and quotients of
+// what is known to be smaller. Whatever is read later is then read without a check.
 #include "io/models/gltf/data.h"
 
 #include "io/models/gltf/container.h"

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Places meshes in the world: by nodes, by EXT_mesh_gpu_instancing, and posed by weights and joints.
+//
+//   node with a mesh    --not posed--------> an instance of the mesh, with the node's transform
+//                       --morph, skin------> a mesh of its own, read again in that pose; the same pose is read once
+//                       --instancing-------> an instance for every copy
+//
+// Skinned vertices are in the world already: the format has the transform of their node ignored.
 #include "base/parallel.h"
 #include "io/models/gltf/nodes.h"
 #include "scene/origin.h"

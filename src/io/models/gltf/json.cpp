@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// A document is parsed by a library, which recurses as deep and allocates as much as the text tells it to. So depth and
+// number of values are counted before it begins, with a loop over characters that knows strings and nothing else.
 #include "io/models/gltf/json.h"
 
 #include <cmath>

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reading of a JSON document value by value, each of which knows its place for messages:
 // "meshes[2].primitives[0].attributes.POSITION". Whatever is not as expected ends in an Error that names the place.
+//
+//   root["meshes"] --[2]--> "meshes[2]" --require("primitives")--> "meshes[2].primitives" --> ...
+//
+// Readers ask for what they need and are either given it or left by an exception, so they have no code for files that
+// are wrong.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +17,6 @@
 #include <string_view>
 
 #include "io/models/model_source.h"
-#include "io/models/text/file_text.h"
 
 namespace frontmost::gltf {
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// One material after the other. A factor without its texture would say something else than the file means, so a
+// material whose texture is lost is told, and loses the factor where the factor alone would be wrong.
 #include "io/models/gltf/materials.h"
 
 #include "io/models/textures.h"

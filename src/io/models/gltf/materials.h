@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Materials of a glTF file; and its textures: which images and samplers materials use, and their pixels.
+//
+//   material --> texture --> image    the same for many textures: decoded once
+//                        --> sampler  how it wraps, and whether it is filtered
+//
+// A Texture of a scene has both pixels and wrapping, so a texture of the file stands for one pair of an image and a
+// sampler's settings; equal pairs share a number.
 #pragma once
 
 #include <map>

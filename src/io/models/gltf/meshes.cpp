@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// A mesh of the file becomes one Mesh: all its primitives, one after the other.
+//
+// Exporters let primitives, and whole meshes, share one large array of vertices. Read as they are named they would be
+// stored again and again; so the triangles are read first, which tells the range of vertices that each block of
+// primitives uses, and only that range is read.
 #include "io/models/gltf/meshes.h"
 
 #include <algorithm>
 #include <numeric>
-
-#include "io/models/gltf/pose.h"
 
 namespace frontmost::gltf {
 namespace {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes of a glTF file: all triangle primitives of one become one Mesh, in order, posed if need be.
+// Meshes of a glTF file: all triangle primitives of one become one Mesh, in order, with its vertices moved by morph
+// targets and joints if need be.
 #pragma once
 
 #include <array>
@@ -68,5 +69,20 @@ class MeshReader {
   Budget& budget_;
   const ModelSource& source_;
 };
+
+/// A run of vertices of a mesh that come from one vertex set.
+struct VertexRun {
+  const VertexSet* vertices = nullptr;
+  ElementRange range;     ///< of the accessors' elements; empty: no triangle uses them
+  std::size_t first = 0;  ///< where they are in the mesh
+  std::string place;      ///< of the first primitive that uses them
+};
+
+/// Adds weighted displacements to positions, normals, texture coordinates and colours.
+void apply_targets(const Data& data, const VertexRun& block, std::span<const double> weights, Mesh& mesh);
+/// Moves positions and normals by joints, which the block's vertices have.
+/// \throws Error file_malformed for a joint that the skin does not have.
+void apply_skin(const Data& data, const VertexRun& block, std::span<const glm::dmat4> joints, const ModelSource& source,
+                Mesh& mesh);
 
 }  // namespace frontmost::gltf

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// The tree of nodes. Parents come from the children that nodes name, so a file can say nonsense: two parents, loops,
+// children that are not there. Each of these is an error; what is left is a forest, and is walked without recursion, as
+// it may be a million levels deep.
 #include "io/models/gltf/nodes.h"
 
 #include <algorithm>

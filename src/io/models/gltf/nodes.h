@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The node tree of a glTF file, and what its nodes place in the world: meshes, posed or not, and cameras.
+//
+//   scene --> node "car"          transform to its parent
+//               |-> node "wheel"  mesh 3                       world = car * wheel
+//               |-> node "wheel"  mesh 3, somewhere else
+//               `-> node "driver" mesh 5, skin 0, and a camera below it
+//
+// A tree is flattened: instances have their transforms to the world, and the tree itself is forgotten.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/gltf/pose.h"
+#include "io/models/gltf/meshes.h"
 
 namespace frontmost::gltf {
 namespace {

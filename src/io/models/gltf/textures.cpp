@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+// Images are decoded once each, by several threads, although many textures may use one with other samplers; and images
+// that are the same bytes, as exporters write them that embed a copy for every material, count as one.
+//
+// Numbers are given to textures before anybody knows which images can be decoded. load() closes the gaps afterwards.
 #include "io/models/textures.h"
 
 #include "base/parallel.h"

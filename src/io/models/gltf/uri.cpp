@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Data URIs and escapes, by the letter of the standard where that matters and as exporters write them where it does
+// not: both base64 alphabets are taken, padding may be missing, and an escape that is none stays as it is.
 #include <array>
 #include <cstdint>
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "io/models/mesh_building.h"
-#include "io/models/text/file_text.h"
+#include "io/models/model_source.h"
 #include "io/models/text/text_scanner.h"
 #include "io/models/textures.h"
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Materials of OBJ files: a table of names, filled from material libraries (MTL).
+//
+// Faces may name a material before its library is read, or although there is none. So a name gets its number when it is
+// first met, and what no library has defined by the end is told, and stays plain.
 #pragma once
 
 #include <string>

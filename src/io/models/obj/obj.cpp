@@ -1,14 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// OBJ: polygons with separate indices for positions, texture coordinates and normals. Every run of faces under one
-// `o` or `g` name becomes a mesh and its instance, in file order. Curves, lines and points are passed over.
+// OBJ: polygons with separate indices for positions, texture coordinates and normals. Every run of faces under one `o`
+// or `g` name becomes a mesh and its instance, in file order. Curves, lines and points are passed over.
+//
+//   v 0 0 0              lists of the whole file: positions, perhaps with a colour, ...
+//   vt 0.5 1             texture coordinates, ...
+//   vn 0 0 1             normals
+//   g lid                what follows belongs to an object of this name
+//   usemtl steel
+//   f 1/1/1 2/2/1 -1//1  corners: position/texture/normal, counted from 1, or backwards from the last one so far
+//
+// An index may be greater than what is there so far: the list is checked at the end, with the line that named it.
 #include <algorithm>
 #include <set>
 
 #include "io/models/coordinates.h"
 #include "io/models/mesh_building.h"
+#include "io/models/model_source.h"
 #include "io/models/obj/mtl.h"
 #include "io/models/obj/obj_meshes.h"
-#include "io/models/text/file_text.h"
 #include "io/models/text/text_scanner.h"
 
 namespace frontmost {

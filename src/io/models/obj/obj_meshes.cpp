@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// All faces of an OBJ file share the lists of the whole file; a mesh must own what it uses. Numbers are those of the
+// file while it is read, and are given anew at the end, in the order of first use, mesh by mesh. A table that says what
+// became of each old number is cleared only where it was used: a file may have as many groups as faces.
 #include "io/models/obj/obj_meshes.h"
 
 namespace frontmost {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // PLY: vertices, polygons and triangle strips become one mesh; other elements are passed over.
-#include "io/models/ply/ply.h"
-
 #include "base/parallel.h"
+#include "io/models/ply/ply_header.h"
 #include "io/models/ply/ply_mesh.h"
 #include "io/models/textures.h"
 

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the properties of a PLY file mean to us.
+//
+//   property float x      -> Role::x          a place in FloatRow, in which a row is gathered
+//   property uchar red    -> Role::red        the same, divided by the range of its type
+//   property list ...     -> Role::corners    the polygon
+//   property float curvature -> Role::none    passed over
+//
+// Names differ from program to program (s, u and texture_u are one thing), so there is a table of them.
 #pragma once
 
 #include <array>

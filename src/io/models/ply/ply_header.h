@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The header of a PLY file: what its rows hold.
+// The header of a PLY file, which says what its rows hold, and what else reading the file whole and reading it as a
+// stream share.
+//
+//   ply
+//   format binary_little_endian 1.0
+//   element vertex 8                       an element: so many rows, which come in the order of the elements
+//   property float x                       a property: one number of each row
+//   ...
+//   element face 12
+//   property list uchar int vertex_indices a list: how many numbers follow, and these
+//   end_header
 #pragma once
 
 #include <string>
@@ -57,5 +67,11 @@ struct PlyHeader {
 [[nodiscard]] inline PlyHeader read_ply_header(Bytes bytes, const ModelSource& source) {
   return read_ply_header(bytes, bytes.size(), source);
 }
+
+/// Materials for the texture files that the header names, used by the scene's first mesh.
+void add_texture_materials(const PlyHeader& header, const ModelSource& source, Scene& scene);
+
+/// For Scene::warnings.
+[[nodiscard]] std::string skipped_faces_warning(std::uint64_t count);
 
 }  // namespace frontmost

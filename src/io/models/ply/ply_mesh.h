@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rows of a PLY file become one mesh: all of them for read_ply(), some at a time for streams.
+//
+// Readers are templates over the kind of rows (text, binary) and over where vertices come from, so that one source
+// serves files that are read whole and streams, and none of them asks at every number which it is.
 #pragma once
 
 #include "io/models/coordinates.h"

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The values in the rows of a PLY file, one after the other, in each of its three encodings.
+//
+// Text is a TextScanner's, binary is read at the place with its bytes in either order. Both check before they read that
+// a value is there, and name the element and the row in what they complain of.
 #pragma once
 
 #include <cmath>

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Binary PLY, piece by piece. Faces name vertices anywhere in the file, so the rows of vertices must stay within reach:
 // those of a file are mapped, and only the blocks that a piece's faces name are parsed with it; a pipe's are kept.
+//
+//   | header | vertices: rows of one length              | faces: rows of any length |
+//              [block 0][block 1] ...                      | piece 0 | piece 1 | ...
+//                  ^ 512 rows, parsed when a face of the piece names one of them
+//
+// Where faces jump about so much that blocks would be most of the file, single vertices are parsed instead.
 #include <algorithm>
 
 #include "base/parallel.h"
 #include "io/models/model_stream.h"
-#include "io/models/ply/ply.h"
+#include "io/models/ply/ply_header.h"
 #include "io/models/ply/ply_mesh.h"
 
 namespace frontmost {

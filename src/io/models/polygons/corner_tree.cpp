@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+// A point lies in a triangle if it lies to the left of its three sides, by exact signs. A box may hold such a point if
+// its corner farthest to the left of each side does. Together with the counts of marked corners in every node, that
+// leaves few boxes to be opened, also in polygons of a million corners.
 #include "io/models/polygons/corner_tree.h"
 
 #include <algorithm>

@@ -12,11 +12,10 @@
 #include <cmath>
 
 #include "base/orientation.h"
+#include "frontmost/base.h"
 
 namespace frontmost {
 namespace {
-
-bool is_finite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 /// Twice the polygon's area as seen along each axis (M. Newell).
 glm::dvec3 area_vector(std::span<const glm::vec3> corners) {
@@ -32,7 +31,8 @@ glm::dvec3 area_vector(std::span<const glm::vec3> corners) {
 void Triangulator::project(std::span<const glm::vec3> corners) {
   const glm::dvec3 area = area_vector(corners), size = glm::abs(area);
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
-  is_flat_ = size[axis] > 0 && std::all_of(corners.begin(), corners.end(), is_finite);
+  is_flat_ =
+      size[axis] > 0 && std::all_of(corners.begin(), corners.end(), [](const glm::vec3& p) { return is_finite(p); });
   // Seen from the side that the area points to, so that left turns are the polygon's own.
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   points_.clear();

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Binary STL, and the choice between the two encodings. Stored normals are not kept: they follow from the corners.
+//
+//   byte   0                    80        84                134               184
+//          | anything, 80 bytes | count   | triangle 0      | triangle 1      | ...
+//                                         normal, three corners (12 floats), 2 bytes of anybody's
+//
+// Neither the header nor the count can be trusted: text may stand in the one, and writers that cannot go back leave the
+// other open. What decides is the size of the file.
 #include "io/models/stl/stl.h"
 
 #include <algorithm>
 #include <cstring>
 
-#include "base/large_pages.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "io/models/bytes.h"
 

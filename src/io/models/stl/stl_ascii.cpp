@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // ASCII STL. Every solid becomes a mesh. Words may be in any case and anywhere on a line, as in files from the wild.
+//
+//   solid NAME
+//     facet normal nx ny nz           normals are not kept: they follow from the corners
+//       outer loop
+//         vertex x y z                three of them
+//       endloop
+//     endfacet
+//   endsolid NAME
 #include "io/models/coordinates.h"
 #include "io/models/mesh_building.h"
+#include "io/models/model_source.h"
 #include "io/models/stl/stl.h"
-#include "io/models/text/file_text.h"
 #include "io/models/text/text_scanner.h"
 
 namespace frontmost {

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Binary STL, piece by piece: records of 50 bytes.
+//
+// A record has all of its triangle, so a piece is so many records, and nothing of what came before is needed. How many
+// there are is the header's to say, or the size's; of a pipe whose header leaves it open the end says it.
 #include <algorithm>
 
 #include "base/parallel.h"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// The rare spellings of a number, out of the way of the short ones that number.h reads in line: many digits, exponents,
+// and everything that C libraries have ever printed for infinity and for no number.
 #include "io/models/text/number.h"
 
 #include <algorithm>

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Decimal numbers out of text, correctly rounded to float or double, several times faster than strtof on what files
 // hold.
+//
+//   "12.375" = 12375 / 1000
+//
+// Both are doubles without rounding (15 digits, powers of ten up to 22), so one division rounds once, and rightly.
+// That serves nearly every number of every file, and its loop is small enough to be in line. All others go the slow
+// way.
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+// The two steps that text seldom takes, kept out of line so that the loops over words stay short.
 #include "io/models/text/text_scanner.h"
 
 #include "base/parallel.h"
-#include "io/models/text/file_text.h"
+#include "io/models/model_source.h"
 
 namespace frontmost {
 

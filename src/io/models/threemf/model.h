@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What one model part of a 3MF file says: objects, what they are coloured by, and what is built of them.
+//
+//   build      item ----> object 7 (components)
+//                            component ----> object 3 (mesh)      each with a transform
+//                            component ----> object 3 again
+//              item ----> object 3
+//
+//   triangle   property of a group, or the object's own            a material, or a colour for each corner
 #pragma once
 
 #include <array>

@@ -1,14 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tags of a model part. Those of the core specification, of the materials extension's colours and of the production
 // extension's paths are read; all others, and what is within them, are passed over.
+//
+//   <model unit="millimeter">
+//     <resources>
+//       <basematerials id="1"> <base .../> </basematerials>       <m:colorgroup id="2"> ...
+//       <object id="3"> <mesh> <vertices> ... <triangles> ...     or <components>
+//     </resources>
+//     <build> <item objectid="3" transform="..."/> </build>
+//   </model>
+//
+// A stack of the open tags says what a tag may be; one that is not known opens a part of the text that is passed over
+// whole.
 #include <algorithm>
 #include <set>
 
 #include "io/models/mesh_building.h"
-#include "io/models/text/file_text.h"
+#include "io/models/model_source.h"
 #include "io/models/text/text_scanner.h"
 #include "io/models/threemf/model.h"
-#include "io/models/threemf/values.h"
 #include "io/models/threemf/xml_part.h"
 #include "scene/origin.h"
 

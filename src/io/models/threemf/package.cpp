@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Parts are unpacked piece by piece, and what they unpack to is counted against what an archive of this size can
+// honestly mean, before memory is asked for: a kilobyte of zip can hold a megabyte of blanks.
 #include "io/models/threemf/package.h"
 
 #include <zip.h>
@@ -7,7 +9,7 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "io/models/text/file_text.h"
+#include "io/models/model_source.h"
 
 namespace frontmost::threemf {
 namespace {

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The zip archive that a 3MF file is: its parts by name, unpacked piece by piece, so that no part is ever in memory as
 // a whole.
+//
+//   _rels/.rels               which part is the model
+//   3D/3dmodel.model          the model: XML
+//   3D/Objects/lid.model      a part that the model refers to
+//   Metadata/...              nobody asks
 #pragma once
 
 #include <functional>

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Materials and colours of triangles. Base materials become materials of the scene; colours become colours of corners,
 // on a plain material of their own.
+//
+// A triangle names a group and, of it, one property for all corners or one for each; a triangle without has its
+// object's. Where a colour can be seen through, the plain material is one that blends.
 #include <unordered_map>
 
 #include "io/models/model_source.h"
-#include "io/models/text/file_text.h"
 #include "io/models/threemf/model.h"
 
 namespace frontmost::threemf {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Which part of a package is the model: the relationships of the package say so and, where they do not, the types of
+// its parts. Both are XML, read by the same reader as the model.
 #include "io/models/threemf/package.h"
 #include "io/models/threemf/xml_part.h"
 

@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // 3MF: a zip archive of XML parts becomes a Scene. One part is the model; it may place objects of others.
+//
+//   package --> start part --> model parts, each read once --> items of the start part --> instances
+//                                                              through components of components, each with a transform
+//
+// A component may name an object of another part, and a few components can stand for a million instances: levels are
+// limited, and what they make is charged to a budget.
 #include <set>
 
 #include "base/parallel.h"
 #include "io/models/budget.h"
 #include "io/models/mesh_building.h"
+#include "io/models/model_source.h"
 #include "io/models/reader.h"
-#include "io/models/text/file_text.h"
 #include "io/models/threemf/model.h"
 #include "io/models/threemf/package.h"
 

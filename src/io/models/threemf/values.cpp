@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/models/threemf/values.h"
-
+// Numbers of attributes, read as strictly as the schema writes them but for blanks: a value with anything behind it is
+// none, because half of a transform would be placed somewhere.
 #include <algorithm>
 #include <cmath>
 
 #include "frontmost/base.h"
 #include "io/models/mesh_building.h"
 #include "io/models/text/number.h"
+#include "io/models/threemf/xml_part.h"
 
 namespace frontmost::threemf {
 namespace {

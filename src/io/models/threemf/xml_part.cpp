@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// The parser is C, calls back into this class, and must not be left by an exception: one is kept until it has returned.
+//
+// Memory is bounded whatever the text holds. A document type is refused, and with it every entity that would grow when
+// it is used; tags, levels and different names have limits, because the parser keeps what it has seen of them.
 #include "io/models/threemf/xml_part.h"
 
 #include <expat.h>
 
-#include "io/models/text/file_text.h"
+#include "io/models/model_source.h"
 
 namespace frontmost::threemf {
 namespace {

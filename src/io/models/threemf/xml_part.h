@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// One part of a package that is XML, read tag by tag from front to back.
+// One part of a package that is XML, read tag by tag from front to back, and the values that attributes of its tags
+// hold: blanks around them are passed over, anything else is no value.
 #pragma once
 
+#include <cstdint>
 #include <exception>
+#include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_set>
@@ -79,5 +83,14 @@ class XmlPart {
   };
   std::unordered_set<std::string, Hash, std::equal_to<>> names_;
 };
+
+/// A number, also infinite or NaN: such vertices are kept, as of every format.
+[[nodiscard]] std::optional<double> parse_number(std::string_view text);
+/// A whole number below no_index.
+[[nodiscard]] std::optional<std::uint32_t> parse_index(std::string_view text);
+/// #RRGGBB or #RRGGBBAA in sRGB, as linear light.
+[[nodiscard]] std::optional<glm::vec4> parse_color(std::string_view text);
+/// Twelve finite numbers: the rows of a matrix that row vectors are multiplied by, without its last column.
+[[nodiscard]] std::optional<glm::dmat4> parse_transform(std::string_view text);
 
 }  // namespace frontmost::threemf

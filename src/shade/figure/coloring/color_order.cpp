@@ -7,7 +7,6 @@
 // seen of each triangle are added up before anything is coloured, because a triangle may be seen in many parts.
 #include <atomic>
 
-#include "base/float_environment.h"
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "shade/figure/colored_order.h"

@@ -9,7 +9,6 @@
 #include <numeric>
 #include <tuple>
 
-#include "base/float_environment.h"
 #include "base/parallel.h"
 #include "painter/limits.h"
 #include "shade/figure/colored_order.h"

@@ -14,7 +14,6 @@
 #include <span>
 #include <utility>
 
-#include "base/float_environment.h"
 #include "base/parallel.h"
 #include "painter/limits.h"
 #include "shade/figure/colored_order.h"
