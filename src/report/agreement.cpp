@@ -29,8 +29,8 @@ constexpr std::size_t kRowGrain = 8, kTriangleGrain = 8192;
 // Samples that differ are found by cells of this many pixels squared.
 constexpr int kCell = 16;
 
-bool is_finite(const std::array<glm::vec3, 3>& corners) {
-  return frontmost::is_finite(corners[0]) && frontmost::is_finite(corners[1]) && frontmost::is_finite(corners[2]);
+bool are_finite(const std::array<glm::vec3, 3>& corners) {
+  return is_finite(corners[0]) && is_finite(corners[1]) && is_finite(corners[2]);
 }
 
 /// Everything that is asked about one view of one scene.
@@ -49,7 +49,7 @@ struct Question {
   [[nodiscard]] std::optional<ViewedTriangle> triangle(PrimitiveId id) const {
     if (id >= surfaces.primitive_count()) return std::nullopt;
     const std::array<glm::vec3, 3> corners = surfaces.corners(id);
-    if (!is_finite(corners)) return std::nullopt;
+    if (!are_finite(corners)) return std::nullopt;
     return ViewedTriangle(corners, rays);
   }
   [[nodiscard]] bool is_culled(const ViewedTriangle& triangle, PrimitiveId id) const {
@@ -220,7 +220,7 @@ void hear_all_triangles(const Question& question, const std::vector<Contest>& co
   parallel_for(execution, question.surfaces.primitive_count(), kTriangleGrain, [&](std::size_t begin, std::size_t end) {
     for (auto id = PrimitiveId(begin); id < end; ++id) {
       const std::array<glm::vec3, 3> corners = question.surfaces.corners(id);
-      if (!is_finite(corners)) continue;
+      if (!are_finite(corners)) continue;
       std::optional<ViewedTriangle> triangle;
       const ScreenRect rect = rects.of(corners);
       map.in_rect(rect.low, rect.high, [&](std::size_t number) {

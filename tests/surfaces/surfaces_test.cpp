@@ -83,7 +83,7 @@ TEST(Surfaces, BoundsOfAnInstanceAreThoseOfItsTriangles) {
   std::vector<Box> boxes(scene.instances.size());
   for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
     const auto corners = surfaces.corners(id);
-    if (!std::all_of(corners.begin(), corners.end(), is_finite)) continue;
+    if (!std::all_of(corners.begin(), corners.end(), [](const glm::vec3& p) { return is_finite(p); })) continue;
     for (const glm::vec3& corner : corners) boxes[surfaces.source(id).instance].include(corner);
   }
   for (std::uint32_t i = 0; i < boxes.size(); ++i) {

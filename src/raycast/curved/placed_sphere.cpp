@@ -14,8 +14,8 @@ constexpr double kTurn = 6.283185307179586477;
 
 /// What squares of products stay finite of. Not NaN.
 bool is_moderate(const glm::dvec3& v) {
-  constexpr double kFarthest = 0x1p250;
-  return std::abs(v.x) <= kFarthest && std::abs(v.y) <= kFarthest && std::abs(v.z) <= kFarthest;
+  constexpr double kModerate = 0x1p250;
+  return std::abs(v.x) <= kModerate && std::abs(v.y) <= kModerate && std::abs(v.z) <= kModerate;
 }
 
 /// Of a point of the unit sphere, as Sphere says.

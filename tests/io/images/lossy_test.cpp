@@ -44,12 +44,12 @@ std::vector<std::uint8_t> bytes_by_png(const Image& image) {
   return {first, first + 4 * texture.pixels.size()};
 }
 
-struct Decoded {
+struct DecodedColors {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgba;
 };
 
-Decoded decode_jpeg_file(const std::string& bytes) {
+DecodedColors decode_jpeg_file(const std::string& bytes) {
   const Texture texture = decode_texture(std::as_bytes(std::span(bytes)), "jpeg");
   const auto* first = &texture.pixels.front().x;
   return {texture.width, texture.height, {first, first + 4 * texture.pixels.size()}};
@@ -57,13 +57,13 @@ Decoded decode_jpeg_file(const std::string& bytes) {
 
 struct LossyFormat {
   std::string suffix;
-  Decoded (*decode)(const std::string&);
+  DecodedColors (*decode)(const std::string&);
   int most_side;
 };
 
 #ifdef FRONTMOST_HAS_WEBP
-Decoded decode_webp_file(const std::string& bytes) {
-  Decoded decoded;
+DecodedColors decode_webp_file(const std::string& bytes) {
+  DecodedColors decoded;
   std::uint8_t* pixels = ::WebPDecodeRGBA(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(),
                                           &decoded.width, &decoded.height);
   EXPECT_NE(pixels, nullptr);
@@ -102,7 +102,7 @@ Distance distance_of(const std::vector<std::uint8_t>& actual, const std::vector<
 
 TEST_P(Lossy, PicturesStayWithinAStatedError) {
   const Image image = disc(320, 200, false);
-  const Decoded decoded = GetParam().decode(saved(image));
+  const DecodedColors decoded = GetParam().decode(saved(image));
   EXPECT_EQ(decoded.width, 320);
   EXPECT_EQ(decoded.height, 200);
   const Distance distance = distance_of(decoded.rgba, bytes_by_png(image));
@@ -131,7 +131,7 @@ TEST_P(Lossy, MoreQualityIsNearerAndLarger) {
 TEST_P(Lossy, SmallAndNarrowPictures) {
   for (const auto& [width, height] : {std::pair(1, 1), {1, 17}, {17, 1}, {15, 9}, {16, 16}, {33, 31}}) {
     const Image image = disc(width, height, false);
-    const Decoded decoded = GetParam().decode(saved(image));
+    const DecodedColors decoded = GetParam().decode(saved(image));
     EXPECT_EQ(decoded.width, width);
     EXPECT_EQ(decoded.height, height);
     EXPECT_LT(distance_of(decoded.rgba, bytes_by_png(image)).mean, 12) << width << " x " << height;
@@ -240,7 +240,7 @@ TEST(WebP, AlphaIsKeptAsItIs) {
   const ScratchFolder folder;
   const Image image = disc(120, 90, true);
   save(image, folder.file("a.webp"));
-  const Decoded decoded = decode_webp_file(read_text(folder.file("a.webp")));
+  const DecodedColors decoded = decode_webp_file(read_text(folder.file("a.webp")));
   const std::vector<std::uint8_t> expected = bytes_by_png(image);
   EXPECT_EQ(distance_of(decoded.rgba, expected).most_alpha, 0);
   double sum = 0;

@@ -113,7 +113,7 @@ std::vector<std::uint32_t> walk(const std::vector<Node>& nodes, std::vector<std:
   return order;
 }
 
-bool is_finite(const glm::dmat4& m) {
+bool is_finite_matrix(const glm::dmat4& m) {
   for (int i = 0; i < 16; ++i)
     if (!std::isfinite(m[i / 4][i % 4])) return false;
   return true;
@@ -135,7 +135,7 @@ std::vector<std::uint32_t> place_in_world(std::vector<Node>& nodes, const ModelS
   for (const std::uint32_t id : order) {
     Node& node = nodes[id];
     if (node.parent != no_index) node.world = nodes[node.parent].world * node.world;
-    if (!is_finite(node.world)) source.fail(node.place, "its transform is not finite");
+    if (!is_finite_matrix(node.world)) source.fail(node.place, "its transform is not finite");
   }
   return roots;
 }
