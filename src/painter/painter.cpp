@@ -126,8 +126,8 @@ void sort_by_centroid(const Pieces& pieces, std::vector<std::uint32_t>& members)
   });
 }
 
-/// Appends pieces as polygons, in the order in which they are listed.
-void append(const Pieces& pieces, const std::vector<std::uint32_t>& members, PaintOrder& order, Poll& poll) {
+/// Fills an empty order with pieces as polygons, as they are listed.
+void fill(const Pieces& pieces, const std::vector<std::uint32_t>& members, PaintOrder& order, Poll& poll) {
   std::size_t corners = 0;
   order.polygons.reserve(members.size());
   for (const std::uint32_t piece : members) {
@@ -172,7 +172,7 @@ PaintOrder painter(const Surfaces& surfaces, const View& view, const PainterOpti
   first.insert(first.end(), members.begin(), members.end());
   copies.put_back(pieces, first, options.occluders, options.most_polygons);
   Poll poll(execution);
-  append(pieces, first, order, poll);
+  fill(pieces, first, order, poll);
   report_progress(execution, "painter", 1);
   return order;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -29,6 +30,21 @@ class BitSet {
     for (std::size_t w = 0; w < words_.size(); ++w)
       missing |= other.words_[w].load(std::memory_order_relaxed) & ~words_[w].load(std::memory_order_relaxed);
     return missing == 0;
+  }
+  /// Calls visit(i) for every number that it has and `known`, of the same size, has not, the least first. Not while
+  /// others add to either.
+  template <class Visit>
+  void visit_new(const BitSet& known, const Visit& visit) const {
+    for (std::size_t w = 0; w < words_.size(); ++w) {
+      const std::uint64_t old = known.words_[w].load(std::memory_order_relaxed);
+      for (std::uint64_t left = words_[w].load(std::memory_order_relaxed) & ~old; left != 0; left &= left - 1)
+        visit(64 * w + std::size_t(std::countr_zero(left)));
+    }
+  }
+  /// Adds all that `other`, of the same size, has.
+  void add_all(const BitSet& other) {
+    for (std::size_t w = 0; w < words_.size(); ++w)
+      words_[w].fetch_or(other.words_[w].load(std::memory_order_relaxed), std::memory_order_relaxed);
   }
   /// Empties it, for numbers below `size`. Allocates nothing where the size stays.
   void clear(std::size_t size) {

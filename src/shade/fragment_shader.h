@@ -3,6 +3,7 @@
 // answers back in the order of arrival.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -17,8 +18,10 @@ class TriangleCache {
   TriangleCache() : slots_(slot_count), setups_(capacity) {}
 
   void clear() {
-    ++generation_;
     count_ = 0;
+    if (++generation_ != 0) return;
+    std::fill(slots_.begin(), slots_.end(), Slot{});  // of four thousand million tiles ago
+    generation_ = 1;
   }
   static constexpr int capacity = 512;
   [[nodiscard]] bool is_full() const { return count_ == capacity; }

@@ -13,23 +13,30 @@ namespace frontmost::shading {
 struct PreparedScene {
   /// Borrows the surfaces and their scene. O(instances + materials).
   explicit PreparedScene(const Surfaces& from)
-      : surfaces(from), triangles(from), materials(from.scene()), shadows(from) {}
+      : surfaces(from), triangles(from), materials(from.scene()), shadows(from), looked_at(from.primitive_count()) {}
 
-  /// Makes the textures ready that are looked at on the primitives that `seen()` gives, a BitSet. It is not called
-  /// where nothing is left to be made ready.
-  template <class Seen>
-  void make_materials_ready(const Seen& seen, const Execution& execution) {
-    if (!materials.is_ready()) materials.make_ready(seen_materials(surfaces, seen(), execution), execution);
+  /// Makes the textures ready that are looked at on these primitives.
+  void make_materials_ready(const BitSet& primitives, const Execution& execution) {
+    if (materials.is_ready() || looked_at.holds(primitives)) return;
+    materials.make_ready(seen_materials(surfaces, primitives, looked_at), execution);
+    looked_at.add_all(primitives);  // not where that failed
+  }
+  /// The same of what a Visible shows, which is not looked at where nothing is left to be made ready.
+  void make_materials_ready(const Visible& visible, const Execution& execution) {
+    if (materials.is_ready()) return;
+    seen = seen_primitives(surfaces, visible, execution, std::move(seen));
+    make_materials_ready(seen, execution);
   }
 
   const Surfaces& surfaces;
   TriangleStore triangles;
   MaterialTable materials;
   KeyShadows shadows;
+  BitSet looked_at;  ///< primitives whose materials are ready
 
   // Memory that one picture leaves to the next.
   Pool<TileWork> works;
-  BitSet primitives;
+  BitSet seen, large;
 };
 
 }  // namespace frontmost::shading

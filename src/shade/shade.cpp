@@ -65,7 +65,7 @@ class ShownMaterials {
  public:
   /// Makes ready what the scene does not have yet.
   explicit ShownMaterials(const Request& request)
-      : visible_(request.input.visible), scene_(request.scene), large_(std::move(scene_.primitives)) {
+      : visible_(request.input.visible), scene_(request.scene), large_(std::move(scene_.large)) {
     const bool wants_normals =
         request.options.shading != Shading::flat && lacks_normals(request.scene.surfaces.scene());
     wants_layers(request) ? find_layers(request, wants_normals) : find_front(request, wants_normals);
@@ -74,7 +74,7 @@ class ShownMaterials {
     if (!scene_.materials.has_textures()) source_->leave_out_texcoords();
   }
 
-  ~ShownMaterials() { scene_.primitives = std::move(large_); }
+  ~ShownMaterials() { scene_.large = std::move(large_); }
   ShownMaterials(const ShownMaterials&) = delete;
   ShownMaterials& operator=(const ShownMaterials&) = delete;
 
@@ -108,8 +108,7 @@ class ShownMaterials {
     const Surfaces& surfaces = request.scene.surfaces;
     if (wants_normals)
       large_ = large_primitives(surfaces.primitive_count(), visible_, request.execution, std::move(large_));
-    request.scene.make_materials_ready([&] { return seen_primitives(surfaces, visible_, request.execution); },
-                                       request.execution);
+    request.scene.make_materials_ready(visible_, request.execution);
   }
 
   void find_layers(const Request& request, bool wants_normals) {
@@ -119,7 +118,7 @@ class ShownMaterials {
     layer_samples_ = layers_->samples();
     if (!wants_normals && scene_.materials.is_ready()) return;
     large_ = seen_primitives(surfaces, *layers_, request.execution);
-    request.scene.make_materials_ready([&]() -> const BitSet& { return large_; }, request.execution);
+    request.scene.make_materials_ready(large_, request.execution);
   }
 
   const Visible& visible_;
@@ -170,8 +169,8 @@ void paint_map(const Request& request, TileCanvas& canvas) {
   paint(std::cref(depths));
 }
 
+/// Precondition: check().
 void paint(const Request& request, TileCanvas& canvas) {
-  check(request);
   shows_materials(request.options.shading) ? paint_materials(request, canvas) : paint_map(request, canvas);
 }
 
@@ -191,7 +190,7 @@ void paint_normals(PreparedScene& scene, const Visible& visible, const Execution
     large = large_primitives(scene.surfaces.primitive_count(), visible, execution);
     scene.triangles.smooth(*large, execution);
   }
-  scene.make_materials_ready([&] { return seen_primitives(scene.surfaces, visible, execution); }, execution);
+  scene.make_materials_ready(visible, execution);
   TriangleSource source(scene.triangles, visible.view, large ? &*large : nullptr);
   if (!scene.materials.has_textures()) source.leave_out_texcoords();
   const TileWork::Colorist colorist = RawNormals{scene.materials, execution.isa};
@@ -214,14 +213,18 @@ Shader::Shader(Shader&&) noexcept = default;
 Shader& Shader::operator=(Shader&&) noexcept = default;
 
 const Image& Shader::shade(const ShadeInput& input, const ShadeOptions& options, const Execution& execution) {
-  PlanesCanvas canvas(input.visible.view, {"R", "G", "B", "A"}, std::move(state_->image));
-  paint({state_->scene, input, options, execution}, canvas);
+  const Request request{state_->scene, input, options, execution};
+  check(request);
+  PlanesCanvas canvas(input.visible.view, {"R", "G", "B", "A"}, take());
+  paint(request, canvas);
   return state_->image = canvas.take();
 }
 
 const Bitmap& Shader::shade_bitmap(const ShadeInput& input, const ShadeOptions& options, const Execution& execution) {
-  BitmapCanvas canvas(input.visible.view, std::move(state_->bitmap));
-  paint({state_->scene, input, options, execution}, canvas);
+  const Request request{state_->scene, input, options, execution};
+  check(request);
+  BitmapCanvas canvas(input.visible.view, take_bitmap());
+  paint(request, canvas);
   return state_->bitmap = canvas.take();
 }
 
@@ -244,8 +247,8 @@ Figure Shader::draw_figure(const ShadeInput& input, const FigureOptions& options
   return figure_of(state_->scene, input, options, execution);
 }
 
-Image Shader::take() { return std::move(state_->image); }
-Bitmap Shader::take_bitmap() { return std::move(state_->bitmap); }
+Image Shader::take() { return std::exchange(state_->image, {}); }
+Bitmap Shader::take_bitmap() { return std::exchange(state_->bitmap, {}); }
 
 Image shade(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options,
             const Execution& execution) {

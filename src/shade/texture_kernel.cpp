@@ -177,7 +177,7 @@ void PlaceTaps(const Texture& texture, Taps& taps) {
     }
     const auto at = hn::Sub(scaled, hn::Set(d, 0.5f));
     const auto low = hn::Floor(at), high = hn::Add(low, one);
-    const auto first = hn::IfThenElse(hn::Lt(low, zero), hn::IfThenElseZero(wrap.repeats, end), low);
+    const auto first = hn::IfThenElse(hn::Lt(low, zero), hn::IfThenElseZero(wrap.repeats, end), hn::Min(low, end));
     const auto second = hn::IfThenElse(hn::Ge(high, size), hn::IfThenZeroElse(wrap.repeats, end), high);
     hn::Store(hn::ConvertTo(di, first), di, taps.first.values + i);
     hn::Store(hn::ConvertTo(di, second), di, taps.second.values + i);

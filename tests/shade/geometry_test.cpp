@@ -10,6 +10,7 @@
 
 #include "frontmost/zbuffer.h"
 #include "shade/support.h"
+#include "support/interpolation.h"
 
 namespace frontmost::shading {
 namespace {
@@ -76,7 +77,15 @@ TEST(SeenMaterials, OfWholeMeshesAndOfSingleTriangles) {
   scene.instances[1].world_from_mesh[3] = {0, 0, -1, 1};
   const Surfaces surfaces(scene);
   const BitSet seen = seen_primitives(surfaces, zbuffer(surfaces, front_view()), {});
-  EXPECT_EQ(seen_materials(surfaces, seen, {}), (std::vector<bool>{false, false, true, false}));
+  BitSet known(surfaces.primitive_count());
+  EXPECT_EQ(seen_materials(surfaces, seen, known), (std::vector<bool>{false, false, true, false}));
+  known.add_all(seen);
+  EXPECT_TRUE(known.holds(seen));
+  EXPECT_EQ(seen_materials(surfaces, seen, known), std::vector<bool>(4)) << "nothing is new";
+  known.clear(surfaces.primitive_count());
+  BitSet all(surfaces.primitive_count());
+  for (std::size_t id = 0; id < surfaces.primitive_count(); ++id) all.add(id);
+  EXPECT_EQ(seen_materials(surfaces, all, known), (std::vector<bool>{false, true, true, false}));
 }
 
 TEST(LargePrimitives, CoverThreePixelsInARowOrAroundACorner) {

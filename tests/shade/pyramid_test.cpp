@@ -305,6 +305,16 @@ TEST(TextureSampler, TexturesOfOtherSizesAndWrapsAreNotLookedUpAtEachOthersPlace
   }
 }
 
+TEST(TextureSampler, ReadsNothingBehindTexturesLongerThanFloatsTellApart) {
+  for (const Texture::Wrap wrap : {Texture::Wrap::clamp, Texture::Wrap::repeat}) {
+    Texture texture = constant((1 << 23) + 1022, 1, glm::u8vec4(255));
+    texture.wrap_u = texture.wrap_v = wrap;
+    const Pyramid pyramid(texture, Encoding::linear);
+    for (const float t : {0.0f, 1.0f, 0.99999994f, -1e-9f})
+      EXPECT_EQ(sample(pyramid, {{t, t}, {}, {}}), glm::vec4(1)) << t;
+  }
+}
+
 TEST(TextureSampler, EveryByteIsItsOwnLight) {
   for (int byte = 0; byte < 256; ++byte) {
     const glm::u8vec4 texel(byte, byte, byte, byte);

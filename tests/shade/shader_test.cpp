@@ -106,13 +106,15 @@ TEST(Shader, AFlightAllocatesNothingOnceItHasBeenFlown) {
   Shader shader(surfaces);
   ZBuffer buffer;
   for (const Shading shading : {Shading::lit, Shading::flat, Shading::normals, Shading::ids}) {
+    const void* planes = nullptr;
     const auto fly = [&] {
       std::size_t count = 0;
       for (int i = 0; i < 8; ++i) {
         const Visible& visible = buffer.draw(surfaces, view_of_flight(surfaces, i % 4), {.threads = 1});
         const std::size_t before = allocation_count();
-        shader.shade_bitmap(visible, {.shading = shading}, {.threads = 1});
-        count += allocation_count() - before;
+        const Bitmap& bitmap = shader.shade_bitmap(visible, {.shading = shading}, {.threads = 1});
+        count += allocation_count() - before + (planes && bitmap.rgba.data() != planes);
+        planes = bitmap.rgba.data();
       }
       return count;
     };
@@ -138,6 +140,60 @@ TEST(Shader, DrawsTheLightsMapAgainOnlyWhenTheLightSeesSomethingElse) {
   EXPECT_EQ(maps_for(first), 0u);
   EXPECT_EQ(maps_for(second), 1u);
   EXPECT_EQ(maps_for(first), 1u);
+}
+
+TEST(Shader, AMaterialThatIsNeverSeenCostsNoMemory) {
+  Scene scene = scene_of_everything(Material::Alpha::opaque);
+  scene.materials.push_back(scene.materials[0]);
+  Mesh hidden = square();
+  hidden.material_ids = {2};
+  scene.meshes.push_back(hidden);
+  scene.instances.push_back({"behind the camera", std::uint32_t(scene.meshes.size() - 1), glm::dmat4(1e-3)});
+  const Surfaces surfaces(scene);
+  const Visible visible = zbuffer(surfaces, view_of_flight(surfaces, 0));
+  Shader shader(surfaces);
+  for (int i = 0; i < 4; ++i) {
+    const std::size_t before = allocation_count();
+    shader.shade_bitmap(visible, {}, {.threads = 1});
+    if (i > 1) {
+      EXPECT_EQ(allocation_count(), before);
+    }
+  }
+}
+
+TEST(Shader, RefusesWhatItCannotReadBeforeItAsksForMemory) {
+  const Scene scene = builtin("teapot");
+  const Surfaces surfaces(scene);
+  const Visible visible = zbuffer(surfaces, view_of_flight(surfaces, 0));
+  Shader shader(surfaces);
+  const Bitmap good = shader.shade_bitmap(visible);
+  const auto is_refused = [](const auto& call) {
+    try {
+      call();
+    } catch (const Error& error) {
+      return error.code() == ErrorCode::bad_argument;
+    }
+    return false;
+  };
+  for (const int width : {-5, 2'000'000'000}) {
+    Visible wrong = visible;
+    wrong.view.width = width;
+    EXPECT_TRUE(is_refused([&] { shader.shade(wrong); })) << width;
+    EXPECT_TRUE(is_refused([&] { shader.shade_bitmap(wrong); })) << width;
+    EXPECT_TRUE(is_refused([&] { (void)draw_figure(surfaces, wrong); })) << width;
+  }
+  Visible moved = visible;
+  const Visible planes = std::move(moved);
+  EXPECT_TRUE(is_refused([&] { (void)draw_figure(surfaces, moved); }));
+  EXPECT_TRUE(is_refused([&] { shader.shade({visible, &moved}); })) << "what the light sees";
+  EXPECT_TRUE(is_refused([&] { shader.shade({visible, &visible}); })) << "not a light's view";
+  EXPECT_TRUE(is_refused([&] { (void)draw_figure(surfaces, {visible, &moved}); }));
+  expect_same(good, shader.take_bitmap());
+  EXPECT_TRUE(shader.take_bitmap().rgba.empty());
+  EXPECT_EQ(shader.take_bitmap().width, 0);
+  // What it takes is what key_light_view() gives.
+  const Visible light = zbuffer(surfaces, *key_light_view(visible, surfaces.bounds(), scene.up));
+  expect_same(good, shader.shade_bitmap({visible, &light}));
 }
 
 TEST(Shader, ErrorsLeaveItUsable) {

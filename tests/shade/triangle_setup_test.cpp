@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "support/interpolation.h"
 #include "support/odd_numbers.h"
 
 namespace frontmost::shading {

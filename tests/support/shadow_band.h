@@ -12,6 +12,7 @@
 #include "frontmost/zbuffer.h"
 #include "shade/geometry/triangle_setup.h"
 #include "shade/lighting.h"
+#include "support/interpolation.h"
 #include "support/key_light_map.h"
 
 namespace frontmost::test {

@@ -11,7 +11,9 @@
 #include "frontmost/shade.h"
 #include "frontmost/zbuffer.h"
 #include "shade/figure/colored_order.h"
+#include "shade/picture_parts.h"
 #include "shade/prepared_scene.h"
+#include "view/answer.h"
 
 namespace frontmost {
 namespace {
@@ -66,6 +68,8 @@ void check_count(std::size_t polygons, const FigureOptions& options) {
 Figure figure_of(shading::PreparedScene& scene, const ShadeInput& input, const FigureOptions& options,
                  const Execution& execution) {
   const Surfaces& surfaces = scene.surfaces;
+  check_planes(input.visible, "figure");
+  shading::check_opacity(options.shade);
   if (input.visible.view.samples != 1)
     throw Error(ErrorCode::bad_argument, "figure: what is visible must have one sample a pixel");
   if (!(options.tolerance >= 0 && options.tolerance <= 255))

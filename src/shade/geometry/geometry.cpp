@@ -15,16 +15,11 @@ bool all_equal(const PrimitiveId* ids, std::size_t count, PrimitiveId id) {
   return different == 0;
 }
 
-bool any_seen(const BitSet& seen, PrimitiveId first, std::size_t count) {
-  for (std::size_t t = 0; t < count; ++t)
-    if (seen.contains(first + t)) return true;
-  return false;
-}
-
 }  // namespace
 
-BitSet seen_primitives(const Surfaces& surfaces, const Visible& visible, const Execution& execution) {
-  BitSet seen(surfaces.primitive_count());
+BitSet seen_primitives(const Surfaces& surfaces, const Visible& visible, const Execution& execution, BitSet memory) {
+  BitSet seen = std::move(memory);
+  seen.clear(surfaces.primitive_count());
   constexpr std::size_t samples_at_once = 1u << 16, run = 64;
   parallel_for(execution, visible.primitives.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
     PrimitiveId last = no_primitive;
@@ -68,26 +63,17 @@ BitSet large_primitives(std::size_t primitive_count, const Visible& visible, con
   return large;
 }
 
-std::vector<bool> seen_materials(const Surfaces& surfaces, const BitSet& seen, const Execution& execution) {
+std::vector<bool> seen_materials(const Surfaces& surfaces, const BitSet& seen, const BitSet& known) {
   const Scene& scene = surfaces.scene();
-  BitSet materials(scene.materials.size());
-  const auto add = [&](std::uint32_t material) {
-    if (material != no_index) materials.add(material);
-  };
-  parallel_for(execution, scene.instances.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
-      const PrimitiveId first = surfaces.first_primitive(std::uint32_t(i));
-      if (mesh.material_ids.size() <= 1) {
-        if (!mesh.material_ids.empty() && any_seen(seen, first, mesh.triangles.size())) add(mesh.material_ids[0]);
-      } else {
-        for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-          if (seen.contains(first + t)) add(mesh.material_of(t));
-      }
-    }
-  });
   std::vector<bool> result(scene.materials.size());
-  for (std::size_t i = 0; i < result.size(); ++i) result[i] = materials.contains(i);
+  std::uint32_t instance = 0;
+  seen.visit_new(known, [&](std::size_t id) {
+    const auto triangle_count = [&] { return scene.meshes[scene.instances[instance].mesh].triangles.size(); };
+    while (id >= surfaces.first_primitive(instance) + triangle_count()) ++instance;
+    const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
+    const std::uint32_t material = mesh.material_of(std::uint32_t(id - surfaces.first_primitive(instance)));
+    if (material < result.size()) result[material] = true;
+  });
   return result;
 }
 

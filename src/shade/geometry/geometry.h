@@ -16,7 +16,9 @@
 namespace frontmost::shading {
 
 /// Every primitive that holds a sample. O(samples), in parallel.
-[[nodiscard]] BitSet seen_primitives(const Surfaces& surfaces, const Visible& visible, const Execution& execution);
+/// `memory` is that of the result, where it fits.
+[[nodiscard]] BitSet seen_primitives(const Surfaces& surfaces, const Visible& visible, const Execution& execution,
+                                     BitSet memory = {});
 
 /// Every primitive whose first samples cover three pixels in a row or around a corner. On smaller ones a smooth
 /// normal could hardly be told from a flat one: scans of millions of triangles are spared it.
@@ -24,9 +26,9 @@ namespace frontmost::shading {
 [[nodiscard]] BitSet large_primitives(std::size_t primitive_count, const Visible& visible, const Execution& execution,
                                       BitSet memory = {});
 
-/// For every material of the scene, whether one of the seen triangles has it.
-[[nodiscard]] std::vector<bool> seen_materials(const Surfaces& surfaces, const BitSet& seen,
-                                               const Execution& execution);
+/// For every material of the scene, whether one of the seen triangles has it that are not `known` yet.
+/// O(primitives / 64 + new ones).
+[[nodiscard]] std::vector<bool> seen_materials(const Surfaces& surfaces, const BitSet& seen, const BitSet& known);
 
 /// A triangle that is to be set up as number `number`.
 struct NewTriangle {
@@ -72,7 +74,7 @@ class TriangleStore {
   std::vector<Placement> placements_;             ///< by instance
   std::vector<std::vector<PrimitiveId>> firsts_;  ///< by mesh: the first primitive of each of its instances
   std::vector<PackedCornerNormals> smooth_;       ///< by mesh
-  BitSet smoothed_;                               ///< primitives whose normals are there
+  BitSet smoothed_;                               ///< primitives whose normals are there, the mesh's own or smooth ones
 };
 
 /// Sets up triangles with their attributes in world space, for one view.

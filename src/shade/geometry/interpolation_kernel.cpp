@@ -204,14 +204,15 @@ HWY_INLINE void StoreTexcoords(const VectorTriangles& of, const Weights& w, Geom
   Store(u.dy, v.dy, out.texcoord_dy, i);
 }
 
-/// Triangles without colours have white corners.
+/// Triangles without colours are white, exactly.
 void StoreColors(const VectorTriangles& of, const VF3& weight, Geometry& out, int i) {
   Lane* lanes[4] = {&out.color.x, &out.color.y, &out.color.z, &out.alpha};
+  const MF has_color = hn::Gt(of([](const TriangleSetup& t) { return float(t.has_color); }), hn::Zero(DF()));
   for (int k = 0; k < 4; ++k) {
     const VF a = of([k](const TriangleSetup& t) { return t.color[0][k]; });
     const VF b = of([k](const TriangleSetup& t) { return t.color[1][k]; });
     const VF c = of([k](const TriangleSetup& t) { return t.color[2][k]; });
-    hn::StoreU(Between(a, b, c, weight), DF(), &(*lanes[k])[i]);
+    hn::StoreU(hn::IfThenElse(has_color, Between(a, b, c, weight), All(1.0f)), DF(), &(*lanes[k])[i]);
   }
 }
 

@@ -49,6 +49,10 @@ TriangleStore::TriangleStore(const Surfaces& surfaces)
     placements_.push_back(placement_of(surfaces, i));
     firsts_[scene_.instances[i].mesh].push_back(surfaces.first_primitive(i));
   }
+  // Normals of their own are as good as made.
+  for (const Placement& placement : placements_)
+    if (!lacks_normals(*placement.mesh))
+      for (std::uint32_t t = 0; t < placement.count; ++t) smoothed_.add(placement.first + t);
 }
 
 void TriangleStore::smooth(const BitSet& large, const Execution& execution) {

@@ -2,15 +2,27 @@
 #include "shade/shadow/key_shadows.h"
 
 #include "shade/layers/opaque_part.h"
+#include "view/answer.h"
 
 namespace frontmost::shading {
 namespace {
 
-/// Of two views of lights, which are orthographic and have as many pixels each.
+/// Of two views of lights, which are orthographic and square.
 bool are_equal(const View& a, const View& b) {
   const Projection &p = a.projection, &q = b.projection;
-  return a.world_from_eye == b.world_from_eye && p.left == q.left && p.right == q.right && p.bottom == q.bottom &&
-         p.top == q.top && p.clip.near == q.clip.near && p.clip.far == q.clip.far;
+  return a.width == b.width && a.world_from_eye == b.world_from_eye && p.left == q.left && p.right == q.right &&
+         p.bottom == q.bottom && p.top == q.top && p.clip.near == q.clip.near && p.clip.far == q.clip.far;
+}
+
+/// What callers found of key_light_view(). \throws Error bad_argument.
+void check_light(const Visible& seen_by_light) {
+  constexpr const char* who = "shade: what the light sees";
+  check_planes(seen_by_light, who);
+  const View& view = seen_by_light.view;
+  if (view.width == view.height && view.width >= 4 * ShadowGrid::block && view.width % ShadowGrid::block == 0 &&
+      view.samples == 1 && view.projection.orthographic)
+    return;
+  throw Error(ErrorCode::bad_argument, std::string(who) + ": must be of a view that key_light_view() gave");
 }
 
 }  // namespace
@@ -22,6 +34,7 @@ void KeyShadows::find(const ShadedPicture& picture, const glm::vec3& to_key, con
   if (picture.options.shadows == Shadows::off) return;
   if (picture.options.shadows == Shadows::rays) return aim_rays(picture, to_key, execution);
   if (input.seen_by_light) {
+    check_light(*input.seen_by_light);
     has_drawn_ = false;
     map_.draw(*input.seen_by_light, execution);
     map_.measure_from(input.visible.view.eye());

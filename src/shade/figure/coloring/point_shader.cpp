@@ -30,7 +30,7 @@ PointShader::PointShader(PreparedScene& scene, const ShadeInput& input, const Fi
       lighting_(lighting_for(input.visible.view, scene.surfaces.scene().up)),
       opacity_(shows_materials(options.shading) ? options.opacity : 1.0f) {
   check_opacity(options);
-  scene.make_materials_ready([&]() -> const BitSet& { return triangles.seen; }, execution);
+  scene.make_materials_ready(triangles.seen, execution);
   switch (options.shading) {
     case Shading::lit: colorist_ = lit_by_key(scene, {input, options, kAtPoint}, lighting_, execution); break;
     case Shading::flat: colorist_ = Flat{scene.materials, execution.isa}; break;
