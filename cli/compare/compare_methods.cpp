@@ -42,7 +42,7 @@ KeptLists lists_of_abuffer(const Surfaces& surfaces, const View& view, const Exe
   return {counts.fragments, counts.longest};
 }
 
-constexpr ComparedMethod methods[] = {
+constexpr ComparedMethod all_methods[] = {
     {"zbuffer", "Z-buffer", "Draws every triangle, and keeps the nearest depth and id at every sample.",
      answer_by_zbuffer},
     {"raycast", "Ray casting",
@@ -60,7 +60,7 @@ constexpr ComparedMethod methods[] = {
 
 }  // namespace
 
-std::span<const ComparedMethod> compared_methods() { return methods; }
+std::span<const ComparedMethod> compared_methods() { return all_methods; }
 
 void StageClock::note(std::string_view name, double milliseconds) {
   const auto found = std::find_if(stages_.begin(), stages_.end(), [&](const Stage& s) { return s.name == name; });

@@ -14,10 +14,10 @@ struct NamedDepth {
   std::string_view name;
   DepthConvention convention;
 };
-constexpr NamedDepth depths[] = {{"opengl", opengl_depth},
-                                 {"zero_to_one", zero_to_one_depth},
-                                 {"reversed", reversed_depth},
-                                 {"gortler", gortler_depth}};
+constexpr NamedDepth named_depths[] = {{"opengl", opengl_depth},
+                                       {"zero_to_one", zero_to_one_depth},
+                                       {"reversed", reversed_depth},
+                                       {"gortler", gortler_depth}};
 
 bool is_centred(const Projection& p) {
   return std::abs(p.left + p.right) <= 1e-9 * (p.right - p.left) &&
@@ -105,7 +105,7 @@ Json camera_json(const View& view, const glm::dvec3& target, const glm::dvec3& o
   }
   json["near"] = p.clip.near;
   json["far"] = finite_or_null(p.clip.far);
-  for (const NamedDepth& depth : depths) {
+  for (const NamedDepth& depth : named_depths) {
     json["projection_matrices"][std::string(depth.name)] = {
         {"ndc_at_near", depth.convention.at_near},
         {"ndc_at_far", depth.convention.at_far},

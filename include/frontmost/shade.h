@@ -130,15 +130,14 @@ struct FigureOptions {
 [[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const View& view, const FigureOptions& options = {},
                                  const Execution& execution = {});
 
-/// Shades pictures of the same surfaces one after another, each as the function of that name gives it, to the byte. What
-/// does not depend on the view is made when the first picture needs it, and kept: textures' mip levels, smooth normals,
-/// what throws shadows; and the key light's map as long as the light sees the same. From the second picture of a size
-/// on, opaque scenes without rays for shadows allocate nothing, as long as no picture needs more than those before: other
-/// materials, other meshes without normals, another size.
-/// Memory: the last picture; a third of the textures' texels that were seen; 12 bytes a triangle of meshes without
-/// normals; up to 8 MiB of what the light sees; half a megabyte a thread; and, where they are needed, surfaces of what is
-/// opaque beside glass, and an index for rays. Not for several threads at once; each call uses the threads that it is
-/// given.
+/// Shades pictures of the same surfaces one after another, each as the function of that name gives it, to the byte.
+/// What does not depend on the view is made when the first picture needs it, and kept: textures' mip levels, smooth
+/// normals, what throws shadows; and the key light's map as long as the light sees the same. From the second picture of
+/// a size on, opaque scenes without rays for shadows allocate nothing, as long as no picture needs more than those
+/// before: other materials, other meshes without normals, another size. Memory: the last picture; a third of the
+/// textures' texels that were seen; 12 bytes a triangle of meshes without normals; up to 8 MiB of what the light sees;
+/// half a megabyte a thread; and, where they are needed, surfaces of what is opaque beside glass, and an index for
+/// rays. Not for several threads at once; each call uses the threads that it is given.
 class Shader {
  public:
   /// Borrows the surfaces and their scene, which must stay as they are. O(instances + materials).

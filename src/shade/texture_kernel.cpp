@@ -191,7 +191,7 @@ constexpr int kLanes = 16;
 using DPart = hn::CappedTag<float, kLanes>;
 using VPart = hn::Vec<DPart>;
 using MPart = hn::Mask<DPart>;
-constexpr int kPartLanes = int(hn::MaxLanes(DPart())), kParts = kLanes / kPartLanes;
+constexpr int kPartLanes = int(hn::MaxLanes(DPart()));
 using DSum = hn::CappedTag<float, kLanes / 2>;
 using VSum = hn::Vec<DSum>;
 constexpr int kSumLanes = int(hn::MaxLanes(DSum())), kSums = kLanes / 2 / kSumLanes;

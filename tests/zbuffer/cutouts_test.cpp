@@ -15,7 +15,7 @@ INSTANTIATE_TEST_SUITE_P(ZBuffer, CutoutsOfEveryKind, testing::ValuesIn(all_kind
 
 TEST_P(CutoutsOfEveryKind, EqualTheOracleOnEveryInstructionSet) {
   std::size_t seen = 0;
-  for (std::uint64_t seed = 0; seed < seeds(8); ++seed) {
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Random random(seed + 300);
     const Scene scene = cutout_scene(random_mesh(GetParam(), 400, seed), Cut(seed % 2), 0.5f, seed);
