@@ -45,11 +45,10 @@ void KeyShadows::find(const ShadedPicture& picture, const glm::vec3& to_key, con
 }
 
 const Surfaces& KeyShadows::casters(const Execution& execution) {
-  if (!knows_casters_ && has_see_through(all_.scene())) {
+  if (!opaque_ && has_see_through(all_.scene())) {
     opaque_scene_ = opaque_part(all_.scene());
     opaque_.emplace(opaque_scene_, execution);
   }
-  knows_casters_ = true;
   return opaque_ ? *opaque_ : all_;
 }
 

@@ -38,13 +38,12 @@ class KeyShadows {
   [[nodiscard]] const RayShadows* rays() const { return rays_ ? &*rays_ : nullptr; }
 
  private:
-  /// The surfaces, or those of their opaque part, which the first call makes.
+  /// The surfaces, or those of their opaque part, which the first call makes where something is see-through.
   [[nodiscard]] const Surfaces& casters(const Execution& execution);
   void draw_map(const Visible& visible, const glm::vec3& to_key, const Execution& execution);
   void aim_rays(const ShadedPicture& picture, const glm::vec3& to_key, const Execution& execution);
 
   const Surfaces& all_;
-  bool knows_casters_ = false;
   Scene opaque_scene_;
   std::optional<Surfaces> opaque_;  ///< where not everything is
 
