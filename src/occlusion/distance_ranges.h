@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers for planar distances, so that things can be put in order by counting: the farther, the greater or the same.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+
+namespace frontmost::occlusion_detail {
+
+class DistanceRanges {
+ public:
+  static constexpr int most = 4096;
+
+  DistanceRanges() = default;
+  /// Of distances from `least` to `greatest`, positive in perspective, where farther ranges are longer; in parallel
+  /// projection all are of one length. What is beyond has the first or the last number.
+  DistanceRanges(bool orthographic, float least, float greatest) : orthographic_(orthographic), least_(least) {
+    if (!(least < greatest)) return;
+    if (orthographic) {
+      per_unit_ = float(most - 1) / (greatest - least);
+      count_ = most;
+      return;
+    }
+    const std::uint32_t bits = bits_of(greatest) - bits_of(least);
+    while (bits >> shift_ >= std::uint32_t(most)) ++shift_;
+    count_ = int(bits >> shift_) + 1;
+  }
+
+  [[nodiscard]] int count() const { return count_; }
+  [[nodiscard]] int operator()(float distance) const {
+    if (!(distance > least_)) return 0;
+    if (orthographic_) return int(std::min((distance - least_) * per_unit_, float(count_ - 1)));
+    // Positive floats are in the order of their bits, which grow as a logarithm does.
+    const std::uint32_t bits = bits_of(distance) - bits_of(least_);
+    return std::min(int(bits >> shift_), count_ - 1);
+  }
+
+ private:
+  [[nodiscard]] static std::uint32_t bits_of(float distance) {
+    std::uint32_t bits;
+    std::memcpy(&bits, &distance, sizeof bits);
+    return bits;
+  }
+
+  bool orthographic_ = false;
+  float least_ = 0, per_unit_ = 0;
+  int shift_ = 0, count_ = 1;
+};
+
+}  // namespace frontmost::occlusion_detail

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// An object that reaches far into depth, such as the walls around the eye. It would cover nothing before the sweep has
+// passed its far end, so it covers slab by slab:
+//
+//    eye  |  slab 0  |  slab 1  |  slab 2  |        a triangle is of the slab in which its farthest corner lies
+//         \___________/\_________/\________/
+//
+// Where two slabs meet, each has an end, and the cells along it would stay open. So a slab covers together with those
+// triangles of nearer slabs that share a vertex with it: then the end lies within what is covered already.
+#pragma once
+
+#include <vector>
+
+#include "occlusion/distance_ranges.h"
+#include "occlusion/occluder.h"
+
+namespace frontmost::occlusion_detail {
+
+class LongObject {
+ public:
+  /// To be filled by put_on_screen() before the rest.
+  OccluderOnScreen on_screen;
+
+  /// Ranges [first, last] in slabs of `length` ranges each.
+  struct Slabs {
+    int first, last, length;
+    [[nodiscard]] int count() const { return (last - first) / length + 1; }
+    /// The first range that lies behind all of a slab.
+    [[nodiscard]] int behind(int slab) const { return std::min(first + (slab + 1) * length, last + 1); }
+  };
+
+  /// Sorts the triangles into slabs.
+  void sort_by_slab(const DistanceRanges& range_of, const Slabs& slabs);
+  [[nodiscard]] bool has_triangles(int slab) const {
+    return slab_begin_[std::size_t(slab) + 1] > slab_begin_[std::size_t(slab)];
+  }
+  /// What is to cover for a slab, within `rect`. Borrows from this object until the next call.
+  [[nodiscard]] CoverPass choose(const CellGrid& grid, const HidingObject& occluder, int slab, const CellRect& rect);
+
+ private:
+  [[nodiscard]] CellRect rect_of_chosen(const CellGrid& grid, const HidingObject& occluder, const CellRect& rect) const;
+
+  std::vector<std::uint16_t> slabs_;       ///< by triangle
+  std::vector<std::uint32_t> by_slab_;     ///< triangles in the order of their slabs
+  std::vector<std::uint32_t> slab_begin_;  ///< within by_slab_; one more than slabs
+  std::vector<std::uint32_t> chosen_;      ///< triangles of a slab, and what meets them
+  std::vector<std::uint16_t> marks_;       ///< by triangle: 1 + the last slab that it was chosen for
+};
+
+}  // namespace frontmost::occlusion_detail

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frontmost/occlusion.h"
+
+#include <optional>
+
+#include "base/parallel.h"
+#include "occlusion/sweep.h"
+
+namespace frontmost {
+namespace {
+
+using namespace occlusion_detail;
+
+/// A box that holds what the transform makes of `box`, with positions rounded as everywhere.
+Box world_box(const glm::dmat4& world_from_mesh, const Box& box) {
+  Box world;
+  if (box.is_empty()) return world;
+  const ToWorld to_world(world_from_mesh);
+  for (int corner = 0; corner < 8; ++corner)
+    world.include(to_world(glm::vec3(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                                     corner & 4 ? box.high.z : box.low.z)));
+  return world;
+}
+
+}  // namespace
+
+struct Occlusion::State {
+  State(const Surfaces& its_surfaces, ObjectUnit unit, const Execution& execution) : surfaces(its_surfaces) {
+    const Scene& scene = surfaces.scene();
+    find_meshes(unit, execution);
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+      const auto& parts = meshes[scene.instances[i].mesh].parts;
+      for (std::uint32_t part = 0; part < parts.size(); ++part) {
+        objects.push_back({i, part});
+        boxes_of_objects.push_back(unit == ObjectUnit::instances
+                                       ? surfaces.bounds(i)
+                                       : world_box(scene.instances[i].world_from_mesh, parts[part].bounds));
+      }
+    }
+    columns = BoxColumns(objects.size());
+    for (std::size_t i = 0; i < objects.size(); ++i)
+      if (!boxes_of_objects[i].is_empty()) columns.set(i, boxes_of_objects[i]);
+    sights.resize(objects.size());
+  }
+
+  void find_meshes(ObjectUnit unit, const Execution& execution) {
+    const Scene& scene = surfaces.scene();
+    meshes.resize(scene.meshes.size());
+    std::vector<std::uint32_t> user(meshes.size(), no_index);
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
+      if (user[scene.instances[i].mesh] == no_index) user[scene.instances[i].mesh] = i;
+    parallel_for(execution, meshes.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t m = begin; m < end; ++m)
+        if (user[m] != no_index) meshes[m] = occluder_mesh(surfaces.placed(), user[m], unit == ObjectUnit::parts);
+    });
+  }
+
+  const Surfaces& surfaces;
+  std::vector<OccluderMesh> meshes;
+  std::vector<CulledObject> objects;
+  std::vector<Box> boxes_of_objects;
+  BoxColumns columns{0};
+
+  // Of the last view.
+  std::optional<CellGrid> grid;
+  std::vector<ScreenBox> on_screen;
+  std::vector<ObjectSight> sights;
+  CellCover cover;
+  Isa isa = Isa::best;
+  Sweep sweep;
+};
+
+Occlusion::Occlusion(const Surfaces& surfaces, ObjectUnit unit, const Execution& execution)
+    : state_(std::make_unique<State>(surfaces, unit, execution)) {}
+Occlusion::~Occlusion() = default;
+Occlusion::Occlusion(Occlusion&&) noexcept = default;
+Occlusion& Occlusion::operator=(Occlusion&&) noexcept = default;
+
+std::size_t Occlusion::object_count() const { return state_->objects.size(); }
+CulledObject Occlusion::object(std::size_t number) const { return state_->objects[number]; }
+
+std::span<const ObjectSight> Occlusion::cull(const View& view, const OcclusionOptions& options,
+                                             const Execution& execution) & {
+  validate(view);
+  if (options.cell < 1 || options.cell > 64)
+    throw Error(ErrorCode::bad_argument, "occlusion: a cell must be 1 to 64 pixels wide");
+  const IeeeScope ieee;
+  State& s = *state_;
+  s.isa = execution.isa;
+  s.grid.emplace(view, options.cell);
+  find_on_screen(*s.grid, s.columns, s.on_screen, s.isa);
+  for (std::size_t i = 0; i < s.objects.size(); ++i) {
+    if (s.boxes_of_objects[i].is_empty()) s.on_screen[i].rect = {};
+    s.sights[i] = ObjectSight::outside;
+  }
+  const SweptScene swept{s.surfaces.scene(), s.meshes, s.objects, s.surfaces.placed().mirrored};
+  s.sweep.run(swept, {*s.grid, view.culling, s.on_screen, s.isa}, s.sights, s.cover);
+  return s.sights;
+}
+
+ObjectSight Occlusion::sight_of(const Box& box) const {
+  ObjectSight sight = ObjectSight::outside;
+  find_sights({&box, 1}, {&sight, 1});
+  return sight;
+}
+
+void Occlusion::find_sights(std::span<const Box> boxes, std::span<ObjectSight> sights) const {
+  const State& s = *state_;
+  BoxColumns columns(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    if (!boxes[i].is_empty()) columns.set(i, boxes[i]);
+  std::vector<ScreenBox> on_screen;
+  if (s.grid) find_on_screen(*s.grid, columns, on_screen, s.isa);
+  const CoverTest is_covered = cover_test(s.isa);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    sights[i] = ObjectSight::outside;
+    if (!s.grid || boxes[i].is_empty() || on_screen[i].rect.is_empty()) continue;
+    const ScreenBox& box = on_screen[i];
+    sights[i] = is_covered(s.cover, box.rect, box.nearest) ? ObjectSight::hidden : ObjectSight::may_be_seen;
+  }
+}
+
+}  // namespace frontmost

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "occlusion/sweep.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace frontmost::occlusion_detail {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// Slabs are so many times shorter than the way to what is twice as far; what is no longer than four of them has none.
+constexpr int kSlabsOfDouble = 6, kShortSlabs = 4;
+
+/// Whether the cells that an object covers are worth the time to find them: hardly a cell lies within an object that
+/// has a triangle for every two of its cells and more.
+bool is_dense(const OccluderPart& part, const CellRect& rect) {
+  const std::size_t cells = std::size_t(rect.x1 - rect.x0) * std::size_t(rect.y1 - rect.y0);
+  return 2 * std::size_t(part.triangle_count) > cells + 64;
+}
+
+}  // namespace
+
+class Sweep::Run {
+ public:
+  Run(Sweep& memory, const SweptScene& scene, const SweptView& view, std::span<ObjectSight> sights, CellCover& cover)
+      : memory_(memory), scene_(scene), view_(view), sights_(sights), cover_(cover), is_covered_(cover_test(view.isa)) {
+    find_ranges();
+    line_up();
+    cover.begin(view.grid.columns, view.grid.rows);
+    memory.scratch_.reached.begin(view.grid.columns, view.grid.rows);
+    memory.scratch_.ends.begin(view.grid.columns, view.grid.rows);
+  }
+
+  void sweep() {
+    for (std::size_t range = 0; range < memory_.first_test_.size(); ++range) {
+      for (std::uint32_t e = memory_.first_event_[range]; e != no_index; e = memory_.events_[e].next)
+        cover_by(memory_.events_[e]);
+      for (std::uint32_t i = memory_.first_test_[range]; i != no_index; i = memory_.next_test_[i]) test(i);
+    }
+  }
+
+ private:
+  [[nodiscard]] HidingObject occluder(std::uint32_t object) const {
+    const CulledObject& o = scene_.objects[object];
+    const Instance& instance = scene_.scene.instances[o.instance];
+    const OccluderMesh& mesh = scene_.meshes[instance.mesh];
+    return {mesh, mesh.parts[o.part], instance.world_from_mesh};
+  }
+
+  void find_ranges() {
+    const ScreenTransform& t = view_.grid.transform;
+    float least = kInfinity, greatest = t.near;
+    for (const ScreenBox& box : view_.boxes) {
+      if (box.rect.is_empty()) continue;
+      least = std::min(least, std::max(box.nearest, t.near));
+      greatest = std::max(greatest, box.farthest);
+    }
+    range_of_ = DistanceRanges(t.orthographic, least, greatest);
+    const int twice = t.orthographic ? range_of_.count() / 8 : range_of_(2 * least) - range_of_(least);
+    slab_length_ = std::max(1, twice / kSlabsOfDouble);
+  }
+
+  void line_up() {
+    const std::size_t ranges = std::size_t(range_of_.count()) + 1;
+    memory_.first_test_.assign(ranges, no_index);
+    memory_.first_event_.assign(ranges, no_index);
+    memory_.next_test_.resize(view_.boxes.size());
+    memory_.events_.clear();
+    memory_.solid_.clear();
+    for (std::uint32_t i = 0; i < view_.boxes.size(); ++i) {
+      if (view_.boxes[i].rect.is_empty()) continue;
+      std::uint32_t& first = memory_.first_test_[std::size_t(range_of_(view_.boxes[i].nearest))];
+      memory_.next_test_[i] = std::exchange(first, i);
+    }
+  }
+
+  void test(std::uint32_t object) {
+    const ScreenBox& box = view_.boxes[object];
+    const bool is_hidden = is_covered_(cover_, box.rect, box.nearest) || !may_be_seen(object, box);
+    sights_[object] = is_hidden ? ObjectSight::hidden : ObjectSight::may_be_seen;
+  }
+
+  /// Of an object whose box is not covered: whether it is itself. Takes care that it covers, then.
+  bool may_be_seen(std::uint32_t object, const ScreenBox& box) {
+    const HidingObject it = occluder(object);
+    if (it.part.triangle_count == 0 || is_dense(it.part, box.rect)) return true;
+    const LongObject::Slabs slabs{range_of_(box.nearest), range_of_(box.farthest), slab_length_};
+    if (slabs.last - slabs.first > kShortSlabs * slab_length_) return long_may_be_seen(object, it, slabs);
+    put_on_screen(view_.grid, it, memory_.on_screen_);
+    const std::size_t first_row = add_rows(box.rect);
+    if (is_behind_cover(object, it, memory_.on_screen_, first_row)) return false;
+    schedule(slabs.last + 1, {.object = object, .first_row = first_row});
+    return true;
+  }
+
+  bool long_may_be_seen(std::uint32_t object, const HidingObject& it, const LongObject::Slabs& slabs) {
+    if (used_long_objects_ == memory_.long_objects_.size())
+      memory_.long_objects_.push_back(std::make_unique<LongObject>());
+    LongObject& o = *memory_.long_objects_[used_long_objects_];
+    put_on_screen(view_.grid, it, o.on_screen);
+    // Nothing is known to lie before what reaches to the eye.
+    const ScreenBox& box = view_.boxes[object];
+    if (box.nearest > -kInfinity) {
+      const std::size_t first_row = add_rows(box.rect);
+      const bool is_hidden = is_behind_cover(object, it, o.on_screen, first_row);
+      memory_.solid_.resize(first_row);
+      if (is_hidden) return false;
+    }
+    o.sort_by_slab(range_of_, slabs);
+    for (int slab = 0; slab < slabs.count(); ++slab)
+      if (o.has_triangles(slab))
+        schedule(slabs.behind(slab),
+                 {.object = object, .long_object = std::uint32_t(used_long_objects_), .slab = slab});
+    ++used_long_objects_;
+    return true;
+  }
+
+  /// Finds what the object covers, too.
+  bool is_behind_cover(std::uint32_t object, const HidingObject& it, const OccluderOnScreen& on_screen,
+                       std::size_t first_row) {
+    CoverPass pass{.rect = view_.boxes[object].rect, .distance = view_.boxes[object].farthest};
+    leave_out_culled(object, pass);
+    // One side of a closed surface covers what the other does.
+    if (it.part.is_closed && on_screen.cut.empty() && pass.clockwise) pass.counter_clockwise = false;
+    const bool is_near_open = find_solid(view_.grid, it, on_screen, pass, memory_.scratch_, cover_,
+                                         memory_.solid_.data() + first_row, view_.isa);
+    return !is_near_open && on_screen.is_told_by_cells;
+  }
+
+  void schedule(int range, Event event) {
+    // Behind the last range no object is left, but boxes may be asked for.
+    std::uint32_t& first = memory_.first_event_[std::size_t(std::min(range, range_of_.count()))];
+    event.next = std::exchange(first, std::uint32_t(memory_.events_.size()));
+    memory_.events_.push_back(event);
+  }
+
+  void cover_by(const Event& event) {
+    const ScreenBox& box = view_.boxes[event.object];
+    if (event.long_object == no_index) {
+      const CoverPass pass{.rect = box.rect, .distance = box.farthest};
+      return add_to_cover(pass, memory_.solid_.data() + event.first_row, cover_, view_.isa);
+    }
+    LongObject& o = *memory_.long_objects_[event.long_object];
+    const HidingObject it = occluder(event.object);
+    CoverPass pass = o.choose(view_.grid, it, event.slab, box.rect);
+    if (pass.rect.is_empty() || is_covered_(cover_, pass.rect, kInfinity)) return;
+    leave_out_culled(event.object, pass);
+    const std::size_t first_row = add_rows(pass.rect);
+    std::uint32_t* const solid = memory_.solid_.data() + first_row;
+    find_solid(view_.grid, it, o.on_screen, pass, memory_.scratch_, cover_, solid, view_.isa);
+    add_to_cover(pass, solid, cover_, view_.isa);
+    memory_.solid_.resize(first_row);
+  }
+
+  /// Which triangles the view leaves out by the way they face.
+  void leave_out_culled(std::uint32_t object, CoverPass& pass) const {
+    // Fronts are counter-clockwise on the screen; a mirrored instance has the corners the other way round.
+    const bool is_mirrored = scene_.mirrored[scene_.objects[object].instance] != 0;
+    bool& fronts = is_mirrored ? pass.clockwise : pass.counter_clockwise;
+    bool& backs = is_mirrored ? pass.counter_clockwise : pass.clockwise;
+    if (view_.culling == Culling::front || view_.culling == Culling::both) fronts = false;
+    if (view_.culling == Culling::back || view_.culling == Culling::both) backs = false;
+  }
+
+  /// \returns where the rows for a rectangle begin in solid_.
+  std::size_t add_rows(const CellRect& rect) {
+    const std::size_t first_row = memory_.solid_.size();
+    memory_.solid_.resize(first_row + std::size_t(rect.tile_count()) * tile_rows, 0);
+    return first_row;
+  }
+
+  Sweep& memory_;
+  const SweptScene& scene_;
+  const SweptView& view_;
+  std::span<ObjectSight> sights_;
+  CellCover& cover_;
+  CoverTest is_covered_;
+  DistanceRanges range_of_;
+  int slab_length_ = 1;
+  std::size_t used_long_objects_ = 0;
+};
+
+void Sweep::run(const SweptScene& scene, const SweptView& view, std::span<ObjectSight> sights, CellCover& cover) {
+  Run(*this, scene, view, sights, cover).sweep();
+}
+
+}  // namespace frontmost::occlusion_detail

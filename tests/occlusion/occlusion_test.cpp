@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frontmost/occlusion.h"
+
+#include <gtest/gtest.h>
+
+#include "occlusion/hidden_scene.h"
+#include "support/effort.h"
+#include "support/refusal.h"
+
+namespace frontmost {
+namespace {
+
+using namespace test;
+
+/// A wall of 4 x 4 units at z = 0, and a thing two units behind it.
+Scene wall_and_thing() {
+  Scene scene;
+  Mesh wall;
+  add_square(wall, 2, 0);
+  scene.meshes = {wall, tessellated_box({0.5f, 0.5f, 0.5f}, 1, 0)};
+  glm::dmat4 behind(1.0);
+  behind[3] = {0.0, 0.0, -2.0, 1.0};
+  scene.instances = {{"wall", 0, glm::dmat4(1.0)}, {"thing", 1, behind}};
+  return scene;
+}
+
+View from(const glm::dvec3& eye) { return make_view(0.8, 200, 150).looking(eye, {0, 0, -1}, {0, 1, 0}); }
+
+ObjectSight sight_of_thing(const Scene& scene, const View& view) {
+  const Surfaces surfaces(scene);
+  Occlusion occlusion(surfaces);
+  return occlusion.cull(view)[1];
+}
+
+TEST(Occlusion, AWallHidesWhatLiesBehindIt) {
+  const Scene scene = wall_and_thing();
+  EXPECT_EQ(sight_of_thing(scene, from({0, 0, 4})), ObjectSight::hidden);
+  EXPECT_EQ(sight_of_thing(scene, from({0, 0, -6})), ObjectSight::may_be_seen);                // from behind
+  EXPECT_EQ(sight_of_thing(scene, from({9, 0, 4})), ObjectSight::may_be_seen);                 // past its edge
+  EXPECT_EQ(sight_of_thing(scene, from({0, 0, -2})), ObjectSight::may_be_seen);                // from within
+  EXPECT_EQ(sight_of_thing(scene, from({0, 0, 4}).between(5, 20)), ObjectSight::may_be_seen);  // the wall is too near
+}
+
+TEST(Occlusion, WhatIsBesideOrBeforeOrBehindTheVolumeIsOutside) {
+  Scene scene = wall_and_thing();
+  const View view = from({0, 0, 4});
+  for (const glm::dvec3& place : {glm::dvec3(50, 0, -2), glm::dvec3(-50, 0, -2), glm::dvec3(0, 50, -2),
+                                  glm::dvec3(0, -50, -2), glm::dvec3(0, 0, 9), glm::dvec3(0, 0, -90)}) {
+    scene.instances[1].world_from_mesh[3] = glm::dvec4(place, 1.0);
+    EXPECT_EQ(sight_of_thing(scene, view.between(0.1, 50)), ObjectSight::outside) << place.x << " " << place.y;
+  }
+  scene.meshes[1].triangles.clear();
+  EXPECT_EQ(sight_of_thing(scene, view), ObjectSight::outside);
+}
+
+TEST(Occlusion, HolesGlassBlendedSurfacesAndCulledFacesHideNothing) {
+  const View view = from({0, 0, 4});
+  Scene scene = wall_and_thing();
+  scene.materials.resize(1);
+  scene.meshes[0].material_ids = {0};
+  EXPECT_EQ(sight_of_thing(scene, view), ObjectSight::hidden);
+  scene.materials[0].alpha = Material::Alpha::blend;
+  EXPECT_EQ(sight_of_thing(scene, view), ObjectSight::may_be_seen);
+  scene.materials[0].alpha = Material::Alpha::mask;
+  EXPECT_EQ(sight_of_thing(scene, view), ObjectSight::may_be_seen);
+  scene.materials[0] = {};
+  scene.materials[0].transmission.factor = 0.01f;
+  EXPECT_EQ(sight_of_thing(scene, view), ObjectSight::may_be_seen);
+  scene.materials[0].unlit = true;  // has no light that passes
+  EXPECT_EQ(sight_of_thing(scene, view), ObjectSight::hidden);
+  scene.materials.clear();
+  scene.meshes[0].material_ids.clear();
+  View culled = view;
+  culled.culling = Culling::back;
+  EXPECT_EQ(sight_of_thing(scene, culled), ObjectSight::hidden);
+  culled.culling = Culling::front;
+  EXPECT_EQ(sight_of_thing(scene, culled), ObjectSight::may_be_seen);
+  scene.instances[0].world_from_mesh[0][0] = -1;  // mirrored: its front still looks to +z
+  EXPECT_EQ(sight_of_thing(scene, culled), ObjectSight::may_be_seen);
+  culled.culling = Culling::back;
+  EXPECT_EQ(sight_of_thing(scene, culled), ObjectSight::hidden);
+}
+
+TEST(Occlusion, TwoThingsTogetherHideAThird) {
+  Scene scene = wall_and_thing();
+  Mesh left, right;  // They overlap by a few pixels, and neither hides the thing alone.
+  add_quad(left, {-3, -3, 0}, {0.05f, -3, 0}, {0.05f, 3, 0}, {-3, 3, 0});
+  add_quad(right, {-0.05f, -3, -0.5f}, {3, -3, -0.5f}, {3, 3, -0.5f}, {-0.05f, 3, -0.5f});
+  scene.meshes[0] = left;
+  EXPECT_EQ(sight_of_thing(scene, from({0, 0, 4})), ObjectSight::may_be_seen);
+  scene.meshes.push_back(right);
+  scene.instances.push_back({"right", 2, glm::dmat4(1.0)});
+  EXPECT_EQ(sight_of_thing(scene, from({0, 0, 4})), ObjectSight::hidden);
+}
+
+TEST(Occlusion, PartsOfOneMeshAreObjectsOfTheirOwn) {
+  Scene scene;
+  Mesh mesh;
+  add_square(mesh, 2, 0);
+  add_square(mesh, 0.4f, -2);
+  add_square(mesh, 0.4f, 2);
+  scene = scene_of(mesh);
+  scene.instances.push_back(scene.instances[0]);
+  scene.instances[1].world_from_mesh[3] = {100, 0, 0, 1};
+  const Surfaces surfaces(scene);
+  Occlusion occlusion(surfaces, ObjectUnit::parts);
+  ASSERT_EQ(occlusion.object_count(), 6u);
+  EXPECT_EQ(occlusion.object(4).instance, 1u);
+  EXPECT_EQ(occlusion.object(4).part, 1u);
+  const auto sights = occlusion.cull(from({0, 0, 6}));
+  EXPECT_EQ(sights[0], ObjectSight::may_be_seen);
+  EXPECT_EQ(sights[1], ObjectSight::hidden);
+  EXPECT_EQ(sights[2], ObjectSight::may_be_seen);
+  for (std::size_t i = 3; i < 6; ++i) EXPECT_EQ(sights[i], ObjectSight::outside);
+}
+
+TEST(Occlusion, AnswersAreThoseOfEveryInstructionSetAndThreadCountAndOfAFreshStart) {
+  std::vector<Scene> scenes;
+  for (std::uint64_t seed = 0; seed < seeds(24); ++seed) scenes.push_back(hidden_scene(70, seed + 300));
+  for (std::uint64_t seed = 0; seed < scenes.size(); ++seed) {
+    const Surfaces surfaces(scenes[seed]);
+    Occlusion kept(surfaces);
+    for (std::uint64_t k = 0; k < 3; ++k) {
+      const View view = random_view(50 + 83 * int(k), 41 + 30 * int(k), seed + 100 * k);
+      const auto sights = kept.cull(view, {.cell = 1});
+      const std::vector<ObjectSight> expected(sights.begin(), sights.end());
+      for (const Isa isa : available_isas()) {
+        const Execution execution{.threads = isa == Isa::best ? 3 : 2, .isa = isa};
+        Occlusion fresh(surfaces, ObjectUnit::instances, execution);
+        const auto other = fresh.cull(view, {.cell = 1}, execution);
+        ASSERT_TRUE(std::equal(expected.begin(), expected.end(), other.begin())) << name(isa) << " " << seed;
+      }
+    }
+  }
+}
+
+TEST(Occlusion, CellsOutOfRangeAndBrokenViewsAreRefused) {
+  const Scene scene = wall_and_thing();
+  const Surfaces surfaces(scene);
+  Occlusion occlusion(surfaces);
+  EXPECT_EQ(occlusion.sight_of({{-1, -1, -1}, {1, 1, 1}}), ObjectSight::outside);  // before the first view
+  for (const int cell : {0, -1, 65})
+    EXPECT_EQ(refusal_of(ErrorCode::bad_argument,
+                         [&] {
+                           static_cast<void>(occlusion.cull(from({0, 0, 4}), {.cell = cell}));
+                         }),
+              "occlusion: a cell must be 1 to 64 pixels wide");
+  EXPECT_EQ(code_of([&] { static_cast<void>(occlusion.cull(View{})); }), ErrorCode::bad_argument);
+}
+
+TEST(Occlusion, EmptyScenesAndBoxesAreNoTrouble) {
+  const Scene scene;
+  const Surfaces surfaces(scene);
+  Occlusion occlusion(surfaces);
+  EXPECT_TRUE(occlusion.cull(from({0, 0, 4})).empty());
+  EXPECT_EQ(occlusion.sight_of(Box()), ObjectSight::outside);
+  EXPECT_EQ(occlusion.sight_of({{-1, -1, -1}, {1, 1, 1}}), ObjectSight::may_be_seen);
+}
+
+}  // namespace
+}  // namespace frontmost

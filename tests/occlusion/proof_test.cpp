@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is said to be hidden is never seen: neither along rays between the samples, nor in the z-buffer's pictures.
+#include <gtest/gtest.h>
+
+#include "frontmost/io.h"
+#include "frontmost/occlusion.h"
+#include "frontmost/zbuffer.h"
+#include "occlusion/hidden_scene.h"
+#include "occlusion/sight_rays.h"
+#include "support/effort.h"
+#include "support/models.h"
+#include "support/same_visible.h"
+
+namespace frontmost {
+namespace {
+
+using namespace test;
+
+std::size_t count_of(std::span<const ObjectSight> sights, ObjectSight sight) {
+  return std::size_t(std::count(sights.begin(), sights.end(), sight));
+}
+
+TEST(OcclusionProof, NoRayMeetsWhatIsHiddenFirst) {
+  std::size_t hidden = 0, seen = 0;
+  for (std::uint64_t seed = 0; seed < seeds(240); ++seed) {
+    const Scene scene = hidden_scene(60, seed);
+    const Surfaces surfaces(scene);
+    const View view = random_view(97, 61, seed);
+    Occlusion occlusion(surfaces);
+    const auto sights = occlusion.cull(view, {.cell = 1 + int(seed % 4)});
+    ASSERT_EQ(wrong_sights(surfaces, view, sights, 4000), 0u) << seed;
+    hidden += count_of(sights, ObjectSight::hidden);
+    seen += count_of(sights, ObjectSight::may_be_seen);
+  }
+  EXPECT_GT(hidden, seeds(240) * 10);
+  EXPECT_GT(seen, seeds(240) * 5);
+}
+
+/// Draws all objects, and those alone that may be seen. Adds to `hidden` how many are.
+void expect_picture_of_all(const Scene& scene, const View& view, int cell, std::size_t& hidden) {
+  const Surfaces all(scene);
+  Occlusion occlusion(all);
+  const auto sights = occlusion.cull(view, {.cell = cell});
+  hidden += count_of(sights, ObjectSight::hidden);
+  // Objects that are left out keep their numbers, but nothing of them is left.
+  Scene rest = scene;
+  for (std::size_t i = 0; i < sights.size(); ++i)
+    if (sights[i] != ObjectSight::may_be_seen) rest.instances[i].world_from_mesh = glm::dmat4(0.0);
+  ASSERT_NO_FATAL_FAILURE(expect_same(zbuffer(all, view), zbuffer(Surfaces(rest), view)));
+}
+
+TEST(OcclusionProof, WhatMayBeSeenGivesThePictureOfAllToTheBit) {
+  std::size_t hidden = 0;
+  for (std::uint64_t seed = 0; seed < seeds(120); ++seed) {
+    const Scene scene = hidden_scene(80, seed + 500);
+    View view = random_view(160, 120, seed);
+    view.samples = 1 << seed % 5;
+    view.culling = seed % 3 == 0 ? Culling::back : seed % 7 == 0 ? Culling::front : Culling::none;
+    ASSERT_NO_FATAL_FAILURE(expect_picture_of_all(scene, view, 1, hidden)) << seed;
+  }
+  EXPECT_GT(hidden, seeds(120) * 10);
+}
+
+TEST(OcclusionProof, BoxesThatAreHiddenAreNotSeenEither) {
+  std::size_t hidden = 0;
+  for (std::uint64_t seed = 0; seed < seeds(120); ++seed) {
+    Scene scene = hidden_scene(50, seed + 900);
+    const Surfaces surfaces(scene);
+    const View view = random_view(97, 61, seed);
+    Occlusion occlusion(surfaces);
+    static_cast<void>(occlusion.cull(view, {.cell = 1}));
+    // Boxes that were not there: each becomes an object of its own.
+    Random random(seed);
+    std::vector<Box> boxes(40);
+    for (Box& box : boxes) {
+      const glm::vec3 middle = random.point(2);
+      const float size = 0.3f * random.unit();
+      box.include(middle - glm::vec3(size));
+      box.include(middle + glm::vec3(size, 0.5f * size, size));
+    }
+    std::vector<ObjectSight> sights(boxes.size());
+    occlusion.find_sights(boxes, sights);
+    std::vector<ObjectSight> of_all(scene.instances.size(), ObjectSight::may_be_seen);
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      EXPECT_EQ(occlusion.sight_of(boxes[i]), sights[i]);
+      const auto mesh = std::uint32_t(scene.meshes.size());
+      const glm::vec3 half = (boxes[i].high - boxes[i].low) * 0.499f, middle = boxes[i].centre();
+      scene.meshes.push_back(tessellated_box(half, 1, 0));
+      glm::dmat4 place(1.0);
+      place[3] = glm::dvec4(glm::dvec3(middle), 1.0);
+      scene.instances.push_back({"", mesh, place});
+      of_all.push_back(sights[i]);
+      hidden += sights[i] == ObjectSight::hidden;
+    }
+    ASSERT_EQ(wrong_sights(Surfaces(scene), view, of_all, 4000), 0u) << seed;
+  }
+  EXPECT_GT(hidden, seeds(120) * 3);
+}
+
+/// A view from within the scene to another place within it.
+View view_within(const Scene& scene, const Box& bounds, std::uint64_t seed) {
+  Random random(seed);
+  const auto inside = [&] {
+    const glm::vec3 at(random.within(0.1f, 0.9f), random.within(0.1f, 0.9f), random.within(0.1f, 0.9f));
+    return glm::dvec3(glm::mix(bounds.low, bounds.high, at));
+  };
+  const glm::dvec3 eye = inside(), target = inside();
+  return make_view(0.6 + double(random.unit()), 320, 240).looking(eye, target, direction(scene.up)).enclosing(bounds);
+}
+
+TEST(OcclusionProof, CitiesAndInteriorsAreTheSameWithoutWhatIsHidden) {
+  FRONTMOST_NEEDS_MODELS();
+  std::size_t hidden = 0;
+  for (const char* name : {"city", "scenes/city.glb", "scenes/warehouse.glb", "scenes/occlusion-room.glb",
+                           "scenes/pandora.obj", "scenes/sponza.glb", "assembly/2-cylinder-engine.glb"}) {
+    const std::string path(name);
+    const Scene scene = path == "city" ? builtin(path) : load(model(path));
+    const Box bounds = Surfaces(scene).bounds();
+    for (std::uint64_t seed = 0; seed < seeds(6); ++seed) {
+      const View view = view_within(scene, bounds, seed);
+      ASSERT_NO_FATAL_FAILURE(expect_picture_of_all(scene, view, 1 + int(seed % 3), hidden)) << name << " " << seed;
+      const Surfaces surfaces(scene);
+      Occlusion occlusion(surfaces);
+      EXPECT_EQ(wrong_sights(surfaces, view, occlusion.cull(view, {.cell = 1}), 20000), 0u) << name << " " << seed;
+    }
+  }
+  EXPECT_GT(hidden, 500u);
+}
+
+/// A wall at z = 0 with a slit that is `width` pixels wide at x = 0, and a small thing behind it. A pixel is a
+/// hundredth of a unit wide at the wall.
+Scene slit(float width) {
+  Scene scene;
+  Mesh wall;
+  const float half = 0.005f * width;
+  add_quad(wall, {-9, -9, 0}, {-half, -9, 0}, {-half, 9, 0}, {-9, 9, 0});
+  add_quad(wall, {half, -9, 0}, {9, -9, 0}, {9, 9, 0}, {half, 9, 0});
+  Mesh thing;
+  add_quad(thing, {-0.2f, -0.2f, -1}, {0.2f, -0.2f, -1}, {0.2f, 0.2f, -1}, {-0.2f, 0.2f, -1});
+  scene.meshes = {wall, thing};
+  scene.instances = {{"wall", 0, glm::dmat4(1.0)}, {"thing", 1, glm::dmat4(1.0)}};
+  return scene;
+}
+
+View before_slit(double x) {
+  View view;
+  view.width = view.height = 100;
+  view.projection = make_orthographic(-0.5, 0.5, -0.5, 0.5, {0.1, 20});
+  return view.looking({x, 0, 5}, {x, 0, 0}, {0, 1, 0});
+}
+
+TEST(OcclusionProof, SlitsBetweenSamplesAreSeenThrough) {
+  for (const float width : {0.9f, 0.3f, 0.1f, 0.02f})
+    for (double x = -0.02; x < 0.02; x += 0.00123) {
+      const Scene scene = slit(width);
+      const Surfaces surfaces(scene);
+      Occlusion occlusion(surfaces);
+      for (const int cell : {1, 2, 3, 8})
+        EXPECT_EQ(occlusion.cull(before_slit(x), {.cell = cell})[1], ObjectSight::may_be_seen) << width << " " << x;
+    }
+  const Scene closed = slit(0);
+  const Surfaces surfaces(closed);
+  Occlusion occlusion(surfaces);
+  EXPECT_EQ(occlusion.cull(before_slit(0.0012), {.cell = 1})[1], ObjectSight::hidden);
+}
+
+TEST(OcclusionProof, SeamsWithinASurfaceLetNothingThrough) {
+  // Triangles far smaller than a pixel, and slivers: what counts is where the surface ends.
+  for (const int steps : {7, 40, 60}) {
+    Scene scene;
+    scene.meshes.push_back(tessellated_box({3, 3, 0.5f}, steps, 0));
+    scene.meshes.push_back(tessellated_box({0.3f, 0.3f, 0.3f}, 1, 0));
+    glm::dmat4 behind(1.0);
+    behind[3] = {0.1, 0.05, -2.0, 1.0};
+    scene.instances = {{"wall", 0, glm::dmat4(1.0)}, {"thing", 1, behind}};
+    const Surfaces surfaces(scene);
+    Occlusion occlusion(surfaces);
+    View view = make_view(0.8, 480, 360).looking({0.7, 0.3, 4}, {0, 0, 0}, {0, 1, 0});
+    EXPECT_EQ(occlusion.cull(view, {.cell = 1})[1], ObjectSight::hidden) << steps;
+    // Along the wall, which then reaches far into depth and covers slab by slab.
+    view = make_view(0.8, 480, 360).looking({-2.9, 0, 1.2}, {2, 0, -1.1}, {0, 1, 0});
+    EXPECT_EQ(occlusion.cull(view, {.cell = 1})[1], ObjectSight::hidden) << steps;
+  }
+}
+
+}  // namespace
+}  // namespace frontmost

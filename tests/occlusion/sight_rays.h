@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Answers of occlusion culling held to rays between the samples: what a ray meets first is seen.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "frontmost/occlusion.h"
+#include "frontmost/raycast.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+
+/// The line of sight through a place of the picture, from the near plane on.
+inline Ray sight_line(const View& view, double x, double y) {
+  const Projection& p = view.projection;
+  const double right = p.left + (p.right - p.left) * x / view.width, up = p.top - (p.top - p.bottom) * y / view.height;
+  const glm::dvec3 across = right * view.right() + up * view.up();
+  if (p.orthographic) return {glm::vec3(view.eye() + across + p.clip.near * view.forward()), glm::vec3(view.forward())};
+  const glm::dvec3 direction = view.forward() + across;
+  return {glm::vec3(view.eye() + p.clip.near * direction), glm::vec3(direction)};
+}
+
+/// How many of `count` random sight lines meet something first of which `is_seen(primitive id)` is false.
+template <class IsSeen>
+std::size_t wrong_sight_lines(const Surfaces& surfaces, const View& view, int count, const IsSeen& is_seen) {
+  const RayIndex index(surfaces);
+  Random random(5);
+  std::vector<Ray> rays;
+  for (int i = 0; i < count; ++i) {
+    const double x = double(random.unit()) * view.width;
+    rays.push_back(sight_line(view, x, double(random.unit()) * view.height));
+  }
+  std::vector<RayHit> hits(rays.size());
+  closest_hits(index, rays, hits);
+  std::size_t wrong = 0;
+  for (const RayHit& hit : hits) wrong += hit && !is_seen(hit.primitive);
+  return wrong;
+}
+
+/// The same of what is known of instances.
+inline std::size_t wrong_sights(const Surfaces& surfaces, const View& view, std::span<const ObjectSight> sights,
+                                int count) {
+  return wrong_sight_lines(surfaces, view, count, [&](PrimitiveId id) {
+    return sights[surfaces.source(id).instance] == ObjectSight::may_be_seen;
+  });
+}
+
+}  // namespace frontmost::test
