@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene: meshes, materials, textures, placed instances and cameras, as plain values.
+// A scene: meshes, materials, textures, placed instances, cameras and lights, as plain values.
 #pragma once
 
 #include <array>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -39,20 +40,25 @@ struct BezierPatch {
   glm::dvec2 texture_low{0}, texture_size{1};
 };
 
+/// Sets of texture coordinates that a mesh may have.
+inline constexpr std::uint32_t max_texcoord_sets = 4;
+
 /// A triangle mesh in its own space. Counter-clockwise corners face the viewer.
 ///
 /// A mesh may be curved: then `spheres` and `patches` are what it is, in this order its curved primitives, and its
 /// triangles are only a tessellation of them, for methods that know triangles alone; tessellate() makes one for a view,
 /// CurvedIndex does without. Curved primitives that are not finite, and spheres whose radius is not positive, are never
-/// seen, but keep their number. A curved mesh has one material at most, and colours of its triangles do not count.
+/// seen, but keep their number. A curved mesh has one material at most and one set of texture coordinates, and colours
+/// of its triangles do not count.
 struct Mesh {
   std::string name;
   /// Any unit; as in the file but for Scene::origin, non-finite ones included.
   std::vector<glm::vec3> positions;
-  std::vector<glm::uvec3> triangles;        ///< corners, indices into positions, in file order
-  Attribute<glm::vec3> normals;             ///< unit length is not required; zero or non-finite ones count as missing
-  Attribute<glm::vec2> texcoords;           ///< u right, v down from the image's first row (glTF's convention)
-  Attribute<glm::vec4> colors;              ///< linear RGBA, multiplies the material's base colour
+  std::vector<glm::uvec3> triangles;  ///< corners, indices into positions, in file order
+  Attribute<glm::vec3> normals;       ///< unit length is not required; zero or non-finite ones count as missing
+  Attribute<glm::vec2> texcoords;     ///< u right, v down from the image's first row (glTF's convention); set 0
+  std::vector<Attribute<glm::vec2>> further_texcoords;  ///< sets 1, 2 and 3, as far as there are any; some may be empty
+  Attribute<glm::vec4> colors;                          ///< linear RGBA, multiplies the material's base colour
   std::vector<std::uint32_t> material_ids;  ///< one per triangle, or one for all, or none; no_index: default material
   /// The polygon of the file that each triangle came from (counted from 0 in the mesh). Empty: every polygon was one
   /// triangle, so the triangle's number is the polygon's.
@@ -62,6 +68,12 @@ struct Mesh {
 
   [[nodiscard]] bool is_curved() const { return !spheres.empty() || !patches.empty(); }
   [[nodiscard]] std::size_t curved_count() const { return spheres.size() + patches.size(); }
+  /// A set of texture coordinates as TextureUse::set numbers it; null where the mesh has none.
+  [[nodiscard]] const Attribute<glm::vec2>* texcoord_set(std::uint32_t set) const {
+    if (set > further_texcoords.size()) return nullptr;
+    const Attribute<glm::vec2>& found = set == 0 ? texcoords : further_texcoords[set - 1];
+    return found.empty() ? nullptr : &found;
+  }
   /// Corner numbers of one triangle into `attribute.values`.
   template <class T>
   [[nodiscard]] const glm::uvec3& corners(const Attribute<T>& attribute, std::uint32_t triangle) const {
@@ -91,12 +103,54 @@ struct TextureUse {
   std::uint32_t texture = no_index;
   glm::vec2 offset{0}, scale{1};  ///< uv' = offset + rotation * (scale * uv), as KHR_texture_transform
   float rotation = 0;             ///< radians, counter-clockwise about the uv origin
+  std::uint32_t set = 0;          ///< of the mesh's texture coordinates; all are 0 where the mesh has no such set
   [[nodiscard]] bool is_set() const { return texture != no_index; }
 };
 
-/// Metallic-roughness, as glTF 2.0 defines it. Colours are linear.
+/// Metallic-roughness, as glTF 2.0 defines it, with the layers of its extensions, which by default are not there.
+/// Colours are linear. Factors multiply what their textures hold. Where a number is out of its range the nearest in
+/// range counts, and where it is not a number the default.
 struct Material {
   enum class Alpha : std::uint8_t { opaque, mask, blend };
+
+  /// How strongly the surface of what is no metal mirrors. KHR_materials_specular.
+  struct Specular {
+    float factor = 1;           ///< 0 to 1: of all mirrored light
+    TextureUse factor_texture;  ///< A
+    glm::vec3 color{1};         ///< 0 and up: of light mirrored towards where it comes from
+    TextureUse color_texture;   ///< sRGB
+  };
+  /// A clear varnish. KHR_materials_clearcoat.
+  struct Clearcoat {
+    float factor = 0;              ///< 0 to 1: none to all of the surface is varnished
+    TextureUse factor_texture;     ///< R
+    float roughness = 0;           ///< 0 to 1
+    TextureUse roughness_texture;  ///< G
+    TextureUse normal_texture;     ///< tangent space; not set: the normal of the geometry, without the bumps beneath
+    float normal_scale = 1;
+  };
+  /// The shine of fibres that stand out of cloth. KHR_materials_sheen.
+  struct Sheen {
+    glm::vec3 color{0};            ///< 0 to 1; black: none
+    TextureUse color_texture;      ///< sRGB
+    float roughness = 0;           ///< 0 to 1: of how one way all fibres stand
+    TextureUse roughness_texture;  ///< A
+  };
+  /// Glass: light that is not mirrored passes, tinted by the base colour, through a wall of no thickness.
+  /// KHR_materials_transmission.
+  struct Transmission {
+    float factor = 0;           ///< 0 to 1: the part of the light below the surface that passes
+    TextureUse factor_texture;  ///< R
+  };
+  /// What fills a closed mesh that transmits light, behind its front sides. KHR_materials_volume.
+  struct Volume {
+    float thickness = 0;           ///< in the mesh's unit; 0: nothing, the surface is a thin wall
+    TextureUse thickness_texture;  ///< G
+    /// In the world's unit: after so long a way through it white light has attenuation_color. Above 0; infinite: clear.
+    float attenuation_distance = std::numeric_limits<float>::infinity();
+    glm::vec3 attenuation_color{1};  ///< 0 to 1
+  };
+
   std::string name;
   glm::vec4 base_color{1};
   TextureUse base_color_texture;  ///< sRGB; alpha is linear
@@ -111,7 +165,26 @@ struct Material {
   Alpha alpha = Alpha::opaque;
   float alpha_cutoff = 0.5f;
   bool double_sided = false;
-  bool unlit = false;  ///< KHR_materials_unlit: base colour as it is
+  bool unlit = false;  ///< KHR_materials_unlit: base colour as it is, without any of the layers
+  float ior = 1.5f;    ///< index of refraction, 1 and up, of what is no metal; 0: infinite. KHR_materials_ior
+  Specular specular;
+  Clearcoat clearcoat;
+  Sheen sheen;
+  Transmission transmission;
+  Volume volume;
+
+  /// Whether light comes through, by its alpha or as through glass.
+  [[nodiscard]] bool is_see_through() const { return alpha == Alpha::blend || (transmission.factor > 0 && !unlit); }
+};
+
+/// All uses of textures of a material, those that are not set, too.
+[[nodiscard]] std::array<TextureUse*, 14> texture_uses_of(Material& material);
+[[nodiscard]] std::array<const TextureUse*, 14> texture_uses_of(const Material& material);
+
+/// A kind of thing that objects are of, as data sets count them.
+struct Category {
+  std::string name;
+  std::uint32_t number = 0;  ///< the data set's own: the category_id of COCO, the obj_id of BOP
 };
 
 /// One mesh at one place: an object that can be seen, named and counted. World space is about Scene::origin.
@@ -119,6 +192,7 @@ struct Instance {
   std::string name;
   std::uint32_t mesh = 0;
   glm::dmat4 world_from_mesh{1.0};
+  std::uint32_t category = no_index;  ///< in Scene::categories; no_index: nothing is said of it
 };
 
 /// A camera of the file, about Scene::origin. Looks down its own -z, y up.
@@ -131,11 +205,32 @@ struct Camera {
   std::optional<double> near, far;  ///< positive distances; none: fitted, or infinite
 };
 
+/// A light of the file, about Scene::origin. Suns and spots shine down its own -z, points all around. What it says of
+/// intensities and cones is what glTF's KHR_lights_punctual says.
+struct Light {
+  enum class Kind : std::uint8_t {
+    sun,    ///< from infinitely far away; where it stands does not matter
+    point,  ///< which way it is turned does not matter
+    spot,
+  };
+  std::string name;
+  Kind kind = Kind::point;
+  glm::dmat4 world_from_light{1.0};  ///< rigid
+  glm::vec3 color{1};                ///< linear, 0 and more; multiplies the intensity
+  /// 0 and more. Of suns lux, lumens per square unit of length; of points and spots candela, lumens per steradian,
+  /// which divided by the square of a distance in units of length are lux there. A unit of glTF is a metre.
+  double intensity = 1;
+  std::optional<double> range;             ///< positive: of points and spots, beyond it there is no light
+  double inner_cone = 0;                   ///< of spots: radians from the axis up to which the light is full, from 0 on
+  double outer_cone = 0.7853981633974483;  ///< and from which on there is none: from inner_cone on, at most pi / 2
+};
+
 /// Which way is up in the model's own space.
 enum class Axis : std::uint8_t { x, y, z, minus_x, minus_y, minus_z };
 [[nodiscard]] glm::dvec3 direction(Axis axis);
 
-enum class ModelFormat : std::uint8_t { stl, ply, obj, off, gltf, threemf };
+/// `scene` is that of files that place models of the others.
+enum class ModelFormat : std::uint8_t { stl, ply, obj, off, gltf, threemf, scene };
 
 /// What is known of the files that a scene was read from; nothing of a scene that was made.
 struct SceneSource {
@@ -152,9 +247,11 @@ struct Scene {
   std::string name;  ///< the file's name without folder and suffix, or the built-in scene's
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;  ///< the order that primitive ids follow
+  std::vector<Category> categories;
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<Camera> cameras;
+  std::vector<Light> lights;
   Axis up = Axis::y;
   /// Where the zero of world space lies in the coordinates of the file: what is at p in the world is at origin + p
   /// there. Zero, but for models that lie far from it for their size, whose details floats could not hold there.
@@ -169,9 +266,10 @@ struct Scene {
 /// Adds a mesh and places it, as an object named as the mesh is. Meshes that are not placed are not seen.
 /// \returns the object's number in Scene::instances. O(1).
 std::uint32_t add(Scene& scene, Mesh mesh, const glm::dmat4& world_from_mesh = glm::dmat4(1.0));
-/// Adds all that `part` holds to `scene`: objects, materials, textures, cameras, warnings and files after its own, with
-/// their numbers counted on. Name and up stay as they are, and so does the origin, of which what is added is moved to
-/// tell the same place. A scene without objects takes the origin, the format and the unit of the part. O(size of part).
+/// Adds all that `part` holds to `scene`: objects, materials, textures, cameras, lights, warnings and files after its
+/// own, with their numbers counted on. Categories that both have are one. Name and up stay as they are, and so does the
+/// origin, of which what is added is moved to tell the same place. A scene without objects, cameras and lights takes
+/// the origin, the format and the unit of the part. O(size of part + product of the numbers of categories).
 void add(Scene& scene, Scene part);
 
 /// The origin with which floats hold the most of a scene that was put together: zero unless on some axis all of it lies
@@ -179,12 +277,13 @@ void add(Scene& scene, Scene part);
 /// four sizes away, the roundest number near it. So a model moved by a round number is put back to the bit. Of what
 /// lies near zero a few vertices are looked at, else all. Precondition: validate(scene) passes.
 [[nodiscard]] glm::dvec3 fitting_origin(const Scene& scene);
-/// Moves zero to `origin`, in the coordinates of the file, and leaves everything where it is: instances and cameras
-/// are told from there, in doubles. load() has done it with the fitting origin. O(instances + cameras).
+/// Moves zero to `origin`, in the coordinates of the file, and leaves everything where it is: instances, cameras and
+/// lights are told from there, in doubles. load() has done it with the fitting origin. O(instances + cameras + lights).
 void set_origin(Scene& scene, const glm::dvec3& origin);
 
-/// Checks what a reader promises: array sizes that belong together, indices in range, at most 2^32 - 2 triangles.
-/// \throws Error file_malformed or limit_exceeded naming the mesh and triangle. O(size of the scene).
+/// Checks what a reader promises: array sizes that belong together, indices in range, lights within their bounds, at
+/// most 2^32 - 2 triangles. \throws Error file_malformed or limit_exceeded naming the mesh and triangle. O(size of the
+/// scene).
 void validate(const Scene& scene);
 /// The same but for the vertices that triangles name: for Surfaces, which look at all of those anyway.
 void validate_besides_vertices(const Scene& scene);

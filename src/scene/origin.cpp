@@ -126,6 +126,7 @@ void set_origin(Scene& scene, const glm::dvec3& origin) {
   if (moved == glm::dvec4(0)) return;
   for (Instance& instance : scene.instances) instance.world_from_mesh[3] += moved;
   for (Camera& camera : scene.cameras) camera.world_from_eye[3] += moved;
+  for (Light& light : scene.lights) light.world_from_light[3] += moved;
 }
 
 }  // namespace frontmost

@@ -5,6 +5,9 @@
 // mesh and the triangle, since whoever reads the message has a file of millions of them.
 #include "frontmost/scene.h"
 
+#include <cmath>
+#include <numbers>
+
 namespace frontmost {
 namespace {
 
@@ -52,6 +55,10 @@ void check_mesh(const Scene& scene, std::size_t m) {
   const Mesh& mesh = scene.meshes[m];
   check_attribute(scene, m, mesh.normals, "normal");
   check_attribute(scene, m, mesh.texcoords, "texture coordinate");
+  for (const Attribute<glm::vec2>& set : mesh.further_texcoords)
+    check_attribute(scene, m, set, "further texture coordinate");
+  if (mesh.further_texcoords.size() >= max_texcoord_sets)
+    fail(scene, m, "more than " + std::to_string(max_texcoord_sets) + " sets of texture coordinates");
   check_attribute(scene, m, mesh.colors, "colour");
   if (mesh.material_ids.size() > 1 && mesh.material_ids.size() != mesh.triangles.size())
     fail(scene, m, "material ids do not match the triangles");
@@ -64,9 +71,59 @@ void check_mesh(const Scene& scene, std::size_t m) {
 }
 
 void check_use(const Scene& scene, const Material& material, const TextureUse& use) {
-  if (use.is_set() && use.texture >= scene.textures.size())
-    throw Error(ErrorCode::file_malformed, scene.name + ": material " + material.name + ": texture " +
-                                               std::to_string(use.texture) + " does not exist");
+  if (!use.is_set()) return;
+  const std::string who = scene.name + ": material " + material.name + ": ";
+  if (use.texture >= scene.textures.size())
+    throw Error(ErrorCode::file_malformed, who + "texture " + std::to_string(use.texture) + " does not exist");
+  if (use.set >= max_texcoord_sets)
+    throw Error(ErrorCode::file_malformed, who + "texture coordinates " + std::to_string(use.set) +
+                                               ", there are at most " + std::to_string(max_texcoord_sets) + " sets");
+}
+
+void check_instances(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const auto refuse = [&](const char* what, std::uint32_t number) {
+      throw Error(ErrorCode::file_malformed, scene.name + ": instance " + std::to_string(i) + ": " + what + " " +
+                                                 std::to_string(number) + " does not exist");
+    };
+    const Instance& instance = scene.instances[i];
+    if (instance.mesh >= scene.meshes.size()) refuse("mesh", instance.mesh);
+    if (instance.category != no_index && instance.category >= scene.categories.size())
+      refuse("category", instance.category);
+  }
+}
+
+bool is_positive_and_finite(double value) { return value > 0 && std::isfinite(value); }
+
+/// Whether it turns and moves, and does nothing else.
+bool is_rigid(const glm::dmat4& m) {
+  constexpr double tolerance = 1e-6;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k)
+      if (!(std::abs(glm::dot(glm::dvec3(m[i]), glm::dvec3(m[k])) - (i == k ? 1 : 0)) < tolerance)) return false;
+  return std::isfinite(m[3].x) && std::isfinite(m[3].y) && std::isfinite(m[3].z);
+}
+
+/// What is wrong with a light, or null.
+const char* fault_of(const Light& light) {
+  if (!(light.intensity >= 0 && std::isfinite(light.intensity))) return "its intensity is not a number from 0 on";
+  for (int k = 0; k < 3; ++k)
+    if (!(light.color[k] >= 0 && std::isfinite(light.color[k]))) return "its colour is not three numbers from 0 on";
+  if (light.range && !is_positive_and_finite(*light.range)) return "its range is not a positive number";
+  if (!(light.inner_cone >= 0 && light.inner_cone <= light.outer_cone && light.outer_cone > 0 &&
+        light.outer_cone <= 0.5 * std::numbers::pi))
+    return "its cones are not angles from 0 to a quarter turn, the inner one within the outer one";
+  if (!is_rigid(light.world_from_light)) return "its placement is not rigid";
+  return nullptr;
+}
+
+void check_lights(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.lights.size(); ++i)
+    if (const char* fault = fault_of(scene.lights[i])) {
+      const std::string& name = scene.lights[i].name;
+      throw Error(ErrorCode::file_malformed,
+                  scene.name + ": light " + std::to_string(i) + (name.empty() ? "" : " (" + name + ")") + ": " + fault);
+    }
 }
 
 }  // namespace
@@ -98,18 +155,14 @@ void validate(const Scene& scene) {
 void validate_besides_vertices(const Scene& scene) {
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) check_mesh(scene, m);
   for (const Material& material : scene.materials)
-    for (const TextureUse* use : {&material.base_color_texture, &material.metallic_roughness_texture,
-                                  &material.normal_texture, &material.emissive_texture, &material.occlusion_texture})
-      check_use(scene, material, *use);
+    for (const TextureUse* use : texture_uses_of(material)) check_use(scene, material, *use);
   for (const Texture& texture : scene.textures)
     if (texture.width < 0 || texture.height < 0 ||
         texture.pixels.size() != std::size_t(texture.width) * std::size_t(texture.height))
       throw Error(ErrorCode::file_malformed,
                   scene.name + ": texture " + texture.name + ": pixels do not match its size");
-  for (std::size_t i = 0; i < scene.instances.size(); ++i)
-    if (scene.instances[i].mesh >= scene.meshes.size())
-      throw Error(ErrorCode::file_malformed, scene.name + ": instance " + std::to_string(i) + ": mesh " +
-                                                 std::to_string(scene.instances[i].mesh) + " does not exist");
+  check_instances(scene);
+  check_lights(scene);
   // One id fewer than there are numbers: the greatest stands for nothing seen.
   if (triangle_count(scene) > no_primitive - 1)
     throw Error(ErrorCode::limit_exceeded, scene.name + ": more than 4294967294 triangles over all instances");

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Models bring their cameras and lights along. A transform may stretch and shear; neither of them can, so their axes
+// are made unit and square again: the viewing direction is kept exactly, and up gives way.
+#include "io/scenes/carried.h"
+
+namespace frontmost {
+namespace {
+
+struct RigidPlace {
+  glm::dmat4 world_from_thing;
+  double growth;  ///< of lengths along the direction in which it looks or shines
+};
+
+/// Precondition: the transform is not singular.
+RigidPlace rigid_place(const glm::dmat4& placed) {
+  const glm::dvec3 back(placed[2]), right = glm::cross(glm::dvec3(placed[1]), back);
+  const double length = glm::length(back);
+  const glm::dvec3 z = back / length, x = glm::normalize(right);
+  return {glm::dmat4(glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0), glm::dvec4(z, 0), placed[3]), length};
+}
+
+}  // namespace
+
+Camera carried(Camera camera, const glm::dmat4& scene_from_model) {
+  const RigidPlace place = rigid_place(scene_from_model * camera.world_from_eye);
+  camera.world_from_eye = place.world_from_thing;
+  if (camera.near) *camera.near *= place.growth;
+  if (camera.far) *camera.far *= place.growth;
+  if (camera.orthographic) camera.vertical *= place.growth;
+  return camera;
+}
+
+Light carried(Light light, const glm::dmat4& scene_from_model) {
+  const RigidPlace place = rigid_place(scene_from_model * light.world_from_light);
+  light.world_from_light = place.world_from_thing;
+  if (light.range) *light.range *= place.growth;
+  // What shines from a place gets weaker with the square of the distance.
+  if (light.kind != Light::Kind::sun) light.intensity *= place.growth * place.growth;
+  return light;
+}
+
+}  // namespace frontmost

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a scene file says, before any model is read: JSON that places models.
+//
+//   {"up": "z", "metres_per_unit": 0.001,
+//    "objects": [{"model": "cup.ply", "name": "left cup", "category": "cup", "pose": [16 numbers], "material": "red"},
+//                {"model": "cup.ply", "translation": [80, 0, 0]}, ...],
+//    "materials": {"red": {"color": "#c02010"}}}
+//
+// docs/formats.md says what every key means.
+#pragma once
+
+#include <map>
+
+#include "io/models/gltf/json.h"
+#include "io/models/reader.h"
+
+namespace frontmost {
+
+/// Which of SceneFile::materials a model's materials become.
+struct Replacement {
+  std::uint32_t of_all = no_index;             ///< no_index: those that are named, and no others
+  std::map<std::string, std::uint32_t> named;  ///< by the names of the model's materials
+  [[nodiscard]] bool is_none() const { return of_all == no_index && named.empty(); }
+  auto operator<=>(const Replacement&) const = default;
+};
+
+/// One of the objects of a scene file.
+struct PlacedModel {
+  std::string place;  ///< in the file, for messages: "objects[3]"
+  std::string model;  ///< as the file names it
+  std::string name;   ///< empty: the model's own
+  std::uint32_t category = no_index;
+  glm::dmat4 scene_from_model{1.0};
+  std::optional<Axis> up;                 ///< of the model, which is turned to that of the scene
+  std::optional<double> metres_per_unit;  ///< of the model, in place of what its file says
+  Replacement replacement;
+  bool has_parts = false;  ///< the model's objects stay objects
+};
+
+struct SceneFile {
+  std::optional<Axis> up;
+  std::optional<double> metres_per_unit;
+  std::vector<Category> categories;
+  std::vector<Material> materials;
+  std::vector<PlacedModel> objects;
+};
+
+/// \throws Error file_malformed or limit_exceeded: "name: place: reason".
+[[nodiscard]] SceneFile parse_scene_file(std::string_view text, const ModelSource& source);
+
+// Its parts.
+
+/// The pose of an object: "pose", or "translation", "rotation" and "scale", or neither, which is the identity.
+[[nodiscard]] glm::dmat4 read_pose(const gltf::JsonValue& object);
+[[nodiscard]] Material read_look(const gltf::JsonValue& material, const std::string& name);
+
+/// Refuses an object that has one key twice, of which a JSON library keeps the last one without a word.
+void refuse_repeated_keys(std::string_view text, const ModelSource& source);
+/// Refuses keys that are not known.
+void check_keys(const gltf::JsonValue& object, std::initializer_list<std::string_view> known);
+[[nodiscard]] bool has(const gltf::JsonValue& object, const char* key);
+
+}  // namespace frontmost

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene file becomes a scene. Models are read one after the other, each once, and what it holds goes to all objects
+// that are it:
+//
+//   objects   cup  plate  cup  cup in red          models   cup --> mesh 0 (twice), mesh 1 (with other materials)
+//                                                           plate --> mesh 2
+//
+// So meshes are shared, and beside the result there is one model in memory at a time.
+#include <algorithm>
+#include <iterator>
+
+#include "io/models/budget.h"
+#include "io/models/mesh_building.h"
+#include "io/scenes/carried.h"
+#include "io/scenes/one_mesh.h"
+#include "io/scenes/scene_file.h"
+
+namespace frontmost {
+namespace {
+
+/// The shortest turn that takes one axis to another; half a turn about x, or about y where both are along x.
+glm::dmat4 turn_between(Axis from, Axis to) {
+  const glm::dvec3 a = direction(from), b = direction(to), c = glm::cross(a, b);
+  if (a == b) return glm::dmat4(1.0);
+  if (a == -b) {
+    const glm::dvec3 about = a.x == 0 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    glm::dmat4 half(1.0);
+    for (int i = 0; i < 3; ++i) half[i][i] = about[i] == 0 ? -1 : 1;
+    return half;
+  }
+  // a goes to b, b to -a, and c stays.
+  return glm::dmat4(glm::outerProduct(b, a) - glm::outerProduct(a, b) + glm::outerProduct(c, c));
+}
+
+template <class T>
+std::uint64_t bytes_of(const Attribute<T>& attribute) {
+  return attribute.values.size() * sizeof(T) + attribute.triangles.size() * sizeof(glm::uvec3);
+}
+
+/// What a copy of a mesh takes; those of attributes by corner too, which one_mesh() may add.
+std::uint64_t bytes_of(const Mesh& mesh) {
+  constexpr std::uint64_t corner_lists = 2 + max_texcoord_sets;
+  std::uint64_t bytes = mesh.positions.size() * sizeof(glm::vec3) + bytes_of(mesh.normals) + bytes_of(mesh.texcoords) +
+                        bytes_of(mesh.colors) + mesh.triangles.size() * (2 + corner_lists) * sizeof(glm::uvec3);
+  for (const Attribute<glm::vec2>& set : mesh.further_texcoords) bytes += bytes_of(set);
+  return bytes;
+}
+
+/// Of the files that a model was read from.
+std::uint64_t file_bytes(const SceneSource& source) {
+  std::uint64_t bytes = 0;
+  for (const std::filesystem::path& path : source.files) {
+    std::error_code error;
+    const std::uint64_t size = std::filesystem::file_size(path, error);
+    if (!error) bytes += size;
+  }
+  return bytes;
+}
+
+/// One model, as it comes from its file, and what of it is in the scene already.
+class PlacedMeshes {
+ public:
+  /// The model's materials and textures go to the scene at once.
+  PlacedMeshes(Scene model, std::uint64_t bytes, const ModelSource& source, Scene& scene)
+      : model_(std::move(model)), source_(source), scene_(scene), budget_(bytes) {
+    Scene looks;
+    looks.materials = std::move(model_.materials);
+    looks.textures = std::move(model_.textures);
+    first_material_ = std::uint32_t(scene_.materials.size());
+    for (const Material& material : looks.materials) names_.push_back(material.name);
+    add(scene_, std::move(looks));
+    for (Mesh& mesh : model_.meshes)
+      for (std::uint32_t& id : mesh.material_ids)
+        if (id != no_index) id += first_material_;
+  }
+
+  [[nodiscard]] const Scene& model() const { return model_; }
+
+  /// The objects that one of the scene file becomes. `scene_from_model` places what the model's file says.
+  std::vector<Instance> place(const PlacedModel& object, const glm::dmat4& scene_from_model) {
+    const bool is_one = !object.has_parts && model_.instances.size() > 1;
+    const std::vector<std::uint32_t>& meshes = meshes_of(object, is_one);
+    // No memory here, but ten times as much in whatever looks at the triangles in the world.
+    constexpr std::uint64_t least_cost = 4;
+    budget_.charge(triangle_count(model_), least_cost, object.place, source_);
+    const std::string name = object.name.empty() ? model_.name : object.name;
+    if (is_one) return {{name, meshes[0], scene_from_model, object.category}};
+    budget_.charge(model_.instances.size(), sizeof(Instance) + longest_name, object.place, source_);
+    std::vector<Instance> instances;
+    for (const Instance& part : model_.instances) {
+      const std::string own = object.has_parts ? name_of(name + "/" + part.name) : name;
+      instances.push_back({own, meshes[part.mesh], scene_from_model * part.world_from_mesh, object.category});
+    }
+    return instances;
+  }
+
+  /// The model's cameras and lights, placed with the object.
+  void carry(const PlacedModel& object, const glm::dmat4& scene_from_model) {
+    budget_.charge(model_.cameras.size() + model_.lights.size(), sizeof(Light) + longest_name, object.place, source_);
+    for (const Camera& camera : model_.cameras) scene_.cameras.push_back(carried(camera, scene_from_model));
+    for (const Light& light : model_.lights) scene_.lights.push_back(carried(light, scene_from_model));
+  }
+
+ private:
+  /// By the model's own numbers or, where all are one, that alone.
+  const std::vector<std::uint32_t>& meshes_of(const PlacedModel& object, bool is_one) {
+    const auto [found, is_new] = known_.emplace(std::pair(is_one, object.replacement), std::vector<std::uint32_t>());
+    if (!is_new) return found->second;
+    check_names(object);
+    if (is_one) {
+      for (const Instance& part : model_.instances) check_part(model_.meshes[part.mesh], object);
+      add_mesh(one_mesh(model_), object.replacement, found->second);
+    } else {
+      for (const Mesh& mesh : model_.meshes) {
+        budget_.charge(1, bytes_of(mesh), object.place, source_);
+        add_mesh(mesh, object.replacement, found->second);
+      }
+    }
+    return found->second;
+  }
+
+  void check_part(const Mesh& mesh, const PlacedModel& object) {
+    budget_.charge(1, bytes_of(mesh), object.place, source_);
+    if (mesh.is_curved())
+      source_.fail(object.place + ".model",
+                   "has several curved objects, which cannot be one; say \"parts\": \"apart\"");
+  }
+
+  void check_names(const PlacedModel& object) const {
+    for (const auto& [name, material] : object.replacement.named)
+      if (std::find(names_.begin(), names_.end(), name) == names_.end())
+        source_.fail(object.place + ".material", "the model has no material " + in_quotes(name));
+  }
+
+  void add_mesh(Mesh mesh, const Replacement& replacement, std::vector<std::uint32_t>& numbers) {
+    if (replacement.of_all != no_index) {
+      mesh.material_ids = {replacement.of_all};
+      mesh.colors = {};  // they would tint the material
+    }
+    for (std::uint32_t& id : mesh.material_ids) {
+      if (id == no_index || replacement.named.empty()) continue;
+      const auto found = replacement.named.find(names_[id - first_material_]);
+      if (found != replacement.named.end()) id = found->second;
+    }
+    numbers.push_back(std::uint32_t(scene_.meshes.size()));
+    scene_.meshes.push_back(std::move(mesh));
+  }
+
+  Scene model_;
+  const ModelSource& source_;
+  Scene& scene_;
+  Budget budget_;
+  std::uint32_t first_material_ = 0;
+  std::vector<std::string> names_;  ///< of the model's materials
+  std::map<std::pair<bool, Replacement>, std::vector<std::uint32_t>> known_;
+};
+
+class SceneReader {
+ public:
+  SceneReader(Bytes bytes, const ModelSource& source)
+      : file_(parse_scene_file({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, source)),
+        source_(source),
+        text_bytes_(bytes.size()) {}
+
+  Scene read() {
+    scene_.categories = std::move(file_.categories);
+    scene_.materials = std::move(file_.materials);
+    find_models();
+    std::vector<std::vector<Instance>> instances(file_.objects.size());
+    for (const std::vector<std::size_t>& objects : objects_of_models_) place_model(objects, instances);
+    for (std::vector<Instance>& list : instances)
+      for (Instance& instance : list) scene_.instances.push_back(std::move(instance));
+    scene_.source.metres_per_unit = file_.metres_per_unit ? file_.metres_per_unit : unit_;
+    return std::move(scene_);
+  }
+
+ private:
+  /// Which objects are of one model, by where its file is. Models are in the order of their first objects.
+  void find_models() {
+    std::map<std::string, std::size_t> by_reference, by_path;
+    for (std::size_t i = 0; i < file_.objects.size(); ++i) {
+      const PlacedModel& object = file_.objects[i];
+      const auto [known, is_new] = by_reference.emplace(object.model, 0);
+      if (is_new) {
+        const auto [model, is_first] = by_path.emplace(path_of(object), objects_of_models_.size());
+        if (is_first) objects_of_models_.emplace_back();
+        known->second = model->second;
+      }
+      objects_of_models_[known->second].push_back(i);
+    }
+  }
+
+  [[nodiscard]] std::string path_of(const PlacedModel& object) const {
+    if (object.model.starts_with("builtin:")) return object.model;
+    return at_model(object, [&] { return source_.path_of(object.model).string(); });
+  }
+
+  /// What `read` gives, or its error with the place of the object that asked.
+  template <class Read>
+  auto at_model(const PlacedModel& object, const Read& read) const -> decltype(read()) {
+    try {
+      return read();
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::cancelled) throw;
+      throw Error(error.code(), source_.name() + ": " + object.place + ".model: " + source_.without_name(error));
+    }
+  }
+
+  void place_model(const std::vector<std::size_t>& objects, std::vector<std::vector<Instance>>& instances) {
+    const PlacedModel& first = file_.objects[objects[0]];
+    Scene model = at_model(first, [&] { return load_named(first.model, source_); });
+    tell_of(model, first);
+    const std::uint64_t bytes = text_bytes_ + file_bytes(model.source);
+    PlacedMeshes meshes(std::move(model), bytes, source_, scene_);
+    for (const std::size_t i : objects) {
+      const PlacedModel& object = file_.objects[i];
+      const glm::dmat4 scene_from_model = place_of(object, meshes.model());
+      instances[i] = meshes.place(object, scene_from_model);
+      object_count_ += instances[i].size();
+      if (object_count_ > max_objects)
+        source_.fail_limit(object.place, "more than " + std::to_string(max_objects) + " objects");
+      meshes.carry(object, scene_from_model);
+    }
+  }
+
+  /// From world space of the model, which is about its origin, to the coordinates of the scene file.
+  [[nodiscard]] glm::dmat4 place_of(const PlacedModel& object, const Scene& model) const {
+    glm::dmat4 from_origin(1.0), scaled(1.0);
+    from_origin[3] = glm::dvec4(model.origin, 1);
+    const std::optional<double> unit = object.metres_per_unit ? object.metres_per_unit : model.source.metres_per_unit;
+    if (file_.metres_per_unit && unit)
+      for (int axis = 0; axis < 3; ++axis) scaled[axis][axis] = *unit / *file_.metres_per_unit;
+    const glm::dmat4 turned = object.up ? turn_between(*object.up, *file_.up) : glm::dmat4(1.0);
+    return object.scene_from_model * turned * scaled * from_origin;
+  }
+
+  /// What the scene takes from its models: warnings, files and, where the file says neither, up and unit of the first.
+  void tell_of(Scene& model, const PlacedModel& object) {
+    std::move(model.warnings.begin(), model.warnings.end(), std::back_inserter(scene_.warnings));
+    std::copy(model.source.files.begin(), model.source.files.end(), std::back_inserter(scene_.source.files));
+    const std::optional<double> unit = model.source.metres_per_unit;
+    if (is_first_) {
+      scene_.up = file_.up.value_or(model.up);
+      unit_ = unit;
+    } else if (!file_.metres_per_unit && unit != unit_ && !has_told_of_units_) {
+      scene_.warnings.push_back(object.place +
+                                ".model: its unit is not that of the first model, and nothing is scaled unless "
+                                "metres_per_unit says the scene's");
+      has_told_of_units_ = true;
+    }
+    is_first_ = false;
+  }
+
+  SceneFile file_;
+  const ModelSource& source_;
+  std::uint64_t text_bytes_;
+  Scene scene_;
+  std::vector<std::vector<std::size_t>> objects_of_models_;
+  std::optional<double> unit_;  ///< of the first model
+  std::size_t object_count_ = 0;
+  bool is_first_ = true, has_told_of_units_ = false;
+};
+
+}  // namespace
+
+Scene read_scene_file(Bytes bytes, const ModelSource& source) {
+  constexpr std::uint64_t most_bytes = std::uint64_t(1) << 26;
+  if (bytes.size() > most_bytes) source.fail_limit("JSON", "longer than 64 MiB");
+  return SceneReader(bytes, source).read();
+}
+
+}  // namespace frontmost
