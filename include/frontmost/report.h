@@ -82,6 +82,17 @@ struct CameraReport {
   double vertical = 0;  ///< as in Camera: radians, or height
 };
 
+/// One of the scene's, placed in the world.
+struct LightReport {
+  std::string name;
+  Light::Kind kind = Light::Kind::point;
+  glm::dvec3 position{0}, direction{0, 0, -1};  ///< world space; the way it shines, of unit length
+  glm::vec3 color{1};
+  double intensity = 0;                   ///< as in Light: lux, or candela
+  std::optional<double> range;            ///< of points and spots
+  double inner_cone = 0, outer_cone = 0;  ///< of spots: radians
+};
+
 struct SceneReport {
   std::string name;
   Axis up = Axis::y;
@@ -97,6 +108,7 @@ struct SceneReport {
   std::vector<ObjectReport> objects;
   std::vector<MaterialReport> materials;
   std::vector<CameraReport> cameras;
+  std::vector<LightReport> lights;
   Oddities odd;  ///< summed over meshes, each counted once
   std::vector<std::string> warnings;
 };

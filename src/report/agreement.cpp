@@ -331,7 +331,7 @@ void see_through(Agreement& agreement, const Surfaces& surfaces, const Visible& 
     if (id >= surfaces.primitive_count()) return false;
     const PrimitiveSource source = surfaces.source(id);
     const std::uint32_t material = scene.meshes[source.mesh].material_of(source.triangle);
-    return material != no_index && scene.materials[material].alpha == Material::Alpha::blend;
+    return material != no_index && scene.materials[material].is_see_through();
   };
   for (std::size_t i = 0; i < agreement.differences.size(); ++i) {
     Difference& difference = agreement.differences[i];

@@ -97,9 +97,7 @@ double rounding_within(const Box& bounds) {
 MaterialReport report_material(const Material& material) {
   MaterialReport report;
   report.name = material.name;
-  for (const TextureUse* use : {&material.base_color_texture, &material.metallic_roughness_texture,
-                                &material.normal_texture, &material.emissive_texture, &material.occlusion_texture})
-    report.textures += use->is_set();
+  for (const TextureUse* use : texture_uses_of(material)) report.textures += use->is_set();
   report.alpha = material.alpha;
   report.double_sided = material.double_sided;
   return report;
@@ -119,6 +117,20 @@ CameraReport report_camera(const Camera& camera) {
   report.up = unit(camera.world_from_eye[1]);
   report.orthographic = camera.orthographic;
   report.vertical = camera.vertical;
+  return report;
+}
+
+LightReport report_light(const Light& light) {
+  LightReport report;
+  report.name = light.name;
+  report.kind = light.kind;
+  report.position = glm::dvec3(light.world_from_light[3]);
+  report.direction = unit(-light.world_from_light[2]);
+  report.color = light.color;
+  report.intensity = light.intensity;
+  report.range = light.range;
+  report.inner_cone = light.inner_cone;
+  report.outer_cone = light.outer_cone;
   return report;
 }
 
@@ -151,6 +163,7 @@ SceneReport inspect(const Scene& scene, const Execution& execution) {
   report.warnings = scene.warnings;
   for (const Material& material : scene.materials) report.materials.push_back(report_material(material));
   for (const Camera& camera : scene.cameras) report.cameras.push_back(report_camera(camera));
+  for (const Light& light : scene.lights) report.lights.push_back(report_light(light));
   std::vector<std::vector<std::uint32_t>> instances(scene.meshes.size());
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) instances[scene.instances[i].mesh].push_back(i);
   report.objects.resize(scene.instances.size());

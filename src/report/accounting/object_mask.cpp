@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// One object alone on the canvas.
+//
+// The stage that places triangles is the z-buffer's own, with the picture's transform and another top left corner: so
+// what is marked within the frame is to the sample what zbuffer() would draw of the object. Triangles with holes come
+// last; a sample that is marked already need not be looked up in their textures.
+
+#include "report/accounting/object_mask.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace frontmost::accounting_detail {
+
+using namespace zbuffer_detail;
+
+namespace {
+
+constexpr int kLargestCanvas = 2 * kGuardBand / kSubPixels;  // pixels: what reaches beyond is clipped
+constexpr PixelRect kNoPixels{1 << 30, 1 << 30, -1, -1};
+
+int margin_of(int size, double scale) { return int(std::min((scale - 1) / 2 * size, (kLargestCanvas - size) / 2.0)); }
+
+View view_of_canvas(const View& picture, const glm::ivec2& margin) {
+  View view = picture;
+  view.width += 2 * margin.x;
+  view.height += 2 * margin.y;
+  return view;
+}
+
+ScreenTransform moved(ScreenTransform transform, const glm::ivec2& margin) {
+  transform.centre_x += margin.x * kSubPixels;
+  transform.centre_y += margin.y * kSubPixels;
+  return transform;
+}
+
+/// Of a triangle that is not wholly outside.
+bool crosses_near(const glm::uvec3& vertices, const SnappedVertices& snapped) {
+  constexpr std::int32_t kBeforeNear = 1;
+  for (int k = 0; k < 3; ++k) {
+    std::int32_t key;
+    std::memcpy(&key, &snapped.key[vertices[k]], sizeof key);
+    if (key < 0 && (key & kBeforeNear) != 0) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+ObjectCanvas::ObjectCanvas(const View& picture, double scale)
+    : margin(margin_of(picture.width, scale), margin_of(picture.height, scale)),
+      frame{margin.x, margin.y, margin.x + picture.width - 1, margin.y + picture.height - 1},
+      view(view_of_canvas(picture, margin)),
+      transform(moved(ScreenTransform(picture), margin)),
+      rays(picture) {}
+
+std::vector<std::size_t> first_ranges(const PlacedScene& scene) {
+  std::vector<std::size_t> first(scene.instance_bounds.size() + 1, 0);
+  for (const MeshRange& range : scene.ranges) ++first[range.instance + 1];
+  for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+  return first;
+}
+
+ObjectMask::ObjectMask(const PlacedScene& scene, const ObjectCanvas& canvas, Isa isa)
+    : scene_(scene), canvas_(canvas), target_(canvas.transform, canvas.view, isa), touched_(kNoPixels) {
+  const View& view = canvas.view;
+  const auto stride = std::size_t(view.width + kWordPixels - 1) / kWordPixels;
+  const std::size_t words = stride * std::size_t(view.height);
+  words_ = Buffer<std::uint64_t>(words * std::size_t(view.samples), 0);
+  for (const glm::ivec2& place : sample_offsets(view.samples)) {
+    const std::size_t number = planes_.size();
+    planes_.push_back({words_.data() + number * words, stride, view.width, view.height, number, place});
+  }
+}
+
+void ObjectMask::draw(std::span<const MeshRange> ranges) {
+  clear();
+  for (const MeshRange& range : ranges) draw_range(range);
+  if (touched_.is_empty()) return;
+  for (const TriangleRecord& record : cutouts_) draw_cutout(record);
+  cutouts_.clear();
+}
+
+void ObjectMask::clear() {
+  if (!touched_.is_empty())
+    for (const MaskPlane& plane : planes_)
+      for (int y = touched_.y0; y <= touched_.y1; ++y)
+        std::fill(plane.row(y) + touched_.x0 / kWordPixels, plane.row(y) + touched_.x1 / kWordPixels + 1, 0);
+  touched_ = kNoPixels;
+  is_cut_by_near_ = false;
+}
+
+void ObjectMask::draw_range(const MeshRange& range) {
+  const WorldTriangles triangles = world_triangles(scene_, range, scratch_);
+  snap_vertices(target_, triangles.positions, scratch_.vertices);
+  scratch_.apart.clear();
+  batch_.clear();
+  place_triangles(target_, triangles, scratch_.vertices, batch_, scratch_.apart);
+  if (batch_.count > 0) draw_small();
+  large_.clear();
+  for (const std::uint32_t i : scratch_.apart) {
+    is_cut_by_near_ =
+        is_cut_by_near_ || crosses_near(triangles.corners[i] - triangles.first_position, scratch_.vertices);
+    append_polygon(polygon_of(target_, triangles, scratch_.vertices, i), canvas_.transform, triangles.first_id + i,
+                   canvas_.view, large_);
+  }
+  for (const TriangleRecord& record : large_) draw_large(record);
+}
+
+void ObjectMask::draw_small() {
+  touch(batch_.rect);
+  if (scene_.cutouts) {
+    cutout_batch_.clear();
+    batch_.extract([&](PrimitiveId id) { return scene_.cutouts->has(id); }, cutout_batch_);
+    for (std::size_t i = 0; i < cutout_batch_.count; ++i) cutouts_.push_back(cutout_batch_.record(i));
+  }
+  for (const MaskPlane& plane : planes_) mark_triangles(plane, batch_.columns(), batch_.count, target_.isa);
+}
+
+void ObjectMask::draw_large(const TriangleRecord& record) {
+  touch(pixel_rect(record, canvas_.view.width, canvas_.view.height));
+  if (scene_.cutouts && scene_.cutouts->has(record.id)) {
+    cutouts_.push_back(record);
+    return;
+  }
+  for (const MaskPlane& plane : planes_) {
+    find_spans(plane, record, spans_, target_.isa);
+    mark_spans(plane, spans_, target_.isa);
+  }
+}
+
+void ObjectMask::draw_cutout(const TriangleRecord& record) {
+  const ScreenCutout cutout((*scene_.cutouts)[record.id], canvas_.rays);
+  for (const MaskPlane& plane : planes_) {
+    find_spans(plane, record, spans_, target_.isa);
+    const glm::ivec2 first = plane.place - canvas_.margin * kSubPixels;  // from the picture's top left
+    for (int i = 0; i < spans_.count; ++i) {
+      const int y = spans_.first + i;
+      for (int x = spans_.begin[std::size_t(i)]; x < spans_.end[std::size_t(i)]; ++x) {
+        std::uint64_t& word = plane.row(y)[x / kWordPixels];
+        const std::uint64_t bit = std::uint64_t(1) << (x % kWordPixels);
+        if ((word & bit) == 0 && !cutout.is_hole(first.x + x * kSubPixels, first.y + y * kSubPixels)) word |= bit;
+      }
+    }
+  }
+}
+
+void ObjectMask::touch(const PixelRect& rect) {
+  touched_ = {std::min(touched_.x0, rect.x0), std::min(touched_.y0, rect.y0), std::max(touched_.x1, rect.x1),
+              std::max(touched_.y1, rect.y1)};
+}
+
+}  // namespace frontmost::accounting_detail

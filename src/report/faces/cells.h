@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is seen cell by cell of the picture: at once where nothing ends that matters, else in smaller cells.
+//
+//    eye                      In a cell a group of faces lies nearer than all others, by the ranges of their keys.
+//     |    ____               Where no surface ends at a side of theirs within the cell, the number of them over a
+//     place |   /    \__  group     is the same everywhere (a side is plain where one face takes over from another); so
+//     one |  ~~~~~~~~~~           place tells it. Is it 1, then each of them is seen as far as it lies in the cell; is
+//     it |   . . . .   others    at least 1, then nothing else is.
+//     v
+#pragma once
+
+#include "report/faces/pieces.h"
+
+namespace frontmost::faces_detail {
+
+/// All parts of faces that are seen in the view, of which a face may have several. The same for any number of threads.
+/// O(faces + cells in which surfaces end).
+[[nodiscard]] std::vector<std::vector<SeenPart>> seen_parts(const FacesOfView& faces, const View& view,
+                                                            const Execution& execution);
+
+}  // namespace frontmost::faces_detail

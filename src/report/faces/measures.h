@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The three areas of a polygon on the screen: in the picture, in the scene, and as it is seen from the eye.
+//
+// A place (x, y) of the picture lies in the direction (u, v, 1) of eye space, u and v affine in x and y. What is seen
+// there at key 1 / distance is at (u, v, 1) / key; in parallel projection at (u, v, -key), the key being -distance.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+
+#include "frontmost/view.h"
+
+namespace frontmost::faces_detail {
+
+/// A place in the picture, in pixels, and how near what is seen there lies: a key that is affine over the screen and
+/// greater for nearer.
+struct ScreenPoint {
+  double x, y, key;
+};
+
+struct Areas {
+  double pixels = 0, units = 0, solid_angle = 0;
+
+  Areas& operator+=(const Areas& other) {
+    pixels += other.pixels;
+    units += other.units;
+    solid_angle += other.solid_angle;
+    return *this;
+  }
+};
+
+/// Areas as a view has them.
+class AreaRule {
+ public:
+  explicit AreaRule(const View& view);
+
+  /// Of a convex polygon on one plane, wound either way. Precondition: at least three corners, keys above 0 in
+  /// perspective.
+  [[nodiscard]] Areas areas_of(std::span<const ScreenPoint> polygon) const;
+
+ private:
+  [[nodiscard]] glm::dvec3 direction_to(const ScreenPoint& p) const {
+    return {left_ + p.x * step_x_, top_ - p.y * step_y_, 1};
+  }
+  [[nodiscard]] glm::dvec3 place_of(const glm::dvec3& direction, double key) const {
+    return orthographic_ ? glm::dvec3(direction.x, direction.y, -key) : direction / key;
+  }
+
+  bool orthographic_;
+  double left_, top_, step_x_, step_y_;
+};
+
+/// The angle of the point (x, y) from the x axis, for y >= 0. By square roots and a series alone, so that it is the
+/// same on every machine, to a few units of the last place.
+[[nodiscard]] double angle_of(double x, double y);
+
+}  // namespace frontmost::faces_detail

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/faces/pieces.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "base/exact_vector.h"
+
+namespace frontmost::faces_detail {
+namespace {
+
+/// Keys that differ by no more than this share of themselves may be equal: doubles put them to some 2^-45.
+constexpr double kAlike = 1.0 / (1ll << 36);
+
+CutLine side_of(const ScreenPoint& from, const ScreenPoint& to, double inwards) {
+  const double x = to.x - from.x, y = to.y - from.y, scale = inwards / std::sqrt(x * x + y * y);
+  const double a = -y * scale, b = x * scale;
+  return {a, b, -(a * from.x + b * from.y)};
+}
+
+/// Whether a triangle lies in the plane of another, exactly.
+bool lie_in_one_plane(const std::array<glm::vec3, 3>& triangle, const std::array<glm::vec3, 3>& other) {
+  const Leg ab{glm::dvec3(triangle[1]), glm::dvec3(triangle[0])}, ac{glm::dvec3(triangle[2]), glm::dvec3(triangle[0])};
+  for (const glm::vec3& corner : other)
+    if (sign_of_determinant(ab, ac, {glm::dvec3(corner), glm::dvec3(triangle[0])}) != 0) return false;
+  return true;
+}
+
+}  // namespace
+
+AffineKey::AffineKey(const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c) : x(a.x), y(a.y), key(a.key) {
+  const double scale = 1 / turn_of(a, b, c), to_b = b.key - a.key, to_c = c.key - a.key;
+  along_x = (to_b * (c.y - a.y) - to_c * (b.y - a.y)) * scale;
+  along_y = (to_c * (b.x - a.x) - to_b * (c.x - a.x)) * scale;
+}
+
+PieceCutter::Candidate PieceCutter::candidate(const FaceInBox& face) const {
+  const ViewedFace& f = faces_.screen.faces[face.face];
+  const ScreenPoint &a = faces_.screen.points[f.corners[0]], &b = faces_.screen.points[f.corners[1]],
+                    &c = faces_.screen.points[f.corners[2]];
+  const double inwards = turn_of(a, b, c) > 0 ? 1 : -1;
+  return {face.face,
+          face.nearest,
+          face.farthest,
+          {side_of(a, b, inwards), side_of(b, c, inwards), side_of(c, a, inwards)},
+          AffineKey(a, b, c),
+          std::min({a.key, b.key, c.key}),
+          std::max({a.key, b.key, c.key})};
+}
+
+void PieceCutter::cut(const CellBox& box, std::span<const FaceInBox> list, std::vector<SeenPart>& seen) {
+  candidates_.clear();
+  for (const FaceInBox& face : list) candidates_.push_back(candidate(face));
+  pieces_.push_back({ConvexPiece(box), no_index, 0});
+  while (!pieces_.empty()) {
+    Piece piece = pieces_.back();
+    pieces_.pop_back();
+    finish(piece, seen);
+  }
+}
+
+void PieceCutter::clip(const CellBox& box, std::uint32_t face, std::vector<SeenPart>& seen) {
+  const Candidate whole = candidate({face, false, false, 0, 0});
+  Piece piece{ConvexPiece(box), no_index, 0};
+  if (cut_to(whole, piece)) emit(piece.polygon, whole, seen);
+  pieces_.clear();
+}
+
+/// Asks all faces that are left about a piece. What lies beside one of them is put aside, to be looked at later.
+void PieceCutter::finish(Piece& piece, std::vector<SeenPart>& seen) {
+  for (; piece.next < candidates_.size(); ++piece.next) {
+    const Candidate& face = candidates_[piece.next];
+    if (piece.front != no_index) {
+      const Candidate& front = candidates_[piece.front];
+      if (face.nearest < front.farthest) break;  // and so are all after it
+      if (lies_behind(face, front, piece.polygon)) continue;
+    }
+    if (piece.polygon.is_full()) pieces_.push_back({piece.polygon.halve(), piece.front, piece.next});
+    if (!cut_to(face, piece)) continue;
+    choose_nearer(piece.next, piece);
+  }
+  if (piece.front == no_index) return;
+  emit(piece.polygon, candidates_[piece.front], seen);
+}
+
+bool PieceCutter::lies_behind(const Candidate& face, const Candidate& front, const ConvexPiece& polygon) const {
+  for (const glm::dvec2& p : polygon) {
+    const double key = front.plane.at(p);
+    if (!(face.plane.at(p) < key - kAlike * std::abs(key))) return false;
+  }
+  return true;
+}
+
+/// Cuts what lies beside a face off from a piece. \returns whether anything is left; else the piece stays as it is.
+bool PieceCutter::cut_to(const Candidate& face, Piece& piece) {
+  for (const CutLine& side : face.sides) {
+    const LineSide found = LineDistances(piece.polygon, side).side;
+    if (found == LineSide::right || found == LineSide::neither) return false;
+  }
+  const std::size_t before = pieces_.size();
+  ConvexPiece rest = piece.polygon, within, beside;
+  for (const CutLine& side : face.sides) {
+    const LineDistances distances(rest, side);
+    if (distances.side == LineSide::left) continue;
+    if (distances.side != LineSide::both) {
+      pieces_.resize(before);
+      return false;
+    }
+    cut_polygon(rest, distances, within, beside);
+    if (!is_narrow(beside)) pieces_.push_back({beside, piece.front, piece.next + 1});
+    rest = within;
+  }
+  if (is_narrow(rest)) {
+    pieces_.resize(before);
+    return false;
+  }
+  piece.polygon = rest;
+  return true;
+}
+
+/// Of a piece that a face covers whole, leaves what shows that face, or what shows the one that was in front before;
+/// the other part is put aside.
+void PieceCutter::choose_nearer(std::uint32_t number, Piece& piece) {
+  if (piece.front == no_index) {
+    piece.front = number;
+    return;
+  }
+  const AffineKey &plane = candidates_[number].plane, &front = candidates_[piece.front].plane;
+  const double along_x = plane.along_x - front.along_x, along_y = plane.along_y - front.along_y;
+  // The difference of both keys, as the distance from the line at which they are equal.
+  const auto difference = [&](const glm::dvec2& p) { return plane.at(p) - front.at(p); };
+  LineDistances nearer(piece.polygon, difference, kNarrow * std::sqrt(along_x * along_x + along_y * along_y));
+  double key = 0, most = 0;
+  for (int i = 0; i < piece.polygon.size(); ++i) {
+    key = std::fmax(key, std::abs(front.at(piece.polygon.begin()[i])));
+    most = std::fmax(most, std::abs(nearer.at[std::size_t(i)]));
+  }
+  if (most <= kAlike * key) {
+    if (is_preferred(candidates_[number], candidates_[piece.front], nearer)) piece.front = number;
+    return;
+  }
+  if (nearer.side == LineSide::right || nearer.side == LineSide::neither) return;
+  if (nearer.side == LineSide::both) {
+    ConvexPiece before, behind;
+    cut_polygon(piece.polygon, nearer, before, behind);
+    if (is_narrow(before)) return;
+    if (!is_narrow(behind)) {
+      pieces_.push_back({behind, piece.front, piece.next + 1});
+      piece.polygon = before;
+    }
+  }
+  piece.front = number;
+}
+
+/// Of two faces that doubles do not tell apart: the lower id where they lie in one plane, else the one that seems
+/// nearer.
+bool PieceCutter::is_preferred(const Candidate& face, const Candidate& front, const LineDistances& nearer) const {
+  const PrimitiveId id = faces_.screen.faces[face.face].id, front_id = faces_.screen.faces[front.face].id;
+  if (lie_in_one_plane(faces_.surfaces.corners(front_id), faces_.surfaces.corners(id))) return id < front_id;
+  const double sum = std::accumulate(nearer.at.begin(), nearer.at.begin() + nearer.size, 0.0);
+  return sum > 0 || (sum == 0 && id < front_id);
+}
+
+void PieceCutter::emit(const ConvexPiece& polygon, const Candidate& face, std::vector<SeenPart>& seen) {
+  std::array<ScreenPoint, ConvexPiece::most_corners> corners;
+  std::size_t count = 0;
+  for (const glm::dvec2& p : polygon)
+    corners[count++] = {p.x, p.y, std::fmin(std::fmax(face.plane.at(p), face.least), face.most)};
+  const Areas areas = faces_.rule.areas_of(std::span(corners).first(count));
+  if (areas.pixels > 0) seen.push_back({face.face, areas});
+}
+
+}  // namespace frontmost::faces_detail

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// Exact tests for overlap: corners are integers, so that faces which share a side never overlap by rounding.
+#include "report/fights/face_pairs.h"
+
+#include <algorithm>
+#include <atomic>
+#include <tuple>
+
+#include "base/parallel.h"
+#include "zbuffer/tile/tile_lists.h"
+
+namespace frontmost {
+namespace {
+
+using namespace zbuffer_detail;
+
+constexpr std::size_t kMostLooks = std::size_t(1) << 28, kMostPairs = std::size_t(1) << 24;
+
+/// What is looked at and kept, by all threads together.
+struct Effort {
+  std::atomic<std::size_t> looks{0}, pairs{0};
+
+  void add(std::size_t more_looks, std::size_t more_pairs) {
+    if ((looks += more_looks) > kMostLooks)
+      throw Error(ErrorCode::limit_exceeded, "fighting faces: too many faces lie in one place of the picture");
+    if ((pairs += more_pairs) > kMostPairs)
+      throw Error(ErrorCode::limit_exceeded,
+                  "fighting faces: more than 16777216 pairs of faces lie close to each other");
+  }
+};
+
+/// What is looked at first of a face in a cell.
+struct CellFace {
+  std::int32_t x0, x1, y0, y1;
+  float low, high;
+  std::uint32_t face;
+
+  CellFace(const ScreenFace& f, std::uint32_t number) : low(f.low), high(f.high), face(number) {
+    const TriangleRecord& r = f.record;
+    std::tie(x0, x1) = std::minmax({r.x[0], r.x[1], r.x[2]});
+    std::tie(y0, y1) = std::minmax({r.y[0], r.y[1], r.y[2]});
+  }
+};
+
+/// True when a side of `a` has all of `b` on its outer side, or on it.
+bool is_parted_by_side(const TriangleRecord& a, const TriangleRecord& b) {
+  for (int k = 0; k < 3; ++k) {
+    const int n = k == 2 ? 0 : k + 1;
+    const std::int64_t dx = a.x[n] - a.x[k], dy = a.y[n] - a.y[k];
+    const auto side = [&](int corner) { return dx * (b.y[corner] - a.y[k]) - dy * (b.x[corner] - a.x[k]); };
+    if (side(0) <= 0 && side(1) <= 0 && side(2) <= 0) return true;
+  }
+  return false;
+}
+
+/// The cells of the screen, with the numbers of the faces in each.
+class FaceCells {
+ public:
+  FaceCells(const std::vector<ScreenFace>& faces, const View& view) : faces_(faces), view_(view) {
+    // Few faces to a cell, and few cells to a face.
+    constexpr std::size_t kCellsOfAFace = 4;
+    constexpr int kFirstShift = 10;  // 4 pixels
+    divide_screen(kFirstShift);
+    for (int shift = kFirstShift; cells_of_all() > kCellsOfAFace * faces.size() && columns_ * rows_ > 1;)
+      divide_screen(++shift);
+    lists_.make({0, std::size_t(columns_) * std::size_t(rows_)}, faces.size(), [&](std::size_t i, const auto& add) {
+      const PixelRect cells = cells_of(faces[i]);
+      for (int y = cells.y0; y <= cells.y1; ++y)
+        for (int x = cells.x0; x <= cells.x1; ++x) add(std::size_t(y) * std::size_t(columns_) + std::size_t(x));
+    });
+  }
+  [[nodiscard]] int columns() const { return columns_; }
+  [[nodiscard]] int rows() const { return rows_; }
+
+  /// Appends the pairs that are met in this cell.
+  void find_pairs(int column, int row, std::vector<CellFace>& entries, Effort& effort,
+                  std::vector<FacePair>& pairs) const {
+    entries.clear();
+    for (const std::uint32_t i : lists_.of(std::size_t(row) * std::size_t(columns_) + std::size_t(column)))
+      entries.emplace_back(faces_[i], i);
+    std::sort(entries.begin(), entries.end(), [](const CellFace& a, const CellFace& b) { return a.x0 < b.x0; });
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      const CellFace& a = entries[i];
+      const std::size_t before = pairs.size();
+      std::size_t k = i + 1;
+      for (; k < entries.size() && entries[k].x0 < a.x1; ++k) {
+        const CellFace& b = entries[k];
+        if (b.y0 >= a.y1 || a.y0 >= b.y1 || b.low > a.high || a.low > b.high) continue;
+        if (cell_of(b.x0, columns_) != column || cell_of(std::max(a.y0, b.y0), rows_) != row) continue;
+        const TriangleRecord &p = faces_[a.face].record, &q = faces_[b.face].record;
+        if (p.id == q.id || is_parted_by_side(p, q) || is_parted_by_side(q, p)) continue;
+        pairs.push_back({std::min(a.face, b.face), std::max(a.face, b.face)});
+      }
+      effort.add(k - i, pairs.size() - before);
+    }
+  }
+
+ private:
+  /// Into squares of 2^shift steps of corners.
+  void divide_screen(int shift) {
+    const int side = 1 << shift;
+    shift_ = shift;
+    columns_ = (view_.width * kSubPixels + side - 1) / side;
+    rows_ = (view_.height * kSubPixels + side - 1) / side;
+  }
+  [[nodiscard]] int cell_of(std::int32_t place, int cells) const {
+    return std::min(std::max(place, 0) >> shift_, cells - 1);
+  }
+  [[nodiscard]] PixelRect cells_of(const ScreenFace& face) const {
+    const CellFace e(face, 0);
+    return {cell_of(e.x0, columns_), cell_of(e.y0, rows_), cell_of(e.x1, columns_), cell_of(e.y1, rows_)};
+  }
+  [[nodiscard]] std::size_t cells_of_all() const {
+    std::size_t sum = 0;
+    for (const ScreenFace& face : faces_) {
+      const PixelRect cells = cells_of(face);
+      sum += std::size_t(cells.x1 - cells.x0 + 1) * std::size_t(cells.y1 - cells.y0 + 1);
+    }
+    return sum;
+  }
+
+  const std::vector<ScreenFace>& faces_;
+  const View& view_;
+  int shift_ = 0, columns_ = 0, rows_ = 0;
+  TileLists lists_;
+};
+
+}  // namespace
+
+std::vector<FacePair> find_face_pairs(const std::vector<ScreenFace>& faces, const View& view,
+                                      const Execution& execution) {
+  const FaceCells cells(faces, view);
+  std::vector<std::vector<FacePair>> by_row(std::size_t(cells.rows()));
+  Effort effort;
+  parallel_for(execution, by_row.size(), 1, [&](std::size_t row, std::size_t) {
+    std::vector<CellFace> entries;
+    for (int column = 0; column < cells.columns(); ++column)
+      cells.find_pairs(column, int(row), entries, effort, by_row[row]);
+  });
+  std::vector<FacePair> pairs;
+  pairs.reserve(effort.pairs);
+  for (const std::vector<FacePair>& row : by_row) pairs.insert(pairs.end(), row.begin(), row.end());
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+}  // namespace frontmost

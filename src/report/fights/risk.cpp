@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Strips of risk as two cuts of what both faces have in common.
+#include "report/fights/risk.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace frontmost {
+namespace {
+
+std::array<glm::dvec2, 3> corners_of(const ScreenFace& face) {
+  return {face.corner(0), face.corner(1), face.corner(2)};
+}
+
+/// constant + relative * nearer - (nearer - other) is not negative: what is nearer is not surely shown.
+AffineOverScreen is_not_shown(const KeyOverScreen& nearer, const KeyOverScreen& other, const KeyStep& step,
+                              double slack) {
+  const double share = step.relative - 1;
+  return {step.constant + slack + share * nearer.k + other.k,
+          {share * nearer.gx + other.gx, share * nearer.gy + other.gy}};
+}
+
+}  // namespace
+
+RiskFinder::RiskFinder(const View& view, const DepthSetup& setup)
+    : size_(view.width, view.height),
+      step_(setup),
+      farthest_key_(setup.orthographic ? 0 : setup.clip.near / setup.clip.far) {}
+
+void RiskFinder::cut_by_frame() {
+  for (int axis = 0; axis < 2; ++axis) {
+    glm::dvec2 along(0);
+    along[axis] = 1;
+    area_.cut({0, along});
+    area_.cut({size_[axis], -along});
+  }
+}
+
+const ConvexArea& RiskFinder::of_pair(const ScreenFace& a, const ScreenFace& b) {
+  const KeyOverScreen first = a.keys(), second = b.keys();
+  const double slack = double(a.slack) + double(b.slack);
+  area_.assign(corners_of(a));
+  area_.cut(is_not_shown(first, second, step_, slack));
+  if (!area_.is_empty()) area_.cut(is_not_shown(second, first, step_, slack));
+  for (int k = 0; k < 3 && !area_.is_empty(); ++k) area_.cut(inside_of_side(b.corner(k), b.corner(k == 2 ? 0 : k + 1)));
+  if (!area_.is_empty()) cut_by_frame();
+  return area_;
+}
+
+const ConvexArea& RiskFinder::of_clear_value(const ScreenFace& face) {
+  area_.assign({});
+  if (double(face.low) > farthest_key_) return area_;
+  const KeyOverScreen keys = face.keys();
+  area_.assign(corners_of(face));
+  cut_by_frame();
+  area_.cut({farthest_key_ + 0.5 * step_.constant + double(face.slack) - keys.k, {-keys.gx, -keys.gy}});
+  return area_;
+}
+
+RiskKeys::RiskKeys(const ScreenFace& a, const ScreenFace& b, const KeyStep& step)
+    : first(a.keys()),
+      second(b.keys()),
+      reach(double(a.slack) + double(b.slack) + step.at(std::max(a.record.nearest(), b.record.nearest()))) {}
+
+double visible_share(const ConvexArea& area, const RiskKeys& keys, const Visible& visible) {
+  const View& view = visible.view;
+  const auto is_seen = [&](std::size_t sample, const glm::dvec2& point) {
+    return keys.nearest_at(point) + keys.reach >= double(visible.keys[sample]);
+  };
+  std::uint64_t all = 0, seen = 0;
+  visit_samples(area.corners(), view, [&](std::size_t i, int x, int y, const glm::dvec2& offset) {
+    ++all;
+    seen += is_seen(i, glm::dvec2(x, y) + offset);
+  });
+  if (all > 0) return double(seen) / double(all);
+  const glm::dvec2 centre = area.centre();
+  const glm::ivec2 last(view.width - 1, view.height - 1);
+  const glm::ivec2 pixel = glm::clamp(glm::ivec2(centre), glm::ivec2(0), last);
+  const std::size_t number = std::size_t(pixel.y) * std::size_t(view.width) + std::size_t(pixel.x);
+  for (std::size_t s = 0; s < std::size_t(view.samples); ++s) seen += is_seen(s * view.pixel_count() + number, centre);
+  return double(seen) / double(view.samples);
+}
+
+}  // namespace frontmost

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where two faces are at risk, and how much of that is seen.
+//
+// Keys are affine over the screen, and so is their difference, and what the format and rounding need to tell them
+// apart. So where the difference is less than that is a strip between two straight lines:
+//
+//      \  first is surely shown  \//////\  second is surely shown
+//       \    where it is nearer   \/////\\    where it is nearer
+#pragma once
+
+#include <optional>
+
+#include "frontmost/fighting_faces.h"
+#include "report/fights/convex_area.h"
+#include "report/fights/screen_faces.h"
+
+namespace frontmost {
+
+/// Finds areas one after another, in memory that is kept.
+class RiskFinder {
+ public:
+  RiskFinder(const View& view, const DepthSetup& setup);
+
+  /// Where both faces are, and neither is surely shown; empty where there is no such place. Stays until the next call.
+  [[nodiscard]] const ConvexArea& of_pair(const ScreenFace& a, const ScreenFace& b);
+  /// Where a face may be stored as what the buffer was cleared to.
+  [[nodiscard]] const ConvexArea& of_clear_value(const ScreenFace& face);
+
+ private:
+  void cut_by_frame();
+
+  glm::dvec2 size_;
+  KeyStep step_;
+  double farthest_key_;
+  ConvexArea area_;
+};
+
+/// One of two faces that are at risk, or the only one.
+struct RiskKeys {
+  KeyOverScreen first, second;
+  double reach;  ///< what is seen may be so much nearer, and they are still at risk
+
+  RiskKeys(const ScreenFace& a, const ScreenFace& b, const KeyStep& step);
+  [[nodiscard]] double nearest_at(const glm::dvec2& point) const { return std::max(first.at(point), second.at(point)); }
+};
+
+/// Which share of an area is seen, by the samples in it, or where there is none, by those of the pixel at its centre.
+[[nodiscard]] double visible_share(const ConvexArea& area, const RiskKeys& keys, const Visible& visible);
+
+}  // namespace frontmost

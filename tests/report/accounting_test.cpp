@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frontmost/accounting.h"
+
+#include <gtest/gtest.h>
+
+#include "frontmost/io.h"
+#include "frontmost/zbuffer.h"
+#include "occlusion/hidden_scene.h"
+#include "report/accounting_reference.h"
+#include "support/cutout_scene.h"
+#include "support/effort.h"
+#include "support/models.h"
+#include "support/refusal.h"
+
+namespace frontmost {
+namespace {
+
+using test::Random;
+
+/// Ten by ten units before an eye that looks down from above, one unit a pixel.
+View square_view(int size = 10) {
+  View view;
+  view.width = view.height = size;
+  view.world_from_eye = look_at({0, 0, 10}, {0, 0, 0}, {0, 1, 0});
+  view.projection = make_orthographic(-size / 2.0, size / 2.0, -size / 2.0, size / 2.0, {1, 20});
+  return view;
+}
+
+void place_square(Scene& scene, const char* name, float half, const glm::dvec3& at) {
+  Mesh mesh;
+  test::add_square(mesh, half, 0);
+  glm::dmat4 place(1.0);
+  place[3] = glm::dvec4(at, 1.0);
+  scene.instances.push_back({name, std::uint32_t(scene.meshes.size()), place});
+  scene.meshes.push_back(std::move(mesh));
+}
+
+/// Every field but is_cut_by_near, which the reference does not know.
+void expect_same(const Accounting& a, const Accounting& b) {
+  EXPECT_EQ(a.canvas, b.canvas);
+  EXPECT_EQ(a.background, b.background);
+  EXPECT_EQ(a.hidden_by_front, b.hidden_by_front);
+  ASSERT_EQ(a.objects.size(), b.objects.size());
+  for (std::size_t i = 0; i < a.objects.size(); ++i) {
+    EXPECT_EQ(a.objects[i].alone, b.objects[i].alone) << i;
+    EXPECT_EQ(a.objects[i].in_frame, b.objects[i].in_frame) << i;
+    EXPECT_EQ(a.objects[i].visible, b.objects[i].visible) << i;
+    EXPECT_EQ(a.objects[i].distance, b.objects[i].distance) << i;
+    EXPECT_NEAR(a.objects[i].centroid.x, b.objects[i].centroid.x, 1e-9) << i;
+    EXPECT_NEAR(a.objects[i].centroid.y, b.objects[i].centroid.y, 1e-9) << i;
+  }
+}
+
+/// Of one picture: everything adds up.
+void expect_sums(const Accounting& accounts, const View& view) {
+  std::uint64_t seen = accounts.background;
+  std::vector<std::uint64_t> hidden(accounts.objects.size(), 0);
+  for (const HiddenSamples& pair : accounts.hidden_by_front) hidden[pair.object] += pair.count;
+  for (std::size_t i = 0; i < accounts.objects.size(); ++i) {
+    const ObjectAccount& object = accounts.objects[i];
+    seen += object.visible.count;
+    EXPECT_EQ(object.visible.count + hidden[i], object.in_frame.count) << i;
+    EXPECT_GE(object.alone.count, object.in_frame.count) << i;
+    if (object.alone.count == 0) continue;
+    EXPECT_NEAR(object.visible_share() + object.hidden_share() + object.cut_share(), 1, 1e-12);
+  }
+  EXPECT_EQ(seen, view.sample_count());
+}
+
+TEST(Accounting, CountsSquaresThatCanBeCountedByHand) {
+  Scene scene;
+  place_square(scene, "far", 3, {0, 0, 0});    // 6 x 6 pixels from (2, 2)
+  place_square(scene, "near", 2, {4, 2, 1});   // 4 x 4 pixels from (7, 1), of which a column is beyond the frame
+  place_square(scene, "away", 1, {20, 0, 0});  // beyond the canvas, too
+  const Surfaces surfaces(scene);
+  const Accounting accounts = account(surfaces, zbuffer(surfaces, square_view()));
+  EXPECT_EQ(accounts.canvas, (PixelBox{-10, -10, 30, 30}));
+  const ObjectAccount& far = accounts.objects[0];
+  EXPECT_EQ(far.alone, (SampleSet{36, {2, 2, 6, 6}}));
+  EXPECT_EQ(far.in_frame, far.alone);
+  EXPECT_EQ(far.visible, (SampleSet{33, {2, 2, 6, 6}}));
+  EXPECT_DOUBLE_EQ(far.hidden_share(), 3 / 36.0);
+  EXPECT_EQ(far.distance, 10);
+  const ObjectAccount& near = accounts.objects[1];
+  EXPECT_EQ(near.alone, (SampleSet{16, {7, 1, 4, 4}}));
+  EXPECT_EQ(near.in_frame, (SampleSet{12, {7, 1, 3, 4}}));
+  EXPECT_EQ(near.visible, near.in_frame);
+  EXPECT_DOUBLE_EQ(near.cut_share(), 0.25);
+  EXPECT_EQ(near.distance, 9);
+  EXPECT_EQ(near.centroid, glm::dvec2(8.5, 3));
+  EXPECT_EQ(accounts.objects[2].alone, SampleSet{});
+  EXPECT_EQ(accounts.objects[2].visible_share(), 0);
+  EXPECT_EQ(accounts.hidden_by_front, (std::vector<HiddenSamples>{{0, 1, 3}}));
+  EXPECT_EQ(accounts.background, 100u - 33 - 12);
+}
+
+TEST(Accounting, EqualsTheReferenceOnRandomScenes) {
+  for (std::uint64_t seed = 0; seed < test::seeds(60); ++seed) {
+    Random random(seed);
+    const Scene scene = test::hidden_scene(3 + random.below(20), seed);
+    View view = test::random_view(20 + random.below(180), 20 + random.below(120), seed);
+    view.culling = Culling(random.below(4));
+    view.samples = seed % 5 == 4 ? 4 : 1;
+    const Surfaces surfaces(scene);
+    const Visible visible = zbuffer(surfaces, view);
+    const Accounting accounts = account(surfaces, visible, {.canvas = 1});
+    SCOPED_TRACE(seed);
+    expect_same(accounts, test::reference_account(scene, visible, {0, 0}));
+    expect_sums(accounts, view);
+  }
+}
+
+TEST(Accounting, EqualsTheReferenceForEveryKindOfTriangles) {
+  for (const test::Kind kind : test::all_kinds)
+    for (std::uint64_t seed = 0; seed < test::seeds(6); ++seed) {
+      test::RandomCase made = test::random_case(kind, seed);
+      // The same mesh again, mirrored and flattened.
+      made.scene.instances.push_back({"mirrored", 0, glm::dmat4(1.0)});
+      made.scene.instances.back().world_from_mesh[0][0] = -0.7;
+      made.scene.instances.push_back({"flat", 0, glm::dmat4(1.0)});
+      made.scene.instances.back().world_from_mesh[2] = glm::dvec4(0.1, 0.2, 0, 0);
+      const Surfaces surfaces(made.scene);
+      const Visible visible = zbuffer(surfaces, made.view);
+      SCOPED_TRACE(seed);
+      expect_same(account(surfaces, visible, {.canvas = 1}), test::reference_account(made.scene, visible, {0, 0}));
+    }
+}
+
+TEST(Accounting, HolesOfMasksAreSeenThrough) {
+  std::uint64_t with_holes = 0;
+  for (std::uint64_t seed = 0; seed < test::seeds(12); ++seed) {
+    Scene scene = test::cutout_scene(test::random_mesh(test::Kind::soup, 30, seed), test::Cut(seed % 2), 0.5f, seed);
+    Random random(seed);
+    for (int i = 0; i < 5; ++i) scene.instances.push_back({"", 0, test::random_placement(random, 0.5f, 1)});
+    View view = test::random_view(random, 90, 70);
+    view.samples = seed % 3 == 2 ? 4 : 1;
+    const Surfaces surfaces(scene);
+    const Visible visible = zbuffer(surfaces, view);
+    const Accounting accounts = account(surfaces, visible, {.canvas = 1});
+    SCOPED_TRACE(seed);
+    expect_same(accounts, test::reference_account(scene, visible, {0, 0}));
+    expect_sums(accounts, view);
+    Scene solid = scene;
+    solid.materials[1].alpha = Material::Alpha::opaque;
+    const Surfaces filled(solid);
+    const Accounting other = account(filled, zbuffer(filled, view), {.canvas = 1});
+    for (std::size_t i = 0; i < accounts.objects.size(); ++i)
+      with_holes += accounts.objects[i].in_frame.count < other.objects[i].in_frame.count;
+  }
+  EXPECT_GT(with_holes, 20u) << "the scenes have no holes that matter";
+}
+
+// On a canvas the reference is another camera, whose numbers round as the picture's do where all of them are dyadic.
+TEST(Accounting, BeyondTheFrameEqualsThePictureOfTheCanvas) {
+  std::uint64_t cut = 0;
+  for (std::uint64_t seed = 0; seed < test::seeds(20); ++seed) {
+    Random random(seed);
+    const Scene scene = test::hidden_scene(12, seed);
+    View view = test::random_view(64, 32, seed);
+    view.projection = seed % 4 == 0 ? make_orthographic(-2, 2, -0.5, 1.5, {0.25, 32})
+                                    : make_frustum(-0.125, 0.125, -0.0625, 0.0625, {0.25, 32});
+    const Surfaces surfaces(scene);
+    const Visible visible = zbuffer(surfaces, view);
+    for (const double scale : {2.0, 3.0, 5.0}) {
+      const glm::ivec2 margin(int(32 * (scale - 1)), int(16 * (scale - 1)));
+      const Accounting accounts = account(surfaces, visible, {.canvas = scale});
+      SCOPED_TRACE(seed);
+      expect_same(accounts, test::reference_account(scene, visible, margin));
+      for (const ObjectAccount& object : accounts.objects) cut += object.cut_share() > 0 && object.cut_share() < 1;
+    }
+  }
+  EXPECT_GT(cut, 60u) << "few objects cross the frame";
+}
+
+TEST(Accounting, IsTheSameForThreadsAndInstructionSets) {
+  const Scene scene = test::hidden_scene(150, 4);
+  const View view = test::random_view(333, 221, 7);
+  const Surfaces surfaces(scene);
+  const Visible visible = zbuffer(surfaces, view);
+  const Accounting expected = account(surfaces, visible, {}, {.threads = 1, .isa = Isa::scalar});
+  for (const Isa isa : available_isas())
+    for (const int threads : {1, 4}) {
+      const Accounting accounts = account(surfaces, visible, {}, {.threads = threads, .isa = isa});
+      expect_same(accounts, expected);
+      for (std::size_t i = 0; i < accounts.objects.size(); ++i)
+        EXPECT_EQ(accounts.objects[i].is_cut_by_near, expected.objects[i].is_cut_by_near);
+    }
+}
+
+TEST(Accounting, TellsWhatTheNearPlaneCuts) {
+  Scene scene;
+  place_square(scene, "whole", 1, {0, 0, 0});
+  place_square(scene, "cut", 1, {0, 0, 9});  // its one edge at 8, its other at 10, where the eye is
+  scene.instances.back().world_from_mesh[0] = glm::dvec4(0, 0, 1, 0);
+  place_square(scene, "behind", 1, {0, 0, 12});
+  const Surfaces surfaces(scene);
+  View view = square_view();
+  view.projection = make_projection(1.0, 1.0, {1, 20});
+  const Accounting accounts = account(surfaces, zbuffer(surfaces, view));
+  EXPECT_FALSE(accounts.objects[0].is_cut_by_near);
+  EXPECT_TRUE(accounts.objects[1].is_cut_by_near);
+  EXPECT_FALSE(accounts.objects[2].is_cut_by_near);
+}
+
+TEST(Accounting, LargePicturesHaveTheCanvasThatFits) {
+  Scene scene;
+  place_square(scene, "square", 3, {0, 0, 0});
+  const Surfaces surfaces(scene);
+  View view = square_view();
+  view.width = 8000;
+  const Accounting accounts = account(surfaces, zbuffer(surfaces, view));
+  EXPECT_EQ(accounts.canvas, (PixelBox{-4192, -10, 16384, 30}));
+  EXPECT_EQ(accounts.objects[0].alone.count, 4800u * 6);
+}
+
+TEST(Accounting, AnEmptySceneIsAllBackground) {
+  const Scene scene;
+  const Surfaces surfaces(scene);
+  const Accounting accounts = account(surfaces, zbuffer(surfaces, square_view()));
+  EXPECT_TRUE(accounts.objects.empty());
+  EXPECT_EQ(accounts.background, 100u);
+}
+
+TEST(Accounting, RefusesWhatIsOutOfRange) {
+  Scene scene;
+  place_square(scene, "square", 3, {0, 0, 0});
+  const Surfaces surfaces(scene);
+  const Visible visible = zbuffer(surfaces, square_view());
+  for (const double canvas : {0.99, 16.1, -1.0, std::nan("")})
+    EXPECT_EQ(test::refusal_of(ErrorCode::bad_argument, [&] { (void)account(surfaces, visible, {.canvas = canvas}); }),
+              "canvas: must be 1 to 16");
+  const Scene none;
+  EXPECT_EQ(test::code_of([&] { (void)account(Surfaces(none), visible); }), ErrorCode::bad_argument);
+}
+
+TEST(Accounting, CountsTheObjectsOfModels) {
+  FRONTMOST_NEEDS_MODELS();
+  for (const char* file : {"scenes/warehouse.glb", "scenes/home-theater.glb", "cad/cycloidal-drive.ply"}) {
+    Scene scene = load(test::model(file));
+    const Surfaces surfaces(scene);
+    const View view = frame(surfaces, 160, 120);
+    const Visible visible = zbuffer(surfaces, view);
+    const Accounting accounts = account(surfaces, visible, {.canvas = 1});
+    SCOPED_TRACE(file);
+    expect_sums(accounts, view);
+    // Every object takes a scene of its own: of large scenes some of them are enough.
+    const std::size_t step = 1 + scene.instances.size() / 20;
+    for (std::size_t i = 0; i < scene.instances.size(); i += step) {
+      const Visible alone = test::draw_alone(scene, std::uint32_t(i), view);
+      std::uint64_t count = 0;
+      for (const PrimitiveId id : alone.primitives) count += id != no_primitive;
+      EXPECT_EQ(accounts.objects[i].in_frame.count, count) << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace frontmost

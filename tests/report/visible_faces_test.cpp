@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which triangles are seen, and how much of them: against every triangle less all that lie before it, and against what
+// can be worked out on paper.
+#include "frontmost/visible_faces.h"
+
+#include <gmock/gmock.h>
+
+#include <glm/gtc/constants.hpp>
+
+#include "support/effort.h"
+#include "support/face_oracle.h"
+#include "support/meshes.h"
+#include "support/random_scene.h"
+
+namespace frontmost::test {
+namespace {
+
+double sum_of_pixels(const VisibleFaces& seen) {
+  double sum = 0;
+  for (const VisibleFace& face : seen.faces) sum += face.pixels;
+  return sum;
+}
+
+/// What of each face the answer and the reference say, side by side; 0 where one has none.
+struct BothAreas {
+  double pixels[2]{}, units[2]{}, solid_angle[2]{};
+};
+
+std::map<PrimitiveId, BothAreas> both_areas(const VisibleFaces& seen, const FaceOracle& oracle) {
+  std::map<PrimitiveId, BothAreas> both;
+  for (const VisibleFace& face : seen.faces) {
+    BothAreas& areas = both[face.id];
+    areas.pixels[0] = face.pixels;
+    areas.units[0] = face.area;
+    areas.solid_angle[0] = face.solid_angle;
+  }
+  for (const auto& [id, found] : oracle.visible_areas()) {
+    BothAreas& areas = both[id];
+    areas.pixels[1] = double(found.pixels);
+    areas.units[1] = double(found.units);
+    areas.solid_angle[1] = double(found.solid_angle);
+  }
+  return both;
+}
+
+/// Small scenes of every kind, so that every triangle can be held against all others.
+RandomCase small_case(Kind kind, std::uint64_t seed) {
+  Random random(seed + 7000);
+  RandomCase made{scene_of(random_mesh(kind, 5 + random.below(40), seed)), {}};
+  const int width = 1 + random.below(150), height = 1 + random.below(150);
+  made.view = random_view(random, width, height);
+  made.view.culling = Culling(random.below(3));
+  return made;
+}
+
+class VisibleFacesOfKind : public testing::TestWithParam<Kind> {};
+
+TEST_P(VisibleFacesOfKind, AreWhatIsLeftOfEveryTriangle) {
+  for (std::uint64_t seed = 0; seed < seeds(40); ++seed) {
+    SCOPED_TRACE(seed);
+    const RandomCase made = small_case(GetParam(), seed);
+    const Surfaces surfaces(made.scene);
+    const VisibleFaces seen = visible_faces(surfaces, made.view);
+    const FaceOracle oracle(surfaces, made.view);
+    const double picture = double(made.view.pixel_count());
+    for (const auto& [id, areas] : both_areas(seen, oracle)) {
+      EXPECT_NEAR(areas.pixels[0], areas.pixels[1], 1e-9 * picture) << id;
+      if (std::max(areas.pixels[0], areas.pixels[1]) < 1e-9 * picture) continue;  // of a corner a million units away
+      // Where sheets cross at an angle of 2^-24, doubles know the line to 2^-29 of its length.
+      const double crossing = GetParam() == Kind::sheets ? std::ldexp(1.0, std::max(0, int(seed % 25) - 16)) : 1;
+      EXPECT_NEAR(areas.units[0], areas.units[1], 1e-9 * (areas.units[1] + 1) * crossing) << id;
+      EXPECT_NEAR(areas.solid_angle[0], areas.solid_angle[1], 1e-9) << id;
+    }
+    EXPECT_NEAR(sum_of_pixels(seen), double(oracle.covered_area()), 1e-9 * picture);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, VisibleFacesOfKind, testing::ValuesIn(all_kinds));
+
+/// 64 x 64 pixels, 16 for a unit, from above: z is towards the eye.
+View view_from_above() {
+  View view;
+  view.width = view.height = 64;
+  view.world_from_eye = look_at({0, 0, 10}, {0, 0, 0}, {0, 1, 0});
+  view.projection = make_orthographic(-2, 2, -2, 2, {1, 20});
+  return view;
+}
+
+MATCHER_P2(IsFace, id, pixels, "") { return arg.id == PrimitiveId(id) && std::abs(arg.pixels - pixels) < 1e-9; }
+
+TEST(VisibleFaces, WhatAnotherCoversIsTakenOff) {
+  Mesh mesh;
+  add_triangle(mesh, {-1, -1, 0}, {1, -1, 0}, {-1, 1, 0});        // 2 square units, 512 square pixels
+  add_triangle(mesh, {-1.5f, 0, 1}, {1.5f, 0, 1}, {1.5f, 3, 1});  // reaches over the picture: 256 * 2.25 / 2
+  add_triangle(mesh, {-0.5f, -0.75f, -1}, {0, -0.75f, -1}, {-0.5f, -0.25f, -1});  // below
+  const Scene scene = scene_of(mesh);
+  const VisibleFaces seen = visible_faces(Surfaces(scene), view_from_above());
+  // Of the first, the part above y = 0 and below y = x + 1.5 is hidden: half a unit less a corner of 1/16.
+  const double hidden = 256 * (0.5 - 0.0625);
+  const double second = 256 * (4.5 - 0.5);  // less the corner above y = 2
+  EXPECT_THAT(seen.faces, testing::ElementsAre(IsFace(0, 512 - hidden), IsFace(1, second)));
+  EXPECT_NEAR(seen.faces[0].area, 2 - hidden / 256, 1e-12);
+  EXPECT_EQ(seen.faces[0].solid_angle, 0);
+}
+
+TEST(VisibleFaces, TheSmallestTriangleIsFound) {
+  Mesh mesh;
+  add_square(mesh, 3, 0);
+  const float size = 1e-6f;  // 16 millionths of a pixel
+  add_triangle(mesh, {0.3f, 0.3f, 1}, {0.3f + size, 0.3f, 1}, {0.3f, 0.3f + size, 1});
+  const Scene scene = scene_of(mesh);
+  const Surfaces surfaces(scene);
+  const VisibleFaces seen = visible_faces(surfaces, view_from_above());
+  const auto corners = surfaces.corners(2);
+  const double expected =
+      128 * (double(corners[1].x) - double(corners[0].x)) * (double(corners[2].y) - double(corners[0].y));
+  ASSERT_EQ(seen.faces.size(), 3u);
+  EXPECT_NEAR(seen.faces[2].pixels, expected, 1e-6 * expected);
+  EXPECT_NEAR(sum_of_pixels(seen), 64 * 64, 1e-9 * 64 * 64);
+}
+
+TEST(VisibleFaces, OfOnePlaneTheLowerIdIsSeen) {
+  // Two squares in a plane that no axis is along, each cut along another diagonal, and a copy of the first triangle.
+  const glm::vec3 a(-1, -1, -0.5f), b(1, -1, 0.25f), c(1, 1, 0.5f), d(-1, 1, -0.25f);
+  Mesh mesh;
+  add_triangle(mesh, a, b, c);
+  add_triangle(mesh, b, c, d);
+  add_triangle(mesh, c, a, b);
+  add_triangle(mesh, a, c, d);
+  add_triangle(mesh, d, a, b);
+  const Scene scene = scene_of(mesh);
+  // a + c = b + d: they are in one plane exactly. The second one keeps what the first leaves, and so on.
+  EXPECT_THAT(visible_faces(Surfaces(scene), view_from_above()).faces,
+              testing::ElementsAre(IsFace(0, 512), IsFace(1, 256), IsFace(3, 256)));
+}
+
+TEST(VisibleFaces, ASideOfACubeAroundTheEyeIsASixthOfTheSphere) {
+  Mesh mesh;
+  add_quad(mesh, {-100, -100, -7}, {100, -100, -7}, {100, 100, -7}, {-100, 100, -7});
+  const Scene scene = scene_of(mesh);
+  View view = make_view(glm::radians(90.0), 50, 50).between(0.1, 100);
+  const VisibleFaces seen = visible_faces(Surfaces(scene), view);
+  double solid_angle = 0, area = 0;
+  for (const VisibleFace& face : seen.faces) solid_angle += face.solid_angle, area += face.area;
+  EXPECT_NEAR(solid_angle, 2 * glm::pi<double>() / 3, 1e-13);
+  EXPECT_NEAR(area, 14 * 14, 1e-10);
+  EXPECT_NEAR(sum_of_pixels(seen), 2500, 1e-9);
+}
+
+TEST(VisibleFaces, CullingLeavesOutWhatTurnsAwayAlsoWhereInstancesMirror) {
+  Scene scene = scene_of([] {
+    Mesh mesh;
+    add_square(mesh, 1, 0);
+    return mesh;
+  }());
+  View view = view_from_above();
+  view.culling = Culling::back;
+  EXPECT_NEAR(sum_of_pixels(visible_faces(Surfaces(scene), view)), 1024, 1e-9);
+  scene.instances[0].world_from_mesh[0][0] = -1;  // its front stays where it was: outside stays outside
+  EXPECT_NEAR(sum_of_pixels(visible_faces(Surfaces(scene), view)), 1024, 1e-9);
+  view.culling = Culling::front;
+  EXPECT_THAT(visible_faces(Surfaces(scene), view).faces, testing::IsEmpty());
+  scene.instances[0].world_from_mesh = glm::dmat4(1.0);
+  scene.instances[0].world_from_mesh[0][0] = scene.instances[0].world_from_mesh[2][2] = -1;  // turned around
+  EXPECT_NEAR(sum_of_pixels(visible_faces(Surfaces(scene), view)), 1024, 1e-9);
+}
+
+TEST(VisibleFaces, AreTheSameForAnyNumberOfThreads) {
+  Scene scene = scene_of(bumpy_ball(40, 0.2f, 5));
+  scene.meshes.push_back(random_mesh(Kind::soup, 300, 4));
+  scene.instances.push_back({"soup", 1, glm::dmat4(1.0)});
+  const Surfaces surfaces(scene);
+  Random random(3);
+  const View view = random_view(random, 300, 200);
+  Execution one, four;
+  one.threads = 1;
+  four.threads = 4;
+  const VisibleFaces a = visible_faces(surfaces, view, one), b = visible_faces(surfaces, view, four);
+  ASSERT_EQ(a.faces.size(), b.faces.size());
+  ASSERT_GT(a.faces.size(), 100u);
+  for (std::size_t i = 0; i < a.faces.size(); ++i) {
+    EXPECT_EQ(a.faces[i].id, b.faces[i].id);
+    EXPECT_EQ(a.faces[i].pixels, b.faces[i].pixels);
+    EXPECT_EQ(a.faces[i].area, b.faces[i].area);
+    EXPECT_EQ(a.faces[i].solid_angle, b.faces[i].solid_angle);
+  }
+}
+
+TEST(FacesEverSeen, AreThoseOfAllViewsWithTheirLargestShare) {
+  Mesh mesh;
+  add_square(mesh, 1, 0);
+  add_quad(mesh, {0, -1, 1}, {1, -1, 1}, {1, 1, 1}, {0, 1, 1});                           // over its right half
+  add_triangle(mesh, {-0.5f, -0.5f, -1}, {0.5f, -0.5f, -1}, {-0.5f, 0.5f, -1});           // below
+  add_triangle(mesh, {-0.1f, -0.1f, -0.5f}, {0.1f, -0.1f, -0.5f}, {-0.1f, 0.1f, -0.5f});  // between: seen by nobody
+  add_quad(mesh, {-1, -1, -0.75f}, {1, -1, -0.75f}, {1, 1, -0.75f}, {-1, 1, -0.75f});
+  const Scene scene = scene_of(mesh);
+  const View above = view_from_above();
+  View below = above;
+  below.world_from_eye = look_at({0, 0, -10}, {0, 0, 0}, {0, 1, 0});
+  const View views[] = {above, below, above};
+  const std::vector<SeenFace> seen = faces_ever_seen(Surfaces(scene), views);
+  std::vector<PrimitiveId> ids;
+  for (const SeenFace& face : seen) ids.push_back(face.id);
+  EXPECT_THAT(ids, testing::ElementsAre(0, 1, 2, 3, 4, 6, 7));
+  EXPECT_EQ(seen[0].view_count, 2u);
+  EXPECT_EQ(seen[0].best_view, 0u);
+  EXPECT_NEAR(seen[0].largest_share + seen[1].largest_share, 1, 1e-12);  // a quarter of one and three of the other
+  EXPECT_EQ(seen[4].view_count, 1u);
+  EXPECT_EQ(seen[4].best_view, 1u);
+  EXPECT_NEAR(seen[4].largest_share, 1, 1e-12);
+  EXPECT_NEAR(seen[4].largest_pixels, 128, 1e-9);
+  EXPECT_THAT(faces_ever_seen(Surfaces(scene), {}), testing::IsEmpty());
+}
+
+TEST(VisibleFaces, OfNothingThereAreNone) {
+  const Scene scene;
+  EXPECT_THAT(visible_faces(Surfaces(scene), view_from_above()).faces, testing::IsEmpty());
+  Mesh mesh;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  add_triangle(mesh, {nan, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  add_triangle(mesh, {0, 0, 0}, {1, 0, 0}, {0.5f, 0, 0});   // without area
+  add_triangle(mesh, {0, 0, 0}, {1, 0, 0}, {0.5f, 0, -1});  // seen from its edge
+  add_triangle(mesh, {0, 0, 30}, {1, 0, 30}, {0, 1, 30});   // behind the eye
+  const Scene odd = scene_of(mesh);
+  EXPECT_THAT(visible_faces(Surfaces(odd), view_from_above()).faces, testing::IsEmpty());
+  View bad = view_from_above();
+  bad.width = 0;
+  EXPECT_THROW((void)visible_faces(Surfaces(odd), bad), Error);
+}
+
+}  // namespace
+}  // namespace frontmost::test
