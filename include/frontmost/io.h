@@ -16,11 +16,11 @@ namespace frontmost {
 
 struct LoadOptions {
   std::optional<ModelFormat> format;  ///< none: by suffix and, for memory and standard input, by content
-  std::optional<Axis> up;             ///< none: the format's (z for STL and 3MF, y for the others)
+  std::optional<Axis> up;             ///< none: the format's (z for STL and 3MF, y for the others) or the scene file's
 };
 
 /// Reads a model. "-" reads standard input, "builtin:NAME" makes a built-in scene. Files named inside a model
-/// (material libraries, buffers, textures) are read only from the model's own folder and below.
+/// (material libraries, buffers, textures, the models of a scene file) are read only from its own folder and below.
 /// Triangle order and count are the file's. Memory while reading is at most about twice the result.
 /// A model that lies far from zero for its size, as surveys do, gets a Scene::origin: it is taken off while coordinates
 /// are still doubles, so that text and double formats lose nothing, and files of floats nothing more. Positions,
@@ -85,9 +85,6 @@ void save_text(std::string_view text, const std::string& path);
 [[nodiscard]] Image load_image(const std::string& path);
 /// Reads an image from memory; `name` stands for the file in messages.
 [[nodiscard]] Image load_image(std::span<const std::byte> bytes, const std::string& name);
-
-/// The greatest value of an environment's pixel: sums over all pixels stay far within a float.
-inline constexpr float max_environment_value = 16777216.0f;
 
 /// Reads the light that comes from all around: an equirectangular picture of any format that load_image() reads, above
 /// all Radiance (.hdr) and OpenEXR. Rows go from straight up to straight down, columns once around to the right, as of

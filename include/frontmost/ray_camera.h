@@ -3,7 +3,8 @@
 //
 // Directions are those of eye space, as for every camera: the eye looks down -z, y up, x right. An azimuth is counted
 // from straight ahead to the right, an elevation from the horizon upwards: azimuth a and elevation e are the direction
-// (sin a cos e, sin e, -cos a cos e). Pixel (x, y) asks at its centre, (x + 0.5, y + 0.5), rows from the top.
+// (sin a cos e, sin e, -cos a cos e). Pixel (x, y) asks at its centre, (x + 0.5, y + 0.5), rows from the top; with more
+// samples at their places within the pixel, which are those of a View.
 #pragma once
 
 #include <variant>
@@ -44,6 +45,7 @@ struct RayPattern {
 struct RayCamera {
   std::variant<Panorama, Fisheye, Lidar, RayPattern> model;
   glm::dmat4 world_from_eye{1.0};  ///< a rotation and a translation, about Scene::origin as a View's is
+  int samples = 1;                 ///< of panoramas and fisheyes, per pixel: 1, 2, 4, 8 or 16, as sample_offsets()
 };
 
 /// Elevations of `rings` rings, evenly from `highest` down to `lowest`; the middle of both for a single ring.
@@ -56,31 +58,36 @@ void validate(const RayCamera& camera);
 /// Columns and rows of the rays: pixels; steps and rings; the length of the pattern and 1.
 [[nodiscard]] glm::ivec2 grid_of(const RayCamera& camera);
 
-/// The ray of a pixel, in world space; of unit length (to rounding), or zero where the pixel sees nothing; a pattern's
-/// directions keep their length. The same bits on every machine. Precondition: the camera is valid, the pixel in its
-/// grid.
-[[nodiscard]] Ray ray_of(const RayCamera& camera, int x, int y);
+/// The ray of a pixel's sample, in world space; of unit length (to rounding), or zero where it sees nothing; a
+/// pattern's directions keep their length. The same bits on every machine. Precondition: the camera is valid, the pixel
+/// in its grid, and the sample one of its.
+[[nodiscard]] Ray ray_of(const RayCamera& camera, int x, int y, int sample = 0);
 
-/// What the rays of a camera meet. Planes are ordered [y][x], top row first.
+/// What the rays of a camera meet. Planes are ordered [sample][y][x], top row first.
 struct RangeScan {
   RayCamera camera;
   int width = 0, height = 0;       ///< as grid_of(camera)
   Buffer<PrimitiveId> primitives;  ///< no_primitive where nothing is met
   Buffer<float> ranges;            ///< distance from the eye along the ray, in scene units; +inf where nothing is met
 
-  [[nodiscard]] std::size_t index(int x, int y) const { return std::size_t(y) * std::size_t(width) + std::size_t(x); }
+  [[nodiscard]] std::size_t index(int x, int y, int sample = 0) const {
+    return (std::size_t(sample) * std::size_t(height) + std::size_t(y)) * std::size_t(width) + std::size_t(x);
+  }
 };
 
 /// The nearest surface along every ray, as closest_hits() answers: both sides of every triangle are seen, nothing is
-/// too near or too far. The same bits for any number of threads and any instruction set. O(log n) a ray.
+/// too near or too far. The same bits for any number of threads and any instruction set. O(log n) a ray. Neighbours on
+/// the grid are cast together where they look nearly the same way, five to fifteen times as fast as one by one.
+/// (I. Wald, P. Slusallek, C. Benthin, M. Wagner. Interactive Rendering with Coherent Ray Tracing. 2001.)
 /// \throws Error as validate(camera) does.
 [[nodiscard]] RangeScan scan(const RayIndex& index, const RayCamera& camera, const Execution& execution = {});
 
-/// Where the ray of a pixel meets the surface, in world space. Precondition: something is met there.
-[[nodiscard]] glm::dvec3 point_of(const RangeScan& scan, int x, int y);
+/// Where the ray of a pixel's sample meets the surface, in world space. Precondition: something is met there.
+[[nodiscard]] glm::dvec3 point_of(const RangeScan& scan, int x, int y, int sample = 0);
 
-/// Distances along the viewing axis, as a pinhole camera in that pose would give them; +inf where nothing is met, and
-/// for rays that do not lead ahead, at 90 degrees from the axis and more, for which there is no such distance.
+/// Of every sample, in their order: distances along the viewing axis, as a pinhole camera in that pose would give them;
+/// +inf where nothing is met, and for rays that do not lead ahead, at 90 degrees from the axis and more, for which
+/// there is no such distance.
 [[nodiscard]] Buffer<float> planar_depths(const RangeScan& scan, const Execution& execution = {});
 
 }  // namespace frontmost

@@ -15,18 +15,20 @@
 #include <vector>
 
 #include "frontmost/curved.h"
+#include "frontmost/environment.h"
 #include "frontmost/figure.h"
 #include "frontmost/image.h"
 #include "frontmost/ray_camera.h"
 #include "frontmost/raycast.h"
 #include "frontmost/surfaces.h"
 #include "frontmost/visible.h"
+#include "frontmost/visible_pixels.h"
 
 namespace frontmost {
 
 /// What the picture shows.
 enum class Shading : std::uint8_t {
-  lit,      ///< metallic-roughness, key light with shadow, sky and ground
+  lit,      ///< metallic-roughness under a key light with shadow and an environment
   flat,     ///< base colour as it is, no light
   normals,  ///< world-space shading normals, 0.5 + 0.5 n
   depth,    ///< near bright, far dark, over the depths that are seen
@@ -34,11 +36,25 @@ enum class Shading : std::uint8_t {
   uv,       ///< texture coordinates as red and green
 };
 
-/// How the shadows of the key light are found.
+/// Which direct lights count in lit pictures, beside the surroundings.
+enum class Lights : std::uint8_t {
+  key,   ///< one that moves with the camera
+  file,  ///< Scene::lights: a white matt surface that gets E lux sends back E / pi, which is the picture's value
+  both,
+  none,
+};
+
+/// So many suns and spots of a scene have maps of shadows: the first ones.
+inline constexpr std::size_t most_mapped_lights = 16;
+
+/// How shadows are found, which what is opaque throws.
 enum class Shadows : std::uint8_t {
-  off,   ///< none
-  map,   ///< what the light sees on 256 to 1024 texels squared, as the picture needs, with edges a few of them wide
-  rays,  ///< a ray to the light from every sample, exact: as sharp as the picture
+  off,  ///< none
+  /// What a light sees on 256 to 1024 texels squared, as the picture needs, with edges a few of them wide. Of the key
+  /// light, and of the first most_mapped_lights suns and spots of the scene; points throw none, and spots none farther
+  /// than 75 degrees from their axis.
+  map,
+  rays,  ///< a ray to every light from every sample: as sharp as the picture
 };
 
 /// How much of what lies one behind another a picture shows. Of lit, flat and normals alone.
@@ -46,6 +62,52 @@ enum class SeeThrough : std::uint8_t {
   where_needed,  ///< every layer, by the A-buffer, of scenes in which something can be seen through
   always,        ///< the same of opaque scenes: for the A-buffer's sub-samples
   never,         ///< what is visible, over the background
+};
+
+/// In which numbers a picture is blended: what is half transparent, and the samples of a pixel.
+enum class Blend : std::uint8_t {
+  linear,  ///< light, as nature does
+  srgb,    ///< as viewers blend the shapes of SVG and PDF: a half-transparent red over white is darker
+};
+
+/// What is near keeps light from all around off: corners, and what stands on something, are darker. Found on the depths
+/// that the picture shows, of what is opaque by its material, so that it costs the same for any model; what is hidden
+/// from the eye hides nothing. The key light is not weakened by it.
+/// (J. Jimenez, X. Wu, A. Pesce, A. Jarabo. Practical Real-Time Strategies for Accurate Indirect Occlusion. 2016.)
+struct AmbientOcclusion {
+  double strength = 1;  ///< 0: none, to 1: as much as is hidden
+  /// Scene units: what is farther away hides nothing, and what is nearer the more, the nearer it is. None: a tenth of
+  /// the diagonal of find_subject().
+  std::optional<double> radius = std::nullopt;
+};
+
+/// How light beyond what a picture can hold, which is 1, is brought below it.
+enum class ToneMapping : std::uint8_t {
+  none,  ///< cut off at 1, each channel by itself
+  /// Filmic: more contrast, and colours fade as they grow bright. (S. Hill's fit of ACES 1.0, as in
+  /// three.js and other viewers, there ACESFilmicToneMapping.)
+  aces,
+  /// Khronos PBR Neutral: base colours stay what they are up to 0.76, what is brighter fades to white.
+  khronos,
+};
+
+/// The light of lit pictures: a key light, which throws shadows, and an environment.
+struct LightOptions {
+  /// None: Environment::studio().
+  std::optional<Environment> environment = std::nullopt;
+  /// Radians, counter-clockwise seen from above, by which the environment is turned about the scene's up. Finite.
+  double environment_angle = 0;
+  /// Pictures show the environment where nothing hides it, in place of the background. Not figures,
+  /// pictures of scans, or other blends than linear.
+  bool shows_environment = false;
+  /// Stops, -32 to 32: light is multiplied by 2^exposure before tone mapping; unlit materials stay as they are.
+  double exposure = 0;
+  ToneMapping tone_mapping = ToneMapping::none;
+  /// Towards the key light, in the world, of any length but zero. None: the camera's upper left.
+  std::optional<glm::dvec3> direction = std::nullopt;
+  /// Multiplies the key light, 0 to 1e6; 0 leaves it out. None: 1, and 0 beside an environment from a picture, which
+  /// has lights of its own.
+  std::optional<double> intensity = std::nullopt;
 };
 
 struct ShadeOptions {
@@ -58,31 +120,58 @@ struct ShadeOptions {
   SeeThrough see_through = SeeThrough::where_needed;
   /// The A-buffer's sub-samples: as AbufferOptions::grid.
   int grid = 0;
+  Lights lights = Lights::key;
+  /// Of lit pictures.
+  std::optional<AmbientOcclusion> ambient_occlusion = std::nullopt;
+  /// Of lit, flat and normals; of pictures, neither deep ones nor figures.
+  Blend blend = Blend::linear;
+  /// Of lit pictures alone, but for the environment as background.
+  LightOptions light = {};
 };
 
 /// What is to be shaded, and what a caller may have found already of what shadows need. Borrows everything.
 struct ShadeInput {
   ShadeInput(const Visible& what_is_visible, const Visible* light_sees = nullptr, const RayIndex* ray_index = nullptr)
       : visible(what_is_visible), seen_by_light(light_sees), index(ray_index) {}
+  /// The same by pixels. For all shadings but depth; not for figures.
+  ShadeInput(const VisiblePixels& what_is_visible, const Visible* light_sees = nullptr,
+             const RayIndex* ray_index = nullptr)
+      : visible(what_is_visible.first), seen_by_light(light_sees), index(ray_index), pixels(&what_is_visible) {}
 
-  const Visible& visible;  ///< front-most
-  /// For Shadows::map: what is visible in key_light_view(). Null: shade() finds what is visible of the surfaces there.
+  [[nodiscard]] const View& view() const { return pixels ? pixels->view : visible.view; }
+
+  const Visible& visible;  ///< front-most: at every sample, or, with `pixels`, at the first
+  /// For Shadows::map of the key light: what is visible in key_light_view(). Null: shade() finds what is visible of the
+  /// surfaces there.
   const Visible* seen_by_light;
   /// For Shadows::rays: that of the surfaces. Null: shade() makes one, as it does where materials are see-through.
+  const RayIndex* index;
+  const VisiblePixels* pixels = nullptr;  ///< at every sample; null where `visible` says that
+};
+
+/// A scan that is to be shaded, of cameras all around. Borrows everything.
+struct ScanInput {
+  ScanInput(const RangeScan& what_rays_meet, const RayIndex* ray_index = nullptr)
+      : scan(what_rays_meet), index(ray_index) {}
+
+  const RangeScan& scan;
+  /// That of the surfaces, for Shadows::rays and for what is seen through. Null: shade() makes one where it needs it.
   const RayIndex* index;
 };
 
 /// The view in which the key light sees what `visible` shows: whatever is visible in it is lit, the rest in shadow. For
-/// pictures made of parts, of which shade() is given only the triangles that are seen; `bounds` and `up` are those of
-/// the whole. None where nothing is visible. O(pixels).
-[[nodiscard]] std::optional<View> key_light_view(const Visible& visible, const Box& bounds, Axis up,
-                                                 const Execution& execution = {});
+/// pictures made of parts, of which shade() is given only the triangles that are seen; `bounds` are those of the whole.
+/// None where nothing is visible, or where there is no key light. O(pixels).
+/// \throws Error bad_argument for light options out of range.
+[[nodiscard]] std::optional<View> key_light_view(const Visible& visible, const Box& bounds,
+                                                 const LightOptions& light = {}, const Execution& execution = {});
 
 /// A picture with channels R, G, B, A. Shades once per pixel and primitive and averages over the samples.
 /// Where materials are blended, or the opacity is below 1, the A-buffer of the same view says all that is seen through,
 /// in true order at every sample.
-/// \throws Error bad_argument for an opacity or a grid out of range.
-/// Borrows everything; O(covered pixels). The bytes do not depend on threads or instruction set.
+/// \throws Error bad_argument for an opacity, a grid, ambient occlusion or light options out of range; limit_exceeded
+/// for more than 4096 lights that count; unsupported for depths of pixels. Borrows everything; O(covered pixels). The
+/// bytes do not depend on threads or instruction set.
 [[nodiscard]] Image shade(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options = {},
                           const Execution& execution = {});
 
@@ -122,8 +211,9 @@ struct FigureOptions {
 /// painted over them (the print trade's trapping). What is visible has one sample a pixel.
 /// O(n log n) in the number of polygons, and the pixels that they cover. The same for any number of threads.
 /// (M. Newell, R. Newell, T. Sancha. A Solution to the Hidden Surface Problem. 1972.)
-/// \throws Error bad_argument for a Visible of more samples, an opacity or a tolerance out of range; limit_exceeded for
-/// more polygons than FigureOptions::most_polygons, or triangles that pass through each other too often.
+/// \throws Error bad_argument for a Visible of more samples, options out of range; unsupported for an environment that
+/// is to be shown; limit_exceeded for more polygons than FigureOptions::most_polygons, or triangles that pass through
+/// each other too often.
 [[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const ShadeInput& input, const FigureOptions& options = {},
                                  const Execution& execution = {});
 /// The same of a view, which need not have one sample. \throws Error as validate(view) does, too.
@@ -132,12 +222,12 @@ struct FigureOptions {
 
 /// Shades pictures of the same surfaces one after another, each as the function of that name gives it, to the byte.
 /// What does not depend on the view is made when the first picture needs it, and kept: textures' mip levels, smooth
-/// normals, what throws shadows; and the key light's map as long as the light sees the same. From the second picture of
-/// a size on, opaque scenes without rays for shadows allocate nothing, as long as no picture needs more than those
-/// before: other materials, other meshes without normals, another size. Memory: the last picture; a third of the
-/// textures' texels that were seen; 12 bytes a triangle of meshes without normals; up to 8 MiB of what the light sees;
-/// half a megabyte a thread; and, where they are needed, surfaces of what is opaque beside glass, and an index for
-/// rays. Not for several threads at once; each call uses the threads that it is given.
+/// normals, what throws shadows, the studio; and every light's map as long as the light sees the same. From the second
+/// picture of a size on, views of opaque scenes allocate nothing, but for rays of shadows, the blend srgb and a shown
+/// environment, as long as none needs more than those before: other materials, other meshes without normals, another
+/// size. Memory: the last picture; a third of the texels that were seen; 12 bytes a triangle of meshes without normals;
+/// up to 8.25 MiB of what a light sees, of 17 lights at most; half a megabyte a thread; surfaces of what is opaque
+/// beside glass, and an index for rays, where they are needed. Not for several threads at once.
 class Shader {
  public:
   /// Borrows the surfaces and their scene, which must stay as they are. O(instances + materials).
@@ -150,6 +240,7 @@ class Shader {
 
   /// The result stays as it is until the next shade() or take().
   const Image& shade(const ShadeInput& input, const ShadeOptions& options = {}, const Execution& execution = {});
+  const Image& shade(const ScanInput& input, const ShadeOptions& options = {}, const Execution& execution = {});
   /// The result stays as it is until the next shade_bitmap() or take_bitmap().
   const Bitmap& shade_bitmap(const ShadeInput& input, const ShadeOptions& options = {},
                              const Execution& execution = {});
@@ -168,13 +259,17 @@ class Shader {
   std::unique_ptr<State> state_;
 };
 
-/// A picture of a scan, one sample a pixel: `lit` by a light at the eye, from base colours without textures and the
-/// planes of the triangles, all opaque and without shadows; `normals` are those of the planes, and `depth` is the
-/// range. O(pixels). \throws Error unsupported for Shading::uv.
-[[nodiscard]] Image shade(const Surfaces& surfaces, const RangeScan& scan, const ShadeOptions& options = {},
+/// A picture of a scan, with the materials, lights and shadows of other pictures; once per pixel and primitive, and
+/// averaged over the samples of the scan's camera. The key light is that of a pinhole in the same pose; the map of its
+/// shadows holds what the scan sees. Textures are as sharp as the distance between neighbouring rays asks for. Where
+/// materials are blended, or the opacity is below 1, the rays go on behind what they met first. `depth` is the range.
+/// \throws Error bad_argument for a scan or options that do not fit. O(rays).
+[[nodiscard]] Image shade(const Surfaces& surfaces, const ScanInput& input, const ShadeOptions& options = {},
                           const Execution& execution = {});
 
-/// The same where rays met curved surfaces, whose own normals count. Precondition: index and scan are of the scene.
+/// A plain picture of a scan that may have met curved surfaces, whose own normals count: `lit` by a light at the eye,
+/// from base colours without textures, all opaque and without shadows. The mean of all samples. Precondition: index and
+/// scan are of the scene. O(rays). \throws Error unsupported for Shading::uv and an opacity below 1.
 [[nodiscard]] Image shade(const CurvedIndex& index, const Scene& scene, const CurvedScan& scan,
                           const ShadeOptions& options = {}, const Execution& execution = {});
 

@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "frontmost/base.h"
 #include "frontmost/scene.h"
@@ -143,6 +144,27 @@ void validate(const View& view);
 /// The named directions. `front` looks at the model's front: along +y for z-up models, along -z for the others.
 enum class NamedView : std::uint8_t { front, back, left, right, top, bottom, iso, three_quarter };
 
+/// What most of a scene's interest lies in, and what reaches far beyond that.
+struct Subject {
+  Box bounds;                           ///< of the former, in world space; empty where nothing can be seen
+  std::vector<std::uint32_t> left_out;  ///< numbers of the latter in Scene::instances, ascending; mostly none
+};
+
+/// The subject of a scene, by objects. An object's interest is the fourth root of the number of its triangles. The
+/// middle is, on each axis, the median of the objects' middles, weighted by their interest; an object reaches as far as
+/// the corner of its bounds that is farthest from there. Where some objects have three fifths of all interest, and
+/// every other one reaches eight times as far as all of them, or farther, the others are left out: a plane of two
+/// kilometres under a village, the dome of a sky, a screw that was lost far away. The fewest objects for which that
+/// holds are the subject. A scene of one object, or of objects without such a gap, is the subject as a whole. Of more
+/// than 4096 objects, every so many give the middle. O(objects): 30 ms for a million.
+[[nodiscard]] Subject find_subject(const Surfaces& surfaces);
+
+/// Which objects frame() shows whole.
+enum class FramedObjects : std::uint8_t {
+  subject,  ///< those of find_subject(); others may reach out of the picture
+  all,
+};
+
 struct FrameOptions {
   NamedView direction = NamedView::three_quarter;
   bool orthographic = false;
@@ -156,10 +178,13 @@ struct FrameOptions {
   std::optional<glm::dvec3> target = std::nullopt;
   /// The pinhole camera, where set; instead of min_fov. Its image may lie off the axis. Not with `orthographic`.
   std::optional<Intrinsics> intrinsics = std::nullopt;
+  FramedObjects objects = FramedObjects::subject;
 };
 
-/// A view that shows all of `surfaces` from as near as the margin allows, with near and far fitted. Empty surfaces: a
-/// unit box about the origin. 1 to 3 ms for a million triangles.
+/// A view that shows the subject of `surfaces`, mostly all of them, from as near as the margin allows. Near and far
+/// enclose everything, but in parallel projection what is left out of the subject and lies behind the eye, which then
+/// stands twice the subject's diagonal before its middle. Empty surfaces: a unit box about the origin. 1 to 3 ms for a
+/// million triangles.
 /// \throws Error bad_argument for options out of range; as look_at(), make_projection() and validate() do.
 [[nodiscard]] View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& options = {});
 

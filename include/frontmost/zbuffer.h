@@ -13,6 +13,7 @@
 #include "frontmost/surfaces.h"
 #include "frontmost/view.h"
 #include "frontmost/visible.h"
+#include "frontmost/visible_pixels.h"
 
 namespace frontmost {
 
@@ -49,5 +50,9 @@ class ZBuffer {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// What zbuffer() gives, by pixels, for shade() of pictures with several samples: 8 bytes a pixel and, where its
+/// samples see different primitives, 4 for each but the first. Like zbuffer(), counts as one of the first two pictures.
+[[nodiscard]] VisiblePixels zbuffer_pixels(const Surfaces& surfaces, const View& view, const Execution& execution = {});
 
 }  // namespace frontmost

@@ -90,6 +90,40 @@ class Lister {
   PixelLists lists_;
 };
 
+/// One channel of the colours, with its own alphas.
+std::vector<glm::vec4> channel_of(const FragmentColors& colors, int channel) {
+  std::vector<glm::vec4> table = colors.straight;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const float alpha = colors.alphas[i][channel];
+    if (alpha < 0) continue;
+    // What the fragment adds stays what it is. Nothing hides nothing and adds nothing.
+    table[i][channel] *= alpha > 0 ? table[i].a / alpha : 0.0f;
+    table[i].a = alpha;
+  }
+  return table;
+}
+
+/// Tinted ones as three pictures, of one channel each.
+PaintedPixels composite(const CompositeInput& input, const Rectangle& pixels, const GatherScratch& fragments,
+                        const FragmentColors& colors) {
+  if (colors.alphas.empty()) return {composite_tile(input, pixels, fragments, colors.straight), {}};
+  PaintedPixels painted;
+  painted.colors.resize(std::size_t(pixels.width) * std::size_t(pixels.height));
+  painted.alphas.resize(painted.colors.size());
+  for (int c = 0; c < 3; ++c) {
+    const std::vector<glm::vec4> channel = composite_tile(input, pixels, fragments, channel_of(colors, c));
+    for (std::size_t i = 0; i < channel.size(); ++i) {
+      painted.colors[i][c] = channel[i][c];
+      painted.alphas[i][c] = channel[i].a;
+    }
+  }
+  for (std::size_t i = 0; i < painted.colors.size(); ++i) {
+    const glm::vec3& a = painted.alphas[i];
+    painted.colors[i].a = a == glm::vec3(a.x) ? a.x : (a.x + a.y + a.z) / 3;
+  }
+  return painted;
+}
+
 }  // namespace
 
 FragmentPass::FragmentPass(const Surfaces& surfaces, const View& view, const AbufferOptions& options,
@@ -126,9 +160,9 @@ void FragmentPass::paint(const Paint& paint, const Receive& receive, const Execu
     if (!fragments) return receive(pixels, nullptr);
     // By number of arrival, as the compositor looks them up; fragments that are left out of the lists stay without
     // effect.
-    std::vector<glm::vec4> colors(fragments->arrived.count, glm::vec4(0));
+    FragmentColors colors{std::vector<glm::vec4>(fragments->arrived.count, glm::vec4(0)), {}};
     paint(pixels, lists_of(pixels, *fragments, kNegligible), colors);
-    const std::vector<glm::vec4> painted = composite_tile(input, pixels, *fragments, colors);
+    const PaintedPixels painted = composite(input, pixels, *fragments, colors);
     receive(pixels, &painted);
   };
   frame_.visit_lists(copies_, visit, execution);

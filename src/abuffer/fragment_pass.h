@@ -28,6 +28,27 @@ struct PixelLists {
   }
 };
 
+/// The colours of fragments, by their numbers in Arrived.
+struct FragmentColors {
+  std::vector<glm::vec4> straight;  ///< linear, with straight alpha
+  /// Alphas by channel, of which that of `straight` is the mean: what is tinted hides more in one than in another.
+  /// Negative: the same in all. Empty: so are all.
+  std::vector<glm::vec3> alphas;
+
+  void set(std::uint32_t number, const glm::vec3& color, float alpha, const glm::vec3& by_channel) {
+    straight[number] = glm::vec4(color, alpha);
+    if (by_channel == glm::vec3(alpha)) return;
+    if (alphas.empty()) alphas.assign(straight.size(), glm::vec3(-1));
+    alphas[number] = by_channel;
+  }
+};
+
+/// The pixels of a rectangle, row by row.
+struct PaintedPixels {
+  std::vector<glm::vec4> colors;  ///< premultiplied; alpha is the mean over the channels
+  std::vector<glm::vec3> alphas;  ///< by channel; empty: the same in all
+};
+
 /// One view, gone through as often as wanted, in 10 to 20 megabytes a thread however many layers there are. Callbacks
 /// are called for one rectangle of pixels after another, in any order, by several threads at once.
 class FragmentPass {
@@ -49,11 +70,11 @@ class FragmentPass {
   using Look = std::function<void(const Rectangle& pixels, PixelLists lists)>;
   void look(const Look& look, const Execution& execution) const;
 
-  /// Sets colors[lists.numbers[i]], straight alpha, for every fragment i. The rest is 0: what is hidden, and what adds
+  /// Sets the colours of number lists.numbers[i] for every fragment i. The rest is 0: what is hidden, and what adds
   /// less than 1e-12 of itself to its pixel because of what is before it.
-  using Paint = std::function<void(const Rectangle& pixels, const PixelLists& lists, std::vector<glm::vec4>& colors)>;
-  /// Takes the finished pixels of the rectangle, row by row, premultiplied; null where nothing is seen.
-  using Receive = std::function<void(const Rectangle& pixels, const std::vector<glm::vec4>* colors)>;
+  using Paint = std::function<void(const Rectangle& pixels, const PixelLists& lists, FragmentColors& colors)>;
+  /// Takes the finished pixels of the rectangle; null where nothing is seen.
+  using Receive = std::function<void(const Rectangle& pixels, const PaintedPixels* painted)>;
   /// Lays the colours over each other, every alpha multiplied by the options' opacity.
   void paint(const Paint& paint, const Receive& receive, const Execution& execution) const;
 

@@ -22,6 +22,12 @@ const View& valid(const View& view, const AbufferOptions& options) {
   return view;
 }
 
+/// Light that passes below the surface, before any tint.
+float limited_transmission(const Material& m) {
+  if (m.unlit || !(m.transmission.factor > 0)) return 0;
+  return std::min(m.transmission.factor, 1.0f) * (m.metallic > 0 ? 1 - std::min(m.metallic, 1.0f) : 1.0f);
+}
+
 /// Goes through the tiles of a frame on one thread.
 class TileVisitor {
  public:
@@ -62,8 +68,9 @@ Opacities::Opacities(const Surfaces& surfaces, float opacity, const Execution& e
   for (const Material& m : scene.materials) {
     float value = opacity;
     if (m.alpha == Material::Alpha::blend) value *= m.base_color.a > 0 ? std::min(m.base_color.a, 1.0f) : 0.0f;
+    if (m.is_see_through()) value *= 1 - limited_transmission(m);
     // Even blended materials of opacity 1 may be seen through where their texture says so.
-    by_material.push_back(m.alpha == Material::Alpha::blend ? -value : value);
+    by_material.push_back(m.is_see_through() ? -value : value);
     differ = differ || by_material.back() != opacity;
   }
   if (!differ) return;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A view made ready for gathering, and gone through tile by tile; what materials say of primitives.
 //
-// Opacities are those of materials, before any texture: a blended material may be opaque where its texture says so, but
-// nothing may be left out because of it. Most scenes have one opacity for all, and then no number is kept for any
-// primitive.
+// Opacities are those of materials, before any texture: what can be seen through may be opaque where its texture says
+// so, but nothing may be left out because of it. Most scenes have one opacity for all, and then no number is kept for
+// any primitive.
 #pragma once
 
 #include <algorithm>

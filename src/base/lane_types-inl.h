@@ -35,6 +35,9 @@ using MI = hn::Mask<DI>;
 /// Known when compiled: for arrays that hold a vector.
 constexpr std::size_t kMaxLanes = hn::MaxLanes(DF());
 
+/// The same number in every lane.
+HWY_INLINE VF All(float value) { return hn::Set(DF(), value); }
+
 }  // namespace frontmost::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

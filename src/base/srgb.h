@@ -15,7 +15,8 @@ namespace frontmost {
 
 namespace detail {
 
-inline constexpr std::uint32_t least_srgb8_bits = 0x39000000u;  ///< 2^-13, which still rounds to 0
+inline constexpr float least_srgb8 = 1.0f / 8192;  ///< 2^-13, which still rounds to 0
+inline constexpr std::uint32_t least_srgb8_bits = 0x39000000u;
 inline constexpr std::uint32_t one_bits = 0x3F800000u;
 inline constexpr std::size_t srgb8_bucket_count = ((one_bits - least_srgb8_bits) >> 16) + 1;
 
@@ -29,8 +30,7 @@ extern const std::array<float, 256> srgb8_linears;
 
 /// The nearest byte: round(255 * sRGB(linear)). Values out of [0, 1] are clamped, NaN gives 0.
 [[nodiscard]] inline std::uint8_t srgb8_of_linear(float linear) {
-  constexpr float least = 1.0f / 8192;
-  const float above = linear > least ? linear : least;  // false for NaN
+  const float above = linear > detail::least_srgb8 ? linear : detail::least_srgb8;  // false for NaN
   const float clamped = above < 1.0f ? above : 1.0f;
   std::uint32_t bits;
   std::memcpy(&bits, &clamped, sizeof bits);

@@ -17,6 +17,15 @@
 
 namespace frontmost::raycast_detail {
 
+/// Whether what the query meets there is a hole of the triangle.
+[[nodiscard]] inline bool is_hole(const RayTree& tree, const Query& query, const RayHit& hit) {
+  const Cutouts* const cutouts = tree.cutouts.get();
+  if (!cutouts || !cutouts->has(hit.primitive)) return false;
+  const glm::dvec3 from(query.origin),
+      along = query.is_segment ? glm::dvec3(query.end) - from : glm::dvec3(query.direction);
+  return (*cutouts)[hit.primitive].is_hole_at(from + hit.t * along);
+}
+
 /// What ends a walk.
 enum class Want : std::uint8_t {
   closest,  ///< one hit, the nearest

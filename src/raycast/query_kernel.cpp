@@ -197,7 +197,7 @@ class QueryWalker {
       const Noted& note = notes_[i];
       if (note.from > axis_.place_of(end_)) continue;
       const RayHit hit = meet(q_, note.corners, note.id);
-      if (hit.primitive != no_primitive && !LooksThrough(hit)) Keep(hit);
+      if (hit.primitive != no_primitive && !is_hole(tree_, q_, hit)) Keep(hit);
     }
     noted_ = 0;
   }
@@ -216,19 +216,12 @@ class QueryWalker {
         const std::size_t lane = first + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits);
         if (leaf.id[lane] == no_primitive) continue;
         const RayHit hit = meet(q_, leaf.corners_of(lane), leaf.id[lane]);
-        if (hit.primitive == no_primitive || LooksThrough(hit)) continue;
+        if (hit.primitive == no_primitive || is_hole(tree_, q_, hit)) continue;
         met = true;
         Keep(hit);
       }
     }
     return met;
-  }
-
-  [[nodiscard]] HWY_INLINE bool LooksThrough(const RayHit& hit) const {
-    const Cutouts* const cutouts = tree_.cutouts.get();
-    if (!cutouts || !cutouts->has(hit.primitive)) return false;
-    const glm::dvec3 along = q_.is_segment ? glm::dvec3(q_.end) - glm::dvec3(q_.origin) : glm::dvec3(q_.direction);
-    return (*cutouts)[hit.primitive].is_hole_at(glm::dvec3(q_.origin) + hit.t * along);
   }
 
   void Keep(const RayHit& hit) {

@@ -18,12 +18,12 @@ float over(const glm::vec4& pixel, const glm::vec4& background, int k) {
   return pixel[k] + background[k] * (1.0f - pixel.a);
 }
 
-void store(const glm::vec4& color, std::uint8_t* out) {
+}  // namespace
+
+void store_rgba8(const glm::vec4& color, std::uint8_t* out) {
   store_srgb({color.r, color.g, color.b}, color.a, out);
   out[3] = rounded_fraction<std::uint8_t>(color.a);
 }
-
-}  // namespace
 
 PlanesCanvas::PlanesCanvas(const View& view, std::initializer_list<const char*> names, Image memory)
     : image_(std::move(memory)) {
@@ -53,7 +53,7 @@ void PlanesCanvas::fill(const TileRectangle& tile, const glm::vec4& value) {
       std::fill_n(image_.channels[std::size_t(k)].floats().data() + row(tile, y), tile.width, value[k]);
 }
 
-BitmapCanvas::BitmapCanvas(const View& view, Bitmap memory) : bitmap_(std::move(memory)) {
+BitmapCanvas::BitmapCanvas(const View& view, Bitmap memory, Isa isa) : bitmap_(std::move(memory)), isa_(isa) {
   if (bitmap_.width == view.width && bitmap_.height == view.height && !bitmap_.rgba.empty()) return;
   bitmap_ = {view.width, view.height, Buffer<std::uint8_t>(kBytes * view.pixel_count())};
 }
@@ -63,19 +63,13 @@ std::uint8_t* BitmapCanvas::row(const TileRectangle& tile, int y) {
 }
 
 void BitmapCanvas::write(const TileRectangle& tile, const std::vector<glm::vec4>& pixels, const glm::vec4& background) {
-  for (int y = 0; y < tile.height; ++y) {
-    const glm::vec4* in = pixels.data() + y * tile.width;
-    std::uint8_t* out = row(tile, y);
-    for (int x = 0; x < tile.width; ++x, out += kBytes) {
-      const glm::vec4& p = in[x];
-      store({over(p, background, 0), over(p, background, 1), over(p, background, 2), over(p, background, 3)}, out);
-    }
-  }
+  for (int y = 0; y < tile.height; ++y)
+    store_row(pixels.data() + y * tile.width, tile.width, background, row(tile, y), isa_);
 }
 
 void BitmapCanvas::fill(const TileRectangle& tile, const glm::vec4& value) {
   std::uint8_t pixel[kBytes];
-  store(value, pixel);
+  store_rgba8(value, pixel);
   for (int y = 0; y < tile.height; ++y) {
     std::uint8_t* out = row(tile, y);
     for (int x = 0; x < tile.width; ++x) std::memcpy(out + kBytes * x, pixel, kBytes);

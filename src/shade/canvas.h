@@ -44,7 +44,7 @@ class PlanesCanvas final : public TileCanvas {
 
 class BitmapCanvas final : public TileCanvas {
  public:
-  explicit BitmapCanvas(const View& view, Bitmap memory = {});
+  BitmapCanvas(const View& view, Bitmap memory, Isa isa);
   void write(const TileRectangle& tile, const std::vector<glm::vec4>& pixels, const glm::vec4& background) override;
   void fill(const TileRectangle& tile, const glm::vec4& value) override;
   [[nodiscard]] Bitmap take() { return std::move(bitmap_); }
@@ -52,6 +52,12 @@ class BitmapCanvas final : public TileCanvas {
  private:
   [[nodiscard]] std::uint8_t* row(const TileRectangle& tile, int y);
   Bitmap bitmap_;
+  Isa isa_;
 };
+
+/// One premultiplied pixel as four bytes R, G, B, A: sRGB, straight alpha.
+void store_rgba8(const glm::vec4& color, std::uint8_t* out);
+/// The same of `count` pixels laid over a background.
+void store_row(const glm::vec4* pixels, int count, const glm::vec4& background, std::uint8_t* out, Isa isa);
 
 }  // namespace frontmost::shading

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "base/srgb.h"
+#include "shade/light/layers.h"
+#include "shade/prepared_scene.h"
 
 namespace frontmost::shading {
 namespace {
@@ -25,6 +27,7 @@ void make_opaque(FragmentBatch& batch) {
   for (int i = 0; i < batch.coverage.count; ++i) {
     batch.material.alpha[i] = 1.0f;
   }
+  batch.layers.clear();
 }
 
 float clamped(float value) { return value > 0 ? (value < 1 ? value : 1.0f) : 0.0f; }  // 0 for NaN
@@ -43,8 +46,8 @@ float wrapped_texcoord(float value) { return value == 1.0f ? 1.0f : fraction(val
 /// towards the viewer there, over the triangle's horizon: as on the inside of a hollow body, whose wall the light would
 /// have to pass through. Rays leave the triangle that they start from out of account, and would not see it; nor does a
 /// map, whose bias is thicker than the wall (and which lets light through beside it for the same reason).
-bool comes_through(const Geometry& g, int i, const glm::vec3& to_key) {
-  return glm::dot(g.plane_normal.at(i), to_key) <= 0 && g.smooth_position.at(i) == g.position.at(i);
+bool comes_through(const Geometry& g, int i, const glm::vec3& to_light) {
+  return glm::dot(g.plane_normal.at(i), to_light) <= 0 && g.smooth_position.at(i) == g.position.at(i);
 }
 
 }  // namespace
@@ -62,6 +65,12 @@ glm::vec3 linear_of_shown(const glm::vec3& value) {
 }
 
 /// Hues a golden angle apart, in three rounds of brightness, so that neighbouring numbers look nothing alike.
+glm::vec3 shown_depth(float depth, float nearest, float farthest) {
+  const float range = farthest - nearest;
+  const float t = range > 0 ? std::clamp((depth - nearest) / range, 0.0f, 1.0f) : 0.0f;
+  return glm::vec3(linear_of_shown(0.95f - 0.85f * t));
+}
+
 glm::vec3 color_of_object(std::uint32_t object) {
   const float hue = float(object * 0x9E3779B9u >> 8) / float(1 << 24) * 6.0f;
   const float value = 0.95f - 0.18f * float(object % 3), saturation = 0.75f - 0.2f * float(object / 3 % 2);
@@ -74,35 +83,83 @@ glm::vec3 color_of_object(std::uint32_t object) {
   return {part(5.0f), part(3.0f), part(1.0f)};
 }
 
+Lit lit_by(const Lighting& lighting, const ShadedPicture& picture, PreparedScene& scene, const Execution& execution) {
+  const Lights lights = picture.options.lights;
+  std::span<const Light> own;
+  if (lights == Lights::file || lights == Lights::both) own = scene.surfaces.scene().lights;
+  scene.lights.set(counts_key(lights) && lighting.key.is_on() ? &lighting.key : nullptr, own,
+                   picture.input.visible.view.eye());
+  scene.shadows.find(picture, scene.lights, execution);
+  return {scene.materials, lighting, scene.lights, scene.shadows, execution.isa};
+}
+
 void Lit::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
   look_up_materials(materials, MaterialPart::all, setups, batch, isa);
+  begin_light(batch);
+  add_far(setups, batch);
+  if (!lights.near.empty()) add_near(setups, batch);
+  if (occlusion) occlusion->darken(batch, isa);
+  add_surroundings(lighting.around, batch, isa);
+  finish_light(lighting, batch, isa);
+  if (batch.layers.has_transmission) let_through(batch, Mirroring::by_view);
+}
+
+void Lit::add_far(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
   const Geometry& g = batch.geometry;
-  const int count = batch.coverage.count;
-  bool faces_key[batch_capacity];
-  for (int i = 0; i < count; ++i) {
-    faces_key[i] = glm::dot(g.normal.at(i), lighting.to_key) > 0;
-    batch.shadow[i] = 1;
-    if ((map || rays) && faces_key[i] && comes_through(g, i, lighting.to_key)) {
-      batch.shadow[i] = 0;
-      faces_key[i] = false;
+  bool is_asked[batch_capacity];
+  for (std::size_t k = 0; k < lights.far.size(); ++k) {
+    const DirectLight& light = lights.far[k].light;
+    const bool has_shadows = shadows.has_far(k);
+    for (int i = 0; i < batch.coverage.count; ++i) {
+      is_asked[i] = glm::dot(g.normal.at(i), light.to_light) > 0;
+      batch.shadow[i] = 1;
+      if (has_shadows && is_asked[i] && comes_through(g, i, light.to_light)) {
+        batch.shadow[i] = 0;
+        is_asked[i] = false;
+      }
     }
+    if (has_shadows) shadows.find_far(k, {setups, is_asked, batch}, isa);
+    add_direct_light(light, batch, isa);
   }
-  const Lane3 &at = g.smooth_position, &normal = g.plane_normal;
-  if (map) {
-    map->find_light({at.x.values, at.y.values, at.z.values, normal.x.values, normal.y.values, normal.z.values, count},
-                    faces_key, batch.shadow.values, isa);
+}
+
+void Lit::add_near(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
+  const Geometry& g = batch.geometry;
+  const BatchBounds bounds = bounds_of(batch);
+  bool is_asked[batch_capacity];
+  LampLight arriving;
+  for (std::size_t k = 0; k < lights.near.size(); ++k) {
+    const Lamp& lamp = lights.near[k].lamp;
+    if (!may_reach(lamp, bounds)) continue;
+    find_lamp_light(lamp, batch, arriving, isa);
+    const bool has_shadows = shadows.has_near(k);
+    bool any = false;
+    for (int i = 0; i < batch.coverage.count; ++i) {
+      const glm::vec3 to_lamp = arriving.to_lamp.at(i);
+      is_asked[i] = arriving.part[i] > 0 && glm::dot(g.normal.at(i), to_lamp) > 0;
+      if (has_shadows && is_asked[i]) is_asked[i] = !comes_through(g, i, to_lamp);
+      batch.shadow[i] = is_asked[i] ? 1.0f : 0.0f;
+      any |= is_asked[i];
+    }
+    if (!any) continue;
+    if (has_shadows) shadows.find_near(k, {setups, is_asked, batch}, isa);
+    for (int i = 0; i < batch.coverage.count; ++i) batch.shadow[i] *= arriving.part[i];
+    add_light_from(arriving.to_lamp, lamp.color, batch, isa);
   }
-  if (rays) rays->find_light(setups, faces_key, batch);
-  light_batch(lighting, batch, isa);
 }
 
 void Flat::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
   look_up_materials(materials, MaterialPart::color, setups, batch, isa);
   for (int i = 0; i < batch.coverage.count; ++i) batch.light.set(i, clamped(batch.material.base.at(i)));
+  if (!batch.layers.has_transmission) return;
+  for (int i = 0; i < batch.coverage.count; ++i)
+    batch.light.set(i, batch.light.at(i) * (1 - batch.layers.transmission[i]));
+  let_through(batch, Mirroring::none);
 }
 
 void Normals::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
   look_up_materials(materials, MaterialPart::normal, setups, batch, isa);
+  batch.layers.clear();  // what is shown of glass is its surface
   for (int i = 0; i < batch.coverage.count; ++i)
     batch.light.set(i, linear_of_shown(batch.geometry.normal.at(i) * 0.5f + 0.5f));
 }
@@ -114,12 +171,14 @@ void RawNormals::operator()(const std::vector<TriangleSetup>& setups, FragmentBa
 }
 
 void Depths::operator()(const std::vector<TriangleSetup>&, FragmentBatch& batch) const {
-  const float range = farthest - nearest;
-  for (int i = 0; i < batch.coverage.count; ++i) {
-    const float depth = glm::dot(batch.geometry.position.at(i), forward);
-    const float t = range > 0 ? std::clamp((depth - nearest) / range, 0.0f, 1.0f) : 0.0f;
-    batch.light.set(i, glm::vec3(linear_of_shown(0.95f - 0.85f * t)));
-  }
+  for (int i = 0; i < batch.coverage.count; ++i)
+    batch.light.set(i, shown_depth(glm::dot(batch.geometry.position.at(i), forward), nearest, farthest));
+  make_opaque(batch);
+}
+
+void Ranges::operator()(const std::vector<TriangleSetup>&, FragmentBatch& batch) const {
+  for (int i = 0; i < batch.coverage.count; ++i)
+    batch.light.set(i, shown_depth(glm::length(batch.geometry.position.at(i)), nearest, farthest));
   make_opaque(batch);
 }
 
@@ -131,8 +190,8 @@ void Ids::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& ba
 
 void Texcoords::operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const {
   for (int i = 0; i < batch.coverage.count; ++i) {
-    const glm::vec2 uv = batch.geometry.texcoord.at(i);
-    const bool has = setups[batch.coverage.triangle[i]].has_texcoord;
+    const glm::vec2 uv = batch.geometry.texcoord.value.at(i);
+    const bool has = setups[batch.coverage.triangle[i]].has_texcoord[0];
     const glm::vec3 shown = has ? glm::vec3(wrapped_texcoord(uv.x), wrapped_texcoord(uv.y), 0) : glm::vec3(0.25f);
     batch.light.set(i, linear_of_shown(shown));
   }

@@ -55,17 +55,21 @@ class FragmentShader {
   /// Colours a batch: reads coverage and geometry, fills batch.light and batch.material.alpha.
   using Colorist = std::function<void(const std::vector<TriangleSetup>&, FragmentBatch&)>;
 
-  /// Starts anew, for triangles and colours that are borrowed. Precondition for all else.
-  void begin(const TriangleSource& source, const Colorist& colorist, Isa isa) {
+  /// Starts anew, for triangles and colours that are borrowed. Precondition for all else. `steps`, where there are any,
+  /// are those of the fragments that are added until they are handed out, in their order.
+  void begin(const TriangleSource& source, const Colorist& colorist, Isa isa, const PixelSteps* steps = nullptr) {
     isa_ = isa;
     source_ = &source;
     colorist_ = &colorist;
     batch_.coverage.count = 0;
+    batch_.coverage.steps = steps;
     clear();
   }
   /// How many fragments can be added before hand_out() is to be called.
   [[nodiscard]] int room() const { return cache_.is_full() ? 0 : batch_capacity - batch_.coverage.count; }
   [[nodiscard]] bool is_full() const { return room() == 0; }
+  /// How many were added since the last hand_out().
+  [[nodiscard]] int count() const { return batch_.coverage.count; }
   /// `number` is the caller's own; `screen` the position that is shaded, within the pixel of the `samples` (a bit
   /// each). Precondition: not full.
   void add(PrimitiveId id, std::uint32_t number, const glm::vec2& screen, std::uint64_t samples, float weight) {
@@ -80,13 +84,25 @@ class FragmentShader {
   };
   /// The same for `count` pixels side by side, whose numbers are consecutive. Precondition: as much room.
   void add_row(PrimitiveId id, int count, const RowStart& start);
-  /// Shades what was added and calls receive(number, weight, light, alpha) for each, in the order of arrival.
+  /// What is handed out of a fragment.
+  struct Shaded {
+    std::uint32_t number;
+    float weight;
+    glm::vec3 light;   ///< straight
+    float alpha;       ///< mean over the channels
+    glm::vec3 alphas;  ///< by channel
+  };
+  /// Shades what was added and calls receive(shaded) for each, in the order of arrival.
   template <class Receive>
   void hand_out(const Receive& receive) {
     Coverage& coverage = batch_.coverage;
     if (coverage.count > 0) shade_arrived();
-    for (int i = 0; i < coverage.count; ++i)
-      receive(coverage.pixel[i], coverage.weight[i], batch_.light.at(i), batch_.material.alpha[i]);
+    const bool has_filters = batch_.layers.has_transmission;
+    for (int i = 0; i < coverage.count; ++i) {
+      const float alpha = batch_.material.alpha[i];
+      const glm::vec3 alphas = has_filters ? batch_.alphas.at(i) : glm::vec3(alpha);
+      receive(Shaded{coverage.pixel[i], coverage.weight[i], batch_.light.at(i), alpha, alphas});
+    }
     coverage.count = 0;
     if (cache_.is_full()) cache_.clear();
   }

@@ -2,46 +2,43 @@
 #include "shade/materials.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "scene/material.h"
+#include "shade/geometry/geometry.h"
 
 namespace frontmost::shading {
 namespace {
 
-/// The directions on a triangle in which u and v grow, at unit length; zero where the coordinates do not span a plane.
-struct TangentFrame {
-  glm::vec3 along_u{0}, along_v{0};
+/// What looks textures up for one run after another.
+struct TextureReader {
+  TextureSampler sampler;
+  Isa isa;
+  TexcoordLanes further[max_texcoord_sets - 1];  ///< sets 1 and up, as far as the run at hand asks for them
+
+  explicit TextureReader(Isa for_isa) : sampler(for_isa), isa(for_isa) {}
 };
-
-glm::vec3 unit_or_zero(const glm::dvec3& v) {
-  const double length = std::sqrt(glm::dot(v, v));
-  return length > 0 && length < 1e300 ? glm::vec3(v / length) : glm::vec3(0);
-}
-
-TangentFrame tangent_frame(const TriangleSetup& t, const TexcoordTransform& transform) {
-  std::array<glm::dvec2, 3> uv;
-  for (std::size_t k = 0; k < 3; ++k) uv[k] = glm::dvec2(transform.place(t.texcoord[k]));
-  const glm::dvec3 edge1 = glm::dvec3(t.corner[1] - t.corner[0]), edge2 = glm::dvec3(t.corner[2] - t.corner[0]);
-  const glm::dvec2 uv1 = uv[1] - uv[0], uv2 = uv[2] - uv[0];
-  const double area = uv1.x * uv2.y - uv2.x * uv1.y;
-  const double sign = area < 0 ? -1 : 1;
-  return {unit_or_zero((edge1 * uv2.y - edge2 * uv1.y) * sign), unit_or_zero((edge2 * uv1.x - edge1 * uv2.x) * sign)};
-}
-
-glm::vec3 normalized_or(const glm::vec3& v, const glm::vec3& fallback) {
-  const float length2 = v.x * v.x + v.y * v.y + v.z * v.z;
-  return length2 > 1e-20f && length2 < 1e20f ? v * (1.0f / std::sqrt(length2)) : fallback;
-}
 
 /// One run of fragments with the same material.
 class MaterialRun {
  public:
-  MaterialRun(const MaterialRow& row, const std::vector<TriangleSetup>& setups, FragmentBatch& batch)
-      : row_(row), setups_(setups), batch_(batch) {}
+  MaterialRun(const MaterialRow& row, const LayerInput& input, FragmentBatch& batch, TextureReader& textures)
+      : row_(row),
+        setups_(input.setups),
+        batch_(batch),
+        textures_(textures),
+        normals_(row.normal, row.factors.normal_scale) {
+    if (row.layers) layers_.emplace(row.factors, *row.layers, input, batch);
+  }
 
-  void fill(int begin, int end, MaterialPart part, TextureSampler& sampler) {
+  void fill(int begin, int end, MaterialPart part) {
     fill_factors(begin, end);
+    if (layers_) layers_->fill_factors(begin, end);
+    for (std::uint32_t set = 1; set < max_texcoord_sets; ++set)
+      if (row_.further_sets >> set & 1)
+        interpolate_texcoords({setups_, batch_.coverage, set, begin, end}, textures_.further[set - 1], textures_.isa);
     for (int first = begin; first < end && row_.has_textures(); first += sampled_at_once)
-      look_up(first, std::min(first + sampled_at_once, end), part, sampler);
+      look_up(first, std::min(first + sampled_at_once, end), part);
+    if (layers_) layers_->settle(begin, end);
     settle_alpha(begin, end);
   }
 
@@ -61,13 +58,15 @@ class MaterialRun {
   }
 
   /// Fragments of triangles without texture coordinates look at the origin, as if all their coordinates were 0.
-  void look_up(int begin, int end, MaterialPart part, TextureSampler& sampler) {
+  void look_up(int begin, int end, MaterialPart part) {
     Reflectance& out = batch_.material;
     glm::vec4 values[sampled_at_once];
-    sampler.begin(batch_.geometry, begin, end);
+    std::uint32_t set = max_texcoord_sets;
     const auto sample = [&](const TextureSlot& slot, const auto& use) {
       if (!slot.pyramid) return;
-      sampler.sample(*slot.pyramid, slot.transform, values);
+      if (slot.set != set) textures_.sampler.begin(texcoords_of(slot.set), begin, end);
+      set = slot.set;
+      textures_.sampler.sample(*slot.pyramid, slot.transform, values);
       for (int i = begin; i < end; ++i) use(i, values[i - begin]);
     };
     const bool shows_color = part != MaterialPart::normal || row_.factors.alpha == Material::Alpha::blend;
@@ -88,26 +87,17 @@ class MaterialRun {
       sample(row_.emissive,
              [&](int i, const glm::vec4& color) { out.emissive.set(i, out.emissive.at(i) * glm::vec3(color)); });
     }
-    if (part != MaterialPart::color)
-      sample(row_.normal, [&](int i, const glm::vec4& value) { turn_normal(i, glm::vec3(value) * 2.0f - 1.0f); });
+    if (layers_ && part != MaterialPart::normal) layers_->look_up(sample);
+    if (part != MaterialPart::color) {
+      sample(row_.normal, [&](int i, const glm::vec4& value) {
+        const std::uint16_t triangle = batch_.coverage.triangle[i];
+        normals_.turn({setups_[triangle], triangle}, value, i, batch_.geometry.normal);
+      });
+    }
   }
 
-  /// `map`: what the normal map holds, from -1 to 1.
-  void turn_normal(int i, const glm::vec3& map) {
-    const std::uint16_t triangle = batch_.coverage.triangle[i];
-    const TriangleSetup& t = setups_[triangle];
-    if (!t.has_texcoord) return;
-    if (triangle != framed_) {
-      frame_ = tangent_frame(t, row_.normal.transform);
-      framed_ = triangle;
-    }
-    const glm::vec3 n = batch_.geometry.normal.at(i);
-    const glm::vec3 u = frame_.along_u - n * glm::dot(n, frame_.along_u);
-    const glm::vec3 v = frame_.along_v - n * glm::dot(n, frame_.along_v);
-    // Green points up in the picture, against v. The back of a surface has its bumps the other way round.
-    const float side = (t.is_backside ? -1.0f : 1.0f) * row_.factors.normal_scale;
-    const glm::vec3 turned = normalized_or(u, u) * (map.x * side) - normalized_or(v, v) * (map.y * side) + n * map.z;
-    batch_.geometry.normal.set(i, normalized_or(turned, n));
+  [[nodiscard]] const TexcoordLanes& texcoords_of(std::uint32_t set) const {
+    return set == 0 ? batch_.geometry.texcoord : textures_.further[set - 1];
   }
 
   /// What can be seen without blending is there.
@@ -125,13 +115,14 @@ class MaterialRun {
   const MaterialRow& row_;
   const std::vector<TriangleSetup>& setups_;
   FragmentBatch& batch_;
-  int framed_ = -1;  ///< the triangle that frame_ belongs to
-  TangentFrame frame_;
+  TextureReader& textures_;
+  NormalMap normals_;
+  std::optional<LayerRun> layers_;  ///< none: the material has none
 };
 
 bool uses_textures(const Material& m) {
-  return m.base_color_texture.is_set() || m.metallic_roughness_texture.is_set() || m.normal_texture.is_set() ||
-         m.emissive_texture.is_set() || m.occlusion_texture.is_set();
+  const auto uses = texture_uses_of(m);
+  return std::any_of(uses.begin(), uses.end(), [](const TextureUse* use) { return use->is_set(); });
 }
 
 }  // namespace
@@ -144,9 +135,16 @@ Material default_material() {
 }
 
 MaterialTable::MaterialTable(const Scene& scene)
-    : scene_(scene), srgb_(scene.textures.size()), linear_(scene.textures.size()) {
+    : scene_(scene),
+      length_scales_(length_scales_of(scene)),
+      srgb_(scene.textures.size()),
+      linear_(scene.textures.size()) {
+  rows_.reserve(scene.materials.size());
   for (const Material& m : scene.materials) {
-    rows_.push_back({m, {}, {}, {}, {}, {}});
+    MaterialRow& row = rows_.emplace_back();
+    row.factors = m;
+    limit_numbers(row.factors);
+    row.layers = layers_of(row.factors);
     is_ready_.push_back(!uses_textures(m));
     unready_ += !is_ready_.back();
   }
@@ -165,8 +163,35 @@ void MaterialTable::make_ready(const std::vector<bool>& is_needed, const Executi
     row.metallic_roughness = slot(m.metallic_roughness_texture, Encoding::linear, execution);
     row.normal = slot(m.normal_texture, Encoding::linear, execution);
     row.occlusion = slot(m.occlusion_texture, Encoding::linear, execution);
+    if (row.layers) make_layers_ready(row, execution);
+    for (const TextureUse* use : texture_uses_of(m))
+      if (use->is_set() && use->set > 0) row.further_sets |= 1u << use->set;
     is_ready_[i] = true;
     --unready_;
+  }
+}
+
+void MaterialTable::make_layers_ready(MaterialRow& row, const Execution& execution) {
+  const Material& m = row.factors;
+  LayerRow& out = *row.layers;
+  const auto colors = [&](const TextureUse& use) { return slot(use, Encoding::srgb, execution); };
+  const auto numbers = [&](const TextureUse& use) { return slot(use, Encoding::linear, execution); };
+  if (out.has_dielectric) {
+    out.specular = numbers(m.specular.factor_texture);
+    out.specular_color = colors(m.specular.color_texture);
+  }
+  if (out.has_coat) {
+    out.coat = numbers(m.clearcoat.factor_texture);
+    out.coat_roughness = numbers(m.clearcoat.roughness_texture);
+    out.coat_normal = numbers(m.clearcoat.normal_texture);
+  }
+  if (out.has_sheen) {
+    out.sheen_color = colors(m.sheen.color_texture);
+    out.sheen_roughness = numbers(m.sheen.roughness_texture);
+  }
+  if (out.has_transmission) {
+    out.transmission = numbers(m.transmission.factor_texture);
+    out.thickness = numbers(m.volume.thickness_texture);
   }
 }
 
@@ -174,19 +199,21 @@ TextureSlot MaterialTable::slot(const TextureUse& use, Encoding encoding, const 
   if (!use.is_set()) return {};
   std::unique_ptr<Pyramid>& pyramid = (encoding == Encoding::srgb ? srgb_ : linear_)[use.texture];
   if (!pyramid) pyramid = std::make_unique<Pyramid>(scene_.textures[use.texture], encoding, execution);
-  return {pyramid.get(), TexcoordTransform(use)};
+  return {pyramid.get(), TexcoordTransform(use), use.set};
 }
 
 void look_up_materials(const MaterialTable& table, MaterialPart part, const std::vector<TriangleSetup>& setups,
                        FragmentBatch& batch, Isa isa) {
-  TextureSampler sampler(isa);
+  TextureReader textures(isa);
+  batch.layers.clear();
+  const LayerInput input{setups, table.length_scales()};
   const Coverage& coverage = batch.coverage;
   const auto row_at = [&](int i) { return &table.row_of(setups[coverage.triangle[i]]); };
   for (int begin = 0; begin < coverage.count;) {
     const MaterialRow* const row = row_at(begin);
     int end = begin + 1;
     while (end < coverage.count && row_at(end) == row) ++end;
-    MaterialRun(*row, setups, batch).fill(begin, end, part, sampler);
+    MaterialRun(*row, input, batch, textures).fill(begin, end, part);
     begin = end;
   }
 }

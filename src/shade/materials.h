@@ -7,21 +7,20 @@
 
 #include "shade/batch.h"
 #include "shade/geometry/triangle_setup.h"
+#include "shade/material_layers.h"
 #include "shade/texture_sampler.h"
 
 namespace frontmost::shading {
 
-struct TextureSlot {
-  const Pyramid* pyramid = nullptr;  ///< null: not set
-  TexcoordTransform transform{TextureUse{}};
-};
-
 struct MaterialRow {
   Material factors;
   TextureSlot base_color, metallic_roughness, normal, emissive, occlusion;
+  std::unique_ptr<LayerRow> layers;  ///< null: none
+  std::uint32_t further_sets = 0;    ///< bit k: a texture is looked up by set k, which is not the first
 
   [[nodiscard]] bool has_textures() const {
-    return base_color.pyramid || metallic_roughness.pyramid || normal.pyramid || emissive.pyramid || occlusion.pyramid;
+    return base_color.pyramid || metallic_roughness.pyramid || normal.pyramid || emissive.pyramid ||
+           occlusion.pyramid || (layers && layers->has_textures());
   }
 };
 
@@ -38,6 +37,8 @@ class MaterialTable {
   void make_ready(const std::vector<bool>& is_needed, const Execution& execution);
   /// Whether any material has a texture.
   [[nodiscard]] bool has_textures() const { return has_textures_; }
+  /// By how much each instance makes lengths longer.
+  [[nodiscard]] const std::vector<float>& length_scales() const { return length_scales_; }
   /// Nothing is left that make_ready() could make.
   [[nodiscard]] bool is_ready() const { return unready_ == 0; }
 
@@ -48,9 +49,11 @@ class MaterialTable {
   }
 
  private:
+  void make_layers_ready(MaterialRow& row, const Execution& execution);
   [[nodiscard]] TextureSlot slot(const TextureUse& use, Encoding encoding, const Execution& execution);
 
   const Scene& scene_;
+  std::vector<float> length_scales_;
   std::vector<MaterialRow> rows_;  ///< by material
   std::vector<bool> is_ready_;     ///< by material
   std::size_t unready_ = 0;        ///< materials with textures that are not ready
@@ -66,8 +69,8 @@ enum class MaterialPart : std::uint8_t {
   normal,  ///< the normal, and alpha
 };
 
-/// Looks up the materials of a batch, run by run of equal ones, and turns its normals by normal maps; what the picture
-/// does not show is undefined. `setups` are the triangles that batch.coverage.triangle numbers.
+/// Looks up the materials of a batch, run by run of equal ones, with their layers, and turns its normals by normal
+/// maps; what the picture does not show is undefined. `setups` are the triangles that batch.coverage.triangle numbers.
 void look_up_materials(const MaterialTable& table, MaterialPart part, const std::vector<TriangleSetup>& setups,
                        FragmentBatch& batch, Isa isa);
 

@@ -9,11 +9,15 @@
 #include "base/srgb.h"
 #include "shade/canvas.h"
 #include "shade/colorists.h"
+#include "shade/environment_canvas.h"
 #include "shade/figure/colored_order.h"
 #include "shade/layers/layers.h"
 #include "shade/layers/opaque_part.h"
 #include "shade/picture_parts.h"
 #include "shade/prepared_scene.h"
+#include "shade/scan/scan_picture.h"
+#include "shade/shadow/light_view.h"
+#include "shade/srgb_blend.h"
 #include "view/answer.h"
 
 namespace frontmost {
@@ -32,7 +36,7 @@ void shade_tile(const TileRectangle& tile, TileWork& work, const Painting& paint
 
 /// Shades all tiles, one row of tiles to a thread at a time.
 void shade_tiles(const ShadedLayer& layer, const Painting& painting, PreparedScene& scene, const Execution& execution) {
-  const View& view = layer.visible.view;
+  const View& view = layer.view();
   const auto rows = std::size_t((view.height + tile_height - 1) / tile_height);
   parallel_for(execution, rows, 1, [&](std::size_t begin, std::size_t end) {
     const auto work = scene.works.borrow([] { return std::make_unique<TileWork>(); });
@@ -65,12 +69,12 @@ class ShownMaterials {
  public:
   /// Makes ready what the scene does not have yet.
   explicit ShownMaterials(const Request& request)
-      : visible_(request.input.visible), scene_(request.scene), large_(std::move(scene_.large)) {
+      : input_(request.input), scene_(request.scene), large_(std::move(scene_.large)) {
     const bool wants_normals =
         request.options.shading != Shading::flat && lacks_normals(request.scene.surfaces.scene());
     wants_layers(request) ? find_layers(request, wants_normals) : find_front(request, wants_normals);
     if (wants_normals) scene_.triangles.smooth(large_, request.execution);
-    source_.emplace(scene_.triangles, visible_.view, wants_normals ? &large_ : nullptr);
+    source_.emplace(scene_.triangles, input_.view(), wants_normals ? &large_ : nullptr);
     if (!scene_.materials.has_textures()) source_->leave_out_texcoords();
   }
 
@@ -80,21 +84,21 @@ class ShownMaterials {
 
   /// Where a fragment's samples lie within its pixel, in 1/256.
   [[nodiscard]] std::span<const glm::ivec2> samples() const {
-    return layers_ ? std::span(layer_samples_) : sample_offsets(visible_.view.samples);
+    return layers_ ? std::span(layer_samples_) : sample_offsets(input_.view().samples);
   }
 
   /// Precondition: with layers.
   [[nodiscard]] DeepImage deep(const Surfaces& surfaces, const FragmentShader::Colorist& colorist,
                                const Execution& execution) const {
     const LayerShader shader(*source_, *layers_, colorist, execution.isa);
-    return deep_layers(surfaces, visible_.view, *layers_, shader, execution);
+    return deep_layers(surfaces, input_.view(), *layers_, shader, execution);
   }
 
   void paint(const Painting& painting, const Execution& execution) const {
     if (layers_)
       shade_layers(*source_, *layers_, painting, execution);
     else
-      shade_tiles({*source_, visible_}, painting, scene_, execution);
+      shade_tiles({*source_, input_.visible, SampleUse::all, input_.pixels}, painting, scene_, execution);
   }
 
  private:
@@ -107,13 +111,13 @@ class ShownMaterials {
   void find_front(const Request& request, bool wants_normals) {
     const Surfaces& surfaces = request.scene.surfaces;
     if (wants_normals)
-      large_ = large_primitives(surfaces.primitive_count(), visible_, request.execution, std::move(large_));
-    request.scene.make_materials_ready(visible_, request.execution);
+      large_ = large_primitives(surfaces.primitive_count(), input_.visible, request.execution, std::move(large_));
+    request.scene.make_materials_ready(input_, request.execution);
   }
 
   void find_layers(const Request& request, bool wants_normals) {
     const Surfaces& surfaces = request.scene.surfaces;
-    layers_.emplace(surfaces, visible_.view, AbufferOptions{request.options.grid, request.options.opacity},
+    layers_.emplace(surfaces, input_.view(), AbufferOptions{request.options.grid, request.options.opacity},
                     request.execution);
     layer_samples_ = layers_->samples();
     if (!wants_normals && scene_.materials.is_ready()) return;
@@ -121,13 +125,19 @@ class ShownMaterials {
     request.scene.make_materials_ready(large_, request.execution);
   }
 
-  const Visible& visible_;
+  const ShadeInput& input_;
   PreparedScene& scene_;
   std::optional<abuffer_detail::FragmentPass> layers_;
   std::vector<glm::ivec2> layer_samples_;
   BitSet large_;  ///< primitives that are worth a smooth normal where the model has none
   std::optional<TriangleSource> source_;
 };
+
+Lighting lighting_of(const Request& request) {
+  const LightOptions& options = request.options.light;
+  return lighting_for(request.input.view(), request.scene.surfaces.scene().up, options,
+                      request.scene.environment(options, request.execution));
+}
 
 /// Calls use(colorist) with what colours fragments as the options say. Precondition: shows_materials().
 template <class Use>
@@ -137,21 +147,36 @@ void with_colorist(const Request& request, const ShownMaterials& shown, const Us
   const auto use_it = [&](const auto& colorist) { use(FragmentShader::Colorist(std::cref(colorist))); };
   if (options.shading == Shading::flat) return use_it(Flat{materials, request.execution.isa});
   if (options.shading == Shading::normals) return use_it(Normals{materials, request.execution.isa});
-  const Lighting lighting = lighting_for(request.input.visible.view, request.scene.surfaces.scene().up);
-  KeyShadows& shadows = request.scene.shadows;
-  shadows.find({request.input, options, shown.samples()}, lighting.to_key, request.execution);
-  use_it(Lit{materials, lighting, shadows.map(), shadows.rays(), request.execution.isa});
+  const Lighting lighting = lighting_of(request);
+  Lit lit = lit_by(lighting, {request.input, options, shown.samples()}, request.scene, request.execution);
+  lit.occlusion = request.scene.find_occlusion(request.input, options, request.execution);
+  use_it(lit);
 }
 
 void check(const Request& request) {
   check_opacity(request.options);
-  check_answer(request.input.visible, request.scene.surfaces.primitive_count(), "shade", request.execution);
+  check_ambient_occlusion(request.options);
+  check_light(request.options.light);
+  if (request.options.light.shows_environment && request.options.blend != Blend::linear)
+    throw Error(ErrorCode::unsupported, "shade: an environment is shown as background by the blend linear alone");
+  const ShadeInput& input = request.input;
+  const PrimitiveId count = request.scene.surfaces.primitive_count();
+  if (!input.pixels) return check_answer(input.visible, count, "shade", request.execution);
+  check_answer(*input.pixels, count, "shade", request.execution);
+  if (request.options.shading == Shading::depth)
+    throw Error(ErrorCode::unsupported, "shade: pictures of depths need the planes of a Visible");
 }
 
 void paint_materials(const Request& request, TileCanvas& canvas) {
   const ShownMaterials shown(request);
+  const ShadeOptions& options = request.options;
   with_colorist(request, shown, [&](const FragmentShader::Colorist& colorist) {
-    shown.paint({canvas, colorist, background_color(request.options), request.options.opacity}, request.execution);
+    if (options.blend == Blend::linear)
+      return shown.paint({canvas, colorist, background_color(options), options.opacity}, request.execution);
+    LinearCanvas in_srgb(canvas);
+    const FragmentShader::Colorist srgb = SrgbColorist{colorist};
+    const glm::vec4 background = options.background ? glm::vec4(*options.background, 1) : glm::vec4(0);
+    shown.paint({in_srgb, srgb, background, options.opacity}, request.execution);
   });
 }
 
@@ -160,7 +185,8 @@ void paint_map(const Request& request, TileCanvas& canvas) {
   const ShadeOptions& options = request.options;
   const TriangleSource source(request.scene.triangles, visible.view, nullptr);
   const auto paint = [&](const TileWork::Colorist& colorist) {
-    shade_tiles({source, visible}, {canvas, colorist, background_color(options)}, request.scene, request.execution);
+    shade_tiles({source, visible, SampleUse::all, request.input.pixels}, {canvas, colorist, background_color(options)},
+                request.scene, request.execution);
   };
   if (options.shading == Shading::ids) return paint(Ids{});
   if (options.shading == Shading::uv) return paint(Texcoords{});
@@ -170,8 +196,15 @@ void paint_map(const Request& request, TileCanvas& canvas) {
 }
 
 /// Precondition: check().
-void paint(const Request& request, TileCanvas& canvas) {
+void paint_surfaces(const Request& request, TileCanvas& canvas) {
   shows_materials(request.options.shading) ? paint_materials(request, canvas) : paint_map(request, canvas);
+}
+
+/// The same.
+void paint(const Request& request, TileCanvas& canvas) {
+  if (!request.options.light.shows_environment) return paint_surfaces(request, canvas);
+  EnvironmentCanvas surrounded(canvas, request.input.view(), lighting_of(request), request.execution.isa);
+  paint_surfaces(request, surrounded);
 }
 
 DeepImage deep_image(const Request& request) {
@@ -190,7 +223,7 @@ void paint_normals(PreparedScene& scene, const Visible& visible, const Execution
     large = large_primitives(scene.surfaces.primitive_count(), visible, execution);
     scene.triangles.smooth(*large, execution);
   }
-  scene.make_materials_ready(visible, execution);
+  scene.make_materials_ready(ShadeInput(visible), execution);
   TriangleSource source(scene.triangles, visible.view, large ? &*large : nullptr);
   if (!scene.materials.has_textures()) source.leave_out_texcoords();
   const TileWork::Colorist colorist = RawNormals{scene.materials, execution.isa};
@@ -215,7 +248,7 @@ Shader& Shader::operator=(Shader&&) noexcept = default;
 const Image& Shader::shade(const ShadeInput& input, const ShadeOptions& options, const Execution& execution) {
   const Request request{state_->scene, input, options, execution};
   check(request);
-  PlanesCanvas canvas(input.visible.view, {"R", "G", "B", "A"}, take());
+  PlanesCanvas canvas(input.view(), {"R", "G", "B", "A"}, take());
   paint(request, canvas);
   return state_->image = canvas.take();
 }
@@ -223,9 +256,17 @@ const Image& Shader::shade(const ShadeInput& input, const ShadeOptions& options,
 const Bitmap& Shader::shade_bitmap(const ShadeInput& input, const ShadeOptions& options, const Execution& execution) {
   const Request request{state_->scene, input, options, execution};
   check(request);
-  BitmapCanvas canvas(input.visible.view, take_bitmap());
+  BitmapCanvas canvas(input.view(), take_bitmap(), execution.isa);
   paint(request, canvas);
   return state_->bitmap = canvas.take();
+}
+
+const Image& Shader::shade(const ScanInput& input, const ShadeOptions& options, const Execution& execution) {
+  const ScanRequest request{state_->scene, input, options, execution};
+  check_scan(request);
+  PlanesCanvas canvas(SeenPoints(input.scan).view, {"R", "G", "B", "A"}, take());
+  paint_scan(request, canvas, background_color(options));
+  return state_->image = canvas.take();
 }
 
 DeepImage Shader::shade_deep(const ShadeInput& input, const ShadeOptions& options, const Execution& execution) {
@@ -257,6 +298,12 @@ Image shade(const Surfaces& surfaces, const ShadeInput& input, const ShadeOption
   return shader.take();
 }
 
+Image shade(const Surfaces& surfaces, const ScanInput& input, const ShadeOptions& options, const Execution& execution) {
+  Shader shader(surfaces);
+  shader.shade(input, options, execution);
+  return shader.take();
+}
+
 Bitmap shade_bitmap(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options,
                     const Execution& execution) {
   Shader shader(surfaces);
@@ -273,9 +320,12 @@ Image normal_image(const Surfaces& surfaces, const Visible& visible, const Execu
   return Shader(surfaces).normal_image(visible, execution);
 }
 
-std::optional<View> key_light_view(const Visible& visible, const Box& bounds, Axis up, const Execution& execution) {
+std::optional<View> key_light_view(const Visible& visible, const Box& bounds, const LightOptions& light,
+                                   const Execution& execution) {
   check_planes(visible, "light");
-  return view_of_light(visible, bounds, glm::dvec3(lighting_for(visible.view, up).to_key), execution);
+  check_light(light);
+  if (key_intensity(light) == 0) return std::nullopt;
+  return view_of_light(visible, bounds, glm::dvec3(direction_to_key(visible.view, light)), execution);
 }
 
 }  // namespace frontmost

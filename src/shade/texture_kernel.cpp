@@ -26,8 +26,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 using namespace frontmost::HWY_NAMESPACE;
 namespace {
 
-HWY_INLINE VF All(float value) { return hn::Set(DF(), value); }
-
 /// log2 of positive numbers to within 0.01, by operations that every machine rounds alike.
 HWY_INLINE VF Log2(VF value) {
   const DF d;
@@ -64,15 +62,15 @@ struct Footprints {
 
 void FindFootprints(const TapRequest& request, Footprints& out) {
   const DF d;
-  const Geometry& g = request.geometry;
   const Pyramid::Level& finest = request.pyramid.levels().front();
   const VF width = All(float(finest.width)), height = All(float(finest.height));
   const VF last = All(float(request.pyramid.levels().size() - 1)), one = All(1.0f), zero = hn::Zero(d);
   const MF is_filtered = hn::Gt(All(request.pyramid.texture().nearest ? 0.0f : 1.0f), zero);
   for (int k = 0; k < request.count; k += int(hn::Lanes(d))) {
     const int i = request.begin + k;
-    const UV at = Turned(request.transform, g.texcoord, i);
-    const UV dx = Turned(request.transform, g.texcoord_dx, i), dy = Turned(request.transform, g.texcoord_dy, i);
+    const UV at = Turned(request.transform, request.texcoord.value, i);
+    const UV dx = Turned(request.transform, request.texcoord.dx, i);
+    const UV dy = Turned(request.transform, request.texcoord.dy, i);
     const VF along_x = Length(hn::Mul(dx.u, width), hn::Mul(dx.v, height));
     const VF along_y = Length(hn::Mul(dy.u, width), hn::Mul(dy.v, height));
     const MF is_x = hn::Gt(along_x, along_y);
@@ -338,8 +336,8 @@ namespace frontmost::shading {
 FRONTMOST_KERNELS(FindTaps);
 FRONTMOST_KERNELS(FilterTaps);
 
-void TextureSampler::begin(const Geometry& geometry, int begin, int end) {
-  geometry_ = &geometry;
+void TextureSampler::begin(const TexcoordLanes& texcoord, int begin, int end) {
+  texcoord_ = &texcoord;
   begin_ = begin;
   end_ = end;
   places_.reset();
@@ -353,7 +351,7 @@ void TextureSampler::sample(const Pyramid& pyramid, const TexcoordTransform& tra
   const Places places{pyramid.texture().width,  pyramid.texture().height,  pyramid.texture().wrap_u,
                       pyramid.texture().wrap_v, pyramid.texture().nearest, transform};
   if (!(places_ == places)) {
-    kernel_for(FindTapsKernels, isa_)({*geometry_, begin_, end_ - begin_, transform, pyramid}, taps_);
+    kernel_for(FindTapsKernels, isa_)({*texcoord_, begin_, end_ - begin_, transform, pyramid}, taps_);
     places_ = places;
   }
   kernel_for(FilterTapsKernels, isa_)(pyramid, taps_, out);

@@ -23,6 +23,13 @@ namespace frontmost::shading {
 inline constexpr int most_taps = 8;         ///< of a fragment
 inline constexpr int sampled_at_once = 64;  ///< fragments: their taps stay within a first-level cache
 
+/// A texture as a material uses it.
+struct TextureSlot {
+  const Pyramid* pyramid = nullptr;  ///< null: not set
+  TexcoordTransform transform{TextureUse{}};
+  std::uint32_t set = 0;  ///< of texture coordinates
+};
+
 /// Where a texture of one size is looked up. Each tap has four numbers of a kind: for u and v of its finer level, and
 /// of the next.
 struct Taps {
@@ -41,9 +48,9 @@ struct Taps {
   FourTexels first, second;             ///< texels on either side
 };
 
-/// What taps are found from: places of the fragments [begin, begin + count) of a geometry, and the levels of a texture.
+/// What taps are found from: places of the fragments [begin, begin + count), and the levels of a texture.
 struct TapRequest {
-  const Geometry& geometry;
+  const TexcoordLanes& texcoord;
   int begin, count;
   const TexcoordTransform& transform;
   const Pyramid& pyramid;
@@ -54,9 +61,9 @@ class TextureSampler {
  public:
   explicit TextureSampler(Isa isa) : isa_(isa) {}
 
-  /// From now on the places are those of the fragments [begin, end), at most sampled_at_once, of `geometry`, which is
+  /// From now on the places are those of the fragments [begin, end), at most sampled_at_once, by `texcoord`, which is
   /// borrowed.
-  void begin(const Geometry& geometry, int begin, int end);
+  void begin(const TexcoordLanes& texcoord, int begin, int end);
   /// Sets out[i - begin] for each fragment i to linear RGBA: bilinear in the two levels nearest to the footprint,
   /// blended. Textures marked `nearest` give the one texel, empty ones white. Bytes are taken for light by a polynomial
   /// that is right to 1/50 of a step.
@@ -73,7 +80,7 @@ class TextureSampler {
   };
 
   Isa isa_;
-  const Geometry* geometry_ = nullptr;
+  const TexcoordLanes* texcoord_ = nullptr;
   int begin_ = 0, end_ = 0;
   std::optional<Places> places_;  ///< that the taps were found for
   Taps taps_;

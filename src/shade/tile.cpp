@@ -2,7 +2,6 @@
 #include "shade/tile.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "base/memory.h"
 
@@ -10,8 +9,9 @@ namespace frontmost::shading {
 
 void TileWork::begin(const ShadedLayer& layer, const Colorist& colorist, Isa isa) {
   visible_ = &layer.visible;
-  samples_ = layer.use == SampleUse::first ? 1 : layer.visible.view.samples;
-  const auto all = sample_offsets(layer.visible.view.samples);
+  mixed_ = layer.pixels;
+  samples_ = layer.use == SampleUse::first ? 1 : layer.view().samples;
+  const auto all = sample_offsets(layer.view().samples);
   centre_ = glm::vec2(0);
   for (std::size_t s = 0; s < std::size_t(samples_); ++s) {
     offsets_[s] = glm::vec2(all[s]) / 256.0f;
@@ -24,7 +24,7 @@ bool TileWork::shade(const TileRectangle& tile) {
   fragments_.clear();
   bool anything = false;
   for (int y = 0; y < tile.height; ++y) {
-    look_at_row(visible_->index(tile.x, tile.y + y), tile.width, rows_[y]);
+    look_at_row({tile.x, tile.y + y}, tile.width, rows_[y]);
     anything = anything || !rows_[y].is_empty;
   }
   if (!anything) return false;
@@ -43,7 +43,8 @@ void TileWork::fade(float opacity) {
   for (glm::vec4& pixel : pixels_) pixel *= opacity;
 }
 
-void TileWork::look_at_row(std::size_t begin, int width, Row& row) const {
+void TileWork::look_at_row(const glm::ivec2& at, int width, Row& row) const {
+  const std::size_t begin = visible_->index(at.x, at.y);
   // The same row of the next tile: steps of a row are too long for the processor to foresee.
   constexpr int line = 64 / sizeof(PrimitiveId);
   const PrimitiveId* plane = visible_->primitives.data() + begin;
@@ -54,6 +55,14 @@ void TileWork::look_at_row(std::size_t begin, int width, Row& row) const {
     row.differing[x] = 0;
     all &= plane[x];
   }
+  row.is_empty = all == no_primitive;
+  mixed_ ? find_mixed(at, width, row) : compare_planes(begin, width, row);
+}
+
+void TileWork::compare_planes(std::size_t begin, int width, Row& row) const {
+  constexpr int line = 64 / sizeof(PrimitiveId);
+  const PrimitiveId* plane = visible_->primitives.data() + begin;
+  PrimitiveId all = no_primitive;
   for (int s = 1; s < samples_; ++s) {
     plane += visible_->view.pixel_count();
     for (int x = 0; x < tile_width; x += line) prefetch_line(plane + tile_width + x);
@@ -62,7 +71,30 @@ void TileWork::look_at_row(std::size_t begin, int width, Row& row) const {
       all &= plane[x];
     }
   }
-  row.is_empty = all == no_primitive;
+  row.is_empty = row.is_empty && all == no_primitive;
+}
+
+void TileWork::find_mixed(const glm::ivec2& at, int width, Row& row) const {
+  constexpr int run = VisiblePixels::run;
+  static_assert(tile_width % run == 0);
+  std::size_t number = std::size_t(at.y) * mixed_->runs_across() + std::size_t(at.x / run);
+  for (int begin = 0; begin < width; begin += run, ++number) {
+    const unsigned mixed = mixed_->mixed[number];
+    if (mixed == 0) continue;
+    row.is_empty = false;
+    row.others[begin / run] = mixed_->others.data() + mixed_->places[number];
+    for (int x = begin; x < std::min(begin + run, width); ++x) row.differing[x] = mixed >> (x - begin) & 1u;
+  }
+}
+
+void TileWork::list_ids(const TileRectangle& tile, int x, int y, PrimitiveId* ids) {
+  ids[0] = rows_[y].first[x];
+  if (mixed_) {
+    const PrimitiveId*& others = rows_[y].others[x / VisiblePixels::run];
+    for (int s = 1; s < samples_; ++s) ids[s] = *others++;
+  } else {
+    for (int s = 1; s < samples_; ++s) ids[s] = visible_->primitives[visible_->index(tile.x + x, tile.y + y, s)];
+  }
 }
 
 void TileWork::add_pixels(const TileRectangle& tile, int y, int left, int right) {
@@ -71,7 +103,7 @@ void TileWork::add_pixels(const TileRectangle& tile, int y, int left, int right)
     const auto pixel = std::uint32_t(y * tile.width + x);
     const glm::ivec2 at(tile.x + x, tile.y + y);
     if (row.differing[x] != 0) {
-      add_mixed_pixel(at, pixel);
+      add_mixed_pixel(tile, x, y);
       ++x;
       continue;
     }
@@ -93,30 +125,32 @@ void TileWork::add_row(PrimitiveId id, int count, std::uint32_t pixel, glm::vec2
   }
 }
 
-void TileWork::add_mixed_pixel(const glm::ivec2& at, std::uint32_t pixel) {
+void TileWork::add_mixed_pixel(const TileRectangle& tile, int x, int y) {
   PrimitiveId ids[16];
-  for (int s = 0; s < samples_; ++s) ids[s] = visible_->primitives[visible_->index(at.x, at.y, s)];
+  list_ids(tile, x, y, ids);
+  const glm::vec2 corner(float(tile.x + x), float(tile.y + y));
   unsigned done = 0;
   for (int s = 0; s < samples_; ++s) {
     if (ids[s] == no_primitive || (done >> s) & 1) continue;
     glm::vec2 sum(0);
     unsigned own = 0;
+    float count = 0;
     for (int other = s; other < samples_; ++other)
       if (ids[other] == ids[s]) {
         sum += offsets_[std::size_t(other)];
         own |= 1u << other;
+        ++count;
       }
     done |= own;
-    const auto count = float(std::popcount(own));
     if (fragments_.is_full()) flush();
-    fragments_.add(ids[s], pixel, glm::vec2(at) + sum / count, own, count / float(samples_));
+    fragments_.add(ids[s], std::uint32_t(y * tile.width + x), corner + sum / count, own, count / float(samples_));
   }
 }
 
 void TileWork::flush() {
   // In the order of arrival, which is that of samples: sums of a pixel do not depend on its neighbours.
-  fragments_.hand_out([this](std::uint32_t pixel, float weight, const glm::vec3& light, float alpha) {
-    pixels_[pixel] += glm::vec4(light * (weight * alpha), weight * alpha);
+  fragments_.hand_out([this](const FragmentShader::Shaded& s) {
+    pixels_[s.number] += glm::vec4(s.light * (s.weight * s.alpha), s.weight * s.alpha);
   });
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "frontmost/visible.h"
+#include "frontmost/visible_pixels.h"
 #include "shade/fragment_shader.h"
 
 namespace frontmost::shading {
@@ -25,6 +26,9 @@ struct ShadedLayer {
   const TriangleSource& source;
   const Visible& visible;
   SampleUse use = SampleUse::all;
+  const VisiblePixels* pixels = nullptr;  ///< what all samples see, where `visible` says it of the first alone
+
+  [[nodiscard]] const View& view() const { return pixels ? pixels->view : visible.view; }
 };
 
 /// Reused from tile to tile and from picture to picture by one thread. About half a megabyte.
@@ -47,17 +51,25 @@ class TileWork {
   struct Row {
     PrimitiveId first[tile_width];      ///< sample 0
     PrimitiveId differing[tile_width];  ///< not 0 where samples see different primitives
+    /// Of a VisiblePixels, by its runs: what samples 1 and up of the next such pixel see.
+    const PrimitiveId* others[tile_width / VisiblePixels::run];
     bool is_empty;
   };
 
-  void look_at_row(std::size_t begin, int width, Row& row) const;
+  /// Of the pixels from (x, y) on.
+  void look_at_row(const glm::ivec2& at, int width, Row& row) const;
+  void compare_planes(std::size_t begin, int width, Row& row) const;
+  void find_mixed(const glm::ivec2& at, int width, Row& row) const;
+  /// What the samples of the next mixed pixel of a row see, which is at x of the tile.
+  void list_ids(const TileRectangle& tile, int x, int y, PrimitiveId* ids);
   /// Fragments of the pixels [left, right) of a row of the tile.
   void add_pixels(const TileRectangle& tile, int y, int left, int right);
   void add_row(PrimitiveId id, int count, std::uint32_t pixel, glm::vec2 screen);
-  void add_mixed_pixel(const glm::ivec2& at, std::uint32_t pixel);
+  void add_mixed_pixel(const TileRectangle& tile, int x, int y);
   void flush();
 
   const Visible* visible_ = nullptr;
+  const VisiblePixels* mixed_ = nullptr;  ///< null where `visible_` holds all samples
   int samples_ = 1;
   std::array<glm::vec2, 16> offsets_{};  ///< of the samples within a pixel
   glm::vec2 centre_{0};                  ///< their mean

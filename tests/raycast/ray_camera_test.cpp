@@ -294,12 +294,51 @@ TEST(RayCamera, RefusesWhatIsOutOfRange) {
   for (const double elevation : {2.0, -2.0, nan}) EXPECT_EQ(refusal({Lidar{{elevation}, 4}}), bad);
   EXPECT_EQ(refusal({Lidar{std::vector<double>(3, 0.0), 1 << 28}}), large);
   EXPECT_EQ(refusal({RayPattern{}}), bad);
+  EXPECT_EQ(refusal({Panorama{}, glm::dmat4(1.0), 3}), bad);
+  EXPECT_EQ(refusal({Fisheye{}, glm::dmat4(1.0), 0}), bad);
+  EXPECT_EQ(refusal({Lidar{{0}, 4}, glm::dmat4(1.0), 4}), bad);
+  EXPECT_EQ(refusal({Panorama{16384, 8192}, glm::dmat4(1.0), 4}), large);
   EXPECT_EQ(refusal({Panorama{}, glm::dmat4(2.0)}), ErrorCode::singular_camera);
   glm::dmat4 far_away(1.0);
   far_away[3].x = 1e300;
   EXPECT_EQ(refusal({Panorama{}, far_away}), large);
   EXPECT_THROW((void)ring_elevations(0, 0, 1), Error);
   EXPECT_THROW((void)ring_elevations(3, 1, 0), Error);
+}
+
+TEST(RangeScan, SamplesLieWhereThoseOfAViewDo) {
+  // The middle pixel of a fisheye looks ahead; 10 pixels from the middle to the rim are 60 degrees.
+  const RayCamera camera{Fisheye{21, 21, 2.1 * pi / 3}, glm::dmat4(1.0), 4};
+  const std::span<const glm::ivec2> offsets = sample_offsets(4);
+  for (int s = 0; s < 4; ++s) {
+    const glm::dvec2 at = glm::dvec2(offsets[std::size_t(s)]) / 256.0 - 0.5;
+    const double angle = glm::length(at) * glm::radians(6.0);
+    expect_near(ray_of(camera, 10, 10, s).direction, {std::sin(angle) * at.x / glm::length(at),
+                                                      -std::sin(angle) * at.y / glm::length(at), -std::cos(angle)});
+  }
+  const RayCamera around{Panorama{12, 6}, glm::dmat4(1.0), 16};
+  for (int s = 0; s < 16; ++s) {
+    const double azimuth = sample_offsets(16)[std::size_t(s)].x / 256.0 * pi / 6;
+    const double elevation = (3 - 2 - sample_offsets(16)[std::size_t(s)].y / 256.0) * pi / 6;
+    expect_near(ray_of(around, 6, 2, s).direction, {std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+                                                    -std::cos(azimuth) * std::cos(elevation)});
+  }
+}
+
+TEST(RangeScan, EverySampleMeetsWhatItsRayMeets) {
+  const Indexed of(scene_of(random_mesh(Kind::soup, 300, 4)));
+  for (const RayCamera& camera :
+       {RayCamera{Panorama{30, 17}, glm::dmat4(1.0), 8}, RayCamera{Fisheye{20, 25, 4}, glm::dmat4(1.0), 2}}) {
+    const RangeScan result = scan(of.index, camera);
+    ASSERT_EQ(result.ranges.size(), std::size_t(result.width * result.height * camera.samples));
+    for (int s = 0; s < camera.samples; ++s)
+      for (int y = 0; y < result.height; ++y)
+        for (int x = 0; x < result.width; ++x) {
+          const RayHit hit = closest_hit(of.index, ray_of(camera, x, y, s));
+          ASSERT_EQ(result.primitives[result.index(x, y, s)], hit.primitive);
+        }
+    EXPECT_EQ(planar_depths(result).size(), result.ranges.size());
+  }
 }
 
 TEST(RangeScan, CanBeCancelled) {

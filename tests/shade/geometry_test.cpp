@@ -155,16 +155,16 @@ TEST(TriangleSource, AttributesFollowTheirOwnIndices) {
   const World world(scene_of(mesh));
   const TriangleSetup setup = world.set_up(1, {28, 28});
   EXPECT_EQ(setup.triangle, 1u);
-  EXPECT_EQ(setup.texcoord[0], glm::vec2(1, 1));
-  EXPECT_EQ(setup.texcoord[2], glm::vec2(0.5f, 0.25f));
+  EXPECT_EQ(setup.texcoord[0][0], glm::vec2(1, 1));
+  EXPECT_EQ(setup.texcoord[0][2], glm::vec2(0.5f, 0.25f));
   EXPECT_EQ(setup.color[1], glm::vec4(0, 0, 1, 1));
 }
 
 TEST(TriangleSource, TextureCoordinatesCanBeLeftOut) {
   World world(scene_of(square()));
-  EXPECT_TRUE(world.set_up(0).has_texcoord);
+  EXPECT_TRUE(world.set_up(0).has_texcoord[0]);
   world.source.leave_out_texcoords();
-  EXPECT_FALSE(world.set_up(0).has_texcoord);
+  EXPECT_FALSE(world.set_up(0).has_texcoord[0]);
 }
 
 TEST(TriangleSource, InstancesKnowWhichSideIsSeen) {
@@ -210,11 +210,11 @@ TEST(InterpolateGeometry, AgreesWithTheFormulaOneByOne) {
       ASSERT_EQ(g.position.at(i), point) << i;
       ASSERT_LT(glm::length(g.to_viewer.at(i) + glm::normalize(point)), 1e-6f);
       ASSERT_LT(glm::length(g.normal.at(i) - glm::normalize(interpolate(t.normal, b.weight))), 1e-6f);
-      const glm::vec2 texcoord = interpolate(t.texcoord, b.weight);
-      const Gradient change = gradient(t, t.texcoord, texcoord, b);
-      ASSERT_EQ(g.texcoord.at(i), texcoord);
-      ASSERT_EQ(g.texcoord_dx.at(i), change.dx);
-      ASSERT_EQ(g.texcoord_dy.at(i), change.dy);
+      const glm::vec2 texcoord = interpolate(t.texcoord[0], b.weight);
+      const Gradient change = gradient(t, t.texcoord[0], texcoord, b);
+      ASSERT_EQ(g.texcoord.value.at(i), texcoord);
+      ASSERT_EQ(g.texcoord.dx.at(i), change.dx);
+      ASSERT_EQ(g.texcoord.dy.at(i), change.dy);
       ASSERT_EQ(glm::vec4(g.color.at(i), g.alpha[i]), interpolate(t.color, b.weight));
       ASSERT_EQ(g.plane_normal.at(i), t.plane_normal);
       // Normals that spread apart mean a bulge: the lifted point is before the flat one.

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <random>
 
 #include "base/srgb.h"
 #include "shade/texture_sampler.h"
@@ -26,15 +27,15 @@ struct Footprint {
 std::vector<glm::vec4> samples(const Pyramid& pyramid, const std::vector<Footprint>& footprints,
                                const TexcoordTransform& transform = TexcoordTransform(TextureUse{}),
                                Isa isa = Isa::best) {
-  const auto geometry = std::make_unique<Geometry>();
+  const auto texcoord = std::make_unique<TexcoordLanes>();
   for (std::size_t i = 0; i < footprints.size(); ++i) {
-    geometry->texcoord.set(int(i), footprints[i].texcoord);
-    geometry->texcoord_dx.set(int(i), footprints[i].dx);
-    geometry->texcoord_dy.set(int(i), footprints[i].dy);
+    texcoord->value.set(int(i), footprints[i].texcoord);
+    texcoord->dx.set(int(i), footprints[i].dx);
+    texcoord->dy.set(int(i), footprints[i].dy);
   }
   std::vector<glm::vec4> values(footprints.size());
   TextureSampler sampler(isa);
-  sampler.begin(*geometry, 0, int(footprints.size()));
+  sampler.begin(*texcoord, 0, int(footprints.size()));
   sampler.sample(pyramid, transform, values.data());
   return values;
 }
@@ -115,6 +116,39 @@ TEST(Pyramid, ACheckerFarAwayIsHalfTheLightNotHalfTheByte) {
   EXPECT_NEAR(sample(colors, far).r, 0.5f, 0.003f);  // sRGB byte 188
   EXPECT_EQ(srgb8_of_linear(sample(colors, far).r), 188);
   EXPECT_NEAR(sample(numbers, far).r, 0.5f, 0.003f);
+}
+
+/// Of four opaque texels, one channel, by the definition.
+std::uint8_t mean_of(const std::array<std::uint8_t, 4>& bytes, Encoding encoding) {
+  if (encoding == Encoding::linear) return std::uint8_t((bytes[0] + bytes[1] + bytes[2] + bytes[3] + 2) / 4);
+  return srgb8_of_linear(0.25f * ((linear_of_srgb8(bytes[0]) + linear_of_srgb8(bytes[1])) +
+                                  (linear_of_srgb8(bytes[2]) + linear_of_srgb8(bytes[3]))));
+}
+
+TEST(Pyramid, FourOpaqueTexelsMakeTheirMeanWhateverIsBesideThem) {
+  std::mt19937 random(11);
+  for (const Encoding encoding : {Encoding::srgb, Encoding::linear})
+    for (const bool has_clear : {false, true}) {
+      Texture texture = constant(38, 22, glm::u8vec4(255));
+      for (glm::u8vec4& texel : texture.pixels) {
+        for (int k = 0; k < 3; ++k) texel[k] = std::uint8_t(random());
+        if (has_clear && random() % 50 == 0) texel.a = std::uint8_t(random());
+      }
+      const Pyramid pyramid(texture, encoding);
+      int found = 0;
+      for (int y = 0; y < 11; ++y)
+        for (int x = 0; x < 19; ++x) {
+          const glm::u8vec4* const upper = texture.pixels.data() + 2 * y * 38 + 2 * x;
+          const std::array<glm::u8vec4, 4> four{upper[0], upper[1], upper[38], upper[39]};
+          if ((four[0].a & four[1].a & four[2].a & four[3].a) != 255) continue;
+          ++found;
+          const glm::u8vec4& mean = pyramid.levels()[1].texels[y * 19 + x];
+          ASSERT_EQ(mean.a, 255);
+          for (int k = 0; k < 3; ++k)
+            ASSERT_EQ(mean[k], mean_of({four[0][k], four[1][k], four[2][k], four[3][k]}, encoding)) << x << ", " << y;
+        }
+      EXPECT_EQ(found == 11 * 19, !has_clear);
+    }
 }
 
 TEST(Pyramid, ASlantedFootprintStaysSharpAcrossItsShortSide) {
@@ -289,14 +323,14 @@ TEST(TextureSampler, GivesTheSameBytesOnEveryInstructionSet) {
 }
 
 TEST(TextureSampler, TexturesOfOtherSizesAndWrapsAreNotLookedUpAtEachOthersPlaces) {
-  const auto geometry = std::make_unique<Geometry>();
-  geometry->texcoord.set(0, {1.3f, -0.2f});
+  const auto texcoord = std::make_unique<TexcoordLanes>();
+  texcoord->value.set(0, {1.3f, -0.2f});
   std::vector<Texture> textures;
   for (const int size : {4, 7, 4, 4}) textures.push_back(checker(size));
   textures[2].wrap_u = Texture::Wrap::clamp;
   textures[3].nearest = true;
   TextureSampler together(Isa::best);
-  together.begin(*geometry, 0, 1);
+  together.begin(*texcoord, 0, 1);
   for (const Texture& texture : textures) {
     const Pyramid pyramid(texture, Encoding::linear);
     glm::vec4 value;

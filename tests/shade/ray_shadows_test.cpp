@@ -46,7 +46,7 @@ TEST(RayShadows, TheShadowIsTheRoofMovedAlongTheLight) {
   const Scene scene = roof_and_floor(0.6);
   const View view = front_view(128);
   const Image lit = unshadowed(scene, view), shadowed = by_rays(scene, view);
-  const glm::vec3 to_key = shading::lighting_for(view, scene.up).to_key;
+  const glm::vec3 to_key = shading::direction_to_key(view, {});
   const glm::dvec2 centre = glm::dvec2(-0.5, 0.5) - 0.6 * glm::dvec2(to_key) / double(to_key.z);
   std::size_t dark = 0;
   for (int y = 0; y < 128; ++y)

@@ -106,13 +106,15 @@ TEST(Shader, AFlightAllocatesNothingOnceItHasBeenFlown) {
   Shader shader(surfaces);
   ZBuffer buffer;
   for (const Shading shading : {Shading::lit, Shading::flat, Shading::normals, Shading::ids}) {
+    ShadeOptions options{.shading = shading};
+    if (shading == Shading::lit) options.ambient_occlusion.emplace();
     const void* planes = nullptr;
     const auto fly = [&] {
       std::size_t count = 0;
       for (int i = 0; i < 8; ++i) {
         const Visible& visible = buffer.draw(surfaces, view_of_flight(surfaces, i % 4), {.threads = 1});
         const std::size_t before = allocation_count();
-        const Bitmap& bitmap = shader.shade_bitmap(visible, {.shading = shading}, {.threads = 1});
+        const Bitmap& bitmap = shader.shade_bitmap(visible, options, {.threads = 1});
         count += allocation_count() - before + (planes && bitmap.rgba.data() != planes);
         planes = bitmap.rgba.data();
       }
@@ -192,7 +194,7 @@ TEST(Shader, RefusesWhatItCannotReadBeforeItAsksForMemory) {
   EXPECT_TRUE(shader.take_bitmap().rgba.empty());
   EXPECT_EQ(shader.take_bitmap().width, 0);
   // What it takes is what key_light_view() gives.
-  const Visible light = zbuffer(surfaces, *key_light_view(visible, surfaces.bounds(), scene.up));
+  const Visible light = zbuffer(surfaces, *key_light_view(visible, surfaces.bounds()));
   expect_same(good, shader.shade_bitmap({visible, &light}));
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "frontmost/zbuffer.h"
+#include "shade/shadow/light_view.h"
 #include "shade/support.h"
 #include "support/key_light_map.h"
 
@@ -92,6 +93,22 @@ TEST(ShadowMap, WhatIsNotInThePictureStillThrowsItsShadow) {
   const Shadowed shadowed(floor_and_roof(height), {-1, 0, 0.4}, view);
   EXPECT_EQ(shadowed.at({0.9, 0, 0}), 0.0f);
   EXPECT_EQ(shadowed.at({0.9, 0, 0.39}), 1.0f);
+}
+
+// As from the front, with the light overhead: the picture's up says nothing of how to turn the map.
+TEST(ShadowMap, IsThereForALightStraightAboveOrBelowThePicture) {
+  for (const double side : {1.0, -1.0}) {
+    View front = front_view(256);
+    front.world_from_eye = look_at({0, -6, 0.2}, {0, 0, 0.2}, {0, 0, side});
+    front.projection = make_projection(0.8, 1, {1, 30});
+    ASSERT_EQ(front.up(), glm::dvec3(0, 0, side));
+    for (const glm::dvec3 to_light : {glm::dvec3(0, 0, 1), glm::dvec3(1e-9, 0, 1), glm::dvec3(1e-5, 0, 1)}) {
+      const Shadowed shadowed(floor_and_roof(0.4), to_light, front);
+      EXPECT_EQ(shadowed.at({0, 0, 0}), 0.0f);
+      EXPECT_EQ(shadowed.at({0.9, 0, 0}), 1.0f);
+      EXPECT_EQ(shadowed.at({0, 0, 0.4}), 1.0f);
+    }
+  }
 }
 
 TEST(ShadowMap, NothingSeenIsAllLit) {

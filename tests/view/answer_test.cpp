@@ -56,7 +56,7 @@ TEST_F(Answer, PlanesThatWereMovedAwayAreRefusedByAllReaders) {
   expect_refused(size, [&] { (void)shade_bitmap(surfaces, gone); });
   expect_refused(size, [&] { (void)shade_deep(surfaces, gone); });
   expect_refused(size, [&] { (void)normal_image(surfaces, gone); });
-  expect_refused(size, [&] { (void)key_light_view(gone, surfaces.bounds(), Axis::y); });
+  expect_refused(size, [&] { (void)key_light_view(gone, surfaces.bounds()); });
   expect_refused(size, [&] { (void)find_depth_fights(surfaces, find_exact_visible(surfaces, view), gone); });
 }
 

@@ -41,6 +41,12 @@ bool looks_like_obj(std::string_view text) {
                      [&](std::string_view word) { return starts_with_word(text, word); });
 }
 
+/// Of JSON. It may stand anywhere, as writers that sort keys put accessors before it.
+bool has_asset(Bytes bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return text.find("\"asset\"") != std::string_view::npos;
+}
+
 }  // namespace
 
 std::optional<ModelFormat> format_of_suffix(const std::string& path) {
@@ -62,7 +68,8 @@ Axis default_up(ModelFormat format) {
 
 std::optional<ModelFormat> format_of_content(Bytes bytes) {
   const std::string_view text = first_statement(bytes);
-  if (text.starts_with("glTF") || text.starts_with('{')) return ModelFormat::gltf;
+  if (text.starts_with("glTF")) return ModelFormat::gltf;
+  if (text.starts_with('{')) return has_asset(bytes) ? ModelFormat::gltf : ModelFormat::scene;
   if (text.starts_with("PK\x03\x04")) return ModelFormat::threemf;
   if (starts_with_word(text, "ply")) return ModelFormat::ply;
   if (looks_like_off(text)) return ModelFormat::off;

@@ -22,6 +22,7 @@ Scene read(ModelFormat format, Bytes bytes, const ModelSource& source) {
     case ModelFormat::off: return read_off(bytes, source);
     case ModelFormat::gltf: return read_gltf(bytes, source);
     case ModelFormat::threemf: return read_3mf(bytes, source);
+    case ModelFormat::scene: return read_scene_file(bytes, source);
   }
   throw Error(ErrorCode::bad_argument, source.name() + ": not a model format");
 }
@@ -35,12 +36,12 @@ Scene read_any(Bytes bytes, const ModelSource& source, std::optional<ModelFormat
   if (!format) format = format_of_content(bytes);
   if (!format)
     refuse(source, conversion_by_content(bytes).value_or(
-                       "not a model that Frontmost can read (STL, PLY, OBJ, OFF, glTF, GLB, 3MF)"));
+                       "not a model that Frontmost can read (STL, PLY, OBJ, OFF, glTF, GLB, 3MF, a scene file)"));
   report_progress(source.execution(), "load", 0);
   Scene scene = read(*format, bytes, source);
   scene.source.format = format;
   scene.name = source.stem();
-  scene.up = options.up.value_or(default_up(*format));
+  scene.up = options.up.value_or(*format == ModelFormat::scene ? scene.up : default_up(*format));
   try {
     validate(scene);
   } catch (const Error& error) {
@@ -56,6 +57,21 @@ Scene read_any(Bytes bytes, const ModelSource& source, std::optional<ModelFormat
 }
 
 }  // namespace
+
+Scene load_named(const std::string& reference, const ModelSource& scene_file) {
+  if (reference.starts_with(builtin_prefix)) return builtin(std::string_view(reference).substr(builtin_prefix.size()));
+  const std::filesystem::path path = scene_file.path_of(reference);
+  const InputFile file = scene_file.open(reference, max_file_bytes);
+  const auto opened = std::make_shared<OpenedFiles>(path);
+  const ModelSource source(printable(reference), scene_file.execution(), file, path, opened);
+  if (const auto conversion = conversion_by_suffix(reference)) refuse(source, *conversion);
+  auto format = format_of_suffix(reference);
+  if (!format) format = format_of_content(file.bytes());
+  if (format == ModelFormat::scene) refuse(source, "is a scene file itself; scene files place models alone");
+  Scene scene = read_any(file.bytes(), source, format, {});
+  scene.source.files = opened->paths();
+  return scene;
+}
 
 Scene load(const std::string& path, const LoadOptions& options, const Execution& execution) {
   if (path.starts_with(builtin_prefix)) {
@@ -75,6 +91,7 @@ Scene load(const std::string& path, const LoadOptions& options, const Execution&
   if (const auto conversion = options.format ? std::nullopt : conversion_by_suffix(path)) refuse(source, *conversion);
   const auto format = options.format ? options.format : format_of_suffix(path);
   Scene scene = read_any(file.bytes(), source, format, options);
+  for (std::filesystem::path& used : scene.source.files) opened->add(std::move(used));  // by the models of a scene file
   scene.source.files = opened->paths();
   return scene;
 }

@@ -57,7 +57,7 @@ void ModelSource::fail_limit(const std::string& place, const std::string& reason
   throw Error(ErrorCode::limit_exceeded, name_ + ": " + place + ": " + reason);
 }
 
-fs::path ModelSource::confined(const std::string& reference) const {
+fs::path ModelSource::path_of(const std::string& reference) const {
   const auto refuse = [&](const char* reason) -> void {
     throw Error(ErrorCode::file_unreadable, name_ + ": " + printable(reference) + ": " + reason);
   };
@@ -82,7 +82,7 @@ fs::path ModelSource::confined(const std::string& reference) const {
 }
 
 InputFile ModelSource::open(const std::string& reference, std::uint64_t max_bytes) const {
-  const fs::path found = confined(reference);
+  const fs::path found = path_of(reference);
   if (opened_) opened_->add(found);
   return InputFile::open(found, name_ + ": " + printable(reference), max_bytes);
 }

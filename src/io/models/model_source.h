@@ -65,6 +65,8 @@ class ModelSource {
   /// \throws Error file_unreadable: missing, not an ordinary file, or outside the model's folder (by its name or
   /// through links); limit_exceeded. what() starts with the name of the model and `reference`.
   [[nodiscard]] InputFile open(const std::string& reference, std::uint64_t max_bytes) const;
+  /// Where that file lies, without links. \throws Error as open() does.
+  [[nodiscard]] std::filesystem::path path_of(const std::string& reference) const;
 
   /// Says that `part` of the model's bytes was read for the last time. Keeps the memory in use low.
   void release(std::span<const std::byte> part) const {
@@ -82,8 +84,6 @@ class ModelSource {
   [[noreturn]] void fail_limit(const std::string& place, const std::string& reason) const;
 
  private:
-  [[nodiscard]] std::filesystem::path confined(const std::string& reference) const;
-
   std::string name_;
   Execution execution_;
   const InputFile* file_ = nullptr;

@@ -26,6 +26,7 @@ std::unique_ptr<ModelStream> open(ModelFormat format, StreamStart start, const M
     case ModelFormat::off: refuse_stream(source, "OFF");
     case ModelFormat::gltf: refuse_stream(source, "glTF");
     case ModelFormat::threemf: refuse_stream(source, "3MF");
+    case ModelFormat::scene: refuse_stream(source, "a scene file");
   }
   throw Error(ErrorCode::bad_argument, source.name() + ": not a model format");
 }

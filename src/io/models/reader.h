@@ -20,13 +20,19 @@ namespace frontmost {
 /// This and the next tell SceneSource::metres_per_unit.
 [[nodiscard]] Scene read_gltf(Bytes bytes, const ModelSource& source);
 [[nodiscard]] Scene read_3mf(Bytes bytes, const ModelSource& source);
+/// A scene file (io/scenes), which names models; it tells SceneSource::metres_per_unit and which way is up.
+[[nodiscard]] Scene read_scene_file(Bytes bytes, const ModelSource& source);
+
+/// The model that a scene file names, a built-in scene or a file beside it, as load() gives it.
+/// \throws Error as load() does, and unsupported for what is a scene file itself.
+[[nodiscard]] Scene load_named(const std::string& reference, const ModelSource& scene_file);
 
 /// What is said of a model that is read, whole or streamed, and holds nothing.
 inline constexpr const char* no_triangles_warning = "the file holds no triangles";
 
 /// The format that a file's suffix stands for. None: not one of ours.
 [[nodiscard]] std::optional<ModelFormat> format_of_suffix(const std::string& path);
-/// Which way is up in files of a format, unless something else is said.
+/// Which way is up in files of a format, unless something else is said. Not asked of scene files, which may say it.
 [[nodiscard]] Axis default_up(ModelFormat format);
 /// The format that the contents look like. None: none of ours.
 [[nodiscard]] std::optional<ModelFormat> format_of_content(Bytes bytes);

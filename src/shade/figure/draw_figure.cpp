@@ -31,8 +31,9 @@ Occluders occluders_of(const Surfaces& surfaces, const FigureOptions& options, H
     const Scene& scene = surfaces.scene();
     const PrimitiveSource source = surfaces.source(id);
     const std::uint32_t material = scene.meshes[source.mesh].material_of(source.triangle);
-    const Material::Alpha alpha = material == no_index ? Material::Alpha::opaque : scene.materials[material].alpha;
-    return alpha == Material::Alpha::opaque || (holes == Holes::cut_out && alpha == Material::Alpha::mask);
+    if (material == no_index) return true;
+    const Material& m = scene.materials[material];
+    return !m.is_see_through() && (m.alpha == Material::Alpha::opaque || holes == Holes::cut_out);
   });
 }
 
@@ -70,7 +71,7 @@ Figure figure_of(shading::PreparedScene& scene, const ShadeInput& input, const F
   const Surfaces& surfaces = scene.surfaces;
   check_planes(input.visible, "figure");
   shading::check_opacity(options.shade);
-  if (input.visible.view.samples != 1)
+  if (input.view().samples != 1)
     throw Error(ErrorCode::bad_argument, "figure: what is visible must have one sample a pixel");
   if (!(options.tolerance >= 0 && options.tolerance <= 255))
     throw Error(ErrorCode::bad_argument, "figure: tolerance: must be 0 to 255");

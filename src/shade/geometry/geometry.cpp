@@ -18,16 +18,22 @@ bool all_equal(const PrimitiveId* ids, std::size_t count, PrimitiveId id) {
 }  // namespace
 
 BitSet seen_primitives(const Surfaces& surfaces, const Visible& visible, const Execution& execution, BitSet memory) {
+  const std::span<const PrimitiveId> ids(visible.primitives.data(), visible.primitives.size());
+  return seen_primitives(surfaces.primitive_count(), ids, execution, std::move(memory));
+}
+
+BitSet seen_primitives(std::size_t primitive_count, std::span<const PrimitiveId> ids, const Execution& execution,
+                       BitSet memory) {
   BitSet seen = std::move(memory);
-  seen.clear(surfaces.primitive_count());
+  seen.clear(primitive_count);
   constexpr std::size_t samples_at_once = 1u << 16, run = 64;
-  parallel_for(execution, visible.primitives.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
+  parallel_for(execution, ids.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
     PrimitiveId last = no_primitive;
     for (std::size_t first = begin; first < end; first += run) {
       const std::size_t count = std::min(run, end - first);
-      if (all_equal(visible.primitives.data() + first, count, last)) continue;
+      if (all_equal(ids.data() + first, count, last)) continue;
       for (std::size_t i = first; i < first + count; ++i) {
-        const PrimitiveId id = visible.primitives[i];
+        const PrimitiveId id = ids[i];
         if (id == last) continue;
         last = id;
         if (id != no_primitive) seen.add(id);
@@ -39,17 +45,22 @@ BitSet seen_primitives(const Surfaces& surfaces, const Visible& visible, const E
 
 BitSet large_primitives(std::size_t primitive_count, const Visible& visible, const Execution& execution,
                         BitSet memory) {
+  const std::span<const PrimitiveId> first(visible.primitives.data(), visible.view.pixel_count());
+  return large_primitives(primitive_count, first, visible.view.width, execution, std::move(memory));
+}
+
+BitSet large_primitives(std::size_t primitive_count, std::span<const PrimitiveId> ids, int width,
+                        const Execution& execution, BitSet memory) {
   BitSet large = std::move(memory);
   large.clear(primitive_count);
-  const View& view = visible.view;
-  parallel_for(execution, std::size_t(view.height), 16, [&](std::size_t begin, std::size_t end) {
+  parallel_for(execution, ids.size() / std::size_t(width), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y) {
-      const PrimitiveId* row = visible.primitives.data() + visible.index(0, int(y));
+      const PrimitiveId* row = ids.data() + y * std::size_t(width);
       const auto is_at = [&](PrimitiveId id, int x, int up) {
-        return x >= 0 && std::size_t(up) <= y && row[x - up * view.width] == id;
+        return x >= 0 && std::size_t(up) <= y && row[x - up * width] == id;
       };
       PrimitiveId last = no_primitive;
-      for (int x = 0; x < view.width; ++x) {
+      for (int x = 0; x < width; ++x) {
         const PrimitiveId id = row[x];
         if (id == no_primitive || id == last) continue;
         const bool left = is_at(id, x - 1, 0), above = is_at(id, x, 1);

@@ -20,11 +20,19 @@ namespace frontmost::shading {
 [[nodiscard]] BitSet seen_primitives(const Surfaces& surfaces, const Visible& visible, const Execution& execution,
                                      BitSet memory = {});
 
+/// The same of any ids. O(ids), in parallel.
+[[nodiscard]] BitSet seen_primitives(std::size_t primitive_count, std::span<const PrimitiveId> ids,
+                                     const Execution& execution, BitSet memory = {});
+
 /// Every primitive whose first samples cover three pixels in a row or around a corner. On smaller ones a smooth
 /// normal could hardly be told from a flat one: scans of millions of triangles are spared it.
 /// O(pixels + primitives / 64), in parallel. `memory` is that of the result, where it fits.
 [[nodiscard]] BitSet large_primitives(std::size_t primitive_count, const Visible& visible, const Execution& execution,
                                       BitSet memory = {});
+
+/// The same of `ids` in rows of `width` pixels.
+[[nodiscard]] BitSet large_primitives(std::size_t primitive_count, std::span<const PrimitiveId> ids, int width,
+                                      const Execution& execution, BitSet memory = {});
 
 /// For every material of the scene, whether one of the seen triangles has it that are not `known` yet.
 /// O(primitives / 64 + new ones).
@@ -104,8 +112,19 @@ class TriangleSource {
   bool has_texcoords_ = true;
 };
 
-/// Fills batch.geometry from batch.coverage. Quickest where the fragments of a triangle lie together.
+/// Fills batch.geometry from batch.coverage, with the first set of texture coordinates. Quickest where the fragments of
+/// a triangle lie together.
 void interpolate_geometry(const ScreenRays& rays, const std::vector<TriangleSetup>& setups, FragmentBatch& batch,
                           Isa isa);
+
+/// Fragments [begin, end) of a batch, and a set of the texture coordinates of their triangles.
+struct TexcoordRequest {
+  const std::vector<TriangleSetup>& setups;
+  const Coverage& coverage;
+  std::uint32_t set;
+  int begin, end;
+};
+/// Fills `out` of these fragments as interpolate_geometry() does for the first set; what it holds behind them is lost.
+void interpolate_texcoords(const TexcoordRequest& request, TexcoordLanes& out, Isa isa);
 
 }  // namespace frontmost::shading

@@ -25,7 +25,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 using namespace frontmost::HWY_NAMESPACE;
 namespace {
 
-HWY_INLINE VF All(float value) { return hn::Set(DF(), value); }
 HWY_INLINE VF AtLeastZero(VF value) {  // 0 for NaN
   return hn::IfThenElseZero(hn::Gt(value, hn::Zero(DF())), value);
 }
@@ -182,10 +181,19 @@ HWY_INLINE VF3 ToEye(const VF3& p) {
 struct Coordinate {
   VF value, dx, dy;
 };
-HWY_INLINE Coordinate CoordinateAt(const VectorTriangles& of, float glm::vec2::*axis, const Weights& w) {
-  const VF a = of([axis](const TriangleSetup& t) { return t.texcoord[0].*axis; });
-  const VF b = of([axis](const TriangleSetup& t) { return t.texcoord[1].*axis; });
-  const VF c = of([axis](const TriangleSetup& t) { return t.texcoord[2].*axis; });
+/// Which set of texture coordinates, and which of the two.
+struct CoordinateKind {
+  std::uint32_t set;
+  float glm::vec2::*axis;
+};
+HWY_INLINE Coordinate CoordinateAt(const VectorTriangles& of, CoordinateKind kind, const Weights& w) {
+  const auto corner = [&](std::size_t k) {
+    // Of the first set those are zero that are not there, so that nobody has to ask.
+    return of([=](const TriangleSetup& t) {
+      return (kind.set == 0 ? t.texcoord[0][k] : t.texcoord_at(kind.set, k)).*kind.axis;
+    });
+  };
+  const VF a = corner(0), b = corner(1), c = corner(2);
   const VF value = Between(a, b, c, w.weight), scale = hn::Div(All(1.0f), w.divisor);
   const VF from_a = hn::Sub(a, value), from_b = hn::Sub(b, value), from_c = hn::Sub(c, value);
   const auto change = [&](float Affine::*step) {
@@ -197,11 +205,30 @@ HWY_INLINE Coordinate CoordinateAt(const VectorTriangles& of, float glm::vec2::*
   return {value, change(&Affine::step_x), change(&Affine::step_y)};
 }
 
-HWY_INLINE void StoreTexcoords(const VectorTriangles& of, const Weights& w, Geometry& out, int i) {
-  const Coordinate u = CoordinateAt(of, &glm::vec2::x, w), v = CoordinateAt(of, &glm::vec2::y, w);
-  Store(u.value, v.value, out.texcoord, i);
-  Store(u.dx, v.dx, out.texcoord_dx, i);
-  Store(u.dy, v.dy, out.texcoord_dy, i);
+/// Fragments from number `i` on, and the set that is wanted of them.
+struct TexcoordPlace {
+  int i;
+  std::uint32_t set;
+  const PixelSteps* steps;
+};
+
+/// From changes per unit of the screen to changes per step.
+HWY_INLINE VF AlongStep(const Coordinate& c, const Lane2& step, int i) {
+  const DF d;
+  return hn::Add(hn::Mul(c.dx, hn::LoadU(d, &step.x[i])), hn::Mul(c.dy, hn::LoadU(d, &step.y[i])));
+}
+
+HWY_INLINE void StoreTexcoords(const VectorTriangles& of, const Weights& w, TexcoordPlace place, TexcoordLanes& out) {
+  const Coordinate u = CoordinateAt(of, {place.set, &glm::vec2::x}, w);
+  const Coordinate v = CoordinateAt(of, {place.set, &glm::vec2::y}, w);
+  Store(u.value, v.value, out.value, place.i);
+  if (const PixelSteps* const steps = place.steps) {
+    Store(AlongStep(u, steps->x, place.i), AlongStep(v, steps->x, place.i), out.dx, place.i);
+    Store(AlongStep(u, steps->y, place.i), AlongStep(v, steps->y, place.i), out.dy, place.i);
+    return;
+  }
+  Store(u.dx, v.dx, out.dx, place.i);
+  Store(u.dy, v.dy, out.dy, place.i);
 }
 
 /// Triangles without colours are white, exactly.
@@ -243,7 +270,7 @@ void InterpolateVector(const std::vector<TriangleSetup>& setups, int i, const Ba
   Store(normal, out.normal, i);
   Store(lifted, out.smooth_position, i);
   Store(ToEye(position), out.to_viewer, i);
-  if (attributes.texcoord) StoreTexcoords(of, w, out, i);
+  if (attributes.texcoord) StoreTexcoords(of, w, {i, 0, batch.coverage.steps}, out.texcoord);
   if (attributes.color) StoreColors(of, w.weight, out, i);
 }
 
@@ -251,7 +278,7 @@ BatchAttributes AttributesOf(const Coverage& coverage, const std::vector<Triangl
   BatchAttributes attributes;
   for (int i = 0; i < coverage.count; ++i) {
     const TriangleSetup& t = setups[coverage.triangle[i]];
-    attributes.texcoord = attributes.texcoord || t.has_texcoord;
+    attributes.texcoord = attributes.texcoord || t.has_texcoord[0];
     attributes.color = attributes.color || t.has_color;
   }
   return attributes;
@@ -270,14 +297,21 @@ void Interpolate(const ScreenRays& rays, const std::vector<TriangleSetup>& setup
   const BatchAttributes attributes = AttributesOf(coverage, setups);
   for (int i = 0; i < count; i += int(hn::Lanes(DF()))) InterpolateVector(setups, i, attributes, batch);
   if (!attributes.texcoord)
-    Fill({&out.texcoord.x, &out.texcoord.y, &out.texcoord_dx.x, &out.texcoord_dx.y, &out.texcoord_dy.x,
-          &out.texcoord_dy.y},
+    Fill({&out.texcoord.value.x, &out.texcoord.value.y, &out.texcoord.dx.x, &out.texcoord.dx.y, &out.texcoord.dy.x,
+          &out.texcoord.dy.y},
          count, 0.0f);
   if (!attributes.color) Fill({&out.color.x, &out.color.y, &out.color.z, &out.alpha}, count, 1.0f);
   if (!rays.is_parallel()) return;
   Fill({&out.to_viewer.x}, count, float(-rays.forward().x));
   Fill({&out.to_viewer.y}, count, float(-rays.forward().y));
   Fill({&out.to_viewer.z}, count, float(-rays.forward().z));
+}
+
+void InterpolateTexcoords(const TexcoordRequest& request, TexcoordLanes& out) {
+  for (int i = request.begin; i < request.end; i += int(hn::Lanes(DF()))) {
+    const VectorTriangles of(request.coverage.triangle + i, request.setups);
+    StoreTexcoords(of, WeightsAt(of, request.coverage.screen, i), {i, request.set, request.coverage.steps}, out);
+  }
 }
 
 }  // namespace HWY_NAMESPACE
@@ -288,10 +322,15 @@ HWY_AFTER_NAMESPACE();
 namespace frontmost::shading {
 
 FRONTMOST_KERNELS(Interpolate);
+FRONTMOST_KERNELS(InterpolateTexcoords);
 
 void interpolate_geometry(const ScreenRays& rays, const std::vector<TriangleSetup>& setups, FragmentBatch& batch,
                           Isa isa) {
   kernel_for(InterpolateKernels, isa)(rays, setups, batch);
+}
+
+void interpolate_texcoords(const TexcoordRequest& request, TexcoordLanes& out, Isa isa) {
+  kernel_for(InterpolateTexcoordsKernels, isa)(request, out);
 }
 
 }  // namespace frontmost::shading

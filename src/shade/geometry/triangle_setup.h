@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "frontmost/scene.h"
 #include "view/ray_volumes.h"
 
 namespace frontmost::shading {
@@ -25,9 +26,15 @@ struct TriangleSetup {
   PrimitiveId id = no_primitive;
   std::uint32_t instance = no_index, mesh = no_index, triangle = no_index;
   std::uint32_t material = no_index;  ///< number in the scene
-  std::array<glm::vec2, 3> texcoord;
   std::array<glm::vec4, 3> color;
-  bool has_texcoord = false, has_color = false;
+  bool has_color = false;
+  std::array<bool, max_texcoord_sets> has_texcoord{};                ///< by set
+  std::array<std::array<glm::vec2, 3>, max_texcoord_sets> texcoord;  ///< the first: zero where it is not there
+
+  /// Zero where the mesh has no such set.
+  [[nodiscard]] glm::vec2 texcoord_at(std::uint32_t set, std::size_t k) const {
+    return has_texcoord[set] ? texcoord[set][k] : glm::vec2(0);
+  }
 };
 
 /// Fills weights, reference, corners, plane normal, and is_backside (for a triangle that was not mirrored).

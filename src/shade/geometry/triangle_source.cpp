@@ -22,6 +22,12 @@ glm::vec3 unit_or_zero(const glm::vec3& v) {
   return length > 0 ? scaled / length : glm::vec3(0);  // false for NaN
 }
 
+/// Nothing sends back more light than it gets, nor less than none, which NaN counts as.
+glm::vec4 reflected_part(const glm::vec4& color) {
+  const auto part = [](float value) { return value > 0 ? std::min(value, 1.0f) : 0.0f; };
+  return {part(color.r), part(color.g), part(color.b), color.a};
+}
+
 bool lacks_normals(const Mesh& mesh) { return mesh.normals.empty(); }
 
 TriangleStore::Placement placement_of(const Surfaces& surfaces, std::uint32_t number) {
@@ -150,14 +156,20 @@ void TriangleSource::set_normals(PrimitiveId id, const Placement& placement, Tri
 }
 
 void TriangleSource::set_attributes(const Mesh& mesh, TriangleSetup& setup) const {
-  setup.has_texcoord = has_texcoords_ && !mesh.texcoords.empty();
   setup.has_color = !mesh.colors.empty();
-  for (int k = 0; k < 3; ++k) {
-    const auto corner = std::size_t(k);
-    setup.texcoord[corner] =
-        setup.has_texcoord ? mesh.texcoords.values[mesh.corners(mesh.texcoords, setup.triangle)[k]] : glm::vec2(0);
-    setup.color[corner] =
-        setup.has_color ? mesh.colors.values[mesh.corners(mesh.colors, setup.triangle)[k]] : glm::vec4(1);
+  setup.color.fill(glm::vec4(1));
+  if (setup.has_color) {
+    const glm::uvec3& corners = mesh.corners(mesh.colors, setup.triangle);
+    for (std::size_t k = 0; k < 3; ++k) setup.color[k] = reflected_part(mesh.colors.values[corners[int(k)]]);
+  }
+  setup.has_texcoord = {};
+  setup.texcoord[0] = {};
+  for (std::uint32_t set = 0; has_texcoords_ && set <= mesh.further_texcoords.size(); ++set) {
+    const Attribute<glm::vec2>* const texcoords = mesh.texcoord_set(set);
+    if (!texcoords) continue;
+    setup.has_texcoord[set] = true;
+    const glm::uvec3& corners = mesh.corners(*texcoords, setup.triangle);
+    for (std::size_t k = 0; k < 3; ++k) setup.texcoord[set][k] = texcoords->values[corners[int(k)]];
   }
 }
 

@@ -10,6 +10,7 @@
 namespace frontmost::shading {
 namespace {
 
+using abuffer_detail::FragmentColors;
 using abuffer_detail::FragmentPass;
 using abuffer_detail::PixelLists;
 using abuffer_detail::Rectangle;
@@ -56,12 +57,12 @@ class PartMaker {
   [[nodiscard]] TilePart<DeepSample> make(const Rectangle& pixels, const PixelLists& lists) const {
     std::vector<std::uint32_t> numbers(lists.fragments.size());
     std::iota(numbers.begin(), numbers.end(), 0u);
-    std::vector<glm::vec4> colors(numbers.size());
+    FragmentColors colors{std::vector<glm::vec4>(numbers.size()), {}};
     shader_.shade(pixels, lists, numbers, colors);
     TilePart<DeepSample> part{pixels, {0}, {}};
     for (std::size_t p = 0; p + 1 < lists.begin.size(); ++p) {
       const int x = int(p) % pixels.width, y = int(p) / pixels.width;
-      add_pixel(lists, p, colors, glm::ivec2(x, y) * kSubPixels, part.items);
+      add_pixel(lists, p, colors.straight, glm::ivec2(x, y) * kSubPixels, part.items);
       part.begin.push_back(std::uint32_t(part.items.size()));
     }
     return part;

@@ -3,9 +3,23 @@
 
 namespace frontmost::shading {
 
+using abuffer_detail::FragmentColors;
 using abuffer_detail::FragmentPass;
+using abuffer_detail::PaintedPixels;
 using abuffer_detail::PixelLists;
 using abuffer_detail::Rectangle;
+
+namespace {
+
+/// Through what is tinted the background is seen tinted, too.
+std::vector<glm::vec4> laid_over(const PaintedPixels& painted, const glm::vec3& background) {
+  std::vector<glm::vec4> pixels = painted.colors;
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    pixels[i] = glm::vec4(glm::vec3(pixels[i]) + background * (1.0f - painted.alphas[i]), 1.0f);
+  return pixels;
+}
+
+}  // namespace
 
 LayerShader::LayerShader(const TriangleSource& source, const FragmentPass& pass,
                          const FragmentShader::Colorist& colorist, Isa isa)
@@ -25,11 +39,9 @@ glm::vec2 LayerShader::centroid(std::uint64_t mask) const {
 }
 
 void LayerShader::shade(const Rectangle& pixels, const PixelLists& lists, std::span<const std::uint32_t> numbers,
-                        std::vector<glm::vec4>& colors) const {
+                        FragmentColors& colors) const {
   const auto shader = shaders_.borrow([] { return std::make_unique<FragmentShader>(); });
-  const auto receive = [&](std::uint32_t number, float, const glm::vec3& light, float alpha) {
-    colors[number] = glm::vec4(light, alpha);
-  };
+  const auto receive = [&](const FragmentShader::Shaded& s) { colors.set(s.number, s.light, s.alpha, s.alphas); };
   shader->begin(source_, colorist_, isa_);
   for (std::size_t p = 0; p + 1 < lists.begin.size(); ++p) {
     const glm::vec2 corner(float(pixels.x + int(p) % pixels.width), float(pixels.y + int(p) / pixels.width));
@@ -55,15 +67,18 @@ BitSet seen_primitives(const Surfaces& surfaces, const FragmentPass& pass, const
 void shade_layers(const TriangleSource& source, const FragmentPass& pass, const Painting& painting,
                   const Execution& execution) {
   const LayerShader shader(source, pass, painting.colorist, execution.isa);
-  const auto paint = [&](const Rectangle& pixels, const PixelLists& lists, std::vector<glm::vec4>& colors) {
+  const auto paint = [&](const Rectangle& pixels, const PixelLists& lists, FragmentColors& colors) {
     shader.shade(pixels, lists, lists.numbers, colors);
   };
-  const auto receive = [&](const Rectangle& r, const std::vector<glm::vec4>* pixels) {
+  const glm::vec4& background = painting.background;
+  const auto receive = [&](const Rectangle& r, const PaintedPixels* painted) {
     const TileRectangle tile{r.x, r.y, r.width, r.height};
-    if (pixels)
-      painting.canvas.write(tile, *pixels, painting.background);
+    if (!painted)
+      painting.canvas.fill(tile, background);
+    else if (painted->alphas.empty() || background.a < 1)
+      painting.canvas.write(tile, painted->colors, background);
     else
-      painting.canvas.fill(tile, painting.background);
+      painting.canvas.write(tile, laid_over(*painted, glm::vec3(background)), background);
   };
   pass.paint(paint, receive, execution);
 }

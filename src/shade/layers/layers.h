@@ -21,10 +21,9 @@ class LayerShader {
   LayerShader(const TriangleSource& source, const abuffer_detail::FragmentPass& pass,
               const FragmentShader::Colorist& colorist, Isa isa);
 
-  /// Sets colors[numbers[i]], straight alpha, for every fragment i: shaded at the middle of what it covers of its
-  /// pixel.
+  /// Sets the colours of number numbers[i] for every fragment i: shaded at the middle of what it covers of its pixel.
   void shade(const abuffer_detail::Rectangle& pixels, const abuffer_detail::PixelLists& lists,
-             std::span<const std::uint32_t> numbers, std::vector<glm::vec4>& colors) const;
+             std::span<const std::uint32_t> numbers, abuffer_detail::FragmentColors& colors) const;
 
  private:
   /// The mean of the covered positions, in pixels.

@@ -7,7 +7,7 @@ namespace frontmost::shading {
 namespace {
 
 bool is_see_through(const Scene& scene, std::uint32_t material) {
-  return material < scene.materials.size() && scene.materials[material].alpha == Material::Alpha::blend;
+  return material < scene.materials.size() && scene.materials[material].is_see_through();
 }
 
 /// Keeps the elements whose triangle is kept.
@@ -35,6 +35,7 @@ Mesh opaque_part(const Scene& scene, const Mesh& mesh) {
   part.triangles = kept(mesh.triangles, triangles);
   part.normals = kept(mesh.normals, triangles);
   part.texcoords = kept(mesh.texcoords, triangles);
+  for (const Attribute<glm::vec2>& set : mesh.further_texcoords) part.further_texcoords.push_back(kept(set, triangles));
   part.colors = kept(mesh.colors, triangles);
   part.material_ids = mesh.material_ids.size() > 1 ? kept(mesh.material_ids, triangles) : mesh.material_ids;
   return part;
@@ -44,7 +45,7 @@ Mesh opaque_part(const Scene& scene, const Mesh& mesh) {
 
 bool has_see_through(const Scene& scene) {
   return std::any_of(scene.materials.begin(), scene.materials.end(),
-                     [](const Material& m) { return m.alpha == Material::Alpha::blend; });
+                     [](const Material& m) { return m.is_see_through(); });
 }
 
 Scene opaque_part(const Scene& scene) {

@@ -6,11 +6,11 @@
 
 namespace frontmost::shading {
 
-/// Whether any material of the scene is blended.
+/// Whether light comes through any material of the scene.
 [[nodiscard]] bool has_see_through(const Scene& scene);
 
-/// The scene without blended triangles. Copies the meshes that hold others, and of the textures those that cut holes;
-/// materials keep their numbers. O(triangles).
+/// The scene without triangles that light comes through. Copies the meshes that hold others, and of the textures those
+/// that cut holes; materials keep their numbers. O(triangles).
 [[nodiscard]] Scene opaque_part(const Scene& scene);
 
 }  // namespace frontmost::shading

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shade/shadow/ray_shadows.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -10,9 +11,10 @@
 namespace frontmost::shading {
 
 /// Points that wait to be asked about together, and the fragments that they are of.
-class RayShadows::Questions {
+class RayShadows::LightQuestions {
  public:
-  Questions(const RayShadows& shadows, FragmentBatch& batch) : shadows_(shadows), batch_(batch) {}
+  LightQuestions(const RayShadows& shadows, const glm::vec3& to_light, FragmentBatch& batch)
+      : shadows_(shadows), to_light_(to_light), batch_(batch) {}
 
   void add(const TrianglePoint& point, int fragment) {
     points_[count_] = point;
@@ -23,8 +25,8 @@ class RayShadows::Questions {
   /// Answers come in whole samples, which floats add exactly.
   void ask() {
     std::array<std::uint8_t, kAtOnce> is_lit;
-    raycast_detail::find_lit(shadows_.index_.tree(), {points_.data(), count_}, shadows_.to_key_,
-                             {is_lit.data(), count_}, shadows_.isa_);
+    raycast_detail::find_lit(shadows_.index_.tree(), {points_.data(), count_}, to_light_, {is_lit.data(), count_},
+                             shadows_.isa_);
     for (std::size_t k = 0; k < count_; ++k) batch_.shadow[fragments_[k]] += is_lit[k];
     count_ = 0;
   }
@@ -33,22 +35,68 @@ class RayShadows::Questions {
   static constexpr std::size_t kAtOnce = 4 * raycast_detail::kLightRays;
 
   const RayShadows& shadows_;
+  glm::vec3 to_light_;
   FragmentBatch& batch_;
   std::size_t count_ = 0;
   std::array<TrianglePoint, kAtOnce> points_;
   std::array<int, kAtOnce> fragments_;
 };
 
-void RayShadows::find_light(const std::vector<TriangleSetup>& setups, const bool* is_asked,
-                            FragmentBatch& batch) const {
+/// The same of segments from a lamp, whose nearest hit says whether the point is the first thing that it lights.
+class RayShadows::LampQuestions {
+ public:
+  LampQuestions(const RayShadows& shadows, const Lamp& lamp, FragmentBatch& batch)
+      : shadows_(shadows), batch_(batch), lamp_(glm::vec3(glm::dvec3(lamp.position) + shadows.eye_)) {}
+
+  void add(const TrianglePoint& point, int fragment) {
+    raycast_detail::Query& query = queries_[count_];
+    query.origin = lamp_;
+    query.end = beside(raycast_detail::position_of(point), batch_.geometry.plane_normal.at(fragment));
+    query.direction = query.end - query.origin;
+    query.is_segment = true;
+    ids_[count_] = point.primitive;
+    fragments_[count_] = fragment;
+    if (++count_ == queries_.size()) ask();
+  }
+
+  void ask() {
+    std::array<RayHit, kAtOnce> hits;
+    raycast_detail::walk_batch(shadows_.index_.tree(), {queries_.data(), count_}, raycast_detail::Want::closest,
+                               {hits.data(), count_}, shadows_.isa_);
+    for (std::size_t k = 0; k < count_; ++k)
+      batch_.shadow[fragments_[k]] += hits[k].primitive == no_primitive || hits[k].primitive == ids_[k] ? 1.0f : 0.0f;
+    count_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t kAtOnce = 256;
+
+  [[nodiscard]] glm::vec3 beside(const glm::dvec3& place, const glm::dvec3& normal) const {
+    const glm::dvec3 to_lamp = glm::dvec3(lamp_) - place, size = glm::max(glm::abs(place), glm::abs(glm::dvec3(lamp_)));
+    constexpr double of_length = 1e-5, rounding = 0x1p-21;
+    const double step = of_length * glm::length(to_lamp) + rounding * std::max({size.x, size.y, size.z});
+    return glm::vec3(place + normal * (glm::dot(normal, to_lamp) < 0 ? -step : step));
+  }
+
+  const RayShadows& shadows_;
+  FragmentBatch& batch_;
+  glm::vec3 lamp_;
+  std::size_t count_ = 0;
+  std::array<raycast_detail::Query, kAtOnce> queries_;
+  std::array<PrimitiveId, kAtOnce> ids_;
+  std::array<int, kAtOnce> fragments_;
+};
+
+template <class Questions, class MayFace>
+void RayShadows::ask(Questions& questions, const MayFace& may_face, const AskedFragments& asked) const {
+  FragmentBatch& batch = asked.batch;
   const Coverage& coverage = batch.coverage;
   const Geometry& g = batch.geometry;
-  Questions questions(*this, batch);
   for (int i = 0; i < coverage.count; ++i) {
-    if (!is_asked[i]) continue;
+    if (!asked.is_asked[i]) continue;
     batch.shadow[i] = 0;
-    const TriangleSetup& setup = setups[coverage.triangle[i]];
-    if (!setup.is_smooth && !(glm::dot(g.plane_normal.at(i), to_key_) > 0)) continue;
+    const TriangleSetup& setup = asked.setups[coverage.triangle[i]];
+    if (!setup.is_smooth && !may_face(i)) continue;
     TrianglePoint point;
     if (knows_ids_) point.primitive = setup.id;
     point.corners = setup.corner_world;
@@ -62,7 +110,21 @@ void RayShadows::find_light(const std::vector<TriangleSetup>& setups, const bool
   }
   questions.ask();
   for (int i = 0; i < coverage.count; ++i)
-    if (is_asked[i]) batch.shadow[i] /= float(std::popcount(coverage.samples[i]));
+    if (asked.is_asked[i]) batch.shadow[i] /= float(std::popcount(coverage.samples[i]));
+}
+
+void RayShadows::find_light(const DirectLight& light, const AskedFragments& asked) const {
+  LightQuestions questions(*this, light.to_light, asked.batch);
+  const Lane3& normal = asked.batch.geometry.plane_normal;
+  ask(
+      questions, [&](int i) { return glm::dot(normal.at(i), light.to_light) > 0; }, asked);
+}
+
+void RayShadows::find_light(const Lamp& lamp, const AskedFragments& asked) const {
+  LampQuestions questions(*this, lamp, asked.batch);
+  const Geometry& g = asked.batch.geometry;
+  ask(
+      questions, [&](int i) { return glm::dot(g.plane_normal.at(i), lamp.position - g.position.at(i)) > 0; }, asked);
 }
 
 }  // namespace frontmost::shading

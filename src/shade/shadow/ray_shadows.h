@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shadows of the key light by rays: exact, and as sharp as the samples are dense.
+// Shadows by rays: as sharp as the samples are dense; of lights infinitely far away exact.
 //
 // The rule at the terminator. A flat triangle that faces away from the light is in its own shadow, whatever its
 // material's normals say. A triangle between smooth normals never shadows itself, and its points start where the curved
 // surface would be that the normals suggest, so that its facets do not show.
+//
+// Segments to a lamp end beside the surface on the lamp's side, by a hundred-thousandth of their length and as much as
+// floats may be wrong there, so that no surface that a point lies on throws a shadow on it.
 #pragma once
 
 #include <span>
@@ -12,14 +15,22 @@
 #include "frontmost/raycast.h"
 #include "shade/batch.h"
 #include "shade/geometry/triangle_setup.h"
+#include "shade/light/lamps.h"
 
 namespace frontmost::shading {
+
+/// The fragments that are asked about.
+struct AskedFragments {
+  const std::vector<TriangleSetup>& setups;
+  const bool* is_asked;
+  FragmentBatch& batch;  ///< of which `shadow` is filled
+};
 
 class RayShadows {
  public:
   /// Borrows both. The index holds what throws shadows; `samples` of a pixel are in 1/256 of it.
-  RayShadows(const RayIndex& index, std::span<const glm::ivec2> samples, const glm::vec3& to_key, Isa isa)
-      : index_(index), to_key_(to_key), isa_(isa), samples_(samples) {}
+  RayShadows(const RayIndex& index, std::span<const glm::ivec2> samples, const glm::dvec3& eye, Isa isa)
+      : index_(index), eye_(eye), isa_(isa), samples_(samples) {}
 
   /// The ids of the index are not those of what is shaded. Slower: a triangle is then known by its corners.
   void forget_ids() { knows_ids_ = false; }
@@ -27,14 +38,20 @@ class RayShadows {
   /// Fragments are single points where they are, not pixels.
   void ask_at_points() { at_points_ = true; }
 
-  /// Fills batch.shadow where `is_asked`: the part of each fragment's samples that the light reaches.
-  void find_light(const std::vector<TriangleSetup>& setups, const bool* is_asked, FragmentBatch& batch) const;
+  /// Fills batch.shadow where it is asked for: the part of each fragment's samples that the light reaches.
+  void find_light(const DirectLight& light, const AskedFragments& asked) const;
+  void find_light(const Lamp& lamp, const AskedFragments& asked) const;
 
  private:
-  class Questions;
+  class LightQuestions;
+  class LampQuestions;
+
+  /// Asks questions.add(point, fragment) for every sample, of fragments whose triangle `may_face` the light.
+  template <class Questions, class MayFace>
+  void ask(Questions& questions, const MayFace& may_face, const AskedFragments& asked) const;
 
   const RayIndex& index_;
-  glm::vec3 to_key_;
+  glm::dvec3 eye_;
   Isa isa_;
   bool knows_ids_ = true, at_points_ = false;
   std::span<const glm::ivec2> samples_;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points are taken to the map's texels a vector at a time. Most are nearer to the light than everything around them,
-// which nine numbers say; for the others a window of eight by eight texels is compared, eight columns side by side.
-// Their sums are made row by row and then added up in one order, so that every instruction set gives the same bits.
+// Points are taken to the map's texels a vector at a time. Most are nearer to the light than everything around them, or
+// farther, which two numbers say; for the others a window of eight by eight texels is compared, eight columns side by
+// side. Their sums are made row by row and then added up in one order, so that every instruction set gives the same
+// bits.
 
 #include "shade/shadow/shadow_map.h"
 
@@ -15,6 +16,7 @@
 #include "hwy/highway.h"
 // After Highway: a block of its own.
 #include "base/lane_types-inl.h"
+#include "base/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::shading {
@@ -24,8 +26,9 @@ using namespace frontmost::HWY_NAMESPACE;
 namespace {
 
 constexpr int kTaps = ShadowGrid::taps, kBlock = ShadowGrid::block;
-static_assert(kTaps == 8 && kBlock == 4);
+static_assert(kTaps == 8 && ShadowGrid::window >= kTaps + kBlock);
 constexpr float kHalf = 0.5f * kTaps;
+constexpr float kToFirst = kHalf - 0.5f;  ///< from the first texel whose centre is within the filter, plus a fraction
 
 /// Points in the map: texels, and keys with the bias.
 struct MapPoints {
@@ -38,33 +41,96 @@ HWY_INLINE VF DotOf(const glm::vec3& v, const float* x, const float* y, const fl
   return hn::Add(hn::Add(xx, yy), hn::Mul(hn::Set(d, v.z), hn::LoadU(d, z)));
 }
 
-void FindPlaces(const ShadowGrid& grid, const ShadowPoints& points, MapPoints& out) {
+/// Over the filter's width a slanted surface itself comes nearer to the light by its slope: that is no shadow.
+HWY_INLINE VF BiasOf(const ShadowGrid& grid, VF cosine, VF sine) {
   const DF d;
-  // Over the filter's width a slanted surface itself comes nearer to the light by its slope: that is no shadow.
   const VF steepest = hn::Set(d, 8.0f), one = hn::Set(d, 1.0f);
+  const MF is_gentle = hn::Lt(sine, hn::Mul(steepest, cosine));
+  const VF slope = hn::IfThenElse(is_gentle, hn::Div(sine, hn::IfThenElse(is_gentle, cosine, one)), steepest);
+  return hn::Add(hn::Set(d, grid.key_bias), hn::Mul(slope, hn::Set(d, grid.key_slope_bias)));
+}
+
+/// A vector of points in the light's view: texels and keys before any division, and how the surface lies to the axis.
+struct LightSpacePoints {
+  VF x, y, key, cosine, sine;
+};
+
+HWY_INLINE LightSpacePoints InLightSpace(const ShadowGrid& grid, const ShadowPoints& points, int i) {
+  const DF d;
+  const auto place = [&](const glm::vec3& step, float at_eye) HWY_ATTR {
+    return hn::Add(DotOf(step, points.x + i, points.y + i, points.z + i), hn::Set(d, at_eye));
+  };
+  LightSpacePoints p;
+  p.cosine = hn::Abs(DotOf(grid.to_light, points.normal_x + i, points.normal_y + i, points.normal_z + i));
+  p.sine = hn::Sqrt(hn::Max(hn::Sub(hn::Set(d, 1.0f), hn::Mul(p.cosine, p.cosine)), hn::Zero(d)));
+  p.x = place(grid.texel_x, grid.at_eye.x);
+  p.y = place(grid.texel_y, grid.at_eye.y);
+  p.key = place(grid.key, grid.at_eye.z);
+  return p;
+}
+
+void FindPlacesOfSun(const ShadowGrid& grid, const ShadowPoints& points, MapPoints& out) {
+  const DF d;
   for (int i = 0; i < points.count; i += int(hn::Lanes(d))) {
-    const auto place = [&](const glm::vec3& step, float at_eye) {
-      return hn::Add(DotOf(step, points.x + i, points.y + i, points.z + i), hn::Set(d, at_eye));
-    };
-    const VF cosine = hn::Abs(DotOf(grid.to_light, points.normal_x + i, points.normal_y + i, points.normal_z + i));
-    const VF sine = hn::Sqrt(hn::Max(hn::Sub(one, hn::Mul(cosine, cosine)), hn::Zero(d)));
-    const MF is_gentle = hn::Lt(sine, hn::Mul(steepest, cosine));
-    const VF slope = hn::IfThenElse(is_gentle, hn::Div(sine, hn::IfThenElse(is_gentle, cosine, one)), steepest);
-    const VF bias = hn::Add(hn::Set(d, grid.key_bias), hn::Mul(slope, hn::Set(d, grid.key_slope_bias)));
-    hn::StoreU(place(grid.texel_x, grid.at_eye.x), d, out.x + i);
-    hn::StoreU(place(grid.texel_y, grid.at_eye.y), d, out.y + i);
-    hn::StoreU(hn::Add(place(grid.key, grid.at_eye.z), bias), d, out.key + i);
+    const LightSpacePoints p = InLightSpace(grid, points, i);
+    hn::StoreU(p.x, d, out.x + i);
+    hn::StoreU(p.y, d, out.y + i);
+    hn::StoreU(hn::Add(p.key, BiasOf(grid, p.cosine, p.sine)), d, out.key + i);
   }
 }
 
-/// Whether no texel of the window is nearer to the light.
-bool IsBeforeAll(const ShadowGrid& grid, int x, int y, float key) {
-  const int blocks = grid.size / kBlock;
-  const float* const nearest = grid.nearest + (y / kBlock) * blocks + x / kBlock;
-  float most = nearest[0];
-  for (int v = 0; v < 3; ++v)
-    for (int u = 0; u < 3; ++u) most = std::max(most, nearest[v * blocks + u]);
-  return key >= most;
+/// How steep a surface is to a lamp's rays is the cosine to the ray, by the ray's length along the axis.
+void FindPlacesOfSpot(const ShadowGrid& grid, const ShadowPoints& points, MapPoints& out) {
+  const DF d;
+  const VF one = hn::Set(d, 1.0f), nowhere = hn::Set(d, -1.0f);
+  const float per_near = std::abs(glm::dot(grid.key, grid.to_light));
+  for (int i = 0; i < points.count; i += int(hn::Lanes(d))) {
+    const LightSpacePoints p = InLightSpace(grid, points, i);
+    const auto towards = [&](const float* normal, const float* at, float lamp) HWY_ATTR {
+      return hn::Mul(hn::LoadU(d, normal + i), hn::Sub(hn::LoadU(d, at + i), hn::Set(d, lamp)));
+    };
+    const VF ray = hn::Add(
+        hn::Add(towards(points.normal_x, points.x, grid.lamp.x), towards(points.normal_y, points.y, grid.lamp.y)),
+        towards(points.normal_z, points.z, grid.lamp.z));
+    const MF is_before = hn::Gt(p.key, hn::Zero(d));
+    const VF key = hn::Div(one, hn::IfThenElse(is_before, p.key, one));
+    const VF cosine = hn::Mul(hn::Mul(hn::Abs(ray), hn::Set(d, per_near)), key);
+    hn::StoreU(hn::IfThenElse(is_before, hn::Mul(p.x, key), nowhere), d, out.x + i);
+    hn::StoreU(hn::IfThenElse(is_before, hn::Mul(p.y, key), nowhere), d, out.y + i);
+    hn::StoreU(hn::Mul(key, hn::Add(one, BiasOf(grid, cosine, p.sine))), d, out.key + i);
+  }
+}
+
+/// Bits of a vector of points.
+struct LightOfBlocks {
+  std::uint64_t lit, partly;  ///< wholly, and what the filter has to say; the others are dark
+};
+
+/// What the blocks say of the points from i on. Where the filter does not lie in the map they are lit.
+HWY_INLINE LightOfBlocks AskBlocks(const ShadowGrid& grid, const MapPoints& points, int i) {
+  const DF d;
+  const DI di;
+  const VF x = hn::Sub(hn::LoadU(d, points.x + i), All(kToFirst));
+  const VF y = hn::Sub(hn::LoadU(d, points.y + i), All(kToFirst));
+  const VF zero = hn::Zero(d), end = All(float(grid.size - kTaps));
+  const MF is_within = hn::And(hn::And(hn::Ge(x, zero), hn::Ge(y, zero)), hn::And(hn::Lt(x, end), hn::Lt(y, end)));
+  static_assert(kBlock == 1 << 2);
+  const auto block = [&](VF texel) HWY_ATTR {
+    return hn::ShiftRight<2>(hn::ConvertTo(di, hn::IfThenElseZero(is_within, texel)));
+  };
+  const VI number = hn::Add(hn::Mul(block(y), hn::Set(di, grid.size / kBlock)), block(x));
+  const VF key = hn::LoadU(d, points.key + i);
+  const MF is_before = hn::Ge(key, hn::GatherIndex(d, grid.nearest, number));
+  const MF is_behind = hn::Lt(key, hn::GatherIndex(d, grid.farthest, number));
+  return {BitsOf(d, hn::Or(is_before, hn::Not(is_within))),
+          BitsOf(d, hn::AndNot(hn::Or(is_before, is_behind), is_within))};
+}
+
+/// A bit for each of `count` answers.
+HWY_INLINE std::uint64_t BitsAt(const bool* answers, int count) {
+  std::uint64_t bits = 0;
+  for (int i = 0; i < count; ++i) bits |= std::uint64_t(answers[i]) << i;
+  return bits;
 }
 
 /// As many columns of a window as there is room for.
@@ -79,8 +145,9 @@ HWY_INLINE VColumns WeightsFrom(int first, float at) {
   return hn::Max(hn::Sub(hn::Set(d, kHalf), hn::Abs(hn::Sub(texel, hn::Set(d, at)))), hn::Zero(d));
 }
 
-float FilterWindow(const ShadowGrid& grid, int x0, int y0, const glm::vec3& place) {
+float FilterWindow(const ShadowGrid& grid, const glm::vec3& place) {
   const DColumns d;
+  const int x0 = int(place.x - kToFirst), y0 = int(place.y - kToFirst);
   const float* const window = grid.keys + std::size_t(y0) * std::size_t(grid.size) + std::size_t(x0);
   HWY_ALIGN float down[kTaps];
   for (int j = 0; j < kTaps; j += int(hn::Lanes(d))) hn::Store(WeightsFrom(y0 + j, place.y), d, down + j);
@@ -101,18 +168,17 @@ float FilterWindow(const ShadowGrid& grid, int x0, int y0, const glm::vec3& plac
 }  // namespace
 
 void FindLight(const ShadowGrid& grid, const ShadowPoints& points, const bool* is_asked, float* light) {
+  const int lanes = int(hn::Lanes(DF()));
   MapPoints places;
-  FindPlaces(grid, points, places);
-  const float end = float(grid.size - kTaps);
-  for (int i = 0; i < points.count; ++i) {
-    if (!is_asked[i]) continue;
-    light[i] = 1.0f;
-    // The first texel whose centre is within the filter, plus a fraction.
-    const float x = places.x[i] - (kHalf - 0.5f), y = places.y[i] - (kHalf - 0.5f);
-    if (!(x >= 0 && y >= 0 && x < end && y < end)) continue;
-    const int x0 = int(x), y0 = int(y);
-    if (!IsBeforeAll(grid, x0, y0, places.key[i]))
-      light[i] = FilterWindow(grid, x0, y0, {places.x[i], places.y[i], places.key[i]});
+  grid.is_spot ? FindPlacesOfSpot(grid, points, places) : FindPlacesOfSun(grid, points, places);
+  for (int i = 0; i < points.count; i += lanes) {
+    const std::uint64_t asked = BitsAt(is_asked + i, std::min(lanes, points.count - i));
+    const LightOfBlocks blocks = AskBlocks(grid, places, i);
+    ForEachBit(asked, [&](std::size_t k) { light[std::size_t(i) + k] = blocks.lit >> k & 1 ? 1.0f : 0.0f; });
+    ForEachBit(asked & blocks.partly, [&](std::size_t k) {
+      const std::size_t p = std::size_t(i) + k;
+      light[p] = FilterWindow(grid, {places.x[p], places.y[p], places.key[p]});
+    });
   }
 }
 

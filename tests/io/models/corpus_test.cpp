@@ -23,7 +23,8 @@ std::vector<Seed> seeds() {
   for (const auto& [folder, format] : {std::pair{"stl", ModelFormat::stl},
                                        {"ply", ModelFormat::ply},
                                        {"obj", ModelFormat::obj},
-                                       {"off", ModelFormat::off}})
+                                       {"off", ModelFormat::off},
+                                       {"scene", ModelFormat::scene}})
     for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(FRONTMOST_CORPUS) / folder)) {
       std::ifstream in(entry.path(), std::ios::binary);
       all.push_back({format, entry.path().string(), {std::istreambuf_iterator<char>(in), {}}});

@@ -17,8 +17,19 @@ namespace {
 
 /// Extensions that are followed, or that say nothing about what is visible or coloured here.
 constexpr std::string_view supported_extensions[] = {
-    "KHR_texture_transform",           "KHR_materials_unlit", "KHR_mesh_quantization", "EXT_mesh_gpu_instancing",
+    "KHR_texture_transform",
+    "KHR_materials_unlit",
+    "KHR_mesh_quantization",
+    "EXT_mesh_gpu_instancing",
     "KHR_materials_emissive_strength",
+    "KHR_lights_punctual",
+    "KHR_materials_ior",
+    "KHR_materials_specular",
+    "KHR_materials_clearcoat",
+    "KHR_materials_sheen",
+    "KHR_materials_transmission",
+    "KHR_materials_volume",
+    "KHR_materials_pbrSpecularGlossiness",
 };
 
 bool is_supported(const std::string& extension) {
@@ -59,12 +70,15 @@ void check_extensions(const JsonValue& root, std::vector<std::string>& warnings)
 
 /// Every element costs some hundred bytes, whether a file says anything about it ("{}") or not.
 void check_counts(const JsonValue& root) {
-  for (const char* key : {"accessors", "bufferViews", "buffers", "cameras", "images", "materials", "meshes", "nodes",
-                          "samplers", "skins", "textures"}) {
-    const std::optional<JsonValue> array = root.find(key);
+  const auto check = [](const std::optional<JsonValue>& array) {
     if (array && array->size() > max_objects)
-      root.source().fail_limit(key, std::to_string(array->size()) + " are more than " + std::to_string(max_objects));
-  }
+      array->source().fail_limit(array->place(),
+                                 std::to_string(array->size()) + " are more than " + std::to_string(max_objects));
+  };
+  for (const char* key : {"accessors", "bufferViews", "buffers", "cameras", "images", "materials", "meshes", "nodes",
+                          "samplers", "skins", "textures"})
+    check(root.find(key));
+  check(find_lights(root));
 }
 
 std::string_view without_byte_order_mark(std::string_view text) {
@@ -81,13 +95,14 @@ Scene read_scene(const Container& container, const ModelSource& source) {
   // Ranges first: whatever follows reads through `data` and checks no length of its own.
   const Data data(root, container);
   TextureTable textures(root, data);
-  // Materials before meshes, because the base colour decides which set of texture coordinates a primitive reads.
+  // Materials before meshes, because their textures decide which sets of texture coordinates are read.
   MaterialList materials = read_materials(root, textures, scene.warnings);
   const std::vector<MeshPlan> plans = plan_meshes(root, data, materials, scene.warnings);
   const NodeTree tree = read_nodes(root, data);
   scene.materials = std::move(materials.materials);
   place_meshes(root, data, plans, tree, scene);
   place_cameras(root, tree, scene);
+  place_lights(root, tree, scene);
   // Last, and only what materials have asked for: decoding is the dearest step, and an error elsewhere makes it futile.
   textures.load(scene);
   return scene;

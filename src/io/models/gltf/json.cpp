@@ -87,6 +87,17 @@ std::optional<JsonValue> JsonValue::extension(const char* name) const {
   return extensions ? extensions->find(name) : std::nullopt;
 }
 
+std::vector<std::string> JsonValue::keys() const {
+  if (!value_->is_object()) fail(std::string("an object is expected, not ") + type_name(*value_));
+  std::vector<std::string> keys;
+  for (const auto& member : value_->items()) keys.push_back(member.key());
+  return keys;
+}
+
+bool JsonValue::is_string() const { return value_->is_string(); }
+
+bool JsonValue::is_number() const { return value_->is_number(); }
+
 std::size_t JsonValue::size() const {
   if (!value_->is_array()) fail(std::string("an array is expected, not ") + type_name(*value_));
   return value_->size();

@@ -15,6 +15,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "io/models/model_source.h"
 
@@ -48,6 +49,10 @@ class JsonValue {
   [[nodiscard]] JsonValue require(const char* key) const;
   /// The object `extensions.NAME`, if it is there.
   [[nodiscard]] std::optional<JsonValue> extension(const char* name) const;
+  /// The names of the members of an object, which this must be.
+  [[nodiscard]] std::vector<std::string> keys() const;
+  [[nodiscard]] bool is_string() const;
+  [[nodiscard]] bool is_number() const;
   /// Number of elements of an array, which this must be.
   [[nodiscard]] std::size_t size() const;
   [[nodiscard]] JsonValue operator[](std::size_t i) const;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// One material after the other. A factor without its texture would say something else than the file means, so a
-// material whose texture is lost is told, and loses the factor where the factor alone would be wrong.
+// One material after the other: metallic-roughness here, the layers of extensions in material_layers.cpp. Textures that
+// cannot be used keep a mark, by which TextureTable::load() knows which materials have to do without them.
 #include "io/models/gltf/materials.h"
 
-#include "io/models/textures.h"
+#include <algorithm>
+
+#include "scene/material.h"
 
 namespace frontmost::gltf {
 namespace {
@@ -11,8 +13,7 @@ namespace {
 /// Reads one material.
 class MaterialReader {
  public:
-  MaterialReader(TextureTable& textures, std::vector<std::string>& warnings)
-      : textures_(textures), warnings_(warnings) {}
+  MaterialReader(UseReader& uses, std::vector<std::string>& warnings) : uses_(uses), warnings_(warnings) {}
 
   Material read(const JsonValue& json) {
     Material material;
@@ -20,34 +21,40 @@ class MaterialReader {
     // glTF's defaults, which differ from those of a material of our own.
     material.metallic = material.roughness = 1;
     if (const auto pbr = json.find("pbrMetallicRoughness")) read_metallic_roughness(*pbr, material);
-    if (const auto normal = json.find("normalTexture")) {
-      material.normal_texture = read_use(*normal);
-      material.normal_scale = float(normal->number_or("scale", 1));
-    }
-    if (const auto occlusion = json.find("occlusionTexture")) {
-      material.occlusion_texture = read_use(*occlusion);
+    material.normal_texture = uses_.read(json, "normalTexture");
+    if (const auto normal = json.find("normalTexture")) material.normal_scale = float(normal->number_or("scale", 1));
+    material.occlusion_texture = uses_.read(json, "occlusionTexture");
+    if (const auto occlusion = json.find("occlusionTexture"))
       material.occlusion_strength = float(occlusion->number_or("strength", 1));
-    }
     read_emissive(json, material);
-    do_without_lost(json, material);
     read_alpha(json, material);
     material.double_sided = json.bool_or("doubleSided", false);
     material.unlit = json.extension("KHR_materials_unlit").has_value();
+    read_layers(json, uses_, material);
+    bring_into_range(json, material);
     return material;
   }
 
-  [[nodiscard]] std::uint32_t texcoord_set() const { return set_ == no_index ? 0 : set_; }
-
  private:
+  void bring_into_range(const JsonValue& json, Material& material) {
+    std::string_view told;  // of a colour all channels have one name
+    for (const MaterialNumber& number : numbers_of(material)) {
+      if (*number.value == number.in_range()) continue;
+      if (number.name != told)
+        warnings_.push_back(described(json) + ": " + number.name + " is out of range, the nearest in range counts");
+      told = number.name;
+      *number.value = number.in_range();
+    }
+  }
+
   void read_metallic_roughness(const JsonValue& json, Material& material) {
     double color[4];
     if (json.read_numbers("baseColorFactor", color))
       for (int c = 0; c < 4; ++c) material.base_color[c] = float(color[c]);
     material.metallic = float(json.number_or("metallicFactor", 1));
     material.roughness = float(json.number_or("roughnessFactor", 1));
-    if (const auto texture = json.find("baseColorTexture")) material.base_color_texture = read_use(*texture);
-    if (const auto texture = json.find("metallicRoughnessTexture"))
-      material.metallic_roughness_texture = read_use(*texture);
+    material.base_color_texture = uses_.read(json, "baseColorTexture");
+    material.metallic_roughness_texture = uses_.read(json, "metallicRoughnessTexture");
   }
 
   void read_emissive(const JsonValue& json, Material& material) {
@@ -56,16 +63,7 @@ class MaterialReader {
     const double factor = strength ? strength->number_or("emissiveStrength", 1) : 1;
     if (json.read_numbers("emissiveFactor", color))
       for (int c = 0; c < 3; ++c) material.emissive[c] = float(color[c] * factor);
-    if (const auto texture = json.find("emissiveTexture")) material.emissive_texture = read_use(*texture);
-  }
-
-  void do_without_lost(const JsonValue& json, Material& material) {
-    const std::string who = described(json);
-    const auto pbr = json.find("pbrMetallicRoughness");
-    if (pbr && pbr->find("metallicRoughnessTexture") && !material.metallic_roughness_texture.is_set())
-      lose_metallic_roughness_texture(material, who, warnings_);
-    if (json.find("emissiveTexture") && !material.emissive_texture.is_set())
-      lose_emissive_texture(material, who, warnings_);
+    material.emissive_texture = uses_.read(json, "emissiveTexture");
   }
 
   void read_alpha(const JsonValue& json, Material& material) {
@@ -79,37 +77,36 @@ class MaterialReader {
     material.alpha_cutoff = float(json.number_or("alphaCutoff", 0.5));
   }
 
-  TextureUse read_use(const JsonValue& json) {
-    const auto transform = json.extension("KHR_texture_transform");
-    std::uint64_t set = json.unsigned_or("texCoord", 0);
-    if (transform) set = transform->unsigned_or("texCoord", set);
-    if (!agrees(set, json)) return {};
-    TextureUse use;
-    use.texture = textures_.intern(json.require("index"), warnings_);
-    if (!use.is_set() || !transform) return use;
-    double pair[2];
-    if (transform->read_numbers("offset", pair)) use.offset = {pair[0], pair[1]};
-    if (transform->read_numbers("scale", pair)) use.scale = {pair[0], pair[1]};
-    use.rotation = float(transform->number_or("rotation", 0));
-    return use;
-  }
-
-  /// The first texture of a material, the base colour's if there is one, decides about the set.
-  bool agrees(std::uint64_t set, const JsonValue& json) {
-    if (set_ == no_index && set < max_texcoord_sets) set_ = std::uint32_t(set);
-    if (set == set_) return true;
-    warnings_.push_back(json.place() + ": uses texture coordinates " + std::to_string(set) +
-                        (set_ == no_index ? "" : " where the base colour uses " + std::to_string(set_)) +
-                        ", the texture is left out");
-    return false;
-  }
-
-  TextureTable& textures_;
+  UseReader& uses_;
   std::vector<std::string>& warnings_;
-  std::uint32_t set_ = no_index;
 };
 
 }  // namespace
+
+TextureUse UseReader::read(const JsonValue& json, const char* key) {
+  TextureUse use;
+  const std::optional<JsonValue> member = json.find(key);
+  if (!member) return use;
+  const auto transform = member->extension("KHR_texture_transform");
+  std::uint64_t set = member->unsigned_or("texCoord", 0);
+  if (transform) set = transform->unsigned_or("texCoord", set);
+  if (set >= max_texcoord_sets) {
+    warnings_.push_back(member->place() + ": uses texture coordinates " + std::to_string(set) + ", of which only " +
+                        std::to_string(max_texcoord_sets) + " sets are read; the texture is left out");
+    use.texture = lost_texture;
+    return use;
+  }
+  use.set = std::uint32_t(set);
+  use.texture = textures_.intern(member->require("index"), warnings_);
+  if (use.texture == lost_texture) return use;
+  sets_ |= 1u << use.set;
+  if (!transform) return use;
+  double pair[2];
+  if (transform->read_numbers("offset", pair)) use.offset = {pair[0], pair[1]};
+  if (transform->read_numbers("scale", pair)) use.scale = {pair[0], pair[1]};
+  use.rotation = float(transform->number_or("rotation", 0));
+  return use;
+}
 
 std::string described(const JsonValue& material) {
   const std::string name = printable(material.name());
@@ -119,11 +116,19 @@ std::string described(const JsonValue& material) {
 MaterialList read_materials(const JsonValue& root, TextureTable& textures, std::vector<std::string>& warnings) {
   MaterialList out;
   const std::optional<JsonValue> array = root.find("materials");
+  // A million of them grow to half a gigabyte: no more of it for a moment while the list grows.
+  if (array) out.materials.reserve(array->size());
   for (std::size_t i = 0; array && i < array->size(); ++i) {
-    MaterialReader reader(textures, warnings);
-    out.materials.push_back(reader.read((*array)[i]));
-    out.texcoord_sets.push_back(reader.texcoord_set());
+    UseReader uses(textures, warnings);
+    out.materials.push_back(MaterialReader(uses, warnings).read((*array)[i]));
+    out.texcoord_sets.push_back(uses.sets());
   }
+  const auto spreads_light = [](const Material& m) {
+    return m.transmission.factor > 0 && (m.roughness > 0 || m.volume.thickness > 0);
+  };
+  if (std::any_of(out.materials.begin(), out.materials.end(), spreads_light))
+    warnings.push_back(
+        "KHR_materials_transmission: light passes straight on: what is seen through is neither blurred nor bent");
   return out;
 }
 

@@ -22,11 +22,11 @@ class TextureTable {
   TextureTable(const JsonValue& root, const Data& data) : root_(root), data_(data) {}
 
   /// The number that a texture of the file will have in the scene; textures alike in image and sampler share one.
-  /// no_index: it has no image that could be read, which `warnings` tells.
+  /// lost_texture: it has no image that could be read, which `warnings` tells.
   [[nodiscard]] std::uint32_t intern(const JsonValue& index, std::vector<std::string>& warnings);
 
   /// Decodes in parallel and fills scene.textures. Images that cannot be decoded become warnings, and the materials go
-  /// without them.
+  /// without them, as they do without a lost_texture.
   void load(Scene& scene) const;
 
  private:
@@ -69,14 +69,31 @@ class TextureTable {
   std::map<Look, std::uint32_t> numbers_;
 };
 
-/// Texture coordinate sets that are told apart; more than these hardly occur.
-inline constexpr std::uint32_t max_texcoord_sets = 4;
+/// Stands for a texture that cannot be used: TextureTable::load() does without it.
+inline constexpr std::uint32_t lost_texture = no_index - 1;
+
+/// Reads uses of textures, and notes which sets of coordinates they ask for.
+class UseReader {
+ public:
+  UseReader(TextureTable& textures, std::vector<std::string>& warnings) : textures_(textures), warnings_(warnings) {}
+
+  /// The use that is a member of `json`, if it is there; lost_texture where it cannot be used, which a warning tells.
+  [[nodiscard]] TextureUse read(const JsonValue& json, const char* key);
+  /// Bit k: set k is asked for.
+  [[nodiscard]] std::uint32_t sets() const { return sets_; }
+
+ private:
+  TextureTable& textures_;
+  std::vector<std::string>& warnings_;
+  std::uint32_t sets_ = 0;
+};
+
+/// Reads what the extensions of a material say about its layers.
+void read_layers(const JsonValue& json, UseReader& uses, Material& material);
 
 struct MaterialList {
   std::vector<Material> materials;
-  /// For each material, the set of texture coordinates that its textures use. A mesh has one: textures that ask for
-  /// another than the base colour does are left out, with a warning.
-  std::vector<std::uint32_t> texcoord_sets;
+  std::vector<std::uint32_t> texcoord_sets;  ///< for each material those that its textures use; bit k: set k
 };
 
 /// Names a material of the file in warnings: "materials[2] (lamp)".

@@ -7,6 +7,7 @@
 #include "io/models/gltf/meshes.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 namespace frontmost::gltf {
@@ -127,22 +128,25 @@ class MeshBuilder {
   /// Gives every block its place in the mesh, and makes room.
   void place_blocks() {
     std::size_t total = 0;
-    bool normals = false, texcoords = false, colors = false;
+    bool normals = false, colors = false;
+    std::uint32_t sets = 0;
     for (VertexRun& block : blocks_) {
       const VertexSources& base = block.vertices->base;
       block.first = total;
       total += block.range.count;
       normals |= base.normal != no_index;
-      texcoords |= base.texcoords[block.vertices->texcoord_set] != no_index;
+      for (std::uint32_t set = 0; set < max_texcoord_sets; ++set)
+        if (base.texcoords[set] != no_index) sets |= plan_.texcoord_sets & 1u << set;
       colors |= base.color != no_index;
     }
-    const std::size_t size = 12 + 12 * normals + 8 * texcoords + 16 * colors;
+    const std::size_t size = 12 + 12 * normals + 8 * std::size_t(std::popcount(sets)) + 16 * colors;
     budget_.charge(total, size, plan_.place, source_);
     if (total >= no_index) source_.fail_limit(plan_.place, "too many vertices");
     mesh_.positions.resize(total);
     // What a primitive lacks and another has: a missing normal, the texture's corner, white.
     if (normals) mesh_.normals.values.resize(total, glm::vec3(0));
-    if (texcoords) mesh_.texcoords.values.resize(total, glm::vec2(0));
+    for (std::uint32_t set = 0; set < max_texcoord_sets; ++set)
+      if (sets >> set & 1) texcoords_of(mesh_, set).resize(total, glm::vec2(0));
     if (colors) mesh_.colors.values.resize(total, glm::vec4(1));
   }
 
@@ -156,7 +160,8 @@ class MeshBuilder {
     const VertexSources& base = block.vertices->base;
     read_attribute(block, base.position, mesh_.positions);
     read_attribute(block, base.normal, mesh_.normals.values);
-    read_attribute(block, base.texcoords[block.vertices->texcoord_set], mesh_.texcoords.values);
+    for (std::uint32_t set = 0; set < max_texcoord_sets; ++set)
+      if (mesh_.texcoord_set(set)) read_attribute(block, base.texcoords[set], texcoords_of(mesh_, set));
     read_attribute(block, base.color, mesh_.colors.values);
     charge_pose(block, pose);
     apply_targets(data_, block, pose.weights, mesh_);
@@ -192,6 +197,12 @@ class MeshBuilder {
 };
 
 }  // namespace
+
+std::vector<glm::vec2>& texcoords_of(Mesh& mesh, std::size_t set) {
+  if (set == 0) return mesh.texcoords.values;
+  if (mesh.further_texcoords.size() < set) mesh.further_texcoords.resize(set);
+  return mesh.further_texcoords[set - 1].values;
+}
 
 Mesh MeshReader::read(const MeshPlan& plan, const VertexPose& pose, std::vector<std::string>& warnings) {
   return MeshBuilder(plan, data_, budget_, source_).build(pose, warnings);

@@ -23,7 +23,6 @@ struct VertexSet {
   VertexSources base;
   std::vector<VertexSources> targets;
   std::vector<std::uint32_t> joints, weights;
-  std::uint32_t texcoord_set = 0;
   auto operator<=>(const VertexSet&) const = default;
 };
 
@@ -43,6 +42,7 @@ struct MeshPlan {
   std::vector<Primitive> primitives;  ///< those that have triangles
   std::vector<double> weights;        ///< of morph targets; may be empty
   std::size_t target_count = 0;
+  std::uint32_t texcoord_sets = 1;  ///< those that are read: the first, and what materials use; bit k: set k
   bool has_joints = false;
 };
 
@@ -80,6 +80,8 @@ struct VertexRun {
 
 /// Adds weighted displacements to positions, normals, texture coordinates and colours.
 void apply_targets(const Data& data, const VertexRun& block, std::span<const double> weights, Mesh& mesh);
+/// The values of a set of texture coordinates, made if they are not there.
+[[nodiscard]] std::vector<glm::vec2>& texcoords_of(Mesh& mesh, std::size_t set);
 /// Moves positions and normals by joints, which the block's vertices have.
 /// \throws Error file_malformed for a joint that the skin does not have.
 void apply_skin(const Data& data, const VertexRun& block, std::span<const glm::dmat4> joints, const ModelSource& source,

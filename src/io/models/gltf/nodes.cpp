@@ -12,7 +12,7 @@ namespace {
 
 /// Numbers of arrays that nodes refer to.
 struct Counts {
-  std::size_t nodes, meshes, skins, cameras;
+  std::size_t nodes, meshes, skins, cameras, lights;
 };
 
 std::size_t size_or_zero(const JsonValue& root, const char* key) {
@@ -73,6 +73,8 @@ Node read_node(const JsonValue& json, const Counts& counts, const Data& data) {
   node.mesh = json.index_or_none("mesh", counts.meshes);
   node.skin = json.index_or_none("skin", counts.skins);
   node.camera = json.index_or_none("camera", counts.cameras);
+  if (const auto light = json.extension("KHR_lights_punctual"))
+    node.light = light->require("light").to_index(counts.lights);
   node.world = read_transform(json);  // of its parent's space, until all parents are known
   node.copies = read_copies(json, data);
   const std::optional<JsonValue> children = json.find("children");
@@ -170,8 +172,9 @@ glm::dmat4 compose(const glm::dvec3& translation, const glm::dvec4& rotation, co
 NodeTree read_nodes(const JsonValue& root, const Data& data) {
   NodeTree tree;
   const std::optional<JsonValue> array = root.find("nodes");
+  const std::optional<JsonValue> lights = find_lights(root);
   const Counts counts{array ? array->size() : 0, size_or_zero(root, "meshes"), size_or_zero(root, "skins"),
-                      size_or_zero(root, "cameras")};
+                      size_or_zero(root, "cameras"), lights ? lights->size() : 0};
   for (std::size_t i = 0; i < counts.nodes; ++i) tree.nodes.push_back(read_node((*array)[i], counts, data));
   find_parents(tree.nodes, root.source());
   std::vector<std::uint32_t> roots = place_in_world(tree.nodes, root.source());

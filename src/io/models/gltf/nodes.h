@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The node tree of a glTF file, and what its nodes place in the world: meshes, posed or not, and cameras.
+// The node tree of a glTF file, and what its nodes place in the world: meshes, posed or not, cameras and lights.
 //
 //   scene --> node "car"          transform to its parent
 //               |-> node "wheel"  mesh 3                       world = car * wheel
@@ -25,7 +25,7 @@ struct InstancingAccessors {
 struct Node {
   std::string name, place;
   std::uint32_t parent = no_index;
-  std::uint32_t mesh = no_index, skin = no_index, camera = no_index;
+  std::uint32_t mesh = no_index, skin = no_index, camera = no_index, light = no_index;
   std::vector<std::uint32_t> children;
   std::vector<double> weights;
   std::optional<InstancingAccessors> copies;
@@ -52,5 +52,10 @@ void place_meshes(const JsonValue& root, const Data& data, const std::vector<Mes
 
 /// Fills scene.cameras, one for each shown node that has one.
 void place_cameras(const JsonValue& root, const NodeTree& tree, Scene& scene);
+
+/// The lights that nodes name by number (KHR_lights_punctual), if the file has any.
+[[nodiscard]] std::optional<JsonValue> find_lights(const JsonValue& root);
+/// Fills scene.lights, one for each shown node that has one.
+void place_lights(const JsonValue& root, const NodeTree& tree, Scene& scene);
 
 }  // namespace frontmost::gltf

@@ -86,6 +86,7 @@ class Planner {
         primitives[i].fail(std::to_string(targets) + " morph targets where others have " +
                            std::to_string(*target_count));
       target_count = targets;
+      if (primitive->material != no_index) plan.texcoord_sets |= texcoord_sets_of(*primitive);
       plan.has_joints |= !primitive->vertices.joints.empty();
       plan.primitives.push_back(*std::move(primitive));
     }
@@ -120,12 +121,22 @@ class Planner {
     return primitive;
   }
 
+  /// Those that its material's textures use.
+  std::uint32_t texcoord_sets_of(const Primitive& primitive) {
+    const std::uint32_t sets = materials_.texcoord_sets[primitive.material];
+    // Set 0 is missing so often, with textures that mean a single colour, that nobody has to be told.
+    for (std::uint32_t set = 1; set < max_texcoord_sets; ++set)
+      if (sets >> set & 1 && primitive.vertices.base.texcoords[set] == no_index)
+        warnings_.push_back(primitive.place + ": has no TEXCOORD_" + std::to_string(set) +
+                            ", which its material's textures use; they are looked up at 0, 0");
+    return sets;
+  }
+
   void read_vertices(const JsonValue& json, Primitive& primitive) {
     const JsonValue attributes = json.require("attributes");
     AttributeReader reader(attributes, data_);
     VertexSet& vertices = primitive.vertices;
     vertices.base = reader.read_sources();
-    if (primitive.material != no_index) vertices.texcoord_set = materials_.texcoord_sets[primitive.material];
     for (std::size_t set = 0; set < max_joint_sets; ++set) {
       const std::uint32_t joints = reader.find("JOINTS_" + std::to_string(set), {4, 4, true});
       const std::uint32_t weights = reader.find("WEIGHTS_" + std::to_string(set), {4, 4, false});

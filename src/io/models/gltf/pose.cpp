@@ -73,7 +73,8 @@ void apply_targets(const Data& data, const VertexRun& block, std::span<const dou
     const VertexSources& target = vertices.targets[i];
     add(data, block, target.position, weights[i], mesh.positions);
     add(data, block, target.normal, weights[i], mesh.normals.values);
-    add(data, block, target.texcoords[vertices.texcoord_set], weights[i], mesh.texcoords.values);
+    for (std::uint32_t set = 0; set < max_texcoord_sets; ++set)
+      if (mesh.texcoord_set(set)) add(data, block, target.texcoords[set], weights[i], texcoords_of(mesh, set));
     add(data, block, target.color, weights[i], mesh.colors.values);
   }
 }

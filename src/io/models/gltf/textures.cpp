@@ -28,10 +28,29 @@ constexpr std::uint64_t repeat_code = 10497, nearest_code = 9728;
 /// False: the texture is lost.
 bool remap(TextureUse& use, const std::vector<std::uint32_t>& new_numbers) {
   if (!use.is_set()) return true;
-  use.texture = new_numbers[use.texture];
+  use.texture = use.texture == lost_texture ? no_index : new_numbers[use.texture];
   if (use.is_set()) return true;
   use = TextureUse{};
   return false;
+}
+
+/// What is left of a material whose texture is lost. A factor without its texture would say something else than the
+/// file means; what only colours or bumps is done without.
+void do_without(const TextureUse* lost, Material& m, const std::string& who, std::vector<std::string>& warnings) {
+  if (lost == &m.metallic_roughness_texture) return lose_metallic_roughness_texture(m, who, warnings);
+  if (lost == &m.emissive_texture) return lose_emissive_texture(m, who, warnings);
+  const auto lose = [&](auto& layer, const char* name) {
+    layer = {};
+    warnings.push_back(who + ": has no " + name + " without its texture");
+  };
+  if (lost == &m.specular.factor_texture || lost == &m.specular.color_texture) {
+    lose(m.specular, "specular layer");
+    if (m.ior == 0) m.ior = Material{}.ior;  // a mirror, which had its colour from that layer alone
+  }
+  if (lost == &m.clearcoat.factor_texture || lost == &m.clearcoat.roughness_texture) lose(m.clearcoat, "clearcoat");
+  if (lost == &m.sheen.color_texture || lost == &m.sheen.roughness_texture) lose(m.sheen, "sheen");
+  if (lost == &m.transmission.factor_texture) lose(m.transmission, "transmission");
+  if (lost == &m.volume.thickness_texture) lose(m.volume, "volume");
 }
 
 }  // namespace
@@ -45,7 +64,7 @@ std::uint32_t TextureTable::intern(const JsonValue& index, std::vector<std::stri
   look.image = texture.index_or_none("source", images ? images->size() : 0);
   if (look.image == no_index) {
     warnings.push_back(texture.place() + ": has no PNG or JPEG image, materials go without it");
-    return no_index;
+    return lost_texture;
   }
   read_sampler(texture, look);
   const auto [entry, is_new] = numbers_.emplace(look, std::uint32_t(looks_.size()));
@@ -184,12 +203,9 @@ void TextureTable::load(Scene& scene) const {
   }
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     Material& material = scene.materials[i];
-    const auto who = [&] { return described(root_.require("materials")[i]); };
-    for (TextureUse* use : {&material.base_color_texture, &material.normal_texture, &material.occlusion_texture})
-      (void)remap(*use, new_numbers);
-    if (!remap(material.metallic_roughness_texture, new_numbers))
-      lose_metallic_roughness_texture(material, who(), scene.warnings);
-    if (!remap(material.emissive_texture, new_numbers)) lose_emissive_texture(material, who(), scene.warnings);
+    for (TextureUse* use : texture_uses_of(material))
+      if (!remap(*use, new_numbers))
+        do_without(use, material, described(root_.require("materials")[i]), scene.warnings);
   }
 }
 

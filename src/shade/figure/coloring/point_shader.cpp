@@ -15,11 +15,23 @@ const TriangleStore& smoothed(PreparedScene& scene, const BitSet& large, const E
   return scene.triangles;
 }
 
-Lit lit_by_key(PreparedScene& scene, const ShadedPicture& picture, const Lighting& lighting,
-               const Execution& execution) {
-  scene.shadows.find(picture, lighting.to_key, execution);
+/// That of lit figures; none of others.
+Lighting lighting_of(PreparedScene& scene, const ShadeInput& input, const ShadeOptions& options,
+                     const Execution& execution) {
+  check_light(options.light);
+  if (options.light.shows_environment)
+    throw Error(ErrorCode::unsupported, "figure: an environment cannot be shown as background");
+  if (options.shading != Shading::lit) return {};
+  return lighting_for(input.visible.view, scene.surfaces.scene().up, options.light,
+                      scene.environment(options.light, execution));
+}
+
+Lit lit_at_points(PreparedScene& scene, const ShadeInput& input, const ShadeOptions& options, const Lighting& lighting,
+                  const Execution& execution) {
+  Lit lit = lit_by(lighting, {input, options, kAtPoint}, scene, execution);
+  lit.occlusion = scene.find_occlusion(input, options, execution);
   scene.shadows.ask_at_points();
-  return {scene.materials, lighting, scene.shadows.map(), scene.shadows.rays(), execution.isa};
+  return lit;
 }
 
 }  // namespace
@@ -27,12 +39,13 @@ Lit lit_by_key(PreparedScene& scene, const ShadedPicture& picture, const Lightin
 PointShader::PointShader(PreparedScene& scene, const ShadeInput& input, const FigureTriangles& triangles,
                          const ShadeOptions& options, const Execution& execution)
     : source_(smoothed(scene, triangles.large, execution), input.visible.view, &triangles.large),
-      lighting_(lighting_for(input.visible.view, scene.surfaces.scene().up)),
+      lighting_(lighting_of(scene, input, options, execution)),
       opacity_(shows_materials(options.shading) ? options.opacity : 1.0f) {
   check_opacity(options);
+  check_ambient_occlusion(options);
   scene.make_materials_ready(triangles.seen, execution);
   switch (options.shading) {
-    case Shading::lit: colorist_ = lit_by_key(scene, {input, options, kAtPoint}, lighting_, execution); break;
+    case Shading::lit: colorist_ = lit_at_points(scene, input, options, lighting_, execution); break;
     case Shading::flat: colorist_ = Flat{scene.materials, execution.isa}; break;
     case Shading::normals: colorist_ = Normals{scene.materials, execution.isa}; break;
     case Shading::ids: colorist_ = Ids{}; break;

@@ -47,7 +47,8 @@ bool is_opaque(const Surfaces& surfaces, PrimitiveId id) {
   const PrimitiveSource source = surfaces.source(id);
   const Scene& scene = surfaces.scene();
   const std::uint32_t material = scene.meshes[source.mesh].material_of(source.triangle);
-  return material >= scene.materials.size() || scene.materials[material].alpha == Material::Alpha::opaque;
+  return material >= scene.materials.size() ||
+         (scene.materials[material].alpha == Material::Alpha::opaque && !scene.materials[material].is_see_through());
 }
 
 }  // namespace
@@ -141,10 +142,14 @@ void PolygonColors::place_samples(Piece& piece) {
 void PolygonColors::shade_samples() {
   asked_.clear();
   const auto hand_out = [&] {
-    shader_.hand_out([&](std::uint32_t i, float, const glm::vec3& light, float alpha) {
-      const float opacity = std::clamp(alpha * shading_.opacity(), 0.0f, 1.0f);
-      asked_[i]->color = {float(srgb8_of_linear(light.x)), float(srgb8_of_linear(light.y)),
-                          float(srgb8_of_linear(light.z)), opacity * 255.0f};
+    shader_.hand_out([&](const FragmentShader::Shaded& shaded) {
+      const glm::vec3& light = shaded.light;
+      // Paper shows nothing brighter than white: what glass mirrors beyond that hides what is behind instead.
+      const float brightest = std::max(1.0f, std::max(light.x, std::max(light.y, light.z)));
+      const glm::vec3 shown = light / brightest;
+      const float opacity = std::clamp(shaded.alpha * brightest * shading_.opacity(), 0.0f, 1.0f);
+      asked_[shaded.number]->color = {float(srgb8_of_linear(shown.x)), float(srgb8_of_linear(shown.y)),
+                                      float(srgb8_of_linear(shown.z)), opacity * 255.0f};
     });
   };
   for (Piece& piece : looked_at_) {
@@ -278,14 +283,14 @@ std::span<const TexcoordLines> PolygonColors::texture_lines(const Piece& piece) 
   shading_.source().set_up({&triangle, 1}, setups);
   const TriangleSetup& setup = setups[0];
   const Scene& scene = surfaces_.scene();
-  if (!setup.has_texcoord || setup.material >= scene.materials.size()) return lines;
+  if (setup.material >= scene.materials.size()) return lines;
   const TextureUse& use = scene.materials[setup.material].base_color_texture;
-  if (!use.is_set()) return lines;
+  if (!use.is_set() || !setup.has_texcoord[use.set]) return lines;
   const Texture& texture = scene.textures[use.texture];
   const TexcoordTransform transform(use);
   std::array<double, 3> u, v;
   for (std::size_t k = 0; k < 3; ++k) {
-    const glm::vec2 place = transform.place(setup.texcoord[k]);
+    const glm::vec2 place = transform.place(setup.texcoord[use.set][k]);
     u[k] = double(place.x) * texture.width;
     v[k] = double(place.y) * texture.height;
   }

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the rays of a camera meet: the grid is cast in packets of neighbouring rays.
+//
+//     wide grid, rows close together      A packet has as many columns and rows as make it most nearly square to look
+//     +----------------+                  at, so that its rays spread as little as they can: a scanner whose rings lie
+//     | 16 x 4         |                  far apart is cast in flat blocks.
+//     +----------------+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "raycast/camera_rays.h"
+#include "raycast/queries.h"
+#include "raycast/scan_packet.h"
+
+namespace frontmost {
+namespace {
+
+using namespace raycast_detail;
+
+constexpr std::size_t kRaysPerPart = 4096;
+
+/// Calls visit(first, rays) for the rays of every part of the grid, sample by sample, on all threads.
+template <class Model, class Visit>
+void for_each_part(const RangeScan& scan, const Model& model, const Execution& execution, const Visit& visit) {
+  const RayPose pose(scan.camera.world_from_eye);
+  const std::size_t count = std::size_t(scan.width) * std::size_t(scan.height);
+  std::size_t plane = 0;
+  for (const glm::ivec2& offset : sample_offsets(scan.camera.samples)) {
+    const GridDirections<Model> directions(model, offset);
+    parallel_for(execution, count, kRaysPerPart, [&](std::size_t begin, std::size_t end) {
+      std::vector<Ray> rays;
+      rays.reserve(end - begin);
+      for (std::size_t i = begin; i < end; ++i)
+        rays.push_back(pose.place(directions.at(int(i % std::size_t(scan.width)), int(i / std::size_t(scan.width)))));
+      visit(plane + begin, rays);
+    });
+    plane += count;
+  }
+}
+
+/// The columns and rows of a packet that looks most nearly square in the middle of the grid.
+template <class Model>
+glm::ivec2 packet_shape(const RangeScan& scan, const GridDirections<Model>& directions) {
+  const int x = scan.width / 2, y = scan.height / 2;
+  const glm::dvec3 middle = directions.at(x, y);
+  const double across = x > 0 ? glm::distance(middle, directions.at(x - 1, y)) : 0;
+  const double down = y > 0 ? glm::distance(middle, directions.at(x, y - 1)) : 0;
+  const auto spread = [&](const glm::ivec2& shape) { return std::max(shape.x * across, shape.y * down); };
+  glm::ivec2 best(int(kScanRays), 1);
+  for (int rows = 2; rows <= int(kScanRays) && rows < 2 * scan.height; rows *= 2) {
+    const glm::ivec2 next(int(kScanRays) / rows, rows);
+    if (spread(next) < spread(best)) best = next;
+  }
+  return best;
+}
+
+/// One sample of every pixel.
+template <class Model>
+class ScanCaster {
+ public:
+  ScanCaster(const RayTree& tree, const Model& model, int sample, RangeScan& scan)
+      : tree_(tree),
+        scan_(scan),
+        sample_(sample),
+        directions_(model, sample_offsets(scan.camera.samples)[std::size_t(sample)]),
+        pose_(scan.camera.world_from_eye),
+        shape_(packet_shape(scan, directions_)),
+        across_((scan.width + shape_.x - 1) / shape_.x) {}
+
+  void cast(const Execution& execution) const {
+    const std::size_t packets = std::size_t(across_) * std::size_t((scan_.height + shape_.y - 1) / shape_.y);
+    std::atomic<std::size_t> done{0};
+    parallel_for(execution, packets, kPacketsPerPart, [&](std::size_t begin, std::size_t end) {
+      ScanScratch scratch(tree_);
+      ScanPacket packet;
+      for (std::size_t i = begin; i < end; ++i) cast_block(i, packet, scratch, execution.isa);
+      const double part = double(done += end - begin) / double(packets);
+      report_progress(execution, "visible", (sample_ + part) / scan_.camera.samples);
+    });
+  }
+
+ private:
+  static constexpr std::size_t kPacketsPerPart = 64;
+
+  void cast_block(std::size_t number, ScanPacket& packet, ScanScratch& scratch, Isa isa) const {
+    const glm::ivec2 begin = shape_ * glm::ivec2(int(number) % across_, int(number) / across_);
+    const glm::ivec2 end = glm::min(begin + shape_, glm::ivec2(scan_.width, scan_.height));
+    packet.count = 0;
+    for (int y = begin.y; y < end.y; ++y)
+      for (int x = begin.x; x < end.x; ++x) {
+        const Ray ray = pose_.place(directions_.at(x, y));
+        packet.origin = ray.origin;
+        for (int axis = 0; axis < 3; ++axis) packet.direction[axis][packet.count] = ray.direction[axis];
+        ++packet.count;
+      }
+    cast_scan(tree_, packet, scratch, isa);
+    const std::size_t columns = std::size_t(end.x - begin.x);
+    for (int y = begin.y; y < end.y; ++y) {
+      const std::size_t from = std::size_t(y - begin.y) * columns, to = scan_.index(begin.x, y, sample_);
+      std::copy_n(packet.primitive + from, columns, scan_.primitives.data() + to);
+      std::copy_n(packet.range + from, columns, scan_.ranges.data() + to);
+    }
+  }
+
+  const RayTree& tree_;
+  RangeScan& scan_;
+  int sample_;
+  GridDirections<Model> directions_;
+  RayPose pose_;
+  glm::ivec2 shape_;
+  int across_;  ///< packets beside each other
+};
+
+}  // namespace
+
+namespace raycast_detail {
+
+RangeScan prepare_scan(const RayCamera& camera) {
+  validate(camera);
+  RangeScan result{camera, grid_of(camera).x, grid_of(camera).y, {}, {}};
+  const std::size_t count = result.index(0, 0, camera.samples);
+  result.primitives = Buffer<PrimitiveId>(count);
+  result.ranges = Buffer<float>(count);
+  return result;
+}
+
+void cast_parts(const RangeScan& scan, const Execution& execution, const CastPart& cast) {
+  const auto count = double(scan.ranges.size());
+  std::atomic<std::size_t> done{0};
+  const auto cast_part = [&](std::size_t first, const std::vector<Ray>& rays) {
+    cast(first, rays);
+    report_progress(execution, "visible", double(done += rays.size()) / count);
+  };
+  std::visit([&](const auto& model) { for_each_part(scan, model, execution, cast_part); }, scan.camera.model);
+}
+
+}  // namespace raycast_detail
+
+RangeScan scan(const RayIndex& index, const RayCamera& camera, const Execution& execution) {
+  RangeScan result = raycast_detail::prepare_scan(camera);
+  const auto cast = [&](const auto& model) {
+    for (int sample = 0; sample < camera.samples; ++sample)
+      ScanCaster(index.tree(), model, sample, result).cast(execution);
+  };
+  std::visit(cast, camera.model);
+  return result;
+}
+
+glm::dvec3 point_of(const RangeScan& scan, int x, int y, int sample) {
+  const Ray ray = ray_of(scan.camera, x, y, sample);
+  const double range = scan.ranges[scan.index(x, y, sample)];
+  return glm::dvec3(ray.origin) + range / glm::length(glm::dvec3(ray.direction)) * glm::dvec3(ray.direction);
+}
+
+Buffer<float> planar_depths(const RangeScan& scan, const Execution& execution) {
+  Buffer<float> depths(scan.ranges.size());
+  const glm::dvec3 forward = -glm::dvec3(scan.camera.world_from_eye[2]);
+  const auto project = [&](std::size_t first, const std::vector<Ray>& rays) {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const double ahead =
+          glm::dot(glm::dvec3(rays[i].direction), forward) / glm::length(glm::dvec3(rays[i].direction));
+      // Also false for rays without a direction, which meet nothing.
+      depths[first + i] =
+          ahead > 0 ? float(double(scan.ranges[first + i]) * ahead) : std::numeric_limits<float>::infinity();
+    }
+  };
+  std::visit([&](const auto& model) { for_each_part(scan, model, execution, project); }, scan.camera.model);
+  return depths;
+}
+
+}  // namespace frontmost

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Looking up octahedral maps for many directions: where to read is found in plain loops over lanes, what is read there
+// comes four channels of two neighbours at a time.
+
+// Included once for every target.
+#if defined(FRONTMOST_SHADE_ENVIRONMENT_OCTAHEDRAL_LOOKUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FRONTMOST_SHADE_ENVIRONMENT_OCTAHEDRAL_LOOKUP_INL_H_
+#undef FRONTMOST_SHADE_ENVIRONMENT_OCTAHEDRAL_LOOKUP_INL_H_
+#else
+#define FRONTMOST_SHADE_ENVIRONMENT_OCTAHEDRAL_LOOKUP_INL_H_
+#endif
+
+#include <cmath>
+#include <cstdint>
+
+#include "hwy/highway.h"
+// After Highway: a block of its own.
+#include "shade/light/fragment_terms-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::shading::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// A place on the unfolded octahedron, 0 to 1; both 0 for NaN.
+struct OctahedralPlace {
+  float u, v;
+};
+
+inline float signed_as(float value, float sign) { return sign < 0 ? -value : value; }
+
+inline OctahedralPlace octahedral_place(const Direction& d) {
+  const float scale = 1.0f / (std::abs(d.x) + std::abs(d.y) + std::abs(d.z));
+  const float x = d.x * scale, z = d.z * scale;
+  const float below_x = signed_as(1.0f - std::abs(z), x), below_z = signed_as(1.0f - std::abs(x), z);
+  const float u = d.y < 0 ? below_x : x, v = d.y < 0 ? below_z : z;
+  return {clamp01(0.5f + 0.5f * u), clamp01(0.5f + 0.5f * v)};
+}
+
+/// The first of the four texels around a place, as a number of floats from the beginning of a map with border, and how
+/// far the place is from it.
+struct TexelSquare {
+  std::int32_t first;
+  float x, y;
+};
+
+inline TexelSquare texel_square(const OctahedralPlace& place, std::int32_t size) {
+  const float x = place.u * float(size) + 0.5f, y = place.v * float(size) + 0.5f;
+  const auto column = std::int32_t(x), row = std::int32_t(y);
+  return {4 * (row * (size + 2) + column), x - float(column), y - float(row)};
+}
+
+/// Four channels of two texels side by side, in one vector or in as many as it takes.
+constexpr int kPairLanes = 8;
+using DTexels = hn::CappedTag<float, kPairLanes>;
+using VTexels = hn::Vec<DTexels>;
+constexpr int kTexelLanes = int(hn::MaxLanes(DTexels())), kTexelParts = kPairLanes / kTexelLanes;
+constexpr float kSecondTexel[kPairLanes] = {0, 0, 0, 0, 1, 1, 1, 1};
+
+/// Adds `weight` times the bilinear mean of a square of texels; the two columns are summed apart.
+HWY_INLINE void AddSquare(const float* texels, std::int32_t floats_per_row, const TexelSquare& square, float weight,
+                          VTexels* sums) {
+  const DTexels d;
+  const float* const upper = texels + square.first;
+  const float* const lower = upper + floats_per_row;
+  const auto part_y = hn::Set(d, square.y);
+  const auto first = hn::Set(d, (1.0f - square.x) * weight), second = hn::Set(d, square.x * weight);
+  for (int part = 0; part < kTexelParts; ++part) {
+    const int lane = part * kTexelLanes;
+    const auto is_second = hn::Gt(hn::LoadU(d, kSecondTexel + lane), hn::Zero(d));
+    const auto above = hn::LoadU(d, upper + lane), below = hn::LoadU(d, lower + lane);
+    const auto column = hn::Add(above, hn::Mul(hn::Sub(below, above), part_y));
+    sums[part] = hn::Add(sums[part], hn::Mul(column, hn::IfThenElse(is_second, second, first)));
+  }
+}
+
+/// Both columns together: four channels.
+HWY_INLINE void StoreSum(const VTexels* sums, float* out) {
+  const DTexels d;
+#if HWY_TARGET != HWY_SCALAR  // which has no halves
+  if constexpr (kTexelParts == 1) {
+    const hn::Half<DTexels> half;
+    return hn::StoreU(hn::Add(hn::LowerHalf(half, sums[0]), hn::UpperHalf(half, sums[0])), half, out);
+  }
+#endif
+  if constexpr (kTexelParts > 1) {
+    constexpr int half = kTexelParts / 2;
+    for (int part = 0; part < half; ++part)
+      hn::StoreU(hn::Add(sums[part], sums[part + half]), d, out + part * kTexelLanes);
+  }
+}
+
+}  // namespace frontmost::shading::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard by target

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures of scans: what rays met, with the materials, lights and shadows of other pictures.
+#pragma once
+
+#include "shade/canvas.h"
+#include "shade/picture_parts.h"
+#include "shade/prepared_scene.h"
+
+namespace frontmost::shading {
+
+/// All that a picture of a scan is made from.
+struct ScanRequest {
+  PreparedScene& scene;
+  const ScanInput& input;
+  const ShadeOptions& options;
+  const Execution& execution;
+};
+
+/// The ranges between which a picture of depths goes from bright to dark; both 0 where nothing is met.
+[[nodiscard]] DepthRange depth_range(const RangeScan& scan);
+
+/// \throws Error bad_argument for a scan whose planes or ids do not fit, or options out of range.
+void check_scan(const ScanRequest& request);
+
+/// Precondition: check_scan().
+void paint_scan(const ScanRequest& request, TileCanvas& canvas, const glm::vec4& background);
+
+}  // namespace frontmost::shading

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shade/shadow/light_shadows.h"
+
+#include <algorithm>
+
+#include "shade/layers/opaque_part.h"
+#include "shade/shadow/light_view.h"
+#include "view/answer.h"
+
+namespace frontmost::shading {
+namespace {
+
+/// Of two views of lights, which are square.
+bool are_equal(const View& a, const View& b) {
+  const Projection &p = a.projection, &q = b.projection;
+  return a.width == b.width && a.world_from_eye == b.world_from_eye && p.left == q.left && p.right == q.right &&
+         p.bottom == q.bottom && p.top == q.top && p.clip.near == q.clip.near && p.clip.far == q.clip.far;
+}
+
+/// What callers found of key_light_view(). \throws Error bad_argument.
+void check_light(const Visible& seen_by_light) {
+  constexpr const char* who = "shade: what the light sees";
+  check_planes(seen_by_light, who);
+  const View& view = seen_by_light.view;
+  if (view.width == view.height && view.width >= 4 * ShadowGrid::block && view.width % ShadowGrid::block == 0 &&
+      view.samples == 1 && view.projection.orthographic)
+    return;
+  throw Error(ErrorCode::bad_argument, std::string(who) + ": must be of a view that key_light_view() gave");
+}
+
+ShadowPoints points_of(const FragmentBatch& batch) {
+  const Lane3 &at = batch.geometry.smooth_position, &normal = batch.geometry.plane_normal;
+  return {at.x.values,     at.y.values,     at.z.values,         normal.x.values,
+          normal.y.values, normal.z.values, batch.coverage.count};
+}
+
+}  // namespace
+
+void LightShadows::find(const ShadedPicture& picture, const PictureLights& lights, const Execution& execution) {
+  lights_ = &lights;
+  far_maps_.assign(lights.far.size(), nullptr);
+  near_maps_.assign(lights.near.size(), nullptr);
+  rays_.reset();
+  if (picture.options.shadows == Shadows::off) return;
+  if (picture.options.shadows == Shadows::rays) return aim_rays(picture, execution);
+  draw_maps(picture, execution);
+}
+
+void LightShadows::find_far(std::size_t light, const AskedFragments& asked, Isa isa) const {
+  if (rays_) return rays_->find_light(lights_->far[light].light, asked);
+  far_maps_[light]->find_light(points_of(asked.batch), asked.is_asked, asked.batch.shadow.values, isa);
+}
+
+void LightShadows::find_near(std::size_t light, const AskedFragments& asked, Isa isa) const {
+  if (rays_) return rays_->find_light(lights_->near[light].lamp, asked);
+  near_maps_[light]->find_light(points_of(asked.batch), asked.is_asked, asked.batch.shadow.values, isa);
+}
+
+const Surfaces& LightShadows::casters(const Execution& execution) {
+  if (!opaque_ && has_see_through(all_.scene())) {
+    opaque_scene_ = opaque_part(all_.scene());
+    opaque_.emplace(opaque_scene_, execution);
+  }
+  return opaque_ ? *opaque_ : all_;
+}
+
+std::optional<std::size_t> LightShadows::map_number(const Light& source) const {
+  std::size_t number = 1;  // after the key light's
+  for (const Light& light : all_.scene().lights) {
+    if (number > most_mapped_lights) break;
+    if (&light == &source) return number;
+    number += light.kind != Light::Kind::point;
+  }
+  return std::nullopt;
+}
+
+void LightShadows::draw_maps(const ShadedPicture& picture, const Execution& execution) {
+  const SeenPoints& visible = picture.input.visible;
+  if (maps_.empty()) maps_.resize(1 + most_mapped_lights);  // they stay where they are
+  for (std::size_t i = 0; i < lights_->far.size(); ++i) {
+    const PictureLights::Far& far = lights_->far[i];
+    if (!far.source && picture.input.seen_by_light) {
+      take_map(*picture.input.seen_by_light, execution);
+      maps_[0].map.measure_from(visible.view.eye());
+      far_maps_[i] = &maps_[0].map;
+    } else if (!far.source) {
+      const Box& bounds = casters(execution).bounds();
+      far_maps_[i] =
+          draw_map(0, view_of_light(visible, bounds, glm::dvec3(far.light.to_light), execution), picture, execution);
+    } else if (const auto number = map_number(*far.source)) {
+      const Box& bounds = casters(execution).bounds();
+      far_maps_[i] = draw_map(*number, view_of_sun(visible, bounds, *far.source, execution), picture, execution);
+    }
+  }
+  for (std::size_t i = 0; i < lights_->near.size(); ++i) {
+    const Light& source = *lights_->near[i].source;
+    if (source.kind != Light::Kind::spot) continue;
+    if (const auto number = map_number(source))
+      near_maps_[i] =
+          draw_map(*number, view_of_spot(visible.view, casters(execution).bounds(), source), picture, execution);
+  }
+}
+
+void LightShadows::take_map(const Visible& seen_by_light, const Execution& execution) {
+  check_light(seen_by_light);
+  maps_[0].has_drawn = false;
+  maps_[0].map.draw(seen_by_light, execution);
+}
+
+const ShadowMap* LightShadows::draw_map(std::size_t number, const std::optional<View>& light,
+                                        const ShadedPicture& picture, const Execution& execution) {
+  DrawnMap& drawn = maps_[number];
+  drawn.has_drawn = drawn.has_drawn && light && are_equal(drawn.map.view(), *light);
+  if (!light) {
+    drawn.map.clear();
+    return &drawn.map;
+  }
+  if (!drawn.has_drawn) {
+    const Surfaces& surfaces = casters(execution);
+    // The first map may be the only one: a ZBuffer would make clusters for it.
+    if (!surfaces.made_clusters()) {
+      drawn.planes = zbuffer(surfaces, *light, execution);
+    } else {
+      drawer_.give_back(std::move(drawn.planes));
+      drawer_.draw(surfaces, *light, execution);
+      drawn.planes = drawer_.take();
+    }
+    drawn.map.draw(drawn.planes, execution);
+    drawn.has_drawn = true;
+  }
+  drawn.map.measure_from(picture.input.visible.view.eye());
+  return &drawn.map;
+}
+
+void LightShadows::aim_rays(const ShadedPicture& picture, const Execution& execution) {
+  const Surfaces& surfaces = casters(execution);
+  const RayIndex* index = picture.input.index;
+  if (opaque_ || !index) {
+    if (!index_) index_.emplace(surfaces, execution);
+    index = &*index_;
+  }
+  rays_.emplace(*index, picture.samples, picture.input.visible.view.eye(), execution.isa);
+  if (opaque_) rays_->forget_ids();
+}
+
+}  // namespace frontmost::shading

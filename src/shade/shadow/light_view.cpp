@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shade/shadow/light_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "base/parallel.h"
+
+namespace frontmost::shading {
+namespace {
+
+constexpr int kLeastSize = 256, kMostSize = 1024;
+constexpr double kSpareTexels = 12;  ///< around what is seen: the filter, and what lies between the points looked at
+constexpr int kStride = 4;           ///< every fourth pixel in x and y shows where the visible surfaces are
+
+/// A rectangle across the light's direction, and a range along it.
+struct LightExtent {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+
+  void include(const glm::dvec3& p) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  void include(const LightExtent& other) {
+    low = glm::min(low, other.low);
+    high = glm::max(high, other.high);
+  }
+  [[nodiscard]] bool is_empty() const { return !(low.x <= high.x); }
+};
+
+/// As many as make a texel about as small as a pixel: small pictures would not show more.
+int texels_for(const View& picture) {
+  const int wanted = std::max(picture.width, picture.height) * 8 / 5;
+  return std::clamp((wanted + 63) / 64 * 64, kLeastSize, kMostSize);
+}
+
+/// Of the points that are seen, in the axes of `light` (x, y across; z towards the light), from the eye.
+LightExtent extent_of_visible(const SeenPoints& visible, const glm::dmat3& light_axes, const Execution& execution) {
+  const glm::dmat3 light_from_world = glm::transpose(light_axes);
+  const int rows = (visible.view.height + kStride - 1) / kStride;
+  LightExtent extent;
+  std::mutex mutex;
+  parallel_for(execution, std::size_t(rows), 16, [&](std::size_t begin, std::size_t end) {
+    LightExtent part;
+    for (int y = int(begin) * kStride; y < std::min(int(end) * kStride, visible.view.height); y += kStride)
+      visible.visit_row(y, kStride, [&](const glm::dvec3& point) { part.include(light_from_world * point); });
+    const std::lock_guard lock(mutex);
+    extent.include(part);  // in any order: minima and maxima do not round
+  });
+  return extent;
+}
+
+LightExtent extent_of_box(const Box& box, const glm::dvec3& zero, const glm::dmat3& light_axes) {
+  LightExtent extent;
+  for (int k = 0; k < 8; ++k) {
+    const glm::dvec3 corner(k & 1 ? box.high.x : box.low.x, k & 2 ? box.high.y : box.low.y,
+                            k & 4 ? box.high.z : box.low.z);
+    extent.include(glm::transpose(light_axes) * (corner - zero));
+  }
+  return extent;
+}
+
+/// Two directions across `to_light`, and itself: upright in the picture, or, where the light is straight above or below
+/// what the picture shows, turned as its depth is.
+glm::dmat3 axes_of_light(const glm::dvec3& to_light, const View& view) {
+  constexpr double parallel = 1e-12;
+  const glm::dvec3 upright = glm::cross(view.up(), to_light);
+  const bool is_upright = glm::dot(upright, upright) > parallel;
+  const glm::dvec3 side = glm::normalize(is_upright ? upright : glm::cross(view.forward(), to_light));
+  return {side, glm::cross(to_light, side), to_light};
+}
+
+/// The window of the light's view: what is seen, but no more than there is, with room for the filter.
+LightExtent window_of(const LightExtent& seen, const LightExtent& all, int texels) {
+  LightExtent window = all;
+  for (int k = 0; k < 2; ++k) {
+    const double spare = 0.02 * (seen.high[k] - seen.low[k]);
+    window.low[k] = std::max(all.low[k], seen.low[k] - spare);
+    window.high[k] = std::min(all.high[k], seen.high[k] + spare);
+  }
+  const double side = std::max(
+      {window.high.x - window.low.x, window.high.y - window.low.y, 1e-6 * (window.high.z - window.low.z), 1e-30});
+  for (int k = 0; k < 2; ++k) {
+    const double centre = 0.5 * (window.low[k] + window.high[k]);
+    const double half = 0.5 * side * (1 + 2 * kSpareTexels / texels);
+    window.low[k] = centre - half;
+    window.high[k] = centre + half;
+  }
+  return window;
+}
+
+/// Of a window told from `zero`.
+View view_of_window(const LightExtent& window, const glm::dmat3& axes, const glm::dvec3& zero, int texels) {
+  View view;
+  view.width = view.height = texels;
+  const double depth = std::max(window.high.z - window.low.z, 1e-6 * (window.high.x - window.low.x));
+  view.world_from_eye = glm::dmat4(axes);
+  view.world_from_eye[3] = glm::dvec4(zero + axes * glm::dvec3(0, 0, window.high.z + 0.01 * depth), 1);
+  view.projection = make_orthographic(window.low.x, window.high.x, window.low.y, window.high.y, {0.0, 1.02 * depth});
+  return view;
+}
+
+/// The least number of the form (8 + k) * 2^n that is not below a positive one: at most an eighth more.
+double rounded_up(double value) {
+  int exponent = 0;
+  const double mantissa = std::frexp(value, &exponent);  // from a half to below one
+  return std::ldexp(std::ceil(16 * mantissa) / 16, exponent);
+}
+
+/// A larger window, whose side is one of few sizes and whose centre is on a grid of an eighth of it.
+void snap(LightExtent& window) {
+  constexpr double steps = 8;
+  const double side = rounded_up((window.high.x - window.low.x) * steps / (steps - 1)), step = side / steps;
+  for (int k = 0; k < 2; ++k) {
+    const double centre = std::round(0.5 * (window.low[k] + window.high[k]) / step) * step;
+    window.low[k] = centre - 0.5 * side;
+    window.high[k] = centre + 0.5 * side;
+  }
+}
+
+}  // namespace
+
+std::optional<View> view_of_light(const SeenPoints& visible, const Box& bounds, const glm::dvec3& to_light,
+                                  const Execution& execution) {
+  const glm::dmat3 axes = axes_of_light(to_light, visible.view);
+  const LightExtent seen = extent_of_visible(visible, axes, execution);
+  if (seen.is_empty() || bounds.is_empty()) return std::nullopt;
+  const glm::dvec3 eye = visible.view.eye();
+  const int texels = texels_for(visible.view);
+  return view_of_window(window_of(seen, extent_of_box(bounds, eye, axes), texels), axes, eye, texels);
+}
+
+std::optional<View> view_of_sun(const SeenPoints& visible, const Box& bounds, const Light& sun,
+                                const Execution& execution) {
+  const glm::dmat3 axes(sun.world_from_light);
+  LightExtent seen = extent_of_visible(visible, axes, execution);
+  if (seen.is_empty() || bounds.is_empty()) return std::nullopt;
+  const int texels = texels_for(visible.view);
+  // From a point that stays where it is.
+  const glm::dvec3 zero(bounds.centre()), eye = glm::transpose(axes) * (visible.view.eye() - zero);
+  seen.low += eye;
+  seen.high += eye;
+  LightExtent window = window_of(seen, extent_of_box(bounds, zero, axes), texels);
+  snap(window);
+  return view_of_window(window, axes, zero, texels);
+}
+
+std::optional<View> view_of_spot(const View& picture, const Box& bounds, const Light& spot) {
+  if (bounds.is_empty()) return std::nullopt;
+  constexpr double widest = 1.3089969389957472;  // 75 degrees
+  View view;
+  view.width = view.height = texels_for(picture);
+  view.world_from_eye = spot.world_from_light;
+  // As a float: the last bit of a tangent is not the same on all machines.
+  const double half = double(float(std::tan(std::min(spot.outer_cone, widest)))) * (1 + 2 * kSpareTexels / view.width);
+  const double near = std::max(1e-4 * double(bounds.diagonal()), 1e-30);
+  view.projection = make_frustum(-half * near, half * near, -half * near, half * near,
+                                 {near, std::numeric_limits<double>::infinity()});
+  return view;
+}
+
+}  // namespace frontmost::shading
