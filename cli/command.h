@@ -19,8 +19,9 @@ namespace frontmost::cli {
 
 struct Command {
   std::string_view name;
-  unsigned bit;               ///< the options it takes; 0: none
-  std::string_view argument;  ///< as usage lines show it; "..." at its end: several may be given
+  unsigned bit;  ///< the options it takes; 0: none
+  std::string_view
+      argument;  ///< as usage lines show it; "..." at its end: several may be given; in [ ]: it may be left out
   std::string_view summary;
   std::string_view details;
   std::string_view examples;  ///< one a line: command, two blanks or more, what it does
@@ -28,6 +29,7 @@ struct Command {
 
   /// The argument's name alone.
   [[nodiscard]] std::string_view argument_name() const { return argument.substr(0, argument.find("...")); }
+  [[nodiscard]] bool is_argument_needed() const { return !argument.empty() && argument.front() != '['; }
   [[nodiscard]] bool takes_several() const { return argument.ends_with("..."); }
 };
 
@@ -43,6 +45,7 @@ int run_sight(const Settings& settings);
 int run_lidar(const Settings& settings);
 int run_compare(const Settings& settings);
 int run_lines(const Settings& settings);
+int run_report(const Settings& settings);
 
 /// Fills Settings from the words after the command's name.
 /// \throws UsageError

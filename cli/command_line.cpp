@@ -107,7 +107,7 @@ Settings parse_command_line(const Command& command, std::span<const char* const>
   }
   take_leftovers(command, app.remaining(), settings);
   for (const GivenOption& found : all) apply_found(command, found, settings);
-  if (settings.model.empty() && !command.argument.empty()) {
+  if (settings.model.empty() && command.is_argument_needed()) {
     throw UsageError(fmt::format("no {} given; see frontmost {} --help", command.argument_name(), command.name));
   }
   return settings;

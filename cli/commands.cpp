@@ -19,8 +19,9 @@ int run_man(const Settings&) {
 
 constexpr Command table[] = {
     {"render", for_render, "MODEL...", "Render pictures and maps of a model.",
-     "MODEL is an STL, PLY, OBJ, OFF, glTF or GLB file, - for standard input, or builtin:teapot, cubes, cycle, city, "
-     "spheres or gallery. Several are drawn together, as they lie. Without any output the picture is shown on the "
+     "MODEL is an STL, PLY, OBJ, OFF, glTF, GLB or 3MF file, a scene file in JSON that places such models, - for "
+     "standard input, or builtin:teapot, cubes, cycle, city, spheres or gallery. Several are drawn together, as they "
+     "lie. Without any output the picture is shown on the "
      "terminal. Outputs with the same .exr name "
      "share one file.",
      "frontmost render engine.glb -o engine.png\n"
@@ -46,8 +47,8 @@ constexpr Command table[] = {
      "frontmost lines city.glb --plot --page a3 -o plot.svg --json",
      run_lines},
     {"info", for_info, "MODEL", "Count and check what is in a model.",
-     "Counts, bounds, objects, materials and cameras, and what is odd: degenerate, duplicate and non-finite triangles, "
-     "boundary and non-manifold edges, inconsistent winding.",
+     "Counts, bounds, objects, materials, cameras and lights, and what is odd: degenerate, duplicate and non-finite "
+     "triangles, boundary and non-manifold edges, inconsistent winding.",
      "frontmost info engine.glb\n"
      "frontmost info engine.glb --json",
      run_info},
@@ -57,14 +58,24 @@ constexpr Command table[] = {
      "frontmost camera part.stl --view front\n"
      "frontmost camera object.ply --intrinsics 615,615,320,240 --resolution 640,480 --json",
      run_camera},
-    {"precision", for_precision, "", "What a depth buffer can tell apart, at which distance.",
+    {"report", for_report, "MODEL", "Account for every object: how much is seen, and who hides the rest.",
+     "For every object the samples that it covers alone, in frame and visibly, boxes of all three, the shares that are "
+     "visible, hidden and beyond the frame, the nearest visible distance, and which objects hide how much of it; "
+     "exact, through the camera that the view options of render make. What lies beyond the frame is counted on a "
+     "canvas around it.",
+     "frontmost report scene.glb\n"
+     "frontmost report city.glb --resolution 640,480 --json",
+     run_report},
+    {"precision", for_precision, "[MODEL]", "What a depth buffer can tell apart, at which distance.",
      "The smallest gap that a depth buffer always resolves, against distance; without --format for the formats in use. "
-     "With --model also the pixels where such a buffer shows a surface that is not the nearest (z-fighting), against "
+     "With MODEL also where such a buffer may show a surface that is not the nearest (z-fighting): the pixels at which "
+     "it does, against the exact answer, and the areas of faces in which another picture would; with --format also "
+     "between which objects, and which planes, format or polygon offset end it, found by drawing. The camera is what "
      "the "
-     "exact answer, through the camera that the view options of render make; planes that are not given are fitted.",
+     "view options of render make; planes that are not given are fitted.",
      "frontmost precision --near 0.1 --far 1000\n"
      "frontmost precision --near 0.01 --infinite --format D24 --gap 0.05,800 --plot gaps.svg\n"
-     "frontmost precision --model city.glb --near 0.01 --format D16 --heat-map fights.png",
+     "frontmost precision city.glb --near 0.01 --format D16 --heat-map fights.png",
      run_precision},
     {"sight", for_sight, "MODEL", "Say whether one point sees another.",
      "Whether a surface lies between two points, of either side and exactly: what lies at one of the points does not "

@@ -48,6 +48,12 @@ std::optional<glm::ivec2> output_terminal() {
 
 bool error_is_terminal() { return isatty(STDERR_FILENO) != 0; }
 
+std::string grouped(std::uint64_t number) {
+  std::string text = std::to_string(number);
+  for (std::size_t i = text.size(); i > 3;) text.insert(i -= 3, 1, ',');
+  return text;
+}
+
 std::string printable_name(std::string_view name) { return name.empty() ? "(no name)" : printable_text(name); }
 
 Progress::Progress(bool quiet) : enabled_(!quiet && error_is_terminal()), next_(Clock::now() + patience) {

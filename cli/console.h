@@ -23,6 +23,9 @@ void complain(std::string_view text);
 [[nodiscard]] std::optional<glm::ivec2> output_terminal();
 [[nodiscard]] bool error_is_terminal();
 
+/// With a comma before every three digits: 1,234,567.
+[[nodiscard]] std::string grouped(std::uint64_t number);
+
 /// A name from a file, for a terminal: as printable_text() writes it, or "(no name)".
 [[nodiscard]] std::string printable_name(std::string_view name);
 

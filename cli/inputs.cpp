@@ -12,6 +12,7 @@
 
 #include "cli/console.h"
 #include "cli/failure.h"
+#include "cli/view/view_options.h"
 
 namespace frontmost::cli {
 namespace {
@@ -39,6 +40,11 @@ void InputFiles::refuse_outputs(const std::vector<std::string>& outputs) const {
   }
 }
 
+bool is_environment_file(const LightSettings& light) {
+  return light.environment && *light.environment != "studio" && *light.environment != "sky" &&
+         *light.environment != "none";
+}
+
 InputFiles input_files(const Settings& settings) {
   InputFiles files;
   const char* of_input = nullptr;
@@ -55,6 +61,7 @@ InputFiles input_files(const Settings& settings) {
   add(settings.sight.pairs, "is the file of pairs itself");
   add(settings.lidar.directions, "is the file of directions itself");
   add(settings.view.pose_file, "is the pose file itself");
+  if (is_environment_file(settings.output.light)) add(settings.output.light.environment, "is the environment itself");
   add(settings.output.reference, "is both the reference and an output");
   return files;
 }
@@ -85,6 +92,10 @@ void show_warnings(const std::vector<std::string>& warnings, const RunSettings& 
   if (warnings.size() > warnings_shown) {
     complain(fmt::format("warning: and {} more like these; --json lists them", warnings.size() - warnings_shown));
   }
+}
+
+void show_framing_warning(const Settings& settings, const Surfaces& surfaces, Progress& progress) {
+  if (const auto warning = framing_warning(settings.view, surfaces)) show_warnings({*warning}, settings.run, progress);
 }
 
 std::optional<Scene> tessellated(const Scene& scene, const ViewSettings& settings, const View& view) {

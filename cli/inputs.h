@@ -3,6 +3,7 @@
 #pragma once
 
 #include <frontmost/scene.h>
+#include <frontmost/surfaces.h>
 
 #include <filesystem>
 #include <map>
@@ -28,6 +29,8 @@ class InputFiles {
   std::map<std::pair<std::uint64_t, std::uint64_t>, std::string> files_;  // by device and number there
 };
 
+/// Whether the environment is read from a file, and not made by code.
+[[nodiscard]] bool is_environment_file(const LightSettings& light);
 /// All that the settings name. \throws UsageError where standard input would be read for two of them.
 [[nodiscard]] InputFiles input_files(const Settings& settings);
 
@@ -43,6 +46,8 @@ void refuse_outputs_beside(const std::vector<std::filesystem::path>& used, const
                                const std::vector<std::string>& outputs = {});
 /// The same of warnings alone.
 void show_warnings(const std::vector<std::string>& warnings, const RunSettings& run, Progress& progress);
+/// The same of objects that reach out of the picture, where there are any: framing_warning().
+void show_framing_warning(const Settings& settings, const Surfaces& surfaces, Progress& progress);
 /// The scene with its curved meshes cut for `view`, where --tessellation-error says how finely; none otherwise.
 [[nodiscard]] std::optional<Scene> tessellated(const Scene& scene, const ViewSettings& settings, const View& view);
 

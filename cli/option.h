@@ -21,6 +21,7 @@ enum class Group : std::uint8_t {
   lidar,
   compare,
   drawing,
+  report,
   output,
   look,
   run
@@ -35,6 +36,7 @@ inline constexpr std::string_view group_titles[] = {"Model",
                                                     "The scanner",
                                                     "Comparing",
                                                     "The drawing",
+                                                    "The report",
                                                     "What to write",
                                                     "How the picture looks",
                                                     "How to run"};
@@ -50,7 +52,9 @@ enum CommandBit : unsigned {
   for_lidar = 64,
   for_compare = 128,
   for_lines = 256,
-  for_every_model = for_render | for_info | for_camera | for_precision | for_sight | for_lidar | for_compare | for_lines
+  for_report = 512,
+  for_every_model =
+      for_render | for_info | for_camera | for_precision | for_sight | for_lidar | for_compare | for_lines | for_report
 };
 
 /// The text given for an option, and the words it may be.
@@ -94,15 +98,16 @@ struct Option {
 [[nodiscard]] std::span<const Option> lidar_option_table();
 [[nodiscard]] std::span<const Option> compare_option_table();
 [[nodiscard]] std::span<const Option> drawing_option_table();
+[[nodiscard]] std::span<const Option> report_option_table();
 [[nodiscard]] std::span<const Option> output_option_table();
 [[nodiscard]] std::span<const Option> run_option_table();
 
 /// Calls visit(option) for every option, in the order of the help.
 template <class Visit>
 void for_each_option(const Visit& visit) {
-  for (const auto table :
-       {view_option_table(), depth_option_table(), precision_option_table(), sight_option_table(), lidar_option_table(),
-        compare_option_table(), drawing_option_table(), output_option_table(), run_option_table()}) {
+  for (const auto table : {view_option_table(), depth_option_table(), precision_option_table(), sight_option_table(),
+                           lidar_option_table(), compare_option_table(), drawing_option_table(), report_option_table(),
+                           output_option_table(), run_option_table()}) {
     for (const Option& option : table) visit(option);
   }
 }

@@ -52,6 +52,7 @@ struct ViewSettings {
   std::optional<glm::dmat4> pose;
   std::optional<std::string> pose_file;  ///< where it comes from; `pose` is set by read_pose_file()
   std::optional<PoseConvention> pose_convention;
+  std::optional<FramedObjects> framed;  ///< which are fitted into the picture; the subject, where it is not given
   std::optional<double> near, far;
   std::optional<glm::ivec2> resolution;
   Culling culling = Culling::none;
@@ -77,6 +78,13 @@ struct OutputRequest {
   std::string path;  ///< "-" is standard output; may hold {model}, {view} and {layer}
 };
 
+/// The light of lit pictures.
+struct LightSettings {
+  std::optional<std::string> environment;  ///< a file, "studio", "sky" or "none"
+  /// All but the environment, which is made when the picture is drawn.
+  LightOptions options;
+};
+
 /// What to write and how it looks.
 struct OutputSettings {
   std::vector<OutputRequest> files;
@@ -90,8 +98,13 @@ struct OutputSettings {
   Shading shading = Shading::lit;
   std::optional<glm::vec3> background = glm::vec3(1.0f);  ///< none: transparent
   bool background_given = false;
+  std::optional<Lights> lights;  ///< none: the key light
   Shadows shadows = Shadows::map;
   float opacity = 1;
+  double ambient_occlusion = 0;  ///< strength
+  std::optional<double> occlusion_radius;
+  Blend blend = Blend::linear;
+  LightSettings light;
   bool visible_only = true;             ///< of figures
   std::size_t most_polygons = 2000000;  ///< likewise
   double color_tolerance = 6;           ///< likewise, in steps of 8 bits
@@ -169,6 +182,11 @@ struct DrawingSettings {
   }
 };
 
+/// What frontmost report counts, and where it goes.
+struct ReportSettings {
+  double canvas = 3;  ///< as AccountingOptions::canvas
+};
+
 struct Settings {
   std::string model;
   std::vector<std::string>
@@ -180,6 +198,7 @@ struct Settings {
   LidarSettings lidar;
   CompareSettings compare;
   DrawingSettings drawing;
+  ReportSettings report;
   OutputSettings output;
   RunSettings run;
 };

@@ -10,6 +10,7 @@ int main(int count, char** arguments) {
       {"peers", measure_peers},       {"threads", measure_threads},   {"isas", measure_isas},
       {"stages", measure_stages},     {"features", measure_features}, {"limits", measure_limits},
       {"memory", measure_memory},     {"surfaces", measure_surfaces}, {"coverage", measure_coverage},
-      {"rays", measure_ray_coverage}, {"raycast", measure_raycast},   {"depth", measure_depth_buffer}};
+      {"rays", measure_ray_coverage}, {"raycast", measure_raycast},   {"depth", measure_depth_buffer},
+      {"scans", measure_scans}};
   return run_program("zbuffer_bench", kTables, count, arguments);
 }

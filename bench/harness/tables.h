@@ -31,6 +31,8 @@ namespace frontmost::bench {
 [[nodiscard]] Table measure_coverage(const Options& options);
 /// Ray casting beside Embree: index, views, and single rays in all directions.
 [[nodiscard]] Table measure_raycast(const Options& options);
+/// Scans from inside of models, of the test models' folder.
+[[nodiscard]] Table measure_scans(const Options& options);
 /// Our pictures and Embree's.
 [[nodiscard]] Table measure_ray_coverage(const Options& options);
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // shade_table [--size W,H] [--frames N] [--samples N] [--picture FILE.png] MODEL... : pictures of models one after
 // another while the camera turns about them, on one thread, beside llvmpipe with base colours alone, in turns of one
-// frame each.
+// frame each. scene:NAME is a scene of harness/scenes.h; through those with a camera inside it flies.
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <functional>
 
+#include "harness/scenes.h"
 #include "harness/table.h"
 #include "shade/textured_gl.h"
 
@@ -64,25 +65,54 @@ class Pictures {
   ShadeOptions options_;
 };
 
-void measure(const std::string& path, const Request& request, Table& table) {
-  const Scene scene = load(path);
-  const Surfaces surfaces(scene);
+/// What is drawn, and how the camera moves.
+struct Subject {
+  std::string name;
+  Scene scene;
+  Camera camera = Camera::fit;
+};
+
+Subject subject_of(const std::string& model) {
+  constexpr std::string_view own = "scene:";
+  if (model.rfind(own, 0) != 0) return {std::filesystem::path(model).stem().string(), load(model)};
+  const SceneEntry& entry = find_scene(model.substr(own.size()));
+  return {std::string(entry.name), make_scene(entry.name, FRONTMOST_MODELS), entry.camera};
+}
+
+View first_view(const Subject& subject, const Surfaces& surfaces, const Request& request) {
+  if (subject.camera != Camera::fit) return make_view(surfaces.bounds(), subject.camera, request.width, request.height);
+  return frame(surfaces, request.width, request.height);
+}
+
+/// A step about the middle, or ahead.
+View next_view(const View& view, const Subject& subject, const Box& bounds) {
+  const glm::dvec3 middle = bounds.centre(), up = direction(subject.scene.up);
+  if (subject.camera == Camera::fit) {
+    const glm::dvec3 eye = view.eye() + 0.03 * glm::distance(view.eye(), middle) * view.right();
+    return view.looking(eye, middle, up).enclosing(bounds);
+  }
+  const glm::dvec3 eye =
+      view.eye() + 0.002 * glm::distance(glm::dvec3(bounds.low), glm::dvec3(bounds.high)) * view.forward();
+  return view.looking(eye, eye + view.forward(), view.up()).enclosing(bounds);
+}
+
+void measure(const std::string& model, const Request& request, Table& table) {
+  const Subject subject = subject_of(model);
+  const Surfaces surfaces(subject.scene);
   Pictures plain(surfaces, Shadows::off), shadowed(surfaces, Shadows::map);
-  TexturedGl peer(scene, request.width, request.height, 1);
-  View view = frame(surfaces, request.width, request.height);
+  TexturedGl peer(subject.scene, request.width, request.height, 1);
+  View view = first_view(subject, surfaces, request);
   view.samples = request.samples;
-  const glm::dvec3 middle = surfaces.bounds().centre();
   Times visible, again, colors, with_shadows, theirs;
   for (int i = 0; i < request.frames; ++i) {
     theirs.all.push_back(milliseconds([&] { peer.draw(view); }));
     plain.draw(view, visible, colors);
     shadowed.draw(view, again, with_shadows);
-    const glm::dvec3 eye = view.eye() + 0.03 * glm::distance(view.eye(), middle) * view.right();
-    view = view.looking(eye, middle, direction(scene.up)).enclosing(surfaces.bounds());
+    view = next_view(view, subject, surfaces.bounds());
   }
   if (!request.picture.empty()) save(peer.read(), request.picture);
   const double ours = visible.median() + colors.median(), all = visible.median() + with_shadows.median();
-  table.add({std::filesystem::path(path).stem().string(),
+  table.add({subject.name,
              Cell::whole(surfaces.primitive_count()),
              {visible.median()},
              {colors.median(), 1},

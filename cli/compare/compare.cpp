@@ -81,6 +81,7 @@ int run_compare(const Settings& settings) {
   const View& view = runs.front().answer.visible.view;
   const std::optional<Scene> cut = tessellated(scene, settings.view, view);
   const Surfaces surfaces(cut ? *cut : scene, execution);
+  show_framing_warning(settings, surfaces, progress);
   Comparisons all{settings, surfaces, view, {}, {}};
   for (MethodRun& run : runs) {
     const Visible& reference = all.methods.empty() ? run.answer.visible : all.methods.front().run.answer.visible;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cli/compare/compare_report.h"
+#include "cli/console.h"
 
 namespace frontmost::cli {
 namespace {

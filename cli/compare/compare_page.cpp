@@ -17,6 +17,7 @@
 
 #include "cli/compare/compare_report.h"
 #include "cli/compare/staged_folder.h"
+#include "cli/console.h"
 #include "cli/failure.h"
 
 namespace frontmost::cli {

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 
+#include "cli/console.h"
+
 namespace frontmost::cli {
 namespace {
 
@@ -69,12 +71,6 @@ std::vector<std::string> stage_names(const std::vector<Compared>& methods) {
 }
 
 std::string mebibytes(std::uint64_t bytes) { return fmt::format("{:.1f} MiB", double(bytes) / (1024 * 1024)); }
-
-std::string grouped(std::uint64_t number) {
-  std::string text = std::to_string(number);
-  for (std::size_t i = text.size(); i > 3;) text.insert(i -= 3, 1, ',');
-  return text;
-}
 
 std::string_view spots(const View& view) { return view.samples == 1 ? "pixels" : "samples"; }
 

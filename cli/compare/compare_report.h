@@ -33,8 +33,6 @@ struct Comparisons {
 /// The stages of all methods, in order.
 [[nodiscard]] std::vector<std::string> stage_names(const std::vector<Compared>& methods);
 [[nodiscard]] std::string mebibytes(std::uint64_t bytes);
-/// "1,234,567".
-[[nodiscard]] std::string grouped(std::uint64_t number);
 /// What is counted where methods differ: "pixels" as long as each has one sample.
 [[nodiscard]] std::string_view spots(const View& view);
 /// "1920 x 1080 pixels, 4 samples each".

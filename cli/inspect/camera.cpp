@@ -19,6 +19,7 @@ int run_camera(const Settings& settings) {
   const Surfaces surfaces(scene, execution);
   const View view = resolve_view(settings.view, surfaces);
   const glm::dvec3 target = focal_point_of(settings.view, view, surfaces);
+  show_framing_warning(settings, surfaces, progress);
   progress.clear();
   print(settings.run.json ? dump(camera_json(view, target, scene.origin)) : camera_text(view, target, scene.origin));
   return exit_done;

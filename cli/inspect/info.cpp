@@ -24,9 +24,10 @@ struct ModelUnit {
   bool is_guess;
 };
 
-constexpr std::size_t lines_shown = 20;  // of objects, materials, cameras; JSON has all
+constexpr std::size_t lines_shown = 20;  // of objects, materials, cameras, lights; JSON has all
 constexpr std::string_view axis_names[] = {"+x", "+y", "+z", "-x", "-y", "-z"};
 constexpr std::string_view alpha_names[] = {"opaque", "mask", "blend"};
+constexpr std::string_view light_names[] = {"sun", "point", "spot"};
 
 struct NamedCount {
   std::string_view key, words;
@@ -123,6 +124,19 @@ Json camera_json(const CameraReport& camera, const glm::dvec3& origin) {
   return json;
 }
 
+Json light_json(const LightReport& light, const glm::dvec3& origin) {
+  Json json = {
+      {"name", light.name}, {"kind", light_names[int(light.kind)]}, {"color", to_json(glm::dvec3(light.color))}};
+  json[light.kind == Light::Kind::sun ? "lux" : "candela"] = light.intensity;
+  if (light.kind != Light::Kind::sun) json["position"] = to_json(in_file(light.position, origin));
+  if (light.kind != Light::Kind::point) json["direction"] = to_json(light.direction);
+  if (light.range) json["range"] = *light.range;
+  if (light.kind != Light::Kind::spot) return json;
+  json["inner_cone_degrees"] = light.inner_cone * degrees_per_radian;
+  json["outer_cone_degrees"] = light.outer_cone * degrees_per_radian;
+  return json;
+}
+
 /// Turns every element of a list; an empty list stays a list.
 template <class T, class Turn>
 Json list(const std::vector<T>& elements, const Turn& turn) {
@@ -147,6 +161,16 @@ std::string camera_line(const CameraReport& camera, const glm::dvec3& origin) {
   const std::string width = camera.orthographic ? fmt::format("orthographic, {:.6g} high", camera.vertical)
                                                 : fmt::format("{:.4g} degrees", camera.vertical * degrees_per_radian);
   return fmt::format("{:24} {}, at {}", printable_name(camera.name), width, place_text(camera.position, origin));
+}
+
+std::string light_line(const LightReport& light, const glm::dvec3& origin) {
+  const bool is_sun = light.kind == Light::Kind::sun;
+  std::string text = fmt::format("{:24} {}, {:.4g} {}", printable_name(light.name), light_names[int(light.kind)],
+                                 light.intensity, is_sun ? "lux" : "candela");
+  if (light.kind == Light::Kind::spot)
+    text += fmt::format(", cone {:.4g} degrees", 2 * light.outer_cone * degrees_per_radian);
+  if (!is_sun) text += ", at " + place_text(light.position, origin);
+  return text;
 }
 
 /// Where floats may be too coarse for what the model is made of, or an origin keeps them from being so.
@@ -231,6 +255,7 @@ Json info_json(const SceneReport& report, const std::optional<ModelUnit>& unit) 
   json["materials"] = list(report.materials, material_json);
   json["cameras"] =
       list(report.cameras, [&](const CameraReport& camera) { return camera_json(camera, report.origin); });
+  json["lights"] = list(report.lights, [&](const LightReport& light) { return light_json(light, report.origin); });
   json["warnings"] = report.warnings;
   return json;
 }
@@ -263,6 +288,7 @@ std::string info_text(const SceneReport& report, const std::optional<ModelUnit>&
   });
   text += section("cameras", report.cameras,
                   [&](const CameraReport& camera) { return camera_line(camera, report.origin); });
+  text += section("lights", report.lights, [&](const LightReport& light) { return light_line(light, report.origin); });
   return text + odd_lines(report);
 }
 

@@ -137,6 +137,7 @@ Sheet draw_from_settings(const Settings& settings, const Surfaces& surfaces, con
   if (settings.drawing.is_sheet()) return with_flags([&] { return draw_sheet(surfaces, options, execution); });
   ViewSettings camera = settings.view;
   if (!camera.resolution && !camera.intrinsics) camera.resolution = fine_grid;
+  camera.framed = FramedObjects::all;  // a drawing is complete
   const View view = resolve_view(camera, surfaces);
   return with_flags([&] { return draw_view(surfaces, view, options, execution); });
 }

@@ -17,8 +17,6 @@ namespace frontmost::cli {
 namespace {
 
 constexpr Option precision_options[] = {
-    {"model", 0, "FILE", "Count the pixels of this model where the buffer shows the wrong surface.", Group::precision,
-     for_precision, [](Settings& s, const Given& g) { s.model = g.file_name(); }},
     {"format", 0, "D8|D16|D24|F32",
      "Format of the depth buffer; by default D16, D24, F32 and F32 reversed are compared.", Group::precision,
      for_precision, [](Settings& s, const Given& g) { s.precision.format = g.choice<DepthFormat>(); }},
@@ -32,7 +30,7 @@ constexpr Option precision_options[] = {
     {"plot", 0, "FILE", "Draw the gaps against distance, as SVG.", Group::precision, for_precision,
      [](Settings& s, const Given& g) { s.precision.plot = g.file_name(); }},
     {"heat-map", 0, "FILE",
-     "Paint the wrong pixels over the model, as PNG or what the suffix says; needs --model and --format.",
+     "Paint the wrong pixels over the model, as PNG or what the suffix says; needs MODEL and --format.",
      Group::precision, for_precision, [](Settings& s, const Given& g) { s.precision.heat_map = g.file_name(); }},
 };
 
@@ -48,10 +46,10 @@ void check(const Settings& settings) {
   const bool has_model = !settings.model.empty();
   check_view_settings(settings.view);
   if (precision.infinite && settings.view.far) throw UsageError("--infinite and --far exclude each other");
-  if (!has_model && !settings.view.near) throw UsageError("give --near, or a --model to fit it to");
+  if (!has_model && !settings.view.near) throw UsageError("give --near, or a MODEL to fit it to");
   if (!has_model && !settings.view.far && !precision.infinite)
-    throw UsageError("give --far or --infinite, or a --model to fit the far plane to");
-  if (precision.heat_map && !(has_model && precision.format)) throw UsageError("--heat-map needs --model and --format");
+    throw UsageError("give --far or --infinite, or a MODEL to fit the far plane to");
+  if (precision.heat_map && !(has_model && precision.format)) throw UsageError("--heat-map needs a MODEL and --format");
   const std::vector<std::string> files = outputs_of(precision);
   check_outputs(files, input_files(settings));
   if (settings.run.json && std::find(files.begin(), files.end(), "-") != files.end())
@@ -129,13 +127,25 @@ void check_wanted(const Settings& settings, const ClipDistances& clip) {
                   clip.near, clip.far));
 }
 
+void look_for_remedies(PrecisionRun& run, const ExactVisible& exact, const Execution& execution) {
+  PrecisionResult& result = run.results.front();
+  result.remedies = try_remedies(*run.surfaces, exact, result.setup, execution);
+  for (const FightingObjects& pair : result.areas->objects) {
+    if (result.offsets.size() == PrecisionResult::pairs_shown || pair.kind == FightKind::fold) break;
+    result.offsets.push_back(find_offset(*run.surfaces, exact, *result.areas, pair, execution));
+    stop_if_interrupted();
+  }
+}
+
 /// Fills in what a model adds.
 void fight(PrecisionRun& run, const View& view, const Execution& execution) {
   const ExactVisible exact = find_exact_visible(*run.surfaces, view, execution);
   for (PrecisionResult& result : run.results) {
     result.fights = fights_of(*run.surfaces, exact, result.setup, execution);
+    result.areas = find_fighting_faces(*run.surfaces, view, result.setup.format, result.setup.reversed, execution);
     stop_if_interrupted();
   }
+  if (run.results.size() == 1) look_for_remedies(run, exact, execution);
   if (!run.settings.precision.heat_map) return;
   save_heat_map(run, exact, execution);
   run.files.push_back(*run.settings.precision.heat_map);
@@ -169,6 +179,7 @@ int run_precision(const Settings& settings) {
     surfaces.emplace(*scene, execution);
     run.surfaces = &*surfaces;
     const View view = resolve_view(with_far(settings), *surfaces);
+    show_framing_warning(settings, *surfaces, progress);
     check_wanted(settings, view.projection.clip);
     run.results = buffers_of(settings, view.projection);
     run.reach = reach_of(framed_box(*surfaces), view.eye());

@@ -13,7 +13,7 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr std::size_t pairs_shown = 10;
+constexpr std::size_t pairs_shown = PrecisionResult::pairs_shown;
 
 std::string gap_text(double gap) { return std::isfinite(gap) ? fmt::format("{:.3g}", gap) : "none"; }
 
@@ -76,7 +76,8 @@ std::optional<double> near_for(const PrecisionRun& run, const DepthSetup& setup)
 std::string wanted_text(const PrecisionRun& run) {
   const glm::dvec2 wanted = *run.settings.precision.wanted;
   std::string text = fmt::format("\nto tell {:g} apart at {:g}\n", wanted.x, wanted.y);
-  for (const auto& [setup, fights] : run.results) {
+  for (const PrecisionResult& result : run.results) {
+    const DepthSetup& setup = result.setup;
     const std::optional<double> near = near_for(run, setup);
     text += fmt::format("  {:14}", setup_name(setup));
     if (rounding_gap(setup, wanted.y, run.reach) >= wanted.x)
@@ -95,9 +96,10 @@ std::string fights_text(const PrecisionRun& run) {
   std::string text = fmt::format("\n{} of {} pixels covered", first.covered, first.view.pixel_count());
   if (first.tied > 0) text += fmt::format("; in {}, several surfaces lie exactly in one place", first.tied);
   text += "\nwrong surface seen\n";
-  for (const auto& [setup, fights] : run.results) {
-    text += fmt::format("  {:14}{:>10} pixels  {:>8.3f} %\n", setup_name(setup), fights->wrong,
-                        fights->covered > 0 ? 100.0 * double(fights->wrong) / double(fights->covered) : 0.0);
+  for (const PrecisionResult& result : run.results) {
+    const DepthFights& fights = *result.fights;
+    text += fmt::format("  {:14}{:>10} pixels  {:>8.3f} %\n", setup_name(result.setup), fights.wrong,
+                        fights.covered > 0 ? 100.0 * double(fights.wrong) / double(fights.covered) : 0.0);
   }
   if (run.results.size() > 1 || first.pairs.empty()) return text;
   text += fmt::format("\n{:>10}  {:>12}  {:28}  {}\n", "pixels", "at most by", "seen", "instead of");
@@ -110,6 +112,66 @@ std::string fights_text(const PrecisionRun& run) {
   if (first.pairs.size() > pairs_shown)
     text += fmt::format("            and {} more pairs; --json lists them\n", first.pairs.size() - pairs_shown);
   return text;
+}
+
+std::string_view kind_name(FightKind kind) {
+  switch (kind) {
+    case FightKind::one_plane: return "one plane";
+    case FightKind::fold: return "fold";
+    case FightKind::close: return "close";
+    case FightKind::clear: return "clear value";
+  }
+  return "";
+}
+
+/// In pixels squared, all of them or those of a kind.
+double visible_area(const FightAreas& areas, std::optional<FightKind> kind) {
+  double sum = 0;
+  for (const FightingObjects& pair : areas.objects)
+    if (!kind || pair.kind == *kind) sum += pair.visible_area;
+  return sum;
+}
+
+std::string offset_text(const PrecisionRun& run, const std::optional<OffsetRemedy>& remedy) {
+  if (!remedy) return "";
+  return fmt::format("  offset {:g},{:g} of {} ends it", remedy->offset.factor, remedy->offset.units,
+                     object_name(run, remedy->instance));
+}
+
+/// The pairs of objects of a single buffer.
+std::string pairs_text(const PrecisionRun& run) {
+  const PrecisionResult& result = run.results.front();
+  std::string text;
+  std::size_t i = 0;
+  for (; i < result.offsets.size(); ++i) {
+    const FightingObjects& pair = result.areas->objects[i];
+    const std::string other = pair.kind == FightKind::clear ? "(nothing is seen)"
+                              : pair.first == pair.second   ? "(itself)"
+                                                            : object_name(run, pair.second);
+    if (i == 0)
+      text += fmt::format("\n{:>10}  {:11}  {:>10}  {:>9}  {}\n", "px2", "", "nearest", "gap there", "objects");
+    text += fmt::format("{:>10.1f}  {:11}  {:>10.4g}  {:>9}  {}, {}{}\n", pair.visible_area, kind_name(pair.kind),
+                        pair.distance, gap_text(pair.gap), object_name(run, pair.first), other,
+                        offset_text(run, result.offsets[i]));
+  }
+  std::size_t others = 0;
+  for (const FightingObjects& pair : result.areas->objects) others += pair.kind != FightKind::fold;
+  if (others > i) text += fmt::format("            and {} more pairs; --json lists them\n", others - i);
+  for (const FightRemedy& remedy : result.remedies)
+    text += fmt::format("with {}, near {:.6g} and far {:.6g}, {} pixels are wrong\n", setup_name(remedy.setup),
+                        remedy.setup.clip.near, remedy.setup.clip.far, remedy.wrong);
+  return text;
+}
+
+std::string areas_text(const PrecisionRun& run) {
+  std::string text = "\nat risk, in pixels squared     in one plane       close  clear value       folds\n";
+  for (const PrecisionResult& result : run.results) {
+    const auto area = [&](FightKind kind) { return visible_area(*result.areas, kind); };
+    text +=
+        fmt::format("  {:24}{:>17.1f}{:>12.1f}{:>13.1f}{:>12.1f}\n", setup_name(result.setup),
+                    area(FightKind::one_plane), area(FightKind::close), area(FightKind::clear), area(FightKind::fold));
+  }
+  return run.results.size() == 1 ? text + pairs_text(run) : text;
 }
 
 Json object_json(const PrecisionRun& run, std::uint32_t instance) {
@@ -132,6 +194,42 @@ Json fights_json(const PrecisionRun& run, const DepthFights& fights) {
           {"pairs", std::move(pairs)}};
 }
 
+Json areas_json(const PrecisionRun& run, const PrecisionResult& result) {
+  Json pairs = Json::array();
+  for (std::size_t i = 0; i < result.areas->objects.size(); ++i) {
+    const FightingObjects& pair = result.areas->objects[i];
+    Json json = {{"kind", kind_name(pair.kind)},
+                 {"first", object_json(run, pair.first)},
+                 {"second", object_json(run, pair.second)},
+                 {"areas", pair.areas},
+                 {"area", pair.area},
+                 {"visible_area", pair.visible_area},
+                 {"distance", pair.distance},
+                 {"gap", finite_or_null(pair.gap)}};
+    if (i < result.offsets.size() && result.offsets[i]) {
+      const OffsetRemedy& remedy = *result.offsets[i];
+      json["offset"] = {{"object", object_json(run, remedy.instance)},
+                        {"factor", remedy.offset.factor},
+                        {"units", remedy.offset.units}};
+    }
+    pairs.push_back(std::move(json));
+  }
+  return {{"areas", result.areas->faces.size()},
+          {"visible_area", visible_area(*result.areas, std::nullopt)},
+          {"pairs", std::move(pairs)}};
+}
+
+Json remedies_json(const std::vector<FightRemedy>& remedies) {
+  Json json = Json::array();
+  for (const FightRemedy& remedy : remedies)
+    json.push_back({{"format", name(remedy.setup.format)},
+                    {"reversed", remedy.setup.reversed},
+                    {"near", remedy.setup.clip.near},
+                    {"far", finite_or_null(remedy.setup.clip.far)},
+                    {"wrong_pixels", remedy.wrong}});
+  return json;
+}
+
 Json result_json(const PrecisionRun& run, const PrecisionResult& result) {
   const DepthSetup& setup = result.setup;
   Json json = {{"format", name(setup.format)}, {"reversed", setup.reversed}};
@@ -148,6 +246,8 @@ Json result_json(const PrecisionRun& run, const PrecisionResult& result) {
     json["near_for_gap"] = near ? Json(*near) : Json(nullptr);
   }
   if (result.fights) json["fights"] = fights_json(run, *result.fights);
+  if (result.areas) json["at_risk"] = areas_json(run, result);
+  if (result.areas && run.results.size() == 1) json["remedies"] = remedies_json(result.remedies);
   return json;
 }
 
@@ -166,7 +266,7 @@ std::string precision_text(const PrecisionRun& run) {
   text += single ? table_of(run, run.results.front().setup) : table_of(run);
   text += reach_text(run);
   if (run.settings.precision.wanted) text += wanted_text(run);
-  if (run.surfaces) text += fights_text(run);
+  if (run.surfaces) text += fights_text(run) + areas_text(run);
   return text;
 }
 

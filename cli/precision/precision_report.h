@@ -2,7 +2,7 @@
 // What frontmost precision found out: as text, as JSON, and as an SVG drawing of gaps against distance.
 #pragma once
 
-#include <frontmost/precision.h>
+#include <frontmost/fighting_faces.h>
 
 #include <glm/glm.hpp>
 #include <optional>
@@ -17,6 +17,13 @@ namespace frontmost::cli {
 struct PrecisionResult {
   DepthSetup setup;
   std::optional<DepthFights> fights;  ///< with a model
+  std::optional<FightAreas> areas;    ///< likewise
+  /// With a model, of a single buffer.
+  std::vector<FightRemedy> remedies;
+  std::vector<std::optional<OffsetRemedy>> offsets;  ///< of the first pairs of objects
+
+  /// How many pairs of objects are looked into.
+  static constexpr std::size_t pairs_shown = 10;
 };
 
 struct PrecisionRun {

@@ -41,6 +41,8 @@ void take_figures(const Settings& settings, const std::string& model, Job& job) 
   if (settings.run.method || settings.view.depth.is_used)
     refuse("polygons are painted, without --method or depth buffer");
   if (settings.view.camera_model != CameraModel::pinhole) refuse("polygons are seen by pinhole cameras alone");
+  if (settings.output.light.options.shows_environment)
+    refuse("polygons have a plain background; see --show-environment");
 }
 
 void check_format(const OutputSettings& settings) {
@@ -51,6 +53,8 @@ void check_format(const OutputSettings& settings) {
 }
 
 Job make_job(const Settings& settings) {
+  if (settings.output.light.options.shows_environment && settings.output.blend != Blend::linear)
+    throw UsageError("--show-environment and --blend srgb exclude each other");
   check_view_settings(settings.view);
   check_format(settings.output);
   if (settings.run.stream && settings.view.depth.is_used)
@@ -64,6 +68,12 @@ Job make_job(const Settings& settings) {
   check_outputs_around(job);
   if (settings.run.stream && settings.view.camera_model != CameraModel::pinhole)
     throw UsageError("--stream and --camera-model exclude each other");
+  if (settings.run.stream && settings.view.framed == FramedObjects::subject)
+    throw UsageError("--stream fits all objects into the picture, as --frame all does");
+  if (settings.output.occlusion_radius && settings.output.ambient_occlusion == 0)
+    throw UsageError("--occlusion-radius needs --ambient-occlusion");
+  if (settings.run.stream && settings.output.ambient_occlusion > 0 && !settings.output.occlusion_radius)
+    throw UsageError("--ambient-occlusion needs --occlusion-radius with --stream, which keeps only what is seen");
   if (settings.run.stream && settings.output.shadows == Shadows::rays)
     throw UsageError("--stream and --shadows rays exclude each other: rays need the whole model at once");
   if (job.output.reference) {
@@ -82,6 +92,7 @@ void check_files(const std::vector<Job>& jobs, const Settings& settings) {
   InputFiles inputs = input_files(settings);
   for (const Job& job : jobs) {
     if (job.view.pose_file) inputs.add(*job.view.pose_file, "is the pose file itself");
+    if (is_environment_file(job.output.light)) inputs.add(*job.output.light.environment, "is the environment itself");
     if (job.output.reference) references.push_back(*job.output.reference);
   }
   // Comparing a picture with itself would always pass.

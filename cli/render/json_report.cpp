@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "cli/render/output_writer.h"
+#include "cli/values.h"
 #include "cli/view/camera_report.h"
 #include "cli/view/sight.h"
 
@@ -69,8 +70,36 @@ Json view_camera_json(const ViewResult& result, const glm::dvec3& origin) {
   return json;
 }
 
-Json view_json(const ViewResult& result, const glm::dvec3& origin) {
+Json light_json(const LightSettings& light) {
+  constexpr std::string_view tone_mappings[] = {"none", "aces", "khronos"};
+  const LightOptions& options = light.options;
+  Json json = {{"environment", light.environment.value_or("studio")},
+               {"environment_angle_degrees", options.environment_angle * degrees_per_radian},
+               {"exposure", options.exposure},
+               {"tone_mapping", tone_mappings[int(options.tone_mapping)]}};
+  if (options.direction) json["light_direction"] = to_json(*options.direction);
+  if (options.intensity) json["light_intensity"] = *options.intensity;
+  return json;
+}
+
+/// How the pictures of a view look: what was said, or goes without saying.
+Json look_json(const OutputSettings& output) {
+  constexpr std::string_view shadings[] = {"lit", "flat", "normals", "depth", "ids", "uv"};
+  constexpr std::string_view lights[] = {"key", "file", "both", "none"}, shadows[] = {"off", "map", "rays"};
+  Json json = {{"shading", shadings[int(output.shading)]},
+               {"blend", output.blend == Blend::srgb ? "srgb" : "linear"},
+               {"opacity", output.opacity}};
+  if (output.shading != Shading::lit) return json;
+  json["lights"] = lights[int(output.lights.value_or(Lights::key))];
+  json["shadows"] = shadows[int(output.shadows)];
+  json["ambient_occlusion"] = output.ambient_occlusion;
+  json.update(light_json(output.light));
+  return json;
+}
+
+Json view_json(const Job& job, const ViewResult& result, const glm::dvec3& origin) {
   Json json = {{"name", result.name}, {"view", view_camera_json(result, origin)}};
+  if (writes_colors(job)) json["look"] = look_json(job.output);
   if (result.depth.is_used) json["depth_buffer"] = depth_json(result.depth);
   if (result.seen) json["seen"] = seen_json(*result.seen, result.view);
   json["files"] = Json::array();
@@ -108,26 +137,27 @@ std::string_view method_name(const Settings& settings, const ModelFacts& model, 
 
 }  // namespace
 
-Json render_json(const Settings& settings, const ModelFacts& model, const std::vector<ViewResult>& views,
-                 const RunTimings& timings) {
+Json render_json(const Settings& settings, const ModelFacts& model, const std::vector<Job>& jobs,
+                 const std::vector<ViewResult>& views, const RunTimings& timings) {
   Json json = {
       {"frontmost", FRONTMOST_VERSION}, {"model", settings.model}, {"method", method_name(settings, model, views)}};
   json["isa"] = name(settings.run.isa);
   if (!settings.more_models.empty()) json["more_models"] = settings.more_models;
   json["triangles"] = model.triangles;
+  json["lights"] = model.lights;
   if (model.passes) json["stream_passes"] = *model.passes;
   Json times = {{"load", timings.load}, {"surfaces", timings.surfaces}};
   if (timings.index) times["index"] = *timings.index;
   if (settings.run.batch) {
     json["views"] = Json::array();
-    for (const ViewResult& view : views) {
-      Json one = view_json(view, model.origin);
-      add_timings(view.timings, one["timings_ms"]);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      Json one = view_json(jobs[i], views[i], model.origin);
+      add_timings(views[i].timings, one["timings_ms"]);
       json["views"].push_back(std::move(one));
     }
     json["warnings"] = model.warnings;
   } else {
-    json.update(view_json(views.front(), model.origin));
+    json.update(view_json(jobs.front(), views.front(), model.origin));
     for (const std::string& warning : model.warnings) json["warnings"].push_back(warning);
     add_timings(views.front().timings, times);
   }

@@ -30,11 +30,12 @@ struct ModelFacts {
   bool lets_light_through = false;           ///< some of its materials are blended
   std::optional<int> passes = std::nullopt;  ///< over a stream
   glm::dvec3 origin{0};                      ///< of the scene
+  std::size_t lights = 0;                    ///< the scene's own
 };
 
-/// With one view, its facts stand at the top; with a batch, under "views".
-[[nodiscard]] Json render_json(const Settings& settings, const ModelFacts& model, const std::vector<ViewResult>& views,
-                               const RunTimings& timings);
+/// With one view, its facts stand at the top; with a batch, under "views". There is a job for each view.
+[[nodiscard]] Json render_json(const Settings& settings, const ModelFacts& model, const std::vector<Job>& jobs,
+                               const std::vector<ViewResult>& views, const RunTimings& timings);
 /// "what HASH path", one line a result, "visible HASH" first; a batch has "view:" in front.
 [[nodiscard]] std::string hash_lines(const std::vector<ViewResult>& views, bool is_batch);
 

@@ -106,15 +106,63 @@ constexpr Option output_options[] = {
        s.output.background = std::nullopt;
        if (g.text != "transparent") s.output.background = parse_color(g.text);
      }},
-    {"shadows", 0, "off|map|rays",
-     "Shadows of the key light: none, soft ones by a map, or exact ones by rays; map by default.", Group::look,
-     for_render, [](Settings& s, const Given& g) { s.output.shadows = g.choice<Shadows>(); }},
+    {"lights", 0, "key|file|both|none",
+     "Which lights shine: one that moves with the camera, those of the model, both, or none; key by default.",
+     Group::look, for_render, [](Settings& s, const Given& g) { s.output.lights = g.choice<Lights>(); }},
+    {"shadows", 0, "off|map|rays", "Shadows: none, soft ones by maps, or sharp ones by rays; map by default.",
+     Group::look, for_render, [](Settings& s, const Given& g) { s.output.shadows = g.choice<Shadows>(); }},
     {"no-shadows", 0, "", "As --shadows off.", Group::look, for_render,
      [](Settings& s, const Given&) { s.output.shadows = Shadows::off; }},
+    {"ambient-occlusion", 0, "STRENGTH",
+     "Darken corners, and what stands on something: 0, the default, to 1, as much as what the picture shows hides.",
+     Group::look, for_render,
+     [](Settings& s, const Given& g) {
+       s.output.ambient_occlusion = g.number({0, 1});
+     }},
+    {"occlusion-radius", 0, "DISTANCE",
+     "What is farther away hides nothing with --ambient-occlusion; by default a tenth of the diagonal of what "
+     "--frame subject fits.",
+     Group::look, for_render,
+     [](Settings& s, const Given& g) {
+       const double radius = g.number();
+       if (!(radius > 0)) throw UsageError("must be above 0");
+       s.output.occlusion_radius = radius;
+     }},
     {"opacity", 0, "O", "See through everything: multiplies every opacity, 0 to 1; 1 by default.", Group::look,
      for_render,
      [](Settings& s, const Given& g) {
        s.output.opacity = float(g.number({0, 1}));
+     }},
+    {"blend", 0, "linear|srgb",
+     "Blend what is half transparent, and samples, as light, the default, or as viewers blend the shapes of SVG "
+     "and PDF, which are then looked at alike. Figures are blended by their viewers.",
+     Group::look, for_render, [](Settings& s, const Given& g) { s.output.blend = g.choice<Blend>(); }},
+    {"environment", 0, "FILE",
+     "Light from all around: an equirectangular .hdr or .exr file, studio, sky or none; studio by default.",
+     Group::look, for_render, [](Settings& s, const Given& g) { s.output.light.environment = g.file_name(); }},
+    {"environment-angle", 0, "DEGREES", "Turn the environment about the model's up, counter-clockwise from above.",
+     Group::look, for_render,
+     [](Settings& s, const Given& g) {
+       s.output.light.options.environment_angle = g.number({-360000, 360000}) * radians_per_degree;
+     }},
+    {"show-environment", 0, "", "Show the environment in place of the background.", Group::look, for_render,
+     [](Settings& s, const Given&) { s.output.light.options.shows_environment = true; }},
+    {"exposure", 0, "STOPS", "Multiply light by 2^STOPS before tone mapping, -32 to 32; 0 by default.", Group::look,
+     for_render,
+     [](Settings& s, const Given& g) {
+       s.output.light.options.exposure = g.number({-32, 32});
+     }},
+    {"tone-mapping", 0, "none|aces|khronos",
+     "How light brighter than white is shown: cut off, filmic, or faded with base colours kept; none by default.",
+     Group::look, for_render,
+     [](Settings& s, const Given& g) { s.output.light.options.tone_mapping = g.choice<ToneMapping>(); }},
+    {"light-direction", 0, "X,Y,Z",
+     "Towards the key light, in the world, or an axis such as +z; upper left by default.", Group::look, for_render,
+     [](Settings& s, const Given& g) { s.output.light.options.direction = parse_direction(g.text); }},
+    {"light-intensity", 0, "FACTOR", "Of the key light, 0 for none; 1 by default, 0 beside an environment's file.",
+     Group::look, for_render,
+     [](Settings& s, const Given& g) {
+       s.output.light.options.intensity = g.number({0, 1e6});
      }},
 };
 

@@ -121,6 +121,15 @@ bool has_true_color() {
 
 }  // namespace
 
+bool writes_colors(const Job& job) {
+  const auto is_colored = [](const FileToWrite& file) {
+    return std::any_of(file.kinds.begin(), file.kinds.end(),
+                       [](OutputKind kind) { return kind == OutputKind::picture || kind == OutputKind::deep; });
+  };
+  return !job.figures.empty() || std::any_of(job.files.begin(), job.files.end(), is_colored) ||
+         std::any_of(job.layer_files.begin(), job.layer_files.end(), is_colored);
+}
+
 bool wants(const Job& job, OutputKind kind) {
   for (const FileToWrite& file : job.files) {
     if (std::find(file.kinds.begin(), file.kinds.end(), kind) != file.kinds.end()) return true;

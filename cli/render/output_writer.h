@@ -25,6 +25,9 @@ struct OutputSource {
 /// Whether the job writes this.
 [[nodiscard]] bool wants(const Job& job, OutputKind kind);
 
+/// Whether the job writes anything in colours: a picture, its polygons, its layers, or a deep image.
+[[nodiscard]] bool writes_colors(const Job& job);
+
 /// Whether the picture goes nowhere but into files of 8 bits (PNG, JPEG, WebP), each its own.
 [[nodiscard]] bool needs_only_bitmap(const Job& job);
 

@@ -15,6 +15,7 @@
 #include "cli/render/render_curved.h"
 #include "cli/render/render_view.h"
 #include "cli/stopwatch.h"
+#include "cli/view/view_options.h"
 
 namespace frontmost::cli {
 namespace {
@@ -37,7 +38,7 @@ void check_method(const Settings& settings, const std::vector<Job>& jobs) {
 /// Whether something is behind glass.
 bool lets_light_through(const Scene& scene) {
   return std::any_of(scene.materials.begin(), scene.materials.end(),
-                     [](const Material& m) { return m.alpha == Material::Alpha::blend; });
+                     [](const Material& m) { return m.is_see_through(); });
 }
 
 /// Without any result asked for, the picture goes to the terminal, if there is one.
@@ -88,6 +89,26 @@ bool is_drawn_often(const Run& run) {
   return count * std::size_t(run.settings.run.repeat) > 1;
 }
 
+/// What a lit picture does not show of the model's own lights, where the user may not know it.
+std::optional<std::string> lights_warning(const Scene& scene, const Job& job) {
+  if (job.output.shading != Shading::lit || !writes_colors(job)) return std::nullopt;
+  if (scene.lights.empty() && job.output.lights == Lights::file)
+    return "the model has no lights of its own: --lights file leaves the surroundings alone";
+  if (scene.lights.empty()) return std::nullopt;
+  const std::size_t count = scene.lights.size();
+  const std::string own =
+      count == 1 ? "the model has a light of its own" : fmt::format("the model has {} lights of its own", count);
+  if (!job.output.lights) return own + ", which --lights file or --lights both shows";
+  if (job.output.shadows != Shadows::map || *job.output.lights == Lights::key || *job.output.lights == Lights::none)
+    return std::nullopt;
+  const auto points = std::size_t(std::count_if(scene.lights.begin(), scene.lights.end(),
+                                                [](const Light& light) { return light.kind == Light::Kind::point; }));
+  const std::size_t without = points + std::max(count - points, most_mapped_lights) - most_mapped_lights;
+  if (without == 0) return std::nullopt;
+  if (count == 1) return own + ", which throws no shadow by maps; --shadows rays finds it";
+  return fmt::format("{}, {} of which throw no shadows by maps; --shadows rays finds those of all", own, without);
+}
+
 /// Renders every job by `render`, and tells of each.
 template <class Render>
 std::vector<ViewResult> render_all(const std::vector<Job>& jobs, const Settings& settings, Progress& progress,
@@ -108,10 +129,29 @@ std::vector<ViewResult> render_all(const std::vector<Job>& jobs, const Settings&
   return results;
 }
 
-void report(const Settings& settings, const ModelFacts& model, const std::vector<ViewResult>& results,
-            const RunTimings& timings) {
-  if (settings.run.json) print(dump(render_json(settings, model, results, timings)));
+void report(const Settings& settings, const ModelFacts& model, const std::vector<Job>& jobs,
+            const std::vector<ViewResult>& results, const RunTimings& timings) {
+  if (settings.run.json) print(dump(render_json(settings, model, jobs, results, timings)));
   if (!settings.run.json) print(hash_lines(results, settings.run.batch.has_value()));
+}
+
+/// What the reader says, and once, for whichever views, what their framing and their lights leave out.
+std::vector<std::string> model_warnings(const std::vector<Job>& jobs, const Surfaces& surfaces, const RunSettings& run,
+                                        Progress& progress) {
+  std::vector<std::string> warnings = surfaces.scene().warnings;
+  const auto tell_once = [&](const std::optional<std::string>& warning) {
+    if (!warning) return false;
+    show_warnings({*warning}, run, progress);
+    warnings.push_back(*warning);
+    return true;
+  };
+  // The same of every view that is fitted so.
+  const auto fitted =
+      std::find_if(jobs.begin(), jobs.end(), [](const Job& job) { return is_fitted_to_subject(job.view); });
+  if (fitted != jobs.end()) tell_once(framing_warning(fitted->view, surfaces));
+  for (const Job& job : jobs)
+    if (tell_once(lights_warning(surfaces.scene(), job))) break;
+  return warnings;
 }
 
 int render_whole(Run& run) {
@@ -124,6 +164,7 @@ int render_whole(Run& run) {
   timings.load = watch.milliseconds();
   watch = {};
   const Surfaces surfaces(scene, execution);
+  const std::vector<std::string> warnings = model_warnings(run.jobs, surfaces, settings.run, progress);
   const bool is_often = is_drawn_often(run);
   if (is_often) (void)surfaces.clusters(execution);
   timings.surfaces = watch.milliseconds();
@@ -133,9 +174,10 @@ int render_whole(Run& run) {
   if (indexes.triangles || indexes.curved) timings.index = watch.milliseconds();
   SharedBuffers buffers;
   Shader shader(surfaces);
+  Environments environments;
   const std::vector<ViewResult> results = render_all(run.jobs, settings, progress, [&](const Job& job) {
     const bool is_met = meets_curved(job, settings.run, scene);
-    RenderContext context{surfaces, shader, settings.run, execution, run.on_terminal};
+    RenderContext context{surfaces, shader, environments, settings.run, execution, run.on_terminal};
     context.by_rays = settings.run.method == Method::raycast;
     if (indexes.triangles) context.index = &*indexes.triangles;
     if (is_met) context.curved = &*indexes.curved;
@@ -145,8 +187,10 @@ int render_whole(Run& run) {
     return render_view(job, context);
   });
   timings.total = run.whole.milliseconds();
-  report(settings, {surfaces.primitive_count(), scene.warnings, lets_light_through(scene), std::nullopt, scene.origin},
-         results, timings);
+  report(settings,
+         {surfaces.primitive_count(), warnings, lets_light_through(scene), std::nullopt, scene.origin,
+          scene.lights.size()},
+         run.jobs, results, timings);
   return status_of(results);
 }
 
@@ -163,16 +207,17 @@ int render_stream(const Run& run) {
   Stream stream(models, options, execution);
   refuse_outputs_beside(stream.scene().source.files, output_paths(run.jobs));
   timings.load = watch.milliseconds();
+  Environments environments;
   bool is_first = true;
   const std::vector<ViewResult> results = render_all(run.jobs, settings, progress, [&](const Job& job) {
-    ViewResult result = render_streamed_view(job, stream, {settings.run, execution, run.on_terminal});
+    ViewResult result = render_streamed_view(job, stream, {environments, settings.run, execution, run.on_terminal});
     // They are known now, and stand before what there is to say of the view, as without --stream.
     if (std::exchange(is_first, false)) show_warnings(stream.scene().warnings, settings.run, progress);
     return result;
   });
   timings.total = run.whole.milliseconds();
   report(settings, {stream.triangle_count(), stream.scene().warnings, false, stream.passes(), stream.scene().origin},
-         results, timings);
+         run.jobs, results, timings);
   return status_of(results);
 }
 

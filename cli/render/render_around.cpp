@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Panoramas and fisheyes: rays instead of a view, ranges instead of depths, one answer a pixel. Everything that follows
-// is what a pinhole's picture goes through, with the maps that such a camera can have.
+// Panoramas and fisheyes: rays instead of a view, ranges instead of depths. Everything that follows is what a pinhole's
+// picture goes through, with the maps that such a camera can have, which have one ray a pixel.
 #include <fmt/format.h>
 #include <frontmost/ray_camera.h>
 #include <frontmost/shade.h>
+
+#include <algorithm>
 
 #include "cli/failure.h"
 #include "cli/render/blank.h"
@@ -20,10 +22,11 @@ constexpr double half_turn_degrees = 180;
 constexpr glm::ivec2 panorama_resolution{2048, 1024}, fisheye_resolution{1024, 1024};
 
 /// The pose of the view that the same options make of a pinhole.
-RayCamera camera_of(const ViewResult& result) {
+RayCamera camera_of(const ViewResult& result, int samples) {
   const View& view = result.view;
-  if (result.camera_model == CameraModel::panorama) return {Panorama{view.width, view.height}, view.world_from_eye};
-  return {Fisheye{view.width, view.height, glm::radians(result.fisheye_angle)}, view.world_from_eye};
+  if (result.camera_model == CameraModel::panorama)
+    return {Panorama{view.width, view.height}, view.world_from_eye, samples};
+  return {Fisheye{view.width, view.height, glm::radians(result.fisheye_angle)}, view.world_from_eye, samples};
 }
 
 ViewResult resolve(const Job& job, const Surfaces& surfaces) {
@@ -84,31 +87,69 @@ Seen summary_around(const RayScene& rays, const RangeScan& around) {
   return seen;
 }
 
+/// What the rays of a job meet: of the picture, and at the middle of every pixel, which may be the same.
+struct SightsAround {
+  std::optional<CurvedScan> picture, middles;
+
+  [[nodiscard]] const CurvedScan& for_picture() const { return picture ? *picture : *middles; }
+  [[nodiscard]] const CurvedScan& for_maps() const { return middles ? *middles : *picture; }
+};
+
+SightsAround look_around(const Job& job, const RayScene& rays, const RenderContext& context, ViewResult& result) {
+  const SightPlan plan = plan_sights(job, context.run, context.keep_picture, result.view);
+  SightsAround sights;
+  std::vector<double>& times = result.timings.visible;
+  if (plan.picture_samples > 1)
+    sights.picture = timed_scan(rays, camera_of(result, *plan.picture_samples), context, times);
+  if (sights.picture && !plan.maps) return sights;
+  std::vector<double> map_times;
+  sights.middles = timed_scan(rays, camera_of(result, 1), context, sights.picture ? map_times : times);
+  if (sights.picture) result.timings.visible_maps = map_times.front();
+  return sights;
+}
+
+bool is_blank(const RangeScan& around) {
+  return std::all_of(around.primitives.begin(), around.primitives.end(),
+                     [](PrimitiveId id) { return id == no_primitive; });
+}
+
+Image shade_around(const Job& job, const CurvedScan& met, const RenderContext& context) {
+  const ShadeOptions options = shade_options(job, context);
+  if (context.curved) return shade(*context.curved, context.surfaces.scene(), met, options, context.execution);
+  (void)context.shader.shade(ScanInput(met.scan, context.index), options, context.execution);
+  return context.shader.take();
+}
+
 }  // namespace
 
 void check_outputs_around(const Job& job) {
   if (job.view.camera_model == CameraModel::pinhole) return;
   if (wants(job, OutputKind::normals)) throw UsageError("--camera-model and --normals exclude each other");
-  if (job.output.opacity < 1 || !job.layer_files.empty() || wants(job, OutputKind::deep))
-    throw UsageError("--camera-model excludes --opacity, --layers and --deep");
-  if (job.output.shading == Shading::uv) throw UsageError("--camera-model and --shading uv exclude each other");
+  if (!job.layer_files.empty() || wants(job, OutputKind::deep))
+    throw UsageError("--camera-model excludes --layers and --deep");
+  if (job.output.ambient_occlusion > 0) throw UsageError("--camera-model and --ambient-occlusion exclude each other");
+  if (job.output.blend != Blend::linear) throw UsageError("--camera-model and --blend srgb exclude each other");
+  if (job.output.light.options.shows_environment)
+    throw UsageError("--camera-model and --show-environment exclude each other");
 }
 
 ViewResult render_around(const Job& job, const RenderContext& context) {
   ViewResult result = resolve(job, context.surfaces);
   const RayScene rays{context.surfaces, context.index, context.curved};
-  const CurvedScan met = timed_scan(rays, camera_of(result), context, result.timings.visible);
-  const RangeScan& around = met.scan;
-  const bool reports = job.output.hash || context.run.json;
-  const Seen seen = summary_around(rays, around);
-  if (reports) result.seen = seen;
-  if (seen.pixels == 0) result.warnings.emplace_back("nothing is in view: no ray meets the model");
+  const SightsAround sights = look_around(job, rays, context, result);
+  const RangeScan& around = sights.for_maps().scan;
+  if (job.output.hash || context.run.json) result.seen = summary_around(rays, around);
+  if (is_blank(around)) result.warnings.emplace_back("nothing is in view: no ray meets the model");
   std::optional<Image> picture;
   if (wants(job, OutputKind::picture) || context.keep_picture || job.output.reference) {
     const Stopwatch watch;
-    picture = rays.shade(met, {job.output.shading, job.output.background}, context.execution);
+    picture = shade_around(job, sights.for_picture(), context);
     result.timings.shade = watch.milliseconds();
-    if (job.output.background && nothing_stands_out(*picture, around.primitives, *job.output.background))
+    const std::span<const PrimitiveId> first(around.primitives.data(), around.index(0, around.height));
+    if (context.curved && job.output.shading == Shading::lit)
+      result.warnings.emplace_back(
+          "spheres and patches are plain all around: lit from the eye, opaque, without textures and shadows");
+    if (job.output.background && nothing_stands_out(*picture, first, *job.output.background))
       result.warnings.push_back(contrast_warning());
   }
   const auto map = [&](OutputKind kind) { return map_around(kind, job, rays, around); };

@@ -24,7 +24,7 @@ bool has_ray_shadows(const Job& job) {
 bool sees_through(const Job& job, const Scene& scene) {
   return job.output.opacity < 1 || !job.layer_files.empty() || wants(job, OutputKind::deep) ||
          std::any_of(scene.materials.begin(), scene.materials.end(),
-                     [](const Material& m) { return m.alpha != Material::Alpha::opaque; });
+                     [](const Material& m) { return m.alpha != Material::Alpha::opaque || m.is_see_through(); });
 }
 
 CurvedVisible timed_cast(const CurvedIndex& index, const View& view, const RenderContext& context,
@@ -52,9 +52,9 @@ std::vector<CurvedVisible> cast(const CurvedIndex& index, const std::vector<View
 /// What the key light sees of the surfaces themselves.
 std::optional<Visible> seen_by_light(const Job& job, const RenderContext& context, const CurvedIndex& index,
                                      const Visible& picture) {
-  const Scene& scene = context.surfaces.scene();
-  if (job.output.shading != Shading::lit || job.output.shadows == Shadows::off) return std::nullopt;
-  const std::optional<View> light = key_light_view(picture, context.surfaces.bounds(), scene.up, context.execution);
+  if (!has_key_light(job) || job.output.shadows == Shadows::off) return std::nullopt;
+  const std::optional<View> light =
+      key_light_view(picture, context.surfaces.bounds(), shade_options(job, context).light, context.execution);
   if (!light) return std::nullopt;
   return raycast(index, *light, context.execution).visible;
 }
@@ -118,7 +118,8 @@ ViewResult render_curved_view(const Job& job, const RenderContext& context) {
   if (light) sights.seen_by_light = &*light;
   result.timings.shade = watch.milliseconds();
   Shader shader(surfaces);
-  finish_view(job, {surfaces, shader, context.run, context.execution, context.keep_picture}, sights, result);
+  finish_view(job, {surfaces, shader, context.environments, context.run, context.execution, context.keep_picture},
+              sights, result);
   return result;
 }
 
@@ -129,7 +130,7 @@ ViewResult render_tessellated_view(const Job& job, const RenderContext& context)
   std::optional<RayIndex> index;
   if (needs_index(job, context.run)) index.emplace(surfaces, context.execution);
   Shader shader(surfaces);
-  return render_view(job, {surfaces, shader, context.run, context.execution, context.keep_picture,
+  return render_view(job, {surfaces, shader, context.environments, context.run, context.execution, context.keep_picture,
                            index ? &*index : nullptr, context.by_rays, nullptr, &context.surfaces});
 }
 

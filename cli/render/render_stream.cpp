@@ -9,11 +9,12 @@
 namespace frontmost::cli {
 namespace {
 
-StreamNeeds needs_of(const Job& job, const SightPlan& plan) {
+StreamNeeds needs_of(const Job& job, const SightPlan& plan, const LightOptions& light) {
   const bool picture = plan.picture_samples.has_value();
   const bool lit = picture && job.output.shading == Shading::lit;
   const bool shows_normals = lit || (picture && job.output.shading == Shading::normals);
-  return {lit && job.output.shadows != Shadows::off, shows_normals || wants(job, OutputKind::normals), nullptr};
+  const bool has_shadows = picture && has_key_light(job) && job.output.shadows != Shadows::off;
+  return {has_shadows, shows_normals || wants(job, OutputKind::normals), light, nullptr};
 }
 
 void check_one_pass(const Job& job, const StreamNeeds& needs, const Stream& stream) {
@@ -64,7 +65,7 @@ View find_view(const Job& job, const View& of_nothing, Stream& stream, const Exe
 ViewResult render_streamed_view(const Job& job, Stream& stream, const StreamContext& context) {
   const View of_nothing = view_of_nothing(job, stream, context.execution);
   const SightPlan plan = plan_sights(job, context.run, context.keep_picture, of_nothing);
-  StreamNeeds needs = needs_of(job, plan);
+  StreamNeeds needs = needs_of(job, plan, context.environments.light(job.output.light, context.execution));
   check_one_pass(job, needs, stream);
   ViewResult result;
   result.name = job.name;
@@ -85,7 +86,9 @@ ViewResult render_streamed_view(const Job& job, Stream& stream, const StreamCont
   sights.blank_reason = &blank_reason;
   if (excerpt.seen_by_light) sights.seen_by_light = &*excerpt.seen_by_light;
   Shader shader(excerpt.surfaces());
-  finish_view(job, {excerpt.surfaces(), shader, context.run, context.execution, context.keep_picture}, sights, result);
+  finish_view(job,
+              {excerpt.surfaces(), shader, context.environments, context.run, context.execution, context.keep_picture},
+              sights, result);
   return result;
 }
 

@@ -51,13 +51,25 @@ SeenView timed(const View& view, const DepthSettings& depth, const RenderContext
   }
 }
 
+/// Whether the z-buffer draws once for nothing but a picture in bytes, of several samples.
+bool needs_only_pixels(const Job& job, const RenderContext& context, const SightPlan& plan) {
+  const bool is_bitmap = wants(job, OutputKind::picture) && !context.keep_picture && needs_only_bitmap(job);
+  const bool is_zbuffer = context.run.method.value_or(Method::zbuffer) == Method::zbuffer && !job.view.depth.is_used;
+  return is_bitmap && is_zbuffer && !context.buffers && context.run.repeat == 1 && plan.picture_samples > 1 &&
+         !wants(job, OutputKind::deep) && job.output.shading != Shading::depth;
+}
+
 Sights look(const Job& job, const RenderContext& context, ViewResult& result) {
   const SightPlan plan = plan_sights(job, context.run, context.keep_picture, result.view);
   View view = result.view;
   Sights sights;
   sights.shared = plan.shared;
-  if (plan.picture_samples) {
-    view.samples = *plan.picture_samples;
+  if (plan.picture_samples) view.samples = *plan.picture_samples;
+  if (needs_only_pixels(job, context, plan)) {
+    const Stopwatch watch;
+    sights.pixels = zbuffer_pixels(context.surfaces, view, context.execution);
+    result.timings.visible.push_back(watch.milliseconds());
+  } else if (plan.picture_samples) {
     ZBuffer* const buffer = context.buffers ? &context.buffers->picture : nullptr;
     sights.picture = timed(view, job.view.depth, context, buffer, result.timings.visible);
   }
@@ -102,7 +114,7 @@ Image window_depth_image(const SeenView& sight) {
 }
 
 void warn_if_blank(const Sights& sights, const RenderContext& context, ViewResult& result) {
-  if (!is_blank(sights.any())) return;
+  if (!sights.is_blank()) return;
   // Of a stream, the triangles that are not seen are gone.
   const std::string reason =
       sights.blank_reason ? sights.blank_reason->clause() : blank_reason(context.surfaces, result.view);
@@ -180,12 +192,21 @@ ViewResult render_view(const Job& job, const RenderContext& context) {
   return result;
 }
 
+bool has_key_light(const Job& job) {
+  return job.output.shading == Shading::lit && job.output.lights != Lights::file && job.output.lights != Lights::none;
+}
+
 ShadeOptions shade_options(const Job& job, const RenderContext& context) {
   ShadeOptions options{job.output.shading, job.output.background, job.output.shadows, job.output.opacity};
   const std::optional<Method> method = context.run.method;
   if (method) options.see_through = *method == Method::abuffer ? SeeThrough::always : SeeThrough::never;
   if (job.view.depth.is_used) options.see_through = SeeThrough::never;  // what its state lets through
   if (is_fine(job)) options.grid = 8;
+  options.lights = job.output.lights.value_or(options.lights);
+  options.blend = job.output.blend;
+  if (job.output.ambient_occlusion > 0)
+    options.ambient_occlusion = {job.output.ambient_occlusion, job.output.occlusion_radius};
+  options.light = context.environments.light(job.output.light, context.execution);
   return options;
 }
 
@@ -193,12 +214,12 @@ void finish_view(const Job& job, const RenderContext& context, const Sights& sig
   if (job.output.hash || context.run.json) result.seen = summary(context.surfaces, sights);
   warn_if_blank(sights, context, result);
   const ShadeOptions options = shade_options(job, context);
-  const auto input = [&] { return ShadeInput(sights.picture->visible, sights.seen_by_light, context.index); };
+  const auto input = [&] { return sights.shade_input(context.index); };
   const Image* picture = nullptr;
   const Bitmap* bitmap = nullptr;
   if (wants_picture(job, context.keep_picture)) {
     const Stopwatch watch;
-    const Visible& visible = sights.picture->visible;
+    const Visible& visible = input().visible;
     if (!context.keep_picture && needs_only_bitmap(job))
       bitmap = &context.shader.shade_bitmap(input(), options, context.execution);
     else

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "cli/render/blank.h"
+#include "cli/render/environments.h"
 #include "cli/render/jobs.h"
 #include "cli/view/sight.h"
 
@@ -83,6 +84,7 @@ struct SharedBuffers {
 struct RenderContext {
   const Surfaces& surfaces;
   Shader& shader;  ///< of the surfaces
+  Environments& environments;
   const RunSettings& run;
   Execution execution;
   bool keep_picture = false;
@@ -99,14 +101,23 @@ struct RenderContext {
 /// The visibility that a view needs: of the picture, of the maps, or of both at once.
 struct Sights {
   std::optional<SeenView> picture, maps;
-  bool shared = false;  ///< the maps are those of the picture
+  std::optional<VisiblePixels> pixels;  ///< in place of `picture`, where nothing but a picture in bytes is made of it
+  bool shared = false;                  ///< the maps are those of the picture
   /// Of a stream: the numbers of the triangles, by id of the surfaces, and what throws shadows. Both borrowed.
   const std::vector<PrimitiveId>* stream_ids = nullptr;
   const Visible* seen_by_light = nullptr;
   const BlankReason* blank_reason = nullptr;  ///< counted while the stream was read; borrowed
 
   [[nodiscard]] const SeenView& for_maps() const { return shared ? *picture : *maps; }
-  [[nodiscard]] const Visible& any() const { return (picture ? *picture : *maps).visible; }
+  /// Precondition: there is a picture.
+  [[nodiscard]] ShadeInput shade_input(const RayIndex* index) const {
+    return pixels ? ShadeInput(*pixels, seen_by_light, index) : ShadeInput(picture->visible, seen_by_light, index);
+  }
+  /// Nothing is seen at any sample of the picture, or of the maps.
+  [[nodiscard]] bool is_blank() const {
+    if (pixels) return pixels->other_count == 0 && cli::is_blank(pixels->first);
+    return cli::is_blank((picture ? *picture : *maps).visible);
+  }
 };
 
 /// Which of them a job needs, and with how many samples.
@@ -125,6 +136,8 @@ void finish_view(const Job& job, const RenderContext& context, const Sights& sig
 
 /// Samples of a picture: without an answer of the user's 4, or as many as the largest pictures can have.
 [[nodiscard]] int picture_samples(const Job& job, const View& view);
+/// Whether a picture of the job has the light that moves with the camera.
+[[nodiscard]] bool has_key_light(const Job& job);
 /// What a picture of the job looks like.
 [[nodiscard]] ShadeOptions shade_options(const Job& job, const RenderContext& context);
 /// One channel, or a few that belong together.
@@ -144,6 +157,7 @@ void check_outputs_around(const Job& job);
 
 /// How a stream is rendered: the part of a RenderContext that there is before anything has been read.
 struct StreamContext {
+  Environments& environments;
   const RunSettings& run;
   Execution execution;
   bool keep_picture = false;

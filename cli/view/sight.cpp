@@ -80,11 +80,6 @@ Image RayScene::ids(const RangeScan& scan, IdKind kind) const {
       scene(), [&](PrimitiveId id) { return source(id); }, {scan.width, scan.height}, primitives, kind);
 }
 
-Image RayScene::shade(const CurvedScan& scan, const ShadeOptions& options, const Execution& execution) const {
-  if (curved) return frontmost::shade(*curved, scene(), scan, options, execution);
-  return frontmost::shade(surfaces, scan.scan, options, execution);
-}
-
 OwnRayScene::OwnRayScene(const Surfaces& surfaces, const Execution& execution) : surfaces_(surfaces) {
   if (has_curved(surfaces.scene()))
     curved_.emplace(surfaces.scene(), execution);

@@ -5,8 +5,8 @@
 
 #include <frontmost/curved.h>
 #include <frontmost/depth_buffer.h>
+#include <frontmost/image.h>
 #include <frontmost/raycast.h>
-#include <frontmost/shade.h>
 
 #include <optional>
 #include <string_view>
@@ -52,7 +52,6 @@ struct RayScene {
   [[nodiscard]] PrimitiveSource source(PrimitiveId id) const;
   [[nodiscard]] RayElement element(PrimitiveId id) const;
   [[nodiscard]] Image ids(const RangeScan& scan, IdKind kind) const;
-  [[nodiscard]] Image shade(const CurvedScan& scan, const ShadeOptions& options, const Execution& execution) const;
 };
 
 /// The index of whatever the scene has, for single rays.

@@ -26,7 +26,7 @@ void exclude(const Flag& one, std::initializer_list<Flag> others) {
   }
 }
 
-/// Of a pinhole alone. Rays see both sides of everything, however near or far, and answer once a pixel.
+/// Of a pinhole alone. Rays see both sides of everything, however near or far.
 void check_camera_model(const ViewSettings& s) {
   const Flag model{"camera-model", s.camera_model != CameraModel::pinhole};
   exclude(model, {{"camera-orthographic", s.orthographic},
@@ -35,8 +35,8 @@ void check_camera_model(const ViewSettings& s) {
                   {"intrinsics", s.intrinsics.has_value()},
                   {"near", s.near.has_value()},
                   {"far", s.far.has_value()},
-                  {"cull", s.culling != Culling::none},
-                  {"samples", s.samples.value_or(1) != 1}});
+                  {"cull", s.culling != Culling::none}});
+  if (model.is_set && s.samples == 64) throw UsageError("--samples 64 needs a pinhole; --camera-model takes up to 16");
   if (model.is_set && s.depth.is_used) throw UsageError("--camera-model: a depth buffer's state needs a pinhole");
   if (s.fisheye_angle && s.camera_model != CameraModel::fisheye)
     throw UsageError("--fov needs --camera-model fisheye; a pinhole has --camera-view-angle");
@@ -56,11 +56,12 @@ void check_view_settings(const ViewSettings& s) {
       elevation{"camera-elevation-angle", s.elevation != 0}, orthographic{"camera-orthographic", s.orthographic},
       index{"camera-index", s.camera_index.has_value()}, named{"view", s.named.has_value()},
       intrinsics{"intrinsics", s.intrinsics.has_value()}, pose{"pose", s.pose.has_value()},
-      convention{"pose-convention", s.pose_convention.has_value()},
+      convention{"pose-convention", s.pose_convention.has_value()}, frame{"frame", s.framed.has_value()},
       pixel{"pixel-center", s.pixel_rule != PixelRule::centre_at_integer};
   check_camera_model(s);
-  exclude(pose, {position, focal, direction, up, named, index, azimuth, elevation});
-  exclude(index, {position, focal, direction, up, named, orthographic, angle, intrinsics});
+  exclude(pose, {position, focal, direction, up, named, index, azimuth, elevation, frame});
+  exclude(index, {position, focal, direction, up, named, orthographic, angle, intrinsics, frame});
+  exclude(frame, {position});
   exclude(named, {position, direction});
   exclude(intrinsics, {angle, orthographic, zoom});
   if (position.is_set && focal.is_set) exclude(direction, {focal});

@@ -6,7 +6,7 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr unsigned views = for_render | for_camera | for_precision | for_compare | for_lines;
+constexpr unsigned views = for_render | for_camera | for_precision | for_compare | for_lines | for_report;
 constexpr int max_side = 16384;
 
 Axis axis_of(const glm::dvec3& direction) {
@@ -41,15 +41,19 @@ glm::ivec2 resolution_from(std::string_view text) {
 constexpr Option view_options[] = {
     {"up", 0, "AXIS", "Which way is up in the model: +x, +y, +z, -x, -y or -z; the file format's by default.",
      Group::model, for_every_model, [](Settings& s, const Given& g) { s.load.up = axis_of(parse_direction(g.text)); }},
-    {"input-format", 0, "stl|ply|obj|off|gltf|3mf",
+    {"input-format", 0, "stl|ply|obj|off|gltf|3mf|scene",
      "Format of the model; by default from its name, or its first bytes.", Group::model, for_every_model,
      [](Settings& s, const Given& g) { s.load.format = g.choice<ModelFormat>(); }},
 
-    {"view", 0, "front|back|left|right|top|bottom|iso", "Look from there, far enough away to see the whole model.",
+    {"view", 0, "front|back|left|right|top|bottom|iso", "Look from there, far enough away to see the model.",
      Group::camera, views, [](Settings& s, const Given& g) { s.view.named = g.choice<NamedView>(); }},
+    {"frame", 0, "subject|all",
+     "What is fitted into the picture: by default the objects that hold most of the model's detail, without those "
+     "that reach eight times as far and farther, such as a plane under a village; or all of it.",
+     Group::camera, views & ~for_lines, [](Settings& s, const Given& g) { s.view.framed = g.choice<FramedObjects>(); }},
     {"camera-position", 0, "X,Y,Z", "Where the eye is.", Group::camera, views,
      [](Settings& s, const Given& g) { s.view.position = parse_vector(g.text); }},
-    {"camera-focal-point", 0, "X,Y,Z", "What the eye looks at; by default the middle of the model.", Group::camera,
+    {"camera-focal-point", 0, "X,Y,Z", "What the eye looks at; by default the middle of what is framed.", Group::camera,
      views, [](Settings& s, const Given& g) { s.view.focal_point = parse_vector(g.text); }},
     {"camera-direction", 0, "X,Y,Z", "Which way the eye looks; also an axis, such as -z.", Group::camera, views,
      [](Settings& s, const Given& g) { s.view.direction = parse_direction(g.text); }},
@@ -82,7 +86,8 @@ constexpr Option view_options[] = {
      }},
 
     {"camera-model", 0, "pinhole|panorama|fisheye",
-     "How pixels look: through a pinhole, all around (equirectangular), or by equal angles from the axis.",
+     "How pixels look: through a pinhole, all around (equirectangular), or by equal angles from the axis; each with "
+     "textures, glass, shadows and samples.",
      Group::camera, for_render, [](Settings& s, const Given& g) { s.view.camera_model = g.choice<CameraModel>(); }},
     {"fov", 0, "DEGREES", "Full field of view of a fisheye, 0.001 to 360; 180 by default.", Group::camera, for_render,
      [](Settings& s, const Given& g) {
@@ -108,8 +113,8 @@ constexpr Option view_options[] = {
     {"resolution", 0, "W,H", "Pixels, 1 to 16384 each; 1920,1080 by default.", Group::grid, views,
      [](Settings& s, const Given& g) { s.view.resolution = resolution_from(g.text); }},
     {"samples", 0, "1|2|4|8|16|64",
-     "Samples per pixel of the picture; 4 by default, fewer above 8192 x 8192; 64 with --method abuffer. Maps have "
-     "one, at pixel centres. compare: of every method, 1 by default, 16 at most.",
+     "Samples per pixel of the picture; 4 by default, fewer above 8192 x 8192; 64 with --method abuffer, up to 16 "
+     "with --camera-model. Maps have one, at pixel centres. compare: of every method, 1 by default, 16 at most.",
      Group::grid, for_render | for_compare,
      [](Settings& s, const Given& g) {
        constexpr int counts[] = {1, 2, 4, 8, 16, 64};
@@ -123,13 +128,13 @@ constexpr Option view_options[] = {
        s.view.far = g.text == "inf" ? std::numeric_limits<double>::infinity() : g.number();
      }},
     {"cull", 0, "none|back|front|both", "Leave out triangles that face this way.", Group::grid,
-     for_render | for_camera | for_precision | for_compare,
+     for_render | for_camera | for_precision | for_compare | for_report,
      [](Settings& s, const Given& g) { s.view.culling = g.choice<Culling>(); }},
     {"tessellation-error", 0, "PIXELS",
      "Cut spheres and patches into triangles within that many pixels of the surface. Without it the method raycast "
      "meets the surfaces themselves, lines cuts as finely as its paper shows, and others draw the triangles of the "
      "model.",
-     Group::grid, for_render | for_compare | for_lines,
+     Group::grid, for_render | for_compare | for_lines | for_report,
      [](Settings& s, const Given& g) {
        s.view.tessellation_error = g.number({1e-3, 1e3});
      }},

@@ -57,14 +57,26 @@ void turn(Aim& aim, const ViewSettings& settings) {
   }
 }
 
+Box or_unit_box(const Box& box) { return box.is_empty() ? Box{glm::vec3(-0.5f), glm::vec3(0.5f)} : box; }
+
 glm::dvec3 middle_of(const Box& box) {
   const glm::dvec3 low(box.low), high(box.high);
   return low + (high - low) * 0.5;
 }
 
-/// The middle of the model, brought onto the viewing axis.
-glm::dvec3 ahead_of(const View& view, const Surfaces& surfaces) {
-  const Box box = framed_box(surfaces);
+Subject subject_of(const ViewSettings& settings, const Surfaces& surfaces) {
+  const FramedObjects objects = settings.framed.value_or(FramedObjects::subject);
+  return objects == FramedObjects::all ? Subject{surfaces.bounds(), {}} : find_subject(surfaces);
+}
+
+/// Around what is framed.
+Box subject_box(const ViewSettings& settings, const Surfaces& surfaces) {
+  return or_unit_box(subject_of(settings, surfaces).bounds);
+}
+
+/// The middle of what is framed, brought onto the viewing axis.
+glm::dvec3 ahead_of(const ViewSettings& settings, const View& view, const Surfaces& surfaces) {
+  const Box box = subject_box(settings, surfaces);
   const double along = glm::dot(middle_of(box) - view.eye(), view.forward());
   return view.eye() + view.forward() * (along > 0 ? along : std::max(double(box.diagonal()), 1e-6));
 }
@@ -72,14 +84,15 @@ glm::dvec3 ahead_of(const View& view, const Surfaces& surfaces) {
 /// `base` is the library's own choice of view, from which anything not said is taken.
 Aim aim_of(const ViewSettings& settings, const Surfaces& surfaces, const View& base) {
   const glm::dvec3& origin = surfaces.scene().origin;
-  Aim aim{base.world_from_eye, settings.focal_point ? *settings.focal_point - origin : middle_of(framed_box(surfaces)),
-          true};
+  const glm::dvec3 target =
+      settings.focal_point ? *settings.focal_point - origin : middle_of(subject_box(settings, surfaces));
+  Aim aim{base.world_from_eye, target, true};
   if (settings.pose || settings.camera_index) {
     aim.world_from_eye = settings.pose ? in_scene(world_from_eye(*settings.pose, *settings.pose_convention), origin)
                                        : model_camera(settings, surfaces.scene()).world_from_eye;
     View view;
     view.world_from_eye = aim.world_from_eye;
-    return {aim.world_from_eye, ahead_of(view, surfaces), false};
+    return {aim.world_from_eye, ahead_of(settings, view, surfaces), false};
   }
   const glm::dvec3 up =
       settings.view_up.value_or(settings.position || settings.direction ? direction(surfaces.scene().up) : base.up());
@@ -141,11 +154,12 @@ void zoom(Projection& projection, double factor) {
   scale(projection, std::tan(half_angle) / projection.top);
 }
 
-/// What the model's own camera says, then what the user says, over what fits.
-ClipDistances clip_of(const ViewSettings& settings, const Surfaces& surfaces, const View& view) {
+/// What the model's own camera says, then what the user says, over what fits. `fitted` is what framing found.
+ClipDistances clip_of(const ViewSettings& settings, const Surfaces& surfaces, const View& view,
+                      const std::optional<ClipDistances>& fitted) {
   const Box box = framed_box(surfaces);
   const bool orthographic = view.projection.orthographic;
-  ClipDistances clip = fit_clip(box, view.world_from_eye, orthographic);
+  ClipDistances clip = fitted.value_or(fit_clip(box, view.world_from_eye, orthographic));
   std::optional<double> near = settings.near, far = settings.far;
   if (settings.camera_index) {
     const Camera& camera = model_camera(settings, surfaces.scene());
@@ -173,6 +187,7 @@ View framed(const ViewSettings& settings, const Surfaces& surfaces, const glm::i
   }
   options.direction = settings.named.value_or(NamedView::three_quarter);
   options.orthographic = settings.orthographic;
+  options.objects = settings.framed.value_or(FramedObjects::subject);
   if (settings.view_angle) {
     // The library counts the field of view over the smaller side; the flag, as f3d, from bottom to top.
     const double half = std::tan(*settings.view_angle * 0.5 * radians_per_degree);
@@ -199,13 +214,29 @@ bool is_plain(const ViewSettings& s) {
 
 }  // namespace
 
-Box framed_box(const Surfaces& surfaces) {
-  const Box& bounds = surfaces.bounds();
-  return bounds.is_empty() ? Box{glm::vec3(-0.5f), glm::vec3(0.5f)} : bounds;
+Box framed_box(const Surfaces& surfaces) { return or_unit_box(surfaces.bounds()); }
+
+bool is_fitted_to_subject(const ViewSettings& settings) {
+  const bool is_fitted = !settings.position && !settings.pose && !settings.camera_index;
+  return is_fitted && settings.framed.value_or(FramedObjects::subject) == FramedObjects::subject;
+}
+
+std::optional<std::string> framing_warning(const ViewSettings& settings, const Surfaces& surfaces) {
+  if (!is_fitted_to_subject(settings)) return std::nullopt;
+  const std::vector<std::uint32_t> left_out = find_subject(surfaces).left_out;
+  if (left_out.empty()) return std::nullopt;
+  constexpr std::size_t most_names = 3;
+  const std::vector<Instance>& objects = surfaces.scene().instances;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(left_out.size(), most_names); ++i)
+    names += fmt::format("{}'{}'", i ? ", " : "", printable_text(objects[left_out[i]].name));
+  if (left_out.size() > most_names) names += fmt::format(" and {} more", left_out.size() - most_names);
+  return fmt::format("{} of {} objects reach far beyond the others and out of the picture: {}; --frame all fits all",
+                     left_out.size(), objects.size(), names);
 }
 
 glm::dvec3 focal_point_of(const ViewSettings& settings, const View& view, const Surfaces& surfaces) {
-  return settings.focal_point ? *settings.focal_point - surfaces.scene().origin : ahead_of(view, surfaces);
+  return settings.focal_point ? *settings.focal_point - surfaces.scene().origin : ahead_of(settings, view, surfaces);
 }
 
 bool depends_on_model(const ViewSettings& s) {
@@ -216,6 +247,7 @@ bool depends_on_model(const ViewSettings& s) {
 View resolve_view(const ViewSettings& settings, const Surfaces& surfaces) {
   const glm::ivec2 size = settings.resolution.value_or(default_resolution);
   View view = framed(settings, surfaces, size);
+  std::optional<ClipDistances> fitted = view.projection.clip;
   if (!is_plain(settings)) {
     Aim aim = aim_of(settings, surfaces, view);
     turn(aim, settings);
@@ -223,9 +255,10 @@ View resolve_view(const ViewSettings& settings, const Surfaces& surfaces) {
       view = framed(settings, surfaces, size, &aim);
     else
       place(view, aim, settings, surfaces);
+    fitted = aim.fitted ? std::optional(view.projection.clip) : std::nullopt;
   }
   zoom(view.projection, settings.zoom);
-  view.projection.clip = clip_of(settings, surfaces, view);
+  view.projection.clip = clip_of(settings, surfaces, view, fitted);
   view.culling = settings.culling;
   validate(view);
   return view;

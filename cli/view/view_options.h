@@ -5,6 +5,7 @@
 #include <frontmost/surfaces.h>
 #include <frontmost/view.h>
 
+#include <optional>
 #include <string>
 
 #include "cli/settings.h"
@@ -24,7 +25,13 @@ void check_view_settings(const ViewSettings& settings);
 /// \throws UsageError for a camera number that the model has not; Error from the library's own checks.
 [[nodiscard]] View resolve_view(const ViewSettings& settings, const Surfaces& surfaces);
 
-/// The bounds that views are fitted to: the model's, or those of a unit box about the origin for a model without any.
+/// Whether the picture is fitted to find_subject(), so that other objects may reach out of it.
+[[nodiscard]] bool is_fitted_to_subject(const ViewSettings& settings);
+
+/// What there is to say where it is, and there are such objects. O(objects).
+[[nodiscard]] std::optional<std::string> framing_warning(const ViewSettings& settings, const Surfaces& surfaces);
+
+/// The bounds that planes are fitted to: the model's, or those of a unit box about the origin for a model without any.
 [[nodiscard]] Box framed_box(const Surfaces& surfaces);
 
 /// False when resolve_view() gives the same for all surfaces: the camera is placed, and both planes are told.
@@ -33,7 +40,7 @@ void check_view_settings(const ViewSettings& settings);
 /// What {view} stands for: the given name, the named direction, or how the camera was told.
 [[nodiscard]] std::string view_name(const ViewSettings& settings);
 
-/// What the camera turns about, in world space: the focal point that was given, or else the middle of the model,
+/// What the camera turns about, in world space: the focal point that was given, or else the middle of what is framed,
 /// brought onto the viewing axis.
 [[nodiscard]] glm::dvec3 focal_point_of(const ViewSettings& settings, const View& view, const Surfaces& surfaces);
 

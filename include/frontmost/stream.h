@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "frontmost/io.h"
+#include "frontmost/shade.h"
 #include "frontmost/surfaces.h"
 #include "frontmost/visible.h"
 
@@ -60,6 +61,7 @@ using CornerSpan = std::span<const std::array<glm::vec3, 3>>;
 struct StreamNeeds {
   bool key_light = false;       ///< what throws shadows in the first view: for pictures that are lit. A second pass
   bool smooth_normals = false;  ///< the neighbours of triangles that are seen: where meshes have no normals. The same
+  LightOptions light = {};      ///< of the picture: where its key light is
   /// Called with triangles as long as nothing is seen in the first view: with all of them when it stays blank, so that
   /// it can be said why. By several threads at once. No pass of its own.
   std::function<void(CornerSpan)> unseen = nullptr;

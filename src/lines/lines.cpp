@@ -78,7 +78,8 @@ class Candidates {
 };
 
 /// Fills the edges and parts of `drawing`.
-void cut_all(const Candidates& candidates, const Occlusion& occlusion, const Execution& execution, Drawing& drawing) {
+void cut_all(const Candidates& candidates, const EdgeOccluders& occlusion, const Execution& execution,
+             Drawing& drawing) {
   const std::size_t count = candidates.count();
   reserve_large(drawing.edges, count, execution);
   std::vector<std::vector<DrawnPart>> lists((count + kEdgesPerPart - 1) / kEdgesPerPart);

@@ -75,7 +75,8 @@ ClipDistances planes_of(const ClipDistances& fitted, NamedView direction, const 
 }
 
 View camera_of(const Surfaces& surfaces, NamedView direction, const SheetOptions& options) {
-  View view = frame(surfaces, fine_grid.x, fine_grid.y, {.direction = direction, .orthographic = true});
+  View view = frame(surfaces, fine_grid.x, fine_grid.y,
+                    {.direction = direction, .orthographic = true, .objects = FramedObjects::all});
   view.projection.clip = planes_of(view.projection.clip, direction, options);
   return view;
 }

@@ -202,7 +202,7 @@ KeptPieces Stream::State::find_needs(KeptPieces kept, const StreamNeeds& needs, 
                                      const Execution& execution) {
   std::vector<View> light;
   if (needs.key_light)
-    if (const auto view = key_light_view(excerpt.visible.front(), *bounds, models.scene().up, execution))
+    if (const auto view = key_light_view(excerpt.visible.front(), *bounds, needs.light, execution))
       light.push_back(*view);
   std::optional<NeighbourFinder> neighbours;
   if (needs.smooth_normals)

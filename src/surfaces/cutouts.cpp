@@ -32,11 +32,11 @@ CutoutPattern pattern_of(const Scene& scene, const Material& material) {
 
 /// The values of a triangle's corners, or `none` where the mesh has no such attribute.
 template <class T, class Value>
-std::array<Value, 3> corner_values(const Mesh& mesh, const Attribute<T>& attribute, std::uint32_t triangle,
+std::array<Value, 3> corner_values(const Mesh& mesh, const Attribute<T>* attribute, std::uint32_t triangle,
                                    const Value& none, Value (*part)(const T&)) {
-  if (attribute.empty()) return {none, none, none};
-  const glm::uvec3& corners = mesh.corners(attribute, triangle);
-  return {part(attribute.values[corners.x]), part(attribute.values[corners.y]), part(attribute.values[corners.z])};
+  if (!attribute || attribute->empty()) return {none, none, none};
+  const glm::uvec3& corners = mesh.corners(*attribute, triangle);
+  return {part(attribute->values[corners.x]), part(attribute->values[corners.y]), part(attribute->values[corners.z])};
 }
 
 glm::vec2 whole(const glm::vec2& v) { return v; }
@@ -119,10 +119,11 @@ void Cutouts::add_mesh(const Scene& scene, const Instance& instance, PrimitiveId
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::uint32_t material = mesh.material_of(t);
     if (material >= cuts_.size() || !cuts_[material]) continue;
+    const std::uint32_t set = scene.materials[material].base_color_texture.set;
     CutoutTriangle triangle;
     for (std::size_t k = 0; k < 3; ++k) triangle.corner[k] = world(mesh.positions[mesh.triangles[t][int(k)]]);
-    triangle.texcoord = corner_values(mesh, mesh.texcoords, t, glm::vec2(0), whole);
-    triangle.alpha = corner_values(mesh, mesh.colors, t, 1.0f, alpha_of);
+    triangle.texcoord = corner_values(mesh, mesh.texcoord_set(set), t, glm::vec2(0), whole);
+    triangle.alpha = corner_values(mesh, &mesh.colors, t, 1.0f, alpha_of);
     triangle.pattern = &patterns_[material];
     words_[(first + t) / 64].bits |= std::uint64_t(1) << ((first + t) % 64);
     triangles_.push_back(triangle);

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "frontmost/visible.h"
+#include "frontmost/visible_pixels.h"
 
 namespace frontmost {
 
@@ -24,5 +25,7 @@ void check_ids(std::span<const PrimitiveId> ids, std::uint32_t primitive_count, 
 
 /// Both.
 void check_answer(const Visible& visible, std::uint32_t primitive_count, const char* who, const Execution& execution);
+void check_answer(const VisiblePixels& pixels, std::uint32_t primitive_count, const char* who,
+                  const Execution& execution);
 
 }  // namespace frontmost

@@ -74,7 +74,8 @@ const Visible& ZBuffer::draw(const Surfaces& surfaces, const View& view, const E
                         visible.keys.data(),
                         streams,
                         set.cutouts.get(),
-                        ScreenRays(view)};
+                        ScreenRays(view),
+                        nullptr};
   const FrameInput frame{picture, set, transform, plan.culled(), plan.records().records};
   std::atomic<std::size_t> drawn{0};
   draw_tiles(plan.records(), view, execution, state_->scratches, [&](std::size_t tile, TileScratch& scratch) {
@@ -106,6 +107,16 @@ Visible zbuffer(const Surfaces& surfaces, const View& view, const Execution& exe
   ZBuffer buffer;
   buffer.draw(surfaces, view, execution);
   return buffer.take();
+}
+
+VisiblePixels zbuffer_pixels(const Surfaces& surfaces, const View& view, const Execution& execution) {
+  validate(view);
+  if (!surfaces.clusters_for_picture(execution)) {
+    const IeeeScope ieee;
+    return draw_pixels_directly(surfaces.placed(), view, execution);
+  }
+  ZBuffer buffer;
+  return pixels_of(buffer.draw(surfaces, view, execution));
 }
 
 }  // namespace frontmost

@@ -52,7 +52,7 @@ TEST_F(Inputs, OfEveryKindAreKept) {
   expect_kept("render cube.stl --batch views.json --format png -o views.json", "views.json: is the batch file itself");
   expect_kept("render cube.stl --format png -o pose.txt" + pose, "pose.txt: is the pose file itself");
   expect_kept("lines cube.stl --format svg -o pose.txt" + pose, "pose.txt: is the pose file itself");
-  expect_kept("precision --model cube.stl --plot pose.txt" + pose, "pose.txt: is the pose file itself");
+  expect_kept("precision cube.stl --plot pose.txt" + pose, "pose.txt: is the pose file itself");
   expect_kept("render cube.stl --reference skin.png -o skin.png", "skin.png: is both the reference and an output");
   expect_kept("render cube.stl --reference skin.png -o a.png --reference-difference skin.png",
               "skin.png: is both the reference and an output");
@@ -65,7 +65,7 @@ TEST_F(Inputs, WhatAModelUsesIsKept) {
   expect_kept("render quad.obj --format png -o quad.mtl", "quad.mtl: is a file that the model uses");
   expect_kept("render mesh.gltf --format png -o buffer.bin", "buffer.bin: is a file that the model uses");
   expect_kept("lines quad.obj --format svg -o quad.mtl", "quad.mtl: is a file that the model uses");
-  expect_kept("precision --model quad.obj --plot quad.mtl", "quad.mtl: is a file that the model uses");
+  expect_kept("precision quad.obj --plot quad.mtl", "quad.mtl: is a file that the model uses");
   fs::copy(path("directions.txt"), path("rays.ply"));
   expect_kept("lidar cube.stl --from 0,0,9 --directions rays.ply -o rays.ply",
               "rays.ply: is the file of directions itself");

@@ -124,7 +124,7 @@ TEST_F(Layers, ContradictionsAreRefused) {
   expect_failure(render_cube + "--deep a.exr --depth a.exr", 2, "two outputs have this name");
   expect_failure(render_cube + "-o a{layer}.png --layers 0", 2, "layers");
   expect_failure(render_cube + "-o a.png --stream --opacity 0.5", 2, "--stream keeps only what is nearest");
-  expect_failure("render cube.stl --camera-model panorama -o a.png --opacity 0.5", 2, "--camera-model excludes");
+  expect_failure("render cube.stl --camera-model panorama --deep a.exr", 2, "--camera-model excludes");
   expect_failure("render cube.stl -o a{layer}.png --layers 1024 --resolution 4096,4096", 1, "2^30 samples");
   EXPECT_THAT(files(), ElementsAre("cube.stl"));
 }

@@ -107,8 +107,6 @@ TEST_F(Messages, OfCameras) {
 TEST_F(Messages, OfCamerasThatAreNoPinholes) {
   expect_usage(
       {{"render cube.stl --camera-model fisheye --near 1 -o a.png", "--camera-model and --near exclude each other"},
-       {"render cube.stl --camera-model panorama --samples 4 -o a.png",
-        "--camera-model and --samples exclude each other"},
        {"render cube.stl --camera-model panorama --cull back -o a.png", "--camera-model and --cull exclude each other"},
        {"render cube.stl --camera-model panorama --depth-format D16 -o a.png",
         "--camera-model: a depth buffer's state needs a pinhole"},

@@ -61,7 +61,7 @@ TEST_F(Names, InPagesAndDrawings) {
   EXPECT_THAT(read("a.svg"), HasSubstr(R"(tr\xE9s\x1B[1m)"));
   ASSERT_EQ(run({"render", odd + ".obj", "-o", "b.svg", "-q"}).status, 0);
   expect_harmless(read("b.svg"));
-  EXPECT_EQ(run({"precision", "--model", odd + ".obj", "--format", "D8", "--plot", "c.svg"}).status, 0);
+  EXPECT_EQ(run({"precision", odd + ".obj", "--format", "D8", "--plot", "c.svg"}).status, 0);
   expect_harmless(read("c.svg"));
 }
 

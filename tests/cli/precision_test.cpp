@@ -84,7 +84,7 @@ TEST_F(Precision, WhatPositionsAddIsSaid) {
   write("near.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const std::string camera = " --resolution 8,8 --view front --near 1 --far 9 --format D24 --json";
   const auto added = [&](const char* model) {
-    const json report = succeed(std::string("precision --model ") + model + camera).json();
+    const json report = succeed(std::string("precision ") + model + camera).json();
     return report["buffers"][0]["distances"][0]["positions_gap"].get<double>();
   };
   EXPECT_GT(added("far.obj"), 100 * added("near.obj"));
@@ -108,7 +108,7 @@ TEST_F(Precision, ThePlotIsADrawing) {
 TEST_F(Precision, SquaresThatFightAreFoundOnTheModel) {
   write("fight.obj", two_squares("-0.01", "0"));
   const std::string camera =
-      "precision --model fight.obj --camera-position 0,0,10 --camera-direction -z --resolution 40,30 --near 0.01 --far "
+      "precision fight.obj --camera-position 0,0,10 --camera-direction -z --resolution 40,30 --near 0.01 --far "
       "100";
   const json fights = succeed(camera + " --format D16 --json").json()["buffers"][0]["fights"];
   EXPECT_EQ(fights["pixels"], 1200);
@@ -127,11 +127,41 @@ TEST_F(Precision, SquaresThatFightAreFoundOnTheModel) {
   EXPECT_EQ(all[3]["fights"]["wrong_pixels"], 0);
 }
 
+// What is at risk comes with what ends it; both squares fill the picture of 40 x 30.
+TEST_F(Precision, AreasAtRiskAreListedWithTheirRemedies) {
+  write("fight.obj", two_squares("-0.01", "0"));
+  const std::string camera =
+      "precision fight.obj --camera-position 0,0,10 --camera-direction -z --resolution 40,30 --near 0.01 --far 100";
+  const json buffer = succeed(camera + " --format D16 --json").json()["buffers"][0];
+  const json pair = buffer["at_risk"]["pairs"][0];
+  EXPECT_EQ(pair["kind"], "close");
+  EXPECT_EQ(pair["first"]["name"], "at-0.01");
+  EXPECT_EQ(pair["second"]["name"], "at0");
+  EXPECT_NEAR(pair["visible_area"].get<double>(), 1200, 1e-3);
+  EXPECT_NEAR(pair["gap"].get<double>(), 0.15494, 0.00001);
+  EXPECT_EQ(pair["offset"]["object"]["name"], "at0");
+  EXPECT_EQ(pair["offset"]["units"], -1);
+  ASSERT_EQ(buffer["remedies"].size(), 1u);
+  EXPECT_EQ(buffer["remedies"][0]["wrong_pixels"], 0);
+  const double near = buffer["remedies"][0]["near"].get<double>(), far = buffer["remedies"][0]["far"].get<double>();
+  EXPECT_NEAR(near, 9.99, 0.001);
+  const std::string planes = " --near " + std::to_string(near) + " --far " + std::to_string(far);
+  const json better = succeed("precision fight.obj --camera-position 0,0,10 --camera-direction -z --resolution 40,30" +
+                              planes + " --format D16 --json")
+                          .json()["buffers"][0];
+  EXPECT_EQ(better["fights"]["wrong_pixels"], 0);
+  EXPECT_TRUE(better["at_risk"]["pairs"].empty());
+  const std::string text = succeed(camera + " --format D16").out;
+  EXPECT_THAT(text, HasSubstr("at-0.01, at0  offset -1,-1 of at0 ends it"));
+  EXPECT_THAT(text, HasSubstr("0 pixels are wrong"));
+  EXPECT_THAT(succeed(camera).out, HasSubstr("F32 reversed"));
+}
+
 TEST_F(Precision, OneSurfaceInTwoPlacesIsTied) {
   write("same.obj", two_squares("0", "0"));
   const json fights =
       succeed(
-          "precision --model same.obj --camera-position 0,0,10 --camera-direction -z --resolution 40,30 --format D24 "
+          "precision same.obj --camera-position 0,0,10 --camera-direction -z --resolution 40,30 --format D24 "
           "--json")
           .json()["buffers"][0]["fights"];
   EXPECT_EQ(fights["wrong_pixels"], 0);
@@ -140,22 +170,22 @@ TEST_F(Precision, OneSurfaceInTwoPlacesIsTied) {
 
 TEST_F(Precision, WrongUsageIsNamed) {
   write("cube.stl", cube_stl());
-  expect_failure("precision", 2, "give --near, or a --model");
+  expect_failure("precision", 2, "give --near, or a MODEL");
   expect_failure("precision --near 1", 2, "give --far or --infinite");
   expect_failure("precision --near 1 --far 2 --infinite", 2, "--infinite and --far exclude each other");
   expect_failure("precision --near 0.1 --far 1000 --gap 0.05,2000", 2,
                  "--gap: the distance 2000 must lie between the near plane at 0.1 and the far one at 1000");
   expect_failure("precision --near 0.1 --far 1000 --gap 0.05,0.05", 2, "--gap: the distance 0.05 must lie between");
-  expect_failure("precision --model builtin:teapot --gap 0.05,1e6", 2, "--gap: the distance 1e+06 must lie between");
+  expect_failure("precision builtin:teapot --gap 0.05,1e6", 2, "--gap: the distance 1e+06 must lie between");
   expect_failure("precision --near 2 --far 1", 2, "--near: must be below --far");
   expect_failure("precision --near 1 --far 2 --format D32", 2, "--format: 'D32' is not one of D8, D16, D24, F32");
   expect_failure("precision --near 1 --far 2 --gap 1", 2, "--gap: '1' has 1 values, 2 are needed");
   expect_failure("precision --near 1 --far 2 --heat-map a.png --format D24", 2,
-                 "--heat-map needs --model and --format");
-  expect_failure("precision cube.stl --near 1 --far 2", 2, "'cube.stl' is one word too many");
+                 "--heat-map needs a MODEL and --format");
+  expect_failure("precision cube.stl cube.stl", 2, "one model at a time");
   expect_failure("precision --near 1 --far 2 --plot none/a.svg", 1, "does not exist");
   expect_failure("precision --near 1 --far 2 --json --plot -", 2, "both want standard output");
-  expect_failure("precision --model cube.stl --plot cube.stl", 2, "is the model itself");
+  expect_failure("precision cube.stl --plot cube.stl", 2, "is the model itself");
   expect_failure("render cube.stl --gap 1,2", 2, "--gap does not belong to 'frontmost render'");
 }
 

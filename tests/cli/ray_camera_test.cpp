@@ -12,6 +12,7 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::Not;
 
 class RayCameras : public ProgramTest {
  protected:
@@ -63,6 +64,28 @@ TEST_F(RayCameras, EveryShadingMakesAPictureThatThreadsDoNotChange) {
   }
 }
 
+TEST_F(RayCameras, SamplesAndShadowsCountAndMapsHaveOneRayAPixel) {
+  const std::string line =
+      "render cube.stl --camera-model fisheye --fov 60 --resolution 40,40 --camera-position 0.5,-3,2.5 "
+      "--camera-focal-point 0.5,0.5,0.5 ";
+  succeed(line + "--samples 1 -o one.png --depth one.npy");
+  succeed(line + "-o four.png --depth four.npy");
+  succeed(line + "--samples 4 --shadows off -o unshadowed.png");
+  EXPECT_NE(read("one.png"), read("four.png"));
+  EXPECT_EQ(read("one.npy"), read("four.npy"));
+  for (const std::string more : {"--samples 16", "--shadows rays", "--shading uv", "--opacity 0.5"})
+    succeed(line + more + " -o other.png");
+}
+
+TEST_F(RayCameras, CurvedSurfacesThatAreLitPlainlyAreTold) {
+  const std::string spheres = "render builtin:spheres --camera-model panorama --resolution 32,16 ";
+  const char* const told =
+      "spheres and patches are plain all around: lit from the eye, opaque, without textures and shadows";
+  EXPECT_THAT(succeed(spheres + "-o a.png").err, HasSubstr(told));
+  EXPECT_THAT(succeed(spheres + "-o a.png --shading flat").err, Not(HasSubstr(told)));
+  EXPECT_THAT(succeed(spheres + "--depth a.exr").err, Not(HasSubstr(told)));
+}
+
 TEST_F(RayCameras, ABatchMayMixCameras) {
   write("views.json", R"({"outputs": {"output": "{view}.png"}, "views": [
     {"name": "flat", "resolution": [32, 16]},
@@ -75,13 +98,12 @@ TEST_F(RayCameras, ABatchMayMixCameras) {
 }
 
 TEST_F(RayCameras, RefusesWhatNeedsAPinhole) {
-  for (const std::string other :
-       {"--camera-orthographic", "--camera-view-angle 20", "--near 1", "--cull back", "--samples 4", "--stream",
-        "--intrinsics 9,9,1,1", "--normals n.exr", "--depth-func LESS"})
+  for (const std::string other : {"--camera-orthographic", "--camera-view-angle 20", "--near 1", "--cull back",
+                                  "--stream", "--intrinsics 9,9,1,1", "--normals n.exr", "--depth-func LESS"})
     expect_failure("render cube.stl --camera-model panorama -o a.png " + other, 2, "camera-model");
   expect_failure("render cube.stl --fov 90 -o a.png", 2, "--fov needs --camera-model fisheye");
   expect_failure("render cube.stl --camera-model fisheye --fov 361 -o a.png", 2, "--fov");
-  expect_failure("render cube.stl --camera-model fisheye --shading uv -o a.png", 2, "uv");
+  expect_failure("render cube.stl --camera-model fisheye --samples 64 --method abuffer -o a.png", 2, "--samples 64");
 }
 
 float float_at(const std::string& bytes, std::size_t at) {

@@ -92,7 +92,7 @@ TEST_F(Render, PicturesInJpegAndWebp) {
   EXPECT_EQ(read("hashed.jpg"), read("a.jpg")) << "by way of floats";
   succeed(render_cube + "-o coarse.jpg --quality 10");
   EXPECT_LT(read("coarse.jpg").size(), read("a.jpg").size());
-  succeed("precision --model cube.stl --format D16 --resolution 64,64 --heat-map h.jpg");
+  succeed("precision cube.stl --format D16 --resolution 64,64 --heat-map h.jpg");
   EXPECT_EQ(read("h.jpg").substr(0, 3), "\xff\xd8\xff");
 #ifdef FRONTMOST_HAS_WEBP
   succeed(render_cube + "-o a.webp");
@@ -102,6 +102,42 @@ TEST_F(Render, PicturesInJpegAndWebp) {
 #else
   expect_failure(render_cube + "-o a.webp", 1, "libwebp-dev");
 #endif
+}
+
+TEST_F(Render, TheModelsOwnLightsShineWhenTheyAreAskedFor) {
+  write("lamp.gltf", R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual"],
+    "extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","intensity":4,"color":[1,0,0]}]}},
+    "nodes":[{"mesh":0},{"name":"lamp","translation":[0.3,0.3,1],"extensions":{"KHR_lights_punctual":{"light":0}}}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+    "bufferViews":[{"buffer":0,"byteLength":36}],
+    "buffers":[{"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})");
+  const std::string lamp = "render lamp.gltf --view front --resolution 60,60 ";
+  const std::string hint = "the model has a light of its own, which --lights file or --lights both shows";
+  const Outcome untold = succeed(lamp + "-o untold.png --json");
+  EXPECT_THAT(untold.err, HasSubstr(hint));
+  EXPECT_EQ(untold.json()["warnings"], json({hint}));
+  EXPECT_EQ(untold.json()["lights"], 1);
+  EXPECT_EQ(untold.json()["look"]["lights"], "key");
+  EXPECT_THAT(succeed(lamp + "--depth d.exr").err, IsEmpty()) << "no picture";
+  for (const char* lights : {"key", "file", "both", "none"}) {
+    const Outcome told = succeed(lamp + "-o " + lights + ".png --json --shadows rays --lights " + lights);
+    EXPECT_THAT(told.err, IsEmpty());
+    EXPECT_EQ(told.json()["look"]["lights"], lights);
+  }
+  EXPECT_EQ(read("untold.png"), read("key.png"));
+  EXPECT_THAT(succeed(lamp + "-o map.png --lights file").err, HasSubstr("which throws no shadow by maps"));
+  const auto middle = [&](const std::string& name, const char* channel) {
+    return image(name).find(channel)->floats()[40 * 60 + 20];
+  };
+  EXPECT_GT(middle("file.png", "R"), middle("none.png", "R") + 0.1f);
+  EXPECT_EQ(middle("file.png", "G"), middle("none.png", "G"));
+  EXPECT_GT(middle("key.png", "G"), middle("none.png", "G") + 0.1f);
+  EXPECT_GE(middle("both.png", "R"), middle("key.png", "R"));
+  expect_failure(lamp + "-o a.png --lights moon", 2, "--lights");
+  EXPECT_THAT(succeed("render cube.stl -o a.png --resolution 60,60 --lights file").err,
+              HasSubstr("the model has no lights of its own: --lights file leaves the surroundings alone"));
+  EXPECT_THAT(succeed("render cube.stl -o a.png --resolution 60,60 --lights both").err, IsEmpty());
 }
 
 TEST_F(Render, ShadowsByMapByRaysAndNone) {
@@ -288,6 +324,87 @@ TEST_F(Render, TheLongNamesAreTheShortOnes) {
   succeed("render cube.stl --resolution=32,24 --output=equals.png");
   EXPECT_EQ(read("short.png"), read("long.png"));
   EXPECT_EQ(read("short.png"), read("equals.png"));
+}
+
+TEST_F(Render, AmbientOcclusionDarkensWhatIsNear) {
+  const std::string render = "render builtin:gallery --resolution 64,48 -o ";
+  succeed(render + "plain.png");
+  succeed(render + "none.png --ambient-occlusion 0");
+  succeed(render + "dark.png --ambient-occlusion 1");
+  succeed(render + "narrow.png --ambient-occlusion 1 --occlusion-radius 1e-6");
+  EXPECT_EQ(read("plain.png"), read("none.png"));
+  EXPECT_NE(read("plain.png"), read("dark.png"));
+  EXPECT_NE(read("narrow.png"), read("dark.png"));
+  expect_failure(render + "x.png --occlusion-radius 1", cli::exit_usage,
+                 "--occlusion-radius needs --ambient-occlusion");
+  expect_failure(render + "x.png --ambient-occlusion 1 --camera-model panorama --camera-position 0,0,0",
+                 cli::exit_usage, "--camera-model and --ambient-occlusion exclude each other");
+  expect_failure("render cube.stl --stream --ambient-occlusion 1 -o x.png", cli::exit_usage,
+                 "--ambient-occlusion needs --occlusion-radius with --stream");
+  expect_failure(render + "x.png --ambient-occlusion 1.5", cli::exit_usage, "--ambient-occlusion");
+}
+
+TEST_F(Render, TheEnvironmentTheKeyLightAndHowLightIsShownCanBeChosen) {
+  const std::string render = "render builtin:gallery --resolution 64,48 -o ";
+  succeed(render + "default.png");
+  succeed(render + "studio.png --environment studio --exposure 0 --tone-mapping none --light-intensity 1");
+  EXPECT_EQ(read("default.png"), read("studio.png"));
+  for (const char* options : {"--environment sky", "--environment none", "--environment-angle 90", "--exposure -1",
+                              "--tone-mapping aces", "--tone-mapping khronos", "--light-direction +x",
+                              "--light-intensity 0", "--environment sky --show-environment"}) {
+    succeed(render + "other.png " + options);
+    EXPECT_NE(read("default.png"), read("other.png")) << options;
+  }
+  // Nothing shines: only what the materials send out by themselves is left.
+  succeed(render + "dark.png --environment none --light-intensity 0 --background black");
+  const std::string dark = read("dark.png");
+  succeed(render + "darker.png --environment none --light-intensity 0 --background black --exposure -20");
+  EXPECT_EQ(dark, read("darker.png"));
+  expect_failure(render + "x.png --environment missing.hdr", 1, "missing.hdr");
+  expect_failure(render + "x.png --tone-mapping filmic", cli::exit_usage, "none, aces, khronos");
+  expect_failure(render + "x.png --exposure 33", cli::exit_usage, "--exposure");
+  expect_failure(render + "x.png --light-direction 0,0,0", cli::exit_usage, "--light-direction");
+  expect_failure(render + "x.png --show-environment --blend srgb", cli::exit_usage,
+                 "--show-environment and --blend srgb exclude each other");
+}
+
+TEST_F(Render, AnEnvironmentMayBeAFileWhichNoViewReplaces) {
+  const std::string blue(8 * 12, '\x3f');  // 4 x 2 pixels of 0.747
+  write("blue.pfm", "PF\n4 2\n-1.0\n" + blue);
+  const std::string render = "render cube.stl --resolution 32,24 ";
+  succeed(render + "-o studio.png");
+  const json look = succeed(render + "-o file.png --environment blue.pfm --json").json()["look"];
+  EXPECT_NE(read("studio.png"), read("file.png"));
+  EXPECT_EQ(look["environment"], "blue.pfm");
+  expect_failure(render + "--environment blue.pfm -o blue.pfm", cli::exit_usage, "is the environment itself");
+  write(
+      "views.json",
+      R"({"views": [{"outputs": {"output": "blue.pfm"}}, {"outputs": {"output": "b.png", "environment": "blue.pfm"}}]})");
+  expect_failure(render + "--batch views.json", cli::exit_usage, "blue.pfm: is the environment itself");
+}
+
+TEST_F(Render, TheReportSaysHowPicturesLook) {
+  const std::string render = "render cube.stl --resolution 32,24 --json ";
+  EXPECT_EQ(succeed(render + "-o a.png").json()["look"],
+            json::parse(R"({"shading": "lit", "blend": "linear", "opacity": 1.0, "lights": "key", "shadows": "map",
+                            "ambient_occlusion": 0.0, "environment": "studio", "environment_angle_degrees": 0.0,
+                            "exposure": 0.0, "tone_mapping": "none"})"));
+  const json told =
+      succeed(render +
+              "-o a.svg --environment sky --environment-angle 90 --exposure 1 --tone-mapping aces "
+              "--light-intensity 2 --light-direction +z --no-shadows --ambient-occlusion 0.5 --opacity 0.5")
+          .json()["look"];
+  EXPECT_EQ(told, json::parse(R"({"shading": "lit", "blend": "linear", "opacity": 0.5, "lights": "key",
+                                  "shadows": "off", "ambient_occlusion": 0.5, "environment": "sky",
+                                  "environment_angle_degrees": 90.0, "exposure": 1.0, "tone_mapping": "aces",
+                                  "light_direction": [0.0, 0.0, 1.0], "light_intensity": 2.0})"));
+  EXPECT_EQ(succeed(render + "-o a.png --shading flat --blend srgb").json()["look"],
+            json::parse(R"({"shading": "flat", "blend": "srgb", "opacity": 1.0})"));
+  EXPECT_FALSE(succeed(render + "--depth a.exr").json().contains("look")) << "no picture";
+  write("views.json", R"({"views": [{"outputs": {"exposure": 2}}, {}], "outputs": {"output": "{view}.png"}})");
+  const json views = succeed(render + "--batch views.json").json()["views"];
+  EXPECT_EQ(views[0]["look"]["exposure"], 2.0);
+  EXPECT_EQ(views[1]["look"]["exposure"], 0.0);
 }
 
 }  // namespace

@@ -46,13 +46,13 @@ TEST_F(Usage, HelpAndManualNameEveryOption) {
 TEST_F(Usage, LinesOfUsageAreSetWellAndSaySeveralModels) {
   EXPECT_THAT(succeed("render --help").out, HasSubstr("\nusage: frontmost render MODEL... [options]\n"));
   EXPECT_THAT(succeed("info --help").out, HasSubstr("\nusage: frontmost info MODEL [options]\n"));
-  EXPECT_THAT(succeed("precision --help").out, HasSubstr("\nusage: frontmost precision [options]\n"));
+  EXPECT_THAT(succeed("precision --help").out, HasSubstr("\nusage: frontmost precision [MODEL] [options]\n"));
   EXPECT_THAT(succeed("man --help").out, HasSubstr("\nusage: frontmost man\n"));
   EXPECT_THAT(succeed("--help").out, HasSubstr("usage: frontmost COMMAND [MODEL...] [options]"));
   const std::string manual = succeed("man").out;
   EXPECT_THAT(manual, HasSubstr(".B frontmost render\n\\fIMODEL...\\fR [options]\n.br\n"));
   // A line that begins with a blank breaks the page there.
-  EXPECT_THAT(manual, HasSubstr(".B frontmost precision\n[options]\n.br\n"));
+  EXPECT_THAT(manual, HasSubstr(".B frontmost precision\n\\fI[MODEL]\\fR [options]\n.br\n"));
   EXPECT_THAT(manual, testing::Not(HasSubstr("\n [options]")));
   EXPECT_THAT(manual, testing::Not(HasSubstr("\\fI\\fR")));
   expect_failure("render", 2, "no MODEL given; see frontmost render --help");

@@ -28,7 +28,7 @@ end_header
     return (head + "\n".join(lines) + "\n").encode()
 
 
-def glb():
+def glb(lamp=False):
     positions = b"".join(struct.pack("<3f", *c) for c in CORNERS)
     indices = b"".join(struct.pack("<3H", *t) for t in TRIANGLES)
     pose = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]  # a camera before the block, looking down -z at it
@@ -45,6 +45,12 @@ def glb():
         "bufferViews": [{"buffer": 0, "byteLength": len(positions)},
                         {"buffer": 0, "byteOffset": len(positions), "byteLength": len(indices)}],
         "buffers": [{"byteLength": len(positions) + len(indices)}]}
+    if lamp:  # above the block, shining down
+        document["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "spot", "intensity": 20}]}}
+        document["nodes"].append({"name": "lamp", "translation": [1, 3, 0.5], "rotation": [-0.7071068, 0, 0, 0.7071068],
+                                  "extensions": {"KHR_lights_punctual": {"light": 0}}})
+        document["scenes"][0]["nodes"].append(3)
+        document["extensionsUsed"] = ["KHR_lights_punctual"]
     text = json.dumps(document).encode()
     text += b" " * (-len(text) % 4)
     data = positions + indices
@@ -57,4 +63,5 @@ def write(folder):
     (folder / "part.stl").write_bytes(stl())
     (folder / "object.ply").write_bytes(ply())
     (folder / "engine.glb").write_bytes(glb())
+    (folder / "lamp.glb").write_bytes(glb(lamp=True))
     (folder / "pose.txt").write_text("1 0 0 -1\n0 1 0 -0.5\n0 0 1 6\n0 0 0 1\n")

@@ -25,7 +25,7 @@ class Crowded {
         grid_(seen_, view, counts, {}, {128, divides ? 0 : std::numeric_limits<double>::infinity()}),
         counts_(counts) {}
 
-  [[nodiscard]] Occlusion occlusion() const {
+  [[nodiscard]] EdgeOccluders occlusion() const {
     return {mesh_, sight_, view_, grid_, shadow_kernels(Isa::best), counts_, !counts_};
   }
   [[nodiscard]] std::vector<DrawnPart> parts(EdgeCutter& cutter) const {

@@ -36,5 +36,26 @@ TEST(Compose, ColorIsTheSrgbCurve) {
   }
 }
 
+TEST(Compose, CategoriesThatBothScenesHaveAreOne) {
+  const auto kitchen = [](std::vector<Category> categories) {
+    Scene scene;
+    scene.categories = std::move(categories);
+    for (std::uint32_t i = 0; i <= scene.categories.size(); ++i) {
+      add(scene, Mesh());
+      scene.instances[i].category = i < scene.categories.size() ? i : no_index;
+    }
+    return scene;
+  };
+  Scene scene = kitchen({{"cup", 1}, {"bowl", 2}});
+  add(scene, kitchen({{"bowl", 2}, {"cup", 7}, {"cup", 1}}));
+  ASSERT_EQ(scene.categories.size(), 3u);
+  EXPECT_EQ(scene.categories[2].name, "cup");
+  EXPECT_EQ(scene.categories[2].number, 7u);
+  std::vector<std::uint32_t> of_objects;
+  for (const Instance& instance : scene.instances) of_objects.push_back(instance.category);
+  EXPECT_EQ(of_objects, (std::vector<std::uint32_t>{0, 1, no_index, 1, 2, 0, no_index}));
+  EXPECT_NO_THROW(validate(scene));
+}
+
 }  // namespace
 }  // namespace frontmost

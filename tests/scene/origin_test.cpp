@@ -83,15 +83,19 @@ Scene cube_at(const glm::dvec3& place) {
   camera.name = "camera";
   camera.world_from_eye = moved(place + glm::dvec3(0, 0, 5));
   scene.cameras.push_back(camera);
+  Light light;
+  light.world_from_light = moved(place + glm::dvec3(0, 7, 0));
+  scene.lights.push_back(light);
   return scene;
 }
 
-TEST(Origin, OfASceneMovesInstancesAndCameras) {
+TEST(Origin, OfASceneMovesInstancesCamerasAndLights) {
   Scene scene = cube_at({1e8, 3, -1e8});
   EXPECT_EQ(fitting_origin(scene), glm::dvec3(1e8, 0, -1e8));
   set_origin(scene, fitting_origin(scene));
   EXPECT_EQ(glm::dvec3(scene.instances[0].world_from_mesh[3]), glm::dvec3(0, 3, 0));
   EXPECT_EQ(glm::dvec3(scene.cameras[0].world_from_eye[3]), glm::dvec3(0, 3, 5));
+  EXPECT_EQ(glm::dvec3(scene.lights[0].world_from_light[3]), glm::dvec3(0, 10, 0));
   EXPECT_EQ(fitting_origin(scene), glm::dvec3(1e8, 0, -1e8));  // it is told in the coordinates of the file
   set_origin(scene, {1, 2, 3});
   EXPECT_EQ(glm::dvec3(scene.instances[0].world_from_mesh[3]), glm::dvec3(1e8 - 1, 1, -1e8 - 3));
@@ -118,6 +122,7 @@ TEST(Origin, OfSeveralScenesIsTheFirstOnes) {
   EXPECT_EQ(all.instances[1].world_from_mesh[3].x, 40);
   EXPECT_EQ(all.instances[2].world_from_mesh[3].x, -1e8);
   EXPECT_EQ(all.cameras[1].world_from_eye[3].x, 40);
+  EXPECT_EQ(all.lights[1].world_from_light[3].x, 40);
 }
 
 }  // namespace

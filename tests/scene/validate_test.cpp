@@ -70,6 +70,12 @@ TEST(Validate, NamesTheFileThePlaceAndTheReason) {
        [](Scene& s) { s.meshes[0].face_ids.push_back(1); }},
       {"part.glb: mesh 0 (plate): a curved mesh has more than one material",
        [](Scene& s) { s.meshes[0].spheres.push_back({}); }},
+      {"part.glb: mesh 0 (plate): fewer further texture coordinates than positions",
+       [](Scene& s) {
+         s.meshes[0].further_texcoords = {{}, {{{0, 0}}, {}}};
+       }},
+      {"part.glb: mesh 0 (plate): more than 4 sets of texture coordinates",
+       [](Scene& s) { s.meshes[0].further_texcoords.resize(max_texcoord_sets); }},
       {"part.glb: material steel: texture 1 does not exist",
        [](Scene& s) { s.materials[1].base_color_texture.texture = 1; }},
       {"part.glb: material steel: texture 9 does not exist",
@@ -77,6 +83,7 @@ TEST(Validate, NamesTheFileThePlaceAndTheReason) {
       {"part.glb: texture scratches: pixels do not match its size", [](Scene& s) { s.textures[0].pixels.pop_back(); }},
       {"part.glb: texture scratches: pixels do not match its size", [](Scene& s) { s.textures[0].height = -1; }},
       {"part.glb: instance 0: mesh 1 does not exist", [](Scene& s) { s.instances[0].mesh = 1; }},
+      {"part.glb: instance 0: category 0 does not exist", [](Scene& s) { s.instances[0].category = 0; }},
   };
   EXPECT_EQ(complaint(good_scene()), "none");
   for (const Fault& fault : faults) {
@@ -87,14 +94,15 @@ TEST(Validate, NamesTheFileThePlaceAndTheReason) {
 }
 
 TEST(Validate, EveryTextureOfAMaterialIsLookedAt) {
-  const TextureUse Material::*const uses[] = {&Material::base_color_texture, &Material::metallic_roughness_texture,
-                                              &Material::normal_texture, &Material::emissive_texture,
-                                              &Material::occlusion_texture};
-  for (const TextureUse Material::*const use : uses) {
-    Scene scene = good_scene();
-    const_cast<TextureUse&>(scene.materials[0].*use).texture = 1;
+  Scene scene = good_scene();
+  for (TextureUse* const use : texture_uses_of(scene.materials[0])) {
+    use->texture = 1;
     EXPECT_EQ(complaint(scene), "part.glb: material : texture 1 does not exist");
-    const_cast<TextureUse&>(scene.materials[0].*use).texture = no_index;
+    *use = {.texture = 0, .set = max_texcoord_sets - 1};
+    EXPECT_EQ(complaint(scene), "none") << "the mesh need not have it";
+    use->set = max_texcoord_sets;
+    EXPECT_EQ(complaint(scene), "part.glb: material : texture coordinates 4, there are at most 4 sets");
+    *use = {};
     EXPECT_EQ(complaint(scene), "none");
   }
 }
@@ -154,6 +162,33 @@ TEST(Scene, CountsOverInstancesAndPassesOverMeshesThatDoNotExist) {
   EXPECT_EQ(triangle_count(Scene{}), 0u);
 }
 
+TEST(Validate, NamesTheLightThatGivesNoLight) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  const auto lit_by = [](const std::function<void(Light&)>& change) {
+    Scene scene = good_scene();
+    scene.lights.resize(2);
+    scene.lights[1].name = "lamp";
+    scene.lights[1].kind = Light::Kind::spot;
+    change(scene.lights[1]);
+    return complaint(scene);
+  };
+  const std::string who = "part.glb: light 1 (lamp): ";
+  EXPECT_EQ(lit_by([](Light&) {}), "none");
+  for (const double bad : {-1.0, nan, infinity}) {
+    EXPECT_EQ(lit_by([&](Light& l) { l.intensity = bad; }), who + "its intensity is not a number from 0 on");
+    EXPECT_EQ(lit_by([&](Light& l) { l.color.y = float(bad); }), who + "its colour is not three numbers from 0 on");
+    EXPECT_EQ(lit_by([&](Light& l) { l.range = bad; }), who + "its range is not a positive number");
+  }
+  const std::string cones = "its cones are not angles from 0 to a quarter turn, the inner one within the outer one";
+  EXPECT_EQ(lit_by([](Light& l) { l.inner_cone = 1; }), who + cones) << "reversed: the outer one is 45 degrees";
+  EXPECT_EQ(lit_by([](Light& l) { l.outer_cone = 1.6; }), who + cones);
+  EXPECT_EQ(lit_by([](Light& l) { l.outer_cone = 0; }), who + cones);
+  EXPECT_EQ(lit_by([&](Light& l) { l.inner_cone = nan; }), who + cones);
+  EXPECT_EQ(lit_by([](Light& l) { l.world_from_light[1] *= 2; }), who + "its placement is not rigid");
+  EXPECT_EQ(lit_by([](Light& l) { l.world_from_light[2] = glm::dvec4(0); }), who + "its placement is not rigid");
+  EXPECT_EQ(lit_by([&](Light& l) { l.world_from_light[3].x = nan; }), who + "its placement is not rigid");
+}
+
 TEST(Scene, AMeshThatIsAddedIsPlaced) {
   Scene scene = good_scene();
   Mesh mesh = scene.meshes[0];
@@ -171,7 +206,10 @@ TEST(Scene, AddedPartsCountOn) {
   Scene scene = good_scene();
   Scene part = good_scene();
   part.meshes[0].material_ids = {no_index, 1};
+  part.meshes[0].further_texcoords = {part.meshes[0].texcoords};
+  part.materials[1].volume.thickness_texture = {.texture = 0, .set = 1};
   part.cameras.emplace_back();
+  part.lights.emplace_back();
   part.warnings = {"odd"};
   add(scene, part);
   ASSERT_EQ(scene.meshes.size(), 2u);
@@ -179,8 +217,12 @@ TEST(Scene, AddedPartsCountOn) {
   EXPECT_EQ(scene.meshes[1].material_ids, (std::vector<std::uint32_t>{no_index, 3}));
   EXPECT_EQ(scene.instances[1].mesh, 1u);
   EXPECT_EQ(scene.materials[3].base_color_texture.texture, 1u);
+  EXPECT_EQ(scene.materials[3].volume.thickness_texture.texture, 1u);
+  EXPECT_EQ(scene.materials[3].volume.thickness_texture.set, 1u);
+  EXPECT_EQ(scene.meshes[1].texcoord_set(1)->values, scene.meshes[0].texcoords.values);
   EXPECT_FALSE(scene.materials[2].base_color_texture.is_set());
   EXPECT_EQ(scene.cameras.size(), 1u);
+  EXPECT_EQ(scene.lights.size(), 1u);
   EXPECT_EQ(scene.warnings, std::vector<std::string>{"odd"});
   EXPECT_EQ(triangle_count(scene), 4u);
   EXPECT_EQ(complaint(scene), "none");

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "frontmost/zbuffer.h"
+#include "shade/shadow/light_view.h"
 #include "shade/shadow/shadow_map.h"
 
 namespace frontmost::test {

@@ -38,6 +38,29 @@ inline std::size_t covered(const Visible& visible) {
          std::size_t(std::count(visible.primitives.begin(), visible.primitives.end(), no_primitive));
 }
 
+/// What sample `s` of a pixel sees.
+inline PrimitiveId id_at(const VisiblePixels& pixels, const glm::ivec2& at, int s) {
+  constexpr int run = VisiblePixels::run;
+  const std::size_t number = std::size_t(at.y) * pixels.runs_across() + std::size_t(at.x / run);
+  const unsigned mixed = pixels.mixed[number];
+  if (s == 0 || !(mixed >> at.x % run & 1u)) return pixels.first.primitives[pixels.first.index(at.x, at.y)];
+  std::size_t place = pixels.places[number];
+  for (int x = 0; x < at.x % run; ++x) place += (mixed >> x & 1u) * std::size_t(pixels.view.samples - 1);
+  return pixels.others[place + std::size_t(s) - 1];
+}
+
+/// \returns how many pixels are mixed.
+inline std::size_t expect_same_pixels(const Visible& expected, const VisiblePixels& actual) {
+  const View& view = expected.view;
+  Visible all{view, Buffer<PrimitiveId>(view.sample_count()), Buffer<float>(expected.keys)};
+  for (std::size_t i = 0; i < view.pixel_count(); ++i) all.keys[i] = actual.first.keys[i];
+  for (int s = 0; s < view.samples; ++s)
+    for (int y = 0; y < view.height; ++y)
+      for (int x = 0; x < view.width; ++x) all.primitives[all.index(x, y, s)] = id_at(actual, {x, y}, s);
+  expect_same(expected, all);
+  return view.samples > 1 ? actual.other_count / std::size_t(view.samples - 1) : 0;
+}
+
 inline Visible draw_clusters(const Surfaces& surfaces, const View& view, const Execution& execution = {}) {
   ZBuffer buffer;
   buffer.draw(surfaces, view, execution);

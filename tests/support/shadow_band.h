@@ -11,7 +11,7 @@
 #include "frontmost/shade.h"
 #include "frontmost/zbuffer.h"
 #include "shade/geometry/triangle_setup.h"
-#include "shade/lighting.h"
+#include "shade/light/lighting.h"
 #include "support/interpolation.h"
 #include "support/key_light_map.h"
 
@@ -33,7 +33,7 @@ class ShadowBandMeter {
       : surfaces_(surfaces),
         visible_(zbuffer(surfaces, view, execution)),
         index_(surfaces, execution),
-        to_key_(shading::lighting_for(view, surfaces.scene().up).to_key),
+        to_key_(shading::direction_to_key(view, {})),
         map_(light_map(surfaces, visible_, glm::dvec3(to_key_), planes_, execution)) {
     const auto light = shading::view_of_light(visible_, surfaces.bounds(), glm::dvec3(to_key_), execution);
     if (!light) return;

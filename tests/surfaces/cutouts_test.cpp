@@ -57,6 +57,20 @@ TEST(Cutouts, AreFilteredLikeTheTexture) {
   EXPECT_TRUE(is_hole(scene, {0.65, 0.1, 0}));
 }
 
+TEST(Cutouts, AreLookedUpByTheSetOfTheirTexture) {
+  Scene scene = one_triangle({255, 0, 0, 255}, 2);
+  // The other way round from left to right.
+  scene.meshes[0].further_texcoords = {{}, {{{1, 0}, {0, 0}, {1, 1}}, {}}};
+  scene.materials[0].base_color_texture.set = 2;
+  EXPECT_TRUE(is_hole(scene, {0.2, 0.2, 0}));
+  EXPECT_FALSE(is_hole(scene, {0.6, 0.2, 0}));
+  // A set that is not there, and one that is empty: at the origin.
+  for (const std::uint32_t set : {1u, 3u}) {
+    scene.materials[0].base_color_texture.set = set;
+    EXPECT_FALSE(is_hole(scene, {0.6, 0.2, 0}));
+  }
+}
+
 TEST(Cutouts, MultiplyAllThatHasAlpha) {
   Scene scene = one_triangle({204}, 1);  // 0.8
   EXPECT_FALSE(is_hole(scene, {0.3, 0.3, 0}));

@@ -15,6 +15,7 @@ namespace frontmost::test {
 namespace {
 
 using zbuffer_detail::draw_directly;
+using zbuffer_detail::draw_pixels_directly;
 
 /// \returns how many samples are covered.
 std::size_t expect_same_both_ways(const Scene& scene, const View& view, int threads) {
@@ -22,8 +23,11 @@ std::size_t expect_same_both_ways(const Scene& scene, const View& view, int thre
   const Visible expected = draw_clusters(surfaces, view);
   for (const Isa isa : available_isas()) {
     SCOPED_TRACE(name(isa));
-    expect_same(expected,
-                draw_directly(Surfaces(scene, {.isa = isa}).placed(), view, {.threads = threads, .isa = isa}));
+    const Surfaces again(scene, {.isa = isa});
+    const Execution execution{.threads = threads, .isa = isa};
+    expect_same(expected, draw_directly(again.placed(), view, execution));
+    const std::size_t mixed = expect_same_pixels(expected, draw_pixels_directly(again.placed(), view, execution));
+    EXPECT_EQ(mixed, expect_same_pixels(expected, pixels_of(expected)));
   }
   return covered(expected);
 }

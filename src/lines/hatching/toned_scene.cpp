@@ -37,6 +37,7 @@ View view_from_light(const Surfaces& surfaces, const glm::dvec3& to_light) {
   FrameOptions options;
   options.orthographic = true;
   options.forward = -to_light;
+  options.objects = FramedObjects::all;
   return frame(surfaces, 1024, 1024, options);
 }
 

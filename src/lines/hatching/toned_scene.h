@@ -40,7 +40,7 @@ struct Scenery {
   const Sight sight;
   const SeenMesh seen;
   const OccluderGrid grid;
-  const Occlusion occlusion;
+  const EdgeOccluders occlusion;
 };
 
 /// Everything that answers how dark a scene is along lines.

@@ -50,7 +50,7 @@ Interval within_view(const EdgeInEye& edge, const Projection& p) {
 }
 
 /// In pixels, for t within the view.
-glm::dvec2 on_screen(const EdgeInEye& edge, double t, const Occlusion& o) {
+glm::dvec2 on_screen(const EdgeInEye& edge, double t, const EdgeOccluders& o) {
   // From the nearer end, so that both ends are met.
   glm::dvec3 p = t <= 0.5 ? edge.from + (edge.to - edge.from) * t : edge.to + (edge.from - edge.to) * (1 - t);
   // It is within the view; rounding may say otherwise of edges that are very much longer than their part in it.
@@ -62,14 +62,14 @@ enum class Asked { what_hides, what_covers_the_outer_side };
 
 /// What is asked about a span of an edge.
 struct EdgeQuestion {
-  const Occlusion& o;
+  const EdgeOccluders& o;
   const EdgeInEye& edge;
   const Interval span;
   const Asked asked;
   const glm::dvec2 begin, end;  ///< of the span, in cells
   const float farthest;         ///< what is no nearer does not matter
 
-  EdgeQuestion(const Occlusion& occlusion, const EdgeInEye& its_edge, const Interval& its_span, Asked what)
+  EdgeQuestion(const EdgeOccluders& occlusion, const EdgeInEye& its_edge, const Interval& its_span, Asked what)
       : o(occlusion),
         edge(its_edge),
         span(its_span),

@@ -17,7 +17,7 @@
 namespace frontmost::lines_detail {
 
 /// What edges are held against.
-struct Occlusion {
+struct EdgeOccluders {
   const WeldedMesh& mesh;
   const Sight& sight;
   const View& view;
@@ -40,7 +40,7 @@ struct EdgeSearch {
 /// Cuts one edge after another. Not for several threads at once.
 class EdgeCutter {
  public:
-  explicit EdgeCutter(const Occlusion& occlusion) : o_(occlusion) {}
+  explicit EdgeCutter(const EdgeOccluders& occlusion) : o_(occlusion) {}
 
   /// Appends the parts of `edge`, whose number is `number`, that lie within the view. Its distances need not be set.
   void cut(const SightedEdge& edge, std::uint32_t number, std::vector<DrawnPart>& parts);
@@ -49,7 +49,7 @@ class EdgeCutter {
   [[nodiscard]] std::uint64_t boxes_asked() const { return search_.boxes; }
 
  private:
-  const Occlusion o_;
+  const EdgeOccluders o_;
   EdgeSearch search_;  ///< kept for its memory
 };
 

@@ -134,9 +134,7 @@ Scene without_objects(const Scene& from) {
   scene.origin = from.origin;
   scene.cameras = from.cameras;
   for (Material material : from.materials) {
-    for (TextureUse* const use : {&material.base_color_texture, &material.metallic_roughness_texture,
-                                  &material.normal_texture, &material.emissive_texture, &material.occlusion_texture})
-      *use = {};
+    for (TextureUse* const use : texture_uses_of(material)) *use = {};
     scene.materials.push_back(std::move(material));
   }
   return scene;

@@ -191,30 +191,31 @@ class Extremes::Core {
 
     glm::dvec2 middle{0}, half{0};
     glm::dvec2 inverse_half{0};  ///< 0 where it is flat, or nothing is kept yet
-    /// By slope: what lies nearer to the middle than the inverse of this, in units of `half`, is in the polygon.
-    std::array<double, 4 * slopes> inverse_radius;
+    /// By side and slope: what lies nearer to the middle than the inverse of this, in units of `half`, is in the
+    /// polygon. Along a side it is the greatest of linear functions, one for each line, and so convex: between two
+    /// slopes it is no greater than what lies straight between theirs.
+    std::array<double, 4 * (slopes + 1)> inverse_radius;
 
     /// Away goes what is farther than `distance` along `normal`, in units of `half`.
     void cut(const glm::dvec2& normal, double distance) {
-      for (int i = 0; i < 4 * slopes; ++i) {
-        const int side = i / slopes;
-        double most = 0;
-        for (const int end : {0, 1}) {
-          const double minor = 2.0 * (i % slopes + end) / slopes - 1, major = side % 2 ? -1 : 1;
-          most = std::max(most, glm::dot(normal, side < 2 ? glm::dvec2(major, minor) : glm::dvec2(minor, major)));
+      for (int side = 0; side < 4; ++side)
+        for (int slope = 0; slope <= slopes; ++slope) {
+          const double minor = 2.0 * slope / slopes - 1, major = side % 2 ? -1 : 1;
+          const double along = glm::dot(normal, side < 2 ? glm::dvec2(major, minor) : glm::dvec2(minor, major));
+          double& inverse = inverse_radius[std::size_t(side * (slopes + 1) + slope)];
+          inverse = distance > 0 ? std::max(inverse, along / distance) : kInfinity;
         }
-        double& inverse = inverse_radius[std::size_t(i)];
-        inverse = distance > 0 ? std::max(inverse, most / distance) : kInfinity;
-      }
     }
     [[nodiscard]] bool holds(const glm::dvec2& p) const {
       const glm::dvec2 q = (p - middle) * inverse_half;
       const bool is_steep = std::abs(q.y) > std::abs(q.x);
       const double major = is_steep ? q.y : q.x, minor = is_steep ? q.x : q.y, size = std::abs(major);
       if (!(size > 0)) return false;
-      const int slope = std::min(int((minor / size + 1) * (slopes / 2)), slopes - 1);
-      const int side = (is_steep ? 2 : 0) + (major < 0 ? 1 : 0);
-      return size * inverse_radius[std::size_t(side * slopes + slope)] < 1 - 1e-6;  // by far more than rounding
+      const double at = (minor / size + 1) * (slopes / 2);
+      const int slope = std::min(int(at), slopes - 1), side = (is_steep ? 2 : 0) + (major < 0 ? 1 : 0);
+      const double* const inverse = inverse_radius.data() + side * (slopes + 1) + slope;
+      const double between = inverse[0] + (inverse[1] - inverse[0]) * (at - slope);
+      return size * between < 1 - 1e-6;  // by far more than rounding; false where lines are at no distance
     }
   };
   Polygon polygons_[2];
@@ -264,8 +265,9 @@ class Extremes::Search {
     if (is_done_[part]) return;
     is_done_[part] = true;
     parts_.visit(part, [&](const glm::vec3& vertex) { offer(vertex); });
-    if (!is_changed_ || missed_ < missed_at_most) return;
+    if (!is_changed_ || missed_ < missed_at_most_) return;
     core_ = Core(extremes_);
+    missed_at_most_ *= 2;  // where much lies at the rim no core holds it
     missed_ = 0;
     is_changed_ = false;
   }
@@ -280,12 +282,11 @@ class Extremes::Search {
     for (int i = 0; i < direction_count; ++i) extremes_.offer(i, extremes_.reach(i, along), vertex);
   }
 
-  static constexpr int missed_at_most = 1024;  ///< so many full tests cost more than another core
-
   const Parts parts_;
   Extremes& extremes_;
   Core core_;
   std::vector<bool> is_done_;  ///< by part
+  int missed_at_most_ = 1024;  ///< so many full tests cost more than another core
   int missed_ = 0;             ///< points that the core did not hold, since it was made
   bool is_changed_ = false;    ///< what is kept, since then
 };
@@ -298,6 +299,25 @@ struct PlacedParts {
 
   [[nodiscard]] std::size_t count() const { return placed.boxes.size(); }
   [[nodiscard]] Box box(std::size_t i) const { return placed.boxes[i]; }
+  template <class Visit>
+  void visit(std::size_t i, const Visit& vertex) const {
+    placed.visit_box(i, vertex);
+  }
+};
+
+/// The same, but what is left out has no box.
+struct KeptParts {
+  const PlacedScene& placed;
+  std::vector<bool> is_left_out;  ///< by box
+
+  KeptParts(const PlacedScene& scene, std::span<const std::uint32_t> left_out)
+      : placed(scene), is_left_out(scene.boxes.size(), false) {
+    for (const MeshRange& range : placed.ranges)
+      if (std::binary_search(left_out.begin(), left_out.end(), range.instance))
+        std::fill_n(is_left_out.begin() + range.first_box, range.box_count(), true);
+  }
+  [[nodiscard]] std::size_t count() const { return placed.boxes.size(); }
+  [[nodiscard]] Box box(std::size_t i) const { return is_left_out[i] ? Box() : placed.boxes[i]; }
   template <class Visit>
   void visit(std::size_t i, const Visit& vertex) const {
     placed.visit_box(i, vertex);
@@ -321,6 +341,9 @@ struct ClusterParts {
 }  // namespace
 
 void Extremes::include(const PlacedScene& placed) { Search<PlacedParts>({placed}, *this).run(); }
+void Extremes::include(const PlacedScene& placed, std::span<const std::uint32_t> left_out) {
+  Search<KeptParts>(KeptParts(placed, left_out), *this).run();
+}
 void Extremes::include(const ClusterSet& set) { Search<ClusterParts>({set}, *this).run(); }
 
 std::vector<glm::vec3> Extremes::points() const {

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "frontmost/base.h"
@@ -43,6 +44,8 @@ class Extremes {
   /// All vertices of finite triangles. 1 to 3 ms for a million triangles: most are passed over by boxes, and where
   /// these say nothing, as in files whose order is random, by a polygon.
   void include(const PlacedScene& placed);
+  /// The same without some objects, whose numbers ascend.
+  void include(const PlacedScene& placed, std::span<const std::uint32_t> left_out);
   /// The same, sooner: clusters are neighbours in space, whatever the order of the file.
   void include(const ClusterSet& set);
   /// False when no point within the box would be kept.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views that show a whole model.
+// Views that show a whole model, or all of it that most of its interest lies in.
 //
 //           eye             A plane across the picture, seen from above: each side of the frustum is a line.
 //          / | \            Moved until it touches the model, the left and the right one meet where the eye must stand
@@ -175,13 +175,31 @@ void centre(glm::dmat4& pose, const FilledFrustum& frustum, const std::vector<gl
     }
 }
 
-std::vector<glm::vec3> extremes_of(const Surfaces& surfaces, const FilledFrustum& frustum) {
+std::vector<glm::vec3> extremes_of(const Surfaces& surfaces, const Subject& subject, const FilledFrustum& frustum) {
   Extremes extremes(frustum);
-  if (const ClusterSet* const clusters = surfaces.made_clusters())
+  if (!subject.left_out.empty())
+    extremes.include(surfaces.placed(), subject.left_out);
+  else if (const ClusterSet* const clusters = surfaces.made_clusters())
     extremes.include(*clusters);
   else
     extremes.include(surfaces.placed());
   return extremes.points();
+}
+
+Subject subject_for(const Surfaces& surfaces, FramedObjects objects) {
+  Subject subject = objects == FramedObjects::all ? Subject{surfaces.bounds(), {}} : find_subject(surfaces);
+  if (subject.bounds.is_empty()) subject.bounds = unit_box();
+  return subject;
+}
+
+/// Planes around everything. But the subject is not cut off by a near plane that what is left out has pushed away, nor
+/// hidden by what of that lies behind the eye of a parallel projection.
+ClipDistances clip_around(const Surfaces& surfaces, const Subject& subject, const glm::dmat4& pose, bool orthographic) {
+  ClipDistances clip = fit_clip(surfaces.bounds(), pose, orthographic);
+  if (subject.left_out.empty()) return clip;
+  if (orthographic) return {std::max(clip.near, 0.0), clip.far};
+  clip.near = std::min(clip.near, fit_clip(subject.bounds, pose, false).near);
+  return clip;
 }
 
 void check(int width, int height, const FrameOptions& options) {
@@ -219,7 +237,8 @@ ClipDistances fit_clip(const Box& bounds, const glm::dmat4& world_from_eye, bool
 
 View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& options) {
   check(width, height, options);
-  const Box box = surfaces.bounds().is_empty() ? unit_box() : surfaces.bounds();
+  const Subject subject = subject_for(surfaces, options.objects);
+  const Box& box = subject.bounds;
   const Gaze look = gaze(options.direction, model_axes(surfaces.scene().up));
   const glm::dvec3 forward = options.forward.value_or(-look.towards_viewer);
   glm::dmat4 pose = look_at(-glm::normalize(forward), glm::dvec3(0), options.up.value_or(look.up));
@@ -228,7 +247,7 @@ View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& 
   Projection projection = options.intrinsics ? make_projection(*options.intrinsics, width, height, {})
                                              : make_projection(options.min_fov, aspect, {});
   const FilledFrustum frustum(pose, projection, options.margin);
-  const std::vector<glm::vec3> points = extremes_of(surfaces, frustum);
+  const std::vector<glm::vec3> points = extremes_of(surfaces, subject, frustum);
   Fit fit(frustum, options.target);
   for (const glm::vec3& p : points) fit.include(glm::dvec3(p));
   if (points.empty())
@@ -237,14 +256,15 @@ View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& 
   // A single point far from the origin has to be stood back from by more than rounding.
   const double diagonal = std::max({glm::length(high - low), 1e-5 * glm::length(high), 1e-30});
   if (options.orthographic) {
-    pose[3] = glm::dvec4(fit.parallel_eye(box, diagonal), 1.0);
+    // Among what is left out, as far before the subject as an eye in perspective stands, more or less.
+    pose[3] = glm::dvec4(fit.parallel_eye(box, (subject.left_out.empty() ? 1 : 2) * diagonal), 1.0);
   } else {
     // Some distance from what is nearest, or a model seen along its own plane would have the eye in it.
     pose[3] = glm::dvec4(fit.eye(1e-3 * diagonal), 1.0);
     if (!points.empty() && !options.target) centre(pose, frustum, points);
   }
 
-  const ClipDistances clip = fit_clip(box, pose, options.orthographic);
+  const ClipDistances clip = clip_around(surfaces, subject, pose, options.orthographic);
   if (options.orthographic) {
     const glm::dvec2 extent = fit.half_extent();
     // A model of no extent across, a point or a line seen from its end, still needs a picture with sides.

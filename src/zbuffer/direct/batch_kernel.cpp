@@ -14,6 +14,7 @@
 #include "hwy/highway.h"
 // After Highway: a block of its own.
 #include "base/compactor-inl.h"
+#include "zbuffer/direct/tile_pixels-inl.h"
 #include "zbuffer/place/run_reader-inl.h"
 #include "zbuffer/tile/large_triangles-inl.h"
 #include "zbuffer/tile/small_triangles-inl.h"
@@ -47,6 +48,7 @@ class BatchPainter {
       LookForHidden();
       DrawItems(job_.cutouts);
     }
+    if (job_.is_last && frame_.pixels) return TilePixels(frame_, job_).Write(buffer_);
     buffer_.WriteOut();
     if (!job_.is_last) buffer_.FindFarthest(job_.farthest);
   }
@@ -151,10 +153,12 @@ class BatchPainter {
 };
 
 void DrawBatches(const BatchFrame& frame, const BatchJob& job, TileScratch& scratch) {
-  if (job.is_empty() && !job.is_drawn)
-    FillTile(frame, job);
-  else
+  if (!job.is_empty() || job.is_drawn)
     BatchPainter(frame, job, scratch).Draw();
+  else if (frame.pixels)
+    TilePixels(frame, job).Fill();
+  else
+    FillTile(frame, job);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -10,6 +10,7 @@
 #include "zbuffer/direct/direct_frame.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <memory>
 #include <optional>
@@ -57,25 +58,53 @@ class DirectFrame {
         cutouts_(scene.cutouts.get()),
         transform_(view),
         target_(transform_, view, execution.isa),
-        visible_{view, Buffer<PrimitiveId>(view.sample_count()), Buffer<float>(view.sample_count())},
+        visible_{view, {}, {}},
         is_drawn_(Tile::count(view), 0),
         farthest_(is_drawn_.size() * BlockBounds::count, 0.0f) {}
 
   Visible draw() {
     survey();
-    std::size_t next = 0, at_once = order_.size() > kFewBatches ? kBatchesAtFirst : kBatchesAtOnce;
+    make_planes();
+    draw_all(nullptr);
+    return std::move(visible_);
+  }
+
+  VisiblePixels draw_pixels() {
+    survey();
+    if (order_.size() > batches_at_first()) make_planes();  // what the first batches show waits there for the others
+    VisiblePixels pixels = undefined_pixels(visible_.view);
+    std::atomic<std::uint32_t> other_count{0};
+    const PixelPlanes planes{
+        pixels.first.primitives.data(), pixels.first.keys.data(), pixels.mixed.data(), pixels.places.data(),
+        pixels.others.data(),           pixels.runs_across(),     &other_count};
+    draw_all(&planes);
+    pixels.other_count = other_count;
+    return pixels;
+  }
+
+ private:
+  [[nodiscard]] std::size_t batches_at_first() const {
+    return order_.size() > kFewBatches ? kBatchesAtFirst : kBatchesAtOnce;
+  }
+
+  void make_planes() {
+    const std::size_t count = visible_.view.sample_count();
+    visible_.primitives = Buffer<PrimitiveId>(count);
+    visible_.keys = Buffer<float>(count);
+  }
+
+  void draw_all(const PixelPlanes* pixels) {
+    std::size_t next = 0, at_once = batches_at_first();
     do {
       const std::size_t count = std::min(at_once, order_.size() - next);
       place(std::span(order_).subspan(next, count));
       next += count;
-      draw_placed(next == order_.size());
+      draw_placed(pixels, next == order_.size());
       report_progress(execution_, "visible", order_.empty() ? 1 : double(next) / double(order_.size()));
       at_once = kBatchesAtOnce;
     } while (next < order_.size());
-    return std::move(visible_);
   }
 
- private:
   /// What goes into which batch, and in which order to draw them: near ones first, as far as a few triangles of each
   /// tell.
   void survey() {
@@ -201,7 +230,7 @@ class DirectFrame {
   }
 
   /// `is_last`: nothing comes after it, so what is still empty stays so.
-  void draw_placed(bool is_last) {
+  void draw_placed(const PixelPlanes* pixels, bool is_last) {
     const View& view = visible_.view;
     // As in zbuffer.cpp: memory that is touched for the first time.
     const bool streams = view.sample_count() * (sizeof(PrimitiveId) + sizeof(float)) >= std::size_t(32) << 20;
@@ -211,7 +240,8 @@ class DirectFrame {
                           visible_.keys.data(),
                           streams,
                           cutouts_,
-                          ScreenRays(view)};
+                          ScreenRays(view),
+                          pixels};
     const BatchFrame frame{picture, nearest_first_, records_.records};
     draw_tiles(records_, view, execution_, tile_scratches_, [&](std::size_t tile, TileScratch& scratch) {
       const PartedList records = records_.of(tile);
@@ -222,7 +252,8 @@ class DirectFrame {
                          is_drawn_[tile] != 0,
                          is_last,
                          &farthest_[tile * BlockBounds::count]};
-      if (job.is_empty() && (job.is_drawn || !is_last)) return;
+      const bool goes_out = is_last && (pixels || !job.is_drawn);
+      if (job.is_empty() && !goes_out) return;
       draw_batches(frame, job, scratch, execution_.isa);
       is_drawn_[tile] = 1;
     });
@@ -252,6 +283,10 @@ class DirectFrame {
 
 Visible draw_directly(const PlacedScene& scene, const View& view, const Execution& execution) {
   return DirectFrame(scene, view, execution).draw();
+}
+
+VisiblePixels draw_pixels_directly(const PlacedScene& scene, const View& view, const Execution& execution) {
+  return DirectFrame(scene, view, execution).draw_pixels();
 }
 
 }  // namespace frontmost::zbuffer_detail

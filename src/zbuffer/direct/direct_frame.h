@@ -11,6 +11,7 @@
 #include <span>
 
 #include "base/isa.h"
+#include "frontmost/visible_pixels.h"
 #include "surfaces/placed_scene.h"
 #include "zbuffer/place/triangle_batch.h"
 #include "zbuffer/tile/tile.h"
@@ -21,6 +22,9 @@ namespace frontmost::zbuffer_detail {
 /// some 30 MiB, at most as much again for triangles with holes, and 100 bytes for each large or clipped triangle of
 /// half a million in a row.
 [[nodiscard]] Visible draw_directly(const PlacedScene& scene, const View& view, const Execution& execution);
+/// The same by pixels. Scenes of more than a quarter of a million triangles take the planes beside it for a while.
+[[nodiscard]] VisiblePixels draw_pixels_directly(const PlacedScene& scene, const View& view,
+                                                 const Execution& execution);
 
 /// What all tiles have in common that are drawn from the same batches.
 struct BatchFrame : Picture {

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <optional>
 #include <span>
 
@@ -40,15 +41,27 @@ struct PixelRect {
   return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
 }
 
+/// Where a VisiblePixels is written. Borrows everything.
+struct PixelPlanes {
+  PrimitiveId* primitives;  ///< of sample 0
+  float* keys;
+  std::uint16_t* mixed;
+  std::uint32_t* places;
+  PrimitiveId* others;
+  std::size_t runs_across;
+  std::atomic<std::uint32_t>* other_count;
+};
+
 /// The picture that tiles are drawn to. Borrows everything.
 struct Picture {
   const View& view;
   std::span<const glm::ivec2> samples;  ///< offsets within a pixel
   PrimitiveId* primitives;              ///< planes, [sample][y][x]
   float* keys;
-  bool streams;            ///< write them past the cache: they are too large to stay in it
-  const Cutouts* cutouts;  ///< null where no triangle has holes
-  ScreenRays rays;         ///< of the view: they find the holes
+  bool streams;                         ///< write them past the cache: they are too large to stay in it
+  const Cutouts* cutouts;               ///< null where no triangle has holes
+  ScreenRays rays;                      ///< of the view: they find the holes
+  const PixelPlanes* pixels = nullptr;  ///< what is seen in the end goes there, and planes hold what comes before it
 };
 
 /// The pixels of one tile.

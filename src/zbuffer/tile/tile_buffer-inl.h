@@ -155,6 +155,27 @@ HWY_INLINE void FillTile(const Picture& picture, const Tile& tile) {
   hwy::FlushStream();
 }
 
+/// The words of as many pixels of a row as a vector of 32 bits has lanes.
+class RowPart {
+ public:
+#if HWY_TARGET == HWY_SCALAR
+  explicit HWY_INLINE RowPart(const std::uint64_t* row) : word_(*row) {}
+  [[nodiscard]] HWY_INLINE VU id() const { return hn::Set(DU(), ~std::uint32_t(word_)); }
+
+ private:
+  std::uint64_t word_;
+#else
+  explicit HWY_INLINE RowPart(const std::uint64_t* row)
+      : low_(hn::Load(DU(), reinterpret_cast<const std::uint32_t*>(row))),
+        high_(hn::Load(DU(), reinterpret_cast<const std::uint32_t*>(row) + hn::Lanes(DU()))) {}
+  [[nodiscard]] HWY_INLINE VU id() const { return hn::Not(hn::ConcatEven(DU(), high_, low_)); }
+  [[nodiscard]] HWY_INLINE VF key() const { return hn::BitCast(DF(), hn::ConcatOdd(DU(), high_, low_)); }
+
+ private:
+  VU low_, high_;
+#endif
+};
+
 /// The tile's samples as 64-bit words, the key's bits above the complement of the id: the greater word is the nearer
 /// fragment, at equal keys the lower id, and 0 is nothing. Keys are not negative, so words compare alike as signed
 /// numbers, which is all that AVX2 has. Beside them the hierarchical depth: by block the farthest key, found when
@@ -360,23 +381,17 @@ class TileBuffer {
     const std::size_t width = std::size_t(tile_.width);
     std::size_t x = 0;
 #if HWY_TARGET != HWY_SCALAR
-    // Two vectors of words are a vector of ids and one of keys.
-    const DU d;
-    const DF df;
-    const std::size_t lanes = hn::Lanes(d);
+    const std::size_t lanes = hn::Lanes(DU());
     // Streamed vectors have to be aligned: planes are to 64 bytes, rows only where the width is a multiple of 16.
     const bool streams = picture_.streams && at % 16 == 0;
-    const auto* halves = reinterpret_cast<const std::uint32_t*>(row);
     for (; x + lanes <= width; x += lanes) {
-      const auto low = hn::Load(d, halves + 2 * x), high = hn::Load(d, halves + 2 * x + lanes);
-      const auto id = hn::Not(hn::ConcatEven(d, high, low));
-      const auto key = hn::BitCast(df, hn::ConcatOdd(d, high, low));
+      const RowPart part(row + x);
       if (streams) {
-        hn::Stream(id, d, primitives + x);
-        hn::Stream(key, df, keys + x);
+        hn::Stream(part.id(), DU(), primitives + x);
+        hn::Stream(part.key(), DF(), keys + x);
       } else {
-        hn::StoreU(id, d, primitives + x);
-        hn::StoreU(key, df, keys + x);
+        hn::StoreU(part.id(), DU(), primitives + x);
+        hn::StoreU(part.key(), DF(), keys + x);
       }
     }
 #endif

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// frontmost report: how much of every object is seen, and who hides the rest.
+#include <frontmost/surfaces.h>
+#include <frontmost/zbuffer.h>
+
+#include <algorithm>
+
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/failure.h"
+#include "cli/inputs.h"
+#include "cli/option.h"
+#include "cli/report/report_run.h"
+#include "cli/view/view_options.h"
+
+namespace frontmost::cli {
+namespace {
+
+constexpr Option report_options[] = {
+    {"canvas", 0, "FACTOR",
+     "Count objects alone on a canvas of that many times the picture's width and height, 1 to 16; 3 by default.",
+     Group::report, for_report,
+     [](Settings& s, const Given& g) {
+       s.report.canvas = g.number({1, 16});
+     }},
+};
+
+}  // namespace
+
+std::span<const Option> report_option_table() { return report_options; }
+
+std::span<const HiddenSamples> ReportRun::hiders_of(std::uint32_t object) const {
+  const std::vector<HiddenSamples>& all = accounts.hidden_by_front;
+  const auto is_before = [](const HiddenSamples& pair, std::uint32_t number) { return pair.object < number; };
+  const auto begin = std::lower_bound(all.begin(), all.end(), object, is_before);
+  return {begin, std::lower_bound(begin, all.end(), object + 1, is_before)};
+}
+
+std::vector<std::uint32_t> objects_by_sight(const Accounting& accounts) {
+  std::vector<std::uint32_t> numbers(accounts.objects.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = std::uint32_t(i);
+  std::stable_sort(numbers.begin(), numbers.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const ObjectAccount &one = accounts.objects[a], &other = accounts.objects[b];
+    if (one.visible.count != other.visible.count) return one.visible.count > other.visible.count;
+    return one.in_frame.count > other.in_frame.count;
+  });
+  return numbers;
+}
+
+int run_report(const Settings& settings) {
+  check_view_settings(settings.view);
+  Progress progress(settings.run.quiet);
+  const Execution execution = execution_for(settings.run, progress);
+  const Scene scene = load_model(settings, execution, progress);
+  std::optional<Surfaces> surfaces(std::in_place, scene, execution);
+  const View view = resolve_view(settings.view, *surfaces);
+  if (const auto warning = framing_warning(settings.view, *surfaces)) show_warnings({*warning}, settings.run, progress);
+  const std::optional<Scene> cut = tessellated(scene, settings.view, view);
+  if (cut) surfaces.emplace(*cut, execution);
+  const Visible visible = zbuffer(*surfaces, view, execution);
+  const Accounting accounts = account(*surfaces, visible, {.canvas = settings.report.canvas}, execution);
+  const ReportRun run{settings, *surfaces, visible, accounts, {}};
+  progress.clear();
+  print(settings.run.json ? dump(report_json(run)) : report_text(run));
+  return exit_done;
+}
+
+}  // namespace frontmost::cli

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// What frontmost report found out, as all of its outputs read it.
+#pragma once
+
+#include <frontmost/accounting.h>
+
+#include <string>
+#include <vector>
+
+#include "cli/json.h"
+#include "cli/settings.h"
+
+namespace frontmost::cli {
+
+struct ReportRun {
+  const Settings& settings;
+  const Surfaces& surfaces;
+  const Visible& visible;
+  const Accounting& accounts;
+  std::vector<std::string> files;  ///< that were written
+
+  [[nodiscard]] const View& view() const { return visible.view; }
+  [[nodiscard]] const Scene& scene() const { return surfaces.scene(); }
+  /// The pairs of one object, by hider.
+  [[nodiscard]] std::span<const HiddenSamples> hiders_of(std::uint32_t object) const;
+};
+
+/// Numbers of objects, those that show most first, then those of which most is in frame, then by number.
+[[nodiscard]] std::vector<std::uint32_t> objects_by_sight(const Accounting& accounts);
+
+[[nodiscard]] std::string report_text(const ReportRun& run);
+[[nodiscard]] Json report_json(const ReportRun& run);
+
+}  // namespace frontmost::cli

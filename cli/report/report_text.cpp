@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// The report as a table on the terminal: what shows most comes first, and with each object who hides most of it.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/console.h"
+#include "cli/report/report_run.h"
+
+namespace frontmost::cli {
+namespace {
+
+constexpr std::size_t rows_shown = 40, longest_name = 28;
+
+/// The beginning of a name, as wide as there is room for; characters of several bytes stay whole.
+std::string short_name(const ReportRun& run, std::uint32_t object) {
+  std::string name = printable_name(run.scene().instances[object].name);
+  if (name.size() <= longest_name) return name;
+  std::size_t end = longest_name - 2;
+  while (end > 0 && (std::uint8_t(name[end]) & 0xC0) == 0x80) --end;
+  return name.substr(0, end) + "..";
+}
+
+std::string share_text(double share) { return fmt::format("{:.1f} %", 100 * share); }
+
+std::string distance_text(const ObjectAccount& object) {
+  return object.visible.count == 0 ? "" : fmt::format("{:.4g}", object.distance);
+}
+
+/// Who hides most of it, and how much that is of what it covers.
+std::string hider_text(const ReportRun& run, std::uint32_t object) {
+  const std::span<const HiddenSamples> hiders = run.hiders_of(object);
+  if (hiders.empty()) return "";
+  const auto most = std::max_element(hiders.begin(), hiders.end(),
+                                     [](const HiddenSamples& a, const HiddenSamples& b) { return a.count < b.count; });
+  std::string text = fmt::format("{} {:.1f} %", short_name(run, most->hider),
+                                 100 * double(most->count) / double(run.accounts.objects[object].alone.count));
+  if (hiders.size() > 1) text += fmt::format(", {} other{}", grouped(hiders.size() - 1), hiders.size() == 2 ? "" : "s");
+  return text;
+}
+
+/// Columns from the left; the first is as wide as the longest name.
+constexpr std::string_view layout = "{:>6}  {:<{}}  {:>10}  {:>10}  {:>8}  {:>8}  {:>8}  {:>9}  {}";
+
+std::string row_text(const ReportRun& run, std::uint32_t number, std::size_t width) {
+  const ObjectAccount& object = run.accounts.objects[number];
+  std::string row =
+      fmt::format(layout, number, short_name(run, number), width, grouped(object.visible.count),
+                  grouped(object.alone.count), share_text(object.visible_share()), share_text(object.hidden_share()),
+                  share_text(object.cut_share()), distance_text(object), hider_text(run, number));
+  row.erase(row.find_last_not_of(' ') + 1);
+  return row + '\n';
+}
+
+std::string summary(const ReportRun& run) {
+  std::size_t seen = 0, hidden = 0, beyond = 0, nowhere = 0;
+  for (const ObjectAccount& object : run.accounts.objects)
+    ++(object.visible.count > 0    ? seen
+       : object.in_frame.count > 0 ? hidden
+       : object.alone.count > 0    ? beyond
+                                   : nowhere);
+  const View& view = run.view();
+  const PixelBox& canvas = run.accounts.canvas;
+  return fmt::format(
+      "{} x {} pixels, on a canvas of {} x {}: {} see an object, {} see none\n"
+      "{} object{}: {} seen, {} hidden, {} beyond the frame, {} cover no sample\n",
+      view.width, view.height, canvas.width, canvas.height, grouped(view.pixel_count() - run.accounts.background),
+      grouped(run.accounts.background), grouped(run.accounts.objects.size()),
+      run.accounts.objects.size() == 1 ? "" : "s", grouped(seen), grouped(hidden), grouped(beyond), grouped(nowhere));
+}
+
+}  // namespace
+
+std::string report_text(const ReportRun& run) {
+  std::string text = summary(run);
+  std::vector<std::uint32_t> numbers = objects_by_sight(run.accounts);
+  std::erase_if(numbers, [&](std::uint32_t number) { return run.accounts.objects[number].alone.count == 0; });
+  if (numbers.empty()) return text;
+  const std::size_t shown = std::min(numbers.size(), rows_shown);
+  std::size_t width = 4;
+  for (std::size_t i = 0; i < shown; ++i) width = std::max(width, short_name(run, numbers[i]).size());
+  text += '\n' +
+          fmt::format(layout, "object", "name", width, "visible", "alone", "visible", "hidden", "cut", "distance",
+                      "hidden most by") +
+          '\n';
+  for (std::size_t i = 0; i < shown; ++i) text += row_text(run, numbers[i], width);
+  if (shown < numbers.size()) text += fmt::format("{} more; --json has all\n", grouped(numbers.size() - shown));
+  return text;
+}
+
+}  // namespace frontmost::cli

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// What pictures are fitted to, and what is said of objects that reach out of them.
+#include <gmock/gmock.h>
+
+#include "program.h"
+
+namespace frontmost::test {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// Squares of size 2 in z = 0 as objects of an OBJ file, around their middles.
+std::string squares(const std::vector<std::pair<std::string, double>>& objects) {
+  std::string text;
+  for (const auto& [name, size] : objects) {
+    text += "o " + name + "\n";
+    for (const auto& [x, y] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}})
+      text += "v " + std::to_string(x * size) + " " + std::to_string(y * size) + " 0\n";
+    text += "f -4 -3 -2 -1\n";
+  }
+  return text;
+}
+
+class Framing : public ProgramTest {
+ protected:
+  Framing() {
+    write("village.obj", squares({{"house", 1}, {"barn", 1}, {"well", 1}, {"field", 100}, {"sky", 1000}}));
+    write("houses.obj", squares({{"house", 1}, {"barn", 1}, {"well", 1}}));
+  }
+  json camera(const std::string& words) { return succeed("camera " + words + " --json").json(); }
+};
+
+constexpr const char* kWarning =
+    "2 of 5 objects reach far beyond the others and out of the picture: 'field', 'sky'; --frame all fits all";
+
+TEST_F(Framing, ThoseThatReachOutAreNamedOnce) {
+  const Outcome one = succeed("render village.obj -o x.png --resolution 16,16 --json");
+  EXPECT_EQ(one.err, std::string("frontmost: warning: ") + kWarning + "\n");
+  EXPECT_THAT(one.json()["warnings"], ElementsAre(kWarning));
+  write(
+      "views.json",
+      R"({"views": [{"view": "front", "outputs": {"output": "a.png"}}, {"view": "back", "outputs": {"output": "b.png"}}]})");
+  const Outcome several = succeed("render village.obj --batch views.json --resolution 16,16 --json");
+  EXPECT_EQ(several.err, one.err);
+  EXPECT_THAT(several.json()["warnings"], ElementsAre(kWarning));
+  for (const std::string words : {"camera village.obj", "compare village.obj --resolution 16,16",
+                                  "precision --model village.obj --format D16 --resolution 16,16"})
+    EXPECT_THAT(succeed(words).err, HasSubstr(kWarning)) << words;
+  EXPECT_THAT(succeed("camera village.obj --quiet").err, IsEmpty());
+}
+
+TEST_F(Framing, OthersAreFramedAsIfTheyWereAlone) {
+  for (const std::string view : {"", " --view front", " --camera-azimuth-angle 20", " --camera-focal-point 0,1,0",
+                                 " --camera-direction -1,-1,-1 --camera-view-angle 50"}) {
+    const json alone = camera("houses.obj" + view), with = camera("village.obj" + view);
+    EXPECT_EQ(alone["look_at"]["eye"], with["look_at"]["eye"]) << view;
+    EXPECT_EQ(alone["sides"], with["sides"]) << view;
+    EXPECT_NE(alone["look_at"]["eye"], camera("village.obj --frame all" + view)["look_at"]["eye"]) << view;
+    EXPECT_EQ(alone, camera("houses.obj --frame all" + view)) << view;
+  }
+}
+
+TEST_F(Framing, NothingIsSaidWhereNothingIsFitted) {
+  for (const std::string view : {"--frame all", "--camera-position 0,0,9 --camera-focal-point 0,0,0"})
+    EXPECT_THAT(succeed("render village.obj -o x.png --resolution 16,16 " + view).err, IsEmpty()) << view;
+  EXPECT_THAT(succeed("render houses.obj -o x.png --resolution 16,16").err, IsEmpty());
+}
+
+// What a drawing leaves out nobody would look for.
+TEST_F(Framing, DrawingsHoldEverything) {
+  EXPECT_THAT(succeed("lines village.obj --view front -o a.svg").err, IsEmpty());
+  EXPECT_NE(read("a.svg"), (succeed("lines houses.obj --view front -o b.svg"), read("b.svg")));
+}
+
+TEST_F(Framing, WhatContradictsItIsRefused) {
+  expect_failure("camera village.obj --frame subject --camera-position 0,0,9", cli::exit_usage,
+                 "--frame and --camera-position exclude each other");
+  expect_failure("render a.stl --stream --frame subject -o x.png", cli::exit_usage,
+                 "--stream fits all objects into the picture, as --frame all does");
+  write("views.json", R"({"views": [{"view": "front"}, {"frame": "subject"}], "outputs": {"output": "{view}.png"}})");
+  expect_failure("render a.stl --stream --batch views.json", cli::exit_usage,
+                 "views[1]: --stream fits all objects into the picture, as --frame all does");
+}
+
+}  // namespace
+}  // namespace frontmost::test
