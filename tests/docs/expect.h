@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks the numbers that the documentation states: "EXPRESSION;  // -> 1.5, 2" becomes expect(EXPRESSION, "1.5, 2").
+// Checks the numbers and texts that the documentation states: "EXPRESSION;  // -> 1.5, 2" becomes
+// expect(EXPRESSION, "1.5, 2").
 #pragma once
 
 #include <frontmost/frontmost.h>
@@ -56,6 +57,11 @@ void expect(const T& value, const char* text, const char* page, int line) {
   std::printf("%s:%d: the page says %s, the library", page, line, text);
   for (const double number : found) std::printf(" %.9g", number);
   std::printf("\n");
+}
+inline void expect(const std::string& value, const char* text, const char* page, int line) {
+  if (value == text) return;
+  ++failure_count;
+  std::printf("%s:%d: the page says %s, the library %s\n", page, line, text, value.c_str());
 }
 
 }  // namespace frontmost::test
