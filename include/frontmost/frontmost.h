@@ -15,6 +15,7 @@
 #include "frontmost/curved.h"          // IWYU pragma: export
 #include "frontmost/depth_buffer.h"    // IWYU pragma: export
 #include "frontmost/environment.h"     // IWYU pragma: export
+#include "frontmost/explain.h"         // IWYU pragma: export
 #include "frontmost/fighting_faces.h"  // IWYU pragma: export
 #include "frontmost/figure.h"          // IWYU pragma: export
 #include "frontmost/hatching.h"        // IWYU pragma: export

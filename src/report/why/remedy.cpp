@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// Remedies are worked out so that rounding leaves them right: a near plane is rounded towards the eye, a far plane away
+// from it, and turns to a tenth of what the picture shows, so that what they are about ends near its middle.
+
+#include "report/why/remedy.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace frontmost::why_detail {
+namespace {
+
+constexpr double kRadian = 57.29577951308232;  // degrees
+
+double power_of_ten(int exponent) {
+  double power = 1;
+  for (int i = std::abs(exponent); i > 0; --i) power *= 10;
+  return exponent < 0 ? 1 / power : power;
+}
+
+/// The exponent of the greatest power of ten that is not above a positive number.
+int decimal_exponent(double value) {
+  int exponent = int(std::floor(std::log10(value)));
+  while (power_of_ten(exponent) > value) --exponent;
+  while (power_of_ten(exponent + 1) <= value) ++exponent;
+  return exponent;
+}
+
+/// A whole number of tens to that power, as a decimal number is read.
+double tens(double count, int exponent) {
+  return exponent < 0 ? count / power_of_ten(-exponent) : count * power_of_ten(exponent);
+}
+
+/// Two decimal digits of a number, rounded down, or up.
+double round_to_two(double value, bool down) {
+  if (value == 0) return 0;
+  const int exponent = decimal_exponent(std::abs(value)) - 1;
+  const double count = value / power_of_ten(exponent);
+  double whole = down ? std::floor(count) : std::ceil(count);
+  while (down && tens(whole, exponent) > value) --whole;
+  while (!down && tens(whole, exponent) < value) ++whole;
+  return tens(whole, exponent);
+}
+
+/// The nearest multiple of a power of ten.
+double round_to_tens(double value, int exponent) { return tens(std::round(value / power_of_ten(exponent)), exponent); }
+
+double near_for(const ValueRange& nearer, const Projection& projection) {
+  const double low = nearer.low, high = nearer.high;
+  if (projection.orthographic) return round_to_two(low - 0.01 * (projection.clip.near - low), true);
+  // What reaches to the eye cannot be shown whole.
+  return round_to_two(low > 0.01 * high ? 0.99 * low : 0.5 * high, true);
+}
+
+/// Turning and moving the camera, so that a point comes into the picture: near to its middle where that is asked for.
+class CameraAim {
+ public:
+  CameraAim(const View& view, const PointAhead& target)
+      : projection_(view.projection),
+        target_(target),
+        middle_((projection_.left + projection_.right) / 2, (projection_.bottom + projection_.top) / 2),
+        size_(projection_.right - projection_.left, projection_.top - projection_.bottom) {}
+
+  /// To one side, if that is enough; else to both.
+  [[nodiscard]] Remedy move() const {
+    const int step = decimal_exponent(std::min(size_.x, size_.y)) - 1;
+    const auto offset = [&](int axis) {
+      const double from_middle = target_[axis] - middle_[axis];
+      return std::abs(from_middle) <= kInner * size_[axis] ? 0 : round_to_tens(from_middle, step);
+    };
+    return {RemedyKind::move, 0, offset(0), offset(1), {}};
+  }
+
+  [[nodiscard]] Remedy turn() const {
+    if (target_ == PointAhead(0)) return {};
+    const double smaller = std::min(std::min(size_.x, size_.y) * kRadian, 99.0);
+    const int step = std::min(decimal_exponent(smaller) - 1, 0);
+    const auto rounded = [&](double angle) { return round_to_tens(angle * kRadian, step) / kRadian; };
+    const double right = rounded(angle_right());
+    const Remedy aside{RemedyKind::turn, 0, right, 0, {}};
+    if (shows(aside)) return aside;
+    const Remedy upwards{RemedyKind::turn, 0, 0, rounded(angle_up(0)), {}};
+    if (target_.z > 0 && shows(upwards)) return upwards;
+    return {RemedyKind::turn, 0, right, rounded(angle_up(right)), {}};
+  }
+
+ private:
+  static constexpr double kInner = 0.4;  // of the size, on each side of the middle: where it is surely in the picture
+
+  [[nodiscard]] double angle_right() const {
+    const double across = std::hypot(target_.x, target_.z);
+    if (across == 0) return 0;
+    const double length = glm::length(target_) / glm::length(glm::dvec3(middle_, 1));
+    return std::atan2(target_.x, target_.z) - std::asin(std::clamp(length * middle_.x / across, -1.0, 1.0));
+  }
+  [[nodiscard]] PointAhead turned_right(double angle) const {
+    return {target_.x * std::cos(angle) - target_.z * std::sin(angle), target_.y,
+            target_.z * std::cos(angle) + target_.x * std::sin(angle)};
+  }
+  /// After a turn to the right.
+  [[nodiscard]] double angle_up(double right) const {
+    const PointAhead p = turned_right(right);
+    return std::atan2(p.y, p.z) - std::atan2(middle_.y, 1);
+  }
+  [[nodiscard]] bool shows(const Remedy& turn) const {
+    const PointAhead p = turned_right(turn.right);
+    const double ahead = p.z * std::cos(turn.up) + p.y * std::sin(turn.up);
+    const double up = p.y * std::cos(turn.up) - p.z * std::sin(turn.up);
+    return ahead > 0 && std::abs(p.x / ahead - middle_.x) <= kInner * size_.x &&
+           std::abs(up / ahead - middle_.y) <= kInner * size_.y;
+  }
+
+  const Projection& projection_;
+  PointAhead target_;
+  glm::dvec2 middle_, size_;
+};
+
+/// A circle of this radius, in pixels, has a sample in it wherever it lies, and also when corners are snapped.
+constexpr double kSampledRadius = 0.72;
+
+Remedy enlargement(double widest, const View& view) {
+  if (!(widest > 0)) return {};
+  const double factor = std::ceil(kSampledRadius / widest);
+  const double width = view.width * factor, height = view.height * factor;
+  if (std::max(width, height) > 16384 || width * height * view.samples > double(most_samples)) return {};
+  return {RemedyKind::enlarge, std::max(factor, 2.0), 0, 0, {}};
+}
+
+}  // namespace
+
+Remedy remedy_for(SightReason reason, const ObjectPlaces& places, const View& view) {
+  const Projection& projection = view.projection;
+  switch (reason) {
+    case SightReason::behind_eye: return CameraAim(view, places.behind.middle).turn();
+    case SightReason::nearer_than_near: return {RemedyKind::set_near, near_for(places.nearer, projection), 0, 0, {}};
+    case SightReason::beyond_far: {
+      const double high = places.farther.high;
+      return {RemedyKind::set_far, round_to_two(high + 0.01 * (high - projection.clip.far), false), 0, 0, {}};
+    }
+    case SightReason::outside: {
+      const CameraAim aim(view, places.outside.middle);
+      return projection.orthographic ? aim.move() : aim.turn();
+    }
+    case SightReason::faces_away: return {RemedyKind::show_both_sides, 0, 0, 0, {}};
+    case SightReason::transparent: return {RemedyKind::make_opaque, 0, 0, 0, {}};
+    case SightReason::no_sample: return enlargement(places.widest, view);
+    default: return {};
+  }
+}
+
+}  // namespace frontmost::why_detail
+
+namespace frontmost {
+
+View remedied(const View& view, const Remedy& remedy) {
+  View changed = view;
+  glm::dmat4& pose = changed.world_from_eye;
+  switch (remedy.kind) {
+    case RemedyKind::set_near: changed.projection.clip.near = remedy.value; break;
+    case RemedyKind::set_far: changed.projection.clip.far = remedy.value; break;
+    case RemedyKind::show_both_sides: changed.culling = Culling::none; break;
+    case RemedyKind::move: pose[3] += pose[0] * remedy.right + pose[1] * remedy.up; break;
+    case RemedyKind::turn: {
+      const glm::dvec4 right = pose[0], up = pose[1], back = pose[2];
+      const glm::dvec4 turned_back = back * std::cos(remedy.right) - right * std::sin(remedy.right);
+      pose[0] = right * std::cos(remedy.right) + back * std::sin(remedy.right);
+      pose[1] = up * std::cos(remedy.up) + turned_back * std::sin(remedy.up);
+      pose[2] = turned_back * std::cos(remedy.up) - up * std::sin(remedy.up);
+      break;
+    }
+    case RemedyKind::enlarge:
+      changed.width = int(std::min(view.width * remedy.value, 1e6));
+      changed.height = int(std::min(view.height * remedy.value, 1e6));
+      break;
+    default: break;
+  }
+  validate(changed);
+  return changed;
+}
+
+}  // namespace frontmost
