@@ -46,6 +46,7 @@ int run_lidar(const Settings& settings);
 int run_compare(const Settings& settings);
 int run_lines(const Settings& settings);
 int run_report(const Settings& settings);
+int run_visible(const Settings& settings);
 
 /// Fills Settings from the words after the command's name.
 /// \throws UsageError

@@ -66,6 +66,17 @@ constexpr Command table[] = {
      "frontmost report scene.glb\n"
      "frontmost report city.glb --resolution 640,480 --json",
      run_report},
+    {"visible", for_visible, "MODEL", "List every face of which any part is seen, with its visible area.",
+     "Exact areas in pixels, in scene units and as solid angles, however small the part that is seen, through the "
+     "camera "
+     "that the view options of render make. Of many views, those of a batch file or from all around: which faces are "
+     "ever "
+     "seen, in how many views, and the largest share of each that one view shows.",
+     "frontmost visible part.stl -o faces.csv\n"
+     "frontmost visible city.glb --resolution 640,480 --json\n"
+     "frontmost visible assembly.glb --sphere 200 -o faces.npy\n"
+     "frontmost visible scene.glb --views batch.json -o -",
+     run_visible},
     {"precision", for_precision, "[MODEL]", "What a depth buffer can tell apart, at which distance.",
      "The smallest gap that a depth buffer always resolves, against distance; without --format for the formats in use. "
      "With MODEL also where such a buffer may show a surface that is not the nearest (z-fighting): the pixels at which "

@@ -22,6 +22,7 @@ enum class Group : std::uint8_t {
   compare,
   drawing,
   report,
+  faces,
   output,
   look,
   run
@@ -37,6 +38,7 @@ inline constexpr std::string_view group_titles[] = {"Model",
                                                     "Comparing",
                                                     "The drawing",
                                                     "The report",
+                                                    "Which views",
                                                     "What to write",
                                                     "How the picture looks",
                                                     "How to run"};
@@ -53,8 +55,9 @@ enum CommandBit : unsigned {
   for_compare = 128,
   for_lines = 256,
   for_report = 512,
-  for_every_model =
-      for_render | for_info | for_camera | for_precision | for_sight | for_lidar | for_compare | for_lines | for_report
+  for_visible = 1024,
+  for_every_model = for_render | for_info | for_camera | for_precision | for_sight | for_lidar | for_compare |
+                    for_lines | for_report | for_visible
 };
 
 /// The text given for an option, and the words it may be.
@@ -99,6 +102,7 @@ struct Option {
 [[nodiscard]] std::span<const Option> compare_option_table();
 [[nodiscard]] std::span<const Option> drawing_option_table();
 [[nodiscard]] std::span<const Option> report_option_table();
+[[nodiscard]] std::span<const Option> visible_option_table();
 [[nodiscard]] std::span<const Option> output_option_table();
 [[nodiscard]] std::span<const Option> run_option_table();
 
@@ -107,7 +111,7 @@ template <class Visit>
 void for_each_option(const Visit& visit) {
   for (const auto table : {view_option_table(), depth_option_table(), precision_option_table(), sight_option_table(),
                            lidar_option_table(), compare_option_table(), drawing_option_table(), report_option_table(),
-                           output_option_table(), run_option_table()}) {
+                           visible_option_table(), output_option_table(), run_option_table()}) {
     for (const Option& option : table) visit(option);
   }
 }

@@ -187,6 +187,13 @@ struct ReportSettings {
   double canvas = 3;  ///< as AccountingOptions::canvas
 };
 
+/// What frontmost visible looks from, and where its lists go.
+struct VisibleSettings {
+  std::optional<std::string> views;  ///< a batch file
+  std::optional<int> sphere;         ///< how many views from all around
+  std::vector<std::string> outputs;
+};
+
 struct Settings {
   std::string model;
   std::vector<std::string>
@@ -199,6 +206,7 @@ struct Settings {
   CompareSettings compare;
   DrawingSettings drawing;
   ReportSettings report;
+  VisibleSettings visible;
   OutputSettings output;
   RunSettings run;
 };

@@ -6,7 +6,7 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr unsigned views = for_render | for_camera | for_precision | for_compare | for_lines | for_report;
+constexpr unsigned views = for_render | for_camera | for_precision | for_compare | for_lines | for_report | for_visible;
 constexpr int max_side = 16384;
 
 Axis axis_of(const glm::dvec3& direction) {
@@ -128,7 +128,7 @@ constexpr Option view_options[] = {
        s.view.far = g.text == "inf" ? std::numeric_limits<double>::infinity() : g.number();
      }},
     {"cull", 0, "none|back|front|both", "Leave out triangles that face this way.", Group::grid,
-     for_render | for_camera | for_precision | for_compare | for_report,
+     for_render | for_camera | for_precision | for_compare | for_report | for_visible,
      [](Settings& s, const Given& g) { s.view.culling = g.choice<Culling>(); }},
     {"tessellation-error", 0, "PIXELS",
      "Cut spheres and patches into triangles within that many pixels of the surface. Without it the method raycast "

@@ -39,6 +39,7 @@
 #include "frontmost/stream.h"          // IWYU pragma: export
 #include "frontmost/strokes.h"         // IWYU pragma: export
 #include "frontmost/surfaces.h"        // IWYU pragma: export
+#include "frontmost/table.h"           // IWYU pragma: export
 #include "frontmost/tessellate.h"      // IWYU pragma: export
 #include "frontmost/version.h"         // IWYU pragma: export
 #include "frontmost/view.h"            // IWYU pragma: export

@@ -19,6 +19,8 @@ void save_exr(const Image& image, OutputFile& file, const Execution& execution);
 void save_deep_exr(const DeepImage& image, OutputFile& file, const Execution& execution);
 void save_pfm(const Image& image, OutputFile& file);
 void save_npy(const Image& image, OutputFile& file);
+/// What stands before the numbers of an array of NumPy: `type` as Python writes it, the numbers of `shape` with commas.
+[[nodiscard]] std::string npy_header(const std::string& type, const std::string& shape);
 
 /// Readers check every size against the file's before they ask for memory. `name` begins every message.
 [[nodiscard]] Image load_png(std::span<const std::byte> bytes, const std::string& name);

@@ -80,20 +80,23 @@ std::vector<std::size_t> shape(std::string_view text, const std::string& name) {
 
 }  // namespace
 
+std::string npy_header(const std::string& type, const std::string& shape) {
+  std::string text = "{'descr': " + type + ", 'fortran_order': False, 'shape': (" + shape + "), }";
+  // Blanks and a line end fill up to the alignment at which the numbers begin.
+  text.append((alignment - (prefix_size + text.size() + 1) % alignment) % alignment, ' ');
+  text += '\n';
+  std::string header(magic);
+  header += {'\1', '\0', char(text.size() & 0xFF), char(text.size() >> 8)};
+  return header + text;
+}
+
 void save_npy(const Image& image, OutputFile& file) {
   const bool integers = image.channels[0].is_integer();
   for (const Channel& channel : image.channels)
     if (channel.is_integer() != integers)
       throw Error(ErrorCode::unsupported,
                   file.name() + ": NPY holds channels of one type, not a mixture: " + channel_list(image));
-  std::string text = std::string("{'descr': '") + (integers ? "<u4" : "<f4") + "', 'fortran_order': False, 'shape': (" +
-                     shape_of(image) + "), }";
-  // Blanks and a line end fill up to the alignment at which the numbers begin.
-  text.append((alignment - (prefix_size + text.size() + 1) % alignment) % alignment, ' ');
-  text += '\n';
-  std::string header(magic);
-  header += {'\1', '\0', char(text.size() & 0xFF), char(text.size() >> 8)};
-  header += text;
+  const std::string header = npy_header(integers ? "'<u4'" : "'<f4'", shape_of(image));
   file.write(std::as_bytes(std::span(header)));
   write_raw(image, {std::size_t(image.width), std::size_t(image.height), image.channels.size(), integers}, file);
 }
