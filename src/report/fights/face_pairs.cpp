@@ -79,9 +79,15 @@ class FaceCells {
     for (const std::uint32_t i : lists_.of(std::size_t(row) * std::size_t(columns_) + std::size_t(column)))
       entries.emplace_back(faces_[i], i);
     std::sort(entries.begin(), entries.end(), [](const CellFace& a, const CellFace& b) { return a.x0 < b.x0; });
+    constexpr std::size_t kLooksAtOnce = 1 << 12;
+    std::size_t looks = 0, told = pairs.size();
+    const auto tell = [&] {
+      effort.add(looks, pairs.size() - told);
+      looks = 0;
+      told = pairs.size();
+    };
     for (std::size_t i = 0; i < entries.size(); ++i) {
       const CellFace& a = entries[i];
-      const std::size_t before = pairs.size();
       std::size_t k = i + 1;
       for (; k < entries.size() && entries[k].x0 < a.x1; ++k) {
         const CellFace& b = entries[k];
@@ -91,8 +97,10 @@ class FaceCells {
         if (p.id == q.id || is_parted_by_side(p, q) || is_parted_by_side(q, p)) continue;
         pairs.push_back({std::min(a.face, b.face), std::max(a.face, b.face)});
       }
-      effort.add(k - i, pairs.size() - before);
+      looks += k - i;
+      if (looks > kLooksAtOnce) tell();
     }
+    tell();
   }
 
  private:

@@ -127,10 +127,10 @@ FarthestSeen::FarthestSeen(const Visible& visible)
       rows_((visible.view.height + kBlock - 1) / kBlock),
       keys_(std::size_t(columns_) * std::size_t(rows_), 2.0f) {
   const auto width = std::size_t(visible.view.width), height = std::size_t(visible.view.height);
-  for (std::size_t i = 0; i < visible.keys.size(); ++i) {
-    const std::size_t x = i % width, y = i / width % height;
-    float& key = keys_[y / kBlock * std::size_t(columns_) + x / kBlock];
-    key = std::min(key, visible.keys[i]);
+  for (std::size_t row = 0; row * width < visible.keys.size(); ++row) {
+    const float* const keys = visible.keys.data() + row * width;
+    float* const blocks = keys_.data() + row % height / kBlock * std::size_t(columns_);
+    for (std::size_t x = 0; x < width; ++x) blocks[x / kBlock] = std::min(blocks[x / kBlock], keys[x]);
   }
 }
 
