@@ -158,8 +158,9 @@ std::string pairs_text(const PrecisionRun& run) {
   for (const FightingObjects& pair : result.areas->objects) others += pair.kind != FightKind::fold;
   if (others > i) text += fmt::format("            and {} more pairs; --json lists them\n", others - i);
   for (const FightRemedy& remedy : result.remedies)
-    text += fmt::format("with {}, near {:.6g} and far {:.6g}, {} pixels are wrong\n", setup_name(remedy.setup),
-                        remedy.setup.clip.near, remedy.setup.clip.far, remedy.wrong);
+    text += fmt::format("with {}, near {:.6g} and far {:.6g}, {} {} wrong\n", setup_name(remedy.setup),
+                        remedy.setup.clip.near, remedy.setup.clip.far, remedy.wrong,
+                        remedy.wrong == 1 ? "pixel is" : "pixels are");
   return text;
 }
 
