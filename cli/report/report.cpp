@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // frontmost report: how much of every object is seen, and who hides the rest.
+#include <fmt/format.h>
 #include <frontmost/surfaces.h>
 #include <frontmost/zbuffer.h>
 
@@ -23,6 +24,8 @@ constexpr Option report_options[] = {
      [](Settings& s, const Given& g) {
        s.report.canvas = g.number({1, 16});
      }},
+    {"why", 0, "NAME", "Only say why the objects of this name, or the one of this number, are seen or not.",
+     Group::report, for_report, [](Settings& s, const Given& g) { s.report.why = g.string(); }},
 };
 
 }  // namespace
@@ -34,6 +37,21 @@ std::span<const HiddenSamples> ReportRun::hiders_of(std::uint32_t object) const 
   const auto is_before = [](const HiddenSamples& pair, std::uint32_t number) { return pair.object < number; };
   const auto begin = std::lower_bound(all.begin(), all.end(), object, is_before);
   return {begin, std::lower_bound(begin, all.end(), object + 1, is_before)};
+}
+
+std::vector<std::uint32_t> objects_asked_for(const Settings& settings, const Scene& scene) {
+  const std::optional<std::string>& wanted = settings.report.why;
+  std::vector<std::uint32_t> numbers;
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
+    if (!wanted || scene.instances[i].name == *wanted) numbers.push_back(i);
+  if (!wanted || !numbers.empty()) return numbers;
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
+    if (std::to_string(i) == *wanted) return {i};
+  std::vector<std::string_view> names;
+  for (const Instance& instance : scene.instances) names.emplace_back(instance.name);
+  const std::string_view nearest = nearest_word(*wanted, names);
+  throw UsageError(fmt::format("--why: {} has no object {}{}", settings.model, printable_name(*wanted),
+                               nearest.empty() ? "" : fmt::format("; did you mean {}?", printable_name(nearest))));
 }
 
 std::vector<std::uint32_t> objects_by_sight(const Accounting& accounts) {
@@ -52,6 +70,7 @@ int run_report(const Settings& settings) {
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
   const Scene scene = load_model(settings, execution, progress);
+  (void)objects_asked_for(settings, scene);
   std::optional<Surfaces> surfaces(std::in_place, scene, execution);
   const View view = resolve_view(settings.view, *surfaces);
   if (const auto warning = framing_warning(settings.view, *surfaces)) show_warnings({*warning}, settings.run, progress);
@@ -59,9 +78,10 @@ int run_report(const Settings& settings) {
   if (cut) surfaces.emplace(*cut, execution);
   const Visible visible = zbuffer(*surfaces, view, execution);
   const Accounting accounts = account(*surfaces, visible, {.canvas = settings.report.canvas}, execution);
-  const ReportRun run{settings, *surfaces, visible, accounts, {}};
+  const std::vector<Explanation> why = explain_all(*surfaces, visible, accounts, execution);
+  const ReportRun run{settings, *surfaces, visible, accounts, why, {}};
   progress.clear();
-  print(settings.run.json ? dump(report_json(run)) : report_text(run));
+  print(settings.run.json ? dump(report_json(run)) : settings.report.why ? why_text(run) : report_text(run));
   return exit_done;
 }
 

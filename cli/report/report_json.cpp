@@ -13,6 +13,52 @@ Json samples_json(const SampleSet& samples) {
   return {{"samples", samples.count}, {"box", samples.box.is_empty() ? Json(nullptr) : box_json(samples.box)}};
 }
 
+Json places_json(const TrianglePlaces& triangles) {
+  return {{"empty", triangles.empty},
+          {"behind_eye", triangles.behind_eye},
+          {"nearer_than_near", triangles.nearer_than_near},
+          {"beyond_far", triangles.beyond_far},
+          {"left", triangles.left},
+          {"right", triangles.right},
+          {"above", triangles.above},
+          {"below", triangles.below},
+          {"past_corner", triangles.past_corner},
+          {"faces_away", triangles.faces_away},
+          {"in_view", triangles.in_view}};
+}
+
+/// With the numbers that its kind has.
+Json remedy_json(const Remedy& remedy) {
+  if (remedy.kind == RemedyKind::none) return nullptr;
+  Json json = {{"kind", name(remedy.kind)}};
+  switch (remedy.kind) {
+    case RemedyKind::turn:
+      json["right_degrees"] = glm::degrees(remedy.right);
+      json["up_degrees"] = glm::degrees(remedy.up);
+      break;
+    case RemedyKind::move:
+      json["right"] = remedy.right;
+      json["up"] = remedy.up;
+      break;
+    case RemedyKind::take_away: json["objects"] = remedy.objects; break;
+    case RemedyKind::set_near:
+    case RemedyKind::set_far:
+    case RemedyKind::enlarge: json["value"] = remedy.value; break;
+    default: break;
+  }
+  return json;
+}
+
+Json why_json(const ReportRun& run, std::uint32_t number) {
+  const Explanation& why = run.why[number];
+  Json json = {{"reason", name(why.reason)},
+               {"sentence", utf8_text(sentence(why, run.scene()))},
+               {"triangles", places_json(why.triangles)},
+               {"remedy", remedy_json(why.remedy)}};
+  if (why.reason == SightReason::no_sample) json["square_pixels"] = why.pixels;
+  return json;
+}
+
 Json object_json(const ReportRun& run, std::uint32_t number) {
   const ObjectAccount& object = run.accounts.objects[number];
   const bool is_seen = object.visible.count > 0;
@@ -30,7 +76,8 @@ Json object_json(const ReportRun& run, std::uint32_t number) {
           {"distance", finite_or_null(object.distance)},
           {"centroid", is_seen ? to_json(object.centroid) : Json(nullptr)},
           {"cut_by_near", object.is_cut_by_near},
-          {"hidden_by", std::move(hiders)}};
+          {"hidden_by", std::move(hiders)},
+          {"why", why_json(run, number)}};
 }
 
 }  // namespace
@@ -43,7 +90,7 @@ Json report_json(const ReportRun& run) {
                {"canvas", box_json(run.accounts.canvas)},
                {"background", run.accounts.background}};
   Json& objects = json["objects"] = Json::array();
-  for (std::uint32_t i = 0; i < run.accounts.objects.size(); ++i) objects.push_back(object_json(run, i));
+  for (const std::uint32_t i : objects_asked_for(run.settings, run.scene())) objects.push_back(object_json(run, i));
   json["files"] = run.files;
   return json;
 }

@@ -2,7 +2,7 @@
 // What frontmost report found out, as all of its outputs read it.
 #pragma once
 
-#include <frontmost/accounting.h>
+#include <frontmost/explain.h>
 
 #include <string>
 #include <vector>
@@ -17,7 +17,8 @@ struct ReportRun {
   const Surfaces& surfaces;
   const Visible& visible;
   const Accounting& accounts;
-  std::vector<std::string> files;  ///< that were written
+  const std::vector<Explanation>& why;  ///< by object
+  std::vector<std::string> files;       ///< that were written
 
   [[nodiscard]] const View& view() const { return visible.view; }
   [[nodiscard]] const Scene& scene() const { return surfaces.scene(); }
@@ -25,9 +26,13 @@ struct ReportRun {
   [[nodiscard]] std::span<const HiddenSamples> hiders_of(std::uint32_t object) const;
 };
 
+/// Of every object, or of those that --why names: by number. \throws UsageError where it names none.
+[[nodiscard]] std::vector<std::uint32_t> objects_asked_for(const Settings& settings, const Scene& scene);
 /// Numbers of objects, those that show most first, then those of which most is in frame, then by number.
 [[nodiscard]] std::vector<std::uint32_t> objects_by_sight(const Accounting& accounts);
 
+/// A line for each object that --why names: why it is seen or not.
+[[nodiscard]] std::string why_text(const ReportRun& run);
 [[nodiscard]] std::string report_text(const ReportRun& run);
 [[nodiscard]] Json report_json(const ReportRun& run);
 

@@ -27,16 +27,10 @@ std::string distance_text(const ObjectAccount& object) {
   return object.visible.count == 0 ? "" : fmt::format("{:.4g}", object.distance);
 }
 
-/// Who hides most of it, and how much that is of what it covers.
-std::string hider_text(const ReportRun& run, std::uint32_t object) {
-  const std::span<const HiddenSamples> hiders = run.hiders_of(object);
-  if (hiders.empty()) return "";
-  const auto most = std::max_element(hiders.begin(), hiders.end(),
-                                     [](const HiddenSamples& a, const HiddenSamples& b) { return a.count < b.count; });
-  std::string text = fmt::format("{} {:.1f} %", short_name(run, most->hider),
-                                 100 * double(most->count) / double(run.accounts.objects[object].alone.count));
-  if (hiders.size() > 1) text += fmt::format(", {} other{}", grouped(hiders.size() - 1), hiders.size() == 2 ? "" : "s");
-  return text;
+/// Why it is seen or not, and what to change.
+std::string why_text(const ReportRun& run, std::uint32_t object) {
+  const std::string remedy = remedy_text(run.why[object], run.scene());
+  return reason_text(run.why[object], run.scene()) + (remedy.empty() ? "" : ": " + remedy);
 }
 
 /// Columns from the left; the first is as wide as the longest name.
@@ -44,11 +38,10 @@ constexpr std::string_view layout = "{:>6}  {:<{}}  {:>10}  {:>10}  {:>8}  {:>8}
 
 std::string row_text(const ReportRun& run, std::uint32_t number, std::size_t width) {
   const ObjectAccount& object = run.accounts.objects[number];
-  std::string row =
+  const std::string row =
       fmt::format(layout, number, short_name(run, number), width, grouped(object.visible.count),
                   grouped(object.alone.count), share_text(object.visible_share()), share_text(object.hidden_share()),
-                  share_text(object.cut_share()), distance_text(object), hider_text(run, number));
-  row.erase(row.find_last_not_of(' ') + 1);
+                  share_text(object.cut_share()), distance_text(object), why_text(run, number));
   return row + '\n';
 }
 
@@ -71,18 +64,24 @@ std::string summary(const ReportRun& run) {
 
 }  // namespace
 
+std::string why_text(const ReportRun& run) {
+  std::string text;
+  for (const std::uint32_t object : objects_asked_for(run.settings, run.scene()))
+    text += sentence(run.why[object], run.scene()) + '\n';
+  return text;
+}
+
 std::string report_text(const ReportRun& run) {
   std::string text = summary(run);
   std::vector<std::uint32_t> numbers = objects_by_sight(run.accounts);
-  std::erase_if(numbers, [&](std::uint32_t number) { return run.accounts.objects[number].alone.count == 0; });
   if (numbers.empty()) return text;
   const std::size_t shown = std::min(numbers.size(), rows_shown);
   std::size_t width = 4;
   for (std::size_t i = 0; i < shown; ++i) width = std::max(width, short_name(run, numbers[i]).size());
-  text += '\n' +
-          fmt::format(layout, "object", "name", width, "visible", "alone", "visible", "hidden", "cut", "distance",
-                      "hidden most by") +
-          '\n';
+  text +=
+      '\n' +
+      fmt::format(layout, "object", "name", width, "visible", "alone", "visible", "hidden", "cut", "distance", "why") +
+      '\n';
   for (std::size_t i = 0; i < shown; ++i) text += row_text(run, numbers[i], width);
   if (shown < numbers.size()) text += fmt::format("{} more; --json has all\n", grouped(numbers.size() - shown));
   return text;

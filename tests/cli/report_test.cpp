@@ -9,7 +9,6 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
-using testing::Not;
 
 class Report : public ProgramTest {
  protected:
@@ -36,14 +35,19 @@ class Report : public ProgramTest {
   }
 };
 
-TEST_F(Report, TheTableHasARowForEveryObjectThatCoversSomething) {
+TEST_F(Report, TheTableHasARowForEveryObject) {
   const std::string text = succeed(std::string("report squares.obj") + view).out;
   EXPECT_THAT(text, HasSubstr("10 x 10 pixels, on a canvas of 30 x 30: 45 see an object, 55 see none\n"
                               "3 objects: 2 seen, 0 hidden, 0 beyond the frame, 1 cover no sample\n"));
-  EXPECT_THAT(text,
-              HasSubstr("     0  far           33          36    91.7 %     8.3 %     0.0 %         10  near 8.3 %\n"));
-  EXPECT_THAT(text, HasSubstr("     1  near          12          16    75.0 %     0.0 %    25.0 %          9\n"));
-  EXPECT_THAT(text, Not(HasSubstr("away")));
+  EXPECT_THAT(
+      text,
+      HasSubstr("     0  far           33          36    91.7 %     8.3 %     0.0 %         10  seen, 92 % of it, "
+                "the rest hidden by near 8 %\n"));
+  EXPECT_THAT(
+      text,
+      HasSubstr("     1  near          12          16    75.0 %     0.0 %    25.0 %          9  seen, 75 % of it, "
+                "25 % beyond the frame\n"));
+  EXPECT_THAT(text, HasSubstr("outside: on the right of the picture: turn the camera 22"));
 }
 
 TEST_F(Report, TheReportHasAllNumbers) {
@@ -66,6 +70,27 @@ TEST_F(Report, TheReportHasAllNumbers) {
   const json narrow = succeed(std::string("report squares.obj --json --canvas 1") + view).json();
   EXPECT_EQ(narrow["objects"][1]["alone"]["samples"], 12);
   EXPECT_EQ(narrow["objects"][1]["cut_share"], 0);
+}
+
+TEST_F(Report, SaysWhyObjectsAreSeenOrNot) {
+  const std::string command = std::string("report squares.obj") + view;
+  EXPECT_EQ(succeed(command + "--why far").out, "far is seen, 92 % of it, the rest hidden by near 8 %.\n");
+  EXPECT_EQ(succeed(command + "--why 1").out, "near is seen, 75 % of it, 25 % beyond the frame.\n");
+  const json away = succeed(command + "--json --why away").json()["objects"];
+  ASSERT_EQ(away.size(), 1u);
+  EXPECT_EQ(away[0]["object"], 2);
+  const json& why = away[0]["why"];
+  EXPECT_EQ(why["reason"], "outside");
+  EXPECT_EQ(why["triangles"]["right"], 2);
+  EXPECT_EQ(why["remedy"]["kind"], "turn");
+  EXPECT_NEAR(why["remedy"]["right_degrees"].get<double>(), 22.3, 0.4);
+  EXPECT_EQ(why["remedy"]["up_degrees"], 0);
+  std::string far_view = view;
+  far_view.replace(far_view.find("--near 1 "), 9, "--near 11 ");
+  const json near = succeed("report squares.obj --json --why far" + far_view).json()["objects"][0];
+  EXPECT_EQ(near["why"]["remedy"], (json{{"kind", "set_near"}, {"value", 9.9}}));
+  expect_failure(command + "--why wall", 2, "--why: squares.obj has no object wall");
+  expect_failure(command + "--why fat", 2, "; did you mean far?");
 }
 
 TEST_F(Report, LongTablesSayHowMuchIsLeftOut) {

@@ -88,6 +88,10 @@ TEST(Explain, TellsShareBeyondTheFrame) {
   const Scene scene = panel_at({5, 0, -10});
   EXPECT_EQ(sentence(explanation_of(scene, parallel_view()), scene),
             "panel is seen, 50 % of it, 50 % beyond the frame.");
+  Scene cut = scene;
+  place_panel(cut, "post", 1, {5.5, 0, -9});  // over half of what is in frame
+  EXPECT_EQ(sentence(explanation_of(cut, parallel_view()), cut),
+            "panel is seen, 25 % of it, 50 % beyond the frame, the rest hidden by post 25 %.");
 }
 
 TEST(Explain, ObjectsWithoutAreaAreEmpty) {

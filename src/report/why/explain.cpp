@@ -38,7 +38,7 @@ class Explainer {
   [[nodiscard]] std::vector<Explanation> explain(std::span<const std::uint32_t> objects) const {
     constexpr std::size_t kObjectsAtOnce = 16;
     const std::vector<ObjectPlaces> places =
-        find_places(surfaces_.placed(), view_, objects.size() == 1 ? objects[0] : no_index, execution_);
+        find_places(surfaces_.placed(), view_, accounts_, objects.size() == 1 ? objects[0] : no_index, execution_);
     std::vector<Explanation> all(objects.size());
     parallel_for(execution_, objects.size(), kObjectsAtOnce, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) all[i] = explain_by_view(objects[i], places[objects[i]]);

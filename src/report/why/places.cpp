@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "base/pool.h"
 
 namespace frontmost::why_detail {
 namespace {
@@ -35,6 +36,13 @@ double inner_radius(std::span<const glm::dvec2> p) {
   return perimeter > 0 ? (p.size() == 3 ? 2 * radius : radius) : 0;
 }
 
+/// What finding places needs of memory, one a thread.
+struct FrustumScratch {
+  WorldScratch world;
+  std::vector<FrustumPoint> seen;
+  std::vector<std::uint8_t> outside;  // by vertex, a bit for each plane, and more
+};
+
 /// The places of one range of triangles.
 class PlaceFinder {
  public:
@@ -43,72 +51,110 @@ class PlaceFinder {
     is_any_clear_ = std::find(clear_.begin(), clear_.end(), 1) != clear_.end();
   }
 
-  [[nodiscard]] ObjectPlaces find(const MeshRange& range) const {
+  /// `needs_area`: whether it matters where on the screen the triangles are.
+  [[nodiscard]] ObjectPlaces find(const MeshRange& range, bool needs_area, FrustumScratch& scratch) const {
     ObjectPlaces places;
-    WorldScratch scratch;
-    const WorldTriangles world = world_triangles(scene_, range, scratch);
-    std::vector<FrustumPoint> seen;
-    seen.reserve(world.positions.size());
-    for (const glm::vec3& p : world.positions) seen.push_back(frustum_.see(p));
+    const WorldTriangles world = world_triangles(scene_, range, scratch.world);
+    scratch.seen.clear();
+    scratch.outside.clear();
+    for (const glm::vec3& p : world.positions) {
+      scratch.seen.push_back(frustum_.see(p));
+      scratch.outside.push_back(outside_of(scratch.seen.back(), p));
+    }
     for (std::size_t i = 0; i < world.corners.size(); ++i) {
-      std::array<glm::vec3, 3> corners = world[i];
       glm::uvec3 c = world.corners[i] - world.first_position;
       if (world.is_mirrored) std::swap(c.y, c.z);
-      const glm::dvec3 a(corners[0]), normal = glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a);
-      if (!is_finite(corners[0]) || !is_finite(corners[1]) || !is_finite(corners[2]) || normal == glm::dvec3(0)) {
+      const std::uint8_t o[3] = {scratch.outside[c.x], scratch.outside[c.y], scratch.outside[c.z]};
+      const glm::dvec3 a(world.positions[c.x]), b(world.positions[c.y]), d(world.positions[c.z]);
+      const glm::dvec3 normal = glm::cross(b - a, d - a);
+      if (((o[0] | o[1] | o[2]) & kNowhere) != 0 || normal == glm::dvec3(0)) {
         ++places.counts.empty;
         continue;
       }
-      const FrustumPolygon triangle{{seen[c.x], seen[c.y], seen[c.z]}, 3};
-      if (place(triangle, glm::length(normal) / 2, places) && is_any_clear_)
+      const ViewedTriangle triangle{{&scratch.seen[c.x], &scratch.seen[c.y], &scratch.seen[c.z]},
+                                    normal,
+                                    std::uint8_t(o[0] | o[1] | o[2]),
+                                    std::uint8_t(o[0] & o[1] & o[2])};
+      if (place(triangle, needs_area, places) && is_any_clear_)
         places.clear += is_clear(range, range.begin + std::uint32_t(i));
     }
     return places;
   }
 
  private:
+  // Beside a bit for each plane.
+  static constexpr std::uint8_t kBehindEye = 1 << kPlaneCount, kNowhere = 1 << (kPlaneCount + 1);
+
+  struct ViewedTriangle {
+    const FrustumPoint* corners[3];
+    glm::dvec3 normal;                      ///< twice as long as its area
+    std::uint8_t any_outside, all_outside;  ///< of what a corner is outside, or all are
+
+    [[nodiscard]] const PointAhead& at(int k) const { return corners[k]->at; }
+    [[nodiscard]] FrustumPolygon polygon() const { return {{*corners[0], *corners[1], *corners[2]}, 3}; }
+  };
+
+  [[nodiscard]] std::uint8_t outside_of(const FrustumPoint& p, const glm::vec3& world) const {
+    if (!is_finite(world)) return kNowhere;
+    std::uint8_t bits = !frustum_.is_orthographic() && p.at.z <= 0 ? kBehindEye : 0;
+    for (std::size_t k = 0; k < kPlaneCount; ++k) bits = std::uint8_t(bits | (p.inside[k] < 0) << k);
+    return bits;
+  }
+
+  [[nodiscard]] bool is_culled(const ViewedTriangle& t) const {
+    return culling_ != Culling::none && is_left_out(frustum_.facing(t.at(0), t.at(1), t.at(2)));
+  }
+
   /// \returns whether it is in view.
-  [[nodiscard]] bool place(FrustumPolygon polygon, double area, ObjectPlaces& places) const {
-    const FrustumPolygon whole = polygon;
-    const PointAhead &a = whole.corners[0].at, &b = whole.corners[1].at, &c = whole.corners[2].at;
+  [[nodiscard]] bool place(const ViewedTriangle& t, bool needs_area, ObjectPlaces& places) const {
     TrianglePlaces& counts = places.counts;
-    const auto is_culled = [&] { return is_left_out(frustum_.facing(a, b, c)); };
-    if (!frustum_.is_orthographic() && a.z <= 0 && b.z <= 0 && c.z <= 0) {
-      places.behind.offer({(a + b + c) / 3.0, area, is_culled()});
+    if ((t.all_outside & kBehindEye) != 0) {
+      places.behind.offer({(t.at(0) + t.at(1) + t.at(2)) / 3.0, glm::length(t.normal) / 2, is_culled(t)});
       ++counts.behind_eye;
-    } else if (polygon.is_outside(kNear)) {
-      for (const FrustumPoint& p : whole.all()) places.nearer.include(p.at.z);
+    } else if ((t.all_outside & 1 << kNear) != 0) {
+      for (const FrustumPoint* const p : t.corners) places.nearer.include(p->at.z);
       ++counts.nearer_than_near;
-    } else if (polygon.is_outside(kFar)) {
-      for (const FrustumPoint& p : whole.all()) places.farther.include(p.at.z);
+    } else if ((t.all_outside & 1 << kFar) != 0) {
+      for (const FrustumPoint* const p : t.corners) places.farther.include(p->at.z);
       ++counts.beyond_far;
-    } else if (std::uint64_t* const side = side_of(polygon, counts)) {
-      places.outside.offer({middle_of(polygon), area, is_culled()});
-      ++*side;
-    } else if (is_culled()) {
-      ++counts.faces_away;
+    } else if (t.any_outside == 0 && !needs_area) {
+      ++(is_culled(t) ? counts.faces_away : counts.in_view);
+      return !is_culled(t);
     } else {
-      ++counts.in_view;
-      note_in_view(polygon, places);
-      return true;
+      return place_clipped(t, needs_area, places);
     }
     return false;
   }
 
+  [[nodiscard]] bool place_clipped(const ViewedTriangle& t, bool needs_area, ObjectPlaces& places) const {
+    FrustumPolygon polygon = t.polygon();
+    if (std::uint64_t* const side = side_of(polygon, t.any_outside, places.counts)) {
+      places.outside.offer({middle_of(polygon), glm::length(t.normal) / 2, is_culled(t)});
+      ++*side;
+      return false;
+    }
+    if (is_culled(t)) {
+      ++places.counts.faces_away;
+      return false;
+    }
+    ++places.counts.in_view;
+    if (needs_area) note_in_view(polygon, places);
+    return true;
+  }
+
   /// Cuts the polygon by the volume. \returns the count of the side that all of it lies on; null where some of it is
   /// left. What is outside on a side is only cut by near and far.
-  [[nodiscard]] static std::uint64_t* side_of(FrustumPolygon& polygon, TrianglePlaces& counts) {
-    bool is_crossing[kPlaneCount] = {};
-    for (const FrustumPoint& p : polygon.all())
-      for (std::size_t k = 0; k < kPlaneCount; ++k) is_crossing[k] |= p.inside[k] < 0;
+  [[nodiscard]] static std::uint64_t* side_of(FrustumPolygon& polygon, std::uint8_t any_outside,
+                                              TrianglePlaces& counts) {
+    const auto is_crossing = [&](Plane plane) { return (any_outside >> plane & 1) != 0; };
     for (const Plane plane : {kNear, kFar})
-      if (is_crossing[plane]) polygon.cut(plane);
+      if (is_crossing(plane)) polygon.cut(plane);
     std::uint64_t* const sides[] = {&counts.left, &counts.right, &counts.above, &counts.below};
     for (const Plane plane : {kLeft, kRight, kAbove, kBelow})
-      if (is_crossing[plane] && polygon.is_outside(plane)) return sides[plane];
+      if (is_crossing(plane) && polygon.is_outside(plane)) return sides[plane];
     FrustumPolygon in_view = polygon;
     for (const Plane plane : {kLeft, kRight, kAbove, kBelow})
-      if (is_crossing[plane]) in_view.cut(plane);
+      if (is_crossing(plane)) in_view.cut(plane);
     if (in_view.count == 0) return &counts.past_corner;
     polygon = in_view;
     return nullptr;
@@ -185,14 +231,19 @@ void ObjectPlaces::add(const ObjectPlaces& other) {
   widest = std::max(widest, other.widest);
 }
 
-std::vector<ObjectPlaces> find_places(const PlacedScene& scene, const View& view, std::uint32_t object,
-                                      const Execution& execution) {
+std::vector<ObjectPlaces> find_places(const PlacedScene& scene, const View& view, const Accounting& accounts,
+                                      std::uint32_t object, const Execution& execution) {
   constexpr std::size_t kRangesAtOnce = 16;
   const PlaceFinder finder(scene, view);
   std::vector<ObjectPlaces> of_ranges(scene.ranges.size());
+  Pool<FrustumScratch> scratches;
   parallel_for(execution, of_ranges.size(), kRangesAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      if (object == no_index || scene.ranges[i].instance == object) of_ranges[i] = finder.find(scene.ranges[i]);
+    const auto scratch = scratches.borrow([] { return std::make_unique<FrustumScratch>(); });
+    for (std::size_t i = begin; i < end; ++i) {
+      const MeshRange& range = scene.ranges[i];
+      if (object != no_index && range.instance != object) continue;
+      of_ranges[i] = finder.find(range, accounts.objects[range.instance].in_frame.count == 0, *scratch);
+    }
   });
   std::vector<ObjectPlaces> places(scene.instance_bounds.size());
   for (std::size_t i = 0; i < of_ranges.size(); ++i) places[scene.ranges[i].instance].add(of_ranges[i]);

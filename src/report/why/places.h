@@ -39,8 +39,10 @@ struct ObjectPlaces {
   void add(const ObjectPlaces& other);
 };
 
-/// Of every object, or of one where it is not no_index; the others are all zeros. O(triangles), in parallel.
-[[nodiscard]] std::vector<ObjectPlaces> find_places(const PlacedScene& scene, const View& view, std::uint32_t object,
+/// Of every object, or of one where it is not no_index; the others are all zeros. Columns, rows and the widest are
+/// those of objects that cover no sample. O(triangles), in parallel.
+[[nodiscard]] std::vector<ObjectPlaces> find_places(const PlacedScene& scene, const View& view,
+                                                    const Accounting& accounts, std::uint32_t object,
                                                     const Execution& execution);
 
 }  // namespace frontmost::why_detail

@@ -45,17 +45,18 @@ std::string other_objects(std::size_t count) {
   return std::to_string(count) + (count == 1 ? " other object" : " other objects");
 }
 
-std::string hiders_text(const std::vector<HiderShare>& hiders, const Scene& scene) {
+/// `whole`: of what shares are told, as a multiple of what is in frame.
+std::string hiders_text(const std::vector<HiderShare>& hiders, double whole, const Scene& scene) {
   std::vector<std::string> parts;
   double rest = 0;
   for (std::size_t i = 0; i < hiders.size(); ++i) {
     const HiderShare& hider = hiders[i];
     if (i < kMostNamed || hiders.size() == kMostNamed + 1)
-      parts.push_back(object_name(scene, hider.object) + ' ' + share_of_whole(hider.share));
+      parts.push_back(object_name(scene, hider.object) + ' ' + share_of_whole(hider.share / whole));
     else
       rest += hider.share;
   }
-  if (rest > 0) parts.push_back(other_objects(hiders.size() - kMostNamed) + ' ' + share_of_whole(rest));
+  if (rest > 0) parts.push_back(other_objects(hiders.size() - kMostNamed) + ' ' + share_of_whole(rest / whole));
   return listed(parts);
 }
 
@@ -115,7 +116,7 @@ std::string no_sample_text(const Explanation& why) {
 std::string seen_text(const Explanation& why, const Scene& scene) {
   std::string text = "seen, " + (why.visible_share == 1 ? "all" : share_of_whole(why.visible_share)) + " of it";
   if (why.cut_share > 0) text += ", " + share_of_whole(why.cut_share) + " beyond the frame";
-  if (!why.hiders.empty()) text += ", the rest hidden by " + hiders_text(why.hiders, scene);
+  if (!why.hiders.empty()) text += ", the rest hidden by " + hiders_text(why.hiders, 1 / (1 - why.cut_share), scene);
   return text;
 }
 
@@ -160,7 +161,7 @@ std::string reason_text(const Explanation& why, const Scene& scene) {
     case SightReason::faces_away: return "turned away, and culled" + mixture_text(triangles);
     case SightReason::transparent: return transparent_text(why) + mixture_text(triangles);
     case SightReason::no_sample: return no_sample_text(why) + mixture_text(triangles);
-    case SightReason::hidden: return "hidden by " + hiders_text(why.hiders, scene) + mixture_text(triangles);
+    case SightReason::hidden: return "hidden by " + hiders_text(why.hiders, 1, scene) + mixture_text(triangles);
     case SightReason::seen: return seen_text(why, scene) + mixture_text(triangles);
   }
   return "";
