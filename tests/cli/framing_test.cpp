@@ -47,7 +47,7 @@ TEST_F(Framing, ThoseThatReachOutAreNamedOnce) {
   EXPECT_EQ(several.err, one.err);
   EXPECT_THAT(several.json()["warnings"], ElementsAre(kWarning));
   for (const std::string words : {"camera village.obj", "compare village.obj --resolution 16,16",
-                                  "precision --model village.obj --format D16 --resolution 16,16"})
+                                  "precision village.obj --format D16 --resolution 16,16"})
     EXPECT_THAT(succeed(words).err, HasSubstr(kWarning)) << words;
   EXPECT_THAT(succeed("camera village.obj --quiet").err, IsEmpty());
 }

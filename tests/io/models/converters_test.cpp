@@ -51,7 +51,8 @@ TEST(Converters, ContentsAreKnownToo) {
   EXPECT_THAT(by_content("BLENDER-v304"), HasSubstr("Blender is not read"));
   EXPECT_THAT(by_content("PXR-USDC"), HasSubstr("USD is not read"));
   EXPECT_THAT(by_content(std::string(72, ' ') + "S      1\n"), HasSubstr("IGES is not read"));
-  EXPECT_EQ(by_content("<html>"), "model: not a model that Frontmost can read (STL, PLY, OBJ, OFF, glTF, GLB, 3MF)");
+  EXPECT_EQ(by_content("<html>"),
+            "model: not a model that Frontmost can read (STL, PLY, OBJ, OFF, glTF, GLB, 3MF, a scene file)");
 }
 
 // Whatever its contents, unless the format was said: a zip archive is also 3MF's.
