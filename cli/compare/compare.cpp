@@ -82,13 +82,14 @@ int run_compare(const Settings& settings) {
   const std::optional<Scene> cut = tessellated(scene, settings.view, view);
   const Surfaces surfaces(cut ? *cut : scene, execution);
   show_framing_warning(settings, surfaces, progress);
-  Comparisons all{settings, surfaces, view, {}, {}};
+  Comparisons all{settings, surfaces, view, {}, {}, {}};
   for (MethodRun& run : runs) {
     const Visible& reference = all.methods.empty() ? run.answer.visible : all.methods.front().run.answer.visible;
     Agreement agreement = agreement_of(run, reference, surfaces, execution);
     all.methods.push_back({std::move(run), std::move(agreement)});
     stop_if_interrupted();
   }
+  all.culling = run_culling(surfaces, all.methods.front().run.answer.visible, settings.compare.runs, execution);
   if (settings.compare.folder) write_page(all, *settings.compare.folder, execution);
   all.files = outputs;
   progress.clear();

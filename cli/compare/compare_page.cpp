@@ -246,6 +246,7 @@ std::string page(const Comparisons& all, const StagedFolder& folder) {
       "{} triangles, {}, medians of {} runs, each method in a process of its own.</p></header><main>\n",
       model, style, model, grouped(all.surfaces.primitive_count()), grid_of(all.view, "×"), all.settings.compare.runs);
   text += table_of(all);
+  text += "<p>" + escaped(culling_text(all)) + "</p>\n";
   text += "<h2>In words</h2><ul>";
   for (const std::string& sentence : advice(all)) text += "<li>" + escaped(sentence) + "</li>";
   text += "</ul>\n<h2>What they see</h2><div class=\"cards\">\n";

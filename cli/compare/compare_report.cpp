@@ -55,6 +55,16 @@ Json method_json(const Comparisons& all, const Compared& compared) {
   return json;
 }
 
+Json culling_json(const CullingRun& culling) {
+  return {{"timings_ms", {{"index", culling.prepare}, {"cull", times_json(culling.times)}}},
+          {"objects", culling.objects()},
+          {"outside", culling.outside},
+          {"hidden", culling.hidden},
+          {"may_be_seen", culling.open},
+          {"seen", culling.seen},
+          {"wrong", culling.wrong}};
+}
+
 }  // namespace
 
 std::vector<std::string> stage_names(const std::vector<Compared>& methods) {
@@ -85,6 +95,18 @@ std::uint64_t covered_samples(const Visible& visible) {
                                      [](PrimitiveId id) { return id != no_primitive; }));
 }
 
+std::string culling_text(const Comparisons& all) {
+  const CullingRun& c = all.culling;
+  std::string text = fmt::format(
+      "Occlusion culling: of {} object{} {} outside of the view, {} certainly hidden, {} may be seen ({} seen at a "
+      "sample); {:.2f} ms, and {:.2f} before the first view.",
+      grouped(c.objects()), c.objects() == 1 ? "" : "s", c.outside == 1 ? "1 is" : grouped(c.outside) + " are",
+      grouped(c.hidden), grouped(c.open), c.seen == 1 ? "1 is" : grouped(c.seen) + " are", median(c.times), c.prepare);
+  if (c.wrong > 0)
+    text += fmt::format(" {} of what it leaves out is seen: a mistake. Please report this model.", grouped(c.wrong));
+  return text;
+}
+
 std::string compare_text(const Comparisons& all) {
   std::string text =
       fmt::format("{} triangles, {}, medians of {} run{}\n\n", grouped(all.surfaces.primitive_count()),
@@ -111,6 +133,7 @@ std::string compare_text(const Comparisons& all) {
     text += row_of(all, label, [&, counted = cause](const Compared& c) { return grouped(c.agreement.count(counted)); });
   text += row_of(all, "  wrong by design", [](const Compared& c) { return grouped(c.wrong_by_design()); });
   text += row_of(all, "  unexplained", [](const Compared& c) { return grouped(c.unexplained()); });
+  text += '\n' + culling_text(all) + '\n';
   if (!all.settings.compare.explain) return text;
   text += '\n';
   for (const std::string& sentence : advice(all)) text += sentence + '\n';
@@ -125,6 +148,7 @@ Json compare_json(const Comparisons& all) {
                {"samples", all.view.samples}};
   json["methods"] = Json::array();
   for (const Compared& compared : all.methods) json["methods"].push_back(method_json(all, compared));
+  json["occlusion_culling"] = culling_json(all.culling);
   if (all.settings.compare.explain) json["advice"] = advice(all);
   json["files"] = all.files;
   return json;

@@ -4,6 +4,7 @@
 
 #include <frontmost/agreement.h>
 
+#include "cli/compare/compare_culling.h"
 #include "cli/compare/compare_methods.h"
 #include "cli/json.h"
 
@@ -27,6 +28,7 @@ struct Comparisons {
   const Surfaces& surfaces;
   View view;
   std::vector<Compared> methods;
+  CullingRun culling;
   std::vector<std::string> files;  ///< that were written
 };
 
@@ -39,6 +41,8 @@ struct Comparisons {
 [[nodiscard]] std::string grid_of(const View& view, std::string_view times);
 [[nodiscard]] std::uint64_t covered_samples(const Visible& visible);
 
+/// What occlusion culling proved, in a sentence.
+[[nodiscard]] std::string culling_text(const Comparisons& all);
 [[nodiscard]] std::string compare_text(const Comparisons& all);
 [[nodiscard]] Json compare_json(const Comparisons& all);
 /// Which method suits, from these figures: sentences.

@@ -54,6 +54,23 @@ TEST_F(Compare, ReportsEveryMethodAsJson) {
   EXPECT_FALSE(report["methods"][0].contains("fragments"));
 }
 
+TEST_F(Compare, CullsWhatIsHidden) {
+  const std::string street =
+      "compare builtin:city --camera-position 8,3,25 --camera-direction +x --resolution 160,120 --runs 2";
+  const json culling = succeed(street + " --json").json()["occlusion_culling"];
+  const auto number = [&](const char* name) { return culling[name].get<int>(); };
+  EXPECT_EQ(number("objects"), number("outside") + number("hidden") + number("may_be_seen"));
+  EXPECT_GT(number("outside"), 1000);
+  EXPECT_GT(number("hidden"), 80);
+  EXPECT_GT(number("seen"), 20);
+  EXPECT_LE(number("seen"), number("may_be_seen"));
+  EXPECT_EQ(number("wrong"), 0);
+  EXPECT_GE(culling["timings_ms"]["cull"]["min"].get<double>(), 0);
+  const std::string text = succeed("compare cube.stl --resolution 160,120 --runs 1").out;
+  EXPECT_THAT(text, HasSubstr("Occlusion culling: of 1 object 0 are outside of the view, 0 certainly hidden, 1 may be "
+                              "seen (1 is seen at a sample)"));
+}
+
 TEST_F(Compare, SetsEveryMethodInAColumnOfItsOwn) {
   const std::string table = succeed("compare cube.stl --resolution 160,120 --runs 1").out;
   std::istringstream lines(table.substr(table.find("\n\n") + 2));
@@ -125,6 +142,7 @@ TEST_F(Compare, WritesAPageThatHoldsItsPictures) {
   EXPECT_THAT(page, HasSubstr("data:image/png;base64,iVBORw0KGgo"));
   EXPECT_THAT(page, testing::Not(HasSubstr("src=\"http"))) << "it must stand alone";
   EXPECT_THAT(page, HasSubstr("Ray casting"));
+  EXPECT_THAT(page, HasSubstr("Occlusion culling: of 1 object"));
 }
 
 TEST_F(Compare, NamesInThePageAreText) {
