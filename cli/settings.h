@@ -190,9 +190,9 @@ struct ReportSettings {
 
 /// What frontmost visible looks from, and where its lists go.
 struct VisibleSettings {
-  std::optional<std::string> views;  ///< a batch file
-  std::optional<int> sphere;         ///< how many views from all around
-  std::vector<std::string> outputs;
+  std::optional<std::string> views;        ///< a batch file
+  std::optional<int> sphere;               ///< how many views from all around
+  std::vector<std::string> outputs, kept;  ///< lists and coloured models; models of what is seen alone
 };
 
 struct Settings {

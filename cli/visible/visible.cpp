@@ -5,7 +5,7 @@
 //   --views FILE \  faces_ever_seen()    of every face that is ever seen in how many views, and its largest share
 //   --sphere N   /
 #include <fmt/format.h>
-#include <frontmost/table.h>
+#include <frontmost/model_file.h>
 #include <frontmost/version.h>
 #include <frontmost/visible_faces.h>
 
@@ -22,6 +22,7 @@
 #include "cli/render/jobs.h"
 #include "cli/stopwatch.h"
 #include "cli/view/view_options.h"
+#include "cli/visible/face_tables.h"
 
 namespace frontmost::cli {
 namespace {
@@ -35,16 +36,28 @@ constexpr Option visible_options[] = {
      [](Settings& s, const Given& g) {
        s.visible.sphere = g.integer({1, 100000});
      }},
-    {"output", 'o', "FILE", "The faces that are seen, as a table: .csv or .npy; - is standard output, as CSV.",
+    {"output", 'o', "FILE",
+     "The faces that are seen, as a table: .csv or .npy; - is standard output, as CSV. Or the model, with what is seen "
+     "of "
+     "every face as its properties, and coloured by that: .ply.",
      Group::output, for_visible | may_repeat,
      [](Settings& s, const Given& g) { s.visible.outputs.push_back(g.file_name()); }},
+    {"keep-visible", 0, "FILE", "A new model of the faces that are seen, without all others: .glb, .ply or .stl.",
+     Group::output, for_visible | may_repeat,
+     [](Settings& s, const Given& g) { s.visible.kept.push_back(g.file_name()); }},
 };
 
-TableFormat table_format(const std::string& path) {
-  if (path == "-") return TableFormat::csv;
+bool has_suffix(const std::string& path, std::initializer_list<std::string_view> suffixes) {
   const std::string suffix = std::filesystem::path(path).extension().string();
-  if (suffix != ".csv" && suffix != ".npy") throw UsageError(path + ": the suffix names no format; use .csv or .npy");
-  return suffix == ".csv" ? TableFormat::csv : TableFormat::npy;
+  return std::find(suffixes.begin(), suffixes.end(), suffix) != suffixes.end();
+}
+
+bool is_model(const std::string& path) { return has_suffix(path, {".ply"}); }
+
+std::vector<std::string> files_of(const VisibleSettings& s) {
+  std::vector<std::string> files = s.outputs;
+  files.insert(files.end(), s.kept.begin(), s.kept.end());
+  return files;
 }
 
 bool writes_standard_output(const VisibleSettings& s) {
@@ -59,9 +72,14 @@ void check(const Settings& settings) {
     throw UsageError("--sphere looks from all around: nothing else may say from where");
   if (settings.run.json && writes_standard_output(s))
     throw UsageError("--json and an output to - both want standard output");
-  for (const std::string& path : s.outputs) (void)table_format(path);
+  for (const std::string& path : s.outputs)
+    if (path != "-" && !has_suffix(path, {".csv", ".npy", ".ply"}))
+      throw UsageError(path + ": the suffix names no format; use .csv, .npy or .ply");
+  for (const std::string& path : s.kept)
+    if (!has_suffix(path, {".glb", ".ply", ".stl"}))
+      throw UsageError(path + ": the suffix names no format of models; use .glb, .ply or .stl");
   check_view_settings(v);
-  check_outputs(s.outputs, input_files(settings));
+  check_outputs(files_of(s), input_files(settings));
 }
 
 /// What is looked from, before any model is known.
@@ -105,55 +123,30 @@ std::vector<View> views_of(const Settings& settings, const std::vector<ViewSetti
   return views;
 }
 
-/// A column for what every row holds.
-template <class Value, class Rows, class Of>
-TableColumn column(const char* name, const Rows& rows, const Of& of) {
-  std::vector<Value> values;
-  values.reserve(rows.size());
-  for (const auto& row : rows) values.push_back(of(row));
-  return {name, std::move(values)};
-}
-
-/// Which faces the rows are of: the number of all, the object's, and that within the object.
-template <class Rows>
-Table table_of_ids(const Rows& rows, const Surfaces& surfaces) {
-  using Row = typename Rows::value_type;
-  const auto number = [](const Row& row) { return row.id; };
-  const auto object = [&](const Row& row) { return surfaces.source(row.id).instance; };
-  const auto triangle = [&](const Row& row) { return surfaces.source(row.id).triangle; };
-  return {{column<std::uint32_t>("primitive", rows, number), column<std::uint32_t>("object", rows, object),
-           column<std::uint32_t>("triangle", rows, triangle)}};
-}
-
-Table table_of(const std::vector<VisibleFace>& faces, const Surfaces& surfaces) {
-  Table table = table_of_ids(faces, surfaces);
-  table.columns.push_back(column<double>("pixels", faces, [](const VisibleFace& f) { return f.pixels; }));
-  table.columns.push_back(column<double>("area", faces, [](const VisibleFace& f) { return f.area; }));
-  table.columns.push_back(column<double>("solid_angle", faces, [](const VisibleFace& f) { return f.solid_angle; }));
-  return table;
-}
-
-Table table_of(const std::vector<SeenFace>& faces, const Surfaces& surfaces) {
-  Table table = table_of_ids(faces, surfaces);
-  table.columns.push_back(column<std::uint32_t>("views", faces, [](const SeenFace& f) { return f.view_count; }));
-  table.columns.push_back(column<std::uint32_t>("best_view", faces, [](const SeenFace& f) { return f.best_view; }));
-  table.columns.push_back(column<double>("largest_share", faces, [](const SeenFace& f) { return f.largest_share; }));
-  table.columns.push_back(column<double>("largest_pixels", faces, [](const SeenFace& f) { return f.largest_pixels; }));
-  return table;
-}
-
-/// What was found, as JSON has it and as text.
+/// What was found.
 struct FacesFound {
-  Table table;
+  std::vector<PrimitiveId> ids;
+  Table listed, colored;  ///< the latter only where a model is to be written
   Json json;
   std::string text;
 };
+
+template <class Face>
+FacesFound found_of(const std::vector<Face>& faces, const Surfaces& surfaces, const VisibleSettings& settings) {
+  FacesFound found;
+  for (const Face& face : faces) found.ids.push_back(face.id);
+  found.listed = table_of(faces, surfaces);
+  const std::vector<std::string>& outputs = settings.outputs;
+  if (std::any_of(outputs.begin(), outputs.end(), is_model)) found.colored = colored_table_of(faces, surfaces);
+  return found;
+}
 
 std::string count_text(std::size_t seen, std::size_t all, const char* adverb) {
   return fmt::format("{} of {} faces {}seen, {} not\n", grouped(seen), grouped(all), adverb, grouped(all - seen));
 }
 
-FacesFound look_once(const Surfaces& surfaces, const View& view, const Execution& execution) {
+FacesFound look_once(const Surfaces& surfaces, const View& view, const VisibleSettings& settings,
+                     const Execution& execution) {
   const std::vector<VisibleFace> faces = visible_faces(surfaces, view, execution).faces;
   double pixels = 0, smallest = std::numeric_limits<double>::infinity();
   for (const VisibleFace& face : faces) {
@@ -161,28 +154,47 @@ FacesFound look_once(const Surfaces& surfaces, const View& view, const Execution
     smallest = std::min(smallest, face.pixels);
   }
   const double rest = std::max(0.0, double(view.pixel_count()) - pixels);
-  std::string text =
+  FacesFound found = found_of(faces, surfaces, settings);
+  found.text =
       fmt::format("{} x {} pixels: {:.3f} see a face, {:.3f} see none\n", view.width, view.height, pixels, rest) +
       count_text(faces.size(), surfaces.primitive_count(), "");
-  if (!faces.empty()) text += fmt::format("the smallest part covers {:.3g} pixels\n", smallest);
-  const Json json = {
+  if (!faces.empty()) found.text += fmt::format("the smallest part covers {:.3g} pixels\n", smallest);
+  found.json = {
       {"width", view.width}, {"height", view.height}, {"faces", surfaces.primitive_count()}, {"seen", faces.size()},
       {"pixels", pixels},    {"background", rest},    {"smallest", finite_or_null(smallest)}};
-  return {table_of(faces, surfaces), json, text};
+  return found;
 }
 
-FacesFound look_often(const Surfaces& surfaces, const std::vector<View>& views, const Execution& execution) {
+FacesFound look_often(const Surfaces& surfaces, const std::vector<View>& views, const VisibleSettings& settings,
+                      const Execution& execution) {
   const std::vector<SeenFace> faces = faces_ever_seen(surfaces, views, execution);
-  const std::string text = fmt::format("{} view{}: {}", grouped(views.size()), views.size() == 1 ? "" : "s",
-                                       count_text(faces.size(), surfaces.primitive_count(), "ever "));
-  const Json json = {{"views", views.size()}, {"faces", surfaces.primitive_count()}, {"seen", faces.size()}};
-  return {table_of(faces, surfaces), json, text};
+  FacesFound found = found_of(faces, surfaces, settings);
+  found.text = fmt::format("{} view{}: {}", grouped(views.size()), views.size() == 1 ? "" : "s",
+                           count_text(faces.size(), surfaces.primitive_count(), "ever "));
+  found.json = {{"views", views.size()}, {"faces", surfaces.primitive_count()}, {"seen", faces.size()}};
+  return found;
 }
 
-void write(const Table& table, const std::string& path) {
+void write(const std::string& path, const FacesFound& found, const Scene& scene) {
   stop_if_interrupted();
   const WritingFiles writing;
-  save(table, path, table_format(path));
+  if (is_model(path)) return save(scene, path, found.colored);
+  save(found.listed, path, has_suffix(path, {".npy"}) ? TableFormat::npy : TableFormat::csv);
+}
+
+/// Writes the model of what is seen, and adds what it leaves out to the reports.
+void write_kept(const std::vector<std::string>& paths, const Surfaces& surfaces, FacesFound& found) {
+  if (paths.empty()) return;
+  const Scene kept = keep_faces(surfaces.scene(), found.ids);
+  const std::size_t objects = surfaces.scene().instances.size(), faces = surfaces.primitive_count();
+  for (const std::string& path : paths) {
+    stop_if_interrupted();
+    const WritingFiles writing;
+    save(kept, path, has_suffix(path, {".ply"}) ? origin_table_of(found.ids, surfaces) : Table());
+  }
+  found.json["left_out"] = {{"faces", faces - found.ids.size()}, {"objects", objects - kept.instances.size()}};
+  found.text += fmt::format("{} of {} faces and {} of {} objects left out\n", grouped(faces - found.ids.size()),
+                            grouped(faces), grouped(objects - kept.instances.size()), grouped(objects));
 }
 
 }  // namespace
@@ -195,20 +207,21 @@ int run_visible(const Settings& settings) {
   const std::vector<ViewSettings> places = places_of(settings);
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
-  const Scene scene = load_model(settings, execution, progress, s.outputs);
+  const Scene scene = load_model(settings, execution, progress, files_of(s));
   const Surfaces surfaces(scene, execution);
   const std::vector<View> views = views_of(settings, places, surfaces);
   if (!s.views) show_framing_warning(settings, surfaces, progress);
   const Stopwatch watch;
-  const FacesFound found =
-      s.views || s.sphere ? look_often(surfaces, views, execution) : look_once(surfaces, views.front(), execution);
+  FacesFound found = s.views || s.sphere ? look_often(surfaces, views, s, execution)
+                                         : look_once(surfaces, views.front(), s, execution);
   const double time = watch.milliseconds();
   progress.clear();
-  for (const std::string& path : s.outputs) write(found.table, path);
+  for (const std::string& path : s.outputs) write(path, found, scene);
+  write_kept(s.kept, surfaces, found);
   if (settings.run.json) {
     Json json = {{"frontmost", FRONTMOST_VERSION}, {"model", settings.model}};
     json.update(found.json);
-    json["files"] = s.outputs;
+    json["files"] = files_of(s);
     json["timings_ms"] = {{"visible", time}};
     print(dump(json));
   } else if (!writes_standard_output(s)) {

@@ -23,6 +23,7 @@
 #include "frontmost/io.h"              // IWYU pragma: export
 #include "frontmost/lettering.h"       // IWYU pragma: export
 #include "frontmost/lines.h"           // IWYU pragma: export
+#include "frontmost/model_file.h"      // IWYU pragma: export
 #include "frontmost/occlusion.h"       // IWYU pragma: export
 #include "frontmost/page.h"            // IWYU pragma: export
 #include "frontmost/painter.h"         // IWYU pragma: export

@@ -29,13 +29,15 @@ struct Table {
   [[nodiscard]] std::size_t row_count() const { return columns.empty() ? 0 : columns.front().size(); }
 };
 
+/// \throws Error bad_argument for columns of different sizes and names that are empty or hold other characters.
+void validate(const Table& table);
+
 enum class TableFormat : std::uint8_t { csv, npy };
 
 /// Writes a table, whole or not at all; "-" is standard output. CSV (RFC 4180, lines end in a line feed) has names in
 /// its first line and numbers with as many digits as make the same number again. NPY is a structured array of one
 /// dimension, little-endian, its fields packed: `numpy.load(path)["pixels"]` is a column.
-/// O(rows x columns). \throws Error file_unwritable; bad_argument for columns of different sizes and names that are
-/// empty or hold other characters.
+/// O(rows x columns). \throws Error file_unwritable, and as validate() does.
 void save(const Table& table, const std::string& path, TableFormat format);
 
 }  // namespace frontmost

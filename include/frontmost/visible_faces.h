@@ -63,4 +63,11 @@ struct SeenFace {
 [[nodiscard]] std::vector<SeenFace> faces_ever_seen(const Surfaces& surfaces, std::span<const View> views,
                                                     const Execution& execution = {});
 
+/// A scene of some of another's triangles alone, such as those that are ever seen: objects of which none is kept are
+/// gone, every other one has a mesh of its own. Vertices that no triangle needs are left out; order, names, places,
+/// materials and textures stay, and Mesh::face_ids tells which polygon of the first scene's mesh each triangle came
+/// from. Curved primitives are not kept. O(size of the scene). \throws Error bad_argument for ids that do not ascend,
+/// or are none of the scene's.
+[[nodiscard]] Scene keep_faces(const Scene& scene, std::span<const PrimitiveId> ids);
+
 }  // namespace frontmost

@@ -14,18 +14,6 @@ namespace {
 
 constexpr std::size_t kBytesAtOnce = 1 << 20;
 
-void check_table(const Table& table) {
-  constexpr std::string_view known = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
-  for (const TableColumn& column : table.columns) {
-    if (column.name.empty() || column.name.find_first_not_of(known) != std::string::npos)
-      throw Error(ErrorCode::bad_argument,
-                  "table: a column is named '" + column.name + "': letters, digits and underscores make a name");
-    if (column.size() != table.row_count())
-      throw Error(ErrorCode::bad_argument, "table: " + column.name + ": has " + std::to_string(column.size()) +
-                                               " rows, others have " + std::to_string(table.row_count()));
-  }
-}
-
 void append_text(std::string& text, const TableColumn& column, std::size_t row) {
   char digits[32];
   const auto append = [&](auto value) {
@@ -80,8 +68,20 @@ std::size_t TableColumn::size() const {
   return std::visit([](const auto& list) { return list.size(); }, values);
 }
 
+void validate(const Table& table) {
+  constexpr std::string_view known = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+  for (const TableColumn& column : table.columns) {
+    if (column.name.empty() || column.name.find_first_not_of(known) != std::string::npos)
+      throw Error(ErrorCode::bad_argument,
+                  "table: a column is named '" + column.name + "': letters, digits and underscores make a name");
+    if (column.size() != table.row_count())
+      throw Error(ErrorCode::bad_argument, "table: " + column.name + ": has " + std::to_string(column.size()) +
+                                               " rows, others have " + std::to_string(table.row_count()));
+  }
+}
+
 void save(const Table& table, const std::string& path, TableFormat format) {
-  check_table(table);
+  validate(table);
   OutputFile file(path);
   if (format == TableFormat::csv)
     write_csv(table, file);

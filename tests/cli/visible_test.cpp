@@ -113,11 +113,50 @@ TEST_F(VisibleCommand, TheReportSaysHowMuchIsSeen) {
   EXPECT_TRUE(succeed("visible empty.obj --json").json()["smallest"].is_null());
 }
 
+TEST_F(VisibleCommand, TheModelItselfIsColouredByWhatIsSeen) {
+  succeed(std::string("visible plate.obj -o seen.ply") + lens + from_above);
+  const std::string model = read("seen.ply");
+  const std::size_t end = model.find("end_header\n") + 11;
+  EXPECT_THAT(
+      model.substr(0, end),
+      HasSubstr("element face 3\nproperty list uchar uint vertex_indices\nproperty uint object\n"
+                "property uint triangle\nproperty double pixels\nproperty double area\n"
+                "property double solid_angle\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"));
+  constexpr std::size_t row = 1 + 3 * 4 + 2 * 4 + 3 * 8 + 3;
+  ASSERT_EQ(model.size(), end + 7 * 3 * 4 + 3 * row);
+  const auto color = [&](std::size_t face) { return model.substr(model.size() - (2 - face) * row - 3, 3); };
+  EXPECT_EQ(color(0), "\xFD\xE7\x25");  // all of it is seen: yellow
+  EXPECT_EQ(color(2), "\x80\x80\x80");  // nothing
+  succeed("visible plate.obj --views views.json -o ever.ply" + std::string(lens));
+  EXPECT_THAT(read("ever.ply"), HasSubstr("property double largest_share\n"));
+  EXPECT_THAT(succeed("info seen.ply").out, HasSubstr("3 triangles"));
+}
+
+TEST_F(VisibleCommand, AModelOfWhatIsSeenLeavesOutTheRest) {
+  const std::string text =
+      succeed(std::string("visible plate.obj --keep-visible a.glb --keep-visible a.ply --keep-visible a.stl") + lens +
+              from_above)
+          .out;
+  EXPECT_THAT(text, HasSubstr("1 of 3 faces and 1 of 2 objects left out\n"));
+  for (const char* name : {"a.glb", "a.ply", "a.stl"}) {
+    const json report = succeed(std::string("visible ") + name + " --json" + lens + from_above + "--up +y").json();
+    EXPECT_EQ(report["faces"], 2) << name;
+    EXPECT_EQ(report["seen"], 2) << name;
+    EXPECT_NEAR(report["pixels"].get<double>(), 64, 1e-9) << name;
+  }
+  EXPECT_THAT(read("a.ply"), HasSubstr("property uint object\nproperty uint triangle\nend_header\n"));
+  const json report = succeed(std::string("visible plate.obj --keep-visible b.stl --json") + lens + from_above).json();
+  EXPECT_EQ(report["left_out"], (json{{"faces", 1}, {"objects", 1}}));
+  EXPECT_EQ(report["files"], json({"b.stl"}));
+}
+
 TEST_F(VisibleCommand, WrongOptionsAreNamed) {
   expect_failure("visible plate.obj --views views.json --sphere 3", 2, "--views and --sphere are two ways to say it");
   expect_failure("visible plate.obj --sphere 3 --view top", 2, "--sphere looks from all around");
   expect_failure("visible plate.obj --sphere 0", 2, "--sphere: 0 is not between 1 and 100000");
-  expect_failure("visible plate.obj -o faces.txt", 2, "faces.txt: the suffix names no format");
+  expect_failure("visible plate.obj -o faces.txt", 2, "faces.txt: the suffix names no format; use .csv, .npy or .ply");
+  expect_failure("visible plate.obj --keep-visible a.obj", 2, "a.obj: the suffix names no format of models");
+  expect_failure("visible plate.obj -o a.ply --keep-visible a.ply", 2, "would be written twice");
   expect_failure("visible plate.obj -o - --json", 2, "both want standard output");
   expect_failure("visible plate.obj --views missing.json", 1, "missing.json: ");
   expect_failure("visible plate.obj --views views.json -o views.json", 2, "the suffix names no format");

@@ -212,6 +212,44 @@ TEST(FacesEverSeen, AreThoseOfAllViewsWithTheirLargestShare) {
   EXPECT_THAT(faces_ever_seen(Surfaces(scene), {}), testing::IsEmpty());
 }
 
+TEST(KeptFaces, AreASceneOfTheirOwnThatLooksTheSame) {
+  Scene scene = scene_of(bumpy_ball(20, 0.2f, 5));
+  scene.meshes[0].texcoords.values.assign(scene.meshes[0].positions.size(), glm::vec2(0.25f));
+  scene.instances.push_back({"hidden", 0, glm::dmat4(0.1)});
+  scene.instances[1].world_from_mesh[3][3] = 1;
+  scene.instances.push_back({"moved", 0, glm::dmat4(1.0)});
+  scene.instances[2].world_from_mesh[3] = {0.8, 0.3, 0, 1};
+  const Surfaces surfaces(scene);
+  const VisibleFaces seen = visible_faces(surfaces, view_from_above());
+  std::vector<PrimitiveId> ids;
+  for (const VisibleFace& face : seen.faces) ids.push_back(face.id);
+  const Scene kept = keep_faces(scene, ids);
+  EXPECT_EQ(triangle_count(kept), ids.size());
+  ASSERT_EQ(kept.instances.size(), 2u);
+  EXPECT_EQ(kept.instances[1].name, "moved");
+  EXPECT_LT(kept.meshes[0].positions.size(), scene.meshes[0].positions.size());
+  EXPECT_EQ(kept.meshes[0].texcoords.values.size(), kept.meshes[0].positions.size());
+  const Surfaces kept_surfaces(kept);
+  const VisibleFaces again = visible_faces(kept_surfaces, view_from_above());
+  ASSERT_EQ(again.faces.size(), ids.size());
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    EXPECT_EQ(again.faces[i].id, i);
+    EXPECT_EQ(kept_surfaces.corners(PrimitiveId(i)), surfaces.corners(ids[i]));
+    EXPECT_EQ(
+        kept.meshes[kept_surfaces.source(PrimitiveId(i)).mesh].face_of(kept_surfaces.source(PrimitiveId(i)).triangle),
+        surfaces.source(ids[i]).triangle);
+    EXPECT_NEAR(again.faces[i].pixels, seen.faces[i].pixels, 1e-9);
+  }
+}
+
+TEST(KeptFaces, ThatAreNotOrTwiceAreRefused) {
+  const Scene scene = scene_of(bumpy_ball(4, 0, 1));
+  const auto count = PrimitiveId(triangle_count(scene));
+  for (const std::vector<PrimitiveId>& ids : {std::vector<PrimitiveId>{count}, {1, 1}, {2, 1}})
+    EXPECT_THROW((void)keep_faces(scene, ids), Error);
+  EXPECT_TRUE(keep_faces(scene, {}).instances.empty());
+}
+
 TEST(VisibleFaces, OfNothingThereAreNone) {
   const Scene scene;
   EXPECT_THAT(visible_faces(Surfaces(scene), view_from_above()).faces, testing::IsEmpty());
