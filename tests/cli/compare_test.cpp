@@ -61,7 +61,7 @@ TEST_F(Compare, CullsWhatIsHidden) {
   const auto number = [&](const char* name) { return culling[name].get<int>(); };
   EXPECT_EQ(number("objects"), number("outside") + number("hidden") + number("may_be_seen"));
   EXPECT_GT(number("outside"), 1000);
-  EXPECT_GT(number("hidden"), 80);
+  EXPECT_GT(number("hidden"), 50);
   EXPECT_GT(number("seen"), 20);
   EXPECT_LE(number("seen"), number("may_be_seen"));
   EXPECT_EQ(number("wrong"), 0);
