@@ -64,7 +64,8 @@ constexpr Command table[] = {
      "exact, through the camera that the view options of render make. What lies beyond the frame is counted on a "
      "canvas around it.",
      "frontmost report scene.glb\n"
-     "frontmost report city.glb --resolution 640,480 --json",
+     "frontmost report city.glb --resolution 640,480 --json\n"
+     "frontmost report scene.glb -o report.html",
      run_report},
     {"visible", for_visible, "MODEL", "List every face of which any part is seen, with its visible area.",
      "Exact areas in pixels, in scene units and as solid angles, however small the part that is seen, through the "

@@ -184,8 +184,9 @@ struct DrawingSettings {
 
 /// What frontmost report counts, and where it goes.
 struct ReportSettings {
-  double canvas = 3;               ///< as AccountingOptions::canvas
-  std::optional<std::string> why;  ///< the name or number of the objects of which alone something is said
+  double canvas = 3;                ///< as AccountingOptions::canvas
+  std::optional<std::string> page;  ///< HTML
+  std::optional<std::string> why;   ///< the name or number of the objects of which alone something is said
 };
 
 /// What frontmost visible looks from, and where its lists go.

@@ -10,12 +10,12 @@
 
 #include "cli/command.h"
 #include "cli/compare/compare_report.h"
-#include "cli/compare/staged_folder.h"
 #include "cli/console.h"
 #include "cli/failure.h"
 #include "cli/inputs.h"
 #include "cli/option.h"
 #include "cli/outputs.h"
+#include "cli/staged_folder.h"
 #include "cli/view/view_options.h"
 
 namespace frontmost::cli {

@@ -8,42 +8,25 @@
 #include <frontmost/base.h>
 #include <frontmost/io.h>
 #include <frontmost/shade.h>
-#include <frontmost/version.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 #include "cli/compare/compare_report.h"
-#include "cli/compare/staged_folder.h"
 #include "cli/console.h"
 #include "cli/failure.h"
+#include "cli/html.h"
+#include "cli/staged_folder.h"
 
 namespace frontmost::cli {
 namespace {
 
-constexpr const char* style = R"(:root { color-scheme: light dark; --ground: #f6f5f2; --card: #fff; --ink: #1d1f23;
-  --soft: #5d636e; --line: #e2e0da; --accent: #b4521b; --stage: radial-gradient(circle at 50% 35%, #fff, #e4e6ea); }
-@media (prefers-color-scheme: dark) { :root { --ground: #15171b; --card: #1e2127; --ink: #eceae5; --soft: #9aa1ad;
-  --line: #2e323a; --accent: #f0a06a; --stage: radial-gradient(circle at 50% 35%, #464c57, #23262d); } }
-* { box-sizing: border-box; }
-body { margin: 0; background: var(--ground); color: var(--ink); font: 16px/1.55 system-ui, sans-serif; }
-header, main, footer { max-width: 1280px; margin: 0 auto; padding: 0 24px; }
-header { padding-top: 48px; }
-h1 { font-size: clamp(2rem, 5vw, 3.2rem); letter-spacing: -0.03em; line-height: 1.05; margin: 0 0 12px;
-  overflow-wrap: anywhere; }
-h2 { font-size: 1.5rem; letter-spacing: -0.015em; margin: 48px 0 6px; }
-h3 { font-size: 1.05rem; margin: 0 0 2px; }
-p, li { margin: 0 0 10px; color: var(--soft); }
-.lead { font-size: 1.15rem; max-width: 46em; }
+constexpr const char* style = R"(.lead { font-size: 1.15rem; max-width: 46em; }
 .cards { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 340px), 1fr)); gap: 24px;
   margin-top: 20px; }
 .card { margin: 0; background: var(--card); border: 1px solid var(--line); border-radius: 14px; overflow: hidden; }
 .card img { display: block; width: 100%; height: auto; background: var(--stage); }
 .card figcaption { padding: 16px 20px 10px; }
-.scroll { overflow-x: auto; background: var(--card); border: 1px solid var(--line); border-radius: 14px;
-  padding: 6px 20px; margin-top: 16px; }
 table { border-collapse: collapse; width: 100%; min-width: 700px; table-layout: fixed; font-variant-numeric: tabular-nums; }
 th, td { padding: 7px 0 7px 14px; border-bottom: 1px solid var(--line); text-align: right; font-weight: 400;
   white-space: nowrap; }
@@ -54,8 +37,6 @@ tr:last-child > * { border-bottom: 0; }
 .bar { display: block; height: 6px; border-radius: 3px; background: var(--accent); margin: 3px 0 0 auto; }
 .key { display: inline-block; width: 12px; height: 12px; border-radius: 3px; margin: 0 6px -1px 0; }
 .legend span { margin-right: 22px; white-space: nowrap; }
-code { font: 0.85rem ui-monospace, Menlo, monospace; }
-footer { padding: 40px 24px; color: var(--soft); font-size: 0.9rem; }
 )";
 
 struct Cause {
@@ -76,40 +57,6 @@ constexpr Cause causes[] = {
     {Difference::translucent, false, {0.62f, 0.87f, 0.47f}, "seen through something translucent"},
     {Difference::unexplained, true, {0.80f, 0.80f, 0.86f}, "wrong by design"},
     {Difference::unexplained, false, {1.0f, 0.15f, 0.45f}, "unexplained"}};
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : printable_text(text)) {
-    if (c == '&') {
-      result += "&amp;";
-    } else if (c == '<') {
-      result += "&lt;";
-    } else if (c == '"') {
-      result += "&quot;";
-    } else {
-      result += c;
-    }
-  }
-  return result;
-}
-
-std::string base64(std::string_view bytes) {
-  constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (i + k < bytes.size() ? std::uint8_t(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
-
-std::string data_uri(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  return "data:image/png;base64," + base64(bytes);
-}
 
 float linear(float srgb) { return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f); }
 
@@ -237,18 +184,16 @@ void save_pictures(const Comparisons& all, const StagedFolder& folder, const Exe
 }
 
 std::string page(const Comparisons& all, const StagedFolder& folder) {
-  const std::string model = escaped(all.settings.model);
-  std::string text = fmt::format(
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
-      "<title>{} by all methods</title><style>\n{}</style></head><body>\n"
+  const std::string model = html_text(all.settings.model);
+  std::string text = html_head(all.settings.model + " by all methods", style);
+  text += fmt::format(
       "<header><h1>{}</h1><p class=\"lead\">The same question to every visibility method: what can be seen from here? "
       "{} triangles, {}, medians of {} runs, each method in a process of its own.</p></header><main>\n",
-      model, style, model, grouped(all.surfaces.primitive_count()), grid_of(all.view, "×"), all.settings.compare.runs);
+      model, grouped(all.surfaces.primitive_count()), grid_of(all.view, "×"), all.settings.compare.runs);
   text += table_of(all);
   text += "<p>" + escaped(culling_text(all)) + "</p>\n";
   text += "<h2>In words</h2><ul>";
-  for (const std::string& sentence : advice(all)) text += "<li>" + escaped(sentence) + "</li>";
+  for (const std::string& sentence : advice(all)) text += "<li>" + html_text(sentence) + "</li>";
   text += "</ul>\n<h2>What they see</h2><div class=\"cards\">\n";
   for (const Compared& c : all.methods)
     text += card(data_uri(folder.path(picture_name(*c.run.method))), c.run.method->title, c.run.method->how);
@@ -260,7 +205,7 @@ std::string page(const Comparisons& all, const StagedFolder& folder) {
                  fmt::format("{} {} differ; each is marked larger than it is.", grouped(c.agreement.differing()),
                              spots(all.view)));
   }
-  return text + "</div></main><footer>frontmost " FRONTMOST_VERSION "</footer></body></html>\n";
+  return text + "</div></main>" + html_foot();
 }
 
 }  // namespace

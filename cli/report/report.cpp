@@ -11,6 +11,8 @@
 #include "cli/failure.h"
 #include "cli/inputs.h"
 #include "cli/option.h"
+#include "cli/outputs.h"
+#include "cli/report/report_page.h"
 #include "cli/report/report_run.h"
 #include "cli/view/view_options.h"
 
@@ -18,6 +20,8 @@ namespace frontmost::cli {
 namespace {
 
 constexpr Option report_options[] = {
+    {"output", 'o', "FILE", "Write the report as a page that needs nothing else: HTML.", Group::report, for_report,
+     [](Settings& s, const Given& g) { s.report.page = g.file_name(); }},
     {"canvas", 0, "FACTOR",
      "Count objects alone on a canvas of that many times the picture's width and height, 1 to 16; 3 by default.",
      Group::report, for_report,
@@ -27,6 +31,19 @@ constexpr Option report_options[] = {
     {"why", 0, "NAME", "Only say why the objects of this name, or the one of this number, are seen or not.",
      Group::report, for_report, [](Settings& s, const Given& g) { s.report.why = g.string(); }},
 };
+
+std::vector<std::string> outputs_of(const ReportSettings& report) {
+  std::vector<std::string> files;
+  if (report.page) files.push_back(*report.page);
+  return files;
+}
+
+void check(const Settings& settings, const std::vector<std::string>& outputs) {
+  check_view_settings(settings.view);
+  check_outputs(outputs, input_files(settings));
+  if (settings.run.json && std::find(outputs.begin(), outputs.end(), "-") != outputs.end())
+    throw UsageError("--json and an output to - both want standard output");
+}
 
 }  // namespace
 
@@ -66,10 +83,11 @@ std::vector<std::uint32_t> objects_by_sight(const Accounting& accounts) {
 }
 
 int run_report(const Settings& settings) {
-  check_view_settings(settings.view);
+  const std::vector<std::string> outputs = outputs_of(settings.report);
+  check(settings, outputs);
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
-  const Scene scene = load_model(settings, execution, progress);
+  const Scene scene = load_model(settings, execution, progress, outputs);
   (void)objects_asked_for(settings, scene);
   std::optional<Surfaces> surfaces(std::in_place, scene, execution);
   const View view = resolve_view(settings.view, *surfaces);
@@ -79,9 +97,12 @@ int run_report(const Settings& settings) {
   const Visible visible = zbuffer(*surfaces, view, execution);
   const Accounting accounts = account(*surfaces, visible, {.canvas = settings.report.canvas}, execution);
   const std::vector<Explanation> why = explain_all(*surfaces, visible, accounts, execution);
-  const ReportRun run{settings, *surfaces, visible, accounts, why, {}};
+  const ReportRun run{settings, *surfaces, visible, accounts, why, outputs};
+  if (settings.report.page) write_report_page(run, *settings.report.page, execution);
   progress.clear();
-  print(settings.run.json ? dump(report_json(run)) : settings.report.why ? why_text(run) : report_text(run));
+  const bool stdout_is_taken = std::find(outputs.begin(), outputs.end(), "-") != outputs.end();
+  if (!stdout_is_taken)
+    print(settings.run.json ? dump(report_json(run)) : settings.report.why ? why_text(run) : report_text(run));
   return exit_done;
 }
 

@@ -59,6 +59,8 @@ Json why_json(const ReportRun& run, std::uint32_t number) {
   return json;
 }
 
+}  // namespace
+
 Json object_json(const ReportRun& run, std::uint32_t number) {
   const ObjectAccount& object = run.accounts.objects[number];
   const bool is_seen = object.visible.count > 0;
@@ -79,8 +81,6 @@ Json object_json(const ReportRun& run, std::uint32_t number) {
           {"hidden_by", std::move(hiders)},
           {"why", why_json(run, number)}};
 }
-
-}  // namespace
 
 Json report_json(const ReportRun& run) {
   Json json = {{"frontmost", FRONTMOST_VERSION},

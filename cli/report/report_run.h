@@ -33,7 +33,18 @@ struct ReportRun {
 
 /// A line for each object that --why names: why it is seen or not.
 [[nodiscard]] std::string why_text(const ReportRun& run);
+/// The beginning of a name, of at most so many bytes; characters of several bytes stay whole.
+[[nodiscard]] std::string shortened(const std::string& name, std::size_t longest);
+
+/// Two lines: what the picture shows, and how many objects are seen.
+[[nodiscard]] std::string report_summary(const ReportRun& run);
+/// Empty where nothing of the object is visible.
+[[nodiscard]] std::string distance_text(const ObjectAccount& object);
+/// Why it is seen or not, and what to change.
+[[nodiscard]] std::string why_text(const ReportRun& run, std::uint32_t object);
+
 [[nodiscard]] std::string report_text(const ReportRun& run);
+[[nodiscard]] Json object_json(const ReportRun& run, std::uint32_t number);
 [[nodiscard]] Json report_json(const ReportRun& run);
 
 }  // namespace frontmost::cli

@@ -12,26 +12,11 @@ namespace {
 
 constexpr std::size_t rows_shown = 40, longest_name = 28;
 
-/// The beginning of a name, as wide as there is room for; characters of several bytes stay whole.
 std::string short_name(const ReportRun& run, std::uint32_t object) {
-  std::string name = printable_name(run.scene().instances[object].name);
-  if (name.size() <= longest_name) return name;
-  std::size_t end = longest_name - 2;
-  while (end > 0 && (std::uint8_t(name[end]) & 0xC0) == 0x80) --end;
-  return name.substr(0, end) + "..";
+  return shortened(printable_name(run.scene().instances[object].name), longest_name);
 }
 
 std::string share_text(double share) { return fmt::format("{:.1f} %", 100 * share); }
-
-std::string distance_text(const ObjectAccount& object) {
-  return object.visible.count == 0 ? "" : fmt::format("{:.4g}", object.distance);
-}
-
-/// Why it is seen or not, and what to change.
-std::string why_text(const ReportRun& run, std::uint32_t object) {
-  const std::string remedy = remedy_text(run.why[object], run.scene());
-  return reason_text(run.why[object], run.scene()) + (remedy.empty() ? "" : ": " + remedy);
-}
 
 /// Columns from the left; the first is as wide as the longest name.
 constexpr std::string_view layout = "{:>6}  {:<{}}  {:>10}  {:>10}  {:>8}  {:>8}  {:>8}  {:>9}  {}";
@@ -45,7 +30,16 @@ std::string row_text(const ReportRun& run, std::uint32_t number, std::size_t wid
   return row + '\n';
 }
 
-std::string summary(const ReportRun& run) {
+}  // namespace
+
+std::string shortened(const std::string& name, std::size_t longest) {
+  if (name.size() <= longest) return name;
+  std::size_t end = longest - 2;
+  while (end > 0 && (std::uint8_t(name[end]) & 0xC0) == 0x80) --end;
+  return name.substr(0, end) + "..";
+}
+
+std::string report_summary(const ReportRun& run) {
   std::size_t seen = 0, hidden = 0, beyond = 0, nowhere = 0;
   for (const ObjectAccount& object : run.accounts.objects)
     ++(object.visible.count > 0    ? seen
@@ -62,7 +56,14 @@ std::string summary(const ReportRun& run) {
       run.accounts.objects.size() == 1 ? "" : "s", grouped(seen), grouped(hidden), grouped(beyond), grouped(nowhere));
 }
 
-}  // namespace
+std::string distance_text(const ObjectAccount& object) {
+  return object.visible.count == 0 ? "" : fmt::format("{:.4g}", object.distance);
+}
+
+std::string why_text(const ReportRun& run, std::uint32_t object) {
+  const std::string remedy = remedy_text(run.why[object], run.scene());
+  return reason_text(run.why[object], run.scene()) + (remedy.empty() ? "" : ": " + remedy);
+}
 
 std::string why_text(const ReportRun& run) {
   std::string text;
@@ -72,7 +73,7 @@ std::string why_text(const ReportRun& run) {
 }
 
 std::string report_text(const ReportRun& run) {
-  std::string text = summary(run);
+  std::string text = report_summary(run);
   std::vector<std::uint32_t> numbers = objects_by_sight(run.accounts);
   if (numbers.empty()) return text;
   const std::size_t shown = std::min(numbers.size(), rows_shown);

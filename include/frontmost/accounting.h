@@ -13,6 +13,7 @@
 // alone is what zbuffer() would show of it.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "frontmost/surfaces.h"
@@ -92,5 +93,54 @@ struct Accounting {
 /// \throws Error bad_argument as validate(view) does, for a canvas out of range, and for a `visible` of other surfaces.
 [[nodiscard]] Accounting account(const Surfaces& surfaces, const Visible& visible,
                                  const AccountingOptions& options = {}, const Execution& execution = {});
+
+/// Which objects hide which, put in order: what hides something comes before it, wherever that can be.
+struct HidingOrder {
+  /// By object: 0 where nothing hides it, else one more than the greatest of those that hide it; those of a cycle have
+  /// one rank.
+  std::vector<std::uint32_t> ranks;
+  /// Objects of which each hides the next and the last the first, all that hang together so in one list, ascending;
+  /// lists by their first object. Objects without a list have an order among them.
+  std::vector<std::vector<std::uint32_t>> cycles;
+};
+
+/// The order of `object_count` objects by their pairs, such as Accounting::hidden_by_front. O(objects + pairs * log).
+/// Source: R. Tarjan. Depth-First Search and Linear Graph Algorithms. 1972.
+/// \throws Error bad_argument where a pair is not of two different objects below `object_count`.
+[[nodiscard]] HidingOrder find_hiding_order(std::size_t object_count, std::span<const HiddenSamples> pairs);
+
+enum class MaskPixel : std::uint8_t { outside, hidden, visible };
+
+/// What one object covers of a picture, by the first sample of each pixel.
+struct PixelMask {
+  PixelBox box;              ///< the least one around what is not outside
+  Buffer<MaskPixel> pixels;  ///< of the box, rows from the top
+
+  /// Of a pixel of the picture.
+  [[nodiscard]] MaskPixel at(int x, int y) const {
+    x -= box.x, y -= box.y;
+    if (x < 0 || y < 0 || x >= box.width || y >= box.height) return MaskPixel::outside;
+    return pixels[std::size_t(y) * std::size_t(box.width) + std::size_t(x)];
+  }
+};
+
+/// The masks of one object after another. Borrows what it is made of; not for several threads at once.
+class PixelMasks {
+ public:
+  /// `visible` is what zbuffer() or a ZBuffer gave for these surfaces. O(samples); a bit for each sample of the
+  /// picture. \throws Error bad_argument as account() does.
+  PixelMasks(const Surfaces& surfaces, const Visible& visible, const Execution& execution = {});
+  ~PixelMasks();
+  PixelMasks(const PixelMasks&) = delete;
+  PixelMasks& operator=(const PixelMasks&) = delete;
+
+  /// With one sample a pixel it has as many pixels visible and hidden as account() counts. O(triangles of the object +
+  /// pixels of its box). Precondition: an instance of the scene.
+  [[nodiscard]] PixelMask of(std::uint32_t object);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
 
 }  // namespace frontmost

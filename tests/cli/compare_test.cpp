@@ -149,7 +149,7 @@ TEST_F(Compare, NamesInThePageAreText) {
   write("a<b>&.stl", cube_stl());
   ASSERT_EQ(run({"compare", "a<b>&.stl", "--resolution", "32,24", "--runs", "1", "-o", "page"}).status, 0);
   const std::string page = read("page/index.html");
-  EXPECT_THAT(page, HasSubstr("a&lt;b>&amp;.stl"));
+  EXPECT_THAT(page, HasSubstr("a&lt;b&gt;&amp;.stl"));
   EXPECT_THAT(page, testing::Not(HasSubstr("<b>")));
 }
 

@@ -233,6 +233,108 @@ TEST(Accounting, RefusesWhatIsOutOfRange) {
   EXPECT_EQ(test::code_of([&] { (void)account(Surfaces(none), visible); }), ErrorCode::bad_argument);
 }
 
+TEST(PixelMasks, EqualThePictureOfTheObjectAlone) {
+  std::uint64_t hidden = 0;
+  for (std::uint64_t seed = 0; seed < test::seeds(20); ++seed) {
+    const Scene scene = test::hidden_scene(12, seed);
+    View view = test::random_view(64, 32, seed);
+    view.samples = seed % 4 == 3 ? 4 : 1;
+    const Surfaces surfaces(scene);
+    const Visible visible = zbuffer(surfaces, view);
+    PixelMasks masks(surfaces, visible);
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+      const PixelMask mask = masks.of(i);
+      const Visible alone = test::draw_alone(scene, i, view);
+      test::SampleCounter covered;
+      for (int y = 0; y < view.height; ++y)
+        for (int x = 0; x < view.width; ++x) {
+          const std::size_t at = visible.index(x, y);
+          MaskPixel expected = MaskPixel::outside;
+          if (alone.primitives[at] != no_primitive) {
+            covered.add(x, y, {0, 0});
+            expected = surfaces.source(visible.primitives[at]).instance == i ? MaskPixel::visible : MaskPixel::hidden;
+          }
+          ASSERT_EQ(mask.at(x, y), expected) << seed << ": " << i << " at " << x << ", " << y;
+          hidden += expected == MaskPixel::hidden;
+        }
+      EXPECT_EQ(mask.box, covered.set().box);
+    }
+  }
+  EXPECT_GT(hidden, 1000u);
+}
+
+TEST(HidingOrder, RanksWhatHasAnOrderAndListsWhatHasNone) {
+  // 0 hides 1; 1, 2 and 3 hide each other in a ring; 3 hides 4; nothing is known of 5.
+  const std::vector<HiddenSamples> pairs = {{1, 0, 5}, {2, 1, 5}, {3, 2, 5}, {1, 3, 5}, {4, 3, 5}};
+  const HidingOrder order = find_hiding_order(6, pairs);
+  EXPECT_EQ(order.ranks, (std::vector<std::uint32_t>{0, 1, 1, 1, 2, 0}));
+  EXPECT_EQ(order.cycles, (std::vector<std::vector<std::uint32_t>>{{1, 2, 3}}));
+  EXPECT_TRUE(find_hiding_order(0, {}).ranks.empty());
+  for (const HiddenSamples& wrong : {HiddenSamples{6, 0, 1}, HiddenSamples{0, 6, 1}, HiddenSamples{2, 2, 1}})
+    EXPECT_EQ(test::code_of([&] { (void)find_hiding_order(6, std::span(&wrong, 1)); }), ErrorCode::bad_argument);
+}
+
+TEST(HidingOrder, EqualsWhatReachesWhat) {
+  for (std::uint64_t seed = 0; seed < test::seeds(200); ++seed) {
+    Random random(seed);
+    const std::uint32_t count = 2 + random.below(12);
+    std::vector<std::vector<bool>> reaches(count, std::vector<bool>(count, false));
+    std::vector<HiddenSamples> pairs;
+    for (std::uint32_t k = random.below(2 * count); k > 0; --k) {
+      const std::uint32_t object = random.below(count), hider = random.below(count);
+      if (object == hider) continue;
+      pairs.push_back({object, hider, 1});
+      reaches[hider][object] = true;
+    }
+    for (std::uint32_t k = 0; k < count; ++k)
+      for (std::uint32_t i = 0; i < count; ++i)
+        for (std::uint32_t j = 0; j < count; ++j)
+          if (reaches[i][k] && reaches[k][j]) reaches[i][j] = true;
+    const HidingOrder order = find_hiding_order(count, pairs);
+    SCOPED_TRACE(seed);
+    std::vector<std::vector<std::uint32_t>> cycles;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (!reaches[i][i]) continue;
+      std::vector<std::uint32_t> cycle;
+      for (std::uint32_t j = 0; j < count; ++j)
+        if (reaches[i][j] && reaches[j][i]) cycle.push_back(j);
+      if (cycle[0] == i) cycles.push_back(cycle);
+    }
+    EXPECT_EQ(order.cycles, cycles);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      // One more than the greatest of those that hide any of its cycle from outside.
+      std::uint32_t rank = 0;
+      for (std::uint32_t j = 0; j < count; ++j)
+        if (reaches[j][i] && !reaches[i][j]) rank = std::max(rank, order.ranks[j] + 1);
+      EXPECT_EQ(order.ranks[i], rank) << i;
+    }
+  }
+}
+
+TEST(HidingOrder, ThreeObjectsInARingHideEachOther) {
+  // Three planks, each above the next at one end and below the one before at the other.
+  Scene scene;
+  for (int k = 0; k < 3; ++k) {
+    const double angle = glm::radians(120.0 * k);
+    const glm::dvec2 along(std::cos(angle), std::sin(angle)), across(-along.y, along.x);
+    const glm::dvec2 middle = -12.0 * across;
+    Mesh mesh;
+    for (const glm::dvec2& end : {glm::dvec2(-32, -4), {32, -4}, {32, 4}, {-32, 4}}) {
+      const glm::dvec2 at = middle + end.x * along + end.y * across;
+      mesh.positions.push_back(glm::vec3(at.x, at.y, end.x / 32));
+    }
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    scene.instances.push_back({"plank", std::uint32_t(k), glm::dmat4(1.0)});
+    scene.meshes.push_back(std::move(mesh));
+  }
+  const Surfaces surfaces(scene);
+  const Accounting accounts = account(surfaces, zbuffer(surfaces, square_view(100)));
+  ASSERT_EQ(accounts.hidden_by_front.size(), 3u);
+  const HidingOrder order = find_hiding_order(3, accounts.hidden_by_front);
+  EXPECT_EQ(order.cycles, (std::vector<std::vector<std::uint32_t>>{{0, 1, 2}}));
+  EXPECT_EQ(order.ranks, (std::vector<std::uint32_t>{0, 0, 0}));
+}
+
 TEST(Accounting, CountsTheObjectsOfModels) {
   FRONTMOST_NEEDS_MODELS();
   for (const char* file : {"scenes/warehouse.glb", "scenes/home-theater.glb", "cad/cycloidal-drive.ply"}) {

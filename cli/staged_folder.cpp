@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Several files cannot be replaced at once. They come as near to it as a file system allows: all are written beside
 // their places first, where a full disk is found out, and are then only renamed.
-#include "cli/compare/staged_folder.h"
+#include "cli/staged_folder.h"
 
 #include <fmt/format.h>
 #include <frontmost/base.h>

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// The order of objects that hide each other: cycles become one, by Tarjan's search, and what is left has ranks.
+//
+//    a hides b, b hides c, c hides b, c hides d          a  ->  { b, c }  ->  d
+//                                                        0        1           2
+#include <algorithm>
+
+#include "frontmost/accounting.h"
+
+namespace frontmost {
+namespace {
+
+/// Components come out when all that they hide has come out.
+class CycleSearch {
+ public:
+  CycleSearch(std::size_t count, std::span<const HiddenSamples> pairs)
+      : first_(count + 1, 0),
+        hidden_(pairs.size()),
+        numbers_(count, 0),
+        lowest_(count, 0),
+        component_(count, no_index) {
+    for (const HiddenSamples& pair : pairs) ++first_[pair.hider + 1];
+    for (std::size_t i = 0; i < count; ++i) first_[i + 1] += first_[i];
+    next_.assign(first_.begin(), first_.end() - 1);
+    for (const HiddenSamples& pair : pairs) hidden_[next_[pair.hider]++] = pair.object;
+    next_.assign(first_.begin(), first_.end() - 1);
+    for (std::uint32_t object = 0; object < count; ++object)
+      if (numbers_[object] == 0) search(object);
+  }
+
+  [[nodiscard]] HidingOrder order() const {
+    HidingOrder result;
+    std::vector<std::vector<std::uint32_t>> members(component_count_);
+    for (std::uint32_t i = 0; i < component_.size(); ++i) members[component_[i]].push_back(i);
+    std::vector<std::uint32_t> ranks(component_count_, 0);
+    // The last one hides what came before it.
+    for (std::size_t from = component_count_; from-- > 0;)
+      for (const std::uint32_t object : members[from])
+        for (std::size_t k = first_[object]; k < first_[object + 1]; ++k) {
+          const std::uint32_t to = component_[hidden_[k]];
+          if (to != from) ranks[to] = std::max(ranks[to], ranks[from] + 1);
+        }
+    for (const std::uint32_t component : component_) result.ranks.push_back(ranks[component]);
+    for (std::vector<std::uint32_t>& cycle : members)
+      if (cycle.size() > 1) result.cycles.push_back(std::move(cycle));
+    std::sort(result.cycles.begin(), result.cycles.end());
+    return result;
+  }
+
+ private:
+  void search(std::uint32_t root) {
+    std::vector<std::uint32_t> way;
+    enter(root, way);
+    while (!way.empty()) {
+      const std::uint32_t object = way.back();
+      if (next_[object] < first_[object + 1]) {
+        const std::uint32_t to = hidden_[next_[object]++];
+        if (numbers_[to] == 0)
+          enter(to, way);
+        else if (component_[to] == no_index)
+          lowest_[object] = std::min(lowest_[object], numbers_[to]);
+        continue;
+      }
+      way.pop_back();
+      if (!way.empty()) lowest_[way.back()] = std::min(lowest_[way.back()], lowest_[object]);
+      if (lowest_[object] == numbers_[object]) close(object);
+    }
+  }
+
+  void enter(std::uint32_t object, std::vector<std::uint32_t>& way) {
+    numbers_[object] = lowest_[object] = ++entered_;
+    open_.push_back(object);
+    way.push_back(object);
+  }
+
+  void close(std::uint32_t object) {
+    std::uint32_t member = no_index;
+    do {
+      member = open_.back();
+      open_.pop_back();
+      component_[member] = component_count_;
+    } while (member != object);
+    ++component_count_;
+  }
+
+  std::vector<std::size_t> first_, next_;  // by object: in `hidden_`
+  std::vector<std::uint32_t> hidden_;      // by their hiders
+  std::vector<std::uint32_t> numbers_, lowest_, component_, open_;
+  std::uint32_t entered_ = 0, component_count_ = 0;
+};
+
+}  // namespace
+
+HidingOrder find_hiding_order(std::size_t object_count, std::span<const HiddenSamples> pairs) {
+  for (const HiddenSamples& pair : pairs)
+    if (pair.object >= object_count || pair.hider >= object_count || pair.object == pair.hider)
+      throw Error(ErrorCode::bad_argument, "hiding order: a pair must be of two different objects");
+  return CycleSearch(object_count, pairs).order();
+}
+
+}  // namespace frontmost
