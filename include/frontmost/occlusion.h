@@ -46,7 +46,8 @@ struct OcclusionOptions {
 /// Finds out for many views of the same surfaces what is certainly hidden. Objects are visited from the eye outwards;
 /// an object that may be seen covers cells as soon as what is visited lies behind it.
 /// Triangles whose material is of alpha mode MASK, or may be seen through (Material::is_see_through()), hide nothing.
-/// Made once; each call uses the memory of the last. Not for several threads at once.
+/// Made once; each call uses the memory of the last. What Surfaces::move() moves is followed by itself. Not for several
+/// threads at once.
 class Occlusion {
  public:
   /// Borrows the surfaces and their scene. O(triangles of meshes), about 60 bytes a triangle of a mesh.

@@ -57,7 +57,15 @@ class RayIndex {
   /// instances, it is made anew. \throws Error as Surfaces(scene) does.
   void refit(const Scene& scene, const Execution& execution = {});
 
-  /// Triangles that a ray can meet: those with finite corners (on two levels: in their meshes), no two the same.
+  /// Follows one instance to where Surfaces::move() has put it: the surfaces are those that the index was made of, or
+  /// of the same scene. Answers are to the bit those of a new index, and queries grow slower as after refit(). On one
+  /// level O(triangles of the instance log n), and O(n) the first time; on two levels, where instances move quicker and
+  /// others cost no more, O(log instances), and O(instances) the first time. Made anew where refit() would be, and
+  /// where corners become finite. \throws Error bad_argument for an instance that is not there, or another scene.
+  void follow(const Surfaces& surfaces, std::uint32_t instance, const Execution& execution = {});
+
+  /// Triangles that a ray can meet: those with finite corners (on two levels: in their meshes), no two the same in
+  /// their meshes.
   [[nodiscard]] std::uint32_t triangle_count() const;
   /// World-space bounds of these triangles; empty without any. On two levels a box around them.
   [[nodiscard]] const Box& bounds() const;

@@ -230,7 +230,8 @@ struct FigureOptions {
 /// beside glass, and an index for rays, where they are needed. Not for several threads at once.
 class Shader {
  public:
-  /// Borrows the surfaces and their scene, which must stay as they are. O(instances + materials).
+  /// Borrows the surfaces and their scene, which must stay as they are, but for what Surfaces::move() moves: each call
+  /// shows it where it is. O(instances + materials).
   explicit Shader(const Surfaces& surfaces);
   ~Shader();
   Shader(Shader&&) noexcept;

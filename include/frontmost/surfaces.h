@@ -26,12 +26,12 @@ struct PrimitiveSource {
 
 /// All triangles of a scene in world space, flattened over instances, with stable ids: the id of a triangle is its
 /// running number over all instances in scene order. World space is about Scene::origin, which models
-/// far from zero have: so are all places that are given to methods, and that they answer with. Immutable, and safe to
-/// share between threads. Triangles with a corner that is not finite in world space are never seen, but keep their
-/// number. Singular transforms are no error: they flatten what they place. Only the first three rows of a transform
-/// count. Triangles whose material is of alpha mode MASK have holes wherever their alpha (base colour, texture and
-/// vertices) is below the cutoff; the texture is looked up as it is stored. Every method that answers in samples sees
-/// through holes; draw_lines() does not.
+/// far from zero have: so are all places that are given to methods, and that they answer with. Safe to share between
+/// threads, but for move(), which is all that changes them. Triangles with a corner that is not finite in world space
+/// are never seen, but keep their number. Singular transforms are no error: they flatten what they place. Only the
+/// first three rows of a transform count. Triangles whose material is of alpha mode MASK have holes wherever their
+/// alpha (base colour, texture and vertices) is below the cutoff; the texture is looked up as it is stored. Every
+/// method that answers in samples sees through holes; draw_lines() does not.
 class Surfaces {
  public:
   /// Borrows `scene`, which must outlive the surfaces and stay as it is.
@@ -46,6 +46,17 @@ class Surfaces {
   Surfaces& operator=(Surfaces&&) noexcept;
   Surfaces(const Surfaces&) = delete;
   Surfaces& operator=(const Surfaces&) = delete;
+
+  /// Gives an instance another transform, in the scene and here: from then on everything answers as if these surfaces
+  /// had been made of the scene as it is now. An Occlusion and a Shader of these surfaces follow by themselves at their
+  /// next call; a RayIndex by RayIndex::follow(). O(triangles of the instance), and O(instances) where it reached the
+  /// side of bounds(); the first time O(triangles), where there are clusters, to list what is where. Clusters stay as
+  /// they were cut, so that pictures grow slower the less of the old neighbourhoods is left; they are made anew where
+  /// corners become finite, or are so no more. Where an index shares triangles with holes, all of these are copied.
+  /// Not while anything else reads the surfaces or the scene. \param scene the one that the surfaces were made of.
+  /// \throws Error bad_argument for another scene, an instance that is not there, and a transform that is not finite;
+  /// nothing has moved then.
+  void move(Scene& scene, std::uint32_t instance, const glm::dmat4& world_from_mesh, const Execution& execution = {});
 
   [[nodiscard]] const Scene& scene() const;
   [[nodiscard]] std::uint32_t primitive_count() const;
@@ -75,7 +86,7 @@ class Surfaces {
 
  private:
   struct State;
-  std::unique_ptr<const State> state_;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace frontmost

@@ -25,25 +25,39 @@ Box world_box(const glm::dmat4& world_from_mesh, const Box& box) {
 }  // namespace
 
 struct Occlusion::State {
-  State(const Surfaces& its_surfaces, ObjectUnit unit, const Execution& execution) : surfaces(its_surfaces) {
+  State(const Surfaces& its_surfaces, ObjectUnit its_unit, const Execution& execution)
+      : surfaces(its_surfaces), unit(its_unit), moves(its_surfaces.placed().moves.count()) {
     const Scene& scene = surfaces.scene();
-    find_meshes(unit, execution);
+    find_meshes(execution);
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-      const auto& parts = meshes[scene.instances[i].mesh].parts;
-      for (std::uint32_t part = 0; part < parts.size(); ++part) {
-        objects.push_back({i, part});
-        boxes_of_objects.push_back(unit == ObjectUnit::instances
-                                       ? surfaces.bounds(i)
-                                       : world_box(scene.instances[i].world_from_mesh, parts[part].bounds));
-      }
+      first_objects.push_back(std::uint32_t(objects.size()));
+      const std::size_t parts = meshes[scene.instances[i].mesh].parts.size();
+      for (std::uint32_t part = 0; part < parts; ++part) objects.push_back({i, part});
     }
+    first_objects.push_back(std::uint32_t(objects.size()));
+    boxes_of_objects.resize(objects.size());
     columns = BoxColumns(objects.size());
-    for (std::size_t i = 0; i < objects.size(); ++i)
-      if (!boxes_of_objects[i].is_empty()) columns.set(i, boxes_of_objects[i]);
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) place(i);
     sights.resize(objects.size());
   }
 
-  void find_meshes(ObjectUnit unit, const Execution& execution) {
+  /// Finds the boxes of an instance's objects.
+  void place(std::uint32_t instance) {
+    const Instance& it = surfaces.scene().instances[instance];
+    for (std::uint32_t i = first_objects[instance]; i < first_objects[instance + 1]; ++i) {
+      Box& box = boxes_of_objects[i];
+      box = unit == ObjectUnit::instances
+                ? surfaces.bounds(instance)
+                : world_box(it.world_from_mesh, meshes[it.mesh].parts[objects[i].part].bounds);
+      if (!box.is_empty()) columns.set(i, box);
+    }
+  }
+
+  void follow_moves() {
+    surfaces.placed().moves.visit_since(moves, first_objects.size() - 1, [&](std::uint32_t i) { place(i); });
+  }
+
+  void find_meshes(const Execution& execution) {
     const Scene& scene = surfaces.scene();
     meshes.resize(scene.meshes.size());
     std::vector<std::uint32_t> user(meshes.size(), no_index);
@@ -56,8 +70,11 @@ struct Occlusion::State {
   }
 
   const Surfaces& surfaces;
+  ObjectUnit unit;
+  std::uint64_t moves;  ///< of the surfaces that `columns` has followed
   std::vector<OccluderMesh> meshes;
   std::vector<CulledObject> objects;
+  std::vector<std::uint32_t> first_objects;  ///< by instance, and their number at the end
   std::vector<Box> boxes_of_objects;
   BoxColumns columns{0};
 
@@ -86,6 +103,7 @@ std::span<const ObjectSight> Occlusion::cull(const View& view, const OcclusionOp
     throw Error(ErrorCode::bad_argument, "occlusion: a cell must be 1 to 64 pixels wide");
   const IeeeScope ieee;
   State& s = *state_;
+  s.follow_moves();
   s.isa = execution.isa;
   s.grid.emplace(view, options.cell);
   find_on_screen(*s.grid, s.columns, s.on_screen, s.isa);

@@ -46,10 +46,13 @@ std::unique_ptr<LayerRow> layers_of(const Material& m) {
   return std::make_unique<LayerRow>(row);
 }
 
+float length_scale_of(const Instance& instance) {
+  return float(std::cbrt(std::abs(glm::determinant(glm::dmat3(instance.world_from_mesh)))));
+}
+
 std::vector<float> length_scales_of(const Scene& scene) {
   std::vector<float> scales;
-  for (const Instance& instance : scene.instances)
-    scales.push_back(float(std::cbrt(std::abs(glm::determinant(glm::dmat3(instance.world_from_mesh))))));
+  for (const Instance& instance : scene.instances) scales.push_back(length_scale_of(instance));
   return scales;
 }
 

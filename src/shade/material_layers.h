@@ -32,7 +32,9 @@ struct LayerRow {
 /// Null: the material has none. Textures are not set yet. Precondition: limit_numbers() was called.
 [[nodiscard]] std::unique_ptr<LayerRow> layers_of(const Material& material);
 
-/// By how much an instance makes lengths longer, one for each; 0 for what is flattened.
+/// By how much an instance makes lengths longer; 0 for what is flattened.
+[[nodiscard]] float length_scale_of(const Instance& instance);
+/// That of each.
 [[nodiscard]] std::vector<float> length_scales_of(const Scene& scene);
 
 /// What all runs of fragments share.

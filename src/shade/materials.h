@@ -39,6 +39,8 @@ class MaterialTable {
   [[nodiscard]] bool has_textures() const { return has_textures_; }
   /// By how much each instance makes lengths longer.
   [[nodiscard]] const std::vector<float>& length_scales() const { return length_scales_; }
+  /// Follows an instance to where it is now.
+  void follow(std::uint32_t instance) { length_scales_[instance] = length_scale_of(scene_.instances[instance]); }
   /// Nothing is left that make_ready() could make.
   [[nodiscard]] bool is_ready() const { return unready_ == 0; }
 

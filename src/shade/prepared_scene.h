@@ -17,7 +17,25 @@ namespace frontmost::shading {
 struct PreparedScene {
   /// Borrows the surfaces and their scene. O(instances + materials).
   explicit PreparedScene(const Surfaces& from)
-      : surfaces(from), triangles(from), materials(from.scene()), shadows(from), looked_at(from.primitive_count()) {}
+      : surfaces(from),
+        moves(from.placed().moves.count()),
+        triangles(from),
+        materials(from.scene()),
+        shadows(from),
+        looked_at(from.primitive_count()) {}
+
+  /// Follows what Surfaces::move() has moved since the last picture.
+  void follow_moves(const Execution& execution) {
+    const MoveLog& log = surfaces.placed().moves;
+    if (log.count() == moves) return;
+    log.visit_since(moves, surfaces.scene().instances.size(), [&](std::uint32_t instance) {
+      triangles.follow(surfaces, instance);
+      materials.follow(instance);
+      if (index) index->follow(surfaces, instance, execution);
+      shadows.follow(instance, execution);
+    });
+    occlusion_radius.reset();
+  }
 
   /// Makes the textures ready that are looked at on these primitives.
   void make_materials_ready(const BitSet& primitives, const Execution& execution) {
@@ -60,6 +78,7 @@ struct PreparedScene {
   }
 
   const Surfaces& surfaces;
+  std::uint64_t moves;  ///< of the surfaces that were followed
   TriangleStore triangles;
   MaterialTable materials;
   LightShadows shadows;

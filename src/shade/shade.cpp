@@ -235,6 +235,11 @@ void paint_normals(PreparedScene& scene, const Visible& visible, const Execution
 struct Shader::State {
   explicit State(const Surfaces& surfaces) : scene(surfaces) {}
 
+  PreparedScene& now(const Execution& execution) {
+    scene.follow_moves(execution);
+    return scene;
+  }
+
   PreparedScene scene;
   Image image;
   Bitmap bitmap;
@@ -246,7 +251,7 @@ Shader::Shader(Shader&&) noexcept = default;
 Shader& Shader::operator=(Shader&&) noexcept = default;
 
 const Image& Shader::shade(const ShadeInput& input, const ShadeOptions& options, const Execution& execution) {
-  const Request request{state_->scene, input, options, execution};
+  const Request request{state_->now(execution), input, options, execution};
   check(request);
   PlanesCanvas canvas(input.view(), {"R", "G", "B", "A"}, take());
   paint(request, canvas);
@@ -254,7 +259,7 @@ const Image& Shader::shade(const ShadeInput& input, const ShadeOptions& options,
 }
 
 const Bitmap& Shader::shade_bitmap(const ShadeInput& input, const ShadeOptions& options, const Execution& execution) {
-  const Request request{state_->scene, input, options, execution};
+  const Request request{state_->now(execution), input, options, execution};
   check(request);
   BitmapCanvas canvas(input.view(), take_bitmap(), execution.isa);
   paint(request, canvas);
@@ -262,7 +267,7 @@ const Bitmap& Shader::shade_bitmap(const ShadeInput& input, const ShadeOptions& 
 }
 
 const Image& Shader::shade(const ScanInput& input, const ShadeOptions& options, const Execution& execution) {
-  const ScanRequest request{state_->scene, input, options, execution};
+  const ScanRequest request{state_->now(execution), input, options, execution};
   check_scan(request);
   PlanesCanvas canvas(SeenPoints(input.scan).view, {"R", "G", "B", "A"}, take());
   paint_scan(request, canvas, background_color(options));
@@ -274,18 +279,18 @@ DeepImage Shader::shade_deep(const ShadeInput& input, const ShadeOptions& option
     throw Error(ErrorCode::unsupported, "shade: deep images are lit, flat, or of normals");
   ShadeOptions in_layers = options;
   in_layers.see_through = SeeThrough::always;
-  return deep_image({state_->scene, input, in_layers, execution});
+  return deep_image({state_->now(execution), input, in_layers, execution});
 }
 
 Image Shader::normal_image(const Visible& visible, const Execution& execution) {
   check_answer(visible, state_->scene.surfaces.primitive_count(), "normal image", execution);
   PlanesCanvas canvas(visible.view, {"N.X", "N.Y", "N.Z"});
-  paint_normals(state_->scene, visible, execution, canvas);
+  paint_normals(state_->now(execution), visible, execution, canvas);
   return canvas.take();
 }
 
 Figure Shader::draw_figure(const ShadeInput& input, const FigureOptions& options, const Execution& execution) {
-  return figure_of(state_->scene, input, options, execution);
+  return figure_of(state_->now(execution), input, options, execution);
 }
 
 Image Shader::take() { return std::exchange(state_->image, {}); }

@@ -109,8 +109,14 @@ class PartBuilder {
     }
   }
 
-  /// World-space corners. \returns whether all of them are finite.
-  bool read(PrimitiveId id, std::array<glm::vec3, 3>& world) {
+  /// A triangle's corners.
+  struct Corners {
+    std::array<VertexKey, 3> key;
+    std::array<glm::vec3, 3> world;
+  };
+
+  /// \returns whether all corners are finite in world space.
+  bool read(PrimitiveId id, Corners& triangle) {
     if (!placed_.holds(id)) {
       placed_ = place_of(id);
       to_world_.emplace(source_.placed.scene->instances[placed_.number].world_from_mesh);
@@ -118,43 +124,47 @@ class PartBuilder {
       must_check_ = !to_world_->is_identity() || source_.order.all_finite[placed_.number] == 0;
     }
     const glm::uvec3& corners = placed_.corners(id);
-    for (int k = 0; k < 3; ++k) world[std::size_t(k)] = (*to_world_)(placed_.positions[corners[k]]);
+    std::array<glm::vec3, 3>& world = triangle.world;
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle.key[k] = {placed_.positions[corners[int(k)]], placed_.number};
+      world[k] = (*to_world_)(triangle.key[k].position);
+    }
     return !must_check_ || (is_finite(world[0]) && is_finite(world[1]) && is_finite(world[2]));
   }
 
   void add(PrimitiveId id) {
-    std::array<glm::vec3, 3> world;
+    Corners triangle;
     std::array<std::uint8_t, 3> numbers{};  // not finite: degenerate, three times vertex 0, whatever that is or will be
-    if (!read(id, world)) {
+    if (!read(id, triangle)) {
       if (cluster_.triangle_count == Cluster::max_triangles) start_next_cluster();
       append(numbers);
       return;
     }
-    if (cluster_.triangle_count == Cluster::max_triangles || !intern_into_rest(world, numbers)) {
+    if (cluster_.triangle_count == Cluster::max_triangles || !intern_into_rest(triangle, numbers)) {
       start_next_cluster();
-      intern(world, numbers);
+      intern(triangle, numbers);
     }
     // A mirror turns counter-clockwise into clockwise, but what was outside stays outside.
     if (source_.placed.mirrored[placed_.number]) std::swap(numbers[1], numbers[2]);
     append(numbers);
   }
 
-  void intern(const std::array<glm::vec3, 3>& world, std::array<std::uint8_t, 3>& numbers) {
-    for (std::size_t k = 0; k < 3; ++k) numbers[k] = table_.intern(world[k]);
+  void intern(const Corners& triangle, std::array<std::uint8_t, 3>& numbers) {
+    for (std::size_t k = 0; k < 3; ++k) numbers[k] = table_.intern(triangle.key[k], triangle.world[k]);
   }
 
   /// \returns false, with the table as it was, where there is no room left.
-  bool intern_into_rest(const std::array<glm::vec3, 3>& world, std::array<std::uint8_t, 3>& numbers) {
+  bool intern_into_rest(const Corners& triangle, std::array<std::uint8_t, 3>& numbers) {
     if (table_.size() + 3 <= Cluster::max_vertices) {
-      intern(world, numbers);
+      intern(triangle, numbers);
       return true;
     }
     std::size_t missing = 0;
-    for (std::size_t k = 0; k < 3; ++k) missing += (numbers[k] = table_.find(world[k])) == VertexTable::none;
+    for (std::size_t k = 0; k < 3; ++k) missing += (numbers[k] = table_.find(triangle.key[k])) == VertexTable::none;
     if (table_.size() + missing > Cluster::max_vertices) return false;
     // What was found is not looked for again: adding one may lose the guess of another.
     for (std::size_t k = 0; k < 3; ++k)
-      if (numbers[k] == VertexTable::none) numbers[k] = table_.intern(world[k]);
+      if (numbers[k] == VertexTable::none) numbers[k] = table_.intern(triangle.key[k], triangle.world[k]);
     return true;
   }
 

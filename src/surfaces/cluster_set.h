@@ -11,10 +11,12 @@
 #pragma once
 
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "frontmost/surfaces.h"
 #include "surfaces/cones.h"
+#include "surfaces/holders.h"
 #include "surfaces/placed_scene.h"
 
 namespace frontmost {
@@ -45,6 +47,11 @@ struct BoxArrays {
   }
 };
 
+struct InstanceMove {
+  std::uint32_t instance;
+  bool was_mirrored;
+};
+
 struct ClusterSet {
   std::vector<Cluster> clusters;
   std::size_t first_cutout = 0;  ///< clusters from here on hold what may have holes, those before nothing of it
@@ -54,6 +61,15 @@ struct ClusterSet {
   Buffer<std::uint8_t> i0, i1, i2;
   Buffer<PrimitiveId> id;
   LazyCones cones;
+  std::optional<Holders> holders;  ///< once an instance has moved
+
+  /// Follows an instance to where it is in the scene. O(triangles) the first time; later what its own clusters take.
+  /// \returns false, and is to be made anew, where corners have become finite, or are so no more.
+  [[nodiscard]] bool follow(const PlacedScene& placed, const InstanceMove& move, Isa isa);
+
+ private:
+  [[nodiscard]] bool move_triangles(const PlacedScene& placed, const InstanceMove& move, std::size_t cluster);
+  void fit(std::size_t cluster);
 };
 
 /// Cuts all triangles into clusters, every one into one. Triangles with a non-finite world-space corner become
@@ -71,13 +87,19 @@ class LazyClusters {
   [[nodiscard]] const ClusterSet& get_now(const PlacedScene& placed, const Execution& execution) const;
   /// Null where they have not been made.
   [[nodiscard]] const ClusterSet* made() const { return made_.load(); }
+  /// Clusters that are there follow an instance to where it is in the scene, or go. Not while another call runs.
+  void follow(const PlacedScene& placed, const InstanceMove& move, Isa isa);
+  /// Until then they have none, so that what may have holes need not be copied for their sake.
+  void leave_cutouts() {
+    if (set_) set_->cutouts.reset();
+  }
 
  private:
   static constexpr int kCallsWithout = 2;
 
   mutable std::atomic<int> calls_{0};
   mutable std::mutex mutex_;
-  mutable std::unique_ptr<const ClusterSet> set_;
+  mutable std::unique_ptr<ClusterSet> set_;
   mutable std::atomic<const ClusterSet*> made_{nullptr};
 };
 

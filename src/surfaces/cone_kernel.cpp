@@ -197,8 +197,8 @@ const ConeArrays& LazyCones::get_now(const ClusterSet& set, const Execution& exe
   if (const ConeArrays* const made = state_->made.load()) return *made;
   // Several threads may come here: all make the same, one is kept. Waiting for one another could be for ever, where
   // the threads that make the cones are lent to draw another view.
-  auto mine = std::make_unique<const ConeArrays>(make_cones(set, execution));
-  const ConeArrays* first = nullptr;
+  auto mine = std::make_unique<ConeArrays>(make_cones(set, execution));
+  ConeArrays* first = nullptr;
   if (!state_->made.compare_exchange_strong(first, mine.get())) return *first;
   return *mine.release();
 }
@@ -206,6 +206,13 @@ const ConeArrays& LazyCones::get_now(const ClusterSet& set, const Execution& exe
 const ConeArrays* LazyCones::get(const ClusterSet& set, const Execution& execution) const {
   if (state_->made.load() == nullptr && state_->calls.fetch_add(1) < kCallsWithout) return nullptr;
   return &get_now(set, execution);
+}
+
+void LazyCones::follow(const ClusterSet& set, std::span<const std::uint32_t> clusters, Isa isa) {
+  ConeArrays* const made = state_->made.load();
+  if (made == nullptr) return;
+  const auto make = kernel_for(MakeConesKernels, isa);
+  for (const std::uint32_t c : clusters) make(set, c, c + 1, *made);
 }
 
 std::size_t LazyCones::byte_count() const {

@@ -14,6 +14,7 @@
 
 #include <atomic>
 #include <memory>
+#include <span>
 
 #include "frontmost/base.h"
 
@@ -46,13 +47,15 @@ class LazyCones {
   /// At the first call, too.
   [[nodiscard]] const ConeArrays& get_now(const ClusterSet& set, const Execution& execution) const;
   [[nodiscard]] std::size_t byte_count() const;
+  /// Cones that are there follow the triangles of some clusters. Not while another call runs.
+  void follow(const ClusterSet& set, std::span<const std::uint32_t> clusters, Isa isa);
 
  private:
   static constexpr int kCallsWithout = 8;
 
   struct State {
     std::atomic<int> calls{0};
-    std::atomic<const ConeArrays*> made{nullptr};
+    std::atomic<ConeArrays*> made{nullptr};
     State() = default;
     State(const State&) = delete;
     State& operator=(const State&) = delete;

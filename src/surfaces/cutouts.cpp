@@ -89,13 +89,14 @@ glm::vec3 normalized_weights(const glm::dvec3& values) {
   return glm::vec3(inside / sum);
 }
 
-std::shared_ptr<const Cutouts> Cutouts::of(const Scene& scene, const std::vector<PrimitiveId>& first_primitives) {
+std::shared_ptr<Cutouts> Cutouts::of(const Scene& scene, const std::vector<PrimitiveId>& first_primitives) {
   auto cutouts = std::make_shared<Cutouts>();
+  cutouts->patterns_ = std::make_shared<std::vector<CutoutPattern>>();
   bool any = false;
   for (const Material& material : scene.materials) {
     const bool cuts = may_cut(material);
     cutouts->cuts_.push_back(cuts);
-    cutouts->patterns_.push_back(cuts ? pattern_of(scene, material) : CutoutPattern{});
+    cutouts->patterns_->push_back(cuts ? pattern_of(scene, material) : CutoutPattern{});
     any = any || cuts;
   }
   // Most scenes: nothing is asked of them then for any sample.
@@ -124,21 +125,31 @@ void Cutouts::add_mesh(const Scene& scene, const Instance& instance, PrimitiveId
     for (std::size_t k = 0; k < 3; ++k) triangle.corner[k] = world(mesh.positions[mesh.triangles[t][int(k)]]);
     triangle.texcoord = corner_values(mesh, mesh.texcoord_set(set), t, glm::vec2(0), whole);
     triangle.alpha = corner_values(mesh, &mesh.colors, t, 1.0f, alpha_of);
-    triangle.pattern = &patterns_[material];
+    triangle.pattern = &(*patterns_)[material];
     words_[(first + t) / 64].bits |= std::uint64_t(1) << ((first + t) % 64);
     triangles_.push_back(triangle);
   }
 }
 
-const CutoutTriangle& Cutouts::operator[](PrimitiveId id) const {
+void Cutouts::move(const Mesh& mesh, const glm::dmat4& world_from_mesh, PrimitiveId first) {
+  const ToWorld world(world_from_mesh);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    if (has(first + t))
+      for (std::size_t k = 0; k < 3; ++k)
+        triangles_[place_of(first + t)].corner[k] = world(mesh.positions[mesh.triangles[t][int(k)]]);
+}
+
+std::size_t Cutouts::place_of(PrimitiveId id) const {
   const Word& word = words_[id / 64];
   const std::uint64_t lower = word.bits & ((std::uint64_t(1) << (id % 64)) - 1);
-  return triangles_[word.before + std::bitset<64>(lower).count()];
+  return word.before + std::bitset<64>(lower).count();
 }
+
+const CutoutTriangle& Cutouts::operator[](PrimitiveId id) const { return triangles_[place_of(id)]; }
 
 std::size_t Cutouts::byte_count() const {
   std::size_t bytes = words_.size() * sizeof(Word) + triangles_.size() * sizeof(CutoutTriangle);
-  for (const CutoutPattern& pattern : patterns_) bytes += sizeof pattern + pattern.alphas.size();
+  for (const CutoutPattern& pattern : *patterns_) bytes += sizeof pattern + pattern.alphas.size();
   return bytes;
 }
 

@@ -49,14 +49,16 @@ struct CutoutTriangle {
 class Cutouts {
  public:
   /// Null where there are none. O(triangles), and O(texels) of the textures that cut.
-  [[nodiscard]] static std::shared_ptr<const Cutouts> of(const Scene& scene,
-                                                         const std::vector<PrimitiveId>& first_primitives);
+  [[nodiscard]] static std::shared_ptr<Cutouts> of(const Scene& scene,
+                                                   const std::vector<PrimitiveId>& first_primitives);
 
   [[nodiscard]] bool has(PrimitiveId id) const { return words_[id / 64].bits >> (id % 64) & 1; }
   /// Precondition: has(id).
   [[nodiscard]] const CutoutTriangle& operator[](PrimitiveId id) const;
   [[nodiscard]] std::size_t count() const { return triangles_.size(); }
   [[nodiscard]] std::size_t byte_count() const;
+  /// Where the triangles of an instance are now, of those that `first` is the first of.
+  void move(const Mesh& mesh, const glm::dmat4& world_from_mesh, PrimitiveId first);
 
  private:
   /// 64 primitives: which of them may have holes, and how many do before them.
@@ -64,10 +66,11 @@ class Cutouts {
     std::uint64_t bits = 0;
     std::uint32_t before = 0;
   };
+  [[nodiscard]] std::size_t place_of(PrimitiveId id) const;  ///< within triangles_
   void add_mesh(const Scene& scene, const Instance& instance, PrimitiveId first);
 
-  std::vector<CutoutPattern> patterns_;  ///< by material
-  std::vector<bool> cuts_;               ///< likewise
+  std::shared_ptr<std::vector<CutoutPattern>> patterns_;  ///< by material; copies share them
+  std::vector<bool> cuts_;                                ///< likewise
   std::vector<Word> words_;
   std::vector<CutoutTriangle> triangles_;
 };

@@ -41,13 +41,17 @@ bool has_bad_unplaced_mesh(const Scene& scene, Isa isa) {
 
 }  // namespace
 
+void check_transform(const Scene& scene, std::size_t instance, const glm::dmat4& world_from_mesh) {
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row)
+      if (!std::isfinite(world_from_mesh[column][row]))
+        throw Error(ErrorCode::bad_argument, scene.name + ": instance " + std::to_string(instance) + " (" +
+                                                 scene.instances[instance].name + "): its transform is not finite");
+}
+
 void check_transforms(const Scene& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i)
-    for (int column = 0; column < 4; ++column)
-      for (int row = 0; row < 4; ++row)
-        if (!std::isfinite(scene.instances[i].world_from_mesh[column][row]))
-          throw Error(ErrorCode::bad_argument, scene.name + ": instance " + std::to_string(i) + " (" +
-                                                   scene.instances[i].name + "): its transform is not finite");
+    check_transform(scene, i, scene.instances[i].world_from_mesh);
 }
 
 PlacedScene place_scene(const Scene& scene, const Execution& execution) {

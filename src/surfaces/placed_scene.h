@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <memory>
 #include <span>
 #include <vector>
@@ -34,16 +35,21 @@ namespace frontmost {
           float(m[0][2] * q.x + m[1][2] * q.y + m[2][2] * q.z + m[3][2])};
 }
 
+/// Whether a cluster has one vertex for both.
+[[nodiscard]] inline bool has_same_bits(const glm::vec3& a, const glm::vec3& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
 /// to_world() for many vertices of one instance, for which most files have no transform at all.
 class ToWorld {
  public:
   explicit ToWorld(const glm::dmat4& world_from_mesh)
-      : matrix_(world_from_mesh), is_identity_(world_from_mesh == glm::dmat4(1.0)) {}
-  [[nodiscard]] glm::vec3 operator()(const glm::vec3& p) const { return is_identity_ ? p : to_world(matrix_, p); }
+      : matrix_(&world_from_mesh), is_identity_(world_from_mesh == glm::dmat4(1.0)) {}
+  [[nodiscard]] glm::vec3 operator()(const glm::vec3& p) const { return is_identity_ ? p : to_world(*matrix_, p); }
   [[nodiscard]] bool is_identity() const { return is_identity_; }
 
  private:
-  const glm::dmat4& matrix_;
+  const glm::dmat4* matrix_;
   bool is_identity_;
 };
 
@@ -72,16 +78,45 @@ struct MeshRange {
   [[nodiscard]] std::uint32_t box_count() const { return (count() + triangles_in_box - 1) / triangles_in_box; }
 };
 
+/// Which instances have moved, for whoever keeps something of them. Numbers of moves count from when the surfaces were
+/// made.
+class MoveLog {
+ public:
+  [[nodiscard]] std::uint64_t count() const { return first_ + instances_.size(); }
+  /// At most as many are kept as there are instances: whoever is farther behind looks at all of them.
+  void add(std::uint32_t instance, std::size_t instance_count) {
+    if (instances_.size() >= instance_count) {
+      first_ += instances_.size();
+      instances_.clear();
+    }
+    instances_.push_back(instance);
+  }
+  /// Calls visit(instance) for all that may have moved since the log had `seen` moves, and sets that to count().
+  template <class Visit>
+  void visit_since(std::uint64_t& seen, std::size_t instance_count, const Visit& visit) const {
+    if (seen < first_)
+      for (std::uint32_t i = 0; i < instance_count; ++i) visit(i);
+    else
+      for (std::size_t i = seen - first_; i < instances_.size(); ++i) visit(instances_[i]);
+    seen = count();
+  }
+
+ private:
+  std::uint64_t first_ = 0;  ///< the number of the first that is kept
+  std::vector<std::uint32_t> instances_;
+};
+
 /// A scene whose indices have all been checked.
 struct PlacedScene {
   const Scene* scene = nullptr;
   std::vector<PrimitiveId> first_primitives;  ///< by instance, and the total at the end
   std::vector<std::uint8_t> mirrored;         ///< by instance: its triangles have their last two corners swapped
-  std::shared_ptr<const Cutouts> cutouts;     ///< null where no triangle may have holes
+  std::shared_ptr<Cutouts> cutouts;           ///< null where no triangle may have holes
   std::vector<MeshRange> ranges;              ///< of all triangles, in the order of their ids
   std::vector<Box> boxes;                     ///< of those with finite corners, a few consecutive ones each
   std::vector<Box> instance_bounds;
   Box bounds;
+  MoveLog moves;
 
   [[nodiscard]] const Mesh& mesh(const MeshRange& range) const {
     return scene->meshes[scene->instances[range.instance].mesh];
@@ -92,6 +127,11 @@ struct PlacedScene {
   [[nodiscard]] PrimitiveId first_id(const MeshRange& range) const {
     return first_primitives[range.instance] + range.begin;
   }
+  /// Triangles of an instance that may have holes.
+  [[nodiscard]] bool has_cutouts(std::uint32_t instance) const;
+  /// Follows an instance to where it is in the scene.
+  void follow(std::uint32_t instance, Isa isa);
+
   /// Calls visit(vertex) for the world-space corners of a box's triangles; those that a triangle shares with the one
   /// before are not visited again.
   template <class Visit>
@@ -105,6 +145,8 @@ struct PlacedScene {
 
 /// \throws Error bad_argument for a transform that is not finite.
 void check_transforms(const Scene& scene);
+/// The same for what an instance shall have.
+void check_transform(const Scene& scene, std::size_t instance, const glm::dmat4& world_from_mesh);
 
 /// Triangles of a range in world space. Borrows from the scene, or from what was given to find them.
 struct WorldTriangles {

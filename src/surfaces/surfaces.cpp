@@ -17,7 +17,8 @@ namespace {
 
 std::size_t byte_count(const ClusterSet& set) {
   return sizeof set + set.clusters.size() * (sizeof(Cluster) + sizeof(Box)) + 3 * set.x.size() * sizeof(float) +
-         (3 + sizeof(PrimitiveId)) * set.id.size() + set.cones.byte_count();
+         (3 + sizeof(PrimitiveId)) * set.id.size() + set.cones.byte_count() +
+         (set.holders ? set.holders->byte_count() : 0);
 }
 
 }  // namespace
@@ -35,6 +36,22 @@ Surfaces::Surfaces(const Scene& scene, const Execution& execution) {
   auto state = std::make_unique<State>();
   state->placed = place_scene(scene, execution);
   state_ = std::move(state);
+}
+
+void Surfaces::move(Scene& scene, std::uint32_t instance, const glm::dmat4& world_from_mesh,
+                    const Execution& execution) {
+  PlacedScene& placed = state_->placed;
+  if (&scene != placed.scene) throw Error(ErrorCode::bad_argument, "move: the surfaces are of another scene");
+  if (instance >= scene.instances.size())
+    throw Error(ErrorCode::bad_argument, "move: there is no instance " + std::to_string(instance));
+  check_transform(scene, instance, world_from_mesh);
+  const IeeeScope ieee;
+  const InstanceMove move{instance, placed.mirrored[instance] != 0};
+  scene.instances[instance].world_from_mesh = world_from_mesh;
+  state_->clusters.leave_cutouts();
+  placed.follow(instance, execution.isa);
+  state_->clusters.follow(placed, move, execution.isa);
+  placed.moves.add(instance, scene.instances.size());
 }
 
 Surfaces::~Surfaces() = default;
@@ -98,7 +115,7 @@ const ClusterSet& LazyClusters::get_now(const PlacedScene& placed, const Executi
   const std::lock_guard lock(mutex_);
   if (!set_) {
     const IeeeScope ieee;
-    set_ = std::make_unique<const ClusterSet>(build_clusters(placed, execution));
+    set_ = std::make_unique<ClusterSet>(build_clusters(placed, execution));
     made_ = set_.get();
   }
   return *set_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which of a cluster's vertices a corner is.
 //
-//   position --hash--> guesses_[4096] --> a number --> x_, y_, z_ of that number: the same bits?
-//                                                      yes: that is the vertex; no: a new one, and the guess is of it
+//   key --hash--> guesses_[4096] --> a number --> keys_ of that number: the same bits?
+//                                                 yes: that is the vertex; no: a new one, and the guess is of it
 #pragma once
 
 #include <algorithm>
@@ -16,6 +16,13 @@ namespace frontmost {
 constexpr std::size_t padded_to_lanes(std::size_t count) {
   return (count + Cluster::lanes - 1) / Cluster::lanes * Cluster::lanes;
 }
+
+/// What vertices are told apart by: those of two instances stay two where they meet, and those of one where it is
+/// flattened, so that each can follow its instance.
+struct VertexKey {
+  glm::vec3 position;  ///< in the space of the mesh
+  std::uint32_t instance = 0;
+};
 
 /// The vertices of one cluster after the other. They are told apart by the bits of their position, not by number, which
 /// serves indexed meshes and soups alike: in a soup, as STL files are, every corner has a number of its own, and
@@ -31,18 +38,19 @@ class VertexTable {
   void clear() { count_ = 0; }
   [[nodiscard]] std::size_t size() const { return count_; }
 
-  /// The position's number, or `none`: intern() would add it.
-  [[nodiscard]] std::uint8_t find(const glm::vec3& p) const {
-    const Bits bits = bits_of(p);
+  /// The vertex' number, or `none`: intern() would add it.
+  [[nodiscard]] std::uint8_t find(const VertexKey& key) const {
+    const Bits bits = bits_of(key);
     const std::uint8_t guess = guesses_[hash(bits)];
     return is_at(guess, bits) ? guess : none;
   }
-  /// The position's number; it is added when it is not found. Precondition: there is room for one more.
-  std::uint8_t intern(const glm::vec3& p) {
-    const Bits bits = bits_of(p);
+  /// The vertex' number; it is added when it is not found. Precondition: there is room for one more.
+  std::uint8_t intern(const VertexKey& key, const glm::vec3& p) {
+    const Bits bits = bits_of(key);
     std::uint8_t& guess = guesses_[hash(bits)];
     const bool found = is_at(guess, bits);
     const std::uint32_t number = found ? guess : count_;
+    keys_[number] = bits;
     x_[number] = p.x, y_[number] = p.y, z_[number] = p.z;
     guess = static_cast<std::uint8_t>(number);
     count_ += !found;
@@ -82,26 +90,29 @@ class VertexTable {
   [[nodiscard]] const float* z() const { return z_.data(); }
 
  private:
-  using Bits = std::array<std::uint32_t, 3>;
+  using Bits = std::array<std::uint32_t, 4>;
   static constexpr int kHashBits = 12;  // with fewer, guesses are lost more often
 
-  static Bits bits_of(const glm::vec3& p) {
+  static Bits bits_of(const VertexKey& key) {
     Bits bits;
-    std::memcpy(bits.data(), &p, sizeof bits);
+    static_assert(sizeof bits == sizeof key);
+    std::memcpy(bits.data(), &key, sizeof bits);
     return bits;
   }
   /// Round numbers differ in their high bits only: multiplication brings them, and all others, to the top.
   static std::uint32_t hash(const Bits& b) {
-    return (b[0] * 0x9E3779B1u + b[1] * 0x85EBCA77u + b[2] * 0xC2B2AE3Du) >> (32 - kHashBits);
+    return (b[0] * 0x9E3779B1u + b[1] * 0x85EBCA77u + b[2] * 0xC2B2AE3Du + b[3] * 0x27D4EB2Fu) >> (32 - kHashBits);
   }
   [[nodiscard]] bool is_at(std::uint8_t number, const Bits& bits) const {
-    const Bits other = bits_of((*this)[number]);
-    const std::uint32_t differing = (bits[0] ^ other[0]) | (bits[1] ^ other[1]) | (bits[2] ^ other[2]);
+    const Bits& other = keys_[number];
+    const std::uint32_t differing =
+        (bits[0] ^ other[0]) | (bits[1] ^ other[1]) | (bits[2] ^ other[2]) | (bits[3] ^ other[3]);
     return static_cast<bool>(int(number < count_) & int(differing == 0));
   }
 
   std::array<std::uint8_t, std::size_t(1) << kHashBits> guesses_{};
-  std::array<float, Cluster::max_vertices> x_{}, y_{}, z_{};  // a guess may be of a vertex that is not there
+  std::array<Bits, Cluster::max_vertices> keys_{};  // a guess may be of a vertex that is not there
+  std::array<float, Cluster::max_vertices> x_, y_, z_;
   std::uint32_t count_ = 0;
 };
 

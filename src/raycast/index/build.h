@@ -59,6 +59,15 @@ void fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execu
 /// The bounds of the triangles in use.
 [[nodiscard]] LeafBox box_of(const RayLeaf& leaf, std::uint32_t number);
 
+/// Those of a node's children.
+[[nodiscard]] inline Box box_of(const RayNode& node) {
+  Box box;
+  for (std::size_t lane = 0; lane < node.count; ++lane)
+    box.include(Box{{node.low[0][lane], node.low[1][lane], node.low[2][lane]},
+                    {node.high[0][lane], node.high[1][lane], node.high[2][lane]}});
+  return box;
+}
+
 /// Fills tree.nodes over the boxes, which are reordered.
 void build_nodes(std::vector<LeafBox>& boxes, RayTree& tree, const Execution& execution);
 
@@ -74,6 +83,16 @@ enum class RepeatedTriangles { among_all, apart };
 /// Moves the instances of a tree on two levels to where they are in `scene`.
 /// \returns false where these are other instances; the tree is then as it was. Empty after an error halfway.
 [[nodiscard]] bool replace_instances(const Scene& scene, RayTree& tree, const Execution& execution);
+
+/// Moves one instance to where it is in `surfaces`, which are those that the tree is of. \returns false where the tree
+/// has to be made anew, because corners have become finite, are so no more, or are copies of others; it is then empty,
+/// as it is after an error.
+[[nodiscard]] bool follow_instance(const Surfaces& surfaces, std::uint32_t instance, RayTree& tree);
+
+/// Gives a root the place of an instance.
+void place_instance(const Instance& instance, PlacedRoot& placed);
+/// Around the boxes that a walk meets below the root: its children's, where it has any.
+[[nodiscard]] Box placed_box(const RayTree& tree, const PlacedRoot& by);
 
 /// Two corners the same: no ray meets it, or it is one that Surfaces has set aside as not finite.
 inline bool is_degenerate(const ClusterSet& set, std::size_t t) {

@@ -64,7 +64,8 @@ class Forest {
   std::uint32_t nodes_ = 0, leaves_ = 0;
 };
 
-/// Around the boxes that a walk meets below the root: its children's, where it has any.
+}  // namespace
+
 Box placed_box(const RayTree& tree, const PlacedRoot& by) {
   Box box;
   if (by.root & kLeafBit) {
@@ -87,6 +88,8 @@ Box placed_box(const RayTree& tree, const PlacedRoot& by) {
     }
   return box;
 }
+
+namespace {
 
 /// The tree over the instances goes behind the nodes of the meshes.
 void build_upper(RayTree& tree, const Execution& execution) {
@@ -124,12 +127,12 @@ std::shared_ptr<const Cutouts> cutouts_of(const Scene& scene) {
   return Cutouts::of(scene, first);
 }
 
+}  // namespace
+
 void place_instance(const Instance& instance, PlacedRoot& placed) {
   placed.world_from_mesh = instance.world_from_mesh;
   placed.is_mirrored = mirrors(instance.world_from_mesh);
 }
-
-}  // namespace
 
 RayTree make_placed_tree(const Scene& scene, const Execution& execution) {
   const IeeeScope ieee;
@@ -178,6 +181,7 @@ bool replace_instances(const Scene& scene, RayTree& tree, const Execution& execu
   TreeChange change(tree);
   for (std::size_t i = 0; i < tree.placed.size(); ++i) place_instance(scene.instances[i], tree.placed[i]);
   if (tree.cutouts) tree.cutouts = cutouts_of(scene);
+  tree.links.reset();
   build_upper(tree, execution);
   change.complete();
   return true;

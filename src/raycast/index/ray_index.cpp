@@ -17,10 +17,15 @@ void build(RayTree& tree, const Execution& execution) {
   build_nodes(boxes, tree, execution);
 }
 
+std::size_t byte_count(const RayLinks& links) {
+  return (links.above_node.size() + links.above_leaf.size()) * sizeof(std::uint32_t) +
+         (links.holders ? links.holders->byte_count() : 0);
+}
+
 std::size_t byte_count(const RayTree& tree) {
   return sizeof(RayTree) + tree.nodes.size() * sizeof(RayNode) + tree.leaves.size() * sizeof(RayLeaf) +
          tree.placed.size() * sizeof(PlacedRoot) + (tree.cutouts ? tree.cutouts->byte_count() : 0) +
-         (tree.copies ? byte_count(*tree.copies) : 0);
+         (tree.copies ? byte_count(*tree.copies) : 0) + (tree.links ? byte_count(*tree.links) : 0);
 }
 
 }  // namespace
@@ -56,6 +61,18 @@ void RayIndex::refit(const Surfaces& surfaces, const Execution& execution) {
 void RayIndex::refit(const Scene& scene, const Execution& execution) {
   const IeeeScope ieee;
   if (!replace_instances(scene, *tree_, execution)) *tree_ = make_placed_tree(scene, execution);
+}
+
+void RayIndex::follow(const Surfaces& surfaces, std::uint32_t instance, const Execution& execution) {
+  const IeeeScope ieee;
+  const bool has_two_levels = !tree_->placed.empty();
+  if (instance >= surfaces.scene().instances.size())
+    throw Error(ErrorCode::bad_argument, "follow: there is no instance " + std::to_string(instance));
+  if (has_two_levels && tree_->placed.size() != surfaces.scene().instances.size())
+    throw Error(ErrorCode::bad_argument, "follow: the surfaces are of another scene");
+  if (follow_instance(surfaces, instance, *tree_)) return;
+  *tree_ = has_two_levels ? make_placed_tree(surfaces.scene(), execution)
+                          : make_tree(surfaces, RepeatedTriangles::apart, execution);
 }
 
 std::uint32_t RayIndex::triangle_count() const {

@@ -11,10 +11,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "frontmost/raycast.h"
 #include "surfaces/cutouts.h"
+#include "surfaces/holders.h"
 
 namespace frontmost {
 
@@ -53,6 +55,13 @@ struct PlacedRoot {
   bool is_mirrored = false;       ///< the last two corners change places
 };
 
+/// The way back, once an instance has moved. node * 16 + lane, or no_index above the root.
+struct RayLinks {
+  std::vector<std::uint32_t> above_node;
+  std::vector<std::uint32_t> above_leaf;  ///< on two levels, by placed root
+  std::optional<Holders> holders;         ///< on one level: the leaves of an instance's triangles
+};
+
 /// On two levels, the leaves of the tree under `root` are the numbers of placed roots.
 struct RayTree {
   Buffer<RayNode> nodes;
@@ -68,6 +77,7 @@ struct RayTree {
   /// Triangles that are there again: each has the corners of one of this tree, in their order, and a higher id. So
   /// whoever asks what is nearest, or whether anything is met, does without them. Null: none were taken apart.
   std::shared_ptr<RayTree> copies;
+  std::optional<RayLinks> links;  ///< made when they are first asked for
 
   /// The most children that a depth-first walk has waiting.
   [[nodiscard]] std::size_t stack_size() const { return std::size_t(depth) * (kRayLanes - 1) + 1; }

@@ -49,14 +49,6 @@ std::size_t move_triangles(const ClusterSet& set, const Cluster& cluster, const 
   return count;
 }
 
-Box box_of(const RayNode& node) {
-  Box box;
-  for (std::size_t lane = 0; lane < node.count; ++lane)
-    box.include(Box{{node.low[0][lane], node.low[1][lane], node.low[2][lane]},
-                    {node.high[0][lane], node.high[1][lane], node.high[2][lane]}});
-  return box;
-}
-
 /// Children come after their parents.
 void fit_nodes(const std::vector<LeafBox>& boxes, RayTree& tree) {
   const auto box_of_child = [&](std::uint32_t child) {

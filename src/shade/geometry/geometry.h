@@ -69,6 +69,9 @@ class TriangleStore {
   /// made alone the first time; whoever asks again will ask for more, so that the second time makes the whole mesh's.
   void smooth(const BitSet& large, const Execution& execution);
 
+  /// Follows an instance to where it is now.
+  void follow(const Surfaces& surfaces, std::uint32_t instance);
+
   /// The placement that holds `id`; `guess` is looked at first.
   [[nodiscard]] const Placement& placement_with(PrimitiveId id, const Placement& guess) const;
   [[nodiscard]] const Placement& first_placement() const { return placements_.front(); }

@@ -86,6 +86,10 @@ void TriangleStore::smooth_mesh(std::uint32_t mesh, const BitSet& large, const E
       for (const PrimitiveId first : firsts) smoothed_.add(first + t);
 }
 
+void TriangleStore::follow(const Surfaces& surfaces, std::uint32_t instance) {
+  placements_[instance] = placement_of(surfaces, instance);
+}
+
 const TriangleStore::Placement& TriangleStore::placement_with(PrimitiveId id, const Placement& guess) const {
   if (guess.holds(id)) return guess;
   const auto starts_after = [](PrimitiveId wanted, const Placement& p) { return wanted < p.first; };

@@ -46,6 +46,13 @@ void LightShadows::find(const ShadedPicture& picture, const PictureLights& light
   draw_maps(picture, execution);
 }
 
+void LightShadows::follow(std::uint32_t instance, const Execution& execution) {
+  rays_.reset();
+  for (DrawnMap& drawn : maps_) drawn.has_drawn = false;
+  if (opaque_) opaque_->move(opaque_scene_, instance, all_.scene().instances[instance].world_from_mesh, execution);
+  if (index_) index_->follow(opaque_ ? *opaque_ : all_, instance, execution);
+}
+
 void LightShadows::find_far(std::size_t light, const AskedFragments& asked, Isa isa) const {
   if (rays_) return rays_->find_light(lights_->far[light].light, asked);
   far_maps_[light]->find_light(points_of(asked.batch), asked.is_asked, asked.batch.shadow.values, isa);

@@ -42,6 +42,9 @@ class LightShadows {
   /// Borrows the surfaces. O(1).
   explicit LightShadows(const Surfaces& surfaces) : all_(surfaces) {}
 
+  /// Follows an instance to where it is now.
+  void follow(std::uint32_t instance, const Execution& execution);
+
   /// Finds those of a picture and its lights, which are borrowed.
   void find(const ShadedPicture& picture, const PictureLights& lights, const Execution& execution);
   /// As RayShadows has it.

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// An index after one instance has moved: its triangles, or its root, get their new places, and the boxes on the way
+// from there to the root are fitted anew.
+//
+//    one level     leaves that hold triangles of the instance --> boxes of these leaves --> nodes above
+//    two levels    the instance's root --> its box --> nodes above, of the tree over the instances
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "raycast/index/build.h"
+
+namespace frontmost {
+namespace {
+
+/// The links from `first_node` on, which are those to roots on two levels.
+RayLinks links_of(const RayTree& tree, std::uint32_t first_node, std::size_t leaf_count) {
+  RayLinks links;
+  links.above_node.assign(tree.nodes.size(), no_index);
+  links.above_leaf.assign(leaf_count, no_index);
+  for (std::uint32_t n = first_node; n < tree.nodes.size(); ++n)
+    for (std::uint32_t lane = 0; lane < tree.nodes[n].count; ++lane) {
+      const std::uint32_t child = tree.nodes[n].child[lane];
+      (child & kLeafBit ? links.above_leaf[child & ~kLeafBit] : links.above_node[child]) = n * kRayLanes + lane;
+    }
+  return links;
+}
+
+/// Sets the box of a leaf, or a root, in the node above it, and fits what is above that.
+void fit_above(RayTree& tree, std::uint32_t leaf, Box box) {
+  std::uint32_t link = tree.links->above_leaf[leaf];
+  for (; link != no_index; link = tree.links->above_node[link / kRayLanes]) {
+    RayNode& node = tree.nodes[link / kRayLanes];
+    for (int axis = 0; axis < 3; ++axis) {
+      node.low[axis][link % kRayLanes] = box.low[axis];
+      node.high[axis][link % kRayLanes] = box.high[axis];
+    }
+    box = box_of(node);
+  }
+  tree.bounds = box;
+}
+
+/// Moves an instance's triangles that are in a leaf. \returns how many, or no_index where one is not finite any more.
+std::uint32_t move_triangles(const PlacedScene& placed, std::uint32_t instance, RayLeaf& leaf) {
+  const Instance& it = placed.scene->instances[instance];
+  const Mesh& mesh = placed.scene->meshes[it.mesh];
+  const ToWorld to_world(it.world_from_mesh);
+  std::uint32_t count = 0;
+  for (std::size_t lane = 0; lane < kRayLanes; ++lane) {
+    const PrimitiveId triangle = leaf.id[lane] - placed.first_primitives[instance];  // wraps for ids below
+    if (triangle >= mesh.triangles.size()) continue;
+    for (int k = 0; k < 3; ++k) {
+      const int from = placed.mirrored[instance] && k > 0 ? 3 - k : k;
+      const glm::vec3 corner = to_world(mesh.positions[mesh.triangles[triangle][from]]);
+      if (!is_finite(corner)) return no_index;
+      for (int axis = 0; axis < 3; ++axis) leaf.corner[k][axis][lane] = corner[axis];
+    }
+    ++count;
+  }
+  return count;
+}
+
+/// The triangles of a mesh whose corners are finite and no two the same.
+std::uint32_t count_met(const Mesh& mesh) {
+  std::uint32_t count = 0;
+  for (const glm::uvec3& c : mesh.triangles) {
+    const glm::vec3 &p = mesh.positions[c.x], &q = mesh.positions[c.y], &r = mesh.positions[c.z];
+    count += is_finite(p) && is_finite(q) && is_finite(r) && !has_same_bits(p, q) && !has_same_bits(q, r) &&
+             !has_same_bits(r, p);
+  }
+  return count;
+}
+
+bool follow_on_one_level(const PlacedScene& placed, std::uint32_t instance, RayTree& tree) {
+  if (tree.copies || tree.root == no_index) return false;
+  if (!tree.links) {
+    tree.links = links_of(tree, 0, tree.leaves.size());
+    tree.links->holders.emplace(placed.first_primitives, tree.leaves.size(),
+                                [&](std::uint32_t leaf) { return std::span(tree.leaves[leaf].id, kRayLanes); });
+  }
+  std::uint32_t count = 0;
+  for (const std::uint32_t leaf : tree.links->holders->of(instance)) {
+    const std::uint32_t moved = move_triangles(placed, instance, tree.leaves[leaf]);
+    if (moved == no_index) return false;
+    count += moved;
+    fit_above(tree, leaf, as_box(box_of(tree.leaves[leaf], leaf)));
+  }
+  // Others where corners have become finite.
+  return count == count_met(placed.scene->meshes[placed.scene->instances[instance].mesh]);
+}
+
+bool follow_on_two_levels(const PlacedScene& placed, std::uint32_t instance, RayTree& tree) {
+  PlacedRoot& root = tree.placed[instance];
+  place_instance(placed.scene->instances[instance], root);
+  if (root.root == no_index) return true;
+  if (!tree.links) tree.links = links_of(tree, tree.mesh_nodes, tree.placed.size());
+  const Box box = placed_box(tree, root);
+  // Nothing of it was finite, or is any more.
+  if (box.is_empty() || (tree.links->above_leaf[instance] == no_index && tree.root != (instance | kLeafBit)))
+    return false;
+  fit_above(tree, instance, box);
+  return true;
+}
+
+}  // namespace
+
+bool follow_instance(const Surfaces& surfaces, std::uint32_t instance, RayTree& tree) {
+  const PlacedScene& placed = surfaces.placed();
+  TreeChange change(tree);
+  tree.cutouts = placed.cutouts;
+  if (!(tree.placed.empty() ? follow_on_one_level : follow_on_two_levels)(placed, instance, tree)) return false;
+  change.complete();
+  return true;
+}
+
+}  // namespace frontmost
