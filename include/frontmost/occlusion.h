@@ -73,7 +73,7 @@ class Occlusion {
   /// scene, or one that has moved. Before the first call, and of empty boxes: outside. O(cells that the box covers /
   /// 512).
   [[nodiscard]] ObjectSight sight_of(const Box& box) const;
-  /// The same of many. Precondition: as many of both.
+  /// The same of many. Precondition: as many of both. Allocates nothing from the second call on.
   void find_sights(std::span<const Box> boxes, std::span<ObjectSight> sights) const;
 
  private:

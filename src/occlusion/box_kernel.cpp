@@ -189,6 +189,15 @@ void FindOnScreen(const CellGrid& grid, const BoxColumns& boxes, std::vector<Scr
 
 bool IsRectCovered(const CellCover& cover, const CellRect& rect, float depth) { return IsCovered(cover, rect, depth); }
 
+void FindSights(const CellCover& cover, std::span<const ScreenBox> boxes, ObjectSight* sights) {
+  for (const ScreenBox& box : boxes) {
+    ObjectSight& sight = *sights++;
+    sight = ObjectSight::outside;
+    if (box.rect.is_empty()) continue;
+    sight = IsCovered(cover, box.rect, box.nearest) ? ObjectSight::hidden : ObjectSight::may_be_seen;
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace frontmost::occlusion_detail
 HWY_AFTER_NAMESPACE();
@@ -198,6 +207,7 @@ namespace frontmost::occlusion_detail {
 
 FRONTMOST_KERNELS(FindOnScreen);
 FRONTMOST_KERNELS(IsRectCovered);
+FRONTMOST_KERNELS(FindSights);
 
 CellGrid::CellGrid(const View& view, int cell)
     : transform(view),
@@ -223,6 +233,10 @@ void BoxColumns::set(std::size_t number, const Box& box) {
 void find_on_screen(const CellGrid& grid, const BoxColumns& boxes, std::vector<ScreenBox>& out, Isa isa) {
   out.resize(boxes.count);
   kernel_for(FindOnScreenKernels, isa)(grid, boxes, out);
+}
+
+void find_sights_of(const CellCover& cover, std::span<const ScreenBox> boxes, ObjectSight* sights, Isa isa) {
+  kernel_for(FindSightsKernels, isa)(cover, boxes, sights);
 }
 
 CoverTest cover_test(Isa isa) { return kernel_for(IsRectCoveredKernels, isa); }

@@ -3,9 +3,10 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
-#include "frontmost/base.h"
+#include "frontmost/occlusion.h"
 #include "occlusion/cover.h"
 #include "view/screen_transform.h"
 
@@ -45,5 +46,8 @@ void find_on_screen(const CellGrid& grid, const BoxColumns& boxes, std::vector<S
 /// Whether all cells of a rectangle within the screen are covered by what lies nearer than a distance.
 using CoverTest = bool (*)(const CellCover& cover, const CellRect& rect, float distance);
 [[nodiscard]] CoverTest cover_test(Isa isa);
+
+/// What is known of many boxes, of which there are as many sights.
+void find_sights_of(const CellCover& cover, std::span<const ScreenBox> boxes, ObjectSight* sights, Isa isa);
 
 }  // namespace frontmost::occlusion_detail

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontmost/occlusion.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "base/parallel.h"
@@ -83,6 +84,10 @@ struct Occlusion::State {
   std::vector<ScreenBox> on_screen;
   std::vector<ObjectSight> sights;
   CellCover cover;
+  // Boxes that are asked for, a block at a time.
+  static constexpr std::size_t most_asked = 512;
+  BoxColumns asked{most_asked};
+  std::vector<ScreenBox> asked_on_screen;
   Isa isa = Isa::best;
   Sweep sweep;
 };
@@ -123,18 +128,17 @@ ObjectSight Occlusion::sight_of(const Box& box) const {
 }
 
 void Occlusion::find_sights(std::span<const Box> boxes, std::span<ObjectSight> sights) const {
-  const State& s = *state_;
-  BoxColumns columns(boxes.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i)
-    if (!boxes[i].is_empty()) columns.set(i, boxes[i]);
-  std::vector<ScreenBox> on_screen;
-  if (s.grid) find_on_screen(*s.grid, columns, on_screen, s.isa);
-  const CoverTest is_covered = cover_test(s.isa);
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    sights[i] = ObjectSight::outside;
-    if (!s.grid || boxes[i].is_empty() || on_screen[i].rect.is_empty()) continue;
-    const ScreenBox& box = on_screen[i];
-    sights[i] = is_covered(s.cover, box.rect, box.nearest) ? ObjectSight::hidden : ObjectSight::may_be_seen;
+  State& s = *state_;
+  if (!s.grid) return std::fill(sights.begin(), sights.end(), ObjectSight::outside);
+  for (std::size_t first = 0; first < boxes.size(); first += State::most_asked) {
+    s.asked.count = std::min(boxes.size() - first, State::most_asked);
+    const std::span<const Box> block = boxes.subspan(first, s.asked.count);
+    for (std::size_t i = 0; i < block.size(); ++i)
+      if (!block[i].is_empty()) s.asked.set(i, block[i]);
+    find_on_screen(*s.grid, s.asked, s.asked_on_screen, s.isa);
+    for (std::size_t i = 0; i < block.size(); ++i)
+      if (block[i].is_empty()) s.asked_on_screen[i].rect = {};
+    find_sights_of(s.cover, s.asked_on_screen, &sights[first], s.isa);
   }
 }
 
