@@ -14,14 +14,10 @@ constexpr int kLargestCell = 32;
 /// Cells are not divided further at this side, in pixels.
 constexpr double kSmallestCell = 1.0 / 1024;
 /// So few faces are cut by each other sooner than a cell is divided.
-constexpr std::size_t kFewFaces = 10;
+constexpr std::size_t kFewFaces = 48;
 /// More faces than this are worth dividing a cell for, even if most of them reach into all of its parts: there, they
 /// hide each other.
 constexpr std::size_t kManyFaces = 100;
-
-struct Range {
-  double low, high;
-};
 
 Range range_of(double a, double b, double c) { return {std::min({a, b, c}), std::max({a, b, c})}; }
 
@@ -78,7 +74,8 @@ class CellSolver {
 
   void solve(const CellBox& box, std::span<const std::uint32_t> faces, std::vector<SeenPart>& seen) {
     list_.clear();
-    for (const std::uint32_t face : faces) add(face, box);
+    gathered_.clear();
+    for (const std::uint32_t face : faces) gather(face, box);
     divide(box, 0, seen);
   }
 
@@ -90,10 +87,16 @@ class CellSolver {
     bool is_told;
   };
 
-  void add(std::uint32_t face, const CellBox& box) {
-    if (const std::optional<FaceInBox> found = look_at(face, box)) list_.push_back(*found);
-  }
-  [[nodiscard]] std::optional<FaceInBox> look_at(std::uint32_t face, const CellBox& box) const;
+  /// Corners of the faces of one of the largest cells, so that they lie beside each other.
+  struct GatheredFace {
+    ScreenPoint corners[3];
+    std::uint8_t ending;
+  };
+
+  void gather(std::uint32_t face, const CellBox& box);
+  /// Adds a face of a larger cell to the end of the list where it reaches into the box.
+  void add(const FaceInBox& face, const CellBox& box);
+  [[nodiscard]] bool reaches_into(const CellBox& box, FaceInBox& face) const;
   void divide(const CellBox& box, std::size_t first, std::vector<SeenPart>& seen);
   [[nodiscard]] bool divide_further(const CellBox& box, std::size_t first, std::vector<SeenPart>& seen);
   void leave_out_copies(std::size_t first);
@@ -104,26 +107,38 @@ class CellSolver {
   const ViewedFaces& screen_;
   const AreaRule& rule_;
   PieceCutter cutter_;
+  std::vector<GatheredFace> gathered_;
   std::vector<FaceInBox> list_;  ///< of the cell that is looked at, behind those of the cells that it is a part of
 };
 
-/// None where the face does not reach into the box.
-std::optional<FaceInBox> CellSolver::look_at(std::uint32_t face, const CellBox& box) const {
+void CellSolver::gather(std::uint32_t face, const CellBox& box) {
   const auto& c = screen_.faces[face].corners;
-  const ScreenPoint p[3] = {screen_.points[c[0]], screen_.points[c[1]], screen_.points[c[2]]};
-  const Range x = range_of(p[0].x, p[1].x, p[2].x), y = range_of(p[0].y, p[1].y, p[2].y);
-  if (x.high <= box.left || x.low >= box.right || y.high <= box.top || y.low >= box.bottom) return std::nullopt;
-  const Range key = range_of(p[0].key, p[1].key, p[2].key);
-  FaceInBox found{face, false, true, key.high, key.low};
-  const bool is_inside = x.low >= box.left && x.high <= box.right && y.low >= box.top && y.high <= box.bottom;
-  if (is_inside) {
-    found.is_ending = screen_.ending[face] != 0;
-    found.is_all = false;
-    return found;
-  }
+  const ScreenPoint &p = screen_.points[c[0]], &q = screen_.points[c[1]], &r = screen_.points[c[2]];
+  const Range key = range_of(p.key, q.key, r.key);
+  gathered_.push_back({{p, q, r}, screen_.ending[face]});
+  add({face, std::uint32_t(gathered_.size() - 1), screen_.ending[face] != 0, false, key.high, key.low,
+       range_of(p.x, q.x, r.x), range_of(p.y, q.y, r.y)},
+      box);
+}
+
+void CellSolver::add(const FaceInBox& face, const CellBox& box) {
+  if (face.x.high <= box.left || face.x.low >= box.right || face.y.high <= box.top || face.y.low >= box.bottom) return;
+  list_.push_back(face);
+  // What lies in the cell as a whole did so in all larger ones, and gather() said all there is to know.
+  const bool is_inside =
+      face.x.low >= box.left && face.x.high <= box.right && face.y.low >= box.top && face.y.high <= box.bottom;
+  if (!is_inside && !reaches_into(box, list_.back())) list_.pop_back();
+}
+
+/// Finds what is to be known of a face that reaches out of the box. \returns whether it reaches into it.
+bool CellSolver::reaches_into(const CellBox& box, FaceInBox& found) const {
+  const GatheredFace& gathered = gathered_[found.number];
+  const ScreenPoint* const p = gathered.corners;
   const double middle_x = 0.5 * (box.left + box.right), middle_y = 0.5 * (box.top + box.bottom);
   const double half_x = box.right - middle_x, half_y = box.bottom - middle_y;
   const double inwards = turn_of(p[0], p[1], p[2]) > 0 ? 1 : -1;
+  found.is_ending = false;
+  found.is_all = true;
   for (int k = 0; k < 3; ++k) {
     const ScreenPoint &a = p[k], &b = p[k == 2 ? 0 : k + 1];
     const double along_x = b.x - a.x, along_y = b.y - a.y;
@@ -131,10 +146,10 @@ std::optional<FaceInBox> CellSolver::look_at(std::uint32_t face, const CellBox& 
     const double within = inwards * (along_x * (middle_y - a.y) - along_y * (middle_x - a.x));
     const double varies = std::abs(along_x) * half_y + std::abs(along_y) * half_x;
     const double narrow = kNarrow * (std::abs(along_x) + std::abs(along_y));
-    if (within + varies <= narrow) return std::nullopt;
+    if (within + varies <= narrow) return false;
     if (within - varies > narrow) continue;
     found.is_all = false;
-    if ((screen_.ending[face] >> k & 1) == 0) continue;
+    if ((gathered.ending >> k & 1) == 0) continue;
     found.is_ending =
         found.is_ending || (std::min(a.x, b.x) <= box.right + kNarrow && std::max(a.x, b.x) >= box.left - kNarrow &&
                             std::min(a.y, b.y) <= box.bottom + kNarrow && std::max(a.y, b.y) >= box.top - kNarrow);
@@ -142,9 +157,10 @@ std::optional<FaceInBox> CellSolver::look_at(std::uint32_t face, const CellBox& 
   const AffineKey plane(p[0], p[1], p[2]);
   const double at_middle = plane.at({middle_x, middle_y});
   const double varies = std::abs(plane.along_x) * half_x + std::abs(plane.along_y) * half_y;
+  const Range key = range_of(p[0].key, p[1].key, p[2].key);
   found.nearest = std::min(key.high, at_middle + varies);
   found.farthest = std::max(key.low, at_middle - varies);
-  return found;
+  return true;
 }
 
 /// Finishes the cell whose list begins at `first`, and takes its list away.
@@ -171,7 +187,7 @@ bool CellSolver::divide_further(const CellBox& box, std::size_t first, std::vect
   std::size_t begins[4];
   for (int k = 0; k < 4; ++k) {
     begins[k] = list_.size();
-    for (std::size_t i = first; i < last; ++i) add(list_[i].face, parts[k]);
+    for (std::size_t i = first; i < last; ++i) add(FaceInBox(list_[i]), parts[k]);  // a copy: the list grows
   }
   if (list_.size() - last >= 3 * count && (count <= kManyFaces || size <= 1)) {
     list_.resize(last);
@@ -184,22 +200,31 @@ bool CellSolver::divide_further(const CellBox& box, std::size_t first, std::vect
 /// Brings the list into the order of its nearest keys, and tells what that tells.
 CellSolver::Sorted CellSolver::sort(const CellBox& box, std::size_t first) {
   const auto begin = list_.begin() + std::ptrdiff_t(first);
+  // What lies behind something that covers the cell alone need not be put in order.
+  double covered = -std::numeric_limits<double>::infinity(), removed = covered;
+  for (auto face = begin; face != list_.end(); ++face)
+    if (face->is_all) covered = std::max(covered, face->farthest);
+  const auto is_hidden = [&](const FaceInBox& face) {
+    if (face.nearest < covered) removed = std::max(removed, face.nearest);
+    return face.nearest < covered;
+  };
+  list_.erase(std::remove_if(begin, list_.end(), is_hidden), list_.end());
   std::sort(begin, list_.end(), [](const FaceInBox& a, const FaceInBox& b) {
     return a.nearest != b.nearest ? a.nearest > b.nearest : a.face < b.face;
   });
   leave_out_copies(first);
   // Off the middle, through which the sides of symmetric models pass.
   const glm::dvec2 place(box.left + 0.4372 * (box.right - box.left), box.top + 0.5611 * (box.bottom - box.top));
-  double covered = -std::numeric_limits<double>::infinity();  // of what covers the cell alone the farthest key
   for (std::size_t i = first, group = first; i < list_.size();) {
     double farthest = std::numeric_limits<double>::infinity();
     bool is_ending = false;
     for (; i < list_.size() && (i == group || list_[i].nearest >= farthest); ++i) {
-      if (list_[i].nearest < covered) return {i - first, false};
       farthest = std::min(farthest, list_[i].farthest);
       is_ending = is_ending || list_[i].is_ending;
-      if (list_[i].is_all) covered = std::max(covered, list_[i].farthest);
     }
+    // A group that reaches back to what was removed is not whole: a surface of it may pass through what covers the
+    // cell.
+    if (i == list_.size() && removed >= farthest) break;
     if (!is_ending) {
       const int count = count_at(place, group, i);
       if (count > 0) return {i - first, group == first && count == 1};
@@ -211,9 +236,7 @@ CellSolver::Sorted CellSolver::sort(const CellBox& box, std::size_t first) {
 
 /// Of faces with the same corners the first stays. Copies follow each other, as they are equally near.
 void CellSolver::leave_out_copies(std::size_t first) {
-  const auto corner = [&](std::size_t i, int k) -> const ScreenPoint& {
-    return screen_.points[screen_.faces[list_[i].face].corners[k]];
-  };
+  const auto corner = [&](std::size_t i, int k) -> const ScreenPoint& { return gathered_[list_[i].number].corners[k]; };
   const auto has_corner = [&](std::size_t i, const ScreenPoint& p) {
     for (int k = 0; k < 3; ++k)
       if (const ScreenPoint& q = corner(i, k); q.x == p.x && q.y == p.y && q.key == p.key) return true;
@@ -233,8 +256,9 @@ void CellSolver::leave_out_copies(std::size_t first) {
 int CellSolver::count_at(const glm::dvec2& place, std::size_t first, std::size_t last) const {
   int count = 0;
   for (std::size_t i = first; i < last; ++i) {
-    const auto& c = screen_.faces[list_[i].face].corners;
-    const ScreenPoint p[3] = {screen_.points[c[0]], screen_.points[c[1]], screen_.points[c[2]]};
+    const FaceInBox& face = list_[i];
+    if (place.x < face.x.low || place.x > face.x.high || place.y < face.y.low || place.y > face.y.high) continue;
+    const ScreenPoint* const p = gathered_[face.number].corners;
     const double inwards = turn_of(p[0], p[1], p[2]) > 0 ? 1 : -1;
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; ++k) {
@@ -252,12 +276,10 @@ int CellSolver::count_at(const glm::dvec2& place, std::size_t first, std::size_t
 /// Every face of the list is seen as far as it lies in the cell.
 void CellSolver::show_all(const CellBox& box, std::size_t first, std::vector<SeenPart>& seen) {
   for (std::size_t i = first; i < list_.size(); ++i) {
-    const std::uint32_t face = list_[i].face;
-    const auto& c = screen_.faces[face].corners;
-    const ScreenPoint p[3] = {screen_.points[c[0]], screen_.points[c[1]], screen_.points[c[2]]};
-    const Range x = range_of(p[0].x, p[1].x, p[2].x), y = range_of(p[0].y, p[1].y, p[2].y);
+    const FaceInBox& face = list_[i];
+    const auto &x = face.x, &y = face.y;
     if (x.low >= box.left && x.high <= box.right && y.low >= box.top && y.high <= box.bottom)
-      seen.push_back({face, rule_.areas_of(p)});
+      seen.push_back({face.face, rule_.areas_of(gathered_[face.number].corners)});
     else
       cutter_.clip(box, face, seen);
   }

@@ -40,18 +40,23 @@ PieceCutter::Candidate PieceCutter::candidate(const FaceInBox& face) const {
                     &c = faces_.screen.points[f.corners[2]];
   const double inwards = turn_of(a, b, c) > 0 ? 1 : -1;
   return {face.face,
-          face.nearest,
           face.farthest,
           {side_of(a, b, inwards), side_of(b, c, inwards), side_of(c, a, inwards)},
           AffineKey(a, b, c),
           std::min({a.key, b.key, c.key}),
-          std::max({a.key, b.key, c.key})};
+          std::max({a.key, b.key, c.key}),
+          face.x,
+          face.y};
 }
 
 void PieceCutter::cut(const CellBox& box, std::span<const FaceInBox> list, std::vector<SeenPart>& seen) {
   candidates_.clear();
-  for (const FaceInBox& face : list) candidates_.push_back(candidate(face));
-  pieces_.push_back({ConvexPiece(box), no_index, 0});
+  reaches_.clear();
+  for (const FaceInBox& face : list) {
+    candidates_.push_back(candidate(face));
+    reaches_.push_back({face.x, face.y, face.nearest});
+  }
+  pieces_.push_back({ConvexPiece(box), no_index, 0, box});
   while (!pieces_.empty()) {
     Piece piece = pieces_.back();
     pieces_.pop_back();
@@ -59,25 +64,30 @@ void PieceCutter::cut(const CellBox& box, std::span<const FaceInBox> list, std::
   }
 }
 
-void PieceCutter::clip(const CellBox& box, std::uint32_t face, std::vector<SeenPart>& seen) {
-  const Candidate whole = candidate({face, false, false, 0, 0});
-  Piece piece{ConvexPiece(box), no_index, 0};
+void PieceCutter::clip(const CellBox& box, const FaceInBox& face, std::vector<SeenPart>& seen) {
+  const Candidate whole = candidate(face);
+  Piece piece{ConvexPiece(box), no_index, 0, box};
   if (cut_to(whole, piece)) emit(piece.polygon, whole, seen);
   pieces_.clear();
 }
 
 /// Asks all faces that are left about a piece. What lies beside one of them is put aside, to be looked at later.
 void PieceCutter::finish(Piece& piece, std::vector<SeenPart>& seen) {
+  double farthest = -std::numeric_limits<double>::infinity();  // of what is in front
+  if (piece.front != no_index) farthest = candidates_[piece.front].farthest;
   for (; piece.next < candidates_.size(); ++piece.next) {
+    const Reach& reach = reaches_[piece.next];
+    if (reach.nearest < farthest) break;  // and so are all after it
+    const CellBox& around = piece.around;
+    if (reach.x.high <= around.left || reach.x.low >= around.right || reach.y.high <= around.top ||
+        reach.y.low >= around.bottom)
+      continue;
     const Candidate& face = candidates_[piece.next];
-    if (piece.front != no_index) {
-      const Candidate& front = candidates_[piece.front];
-      if (face.nearest < front.farthest) break;  // and so are all after it
-      if (lies_behind(face, front, piece.polygon)) continue;
-    }
-    if (piece.polygon.is_full()) pieces_.push_back({piece.polygon.halve(), piece.front, piece.next});
+    if (piece.front != no_index && lies_behind(face, candidates_[piece.front], piece.polygon)) continue;
+    if (piece.polygon.is_full()) pieces_.push_back({piece.polygon.halve(), piece.front, piece.next, piece.around});
     if (!cut_to(face, piece)) continue;
     choose_nearer(piece.next, piece);
+    farthest = candidates_[piece.front].farthest;
   }
   if (piece.front == no_index) return;
   emit(piece.polygon, candidates_[piece.front], seen);
@@ -93,10 +103,13 @@ bool PieceCutter::lies_behind(const Candidate& face, const Candidate& front, con
 
 /// Cuts what lies beside a face off from a piece. \returns whether anything is left; else the piece stays as it is.
 bool PieceCutter::cut_to(const Candidate& face, Piece& piece) {
+  bool is_within = true;
   for (const CutLine& side : face.sides) {
     const LineSide found = LineDistances(piece.polygon, side).side;
     if (found == LineSide::right || found == LineSide::neither) return false;
+    is_within = is_within && found == LineSide::left;
   }
+  if (is_within) return true;
   const std::size_t before = pieces_.size();
   ConvexPiece rest = piece.polygon, within, beside;
   for (const CutLine& side : face.sides) {
@@ -107,7 +120,7 @@ bool PieceCutter::cut_to(const Candidate& face, Piece& piece) {
       return false;
     }
     cut_polygon(rest, distances, within, beside);
-    if (!is_narrow(beside)) pieces_.push_back({beside, piece.front, piece.next + 1});
+    if (!is_narrow(beside)) pieces_.push_back({beside, piece.front, piece.next + 1, piece.around});
     rest = within;
   }
   if (is_narrow(rest)) {
@@ -115,6 +128,10 @@ bool PieceCutter::cut_to(const Candidate& face, Piece& piece) {
     return false;
   }
   piece.polygon = rest;
+  CellBox& around = piece.around;
+  // It reaches beyond the face by less than what is narrow.
+  around = {std::max(around.left, face.x.low - kNarrow), std::max(around.top, face.y.low - kNarrow),
+            std::min(around.right, face.x.high + kNarrow), std::min(around.bottom, face.y.high + kNarrow)};
   return true;
 }
 
@@ -132,8 +149,8 @@ void PieceCutter::choose_nearer(std::uint32_t number, Piece& piece) {
   LineDistances nearer(piece.polygon, difference, kNarrow * std::sqrt(along_x * along_x + along_y * along_y));
   double key = 0, most = 0;
   for (int i = 0; i < piece.polygon.size(); ++i) {
-    key = std::fmax(key, std::abs(front.at(piece.polygon.begin()[i])));
-    most = std::fmax(most, std::abs(nearer.at[std::size_t(i)]));
+    key = std::max(key, std::abs(front.at(piece.polygon.begin()[i])));
+    most = std::max(most, std::abs(nearer.at[std::size_t(i)]));
   }
   if (most <= kAlike * key) {
     if (is_preferred(candidates_[number], candidates_[piece.front], nearer)) piece.front = number;
@@ -145,7 +162,7 @@ void PieceCutter::choose_nearer(std::uint32_t number, Piece& piece) {
     cut_polygon(piece.polygon, nearer, before, behind);
     if (is_narrow(before)) return;
     if (!is_narrow(behind)) {
-      pieces_.push_back({behind, piece.front, piece.next + 1});
+      pieces_.push_back({behind, piece.front, piece.next + 1, piece.around});
       piece.polygon = before;
     }
   }
@@ -165,7 +182,7 @@ void PieceCutter::emit(const ConvexPiece& polygon, const Candidate& face, std::v
   std::array<ScreenPoint, ConvexPiece::most_corners> corners;
   std::size_t count = 0;
   for (const glm::dvec2& p : polygon)
-    corners[count++] = {p.x, p.y, std::fmin(std::fmax(face.plane.at(p), face.least), face.most)};
+    corners[count++] = {p.x, p.y, std::clamp(face.plane.at(p), face.least, face.most)};
   const Areas areas = faces_.rule.areas_of(std::span(corners).first(count));
   if (areas.pixels > 0) seen.push_back({face.face, areas});
 }

@@ -13,12 +13,18 @@
 
 namespace frontmost::faces_detail {
 
+struct Range {
+  double low, high;
+};
+
 /// A face over a box of the picture. Between its nearest and farthest key lie all that it has there.
 struct FaceInBox {
   std::uint32_t face;
-  bool is_ending;  ///< a surface ends within the box, at one of the face's sides
-  bool is_all;     ///< it covers all of the box
+  std::uint32_t number;  ///< for whoever made the list
+  bool is_ending;        ///< a surface ends within the box, at one of the face's sides
+  bool is_all;           ///< it covers all of the box
   double nearest, farthest;
+  Range x, y;  ///< of all of the face, also outside of the box
 };
 
 /// Areas of a part of a face that is seen.
@@ -51,20 +57,27 @@ class PieceCutter {
   /// keys, the nearest first.
   void cut(const CellBox& box, std::span<const FaceInBox> list, std::vector<SeenPart>& seen);
   /// Appends what of a face lies within `box`, all of it being seen there.
-  void clip(const CellBox& box, std::uint32_t face, std::vector<SeenPart>& seen);
+  void clip(const CellBox& box, const FaceInBox& face, std::vector<SeenPart>& seen);
 
  private:
   struct Candidate {
     std::uint32_t face;
-    double nearest, farthest;
+    double farthest;
     std::array<CutLine, 3> sides;  ///< positive within the face
     AffineKey plane;
     double least, most;  ///< keys of its corners
+    Range x, y;
+  };
+  /// What is asked of a candidate first.
+  struct Reach {
+    Range x, y;
+    double nearest;
   };
   /// What `front` covers of what was looked at so far; the faces from `next` on are still to be asked.
   struct Piece {
     ConvexPiece polygon;
     std::uint32_t front, next;
+    CellBox around;  ///< it
   };
 
   [[nodiscard]] Candidate candidate(const FaceInBox& face) const;
@@ -77,7 +90,8 @@ class PieceCutter {
 
   const FacesOfView& faces_;
   std::vector<Candidate> candidates_;
-  std::vector<Piece> pieces_;  ///< still to be looked at
+  std::vector<Reach> reaches_;  ///< by candidate
+  std::vector<Piece> pieces_;   ///< still to be looked at
 };
 
 }  // namespace frontmost::faces_detail

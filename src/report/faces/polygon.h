@@ -9,6 +9,7 @@
 //        '-/------'
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -34,6 +35,12 @@ class ConvexPiece {
   static constexpr int most_corners = 28;
 
   ConvexPiece() = default;
+  ConvexPiece(const ConvexPiece& other) { *this = other; }
+  ConvexPiece& operator=(const ConvexPiece& other) {
+    count_ = other.count_;
+    std::copy_n(other.corners_.begin(), count_, corners_.begin());  // the others are not set
+    return *this;
+  }
   explicit ConvexPiece(const CellBox& box)
       : corners_{{{box.left, box.top}, {box.right, box.top}, {box.right, box.bottom}, {box.left, box.bottom}}},
         count_(4) {}
@@ -70,7 +77,7 @@ class ConvexPiece {
   for (int i = 1; i < polygon.size(); ++i) {
     const glm::dvec2 last = p[i - 1] - p[0], next = p[i] - p[0];
     doubled += last.x * next.y - last.y * next.x;
-    reach = std::fmax(reach, std::fmax(std::abs(next.x), std::abs(next.y)));
+    reach = std::max({reach, std::abs(next.x), std::abs(next.y)});
   }
   return !(std::abs(doubled) > kNarrow * reach);
 }
