@@ -32,3 +32,9 @@ done
 street=(render builtin:city --camera-position 8,3,25 --camera-direction +x)
 "$program" "${street[@]}" --camera-model panorama --resolution 400,200 -o panorama.png
 "$program" "${street[@]}" --camera-model fisheye --resolution 200,200 -o fisheye.png
+# What is seen of each face from the front, looked at from the right.
+coloured=$(mktemp --suffix .ply)
+"$program" visible builtin:gallery --resolution 640,360 -o "$coloured" -q > /dev/null
+"$program" render "$coloured" --camera-azimuth-angle 100 --camera-elevation-angle 20 --shadows off \
+  --resolution 400,225 -o visible-faces.png
+rm "$coloured"
