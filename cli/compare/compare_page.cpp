@@ -191,7 +191,7 @@ std::string page(const Comparisons& all, const StagedFolder& folder) {
       "{} triangles, {}, medians of {} runs, each method in a process of its own.</p></header><main>\n",
       model, grouped(all.surfaces.primitive_count()), grid_of(all.view, "×"), all.settings.compare.runs);
   text += table_of(all);
-  text += "<p>" + escaped(culling_text(all)) + "</p>\n";
+  text += "<p>" + html_text(culling_text(all)) + "</p>\n";
   text += "<h2>In words</h2><ul>";
   for (const std::string& sentence : advice(all)) text += "<li>" + html_text(sentence) + "</li>";
   text += "</ul>\n<h2>What they see</h2><div class=\"cards\">\n";

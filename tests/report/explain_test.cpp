@@ -383,7 +383,7 @@ TEST(Explain, RemediesOfRandomScenesHelp) {
   EXPECT_GT(taken, test::seeds(40));
   for (const SightReason reason : {SightReason::behind_eye, SightReason::nearer_than_near, SightReason::beyond_far,
                                    SightReason::outside, SightReason::faces_away, SightReason::no_sample})
-    EXPECT_GT(counts[std::size_t(reason)], test::seeds(40) / 13) << name(reason);
+    EXPECT_GE(counts[std::size_t(reason)], test::seeds(40) / 10) << name(reason);
 }
 
 /// Whether a point is within the volume, by the matrix to clip space.
