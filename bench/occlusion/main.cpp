@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// occlusion_table [--rounds N] [MODEL...] : culling of ten thousand houses, and of models from a corner of each, beside
+// Masked Occlusion Culling; boxes against what is covered; and one of ten thousand that moves. One thread; the least of
+// all rounds counts, in which all take turns.
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <functional>
+
+#include "harness/scenes.h"
+#include "harness/table.h"
+#include "occlusion/masked_peer.h"
+
+namespace frontmost::bench {
+namespace {
+
+int rounds = 200;
+
+/// Milliseconds, of contestants in turn.
+std::vector<double> least_times(const std::vector<std::function<void()>>& contestants) {
+  std::vector<double> least(contestants.size(), std::numeric_limits<double>::infinity());
+  for (int round = 0; round < rounds; ++round)
+    for (std::size_t i = 0; i < contestants.size(); ++i) {
+      const auto start = std::chrono::steady_clock::now();
+      contestants[i]();
+      const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
+      least[i] = std::min(least[i], time.count());
+    }
+  return least;
+}
+
+/// A mesh of boxes as one object each.
+Scene taken_apart(const Scene& scene) {
+  Scene apart;
+  const Mesh& all = scene.meshes[0];
+  constexpr std::size_t kTriangles = 12;
+  for (std::size_t t = 0; t + kTriangles <= all.triangles.size(); t += kTriangles) {
+    Mesh& box = apart.meshes.emplace_back();
+    for (std::size_t k = t; k < t + kTriangles; ++k) {
+      glm::uvec3 corners;
+      for (int c = 0; c < 3; ++c) {
+        corners[c] = std::uint32_t(box.positions.size());
+        box.positions.push_back(all.positions[all.triangles[k][c]]);
+      }
+      box.triangles.push_back(corners);
+    }
+    apart.instances.push_back({"", std::uint32_t(apart.meshes.size() - 1), glm::dmat4(1.0)});
+  }
+  return apart;
+}
+
+struct Row {
+  std::string name;
+  const Surfaces& surfaces;
+  View view;
+  bool is_closed;
+};
+
+/// By object, whether sixteen samples a pixel show it.
+std::vector<std::uint8_t> found_by_samples(const Row& row) {
+  View view = row.view;
+  view.samples = 16;
+  view.culling = row.is_closed ? Culling::back : Culling::none;
+  const Visible visible = zbuffer(row.surfaces, view);
+  std::vector<std::uint8_t> found(row.surfaces.scene().instances.size(), 0);
+  for (const PrimitiveId id : visible.primitives)
+    if (id != no_primitive) found[row.surfaces.source(id).instance] = 1;
+  return found;
+}
+
+void measure(const Row& row, Table& table) {
+  Occlusion occlusion(row.surfaces);
+  View view = row.view;
+  view.culling = row.is_closed ? Culling::back : Culling::none;
+  const auto cull = [&](Isa isa) {
+    return [&, isa] { static_cast<void>(occlusion.cull(view, {.cell = 1}, {.threads = 1, .isa = isa})); };
+  };
+  std::vector<std::function<void()>> contestants{cull(Isa::best)};
+  const auto isas = available_isas();
+  const bool has_avx2 = std::find(isas.begin(), isas.end(), Isa::avx2) != isas.end();
+  if (has_avx2) contestants.push_back(cull(Isa::avx2));
+  const auto peer = make_masked_peer(row.surfaces, view, row.is_closed);
+  if (peer) contestants.push_back([&] { peer->cull(); });
+  const std::vector<double> times = least_times(contestants);
+  const auto found = found_by_samples(row);
+  const auto sights = occlusion.cull(view, {.cell = 1});
+  std::size_t seen = 0, true_count = 0, peers = 0, peer_wrong = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    seen += sights[i] == ObjectSight::may_be_seen;
+    true_count += found[i];
+    if (found[i] && sights[i] != ObjectSight::may_be_seen) table.fail();
+    if (peer) peers += peer->seen()[i], peer_wrong += found[i] && !peer->seen()[i];
+  }
+  const double none = std::nan("");
+  table.add({row.name,
+             Cell::whole(found.size()),
+             Cell::whole(true_count),
+             Cell::whole(seen),
+             {times[0], 3},
+             {has_avx2 ? times[1] : none, 3},
+             {peer ? double(peers) : none, 0},
+             {peer ? times.back() : none, 3},
+             {peer ? double(peer_wrong) : none, 0}});
+}
+
+/// Boxes against what is covered in the last view.
+void measure_boxes(const Row& row) {
+  Occlusion occlusion(row.surfaces);
+  static_cast<void>(occlusion.cull(row.view, {.cell = 1}));
+  std::vector<Box> boxes;
+  for (std::uint32_t i = 0; i < row.surfaces.scene().instances.size(); ++i) boxes.push_back(row.surfaces.bounds(i));
+  std::vector<ObjectSight> sights(boxes.size());
+  const double ms = least_times({[&] { occlusion.find_sights(boxes, sights); }})[0];
+  std::printf("%s: %.1f million boxes a second\n", row.name.c_str(), double(boxes.size()) / ms / 1000);
+}
+
+/// One of many objects moves; all that is kept is ready again.
+void measure_move(Scene scene, const View& view) {
+  Surfaces surfaces(scene);
+  RayIndex index(surfaces);
+  Occlusion occlusion(surfaces);
+  ZBuffer buffer;
+  static_cast<void>(buffer.draw(surfaces, view));
+  static_cast<void>(occlusion.cull(view, {.cell = 1}));
+  glm::dmat4 place(1.0);
+  const auto move = [&] {
+    place[3].x += 0.001;
+    surfaces.move(scene, 5000, place);
+    index.follow(surfaces, 5000);
+  };
+  const auto make_anew = [&] {
+    const Surfaces anew(scene);
+    static_cast<void>(anew.clusters());
+    const RayIndex anew_index(anew);
+    const Occlusion anew_occlusion(anew);
+  };
+  const std::vector<double> times = least_times({move, make_anew});
+  std::printf("one of %zu objects moves: %.4f ms; all made anew: %.1f ms\n", scene.instances.size(), times[0],
+              times[1]);
+}
+
+View resized(View view, int width, int height) {
+  view.width = width, view.height = height;
+  return view;
+}
+
+int run(int count, char** arguments) {
+  std::vector<std::string> models;
+  for (int i = 1; i < count; ++i) {
+    if (std::strcmp(arguments[i], "--rounds") == 0 && i + 1 < count)
+      rounds = std::max(1, std::atoi(arguments[++i]));
+    else
+      models.emplace_back(arguments[i]);
+  }
+  const Scene whole = make_scene("city", "");
+  const Scene city = taken_apart(whole);
+  const Surfaces surfaces(city);
+  const View view = make_view(surfaces.bounds(), Camera::in_city);
+  Table table("occlusion culling, cells of a pixel",
+              {"scene", "objects", "true", "seen", "ms", "ms AVX2", "masked seen", "masked ms", "masked wrong"});
+  measure({"city 480x270", surfaces, resized(view, 480, 270), true}, table);
+  measure({"city 1920x1080", surfaces, view, true}, table);
+  for (const std::string& model : models) {
+    const Scene scene = load(model);
+    const Surfaces own(scene);
+    const Box& box = own.bounds();
+    const glm::dvec3 low(box.low), size = glm::dvec3(box.high) - low;
+    const View inside = frontmost::make_view(1.0, 640, 480)
+                            .looking(low + size * glm::dvec3(0.1, 0.6, 0.1), low + size * glm::dvec3(0.9, 0.3, 0.9),
+                                     direction(scene.up))
+                            .enclosing(box);
+    const std::string name = model.substr(model.rfind('/') + 1);
+    measure({name + " 640x480", own, inside, false}, table);
+  }
+  measure_boxes({"city 480x270", surfaces, resized(view, 480, 270), true});
+  measure_boxes({"city 1920x1080", surfaces, view, true});
+  measure_move(city, view);
+  return table.holds() ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace frontmost::bench
+
+int main(int count, char** arguments) try {
+  return frontmost::bench::run(count, arguments);
+} catch (const frontmost::Error& error) {
+  std::fprintf(stderr, "occlusion_table: %s\n", error.what());
+  return 1;
+}
