@@ -76,6 +76,27 @@ int wait_for(pid_t child) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+/// Whether the program has a handler for a signal, by the mask in its status file; none before it has started.
+bool catches(pid_t child, int signal) {
+  std::ifstream status("/proc/" + std::to_string(child) + "/status");
+  for (std::string word; status >> word;) {
+    std::uint64_t mask = 0;
+    if (word == "SigCgt:" && status >> std::hex >> mask) return (mask >> (signal - 1) & 1) != 0;
+  }
+  return false;
+}
+
+/// Sends the signal that a call asks for, so long after the program is ready for it; a busy machine takes a while.
+void interrupt(pid_t child, const Call& call) {
+  using std::chrono::steady_clock;
+  constexpr std::chrono::seconds kMostWait(60);
+  const auto start = steady_clock::now();
+  while (!catches(child, *call.signal) && steady_clock::now() - start < kMostWait)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  std::this_thread::sleep_for(std::chrono::duration<double>(call.signal_after));
+  kill(child, *call.signal);
+}
+
 Outcome run_on_terminal(const Call& call, const std::string& folder) {
   int master = -1;
   winsize size{24, 80, 0, 0};
@@ -83,10 +104,7 @@ Outcome run_on_terminal(const Call& call, const std::string& folder) {
   if (child == 0) become_program(call, folder);
   std::thread interrupter;
   if (call.signal) {
-    interrupter = std::thread([&] {
-      std::this_thread::sleep_for(std::chrono::duration<double>(call.signal_after));
-      kill(child, *call.signal);
-    });
+    interrupter = std::thread([&] { interrupt(child, call); });
   }
   Outcome outcome;
   outcome.out = drain(master);
@@ -111,9 +129,7 @@ Outcome run_on_pipes(const Call& call, const std::string& folder) {
   std::thread writer([&] {
     (void)!::write(in.write_end, call.input.data(), call.input.size());
     if (!call.keep_input_open) close_once(in.write_end);
-    if (!call.signal) return;
-    std::this_thread::sleep_for(std::chrono::duration<double>(call.signal_after));
-    kill(child, *call.signal);
+    if (call.signal) interrupt(child, call);
   });
   outcome.out = drain(out.read_end);
   outcome.status = wait_for(child);

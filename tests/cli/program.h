@@ -40,7 +40,7 @@ struct Call {
   std::vector<std::string> words{};
   std::string input{};           ///< standard input
   bool keep_input_open = false;  ///< as a pipe whose writer is slow
-  std::optional<int> signal{};   ///< sent after `signal_after` seconds
+  std::optional<int> signal{};   ///< sent `signal_after` seconds after the program has a handler for it
   double signal_after = 0.3;
   bool terminal = false;                       ///< standard output and error are one terminal; both arrive in `out`
   std::vector<std::string> environment{};      ///< NAME=VALUE, added
