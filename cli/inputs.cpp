@@ -59,6 +59,7 @@ InputFiles input_files(const Settings& settings) {
   for (const std::string& more : settings.more_models) add(more, "is the model itself");
   add(settings.run.batch, "is the batch file itself");
   add(settings.visible.views, "is the file of views itself");
+  add(settings.report.views, "is the file of views itself");
   add(settings.sight.pairs, "is the file of pairs itself");
   add(settings.lidar.directions, "is the file of directions itself");
   add(settings.view.pose_file, "is the pose file itself");

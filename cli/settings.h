@@ -184,9 +184,10 @@ struct DrawingSettings {
 
 /// What frontmost report counts, and where it goes.
 struct ReportSettings {
-  double canvas = 3;                ///< as AccountingOptions::canvas
-  std::optional<std::string> page;  ///< HTML
-  std::optional<std::string> why;   ///< the name or number of the objects of which alone something is said
+  double canvas = 3;                 ///< as AccountingOptions::canvas
+  std::optional<std::string> page;   ///< HTML
+  std::optional<std::string> why;    ///< the name or number of the objects of which alone something is said
+  std::optional<std::string> views;  ///< a batch file
 };
 
 /// What frontmost visible looks from, and where its lists go.

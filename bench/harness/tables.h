@@ -33,6 +33,8 @@ namespace frontmost::bench {
 [[nodiscard]] Table measure_raycast(const Options& options);
 /// Scans from inside of models, of the test models' folder.
 [[nodiscard]] Table measure_scans(const Options& options);
+/// Ids, depths, boxes and shares of many views of a few objects.
+[[nodiscard]] Table measure_reports(const Options& options);
 /// Our pictures and Embree's.
 [[nodiscard]] Table measure_ray_coverage(const Options& options);
 

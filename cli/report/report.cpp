@@ -28,6 +28,9 @@ constexpr Option report_options[] = {
      [](Settings& s, const Given& g) {
        s.report.canvas = g.number({1, 16});
      }},
+    {"views", 0, "FILE",
+     "Report on many views: those of a batch file (see frontmost(1)), whose outputs are left aside.", Group::report,
+     for_report, [](Settings& s, const Given& g) { s.report.views = g.file_name(); }},
     {"why", 0, "NAME", "Only say why the objects of this name, or the one of this number, are seen or not.",
      Group::report, for_report, [](Settings& s, const Given& g) { s.report.why = g.string(); }},
 };
@@ -85,6 +88,11 @@ std::vector<std::uint32_t> objects_by_sight(const Accounting& accounts) {
 int run_report(const Settings& settings) {
   const std::vector<std::string> outputs = outputs_of(settings.report);
   check(settings, outputs);
+  if (settings.report.views) {
+    if (!outputs.empty()) throw UsageError("--views and --output exclude each other: a page shows one view");
+    report_views(settings);
+    return exit_done;
+  }
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
   const Scene scene = load_model(settings, execution, progress, outputs);

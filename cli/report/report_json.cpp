@@ -82,15 +82,19 @@ Json object_json(const ReportRun& run, std::uint32_t number) {
           {"why", why_json(run, number)}};
 }
 
-Json report_json(const ReportRun& run) {
-  Json json = {{"frontmost", FRONTMOST_VERSION},
-               {"model", run.settings.model},
-               {"width", run.view().width},
+Json view_report_json(const ReportRun& run) {
+  Json json = {{"width", run.view().width},
                {"height", run.view().height},
                {"canvas", box_json(run.accounts.canvas)},
                {"background", run.accounts.background}};
   Json& objects = json["objects"] = Json::array();
   for (const std::uint32_t i : objects_asked_for(run.settings, run.scene())) objects.push_back(object_json(run, i));
+  return json;
+}
+
+Json report_json(const ReportRun& run) {
+  Json json = {{"frontmost", FRONTMOST_VERSION}, {"model", run.settings.model}};
+  json.update(view_report_json(run));
   json["files"] = run.files;
   return json;
 }

@@ -45,6 +45,11 @@ struct ReportRun {
 
 [[nodiscard]] std::string report_text(const ReportRun& run);
 [[nodiscard]] Json object_json(const ReportRun& run, std::uint32_t number);
+/// What one view is, and all of its objects.
+[[nodiscard]] Json view_report_json(const ReportRun& run);
 [[nodiscard]] Json report_json(const ReportRun& run);
+
+/// Prints the reports of all views of a file.
+void report_views(const Settings& settings);
 
 }  // namespace frontmost::cli

@@ -95,6 +95,29 @@ TEST_F(Report, SaysWhyObjectsAreSeenOrNot) {
   expect_failure(command + "--why fat", 2, "; did you mean far?");
 }
 
+TEST_F(Report, ViewsOfAFileEqualThoseOneByOne) {
+  write("views.json", R"({"views": [{"name": "first", "view": "front"}, {"view": "iso", "resolution": [30, 20]},
+                                    {"camera-orthographic": true}], "outputs": {"output": "{view}.png"}})");
+  const json all = succeed("report squares.obj --views views.json --resolution 40,40 --json").json();
+  ASSERT_EQ(all["views"].size(), 3u);
+  const char* const single[] = {"--view front --resolution 40,40", "--view iso --resolution 30,20",
+                                "--camera-orthographic --resolution 40,40"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const json one = succeed(std::string("report squares.obj --json ") + single[i]).json();
+    for (const char* key : {"width", "height", "canvas", "background", "objects"})
+      EXPECT_EQ(all["views"][i][key], one[key]) << i << key;
+  }
+  EXPECT_EQ(all["views"][0]["name"], "first");
+  EXPECT_EQ(all["views"][1]["name"], "iso");
+  EXPECT_THAT(succeed("report squares.obj --views views.json --resolution 40,40 --why near").out,
+              testing::MatchesRegex("first:\nnear is .*\n\niso:\nnear is .*\n\n2:\nnear is .*\n\n"));
+  expect_failure("report squares.obj --views views.json -o page.html", 2, "--views and --output exclude each other");
+  write("panorama.json", R"({"views": [{"camera-model": "panorama"}]})");
+  expect_failure("report squares.obj --views panorama.json", 2, "views[0]: objects are counted by pinhole cameras");
+  write("depth.json", R"({"views": [{"depth-func": "LESS"}]})");
+  expect_failure("report squares.obj --views depth.json", 2, "without a depth buffer");
+}
+
 TEST_F(Report, LongTablesSayHowMuchIsLeftOut) {
   const std::string text = succeed("report builtin:city --resolution 320,180").out;
   EXPECT_THAT(text, HasSubstr(" more; --json has all\n"));

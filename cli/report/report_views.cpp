@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reports of many views in one process: the model is made ready once, and each view's report is printed before the next
+// one is made.
+#include <fmt/format.h>
+#include <frontmost/surfaces.h>
+#include <frontmost/version.h>
+#include <frontmost/zbuffer.h>
+
+#include "cli/console.h"
+#include "cli/failure.h"
+#include "cli/inputs.h"
+#include "cli/render/jobs.h"
+#include "cli/report/report_run.h"
+#include "cli/view/view_options.h"
+
+namespace frontmost::cli {
+namespace {
+
+void check_view_of_report(const ViewSettings& view) {
+  check_view_settings(view);
+  if (view.camera_model != CameraModel::pinhole) throw UsageError("objects are counted by pinhole cameras alone");
+  if (view.depth.is_used) throw UsageError("objects are counted where they are nearest, without a depth buffer");
+}
+
+/// The views of the file, checked before any model is known.
+std::vector<ViewSettings> views_of_file(const Settings& settings) {
+  std::vector<ViewSettings> views;
+  for (Settings& one : read_batch(*settings.report.views, settings)) {
+    try {
+      check_view_of_report(one.view);
+    } catch (const UsageError& error) {
+      throw UsageError(fmt::format("{}: views[{}]: {}", *settings.report.views, views.size(), error.what()));
+    }
+    views.push_back(std::move(one.view));
+  }
+  return views;
+}
+
+/// Accounts for one view after another, in the same memory.
+class ViewReporter {
+ public:
+  ViewReporter(const Settings& settings, const Scene& scene, const Execution& execution)
+      : settings_(settings), scene_(scene), execution_(execution), surfaces_(scene, execution) {}
+
+  /// Calls tell(run) with what was found out.
+  template <class Tell>
+  void report(const ViewSettings& settings, const Tell& tell) {
+    const View view = resolve_view(settings, surfaces_);
+    const std::optional<Scene> cut = tessellated(scene_, settings, view);
+    std::optional<Surfaces> own;
+    if (cut) own.emplace(*cut, execution_);
+    const Surfaces& surfaces = own ? *own : surfaces_;
+    const Visible& visible = zbuffer_.draw(surfaces, view, execution_);
+    const Accounting accounts = account(surfaces, visible, {.canvas = settings_.report.canvas}, execution_);
+    const std::vector<Explanation> why = explain_all(surfaces, visible, accounts, execution_);
+    tell(ReportRun{settings_, surfaces, visible, accounts, why, {}});
+  }
+
+ private:
+  const Settings& settings_;
+  const Scene& scene_;
+  const Execution& execution_;
+  Surfaces surfaces_;
+  ZBuffer zbuffer_;
+};
+
+}  // namespace
+
+void report_views(const Settings& settings) {
+  const std::vector<ViewSettings> views = views_of_file(settings);
+  Progress progress(settings.run.quiet);
+  const Execution execution = execution_for(settings.run, progress);
+  const Scene scene = load_model(settings, execution, progress);
+  (void)objects_asked_for(settings, scene);
+  ViewReporter reporter(settings, scene, execution);
+  std::optional<JsonListPrinter> list;
+  if (settings.run.json) list.emplace(Json{{"frontmost", FRONTMOST_VERSION}, {"model", settings.model}}, "views");
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    progress.set_prefix(fmt::format("view {} of {}: ", i + 1, views.size()));
+    reporter.report(views[i], [&](const ReportRun& run) {
+      const std::string name = view_name(views[i]);
+      progress.clear();
+      if (list) {
+        Json json = {{"name", name}};
+        json.update(view_report_json(run));
+        list->add(json);
+      } else {
+        print(printable_name(name) + ":\n" + (settings.report.why ? why_text(run) : report_text(run)) + '\n');
+      }
+    });
+    stop_if_interrupted();
+  }
+  if (list) list->finish({{"files", Json::array()}});
+}
+
+}  // namespace frontmost::cli
