@@ -30,12 +30,13 @@ enum class ObjectSight : std::uint8_t {
 enum class ObjectUnit : std::uint8_t {
   instances,  ///< an Instance of the scene
   parts,      ///< what of an instance hangs together by its vertices' places: for scenes of few, large meshes
+  clusters,   ///< up to 128 neighbouring triangles of an instance: for single large meshes that hang together
 };
 
 /// Triangles of one instance that are culled together.
 struct CulledObject {
   std::uint32_t instance = no_index;
-  std::uint32_t part = 0;  ///< of the mesh, counted from 0 in the order of their first triangles
+  std::uint32_t part = 0;  ///< part of the mesh, in the order of their first triangles, or cluster; counted from 0
 };
 
 struct OcclusionOptions {
@@ -50,7 +51,7 @@ struct OcclusionOptions {
 /// threads at once.
 class Occlusion {
  public:
-  /// Borrows the surfaces and their scene. O(triangles of meshes), about 60 bytes a triangle of a mesh.
+  /// Borrows the surfaces and their scene. O(triangles of meshes), about 65 bytes a triangle of a mesh.
   explicit Occlusion(const Surfaces& surfaces, ObjectUnit unit = ObjectUnit::instances,
                      const Execution& execution = {});
   ~Occlusion();
@@ -62,6 +63,9 @@ class Occlusion {
   [[nodiscard]] std::size_t object_count() const;
   /// Precondition: number < object_count(). Instances come in the order of the scene, their parts one after another.
   [[nodiscard]] CulledObject object(std::size_t number) const;
+
+  /// Its triangles, by their numbers in the mesh: those with finite corners. Precondition: number < object_count().
+  [[nodiscard]] std::span<const std::uint32_t> triangles(std::size_t number) const;
 
   /// For every object what is known of it in this view; the answer stays as it is until the next call.
   /// Culling of faces counts: faces that are left out hide nothing. The same for all instruction sets.

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstring>
 #include <numeric>
+#include <span>
 
 namespace frontmost::occlusion_detail {
 namespace {
@@ -76,6 +77,7 @@ class HangingTogether {
 
 /// A triangle that is seen, by its vertices' first ones.
 struct WeldedTriangle {
+  std::uint32_t number;  ///< in the mesh
   glm::uvec3 corners;
   std::uint32_t part;
   bool hides;
@@ -94,7 +96,7 @@ std::vector<WeldedTriangle> seen_triangles(const PlacedScene& placed, std::uint3
     const glm::uvec3 corners(first[c.x], first[c.y], first[c.z]);
     const bool has_holes = placed.cutouts && placed.cutouts->has(placed.first_primitives[instance] + t);
     const bool is_flat = corners.x == corners.y || corners.y == corners.z || corners.z == corners.x;
-    seen.push_back({corners, 0, !has_holes && !is_flat && !is_see_through(scene, mesh.material_of(t)), is_flat});
+    seen.push_back({t, corners, 0, !has_holes && !is_flat && !is_see_through(scene, mesh.material_of(t)), is_flat});
   }
   return seen;
 }
@@ -116,33 +118,118 @@ std::uint32_t tell_parts_apart(std::size_t vertex_count, std::vector<WeldedTrian
   return count;
 }
 
+/// Halves triangles by their middles along the longest side of these, until clusters are small enough.
+class ClusterCutter {
+ public:
+  ClusterCutter(const std::vector<glm::vec3>& positions, std::vector<WeldedTriangle>& triangles)
+      : triangles_(triangles) {
+    for (const WeldedTriangle& t : triangles)
+      middles_.push_back(positions[t.corners.x] / 3.0f + positions[t.corners.y] / 3.0f + positions[t.corners.z] / 3.0f);
+  }
+  /// Numbers the clusters. \returns how many there are.
+  std::uint32_t cut() {
+    std::vector<std::uint32_t> all(triangles_.size());
+    std::iota(all.begin(), all.end(), 0u);
+    if (!all.empty()) halve(all);
+    return count_;
+  }
+
+ private:
+  void halve(std::span<std::uint32_t> some) {
+    if (some.size() <= most_in_cluster) {
+      for (const std::uint32_t t : some) triangles_[t].part = count_;
+      ++count_;
+      return;
+    }
+    Box box;
+    for (const std::uint32_t t : some) box.include(middles_[t]);
+    const glm::vec3 size = box.high - box.low;
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const auto middle = some.begin() + std::ptrdiff_t(some.size() / 2);
+    std::nth_element(some.begin(), middle, some.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return middles_[a][axis] != middles_[b][axis] ? middles_[a][axis] < middles_[b][axis] : a < b;
+    });
+    halve({some.begin(), middle});
+    halve({middle, some.end()});
+  }
+
+  std::vector<WeldedTriangle>& triangles_;
+  std::vector<glm::vec3> middles_;
+  std::uint32_t count_ = 0;
+};
+
+/// By part, the triangles that hide and have a vertex with it in common, and are not of it. Each once, in order.
+std::vector<std::vector<std::uint32_t>> touching(std::size_t vertex_count, const std::vector<WeldedTriangle>& triangles,
+                                                 std::size_t part_count) {
+  // Parts of each vertex: few have more than one.
+  std::vector<std::vector<std::uint32_t>> parts_of(vertex_count);
+  for (const WeldedTriangle& t : triangles)
+    for (int k = 0; k < 3; ++k) {
+      std::vector<std::uint32_t>& parts = parts_of[t.corners[k]];
+      if (std::find(parts.begin(), parts.end(), t.part) == parts.end()) parts.push_back(t.part);
+    }
+  std::vector<std::vector<std::uint32_t>> touching(part_count);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    if (!triangles[t].hides) continue;
+    for (int k = 0; k < 3; ++k)
+      for (const std::uint32_t part : parts_of[triangles[t].corners[k]])
+        if (part != triangles[t].part && (touching[part].empty() || touching[part].back() != t))
+          touching[part].push_back(t);
+  }
+  return touching;
+}
+
 /// Writes positions and triangles, part by part.
-void write_parts(const std::vector<glm::vec3>& positions, const std::vector<WeldedTriangle>& seen, OccluderMesh& out) {
-  std::vector<std::uint32_t> order(seen.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return seen[a].part < seen[b].part; });
-  std::vector<std::uint32_t> number(positions.size(), no_index);
-  for (const std::uint32_t t : order) {
-    OccluderPart& part = out.parts[seen[t].part];
+class PartWriter {
+ public:
+  PartWriter(const std::vector<glm::vec3>& positions, const std::vector<WeldedTriangle>& seen, OccluderMesh& out)
+      : positions_(positions), seen_(seen), out_(out), number_(positions.size(), no_index) {}
+
+  void write(const std::vector<std::vector<std::uint32_t>>& touching) {
+    std::vector<std::uint32_t> order(seen_.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return seen_[a].part < seen_[b].part; });
+    auto next = order.begin();
+    for (std::uint32_t p = 0; p < out_.parts.size(); ++p) {
+      OccluderPart& part = out_.parts[p];
+      part.first_triangle = std::uint32_t(out_.triangles.size());
+      part.first_vertex = std::uint32_t(out_.positions.size());
+      for (; next != order.end() && seen_[*next].part == p; ++next) {
+        part.own.push_back(seen_[*next].number);
+        part.is_whole = part.is_whole && (seen_[*next].hides || seen_[*next].is_flat);
+        add(*next, part);
+      }
+      if (!touching.empty())
+        for (const std::uint32_t t : touching[p]) add(t, part);
+    }
+  }
+
+ private:
+  void add(std::uint32_t triangle, OccluderPart& part) {
     glm::uvec3 corners;
     for (int k = 0; k < 3; ++k) {
-      const std::uint32_t vertex = seen[t].corners[k];
-      part.bounds.include(positions[vertex]);
-      part.is_whole = part.is_whole && (seen[t].hides || seen[t].is_flat);
-      if (!seen[t].hides) continue;
-      if (number[vertex] == no_index) {
-        number[vertex] = std::uint32_t(out.positions.size());
-        out.positions.push_back(positions[vertex]);
-        if (part.vertex_count++ == 0) part.first_vertex = number[vertex];
+      const std::uint32_t vertex = seen_[triangle].corners[k];
+      part.bounds.include(positions_[vertex]);
+      if (!seen_[triangle].hides) continue;
+      std::uint32_t& number = number_[vertex];
+      if (number == no_index || number < part.first_vertex) {  // not yet, or in another part
+        number = std::uint32_t(out_.positions.size());
+        out_.positions.push_back(positions_[vertex]);
+        ++part.vertex_count;
       }
-      corners[k] = number[vertex];
+      corners[k] = number;
     }
-    if (!seen[t].hides) continue;
-    if (part.triangle_count++ == 0) part.first_triangle = std::uint32_t(out.triangles.size());
-    out.triangles.push_back(corners);
+    if (!seen_[triangle].hides) return;
+    ++part.triangle_count;
+    out_.triangles.push_back(corners);
   }
-}
+
+  const std::vector<glm::vec3>& positions_;
+  const std::vector<WeldedTriangle>& seen_;
+  OccluderMesh& out_;
+  std::vector<std::uint32_t> number_;  ///< by vertex, the last that it was written as
+};
 
 /// Joins triangles at the edges that exactly two have, once in each direction.
 std::vector<glm::uvec3> neighbours_of(const std::vector<glm::uvec3>& triangles) {
@@ -174,14 +261,18 @@ std::vector<glm::uvec3> neighbours_of(const std::vector<glm::uvec3>& triangles) 
 
 }  // namespace
 
-OccluderMesh occluder_mesh(const PlacedScene& placed, std::uint32_t instance, bool tells_parts_apart) {
+OccluderMesh occluder_mesh(const PlacedScene& placed, std::uint32_t instance, ObjectUnit unit) {
   const Scene& scene = *placed.scene;
   const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
   std::vector<WeldedTriangle> seen = seen_triangles(placed, instance);
-  const std::uint32_t parts = tells_parts_apart ? tell_parts_apart(mesh.positions.size(), seen) : 1;
+  std::uint32_t parts = 1;
+  if (unit == ObjectUnit::parts) parts = tell_parts_apart(mesh.positions.size(), seen);
+  if (unit == ObjectUnit::clusters) parts = ClusterCutter(mesh.positions, seen).cut();
   OccluderMesh out;
   out.parts.resize(std::max(parts, 1u));
-  write_parts(mesh.positions, seen, out);
+  std::vector<std::vector<std::uint32_t>> touching_parts;
+  if (unit == ObjectUnit::clusters) touching_parts = touching(mesh.positions.size(), seen, out.parts.size());
+  PartWriter(mesh.positions, seen, out).write(touching_parts);
   out.neighbours = neighbours_of(out.triangles);
   for (OccluderPart& part : out.parts)
     for (std::uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count; ++t)

@@ -10,17 +10,20 @@
 
 #include <vector>
 
+#include "frontmost/occlusion.h"
 #include "surfaces/placed_scene.h"
 
 namespace frontmost::occlusion_detail {
 
-/// Consecutive triangles, and the consecutive vertices that they alone use.
+/// Consecutive triangles, and the consecutive vertices that they alone use. Those of a cluster are followed by the
+/// triangles of others that touch it: where it ends, it would else leave a row of cells open beside the next one.
 struct OccluderPart {
   std::uint32_t first_triangle = 0, triangle_count = 0;
   std::uint32_t first_vertex = 0, vertex_count = 0;
-  bool is_whole = true;   ///< all triangles of the mesh's part are there: none hides nothing
-  bool is_closed = true;  ///< every side of a triangle has a neighbour
-  Box bounds;             ///< of all triangles of the mesh's part
+  bool is_whole = true;            ///< all triangles of the mesh's part are there: none hides nothing
+  bool is_closed = true;           ///< every side of a triangle has a neighbour
+  Box bounds;                      ///< of all triangles of the mesh's part, and of those that touch it and hide
+  std::vector<std::uint32_t> own;  ///< its triangles, as numbers in the mesh: those with finite corners
 };
 
 struct OccluderMesh {
@@ -54,8 +57,11 @@ void OccluderMesh::visit_around(std::uint32_t triangle, int corner, const Visit&
   if (!walk(true)) walk(false);
 }
 
-/// Of the mesh of an instance. One part, or one for each that hangs together. O(triangles), or O(triangles log
-/// triangles) where parts are told apart.
-[[nodiscard]] OccluderMesh occluder_mesh(const PlacedScene& placed, std::uint32_t instance, bool tells_parts_apart);
+/// Of the mesh of an instance. One part, or one for each that hangs together, or for each cluster. O(triangles), or
+/// O(triangles log triangles) where there are several.
+[[nodiscard]] OccluderMesh occluder_mesh(const PlacedScene& placed, std::uint32_t instance, ObjectUnit unit);
+
+/// Of a cluster, at most.
+inline constexpr std::size_t most_in_cluster = 128;
 
 }  // namespace frontmost::occlusion_detail

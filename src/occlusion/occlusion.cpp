@@ -66,7 +66,7 @@ struct Occlusion::State {
       if (user[scene.instances[i].mesh] == no_index) user[scene.instances[i].mesh] = i;
     parallel_for(execution, meshes.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t m = begin; m < end; ++m)
-        if (user[m] != no_index) meshes[m] = occluder_mesh(surfaces.placed(), user[m], unit == ObjectUnit::parts);
+        if (user[m] != no_index) meshes[m] = occluder_mesh(surfaces.placed(), user[m], unit);
     });
   }
 
@@ -100,6 +100,11 @@ Occlusion& Occlusion::operator=(Occlusion&&) noexcept = default;
 
 std::size_t Occlusion::object_count() const { return state_->objects.size(); }
 CulledObject Occlusion::object(std::size_t number) const { return state_->objects[number]; }
+
+std::span<const std::uint32_t> Occlusion::triangles(std::size_t number) const {
+  const CulledObject& object = state_->objects[number];
+  return state_->meshes[state_->surfaces.scene().instances[object.instance].mesh].parts[object.part].own;
+}
 
 std::span<const ObjectSight> Occlusion::cull(const View& view, const OcclusionOptions& options,
                                              const Execution& execution) & {

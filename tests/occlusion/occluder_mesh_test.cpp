@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "occlusion/hidden_scene.h"
 #include "support/meshes.h"
 
 namespace frontmost::occlusion_detail {
@@ -15,7 +16,7 @@ using namespace test;
 OccluderMesh mesh_of(const Mesh& mesh, bool tells_parts_apart = false) {
   const Scene scene = scene_of(mesh);
   const Surfaces surfaces(scene);
-  return occluder_mesh(surfaces.placed(), 0, tells_parts_apart);
+  return occluder_mesh(surfaces.placed(), 0, tells_parts_apart ? ObjectUnit::parts : ObjectUnit::instances);
 }
 
 TEST(OccluderMesh, NeighboursAreThoseAcrossSharedPlaces) {
@@ -86,6 +87,21 @@ TEST(OccluderMesh, PartsHaveTheirTrianglesAndVerticesTogether) {
       }
   }
   EXPECT_NEAR(m.parts[1].bounds.centre().x, 5, 1e-6);
+}
+
+TEST(OccluderMesh, ClustersHoldEveryTriangleOnceAndReachIntoTheNext) {
+  const Scene scene = scene_of(tessellated_box({1, 1, 1}, 12, 0));
+  const Surfaces surfaces(scene);
+  const OccluderMesh mesh = occluder_mesh(surfaces.placed(), 0, ObjectUnit::clusters);
+  std::vector<int> times(scene.meshes[0].triangles.size(), 0);
+  for (const OccluderPart& part : mesh.parts) {
+    EXPECT_LE(part.own.size(), most_in_cluster);
+    EXPECT_GT(part.triangle_count, part.own.size());  // of a closed surface, each touches others
+    EXPECT_TRUE(part.is_whole);
+    for (const std::uint32_t t : part.own) ++times[t];
+  }
+  EXPECT_GE(mesh.parts.size(), times.size() / most_in_cluster);
+  EXPECT_EQ(std::count(times.begin(), times.end(), 1), std::ptrdiff_t(times.size()));
 }
 
 }  // namespace

@@ -97,6 +97,58 @@ TEST(OcclusionProof, BoxesThatAreHiddenAreNotSeenEither) {
   EXPECT_GT(hidden, seeds(120) * 3);
 }
 
+/// The same of triangles, for objects that are less than an instance.
+void expect_picture_of_all_triangles(const Scene& scene, const View& view, ObjectUnit unit, std::size_t& hidden) {
+  const Surfaces all(scene);
+  Occlusion occlusion(all, unit);
+  const auto sights = occlusion.cull(view, {.cell = 1});
+  hidden += count_of(sights, ObjectSight::hidden);
+  Scene rest;
+  for (const Instance& instance : scene.instances) {
+    rest.instances.push_back(instance);
+    rest.instances.back().mesh = std::uint32_t(rest.meshes.size());
+    Mesh& mesh = rest.meshes.emplace_back(scene.meshes[instance.mesh]);
+    for (glm::uvec3& corners : mesh.triangles) corners = glm::uvec3(0);  // keeps its number, and is not seen
+  }
+  for (std::size_t i = 0; i < sights.size(); ++i) {
+    if (sights[i] != ObjectSight::may_be_seen) continue;
+    const std::uint32_t instance = occlusion.object(i).instance;
+    for (const std::uint32_t t : occlusion.triangles(i))
+      rest.meshes[instance].triangles[t] = scene.meshes[scene.instances[instance].mesh].triangles[t];
+  }
+  ASSERT_NO_FATAL_FAILURE(expect_same(zbuffer(all, view), zbuffer(Surfaces(rest), view)));
+}
+
+TEST(OcclusionProof, PartsAndClustersThatMayBeSeenGiveThePictureOfAllToTheBit) {
+  for (const ObjectUnit unit : {ObjectUnit::parts, ObjectUnit::clusters}) {
+    std::size_t hidden = 0;
+    for (std::uint64_t seed = 0; seed < seeds(60); ++seed) {
+      Scene scene = hidden_scene(40, seed + 1500);
+      scene.meshes.push_back(tessellated_box({1.5f, 1.5f, 0.1f}, 14, 0));
+      scene.instances.push_back({"", std::uint32_t(scene.meshes.size() - 1), glm::dmat4(1.0)});
+      View view = random_view(160, 120, seed);
+      view.culling = seed % 3 == 0 ? Culling::back : Culling::none;
+      ASSERT_NO_FATAL_FAILURE(expect_picture_of_all_triangles(scene, view, unit, hidden)) << seed;
+    }
+    EXPECT_GT(hidden, seeds(60) * 5);
+  }
+}
+
+TEST(OcclusionProof, ClustersOfOneSurfaceHideTogetherWhatLiesBehindTheirSeams) {
+  Scene scene = scene_of(tessellated_box({3, 3, 0.1f}, 30, 0));
+  scene.meshes.push_back(tessellated_box({1, 1, 0.3f}, 1, 0));
+  glm::dmat4 behind(1.0);
+  behind[3] = {0, 0, -2, 1};
+  scene.instances.push_back({"thing", 1, behind});
+  const Surfaces surfaces(scene);
+  Occlusion occlusion(surfaces, ObjectUnit::clusters);
+  const View view = make_view(0.8, 480, 360).looking({0, 0, 4}, {0, 0, 0}, {0, 1, 0});
+  const auto sights = occlusion.cull(view, {.cell = 1});
+  ASSERT_GT(sights.size(), 30u);
+  EXPECT_EQ(occlusion.object(sights.size() - 1).instance, 1u);
+  EXPECT_EQ(sights.back(), ObjectSight::hidden);
+}
+
 /// A view from within the scene to another place within it.
 View view_within(const Scene& scene, const Box& bounds, std::uint64_t seed) {
   Random random(seed);

@@ -23,7 +23,7 @@ std::vector<ObjectSight> sights_by_hand(const Surfaces& surfaces, const View& vi
   std::vector<CulledObject> objects;
   BoxColumns columns(scene.instances.size());
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-    OccluderMesh& mesh = meshes[scene.instances[i].mesh] = occluder_mesh(surfaces.placed(), i, false);
+    OccluderMesh& mesh = meshes[scene.instances[i].mesh] = occluder_mesh(surfaces.placed(), i, ObjectUnit::instances);
     // What lies beyond each side counts always: the triangle itself.
     if (ends == Ends::are_forgotten)
       for (std::uint32_t t = 0; t < mesh.neighbours.size(); ++t) mesh.neighbours[t] = glm::uvec3(t);
