@@ -18,6 +18,7 @@ int main(int count, char** arguments) try {
   // A hundred boxes that drive around the middle, each in its own circle.
   const auto first_car = std::uint32_t(scene.instances.size()), cars = 100u;
   scene.meshes.push_back(builtin("cubes").meshes[0]);
+  scene.meshes.back().material_ids.clear();
   for (std::uint32_t i = 0; i < cars; ++i)
     scene.instances.push_back({"car " + std::to_string(i), std::uint32_t(scene.meshes.size() - 1)});
 
