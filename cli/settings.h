@@ -182,10 +182,18 @@ struct DrawingSettings {
   }
 };
 
+/// Which samples of an object BOP's files call visible: those that see it, or what is at most 15 mm behind.
+enum class BopVisible : std::uint8_t { exact, bop19 };
+
 /// What frontmost report counts, and where it goes.
 struct ReportSettings {
-  double canvas = 3;                 ///< as AccountingOptions::canvas
-  std::optional<std::string> page;   ///< HTML
+  double canvas = 3;                ///< as AccountingOptions::canvas
+  bool all_hiders = false;          ///< likewise
+  std::optional<std::string> page;  ///< HTML
+  std::optional<std::string> coco;  ///< JSON
+  bool coco_polygons = false;
+  std::optional<std::string> bop;  ///< a folder
+  BopVisible bop_visible = BopVisible::exact;
   std::optional<std::string> why;    ///< the name or number of the objects of which alone something is said
   std::optional<std::string> views;  ///< a batch file
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // frontmost report: how much of every object is seen, and who hides the rest.
 #include <fmt/format.h>
+#include <frontmost/io.h>
 #include <frontmost/surfaces.h>
 #include <frontmost/zbuffer.h>
 
@@ -12,8 +13,10 @@
 #include "cli/inputs.h"
 #include "cli/option.h"
 #include "cli/outputs.h"
+#include "cli/report/report_files.h"
 #include "cli/report/report_page.h"
 #include "cli/report/report_run.h"
+#include "cli/staged_folder.h"
 #include "cli/view/view_options.h"
 
 namespace frontmost::cli {
@@ -31,18 +34,38 @@ constexpr Option report_options[] = {
     {"views", 0, "FILE",
      "Report on many views: those of a batch file (see frontmost(1)), whose outputs are left aside.", Group::report,
      for_report, [](Settings& s, const Given& g) { s.report.views = g.file_name(); }},
+    {"coco", 0, "FILE", "Write the objects that are seen as COCO's annotations, with what is hidden beside them: JSON.",
+     Group::report, for_report, [](Settings& s, const Given& g) { s.report.coco = g.file_name(); }},
+    {"coco-polygons", 0, "", "Give masks of --coco as polygons, not as run lengths.", Group::report, for_report,
+     [](Settings& s, const Given&) { s.report.coco_polygons = true; }},
+    {"bop", 0, "FOLDER",
+     "Write a scene of BOP with one image: poses, masks, depth; the folder is made where it is missing.", Group::report,
+     for_report,
+     [](Settings& s, const Given& g) {
+       if (g.text.empty()) throw UsageError("the folder's name is empty");
+       s.report.bop = g.string();
+     }},
+    {"bop-visible", 0, "exact|bop19",
+     "What --bop calls visible: what is seen, by default, or what is at most 15 mm behind that, as bop_toolkit does.",
+     Group::report, for_report, [](Settings& s, const Given& g) { s.report.bop_visible = g.choice<BopVisible>(); }},
+    {"all-hiders", 0, "", "Also count who hides how much behind others, and alone; in JSON.", Group::report, for_report,
+     [](Settings& s, const Given&) { s.report.all_hiders = true; }},
     {"why", 0, "NAME", "Only say why the objects of this name, or the one of this number, are seen or not.",
      Group::report, for_report, [](Settings& s, const Given& g) { s.report.why = g.string(); }},
 };
 
 std::vector<std::string> outputs_of(const ReportSettings& report) {
   std::vector<std::string> files;
-  if (report.page) files.push_back(*report.page);
+  for (const auto& file : {report.page, report.coco})
+    if (file) files.push_back(*file);
   return files;
 }
 
 void check(const Settings& settings, const std::vector<std::string>& outputs) {
   check_view_settings(settings.view);
+  if (settings.report.coco_polygons && !settings.report.coco) throw UsageError("--coco-polygons needs --coco");
+  if (settings.report.bop && settings.view.orthographic)
+    throw UsageError("--bop needs a perspective camera: BOP has no others");
   check_outputs(outputs, input_files(settings));
   if (settings.run.json && std::find(outputs.begin(), outputs.end(), "-") != outputs.end())
     throw UsageError("--json and an output to - both want standard output");
@@ -52,8 +75,7 @@ void check(const Settings& settings, const std::vector<std::string>& outputs) {
 
 std::span<const Option> report_option_table() { return report_options; }
 
-std::span<const HiddenSamples> ReportRun::hiders_of(std::uint32_t object) const {
-  const std::vector<HiddenSamples>& all = accounts.hidden_by_front;
+std::span<const HiddenSamples> pairs_of(const std::vector<HiddenSamples>& all, std::uint32_t object) {
   const auto is_before = [](const HiddenSamples& pair, std::uint32_t number) { return pair.object < number; };
   const auto begin = std::lower_bound(all.begin(), all.end(), object, is_before);
   return {begin, std::lower_bound(begin, all.end(), object + 1, is_before)};
@@ -89,10 +111,13 @@ int run_report(const Settings& settings) {
   const std::vector<std::string> outputs = outputs_of(settings.report);
   check(settings, outputs);
   if (settings.report.views) {
-    if (!outputs.empty()) throw UsageError("--views and --output exclude each other: a page shows one view");
+    if (!outputs.empty() || settings.report.bop)
+      throw UsageError("--views excludes --output, --coco and --bop: each of them holds one view");
     report_views(settings);
     return exit_done;
   }
+  std::optional<MadeFolder> folder;
+  if (settings.report.bop) folder.emplace(*settings.report.bop);
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
   const Scene scene = load_model(settings, execution, progress, outputs);
@@ -103,10 +128,19 @@ int run_report(const Settings& settings) {
   const std::optional<Scene> cut = tessellated(scene, settings.view, view);
   if (cut) surfaces.emplace(*cut, execution);
   const Visible visible = zbuffer(*surfaces, view, execution);
-  const Accounting accounts = account(*surfaces, visible, {.canvas = settings.report.canvas}, execution);
+  const Accounting accounts = account(
+      *surfaces, visible, {.canvas = settings.report.canvas, .all_hiders = settings.report.all_hiders}, execution);
   const std::vector<Explanation> why = explain_all(*surfaces, visible, accounts, execution);
-  const ReportRun run{settings, *surfaces, visible, accounts, why, outputs};
+  ReportRun run{settings, *surfaces, visible, accounts, why, outputs};
   if (settings.report.page) write_report_page(run, *settings.report.page, execution);
+  if (settings.report.coco) {
+    const WritingFiles writing;
+    save_text(dump(coco_json(run, settings.report.coco_polygons, execution)), *settings.report.coco);
+  }
+  if (settings.report.bop) {
+    const std::vector<std::string> files = write_bop_scene(run, *settings.report.bop, execution);
+    run.files.insert(run.files.end(), files.begin(), files.end());
+  }
   progress.clear();
   const bool stdout_is_taken = std::find(outputs.begin(), outputs.end(), "-") != outputs.end();
   if (!stdout_is_taken)

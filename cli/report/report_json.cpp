@@ -13,6 +13,12 @@ Json samples_json(const SampleSet& samples) {
   return {{"samples", samples.count}, {"box", samples.box.is_empty() ? Json(nullptr) : box_json(samples.box)}};
 }
 
+Json pairs_json(std::span<const HiddenSamples> pairs) {
+  Json json = Json::array();
+  for (const HiddenSamples& pair : pairs) json.push_back({{"object", pair.hider}, {"samples", pair.count}});
+  return json;
+}
+
 Json places_json(const TrianglePlaces& triangles) {
   return {{"empty", triangles.empty},
           {"behind_eye", triangles.behind_eye},
@@ -64,22 +70,24 @@ Json why_json(const ReportRun& run, std::uint32_t number) {
 Json object_json(const ReportRun& run, std::uint32_t number) {
   const ObjectAccount& object = run.accounts.objects[number];
   const bool is_seen = object.visible.count > 0;
-  Json hiders = Json::array();
-  for (const HiddenSamples& pair : run.hiders_of(number))
-    hiders.push_back({{"object", pair.hider}, {"samples", pair.count}});
-  return {{"object", number},
-          {"name", run.scene().instances[number].name},
-          {"alone", samples_json(object.alone)},
-          {"in_frame", samples_json(object.in_frame)},
-          {"visible", samples_json(object.visible)},
-          {"visible_share", object.visible_share()},
-          {"hidden_share", object.hidden_share()},
-          {"cut_share", object.cut_share()},
-          {"distance", finite_or_null(object.distance)},
-          {"centroid", is_seen ? to_json(object.centroid) : Json(nullptr)},
-          {"cut_by_near", object.is_cut_by_near},
-          {"hidden_by", std::move(hiders)},
-          {"why", why_json(run, number)}};
+  Json json = {{"object", number},
+               {"name", run.scene().instances[number].name},
+               {"alone", samples_json(object.alone)},
+               {"in_frame", samples_json(object.in_frame)},
+               {"visible", samples_json(object.visible)},
+               {"visible_share", object.visible_share()},
+               {"hidden_share", object.hidden_share()},
+               {"cut_share", object.cut_share()},
+               {"distance", finite_or_null(object.distance)},
+               {"centroid", is_seen ? to_json(object.centroid) : Json(nullptr)},
+               {"cut_by_near", object.is_cut_by_near},
+               {"hidden_by", pairs_json(run.hiders_of(number))},
+               {"why", why_json(run, number)}};
+  if (run.settings.report.all_hiders) {
+    json["hidden_by_any"] = pairs_json(pairs_of(run.accounts.hidden_by_any, number));
+    json["hidden_only_by"] = pairs_json(pairs_of(run.accounts.hidden_only_by, number));
+  }
+  return json;
 }
 
 Json view_report_json(const ReportRun& run) {
@@ -89,6 +97,7 @@ Json view_report_json(const ReportRun& run) {
                {"background", run.accounts.background}};
   Json& objects = json["objects"] = Json::array();
   for (const std::uint32_t i : objects_asked_for(run.settings, run.scene())) objects.push_back(object_json(run, i));
+  json["cycles"] = find_hiding_order(run.accounts.objects.size(), run.accounts.hidden_by_front).cycles;
   return json;
 }
 

@@ -12,6 +12,9 @@
 
 namespace frontmost::cli {
 
+/// Those of one object, of pairs in order.
+[[nodiscard]] std::span<const HiddenSamples> pairs_of(const std::vector<HiddenSamples>& all, std::uint32_t object);
+
 struct ReportRun {
   const Settings& settings;
   const Surfaces& surfaces;
@@ -22,8 +25,10 @@ struct ReportRun {
 
   [[nodiscard]] const View& view() const { return visible.view; }
   [[nodiscard]] const Scene& scene() const { return surfaces.scene(); }
-  /// The pairs of one object, by hider.
-  [[nodiscard]] std::span<const HiddenSamples> hiders_of(std::uint32_t object) const;
+  /// The pairs of one object with the front-most hiders.
+  [[nodiscard]] std::span<const HiddenSamples> hiders_of(std::uint32_t object) const {
+    return pairs_of(accounts.hidden_by_front, object);
+  }
 };
 
 /// Of every object, or of those that --why names: by number. \throws UsageError where it names none.

@@ -51,7 +51,8 @@ class ViewReporter {
     if (cut) own.emplace(*cut, execution_);
     const Surfaces& surfaces = own ? *own : surfaces_;
     const Visible& visible = zbuffer_.draw(surfaces, view, execution_);
-    const Accounting accounts = account(surfaces, visible, {.canvas = settings_.report.canvas}, execution_);
+    const Accounting accounts = account(
+        surfaces, visible, {.canvas = settings_.report.canvas, .all_hiders = settings_.report.all_hiders}, execution_);
     const std::vector<Explanation> why = explain_all(surfaces, visible, accounts, execution_);
     tell(ReportRun{settings_, surfaces, visible, accounts, why, {}});
   }

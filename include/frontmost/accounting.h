@@ -14,6 +14,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "frontmost/surfaces.h"
@@ -75,6 +76,8 @@ struct AccountingOptions {
   /// wide enough for whatever is half in the picture and no larger than it. Rounded down to whole pixels on each side,
   /// and never more than 16384 pixels wide or high.
   double canvas = 3;
+  /// Also all other pairs: hidden_by_any and hidden_only_by. Some ten times the time, and 20 MiB and more.
+  bool all_hiders = false;
 };
 
 struct Accounting {
@@ -84,6 +87,11 @@ struct Accounting {
   /// Samples in frame by the object that is seen there in its place, ordered by object, then by hider. Those of one
   /// object add up to what of it is hidden.
   std::vector<HiddenSamples> hidden_by_front;
+  /// In the same order, samples in frame at which the hider covers the object from before, whatever else does. Empty
+  /// unless AccountingOptions::all_hiders is set, as is the next one.
+  std::vector<HiddenSamples> hidden_by_any;
+  /// Samples at which nothing but the hider covers the object: what appears of it when the hider is taken away.
+  std::vector<HiddenSamples> hidden_only_by;
 };
 
 /// Accounts for every object in a view. `visible` is what zbuffer() or a ZBuffer gave for these surfaces: with answers
@@ -109,6 +117,8 @@ struct HidingOrder {
 /// \throws Error bad_argument where a pair is not of two different objects below `object_count`.
 [[nodiscard]] HidingOrder find_hiding_order(std::size_t object_count, std::span<const HiddenSamples> pairs);
 
+// Masks of objects, as pixels, run lengths and polygons.
+
 enum class MaskPixel : std::uint8_t { outside, hidden, visible };
 
 /// What one object covers of a picture, by the first sample of each pixel.
@@ -123,6 +133,17 @@ struct PixelMask {
     return pixels[std::size_t(y) * std::size_t(box.width) + std::size_t(x)];
   }
 };
+
+/// Which pixels of a mask are meant: those that are visible, or these and those that are hidden.
+enum class MaskPart : std::uint8_t { visible, whole };
+
+/// COCO's compressed run lengths of a mask in a picture of `size`: columns from the left, each from the top, runs of 0
+/// and 1 in turn, as its mask API writes them. O(pixels of the box).
+/// Source: T.-Y. Lin et al. Microsoft COCO: Common Objects in Context. 2014.
+[[nodiscard]] std::string coco_runs(const PixelMask& mask, MaskPart part, const glm::ivec2& size);
+/// Polygons along the sides of pixels, x and y in turn, in pixels from the picture's top left. They do not overlap,
+/// have no holes, and fill the mask exactly, also by the rule of COCO's mask API. O(pixels of the box).
+[[nodiscard]] std::vector<std::vector<int>> coco_polygons(const PixelMask& mask, MaskPart part);
 
 /// The masks of one object after another. Borrows what it is made of; not for several threads at once.
 class PixelMasks {

@@ -47,16 +47,15 @@ struct SaveOptions {
 
 /// Nothing is seen at `path` before the file is whole, and a file that was there stays as it is when writing fails.
 /// "-" writes standard output.
-/// PNG takes colours (sRGB, straight alpha, without A where all is opaque), or one channel: depth or id + 1 as 16-bit
-/// grey, 0 where nothing is seen, or N.X, N.Y, N.Z with 0 as the middle value. Text chunks tell load_image() which.
-/// EXR takes any channels (floats as 32-bit float, ids as uint32). PFM takes one or three float channels. NPY takes
-/// channels of one type, shape (height, width) or (height, width, channels).
-/// JPEG and WebP take colours (sRGB; WebP with straight alpha, JPEG where all is opaque), which they change a little:
-/// what is read back is within a few steps of 255 of what was saved, at quality 90 within 3 on the mean.
-/// The bytes do not depend on the number of threads.
-/// \throws Error file_unwritable, unsupported (channels or alpha that the format cannot hold, EXR or WebP in a build
-/// without it), limit_exceeded (id over 65534, depth over 65535 / depth_scale, JPEG over 65500 pixels a side, WebP over
-/// 16383), bad_argument (bits, quality).
+/// PNG takes colours (sRGB, straight alpha, without A where all is opaque), or one channel: luminance Y as 8-bit grey,
+/// depth or id + 1 as 16-bit grey, 0 where nothing is seen, or N.X, N.Y, N.Z with 0 as the middle value. Text chunks
+/// tell load_image() which. EXR takes any channels (floats as 32-bit float, ids as uint32). PFM takes one or three
+/// float channels. NPY takes channels of one type, shape (height, width) or (height, width, channels). JPEG and WebP
+/// take colours (sRGB; WebP with straight alpha, JPEG where all is opaque), which they change a little: what is read
+/// back is within a few steps of 255 of what was saved, at quality 90 within 3 on the mean. The bytes do not depend on
+/// the number of threads. \throws Error file_unwritable, unsupported (channels or alpha that the format cannot hold,
+/// EXR or WebP in a build without it), limit_exceeded (id over 65534, depth over 65535 / depth_scale, JPEG over 65500
+/// pixels a side, WebP over 16383), bad_argument (bits, quality).
 void save(const Image& image, const std::string& path, const SaveOptions& options = {},
           const Execution& execution = {});
 

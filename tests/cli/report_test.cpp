@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // frontmost report: the table, the report, and the files that it writes.
+#include <frontmost/io.h>
 #include <gmock/gmock.h>
 
 #include <map>
@@ -111,11 +112,104 @@ TEST_F(Report, ViewsOfAFileEqualThoseOneByOne) {
   EXPECT_EQ(all["views"][1]["name"], "iso");
   EXPECT_THAT(succeed("report squares.obj --views views.json --resolution 40,40 --why near").out,
               testing::MatchesRegex("first:\nnear is .*\n\niso:\nnear is .*\n\n2:\nnear is .*\n\n"));
-  expect_failure("report squares.obj --views views.json -o page.html", 2, "--views and --output exclude each other");
+  expect_failure("report squares.obj --views views.json -o page.html", 2, "--views excludes --output");
   write("panorama.json", R"({"views": [{"camera-model": "panorama"}]})");
   expect_failure("report squares.obj --views panorama.json", 2, "views[0]: objects are counted by pinhole cameras");
   write("depth.json", R"({"views": [{"depth-func": "LESS"}]})");
   expect_failure("report squares.obj --views depth.json", 2, "without a depth buffer");
+}
+
+TEST_F(Report, AllHidersAreThereOnRequest) {
+  const json plain = succeed(std::string("report squares.obj --json") + view).json();
+  EXPECT_FALSE(plain["objects"][0].contains("hidden_by_any"));
+  EXPECT_EQ(plain["cycles"], json::array());
+  const json all = succeed(std::string("report squares.obj --json --all-hiders") + view).json();
+  const json expected = json::array({{{"object", 1}, {"samples", 3}}});
+  EXPECT_EQ(all["objects"][0]["hidden_by_any"], expected);
+  EXPECT_EQ(all["objects"][0]["hidden_only_by"], expected);
+  EXPECT_EQ(all["objects"][1]["hidden_by_any"], json::array());
+}
+
+TEST_F(Report, CocosAnnotationsHaveWhatIsSeenAndWhatIsHidden) {
+  const json told = succeed(std::string("report squares.obj --json --coco coco.json") + view).json();
+  EXPECT_EQ(told["files"], json({"coco.json"}));
+  const json coco = json::parse(read("coco.json"));
+  EXPECT_EQ(coco["images"], json::array({{{"id", 1}, {"file_name", "squares.png"}, {"width", 10}, {"height", 10}}}));
+  ASSERT_EQ(coco["categories"].size(), 3u);
+  EXPECT_EQ(coco["categories"][1], (json{{"id", 2}, {"name", "near"}, {"supercategory", ""}}));
+  ASSERT_EQ(coco["annotations"].size(), 2u) << "what is not seen is left out";
+  const json &far = coco["annotations"][0], &near = coco["annotations"][1];
+  EXPECT_EQ(far["category_id"], 1);
+  EXPECT_EQ(far["area"], 33);
+  EXPECT_EQ(far["bbox"], json({2, 2, 6, 6}));
+  EXPECT_EQ(far["iscrowd"], 0);
+  // Columns of ten: two and two pixels of nothing, six of the object, and so on; the last column has three.
+  EXPECT_EQ(far["segmentation"], (json{{"size", {10, 10}}, {"counts", "f06400000003M?"}}));
+  EXPECT_EQ(far["amodal_area"], 36);
+  EXPECT_EQ(near["bbox"], json({7, 1, 3, 4}));
+  EXPECT_EQ(near["cut_share"], 0.25);
+  EXPECT_EQ(near["name"], "near");
+  succeed(std::string("report squares.obj --coco coco.json --coco-polygons") + view);
+  const json polygons = json::parse(read("coco.json"))["annotations"][0]["segmentation"];
+  EXPECT_EQ(polygons, json({{7, 2, 7, 5, 8, 5, 8, 8, 2, 8, 2, 2}}));
+  expect_failure("report squares.obj --coco-polygons", 2, "--coco-polygons needs --coco");
+  expect_failure("report squares.obj --coco a --output a", 2, "written twice");
+}
+
+TEST_F(Report, CocosCategoriesAreThoseOfTheSceneFile) {
+  write("cube.stl", cube_stl());
+  write("room.json", R"({"categories": [{"name": "box", "number": 7}], "objects": [
+    {"model": "cube.stl", "name": "a", "category": "box"}, {"model": "cube.stl", "name": "b", "translation": [3, 0, 0]}]})");
+  const Outcome outcome = run({"report", "room.json", "--resolution", "64,48", "--coco", "coco.json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json coco = json::parse(read("coco.json"));
+  EXPECT_EQ(coco["categories"][0]["id"], 7);
+  EXPECT_EQ(coco["categories"][0]["name"], "box");
+  EXPECT_EQ(coco["categories"][1]["id"], 8);
+  EXPECT_EQ(coco["categories"][1]["name"], "b");
+  EXPECT_EQ(coco["annotations"][0]["category_id"], 7);
+  EXPECT_EQ(coco["annotations"][1]["category_id"], 8);
+}
+
+TEST_F(Report, ABopSceneHasPosesMasksAndDepth) {
+  const json told = succeed(std::string("report squares.obj --json --bop new/scene") + view).json();
+  EXPECT_EQ(told["files"].size(), 8u);
+  for (const json& file : told["files"]) EXPECT_TRUE(exists(file)) << file;
+  const json camera = json::parse(read("new/scene/scene_camera.json"))["0"];
+  EXPECT_EQ(camera["cam_K"], json({100, 0, 4.5, 0, 100, 4.5, 0, 0, 1}));
+  EXPECT_EQ(camera["cam_R_w2c"], json({1, 0, 0, 0, -1, 0, 0, 0, -1}));
+  EXPECT_EQ(camera["cam_t_w2c"], json({0, 0, 10}));
+  EXPECT_EQ(camera["depth_scale"], 0.1);
+  const json poses = json::parse(read("new/scene/scene_gt.json"))["0"];
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_EQ(poses[1]["obj_id"], 2);
+  EXPECT_EQ(poses[1]["cam_t_m2c"], json({0, 0, 10}));
+  const json infos = json::parse(read("new/scene/scene_gt_info.json"))["0"];
+  EXPECT_EQ(infos[1], (json{{"px_count_all", 16},
+                            {"px_count_valid", 12},
+                            {"px_count_visib", 12},
+                            {"visib_fract", 0.75},
+                            {"bbox_obj", {7, 1, 3, 3}},
+                            {"bbox_visib", {7, 1, 2, 3}}}));
+  EXPECT_EQ(infos[0]["px_count_visib"], 33);
+  const Image mask = load_image(path("new/scene/mask_visib/000000_000001.png"));
+  double marked = 0;
+  for (const float value : mask.find("R")->floats()) marked += double(value);
+  EXPECT_EQ(marked, 12);
+  const Image whole = load_image(path("new/scene/mask/000000_000000.png"));
+  EXPECT_EQ(whole.find("R")->floats()[2 * 10 + 7], 1) << "hidden, and still of the object";
+  const Image depth = load_image(path("new/scene/depth/000000.png"));
+  EXPECT_NEAR(depth.find("Z")->floats()[5 * 10 + 5], 10, 1e-4);
+}
+
+TEST_F(Report, BopsOwnDefinitionOfVisibleHasATolerance) {
+  // The near square is a millimetre before the far one: less than the tolerance, so that all of both is visible.
+  succeed(std::string("report squares.obj --bop scene --bop-visible bop19") + view);
+  const json infos = json::parse(read("scene/scene_gt_info.json"))["0"];
+  EXPECT_EQ(infos[0]["px_count_visib"], 36);
+  EXPECT_EQ(infos[1]["px_count_visib"], 12);
+  expect_failure(std::string("report squares.obj --bop scene --camera-orthographic"), 2, "perspective");
+  expect_failure("report squares.obj --bop squares.obj/scene", 1, "squares.obj/scene");
 }
 
 TEST_F(Report, LongTablesSayHowMuchIsLeftOut) {

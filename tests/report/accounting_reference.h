@@ -89,4 +89,45 @@ inline Accounting reference_account(const Scene& scene, const Visible& visible, 
   return result;
 }
 
+/// The pairs of a map by object and hider.
+inline std::vector<HiddenSamples> pairs_of(
+    const std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint64_t>& counts) {
+  std::vector<HiddenSamples> pairs;
+  for (const auto& [pair, count] : counts) pairs.push_back({pair.first, pair.second, count});
+  return pairs;
+}
+
+/// Every two objects are drawn alone and held against each other.
+inline std::vector<HiddenSamples> reference_hidden_by_any(const Scene& scene, const View& view) {
+  std::vector<Visible> alone;
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) alone.push_back(draw_alone(scene, i, view));
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint64_t> counts;
+  for (std::uint32_t i = 0; i < alone.size(); ++i)
+    for (std::uint32_t j = i + 1; j < alone.size(); ++j)
+      for (std::size_t s = 0; s < view.sample_count(); ++s) {
+        if (alone[i].primitives[s] == no_primitive || alone[j].primitives[s] == no_primitive) continue;
+        const bool is_i_before = alone[i].keys[s] >= alone[j].keys[s];
+        ++counts[is_i_before ? std::pair(j, i) : std::pair(i, j)];
+      }
+  return pairs_of(counts);
+}
+
+/// Every object is left out once.
+inline std::vector<HiddenSamples> reference_hidden_only_by(const Scene& scene, const Visible& visible) {
+  const Surfaces all(scene);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint64_t> counts;
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+    Scene rest = scene;
+    rest.instances.erase(rest.instances.begin() + i);
+    const Surfaces surfaces(rest);
+    const Visible without = zbuffer(surfaces, visible.view, {.threads = 1});
+    for (std::size_t s = 0; s < visible.primitives.size(); ++s) {
+      if (without.primitives[s] == no_primitive || all.source(visible.primitives[s]).instance != i) continue;
+      const std::uint32_t number = surfaces.source(without.primitives[s]).instance;
+      ++counts[{number < i ? number : number + 1, i}];
+    }
+  }
+  return pairs_of(counts);
+}
+
 }  // namespace frontmost::test

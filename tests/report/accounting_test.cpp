@@ -233,6 +233,103 @@ TEST(Accounting, RefusesWhatIsOutOfRange) {
   EXPECT_EQ(test::code_of([&] { (void)account(Surfaces(none), visible); }), ErrorCode::bad_argument);
 }
 
+TEST(Accounting, AllHidersEqualObjectsAloneAndScenesWithoutThem) {
+  std::size_t any = 0, only = 0;
+  for (std::uint64_t seed = 0; seed < test::seeds(40); ++seed) {
+    Random random(seed);
+    const Scene scene =
+        seed % 3 == 2 ? test::cutout_scene(test::random_mesh(test::Kind::soup, 30, seed), test::Cut(1), 0.5f, seed)
+                      : test::hidden_scene(3 + random.below(14), seed);
+    View view = test::random_view(20 + random.below(180), 20 + random.below(120), seed);
+    view.culling = Culling(random.below(4));
+    view.samples = seed % 5 == 4 ? 4 : 1;
+    Scene placed = scene;
+    for (int i = 0; seed % 3 == 2 && i < 5; ++i)
+      placed.instances.push_back({"", 0, test::random_placement(random, 0.5f, 1)});
+    const Surfaces surfaces(placed);
+    const Visible visible = zbuffer(surfaces, view);
+    const Accounting accounts = account(surfaces, visible, {.canvas = 1, .all_hiders = true});
+    EXPECT_EQ(accounts.hidden_by_any, test::reference_hidden_by_any(placed, view)) << seed;
+    EXPECT_EQ(accounts.hidden_only_by, test::reference_hidden_only_by(placed, visible)) << seed;
+    any += accounts.hidden_by_any.size(), only += accounts.hidden_only_by.size();
+  }
+  EXPECT_GT(only, 200u);
+  EXPECT_GT(any, only);
+}
+
+TEST(Accounting, AllHidersAreTheSameForThreadsAndInstructionSets) {
+  const Scene scene = test::hidden_scene(150, 4);
+  const View view = test::random_view(333, 221, 7);
+  const Surfaces surfaces(scene);
+  const Visible visible = zbuffer(surfaces, view);
+  const AccountingOptions options{.canvas = 1, .all_hiders = true};
+  const Accounting expected = account(surfaces, visible, options, {.threads = 1, .isa = Isa::scalar});
+  for (const Isa isa : available_isas())
+    for (const int threads : {1, 4}) {
+      const Accounting accounts = account(surfaces, visible, options, {.threads = threads, .isa = isa});
+      EXPECT_EQ(accounts.hidden_by_any, expected.hidden_by_any);
+      EXPECT_EQ(accounts.hidden_only_by, expected.hidden_only_by);
+    }
+}
+
+TEST(Accounting, OneBehindAnotherIsHiddenByBothAndByNoneAlone) {
+  Scene scene;
+  for (int i = 0; i < 3; ++i) place_square(scene, "square", 3, {0, 0, i});  // the last one is the nearest
+  place_square(scene, "strip", 1, {0, 4, 3});                               // before nothing but the upper row
+  const Surfaces surfaces(scene);
+  const Accounting accounts = account(surfaces, zbuffer(surfaces, square_view()), {.all_hiders = true});
+  EXPECT_EQ(accounts.hidden_by_front, (std::vector<HiddenSamples>{{0, 2, 36}, {1, 2, 36}}));
+  EXPECT_EQ(accounts.hidden_by_any, (std::vector<HiddenSamples>{{0, 1, 36}, {0, 2, 36}, {1, 2, 36}}));
+  EXPECT_EQ(accounts.hidden_only_by, (std::vector<HiddenSamples>{{1, 2, 36}}));
+}
+
+TEST(PixelMasks, RunLengthsAreThoseOfCoco) {
+  // Of 3 x 4 pixels, columns from the left: 0 1 1 0, 1 1 0 0, 0 0 0 1.
+  PixelMask mask;
+  mask.box = {0, 0, 3, 4};
+  mask.pixels = Buffer<MaskPixel>(12, MaskPixel::outside);
+  for (const auto& [x, y] : {std::pair(0, 1), {0, 2}, {1, 0}, {1, 1}, {2, 3}})
+    mask.pixels[std::size_t(y * 3 + x)] = MaskPixel::visible;
+  EXPECT_EQ(coco_runs(mask, MaskPart::visible, {3, 4}), "12104O");  // 1 2 1 2 5 1
+  mask.pixels[1] = MaskPixel::hidden;
+  EXPECT_EQ(coco_runs(mask, MaskPart::visible, {3, 4}), "122O30");
+  EXPECT_EQ(coco_runs(mask, MaskPart::whole, {3, 4}), "12104O");
+  EXPECT_EQ(coco_runs({}, MaskPart::whole, {3, 4}), "<");
+}
+
+/// Pixels whose middles lie within an odd number of sides.
+std::vector<int> filled(const std::vector<std::vector<int>>& polygons, int width, int height) {
+  std::vector<int> counts(std::size_t(width * height), 0);
+  for (const std::vector<int>& p : polygons)
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        bool is_within = false;
+        for (std::size_t i = 0, k = p.size() - 2; i < p.size(); k = i, i += 2)
+          is_within ^= (p[i + 1] > y) != (p[k + 1] > y) && p[i] > x;
+        counts[std::size_t(y * width + x)] += is_within;
+      }
+  return counts;
+}
+
+TEST(PixelMasks, PolygonsFillThemOnce) {
+  for (std::uint64_t seed = 0; seed < test::seeds(100); ++seed) {
+    Random random(seed);
+    PixelMask mask;
+    mask.box = {2, 1, 3 + int(random.below(12)), 2 + int(random.below(12))};
+    const auto size = std::size_t(mask.box.width * mask.box.height);
+    mask.pixels = Buffer<MaskPixel>(size, MaskPixel::outside);
+    for (MaskPixel& pixel : mask.pixels) pixel = random.below(3) > 0 ? MaskPixel::visible : MaskPixel::hidden;
+    const int width = mask.box.x + mask.box.width + 1, height = mask.box.y + mask.box.height + 1;
+    const std::vector<std::vector<int>> polygons = coco_polygons(mask, MaskPart::visible);
+    const std::vector<int> counts = filled(polygons, width, height);
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        ASSERT_EQ(counts[std::size_t(y * width + x)], mask.at(x, y) == MaskPixel::visible) << seed;
+    EXPECT_EQ(coco_polygons(mask, MaskPart::whole).size(), 1u);
+    EXPECT_EQ(coco_polygons(mask, MaskPart::whole)[0].size(), 8u);
+  }
+}
+
 TEST(PixelMasks, EqualThePictureOfTheObjectAlone) {
   std::uint64_t hidden = 0;
   for (std::uint64_t seed = 0; seed < test::seeds(20); ++seed) {

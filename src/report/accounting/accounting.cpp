@@ -16,6 +16,7 @@
 
 #include "base/parallel.h"
 #include "base/pool.h"
+#include "report/accounting/band_hiders.h"
 #include "report/accounting/object_mask.h"
 #include "view/answer.h"
 
@@ -149,7 +150,13 @@ Accounting account(const Surfaces& surfaces, const Visible& visible, const Accou
   if (!(options.canvas >= 1 && options.canvas <= kLargestScale))
     throw Error(ErrorCode::bad_argument, "canvas: must be 1 to 16");
   const IeeeScope ieee;
-  return Accountant(surfaces, visible, options.canvas, execution).account();
+  Accounting result = Accountant(surfaces, visible, options.canvas, execution).account();
+  if (options.all_hiders) {
+    HiderLists lists = find_all_hiders(surfaces.placed(), ObjectCanvas(visible.view, 1), result.objects, execution);
+    result.hidden_by_any = std::move(lists.any);
+    result.hidden_only_by = std::move(lists.only);
+  }
+  return result;
 }
 
 }  // namespace frontmost

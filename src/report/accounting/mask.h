@@ -56,6 +56,8 @@ void mark_spans(const MaskPlane& plane, const RowSpans& spans, Isa isa);
 
 /// Counts what is marked in a rectangle of the plane.
 [[nodiscard]] MarkedSamples count_marked(const MaskPlane& plane, const PixelRect& rect, Isa isa);
+/// How many bits two lists of words have in common. Precondition: they are equally long.
+[[nodiscard]] std::uint64_t count_common(std::span<const std::uint64_t> a, std::span<const std::uint64_t> b, Isa isa);
 /// Adds to the counts of every object how many samples see it that are marked within a part of the picture.
 void count_seen(const MaskPlane& plane, const PixelRect& rect, const SeenObjects& seen, SampleCounts& counts, Isa isa);
 }  // namespace frontmost::accounting_detail

@@ -294,6 +294,12 @@ MarkedSamples CountMarked(const MaskPlane& plane, const PixelRect& rect) {
   return marked;
 }
 
+std::uint64_t CountCommon(std::span<const std::uint64_t> a, std::span<const std::uint64_t> b) {
+  std::uint64_t count = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) count += std::uint64_t(std::popcount(a[i] & b[i]));
+  return count;
+}
+
 SeenSpan FindSeenSpan(std::span<const PrimitiveId> ids, const float* keys, PrimitiveId first, std::uint32_t count) {
   const DU d;
   const DI di;
@@ -340,6 +346,7 @@ FRONTMOST_KERNELS(MarkTriangles);
 FRONTMOST_KERNELS(FindSpans);
 FRONTMOST_KERNELS(MarkSpans);
 FRONTMOST_KERNELS(CountMarked);
+FRONTMOST_KERNELS(CountCommon);
 FRONTMOST_KERNELS(CountSeen);
 FRONTMOST_KERNELS(FindSeenSpan);
 
@@ -357,6 +364,10 @@ void mark_spans(const MaskPlane& plane, const RowSpans& spans, Isa isa) {
 
 MarkedSamples count_marked(const MaskPlane& plane, const PixelRect& rect, Isa isa) {
   return kernel_for(CountMarkedKernels, isa)(plane, rect);
+}
+
+std::uint64_t count_common(std::span<const std::uint64_t> a, std::span<const std::uint64_t> b, Isa isa) {
+  return kernel_for(CountCommonKernels, isa)(a, b);
 }
 
 void count_seen(const MaskPlane& plane, const PixelRect& rect, const SeenObjects& seen, SampleCounts& counts, Isa isa) {

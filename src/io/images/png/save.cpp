@@ -144,6 +144,17 @@ PngContents id_map(const Image& image, const std::string& name) {
   return contents;
 }
 
+/// Luminance from 0 to 1, as masks are.
+PngContents grey_picture(const Image& image) {
+  PngContents contents;
+  contents.color = Color::grey;
+  contents.row = [&image](int y, std::uint8_t* row) {
+    const float* values = image.channels[0].floats().data() + std::size_t(y) * std::size_t(image.width);
+    for (int x = 0; x < image.width; ++x) row[x] = srgb8_of_linear(values[x]);
+  };
+  return contents;
+}
+
 bool holds_directions(const Image& image) {
   constexpr std::string_view names[] = {"N.X", "N.Y", "N.Z"};
   if (image.channels.size() != 3) return false;
@@ -153,6 +164,8 @@ bool holds_directions(const Image& image) {
 }
 
 PngContents contents_of(const Image& image, const SaveOptions& options, const std::string& name) {
+  if (image.channels.size() == 1 && image.channels[0].name == "Y" && !image.channels[0].is_integer())
+    return grey_picture(image);
   if (image.channels.size() == 1)
     return image.channels[0].is_integer() ? id_map(image, name) : depth_map(image, options.depth_scale, name);
   if (holds_directions(image)) return directions(image, options.bits);
