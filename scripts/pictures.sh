@@ -33,6 +33,7 @@ street=(render builtin:city --camera-position 8,3,25 --camera-direction +x)
 "$program" "${street[@]}" --camera-model panorama --resolution 400,200 -o panorama.png
 "$program" "${street[@]}" --camera-model fisheye --resolution 200,200 -o fisheye.png
 # What is seen of each face from the front, looked at from the right.
+"$program" render builtin:gallery --resolution 420,260 --shading ids --background transparent -o gallery-objects.png
 coloured=$(mktemp --suffix .ply)
 "$program" visible builtin:gallery --resolution 640,360 -o "$coloured" -q > /dev/null
 "$program" render "$coloured" --camera-azimuth-angle 100 --camera-elevation-angle 20 --shadows off \
