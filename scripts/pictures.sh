@@ -29,7 +29,7 @@ done
 # A depth buffer of 16 bits whose near plane is too near.
 "$program" render builtin:gallery --resolution 360,196 --depth-format D16 --near 0.001 -o fighting.png
 "$program" precision builtin:gallery --resolution 360,196 --format D16 --near 0.001 --heat-map fights.png
-street=(render builtin:city --camera-position 8,3,25 --camera-direction +x)
+street=(render builtin:city --camera-position '8,3,25' --camera-direction +x)
 "$program" "${street[@]}" --camera-model panorama --resolution 400,200 -o panorama.png
 "$program" "${street[@]}" --camera-model fisheye --resolution 200,200 -o fisheye.png
 # What is seen of each face from the front, looked at from the right.
