@@ -67,7 +67,7 @@ std::vector<PrecisionResult> buffers_of(const Settings& settings, const Projecti
   const bool reversed = settings.view.depth.reversed;
   std::vector<PrecisionResult> results;
   const auto add = [&](DepthFormat format, bool is_reversed) {
-    results.push_back({{projection.clip, format, is_reversed, projection.orthographic}, {}});
+    results.emplace_back().setup = {projection.clip, format, is_reversed, projection.orthographic};
   };
   if (settings.precision.format) {
     add(*settings.precision.format, reversed);

@@ -26,15 +26,6 @@ View square_view(int size = 10) {
   return view;
 }
 
-void place_square(Scene& scene, const char* name, float half, const glm::dvec3& at) {
-  Mesh mesh;
-  test::add_square(mesh, half, 0);
-  glm::dmat4 place(1.0);
-  place[3] = glm::dvec4(at, 1.0);
-  scene.instances.push_back({name, std::uint32_t(scene.meshes.size()), place});
-  scene.meshes.push_back(std::move(mesh));
-}
-
 /// Every field but is_cut_by_near, which the reference does not know.
 void expect_same(const Accounting& a, const Accounting& b) {
   EXPECT_EQ(a.canvas, b.canvas);
@@ -69,9 +60,9 @@ void expect_sums(const Accounting& accounts, const View& view) {
 
 TEST(Accounting, CountsSquaresThatCanBeCountedByHand) {
   Scene scene;
-  place_square(scene, "far", 3, {0, 0, 0});    // 6 x 6 pixels from (2, 2)
-  place_square(scene, "near", 2, {4, 2, 1});   // 4 x 4 pixels from (7, 1), of which a column is beyond the frame
-  place_square(scene, "away", 1, {20, 0, 0});  // beyond the canvas, too
+  test::place_square(scene, "far", 3, {0, 0, 0});    // 6 x 6 pixels from (2, 2)
+  test::place_square(scene, "near", 2, {4, 2, 1});   // 4 x 4 pixels from (7, 1), of which a column is beyond the frame
+  test::place_square(scene, "away", 1, {20, 0, 0});  // beyond the canvas, too
   const Surfaces surfaces(scene);
   const Accounting accounts = account(surfaces, zbuffer(surfaces, square_view()));
   EXPECT_EQ(accounts.canvas, (PixelBox{-10, -10, 30, 30}));
@@ -189,10 +180,10 @@ TEST(Accounting, IsTheSameForThreadsAndInstructionSets) {
 
 TEST(Accounting, TellsWhatTheNearPlaneCuts) {
   Scene scene;
-  place_square(scene, "whole", 1, {0, 0, 0});
-  place_square(scene, "cut", 1, {0, 0, 9});  // its one edge at 8, its other at 10, where the eye is
+  test::place_square(scene, "whole", 1, {0, 0, 0});
+  test::place_square(scene, "cut", 1, {0, 0, 9});  // its one edge at 8, its other at 10, where the eye is
   scene.instances.back().world_from_mesh[0] = glm::dvec4(0, 0, 1, 0);
-  place_square(scene, "behind", 1, {0, 0, 12});
+  test::place_square(scene, "behind", 1, {0, 0, 12});
   const Surfaces surfaces(scene);
   View view = square_view();
   view.projection = make_projection(1.0, 1.0, {1, 20});
@@ -204,7 +195,7 @@ TEST(Accounting, TellsWhatTheNearPlaneCuts) {
 
 TEST(Accounting, LargePicturesHaveTheCanvasThatFits) {
   Scene scene;
-  place_square(scene, "square", 3, {0, 0, 0});
+  test::place_square(scene, "square", 3, {0, 0, 0});
   const Surfaces surfaces(scene);
   View view = square_view();
   view.width = 8000;
@@ -223,7 +214,7 @@ TEST(Accounting, AnEmptySceneIsAllBackground) {
 
 TEST(Accounting, RefusesWhatIsOutOfRange) {
   Scene scene;
-  place_square(scene, "square", 3, {0, 0, 0});
+  test::place_square(scene, "square", 3, {0, 0, 0});
   const Surfaces surfaces(scene);
   const Visible visible = zbuffer(surfaces, square_view());
   for (const double canvas : {0.99, 16.1, -1.0, std::nan("")})
@@ -274,8 +265,8 @@ TEST(Accounting, AllHidersAreTheSameForThreadsAndInstructionSets) {
 
 TEST(Accounting, OneBehindAnotherIsHiddenByBothAndByNoneAlone) {
   Scene scene;
-  for (int i = 0; i < 3; ++i) place_square(scene, "square", 3, {0, 0, i});  // the last one is the nearest
-  place_square(scene, "strip", 1, {0, 4, 3});                               // before nothing but the upper row
+  for (int i = 0; i < 3; ++i) test::place_square(scene, "square", 3, {0, 0, i});  // the last one is the nearest
+  test::place_square(scene, "strip", 1, {0, 4, 3});                               // before nothing but the upper row
   const Surfaces surfaces(scene);
   const Accounting accounts = account(surfaces, zbuffer(surfaces, square_view()), {.all_hiders = true});
   EXPECT_EQ(accounts.hidden_by_front, (std::vector<HiddenSamples>{{0, 2, 36}, {1, 2, 36}}));

@@ -34,18 +34,9 @@ View parallel_view() {
   return view;
 }
 
-void place_panel(Scene& scene, const char* name, float half, const glm::dvec3& at) {
-  Mesh mesh;
-  test::add_square(mesh, half, 0);
-  glm::dmat4 place(1.0);
-  place[3] = glm::dvec4(at, 1.0);
-  scene.instances.push_back({name, std::uint32_t(scene.meshes.size()), place});
-  scene.meshes.push_back(std::move(mesh));
-}
-
 Scene panel_at(const glm::dvec3& at, float half = 1) {
   Scene scene;
-  place_panel(scene, "panel", half, at);
+  test::place_square(scene, "panel", half, at);
   return scene;
 }
 
@@ -74,7 +65,7 @@ void expect_seen_after_remedy(const Scene& scene, const View& view, const Explan
 TEST(Explain, SaysThatWhatIsSeenIsSeen) {
   Scene scene = panel_at({0, 0, -10});
   EXPECT_EQ(sentence(explanation_of(scene, level_view()), scene), "panel is seen, all of it.");
-  place_panel(scene, "post", 0.5, {-0.5, 0, -9});
+  test::place_square(scene, "post", 0.5, {-0.5, 0, -9});
   const Explanation why = explanation_of(scene, level_view());
   EXPECT_EQ(why.reason, SightReason::seen);
   EXPECT_EQ(why.triangles, (TrianglePlaces{.in_view = 2}));
@@ -89,7 +80,7 @@ TEST(Explain, TellsShareBeyondTheFrame) {
   EXPECT_EQ(sentence(explanation_of(scene, parallel_view()), scene),
             "panel is seen, 50 % of it, 50 % beyond the frame.");
   Scene cut = scene;
-  place_panel(cut, "post", 1, {5.5, 0, -9});  // over half of what is in frame
+  test::place_square(cut, "post", 1, {5.5, 0, -9});  // over half of what is in frame
   EXPECT_EQ(sentence(explanation_of(cut, parallel_view()), cut),
             "panel is seen, 25 % of it, 50 % beyond the frame, the rest hidden by post 25 %.");
 }
@@ -306,8 +297,8 @@ TEST(Explain, EdgeOnThereIsNoArea) {
 
 TEST(Explain, WhatHidesIsTakenAway) {
   Scene scene = panel_at({0, 0, -10});
-  place_panel(scene, "wall", 6, {-5.75, 0, -9});
-  place_panel(scene, "lamp", 6, {6.25, 0, -8});
+  test::place_square(scene, "wall", 6, {-5.75, 0, -9});
+  test::place_square(scene, "lamp", 6, {6.25, 0, -8});
   const Explanation why = explanation_of(scene, parallel_view());
   EXPECT_EQ(why.reason, SightReason::hidden);
   EXPECT_EQ(why.hidden_share, 1);
@@ -317,13 +308,13 @@ TEST(Explain, WhatHidesIsTakenAway) {
 
 TEST(Explain, WhatStandsBehindTheFirstIsTakenAwayToo) {
   Scene scene = panel_at({0, 0, -10});
-  for (int i = 0; i < 4; ++i) place_panel(scene, "", 2, {0, 0, -9 + i});
+  for (int i = 0; i < 4; ++i) test::place_square(scene, "", 2, {0, 0, -9 + i});
   const Explanation why = explanation_of(scene, parallel_view());
   EXPECT_EQ(why.remedy.objects, (std::vector<std::uint32_t>{1, 2, 3, 4}));
   EXPECT_EQ(sentence(why, scene),
             "panel is hidden by object 4 100 %: take object 1, object 2, object 3 and object 4 away.");
   expect_seen_after_remedy(scene, parallel_view(), why);
-  for (int i = 4; i < 9; ++i) place_panel(scene, "", 2, {0, 0, -9 + i});
+  for (int i = 4; i < 9; ++i) test::place_square(scene, "", 2, {0, 0, -9 + i});
   EXPECT_EQ(remedy_text(explanation_of(scene, parallel_view()), scene),
             "take object 1, object 2, object 3 and 6 other objects away");
 }

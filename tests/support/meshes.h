@@ -19,6 +19,15 @@ inline void add_quad(Mesh& mesh, const glm::vec3& a, const glm::vec3& b, const g
 inline void add_square(Mesh& mesh, float half, float z) {
   add_quad(mesh, {-half, -half, z}, {half, -half, z}, {half, half, z}, {-half, half, z});
 }
+/// A square across z, as an object of its own.
+inline void place_square(Scene& scene, const char* name, float half, const glm::dvec3& at) {
+  Mesh mesh;
+  add_square(mesh, half, 0);
+  glm::dmat4 place(1.0);
+  place[3] = glm::dvec4(at, 1.0);
+  scene.instances.push_back({name, std::uint32_t(scene.meshes.size()), place});
+  scene.meshes.push_back(std::move(mesh));
+}
 
 /// A ball of radius 1 of 8 * steps^2 triangles, counter-clockwise from outside, every vertex moved along its radius by
 /// up to `roughness`.

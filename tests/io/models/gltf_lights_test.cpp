@@ -71,7 +71,7 @@ TEST(GltfLights, StandWhereTheirNodesAreWhateverTheScale) {
   // A quarter turn about x takes -z to +y.
   const std::string turned =
       R"("name":"n","translation":[1,2,3],"rotation":[0.70710678118654757,0,0,0.70710678118654757],)";
-  for (const std::string& scale : {R"()", R"("scale":[5,6,7],)", R"("scale":[0,0,2],)", R"("scale":[-1,1,1],)"}) {
+  for (const std::string scale : {R"()", R"("scale":[5,6,7],)", R"("scale":[0,0,2],)", R"("scale":[-1,1,1],)"}) {
     const Scene scene = load_lights({spot}, turned + scale);
     ASSERT_EQ(scene.lights.size(), 1u) << scale;
     const Light& light = scene.lights[0];
