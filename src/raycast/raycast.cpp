@@ -12,7 +12,7 @@
 
 #include "base/parallel.h"
 #include "base/pool.h"
-#include "raycast/tile_kernel.h"
+#include "raycast/tile/tile_kernel.h"
 
 namespace frontmost {
 namespace {

@@ -11,8 +11,8 @@
 
 #include "base/parallel.h"
 #include "raycast/camera_rays.h"
-#include "raycast/queries.h"
-#include "raycast/scan_packet.h"
+#include "raycast/packet/scan_packet.h"
+#include "raycast/query/queries.h"
 
 namespace frontmost {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "frontmost/shade.h"
 #include "shade/light/lamps.h"
-#include "shade/materials.h"
+#include "shade/material/materials.h"
 #include "shade/occlusion/depth_occlusion.h"
 #include "shade/shadow/light_shadows.h"
 #include "shade/tile.h"

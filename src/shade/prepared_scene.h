@@ -6,7 +6,7 @@
 #include "frontmost/shade.h"
 #include "shade/geometry/geometry.h"
 #include "shade/light/lamps.h"
-#include "shade/materials.h"
+#include "shade/material/materials.h"
 #include "shade/occlusion/depth_occlusion.h"
 #include "shade/scan/scan_tile.h"
 #include "shade/shadow/light_shadows.h"

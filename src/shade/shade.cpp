@@ -7,9 +7,10 @@
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "base/srgb.h"
-#include "shade/canvas.h"
+#include "shade/canvas/canvas.h"
+#include "shade/canvas/environment_canvas.h"
+#include "shade/canvas/srgb_blend.h"
 #include "shade/colorists.h"
-#include "shade/environment_canvas.h"
 #include "shade/figure/colored_order.h"
 #include "shade/layers/layers.h"
 #include "shade/layers/opaque_part.h"
@@ -17,7 +18,6 @@
 #include "shade/prepared_scene.h"
 #include "shade/scan/scan_picture.h"
 #include "shade/shadow/light_view.h"
-#include "shade/srgb_blend.h"
 #include "view/answer.h"
 
 namespace frontmost {

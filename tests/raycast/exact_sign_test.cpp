@@ -2,7 +2,7 @@
 // Signs of determinants, against whole numbers of 128 bits.
 #include <gtest/gtest.h>
 
-#include "raycast/query_rule.h"
+#include "raycast/query/query_rule.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {

@@ -7,7 +7,7 @@
 
 #include "frontmost/raycast.h"
 #include "indexed_scene.h"
-#include "raycast/queries.h"
+#include "raycast/query/queries.h"
 #include "support/odd_numbers.h"
 #include "support/random_scene.h"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "frontmost/raycast.h"
-#include "raycast/sample_rule.h"
+#include "raycast/tile/sample_rule.h"
 #include "support/oracle.h"
 
 namespace frontmost::test {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Layers of materials against their formulas, one fragment at a time in doubles: KHR_materials_ior, _specular, _sheen
 // and _clearcoat over glTF 2.0's metallic-roughness (appendix B), in one light from one direction.
-#include "shade/material_layers.h"
+#include "shade/material/material_layers.h"
 
 #include <gtest/gtest.h>
 

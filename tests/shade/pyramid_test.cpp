@@ -10,7 +10,7 @@
 #include <random>
 
 #include "base/srgb.h"
-#include "shade/texture_sampler.h"
+#include "shade/texture/texture_sampler.h"
 #include "support/random_scene.h"
 
 namespace frontmost::shading {

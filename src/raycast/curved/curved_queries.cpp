@@ -10,7 +10,7 @@
 #include "base/parallel.h"
 #include "raycast/curved/curved_parts.h"
 #include "raycast/curved/patch_packet.h"
-#include "raycast/queries.h"
+#include "raycast/query/queries.h"
 
 namespace frontmost {
 

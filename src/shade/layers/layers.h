@@ -7,7 +7,7 @@
 
 #include "abuffer/fragment_pass.h"
 #include "base/pool.h"
-#include "shade/canvas.h"
+#include "shade/canvas/canvas.h"
 
 namespace frontmost::shading {
 

@@ -2,7 +2,7 @@
 // Pictures of scans: what rays met, with the materials, lights and shadows of other pictures.
 #pragma once
 
-#include "shade/canvas.h"
+#include "shade/canvas/canvas.h"
 #include "shade/picture_parts.h"
 #include "shade/prepared_scene.h"
 

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cmath>
 
-#include "raycast/queries.h"
+#include "raycast/query/queries.h"
 
 namespace frontmost::shading {
 

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// A packet of a scan's rays through the tree: nearest boxes first, sixteen boxes or triangles at a time, for all rays
+// together.
+//
+//    rays --> cone --> boxes that it may meet --> triangles --> nearest of each ray
+//              |                                                      |
+//              +-- too wide: single rays                              +-- ids, ranges
+//
+// I. Wald, P. Slusallek, C. Benthin, M. Wagner. Interactive Rendering with Coherent Ray Tracing. 2001.
+
+#include <array>
+#include <cstring>
+
+#include "raycast/index/placement.h"
+#include "raycast/packet/scan_packet.h"
+#include "raycast/query/queries.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raycast/packet/packet_kernel.cpp"
+#include "base/isa.h"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+// After Highway: a block of its own.
+#include "base/lanes-inl.h"
+#include "raycast/packet/packet_hits-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::raycast_detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+class PacketWalker {
+ public:
+  PacketWalker(const RayTree& tree, const PacketCone& cone, ScanScratch& scratch)
+      : cone_(cone), stack_(scratch.stack.data()), walk_(tree), hits_(tree, cone, scratch) {
+    stack_[waiting_++] = {0, tree.root};
+  }
+
+  PacketHits& Walk() {
+    while (waiting_ > 0) {
+      const ScanScratch::Waiting next = stack_[--waiting_];
+      walk_.Take(waiting_);
+      if (next.place > hits_.packet_end()) continue;
+      if (HWY_UNLIKELY(walk_.IsInstance(next.child))) {
+        stack_[waiting_] = {next.place, walk_.Enter(next.child, waiting_)};
+        ++waiting_;
+      } else if (next.child & kLeafBit) {
+        hits_.MeetLeaf(walk_.Leaf(next.child));
+      } else {
+        LookInto(walk_.Node(next.child));
+      }
+      if (waiting_ > 0 && !walk_.IsAround(waiting_)) walk_.Prefetch(stack_[waiting_ - 1].child);
+    }
+    return hits_;
+  }
+
+ private:
+  /// Puts the children that rays may meet on top of the others, the nearest last.
+  void LookInto(const RayNode& node) {
+    const QF d;
+    alignas(64) std::int32_t bits[kRayLanes + kQueryLanes];
+    alignas(64) std::uint32_t child[kRayLanes + kQueryLanes];
+    std::size_t count = 0;
+    for (std::size_t first = 0; first < node.count; first += kQueryLanes) {
+      const PacketCone::Missed missed = cone_.Misses(node, first, hits_.block_ends());
+      const Compactor<QF> entered(hn::AndNot(missed.boxes, hn::FirstN(d, node.count - first)));
+      entered.Store(hn::BitCast(QI(), missed.place), bits + count);
+      entered.Store(hn::Load(QU(), node.child + first), child + count);
+      count += entered.count();
+    }
+    // Sorted by counting how many are farther; floats from 0 on are ordered as their bits are.
+    const QI di;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto own = hn::Set(di, bits[i]);
+      std::size_t rank = 0;
+      for (std::size_t first = 0; first < count; first += kQueryLanes) {
+        const auto others = hn::Load(di, bits + first);
+        const auto used = hn::FirstN(di, count - first), before = hn::FirstN(di, i > first ? i - first : 0);
+        rank += hn::CountTrue(di, hn::And(used, hn::Or(hn::Gt(others, own), hn::And(before, hn::Eq(others, own)))));
+      }
+      ScanScratch::Waiting& next = stack_[waiting_ + rank];
+      std::memcpy(&next.place, &bits[i], sizeof next.place);
+      next.child = child[i];
+    }
+    waiting_ += count;
+  }
+
+  const PacketCone& cone_;
+  ScanScratch::Waiting* stack_;
+  std::size_t waiting_ = 0;
+  PlacedWalk walk_;
+  PacketHits hits_;
+};
+
+/// \returns false where the rays have to be asked one by one.
+bool CastTogether(const RayTree& tree, ScanPacket& packet, ScanScratch& scratch, Isa isa) {
+  PacketCone cone;
+  if (!cone.Take(packet)) return false;
+  PacketWalker(tree, cone, scratch).Walk().WriteOut(packet, isa);
+  return true;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace frontmost::raycast_detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace frontmost::raycast_detail {
+
+FRONTMOST_KERNELS(CastTogether);
+
+void cast_scan(const RayTree& tree, ScanPacket& packet, ScanScratch& scratch, Isa isa) {
+  if (tree.root != no_index && kernel_for(CastTogetherKernels, isa)(tree, packet, scratch, isa)) return;
+  std::array<Query, kScanRays> queries;
+  std::array<RayHit, kScanRays> hits;
+  for (std::size_t i = 0; i < packet.count; ++i) queries[i] = packet.query_of(i);
+  walk_batch(tree, {queries.data(), packet.count}, Want::closest, {hits.data(), packet.count}, isa);
+  for (std::size_t i = 0; i < packet.count; ++i) {
+    packet.primitive[i] = hits[i].primitive;
+    packet.range[i] = range_of(hits[i], queries[i].direction);
+  }
+}
+
+}  // namespace frontmost::raycast_detail
+#endif  // HWY_ONCE

@@ -1,0 +1,427 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays towards one light are parallel: sheared along it, they are the points of a plane, and boxes and triangles cast
+// their outlines on it. Up to 64 rays walk the tree together as one rectangle of that plane, above their lowest start.
+//
+// Vectors decide with a bound on all rounding what is certainly missed and certainly met; what is left, mostly
+// neighbours seen through their common edge, is decided by stands_before(). So the answers do not depend on the order
+// of the rays, nor on the instruction set.
+//
+//           light                   rays as points       All rays go the same way, so each is a point (u, v) of the
+//             \   \   \               . . . .            sheared plane with a height d at which it starts. A triangle
+//        tri __\___\                 . /\ .              is met by the points inside of its outline whose start lies
+//               \   \   \            ./  \.              below it.
+//          ______\___\___\ points    '----'
+//
+// Rays that have met something take no further part, and a packet ends when all of its rays have. A start that is not
+// valid is lit: nothing stands before what is nowhere.
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "raycast/index/placement.h"
+#include "raycast/query/queries.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raycast/query/light_kernel.cpp"
+#include "base/isa.h"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+// After Highway: a block of its own.
+#include "base/lanes-inl.h"
+
+#ifndef FRONTMOST_RAYCAST_LIGHT_KERNEL_ONCE_
+#define FRONTMOST_RAYCAST_LIGHT_KERNEL_ONCE_
+namespace frontmost::raycast_detail {
+
+/// How the world is sheared: u and v across the light, d towards it, and the light's rays run along d.
+struct LightAxes {
+  int u = 0, v = 1, d = 2;  ///< the world's axes; d is the one that the light moves most along
+  float sign = 1;           ///< +1 where the light comes from the positive side
+  float slope_u = 0, slope_v = 0;
+
+  explicit LightAxes(const glm::vec3& to_light) {
+    const glm::vec3 size = glm::abs(to_light);
+    d = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    u = (d + 1) % 3, v = (d + 2) % 3;
+    sign = to_light[d] < 0 ? -1.0f : 1.0f;
+    slope_u = to_light[u] / size[d];
+    slope_v = to_light[v] / size[d];
+  }
+};
+
+/// Of one unit in scaled coordinates: six roundings of up to three terms, and as much again.
+constexpr float kShearError = 0x1p-20f;
+
+}  // namespace frontmost::raycast_detail
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::raycast_detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using LF = hn::CappedTag<float, kRayLanes>;
+using LV = hn::Vec<LF>;
+using LM = hn::Mask<LF>;
+constexpr std::size_t kLightLanes = hn::MaxLanes(LF());
+
+HWY_INLINE std::uint32_t LaneBits(LM mask) { return std::uint32_t(frontmost::HWY_NAMESPACE::BitsOf(LF(), mask)); }
+
+class LightPacket {
+ public:
+  LightPacket(const RayTree& tree, const glm::vec3& to_light)
+      : tree_(tree), to_light_(to_light), axes_(to_light), stack_(tree.stack_size() + kRayLanes) {
+    const glm::vec3 far = glm::max(glm::abs(tree.bounds.low), glm::abs(tree.bounds.high));
+    tree_size_ = std::max({far.x, far.y, far.z});
+  }
+
+  void Find(std::span<const TrianglePoint> points, std::uint8_t* lit) {
+    points_ = points;
+    Place();
+    Walk();
+    for (std::size_t i = 0; i < points.size(); ++i) lit[i] = std::uint8_t(waiting_[i] != 0 || is_clear_[i]);
+  }
+
+ private:
+  /// A rectangle of the sheared plane, and the starts' heights above it.
+  struct Bounds {
+    float low_u, high_u, low_v, high_v, low_d, high_d;
+  };
+
+  static float SizeOf(const glm::vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+  /// Scales by a power of two, so that nothing overflows and products keep their digits.
+  void SetScale(float size) {
+    int exponent = 0;
+    std::frexp(size, &exponent);
+    scale_ = float(std::ldexp(1.0, std::clamp(-exponent, -126, 126)));
+  }
+
+  /// Finds which starts are valid, where they are, and the scale.
+  void Measure(glm::dvec3* position) {
+    float size = tree_size_;
+    waiting_count_ = 0;
+    std::fill_n(waiting_, kLightRays, 0);  // those of a last packet that is not full are nobody's
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const TrianglePoint& point = points_[i];
+      is_clear_[i] = !is_valid(point);
+      waiting_[i] = is_clear_[i] ? 0 : -1;
+      ids_[i] = point.primitive;
+      if (is_clear_[i]) continue;
+      ++waiting_count_;
+      position[i] = position_of(point);
+      size = std::max(size, SizeOf(point.lift));
+      // Neighbours are mostly of one triangle.
+      if (i > 0 && !is_clear_[i - 1] && point.corners == points_[i - 1].corners) continue;
+      for (const glm::vec3& corner : point.corners) size = std::max(size, SizeOf(corner));
+    }
+    SetScale(size);
+  }
+
+  /// Rays without a valid start are lit; they and the unused ones stay where another is.
+  void Place() {
+    glm::dvec3 position[kLightRays];
+    Measure(position);
+    if (waiting_count_ == 0) return;
+    const std::size_t some = std::size_t(std::find(waiting_, waiting_ + points_.size(), -1) - waiting_);
+    origin_ = glm::vec3(position[some] * double(scale_));
+    alignas(64) float at[3][kLightRays];
+    for (std::size_t i = 0; i < kLightRays; ++i) {
+      const bool is_used = i < points_.size() && !is_clear_[i];
+      const glm::dvec3 p = position[is_used ? i : some] * double(scale_) - glm::dvec3(origin_);
+      for (std::size_t axis = 0; axis < 3; ++axis) at[axis][i] = float(p[int(axis)]);
+    }
+    Shear(at);
+    block_count_ = (points_.size() + kLightLanes - 1) / kLightLanes;
+    bounds_ = block_[0] = BoundsOf(0);
+    for (std::size_t i = 1; i < block_count_; ++i) {
+      const Bounds b = block_[i] = BoundsOf(i * kLightLanes);
+      bounds_ = {std::min(bounds_.low_u, b.low_u), std::max(bounds_.high_u, b.high_u),
+                 std::min(bounds_.low_v, b.low_v), std::max(bounds_.high_v, b.high_v),
+                 std::min(bounds_.low_d, b.low_d), std::max(bounds_.high_d, b.high_d)};
+    }
+  }
+
+  HWY_INLINE void Shear(const float (&at)[3][kLightRays]) {
+    const LF d;
+    LV reach = hn::Zero(d);
+    for (std::size_t i = 0; i < kLightRays; i += kLightLanes) {
+      const LV x = hn::Load(d, at[axes_.u] + i), y = hn::Load(d, at[axes_.v] + i), z = hn::Load(d, at[axes_.d] + i);
+      const LV up = hn::Mul(z, hn::Set(d, axes_.sign));
+      hn::Store(up, d, d_ + i);
+      hn::Store(hn::Sub(x, hn::Mul(up, hn::Set(d, axes_.slope_u))), d, u_ + i);
+      hn::Store(hn::Sub(y, hn::Mul(up, hn::Set(d, axes_.slope_v))), d, v_ + i);
+      reach = hn::Max(reach, hn::Max(hn::Max(hn::Abs(x), hn::Abs(y)), hn::Abs(z)));
+    }
+    reach_ = hn::GetLane(hn::MaxOfLanes(d, reach));
+    // Doubles of coordinates up to 2 that are subtracted, beside the shear.
+    error_ = kShearError * reach_ + 0x1p-46f;
+  }
+
+  /// Of one vector of rays.
+  [[nodiscard]] HWY_INLINE Bounds BoundsOf(std::size_t first) const {
+    const LF d;
+    const auto low = [&](const float* x) HWY_ATTR { return hn::GetLane(hn::MinOfLanes(d, hn::Load(d, x + first))); };
+    const auto high = [&](const float* x) HWY_ATTR { return hn::GetLane(hn::MaxOfLanes(d, hn::Load(d, x + first))); };
+    return {low(u_) - error_,  high(u_) + error_, low(v_) - error_,
+            high(v_) + error_, low(d_) - error_,  high(d_) + error_};
+  }
+
+  void Walk() {
+    if (waiting_count_ == 0) return;
+    std::size_t count = 1;
+    stack_[0] = tree_.root;
+    PlacedWalk walk(tree_);
+    while (count > 0 && waiting_count_ > 0) {
+      const std::uint32_t child = stack_[--count];
+      walk.Take(count);
+      if (HWY_UNLIKELY(walk.IsInstance(child))) {
+        stack_[count] = walk.Enter(child, count);
+        ++count;
+      } else if (child & kLeafBit) {
+        MeetLeaf(walk.Leaf(child));
+      } else {
+        LookInto(walk.Node(child), count);
+      }
+    }
+  }
+
+  [[nodiscard]] HWY_INLINE LV FromOrigin(const float* from, int axis) const {
+    const LF d;
+    return hn::Sub(hn::Mul(hn::Load(d, from), hn::Set(d, scale_)), hn::Set(d, origin_[axis]));
+  }
+
+  /// An axis across the light, and between where along it outlines matter.
+  struct Across {
+    int axis;
+    float slope, begin, end;
+  };
+
+  /// Whether boxes that reach from low_d to high_d towards the light cast no outline there.
+  [[nodiscard]] HWY_INLINE LM Beside(const RayNode& node, std::size_t first, const Across& across, LV low_d,
+                                     LV high_d) const {
+    const LF d;
+    const LV low = FromOrigin(node.low[across.axis] + first, across.axis);
+    const LV high = FromOrigin(node.high[across.axis] + first, across.axis);
+    const LV a = hn::Mul(low_d, hn::Set(d, across.slope)), b = hn::Mul(high_d, hn::Set(d, across.slope));
+    const LV size = hn::Add(hn::Max(hn::Abs(low), hn::Abs(high)), hn::Max(hn::Abs(low_d), hn::Abs(high_d)));
+    const LV pad = hn::Mul(size, hn::Set(d, kShearError));
+    const LV low_outline = hn::Sub(hn::Sub(low, hn::Max(a, b)), pad);
+    const LV high_outline = hn::Add(hn::Sub(high, hn::Min(a, b)), pad);
+    return hn::Or(hn::Gt(low_outline, hn::Set(d, across.end)), hn::Lt(high_outline, hn::Set(d, across.begin)));
+  }
+
+  HWY_INLINE void LookInto(const RayNode& node, std::size_t& count) {
+    const LF d;
+    const Bounds& b = bounds_;
+    for (std::size_t first = 0; first < node.count; first += kLightLanes) {
+      LV low_d = FromOrigin((axes_.sign > 0 ? node.low : node.high)[axes_.d] + first, axes_.d);
+      LV high_d = FromOrigin((axes_.sign > 0 ? node.high : node.low)[axes_.d] + first, axes_.d);
+      if (axes_.sign < 0) low_d = hn::Neg(low_d), high_d = hn::Neg(high_d);
+      const LV pad = hn::Mul(hn::Max(hn::Abs(low_d), hn::Abs(high_d)), hn::Set(d, kShearError));
+      LM outside = hn::Lt(hn::Add(high_d, pad), hn::Set(d, b.low_d));
+      // What lies below all starts casts no shadow on them.
+      low_d = hn::Max(hn::Sub(low_d, pad), hn::Set(d, b.low_d));
+      outside = hn::Or(outside, Beside(node, first, {axes_.u, axes_.slope_u, b.low_u, b.high_u}, low_d, high_d));
+      outside = hn::Or(outside, Beside(node, first, {axes_.v, axes_.slope_v, b.low_v, b.high_v}, low_d, high_d));
+      const std::uint32_t used = (1u << std::min(kLightLanes, node.count - first)) - 1;
+      for (std::uint32_t inside = ~LaneBits(outside) & used; inside != 0; inside &= inside - 1)
+        stack_[count++] = node.child[first + hwy::Num0BitsBelowLS1Bit_Nonzero32(inside)];
+    }
+  }
+
+  /// Sixteen triangles in the sheared plane, and which of them each vector of rays may meet.
+  struct Sheared {
+    alignas(64) float u[3][kRayLanes], v[3][kRayLanes], d[3][kRayLanes], reach[kRayLanes];
+    std::uint32_t beside[kLightRays / kLightLanes];
+  };
+
+  void MeetLeaf(const RayLeaf& leaf) {
+    Sheared sheared;
+    for (std::size_t first = 0; first < kRayLanes && waiting_count_ > 0; first += kLightLanes) {
+      std::uint32_t lanes = Shear(leaf, first, sheared);
+      for (; lanes != 0; lanes &= lanes - 1)
+        MeetTriangle(leaf, sheared, first, hwy::Num0BitsBelowLS1Bit_Nonzero32(lanes));
+    }
+  }
+
+  /// \returns the lanes whose outline may hold a ray.
+  HWY_INLINE std::uint32_t Shear(const RayLeaf& leaf, std::size_t first, Sheared& to) const {
+    const LF d;
+    LV u[3], v[3], up[3], reach = hn::Zero(d);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const LV x = FromOrigin(leaf.corner[k][axes_.u] + first, axes_.u);
+      const LV y = FromOrigin(leaf.corner[k][axes_.v] + first, axes_.v);
+      const LV z = FromOrigin(leaf.corner[k][axes_.d] + first, axes_.d);
+      reach = hn::Max(hn::Max(reach, hn::Abs(x)), hn::Max(hn::Abs(y), hn::Abs(z)));
+      up[k] = hn::Mul(z, hn::Set(d, axes_.sign));
+      u[k] = hn::Sub(x, hn::Mul(up[k], hn::Set(d, axes_.slope_u)));
+      v[k] = hn::Sub(y, hn::Mul(up[k], hn::Set(d, axes_.slope_v)));
+      hn::Store(up[k], d, to.d[k] + first);
+      hn::Store(u[k], d, to.u[k] + first);
+      hn::Store(v[k], d, to.v[k] + first);
+    }
+    hn::Store(reach, d, to.reach + first);
+    const LV pad = hn::Mul(reach, hn::Set(d, kShearError));
+    const LV low_u = hn::Sub(Least(u), pad), high_u = hn::Add(Most(u), pad);
+    const LV low_v = hn::Sub(Least(v), pad), high_v = hn::Add(Most(v), pad), high_d = hn::Add(Most(up), pad);
+    const std::uint32_t used = UsedLanes(leaf, first);
+    std::uint32_t any = 0;
+    for (std::size_t i = 0; i < block_count_; ++i) {
+      const Bounds& b = block_[i];
+      const LM beside_u = hn::Or(hn::Gt(low_u, hn::Set(d, b.high_u)), hn::Lt(high_u, hn::Set(d, b.low_u)));
+      const LM beside_v = hn::Or(hn::Gt(low_v, hn::Set(d, b.high_v)), hn::Lt(high_v, hn::Set(d, b.low_v)));
+      const LM outside = hn::Or(hn::Or(beside_u, beside_v), hn::Lt(high_d, hn::Set(d, b.low_d)));
+      any |= to.beside[i] = ~LaneBits(outside) & used;
+    }
+    return any;
+  }
+
+  static HWY_INLINE LV Least(const LV (&x)[3]) { return hn::Min(hn::Min(x[0], x[1]), x[2]); }
+  static HWY_INLINE LV Most(const LV (&x)[3]) { return hn::Max(hn::Max(x[0], x[1]), x[2]); }
+
+  static HWY_INLINE std::uint32_t UsedLanes(const RayLeaf& leaf, std::size_t first) {
+    const hn::RebindToUnsigned<LF> du;
+    return LaneBits(hn::RebindMask(LF(), hn::Ne(hn::Load(du, leaf.id + first), hn::Set(du, no_primitive))));
+  }
+
+  /// One triangle, as all rays see it.
+  struct Outline {
+    float u[3], v[3], d[3];
+    float edge_error, side_error;  ///< of a turn about an edge; of six times the volume below a start
+    bool is_above;                 ///< all of it above all starts
+    float high_d;                  ///< nothing of it is higher
+  };
+
+  [[nodiscard]] Outline OutlineOf(const Sheared& from, std::size_t lane) const {
+    Outline t;
+    for (std::size_t k = 0; k < 3; ++k) t.u[k] = from.u[k][lane], t.v[k] = from.v[k][lane], t.d[k] = from.d[k][lane];
+    // No difference of two coordinates is greater than `most`, nor wrong by more than `error`.
+    const float own_error = kShearError * from.reach[lane];
+    const float most = 2 * (from.reach[lane] + reach_), error = own_error + error_ + 0x1p-23f * most;
+    // A turn is a difference of two products of differences: each of the four factors is wrong by `error` at most, and
+    // two products and their difference round once. The last term stands for underflow.
+    t.edge_error = 8 * (most + error) * error + 0x1p-140f;
+    t.side_error = 64 * most * (most + error) * error + 0x1p-140f;
+    t.is_above = std::min({t.d[0], t.d[1], t.d[2]}) - own_error > bounds_.high_d;
+    t.high_d = std::max({t.d[0], t.d[1], t.d[2]}) + own_error + error_;
+    return t;
+  }
+
+  void MeetTriangle(const RayLeaf& leaf, const Sheared& sheared, std::size_t first_lane, std::size_t index) {
+    const std::size_t lane = first_lane + index;
+    const Outline outline = OutlineOf(sheared, lane);
+    for (std::size_t block = 0; block < block_count_; ++block) {
+      if ((sheared.beside[block] >> index & 1) == 0) continue;
+      const std::size_t first = block * kLightLanes;
+      const Answer answer = MeetRays(outline, leaf.id[lane], first);
+      for (std::uint32_t bits = LaneBits(answer.met); bits != 0; bits &= bits - 1)
+        Meet(leaf, lane, first + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
+      for (std::uint32_t bits = LaneBits(answer.doubtful); bits != 0; bits &= bits - 1)
+        Decide(leaf, lane, first + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
+    }
+  }
+
+  struct Answer {
+    LM met, doubtful;
+  };
+
+  HWY_INLINE Answer MeetRays(const Outline& t, PrimitiveId id, std::size_t first) const {
+    const LF d;
+    const hn::RebindToUnsigned<LF> du;
+    const hn::RebindToSigned<LF> di;
+    // Not its own triangle, nor rays that have met something already: those are in the dark for good.
+    const LM waiting = hn::RebindMask(d, hn::MaskFromVec(hn::Load(di, waiting_ + first)));
+    const LM others = hn::RebindMask(d, hn::Ne(hn::Load(du, ids_ + first), hn::Set(du, id)));
+    const LV height = hn::Load(d, d_ + first);
+    const LM asked = hn::And(hn::And(waiting, others), hn::Le(height, hn::Set(d, t.high_d)));
+    LV u[3], v[3], w[3];
+    for (int k = 0; k < 3; ++k) {
+      u[k] = hn::Sub(hn::Set(d, t.u[k]), hn::Load(d, u_ + first));
+      v[k] = hn::Sub(hn::Set(d, t.v[k]), hn::Load(d, v_ + first));
+      w[k] = hn::Sub(hn::Set(d, t.d[k]), height);
+    }
+    const auto turn = [&](int a, int b) HWY_ATTR { return hn::Sub(hn::Mul(u[a], v[b]), hn::Mul(v[a], u[b])); };
+    const LV e[3] = {turn(1, 2), turn(2, 0), turn(0, 1)};
+    const LV least = hn::Min(hn::Min(e[0], e[1]), e[2]), most = hn::Max(hn::Max(e[0], e[1]), e[2]);
+    const LV bound = hn::Set(d, t.edge_error), below = hn::Neg(bound);
+    const LM beside = hn::And(hn::Gt(most, bound), hn::Lt(least, below));
+    const LM left = hn::Gt(least, bound), right = hn::Lt(most, below);
+    const LM inside = hn::Or(left, right), asked_about = hn::AndNot(beside, asked);
+    if (t.is_above) return {hn::And(inside, asked_about), hn::AndNot(inside, asked_about)};
+    const LV volume = hn::Add(hn::Add(hn::Mul(e[0], w[0]), hn::Mul(e[1], w[1])), hn::Mul(e[2], w[2]));
+    const LV upwards = hn::IfThenElse(right, hn::Neg(volume), volume);
+    const LV side = hn::Set(d, t.side_error);
+    const LM met = hn::And(inside, hn::Gt(upwards, side)), under = hn::And(inside, hn::Lt(upwards, hn::Neg(side)));
+    return {hn::And(met, asked_about), hn::AndNot(hn::Or(met, under), asked_about)};
+  }
+
+  void Darken(std::size_t ray) {
+    waiting_[ray] = 0;
+    --waiting_count_;
+  }
+
+  /// A triangle that certainly is passed through; a lifted point may be below its own.
+  void Meet(const RayLeaf& leaf, std::size_t lane, std::size_t ray) {
+    const TrianglePoint& point = points_[ray];
+    if ((point.lift == glm::vec3(0) || !is_own(leaf.corners_of(lane), point)) && !IsHole(leaf, lane, ray)) Darken(ray);
+  }
+
+  HWY_NOINLINE void Decide(const RayLeaf& leaf, std::size_t lane, std::size_t ray) {
+    if (stands_before(leaf.corners_of(lane), points_[ray], to_light_) && !IsHole(leaf, lane, ray)) Darken(ray);
+  }
+
+  /// Whether the triangle has a hole where the ray passes.
+  [[nodiscard]] HWY_INLINE bool IsHole(const RayLeaf& leaf, std::size_t lane, std::size_t ray) const {
+    const Cutouts* const cutouts = tree_.cutouts.get();
+    if (!cutouts || !cutouts->has(leaf.id[lane])) return false;
+    return (*cutouts)[leaf.id[lane]].is_hole_at(passed_point(leaf.corners_of(lane), points_[ray], to_light_));
+  }
+
+  const RayTree& tree_;
+  const glm::vec3 to_light_;
+  LightAxes axes_;
+  std::vector<std::uint32_t> stack_;
+  float tree_size_;
+  std::span<const TrianglePoint> points_;
+  // The rays, in scaled coordinates from the origin.
+  alignas(64) float u_[kLightRays], v_[kLightRays], d_[kLightRays];
+  alignas(64) PrimitiveId ids_[kLightRays];
+  alignas(64) std::int32_t waiting_[kLightRays];  ///< -1: nothing met so far
+  bool is_clear_[kLightRays];
+  std::size_t waiting_count_ = 0;
+  float scale_ = 1, error_ = 0, reach_ = 0;
+  glm::vec3 origin_{0};
+  Bounds bounds_{}, block_[kLightRays / kLightLanes];  ///< of all; of each vector
+  std::size_t block_count_ = 0;
+};
+
+void FindLit(const RayTree& tree, std::span<const TrianglePoint> points, const glm::vec3& to_light,
+             std::span<std::uint8_t> answers) {
+  LightPacket packet(tree, to_light);
+  for (std::size_t first = 0; first < points.size(); first += kLightRays)
+    packet.Find(points.subspan(first, std::min(kLightRays, points.size() - first)), answers.data() + first);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace frontmost::raycast_detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace frontmost::raycast_detail {
+
+FRONTMOST_KERNELS(FindLit);
+
+void find_lit(const RayTree& tree, std::span<const TrianglePoint> points, const glm::vec3& to_light,
+              std::span<std::uint8_t> answers, Isa isa) {
+  const bool is_direction =
+      std::isfinite(to_light.x) && std::isfinite(to_light.y) && std::isfinite(to_light.z) && to_light != glm::vec3(0);
+  if (tree.root == no_index || !is_direction)
+    std::fill_n(answers.data(), answers.size(), std::uint8_t(1));
+  else
+    kernel_for(FindLitKernels, isa)(tree, points, to_light, answers);
+}
+
+}  // namespace frontmost::raycast_detail
+#endif  // HWY_ONCE

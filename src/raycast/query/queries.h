@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays that are asked for one by one or in batches: what the kernels of single rays and of rays to a light offer, and
+// the parts of a scan.
+//
+//    closest_hit, is_clear, all_hits, closest_hits ...   --> queries.cpp --> walk(), walk_batch()   query_kernel.cpp
+//    are_lit, and shade's shadows by rays                --> find_lit()                              light_kernel.cpp
+//    scan of a RayCamera                                 --> ray_camera.cpp --> cast_parts()
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "frontmost/ray_camera.h"
+#include "raycast/index/ray_tree.h"
+#include "raycast/query/query_rule.h"
+
+namespace frontmost::raycast_detail {
+
+/// Whether what the query meets there is a hole of the triangle.
+[[nodiscard]] inline bool is_hole(const RayTree& tree, const Query& query, const RayHit& hit) {
+  const Cutouts* const cutouts = tree.cutouts.get();
+  if (!cutouts || !cutouts->has(hit.primitive)) return false;
+  const glm::dvec3 from(query.origin),
+      along = query.is_segment ? glm::dvec3(query.end) - from : glm::dvec3(query.direction);
+  return (*cutouts)[hit.primitive].is_hole_at(from + hit.t * along);
+}
+
+/// What ends a walk.
+enum class Want : std::uint8_t {
+  closest,  ///< one hit, the nearest
+  any,      ///< one hit, whichever comes first
+  all,      ///< every hit, in no order
+};
+
+/// Appends what is met to `hits`. Precondition: is_valid(query).
+void walk(const RayTree& tree, const Query& query, Want want, std::vector<RayHit>& hits, Isa isa);
+
+/// The hit of each query that `want`, closest or any, asks for; none where the query is not valid.
+/// Precondition: as many answers as queries.
+void walk_batch(const RayTree& tree, std::span<const Query> queries, Want want, std::span<RayHit> answers, Isa isa);
+
+/// Rays that walk the tree together: four pixels by four of four samples.
+inline constexpr std::size_t kLightRays = 64;
+
+/// are_lit() on this thread.
+void find_lit(const RayTree& tree, std::span<const TrianglePoint> points, const glm::vec3& to_light,
+              std::span<std::uint8_t> answers, Isa isa);
+
+/// With room for the answers. \throws Error as validate(camera) does.
+[[nodiscard]] RangeScan prepare_scan(const RayCamera& camera);
+
+/// For some rays of the grid, of which the first has the number `first`.
+using CastPart = std::function<void(std::size_t first, std::span<const Ray> rays)>;
+
+/// Calls cast() for all parts of the camera's grid, on all threads, and tells how far it is.
+void cast_parts(const RangeScan& scan, const Execution& execution, const CastPart& cast);
+
+}  // namespace frontmost::raycast_detail

@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: Apache-2.0
+// One ray through the tree: sixteen boxes or triangles at a time. Vectors only leave out what is certainly missed, or
+// lies behind what is certainly met; what remains, one or two triangles a ray, is decided by meet(). Rays of a batch go
+// through large trees in turns, one fetching while the others work.
+//
+//    ray 0   fetch ------> work   fetch ------> work       Nodes of large trees come from memory. While one ray's next
+//    ray 1      fetch ------> work   fetch ------>         node is on its way others look into theirs, so that the
+//    ray 2         fetch ------> work   fetch ------>      waiting overlaps.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+#include "raycast/index/placement.h"
+#include "raycast/query/queries.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raycast/query/query_kernel.cpp"
+#include "base/isa.h"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+// After Highway: a block of its own.
+#include "base/lanes-inl.h"
+#include "raycast/query/ray_axis-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::raycast_detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// A child, and where the ray enters its box.
+struct Entry {
+  float t;
+  std::uint32_t child;
+};
+
+HWY_INLINE std::uint32_t QueryBits(QM mask) { return std::uint32_t(frontmost::HWY_NAMESPACE::BitsOf(QF(), mask)); }
+
+class QueryWalker {
+ public:
+  /// `stack` has room for tree.stack_size().
+  QueryWalker(const RayTree& tree, const Query& query, Want want, Entry* stack, std::vector<RayHit>& hits)
+      : tree_(tree), walk_(tree), q_(query), axis_(query), want_(want), stack_(stack), hits_(hits) {
+    if (query.is_segment) end_ = 1;
+    for (int axis = 0; axis < 3; ++axis) slab_[axis] = SlabOf(axis);
+    stack_[waiting_++] = {0, tree.root};
+  }
+
+  /// One node or leaf. \returns false where the walk has ended, and `hits` is complete.
+  bool Step() {
+    const Entry next = stack_[--waiting_];
+    walk_.Take(waiting_);
+    if (HWY_UNLIKELY(walk_.IsInstance(next.child))) {
+      stack_[waiting_] = {next.t, walk_.Enter(next.child, waiting_)};
+      ++waiting_;
+    } else if ((next.child & kLeafBit) == 0) {
+      waiting_ += LookInto(walk_.Node(next.child), stack_ + waiting_);
+    } else if (want_ == Want::closest) {
+      NoteLeaf(walk_.Leaf(next.child));
+    } else if (MeetLeaf(walk_.Leaf(next.child)) && want_ == Want::any) {
+      return false;
+    }
+    while (waiting_ != 0 && stack_[waiting_ - 1].t > end_) --waiting_;
+    if (waiting_ == 0) {
+      Settle();
+      return false;
+    }
+    if (!walk_.IsAround(waiting_)) walk_.Prefetch(stack_[waiting_ - 1].child);
+    return true;
+  }
+
+ private:
+  /// t = bound * inverse - start, widened by all rounding, also of numbers below the normal floats; the end of a
+  /// segment is rounded too.
+  struct Slab {
+    float inverse, start_enter, start_leave;
+    bool rests, is_flipped;
+  };
+
+  /// May be met, but not before the place `from`.
+  struct Noted {
+    float from;
+    PrimitiveId id;
+    std::array<glm::vec3, 3> corners;
+  };
+  static constexpr std::size_t kMostNoted = 16;
+
+  [[nodiscard]] Slab SlabOf(int axis) const {
+    const double d = q_.direction[axis], o = q_.origin[axis];
+    const double size = std::max({double(std::abs(tree_.bounds.low[axis])), double(std::abs(tree_.bounds.high[axis])),
+                                  std::abs(o), q_.is_segment ? double(std::abs(q_.end[axis])) : 0.0});
+    constexpr float all = std::numeric_limits<float>::infinity();
+    // An axis along which the ray hardly moves says nothing, except where it does not move at all.
+    const double reach = std::max(1.0, size) / std::abs(d);
+    if (!(reach < 0x1p120) || std::isinf(d)) return {0, all, -all, d == 0, false};
+    const double inverse = 1 / d, slack = 0x1p-20 * size * std::abs(inverse) + 0x1p-146;
+    return {float(inverse), float(o * inverse + slack), float(o * inverse - slack), false, inverse < 0};
+  }
+
+  /// Boxes that the ray cannot meet as it does not move along an axis.
+  [[nodiscard]] HWY_NOINLINE QM Beside(const RayNode& node, std::size_t first) const {
+    const QF d;
+    QM beside = hn::MaskFromVec(hn::Zero(d));
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!slab_[axis].rests) continue;
+      const QV o = hn::Set(d, q_.origin[axis]);
+      const QM below = hn::Gt(hn::Load(d, node.low[axis] + first), o);
+      beside = hn::Or(beside, hn::Or(below, hn::Lt(hn::Load(d, node.high[axis] + first), o)));
+    }
+    return beside;
+  }
+
+  /// How many of `count` are greater than number i, or equal and before it. Floats from 0 on are ordered as their bits
+  /// are, and these even where boxes of instances overflow to NaN.
+  static HWY_INLINE std::size_t RankOf(const std::int32_t* at, std::size_t count, std::size_t i) {
+    const QI d;
+    const auto own = hn::Set(d, at[i]);
+    std::size_t rank = 0;
+    for (std::size_t first = 0; first < count; first += kQueryLanes) {
+      const auto others = hn::Load(d, at + first);
+      const auto used = hn::FirstN(d, count - first), before = hn::FirstN(d, i > first ? i - first : 0);
+      rank += hn::CountTrue(d, hn::And(used, hn::Or(hn::Gt(others, own), hn::And(before, hn::Eq(others, own)))));
+    }
+    return rank;
+  }
+
+  /// Puts the children that are entered on top of the others, the nearest last. \returns how many.
+  std::size_t LookInto(const RayNode& node, Entry* top) const {
+    const QF d;
+    const QU du;
+    const QI di;
+    alignas(64) std::int32_t at[kRayLanes + kQueryLanes];
+    alignas(64) std::uint32_t child[kRayLanes + kQueryLanes];
+    std::size_t count = 0;
+    for (std::size_t first = 0; first < node.count; first += kQueryLanes) {
+      QV enter = hn::Zero(d), leave = hn::Set(d, end_);
+      for (int axis = 0; axis < 3; ++axis) {
+        const Slab& s = slab_[axis];
+        const QV near = hn::Load(d, (s.is_flipped ? node.high : node.low)[axis] + first);
+        const QV far = hn::Load(d, (s.is_flipped ? node.low : node.high)[axis] + first);
+        const QV inverse = hn::Set(d, s.inverse);
+        enter = hn::Max(enter, hn::Sub(hn::Mul(near, inverse), hn::Set(d, s.start_enter)));
+        leave = hn::Min(leave, hn::Sub(hn::Mul(far, inverse), hn::Set(d, s.start_leave)));
+      }
+      QM outside = hn::Gt(enter, leave);
+      if (HWY_UNLIKELY(slab_[0].rests || slab_[1].rests || slab_[2].rests))
+        outside = hn::Or(outside, Beside(node, first));
+      const QM inside = hn::AndNot(outside, hn::FirstN(d, node.count - first));
+      const Compactor<QF> entered(inside);
+      entered.Store(hn::BitCast(di, enter), at + count);
+      entered.Store(hn::Load(du, node.child + first), child + count);
+      count += entered.count();
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      Entry& entry = top[RankOf(at, count, i)];
+      std::memcpy(&entry.t, &at[i], sizeof entry.t);
+      entry.child = child[i];
+    }
+    return count;
+  }
+
+  /// For the nearest hit: what may be met waits to be decided, since nearer ones that are certainly met spare most.
+  void NoteLeaf(const RayLeaf& leaf) {
+    const QF d;
+    for (std::size_t first = 0; first < kRayLanes; first += kQueryLanes) {
+      const Passes passes = axis_.Pass(leaf, first);
+      const Candidates candidates = CandidatesOf(passes);
+      if (candidates.possible == 0) continue;
+      alignas(64) float from[kQueryLanes], to[kQueryLanes];
+      hn::Store(passes.from, d, from);
+      hn::Store(passes.to, d, to);
+      if (!tree_.cutouts)
+        for (std::uint32_t bits = candidates.certain; bits != 0; bits &= bits - 1)
+          EndAt(to[hwy::Num0BitsBelowLS1Bit_Nonzero32(bits)]);
+      for (std::uint32_t bits = candidates.possible; bits != 0; bits &= bits - 1) {
+        const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(bits);
+        if (!(from[lane] > axis_.place_of(end_))) Note(leaf, first + lane, from[lane]);
+      }
+    }
+  }
+
+  /// Nothing that begins beyond a place along the ray is the nearest.
+  void EndAt(float place) { end_ = std::min(end_, axis_.t_of(place) * (1 + 0x1p-20f) + 0x1p-148f); }
+
+  void Note(const RayLeaf& leaf, std::size_t lane, float from) {
+    if (leaf.id[lane] == no_primitive) return;
+    // Deciding early costs time alone: what is farther than the end is left out again then.
+    if (noted_ == kMostNoted) Settle();
+    notes_[noted_++] = {from, leaf.id[lane], leaf.corners_of(lane)};
+  }
+
+  /// Decides what was noted.
+  void Settle() {
+    for (std::size_t i = 0; i < noted_; ++i) {
+      const Noted& note = notes_[i];
+      if (note.from > axis_.place_of(end_)) continue;
+      const RayHit hit = meet(q_, note.corners, note.id);
+      if (hit.primitive != no_primitive && !is_hole(tree_, q_, hit)) Keep(hit);
+    }
+    noted_ = 0;
+  }
+
+  bool MeetLeaf(const RayLeaf& leaf) {
+    bool met = false;
+    for (std::size_t first = 0; first < kRayLanes; first += kQueryLanes) {
+      const Candidates candidates = CandidatesOf(axis_.Pass(leaf, first));
+      // A hit of any kind is asked for; which one, and where, says nothing to whoever asks whether the way is clear.
+      if (want_ == Want::any && candidates.certain != 0 && !tree_.cutouts) {
+        const std::size_t lane = first + hwy::Num0BitsBelowLS1Bit_Nonzero32(candidates.certain);
+        hits_.push_back({leaf.id[lane], 0, false});
+        return true;
+      }
+      for (std::uint32_t bits = candidates.possible; bits != 0; bits &= bits - 1) {
+        const std::size_t lane = first + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits);
+        if (leaf.id[lane] == no_primitive) continue;
+        const RayHit hit = meet(q_, leaf.corners_of(lane), leaf.id[lane]);
+        if (hit.primitive == no_primitive || is_hole(tree_, q_, hit)) continue;
+        met = true;
+        Keep(hit);
+      }
+    }
+    return met;
+  }
+
+  void Keep(const RayHit& hit) {
+    if (want_ == Want::all || hits_.empty()) {
+      hits_.push_back(hit);
+    } else if (hit.t < hits_[0].t || (hit.t == hits_[0].t && hit.primitive < hits_[0].primitive)) {
+      hits_[0] = hit;
+    }
+    // Boxes at the same t may hold an equal hit of a lower id: the end is rounded up.
+    if (want_ == Want::closest) end_ = std::min(end_, float(hits_[0].t) * (1 + 0x1p-22f) + 0x1p-148f);
+  }
+
+  struct Candidates {
+    std::uint32_t possible, certain;
+  };
+
+  /// Missed is also what lies before the start or beyond the end.
+  [[nodiscard]] HWY_INLINE Candidates CandidatesOf(const Passes& p) const {
+    const QF d;
+    const float end = axis_.place_of(end_);
+    const QM outside = hn::Or(hn::Lt(p.to, hn::Zero(d)), hn::Gt(p.from, hn::Set(d, end * (1 + 0x1p-20f))));
+    const QM between = hn::And(hn::Gt(p.from, hn::Zero(d)), hn::Lt(p.to, hn::Set(d, end * (1 - 0x1p-20f))));
+    constexpr std::uint32_t all = (1u << kQueryLanes) - 1;
+    return {~QueryBits(hn::Or(p.beside, outside)) & all, QueryBits(hn::And(p.inside, between))};
+  }
+
+  const RayTree& tree_;
+  PlacedWalk walk_;
+  const Query& q_;
+  RayAxis axis_;
+  Want want_;
+  Entry* stack_;
+  std::size_t waiting_ = 0;
+  std::vector<RayHit>& hits_;
+  float end_ = std::numeric_limits<float>::infinity();
+  Slab slab_[3];
+  std::size_t noted_ = 0;
+  Noted notes_[kMostNoted];
+};
+
+/// Room for what a walk has put off, which takes memory of its own in uncommonly deep trees alone.
+class WalkStack {
+ public:
+  explicit WalkStack(const RayTree& tree) : deep_(tree.stack_size() > kUsual ? tree.stack_size() : 0) {}
+  [[nodiscard]] Entry* data() { return deep_.empty() ? usual_ : deep_.data(); }
+
+ private:
+  static constexpr std::size_t kUsual = 256;
+  Entry usual_[kUsual];
+  std::vector<Entry> deep_;
+};
+
+void WalkQuery(const RayTree& tree, const Query& query, Want want, std::vector<RayHit>& hits) {
+  if (tree.root == no_index) return;
+  WalkStack stack(tree);
+  QueryWalker walker(tree, query, want, stack.data(), hits);
+  while (walker.Step()) continue;
+}
+
+struct QueryBatch {
+  const RayTree& tree;
+  std::span<const Query> queries;
+  Want want;
+  std::span<RayHit> answers;
+  std::size_t next = 0;  ///< the first query that nobody has begun
+};
+
+/// Walks for one query of a batch after the other.
+class BatchWalk {
+ public:
+  explicit BatchWalk(QueryBatch& batch) : batch_(batch), stack_(batch.tree) {}
+
+  /// \returns false where no query is left.
+  bool Begin() {
+    while (batch_.next < batch_.queries.size()) {
+      number_ = batch_.next++;
+      batch_.answers[number_] = {};
+      if (batch_.tree.root == no_index || !is_valid(batch_.queries[number_])) continue;
+      hits_.clear();
+      walker_.emplace(batch_.tree, batch_.queries[number_], batch_.want, stack_.data(), hits_);
+      return true;
+    }
+    return false;
+  }
+
+  /// \returns false where no query is left.
+  bool Step() {
+    if (walker_->Step()) return true;
+    if (!hits_.empty()) batch_.answers[number_] = hits_[0];
+    return Begin();
+  }
+
+ private:
+  QueryBatch& batch_;
+  WalkStack stack_;
+  std::size_t number_ = 0;
+  std::vector<RayHit> hits_;
+  std::optional<QueryWalker> walker_;
+};
+
+/// Rays that take turns hide each other's waiting for memory: 1.4 times as many a second where a million triangles do
+/// not fit into caches, but a tenth fewer where all do. More than eight gain nothing.
+constexpr std::size_t kTurns = 8;
+constexpr std::size_t kTurnsFromBytes = std::size_t(8) << 20;
+
+void WalkBatch(const RayTree& tree, std::span<const Query> queries, Want want, std::span<RayHit> answers) {
+  QueryBatch batch{tree, queries, want, answers};
+  const std::size_t bytes = tree.nodes.size() * sizeof(RayNode) + tree.leaves.size() * sizeof(RayLeaf);
+  const std::size_t count = bytes < kTurnsFromBytes ? 1 : HWY_MIN(kTurns, queries.size());
+  if (count == 1) {
+    BatchWalk only(batch);
+    if (only.Begin())
+      while (only.Step()) continue;
+    return;
+  }
+  std::vector<BatchWalk> turns;
+  turns.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    turns.emplace_back(batch);
+    if (!turns.back().Begin()) turns.pop_back();
+  }
+  std::array<BatchWalk*, kTurns> active;
+  std::size_t active_count = 0;
+  for (BatchWalk& turn : turns) active[active_count++] = &turn;
+  while (active_count != 0)
+    for (std::size_t k = 0; k < active_count;)
+      if (active[k]->Step())
+        ++k;
+      else
+        active[k] = active[--active_count];
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace frontmost::raycast_detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace frontmost::raycast_detail {
+
+FRONTMOST_KERNELS(WalkQuery);
+FRONTMOST_KERNELS(WalkBatch);
+
+void walk(const RayTree& tree, const Query& query, Want want, std::vector<RayHit>& hits, Isa isa) {
+  kernel_for(WalkQueryKernels, isa)(tree, query, want, hits);
+}
+
+void walk_batch(const RayTree& tree, std::span<const Query> queries, Want want, std::span<RayHit> answers, Isa isa) {
+  kernel_for(WalkBatchKernels, isa)(tree, queries, want, answers);
+}
+
+}  // namespace frontmost::raycast_detail
+#endif  // HWY_ONCE

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// How one ray passes many triangles: by their sides, or through them and where.
+//
+//    sheared along the ray       The triangle is moved so that the ray's origin is at zero, and sheared so that the ray
+//        v |   c                 runs along one axis of the world. The ray passes through it where zero lies inside of
+//          |  / .                the sheared corners: the three edges then turn about it in one way. All of this is in
+//     -----o-/---.--- u          floats with a bound on the error; what is not certain is asked again by meet().
+//          a-------b
+
+// Included once for every target.
+#if defined(FRONTMOST_RAYCAST_RAY_AXIS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef FRONTMOST_RAYCAST_RAY_AXIS_INL_H_
+#undef FRONTMOST_RAYCAST_RAY_AXIS_INL_H_
+#else
+#define FRONTMOST_RAYCAST_RAY_AXIS_INL_H_
+#endif
+
+#include <cmath>
+
+#include "base/compactor-inl.h"
+#include "hwy/highway.h"
+#include "raycast/query/queries.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace frontmost::raycast_detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using frontmost::HWY_NAMESPACE::Compactor;
+
+using QF = hn::CappedTag<float, kRayLanes>;
+using QI = hn::RebindToSigned<QF>;
+using QU = hn::RebindToUnsigned<QF>;
+using QV = hn::Vec<QF>;
+using QM = hn::Mask<QF>;
+constexpr std::size_t kQueryLanes = hn::MaxLanes(QF());
+
+/// Triangles of which the ray's line passes some `beside` for certain, others for certain through the `inside`; where
+/// it meets them at all, between the places `from` and `to`.
+struct Passes {
+  QM beside, inside;
+  QV from, to;
+};
+
+/// A ray as an axis. Places along it count from the origin, in units of the direction's largest coordinate.
+class RayAxis {
+ public:
+  explicit RayAxis(const Query& query) : origin_(query.origin) {
+    const glm::vec3 size = glm::abs(query.direction);
+    z_ = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    u_ = (z_ + 1) % 3, v_ = (z_ + 2) % 3;
+    sign_ = query.direction[z_] < 0 ? -1.0f : 1.0f;
+    length_ = size[z_];
+    slope_u_ = query.direction[u_] / query.direction[z_];
+    slope_v_ = query.direction[v_] / query.direction[z_];
+  }
+
+  [[nodiscard]] float place_of(float t) const { return t * length_; }
+  [[nodiscard]] float t_of(float place) const { return place / length_; }
+
+  /// Sheared along the ray, a triangle is met where its edges all turn about the axis in one way. What two edges
+  /// certainly turn different ways about is missed.
+  [[nodiscard]] HWY_INLINE Passes Pass(const RayLeaf& leaf, std::size_t first) const {
+    const QF d;
+    QV u[3], v[3], z[3];
+    for (int k = 0; k < 3; ++k) {
+      const auto from_origin = [&](int axis) HWY_ATTR {
+        return hn::Sub(hn::Load(d, leaf.corner[k][axis] + first), hn::Set(d, origin_[axis]));
+      };
+      z[k] = from_origin(z_);
+      u[k] = hn::Sub(from_origin(u_), hn::Mul(z[k], hn::Set(d, slope_u_)));
+      v[k] = hn::Sub(from_origin(v_), hn::Mul(z[k], hn::Set(d, slope_v_)));
+      z[k] = hn::Mul(z[k], hn::Set(d, sign_));
+    }
+    const auto turn = [&](int a, int b) HWY_ATTR { return hn::Sub(hn::Mul(u[a], v[b]), hn::Mul(v[a], u[b])); };
+    const QV e[3] = {turn(1, 2), turn(2, 0), turn(0, 1)};
+    const QV wide = hn::Max(Size(u), Size(v)), deep = Size(z), total = hn::Add(hn::Add(e[0], e[1]), e[2]);
+    const QV error = hn::Mul(hn::Add(wide, deep), hn::Set(d, 0x1p-20f));
+    const QV bound = hn::Add(hn::Mul(hn::Mul(hn::Add(wide, error), error), hn::Set(d, 8.0f)), hn::Set(d, 0x1p-140f));
+    const QV least = Least(e), most = Most(e), below = hn::Neg(bound);
+    const QM inside = hn::And(Serves(hn::Max(wide, deep), total), hn::Or(hn::Gt(least, bound), hn::Lt(most, below)));
+    // The place is the mean of the corners', weighted by turns, of which each may be wrong by `bound`.
+    const QV share = hn::Div(hn::Set(d, 1.0f), total);
+    const QV sum = hn::Add(hn::Add(hn::Mul(e[0], z[0]), hn::Mul(e[1], z[1])), hn::Mul(e[2], z[2]));
+    const QV nearest = Least(z), farthest = Most(z), place = hn::Mul(sum, share);
+    const QV wrong = hn::Mul(hn::Mul(hn::Sub(farthest, nearest), bound), hn::Mul(hn::Abs(share), hn::Set(d, 12.0f)));
+    const QV slack = hn::Add(wrong, error);
+    return {hn::And(hn::Gt(most, bound), hn::Lt(least, below)), inside,
+            hn::Sub(hn::IfThenElse(inside, hn::Max(hn::Sub(place, slack), nearest), nearest), error),
+            hn::Add(hn::IfThenElse(inside, hn::Min(hn::Add(place, slack), farthest), farthest), error)};
+  }
+
+ private:
+  /// Sizes of which no product overflows, so that no turn is NaN, which least and most may pass over; and turns that no
+  /// underflow makes wrong by more than the bounds.
+  static HWY_INLINE QM Serves(QV size, QV total) {
+    const QF d;
+    return hn::And(hn::Lt(size, hn::Set(d, 0x1p40f)), hn::Gt(hn::Abs(total), hn::Set(d, 0x1p-80f)));
+  }
+  static HWY_INLINE QV Least(const QV (&x)[3]) { return hn::Min(hn::Min(x[0], x[1]), x[2]); }
+  static HWY_INLINE QV Most(const QV (&x)[3]) { return hn::Max(hn::Max(x[0], x[1]), x[2]); }
+  static HWY_INLINE QV Size(const QV (&x)[3]) { return hn::Max(hn::Max(hn::Abs(x[0]), hn::Abs(x[1])), hn::Abs(x[2])); }
+
+  glm::vec3 origin_;
+  int z_ = 2, u_ = 0, v_ = 1;  ///< the axis that the ray moves most along, and the others
+  float sign_ = 1, length_ = 1;
+  float slope_u_ = 0, slope_v_ = 0;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace frontmost::raycast_detail
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard by target

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures that show their environment wherever nothing hides it.
+#pragma once
+
+#include "base/pool.h"
+#include "shade/canvas/canvas.h"
+#include "shade/light/lighting.h"
+#include "view/ray_volumes.h"
+
+namespace frontmost::shading {
+
+/// Lays the environment behind every tile, and hands the tile on to another canvas, which it borrows. What is seen of
+/// it goes through exposure and tone mapping as surfaces do.
+class EnvironmentCanvas final : public TileCanvas {
+ public:
+  EnvironmentCanvas(TileCanvas& canvas, const View& view, const Lighting& lighting, Isa isa)
+      : canvas_(canvas), rays_(view), lighting_(lighting), isa_(isa) {}
+  void write(const TileRectangle& tile, const std::vector<glm::vec4>& pixels, const glm::vec4& background) override;
+  void fill(const TileRectangle& tile, const glm::vec4& value) override;
+
+ private:
+  /// Used by one thread at a time.
+  struct Work {
+    FragmentBatch batch;
+    std::vector<glm::vec4> pixels;
+  };
+
+  /// Sets work.pixels to what is seen of the environment alone.
+  void draw(const TileRectangle& tile, Work& work) const;
+  /// Radiance at the middle of a pixel.
+  [[nodiscard]] glm::vec3 radiance(int x, int y) const;
+
+  TileCanvas& canvas_;
+  ScreenRays rays_;
+  Lighting lighting_;
+  Isa isa_;
+  Pool<Work> works_;
+};
+
+}  // namespace frontmost::shading
