@@ -169,7 +169,7 @@ int run_precision(const Settings& settings) {
   const Execution execution = execution_for(settings.run, progress);
   std::optional<Scene> scene;
   std::optional<Surfaces> surfaces;
-  PrecisionRun run{settings, nullptr, {}, {}, {}};
+  PrecisionRun run{.settings = settings, .results = {}, .files = {}};
   if (settings.model.empty()) {
     const Projection projection = projection_without_model(settings);
     check_wanted(settings, projection.clip);
@@ -178,6 +178,7 @@ int run_precision(const Settings& settings) {
     scene = load_model(settings, execution, progress, outputs_of(settings.precision));
     surfaces.emplace(*scene, execution);
     run.surfaces = &*surfaces;
+    run.names.emplace(*scene);
     const View view = resolve_view(with_far(settings), *surfaces);
     show_framing_warning(settings, *surfaces, progress);
     check_wanted(settings, view.projection.clip);

@@ -19,7 +19,7 @@ std::string gap_text(double gap) { return std::isfinite(gap) ? fmt::format("{:.3
 
 std::string object_name(const PrecisionRun& run, std::uint32_t instance) {
   if (instance == no_index) return "(nothing)";
-  return printable_name(run.surfaces->scene().instances[instance].name);
+  return (*run.names)[instance];
 }
 
 /// A single buffer, with more about it.

@@ -2,6 +2,7 @@
 // What frontmost precision found out: as text, as JSON, and as an SVG drawing of gaps against distance.
 #pragma once
 
+#include <frontmost/explain.h>
 #include <frontmost/fighting_faces.h>
 
 #include <glm/glm.hpp>
@@ -29,6 +30,7 @@ struct PrecisionResult {
 struct PrecisionRun {
   const Settings& settings;
   const Surfaces* surfaces = nullptr;  ///< null without a model
+  std::optional<ObjectNames> names;    ///< none without a model
   std::vector<PrecisionResult> results;
   std::vector<std::string> files;  ///< that were written
 

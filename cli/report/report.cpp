@@ -131,7 +131,8 @@ int run_report(const Settings& settings) {
   const Accounting accounts = account(
       *surfaces, visible, {.canvas = settings.report.canvas, .all_hiders = settings.report.all_hiders}, execution);
   const std::vector<Explanation> why = explain_all(*surfaces, visible, accounts, execution);
-  ReportRun run{settings, *surfaces, visible, accounts, why, outputs};
+  const ObjectNames names(surfaces->scene());
+  ReportRun run{settings, *surfaces, visible, accounts, why, names, outputs};
   if (settings.report.page) write_report_page(run, *settings.report.page, execution);
   if (settings.report.coco) {
     const WritingFiles writing;

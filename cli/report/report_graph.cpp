@@ -126,12 +126,10 @@ class HidingGraph {
         "<g class=\"node\" data-object=\"{}\"><rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"{:.0f}\" height=\"{:.0f}\" "
         "rx=\"8\"/><text x=\"{:.0f}\" y=\"{:.0f}\">{}</text><title>{}</title></g>\n",
         node.object, node.x - node_width / 2, node.y - node_height / 2, node_width, node_height, node.x, node.y + 5,
-        html_text(shortened(printable_name(run_.scene().instances[node.object].name), 18)), name_of(node));
+        html_text(shortened(run_.names[node.object], 18)), name_of(node));
   }
 
-  [[nodiscard]] std::string name_of(const GraphNode& node) const {
-    return html_text(printable_name(run_.scene().instances[node.object].name));
-  }
+  [[nodiscard]] std::string name_of(const GraphNode& node) const { return html_text(run_.names[node.object]); }
 
   const ReportRun& run_;
   std::vector<GraphNode> nodes_;

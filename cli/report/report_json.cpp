@@ -58,7 +58,7 @@ Json remedy_json(const Remedy& remedy) {
 Json why_json(const ReportRun& run, std::uint32_t number) {
   const Explanation& why = run.why[number];
   Json json = {{"reason", name(why.reason)},
-               {"sentence", utf8_text(sentence(why, run.scene()))},
+               {"sentence", utf8_text(sentence(why, run.names))},
                {"triangles", places_json(why.triangles)},
                {"remedy", remedy_json(why.remedy)}};
   if (why.reason == SightReason::no_sample) json["square_pixels"] = why.pixels;

@@ -109,7 +109,7 @@ std::string data_of(const ReportRun& run, const Execution& execution) {
     const ObjectAccount& account = run.accounts.objects[i];
     Json object = object_json(run, i);
     object["name"] = name_of(run, i);
-    object["why"] = printable_text(sentence(run.why[i], run.scene()));
+    object["why"] = printable_text(sentence(run.why[i], run.names));
     Json hiders = Json::array();
     for (const HiddenSamples& pair : run.hiders_of(i)) hiders.push_back(Json::array({pair.hider, pair.count}));
     object["hidden_by"] = std::move(hiders);

@@ -21,7 +21,8 @@ struct ReportRun {
   const Visible& visible;
   const Accounting& accounts;
   const std::vector<Explanation>& why;  ///< by object
-  std::vector<std::string> files;       ///< that were written
+  const ObjectNames& names;
+  std::vector<std::string> files;  ///< that were written
 
   [[nodiscard]] const View& view() const { return visible.view; }
   [[nodiscard]] const Scene& scene() const { return surfaces.scene(); }

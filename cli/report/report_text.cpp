@@ -61,14 +61,14 @@ std::string distance_text(const ObjectAccount& object) {
 }
 
 std::string why_text(const ReportRun& run, std::uint32_t object) {
-  const std::string remedy = remedy_text(run.why[object], run.scene());
-  return reason_text(run.why[object], run.scene()) + (remedy.empty() ? "" : ": " + remedy);
+  const std::string remedy = remedy_text(run.why[object], run.names);
+  return reason_text(run.why[object], run.names) + (remedy.empty() ? "" : ": " + remedy);
 }
 
 std::string why_text(const ReportRun& run) {
   std::string text;
   for (const std::uint32_t object : objects_asked_for(run.settings, run.scene()))
-    text += sentence(run.why[object], run.scene()) + '\n';
+    text += sentence(run.why[object], run.names) + '\n';
   return text;
 }
 

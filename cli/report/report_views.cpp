@@ -40,7 +40,7 @@ std::vector<ViewSettings> views_of_file(const Settings& settings) {
 class ViewReporter {
  public:
   ViewReporter(const Settings& settings, const Scene& scene, const Execution& execution)
-      : settings_(settings), scene_(scene), execution_(execution), surfaces_(scene, execution) {}
+      : settings_(settings), scene_(scene), execution_(execution), surfaces_(scene, execution), names_(scene) {}
 
   /// Calls tell(run) with what was found out.
   template <class Tell>
@@ -54,7 +54,7 @@ class ViewReporter {
     const Accounting accounts = account(
         surfaces, visible, {.canvas = settings_.report.canvas, .all_hiders = settings_.report.all_hiders}, execution_);
     const std::vector<Explanation> why = explain_all(surfaces, visible, accounts, execution_);
-    tell(ReportRun{settings_, surfaces, visible, accounts, why, {}});
+    tell(ReportRun{settings_, surfaces, visible, accounts, why, names_, {}});
   }
 
  private:
@@ -62,6 +62,7 @@ class ViewReporter {
   const Scene& scene_;
   const Execution& execution_;
   Surfaces surfaces_;
+  ObjectNames names_;
   ZBuffer zbuffer_;
 };
 

@@ -117,13 +117,24 @@ struct Explanation {
 /// does for a picture that becomes too large.
 [[nodiscard]] View remedied(const View& view, const Remedy& remedy);
 
-// Texts name objects as the scene does, those without a name by their numbers.
+/// How texts call the objects of a scene: "bolt"; "bolt #13" where several have that name; "object 13" where it has
+/// none. What does not print is written as printable_text() does.
+class ObjectNames {
+ public:
+  /// Keeps a reference. Texts make these names by themselves from a scene; whoever writes many keeps them. O(objects).
+  ObjectNames(const Scene& scene);
+  [[nodiscard]] std::string operator[](std::uint32_t object) const;
+
+ private:
+  const Scene* scene_;
+  std::vector<bool> is_shared_;  ///< by object: another has its name
+};
 
 /// What the object is: "hidden by wall 63 % and lamp 37 %". Shares are rounded to whole percents.
-[[nodiscard]] std::string reason_text(const Explanation& explanation, const Scene& scene);
+[[nodiscard]] std::string reason_text(const Explanation& explanation, const ObjectNames& names);
 /// What to do: "take wall and lamp away"; nothing where there is no remedy.
-[[nodiscard]] std::string remedy_text(const Explanation& explanation, const Scene& scene);
+[[nodiscard]] std::string remedy_text(const Explanation& explanation, const ObjectNames& names);
 /// Both: "crate is hidden by wall 63 % and lamp 37 %: take wall and lamp away."
-[[nodiscard]] std::string sentence(const Explanation& explanation, const Scene& scene);
+[[nodiscard]] std::string sentence(const Explanation& explanation, const ObjectNames& names);
 
 }  // namespace frontmost

@@ -303,6 +303,10 @@ TEST(Explain, WhatHidesIsTakenAway) {
   EXPECT_EQ(why.reason, SightReason::hidden);
   EXPECT_EQ(why.hidden_share, 1);
   EXPECT_EQ(sentence(why, scene), "panel is hidden by wall 60 % and lamp 40 %: take wall away.");
+  scene.instances[2].name = "wall";
+  EXPECT_EQ(sentence(why, scene), "panel is hidden by wall #1 60 % and wall #2 40 %: take wall #1 away.");
+  scene.instances[2].name = "";
+  EXPECT_EQ(sentence(why, scene), "panel is hidden by wall 60 % and object 2 40 %: take wall away.");
   expect_seen_after_remedy(scene, parallel_view(), why);
 }
 

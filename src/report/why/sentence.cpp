@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <unordered_map>
 
 #include "frontmost/explain.h"
 
@@ -28,11 +29,6 @@ std::string share_of_whole(double share) {
   return number_text(percent, 3) + " %";
 }
 
-std::string object_name(const Scene& scene, std::uint32_t object) {
-  const std::string& name = scene.instances[object].name;
-  return name.empty() ? "object " + std::to_string(object) : printable_text(name);
-}
-
 /// "a", "a and b", "a, b and c".
 std::string listed(const std::vector<std::string>& parts) {
   std::string text;
@@ -46,13 +42,13 @@ std::string other_objects(std::size_t count) {
 }
 
 /// `whole`: of what shares are told, as a multiple of what is in frame.
-std::string hiders_text(const std::vector<HiderShare>& hiders, double whole, const Scene& scene) {
+std::string hiders_text(const std::vector<HiderShare>& hiders, double whole, const ObjectNames& names) {
   std::vector<std::string> parts;
   double rest = 0;
   for (std::size_t i = 0; i < hiders.size(); ++i) {
     const HiderShare& hider = hiders[i];
     if (i < kMostNamed || hiders.size() == kMostNamed + 1)
-      parts.push_back(object_name(scene, hider.object) + ' ' + share_of_whole(hider.share / whole));
+      parts.push_back(names[hider.object] + ' ' + share_of_whole(hider.share / whole));
     else
       rest += hider.share;
   }
@@ -113,10 +109,10 @@ std::string no_sample_text(const Explanation& why) {
   return "between the samples: its " + number_text(why.pixels, 3) + " square pixels cover none";
 }
 
-std::string seen_text(const Explanation& why, const Scene& scene) {
+std::string seen_text(const Explanation& why, const ObjectNames& names) {
   std::string text = "seen, " + (why.visible_share == 1 ? "all" : share_of_whole(why.visible_share)) + " of it";
   if (why.cut_share > 0) text += ", " + share_of_whole(why.cut_share) + " beyond the frame";
-  if (!why.hiders.empty()) text += ", the rest hidden by " + hiders_text(why.hiders, 1 / (1 - why.cut_share), scene);
+  if (!why.hiders.empty()) text += ", the rest hidden by " + hiders_text(why.hiders, 1 / (1 - why.cut_share), names);
   return text;
 }
 
@@ -137,20 +133,34 @@ std::string directions_text(const Remedy& remedy) {
   return listed(parts);
 }
 
-std::string taken_text(const std::vector<std::uint32_t>& objects, const Scene& scene) {
-  std::vector<std::string> names;
+std::string taken_text(const std::vector<std::uint32_t>& objects, const ObjectNames& names) {
+  std::vector<std::string> parts;
   for (const std::uint32_t object : objects)
-    if (names.size() < kMostNamed || objects.size() == kMostNamed + 1) names.push_back(object_name(scene, object));
-  if (names.size() < objects.size()) names.push_back(other_objects(objects.size() - names.size()));
-  return listed(names);
+    if (parts.size() < kMostNamed || objects.size() == kMostNamed + 1) parts.push_back(names[object]);
+  if (parts.size() < objects.size()) parts.push_back(other_objects(objects.size() - parts.size()));
+  return listed(parts);
 }
 
 }  // namespace
 
+ObjectNames::ObjectNames(const Scene& scene) : scene_(&scene), is_shared_(scene.instances.size()) {
+  std::unordered_map<std::string_view, std::uint32_t> first;
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const auto [found, is_new] = first.try_emplace(scene.instances[i].name, i);
+    if (!is_new) is_shared_[i] = is_shared_[found->second] = true;
+  }
+}
+
+std::string ObjectNames::operator[](std::uint32_t object) const {
+  const std::string& name = scene_->instances[object].name;
+  if (name.empty()) return "object " + std::to_string(object);
+  return printable_text(name) + (is_shared_[object] ? " #" + std::to_string(object) : "");
+}
+
 std::string_view name(SightReason reason) { return kReasonNames[std::size_t(reason)]; }
 std::string_view name(RemedyKind kind) { return kRemedyNames[std::size_t(kind)]; }
 
-std::string reason_text(const Explanation& why, const Scene& scene) {
+std::string reason_text(const Explanation& why, const ObjectNames& names) {
   const TrianglePlaces& triangles = why.triangles;
   switch (why.reason) {
     case SightReason::empty: return empty_text(triangles);
@@ -161,13 +171,13 @@ std::string reason_text(const Explanation& why, const Scene& scene) {
     case SightReason::faces_away: return "turned away, and culled" + mixture_text(triangles);
     case SightReason::transparent: return transparent_text(why) + mixture_text(triangles);
     case SightReason::no_sample: return no_sample_text(why) + mixture_text(triangles);
-    case SightReason::hidden: return "hidden by " + hiders_text(why.hiders, 1, scene) + mixture_text(triangles);
-    case SightReason::seen: return seen_text(why, scene) + mixture_text(triangles);
+    case SightReason::hidden: return "hidden by " + hiders_text(why.hiders, 1, names) + mixture_text(triangles);
+    case SightReason::seen: return seen_text(why, names) + mixture_text(triangles);
   }
   return "";
 }
 
-std::string remedy_text(const Explanation& why, const Scene& scene) {
+std::string remedy_text(const Explanation& why, const ObjectNames& names) {
   const Remedy& remedy = why.remedy;
   switch (remedy.kind) {
     case RemedyKind::none: return "";
@@ -178,15 +188,14 @@ std::string remedy_text(const Explanation& why, const Scene& scene) {
     case RemedyKind::show_both_sides: return "cull nothing";
     case RemedyKind::make_opaque: return "make its material opaque";
     case RemedyKind::enlarge: return "draw " + number_text(remedy.value, 6) + " times as many pixels each way";
-    case RemedyKind::take_away: return "take " + taken_text(remedy.objects, scene) + " away";
+    case RemedyKind::take_away: return "take " + taken_text(remedy.objects, names) + " away";
   }
   return "";
 }
 
-std::string sentence(const Explanation& why, const Scene& scene) {
-  const std::string remedy = remedy_text(why, scene);
-  return object_name(scene, why.object) + " is " + reason_text(why, scene) + (remedy.empty() ? "" : ": " + remedy) +
-         ".";
+std::string sentence(const Explanation& why, const ObjectNames& names) {
+  const std::string remedy = remedy_text(why, names);
+  return names[why.object] + " is " + reason_text(why, names) + (remedy.empty() ? "" : ": " + remedy) + ".";
 }
 
 }  // namespace frontmost
