@@ -69,7 +69,8 @@ class Occlusion {
 
   /// For every object what is known of it in this view; the answer stays as it is until the next call.
   /// Culling of faces counts: faces that are left out hide nothing. The same for all instruction sets.
-  /// O(objects + triangles of what may be seen and is no smaller than a cell).
+  /// Objects are in groups that are hidden or outside as a whole, so that many of these cost little; at worst
+  /// O(objects + triangles of what may be seen).
   /// \throws Error bad_argument as validate(view) does, and for a cell out of range.
   std::span<const ObjectSight> cull(const View& view, const OcclusionOptions& options = {},
                                     const Execution& execution = {}) &;

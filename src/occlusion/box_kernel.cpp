@@ -115,7 +115,8 @@ class BoxProjector {
     sides_[3] = Side(t.y_row, t.y_offset, -y);
   }
 
-  HWY_INLINE void Find(std::size_t first) const {
+  /// Of boxes [first, end), as far as they are lanes.
+  HWY_INLINE void Find(std::size_t first, std::size_t end) const {
     const DF d;
     const DI di;
     const ScreenTransform& t = grid_.transform;
@@ -128,11 +129,11 @@ class BoxProjector {
     const Terms depth = box.Of({t.d_row, t.d_offset});
     const VF nearest = hn::Sub(depth.Least(), depth.slack), farthest = hn::Add(depth.Greatest(), depth.slack);
     MF outside = hn::Or(hn::Lt(farthest, hn::Set(d, t.near)), hn::Gt(nearest, hn::Set(d, t.far)));
+    outside = hn::Or(outside, hn::Gt(box.low[0], box.high[0]));
     for (const Linear& side : sides_) {
       const Terms terms = box.Of(side);
       outside = hn::Or(outside, hn::Lt(hn::Add(terms.Greatest(), terms.slack), hn::Zero(d)));
     }
-    const MF before_near = hn::Lt(nearest, hn::Set(d, t.near));
     const Terms x = box.Of({t.x_row, t.x_offset}), y = box.Of({t.y_row, t.y_offset});
     QuotientRange across, down;
     if (t.orthographic) {
@@ -144,9 +145,12 @@ class BoxProjector {
       across = Divided(x, inverse, depth.slack);
       down = Divided(y, inverse, depth.slack);
     }
+    // So far away that floats overflow, nothing is known.
+    const MF before_near = hn::Not(hn::Ge(nearest, hn::Set(d, t.near)));
+    const MF known = hn::And(hn::Le(across.least, across.greatest), hn::Le(down.least, down.greatest));
     const CellSpan columns = CellsOf(grid_, across, t.centre_x, grid_.columns);
     const CellSpan rows = CellsOf(grid_, down, t.centre_y, grid_.rows);
-    const MI whole = hn::RebindMask(di, before_near), none = hn::RebindMask(di, outside);
+    const MI whole = hn::RebindMask(di, hn::Or(before_near, hn::Not(known))), none = hn::RebindMask(di, outside);
     const auto start = [&](VI v) { return hn::IfThenZeroElse(hn::Or(whole, none), v); };
     const auto stop = [&](VI v, int count) {
       return hn::IfThenZeroElse(none, hn::IfThenElse(whole, hn::Set(di, count), v));
@@ -157,9 +161,10 @@ class BoxProjector {
     hn::Store(start(rows.first), di, y0);
     hn::Store(stop(columns.end, grid_.columns), di, x1);
     hn::Store(stop(rows.end, grid_.rows), di, y1);
-    hn::Store(hn::IfThenElse(before_near, hn::Set(d, -std::numeric_limits<float>::infinity()), nearest), d, near);
-    hn::Store(farthest, d, far);
-    const std::size_t count = std::min(hn::Lanes(d), boxes_.count - first);
+    const VF infinity = hn::Set(d, std::numeric_limits<float>::infinity());
+    hn::Store(hn::IfThenElse(before_near, hn::Neg(infinity), nearest), d, near);
+    hn::Store(hn::IfThenElse(hn::IsNaN(farthest), infinity, farthest), d, far);
+    const std::size_t count = std::min(hn::Lanes(d), end - first);
     for (std::size_t i = 0; i < count; ++i) out_[first + i] = {{x0[i], y0[i], x1[i], y1[i]}, near[i], far[i]};
   }
 
@@ -182,9 +187,9 @@ class BoxProjector {
 
 }  // namespace
 
-void FindOnScreen(const CellGrid& grid, const BoxColumns& boxes, std::vector<ScreenBox>& out) {
+void FindOnScreen(const CellGrid& grid, const BoxColumns& boxes, const ItemRange& which, std::vector<ScreenBox>& out) {
   const BoxProjector finder(grid, boxes, out);
-  for (std::size_t i = 0; i < boxes.count; i += hn::Lanes(DF())) finder.Find(i);
+  for (std::size_t i = which.first; i < which.end(); i += hn::Lanes(DF())) finder.Find(i, which.end());
 }
 
 bool IsRectCovered(const CellCover& cover, const CellRect& rect, float depth) { return IsCovered(cover, rect, depth); }
@@ -216,23 +221,28 @@ CellGrid::CellGrid(const View& view, int cell)
       cells_per_unit(1.0f / (float(kSubPixels) * float(cell))),
       margin(2.0f * cells_per_unit) {}
 
-BoxColumns::BoxColumns(std::size_t its_count) : count(its_count) {
+BoxColumns::BoxColumns(std::size_t count) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    low[axis].resize(count + most_lanes);
-    high[axis].resize(count + most_lanes);
+    low[axis].resize(count + most_lanes, 1.0f);
+    high[axis].resize(count + most_lanes, -1.0f);
   }
 }
 
 void BoxColumns::set(std::size_t number, const Box& box) {
+  const bool is_empty = box.is_empty();
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    low[axis][number] = box.low[int(axis)];
-    high[axis][number] = box.high[int(axis)];
+    low[axis][number] = is_empty ? 1.0f : box.low[int(axis)];
+    high[axis][number] = is_empty ? -1.0f : box.high[int(axis)];
   }
 }
 
-void find_on_screen(const CellGrid& grid, const BoxColumns& boxes, std::vector<ScreenBox>& out, Isa isa) {
-  out.resize(boxes.count);
-  kernel_for(FindOnScreenKernels, isa)(grid, boxes, out);
+Box BoxColumns::get(std::size_t number) const {
+  return {{low[0][number], low[1][number], low[2][number]}, {high[0][number], high[1][number], high[2][number]}};
+}
+
+void find_on_screen(const CellGrid& grid, const BoxColumns& boxes, const ItemRange& which, std::vector<ScreenBox>& out,
+                    Isa isa) {
+  kernel_for(FindOnScreenKernels, isa)(grid, boxes, which, out);
 }
 
 void find_sights_of(const CellCover& cover, std::span<const ScreenBox> boxes, ObjectSight* sights, Isa isa) {

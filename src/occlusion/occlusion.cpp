@@ -36,26 +36,30 @@ struct Occlusion::State {
       for (std::uint32_t part = 0; part < parts; ++part) objects.push_back({i, part});
     }
     first_objects.push_back(std::uint32_t(objects.size()));
-    boxes_of_objects.resize(objects.size());
-    columns = BoxColumns(objects.size());
-    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) place(i);
+    plant();
     sights.resize(objects.size());
   }
 
-  /// Finds the boxes of an instance's objects.
-  void place(std::uint32_t instance) {
-    const Instance& it = surfaces.scene().instances[instance];
-    for (std::uint32_t i = first_objects[instance]; i < first_objects[instance + 1]; ++i) {
-      Box& box = boxes_of_objects[i];
-      box = unit == ObjectUnit::instances
-                ? surfaces.bounds(instance)
-                : world_box(it.world_from_mesh, meshes[it.mesh].parts[objects[i].part].bounds);
-      if (!box.is_empty()) columns.set(i, box);
-    }
+  [[nodiscard]] Box box_of(const CulledObject& object) const {
+    if (unit == ObjectUnit::instances) return surfaces.bounds(object.instance);
+    const Instance& it = surfaces.scene().instances[object.instance];
+    return world_box(it.world_from_mesh, meshes[it.mesh].parts[object.part].bounds);
+  }
+
+  void plant() {
+    std::vector<Box> boxes;
+    boxes.reserve(objects.size());
+    for (const CulledObject& object : objects) boxes.push_back(box_of(object));
+    tree = ObjectTree(boxes);
   }
 
   void follow_moves() {
-    surfaces.placed().moves.visit_since(moves, first_objects.size() - 1, [&](std::uint32_t i) { place(i); });
+    surfaces.placed().moves.visit_since(moves, first_objects.size() - 1, [&](std::uint32_t instance) {
+      for (std::uint32_t i = first_objects[instance]; i < first_objects[instance + 1]; ++i)
+        tree.move(i, box_of(objects[i]));
+    });
+    tree.refit();
+    if (tree.is_worn()) plant();
   }
 
   void find_meshes(const Execution& execution) {
@@ -72,22 +76,20 @@ struct Occlusion::State {
 
   const Surfaces& surfaces;
   ObjectUnit unit;
-  std::uint64_t moves;  ///< of the surfaces that `columns` has followed
+  std::uint64_t moves;  ///< of the surfaces that the tree has followed
   std::vector<OccluderMesh> meshes;
   std::vector<CulledObject> objects;
   std::vector<std::uint32_t> first_objects;  ///< by instance, and their number at the end
-  std::vector<Box> boxes_of_objects;
-  BoxColumns columns{0};
+  ObjectTree tree;
 
   // Of the last view.
   std::optional<CellGrid> grid;
-  std::vector<ScreenBox> on_screen;
   std::vector<ObjectSight> sights;
   CellCover cover;
   // Boxes that are asked for, a block at a time.
   static constexpr std::size_t most_asked = 512;
   BoxColumns asked{most_asked};
-  std::vector<ScreenBox> asked_on_screen;
+  std::vector<ScreenBox> asked_on_screen = std::vector<ScreenBox>(most_asked);
   Isa isa = Isa::best;
   Sweep sweep;
 };
@@ -116,13 +118,8 @@ std::span<const ObjectSight> Occlusion::cull(const View& view, const OcclusionOp
   s.follow_moves();
   s.isa = execution.isa;
   s.grid.emplace(view, options.cell);
-  find_on_screen(*s.grid, s.columns, s.on_screen, s.isa);
-  for (std::size_t i = 0; i < s.objects.size(); ++i) {
-    if (s.boxes_of_objects[i].is_empty()) s.on_screen[i].rect = {};
-    s.sights[i] = ObjectSight::outside;
-  }
-  const SweptScene swept{s.surfaces.scene(), s.meshes, s.objects, s.surfaces.placed().mirrored};
-  s.sweep.run(swept, {*s.grid, view.culling, s.on_screen, s.isa}, s.sights, s.cover);
+  const SweptScene swept{s.surfaces.scene(), s.meshes, s.objects, s.tree, s.surfaces.placed().mirrored};
+  s.sweep.run(swept, {*s.grid, view.culling, s.isa}, s.sights, s.cover);
   return s.sights;
 }
 
@@ -136,14 +133,10 @@ void Occlusion::find_sights(std::span<const Box> boxes, std::span<ObjectSight> s
   State& s = *state_;
   if (!s.grid) return std::fill(sights.begin(), sights.end(), ObjectSight::outside);
   for (std::size_t first = 0; first < boxes.size(); first += State::most_asked) {
-    s.asked.count = std::min(boxes.size() - first, State::most_asked);
-    const std::span<const Box> block = boxes.subspan(first, s.asked.count);
-    for (std::size_t i = 0; i < block.size(); ++i)
-      if (!block[i].is_empty()) s.asked.set(i, block[i]);
-    find_on_screen(*s.grid, s.asked, s.asked_on_screen, s.isa);
-    for (std::size_t i = 0; i < block.size(); ++i)
-      if (block[i].is_empty()) s.asked_on_screen[i].rect = {};
-    find_sights_of(s.cover, s.asked_on_screen, &sights[first], s.isa);
+    const std::span<const Box> block = boxes.subspan(first, std::min(boxes.size() - first, State::most_asked));
+    for (std::size_t i = 0; i < block.size(); ++i) s.asked.set(i, block[i]);
+    find_on_screen(*s.grid, s.asked, {0, std::uint32_t(block.size())}, s.asked_on_screen, s.isa);
+    find_sights_of(s.cover, std::span(s.asked_on_screen).first(block.size()), &sights[first], s.isa);
   }
 }
 

@@ -19,108 +19,147 @@ bool is_dense(const OccluderPart& part, const CellRect& rect) {
   return 2 * std::size_t(part.triangle_count) > cells + 64;
 }
 
+/// Whether no cell of an object is without its ends, so that it covers nothing.
+bool is_tiny(const CellRect& rect) { return rect.x1 - rect.x0 <= 2 || rect.y1 - rect.y0 <= 2; }
+
 }  // namespace
 
 class Sweep::Run {
  public:
   Run(Sweep& memory, const SweptScene& scene, const SweptView& view, std::span<ObjectSight> sights, CellCover& cover)
       : memory_(memory), scene_(scene), view_(view), sights_(sights), cover_(cover), is_covered_(cover_test(view.isa)) {
-    find_ranges();
-    line_up();
+    memory.boxes_.resize(scene.tree.item_count());
+    memory.next_test_.resize(scene.tree.item_count());
+    if (!memory.boxes_.empty()) find_ranges();
+    clear_lists();
+    std::fill(sights.begin(), sights.end(), ObjectSight::outside);
     cover.begin(view.grid.columns, view.grid.rows);
     memory.scratch_.reached.begin(view.grid.columns, view.grid.rows);
     memory.scratch_.ends.begin(view.grid.columns, view.grid.rows);
   }
 
   void sweep() {
+    if (memory_.boxes_.empty()) return;
+    line_up(scene_.tree.top(), -kInfinity);
     for (std::size_t range = 0; range < memory_.first_test_.size(); ++range) {
       for (std::uint32_t e = memory_.first_event_[range]; e != no_index; e = memory_.events_[e].next)
         cover_by(memory_.events_[e]);
-      for (std::uint32_t i = memory_.first_test_[range]; i != no_index; i = memory_.next_test_[i]) test(i);
+      std::uint32_t& first = memory_.first_test_[range];
+      while (first != no_index) test(std::exchange(first, memory_.next_test_[first]));
     }
   }
 
  private:
-  [[nodiscard]] HidingObject occluder(std::uint32_t object) const {
-    const CulledObject& o = scene_.objects[object];
+  /// Precondition: the item is an object.
+  [[nodiscard]] const CulledObject& object_of(std::uint32_t item) const {
+    return scene_.objects[scene_.tree.object(item)];
+  }
+  [[nodiscard]] HidingObject occluder(std::uint32_t item) const {
+    const CulledObject& o = object_of(item);
     const Instance& instance = scene_.scene.instances[o.instance];
     const OccluderMesh& mesh = scene_.meshes[instance.mesh];
     return {mesh, mesh.parts[o.part], instance.world_from_mesh};
   }
 
+  /// Those between the nearest and the farthest object, whether they are on the screen or not.
   void find_ranges() {
     const ScreenTransform& t = view_.grid.transform;
-    float least = kInfinity, greatest = t.near;
-    for (const ScreenBox& box : view_.boxes) {
-      if (box.rect.is_empty()) continue;
-      least = std::min(least, std::max(box.nearest, t.near));
-      greatest = std::max(greatest, box.farthest);
-    }
-    range_of_ = DistanceRanges(t.orthographic, least, greatest);
+    find_on_screen(view_.grid, scene_.tree.boxes(), {scene_.tree.root(), 1}, memory_.boxes_, view_.isa);
+    const ScreenBox& all = memory_.boxes_[scene_.tree.root()];
+    const float least = std::max(all.nearest, t.near);
+    range_of_ = DistanceRanges(t.orthographic, least, std::min(all.farthest, t.far));
     const int twice = t.orthographic ? range_of_.count() / 8 : range_of_(2 * least) - range_of_(least);
     slab_length_ = std::max(1, twice / kSlabsOfDouble);
   }
 
-  void line_up() {
+  void clear_lists() {
     const std::size_t ranges = std::size_t(range_of_.count()) + 1;
     memory_.first_test_.assign(ranges, no_index);
     memory_.first_event_.assign(ranges, no_index);
-    memory_.next_test_.resize(view_.boxes.size());
     memory_.events_.clear();
     memory_.solid_.clear();
-    for (std::uint32_t i = 0; i < view_.boxes.size(); ++i) {
-      if (view_.boxes[i].rect.is_empty()) continue;
-      std::uint32_t& first = memory_.first_test_[std::size_t(range_of_(view_.boxes[i].nearest))];
-      memory_.next_test_[i] = std::exchange(first, i);
+  }
+
+  /// Of items none of which is nearer than a distance.
+  void line_up(const ItemRange& items, float distance) {
+    find_on_screen(view_.grid, scene_.tree.boxes(), items, memory_.boxes_, view_.isa);
+    for (std::uint32_t i = items.first; i < items.end(); ++i) {
+      ScreenBox& box = memory_.boxes_[i];
+      if (box.rect.is_empty()) continue;
+      box.nearest = std::max(box.nearest, distance);
+      memory_.next_test_[i] = std::exchange(memory_.first_test_[std::size_t(range_of_(box.nearest))], i);
     }
   }
 
-  void test(std::uint32_t object) {
-    const ScreenBox& box = view_.boxes[object];
-    const bool is_hidden = is_covered_(cover_, box.rect, box.nearest) || !may_be_seen(object, box);
-    sights_[object] = is_hidden ? ObjectSight::hidden : ObjectSight::may_be_seen;
+  void test(std::uint32_t item) {
+    const ScreenBox& box = memory_.boxes_[item];
+    if (is_covered_(cover_, box.rect, box.nearest)) return hide(item);
+    if (!scene_.tree.is_object(item)) return line_up(scene_.tree.items_of(item), box.nearest);
+    sights_[scene_.tree.object(item)] = may_be_seen(item, box) ? ObjectSight::may_be_seen : ObjectSight::hidden;
+  }
+
+  /// Says so of all objects of an item but those that are outside.
+  void hide(std::uint32_t item) {
+    const ObjectTree& tree = scene_.tree;
+    if (tree.is_object(item) || is_inside(memory_.boxes_[item])) {
+      const ItemRange objects = tree.objects_of(item);
+      for (std::uint32_t i = objects.first; i < objects.end(); ++i)
+        if (!tree.boxes().is_empty(i)) sights_[tree.object(i)] = ObjectSight::hidden;
+      return;
+    }
+    const ItemRange items = tree.items_of(item);
+    find_on_screen(view_.grid, tree.boxes(), items, memory_.boxes_, view_.isa);
+    for (std::uint32_t i = items.first; i < items.end(); ++i)
+      if (!memory_.boxes_[i].rect.is_empty()) hide(i);
+  }
+
+  /// Whether all that is within a box is within the viewing volume. What reaches to the border may be beyond it.
+  [[nodiscard]] bool is_inside(const ScreenBox& box) const {
+    const CellGrid& grid = view_.grid;
+    return box.rect.x0 > 0 && box.rect.y0 > 0 && box.rect.x1 < grid.columns && box.rect.y1 < grid.rows &&
+           box.nearest >= grid.transform.near && box.farthest <= grid.transform.far;
   }
 
   /// Of an object whose box is not covered: whether it is itself. Takes care that it covers, then.
-  bool may_be_seen(std::uint32_t object, const ScreenBox& box) {
-    const HidingObject it = occluder(object);
+  bool may_be_seen(std::uint32_t item, const ScreenBox& box) {
+    if (is_tiny(box.rect)) return true;
+    const HidingObject it = occluder(item);
     if (it.part.triangle_count == 0 || is_dense(it.part, box.rect)) return true;
     const LongObject::Slabs slabs{range_of_(box.nearest), range_of_(box.farthest), slab_length_};
-    if (slabs.last - slabs.first > kShortSlabs * slab_length_) return long_may_be_seen(object, it, slabs);
+    if (slabs.last - slabs.first > kShortSlabs * slab_length_) return long_may_be_seen(item, it, slabs);
     put_on_screen(view_.grid, it, memory_.on_screen_);
     const std::size_t first_row = add_rows(box.rect);
-    if (is_behind_cover(object, it, memory_.on_screen_, first_row)) return false;
-    schedule(slabs.last + 1, {.object = object, .first_row = first_row});
+    if (is_behind_cover(item, it, memory_.on_screen_, first_row)) return false;
+    schedule(slabs.last + 1, {.item = item, .first_row = first_row});
     return true;
   }
 
-  bool long_may_be_seen(std::uint32_t object, const HidingObject& it, const LongObject::Slabs& slabs) {
+  bool long_may_be_seen(std::uint32_t item, const HidingObject& it, const LongObject::Slabs& slabs) {
     if (used_long_objects_ == memory_.long_objects_.size())
       memory_.long_objects_.push_back(std::make_unique<LongObject>());
     LongObject& o = *memory_.long_objects_[used_long_objects_];
     put_on_screen(view_.grid, it, o.on_screen);
     // Nothing is known to lie before what reaches to the eye.
-    const ScreenBox& box = view_.boxes[object];
+    const ScreenBox& box = memory_.boxes_[item];
     if (box.nearest > -kInfinity) {
       const std::size_t first_row = add_rows(box.rect);
-      const bool is_hidden = is_behind_cover(object, it, o.on_screen, first_row);
+      const bool is_hidden = is_behind_cover(item, it, o.on_screen, first_row);
       memory_.solid_.resize(first_row);
       if (is_hidden) return false;
     }
     o.sort_by_slab(range_of_, slabs);
     for (int slab = 0; slab < slabs.count(); ++slab)
       if (o.has_triangles(slab))
-        schedule(slabs.behind(slab),
-                 {.object = object, .long_object = std::uint32_t(used_long_objects_), .slab = slab});
+        schedule(slabs.behind(slab), {.item = item, .long_object = std::uint32_t(used_long_objects_), .slab = slab});
     ++used_long_objects_;
     return true;
   }
 
   /// Finds what the object covers, too.
-  bool is_behind_cover(std::uint32_t object, const HidingObject& it, const OccluderOnScreen& on_screen,
+  bool is_behind_cover(std::uint32_t item, const HidingObject& it, const OccluderOnScreen& on_screen,
                        std::size_t first_row) {
-    CoverPass pass{.rect = view_.boxes[object].rect, .distance = view_.boxes[object].farthest};
-    leave_out_culled(object, pass);
+    CoverPass pass{.rect = memory_.boxes_[item].rect, .distance = memory_.boxes_[item].farthest};
+    leave_out_culled(item, pass);
     // One side of a closed surface covers what the other does.
     if (it.part.is_closed && on_screen.cut.empty() && pass.clockwise) pass.counter_clockwise = false;
     const bool is_near_open = find_solid(view_.grid, it, on_screen, pass, memory_.scratch_, cover_,
@@ -136,16 +175,16 @@ class Sweep::Run {
   }
 
   void cover_by(const Event& event) {
-    const ScreenBox& box = view_.boxes[event.object];
+    const ScreenBox& box = memory_.boxes_[event.item];
     if (event.long_object == no_index) {
       const CoverPass pass{.rect = box.rect, .distance = box.farthest};
       return add_to_cover(pass, memory_.solid_.data() + event.first_row, cover_, view_.isa);
     }
     LongObject& o = *memory_.long_objects_[event.long_object];
-    const HidingObject it = occluder(event.object);
+    const HidingObject it = occluder(event.item);
     CoverPass pass = o.choose(view_.grid, it, event.slab, box.rect);
     if (pass.rect.is_empty() || is_covered_(cover_, pass.rect, kInfinity)) return;
-    leave_out_culled(event.object, pass);
+    leave_out_culled(event.item, pass);
     const std::size_t first_row = add_rows(pass.rect);
     std::uint32_t* const solid = memory_.solid_.data() + first_row;
     find_solid(view_.grid, it, o.on_screen, pass, memory_.scratch_, cover_, solid, view_.isa);
@@ -154,9 +193,9 @@ class Sweep::Run {
   }
 
   /// Which triangles the view leaves out by the way they face.
-  void leave_out_culled(std::uint32_t object, CoverPass& pass) const {
+  void leave_out_culled(std::uint32_t item, CoverPass& pass) const {
     // Fronts are counter-clockwise on the screen; a mirrored instance has the corners the other way round.
-    const bool is_mirrored = scene_.mirrored[scene_.objects[object].instance] != 0;
+    const bool is_mirrored = scene_.mirrored[object_of(item).instance] != 0;
     bool& fronts = is_mirrored ? pass.clockwise : pass.counter_clockwise;
     bool& backs = is_mirrored ? pass.counter_clockwise : pass.clockwise;
     if (view_.culling == Culling::front || view_.culling == Culling::both) fronts = false;

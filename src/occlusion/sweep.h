@@ -9,6 +9,9 @@
 // What covers lies in ranges before those of what is tested against it, so that it is nearer for certain. Within a
 // range nothing depends on the order.
 //
+// Groups of objects are visited as objects are, in the range of their nearest distance: what is hidden or outside is so
+// as a whole, and of any other the items are lined up, none of which is nearer.
+//
 // A test asks about the object's box first, which takes ten nanoseconds. Where that is not covered, the cells that the
 // object's own triangles come near are found; these same cells, without its ends, are what it covers later.
 #pragma once
@@ -19,6 +22,7 @@
 
 #include "frontmost/occlusion.h"
 #include "occlusion/long_object.h"
+#include "occlusion/object_tree.h"
 
 namespace frontmost::occlusion_detail {
 
@@ -27,6 +31,7 @@ struct SweptScene {
   const Scene& scene;
   std::span<const OccluderMesh> meshes;  ///< by mesh
   std::span<const CulledObject> objects;
+  const ObjectTree& tree;
   std::span<const std::uint8_t> mirrored;  ///< by instance
 };
 
@@ -34,21 +39,20 @@ struct SweptScene {
 struct SweptView {
   const CellGrid& grid;
   Culling culling;
-  std::span<const ScreenBox> boxes;  ///< of the objects
   Isa isa;
 };
 
 /// One sweep after another in the same memory.
 class Sweep {
  public:
-  /// Sets `sights` of what is on the screen, and leaves what is covered in `cover`.
+  /// Sets `sights`, and leaves what is covered in `cover`.
   void run(const SweptScene& scene, const SweptView& view, std::span<ObjectSight> sights, CellCover& cover);
 
  private:
   /// Something that covers from a range on: an object whose cells are known, or a slab of a long one. `next` is the
   /// following event of that range.
   struct Event {
-    std::uint32_t object;
+    std::uint32_t item;  ///< an object
     std::uint32_t long_object = no_index;
     int slab = 0;
     std::size_t first_row = 0;  ///< within solid_
@@ -56,7 +60,8 @@ class Sweep {
   };
   class Run;
 
-  std::vector<std::uint32_t> first_test_, next_test_;  ///< lists of objects by range
+  std::vector<ScreenBox> boxes_;                       ///< by item, once it is lined up
+  std::vector<std::uint32_t> first_test_, next_test_;  ///< lists of items by range
   std::vector<std::uint32_t> first_event_;             ///< by range
   std::vector<Event> events_;
   std::vector<std::unique_ptr<LongObject>> long_objects_;

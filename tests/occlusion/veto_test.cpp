@@ -4,41 +4,15 @@
 // must find that wrong; else they would find nothing.
 #include <gtest/gtest.h>
 
+#include "occlusion/by_hand.h"
 #include "occlusion/hidden_scene.h"
 #include "occlusion/sight_rays.h"
-#include "occlusion/sweep.h"
 #include "support/effort.h"
 
 namespace frontmost {
 namespace {
 
 using namespace test;
-using namespace occlusion_detail;
-
-enum class Ends { count, are_forgotten };
-
-std::vector<ObjectSight> sights_by_hand(const Surfaces& surfaces, const View& view, int cell, Ends ends) {
-  const Scene& scene = surfaces.scene();
-  std::vector<OccluderMesh> meshes(scene.meshes.size());
-  std::vector<CulledObject> objects;
-  BoxColumns columns(scene.instances.size());
-  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-    OccluderMesh& mesh = meshes[scene.instances[i].mesh] = occluder_mesh(surfaces.placed(), i, ObjectUnit::instances);
-    // What lies beyond each side counts always: the triangle itself.
-    if (ends == Ends::are_forgotten)
-      for (std::uint32_t t = 0; t < mesh.neighbours.size(); ++t) mesh.neighbours[t] = glm::uvec3(t);
-    objects.push_back({i, 0});
-    columns.set(i, surfaces.bounds(i));
-  }
-  const CellGrid grid(view, cell);
-  std::vector<ScreenBox> boxes;
-  find_on_screen(grid, columns, boxes, Isa::best);
-  std::vector<ObjectSight> sights(objects.size(), ObjectSight::outside);
-  CellCover cover;
-  Sweep().run({scene, meshes, objects, surfaces.placed().mirrored}, {grid, view.culling, boxes, Isa::best}, sights,
-              cover);
-  return sights;
-}
 
 TEST(OcclusionVeto, WithoutTheEndsOfSurfacesWhatIsSeenIsSaidToBeHidden) {
   std::size_t wrong = 0;
