@@ -47,6 +47,7 @@ int run_compare(const Settings& settings);
 int run_lines(const Settings& settings);
 int run_report(const Settings& settings);
 int run_visible(const Settings& settings);
+int run_batch_merge(const Settings& settings);
 
 /// Fills Settings from the words after the command's name.
 /// \throws UsageError

@@ -78,6 +78,13 @@ constexpr Command table[] = {
      "frontmost visible assembly.glb --sphere 200 -o faces.npy\n"
      "frontmost visible scene.glb --views batch.json -o -",
      run_visible},
+    {"batch-merge", for_batch_merge, "PART...",
+     "Check that the shards of a batch are complete, and gather their files.",
+     "PART is a folder in which frontmost render --batch --shard ran, or a manifest that it wrote. All views must be "
+     "finished, of the same model, batch file and options, and every file must be what its manifest says.",
+     "frontmost batch-merge .\n"
+     "frontmost batch-merge machine-1 machine-2 machine-3 -o all",
+     run_batch_merge},
     {"precision", for_precision, "[MODEL]", "What a depth buffer can tell apart, at which distance.",
      "The smallest gap that a depth buffer always resolves, against distance; without --format for the formats in use. "
      "With MODEL also where such a buffer may show a surface that is not the nearest (z-fighting): the pixels at which "

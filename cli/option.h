@@ -56,6 +56,7 @@ enum CommandBit : unsigned {
   for_lines = 256,
   for_report = 512,
   for_visible = 1024,
+  for_batch_merge = 2048,
   for_every_model = for_render | for_info | for_camera | for_precision | for_sight | for_lidar | for_compare |
                     for_lines | for_report | for_visible
 };
@@ -104,19 +105,23 @@ struct Option {
 [[nodiscard]] std::span<const Option> report_option_table();
 [[nodiscard]] std::span<const Option> visible_option_table();
 [[nodiscard]] std::span<const Option> output_option_table();
+[[nodiscard]] std::span<const Option> batch_merge_option_table();
 [[nodiscard]] std::span<const Option> run_option_table();
 
 /// Calls visit(option) for every option, in the order of the help.
 template <class Visit>
 void for_each_option(const Visit& visit) {
-  for (const auto table : {view_option_table(), depth_option_table(), precision_option_table(), sight_option_table(),
-                           lidar_option_table(), compare_option_table(), drawing_option_table(), report_option_table(),
-                           visible_option_table(), output_option_table(), run_option_table()}) {
+  for (const auto table :
+       {view_option_table(), depth_option_table(), precision_option_table(), sight_option_table(), lidar_option_table(),
+        compare_option_table(), drawing_option_table(), report_option_table(), visible_option_table(),
+        output_option_table(), batch_merge_option_table(), run_option_table()}) {
     for (const Option& option : table) visit(option);
   }
 }
 
-/// Applies one option, with its name in front of any complaint.
+/// Applies one option, and notes in the settings that it was said. \throws UsageError as Option::apply does.
+void apply_as_given(const Option& option, std::string_view text, Settings& settings);
+/// The same with the option's name in front of any complaint.
 void apply(const Option& option, std::string_view text, Settings& settings);
 
 }  // namespace frontmost::cli

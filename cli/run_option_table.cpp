@@ -6,6 +6,7 @@
 
 #include "cli/failure.h"
 #include "cli/option.h"
+#include "cli/render/file_hash.h"
 
 namespace frontmost::cli {
 namespace {
@@ -20,9 +21,22 @@ Isa isa_from(const Given& given) {
   throw UsageError(fmt::format("{} does not run here; {} do", given.text, fmt::join(names, ", ")));
 }
 
+Shard shard_from(std::string_view text) {
+  constexpr NumberLimits shards{1, 100'000};
+  const std::vector<std::string_view> parts = split(text, '/');
+  if (parts.size() != 2) throw UsageError(fmt::format("{} is not K/N, such as 3/16", quoted(text)));
+  const Shard shard{parse_integer(parts[0], shards), parse_integer(parts[1], shards)};
+  if (shard.number > shard.count) throw UsageError(fmt::format("{}: there are only {} shards", text, shard.count));
+  return shard;
+}
+
 constexpr Option run_options[] = {
     {"batch", 0, "FILE", "Render many views: a JSON file of views and outputs (see frontmost(1)).", Group::run,
      for_render, [](Settings& s, const Given& g) { s.run.batch = g.file_name(); }},
+    {"shard", 0, "K/N",
+     "Render every N-th view of the batch, 1/N to N/N, and note in a manifest what is finished; that is skipped next "
+     "time.",
+     Group::run, for_render, [](Settings& s, const Given& g) { s.run.shard = shard_from(g.text); }},
     {"method", 0, "zbuffer|raycast|abuffer",
      "Visibility method; by default the z-buffer, and the A-buffer for what can be seen through.", Group::run,
      for_render, [](Settings& s, const Given& g) { s.run.method = g.choice<Method>(); }},
@@ -39,13 +53,14 @@ constexpr Option run_options[] = {
      [](Settings& s, const Given& g) {
        s.run.repeat = g.integer({1, 1e6});
      }},
-    {"timeout", 0, "SECONDS", "Give up after this long, with exit status 1.", Group::run, for_every_model,
+    {"timeout", 0, "SECONDS", "Give up after this long, with exit status 1.", Group::run,
+     for_every_model | for_batch_merge,
      [](Settings& s, const Given& g) {
        s.run.timeout = g.number({1e-3, 1e7});
      }},
-    {"json", 0, "", "Report on standard output as JSON, and nothing else there.", Group::run, for_every_model,
-     [](Settings& s, const Given&) { s.run.json = true; }},
-    {"quiet", 'q', "", "No progress and no warnings.", Group::run, for_every_model,
+    {"json", 0, "", "Report on standard output as JSON, and nothing else there.", Group::run,
+     for_every_model | for_batch_merge, [](Settings& s, const Given&) { s.run.json = true; }},
+    {"quiet", 'q', "", "No progress and no warnings.", Group::run, for_every_model | for_batch_merge,
      [](Settings& s, const Given&) { s.run.quiet = true; }},
 };
 
@@ -58,9 +73,20 @@ std::string Given::file_name() const {
   return string();
 }
 
+void apply_as_given(const Option& option, std::string_view text, Settings& settings) {
+  option.apply(settings, {text, option.choices()});
+  // Of how to run, the method alone may change what comes out; a hash is told beside it.
+  if ((option.group == Group::run && option.name != "method") || option.name == "hash") return;
+  RunningHash hash;
+  hash.add(settings.said);
+  hash.add(option.name);
+  hash.add(text);
+  settings.said = hash.value();
+}
+
 void apply(const Option& option, std::string_view text, Settings& settings) {
   try {
-    option.apply(settings, {text, option.choices()});
+    apply_as_given(option, text, settings);
   } catch (const UsageError& error) {
     throw UsageError(fmt::format("--{}: {}", option.name, error.what()));
   }

@@ -115,6 +115,13 @@ struct OutputSettings {
 /// How visibility is found.
 enum class Method : std::uint8_t { zbuffer, raycast, abuffer };
 
+/// Every `count`-th view, the first of them number - 1.
+struct Shard {
+  int number = 1, count = 1;
+
+  [[nodiscard]] bool contains(std::size_t view) const { return view % std::size_t(count) == std::size_t(number - 1); }
+};
+
 /// How to run.
 struct RunSettings {
   std::optional<Method> method;  ///< none: the z-buffer, and the A-buffer for pictures that need it
@@ -124,6 +131,7 @@ struct RunSettings {
   std::optional<double> timeout;
   bool json = false, quiet = false, stream = false;
   std::optional<std::string> batch;
+  std::optional<Shard> shard;  ///< of the batch
 };
 
 /// What frontmost precision is to work out.
@@ -220,6 +228,8 @@ struct Settings {
   VisibleSettings visible;
   OutputSettings output;
   RunSettings run;
+  std::optional<std::string> merge_folder;  ///< of `batch-merge`
+  std::uint64_t said = 0;                   ///< a hash of all options that may change a result, as they were given
 };
 
 }  // namespace frontmost::cli

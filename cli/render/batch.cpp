@@ -135,7 +135,7 @@ void refuse_nul(const JsonPlace& place, const std::string& text) {
 void apply_at(const JsonPlace& place, const Option& option, const std::string& text, Settings& settings) {
   refuse_nul(place, text);
   try {
-    option.apply(settings, {text, option.choices()});
+    apply_as_given(option, text, settings);
   } catch (const UsageError& error) {
     place.refuse(error.what());
   }

@@ -10,6 +10,7 @@
 #include "cli/failure.h"
 #include "cli/render/output_writer.h"
 #include "cli/render/render_view.h"
+#include "cli/render/shard.h"
 #include "cli/view/view_options.h"
 
 namespace frontmost::cli {
@@ -59,7 +60,7 @@ Job make_job(const Settings& settings) {
   check_format(settings.output);
   if (settings.run.stream && settings.view.depth.is_used)
     throw UsageError("--stream draws with the default depth test; it excludes the options of a depth buffer");
-  Job job{view_name(settings.view), settings.view, settings.output, {}, {}, {}, {}, {}};
+  Job job{view_name(settings.view), 0, settings.said, settings.view, settings.output, {}, {}, {}, {}, {}};
   const std::string model = model_name(settings.model);
   take_figures(settings, model, job);
   for (FileToWrite& file : plan_outputs(job.output, model, job.name))
@@ -87,7 +88,8 @@ Job make_job(const Settings& settings) {
 }
 
 void check_files(const std::vector<Job>& jobs, const Settings& settings) {
-  const std::vector<std::string> paths = output_paths(jobs);
+  std::vector<std::string> paths = output_paths(jobs);
+  if (settings.run.shard) paths.push_back(manifest_path(settings));
   std::vector<std::string> references;
   InputFiles inputs = input_files(settings);
   for (const Job& job : jobs) {
@@ -122,6 +124,7 @@ std::vector<Job> plan_jobs(const Settings& settings) {
     for (const Settings& one : read_batch(*settings.run.batch, settings)) {
       try {
         jobs.push_back(make_job(one));
+        jobs.back().number = jobs.size() - 1;
       } catch (const UsageError& error) {
         throw UsageError(fmt::format("{}: views[{}]: {}", *settings.run.batch, jobs.size(), error.what()));
       }
@@ -129,6 +132,7 @@ std::vector<Job> plan_jobs(const Settings& settings) {
   } else {
     jobs.push_back(make_job(settings));
   }
+  check_shard(settings, jobs);
   check_files(jobs, settings);
   return jobs;
 }

@@ -20,7 +20,9 @@ namespace frontmost::cli {
 
 /// One view, ready to be rendered.
 struct Job {
-  std::string name;  ///< {view}
+  std::string name;        ///< {view}
+  std::size_t number = 0;  ///< in the batch file, from 0
+  std::uint64_t said = 0;  ///< as in Settings
   ViewSettings view;
   OutputSettings output;
   std::vector<FileToWrite> files, layer_files;  ///< of what is nearest, or of all; of single layers

@@ -127,7 +127,7 @@ bool has_only_figures(const std::vector<ViewResult>& views) {
 /// That of the picture.
 std::string_view method_name(const Settings& settings, const ModelFacts& model, const std::vector<ViewResult>& views) {
   const auto is_pinhole = [](const ViewResult& view) { return view.camera_model == CameraModel::pinhole; };
-  if (std::none_of(views.begin(), views.end(), is_pinhole)) return "raycast";
+  if (!views.empty() && std::none_of(views.begin(), views.end(), is_pinhole)) return "raycast";
   if (has_only_figures(views)) return "painter";
   constexpr std::string_view names[] = {"zbuffer", "raycast", "abuffer"};
   const bool is_seen_through = model.lets_light_through && !settings.view.depth.is_used;
@@ -148,6 +148,7 @@ Json render_json(const Settings& settings, const ModelFacts& model, const std::v
   if (model.passes) json["stream_passes"] = *model.passes;
   Json times = {{"load", timings.load}, {"surfaces", timings.surfaces}};
   if (timings.index) times["index"] = *timings.index;
+  if (model.finished_before) json["finished_before"] = *model.finished_before;
   if (settings.run.batch) {
     json["views"] = Json::array();
     for (std::size_t i = 0; i < views.size(); ++i) {

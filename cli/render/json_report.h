@@ -27,10 +27,11 @@ struct RunTimings {
 struct ModelFacts {
   std::uint64_t triangles = 0;
   const std::vector<std::string>& warnings;
-  bool lets_light_through = false;           ///< some of its materials are blended
-  std::optional<int> passes = std::nullopt;  ///< over a stream
-  glm::dvec3 origin{0};                      ///< of the scene
-  std::size_t lights = 0;                    ///< the scene's own
+  bool lets_light_through = false;                            ///< some of its materials are blended
+  std::optional<int> passes = std::nullopt;                   ///< over a stream
+  glm::dvec3 origin{0};                                       ///< of the scene
+  std::size_t lights = 0;                                     ///< the scene's own
+  std::optional<std::size_t> finished_before = std::nullopt;  ///< views of a shard
 };
 
 /// With one view, its facts stand at the top; with a batch, under "views". There is a job for each view.

@@ -14,6 +14,7 @@
 #include "cli/render/output_writer.h"
 #include "cli/render/render_curved.h"
 #include "cli/render/render_view.h"
+#include "cli/render/shard.h"
 #include "cli/stopwatch.h"
 #include "cli/view/view_options.h"
 
@@ -80,6 +81,18 @@ struct Run {
   std::vector<Job> jobs;
   bool on_terminal = false;
   Stopwatch whole;
+  std::optional<ShardRun> shard{};
+
+  /// Leaves what is to be done of the shard. `used` are the files of the model.
+  void choose_jobs(const std::vector<std::filesystem::path>& used) {
+    if (!settings.run.shard) return;
+    shard.emplace(settings, jobs, used);
+    jobs = shard->remaining(std::move(jobs));
+  }
+  [[nodiscard]] std::optional<std::size_t> finished_before() const {
+    if (!shard) return std::nullopt;
+    return shard->finished_count();
+  }
 };
 
 /// Whether the z-buffer draws the model so often, shadows aside, that clusters had better be there from the beginning.
@@ -111,8 +124,9 @@ std::optional<std::string> lights_warning(const Scene& scene, const Job& job) {
 
 /// Renders every job by `render`, and tells of each.
 template <class Render>
-std::vector<ViewResult> render_all(const std::vector<Job>& jobs, const Settings& settings, Progress& progress,
-                                   const Render& render) {
+std::vector<ViewResult> render_all(const Run& run, Progress& progress, const Render& render) {
+  const std::vector<Job>& jobs = run.jobs;
+  const Settings& settings = run.settings;
   std::vector<ViewResult> results;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     if (jobs.size() > 1) progress.set_prefix(fmt::format("view {} of {}: ", i + 1, jobs.size()));
@@ -122,6 +136,7 @@ std::vector<ViewResult> render_all(const std::vector<Job>& jobs, const Settings&
       if (!settings.run.batch || names_culprit(error.what())) throw;
       throw Error(error.code(), fmt::format("{}: view {}: {}", *settings.run.batch, jobs[i].name, error.what()));
     }
+    if (run.shard) run.shard->note(jobs[i]);
     tell(results.back(), settings, progress);
     results.back().picture.reset();
     stop_if_interrupted();
@@ -162,6 +177,7 @@ int render_whole(Run& run) {
   Stopwatch watch;
   const Scene scene = load_model(settings, execution, progress, output_paths(run.jobs));
   timings.load = watch.milliseconds();
+  run.choose_jobs(scene.source.files);
   watch = {};
   const Surfaces surfaces(scene, execution);
   const std::vector<std::string> warnings = model_warnings(run.jobs, surfaces, settings.run, progress);
@@ -175,7 +191,7 @@ int render_whole(Run& run) {
   SharedBuffers buffers;
   Shader shader(surfaces);
   Environments environments;
-  const std::vector<ViewResult> results = render_all(run.jobs, settings, progress, [&](const Job& job) {
+  const std::vector<ViewResult> results = render_all(run, progress, [&](const Job& job) {
     const bool is_met = meets_curved(job, settings.run, scene);
     RenderContext context{surfaces, shader, environments, settings.run, execution, run.on_terminal};
     context.by_rays = settings.run.method == Method::raycast;
@@ -189,12 +205,12 @@ int render_whole(Run& run) {
   timings.total = run.whole.milliseconds();
   report(settings,
          {surfaces.primitive_count(), warnings, lets_light_through(scene), std::nullopt, scene.origin,
-          scene.lights.size()},
+          scene.lights.size(), run.finished_before()},
          run.jobs, results, timings);
   return status_of(results);
 }
 
-int render_stream(const Run& run) {
+int render_stream(Run& run) {
   const Settings& settings = run.settings;
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
@@ -206,17 +222,20 @@ int render_stream(const Run& run) {
   options.load = settings.load;
   Stream stream(models, options, execution);
   refuse_outputs_beside(stream.scene().source.files, output_paths(run.jobs));
+  run.choose_jobs(stream.scene().source.files);
   timings.load = watch.milliseconds();
   Environments environments;
   bool is_first = true;
-  const std::vector<ViewResult> results = render_all(run.jobs, settings, progress, [&](const Job& job) {
+  const std::vector<ViewResult> results = render_all(run, progress, [&](const Job& job) {
     ViewResult result = render_streamed_view(job, stream, {environments, settings.run, execution, run.on_terminal});
     // They are known now, and stand before what there is to say of the view, as without --stream.
     if (std::exchange(is_first, false)) show_warnings(stream.scene().warnings, settings.run, progress);
     return result;
   });
   timings.total = run.whole.milliseconds();
-  report(settings, {stream.triangle_count(), stream.scene().warnings, false, stream.passes(), stream.scene().origin},
+  report(settings,
+         {stream.triangle_count(), stream.scene().warnings, false, stream.passes(), stream.scene().origin, 0,
+          run.finished_before()},
          run.jobs, results, timings);
   return status_of(results);
 }
@@ -227,7 +246,7 @@ int run_render(const Settings& settings) {
   if (settings.run.stream && settings.run.repeat > 1) throw UsageError("--stream and --repeat exclude each other");
   if (settings.run.stream && settings.run.method.value_or(Method::zbuffer) != Method::zbuffer)
     throw UsageError("--stream draws with --method zbuffer only");
-  Run run{settings, plan_jobs(settings), false, {}};
+  Run run{settings, plan_jobs(settings), false, {}, {}};
   check_method(settings, run.jobs);
   run.on_terminal = shows_on_terminal(settings, run.jobs);
   read_references(run.jobs);

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// frontmost batch-merge: whether the shards of a batch make all of it, and all of it in one folder.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/failure.h"
+#include "cli/json.h"
+#include "cli/option.h"
+#include "cli/render/manifest.h"
+#include "cli/staged_folder.h"
+
+namespace frontmost::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Option batch_merge_options[] = {
+    {"output", 'o', "FOLDER", "Copy all files and one manifest into this folder; made where it is not there.",
+     Group::output, for_batch_merge, [](Settings& s, const Given& g) { s.merge_folder = g.file_name(); }},
+};
+
+/// A manifest and where it lies.
+struct ShardPart {
+  std::string path, folder;
+  Manifest manifest;
+};
+
+/// A view and the folder that its files are in.
+struct FinishedSource {
+  FinishedView view;
+  std::string folder;
+};
+
+struct Merged {
+  std::vector<FinishedSource> views;  ///< all, in the order of the batch
+  std::uint64_t file_count = 0, bytes = 0;
+};
+
+void add_part(const fs::path& path, std::vector<ShardPart>& parts) {
+  const fs::path folder = path.parent_path();
+  parts.push_back({path.string(), folder.empty() ? "." : folder.string(), read_manifest(path.string())});
+}
+
+/// Folders, and manifests by name. In the order of their names, so that messages do not depend on the file system.
+std::vector<ShardPart> find_parts(const std::vector<std::string>& places) {
+  std::vector<ShardPart> parts;
+  for (const std::string& place : places) {
+    std::error_code error;
+    if (!fs::is_directory(place, error)) {
+      add_part(place, parts);
+      continue;
+    }
+    std::vector<fs::path> found;
+    for (fs::directory_iterator at(place, error), end; !error && at != end; at.increment(error))
+      if (stem_of_manifest(at->path().filename().string())) found.push_back(at->path());
+    if (error) throw Error(ErrorCode::file_unreadable, fmt::format("{}: cannot read: {}", place, error.message()));
+    if (found.empty()) throw Error(ErrorCode::file_unreadable, place + ": there is no manifest of a batch");
+    std::sort(found.begin(), found.end());
+    for (const fs::path& path : found) add_part(path, parts);
+  }
+  return parts;
+}
+
+[[noreturn]] void refuse_missing(const std::vector<std::string>& missing, std::size_t count) {
+  constexpr std::size_t named = 5;
+  const std::vector<std::string> first(missing.begin(),
+                                       missing.begin() + std::ptrdiff_t(std::min(named, missing.size())));
+  const std::string more = missing.size() > named ? fmt::format(" and {} more", missing.size() - named) : "";
+  throw Error(ErrorCode::file_unreadable, fmt::format("{} of {} views are not finished: {}{}", missing.size(), count,
+                                                      fmt::join(first, ", "), more));
+}
+
+/// Each view once, its files looked at.
+Merged merge_parts(std::vector<ShardPart>& parts) {
+  const Manifest& first = parts.front().manifest;
+  Merged merged;
+  std::vector<bool> has(first.view_count);
+  std::vector<std::string> missing;
+  for (ShardPart& part : parts) {
+    if (part.manifest.batch != first.batch || part.manifest.view_count != first.view_count)
+      throw Error(ErrorCode::file_malformed, fmt::format("{}: of another model, batch file, options or version than {}",
+                                                         part.path, parts.front().path));
+    for (FinishedView& view : part.manifest.finished) {
+      if (view.number >= has.size() || has[view.number]) continue;
+      stop_if_interrupted();
+      if (const auto changed = changed_file(view, part.folder))
+        throw Error(ErrorCode::file_malformed,
+                    fmt::format("{}: is not what {} says that it is; repeat that shard", *changed, part.path));
+      has[view.number] = true;
+      for (const FinishedFile& file : view.files) ++merged.file_count, merged.bytes += file.hash.bytes;
+      merged.views.push_back({std::move(view), part.folder});
+    }
+  }
+  for (std::size_t i = 0; i < has.size(); ++i)
+    if (!has[i]) missing.push_back(fmt::format("views[{}]", i));
+  if (!missing.empty()) refuse_missing(missing, has.size());
+  std::sort(merged.views.begin(), merged.views.end(),
+            [](const FinishedSource& a, const FinishedSource& b) { return a.view.number < b.view.number; });
+  return merged;
+}
+
+/// A name that leads nowhere else than into the folder.
+bool stays_within(const std::string& path) {
+  const fs::path normal = fs::path(path).lexically_normal();
+  return !normal.empty() && !normal.is_absolute() && *normal.begin() != "..";
+}
+
+void copy_file(const FinishedFile& file, const std::string& folder, const StagedFolder& staged) {
+  if (!stays_within(file.path))
+    throw Error(ErrorCode::unsupported,
+                fmt::format("{}: lies outside of the folder of its manifest; leave --output away", file.path));
+  const fs::path from = fs::path(folder) / file.path, to = staged.path(file.path);
+  std::error_code error;
+  fs::create_directories(to.parent_path(), error);
+  fs::copy_file(from, to, error);
+  if (error)
+    throw Error(ErrorCode::file_unwritable, fmt::format("{}: cannot copy: {}", from.string(), error.message()));
+  if (hash_of_file(to.string()) != file.hash)
+    throw Error(ErrorCode::file_malformed, from.string() + ": changed while it was copied");
+}
+
+/// The manifest comes last: it says that the rest is there.
+void gather(const Merged& merged, const Manifest& like, const std::string& stem, const std::string& folder) {
+  const WritingFiles writing;
+  const MadeFolder made(folder);
+  const StagedFolder staged(folder);
+  Manifest whole{like.batch, like.view_count, {1, 1}, {}};
+  std::vector<std::string> names;
+  for (const FinishedSource& source : merged.views) {
+    for (const FinishedFile& file : source.view.files) {
+      stop_if_interrupted();
+      copy_file(file, source.folder, staged);
+      names.push_back(file.path);
+    }
+    whole.finished.push_back(source.view);
+  }
+  names.push_back(manifest_name(stem, whole.shard));
+  write_manifest(whole, staged.path(names.back()));
+  for (const std::string& name : names) fs::create_directories((fs::path(folder) / name).parent_path());
+  staged.commit(names);
+}
+
+}  // namespace
+
+std::span<const Option> batch_merge_option_table() { return batch_merge_options; }
+
+int run_batch_merge(const Settings& settings) {
+  std::vector<std::string> places = {settings.model};
+  places.insert(places.end(), settings.more_models.begin(), settings.more_models.end());
+  std::vector<ShardPart> parts = find_parts(places);
+  const Merged merged = merge_parts(parts);
+  if (settings.merge_folder) {
+    const std::string file_name = fs::path(parts.front().path).filename().string();
+    gather(merged, parts.front().manifest, stem_of_manifest(file_name).value_or(file_name), *settings.merge_folder);
+  }
+  if (settings.run.json) {
+    Json manifests = Json::array();
+    for (const ShardPart& part : parts) manifests.push_back(part.path);
+    print(dump({{"views", merged.views.size()},
+                {"files", merged.file_count},
+                {"bytes", merged.bytes},
+                {"manifests", std::move(manifests)}}));
+  } else if (!settings.run.quiet) {
+    print(fmt::format("{} views, {} files, {} bytes: all there\n", grouped(merged.views.size()),
+                      grouped(merged.file_count), grouped(merged.bytes)));
+  }
+  return exit_done;
+}
+
+}  // namespace frontmost::cli
