@@ -83,4 +83,4 @@ if(TARGET frontmost_cli)
 endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
 install(FILES README.md CHANGELOG.md docs/batch.md docs/command-line.md docs/conventions.md docs/drawings.md docs/formats.md
-  docs/many-machines.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+  docs/many-machines.md docs/python.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)

@@ -101,4 +101,5 @@ def main():
         run(arguments.program, arguments.frontmost)
 
 
-main()
+if __name__ == "__main__":
+    main()

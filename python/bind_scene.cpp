@@ -1,0 +1,415 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes: read, made of arrays, looked into, and written.
+#include <frontmost/io.h>
+#include <frontmost/model_file.h>
+#include <pybind11/stl.h>
+
+#include <cmath>
+#include <cstring>
+#include <shared_mutex>
+
+#include "python/arrays.h"
+#include "python/bindings.h"
+#include "python/held.h"
+#include "python/running.h"
+#include "python/words.h"
+
+FRONTMOST_WORDS(frontmost::Axis, "up",
+                {{frontmost::Axis::x, "x"},
+                 {frontmost::Axis::y, "y"},
+                 {frontmost::Axis::z, "z"},
+                 {frontmost::Axis::minus_x, "-x"},
+                 {frontmost::Axis::minus_y, "-y"},
+                 {frontmost::Axis::minus_z, "-z"}});
+FRONTMOST_WORDS(frontmost::ModelFormat, "format",
+                {{frontmost::ModelFormat::stl, "stl"},
+                 {frontmost::ModelFormat::ply, "ply"},
+                 {frontmost::ModelFormat::obj, "obj"},
+                 {frontmost::ModelFormat::off, "off"},
+                 {frontmost::ModelFormat::gltf, "gltf"},
+                 {frontmost::ModelFormat::threemf, "3mf"},
+                 {frontmost::ModelFormat::scene, "scene"}});
+
+namespace frontmost::python {
+namespace {
+
+using namespace py::literals;
+
+/// One of a scene's objects or meshes, for looking at: it keeps the scene.
+struct HeldObject {
+  std::shared_ptr<const KeptScene> scene;
+  std::uint32_t number;
+  [[nodiscard]] const Instance& get() const { return scene->instances[number]; }
+};
+struct HeldMesh {
+  std::shared_ptr<const KeptScene> scene;
+  std::uint32_t number;
+  [[nodiscard]] const Mesh& get() const { return scene->meshes[number]; }
+};
+
+/// Where an object is, in the coordinates of the file.
+Array<double> pose_of_object(const HeldObject& object) {
+  return array_of(run(1, py::none(), [&](const Execution&) {
+    const std::shared_lock lock(object.scene->reading);
+    glm::dmat4 pose = object.get().world_from_mesh;
+    pose[3] += glm::dvec4(object.scene->origin, 0);
+    return pose;
+  }));
+}
+
+/// What makes an object of arrays, as arguments.
+struct ObjectArrays {
+  py::object vertices, faces, name, pose, color, vertex_colors, face_colors, normals, texcoords, texture;
+};
+
+// Colours.
+
+float linear_of_srgb(double srgb) {
+  return float(srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4));
+}
+
+/// Rows of linear RGBA from integers (sRGB, 0 to 255) or floats (linear) in three or four channels.
+std::vector<glm::vec4> colors_of(const py::handle& given, const std::string& name, py::ssize_t rows) {
+  const py::array array = py::array::ensure(given);
+  const bool is_bytes = array && (array.dtype().kind() == 'u' || array.dtype().kind() == 'i');
+  const bool has_alpha = array && array.ndim() == 2 && array.shape(1) == 4;
+  const auto values = numbers<float>(given, name, {rows, has_alpha ? 4 : 3});
+  float linear[256];
+  for (int i = 0; i < 256; ++i) linear[i] = linear_of_srgb(i / 255.0);
+  std::vector<glm::vec4> colors(std::size_t(values.shape(0)), glm::vec4(1));
+  for (py::ssize_t row = 0; row < values.shape(0); ++row)
+    for (int i = 0; i < (has_alpha ? 4 : 3); ++i) {
+      const float value = *values.data(row, i);
+      if (!(value >= 0 && value <= (is_bytes ? 255.0f : 1.0f)))
+        throw py::value_error(name + ": row " + std::to_string(row) + " is not within " +
+                              (is_bytes ? "0 to 255" : "0 to 1, as floats are"));
+      colors[std::size_t(row)][i] = !is_bytes ? value : i == 3 ? value / 255 : linear[int(value)];
+    }
+  return colors;
+}
+
+glm::vec4 color_of(const py::handle& given) {
+  return colors_of(py::module_::import("numpy").attr("atleast_2d")(given), "color", 1)[0];
+}
+
+Texture texture_of(const py::handle& given) {
+  const py::array array = py::array::ensure(given);
+  if (!array || array.ndim() != 3 || (array.shape(2) != 3 && array.shape(2) != 4) || array.dtype().kind() != 'u' ||
+      array.itemsize() != 1 || array.size() == 0)
+    throw py::value_error("texture: must be of uint8 with the shape (height, width, 3 or 4)");
+  if (array.shape(0) > 16384 || array.shape(1) > 16384)
+    throw py::value_error("texture: has more than 16384 pixels a side");
+  const auto pixels = Array<std::uint8_t>::ensure(array);
+  Texture texture;
+  texture.height = int(array.shape(0));
+  texture.width = int(array.shape(1));
+  texture.pixels.assign(std::size_t(texture.width) * std::size_t(texture.height), glm::u8vec4(255));
+  const int channels = int(array.shape(2));
+  for (std::size_t i = 0; i < texture.pixels.size(); ++i)
+    for (int c = 0; c < channels; ++c) texture.pixels[i][c] = pixels.data()[i * std::size_t(channels) + std::size_t(c)];
+  return texture;
+}
+
+// Objects.
+
+/// Where doubles far from zero are told from: rounded, so that what is left is exact.
+glm::dvec3 offset_of(const Array<double>& vertices) {
+  glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+  const double* const in = vertices.data();
+  for (py::ssize_t i = 0; i < vertices.shape(0); ++i) {
+    const glm::dvec3 at(in[3 * i], in[3 * i + 1], in[3 * i + 2]);
+    if (!is_finite(at)) continue;
+    low = glm::min(low, at);
+    high = glm::max(high, at);
+  }
+  glm::dvec3 offset(0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double middle = (low[axis] + high[axis]) / 2, size = high[axis] - low[axis];
+    if (std::abs(middle) > 4 * size && std::abs(middle) < 1e15) offset[axis] = std::round(middle);
+  }
+  return offset;
+}
+
+/// Sets the positions, from floats as they are. \returns where their zero is, which is another of doubles far from it.
+glm::dvec3 set_positions(Mesh& mesh, const py::handle& given) {
+  const py::array array = py::array::ensure(given);
+  const bool is_double = array && (array.dtype().kind() != 'f' || array.itemsize() > 4);
+  const auto copy = [&](const auto& values, const glm::dvec3& offset) {
+    mesh.positions.resize(std::size_t(values.shape(0)));
+    const auto* const in = values.data();
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+      for (int axis = 0; axis < 3; ++axis)
+        mesh.positions[i][axis] = float(in[3 * i + std::size_t(axis)] - offset[axis]);
+  };
+  if (!is_double) {
+    const auto values = numbers<float>(given, "vertices", {-1, 3});
+    mesh.positions.resize(std::size_t(values.shape(0)));
+    if (values.size() > 0) std::memcpy(mesh.positions.data(), values.data(), std::size_t(values.nbytes()));
+    return glm::dvec3(0);
+  }
+  const auto values = numbers<double>(given, "vertices", {-1, 3});
+  const glm::dvec3 offset = offset_of(values);
+  copy(values, offset);
+  return offset;
+}
+
+template <class T>
+void set_triples(std::vector<T>& out, const py::array& values) {
+  out.resize(std::size_t(values.shape(0)));
+  if (!out.empty()) std::memcpy(out.data(), values.data(), std::size_t(values.nbytes()));
+}
+
+void set_attributes(Mesh& mesh, const ObjectArrays& given) {
+  const auto vertices = py::ssize_t(mesh.positions.size()), triangles = py::ssize_t(mesh.triangles.size());
+  if (!given.normals.is_none())
+    set_triples(mesh.normals.values, numbers<float>(given.normals, "normals", {vertices, 3}));
+  if (!given.texcoords.is_none())
+    set_triples(mesh.texcoords.values, numbers<float>(given.texcoords, "texcoords", {vertices, 2}));
+  if (!given.vertex_colors.is_none() && !given.face_colors.is_none())
+    throw py::value_error("face_colors: cannot be given beside vertex_colors");
+  if (!given.vertex_colors.is_none()) mesh.colors.values = colors_of(given.vertex_colors, "vertex_colors", vertices);
+  if (given.face_colors.is_none()) return;
+  mesh.colors.values = colors_of(given.face_colors, "face_colors", triangles);
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) mesh.colors.triangles.emplace_back(i);
+}
+
+/// Adds an object, with its material where it needs one. Nothing is changed where an argument is refused.
+std::uint32_t add_object(HeldScene& held, const ObjectArrays& given) {
+  Mesh mesh;
+  const glm::dvec3 offset = set_positions(mesh, given.vertices);
+  set_triples(mesh.triangles, indices(given.faces, "faces", {-1, 3}, mesh.positions.size()));
+  set_attributes(mesh, given);
+  const std::size_t number = held.scene->instances.size();
+  mesh.name = given.name.is_none() ? "object " + std::to_string(number) : py::cast<std::string>(given.name);
+  glm::dmat4 pose = given.pose.is_none() ? glm::dmat4(1.0) : matrix(given.pose, "pose");
+  pose[3] += glm::dvec4(glm::dmat3(pose) * offset - held.scene->origin, 0);
+
+  std::optional<Material> material;
+  if (!given.color.is_none()) material.emplace().base_color = color_of(given.color);
+  if (material && material->base_color.a < 1) material->alpha = Material::Alpha::blend;
+  std::optional<Texture> texture;
+  if (!given.texture.is_none()) {
+    if (mesh.texcoords.empty()) throw py::value_error("texture: needs texcoords");
+    texture = texture_of(given.texture);
+    if (!material) material.emplace();
+  }
+  Scene& scene = held.writable();
+  if (texture) {
+    material->base_color_texture.texture = std::uint32_t(scene.textures.size());
+    scene.textures.push_back(std::move(*texture));
+  }
+  if (material) {
+    material->name = mesh.name;
+    mesh.material_ids = {std::uint32_t(scene.materials.size())};
+    scene.materials.push_back(std::move(*material));
+  }
+  return add(scene, std::move(mesh), pose);
+}
+
+HeldScene scene_of_arrays(const ObjectArrays& given) {
+  HeldScene held;
+  add_object(held, given);
+  held.scene->name = held.scene->instances[0].name;
+  set_origin(*held.scene, fitting_origin(*held.scene));
+  return held;
+}
+
+std::uint32_t place(HeldScene& held, const py::object& mesh, const py::object& pose, const py::object& name) {
+  if (!PyIndex_Check(mesh.ptr())) throw py::type_error("mesh: must be a number");
+  const Py_ssize_t number = PyNumber_AsSsize_t(mesh.ptr(), nullptr);
+  if (number < 0 || std::size_t(number) >= held.scene->meshes.size())
+    throw py::value_error("mesh: there is no mesh " + std::to_string(number) + " of " +
+                          std::to_string(held.scene->meshes.size()));
+  glm::dmat4 placed = pose.is_none() ? glm::dmat4(1.0) : matrix(pose, "pose");
+  placed[3] -= glm::dvec4(held.scene->origin, 0);
+  Scene& scene = held.writable();
+  Instance instance;
+  instance.name = name.is_none() ? scene.meshes[std::size_t(number)].name : py::cast<std::string>(name);
+  instance.mesh = std::uint32_t(number);
+  instance.world_from_mesh = placed;
+  scene.instances.push_back(std::move(instance));
+  return std::uint32_t(scene.instances.size() - 1);
+}
+
+// Reading.
+
+HeldScene load_scene(const py::object& source, const std::string& name, const std::optional<Axis>& up,
+                     const std::optional<ModelFormat>& format, int threads, const py::object& progress) {
+  LoadOptions options;
+  options.up = up;
+  options.format = format;
+  if (py::isinstance<py::bytes>(source)) {
+    const std::string_view bytes = py::cast<std::string_view>(source);
+    return HeldScene(run(threads, progress, [&](const Execution& execution) {
+      return load(std::as_bytes(std::span(bytes)), name, options, execution);
+    }));
+  }
+  const auto path = py::cast<std::string>(py::module_::import("os").attr("fspath")(source));
+  return HeldScene(run(threads, progress, [&](const Execution& execution) { return load(path, options, execution); }));
+}
+
+std::string described(const Scene& scene) {
+  return "Scene '" + printable_text(scene.name) + "': " + std::to_string(scene.instances.size()) + " objects, " +
+         std::to_string(triangle_count(scene)) + " triangles";
+}
+
+/// A plane of a mesh as an array that keeps the scene; none where the mesh has no such thing.
+template <class T, class Element>
+py::object rows_of(const HeldMesh& mesh, const std::vector<Element>& values) {
+  if (values.empty()) return py::none();
+  const auto across = py::ssize_t(sizeof(Element) / sizeof(T));
+  ArrayShape shape{py::ssize_t(values.size())};
+  if (across > 1) shape.push_back(across);
+  return view_of(reinterpret_cast<const T*>(values.data()), shape, mesh.scene);
+}
+
+void bind_parts(py::module_& m) {
+  py::class_<HeldObject>(m, "Object", doc("Object"))
+      .def_property_readonly(
+          "number", [](const HeldObject& o) { return o.number; }, doc("Object.number"))
+      .def_property_readonly(
+          "name", [](const HeldObject& o) { return utf8_text(o.get().name); }, doc("Object.name"))
+      .def_property_readonly(
+          "mesh", [](const HeldObject& o) { return o.get().mesh; }, doc("Object.mesh"))
+      .def_property_readonly("pose", &pose_of_object, doc("Object.pose"))
+      .def_property_readonly(
+          "category",
+          [](const HeldObject& o) -> py::object {
+            if (o.get().category == no_index) return py::none();
+            return py::str(utf8_text(o.scene->categories[o.get().category].name));
+          },
+          doc("Object.category"))
+      .def("__repr__", [](const HeldObject& o) {
+        return "Object " + std::to_string(o.number) + " '" + printable_text(o.get().name) + "'";
+      });
+  py::class_<HeldMesh>(m, "Mesh", doc("Mesh"))
+      .def_property_readonly(
+          "name", [](const HeldMesh& h) { return utf8_text(h.get().name); }, doc("Mesh.name"))
+      .def_property_readonly(
+          "vertices",
+          [](const HeldMesh& h) {
+            const std::vector<glm::vec3>& values = h.get().positions;
+            return view_of(&values.data()->x, {py::ssize_t(values.size()), 3}, h.scene);
+          },
+          doc("Mesh.vertices"))
+      .def_property_readonly(
+          "faces",
+          [](const HeldMesh& h) {
+            const std::vector<glm::uvec3>& values = h.get().triangles;
+            return view_of(&values.data()->x, {py::ssize_t(values.size()), 3}, h.scene);
+          },
+          doc("Mesh.faces"))
+      .def_property_readonly(
+          "normals", [](const HeldMesh& h) { return rows_of<float>(h, h.get().normals.values); }, doc("Mesh.normals"))
+      .def_property_readonly(
+          "texcoords", [](const HeldMesh& h) { return rows_of<float>(h, h.get().texcoords.values); },
+          doc("Mesh.texcoords"))
+      .def_property_readonly(
+          "colors", [](const HeldMesh& h) { return rows_of<float>(h, h.get().colors.values); }, doc("Mesh.colors"))
+      .def_property_readonly(
+          "face_ids", [](const HeldMesh& h) { return rows_of<std::uint32_t>(h, h.get().face_ids); },
+          doc("Mesh.face_ids"))
+      .def("__repr__", [](const HeldMesh& h) {
+        return "Mesh '" + printable_text(h.get().name) + "': " + std::to_string(h.get().positions.size()) +
+               " vertices, " + std::to_string(h.get().triangles.size()) + " triangles";
+      });
+}
+
+template <class Held>
+py::list listed(const HeldScene& held, std::size_t count) {
+  py::list list;
+  for (std::uint32_t i = 0; i < count; ++i) list.append(Held{held.scene, i});
+  return list;
+}
+
+void bind_making(py::class_<HeldScene>& scene) {
+  scene.def(py::init<>())
+      .def_static(
+          "from_arrays",
+          [](py::object vertices, py::object faces, py::object name, py::object pose, py::object color,
+             py::object vertex_colors, py::object face_colors, py::object normals, py::object texcoords,
+             py::object texture) {
+            return scene_of_arrays(
+                {vertices, faces, name, pose, color, vertex_colors, face_colors, normals, texcoords, texture});
+          },
+          "vertices"_a, "faces"_a, py::kw_only(), "name"_a = py::none(), "pose"_a = py::none(), "color"_a = py::none(),
+          "vertex_colors"_a = py::none(), "face_colors"_a = py::none(), "normals"_a = py::none(),
+          "texcoords"_a = py::none(), "texture"_a = py::none(), doc("Scene.from_arrays"))
+      .def(
+          "add",
+          [](HeldScene& held, py::object vertices, py::object faces, py::object name, py::object pose, py::object color,
+             py::object vertex_colors, py::object face_colors, py::object normals, py::object texcoords,
+             py::object texture) {
+            return add_object(
+                held, {vertices, faces, name, pose, color, vertex_colors, face_colors, normals, texcoords, texture});
+          },
+          "vertices"_a, "faces"_a, py::kw_only(), "name"_a = py::none(), "pose"_a = py::none(), "color"_a = py::none(),
+          "vertex_colors"_a = py::none(), "face_colors"_a = py::none(), "normals"_a = py::none(),
+          "texcoords"_a = py::none(), "texture"_a = py::none(), doc("Scene.add"))
+      .def("place", &place, "mesh"_a, "pose"_a = py::none(), py::kw_only(), "name"_a = py::none(), doc("Scene.place"))
+      .def(
+          "add_scene", [](HeldScene& held, const HeldScene& part) { add(held.writable(), Scene(*part.scene)); },
+          "part"_a, doc("Scene.add_scene"))
+      .def(
+          "copy", [](const HeldScene& held) { return HeldScene(Scene(*held.scene)); }, doc("Scene.copy"))
+      .def(
+          "save",
+          [](const HeldScene& held, const py::object& path) {
+            const auto text = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
+            const std::shared_ptr<const KeptScene> kept = held.scene;
+            run(0, py::none(), [&](const Execution&) { save(*kept, text); });
+          },
+          "path"_a, doc("Scene.save"));
+}
+
+}  // namespace
+
+void bind_scene(py::module_& m) {
+  bind_parts(m);
+  py::class_<HeldScene> scene(m, "Scene", doc("Scene"));
+  bind_making(scene);
+  scene
+      .def_property(
+          "name", [](const HeldScene& held) { return utf8_text(held.scene->name); },
+          [](HeldScene& held, std::string name) { held.writable().name = std::move(name); }, doc("Scene.name"))
+      .def_property(
+          "up", [](const HeldScene& held) { return held.scene->up; },
+          [](HeldScene& held, Axis up) { held.writable().up = up; }, doc("Scene.up"))
+      .def_property_readonly(
+          "origin", [](const HeldScene& held) { return array_of(held.scene->origin); }, doc("Scene.origin"))
+      .def_property_readonly(
+          "objects", [](const HeldScene& held) { return listed<HeldObject>(held, held.scene->instances.size()); },
+          doc("Scene.objects"))
+      .def_property_readonly(
+          "meshes", [](const HeldScene& held) { return listed<HeldMesh>(held, held.scene->meshes.size()); },
+          doc("Scene.meshes"))
+      .def_property_readonly(
+          "triangle_count", [](const HeldScene& held) { return triangle_count(*held.scene); },
+          doc("Scene.triangle_count"))
+      .def_property_readonly(
+          "warnings",
+          [](const HeldScene& held) {
+            py::list list;
+            for (const std::string& warning : held.scene->warnings) list.append(utf8_text(warning));
+            return list;
+          },
+          doc("Scene.warnings"))
+      .def(
+          "find", [](const HeldScene& held, const py::object& name) { return object_of(*held.scene, name); }, "name"_a,
+          doc("Scene.find"))
+      .def("__repr__", [](const HeldScene& held) { return described(*held.scene); });
+  m.def("load", &load_scene, "source"_a, py::kw_only(), "name"_a = "memory", "up"_a = py::none(),
+        "format"_a = py::none(), "threads"_a = 0, "progress"_a = py::none(), doc("load"));
+  m.def(
+      "builtin", [](const std::string& name) { return HeldScene(builtin(name)); }, "name"_a, doc("builtin"));
+  m.def(
+      "builtin_names",
+      [] {
+        py::list names;
+        for (const std::string_view name : builtin_names()) names.append(py::str(name.data(), name.size()));
+        return names;
+      },
+      doc("builtin_names"));
+}
+
+}  // namespace frontmost::python

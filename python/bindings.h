@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the files of the Python module share: one bind_ function for each subject, and the words of the stubs, which are
+// the docstrings too.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace frontmost::python {
+
+namespace py = pybind11;
+
+/// The docstring of a name of the stubs (python/frontmost/__init__.pyi): "load", "View.look_at". Empty for names that
+/// they do not know, which a test finds.
+[[nodiscard]] const char* doc(const char* name);
+
+// One a subject, in bind_<subject>.cpp; in an order in which types are known before others name them.
+void bind_base(py::module_& m);
+void bind_scene(py::module_& m);
+void bind_view(py::module_& m);
+void bind_surfaces(py::module_& m);
+
+}  // namespace frontmost::python

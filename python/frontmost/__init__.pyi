@@ -1,0 +1,310 @@
+# SPDX-License-Identifier: Apache-2.0
+# The types of the package. The docstrings are those of the compiled part as well: make_docstrings.py takes them from
+# here, so help(), docs/python.md and type checkers say the same.
+import os
+from typing import Any, Callable, Literal, Union
+
+import numpy
+from numpy.typing import ArrayLike, NDArray
+
+__version__: str
+
+Progress = Union[None, bool, Callable[[str, float], Any]]
+Path = Union[str, os.PathLike[str]]
+Up = Literal["x", "y", "z", "-x", "-y", "-z"]
+Format = Literal["stl", "ply", "obj", "off", "gltf", "3mf", "scene"]
+Convention = Literal["opencv", "opengl", "opencv_world_to_camera", "opencv_camera_to_world", "opengl_camera_to_world",
+                     "opengl_world_to_camera"]
+PixelRule = Literal["centre_at_integer", "centre_at_half"]
+Culling = Literal["none", "back", "front", "both"]
+Direction = Literal["front", "back", "left", "right", "top", "bottom", "iso", "three_quarter"]
+DepthConvention = Literal["opengl", "gortler", "zero_to_one", "reversed"]
+
+no_primitive: int
+no_index: int
+
+class Error(RuntimeError):
+    """Why the library could not do what it was asked.
+
+    The message names the culprit first: "engine.stl: triangle 41: ...". Arguments of a wrong type are TypeErrors, arrays
+    of a wrong shape and words that are none of the known ones ValueErrors, each with the argument's name.
+    """
+    code: Literal["bad_argument", "file_unreadable", "file_malformed", "file_unwritable", "unsupported", "limit_exceeded",
+                  "singular_camera", "cancelled"]
+    """What kind of failure it is: "file_unreadable", ..."""
+
+class Object:
+    """One of a scene's objects: a mesh at a place."""
+    @property
+    def number(self) -> int:
+        """Its number in the scene, as Visible.object has it."""
+    @property
+    def name(self) -> str:
+        """As the file has it; not always the only one so called."""
+    @property
+    def mesh(self) -> int:
+        """The number of its mesh in Scene.meshes."""
+    @property
+    def pose(self) -> NDArray[numpy.float64]:
+        """4x4: what takes the mesh's points to the world, in the coordinates of the file."""
+    @property
+    def category(self) -> str | None:
+        """What kind of thing it is, where the scene says so."""
+
+class Mesh:
+    """Triangles in a space of their own. Arrays are views of the scene's memory, which they keep; not writable."""
+    @property
+    def name(self) -> str:
+        """As the file has it."""
+    @property
+    def vertices(self) -> NDArray[numpy.float32]:
+        """(n, 3) positions."""
+    @property
+    def faces(self) -> NDArray[numpy.uint32]:
+        """(m, 3) corners of triangles, counter-clockwise from outside: numbers of vertices."""
+    @property
+    def normals(self) -> NDArray[numpy.float32] | None:
+        """(k, 3), of vertices or of corners; None where there are none."""
+    @property
+    def texcoords(self) -> NDArray[numpy.float32] | None:
+        """(k, 2), u to the right and v down from the picture's first row; None where there are none."""
+    @property
+    def colors(self) -> NDArray[numpy.float32] | None:
+        """(k, 4) linear RGBA; None where there are none."""
+    @property
+    def face_ids(self) -> NDArray[numpy.uint32] | None:
+        """(m,) the polygon of the file that each triangle came from; None where each was one."""
+
+class Scene:
+    """Meshes, materials and placed objects.
+
+    What is made of a scene (Surfaces, arrays of meshes) keeps it as it was: a scene that changes afterwards is a copy.
+    """
+    def __init__(self) -> None: ...
+    @staticmethod
+    def from_arrays(vertices: ArrayLike, faces: ArrayLike, *, name: str | None = None, pose: ArrayLike | None = None,
+                    color: ArrayLike | None = None, vertex_colors: ArrayLike | None = None,
+                    face_colors: ArrayLike | None = None, normals: ArrayLike | None = None,
+                    texcoords: ArrayLike | None = None, texture: ArrayLike | None = None) -> Scene:
+        """A scene of one object; add() adds others.
+
+        vertices: (n, 3) of any numbers, kept as float32. float64 that lie far from zero for their size are told from an
+        origin of their own (see Scene.origin), so that nothing is lost. NaN is allowed: triangles that have one are
+        never seen. faces: (m, 3) integers, 0 to n - 1, counter-clockwise from outside. pose: 4x4, or 3x4, that takes
+        vertices to the world. color: 3 or 4 numbers; vertex_colors: (n, 3 or 4); face_colors: (m, 3 or 4); integers are
+        sRGB, 0 to 255, floats linear, 0 to 1. normals: (n, 3). texcoords: (n, 2), v down from the first row of texture:
+        (height, width, 3 or 4) of uint8. All are copied. O(n + m).
+        """
+    def add(self, vertices: ArrayLike, faces: ArrayLike, *, name: str | None = None, pose: ArrayLike | None = None,
+            color: ArrayLike | None = None, vertex_colors: ArrayLike | None = None, face_colors: ArrayLike | None = None,
+            normals: ArrayLike | None = None, texcoords: ArrayLike | None = None,
+            texture: ArrayLike | None = None) -> int:
+        """Adds an object, as from_arrays() makes one. Returns its number."""
+    def place(self, mesh: int, pose: ArrayLike | None = None, *, name: str | None = None) -> int:
+        """Adds an object of a mesh that is there. pose: 4x4, in the coordinates of the file. Returns its number."""
+    def add_scene(self, part: Scene) -> None:
+        """Adds all that another scene holds."""
+    def copy(self) -> Scene:
+        """A scene of its own."""
+    def save(self, path: Path) -> None:
+        """Writes a model: .ply, .stl or .glb, whole or not at all. Raises Error: unsupported, file_unwritable."""
+    name: str
+    """What files made of it are called."""
+    up: Up
+    """Which way is up in the world."""
+    @property
+    def origin(self) -> NDArray[numpy.float64]:
+        """Where the world's zero lies in the coordinates of the file: (0, 0, 0), but for models far from zero.
+
+        Eyes and rays in those coordinates have it taken off first: View.about(scene.origin), points - scene.origin.
+        """
+    @property
+    def objects(self) -> list[Object]:
+        """In the order of their numbers."""
+    @property
+    def meshes(self) -> list[Mesh]:
+        """In the order of their numbers."""
+    @property
+    def triangle_count(self) -> int:
+        """Over all objects."""
+    @property
+    def warnings(self) -> list[str]:
+        """What the reader passed over: "file: place: what"."""
+    def find(self, name: str | int) -> int:
+        """The number of an object. Raises ValueError where none, or several, are so called."""
+
+def load(source: Path | bytes, *, name: str = "memory", up: Up | None = None, format: Format | None = None,
+         threads: int = 0, progress: Progress = None) -> Scene:
+    """Reads a model: STL, PLY, OBJ, OFF, glTF, GLB, 3MF or a scene file; "builtin:NAME"; or the bytes of a file.
+
+    name: what messages call bytes. up, format: None takes the file's. Raises Error with the file, the place and the
+    reason: file_unreadable, file_malformed, unsupported, limit_exceeded.
+    """
+
+def builtin(name: str) -> Scene:
+    """A scene made by code. Raises Error naming the known ones."""
+
+def builtin_names() -> list[str]:
+    """The names that builtin() knows."""
+
+class View:
+    """A camera and a grid of pixels. Never changes; the methods that seem to change one give another.
+
+    Distances are in scene units. samples: 1, 2, 4, 8 or 16 a pixel. culling: which sides of triangles are left out.
+    Raises Error: bad_argument, singular_camera.
+    """
+    @staticmethod
+    def from_intrinsics(K: ArrayLike, width: int, height: int, *, pose: ArrayLike | None = None,
+                        convention: Convention = "opencv", near: float = 0.1, far: float = ...,
+                        pixel_rule: PixelRule = "centre_at_integer", samples: int = 1,
+                        culling: Culling = "none") -> View:
+        """A calibrated camera.
+
+        K: 3x3 without skew, or (fx, fy, cx, cy), in pixels. pose: 4x4 rotation and translation; None: the identity.
+        convention: what the pose means. "opencv" is opencv_world_to_camera (x right, y down, z ahead; [R | t] of
+        calibrations, BOP), "opengl" is opengl_camera_to_world (x right, y up, looks down -z). near, far: distances of
+        the planes beyond which nothing is seen; far may be infinite, as it is by default. pixel_rule: where K has the
+        middle of the first pixel, (0, 0) as OpenCV or (0.5, 0.5).
+        """
+    @staticmethod
+    def look_at(eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0, 1, 0), *, width: int = 640, height: int = 480,
+                fov: float = 30.0, near: float = 0.1, far: float = ..., samples: int = 1,
+                culling: Culling = "none") -> View:
+        """From an eye towards a target. fov: degrees, of the smaller side of the picture."""
+    @staticmethod
+    def orthographic(eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0, 1, 0), *, width: int = 640, height: int = 480,
+                     tall: float = 2.0, near: float = 0.1, far: float = 1000.0, samples: int = 1,
+                     culling: Culling = "none") -> View:
+        """Parallel projection. tall: how much of the scene the height of the picture shows, in scene units."""
+    def placed(self, pose: ArrayLike, convention: Convention = "opencv") -> View:
+        """With this pose."""
+    def looking(self, eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0, 1, 0)) -> View:
+        """At another place, turned towards a target."""
+    def about(self, origin: ArrayLike) -> View:
+        """With an eye that was told in the coordinates of a file, told about that Scene.origin."""
+    def between(self, near: float, far: float) -> View:
+        """With these near and far planes."""
+    def enclosing(self, bounds: ArrayLike | Surfaces) -> View:
+        """With the near and far planes that enclose a box, (2, 3) of low and high corners, or surfaces."""
+    def sampled(self, samples: int) -> View:
+        """With so many samples a pixel."""
+    def culled(self, culling: Culling) -> View:
+        """With other sides left out."""
+    @property
+    def width(self) -> int:
+        """Pixels."""
+    @property
+    def height(self) -> int:
+        """Pixels."""
+    @property
+    def samples(self) -> int:
+        """Of a pixel."""
+    @property
+    def culling(self) -> Culling:
+        """Which sides are left out."""
+    @property
+    def is_orthographic(self) -> bool:
+        """Whether the projection is parallel."""
+    @property
+    def near(self) -> float:
+        """The distance of the near plane."""
+    @property
+    def far(self) -> float:
+        """The distance of the far plane; may be infinite."""
+    @property
+    def eye(self) -> NDArray[numpy.float64]:
+        """(3,) in the world."""
+    @property
+    def forward(self) -> NDArray[numpy.float64]:
+        """(3,) of unit length: where it looks."""
+    @property
+    def up(self) -> NDArray[numpy.float64]:
+        """(3,) of unit length: up in the picture."""
+    @property
+    def right(self) -> NDArray[numpy.float64]:
+        """(3,) of unit length: right in the picture."""
+    @property
+    def K(self) -> NDArray[numpy.float64]:
+        """3x3 with the middle of the first pixel at (0, 0), as from_intrinsics() takes it. Raises Error where parallel."""
+    def intrinsics(self, pixel_rule: PixelRule = "centre_at_integer") -> NDArray[numpy.float64]:
+        """3x3 by either rule."""
+    def pose(self, convention: Convention = "opencv") -> NDArray[numpy.float64]:
+        """4x4, as from_intrinsics() takes it."""
+    def clip_from_eye(self, depth: DepthConvention = "opengl") -> NDArray[numpy.float64]:
+        """4x4 projection. depth: -1 near to 1 far ("opengl"), 1 to -1 ("gortler"), 0 to 1 or 1 to 0 ("reversed")."""
+    def clip_from_world(self, depth: DepthConvention = "opengl") -> NDArray[numpy.float64]:
+        """4x4: clip_from_eye() times the pose."""
+
+def frame(scene: Scene | Surfaces, width: int = 640, height: int = 480, *, direction: Direction = "three_quarter",
+          orthographic: bool = False, fov: float = 30.0, margin: float = 0.05, forward: ArrayLike | None = None,
+          up: ArrayLike | None = None, target: ArrayLike | None = None, objects: Literal["subject", "all"] = "subject",
+          samples: int = 1, culling: Culling = "none") -> View:
+    """A view that shows a scene from as near as the margin allows. Quicker of Surfaces than of a Scene.
+
+    direction, or forward and up: where to look along. fov: degrees, of the smaller side. margin: of the picture, each
+    side. target: what is in the middle, None the model. objects: "subject" leaves out what lies or reaches far away.
+    """
+
+class Surfaces:
+    """All triangles of a scene in world space, with stable numbers: what is seen is asked of these.
+
+    The number of a triangle is its running number over all objects in the order of the scene. Long calls release the
+    interpreter's lock; take threads, 0 for one per core (no answer depends on them); stop at Ctrl-C; and take progress:
+    True shows a bar, a function is called with a stage and a fraction from 0 to 1.
+    """
+    def __init__(self, scene: Scene, *, threads: int = 0, progress: Progress = None) -> None: ...
+    def zbuffer(self, view: View, *, threads: int = 0, progress: Progress = None) -> Visible:
+        """The front-most triangle at every sample, by rasterisation. O(triangles + covered samples)."""
+    def raycast(self, view: View, *, threads: int = 0, progress: Progress = None) -> Visible:
+        """The same by rays, with an index made for this view. Nothing is snapped to 1/256 pixel."""
+    def move(self, object: int | str, pose: ArrayLike, *, threads: int = 0) -> None:
+        """Gives an object another pose, 4x4, in the scene and here. What was visible before is so no more: its pictures
+        and reports raise Error. Raises Error where other surfaces show the same scene."""
+    @property
+    def scene(self) -> Scene:
+        """What they are of."""
+    @property
+    def triangle_count(self) -> int:
+        """Over all objects."""
+    @property
+    def bounds(self) -> NDArray[numpy.float32]:
+        """(2, 3): low and high corner of the box around all, in the world; infinite the wrong way round without any."""
+
+class Visible:
+    """The front-most triangle at every sample of a view, and how deep it is. Planes are (height, width), rows from the
+    top, of the first sample; primitives and keys have all samples. They outlive what made them."""
+    @property
+    def view(self) -> View:
+        """Of which it is."""
+    @property
+    def surfaces(self) -> Surfaces:
+        """Of which it is."""
+    @property
+    def depth(self) -> NDArray[numpy.float32]:
+        """Planar distance along the viewing axis, in scene units; inf where nothing is seen. Found once, and kept."""
+    @property
+    def primitive(self) -> NDArray[numpy.uint32]:
+        """Numbers of triangles; no_primitive where nothing is seen. No copy; not writable."""
+    @property
+    def key(self) -> NDArray[numpy.float32]:
+        """What was compared: near / distance, or in parallel projection (far - distance) / (far - near). No copy."""
+    @property
+    def primitives(self) -> NDArray[numpy.uint32]:
+        """(samples, height, width). No copy; not writable."""
+    @property
+    def keys(self) -> NDArray[numpy.float32]:
+        """(samples, height, width). No copy; not writable."""
+    @property
+    def object(self) -> NDArray[numpy.uint32]:
+        """Numbers of objects; no_index where nothing is seen."""
+    @property
+    def material(self) -> NDArray[numpy.uint32]:
+        """Numbers of materials; no_index where nothing is seen, or none is set."""
+    @property
+    def face(self) -> NDArray[numpy.uint32]:
+        """Rows of the faces that a mesh was made of, polygons of files; no_index where nothing is seen."""
+    @property
+    def triangle(self) -> NDArray[numpy.uint32]:
+        """Rows of Mesh.faces; no_index where nothing is seen."""
+    def content_hash(self) -> int:
+        """Equal for equal answers, on every machine; the number that `frontmost render --hash` prints."""

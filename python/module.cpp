@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// The extension module frontmost._core: every subject binds its own names.
+#include "python/bindings.h"
+
+PYBIND11_MODULE(_core, m) {
+  using namespace frontmost::python;
+  // What is bound tells the package as its place, so that help() and messages name what users import.
+  const pybind11::object name = m.attr("__name__");
+  m.attr("__name__") = "frontmost";
+  bind_base(m);
+  bind_scene(m);
+  bind_view(m);
+  bind_surfaces(m);
+  m.attr("__name__") = name;
+}

@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Scenes: from arrays, from files, looked into, changed, and written."""
+import gc
+
+import numpy
+import pytest
+
+import frontmost as fm
+
+
+def seen_from(scene, **options):
+    surfaces = fm.Surfaces(scene)
+    return surfaces.zbuffer(fm.frame(surfaces, 64, 48, **options))
+
+
+def test_arrays_of_all_kinds_make_the_same_scene(box):
+    vertices, faces = box
+    wanted = seen_from(fm.Scene.from_arrays(vertices, faces)).content_hash()
+    kinds = [numpy.float32, numpy.float64, numpy.int8, numpy.int64]
+    for kind in kinds:
+        assert seen_from(fm.Scene.from_arrays(vertices.astype(kind), faces)).content_hash() == wanted, kind
+    for kind in [numpy.uint8, numpy.int16, numpy.int32, numpy.uint32, numpy.uint64, ">i4", ">u8"]:
+        assert seen_from(fm.Scene.from_arrays(vertices, faces.astype(kind))).content_hash() == wanted, kind
+    fortran = fm.Scene.from_arrays(numpy.asfortranarray(vertices), numpy.asfortranarray(faces))
+    assert seen_from(fortran).content_hash() == wanted
+    strided = fm.Scene.from_arrays(numpy.repeat(vertices, 2, axis=0)[::2], numpy.repeat(faces, 3, axis=1)[:, ::3])
+    assert seen_from(strided).content_hash() == wanted
+    reversed_twice = fm.Scene.from_arrays(vertices[::-1][::-1], faces[::-1][::-1])
+    assert seen_from(reversed_twice).content_hash() == wanted
+    assert seen_from(fm.Scene.from_arrays(vertices.tolist(), faces.tolist())).content_hash() == wanted
+    vertices.flags.writeable = faces.flags.writeable = False
+    assert seen_from(fm.Scene.from_arrays(vertices, faces)).content_hash() == wanted
+
+
+def test_arrays_are_copied(box):
+    vertices, faces = box
+    scene = fm.Scene.from_arrays(vertices, faces)
+    vertices[:] = 7
+    faces[:] = 0
+    assert numpy.unique(scene.meshes[0].vertices).tolist() == [-1, 1]
+    assert scene.meshes[0].faces.max() == 7
+
+
+@pytest.mark.parametrize("argument, value, error", [
+    ("vertices", numpy.zeros((4, 2)), ValueError),
+    ("vertices", numpy.zeros(12), ValueError),
+    ("vertices", numpy.zeros((2, 3), dtype=complex), TypeError),
+    ("vertices", [["a", "b", "c"]], TypeError),
+    ("vertices", None, TypeError),
+    ("vertices", object(), TypeError),
+    ("vertices", [[0, 0, 0], [1, 1]], TypeError),
+    ("faces", [[0, 1, 8]], ValueError),
+    ("faces", [[0, 1, -1]], ValueError),
+    ("faces", numpy.array([[0, 1, 2**63]], dtype=numpy.uint64), ValueError),
+    ("faces", numpy.array([[0, 1, -2**63]], dtype=numpy.int64), ValueError),
+    ("faces", [[0, 1, 2**32]], ValueError),
+    ("faces", [[0, 1, 2.0]], TypeError),
+    ("faces", [[0, 1, 2, 3]], ValueError),
+    ("faces", [[True, False, True]], TypeError),
+    ("pose", numpy.eye(3), ValueError),
+    ("pose", numpy.full((4, 4), numpy.nan), ValueError),
+    ("pose", numpy.ones((4, 4)), ValueError),
+    ("color", [1, 2, 3.0], ValueError),
+    ("color", [1.0, 1.0], ValueError),
+    ("color", "red", TypeError),
+    ("vertex_colors", numpy.zeros((7, 3)), ValueError),
+    ("vertex_colors", numpy.full((8, 3), numpy.nan), ValueError),
+    ("face_colors", numpy.zeros((8, 3)), ValueError),
+    ("normals", numpy.zeros((8, 2)), ValueError),
+    ("texcoords", numpy.zeros((7, 2)), ValueError),
+    ("texture", numpy.zeros((4, 4, 3)), ValueError),
+    ("texture", numpy.zeros((4, 4, 3), dtype=numpy.uint8), ValueError),
+])
+def test_hostile_arrays_end_in_errors_that_name_the_argument(box, argument, value, error):
+    arguments = {"vertices": box[0], "faces": box[1], argument: value}
+    with pytest.raises(error, match=f"^{argument}: "):
+        fm.Scene.from_arrays(**arguments)
+    scene = fm.Scene.from_arrays(*box)
+    with pytest.raises(error, match=f"^{argument}: "):
+        scene.add(**arguments)
+    assert len(scene.objects) == len(scene.meshes) == 1  # nothing is half added
+
+
+def test_empty_arrays_show_nothing():
+    for vertices in (numpy.zeros((0, 3)), numpy.zeros((3, 3))):
+        scene = fm.Scene.from_arrays(vertices, numpy.zeros((0, 3), dtype=int))
+        assert (seen_from(scene).primitive == fm.no_primitive).all()
+    assert (seen_from(fm.Scene()).primitive == fm.no_primitive).all()
+
+
+def test_vertices_that_are_not_finite_are_never_seen(box):
+    vertices, faces = box
+    more = numpy.vstack([vertices, [[numpy.nan, 0, 0], [numpy.inf, 0, 0]]])
+    scene = fm.Scene.from_arrays(more, numpy.vstack([faces, [[0, 1, 8], [0, 1, 9]]]))
+    seen = seen_from(scene)
+    assert scene.triangle_count == 14
+    assert set(numpy.unique(seen.primitive)) <= {*range(12), fm.no_primitive}
+
+
+def test_objects_have_names_places_and_colours(box):
+    scene = fm.Scene.from_arrays(*box, name="left", color=[255, 0, 0], pose=numpy.eye(4))
+    pose = numpy.eye(4)
+    pose[0, 3] = 3
+    assert scene.add(*box, name="right", pose=pose[:3], vertex_colors=numpy.full((8, 3), 0.25)) == 1
+    pose[0, 3] = 6
+    assert scene.place(1, pose, name="far right") == 2
+    assert [o.name for o in scene.objects] == ["left", "right", "far right"]
+    assert [o.mesh for o in scene.objects] == [0, 1, 1]
+    assert scene.objects[2].pose[0, 3] == 6
+    assert scene.find("right") == 1 and scene.find(2) == 2
+    assert scene.meshes[1].colors[0].tolist() == [0.25, 0.25, 0.25, 1]
+    with pytest.raises(ValueError, match="^object: none is called 'middle'"):
+        scene.find("middle")
+    with pytest.raises(ValueError, match="^object: there is no object 3"):
+        scene.find(3)
+    with pytest.raises(ValueError, match="^mesh: there is no mesh 2"):
+        scene.place(2)
+    objects = seen_from(scene, direction="front").object
+    columns = [numpy.nonzero((objects == i).any(axis=0))[0].mean() for i in range(3)]
+    assert columns == sorted(columns)
+
+
+def test_bytes_of_colours_are_those_of_files(box, tmp_path):
+    vertices = numpy.zeros((256, 3))
+    path = tmp_path / "grey.ply"
+    rows = "\n".join(f"0 0 {i} {i} {i} {i}" for i in range(256))
+    path.write_text("ply\nformat ascii 1.0\nelement vertex 256\nproperty float x\nproperty float y\nproperty float z\n"
+                    "property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\n"
+                    f"property list uchar int vertex_indices\nend_header\n{rows}\n3 0 1 2\n")
+    levels = numpy.arange(256, dtype=numpy.uint8)[:, None].repeat(3, axis=1)
+    ours = fm.Scene.from_arrays(vertices, [[0, 1, 2]], vertex_colors=levels)
+    assert (ours.meshes[0].colors == fm.load(path).meshes[0].colors).all()
+
+
+def test_doubles_far_from_zero_lose_nothing(box):
+    vertices, faces = box
+    near = seen_from(fm.Scene.from_arrays(vertices / 8, faces)).content_hash()
+    far_away = numpy.array([4.5e6, 5.0e6, 2.0e6])
+    scene = fm.Scene.from_arrays(vertices.astype(float) / 8 + far_away, faces)
+    assert (scene.origin == far_away).all()
+    assert seen_from(scene).content_hash() == near
+    pose = numpy.eye(4)
+    pose[:3, 3] = far_away
+    scene.add(vertices / 8, faces, pose=pose)
+    assert (scene.objects[1].pose[:3, 3] == far_away).all()
+    assert fm.Surfaces(scene).bounds.max() == 0.125
+
+
+def test_what_was_made_of_a_scene_keeps_it(box):
+    scene = fm.Scene.from_arrays(*box)
+    surfaces = fm.Surfaces(scene)
+    before = surfaces.zbuffer(fm.frame(surfaces)).content_hash()
+    faces = scene.meshes[0].faces
+    for _ in range(100):
+        scene.add(*box)
+    assert surfaces.scene.triangle_count == 12 and scene.triangle_count == 1212
+    assert surfaces.zbuffer(fm.frame(surfaces)).content_hash() == before
+    kept = faces.copy()
+    del scene, surfaces
+    gc.collect()
+    noise = [numpy.full(1000, i) for i in range(1000)]
+    assert len(noise) == 1000 and (faces == kept).all()
+
+
+def test_arrays_of_meshes_cannot_be_written(box):
+    mesh = fm.Scene.from_arrays(*box).meshes[0]
+    for plane in (mesh.vertices, mesh.faces):
+        with pytest.raises(ValueError):
+            plane[0] = 9
+        with pytest.raises(ValueError):
+            plane.flags.writeable = True
+
+
+def test_files_come_back(box, tmp_path):
+    scene = fm.Scene.from_arrays(*box, name="crate")
+    for suffix in ("ply", "stl", "glb"):
+        path = tmp_path / f"crate.{suffix}"
+        scene.save(path)
+        again = fm.load(path)
+        assert again.triangle_count == 12 and again.name == "crate"
+        assert fm.load(path.read_bytes(), format=None if suffix != "glb" else "gltf").triangle_count == 12
+    with pytest.raises(fm.Error, match="cannot open") as raised:
+        fm.load(tmp_path / "none.stl")
+    assert raised.value.code == "file_unreadable"
+    with pytest.raises(fm.Error) as raised:
+        scene.save(tmp_path / "crate.xyz")
+    assert raised.value.code == "unsupported"
+    with pytest.raises(ValueError, match="^format: 'step' is not one of stl, ply"):
+        fm.load(path, format="step")
+    with pytest.raises(TypeError):
+        fm.load(3)
+
+
+def test_builtin_scenes():
+    assert "teapot" in fm.builtin_names()
+    for name in fm.builtin_names():
+        scene = fm.builtin(name)
+        assert scene.name == name and scene.triangle_count > 0 and name in repr(scene)
+    with pytest.raises(fm.Error, match="teapot"):
+        fm.builtin("teakettle")
+    copy = scene.copy()
+    copy.name, copy.up = "other", "-z"
+    assert (copy.name, copy.up, scene.up) == ("other", "-z", "y")
+    scene.add_scene(copy)
+    assert scene.triangle_count == 2 * copy.triangle_count

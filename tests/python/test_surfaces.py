@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Surfaces and Visible: planes that equal the command line's files, and that nothing takes away."""
+import gc
+import os
+import resource
+import signal
+import threading
+import time
+
+import numpy
+import pytest
+
+import frontmost as fm
+
+
+def test_planes_are_the_command_lines_files(cli):
+    folder = cli("render", "builtin:city", "--resolution", "320,240", "--depth", "depth.npy", "--ids",
+                 "object=object.npy", "--ids", "primitive=primitive.npy", "--ids", "material=material.npy", "-q")
+    surfaces = fm.Surfaces(fm.builtin("city"))
+    view = fm.frame(surfaces, 320, 240)
+    for seen in (surfaces.zbuffer(view), surfaces.zbuffer(view.sampled(1), threads=1)):
+        for name in ("depth", "object", "primitive", "material"):
+            there, ours = numpy.load(folder / f"{name}.npy"), getattr(seen, name)
+            assert there.dtype == ours.dtype and there.tobytes() == ours.tobytes(), name
+
+
+def test_depth_is_known_on_paper(box):
+    # The eye is 5 before the middle of a cube of side 2: its front is 4 away, along the axis and beside it.
+    scene = fm.Scene.from_arrays(*box)
+    view = fm.View.look_at((0, 0, 5), (0, 0, 0), width=65, height=65, fov=60, near=0.5, far=100)
+    seen = fm.Surfaces(scene).zbuffer(view)
+    half = int(0.25 / numpy.tan(numpy.radians(30)) * 32.5)
+    middle = slice(32 - half + 1, 32 + half)
+    assert (seen.depth[middle, middle] == 4).all()
+    assert numpy.isinf(seen.depth[0, 0]) and seen.primitive[0, 0] == fm.no_primitive and seen.key[0, 0] == 0
+    assert (seen.key[middle, middle] == 0.125).all()
+    assert set(numpy.unique(seen.face[middle, middle])) <= {10, 11}  # the two triangles of z = 1
+    assert (seen.triangle == seen.face).all()
+
+
+def test_faces_count_in_their_object(box):
+    scene = fm.Scene.from_arrays(*box)
+    shift = numpy.eye(4)
+    shift[0, 3] = 3
+    scene.place(0, shift)
+    seen = fm.Surfaces(scene).zbuffer(fm.frame(scene, 200, 100))
+    there = seen.primitive != fm.no_primitive
+    assert (seen.primitive[there] == seen.object[there] * 12 + seen.face[there]).all()
+    assert (seen.object[~there] == fm.no_index).all() and (seen.face[~there] == fm.no_index).all()
+    assert set(numpy.unique(seen.object)) == {0, 1, fm.no_index}
+
+
+def test_rays_and_triangles_agree(box):
+    surfaces = fm.Surfaces(fm.Scene.from_arrays(*box))
+    view = fm.frame(surfaces, 160, 120)
+    drawn, cast = surfaces.zbuffer(view), surfaces.raycast(view)
+    assert (drawn.primitive != cast.primitive).mean() < 0.02
+    same = drawn.primitive == cast.primitive
+    assert numpy.allclose(drawn.depth[same], cast.depth[same], rtol=1e-4)
+
+
+def test_planes_of_all_samples():
+    surfaces = fm.Surfaces(fm.builtin("cubes"))
+    seen = surfaces.zbuffer(fm.frame(surfaces, 40, 30, samples=4))
+    assert seen.primitives.shape == seen.keys.shape == (4, 30, 40)
+    assert seen.primitive.shape == seen.depth.shape == (30, 40)
+    assert (seen.primitives[0] == seen.primitive).all() and (seen.keys[0] == seen.key).all()
+
+
+def test_planes_outlive_everything():
+    surfaces = fm.Surfaces(fm.builtin("teapot"))
+    view = fm.frame(surfaces)
+    seen = surfaces.zbuffer(view)
+    planes = [seen.primitive, seen.key, seen.primitives[0][10:20], seen.depth, seen.object]
+    kept = [plane.copy() for plane in planes]
+    hash_before = seen.content_hash()
+    others = [surfaces.zbuffer(view) for _ in range(3)]
+    del seen, others
+    gc.collect()
+    again = [surfaces.zbuffer(view.looking((0, 30, 30), (0, 0, 0))) for _ in range(8)]  # into planes that are free
+    del surfaces, again
+    gc.collect()
+    noise = [numpy.full(480 * 640, i, dtype=numpy.uint32) for i in range(20)]
+    assert len(noise) == 20 and all((a == b).all() for a, b in zip(planes, kept))
+    assert hash_before == fm.Surfaces(fm.builtin("teapot")).zbuffer(view).content_hash()
+
+
+def test_what_pictures_are_made_of_cannot_be_written():
+    seen = fm.Surfaces(fm.builtin("cubes")).zbuffer(fm.frame(fm.builtin("cubes"), 20, 20))
+    for plane in (seen.primitive, seen.key, seen.primitives, seen.keys):
+        with pytest.raises(ValueError):
+            plane[...] = 0
+        with pytest.raises(ValueError):
+            plane.flags.writeable = True
+    seen.depth[0, 0] = -1  # the caller's own
+    assert seen.depth[0, 0] == -1
+
+
+def test_everything_keeps_what_it_is_of():
+    seen = fm.Surfaces(fm.builtin("teapot")).zbuffer(fm.frame(fm.builtin("teapot")))
+    gc.collect()
+    assert seen.object.min() == 0 and seen.surfaces.scene.objects[0].name == "teapot"
+    assert "pixels" in repr(seen) and "6320" in repr(seen.surfaces)
+
+
+def test_answers_do_not_depend_on_threads():
+    surfaces = fm.Surfaces(fm.builtin("city"), threads=3)
+    view = fm.frame(surfaces, 320, 240, samples=2)
+    hashes = {surfaces.zbuffer(view, threads=threads).content_hash() for threads in (0, 1, 2, 5)}
+    assert len(hashes) == 1
+    for threads in (-1, 1025):
+        with pytest.raises(ValueError, match="^threads: "):
+            surfaces.zbuffer(view, threads=threads)
+
+
+def test_python_threads_draw_at_once():
+    surfaces = fm.Surfaces(fm.builtin("city"))
+    view = fm.frame(surfaces, 320, 240)
+    wanted = surfaces.zbuffer(view).content_hash()
+    hashes = []
+
+    def draw():
+        for _ in range(10):
+            hashes.append(surfaces.zbuffer(view, threads=1).content_hash())
+
+    workers = [threading.Thread(target=draw) for _ in range(4)]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join()
+    assert hashes == [wanted] * 40
+
+
+def test_moved_objects():
+    scene = fm.builtin("cubes")
+    surfaces = fm.Surfaces(scene)
+    view = fm.frame(surfaces, 160, 120)
+    before = surfaces.zbuffer(view)
+    pose = scene.objects[0].pose
+    pose[1, 3] += 1.5
+    surfaces.move(0, pose)
+    assert (scene.objects[0].pose == pose).all()
+    after = surfaces.zbuffer(view)
+    assert after.content_hash() != before.content_hash()
+    assert after.content_hash() == fm.Surfaces(scene.copy()).zbuffer(view).content_hash()
+    with pytest.raises(ValueError, match="^pose: "):
+        surfaces.move(0, numpy.full((4, 4), numpy.nan))
+    other = fm.Surfaces(scene)
+    with pytest.raises(fm.Error, match="other surfaces"):
+        surfaces.move(0, pose)
+    del other
+    gc.collect()
+    surfaces.move(scene.objects[0].name, pose)
+
+
+def test_views_do_not_grow_memory():
+    surfaces = fm.Surfaces(fm.builtin("cubes"))
+    view = fm.frame(surfaces, 320, 240)
+
+    def look(times):
+        for _ in range(times):
+            seen = surfaces.zbuffer(view, threads=1)
+            seen.depth, seen.object, seen.primitive[::2]
+
+    look(100)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    look(1000)
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 4096  # kB; a view takes 1,200
+
+
+def big_work(**options):
+    random = numpy.random.default_rng(1)
+    vertices = random.random((300000, 3))
+    surfaces = fm.Surfaces(fm.Scene.from_arrays(vertices, numpy.arange(300000).reshape(-1, 3)))
+    return surfaces.zbuffer(fm.frame(surfaces, 4000, 4000, samples=4), **options)
+
+
+def test_control_c_stops_long_calls():
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        deadline = time.monotonic() + 20
+        while time.monotonic() < deadline:
+            big_work()
+
+
+def test_progress_is_told_and_what_it_raises_ends_the_work():
+    told = []
+    big_work(progress=lambda stage, fraction: told.append((stage, fraction)))
+    assert told and all(isinstance(stage, str) and 0 <= fraction <= 1 for stage, fraction in told)
+
+    def stop(stage, fraction):
+        raise ZeroDivisionError(stage)
+
+    with pytest.raises(ZeroDivisionError):
+        big_work(progress=stop)
+    with pytest.raises(TypeError, match="^progress: "):
+        big_work(progress=3)
+    big_work(progress=True)
