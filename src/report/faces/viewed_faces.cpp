@@ -115,27 +115,91 @@ int facing_of(const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c) 
   return turn > kNarrow * longest ? 1 : turn < -kNarrow * longest ? -1 : 0;
 }
 
+/// Consecutive vertices of an instance, and where their points go.
+struct VertexRange {
+  static constexpr std::size_t most = 4096;
+
+  std::uint32_t instance;
+  std::size_t begin, end;
+  std::size_t first_point;
+};
+
+/// Where on the screen the vertices of all instances are that the view may show.
+class ScreenVertices {
+ public:
+  ScreenVertices(const PlacedScene& placed, const Eye& eye, const Execution& execution)
+      : eye_(eye), first_(placed.scene->instances.size(), none) {
+    std::vector<VertexRange> ranges;
+    std::size_t count = 0;
+    for (std::uint32_t i = 0; i < first_.size(); ++i) {
+      if (!may_show(placed.instance_bounds[i])) continue;
+      first_[i] = count;
+      const std::size_t vertices = placed.scene->meshes[placed.scene->instances[i].mesh].positions.size();
+      for (std::size_t begin = 0; begin < vertices; begin += VertexRange::most)
+        ranges.push_back({i, begin, std::min(begin + VertexRange::most, vertices), count + begin});
+      count += vertices;
+    }
+    points = Buffer<ScreenPoint>(count);
+    outside = Buffer<std::uint8_t>(count);
+    parallel_for(execution, ranges.size(), 4, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) see(placed, ranges[i]);
+    });
+  }
+  /// The point of an instance's vertex 0; none for instances that are outside.
+  static constexpr std::size_t none = std::size_t(-1);
+  [[nodiscard]] std::size_t first(std::uint32_t instance) const { return first_[instance]; }
+
+  Buffer<ScreenPoint> points;    ///< anything where they are nearer than near, farther than far or not finite
+  Buffer<std::uint8_t> outside;  ///< bits of Outside, by point
+
+ private:
+  [[nodiscard]] bool may_show(const Box& bounds) const {
+    if (bounds.is_empty()) return false;
+    int all = kLeft | kRight | kAbove | kBelow | kNearer | kFarther;
+    for (int k = 0; k < 8; ++k)
+      all &= eye_.outside(eye_.see({(k & 1 ? bounds.high : bounds.low).x, (k & 2 ? bounds.high : bounds.low).y,
+                                    (k & 4 ? bounds.high : bounds.low).z}));
+    return all == 0;
+  }
+
+  void see(const PlacedScene& placed, const VertexRange& range) {
+    const Instance& instance = placed.scene->instances[range.instance];
+    const glm::vec3* const positions = placed.scene->meshes[instance.mesh].positions.data();
+    const ToWorld world(instance.world_from_mesh);
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      const EyePoint at = eye_.see(world(positions[i]));
+      const std::size_t number = range.first_point + (i - range.begin);
+      points[number] = eye_.project(at);
+      outside[number] = eye_.outside(at);
+    }
+  }
+
+  Eye eye_;
+  std::vector<std::size_t> first_;
+};
+
+/// Faces of some ranges; corners from the number of all vertices on are those of `clipped`.
+struct FacePart {
+  std::vector<ViewedFace> faces;
+  std::vector<ScreenPoint> clipped;
+};
+
 /// The faces of consecutive triangles.
 class FaceGatherer {
  public:
   /// `facing`: by primitive, 0 for those that are not there, or not whole.
-  FaceGatherer(const PlacedScene& placed, const View& view, std::vector<std::int8_t>& facing)
-      : placed_(placed), eye_(view), culling_(view.culling), facing_(facing) {}
+  FaceGatherer(const PlacedScene& placed, const Eye& eye, Culling culling, const ScreenVertices& vertices,
+               std::vector<std::int8_t>& facing)
+      : placed_(placed), eye_(eye), culling_(culling), vertices_(vertices), facing_(facing) {}
 
   void gather(const MeshRange& range) {
-    const WorldTriangles world = world_triangles(placed_, range, scratch_);
+    const std::size_t first_point = vertices_.first(range.instance);
+    if (first_point == ScreenVertices::none) return;
     is_mirrored_ = placed_.mirrored[range.instance] != 0;
-    seen_.resize(world.positions.size());
-    outside_.resize(world.positions.size());
-    number_.assign(world.positions.size(), no_index);
-    for (std::size_t i = 0; i < seen_.size(); ++i) {
-      seen_[i] = eye_.see(world.positions[i]);
-      outside_[i] = eye_.outside(seen_[i]);
-    }
-    for (std::size_t i = 0; i < world.corners.size(); ++i)
-      add(PrimitiveId(world.first_id + i), world.corners[i] - world.first_position);
+    PrimitiveId id = placed_.first_id(range);
+    for (const glm::uvec3& c : placed_.corners(range)) add(id++, range.instance, first_point, c);
   }
-  [[nodiscard]] ViewedFaces take() { return std::move(out_); }
+  [[nodiscard]] FacePart take() { return std::move(out_); }
 
  private:
   [[nodiscard]] bool is_culled(int facing) const {
@@ -144,67 +208,92 @@ class FaceGatherer {
            (culling_ == Culling::back && !is_front);
   }
 
-  void add(PrimitiveId id, const glm::uvec3& c) {
-    const int all = outside_[c.x] & outside_[c.y] & outside_[c.z], any = outside_[c.x] | outside_[c.y] | outside_[c.z];
+  void add(PrimitiveId id, std::uint32_t instance, std::size_t first_point, const glm::uvec3& c) {
+    const std::size_t x = first_point + c.x, y = first_point + c.y, z = first_point + c.z;
+    const int a = vertices_.outside[x], b = vertices_.outside[y], d = vertices_.outside[z];
+    const int all = a & b & d, any = a | b | d;
     if ((any & kNowhere) != 0 || (all & (kNearer | kFarther)) != 0) return;
-    if ((any & (kNearer | kFarther | kFarAway)) != 0) return add_clipped(id, {seen_[c.x], seen_[c.y], seen_[c.z]});
+    if ((any & (kNearer | kFarther | kFarAway)) != 0) return add_clipped(id, instance, c);
     if ((all & (kLeft | kRight | kAbove | kBelow)) != 0) return;
-    ViewedFace face{{point(c.x), point(c.y), point(c.z)}, id};
-    const int facing =
-        facing_of(out_.points[face.corners[0]], out_.points[face.corners[1]], out_.points[face.corners[2]]);
+    const int facing = facing_of(vertices_.points[x], vertices_.points[y], vertices_.points[z]);
     if (facing == 0 || is_culled(facing)) return;
     facing_[id] = std::int8_t(facing);
-    out_.faces.push_back(face);
+    out_.faces.push_back({{std::uint32_t(x), std::uint32_t(y), std::uint32_t(z)}, id});
   }
 
-  void add_clipped(PrimitiveId id, const std::array<EyePoint, 3>& triangle) {
-    const std::vector<EyePoint> polygon = eye_.clip(triangle);
-    const auto first = std::uint32_t(out_.points.size());
-    for (const EyePoint& p : polygon) out_.points.push_back(eye_.project(p));
+  void add_clipped(PrimitiveId id, std::uint32_t instance, const glm::uvec3& c) {
+    const Instance& placed = placed_.scene->instances[instance];
+    const std::vector<glm::vec3>& positions = placed_.scene->meshes[placed.mesh].positions;
+    const ToWorld world(placed.world_from_mesh);
+    const std::vector<EyePoint> polygon =
+        eye_.clip({eye_.see(world(positions[c.x])), eye_.see(world(positions[c.y])), eye_.see(world(positions[c.z]))});
+    const std::size_t first = out_.clipped.size();
+    for (const EyePoint& p : polygon) out_.clipped.push_back(eye_.project(p));
+    const auto number = std::uint32_t(vertices_.points.size() + first);
     for (std::uint32_t i = 2; i < polygon.size(); ++i) {
-      const ScreenPoint* const p = out_.points.data() + first;
+      const ScreenPoint* const p = out_.clipped.data() + first;
       const int facing = facing_of(p[0], p[i - 1], p[i]);
-      if (facing != 0 && !is_culled(facing)) out_.faces.push_back({{first, first + i - 1, first + i}, id});
+      if (facing != 0 && !is_culled(facing)) out_.faces.push_back({{number, number + i - 1, number + i}, id});
     }
-  }
-
-  /// The number of a vertex's point.
-  std::uint32_t point(std::uint32_t vertex) {
-    std::uint32_t& number = number_[vertex];
-    if (number == no_index) {
-      number = std::uint32_t(out_.points.size());
-      out_.points.push_back(eye_.project(seen_[vertex]));
-    }
-    return number;
   }
 
   const PlacedScene& placed_;
-  Eye eye_;
+  const Eye& eye_;
   Culling culling_;
+  const ScreenVertices& vertices_;
   std::vector<std::int8_t>& facing_;
   bool is_mirrored_ = false;
-  WorldScratch scratch_;
-  std::vector<EyePoint> seen_;
-  std::vector<std::uint8_t> outside_;
-  std::vector<std::uint32_t> number_;
-  ViewedFaces out_;
+  FacePart out_;
 };
 
-ViewedFaces joined(const std::vector<ViewedFaces>& parts) {
-  ViewedFaces all;
-  std::size_t points = 0, faces = 0;
-  for (const ViewedFaces& part : parts) points += part.points.size(), faces += part.faces.size();
+ViewedFaces joined(const std::vector<FacePart>& parts, Buffer<ScreenPoint> vertices) {
+  std::size_t points = vertices.size(), faces = 0;
+  for (const FacePart& part : parts) points += part.clipped.size(), faces += part.faces.size();
   if (points >= no_index || faces >= no_index)
     throw Error(ErrorCode::limit_exceeded, "more than 4294967294 faces or corners within the view");
-  all.points.reserve(points);
-  all.faces.reserve(faces);
-  for (const ViewedFaces& part : parts) {
-    const auto first = std::uint32_t(all.points.size());
-    all.points.insert(all.points.end(), part.points.begin(), part.points.end());
-    for (const ViewedFace& face : part.faces)
-      all.faces.push_back({{face.corners[0] + first, face.corners[1] + first, face.corners[2] + first}, face.id});
+  ViewedFaces all{Buffer<ScreenPoint>(), Buffer<ViewedFace>(faces), Buffer<std::uint8_t>(faces)};
+  const std::size_t vertex_count = vertices.size();
+  if (points == vertex_count) {
+    all.points = std::move(vertices);
+  } else {
+    all.points = Buffer<ScreenPoint>(points);
+    std::copy(vertices.begin(), vertices.end(), all.points.begin());
+  }
+  std::size_t first_clipped = vertex_count;
+  ViewedFace* next = all.faces.begin();
+  for (const FacePart& part : parts) {
+    std::copy(part.clipped.begin(), part.clipped.end(), all.points.begin() + first_clipped);
+    const auto moved = std::uint32_t(first_clipped - vertex_count);
+    for (ViewedFace face : part.faces) {
+      if (face.corners[0] >= vertex_count)
+        for (std::uint32_t& corner : face.corners) corner += moved;
+      *next++ = face;
+    }
+    first_clipped += part.clipped.size();
   }
   return all;
+}
+
+/// Sets ViewedFaces::ending for [begin, end).
+void find_endings(const PlacedScene& placed, const std::vector<MeshSides>& sides,
+                  const std::vector<std::int8_t>& facing, std::size_t begin, std::size_t end, ViewedFaces& all) {
+  const auto& first = placed.first_primitives;
+  std::size_t instance = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    const PrimitiveId id = all.faces[i].id;
+    if (i == begin) instance = std::size_t(std::upper_bound(first.begin(), first.end(), id) - first.begin()) - 1;
+    while (first[instance + 1] <= id) ++instance;
+    const MeshSides& mesh = sides[placed.scene->instances[instance].mesh];
+    const int own = facing[id];
+    int ending = 0;
+    for (int side = 0; side < 3; ++side) {
+      const std::uint32_t beyond = mesh.beyond(id - first[instance], side);
+      const int other = beyond == no_index ? 0 : facing[first[instance] + beyond];
+      const int plain = own != 0 && mesh.is_wound_alike(id - first[instance], side) ? own : -own;
+      if (beyond == no_index || own == 0 || other != plain) ending |= 1 << side;
+    }
+    all.ending[i] = std::uint8_t(ending);
+  }
 }
 
 }  // namespace
@@ -213,32 +302,18 @@ ViewedFaces viewed_faces(const Surfaces& surfaces, const View& view, const std::
                          const Execution& execution) {
   constexpr std::size_t kRangesAtOnce = 16, kFacesAtOnce = 8192;
   const PlacedScene& placed = surfaces.placed();
+  const Eye eye(view);
+  ScreenVertices vertices(placed, eye, execution);
   std::vector<std::int8_t> facing(surfaces.primitive_count(), 0);
-  std::vector<ViewedFaces> parts((placed.ranges.size() + kRangesAtOnce - 1) / kRangesAtOnce);
+  std::vector<FacePart> parts((placed.ranges.size() + kRangesAtOnce - 1) / kRangesAtOnce);
   parallel_for(execution, placed.ranges.size(), kRangesAtOnce, [&](std::size_t begin, std::size_t end) {
-    FaceGatherer gatherer(placed, view, facing);
+    FaceGatherer gatherer(placed, eye, view.culling, vertices, facing);
     for (std::size_t i = begin; i < end; ++i) gatherer.gather(placed.ranges[i]);
     parts[begin / kRangesAtOnce] = gatherer.take();
   });
-  ViewedFaces all = joined(parts);
-  parts.clear();
-  all.ending.resize(all.faces.size());
-  parallel_for(execution, all.faces.size(), kFacesAtOnce, [&](std::size_t begin, std::size_t end) {
-    const auto& first = placed.first_primitives;
-    std::size_t instance = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const PrimitiveId id = all.faces[i].id;
-      if (i == begin) instance = std::size_t(std::upper_bound(first.begin(), first.end(), id) - first.begin()) - 1;
-      while (first[instance + 1] <= id) ++instance;
-      const MeshSides& mesh = sides[placed.scene->instances[instance].mesh];
-      for (int side = 0; side < 3; ++side) {
-        const std::uint32_t beyond = mesh.beyond(id - first[instance], side);
-        const int own = facing[id], other = beyond == no_index ? 0 : facing[first[instance] + beyond];
-        const int plain = own != 0 && mesh.is_wound_alike(id - first[instance], side) ? own : -own;
-        if (beyond == no_index || own == 0 || other != plain) all.ending[i] |= std::uint8_t(1 << side);
-      }
-    }
-  });
+  ViewedFaces all = joined(parts, std::move(vertices.points));
+  parallel_for(execution, all.faces.size(), kFacesAtOnce,
+               [&](std::size_t begin, std::size_t end) { find_endings(placed, sides, facing, begin, end, all); });
   return all;
 }
 

@@ -29,9 +29,9 @@ struct ViewedFace {
 };
 
 struct ViewedFaces {
-  std::vector<ScreenPoint> points;
-  std::vector<ViewedFace> faces;     ///< by id, ascending; parts of one triangle follow each other
-  std::vector<std::uint8_t> ending;  ///< by face, bit k: a surface ends at side k, from corner k to the next
+  Buffer<ScreenPoint> points;   ///< of vertices by instance and number, and those of what was clipped
+  Buffer<ViewedFace> faces;     ///< by id, ascending; parts of one triangle follow each other
+  Buffer<std::uint8_t> ending;  ///< by face, bit k: a surface ends at side k, from corner k to the next
 };
 
 /// Twice the area, positive where the corners turn to the right as they are seen (y points down).
