@@ -166,6 +166,27 @@ TEST(VisibleFaces, CullingLeavesOutWhatTurnsAwayAlsoWhereInstancesMirror) {
   EXPECT_NEAR(sum_of_pixels(visible_faces(Surfaces(scene), view)), 1024, 1e-9);
 }
 
+TEST(VisibleFaces, OfManyBeforeAWallFillThePicture) {
+  for (std::uint64_t seed = 0; seed < seeds(12); ++seed) {
+    SCOPED_TRACE(seed);
+    // Meshes through each other, in cells that are divided once and again; no place of the wall is lost or twice.
+    Scene scene = scene_of(bumpy_ball(20 + 10 * int(seed % 3), seed % 5 == 0 ? 0.0f : 0.3f, seed));
+    scene.meshes.push_back(random_mesh(seed % 2 == 0 ? Kind::tiny : Kind::slivers, 300, seed));
+    Mesh wall;
+    add_square(wall, 4, -3);
+    add_quad(wall, {-9, -8, -3}, {8, -9, 3}, {9, 8, 2}, {-8, 9, -2});  // all over the picture, through the balls
+    scene.meshes.push_back(wall);
+    scene.instances.push_back({"again", 0, glm::dmat4(0.9)});
+    scene.instances[1].world_from_mesh[3] = {0.3, 0.2, 0.1, 1};
+    scene.instances.push_back({"others", 1, glm::dmat4(1.0)});
+    scene.instances.push_back({"wall", 2, glm::dmat4(1.0)});
+    View view = view_from_above();
+    view.width = view.height = 64 << seed % 4;
+    const double picture = double(view.pixel_count());
+    EXPECT_NEAR(sum_of_pixels(visible_faces(Surfaces(scene), view)), picture, 1e-9 * picture);
+  }
+}
+
 TEST(VisibleFaces, AreTheSameForAnyNumberOfThreads) {
   Scene scene = scene_of(bumpy_ball(40, 0.2f, 5));
   scene.meshes.push_back(random_mesh(Kind::soup, 300, 4));

@@ -2,15 +2,15 @@
 #include "report/faces/cells.h"
 
 #include <algorithm>
-#include <optional>
+#include <atomic>
+#include <memory>
 
 #include "base/parallel.h"
+#include "report/faces/cell_lists.h"
 
 namespace frontmost::faces_detail {
 namespace {
 
-/// Pixels along a side of the cells that the picture is divided into at first.
-constexpr int kLargestCell = 32;
 /// Cells are not divided further at this side, in pixels.
 constexpr double kSmallestCell = 1.0 / 1024;
 /// So few faces are cut by each other sooner than a cell is divided.
@@ -18,115 +18,176 @@ constexpr std::size_t kFewFaces = 48;
 /// More faces than this are worth dividing a cell for, even if most of them reach into all of its parts: there, they
 /// hide each other.
 constexpr std::size_t kManyFaces = 100;
+/// Cells with more faces are divided into 4 x 4 at once.
+constexpr std::size_t kCrowd = 300;
 
-Range range_of(double a, double b, double c) { return {std::min({a, b, c}), std::max({a, b, c})}; }
+constexpr double kNever = -std::numeric_limits<double>::infinity();  ///< a key that nothing lies behind
 
-/// The faces whose boxes meet each of the largest cells.
-class CellLists {
+/// A face that is seen as far as it lies in a cell, out of which it reaches.
+struct ToldPart {
+  std::uint32_t face;
+  CellBox box;
+};
+
+/// What cells say of faces, any of them at any time.
+class FaceMarks {
  public:
-  CellLists(const ViewedFaces& screen, const View& view)
-      : columns_((view.width + kLargestCell - 1) / kLargestCell),
-        rows_((view.height + kLargestCell - 1) / kLargestCell),
-        ends_(size() + 1, 0) {
-    visit(screen, [&](std::size_t cell, std::uint32_t) { ++ends_[cell + 1]; });
-    for (std::size_t i = 1; i < ends_.size(); ++i) ends_[i] += ends_[i - 1];
-    faces_.resize(ends_.back());
-    visit(screen, [&](std::size_t cell, std::uint32_t face) { faces_[ends_[cell]++] = face; });
-  }
-  [[nodiscard]] std::size_t size() const { return std::size_t(columns_) * std::size_t(rows_); }
-  [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t cell) const {
-    const std::size_t begin = cell == 0 ? 0 : ends_[cell - 1];
-    return std::span(faces_).subspan(begin, ends_[cell] - begin);
-  }
-  [[nodiscard]] CellBox box(std::size_t cell, const View& view) const {
-    const auto x = int(cell % std::size_t(columns_)) * kLargestCell,
-               y = int(cell / std::size_t(columns_)) * kLargestCell;
-    return {double(x), double(y), double(std::min(x + kLargestCell, view.width)),
-            double(std::min(y + kLargestCell, view.height))};
-  }
+  explicit FaceMarks(std::size_t count) : marks_(new std::atomic<std::uint8_t>[count]()) {}
+  /// In a cell that it reaches out of.
+  void set_seen(std::uint32_t face) { set(face, kSeen); }
+  /// In the one cell that it lies in.
+  void set_whole(std::uint32_t face) { set(face, kWhole); }
+  /// Somewhere it may be hidden, or outside of the picture, if it is not seen in the one cell that it lies in.
+  void set_partial(std::uint32_t face) { set(face, kPartial); }
+  [[nodiscard]] bool is_partial(std::uint32_t face) const { return (get(face) & kPartial) != 0; }
+  [[nodiscard]] bool is_whole(std::uint32_t face) const { return (get(face) & kWhole) != 0 || get(face) == kSeen; }
 
  private:
-  template <class Visit>
-  void visit(const ViewedFaces& screen, const Visit& visit) const {
-    const auto cell_at = [](double at, int count) {
-      return std::clamp(int(std::floor(at / kLargestCell)), 0, count - 1);
-    };
-    for (std::uint32_t i = 0; i < screen.faces.size(); ++i) {
-      const auto& c = screen.faces[i].corners;
-      const ScreenPoint &p = screen.points[c[0]], &q = screen.points[c[1]], &r = screen.points[c[2]];
-      const Range x = range_of(p.x, q.x, r.x), y = range_of(p.y, q.y, r.y);
-      const int right = cell_at(x.high, columns_), bottom = cell_at(y.high, rows_);
-      for (int row = cell_at(y.low, rows_); row <= bottom; ++row)
-        for (int column = cell_at(x.low, columns_); column <= right; ++column)
-          visit(std::size_t(row) * std::size_t(columns_) + std::size_t(column), i);
-    }
-  }
+  static constexpr std::uint8_t kSeen = 1, kWhole = 2, kPartial = 4;
 
-  int columns_, rows_;
-  std::vector<std::size_t> ends_;  ///< by cell, where its faces end; in visit() where they begin
-  std::vector<std::uint32_t> faces_;
+  void set(std::uint32_t face, std::uint8_t mark) {
+    if ((get(face) & mark) == 0) marks_[face].fetch_or(mark, std::memory_order_relaxed);
+  }
+  [[nodiscard]] std::uint8_t get(std::uint32_t face) const { return marks_[face].load(std::memory_order_relaxed); }
+
+  std::unique_ptr<std::atomic<std::uint8_t>[]> marks_;
 };
 
 /// Looks at one of the largest cells after the other.
 class CellSolver {
  public:
-  explicit CellSolver(const FacesOfView& faces) : screen_(faces.screen), rule_(faces.rule), cutter_(faces) {}
+  CellSolver(const FacesOfView& faces, FaceMarks& marks) : screen_(faces.screen), marks_(marks), cutter_(faces) {}
 
-  void solve(const CellBox& box, std::span<const std::uint32_t> faces, std::vector<SeenPart>& seen) {
+  void solve(const CellBox& box, std::span<const ListedFace> listed) {
     list_.clear();
     gathered_.clear();
-    for (const std::uint32_t face : faces) gather(face, box);
-    divide(box, 0, seen);
+    divide(box, 0, gather_nearest(box, listed));
   }
+
+  std::vector<SeenPart> parts;
+  std::vector<ToldPart> told;
 
  private:
   /// What is known of a cell's list once it is in order: from `kept` on everything is hidden; if `is_told`, all before
-  /// is seen.
+  /// is seen. Nothing that was left out of the list is nearer than `removed`.
   struct Sorted {
     std::size_t kept;
     bool is_told;
+    double removed;
   };
 
-  /// Corners of the faces of one of the largest cells, so that they lie beside each other.
-  struct GatheredFace {
-    ScreenPoint corners[3];
-    std::uint8_t ending;
+  /// The group at the end of the list, while that grows from the nearest on.
+  struct LastGroup {
+    std::size_t begin, looked_at;
+    double covered = kNever;  ///< the farthest key of a face that covers the cell
+    double farthest = -kNever;
+    bool is_ending = false;
   };
 
+  [[nodiscard]] double gather_nearest(const CellBox& box, std::span<const ListedFace> listed);
+  [[nodiscard]] bool hides_rest(LastGroup& group, const glm::dvec2& place);
+  void look_at_new(LastGroup& group);
+  template <class Index>
+  [[nodiscard]] double add_nearest(const CellBox& box, double removed, std::size_t& end, const Index& index);
   void gather(std::uint32_t face, const CellBox& box);
   /// Adds a face of a larger cell to the end of the list where it reaches into the box.
   void add(const FaceInBox& face, const CellBox& box);
   [[nodiscard]] bool reaches_into(const CellBox& box, FaceInBox& face) const;
-  void divide(const CellBox& box, std::size_t first, std::vector<SeenPart>& seen);
-  [[nodiscard]] bool divide_further(const CellBox& box, std::size_t first, std::vector<SeenPart>& seen);
+  void divide(const CellBox& box, std::size_t first, double removed);
+  [[nodiscard]] bool divide_further(const CellBox& box, std::size_t first, double removed);
+  void divide_crowd(const CellBox& box, std::size_t first, double removed);
   void leave_out_copies(std::size_t first);
-  [[nodiscard]] Sorted sort(const CellBox& box, std::size_t first);
+  [[nodiscard]] Sorted sort(const CellBox& box, std::size_t first, double removed);
   [[nodiscard]] int count_at(const glm::dvec2& place, std::size_t first, std::size_t last) const;
-  void show_all(const CellBox& box, std::size_t first, std::vector<SeenPart>& seen);
+  void show_all(const CellBox& box, std::size_t first);
+  /// Takes the list from `first` on away: nothing of it is seen in the cell, or only parts.
+  void drop(std::size_t first) {
+    for (std::size_t i = first; i < list_.size(); ++i) marks_.set_partial(gathered_[list_[i].number].face);
+    list_.resize(first);
+  }
 
   const ViewedFaces& screen_;
-  const AreaRule& rule_;
+  FaceMarks& marks_;
   PieceCutter cutter_;
+  RoughOrder order_;
   std::vector<GatheredFace> gathered_;
   std::vector<FaceInBox> list_;  ///< of the cell that is looked at, behind those of the cells that it is a part of
+  std::vector<std::uint32_t> members_;
 };
+
+/// Off the middle, through which the sides of symmetric models pass.
+glm::dvec2 place_in(const CellBox& box) {
+  return {box.left + 0.4372 * (box.right - box.left), box.top + 0.5611 * (box.bottom - box.top)};
+}
+
+/// Fills the list, the nearest first, until what is left is hidden. \returns the nearest key of what is left.
+double CellSolver::gather_nearest(const CellBox& box, std::span<const ListedFace> listed) {
+  order_.sort(listed);
+  const glm::dvec2 place = place_in(box);
+  LastGroup group{list_.size(), list_.size()};
+  for (std::size_t bucket = 0; bucket < order_.size(); ++bucket) {
+    const std::uint32_t nearest = order_.least(bucket);
+    if (order_of(group.covered) < nearest || (order_of(group.farthest) < nearest && hides_rest(group, place))) {
+      for (const ListedFace& face : order_.from(bucket)) marks_.set_partial(face_of(face));
+      return key_before(nearest);
+    }
+    for (const ListedFace& face : order_[bucket]) gather(face_of(face), box);
+    look_at_new(group);
+  }
+  return kNever;
+}
+
+/// Whether a group that lies before all that is not in the list yet hides it; else a new group begins.
+bool CellSolver::hides_rest(LastGroup& group, const glm::dvec2& place) {
+  if (!group.is_ending && count_at(place, group.begin, list_.size()) > 0) return true;
+  group = {list_.size(), list_.size(), group.covered};
+  return false;
+}
+
+void CellSolver::look_at_new(LastGroup& group) {
+  for (; group.looked_at < list_.size(); ++group.looked_at) {
+    const FaceInBox& face = list_[group.looked_at];
+    group.farthest = std::min(group.farthest, face.farthest);
+    group.is_ending = group.is_ending || face.is_ending;
+    if (face.is_all) group.covered = std::max(group.covered, face.farthest);
+  }
+}
+
+/// Adds faces of a larger cell, the nearest first, until what is left is hidden: all from `end` on.
+/// \returns the nearest key of what is left.
+template <class Index>
+double CellSolver::add_nearest(const CellBox& box, double removed, std::size_t& end, const Index& index) {
+  const glm::dvec2 place = place_in(box);
+  LastGroup group{list_.size(), list_.size()};
+  for (std::size_t i = 0; i < end; ++i) {
+    const FaceInBox face = list_[index(i)];  // a copy: the list grows
+    if (face.nearest < group.covered ||
+        (std::max(face.nearest, removed) < group.farthest && i > 0 && hides_rest(group, place))) {
+      end = i;
+      return std::max(face.nearest, removed);
+    }
+    add(face, box);
+    look_at_new(group);
+  }
+  return removed;
+}
 
 void CellSolver::gather(std::uint32_t face, const CellBox& box) {
   const auto& c = screen_.faces[face].corners;
   const ScreenPoint &p = screen_.points[c[0]], &q = screen_.points[c[1]], &r = screen_.points[c[2]];
   const Range key = range_of(p.key, q.key, r.key);
-  gathered_.push_back({{p, q, r}, screen_.ending[face]});
-  add({face, std::uint32_t(gathered_.size() - 1), screen_.ending[face] != 0, false, key.high, key.low,
-       range_of(p.x, q.x, r.x), range_of(p.y, q.y, r.y)},
-      box);
+  const auto number = std::uint32_t(gathered_.size());
+  gathered_.push_back({{p, q, r}, range_of(p.x, q.x, r.x), range_of(p.y, q.y, r.y), face, screen_.ending[face]});
+  add({key.high, key.low, number, screen_.ending[face] != 0, false}, box);
 }
 
 void CellSolver::add(const FaceInBox& face, const CellBox& box) {
-  if (face.x.high <= box.left || face.x.low >= box.right || face.y.high <= box.top || face.y.low >= box.bottom) return;
+  const GatheredFace& gathered = gathered_[face.number];
+  const Range &x = gathered.x, &y = gathered.y;
+  if (x.high <= box.left || x.low >= box.right || y.high <= box.top || y.low >= box.bottom) return;
   list_.push_back(face);
   // What lies in the cell as a whole did so in all larger ones, and gather() said all there is to know.
-  const bool is_inside =
-      face.x.low >= box.left && face.x.high <= box.right && face.y.low >= box.top && face.y.high <= box.bottom;
+  const bool is_inside = x.low >= box.left && x.high <= box.right && y.low >= box.top && y.high <= box.bottom;
   if (!is_inside && !reaches_into(box, list_.back())) list_.pop_back();
 }
 
@@ -163,75 +224,120 @@ bool CellSolver::reaches_into(const CellBox& box, FaceInBox& found) const {
   return true;
 }
 
-/// Finishes the cell whose list begins at `first`, and takes its list away.
-void CellSolver::divide(const CellBox& box, std::size_t first, std::vector<SeenPart>& seen) {
-  const Sorted sorted = sort(box, first);
-  list_.resize(first + sorted.kept);
+/// Finishes the cell whose list begins at `first`, and takes its list away. Nothing that was left out of the list is
+/// nearer than `removed`.
+void CellSolver::divide(const CellBox& box, std::size_t first, double removed) {
+  const Sorted sorted = sort(box, first, removed);
+  drop(first + sorted.kept);
   if (sorted.is_told)
-    show_all(box, first, seen);
-  else if (sorted.kept <= kFewFaces || !divide_further(box, first, seen))
-    cutter_.cut(box, std::span(list_).subspan(first), seen);
+    show_all(box, first);
+  else if (sorted.kept <= kFewFaces || !divide_further(box, first, sorted.removed)) {
+    cutter_.cut(box, std::span(list_).subspan(first), gathered_, parts);
+    drop(first);
+  }
   list_.resize(first);
 }
 
 /// \returns false where it would not help: the cell is too small, or most of its faces reach into all parts of it.
-bool CellSolver::divide_further(const CellBox& box, std::size_t first, std::vector<SeenPart>& seen) {
+bool CellSolver::divide_further(const CellBox& box, std::size_t first, double removed) {
   const double size = std::max(box.right - box.left, box.bottom - box.top);
   if (size <= kSmallestCell) return false;
-  const double middle_x = 0.5 * (box.left + box.right), middle_y = 0.5 * (box.top + box.bottom);
-  const CellBox parts[4] = {{box.left, box.top, middle_x, middle_y},
-                            {middle_x, box.top, box.right, middle_y},
-                            {box.left, middle_y, middle_x, box.bottom},
-                            {middle_x, middle_y, box.right, box.bottom}};
   const std::size_t last = list_.size(), count = last - first;
-  std::size_t begins[4];
-  for (int k = 0; k < 4; ++k) {
+  if (count > kCrowd && size > 4) {
+    divide_crowd(box, first, removed);
+    return true;
+  }
+  const double middle_x = 0.5 * (box.left + box.right), middle_y = 0.5 * (box.top + box.bottom);
+  const CellBox parts_of_box[4] = {{box.left, box.top, middle_x, middle_y},
+                                   {middle_x, box.top, box.right, middle_y},
+                                   {box.left, middle_y, middle_x, box.bottom},
+                                   {middle_x, middle_y, box.right, box.bottom}};
+  std::size_t begins[4], left_out = 0;
+  double nearest[4];  // of what is left out
+  for (std::size_t k = 0; k < 4; ++k) {
     begins[k] = list_.size();
-    for (std::size_t i = first; i < last; ++i) add(FaceInBox(list_[i]), parts[k]);  // a copy: the list grows
+    std::size_t end = count;
+    nearest[k] = add_nearest(parts_of_box[k], removed, end, [&](std::size_t i) { return first + i; });
+    left_out = std::max(left_out, count - end);
   }
   if (list_.size() - last >= 3 * count && (count <= kManyFaces || size <= 1)) {
     list_.resize(last);
     return false;
   }
-  for (int k = 3; k >= 0; --k) divide(parts[k], begins[k], seen);  // the last one takes its list away first
+  for (std::size_t i = last - left_out; i < last; ++i) marks_.set_partial(gathered_[list_[i].number].face);
+  for (std::size_t k = 4; k-- > 0;) divide(parts_of_box[k], begins[k], nearest[k]);  // the last list goes first
   return true;
 }
 
+/// Divides a cell into 4 x 4, by the boxes of its faces first.
+void CellSolver::divide_crowd(const CellBox& box, std::size_t first, double removed) {
+  constexpr int kAlong = 4;
+  const double width = (box.right - box.left) / kAlong, height = (box.bottom - box.top) / kAlong;
+  const auto at = [](double place, double start, double size) {
+    return std::clamp(int((place - start) / size), 0, kAlong - 1);
+  };
+  const auto visit = [&](const auto& body) {
+    for (std::size_t i = first; i < list_.size(); ++i) {
+      const GatheredFace& face = gathered_[list_[i].number];
+      const int right = at(face.x.high, box.left, width), bottom = at(face.y.high, box.top, height);
+      for (int row = at(face.y.low, box.top, height); row <= bottom; ++row)
+        for (int column = at(face.x.low, box.left, width); column <= right; ++column)
+          body(std::size_t(row * kAlong + column), i);
+    }
+  };
+  std::array<std::size_t, kAlong * kAlong + 1> ends{};
+  const std::size_t begin = members_.size(), last = list_.size();
+  visit([&](std::size_t part, std::size_t) { ++ends[part + 1]; });
+  ends[0] = begin;
+  for (std::size_t k = 1; k < ends.size(); ++k) ends[k] += ends[k - 1];
+  members_.resize(ends.back());
+  visit([&](std::size_t part, std::size_t i) { members_[ends[part]++] = std::uint32_t(i); });
+  for (std::size_t k = 0, from = begin; k < kAlong * kAlong; from = ends[k++]) {
+    const double left = box.left + double(k % kAlong) * width, top = box.top + double(k / kAlong) * height;
+    const CellBox part{left, top, left + width, top + height};
+    std::size_t end = ends[k] - from;
+    const double nearest = add_nearest(part, removed, end, [&](std::size_t i) { return members_[from + i]; });
+    for (std::size_t i = from + end; i < ends[k]; ++i) marks_.set_partial(gathered_[list_[members_[i]].number].face);
+    divide(part, last, nearest);
+  }
+  members_.resize(begin);
+}
+
 /// Brings the list into the order of its nearest keys, and tells what that tells.
-CellSolver::Sorted CellSolver::sort(const CellBox& box, std::size_t first) {
+CellSolver::Sorted CellSolver::sort(const CellBox& box, std::size_t first, double removed) {
   const auto begin = list_.begin() + std::ptrdiff_t(first);
   // What lies behind something that covers the cell alone need not be put in order.
-  double covered = -std::numeric_limits<double>::infinity(), removed = covered;
+  double covered = kNever;
   for (auto face = begin; face != list_.end(); ++face)
     if (face->is_all) covered = std::max(covered, face->farthest);
-  const auto is_hidden = [&](const FaceInBox& face) {
-    if (face.nearest < covered) removed = std::max(removed, face.nearest);
-    return face.nearest < covered;
-  };
-  list_.erase(std::remove_if(begin, list_.end(), is_hidden), list_.end());
-  std::sort(begin, list_.end(), [](const FaceInBox& a, const FaceInBox& b) {
-    return a.nearest != b.nearest ? a.nearest > b.nearest : a.face < b.face;
+  if (covered > kNever) {
+    const auto hidden =
+        std::stable_partition(begin, list_.end(), [&](const FaceInBox& face) { return !(face.nearest < covered); });
+    for (auto face = hidden; face != list_.end(); ++face) removed = std::max(removed, face->nearest);
+    drop(std::size_t(hidden - list_.begin()));
+  }
+  std::sort(begin, list_.end(), [&](const FaceInBox& a, const FaceInBox& b) {
+    return a.nearest != b.nearest ? a.nearest > b.nearest : gathered_[a.number].face < gathered_[b.number].face;
   });
   leave_out_copies(first);
-  // Off the middle, through which the sides of symmetric models pass.
-  const glm::dvec2 place(box.left + 0.4372 * (box.right - box.left), box.top + 0.5611 * (box.bottom - box.top));
+  const glm::dvec2 place = place_in(box);
   for (std::size_t i = first, group = first; i < list_.size();) {
-    double farthest = std::numeric_limits<double>::infinity();
+    double farthest = -kNever;
     bool is_ending = false;
     for (; i < list_.size() && (i == group || list_[i].nearest >= farthest); ++i) {
       farthest = std::min(farthest, list_[i].farthest);
       is_ending = is_ending || list_[i].is_ending;
     }
     // A group that reaches back to what was removed is not whole: a surface of it may pass through what covers the
-    // cell.
-    if (i == list_.size() && removed >= farthest) break;
+    // cell. Nor are those behind it.
+    if (removed >= farthest) break;
     if (!is_ending) {
       const int count = count_at(place, group, i);
-      if (count > 0) return {i - first, group == first && count == 1};
+      if (count > 0) return {i - first, group == first && count == 1, removed};
     }
     group = i;
   }
-  return {list_.size() - first, false};
+  return {list_.size() - first, false, removed};
 }
 
 /// Of faces with the same corners the first stays. Copies follow each other, as they are equally near.
@@ -256,11 +362,11 @@ void CellSolver::leave_out_copies(std::size_t first) {
 int CellSolver::count_at(const glm::dvec2& place, std::size_t first, std::size_t last) const {
   int count = 0;
   for (std::size_t i = first; i < last; ++i) {
-    const FaceInBox& face = list_[i];
+    const GatheredFace& face = gathered_[list_[i].number];
     if (place.x < face.x.low || place.x > face.x.high || place.y < face.y.low || place.y > face.y.high) continue;
-    const ScreenPoint* const p = gathered_[face.number].corners;
+    const ScreenPoint* const p = face.corners;
     const double inwards = turn_of(p[0], p[1], p[2]) > 0 ? 1 : -1;
-    double least = std::numeric_limits<double>::infinity();
+    double least = -kNever;
     for (int k = 0; k < 3; ++k) {
       const ScreenPoint &a = p[k], &b = p[k == 2 ? 0 : k + 1];
       const double within = inwards * turn_of(a, b, {place.x, place.y, 0});
@@ -274,28 +380,43 @@ int CellSolver::count_at(const glm::dvec2& place, std::size_t first, std::size_t
 }
 
 /// Every face of the list is seen as far as it lies in the cell.
-void CellSolver::show_all(const CellBox& box, std::size_t first, std::vector<SeenPart>& seen) {
+void CellSolver::show_all(const CellBox& box, std::size_t first) {
   for (std::size_t i = first; i < list_.size(); ++i) {
-    const FaceInBox& face = list_[i];
-    const auto &x = face.x, &y = face.y;
-    if (x.low >= box.left && x.high <= box.right && y.low >= box.top && y.high <= box.bottom)
-      seen.push_back({face.face, rule_.areas_of(gathered_[face.number].corners)});
-    else
-      cutter_.clip(box, face, seen);
+    const GatheredFace& face = gathered_[list_[i].number];
+    const Range &x = face.x, &y = face.y;
+    if (x.low >= box.left && x.high <= box.right && y.low >= box.top && y.high <= box.bottom) {
+      marks_.set_whole(face.face);
+    } else {
+      marks_.set_seen(face.face);
+      told.push_back({face.face, box});
+    }
   }
 }
 
 }  // namespace
 
-std::vector<std::vector<SeenPart>> seen_parts(const FacesOfView& faces, const View& view, const Execution& execution) {
+SeenParts seen_parts(const FacesOfView& faces, const View& view, const Execution& execution) {
   constexpr std::size_t kCellsAtOnce = 8;
   const CellLists lists(faces.screen, view);
-  std::vector<std::vector<SeenPart>> seen((lists.size() + kCellsAtOnce - 1) / kCellsAtOnce);
+  FaceMarks marks(faces.screen.faces.size());
+  for (const std::uint32_t face : lists.beyond_picture()) marks.set_partial(face);
+  const std::size_t chunks = (lists.size() + kCellsAtOnce - 1) / kCellsAtOnce;
+  SeenParts seen;
+  seen.parts.resize(chunks);
+  std::vector<std::vector<ToldPart>> told(chunks);
   parallel_for(execution, lists.size(), kCellsAtOnce, [&](std::size_t begin, std::size_t end) {
-    CellSolver solver(faces);
-    for (std::size_t cell = begin; cell < end; ++cell)
-      solver.solve(lists.box(cell, view), lists[cell], seen[begin / kCellsAtOnce]);
+    CellSolver solver(faces, marks);
+    for (std::size_t cell = begin; cell < end; ++cell) solver.solve(lists.box(cell, view), lists[cell]);
+    seen.parts[begin / kCellsAtOnce] = std::move(solver.parts);
+    told[begin / kCellsAtOnce] = std::move(solver.told);
   });
+  parallel_for(execution, chunks, 1, [&](std::size_t chunk, std::size_t) {
+    PieceCutter cutter(faces);
+    for (const ToldPart& part : told[chunk])
+      if (marks.is_partial(part.face)) cutter.clip(part.box, part.face, seen.parts[chunk]);
+  });
+  seen.is_whole = Buffer<std::uint8_t>(faces.screen.faces.size());
+  for (std::uint32_t i = 0; i < seen.is_whole.size(); ++i) seen.is_whole[i] = marks.is_whole(i);
   return seen;
 }
 

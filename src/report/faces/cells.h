@@ -13,9 +13,12 @@
 
 namespace frontmost::faces_detail {
 
-/// All parts of faces that are seen in the view, of which a face may have several. The same for any number of threads.
-/// O(faces + cells in which surfaces end).
-[[nodiscard]] std::vector<std::vector<SeenPart>> seen_parts(const FacesOfView& faces, const View& view,
-                                                            const Execution& execution);
+struct SeenParts {
+  Buffer<std::uint8_t> is_whole;             ///< by face: all of it is seen, and it has no parts
+  std::vector<std::vector<SeenPart>> parts;  ///< of the others; a face may have several
+};
+
+/// All that is seen in the view. The same for any number of threads. O(faces + cells in which surfaces end).
+[[nodiscard]] SeenParts seen_parts(const FacesOfView& faces, const View& view, const Execution& execution);
 
 }  // namespace frontmost::faces_detail

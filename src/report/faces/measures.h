@@ -5,6 +5,7 @@
 // there at key 1 / distance is at (u, v, 1) / key; in parallel projection at (u, v, -key), the key being -distance.
 #pragma once
 
+#include <algorithm>
 #include <glm/glm.hpp>
 #include <span>
 
@@ -17,6 +18,12 @@ namespace frontmost::faces_detail {
 struct ScreenPoint {
   double x, y, key;
 };
+
+struct Range {
+  double low, high;
+};
+
+[[nodiscard]] inline Range range_of(double a, double b, double c) { return {std::min({a, b, c}), std::max({a, b, c})}; }
 
 struct Areas {
   double pixels = 0, units = 0, solid_angle = 0;

@@ -34,27 +34,28 @@ AffineKey::AffineKey(const ScreenPoint& a, const ScreenPoint& b, const ScreenPoi
   along_y = (to_c * (b.x - a.x) - to_b * (c.x - a.x)) * scale;
 }
 
-PieceCutter::Candidate PieceCutter::candidate(const FaceInBox& face) const {
-  const ViewedFace& f = faces_.screen.faces[face.face];
-  const ScreenPoint &a = faces_.screen.points[f.corners[0]], &b = faces_.screen.points[f.corners[1]],
-                    &c = faces_.screen.points[f.corners[2]];
+PieceCutter::Candidate PieceCutter::candidate(std::uint32_t face, const ScreenPoint* corners, double farthest) {
+  const ScreenPoint &a = corners[0], &b = corners[1], &c = corners[2];
   const double inwards = turn_of(a, b, c) > 0 ? 1 : -1;
-  return {face.face,
-          face.farthest,
+  const Range key = range_of(a.key, b.key, c.key);
+  return {face,
+          farthest,
           {side_of(a, b, inwards), side_of(b, c, inwards), side_of(c, a, inwards)},
           AffineKey(a, b, c),
-          std::min({a.key, b.key, c.key}),
-          std::max({a.key, b.key, c.key}),
-          face.x,
-          face.y};
+          key.low,
+          key.high,
+          range_of(a.x, b.x, c.x),
+          range_of(a.y, b.y, c.y)};
 }
 
-void PieceCutter::cut(const CellBox& box, std::span<const FaceInBox> list, std::vector<SeenPart>& seen) {
+void PieceCutter::cut(const CellBox& box, std::span<const FaceInBox> list, std::span<const GatheredFace> gathered,
+                      std::vector<SeenPart>& seen) {
   candidates_.clear();
   reaches_.clear();
   for (const FaceInBox& face : list) {
-    candidates_.push_back(candidate(face));
-    reaches_.push_back({face.x, face.y, face.nearest});
+    const GatheredFace& found = gathered[face.number];
+    candidates_.push_back(candidate(found.face, found.corners, face.farthest));
+    reaches_.push_back({found.x, found.y, face.nearest});
   }
   pieces_.push_back({ConvexPiece(box), no_index, 0, box});
   while (!pieces_.empty()) {
@@ -64,8 +65,11 @@ void PieceCutter::cut(const CellBox& box, std::span<const FaceInBox> list, std::
   }
 }
 
-void PieceCutter::clip(const CellBox& box, const FaceInBox& face, std::vector<SeenPart>& seen) {
-  const Candidate whole = candidate(face);
+void PieceCutter::clip(const CellBox& box, std::uint32_t face, std::vector<SeenPart>& seen) {
+  const ViewedFace& f = faces_.screen.faces[face];
+  const auto& points = faces_.screen.points;
+  const ScreenPoint corners[3] = {points[f.corners[0]], points[f.corners[1]], points[f.corners[2]]};
+  const Candidate whole = candidate(face, corners, 0);
   Piece piece{ConvexPiece(box), no_index, 0, box};
   if (cut_to(whole, piece)) emit(piece.polygon, whole, seen);
   pieces_.clear();

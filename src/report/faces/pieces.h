@@ -13,18 +13,20 @@
 
 namespace frontmost::faces_detail {
 
-struct Range {
-  double low, high;
+/// A face of one of the largest cells; these lie beside each other.
+struct GatheredFace {
+  ScreenPoint corners[3];
+  Range x, y;  ///< of all of the face, also outside of the cell
+  std::uint32_t face;
+  std::uint8_t ending;
 };
 
 /// A face over a box of the picture. Between its nearest and farthest key lie all that it has there.
 struct FaceInBox {
-  std::uint32_t face;
-  std::uint32_t number;  ///< for whoever made the list
+  double nearest, farthest;
+  std::uint32_t number;  ///< of a gathered face
   bool is_ending;        ///< a surface ends within the box, at one of the face's sides
   bool is_all;           ///< it covers all of the box
-  double nearest, farthest;
-  Range x, y;  ///< of all of the face, also outside of the box
 };
 
 /// Areas of a part of a face that is seen.
@@ -55,9 +57,10 @@ class PieceCutter {
 
   /// Appends what is seen in `box` of `list`, which has all faces that may be seen there, in the order of their nearest
   /// keys, the nearest first.
-  void cut(const CellBox& box, std::span<const FaceInBox> list, std::vector<SeenPart>& seen);
+  void cut(const CellBox& box, std::span<const FaceInBox> list, std::span<const GatheredFace> gathered,
+           std::vector<SeenPart>& seen);
   /// Appends what of a face lies within `box`, all of it being seen there.
-  void clip(const CellBox& box, const FaceInBox& face, std::vector<SeenPart>& seen);
+  void clip(const CellBox& box, std::uint32_t face, std::vector<SeenPart>& seen);
 
  private:
   struct Candidate {
@@ -80,7 +83,7 @@ class PieceCutter {
     CellBox around;  ///< it
   };
 
-  [[nodiscard]] Candidate candidate(const FaceInBox& face) const;
+  [[nodiscard]] static Candidate candidate(std::uint32_t face, const ScreenPoint* corners, double farthest);
   void finish(Piece& piece, std::vector<SeenPart>& seen);
   [[nodiscard]] bool lies_behind(const Candidate& face, const Candidate& front, const ConvexPiece& polygon) const;
   [[nodiscard]] bool cut_to(const Candidate& face, Piece& piece);

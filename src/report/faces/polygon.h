@@ -24,11 +24,6 @@ struct CutLine {
   [[nodiscard]] double at(const glm::dvec2& p) const { return a * p.x + b * p.y + c; }
 };
 
-/// A rectangle of the picture, in pixels.
-struct CellBox {
-  double left, top, right, bottom;
-};
-
 /// Corners in order; those that cuts leave on one line are kept.
 class ConvexPiece {
  public:

@@ -125,9 +125,9 @@ struct VertexRange {
 };
 
 /// Where on the screen the vertices of all instances are that the view may show.
-class ScreenVertices {
+class VerticesOfView {
  public:
-  ScreenVertices(const PlacedScene& placed, const Eye& eye, const Execution& execution)
+  VerticesOfView(const PlacedScene& placed, const Eye& eye, const Execution& execution)
       : eye_(eye), first_(placed.scene->instances.size(), none) {
     std::vector<VertexRange> ranges;
     std::size_t count = 0;
@@ -188,13 +188,13 @@ struct FacePart {
 class FaceGatherer {
  public:
   /// `facing`: by primitive, 0 for those that are not there, or not whole.
-  FaceGatherer(const PlacedScene& placed, const Eye& eye, Culling culling, const ScreenVertices& vertices,
+  FaceGatherer(const PlacedScene& placed, const Eye& eye, Culling culling, const VerticesOfView& vertices,
                std::vector<std::int8_t>& facing)
       : placed_(placed), eye_(eye), culling_(culling), vertices_(vertices), facing_(facing) {}
 
   void gather(const MeshRange& range) {
     const std::size_t first_point = vertices_.first(range.instance);
-    if (first_point == ScreenVertices::none) return;
+    if (first_point == VerticesOfView::none) return;
     is_mirrored_ = placed_.mirrored[range.instance] != 0;
     PrimitiveId id = placed_.first_id(range);
     for (const glm::uvec3& c : placed_.corners(range)) add(id++, range.instance, first_point, c);
@@ -240,7 +240,7 @@ class FaceGatherer {
   const PlacedScene& placed_;
   const Eye& eye_;
   Culling culling_;
-  const ScreenVertices& vertices_;
+  const VerticesOfView& vertices_;
   std::vector<std::int8_t>& facing_;
   bool is_mirrored_ = false;
   FacePart out_;
@@ -303,7 +303,7 @@ ViewedFaces viewed_faces(const Surfaces& surfaces, const View& view, const std::
   constexpr std::size_t kRangesAtOnce = 16, kFacesAtOnce = 8192;
   const PlacedScene& placed = surfaces.placed();
   const Eye eye(view);
-  ScreenVertices vertices(placed, eye, execution);
+  VerticesOfView vertices(placed, eye, execution);
   std::vector<std::int8_t> facing(surfaces.primitive_count(), 0);
   std::vector<FacePart> parts((placed.ranges.size() + kRangesAtOnce - 1) / kRangesAtOnce);
   parallel_for(execution, placed.ranges.size(), kRangesAtOnce, [&](std::size_t begin, std::size_t end) {

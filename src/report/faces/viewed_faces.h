@@ -22,6 +22,11 @@ namespace frontmost::faces_detail {
 /// some 2^-38 pixel.
 inline constexpr double kNarrow = 1.0 / (1 << 30);
 
+/// A rectangle of the picture, in pixels.
+struct CellBox {
+  double left, top, right, bottom;
+};
+
 /// A triangle, or a part of one that was clipped.
 struct ViewedFace {
   std::uint32_t corners[3];  ///< numbers of points

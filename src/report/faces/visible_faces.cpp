@@ -18,10 +18,19 @@ using faces_detail::SeenPart;
 /// By id, ascending.
 std::vector<VisibleFace> find_faces(const Surfaces& surfaces, const View& view, const std::vector<MeshSides>& sides,
                                     const Execution& execution) {
+  constexpr std::size_t kFacesAtOnce = 4096;
   const faces_detail::ViewedFaces screen = faces_detail::viewed_faces(surfaces, view, sides, execution);
-  std::vector<Areas> areas(screen.faces.size());
   const faces_detail::FacesOfView faces{surfaces, screen, faces_detail::AreaRule(view)};
-  for (const std::vector<SeenPart>& parts : faces_detail::seen_parts(faces, view, execution))
+  const faces_detail::SeenParts found = faces_detail::seen_parts(faces, view, execution);
+  std::vector<Areas> areas(screen.faces.size());
+  parallel_for(execution, areas.size(), kFacesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (found.is_whole[i] == 0) continue;
+      const auto& c = screen.faces[i].corners;
+      areas[i] = faces.rule.areas_of(std::array{screen.points[c[0]], screen.points[c[1]], screen.points[c[2]]});
+    }
+  });
+  for (const std::vector<SeenPart>& parts : found.parts)
     for (const SeenPart& part : parts) areas[part.face] += part.areas;
   std::vector<VisibleFace> seen;
   for (std::size_t i = 0; i < areas.size(); ++i) {

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which faces meet each of the largest cells, and in which order to look at them.
+//
+//   ListedFace   bit 63      32 31     0
+//                    | order  | face   |     the nearer, the lesser
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "report/faces/viewed_faces.h"
+
+namespace frontmost::faces_detail {
+
+using ListedFace = std::uint64_t;
+
+[[nodiscard]] inline std::uint32_t face_of(ListedFace listed) { return std::uint32_t(listed); }
+/// Greater keys have lesser numbers, or the same.
+[[nodiscard]] std::uint32_t order_of(double key);
+/// No key with that number, or a greater one, is greater.
+[[nodiscard]] double key_before(std::uint32_t order);
+
+/// The faces whose boxes meet each of the largest cells, and the nearest keys of all of each face.
+class CellLists {
+ public:
+  CellLists(const ViewedFaces& screen, const View& view);
+
+  [[nodiscard]] std::size_t size() const { return std::size_t(columns_) * std::size_t(rows_); }
+  [[nodiscard]] std::span<const ListedFace> operator[](std::size_t cell) const {
+    const std::size_t begin = cell == 0 ? 0 : ends_[cell - 1];
+    return {listed_.data() + begin, ends_[cell] - begin};
+  }
+  [[nodiscard]] CellBox box(std::size_t cell, const View& view) const;
+  /// Faces that reach out of the picture.
+  [[nodiscard]] const std::vector<std::uint32_t>& beyond_picture() const { return beyond_picture_; }
+
+ private:
+  /// Of cells.
+  struct Span {
+    std::uint16_t left, right, top, bottom;
+  };
+
+  void find_spans(const ViewedFaces& screen, const View& view);
+
+  int columns_, rows_;
+  std::vector<std::size_t> ends_;  ///< by cell, where its faces end
+  Buffer<Span> spans_;             ///< by face
+  Buffer<std::uint32_t> orders_;   ///< by face
+  Buffer<ListedFace> listed_;
+  std::vector<std::uint32_t> beyond_picture_;
+};
+
+/// Faces in buckets by their order: within one in any, so that it takes time in proportion to their number.
+class RoughOrder {
+ public:
+  void sort(std::span<const ListedFace> listed);
+
+  /// The number of buckets; none of them is empty.
+  [[nodiscard]] std::size_t size() const { return ends_.size(); }
+  [[nodiscard]] std::span<const ListedFace> operator[](std::size_t bucket) const {
+    return std::span(sorted_).subspan(begin(bucket), ends_[bucket] - begin(bucket));
+  }
+  /// The least order in a bucket, and so in all from it on.
+  [[nodiscard]] std::uint32_t least(std::size_t bucket) const { return least_[bucket]; }
+  /// All of a bucket and of those behind it.
+  [[nodiscard]] std::span<const ListedFace> from(std::size_t bucket) const {
+    return std::span(sorted_).subspan(begin(bucket));
+  }
+
+ private:
+  [[nodiscard]] std::size_t begin(std::size_t bucket) const { return bucket == 0 ? 0 : ends_[bucket - 1]; }
+
+  std::vector<ListedFace> sorted_;
+  std::vector<std::uint32_t> ends_, least_;  ///< by bucket
+};
+
+}  // namespace frontmost::faces_detail
