@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Debian packages by CPack: frontmost (the program) and libfrontmost-dev (library, headers, descriptions).
+# Debian packages by CPack: frontmost (the program), libfrontmost-dev (library, headers, descriptions) and, where the
+# module is built, python3-frontmost.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME frontmost)
 set(CPACK_PACKAGE_CONTACT "Frontmost maintainers <maintainers@frontmost.example>")
@@ -27,5 +28,22 @@ if(NOT frontmost_kind STREQUAL STATIC_LIBRARY)
   set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libglm-dev, frontmost (= ${PROJECT_VERSION})")
 endif()
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "The C++ library of Frontmost: headers, library, CMake and pkg-config files.")
+
+if(TARGET frontmost_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-frontmost)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  # The compiled part is of one version of Python alone.
+  math(EXPR next_minor "${FRONTMOST_PYTHON_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "python3 (>= 3.${FRONTMOST_PYTHON_MINOR}), python3 (<< 3.${next_minor}), python3-numpy")
+  if(NOT frontmost_kind STREQUAL STATIC_LIBRARY)
+    string(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS ", frontmost (= ${PROJECT_VERSION})")
+  endif()
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION
+"What can be seen of 3D models, for Python and NumPy: depths, ids, pictures,
+drawings, and who hides whom, without a GPU or a display.")
+endif()
 
 include(CPack)

@@ -64,7 +64,8 @@ def main():
         folder = pathlib.Path(folder)
         prefix = folder / "prefix"
         run("cmake", "--install", arguments.build.resolve(), "--prefix", prefix)
-        compare(listing(prefix), STORED, arguments.update)
+        # The Python module is where the build has one; deb.py has its list.
+        compare([name for name in listing(prefix) if "-packages/" not in name], STORED, arguments.update)
 
         run("cmake", "-S", HERE / "consumer", "-B", folder / "by_cmake", "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}")
         run("cmake", "--build", folder / "by_cmake")
