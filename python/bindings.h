@@ -18,5 +18,7 @@ void bind_base(py::module_& m);
 void bind_scene(py::module_& m);
 void bind_view(py::module_& m);
 void bind_surfaces(py::module_& m);
+void bind_pictures(py::module_& m);
+void bind_rays(py::module_& m);
 
 }  // namespace frontmost::python

@@ -8,6 +8,7 @@
 
 #include <frontmost/raycast.h>
 #include <frontmost/scene.h>
+#include <frontmost/shade.h>
 #include <frontmost/surfaces.h>
 #include <frontmost/visible.h>
 #include <frontmost/zbuffer.h>
@@ -68,6 +69,9 @@ class HeldSurfaces {
 
   const std::shared_ptr<KeptScene> scene;
   Surfaces surfaces;
+  /// Keeps what pictures of these surfaces have in common; for whoever holds `shading`.
+  mutable std::unique_ptr<Shader> shader;
+  mutable std::mutex shading;
   /// How often something was moved: what was visible before is so no more.
   std::uint64_t moves = 0;
 

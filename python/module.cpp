@@ -11,5 +11,7 @@ PYBIND11_MODULE(_core, m) {
   bind_scene(m);
   bind_view(m);
   bind_surfaces(m);
+  bind_pictures(m);
+  bind_rays(m);
   m.attr("__name__") = name;
 }

@@ -11,8 +11,9 @@ Arrays are NumPy's. World space is right-handed; eyes look down -z, y up; rows o
 are in degrees. docs/python.md has every call, docs/conventions.md what every number means.
 """
 from . import _core
+from ._bitmap import Bitmap
 from ._core import *  # noqa: F403
 
 __version__ = _core.version
-__all__ = [name for name in dir(_core) if not name.startswith("_") and name != "version"]
+__all__ = ["Bitmap"] + [name for name in dir(_core) if not name.startswith("_") and name != "version"]
 

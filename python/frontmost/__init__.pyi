@@ -18,6 +18,8 @@ Convention = Literal["opencv", "opengl", "opencv_world_to_camera", "opencv_camer
 PixelRule = Literal["centre_at_integer", "centre_at_half"]
 Culling = Literal["none", "back", "front", "both"]
 Direction = Literal["front", "back", "left", "right", "top", "bottom", "iso", "three_quarter"]
+Shading = Literal["lit", "flat", "normals", "depth", "ids", "uv"]
+ImageFormat = Literal["png", "exr", "pfm", "npy", "jpeg", "webp"]
 DepthConvention = Literal["opengl", "gortler", "zero_to_one", "reversed"]
 
 no_primitive: int
@@ -306,5 +308,121 @@ class Visible:
     @property
     def triangle(self) -> NDArray[numpy.uint32]:
         """Rows of Mesh.faces; no_index where nothing is seen."""
+    def shade(self, *, shading: Shading = "lit", background: ArrayLike | None = (1.0, 1.0, 1.0),
+              shadows: Literal["off", "map", "rays"] = "map", opacity: float = 1.0,
+              see_through: Literal["where_needed", "always", "never"] = "where_needed", grid: int = 0,
+              lights: Literal["key", "file", "both", "none"] = "key", ambient_occlusion: float | None = None,
+              ambient_occlusion_radius: float | None = None, blend: Literal["linear", "srgb"] = "linear",
+              environment: Environment | Path | None = None, environment_angle: float = 0.0,
+              shows_environment: bool = False, exposure: float = 0.0,
+              tone_mapping: Literal["none", "aces", "khronos"] = "none", light_direction: ArrayLike | None = None,
+              light_intensity: float | None = None, threads: int = 0, progress: Progress = None) -> Bitmap:
+        """A picture, to the byte that of the program's.
+
+        shading: "lit", "flat" base colours, "normals", "depth", "ids" or "uv". background: sRGB, 0 to 1; None:
+        transparent. opacity: 0 to 1, of everything. grid: the A-buffer's sub-samples, 0 those of the view, or 2, 4 or 8
+        squared. ambient_occlusion: strength, 0 to 1; its radius in scene units. environment: "studio", "sky", "none",
+        the path of a picture, or an Environment, which is made once for many pictures; environment_angle: degrees.
+        exposure: stops. light_direction: towards the key light. Raises Error where objects were moved since.
+        """
+    def shade_linear(self, *, shading: Shading = "lit", background: ArrayLike | None = (1.0, 1.0, 1.0),
+                     shadows: Literal["off", "map", "rays"] = "map", opacity: float = 1.0,
+                     see_through: Literal["where_needed", "always", "never"] = "where_needed", grid: int = 0,
+                     lights: Literal["key", "file", "both", "none"] = "key", ambient_occlusion: float | None = None,
+                     ambient_occlusion_radius: float | None = None, blend: Literal["linear", "srgb"] = "linear",
+                     environment: Environment | Path | None = None, environment_angle: float = 0.0,
+                     shows_environment: bool = False, exposure: float = 0.0,
+                     tone_mapping: Literal["none", "aces", "khronos"] = "none", light_direction: ArrayLike | None = None,
+                     light_intensity: float | None = None, threads: int = 0, progress: Progress = None) -> NDArray[numpy.float32]:
+        """The same as (height, width, 4) of linear light, multiplied by alpha."""
+    @property
+    def normals(self) -> NDArray[numpy.float32]:
+        """(height, width, 3) unit normals in the world; 0 where nothing is seen."""
+    @property
+    def ray_distance(self) -> NDArray[numpy.float32]:
+        """Distance from the eye along the ray; inf where nothing is seen. In parallel projection as depth."""
     def content_hash(self) -> int:
         """Equal for equal answers, on every machine; the number that `frontmost render --hash` prints."""
+
+class Bitmap(numpy.ndarray[Any, numpy.dtype[numpy.uint8]]):
+    """A picture: (height, width, 4) uint8, sRGB with straight alpha, rows from the top. It is NumPy's array, which shows
+    itself in notebooks."""
+
+class Environment:
+    """The light that comes from all around, made ready once for many pictures.
+
+    source: "studio", "sky", "none", the path of an equirectangular picture (.hdr, .exr, ...), or (height, 2 * height, 3)
+    floats of linear light. Raises Error: bad_argument, file_unreadable, file_malformed.
+    """
+    def __init__(self, source: Path | ArrayLike, *, threads: int = 0, progress: Progress = None) -> None: ...
+    @property
+    def turns_with_camera(self) -> bool:
+        """True of the studio: what is ahead in it is ahead of the camera."""
+
+def save(image: ArrayLike | dict[str, Any], path: Path, *, format: ImageFormat | None = None, bits: int = 8,
+         depth_scale: float | None = None, quality: int = 90) -> None:
+    """Writes an image whole or not at all; the format is the suffix's: PNG, OpenEXR, PFM, NPY, JPEG, WebP.
+
+    image: (height, width, 3 or 4) of uint8 (sRGB, straight alpha) or floats (linear light, multiplied by alpha); or planes
+    (height, width) by name, as files hold them: {"Z": seen.depth}, {"object": seen.object}, {"N.X": ..., ...}; bool masks
+    are 0 and 1. bits: 8 or 16, of colours in PNG. depth_scale: PNG holds depth times this, rounded; None fits the range.
+    quality: 1 to 100, of JPEG and WebP. Raises Error: file_unwritable, unsupported, limit_exceeded, bad_argument.
+    """
+
+def load_image(path: Path) -> dict[str, NDArray[Any]]:
+    """Reads PNG, OpenEXR, PFM, NPY or HDR: a plane (height, width) of float32 or uint32 for each channel, by name.
+
+    Colours are R, G, B, A: linear light, multiplied by alpha. Raises Error: file_unreadable, file_malformed, unsupported,
+    limit_exceeded.
+    """
+
+class Hits:
+    """What rays met: an element for each ray."""
+    @property
+    def primitive(self) -> NDArray[numpy.uint32]:
+        """(n,) numbers of triangles; no_primitive where nothing is met."""
+    @property
+    def t(self) -> NDArray[numpy.float64]:
+        """(n,): the hit is at origin + t * direction, or start + t * (end - start); inf where nothing is met."""
+    @property
+    def is_front(self) -> NDArray[numpy.bool_]:
+        """(n,) whether it was met from the side on which corners run counter-clockwise."""
+    @property
+    def object(self) -> NDArray[numpy.uint32]:
+        """(n,) numbers of objects; no_index where nothing is met."""
+    @property
+    def face(self) -> NDArray[numpy.uint32]:
+        """(n,) as Visible.face; no_index where nothing is met."""
+    def __len__(self) -> int: ...
+
+class RayIndex:
+    """A hierarchy of boxes over the triangles of surfaces, for any number of views and queries.
+
+    Points and directions are (n, 3), or (3,), which is for all; they are about Scene.origin and rounded to float32.
+    Queries see both sides of all triangles and are decided exactly, without a tolerance; a ray through an edge meets its
+    triangles. Those that are not finite meet nothing. After Surfaces.move() queries raise Error until refit().
+    """
+    def __init__(self, surfaces: Surfaces, *, threads: int = 0, progress: Progress = None) -> None: ...
+    def closest_hit(self, origins: ArrayLike, directions: ArrayLike | None = None, *, end: ArrayLike | None = None,
+                    threads: int = 0, progress: Progress = None) -> Hits:
+        """The nearest surface along each ray; with end in place of directions, between two points."""
+    def all_hits(self, origins: ArrayLike, directions: ArrayLike, *,
+                 progress: Progress = None) -> tuple[Hits, NDArray[numpy.uint64]]:
+        """Every surface along each ray, nearest first: the hits of ray i are those from first[i] to first[i + 1]."""
+    def is_clear(self, start: ArrayLike, end: ArrayLike, *, threads: int = 0,
+                 progress: Progress = None) -> NDArray[numpy.bool_]:
+        """(n,) whether nothing is between two points: the line of sight."""
+    def are_lit(self, primitives: ArrayLike, weights: ArrayLike, to_light: ArrayLike, *, threads: int = 0,
+                progress: Progress = None) -> NDArray[numpy.bool_]:
+        """(n,) whether a light at infinity reaches points of triangles.
+
+        primitives: (n,) numbers of triangles. weights: (n, 3) of their corners, of any sum. to_light: (3,). Nothing
+        throws a shadow on itself.
+        """
+    def raycast(self, view: View, *, threads: int = 0, progress: Progress = None) -> Visible:
+        """What Surfaces.raycast() gives, with this index."""
+    def refit(self, *, threads: int = 0) -> None:
+        """Follows what Surfaces.move() moved."""
+    @property
+    def surfaces(self) -> Surfaces:
+        """Of which it is."""
