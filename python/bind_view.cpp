@@ -25,13 +25,6 @@ View checked(View view, int samples, Culling culling) {
   return view;
 }
 
-/// The words of README's poses, and two short ones: the calibrations of OpenCV, and the cameras of OpenGL.
-PoseConvention convention_of(const std::string& word) {
-  if (word == "opencv") return PoseConvention::opencv_world_to_camera;
-  if (word == "opengl") return PoseConvention::opengl_camera_to_world;
-  return value_of<PoseConvention>(word);
-}
-
 Intrinsics intrinsics_from(const py::handle& given, PixelRule rule) {
   const py::array array = py::array::ensure(given);
   if (array && array.ndim() == 1) {
@@ -48,7 +41,7 @@ Intrinsics intrinsics_from(const py::handle& given, PixelRule rule) {
 
 View from_intrinsics(const py::object& k, int width, int height, const py::object& pose, const std::string& convention,
                      double near, double far, PixelRule rule, int samples, Culling culling) {
-  const PoseConvention meant = convention_of(convention);
+  const PoseConvention meant = pose_convention_of(convention);
   const View view = make_view(intrinsics_from(k, rule), width, height).between(near, far);
   return checked(view.placed(pose.is_none() ? glm::dmat4(1.0) : matrix(pose, "pose"), meant), samples, culling);
 }
@@ -149,7 +142,7 @@ void bind_changes(py::class_<View>& view) {
   view.def(
           "placed",
           [](const View& v, const py::object& pose, const std::string& convention) {
-            return v.placed(matrix(pose, "pose"), convention_of(convention));
+            return v.placed(matrix(pose, "pose"), pose_convention_of(convention));
           },
           "pose"_a, "convention"_a = "opencv", doc("View.placed"))
       .def(
@@ -198,7 +191,7 @@ void bind_numbers(py::class_<View>& view) {
       .def(
           "pose",
           [](const View& v, const std::string& convention) {
-            return array_of(pose_of(v.world_from_eye, convention_of(convention)));
+            return array_of(pose_of(v.world_from_eye, pose_convention_of(convention)));
           },
           "convention"_a = "opencv", doc("View.pose"))
       .def(
@@ -214,10 +207,16 @@ void bind_numbers(py::class_<View>& view) {
                             pose_of(v.world_from_eye, PoseConvention::opengl_world_to_camera));
           },
           "depth"_a = "opengl", doc("View.clip_from_world"))
-      .def("__repr__", &described);
+      .def("__repr__", [](const View& v) { return described(v); });
 }
 
 }  // namespace
+
+PoseConvention pose_convention_of(const std::string& word) {
+  if (word == "opencv") return PoseConvention::opencv_world_to_camera;
+  if (word == "opengl") return PoseConvention::opengl_camera_to_world;
+  return value_of<PoseConvention>(word);
+}
 
 void bind_view(py::module_& m) {
   py::class_<View> view(m, "View", doc("View"));

@@ -20,5 +20,8 @@ void bind_view(py::module_& m);
 void bind_surfaces(py::module_& m);
 void bind_pictures(py::module_& m);
 void bind_rays(py::module_& m);
+void bind_scans(py::module_& m);
+void bind_layers(py::module_& m);
+void bind_accounts(py::module_& m);
 
 }  // namespace frontmost::python

@@ -13,5 +13,8 @@ PYBIND11_MODULE(_core, m) {
   bind_surfaces(m);
   bind_pictures(m);
   bind_rays(m);
+  bind_scans(m);
+  bind_layers(m);
+  bind_accounts(m);
   m.attr("__name__") = name;
 }

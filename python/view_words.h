@@ -30,3 +30,11 @@ FRONTMOST_WORDS(frontmost::NamedView, "direction",
                  {frontmost::NamedView::three_quarter, "three_quarter"}});
 FRONTMOST_WORDS(frontmost::FramedObjects, "objects",
                 {{frontmost::FramedObjects::subject, "subject"}, {frontmost::FramedObjects::all, "all"}});
+
+namespace frontmost::python {
+
+/// The library's words of poses, and two short ones: "opencv" is opencv_world_to_camera, the calibrations of OpenCV,
+/// "opengl" is opengl_camera_to_world, the cameras of OpenGL.
+[[nodiscard]] PoseConvention pose_convention_of(const std::string& word);
+
+}  // namespace frontmost::python

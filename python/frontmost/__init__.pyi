@@ -19,6 +19,9 @@ PixelRule = Literal["centre_at_integer", "centre_at_half"]
 Culling = Literal["none", "back", "front", "both"]
 Direction = Literal["front", "back", "left", "right", "top", "bottom", "iso", "three_quarter"]
 Shading = Literal["lit", "flat", "normals", "depth", "ids", "uv"]
+Reason = Literal["empty", "behind_eye", "nearer_than_near", "beyond_far", "outside", "faces_away", "transparent",
+                 "no_sample", "hidden", "seen"]
+MaskPart = Literal["visible", "whole"]
 ImageFormat = Literal["png", "exr", "pfm", "npy", "jpeg", "webp"]
 DepthConvention = Literal["opengl", "gortler", "zero_to_one", "reversed"]
 
@@ -259,6 +262,13 @@ class Surfaces:
         """The front-most triangle at every sample, by rasterisation. O(triangles + covered samples)."""
     def raycast(self, view: View, *, threads: int = 0, progress: Progress = None) -> Visible:
         """The same by rays, with an index made for this view. Nothing is snapped to 1/256 pixel."""
+    def abuffer(self, view: View, *, grid: int = 0, opacity: float = 1.0, threads: int = 0,
+                progress: Progress = None) -> Fragments:
+        """Everything that a view sees, as data: what each triangle covers of each pixel, in the order of depth.
+
+        grid: sub-samples, 0 those of the view, or 2, 4 or 8 squared. opacity: below 1 nothing is cut off behind what is
+        opaque. Raises Error limit_exceeded beyond 2^30 fragments.
+        """
     def move(self, object: int | str, pose: ArrayLike, *, threads: int = 0) -> None:
         """Gives an object another pose, 4x4, in the scene and here. What was visible before is so no more: its pictures
         and reports raise Error. Raises Error where other surfaces show the same scene."""
@@ -341,6 +351,26 @@ class Visible:
     @property
     def ray_distance(self) -> NDArray[numpy.float32]:
         """Distance from the eye along the ray; inf where nothing is seen. In parallel projection as depth."""
+    def layers(self, count: int, *, opacity: float = 1.0, threads: int = 0, progress: Progress = None) -> list[Visible]:
+        """The nearest layers of the same view, 1 to 1024: the k-th holds the k-th nearest triangle at every sample. Behind
+        what is opaque nothing is seen, unless opacity is below 1. The first is what the z-buffer gives."""
+    def account(self, *, canvas: float = 3.0, all_hiders: bool = False, threads: int = 0,
+                progress: Progress = None) -> Accounting:
+        """How much of every object is seen, how much lies beyond the frame, and who hides the rest; of what zbuffer() gave.
+
+        canvas: objects are counted alone on so many times the picture's width and height, 1 to 16. all_hiders: also
+        hidden_by_any and hidden_only_by, for some ten times the time.
+        """
+    def report(self, *, threads: int = 0, progress: Progress = None) -> list[Explanation]:
+        """Why each object is seen, or is not, by number; print(*seen.report(), sep="\\n") says it in sentences."""
+    def explain(self, object: int | str, *, threads: int = 0, progress: Progress = None) -> Explanation:
+        """Why one object, a number or a name, is seen, or is not, and what to change."""
+    def mask(self, object: int | str, *, part: MaskPart = "visible") -> NDArray[numpy.bool_]:
+        """(height, width): where an object is visible, or, with "whole", would be if nothing hid it."""
+    def coco_runs(self, object: int | str, *, part: MaskPart = "visible") -> str:
+        """A mask as COCO's compressed run lengths."""
+    def coco_polygons(self, object: int | str, *, part: MaskPart = "visible") -> list[list[int]]:
+        """A mask as polygons along the sides of pixels: x and y in turn, from the picture's top left."""
     def content_hash(self) -> int:
         """Equal for equal answers, on every machine; the number that `frontmost render --hash` prints."""
 
@@ -421,8 +451,178 @@ class RayIndex:
         """
     def raycast(self, view: View, *, threads: int = 0, progress: Progress = None) -> Visible:
         """What Surfaces.raycast() gives, with this index."""
+    def scan(self, camera: RayCamera, *, threads: int = 0, progress: Progress = None) -> RangeScan:
+        """What the rays of a camera meet."""
     def refit(self, *, threads: int = 0) -> None:
         """Follows what Surfaces.move() moved."""
     @property
     def surfaces(self) -> Surfaces:
         """Of which it is."""
+
+class RayCamera:
+    """A camera that only rays can serve. pose: 4x4; None: the identity. Azimuths go from ahead to the right, elevations
+    from the horizon upwards; ahead is -z of the "opengl" convention, which is the default here, +z of "opencv".
+    Raises Error: bad_argument, limit_exceeded, singular_camera.
+    """
+    @staticmethod
+    def panorama(width: int = 2048, height: int = 1024, *, pose: ArrayLike | None = None,
+                 convention: Convention = "opengl", samples: int = 1) -> RayCamera:
+        """All around, equirectangular: straight ahead is in the middle, straight up is the top."""
+    @staticmethod
+    def fisheye(width: int = 1024, height: int = 1024, *, fov: float = 180.0, pose: ArrayLike | None = None,
+                convention: Convention = "opengl", samples: int = 1) -> RayCamera:
+        """Equidistant. fov: degrees, where the circle touches the nearer sides."""
+    @staticmethod
+    def lidar(elevations: ArrayLike, steps: int = 1024, *, pose: ArrayLike | None = None,
+              convention: Convention = "opengl") -> RayCamera:
+        """A scanner that turns to the right: a row for each elevation (degrees), a column for each step of a turn."""
+    @staticmethod
+    def pattern(directions: ArrayLike, *, pose: ArrayLike | None = None, convention: Convention = "opengl") -> RayCamera:
+        """Any rays from one point: (n, 3) directions in the camera's space, x right, y up, -z ahead. One row."""
+    def looking(self, eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0, 1, 0)) -> RayCamera:
+        """At another place, turned towards a target."""
+    def pose(self, convention: Convention = "opengl") -> NDArray[numpy.float64]:
+        """4x4, as panorama() takes it."""
+    @property
+    def samples(self) -> int:
+        """Of a pixel."""
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns of its rays."""
+
+class RangeScan:
+    """What the rays of a camera met, as planes of its shape, of the first sample. They outlive what made them."""
+    @property
+    def camera(self) -> RayCamera:
+        """Whose rays they were."""
+    @property
+    def range(self) -> NDArray[numpy.float32]:
+        """Distance along the ray; inf where nothing is met. No copy; not writable."""
+    @property
+    def primitive(self) -> NDArray[numpy.uint32]:
+        """Numbers of triangles; no_primitive where nothing is met. No copy; not writable."""
+    @property
+    def object(self) -> NDArray[numpy.uint32]:
+        """Numbers of objects; no_index where nothing is met."""
+    @property
+    def material(self) -> NDArray[numpy.uint32]:
+        """Numbers of materials; no_index where nothing is met, or none is set."""
+    @property
+    def depth(self) -> NDArray[numpy.float32]:
+        """Distance along the viewing axis; inf where nothing is met, and for rays that do not lead ahead."""
+    @property
+    def points(self) -> NDArray[numpy.float64]:
+        """(rows, columns, 3): where surfaces are met, in the world; NaN where none is."""
+    def shade(self, *, shading: Shading = "lit", background: ArrayLike | None = (1.0, 1.0, 1.0),
+              shadows: Literal["off", "map", "rays"] = "map", opacity: float = 1.0,
+              see_through: Literal["where_needed", "always", "never"] = "where_needed", grid: int = 0,
+              lights: Literal["key", "file", "both", "none"] = "key", ambient_occlusion: float | None = None,
+              ambient_occlusion_radius: float | None = None, blend: Literal["linear", "srgb"] = "linear",
+              environment: Environment | Path | None = None, environment_angle: float = 0.0,
+              shows_environment: bool = False, exposure: float = 0.0,
+              tone_mapping: Literal["none", "aces", "khronos"] = "none", light_direction: ArrayLike | None = None,
+              light_intensity: float | None = None, threads: int = 0, progress: Progress = None) -> Bitmap:
+        """A picture of panoramas and fisheyes; options are those of Visible.shade()."""
+    def shade_linear(self, *, shading: Shading = "lit", background: ArrayLike | None = (1.0, 1.0, 1.0),
+                     shadows: Literal["off", "map", "rays"] = "map", opacity: float = 1.0,
+                     see_through: Literal["where_needed", "always", "never"] = "where_needed", grid: int = 0,
+                     lights: Literal["key", "file", "both", "none"] = "key", ambient_occlusion: float | None = None,
+                     ambient_occlusion_radius: float | None = None, blend: Literal["linear", "srgb"] = "linear",
+                     environment: Environment | Path | None = None, environment_angle: float = 0.0,
+                     shows_environment: bool = False, exposure: float = 0.0,
+                     tone_mapping: Literal["none", "aces", "khronos"] = "none", light_direction: ArrayLike | None = None,
+                     light_intensity: float | None = None, threads: int = 0, progress: Progress = None) -> NDArray[numpy.float32]:
+        """The same as (height, width, 4) of linear light, multiplied by alpha."""
+
+def ring_elevations(rings: int, lowest: float, highest: float) -> NDArray[numpy.float64]:
+    """Elevations of so many rings, evenly from highest down to lowest; degrees."""
+
+class Fragments:
+    """What each triangle covers of each pixel, nearer first. Arrays are views without a copy; not writable."""
+    @property
+    def rows(self) -> NDArray[Any]:
+        """(n,) records: mask (a bit for each sub-sample), primitive, key, key_dx, key_dy, opacity."""
+    @property
+    def first(self) -> NDArray[numpy.uint64]:
+        """(height * width + 1,): those of pixel i, row by row, are rows[first[i]:first[i + 1]]."""
+    @property
+    def samples(self) -> NDArray[numpy.int32]:
+        """(sub-samples, 2): their places in 1/256 pixel from the pixel's top left corner."""
+    def at(self, x: int, y: int) -> NDArray[Any]:
+        """The rows of a pixel."""
+    def __len__(self) -> int: ...
+
+class Accounting:
+    """How much of every object is seen: arrays with an element for each object. Samples are counted, exactly."""
+    @property
+    def alone(self) -> NDArray[numpy.uint64]:
+        """Samples that it covers on the canvas when nothing else is there."""
+    @property
+    def in_frame(self) -> NDArray[numpy.uint64]:
+        """Those of them within the picture."""
+    @property
+    def visible(self) -> NDArray[numpy.uint64]:
+        """Those of them where nothing hides it."""
+    @property
+    def alone_boxes(self) -> NDArray[numpy.int32]:
+        """(n, 4): x, y, width, height in pixels around what it covers alone; beyond the picture x and y may be negative."""
+    @property
+    def in_frame_boxes(self) -> NDArray[numpy.int32]:
+        """(n, 4): around what is in frame."""
+    @property
+    def visible_boxes(self) -> NDArray[numpy.int32]:
+        """(n, 4): around what is visible."""
+    @property
+    def visible_share(self) -> NDArray[numpy.float64]:
+        """Of what it covers alone. The three shares add up to 1, or are all 0 where it covers nothing."""
+    @property
+    def hidden_share(self) -> NDArray[numpy.float64]:
+        """In frame, and hidden by others."""
+    @property
+    def cut_share(self) -> NDArray[numpy.float64]:
+        """Beyond the frame."""
+    @property
+    def distance(self) -> NDArray[numpy.float32]:
+        """Planar distance of the nearest visible sample; inf where none is."""
+    @property
+    def is_cut_by_near(self) -> NDArray[numpy.bool_]:
+        """Whether it reaches nearer than the near plane."""
+    @property
+    def background(self) -> int:
+        """Samples that see nothing."""
+    @property
+    def hidden_by_front(self) -> NDArray[numpy.uint64]:
+        """(m, 3): object, hider, samples of the object at which the hider is seen in its place."""
+    @property
+    def hidden_by_any(self) -> NDArray[numpy.uint64]:
+        """(m, 3): object, hider, samples at which the hider is before it, seen or not. With all_hiders alone."""
+    @property
+    def hidden_only_by(self) -> NDArray[numpy.uint64]:
+        """(m, 3): object, hider, samples at which nothing else hides it. With all_hiders alone."""
+    def __len__(self) -> int: ...
+
+class Explanation:
+    """Why an object is seen, or is not. Printed it is a sentence."""
+    @property
+    def object(self) -> int:
+        """Its number."""
+    @property
+    def reason(self) -> Reason:
+        """One word."""
+    @property
+    def visible_share(self) -> float:
+        """As Accounting has it."""
+    @property
+    def hidden_share(self) -> float:
+        """As Accounting has it."""
+    @property
+    def cut_share(self) -> float:
+        """As Accounting has it."""
+    @property
+    def hiders(self) -> list[tuple[int, float]]:
+        """Who hides it, and how much of what is in frame; the greatest share first."""
+    @property
+    def remedy(self) -> str:
+        """What to change; empty where there is nothing to do."""
+    def remedied(self, view: View) -> View:
+        """The view, changed as the remedy says; as it is where that changes the scene."""

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cameras that only rays can serve: panorama, fisheye, laser scanners.
+#include <frontmost/ray_camera.h>
+#include <pybind11/stl.h>
+
+#include <shared_mutex>
+
+#include "python/arrays.h"
+#include "python/bindings.h"
+#include "python/held.h"
+#include "python/pictures.h"
+#include "python/rays.h"
+#include "python/running.h"
+#include "python/shade_words.h"
+#include "python/view_words.h"
+
+namespace frontmost::python {
+namespace {
+
+using namespace py::literals;
+
+/// Python's RangeScan, with the index that met it.
+struct HeldScan {
+  std::shared_ptr<HeldRayIndex> by;
+  std::shared_ptr<const RangeScan> scan;
+
+  [[nodiscard]] ArrayShape plane() const { return {scan->height, scan->width}; }
+  [[nodiscard]] std::size_t size() const { return std::size_t(scan->width) * std::size_t(scan->height); }
+};
+
+template <class Model>
+RayCamera camera_of(Model model, const py::object& pose, const std::string& convention, int samples) {
+  RayCamera camera{std::move(model)};
+  if (!pose.is_none())
+    camera.world_from_eye = world_from_eye(matrix(pose, "pose"), pose_convention_of(convention));
+  else
+    camera.world_from_eye = world_from_eye(glm::dmat4(1.0), pose_convention_of(convention));
+  camera.samples = samples;
+  validate(camera);
+  return camera;
+}
+
+RayCamera lidar_of(const py::object& elevations, int steps, const py::object& pose, const std::string& convention) {
+  const auto given = numbers<double>(elevations, "elevations", {-1});
+  Lidar lidar;
+  lidar.steps = steps;
+  for (py::ssize_t i = 0; i < given.size(); ++i) lidar.elevations.push_back(glm::radians(given.data()[i]));
+  return camera_of(std::move(lidar), pose, convention, 1);
+}
+
+RayCamera pattern_of(const py::object& directions, const py::object& pose, const std::string& convention) {
+  const auto given = numbers<float>(directions, "directions", {-1, 3});
+  RayPattern pattern;
+  for (py::ssize_t i = 0; i < given.shape(0); ++i)
+    pattern.directions.emplace_back(given.at(i, 0), given.at(i, 1), given.at(i, 2));
+  return camera_of(std::move(pattern), pose, convention, 1);
+}
+
+HeldScan scan_of(const std::shared_ptr<HeldRayIndex>& held, const RayCamera& camera, int threads,
+                 const py::object& progress) {
+  held->check_current();
+  return {held, run(threads, progress, [&](const Execution& execution) {
+            const std::shared_lock lock(held->reading);
+            return std::make_shared<const RangeScan>(scan(held->index, camera, execution));
+          })};
+}
+
+/// (height, width, 3): where rays meet something, NaN elsewhere.
+Array<double> points_of(const HeldScan& held) {
+  Array<double> points(ArrayShape{held.scan->height, held.scan->width, 3});
+  double* out = points.mutable_data();
+  run(1, py::none(), [&](const Execution&) {
+    for (int y = 0; y < held.scan->height; ++y)
+      for (int x = 0; x < held.scan->width; ++x, out += 3) {
+        const bool met = held.scan->primitives[held.scan->index(x, y)] != no_primitive;
+        const glm::dvec3 at = met ? point_of(*held.scan, x, y) : glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+        std::memcpy(out, &at.x, 3 * sizeof(double));
+      }
+  });
+  return points;
+}
+
+py::object scan_ids(const HeldScan& held, IdKind kind) {
+  Image image = run(0, py::none(), [&](const Execution&) {
+    return id_image(held.by->of->surfaces, {held.scan->width, held.scan->height},
+                    {held.scan->primitives.data(), held.size()}, kind);
+  });
+  return plane_array(std::move(image.channels[0]), image.width, image.height);
+}
+
+Image shaded_scan(const HeldScan& held, const ShadeOptions& options, int threads, const py::object& progress) {
+  held.by->check_current();
+  return run(threads, progress, [&](const Execution& execution) {
+    const std::shared_lock moving(held.by->of->scene->reading), lock(held.by->reading);
+    return shade(held.by->of->surfaces, ScanInput(*held.scan, &held.by->index), options, execution);
+  });
+}
+
+void bind_cameras(py::module_& m) {
+  py::class_<RayCamera>(m, "RayCamera", doc("RayCamera"))
+      .def_static(
+          "panorama",
+          [](int width, int height, const py::object& pose, const std::string& convention, int samples) {
+            return camera_of(Panorama{width, height}, pose, convention, samples);
+          },
+          "width"_a = 2048, "height"_a = 1024, py::kw_only(), "pose"_a = py::none(), "convention"_a = "opengl",
+          "samples"_a = 1, doc("RayCamera.panorama"))
+      .def_static(
+          "fisheye",
+          [](int width, int height, double fov, const py::object& pose, const std::string& convention, int samples) {
+            return camera_of(Fisheye{width, height, glm::radians(fov)}, pose, convention, samples);
+          },
+          "width"_a = 1024, "height"_a = 1024, py::kw_only(), "fov"_a = 180.0, "pose"_a = py::none(),
+          "convention"_a = "opengl", "samples"_a = 1, doc("RayCamera.fisheye"))
+      .def_static("lidar", &lidar_of, "elevations"_a, "steps"_a = 1024, py::kw_only(), "pose"_a = py::none(),
+                  "convention"_a = "opengl", doc("RayCamera.lidar"))
+      .def_static("pattern", &pattern_of, "directions"_a, py::kw_only(), "pose"_a = py::none(),
+                  "convention"_a = "opengl", doc("RayCamera.pattern"))
+      .def(
+          "looking",
+          [](const RayCamera& camera, const py::object& eye, const py::object& target, const py::object& up) {
+            RayCamera turned = camera;
+            turned.world_from_eye = look_at(point(eye, "eye"), point(target, "target"), point(up, "up"));
+            return turned;
+          },
+          "eye"_a, "target"_a, "up"_a = py::make_tuple(0, 1, 0), doc("RayCamera.looking"))
+      .def(
+          "pose",
+          [](const RayCamera& camera, const std::string& convention) {
+            return array_of(pose_of(camera.world_from_eye, pose_convention_of(convention)));
+          },
+          "convention"_a = "opengl", doc("RayCamera.pose"))
+      .def_readonly("samples", &RayCamera::samples, doc("RayCamera.samples"))
+      .def_property_readonly(
+          "shape",
+          [](const RayCamera& camera) {
+            const glm::ivec2 grid = grid_of(camera);
+            return py::make_tuple(grid.y, grid.x);
+          },
+          doc("RayCamera.shape"))
+      .def("__repr__", [](const RayCamera& camera) {
+        const glm::ivec2 grid = grid_of(camera);
+        return "RayCamera of " + std::to_string(grid.x) + "x" + std::to_string(grid.y) + " rays";
+      });
+}
+
+}  // namespace
+
+void bind_scans(py::module_& m) {
+  bind_cameras(m);
+  py::class_<HeldScan> scanned(m, "RangeScan", doc("RangeScan"));
+  scanned
+      .def_property_readonly(
+          "camera", [](const HeldScan& s) { return s.scan->camera; }, doc("RangeScan.camera"))
+      .def_property_readonly(
+          "range", [](const HeldScan& s) { return view_of(s.scan->ranges.data(), s.plane(), s.scan); },
+          doc("RangeScan.range"))
+      .def_property_readonly(
+          "primitive", [](const HeldScan& s) { return view_of(s.scan->primitives.data(), s.plane(), s.scan); },
+          doc("RangeScan.primitive"))
+      .def_property_readonly(
+          "object", [](const HeldScan& s) { return scan_ids(s, IdKind::object); }, doc("RangeScan.object"))
+      .def_property_readonly(
+          "material", [](const HeldScan& s) { return scan_ids(s, IdKind::material); }, doc("RangeScan.material"))
+      .def_property_readonly(
+          "depth",
+          [](const HeldScan& s) {
+            auto planes =
+                run(0, py::none(), [&](const Execution& execution) { return planar_depths(*s.scan, execution); });
+            return owned(std::move(planes), s.plane());
+          },
+          doc("RangeScan.depth"))
+      .def_property_readonly("points", &points_of, doc("RangeScan.points"))
+      .def("__repr__", [](const HeldScan& s) {
+        return "RangeScan of " + std::to_string(s.scan->width) + "x" + std::to_string(s.scan->height) + " rays";
+      });
+  bind_shading(scanned, "shade", doc("RangeScan.shade"),
+               [](const HeldScan& s, const ShadeOptions& options, int threads, const py::object& progress) {
+                 return bitmap_array(shaded_scan(s, options, threads, progress));
+               });
+  bind_shading(scanned, "shade_linear", doc("RangeScan.shade_linear"),
+               [](const HeldScan& s, const ShadeOptions& options, int threads, const py::object& progress) {
+                 return stacked(shaded_scan(s, options, threads, progress), {"R", "G", "B", "A"});
+               });
+  py::class_<HeldRayIndex, std::shared_ptr<HeldRayIndex>>(m.attr("RayIndex"))
+      .def("scan", &scan_of, "camera"_a, py::kw_only(), "threads"_a = 0, "progress"_a = py::none(),
+           doc("RayIndex.scan"));
+  m.def(
+      "ring_elevations",
+      [](int rings, double lowest, double highest) {
+        Array<double> out(rings < 0 ? 0 : rings);
+        const auto found = ring_elevations(rings, glm::radians(lowest), glm::radians(highest));
+        for (std::size_t i = 0; i < found.size(); ++i) out.mutable_data()[i] = glm::degrees(found[i]);
+        return out;
+      },
+      "rings"_a, "lowest"_a, "highest"_a, doc("ring_elevations"));
+}
+
+}  // namespace frontmost::python
