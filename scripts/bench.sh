@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # bench.sh FOLDER [ARGS]: says what machine this is, then runs every benchmark program of FOLDER.
 # bench.sh FOLDER zbuffer|abuffer|drawings [ARGS]: the tables of one method alone; stream [ARGS]: models of growing length,
-# streamed; shade MODEL... : pictures of models one after another, beside llvmpipe's.
+# streamed; shade MODEL... : pictures of models one after another, beside llvmpipe's; python: the module beside the library.
 set -euo pipefail
 folder=$1
 shift
@@ -23,6 +23,10 @@ case "${1:-}" in
   shade)
     shift
     exec "$folder/shade_table" "$@"
+    ;;
+  python)
+    shift
+    PYTHONPATH=$folder/../python exec "$(cat "$folder/python_executable")" bench/python/module.py "$folder/library_views"
     ;;
 esac
 "$folder/zbuffer_bench"
