@@ -23,5 +23,6 @@ void bind_rays(py::module_& m);
 void bind_scans(py::module_& m);
 void bind_layers(py::module_& m);
 void bind_accounts(py::module_& m);
+void bind_depth_buffer(py::module_& m);
 
 }  // namespace frontmost::python

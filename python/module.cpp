@@ -16,5 +16,6 @@ PYBIND11_MODULE(_core, m) {
   bind_scans(m);
   bind_layers(m);
   bind_accounts(m);
+  bind_depth_buffer(m);
   m.attr("__name__") = name;
 }

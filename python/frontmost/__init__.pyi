@@ -22,6 +22,8 @@ Shading = Literal["lit", "flat", "normals", "depth", "ids", "uv"]
 Reason = Literal["empty", "behind_eye", "nearer_than_near", "beyond_far", "outside", "faces_away", "transparent",
                  "no_sample", "hidden", "seen"]
 MaskPart = Literal["visible", "whole"]
+DepthFormat = Literal["d8", "d16", "d24", "f32"]
+DepthFunc = Literal["never", "less", "equal", "less_equal", "greater", "not_equal", "greater_equal", "always"]
 ImageFormat = Literal["png", "exr", "pfm", "npy", "jpeg", "webp"]
 DepthConvention = Literal["opengl", "gortler", "zero_to_one", "reversed"]
 
@@ -626,3 +628,31 @@ class Explanation:
         """What to change; empty where there is nothing to do."""
     def remedied(self, view: View) -> View:
         """The view, changed as the remedy says; as it is where that changes the scene."""
+
+class DepthBuffer:
+    """A depth buffer with OpenGL's state: triangles are drawn in the order of their numbers, depths kept as format has them.
+
+    Holds 12 bytes a sample, cleared to 1. For what is nearest Surfaces.zbuffer() is the quick way; this is for what
+    order, format or state make of it. Raises Error: bad_argument, limit_exceeded.
+    """
+    def __init__(self, width: int, height: int, *, samples: int = 1, format: DepthFormat = "d24") -> None: ...
+    def clear(self, depth: float = 1.0) -> None:
+        """Forgets what was drawn, and stores a depth everywhere."""
+    def draw(self, surfaces: Surfaces, view: View, *, func: DepthFunc = "less", mask: bool = True,
+             range: tuple[float, float] = (0.0, 1.0), nearer_is_greater: bool = False,
+             polygon_offset: tuple[float, float] = (0.0, 0.0), offset_clamp: float = 0.0, begin: int = 0,
+             end: int = 4294967295, threads: int = 0, progress: Progress = None) -> None:
+        """One draw call, of the triangles from begin up to end; calls follow one another.
+
+        func: glDepthFunc. mask: glDepthMask. range: glDepthRange. nearer_is_greater: the near plane maps to the end of
+        the range (reversed z): compare with "greater" and clear to 0. polygon_offset: factor and units of
+        glPolygonOffset; offset_clamp: glPolygonOffsetClamp. Raises Error where other surfaces were drawn since clear().
+        """
+    @property
+    def stored(self) -> NDArray[numpy.uint32]:
+        """(samples, height, width) bits as they are stored; a copy."""
+    @property
+    def depths(self) -> NDArray[numpy.float32]:
+        """(samples, height, width): what glReadPixels gives."""
+    def visible(self) -> Visible:
+        """The triangle of the last fragment that passed at every sample; a copy. Raises Error before anything is drawn."""
