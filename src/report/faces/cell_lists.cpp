@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 
 namespace frontmost::faces_detail {
@@ -10,6 +11,12 @@ namespace {
 
 /// Pixels along a side of the cells that the picture is divided into at first.
 constexpr int kLargestCell = 32;
+constexpr int kPart = kLargestCell / int(CellLists::parts_along);
+
+/// From x, y to x + size, y + size as far as that is in the picture.
+CellBox square(int x, int y, int size, const View& view) {
+  return {double(x), double(y), double(std::min(x + size, view.width)), double(std::min(y + size, view.height))};
+}
 
 }  // namespace
 
@@ -37,8 +44,9 @@ CellLists::CellLists(const ViewedFaces& screen, const View& view)
   const auto visit = [&](const auto& body) {
     for (std::size_t i = 0; i < spans_.size(); ++i) {
       const Span span = spans_[i];
-      for (std::size_t row = span.top; row <= span.bottom; ++row)
-        for (std::size_t column = span.left; column <= span.right; ++column)
+      const std::size_t right = span.right / parts_along, bottom = span.bottom / parts_along;
+      for (std::size_t row = span.top / parts_along; row <= bottom; ++row)
+        for (std::size_t column = span.left / parts_along; column <= right; ++column)
           body(row * std::size_t(columns_) + column, i);
     }
   };
@@ -49,35 +57,69 @@ CellLists::CellLists(const ViewedFaces& screen, const View& view)
 }
 
 void CellLists::find_spans(const ViewedFaces& screen, const View& view) {
-  const auto cell_at = [](double at, int count) {
-    return std::uint16_t(std::clamp(int(std::floor(at / kLargestCell)), 0, count - 1));
+  const auto part_at = [](double at, int size) {
+    return std::uint32_t(std::clamp(int(at * (1.0 / kPart)), 0, (size - 1) / kPart));  // what is cut off below 0 is 0
   };
   for (std::uint32_t i = 0; i < spans_.size(); ++i) {
     const auto& c = screen.faces[i].corners;
     const ScreenPoint &p = screen.points[c[0]], &q = screen.points[c[1]], &r = screen.points[c[2]];
     const Range x = range_of(p.x, q.x, r.x), y = range_of(p.y, q.y, r.y);
-    spans_[i] = {cell_at(x.low, columns_), cell_at(x.high, columns_), cell_at(y.low, rows_), cell_at(y.high, rows_)};
+    spans_[i] = {part_at(x.low, view.width), part_at(x.high, view.width), part_at(y.low, view.height),
+                 part_at(y.high, view.height)};
     orders_[i] = order_of(std::max({p.key, q.key, r.key}));
     if (x.low < 0 || x.high > view.width || y.low < 0 || y.high > view.height) beyond_picture_.push_back(i);
   }
 }
 
 CellBox CellLists::box(std::size_t cell, const View& view) const {
-  const auto x = int(cell % std::size_t(columns_)) * kLargestCell, y = int(cell / std::size_t(columns_)) * kLargestCell;
-  return {double(x), double(y), double(std::min(x + kLargestCell, view.width)),
-          double(std::min(y + kLargestCell, view.height))};
+  return square(int(cell % std::size_t(columns_)) * kLargestCell, int(cell / std::size_t(columns_)) * kLargestCell,
+                kLargestCell, view);
+}
+
+CellBox CellLists::box_of_part(std::size_t cell, std::size_t part, const View& view) const {
+  return square(int(cell % std::size_t(columns_)) * kLargestCell + int(part % parts_along) * kPart,
+                int(cell / std::size_t(columns_)) * kLargestCell + int(part / parts_along) * kPart, kPart, view);
+}
+
+bool CellLists::divide(std::size_t cell, std::vector<ListedFace>& listed,
+                       std::array<std::size_t, parts_of_cell>& ends) const {
+  const auto left = std::uint32_t(cell % std::size_t(columns_)) * parts_along,
+             top = std::uint32_t(cell / std::size_t(columns_)) * parts_along;
+  const auto visit = [&](const auto& body) {
+    for (const ListedFace face : (*this)[cell]) {
+      const Span& span = spans_[face_of(face)];
+      const std::uint32_t right = std::min(span.right - left, parts_along - 1),
+                          bottom = std::min(span.bottom - top, parts_along - 1);
+      for (std::uint32_t row = std::max(span.top, top) - top; row <= bottom; ++row)
+        for (std::uint32_t column = std::max(span.left, left) - left; column <= right; ++column)
+          body(row * parts_along + column, face);
+    }
+  };
+  std::array<std::size_t, parts_of_cell> counts{};
+  visit([&](std::uint32_t part, ListedFace) { ++counts[part]; });
+  std::size_t end = 0;
+  for (std::size_t part = 0; part < parts_of_cell; ++part) {
+    ends[part] = end;
+    end += counts[part];
+  }
+  if (end > 3 * (*this)[cell].size()) return false;
+  listed.resize(end);
+  visit([&](std::uint32_t part, ListedFace face) { listed[ends[part]++] = face; });
+  return true;
 }
 
 void RoughOrder::sort(std::span<const ListedFace> listed) {
-  constexpr std::size_t kMostBuckets = 128, kFacesInBucket = 8;
+  constexpr std::size_t kMostBuckets = 128, kFacesInBucket = 4;
   sorted_.resize(listed.size());
   ends_.clear();
   least_.clear();
   if (listed.empty()) return;
   const auto [first, last] = std::minmax_element(listed.begin(), listed.end());
   const std::uint64_t least = *first >> 32, range = (*last >> 32) - least + 1;
-  const std::uint64_t count = std::min(kMostBuckets, listed.size() / kFacesInBucket + 1);
-  const auto bucket_of = [&](ListedFace face) { return std::size_t(((face >> 32) - least) * count / range); };
+  const std::size_t wanted = std::min(kMostBuckets, listed.size() / kFacesInBucket + 1);
+  const int shift = std::bit_width((range - 1) / wanted);
+  const std::size_t count = std::size_t((range - 1) >> shift) + 1;
+  const auto bucket_of = [&](ListedFace face) { return std::size_t(((face >> 32) - least) >> shift); };
   std::array<std::uint32_t, kMostBuckets + 1> ends{};
   std::array<std::uint32_t, kMostBuckets> nearest;
   nearest.fill(~0u);

@@ -5,6 +5,7 @@
 //                    | order  | face   |     the nearer, the lesser
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,10 @@ using ListedFace = std::uint64_t;
 /// The faces whose boxes meet each of the largest cells, and the nearest keys of all of each face.
 class CellLists {
  public:
+  /// A cell has as many parts along each side, where the picture does not end before.
+  static constexpr std::uint32_t parts_along = 4;
+  static constexpr std::size_t parts_of_cell = std::size_t(parts_along) * parts_along;
+
   CellLists(const ViewedFaces& screen, const View& view);
 
   [[nodiscard]] std::size_t size() const { return std::size_t(columns_) * std::size_t(rows_); }
@@ -31,13 +36,18 @@ class CellLists {
     return {listed_.data() + begin, ends_[cell] - begin};
   }
   [[nodiscard]] CellBox box(std::size_t cell, const View& view) const;
+  /// Divides the list of a cell among its parts, by the boxes of faces: `listed` has those of part 0, of part 1 and so
+  /// on, and `ends` where each ends. \returns false where most faces reach into many parts, with nothing divided.
+  [[nodiscard]] bool divide(std::size_t cell, std::vector<ListedFace>& listed,
+                            std::array<std::size_t, parts_of_cell>& ends) const;
+  [[nodiscard]] CellBox box_of_part(std::size_t cell, std::size_t part, const View& view) const;
   /// Faces that reach out of the picture.
   [[nodiscard]] const std::vector<std::uint32_t>& beyond_picture() const { return beyond_picture_; }
 
  private:
-  /// Of cells.
+  /// Of parts of cells.
   struct Span {
-    std::uint16_t left, right, top, bottom;
+    std::uint32_t left, right, top, bottom;
   };
 
   void find_spans(const ViewedFaces& screen, const View& view);

@@ -14,10 +14,12 @@ namespace {
 /// Cells are not divided further at this side, in pixels.
 constexpr double kSmallestCell = 1.0 / 1024;
 /// So few faces are cut by each other sooner than a cell is divided.
-constexpr std::size_t kFewFaces = 48;
+constexpr std::size_t kFewFaces = 128;
 /// More faces than this are worth dividing a cell for, even if most of them reach into all of its parts: there, they
 /// hide each other.
-constexpr std::size_t kManyFaces = 100;
+constexpr std::size_t kManyFaces = 256;
+/// The largest cells with more faces are divided before anything is asked of these.
+constexpr std::size_t kManyListed = 500;
 /// Cells with more faces are divided into 4 x 4 at once.
 constexpr std::size_t kCrowd = 300;
 
@@ -58,11 +60,7 @@ class CellSolver {
  public:
   CellSolver(const FacesOfView& faces, FaceMarks& marks) : screen_(faces.screen), marks_(marks), cutter_(faces) {}
 
-  void solve(const CellBox& box, std::span<const ListedFace> listed) {
-    list_.clear();
-    gathered_.clear();
-    divide(box, 0, gather_nearest(box, listed));
-  }
+  void solve(const CellLists& lists, std::size_t cell, const View& view);
 
   std::vector<SeenPart> parts;
   std::vector<ToldPart> told;
@@ -84,6 +82,11 @@ class CellSolver {
     bool is_ending = false;
   };
 
+  void solve(const CellBox& box, std::span<const ListedFace> listed) {
+    list_.clear();
+    gathered_.clear();
+    divide(box, 0, gather_nearest(box, listed));
+  }
   [[nodiscard]] double gather_nearest(const CellBox& box, std::span<const ListedFace> listed);
   [[nodiscard]] bool hides_rest(LastGroup& group, const glm::dvec2& place);
   void look_at_new(LastGroup& group);
@@ -110,14 +113,39 @@ class CellSolver {
   FaceMarks& marks_;
   PieceCutter cutter_;
   RoughOrder order_;
+  std::vector<ListedFace> listed_;  ///< by parts of one of the largest cells
   std::vector<GatheredFace> gathered_;
   std::vector<FaceInBox> list_;  ///< of the cell that is looked at, behind those of the cells that it is a part of
   std::vector<std::uint32_t> members_;
 };
 
+/// Lists come nearly in order.
+template <class Iterator, class Before>
+void sort_nearly_sorted(Iterator begin, Iterator end, const Before& before) {
+  std::ptrdiff_t moves_left = 8 * (end - begin);
+  for (Iterator i = begin; i != end; ++i) {
+    Iterator to = i;
+    const auto item = *i;
+    for (; to != begin && before(item, *std::prev(to)); --to) *to = *std::prev(to);
+    *to = item;
+    moves_left -= i - to;
+    if (moves_left < 0) return std::sort(begin, end, before);
+  }
+}
+
 /// Off the middle, through which the sides of symmetric models pass.
 glm::dvec2 place_in(const CellBox& box) {
   return {box.left + 0.4372 * (box.right - box.left), box.top + 0.5611 * (box.bottom - box.top)};
+}
+
+void CellSolver::solve(const CellLists& lists, std::size_t cell, const View& view) {
+  std::array<std::size_t, CellLists::parts_of_cell> ends;
+  if (lists[cell].size() <= kManyListed || !lists.divide(cell, listed_, ends))
+    return solve(lists.box(cell, view), lists[cell]);
+  std::size_t begin = 0;
+  for (std::size_t part = 0; part < ends.size(); begin = ends[part++])
+    if (begin < ends[part])
+      solve(lists.box_of_part(cell, part, view), std::span(listed_).subspan(begin, ends[part] - begin));
 }
 
 /// Fills the list, the nearest first, until what is left is hidden. \returns the nearest key of what is left.
@@ -316,7 +344,7 @@ CellSolver::Sorted CellSolver::sort(const CellBox& box, std::size_t first, doubl
     for (auto face = hidden; face != list_.end(); ++face) removed = std::max(removed, face->nearest);
     drop(std::size_t(hidden - list_.begin()));
   }
-  std::sort(begin, list_.end(), [&](const FaceInBox& a, const FaceInBox& b) {
+  sort_nearly_sorted(begin, list_.end(), [&](const FaceInBox& a, const FaceInBox& b) {
     return a.nearest != b.nearest ? a.nearest > b.nearest : gathered_[a.number].face < gathered_[b.number].face;
   });
   leave_out_copies(first);
@@ -348,11 +376,13 @@ void CellSolver::leave_out_copies(std::size_t first) {
       if (const ScreenPoint& q = corner(i, k); q.x == p.x && q.y == p.y && q.key == p.key) return true;
     return false;
   };
-  std::size_t kept = first;
-  for (std::size_t i = first; i < list_.size(); ++i) {
-    const bool is_copy = kept > first && list_[i].nearest == list_[kept - 1].nearest &&
-                         list_[i].farthest == list_[kept - 1].farthest && has_corner(i, corner(kept - 1, 0)) &&
-                         has_corner(i, corner(kept - 1, 1)) && has_corner(i, corner(kept - 1, 2));
+  std::size_t i = first + 1;
+  while (i < list_.size() && list_[i].nearest != list_[i - 1].nearest) ++i;
+  std::size_t kept = std::min(i, list_.size());
+  for (; i < list_.size(); ++i) {
+    const bool is_copy = list_[i].nearest == list_[kept - 1].nearest && list_[i].farthest == list_[kept - 1].farthest &&
+                         has_corner(i, corner(kept - 1, 0)) && has_corner(i, corner(kept - 1, 1)) &&
+                         has_corner(i, corner(kept - 1, 2));
     if (!is_copy) list_[kept++] = list_[i];
   }
   list_.resize(kept);
@@ -406,7 +436,7 @@ SeenParts seen_parts(const FacesOfView& faces, const View& view, const Execution
   std::vector<std::vector<ToldPart>> told(chunks);
   parallel_for(execution, lists.size(), kCellsAtOnce, [&](std::size_t begin, std::size_t end) {
     CellSolver solver(faces, marks);
-    for (std::size_t cell = begin; cell < end; ++cell) solver.solve(lists.box(cell, view), lists[cell]);
+    for (std::size_t cell = begin; cell < end; ++cell) solver.solve(lists, cell, view);
     seen.parts[begin / kCellsAtOnce] = std::move(solver.parts);
     told[begin / kCellsAtOnce] = std::move(solver.told);
   });

@@ -38,6 +38,9 @@ std::vector<std::uint32_t> first_at_places(const std::vector<glm::vec3>& positio
   return first;
 }
 
+/// So few sides at a vertex need not be sorted.
+constexpr std::size_t kFewSides = 8;
+
 /// A side among those with the same lower vertex.
 struct SideEntry {
   std::uint32_t upper;   ///< the other vertex
@@ -53,8 +56,22 @@ void join(const SideEntry& a, const SideEntry& b, std::vector<std::uint32_t>& be
   beyond[b.side()] = a.side() / 3 << 1 | alike;
 }
 
+/// The same as join_pairs(), by asking all pairs.
+void join_few(std::span<const SideEntry> sides, std::vector<std::uint32_t>& beyond) {
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    std::size_t found = 0, partner = i;
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      if (k == i || sides[k].upper != sides[i].upper) continue;
+      ++found;
+      partner = k;
+    }
+    if (found == 1 && partner > i) join(sides[i], sides[partner], beyond);
+  }
+}
+
 /// Joins the sides of one lower vertex that exactly two triangles have.
 void join_pairs(std::span<SideEntry> sides, std::vector<std::uint32_t>& beyond) {
+  if (sides.size() <= kFewSides) return join_few(sides, beyond);
   std::sort(sides.begin(), sides.end(), [](const SideEntry& a, const SideEntry& b) {
     return a.upper != b.upper ? a.upper < b.upper : a.side() < b.side();
   });

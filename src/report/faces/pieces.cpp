@@ -12,6 +12,14 @@ namespace {
 /// Keys that differ by no more than this share of themselves may be equal: doubles put them to some 2^-45.
 constexpr double kAlike = 1.0 / (1ll << 36);
 
+CellBox box_of(const ConvexPiece& polygon) {
+  const glm::dvec2& first = *polygon.begin();
+  CellBox box{first.x, first.y, first.x, first.y};
+  for (const glm::dvec2& p : polygon)
+    box = {std::min(box.left, p.x), std::min(box.top, p.y), std::max(box.right, p.x), std::max(box.bottom, p.y)};
+  return box;
+}
+
 CutLine side_of(const ScreenPoint& from, const ScreenPoint& to, double inwards) {
   const double x = to.x - from.x, y = to.y - from.y, scale = inwards / std::sqrt(x * x + y * y);
   const double a = -y * scale, b = x * scale;
@@ -57,7 +65,7 @@ void PieceCutter::cut(const CellBox& box, std::span<const FaceInBox> list, std::
     candidates_.push_back(candidate(found.face, found.corners, face.farthest));
     reaches_.push_back({found.x, found.y, face.nearest});
   }
-  pieces_.push_back({ConvexPiece(box), no_index, 0, box});
+  pieces_.emplace_back(box);
   while (!pieces_.empty()) {
     Piece piece = pieces_.back();
     pieces_.pop_back();
@@ -70,7 +78,7 @@ void PieceCutter::clip(const CellBox& box, std::uint32_t face, std::vector<SeenP
   const auto& points = faces_.screen.points;
   const ScreenPoint corners[3] = {points[f.corners[0]], points[f.corners[1]], points[f.corners[2]]};
   const Candidate whole = candidate(face, corners, 0);
-  Piece piece{ConvexPiece(box), no_index, 0, box};
+  Piece piece(box);
   if (cut_to(whole, piece)) emit(piece.polygon, whole, seen);
   pieces_.clear();
 }
@@ -88,7 +96,8 @@ void PieceCutter::finish(Piece& piece, std::vector<SeenPart>& seen) {
       continue;
     const Candidate& face = candidates_[piece.next];
     if (piece.front != no_index && lies_behind(face, candidates_[piece.front], piece.polygon)) continue;
-    if (piece.polygon.is_full()) pieces_.push_back({piece.polygon.halve(), piece.front, piece.next, piece.around});
+    if (piece.polygon.is_full())
+      put_aside(piece.front, piece.next, [&](ConvexPiece& half) { half = piece.polygon.halve(); });
     if (!cut_to(face, piece)) continue;
     choose_nearer(piece.next, piece);
     farthest = candidates_[piece.front].farthest;
@@ -105,37 +114,51 @@ bool PieceCutter::lies_behind(const Candidate& face, const Candidate& front, con
   return true;
 }
 
+/// Keeps what make(polygon) makes, to be looked at later, unless it is narrow. \returns whether it is kept.
+template <class Make>
+bool PieceCutter::put_aside(std::uint32_t front, std::uint32_t next, const Make& make) {
+  Piece& piece = pieces_.emplace_back(front, next);
+  make(piece.polygon);
+  const bool is_kept = !is_narrow(piece.polygon);
+  if (is_kept)
+    piece.around = box_of(piece.polygon);
+  else
+    pieces_.pop_back();
+  return is_kept;
+}
+
 /// Cuts what lies beside a face off from a piece. \returns whether anything is left; else the piece stays as it is.
 bool PieceCutter::cut_to(const Candidate& face, Piece& piece) {
+  std::array<LineDistances, 3> distances;
   bool is_within = true;
-  for (const CutLine& side : face.sides) {
-    const LineSide found = LineDistances(piece.polygon, side).side;
-    if (found == LineSide::right || found == LineSide::neither) return false;
-    is_within = is_within && found == LineSide::left;
+  for (std::size_t k = 0; k < 3; ++k) {
+    distances[k].measure(piece.polygon, face.sides[k]);
+    if (distances[k].side == LineSide::right || distances[k].side == LineSide::neither) return false;
+    is_within = is_within && distances[k].side == LineSide::left;
   }
   if (is_within) return true;
   const std::size_t before = pieces_.size();
-  ConvexPiece rest = piece.polygon, within, beside;
-  for (const CutLine& side : face.sides) {
-    const LineDistances distances(rest, side);
-    if (distances.side == LineSide::left) continue;
-    if (distances.side != LineSide::both) {
-      pieces_.resize(before);
+  ConvexPiece parts[2];
+  const ConvexPiece* rest = &piece.polygon;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (distances[k].side == LineSide::left) continue;
+    if (rest != &piece.polygon) distances[k].measure(*rest, face.sides[k]);
+    if (distances[k].side == LineSide::left) continue;
+    if (distances[k].side != LineSide::both) {
+      pieces_.erase(pieces_.begin() + std::ptrdiff_t(before), pieces_.end());
       return false;
     }
-    cut_polygon(rest, distances, within, beside);
-    if (!is_narrow(beside)) pieces_.push_back({beside, piece.front, piece.next + 1, piece.around});
-    rest = within;
+    ConvexPiece& within = parts[rest == parts ? 1 : 0];
+    put_aside(piece.front, piece.next + 1,
+              [&](ConvexPiece& beside) { cut_polygon(*rest, distances[k], within, beside); });
+    rest = &within;
   }
-  if (is_narrow(rest)) {
-    pieces_.resize(before);
+  if (is_narrow(*rest)) {
+    pieces_.erase(pieces_.begin() + std::ptrdiff_t(before), pieces_.end());
     return false;
   }
-  piece.polygon = rest;
-  CellBox& around = piece.around;
-  // It reaches beyond the face by less than what is narrow.
-  around = {std::max(around.left, face.x.low - kNarrow), std::max(around.top, face.y.low - kNarrow),
-            std::min(around.right, face.x.high + kNarrow), std::min(around.bottom, face.y.high + kNarrow)};
+  piece.polygon = *rest;
+  piece.around = box_of(*rest);
   return true;
 }
 
@@ -150,7 +173,8 @@ void PieceCutter::choose_nearer(std::uint32_t number, Piece& piece) {
   const double along_x = plane.along_x - front.along_x, along_y = plane.along_y - front.along_y;
   // The difference of both keys, as the distance from the line at which they are equal.
   const auto difference = [&](const glm::dvec2& p) { return plane.at(p) - front.at(p); };
-  LineDistances nearer(piece.polygon, difference, kNarrow * std::sqrt(along_x * along_x + along_y * along_y));
+  LineDistances nearer;
+  nearer.measure(piece.polygon, difference, kNarrow * std::sqrt(along_x * along_x + along_y * along_y));
   double key = 0, most = 0;
   for (int i = 0; i < piece.polygon.size(); ++i) {
     key = std::max(key, std::abs(front.at(piece.polygon.begin()[i])));
@@ -162,12 +186,16 @@ void PieceCutter::choose_nearer(std::uint32_t number, Piece& piece) {
   }
   if (nearer.side == LineSide::right || nearer.side == LineSide::neither) return;
   if (nearer.side == LineSide::both) {
-    ConvexPiece before, behind;
-    cut_polygon(piece.polygon, nearer, before, behind);
-    if (is_narrow(before)) return;
-    if (!is_narrow(behind)) {
-      pieces_.push_back({behind, piece.front, piece.next + 1, piece.around});
+    ConvexPiece before;
+    const bool is_cut = put_aside(piece.front, piece.next + 1,
+                                  [&](ConvexPiece& behind) { cut_polygon(piece.polygon, nearer, before, behind); });
+    if (is_narrow(before)) {
+      if (is_cut) pieces_.pop_back();
+      return;
+    }
+    if (is_cut) {
       piece.polygon = before;
+      piece.around = box_of(before);
     }
   }
   piece.front = number;

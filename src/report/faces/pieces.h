@@ -78,14 +78,19 @@ class PieceCutter {
   };
   /// What `front` covers of what was looked at so far; the faces from `next` on are still to be asked.
   struct Piece {
+    Piece(std::uint32_t in_front, std::uint32_t next_face) : front(in_front), next(next_face) {}
+    explicit Piece(const CellBox& box) : polygon(box), around(box), front(no_index), next(0) {}
+
     ConvexPiece polygon;
-    std::uint32_t front, next;
     CellBox around;  ///< it
+    std::uint32_t front, next;
   };
 
   [[nodiscard]] static Candidate candidate(std::uint32_t face, const ScreenPoint* corners, double farthest);
   void finish(Piece& piece, std::vector<SeenPart>& seen);
   [[nodiscard]] bool lies_behind(const Candidate& face, const Candidate& front, const ConvexPiece& polygon) const;
+  template <class Make>
+  bool put_aside(std::uint32_t front, std::uint32_t next, const Make& make);
   [[nodiscard]] bool cut_to(const Candidate& face, Piece& piece);
   void choose_nearer(std::uint32_t number, Piece& piece);
   [[nodiscard]] bool is_preferred(const Candidate& face, const Candidate& front, const LineDistances& nearer) const;

@@ -29,7 +29,7 @@ class ConvexPiece {
  public:
   static constexpr int most_corners = 28;
 
-  ConvexPiece() = default;
+  ConvexPiece() {}  // NOLINT: corners are set by add()
   ConvexPiece(const ConvexPiece& other) { *this = other; }
   ConvexPiece& operator=(const ConvexPiece& other) {
     count_ = other.count_;
@@ -87,9 +87,11 @@ struct LineDistances {
   double narrow;
   LineSide side;
 
+  /// Of the corners of a polygon by distance(corner).
   template <class Distance>
-  LineDistances(const ConvexPiece& polygon, const Distance& distance, double narrow_distance)
-      : size(polygon.size()), narrow(narrow_distance) {
+  void measure(const ConvexPiece& polygon, const Distance& distance, double narrow_distance) {
+    size = polygon.size();
+    narrow = narrow_distance;
     double least = 0, greatest = 0;
     for (int i = 0; i < size; ++i) {
       const double d = distance(polygon.begin()[i]);
@@ -100,9 +102,10 @@ struct LineDistances {
     const bool is_left = greatest > narrow, is_right = least < -narrow;
     side = is_left ? (is_right ? LineSide::both : LineSide::left) : is_right ? LineSide::right : LineSide::neither;
   }
-  LineDistances(const ConvexPiece& polygon, const CutLine& line)
-      : LineDistances(
-            polygon, [&](const glm::dvec2& p) { return line.at(p); }, kNarrow) {}
+  void measure(const ConvexPiece& polygon, const CutLine& line) {
+    measure(
+        polygon, [&](const glm::dvec2& p) { return line.at(p); }, kNarrow);
+  }
 };
 
 /// Cuts a polygon of which there is something on both sides of a line.
