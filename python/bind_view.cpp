@@ -124,6 +124,26 @@ std::string described(const View& view) {
   return text;
 }
 
+/// All that a view is, for pickles and comparisons.
+py::tuple state_of(const View& v) {
+  const Projection& p = v.projection;
+  return py::make_tuple(v.width, v.height, v.samples, v.culling, array_of(v.world_from_eye).attr("tobytes")(),
+                        p.orthographic, p.left, p.right, p.bottom, p.top, p.clip.near, p.clip.far);
+}
+
+View view_of_state(const py::tuple& state) {
+  if (state.size() != 12) throw py::value_error("state: is not that of a View");
+  View view;
+  view.projection = {py::cast<bool>(state[5]),   py::cast<double>(state[6]),
+                     py::cast<double>(state[7]), py::cast<double>(state[8]),
+                     py::cast<double>(state[9]), {py::cast<double>(state[10]), py::cast<double>(state[11])}};
+  view.width = py::cast<int>(state[0]);
+  view.height = py::cast<int>(state[1]);
+  const py::object pose = py::module_::import("numpy").attr("frombuffer")(state[4]).attr("reshape")(4, 4);
+  view.world_from_eye = matrix(pose, "state");
+  return checked(view, py::cast<int>(state[2]), py::cast<Culling>(state[3]));
+}
+
 void bind_makers(py::class_<View>& view) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   view.def_static("from_intrinsics", &from_intrinsics, "K"_a, "width"_a, "height"_a, py::kw_only(),
@@ -207,6 +227,10 @@ void bind_numbers(py::class_<View>& view) {
                             pose_of(v.world_from_eye, PoseConvention::opengl_world_to_camera));
           },
           "depth"_a = "opengl", doc("View.clip_from_world"))
+      .def(py::pickle(&state_of, &view_of_state))
+      .def(
+          "__eq__", [](const View& a, const View& b) { return state_of(a).equal(state_of(b)); }, py::is_operator())
+      .def("__hash__", [](const View& v) { return py::hash(state_of(v)); })
       .def("__repr__", [](const View& v) { return described(v); });
 }
 

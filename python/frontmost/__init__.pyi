@@ -155,7 +155,7 @@ def builtin_names() -> list[str]:
     """The names that builtin() knows."""
 
 class View:
-    """A camera and a grid of pixels. Never changes; the methods that seem to change one give another.
+    """A camera and a grid of pixels. Never changes; the methods that seem to change one give another. Can be pickled.
 
     Distances are in scene units. samples: 1, 2, 4, 8 or 16 a pixel. culling: which sides of triangles are left out.
     Raises Error: bad_argument, singular_camera.

@@ -203,3 +203,23 @@ def test_builtin_scenes():
     assert (copy.name, copy.up, scene.up) == ("other", "-z", "y")
     scene.add_scene(copy)
     assert scene.triangle_count == 2 * copy.triangle_count
+
+
+def test_polygons_of_files_keep_their_numbers(tmp_path):
+    # Two squares side by side, of two triangles each, and a material library that is not there.
+    path = tmp_path / "squares.obj"
+    path.write_text("mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nf 1 2 5 4\nf 2 3 6 5\n")
+    scene = fm.load(path)
+    assert scene.meshes[0].face_ids.tolist() == [0, 0, 1, 1]
+    assert len(scene.warnings) == 1 and "none.mtl" in scene.warnings[0]
+    seen = seen_from(scene, direction="front")
+    assert set(numpy.unique(seen.face)) == {0, 1, fm.no_index}
+    assert set(numpy.unique(seen.triangle)) == {0, 1, 2, 3, fm.no_index}
+    assert ((seen.face == seen.triangle // 2) | (seen.face == fm.no_index)).all()
+
+
+def test_objects_of_scene_files_have_categories(box, tmp_path):
+    fm.Scene.from_arrays(*box).save(tmp_path / "crate.ply")
+    (tmp_path / "two.json").write_text('{"objects": [{"model": "crate.ply", "category": "crate"}, {"model": "crate.ply"}]}')
+    scene = fm.load(tmp_path / "two.json")
+    assert [(o.number, o.category) for o in scene.objects] == [(0, "crate"), (1, None)]

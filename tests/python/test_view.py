@@ -2,6 +2,7 @@
 """Views: every convention in, and back out."""
 import json
 import os
+import pickle
 import subprocess
 
 import numpy
@@ -105,6 +106,15 @@ def test_what_no_camera_is_ends_in_an_error(change, error, message):
     arguments = {"K": K, "width": 640, "height": 480, **change}
     with pytest.raises(error, match=message):
         fm.View.from_intrinsics(**arguments)
+
+
+def test_views_are_pickled_and_compared():
+    views = [fm.View.from_intrinsics(K, 640, 480, pose=some_pose(), samples=4, culling="back"),
+             fm.View.orthographic((1, 2, 3), (0, 0, 0)), fm.View.orthographic((1, 2, 3), (0, 0, 0), tall=3)]
+    again = pickle.loads(pickle.dumps(views))
+    assert again == views and views[1] != views[2] and views[0] != "view"
+    assert len({*views, *again}) == 3
+    assert [repr(view) for view in again] == [repr(view) for view in views]
 
 
 def test_the_eye_at_its_target_is_an_error():
