@@ -81,33 +81,6 @@ CellBox CellLists::box_of_part(std::size_t cell, std::size_t part, const View& v
                 int(cell / std::size_t(columns_)) * kLargestCell + int(part / parts_along) * kPart, kPart, view);
 }
 
-bool CellLists::divide(std::size_t cell, std::vector<ListedFace>& listed,
-                       std::array<std::size_t, parts_of_cell>& ends) const {
-  const auto left = std::uint32_t(cell % std::size_t(columns_)) * parts_along,
-             top = std::uint32_t(cell / std::size_t(columns_)) * parts_along;
-  const auto visit = [&](const auto& body) {
-    for (const ListedFace face : (*this)[cell]) {
-      const Span& span = spans_[face_of(face)];
-      const std::uint32_t right = std::min(span.right - left, parts_along - 1),
-                          bottom = std::min(span.bottom - top, parts_along - 1);
-      for (std::uint32_t row = std::max(span.top, top) - top; row <= bottom; ++row)
-        for (std::uint32_t column = std::max(span.left, left) - left; column <= right; ++column)
-          body(row * parts_along + column, face);
-    }
-  };
-  std::array<std::size_t, parts_of_cell> counts{};
-  visit([&](std::uint32_t part, ListedFace) { ++counts[part]; });
-  std::size_t end = 0;
-  for (std::size_t part = 0; part < parts_of_cell; ++part) {
-    ends[part] = end;
-    end += counts[part];
-  }
-  if (end > 3 * (*this)[cell].size()) return false;
-  listed.resize(end);
-  visit([&](std::uint32_t part, ListedFace face) { listed[ends[part]++] = face; });
-  return true;
-}
-
 void RoughOrder::sort(std::span<const ListedFace> listed) {
   constexpr std::size_t kMostBuckets = 128, kFacesInBucket = 4;
   sorted_.resize(listed.size());

@@ -5,7 +5,6 @@
 //                    | order  | face   |     the nearer, the lesser
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -36,10 +35,20 @@ class CellLists {
     return {listed_.data() + begin, ends_[cell] - begin};
   }
   [[nodiscard]] CellBox box(std::size_t cell, const View& view) const;
-  /// Divides the list of a cell among its parts, by the boxes of faces: `listed` has those of part 0, of part 1 and so
-  /// on, and `ends` where each ends. \returns false where most faces reach into many parts, with nothing divided.
-  [[nodiscard]] bool divide(std::size_t cell, std::vector<ListedFace>& listed,
-                            std::array<std::size_t, parts_of_cell>& ends) const;
+  /// Bit k: the face's box reaches into part k of a cell.
+  [[nodiscard]] std::uint16_t parts_of(std::size_t cell, std::uint32_t face) const {
+    const auto left = std::uint32_t(cell % std::size_t(columns_)) * parts_along,
+               top = std::uint32_t(cell / std::size_t(columns_)) * parts_along;
+    const Span& span = spans_[face];
+    // From the first to the last column, or row.
+    const auto bits = [](std::uint32_t first, std::uint32_t last, std::uint32_t start) {
+      const std::uint32_t from = std::max(first, start) - start, to = std::min(last - start, parts_along - 1);
+      return (2u << to) - (1u << from);
+    };
+    const std::uint32_t columns = bits(span.left, span.right, left), rows = bits(span.top, span.bottom, top);
+    // Each bit of the rows becomes four.
+    return std::uint16_t(((rows & 1) | (rows & 2) << 3 | (rows & 4) << 6 | (rows & 8) << 9) * columns);
+  }
   [[nodiscard]] CellBox box_of_part(std::size_t cell, std::size_t part, const View& view) const;
   /// Faces that reach out of the picture.
   [[nodiscard]] const std::vector<std::uint32_t>& beyond_picture() const { return beyond_picture_; }
@@ -67,19 +76,15 @@ class RoughOrder {
 
   /// The number of buckets; none of them is empty.
   [[nodiscard]] std::size_t size() const { return ends_.size(); }
-  [[nodiscard]] std::span<const ListedFace> operator[](std::size_t bucket) const {
-    return std::span(sorted_).subspan(begin(bucket), ends_[bucket] - begin(bucket));
-  }
   /// The least order in a bucket, and so in all from it on.
   [[nodiscard]] std::uint32_t least(std::size_t bucket) const { return least_[bucket]; }
-  /// All of a bucket and of those behind it.
-  [[nodiscard]] std::span<const ListedFace> from(std::size_t bucket) const {
-    return std::span(sorted_).subspan(begin(bucket));
-  }
+  /// Bucket after bucket.
+  [[nodiscard]] const std::vector<ListedFace>& faces() const { return sorted_; }
+  /// Where a bucket begins in faces().
+  [[nodiscard]] std::size_t begin(std::size_t bucket) const { return bucket == 0 ? 0 : ends_[bucket - 1]; }
+  [[nodiscard]] std::size_t end(std::size_t bucket) const { return ends_[bucket]; }
 
  private:
-  [[nodiscard]] std::size_t begin(std::size_t bucket) const { return bucket == 0 ? 0 : ends_[bucket - 1]; }
-
   std::vector<ListedFace> sorted_;
   std::vector<std::uint32_t> ends_, least_;  ///< by bucket
 };

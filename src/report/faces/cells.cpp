@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <atomic>
 #include <memory>
+#include <utility>
 
 #include "base/parallel.h"
+#include "base/pool.h"
 #include "report/faces/cell_lists.h"
 
 namespace frontmost::faces_detail {
@@ -34,25 +36,26 @@ struct ToldPart {
 /// What cells say of faces, any of them at any time.
 class FaceMarks {
  public:
-  explicit FaceMarks(std::size_t count) : marks_(new std::atomic<std::uint8_t>[count]()) {}
+  explicit FaceMarks(std::size_t count) : seen_(new Mark[count]()), partial_(new Mark[count]()) {}
   /// In a cell that it reaches out of.
-  void set_seen(std::uint32_t face) { set(face, kSeen); }
+  void set_seen(std::uint32_t face) { seen_[face].store(kSeen, std::memory_order_relaxed); }
   /// In the one cell that it lies in.
-  void set_whole(std::uint32_t face) { set(face, kWhole); }
+  void set_whole(std::uint32_t face) { seen_[face].store(kWhole, std::memory_order_relaxed); }
   /// Somewhere it may be hidden, or outside of the picture, if it is not seen in the one cell that it lies in.
-  void set_partial(std::uint32_t face) { set(face, kPartial); }
-  [[nodiscard]] bool is_partial(std::uint32_t face) const { return (get(face) & kPartial) != 0; }
-  [[nodiscard]] bool is_whole(std::uint32_t face) const { return (get(face) & kWhole) != 0 || get(face) == kSeen; }
+  void set_partial(std::uint32_t face) { partial_[face].store(1, std::memory_order_relaxed); }
+  [[nodiscard]] bool is_partial(std::uint32_t face) const {
+    return partial_[face].load(std::memory_order_relaxed) != 0;
+  }
+  [[nodiscard]] bool is_whole(std::uint32_t face) const {
+    const std::uint8_t seen = seen_[face].load(std::memory_order_relaxed);
+    return seen == kWhole || (seen == kSeen && !is_partial(face));
+  }
 
  private:
-  static constexpr std::uint8_t kSeen = 1, kWhole = 2, kPartial = 4;
+  static constexpr std::uint8_t kSeen = 1, kWhole = 2;
+  using Mark = std::atomic<std::uint8_t>;
 
-  void set(std::uint32_t face, std::uint8_t mark) {
-    if ((get(face) & mark) == 0) marks_[face].fetch_or(mark, std::memory_order_relaxed);
-  }
-  [[nodiscard]] std::uint8_t get(std::uint32_t face) const { return marks_[face].load(std::memory_order_relaxed); }
-
-  std::unique_ptr<std::atomic<std::uint8_t>[]> marks_;
+  std::unique_ptr<Mark[]> seen_, partial_;
 };
 
 /// Looks at one of the largest cells after the other.
@@ -61,6 +64,8 @@ class CellSolver {
   CellSolver(const FacesOfView& faces, FaceMarks& marks) : screen_(faces.screen), marks_(marks), cutter_(faces) {}
 
   void solve(const CellLists& lists, std::size_t cell, const View& view);
+
+  void clip(const ToldPart& part, std::vector<SeenPart>& seen) { cutter_.clip(part.box, part.face, seen); }
 
   std::vector<SeenPart> parts;
   std::vector<ToldPart> told;
@@ -82,12 +87,12 @@ class CellSolver {
     bool is_ending = false;
   };
 
-  void solve(const CellBox& box, std::span<const ListedFace> listed) {
+  void solve(const CellBox& box, std::uint16_t part) {
     list_.clear();
     gathered_.clear();
-    divide(box, 0, gather_nearest(box, listed));
+    divide(box, 0, gather_nearest(box, part));
   }
-  [[nodiscard]] double gather_nearest(const CellBox& box, std::span<const ListedFace> listed);
+  [[nodiscard]] double gather_nearest(const CellBox& box, std::uint16_t part);
   [[nodiscard]] bool hides_rest(LastGroup& group, const glm::dvec2& place);
   void look_at_new(LastGroup& group);
   template <class Index>
@@ -113,7 +118,8 @@ class CellSolver {
   FaceMarks& marks_;
   PieceCutter cutter_;
   RoughOrder order_;
-  std::vector<ListedFace> listed_;  ///< by parts of one of the largest cells
+  std::vector<std::uint16_t> parts_of_faces_;  ///< of the order's, bits of those of the cell that their boxes meet
+  std::size_t least_looked_at_ = 0;            ///< what lies behind in the order is hidden in some part
   std::vector<GatheredFace> gathered_;
   std::vector<FaceInBox> list_;  ///< of the cell that is looked at, behind those of the cells that it is a part of
   std::vector<std::uint32_t> members_;
@@ -139,27 +145,36 @@ glm::dvec2 place_in(const CellBox& box) {
 }
 
 void CellSolver::solve(const CellLists& lists, std::size_t cell, const View& view) {
-  std::array<std::size_t, CellLists::parts_of_cell> ends;
-  if (lists[cell].size() <= kManyListed || !lists.divide(cell, listed_, ends))
-    return solve(lists.box(cell, view), lists[cell]);
-  std::size_t begin = 0;
-  for (std::size_t part = 0; part < ends.size(); begin = ends[part++])
-    if (begin < ends[part])
-      solve(lists.box_of_part(cell, part, view), std::span(listed_).subspan(begin, ends[part] - begin));
+  order_.sort(lists[cell]);
+  const std::vector<ListedFace>& faces = order_.faces();
+  constexpr std::uint16_t kAllParts = 0xFFFF;
+  least_looked_at_ = faces.size();
+  if (faces.size() <= kManyListed) {
+    parts_of_faces_.assign(faces.size(), kAllParts);
+    solve(lists.box(cell, view), kAllParts);
+  } else {
+    parts_of_faces_.resize(faces.size());
+    int used = 0;
+    for (std::size_t i = 0; i < faces.size(); ++i) used |= parts_of_faces_[i] = lists.parts_of(cell, face_of(faces[i]));
+    for (std::size_t part = 0; part < CellLists::parts_of_cell; ++part)
+      if ((used >> part & 1) != 0) solve(lists.box_of_part(cell, part, view), std::uint16_t(1 << part));
+  }
+  for (std::size_t i = least_looked_at_; i < faces.size(); ++i) marks_.set_partial(face_of(faces[i]));
 }
 
-/// Fills the list, the nearest first, until what is left is hidden. \returns the nearest key of what is left.
-double CellSolver::gather_nearest(const CellBox& box, std::span<const ListedFace> listed) {
-  order_.sort(listed);
+/// Fills the list with faces of some parts, the nearest first, until what is left is hidden.
+/// \returns the nearest key of what is left.
+double CellSolver::gather_nearest(const CellBox& box, std::uint16_t part) {
   const glm::dvec2 place = place_in(box);
   LastGroup group{list_.size(), list_.size()};
   for (std::size_t bucket = 0; bucket < order_.size(); ++bucket) {
     const std::uint32_t nearest = order_.least(bucket);
     if (order_of(group.covered) < nearest || (order_of(group.farthest) < nearest && hides_rest(group, place))) {
-      for (const ListedFace& face : order_.from(bucket)) marks_.set_partial(face_of(face));
+      least_looked_at_ = std::min(least_looked_at_, order_.begin(bucket));
       return key_before(nearest);
     }
-    for (const ListedFace& face : order_[bucket]) gather(face_of(face), box);
+    for (std::size_t i = order_.begin(bucket); i < order_.end(bucket); ++i)
+      if ((parts_of_faces_[i] & part) != 0) gather(face_of(order_.faces()[i]), box);
     look_at_new(group);
   }
   return kNever;
@@ -434,16 +449,17 @@ SeenParts seen_parts(const FacesOfView& faces, const View& view, const Execution
   SeenParts seen;
   seen.parts.resize(chunks);
   std::vector<std::vector<ToldPart>> told(chunks);
+  Pool<CellSolver> solvers;
   parallel_for(execution, lists.size(), kCellsAtOnce, [&](std::size_t begin, std::size_t end) {
-    CellSolver solver(faces, marks);
-    for (std::size_t cell = begin; cell < end; ++cell) solver.solve(lists, cell, view);
-    seen.parts[begin / kCellsAtOnce] = std::move(solver.parts);
-    told[begin / kCellsAtOnce] = std::move(solver.told);
+    const auto solver = solvers.borrow([&] { return std::make_unique<CellSolver>(faces, marks); });
+    for (std::size_t cell = begin; cell < end; ++cell) solver->solve(lists, cell, view);
+    seen.parts[begin / kCellsAtOnce] = std::exchange(solver->parts, {});
+    told[begin / kCellsAtOnce] = std::exchange(solver->told, {});
   });
   parallel_for(execution, chunks, 1, [&](std::size_t chunk, std::size_t) {
-    PieceCutter cutter(faces);
+    const auto solver = solvers.borrow([&] { return std::make_unique<CellSolver>(faces, marks); });
     for (const ToldPart& part : told[chunk])
-      if (marks.is_partial(part.face)) cutter.clip(part.box, part.face, seen.parts[chunk]);
+      if (marks.is_partial(part.face)) solver->clip(part, seen.parts[chunk]);
   });
   seen.is_whole = Buffer<std::uint8_t>(faces.screen.faces.size());
   for (std::uint32_t i = 0; i < seen.is_whole.size(); ++i) seen.is_whole[i] = marks.is_whole(i);
