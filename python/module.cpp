@@ -17,5 +17,7 @@ PYBIND11_MODULE(_core, m) {
   bind_layers(m);
   bind_accounts(m);
   bind_depth_buffer(m);
+  bind_lines(m);
+  bind_sheets(m);
   m.attr("__name__") = name;
 }

@@ -29,7 +29,7 @@ def signature(node, name):
 
 
 def default(node):
-    return "inf" if ast.unparse(node) == "..." else ast.unparse(node).replace("'", '"')
+    return {"...": "..."}.get(ast.unparse(node)) or ast.unparse(node).replace("'", '"')
 
 
 def plain(annotation):
@@ -67,7 +67,8 @@ def page():
             lines += [f"### {node.name}", "", words(node), "", *inside, *[""] * bool(inside)]
         elif isinstance(node, ast.FunctionDef):
             lines += [f"### {node.name}", "", f"`{signature(node, node.name)}`", "", words(node), ""]
-    lines += ["### Numbers", "", "`no_primitive` and `no_index` (both 4294967295) are what ids hold where there is nothing.", ""]
+    lines += ["### Numbers", "", "`no_primitive` and `no_index` (both 4294967295) are what ids hold where there is nothing; `edge_kinds` are the words "
+              "of Drawing.kind.", ""]
     head = PAGE.read_text().split(MARK)[0]
     return head + MARK + "\n" + "\n".join(lines).rstrip() + "\n"
 

@@ -2,7 +2,7 @@
 # The types of the package. The docstrings are those of the compiled part as well: make_docstrings.py takes them from
 # here, so help(), docs/python.md and type checkers say the same.
 import os
-from typing import Any, Callable, Literal, Union
+from typing import Any, Callable, Literal, Sequence, Union
 
 import numpy
 from numpy.typing import ArrayLike, NDArray
@@ -22,6 +22,7 @@ Shading = Literal["lit", "flat", "normals", "depth", "ids", "uv"]
 Reason = Literal["empty", "behind_eye", "nearer_than_near", "beyond_far", "outside", "faces_away", "transparent",
                  "no_sample", "hidden", "seen"]
 MaskPart = Literal["visible", "whole"]
+EdgeKind = Literal["boundary", "silhouette", "border", "crease", "intersection"]
 DepthFormat = Literal["d8", "d16", "d24", "f32"]
 DepthFunc = Literal["never", "less", "equal", "less_equal", "greater", "not_equal", "greater_equal", "always"]
 ImageFormat = Literal["png", "exr", "pfm", "npy", "jpeg", "webp"]
@@ -29,6 +30,7 @@ DepthConvention = Literal["opengl", "gortler", "zero_to_one", "reversed"]
 
 no_primitive: int
 no_index: int
+edge_kinds: tuple[EdgeKind, ...]
 
 class Error(RuntimeError):
     """Why the library could not do what it was asked.
@@ -270,6 +272,46 @@ class Surfaces:
 
         grid: sub-samples, 0 those of the view, or 2, 4 or 8 squared. opacity: below 1 nothing is cut off behind what is
         opaque. Raises Error limit_exceeded beyond 2^30 fragments.
+        """
+    def draw_lines(self, view: View, *, crease_angle: float | None = None, counts_hidden: bool = False,
+                   kinds: Sequence[EdgeKind] = ..., outlines: bool = False, threads: int = 0,
+                   progress: Progress = None) -> Drawing:
+        """The feature edges, each cut exactly into seen and hidden parts.
+
+        crease_angle: degrees between normals from which an edge is a crease; None finds out. counts_hidden: Drawing.hidden_by
+        counts, else it tells 0 from more. kinds: those of edge_kinds that are wanted. outlines: finds Drawing.is_outline.
+        """
+    def draw_sheet(self, views: Sequence[Direction] | View = ("front", "top", "left"), *,
+                   sections: list[Direction | tuple[Direction, float]] = [],
+                   projection: Literal["none", "first_angle", "third_angle"] = "first_angle", dimensions: bool = False,
+                   hidden: Literal["none", "dashed", "thin"] = "none", hidden_views: list[Direction] | None = None,
+                   style: Literal["technical", "figure"] = "technical", pen: float | None = None,
+                   crease_angle: float | None = None, shortest_stroke: float | None = None,
+                   centre_lines: bool | None = None, plot: bool = False,
+                   page: str | tuple[float, float] | None = None, margin: float = 10.0, scale: float | None = None,
+                   standard_scale: bool | None = None, millimetres_per_unit: float | None = None,
+                   in_inches: bool = False, title_block: dict[str, str] | None = None, hatch: float | None = None,
+                   stipple: float | None = None, hatch_angle: float = 45.0, light: ArrayLike | None = None,
+                   casts_shadows: bool = True, keeps_picture: bool = False, threads: int = 0,
+                   progress: Progress = None) -> Sheet:
+        """A drawing on paper: named views to scale, or one View, with hidden lines removed.
+
+        sections: directions, or (direction, place of the plane in the coordinates of the file). page: "a4", "a3-landscape",
+        ..., or (width, height). pen, margin, hatch, stipple, shortest_stroke: millimetres. scale: paper to model. title_block:
+        title, number, author, date, owner. hatch_angle, crease_angle: degrees. plot: strokes in an order for plotters.
+        Raises Error: bad_argument, limit_exceeded.
+        """
+    def draw_figure(self, view: View, *, tolerance: float = 6.0, visible_only: bool = True,
+                    merges_neighbours: bool = False, most_polygons: int = 2000000, shading: Shading = "lit",
+                    background: ArrayLike | None = (1.0, 1.0, 1.0), shadows: Literal["off", "map", "rays"] = "map",
+                    opacity: float = 1.0, lights: Literal["key", "file", "both", "none"] = "key",
+                    title: str | None = None, threads: int = 0, progress: Progress = None) -> Figure:
+        """A picture of polygons, by the painter's algorithm.
+
+        tolerance: steps of 8-bit sRGB by which a polygon's colour may differ. visible_only: what is hidden is left out, else
+        all is there in the order of painting. merges_neighbours: of one colour. title: the scene's
+        name where it is None. Raises Error limit_exceeded beyond
+        most_polygons.
         """
     def move(self, object: int | str, pose: ArrayLike, *, threads: int = 0) -> None:
         """Gives an object another pose, 4x4, in the scene and here. What was visible before is so no more: its pictures
@@ -656,3 +698,67 @@ class DepthBuffer:
         """(samples, height, width): what glReadPixels gives."""
     def visible(self) -> Visible:
         """The triangle of the last fragment that passed at every sample; a copy. Raises Error before anything is drawn."""
+
+class Drawing:
+    """Feature edges, cut into parts that are seen or hidden from end to end. Arrays have an element for each part, in the
+    order of their edges; they are made anew each time."""
+    @property
+    def view(self) -> View:
+        """Of which it is."""
+    @property
+    def segments(self) -> NDArray[numpy.float64]:
+        """(n, 2, 2) ends in pixels of the view: x right, y down, the first pixel's centre at (0.5, 0.5)."""
+    @property
+    def edge(self) -> NDArray[numpy.uint32]:
+        """(n,) which of edges it is of."""
+    @property
+    def kind(self) -> NDArray[numpy.uint8]:
+        """(n,) why it is drawn: edge_kinds[kind]."""
+    @property
+    def hidden_by(self) -> NDArray[numpy.uint32]:
+        """(n,) how many surfaces are in front of it; without counts_hidden 0 or 1."""
+    @property
+    def is_seen(self) -> NDArray[numpy.bool_]:
+        """(n,) whether nothing is."""
+    @property
+    def is_outline(self) -> NDArray[numpy.bool_]:
+        """(n,) whether nothing is beside it. With outlines alone."""
+    @property
+    def span(self) -> NDArray[numpy.float64]:
+        """(n, 2) where it begins and ends on its edge, 0 to 1."""
+    @property
+    def edges(self) -> NDArray[numpy.float64]:
+        """(m, 2, 3) ends of edges in the world."""
+    @property
+    def edge_primitives(self) -> NDArray[numpy.uint32]:
+        """(m, 2) two of its triangles; no_primitive where there is one."""
+    def __len__(self) -> int: ...
+
+class Sheet:
+    """A page of lines, which shows itself in notebooks."""
+    def save(self, path: Path) -> None:
+        """Writes .svg, .pdf, .dxf or .json, whole or not at all."""
+    @property
+    def svg(self) -> str:
+        """The page as SVG."""
+    @property
+    def scale(self) -> float | None:
+        """Paper to model; None in perspective."""
+    @property
+    def size(self) -> tuple[float, float]:
+        """Width and height in millimetres."""
+
+class Figure:
+    """A picture of polygons, to be filled one after the other, which shows itself in notebooks."""
+    def save(self, path: Path) -> None:
+        """Writes .svg or .pdf, whole or not at all."""
+    @property
+    def svg(self) -> str:
+        """The figure as SVG."""
+    @property
+    def polygons(self) -> list[list[NDArray[numpy.float64]]]:
+        """For each shape its outlines, (k, 2) in pixels, filled by the nonzero rule. No copy; not writable."""
+    @property
+    def colors(self) -> NDArray[numpy.uint8]:
+        """(n, 4) of each shape."""
+    def __len__(self) -> int: ...

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+// Vectors on paper: sheets of hidden-line drawings, and figures of polygons.
+#include <frontmost/page.h>
+#include <frontmost/shade.h>
+#include <frontmost/sheet.h>
+#include <pybind11/stl.h>
+
+#include <shared_mutex>
+
+#include "python/arrays.h"
+#include "python/bindings.h"
+#include "python/held.h"
+#include "python/running.h"
+#include "python/shade_words.h"
+#include "python/view_words.h"
+
+FRONTMOST_WORDS(frontmost::HiddenLines, "hidden",
+                {{frontmost::HiddenLines::none, "none"},
+                 {frontmost::HiddenLines::dashed, "dashed"},
+                 {frontmost::HiddenLines::thin, "thin"}});
+FRONTMOST_WORDS(frontmost::DrawingStyle, "style",
+                {{frontmost::DrawingStyle::technical, "technical"}, {frontmost::DrawingStyle::figure, "figure"}});
+FRONTMOST_WORDS(frontmost::ProjectionMethod, "projection",
+                {{frontmost::ProjectionMethod::none, "none"},
+                 {frontmost::ProjectionMethod::first_angle, "first_angle"},
+                 {frontmost::ProjectionMethod::third_angle, "third_angle"}});
+
+namespace frontmost::python {
+namespace {
+
+using namespace py::literals;
+
+/// Python's Sheet and Figure: pages that show themselves.
+struct HeldPage {
+  Page page;
+  std::optional<double> scale;
+};
+struct HeldFigure {
+  std::shared_ptr<const Figure> figure;
+};
+
+std::string path_of(const py::object& path) {
+  return py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
+}
+
+/// What `write` writes to a file of SVG.
+template <class Write>
+py::str svg_of(const Write& write) {
+  const py::object folder = py::module_::import("tempfile").attr("TemporaryDirectory")();
+  const std::string file = py::cast<std::string>(folder.attr("name")) + "/page.svg";
+  run(0, py::none(), [&](const Execution& execution) { write(file, execution); });
+  const py::object opened = py::module_::import("pathlib").attr("Path")(file);
+  py::str text = opened.attr("read_text")("encoding"_a = "utf-8");
+  folder.attr("cleanup")();
+  return text;
+}
+
+Paper paper_of(const py::object& given) {
+  if (py::isinstance<py::str>(given)) return named_paper(py::cast<std::string>(given));
+  const auto size = numbers<double>(given, "page", {2});
+  return {{size.at(0), size.at(1)}, false, false};
+}
+
+std::vector<SectionView> sections_of(const py::list& given) {
+  std::vector<SectionView> sections;
+  for (const py::handle& one : given) {
+    if (py::isinstance<py::str>(one)) {
+      sections.push_back({value_of<NamedView>(py::cast<std::string>(one)), std::nullopt});
+    } else {
+      const auto pair = py::cast<std::pair<std::string, double>>(one);
+      sections.push_back({value_of<NamedView>(pair.first), pair.second});
+    }
+  }
+  return sections;
+}
+
+std::optional<TitleBlock> title_of(const std::optional<std::map<std::string, std::string>>& given) {
+  if (!given) return std::nullopt;
+  TitleBlock block;
+  const std::pair<const char*, std::string*> fields[] = {{"title", &block.title},
+                                                         {"number", &block.number},
+                                                         {"author", &block.author},
+                                                         {"date", &block.date},
+                                                         {"owner", &block.owner}};
+  for (const auto& [name, text] : *given) {
+    bool known = false;
+    for (const auto& [field, value] : fields)
+      if (name == field) *value = text, known = true;
+    if (!known) throw py::value_error("title_block: '" + name + "' is not one of title, number, author, date, owner");
+  }
+  return block;
+}
+
+HeldPage sheet_of(const std::shared_ptr<HeldSurfaces>& held, const py::object& views, const py::list& sections,
+                  ProjectionMethod projection, bool dimensions, HiddenLines hidden,
+                  const std::optional<std::vector<NamedView>>& hidden_views, DrawingStyle style,
+                  const std::optional<double>& pen, const std::optional<double>& crease_angle,
+                  const std::optional<double>& shortest_stroke, const std::optional<bool>& centre_lines, bool plot,
+                  const py::object& page, double margin, const std::optional<double>& scale,
+                  const std::optional<bool>& standard_scale, const std::optional<double>& millimetres_per_unit,
+                  bool in_inches, const std::optional<std::map<std::string, std::string>>& title_block,
+                  const std::optional<double>& hatch, const std::optional<double>& stipple, double hatch_angle,
+                  const py::object& light, bool casts_shadows, bool keeps_picture, int threads,
+                  const py::object& progress) {
+  SheetOptions options;
+  const bool is_view = py::isinstance<View>(views);
+  if (!is_view) options.views = py::cast<std::vector<NamedView>>(views);
+  options.sections = sections_of(sections);
+  options.projection = projection;
+  options.dimensions = dimensions;
+  options.hidden = hidden;
+  options.hidden_views = hidden_views;
+  options.style = style;
+  options.pen = pen;
+  if (crease_angle) options.crease_angle = glm::radians(*crease_angle);
+  options.shortest_stroke = shortest_stroke;
+  options.centre_lines = centre_lines;
+  options.plot = plot;
+  if (!page.is_none()) options.page = paper_of(page);
+  options.margin = margin;
+  options.scale = scale;
+  options.standard_scale = standard_scale;
+  options.millimetres_per_unit = millimetres_per_unit;
+  options.in_inches = in_inches;
+  options.title_block = title_of(title_block);
+  options.hatch = hatch;
+  options.stipple = stipple;
+  options.hatch_angle = glm::radians(hatch_angle);
+  if (!light.is_none()) options.light = point(light, "light");
+  options.casts_shadows = casts_shadows;
+  options.keeps_picture = keeps_picture;
+  const std::optional<View> view = is_view ? std::optional(py::cast<View>(views)) : std::nullopt;
+  Sheet sheet = run(threads, progress, [&](const Execution& execution) {
+    const std::shared_lock lock(held->scene->reading);
+    return view ? draw_view(held->surfaces, *view, options, execution) : draw_sheet(held->surfaces, options, execution);
+  });
+  return {std::move(sheet.page), sheet.scale};
+}
+
+HeldFigure figure_of(const std::shared_ptr<HeldSurfaces>& held, const View& view, double tolerance, bool visible_only,
+                     bool merges_neighbours, std::size_t most_polygons, Shading shading, const py::object& background,
+                     Shadows shadows, float opacity, Lights lights, const std::optional<std::string>& title,
+                     int threads, const py::object& progress) {
+  FigureOptions options;
+  options.shade.shading = shading;
+  options.shade.background.reset();
+  if (!background.is_none()) options.shade.background = glm::vec3(point(background, "background"));
+  options.shade.shadows = shadows;
+  options.shade.opacity = opacity;
+  options.shade.lights = lights;
+  options.tolerance = tolerance;
+  options.visible_only = visible_only;
+  options.merges_neighbours = merges_neighbours;
+  options.most_polygons = most_polygons;
+  return {run(threads, progress, [&](const Execution& execution) {
+    const std::shared_lock lock(held->scene->reading);
+    auto figure = std::make_shared<Figure>(draw_figure(held->surfaces, view, options, execution));
+    figure->title = title.value_or(held->scene->name);
+    return std::shared_ptr<const Figure>(std::move(figure));
+  })};
+}
+
+/// One list of (k, 2) arrays for each shape: its outlines.
+py::list polygons_of(const HeldFigure& held) {
+  py::list shapes;
+  const Figure& figure = *held.figure;
+  for (const FigureShape& shape : figure.shapes) {
+    py::list rings;
+    for (std::uint32_t i = 0; i < shape.ring_count; ++i) {
+      const FigureRing& ring = figure.rings[shape.first_ring + i];
+      rings.append(view_of(&figure.corners[ring.first_corner].x, {py::ssize_t(ring.corner_count), 2}, held.figure));
+    }
+    shapes.append(rings);
+  }
+  return shapes;
+}
+
+Array<std::uint8_t> colors_of_shapes(const HeldFigure& held) {
+  Array<std::uint8_t> out(ArrayShape{py::ssize_t(held.figure->shapes.size()), 4});
+  std::uint8_t* data = out.mutable_data();
+  for (const FigureShape& shape : held.figure->shapes)
+    for (int i = 0; i < 4; ++i) *data++ = shape.color[i];
+  return out;
+}
+
+/// save(), svg and _repr_svg_ of pages and figures.
+template <class Class, class Write>
+void bind_page(Class& bound, const std::string& name, const Write& write) {
+  const auto svg = [write](const typename Class::type& held) {
+    return svg_of([&](const std::string& file, const Execution& execution) { write(held, file, execution); });
+  };
+  bound
+      .def(
+          "save",
+          [write](const typename Class::type& held, const py::object& path) {
+            const std::string file = path_of(path);
+            run(0, py::none(), [&](const Execution& execution) { write(held, file, execution); });
+          },
+          "path"_a, doc((name + ".save").c_str()))
+      .def_property_readonly("svg", svg, doc((name + ".svg").c_str()))
+      .def("_repr_svg_", svg);
+}
+
+}  // namespace
+
+void bind_sheets(py::module_& m) {
+  py::class_<HeldPage> sheet(m, "Sheet", doc("Sheet"));
+  bind_page(sheet, "Sheet", [](const HeldPage& held, const std::string& file, const Execution& execution) {
+    save(held.page, file, std::nullopt, execution);
+  });
+  sheet.def_readonly("scale", &HeldPage::scale, doc("Sheet.scale"))
+      .def_property_readonly(
+          "size", [](const HeldPage& held) { return py::make_tuple(held.page.width, held.page.height); },
+          doc("Sheet.size"))
+      .def("__repr__", [](const HeldPage& held) {
+        return "Sheet of " + paper_name({held.page.width, held.page.height}) +
+               (held.scale ? ", " + scale_text(*held.scale) : "");
+      });
+  py::class_<HeldFigure> figure(m, "Figure", doc("Figure"));
+  bind_page(figure, "Figure", [](const HeldFigure& held, const std::string& file, const Execution& execution) {
+    save(*held.figure, file, std::nullopt, execution);
+  });
+  figure.def_property_readonly("polygons", &polygons_of, doc("Figure.polygons"))
+      .def_property_readonly("colors", &colors_of_shapes, doc("Figure.colors"))
+      .def("__len__", [](const HeldFigure& held) { return held.figure->shapes.size(); })
+      .def("__repr__", [](const HeldFigure& held) {
+        return "Figure of " + std::to_string(held.figure->shapes.size()) + " shapes";
+      });
+  py::class_<HeldSurfaces, std::shared_ptr<HeldSurfaces>>(m.attr("Surfaces"))
+      .def("draw_sheet", &sheet_of, "views"_a = py::make_tuple("front", "top", "left"), py::kw_only(),
+           "sections"_a = py::list(), "projection"_a = ProjectionMethod::first_angle, "dimensions"_a = false,
+           "hidden"_a = HiddenLines::none, "hidden_views"_a = py::none(), "style"_a = DrawingStyle::technical,
+           "pen"_a = py::none(), "crease_angle"_a = py::none(), "shortest_stroke"_a = py::none(),
+           "centre_lines"_a = py::none(), "plot"_a = false, "page"_a = py::none(), "margin"_a = 10.0,
+           "scale"_a = py::none(), "standard_scale"_a = py::none(), "millimetres_per_unit"_a = py::none(),
+           "in_inches"_a = false, "title_block"_a = py::none(), "hatch"_a = py::none(), "stipple"_a = py::none(),
+           "hatch_angle"_a = 45.0, "light"_a = py::none(), "casts_shadows"_a = true, "keeps_picture"_a = false,
+           "threads"_a = 0, "progress"_a = py::none(), doc("Surfaces.draw_sheet"))
+      .def("draw_figure", &figure_of, "view"_a, py::kw_only(), "tolerance"_a = 6.0, "visible_only"_a = true,
+           "merges_neighbours"_a = false, "most_polygons"_a = 2000000, "shading"_a = Shading::lit,
+           "background"_a = py::make_tuple(1.0, 1.0, 1.0), "shadows"_a = Shadows::map, "opacity"_a = 1.0f,
+           "lights"_a = Lights::key, "title"_a = py::none(), "threads"_a = 0, "progress"_a = py::none(),
+           doc("Surfaces.draw_figure"));
+}
+
+}  // namespace frontmost::python
