@@ -47,13 +47,6 @@ void visible_on_one_thread(benchmark::State& state) {
   state.SetLabel(std::string(scene_names[state.range(0)]) + ", " + std::string(name(execution.isa)));
 }
 
-void visible_faces_on_one_thread(benchmark::State& state) {
-  const Stage stage(state);
-  const Execution execution{.threads = 1, .isa = Isa::best, .watch = nullptr};
-  for (auto _ : state) benchmark::DoNotOptimize(visible_faces(stage.surfaces, stage.view, execution).faces.data());
-  describe(state, stage);
-}
-
 void shading(benchmark::State& state) {
   const Stage stage(state, int(state.range(1)));
   const Visible seen = zbuffer(stage.surfaces, stage.view);
@@ -82,7 +75,6 @@ void scenes_and_isas(benchmark::internal::Benchmark* bench) {
 BENCHMARK(surfaces)->DenseRange(0, 3)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(visible)->DenseRange(0, 3)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(visible_on_one_thread)->Apply(scenes_and_isas)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(visible_faces_on_one_thread)->DenseRange(0, 3)->Unit(benchmark::kMillisecond);
 BENCHMARK(shading)->ArgsProduct({{0, 1, 2, 3}, {1, 4}})->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(saving_on_one_thread)->DenseRange(0, 3)->Unit(benchmark::kMillisecond);
 

@@ -24,6 +24,7 @@ constexpr SceneEntry kScenes[] = {
     {"terrain4m", Camera::fit, 45},
     {"terrain16m", Camera::fit, 55, true},
     {"terrain16m-fly", Camera::over_terrain, 0, true},
+    {"soup100k", Camera::fit, 0},
     {"soup1m", Camera::fit, 26},
     {"city-fly", Camera::in_city, 24},
     {"city-street", Camera::in_street, 0},
@@ -177,6 +178,7 @@ Mesh make_mesh(std::string_view name) {
   if (name == "terrain1m") return terrain(1'000'000);
   if (name == "terrain4m") return terrain(4'000'000);
   if (name == "terrain16m") return terrain(16'000'000);
+  if (name == "soup100k") return soup(100'000, 0.005f);
   if (name == "soup1m") return soup(1'000'000, 0.005f);
   if (name == "city" || name == "city-street") return city(10'000);
   if (name == "city-wall" || name == "city-no-wall") return walled_city(name == "city-wall");

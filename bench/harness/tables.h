@@ -35,6 +35,8 @@ namespace frontmost::bench {
 [[nodiscard]] Table measure_scans(const Options& options);
 /// Ids, depths, boxes and shares of many views of a few objects.
 [[nodiscard]] Table measure_reports(const Options& options);
+/// Visible areas of triangles, from one place and from many.
+[[nodiscard]] Table measure_faces(const Options& options);
 /// Our pictures and Embree's.
 [[nodiscard]] Table measure_ray_coverage(const Options& options);
 
