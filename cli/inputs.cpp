@@ -60,6 +60,7 @@ InputFiles input_files(const Settings& settings) {
   add(settings.run.batch, "is the batch file itself");
   add(settings.visible.views, "is the file of views itself");
   add(settings.report.views, "is the file of views itself");
+  add(settings.report.categories, "is the file of categories itself");
   add(settings.sight.pairs, "is the file of pairs itself");
   add(settings.lidar.directions, "is the file of directions itself");
   add(settings.view.pose_file, "is the pose file itself");
@@ -82,6 +83,7 @@ Scene load_model(const Settings& settings, const Execution& execution, Progress&
                  const std::vector<std::string>& outputs) {
   Scene scene = load(settings.model, settings.load, execution);
   for (const std::string& model : settings.more_models) add(scene, load(model, settings.load, execution));
+  if (settings.report.categories) load_categories(*settings.report.categories, scene);
   refuse_outputs_beside(scene.source.files, outputs);
   show_warnings(scene.warnings, settings.run, progress);
   return scene;

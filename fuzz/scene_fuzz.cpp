@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes read as a scene file, whose models can only be built-in ones: a valid scene or an Error.
+// Any bytes read as a scene file, whose models can only be built-in ones, and as a file of categories: a valid scene or
+// an Error.
 #include "support/reader_fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  frontmost::fuzz_reader(frontmost::ModelFormat::scene, {reinterpret_cast<const std::byte*>(data), size});
+  const std::span bytes(reinterpret_cast<const std::byte*>(data), size);
+  frontmost::fuzz_reader(frontmost::ModelFormat::scene, bytes);
+  frontmost::fuzz_categories(bytes);
   return 0;
 }

@@ -11,6 +11,7 @@ int main(int count, char** arguments) {
       {"stages", measure_stages},     {"features", measure_features}, {"limits", measure_limits},
       {"memory", measure_memory},     {"surfaces", measure_surfaces}, {"coverage", measure_coverage},
       {"rays", measure_ray_coverage}, {"raycast", measure_raycast},   {"depth", measure_depth_buffer},
-      {"scans", measure_scans},       {"reports", measure_reports},   {"faces", measure_faces}};
+      {"scans", measure_scans},       {"accounts", measure_accounts}, {"reports", measure_reports},
+      {"faces", measure_faces}};
   return run_program("zbuffer_bench", kTables, count, arguments);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reports of many views of a few objects, as data sets are made of: ids, depths, boxes and shares of every view.
+// Accounts of a view's objects, and reports of many views of a few objects, as data sets are made of: ids, depths,
+// boxes and shares of every view.
 #include <cmath>
 #include <numbers>
 
@@ -10,15 +11,16 @@ namespace frontmost::bench {
 namespace {
 
 constexpr std::string_view kScenes[] = {"teapot", "bunny", "sphere100k"};
+constexpr std::string_view kAccounts[] = {"city-fly", "teapot", "bunny"};
 constexpr int kViews = 200, kObjects = 10;
 
-/// The first object of a scene ten times, in two rows that hide each other.
-Scene repeated(Scene scene) {
+/// The first object of a scene many times, in rows of five that hide each other.
+Scene repeated(Scene scene, int count) {
   const Box bounds = Surfaces(scene).bounds();
   const double step = 0.6 * bounds.diagonal();
   const Instance first = scene.instances[0];
   scene.instances.clear();
-  for (int i = 0; i < kObjects; ++i) {
+  for (int i = 0; i < count; ++i) {
     Instance& instance = scene.instances.emplace_back(first);
     instance.name = std::to_string(i);
     instance.world_from_mesh[3] += glm::dvec4(step * (i % 5), 0, step * (i / 5), 0);
@@ -41,13 +43,51 @@ std::vector<View> views_around(const Surfaces& surfaces) {
   return views;
 }
 
+/// One row: a picture, and what each account adds to it.
+void measure_accounts_of(std::string_view name, const Surfaces& surfaces, const View& view, const Sampling& sampling,
+                         Table& table) {
+  const Execution one{.threads = 1};
+  ZBuffer buffer;
+  const Visible& visible = buffer.draw(surfaces, view, one);
+  const Accounting accounts = account(surfaces, visible, {}, one);
+  const std::vector<Time> times =
+      race({Contestant([&] { (void)buffer.draw(surfaces, view, one); }),
+            Contestant([&] { (void)account(surfaces, visible, {.canvas = 1}, one); }),
+            Contestant([&] { (void)account(surfaces, visible, {}, one); }),
+            Contestant([&] { (void)account(surfaces, visible, {.all_hiders = true}, one); }),
+            Contestant([&] { (void)explain_all(surfaces, visible, accounts, one); })},
+           sampling);
+  table.add({name,
+             Cell::whole(accounts.objects.size()),
+             Cell::whole(surfaces.primitive_count()),
+             {times[0].processor},
+             {times[1].processor},
+             {times[2].processor},
+             {times[3].processor},
+             {times[4].processor}});
+}
+
 }  // namespace
+
+Table measure_accounts(const Options& options) {
+  Table table("accounts: what each adds to the picture, one thread; ms",
+              {"scene", "objects", "triangles", "zbuffer", "in frame", "on the canvas", "any hiders", "explain"});
+  for (const std::string_view name : options.scenes_or(kAccounts)) {
+    const bool is_city = name.starts_with("city");
+    const Scene whole = make_scene(name, options.models);
+    const Scene scene = is_city ? taken_apart(whole) : repeated(whole, 20);
+    const Surfaces surfaces(scene);
+    const View view = is_city ? make_view(surfaces.bounds(), find_scene(name).camera) : views_around(surfaces)[1];
+    measure_accounts_of(std::string(name), surfaces, view, options.sampling, table);
+  }
+  return table;
+}
 
 Table measure_reports(const Options& options) {
   Table table("reports: 200 views of ten objects, 640 x 480, a canvas of three times that, one thread; ms a view",
               {"scene", "triangles", "zbuffer", "depths", "account", "explain", "views/s", "with why"});
   for (const std::string_view name : options.scenes_or(kScenes)) {
-    const Scene scene = repeated(make_scene(name, options.models));
+    const Scene scene = repeated(make_scene(name, options.models), kObjects);
     const Surfaces surfaces(scene);
     const std::vector<View> views = views_around(surfaces);
     const Execution one{.threads = 1};

@@ -256,6 +256,25 @@ Scene make_scene(std::string_view name, const std::string& models) {
   return std::move(*scene);
 }
 
+Scene taken_apart(const Scene& scene) {
+  Scene apart;
+  const Mesh& all = scene.meshes[0];
+  constexpr std::size_t kTriangles = 12;
+  for (std::size_t t = 0; t + kTriangles <= all.triangles.size(); t += kTriangles) {
+    Mesh& box = apart.meshes.emplace_back();
+    for (std::size_t k = t; k < t + kTriangles; ++k) {
+      glm::uvec3 corners;
+      for (int c = 0; c < 3; ++c) {
+        corners[c] = std::uint32_t(box.positions.size());
+        box.positions.push_back(all.positions[all.triangles[k][c]]);
+      }
+      box.triangles.push_back(corners);
+    }
+    apart.instances.push_back({"", std::uint32_t(apart.meshes.size() - 1), glm::dmat4(1.0)});
+  }
+  return apart;
+}
+
 View make_view(const Box& bounds, Camera camera, int width, int height) {
   constexpr double kFov = 45 * std::numbers::pi / 180;
   const glm::dvec3 low(bounds.low), high(bounds.high), centre = (low + high) * 0.5;

@@ -38,6 +38,8 @@ struct SceneEntry {
 
 /// `models` is the folder of test models; the bunny and the teapot are taken from it where it is there.
 [[nodiscard]] Scene make_scene(std::string_view name, const std::string& models);
+/// A mesh of boxes, as the city is, as one object each.
+[[nodiscard]] Scene taken_apart(const Scene& scene);
 [[nodiscard]] View make_view(const Box& bounds, Camera camera, int width = 1920, int height = 1080);
 
 }  // namespace frontmost::bench

@@ -33,6 +33,8 @@ namespace frontmost::bench {
 [[nodiscard]] Table measure_raycast(const Options& options);
 /// Scans from inside of models, of the test models' folder.
 [[nodiscard]] Table measure_scans(const Options& options);
+/// Accounts of the objects of one view.
+[[nodiscard]] Table measure_accounts(const Options& options);
 /// Ids, depths, boxes and shares of many views of a few objects.
 [[nodiscard]] Table measure_reports(const Options& options);
 /// Visible areas of triangles, from one place and from many.

@@ -22,6 +22,11 @@
 namespace frontmost::cli {
 namespace {
 
+std::string folder_name(const Given& given) {
+  if (given.text.empty()) throw UsageError("the folder's name is empty");
+  return given.string();
+}
+
 constexpr Option report_options[] = {
     {"output", 'o', "FILE", "Write the report as a page that needs nothing else: HTML.", Group::report, for_report,
      [](Settings& s, const Given& g) { s.report.page = g.file_name(); }},
@@ -38,13 +43,16 @@ constexpr Option report_options[] = {
      Group::report, for_report, [](Settings& s, const Given& g) { s.report.coco = g.file_name(); }},
     {"coco-polygons", 0, "", "Give masks of --coco as polygons, not as run lengths.", Group::report, for_report,
      [](Settings& s, const Given&) { s.report.coco_polygons = true; }},
+    {"categories", 0, "FILE",
+     "Which object has which category, in --coco and --bop: JSON, in place of what a scene file says.", Group::report,
+     for_report, [](Settings& s, const Given& g) { s.report.categories = g.file_name(); }},
+    {"masks", 0, "FOLDER",
+     "Write masks of every object in the picture as PNG, what is visible and all of it; the folder is made where it is "
+     "missing.",
+     Group::report, for_report, [](Settings& s, const Given& g) { s.report.masks = folder_name(g); }},
     {"bop", 0, "FOLDER",
      "Write a scene of BOP with one image: poses, masks, depth; the folder is made where it is missing.", Group::report,
-     for_report,
-     [](Settings& s, const Given& g) {
-       if (g.text.empty()) throw UsageError("the folder's name is empty");
-       s.report.bop = g.string();
-     }},
+     for_report, [](Settings& s, const Given& g) { s.report.bop = folder_name(g); }},
     {"bop-visible", 0, "exact|bop19",
      "What --bop calls visible: what is seen, by default, or what is at most 15 mm behind that, as bop_toolkit does.",
      Group::report, for_report, [](Settings& s, const Given& g) { s.report.bop_visible = g.choice<BopVisible>(); }},
@@ -69,6 +77,20 @@ void check(const Settings& settings, const std::vector<std::string>& outputs) {
   check_outputs(outputs, input_files(settings));
   if (settings.run.json && std::find(outputs.begin(), outputs.end(), "-") != outputs.end())
     throw UsageError("--json and an output to - both want standard output");
+}
+
+void write_files(ReportRun& run, const Execution& execution) {
+  const ReportSettings& to = run.settings.report;
+  if (to.page) write_report_page(run, *to.page, execution);
+  if (to.coco) {
+    const WritingFiles writing;
+    save_text(dump(coco_json(run, to.coco_polygons, execution)), *to.coco);
+  }
+  const auto add = [&](const std::vector<std::string>& files) {
+    run.files.insert(run.files.end(), files.begin(), files.end());
+  };
+  if (to.bop) add(write_bop_scene(run, *to.bop, execution));
+  if (to.masks) add(write_masks(run, *to.masks, execution));
 }
 
 }  // namespace
@@ -111,13 +133,14 @@ int run_report(const Settings& settings) {
   const std::vector<std::string> outputs = outputs_of(settings.report);
   check(settings, outputs);
   if (settings.report.views) {
-    if (!outputs.empty() || settings.report.bop)
-      throw UsageError("--views excludes --output, --coco and --bop: each of them holds one view");
+    if (!outputs.empty() || settings.report.bop || settings.report.masks)
+      throw UsageError("--views excludes --output, --coco, --bop and --masks: each of them holds one view");
     report_views(settings);
     return exit_done;
   }
-  std::optional<MadeFolder> folder;
-  if (settings.report.bop) folder.emplace(*settings.report.bop);
+  std::optional<MadeFolder> bop, masks;
+  if (settings.report.bop) bop.emplace(*settings.report.bop);
+  if (settings.report.masks) masks.emplace(*settings.report.masks);
   Progress progress(settings.run.quiet);
   const Execution execution = execution_for(settings.run, progress);
   const Scene scene = load_model(settings, execution, progress, outputs);
@@ -133,15 +156,7 @@ int run_report(const Settings& settings) {
   const std::vector<Explanation> why = explain_all(*surfaces, visible, accounts, execution);
   const ObjectNames names(surfaces->scene());
   ReportRun run{settings, *surfaces, visible, accounts, why, names, outputs};
-  if (settings.report.page) write_report_page(run, *settings.report.page, execution);
-  if (settings.report.coco) {
-    const WritingFiles writing;
-    save_text(dump(coco_json(run, settings.report.coco_polygons, execution)), *settings.report.coco);
-  }
-  if (settings.report.bop) {
-    const std::vector<std::string> files = write_bop_scene(run, *settings.report.bop, execution);
-    run.files.insert(run.files.end(), files.begin(), files.end());
-  }
+  write_files(run, execution);
   progress.clear();
   const bool stdout_is_taken = std::find(outputs.begin(), outputs.end(), "-") != outputs.end();
   if (!stdout_is_taken)

@@ -9,7 +9,6 @@
 #include <frontmost/zbuffer.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "cli/console.h"
 #include "cli/failure.h"
@@ -18,8 +17,6 @@
 
 namespace frontmost::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double tolerance_mm = 15;  // of bop_toolkit's tests of visibility
 
@@ -38,9 +35,21 @@ Json rows_json(const glm::dmat3& m) {
   return json;
 }
 
-Json camera_json(const View& view, double millimetres, double depth_scale) {
+/// Of points that are told from an origin, as `m` is, a matrix for those that are told from zero.
+glm::dmat4 from_zero(glm::dmat4 m, const glm::dvec3& origin) {
+  m[3] = m * glm::dvec4(-origin, 1);
+  return m;
+}
+
+/// From the world as the model's file has it.
+glm::dmat4 camera_from_file(const ReportRun& run) {
+  return from_zero(pose_of(run.view().world_from_eye, PoseConvention::opencv_world_to_camera), run.scene().origin);
+}
+
+Json camera_json(const ReportRun& run, double millimetres, double depth_scale) {
+  const View& view = run.view();
   const Intrinsics k = intrinsics_of(view.projection, view.width, view.height, PixelRule::centre_at_integer);
-  const glm::dmat4 pose = pose_of(view.world_from_eye, PoseConvention::opencv_world_to_camera);
+  const glm::dmat4 pose = camera_from_file(run);
   return {{"cam_K", {k.fx, 0, k.cx, 0, k.fy, k.cy, 0, 0, 1}},
           {"depth_scale", depth_scale},
           {"cam_R_w2c", rows_json(glm::dmat3(pose))},
@@ -51,7 +60,8 @@ Json camera_json(const View& view, double millimetres, double depth_scale) {
 Json pose_json(const ReportRun& run, std::uint32_t object, double millimetres) {
   const Instance& instance = run.scene().instances[object];
   const glm::dmat4 pose =
-      pose_of(run.view().world_from_eye, PoseConvention::opencv_world_to_camera) * instance.world_from_mesh;
+      from_zero(pose_of(run.view().world_from_eye, PoseConvention::opencv_world_to_camera) * instance.world_from_mesh,
+                run.scene().meshes[instance.mesh].origin);
   const double scale = std::cbrt(glm::determinant(glm::dmat3(pose)));
   const glm::dmat3 turn = glm::dmat3(pose) * (1 / scale), rest = glm::transpose(turn) * turn - glm::dmat3(1.0);
   double most = 0;
@@ -118,19 +128,6 @@ Json info_json(const ReportRun& run, const BopObject& object) {
           {"bbox_visib", bop_box(seen.box, seen.count > 0)}};
 }
 
-Image mask_image(const PixelMask& mask, MaskPart part, const View& view) {
-  Buffer<float> values(view.pixel_count(), 0.0f);
-  for (int y = mask.box.y; y < mask.box.y + mask.box.height; ++y)
-    for (int x = mask.box.x; x < mask.box.x + mask.box.width; ++x) {
-      const MaskPixel pixel = mask.at(x, y);
-      if (pixel == MaskPixel::visible || (part == MaskPart::whole && pixel == MaskPixel::hidden))
-        values[std::size_t(y) * std::size_t(view.width) + std::size_t(x)] = 1;
-    }
-  Image image{view.width, view.height, {}};
-  image.channels.push_back({"Y", std::move(values)});
-  return image;
-}
-
 /// Millimetres that a step of the file stands for: the least power of ten, from 0.1 on, with which all depths fit.
 double depth_scale_of(const Image& depths, double millimetres) {
   double farthest = 0, scale = 0.1;
@@ -147,9 +144,7 @@ std::string mask_name(const char* folder, std::size_t number) {
 class BopWriter {
  public:
   BopWriter(const ReportRun& run, const StagedFolder& staged, const Execution& execution)
-      : run_(run), staged_(staged), execution_(execution), millimetres_(millimetres_per_unit(run.scene())) {
-    for (const char* folder : {"depth", "mask", "mask_visib"}) fs::create_directory(staged.path(folder));
-  }
+      : run_(run), staged_(staged), execution_(execution), millimetres_(millimetres_per_unit(run.scene())) {}
 
   /// \returns the names of all files.
   [[nodiscard]] std::vector<std::string> write() {
@@ -171,7 +166,7 @@ class BopWriter {
     SaveOptions options;
     options.depth_scale = millimetres_ / scale;
     add("depth/000000.png", depths, options);
-    add("scene_camera.json", camera_json(run_.view(), millimetres_, scale));
+    add("scene_camera.json", camera_json(run_, millimetres_, scale));
     add("scene_gt.json", std::move(poses));
     add("scene_gt_info.json", std::move(infos));
     return std::move(names_);
@@ -197,18 +192,8 @@ class BopWriter {
 }  // namespace
 
 std::vector<std::string> write_bop_scene(const ReportRun& run, const std::string& folder, const Execution& execution) {
-  const WritingFiles writing;
-  const StagedFolder staged(folder);
-  std::vector<std::string> names;
-  try {
-    names = BopWriter(run, staged, execution).write();
-  } catch (const Error& error) {
-    throw Error(error.code(), staged.told(error.what()));
-  }
-  for (const char* made : {"depth", "mask", "mask_visib"}) fs::create_directories(fs::path(folder) / made);
-  staged.commit(names);
-  for (std::string& name : names) name = (fs::path(folder) / name).string();
-  return names;
+  return write_folder(folder, {"depth", "mask", "mask_visib"},
+                      [&](const StagedFolder& staged) { return BopWriter(run, staged, execution).write(); });
 }
 
 }  // namespace frontmost::cli

@@ -31,7 +31,7 @@ constexpr const char* style = R"(.look { display: grid; grid-template-columns: m
 #panel h3 { margin-top: 14px; }
 #panel p { margin: 0; }
 #panel .why { color: inherit; margin: 6px 0 0; }
-dl { display: grid; grid-template-columns: auto 1fr; gap: 1px 14px; margin: 10px 0 0;
+dl { display: grid; grid-template-columns: max-content 1fr; gap: 1px 14px; margin: 10px 0 0;
   font-variant-numeric: tabular-nums; }
 dt { color: var(--soft); }
 dd { margin: 0; text-align: right; white-space: nowrap; }
@@ -45,18 +45,20 @@ button { font: inherit; color: inherit; background: none; border: 0; padding: 0;
 label { color: var(--soft); cursor: pointer; }
 .scroll.table { max-height: 90vh; overflow: auto; padding-top: 0; }
 table { border-collapse: separate; border-spacing: 0; width: 100%; font-variant-numeric: tabular-nums; }
-th, td { padding: 7px 0 7px 16px; border-bottom: 1px solid var(--line); text-align: right; font-weight: 400;
+th, td { padding: 7px 0 7px 14px; border-bottom: 1px solid var(--line); text-align: right; font-weight: 400;
   white-space: nowrap; }
-th:first-child { padding-left: 0; text-align: left; }
+th:first-child { padding-left: 0; text-align: left; position: sticky; left: 0; background: var(--card); }
 th:first-child button { display: block; max-width: 16em; overflow: hidden; text-overflow: ellipsis; }
 td:last-child, th:last-child { text-align: left; }
-td:last-child { white-space: normal; min-width: 22em; }
-thead th { position: sticky; top: 0; background: var(--card); font-weight: 650; padding-top: 12px; }
-thead button { text-decoration: none; }
+td:last-child { white-space: normal; min-width: 17em; }
+thead th { position: sticky; top: 0; background: var(--card); font-weight: 650; padding-top: 12px;
+  white-space: normal; vertical-align: bottom; line-height: 1.25; }
+thead th:first-child { z-index: 1; }
+thead button { text-decoration: none; text-align: inherit; }
 th[aria-sort="ascending"] button::after { content: " ▲"; }
 th[aria-sort="descending"] button::after { content: " ▼"; }
 tbody tr { cursor: pointer; }
-tr.chosen > * { background: color-mix(in srgb, var(--accent) 16%, transparent); }
+tr.chosen > * { background: color-mix(in srgb, var(--accent) 16%, var(--card)); }
 svg.graph { display: block; max-width: none; margin: 0 auto; }
 .graph path { fill: none; stroke: var(--soft); opacity: 0.55; marker-end: url(#tip); }
 .graph marker path { fill: var(--soft); stroke: none; opacity: 1; }
@@ -67,7 +69,8 @@ svg.graph { display: block; max-width: none; margin: 0 auto; }
 .node { cursor: pointer; }
 .node.chosen rect { stroke: var(--accent); stroke-width: 2; }
 @media (max-width: 860px) { .look { grid-template-columns: minmax(0, 1fr); } header, main { padding: 0 14px; }
-  header { padding-top: 24px; } #panel { max-height: none; } .scroll { padding: 6px 12px; } }
+  header { padding-top: 24px; } #panel { max-height: none; } .scroll { padding: 6px 12px; }
+  th:first-child button { max-width: 8em; } }
 )";
 
 std::string name_of(const ReportRun& run, std::uint32_t object) {

@@ -147,8 +147,9 @@ document.querySelectorAll('thead button').forEach((button, column) => {
   button.onclick = () => {
     const head = button.parentNode, body = document.querySelector('tbody');
     // Names go up first, numbers down.
-    const isText = column === 0 || column === body.rows[0].cells.length - 1;
-    const sign = (head.ariaSort ? head.ariaSort === 'descending' : isText) ? 1 : -1;
+    const isText = column === 0 || column === head.parentNode.cells.length - 1;
+    const before = head.getAttribute('aria-sort');
+    const sign = (before ? before === 'descending' : isText) ? 1 : -1;
     for (const other of head.parentNode.cells) other.removeAttribute('aria-sort');
     head.setAttribute('aria-sort', sign > 0 ? 'ascending' : 'descending');
     const rows = [...body.rows].map(row => [cellKey(row, column), row]);

@@ -35,6 +35,17 @@ struct LoadOptions {
 [[nodiscard]] Scene load(std::span<const std::byte> bytes, const std::string& name, const LoadOptions& options = {},
                          const Execution& execution = {});
 
+/// Gives objects the categories that a file names, in place of those that the scene has. It is JSON: "objects" has
+/// names of objects, each with that of a category, and "categories" lists these as in a scene file: names, which are
+/// numbered from 1, or objects with `name` and `number`; without the list there are those that objects name, in the
+/// order of the objects' names. Objects of one name get one category, objects that are not named have none, and names
+/// that no object has are told in Scene::warnings. "-" reads standard input. O(size of the file + objects). \throws
+/// Error file_unreadable, file_malformed or limit_exceeded (64 MiB): "name: place: reason"; the scene stays as it is
+/// then.
+void load_categories(const std::string& path, Scene& scene);
+/// The same from memory; `name` stands for the file in messages.
+void load_categories(std::span<const std::byte> bytes, const std::string& name, Scene& scene);
+
 enum class ImageFormat : std::uint8_t { png, exr, pfm, npy, jpeg, webp };
 
 struct SaveOptions {

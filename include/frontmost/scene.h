@@ -52,8 +52,11 @@ inline constexpr std::uint32_t max_texcoord_sets = 4;
 /// of its triangles do not count.
 struct Mesh {
   std::string name;
-  /// Any unit; as in the file but for Scene::origin, non-finite ones included.
+  /// Any unit; as in the file, but for what the reader took off, non-finite ones included.
   std::vector<glm::vec3> positions;
+  /// What a reader took off in doubles, so that the file has origin + p where positions have p. Zero, but for models
+  /// that lie far from zero for their size, of which the file holds more than floats.
+  glm::dvec3 origin{0};
   std::vector<glm::uvec3> triangles;  ///< corners, indices into positions, in file order
   Attribute<glm::vec3> normals;       ///< unit length is not required; zero or non-finite ones count as missing
   Attribute<glm::vec2> texcoords;     ///< u right, v down from the image's first row (glTF's convention); set 0

@@ -51,18 +51,50 @@ BoundedPlane::BoundedPlane(const std::array<glm::vec3, 3>& corners, const Sample
   limits_high_ = {within(high - error), within(high + error)};
 }
 
-DepthBounds BoundedPlane::at(const SampleRay& ray) const {
+bool BoundedPlane::find_depth(const SampleRay& ray, DepthBounds& bounds) const {
   const Bounded above = bounded_dot(normal_.value, normal_.error, corner_ - ray.origin);
   const Bounded below = bounded_dot(normal_.value, normal_.error, ray.direction);
-  DepthBounds bounds{limits_low_.low, limits_high_.high};
   // Seen nearly edge-on, or through the eye: no more is known than the corners' range. Written so that NaN is not.
-  if (!(std::abs(below.value) > 4 * below.error)) return bounds;
+  if (!(std::abs(below.value) > 4 * below.error)) return false;
   const double depth = above.value / below.value;
   const double error = (above.error + std::abs(depth) * below.error) / (std::abs(below.value) - below.error) +
                        kRounding * std::abs(depth);
-  bounds.low = std::min(std::max(depth - error, limits_low_.low), limits_high_.low);
-  bounds.high = std::min(std::max(depth + error, limits_low_.high), limits_high_.high);
+  bounds = {depth - error, depth + error};
+  return true;
+}
+
+DepthBounds BoundedPlane::at(const SampleRay& ray) const {
+  DepthBounds bounds{limits_low_.low, limits_high_.high};
+  if (!find_depth(ray, bounds)) return bounds;
+  bounds.low = std::min(std::max(bounds.low, limits_low_.low), limits_high_.low);
+  bounds.high = std::min(std::max(bounds.high, limits_low_.high), limits_high_.high);
   return bounds;
+}
+
+bool BoundedPlane::is_within_corners(const SampleRay& ray) const {
+  DepthBounds bounds{};
+  return find_depth(ray, bounds) && bounds.low > limits_low_.high && bounds.high < limits_high_.low;
+}
+
+bool share_a_plane(const std::array<glm::vec3, 3>& a, const std::array<glm::vec3, 3>& b) {
+  const auto has_area = [](const std::array<glm::vec3, 3>& corners) {
+    const glm::dvec3 from(corners[0]);
+    const BoundedNormal normal(glm::dvec3(corners[1]) - from, glm::dvec3(corners[2]) - from);
+    const glm::dvec3 sure = glm::abs(normal.value) - normal.error;
+    return sure.x > 0 || sure.y > 0 || sure.z > 0;
+  };
+  const glm::dvec3 origin(a[0]);
+  return has_area(a) && has_area(b) && std::all_of(b.begin(), b.end(), [&](const glm::vec3& corner) {
+           return sign_of_determinant({glm::dvec3(a[1]), origin}, {glm::dvec3(a[2]), origin},
+                                      {glm::dvec3(corner), origin}) == 0;
+         });
+}
+
+bool has_one_depth(const std::array<glm::vec3, 3>& corners, const SampleRays& rays) {
+  const auto is_level = [&](const glm::vec3& corner) {
+    return dot(exact(rays.forward()), difference(glm::dvec3(corner), glm::dvec3(corners[0]))).sign() == 0;
+  };
+  return is_level(corners[1]) && is_level(corners[2]);
 }
 
 ExactDepth::ExactDepth(const std::array<glm::vec3, 3>& corners, const SampleRays& rays, const SampleRay& ray) {

@@ -50,12 +50,22 @@ class BoundedPlane {
  public:
   BoundedPlane(const std::array<glm::vec3, 3>& corners, const SampleRays& rays);
   [[nodiscard]] DepthBounds at(const SampleRay& ray) const;
+  /// Whether the exact depth is the plane's own at a ray, which no corner limits. False where that is open.
+  [[nodiscard]] bool is_within_corners(const SampleRay& ray) const;
 
  private:
+  /// Without the limits of the corners. \returns false where nothing is known.
+  bool find_depth(const SampleRay& ray, DepthBounds& bounds) const;
+
   glm::dvec3 corner_;
   BoundedNormal normal_;
   DepthBounds limits_low_, limits_high_;  // of the nearest and of the farthest corner
 };
+
+/// Whether two triangles lie in one plane, and neither in several. False where that is open of either's area.
+[[nodiscard]] bool share_a_plane(const std::array<glm::vec3, 3>& a, const std::array<glm::vec3, 3>& b);
+/// Whether all corners have one depth, exactly: then every point of the triangle has.
+[[nodiscard]] bool has_one_depth(const std::array<glm::vec3, 3>& corners, const SampleRays& rays);
 
 /// A depth as a fraction.
 class ExactDepth {

@@ -5,6 +5,7 @@
 // left rule. So its tiles and coverage are used as they are (zbuffer/place), and only the depths, which it rounds to
 // keys, are worked out anew.
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "base/parallel.h"
@@ -18,6 +19,13 @@ namespace frontmost {
 namespace {
 
 using namespace zbuffer_detail;
+
+/// What is known of a triangle beside another one: in models with faces in one plane thousands of samples ask.
+struct Rival {
+  PrimitiveId beside = no_primitive, id = no_primitive;
+  bool shares_plane = false, has_one_depth = false;  // the latter of both
+  std::optional<BoundedPlane> plane;
+};
 
 /// The planes being filled, and per sample the bounds of the nearest so far.
 struct NearestBounds {
@@ -60,7 +68,7 @@ class TileContest {
     DepthBounds& best = field_.bounds[i];
     const bool first = answer.primitives[i] == no_primitive;
     if (!first && bounds.low > best.high) return;
-    const int order = first || bounds.high < best.low ? -1 : compare_exactly(id, answer.primitives[i], ray);
+    const int order = first || bounds.high < best.low ? -1 : compare_exactly(id, answer.primitives[i], plane, ray);
     if (order > 0) return;
     if (order == 0) {
       answer.tied[i] = 1;
@@ -71,13 +79,31 @@ class TileContest {
     best = bounds;
   }
 
-  [[nodiscard]] int compare_exactly(PrimitiveId a, PrimitiveId b, const SampleRay& ray) const {
+  [[nodiscard]] int compare_exactly(PrimitiveId a, PrimitiveId b, const BoundedPlane& plane, const SampleRay& ray) {
+    const Rival& rival = rival_of(a, b);
+    if (rival.shares_plane &&
+        (rival.has_one_depth || (plane.is_within_corners(ray) && rival.plane->is_within_corners(ray))))
+      return 0;
     return compare(ExactDepth(field_.surfaces.corners(a), field_.rays, ray),
                    ExactDepth(field_.surfaces.corners(b), field_.rays, ray));
   }
 
+  /// Of `b` beside `a`.
+  [[nodiscard]] const Rival& rival_of(PrimitiveId a, PrimitiveId b) {
+    Rival& rival = rivals_[b % rivals_.size()];
+    if (rival.beside == a && rival.id == b) return rival;
+    const auto own = field_.surfaces.corners(a), other = field_.surfaces.corners(b);
+    rival.beside = a;
+    rival.id = b;
+    rival.shares_plane = share_a_plane(own, other);
+    rival.has_one_depth = rival.shares_plane && has_one_depth(own, field_.rays) && has_one_depth(other, field_.rays);
+    if (rival.shares_plane) rival.plane.emplace(other, field_.rays);
+    return rival;
+  }
+
   NearestBounds& field_;
   PixelRect tile_;
+  std::array<Rival, 16> rivals_;  // by the last digits of their ids
 };
 
 }  // namespace

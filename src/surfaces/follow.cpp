@@ -47,7 +47,7 @@ void PlacedScene::follow(std::uint32_t instance, Isa isa) {
   for (auto range = first; range != ranges.end() && range->instance == instance; ++range) {
     Box* const own = &boxes[range->first_box];
     std::fill_n(own, range->box_count(), Box());
-    find_boxes(world_triangles(*this, *range, scratch), isa, own);
+    find_boxes(world_triangles(*this, *range, isa, scratch), isa, own);
     for (std::uint32_t k = 0; k < range->box_count(); ++k) instance_bounds[instance].include(own[k]);
   }
   if (reaches_side(before, bounds)) {

@@ -72,7 +72,8 @@ PlacedScene place_scene(const Scene& scene, const Execution& execution) {
       MeshRange& range = placed.ranges[i];
       range.vertices = range_of_numbers(placed.corners(range), execution.isa);
       if (range.vertices.high < placed.mesh(range).positions.size())
-        find_boxes(world_triangles(placed, range, scratch), execution.isa, &placed.boxes[range.first_box]);
+        find_boxes(world_triangles(placed, range, execution.isa, scratch), execution.isa,
+                   &placed.boxes[range.first_box]);
       else
         is_bad = true;
     }
@@ -88,32 +89,66 @@ PlacedScene place_scene(const Scene& scene, const Execution& execution) {
   return placed;
 }
 
-WorldTriangles world_triangles(const PlacedScene& placed, const MeshRange& range, WorldScratch& scratch) {
-  const ToWorld world(placed.scene->instances[range.instance].world_from_mesh);
+namespace {
+
+/// Room only grows: what is in it is written anew.
+std::span<glm::vec3> room_for(std::size_t count, WorldScratch& scratch) {
+  if (scratch.positions.size() < count) scratch.positions.resize(count);
+  return std::span(scratch.positions).first(count);
+}
+
+/// The vertices of corners, each once, in the order in which they are met.
+std::span<glm::vec3> gather_vertices(std::span<const glm::uvec3> corners, const std::vector<glm::vec3>& positions,
+                                     const NumberRange& numbers, WorldScratch& scratch) {
+  const std::span<glm::vec3> room = room_for(3 * corners.size(), scratch);
+  std::vector<std::uint32_t>& known = scratch.known;
+  const std::size_t span = std::size_t(numbers.high - numbers.low) + 1;
+  if (known.size() < span) known.resize(span, 0);
+  if (scratch.known_from > no_index - room.size()) {
+    std::fill(known.begin(), known.end(), 0);
+    scratch.known_from = 1;
+  }
+  const std::uint32_t from = scratch.known_from;
+  std::uint32_t next = from;
+  scratch.corners.resize(corners.size());
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      std::uint32_t& place = known[corners[i][k] - numbers.low];
+      if (place < from) {
+        room[next - from] = positions[corners[i][k]];
+        place = next++;
+      }
+      scratch.corners[i][k] = place - from;
+    }
+  scratch.known_from = next;
+  return room.first(next - from);
+}
+
+}  // namespace
+
+WorldTriangles world_triangles(const PlacedScene& placed, const MeshRange& range, Isa isa, WorldScratch& scratch) {
+  const glm::dmat4& world_from_mesh = placed.scene->instances[range.instance].world_from_mesh;
+  const bool is_identity = ToWorld(world_from_mesh).is_identity();
   const std::vector<glm::vec3>& positions = placed.mesh(range).positions;
   WorldTriangles triangles;
   triangles.corners = placed.corners(range);
   triangles.is_mirrored = placed.mirrored[range.instance] != 0;
   triangles.first_id = placed.first_id(range);
-  scratch.positions.clear();
   if (range.vertices.is_dense(range.count())) {
     const auto [low, high] = range.vertices;
-    const auto dense = std::span(positions).subspan(low, std::size_t(high - low) + 1);
+    triangles.positions = std::span(positions).subspan(low, std::size_t(high - low) + 1);
     triangles.first_position = low;
     // No copy at all: most files have one instance, where it is.
-    if (!world.is_identity())
-      for (const glm::vec3& p : dense) scratch.positions.push_back(world(p));
-    triangles.positions = world.is_identity() ? dense : scratch.positions;
+    if (is_identity) return triangles;
+    const std::span<glm::vec3> world = room_for(triangles.positions.size(), scratch);
+    place_vertices(world_from_mesh, triangles.positions, world.data(), isa);
+    triangles.positions = world;
     return triangles;
   }
-  scratch.corners.clear();
-  for (const glm::uvec3& c : triangles.corners) {
-    const auto n = std::uint32_t(scratch.positions.size());
-    scratch.corners.emplace_back(n, n + 1, n + 2);
-    for (int k = 0; k < 3; ++k) scratch.positions.push_back(world(positions[c[k]]));
-  }
+  const std::span<glm::vec3> gathered = gather_vertices(triangles.corners, positions, range.vertices, scratch);
+  if (!is_identity) place_vertices(world_from_mesh, gathered, gathered.data(), isa);
   triangles.corners = scratch.corners;
-  triangles.positions = scratch.positions;
+  triangles.positions = gathered;
   return triangles;
 }
 

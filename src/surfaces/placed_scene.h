@@ -189,10 +189,15 @@ void PlacedScene::visit_box(std::size_t box, const Visit& visit) const {
 struct WorldScratch {
   std::vector<glm::vec3> positions;
   std::vector<glm::uvec3> corners;
+  std::vector<std::uint32_t> known;  ///< by vertex: where it is in positions + known_from, unless it is less than that
+  std::uint32_t known_from = 1;
 };
 
-/// Every vertex once where their numbers are dense; else every corner by itself.
-[[nodiscard]] WorldTriangles world_triangles(const PlacedScene& placed, const MeshRange& range, WorldScratch& scratch);
+/// Every vertex once: all between the least and the greatest where their numbers are dense, else those of corners.
+[[nodiscard]] WorldTriangles world_triangles(const PlacedScene& placed, const MeshRange& range, Isa isa,
+                                             WorldScratch& scratch);
+/// to_world() of each, to the bit. `to`: as many; may be the same.
+void place_vertices(const glm::dmat4& world_from_mesh, std::span<const glm::vec3> from, glm::vec3* to, Isa isa);
 
 /// Precondition: not empty.
 [[nodiscard]] NumberRange range_of_numbers(std::span<const glm::uvec3> corners, Isa isa);

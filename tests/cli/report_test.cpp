@@ -3,9 +3,7 @@
 #include <frontmost/io.h>
 #include <gmock/gmock.h>
 
-#include <map>
-
-#include "program.h"
+#include "report_squares.h"
 
 namespace frontmost::test {
 namespace {
@@ -13,30 +11,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-class Report : public ProgramTest {
- protected:
-  /// Three squares over a picture of ten by ten pixels, one to a unit: the far one covers 6 x 6 of them, the near one 4
-  /// x 4, three of them before the far one and a column of four beyond the frame; the last one is far away.
-  Report() {
-    write("squares.obj", square("far", {-3, -3}, 3, 0) + square("near", {2, 0}, 2, 1) + square("away", {40, 0}, 1, 0));
-  }
-
-  static constexpr const char* view =
-      " --camera-position 0,0,10 --camera-focal-point 0,0,0 --camera-view-up +y --intrinsics 100,100,5,5 "
-      "--pixel-center half --resolution 10,10 --near 1 --far 200 ";
-
- private:
-  static std::string square(const std::string& name, const glm::dvec2& low, double half, double z) {
-    // So far away that what is nearer is no larger.
-    const double scale = (10 - z) / 100;
-    std::string text = "o " + name + "\n";
-    for (const glm::dvec2& corner : {glm::dvec2(0, 0), {1, 0}, {1, 1}, {0, 1}}) {
-      const glm::dvec2 at = (low + 2 * half * corner) * scale;
-      text += "v " + std::to_string(at.x) + " " + std::to_string(at.y) + " " + std::to_string(z) + "\n";
-    }
-    return text + "f -4 -3 -2 -1\n";
-  }
-};
+using Report = ReportTest;
 
 TEST_F(Report, TheTableHasARowForEveryObject) {
   const std::string text = succeed(std::string("report squares.obj") + view).out;
@@ -202,6 +177,101 @@ TEST_F(Report, ABopSceneHasPosesMasksAndDepth) {
   EXPECT_NEAR(depth.find("Z")->floats()[5 * 10 + 5], 10, 1e-4);
 }
 
+/// What takes a point of the file to the camera of a BOP scene: the numbers of `of`, such as "cam_R_m2c".
+glm::dvec3 in_camera(const json& pose, const std::string& of, const glm::dvec3& point) {
+  const json &turn = pose["cam_R_" + of], &move = pose["cam_t_" + of];
+  glm::dvec3 result;
+  for (int row = 0; row < 3; ++row) {
+    result[row] = move[std::size_t(row)].get<double>();
+    for (int k = 0; k < 3; ++k) result[row] += turn[std::size_t(3 * row + k)].get<double>() * point[k];
+  }
+  return result;
+}
+
+TEST_F(Report, BopsPosesOfModelsFarFromZeroAreForTheCoordinatesOfTheirFiles) {
+  constexpr double far = 1e6;
+  const glm::dvec3 away(far);
+  write("cube.stl", cube_stl(0));
+  write("moved.obj", squares(far));          // text: an origin is taken off its coordinates
+  write("moved.stl", cube_stl(float(far)));  // floats: an origin is taken off its place
+  write("home.json", R"({"objects": [{"model": "moved.obj", "parts": "apart", "translation": [-1e6, -1e6, -1e6]}]})");
+  const std::string eye = " --bop scene --resolution 40,30 --camera-position ";
+  const std::string near_eye = eye + "8,3,4 --camera-focal-point 0,0,0";
+  const std::string far_eye = eye + "1000008,1000003,1000004 --camera-focal-point 1000000,1000000,1000000";
+  const auto poses_of = [&](const std::string& model, const std::string& from) {
+    succeed("report " + model + from);
+    json found = json::parse(read("scene/scene_gt.json"))["0"];
+    found.push_back(json::parse(read("scene/scene_camera.json"))["0"]);
+    return found;
+  };
+  struct Case {
+    const char *home, *moved;
+    bool is_world_moved;
+  };
+  for (const auto& [home, moved, is_world_moved] :
+       {Case{"squares.obj", "moved.obj", true}, {"cube.stl", "moved.stl", true}, {"squares.obj", "home.json", false}}) {
+    const json before = poses_of(home, near_eye), after = poses_of(moved, is_world_moved ? far_eye : near_eye);
+    ASSERT_EQ(before.size(), after.size()) << moved;
+    for (const glm::dvec3& point : {glm::dvec3(0), {3, 0, 0}, {0, 5, 1}}) {
+      for (std::size_t i = 0; i + 1 < before.size(); ++i)
+        EXPECT_LT(glm::distance(in_camera(after[i], "m2c", away + point), in_camera(before[i], "m2c", point)), 1e-6)
+            << moved << i;
+      EXPECT_LT(glm::distance(in_camera(after.back(), "w2c", is_world_moved ? away + point : point),
+                              in_camera(before.back(), "w2c", point)),
+                1e-6)
+          << moved;
+    }
+  }
+}
+
+TEST_F(Report, MasksArePicturesOfEveryObjectInTheFrame) {
+  const json told = succeed(std::string("report squares.obj --json --masks new/masks") + view).json();
+  EXPECT_EQ(told["files"], json({"new/masks/000000_visible.png", "new/masks/000000_amodal.png",
+                                 "new/masks/000001_visible.png", "new/masks/000001_amodal.png"}));
+  const auto marked = [&](const std::string& name) {
+    const Image mask = load_image(path("new/masks/" + name));
+    EXPECT_EQ(mask.width, 10);
+    EXPECT_EQ(mask.height, 10);
+    double sum = 0;
+    for (const float value : mask.find("R")->floats()) sum += double(value);
+    return sum;
+  };
+  EXPECT_EQ(marked("000000_visible.png"), 33);
+  EXPECT_EQ(marked("000000_amodal.png"), 36);
+  EXPECT_EQ(marked("000001_visible.png"), 12);
+  EXPECT_EQ(marked("000001_amodal.png"), 12) << "what is beyond the frame has no pixels";
+  EXPECT_EQ(load_image(path("new/masks/000000_amodal.png")).find("R")->floats()[2 * 10 + 7], 1) << "hidden";
+  EXPECT_EQ(load_image(path("new/masks/000000_visible.png")).find("R")->floats()[2 * 10 + 7], 0) << "hidden";
+  expect_failure("report squares.obj --masks squares.obj/masks", 1, "squares.obj/masks");
+  expect_failure("report missing.obj --masks other", 1, "missing.obj");
+  EXPECT_FALSE(exists("other"));
+  write("views.json", R"({"views": [{"view": "front"}]})");
+  expect_failure("report squares.obj --views views.json --masks new/masks", 2, "--views excludes --output");
+}
+
+TEST_F(Report, CategoriesOfAFileCountInCocoAndBop) {
+  write("kinds.json", R"({"categories": ["plate", {"name": "wall", "number": 17}],
+                          "objects": {"far": "wall", "near": "plate", "door": "wall"}})");
+  const Outcome outcome = run({"report", "squares.obj", "--categories", "kinds.json", "--coco", "coco.json", "--bop",
+                               "scene", "--resolution", "40,30", "--view", "front"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("warning: kinds.json: objects: no object has the name \"door\"\n"));
+  const json coco = json::parse(read("coco.json"));
+  ASSERT_EQ(coco["categories"].size(), 3u) << "the third object goes by its name";
+  EXPECT_EQ(coco["categories"][1]["id"], 17);
+  EXPECT_EQ(coco["categories"][1]["name"], "wall");
+  EXPECT_EQ(coco["categories"][2]["id"], 18);
+  EXPECT_EQ(coco["annotations"][0]["category_id"], 17);
+  const json poses = json::parse(read("scene/scene_gt.json"))["0"];
+  EXPECT_EQ(poses[0]["obj_id"], 17);
+  EXPECT_EQ(poses[1]["obj_id"], 1);
+  expect_failure("report squares.obj --categories none.json", 1, "none.json: ");
+  write("wrong.json", R"({"categories": ["plate"], "objects": {"far": "wall"}})");
+  expect_failure("report squares.obj --categories wrong.json", 1,
+                 "wrong.json: objects.far: \"wall\" is none of the file's categories");
+  expect_failure("report squares.obj --categories kinds.json --coco kinds.json", 2, "is the file of categories itself");
+}
+
 TEST_F(Report, BopsOwnDefinitionOfVisibleHasATolerance) {
   // The near square is a millimetre before the far one: less than the tolerance, so that all of both is visible.
   succeed(std::string("report squares.obj --bop scene --bop-visible bop19") + view);
@@ -227,100 +297,6 @@ TEST_F(Report, WrongOptionsAreNamed) {
   expect_failure("report squares.obj --canvas 0.5", 2, "--canvas: 0.5 is not between 1 and 16");
   expect_failure("report squares.obj --samples 4", 2, "--samples does not belong to 'frontmost report'");
   expect_failure("report", 2, "no MODEL given");
-}
-
-/// What stands between two texts; empty where either is missing.
-std::string between(const std::string& text, const std::string& before, const std::string& behind) {
-  const std::size_t begin = text.find(before);
-  if (begin == std::string::npos) return "";
-  const std::size_t from = begin + before.size(), end = text.find(behind, from);
-  return end == std::string::npos ? "" : text.substr(from, end - from);
-}
-
-/// The first element that is not closed, or closed in the wrong place, or an attribute without quotes; empty where all
-/// is well. What is in scripts and styles is not looked at.
-std::string fault_of(const std::string& page) {
-  std::vector<std::string> open;
-  for (std::size_t at = page.find('<'); at != std::string::npos; at = page.find('<', at)) {
-    const std::size_t end = page.find('>', at);
-    if (end == std::string::npos) return "no end: " + page.substr(at, 40);
-    const std::string tag = page.substr(at + 1, end - at - 1), name = tag.substr(0, tag.find_first_of(" /"));
-    at = end + 1;
-    if (tag[0] == '!') continue;
-    if (tag[0] == '/') {
-      if (open.empty() || open.back() != tag.substr(1)) return "closed: " + tag;
-      open.pop_back();
-      continue;
-    }
-    if (std::count(tag.begin(), tag.end(), '"') % 2 != 0) return "quotes: " + tag;
-    if (tag.back() == '/' || name == "meta" || name == "img" || name == "input") continue;
-    open.push_back(name);
-    if (name == "script" || name == "style") at = page.find("</" + name + ">", at);
-  }
-  return open.empty() ? "" : "open: " + open.back();
-}
-
-/// The page's own numbers.
-json data_of(const std::string& page) { return json::parse(between(page, "id=\"data\">", "</script>")); }
-
-TEST_F(Report, ThePageHasThePictureTheNumbersAndTheMasks) {
-  const json told = succeed(std::string("report squares.obj -o page.html --json") + view).json();
-  EXPECT_EQ(told["files"], json({"page.html"}));
-  const std::string page = read("page.html");
-  EXPECT_EQ(fault_of(page), "");
-  EXPECT_THAT(page, HasSubstr("<img src=\"data:image/png;base64,iVBORw0KGgo"));
-  EXPECT_THAT(page, HasSubstr("<td>33</td><td>36</td><td>36</td><td>91.7 %</td><td>8.3 %</td><td>0.0 %</td>"));
-  const json data = data_of(page);
-  ASSERT_EQ(data["objects"].size(), 3u);
-  EXPECT_FALSE(data["objects"][2].contains("mask")) << "it is far away";
-  EXPECT_EQ(data["objects"][0]["hidden_by"], json({{1, 3}}));
-  EXPECT_EQ(data["objects"][0]["alone"], told["objects"][0]["alone"]);
-  // 6 x 6 pixels, of which the last in the first, second and third row are hidden.
-  EXPECT_EQ(data["objects"][0]["mask"], json({0, 0, 5, 0, 1, 5, 0, 1, 5, 0, 1, 18}));
-  std::map<int, int> shown;
-  for (std::size_t i = 0; i < data["map"].size(); i += 2) shown[data["map"][i]] += int(data["map"][i + 1]);
-  EXPECT_EQ(shown, (std::map<int, int>{{0, 55}, {1, 33}, {2, 12}}));
-  EXPECT_THAT(page, HasSubstr("<title>near hides 3 samples of far</title>"));
-  EXPECT_EQ(files(), (std::vector<std::string>{"page.html", "squares.obj"}));
-}
-
-TEST_F(Report, ThePageNeedsNothingElse) {
-  ASSERT_EQ(run({"report", "squares.obj", "-o", "page.html"}).status, 0);
-  const std::string page = read("page.html");
-  for (const char* word : {"http:", "https:", "href", "@import", "src=\"/", "fetch(", "eval(", "innerHTML"})
-    EXPECT_THAT(page, Not(HasSubstr(word)));
-  EXPECT_THAT(page, HasSubstr("prefers-color-scheme: dark"));
-  EXPECT_THAT(page, HasSubstr("name=\"viewport\" content=\"width=device-width"));
-}
-
-TEST_F(Report, NamesInThePageAreText) {
-  const std::string name = "</script><b onclick='x'>\"&\xff\x01";
-  write("a<i>.obj", "o " + name + "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  ASSERT_EQ(run({"report", "a<i>.obj", "--resolution", "32,24", "-o", "page.html"}).status, 0);
-  const std::string page = read("page.html");
-  EXPECT_EQ(fault_of(page), "");
-  EXPECT_THAT(page, Not(HasSubstr("<b ")));
-  EXPECT_THAT(page, Not(HasSubstr("<i>.obj")));
-  EXPECT_THAT(page, HasSubstr("<h1>a&lt;i&gt;.obj</h1>"));
-  EXPECT_THAT(page, HasSubstr("&lt;/script&gt;&lt;b onclick=&#39;x&#39;&gt;&quot;&amp;\\xFF\\x01"));
-  EXPECT_EQ(data_of(page)["objects"][0]["name"], "</script><b onclick='x'>\"&\\xFF\\x01");
-}
-
-TEST_F(Report, ThePageIsWrittenWholeOrNotAtAll) {
-  write("old.html", "old");
-  expect_failure("report squares.obj -o squares.obj", 2, "is the model itself");
-  expect_failure("report squares.obj -o none/page.html", 1, "none");
-  expect_failure("report squares.obj --json -o -", 2, "both want standard output");
-  expect_failure("report missing.obj -o old.html", 1, "missing.obj");
-  EXPECT_EQ(read("old.html"), "old");
-  EXPECT_THAT(run({"report", "squares.obj", "-o", "-"}).out, testing::EndsWith("</html>\n"));
-}
-
-TEST_F(Report, AnEmptyPageIsAPageToo) {
-  write("empty.obj", "v 0 0 0\n");
-  ASSERT_EQ(run({"report", "empty.obj", "--resolution", "10,10", "-o", "page.html"}).status, 0);
-  EXPECT_EQ(fault_of(read("page.html")), "");
-  EXPECT_THAT(read("page.html"), Not(HasSubstr("Who hides whom")));
 }
 
 }  // namespace

@@ -210,6 +210,31 @@ TEST(Explain, CountsTrianglesOfMixtures) {
   expect_seen_after_remedy(scene, level_view(), why);
 }
 
+TEST(Explain, CountsWhatIsWhollyInViewByItsAreas) {
+  // Triangles within the picture, of which many have no area, and one a corner that is no number.
+  test::Random random(11);
+  const auto corner = [&] { return random.point(1) - glm::vec3(0, 0, 8); };
+  Mesh mesh;
+  std::uint64_t empty = 1;
+  for (int i = 0; i < 1'237; ++i) {
+    const glm::vec3 a = corner(), b = corner(), c = i % 8 == 0 ? a : i % 8 == 4 ? (a + b) * 0.5f : corner();
+    test::add_triangle(mesh, a, b, c);
+    empty += glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a)) == glm::dvec3(0);
+  }
+  mesh.positions[15].y = std::numeric_limits<float>::quiet_NaN();
+  const std::size_t count = mesh.triangles.size();
+  EXPECT_GT(empty, count / 9);
+  EXPECT_LT(empty, count / 3);
+  const Scene scene = test::scene_of(std::move(mesh));
+  const Surfaces surfaces(scene);
+  for (const Isa isa : available_isas()) {
+    const Explanation why = explain(surfaces, level_view(), 0, {.threads = 1, .isa = isa});
+    EXPECT_EQ(why.triangles.empty, empty) << name(isa);
+    EXPECT_EQ(why.triangles.in_view, count - empty) << name(isa);
+    EXPECT_EQ(why.reason, SightReason::seen);
+  }
+}
+
 TEST(Explain, WhatIsTurnedAwayIsSeenWithoutCulling) {
   const Scene scene = panel_at({0, 0, -10});
   for (const Culling culling : {Culling::front, Culling::both}) {

@@ -44,6 +44,20 @@ inline bool fuzz_mtl(std::span<const std::byte> bytes) {
   }
 }
 
+/// The same for a file of categories.
+inline bool fuzz_categories(std::span<const std::byte> bytes) {
+  Scene scene = builtin("cubes");
+  scene.instances[1].name = "a";
+  try {
+    load_categories(bytes, "fuzz", scene);
+    validate(scene);
+    return true;
+  } catch (const Error& error) {
+    if (!std::string_view(error.what()).starts_with("fuzz: ")) std::abort();
+    return false;
+  }
+}
+
 /// Any bytes read as 3MF: an archive as it is, or else the texts of its parts, which get an archive around them,
 /// because mutations would never get past its checksums. The parts of an input that is no archive are parted by zeros:
 /// the model, then "/a.model".

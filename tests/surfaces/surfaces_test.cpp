@@ -35,6 +35,32 @@ std::vector<std::array<glm::vec3, 3>> triangles_of(const ClusterSet& set, std::s
   return triangles;
 }
 
+TEST(Surfaces, VerticesArePlacedAsOneByOne) {
+  Random random(3);
+  for (const std::size_t count : {0u, 1u, 7u, 16u, 333u}) {
+    glm::dmat4 place(1.0);
+    for (int column = 0; column < 4; ++column)
+      for (int row = 0; row < 3; ++row) place[column][row] = double(random.within(-9, 9)) * (column == 3 ? 1e4 : 1);
+    std::vector<glm::vec3> from;
+    for (std::size_t i = 0; i < count; ++i) from.push_back(random.point(i % 3 == 0 ? 1e-3f : 5e5f));
+    // Out of the floats' reach, and what never was within.
+    if (count > 8) from[3].x = 3e38f, from[5].y = std::numeric_limits<float>::infinity(), from[8].z = -3e38f;
+    for (const Isa isa : available_isas()) {
+      std::vector<glm::vec3> to(count), same = from;
+      place_vertices(place, from, to.data(), isa);
+      place_vertices(place, same, same.data(), isa);
+      for (std::size_t i = 0; i < count; ++i) {
+        const glm::vec3 expected = to_world(place, from[i]);
+        const bool is_number = expected == expected;
+        EXPECT_EQ(is_number, to[i] == to[i]) << i;
+        if (!is_number) continue;
+        EXPECT_TRUE(has_same_bits(to[i], expected)) << i;
+        EXPECT_TRUE(has_same_bits(same[i], expected)) << i;
+      }
+    }
+  }
+}
+
 TEST(Surfaces, ClustersHoldEveryTriangleOnce) {
   for (const Kind kind : {Kind::soup, Kind::shared_grid, Kind::fan, Kind::coplanar}) {
     Scene scene = scene_of(random_mesh(kind, 40'000, 1));

@@ -56,6 +56,7 @@ template <class Read>
   Coordinates away(origin);
   scene = read(away);
   scene.origin = origin;
+  for (Mesh& mesh : scene.meshes) mesh.origin = origin;
   return scene;
 }
 

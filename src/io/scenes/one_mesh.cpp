@@ -106,6 +106,7 @@ Mesh one_mesh(const Scene& model) {
   const std::vector<PartOfModel> parts = parts_of(model);
   Mesh all;
   all.name = model.name;
+  all.origin = model.origin;
   for (const PartOfModel& part : parts) {
     append_triangles(part.mesh.triangles, std::uint32_t(all.positions.size()), part.is_mirrored, all.triangles);
     for (const glm::vec3& p : part.mesh.positions)

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "io/models/mesh_building.h"
+#include "io/scenes/categories.h"
 
 namespace frontmost {
 namespace {
@@ -31,58 +31,6 @@ double read_unit(const JsonValue& value) {
   if (!(metres >= 1e-12 && metres <= 1e12)) value.fail("the number is not between 1e-12 and 1e12");
   return metres;
 }
-
-/// A name of the file for the scene.
-std::string read_name(const JsonValue& value) {
-  std::string name = value.to_string();
-  if (name.empty()) value.fail("the name is empty");
-  return name_of(name);
-}
-
-void check_count(const JsonValue& array) {
-  if (array.size() > max_objects)
-    array.source().fail_limit(array.place(),
-                              std::to_string(array.size()) + " are more than " + std::to_string(max_objects));
-}
-
-/// Categories by name: those of the file's list, or, without one, as objects name them.
-class CategoryNames {
- public:
-  CategoryNames(const JsonValue& root, std::vector<Category>& categories) : categories_(categories) {
-    const std::optional<JsonValue> list = root.find("categories");
-    is_listed_ = list.has_value();
-    if (!list) return;
-    check_count(*list);
-    std::set<std::uint32_t> numbers;
-    for (std::size_t i = 0; i < list->size(); ++i) {
-      const JsonValue json = (*list)[i];
-      const Category category = read(json, std::uint32_t(i + 1));
-      if (!numbers_.emplace(category.name, std::uint32_t(i)).second) json.fail("the name is there twice");
-      if (!numbers.insert(category.number).second) json.fail("the number is there twice");
-      categories_.push_back(category);
-    }
-  }
-
-  std::uint32_t get(const JsonValue& value) {
-    const std::string name = read_name(value);
-    const auto [found, is_new] = numbers_.emplace(name, std::uint32_t(categories_.size()));
-    if (is_new && is_listed_) value.fail(in_quotes(name) + " is none of the file's categories");
-    if (is_new) categories_.push_back({name, std::uint32_t(categories_.size() + 1)});
-    return found->second;
-  }
-
- private:
-  static Category read(const JsonValue& json, std::uint32_t number) {
-    if (json.is_string()) return {read_name(json), number};
-    check_keys(json, {"name", "number"});
-    const std::optional<JsonValue> given = json.find("number");
-    return {read_name(json.require("name")), given ? given->to_index(no_index) : number};
-  }
-
-  std::vector<Category>& categories_;
-  std::map<std::string, std::uint32_t> numbers_;  ///< in the list
-  bool is_listed_ = false;
-};
 
 /// Materials by the names that the file gives them.
 class LookNames {

@@ -92,7 +92,7 @@ class BandHiders {
   }
 
   void draw_range(const MeshRange& range, const PixelRect& rect) {
-    const WorldTriangles triangles = world_triangles(scene_, range, scratch_);
+    const WorldTriangles triangles = world_triangles(scene_, range, target_.isa, scratch_);
     snap_vertices(target_, triangles.positions, scratch_.vertices);
     scratch_.apart.clear();
     batch_.clear();

@@ -91,7 +91,7 @@ void ObjectMask::clear() {
 }
 
 void ObjectMask::draw_range(const MeshRange& range) {
-  const WorldTriangles triangles = world_triangles(scene_, range, scratch_);
+  const WorldTriangles triangles = world_triangles(scene_, range, target_.isa, scratch_);
   snap_vertices(target_, triangles.positions, scratch_.vertices);
   scratch_.apart.clear();
   batch_.clear();

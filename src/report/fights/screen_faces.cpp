@@ -171,7 +171,7 @@ std::vector<ScreenFace> screen_faces(const Surfaces& surfaces, const View& view,
     const auto scratch = scratches.borrow([] { return std::make_unique<PlaceScratch>(); });
     std::vector<TriangleRecord> records;
     for (std::size_t i = begin; i < end; ++i) {
-      const WorldTriangles triangles = world_triangles(placed, placed.ranges[i], *scratch);
+      const WorldTriangles triangles = world_triangles(placed, placed.ranges[i], execution.isa, *scratch);
       snap_vertices(target, triangles.positions, scratch->vertices);
       for (std::size_t k = 0; k < triangles.corners.size(); ++k) {
         const ClippedPolygon polygon = polygon_of(target, triangles, scratch->vertices, k);

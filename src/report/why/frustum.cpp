@@ -47,6 +47,25 @@ FrustumPoint Frustum::see(const glm::vec3& world) const {
            before_far}};
 }
 
+bool Frustum::surely_holds(const Box& box) const {
+  if (box.is_empty()) return true;
+  // Distances are linear, so that corners decide; what see() rounds is far less than this share of what it adds up.
+  constexpr double kRounding = 1e-12;
+  for (int k = 0; k < 8; ++k) {
+    const glm::vec3 corner(k & 1 ? box.high.x : box.low.x, k & 2 ? box.high.y : box.low.y,
+                           k & 4 ? box.high.z : box.low.z);
+    const FrustumPoint p = see(corner);
+    const glm::dvec3 reach = glm::abs(glm::dvec3(corner)) + glm::abs(eye_);
+    const Projection& f = projection_;
+    const double across = std::max({std::abs(f.left), std::abs(f.right), std::abs(f.top), std::abs(f.bottom), 1.0});
+    const double far = std::isinf(f.clip.far) ? 0 : f.clip.far;
+    const double slack = kRounding * ((reach.x + reach.y + reach.z) * (1 + across) + across + f.clip.near + far);
+    const bool is_inside = std::all_of(p.inside.begin(), p.inside.end(), [&](double d) { return d > slack; });
+    if (!is_inside) return false;
+  }
+  return true;
+}
+
 glm::dvec2 Frustum::pixel_of(const PointAhead& p) const {
   const double unit = projection_.orthographic ? 1 : p.z;
   return {(p.x / unit - projection_.left) * pixels_across_, (projection_.top - p.y / unit) * pixels_down_};

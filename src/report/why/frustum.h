@@ -40,6 +40,8 @@ class Frustum {
   explicit Frustum(const View& view);
 
   [[nodiscard]] bool is_orthographic() const { return projection_.orthographic; }
+  /// Whether everything within a box is inside of all planes, beyond doubt.
+  [[nodiscard]] bool surely_holds(const Box& box) const;
   [[nodiscard]] FrustumPoint see(const glm::vec3& world) const;
   /// In pixels from the picture's top left corner. Precondition: before the eye.
   [[nodiscard]] glm::dvec2 pixel_of(const PointAhead& p) const;

@@ -39,44 +39,38 @@ double inner_radius(std::span<const glm::dvec2> p) {
 /// What finding places needs of memory, one a thread.
 struct FrustumScratch {
   WorldScratch world;
-  std::vector<FrustumPoint> seen;
-  std::vector<std::uint8_t> outside;  // by vertex, a bit for each plane, and more
+  std::vector<FrustumPoint> seen;     // by vertex, once it was looked at
+  std::vector<std::uint8_t> outside;  // likewise, a bit for each plane, and more
 };
 
 /// The places of one range of triangles.
 class PlaceFinder {
  public:
-  PlaceFinder(const PlacedScene& scene, const View& view)
-      : scene_(scene), frustum_(view), culling_(view.culling), clear_(find_clear_materials(*scene.scene)) {
+  PlaceFinder(const PlacedScene& scene, const View& view, Isa isa)
+      : scene_(scene), frustum_(view), culling_(view.culling), isa_(isa), clear_(find_clear_materials(*scene.scene)) {
     is_any_clear_ = std::find(clear_.begin(), clear_.end(), 1) != clear_.end();
   }
 
   /// `needs_area`: whether it matters where on the screen the triangles are.
   [[nodiscard]] ObjectPlaces find(const MeshRange& range, bool needs_area, FrustumScratch& scratch) const {
     ObjectPlaces places;
-    const WorldTriangles world = world_triangles(scene_, range, scratch.world);
-    scratch.seen.clear();
-    scratch.outside.clear();
-    for (const glm::vec3& p : world.positions) {
-      scratch.seen.push_back(frustum_.see(p));
-      scratch.outside.push_back(outside_of(scratch.seen.back(), p));
-    }
-    for (std::size_t i = 0; i < world.corners.size(); ++i) {
-      glm::uvec3 c = world.corners[i] - world.first_position;
-      if (world.is_mirrored) std::swap(c.y, c.z);
-      const std::uint8_t o[3] = {scratch.outside[c.x], scratch.outside[c.y], scratch.outside[c.z]};
-      const glm::dvec3 a(world.positions[c.x]), b(world.positions[c.y]), d(world.positions[c.z]);
-      const glm::dvec3 normal = glm::cross(b - a, d - a);
-      if (((o[0] | o[1] | o[2]) & kNowhere) != 0 || normal == glm::dvec3(0)) {
-        ++places.counts.empty;
+    const WorldTriangles world = world_triangles(scene_, range, isa_, scratch.world);
+    if (scratch.seen.size() < world.positions.size()) scratch.seen.resize(world.positions.size());
+    scratch.outside.assign(world.positions.size(), kNotSeen);
+    for (std::uint32_t k = 0; k < range.box_count(); ++k) {
+      const std::size_t first = std::size_t(k) * MeshRange::triangles_in_box;
+      WorldTriangles part = world;
+      part.corners = world.corners.subspan(
+          first, std::min<std::size_t>(MeshRange::triangles_in_box, world.corners.size() - first));
+      if (!needs_area && is_surely_in_view(scene_.boxes[range.first_box + k])) {
+        const std::uint64_t empty = count_flat(part, isa_);
+        places.counts.empty += empty;
+        places.counts.in_view += part.corners.size() - empty;
         continue;
       }
-      const ViewedTriangle triangle{{&scratch.seen[c.x], &scratch.seen[c.y], &scratch.seen[c.z]},
-                                    normal,
-                                    std::uint8_t(o[0] | o[1] | o[2]),
-                                    std::uint8_t(o[0] & o[1] & o[2])};
-      if (place(triangle, needs_area, places) && is_any_clear_)
-        places.clear += is_clear(range, range.begin + std::uint32_t(i));
+      for (std::size_t i = 0; i < part.corners.size(); ++i)
+        if (find_triangle(part, i, needs_area, scratch, places) && is_any_clear_)
+          places.clear += is_clear(range, range.begin + std::uint32_t(first + i));
     }
     return places;
   }
@@ -84,6 +78,7 @@ class PlaceFinder {
  private:
   // Beside a bit for each plane.
   static constexpr std::uint8_t kBehindEye = 1 << kPlaneCount, kNowhere = 1 << (kPlaneCount + 1);
+  static constexpr std::uint8_t kNotSeen = 0xFF;  // which no vertex is: what is nowhere has no other bit
 
   struct ViewedTriangle {
     const FrustumPoint* corners[3];
@@ -93,6 +88,35 @@ class PlaceFinder {
     [[nodiscard]] const PointAhead& at(int k) const { return corners[k]->at; }
     [[nodiscard]] FrustumPolygon polygon() const { return {{*corners[0], *corners[1], *corners[2]}, 3}; }
   };
+
+  /// Of all in a box but what is empty; what of it is clear need not be counted then.
+  [[nodiscard]] bool is_surely_in_view(const Box& box) const {
+    return culling_ == Culling::none && !is_any_clear_ && frustum_.surely_holds(box);
+  }
+
+  /// \returns whether it is in view.
+  [[nodiscard]] bool find_triangle(const WorldTriangles& world, std::size_t i, bool needs_area, FrustumScratch& scratch,
+                                   ObjectPlaces& places) const {
+    glm::uvec3 c = world.corners[i] - world.first_position;
+    if (world.is_mirrored) std::swap(c.y, c.z);
+    std::uint8_t all = 0xFF, any = 0;
+    for (int k = 0; k < 3; ++k) {
+      std::uint8_t& outside = scratch.outside[c[k]];
+      if (outside == kNotSeen) {
+        scratch.seen[c[k]] = frustum_.see(world.positions[c[k]]);
+        outside = outside_of(scratch.seen[c[k]], world.positions[c[k]]);
+      }
+      all &= outside;
+      any |= outside;
+    }
+    const glm::dvec3 a(world.positions[c.x]), b(world.positions[c.y]), d(world.positions[c.z]);
+    const glm::dvec3 normal = glm::cross(b - a, d - a);
+    if ((any & kNowhere) != 0 || normal == glm::dvec3(0)) {
+      ++places.counts.empty;
+      return false;
+    }
+    return place({{&scratch.seen[c.x], &scratch.seen[c.y], &scratch.seen[c.z]}, normal, any, all}, needs_area, places);
+  }
 
   [[nodiscard]] std::uint8_t outside_of(const FrustumPoint& p, const glm::vec3& world) const {
     if (!is_finite(world)) return kNowhere;
@@ -191,6 +215,7 @@ class PlaceFinder {
   const PlacedScene& scene_;
   Frustum frustum_;
   Culling culling_;
+  Isa isa_;
   std::vector<std::uint8_t> clear_;
   bool is_any_clear_ = false;
 };
@@ -234,7 +259,7 @@ void ObjectPlaces::add(const ObjectPlaces& other) {
 std::vector<ObjectPlaces> find_places(const PlacedScene& scene, const View& view, const Accounting& accounts,
                                       std::uint32_t object, const Execution& execution) {
   constexpr std::size_t kRangesAtOnce = 16;
-  const PlaceFinder finder(scene, view);
+  const PlaceFinder finder(scene, view, execution.isa);
   std::vector<ObjectPlaces> of_ranges(scene.ranges.size());
   Pool<FrustumScratch> scratches;
   parallel_for(execution, of_ranges.size(), kRangesAtOnce, [&](std::size_t begin, std::size_t end) {

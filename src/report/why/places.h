@@ -45,4 +45,7 @@ struct ObjectPlaces {
                                                     const Accounting& accounts, std::uint32_t object,
                                                     const Execution& execution);
 
+/// How many have an area of 0 or a corner that is not finite.
+[[nodiscard]] std::uint64_t count_flat(const WorldTriangles& triangles, Isa isa);
+
 }  // namespace frontmost::why_detail

@@ -95,7 +95,7 @@ class ProbeCaster {
       : scene_(scene), canvas_(canvas), target_(canvas.transform, canvas.view, isa), probes_(probes), grid_(grid) {}
 
   void cast(const MeshRange& range, std::vector<ProbeHit>& hits) {
-    const WorldTriangles triangles = world_triangles(scene_, range, scratch_);
+    const WorldTriangles triangles = world_triangles(scene_, range, target_.isa, scratch_);
     snap_vertices(target_, triangles.positions, scratch_.vertices);
     scratch_.apart.clear();
     batch_.clear();

@@ -159,7 +159,7 @@ class DirectFrame {
   }
 
   void place_range(const MeshRange& range, DirectScratch& scratch, DirectBatch& batch) const {
-    const WorldTriangles triangles = world_triangles(scene_, range, scratch);
+    const WorldTriangles triangles = world_triangles(scene_, range, target_.isa, scratch);
     snap_vertices(target_, triangles.positions, scratch.vertices);
     if (!may_be_seen(scratch.vertices)) return;
     scratch.apart.clear();

@@ -107,7 +107,7 @@ void submit(const Surfaces& surfaces, const View& view, const PrimitiveRange& ra
       for (std::size_t i = begin; i < end; ++i) {
         batches[i].clear();
         for (std::size_t k = sources[first + i].begin; k < sources[first + i].end; ++k)
-          batches[i].place(target, world_triangles(scene, ranges[k], *scratch), *scratch);
+          batches[i].place(target, world_triangles(scene, ranges[k], execution.isa, *scratch), *scratch);
         batches[i].list_tiles(view);
       }
     });

@@ -36,6 +36,7 @@ std::vector<Seed> seeds() {
 
 bool read(ModelFormat format, const std::string& text) {
   const std::span<const std::byte> bytes(reinterpret_cast<const std::byte*>(text.data()), text.size());
+  if (format == ModelFormat::scene && fuzz_categories(bytes)) return true;
   if (format != ModelFormat::obj) return fuzz_reader(format, bytes);
   const std::size_t split = std::min(text.find('\0'), text.size());
   const bool library = split == text.size() || fuzz_mtl(bytes.subspan(split + 1));

@@ -128,6 +128,7 @@ class PosedMeshes {
     // What is odd about a mesh is said once, not for each of its poses.
     std::vector<std::string> repeated;
     Mesh posed = reader_.read(plans_[mesh], pose, is_read_[mesh] ? repeated : scene_.warnings);
+    posed.origin = pose.origin;
     std::uint32_t number = mesh;
     if (is_read_[mesh]) {
       number = std::uint32_t(scene_.meshes.size());

@@ -46,7 +46,6 @@ struct Object {
   std::string name;
   std::size_t line = 0;
   std::uint32_t mesh = no_index;              ///< in the scene; none for objects of components
-  glm::dvec3 origin{0};                       ///< of the mesh in the coordinates of the file
   Property property;                          ///< of triangles that have none of their own
   std::vector<Property> triangle_properties;  ///< one a triangle, or none at all
   std::vector<PlacedObject> components;

@@ -278,9 +278,9 @@ class ModelPartReader : public XmlPart {
     if (!mesh.positions.empty()) fail("a second list of vertices in one mesh");
     OriginSearch search;
     for (const glm::dvec3& vertex : vertices_) search.include(vertex);
-    object_->origin = search.origin();
+    mesh.origin = search.origin();
     mesh.positions.reserve(vertices_.size());
-    for (const glm::dvec3& vertex : vertices_) mesh.positions.emplace_back(vertex - object_->origin);
+    for (const glm::dvec3& vertex : vertices_) mesh.positions.emplace_back(vertex - mesh.origin);
     vertices_ = {};
   }
 

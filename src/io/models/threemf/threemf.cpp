@@ -101,7 +101,7 @@ class ItemPlacer {
     glm::dmat4 world_from_mesh = here.world_from_outer;
     if (scale != 1)
       for (int axis = 0; axis < 3; ++axis) world_from_mesh[axis] *= scale;
-    world_from_mesh[3] = world_from_mesh * glm::dvec4(object.origin, 1);
+    world_from_mesh[3] = world_from_mesh * glm::dvec4(scene_.meshes[object.mesh].origin, 1);
     scene_.instances.push_back(
         {here.name.empty() ? "object " + std::to_string(id) : here.name, object.mesh, world_from_mesh});
   }
