@@ -113,11 +113,12 @@ std::span<glm::vec3> gather_vertices(std::span<const glm::uvec3> corners, const 
   scratch.corners.resize(corners.size());
   for (std::size_t i = 0; i < corners.size(); ++i)
     for (int k = 0; k < 3; ++k) {
+      // Written whether it is new or not: which of both cannot be foretold.
       std::uint32_t& place = known[corners[i][k] - numbers.low];
-      if (place < from) {
-        room[next - from] = positions[corners[i][k]];
-        place = next++;
-      }
+      const bool is_new = place < from;
+      room[next - from] = positions[corners[i][k]];
+      place = is_new ? next : place;
+      next += is_new;
       scratch.corners[i][k] = place - from;
     }
   scratch.known_from = next;

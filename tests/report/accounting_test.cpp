@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "frontmost/explain.h"
 #include "frontmost/io.h"
 #include "frontmost/zbuffer.h"
 #include "occlusion/hidden_scene.h"
@@ -115,6 +116,40 @@ TEST(Accounting, EqualsTheReferenceForEveryKindOfTriangles) {
       SCOPED_TRACE(seed);
       expect_same(account(surfaces, visible, {.canvas = 1}), test::reference_account(made.scene, visible, {0, 0}));
     }
+}
+
+TEST(Accounting, VerticesMayStandInAnyOrder) {
+  // So many that neighbours' vertices are far apart in the list, in a mesh that is placed as it is, mirrored and flat.
+  constexpr int kTriangles = 6'000;
+  test::RandomCase made{test::scene_of(test::random_mesh(test::Kind::soup, kTriangles, 5)), {}};
+  Random random(6);
+  made.view = test::random_view(random, 90, 70);
+  made.scene.instances.push_back({"mirrored", 0, glm::dmat4(1.0)});
+  made.scene.instances.back().world_from_mesh[0][0] = -0.7;
+  made.scene.instances.push_back({"flat", 0, glm::dmat4(1.0)});
+  made.scene.instances.back().world_from_mesh[2] = glm::dvec4(0.1, 0.2, 0, 0);
+  Scene strewn = made.scene;
+  Mesh& mesh = strewn.meshes[0];
+  const std::size_t count = mesh.positions.size();
+  constexpr std::size_t kStep = 7'919;  // a prime, so that all numbers are met
+  ASSERT_NE(count % kStep, 0u);
+  for (std::size_t i = 0; i < count; ++i) mesh.positions[i * kStep % count] = made.scene.meshes[0].positions[i];
+  for (glm::uvec3& corners : mesh.triangles)
+    for (int k = 0; k < 3; ++k) corners[k] = std::uint32_t(corners[k] * kStep % count);
+  const Surfaces surfaces(made.scene), strewn_surfaces(strewn);
+  const Visible visible = zbuffer(surfaces, made.view);
+  for (const double canvas : {1.0, 3.0}) {
+    const Accounting expected = account(surfaces, visible, {.canvas = canvas});
+    const Accounting found = account(strewn_surfaces, zbuffer(strewn_surfaces, made.view), {.canvas = canvas});
+    expect_same(found, expected);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_GT(found.objects[i].alone.count, 100u);
+      EXPECT_EQ(found.objects[i].is_cut_by_near, expected.objects[i].is_cut_by_near);
+    }
+  }
+  const std::vector<Explanation> expected = explain_all(surfaces, visible, account(surfaces, visible)),
+                                 found = explain_all(strewn_surfaces, visible, account(strewn_surfaces, visible));
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(found[i].triangles, expected[i].triangles);
 }
 
 TEST(Accounting, HolesOfMasksAreSeenThrough) {

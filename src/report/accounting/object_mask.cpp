@@ -75,7 +75,14 @@ ObjectMask::ObjectMask(const PlacedScene& scene, const ObjectCanvas& canvas, Isa
 
 void ObjectMask::draw(std::span<const MeshRange> ranges) {
   clear();
-  for (const MeshRange& range : ranges) draw_range(range);
+  if (is_strewn(ranges))
+    draw_at_once(ranges);
+  else
+    for (const MeshRange& range : ranges) {
+      const WorldTriangles triangles = world_triangles(scene_, range, target_.isa, scratch_);
+      snap_vertices(target_, triangles.positions, scratch_.vertices);
+      draw_triangles(triangles);
+    }
   if (touched_.is_empty()) return;
   for (const TriangleRecord& record : cutouts_) draw_cutout(record);
   cutouts_.clear();
@@ -90,9 +97,33 @@ void ObjectMask::clear() {
   is_cut_by_near_ = false;
 }
 
-void ObjectMask::draw_range(const MeshRange& range) {
-  const WorldTriangles triangles = world_triangles(scene_, range, target_.isa, scratch_);
+bool ObjectMask::is_strewn(std::span<const MeshRange> ranges) const {
+  std::size_t triangles = 0;
+  bool is_any = false;
+  for (const MeshRange& range : ranges) {
+    triangles += range.count();
+    is_any = is_any || !range.vertices.is_dense(range.count());
+  }
+  return is_any && scene_.mesh(ranges[0]).positions.size() <= 3 * triangles;
+}
+
+void ObjectMask::draw_at_once(std::span<const MeshRange> ranges) {
+  const glm::dmat4& world_from_mesh = scene_.scene->instances[ranges[0].instance].world_from_mesh;
+  const std::vector<glm::vec3>& positions = scene_.mesh(ranges[0]).positions;
+  if (scratch_.positions.size() < positions.size()) scratch_.positions.resize(positions.size());
+  place_vertices(world_from_mesh, positions, scratch_.positions.data(), target_.isa);
+  WorldTriangles triangles;
+  triangles.positions = std::span(scratch_.positions).first(positions.size());
+  triangles.is_mirrored = scene_.mirrored[ranges[0].instance] != 0;
   snap_vertices(target_, triangles.positions, scratch_.vertices);
+  for (const MeshRange& range : ranges) {
+    triangles.corners = scene_.corners(range);
+    triangles.first_id = scene_.first_id(range);
+    draw_triangles(triangles);
+  }
+}
+
+void ObjectMask::draw_triangles(const WorldTriangles& triangles) {
   scratch_.apart.clear();
   batch_.clear();
   place_triangles(target_, triangles, scratch_.vertices, batch_, scratch_.apart);

@@ -43,7 +43,12 @@ class ObjectMask {
 
  private:
   void clear();
-  void draw_range(const MeshRange& range);
+  /// Whether triangles that follow one another have vertices from all over the mesh: all of them are placed at once
+  /// then.
+  [[nodiscard]] bool is_strewn(std::span<const MeshRange> ranges) const;
+  void draw_at_once(std::span<const MeshRange> ranges);
+  /// Precondition: their vertices are those of the scratch.
+  void draw_triangles(const WorldTriangles& triangles);
   void draw_small();
   void draw_large(const TriangleRecord& record);
   void draw_cutout(const TriangleRecord& record);
