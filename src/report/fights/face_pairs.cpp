@@ -115,8 +115,10 @@ class FaceCells {
     return std::min(std::max(place, 0) >> shift_, cells - 1);
   }
   [[nodiscard]] PixelRect cells_of(const ScreenFace& face) const {
-    const CellFace e(face, 0);
-    return {cell_of(e.x0, columns_), cell_of(e.y0, rows_), cell_of(e.x1, columns_), cell_of(e.y1, rows_)};
+    const TriangleRecord& r = face.record;
+    const auto [x0, x1] = std::minmax({r.x[0], r.x[1], r.x[2]});
+    const auto [y0, y1] = std::minmax({r.y[0], r.y[1], r.y[2]});
+    return {cell_of(x0, columns_), cell_of(y0, rows_), cell_of(x1, columns_), cell_of(y1, rows_)};
   }
   [[nodiscard]] std::size_t cells_of_all() const {
     std::size_t sum = 0;

@@ -17,9 +17,9 @@ namespace frontmost {
 struct FacePair {
   std::uint32_t first, second;
 
-  friend bool operator<(const FacePair& a, const FacePair& b) {
-    return a.first != b.first ? a.first < b.first : a.second < b.second;
-  }
+  /// Of both, which orders them.
+  [[nodiscard]] std::uint64_t number() const { return std::uint64_t(first) << 32 | second; }
+  friend bool operator<(const FacePair& a, const FacePair& b) { return a.number() < b.number(); }
 };
 
 /// All pairs of faces of different primitives that have an area in common and keys within reach of each other; in

@@ -145,8 +145,11 @@ FightAreas find_fighting_faces(const Surfaces& surfaces, const View& view, Depth
   const std::vector<ScreenFace> faces =
       screen_faces(surfaces, view, KeyStep(fights.setup), FarthestSeen(visible), execution);
   std::vector<FacePair> pairs = find_face_pairs(faces, view, execution);
-  for (std::uint32_t i = 0; i < faces.size(); ++i) pairs.push_back({i, i});
-  std::inplace_merge(pairs.begin(), pairs.end() - std::ptrdiff_t(faces.size()), pairs.end());
+  const auto of_two = std::ptrdiff_t(pairs.size());
+  const RiskFinder finder(view, fights.setup);
+  for (std::uint32_t i = 0; i < faces.size(); ++i)
+    if (finder.may_be_clear_value(faces[i])) pairs.push_back({i, i});
+  std::inplace_merge(pairs.begin(), pairs.begin() + of_two, pairs.end());
   FoundAreas found = find_areas({surfaces, visible, fights.setup, faces}, pairs, execution);
   fights.faces = std::move(found.faces);
   fights.corners = std::move(found.corners);

@@ -50,7 +50,7 @@ const ConvexArea& RiskFinder::of_pair(const ScreenFace& a, const ScreenFace& b) 
 
 const ConvexArea& RiskFinder::of_clear_value(const ScreenFace& face) {
   area_.assign({});
-  if (double(face.low) > farthest_key_) return area_;
+  if (!may_be_clear_value(face)) return area_;
   const KeyOverScreen keys = face.keys();
   area_.assign(corners_of(face));
   cut_by_frame();

@@ -25,6 +25,8 @@ class RiskFinder {
   [[nodiscard]] const ConvexArea& of_pair(const ScreenFace& a, const ScreenFace& b);
   /// Where a face may be stored as what the buffer was cleared to.
   [[nodiscard]] const ConvexArea& of_clear_value(const ScreenFace& face);
+  /// False where that area is empty for certain.
+  [[nodiscard]] bool may_be_clear_value(const ScreenFace& face) const { return double(face.low) <= farthest_key_; }
 
  private:
   void cut_by_frame();
