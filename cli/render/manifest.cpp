@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view suffix = ".jsonl";
-constexpr std::uint64_t most_bytes = std::uint64_t(1) << 30;
+constexpr std::uint64_t most_manifest_bytes = std::uint64_t(1) << 30;
 
 Json json_of(const FinishedView& view) {
   Json files = Json::array();
@@ -103,7 +103,7 @@ std::optional<std::string> stem_of_manifest(const std::string& file_name) {
 }
 
 Manifest read_manifest(const std::string& path) {
-  const std::string text = load_text(path, most_bytes);
+  const std::string text = load_text(path, most_manifest_bytes);
   std::optional<Manifest> manifest;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = text.find('\n', begin);
