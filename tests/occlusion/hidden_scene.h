@@ -3,6 +3,10 @@
 // eyes among them.
 #pragma once
 
+#include <algorithm>
+#include <span>
+
+#include "frontmost/occlusion.h"
 #include "frontmost/view.h"
 #include "support/meshes.h"
 
@@ -68,6 +72,11 @@ inline View random_view(int width, int height, std::uint64_t seed) {
   view.projection = is_parallel ? make_orthographic(-2 * aspect, 2 * aspect, -2, 2, {near, 40.0})
                                 : make_projection(0.3 + 1.5 * double(random.unit()), aspect, {near, 40.0});
   return view.looking(glm::dvec3(eye), glm::dvec3(target), {0.1, 1, 0.2});
+}
+
+/// How many objects have this answer.
+inline std::size_t count_of(std::span<const ObjectSight> sights, ObjectSight sight) {
+  return std::size_t(std::count(sights.begin(), sights.end(), sight));
 }
 
 }  // namespace frontmost::test

@@ -104,10 +104,6 @@ TEST(ObjectTree, NeighboursAreInOneGroup) {
   for (std::uint32_t group = 4096; group < 4096 + 256; ++group) EXPECT_LT(tree.boxes().get(group).diagonal(), 16);
 }
 
-std::size_t count_of(std::span<const ObjectSight> sights, ObjectSight sight) {
-  return std::size_t(std::count(sights.begin(), sights.end(), sight));
-}
-
 TEST(ObjectTree, CullingByGroupsSaysWhatALoopOverObjectsSays) {
   std::size_t hidden = 0, outside = 0, seen = 0;
   for (std::uint64_t seed = 0; seed < seeds(40); ++seed) {

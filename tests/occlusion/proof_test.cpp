@@ -16,10 +16,6 @@ namespace {
 
 using namespace test;
 
-std::size_t count_of(std::span<const ObjectSight> sights, ObjectSight sight) {
-  return std::size_t(std::count(sights.begin(), sights.end(), sight));
-}
-
 TEST(OcclusionProof, NoRayMeetsWhatIsHiddenFirst) {
   std::size_t hidden = 0, seen = 0;
   for (std::uint64_t seed = 0; seed < seeds(240); ++seed) {
