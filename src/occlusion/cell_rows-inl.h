@@ -9,12 +9,14 @@
 #define FRONTMOST_OCCLUSION_CELL_ROWS_INL_H_
 #endif
 
+#include "base/lanes-inl.h"
 #include "hwy/highway.h"
 #include "occlusion/cover.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::occlusion_detail::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using frontmost::HWY_NAMESPACE::BitsOf;
 
 using RowF = hn::CappedTag<float, tile_rows>;
 using RowI = hn::RebindToSigned<RowF>;
@@ -64,12 +66,22 @@ HWY_INLINE bool HasAll(const std::uint32_t* rows, const CellRect& rect, int x, i
 
 /// Whether all cells of a rectangle within the screen are covered by what lies nearer than `depth`.
 HWY_INLINE bool IsCovered(const CellCover& cover, const CellRect& rect, float depth) {
-  for (int ty = rect.y0 / tile_rows; ty * tile_rows < rect.y1; ++ty)
-    for (int tx = rect.x0 / tile_columns; tx * tile_columns < rect.x1; ++tx) {
-      const int tile = ty * cover.covered.tiles_x() + tx;
-      if (!(cover.depth[std::size_t(tile)] < depth)) return false;
-      if (!HasAll(cover.covered.rows(tile), rect, tx * tile_columns, ty * tile_rows)) return false;
+  const RowF d;
+  const auto wanted = hn::Set(d, depth);
+  const int first = rect.x0 / tile_columns, end = (rect.x1 - 1) / tile_columns + 1;
+  for (int ty = rect.y0 / tile_rows; ty * tile_rows < rect.y1; ++ty) {
+    const int row = ty * cover.covered.tiles_x();
+    // Most tiles within a rectangle that is covered are full.
+    for (int tx = first; tx < end; tx += int(hn::Lanes(d))) {
+      const auto is_full = hn::Lt(hn::LoadU(d, cover.full_depth.data() + row + tx), wanted);
+      std::uint64_t others = BitsOf(d, hn::Not(is_full)) & low_bits(std::min(end - tx, 16));
+      for (; others != 0; others &= others - 1) {
+        const int its_tx = tx + int(hwy::Num0BitsBelowLS1Bit_Nonzero64(others)), tile = row + its_tx;
+        if (!(cover.depth[std::size_t(tile)] < depth)) return false;
+        if (!HasAll(cover.covered.rows(tile), rect, its_tx * tile_columns, ty * tile_rows)) return false;
+      }
     }
+  }
   return true;
 }
 

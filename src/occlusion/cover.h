@@ -55,12 +55,15 @@ struct CellCover {
   int columns = 0, rows = 0;
   CellBits covered;
   std::vector<float> depth;  ///< by tile
+  /// By tile: the same where every cell of it is covered, else infinity; and some more, for whole vectors.
+  std::vector<float> full_depth;
 
   void begin(int its_columns, int its_rows) {
     columns = its_columns;
     rows = its_rows;
     covered.begin(columns, rows);
     depth.assign(std::size_t(covered.tile_count()), -std::numeric_limits<float>::infinity());
+    full_depth.assign(std::size_t(covered.tile_count() + tile_rows), std::numeric_limits<float>::infinity());
   }
 };
 

@@ -153,28 +153,26 @@ class OneSide {
   /// \returns whether there is anything.
   bool Reach() {
     bool any = false;
-    const CoverPass& pass = in_.pass;
-    if (pass.marks.empty()) {
-      for (std::uint32_t t = 0; t < in_.occluder.part.triangle_count; ++t) any = ReachOne(t) || any;
+    if (const ChosenTriangles* const chosen = in_.pass.chosen) {
+      for (const std::uint32_t t : chosen->whole) any = ReachWhole(t) || any;
+      for (const ClippedTriangle& cut : chosen->cut) any = ReachCut(cut, *chosen->screen) || any;
     } else {
-      for (const std::uint32_t t : pass.chosen) any = ReachOne(t) || any;
+      for (std::uint32_t t = 0; t < in_.occluder.part.triangle_count; ++t)
+        if (!in_.on_screen.triangles[t].is_cut) any = ReachWhole(t) || any;
+      for (const ClippedTriangle& cut : in_.on_screen.cut) any = ReachCut(cut, in_.grid.transform) || any;
     }
-    if (!any) return false;
-    for (const ClippedTriangle& cut : in_.on_screen.cut)
-      if (Counts(cut.triangle)) ReachCut(cut);
-    return true;
+    return any;
   }
 
  private:
   [[nodiscard]] bool Counts(std::uint32_t t) const {
-    const CoverPass& pass = in_.pass;
+    const ChosenTriangles* const chosen = in_.pass.chosen;
     if (in_.on_screen.triangles[t].turn != turn_) return false;
-    return pass.marks.empty() || pass.marks[t] == pass.mark;
+    return !chosen || chosen->marks[t] == chosen->mark;
   }
   /// \returns whether it counts.
-  bool ReachOne(std::uint32_t t) {
+  bool ReachWhole(std::uint32_t t) {
     if (!Counts(t)) return false;
-    if (in_.on_screen.triangles[t].is_cut) return true;
     const glm::uvec3& c = triangles_[t];
     const CellPoint p[3] = {At(c.x), At(c.y), At(c.z)};
     ReachTurned(p[0], p[1], p[2]);
@@ -204,15 +202,21 @@ class OneSide {
     EndAtSegment(a, b, in_.grid.margin, in_.pass.rect, scratch_.ends);
   }
 
-  void ReachCut(const ClippedTriangle& cut) {
+  /// \returns whether it counts.
+  bool ReachCut(const ClippedTriangle& cut, const ScreenTransform& screen) {
+    if (!Counts(cut.triangle)) return false;
     const ClippedPolygon& polygon = cut.polygon;
     const auto at = [&](int i) { return Placed(polygon.corners[std::size_t(i)].x, polygon.corners[std::size_t(i)].y); };
     for (int i = 2; i < polygon.count; ++i) ReachTurned(at(0), at(i - 1), at(i));
+    // What keys at the near and at the far plane are at least and at most, however they are rounded.
+    const float nearest_key = 0.999999f,
+                farthest_key = screen.orthographic ? 0.000001f : screen.near / screen.far * 1.000001f;
     // The near and the far plane end it; so do the sides of the guard band, but they lie beyond the picture.
     for (int i = 0; i < polygon.count; ++i) {
       const int next = i + 1 == polygon.count ? 0 : i + 1;
       const float key = polygon.corners[std::size_t(i)].key, next_key = polygon.corners[std::size_t(next)].key;
-      if ((key >= 1 && next_key >= 1) || (key <= farthest_key() && next_key <= farthest_key())) End(at(i), at(next));
+      if ((key >= nearest_key && next_key >= nearest_key) || (key <= farthest_key && next_key <= farthest_key))
+        End(at(i), at(next));
     }
     const glm::uvec3& corners = triangles_[cut.triangle];
     for (int side = 0; side < 3; ++side) {
@@ -220,18 +224,13 @@ class OneSide {
       const auto world = [&](int k) {
         return in_.on_screen.world[corners[k == 3 ? 0 : k] - in_.occluder.part.first_vertex];
       };
-      const ClippedPolygon segment = clip_triangle(in_.grid.transform, {world(side), world(side + 1), world(side + 1)});
+      const ClippedPolygon segment = clip_triangle(screen, {world(side), world(side + 1), world(side + 1)});
       for (int i = 1; i < segment.count; ++i)
         End(Placed(segment.corners[std::size_t(i - 1)].x, segment.corners[std::size_t(i - 1)].y),
             Placed(segment.corners[std::size_t(i)].x, segment.corners[std::size_t(i)].y));
     }
+    return true;
   }
-  /// What keys at the far plane are at most.
-  [[nodiscard]] float farthest_key() const {
-    const ScreenTransform& t = in_.grid.transform;
-    return t.orthographic ? 0.0f : t.near / t.far * 1.000001f;
-  }
-
   const Input& in_;
   ScreenTurn turn_;
   CoverScratch& scratch_;
@@ -286,14 +285,17 @@ void AddToCover(const CoverPass& pass, const std::uint32_t* solid, CellCover& co
   ForTiles(pass.rect, cover.covered.tiles_x(), solid,
            [&](int tile, const CellsWithin&, const std::uint32_t* from) HWY_ATTR {
              std::uint32_t* const covered = cover.covered.rows(tile);
-             auto fresh = hn::Zero(d);
+             auto fresh = hn::Zero(d), all = hn::Set(d, ~0u);
              for (int r = 0; r < tile_rows; r += int(hn::Lanes(d))) {
-               const auto before = hn::Load(d, covered + r), more = hn::LoadU(d, from + r);
+               const auto before = hn::Load(d, covered + r), more = hn::LoadU(d, from + r), now = hn::Or(before, more);
                fresh = hn::Or(fresh, hn::AndNot(before, more));
-               hn::Store(hn::Or(before, more), d, covered + r);
+               all = hn::And(all, now);
+               hn::Store(now, d, covered + r);
              }
+             if (hn::AllTrue(d, hn::Eq(fresh, hn::Zero(d)))) return;
              float& depth = cover.depth[std::size_t(tile)];
-             if (!hn::AllTrue(d, hn::Eq(fresh, hn::Zero(d)))) depth = std::max(depth, pass.distance);
+             depth = std::max(depth, pass.distance);
+             if (hn::AllTrue(d, hn::Eq(all, hn::Set(d, ~0u)))) cover.full_depth[std::size_t(tile)] = depth;
            });
 }
 

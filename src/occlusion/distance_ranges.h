@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 namespace frontmost::occlusion_detail {
+
+inline constexpr float infinite_distance = std::numeric_limits<float>::infinity();
 
 class DistanceRanges {
  public:
@@ -35,12 +38,23 @@ class DistanceRanges {
     const std::uint32_t bits = bits_of(distance) - bits_of(least_);
     return std::min(int(bits >> shift_), count_ - 1);
   }
+  /// No distance that has this number or a greater one is nearer. For numbers from 0 to count().
+  [[nodiscard]] float least_of(int number) const {
+    // One step nearer than where the rounding of operator() may put the border.
+    if (orthographic_) return per_unit_ > 0 ? least_ + (float(number) - 0.01f) / per_unit_ : least_;
+    return from_bits(bits_of(least_) + (std::uint32_t(number) << shift_));
+  }
 
  private:
   [[nodiscard]] static std::uint32_t bits_of(float distance) {
     std::uint32_t bits;
     std::memcpy(&bits, &distance, sizeof bits);
     return bits;
+  }
+  [[nodiscard]] static float from_bits(std::uint32_t bits) {
+    float distance;
+    std::memcpy(&distance, &bits, sizeof distance);
+    return distance;
   }
 
   bool orthographic_ = false;

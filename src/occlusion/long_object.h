@@ -7,8 +7,12 @@
 //
 // Where two slabs meet, each has an end, and the cells along it would stay open. So a slab covers together with those
 // triangles of nearer slabs that share a vertex with it: then the end lies within what is covered already.
+//
+// A triangle that itself reaches through several slabs, as one of two that are a whole floor, covers in each of these
+// as far as the slab's far side, where it is cut as by a far plane.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "occlusion/distance_ranges.h"
@@ -25,26 +29,53 @@ class LongObject {
   struct Slabs {
     int first, last, length;
     [[nodiscard]] int count() const { return (last - first) / length + 1; }
+    [[nodiscard]] int of(int range) const { return (std::clamp(range, first, last) - first) / length; }
     /// The first range that lies behind all of a slab.
     [[nodiscard]] int behind(int slab) const { return std::min(first + (slab + 1) * length, last + 1); }
   };
 
   /// Sorts the triangles into slabs.
-  void sort_by_slab(const DistanceRanges& range_of, const Slabs& slabs);
+  void sort_by_slab(const CellGrid& grid, const HidingObject& occluder, const DistanceRanges& range_of,
+                    const Slabs& slabs);
+  [[nodiscard]] const Slabs& slabs() const { return depth_; }
   [[nodiscard]] bool has_triangles(int slab) const {
-    return slab_begin_[std::size_t(slab) + 1] > slab_begin_[std::size_t(slab)];
+    return slab_begin_[std::size_t(slab) + 1] > slab_begin_[std::size_t(slab)] || slab >= first_reached_;
   }
-  /// What is to cover for a slab, within `rect`. Borrows from this object until the next call.
-  [[nodiscard]] CoverPass choose(const CellGrid& grid, const HidingObject& occluder, int slab, const CellRect& rect);
+  /// Which cells may be covered, and whether something is tested before the next slab covers.
+  struct Within {
+    CellRect rect;
+    bool is_asked;
+  };
+  /// What is to cover for a slab. Triangles that reach through it are left out where nothing is asked before they cover
+  /// again. Borrows from this object until the next call.
+  [[nodiscard]] CoverPass choose(const CellGrid& grid, const HidingObject& occluder, int slab, const Within& within);
 
  private:
+  /// A triangle that covers in several slabs.
+  struct Reaching {
+    std::uint32_t triangle;
+    int first_slab;
+  };
+  void find_far_sides(const CellGrid& grid, const DistanceRanges& range_of, const Slabs& slabs);
+  void find_reaching(const CellGrid& grid, const HidingObject& occluder, const DistanceRanges& range_of,
+                     const Slabs& slabs);
+  void choose_cut(const HidingObject& occluder, int slab);
+  void choose_around(const HidingObject& occluder, int slab, std::uint32_t triangle);
   [[nodiscard]] CellRect rect_of_chosen(const CellGrid& grid, const HidingObject& occluder, const CellRect& rect) const;
 
+  Slabs depth_{};
+  std::vector<float> far_sides_;           ///< by slab; of the last one infinity
   std::vector<std::uint16_t> slabs_;       ///< by triangle
   std::vector<std::uint32_t> by_slab_;     ///< triangles in the order of their slabs
   std::vector<std::uint32_t> slab_begin_;  ///< within by_slab_; one more than slabs
-  std::vector<std::uint32_t> chosen_;      ///< triangles of a slab, and what meets them
-  std::vector<std::uint16_t> marks_;       ///< by triangle: 1 + the last slab that it was chosen for
+  std::vector<Reaching> reaching_;
+  int first_reached_ = 0;  ///< the first slab in which a reaching triangle begins
+  // Of a slab.
+  std::vector<std::uint32_t> whole_;
+  std::vector<ClippedTriangle> cut_;
+  std::vector<std::uint16_t> marks_;  ///< by triangle: 1 + the last slab that it was chosen for
+  std::optional<ScreenTransform> screen_;
+  ChosenTriangles chosen_;
 };
 
 }  // namespace frontmost::occlusion_detail

@@ -17,19 +17,6 @@ std::int64_t twice_area(const Corner& a, const Corner& b, const Corner& c) {
   return std::int64_t(b.x - a.x) * (c.y - a.y) - std::int64_t(c.x - a.x) * (b.y - a.y);
 }
 
-/// That of all pieces of the fan from its first corner, or none: rounding may fold a sliver over.
-ScreenTurn turn_of(const ClippedPolygon& polygon) {
-  bool turns[3] = {};
-  for (int i = 2; i < polygon.count; ++i) {
-    const auto& corners = polygon.corners;
-    turns[int(turn_of(twice_area(corners[0], corners[std::size_t(i - 1)], corners[std::size_t(i)])))] = true;
-  }
-  const bool clockwise = turns[int(ScreenTurn::clockwise)],
-             counter_clockwise = turns[int(ScreenTurn::counter_clockwise)];
-  if (clockwise == counter_clockwise) return ScreenTurn::none;
-  return clockwise ? ScreenTurn::clockwise : ScreenTurn::counter_clockwise;
-}
-
 /// Whether what has no area on the screen has a triangle with area beyond each side.
 bool lies_along_others(const HidingObject& occluder, const OccluderOnScreen& on_screen) {
   const std::uint32_t first = occluder.part.first_triangle;
@@ -43,13 +30,24 @@ bool lies_along_others(const HidingObject& occluder, const OccluderOnScreen& on_
   return true;
 }
 
-/// At least the planar distance of a vertex, whose sum was rounded.
-float rounded_up(const ScreenTransform& screen, const glm::vec3& world, float distance) {
-  const glm::vec3 from_eye = glm::abs(world - glm::vec3(screen.eye[0], screen.eye[1], screen.eye[2]));
-  return distance + (from_eye.x + from_eye.y + from_eye.z) * (1.0f / (1 << 20));
+}  // namespace
+
+ScreenTurn turn_of(const ClippedPolygon& polygon) {
+  bool turns[3] = {};
+  for (int i = 2; i < polygon.count; ++i) {
+    const auto& corners = polygon.corners;
+    turns[int(turn_of(twice_area(corners[0], corners[std::size_t(i - 1)], corners[std::size_t(i)])))] = true;
+  }
+  const bool clockwise = turns[int(ScreenTurn::clockwise)],
+             counter_clockwise = turns[int(ScreenTurn::counter_clockwise)];
+  if (clockwise == counter_clockwise) return ScreenTurn::none;
+  return clockwise ? ScreenTurn::clockwise : ScreenTurn::counter_clockwise;
 }
 
-}  // namespace
+float distance_rounding(const ScreenTransform& screen, const glm::vec3& world) {
+  const glm::vec3 from_eye = glm::abs(world - glm::vec3(screen.eye[0], screen.eye[1], screen.eye[2]));
+  return (from_eye.x + from_eye.y + from_eye.z) * (1.0f / (1 << 20));
+}
 
 void put_on_screen(const CellGrid& grid, const HidingObject& occluder, OccluderOnScreen& out) {
   const ScreenTransform& screen = grid.transform;
@@ -62,7 +60,7 @@ void put_on_screen(const CellGrid& grid, const HidingObject& occluder, OccluderO
     const HomogeneousVertex h = transform(screen, out.world[v]);
     if (is_plain(screen, h)) {
       const ScreenVertex s = snap(screen, h);
-      out.vertices[v] = {s.x, s.y, rounded_up(screen, out.world[v], h.d)};
+      out.vertices[v] = {s.x, s.y, h.d + distance_rounding(screen, out.world[v])};
     } else {
       out.vertices[v] = {0, 0, std::numeric_limits<float>::quiet_NaN()};
     }
@@ -84,7 +82,7 @@ void put_on_screen(const CellGrid& grid, const HidingObject& occluder, OccluderO
     out.cut.push_back({t, clip_triangle(screen, {out.world[c.x], out.world[c.y], out.world[c.z]})});
     float far = -std::numeric_limits<float>::infinity();
     for (int k = 0; k < 3; ++k)
-      far = std::max(far, rounded_up(screen, out.world[c[k]], transform(screen, out.world[c[k]]).d));
+      far = std::max(far, transform(screen, out.world[c[k]]).d + distance_rounding(screen, out.world[c[k]]));
     out.triangles[t] = {turn_of(out.cut.back().polygon), true, far};
   }
   out.is_told_by_cells = part.is_whole && out.cut.empty() && lies_along_others(occluder, out);

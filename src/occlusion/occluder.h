@@ -35,6 +35,9 @@ struct HidingObject {
 /// How a triangle turns on the screen. Of none: without area there, or nothing of it is certain.
 enum class ScreenTurn : std::int8_t { none, clockwise, counter_clockwise };
 
+/// That of all pieces of the fan from its first corner, or none: rounding may fold a sliver over.
+[[nodiscard]] ScreenTurn turn_of(const ClippedPolygon& polygon);
+
 struct TriangleOnScreen {
   ScreenTurn turn = ScreenTurn::none;
   bool is_cut = false;  ///< could not be snapped whole
@@ -66,15 +69,24 @@ struct OccluderOnScreen {
 
 void put_on_screen(const CellGrid& grid, const HidingObject& occluder, OccluderOnScreen& out);
 
+/// More than what rounding changes the planar distance of a vertex by.
+[[nodiscard]] float distance_rounding(const ScreenTransform& screen, const glm::vec3& world);
+
+/// Which triangles of an object count.
+struct ChosenTriangles {
+  std::span<const std::uint32_t> whole;  ///< those that are not cut
+  std::span<const ClippedTriangle> cut;  ///< the others
+  std::span<const std::uint16_t> marks;  ///< by triangle: those that count have `mark`, and no other has
+  std::uint16_t mark = 0;
+  const ScreenTransform* screen = nullptr;  ///< by which they are cut
+};
+
 /// What of an object is added to the cover.
 struct CoverPass {
   CellRect rect;                                    ///< that the object reaches at most
-  float distance;                                   ///< no triangle that counts is farther
+  float distance;                                   ///< nothing that counts is farther
   bool clockwise = true, counter_clockwise = true;  ///< which count
-  /// The triangles that count, and by triangle their mark, which no other has. Empty: all count.
-  std::span<const std::uint32_t> chosen = {};
-  std::span<const std::uint16_t> marks = {};
-  std::uint16_t mark = 0;
+  const ChosenTriangles* chosen = nullptr;          ///< nullptr: all of them
 };
 
 /// Cells of one side of an object; nothing, between sides.

@@ -7,8 +7,6 @@
 namespace frontmost::occlusion_detail {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 /// Slabs are so many times shorter than the way to what is twice as far; what is no longer than four of them has none.
 constexpr int kSlabsOfDouble = 6, kShortSlabs = 4;
 
@@ -40,7 +38,7 @@ class Sweep::Run {
 
   void sweep() {
     if (memory_.boxes_.empty()) return;
-    line_up(scene_.tree.top(), -kInfinity);
+    line_up(scene_.tree.top(), -infinite_distance);
     for (std::size_t range = 0; range < memory_.first_test_.size(); ++range) {
       for (std::uint32_t e = memory_.first_event_[range]; e != no_index; e = memory_.events_[e].next)
         cover_by(memory_.events_[e]);
@@ -141,13 +139,13 @@ class Sweep::Run {
     put_on_screen(view_.grid, it, o.on_screen);
     // Nothing is known to lie before what reaches to the eye.
     const ScreenBox& box = memory_.boxes_[item];
-    if (box.nearest > -kInfinity) {
+    if (box.nearest > -infinite_distance) {
       const std::size_t first_row = add_rows(box.rect);
       const bool is_hidden = is_behind_cover(item, it, o.on_screen, first_row);
       memory_.solid_.resize(first_row);
       if (is_hidden) return false;
     }
-    o.sort_by_slab(range_of_, slabs);
+    o.sort_by_slab(view_.grid, it, range_of_, slabs);
     for (int slab = 0; slab < slabs.count(); ++slab)
       if (o.has_triangles(slab))
         schedule(slabs.behind(slab), {.item = item, .long_object = std::uint32_t(used_long_objects_), .slab = slab});
@@ -182,14 +180,23 @@ class Sweep::Run {
     }
     LongObject& o = *memory_.long_objects_[event.long_object];
     const HidingObject it = occluder(event.item);
-    CoverPass pass = o.choose(view_.grid, it, event.slab, box.rect);
-    if (pass.rect.is_empty() || is_covered_(cover_, pass.rect, kInfinity)) return;
+    CoverPass pass = o.choose(view_.grid, it, event.slab, {box.rect, is_asked_in(o.slabs(), event.slab)});
+    if (pass.rect.is_empty() || is_covered_(cover_, pass.rect, infinite_distance)) return;
     leave_out_culled(event.item, pass);
     const std::size_t first_row = add_rows(pass.rect);
     std::uint32_t* const solid = memory_.solid_.data() + first_row;
     find_solid(view_.grid, it, o.on_screen, pass, memory_.scratch_, cover_, solid, view_.isa);
     add_to_cover(pass, solid, cover_, view_.isa);
     memory_.solid_.resize(first_row);
+  }
+
+  /// Whether something is to be tested after a slab covers and before the next one does. What is lined up later is no
+  /// nearer than what is tested then.
+  [[nodiscard]] bool is_asked_in(const LongObject::Slabs& slabs, int slab) const {
+    if (slab + 1 >= slabs.count()) return true;
+    const auto first = memory_.first_test_.begin();
+    const auto is_test = [](std::uint32_t item) { return item != no_index; };
+    return std::any_of(first + slabs.behind(slab), first + slabs.behind(slab + 1), is_test);
   }
 
   /// Which triangles the view leaves out by the way they face.

@@ -81,6 +81,45 @@ TEST(Occlusion, HolesGlassBlendedSurfacesAndCulledFacesHideNothing) {
   EXPECT_EQ(sight_of_thing(scene, culled), ObjectSight::hidden);
 }
 
+/// A floor of two triangles from behind the eye to far away, and a thing below it, which is to be far nearer than the
+/// floor's end.
+Scene floor_and_thing(double distance) {
+  Scene scene = wall_and_thing();
+  scene.meshes[0] = Mesh();
+  add_quad(scene.meshes[0], {-80, -1, 10}, {80, -1, 10}, {80, -1, -150}, {-80, -1, -150});
+  scene.instances[1].world_from_mesh[3] = {0, -2, -distance, 1};
+  return scene;
+}
+
+TEST(Occlusion, AFloorHidesWhatLiesBelowItAlsoFarBeforeItsEnd) {
+  const View view = make_view(1.2, 200, 150).looking({1, 0, 0}, {1, -0.3, -1}, {0, 1, 0}).between(0.1, 500);
+  for (const double distance : {4.0, 8.0, 16.0, 40.0})
+    EXPECT_EQ(sight_of_thing(floor_and_thing(distance), view), ObjectSight::hidden) << distance;
+  Scene above = floor_and_thing(8);
+  above.instances[1].world_from_mesh[3].y = -1;  // it looks out of the floor
+  EXPECT_EQ(sight_of_thing(above, view), ObjectSight::may_be_seen);
+  View parallel = view;
+  parallel.projection = make_orthographic(-20, 20, -15, 15, {0.1, 500});
+  EXPECT_EQ(sight_of_thing(above, parallel), ObjectSight::may_be_seen);
+  above.instances[1].world_from_mesh[3] = {0, -6, -40, 1};  // the floor is 17 units before it
+  EXPECT_EQ(sight_of_thing(above, parallel), ObjectSight::hidden);
+}
+
+TEST(Occlusion, WhatTheNearPlaneCutsOffHidesNothingInParallelProjection) {
+  // The plane runs through the wall: what is left of it ends within the picture, before the thing's middle.
+  Scene scene = wall_and_thing();
+  Mesh wall;
+  add_quad(wall, {-4, -4, 4}, {4, -4, -4}, {4, 4, -4}, {-4, 4, 4});
+  scene.meshes[0] = wall;
+  scene.instances[1].world_from_mesh[3] = {0, 0, -5, 1};
+  for (int i = 0; i < 400; ++i) {
+    View view = from({0, 0, 10});
+    const double near = 10.5 + 0.001 * i;
+    view.projection = make_orthographic(-2, 2, -1.5, 1.5, {near, near + 20 + 0.37 * i});
+    EXPECT_EQ(sight_of_thing(scene, view), ObjectSight::may_be_seen) << i;
+  }
+}
+
 TEST(Occlusion, TwoThingsTogetherHideAThird) {
   Scene scene = wall_and_thing();
   Mesh left, right;  // They overlap by a few pixels, and neither hides the thing alone.
