@@ -12,13 +12,15 @@ constexpr std::size_t kMostCuts = 1 << 14;
 /// Triangles that begin so many slabs before that of their farthest corner, and reach so many cells across and down,
 /// are worth cutting.
 constexpr int kLeastSlabs = 12, kLeastCells = 8;
+/// They are cut for every third slab, and for none that is nearer than a sixty-fourth of the object's farthest end.
+constexpr int kSlabsBetweenCuts = 3, kMostSlabs = 36;
 
 glm::uvec3 corners_of(const HidingObject& occluder, std::uint32_t triangle) {
   return occluder.mesh.triangles[occluder.part.first_triangle + triangle] - occluder.part.first_vertex;
 }
 
 /// The least rectangle around places on the screen.
-class Extent {
+class ScreenExtent {
  public:
   template <class Place>
   void include(const Place& place) {
@@ -49,7 +51,6 @@ class Extent {
 void LongObject::sort_by_slab(const CellGrid& grid, const HidingObject& occluder, const DistanceRanges& range_of,
                               const Slabs& slabs) {
   const std::size_t count = on_screen.triangles.size(), slab_count = std::size_t(slabs.count());
-  depth_ = slabs;
   find_far_sides(grid, range_of, slabs);
   slabs_.resize(count);
   slab_begin_.assign(slab_count + 2, 0);
@@ -93,14 +94,14 @@ void LongObject::find_reaching(const CellGrid& grid, const HidingObject& occlude
     const bool is_cut = on_screen.triangles[t].is_cut;
     const glm::uvec3 corners = corners_of(occluder, t);
     float nearest = infinite_distance;
-    Extent extent;
+    ScreenExtent extent;
     for (int k = 0; k < 3; ++k) {
       const VertexOnScreen& v = on_screen.vertices[corners[k]];
       nearest = std::min(nearest, is_cut ? grid.transform.near : v.distance);
       if (!is_cut) extent.include(v);
     }
     if (is_cut) extent.include(cut->polygon);
-    const int first_slab = slabs.of(range_of(nearest));
+    const int first_slab = std::max(slabs.of(range_of(nearest)), slabs.count() - kMostSlabs);
     const CellRect cells = extent.cells(grid, {0, 0, grid.columns, grid.rows});
     if (slabs_[t] - first_slab < kLeastSlabs || cells.x1 - cells.x0 < kLeastCells || cells.y1 - cells.y0 < kLeastCells)
       continue;
@@ -112,7 +113,7 @@ void LongObject::find_reaching(const CellGrid& grid, const HidingObject& occlude
   for (const Reaching& r : reaching_) first_reached_ = std::min(first_reached_, r.first_slab);
 }
 
-CoverPass LongObject::choose(const CellGrid& grid, const HidingObject& occluder, int slab, const Within& within) {
+CoverPass LongObject::choose(const CellGrid& grid, const HidingObject& occluder, int slab, const CellRect& rect) {
   const auto begin = by_slab_.begin() + slab_begin_[std::size_t(slab)];
   const auto end = by_slab_.begin() + slab_begin_[std::size_t(slab) + 1];
   whole_.assign(begin, end);
@@ -120,7 +121,7 @@ CoverPass LongObject::choose(const CellGrid& grid, const HidingObject& occluder,
   screen_->far = std::min(grid.transform.far, far_sides_[std::size_t(slab)]);
   screen_->inverse_range = 1.0f / (screen_->far - screen_->near);
   for (const std::uint32_t t : whole_) marks_[t] = std::uint16_t(slab + 1);
-  if (within.is_asked) choose_cut(occluder, slab);
+  if (slab % kSlabsBetweenCuts == 0) choose_cut(occluder, slab);
   const std::size_t cut_by_slab = cut_.size();
   for (auto t = begin; t != end; ++t) choose_around(occluder, slab, *t);
   for (std::size_t i = 0; i < cut_by_slab; ++i) choose_around(occluder, slab, cut_[i].triangle);
@@ -134,7 +135,7 @@ CoverPass LongObject::choose(const CellGrid& grid, const HidingObject& occluder,
   for (std::size_t i = cut_by_slab; i < cut_.size(); ++i)
     farthest = std::max(farthest, on_screen.triangles[cut_[i].triangle].farthest);
   chosen_ = {whole_, cut_, marks_, std::uint16_t(slab + 1), &*screen_};
-  return {.rect = rect_of_chosen(grid, occluder, within.rect), .distance = farthest, .chosen = &chosen_};
+  return {.rect = rect_of_chosen(grid, occluder, rect), .distance = farthest, .chosen = &chosen_};
 }
 
 /// Triangles that reach through a slab.
@@ -169,7 +170,7 @@ void LongObject::choose_around(const HidingObject& occluder, int slab, std::uint
 }
 
 CellRect LongObject::rect_of_chosen(const CellGrid& grid, const HidingObject& occluder, const CellRect& rect) const {
-  Extent extent;
+  ScreenExtent extent;
   for (const std::uint32_t t : whole_)
     for (int k = 0; k < 3; ++k) extent.include(on_screen.vertices[corners_of(occluder, t)[k]]);
   for (const ClippedTriangle& cut : cut_) extent.include(cut.polygon);

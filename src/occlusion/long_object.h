@@ -8,8 +8,8 @@
 // Where two slabs meet, each has an end, and the cells along it would stay open. So a slab covers together with those
 // triangles of nearer slabs that share a vertex with it: then the end lies within what is covered already.
 //
-// A triangle that itself reaches through several slabs, as one of two that are a whole floor, covers in each of these
-// as far as the slab's far side, where it is cut as by a far plane.
+// A triangle that itself reaches through several slabs, as one of two that are a whole floor, covers in every third
+// of these as far as the slab's far side, where it is cut as by a far plane.
 #pragma once
 
 #include <optional>
@@ -37,18 +37,11 @@ class LongObject {
   /// Sorts the triangles into slabs.
   void sort_by_slab(const CellGrid& grid, const HidingObject& occluder, const DistanceRanges& range_of,
                     const Slabs& slabs);
-  [[nodiscard]] const Slabs& slabs() const { return depth_; }
   [[nodiscard]] bool has_triangles(int slab) const {
     return slab_begin_[std::size_t(slab) + 1] > slab_begin_[std::size_t(slab)] || slab >= first_reached_;
   }
-  /// Which cells may be covered, and whether something is tested before the next slab covers.
-  struct Within {
-    CellRect rect;
-    bool is_asked;
-  };
-  /// What is to cover for a slab. Triangles that reach through it are left out where nothing is asked before they cover
-  /// again. Borrows from this object until the next call.
-  [[nodiscard]] CoverPass choose(const CellGrid& grid, const HidingObject& occluder, int slab, const Within& within);
+  /// What is to cover for a slab, within `rect`. Borrows from this object until the next call.
+  [[nodiscard]] CoverPass choose(const CellGrid& grid, const HidingObject& occluder, int slab, const CellRect& rect);
 
  private:
   /// A triangle that covers in several slabs.
@@ -63,7 +56,6 @@ class LongObject {
   void choose_around(const HidingObject& occluder, int slab, std::uint32_t triangle);
   [[nodiscard]] CellRect rect_of_chosen(const CellGrid& grid, const HidingObject& occluder, const CellRect& rect) const;
 
-  Slabs depth_{};
   std::vector<float> far_sides_;           ///< by slab; of the last one infinity
   std::vector<std::uint16_t> slabs_;       ///< by triangle
   std::vector<std::uint32_t> by_slab_;     ///< triangles in the order of their slabs

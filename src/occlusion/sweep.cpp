@@ -180,7 +180,7 @@ class Sweep::Run {
     }
     LongObject& o = *memory_.long_objects_[event.long_object];
     const HidingObject it = occluder(event.item);
-    CoverPass pass = o.choose(view_.grid, it, event.slab, {box.rect, is_asked_in(o.slabs(), event.slab)});
+    CoverPass pass = o.choose(view_.grid, it, event.slab, box.rect);
     if (pass.rect.is_empty() || is_covered_(cover_, pass.rect, infinite_distance)) return;
     leave_out_culled(event.item, pass);
     const std::size_t first_row = add_rows(pass.rect);
@@ -188,15 +188,6 @@ class Sweep::Run {
     find_solid(view_.grid, it, o.on_screen, pass, memory_.scratch_, cover_, solid, view_.isa);
     add_to_cover(pass, solid, cover_, view_.isa);
     memory_.solid_.resize(first_row);
-  }
-
-  /// Whether something is to be tested after a slab covers and before the next one does. What is lined up later is no
-  /// nearer than what is tested then.
-  [[nodiscard]] bool is_asked_in(const LongObject::Slabs& slabs, int slab) const {
-    if (slab + 1 >= slabs.count()) return true;
-    const auto first = memory_.first_test_.begin();
-    const auto is_test = [](std::uint32_t item) { return item != no_index; };
-    return std::any_of(first + slabs.behind(slab), first + slabs.behind(slab + 1), is_test);
   }
 
   /// Which triangles the view leaves out by the way they face.
