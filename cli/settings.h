@@ -203,7 +203,7 @@ struct ReportSettings {
   std::optional<std::string> masks;       ///< a folder
   std::optional<std::string> categories;  ///< a file that says which object has which
   std::optional<std::string> bop;         ///< a folder
-  BopVisible bop_visible = BopVisible::exact;
+  std::optional<BopVisible> bop_visible;
   std::optional<std::string> why;    ///< the name or number of the objects of which alone something is said
   std::optional<std::string> views;  ///< a batch file
 };

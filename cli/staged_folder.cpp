@@ -54,14 +54,18 @@ std::string StagedFolder::told(const std::string& message) const {
 }
 
 void StagedFolder::commit(const std::vector<std::string>& names) const {
+  const auto fail = [](const fs::path& place, const std::string& why) {
+    throw Error(ErrorCode::file_unwritable, fmt::format("{}: cannot replace: {}", place.string(), why));
+  };
+  for (const std::string& name : names)
+    if (fs::is_directory(folder_ / name)) fail(folder_ / name, "it is a folder");
   for (const std::string& name : names) {
     std::error_code error;
     const fs::path place = folder_ / name, linked = fs::canonical(place, error);
     const fs::path target = error ? place : linked;
     if (!error) fs::permissions(staged_ / name, fs::status(target).permissions(), error);
     fs::rename(staged_ / name, target, error);
-    if (error)
-      throw Error(ErrorCode::file_unwritable, fmt::format("{}: cannot replace: {}", place.string(), error.message()));
+    if (error) fail(place, error.message());
   }
 }
 

@@ -130,6 +130,7 @@ void check_wanted(const Settings& settings, const ClipDistances& clip) {
 void look_for_remedies(PrecisionRun& run, const ExactVisible& exact, const Execution& execution) {
   PrecisionResult& result = run.results.front();
   result.remedies = try_remedies(*run.surfaces, exact, result.setup, execution);
+  if (!result.areas) return;
   for (const FightingObjects& pair : result.areas->objects) {
     if (result.offsets.size() == PrecisionResult::pairs_shown || pair.kind == FightKind::fold) break;
     result.offsets.push_back(find_offset(*run.surfaces, exact, *result.areas, pair, execution));
@@ -137,12 +138,20 @@ void look_for_remedies(PrecisionRun& run, const ExactVisible& exact, const Execu
   }
 }
 
+/// What stands too near the eye has every face of a model at risk with every other: the rest is still worth telling.
+void find_areas(const Surfaces& surfaces, const View& view, PrecisionResult& result, const Execution& execution) try {
+  result.areas = find_fighting_faces(surfaces, view, result.setup.format, result.setup.reversed, execution);
+} catch (const Error& error) {
+  if (error.code() != ErrorCode::limit_exceeded) throw;
+  result.too_many = error.what();
+}
+
 /// Fills in what a model adds.
 void fight(PrecisionRun& run, const View& view, const Execution& execution) {
   const ExactVisible exact = find_exact_visible(*run.surfaces, view, execution);
   for (PrecisionResult& result : run.results) {
     result.fights = fights_of(*run.surfaces, exact, result.setup, execution);
-    result.areas = find_fighting_faces(*run.surfaces, view, result.setup.format, result.setup.reversed, execution);
+    find_areas(*run.surfaces, view, result, execution);
     stop_if_interrupted();
   }
   if (run.results.size() == 1) look_for_remedies(run, exact, execution);
@@ -169,7 +178,7 @@ int run_precision(const Settings& settings) {
   const Execution execution = execution_for(settings.run, progress);
   std::optional<Scene> scene;
   std::optional<Surfaces> surfaces;
-  PrecisionRun run{.settings = settings, .results = {}, .files = {}};
+  PrecisionRun run{.settings = settings, .names = {}, .results = {}, .files = {}, .reach = {}};
   if (settings.model.empty()) {
     const Projection projection = projection_without_model(settings);
     check_wanted(settings, projection.clip);

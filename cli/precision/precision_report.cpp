@@ -6,6 +6,8 @@
 #include <frontmost/version.h>
 
 #include <algorithm>
+#include <span>
+#include <tuple>
 
 #include "cli/console.h"
 #include "cli/view/sight.h"
@@ -138,6 +140,15 @@ std::string offset_text(const PrecisionRun& run, const std::optional<OffsetRemed
                      object_name(run, remedy->instance));
 }
 
+std::string remedies_text(const PrecisionResult& result) {
+  std::string text;
+  for (const FightRemedy& remedy : result.remedies)
+    text += fmt::format("with {}, near {:.6g} and far {:.6g}, {} {} wrong\n", setup_name(remedy.setup),
+                        remedy.setup.clip.near, remedy.setup.clip.far, remedy.wrong,
+                        remedy.wrong == 1 ? "pixel is" : "pixels are");
+  return text;
+}
+
 /// The pairs of objects of a single buffer.
 std::string pairs_text(const PrecisionRun& run) {
   const PrecisionResult& result = run.results.front();
@@ -157,22 +168,24 @@ std::string pairs_text(const PrecisionRun& run) {
   std::size_t others = 0;
   for (const FightingObjects& pair : result.areas->objects) others += pair.kind != FightKind::fold;
   if (others > i) text += fmt::format("            and {} more pairs; --json lists them\n", others - i);
-  for (const FightRemedy& remedy : result.remedies)
-    text += fmt::format("with {}, near {:.6g} and far {:.6g}, {} {} wrong\n", setup_name(remedy.setup),
-                        remedy.setup.clip.near, remedy.setup.clip.far, remedy.wrong,
-                        remedy.wrong == 1 ? "pixel is" : "pixels are");
   return text;
 }
 
 std::string areas_text(const PrecisionRun& run) {
   std::string text = "\nat risk, in pixels squared     in one plane       close  clear value       folds\n";
   for (const PrecisionResult& result : run.results) {
+    if (!result.areas) {
+      text += fmt::format("  {:24}too many to tell ({})\n", setup_name(result.setup), result.too_many);
+      continue;
+    }
     const auto area = [&](FightKind kind) { return visible_area(*result.areas, kind); };
     text +=
         fmt::format("  {:24}{:>17.1f}{:>12.1f}{:>13.1f}{:>12.1f}\n", setup_name(result.setup),
                     area(FightKind::one_plane), area(FightKind::close), area(FightKind::clear), area(FightKind::fold));
   }
-  return run.results.size() == 1 ? text + pairs_text(run) : text;
+  const PrecisionResult& first = run.results.front();
+  if (run.results.size() > 1) return text;
+  return text + (first.areas ? pairs_text(run) : "") + remedies_text(first);
 }
 
 Json object_json(const PrecisionRun& run, std::uint32_t instance) {
@@ -195,6 +208,28 @@ Json fights_json(const PrecisionRun& run, const DepthFights& fights) {
           {"pairs", std::move(pairs)}};
 }
 
+/// The pairs of faces with the largest visible areas.
+Json faces_json(const FightAreas& areas) {
+  constexpr std::size_t most_faces = 1000;
+  std::vector<const FightingFaces*> largest;
+  for (const FightingFaces& faces : areas.faces) largest.push_back(&faces);
+  const std::size_t count = std::min(largest.size(), most_faces);
+  std::partial_sort(largest.begin(), largest.begin() + std::ptrdiff_t(count), largest.end(),
+                    [](const FightingFaces* a, const FightingFaces* b) {
+                      return std::tuple(-a->visible_area, a->first, a->second) <
+                             std::tuple(-b->visible_area, b->first, b->second);
+                    });
+  Json json = Json::array();
+  for (const FightingFaces* faces : std::span(largest).first(count))
+    json.push_back({{"kind", kind_name(faces->kind)},
+                    {"first", faces->first},
+                    {"second", faces->second == no_primitive ? Json(nullptr) : Json(faces->second)},
+                    {"area", faces->area},
+                    {"visible_area", faces->visible_area},
+                    {"distance", faces->distance}});
+  return json;
+}
+
 Json areas_json(const PrecisionRun& run, const PrecisionResult& result) {
   Json pairs = Json::array();
   for (std::size_t i = 0; i < result.areas->objects.size(); ++i) {
@@ -215,9 +250,11 @@ Json areas_json(const PrecisionRun& run, const PrecisionResult& result) {
     }
     pairs.push_back(std::move(json));
   }
-  return {{"areas", result.areas->faces.size()},
-          {"visible_area", visible_area(*result.areas, std::nullopt)},
-          {"pairs", std::move(pairs)}};
+  Json json = {{"areas", result.areas->faces.size()},
+               {"visible_area", visible_area(*result.areas, std::nullopt)},
+               {"pairs", std::move(pairs)}};
+  if (run.results.size() == 1) json["faces"] = faces_json(*result.areas);
+  return json;
 }
 
 Json remedies_json(const std::vector<FightRemedy>& remedies) {
@@ -248,7 +285,8 @@ Json result_json(const PrecisionRun& run, const PrecisionResult& result) {
   }
   if (result.fights) json["fights"] = fights_json(run, *result.fights);
   if (result.areas) json["at_risk"] = areas_json(run, result);
-  if (result.areas && run.results.size() == 1) json["remedies"] = remedies_json(result.remedies);
+  if (!result.too_many.empty()) json["at_risk"] = {{"refused", result.too_many}};
+  if (result.fights && run.results.size() == 1) json["remedies"] = remedies_json(result.remedies);
   return json;
 }
 

@@ -18,7 +18,8 @@ namespace frontmost::cli {
 struct PrecisionResult {
   DepthSetup setup;
   std::optional<DepthFights> fights;  ///< with a model
-  std::optional<FightAreas> areas;    ///< likewise
+  std::optional<FightAreas> areas;    ///< likewise, but where there are too many
+  std::string too_many;               ///< why there are no areas
   /// With a model, of a single buffer.
   std::vector<FightRemedy> remedies;
   std::vector<std::optional<OffsetRemedy>> offsets;  ///< of the first pairs of objects

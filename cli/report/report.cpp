@@ -71,7 +71,12 @@ std::vector<std::string> outputs_of(const ReportSettings& report) {
 
 void check(const Settings& settings, const std::vector<std::string>& outputs) {
   check_view_settings(settings.view);
-  if (settings.report.coco_polygons && !settings.report.coco) throw UsageError("--coco-polygons needs --coco");
+  const ReportSettings& report = settings.report;
+  if (report.coco_polygons && !report.coco) throw UsageError("--coco-polygons needs --coco");
+  if (report.bop_visible && !report.bop) throw UsageError("--bop-visible needs --bop");
+  if (report.categories && !report.coco && !report.bop) throw UsageError("--categories needs --coco or --bop");
+  if (report.page && *report.page != "-" && !report.page->ends_with(".html") && !report.page->ends_with(".htm"))
+    throw UsageError(*report.page + ": the report is a page; use .html");
   if (settings.report.bop && settings.view.orthographic)
     throw UsageError("--bop needs a perspective camera: BOP has no others");
   check_outputs(outputs, input_files(settings));

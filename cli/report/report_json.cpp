@@ -96,8 +96,12 @@ Json view_report_json(const ReportRun& run) {
                {"canvas", box_json(run.accounts.canvas)},
                {"background", run.accounts.background}};
   Json& objects = json["objects"] = Json::array();
-  for (const std::uint32_t i : objects_asked_for(run.settings, run.scene())) objects.push_back(object_json(run, i));
-  json["cycles"] = find_hiding_order(run.accounts.objects.size(), run.accounts.hidden_by_front).cycles;
+  const HidingOrder order = find_hiding_order(run.accounts.objects.size(), run.accounts.hidden_by_front);
+  for (const std::uint32_t i : objects_asked_for(run.settings, run.scene())) {
+    objects.push_back(object_json(run, i));
+    objects.back()["rank"] = order.ranks[i];
+  }
+  json["cycles"] = order.cycles;
   return json;
 }
 

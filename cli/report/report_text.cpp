@@ -81,7 +81,7 @@ std::string report_text(const ReportRun& run) {
   for (std::size_t i = 0; i < shown; ++i) width = std::max(width, short_name(run, numbers[i]).size());
   text +=
       '\n' +
-      fmt::format(layout, "object", "name", width, "visible", "alone", "visible", "hidden", "cut", "distance", "why") +
+      fmt::format(layout, "object", "name", width, "samples", "alone", "visible", "hidden", "cut", "distance", "why") +
       '\n';
   for (std::size_t i = 0; i < shown; ++i) text += row_text(run, numbers[i], width);
   if (shown < numbers.size()) text += fmt::format("{} more; --json has all\n", grouped(numbers.size() - shown));

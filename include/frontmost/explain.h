@@ -103,7 +103,7 @@ struct Explanation {
 };
 
 /// Explains every object, by number. `visible` is what zbuffer() gave for these surfaces, `accounts` what account()
-/// gave for it. The same for all numbers of threads and instruction sets. O(triangles), one to four times the time of
+/// gave for it. The same for all numbers of threads and instruction sets. O(triangles), one to seven times the time of
 /// account(), and that of visible_faces() for each object that covers no sample. \throws Error as account() does, and
 /// bad_argument for accounts of other objects.
 [[nodiscard]] std::vector<Explanation> explain_all(const Surfaces& surfaces, const Visible& visible,

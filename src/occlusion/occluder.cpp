@@ -17,6 +17,15 @@ std::int64_t twice_area(const Corner& a, const Corner& b, const Corner& c) {
   return std::int64_t(b.x - a.x) * (c.y - a.y) - std::int64_t(c.x - a.x) * (b.y - a.y);
 }
 
+/// Whether corners that are up to two steps elsewhere, more than what snapping and rounding move them by, turn the same
+/// way.
+template <class Corner>
+bool is_turn_certain(const Corner& a, const Corner& b, const Corner& c) {
+  const std::int64_t reach =
+      std::int64_t(std::abs(b.x - a.x)) + std::abs(b.y - a.y) + std::abs(c.x - a.x) + std::abs(c.y - a.y);
+  return std::abs(twice_area(a, b, c)) > 4 * reach + 32;
+}
+
 /// Whether what has no area on the screen has a triangle with area beyond each side.
 bool lies_along_others(const HidingObject& occluder, const OccluderOnScreen& on_screen) {
   const std::uint32_t first = occluder.part.first_triangle;
@@ -67,12 +76,14 @@ void put_on_screen(const CellGrid& grid, const HidingObject& occluder, OccluderO
   }
   out.triangles.resize(part.triangle_count);
   out.cut.clear();
+  out.has_certain_turns = true;
   for (std::uint32_t t = 0; t < part.triangle_count; ++t) {
     const glm::uvec3 c = occluder.mesh.triangles[part.first_triangle + t] - part.first_vertex;
     const VertexOnScreen &a = out.vertices[c.x], &b = out.vertices[c.y], &e = out.vertices[c.z];
     const float farthest = std::max({a.distance, b.distance, e.distance});
     if (!std::isnan(a.distance + b.distance + e.distance)) {
       out.triangles[t] = {turn_of(twice_area(a, b, e)), false, farthest};
+      out.has_certain_turns = out.has_certain_turns && is_turn_certain(a, b, e);
       continue;
     }
     if (!is_finite(out.world[c.x]) || !is_finite(out.world[c.y]) || !is_finite(out.world[c.z])) {

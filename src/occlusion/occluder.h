@@ -65,6 +65,8 @@ struct OccluderOnScreen {
   /// Whatever is seen of the object lies where a pass over all of it reaches or has ends: nothing was cut, and what has
   /// no area there lies along the sides of what has.
   bool is_told_by_cells = true;
+  /// Snapping does not change how any of the triangles turns.
+  bool has_certain_turns = true;
 };
 
 void put_on_screen(const CellGrid& grid, const HidingObject& occluder, OccluderOnScreen& out);

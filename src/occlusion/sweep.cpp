@@ -162,7 +162,10 @@ class Sweep::Run {
     if (it.part.is_closed && on_screen.cut.empty() && pass.clockwise) pass.counter_clockwise = false;
     const bool is_near_open = find_solid(view_.grid, it, on_screen, pass, memory_.scratch_, cover_,
                                          memory_.solid_.data() + first_row, view_.isa);
-    return !is_near_open && on_screen.is_told_by_cells;
+    // A needle may turn the other way when it is snapped, and be left out although its side faces the eye. What is
+    // closed has others before and behind it.
+    const bool are_all_told = view_.culling == Culling::none || it.part.is_closed || on_screen.has_certain_turns;
+    return !is_near_open && on_screen.is_told_by_cells && are_all_told;
   }
 
   void schedule(int range, Event event) {

@@ -141,6 +141,11 @@ TEST_F(Precision, AreasAtRiskAreListedWithTheirRemedies) {
   EXPECT_NEAR(pair["gap"].get<double>(), 0.15494, 0.00001);
   EXPECT_EQ(pair["offset"]["object"]["name"], "at0");
   EXPECT_EQ(pair["offset"]["units"], -1);
+  ASSERT_EQ(buffer["at_risk"]["faces"].size(), buffer["at_risk"]["areas"]);
+  double by_faces = 0;
+  for (const json& faces : buffer["at_risk"]["faces"]) by_faces += faces["visible_area"].get<double>();
+  EXPECT_NEAR(by_faces, 1200, 1e-3);
+  EXPECT_EQ(buffer["at_risk"]["faces"][0]["kind"], "close");
   ASSERT_EQ(buffer["remedies"].size(), 1u);
   EXPECT_EQ(buffer["remedies"][0]["wrong_pixels"], 0);
   const double near = buffer["remedies"][0]["near"].get<double>(), far = buffer["remedies"][0]["far"].get<double>();
@@ -155,6 +160,17 @@ TEST_F(Precision, AreasAtRiskAreListedWithTheirRemedies) {
   EXPECT_THAT(text, HasSubstr("at-0.01, at0  offset -1,-1 of at0 ends it"));
   EXPECT_THAT(text, HasSubstr("0 pixels are wrong"));
   EXPECT_THAT(succeed(camera).out, HasSubstr("F32 reversed"));
+}
+
+TEST_F(Precision, MoreAreasAtRiskThanCanBeListedLeaveTheRestOfTheReport) {
+  // With so near a plane every face of the city fights with every other behind it.
+  const std::string line = "precision builtin:city --near 1e-5 --format D16 --resolution 320,200";
+  const json buffer = succeed(line + " --json").json()["buffers"][0];
+  EXPECT_THAT(buffer["at_risk"]["refused"].get<std::string>(), HasSubstr("fighting faces: "));
+  EXPECT_GT(buffer["fights"]["wrong_pixels"], 0);
+  ASSERT_FALSE(buffer["remedies"].empty());
+  EXPECT_LT(buffer["remedies"].back()["wrong_pixels"], buffer["fights"]["wrong_pixels"]);
+  EXPECT_THAT(succeed(line).out, HasSubstr("too many to tell (fighting faces: "));
 }
 
 TEST_F(Precision, OneSurfaceInTwoPlacesIsTied) {

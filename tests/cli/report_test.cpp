@@ -249,6 +249,35 @@ TEST_F(Report, MasksArePicturesOfEveryObjectInTheFrame) {
   expect_failure("report squares.obj --views views.json --masks new/masks", 2, "--views excludes --output");
 }
 
+TEST_F(Report, MasksOfAnEarlierReportGoAndOtherFilesStay) {
+  std::filesystem::create_directories(path("new/masks"));
+  std::filesystem::create_directories(path("scene/mask"));
+  write("new/masks/000007_visible.png", "old");
+  write("new/masks/holiday.png", "kept");
+  write("scene/mask/000000_000009.png", "old");
+  succeed(std::string("report squares.obj --masks new/masks --bop scene") + view);
+  EXPECT_FALSE(exists("new/masks/000007_visible.png"));
+  EXPECT_TRUE(exists("new/masks/holiday.png"));
+  EXPECT_FALSE(exists("scene/mask/000000_000009.png"));
+  EXPECT_TRUE(exists("scene/mask/000000_000001.png"));
+}
+
+TEST_F(Report, ASceneOfBopThatCannotBeWholeIsNotThere) {
+  std::filesystem::create_directories(path("taken/scene_gt.json"));
+  std::filesystem::create_directories(path("blocked"));
+  expect_failure(std::string("report squares.obj --bop taken") + view, 1, "taken/scene_gt.json: cannot replace");
+  EXPECT_FALSE(exists("taken/mask/000000_000000.png"));
+  write("blocked/mask", "in the way");
+  expect_failure(std::string("report squares.obj --bop blocked") + view, 1, "blocked/mask: is no folder");
+  EXPECT_FALSE(exists("blocked/scene_gt.json"));
+}
+
+TEST_F(Report, OptionsThatWouldDoNothingAreRefused) {
+  expect_failure("report squares.obj --bop-visible bop19", 2, "--bop-visible needs --bop");
+  expect_failure("report squares.obj --categories kinds.json", 2, "--categories needs --coco or --bop");
+  expect_failure("report squares.obj -o report.png", 2, "report.png: the report is a page; use .html");
+}
+
 TEST_F(Report, CategoriesOfAFileCountInCocoAndBop) {
   write("kinds.json", R"({"categories": ["plate", {"name": "wall", "number": 17}],
                           "objects": {"far": "wall", "near": "plate", "door": "wall"}})");
@@ -265,9 +294,9 @@ TEST_F(Report, CategoriesOfAFileCountInCocoAndBop) {
   const json poses = json::parse(read("scene/scene_gt.json"))["0"];
   EXPECT_EQ(poses[0]["obj_id"], 17);
   EXPECT_EQ(poses[1]["obj_id"], 1);
-  expect_failure("report squares.obj --categories none.json", 1, "none.json: ");
+  expect_failure("report squares.obj --coco c.json --categories none.json", 1, "none.json: ");
   write("wrong.json", R"({"categories": ["plate"], "objects": {"far": "wall"}})");
-  expect_failure("report squares.obj --categories wrong.json", 1,
+  expect_failure("report squares.obj --coco c.json --categories wrong.json", 1,
                  "wrong.json: objects.far: \"wall\" is none of the file's categories");
   expect_failure("report squares.obj --categories kinds.json --coco kinds.json", 2, "is the file of categories itself");
 }

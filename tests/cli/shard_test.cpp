@@ -13,7 +13,7 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const std::string line = "render cube.stl --batch v.json --resolution 40,30 --samples 1 ";
+const std::string shard_line = "render cube.stl --batch v.json --resolution 40,30 --samples 1 ";
 
 class Shards : public ProgramTest {
  protected:
@@ -34,7 +34,7 @@ class Shards : public ProgramTest {
   /// Numbers of the views that a run draws, besides those that were finished before.
   std::vector<std::string> drawn(const std::string& options) const {
     std::vector<std::string> names;
-    const nlohmann::json json = succeed(line + options + " --json").json();
+    const nlohmann::json json = succeed(shard_line + options + " --json").json();
     for (const auto& view : json["views"]) names.push_back(view["name"]);
     return names;
   }
@@ -54,7 +54,7 @@ class Shards : public ProgramTest {
 const std::vector<std::string> first_third = {"0", "3", "6", "9"};
 
 TEST_F(Shards, MakeTheBatchTogether) {
-  succeed(line);
+  succeed(shard_line);
   const auto whole = made();
   ASSERT_EQ(whole.size(), 20u);
   remove_made();
@@ -76,10 +76,10 @@ TEST_F(Shards, FinishedViewsAreSkipped) {
   EXPECT_EQ(drawn("--shard 1/3"), first_third);
   const std::string manifest = read("cube.v.1-of-3.jsonl");
   for (const char* same : {"", "--threads 2", "--isa scalar", "--hash", "--quiet"}) {
-    EXPECT_THAT(succeed(line + "--shard 1/3 " + same).out, IsEmpty());
+    EXPECT_THAT(succeed(shard_line + "--shard 1/3 " + same).out, IsEmpty());
     EXPECT_EQ(read("cube.v.1-of-3.jsonl"), manifest);
   }
-  EXPECT_EQ(succeed(line + "--shard 1/3 --json").json()["finished_before"], 4);
+  EXPECT_EQ(succeed(shard_line + "--shard 1/3 --json").json()["finished_before"], 4);
 }
 
 TEST_F(Shards, WhatIsChangedIsMadeAgain) {
@@ -122,9 +122,9 @@ TEST_F(Shards, PosesAndEnvironmentsInFilesCount) {
   EXPECT_TRUE(is_drawn(lit));
 }
 
-// A line is finished with its last byte, wherever a run was ended.
+// A shard_line is finished with its last byte, wherever a run was ended.
 TEST_F(Shards, ManifestsThatAreCutShortLoseTheirLastView) {
-  succeed(line + "--shard 1/5");
+  succeed(shard_line + "--shard 1/5");
   const auto whole = made();
   const std::string name = "cube.v.1-of-5.jsonl", manifest = read(name);
   const std::size_t first = manifest.find('\n') + 1, second = manifest.find('\n', first) + 1;
@@ -144,30 +144,30 @@ TEST_F(Shards, ManifestsThatAreCutShortLoseTheirLastView) {
 
 TEST_F(Shards, KilledRunsGoOnWhereTheyEnded) {
   write_views(120);
-  succeed(line + "--shard 1/2");
+  succeed(shard_line + "--shard 1/2");
   const auto whole = made();
   remove_made();
   for (const char* seconds : {"0.01", "0.05", "0.1"}) {
-    const std::string command =
-        "cd '" + path("") + "' && timeout -s KILL " + seconds + " " FRONTMOST_PROGRAM " " + line + "--shard 1/2 2> err";
+    const std::string command = "cd '" + path("") + "' && timeout -s KILL " + seconds + " " FRONTMOST_PROGRAM " " +
+                                shard_line + "--shard 1/2 2> err";
     (void)std::system(command.c_str());
     for (const auto& [name, bytes] : made()) EXPECT_EQ(bytes, whole.at(name)) << name;
   }
-  succeed(line + "--shard 1/2");
+  succeed(shard_line + "--shard 1/2");
   EXPECT_EQ(made(), whole);
 }
 
 TEST_F(Shards, AreRefusedWhereNothingCouldBeTold) {
   expect_failure("render cube.stl -o c.png --shard 1/2", 2, "--shard takes a part of the views of --batch");
-  expect_failure(line + "--shard 0/2", 2, "--shard: 0 is not between 1 and");
-  expect_failure(line + "--shard 3/2", 2, "--shard: 3/2: there are only 2 shards");
-  expect_failure(line + "--shard 3", 2, "'3' is not K/N, such as 3/16");
-  expect_failure(line + "--shard 1/2 --reference cube.png", 2, "view 0 has a reference");
+  expect_failure(shard_line + "--shard 0/2", 2, "--shard: 0 is not between 1 and");
+  expect_failure(shard_line + "--shard 3/2", 2, "--shard: 3/2: there are only 2 shards");
+  expect_failure(shard_line + "--shard 3", 2, "'3' is not K/N, such as 3/16");
+  expect_failure(shard_line + "--shard 1/2 --reference cube.png", 2, "view 0 has a reference");
   expect_failure("render - --batch v.json --shard 1/2", 2, "a model from standard input");
   write("none.json", R"({"views": [{"outputs": {"hash": true}}]})");
   expect_failure("render cube.stl --batch none.json --shard 1/2", 2, "view 0 makes no files");
   write("cube.v.1-of-2.jsonl", "my own\n");
-  expect_failure(line + "--shard 1/2", 1, "cube.v.1-of-2.jsonl: line 1: this is not a manifest");
+  expect_failure(shard_line + "--shard 1/2", 1, "cube.v.1-of-2.jsonl: shard_line 1: this is not a manifest");
   EXPECT_EQ(read("cube.v.1-of-2.jsonl"), "my own\n");
   write("taken.json", R"({"views": [{}], "outputs": {"depth": "cube.taken.1-of-1.jsonl"}})");
   expect_failure("render cube.stl --batch taken.json --shard 1/1 --format npy", 2, "would be written twice");
@@ -196,7 +196,7 @@ TEST_F(Merging, GathersTheFilesOfAllFolders) {
   EXPECT_EQ(json["views"], 10);
   EXPECT_EQ(json["files"], 20);
   EXPECT_EQ(json["manifests"].size(), 3u);
-  succeed(line);
+  succeed(shard_line);
   for (const auto& [name, content] : made()) EXPECT_EQ(read("all/of/them/" + name), content) << name;
   EXPECT_FALSE(exists("all/of/them/cube.v.1-of-3.jsonl"));
   const std::string before = read("all/of/them/cube.v.1-of-1.jsonl");
@@ -218,7 +218,7 @@ TEST_F(Merging, LeavesNothingWhereAPartIsMissingOrDamaged) {
   expect_failure("batch-merge a b -o all", 1,
                  "b/cube.v.2-of-3.jsonl: of another model, batch file, options or version");
   EXPECT_FALSE(exists("all"));
-  expect_failure("batch-merge cube.stl", 1, "cube.stl: line 1: this is not a manifest");
+  expect_failure("batch-merge cube.stl", 1, "cube.stl: shard_line 1: this is not a manifest");
   expect_failure("batch-merge nowhere", 1, "nowhere: ");
   std::filesystem::create_directory(path("empty"));
   expect_failure("batch-merge empty", 1, "empty: there is no manifest of a batch");

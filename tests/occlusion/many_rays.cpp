@@ -23,7 +23,7 @@ int main(int count, char** arguments) {
     Occlusion occlusion(surfaces);
     const auto sights = occlusion.cull(view, {.cell = 1 + int(seed % 4)});
     for (const ObjectSight sight : sights) hidden += sight == ObjectSight::hidden;
-    wrong += wrong_sights(surfaces, view, sights, rays_in_scene);
+    wrong += wrong_sights(surfaces, view, sights, {rays_in_scene, seed});
   }
   std::printf("%llu rays, %llu objects hidden, %llu rays meet what is said not to be seen\n",
               static_cast<unsigned long long>(rays), static_cast<unsigned long long>(hidden),

@@ -21,13 +21,20 @@ inline Ray sight_line(const View& view, double x, double y) {
   return {glm::vec3(view.eye() + p.clip.near * direction), glm::vec3(direction)};
 }
 
-/// How many of `count` random sight lines meet something first of which `is_seen(primitive id)` is false.
+/// Random places of a picture.
+struct SightLines {
+  int count;
+  std::uint64_t seed = 5;
+};
+
+/// How many random sight lines meet something first of which `is_seen(primitive id)` is false.
 template <class IsSeen>
-std::size_t wrong_sight_lines(const Surfaces& surfaces, const View& view, int count, const IsSeen& is_seen) {
+std::size_t wrong_sight_lines(const Surfaces& surfaces, const View& view, const SightLines& lines,
+                              const IsSeen& is_seen) {
   const RayIndex index(surfaces);
-  Random random(5);
+  Random random(lines.seed);
   std::vector<Ray> rays;
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < lines.count; ++i) {
     const double x = double(random.unit()) * view.width;
     rays.push_back(sight_line(view, x, double(random.unit()) * view.height));
   }
@@ -40,8 +47,8 @@ std::size_t wrong_sight_lines(const Surfaces& surfaces, const View& view, int co
 
 /// The same of what is known of instances.
 inline std::size_t wrong_sights(const Surfaces& surfaces, const View& view, std::span<const ObjectSight> sights,
-                                int count) {
-  return wrong_sight_lines(surfaces, view, count, [&](PrimitiveId id) {
+                                const SightLines& lines) {
+  return wrong_sight_lines(surfaces, view, lines, [&](PrimitiveId id) {
     return sights[surfaces.source(id).instance] == ObjectSight::may_be_seen;
   });
 }

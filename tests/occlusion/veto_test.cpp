@@ -25,7 +25,7 @@ TEST(OcclusionVeto, WithoutTheEndsOfSurfacesWhatIsSeenIsSaidToBeHidden) {
     const auto expected = occlusion.cull(view, {.cell = cell});
     const auto by_hand = sights_by_hand(surfaces, view, cell, Ends::count);
     ASSERT_TRUE(std::equal(expected.begin(), expected.end(), by_hand.begin())) << seed;
-    wrong += wrong_sights(surfaces, view, sights_by_hand(surfaces, view, cell, Ends::are_forgotten), 4000);
+    wrong += wrong_sights(surfaces, view, sights_by_hand(surfaces, view, cell, Ends::are_forgotten), {4000, seed});
   }
   EXPECT_GT(wrong, seeds(120) / 4);
 }

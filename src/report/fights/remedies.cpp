@@ -98,14 +98,18 @@ std::optional<OffsetRemedy> find_offset(const Surfaces& surfaces, const ExactVis
   if (pair.kind == FightKind::clear || pair.first == pair.second) return std::nullopt;
   const IeeeScope ieee;
   const auto instance = [&](PrimitiveId id) { return id == no_primitive ? no_index : surfaces.source(id).instance; };
-  std::vector<std::size_t> samples;
+  std::vector<std::uint8_t> is_wanted(exact.primitives.size(), 0);
   for (const FightingFaces& fight : fights.faces) {
     if (fight.kind != pair.kind || instance(fight.first) != pair.first || instance(fight.second) != pair.second)
       continue;
-    visit_samples(fights.polygon(fight), fights.view, [&](std::size_t i, int, int, const glm::dvec2&) {
-      const std::uint32_t nearest = instance(exact.primitives[i]);
-      if (nearest == pair.first || nearest == pair.second) samples.push_back(i);
-    });
+    visit_samples(fights.polygon(fight), fights.view, 1,
+                  [&](std::size_t i, int, int, const glm::dvec2&) { is_wanted[i] = 1; });
+  }
+  std::vector<std::size_t> samples;
+  for (std::size_t i = 0; i < is_wanted.size(); ++i) {
+    if (!is_wanted[i]) continue;
+    const std::uint32_t nearest = instance(exact.primitives[i]);
+    if (nearest == pair.first || nearest == pair.second) samples.push_back(i);
   }
   constexpr int kMostDoublings = 16;
   for (int k = 0; k <= kMostDoublings; ++k) {

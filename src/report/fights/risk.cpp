@@ -9,6 +9,8 @@
 namespace frontmost {
 namespace {
 
+constexpr double kSamplesAsked = 4096;
+
 std::array<glm::dvec2, 3> corners_of(const ScreenFace& face) {
   return {face.corner(0), face.corner(1), face.corner(2)};
 }
@@ -69,10 +71,17 @@ double visible_share(const ConvexArea& area, const RiskKeys& keys, const Visible
     return keys.nearest_at(point) + keys.reach >= double(visible.keys[sample]);
   };
   std::uint64_t all = 0, seen = 0;
-  visit_samples(area.corners(), view, [&](std::size_t i, int x, int y, const glm::dvec2& offset) {
-    ++all;
-    seen += is_seen(i, glm::dvec2(x, y) + offset);
-  });
+  const auto look = [&](int step) {
+    all = seen = 0;
+    visit_samples(area.corners(), view, step, [&](std::size_t i, int x, int y, const glm::dvec2& offset) {
+      ++all;
+      seen += is_seen(i, glm::dvec2(x, y) + offset);
+    });
+  };
+  // Thousands of samples tell the share well enough; whether anything is seen, all of them must.
+  const int step = int(std::sqrt(area.area() * view.samples / kSamplesAsked));
+  if (step > 1) look(step);
+  if (seen == 0) look(1);
   if (all > 0) return double(seen) / double(all);
   const glm::dvec2 centre = area.centre();
   const glm::ivec2 last(view.width - 1, view.height - 1);

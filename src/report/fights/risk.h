@@ -46,7 +46,8 @@ struct RiskKeys {
   [[nodiscard]] double nearest_at(const glm::dvec2& point) const { return std::max(first.at(point), second.at(point)); }
 };
 
-/// Which share of an area is seen, by the samples in it, or where there is none, by those of the pixel at its centre.
+/// Which share of an area is seen, by the samples in it, of many some thousands; where there is none, by those of the
+/// pixel at its centre. 0 only where no sample is seen.
 [[nodiscard]] double visible_share(const ConvexArea& area, const RiskKeys& keys, const Visible& visible);
 
 }  // namespace frontmost
