@@ -44,6 +44,9 @@ template <class T>
 /// A writable array that owns `buffer`, without a copy.
 template <class T>
 [[nodiscard]] py::array_t<T> owned(Buffer<T>&& buffer, const ArrayShape& shape);
+/// An array of records: for each of `things` what `record_of` makes of it. Record is one of PYBIND11_NUMPY_DTYPE's.
+template <class Record, class Things, class RecordOf>
+[[nodiscard]] py::array_t<Record> records_of(const Things& things, const RecordOf& record_of);
 
 // ---- implementation ----
 
@@ -72,6 +75,14 @@ template <class T>
 py::array_t<T> owned(Buffer<T>&& buffer, const ArrayShape& shape) {
   const auto kept = std::make_shared<Buffer<T>>(std::move(buffer));
   return py::array_t<T>(shape, kept->data(), detail::keeper(kept));
+}
+
+template <class Record, class Things, class RecordOf>
+py::array_t<Record> records_of(const Things& things, const RecordOf& record_of) {
+  py::array_t<Record> records(py::ssize_t(things.size()));
+  Record* out = records.mutable_data();
+  for (const auto& thing : things) *out++ = record_of(thing);
+  return records;
 }
 
 }  // namespace frontmost::python

@@ -157,8 +157,10 @@ void bind_environment(py::module_& m) {
              });
            }),
            "source"_a, py::kw_only(), "threads"_a = 0, "progress"_a = py::none())
-      .def_property_readonly("turns_with_camera", &Environment::turns_with_camera,
-                             doc("Environment.turns_with_camera"));
+      .def_property_readonly("turns_with_camera", &Environment::turns_with_camera, doc("Environment.turns_with_camera"))
+      .def("__repr__", [](const Environment& environment) {
+        return environment.turns_with_camera() ? "Environment that turns with the camera" : "Environment";
+      });
 }
 
 }  // namespace

@@ -146,6 +146,24 @@ def test_doubles_far_from_zero_lose_nothing(box):
     assert fm.Surfaces(scene).bounds.max() == 0.125
 
 
+def test_poses_are_those_of_points_as_they_were_given(box):
+    vertices, faces = box
+    for middle in ((0, 0, 0), (4.5e6, 5.0e6, 2.0e6), (0, 0, 3000)):
+        scene = fm.Scene.from_arrays(vertices.astype(float) + middle, faces)
+        pose = numpy.diag([-1.0, -1.0, 1.0, 1.0])  # half a turn about z
+        scene.place(0, pose)
+        assert (scene.objects[0].pose == numpy.eye(4)).all() and (scene.objects[1].pose == pose).all()
+        assert (scene.meshes[0].vertices + scene.meshes[0].origin == vertices + middle).all()
+        turned = numpy.array(middle) * [-1, -1, 1]
+        wanted = [numpy.minimum(middle, turned) - 1, numpy.maximum(middle, turned) + 1]
+        surfaces = fm.Surfaces(scene.copy())
+        assert (surfaces.bounds + scene.origin == wanted).all(), middle
+        surfaces.move(1, numpy.eye(4))
+        assert (surfaces.bounds + scene.origin == [numpy.array(middle) - 1, numpy.array(middle) + 1]).all(), middle
+    flat = fm.Scene.from_arrays([[0.0, 0, -1], [8, 0, -1], [0, 8, -1]], [[0, 1, 2]])  # thin, and not far away
+    assert not flat.meshes[0].origin.any() and (flat.meshes[0].vertices[:, 2] == -1).all()
+
+
 def test_what_was_made_of_a_scene_keeps_it(box):
     scene = fm.Scene.from_arrays(*box)
     surfaces = fm.Surfaces(scene)
