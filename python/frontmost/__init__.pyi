@@ -503,8 +503,8 @@ def save(image: ArrayLike | dict[str, Any], path: Path, *, format: ImageFormat |
 
     image: (height, width, 3 or 4) of uint8 (sRGB, straight alpha) or floats (linear light, multiplied by alpha); or planes
     (height, width) by name, as files hold them: {"Z": seen.depth}, {"object": seen.object}, {"N.X": ..., ...}; bool masks
-    are 0 and 1. bits: 8 or 16, of colours in PNG. depth_scale: PNG holds depth times this, rounded; None fits the range.
-    quality: 1 to 100, of JPEG and WebP. Raises Error: file_unwritable, unsupported, limit_exceeded, bad_argument.
+    are 0 and 1, and as {"Y": mask} a black and white picture. bits: 8 or 16, of colours in PNG. depth_scale: PNG holds
+    depth times this, rounded; None fits the range. quality: 1 to 100, of JPEG and WebP. Raises Error: file_unwritable, unsupported, limit_exceeded, bad_argument.
     """
 
 def load_image(path: Path) -> dict[str, NDArray[Any]]:
@@ -958,7 +958,8 @@ class DepthBuffer:
     def depths(self) -> NDArray[numpy.float32]:
         """(samples, height, width): what glReadPixels gives."""
     def visible(self) -> Visible:
-        """The triangle of the last fragment that passed at every sample; a copy. Raises Error before anything is drawn."""
+        """The triangle of the last fragment that passed at every sample; a copy. Raises Error before anything is drawn. With
+        glass in the scene shade(see_through="never") shows it as it was drawn."""
 
 class Drawing:
     """Feature edges, cut into parts that are seen or hidden from end to end, which show themselves in notebooks. Arrays have
