@@ -29,6 +29,9 @@ template <class T>
 /// Whole numbers from 0 to below `end`.
 [[nodiscard]] Array<std::uint32_t> indices(const py::handle& given, const std::string& name, const ArrayShape& shape,
                                            std::uint64_t end);
+/// The same in two steps, for memory that the caller has: integers of any kind, and a copy of them.
+[[nodiscard]] py::array integers(const py::handle& given, const std::string& name, const ArrayShape& shape);
+void copy_indices(const py::array& integers, const std::string& name, std::uint64_t end, std::uint32_t* out);
 /// Three finite numbers.
 [[nodiscard]] glm::dvec3 point(const py::handle& given, const std::string& name);
 /// A 4x4 matrix as NumPy has it, rows first; 3x4 without its last row, which is 0 0 0 1.

@@ -160,7 +160,9 @@ void set_attributes(Mesh& mesh, const ObjectArrays& given) {
 std::uint32_t add_object(HeldScene& held, const ObjectArrays& given) {
   Mesh mesh;
   set_positions(mesh, given.vertices);
-  set_triples(mesh.triangles, indices(given.faces, "faces", {-1, 3}, mesh.positions.size()));
+  const py::array faces = integers(given.faces, "faces", {-1, 3});
+  mesh.triangles.resize(std::size_t(faces.shape(0)));
+  if (faces.size() > 0) copy_indices(faces, "faces", mesh.positions.size(), &mesh.triangles[0].x);
   set_attributes(mesh, given);
   const std::size_t number = held.scene->instances.size();
   mesh.name = given.name.is_none() ? "object " + std::to_string(number) : py::cast<std::string>(given.name);

@@ -19,6 +19,7 @@ void bind_scene(py::module_& m);
 void bind_models(py::module_& m);
 void bind_view(py::module_& m);
 void bind_surfaces(py::module_& m);
+void bind_inspect(py::module_& m);
 void bind_derived(py::module_& m);
 void bind_pictures(py::module_& m);
 void bind_rays(py::module_& m);

@@ -12,6 +12,7 @@ PYBIND11_MODULE(_core, m) {
   bind_models(m);
   bind_view(m);
   bind_surfaces(m);
+  bind_inspect(m);
   bind_derived(m);
   bind_pictures(m);
   bind_rays(m);

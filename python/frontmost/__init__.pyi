@@ -166,6 +166,14 @@ class Scene:
     @property
     def warnings(self) -> list[str]:
         """What the reader passed over: "file: place: what"."""
+    def inspect(self, *, threads: int = 0, progress: Progress = None) -> dict[str, Any]:
+        """What is in it, and what is odd: names and numbers as `frontmost info --json` has them.
+
+        triangles, stored_triangles (of meshes), vertices, bounds (2, 3) in the coordinates of the file, rounding; odd: counts of
+        triangles that are not finite, degenerate or there twice, and of edges on a boundary, of more than two triangles, or
+        wound both ways; meshes: these and pieces, shells, closed, genus; materials; cameras: position, direction, up,
+        orthographic, and vertical, the field of view in degrees or the height.
+        """
     def find(self, name: str | int) -> int:
         """The number of an object. Raises ValueError where none, or several, are so called."""
 

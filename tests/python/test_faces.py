@@ -77,5 +77,12 @@ def test_wrong_uses_end_in_errors(box, tmp_path, monkeypatch, call, error, messa
     assert not list(tmp_path.iterdir())
 
 
+def test_numbers_of_faces_may_be_of_any_integers(box):
+    scene = fm.Scene.from_arrays(*box)
+    for kind in ("u1", ">i8", "u8"):
+        kept = scene.keep_faces(numpy.arange(12, dtype=kind)[::5])
+        assert (kept.meshes[0].face_ids == [0, 5, 10]).all() and kept.objects[0].name == scene.objects[0].name
+
+
 def test_no_face_is_no_error(box):
     assert fm.Surfaces(fm.Scene.from_arrays(*box)).scene.keep_faces(numpy.zeros(0, dtype=int)).triangle_count == 0

@@ -45,6 +45,10 @@ def test_boxes_are_told_on_paper(crates_and_wall):
     hidden = occlusion.is_hidden(boxes)
     assert hidden.dtype == bool and hidden.tolist() == [True, False, False, True]
     assert occlusion.is_hidden(numpy.zeros((0, 2, 3))).shape == (0,)
+    read_only = numpy.asfortranarray(boxes.astype(numpy.int16))
+    read_only.flags.writeable = False
+    for same in (read_only, numpy.repeat(boxes, 2, axis=2)[:, :, ::2], boxes[::-1][::-1].astype(">f4"), boxes.tolist()):
+        assert (occlusion.is_hidden(same) == hidden).all()
 
 
 def test_moves_are_followed(crates_and_wall):
