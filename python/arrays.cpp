@@ -68,22 +68,29 @@ py::capsule keeper(std::shared_ptr<const void> owner) {
 
 }  // namespace detail
 
-Array<std::uint32_t> indices(const py::handle& given, const std::string& name, const ArrayShape& shape,
-                             std::uint64_t end) {
-  const py::array array = detail::checked_array(given, name, shape, "iu");
-  Array<std::uint32_t> out(ArrayShape(array.shape(), array.shape() + array.ndim()));
-  std::uint32_t* const data = out.mutable_data();
+py::array integers(const py::handle& given, const std::string& name, const ArrayShape& shape) {
+  return detail::checked_array(given, name, shape, "iu");
+}
+
+void copy_indices(const py::array& array, const std::string& name, std::uint64_t end, std::uint32_t* out) {
   const bool is_signed = array.dtype().kind() == 'i';
   switch (array.size() == 0 ? 0 : array.itemsize()) {
     case 0: break;
     case 4:
-      is_signed ? convert_indices<std::int32_t>(array, name, end, data)
-                : convert_indices<std::uint32_t>(array, name, end, data);
+      is_signed ? convert_indices<std::int32_t>(array, name, end, out)
+                : convert_indices<std::uint32_t>(array, name, end, out);
       break;
     default:
-      is_signed ? convert_indices<std::int64_t>(array, name, end, data)
-                : convert_indices<std::uint64_t>(array, name, end, data);
+      is_signed ? convert_indices<std::int64_t>(array, name, end, out)
+                : convert_indices<std::uint64_t>(array, name, end, out);
   }
+}
+
+Array<std::uint32_t> indices(const py::handle& given, const std::string& name, const ArrayShape& shape,
+                             std::uint64_t end) {
+  const py::array array = integers(given, name, shape);
+  Array<std::uint32_t> out(ArrayShape(array.shape(), array.shape() + array.ndim()));
+  copy_indices(array, name, end, out.mutable_data());
   return out;
 }
 

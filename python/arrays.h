@@ -29,6 +29,9 @@ template <class T>
 /// Whole numbers from 0 to below `end`.
 [[nodiscard]] Array<std::uint32_t> indices(const py::handle& given, const std::string& name, const ArrayShape& shape,
                                            std::uint64_t end);
+/// The same in two steps, for memory that the caller has: integers of any kind, and a copy of them.
+[[nodiscard]] py::array integers(const py::handle& given, const std::string& name, const ArrayShape& shape);
+void copy_indices(const py::array& integers, const std::string& name, std::uint64_t end, std::uint32_t* out);
 /// Three finite numbers.
 [[nodiscard]] glm::dvec3 point(const py::handle& given, const std::string& name);
 /// A 4x4 matrix as NumPy has it, rows first; 3x4 without its last row, which is 0 0 0 1.
@@ -44,6 +47,9 @@ template <class T>
 /// A writable array that owns `buffer`, without a copy.
 template <class T>
 [[nodiscard]] py::array_t<T> owned(Buffer<T>&& buffer, const ArrayShape& shape);
+/// An array of records: for each of `things` what `record_of` makes of it. Record is one of PYBIND11_NUMPY_DTYPE's.
+template <class Record, class Things, class RecordOf>
+[[nodiscard]] py::array_t<Record> records_of(const Things& things, const RecordOf& record_of);
 
 // ---- implementation ----
 
@@ -72,6 +78,14 @@ template <class T>
 py::array_t<T> owned(Buffer<T>&& buffer, const ArrayShape& shape) {
   const auto kept = std::make_shared<Buffer<T>>(std::move(buffer));
   return py::array_t<T>(shape, kept->data(), detail::keeper(kept));
+}
+
+template <class Record, class Things, class RecordOf>
+py::array_t<Record> records_of(const Things& things, const RecordOf& record_of) {
+  py::array_t<Record> records(py::ssize_t(things.size()));
+  Record* out = records.mutable_data();
+  for (const auto& thing : things) *out++ = record_of(thing);
+  return records;
 }
 
 }  // namespace frontmost::python

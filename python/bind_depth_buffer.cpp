@@ -9,15 +9,10 @@
 
 #include "python/arrays.h"
 #include "python/bindings.h"
+#include "python/depth_words.h"
 #include "python/held.h"
 #include "python/running.h"
-#include "python/words.h"
 
-FRONTMOST_WORDS(frontmost::DepthFormat, "format",
-                {{frontmost::DepthFormat::d8, "d8"},
-                 {frontmost::DepthFormat::d16, "d16"},
-                 {frontmost::DepthFormat::d24, "d24"},
-                 {frontmost::DepthFormat::f32, "f32"}});
 FRONTMOST_WORDS(frontmost::DepthFunc, "func",
                 {{frontmost::DepthFunc::never, "never"},
                  {frontmost::DepthFunc::less, "less"},

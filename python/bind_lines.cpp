@@ -7,7 +7,7 @@
 
 #include "python/arrays.h"
 #include "python/bindings.h"
-#include "python/held.h"
+#include "python/drawings.h"
 #include "python/running.h"
 
 namespace frontmost::python {
@@ -30,10 +30,9 @@ Array<T> written(const std::vector<Thing>& things, const ArrayShape& row, const 
   return out;
 }
 
-std::shared_ptr<Drawing> drawn(const std::shared_ptr<HeldSurfaces>& held, const View& view,
-                               const std::optional<double>& crease_angle, bool counts_hidden,
-                               const std::vector<std::string>& kinds, bool outlines, int threads,
-                               const py::object& progress) {
+HeldDrawing drawn(const std::shared_ptr<HeldSurfaces>& held, const View& view,
+                  const std::optional<double>& crease_angle, bool counts_hidden, const std::vector<std::string>& kinds,
+                  bool outlines, int threads, const py::object& progress) {
   LineOptions options;
   if (crease_angle) options.crease_angle = glm::radians(*crease_angle);
   options.counts_hidden = counts_hidden;
@@ -47,78 +46,83 @@ std::shared_ptr<Drawing> drawn(const std::shared_ptr<HeldSurfaces>& held, const 
       throw py::value_error("kinds: '" + word + "' is not one of boundary, silhouette, border, crease, intersection");
     *wanted[found - std::begin(kind_words)] = true;
   }
-  return run(threads, progress, [&](const Execution& execution) {
-    const std::shared_lock lock(held->scene->reading);
-    return std::make_shared<Drawing>(draw_lines(held->surfaces, view, options, execution));
-  });
+  return {held, run(threads, progress, [&](const Execution& execution) {
+            const std::shared_lock lock(held->scene->reading);
+            return std::make_shared<const Drawing>(draw_lines(held->surfaces, view, options, execution));
+          })};
 }
 
 void bind_drawing(py::module_& m) {
   using Part = DrawnPart;
   using Edge = DrawnEdge;
-  py::class_<Drawing, std::shared_ptr<Drawing>>(m, "Drawing", doc("Drawing"))
-      .def_readonly("view", &Drawing::view, doc("Drawing.view"))
+  py::class_<HeldDrawing>(m, "Drawing", doc("Drawing"))
+      .def_property_readonly(
+          "view", [](const HeldDrawing& d) { return d.drawing->view; }, doc("Drawing.view"))
       .def_property_readonly(
           "segments",
-          [](const Drawing& d) {
-            return written<double>(d.parts, {2, 2}, [](const Part& p) {
+          [](const HeldDrawing& d) {
+            return written<double>(d.drawing->parts, {2, 2}, [](const Part& p) {
               return std::array{p.from.x, p.from.y, p.to.x, p.to.y};
             });
           },
           doc("Drawing.segments"))
       .def_property_readonly(
           "edge",
-          [](const Drawing& d) {
-            return written<std::uint32_t>(d.parts, {}, [](const Part& p) { return std::array{p.edge}; });
+          [](const HeldDrawing& d) {
+            return written<std::uint32_t>(d.drawing->parts, {}, [](const Part& p) { return std::array{p.edge}; });
           },
           doc("Drawing.edge"))
       .def_property_readonly(
           "kind",
-          [](const Drawing& d) {
-            return written<std::uint8_t>(d.parts, {}, [&](const Part& p) { return std::array{d.edges[p.edge].kind}; });
+          [](const HeldDrawing& d) {
+            return written<std::uint8_t>(d.drawing->parts, {},
+                                         [&](const Part& p) { return std::array{d.drawing->edges[p.edge].kind}; });
           },
           doc("Drawing.kind"))
       .def_property_readonly(
           "hidden_by",
-          [](const Drawing& d) {
-            return written<std::uint32_t>(d.parts, {}, [](const Part& p) { return std::array{p.hidden_by}; });
+          [](const HeldDrawing& d) {
+            return written<std::uint32_t>(d.drawing->parts, {}, [](const Part& p) { return std::array{p.hidden_by}; });
           },
           doc("Drawing.hidden_by"))
       .def_property_readonly(
           "is_seen",
-          [](const Drawing& d) {
-            return written<bool>(d.parts, {}, [](const Part& p) { return std::array{p.hidden_by == 0}; });
+          [](const HeldDrawing& d) {
+            return written<bool>(d.drawing->parts, {}, [](const Part& p) { return std::array{p.hidden_by == 0}; });
           },
           doc("Drawing.is_seen"))
       .def_property_readonly(
           "is_outline",
-          [](const Drawing& d) {
-            return written<bool>(d.parts, {}, [](const Part& p) { return std::array{p.is_outline}; });
+          [](const HeldDrawing& d) {
+            return written<bool>(d.drawing->parts, {}, [](const Part& p) { return std::array{p.is_outline}; });
           },
           doc("Drawing.is_outline"))
       .def_property_readonly(
           "span",
-          [](const Drawing& d) {
-            return written<double>(d.parts, {2}, [](const Part& p) { return std::array{p.begin, p.end}; });
+          [](const HeldDrawing& d) {
+            return written<double>(d.drawing->parts, {2}, [](const Part& p) { return std::array{p.begin, p.end}; });
           },
           doc("Drawing.span"))
       .def_property_readonly(
           "edges",
-          [](const Drawing& d) {
-            return written<double>(d.edges, {2, 3}, [](const Edge& e) {
+          [](const HeldDrawing& d) {
+            return written<double>(d.drawing->edges, {2, 3}, [](const Edge& e) {
               return std::array{e.from.x, e.from.y, e.from.z, e.to.x, e.to.y, e.to.z};
             });
           },
           doc("Drawing.edges"))
       .def_property_readonly(
           "edge_primitives",
-          [](const Drawing& d) {
-            return written<std::uint32_t>(d.edges, {2}, [](const Edge& e) { return std::array{e.left, e.right}; });
+          [](const HeldDrawing& d) {
+            return written<std::uint32_t>(d.drawing->edges, {2}, [](const Edge& e) {
+              return std::array{e.left, e.right};
+            });
           },
           doc("Drawing.edge_primitives"))
-      .def("__len__", [](const Drawing& d) { return d.parts.size(); })
-      .def("__repr__", [](const Drawing& d) {
-        return "Drawing: " + std::to_string(d.edges.size()) + " edges in " + std::to_string(d.parts.size()) + " parts";
+      .def("__len__", [](const HeldDrawing& d) { return d.drawing->parts.size(); })
+      .def("__repr__", [](const HeldDrawing& d) {
+        return "Drawing: " + std::to_string(d.drawing->edges.size()) + " edges in " +
+               std::to_string(d.drawing->parts.size()) + " parts";
       });
 }
 

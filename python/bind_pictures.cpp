@@ -47,9 +47,11 @@ Buffer<T> buffer_of(const Array<T>& values) {
   return buffer;
 }
 
-/// A plane of floats, or of whole numbers from 0 to 2^32 - 1; masks are 0 and 1.
+/// A plane of floats, or of whole numbers from 0 to 2^32 - 1; masks are 0 and 1, floats as luminance.
 Channel channel_of(const std::string& name, const py::handle& given, const ArrayShape& shape) {
   const py::array array = py::array::ensure(given);
+  if (array && array.dtype().kind() == 'b' && name == "Y")
+    return {name, buffer_of(numbers<float>(array.attr("astype")("u1"), name, shape))};
   if (array && array.dtype().kind() == 'f') return {name, buffer_of(numbers<float>(given, name, shape))};
   if (array && array.dtype().kind() == 'b')
     return {name, buffer_of(indices(array.attr("astype")("u4"), name, shape, 2))};
@@ -157,8 +159,10 @@ void bind_environment(py::module_& m) {
              });
            }),
            "source"_a, py::kw_only(), "threads"_a = 0, "progress"_a = py::none())
-      .def_property_readonly("turns_with_camera", &Environment::turns_with_camera,
-                             doc("Environment.turns_with_camera"));
+      .def_property_readonly("turns_with_camera", &Environment::turns_with_camera, doc("Environment.turns_with_camera"))
+      .def("__repr__", [](const Environment& environment) {
+        return environment.turns_with_camera() ? "Environment that turns with the camera" : "Environment";
+      });
 }
 
 }  // namespace

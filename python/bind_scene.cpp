@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes: read, made of arrays, looked into, and written.
-#include <frontmost/io.h>
-#include <frontmost/model_file.h>
+// Scenes: made of arrays, and looked into.
+#include <frontmost/scene.h>
 #include <pybind11/stl.h>
 
 #include <cmath>
@@ -12,23 +11,7 @@
 #include "python/bindings.h"
 #include "python/held.h"
 #include "python/running.h"
-#include "python/words.h"
-
-FRONTMOST_WORDS(frontmost::Axis, "up",
-                {{frontmost::Axis::x, "x"},
-                 {frontmost::Axis::y, "y"},
-                 {frontmost::Axis::z, "z"},
-                 {frontmost::Axis::minus_x, "-x"},
-                 {frontmost::Axis::minus_y, "-y"},
-                 {frontmost::Axis::minus_z, "-z"}});
-FRONTMOST_WORDS(frontmost::ModelFormat, "format",
-                {{frontmost::ModelFormat::stl, "stl"},
-                 {frontmost::ModelFormat::ply, "ply"},
-                 {frontmost::ModelFormat::obj, "obj"},
-                 {frontmost::ModelFormat::off, "off"},
-                 {frontmost::ModelFormat::gltf, "gltf"},
-                 {frontmost::ModelFormat::threemf, "3mf"},
-                 {frontmost::ModelFormat::scene, "scene"}});
+#include "python/scene_words.h"
 
 namespace frontmost::python {
 namespace {
@@ -51,9 +34,7 @@ struct HeldMesh {
 Array<double> pose_of_object(const HeldObject& object) {
   return array_of(run(1, py::none(), [&](const Execution&) {
     const std::shared_lock lock(object.scene->reading);
-    glm::dmat4 pose = object.get().world_from_mesh;
-    pose[3] += glm::dvec4(object.scene->origin, 0);
-    return pose;
+    return pose_of_instance(*object.scene, object.get());
   }));
 }
 
@@ -112,7 +93,8 @@ Texture texture_of(const py::handle& given) {
 
 // Objects.
 
-/// Where doubles far from zero are told from: rounded, so that what is left is exact.
+/// Where doubles are told from that lie far from zero for their size, as fitting_origin() has it: rounded, so that what
+/// is left is exact.
 glm::dvec3 offset_of(const Array<double>& vertices) {
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
   const double* const in = vertices.data();
@@ -122,16 +104,18 @@ glm::dvec3 offset_of(const Array<double>& vertices) {
     low = glm::min(low, at);
     high = glm::max(high, at);
   }
+  const glm::dvec3 extents = high - low, middle = (low + high) * 0.5;
+  const double size = std::max({extents.x, extents.y, extents.z, 0.0});
   glm::dvec3 offset(0);
   for (int axis = 0; axis < 3; ++axis) {
-    const double middle = (low[axis] + high[axis]) / 2, size = high[axis] - low[axis];
-    if (std::abs(middle) > 4 * size && std::abs(middle) < 1e15) offset[axis] = std::round(middle);
+    const double away = std::abs(middle[axis]);
+    if (away > 4 * size && (away > 1024 || away > 128 * size) && away < 1e15) offset[axis] = std::round(middle[axis]);
   }
   return offset;
 }
 
-/// Sets the positions, from floats as they are. \returns where their zero is, which is another of doubles far from it.
-glm::dvec3 set_positions(Mesh& mesh, const py::handle& given) {
+/// Sets the positions, from floats as they are, and their origin, which doubles far from zero have.
+void set_positions(Mesh& mesh, const py::handle& given) {
   const py::array array = py::array::ensure(given);
   const bool is_double = array && (array.dtype().kind() != 'f' || array.itemsize() > 4);
   const auto copy = [&](const auto& values, const glm::dvec3& offset) {
@@ -145,12 +129,11 @@ glm::dvec3 set_positions(Mesh& mesh, const py::handle& given) {
     const auto values = numbers<float>(given, "vertices", {-1, 3});
     mesh.positions.resize(std::size_t(values.shape(0)));
     if (values.size() > 0) std::memcpy(mesh.positions.data(), values.data(), std::size_t(values.nbytes()));
-    return glm::dvec3(0);
+    return;
   }
   const auto values = numbers<double>(given, "vertices", {-1, 3});
-  const glm::dvec3 offset = offset_of(values);
-  copy(values, offset);
-  return offset;
+  mesh.origin = offset_of(values);
+  copy(values, mesh.origin);
 }
 
 template <class T>
@@ -176,13 +159,15 @@ void set_attributes(Mesh& mesh, const ObjectArrays& given) {
 /// Adds an object, with its material where it needs one. Nothing is changed where an argument is refused.
 std::uint32_t add_object(HeldScene& held, const ObjectArrays& given) {
   Mesh mesh;
-  const glm::dvec3 offset = set_positions(mesh, given.vertices);
-  set_triples(mesh.triangles, indices(given.faces, "faces", {-1, 3}, mesh.positions.size()));
+  set_positions(mesh, given.vertices);
+  const py::array faces = integers(given.faces, "faces", {-1, 3});
+  mesh.triangles.resize(std::size_t(faces.shape(0)));
+  if (faces.size() > 0) copy_indices(faces, "faces", mesh.positions.size(), &mesh.triangles[0].x);
   set_attributes(mesh, given);
   const std::size_t number = held.scene->instances.size();
   mesh.name = given.name.is_none() ? "object " + std::to_string(number) : py::cast<std::string>(given.name);
-  glm::dmat4 pose = given.pose.is_none() ? glm::dmat4(1.0) : matrix(given.pose, "pose");
-  pose[3] += glm::dvec4(glm::dmat3(pose) * offset - held.scene->origin, 0);
+  const glm::dmat4 pose = given.pose.is_none() ? glm::dmat4(1.0) : matrix(given.pose, "pose");
+  const glm::dmat4 placed = placed_by(pose, *held.scene, mesh);
 
   std::optional<Material> material;
   if (!given.color.is_none()) material.emplace().base_color = color_of(given.color);
@@ -203,7 +188,7 @@ std::uint32_t add_object(HeldScene& held, const ObjectArrays& given) {
     mesh.material_ids = {std::uint32_t(scene.materials.size())};
     scene.materials.push_back(std::move(*material));
   }
-  return add(scene, std::move(mesh), pose);
+  return add(scene, std::move(mesh), placed);
 }
 
 HeldScene scene_of_arrays(const ObjectArrays& given) {
@@ -220,32 +205,14 @@ std::uint32_t place(HeldScene& held, const py::object& mesh, const py::object& p
   if (number < 0 || std::size_t(number) >= held.scene->meshes.size())
     throw py::value_error("mesh: there is no mesh " + std::to_string(number) + " of " +
                           std::to_string(held.scene->meshes.size()));
-  glm::dmat4 placed = pose.is_none() ? glm::dmat4(1.0) : matrix(pose, "pose");
-  placed[3] -= glm::dvec4(held.scene->origin, 0);
+  const glm::dmat4 given = pose.is_none() ? glm::dmat4(1.0) : matrix(pose, "pose");
   Scene& scene = held.writable();
   Instance instance;
   instance.name = name.is_none() ? scene.meshes[std::size_t(number)].name : py::cast<std::string>(name);
   instance.mesh = std::uint32_t(number);
-  instance.world_from_mesh = placed;
+  instance.world_from_mesh = placed_by(given, scene, scene.meshes[instance.mesh]);
   scene.instances.push_back(std::move(instance));
   return std::uint32_t(scene.instances.size() - 1);
-}
-
-// Reading.
-
-HeldScene load_scene(const py::object& source, const std::string& name, const std::optional<Axis>& up,
-                     const std::optional<ModelFormat>& format, int threads, const py::object& progress) {
-  LoadOptions options;
-  options.up = up;
-  options.format = format;
-  if (py::isinstance<py::bytes>(source)) {
-    const std::string_view bytes = py::cast<std::string_view>(source);
-    return HeldScene(run(threads, progress, [&](const Execution& execution) {
-      return load(std::as_bytes(std::span(bytes)), name, options, execution);
-    }));
-  }
-  const auto path = py::cast<std::string>(py::module_::import("os").attr("fspath")(source));
-  return HeldScene(run(threads, progress, [&](const Execution& execution) { return load(path, options, execution); }));
 }
 
 std::string described(const Scene& scene) {
@@ -285,6 +252,8 @@ void bind_parts(py::module_& m) {
   py::class_<HeldMesh>(m, "Mesh", doc("Mesh"))
       .def_property_readonly(
           "name", [](const HeldMesh& h) { return utf8_text(h.get().name); }, doc("Mesh.name"))
+      .def_property_readonly(
+          "origin", [](const HeldMesh& h) { return array_of(h.get().origin); }, doc("Mesh.origin"))
       .def_property_readonly(
           "vertices",
           [](const HeldMesh& h) {
@@ -351,15 +320,7 @@ void bind_making(py::class_<HeldScene>& scene) {
           "add_scene", [](HeldScene& held, const HeldScene& part) { add(held.writable(), Scene(*part.scene)); },
           "part"_a, doc("Scene.add_scene"))
       .def(
-          "copy", [](const HeldScene& held) { return HeldScene(Scene(*held.scene)); }, doc("Scene.copy"))
-      .def(
-          "save",
-          [](const HeldScene& held, const py::object& path) {
-            const auto text = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
-            const std::shared_ptr<const KeptScene> kept = held.scene;
-            run(0, py::none(), [&](const Execution&) { save(*kept, text); });
-          },
-          "path"_a, doc("Scene.save"));
+          "copy", [](const HeldScene& held) { return HeldScene(Scene(*held.scene)); }, doc("Scene.copy"));
 }
 
 }  // namespace
@@ -398,18 +359,6 @@ void bind_scene(py::module_& m) {
           "find", [](const HeldScene& held, const py::object& name) { return object_of(*held.scene, name); }, "name"_a,
           doc("Scene.find"))
       .def("__repr__", [](const HeldScene& held) { return described(*held.scene); });
-  m.def("load", &load_scene, "source"_a, py::kw_only(), "name"_a = "memory", "up"_a = py::none(),
-        "format"_a = py::none(), "threads"_a = 0, "progress"_a = py::none(), doc("load"));
-  m.def(
-      "builtin", [](const std::string& name) { return HeldScene(builtin(name)); }, "name"_a, doc("builtin"));
-  m.def(
-      "builtin_names",
-      [] {
-        py::list names;
-        for (const std::string_view name : builtin_names()) names.append(py::str(name.data(), name.size()));
-        return names;
-      },
-      doc("builtin_names"));
 }
 
 }  // namespace frontmost::python

@@ -9,7 +9,7 @@
 
 #include "python/arrays.h"
 #include "python/bindings.h"
-#include "python/held.h"
+#include "python/drawings.h"
 #include "python/running.h"
 #include "python/shade_words.h"
 #include "python/view_words.h"
@@ -137,6 +137,28 @@ HeldPage sheet_of(const std::shared_ptr<HeldSurfaces>& held, const py::object& v
   return {std::move(sheet.page), sheet.scale};
 }
 
+/// Lines on a page that is as large as the view, with 96 pixels to an inch.
+HeldPage sheet_of_drawing(const HeldDrawing& held, HiddenLines hidden, DrawingStyle style) {
+  constexpr double millimetres_per_pixel = 25.4 / 96;
+  LinePens pens = style == DrawingStyle::figure ? figure_pens() : technical_pens();
+  if (hidden == HiddenLines::thin) pens.hidden = thin_pen();
+  StrokeOptions options;
+  options.with_hidden = hidden != HiddenLines::none;
+  options.by_kind = options.by_outline = style == DrawingStyle::figure;
+  return {
+      run(0, py::none(),
+          [&](const Execution& execution) {
+            const std::shared_lock lock(held.of->scene->reading);
+            const Surfaces& surfaces = held.of->surfaces;
+            SheetView placed;
+            placed.strokes = chain_strokes(surfaces, *held.drawing, options, execution);
+            placed.millimetres_per_pixel = millimetres_per_pixel;
+            const View& view = held.drawing->view;
+            return page_of(surfaces, {&placed, 1}, pens, millimetres_per_pixel * glm::dvec2(view.width, view.height));
+          }),
+      std::nullopt};
+}
+
 HeldFigure figure_of(const std::shared_ptr<HeldSurfaces>& held, const View& view, double tolerance, bool visible_only,
                      bool merges_neighbours, std::size_t most_polygons, Shading shading, const py::object& background,
                      Shadows shadows, float opacity, Lights lights, const std::optional<std::string>& title,
@@ -215,6 +237,12 @@ void bind_sheets(py::module_& m) {
       .def("__repr__", [](const HeldPage& held) {
         return "Sheet of " + paper_name({held.page.width, held.page.height}) +
                (held.scale ? ", " + scale_text(*held.scale) : "");
+      });
+  py::class_<HeldDrawing>(m.attr("Drawing"))
+      .def("sheet", &sheet_of_drawing, py::kw_only(), "hidden"_a = HiddenLines::none, "style"_a = DrawingStyle::figure,
+           doc("Drawing.sheet"))
+      .def("_repr_svg_", [](const HeldDrawing& held) {
+        return py::object(py::cast(sheet_of_drawing(held, HiddenLines::none, DrawingStyle::figure)).attr("svg"));
       });
   py::class_<HeldFigure> figure(m, "Figure", doc("Figure"));
   bind_page(figure, "Figure", [](const HeldFigure& held, const std::string& file, const Execution& execution) {

@@ -69,8 +69,8 @@ void move_object(const std::shared_ptr<HeldSurfaces>& held, const py::object& ob
   const std::uint32_t number = object_of(*held->scene, object);
   if (held->scene->surfaces_count > 1)
     throw Error(ErrorCode::bad_argument, "object: other surfaces show this scene too; make these of scene.copy()");
-  glm::dmat4 placed = matrix(pose, "pose");
-  placed[3] -= glm::dvec4(held->scene->origin, 0);
+  const KeptScene& scene = *held->scene;
+  const glm::dmat4 placed = placed_by(matrix(pose, "pose"), scene, scene.meshes[scene.instances[number].mesh]);
   held->moves += 1;
   run(threads, py::none(), [&](const Execution& execution) {
     const std::unique_lock lock(held->scene->reading);

@@ -16,8 +16,11 @@ namespace py = pybind11;
 // One a subject, in bind_<subject>.cpp; in an order in which types are known before others name them.
 void bind_base(py::module_& m);
 void bind_scene(py::module_& m);
+void bind_models(py::module_& m);
 void bind_view(py::module_& m);
 void bind_surfaces(py::module_& m);
+void bind_inspect(py::module_& m);
+void bind_derived(py::module_& m);
 void bind_pictures(py::module_& m);
 void bind_rays(py::module_& m);
 void bind_scans(py::module_& m);
@@ -26,5 +29,11 @@ void bind_accounts(py::module_& m);
 void bind_depth_buffer(py::module_& m);
 void bind_lines(py::module_& m);
 void bind_sheets(py::module_& m);
+void bind_painter(py::module_& m);
+void bind_occlusion(py::module_& m);
+void bind_faces(py::module_& m);
+void bind_agreement(py::module_& m);
+void bind_precision(py::module_& m);
+void bind_fights(py::module_& m);
 
 }  // namespace frontmost::python

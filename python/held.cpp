@@ -47,8 +47,25 @@ void HeldVisible::check_current() const {
     throw Error(ErrorCode::bad_argument, "visible: objects were moved since; look at the surfaces again");
 }
 
+void HeldVisible::check_same(const HeldSurfaces& surfaces, const char* argument) const {
+  if (of.get() != &surfaces) throw Error(ErrorCode::bad_argument, std::string(argument) + ": is of other surfaces");
+  check_current();
+}
+
 HeldVisible held_visible(const std::shared_ptr<HeldSurfaces>& of, std::shared_ptr<const Visible> visible) {
   return {of, std::move(visible), of->moves};
+}
+
+glm::dmat4 placed_by(const glm::dmat4& pose, const Scene& scene, const Mesh& mesh) {
+  glm::dmat4 placed = pose;
+  placed[3] = pose * glm::dvec4(mesh.origin, 1) - glm::dvec4(scene.origin, 0);
+  return placed;
+}
+
+glm::dmat4 pose_of_instance(const Scene& scene, const Instance& instance) {
+  glm::dmat4 pose = instance.world_from_mesh;
+  pose[3] = pose * glm::dvec4(-scene.meshes[instance.mesh].origin, 1) + glm::dvec4(scene.origin, 0);
+  return pose;
 }
 
 std::uint32_t object_of(const Scene& scene, const py::handle& given) {

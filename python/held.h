@@ -93,10 +93,17 @@ struct HeldVisible {
 
   /// \throws Error bad_argument where an object was moved since.
   void check_current() const;
+  /// \throws Error bad_argument, naming `argument`, where this one is of other surfaces, or of the same before a move.
+  void check_same(const HeldSurfaces& surfaces, const char* argument) const;
 };
 
 /// A Visible of Python's, of planes that were just found.
 [[nodiscard]] HeldVisible held_visible(const std::shared_ptr<HeldSurfaces>& of, std::shared_ptr<const Visible> visible);
+
+/// What places a mesh in a scene by a pose of its points as they were given, before Mesh::origin was taken off them, in
+/// the coordinates of the file; and back.
+[[nodiscard]] glm::dmat4 placed_by(const glm::dmat4& pose, const Scene& scene, const Mesh& mesh);
+[[nodiscard]] glm::dmat4 pose_of_instance(const Scene& scene, const Instance& instance);
 
 /// The number of an object that an argument names: its number, or its name where that is the only one so called.
 /// \throws py::value_error, py::type_error

@@ -9,8 +9,11 @@ PYBIND11_MODULE(_core, m) {
   m.attr("__name__") = "frontmost";
   bind_base(m);
   bind_scene(m);
+  bind_models(m);
   bind_view(m);
   bind_surfaces(m);
+  bind_inspect(m);
+  bind_derived(m);
   bind_pictures(m);
   bind_rays(m);
   bind_scans(m);
@@ -19,5 +22,11 @@ PYBIND11_MODULE(_core, m) {
   bind_depth_buffer(m);
   bind_lines(m);
   bind_sheets(m);
+  bind_painter(m);
+  bind_occlusion(m);
+  bind_faces(m);
+  bind_agreement(m);
+  bind_precision(m);
+  bind_fights(m);
   m.attr("__name__") = name;
 }

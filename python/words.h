@@ -35,6 +35,14 @@ template <class E>
   return "";
 }
 
+/// All words of an enumeration whose values count from 0: what an array of such values means.
+template <class E>
+[[nodiscard]] py::tuple words_of() {
+  py::tuple words(std::size(Words<E>::all));
+  for (std::size_t i = 0; i < words.size(); ++i) words[i] = word_of(E(i));
+  return words;
+}
+
 }  // namespace frontmost::python
 
 /// FRONTMOST_WORDS(Culling, "culling", {{Culling::none, "none"}, ...}) at global scope, with frontmost:: in front of

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # bench.sh FOLDER [ARGS]: says what machine this is, then runs every benchmark program of FOLDER.
 # bench.sh FOLDER zbuffer|abuffer|drawings [ARGS]: the tables of one method alone; stream [ARGS]: models of growing length,
-# streamed; shade MODEL... : pictures of models one after another, beside llvmpipe's; python: the module beside the library.
+# streamed; shade MODEL... : pictures of models one after another, beside llvmpipe's; python: the module beside the library,
+# and beside VTK and Open3D.
 set -euo pipefail
 folder=$1
 shift
@@ -26,7 +27,12 @@ case "${1:-}" in
     ;;
   python)
     shift
-    PYTHONPATH=$folder/../python exec "$(cat "$folder/python_executable")" bench/python/module.py "$folder/library_views"
+    python=$(cat "$folder/python_executable")
+    export PYTHONPATH=$folder/../python
+    "$python" bench/python/module.py "$folder/library_views"
+    display=()
+    [ -n "${DISPLAY:-}" ] || ! command -v xvfb-run >/dev/null || display=(xvfb-run -a)
+    exec "${display[@]}" "$python" bench/python/peers.py
     ;;
 esac
 "$folder/zbuffer_bench"

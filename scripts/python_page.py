@@ -67,8 +67,9 @@ def page():
             lines += [f"### {node.name}", "", words(node), "", *inside, *[""] * bool(inside)]
         elif isinstance(node, ast.FunctionDef):
             lines += [f"### {node.name}", "", f"`{signature(node, node.name)}`", "", words(node), ""]
-    lines += ["### Numbers", "", "`no_primitive` and `no_index` (both 4294967295) are what ids hold where there is nothing; `edge_kinds` are the words "
-              "of Drawing.kind.", ""]
+    lines += ["### Numbers", "", "`no_primitive` and `no_index` (both 4294967295) are what ids hold where there is nothing; the words that "
+              "small numbers in arrays stand for are `edge_kinds` (Drawing.kind), `object_sights` (Occlusion.cull()), "
+              "`difference_kinds` (Agreement.differences) and `fight_kinds` (FightAreas).", ""]
     head = PAGE.read_text().split(MARK)[0]
     return head + MARK + "\n" + "\n".join(lines).rstrip() + "\n"
 

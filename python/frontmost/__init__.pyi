@@ -26,11 +26,21 @@ EdgeKind = Literal["boundary", "silhouette", "border", "crease", "intersection"]
 DepthFormat = Literal["d8", "d16", "d24", "f32"]
 DepthFunc = Literal["never", "less", "equal", "less_equal", "greater", "not_equal", "greater_equal", "always"]
 ImageFormat = Literal["png", "exr", "pfm", "npy", "jpeg", "webp"]
+Hidden = Literal["none", "dashed", "thin"]
+Style = Literal["technical", "figure"]
+PaintMethod = Literal["depth_sort", "bsp", "farthest", "centroid"]
+ObjectUnit = Literal["instances", "parts", "clusters"]
+ObjectSight = Literal["outside", "hidden", "may_be_seen"]
+DifferenceKind = Literal["none", "edge", "depth", "translucent", "unexplained"]
+FightKind = Literal["one_plane", "fold", "close", "clear"]
 DepthConvention = Literal["opengl", "gortler", "zero_to_one", "reversed"]
 
 no_primitive: int
 no_index: int
 edge_kinds: tuple[EdgeKind, ...]
+object_sights: tuple[ObjectSight, ...]
+difference_kinds: tuple[DifferenceKind, ...]
+fight_kinds: tuple[FightKind, ...]
 
 class Error(RuntimeError):
     """Why the library could not do what it was asked.
@@ -55,7 +65,7 @@ class Object:
         """The number of its mesh in Scene.meshes."""
     @property
     def pose(self) -> NDArray[numpy.float64]:
-        """4x4: what takes the mesh's points to the world, in the coordinates of the file."""
+        """4x4: what takes the mesh's points as they were given, vertices + origin, to the world in the file's coordinates."""
     @property
     def category(self) -> str | None:
         """What kind of thing it is, where the scene says so."""
@@ -67,7 +77,10 @@ class Mesh:
         """As the file has it."""
     @property
     def vertices(self) -> NDArray[numpy.float32]:
-        """(n, 3) positions."""
+        """(n, 3) positions, told from origin."""
+    @property
+    def origin(self) -> NDArray[numpy.float64]:
+        """(3,) what was taken off the positions as they were given: (0, 0, 0), but for those far from zero."""
     @property
     def faces(self) -> NDArray[numpy.uint32]:
         """(m, 3) corners of triangles, counter-clockwise from outside: numbers of vertices."""
@@ -115,8 +128,22 @@ class Scene:
         """Adds all that another scene holds."""
     def copy(self) -> Scene:
         """A scene of its own."""
-    def save(self, path: Path) -> None:
-        """Writes a model: .ply, .stl or .glb, whole or not at all. Raises Error: unsupported, file_unwritable."""
+    def save(self, path: Path, *, of_triangles: dict[str, Any] = {}) -> None:
+        """Writes a model: .ply, .stl or .glb, whole or not at all. Raises Error: unsupported, file_unwritable.
+
+        of_triangles: properties of the faces of a PLY, (triangle_count,) arrays by their names. uint8 and bool become
+        bytes, other integers 32 bits, floats doubles; bytes that are named red, green and blue are what viewers show.
+        """
+    def keep_faces(self, primitives: ArrayLike) -> Scene:
+        """A scene of some triangles alone, such as those that are ever seen; names, places and materials stay.
+
+        primitives: (n,) numbers of triangles, ascending. Objects of which none is kept are gone. Mesh.face_ids tells which
+        polygon of this scene's mesh each triangle came from.
+        """
+    def tessellate(self, view: View, pixels: float) -> Scene:
+        """A scene whose curved meshes (spheres, patches) are cut into triangles anew, none of which is farther than so many
+        pixels of the view from its surface. Mesh.face_ids tells which sphere or patch each is of. Raises Error:
+        bad_argument, limit_exceeded."""
     name: str
     """What files made of it are called."""
     up: Up
@@ -139,6 +166,14 @@ class Scene:
     @property
     def warnings(self) -> list[str]:
         """What the reader passed over: "file: place: what"."""
+    def inspect(self, *, threads: int = 0, progress: Progress = None) -> dict[str, Any]:
+        """What is in it, and what is odd: names and numbers as `frontmost info --json` has them.
+
+        triangles, stored_triangles (of meshes), vertices, bounds (2, 3) in the coordinates of the file, rounding; odd: counts of
+        triangles that are not finite, degenerate or there twice, and of edges on a boundary, of more than two triangles, or
+        wound both ways; meshes: these and pieces, shells, closed, genus; materials; cameras: position, direction, up,
+        orthographic, and vertical, the field of view in degrees or the height.
+        """
     def find(self, name: str | int) -> int:
         """The number of an object. Raises ValueError where none, or several, are so called."""
 
@@ -284,8 +319,8 @@ class Surfaces:
     def draw_sheet(self, views: Sequence[Direction] | View = ("front", "top", "left"), *,
                    sections: list[Direction | tuple[Direction, float]] = [],
                    projection: Literal["none", "first_angle", "third_angle"] = "first_angle", dimensions: bool = False,
-                   hidden: Literal["none", "dashed", "thin"] = "none", hidden_views: list[Direction] | None = None,
-                   style: Literal["technical", "figure"] = "technical", pen: float | None = None,
+                   hidden: Hidden = "none", hidden_views: list[Direction] | None = None,
+                   style: Style = "technical", pen: float | None = None,
                    crease_angle: float | None = None, shortest_stroke: float | None = None,
                    centre_lines: bool | None = None, plot: bool = False,
                    page: str | tuple[float, float] | None = None, margin: float = 10.0, scale: float | None = None,
@@ -312,6 +347,39 @@ class Surfaces:
         all is there in the order of painting. merges_neighbours: of one colour. title: the scene's
         name where it is None. Raises Error limit_exceeded beyond
         most_polygons.
+        """
+    def painter(self, view: View, *, method: PaintMethod = "depth_sort", most_polygons: int = 134217728,
+                most_cuts: int = 1048576, threads: int = 0, progress: Progress = None) -> PaintOrder:
+        """Triangles, and pieces of them, in an order in which painting one over the other is right everywhere.
+
+        method: "depth_sort" (Newell, Newell and Sancha) cuts only what has no order, "bsp" cuts much more; "farthest" and
+        "centroid" sort by one depth alone, and are wrong where that does not decide. Raises Error limit_exceeded.
+        """
+    def visible_faces(self, view: View, *, threads: int = 0, progress: Progress = None) -> NDArray[Any]:
+        """Every triangle of which a part is seen, however small, by number: exact, not sampled.
+
+        (n,) records: primitive, object, triangle; pixels, its area in the picture in square pixels; area, on the triangle in
+        scene units squared; solid_angle, in steradians from the eye, 0 in parallel projection.
+        """
+    def faces_ever_seen(self, views: Sequence[View], *, threads: int = 0, progress: Progress = None) -> NDArray[Any]:
+        """Every triangle of which a part is seen in any of these views, by number.
+
+        (n,) records: primitive, object, triangle; views, in how many a part of it is seen; best_view, which shows most of
+        it; largest_share, of its own area, that one view shows; largest_pixels, the most square pixels in any.
+        """
+    def find_exact_visible(self, view: View, *, threads: int = 0, progress: Progress = None) -> ExactVisible:
+        """What is nearest at every sample, decided without rounding: what depth buffers are held against."""
+    def find_fighting_faces(self, view: View, format: DepthFormat = "d24", *, reversed: bool = False, threads: int = 0,
+                            progress: Progress = None) -> FightAreas:
+        """The faces that a depth buffer of this format may show wrongly, and where.
+
+        reversed: depth 1 at the near plane, 0 at the far one. Raises Error limit_exceeded where more than 2^22 areas are
+        found, or thousands of faces lie in one place.
+        """
+    def cut(self, towards: Up, at: float = 0.0, *, threads: int = 0, progress: Progress = None) -> Section:
+        """What a plane across an axis of the world leaves, with the faces of the cut.
+
+        towards: what lies on this side is taken away. at: the plane's coordinate along that axis, also of a minus axis.
         """
     def move(self, object: int | str, pose: ArrayLike, *, threads: int = 0) -> None:
         """Gives an object another pose, 4x4, in the scene and here. What was visible before is so no more: its pictures
@@ -415,6 +483,10 @@ class Visible:
         """A mask as COCO's compressed run lengths."""
     def coco_polygons(self, object: int | str, *, part: MaskPart = "visible") -> list[list[int]]:
         """A mask as polygons along the sides of pixels: x and y in turn, from the picture's top left."""
+    def check_agreement(self, other: Visible, *, behind: Visible | None = None, threads: int = 0,
+                        progress: Progress = None) -> Agreement:
+        """Compares with the answer of another method for the same surfaces and view: wherever they part, exact arithmetic
+        says why both may be right, or that one is wrong. behind: other's second layer, for what shows through."""
     def content_hash(self) -> int:
         """Equal for equal answers, on every machine; the number that `frontmost render --hash` prints."""
 
@@ -439,8 +511,8 @@ def save(image: ArrayLike | dict[str, Any], path: Path, *, format: ImageFormat |
 
     image: (height, width, 3 or 4) of uint8 (sRGB, straight alpha) or floats (linear light, multiplied by alpha); or planes
     (height, width) by name, as files hold them: {"Z": seen.depth}, {"object": seen.object}, {"N.X": ..., ...}; bool masks
-    are 0 and 1. bits: 8 or 16, of colours in PNG. depth_scale: PNG holds depth times this, rounded; None fits the range.
-    quality: 1 to 100, of JPEG and WebP. Raises Error: file_unwritable, unsupported, limit_exceeded, bad_argument.
+    are 0 and 1, and as {"Y": mask} a black and white picture. bits: 8 or 16, of colours in PNG. depth_scale: PNG holds
+    depth times this, rounded; None fits the range. quality: 1 to 100, of JPEG and WebP. Raises Error: file_unwritable, unsupported, limit_exceeded, bad_argument.
     """
 
 def load_image(path: Path) -> dict[str, NDArray[Any]]:
@@ -596,6 +668,203 @@ class Fragments:
         """The rows of a pixel."""
     def __len__(self) -> int: ...
 
+class PaintOrder:
+    """Polygons in the order of painting: where two overlap, the later one is before the other. Arrays are made anew each
+    time."""
+    @property
+    def polygons(self) -> NDArray[Any]:
+        """(n,) records: primitive, of which it is all or a convex piece; first_corner and corner_count, in corners."""
+    @property
+    def corners(self) -> NDArray[numpy.float64]:
+        """(m, 3): x and y in pixels of the view, and the planar depth; counter-clockwise as they are seen."""
+    @property
+    def is_cut(self) -> NDArray[numpy.bool_]:
+        """(m,) whether the side that begins at a corner was cut, and is no edge of the triangle."""
+    @property
+    def steps(self) -> dict[str, int]:
+        """What it took: how many pairs each of the tests decided, and how many exchanges, cycles and cuts there were."""
+    def paint(self) -> Visible:
+        """What is seen when they are painted one over the other, at the samples of the z-buffer. Raises Error where objects
+        were moved since."""
+    def visible_parts(self, *, threads: int = 0, progress: Progress = None) -> VisibleParts:
+        """What of each is seen, as convex polygons in the same order. All count as opaque."""
+    def __len__(self) -> int: ...
+
+class VisibleParts:
+    """What is seen of a PaintOrder: convex polygons within the picture, in the same order, which do not overlap."""
+    @property
+    def polygons(self) -> NDArray[Any]:
+        """As PaintOrder.polygons."""
+    @property
+    def corners(self) -> NDArray[numpy.float64]:
+        """As PaintOrder.corners."""
+    @property
+    def is_cut(self) -> NDArray[numpy.bool_]:
+        """As PaintOrder.is_cut."""
+    def __len__(self) -> int: ...
+
+class Section:
+    """What a plane leaves of a scene."""
+    @property
+    def scene(self) -> Scene:
+        """Objects with their numbers and names, placed in the world, and closed where they were: the cut is filled."""
+    @property
+    def faces(self) -> NDArray[Any]:
+        """(n,) records of what was cut: object; material, of its filling alone; area, without holes; open_count, of lines
+        that do not close."""
+    @property
+    def outlines(self) -> list[list[NDArray[numpy.float32]]]:
+        """For each of faces its closed lines, (k, 3) in the world, clockwise around holes. No copy; not writable."""
+
+class Occlusion:
+    """Finds out for many views what is certainly hidden, without drawing it: between the samples of every picture, too.
+
+    unit: what counts as an object: "instances", their "parts" that hang together, or "clusters" of up to 128 triangles.
+    What Surfaces.move() moves is followed at the next cull().
+    """
+    def __init__(self, surfaces: Surfaces, *, unit: ObjectUnit = "instances", threads: int = 0,
+                 progress: Progress = None) -> None: ...
+    def cull(self, view: View, *, cell: int = 2, threads: int = 0, progress: Progress = None) -> NDArray[numpy.uint8]:
+        """(n,) of each object what is known of it: object_sights[...], 0 outside the view, 1 hidden, 2 may be seen.
+
+        cell: sides of the cells of the screen that are found covered, 1 to 64 pixels; smaller ones find more.
+        """
+    def is_hidden(self, boxes: ArrayLike) -> NDArray[numpy.bool_]:
+        """(n,) whether certainly nothing is seen of what lies within a box, in the view of the last cull(): of things that
+        are not in the scene. boxes: (n, 2, 3) low and high corners in the world. True before the first cull()."""
+    @property
+    def object(self) -> NDArray[numpy.uint32]:
+        """(n,) numbers of objects of the scene."""
+    @property
+    def part(self) -> NDArray[numpy.uint32]:
+        """(n,) which part or cluster of that it is."""
+    def triangles(self, number: int) -> NDArray[numpy.uint32]:
+        """Rows of Mesh.faces that make up one."""
+    @property
+    def surfaces(self) -> Surfaces:
+        """Of which it is."""
+    def __len__(self) -> int: ...
+
+class Agreement:
+    """How far two answers agree."""
+    @property
+    def counts(self) -> dict[DifferenceKind, int]:
+        """Samples: "none" where both show the same; "edge", a triangle's edge passes within 1/128 pixel; "depth", surfaces
+        nearer to each other than can be told apart; "translucent", one looks through what the other shows; "unexplained",
+        one of them is wrong."""
+    @property
+    def differing(self) -> int:
+        """Samples at which they part, for whatever reason."""
+    @property
+    def differences(self) -> NDArray[numpy.uint8]:
+        """(samples, height, width): difference_kinds[...]. No copy; not writable."""
+
+class DepthSetup:
+    """All that the precision of a depth buffer depends on. Distances are planar and may be of any shape, which answers have.
+
+    reversed: depth 1 at the near plane, 0 at the far one. Raises Error bad_argument, also for distances that are not from
+    near to far.
+    """
+    def __init__(self, near: float, far: float, *, format: DepthFormat = "d24", reversed: bool = False,
+                 orthographic: bool = False) -> None: ...
+    @property
+    def near(self) -> float:
+        """The distance of the near plane."""
+    @property
+    def far(self) -> float:
+        """The distance of the far plane; may be infinite."""
+    @property
+    def format(self) -> DepthFormat:
+        """How depths are stored."""
+    @property
+    def reversed(self) -> bool:
+        """Whether the near plane has depth 1."""
+    @property
+    def orthographic(self) -> bool:
+        """Whether the projection is parallel."""
+    def resolvable_gap(self, distance: ArrayLike) -> Any:
+        """The smallest gap behind a distance that the format tells apart; inf where it tells nothing apart."""
+    def rounding_gap(self, distance: ArrayLike, reach: float | None = None) -> Any:
+        """What the floats of positions and transforms add to it. reach: how far corners are from the eye and the origin;
+        None: twice the distance."""
+    def certain_gap(self, distance: ArrayLike, reach: float | None = None) -> Any:
+        """Both together: what every picture resolves at every pixel, of surfaces that face it."""
+    def share_of_values(self, distance: ArrayLike) -> Any:
+        """How much of the format's values lie between the near plane and a distance, 0 to 1."""
+    def near_for_gap(self, distance: float, gap: float) -> float | None:
+        """The smallest near distance that resolves a gap at a distance; 0: any does; None: none does."""
+    def round_distances(self) -> NDArray[numpy.float64]:
+        """The planes, and 1, 2, 5, 10, 20, ... between them: for tables."""
+
+class ExactVisible:
+    """What is nearest at every sample, without rounding."""
+    @property
+    def view(self) -> View:
+        """Of which it is."""
+    @property
+    def primitives(self) -> NDArray[numpy.uint32]:
+        """(samples, height, width): the lowest number of the nearest. No copy; not writable."""
+    @property
+    def tied(self) -> NDArray[numpy.bool_]:
+        """(samples, height, width): where another triangle is exactly as near. No copy; not writable."""
+    def find_depth_fights(self, answer: Visible, *, threads: int = 0, progress: Progress = None) -> DepthFights:
+        """Where an answer, such as DepthBuffer.visible(), shows what is not the nearest."""
+    def try_remedies(self, setup: DepthSetup, *, threads: int = 0,
+                     progress: Progress = None) -> list[tuple[DepthSetup, int]]:
+        """Other depth buffers that have fewer wrong samples in this view, with how many, found by drawing: planes that fit,
+        24 bits, reversed floats; up to the first that has none."""
+
+class DepthFights:
+    """Where an answer shows a surface that is not the nearest."""
+    @property
+    def view(self) -> View:
+        """Of which they are."""
+    @property
+    def covered(self) -> int:
+        """Samples at which there is something to see."""
+    @property
+    def wrong(self) -> int:
+        """Samples at which something farther, or nothing, is seen."""
+    @property
+    def tied(self) -> int:
+        """Samples at which several surfaces are exactly nearest, so that no answer is wrong."""
+    @property
+    def pairs(self) -> NDArray[Any]:
+        """(n,) records, most samples first: seen, nearer (numbers of objects; no_index: nothing), samples; farthest, the
+        most that what is seen lies behind the other."""
+    @property
+    def errors(self) -> NDArray[numpy.float32]:
+        """(samples, height, width): how far what is seen lies behind the nearest, as a share of the nearest's distance; 0
+        where the answer is right, inf where nothing is seen. No copy; not writable."""
+    def image(self, *, threads: int = 0, progress: Progress = None) -> Bitmap:
+        """A map: violet (a millionth of the distance) over red to yellow (a tenth), light blue where nothing is seen, over
+        the model in grey."""
+
+class FightAreas:
+    """Areas of the picture in which a depth buffer may show the wrong one of two faces."""
+    @property
+    def view(self) -> View:
+        """Of which they are."""
+    @property
+    def setup(self) -> DepthSetup:
+        """The buffer."""
+    @property
+    def faces(self) -> NDArray[Any]:
+        """(n,) records: first and second, numbers of triangles; kind, fight_kinds[...]; area and visible_area in square
+        pixels; distance, the planar depth of the nearest point."""
+    @property
+    def polygons(self) -> list[NDArray[numpy.float64]]:
+        """For each of faces where that is: (k, 2) corners in pixels, convex. No copy; not writable."""
+    @property
+    def objects(self) -> NDArray[Any]:
+        """(m,) records, the greatest visible area first: first and second, numbers of objects; kind; areas, how many; area and
+        visible_area of their union; distance; gap, the smallest that the format tells apart there."""
+    def find_offset(self, exact: ExactVisible, pair: int, *, threads: int = 0,
+                    progress: Progress = None) -> tuple[int, float, float] | None:
+        """The least polygon offset that ends the fights of a row of objects: (object, factor, units), found by drawing; None
+        where none is enough. exact: of the same view."""
+    def __len__(self) -> int: ...
+
 class Accounting:
     """How much of every object is seen: arrays with an element for each object. Samples are counted, exactly."""
     @property
@@ -697,11 +966,14 @@ class DepthBuffer:
     def depths(self) -> NDArray[numpy.float32]:
         """(samples, height, width): what glReadPixels gives."""
     def visible(self) -> Visible:
-        """The triangle of the last fragment that passed at every sample; a copy. Raises Error before anything is drawn."""
+        """The triangle of the last fragment that passed at every sample; a copy. Raises Error before anything is drawn. With
+        glass in the scene shade(see_through="never") shows it as it was drawn."""
 
 class Drawing:
-    """Feature edges, cut into parts that are seen or hidden from end to end. Arrays have an element for each part, in the
-    order of their edges; they are made anew each time."""
+    """Feature edges, cut into parts that are seen or hidden from end to end, which show themselves in notebooks. Arrays have
+    an element for each part, in the order of their edges; they are made anew each time."""
+    def sheet(self, *, hidden: Hidden = "none", style: Style = "figure") -> Sheet:
+        """The lines on a page as large as the view, at 96 pixels to an inch: for files, and for notebooks."""
     @property
     def view(self) -> View:
         """Of which it is."""

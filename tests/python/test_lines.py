@@ -41,6 +41,21 @@ def test_segments_are_known_on_paper(crate_behind_wall):
     assert len(crate_behind_wall.draw_lines(view, kinds=[])) == 0
 
 
+def test_drawings_show_themselves(crate_behind_wall, tmp_path):
+    view = fm.View.orthographic((0, 0, 10), (0, 0, 0), width=96, height=48, tall=4, near=1, far=20)
+    drawing = crate_behind_wall.draw_lines(view)
+    sheet = drawing.sheet()
+    assert numpy.allclose(sheet.size, (25.4, 12.7)) and sheet.scale is None
+    assert drawing._repr_svg_() == sheet.svg and xml.fromstring(sheet.svg).tag.endswith("svg")
+    hidden = {word: drawing.sheet(hidden=word, style="technical").svg for word in ("none", "dashed", "thin")}
+    assert len(set(hidden.values())) == 3 and len(hidden["none"]) < len(hidden["thin"])
+    for suffix in ("svg", "pdf", "dxf", "json"):
+        sheet.save(tmp_path / f"lines.{suffix}")
+    assert (tmp_path / "lines.pdf").read_bytes().startswith(b"%PDF")
+    with pytest.raises(ValueError, match="^hidden: "):
+        drawing.sheet(hidden="dotted")
+
+
 def test_sheets_are_the_command_lines_files(cli):
     folder = cli("lines", "builtin:cubes", "--views", "front,top,left,iso", "--hidden", "dashed", "-o", "sheet.svg", "-q")
     surfaces = fm.Surfaces(fm.builtin("cubes"))

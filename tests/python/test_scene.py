@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes: from arrays, from files, looked into, changed, and written."""
 import gc
+import json
+import os
+import subprocess
 
 import numpy
 import pytest
@@ -146,6 +149,24 @@ def test_doubles_far_from_zero_lose_nothing(box):
     assert fm.Surfaces(scene).bounds.max() == 0.125
 
 
+def test_poses_are_those_of_points_as_they_were_given(box):
+    vertices, faces = box
+    for middle in ((0, 0, 0), (4.5e6, 5.0e6, 2.0e6), (0, 0, 3000)):
+        scene = fm.Scene.from_arrays(vertices.astype(float) + middle, faces)
+        pose = numpy.diag([-1.0, -1.0, 1.0, 1.0])  # half a turn about z
+        scene.place(0, pose)
+        assert (scene.objects[0].pose == numpy.eye(4)).all() and (scene.objects[1].pose == pose).all()
+        assert (scene.meshes[0].vertices + scene.meshes[0].origin == vertices + middle).all()
+        turned = numpy.array(middle) * [-1, -1, 1]
+        wanted = [numpy.minimum(middle, turned) - 1, numpy.maximum(middle, turned) + 1]
+        surfaces = fm.Surfaces(scene.copy())
+        assert (surfaces.bounds + scene.origin == wanted).all(), middle
+        surfaces.move(1, numpy.eye(4))
+        assert (surfaces.bounds + scene.origin == [numpy.array(middle) - 1, numpy.array(middle) + 1]).all(), middle
+    flat = fm.Scene.from_arrays([[0.0, 0, -1], [8, 0, -1], [0, 8, -1]], [[0, 1, 2]])  # thin, and not far away
+    assert not flat.meshes[0].origin.any() and (flat.meshes[0].vertices[:, 2] == -1).all()
+
+
 def test_what_was_made_of_a_scene_keeps_it(box):
     scene = fm.Scene.from_arrays(*box)
     surfaces = fm.Surfaces(scene)
@@ -216,6 +237,43 @@ def test_polygons_of_files_keep_their_numbers(tmp_path):
     assert set(numpy.unique(seen.face)) == {0, 1, fm.no_index}
     assert set(numpy.unique(seen.triangle)) == {0, 1, 2, 3, fm.no_index}
     assert ((seen.face == seen.triangle // 2) | (seen.face == fm.no_index)).all()
+
+
+def test_what_is_odd_is_told(box):
+    vertices, faces = box
+    told = fm.Scene.from_arrays(vertices, faces, name="cube").inspect()
+    mesh, = told["meshes"]
+    assert mesh["closed"] and mesh["genus"] == 0 and mesh["shells"] == mesh["pieces"] == 1 and not any(told["odd"].values())
+    assert told["bounds"].tolist() == [[-1] * 3, [1] * 3] and told["triangles"] == 12 and told["up"] == "y"
+    odd = fm.Scene.from_arrays(vertices, [*faces[1:], faces[1], [0, 0, 1]]).inspect(threads=1)["odd"]
+    assert (odd["duplicate_triangles"], odd["degenerate_triangles"], odd["boundary_edges"]) == (1, 1, 3 - 1)
+    far = fm.Scene.from_arrays(vertices.astype(float) + 4.5e6, faces).inspect()
+    assert far["bounds"].tolist() == [[4.5e6 - 1] * 3, [4.5e6 + 1] * 3]
+
+
+def test_cameras_of_files_are_told(tmp_path):
+    path = tmp_path / "camera.gltf"
+    path.write_text(json.dumps({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+        "nodes": [{"camera": 0, "translation": [1, 2, 3], "name": "door"}],
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}]}))
+    camera, = fm.load(path).inspect()["cameras"]
+    assert camera["position"].tolist() == [1, 2, 3] and camera["direction"].tolist() == [0, 0, -1]
+    assert numpy.isclose(camera["vertical"], numpy.degrees(1.0)) and not camera["orthographic"]
+
+
+def test_inspection_is_the_command_lines():
+    if "FRONTMOST_CLI" not in os.environ:
+        pytest.skip("FRONTMOST_CLI does not say where the program is")
+    told = json.loads(subprocess.run([os.environ["FRONTMOST_CLI"], "info", "builtin:gallery", "--json"], check=True,
+                                     capture_output=True, text=True).stdout)
+    ours = fm.builtin("gallery").inspect()
+    for key in ("name", "triangles", "stored_triangles", "vertices", "rounding"):
+        assert ours[key] == told[key], key
+    assert ours["materials"] == told["materials"] and len(ours["meshes"]) == len(told["meshes"])
+    for one, other in zip(ours["meshes"], told["meshes"]):
+        for key in ("name", "triangles", "vertices", "positions", "faces", "pieces", "closed"):
+            assert one[key] == other[key], key
 
 
 def test_objects_of_scene_files_have_categories(box, tmp_path):

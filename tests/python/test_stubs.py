@@ -90,6 +90,12 @@ def test_the_page_has_every_name_in_the_words_of_the_stubs():
     subprocess.run([sys.executable, ROOT / "scripts" / "python_page.py", "check"], check=True)
 
 
+def test_everything_prints_what_it_is():
+    for name, thing in module_members().items():
+        if isinstance(thing, type) and not issubclass(thing, Exception):
+            assert thing.__repr__ is not object.__repr__, name
+
+
 def test_every_name_is_tested():
     tests = "".join(path.read_text() for path in pathlib.Path(__file__).parent.glob("test_*.py"))
     names = [name for name, thing in module_members().items() if not isinstance(thing, type)]

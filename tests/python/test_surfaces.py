@@ -172,6 +172,51 @@ def test_views_do_not_grow_memory():
     assert resident() - before < 2**22  # a view takes a quarter of it
 
 
+@pytest.mark.skipif("FRONTMOST_SANITIZED" in os.environ, reason="a sanitizer keeps what was freed for a while")
+def test_answers_of_every_kind_do_not_grow_memory():
+    surfaces = fm.Surfaces(fm.builtin("cubes"))
+    view = fm.frame(surfaces, 160, 120)
+    occlusion, index = fm.Occlusion(surfaces), fm.RayIndex(surfaces)
+
+    def look(times):
+        for _ in range(times):
+            seen, exact = surfaces.zbuffer(view, threads=1), surfaces.find_exact_visible(view, threads=1)
+            occlusion.cull(view), occlusion.is_hidden(numpy.zeros((9, 2, 3)))
+            surfaces.visible_faces(view, threads=1), surfaces.find_fighting_faces(view, "d16", threads=1).polygons
+            exact.find_depth_fights(seen, threads=1).errors, exact.tied
+            seen.check_agreement(index.raycast(view, threads=1)).differences
+            order = surfaces.painter(view, threads=1)
+            order.polygons, order.corners, order.paint().depth, order.visible_parts(threads=1).corners
+            surfaces.cut("z").outlines, surfaces.draw_lines(view, threads=1).segments, seen.account(threads=1).visible
+
+    def resident():
+        return int(pathlib.Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize()
+
+    look(20)
+    before = resident()
+    look(100)
+    assert resident() - before < 2**22  # the planes of one round alone take a quarter of it
+
+
+def test_planes_of_every_kind_outlive_everything():
+    surfaces = fm.Surfaces(fm.builtin("cubes"))
+    view = fm.frame(surfaces, 80, 60)
+    exact, seen = surfaces.find_exact_visible(view), surfaces.zbuffer(view)
+    planes = [exact.primitives, exact.tied, exact.find_depth_fights(seen).errors, surfaces.abuffer(view).rows,
+              seen.check_agreement(surfaces.raycast(view)).differences, *surfaces.find_fighting_faces(view).polygons,
+              *surfaces.cut("z").outlines[0], *surfaces.draw_figure(view).polygons[0], surfaces.scene.meshes[0].faces]
+    kept = [plane.copy() for plane in planes]
+    for plane in planes:
+        with pytest.raises(ValueError):
+            plane[...] = plane
+        with pytest.raises(ValueError):
+            plane.flags.writeable = True
+    del exact, seen, surfaces
+    gc.collect()
+    noise = [numpy.full(4800, i, dtype=numpy.uint32) for i in range(500)]
+    assert len(noise) == 500 and all((a == b).all() for a, b in zip(planes, kept))
+
+
 def big_work(**options):
     random = numpy.random.default_rng(1)
     vertices = random.random((300000, 3))

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Models as files: read and written; scenes made by code.
+#include <frontmost/io.h>
+#include <frontmost/model_file.h>
+#include <pybind11/stl.h>
+
+#include <shared_mutex>
+
+#include "python/arrays.h"
+#include "python/bindings.h"
+#include "python/held.h"
+#include "python/running.h"
+#include "python/scene_words.h"
+
+FRONTMOST_WORDS(frontmost::ModelFormat, "format",
+                {{frontmost::ModelFormat::stl, "stl"},
+                 {frontmost::ModelFormat::ply, "ply"},
+                 {frontmost::ModelFormat::obj, "obj"},
+                 {frontmost::ModelFormat::off, "off"},
+                 {frontmost::ModelFormat::gltf, "gltf"},
+                 {frontmost::ModelFormat::threemf, "3mf"},
+                 {frontmost::ModelFormat::scene, "scene"}});
+
+namespace frontmost::python {
+namespace {
+
+using namespace py::literals;
+
+std::string path_text(const py::object& path) {
+  return py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
+}
+
+HeldScene load_scene(const py::object& source, const std::string& name, const std::optional<Axis>& up,
+                     const std::optional<ModelFormat>& format, int threads, const py::object& progress) {
+  LoadOptions options;
+  options.up = up;
+  options.format = format;
+  if (py::isinstance<py::bytes>(source)) {
+    const std::string_view bytes = py::cast<std::string_view>(source);
+    return HeldScene(run(threads, progress, [&](const Execution& execution) {
+      return load(std::as_bytes(std::span(bytes)), name, options, execution);
+    }));
+  }
+  const std::string path = path_text(source);
+  return HeldScene(run(threads, progress, [&](const Execution& execution) { return load(path, options, execution); }));
+}
+
+template <class T>
+std::vector<T> column_of(const Array<T>& values) {
+  return {values.data(), values.data() + values.size()};
+}
+
+/// A property of every triangle: bytes and bools as bytes, other integers as 32 bits, floats as doubles.
+TableColumn column_from(const std::string& name, const py::handle& given, py::ssize_t rows) {
+  const std::string argument = "of_triangles: " + name;
+  const py::array array = py::array::ensure(given);
+  const char kind = array ? array.dtype().kind() : 'O';
+  if (kind == 'f') return {name, column_of(numbers<double>(given, argument, {rows}))};
+  const py::object integers = kind == 'b' ? array.attr("astype")("u1") : py::reinterpret_borrow<py::object>(given);
+  const auto values = indices(integers, argument, {rows}, std::uint64_t(1) << 32);
+  if (kind != 'b' && !(kind == 'u' && array.itemsize() == 1)) return {name, column_of(values)};
+  return {name, std::vector<std::uint8_t>(values.data(), values.data() + values.size())};
+}
+
+void save_scene(const HeldScene& held, const py::object& path, const py::dict& of_triangles) {
+  const std::string file = path_text(path);
+  Table table;
+  for (const auto& [name, values] : of_triangles)
+    table.columns.push_back(column_from(py::cast<std::string>(name), values, py::ssize_t(triangle_count(*held.scene))));
+  const std::shared_ptr<const KeptScene> kept = held.scene;
+  run(0, py::none(), [&](const Execution&) {
+    const std::shared_lock lock(kept->reading);
+    save(*kept, file, table);
+  });
+}
+
+}  // namespace
+
+void bind_models(py::module_& m) {
+  py::class_<HeldScene>(m.attr("Scene"))
+      .def("save", &save_scene, "path"_a, py::kw_only(), "of_triangles"_a = py::dict(), doc("Scene.save"));
+  m.def("load", &load_scene, "source"_a, py::kw_only(), "name"_a = "memory", "up"_a = py::none(),
+        "format"_a = py::none(), "threads"_a = 0, "progress"_a = py::none(), doc("load"));
+  m.def(
+      "builtin", [](const std::string& name) { return HeldScene(builtin(name)); }, "name"_a, doc("builtin"));
+  m.def(
+      "builtin_names",
+      [] {
+        py::list names;
+        for (const std::string_view name : builtin_names()) names.append(py::str(name.data(), name.size()));
+        return names;
+      },
+      doc("builtin_names"));
+}
+
+}  // namespace frontmost::python

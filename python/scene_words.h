@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// The words of scenes.
+#pragma once
+
+#include <frontmost/scene.h>
+
+#include "python/words.h"
+
+FRONTMOST_WORDS(frontmost::Axis, "up",
+                {{frontmost::Axis::x, "x"},
+                 {frontmost::Axis::y, "y"},
+                 {frontmost::Axis::z, "z"},
+                 {frontmost::Axis::minus_x, "-x"},
+                 {frontmost::Axis::minus_y, "-y"},
+                 {frontmost::Axis::minus_z, "-z"}});
