@@ -122,7 +122,7 @@ TEST_F(Shards, PosesAndEnvironmentsInFilesCount) {
   EXPECT_TRUE(is_drawn(lit));
 }
 
-// A shard_line is finished with its last byte, wherever a run was ended.
+// A line is finished with its last byte, wherever a run was ended.
 TEST_F(Shards, ManifestsThatAreCutShortLoseTheirLastView) {
   succeed(shard_line + "--shard 1/5");
   const auto whole = made();
@@ -167,7 +167,7 @@ TEST_F(Shards, AreRefusedWhereNothingCouldBeTold) {
   write("none.json", R"({"views": [{"outputs": {"hash": true}}]})");
   expect_failure("render cube.stl --batch none.json --shard 1/2", 2, "view 0 makes no files");
   write("cube.v.1-of-2.jsonl", "my own\n");
-  expect_failure(shard_line + "--shard 1/2", 1, "cube.v.1-of-2.jsonl: shard_line 1: this is not a manifest");
+  expect_failure(shard_line + "--shard 1/2", 1, "cube.v.1-of-2.jsonl: line 1: this is not a manifest");
   EXPECT_EQ(read("cube.v.1-of-2.jsonl"), "my own\n");
   write("taken.json", R"({"views": [{}], "outputs": {"depth": "cube.taken.1-of-1.jsonl"}})");
   expect_failure("render cube.stl --batch taken.json --shard 1/1 --format npy", 2, "would be written twice");
@@ -218,7 +218,7 @@ TEST_F(Merging, LeavesNothingWhereAPartIsMissingOrDamaged) {
   expect_failure("batch-merge a b -o all", 1,
                  "b/cube.v.2-of-3.jsonl: of another model, batch file, options or version");
   EXPECT_FALSE(exists("all"));
-  expect_failure("batch-merge cube.stl", 1, "cube.stl: shard_line 1: this is not a manifest");
+  expect_failure("batch-merge cube.stl", 1, "cube.stl: line 1: this is not a manifest");
   expect_failure("batch-merge nowhere", 1, "nowhere: ");
   std::filesystem::create_directory(path("empty"));
   expect_failure("batch-merge empty", 1, "empty: there is no manifest of a batch");
