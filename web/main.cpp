@@ -57,6 +57,8 @@ const std::map<std::string, AnswerFunction, std::less<>>& answers() {
       {"lesson.culling", culling_lesson},
       {"lesson.projection", projection_lesson},
       {"lesson.painter", painter_lesson},
+      {"lesson.layers", layers_lesson},
+      {"lesson.methods", methods_lesson},
   };
   return made;
 }

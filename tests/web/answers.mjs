@@ -59,6 +59,17 @@ const text = (place) => new TextDecoder("latin1").decode(plane(place));
   assert.ok(ask({ ask: "lesson.culling", scene: "cube", camera: { ...camera, culling: 2 } }).changed > 1000);
 }
 
+// Fragments come nearest first; without their order glass has other colours; every method shows what the z-buffer does.
+{
+  const layers = ask({ ask: "lesson.layers", scene: "cubes", camera: { width: 160, height: 120, eye: [4, 3, 5], target: [0, 0, 0], up: [0, 1, 0], angle: 30 } });
+  assert.ok(layers.list.length >= 2 && layers.differing > 100);
+  layers.list.forEach((one, i) => assert.ok(i === 0 || one.depth >= layers.list[i - 1].depth));
+  assert.ok(layers.list.every((one) => one.mask.length === 64 && one.covered === [...one.mask].filter((bit) => bit === "1").length / 64));
+  for (const method of ["zbuffer", "abuffer", "painter"]) assert.equal(ask({ ask: "lesson.methods", scene: "cubes", width: 160, height: 120, method }).differing, 0, method);
+  assert.ok(ask({ ask: "lesson.methods", scene: "cubes", width: 160, height: 120, method: "raycast" }).differing < 160, "rays differ at edges alone");
+  assert.ok(ask({ ask: "lesson.methods", scene: "cubes", width: 160, height: 120, method: "lines" }).bytes > 0);
+}
+
 // Broken files end in an error that names them, and the model before stays.
 ask({ ask: "builtin", name: "cubes" });
 for (const [name, bytes] of [["cut.stl", new Uint8Array(90).fill(200)], ["bad.glb", new TextEncoder().encode("glTF????")], ["empty.ply", new Uint8Array()], ["what.xyz", new Uint8Array([1, 2, 3])]])

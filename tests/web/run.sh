@@ -12,5 +12,4 @@ skip() {
 command -v node >/dev/null || skip "there is no node"
 case $script in */page.mjs) [ -x /usr/bin/chromium ] || skip "there is no /usr/bin/chromium" ;; esac
 shift
-# emscripten 3.1's loader would otherwise take Node for a browser.
-exec node --no-experimental-fetch "$@"
+exec node "$@"

@@ -71,8 +71,8 @@ Json reasons(const Surfaces& surfaces, View view) {
 
 Json culling_lesson(const Json& question) {
   static Bitmap picture;
-  const LessonScene& stage = stage_of(question);
-  View view = stage_view(stage, question);
+  const LessonScene& stage = lesson_scene(question);
+  View view = lesson_view(stage, question);
   View all = view;
   all.culling = Culling::none;
   const Visible visible = zbuffer(stage.surfaces, view);

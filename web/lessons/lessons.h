@@ -19,6 +19,10 @@ Json culling_lesson(const Json& question);
 Json projection_lesson(const Json& question);
 /// Polygons in an order of painting, what it took to find it, and the pixels that it gets wrong.
 Json painter_lesson(const Json& question);
+/// The fragments of a pixel, and all pixels composited in true order and in that of the file.
+Json layers_lesson(const Json& question);
+/// How long a method takes here, and how much its answer holds.
+Json methods_lesson(const Json& question);
 
 /// A scene of the lessons, with surfaces that borrow it.
 struct LessonScene {
@@ -27,9 +31,9 @@ struct LessonScene {
   Surfaces surfaces;
 };
 /// {"scene"}: the last one asked for is kept.
-const LessonScene& stage_of(const Json& question);
+const LessonScene& lesson_scene(const Json& question);
 /// {"camera"}, or one that shows all of it in {"width", "height"}.
-View stage_view(const LessonScene& stage, const Json& question);
+View lesson_view(const LessonScene& stage, const Json& question);
 
 /// Colours of triangles, each with a number of its own; transparent where nothing is seen.
 std::vector<std::uint8_t> triangle_colors(const Visible& visible);

@@ -31,8 +31,8 @@ PaintMethod method_of(const std::string& name) {
 
 Json painter_lesson(const Json& question) {
   static std::vector<std::uint8_t> colors, wrong;
-  const LessonScene& stage = stage_of(question);
-  View view = stage_view(stage, question);
+  const LessonScene& stage = lesson_scene(question);
+  View view = lesson_view(stage, question);
   PainterOptions options;
   options.method = method_of(question.value("method", "depth_sort"));
   PaintOrder order = painter(stage.surfaces, view, options);

@@ -47,7 +47,7 @@ Scene cube_scene() {
 
 }  // namespace
 
-const LessonScene& stage_of(const Json& question) {
+const LessonScene& lesson_scene(const Json& question) {
   static std::string name;
   static std::unique_ptr<LessonScene> stage;
   const std::string wanted = question.value("scene", "cubes");
@@ -60,7 +60,7 @@ const LessonScene& stage_of(const Json& question) {
   return *stage;
 }
 
-View stage_view(const LessonScene& stage, const Json& question) {
+View lesson_view(const LessonScene& stage, const Json& question) {
   if (question.contains("camera")) return view_of(question["camera"], stage.surfaces.bounds());
   return frame(stage.surfaces, question.value("width", 320), question.value("height", 240));
 }

@@ -97,8 +97,8 @@ Json comparisons(const LessonScene& stage, const View& view, const DepthState& s
 
 Json picture(const Json& question) {
   static std::vector<std::uint8_t> colors, greys;
-  const LessonScene& stage = stage_of(question);
-  const View view = stage_view(stage, question);
+  const LessonScene& stage = lesson_scene(question);
+  const View view = lesson_view(stage, question);
   const DepthState state = state_of(question);
   const PrimitiveId count = stage.surfaces.primitive_count(),
                     step = std::min(question.at("step").get<PrimitiveId>(), count);
