@@ -53,6 +53,7 @@ const std::map<std::string, AnswerFunction, std::less<>>& answers() {
       {"sphere", by_workbench<&Workbench::sphere>},
       {"write", by_workbench<&Workbench::write>},
       {"conventions", by_workbench<&Workbench::conventions>},
+      {"lesson.frame", frame_lesson},
       {"lesson.zbuffer", zbuffer_lesson},
       {"lesson.culling", culling_lesson},
       {"lesson.projection", projection_lesson},

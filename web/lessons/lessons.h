@@ -30,6 +30,9 @@ struct LessonScene {
   Scene scene;
   Surfaces surfaces;
 };
+/// {"scene", "width", "height", "forward"} -> a camera that shows all of it.
+Json frame_lesson(const Json& question);
+
 /// {"scene"}: the last one asked for is kept.
 const LessonScene& lesson_scene(const Json& question);
 /// {"camera"}, or one that shows all of it in {"width", "height"}.

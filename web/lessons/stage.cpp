@@ -60,6 +60,14 @@ const LessonScene& lesson_scene(const Json& question) {
   return *stage;
 }
 
+Json frame_lesson(const Json& question) {
+  const LessonScene& stage = lesson_scene(question);
+  FrameOptions options;
+  options.forward = vector_of(question.at("forward"));
+  const View view = frame(stage.surfaces, question.at("width"), question.at("height"), options);
+  return camera_json(view, stage.surfaces.bounds().centre());
+}
+
 View lesson_view(const LessonScene& stage, const Json& question) {
   if (question.contains("camera")) return view_of(question["camera"], stage.surfaces.bounds());
   return frame(stage.surfaces, question.value("width", 320), question.value("height", 240));

@@ -83,7 +83,8 @@ function paintEdges(answer: Answer, width: number, height: number): void {
     pen.beginPath();
     pen.strokeStyle = getComputedStyle(document.body).color;
     pen.globalAlpha = hidden ? 0.35 : 1;
-    pen.lineWidth = hidden ? 1 : 1.6;
+    // Where thousands of lines come together thinner ones can still be told apart.
+    pen.lineWidth = (hidden ? 1 : 1.6) * Math.min(1, Math.max(0.35, Math.sqrt(20000 / parts.length)));
     pen.setLineDash(hidden ? [5, 4] : []);
     for (let i = 0; i < parts.length; i += 5) {
       if (parts[i + 4] !== hidden) continue;

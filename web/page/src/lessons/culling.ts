@@ -3,12 +3,11 @@
 import type { Answer } from "../answer.ts";
 import { choices, element } from "../dom.ts";
 import { say } from "../language.ts";
-import { Eye, figure, ink, Latest, plate, startCamera } from "./figure.ts";
+import { Eye, figure, ink, Latest, plate } from "./figure.ts";
 import { dot, minus, unit, type Vector } from "../orbit.ts";
 import type { Lesson } from "./list.ts";
 
 const size: [number, number] = [480, 360];
-const distances: Record<string, number> = { cube: 8, concave: 9, cubes: 8, teapot: 16 };
 
 function cullingFigure(): HTMLElement {
   const picture = plate(say({ en: "Drag to turn. Arrows are normals: towards you, or away", zh: "拖动旋转。箭头为法线：朝向你，或背向你" }));
@@ -50,14 +49,13 @@ function cullingFigure(): HTMLElement {
       : say({ en: `${answer.changed.toLocaleString()} pixels show something else.`, zh: `${answer.changed.toLocaleString()} 个像素不同。` }));
   }
   function show(): void {
-    latest.ask({ ask: "lesson.culling", scene, camera: { ...eye.camera, culling } });
+    if (eye.camera) latest.ask({ ask: "lesson.culling", scene, camera: { ...eye.camera, culling } });
   }
-  function place(): void {
-    eye.camera = startCamera(distances[scene], [0.6, 0.45, 0.8], size);
-    if (scene === "teapot") eye.camera.target = [0, 1.5, 0];
+  async function place(): Promise<void> {
+    await eye.place(scene, [-0.6, -0.45, -0.8], size);
     show();
   }
-  place();
+  void place();
   return figure([picture.root, element("div", {}, facts)], [
     said,
     choices("culling", say({ en: "Leave out", zh: "剔除" }), [["0", say({ en: "nothing", zh: "不剔除" })], ["1", say({ en: "back faces", zh: "背面" })], ["2", say({ en: "front faces", zh: "正面" })]], "0", (value) => {
@@ -66,7 +64,7 @@ function cullingFigure(): HTMLElement {
     }),
     choices("cscene", say({ en: "Scene", zh: "场景" }), [["cube", say({ en: "one convex body", zh: "一个凸体" })], ["concave", say({ en: "a concave body", zh: "一个凹体" })], ["cubes", say({ en: "two cubes", zh: "两个立方体" })], ["teapot", say({ en: "teapot", zh: "茶壶" })]], scene, (value) => {
       scene = value;
-      place();
+      void place();
     }),
   ]);
 }

@@ -123,12 +123,12 @@ export class Eye {
     target.style.cursor = "grab";
     listen(target, { camera: () => this.camera, worldUp: () => [0, 1, 0] as Vector, moved });
   }
-}
 
-/** A camera as frame() would place it: for scenes that the module frames when none is given, this one is fixed. */
-export function startCamera(distance: number, from: Vector, size: [number, number], orthographic = false): Camera {
-  const length = Math.hypot(...from);
-  return { width: size[0], height: size[1], eye: [(from[0] * distance) / length, (from[1] * distance) / length, (from[2] * distance) / length], target: [0, 0, 0], up: [0, 1, 0], angle: 30, orthographic };
+  /** Shows all of a scene, from a direction. */
+  async place(scene: string, forward: Vector, [width, height]: [number, number]): Promise<void> {
+    this.camera = undefined;
+    this.camera = await client().ask({ ask: "lesson.frame", scene, width, height, forward });
+  }
 }
 
 /** A colour of the page's. */

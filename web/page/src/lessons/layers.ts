@@ -3,7 +3,7 @@
 import type { Answer } from "../answer.ts";
 import { choices, element, slider } from "../dom.ts";
 import { say } from "../language.ts";
-import { Eye, figure, ink, Latest, plate, startCamera } from "./figure.ts";
+import { Eye, figure, ink, Latest, plate } from "./figure.ts";
 import type { Lesson } from "./list.ts";
 
 const size: [number, number] = [320, 240];
@@ -41,7 +41,7 @@ function layersFigure(): HTMLElement {
     if (answer.list.length === 0) list.append(element("li", {}, say({ en: "Nothing lies at this pixel.", zh: "此像素处什么也没有。" })));
   });
   function show(): void {
-    latest.ask({ ask: "lesson.layers", scene, opacity, camera: eye.camera, x: pixel[0], y: pixel[1] });
+    if (eye.camera) latest.ask({ ask: "lesson.layers", scene, opacity, camera: eye.camera, x: pixel[0], y: pixel[1] });
   }
   for (const { canvas } of [sorted, unsorted])
     canvas.addEventListener("pointermove", (event) => {
@@ -49,11 +49,11 @@ function layersFigure(): HTMLElement {
       pixel = [Math.min(319, Math.floor((event.offsetX / canvas.clientWidth) * 320)), Math.min(239, Math.floor((event.offsetY / canvas.clientHeight) * 240))];
       show();
     });
-  function place(): void {
-    eye.camera = scene === "cycle" ? startCamera(6, [0.05, 0.1, 1], size) : startCamera(8, [0.6, 0.45, 0.8], size);
+  async function place(): Promise<void> {
+    await eye.place(scene, scene === "cycle" ? [-0.05, -0.1, -1] : [-0.6, -0.45, -0.8], size);
     show();
   }
-  place();
+  void place();
   return figure([sorted.root, unsorted.root], [said, list,
     slider(say({ en: "opacity", zh: "不透明度" }), { min: 0.1, max: 1, step: 0.05, value: 0.5 }, (v) => `${Math.round(100 * v)} %`, (v) => {
       opacity = v;
@@ -61,7 +61,7 @@ function layersFigure(): HTMLElement {
     }).field,
     choices("ascene", say({ en: "Scene", zh: "场景" }), [["cubes", say({ en: "two cubes", zh: "两个立方体" })], ["cycle", say({ en: "three in a ring", zh: "三者成环" })], ["concave", say({ en: "a concave body", zh: "凹体" })]], scene, (value) => {
       scene = value;
-      place();
+      void place();
     })]);
 }
 

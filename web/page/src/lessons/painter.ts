@@ -3,7 +3,7 @@
 import type { Answer } from "../answer.ts";
 import { choices, element } from "../dom.ts";
 import { say, type Text } from "../language.ts";
-import { Eye, figure, ink, Latest, plate, startCamera, steps } from "./figure.ts";
+import { Eye, figure, ink, Latest, plate, steps } from "./figure.ts";
 import type { Lesson } from "./list.ts";
 
 const methods: [string, Text][] = [
@@ -59,16 +59,15 @@ function paintFigure(): HTMLElement {
     facts.replaceChildren(...rows.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value.toLocaleString())]));
   }
   function show(step: number): void {
-    latest.ask({ ask: "lesson.painter", scene, method, step, camera: eye.camera });
+    if (eye.camera) latest.ask({ ask: "lesson.painter", scene, method, step, camera: eye.camera });
   }
   const stepper = steps(0, show, 400);
-  function place(): void {
+  async function place(): Promise<void> {
     most = -1;
-    eye.camera = scene === "cycle" ? startCamera(6, [0.05, 0.1, 1], size) : startCamera(scene === "teapot" ? 16 : 9, [0.6, 0.45, 0.8], size);
-    if (scene === "teapot") eye.camera.target = [0, 1.5, 0];
-    stepper.set(100000);
+    await eye.place(scene, scene === "cycle" ? [-0.05, -0.1, -1] : [-0.6, -0.45, -0.8], size);
+    show(100000);
   }
-  place();
+  void place();
   return figure([painted.root, wrong.root, element("div", {}, facts)], [
     stepper.root, said,
     choices("method", say({ en: "Sorted by", zh: "排序方法" }), methods.map(([id, text]) => [id, say(text)]), method, (value) => {
@@ -78,7 +77,7 @@ function paintFigure(): HTMLElement {
     }),
     choices("pscene", say({ en: "Scene", zh: "场景" }), [["cycle", say({ en: "three in a ring", zh: "三者成环" })], ["cubes", say({ en: "two cubes that intersect", zh: "相交的立方体" })], ["concave", say({ en: "a concave body", zh: "凹体" })]], scene, (value) => {
       scene = value;
-      place();
+      void place();
     }),
   ]);
 }
