@@ -3,7 +3,7 @@
 # bench.sh FOLDER [ARGS]: says what machine this is, then runs every benchmark program of FOLDER.
 # bench.sh FOLDER zbuffer|abuffer|drawings [ARGS]: the tables of one method alone; stream [ARGS]: models of growing length,
 # streamed; shade MODEL... : pictures of models one after another, beside llvmpipe's; python: the module beside the library,
-# and beside VTK and Open3D.
+# and beside VTK and Open3D; web: the WebAssembly module beside the program, when ./dev page has built it.
 set -euo pipefail
 folder=$1
 shift
@@ -24,6 +24,10 @@ case "${1:-}" in
   shade)
     shift
     exec "$folder/shade_table" "$@"
+    ;;
+  web)
+    shift
+    exec node bench/web/speed.mjs build/web/web/frontmost.mjs build/release/frontmost out/page
     ;;
   python)
     shift

@@ -17,8 +17,8 @@ CODE = {".h", ".cpp"}
 MARKED = CODE | {".py", ".sh", ".cmake"}
 LONGEST_FILE = 800
 LARGEST_FILE = 512 * 1024  # bytes; what a command wrote is soon there by mistake, and stays in the history
-LIBRARY = {"include", "src", "cli", "python"}  # a name has one meaning in all of these
-FACES = {"cli", "examples", "python"}  # see include/frontmost alone; tests and benchmarks look inside
+LIBRARY = {"include", "src", "cli", "python", "web"}  # a name has one meaning in all of these
+FACES = {"cli", "examples", "python", "web"}  # see include/frontmost alone; tests and benchmarks look inside
 
 
 def tracked_files():

@@ -40,7 +40,7 @@ class Error : public std::runtime_error {
 };
 
 /// Instruction sets that the kernels are compiled for. None changes any result.
-enum class Isa : std::uint8_t { best, scalar, sse4, avx2, avx512 };
+enum class Isa : std::uint8_t { best, scalar, sse4, avx2, avx512, neon, wasm };
 
 /// \returns "scalar", "sse4", ...; "best" is resolved to what this machine would run.
 [[nodiscard]] std::string_view name(Isa isa);

@@ -66,7 +66,9 @@ def main():
         sections.append((section, results))
     version = subprocess.run([program, "--version"], capture_output=True, text=True).stdout.strip()
     index = folder / "index.html"
-    index.write_text(page.html(sections, same_bytes(program), version))
+    browser_page = folder.parent / "page/index.html"
+    link = "../page/index.html" if browser_page.is_file() else None
+    index.write_text(page.html(sections, same_bytes(program), version, link))
     print(f"\nLook at {index.resolve()}")
 
 

@@ -81,7 +81,15 @@ def hashes(rows):
 set and number of threads on this machine. {verdict}</p><table>{lines}</table></section>"""
 
 
-def html(sections, hash_rows, version):
+def link_to(browser_page):
+    """The page that runs the library in a browser, where it has been built."""
+    if browser_page is None:
+        return ""
+    return f"""<p><a href="{escaped(browser_page)}">Turn your own model, and watch the methods at work, in this browser</a>; it is
+to be served: <code>node scripts/page/server.mjs</code></p>"""
+
+
+def html(sections, hash_rows, version, browser_page=None):
     hero, *rest = sections[0][1]
     words = sections[0][0]
     return f"""<!doctype html>
@@ -89,7 +97,7 @@ def html(sections, hash_rows, version):
 <meta name="color-scheme" content="light dark"><title>Frontmost demo</title><style>
 {STYLE}</style></head><body>
 <header><h1>Frontmost</h1><p class="lead">What can be seen from here? Every picture on this page was made on this
-machine a moment ago, without a GPU, a display or a driver. The command below a picture makes it again.</p></header>
+machine a moment ago, without a GPU, a display or a driver. The command below a picture makes it again.</p>{link_to(browser_page)}</header>
 <main>{card(hero)}{section(words, rest)}{"".join(section(*pair) for pair in sections[1:])}{hashes(hash_rows)}</main>
 <footer>{escaped(version)}</footer></body></html>
 """

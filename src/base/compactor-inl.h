@@ -12,13 +12,14 @@
 
 #include <array>
 
+#include "base/wasm_lanes-inl.h"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_WASM
 #define FRONTMOST_COMPACT_BY_TABLE 1
 #else
 #define FRONTMOST_COMPACT_BY_TABLE 0

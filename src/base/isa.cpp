@@ -24,11 +24,13 @@ struct IsaTarget {
   std::int64_t bit;  // 0: the fallback that is always there
 };
 
-constexpr std::array<IsaTarget, 4> kTargets{{
+constexpr std::array<IsaTarget, 6> kTargets{{
     {Isa::scalar, "scalar", 0},
     {Isa::sse4, "sse4", HWY_SSE4},
     {Isa::avx2, "avx2", HWY_AVX2},
     {Isa::avx512, "avx512", HWY_AVX3},
+    {Isa::neon, "neon", HWY_NEON},
+    {Isa::wasm, "wasm", HWY_WASM},
 }};
 
 #if HWY_ARCH_X86
@@ -48,7 +50,8 @@ std::int64_t machine_targets() {
   return (sse4 ? HWY_SSE4 : 0) | (avx2 ? HWY_AVX2 : 0) | (avx512 ? HWY_AVX3 : 0);
 }
 #else
-std::int64_t machine_targets() { return hwy::SupportedTargets(); }
+/// Elsewhere there is one for all machines.
+std::int64_t machine_targets() { return HWY_TARGETS; }
 #endif
 
 std::vector<Isa> find_available() {

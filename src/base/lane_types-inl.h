@@ -17,6 +17,7 @@
 
 #include <cstddef>
 
+#include "base/wasm_lanes-inl.h"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -16,6 +16,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "base/wasm_lanes-inl.h"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();

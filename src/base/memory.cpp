@@ -111,8 +111,22 @@ struct alignas(kAlignment) Slab {
 
 namespace {
 
-/// That of this thread's innermost Arena.
-thread_local Slab* current = nullptr;
+/// Of this thread's innermost Arena. Asked by way of a template, so that builds without arenas have no such memory.
+template <bool has_room>
+struct CurrentSlab {
+  static Slab*& place() {
+    static thread_local Slab* slab = nullptr;
+    return slab;
+  }
+  static Slab* get() { return place(); }
+  static void set(Slab* slab) { place() = slab; }
+};
+template <>
+struct CurrentSlab<false> {
+  static Slab* get() { return nullptr; }
+  static void set(Slab*) {}
+};
+using Current = CurrentSlab<Arena::has_room>;
 
 /// Large pieces in large pages; null where there is no room.
 void* allocate_alone(std::size_t bytes) {
@@ -150,6 +164,7 @@ void* allocate(std::size_t bytes) {
   // Rounded up, such a size would wrap around to a small one.
   if (bytes > std::size_t(-1) - 2 * kLargePage) throw std::bad_alloc();
   const std::size_t size = sizeof(Block) + round_up(bytes, kAlignment);
+  Slab* const current = Current::get();
   if (Block* block = current ? current->take(size) : nullptr) return block + 1;
   void* pointer = allocate_alone(size);
   if (!pointer) throw std::bad_alloc();
@@ -168,13 +183,13 @@ void release(void* pointer) noexcept {
 
 }  // namespace detail
 
-Arena::Arena(std::size_t bytes) : outer_(detail::current) {
+Arena::Arena(std::size_t bytes) : outer_(detail::Current::get()) {
   slab_ = has_room ? detail::make_slab(round_up(std::min(bytes, kMostArena), kAlignment)) : nullptr;
-  if (slab_) detail::current = slab_;
+  if (slab_) detail::Current::set(slab_);
 }
 
 Arena::~Arena() {
-  detail::current = outer_;
+  detail::Current::set(outer_);
   if (slab_) detail::drop(slab_, nullptr);
 }
 

@@ -50,9 +50,11 @@ struct Slab;
 /// the same thread.
 class Arena {
  public:
-  /// Not under AddressSanitizer, which finds what reads beyond a Buffer's end where nothing lies beside it.
+  /// Not under AddressSanitizer, which finds what reads beyond a Buffer's end where nothing lies beside it; nor in
+  /// WebAssembly, which has no pages to be touched, and where code for threads runs in modules without them, which have
+  /// no memory of a thread's own.
   static constexpr bool has_room =
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(__SANITIZE_ADDRESS__) || defined(__wasm__)
       false;
 #elif defined(__has_feature)
 #if __has_feature(address_sanitizer)

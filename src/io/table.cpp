@@ -3,9 +3,9 @@
 #include "frontmost/table.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstring>
 
+#include "base/decimal.h"
 #include "io/images/formats.h"
 #include "io/row_bytes.h"
 
@@ -15,16 +15,12 @@ namespace {
 constexpr std::size_t kBytesAtOnce = 1 << 20;
 
 void append_text(std::string& text, const TableColumn& column, std::size_t row) {
-  char digits[32];
-  const auto append = [&](auto value) {
-    text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
-  };
   if (const auto* bytes = std::get_if<std::vector<std::uint8_t>>(&column.values))
-    append(unsigned((*bytes)[row]));
+    text += std::to_string((*bytes)[row]);
   else if (const auto* words = std::get_if<std::vector<std::uint32_t>>(&column.values))
-    append((*words)[row]);
+    text += std::to_string((*words)[row]);
   else
-    append(std::get<std::vector<double>>(column.values)[row]);
+    text += shortest_text(std::get<std::vector<double>>(column.values)[row]);
 }
 
 /// Appends every row and writes what has come together.

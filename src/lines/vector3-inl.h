@@ -13,6 +13,7 @@
 #include <glm/glm.hpp>
 
 #include "base/exact_vector.h"
+#include "base/wasm_lanes-inl.h"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();

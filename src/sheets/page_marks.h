@@ -5,9 +5,9 @@
 // slender triangles that the pen fills by drawing them.
 #pragma once
 
-#include <charconv>
 #include <string>
 
+#include "base/decimal.h"
 #include "frontmost/page.h"
 
 namespace frontmost::detail {
@@ -29,10 +29,7 @@ inline void add_arrowhead(PageGroup& group, const glm::dvec2& tip, const glm::dv
 }
 
 /// Of so many digits that count, without zeros behind the point at its end: "0.25", "1e+07".
-[[nodiscard]] inline std::string number_text(double value, int digits = 6) {
-  char text[64];
-  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits).ptr};
-}
+[[nodiscard]] inline std::string number_text(double value, int digits = 6) { return general_text(value, digits); }
 
 /// Two sides: "210 x 297".
 [[nodiscard]] inline std::string size_text(const glm::dvec2& size, int digits = 6) {
@@ -41,10 +38,7 @@ inline void add_arrowhead(PageGroup& group, const glm::dvec2& tip, const glm::dv
 
 /// Two sides in millimetres to a tenth: "12.0 x 7.5".
 [[nodiscard]] inline std::string tenths_text(const glm::dvec2& size) {
-  char text[800];
-  char* end = std::to_chars(text, text + 390, size.x, std::chars_format::fixed, 1).ptr;
-  for (const char c : {' ', 'x', ' '}) *end++ = c;
-  return {text, std::to_chars(end, text + sizeof text, size.y, std::chars_format::fixed, 1).ptr};
+  return fixed_text(size.x, 1) + " x " + fixed_text(size.y, 1);
 }
 
 }  // namespace frontmost::detail

@@ -25,7 +25,7 @@ TEST(Isa, HighwayFindsTheSame) {
 TEST(Isa, BestIsTheLastAvailable) { EXPECT_EQ(name(Isa::best), name(available_isas().back())); }
 
 TEST(Isa, AskingForWhatTheMachineLacksIsAnError) {
-  for (const Isa isa : {Isa::scalar, Isa::sse4, Isa::avx2, Isa::avx512}) {
+  for (const Isa isa : {Isa::scalar, Isa::sse4, Isa::avx2, Isa::avx512, Isa::neon, Isa::wasm}) {
     const bool there = std::ranges::find(available_isas(), isa) != available_isas().end();
     if (there) {
       EXPECT_NO_THROW((void)highway_targets(isa));
@@ -40,6 +40,8 @@ TEST(Isa, NamesAreThoseOfTheCommandLine) {
   EXPECT_EQ(name(Isa::sse4), "sse4");
   EXPECT_EQ(name(Isa::avx2), "avx2");
   EXPECT_EQ(name(Isa::avx512), "avx512");
+  EXPECT_EQ(name(Isa::neon), "neon");
+  EXPECT_EQ(name(Isa::wasm), "wasm");
   EXPECT_EQ(name(Isa(99)), "unknown");
 }
 

@@ -11,51 +11,20 @@
 //
 // Objects are written as they come, and where each begins is noted for the table at the end; so memory does not grow
 // with the page, but for the places of a few objects.
-#include <zlib.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <new>
 
 #include "io/drawings/arc.h"
 #include "io/drawings/formats.h"
 #include "io/drawings/page_text.h"
+#include "io/drawings/pdf_stream.h"
 
 namespace frontmost::detail {
 namespace {
 
 constexpr std::size_t points_per_stroke = 4096;  // paths are held whole by viewers
 constexpr double points_per_millimetre = 72 / 25.4;
-
-/// Compresses on the way to another sink.
-class DeflateSink final : public ByteSink {
- public:
-  explicit DeflateSink(PageText& out) : out_(out), packed_(std::size_t(1) << 16, '\0') {
-    constexpr int level = 4;  // 350,000 polygons: 0.6 s and 11.7 MB; level 6 takes 2.1 s for 11.1 MB
-    if (::deflateInit(&stream_, level) != Z_OK) throw std::bad_alloc();
-  }
-  ~DeflateSink() override { ::deflateEnd(&stream_); }
-
-  void write(std::string_view bytes) override { run(bytes, Z_NO_FLUSH); }
-  void finish() { run({}, Z_FINISH); }
-
- private:
-  void run(std::string_view bytes, int flush) {
-    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));  // zlib does not write there
-    stream_.avail_in = uInt(bytes.size());
-    do {
-      stream_.next_out = reinterpret_cast<Bytef*>(packed_.data());
-      stream_.avail_out = uInt(packed_.size());
-      ::deflate(&stream_, flush);
-      out_ << std::string_view(packed_.data(), packed_.size() - stream_.avail_out);
-    } while (stream_.avail_out == 0);
-  }
-
-  PageText& out_;
-  std::string packed_;
-  z_stream stream_{};
-};
 
 /// The operators that draw all layers.
 class PdfContent {
@@ -283,14 +252,14 @@ class PdfWriter {
   template <class Write>
   States write_stream(const PdfPage& page, std::size_t length_object, const Write& write) {
     out_ << "/Length ";
-    out_.integer(std::int64_t(length_object)) << " 0 R /Filter /FlateDecode >>\nstream\n";
+    out_.integer(std::int64_t(length_object)) << " 0 R " << pdf_stream_filter << ">>\nstream\n";
     const std::uint64_t start = out_.size();
-    DeflateSink deflate(out_);
-    PageText operators(deflate);
+    PdfStream stream(out_);
+    PageText operators(stream);
     PdfContent content(*page.page, operators, page.scale, progress_);
     write(content);
     operators.flush();
-    deflate.finish();
+    stream.finish();
     const std::uint64_t end = out_.size();
     out_ << "\nendstream\nendobj\n";
     begin(length_object);

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells image formats apart, holds the limits that all decoders share, and decodes PNG, of which the reader of images
-// knows all there is to know.
+// Tells image formats apart, and holds the limits that all decoders share.
 #include "io/images/decode.h"
 
 #include <cstring>
 #include <string_view>
-
-#include "io/images/png/reader.h"
 
 namespace frontmost {
 namespace {
@@ -54,18 +51,6 @@ Texture decode(std::span<const std::byte> bytes, const std::string& name, detail
 }  // namespace
 
 namespace detail {
-
-Texture decode_png(std::span<const std::byte> bytes, const std::string& name, ImagePart part) {
-  PngReader reader(bytes, name);
-  Texture texture;
-  texture.name = name;
-  texture.width = reader.width();
-  texture.height = reader.height();
-  if (part == ImagePart::size) return texture;
-  texture.pixels.resize(std::size_t(texture.width) * std::size_t(texture.height));
-  reader.read(PngReader::Pixels::rgba8, texture.pixels.data());
-  return texture;
-}
 
 void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height, std::size_t byte_count,
                       double densest) {

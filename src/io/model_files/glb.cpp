@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // GLB out: objects that name meshes, meshes of a part for every material, materials with their layers and textures.
-#include <png.h>
-
 #include <cmath>
 
+#include "io/images/png/texture_bytes.h"
 #include "io/model_files/glb_document.h"
 #include "io/model_files/glb_vertices.h"
 #include "io/model_files/model_files.h"
@@ -16,22 +15,6 @@ using Json = nlohmann::ordered_json;
 
 // As glTF numbers them.
 constexpr int kFloat = 5126, kUnsignedInt = 5125, kVertices = 34962, kIndices = 34963;
-
-/// A whole PNG, 8 bits a channel with alpha.
-std::string png_bytes(const Texture& texture) {
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = png_uint_32(texture.width);
-  image.height = png_uint_32(texture.height);
-  image.format = PNG_FORMAT_RGBA;
-  png_alloc_size_t size = 0;
-  std::string bytes;
-  if (png_image_write_to_memory(&image, nullptr, &size, 0, texture.pixels.data(), 0, nullptr) != 0) {
-    bytes.resize(size);
-    if (png_image_write_to_memory(&image, bytes.data(), &size, 0, texture.pixels.data(), 0, nullptr) != 0) return bytes;
-  }
-  throw Error(ErrorCode::limit_exceeded, "texture " + texture.name + ": cannot be written as PNG: " + image.message);
-}
 
 Json sampler_json(const Texture& texture) {
   constexpr int wraps[] = {10497, 33648, 33071};

@@ -21,7 +21,13 @@ struct Replacement {
   std::uint32_t of_all = no_index;             ///< no_index: those that are named, and no others
   std::map<std::string, std::uint32_t> named;  ///< by the names of the model's materials
   [[nodiscard]] bool is_none() const { return of_all == no_index && named.empty(); }
-  auto operator<=>(const Replacement&) const = default;
+  // Not by <=>, which maps do not have in every standard library (WebAssembly).
+  friend bool operator==(const Replacement& a, const Replacement& b) {
+    return a.of_all == b.of_all && a.named == b.named;
+  }
+  friend bool operator<(const Replacement& a, const Replacement& b) {
+    return a.of_all != b.of_all ? a.of_all < b.of_all : a.named < b.named;
+  }
 };
 
 /// One of the objects of a scene file.

@@ -118,7 +118,7 @@ std::optional<std::vector<SidesOfSheet>> find_sheets(std::span<const Side> sides
   for (auto begin = owned.begin(); begin != owned.end();) {
     const auto end = std::find_if(begin, owned.end(),
                                   [&](const OwnedSide& s) { return s.surface.instance != begin->surface.instance; });
-    if (!pair_up({begin, end}, sheets)) left.insert(left.end(), begin, end);
+    if (!pair_up({&*begin, std::size_t(end - begin)}, sheets)) left.insert(left.end(), begin, end);
     begin = end;
   }
   std::stable_sort(left.begin(), left.end(),

@@ -78,7 +78,8 @@ class Chainer {
     for (auto begin = ends.begin(); begin != ends.end();) {
       if (++steps % 65536 == 0) check_cancelled(execution);
       const auto end = std::find_if(begin, ends.end(), [&](const auto& e) { return e.first != begin->first; });
-      if (std::size_t(end - begin) <= kMostAtVertex) join({begin, end});
+      const auto count = std::size_t(end - begin);
+      if (count <= kMostAtVertex) join({&*begin, count});
       begin = end;
     }
   }

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/wasm_lanes-inl.h"
 #include "hwy/highway.h"
 #include "raycast/packet/packet_triangles-inl.h"
 #include "raycast/query/queries.h"

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/wasm_lanes-inl.h"
 #include "hwy/cache_control.h"
 #include "hwy/highway.h"
 #include "raycast/tile/tile_kernel.h"

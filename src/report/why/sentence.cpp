@@ -2,10 +2,10 @@
 // Explanations in words. Numbers are written so that they stay true: a share that is not all or nothing is never
 // written as 100 % or 0 %.
 
-#include <charconv>
 #include <cmath>
 #include <unordered_map>
 
+#include "base/decimal.h"
 #include "frontmost/explain.h"
 
 namespace frontmost {
@@ -17,16 +17,11 @@ constexpr std::string_view kRemedyNames[] = {"none",        "set_near", "set_far
                                              "make_opaque", "enlarge",  "take_away"};
 constexpr std::size_t kMostNamed = 3;  // objects in one text
 
-std::string number_text(double value, int digits) {
-  char text[40];
-  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits).ptr};
-}
-
 std::string share_of_whole(double share) {
   const double percent = std::round(100 * share);
   if (percent < 1 && share > 0) return "under 1 %";
   if (percent >= 100 && share < 1) return "over 99 %";
-  return number_text(percent, 3) + " %";
+  return general_text(percent, 3) + " %";
 }
 
 /// "a", "a and b", "a, b and c".
@@ -106,7 +101,7 @@ std::string transparent_text(const Explanation& why) {
 
 std::string no_sample_text(const Explanation& why) {
   if (why.pixels == 0) return "seen edge on, so that it has no area";
-  return "between the samples: its " + number_text(why.pixels, 3) + " square pixels cover none";
+  return "between the samples: its " + general_text(why.pixels, 3) + " square pixels cover none";
 }
 
 std::string seen_text(const Explanation& why, const ObjectNames& names) {
@@ -117,14 +112,14 @@ std::string seen_text(const Explanation& why, const ObjectNames& names) {
 }
 
 std::string degrees_text(double radians) {
-  const std::string text = number_text(std::abs(radians) * 57.29577951308232, 4);
+  const std::string text = general_text(std::abs(radians) * 57.29577951308232, 4);
   return text + (text == "1" ? " degree" : " degrees");
 }
 
 /// Of a turn, or of a move in scene units.
 std::string directions_text(const Remedy& remedy) {
   const auto part = [&](double amount, const char* positive, const char* negative) {
-    const std::string size = remedy.kind == RemedyKind::turn ? degrees_text(amount) : number_text(std::abs(amount), 6);
+    const std::string size = remedy.kind == RemedyKind::turn ? degrees_text(amount) : general_text(std::abs(amount), 6);
     return size + (amount > 0 ? positive : negative);
   };
   std::vector<std::string> parts;
@@ -181,13 +176,13 @@ std::string remedy_text(const Explanation& why, const ObjectNames& names) {
   const Remedy& remedy = why.remedy;
   switch (remedy.kind) {
     case RemedyKind::none: return "";
-    case RemedyKind::set_near: return "set near to " + number_text(remedy.value, 6);
-    case RemedyKind::set_far: return "set far to " + number_text(remedy.value, 6);
+    case RemedyKind::set_near: return "set near to " + general_text(remedy.value, 6);
+    case RemedyKind::set_far: return "set far to " + general_text(remedy.value, 6);
     case RemedyKind::turn: return "turn the camera " + directions_text(remedy);
     case RemedyKind::move: return "move the camera " + directions_text(remedy);
     case RemedyKind::show_both_sides: return "cull nothing";
     case RemedyKind::make_opaque: return "make its material opaque";
-    case RemedyKind::enlarge: return "draw " + number_text(remedy.value, 6) + " times as many pixels each way";
+    case RemedyKind::enlarge: return "draw " + general_text(remedy.value, 6) + " times as many pixels each way";
     case RemedyKind::take_away: return "take " + taken_text(remedy.objects, names) + " away";
   }
   return "";

@@ -15,6 +15,7 @@
 #include <cstring>
 #include <optional>
 
+#include "base/wasm_lanes-inl.h"
 #include "hwy/highway.h"
 #include "view/steep_keys-inl.h"
 #include "zbuffer/depth/depth_call.h"

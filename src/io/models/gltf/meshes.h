@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <tuple>
 
 #include "io/models/gltf/data.h"
 #include "io/models/gltf/materials.h"
@@ -15,7 +16,6 @@ struct VertexSources {
   std::uint32_t position = no_index, normal = no_index, color = no_index;
   std::array<std::uint32_t, max_texcoord_sets> texcoords;
   VertexSources() { texcoords.fill(no_index); }
-  auto operator<=>(const VertexSources&) const = default;
 };
 
 /// All that decides about the vertices of a primitive. Primitives that agree in it share their vertices.
@@ -23,8 +23,14 @@ struct VertexSet {
   VertexSources base;
   std::vector<VertexSources> targets;
   std::vector<std::uint32_t> joints, weights;
-  auto operator<=>(const VertexSet&) const = default;
 };
+// Not by <=>, which arrays and vectors do not have in every standard library (WebAssembly).
+inline bool operator<(const VertexSources& a, const VertexSources& b) {
+  return std::tie(a.position, a.normal, a.color, a.texcoords) < std::tie(b.position, b.normal, b.color, b.texcoords);
+}
+inline bool operator<(const VertexSet& a, const VertexSet& b) {
+  return std::tie(a.base, a.targets, a.joints, a.weights) < std::tie(b.base, b.targets, b.joints, b.weights);
+}
 
 enum class Mode : std::uint8_t { triangles = 4, strip = 5, fan = 6 };
 

@@ -9,6 +9,7 @@
 // way.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 

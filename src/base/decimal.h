@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Decimal text of doubles, as std::to_chars() writes it; also where the standard library does not have that for doubles
+// (WebAssembly). What C's functions write there has a point for every locale, since there is but one.
+#pragma once
+
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+namespace frontmost {
+
+#if defined(__cpp_lib_to_chars)
+/// Six digits of 1234567 are 1.23457e+06.
+[[nodiscard]] inline std::string general_text(double value, int digits) {
+  char text[64];
+  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits).ptr};
+}
+/// One digit behind the point: 12.3.
+[[nodiscard]] inline std::string fixed_text(double value, int decimals) {
+  char text[400];
+  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals).ptr};
+}
+/// As few digits as tell the number from all others.
+[[nodiscard]] inline std::string shortest_text(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+#else
+[[nodiscard]] inline std::string general_text(double value, int digits) {
+  char text[64];
+  return {text, std::size_t(std::snprintf(text, sizeof text, "%.*g", digits, value))};
+}
+[[nodiscard]] inline std::string fixed_text(double value, int decimals) {
+  char text[400];
+  return {text, std::size_t(std::snprintf(text, sizeof text, "%.*f", decimals, value))};
+}
+[[nodiscard]] inline std::string shortest_text(double value) {
+  for (int digits = 1; digits < 17; ++digits)
+    if (std::string text = general_text(value, digits); std::strtod(text.c_str(), nullptr) == value) return text;
+  return general_text(value, 17);
+}
+#endif
+
+}  // namespace frontmost

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Chromium, as Debian has it, through playwright-core, without a network but for the page's own server.
+import { createRequire } from "node:module";
+import { serve } from "../../scripts/page/server.mjs";
+
+export async function openBrowser(folder) {
+  const { chromium } = createRequire(new URL("../../web/page/package.json", import.meta.url))("playwright-core");
+  const { server, address } = await serve(folder);
+  const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", headless: true,
+    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"] });
+  return { browser, address, async close() {
+    await browser.close();
+    server.close();
+  } };
+}
+
+/** A page whose complaints are kept. */
+export async function openPage(browser, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, acceptDownloads: true, ...options });
+  const page = await context.newPage();
+  const complaints = [];
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(`${message.type()}: ${message.text()}`));
+  page.on("pageerror", (error) => complaints.push(`error: ${error.message}`));
+  return { page, complaints, context };
+}

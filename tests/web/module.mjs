@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// The WebAssembly module in Node: loads it, asks it.
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { dirname } from "node:path";
+import { pathToFileURL } from "node:url";
+
+export async function loadModule(path) {
+  // What emscripten's loader takes for granted in Node, and modules do not have.
+  globalThis.require = createRequire(pathToFileURL(path));
+  globalThis.__filename = path;
+  globalThis.__dirname = dirname(path);
+  const { default: create } = await import(pathToFileURL(path));
+  const m = await create({ wasmBinary: readFileSync(path.replace(/\.mjs$/, ".wasm")) });
+  const text = (question) => {
+    const json = JSON.stringify(question);
+    const size = m.lengthBytesUTF8(json) + 1;
+    const at = m._malloc(size);
+    m.stringToUTF8(json, at, size);
+    const answer = m.UTF8ToString(m._frontmost_ask(at));
+    m._free(at);
+    return answer;
+  };
+  return {
+    module: m,
+    ask(question) {
+      const answer = JSON.parse(text(question));
+      if (answer.error) throw new Error(answer.error);
+      return answer;
+    },
+    open(name, bytes) {
+      const room = m._frontmost_room(bytes.length);
+      if (room === 0) throw new Error("no room");
+      m.HEAPU8.set(bytes, room);
+      return this.ask({ ask: "open", name });
+    },
+    plane: (place) => m.HEAPU8.slice(place.at, place.at + place.bytes),
+  };
+}

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// All methods on one view: how long each takes here, how much its answer holds, and at how many pixels it differs from
+// the z-buffer's.
+#include <frontmost/abuffer.h>
+#include <frontmost/lines.h>
+#include <frontmost/painter.h>
+#include <frontmost/raycast.h>
+#include <frontmost/zbuffer.h>
+
+#include <chrono>
+
+#include "web/lessons/lessons.h"
+
+namespace frontmost::web {
+namespace {
+
+/// The least of three runs, in milliseconds.
+template <class Run>
+double time_of(const Run& run) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    run();
+    const std::chrono::duration<double, std::milli> passed = std::chrono::steady_clock::now() - start;
+    least = std::min(least, passed.count());
+  }
+  return least;
+}
+
+std::size_t bytes_of(const Visible& visible) { return 8 * visible.primitives.size(); }
+
+Json differing_from(const Visible& right, const Visible& other) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < right.primitives.size(); ++i) count += right.primitives[i] != other.primitives[i];
+  return count;
+}
+
+}  // namespace
+
+/// {"scene", "camera" or size, "method"}: one at a time, so that the page can show each when it is there.
+Json methods_lesson(const Json& question) {
+  const LessonScene& stage = lesson_scene(question);
+  const View view = lesson_view(stage, question);
+  const std::string method = question.at("method");
+  Json answer = {{"method", method}, {"triangles", stage.surfaces.primitive_count()}};
+  const Visible right = zbuffer(stage.surfaces, view);
+  if (method == "zbuffer") {
+    ZBuffer buffer;
+    answer["milliseconds"] = time_of([&] { buffer.draw(stage.surfaces, view); });
+    answer["bytes"] = bytes_of(right);
+    answer["differing"] = 0;
+  } else if (method == "raycast") {
+    std::optional<RayIndex> index;
+    answer["ready"] = time_of([&] { index.emplace(stage.surfaces); });
+    RayCaster caster;
+    answer["milliseconds"] = time_of([&] { caster.cast(*index, view); });
+    answer["bytes"] = bytes_of(right) + index->byte_count();
+    answer["differing"] = differing_from(right, caster.take());
+  } else if (method == "abuffer") {
+    FragmentLists lists;
+    answer["milliseconds"] = time_of([&] { lists = abuffer(stage.surfaces, view, {8}); });
+    answer["bytes"] = lists.fragments.size() * sizeof(Fragment) + lists.first.size() * 8;
+    answer["differing"] = differing_from(right, visible_layers(stage.surfaces, view, 1).front());
+  } else if (method == "painter") {
+    PaintOrder order;
+    answer["milliseconds"] = time_of([&] { order = painter(stage.surfaces, view); });
+    answer["bytes"] = order.polygons.size() * sizeof(PaintPolygon) + order.corners.size() * sizeof(PaintCorner);
+    answer["differing"] = differing_from(right, paint(stage.surfaces, order));
+  } else if (method == "lines") {
+    Drawing drawing;
+    answer["milliseconds"] = time_of([&] { drawing = draw_lines(stage.surfaces, view); });
+    answer["bytes"] = drawing.edges.size() * sizeof(DrawnEdge) + drawing.parts.size() * sizeof(DrawnPart);
+  } else {
+    throw Error(ErrorCode::bad_argument, "method: there is no '" + method + "'");
+  }
+  return answer;
+}
+
+}  // namespace frontmost::web

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// The module's door: a question as JSON, an answer as JSON.
+//
+//   frontmost_ask("{\"ask\": \"draw\", ...}")  ->  "{\"width\": 640, ..., \"pixels\": {\"at\": 1234, \"bytes\": 5678}}"
+//                                              ->  "{\"error\": \"engine.stl: triangle 41: ...\", \"code\":
+//                                              \"malformed\"}"
+#include <emscripten.h>
+#include <frontmost/version.h>
+
+#include <map>
+
+#include "web/lessons/lessons.h"
+#include "web/workbench.h"
+
+namespace frontmost::web {
+namespace {
+
+std::vector<std::byte>& room() {
+  static std::vector<std::byte> bytes;
+  return bytes;
+}
+
+Workbench& workbench() {
+  static Workbench made;
+  return made;
+}
+
+using AnswerFunction = Json (*)(const Json& question);
+
+template <Json (Workbench::*answer)(const Json&)>
+Json by_workbench(const Json& question) {
+  return (workbench().*answer)(question);
+}
+
+const std::map<std::string, AnswerFunction, std::less<>>& answers() {
+  static const std::map<std::string, AnswerFunction, std::less<>> made = {
+      {"about",
+       [](const Json&) {
+         return Json{{"version", FRONTMOST_VERSION}, {"isa", name(Isa::best)}, {"builtin", builtin_names()}};
+       }},
+      {"open",
+       [](const Json& question) {
+         const Json answer = workbench().open(room(), question);
+         room() = {};
+         return answer;
+       }},
+      {"builtin", by_workbench<&Workbench::open_builtin>},
+      {"frame", by_workbench<&Workbench::frame>},
+      {"draw", by_workbench<&Workbench::draw>},
+      {"edges", by_workbench<&Workbench::edges>},
+      {"point", by_workbench<&Workbench::point>},
+      {"report", by_workbench<&Workbench::report>},
+      {"sphere", by_workbench<&Workbench::sphere>},
+      {"write", by_workbench<&Workbench::write>},
+      {"conventions", by_workbench<&Workbench::conventions>},
+      {"lesson.frame", frame_lesson},
+      {"lesson.zbuffer", zbuffer_lesson},
+      {"lesson.culling", culling_lesson},
+      {"lesson.projection", projection_lesson},
+      {"lesson.painter", painter_lesson},
+      {"lesson.layers", layers_lesson},
+      {"lesson.methods", methods_lesson},
+  };
+  return made;
+}
+
+Json answer_to(const std::string& text) {
+  try {
+    const Json question = Json::parse(text);
+    const std::string ask = question.at("ask");
+    const auto found = answers().find(ask);
+    if (found == answers().end()) throw Error(ErrorCode::bad_argument, "there is no '" + ask + "'");
+    return found->second(question);
+  } catch (const Error& error) {
+    return {{"error", utf8_text(error.what())}};
+  } catch (const std::bad_alloc&) {
+    return {{"error", "there is not enough memory"}};
+  } catch (const std::exception& error) {
+    return {{"error", utf8_text(error.what())}};
+  }
+}
+
+}  // namespace
+}  // namespace frontmost::web
+
+extern "C" {
+
+/// Room for the bytes of a file, which the next "open" reads. Null where there is not enough memory.
+EMSCRIPTEN_KEEPALIVE void* frontmost_room(std::size_t bytes) {
+  try {
+    frontmost::web::room().resize(bytes);
+    return frontmost::web::room().data();
+  } catch (const std::exception&) {
+    return nullptr;
+  }
+}
+
+/// The answer stays where it is until the next question.
+EMSCRIPTEN_KEEPALIVE const char* frontmost_ask(const char* question) {
+  static std::string answer;
+  answer = frontmost::web::answer_to(question).dump();
+  return answer.c_str();
+}
+}

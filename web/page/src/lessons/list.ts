@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// The lessons there are, in their order.
+import type { Text } from "../language.ts";
+import { culling } from "./culling.ts";
+import { layers } from "./layers.ts";
+import { methods } from "./methods.ts";
+import { painter } from "./painter.ts";
+import { projection } from "./projection.ts";
+import { zbuffer } from "./zbuffer.ts";
+
+/** A part of a lesson: words, and a figure where there is one. */
+export interface Part { title?: Text; prose: Text[]; figure?: () => HTMLElement }
+export interface Lesson { id: string; title: Text; lead: Text; parts: Part[] }
+
+export const lessons: Lesson[] = [culling, projection, zbuffer, painter, layers, methods];

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// The z-buffer: the classic table of integers cell by cell, and a picture triangle by triangle.
+import type { Answer } from "../answer.ts";
+import { choices, element } from "../dom.ts";
+import { say } from "../language.ts";
+import { client, figure, Latest, plate, steps } from "./figure.ts";
+import type { Lesson } from "./list.ts";
+
+interface Cell { x: number; y: number; depth: number; before: number; after: number; passes: boolean }
+
+function tableFigure(): HTMLElement {
+  const cells = Array.from({ length: 64 }, () => element("div", {}));
+  const grid = element("div", { class: "grid8", role: "img", "aria-label": say({ en: "A depth buffer of 8 by 8 integers", zh: "8×8 的整数深度缓冲" }) }, ...cells);
+  const said = element("p", { class: "said", "aria-live": "polite" });
+  let answer: Answer;
+  let greater = false, reversed = false;
+  let order: { triangle: number; cell: Cell }[] = [];
+
+  function show(step: number): void {
+    if (!answer) return;
+    const values = new Array<number>(64).fill(answer.clear), owner = new Array<number>(64).fill(-1);
+    for (const { triangle, cell } of order.slice(0, step)) {
+      const i = cell.y * 8 + cell.x;
+      values[i] = cell.after;
+      if (cell.passes) owner[i] = triangle;
+    }
+    const last = order[step - 1];
+    cells.forEach((cell, i) => {
+      cell.textContent = String(values[i]);
+      const isNow = last && last.cell.y * 8 + last.cell.x === i;
+      cell.className = `${owner[i] >= 0 ? `t${owner[i]}` : ""}${isNow ? ` now${last.cell.passes ? "" : " fails"}` : ""}`;
+    });
+    const sign = greater ? ">" : "<";
+    if (!last) {
+      said.textContent = say({ en: `Cleared: ${answer.clear} everywhere, which is as far away as anything can be.`, zh: `清除：处处为 ${answer.clear}，即最远。` });
+      return;
+    }
+    const { cell } = last, name = say({ en: `Triangle ${last.triangle + 1}`, zh: `三角形 ${last.triangle + 1}` });
+    said.replaceChildren(`${name}, (${cell.x}, ${cell.y}): `, element("b", {}, `${cell.depth} ${sign} ${cell.before}`), cell.passes
+      ? say({ en: "? Yes: it is nearer, so its depth is stored and its colour is drawn.", zh: "？是：更近，于是写入深度并画上颜色。" })
+      : say({ en: "? No: something nearer is there already. Nothing changes.", zh: "？否：那里已有更近的东西，什么也不变。" }));
+  }
+
+  const stepper = steps(0, show, 160);
+  async function load(): Promise<void> {
+    // In the other convention 255 - depth is stored, as the far plane is 0.
+    const near = 64, far = 127;
+    answer = await client().ask({ ask: "lesson.zbuffer", example: "table", greater, first: reversed ? far : near, second: reversed ? near : far });
+    order = answer.triangles.flatMap((list: Cell[], triangle: number) => list.map((cell) => ({ triangle, cell })));
+    stepper.limit(order.length);
+    stepper.set(0);
+  }
+  void load();
+  return figure([grid], [
+    stepper.root, said,
+    choices("convention", say({ en: "Convention", zh: "约定" }), [["less", say({ en: "near 0, far 255: less is nearer", zh: "近 0 远 255：小者近" })], ["greater", say({ en: "far 0: greater is nearer", zh: "远 0：大者近" })]], "less", (value) => {
+      greater = value === "greater";
+      void load();
+    }),
+    choices("order", say({ en: "Order", zh: "次序" }), [["near", say({ en: "the nearer first", zh: "先画近的" })], ["far", say({ en: "the farther first", zh: "先画远的" })]], "near", (value) => {
+      reversed = value === "far";
+      void load();
+    }),
+  ]);
+}
+
+const functions = ["NEVER", "LESS", "EQUAL", "LEQUAL", "GREATER", "NOTEQUAL", "GEQUAL", "ALWAYS"];
+
+function pictureFigure(): HTMLElement {
+  const colors = plate(say({ en: "Which triangle", zh: "哪个三角形" })), depths = plate(say({ en: "Depth that is stored: near is dark", zh: "所存深度：近处暗" }));
+  const said = element("p", { class: "said", "aria-live": "polite" }, say({ en: "Point at a pixel to see every comparison that was made there.", zh: "指向一个像素，查看在那里进行的每次比较。" }));
+  const list = element("ol", { class: "hits" });
+  let scene = "cubes", func = 1, pixel: [number, number] | undefined;
+  const latest = new Latest((answer) => {
+    colors.show(answer);
+    depths.show(answer, "depths");
+    if (answer.triangles !== most) {
+      most = answer.triangles;
+      stepper.limit(most);
+    }
+    mark(answer);
+  });
+  let most = -1;
+
+  function mark(answer: Answer): void {
+    if (!pixel) return;
+    for (const { canvas } of [colors, depths]) {
+      const pen = canvas.getContext("2d")!;
+      pen.strokeStyle = "#fff";
+      pen.lineWidth = 1;
+      pen.strokeRect(pixel[0] - 3.5, pixel[1] - 3.5, 8, 8);
+    }
+    said.textContent = say({ en: `Pixel (${pixel[0]}, ${pixel[1]}), ${functions[func]}:`, zh: `像素 (${pixel[0]}, ${pixel[1]})，${functions[func]}：` });
+    list.replaceChildren(...(answer.comparisons ?? []).map((one: Answer) =>
+      element("li", {}, element("span", {}, say({ en: `Triangle ${one.triangle}`, zh: `三角形 ${one.triangle}` })),
+        element("span", { class: "number" }, `${one.depth.toFixed(5)} : ${one.before.toFixed(5)} ${one.passes ? "✓" : "✗"}`))));
+  }
+  function show(step: number): void {
+    latest.ask({ ask: "lesson.zbuffer", example: "picture", scene, func, step, width: 320, height: 240, ...(pixel ? { pixel } : {}) });
+  }
+  const stepper = steps(24, show, 250);
+  for (const { canvas } of [colors, depths]) {
+    canvas.style.cursor = "crosshair";
+    canvas.addEventListener("pointermove", (event) => {
+      pixel = [Math.min(319, Math.floor((event.offsetX / canvas.clientWidth) * 320)), Math.min(239, Math.floor((event.offsetY / canvas.clientHeight) * 240))];
+      show(stepper.step);
+    });
+  }
+  const picker = element("select", { "aria-label": say({ en: "Depth function", zh: "深度函数" }) }, ...functions.map((name, i) => element("option", { value: i, selected: i === 1 }, name)));
+  picker.addEventListener("change", () => {
+    func = Number(picker.value);
+    show(stepper.step);
+  });
+  setTimeout(() => stepper.set(24));
+  return figure([colors.root, depths.root], [
+    stepper.root, said, list,
+    choices("zscene", say({ en: "Scene", zh: "场景" }), [["cubes", say({ en: "two cubes that intersect", zh: "相交的两个立方体" })], ["cycle", say({ en: "three in a ring", zh: "三者成环" })], ["concave", say({ en: "a concave body", zh: "凹体" })]], scene, (value) => {
+      scene = value;
+      most = -1;
+      pixel = undefined;
+      list.replaceChildren();
+      stepper.set(10000);
+    }),
+    element("label", { class: "field" }, element("span", {}, say({ en: "Function", zh: "函数" })), picker),
+  ]);
+}
+
+export const zbuffer: Lesson = {
+  id: "z-buffer",
+  title: { en: "The z-buffer", zh: "Z 缓冲" },
+  lead: { en: "Keep, for every pixel, how deep the nearest surface so far is. Whatever comes next has to be nearer.", zh: "为每个像素记住目前最近的面有多深。后来者必须更近。" },
+  parts: [
+    {
+      prose: [
+        { en: "A *depth buffer* is a second picture that nobody sees: in place of colours it holds depths. Before anything is drawn it is cleared to the farthest depth there is.", zh: "*深度缓冲*是一幅谁也看不见的图：它存的不是颜色，而是深度。作画之前，先清除为最远的深度。" },
+        { en: "Then triangles come, in any order. At every pixel that a triangle covers its depth is compared with the one that is stored. If it is nearer, both depth and colour are replaced; if not, nothing happens. That is the whole method (E. Catmull, 1974).", zh: "然后三角形以任意次序到来。在它覆盖的每个像素上，将其深度与所存深度比较：更近，则深度与颜色一并替换；否则什么也不做。这就是全部方法（E. Catmull，1974）。" },
+      ],
+      figure: tableFigure,
+    },
+    {
+      title: { en: "The same on a picture", zh: "在画面上" },
+      prose: [
+        { en: "Cubes that pass through each other need no special care: at every pixel the comparison decides anew. Nor do three bars of which each lies over the next, although no order of painting them is right.", zh: "相互穿过的立方体无需特别处理：每个像素各自比较。三根互相叠压的条也一样，尽管没有任何绘制次序是对的。" },
+        { en: "The comparison may be another one. With GREATER, and the buffer cleared as it is, nothing passes; with ALWAYS the last triangle wins, wherever it lies.", zh: "比较函数可以更换。用 GREATER 而清除值不变，则什么也通不过；用 ALWAYS，则最后画的三角形总是胜出。" },
+      ],
+      figure: pictureFigure,
+    },
+  ],
+};
