@@ -94,8 +94,8 @@ export function steps(most: number, show: (step: number) => void, pause = 350): 
       stop();
       go(to());
     } }, text);
-  const root = element("div", { class: "steps" }, button("⇤", words.begin, () => 0, "begin"), button("◀", words.back, () => step - 1, "back"), play,
-    button("▶", words.on, () => step + 1, "on"), slider, count);
+  const root = element("div", { class: "steps" }, button("|◀", words.begin, () => 0, "begin"), button("◀", words.back, () => step - 1, "back"), play,
+    button("▶|", words.on, () => step + 1, "on"), slider, count);
   return {
     root,
     set: go,
