@@ -22,11 +22,15 @@
 namespace frontmost::cli {
 namespace {
 
-std::atomic<bool> writing{false}, line_shown{false};
+std::atomic<bool> writing{false}, line_shown{false}, waiting{false};
 std::atomic<int> caught{0};
-// Prepared beforehand: formatting is not allowed in a handler.
-char timeout_line[96] = "";
-std::size_t timeout_line_length = 0;
+
+/// Prepared beforehand: formatting is not allowed in a handler.
+struct PreparedLine {
+  char text[128] = "";
+  std::size_t length = 0;
+};
+PreparedLine timeout_line, timeout_line_of_ranks;
 
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
@@ -39,7 +43,8 @@ void put(const char* text, std::size_t length) {
 
 void say(int signal) {
   if (line_shown) put("\r\033[K", 4);
-  if (signal == SIGALRM) put(timeout_line, timeout_line_length);
+  const PreparedLine& line = waiting ? timeout_line_of_ranks : timeout_line;
+  if (signal == SIGALRM) put(line.text, line.length);
 }
 
 void on_signal(int signal) {
@@ -50,10 +55,15 @@ void on_signal(int signal) {
   _exit(status_of(signal));
 }
 
+void prepare(PreparedLine& line, double seconds, std::string_view rest) {
+  line.length =
+      fmt::format_to_n(line.text, sizeof line.text, "frontmost: gave up after {} s (--timeout){}\n", seconds, rest)
+          .size;
+}
+
 void start_clock(double seconds) {
-  const auto line =
-      fmt::format_to_n(timeout_line, sizeof timeout_line, "frontmost: gave up after {} s (--timeout)\n", seconds);
-  timeout_line_length = line.size;
+  prepare(timeout_line, seconds, "");
+  prepare(timeout_line_of_ranks, seconds, ", waiting for other ranks");
   itimerval timer{};
   timer.it_value.tv_sec = time_t(std::floor(seconds));
   timer.it_value.tv_usec = suseconds_t(std::floor((seconds - std::floor(seconds)) * 1e6));
@@ -104,6 +114,10 @@ WritingFiles::WritingFiles() {
 }
 
 WritingFiles::~WritingFiles() { writing = false; }
+
+WaitingForRanks::WaitingForRanks() { waiting = true; }
+
+WaitingForRanks::~WaitingForRanks() { waiting = false; }
 
 void clear_line_when_interrupted(bool shown) { line_shown = shown; }
 

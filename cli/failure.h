@@ -44,6 +44,15 @@ class WritingFiles {
   WritingFiles& operator=(const WritingFiles&) = delete;
 };
 
+/// While one of these lives, other ranks are waited for, and --timeout says so.
+class WaitingForRanks {
+ public:
+  WaitingForRanks();
+  ~WaitingForRanks();
+  WaitingForRanks(const WaitingForRanks&) = delete;
+  WaitingForRanks& operator=(const WaitingForRanks&) = delete;
+};
+
 /// Whether a line of progress stands on the terminal that must go first.
 void clear_line_when_interrupted(bool shown);
 

@@ -42,6 +42,11 @@ constexpr Option run_options[] = {
      for_render, [](Settings& s, const Given& g) { s.run.method = g.choice<Method>(); }},
     {"stream", 0, "", "Read binary STL and PLY piece by piece: files larger than memory, with the same bytes.",
      Group::run, for_render, [](Settings& s, const Given&) { s.run.stream = true; }},
+    {"mpi", 0, "",
+     "Share the model among the ranks that mpirun has started: each streams a part, and rank 0 writes the files. "
+     "{rank} "
+     "in a model's name is a rank's number, for a file that it alone reads.",
+     Group::run, for_render, [](Settings& s, const Given&) { s.run.mpi = s.run.stream = true; }},
     {"threads", 0, "N", "Threads, 1 to 1024; 0, the default, is one per core.", Group::run, for_every_model,
      [](Settings& s, const Given& g) {
        s.run.threads = g.integer({0, 1024});

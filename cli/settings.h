@@ -130,6 +130,7 @@ struct RunSettings {
   int repeat = 1;
   std::optional<double> timeout;
   bool json = false, quiet = false, stream = false;
+  bool mpi = false;  ///< streams together with other ranks
   std::optional<std::string> batch;
   std::optional<Shard> shard;  ///< of the batch
 };

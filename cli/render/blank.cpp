@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <vector>
 
@@ -118,6 +119,16 @@ void BlankReason::add(std::span<const std::array<glm::vec3, 3>> triangles) {
   for (const std::array<glm::vec3, 3>& corners : triangles) ++counts[cause_of(corners, view_)];
   const std::lock_guard lock(mutex_);
   for (std::size_t i = 0; i < counts.size(); ++i) counts_[i] += counts[i];
+}
+
+void BlankReason::gather(Ranks& ranks) {
+  const auto* first = reinterpret_cast<const std::byte*>(counts_.data());
+  const std::vector<Ranks::Message> all = ranks.gather({first, first + sizeof counts_});
+  for (std::size_t rank = 1; rank < all.size(); ++rank) {
+    decltype(counts_) theirs{};
+    std::memcpy(theirs.data(), all[rank].data(), std::min(sizeof theirs, all[rank].size()));
+    for (std::size_t i = 0; i < cause_count; ++i) counts_[i] += theirs[i];
+  }
 }
 
 std::string BlankReason::clause() const {

@@ -4,6 +4,7 @@
 
 #include <frontmost/figure.h>
 #include <frontmost/image.h>
+#include <frontmost/stream.h>
 #include <frontmost/surfaces.h>
 #include <frontmost/visible.h>
 
@@ -26,6 +27,8 @@ class BlankReason {
   /// Each is charged with the first thing that hides it, in the order in which a renderer would find it.
   /// Safe to call from several threads.
   void add(std::span<const std::array<glm::vec3, 3>> triangles);
+  /// Adds on rank 0 what all others have counted. All of them call it.
+  void gather(Ranks& ranks);
   /// In a clause: "all of the model is behind the camera".
   [[nodiscard]] std::string clause() const;
 

@@ -12,6 +12,7 @@
 #include "cli/render/jobs.h"
 #include "cli/render/json_report.h"
 #include "cli/render/output_writer.h"
+#include "cli/render/ranks.h"
 #include "cli/render/render_curved.h"
 #include "cli/render/render_view.h"
 #include "cli/render/shard.h"
@@ -42,10 +43,10 @@ bool lets_light_through(const Scene& scene) {
                      [](const Material& m) { return m.is_see_through(); });
 }
 
-/// Without any result asked for, the picture goes to the terminal, if there is one.
+/// Without any result asked for, the picture goes to the terminal, if there is one. What MPI's ranks write to is none.
 bool shows_on_terminal(const Settings& settings, std::vector<Job>& jobs) {
   if (has_result(settings, jobs)) return false;
-  const std::optional<glm::ivec2> terminal = output_terminal();
+  const std::optional<glm::ivec2> terminal = settings.run.mpi ? std::nullopt : output_terminal();
   if (!terminal) {
     throw UsageError(
         "nothing to do: give an output such as -o FILE (without one the picture is shown on a terminal, "
@@ -81,6 +82,7 @@ struct Run {
   std::vector<Job> jobs;
   bool on_terminal = false;
   Stopwatch whole;
+  Team team{};
   std::optional<ShardRun> shard{};
 
   /// Leaves what is to be done of the shard. `used` are the files of the model.
@@ -220,6 +222,8 @@ int render_stream(Run& run) {
   models.insert(models.end(), settings.more_models.begin(), settings.more_models.end());
   StreamOptions options;
   options.load = settings.load;
+  options.ranks = run.team.ranks;
+  options.readers = run.team.readers;
   Stream stream(models, options, execution);
   refuse_outputs_beside(stream.scene().source.files, output_paths(run.jobs));
   run.choose_jobs(stream.scene().source.files);
@@ -227,12 +231,14 @@ int render_stream(Run& run) {
   Environments environments;
   bool is_first = true;
   const std::vector<ViewResult> results = render_all(run, progress, [&](const Job& job) {
-    ViewResult result = render_streamed_view(job, stream, {environments, settings.run, execution, run.on_terminal});
+    ViewResult result =
+        render_streamed_view(job, stream, {environments, settings.run, execution, run.on_terminal, options.ranks});
     // They are known now, and stand before what there is to say of the view, as without --stream.
     if (std::exchange(is_first, false)) show_warnings(stream.scene().warnings, settings.run, progress);
     return result;
   });
   timings.total = run.whole.milliseconds();
+  if (!run.team.is_first()) return exit_done;
   report(settings,
          {stream.triangle_count(), stream.scene().warnings, false, stream.passes(), stream.scene().origin, 0,
           run.finished_before()},
@@ -240,17 +246,23 @@ int render_stream(Run& run) {
   return status_of(results);
 }
 
-}  // namespace
-
-int run_render(const Settings& settings) {
+int render(const Settings& settings, const Team& team) {
   if (settings.run.stream && settings.run.repeat > 1) throw UsageError("--stream and --repeat exclude each other");
   if (settings.run.stream && settings.run.method.value_or(Method::zbuffer) != Method::zbuffer)
     throw UsageError("--stream draws with --method zbuffer only");
-  Run run{settings, plan_jobs(settings), false, {}, {}};
+  if (settings.run.mpi && settings.run.shard)
+    throw UsageError("--mpi and --shard exclude each other: ranks share a model, shards share views");
+  Run run{settings, plan_jobs(settings), false, {}, team, {}};
   check_method(settings, run.jobs);
   run.on_terminal = shows_on_terminal(settings, run.jobs);
   read_references(run.jobs);
   return settings.run.stream ? render_stream(run) : render_whole(run);
+}
+
+}  // namespace
+
+int run_render(const Settings& settings) {
+  return settings.run.mpi ? run_on_ranks(settings, render) : render(settings, {});
 }
 
 }  // namespace frontmost::cli

@@ -75,6 +75,8 @@ ViewResult render_streamed_view(const Job& job, Stream& stream, const StreamCont
   needs.unseen = [&](CornerSpan triangles) { blank_reason.add(triangles); };
   Excerpt excerpt = stream.look(views_of(result.view, plan), needs, context.execution);
   result.timings.visible.push_back(watch.milliseconds());
+  if (context.ranks) blank_reason.gather(*context.ranks);
+  if (context.ranks && context.ranks->number() != 0) return result;
   const Scene bounds = scene_of(stream.bounds(), stream.scene().origin);
   result.target = focal_point_of(job.view, result.view, Surfaces(bounds, context.execution));
 

@@ -161,10 +161,11 @@ struct StreamContext {
   const RunSettings& run;
   Execution execution;
   bool keep_picture = false;
+  Ranks* ranks = nullptr;  ///< of the stream; all of them render together
 };
 
 /// As render_view(): a pass to find the camera, unless it was told; one to find what is visible; and one for shadows
-/// and smooth normals, where the picture has them.
+/// and smooth normals, where the picture has them. Of several ranks the first one writes the files.
 /// \throws Error unsupported where standard input would have to be read again
 [[nodiscard]] ViewResult render_streamed_view(const Job& job, Stream& stream, const StreamContext& context);
 

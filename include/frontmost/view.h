@@ -187,6 +187,8 @@ struct FrameOptions {
 /// million triangles.
 /// \throws Error bad_argument for options out of range; as look_at(), make_projection() and validate() do.
 [[nodiscard]] View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& options = {});
+/// The same of a box, all of it: where no one has the whole model, but its bounds are known. `up` is the model's.
+[[nodiscard]] View frame(const Box& bounds, Axis up, int width, int height, const FrameOptions& options = {});
 
 /// Near and far planes that enclose what of `bounds` lies before the eye, with 1 % to spare, and near at least
 /// far / 10000 in perspective.

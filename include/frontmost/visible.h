@@ -44,6 +44,17 @@ struct Visible {
 /// then `into` is merged in part.
 void merge(Visible& into, const Visible& other, PrimitiveId first_id = 0, const Execution& execution = {});
 
+/// Every sample as one number, of which the greater is what merge() keeps: the bits of the key in the upper half, those
+/// of the id inverted in the lower; 0 where nothing is seen. So whatever knows the maximum of uint64, such as MPI_MAX,
+/// merges parts that lie on different machines. `first_id` is added to ids, as by merge(). O(samples), in parallel.
+/// \throws Error bad_argument for planes that are not of the size of their view; limit_exceeded where an id would reach
+/// no_primitive.
+[[nodiscard]] Buffer<std::uint64_t> pack(const Visible& visible, PrimitiveId first_id = 0,
+                                         const Execution& execution = {});
+/// The way back. \throws Error bad_argument unless there is a number for every sample of the view, and every key is in
+/// [0, 1]; as validate(view) does.
+[[nodiscard]] Visible unpack(const View& view, std::span<const std::uint64_t> packed, const Execution& execution = {});
+
 /// A hash of ids and depths: equal for equal answers, on every machine and for any number of threads. FNV-1a over
 /// the two planes, sample by sample. O(samples), on one thread.
 [[nodiscard]] std::uint64_t content_hash(const Visible& visible);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include "base/parallel.h"
@@ -24,20 +25,22 @@ class IdMap {
     for (std::size_t b = 1; b < begin_.size(); ++b) begin_[b] += begin_[b - 1];
   }
 
-  /// Precondition: it is one of them. O(1) where ids are spread evenly, O(log) at worst.
-  [[nodiscard]] std::uint32_t place_of(PrimitiveId id) const {
+  /// no_primitive where it is none of them. O(1) where ids are spread evenly, O(log) at worst.
+  [[nodiscard]] PrimitiveId place_of(PrimitiveId id) const {
     const std::size_t bucket = id >> shift_;
-    const auto begin = ids_.begin();
-    return std::uint32_t(std::lower_bound(begin + begin_[bucket], begin + begin_[bucket + 1], id) - begin);
+    if (bucket + 1 >= begin_.size()) return no_primitive;
+    const auto begin = ids_.begin(), end = begin + begin_[bucket + 1];
+    const auto found = std::lower_bound(begin + begin_[bucket], end, id);
+    return found == end || *found != id ? no_primitive : PrimitiveId(found - begin);
   }
 
-  /// Replaces all ids of a Visible.
-  void apply(Visible& visible, const Execution& execution) const {
+  /// Replaces ids by their places.
+  void apply(std::span<PrimitiveId> ids, const Execution& execution) const {
     constexpr std::size_t samples_at_once = 1u << 16;
-    parallel_for(execution, visible.primitives.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_for(execution, ids.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
       PrimitiveId last = no_primitive, place = no_primitive;
       for (std::size_t i = begin; i < end; ++i) {
-        PrimitiveId& id = visible.primitives[i];
+        PrimitiveId& id = ids[i];
         if (id == no_primitive) continue;
         if (id != last) {
           last = id;

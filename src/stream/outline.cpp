@@ -51,10 +51,15 @@ void OutlineFinder::include(const glm::vec3& point) {
   bounds_.include(point);
 }
 
-void OutlineFinder::include(const OutlineFinder& other) {
-  if (other.bounds_.is_empty()) return;
-  for (const glm::vec3& point : other.extremes_.points()) include(point);
-  for (const glm::vec3& point : other.ends_) include(point);
+void OutlineFinder::include(std::span<const glm::vec3> points) {
+  for (const glm::vec3& point : points) include(point);
+}
+
+std::vector<glm::vec3> OutlineFinder::points() const {
+  if (bounds_.is_empty()) return {};
+  std::vector<glm::vec3> points = extremes_.points();
+  points.insert(points.end(), std::begin(ends_), std::end(ends_));
+  return points;
 }
 
 Scene OutlineFinder::scene() const {
@@ -62,8 +67,7 @@ Scene OutlineFinder::scene() const {
   if (bounds_.is_empty()) return scene;
   Mesh& mesh = scene.meshes.emplace_back();
   scene.instances.emplace_back();
-  mesh.positions = extremes_.points();
-  mesh.positions.insert(mesh.positions.end(), std::begin(ends_), std::end(ends_));
+  mesh.positions = points();
   for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) mesh.triangles.emplace_back(i, i, i);
   return scene;
 }

@@ -41,7 +41,10 @@ class OutlineFinder {
 
   /// Triangles with corners that are not finite count for nothing.
   void include(const Mesh& mesh);
-  void include(const OutlineFinder& other);
+  void include(const OutlineFinder& other) { include(other.points()); }
+  void include(std::span<const glm::vec3> points);
+  /// Those that count: no more than a few hundred.
+  [[nodiscard]] std::vector<glm::vec3> points() const;
   [[nodiscard]] const Box& bounds() const { return bounds_; }
   /// The points as triangles without area: surfaces of it have the bounds of all, and frame() frames them alike.
   [[nodiscard]] Scene scene() const;

@@ -7,6 +7,8 @@
 #include "stream/piece_loop.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <utility>
 
 #include "base/parallel.h"
 #include "io/models/reader.h"
@@ -20,12 +22,24 @@ constexpr std::uint64_t most_triangles = no_primitive - 1;  // as of a scene tha
   throw Error(ErrorCode::limit_exceeded, "stream: more than 4294967294 triangles over all files");
 }
 
+/// Of a pipe every rank would get other bytes, and some would wait for it for ever.
+void refuse_pipe(const std::string& path) {
+  std::error_code ignored;
+  if (path != "-" && (!std::filesystem::exists(path, ignored) || std::filesystem::is_regular_file(path, ignored)))
+    return;
+  throw Error(ErrorCode::unsupported,
+              (path == "-" ? std::string("standard input") : path) + ": several ranks can read ordinary files alone");
+}
+
 }  // namespace
 
-Models::Models(const std::vector<std::string>& paths, const LoadOptions& options, const Execution& execution) {
+Models::Models(const std::vector<std::string>& paths, const LoadOptions& options, const Turns& turns,
+               const Execution& execution)
+    : turns_(turns) {
   if (paths.empty()) throw Error(ErrorCode::bad_argument, "stream: no files");
   std::uint64_t known = 0;
   for (const std::string& path : paths) {
+    if (turns.count > 1) refuse_pipe(path);
     Model model;
     model.stream = open_model_stream(path, options, execution);
     add(std::move(model));
@@ -33,6 +47,19 @@ Models::Models(const std::vector<std::string>& paths, const LoadOptions& options
     known += models_.back().stream->known_count().value_or(0);
     if (known > most_triangles) fail_too_many();
   }
+  has_opened_ = true;
+}
+
+bool Models::is_shared(std::size_t file) const { return turns_.count > 1 && turns_.reader_of(file) < 0; }
+
+bool Models::is_read_here(std::size_t file) const {
+  const int reader = turns_.reader_of(file);
+  return turns_.count == 1 || reader < 0 || reader == turns_.number;
+}
+
+bool Models::takes_turn(std::size_t file) {
+  if (!is_shared(file)) return true;
+  return shared_pieces_++ % std::uint64_t(turns_.count) == std::uint64_t(turns_.number);
 }
 
 void Models::add(Model model) {
@@ -57,17 +84,64 @@ void Models::add(Model model) {
   take_warnings(models_.back());
 }
 
+/// What opening says is known to all ranks; what a pass says is told by one of those that read the file.
+void Models::warn(const Model& model, const std::string& text) {
+  const std::string words = model.stream->source().with_name(text);
+  if (turns_.count == 1 || !has_opened_) return scene_.warnings.push_back(words);
+  const auto file = std::uint32_t(&model - models_.data());
+  if (!is_shared(file) || turns_.number == 0) warnings_.push_back({file, words});
+}
+
 void Models::take_warnings(Model& model) {
   const std::vector<std::string>& all = model.stream->scene().warnings;
-  for (; model.warnings < all.size(); ++model.warnings)
-    scene_.warnings.push_back(model.stream->source().with_name(all[model.warnings]));
+  for (; model.warnings < all.size(); ++model.warnings) warn(model, all[model.warnings]);
+}
+
+void Models::begin(std::size_t file) {
+  Model& model = models_[file];
+  if (knows_firsts_) next_ = model.first;
+  model.first = PrimitiveId(next_);
+  begun_ = file + 1;
 }
 
 /// As load() warns.
 void Models::end(Model& model) {
-  if (!model.has_ended && model.triangle_count == 0)
-    scene_.warnings.push_back(model.stream->source().with_name(no_triangles_warning));
+  if (!model.has_ended && model.triangle_count == 0) warn(model, no_triangles_warning);
   model.has_ended = true;
+}
+
+std::uint64_t Models::triangle_count() const {
+  std::uint64_t sum = 0;
+  for (const Model& model : models_) sum += model.triangle_count;
+  return sum;
+}
+
+std::vector<PrimitiveId> Models::first_ids() const {
+  std::vector<PrimitiveId> ids;
+  for (const Model& model : models_) ids.push_back(model.first);
+  return ids;
+}
+
+std::vector<std::uint64_t> Models::triangle_counts() const {
+  std::vector<std::uint64_t> counts;
+  for (const Model& model : models_) counts.push_back(model.triangle_count);
+  return counts;
+}
+
+void Models::set_triangle_counts(const std::vector<std::uint64_t>& counts) {
+  std::uint64_t first = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    models_[i].first = PrimitiveId(first);
+    first += counts[i];
+    if (first > most_triangles) fail_too_many();
+  }
+  knows_firsts_ = true;
+}
+
+std::vector<FileWarning> Models::take_warnings() { return std::exchange(warnings_, {}); }
+
+void Models::add_warnings(const std::vector<FileWarning>& warnings) {
+  for (const FileWarning& warning : warnings) scene_.warnings.push_back(warning.text);
 }
 
 bool Models::can_rewind() const {
@@ -76,8 +150,13 @@ bool Models::can_rewind() const {
 
 double Models::fraction() const {
   double sum = 0;
-  for (const Model& model : models_) sum += model.stream->fraction();
-  return sum / double(models_.size());
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    if (!is_read_here(i)) continue;
+    sum += models_[i].stream->fraction();
+    ++count;
+  }
+  return count == 0 ? 1 : sum / double(count);
 }
 
 void Models::rewind() {
@@ -85,24 +164,27 @@ void Models::rewind() {
     model.stream->rewind();
     model.triangle_count = 0;
   }
-  current_ = next_number_ = 0;
-  next_ = 0;
+  current_ = begun_ = next_number_ = 0;
+  next_ = shared_pieces_ = 0;
 }
 
 bool Models::fetch(StreamPiece& piece, PiecePlace& place, std::uint32_t triangles) {
   for (; current_ < models_.size(); ++current_) {
+    if (!is_read_here(current_)) continue;
+    if (begun_ <= current_) begin(current_);
     Model& model = models_[current_];
-    const bool got = model.stream->fetch(piece, triangles);
-    take_warnings(model);
-    if (!got) {
-      end(model);
-      continue;
+    while (true) {
+      const bool is_wanted = takes_turn(current_);
+      const bool got = is_wanted ? model.stream->fetch(piece, triangles) : model.stream->pass_over(piece, triangles);
+      take_warnings(model);
+      if (!got) break;
+      model.triangle_count += piece.triangle_count;
+      place = {next_number_++, PrimitiveId(next_), model.object};
+      next_ += piece.triangle_count;
+      if (next_ > most_triangles) fail_too_many();
+      if (is_wanted) return true;
     }
-    model.triangle_count += piece.triangle_count;
-    place = {next_number_++, PrimitiveId(next_), model.object};
-    next_ += piece.triangle_count;
-    if (next_ > most_triangles) fail_too_many();
-    return true;
+    end(model);
   }
   return false;
 }

@@ -83,6 +83,14 @@ void SightGatherer::keep(Kept kept) {
   limit_ = std::max(limit_, kept_count_ + kept_count_ / 2);
 }
 
+void SightGatherer::share(Ranks& ranks, const IdShift& shift, const Execution& execution) {
+  for (auto& [number, kept] : kept_) kept.place.first = shift(kept.place.first);
+  for (Visible& visible : visible_) {
+    shift.apply({visible.primitives.data(), visible.primitives.size()}, execution);
+    streaming::share(ranks, visible, execution);
+  }
+}
+
 void SightGatherer::finish() { forget_hidden(); }
 
 /// In slices of ids, so that a bit for each costs 32 MiB at most, however long the stream is.

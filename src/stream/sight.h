@@ -19,6 +19,7 @@
 #include "frontmost/zbuffer.h"
 #include "stream/kept_triangles.h"
 #include "stream/sample_filter.h"
+#include "stream/shared.h"
 
 namespace frontmost::streaming {
 
@@ -53,7 +54,9 @@ class SightGatherer {
   std::vector<bool> merge(const std::vector<const Visible*>& piece, const PiecePlace& place,
                           const Selection& selection);
   void keep(Kept kept);
-  /// After the last piece: forgets what was hidden by later ones.
+  /// After the last piece: what is seen becomes what all ranks see. `shift` leads to the ids of the whole.
+  void share(Ranks& ranks, const IdShift& shift, const Execution& execution);
+  /// After that: forgets what was hidden by later ones, or by those of other ranks.
   void finish();
 
   [[nodiscard]] KeptPieces take_kept() { return std::move(kept_); }

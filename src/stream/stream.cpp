@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The passes over a stream. Pieces are drawn on their own and merged; what is nearest is a minimum, so neither their
-// size nor their order shows in the result.
+// size nor their order shows in the result, nor which rank has read them.
 #include "frontmost/stream.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <mutex>
 
 #include "base/parallel.h"
@@ -13,6 +14,7 @@
 #include "stream/id_map.h"
 #include "stream/kept_triangles.h"
 #include "stream/outline.h"
+#include "stream/shared.h"
 #include "stream/sight.h"
 #include "stream/touched_positions.h"
 
@@ -20,12 +22,52 @@ namespace frontmost {
 
 using namespace streaming;
 
+namespace {
+
+Turns turns_of(const StreamOptions& options) {
+  if (!options.ranks) return {};
+  return {options.ranks->number(), options.ranks->count(), options.readers};
+}
+
+/// So small that each rank gets some of what all of them read.
+std::uint32_t shared_piece_size(const std::vector<std::string>& paths, const StreamOptions& options) {
+  if (!options.ranks) return options.triangles_at_once;
+  constexpr std::uint64_t bytes_per_triangle = 50, pieces_each = 4, least = 1u << 12;
+  const Turns turns = turns_of(options);
+  std::uint64_t bytes = 0;
+  std::error_code ignored;
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    if (turns.reader_of(i) < 0) bytes += std::filesystem::file_size(paths[i], ignored);
+  const std::uint64_t even = bytes / (bytes_per_triangle * pieces_each * std::uint64_t(turns.count));
+  return bytes == 0 ? options.triangles_at_once
+                    : std::uint32_t(std::min<std::uint64_t>(std::max(even, least), options.triangles_at_once));
+}
+
+}  // namespace
+
 struct Stream::State {
   State(const std::vector<std::string>& paths, const StreamOptions& given, const Execution& execution)
-      : options(given), models(paths, given.load, execution) {
+      : options(given), models(paths, given.load, turns_of(given), execution) {
     constexpr std::uint32_t most_at_once = 1u << 24;
     if (given.triangles_at_once < 1 || given.triangles_at_once > most_at_once)
       throw Error(ErrorCode::bad_argument, "triangles_at_once: must be 1 to 16777216");
+    options.triangles_at_once = shared_piece_size(paths, given);
+  }
+
+  [[nodiscard]] bool has_results() const { return !options.ranks || options.ranks->number() == 0; }
+
+  /// After the first pass, which has found bounds: what other ranks have to say of it. \returns the way from this
+  /// pass's ids to those of the whole.
+  IdShift share_facts(Box& found) {
+    const std::vector<PrimitiveId> from = models.first_ids();
+    const std::vector<std::uint64_t> counts = models.triangle_counts();
+    const PassFacts all = share(*options.ranks, {counts, models.take_warnings(), found});
+    models.set_triangle_counts(all.triangle_counts);
+    models.add_warnings(all.warnings);
+    found = all.bounds;
+    triangle_count = 0;
+    for (const std::uint64_t count : all.triangle_counts) *triangle_count += count;
+    return {from, counts, models.first_ids()};
   }
 
   void begin_pass() {
@@ -54,7 +96,8 @@ struct Stream::State {
   StreamOptions options;
   Models models;
   int passes = 0;
-  std::optional<Box> bounds;  ///< once a pass has looked
+  std::optional<Box> bounds;                    ///< once a pass has looked
+  std::optional<std::uint64_t> triangle_count;  ///< of all ranks, once they have told each other
 };
 
 Stream::Stream(const std::vector<std::string>& paths, const StreamOptions& options, const Execution& execution)
@@ -66,7 +109,9 @@ Stream& Stream::operator=(Stream&&) noexcept = default;
 const Scene& Stream::scene() const { return state_->models.scene(); }
 bool Stream::can_repeat() const { return state_->models.can_rewind(); }
 int Stream::passes() const { return state_->passes; }
-std::uint64_t Stream::triangle_count() const { return state_->models.triangle_count(); }
+std::uint64_t Stream::triangle_count() const {
+  return state_->triangle_count.value_or(state_->models.triangle_count());
+}
 Box Stream::bounds() const { return state_->bounds.value_or(Box{}); }
 
 namespace {
@@ -86,33 +131,34 @@ struct WorkerExecution {
 
 bool lacks_normals(const Kept& piece) { return piece.mesh.normals.empty(); }
 
-/// The corners of the triangles whose smooth normals will be looked at; none where there are no such triangles.
-std::unique_ptr<TouchedPositions> large_corners(const KeptPieces& kept, const std::vector<Visible>& visible,
-                                                std::size_t count, const Execution& execution) {
+/// The corners of the triangles among those kept whose smooth normals will be looked at.
+std::vector<glm::vec3> large_corners(const KeptPieces& kept, const std::vector<Visible>& visible,
+                                     const Execution& execution) {
+  const std::vector<PrimitiveId> ids = ids_of(kept);
+  const IdMap places(ids);
   std::vector<shading::BitSet> large;
-  for (const Visible& one : visible) large.push_back(shading::large_primitives(count, one, execution));
-  const auto for_each_large = [&](const auto& visit) {
-    std::size_t id = 0;
-    for (const auto& [number, piece] : kept)
-      for (std::uint32_t t = 0; t < piece.triangles.size(); ++t, ++id)
-        if (lacks_normals(piece) &&
-            std::any_of(large.begin(), large.end(), [&](auto& set) { return set.contains(id); }))
-          for (int k = 0; k < 3; ++k) visit(piece.mesh.positions[3 * t + std::uint32_t(k)]);
-  };
-  std::size_t corners = 0;
-  for_each_large([&](const glm::vec3&) { ++corners; });
-  if (corners == 0) return nullptr;
-  auto touched = std::make_unique<TouchedPositions>(corners);
-  for_each_large([&](const glm::vec3& position) { touched->add(position); });
-  return touched;
+  for (const Visible& one : visible) {
+    const PrimitiveId* const seen = one.primitives.data();
+    std::vector<PrimitiveId> first(seen, seen + one.view.pixel_count());
+    places.apply(first, execution);
+    large.push_back(shading::large_primitives(ids.size(), first, one.view.width, execution));
+  }
+  std::vector<glm::vec3> corners;
+  std::size_t id = 0;
+  for (const auto& [number, piece] : kept)
+    for (std::uint32_t t = 0; t < piece.triangles.size(); ++t, ++id)
+      if (lacks_normals(piece) && std::any_of(large.begin(), large.end(), [&](auto& set) { return set.contains(id); }))
+        for (int k = 0; k < 3; ++k) corners.push_back(piece.mesh.positions[3 * t + std::uint32_t(k)]);
+  return corners;
 }
 
 /// What touches large triangles, beside what is seen.
 class NeighbourFinder {
  public:
   /// Of `seen`, copies are made again: in the order of the stream, among their neighbours.
-  NeighbourFinder(KeptPieces seen, std::unique_ptr<TouchedPositions> touched)
-      : seen_(std::move(seen)), touched_(std::move(touched)) {
+  NeighbourFinder(KeptPieces seen, const std::vector<glm::vec3>& corners)
+      : seen_(std::move(seen)), touched_(corners.size()) {
+    for (const glm::vec3& position : corners) touched_.add(position);
     for (auto& [number, piece] : seen_) piece.mesh = {};
   }
 
@@ -124,7 +170,7 @@ class NeighbourFinder {
       const bool is_seen =
           seen != seen_.end() && next < seen->second.triangles.size() && seen->second.triangles[next] == t;
       next += is_seen;
-      const bool touches = touched_->touches(mesh, t);
+      const bool touches = touched_.touches(mesh, t);
       if (!is_seen && !touches) continue;
       found.triangles.push_back(t);
       append_triangle(mesh, t, found.mesh);
@@ -137,20 +183,9 @@ class NeighbourFinder {
 
  private:
   KeptPieces seen_, all_;
-  std::unique_ptr<TouchedPositions> touched_;
+  TouchedPositions touched_;
   std::mutex mutex_;
 };
-
-/// Ids of the visible triangles, places among `ids`, become places among more ids.
-void move_ids(std::vector<Visible>& visible, std::vector<PrimitiveId>& ids, std::vector<PrimitiveId> more) {
-  const IdMap places(more);
-  std::vector<std::uint32_t> place_of(ids.size());
-  for (std::size_t i = 0; i < ids.size(); ++i) place_of[i] = places.place_of(ids[i]);
-  for (Visible& one : visible)
-    for (PrimitiveId& id : one.primitives)
-      if (id != no_primitive) id = place_of[id];
-  ids = std::move(more);
-}
 
 }  // namespace
 
@@ -169,16 +204,20 @@ Scene Stream::outline(const View& direction, double margin, const Execution& exe
   state_->pass(0, execution, [&](int worker, StreamPiece& piece, const PiecePlace&, const Execution&) {
     finders[std::size_t(worker)].include(piece.mesh);
   });
-  for (const OutlineFinder& other : finders) finders.front().include(other);
-  state_->bounds = finders.front().bounds();
-  Scene scene = finders.front().scene();
+  OutlineFinder finder(direction, margin);
+  for (const OutlineFinder& other : finders) finder.include(other);
+  if (Ranks* const ranks = state_->options.ranks) finder.include(share(*ranks, finder.points()));
+  Box bounds = finder.bounds();
+  if (state_->options.ranks) (void)state_->share_facts(bounds);
+  state_->bounds = bounds;
+  Scene scene = finder.scene();
   scene.name = state_->models.scene().name;
   scene.up = state_->models.scene().up;
   scene.origin = state_->models.scene().origin;
   return scene;
 }
 
-/// The first pass of look(): what is visible, and copies of it.
+/// The first pass of look(): what is visible on any rank, and copies of what of it was read here.
 KeptPieces Stream::State::find_visible(const std::vector<View>& views, const StreamNeeds& needs, Excerpt& excerpt,
                                        const Execution& execution) {
   SightGatherer sight(views, {.triangles = true, .bounds = !bounds, .unseen = needs.unseen});
@@ -187,14 +226,12 @@ KeptPieces Stream::State::find_visible(const std::vector<View>& views, const Str
        [&](int worker, StreamPiece& piece, const PiecePlace& place, const Execution& each) {
          drawers[std::size_t(worker)].draw(piece, place, models.scene(), sight, each);
        });
+  Box found = bounds.value_or(sight.bounds());
+  if (options.ranks) sight.share(*options.ranks, share_facts(found), execution);
   sight.finish();
-  if (!bounds) bounds = sight.bounds();
-  KeptPieces kept = sight.take_kept();
+  bounds = found;
   excerpt.visible = sight.take_visible();
-  excerpt.stream_ids = ids_of(kept);
-  const IdMap places(excerpt.stream_ids);
-  for (Visible& visible : excerpt.visible) places.apply(visible, execution);
-  return kept;
+  return sight.take_kept();
 }
 
 /// The second: what the light sees, and the neighbours of what is seen.
@@ -205,9 +242,11 @@ KeptPieces Stream::State::find_needs(KeptPieces kept, const StreamNeeds& needs, 
     if (const auto view = key_light_view(excerpt.visible.front(), *bounds, needs.light, execution))
       light.push_back(*view);
   std::optional<NeighbourFinder> neighbours;
-  if (needs.smooth_normals)
-    if (auto touched = large_corners(kept, excerpt.visible, excerpt.stream_ids.size(), execution))
-      neighbours.emplace(std::move(kept), std::move(touched));
+  if (needs.smooth_normals) {
+    std::vector<glm::vec3> corners = large_corners(kept, excerpt.visible, execution);
+    if (options.ranks) corners = share(*options.ranks, corners);
+    if (!corners.empty()) neighbours.emplace(std::move(kept), corners);
+  }
   if (light.empty() && !neighbours) return kept;
   SightGatherer sight(light, {});
   std::vector<Drawer> drawers(std::size_t(thread_count(execution)));
@@ -216,11 +255,9 @@ KeptPieces Stream::State::find_needs(KeptPieces kept, const StreamNeeds& needs, 
          if (neighbours) neighbours->find(piece.mesh, place);
          if (!light.empty()) drawers[std::size_t(worker)].draw(piece, place, models.scene(), sight, each);
        });
+  if (options.ranks && !light.empty()) sight.share(*options.ranks, {{}, {}, {}}, execution);
   if (!light.empty()) excerpt.seen_by_light = std::move(sight.take_visible().front());
-  if (!neighbours) return kept;
-  kept = neighbours->take();
-  move_ids(excerpt.visible, excerpt.stream_ids, ids_of(kept));
-  return kept;
+  return neighbours ? neighbours->take() : std::move(kept);
 }
 
 Excerpt Stream::look(const std::vector<View>& views, const StreamNeeds& needs, const Execution& execution) {
@@ -228,6 +265,12 @@ Excerpt Stream::look(const std::vector<View>& views, const StreamNeeds& needs, c
   Excerpt excerpt;
   KeptPieces kept = state_->find_visible(views, needs, excerpt, execution);
   kept = state_->find_needs(std::move(kept), needs, excerpt, execution);
+  if (Ranks* const ranks = state_->options.ranks) kept = gather(*ranks, std::move(kept));
+  if (!state_->has_results()) return {};
+  excerpt.stream_ids = ids_of(kept);
+  const IdMap places(excerpt.stream_ids);
+  for (Visible& visible : excerpt.visible)
+    places.apply({visible.primitives.data(), visible.primitives.size()}, execution);
   excerpt.parts_ = std::make_unique<const Excerpt::Parts>(scene_of(state_->models.scene(), std::move(kept)), execution);
   return excerpt;
 }

@@ -36,6 +36,8 @@ bool same_view(const View& a, const View& b) {
          a.culling == b.culling && same_projection(a.projection, b.projection);
 }
 
+constexpr std::size_t packed_at_once = 1u << 16;
+
 /// Without branches, so that the compiler takes several samples at a time. \returns the greatest new id of all seen.
 std::uint64_t merge_run(Visible& into, const Visible& other, PrimitiveId first_id, std::size_t begin, std::size_t end) {
   PrimitiveId* ids = into.primitives.data();
@@ -129,6 +131,46 @@ void merge(Visible& into, const Visible& other, PrimitiveId first_id, const Exec
     if (merge_run(into, other, first_id, begin, end) >= no_primitive) is_full = true;
   });
   if (is_full) throw Error(ErrorCode::limit_exceeded, "merge: more triangles than ids can tell apart (4294967294)");
+}
+
+Buffer<std::uint64_t> pack(const Visible& visible, PrimitiveId first_id, const Execution& execution) {
+  check_planes(visible, "pack");
+  Buffer<std::uint64_t> packed(visible.keys.size());
+  std::atomic<bool> is_full{false};
+  parallel_for(execution, packed.size(), packed_at_once, [&](std::size_t begin, std::size_t end) {
+    std::uint64_t greatest = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const PrimitiveId id = visible.primitives[i];
+      std::uint32_t key;
+      std::memcpy(&key, &visible.keys[i], sizeof key);
+      greatest = std::max(greatest, id == no_primitive ? 0 : std::uint64_t(id) + first_id);
+      packed[i] = id == no_primitive ? 0 : std::uint64_t(key) << 32 | std::uint32_t(~(id + first_id));
+    }
+    if (greatest >= no_primitive) is_full = true;
+  });
+  if (is_full) throw Error(ErrorCode::limit_exceeded, "pack: more triangles than ids can tell apart (4294967294)");
+  return packed;
+}
+
+Visible unpack(const View& view, std::span<const std::uint64_t> packed, const Execution& execution) {
+  validate(view);
+  if (packed.size() != view.sample_count())
+    throw Error(ErrorCode::bad_argument, "unpack: the numbers are not as many as the samples of the view");
+  Visible visible{view, Buffer<PrimitiveId>(packed.size()), Buffer<float>(packed.size())};
+  std::atomic<bool> is_wrong{false};
+  parallel_for(execution, packed.size(), packed_at_once, [&](std::size_t begin, std::size_t end) {
+    constexpr std::uint32_t bits_of_one = 0x3F800000u;  // those of floats in [0, 1] are as ordered as these are
+    std::uint32_t greatest = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto key = std::uint32_t(packed[i] >> 32);
+      greatest = std::max(greatest, key);
+      visible.primitives[i] = ~std::uint32_t(packed[i]);
+      std::memcpy(&visible.keys[i], &key, sizeof key);
+    }
+    if (greatest > bits_of_one) is_wrong = true;
+  });
+  if (is_wrong) throw Error(ErrorCode::bad_argument, "unpack: a key is not within 0 and 1");
+  return visible;
 }
 
 }  // namespace frontmost

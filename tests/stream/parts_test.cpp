@@ -40,12 +40,18 @@ TEST(IdMap, ReplacesTheIdsOfAPictureAndLeavesNothingAlone) {
   const std::vector<PrimitiveId> ids = {3, 40, 500, 6000};
   for (std::size_t i = 0; i < visible.primitives.size(); ++i)
     visible.primitives[i] = i % 5 == 4 ? no_primitive : ids[i % 5];
-  IdMap(ids).apply(visible, {.threads = 2});
+  IdMap(ids).apply({visible.primitives.data(), visible.primitives.size()}, {.threads = 2});
   for (std::size_t i = 0; i < visible.primitives.size(); ++i)
     ASSERT_EQ(visible.primitives[i], i % 5 == 4 ? no_primitive : PrimitiveId(i % 5)) << i;
-  IdMap none({});
-  Visible empty;
-  EXPECT_NO_THROW(none.apply(empty, {}));
+}
+
+TEST(IdMap, KnowsNoOtherIds) {
+  const std::vector<PrimitiveId> ids = {3, 40, 500, 6000};
+  const IdMap map(ids);
+  for (const PrimitiveId other : {0u, 4u, 39u, 499u, 501u, 6001u, 4'000'000'000u})
+    EXPECT_EQ(map.place_of(other), no_primitive) << other;
+  const std::vector<PrimitiveId> none;
+  EXPECT_EQ(IdMap(none).place_of(0), no_primitive);
 }
 
 TEST(TouchedPositions, ArePositionsToTheBitButForTheSignOfZero) {

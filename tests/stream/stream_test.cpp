@@ -4,8 +4,6 @@
 
 #include <gmock/gmock.h>
 
-#include <cstring>
-
 #include "stream/as_whole.h"
 #include "support/meshes.h"
 #include "support/random_scene.h"
@@ -15,42 +13,9 @@ namespace {
 
 using test::expect_streams_as_whole;
 using test::Kind;
-
-template <class T>
-void put(std::string& text, const T& value) {
-  char bytes[sizeof(T)];
-  std::memcpy(bytes, &value, sizeof(T));
-  text.append(bytes, sizeof(T));
-}
-
-std::string stl_of(const Mesh& mesh) {
-  std::string text = "a part";
-  text.resize(80, '\0');
-  put(text, std::uint32_t(mesh.triangles.size()));
-  for (const glm::uvec3& t : mesh.triangles) {
-    put(text, glm::vec3(0));
-    for (int k = 0; k < 3; ++k) put(text, mesh.positions[t[k]]);
-    put(text, std::uint16_t(0));
-  }
-  return text;
-}
-
-std::string ply_of(const Mesh& mesh) {
-  std::string text =
-      "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.positions.size()) +
-      "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\n"
-      "property uchar blue\nelement face " +
-      std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
-  for (const glm::vec3& p : mesh.positions) {
-    put(text, p);
-    for (int k = 0; k < 3; ++k) put(text, std::uint8_t(int(100 * std::abs(p[k])) % 256));
-  }
-  for (const glm::uvec3& t : mesh.triangles) {
-    put(text, std::uint8_t(3));
-    put(text, t);
-  }
-  return text;
-}
+using test::ply_of;
+using test::put;
+using test::stl_of;
 
 class StreamTest : public test::StreamFiles {};
 

@@ -71,6 +71,54 @@ TEST(Merge, ViewsMustBeTheSame) {
   EXPECT_NO_THROW(merge(into, nothing_visible(small_view())));
 }
 
+std::span<const std::uint64_t> numbers(const Buffer<std::uint64_t>& packed) { return {packed.data(), packed.size()}; }
+
+TEST(Pack, IsKeyBitsAboveAnInvertedId) {
+  const Buffer<std::uint64_t> packed = pack(of_samples({{0.5f, 3}, {1, 0}, {0, none}, {0, 5}}), 100);
+  EXPECT_EQ(packed[0], 0x3F000000'FFFFFF98u);
+  EXPECT_EQ(packed[1], 0x3F800000'FFFFFF9Bu);
+  EXPECT_EQ(packed[2], 0u);
+  EXPECT_EQ(packed[3], 0x00000000'FFFFFF96u) << "on the far plane";
+}
+
+TEST(Pack, TheGreaterOfTwoIsWhatMergingKeeps) {
+  const Visible a = of_samples({{0.5f, 3}, {0.25f, 3}, {0.5f, 7}, {0, none}, {0.5f, 1}, {0, 5}, {0, none}});
+  const Visible b = of_samples({{0.25f, 1}, {0.5f, 9}, {0.5f, 2}, {0.125f, 4}, {0, none}, {0, none}, {0, none}});
+  Buffer<std::uint64_t> greatest = pack(a), other = pack(b);
+  for (std::size_t i = 0; i < greatest.size(); ++i) greatest[i] = std::max(greatest[i], other[i]);
+  expect_same(unpack(a.view, numbers(greatest)), merged(a, b));
+  expect_same(unpack(a.view, numbers(pack(a))), a);
+}
+
+TEST(Pack, OfPartsIsThatOfTheWhole) {
+  const Scene whole = test::scene_of(test::random_mesh(test::Kind::coplanar, 400, 3));
+  const View view = frame(Surfaces(whole), 100, 70, {.samples = 4});
+  Buffer<std::uint64_t> greatest = pack(nothing_visible(view));
+  for (const PrimitiveId first : {250u, 0u}) {
+    Scene part = whole;
+    std::vector<glm::uvec3>& triangles = part.meshes[0].triangles;
+    triangles.erase(first ? triangles.begin() : triangles.begin() + 250,
+                    first ? triangles.begin() + 250 : triangles.end());
+    const Buffer<std::uint64_t> packed = pack(zbuffer(Surfaces(part), view), first, {.threads = 2});
+    for (std::size_t i = 0; i < greatest.size(); ++i) greatest[i] = std::max(greatest[i], packed[i]);
+  }
+  expect_same(unpack(view, numbers(greatest), {.threads = 2}), zbuffer(Surfaces(whole), view));
+}
+
+TEST(Pack, RefusesWhatDoesNotFit) {
+  EXPECT_EQ(pack(of_samples({{0.5f, 3}}), none - 4)[0] & 0xFFFFFFFFu, 1u);
+  EXPECT_THROW((void)pack(of_samples({{0.5f, 4}}), none - 4), Error);
+  EXPECT_THROW((void)pack(of_samples({{0.5f, 4}}), none), Error);
+  EXPECT_NO_THROW((void)pack(of_samples({{0, none}}), none)) << "nothing has no id";
+  Visible moved = of_samples({{0.5f, 3}});
+  const Visible taken = std::move(moved);
+  EXPECT_THROW((void)pack(moved), Error);
+  const std::vector<std::uint64_t> two = {0, 0}, wild = {0x3F800001'00000000u}, negative = {0x80000000'00000000u};
+  EXPECT_THROW((void)unpack(small_view(1), two), Error);
+  EXPECT_THROW((void)unpack(small_view(1), wild), Error);
+  EXPECT_THROW((void)unpack(small_view(1), negative), Error);
+}
+
 TEST(Merge, IdsDoNotRunOver) {
   Visible into = nothing_visible(small_view(1));
   merge(into, of_samples({{0.5f, 3}}), none - 4);

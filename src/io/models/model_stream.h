@@ -53,6 +53,8 @@ class ModelStream {
   /// file has faces of two corners. For one thread at a time. \returns false at the end of the model. \throws Error as
   /// load() does.
   virtual bool fetch(StreamPiece& piece, std::uint64_t triangles) = 0;
+  /// As fetch(), but of the piece nothing is kept than how many triangles it has.
+  virtual bool pass_over(StreamPiece& piece, std::uint64_t triangles) { return fetch(piece, triangles); }
   /// Makes piece.mesh of the bytes. Several threads may, each with a piece of its own. \throws Error as load() does.
   virtual void parse(StreamPiece& piece) const = 0;
 

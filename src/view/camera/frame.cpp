@@ -278,4 +278,19 @@ View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& 
   return view;
 }
 
+View frame(const Box& bounds, Axis up, int width, int height, const FrameOptions& options) {
+  Scene scene;
+  scene.up = up;
+  if (!bounds.is_empty()) {
+    Mesh corners;
+    for (const glm::dvec3& corner : corners_of(bounds)) {
+      const auto number = std::uint32_t(corners.positions.size());
+      corners.positions.emplace_back(corner);
+      corners.triangles.emplace_back(number);  // without area: nothing but its corner counts
+    }
+    add(scene, std::move(corners));
+  }
+  return frame(Surfaces(scene), width, height, options);
+}
+
 }  // namespace frontmost

@@ -59,6 +59,18 @@ class StlStream final : public ModelStream {
     return got > 0;
   }
 
+  bool pass_over(StreamPiece& piece, std::uint64_t triangles) override {
+    if (!size_) return fetch(piece, triangles);
+    piece.clear();
+    piece.triangle_count = std::min(triangles, count_ - next_);
+    const std::uint64_t bytes = piece.triangle_count * stl_record_size;
+    const bool is_beyond = bytes > left_.size();
+    left_ = left_.subspan(std::min(std::size_t(bytes), left_.size()));
+    next_ += piece.triangle_count;
+    if (is_beyond) bytes_->seek(stl_prelude_size + next_ * stl_record_size);
+    return piece.triangle_count > 0;
+  }
+
   void parse(StreamPiece& piece) const override {
     append_stl_records(Bytes(piece.bytes).first(piece.used), piece.mesh);
   }

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lists are gathered on rank 0, put together there, and sent to all. Planes are merged by one maximum of integers.
+#include "stream/shared.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "stream/message.h"
+
+namespace frontmost::streaming {
+namespace {
+
+Ranks::Message message_of(const PassFacts& facts) {
+  MessageWriter writer;
+  writer.put_list(facts.triangle_counts);
+  writer.put(facts.bounds);
+  writer.put(std::uint64_t(facts.warnings.size()));
+  for (const FileWarning& warning : facts.warnings) {
+    writer.put(warning.file);
+    writer.put_text(warning.text);
+  }
+  return writer.take();
+}
+
+PassFacts facts_of(const Ranks::Message& message) {
+  MessageReader reader(message);
+  PassFacts facts;
+  facts.triangle_counts = reader.get_list<std::uint64_t>();
+  facts.bounds = reader.get<Box>();
+  for (auto left = reader.get<std::uint64_t>(); left > 0; --left) {
+    const auto file = reader.get<std::uint32_t>();
+    facts.warnings.push_back({file, reader.get_text()});
+  }
+  return facts;
+}
+
+void put(const Kept& kept, MessageWriter& writer) {
+  writer.put(kept.place.first);
+  writer.put(kept.place.object);
+  writer.put_list(kept.triangles);
+  writer.put_list(kept.mesh.positions);
+  writer.put_list(kept.mesh.normals.values);
+  writer.put_list(kept.mesh.texcoords.values);
+  writer.put_list(kept.mesh.colors.values);
+  writer.put_list(kept.mesh.material_ids);
+}
+
+Kept get_kept(MessageReader& reader) {
+  Kept kept;
+  kept.place.first = reader.get<PrimitiveId>();
+  kept.place.object = reader.get<std::uint32_t>();
+  kept.triangles = reader.get_list<std::uint32_t>();
+  kept.mesh.positions = reader.get_list<glm::vec3>();
+  kept.mesh.normals.values = reader.get_list<glm::vec3>();
+  kept.mesh.texcoords.values = reader.get_list<glm::vec2>();
+  kept.mesh.colors.values = reader.get_list<glm::vec4>();
+  kept.mesh.material_ids = reader.get_list<std::uint32_t>();
+  // Each has corners of its own, in this order.
+  for (std::uint32_t t = 0; t < kept.triangles.size(); ++t)
+    kept.mesh.triangles.emplace_back(3 * t, 3 * t + 1, 3 * t + 2);
+  return kept;
+}
+
+}  // namespace
+
+PassFacts share(Ranks& ranks, const PassFacts& mine) {
+  const std::vector<Ranks::Message> messages = ranks.gather(message_of(mine));
+  PassFacts all = mine;
+  for (std::size_t rank = 1; rank < messages.size(); ++rank) {
+    const PassFacts facts = facts_of(messages[rank]);
+    for (std::size_t i = 0; i < std::min(all.triangle_counts.size(), facts.triangle_counts.size()); ++i)
+      all.triangle_counts[i] = std::max(all.triangle_counts[i], facts.triangle_counts[i]);
+    all.warnings.insert(all.warnings.end(), facts.warnings.begin(), facts.warnings.end());
+    all.bounds.include(facts.bounds);
+  }
+  std::stable_sort(all.warnings.begin(), all.warnings.end(),
+                   [](const FileWarning& a, const FileWarning& b) { return a.file < b.file; });
+  return facts_of(ranks.broadcast(message_of(all)));
+}
+
+std::vector<glm::vec3> share(Ranks& ranks, const std::vector<glm::vec3>& mine) {
+  MessageWriter writer, whole;
+  writer.put_list(mine);
+  std::vector<glm::vec3> all;
+  for (const Ranks::Message& message : ranks.gather(writer.take())) {
+    const std::vector<glm::vec3> part = MessageReader(message).get_list<glm::vec3>();
+    all.insert(all.end(), part.begin(), part.end());
+  }
+  whole.put_list(all);
+  return MessageReader(ranks.broadcast(whole.take())).get_list<glm::vec3>();
+}
+
+void share(Ranks& ranks, Visible& visible, const Execution& execution) {
+  Buffer<std::uint64_t> packed = pack(visible, 0, execution);
+  const std::span<std::uint64_t> numbers(packed.data(), packed.size());
+  ranks.keep_greatest(numbers);
+  visible = unpack(visible.view, numbers, execution);
+}
+
+KeptPieces gather(Ranks& ranks, KeptPieces mine) {
+  MessageWriter writer;
+  for (const auto& [number, kept] : mine) put(kept, writer);
+  mine.clear();  // both together would be twice as much
+  std::vector<Kept> all;
+  for (Ranks::Message& message : ranks.gather(writer.take())) {
+    MessageReader reader(message);
+    while (!reader.is_at_end()) all.push_back(get_kept(reader));
+    Ranks::Message().swap(message);
+  }
+  std::sort(all.begin(), all.end(), [](const Kept& a, const Kept& b) { return a.place.first < b.place.first; });
+  KeptPieces pieces;
+  for (std::size_t number = 0; number < all.size(); ++number) {
+    all[number].place.number = number;
+    pieces.emplace_hint(pieces.end(), number, std::move(all[number]));
+  }
+  return pieces;
+}
+
+IdShift::IdShift(const std::vector<PrimitiveId>& from, const std::vector<std::uint64_t>& counts,
+                 const std::vector<PrimitiveId>& to) {
+  for (std::size_t i = 0; i < from.size(); ++i)
+    if (counts[i] > 0) files_.push_back({from[i], to[i] - from[i]});
+}
+
+PrimitiveId IdShift::operator()(PrimitiveId id) const {
+  const auto after = std::upper_bound(files_.begin(), files_.end(), id,
+                                      [](PrimitiveId wanted, const File& file) { return wanted < file.from; });
+  return id + std::prev(after)->shift;
+}
+
+void IdShift::apply(std::span<PrimitiveId> ids, const Execution& execution) const {
+  constexpr std::size_t samples_at_once = 1u << 16;
+  if (std::all_of(files_.begin(), files_.end(), [](const File& file) { return file.shift == 0; })) return;
+  parallel_for(execution, ids.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (ids[i] != no_primitive) ids[i] = (*this)(ids[i]);
+  });
+}
+
+}  // namespace frontmost::streaming
