@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Debian packages by CPack: frontmost (the program), libfrontmost-dev (library, headers, descriptions) and, where the
-# module is built, python3-frontmost.
+# Debian packages by CPack: frontmost (the program), libfrontmost-dev (library, headers, descriptions) and, where these
+# modules are built, python3-frontmost and frontmost-mpi.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME frontmost)
 set(CPACK_PACKAGE_CONTACT "Frontmost maintainers <maintainers@frontmost.example>")
@@ -44,6 +44,16 @@ if(TARGET frontmost_python)
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION
 "What can be seen of 3D models, for Python and NumPy: depths, ids, pictures,
 drawings, and who hides whom, without a GPU or a display.")
+endif()
+
+if(TARGET frontmost_mpi)
+  list(APPEND CPACK_COMPONENTS_ALL mpi)
+  set(CPACK_DEBIAN_MPI_PACKAGE_NAME frontmost-mpi)
+  set(CPACK_DEBIAN_MPI_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_MPI_PACKAGE_DEPENDS "frontmost (= ${PROJECT_VERSION}), openmpi-bin")
+  set(CPACK_COMPONENT_MPI_DESCRIPTION
+"What frontmost render --mpi needs to share models that are larger than one
+machine among the ranks of mpirun.")
 endif()
 
 include(CPack)

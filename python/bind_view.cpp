@@ -63,6 +63,14 @@ View orthographic(const py::object& eye, const py::object& target, const py::obj
   return checked(view.looking(point(eye, "eye"), point(target, "target"), point(up, "up")), samples, culling);
 }
 
+/// `name` is the argument's.
+Box box_of(const py::handle& given, const char* name) {
+  if (py::isinstance<HeldSurfaces>(given)) return py::cast<const HeldSurfaces&>(given).surfaces.bounds();
+  const auto values = numbers<float>(given, name, {2, 3});
+  const float* const v = values.data();
+  return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+}
+
 View framed(const py::object& of, int width, int height, NamedView direction, bool is_orthographic, double fov,
             double margin, const py::object& forward, const py::object& up, const py::object& target,
             FramedObjects objects, int samples, Culling culling) {
@@ -84,7 +92,10 @@ View framed(const py::object& of, int width, int height, NamedView direction, bo
       return frame(held->surfaces, width, height, options);
     });
   }
-  if (!py::isinstance<HeldScene>(of)) throw py::type_error("scene: must be a Scene or Surfaces");
+  if (!py::isinstance<HeldScene>(of)) {
+    const Box bounds = box_of(of, "scene");
+    return frame(bounds, Axis::y, width, height, options);
+  }
   const std::shared_ptr<const KeptScene> scene = py::cast<HeldScene&>(of).scene;
   return run(0, py::none(),
              [&](const Execution& execution) { return frame(Surfaces(*scene, execution), width, height, options); });
@@ -106,13 +117,6 @@ DepthConvention depth_convention_of(const std::string& word) {
   if (word == "zero_to_one") return zero_to_one_depth;
   if (word == "reversed") return reversed_depth;
   throw py::value_error("depth: '" + word + "' is not one of opengl, gortler, zero_to_one, reversed");
-}
-
-Box box_of(const py::handle& given) {
-  if (py::isinstance<HeldSurfaces>(given)) return py::cast<const HeldSurfaces&>(given).surfaces.bounds();
-  const auto values = numbers<float>(given, "bounds", {2, 3});
-  const float* const v = values.data();
-  return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
 }
 
 std::string described(const View& view) {
@@ -176,8 +180,8 @@ void bind_changes(py::class_<View>& view) {
           doc("View.about"))
       .def("between", &View::between, "near"_a, "far"_a, doc("View.between"))
       .def(
-          "enclosing", [](const View& v, const py::object& bounds) { return v.enclosing(box_of(bounds)); }, "bounds"_a,
-          doc("View.enclosing"))
+          "enclosing", [](const View& v, const py::object& bounds) { return v.enclosing(box_of(bounds, "bounds")); },
+          "bounds"_a, doc("View.enclosing"))
       .def(
           "sampled", [](const View& v, int samples) { return checked(v, samples, v.culling); }, "samples"_a,
           doc("View.sampled"))

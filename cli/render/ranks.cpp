@@ -33,6 +33,7 @@ std::unique_ptr<Ranks> join_mpi() {
     void* const module = dlopen(path.c_str(), RTLD_NOW | RTLD_GLOBAL);
     void* const join = module ? dlsym(module, join_function) : nullptr;
     if (!join) throw Error(ErrorCode::unsupported, fmt::format("--mpi: {}", dlerror()));
+    const WaitingForRanks waiting;
     return std::unique_ptr<Ranks>(reinterpret_cast<JoinRanks>(join)());
   }
   throw Error(

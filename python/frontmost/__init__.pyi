@@ -279,7 +279,7 @@ class View:
     def clip_from_world(self, depth: DepthConvention = "opengl") -> NDArray[numpy.float64]:
         """4x4: clip_from_eye() times the pose."""
 
-def frame(scene: Scene | Surfaces, width: int = 640, height: int = 480, *, direction: Direction = "three_quarter",
+def frame(scene: Scene | Surfaces | ArrayLike, width: int = 640, height: int = 480, *, direction: Direction = "three_quarter",
           orthographic: bool = False, fov: float = 30.0, margin: float = 0.05, forward: ArrayLike | None = None,
           up: ArrayLike | None = None, target: ArrayLike | None = None, objects: Literal["subject", "all"] = "subject",
           samples: int = 1, culling: Culling = "none") -> View:
@@ -287,6 +287,8 @@ def frame(scene: Scene | Surfaces, width: int = 640, height: int = 480, *, direc
 
     direction, or forward and up: where to look along. fov: degrees, of the smaller side. margin: of the picture, each
     side. target: what is in the middle, None the model. objects: "subject" leaves out what lies or reaches far away.
+    In place of a scene its bounds, (2, 3) of low and high corners, where nobody has all of it: all of the box is shown,
+    and y is up.
     """
 
 class Surfaces:

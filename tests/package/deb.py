@@ -14,7 +14,9 @@ from consumer import compare, listing, run
 
 HERE = pathlib.Path(__file__).resolve().parent
 NEEDED = {"frontmost": ["libc6", "libstdc++6"], "libfrontmost-dev": ["libglm-dev", "libhwy-dev", "libpng-dev"],
-          "python3-frontmost": ["libc6", "libpng16-16", "python3", "python3-numpy"]}
+          "python3-frontmost": ["libc6", "libpng16-16", "python3", "python3-numpy"],
+          "frontmost-mpi": ["frontmost", "libopenmpi3", "openmpi-bin"]}
+MODULES = {"python3-frontmost": "python/frontmost/_core*.so", "frontmost-mpi": "frontmost_mpi.so"}  # where they are built
 
 
 def fields(package):
@@ -31,7 +33,7 @@ def main():
         folder = pathlib.Path(folder)
         run("cpack", "-G", "DEB", "--config", arguments.build.resolve() / "CPackConfig.cmake", "-B", folder)
         packages = {fields(p)["Package"]: p for p in folder.glob("*.deb")}
-        expected = set(NEEDED) if list(arguments.build.glob("python/frontmost/_core*.so")) else set(NEEDED) - {"python3-frontmost"}
+        expected = {name for name in NEEDED if name not in MODULES or list(arguments.build.glob(MODULES[name]))}
         assert set(packages) == expected, packages
         for name, package in packages.items():
             depends = fields(package)["Depends"]

@@ -185,6 +185,33 @@ TEST(Frame, EmptyAndFlatAndSinglePointModelsHaveAView) {
   EXPECT_NO_THROW((void)frame(dot, 10, 10));
 }
 
+TEST(Frame, OfABoxIsThatOfAModelWithItsCorners) {
+  for (const Axis up : {Axis::y, Axis::z}) {
+    Mesh mesh;  // all eight corners
+    add_triangle(mesh, {-1, -2, -3}, {4, -2, -3}, {-1, 5, -3});
+    add_triangle(mesh, {4, 5, -3}, {4, 5, 6}, {-1, 5, 6});
+    add_triangle(mesh, {4, -2, 6}, {-1, -2, 6}, {-1, -2, -3});
+    Scene scene = scene_of(mesh);
+    scene.up = up;
+    const Surfaces corners(scene);
+    for (const bool orthographic : {false, true}) {
+      FrameOptions options;
+      options.orthographic = orthographic;
+      options.samples = 4;
+      const View of_box = frame({{-1, -2, -3}, {4, 5, 6}}, up, 64, 48, options),
+                 whole = frame(corners, 64, 48, options);
+      EXPECT_EQ(of_box.world_from_eye, whole.world_from_eye);
+      EXPECT_EQ(of_box.projection.left, whole.projection.left);
+      EXPECT_EQ(of_box.projection.clip.near, whole.projection.clip.near);
+      EXPECT_EQ(of_box.projection.clip.far, whole.projection.clip.far);
+      EXPECT_EQ(of_box.samples, 4);
+    }
+  }
+  const Scene empty;
+  EXPECT_EQ(frame(Box(), Axis::y, 10, 10).world_from_eye, frame(Surfaces(empty), 10, 10).world_from_eye);
+  EXPECT_THROW((void)frame(Box(), Axis::y, 0, 10), Error);
+}
+
 TEST(FitClip, EnclosesWhatIsBeforeTheEye) {
   const Box box{glm::vec3(-1), glm::vec3(1)};
   const ClipDistances outside = fit_clip(box, look_at({0, 0, 5}, {0, 0, 0}, {0, 1, 0}), false);
