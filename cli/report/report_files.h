@@ -27,7 +27,8 @@ std::vector<std::string> write_masks(const ReportRun& run, const std::string& fo
 /// As large as the picture, white where a pixel is in the part and black elsewhere.
 [[nodiscard]] Image mask_image(const PixelMask& mask, MaskPart part, const View& view);
 /// Lets `write` make files in a hidden folder, which has the folders `within`, and moves those that it names when all
-/// are whole. Masks of an earlier report beside them go. \returns their paths. \throws Error file_unwritable, and what `write` throws, told of the folder itself.
+/// are whole. Masks of an earlier report beside them go. \returns their paths. \throws Error file_unwritable, and what
+/// `write` throws, told of the folder itself.
 std::vector<std::string> write_folder(const std::string& folder, std::initializer_list<const char*> within,
                                       const std::function<std::vector<std::string>(const StagedFolder&)>& write);
 

@@ -36,7 +36,7 @@ enum class FightKind : std::uint8_t {
 struct FightingFaces {
   PrimitiveId first = no_primitive, second = no_primitive;  ///< first < second; of `clear` there is no second
   FightKind kind = FightKind::close;
-  double area = 0;                                   ///< in pixels squared, within the picture
+  double area = 0;  ///< in pixels squared, within the picture
   /// The share of it at whose samples nothing stands before both; of large areas, at some thousands of them.
   double visible_area = 0;
   double distance = 0;                               ///< planar depth of the area's nearest point

@@ -75,8 +75,8 @@ class Occlusion {
   std::span<const ObjectSight> cull(const View& view, const OcclusionOptions& options = {},
                                     const Execution& execution = {}) &;
   /// What is known, in the view of the last cull(), of something within a box of the world: a thing that is not in the
-  /// scene, or one that has moved. Before the first call, and of boxes that are empty or have NaN: outside. O(cells that the box covers /
-  /// 512).
+  /// scene, or one that has moved. Before the first call, and of boxes that are empty or have NaN: outside. O(cells
+  /// that the box covers / 512).
   [[nodiscard]] ObjectSight sight_of(const Box& box) const;
   /// The same of many. Precondition: as many of both. Allocates nothing from the second call on.
   void find_sights(std::span<const Box> boxes, std::span<ObjectSight> sights) const;
