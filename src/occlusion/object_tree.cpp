@@ -29,7 +29,8 @@ class ObjectCurve {
     const glm::dvec3 at = ((glm::dvec3(box.low) + glm::dvec3(box.high)) * 0.5 - low_) * (kSteps / extent_);
     std::uint32_t morton = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      const auto step = std::uint32_t(std::clamp(at[axis], 0.0, kSteps));
+      // Of boxes that reach to infinity this is NaN.
+      const auto step = std::uint32_t(at[axis] > 0.0 ? std::min(at[axis], kSteps) : 0.0);
       for (int bit = 0; bit < kLevels; ++bit) morton |= (step >> bit & 1) << (3 * bit + axis);
     }
     const double share = greatest_side(box) / extent_;

@@ -7,7 +7,6 @@
 #include "occlusion/by_hand.h"
 #include "occlusion/hidden_scene.h"
 #include "occlusion/sight_rays.h"
-#include "support/effort.h"
 
 namespace frontmost {
 namespace {
@@ -16,7 +15,7 @@ using namespace test;
 
 TEST(OcclusionVeto, WithoutTheEndsOfSurfacesWhatIsSeenIsSaidToBeHidden) {
   std::size_t wrong = 0;
-  for (std::uint64_t seed = 0; seed < seeds(120); ++seed) {
+  for (std::uint64_t seed = 0; seed < 120; ++seed) {
     const Scene scene = hidden_scene(60, seed);
     const Surfaces surfaces(scene);
     const View view = random_view(97, 61, seed);
@@ -27,7 +26,7 @@ TEST(OcclusionVeto, WithoutTheEndsOfSurfacesWhatIsSeenIsSaidToBeHidden) {
     ASSERT_TRUE(std::equal(expected.begin(), expected.end(), by_hand.begin())) << seed;
     wrong += wrong_sights(surfaces, view, sights_by_hand(surfaces, view, cell, Ends::are_forgotten), {4000, seed});
   }
-  EXPECT_GT(wrong, seeds(120) / 4);
+  EXPECT_GT(wrong, 30u);
 }
 
 }  // namespace
