@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "support/effort.h"
 #include "support/random_scene.h"
 #include "surfaces/cluster_set.h"
 
@@ -53,7 +54,8 @@ TEST(Surfaces, VerticesArePlacedAsOneByOne) {
         const glm::vec3 expected = to_world(place, from[i]);
         const bool is_number = expected == expected;
         EXPECT_EQ(is_number, to[i] == to[i]) << i;
-        if (!is_number) continue;
+        // Checked builds of Highway give the largest float in place of infinity, in code without vectors.
+        if (!is_number || (test::under_sanitizer && !is_finite(expected))) continue;
         EXPECT_TRUE(has_same_bits(to[i], expected)) << i;
         EXPECT_TRUE(has_same_bits(same[i], expected)) << i;
       }
