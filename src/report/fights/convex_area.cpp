@@ -101,6 +101,9 @@ RowSpan span_of(std::span<const glm::dvec2> corners, const glm::dvec2& sample, i
     if (slope < 0) high = std::min(high, -rest / slope - sample.x + kRim);
     if (slope == 0 && rest < -kRim * std::abs(f.gradient.y)) return {0, 0};
   }
+  // What lies far beside the row is no int.
+  low = std::min(low, double(width));
+  high = std::max(high, -1.0);
   const int first = std::max(int(std::ceil(low)), 0), end = std::min(int(std::floor(high)) + 1, width);
   return {first, std::max(first, end)};
 }
