@@ -92,8 +92,8 @@ struct StreamNeeds {
 };
 
 /// Binary STL and PLY files, each an object, as if their scenes stood in one, in this order. Memory: some pieces at a
-/// time, at most 512 MiB or one piece, whichever is more; and for each sample of the views 8 bytes, 16 among ranks, and
-/// of the triangles seen about 60 bytes each, 100 while an Excerpt is made. Vertices of PLY files are mapped, and count
+/// time, at most 512 MiB or one piece, whichever is more; and for each sample of the views 8 bytes, and of the
+/// triangles seen about 60 bytes each, 100 while an Excerpt is made. Vertices of PLY files are mapped, and count
 /// as the system's cache; those of a PLY from a pipe are kept, up to 512 MiB.
 ///
 /// Where ranks stream a model together, each makes a Stream of the same files in the same order, and calls the same

@@ -15,6 +15,8 @@ namespace frontmost::streaming {
 
 class MessageWriter {
  public:
+  /// Room for about so many bytes, so that nothing is moved while they grow.
+  void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
   template <class T>
   void put(const T& value) {
     append(&value, 1);

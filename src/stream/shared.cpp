@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "stream/message.h"
+#include "view/packed.h"
 
 namespace frontmost::streaming {
 namespace {
@@ -45,6 +46,13 @@ void put(const Kept& kept, MessageWriter& writer) {
   writer.put_list(kept.mesh.material_ids);
 }
 
+std::size_t size_of(const Kept& kept) {
+  constexpr std::size_t counts = 64;  // and its place
+  const auto bytes = [](const auto& list) { return list.size() * sizeof(list[0]); };
+  return counts + bytes(kept.triangles) + bytes(kept.mesh.positions) + bytes(kept.mesh.normals.values) +
+         bytes(kept.mesh.texcoords.values) + bytes(kept.mesh.colors.values) + bytes(kept.mesh.material_ids);
+}
+
 Kept get_kept(MessageReader& reader) {
   Kept kept;
   kept.place.first = reader.get<PrimitiveId>();
@@ -56,6 +64,7 @@ Kept get_kept(MessageReader& reader) {
   kept.mesh.colors.values = reader.get_list<glm::vec4>();
   kept.mesh.material_ids = reader.get_list<std::uint32_t>();
   // Each has corners of its own, in this order.
+  kept.mesh.triangles.reserve(kept.triangles.size());
   for (std::uint32_t t = 0; t < kept.triangles.size(); ++t)
     kept.mesh.triangles.emplace_back(3 * t, 3 * t + 1, 3 * t + 2);
   return kept;
@@ -91,17 +100,36 @@ std::vector<glm::vec3> share(Ranks& ranks, const std::vector<glm::vec3>& mine) {
 }
 
 void share(Ranks& ranks, Visible& visible, const Execution& execution) {
-  Buffer<std::uint64_t> packed = pack(visible, 0, execution);
-  const std::span<std::uint64_t> numbers(packed.data(), packed.size());
-  ranks.keep_greatest(numbers);
-  visible = unpack(visible.view, numbers, execution);
+  // In runs: all at once would be as much memory again, and engines of messages are not quicker for it.
+  constexpr std::size_t run = 1u << 20, samples_at_once = 1u << 16;
+  PrimitiveId* const ids = visible.primitives.data();
+  float* const keys = visible.keys.data();
+  const std::size_t count = visible.keys.size();
+  std::vector<std::uint64_t> packed(std::min(run, count));
+  for (std::size_t first = 0; first < count; first += run) {
+    const std::span<std::uint64_t> numbers(packed.data(), std::min(run, count - first));
+    parallel_for(execution, numbers.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) numbers[i] = packed_sample(ids[first + i], keys[first + i]);
+    });
+    ranks.keep_greatest(numbers);
+    parallel_for(execution, numbers.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) unpack_sample(numbers[i], ids[first + i], keys[first + i]);
+    });
+  }
 }
 
 KeptPieces gather(Ranks& ranks, KeptPieces mine) {
   MessageWriter writer;
-  for (const auto& [number, kept] : mine) put(kept, writer);
-  mine.clear();  // both together would be twice as much
   std::vector<Kept> all;
+  if (ranks.number() == 0) {
+    for (auto& [number, kept] : mine) all.push_back(std::move(kept));
+  } else {
+    std::size_t bytes = 0;
+    for (const auto& [number, kept] : mine) bytes += size_of(kept);
+    writer.reserve(bytes);
+    for (const auto& [number, kept] : mine) put(kept, writer);
+  }
+  mine.clear();  // both together would be twice as much
   for (Ranks::Message& message : ranks.gather(writer.take())) {
     MessageReader reader(message);
     while (!reader.is_at_end()) all.push_back(get_kept(reader));

@@ -16,6 +16,7 @@
 
 #include "base/parallel.h"
 #include "view/answer.h"
+#include "view/packed.h"
 
 namespace frontmost {
 namespace {
@@ -141,10 +142,8 @@ Buffer<std::uint64_t> pack(const Visible& visible, PrimitiveId first_id, const E
     std::uint64_t greatest = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const PrimitiveId id = visible.primitives[i];
-      std::uint32_t key;
-      std::memcpy(&key, &visible.keys[i], sizeof key);
       greatest = std::max(greatest, id == no_primitive ? 0 : std::uint64_t(id) + first_id);
-      packed[i] = id == no_primitive ? 0 : std::uint64_t(key) << 32 | std::uint32_t(~(id + first_id));
+      packed[i] = packed_sample(id == no_primitive ? id : id + first_id, visible.keys[i]);
     }
     if (greatest >= no_primitive) is_full = true;
   });
@@ -162,10 +161,8 @@ Visible unpack(const View& view, std::span<const std::uint64_t> packed, const Ex
     constexpr std::uint32_t bits_of_one = 0x3F800000u;  // those of floats in [0, 1] are as ordered as these are
     std::uint32_t greatest = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      const auto key = std::uint32_t(packed[i] >> 32);
-      greatest = std::max(greatest, key);
-      visible.primitives[i] = ~std::uint32_t(packed[i]);
-      std::memcpy(&visible.keys[i], &key, sizeof key);
+      greatest = std::max(greatest, std::uint32_t(packed[i] >> 32));
+      unpack_sample(packed[i], visible.primitives[i], visible.keys[i]);
     }
     if (greatest > bits_of_one) is_wrong = true;
   });

@@ -6,6 +6,7 @@
 
 Without mpirun, or without the program's module for MPI, all but what is said then is skipped, and counted.
 """
+import contextlib
 import json
 import os
 import pathlib
@@ -228,7 +229,8 @@ def try_death(scratch):
     def kill_other(ranks):
         os.kill(ranks[1], signal.SIGKILL)
         time.sleep(0.2)
-        os.kill(ranks[0], signal.SIGCONT)
+        with contextlib.suppress(ProcessLookupError):  # ended already
+            os.kill(ranks[0], signal.SIGCONT)
 
     errors = with_a_stopped_rank(folder, 0, kill_other)
     if "rank 1" not in errors or "signal 9" not in errors:

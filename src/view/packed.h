@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// A sample as one number, of which the greater is nearer, or as near and of a lower id; 0 is nothing.
+//
+//   bit 63          32 31           0
+//       | key, a float | id, inverted |      floats that are not negative are as ordered as their bits
+#pragma once
+
+#include <cstring>
+
+#include "frontmost/base.h"
+
+namespace frontmost {
+
+[[nodiscard]] inline std::uint64_t packed_sample(PrimitiveId id, float key) {
+  std::uint32_t bits;
+  std::memcpy(&bits, &key, sizeof bits);
+  return id == no_primitive ? 0 : std::uint64_t(bits) << 32 | std::uint32_t(~id);
+}
+
+inline void unpack_sample(std::uint64_t packed, PrimitiveId& id, float& key) {
+  const auto bits = std::uint32_t(packed >> 32);
+  id = ~std::uint32_t(packed);
+  std::memcpy(&key, &bits, sizeof key);
+}
+
+}  // namespace frontmost
