@@ -75,11 +75,11 @@ void check(const Settings& settings, const std::vector<std::string>& outputs) {
   if (report.coco_polygons && !report.coco) throw UsageError("--coco-polygons needs --coco");
   if (report.bop_visible && !report.bop) throw UsageError("--bop-visible needs --bop");
   if (report.categories && !report.coco && !report.bop) throw UsageError("--categories needs --coco or --bop");
-  if (report.page && *report.page != "-" && !report.page->ends_with(".html") && !report.page->ends_with(".htm"))
-    throw UsageError(*report.page + ": the report is a page; use .html");
   if (settings.report.bop && settings.view.orthographic)
     throw UsageError("--bop needs a perspective camera: BOP has no others");
   check_outputs(outputs, input_files(settings));
+  if (report.page && *report.page != "-" && !report.page->ends_with(".html") && !report.page->ends_with(".htm"))
+    throw UsageError(*report.page + ": the report is a page; use .html");
   if (settings.run.json && std::find(outputs.begin(), outputs.end(), "-") != outputs.end())
     throw UsageError("--json and an output to - both want standard output");
 }
