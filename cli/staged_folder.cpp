@@ -57,8 +57,9 @@ void StagedFolder::commit(const std::vector<std::string>& names) const {
   const auto fail = [](const fs::path& place, const std::string& why) {
     throw Error(ErrorCode::file_unwritable, fmt::format("{}: cannot replace: {}", place.string(), why));
   };
+  std::error_code unknown;
   for (const std::string& name : names)
-    if (fs::is_directory(folder_ / name)) fail(folder_ / name, "it is a folder");
+    if (fs::is_directory(folder_ / name, unknown)) fail(folder_ / name, "it is a folder");
   for (const std::string& name : names) {
     std::error_code error;
     const fs::path place = folder_ / name, linked = fs::canonical(place, error);

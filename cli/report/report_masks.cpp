@@ -35,12 +35,12 @@ void remove_stale(const std::string& folder, const std::vector<std::string>& nam
     written.insert(fs::path(folder) / name);
     if (is_mask_name(fs::path(name).filename().string())) folders.insert((fs::path(folder) / name).parent_path());
   }
+  std::error_code ignored;
   for (const fs::path& place : folders) {
     std::vector<fs::path> stale;
-    for (const fs::directory_entry& entry : fs::directory_iterator(place))
+    for (const fs::directory_entry& entry : fs::directory_iterator(place, ignored))
       if (is_mask_name(entry.path().filename().string()) && !written.contains(entry.path()))
         stale.push_back(entry.path());
-    std::error_code ignored;
     for (const fs::path& path : stale) fs::remove(path, ignored);
   }
 }

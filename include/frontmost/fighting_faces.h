@@ -68,7 +68,8 @@ struct FightAreas {
 
 /// The faces that a depth buffer of this format may show wrongly in the view; culling counts, holes do not. What lies
 /// behind all that is seen at the samples around it is left out. O(triangles + pairs of faces whose rectangles and
-/// ranges of depth overlap + covered samples). The same for any number of threads.
+/// ranges of depth overlap + samples): an area asks some thousand samples at most, but all of its own where none of
+/// those sees it. The same for any number of threads.
 /// \throws Error bad_argument as validate(view) does; limit_exceeded where more than 2^22 areas are found, more than
 /// 2^24 pairs of faces lie close to each other, or more than 2^28 would have to be looked at, as where thousands lie in
 /// one place.

@@ -136,19 +136,12 @@ HWY_INLINE void EndAtSegment(CellPoint a, CellPoint b, float margin, const CellR
 /// What of an object turns one way.
 class OneSide {
  public:
-  struct Input {
-    const CellGrid& grid;
-    const HidingObject& occluder;
-    const OccluderOnScreen& on_screen;
-    const CoverPass& pass;
-  };
-
-  OneSide(const Input& input, ScreenTurn turn, CoverScratch& scratch)
-      : in_(input),
+  OneSide(const OccluderPass& over, ScreenTurn turn, CoverScratch& scratch)
+      : in_(over),
         turn_(turn),
         scratch_(scratch),
-        triangles_(input.occluder.mesh.triangles.data() + input.occluder.part.first_triangle),
-        neighbours_(input.occluder.mesh.neighbours.data() + input.occluder.part.first_triangle) {}
+        triangles_(over.occluder.mesh.triangles.data() + over.occluder.part.first_triangle),
+        neighbours_(over.occluder.mesh.neighbours.data() + over.occluder.part.first_triangle) {}
 
   /// \returns whether there is anything.
   bool Reach() {
@@ -231,7 +224,8 @@ class OneSide {
     }
     return true;
   }
-  const Input& in_;
+
+  const OccluderPass& in_;
   ScreenTurn turn_;
   CoverScratch& scratch_;
   const glm::uvec3* triangles_;
@@ -268,12 +262,11 @@ bool Settle(const CellRect& rect, CoverScratch& scratch, const CellCover& cover,
 
 }  // namespace
 
-bool FindSolid(const CellGrid& grid, const HidingObject& occluder, const OccluderOnScreen& on_screen,
-               const CoverPass& pass, CoverScratch& scratch, const CellCover& cover, std::uint32_t* solid) {
-  const OneSide::Input input{grid, occluder, on_screen, pass};
+bool FindSolid(const OccluderPass& over, CoverScratch& scratch, const CellCover& cover, std::uint32_t* solid) {
+  const CoverPass& pass = over.pass;
   bool is_near_open = false;
   const auto add = [&](ScreenTurn turn) {
-    if (OneSide(input, turn, scratch).Reach()) is_near_open = Settle(pass.rect, scratch, cover, solid) || is_near_open;
+    if (OneSide(over, turn, scratch).Reach()) is_near_open = Settle(pass.rect, scratch, cover, solid) || is_near_open;
   };
   if (pass.clockwise) add(ScreenTurn::clockwise);
   if (pass.counter_clockwise) add(ScreenTurn::counter_clockwise);
@@ -309,9 +302,9 @@ namespace frontmost::occlusion_detail {
 FRONTMOST_KERNELS(FindSolid);
 FRONTMOST_KERNELS(AddToCover);
 
-bool find_solid(const CellGrid& grid, const HidingObject& occluder, const OccluderOnScreen& on_screen,
-                const CoverPass& pass, CoverScratch& scratch, const CellCover& cover, std::uint32_t* solid, Isa isa) {
-  return kernel_for(FindSolidKernels, isa)(grid, occluder, on_screen, pass, scratch, cover, solid);
+bool find_solid(const OccluderPass& over, CoverScratch& scratch, const CellCover& cover, std::uint32_t* solid,
+                Isa isa) {
+  return kernel_for(FindSolidKernels, isa)(over, scratch, cover, solid);
 }
 
 void add_to_cover(const CoverPass& pass, const std::uint32_t* solid, CellCover& cover, Isa isa) {

@@ -7,13 +7,15 @@ namespace frontmost::occlusion_detail {
 namespace {
 
 /// Triangles are cut so often for one object at most; where that does not do, none is cut.
-constexpr std::size_t kMostCuts = 1 << 14;
+constexpr std::size_t kMostCuts = 1 << 13;
 
 /// Triangles that begin so many slabs before that of their farthest corner, and reach so many cells across and down,
 /// are worth cutting.
 constexpr int kLeastSlabs = 12, kLeastCells = 8;
 /// They are cut for every third slab, and for none that is nearer than a sixty-fourth of the object's farthest end.
 constexpr int kSlabsBetweenCuts = 3, kMostSlabs = 36;
+
+bool is_cut_for(int slab) { return slab % kSlabsBetweenCuts == 0; }
 
 glm::uvec3 corners_of(const HidingObject& occluder, std::uint32_t triangle) {
   return occluder.mesh.triangles[occluder.part.first_triangle + triangle] - occluder.part.first_vertex;
@@ -106,11 +108,16 @@ void LongObject::find_reaching(const CellGrid& grid, const HidingObject& occlude
     if (slabs_[t] - first_slab < kLeastSlabs || cells.x1 - cells.x0 < kLeastCells || cells.y1 - cells.y0 < kLeastCells)
       continue;
     reaching_.push_back({t, first_slab});
-    cuts += std::size_t(slabs_[t] - first_slab);
+    cuts += std::size_t(slabs_[t] - first_slab) / kSlabsBetweenCuts;
   }
   if (cuts > kMostCuts) reaching_.clear();
   first_reached_ = slabs.count();
   for (const Reaching& r : reaching_) first_reached_ = std::min(first_reached_, r.first_slab);
+}
+
+bool LongObject::has_triangles(int slab) const {
+  const bool has_whole = slab_begin_[std::size_t(slab) + 1] > slab_begin_[std::size_t(slab)];
+  return has_whole || (slab >= first_reached_ && is_cut_for(slab));
 }
 
 CoverPass LongObject::choose(const CellGrid& grid, const HidingObject& occluder, int slab, const CellRect& rect) {
@@ -121,7 +128,7 @@ CoverPass LongObject::choose(const CellGrid& grid, const HidingObject& occluder,
   screen_->far = std::min(grid.transform.far, far_sides_[std::size_t(slab)]);
   screen_->inverse_range = 1.0f / (screen_->far - screen_->near);
   for (const std::uint32_t t : whole_) marks_[t] = std::uint16_t(slab + 1);
-  if (slab % kSlabsBetweenCuts == 0) choose_cut(occluder, slab);
+  if (is_cut_for(slab)) choose_cut(occluder, slab);
   const std::size_t cut_by_slab = cut_.size();
   for (auto t = begin; t != end; ++t) choose_around(occluder, slab, *t);
   for (std::size_t i = 0; i < cut_by_slab; ++i) choose_around(occluder, slab, cut_[i].triangle);

@@ -37,9 +37,7 @@ class LongObject {
   /// Sorts the triangles into slabs.
   void sort_by_slab(const CellGrid& grid, const HidingObject& occluder, const DistanceRanges& range_of,
                     const Slabs& slabs);
-  [[nodiscard]] bool has_triangles(int slab) const {
-    return slab_begin_[std::size_t(slab) + 1] > slab_begin_[std::size_t(slab)] || slab >= first_reached_;
-  }
+  [[nodiscard]] bool has_triangles(int slab) const;
   /// What is to cover for a slab, within `rect`. Borrows from this object until the next call.
   [[nodiscard]] CoverPass choose(const CellGrid& grid, const HidingObject& occluder, int slab, const CellRect& rect);
 

@@ -91,16 +91,23 @@ struct CoverPass {
   const ChosenTriangles* chosen = nullptr;          ///< nullptr: all of them
 };
 
+/// A pass over an object.
+struct OccluderPass {
+  const CellGrid& grid;
+  const HidingObject& occluder;
+  const OccluderOnScreen& on_screen;
+  const CoverPass& pass;
+};
+
 /// Cells of one side of an object; nothing, between sides.
 struct CoverScratch {
   CellBits reached, ends;
 };
 
 /// Finds the cells that the triangles cover that count: sets them in `solid`, which has tile_rows rows for each tile
-/// that pass.rect reaches into, row of tiles by row of tiles, all zero.
+/// that the pass' rectangle reaches into, row of tiles by row of tiles, all zero.
 /// \returns whether the triangles come near a cell that is not covered yet.
-bool find_solid(const CellGrid& grid, const HidingObject& occluder, const OccluderOnScreen& on_screen,
-                const CoverPass& pass, CoverScratch& scratch, const CellCover& cover, std::uint32_t* solid, Isa isa);
+bool find_solid(const OccluderPass& over, CoverScratch& scratch, const CellCover& cover, std::uint32_t* solid, Isa isa);
 
 /// Covers these cells, no farther away than pass.distance.
 void add_to_cover(const CoverPass& pass, const std::uint32_t* solid, CellCover& cover, Isa isa);

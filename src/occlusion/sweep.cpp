@@ -160,7 +160,7 @@ class Sweep::Run {
     leave_out_culled(item, pass);
     // One side of a closed surface covers what the other does.
     if (it.part.is_closed && on_screen.cut.empty() && pass.clockwise) pass.counter_clockwise = false;
-    const bool is_near_open = find_solid(view_.grid, it, on_screen, pass, memory_.scratch_, cover_,
+    const bool is_near_open = find_solid({view_.grid, it, on_screen, pass}, memory_.scratch_, cover_,
                                          memory_.solid_.data() + first_row, view_.isa);
     // A needle may turn the other way when it is snapped, and be left out although its side faces the eye. What is
     // closed has others before and behind it.
@@ -188,7 +188,7 @@ class Sweep::Run {
     leave_out_culled(event.item, pass);
     const std::size_t first_row = add_rows(pass.rect);
     std::uint32_t* const solid = memory_.solid_.data() + first_row;
-    find_solid(view_.grid, it, o.on_screen, pass, memory_.scratch_, cover_, solid, view_.isa);
+    find_solid({view_.grid, it, o.on_screen, pass}, memory_.scratch_, cover_, solid, view_.isa);
     add_to_cover(pass, solid, cover_, view_.isa);
     memory_.solid_.resize(first_row);
   }
