@@ -12,6 +12,6 @@ int main(int count, char** arguments) {
       {"memory", measure_memory},     {"surfaces", measure_surfaces}, {"coverage", measure_coverage},
       {"rays", measure_ray_coverage}, {"raycast", measure_raycast},   {"depth", measure_depth_buffer},
       {"scans", measure_scans},       {"accounts", measure_accounts}, {"reports", measure_reports},
-      {"faces", measure_faces}};
+      {"faces", measure_faces},       {"fights", measure_fights}};
   return run_program("zbuffer_bench", kTables, count, arguments);
 }

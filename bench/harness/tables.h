@@ -39,6 +39,8 @@ namespace frontmost::bench {
 [[nodiscard]] Table measure_reports(const Options& options);
 /// Visible areas of triangles, from one place and from many.
 [[nodiscard]] Table measure_faces(const Options& options);
+/// Areas in which a depth buffer may show the wrong one of two faces.
+[[nodiscard]] Table measure_fights(const Options& options);
 /// Our pictures and Embree's.
 [[nodiscard]] Table measure_ray_coverage(const Options& options);
 

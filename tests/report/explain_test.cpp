@@ -300,7 +300,7 @@ TEST(Explain, BetweenTheSamplesItsAreaIsTold) {
   EXPECT_EQ(why.reason, SightReason::no_sample);
   EXPECT_NEAR(why.pixels, 0.25, 1e-6);
   EXPECT_EQ(sentence(why, scene),
-            "panel is between the samples: its 0.25 square pixels cover none: draw 5 times as "
+            "panel is between the samples: its 0.25 square pixels cover none: draw 2 times as "
             "many pixels each way.");
   expect_seen_after_remedy(scene, parallel_view(), why);
   // What would be seen of a box is no more than its silhouette.
@@ -309,6 +309,27 @@ TEST(Explain, BetweenTheSamplesItsAreaIsTold) {
   box.meshes[0] = test::tessellated_box({0.025f, 0.025f, 0.025f}, 3, 0);
   box.instances = scene.instances;
   EXPECT_NEAR(explanation_of(box, parallel_view()).pixels, 0.25, 1e-6);
+}
+
+// No triangle of a fine mesh holds a circle that is sure to have a sample; all of them together soon have one.
+TEST(Explain, AFineMeshIsEnlargedUntilItCoversASample) {
+  std::size_t told = 0;
+  for (std::uint64_t seed = 0; seed < test::seeds(40); ++seed) {
+    Random random(seed);
+    Scene scene;
+    const float size = 0.002f + 0.05f * float(random.below(1000)) / 1000;
+    scene.meshes = {test::tessellated_box(glm::vec3(size), 12, 0)};
+    scene.instances = panel_at(glm::dvec3(0, 0, -10) + glm::dvec3(random.point(2))).instances;
+    const Explanation why = explanation_of(scene, parallel_view());
+    if (why.reason != SightReason::no_sample) continue;
+    ++told;
+    SCOPED_TRACE(sentence(why, scene));
+    ASSERT_EQ(why.remedy.kind, RemedyKind::enlarge);
+    // A unit is ten pixels.
+    EXPECT_LE(why.remedy.value, 3 / (10 * size));
+    if (why.remedy.value <= 20) expect_seen_after_remedy(scene, parallel_view(), why);
+  }
+  EXPECT_GE(told, test::seeds(40) / 4);
 }
 
 TEST(Explain, EdgeOnThereIsNoArea) {

@@ -54,6 +54,16 @@ ObjectCanvas::ObjectCanvas(const View& picture, double scale)
       transform(moved(ScreenTransform(picture), margin)),
       rays(picture) {}
 
+ObjectCanvas::ObjectCanvas(const View& picture, const PixelRect& part)
+    : margin(-part.x0, -part.y0),
+      frame{0, 0, part.x1 - part.x0, part.y1 - part.y0},
+      view(picture),
+      transform(moved(ScreenTransform(picture), margin)),
+      rays(picture) {
+  view.width = frame.x1 + 1;
+  view.height = frame.y1 + 1;
+}
+
 std::vector<std::size_t> first_ranges(const PlacedScene& scene) {
   std::vector<std::size_t> first(scene.instance_bounds.size() + 1, 0);
   for (const MeshRange& range : scene.ranges) ++first[range.instance + 1];

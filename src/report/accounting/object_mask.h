@@ -13,7 +13,7 @@ namespace frontmost::accounting_detail {
 
 /// The picture and what is around it. Vertices lie on it where the picture has them, to the bit, moved by the margin.
 struct ObjectCanvas {
-  glm::ivec2 margin;          ///< in pixels, on each side of the picture
+  glm::ivec2 margin;          ///< in pixels, to the left of the picture and above it; negative where only a part is
   PixelRect frame;            ///< the picture on the canvas
   View view;                  ///< of which the size, the samples and the culling are the canvas'
   ScreenTransform transform;  ///< to the canvas' top left corner
@@ -21,6 +21,8 @@ struct ObjectCanvas {
 
   /// `scale`: AccountingOptions::canvas. Preconditions: the view is valid, and the scale in range.
   ObjectCanvas(const View& picture, double scale);
+  /// A part of the picture alone. Preconditions: the view is valid, and the part not empty and within the picture.
+  ObjectCanvas(const View& picture, const PixelRect& part);
 };
 
 /// Where the ranges of each instance begin among those of the scene, and the end of the last.

@@ -110,7 +110,7 @@ RowSpan span_of(std::span<const glm::dvec2> corners, const glm::dvec2& sample, i
 
 double UnionShare::find() const {
   if (areas_.size() == 1) return 1;
-  constexpr double kMostChords = 1 << 18;
+  constexpr double kMostChords = 1 << 16;
   double heights = 0;
   for (const std::span<const glm::dvec2> corners : areas_) {
     const VerticalReach height(corners);

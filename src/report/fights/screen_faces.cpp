@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "zbuffer/place/submission.h"
@@ -130,7 +131,13 @@ FarthestSeen::FarthestSeen(const Visible& visible)
   for (std::size_t row = 0; row * width < visible.keys.size(); ++row) {
     const float* const keys = visible.keys.data() + row * width;
     float* const blocks = keys_.data() + row % height / kBlock * std::size_t(columns_);
-    for (std::size_t x = 0; x < width; ++x) blocks[x / kBlock] = std::min(blocks[x / kBlock], keys[x]);
+    const std::size_t whole = width / kBlock;
+    for (std::size_t block = 0; block < whole; ++block) {
+      float least = blocks[block];
+      for (std::size_t x = 0; x < kBlock; ++x) least = std::min(least, keys[block * kBlock + x]);
+      blocks[block] = least;
+    }
+    for (std::size_t x = whole * kBlock; x < width; ++x) blocks[whole] = std::min(blocks[whole], keys[x]);
   }
 }
 
@@ -183,6 +190,8 @@ std::vector<ScreenFace> screen_faces(const Surfaces& surfaces, const View& view,
     }
   });
   std::vector<ScreenFace> faces;
+  faces.reserve(std::transform_reduce(parts.begin(), parts.end(), std::size_t(0), std::plus<>(),
+                                      [](const std::vector<ScreenFace>& part) { return part.size(); }));
   for (const std::vector<ScreenFace>& part : parts) faces.insert(faces.end(), part.begin(), part.end());
   return faces;
 }

@@ -65,7 +65,7 @@ class Explainer {
       why.reason = account.visible.count > 0 ? SightReason::seen : SightReason::hidden;
     else
       explain_without_sample(why, places);
-    why.remedy = remedy_for(why.reason, places, view_);
+    if (why.remedy.kind == RemedyKind::none) why.remedy = remedy_for(why.reason, places, view_);
     return why;
   }
 
@@ -73,13 +73,16 @@ class Explainer {
     why.reason = reason_of(places.counts);
     if (why.reason != SightReason::no_sample) return;
     const LoneObject lone(surfaces_.scene(), why.object);
-    if (has_holes(why.object) && lone.has_sample(view_)) {
+    if (has_holes(why.object) && lone.has_sample(view_, places)) {
       why.reason = SightReason::transparent;
       why.is_all_holes = true;
       return;
     }
     why.pixels = lone.area(view_, places);
-    if (why.pixels == 0 && places.counts.faces_away > 0) why.reason = SightReason::faces_away;
+    if (why.pixels == 0 && places.counts.faces_away > 0)
+      why.reason = SightReason::faces_away;
+    else if (why.pixels > 0)
+      why.remedy = enlargement_for(lone, places, view_);
   }
 
   [[nodiscard]] bool has_holes(std::uint32_t object) const {

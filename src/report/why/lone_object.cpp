@@ -32,6 +32,15 @@ struct PixelStretch {
         count(std::clamp(int(std::ceil(extent.high)) - first, 1, size - first)) {}
 };
 
+/// Where a picture with `factor` times the pixels each way may show what is at these places, snapped corners included.
+accounting_detail::PixelRect touched_pixels(const View& enlarged, const ObjectPlaces& places, int factor) {
+  const auto stretch = [factor](const ValueRange& extent, int size) {
+    return PixelStretch({extent.low * factor - 1, extent.high * factor + 1}, size);
+  };
+  const PixelStretch columns = stretch(places.columns, enlarged.width), rows = stretch(places.rows, enlarged.height);
+  return {columns.first, rows.first, columns.first + columns.count - 1, rows.first + rows.count - 1};
+}
+
 /// The part of a view that shows what is in these pixels, as large as there.
 View cropped(const View& view, const PixelStretch& columns, const PixelStretch& rows) {
   const Projection& whole = view.projection;
@@ -51,8 +60,12 @@ View cropped(const View& view, const PixelStretch& columns, const PixelStretch& 
 LoneObject::LoneObject(const Scene& scene, std::uint32_t object)
     : scene_(scene_of_one(scene, object)), surfaces_(scene_, kOneThread) {}
 
-bool LoneObject::has_sample(const View& view) const {
-  const accounting_detail::ObjectCanvas canvas(view, 1);
+bool LoneObject::has_sample(const View& view, const ObjectPlaces& places, int factor) const {
+  if (places.columns.is_empty()) return false;
+  View enlarged = view;
+  enlarged.width *= factor;
+  enlarged.height *= factor;
+  const accounting_detail::ObjectCanvas canvas(enlarged, touched_pixels(enlarged, places, factor));
   accounting_detail::ObjectMask mask(surfaces_.placed(), canvas, Isa::best);
   mask.draw(surfaces_.placed().ranges);
   const auto is_marked = [&](const accounting_detail::MaskPlane& plane) {

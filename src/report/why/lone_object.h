@@ -11,8 +11,9 @@ class LoneObject {
  public:
   LoneObject(const Scene& scene, std::uint32_t object);
 
-  /// Whether it would cover a sample of the picture.
-  [[nodiscard]] bool has_sample(const View& view) const;
+  /// Whether it would cover a sample of the picture, or of one with `factor` times the pixels each way, which is a
+  /// valid view. `places`: where it is in the picture.
+  [[nodiscard]] bool has_sample(const View& view, const ObjectPlaces& places, int factor = 1) const;
   /// Its area in the picture, in square pixels. `places`: where it is.
   [[nodiscard]] double area(const View& view, const ObjectPlaces& places) const;
 

@@ -118,12 +118,12 @@ class CameraAim {
 /// A circle of this radius, in pixels, has a sample in it wherever it lies, and also when corners are snapped.
 constexpr double kSampledRadius = 0.72;
 
-Remedy enlargement(double widest, const View& view) {
-  if (!(widest > 0)) return {};
-  const double factor = std::ceil(kSampledRadius / widest);
-  const double width = view.width * factor, height = view.height * factor;
-  if (std::max(width, height) > 16384 || width * height * view.samples > double(most_samples)) return {};
-  return {RemedyKind::enlarge, std::max(factor, 2.0), 0, 0, {}};
+/// What of the picture is looked at has at most so many samples.
+bool is_small_enough(const ObjectPlaces& places, const View& view, int factor) {
+  constexpr double kMostSamples = 1 << 22;
+  const double across = (places.columns.high - places.columns.low) * factor + 3;
+  const double down = (places.rows.high - places.rows.low) * factor + 3;
+  return across * down * view.samples <= kMostSamples;
 }
 
 }  // namespace
@@ -143,9 +143,22 @@ Remedy remedy_for(SightReason reason, const ObjectPlaces& places, const View& vi
     }
     case SightReason::faces_away: return {RemedyKind::show_both_sides, 0, 0, 0, {}};
     case SightReason::transparent: return {RemedyKind::make_opaque, 0, 0, 0, {}};
-    case SightReason::no_sample: return enlargement(places.widest, view);
     default: return {};
   }
+}
+
+Remedy enlargement_for(const LoneObject& lone, const ObjectPlaces& places, const View& view) {
+  constexpr int kMostPixels = 16384;
+  const int largest = kMostPixels / std::max(view.width, view.height);
+  const auto is_possible = [&](double factor) {
+    return factor <= largest && double(view.sample_count()) * factor * factor <= double(most_samples);
+  };
+  const double sufficient = std::max(2.0, std::ceil(kSampledRadius / places.widest));
+  for (int factor = 2; factor < sufficient && is_possible(factor); factor += (factor + 1) / 2)
+    if (is_small_enough(places, view, factor) && lone.has_sample(view, places, factor))
+      return {RemedyKind::enlarge, double(factor), 0, 0, {}};
+  if (!is_possible(sufficient)) return {};
+  return {RemedyKind::enlarge, sufficient, 0, 0, {}};
 }
 
 }  // namespace frontmost::why_detail

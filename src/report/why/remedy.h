@@ -2,11 +2,15 @@
 // What to change in a view, in round numbers.
 #pragma once
 
+#include "report/why/lone_object.h"
 #include "report/why/places.h"
 
 namespace frontmost::why_detail {
 
-/// For an object that `reason`, one of those up to no_sample, keeps from being seen; nothing where nothing helps.
+/// For an object that `reason`, one of those before no_sample, keeps from being seen; nothing where nothing helps.
 [[nodiscard]] Remedy remedy_for(SightReason reason, const ObjectPlaces& places, const View& view);
+/// For an object that covers no sample: the first of some growing pictures in which it covers one; nothing where that
+/// is none of up to 16384 pixels each way.
+[[nodiscard]] Remedy enlargement_for(const LoneObject& lone, const ObjectPlaces& places, const View& view);
 
 }  // namespace frontmost::why_detail
