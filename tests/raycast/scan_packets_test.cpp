@@ -70,18 +70,19 @@ std::vector<RayCamera> cameras_at(const glm::dvec3& eye, std::uint64_t seed) {
 
 TEST(ScanPackets, FindWhatEveryRayFindsAlone) {
   const int seeds = under_sanitizer ? 1 : 2;
+  const std::size_t eyes = under_sanitizer ? 1 : 3;
   std::size_t met = 0;
   for (const Kind kind : all_kinds)
     for (std::uint64_t seed = 0; seed < std::uint64_t(seeds); ++seed) {
       SCOPED_TRACE(testing::Message() << "kind " << int(kind) << " seed " << seed);
       const Indexed of(scene_of(random_mesh(kind, 600, seed)));
-      // Within the triangles, on a corner of the grids, and on a triangle's corner.
-      const glm::vec3 corner = of.surfaces.corners(0)[1];
-      for (const glm::dvec3& eye : {glm::dvec3(0.03, -0.1, 0.2), glm::dvec3(0.25, 0.5, 1), glm::dvec3(corner)})
+      // Within the triangles, on a triangle's corner, and on a corner of the grids.
+      const glm::dvec3 all[] = {{0.03, -0.1, 0.2}, glm::dvec3(of.surfaces.corners(0)[1]), {0.25, 0.5, 1}};
+      for (const glm::dvec3& eye : std::span(all).first(eyes))
         for (const RayCamera& camera : cameras_at(eye, seed)) met += expect_as_ray_by_ray(of.index, camera);
       ASSERT_FALSE(HasFailure());
     }
-  EXPECT_GT(met, 80'000u * std::size_t(seeds));
+  EXPECT_GT(met, 25'000u * eyes * std::size_t(seeds));
 }
 
 TEST(ScanPackets, SeeThroughTheSameHoles) {
