@@ -13,16 +13,6 @@
 namespace frontmost::web {
 namespace {
 
-/// Through the centre of a pixel.
-Ray ray_through(const View& view, int x, int y) {
-  const Projection& p = view.projection;
-  const double right = p.left + (p.right - p.left) * ((x + 0.5) / view.width);
-  const double up = p.top - (p.top - p.bottom) * ((y + 0.5) / view.height);
-  const glm::dvec3 aside = view.right() * right + view.up() * up;
-  if (p.orthographic) return {glm::vec3(view.eye() + aside), glm::vec3(view.forward())};
-  return {glm::vec3(view.eye()), glm::vec3(view.forward() + aside)};
-}
-
 Json hit_json(const Surfaces& surfaces, PrimitiveId id, double depth) {
   const PrimitiveSource source = surfaces.source(id);
   const Scene& scene = surfaces.scene();
@@ -75,7 +65,8 @@ Json Workbench::point(const Json& question) {
   if (question.value("behind", true)) {
     constexpr std::size_t most_hits = 64;
     if (!now.index) now.index.emplace(now.surfaces);
-    const Ray ray = ray_through(visible.view, x, y);
+    const SightLine sight = sight_through(visible.view, x, y);
+    const Ray ray{glm::vec3(sight.origin), glm::vec3(sight.direction)};
     const double along = glm::dot(glm::dvec3(ray.direction), visible.view.forward());
     for (const RayHit& hit : all_hits(*now.index, ray)) {
       const double depth = hit.t * along;

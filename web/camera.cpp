@@ -40,6 +40,15 @@ View view_of(const Json& camera, const Box& bounds) {
   return view;
 }
 
+SightLine sight_through(const View& view, int x, int y) {
+  const Projection& p = view.projection;
+  const double right = p.left + (p.right - p.left) * ((x + 0.5) / view.width);
+  const double up = p.top - (p.top - p.bottom) * ((y + 0.5) / view.height);
+  const glm::dvec3 aside = view.right() * right + view.up() * up;
+  if (p.orthographic) return {view.eye() + aside, view.forward()};
+  return {view.eye(), view.forward() + aside};
+}
+
 Json camera_json(const View& view, const glm::dvec3& centre) {
   const double along = std::max(glm::dot(centre - view.eye(), view.forward()), 1e-6);
   return {

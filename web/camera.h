@@ -15,6 +15,13 @@ namespace frontmost::web {
 /// \throws Error bad_argument or singular_camera as look_at() and validate() do.
 [[nodiscard]] View view_of(const Json& camera, const Box& bounds);
 
+/// Points origin + t * direction.
+struct SightLine {
+  glm::dvec3 origin{0}, direction{0};
+};
+/// Through the centre of a pixel. In perspective t is the planar distance.
+[[nodiscard]] SightLine sight_through(const View& view, int x, int y);
+
 /// The camera of a view in every convention: pose matrices, intrinsics, projection matrices.
 [[nodiscard]] Json conventions_json(const View& view, const glm::dvec3& origin);
 

@@ -58,7 +58,9 @@ const std::map<std::string, AnswerFunction, std::less<>>& answers() {
       {"lesson.culling", culling_lesson},
       {"lesson.projection", projection_lesson},
       {"lesson.painter", painter_lesson},
+      {"lesson.rays", rays_lesson},
       {"lesson.layers", layers_lesson},
+      {"lesson.lines", lines_lesson},
       {"lesson.methods", methods_lesson},
   };
   return made;

@@ -59,6 +59,46 @@ const text = (place) => new TextDecoder("latin1").decode(plane(place));
   assert.ok(ask({ ask: "lesson.culling", scene: "cube", camera: { ...camera, culling: 2 } }).changed > 1000);
 }
 
+// A plain tree of boxes finds what the library's rays do, at every pixel and on every level; it asks less the further it
+// is opened; and the light's verdict does not change with the tree.
+for (const scene of ["blocks", "cubes", "concave", "teapot"]) {
+  const camera = ask({ ask: "lesson.frame", scene, width: 160, height: 120, forward: [-0.6, -0.45, -0.8] });
+  const beside = ask({ ask: "lesson.frame", scene, width: 160, height: 120, forward: [0.75, -0.4, -0.75], beside: [camera.eye] });
+  let before = Infinity;
+  for (const level of [0, 3, 99]) {
+    const tree = ask({ ask: "lesson.rays", example: "levels", scene, camera, level });
+    assert.equal(tree.differing, 0, `${scene}, level ${level}`);
+    assert.ok(tree.triangles_asked < before && tree.triangles_asked < tree.without);
+    before = tree.triangles_asked;
+  }
+  for (const [x, y] of [[80, 60], [60, 80], [100, 70], [2, 2]]) {
+    const one = ask({ ask: "lesson.rays", scene, camera, beside, x, y });
+    const met = one.steps.filter((step) => step.kind === "triangle" && step.verdict === "met");
+    assert.equal(one.hit?.triangle ?? 4294967295, one.library);
+    assert.equal(met.at(-1)?.number, one.hit?.triangle);
+    met.forEach((step, i) => assert.ok(i === 0 || step.t <= met[i - 1].t, "each that is met is nearer"));
+    assert.equal(one.steps.filter((step) => step.kind === "triangle").length, one.asked);
+  }
+}
+
+// What triangles hide of an edge, one by one, adds up to the library's counts in every part; of a cube three edges are
+// hidden, by one surface; behind blocks some are by two and more.
+for (const [scene, least] of [["cube", 1], ["concave", 2], ["cubes", 2], ["blocks", 3]]) {
+  const camera = ask({ ask: "lesson.frame", scene, width: 320, height: 240, forward: [-0.6, -0.45, -0.8] });
+  const drawing = ask({ ask: "lesson.lines", scene, camera });
+  const numbers = new Float32Array(plane(drawing.parts).buffer), parts = [];
+  for (let i = 0; i < numbers.length; i += 9) parts.push({ edge: numbers[i], kind: numbers[i + 1], hiddenBy: numbers[i + 2], begin: numbers[i + 7], end: numbers[i + 8] });
+  for (let edge = 0; edge < drawing.edges; ++edge) {
+    const { intervals } = ask({ ask: "lesson.lines", scene, camera, edge });
+    for (const part of parts.filter((one) => one.edge === edge)) {
+      const middle = (part.begin + part.end) / 2;
+      assert.equal(intervals.filter((one) => one.begin < middle && middle < one.end).length, part.hiddenBy, `${scene}, edge ${edge}`);
+    }
+  }
+  assert.ok(Math.max(...parts.map((part) => part.hiddenBy)) >= least, scene);
+  if (scene === "cube") assert.deepEqual([drawing.silhouettes, drawing.creases, parts.filter((part) => part.hiddenBy === 1).length], [6, 6, 3]);
+}
+
 // Fragments come nearest first; without their order glass has other colours; every method shows what the z-buffer does.
 {
   const layers = ask({ ask: "lesson.layers", scene: "cubes", camera: { width: 160, height: 120, eye: [4, 3, 5], target: [0, 0, 0], up: [0, 1, 0], angle: 30 } });

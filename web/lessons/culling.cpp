@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Why anything is hidden: triangles that turn away, lie outside of the view, or behind others.
 #include <frontmost/explain.h>
-#include <frontmost/shade.h>
 #include <frontmost/zbuffer.h>
 
 #include "web/lessons/lessons.h"
@@ -25,14 +24,6 @@ Facing facing_of(const Surfaces& surfaces, const View& view, PrimitiveId id) {
   const glm::dvec3 to_eye = view.projection.orthographic ? -view.forward() : view.eye() - facing.middle;
   facing.cosine = glm::dot(facing.normal, to_eye) / glm::length(to_eye);
   return facing;
-}
-
-glm::dvec2 on_screen(const View& view, const glm::dvec3& world) {
-  const glm::dvec3 from_eye = world - view.eye();
-  const Projection& p = view.projection;
-  const double depth = glm::dot(from_eye, view.forward()), scale = p.orthographic ? 1 : std::max(depth, 1e-9);
-  const double x = glm::dot(from_eye, view.right()) / scale, y = glm::dot(from_eye, view.up()) / scale;
-  return {(x - p.left) / (p.right - p.left) * view.width, (p.top - y) / (p.top - p.bottom) * view.height};
 }
 
 /// At how many pixels another triangle is seen.
@@ -77,10 +68,7 @@ Json culling_lesson(const Json& question) {
   all.culling = Culling::none;
   const Visible visible = zbuffer(stage.surfaces, view);
   const Visible without = zbuffer(stage.surfaces, all);
-  ShadeOptions options;
-  options.background.reset();
-  options.shadows = Shadows::off;
-  picture = shade_bitmap(stage.surfaces, ShadeInput(visible), options);
+  picture = lesson_picture(stage, visible);
   Json arrows = Json::array();
   std::size_t front = 0, back = 0, edge_on = 0;
   constexpr PrimitiveId most_arrows = 200;

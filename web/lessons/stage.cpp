@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes of the lessons.
 #include <frontmost/io.h>
+#include <frontmost/shade.h>
 
 #include <array>
 #include <memory>
@@ -11,25 +12,40 @@
 namespace frontmost::web {
 namespace {
 
-/// A U of solid blocks: one body that hides parts of itself.
+Mesh block(const char* name, const glm::vec3& low, const glm::vec3& high) {
+  constexpr std::array<std::array<std::uint32_t, 4>, 6> sides = {
+      {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
+  Mesh mesh;
+  mesh.name = name;
+  for (int i = 0; i < 8; ++i)
+    mesh.positions.push_back({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
+  for (const auto& s : sides) {
+    mesh.triangles.push_back({s[0], s[1], s[2]});
+    mesh.triangles.push_back({s[0], s[2], s[3]});
+  }
+  return mesh;
+}
+
+/// A U, drawn out: one body that hides parts of itself.
 Scene concave_scene() {
+  constexpr std::array<std::array<float, 2>, 8> outline = {
+      {{-1.5f, -1}, {1.5f, -1}, {1.5f, 1}, {0.8f, 1}, {0.8f, -0.4f}, {-0.8f, -0.4f}, {-0.8f, 1}, {-1.5f, 1}}};
+  constexpr std::array<std::array<std::uint32_t, 3>, 6> front = {
+      {{0, 1, 4}, {0, 4, 5}, {1, 2, 3}, {1, 3, 4}, {0, 5, 6}, {0, 6, 7}}};
   Scene scene;
   scene.name = "concave";
-  const std::array<std::array<glm::vec3, 2>, 3> blocks = {{{glm::vec3(-1.5f, -1, -0.6f), glm::vec3(1.5f, -0.4f, 0.6f)},
-                                                           {glm::vec3(-1.5f, -0.4f, -0.6f), glm::vec3(-0.8f, 1, 0.6f)},
-                                                           {glm::vec3(0.8f, -0.4f, -0.6f), glm::vec3(1.5f, 1, 0.6f)}}};
   Mesh mesh;
   mesh.name = "concave";
-  for (const auto& [low, high] : blocks) {
-    const auto first = std::uint32_t(mesh.positions.size());
-    for (int i = 0; i < 8; ++i)
-      mesh.positions.push_back({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
-    constexpr std::array<std::array<std::uint32_t, 4>, 6> sides = {
-        {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
-    for (const auto& s : sides) {
-      mesh.triangles.push_back(glm::uvec3(s[0], s[1], s[2]) + first);
-      mesh.triangles.push_back(glm::uvec3(s[0], s[2], s[3]) + first);
-    }
+  for (const float z : {0.6f, -0.6f})
+    for (const auto& [x, y] : outline) mesh.positions.push_back({x, y, z});
+  for (const auto& t : front) {
+    mesh.triangles.push_back({t[0], t[1], t[2]});
+    mesh.triangles.push_back({t[0] + 8, t[2] + 8, t[1] + 8});
+  }
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    const std::uint32_t next = (i + 1) % 8;
+    mesh.triangles.push_back({i, i + 8, next + 8});
+    mesh.triangles.push_back({i, next + 8, next});
   }
   add(scene, std::move(mesh));
   return scene;
@@ -37,11 +53,20 @@ Scene concave_scene() {
 
 /// One convex body.
 Scene cube_scene() {
-  Scene scene = concave_scene();
+  Scene scene;
   scene.name = "cube";
-  Mesh& mesh = scene.meshes.front();
-  mesh.triangles.resize(12);
-  for (int i = 0; i < 8; ++i) mesh.positions[std::size_t(i)] = {i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1};
+  add(scene, block("cube", {-1, -1, -1}, {1, 1, 1}));
+  return scene;
+}
+
+/// Blocks on a floor, which throw shadows on each other.
+Scene blocks_scene() {
+  Scene scene;
+  scene.name = "blocks";
+  add(scene, block("floor", {-1.8f, -0.1f, -1.8f}, {1.8f, 0, 1.8f}));
+  add(scene, block("tower", {-0.9f, 0, -0.6f}, {-0.2f, 1.7f, 0.1f}));
+  add(scene, block("cube", {0.3f, 0, -1}, {1.1f, 0.8f, -0.2f}));
+  add(scene, block("step", {-0.5f, 0, 0.7f}, {0.7f, 0.35f, 1.2f}));
   return scene;
 }
 
@@ -52,9 +77,10 @@ const LessonScene& lesson_scene(const Json& question) {
   static std::unique_ptr<LessonScene> stage;
   const std::string wanted = question.value("scene", "cubes");
   if (!stage || wanted != name) {
-    stage = std::make_unique<LessonScene>(wanted == "concave" ? concave_scene()
-                                          : wanted == "cube"  ? cube_scene()
-                                                              : builtin(wanted));
+    stage = std::make_unique<LessonScene>(wanted == "concave"  ? concave_scene()
+                                          : wanted == "cube"   ? cube_scene()
+                                          : wanted == "blocks" ? blocks_scene()
+                                                               : builtin(wanted));
     name = wanted;
   }
   return *stage;
@@ -62,10 +88,13 @@ const LessonScene& lesson_scene(const Json& question) {
 
 Json frame_lesson(const Json& question) {
   const LessonScene& stage = lesson_scene(question);
+  Box box = stage.surfaces.bounds();
+  for (const Json& point : question.value("beside", Json::array())) box.include(glm::vec3(vector_of(point)));
   FrameOptions options;
   options.forward = vector_of(question.at("forward"));
-  const View view = frame(stage.surfaces, question.at("width"), question.at("height"), options);
-  return camera_json(view, stage.surfaces.bounds().centre());
+  if (question.contains("angle")) options.min_fov = glm::radians(question["angle"].get<double>());
+  const View view = frame(box, stage.scene.up, question.at("width"), question.at("height"), options);
+  return camera_json(view, box.centre());
 }
 
 View lesson_view(const LessonScene& stage, const Json& question) {
@@ -93,6 +122,61 @@ std::vector<std::uint8_t> triangle_colors(const Visible& visible) {
     rgba[4 * i + 3] = 255;
   }
   return rgba;
+}
+
+Bitmap lesson_picture(const LessonScene& stage, const Visible& visible) {
+  ShadeOptions options;
+  options.background.reset();
+  options.shadows = Shadows::off;
+  return shade_bitmap(stage.surfaces, ShadeInput(visible), options);
+}
+
+glm::dvec3 from_eye(const View& view, const glm::dvec3& world) {
+  const glm::dvec3 away = world - view.eye();
+  return {glm::dot(away, view.right()), glm::dot(away, view.up()), glm::dot(away, view.forward())};
+}
+
+glm::dvec2 on_screen(const View& view, const glm::dvec3& world) {
+  const Projection& p = view.projection;
+  const glm::dvec3 at = from_eye(view, world);
+  const double scale = p.orthographic ? 1 : std::max(at.z, 1e-9);
+  return {(at.x / scale - p.left) / (p.right - p.left) * view.width,
+          (p.top - at.y / scale) / (p.top - p.bottom) * view.height};
+}
+
+std::array<WorldLine, 12> sides_of(const Box& box) {
+  std::array<WorldLine, 12> lines;
+  std::size_t count = 0;
+  for (int i = 0; i < 8; ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      if (i >> axis & 1) continue;
+      const auto corner = [&](int bits) {
+        return glm::dvec3(bits & 1 ? box.high.x : box.low.x, bits & 2 ? box.high.y : box.low.y,
+                          bits & 4 ? box.high.z : box.low.z);
+      };
+      lines[count++] = {corner(i), corner(i | 1 << axis)};
+    }
+  return lines;
+}
+
+std::array<WorldLine, 3> sides_of(const std::array<glm::vec3, 3>& corners) {
+  const glm::dvec3 a(corners[0]), b(corners[1]), c(corners[2]);
+  return {{{a, b}, {b, c}, {c, a}}};
+}
+
+Json lines_json(const View& view, std::span<const WorldLine> lines) {
+  const double near = view.projection.clip.near;
+  Json json = Json::array();
+  for (WorldLine line : lines) {
+    const double from = from_eye(view, line[0]).z - near, to = from_eye(view, line[1]).z - near;
+    if (from < 0 && to < 0) continue;
+    const glm::dvec3 border = line[0] + (line[1] - line[0]) * (from / (from - to));
+    if (from < 0) line[0] = border;
+    if (to < 0) line[1] = border;
+    const glm::dvec2 a = on_screen(view, line[0]), b = on_screen(view, line[1]);
+    json.push_back({a.x, a.y, b.x, b.y});
+  }
+  return json;
 }
 
 }  // namespace frontmost::web

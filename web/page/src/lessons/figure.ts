@@ -40,17 +40,68 @@ export class Latest {
   }
 }
 
-export interface Plate { root: HTMLElement; canvas: HTMLCanvasElement; show(answer: Answer, key?: string): void }
+export interface Plate {
+  root: HTMLElement;
+  canvas: HTMLCanvasElement;
+  show(answer: Answer, key?: string, size?: [number, number]): void;
+  /** Shapes of SVG over the picture, in its pixels. */
+  mark(...shapes: string[]): void;
+}
 export function plate(title: string, label = title): Plate {
   const canvas = element("canvas", { width: 320, height: 240, role: "img", "aria-label": label });
+  const marks = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+  marks.setAttribute("class", "marks");
+  marks.setAttribute("aria-hidden", "true");
   return {
-    root: element("div", { class: "plate" }, element("h3", {}, title), canvas),
+    root: element("div", { class: "plate" }, element("h3", {}, title), element("div", { class: "pane" }, canvas, marks)),
     canvas,
-    show(answer, key = "pixels") {
-      canvas.width = answer.width;
-      canvas.height = answer.height;
-      canvas.getContext("2d")!.putImageData(toImage(answer, key), 0, 0);
+    show(answer, key = "pixels", [width, height] = [answer.width, answer.height]) {
+      canvas.width = width;
+      canvas.height = height;
+      canvas.getContext("2d")!.putImageData(toImage({ ...answer, width, height }, key), 0, 0);
     },
+    mark(...shapes) {
+      marks.setAttribute("viewBox", `0 0 ${canvas.width} ${canvas.height}`);
+      marks.innerHTML = shapes.join("");
+    },
+  };
+}
+
+/** Lines [x, y, x, y] of an answer, as a shape. */
+export function lines(of: number[][], color: string, width = 1.5, more = ""): string {
+  const path = of.map(([x, y, toX, toY]) => `M${x.toFixed(2)} ${y.toFixed(2)}L${toX.toFixed(2)} ${toY.toFixed(2)}`).join("");
+  return `<path d="${path}" fill="none" stroke="var(${color})" stroke-width="${width}" stroke-linecap="round" ${more}/>`;
+}
+export function dot(x: number, y: number, color: string, radius = 4): string {
+  return `<circle cx="${x.toFixed(2)}" cy="${y.toFixed(2)}" r="${radius}" fill="var(${color})" stroke="var(--panel)"/>`;
+}
+
+/** A pixel that is chosen by pointing, by touch, and by the arrow keys. */
+export function pointing({ canvas }: Plate, [x, y]: [number, number], take: (x: number, y: number) => void): void {
+  const go = (toX: number, toY: number) => {
+    [x, y] = [Math.max(0, Math.min(canvas.width - 1, toX)), Math.max(0, Math.min(canvas.height - 1, toY))];
+    take(x, y);
+  };
+  const point = (event: PointerEvent) =>
+    go(Math.floor((event.offsetX / canvas.clientWidth) * canvas.width), Math.floor((event.offsetY / canvas.clientHeight) * canvas.height));
+  canvas.tabIndex = 0;
+  canvas.style.cursor = "crosshair";
+  canvas.addEventListener("pointermove", point);
+  canvas.addEventListener("pointerdown", point);
+  canvas.addEventListener("keydown", (event) => {
+    const by: Record<string, [number, number]> = { ArrowLeft: [-2, 0], ArrowRight: [2, 0], ArrowUp: [0, -2], ArrowDown: [0, 2] };
+    if (!by[event.key]) return;
+    event.preventDefault();
+    go(x + by[event.key][0], y + by[event.key][1]);
+  });
+}
+
+/** Names and values, one below the other. */
+export function facts(): { root: HTMLElement; set(rows: [string, string | number][]): void } {
+  const root = element("dl", { class: "facts" });
+  return {
+    root,
+    set: (rows) => root.replaceChildren(...rows.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value.toLocaleString())])),
   };
 }
 
@@ -115,6 +166,12 @@ export function figure(pictures: HTMLElement[], controls: HTMLElement[]): HTMLEl
   return element("figure", { class: "figure" }, element("div", { class: "picture" }, ...pictures), element("div", { class: "controls" }, ...controls));
 }
 
+interface Framing { angle?: number; beside?: Vector[] }
+/** A camera that shows all of a scene from a direction, and points beside it. */
+export async function framed(scene: string, forward: Vector, [width, height]: [number, number], more: Framing = {}): Promise<Camera> {
+  return client().ask({ ask: "lesson.frame", scene, width, height, forward, ...more });
+}
+
 /** A camera that goes once around a scene when it is dragged. `moved` is called with what it is now. */
 export class Eye {
   camera: Camera | undefined;
@@ -125,9 +182,9 @@ export class Eye {
   }
 
   /** Shows all of a scene, from a direction. */
-  async place(scene: string, forward: Vector, [width, height]: [number, number]): Promise<void> {
+  async place(scene: string, forward: Vector, size: [number, number], more: Framing = {}): Promise<void> {
     this.camera = undefined;
-    this.camera = await client().ask({ ask: "lesson.frame", scene, width, height, forward });
+    this.camera = await framed(scene, forward, size, more);
   }
 }
 

@@ -3,13 +3,15 @@
 import type { Text } from "../language.ts";
 import { culling } from "./culling.ts";
 import { layers } from "./layers.ts";
+import { hiddenLines } from "./lines.ts";
 import { methods } from "./methods.ts";
 import { painter } from "./painter.ts";
 import { projection } from "./projection.ts";
+import { rays } from "./rays.ts";
 import { zbuffer } from "./zbuffer.ts";
 
 /** A part of a lesson: words, and a figure where there is one. */
 export interface Part { title?: Text; prose: Text[]; figure?: () => HTMLElement }
 export interface Lesson { id: string; title: Text; lead: Text; parts: Part[] }
 
-export const lessons: Lesson[] = [culling, projection, zbuffer, painter, layers, methods];
+export const lessons: Lesson[] = [culling, projection, zbuffer, painter, rays, layers, hiddenLines, methods];
