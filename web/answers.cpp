@@ -13,21 +13,21 @@
 namespace frontmost::web {
 namespace {
 
-Json hit_json(const Surfaces& surfaces, PrimitiveId id, double depth) {
+PlainJson hit_json(const Surfaces& surfaces, PrimitiveId id, double depth) {
   const PrimitiveSource source = surfaces.source(id);
   const Scene& scene = surfaces.scene();
   const std::uint32_t material = scene.meshes[source.mesh].material_of(source.triangle);
-  Json json = {{"object", source.instance},
-               {"name", utf8_text(scene.instances[source.instance].name)},
-               {"triangle", source.triangle},
-               {"primitive", id},
-               {"depth", finite_or_null(depth)}};
+  PlainJson json = {{"object", source.instance},
+                    {"name", utf8_text(scene.instances[source.instance].name)},
+                    {"triangle", source.triangle},
+                    {"primitive", id},
+                    {"depth", finite_or_null(depth)}};
   if (material != no_index) json["material"] = utf8_text(scene.materials[material].name);
   return json;
 }
 
-Json object_json(const Explanation& why, const ObjectAccount& account, const ObjectNames& names) {
-  Json hiders = Json::array();
+PlainJson object_json(const Explanation& why, const ObjectAccount& account, const ObjectNames& names) {
+  PlainJson hiders = PlainJson::array();
   for (const HiderShare& hider : why.hiders)
     hiders.push_back({{"object", hider.object}, {"name", names[hider.object]}, {"share", hider.share}});
   return {{"object", why.object},
@@ -52,13 +52,13 @@ glm::dvec3 direction_around(const glm::dvec3& up, int i, int count) {
 
 }  // namespace
 
-Json Workbench::point(const Json& question) {
+PlainJson Workbench::point(const PlainJson& question) {
   Model& now = model();
   const Visible& visible = seen();
   const int x = question.at("x"), y = question.at("y");
   if (x < 0 || y < 0 || x >= visible.view.width || y >= visible.view.height)
     throw Error(ErrorCode::bad_argument, "point: outside of the picture");
-  Json hits = Json::array();
+  PlainJson hits = PlainJson::array();
   const std::size_t i = visible.index(x, y);
   const PrimitiveId first = visible.primitives[i];
   if (first != no_primitive) hits.push_back(hit_json(now.surfaces, first, depth_of_key(visible.view, visible.keys[i])));
@@ -78,12 +78,12 @@ Json Workbench::point(const Json& question) {
   return {{"hits", std::move(hits)}};
 }
 
-Json Workbench::report(const Json&) {
+PlainJson Workbench::report(const PlainJson&) {
   Model& now = model();
   const Visible& visible = seen();
   const Accounting accounts = account(now.surfaces, visible);
   const ObjectNames names(now.scene);
-  Json objects = Json::array();
+  PlainJson objects = PlainJson::array();
   for (const Explanation& why : explain_all(now.surfaces, visible, accounts))
     objects.push_back(object_json(why, accounts.objects[why.object], names));
   return {{"width", visible.view.width},
@@ -93,7 +93,7 @@ Json Workbench::report(const Json&) {
           {"cycles", find_hiding_order(accounts.objects.size(), accounts.hidden_by_front).cycles}};
 }
 
-Json Workbench::sphere(const Json& question) {
+PlainJson Workbench::sphere(const PlainJson& question) {
   Model& now = model();
   const int count = question.value("views", 20), size = question.value("size", 256);
   if (count < 1 || count > 1000) throw Error(ErrorCode::bad_argument, "views: must be 1 to 1000");

@@ -7,14 +7,14 @@ namespace {
 // Of cli/values.h, whose products these must be.
 constexpr double kRadiansPerDegree = 0.017453292519943295, kDegreesPerRadian = 57.29577951308232;
 
-Json intrinsics_json(const View& view, PixelRule rule) {
+PlainJson intrinsics_json(const View& view, PixelRule rule) {
   const Intrinsics k = intrinsics_of(view.projection, view.width, view.height, rule);
   return {{"fx", k.fx}, {"fy", k.fy}, {"cx", k.cx}, {"cy", k.cy}};
 }
 
 }  // namespace
 
-View view_of(const Json& camera, const Box& bounds) {
+View view_of(const PlainJson& camera, const Box& bounds) {
   View view;
   view.width = camera.at("width");
   view.height = camera.at("height");
@@ -49,7 +49,7 @@ SightLine sight_through(const View& view, int x, int y) {
   return {view.eye(), view.forward() + aside};
 }
 
-Json camera_json(const View& view, const glm::dvec3& centre) {
+PlainJson camera_json(const View& view, const glm::dvec3& centre) {
   const double along = std::max(glm::dot(centre - view.eye(), view.forward()), 1e-6);
   return {
       {"width", view.width},
@@ -61,13 +61,13 @@ Json camera_json(const View& view, const glm::dvec3& centre) {
       {"orthographic", view.projection.orthographic}};
 }
 
-Json conventions_json(const View& view, const glm::dvec3& origin) {
+PlainJson conventions_json(const View& view, const glm::dvec3& origin) {
   glm::dmat4 pose = view.world_from_eye;
   pose[3] += glm::dvec4(origin, 0);
-  Json json = {{"resolution", {view.width, view.height}},
-               {"projection", view.projection.orthographic ? "orthographic" : "perspective"},
-               {"near", view.projection.clip.near},
-               {"far", finite_or_null(view.projection.clip.far)}};
+  PlainJson json = {{"resolution", {view.width, view.height}},
+                    {"projection", view.projection.orthographic ? "orthographic" : "perspective"},
+                    {"near", view.projection.clip.near},
+                    {"far", finite_or_null(view.projection.clip.far)}};
   json["poses"]["opengl"]["world_from_camera"] = to_json(pose);
   json["poses"]["opengl"]["camera_from_world"] = to_json(pose_of(pose, PoseConvention::opengl_world_to_camera));
   json["poses"]["opencv"]["world_from_camera"] = to_json(pose_of(pose, PoseConvention::opencv_camera_to_world));

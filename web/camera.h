@@ -13,7 +13,7 @@ namespace frontmost::web {
 /// the view that `frontmost render` makes of the flags of these names, to the bit. In parallel projection the angle is
 /// that of a perspective camera that sees as much at the target. Without "near" and "far" they enclose `bounds`.
 /// \throws Error bad_argument or singular_camera as look_at() and validate() do.
-[[nodiscard]] View view_of(const Json& camera, const Box& bounds);
+[[nodiscard]] View view_of(const PlainJson& camera, const Box& bounds);
 
 /// Points origin + t * direction.
 struct SightLine {
@@ -23,9 +23,9 @@ struct SightLine {
 [[nodiscard]] SightLine sight_through(const View& view, int x, int y);
 
 /// The camera of a view in every convention: pose matrices, intrinsics, projection matrices.
-[[nodiscard]] Json conventions_json(const View& view, const glm::dvec3& origin);
+[[nodiscard]] PlainJson conventions_json(const View& view, const glm::dvec3& origin);
 
 /// The other way round, for a view that frame() has made. `centre`: its target is as far away as this.
-[[nodiscard]] Json camera_json(const View& view, const glm::dvec3& centre);
+[[nodiscard]] PlainJson camera_json(const View& view, const glm::dvec3& centre);
 
 }  // namespace frontmost::web

@@ -8,7 +8,7 @@
 namespace frontmost::web {
 namespace {
 
-Sheet drawing_of(const Surfaces& surfaces, const View& view, const Json& question) {
+Sheet drawing_of(const Surfaces& surfaces, const View& view, const PlainJson& question) {
   SheetOptions options;
   options.hidden = question.value("hidden", false) ? HiddenLines::dashed : HiddenLines::none;
   return draw_view(surfaces, view, options);
@@ -25,7 +25,7 @@ Image map_of(const Surfaces& surfaces, const Visible& visible, const std::string
 
 }  // namespace
 
-Json Workbench::write(const Json& question) {
+PlainJson Workbench::write(const PlainJson& question) {
   const Surfaces& surfaces = model().surfaces;
   const Visible& visible = seen();
   const std::string what = question.at("what"), format = question.at("format"), path = "/file." + format;

@@ -10,31 +10,34 @@
 
 namespace frontmost::web {
 
-using Json = nlohmann::ordered_json;
+/// Keys in the order of the alphabet, as the library's own parser has them: the module holds one of it.
+using PlainJson = nlohmann::json;
 
 template <int n, class T>
-[[nodiscard]] Json to_json(const glm::vec<n, T>& vector) {
-  Json result = Json::array();
+[[nodiscard]] PlainJson to_json(const glm::vec<n, T>& vector) {
+  PlainJson result = PlainJson::array();
   for (int i = 0; i < n; ++i) result.push_back(vector[i]);
   return result;
 }
 /// Four rows of four.
-[[nodiscard]] inline Json to_json(const glm::dmat4& matrix) {
-  Json rows = Json::array();
+[[nodiscard]] inline PlainJson to_json(const glm::dmat4& matrix) {
+  PlainJson rows = PlainJson::array();
   for (int row = 0; row < 4; ++row)
     rows.push_back(
-        Json::array({matrix[0][row] + 0.0, matrix[1][row] + 0.0, matrix[2][row] + 0.0, matrix[3][row] + 0.0}));
+        PlainJson::array({matrix[0][row] + 0.0, matrix[1][row] + 0.0, matrix[2][row] + 0.0, matrix[3][row] + 0.0}));
   return rows;
 }
-[[nodiscard]] inline glm::dvec3 vector_of(const Json& json) {
+[[nodiscard]] inline glm::dvec3 vector_of(const PlainJson& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
 }
 /// JSON has no infinity.
-[[nodiscard]] inline Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+[[nodiscard]] inline PlainJson finite_or_null(double value) {
+  return std::isfinite(value) ? PlainJson(value) : PlainJson(nullptr);
+}
 
 /// Where `count` values lie in the module's memory until the next question.
 template <class T>
-[[nodiscard]] Json place_of(const T* values, std::size_t count) {
+[[nodiscard]] PlainJson place_of(const T* values, std::size_t count) {
   return {{"at", std::uintptr_t(values)}, {"bytes", count * sizeof(T)}};
 }
 

@@ -25,22 +25,22 @@ Workbench& workbench() {
   return made;
 }
 
-using AnswerFunction = Json (*)(const Json& question);
+using AnswerFunction = PlainJson (*)(const PlainJson& question);
 
-template <Json (Workbench::*answer)(const Json&)>
-Json by_workbench(const Json& question) {
+template <PlainJson (Workbench::*answer)(const PlainJson&)>
+PlainJson by_workbench(const PlainJson& question) {
   return (workbench().*answer)(question);
 }
 
 const std::map<std::string, AnswerFunction, std::less<>>& answers() {
   static const std::map<std::string, AnswerFunction, std::less<>> made = {
       {"about",
-       [](const Json&) {
-         return Json{{"version", FRONTMOST_VERSION}, {"isa", name(Isa::best)}, {"builtin", builtin_names()}};
+       [](const PlainJson&) {
+         return PlainJson{{"version", FRONTMOST_VERSION}, {"isa", name(Isa::best)}, {"builtin", builtin_names()}};
        }},
       {"open",
-       [](const Json& question) {
-         const Json answer = workbench().open(room(), question);
+       [](const PlainJson& question) {
+         const PlainJson answer = workbench().open(room(), question);
          room() = {};
          return answer;
        }},
@@ -61,14 +61,17 @@ const std::map<std::string, AnswerFunction, std::less<>>& answers() {
       {"lesson.rays", rays_lesson},
       {"lesson.layers", layers_lesson},
       {"lesson.lines", lines_lesson},
+      {"lesson.clipping", clipping_lesson},
+      {"lesson.shadows", shadows_lesson},
+      {"lesson.occlusion", occlusion_lesson},
       {"lesson.methods", methods_lesson},
   };
   return made;
 }
 
-Json answer_to(const std::string& text) {
+PlainJson answer_to(const std::string& text) {
   try {
-    const Json question = Json::parse(text);
+    const PlainJson question = PlainJson::parse(text);
     const std::string ask = question.at("ask");
     const auto found = answers().find(ask);
     if (found == answers().end()) throw Error(ErrorCode::bad_argument, "there is no '" + ask + "'");

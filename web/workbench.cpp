@@ -71,32 +71,34 @@ const Visible& Workbench::seen() {
   return visible_;
 }
 
-Json Workbench::open(std::span<const std::byte> bytes, const Json& question) {
+PlainJson Workbench::open(std::span<const std::byte> bytes, const PlainJson& question) {
   return take(load(bytes, question.at("name").get<std::string>()));
 }
 
-Json Workbench::open_builtin(const Json& question) { return take(builtin(question.at("name").get<std::string>())); }
+PlainJson Workbench::open_builtin(const PlainJson& question) {
+  return take(builtin(question.at("name").get<std::string>()));
+}
 
-Json Workbench::take(Scene&& scene) {
+PlainJson Workbench::take(Scene&& scene) {
   model_ = std::make_unique<Model>(std::move(scene));
   is_current_ = false;
   const Scene& taken = model_->scene;
-  Json objects = Json::array(), warnings = Json::array(), materials = Json::array();
+  PlainJson objects = PlainJson::array(), warnings = PlainJson::array(), materials = PlainJson::array();
   constexpr std::size_t most_listed = 10000;
   for (std::size_t i = 0; i < std::min(taken.instances.size(), most_listed); ++i)
     objects.push_back(utf8_text(taken.instances[i].name));
   for (const Material& material : taken.materials) materials.push_back(utf8_text(material.name));
   for (const std::string& warning : taken.warnings) warnings.push_back(utf8_text(warning));
   const Box& box = model_->surfaces.bounds();
-  Json answer = {{"name", utf8_text(taken.name)},          {"triangles", model_->surfaces.primitive_count()},
-                 {"object_count", taken.instances.size()}, {"objects", std::move(objects)},
-                 {"materials", std::move(materials)},      {"warnings", std::move(warnings)},
-                 {"up", to_json(direction(taken.up))},     {"origin", to_json(taken.origin)}};
+  PlainJson answer = {{"name", utf8_text(taken.name)},          {"triangles", model_->surfaces.primitive_count()},
+                      {"object_count", taken.instances.size()}, {"objects", std::move(objects)},
+                      {"materials", std::move(materials)},      {"warnings", std::move(warnings)},
+                      {"up", to_json(direction(taken.up))},     {"origin", to_json(taken.origin)}};
   if (!box.is_empty()) answer["bounds"] = {to_json(box.low), to_json(box.high)};
   return answer;
 }
 
-Json Workbench::frame(const Json& question) {
+PlainJson Workbench::frame(const PlainJson& question) {
   FrameOptions options;
   options.direction = named_view(question.value("view", "three-quarter"));
   options.orthographic = question.value("orthographic", false);
@@ -107,7 +109,7 @@ Json Workbench::frame(const Json& question) {
   return camera_json(view, box.is_empty() ? glm::dvec3(0) : glm::dvec3(box.centre()));
 }
 
-Json Workbench::pixels_of(const Bitmap& bitmap) {
+PlainJson Workbench::pixels_of(const Bitmap& bitmap) {
   return {
       {"width", bitmap.width}, {"height", bitmap.height}, {"pixels", place_of(bitmap.rgba.data(), bitmap.rgba.size())}};
 }
@@ -124,13 +126,13 @@ void Workbench::color_ids(const Visible& visible, IdKind kind) {
   }
 }
 
-Json Workbench::draw(const Json& question) {
+PlainJson Workbench::draw(const PlainJson& question) {
   Model& now = model();
   Clock clock;
   view_ = view_of(question.at("camera"), now.surfaces.bounds());
   is_current_ = false;
   const std::string show = question.value("show", "picture");
-  Json answer;
+  PlainJson answer;
   View one = view_;
   one.samples = 1;
   zbuffer_.give_back(std::move(visible_));
@@ -166,7 +168,7 @@ Json Workbench::draw(const Json& question) {
   return answer;
 }
 
-Json Workbench::edges(const Json&) {
+PlainJson Workbench::edges(const PlainJson&) {
   (void)seen();
   View one = view_;
   one.samples = 1;
@@ -178,7 +180,7 @@ Json Workbench::edges(const Json&) {
   return {{"segments", place_of(segments_.data(), segments_.size())}};
 }
 
-Json Workbench::conventions(const Json&) {
+PlainJson Workbench::conventions(const PlainJson&) {
   (void)seen();
   return conventions_json(view_, model().scene.origin);
 }

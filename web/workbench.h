@@ -17,33 +17,33 @@
 namespace frontmost::web {
 
 /// Questions are JSON objects, and so are answers; planes of numbers are told by their places in memory, where they
-/// stay until the next question. Everything throws Error as the library does, and Json's exceptions for questions that
-/// lack something.
+/// stay until the next question. Everything throws Error as the library does, and PlainJson's exceptions for questions
+/// that lack something.
 class Workbench {
  public:
   /// The bytes of a file, and its name. \returns what there is: {"name", "triangles", "objects", "materials", "bounds",
   /// "warnings", ...}. The model before is gone, unless this one cannot be read.
-  Json open(std::span<const std::byte> bytes, const Json& question);
+  PlainJson open(std::span<const std::byte> bytes, const PlainJson& question);
   /// {"name"}: a built-in scene.
-  Json open_builtin(const Json& question);
+  PlainJson open_builtin(const PlainJson& question);
 
   /// {"width", "height", "view": "three-quarter", ...} -> a camera that shows all of it.
-  Json frame(const Json& question);
+  PlainJson frame(const PlainJson& question);
   /// {"camera", "show", ...} -> {"pixels", "width", "height", "near", "far", "milliseconds"}; with "hash" the hash of
   /// what is visible, too. "show" is picture, depth, primitives, objects, materials, normals or layer.
-  Json draw(const Json& question);
+  PlainJson draw(const PlainJson& question);
   /// The feature edges of the last view: x and y of both ends, and 1 where they are hidden; five floats an edge.
-  Json edges(const Json& question);
+  PlainJson edges(const PlainJson& question);
   /// {"x", "y"} -> what lies one behind the other there, nearest first.
-  Json point(const Json& question);
+  PlainJson point(const PlainJson& question);
   /// Every object of the last view: its shares, who hides it, why it is not seen.
-  Json report(const Json& question);
+  PlainJson report(const PlainJson& question);
   /// {"views"} -> of each object how many faces some view all around sees.
-  Json sphere(const Json& question);
+  PlainJson sphere(const PlainJson& question);
   /// {"format"} -> the bytes of a file of the last view.
-  Json write(const Json& question);
+  PlainJson write(const PlainJson& question);
   /// The last view's camera in all conventions.
-  Json conventions(const Json& question);
+  PlainJson conventions(const PlainJson& question);
 
   [[nodiscard]] const Scene& scene() const { return model().scene; }
   [[nodiscard]] const Surfaces& surfaces() const { return model().surfaces; }
@@ -59,8 +59,8 @@ class Workbench {
   };
   [[nodiscard]] Model& model() const;
   [[nodiscard]] const Visible& seen();
-  Json take(Scene&& scene);
-  [[nodiscard]] Json pixels_of(const Bitmap& bitmap);
+  PlainJson take(Scene&& scene);
+  [[nodiscard]] PlainJson pixels_of(const Bitmap& bitmap);
   void color_ids(const Visible& visible, IdKind kind);
 
   std::unique_ptr<Model> model_;

@@ -99,6 +99,52 @@ for (const [scene, least] of [["cube", 1], ["concave", 2], ["cubes", 2], ["block
   if (scene === "cube") assert.deepEqual([drawing.silhouettes, drawing.creases, parts.filter((part) => part.hiddenBy === 1).length], [6, 6, 3]);
 }
 
+// Sutherland and Hodgman leave what the library sees, to the last digits; behind the eye w is negative, and no more once
+// the near plane has cut.
+for (const [corners, most] of [[[[-1, -0.8, -3], [1, -0.5, -4], [0.3, 1, -3.5]], 3], [[[-4, -0.8, -3], [3, -1, -5], [0.6, 3.2, -3]], 6],
+  [[[-2, -1.1, -5], [1.8, -0.6, -4], [0.5, 0.5, 1]], 6], [[[-2.2, -0.7, 1.5], [2, -0.8, 1], [0.3, 0.9, -4.5]], 6], [[[-1, -0.9, -8], [1.6, -0.2, -4], [0.2, 0.25, -0.6]], 7]]) {
+  const beside = { width: 480, height: 360, eye: [9.5, 5.5, 4.5], target: [0, 0, -3], up: [0, 1, 0], angle: 37 };
+  const cut = ask({ ask: "lesson.clipping", corners, beside });
+  assert.equal(cut.steps.length, 7);
+  assert.ok(Math.abs(cut.area - cut.library) <= 1e-9 * cut.library, `${cut.area} and ${cut.library}`);
+  assert.equal(cut.steps[0].some(({ clip }) => clip[3] < 0), corners.some(([, , z]) => z > 0));
+  assert.ok(cut.steps.slice(1).every((step) => step.length <= most && step.every(({ clip }) => clip[3] > 0)));
+}
+
+// Without a bias half of what faces the light has acne; with one it goes; with too much light leaks; and with fine texels
+// and a little bias the map says what exact rays do, but for a few pixels.
+{
+  const camera = ask({ ask: "lesson.frame", scene: "blocks", width: 360, height: 270, forward: [-0.6, -0.5, -0.8] });
+  const light = [0.6, 0.8, 0.35];
+  const errors = (size, bias) => ask({ ask: "lesson.shadows", scene: "blocks", camera, light, size, bias });
+  const none = errors(128, 0), some = errors(128, 0.08), much = errors(128, 1), fine = errors(2048, 0.02);
+  assert.ok(none.acne > 0.3 * none.facing && none.acne < 0.7 * none.facing, `${none.acne} of ${none.facing}`);
+  assert.ok(some.acne < 0.05 * none.acne && much.acne <= some.acne);
+  assert.ok(much.leaks > 4 * some.leaks, `${much.leaks} leaks, and ${some.leaks}`);
+  assert.ok(fine.acne + fine.leaks < 0.003 * fine.facing, `${fine.acne} and ${fine.leaks} of ${fine.facing}`);
+}
+
+// What is proved hidden is seen nowhere; more objects cover no less; smaller cells prove no less here; nothing covers
+// nothing.
+{
+  const camera = { width: 480, height: 320, eye: [0.1, 0.55, 2.4], target: [0.1, 0.5, -3.5], up: [0, 1, 0], angle: 46 };
+  const swept = (cell, step) => ask({ ask: "lesson.occlusion", scene: "town", camera, cell, step });
+  const hidden = (answer) => answer.objects.filter((object) => object.sight === "hidden");
+  let before = Infinity;
+  for (const cell of [2, 4, 8, 16]) {
+    const answer = swept(cell, 64);
+    for (const object of hidden(answer)) assert.ok(!object.seen, `house ${object.object}`);
+    assert.ok(hidden(answer).length > 10 && hidden(answer).length <= before);
+    before = hidden(answer).length;
+  }
+  let covered = 0;
+  for (const step of [0, 1, 8, 20, 64]) {
+    const { cells } = swept(8, step), count = [...cells].filter((one) => one === "1").length;
+    assert.ok(step === 0 ? count === 0 : count >= covered);
+    covered = count;
+  }
+}
+
 // Fragments come nearest first; without their order glass has other colours; every method shows what the z-buffer does.
 {
   const layers = ask({ ask: "lesson.layers", scene: "cubes", camera: { width: 160, height: 120, eye: [4, 3, 5], target: [0, 0, 0], up: [0, 1, 0], angle: 30 } });
@@ -108,6 +154,11 @@ for (const [scene, least] of [["cube", 1], ["concave", 2], ["cubes", 2], ["block
   for (const method of ["zbuffer", "abuffer", "painter"]) assert.equal(ask({ ask: "lesson.methods", scene: "cubes", width: 160, height: 120, method }).differing, 0, method);
   assert.ok(ask({ ask: "lesson.methods", scene: "cubes", width: 160, height: 120, method: "raycast" }).differing < 160, "rays differ at edges alone");
   assert.ok(ask({ ask: "lesson.methods", scene: "cubes", width: 160, height: 120, method: "lines" }).bytes > 0);
+  for (const scene of ["cubes", "teapot", "gallery"]) {
+    const { culled, differing } = ask({ ask: "lesson.methods", scene, width: 160, height: 120, method: "occlusion" });
+    assert.equal(differing, 0, `${scene}: what is proved hidden is seen`);
+    assert.ok(culled >= 0 && (scene !== "teapot" || culled >= 200), `${scene}: ${culled} left out`);
+  }
 }
 
 // Broken files end in an error that names them, and the model before stays.

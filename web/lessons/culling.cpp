@@ -33,7 +33,7 @@ std::size_t count_changes(const Visible& a, const Visible& b) {
   return count;
 }
 
-Json places_json(const TrianglePlaces& places, std::size_t hidden) {
+PlainJson places_json(const TrianglePlaces& places, std::size_t hidden) {
   return {{"turned_away", places.faces_away},
           {"behind_eye", places.behind_eye},
           {"outside", places.outside() + places.nearer_than_near + places.beyond_far},
@@ -42,7 +42,7 @@ Json places_json(const TrianglePlaces& places, std::size_t hidden) {
 }
 
 /// Where the triangles are of which no sample is seen, each by the first reason that holds.
-Json reasons(const Surfaces& surfaces, View view) {
+PlainJson reasons(const Surfaces& surfaces, View view) {
   view.culling = Culling::back;
   const Visible visible = zbuffer(surfaces, view);
   TrianglePlaces sum;
@@ -60,7 +60,7 @@ Json reasons(const Surfaces& surfaces, View view) {
 
 }  // namespace
 
-Json culling_lesson(const Json& question) {
+PlainJson culling_lesson(const PlainJson& question) {
   static Bitmap picture;
   const LessonScene& stage = lesson_scene(question);
   View view = lesson_view(stage, question);
@@ -69,7 +69,7 @@ Json culling_lesson(const Json& question) {
   const Visible visible = zbuffer(stage.surfaces, view);
   const Visible without = zbuffer(stage.surfaces, all);
   picture = lesson_picture(stage, visible);
-  Json arrows = Json::array();
+  PlainJson arrows = PlainJson::array();
   std::size_t front = 0, back = 0, edge_on = 0;
   constexpr PrimitiveId most_arrows = 200;
   const double length = 0.12 * double(stage.surfaces.bounds().diagonal());

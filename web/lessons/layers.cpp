@@ -40,8 +40,8 @@ std::vector<std::uint8_t> palette_of(std::uint32_t triangles) {
   return triangle_colors(each);
 }
 
-Json fragments_json(const FragmentLists& lists, int x, int y) {
-  Json json = Json::array();
+PlainJson fragments_json(const FragmentLists& lists, int x, int y) {
+  PlainJson json = PlainJson::array();
   for (const Fragment& fragment : lists.at(x, y)) {
     std::string bits;
     for (int i = 0; i < kBits; ++i) bits += fragment.mask >> i & 1 ? '1' : '0';
@@ -55,7 +55,7 @@ Json fragments_json(const FragmentLists& lists, int x, int y) {
 
 }  // namespace
 
-Json layers_lesson(const Json& question) {
+PlainJson layers_lesson(const PlainJson& question) {
   static std::vector<std::uint8_t> sorted, unsorted;
   const LessonScene& stage = lesson_scene(question);
   const View view = lesson_view(stage, question);

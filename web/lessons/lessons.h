@@ -16,22 +16,28 @@ namespace frontmost::web {
 
 /// A depth buffer that fills: {"example": "table"} the 8 x 8 integers of the classic example, cell by cell; {"example":
 /// "picture"} a scene, triangle by triangle.
-Json zbuffer_lesson(const Json& question);
+PlainJson zbuffer_lesson(const PlainJson& question);
 /// What is hidden for which reason, and what leaving out a side of every triangle changes.
-Json culling_lesson(const Json& question);
+PlainJson culling_lesson(const PlainJson& question);
 /// Depths along a segment, gaps of formats, two plates that fight.
-Json projection_lesson(const Json& question);
+PlainJson projection_lesson(const PlainJson& question);
 /// Polygons in an order of painting, what it took to find it, and the pixels that it gets wrong.
-Json painter_lesson(const Json& question);
+PlainJson painter_lesson(const PlainJson& question);
 /// A ray that walks a tree of boxes, step by step; {"example": "levels"} the tree opened down to a level, and what that
 /// saves.
-Json rays_lesson(const Json& question);
+PlainJson rays_lesson(const PlainJson& question);
 /// The fragments of a pixel, and all pixels composited in true order and in that of the file.
-Json layers_lesson(const Json& question);
+PlainJson layers_lesson(const PlainJson& question);
 /// Feature edges, where they go out of sight, and of one of them what each triangle hides.
-Json lines_lesson(const Json& question);
+PlainJson lines_lesson(const PlainJson& question);
+/// A triangle cut by the planes of the viewing volume, one after the other.
+PlainJson clipping_lesson(const PlainJson& question);
+/// A shadow map, and where exact rays say otherwise.
+PlainJson shadows_lesson(const PlainJson& question);
+/// Objects from the eye outwards, the cells that they cover, and what is proved hidden.
+PlainJson occlusion_lesson(const PlainJson& question);
 /// How long a method takes here, and how much its answer holds.
-Json methods_lesson(const Json& question);
+PlainJson methods_lesson(const PlainJson& question);
 
 /// A scene of the lessons, with surfaces that borrow it.
 struct LessonScene {
@@ -41,12 +47,12 @@ struct LessonScene {
 };
 /// {"scene", "width", "height", "forward"} -> a camera that shows all of it, and the points "beside" it; "angle" in
 /// degrees.
-Json frame_lesson(const Json& question);
+PlainJson frame_lesson(const PlainJson& question);
 
 /// {"scene"}: the last one asked for is kept.
-const LessonScene& lesson_scene(const Json& question);
+const LessonScene& lesson_scene(const PlainJson& question);
 /// {"camera"}, or one that shows all of it in {"width", "height"}.
-View lesson_view(const LessonScene& stage, const Json& question);
+View lesson_view(const LessonScene& stage, const PlainJson& question);
 
 /// Colours of triangles, each with a number of its own; transparent where nothing is seen.
 std::vector<std::uint8_t> triangle_colors(const Visible& visible);
@@ -62,7 +68,9 @@ glm::dvec2 on_screen(const View& view, const glm::dvec3& world);
 using WorldLine = std::array<glm::dvec3, 2>;
 std::array<WorldLine, 12> sides_of(const Box& box);
 std::array<WorldLine, 3> sides_of(const std::array<glm::vec3, 3>& corners);
+/// The edges of a viewing volume between near and far.
+std::vector<WorldLine> sides_of_volume(const View& view);
 /// Lines of the world on the screen, as far as they lie beyond the near plane: [[x, y, x, y], ...] in pixels.
-Json lines_json(const View& view, std::span<const WorldLine> lines);
+PlainJson lines_json(const View& view, std::span<const WorldLine> lines);
 
 }  // namespace frontmost::web

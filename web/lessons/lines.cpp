@@ -45,8 +45,8 @@ HiddenSpan hidden_interval(const glm::dvec3& eye, const std::array<glm::vec3, 3>
   return interval;
 }
 
-Json intervals_json(const Surfaces& surfaces, const View& view, const DrawnEdge& edge) {
-  Json json = Json::array();
+PlainJson intervals_json(const Surfaces& surfaces, const View& view, const DrawnEdge& edge) {
+  PlainJson json = PlainJson::array();
   for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
     const HiddenSpan interval = hidden_interval(view.eye(), surfaces.corners(id), edge);
     constexpr double least = 1e-6;
@@ -61,7 +61,7 @@ Json intervals_json(const Surfaces& surfaces, const View& view, const DrawnEdge&
 
 }  // namespace
 
-Json lines_lesson(const Json& question) {
+PlainJson lines_lesson(const PlainJson& question) {
   static Bitmap picture;
   static std::vector<float> parts;
   const LessonScene& stage = lesson_scene(question);
@@ -77,16 +77,16 @@ Json lines_lesson(const Json& question) {
     for (const double value : {double(part.edge), double(drawing.edges[part.edge].kind), double(part.hidden_by),
                                part.from.x, part.from.y, part.to.x, part.to.y, part.begin, part.end})
       parts.push_back(float(value));
-  Json answer = {{"width", view.width},
-                 {"height", view.height},
-                 {"pixels", place_of(picture.rgba.data(), picture.rgba.size())},
-                 {"parts", place_of(parts.data(), parts.size())},
-                 {"edges", drawing.edges.size()},
-                 {"boundaries", kinds[std::size_t(EdgeKind::boundary)]},
-                 {"silhouettes", kinds[std::size_t(EdgeKind::silhouette)]},
-                 {"borders", kinds[std::size_t(EdgeKind::border)]},
-                 {"creases", kinds[std::size_t(EdgeKind::crease)]},
-                 {"intersections", kinds[std::size_t(EdgeKind::intersection)]}};
+  PlainJson answer = {{"width", view.width},
+                      {"height", view.height},
+                      {"pixels", place_of(picture.rgba.data(), picture.rgba.size())},
+                      {"parts", place_of(parts.data(), parts.size())},
+                      {"edges", drawing.edges.size()},
+                      {"boundaries", kinds[std::size_t(EdgeKind::boundary)]},
+                      {"silhouettes", kinds[std::size_t(EdgeKind::silhouette)]},
+                      {"borders", kinds[std::size_t(EdgeKind::border)]},
+                      {"creases", kinds[std::size_t(EdgeKind::crease)]},
+                      {"intersections", kinds[std::size_t(EdgeKind::intersection)]}};
   const std::size_t edge = question.value("edge", drawing.edges.size());
   if (edge < drawing.edges.size()) answer["intervals"] = intervals_json(stage.surfaces, view, drawing.edges[edge]);
   return answer;

@@ -3,10 +3,13 @@
 // the z-buffer's.
 #include <frontmost/abuffer.h>
 #include <frontmost/lines.h>
+#include <frontmost/occlusion.h>
 #include <frontmost/painter.h>
 #include <frontmost/raycast.h>
+#include <frontmost/visible_faces.h>
 #include <frontmost/zbuffer.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "web/lessons/lessons.h"
@@ -29,20 +32,54 @@ double time_of(const Run& run) {
 
 std::size_t bytes_of(const Visible& visible) { return 8 * visible.primitives.size(); }
 
-Json differing_from(const Visible& right, const Visible& other) {
+PlainJson differing_from(const Visible& right, const Visible& other) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < right.primitives.size(); ++i) count += right.primitives[i] != other.primitives[i];
   return count;
 }
 
+/// The triangles of all objects that are not proved hidden.
+std::vector<PrimitiveId> kept_by(const Occlusion& occlusion, std::span<const ObjectSight> sights,
+                                 const Surfaces& surfaces) {
+  std::vector<PrimitiveId> kept;
+  for (std::size_t i = 0; i < occlusion.object_count(); ++i)
+    if (sights[i] == ObjectSight::may_be_seen)
+      for (const std::uint32_t triangle : occlusion.triangles(i))
+        kept.push_back(surfaces.first_primitive(occlusion.object(i).instance) + triangle);
+  std::sort(kept.begin(), kept.end());
+  return kept;
+}
+
+/// Draws without what is culled, and gives the triangles their numbers back.
+Visible drawn_without_rest(const Surfaces& surfaces, const View& view, std::span<const PrimitiveId> kept) {
+  const Scene scene = keep_faces(surfaces.scene(), kept);
+  Visible visible = zbuffer(Surfaces(scene), view);
+  for (PrimitiveId& id : visible.primitives)
+    if (id != no_primitive) id = kept[id];
+  return visible;
+}
+
+/// Pieces of at most 128 triangles that are proved hidden, or lie outside.
+PlainJson occlusion_json(const LessonScene& stage, const View& view, const Visible& right) {
+  std::optional<Occlusion> occlusion;
+  PlainJson answer;
+  answer["ready"] = time_of([&] { occlusion.emplace(stage.surfaces, ObjectUnit::clusters); });
+  std::span<const ObjectSight> sights;
+  answer["milliseconds"] = time_of([&] { sights = occlusion->cull(view); });
+  const std::vector<PrimitiveId> kept = kept_by(*occlusion, sights, stage.surfaces);
+  answer["culled"] = stage.surfaces.primitive_count() - kept.size();
+  answer["differing"] = differing_from(right, drawn_without_rest(stage.surfaces, view, kept));
+  return answer;
+}
+
 }  // namespace
 
 /// {"scene", "camera" or size, "method"}: one at a time, so that the page can show each when it is there.
-Json methods_lesson(const Json& question) {
+PlainJson methods_lesson(const PlainJson& question) {
   const LessonScene& stage = lesson_scene(question);
   const View view = lesson_view(stage, question);
   const std::string method = question.at("method");
-  Json answer = {{"method", method}, {"triangles", stage.surfaces.primitive_count()}};
+  PlainJson answer = {{"method", method}, {"triangles", stage.surfaces.primitive_count()}};
   const Visible right = zbuffer(stage.surfaces, view);
   if (method == "zbuffer") {
     ZBuffer buffer;
@@ -66,6 +103,8 @@ Json methods_lesson(const Json& question) {
     answer["milliseconds"] = time_of([&] { order = painter(stage.surfaces, view); });
     answer["bytes"] = order.polygons.size() * sizeof(PaintPolygon) + order.corners.size() * sizeof(PaintCorner);
     answer["differing"] = differing_from(right, paint(stage.surfaces, order));
+  } else if (method == "occlusion") {
+    answer.update(occlusion_json(stage, view, right));
   } else if (method == "lines") {
     Drawing drawing;
     answer["milliseconds"] = time_of([&] { drawing = draw_lines(stage.surfaces, view); });

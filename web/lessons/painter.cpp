@@ -8,7 +8,7 @@
 namespace frontmost::web {
 namespace {
 
-Json steps_json(const PaintSteps& steps) {
+PlainJson steps_json(const PaintSteps& steps) {
   return {{"depths_apart", steps.depths_apart},
           {"boxes_apart", steps.boxes_apart},
           {"behind", steps.behind},
@@ -29,7 +29,7 @@ PaintMethod method_of(const std::string& name) {
 
 }  // namespace
 
-Json painter_lesson(const Json& question) {
+PlainJson painter_lesson(const PlainJson& question) {
   static std::vector<std::uint8_t> colors, wrong;
   const LessonScene& stage = lesson_scene(question);
   View view = lesson_view(stage, question);
@@ -40,10 +40,10 @@ Json painter_lesson(const Json& question) {
   const std::size_t step = std::min<std::size_t>(question.value("step", count), count);
   const Visible whole = paint(stage.surfaces, order);
   const Visible right = zbuffer(stage.surfaces, view);
-  Json polygon = nullptr;
+  PlainJson polygon = nullptr;
   if (step > 0) {
     const PaintPolygon& last = order.polygons[step - 1];
-    polygon = {{"triangle", last.id}, {"corners", Json::array()}};
+    polygon = {{"triangle", last.id}, {"corners", PlainJson::array()}};
     double near = order.corners[last.first_corner].at.z, far = near;
     for (std::size_t i = 0; i < last.corner_count; ++i) {
       const PaintCorner& corner = order.corners[last.first_corner + i];
@@ -53,7 +53,7 @@ Json painter_lesson(const Json& question) {
     polygon["near"] = near;
     polygon["far"] = far;
   }
-  const Json steps = steps_json(order.steps);
+  const PlainJson steps = steps_json(order.steps);
   order.polygons.resize(step);
   colors = triangle_colors(paint(stage.surfaces, order));
   wrong.assign(colors.size(), 0);

@@ -10,12 +10,12 @@
 namespace frontmost::web {
 namespace {
 
-DepthSetup setup_of(const Json& question, DepthFormat format, bool reversed) {
+DepthSetup setup_of(const PlainJson& question, DepthFormat format, bool reversed) {
   return {{question.value("near", 0.1), question.value("far", 100.0)}, format, reversed, false};
 }
 
 /// Depths of a wall between two points of the plan, (x, distance) each, along the middle row of a picture.
-Json segment(const Json& question) {
+PlainJson segment(const PlainJson& question) {
   constexpr int width = 401;  // odd: a pixel's centre on the axis
   const glm::vec2 a(question.value("x0", -4.0f), question.value("d0", 2.0f));
   const glm::vec2 b(question.value("x1", 2.0f), question.value("d1", 5.0f));
@@ -32,19 +32,19 @@ Json segment(const Json& question) {
   view.projection.clip = {0.1, 100};
   const Visible visible = zbuffer(surfaces, view);
   const Buffer<float> found = depths_of(visible);
-  Json depths = Json::array(), linear = Json::array(), screen = Json::array();
+  PlainJson depths = PlainJson::array(), linear = PlainJson::array(), screen = PlainJson::array();
   // Where the ends are on the screen, at unit distance.
   const double from = double(a.x) / a.y, to = double(b.x) / b.y;
   for (int x = 0; x < width; ++x) {
     const double place = -half + 2 * half * (x + 0.5) / width, t = (place - from) / (to - from);
     screen.push_back(place);
     depths.push_back(finite_or_null(found[std::size_t(x)]));
-    linear.push_back(t >= 0 && t <= 1 ? Json(a.y + t * (b.y - a.y)) : Json(nullptr));
+    linear.push_back(t >= 0 && t <= 1 ? PlainJson(a.y + t * (b.y - a.y)) : PlainJson(nullptr));
   }
   return {{"screen", std::move(screen)}, {"depth", std::move(depths)}, {"linear", std::move(linear)}, {"half", half}};
 }
 
-Json gaps(const Json& question) {
+PlainJson gaps(const PlainJson& question) {
   struct Named {
     const char* name;
     DepthFormat format;
@@ -56,11 +56,11 @@ Json gaps(const Json& question) {
                                {"F32 reversed", DepthFormat::f32, true}};
   const double near = question.value("near", 0.1), far = question.value("far", 100.0);
   constexpr int count = 48;
-  Json distances = Json::array(), lists;
+  PlainJson distances = PlainJson::array(), lists;
   for (int i = 0; i <= count; ++i) distances.push_back(near * std::pow(far / near, double(i) / count));
   for (const Named& named : formats) {
-    Json list = Json::array();
-    for (const Json& distance : distances)
+    PlainJson list = PlainJson::array();
+    for (const PlainJson& distance : distances)
       list.push_back(finite_or_null(
           resolvable_gap(setup_of(question, named.format, named.reversed), std::min(distance.get<double>(), far))));
     lists[named.name] = std::move(list);
@@ -72,7 +72,7 @@ Json gaps(const Json& question) {
 }
 
 /// A road that runs to the horizon, and stripes that lie a gap above it.
-Json fight(const Json& question) {
+PlainJson fight(const PlainJson& question) {
   static std::vector<std::uint8_t> rgba;
   const float gap = question.value("gap", 0.01f);
   Scene scene;
@@ -114,7 +114,7 @@ Json fight(const Json& question) {
 
 }  // namespace
 
-Json projection_lesson(const Json& question) {
+PlainJson projection_lesson(const PlainJson& question) {
   const std::string example = question.value("example", "segment");
   if (example == "segment") return segment(question);
   if (example == "gaps") return gaps(question);

@@ -19,11 +19,11 @@ const char* name_of(PlainStep::Verdict verdict) {
   return names[std::size_t(verdict)];
 }
 
-Json step_json(const Surfaces& surfaces, const PlainTree& tree, const View& beside, const PlainStep& step) {
-  Json json = {{"kind", step.is_box ? "box" : "triangle"},
-               {"number", step.number},
-               {"verdict", name_of(step.verdict)},
-               {"t", step.t}};
+PlainJson step_json(const Surfaces& surfaces, const PlainTree& tree, const View& beside, const PlainStep& step) {
+  PlainJson json = {{"kind", step.is_box ? "box" : "triangle"},
+                    {"number", step.number},
+                    {"verdict", name_of(step.verdict)},
+                    {"t", step.t}};
   if (step.is_box) {
     const PlainNode& node = tree.nodes()[step.number];
     json["level"] = node.level;
@@ -36,8 +36,8 @@ Json step_json(const Surfaces& surfaces, const PlainTree& tree, const View& besi
 }
 
 /// Whether the light reaches where a ray ends, and what stands in its way.
-Json light_json(const Surfaces& surfaces, const RayIndex& index, const View& beside, const SightLine& sight,
-                const PlainHit& hit) {
+PlainJson light_json(const Surfaces& surfaces, const RayIndex& index, const View& beside, const SightLine& sight,
+                     const PlainHit& hit) {
   const TrianglePoint point{hit.id, surfaces.corners(hit.id), glm::vec3(hit.weights)};
   std::uint8_t is_lit = 0;
   are_lit(index, {&point, 1}, kToLight, {&is_lit, 1});
@@ -46,13 +46,13 @@ Json light_json(const Surfaces& surfaces, const RayIndex& index, const View& bes
   const RayHit blocker = closest_hit(index, Ray{glm::vec3(from + way * (length * 1e-4)), kToLight});
   const double reach = !is_lit && blocker ? blocker.t + length * 1e-4 : length;
   const WorldLine line = {from, from + way * reach};
-  Json json = {{"is_lit", is_lit != 0}, {"lines", lines_json(beside, {&line, 1})}};
+  PlainJson json = {{"is_lit", is_lit != 0}, {"lines", lines_json(beside, {&line, 1})}};
   if (!is_lit && blocker) json["blocker"] = blocker.primitive;
   return json;
 }
 
 /// One ray of a picture, step by step, as it is seen from beside.
-Json walk(const Json& question) {
+PlainJson walk(const PlainJson& question) {
   static Bitmap picture, aside;
   const LessonScene& stage = lesson_scene(question);
   const View view = lesson_view(stage, question);
@@ -68,21 +68,21 @@ Json walk(const Json& question) {
   std::vector<PlainStep> steps;
   PlainWork work;
   const PlainHit hit = tree.nearest(sight, tree.depth() + 1, work, &steps);
-  Json told = Json::array();
+  PlainJson told = PlainJson::array();
   for (const PlainStep& step : steps) told.push_back(step_json(stage.surfaces, tree, beside, step));
   const double reach = hit.id == no_primitive ? 1e3 * double(stage.surfaces.bounds().diagonal()) : hit.t;
   const WorldLine line = {sight.origin, sight.origin + sight.direction * reach};
-  Json answer = {{"width", view.width},
-                 {"height", view.height},
-                 {"pixels", place_of(picture.rgba.data(), picture.rgba.size())},
-                 {"beside", place_of(aside.rgba.data(), aside.rgba.size())},
-                 {"ray", lines_json(beside, {&line, 1})},
-                 {"eye", to_json(on_screen(beside, view.eye()))},
-                 {"steps", std::move(told)},
-                 {"boxes", work.boxes},
-                 {"asked", work.triangles},
-                 {"triangles", stage.surfaces.primitive_count()},
-                 {"library", visible.primitives[visible.index(x, y)]}};
+  PlainJson answer = {{"width", view.width},
+                      {"height", view.height},
+                      {"pixels", place_of(picture.rgba.data(), picture.rgba.size())},
+                      {"beside", place_of(aside.rgba.data(), aside.rgba.size())},
+                      {"ray", lines_json(beside, {&line, 1})},
+                      {"eye", to_json(on_screen(beside, view.eye()))},
+                      {"steps", std::move(told)},
+                      {"boxes", work.boxes},
+                      {"asked", work.triangles},
+                      {"triangles", stage.surfaces.primitive_count()},
+                      {"library", visible.primitives[visible.index(x, y)]}};
   if (hit.id != no_primitive) {
     answer["hit"] = {{"triangle", hit.id}, {"depth", hit.t}};
     answer["light"] = light_json(stage.surfaces, index, beside, sight, hit);
@@ -101,7 +101,7 @@ void color_work(double share, std::uint8_t* rgba) {
 }
 
 /// All rays of a picture, where the tree is opened down to a level: how much each asks.
-Json levels(const Json& question) {
+PlainJson levels(const PlainJson& question) {
   static Bitmap picture;
   static std::vector<std::uint8_t> heat;
   const LessonScene& stage = lesson_scene(question);
@@ -146,7 +146,7 @@ Json levels(const Json& question) {
 
 }  // namespace
 
-Json rays_lesson(const Json& question) {
+PlainJson rays_lesson(const PlainJson& question) {
   return question.value("example", "walk") == "walk" ? walk(question) : levels(question);
 }
 

@@ -70,9 +70,24 @@ Scene blocks_scene() {
   return scene;
 }
 
+/// Houses in streets, each an object.
+Scene town_scene() {
+  Scene scene;
+  scene.name = "town";
+  constexpr int rows = 8;
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < rows; ++column) {
+      const int number = row * rows + column;
+      const auto x = float(column - rows / 2) + 0.2f, z = -float(row);
+      const float height = 0.35f + 0.09f * float(number * 7 % 11);
+      add(scene, block(("house " + std::to_string(number)).c_str(), {x, 0, z - 0.6f}, {x + 0.6f, height, z}));
+    }
+  return scene;
+}
+
 }  // namespace
 
-const LessonScene& lesson_scene(const Json& question) {
+const LessonScene& lesson_scene(const PlainJson& question) {
   static std::string name;
   static std::unique_ptr<LessonScene> stage;
   const std::string wanted = question.value("scene", "cubes");
@@ -80,16 +95,17 @@ const LessonScene& lesson_scene(const Json& question) {
     stage = std::make_unique<LessonScene>(wanted == "concave"  ? concave_scene()
                                           : wanted == "cube"   ? cube_scene()
                                           : wanted == "blocks" ? blocks_scene()
+                                          : wanted == "town"   ? town_scene()
                                                                : builtin(wanted));
     name = wanted;
   }
   return *stage;
 }
 
-Json frame_lesson(const Json& question) {
+PlainJson frame_lesson(const PlainJson& question) {
   const LessonScene& stage = lesson_scene(question);
   Box box = stage.surfaces.bounds();
-  for (const Json& point : question.value("beside", Json::array())) box.include(glm::vec3(vector_of(point)));
+  for (const PlainJson& point : question.value("beside", PlainJson::array())) box.include(glm::vec3(vector_of(point)));
   FrameOptions options;
   options.forward = vector_of(question.at("forward"));
   if (question.contains("angle")) options.min_fov = glm::radians(question["angle"].get<double>());
@@ -97,7 +113,7 @@ Json frame_lesson(const Json& question) {
   return camera_json(view, box.centre());
 }
 
-View lesson_view(const LessonScene& stage, const Json& question) {
+View lesson_view(const LessonScene& stage, const PlainJson& question) {
   if (question.contains("camera")) return view_of(question["camera"], stage.surfaces.bounds());
   return frame(stage.surfaces, question.value("width", 320), question.value("height", 240));
 }
@@ -164,9 +180,25 @@ std::array<WorldLine, 3> sides_of(const std::array<glm::vec3, 3>& corners) {
   return {{{a, b}, {b, c}, {c, a}}};
 }
 
-Json lines_json(const View& view, std::span<const WorldLine> lines) {
+std::vector<WorldLine> sides_of_volume(const View& view) {
+  const Projection& p = view.projection;
+  const auto corner = [&](int i, double distance) {
+    const double scale = p.orthographic ? 1 : distance;
+    return view.eye() + view.forward() * distance + view.right() * ((i == 1 || i == 2 ? p.right : p.left) * scale) +
+           view.up() * ((i >= 2 ? p.top : p.bottom) * scale);
+  };
+  std::vector<WorldLine> lines;
+  for (int i = 0; i < 4; ++i) {
+    lines.push_back({corner(i, p.clip.near), corner((i + 1) % 4, p.clip.near)});
+    lines.push_back({corner(i, p.clip.far), corner((i + 1) % 4, p.clip.far)});
+    lines.push_back({corner(i, p.clip.near), corner(i, p.clip.far)});
+  }
+  return lines;
+}
+
+PlainJson lines_json(const View& view, std::span<const WorldLine> lines) {
   const double near = view.projection.clip.near;
-  Json json = Json::array();
+  PlainJson json = PlainJson::array();
   for (WorldLine line : lines) {
     const double from = from_eye(view, line[0]).z - near, to = from_eye(view, line[1]).z - near;
     if (from < 0 && to < 0) continue;

@@ -28,7 +28,7 @@ Scene table_scene(float first, float second) {
   return scene;
 }
 
-DepthState state_of(const Json& question) {
+DepthState state_of(const PlainJson& question) {
   DepthState state;
   state.nearer_is_greater = question.value("greater", false);
   state.func =
@@ -38,7 +38,7 @@ DepthState state_of(const Json& question) {
 
 double clear_of(const DepthState& state) { return state.nearer_is_greater ? 0 : 1; }
 
-Json table(const Json& question) {
+PlainJson table(const PlainJson& question) {
   const DepthState state = state_of(question);
   const Scene scene = table_scene(question.value("first", 64.0f), question.value("second", 127.0f));
   const Surfaces surfaces(scene);
@@ -47,7 +47,7 @@ Json table(const Json& question) {
   buffer.clear(clear_of(state));
   DepthState always = state;
   always.func = DepthFunc::always;
-  Json triangles = Json::array();
+  PlainJson triangles = PlainJson::array();
   for (PrimitiveId id = 0; id < 2; ++id) {
     DepthBuffer alone(8, 8, 1, DepthFormat::d8);
     alone.draw(surfaces, view, {always, id, id + 1});
@@ -55,7 +55,7 @@ Json table(const Json& question) {
     const std::vector<std::uint32_t> before(buffer.stored().begin(), buffer.stored().end());
     buffer.draw(surfaces, view, {state, id, id + 1});
     const Visible after = buffer.visible(view);
-    Json cells = Json::array();
+    PlainJson cells = PlainJson::array();
     for (std::size_t i = 0; i < 64; ++i)
       if (covered.primitives[i] != no_primitive)
         cells.push_back({{"x", i % 8},
@@ -70,7 +70,7 @@ Json table(const Json& question) {
 }
 
 /// Of every triangle that covers a pixel: its depth, what was stored, and what came of it.
-Json comparisons(const LessonScene& stage, const View& view, const DepthState& state, const Json& question) {
+PlainJson comparisons(const LessonScene& stage, const View& view, const DepthState& state, const PlainJson& question) {
   constexpr PrimitiveId most_triangles = 400;
   const int x = question["pixel"].at(0), y = question["pixel"].at(1);
   const std::size_t i = std::size_t(y) * std::size_t(view.width) + std::size_t(x);
@@ -78,7 +78,7 @@ Json comparisons(const LessonScene& stage, const View& view, const DepthState& s
   buffer.clear(clear_of(state));
   DepthState always = state;
   always.func = DepthFunc::always;
-  Json list = Json::array();
+  PlainJson list = PlainJson::array();
   const PrimitiveId end =
       std::min({stage.surfaces.primitive_count(), question.at("step").get<PrimitiveId>(), most_triangles});
   for (PrimitiveId id = 0; id < end; ++id) {
@@ -95,7 +95,7 @@ Json comparisons(const LessonScene& stage, const View& view, const DepthState& s
   return list;
 }
 
-Json picture(const Json& question) {
+PlainJson picture(const PlainJson& question) {
   static std::vector<std::uint8_t> colors, greys;
   const LessonScene& stage = lesson_scene(question);
   const View view = lesson_view(stage, question);
@@ -118,18 +118,18 @@ Json picture(const Json& question) {
         visible.primitives[i] == no_primitive ? float(clear_of(state)) : 0.1f + 0.7f * std::clamp(share, 0.0f, 1.0f);
     for (std::size_t c = 0; c < 3; ++c) greys[4 * i + c] = std::uint8_t(grey * 255);
   }
-  Json answer = {{"width", view.width},
-                 {"height", view.height},
-                 {"triangles", count},
-                 {"pixels", place_of(colors.data(), colors.size())},
-                 {"depths", place_of(greys.data(), greys.size())}};
+  PlainJson answer = {{"width", view.width},
+                      {"height", view.height},
+                      {"triangles", count},
+                      {"pixels", place_of(colors.data(), colors.size())},
+                      {"depths", place_of(greys.data(), greys.size())}};
   if (question.contains("pixel")) answer["comparisons"] = comparisons(stage, view, state, question);
   return answer;
 }
 
 }  // namespace
 
-Json zbuffer_lesson(const Json& question) {
+PlainJson zbuffer_lesson(const PlainJson& question) {
   return question.value("example", "table") == "table" ? table(question) : picture(question);
 }
 

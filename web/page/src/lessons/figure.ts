@@ -163,7 +163,7 @@ export function steps(most: number, show: (step: number) => void, pause = 350): 
 }
 
 export function figure(pictures: HTMLElement[], controls: HTMLElement[]): HTMLElement {
-  return element("figure", { class: "figure" }, element("div", { class: "picture" }, ...pictures), element("div", { class: "controls" }, ...controls));
+  return element("figure", { class: "figure" }, element("div", { class: pictures.length > 3 ? "picture pairs" : "picture" }, ...pictures), element("div", { class: "controls" }, ...controls));
 }
 
 interface Framing { angle?: number; beside?: Vector[] }
