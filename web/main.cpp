@@ -58,6 +58,8 @@ const std::map<std::string, AnswerFunction, std::less<>>& answers() {
       {"lesson.culling", culling_lesson},
       {"lesson.projection", projection_lesson},
       {"lesson.painter", painter_lesson},
+      {"lesson.newell", newell_lesson},
+      {"lesson.bsp", bsp_lesson},
       {"lesson.rays", rays_lesson},
       {"lesson.layers", layers_lesson},
       {"lesson.lines", lines_lesson},

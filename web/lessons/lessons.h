@@ -23,6 +23,10 @@ PlainJson culling_lesson(const PlainJson& question);
 PlainJson projection_lesson(const PlainJson& question);
 /// Polygons in an order of painting, what it took to find it, and the pixels that it gets wrong.
 PlainJson painter_lesson(const PlainJson& question);
+/// Newell's tests on every pair of triangles whose boxes do not decide.
+PlainJson newell_lesson(const PlainJson& question);
+/// A binary tree of planes, and the order of painting that it gives.
+PlainJson bsp_lesson(const PlainJson& question);
 /// A ray that walks a tree of boxes, step by step; {"example": "levels"} the tree opened down to a level, and what that
 /// saves.
 PlainJson rays_lesson(const PlainJson& question);

@@ -5,6 +5,7 @@
 #include <frontmost/shade.h>
 #include <frontmost/zbuffer.h>
 
+#include "web/camera.h"
 #include "web/lessons/lessons.h"
 
 namespace frontmost::web {
@@ -112,11 +113,32 @@ PlainJson fight(const PlainJson& question) {
           {"covered", fights.covered}};
 }
 
+/// A viewing volume that is pulled about: what it shows, and the volume with the scene from beside.
+PlainJson frustum(const PlainJson& question) {
+  static Bitmap picture, aside;
+  const LessonScene& stage = lesson_scene(question);
+  const View view = lesson_view(stage, question);
+  const View beside = view_of(question.at("beside"), stage.surfaces.bounds());
+  picture = lesson_picture(stage, zbuffer(stage.surfaces, view));
+  aside = lesson_picture(stage, zbuffer(stage.surfaces, beside));
+  const std::vector<WorldLine> volume = sides_of_volume(view);
+  const Projection& p = view.projection;
+  return {{"width", view.width},
+          {"height", view.height},
+          {"pixels", place_of(picture.rgba.data(), picture.rgba.size())},
+          {"beside", place_of(aside.rgba.data(), aside.rgba.size())},
+          {"volume", lines_json(beside, volume)},
+          {"eye", to_json(on_screen(beside, view.eye()))},
+          {"sides", {p.left, p.right, p.bottom, p.top}},
+          {"matrix", to_json(clip_from_eye(p))}};
+}
+
 }  // namespace
 
 PlainJson projection_lesson(const PlainJson& question) {
   const std::string example = question.value("example", "segment");
   if (example == "segment") return segment(question);
+  if (example == "frustum") return frustum(question);
   if (example == "gaps") return gaps(question);
   return fight(question);
 }

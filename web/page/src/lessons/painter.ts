@@ -3,7 +3,8 @@
 import type { Answer } from "../answer.ts";
 import { choices, element } from "../dom.ts";
 import { say, type Text } from "../language.ts";
-import { Eye, figure, ink, Latest, plate, steps } from "./figure.ts";
+import { Eye, facts, figure, ink, Latest, plate, steps } from "./figure.ts";
+import { treeFigure } from "./tree.ts";
 import type { Lesson } from "./list.ts";
 
 const methods: [string, Text][] = [
@@ -82,6 +83,72 @@ function paintFigure(): HTMLElement {
   ]);
 }
 
+const tests: Text[] = [
+  { en: "1. Is P, the farther one, beyond all of Q in depth?", zh: "1. 较远的 P 在深度上是否完全超过 Q？" }, { en: "2. Are their boxes apart on the screen?", zh: "2. 屏幕包围盒是否分离？" },
+  { en: "3. Is P wholly behind the plane of Q?", zh: "3. P 是否完全在 Q 的平面之后？" }, { en: "4. Is Q wholly before the plane of P?", zh: "4. Q 是否完全在 P 的平面之前？" }, { en: "5. Are they apart on the screen?", zh: "5. 投影是否分离？" },
+  { en: "3, exchanged. Is Q wholly behind the plane of P?", zh: "交换后 3. Q 是否完全在 P 的平面之后？" }, { en: "4, exchanged. Is P wholly before the plane of Q?", zh: "交换后 4. P 是否完全在 Q 的平面之前？" }];
+const verdicts: Record<string, Text> = { p: { en: "P is painted first.", zh: "先画 P。" }, q: { en: "They are exchanged: Q is painted first.", zh: "交换：先画 Q。" }, cut: { en: "No test holds, and the exchange does not help: one of them is cut.", zh: "无一成立，交换也无济于事：切开其中之一。" } };
+
+/** Depths from near to far of both, as bars. */
+function depthBars({ p, q }: Answer): string {
+  const low = Math.min(p.near, q.near), high = Math.max(p.far, q.far), x = (depth: number) => 34 + ((depth - low) / (high - low || 1)) * (size[0] - 60);
+  const bar = (one: Answer, name: string, y: number, color: string) => `<text x="12" y="${y + 11}" fill="var(${color})">${name}</text><rect x="${x(one.near)}" y="${y}" width="${Math.max(2, x(one.far) - x(one.near))}" height="12" rx="3" fill="var(${color})" opacity=".75"/>`;
+  return `<g font-size="13" font-family="var(--serif)" font-style="italic">${bar(p, "P", size[1] - 44, "--blue")}${bar(q, "Q", size[1] - 24, "--accent")}</g>`;
+}
+
+function pairFigure(): HTMLElement {
+  const pair = plate(say({ en: "P is blue, Q is orange; below, their depths. Drag to turn", zh: "P 为蓝色，Q 为橙色；下方为深度区间。拖动旋转" }));
+  const list = element("ol", { class: "hits tests" });
+  const said = element("p", { class: "said", "aria-live": "polite" });
+  const sums = facts();
+  let scene = "cubes", most = -1, answer: Answer;
+  const eye = new Eye(pair.canvas, ask);
+  const latest = new Latest((now) => {
+    answer = now;
+    pair.show(answer);
+    pair.canvas.style.opacity = "0.35";
+    if (answer.pairs.length !== most) {
+      most = answer.pairs.length;
+      stepper.limit(most);
+      const hard = answer.pairs.findIndex((one: Answer) => one.first !== "p");
+      stepper.set(hard + 1 || 1);
+    } else show(stepper.step);
+  });
+  function outlines({ p, q, tests: asked }: Answer): string {
+    const triangle = (one: Answer, color: string) => `<polygon points="${one.corners.map((corner: number[]) => corner.join(",")).join(" ")}" fill="var(${color})" fill-opacity=".35" stroke="var(${color})" stroke-width="2"/>`;
+    const box = (one: Answer, color: string) => `<rect x="${one.box[0]}" y="${one.box[1]}" width="${one.box[2] - one.box[0]}" height="${one.box[3] - one.box[1]}" fill="none" stroke="var(${color})" stroke-dasharray="3 4"/>`;
+    return triangle(p, "--blue") + triangle(q, "--accent") + (asked.length >= 2 ? box(p, "--blue") + box(q, "--accent") : "");
+  }
+  function show(step: number): void {
+    if (!answer) return;
+    const now = answer.pairs[step - 1];
+    pair.mark(now ? outlines(now) + depthBars(now) : "");
+    list.replaceChildren(...tests.map((text, i) => {
+      const mark = !now || now.tests[i] === undefined ? "·" : now.tests[i] ? "✓" : "✗";
+      return element("li", { class: mark === "✓" ? "holds" : undefined }, element("span", {}, say(text)), element("span", { class: "number" }, mark));
+    }));
+    const at = (one: Answer) => (one.position === null ? say({ en: "cut by the library", zh: "程序库将其切开" }) : say({ en: `painted as number ${one.position + 1} by the library`, zh: `程序库第 ${one.position + 1} 个画` }));
+    said.textContent = !now ? say({ en: "Pairs of which neither depths nor boxes decide, the farthest first.", zh: "深度与包围盒都不能判定的对，最远者在先。" })
+      : say({ en: `P is triangle ${now.p.triangle}, ${at(now.p)}; Q is triangle ${now.q.triangle}, ${at(now.q)}. ${say(verdicts[now.first])}`, zh: `P 为三角形 ${now.p.triangle}（${at(now.p)}），Q 为三角形 ${now.q.triangle}（${at(now.q)}）。${say(verdicts[now.first])}` });
+    sums.set(answer.by_test.map((count: number, i: number): [string, number] => [say({ en: `pairs that test ${i + 1} decides`, zh: `由测试 ${i + 1} 判定的对` }), count]));
+  }
+  const stepper = steps(1, show, 900);
+  function ask(): void {
+    if (eye.camera) latest.ask({ ask: "lesson.newell", scene, camera: eye.camera });
+  }
+  async function place(): Promise<void> {
+    most = -1;
+    await eye.place(scene, scene === "cycle" ? [-0.05, -0.1, -1] : [-0.6, -0.45, -0.8], size);
+    ask();
+  }
+  void place();
+  return figure([pair.root, element("div", {}, list, sums.root)], [stepper.root, said,
+    choices("nscene", say({ en: "Scene", zh: "场景" }), [["cycle", say({ en: "three in a ring", zh: "三者成环" })], ["cubes", say({ en: "two cubes that intersect", zh: "相交的立方体" })], ["concave", say({ en: "a concave body", zh: "凹体" })]], scene, (value) => {
+      scene = value;
+      void place();
+    })]);
+}
+
 export const painter: Lesson = {
   id: "painter",
   title: { en: "The painter's algorithm", zh: "画家算法" },
@@ -94,6 +161,20 @@ export const painter: Lesson = {
         { en: "Three bars in a ring have no order. See what each method makes of them.", zh: "成环的三根条没有次序。看看各种方法如何处理。" },
       ],
       figure: paintFigure,
+    },
+    {
+      title: { en: "Two triangles, five questions", zh: "两个三角形，五个问题" },
+      prose: [
+        { en: "Take the farthest triangle P, and another one, Q, that it may cover. One *yes* suffices, and P may be painted first. Five times *no*, and the roles are exchanged. If that does not help either, the plane of one cuts the other.", zh: "取最远的三角形 P，以及它可能盖住的 Q。只要有一个*是*，就可以先画 P。五个都*否*，则交换角色；若仍不行，就用其中一个的平面切开另一个。" },
+      ],
+      figure: pairFigure,
+    },
+    {
+      title: { en: "A tree of planes", zh: "平面之树" },
+      prose: [
+        { en: "Fuchs, Kedem and Naylor (1980) do all the cutting beforehand, and then serve every eye. The plane of one triangle parts the others into those *before* it and those *behind*; what reaches across is cut. Each side is parted in the same way. To paint, one asks at each node on which side the eye is: first the other side, then the triangle, then the eye's own side.", zh: "Fuchs、Kedem 与 Naylor（1980）事先完成全部切割，此后适用于任何视点。一个三角形的平面把其余的分为在它*之前*与*之后*的，跨越平面的被切开；两侧再同样划分。绘制时，在每个节点问眼睛在哪一侧：先画另一侧，再画该三角形，最后画眼睛所在的一侧。" },
+      ],
+      figure: treeFigure,
     },
   ],
 };

@@ -3,7 +3,8 @@
 import type { Answer } from "../answer.ts";
 import { choices, element, slider } from "../dom.ts";
 import { say } from "../language.ts";
-import { figure, ink, Latest, plate } from "./figure.ts";
+import type { Camera, Vector } from "../orbit.ts";
+import { dot, Eye, figure, framed, ink, Latest, lines, plate } from "./figure.ts";
 import type { Lesson } from "./list.ts";
 
 /** A wall from above that can be dragged by its ends, and beside it the depths that the picture finds. */
@@ -207,11 +208,57 @@ function fightFigure(): HTMLElement {
     }).field]);
 }
 
+/** The viewing volume pulled about, and what it shows. */
+function frustumFigure(): HTMLElement {
+  const seen = plate(say({ en: "The picture", zh: "画面" })), aside = plate(say({ en: "The viewing volume from beside. Drag to turn", zh: "从旁边看视域。拖动旋转" }));
+  const said = element("p", { class: "said", "aria-live": "polite" });
+  const matrix = element("div", { class: "scroll" });
+  const size: [number, number] = [480, 360];
+  const setting = { angle: 40, near: 3.4, far: 7, away: 1 };
+  let camera: Camera | undefined;
+  const eye = new Eye(aside.canvas, ask);
+  const latest = new Latest((answer: Answer) => {
+    seen.show(answer);
+    aside.show(answer, "beside", size);
+    aside.mark(lines(answer.volume, "--accent", 1.8), dot(answer.eye[0], answer.eye[1], "--ink", 6));
+    const [left, right, bottom, top] = answer.sides.map((side: number) => side.toFixed(3));
+    said.textContent = say({ en: `At unit distance the picture reaches from ${left} to ${right}, and from ${bottom} to ${top}. Below, the matrix to clip space (OpenGL's).`, zh: `在单位距离处，画面横向从 ${left} 到 ${right}，纵向从 ${bottom} 到 ${top}。下面是到裁剪空间的矩阵（OpenGL 约定）。` });
+    matrix.replaceChildren(element("table", {}, element("tbody", {}, ...answer.matrix.map((row: number[]) => element("tr", {}, ...row.map((entry) => element("td", { class: "share" }, entry.toFixed(3))))))));
+  });
+  function ask(): void {
+    if (!camera || !eye.camera) return;
+    const at = camera.eye.map((from, i) => camera!.target[i] + (from - camera!.target[i]) * setting.away);
+    latest.ask({ ask: "lesson.projection", example: "frustum", scene: "blocks", camera: { ...camera, eye: at, angle: setting.angle, near: Math.min(setting.near, setting.far - 0.1), far: setting.far }, beside: eye.camera });
+  }
+  async function place(): Promise<void> {
+    camera = await framed("blocks", [-0.6, -0.45, -0.8], size, { angle: 40 });
+    const beyond = camera.target.map((at, i) => at + 0.45 * (at - camera!.eye[i])) as Vector;
+    const around = [[0, 2.4, 0], [0, -2.4, 0], [2.2, 0, -2.2], [-2.2, 0, 2.2]].map((by) => by.map((n, i) => n + beyond[i]) as Vector);
+    await eye.place("blocks", [0.9, -0.4, -0.35], size, { beside: [camera.eye, ...around] });
+    ask();
+  }
+  void place();
+  const knob = (label: string, key: keyof typeof setting, min: number, max: number, step: number, show: (value: number) => string) => slider(label, { min, max, step, value: setting[key] }, show, (value) => {
+    setting[key] = value;
+    ask();
+  }).field;
+  return figure([seen.root, aside.root], [said,
+    knob(say({ en: "angle", zh: "视角" }), "angle", 5, 110, 1, (v) => `${v}°`), knob(say({ en: "near", zh: "近平面" }), "near", 0.1, 8, 0.05, (v) => v.toFixed(2)), knob(say({ en: "far", zh: "远平面" }), "far", 1, 12, 0.05, (v) => v.toFixed(2)),
+    knob(say({ en: "eye", zh: "眼睛远近" }), "away", 0.3, 1.6, 0.01, (v) => v.toFixed(2)), matrix]);
+}
+
 export const projection: Lesson = {
   id: "projection",
   title: { en: "Projection and depth", zh: "投影与深度" },
   lead: { en: "On the screen depth does not run evenly: its reciprocal does.", zh: "在屏幕上，均匀变化的不是深度，而是它的倒数。" },
   parts: [
+    {
+      title: { en: "The viewing volume", zh: "视域" },
+      prose: [
+        { en: "What a camera can see is a pyramid whose top is cut off: its sides go through the eye and the edges of the picture, and a *near* and a *far* plane end it. What comes too near is cut open; what is too far is gone. Come nearer and widen the angle, and things in front grow while those behind shrink.", zh: "相机能看见的是截去顶部的棱锥：侧面经过眼睛与画面边缘，*近平面*与*远平面*为其两端。太近的被切开，太远的消失。靠近并加大视角，前面的东西变大，后面的变小。" },
+      ],
+      figure: frustumFigure,
+    },
     {
       title: { en: "One over z", zh: "z 分之一" },
       prose: [
