@@ -105,12 +105,15 @@ PlainJson Workbench::sphere(const PlainJson& question) {
     views.push_back(frontmost::frame(now.surfaces, size, size, options));
   }
   const std::vector<SeenFace> faces = faces_ever_seen(now.surfaces, views);
-  std::vector<std::uint32_t> seen_of(now.scene.instances.size());
+  std::vector<std::uint32_t> seen_of(now.scene.instances.size()), triangles_of;
+  for (const Instance& instance : now.scene.instances)
+    triangles_of.push_back(std::uint32_t(now.scene.meshes[instance.mesh].triangles.size()));
   for (const SeenFace& face : faces) ++seen_of[now.surfaces.source(face.id).instance];
-  return {{"views", count},
-          {"triangles", now.surfaces.primitive_count()},
-          {"ever_seen", faces.size()},
-          {"seen_by_object", seen_of}};
+  const ObjectNames object_names(now.scene);
+  PlainJson names = PlainJson::array();
+  for (std::uint32_t i = 0; i < now.scene.instances.size(); ++i) names.push_back(utf8_text(object_names[i]));
+  return {{"views", count}, {"triangles", now.surfaces.primitive_count()}, {"ever_seen", faces.size()},
+          {"names", names}, {"triangles_by_object", triangles_of},         {"seen_by_object", seen_of}};
 }
 
 }  // namespace frontmost::web

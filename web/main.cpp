@@ -44,6 +44,12 @@ const std::map<std::string, AnswerFunction, std::less<>>& answers() {
          room() = {};
          return answer;
        }},
+      {"lesson.open",
+       [](const PlainJson& question) {
+         const PlainJson answer = open_lesson(room(), question);
+         room() = {};
+         return answer;
+       }},
       {"builtin", by_workbench<&Workbench::open_builtin>},
       {"frame", by_workbench<&Workbench::frame>},
       {"draw", by_workbench<&Workbench::draw>},

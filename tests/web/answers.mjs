@@ -188,6 +188,17 @@ for (const [corners, most] of [[[[-1, -0.8, -3], [1, -0.5, -4], [0.3, 1, -3.5]],
   }
 }
 
+// A file of one's own is a scene like the others, z up where its format says so, and stays while others are shown.
+{
+  const { module: m } = frontmost, facets = new TextEncoder().encode("solid one\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid one\n");
+  m.HEAPU8.set(facets, m._frontmost_room(facets.length));
+  assert.equal(ask({ ask: "lesson.open", name: "one.stl" }).triangles, 1);
+  const own = () => ask({ ask: "lesson.frame", scene: "own", width: 100, height: 100, forward: [0, -1, 0] });
+  assert.deepEqual(own().world_up, [0, 0, 1]);
+  ask({ ask: "lesson.frame", scene: "cubes", width: 100, height: 100, forward: [0, -1, 0] });
+  assert.equal(ask({ ask: "lesson.lines", scene: "own", camera: own() }).boundaries, 3);
+}
+
 // Broken files end in an error that names them, and the model before stays.
 ask({ ask: "builtin", name: "cubes" });
 for (const [name, bytes] of [["cut.stl", new Uint8Array(90).fill(200)], ["bad.glb", new TextEncoder().encode("glTF????")], ["empty.ply", new Uint8Array()], ["what.xyz", new Uint8Array([1, 2, 3])]])
@@ -216,6 +227,9 @@ assert.equal(ask({ ask: "conventions" }).resolution[0], 160);
   for (const object of objects) assert.ok(Math.abs(object.visible_share + object.hidden_share + object.cut_share - 1) < 1e-9);
   const around = ask({ ask: "sphere", views: 8, size: 64 });
   assert.ok(around.ever_seen > 0 && around.ever_seen <= around.triangles);
+  const sum = (numbers) => numbers.reduce((a, b) => a + b, 0);
+  assert.deepEqual([sum(around.seen_by_object), sum(around.triangles_by_object), around.names.length], [around.ever_seen, around.triangles, 2]);
+  assert.ok(objects.some((object) => object.hidden_by.some((hider) => hider.share > 0)));
 }
 
 // Fifty models, one after the other.

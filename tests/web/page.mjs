@@ -10,7 +10,7 @@ import { openBrowser, openPage } from "./browser.mjs";
 const [folder, program] = process.argv.slice(2);
 const { browser, address, close } = await openBrowser(folder);
 const patience = { timeout: 60000 };
-let downloads = 0, steps = 0, lessons = 0;
+let downloads = 0, steps = 0, lessons = 0, ownModels = 0;
 
 const settled = (page) => page.waitForFunction(() => /[0-9a-f]{16}/.test(document.querySelector(".state")?.textContent ?? "") && document.querySelector(".busy")?.hidden, undefined, patience);
 const hashOf = async (page) => (await page.locator(".state").textContent()).match(/[0-9a-f]{16}$/)[0];
@@ -76,14 +76,19 @@ async function tryWorkbench(lang, viewport) {
   await settled(page);
   assert.equal(await hashOf(page), await nativeHash(page), "after it was turned");
   for (const show of await page.locator("input[name=show]").all()) {
-    await show.check({ force: true });
+    await show.evaluate((input) => input.click());
     await settled(page);
   }
-  await page.locator("input[name=show][value=picture]").check({ force: true });
+  await page.locator("input[name=show][value=picture]").evaluate((input) => input.click());
   await settled(page);
   await page.locator(".stage canvas").first().click();
   await page.waitForSelector(".hits li", patience);
   if (lang === "en") await takeAll(page);
+  const [account, sphere] = await page.locator(".side .button").filter({ hasText: lang === "en" ? /^(Account|Never seen)/ : /^(统计|环绕)/ }).all();
+  await account.click();
+  await page.waitForSelector("table.hiding tbody tr", patience);
+  await sphere.click();
+  await page.waitForSelector("table.never tbody tr", patience);
   await drop(page, "broken.stl", "solid nothing\n facet normal 0 0 what");
   await page.waitForSelector(".message:not([hidden])", patience);
   assert.match(await page.locator(".message").textContent(), /broken\.stl/);
@@ -94,6 +99,20 @@ async function tryWorkbench(lang, viewport) {
   assert.ok(wide <= 0, `the page is ${wide} pixels too wide at ${viewport.width}`);
   assert.deepEqual(complaints, []);
   await context.close();
+}
+
+const cornerOf = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\n";
+/** Every figure that takes a model of one's own is given a broken one, and a good one. */
+async function giveOwnModels(page, id) {
+  for (const picker of await page.locator(".figure input[type=file]").all()) {
+    const around = picker.locator("xpath=..");
+    await picker.setInputFiles({ name: "broken.stl", mimeType: "model/stl", buffer: Buffer.from("solid nothing\n facet normal 0 0 what") });
+    await around.locator("[role=alert]:not([hidden])").waitFor(patience);
+    assert.match(await around.locator("[role=alert]").textContent(), /broken\.stl/, id);
+    await picker.setInputFiles({ name: "corner.obj", mimeType: "model/obj", buffer: Buffer.from(cornerOf) });
+    await around.locator('input[value="own"]:checked').waitFor({ ...patience, state: "attached" });
+    ++ownModels;
+  }
 }
 
 async function tryLesson(id, lang, viewport) {
@@ -113,7 +132,8 @@ async function tryLesson(id, lang, viewport) {
     }
     await stepper.locator("[data-back]").click();
   }
-  for (const choice of await page.locator(".choices input").all()) await choice.check({ force: true });
+  for (const choice of await page.locator('.choices input:not([value="own"])').all()) await choice.evaluate((input) => input.click());
+  await giveOwnModels(page, id);
   await page.waitForTimeout(300);
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   assert.ok(wide <= 0, `${id}: the page is ${wide} pixels too wide at ${viewport.width}`);
@@ -135,4 +155,4 @@ try {
 } finally {
   await close();
 }
-console.log(`${downloads} downloads opened, ${lessons} lessons with ${steps} steps, no complaint`);
+console.log(`${downloads} downloads opened, ${lessons} lessons with ${steps} steps, ${ownModels} figures with a model of one's own, no complaint`);

@@ -50,9 +50,11 @@ struct LessonScene {
   Surfaces surfaces;
 };
 /// {"scene", "width", "height", "forward"} -> a camera that shows all of it, and the points "beside" it; "angle" in
-/// degrees.
+/// degrees. Directions are told for scenes whose y is up, and turned for others.
 PlainJson frame_lesson(const PlainJson& question);
 
+/// {"name"}: the bytes of a file become the scene "own", which is kept beside the last of the others.
+PlainJson open_lesson(std::span<const std::byte> bytes, const PlainJson& question);
 /// {"scene"}: the last one asked for is kept.
 const LessonScene& lesson_scene(const PlainJson& question);
 /// {"camera"}, or one that shows all of it in {"width", "height"}.

@@ -85,12 +85,23 @@ Scene town_scene() {
   return scene;
 }
 
+std::unique_ptr<LessonScene>& own_scene() {
+  static std::unique_ptr<LessonScene> own;
+  return own;
+}
+
 }  // namespace
+
+PlainJson open_lesson(std::span<const std::byte> bytes, const PlainJson& question) {
+  own_scene() = std::make_unique<LessonScene>(load(bytes, question.at("name").get<std::string>()));
+  return {{"triangles", own_scene()->surfaces.primitive_count()}};
+}
 
 const LessonScene& lesson_scene(const PlainJson& question) {
   static std::string name;
   static std::unique_ptr<LessonScene> stage;
   const std::string wanted = question.value("scene", "cubes");
+  if (wanted == "own" && own_scene()) return *own_scene();
   if (!stage || wanted != name) {
     stage = std::make_unique<LessonScene>(wanted == "concave"  ? concave_scene()
                                           : wanted == "cube"   ? cube_scene()
@@ -107,10 +118,13 @@ PlainJson frame_lesson(const PlainJson& question) {
   Box box = stage.surfaces.bounds();
   for (const PlainJson& point : question.value("beside", PlainJson::array())) box.include(glm::vec3(vector_of(point)));
   FrameOptions options;
-  options.forward = vector_of(question.at("forward"));
+  const glm::dvec3 forward = vector_of(question.at("forward")), up = direction(stage.scene.up);
+  options.forward = up.z > 0 ? glm::dvec3(forward.x, -forward.z, forward.y) : forward;
   if (question.contains("angle")) options.min_fov = glm::radians(question["angle"].get<double>());
   const View view = frame(box, stage.scene.up, question.at("width"), question.at("height"), options);
-  return camera_json(view, box.centre());
+  PlainJson camera = camera_json(view, box.centre());
+  camera["world_up"] = to_json(up);
+  return camera;
 }
 
 View lesson_view(const LessonScene& stage, const PlainJson& question) {

@@ -32,3 +32,20 @@ export function accountTable(answer: Answer): HTMLElement {
     element("table", {}, element("thead", {}, element("tr", {}, element("th", {}, say(words.object)), element("th", { style: "text-align:right" }, say(words.visible)))), body),
     more > 0 && element("p", { class: "soft" }, `+ ${more} ${say(words.more)}`));
 }
+
+/** A row for every two objects of which one hides something of the other, the largest shares first. */
+export function hidingTable(answer: Answer): HTMLElement | null {
+  const pairs: Answer[] = answer.objects.flatMap((object: Answer) => object.hidden_by.map((hider: Answer) => ({ name: object.name, hider: hider.name, share: hider.share })));
+  if (pairs.length === 0) return null;
+  const body = element("tbody", {}, ...pairs.sort((a, b) => b.share - a.share).slice(0, mostRows).map(({ name, hider, share }) => element("tr", {}, element("td", {}, name), element("td", {}, hider), shareCell(share))));
+  return element("div", { class: "scroll", tabindex: 0 },
+    element("table", { class: "hiding" }, element("thead", {}, element("tr", {}, element("th", {}, say(words.object)), element("th", {}, say(words.hiddenBy)), element("th", { style: "text-align:right" }, say(words.share)))), body));
+}
+
+/** Of every object how many of its triangles no view sees. */
+export function neverSeenTable(answer: Answer): HTMLElement {
+  const rows: [string, number, number][] = answer.names.map((name: string, i: number) => [name, answer.triangles_by_object[i] - answer.seen_by_object[i], answer.triangles_by_object[i]]);
+  const body = element("tbody", {}, ...rows.sort((a, b) => b[1] - a[1]).slice(0, mostRows).map(([name, never, all]) =>
+    element("tr", {}, element("td", {}, name, element("small", {}, `${never.toLocaleString()} / ${all.toLocaleString()}`)), shareCell(never / Math.max(1, all)))));
+  return element("div", { class: "scroll", tabindex: 0 }, element("table", { class: "never" }, element("thead", {}, element("tr", {}, element("th", {}, say(words.object)), element("th", { style: "text-align:right" }, say(words.never)))), body));
+}

@@ -5,7 +5,7 @@ export interface Camera {
   width: number; height: number;
   eye: Vector; target: Vector; up: Vector;
   angle: number; orthographic: boolean;
-  near?: number; far?: number; samples?: number; culling?: number;
+  near?: number; far?: number; samples?: number; culling?: number; world_up?: Vector;
 }
 
 export const minus = (a: Vector, b: Vector): Vector => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];

@@ -9,7 +9,7 @@ import { bar, choices, element, keepForLater, slider } from "./dom.ts";
 import { say } from "./language.ts";
 import { listen, type Camera, type Vector } from "./orbit.ts";
 import { commandLine, downloads } from "./takeaway.ts";
-import { accountTable, hitList } from "./answers.ts";
+import { accountTable, hidingTable, hitList, neverSeenTable } from "./answers.ts";
 import { scenes, views, words } from "./words.ts";
 
 const quickMilliseconds = 30;
@@ -223,7 +223,9 @@ async function askReport(): Promise<void> {
     await settle();
     return client.ask({ ask: "report" });
   });
-  if (answer) account.replaceChildren(accountTable(answer));
+  if (!answer) return;
+  const hiding = hidingTable(answer);
+  account.replaceChildren(accountTable(answer), ...(hiding ? [element("h3", {}, say(words.whoHides)), hiding] : []));
 }
 
 async function askSphere(): Promise<void> {
@@ -231,7 +233,7 @@ async function askSphere(): Promise<void> {
   if (!answer) return;
   const never = answer.triangles - answer.ever_seen;
   account.replaceChildren(element("p", {}, element("b", { class: "number" }, `${((100 * never) / Math.max(1, answer.triangles)).toFixed(1)} %`),
-    ` ${say(words.sphereDone)} `, element("b", { class: "number" }, never.toLocaleString())));
+    ` ${say(words.sphereDone)} `, element("b", { class: "number" }, never.toLocaleString())), neverSeenTable(answer));
 }
 
 const scenePicker = element("select", { "aria-label": say(words.builtin) }, element("option", { value: "", disabled: true }, say(words.builtin)),

@@ -3,7 +3,7 @@
 import type { Answer } from "../answer.ts";
 import { choices, element } from "../dom.ts";
 import { say } from "../language.ts";
-import { Eye, figure, ink, Latest, plate } from "./figure.ts";
+import { Eye, figure, ink, Latest, plate, sceneChoices } from "./figure.ts";
 import { dot, minus, unit, type Vector } from "../orbit.ts";
 import type { Lesson } from "./list.ts";
 
@@ -62,7 +62,7 @@ function cullingFigure(): HTMLElement {
       culling = Number(value);
       show();
     }),
-    choices("cscene", say({ en: "Scene", zh: "场景" }), [["cube", say({ en: "one convex body", zh: "一个凸体" })], ["concave", say({ en: "a concave body", zh: "一个凹体" })], ["cubes", say({ en: "two cubes", zh: "两个立方体" })], ["teapot", say({ en: "teapot", zh: "茶壶" })]], scene, (value) => {
+    sceneChoices("cscene", [["cube", { en: "one convex body", zh: "一个凸体" }], ["concave", { en: "a concave body", zh: "一个凹体" }], ["cubes", { en: "two cubes", zh: "两个立方体" }], ["teapot", { en: "teapot", zh: "茶壶" }]], scene, (value) => {
       scene = value;
       void place();
     }),

@@ -3,8 +3,8 @@
 // questions of which the last alone is answered.
 import type { Answer, Question } from "../answer.ts";
 import { Client, toImage } from "../client.ts";
-import { element } from "../dom.ts";
-import { say } from "../language.ts";
+import { choices, element } from "../dom.ts";
+import { say, type Text } from "../language.ts";
 import { listen, type Camera, type Vector } from "../orbit.ts";
 
 let shared: Client | undefined;
@@ -166,6 +166,37 @@ export function figure(pictures: HTMLElement[], controls: HTMLElement[]): HTMLEl
   return element("figure", { class: "figure" }, element("div", { class: pictures.length > 3 ? "picture pairs" : "picture" }, ...pictures), element("div", { class: "controls" }, ...controls));
 }
 
+/** Scenes to choose from, and a file of one's own. */
+export function sceneChoices(name: string, scenes: [string, Text][], chosen: string, change: (scene: string) => void): HTMLElement {
+  const picker = element("input", { type: "file", accept: ".stl,.ply,.obj,.off,.glb,.gltf", class: "sr", tabindex: -1, "aria-label": say(own) });
+  const complaint = element("p", { class: "soft", role: "alert", hidden: true });
+  const restore = () => (group.querySelector<HTMLInputElement>(`input[value="${chosen}"]`)!.checked = true);
+  const group = choices(name, say({ en: "Scene", zh: "场景" }), [...scenes, ["own", own] as [string, Text]].map(([id, text]) => [id, say(text)]), chosen, (value) => {
+    complaint.hidden = true;
+    if (value === "own") return picker.click();
+    chosen = value;
+    change(value);
+  });
+  picker.addEventListener("cancel", restore);
+  picker.addEventListener("change", async () => {
+    const file = picker.files?.[0];
+    if (!file) return restore();
+    try {
+      await client().ask({ ask: "lesson.open", name: file.name }, await file.arrayBuffer());
+      group.querySelector<HTMLInputElement>(`input[value="own"]`)!.checked = true;
+      chosen = "own";
+      change("own");
+    } catch (error) {
+      complaint.textContent = error instanceof Error ? error.message : String(error);
+      complaint.hidden = false;
+      restore();
+    }
+    picker.value = "";
+  });
+  return element("div", {}, group, picker, complaint);
+}
+const own: Text = { en: "your own model…", zh: "自己的模型…" };
+
 interface Framing { angle?: number; beside?: Vector[] }
 /** A camera that shows all of a scene from a direction, and points beside it. */
 export async function framed(scene: string, forward: Vector, [width, height]: [number, number], more: Framing = {}): Promise<Camera> {
@@ -178,7 +209,7 @@ export class Eye {
   constructor(target: HTMLElement, moved: () => void) {
     target.tabIndex = 0;
     target.style.cursor = "grab";
-    listen(target, { camera: () => this.camera, worldUp: () => [0, 1, 0] as Vector, moved });
+    listen(target, { camera: () => this.camera, worldUp: () => this.camera?.world_up ?? ([0, 1, 0] as Vector), moved });
   }
 
   /** Shows all of a scene, from a direction. */

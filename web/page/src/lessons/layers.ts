@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The A-buffer: the list of one pixel, its masks, and the order of glass before glass.
 import type { Answer } from "../answer.ts";
-import { choices, element, slider } from "../dom.ts";
+import { element, slider } from "../dom.ts";
 import { say } from "../language.ts";
-import { Eye, figure, ink, Latest, plate } from "./figure.ts";
+import { Eye, figure, ink, Latest, plate, sceneChoices } from "./figure.ts";
 import type { Lesson } from "./list.ts";
 
 const size: [number, number] = [320, 240];
@@ -59,7 +59,7 @@ function layersFigure(): HTMLElement {
       opacity = v;
       show();
     }).field,
-    choices("ascene", say({ en: "Scene", zh: "场景" }), [["cubes", say({ en: "two cubes", zh: "两个立方体" })], ["cycle", say({ en: "three in a ring", zh: "三者成环" })], ["concave", say({ en: "a concave body", zh: "凹体" })]], scene, (value) => {
+    sceneChoices("ascene", [["cubes", { en: "two cubes", zh: "两个立方体" }], ["cycle", { en: "three in a ring", zh: "三者成环" }], ["concave", { en: "a concave body", zh: "凹体" }]], scene, (value) => {
       scene = value;
       void place();
     })]);

@@ -3,7 +3,7 @@
 import type { Answer } from "../answer.ts";
 import { choices, element } from "../dom.ts";
 import { say, type Text } from "../language.ts";
-import { Eye, facts, figure, Latest, lines, plate, steps } from "./figure.ts";
+import { Eye, facts, figure, Latest, lines, plate, steps, sceneChoices } from "./figure.ts";
 import type { Lesson } from "./list.ts";
 
 const size: [number, number] = [480, 360];
@@ -45,7 +45,7 @@ function kindsFigure(): HTMLElement {
   }
   void place();
   return figure([drawn.root, element("div", {}, counts)], [
-    choices("kscene", say({ en: "Scene", zh: "场景" }), [...scenes, ["teapot", { en: "teapot", zh: "茶壶" }] as [string, Text]].map(([id, text]) => [id, say(text)]), scene, (value) => {
+    sceneChoices("kscene", [...scenes, ["teapot", { en: "teapot", zh: "茶壶" }] as [string, Text]], scene, (value) => {
       scene = value;
       void place();
     })]);

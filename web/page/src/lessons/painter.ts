@@ -3,7 +3,7 @@
 import type { Answer } from "../answer.ts";
 import { choices, element } from "../dom.ts";
 import { say, type Text } from "../language.ts";
-import { Eye, facts, figure, ink, Latest, plate, steps } from "./figure.ts";
+import { Eye, facts, figure, ink, Latest, plate, steps, sceneChoices } from "./figure.ts";
 import { treeFigure } from "./tree.ts";
 import type { Lesson } from "./list.ts";
 
@@ -76,7 +76,7 @@ function paintFigure(): HTMLElement {
       most = -1;
       show(100000);
     }),
-    choices("pscene", say({ en: "Scene", zh: "场景" }), [["cycle", say({ en: "three in a ring", zh: "三者成环" })], ["cubes", say({ en: "two cubes that intersect", zh: "相交的立方体" })], ["concave", say({ en: "a concave body", zh: "凹体" })]], scene, (value) => {
+    sceneChoices("pscene", [["cycle", { en: "three in a ring", zh: "三者成环" }], ["cubes", { en: "two cubes that intersect", zh: "相交的立方体" }], ["concave", { en: "a concave body", zh: "凹体" }]], scene, (value) => {
       scene = value;
       void place();
     }),

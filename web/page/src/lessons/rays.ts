@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ray casting: one ray through a tree of boxes, on to the light, and what each level of the tree saves.
 import type { Answer } from "../answer.ts";
-import { choices, element } from "../dom.ts";
-import { say } from "../language.ts";
+import { element } from "../dom.ts";
+import { say, type Text } from "../language.ts";
 import type { Camera } from "../orbit.ts";
-import { dot, Eye, facts, figure, framed, Latest, lines, plate, pointing, steps } from "./figure.ts";
+import { dot, Eye, facts, figure, framed, Latest, lines, plate, pointing, sceneChoices, steps } from "./figure.ts";
 import type { Lesson } from "./list.ts";
 
-const scenes: [string, string][] = [["blocks", say({ en: "blocks on a floor", zh: "地面上的方块" })], ["cubes", say({ en: "two cubes that intersect", zh: "相交的立方体" })],
-  ["concave", say({ en: "a concave body", zh: "凹体" })], ["teapot", say({ en: "teapot", zh: "茶壶" })]];
+const scenes: [string, Text][] = [["blocks", { en: "blocks on a floor", zh: "地面上的方块" }], ["cubes", { en: "two cubes that intersect", zh: "相交的立方体" }],
+  ["concave", { en: "a concave body", zh: "凹体" }], ["teapot", { en: "teapot", zh: "茶壶" }]];
 
 function told(step: Answer, nearest: number): string {
   const at = step.t.toFixed(3);
@@ -85,7 +85,7 @@ function walkFigure(): HTMLElement {
   }
   void place();
   return figure([seen.root, aside.root], [stepper.root, said, asked.root,
-    choices("rscene", say({ en: "Scene", zh: "场景" }), scenes, scene, (value) => {
+    sceneChoices("rscene", scenes, scene, (value) => {
       scene = value;
       void place();
     })]);
@@ -122,7 +122,7 @@ function levelFigure(): HTMLElement {
   }
   void place(4);
   return figure([boxes.root, heat.root], [stepper.root, said, asked.root,
-    choices("lscene", say({ en: "Scene", zh: "场景" }), scenes, scene, (value) => {
+    sceneChoices("lscene", scenes, scene, (value) => {
       scene = value;
       void place(stepper.step);
     })]);

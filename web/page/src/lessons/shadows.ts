@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shadows: a map of what the light sees, its texels and its bias, beside exact rays.
 import type { Answer } from "../answer.ts";
-import { choices, element, slider } from "../dom.ts";
+import { element, slider } from "../dom.ts";
 import { say } from "../language.ts";
 import { type Camera, type Vector } from "../orbit.ts";
-import { facts, figure, framed, Latest, plate, pointing } from "./figure.ts";
+import { facts, figure, framed, Latest, plate, pointing, sceneChoices } from "./figure.ts";
 import type { Lesson } from "./list.ts";
 
 const size: [number, number] = [400, 300];
@@ -58,7 +58,7 @@ function shadowFigure(): HTMLElement {
   return figure([mapped.root, cast.root, light.root, wrong.root], [said, sums.root,
     knob(say({ en: "texels", zh: "纹素" }), "texels", 4, 11, 1, (v) => `${2 ** v}²`), knob(say({ en: "bias", zh: "偏移" }), "bias", -4, 0, 0.05, (v) => biasOf(v).toPrecision(2)),
     knob(say({ en: "light, around", zh: "光源方位" }), "around", 0, 360, 2, (v) => `${v}°`), knob(say({ en: "light, height", zh: "光源高度" }), "height", 10, 88, 1, (v) => `${v}°`),
-    choices("sscene", say({ en: "Scene", zh: "场景" }), [["blocks", say({ en: "blocks on a floor", zh: "地面上的方块" })], ["concave", say({ en: "a concave body", zh: "凹体" })], ["cubes", say({ en: "two cubes that intersect", zh: "相交的立方体" })], ["teapot", say({ en: "teapot", zh: "茶壶" })]], scene, (value) => {
+    sceneChoices("sscene", [["blocks", { en: "blocks on a floor", zh: "地面上的方块" }], ["concave", { en: "a concave body", zh: "凹体" }], ["cubes", { en: "two cubes that intersect", zh: "相交的立方体" }], ["teapot", { en: "teapot", zh: "茶壶" }]], scene, (value) => {
       scene = value;
       void place();
     })]);

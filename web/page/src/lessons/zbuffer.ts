@@ -3,7 +3,7 @@
 import type { Answer } from "../answer.ts";
 import { choices, element } from "../dom.ts";
 import { say } from "../language.ts";
-import { client, figure, Latest, plate, steps } from "./figure.ts";
+import { client, figure, Latest, plate, steps, sceneChoices } from "./figure.ts";
 import type { Lesson } from "./list.ts";
 
 interface Cell { x: number; y: number; depth: number; before: number; after: number; passes: boolean }
@@ -114,7 +114,7 @@ function pictureFigure(): HTMLElement {
   setTimeout(() => stepper.set(24));
   return figure([colors.root, depths.root], [
     stepper.root, said, list,
-    choices("zscene", say({ en: "Scene", zh: "场景" }), [["cubes", say({ en: "two cubes that intersect", zh: "相交的两个立方体" })], ["cycle", say({ en: "three in a ring", zh: "三者成环" })], ["concave", say({ en: "a concave body", zh: "凹体" })]], scene, (value) => {
+    sceneChoices("zscene", [["cubes", { en: "two cubes that intersect", zh: "相交的两个立方体" }], ["cycle", { en: "three in a ring", zh: "三者成环" }], ["concave", { en: "a concave body", zh: "凹体" }]], scene, (value) => {
       scene = value;
       most = -1;
       pixel = undefined;
