@@ -157,13 +157,14 @@ async function drawWanted(): Promise<void> {
     const kind = wanted;
     wanted = "none";
     busy.hidden = kind === "quick" && lastImage !== undefined;
+    const shown = new Promise(requestAnimationFrame);
     try {
       await drawOnce(kind);
     } catch (error) {
       complain(error);
     }
-    // The browser shows what was painted before the next one begins.
-    await new Promise(requestAnimationFrame);
+    // No more than one for each that the browser shows; it shows one while the next is drawn.
+    await shown;
   }
   busy.hidden = true;
   isDrawing = false;
