@@ -3,6 +3,7 @@
 #include <frontmost/page.h>
 #include <frontmost/sheet.h>
 
+#include "web/exr.h"
 #include "web/workbench.h"
 
 namespace frontmost::web {
@@ -29,6 +30,10 @@ PlainJson Workbench::write(const PlainJson& question) {
   const Surfaces& surfaces = model().surfaces;
   const Visible& visible = seen();
   const std::string what = question.at("what"), format = question.at("format"), path = "/file." + format;
+  if (format == "exr") {
+    file_ = exr_bytes(map_of(surfaces, visible, what));
+    return {{"file", place_of(file_.data(), file_.size())}};
+  }
   View view = view_;
   view.samples = 1;
   if (what == "lines") {

@@ -215,6 +215,18 @@ assert.match(written("lines", "pdf"), /^%PDF-1\.[\s\S]*%%EOF\s*$/);
 assert.match(written("lines", "dxf"), /EOF\s*$/);
 assert.equal(written("depth", "npy").slice(1, 6), "NUMPY");
 assert.equal(written("objects", "npy").length, 128 + 160 * 120 * 4);
+for (const [map, names] of [["depth", ["Z"]], ["objects", ["object"]], ["normals", ["N.X", "N.Y", "N.Z"]]]) {
+  const exr = ask({ ask: "write", what: map, format: "exr" }).file, bytes = plane(exr), numbers = new DataView(bytes.buffer), latin = text(exr);
+  const rows = bytes.length - 120 * (8 + 160 * 4 * names.length);
+  assert.equal(numbers.getUint32(0, true), 20000630);
+  names.forEach((name, i) => assert.ok(latin.indexOf(`${name}\0`) > (i ? latin.indexOf(`${names[i - 1]}\0`) : 0), "channels by name"));
+  for (const y of [0, 60, 119]) {
+    const at = Number(numbers.getBigUint64(rows - 8 * (120 - y), true));
+    assert.deepEqual([numbers.getInt32(at, true), numbers.getInt32(at + 4, true)], [y, 160 * 4 * names.length]);
+    // What an NPY of the same map holds in this row.
+    if (names.length === 1) assert.equal(latin.slice(at + 8, at + 8 + 640), written(map, "npy").slice(128 + 640 * y, 128 + 640 * (y + 1)));
+  }
+}
 assert.match(written("depth", "pfm"), /^Pf\n160 120\n/);
 assert.equal(ask({ ask: "conventions" }).resolution[0], 160);
 
@@ -240,4 +252,4 @@ for (let i = 0; i < 50; ++i) {
   if (i === 5) after = frontmost.module.HEAPU8.length;
 }
 assert.equal(frontmost.module.HEAPU8.length, after, "memory grows with every model");
-console.log(`the lessons' numbers, four broken files, seven files written, 50 models in ${after / 2 ** 20} MiB`);
+console.log(`the lessons' numbers, four broken files, ten files written, 50 models in ${after / 2 ** 20} MiB`);

@@ -28,6 +28,7 @@ const checks = [
   [/\.pdf$/, (bytes) => bytes.startsWith("%PDF-1.") && bytes.trimEnd().endsWith("%%EOF")],
   [/\.dxf$/, (bytes) => bytes.trimEnd().endsWith("EOF")],
   [/\.npy$/, (bytes) => bytes.slice(1, 6) === "NUMPY"],
+  [/\.exr$/, (bytes) => bytes.startsWith("v/1\x01\x02\0\0\0channels\0chlist\0")],
   [/\.pfm$/, (bytes) => bytes.startsWith("Pf\n")],
   [/\.json$/, (bytes) => Object.keys(JSON.parse(bytes)).length > 3],
   [/\.png$/, (bytes) => bytes.slice(1, 4) === "PNG" && bytes.includes("IEND")],

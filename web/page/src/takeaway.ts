@@ -55,6 +55,7 @@ export function downloads(bench: Bench): HTMLElement {
     })),
     row(say(words.drawing), file("SVG", "*-lines.svg", written("lines", "svg", "image/svg+xml")), file("PDF", "*-lines.pdf", written("lines", "pdf", "application/pdf")), file("DXF", "*-lines.dxf", written("lines", "dxf", "image/vnd.dxf"))),
     row(say(words.figure), file("SVG", "*-figure.svg", written("figure", "svg", "image/svg+xml")), file("PDF", "*-figure.pdf", written("figure", "pdf", "application/pdf"))),
-    row(say(words.maps), ...["depth", "objects", "primitives", "materials", "normals"].map((map) => file(`${map}.npy`, `*-${map}.npy`, written(map, "npy", "application/octet-stream"))), file("depth.pfm", "*-depth.pfm", written("depth", "pfm", "application/octet-stream"))),
+    row(say(words.maps), ...["depth", "objects", "primitives", "materials", "normals"].map((map) => file(`${map}.npy`, `*-${map}.npy`, written(map, "npy", "application/octet-stream"))), file("depth.pfm", "*-depth.pfm", written("depth", "pfm", "application/octet-stream")),
+      ...["depth", "objects", "primitives", "materials", "normals"].map((map) => file(`${map}.exr`, `*-${map}.exr`, written(map, "exr", "image/x-exr")))),
     row(say(words.facts), file(say(words.reportFile), "*-report.json", () => json("report")), file(say(words.cameraFile), "*-camera.json", () => json("conventions"))));
 }
