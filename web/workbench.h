@@ -17,8 +17,8 @@
 namespace frontmost::web {
 
 /// Questions are JSON objects, and so are answers; planes of numbers are told by their places in memory, where they
-/// stay until the next question. Everything throws Error as the library does, and PlainJson's exceptions for questions
-/// that lack something.
+/// stay until the next question. Everything throws Error as the library does, and nlohmann::json's exceptions for
+/// questions that lack something.
 class Workbench {
  public:
   /// The bytes of a file, and its name. \returns what there is: {"name", "triangles", "objects", "materials", "bounds",
