@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenEXR's simplest files, for a module without that library: one part, whole numbers and floats of 32 bits as they are,
-// uncompressed.
+// OpenEXR's simplest files, for a module without that library: one part, whole numbers and floats of 32 bits as they
+// are, uncompressed.
 #pragma once
 
 #include <frontmost/image.h>
