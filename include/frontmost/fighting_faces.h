@@ -48,7 +48,7 @@ struct FightingObjects {
   std::uint32_t first = no_index, second = no_index;  ///< instances, first <= second; of `clear` there is no second
   FightKind kind = FightKind::close;
   std::uint64_t areas = 0;
-  double area = 0;          ///< of their union, in pixels squared; measured along lines 1/16 pixel apart
+  double area = 0;          ///< of their union, in pixels squared; measured along lines at least 1/16 pixel apart
   double visible_area = 0;  ///< likewise
   double distance = 0;      ///< planar depth of their nearest point
   double gap = 0;           ///< resolvable_gap() there: the smallest that the format tells apart

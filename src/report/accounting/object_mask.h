@@ -14,7 +14,7 @@ namespace frontmost::accounting_detail {
 /// The picture and what is around it. Vertices lie on it where the picture has them, to the bit, moved by the margin.
 struct ObjectCanvas {
   glm::ivec2 margin;          ///< in pixels, to the left of the picture and above it; negative where only a part is
-  PixelRect frame;            ///< the picture on the canvas
+  PixelRect frame;            ///< the picture, or its part, on the canvas
   View view;                  ///< of which the size, the samples and the culling are the canvas'
   ScreenTransform transform;  ///< to the canvas' top left corner
   ScreenRays rays;            ///< of the picture, about its own top left corner

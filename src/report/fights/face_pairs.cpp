@@ -34,13 +34,18 @@ struct CellFace {
   std::int32_t x0, x1, y0, y1;
   float low, high;
   std::uint32_t face;
-  std::uint32_t near = 0;  ///< an entry of the cell
 
   CellFace(const ScreenFace& f, std::uint32_t number) : low(f.low), high(f.high), face(number) {
     const TriangleRecord& r = f.record;
     std::tie(x0, x1) = std::minmax({r.x[0], r.x[1], r.x[2]});
     std::tie(y0, y1) = std::minmax({r.y[0], r.y[1], r.y[2]});
   }
+};
+
+/// The faces of one cell, and of those the numbers that are near one of them. Kept from cell to cell.
+struct CellScratch {
+  std::vector<CellFace> entries;
+  std::vector<std::uint32_t> near;
 };
 
 /// True when a side of `a` has all of `b` on its outer side, or on it.
@@ -74,12 +79,13 @@ class FaceCells {
   [[nodiscard]] int rows() const { return rows_; }
 
   /// Appends the pairs that are met in this cell.
-  void find_pairs(int column, int row, std::vector<CellFace>& entries, Effort& effort,
-                  std::vector<FacePair>& pairs) const {
+  void find_pairs(int column, int row, CellScratch& scratch, Effort& effort, std::vector<FacePair>& pairs) const {
+    std::vector<CellFace>& entries = scratch.entries;
     entries.clear();
     for (const std::uint32_t i : lists_.of(std::size_t(row) * std::size_t(columns_) + std::size_t(column)))
       entries.emplace_back(faces_[i], i);
     std::sort(entries.begin(), entries.end(), [](const CellFace& a, const CellFace& b) { return a.x0 < b.x0; });
+    scratch.near.resize(entries.size());
     constexpr std::size_t kLooksAtOnce = 1 << 12;
     std::size_t looks = 0, told = pairs.size();
     const auto tell = [&] {
@@ -89,33 +95,35 @@ class FaceCells {
     };
     for (std::size_t i = 0; i < entries.size(); ++i) {
       const CellFace& a = entries[i];
-      const std::size_t near = collect_near(i, entries, looks);
-      for (std::size_t n = 0; n < near; ++n) {
-        const CellFace& b = entries[entries[n].near];
+      const NearFaces found = collect_near(i, entries, scratch.near.data());
+      for (std::size_t n = 0; n < found.count; ++n) {
+        const CellFace& b = entries[scratch.near[n]];
         if (cell_of(b.x0, columns_) != column || cell_of(std::max(a.y0, b.y0), rows_) != row) continue;
         const TriangleRecord &p = faces_[a.face].record, &q = faces_[b.face].record;
         if (p.id == q.id || is_parted_by_side(p, q) || is_parted_by_side(q, p)) continue;
         pairs.push_back({std::min(a.face, b.face), std::max(a.face, b.face)});
       }
+      looks += found.looks;
       if (looks > kLooksAtOnce) tell();
     }
     tell();
   }
 
  private:
-  /// Puts the numbers of those after the i-th whose rectangles and ranges of keys overlap its own into the first
-  /// entries' `near`. \returns how many there are.
-  static std::size_t collect_near(std::size_t i, std::vector<CellFace>& entries, std::size_t& looks) {
+  struct NearFaces {
+    std::size_t looks, count;
+  };
+  /// Writes the numbers of the entries after the i-th whose rectangles and ranges of keys overlap its own.
+  static NearFaces collect_near(std::size_t i, const std::vector<CellFace>& entries, std::uint32_t* near) {
     const CellFace a = entries[i];
     std::size_t k = i + 1, count = 0;
     for (; k < entries.size() && entries[k].x0 < a.x1; ++k) {
       const CellFace& b = entries[k];
-      entries[count].near = std::uint32_t(k);
+      near[count] = std::uint32_t(k);
       // Without branches, which nothing would predict.
       count += std::size_t(int(b.y0 < a.y1) & int(a.y0 < b.y1) & int(b.low <= a.high) & int(a.low <= b.high));
     }
-    looks += k - i;
-    return count;
+    return {k - i, count};
   }
   /// Into squares of 2^shift steps of corners.
   void divide_screen(int shift) {
@@ -156,9 +164,9 @@ std::vector<FacePair> find_face_pairs(const std::vector<ScreenFace>& faces, cons
   std::vector<std::vector<FacePair>> by_row(std::size_t(cells.rows()));
   Effort effort;
   parallel_for(execution, by_row.size(), 1, [&](std::size_t row, std::size_t) {
-    std::vector<CellFace> entries;
+    CellScratch scratch;
     for (int column = 0; column < cells.columns(); ++column)
-      cells.find_pairs(column, int(row), entries, effort, by_row[row]);
+      cells.find_pairs(column, int(row), scratch, effort, by_row[row]);
   });
   std::vector<FacePair> pairs;
   pairs.reserve(effort.pairs);

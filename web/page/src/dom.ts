@@ -38,6 +38,15 @@ export function slider(label: string, range: { min: number; max: number; step: n
   return { field: element("label", { class: "field" }, element("span", {}, label), input, output), input };
 }
 
+/** Sliders of a figure's settings: each changes the one that it is for, and tells. */
+export function sliders<K extends string>(settings: Record<K, number>, changed: () => void) {
+  return (label: string, key: K, min: number, max: number, step: number, show: (value: number) => string): HTMLElement =>
+    slider(label, { min, max, step, value: settings[key] }, show, (value) => {
+      settings[key] = value;
+      changed();
+    }).field;
+}
+
 const titles = {
   workbench: { en: "Workbench", zh: "工作台" },
   lessons: { en: "Lessons", zh: "课程" },

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Projection and depth: 1/z along a segment, what formats tell apart, and plates that fight.
 import type { Answer } from "../answer.ts";
-import { choices, element, slider } from "../dom.ts";
+import { choices, element, slider, sliders } from "../dom.ts";
 import { say } from "../language.ts";
 import type { Camera, Vector } from "../orbit.ts";
 import { dot, Eye, figure, framed, ink, Latest, lines, plate } from "./figure.ts";
@@ -238,10 +238,7 @@ function frustumFigure(): HTMLElement {
     ask();
   }
   void place();
-  const knob = (label: string, key: keyof typeof setting, min: number, max: number, step: number, show: (value: number) => string) => slider(label, { min, max, step, value: setting[key] }, show, (value) => {
-    setting[key] = value;
-    ask();
-  }).field;
+  const knob = sliders(setting, ask);
   return figure([seen.root, aside.root], [said,
     knob(say({ en: "angle", zh: "视角" }), "angle", 5, 110, 1, (v) => `${v}°`), knob(say({ en: "near", zh: "近平面" }), "near", 0.1, 8, 0.05, (v) => v.toFixed(2)), knob(say({ en: "far", zh: "远平面" }), "far", 1, 12, 0.05, (v) => v.toFixed(2)),
     knob(say({ en: "eye", zh: "眼睛远近" }), "away", 0.3, 1.6, 0.01, (v) => v.toFixed(2)), matrix]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shadows: a map of what the light sees, its texels and its bias, beside exact rays.
 import type { Answer } from "../answer.ts";
-import { element, slider } from "../dom.ts";
+import { element, sliders } from "../dom.ts";
 import { say } from "../language.ts";
 import { type Camera, type Vector } from "../orbit.ts";
 import { facts, figure, framed, Latest, plate, pointing, sceneChoices } from "./figure.ts";
@@ -51,10 +51,7 @@ function shadowFigure(): HTMLElement {
     ask();
   }
   void place();
-  const knob = (label: string, key: keyof typeof setting, min: number, max: number, step: number, show: (value: number) => string) => slider(label, { min, max, step, value: setting[key] }, show, (value) => {
-    setting[key] = value;
-    ask();
-  }).field;
+  const knob = sliders(setting, ask);
   return figure([mapped.root, cast.root, light.root, wrong.root], [said, sums.root,
     knob(say({ en: "texels", zh: "纹素" }), "texels", 4, 11, 1, (v) => `${2 ** v}²`), knob(say({ en: "bias", zh: "偏移" }), "bias", -4, 0, 0.05, (v) => biasOf(v).toPrecision(2)),
     knob(say({ en: "light, around", zh: "光源方位" }), "around", 0, 360, 2, (v) => `${v}°`), knob(say({ en: "light, height", zh: "光源高度" }), "height", 10, 88, 1, (v) => `${v}°`),
