@@ -14,9 +14,22 @@
 
 namespace frontmost {
 
+/// Decodes the images of textures in place of load(): formats that it does not know, or PNG and JPEG in a build without
+/// libraries for them. Called from several threads at once. What it throws as Error becomes a warning of the scene, and
+/// the texture is left out.
+class ImageDecoder {
+ public:
+  virtual ~ImageDecoder() = default;
+  /// Width and height of an image file, asked for before pixels() so that no memory goes to what is over a limit.
+  [[nodiscard]] virtual glm::ivec2 size(std::span<const std::byte> file) const = 0;
+  /// Width, height and pixels (sRGB or whatever the material takes them for; straight alpha; the first row on top).
+  [[nodiscard]] virtual Texture pixels(std::span<const std::byte> file) const = 0;
+};
+
 struct LoadOptions {
   std::optional<ModelFormat> format;  ///< none: by suffix and, for memory and standard input, by content
   std::optional<Axis> up;             ///< none: the format's (z for STL and 3MF, y for the others) or the scene file's
+  const ImageDecoder* image_decoder = nullptr;  ///< borrowed while it loads; none: PNG and JPEG by the library itself
 };
 
 /// Reads a model. "-" reads standard input, "builtin:NAME" makes a built-in scene. Files named inside a model

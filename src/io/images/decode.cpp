@@ -2,6 +2,7 @@
 // Tells image formats apart, and holds the limits that all decoders share.
 #include "io/images/decode.h"
 
+#include <algorithm>
 #include <cstring>
 #include <string_view>
 
@@ -48,6 +49,16 @@ Texture decode(std::span<const std::byte> bytes, const std::string& name, detail
   throw Error(ErrorCode::file_malformed, name + (bytes.empty() ? ": the image is empty" : ": neither PNG nor JPEG"));
 }
 
+/// Runs a decoder of the caller's, whose errors do not know where they come from.
+template <class Ask>
+auto ask_decoder(const std::string& name, Ask ask) {
+  try {
+    return ask();
+  } catch (const Error& error) {
+    throw Error(error.code(), name + ": " + error.what());
+  }
+}
+
 }  // namespace
 
 namespace detail {
@@ -76,6 +87,25 @@ Texture decode_texture(std::span<const std::byte> bytes, const std::string& name
 glm::ivec2 texture_size(std::span<const std::byte> bytes, const std::string& name) {
   const Texture header = decode(bytes, name, detail::ImagePart::size);
   return {header.width, header.height};
+}
+
+glm::ivec2 texture_size(std::span<const std::byte> bytes, const std::string& name, const ImageDecoder* decoder) {
+  if (decoder == nullptr) return texture_size(bytes, name);
+  const glm::ivec2 size = ask_decoder(name, [&] { return decoder->size(bytes); });
+  constexpr double any_density = double(max_image_pixels);  // a caller's format may be as dense as it likes
+  detail::check_image_size(name, std::uint64_t(std::max(size.x, 0)), std::uint64_t(std::max(size.y, 0)), 1,
+                           any_density);
+  return size;
+}
+
+Texture decode_texture(std::span<const std::byte> bytes, const std::string& name, const ImageDecoder* decoder) {
+  if (decoder == nullptr) return decode_texture(bytes, name);
+  const glm::ivec2 size = texture_size(bytes, name, decoder);
+  Texture texture = ask_decoder(name, [&] { return decoder->pixels(bytes); });
+  if (glm::ivec2(texture.width, texture.height) != size ||
+      texture.pixels.size() != std::size_t(size.x) * std::size_t(size.y))
+    throw Error(ErrorCode::bad_argument, name + ": the image decoder gave another image than it told");
+  return texture;
 }
 
 }  // namespace frontmost

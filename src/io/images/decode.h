@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "frontmost/scene.h"
+#include "frontmost/io.h"
 
 namespace frontmost {
 
@@ -19,8 +19,16 @@ inline constexpr std::uint64_t max_image_pixels = std::uint64_t(1) << 28;
 /// \throws Error file_malformed (truncated files included), unsupported, limit_exceeded.
 [[nodiscard]] Texture decode_texture(std::span<const std::byte> bytes, const std::string& name);
 
+/// By `decoder`, where that is not null, else as above. \throws Error also where what it gives is not an image: other
+/// sizes than it told, or another number of pixels.
+[[nodiscard]] Texture decode_texture(std::span<const std::byte> bytes, const std::string& name,
+                                     const ImageDecoder* decoder);
+
 /// Width and height as the file's header states them; the same limits and errors, without decoding.
 [[nodiscard]] glm::ivec2 texture_size(std::span<const std::byte> bytes, const std::string& name);
+/// The same by `decoder`, where that is not null.
+[[nodiscard]] glm::ivec2 texture_size(std::span<const std::byte> bytes, const std::string& name,
+                                      const ImageDecoder* decoder);
 
 }  // namespace frontmost
 

@@ -63,7 +63,8 @@ Scene load_named(const std::string& reference, const ModelSource& scene_file) {
   const std::filesystem::path path = scene_file.path_of(reference);
   const InputFile file = scene_file.open(reference, max_file_bytes);
   const auto opened = std::make_shared<OpenedFiles>(path);
-  const ModelSource source(printable(reference), scene_file.execution(), file, path, opened);
+  ModelSource source(printable(reference), scene_file.execution(), file, path, opened);
+  source.decode_images_by(scene_file.image_decoder());
   if (const auto conversion = conversion_by_suffix(reference)) refuse(source, *conversion);
   auto format = format_of_suffix(reference);
   if (!format) format = format_of_content(file.bytes());
@@ -81,13 +82,16 @@ Scene load(const std::string& path, const LoadOptions& options, const Execution&
   }
   if (path == "-") {
     const InputFile file = InputFile::standard_input("standard input");
-    Scene scene = read_any(file.bytes(), ModelSource("standard input", execution), options.format, options);
+    ModelSource source("standard input", execution);
+    source.decode_images_by(options.image_decoder);
+    Scene scene = read_any(file.bytes(), source, options.format, options);
     scene.name = "stdin";
     return scene;
   }
   const InputFile file = InputFile::open(path, path);
   const auto opened = std::make_shared<OpenedFiles>(path);
-  const ModelSource source(path, execution, file, path, opened);
+  ModelSource source(path, execution, file, path, opened);
+  source.decode_images_by(options.image_decoder);
   if (const auto conversion = options.format ? std::nullopt : conversion_by_suffix(path)) refuse(source, *conversion);
   const auto format = options.format ? options.format : format_of_suffix(path);
   Scene scene = read_any(file.bytes(), source, format, options);
@@ -98,7 +102,9 @@ Scene load(const std::string& path, const LoadOptions& options, const Execution&
 
 Scene load(std::span<const std::byte> bytes, const std::string& name, const LoadOptions& options,
            const Execution& execution) {
-  return read_any(bytes, ModelSource(name, execution), options.format, options);
+  ModelSource source(name, execution);
+  source.decode_images_by(options.image_decoder);
+  return read_any(bytes, source, options.format, options);
 }
 
 }  // namespace frontmost

@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-#include "frontmost/base.h"
+#include "frontmost/io.h"
 #include "io/input_file.h"
 
 namespace frontmost {
@@ -58,6 +58,9 @@ class ModelSource {
   /// The name without folder and suffix.
   [[nodiscard]] std::string stem() const;
   [[nodiscard]] const Execution& execution() const { return execution_; }
+  /// As LoadOptions has it.
+  [[nodiscard]] const ImageDecoder* image_decoder() const { return image_decoder_; }
+  void decode_images_by(const ImageDecoder* decoder) { image_decoder_ = decoder; }
 
   /// Whether files named inside the model can be read at all.
   [[nodiscard]] bool has_folder() const { return !path_.empty(); }
@@ -86,6 +89,7 @@ class ModelSource {
  private:
   std::string name_;
   Execution execution_;
+  const ImageDecoder* image_decoder_ = nullptr;
   const InputFile* file_ = nullptr;
   std::filesystem::path path_;
   std::shared_ptr<OpenedFiles> opened_;

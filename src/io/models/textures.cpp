@@ -28,11 +28,11 @@ std::uint32_t TextureFiles::read(const std::string& reference, const std::string
   try {
     const InputFile file = source_.open(reference, max_image_file_bytes);
     const std::string name = source_.name() + ": " + printable(reference);
-    const glm::ivec2 size = texture_size(file.bytes(), name);
+    const glm::ivec2 size = texture_size(file.bytes(), name, source_.image_decoder());
     budget_.add_file(file.bytes().size());
     if (!budget_.take(std::uint64_t(size.x) * std::uint64_t(size.y)))
       throw Error(ErrorCode::limit_exceeded, name + ": the textures together have too many pixels");
-    Texture texture = decode_texture(file.bytes(), name);
+    Texture texture = decode_texture(file.bytes(), name, source_.image_decoder());
     texture.name = reference;
     texture.wrap_u = texture.wrap_v = wrap;
     scene_.textures.push_back(std::move(texture));

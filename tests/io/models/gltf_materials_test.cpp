@@ -232,5 +232,61 @@ TEST(GltfMaterials, WrongReferencesAreErrors) {
   }
 }
 
+/// Bytes "SIZE width height": grey, so wide and high.
+class GreyDecoder : public ImageDecoder {
+ public:
+  [[nodiscard]] glm::ivec2 size(std::span<const std::byte> file) const override {
+    if (file.size() != 3) throw Error(ErrorCode::file_malformed, "not three bytes");
+    return {int(file[1]) * scale, int(file[2])};
+  }
+  [[nodiscard]] Texture pixels(std::span<const std::byte> file) const override {
+    Texture texture;
+    texture.width = int(file[1]), texture.height = int(file[2]);
+    texture.pixels.assign(std::size_t(texture.width) * std::size_t(texture.height), glm::u8vec4(7, 7, 7, 255));
+    return texture;
+  }
+  int scale = 1;
+};
+
+/// Three bytes, which no decoder of the library's knows, as the texture of a triangle.
+Scene load_by(const ImageDecoder* decoder, std::vector<std::byte> image) {
+  GltfMaker maker;
+  maker.floats({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  maker.floats({0, 0, 1, 0, 0, 1}, "VEC2");
+  const int view = maker.view(image.data(), image.size());
+  maker.add("images", R"({"mimeType":"image/grey","bufferView":)" + std::to_string(view) + "}");
+  maker.add("textures", R"({"source":0})");
+  maker.add("materials", R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})");
+  maker.show(R"({"attributes":{"POSITION":0,"TEXCOORD_0":1},"material":0})");
+  const std::vector<std::byte> bytes = maker.glb();
+  return load(bytes, "grey.glb", {.format = {}, .up = {}, .image_decoder = decoder});
+}
+
+TEST(GltfMaterials, ImagesAreDecodedByTheCaller) {
+  const std::vector<std::byte> image = {std::byte('S'), std::byte(3), std::byte(2)};
+  GreyDecoder decoder;
+  const Scene scene = load_by(&decoder, image);
+  EXPECT_THAT(scene.warnings, SizeIs(0));
+  ASSERT_THAT(scene.textures, SizeIs(1));
+  EXPECT_EQ(scene.textures[0].width, 3);
+  EXPECT_EQ(scene.textures[0].height, 2);
+  EXPECT_EQ(scene.textures[0].pixels.at(5), glm::u8vec4(7, 7, 7, 255));
+  // The library itself does not know such bytes.
+  EXPECT_THAT(load_by(nullptr, image).warnings, testing::ElementsAre(HasSubstr("neither PNG nor JPEG")));
+}
+
+TEST(GltfMaterials, WhatACallersDecoderRefusesOrGetsWrongIsTold) {
+  GreyDecoder decoder;
+  const Scene refused = load_by(&decoder, {std::byte('S'), std::byte(3), std::byte(2), std::byte(1)});
+  EXPECT_THAT(refused.textures, SizeIs(0));
+  EXPECT_THAT(refused.warnings, testing::ElementsAre(HasSubstr("grey.glb: images[0]: not three bytes")));
+  decoder.scale = 2;
+  EXPECT_THAT(load_by(&decoder, {std::byte('S'), std::byte(3), std::byte(2)}).warnings,
+              testing::ElementsAre(HasSubstr("gave another image than it told")));
+  decoder.scale = 1 << 20;
+  EXPECT_THAT(load_by(&decoder, {std::byte('S'), std::byte(3), std::byte(2)}).warnings,
+              testing::ElementsAre(HasSubstr("more than 16384 on a side")));
+}
+
 }  // namespace
 }  // namespace frontmost

@@ -154,7 +154,7 @@ void TextureTable::check_sizes(Jobs& jobs) const {
       encoded_left -= job.encoded.bytes.size();
       const auto pixel_count = [&](Bytes bytes, const std::string& name) {
         if (!job.encoded.path.empty()) budget.add_file(bytes.size());
-        const glm::ivec2 size = texture_size(bytes, name);
+        const glm::ivec2 size = texture_size(bytes, name, root_.source().image_decoder());
         return std::uint64_t(size.x) * std::uint64_t(size.y);
       };
       if (!budget.take(job.uses * with_bytes(job.encoded, pixel_count)))
@@ -173,7 +173,9 @@ void TextureTable::decode(Jobs& jobs) const {
     for (std::size_t i = begin; i < end; ++i) {
       Job& job = *list[i];
       try {
-        job.texture = with_bytes(job.encoded, decode_texture);
+        job.texture = with_bytes(job.encoded, [&](Bytes bytes, const std::string& name) {
+          return decode_texture(bytes, name, root_.source().image_decoder());
+        });
         job.texture.name = job.encoded.name;
       } catch (const Error& error) {
         job.problem = root_.source().without_name(error);
