@@ -20,6 +20,9 @@ std::vector<std::byte>& room() {
   return bytes;
 }
 
+/// The bytes that the page has brought, once.
+std::vector<std::byte> take_room() { return std::exchange(room(), {}); }
+
 Workbench& workbench() {
   static Workbench made;
   return made;
@@ -38,18 +41,11 @@ const std::map<std::string, AnswerFunction, std::less<>>& answers() {
        [](const PlainJson&) {
          return PlainJson{{"version", FRONTMOST_VERSION}, {"isa", name(Isa::best)}, {"builtin", builtin_names()}};
        }},
-      {"open",
-       [](const PlainJson& question) {
-         const PlainJson answer = workbench().open(room(), question);
-         room() = {};
-         return answer;
-       }},
-      {"lesson.open",
-       [](const PlainJson& question) {
-         const PlainJson answer = open_lesson(room(), question);
-         room() = {};
-         return answer;
-       }},
+      {"open", [](const PlainJson& question) { return workbench().open(take_room(), question); }},
+      {"file", [](const PlainJson& question) { return workbench().put_file(take_room(), question); }},
+      {"image", [](const PlainJson& question) { return workbench().put_image(take_room(), question); }},
+      {"compare", [](const PlainJson& question) { return workbench().compare(take_room(), question); }},
+      {"lesson.open", [](const PlainJson& question) { return open_lesson(take_room(), question); }},
       {"builtin", by_workbench<&Workbench::open_builtin>},
       {"frame", by_workbench<&Workbench::frame>},
       {"draw", by_workbench<&Workbench::draw>},
@@ -59,6 +55,7 @@ const std::map<std::string, AnswerFunction, std::less<>>& answers() {
       {"sphere", by_workbench<&Workbench::sphere>},
       {"write", by_workbench<&Workbench::write>},
       {"conventions", by_workbench<&Workbench::conventions>},
+      {"triangles", by_workbench<&Workbench::triangles>},
       {"lesson.frame", frame_lesson},
       {"lesson.zbuffer", zbuffer_lesson},
       {"lesson.culling", culling_lesson},
@@ -101,6 +98,7 @@ extern "C" {
 /// Room for the bytes of a file, which the next "open" reads. Null where there is not enough memory.
 EMSCRIPTEN_KEEPALIVE void* frontmost_room(std::size_t bytes) {
   try {
+    frontmost::web::room().reserve(bytes + 1);  // a file may be empty
     frontmost::web::room().resize(bytes);
     return frontmost::web::room().data();
   } catch (const std::exception&) {

@@ -71,10 +71,6 @@ const Visible& Workbench::seen() {
   return visible_;
 }
 
-PlainJson Workbench::open(std::span<const std::byte> bytes, const PlainJson& question) {
-  return take(load(bytes, question.at("name").get<std::string>()));
-}
-
 PlainJson Workbench::open_builtin(const PlainJson& question) {
   return take(builtin(question.at("name").get<std::string>()));
 }

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "web/images.h"
 #include "web/json.h"
 
 namespace frontmost::web {
@@ -21,9 +22,16 @@ namespace frontmost::web {
 /// questions that lack something.
 class Workbench {
  public:
-  /// The bytes of a file, and its name. \returns what there is: {"name", "triangles", "objects", "materials", "bounds",
-  /// "warnings", ...}. The model before is gone, unless this one cannot be read.
-  PlainJson open(std::span<const std::byte> bytes, const PlainJson& question);
+  /// A file that the next model names: {"name"}, which may have folders.
+  PlainJson put_file(std::span<const std::byte> bytes, const PlainJson& question);
+  /// The bytes of a model, and its {"name"}; without bytes it is one of the files that were put. \returns what there
+  /// is:
+  /// {"name", "triangles", "objects", "materials", "bounds", "warnings", ...}; or, where textures have to be decoded
+  /// first, {"images"}, their files' places: after put_image() for each {"again"} goes on. The model before is gone,
+  /// unless this one cannot be read. Files that were put are gone in any case.
+  PlainJson open(std::vector<std::byte>&& bytes, const PlainJson& question);
+  /// {"number", "width", "height"} and the pixels, four bytes each; or {"number", "problem"}.
+  PlainJson put_image(std::span<const std::byte> bytes, const PlainJson& question);
   /// {"name"}: a built-in scene.
   PlainJson open_builtin(const PlainJson& question);
 
@@ -45,6 +53,14 @@ class Workbench {
   /// The last view's camera in all conventions.
   PlainJson conventions(const PlainJson& question);
 
+  /// What WebGL needs to draw the last view: corners of all triangles, a colour for each corner, and the matrix to clip
+  /// coordinates of OpenGL, four rows.
+  PlainJson triangles(const PlainJson& question);
+  /// The numbers of the triangles that WebGL has drawn, from 1 on, 0 where there is none, four bytes a pixel, the top
+  /// row first; {"subpixel_bits"} as WebGL tells -> {"differences", "counts"}: for each pixel that differs x, y, the
+  /// reason, pixels to the nearest border, steps of a 24-bit depth buffer, and both triangles or -1; seven floats.
+  PlainJson compare(std::span<const std::byte> bytes, const PlainJson& question);
+
   [[nodiscard]] const Scene& scene() const { return model().scene; }
   [[nodiscard]] const Surfaces& surfaces() const { return model().surfaces; }
 
@@ -57,19 +73,27 @@ class Workbench {
     Shader shader;
     std::optional<RayIndex> index;  ///< made when it is asked
   };
+  /// A model on its way in.
+  struct Opening {
+    std::string name;
+    std::vector<std::byte> bytes;
+    GivenImages images;
+  };
   [[nodiscard]] Model& model() const;
   [[nodiscard]] const Visible& seen();
   PlainJson take(Scene&& scene);
   [[nodiscard]] PlainJson pixels_of(const Bitmap& bitmap);
   void color_ids(const Visible& visible, IdKind kind);
 
+  std::unique_ptr<Opening> opening_;
   std::unique_ptr<Model> model_;
   ZBuffer zbuffer_;
   Visible visible_;  ///< of the last view, one sample a pixel
   bool is_current_ = false;
   View view_;
   Bitmap bitmap_;
-  std::vector<float> segments_;
+  std::vector<float> segments_, corners_, differences_;
+  std::vector<std::uint32_t> colors_;
   std::string file_;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// server.mjs [FOLDER [PORT]]: hands out the files of a folder on this machine alone. Pages are isolated from others.
+// server.mjs [FOLDER [PORT]]: hands out the files of a folder on this machine alone. Pages are isolated from others, so
+// that they may have threads.
 import { createReadStream, existsSync, statSync } from "node:fs";
 import { createServer } from "node:http";
 import { extname, join, normalize, resolve } from "node:path";
@@ -7,7 +8,9 @@ import { fileURLToPath } from "node:url";
 
 const types = { ".html": "text/html", ".js": "text/javascript", ".mjs": "text/javascript", ".css": "text/css", ".wasm": "application/wasm", ".json": "application/json" };
 
-export function serve(folder, port = 0) {
+const isolation = { "cross-origin-opener-policy": "same-origin", "cross-origin-embedder-policy": "require-corp" };
+
+export function serve(folder, port = 0, headers = isolation) {
   const root = resolve(folder);
   const server = createServer((request, response) => {
     const path = decodeURIComponent(new URL(request.url, "http://localhost").pathname);
@@ -17,8 +20,7 @@ export function serve(folder, port = 0) {
       response.writeHead(404).end("not found");
       return;
     }
-    response.writeHead(200, { "content-type": types[extname(file)] ?? "application/octet-stream", "cache-control": "no-cache",
-      "cross-origin-opener-policy": "same-origin", "cross-origin-embedder-policy": "require-corp" });
+    response.writeHead(200, { "content-type": types[extname(file)] ?? "application/octet-stream", "cache-control": "no-cache", ...headers });
     createReadStream(file).pipe(response);
   });
   return new Promise((done) => server.listen(port, "127.0.0.1", () => done({ server, address: `http://127.0.0.1:${server.address().port}/` })));

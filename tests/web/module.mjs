@@ -12,6 +12,8 @@ export async function loadModule(path) {
   globalThis.__dirname = dirname(path);
   const { default: create } = await import(pathToFileURL(path));
   const m = await create({ wasmBinary: readFileSync(path.replace(/\.mjs$/, ".wasm")) });
+  // Of a module with threads, one of which may have asked for more and told nobody.
+  const memory = () => (m.wasmMemory ? new Uint8Array(m.wasmMemory.buffer) : m.HEAPU8);
   const text = (question) => {
     const json = JSON.stringify(question);
     const size = m.lengthBytesUTF8(json) + 1;
@@ -22,18 +24,22 @@ export async function loadModule(path) {
     return answer;
   };
   return {
-    module: m,
+    memory,
     ask(question) {
       const answer = JSON.parse(text(question));
       if (answer.error) throw new Error(answer.error);
       return answer;
     },
-    open(name, bytes) {
+    /** A question with bytes. */
+    give(question, bytes) {
       const room = m._frontmost_room(bytes.length);
       if (room === 0) throw new Error("no room");
-      m.HEAPU8.set(bytes, room);
-      return this.ask({ ask: "open", name });
+      memory().set(bytes, room);
+      return this.ask(question);
     },
-    plane: (place) => m.HEAPU8.slice(place.at, place.at + place.bytes),
+    open(name, bytes) {
+      return this.give({ ask: "open", name }, bytes);
+    },
+    plane: (place) => memory().slice(place.at, place.at + place.bytes),
   };
 }

@@ -5,6 +5,8 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
+import { crc32, deflateSync } from "node:zlib";
+import { serve } from "../../scripts/page/server.mjs";
 import { openBrowser, openPage } from "./browser.mjs";
 
 const [folder, program] = process.argv.slice(2);
@@ -56,12 +58,65 @@ async function isReadable(page, path) {
   assert.deepEqual(size, canvas);
 }
 
-async function drop(page, name, content) {
-  await page.evaluate(([file, text]) => {
+/** Eight bits, red, green, blue, alpha. */
+function pngOf(width, height, rgba) {
+  const chunk = (name, data) => {
+    const named = Buffer.concat([Buffer.from(name), data]), ends = Buffer.alloc(8);
+    ends.writeUInt32BE(data.length, 0);
+    ends.writeUInt32BE(crc32(named), 4);
+    return Buffer.concat([ends.subarray(0, 4), named, ends.subarray(4)]);
+  };
+  const header = Buffer.alloc(13), rows = Buffer.concat(Array.from({ length: height }, (_, y) => Buffer.from([0, ...rgba.slice(4 * width * y, 4 * width * (y + 1))])));
+  header.writeUInt32BE(width, 0);
+  header.writeUInt32BE(height, 4);
+  header.set([8, 6], 8);
+  return Buffer.concat([Buffer.from([137, 80, 78, 71, 13, 10, 26, 10]), chunk("IHDR", header), chunk("IDAT", deflateSync(rows)), chunk("IEND", Buffer.alloc(0))]);
+}
+
+/** Files by name: texts, or bytes in base 64. */
+async function drop(page, files) {
+  await page.evaluate((all) => {
     const transfer = new DataTransfer();
-    transfer.items.add(new File([text], file));
+    for (const [name, content] of Object.entries(all))
+      transfer.items.add(new File([typeof content === "string" ? content : Uint8Array.from(atob(content.base64), (c) => c.charCodeAt(0))], name));
     dispatchEvent(new DragEvent("drop", { dataTransfer: transfer, cancelable: true }));
-  }, [name, content]);
+  }, files);
+}
+
+/** A square whose texture is 2 x 2 pixels, one of which is nearly transparent: all colours arrive as they are stored. */
+async function tryTexture(page) {
+  const texture = pngOf(2, 2, [255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 250, 128, 6, 255]);
+  await drop(page, { "quad.obj": "mtllib quad.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3 4/4\n", "quad.mtl": "newmtl m\nmap_Kd texture.png\n",
+    "texture.png": { base64: texture.toString("base64") } });
+  await page.waitForFunction(() => document.querySelector(".facts").textContent.includes("quad"), undefined, patience);
+  await settled(page);
+  assert.doesNotMatch(await page.locator(".facts").textContent(), /⚠/);
+  await page.locator(".row .button").filter({ hasText: /^(Front|前)$/ }).click();
+  await settled(page);
+  const hues = await page.evaluate(() => {
+    const { width, height } = document.querySelector(".stage canvas"), { data } = document.querySelector(".stage canvas").getContext("2d").getImageData(0, 0, width, height);
+    const reach = Math.round(Math.min(width, height) / 4.7), at = (x, y) => 4 * (((height >> 1) + y * reach) * width + (width >> 1) + x * reach);
+    return [[-1, -1], [1, -1], [-1, 1]].map(([x, y]) => [...data.slice(at(x, y), at(x, y) + 4)]);
+  });
+  // In light, but of one colour each.
+  hues.forEach((pixel, i) => assert.ok(pixel[i] > 80 && pixel.slice(0, 3).every((value, c) => c === i || value < 0.7 * pixel[i]), `${i}: ${pixel}`));
+}
+
+/** WebGL's picture of the view, every pixel that differs explained. */
+async function tryWebGL(page) {
+  await page.locator("[data-webgl]").click();
+  await page.waitForSelector(".beside", patience);
+  const { marks, counts } = await page.evaluate(() => ({ marks: document.querySelectorAll(".beside .plate:first-child circle").length, counts: [...document.querySelectorAll(".beside li b")].map((b) => Number(b.textContent.replaceAll(",", ""))) }));
+  assert.ok(counts[0] > 0 && counts[0] < 2000 && marks === counts[0], `${counts} pixels, ${marks} marks`);
+  assert.equal(counts.slice(1).reduce((a, b) => a + b, 0), counts[0]);
+  assert.equal(await page.locator(".beside li .swatch[style*='--bad']").count(), 0, "a pixel differs for no known reason");
+  const [, on, shut] = await page.locator(".beside .verdict .button").all();
+  await on.click();
+  assert.match(await page.locator(".beside .said").textContent(), /WebGL.*1\/16/);
+  assert.equal(await page.locator(".beside .loupe").count(), 2);
+  await shut.click();
+  await page.waitForSelector(".beside", { ...patience, state: "detached" });
+  assert.equal(await page.evaluate(() => document.activeElement === document.querySelector(".stage canvas")), true);
 }
 
 async function tryWorkbench(lang, viewport) {
@@ -84,22 +139,46 @@ async function tryWorkbench(lang, viewport) {
   await settled(page);
   await page.locator(".stage canvas").first().click();
   await page.waitForSelector(".hits li", patience);
+  await tryWebGL(page);
   if (lang === "en") await takeAll(page);
   const [account, sphere] = await page.locator(".side .button").filter({ hasText: lang === "en" ? /^(Account|Never seen)/ : /^(统计|环绕)/ }).all();
   await account.click();
   await page.waitForSelector("table.hiding tbody tr", patience);
   await sphere.click();
   await page.waitForSelector("table.never tbody tr", patience);
-  await drop(page, "broken.stl", "solid nothing\n facet normal 0 0 what");
+  await drop(page, { "broken.stl": "solid nothing\n facet normal 0 0 what" });
   await page.waitForSelector(".message:not([hidden])", patience);
   assert.match(await page.locator(".message").textContent(), /broken\.stl/);
-  await drop(page, "triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  await drop(page, { "triangle.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" });
   await page.waitForFunction(() => document.querySelector(".facts").textContent.includes("triangle"), undefined, patience);
   await settled(page);
+  await tryTexture(page);
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   assert.ok(wide <= 0, `the page is ${wide} pixels too wide at ${viewport.width}`);
   assert.deepEqual(complaints, []);
   await context.close();
+}
+
+/** A host that sends no headers: the page has no threads at first, and has them from the second visit on, when its service
+ * worker adds what the host left out. The hash stays the same. */
+async function tryPlainHost() {
+  const { server, address: plain } = await serve(folder, 0, {});
+  const { page, complaints, context } = await openPage(browser);
+  const modules = [], hashes = [];
+  context.on("request", (request) => /\.wasm$/.test(request.url()) && modules.push(request.url().split("/").at(-1)));
+  for (const isIsolated of [false, true]) {
+    await page.goto(`${plain}index.html?lang=en&scene=cubes`);
+    await settled(page);
+    hashes.push(await hashOf(page));
+    assert.equal(await page.evaluate(() => crossOriginIsolated), isIsolated);
+    await page.evaluate(() => navigator.serviceWorker.ready);
+  }
+  assert.equal(modules[0], "frontmost.wasm");
+  assert.ok(modules.slice(1).includes("frontmost-threads.wasm"), modules.join());
+  assert.equal(hashes[0], hashes[1]);
+  assert.deepEqual(complaints, []);
+  await context.close();
+  server.close();
 }
 
 const cornerOf = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\n";
@@ -146,6 +225,7 @@ async function tryLesson(id, lang, viewport) {
 try {
   await tryWorkbench("en", { width: 1280, height: 720 });
   await tryWorkbench("zh", { width: 390, height: 844 });
+  await tryPlainHost();
   const { page, context } = await openPage(browser);
   await page.goto(`${address}lessons.html?lang=en`);
   const ids = await page.locator(".contents a").evaluateAll((links) => links.map((link) => new URL(link.href).searchParams.get("lesson")));

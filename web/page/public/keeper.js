@@ -1,6 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps what was loaded, for when there is no network; with one, what is new replaces it.
+// Keeps what was loaded, for when there is no network; with one, what is new replaces it. And isolates the page from
+// others, where its host does not, so that the module may have threads: from the second visit on.
 const store = "frontmost";
+
+function isolated(response) {
+  const headers = new Headers(response.headers);
+  headers.set("cross-origin-opener-policy", "same-origin");
+  headers.set("cross-origin-embedder-policy", "require-corp");
+  return new Response(response.body, { status: response.status, statusText: response.statusText, headers });
+}
+
 self.addEventListener("install", () => self.skipWaiting());
 self.addEventListener("activate", (event) => event.waitUntil(self.clients.claim()));
 self.addEventListener("fetch", (event) => {
@@ -11,10 +20,10 @@ self.addEventListener("fetch", (event) => {
     try {
       const fresh = await fetch(request);
       if (fresh.ok) await kept.put(request, fresh.clone());
-      return fresh;
+      return isolated(fresh);
     } catch (error) {
       const found = await kept.match(request, { ignoreSearch: true });
-      if (found) return found;
+      if (found) return isolated(found);
       throw error;
     }
   })());

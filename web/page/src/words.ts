@@ -5,7 +5,7 @@ import type { Text } from "./language.ts";
 export const words = {
   title: { en: "What can be seen from here?", zh: "从这里能看见什么？" },
   open: { en: "Open a model", zh: "打开模型" },
-  drop: { en: "Drop an STL, PLY, OBJ, OFF or GLB anywhere. It stays on this machine.", zh: "将 STL、PLY、OBJ、OFF 或 GLB 文件拖到页面任意处。文件不会离开本机。" },
+  drop: { en: "Drop an STL, PLY, OBJ, OFF, GLB or glTF anywhere, with the files that it names or in a folder. It stays on this machine.", zh: "将 STL、PLY、OBJ、OFF、GLB 或 glTF 文件（连同其引用的文件，或整个文件夹）拖到页面任意处。文件不会离开本机。" },
   builtin: { en: "Built-in scenes", zh: "内置场景" },
   stage: { en: "The picture. Drag or use the arrow keys to turn, plus and minus to come nearer, click to ask.", zh: "画面。拖动或用方向键旋转，加减键缩放，点击查询。" },
   model: { en: "Model", zh: "模型" },
@@ -44,6 +44,9 @@ export const words = {
   hiddenBy: { en: "hidden by", zh: "被谁遮挡" },
   share: { en: "share", zh: "比例" },
   never: { en: "never seen", zh: "从未可见" },
+  webgl: { en: "Beside WebGL", zh: "与 WebGL 对照" },
+  webglHint: { en: "The same view drawn by this browser's WebGL, and why its pixels differ where they do.", zh: "由本浏览器的 WebGL 绘制同一视图，并说明像素为何不同。" },
+  webglAsk: { en: "Compare", zh: "对照" },
   save: { en: "Take away", zh: "下载" },
   saveHint: { en: "Files of the view as it is now.", zh: "当前视图的文件。" },
   drawing: { en: "Hidden lines", zh: "消隐线图" },

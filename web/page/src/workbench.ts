@@ -5,10 +5,12 @@
 //   at rest      the same view with four samples a pixel, its hash, edges where they are asked for
 import type { Answer, Question } from "./answer.ts";
 import { Client, toImage } from "./client.ts";
+import { accepted, chosen, dropped, openFiles, type NamedFile } from "./files.ts";
 import { bar, choices, element, keepForLater, slider } from "./dom.ts";
 import { say } from "./language.ts";
 import { listen, type Camera, type Vector } from "./orbit.ts";
 import { commandLine, downloads } from "./takeaway.ts";
+import { besideWebGL } from "./beside.ts";
 import { accountTable, hidingTable, hitList, neverSeenTable } from "./answers.ts";
 import { scenes, views, words } from "./words.ts";
 
@@ -144,6 +146,7 @@ async function drawOnce(kind: "quick" | "fine"): Promise<void> {
 /** One picture at a time; of those asked for meanwhile, the last. */
 function request(kind: "quick" | "fine"): void {
   if (!camera) return;
+  closeBeside();
   wanted = kind;
   if (kind === "quick" || show !== "edges") overlay.width = overlay.width;
   clearTimeout(restTimer);
@@ -202,10 +205,13 @@ async function openBuiltin(name: string): Promise<void> {
   });
 }
 
-async function openFile(file: File): Promise<void> {
+async function openAll(files: NamedFile[] | Promise<NamedFile[]>): Promise<void> {
   await working(async () => {
-    showModel(await client.ask({ ask: "open", name: file.name }, await file.arrayBuffer()));
-    modelArgument = file.name;
+    const all = await files;
+    if (all.length === 0) return;
+    const { name, opened } = await openFiles(client, all);
+    showModel(opened);
+    modelArgument = name;
     scenePicker.value = "";
     await frame("three-quarter");
   });
@@ -229,6 +235,25 @@ async function askReport(): Promise<void> {
   account.replaceChildren(accountTable(answer), ...(hiding ? [element("h3", {}, say(words.whoHides)), hiding] : []));
 }
 
+let beside: HTMLElement | undefined;
+function closeBeside(): void {
+  beside?.remove();
+  beside = undefined;
+}
+/** Over the stage, until it is closed or the view is another one. */
+async function askWebGL(): Promise<void> {
+  await working(async () => {
+    await settle();
+    closeBeside();
+    beside = await besideWebGL({ client, image: lastImage!, eye: camera!.eye }, () => {
+      closeBeside();
+      canvas.focus();
+    });
+    stage.append(beside);
+    beside.focus();
+  });
+}
+
 async function askSphere(): Promise<void> {
   const answer = await working(() => client.ask({ ask: "sphere", views: 50 }));
   if (!answer) return;
@@ -240,8 +265,8 @@ async function askSphere(): Promise<void> {
 const scenePicker = element("select", { "aria-label": say(words.builtin) }, element("option", { value: "", disabled: true }, say(words.builtin)),
   ...scenes.map(([name, text]) => element("option", { value: name }, say(text))));
 scenePicker.addEventListener("change", () => void openBuiltin(scenePicker.value));
-const filePicker = element("input", { type: "file", accept: ".stl,.ply,.obj,.off,.glb,.gltf", class: "sr", tabindex: -1 });
-filePicker.addEventListener("change", () => filePicker.files?.[0] && void openFile(filePicker.files[0]));
+const filePicker = element("input", { type: "file", accept: accepted, multiple: true, class: "sr", tabindex: -1 });
+filePicker.addEventListener("change", () => filePicker.files && void openAll(chosen(filePicker.files)));
 
 const shows: [string, string][] = [["picture", say(words.picture)], ["depth", say(words.depth)], ["primitives", say(words.primitivesView)], ["objects", say(words.objectsView)],
   ["materials", say(words.materialsView)], ["normals", say(words.normals)], ["layer", say(words.layer)], ["edges", say(words.edges)]];
@@ -284,6 +309,8 @@ const side = element("aside", { class: "side" },
   element("section", { "aria-live": "polite" }, element("h2", {}, say(words.point)), hits),
   element("section", {}, element("h2", {}, say(words.report)), element("p", { class: "soft" }, say(words.reportHint)),
     element("div", { class: "row" }, element("button", { class: "button", onclick: askReport }, say(words.ask)), element("button", { class: "button", onclick: askSphere }, say(words.sphere))), account),
+  element("section", {}, element("h2", {}, say(words.webgl)), element("p", { class: "soft" }, say(words.webglHint)),
+    element("div", { class: "row" }, element("button", { class: "button", "data-webgl": true, onclick: askWebGL }, say(words.webglAsk)))),
   element("section", {}, element("h2", {}, say(words.save)), element("p", { class: "soft" }, say(words.saveHint)),
     downloads({ client, working, settle, name: () => model?.name ?? "model", image: () => lastImage, hidden: () => withHidden })),
   element("section", {}, element("h2", {}, say(words.command)), element("p", { class: "soft" }, say(words.commandHint)), command, element("div", { class: "row" }, copyButton)));
@@ -299,8 +326,7 @@ addEventListener("dragleave", () => stage.classList.remove("drop"));
 addEventListener("drop", (event) => {
   event.preventDefault();
   stage.classList.remove("drop");
-  const file = event.dataTransfer?.files[0];
-  if (file) void openFile(file);
+  if (event.dataTransfer) void openAll(dropped(event.dataTransfer));
 });
 new ResizeObserver(() => request("quick")).observe(stage);
 addEventListener("themechange", () => request("fine"));

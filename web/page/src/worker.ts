@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The worker: holds the module, and answers one question after another, so that the page never waits.
-import type { Answer, Answered, Asked } from "./answer.ts";
+import type { Answer, Answered, Asked, Question } from "./answer.ts";
+import { decodeImage } from "./images.ts";
 
 interface Module {
   HEAPU8: Uint8Array;
+  wasmMemory?: WebAssembly.Memory;
   _malloc(bytes: number): number;
   _free(at: number): void;
   _frontmost_room(bytes: number): number;
@@ -13,10 +15,16 @@ interface Module {
   lengthBytesUTF8(text: string): number;
 }
 
+/** With threads where the page may have memory that they share. */
 async function load(base: string): Promise<Module> {
-  const { default: create } = await import(/* @vite-ignore */ `${base}frontmost.mjs`);
+  const name = self.crossOriginIsolated ? "frontmost-threads" : "frontmost";
+  const { default: create } = await import(/* @vite-ignore */ `${base}${name}.mjs`);
   return create({ locateFile: (file: string) => base + file });
 }
+
+/** All of its memory. A thread that asked for more has told nobody. */
+const memory = (m: Module): Uint8Array => (m.wasmMemory ? new Uint8Array(m.wasmMemory.buffer) : m.HEAPU8);
+const bytesAt = (m: Module, { at, bytes }: { at: number; bytes: number }) => memory(m).slice(at, at + bytes) as Uint8Array<ArrayBuffer>;
 
 /** Loaded once, from where the first question says that it is. */
 let module: Promise<Module> | undefined;
@@ -25,17 +33,17 @@ let module: Promise<Module> | undefined;
 function takePlanes(m: Module, answer: Answer, planes: ArrayBuffer[]): void {
   for (const [key, value] of Object.entries<Answer>(answer)) {
     if (value === null || typeof value !== "object" || typeof value.at !== "number" || typeof value.bytes !== "number") continue;
-    const copy = m.HEAPU8.slice(value.at, value.at + value.bytes).buffer as ArrayBuffer;
+    const copy = bytesAt(m, value as { at: number; bytes: number }).buffer;
     answer[key] = copy;
     planes.push(copy);
   }
 }
 
-function ask(m: Module, { question, bytes }: Asked): { answer: Answer; planes: ArrayBuffer[] } {
+function ask(m: Module, question: Question, bytes?: Uint8Array): Answer {
   if (bytes) {
     const room = m._frontmost_room(bytes.byteLength);
-    if (room === 0) return { answer: { error: "there is not enough memory for the file" }, planes: [] };
-    m.HEAPU8.set(new Uint8Array(bytes), room);
+    if (room === 0) return { error: "there is not enough memory for the file" };
+    memory(m).set(bytes, room);
   }
   const text = JSON.stringify(question);
   const size = m.lengthBytesUTF8(text) + 1;
@@ -43,20 +51,44 @@ function ask(m: Module, { question, bytes }: Asked): { answer: Answer; planes: A
   m.stringToUTF8(text, at, size);
   const answer = JSON.parse(m.UTF8ToString(m._frontmost_ask(at)));
   m._free(at);
-  const planes: ArrayBuffer[] = [];
-  takePlanes(m, answer, planes);
-  return { answer, planes };
+  return answer;
 }
 
-self.onmessage = async (event: MessageEvent<Asked>) => {
-  const { id } = event.data;
-  let result: { answer: Answer; planes: ArrayBuffer[] };
-  try {
-    module ??= load(event.data.base);
-    result = ask(await module, event.data);
-  } catch (error) {
-    result = { answer: { error: String(error), fatal: true }, planes: [] };
+/** A model whose textures have to be decoded first is opened once more when they are. */
+async function withImages(m: Module, answer: Answer): Promise<Answer> {
+  while (answer.images) {
+    const files: Uint8Array<ArrayBuffer>[] = answer.images.map((place: { at: number; bytes: number }) => bytesAt(m, place));
+    for (const [number, file] of files.entries())
+      try {
+        const { width, height, rgba } = await decodeImage(file);
+        ask(m, { ask: "image", number, width, height }, rgba);
+      } catch (error) {
+        ask(m, { ask: "image", number, problem: error instanceof Error ? error.message : String(error) });
+      }
+    answer = ask(m, { ask: "open", again: true });
   }
-  const told: Answered = { id, answer: result.answer };
-  self.postMessage(told, { transfer: result.planes });
+  return answer;
+}
+
+async function answerTo({ base, question, bytes }: Asked): Promise<Answer> {
+  module ??= load(base);
+  const m = await module;
+  return withImages(m, ask(m, question, bytes && new Uint8Array(bytes)));
+}
+
+let last: Promise<unknown> = Promise.resolve();
+self.onmessage = (event: MessageEvent<Asked>) => {
+  // One after the other, also where a question waits for images.
+  last = last.then(async () => {
+    const planes: ArrayBuffer[] = [];
+    let answer: Answer;
+    try {
+      answer = await answerTo(event.data);
+      takePlanes(await module!, answer, planes);
+    } catch (error) {
+      answer = { error: String(error), fatal: true };
+    }
+    const told: Answered = { id: event.data.id, answer };
+    self.postMessage(told, { transfer: planes });
+  });
 };
