@@ -176,6 +176,13 @@ async function tryPlainHost() {
   assert.equal(modules[0], "frontmost.wasm");
   assert.ok(modules.slice(1).includes("frontmost-threads.wasm"), modules.join());
   assert.equal(hashes[0], hashes[1]);
+  // Another machine's http: neither isolated nor with a decoder of images, which a secure page alone has.
+  await page.goto(`${plain.replace("127.0.0.1", "plain.test")}index.html?lang=en&scene=cubes`);
+  await settled(page);
+  assert.deepEqual([await page.evaluate(() => "ImageDecoder" in self || isSecureContext), await hashOf(page)], [false, hashes[0]]);
+  await tryTexture(page);
+  await page.locator("button", { hasText: "Copy" }).click();
+  await page.waitForFunction(() => getSelection().toString().startsWith("frontmost render"), undefined, patience);
   assert.deepEqual(complaints, []);
   await context.close();
   server.close();

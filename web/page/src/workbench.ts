@@ -293,6 +293,8 @@ function choose(value: string): void {
 
 const copyButton = element("button", { class: "button" }, say(words.copy));
 copyButton.addEventListener("click", async () => {
+  // Only secure pages may write; elsewhere it is chosen, to be copied by hand.
+  if (!navigator.clipboard) return getSelection()?.selectAllChildren(command);
   await navigator.clipboard.writeText(command.textContent ?? "");
   copyButton.textContent = say(words.copied);
   setTimeout(() => (copyButton.textContent = say(words.copy)), 1500);
