@@ -12,7 +12,7 @@ import { openBrowser, openPage } from "./browser.mjs";
 const [folder, program] = process.argv.slice(2);
 const { browser, address, close } = await openBrowser(folder);
 const patience = { timeout: 60000 };
-let downloads = 0, steps = 0, lessons = 0, ownModels = 0;
+let downloads = 0, steps = 0, lessons = 0, ownModels = 0, memory = [];
 
 const settled = (page) => page.waitForFunction(() => /[0-9a-f]{16}/.test(document.querySelector(".state")?.textContent ?? "") && document.querySelector(".busy")?.hidden, undefined, patience);
 const hashOf = async (page) => (await page.locator(".state").textContent()).match(/[0-9a-f]{16}$/)[0];
@@ -188,6 +188,32 @@ async function tryPlainHost() {
   server.close();
 }
 
+/** Fifty models, one after the other: what the browser's processes hold grows no more after the first ten. */
+async function tryManyModels() {
+  const { page, complaints, context } = await openPage(browser, { viewport: { width: 700, height: 400 } });
+  const session = await browser.newBrowserCDPSession();
+  const mebibytes = async () => {
+    const { processInfo } = await session.send("SystemInfo.getProcessInfo");
+    const held = processInfo.filter(({ type }) => type === "renderer").map(({ id }) => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${id}/status`, "latin1"))?.[1] ?? 0));
+    return held.reduce((a, b) => a + b, 0) / 1024;
+  };
+  await page.goto(`${address}index.html?lang=en&scene=cubes`);
+  await settled(page);
+  let early = 0;
+  for (let i = 0; i < 50; ++i) {
+    if (i === 10) early = await mebibytes();
+    const name = ["teapot", "gallery", "city", "cubes"][i % 4];
+    await page.locator(".side select").selectOption(name);
+    await page.waitForFunction((wanted) => document.querySelector(".facts dd").textContent === wanted, name, patience);
+    await settled(page);
+  }
+  const late = await mebibytes();
+  assert.ok(late < early + 60, `${early.toFixed(0)} MiB after 10 models, ${late.toFixed(0)} MiB after 50`);
+  assert.deepEqual(complaints, []);
+  await context.close();
+  return [early, late].map(Math.round);
+}
+
 const cornerOf = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\n";
 /** Every figure that takes a model of one's own is given a broken one, and a good one. */
 async function giveOwnModels(page, id) {
@@ -233,6 +259,7 @@ try {
   await tryWorkbench("en", { width: 1280, height: 720 });
   await tryWorkbench("zh", { width: 390, height: 844 });
   await tryPlainHost();
+  memory = await tryManyModels();
   const { page, context } = await openPage(browser);
   await page.goto(`${address}lessons.html?lang=en`);
   const ids = await page.locator(".contents a").evaluateAll((links) => links.map((link) => new URL(link.href).searchParams.get("lesson")));
@@ -243,4 +270,4 @@ try {
 } finally {
   await close();
 }
-console.log(`${downloads} downloads opened, ${lessons} lessons with ${steps} steps, ${ownModels} figures with a model of one's own, no complaint`);
+console.log(`${downloads} downloads opened, ${lessons} lessons with ${steps} steps, ${ownModels} figures with a model of one's own, 50 models in ${memory[1]} MiB (after 10: ${memory[0]}), no complaint`);
