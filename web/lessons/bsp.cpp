@@ -11,6 +11,12 @@
 namespace frontmost::web {
 namespace {
 
+struct BspPlane {
+  glm::dvec3 normal{0};
+  double offset = 0;
+  [[nodiscard]] double side(const glm::dvec3& point) const { return glm::dot(normal, point) - offset; }
+};
+
 /// A triangle, or a convex piece of one, in the world. A side goes from its corner to the next.
 struct BspPiece {
   struct Corner {
@@ -18,13 +24,8 @@ struct BspPiece {
     bool is_cut = false;  ///< the side is none of the triangle's
   };
   PrimitiveId id = no_primitive;
+  BspPlane plane;  ///< the triangle's: corners of a piece may lie on one line, or nearly so
   std::vector<Corner> corners;
-};
-
-struct BspPlane {
-  glm::dvec3 normal{0};
-  double offset = 0;
-  [[nodiscard]] double side(const glm::dvec3& point) const { return glm::dot(normal, point) - offset; }
 };
 
 struct BspNode {
@@ -39,8 +40,14 @@ class BspTree {
   explicit BspTree(const Surfaces& surfaces) : least_(1e-7 * double(surfaces.bounds().diagonal())) {
     std::vector<BspPiece> pieces;
     for (PrimitiveId id = surfaces.primitive_count(); id-- > 0;) {
-      BspPiece piece{id, {}};
-      for (const glm::vec3& corner : surfaces.corners(id)) piece.corners.push_back({glm::dvec3(corner), false});
+      const std::array<glm::vec3, 3> corners = surfaces.corners(id);
+      BspPiece piece{id, {}, {}};
+      for (const glm::vec3& corner : corners) piece.corners.push_back({glm::dvec3(corner), false});
+      const glm::dvec3 a(corners[0]), b(corners[1]), c(corners[2]), normal = glm::cross(b - a, c - a);
+      const double length = glm::length(normal);
+      // What has no width is not seen, and has no plane: all others would seem to lie in it.
+      if (length <= least_ * std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)})) continue;
+      piece.plane = {normal / length, glm::dot(normal, a) / length};
       pieces.push_back(std::move(piece));
     }
     build(std::move(pieces), -1, 0);
@@ -59,13 +66,6 @@ class BspTree {
   }
 
  private:
-  static BspPlane plane_of(const BspPiece& piece) {
-    const glm::dvec3& a = piece.corners[0].at;
-    const glm::dvec3 normal = glm::cross(piece.corners[1].at - a, piece.corners[2].at - a);
-    const glm::dvec3 unit = normal / std::max(glm::length(normal), 1e-300);
-    return {unit, glm::dot(unit, a)};
-  }
-
   /// Whether corners lie before a plane, and behind it.
   [[nodiscard]] std::pair<bool, bool> sides_of(const BspPlane& plane, const BspPiece& piece) const {
     bool before = false, behind = false;
@@ -78,7 +78,7 @@ class BspTree {
 
   /// What of a piece lies on the side where `sign` times the distance is positive.
   static BspPiece half_of(const BspPiece& piece, const BspPlane& plane, double sign) {
-    BspPiece half{piece.id, {}};
+    BspPiece half{piece.id, piece.plane, {}};
     for (std::size_t i = 0; i < piece.corners.size(); ++i) {
       const BspPiece::Corner& from = piece.corners[i];
       const BspPiece::Corner& to = piece.corners[(i + 1) % piece.corners.size()];
@@ -95,7 +95,7 @@ class BspTree {
   [[nodiscard]] std::size_t choose(const std::vector<BspPiece>& pieces) const {
     std::size_t best = 0, fewest = pieces.size();
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      const BspPlane plane = plane_of(pieces[i]);
+      const BspPlane& plane = pieces[i].plane;
       const auto cuts = std::size_t(std::count_if(pieces.begin(), pieces.end(), [&](const BspPiece& piece) {
         const auto [before, behind] = sides_of(plane, piece);
         return before && behind;
@@ -108,7 +108,7 @@ class BspTree {
   int build(std::vector<BspPiece> pieces, int parent, int level) {
     if (pieces.empty()) return -1;
     const int number = int(nodes_.size());
-    nodes_.push_back({plane_of(pieces[choose(pieces)]), {}, parent, -1, -1, level});
+    nodes_.push_back({pieces[choose(pieces)].plane, {}, parent, -1, -1, level});
     const BspPlane plane = nodes_.back().plane;
     std::vector<BspPiece> before, behind;
     for (BspPiece& piece : pieces) {
