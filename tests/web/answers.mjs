@@ -172,6 +172,32 @@ for (const [corners, most] of [[[[-1, -0.8, -3], [1, -0.5, -4], [0.3, 1, -3.5]],
   }
 }
 
+// The same of models that are taken apart: 50 clusters of a teapot, and of a city the nearest 300 of its houses.
+for (const [scene, least, visited] of [["teapot", 30, undefined], ["gallery", 8, undefined], ["city", 301, 300]]) {
+  const camera = ask({ ask: "lesson.frame", scene, width: 480, height: 320, forward: [-0.6, -0.1, -0.8] });
+  let covered = 0;
+  for (const share of [0, 0.3, 0.6, 1]) {
+    const { objects, object_count } = ask({ ask: "lesson.occlusion", scene, camera, step: 0 });
+    assert.ok(object_count >= least && objects.length === (visited ?? object_count), `${scene}: ${object_count} objects`);
+    const answer = ask({ ask: "lesson.occlusion", scene, camera, cell: 2, step: Math.round(share * objects.length) });
+    assert.ok(answer.objects.every(({ sight, seen }) => sight === "may_be_seen" || !seen), scene);
+    const count = [...answer.cells].filter((one) => one === "1").length;
+    assert.ok(share === 0 ? count === 0 : count > 0 && count >= covered, `${scene}: ${count} cells`);
+    covered = count;
+  }
+}
+
+// Figures that have room for 200 triangles show the foremost of them, in a tree of planes without a wrong pixel.
+{
+  assert.throws(() => ask({ ask: "lesson.bsp", scene: "teapot" }), /200/);
+  const part = { scene: "teapot", most: 200 }, camera = ask({ ask: "lesson.frame", ...part, width: 240, height: 180, forward: [-0.6, -0.45, -0.8] });
+  const whole = ask({ ask: "lesson.frame", scene: "teapot", width: 240, height: 180, forward: [-0.6, -0.45, -0.8] });
+  assert.notDeepEqual(camera.eye, whole.eye);
+  const tree = ask({ ask: "lesson.bsp", ...part, camera }), { pairs, by_test } = ask({ ask: "lesson.newell", ...part, camera });
+  assert.deepEqual([tree.triangles, tree.wrong_count], [200, 0]);
+  assert.ok(pairs.length > 0 && by_test[0] > 1000 && by_test[1] > 1000);
+}
+
 // Fragments come nearest first; without their order glass has other colours; every method shows what the z-buffer does.
 {
   const layers = ask({ ask: "lesson.layers", scene: "cubes", camera: { width: 160, height: 120, eye: [4, 3, 5], target: [0, 0, 0], up: [0, 1, 0], angle: 30 } });

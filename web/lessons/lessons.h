@@ -38,7 +38,7 @@ PlainJson lines_lesson(const PlainJson& question);
 PlainJson clipping_lesson(const PlainJson& question);
 /// A shadow map, and where exact rays say otherwise.
 PlainJson shadows_lesson(const PlainJson& question);
-/// Objects from the eye outwards, the cells that they cover, and what is proved hidden.
+/// Objects from the eye outwards, at most 300 of them, the cells that they cover, and what is proved hidden.
 PlainJson occlusion_lesson(const PlainJson& question);
 /// How long a method takes here, and how much its answer holds.
 PlainJson methods_lesson(const PlainJson& question);
@@ -55,7 +55,7 @@ PlainJson frame_lesson(const PlainJson& question);
 
 /// {"name"}: the bytes of a file become the scene "own", which is kept beside the last of the others.
 PlainJson open_lesson(std::span<const std::byte> bytes, const PlainJson& question);
-/// {"scene"}: the last one asked for is kept.
+/// {"scene"}: the last one asked for is kept. {"most"}: no more triangles of it than these, the foremost.
 const LessonScene& lesson_scene(const PlainJson& question);
 /// {"camera"}, or one that shows all of it in {"width", "height"}.
 View lesson_view(const LessonScene& stage, const PlainJson& question);

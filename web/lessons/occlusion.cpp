@@ -4,7 +4,7 @@
 #include <frontmost/zbuffer.h>
 
 #include <algorithm>
-#include <numeric>
+#include <map>
 
 #include "web/camera.h"
 #include "web/lessons/lessons.h"
@@ -17,34 +17,69 @@ const char* name_of(ObjectSight sight) {
   return names[std::size_t(sight)];
 }
 
-/// Instances by how near the nearest corner of their boxes is.
-std::vector<std::uint32_t> outwards(const Surfaces& surfaces, const View& view) {
-  std::vector<std::uint32_t> order(surfaces.scene().instances.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::vector<double> nearest;
-  for (const std::uint32_t instance : order) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const WorldLine& side : sides_of(surfaces.bounds(instance)))
-      for (const glm::dvec3& corner : side) least = std::min(least, from_eye(view, corner).z);
-    nearest.push_back(least);
-  }
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return nearest[a] < nearest[b]; });
-  return order;
+/// What the sweep visits: what is culled together, and its box.
+struct SweptObject {
+  std::size_t number = 0;  ///< in the Occlusion
+  Box box;
+  double nearest = std::numeric_limits<double>::infinity();  ///< how far before the eye its nearest corner is
+};
+
+/// Objects of the scene where there are some; else what hangs together; else clusters of neighbouring triangles.
+ObjectUnit unit_of(const Surfaces& surfaces) {
+  constexpr std::size_t some = 8;
+  for (const ObjectUnit unit : {ObjectUnit::instances, ObjectUnit::parts})
+    if (Occlusion(surfaces, unit).object_count() >= some) return unit;
+  return ObjectUnit::clusters;
 }
 
-/// For every cell of a picture whether the given objects alone hide all that lies behind them there: asked of a point
-/// beyond everything.
-std::string covered_cells(const Scene& scene, std::span<const std::uint32_t> instances, const View& view, int cell) {
+std::vector<SweptObject> outwards(const Surfaces& surfaces, const Occlusion& occlusion, const View& view) {
+  std::vector<SweptObject> objects;
+  for (std::size_t number = 0; number < occlusion.object_count(); ++number) {
+    if (occlusion.triangles(number).empty()) continue;
+    SweptObject& object = objects.emplace_back();
+    object.number = number;
+    const PrimitiveId first = surfaces.first_primitive(occlusion.object(number).instance);
+    for (const std::uint32_t triangle : occlusion.triangles(number))
+      for (const glm::vec3& corner : surfaces.corners(first + triangle)) object.box.include(corner);
+    for (const WorldLine& side : sides_of(object.box))
+      for (const glm::dvec3& corner : side) object.nearest = std::min(object.nearest, from_eye(view, corner).z);
+  }
+  std::stable_sort(objects.begin(), objects.end(),
+                   [](const SweptObject& a, const SweptObject& b) { return a.nearest < b.nearest; });
+  return objects;
+}
+
+/// The scene with the triangles of these objects alone.
+Scene scene_of(const Scene& scene, const Occlusion& occlusion, std::span<const SweptObject> objects) {
+  std::map<std::uint32_t, std::vector<std::uint32_t>> kept;
+  for (const SweptObject& object : objects) {
+    std::vector<std::uint32_t>& triangles = kept[occlusion.object(object.number).instance];
+    const std::span<const std::uint32_t> more = occlusion.triangles(object.number);
+    triangles.insert(triangles.end(), more.begin(), more.end());
+  }
+  Scene some;
+  some.materials = scene.materials;
+  some.textures = scene.textures;
+  for (const auto& [instance, triangles] : kept) {
+    const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
+    Mesh part;
+    part.positions = mesh.positions;
+    for (const std::uint32_t triangle : triangles) {
+      part.triangles.push_back(mesh.triangles[triangle]);
+      part.material_ids.push_back(mesh.material_of(triangle));
+    }
+    add(some, std::move(part), scene.instances[instance].world_from_mesh);
+  }
+  return some;
+}
+
+/// For every cell of a picture whether a scene hides all that lies behind it there: asked of a point beyond everything.
+std::string covered_cells(const Scene& scene, ObjectUnit unit, const View& view, int cell) {
   const int across = (view.width + cell - 1) / cell, down = (view.height + cell - 1) / cell;
   std::string cells(std::size_t(across) * std::size_t(down), '0');
-  if (instances.empty()) return cells;
-  Scene some;
-  some.meshes = scene.meshes;
-  some.materials = scene.materials;
-  for (const std::uint32_t instance : instances) some.instances.push_back(scene.instances[instance]);
-  const Surfaces surfaces(some);
-  Occlusion occlusion(surfaces);
+  if (scene.instances.empty()) return cells;
+  const Surfaces surfaces(scene);
+  Occlusion occlusion(surfaces, unit);
   (void)occlusion.cull(view, {cell});
   const double far = view.projection.clip.far * 0.9999;
   for (int y = 0; y < down; ++y)
@@ -58,6 +93,18 @@ std::string covered_cells(const Scene& scene, std::span<const std::uint32_t> ins
   return cells;
 }
 
+/// Of every object whether a pixel shows it.
+std::vector<bool> seen_objects(const Surfaces& surfaces, const Occlusion& occlusion, const Visible& visible) {
+  std::vector<std::size_t> object_of(surfaces.primitive_count());
+  for (std::size_t number = 0; number < occlusion.object_count(); ++number)
+    for (const std::uint32_t triangle : occlusion.triangles(number))
+      object_of[surfaces.first_primitive(occlusion.object(number).instance) + triangle] = number;
+  std::vector<bool> is_seen(occlusion.object_count());
+  for (const PrimitiveId id : visible.primitives)
+    if (id != no_primitive) is_seen[object_of[id]] = true;
+  return is_seen;
+}
+
 }  // namespace
 
 PlainJson occlusion_lesson(const PlainJson& question) {
@@ -67,30 +114,31 @@ PlainJson occlusion_lesson(const PlainJson& question) {
   const int cell = std::clamp(question.value("cell", 8), 1, 64);
   const Visible visible = zbuffer(stage.surfaces, view);
   picture = lesson_picture(stage, visible);
-  Occlusion occlusion(stage.surfaces);
+  const ObjectUnit unit = unit_of(stage.surfaces);
+  Occlusion occlusion(stage.surfaces, unit);
   const std::span<const ObjectSight> sights = occlusion.cull(view, {cell});
-  std::vector<bool> is_seen(stage.scene.instances.size());
-  for (const PrimitiveId id : visible.primitives)
-    if (id != no_primitive) is_seen[stage.surfaces.source(id).instance] = true;
-  const std::vector<std::uint32_t> order = outwards(stage.surfaces, view);
+  const std::vector<bool> is_seen = seen_objects(stage.surfaces, occlusion, visible);
+  constexpr std::size_t most_objects = 300;
+  std::vector<SweptObject> order = outwards(stage.surfaces, occlusion, view);
+  order.resize(std::min(order.size(), most_objects));
   const std::size_t step = std::min<std::size_t>(question.value("step", order.size()), order.size());
   PlainJson objects = PlainJson::array();
-  for (const std::uint32_t instance : order) {
-    const Box& box = stage.surfaces.bounds(instance);
-    objects.push_back({{"object", instance},
-                       {"sight", name_of(sights[instance])},
-                       {"seen", bool(is_seen[instance])},
-                       {"low", to_json(box.low)},
-                       {"high", to_json(box.high)}});
-  }
+  for (const SweptObject& object : order)
+    objects.push_back({{"object", object.number},
+                       {"sight", name_of(sights[object.number])},
+                       {"seen", bool(is_seen[object.number])},
+                       {"low", to_json(object.box.low)},
+                       {"high", to_json(object.box.high)}});
+  const Scene visited = scene_of(stage.scene, occlusion, std::span(order).first(step));
   PlainJson answer = {{"width", view.width},
                       {"height", view.height},
                       {"pixels", place_of(picture.rgba.data(), picture.rgba.size())},
                       {"cell", cell},
                       {"across", (view.width + cell - 1) / cell},
-                      {"cells", covered_cells(stage.scene, std::span(order).first(step), view, cell)},
+                      {"cells", covered_cells(visited, unit, view, cell)},
+                      {"object_count", occlusion.object_count()},
                       {"objects", std::move(objects)}};
-  if (step > 0) answer["lines"] = lines_json(view, sides_of(stage.surfaces.bounds(order[step - 1])));
+  if (step > 0) answer["lines"] = lines_json(view, sides_of(order[step - 1].box));
   return answer;
 }
 

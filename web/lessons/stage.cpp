@@ -3,8 +3,11 @@
 #include <frontmost/io.h>
 #include <frontmost/shade.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
+#include <optional>
 
 #include "web/camera.h"
 #include "web/lessons/lessons.h"
@@ -85,32 +88,81 @@ Scene town_scene() {
   return scene;
 }
 
-std::unique_ptr<LessonScene>& own_scene() {
-  static std::unique_ptr<LessonScene> own;
+/// Directions are told for scenes whose y is up.
+glm::dvec3 turned_up(const glm::dvec3& d, Axis up) { return up == Axis::z ? glm::dvec3(d.x, -d.z, d.y) : d; }
+
+/// The triangles of a scene that reach furthest towards where most figures begin to look from, in their order.
+Scene foremost_of(const LessonScene& stage, std::size_t most) {
+  const Surfaces& surfaces = stage.surfaces;
+  const glm::dvec3 towards = turned_up({0.6, 0.45, 0.8}, stage.scene.up);
+  std::vector<std::pair<double, PrimitiveId>> reaches;
+  for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
+    const std::array<glm::vec3, 3> corners = surfaces.corners(id);
+    const double reach = glm::dot(towards, glm::dvec3(corners[0]) + glm::dvec3(corners[1]) + glm::dvec3(corners[2]));
+    if (std::isfinite(reach)) reaches.emplace_back(-reach, id);
+  }
+  std::sort(reaches.begin(), reaches.end());
+  reaches.resize(std::min(reaches.size(), most));
+  std::sort(reaches.begin(), reaches.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  Scene part;
+  part.name = stage.scene.name;
+  part.up = stage.scene.up;
+  part.materials = stage.scene.materials;
+  part.textures = stage.scene.textures;
+  Mesh mesh;
+  for (const auto& [reach, id] : reaches) {
+    const PrimitiveSource source = surfaces.source(id);
+    const auto first = std::uint32_t(mesh.positions.size());
+    for (const glm::vec3& corner : surfaces.corners(id)) mesh.positions.push_back(corner);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.material_ids.push_back(stage.scene.meshes[source.mesh].material_of(source.triangle));
+  }
+  add(part, std::move(mesh));
+  return part;
+}
+
+/// A scene, and the part of it that was asked for last.
+struct StagedScene {
+  explicit StagedScene(Scene&& scene) : whole(std::move(scene)) {}
+  LessonScene whole;
+  std::optional<LessonScene> part;
+  std::size_t most = 0;
+
+  const LessonScene& at_most(std::size_t count) {
+    if (whole.surfaces.primitive_count() <= count) return whole;
+    if (!part || most != count) part.emplace(foremost_of(whole, count));
+    most = count;
+    return *part;
+  }
+};
+
+std::unique_ptr<StagedScene>& own_scene() {
+  static std::unique_ptr<StagedScene> own;
   return own;
 }
 
 }  // namespace
 
 PlainJson open_lesson(std::span<const std::byte> bytes, const PlainJson& question) {
-  own_scene() = std::make_unique<LessonScene>(load(bytes, question.at("name").get<std::string>()));
-  return {{"triangles", own_scene()->surfaces.primitive_count()}};
+  own_scene() = std::make_unique<StagedScene>(load(bytes, question.at("name").get<std::string>()));
+  return {{"triangles", own_scene()->whole.surfaces.primitive_count()}};
 }
 
 const LessonScene& lesson_scene(const PlainJson& question) {
   static std::string name;
-  static std::unique_ptr<LessonScene> stage;
+  static std::unique_ptr<StagedScene> stage;
   const std::string wanted = question.value("scene", "cubes");
-  if (wanted == "own" && own_scene()) return *own_scene();
+  const std::size_t most = question.value("most", std::size_t(no_index));
+  if (wanted == "own" && own_scene()) return own_scene()->at_most(most);
   if (!stage || wanted != name) {
-    stage = std::make_unique<LessonScene>(wanted == "concave"  ? concave_scene()
+    stage = std::make_unique<StagedScene>(wanted == "concave"  ? concave_scene()
                                           : wanted == "cube"   ? cube_scene()
                                           : wanted == "blocks" ? blocks_scene()
                                           : wanted == "town"   ? town_scene()
                                                                : builtin(wanted));
     name = wanted;
   }
-  return *stage;
+  return stage->at_most(most);
 }
 
 PlainJson frame_lesson(const PlainJson& question) {
@@ -118,8 +170,8 @@ PlainJson frame_lesson(const PlainJson& question) {
   Box box = stage.surfaces.bounds();
   for (const PlainJson& point : question.value("beside", PlainJson::array())) box.include(glm::vec3(vector_of(point)));
   FrameOptions options;
-  const glm::dvec3 forward = vector_of(question.at("forward")), up = direction(stage.scene.up);
-  options.forward = up.z > 0 ? glm::dvec3(forward.x, -forward.z, forward.y) : forward;
+  const glm::dvec3 up = direction(stage.scene.up);
+  options.forward = turned_up(vector_of(question.at("forward")), stage.scene.up);
   if (question.contains("angle")) options.min_fov = glm::radians(question["angle"].get<double>());
   const View view = frame(box, stage.scene.up, question.at("width"), question.at("height"), options);
   PlainJson camera = camera_json(view, box.centre());
