@@ -215,21 +215,62 @@ async function tryManyModels() {
 }
 
 const cornerOf = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\n";
-/** Every figure that takes a model of one's own is given a broken one, and a good one. */
+/** A ball of 5000 triangles. */
+function ballOf(rows = 50, columns = 51) {
+  const text = [], corner = (row, column) => row * columns + (column % columns) + 1;
+  for (let row = 0; row <= rows; ++row)
+    for (let column = 0; column < columns; ++column) {
+      const down = (Math.PI * row) / rows, around = (2 * Math.PI * column) / columns;
+      text.push(`v ${Math.sin(down) * Math.cos(around)} ${Math.cos(down)} ${Math.sin(down) * Math.sin(around)}`);
+    }
+  for (let row = 0; row < rows; ++row)
+    for (let column = 0; column < columns; ++column) {
+      if (row > 0) text.push(`f ${corner(row, column)} ${corner(row, column + 1)} ${corner(row + 1, column)}`);
+      if (row < rows - 1) text.push(`f ${corner(row, column + 1)} ${corner(row + 1, column + 1)} ${corner(row + 1, column)}`);
+    }
+  return text.join("\n");
+}
+
+const limited = { nscene: 200, bscene: 200 };
+/** Every figure with scenes takes a model of one's own: a broken one, a small one and a large one, of which some show a part. */
 async function giveOwnModels(page, id) {
-  for (const picker of await page.locator(".figure input[type=file]").all()) {
-    const around = picker.locator("xpath=..");
+  for (const around of await page.locator(".figure .scenes").all()) {
+    const picker = around.locator("input[type=file]"), alert = around.locator("[role=alert]"), own = around.locator('input[value="own"]'), note = around.locator("[role=status]");
     await picker.setInputFiles({ name: "broken.stl", mimeType: "model/stl", buffer: Buffer.from("solid nothing\n facet normal 0 0 what") });
     await around.locator("[role=alert]:not([hidden])").waitFor(patience);
-    assert.match(await around.locator("[role=alert]").textContent(), /broken\.stl/, id);
-    await picker.setInputFiles({ name: "corner.obj", mimeType: "model/obj", buffer: Buffer.from(cornerOf) });
-    await around.locator('input[value="own"]:checked').waitFor({ ...patience, state: "attached" });
+    assert.match(await alert.textContent(), /broken\.stl/, id);
+    for (const [name, text, count] of [["corner.obj", cornerOf, "2"], ["ball.obj", ballOf(), "4,998"]]) {
+      await picker.setInputFiles({ name, mimeType: "model/obj", buffer: Buffer.from(text) });
+      await around.getByText(name, { exact: true }).waitFor(patience);
+      assert.ok(await own.isChecked() && await alert.isHidden(), id);
+      const most = limited[await own.getAttribute("name")], told = await note.textContent();
+      assert.ok(told.includes(count) && (count === "2" || !most || told.includes(String(most))), `${id}: ${told}`);
+      await page.waitForTimeout(300);
+    }
     ++ownModels;
   }
 }
 
+/** What figures told of answers that did not come. */
+const watchTroubles = () => {
+  window.troubles = new Set();
+  new MutationObserver(() => document.querySelectorAll(".trouble:not([hidden])").forEach((one) => window.troubles.add(one.textContent)))
+    .observe(document, { subtree: true, attributes: true, attributeFilter: ["hidden"] });
+};
+
+/** Without its module every figure says why it shows nothing. */
+async function tryWithoutModule(id) {
+  const { page, context } = await openPage(browser, { serviceWorkers: "block" });
+  await page.route("**/frontmost.wasm", (route) => route.abort());
+  await page.goto(`${address}lesson.html?lesson=${id}&lang=en`);
+  for (const figure of await page.locator(".figure").all())
+    if (await figure.locator(".trouble").count()) await figure.locator(".controls > .trouble:not([hidden])").waitFor(patience);
+  await context.close();
+}
+
 async function tryLesson(id, lang, viewport) {
   const { page, complaints, context } = await openPage(browser, { viewport });
+  await page.addInitScript(watchTroubles);
   await page.goto(`${address}lesson.html?lesson=${id}&lang=${lang}`);
   await page.waitForSelector(".figure", patience);
   // Figures have asked, and were answered.
@@ -246,11 +287,13 @@ async function tryLesson(id, lang, viewport) {
     await stepper.locator("[data-back]").click();
   }
   for (const choice of await page.locator('.choices input:not([value="own"])').all()) await choice.evaluate((input) => input.click());
+  assert.ok(await page.evaluate(() => [...document.querySelectorAll(".choices")].every((group) => !group.querySelector('[value="concave"], [value="cubes"]') || group.closest(".scenes"))), `${id}: scenes without one's own`);
   await giveOwnModels(page, id);
   await page.waitForTimeout(300);
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   assert.ok(wide <= 0, `${id}: the page is ${wide} pixels too wide at ${viewport.width}`);
   assert.deepEqual(complaints, [], id);
+  assert.deepEqual((await page.evaluate(() => [...window.troubles])).filter((text) => !text.includes("broken.stl")), [], id);
   await context.close();
   ++lessons;
 }
@@ -267,6 +310,7 @@ try {
   assert.ok(ids.length >= 4);
   for (const id of ids)
     for (const [lang, viewport] of [["en", { width: 1280, height: 900 }], ["zh", { width: 390, height: 844 }]]) await tryLesson(id, lang, viewport);
+  for (const id of ids) await tryWithoutModule(id);
 } finally {
   await close();
 }

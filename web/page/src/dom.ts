@@ -70,7 +70,7 @@ export function bar(page: "workbench" | "lessons"): HTMLElement {
   mark.innerHTML = `${eye}<span>Frontmost</span>`;
   const link = (to: "workbench" | "lessons", href: string) =>
     element("a", { href, "aria-current": to === page ? "page" : undefined }, say(titles[to]));
-  return element("header", { class: "bar" }, mark,
+  return element("header", { class: "bar" }, mark, page === "workbench" && element("h1", { class: "sr" }, say(titles.workbench)),
     element("nav", {}, link("workbench", "index.html"), link("lessons", "lessons.html")),
     element("div", { class: "tools" },
       element("button", { class: "button plain", title: say(titles.theme), "aria-label": say(titles.theme), onclick: switchTheme }, "◐"),

@@ -51,17 +51,22 @@ export interface OrbitOptions {
   worldUp: () => Vector;
   moved: () => void;
   pointed?: (x: number, y: number) => void;
+  /** In a page that is read: one finger up and down scrolls it (style.css), and so does the wheel until it is clicked. */
+  isInPage?: boolean;
 }
 
 /** Listens on an element, which should be focusable. */
-export function listen(target: HTMLElement, { camera, worldUp, moved, pointed }: OrbitOptions): void {
+export function listen(target: HTMLElement, { camera, worldUp, moved, pointed, isInPage }: OrbitOptions): void {
   const fingers = new Map<number, { x: number; y: number }>();
-  let travelled = 0;
+  let travelled = 0, atFirst: Camera | undefined;
+  // Screen readers leave the keys of an application to it.
+  target.setAttribute("role", "application");
 
   target.addEventListener("pointerdown", (event) => {
     fingers.set(event.pointerId, { x: event.offsetX, y: event.offsetY });
     target.setPointerCapture(event.pointerId);
-    if (fingers.size === 1) travelled = 0;
+    travelled = fingers.size === 1 ? 0 : Infinity;
+    if (fingers.size === 1) atFirst = structuredClone(camera());
   });
   target.addEventListener("pointermove", (event) => {
     const last = fingers.get(event.pointerId), now = camera();
@@ -85,11 +90,21 @@ export function listen(target: HTMLElement, { camera, worldUp, moved, pointed }:
     if (wasOne && travelled < 5 && event.type === "pointerup") pointed?.(event.offsetX, event.offsetY);
   };
   target.addEventListener("pointerup", lift);
-  target.addEventListener("pointercancel", lift);
+  // What began to turn until it was known that the page is scrolled.
+  target.addEventListener("pointercancel", (event) => {
+    const now = camera();
+    if (fingers.size === 1 && travelled > 0 && now && atFirst) {
+      Object.assign(now, atFirst);
+      moved();
+    }
+    lift(event);
+  });
+  // Two fingers belong to the picture, wherever they go.
+  target.addEventListener("touchmove", (event) => event.touches.length > 1 && event.cancelable && event.preventDefault(), { passive: false });
   target.addEventListener("contextmenu", (event) => event.preventDefault());
   target.addEventListener("wheel", (event) => {
     const now = camera();
-    if (!now) return;
+    if (!now || (isInPage && !event.ctrlKey && document.activeElement !== target)) return;
     event.preventDefault();
     dolly(now, Math.exp(Math.max(-0.5, Math.min(0.5, event.deltaY * 0.0015))));
     moved();
@@ -97,10 +112,9 @@ export function listen(target: HTMLElement, { camera, worldUp, moved, pointed }:
   target.addEventListener("keydown", (event) => {
     const now = camera();
     if (!now) return;
-    const step = 0.12;
+    const go = (right: number, up: number) => (event.shiftKey ? pan(now, right, up) : orbit(now, worldUp(), right, up)), step = 0.12;
     const keys: Record<string, () => void> = {
-      ArrowLeft: () => orbit(now, worldUp(), -step, 0), ArrowRight: () => orbit(now, worldUp(), step, 0),
-      ArrowUp: () => orbit(now, worldUp(), 0, step), ArrowDown: () => orbit(now, worldUp(), 0, -step),
+      ArrowLeft: () => go(-step, 0), ArrowRight: () => go(step, 0), ArrowUp: () => go(0, step), ArrowDown: () => go(0, -step),
       "+": () => dolly(now, 0.9), "=": () => dolly(now, 0.9), "-": () => dolly(now, 1 / 0.9),
     };
     if (!keys[event.key]) return;

@@ -79,7 +79,7 @@ function clipFigure(): HTMLElement {
       away.input.value = String(corners[2][2]);
       away.field.querySelector("output")!.textContent = corners[2][2].toFixed(2);
       ask();
-    })]);
+    })], latest);
 }
 
 export const clipping: Lesson = {

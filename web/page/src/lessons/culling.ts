@@ -55,7 +55,7 @@ function cullingFigure(): HTMLElement {
     await eye.place(scene, [-0.6, -0.45, -0.8], size);
     show();
   }
-  void place();
+  void latest.during(place);
   return figure([picture.root, element("div", {}, facts)], [
     said,
     choices("culling", say({ en: "Leave out", zh: "剔除" }), [["0", say({ en: "nothing", zh: "不剔除" })], ["1", say({ en: "back faces", zh: "背面" })], ["2", say({ en: "front faces", zh: "正面" })]], "0", (value) => {
@@ -64,16 +64,16 @@ function cullingFigure(): HTMLElement {
     }),
     sceneChoices("cscene", [["cube", { en: "one convex body", zh: "一个凸体" }], ["concave", { en: "a concave body", zh: "一个凹体" }], ["cubes", { en: "two cubes", zh: "两个立方体" }], ["teapot", { en: "teapot", zh: "茶壶" }]], scene, (value) => {
       scene = value;
-      void place();
+      void latest.during(place);
     }),
-  ]);
+  ], latest);
 }
 
 /** A wall, its normal, and an eye to be dragged around it: seen from above. */
 function facingFigure(): HTMLElement {
   const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   svg.setAttribute("viewBox", "-160 -110 320 220");
-  svg.setAttribute("role", "img");
+  svg.setAttribute("role", "application");
   svg.setAttribute("tabindex", "0");
   svg.setAttribute("aria-label", say({ en: "A wall from above, its normal, and the eye. Arrow keys move the eye.", zh: "墙的俯视图、法线与眼睛。方向键移动眼睛。" }));
   const said = element("p", { class: "said", "aria-live": "polite" });
@@ -104,6 +104,12 @@ function facingFigure(): HTMLElement {
     follow(event);
   });
   svg.addEventListener("pointermove", follow);
+  // A finger on the eye drags it; elsewhere it scrolls the page.
+  svg.addEventListener("touchstart", (event) => {
+    const box = svg.getBoundingClientRect(), scale = box.width / 320, [{ clientX, clientY }] = event.touches;
+    const away = Math.hypot(clientX - box.left - (160 + 95 * Math.sin(angle)) * scale, clientY - box.top - (110 - 95 * Math.cos(angle)) * scale);
+    if (away < 40) event.preventDefault();
+  }, { passive: false });
   svg.addEventListener("keydown", (event) => {
     if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
     event.preventDefault();

@@ -13,11 +13,28 @@ export function client(): Client {
   return (shared ??= new Client());
 }
 
+/** Says in a figure why there is no answer. */
+export class Trouble {
+  readonly root = element("p", { class: "trouble", role: "alert", hidden: true });
+
+  async during(work: () => Promise<void>): Promise<void> {
+    try {
+      await work();
+      this.root.hidden = true;
+    } catch (error) {
+      this.root.textContent = `${say({ en: "There is no answer", zh: "没有得到答案" })}: ${error instanceof Error ? error.message : error}`;
+      this.root.hidden = false;
+    }
+  }
+}
+
 /** Asks with what is wanted last, when the one before is answered. */
-export class Latest {
+export class Latest extends Trouble {
   private next: Question | undefined;
   private isBusy = false;
-  constructor(private take: (answer: Answer) => void) {}
+  constructor(private take: (answer: Answer) => void) {
+    super();
+  }
 
   ask(question: Question): void {
     this.next = question;
@@ -29,12 +46,10 @@ export class Latest {
     while (this.next) {
       const question = this.next;
       this.next = undefined;
-      try {
+      await this.during(async () => {
         const answer = await client().ask(question);
         if (!this.next) this.take(answer);
-      } catch (error) {
-        console.error(error);
-      }
+      });
     }
     this.isBusy = false;
   }
@@ -53,7 +68,7 @@ export function plate(title: string, label = title): Plate {
   marks.setAttribute("class", "marks");
   marks.setAttribute("aria-hidden", "true");
   return {
-    root: element("div", { class: "plate" }, element("h3", {}, title), element("div", { class: "pane" }, canvas, marks)),
+    root: element("div", { class: "plate" }, element("p", { class: "caption" }, title), element("div", { class: "pane" }, canvas, marks)),
     canvas,
     show(answer, key = "pixels", [width, height] = [answer.width, answer.height]) {
       canvas.width = width;
@@ -76,24 +91,38 @@ export function dot(x: number, y: number, color: string, radius = 4): string {
   return `<circle cx="${x.toFixed(2)}" cy="${y.toFixed(2)}" r="${radius}" fill="var(${color})" stroke="var(--panel)"/>`;
 }
 
-/** A pixel that is chosen by pointing, by touch, and by the arrow keys. */
-export function pointing({ canvas }: Plate, [x, y]: [number, number], take: (x: number, y: number) => void): void {
-  const go = (toX: number, toY: number) => {
-    [x, y] = [Math.max(0, Math.min(canvas.width - 1, toX)), Math.max(0, Math.min(canvas.height - 1, toY))];
-    take(x, y);
-  };
-  const point = (event: PointerEvent) =>
-    go(Math.floor((event.offsetX / canvas.clientWidth) * canvas.width), Math.floor((event.offsetY / canvas.clientHeight) * canvas.height));
-  canvas.tabIndex = 0;
-  canvas.style.cursor = "crosshair";
-  canvas.addEventListener("pointermove", point);
-  canvas.addEventListener("pointerdown", point);
-  canvas.addEventListener("keydown", (event) => {
-    const by: Record<string, [number, number]> = { ArrowLeft: [-2, 0], ArrowRight: [2, 0], ArrowUp: [0, -2], ArrowDown: [0, 2] };
-    if (!by[event.key]) return;
-    event.preventDefault();
-    go(x + by[event.key][0], y + by[event.key][1]);
-  });
+/** What a canvas with keys says of them to those who do not see it. */
+function named(canvas: HTMLCanvasElement, keys: Text): void {
+  canvas.setAttribute("aria-label", `${canvas.getAttribute("aria-label")}. ${say(keys)}`);
+}
+
+/** The pixel at a place of the element, within the picture. */
+export function pixelAt(canvas: HTMLCanvasElement, { offsetX, offsetY }: { offsetX: number; offsetY: number }): [number, number] {
+  const within = (at: number, length: number, count: number) => Math.max(0, Math.min(count - 1, Math.floor((at / length) * count)));
+  return [within(offsetX, canvas.clientWidth, canvas.width), within(offsetY, canvas.clientHeight, canvas.height)];
+}
+
+/** A pixel of pictures of one size that is chosen by pointing, by touch, and by the arrow keys. */
+export function pointing(plates: Plate[], [x, y]: [number, number], take: (x: number, y: number) => void): void {
+  for (const { canvas } of plates) {
+    const go = (toX: number, toY: number) => {
+      [x, y] = [Math.max(0, Math.min(canvas.width - 1, toX)), Math.max(0, Math.min(canvas.height - 1, toY))];
+      take(x, y);
+    };
+    const point = (event: PointerEvent) => go(...pixelAt(canvas, event));
+    canvas.tabIndex = 0;
+    canvas.setAttribute("role", "application");
+    canvas.style.cursor = "crosshair";
+    named(canvas, { en: "Arrow keys choose the pixel.", zh: "用方向键选择像素。" });
+    canvas.addEventListener("pointermove", point);
+    canvas.addEventListener("pointerdown", point);
+    canvas.addEventListener("keydown", (event) => {
+      const by: Record<string, [number, number]> = { ArrowLeft: [-2, 0], ArrowRight: [2, 0], ArrowUp: [0, -2], ArrowDown: [0, 2] };
+      if (!by[event.key]) return;
+      event.preventDefault();
+      go(x + by[event.key][0], y + by[event.key][1]);
+    });
+  }
 }
 
 /** Names and values, one below the other. */
@@ -162,42 +191,50 @@ export function steps(most: number, show: (step: number) => void, pause = 350): 
   };
 }
 
-export function figure(pictures: HTMLElement[], controls: HTMLElement[]): HTMLElement {
-  return element("figure", { class: "figure" }, element("div", { class: pictures.length > 3 ? "picture pairs" : "picture" }, ...pictures), element("div", { class: "controls" }, ...controls));
+export function figure(pictures: HTMLElement[], controls: HTMLElement[], trouble?: Trouble): HTMLElement {
+  return element("figure", { class: "figure" }, element("div", { class: pictures.length > 3 ? "picture pairs" : "picture" }, ...pictures), element("div", { class: "controls" }, trouble?.root, ...controls));
 }
 
-/** Scenes to choose from, and a file of one's own. */
-export function sceneChoices(name: string, scenes: [string, Text][], chosen: string, change: (scene: string) => void): HTMLElement {
-  const picker = element("input", { type: "file", accept: ".stl,.ply,.obj,.off,.glb,.gltf", class: "sr", tabindex: -1, "aria-label": say(own) });
-  const complaint = element("p", { class: "soft", role: "alert", hidden: true });
-  const restore = () => (group.querySelector<HTMLInputElement>(`input[value="${chosen}"]`)!.checked = true);
-  const group = choices(name, say({ en: "Scene", zh: "场景" }), [...scenes, ["own", own] as [string, Text]].map(([id, text]) => [id, say(text)]), chosen, (value) => {
-    complaint.hidden = true;
-    if (value === "own") return picker.click();
-    chosen = value;
-    change(value);
-  });
-  picker.addEventListener("cancel", restore);
-  picker.addEventListener("change", async () => {
+/** The model of one's own that was opened last, by any figure of the page: the module holds one. */
+let own: { name: string; triangles: number } | undefined;
+
+/** Scenes to choose from, and a file of one's own, of which the figure shows so many triangles at most. */
+export function sceneChoices(name: string, scenes: [string, Text][], chosen: string, change: (scene: string) => void, most = Infinity): HTMLElement {
+  const picker = element("input", { type: "file", accept: ".stl,.ply,.obj,.off,.glb,.gltf", class: "sr" });
+  const note = element("p", { class: "soft", role: "status" }), trouble = new Trouble();
+  const group = choices(name, say({ en: "Scene", zh: "场景" }), [...scenes.map(([id, text]): [string, string] => [id, say(text)]), ["own", ""]], chosen, choose);
+  const ownInput = group.querySelector<HTMLInputElement>('input[value="own"]')!, ownLabel = ownInput.parentElement!;
+  function choose(scene: string): void {
+    chosen = scene;
+    const count = own?.triangles.toLocaleString();
+    note.textContent = scene !== "own" ? "" : own!.triangles <= most ? say({ en: `${count} triangles.`, zh: `${count} 个三角形。` })
+      : say({ en: `Of its ${count} triangles this figure shows the ${most} that lie foremost, numbered anew.`, zh: `它有 ${count} 个三角形；此图只显示最靠前的 ${most} 个，并重新编号。` });
+    change(scene);
+  }
+  function showOwn(): void {
+    ownLabel.hidden = !own;
+    ownLabel.querySelector("span")!.textContent = own?.name ?? "";
+    if (own && chosen === "own") choose("own");
+  }
+  picker.addEventListener("change", () => void trouble.during(async () => {
     const file = picker.files?.[0];
-    if (!file) return restore();
+    if (!file) return;
     try {
-      await client().ask({ ask: "lesson.open", name: file.name }, await file.arrayBuffer());
-      group.querySelector<HTMLInputElement>(`input[value="own"]`)!.checked = true;
-      chosen = "own";
-      change("own");
-    } catch (error) {
-      complaint.textContent = error instanceof Error ? error.message : String(error);
-      complaint.hidden = false;
-      restore();
+      const { triangles } = await client().ask({ ask: "lesson.open", name: file.name }, await file.arrayBuffer());
+      own = { name: file.name, triangles };
+    } finally {
+      picker.value = "";
     }
-    picker.value = "";
-  });
-  return element("div", {}, group, picker, complaint);
+    ownInput.checked = true;
+    chosen = "own";
+    dispatchEvent(new Event("ownmodel"));
+  }));
+  addEventListener("ownmodel", showOwn);
+  showOwn();
+  return element("div", { class: "scenes" }, group, element("label", { class: "button" }, say({ en: "Your own model…", zh: "自己的模型…" }), picker), trouble.root, note);
 }
-const own: Text = { en: "your own model…", zh: "自己的模型…" };
 
-interface Framing { angle?: number; beside?: Vector[] }
+interface Framing { angle?: number; beside?: Vector[]; most?: number }
 /** A camera that shows all of a scene from a direction, and points beside it. */
 export async function framed(scene: string, forward: Vector, [width, height]: [number, number], more: Framing = {}): Promise<Camera> {
   return client().ask({ ask: "lesson.frame", scene, width, height, forward, ...more });
@@ -206,10 +243,11 @@ export async function framed(scene: string, forward: Vector, [width, height]: [n
 /** A camera that goes once around a scene when it is dragged. `moved` is called with what it is now. */
 export class Eye {
   camera: Camera | undefined;
-  constructor(target: HTMLElement, moved: () => void) {
+  constructor(target: HTMLCanvasElement, moved: () => void, pointed?: (x: number, y: number) => void) {
     target.tabIndex = 0;
     target.style.cursor = "grab";
-    listen(target, { camera: () => this.camera, worldUp: () => this.camera?.world_up ?? ([0, 1, 0] as Vector), moved });
+    named(target, { en: "Arrow keys turn it, with Shift they move it, plus and minus come nearer.", zh: "方向键旋转，按住 Shift 平移，加减键缩放。" });
+    listen(target, { camera: () => this.camera, worldUp: () => this.camera?.world_up ?? ([0, 1, 0] as Vector), moved, pointed, isInPage: true });
   }
 
   /** Shows all of a scene, from a direction. */

@@ -3,7 +3,7 @@
 import type { Answer } from "../answer.ts";
 import { element, slider } from "../dom.ts";
 import { say } from "../language.ts";
-import { Eye, figure, ink, Latest, plate, sceneChoices } from "./figure.ts";
+import { Eye, figure, ink, Latest, pixelAt, plate, pointing, sceneChoices } from "./figure.ts";
 import type { Lesson } from "./list.ts";
 
 const size: [number, number] = [320, 240];
@@ -21,11 +21,16 @@ function maskPicture(mask: string): SVGElement {
 }
 
 function layersFigure(): HTMLElement {
-  const sorted = plate(say({ en: "In true order. Point at a pixel, drag to turn", zh: "按真实次序。指向像素查询，拖动旋转" })), unsorted = plate(say({ en: "In the order of the file", zh: "按文件中的次序" }));
+  const sorted = plate(say({ en: "In true order. Point at a pixel, drag to turn", zh: "按真实次序。指向像素查询，拖动旋转" })), unsorted = plate(say({ en: "In the order of the file. Point at a pixel", zh: "按文件中的次序。指向像素查询" }));
   const said = element("p", { class: "said", "aria-live": "polite" });
   const list = element("ol", { class: "hits" });
   let scene = "cubes", opacity = 0.5, pixel: [number, number] = [150, 110];
-  const eye = new Eye(sorted.canvas, show);
+  const choose = (x: number, y: number) => {
+    pixel = [x, y];
+    show();
+  };
+  const { canvas } = sorted;
+  const eye = new Eye(canvas, show, (offsetX, offsetY) => choose(...pixelAt(canvas, { offsetX, offsetY })));
   const latest = new Latest((answer) => {
     sorted.show(answer);
     unsorted.show(answer, "unsorted");
@@ -43,17 +48,15 @@ function layersFigure(): HTMLElement {
   function show(): void {
     if (eye.camera) latest.ask({ ask: "lesson.layers", scene, opacity, camera: eye.camera, x: pixel[0], y: pixel[1] });
   }
-  for (const { canvas } of [sorted, unsorted])
-    canvas.addEventListener("pointermove", (event) => {
-      if (event.buttons !== 0) return;
-      pixel = [Math.min(319, Math.floor((event.offsetX / canvas.clientWidth) * 320)), Math.min(239, Math.floor((event.offsetY / canvas.clientHeight) * 240))];
-      show();
-    });
+  canvas.addEventListener("pointermove", (event) => {
+    if (event.buttons === 0) choose(...pixelAt(canvas, event));
+  });
+  pointing([unsorted], pixel, choose);
   async function place(): Promise<void> {
     await eye.place(scene, scene === "cycle" ? [-0.05, -0.1, -1] : [-0.6, -0.45, -0.8], size);
     show();
   }
-  void place();
+  void latest.during(place);
   return figure([sorted.root, unsorted.root], [said, list,
     slider(say({ en: "opacity", zh: "不透明度" }), { min: 0.1, max: 1, step: 0.05, value: 0.5 }, (v) => `${Math.round(100 * v)} %`, (v) => {
       opacity = v;
@@ -61,8 +64,8 @@ function layersFigure(): HTMLElement {
     }).field,
     sceneChoices("ascene", [["cubes", { en: "two cubes", zh: "两个立方体" }], ["cycle", { en: "three in a ring", zh: "三者成环" }], ["concave", { en: "a concave body", zh: "凹体" }]], scene, (value) => {
       scene = value;
-      void place();
-    })]);
+      void latest.during(place);
+    })], latest);
 }
 
 export const layers: Lesson = {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hidden lines: which edges are drawn, and how each is cut where surfaces hide it.
 import type { Answer } from "../answer.ts";
-import { choices, element } from "../dom.ts";
+import { element } from "../dom.ts";
 import { say, type Text } from "../language.ts";
 import { Eye, facts, figure, Latest, lines, plate, steps, sceneChoices } from "./figure.ts";
 import type { Lesson } from "./list.ts";
@@ -43,33 +43,35 @@ function kindsFigure(): HTMLElement {
     await eye.place(scene, [-0.6, -0.45, -0.8], size);
     show();
   }
-  void place();
+  void latest.during(place);
   return figure([drawn.root, element("div", {}, counts)], [
     sceneChoices("kscene", [...scenes, ["teapot", { en: "teapot", zh: "茶壶" }] as [string, Text]], scene, (value) => {
       scene = value;
-      void place();
-    })]);
+      void latest.during(place);
+    })], latest);
 }
 
 /** The edge that is cut into the most parts. */
 function richest(parts: Part[]): number {
   const counts = new Map<number, number>();
   for (const { edge } of parts) counts.set(edge, (counts.get(edge) ?? 0) + 1);
-  return [...counts].sort((a, b) => b[1] - a[1])[0][0];
+  return [...counts].sort((a, b) => b[1] - a[1])[0]?.[0] ?? -1;
 }
 
 /** How a part is drawn that so many surfaces hide. */
 const styleOf = (hiddenBy: number): [string, number, string] => hiddenBy === 0 ? ["--ink", 2.2, ""] : hiddenBy === 1 ? ["--blue", 1.6, `stroke-dasharray="7 5"`] : ["--bad", 1.4, `stroke-dasharray="1.5 4.5"`];
 
-/** A row for every triangle that hides something of an edge, and below them how many do. */
+const mostRows = 16;
+/** A row for every triangle that hides something of an edge, those that hide the most, and below them how many do. */
 function chart(answer: Answer, parts: Part[]): string {
-  const rows: Answer[] = answer.intervals, left = 96, width = size[0] - left - 24, height = Math.min(30, 250 / Math.max(1, rows.length));
+  const all: Answer[] = answer.intervals, rest = all.length - mostRows, shareOf = (row: Answer) => row.end - row.begin;
+  const rows = rest > 0 ? [...all].sort((a, b) => shareOf(b) - shareOf(a)).slice(0, mostRows).sort((a, b) => a.begin - b.begin) : all, left = 104, width = size[0] - left - 24, height = Math.min(30, 250 / Math.max(1, rows.length));
   const x = (share: number) => left + share * width, top = 34, bottom = top + rows.length * height + 18;
   const ends = [...new Set([0, 1, ...parts.flatMap((part) => [part.begin, part.end])])];
   return `<g font-size="13" font-family="var(--sans)" fill="var(--soft)">${ends.map((end) => `<path d="M${x(end)} 26V${bottom + 22}" stroke="var(--line)"/>`).join("")}
 <text x="${left}" y="18" text-anchor="middle">0</text><text x="${left + width}" y="18" text-anchor="middle">1</text>
 ${rows.map((row, i) => `<text x="12" y="${top + (i + 0.5) * height + 4}">${say({ en: "triangle", zh: "三角形" })} ${row.triangle}</text><rect x="${x(row.begin)}" y="${top + i * height + 3}" width="${Math.max(1, x(row.end) - x(row.begin))}" height="${height - 6}" rx="3" fill="var(--blue)" opacity=".45"/>`).join("")}
-<text x="12" y="${bottom + 5}">${say({ en: "hidden by", zh: "遮挡数" })}</text></g>
+<text x="12" y="${bottom + 5}">${say({ en: "hidden by", zh: "遮挡数" })}</text>${rest > 0 ? `<text x="12" y="${size[1] - 10}">${say({ en: `and ${rest} triangles that hide less of it`, zh: `另有 ${rest} 个三角形，遮住的更少` })}</text>` : ""}</g>
 ${parts.map((part) => lines([[x(part.begin), bottom, x(part.end), bottom]], styleOf(part.hiddenBy)[0], 5)
     + (part.end - part.begin > 0.03 ? `<text x="${x((part.begin + part.end) / 2)}" y="${bottom + 22}" text-anchor="middle" font-size="14" font-family="var(--mono)" fill="var(${styleOf(part.hiddenBy)[0]})">${part.hiddenBy}</text>` : "")).join("")}`;
 }
@@ -112,12 +114,12 @@ function intervalsFigure(): HTMLElement {
     most = -1;
     show(0);
   }
-  void place();
+  void latest.during(place);
   return figure([drawn.root, along.root], [stepper.root, said, sums.root,
-    choices("iscene", say({ en: "Scene", zh: "场景" }), scenes.map(([id, text]) => [id, say(text)]), scene, (value) => {
+    sceneChoices("iscene", scenes, scene, (value) => {
       scene = value;
-      void place();
-    })]);
+      void latest.during(place);
+    })], latest);
 }
 
 export const hiddenLines: Lesson = {

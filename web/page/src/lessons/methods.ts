@@ -2,7 +2,7 @@
 // Which method when: times and memory of all of them, measured here.
 import { element } from "../dom.ts";
 import { say, type Text } from "../language.ts";
-import { client, figure, sceneChoices } from "./figure.ts";
+import { client, figure, sceneChoices, Trouble } from "./figure.ts";
 import type { Lesson } from "./list.ts";
 
 const rows: [string, Text, Text][] = [
@@ -33,15 +33,16 @@ function methodsFigure(): HTMLElement {
     }
     body.dataset.done = "yes";
   }
-  void measure();
+  const trouble = new Trouble(), again = () => void trouble.during(measure);
+  again();
   const head = (text: Text) => element("th", { style: "text-align:right" }, say(text));
   return figure([element("div", { class: "plate scroll", style: "padding:16px;max-height:none" }, element("table", { class: "measured" }, element("thead", {}, element("tr", {}, element("th", {}, say({ en: "method, and what it is for", zh: "方法与用途" })),
     head({ en: "ms", zh: "毫秒" }), head({ en: "ms to make ready", zh: "准备（毫秒）" }), head({ en: "MiB", zh: "MiB" }), head({ en: "pixels that differ", zh: "不同像素" }))), body))], [said,
-    element("button", { class: "button", onclick: () => void measure() }, say({ en: "Measure again", zh: "重新测量" })),
+    element("button", { class: "button", onclick: again }, say({ en: "Measure again", zh: "重新测量" })),
     sceneChoices("mscene", [["teapot", { en: "teapot", zh: "茶壶" }], ["gallery", { en: "gallery", zh: "陈列" }], ["spheres", { en: "spheres", zh: "球" }], ["cubes", { en: "two cubes", zh: "两个立方体" }]], scene, (value) => {
       scene = value;
-      void measure();
-    })]);
+      again();
+    })], trouble);
 }
 
 export const methods: Lesson = {

@@ -4,7 +4,7 @@ import type { Answer } from "../answer.ts";
 import { choices, element } from "../dom.ts";
 import { say, type Text } from "../language.ts";
 import { Eye, facts, figure, ink, Latest, plate, steps, sceneChoices } from "./figure.ts";
-import { treeFigure } from "./tree.ts";
+import { mostTriangles, treeFigure } from "./tree.ts";
 import type { Lesson } from "./list.ts";
 
 const methods: [string, Text][] = [
@@ -68,7 +68,7 @@ function paintFigure(): HTMLElement {
     await eye.place(scene, scene === "cycle" ? [-0.05, -0.1, -1] : [-0.6, -0.45, -0.8], size);
     show(100000);
   }
-  void place();
+  void latest.during(place);
   return figure([painted.root, wrong.root, element("div", {}, facts)], [
     stepper.root, said,
     choices("method", say({ en: "Sorted by", zh: "排序方法" }), methods.map(([id, text]) => [id, say(text)]), method, (value) => {
@@ -78,9 +78,9 @@ function paintFigure(): HTMLElement {
     }),
     sceneChoices("pscene", [["cycle", { en: "three in a ring", zh: "三者成环" }], ["cubes", { en: "two cubes that intersect", zh: "相交的立方体" }], ["concave", { en: "a concave body", zh: "凹体" }]], scene, (value) => {
       scene = value;
-      void place();
+      void latest.during(place);
     }),
-  ]);
+  ], latest);
 }
 
 const tests: Text[] = [
@@ -134,19 +134,19 @@ function pairFigure(): HTMLElement {
   }
   const stepper = steps(1, show, 900);
   function ask(): void {
-    if (eye.camera) latest.ask({ ask: "lesson.newell", scene, camera: eye.camera });
+    if (eye.camera) latest.ask({ ask: "lesson.newell", scene, most: mostTriangles, camera: eye.camera });
   }
   async function place(): Promise<void> {
     most = -1;
-    await eye.place(scene, scene === "cycle" ? [-0.05, -0.1, -1] : [-0.6, -0.45, -0.8], size);
+    await eye.place(scene, scene === "cycle" ? [-0.05, -0.1, -1] : [-0.6, -0.45, -0.8], size, { most: mostTriangles });
     ask();
   }
-  void place();
+  void latest.during(place);
   return figure([pair.root, element("div", {}, list, sums.root)], [stepper.root, said,
-    choices("nscene", say({ en: "Scene", zh: "场景" }), [["cycle", say({ en: "three in a ring", zh: "三者成环" })], ["cubes", say({ en: "two cubes that intersect", zh: "相交的立方体" })], ["concave", say({ en: "a concave body", zh: "凹体" })]], scene, (value) => {
+    sceneChoices("nscene", [["cycle", { en: "three in a ring", zh: "三者成环" }], ["cubes", { en: "two cubes that intersect", zh: "相交的立方体" }], ["concave", { en: "a concave body", zh: "凹体" }]], scene, (value) => {
       scene = value;
-      void place();
-    })]);
+      void latest.during(place);
+    }, mostTriangles)], latest);
 }
 
 export const painter: Lesson = {

@@ -9,7 +9,7 @@ import type { Lesson } from "./list.ts";
 
 /** A wall from above that can be dragged by its ends, and beside it the depths that the picture finds. */
 function segmentFigure(): HTMLElement {
-  const plan = plate(say({ en: "From above: drag the ends", zh: "俯视：拖动两端" })), graph = plate(say({ en: "Depth across the picture", zh: "画面上的深度" }));
+  const plan = plate(say({ en: "From above: drag the ends. Arrow keys move the left one, with Shift the right one", zh: "俯视：拖动两端。方向键移动左端，按住 Shift 移动右端" })), graph = plate(say({ en: "Depth across the picture", zh: "画面上的深度" }));
   const said = element("p", { class: "said", "aria-live": "polite" });
   const ends = [{ x: -4, d: 2 }, { x: 2, d: 5 }];
   const width = 480, height = 360, unitOf = 44, eye = { x: width / 2, y: height - 30 };
@@ -109,18 +109,33 @@ function segmentFigure(): HTMLElement {
     const [x, y] = where(event);
     const away = ends.map((end) => Math.hypot(at(end)[0] - x, at(end)[1] - y));
     held = away[0] < away[1] ? 0 : 1;
-    canvas.setPointerCapture(event.pointerId);
+    if (away[held] > 60) held = -1;
+    else canvas.setPointerCapture(event.pointerId);
   });
-  canvas.addEventListener("pointermove", (event) => {
-    if (held < 0) return;
-    const [x, y] = where(event), round = (n: number) => Math.round(n * 4) / 4;
-    ends[held] = { x: Math.max(-5, Math.min(5, round((x - eye.x) / unitOf))), d: Math.max(1, Math.min(7, round((eye.y - y) / unitOf))) };
+  // A finger on an end drags it; elsewhere it scrolls the page.
+  canvas.addEventListener("touchstart", (event) => held >= 0 && event.preventDefault(), { passive: false });
+  const move = (end: number, x: number, d: number) => {
+    const round = (n: number) => Math.round(n * 4) / 4;
+    ends[end] = { x: Math.max(-5, Math.min(5, round(x))), d: Math.max(1, Math.min(7, round(d))) };
     update();
+  };
+  canvas.addEventListener("pointermove", (event) => {
+    const [x, y] = where(event);
+    if (held >= 0) move(held, (x - eye.x) / unitOf, (eye.y - y) / unitOf);
   });
-  canvas.addEventListener("pointerup", () => (held = -1));
+  canvas.tabIndex = 0;
+  canvas.setAttribute("role", "application");
+  canvas.addEventListener("keydown", (event) => {
+    const by: Record<string, [number, number]> = { ArrowLeft: [-0.25, 0], ArrowRight: [0.25, 0], ArrowUp: [0, 0.25], ArrowDown: [0, -0.25] };
+    if (!by[event.key]) return;
+    event.preventDefault();
+    const end = event.shiftKey ? 1 : 0;
+    move(end, ends[end].x + by[event.key][0], ends[end].d + by[event.key][1]);
+  });
+  for (const kind of ["pointerup", "pointercancel"]) canvas.addEventListener(kind, () => (held = -1));
   addEventListener("themechange", update);
   update();
-  return figure([plan.root, graph.root], [said]);
+  return figure([plan.root, graph.root], [said], latest);
 }
 
 const power = (value: number) => 10 ** value;
@@ -178,7 +193,7 @@ function formatFigure(): HTMLElement {
     slider(say({ en: "far", zh: "远平面" }), { min: 1.1, max: 5, step: 0.05, value: 3 }, (v) => short(power(v)), (v) => {
       setting.far = power(v);
       update();
-    }).field]);
+    }).field], latest);
 }
 
 function fightFigure(): HTMLElement {
@@ -205,7 +220,7 @@ function fightFigure(): HTMLElement {
     slider(say({ en: "gap", zh: "间隔" }), { min: -4, max: -0.5, step: 0.02, value: -2 }, (v) => short(power(v)), (v) => {
       setting.gap = power(v);
       update();
-    }).field]);
+    }).field], latest);
 }
 
 /** The viewing volume pulled about, and what it shows. */
@@ -237,11 +252,11 @@ function frustumFigure(): HTMLElement {
     await eye.place("blocks", [0.9, -0.4, -0.35], size, { beside: [camera.eye, ...around] });
     ask();
   }
-  void place();
+  void latest.during(place);
   const knob = sliders(setting, ask);
   return figure([seen.root, aside.root], [said,
     knob(say({ en: "angle", zh: "视角" }), "angle", 5, 110, 1, (v) => `${v}°`), knob(say({ en: "near", zh: "近平面" }), "near", 0.1, 8, 0.05, (v) => v.toFixed(2)), knob(say({ en: "far", zh: "远平面" }), "far", 1, 12, 0.05, (v) => v.toFixed(2)),
-    knob(say({ en: "eye", zh: "眼睛远近" }), "away", 0.3, 1.6, 0.01, (v) => v.toFixed(2)), matrix]);
+    knob(say({ en: "eye", zh: "眼睛远近" }), "away", 0.3, 1.6, 0.01, (v) => v.toFixed(2)), matrix], latest);
 }
 
 export const projection: Lesson = {

@@ -72,7 +72,7 @@ function walkFigure(): HTMLElement {
   function ask(): void {
     if (camera && eye.camera) latest.ask({ ask: "lesson.rays", example: "walk", scene, camera, beside: eye.camera, x: pixel[0], y: pixel[1] });
   }
-  pointing(seen, pixel, (x, y) => {
+  pointing([seen], pixel, (x, y) => {
     pixel = [x, y];
     isNew = true;
     ask();
@@ -83,12 +83,12 @@ function walkFigure(): HTMLElement {
     isNew = true;
     ask();
   }
-  void place();
+  void latest.during(place);
   return figure([seen.root, aside.root], [stepper.root, said, asked.root,
     sceneChoices("rscene", scenes, scene, (value) => {
       scene = value;
-      void place();
-    })]);
+      void latest.during(place);
+    })], latest);
 }
 
 function levelFigure(): HTMLElement {
@@ -120,12 +120,12 @@ function levelFigure(): HTMLElement {
     depth = -1;
     stepper.set(level);
   }
-  void place(4);
+  void latest.during(() => place(4));
   return figure([boxes.root, heat.root], [stepper.root, said, asked.root,
     sceneChoices("lscene", scenes, scene, (value) => {
       scene = value;
-      void place(stepper.step);
-    })]);
+      void latest.during(() => place(stepper.step));
+    })], latest);
 }
 
 export const rays: Lesson = {

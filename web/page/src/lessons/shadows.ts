@@ -42,7 +42,7 @@ function shadowFigure(): HTMLElement {
   function ask(): void {
     if (camera) latest.ask({ ask: "lesson.shadows", scene, camera, light: toLight(), size: 2 ** setting.texels, bias: biasOf(setting.bias), x: pixel[0], y: pixel[1] });
   }
-  pointing(mapped, pixel, (x, y) => {
+  pointing([mapped], pixel, (x, y) => {
     pixel = [x, y];
     ask();
   });
@@ -50,15 +50,15 @@ function shadowFigure(): HTMLElement {
     camera = await framed(scene, [-0.6, -0.6, -0.8], size);
     ask();
   }
-  void place();
+  void latest.during(place);
   const knob = sliders(setting, ask);
   return figure([mapped.root, cast.root, light.root, wrong.root], [said, sums.root,
     knob(say({ en: "texels", zh: "纹素" }), "texels", 4, 11, 1, (v) => `${2 ** v}²`), knob(say({ en: "bias", zh: "偏移" }), "bias", -4, 0, 0.05, (v) => biasOf(v).toPrecision(2)),
     knob(say({ en: "light, around", zh: "光源方位" }), "around", 0, 360, 2, (v) => `${v}°`), knob(say({ en: "light, height", zh: "光源高度" }), "height", 10, 88, 1, (v) => `${v}°`),
     sceneChoices("sscene", [["blocks", { en: "blocks on a floor", zh: "地面上的方块" }], ["concave", { en: "a concave body", zh: "凹体" }], ["cubes", { en: "two cubes that intersect", zh: "相交的立方体" }], ["teapot", { en: "teapot", zh: "茶壶" }]], scene, (value) => {
       scene = value;
-      void place();
-    })]);
+      void latest.during(place);
+    })], latest);
 }
 
 export const shadows: Lesson = {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // A binary tree of planes, drawn, and walked from back to front.
 import type { Answer } from "../answer.ts";
-import { choices, element } from "../dom.ts";
+import { element } from "../dom.ts";
 import { say } from "../language.ts";
-import { Eye, facts, figure, Latest, lines, plate, steps } from "./figure.ts";
+import { Eye, facts, figure, Latest, lines, plate, sceneChoices, steps } from "./figure.ts";
 
 const size: [number, number] = [400, 300];
+/** Pairs are as many as their squares, and nodes have to be told apart. */
+export const mostTriangles = 200;
 
 /** What is painted already is full, what is next has a ring; children before a plane hang to the left. */
 function drawn({ nodes, order }: Answer, step: number): string {
@@ -17,13 +19,14 @@ function drawn({ nodes, order }: Answer, step: number): string {
     walk(nodes[number].behind);
   };
   walk(0);
-  const deepest = Math.max(1, ...nodes.map((node: Answer) => node.level)), radius = Math.min(13, 150 / nodes.length + 5);
+  const deepest = Math.max(1, ...nodes.map((node: Answer) => node.level)), isCrowded = nodes.length > 40, radius = isCrowded ? Math.max(2.5, 200 / nodes.length) : Math.min(13, 150 / nodes.length + 5);
   inOrder.forEach((number, i) => place.set(number, [20 + (i / Math.max(1, nodes.length - 1)) * (size[0] - 40), 24 + (nodes[number].level / deepest) * (size[1] - 48)]));
   const painted = new Set(order.slice(0, step)), now = order[step - 1];
   const branches = nodes.flatMap((node: Answer, number: number) => (node.parent < 0 ? [] : [[...place.get(node.parent)!, ...place.get(number)!]]));
   return lines(branches, "--soft", 1) + nodes.map((node: Answer, number: number) => {
     const [x, y] = place.get(number)!, isPainted = painted.has(number);
-    return `<circle cx="${x}" cy="${y}" r="${radius}" fill="var(${isPainted ? "--accent" : "--panel"})" stroke="var(${number === now ? "--ink" : "--soft"})" stroke-width="${number === now ? 3 : 1}"/><text x="${x}" y="${y + radius / 3}" text-anchor="middle" font-size="${radius * 0.85}" font-family="var(--mono)" fill="var(${isPainted ? "--accent-ink" : "--soft"})">${node.triangles[0]}</text>`;
+    return `<circle cx="${x}" cy="${y}" r="${isCrowded && number === now ? 6 : radius}" fill="var(${isPainted ? "--accent" : "--panel"})" stroke="var(${number === now ? "--ink" : "--soft"})" stroke-width="${number === now ? 3 : isCrowded ? 0.5 : 1}"/>`
+      + (isCrowded ? "" : `<text x="${x}" y="${y + radius / 3}" text-anchor="middle" font-size="${radius * 0.85}" font-family="var(--mono)" fill="var(${isPainted ? "--accent-ink" : "--soft"})">${node.triangles[0]}</text>`);
   }).join("");
 }
 
@@ -49,18 +52,18 @@ export function treeFigure(): HTMLElement {
     sums.set([[say({ en: "triangles", zh: "三角形" }), answer.triangles], [say({ en: "pieces after all cuts", zh: "切割后的块数" }), answer.polygons], [say({ en: "planes", zh: "平面" }), answer.nodes.length], [say({ en: "wrong pixels when all are painted", zh: "全部画完后错误的像素" }), answer.wrong_count]]);
   });
   function show(step: number): void {
-    if (eye.camera) latest.ask({ ask: "lesson.bsp", scene, camera: eye.camera, step });
+    if (eye.camera) latest.ask({ ask: "lesson.bsp", scene, most: mostTriangles, camera: eye.camera, step });
   }
   const stepper = steps(1, show, 500);
   async function place(): Promise<void> {
     most = -1;
-    await eye.place(scene, scene === "cycle" ? [-0.05, -0.1, -1] : [-0.6, -0.45, -0.8], size);
+    await eye.place(scene, scene === "cycle" ? [-0.05, -0.1, -1] : [-0.6, -0.45, -0.8], size, { most: mostTriangles });
     show(1);
   }
-  void place();
+  void latest.during(place);
   return figure([painted.root, tree.root], [stepper.root, said, sums.root,
-    choices("bscene", say({ en: "Scene", zh: "场景" }), [["cycle", say({ en: "three in a ring", zh: "三者成环" })], ["cubes", say({ en: "two cubes that intersect", zh: "相交的立方体" })], ["concave", say({ en: "a concave body", zh: "凹体" })], ["blocks", say({ en: "blocks on a floor", zh: "地面上的方块" })]], scene, (value) => {
+    sceneChoices("bscene", [["cycle", { en: "three in a ring", zh: "三者成环" }], ["cubes", { en: "two cubes that intersect", zh: "相交的立方体" }], ["concave", { en: "a concave body", zh: "凹体" }], ["blocks", { en: "blocks on a floor", zh: "地面上的方块" }]], scene, (value) => {
       scene = value;
-      void place();
-    })]);
+      void latest.during(place);
+    }, mostTriangles)], latest);
 }

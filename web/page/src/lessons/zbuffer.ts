@@ -3,7 +3,7 @@
 import type { Answer } from "../answer.ts";
 import { choices, element } from "../dom.ts";
 import { say } from "../language.ts";
-import { client, figure, Latest, plate, steps, sceneChoices } from "./figure.ts";
+import { client, figure, Latest, plate, pointing, sceneChoices, steps, Trouble } from "./figure.ts";
 import type { Lesson } from "./list.ts";
 
 interface Cell { x: number; y: number; depth: number; before: number; after: number; passes: boolean }
@@ -50,25 +50,26 @@ function tableFigure(): HTMLElement {
     stepper.limit(order.length);
     stepper.set(0);
   }
-  void load();
+  const trouble = new Trouble();
+  void trouble.during(load);
   return figure([grid], [
     stepper.root, said,
     choices("convention", say({ en: "Convention", zh: "约定" }), [["less", say({ en: "near 0, far 255: less is nearer", zh: "近 0 远 255：小者近" })], ["greater", say({ en: "far 0: greater is nearer", zh: "远 0：大者近" })]], "less", (value) => {
       greater = value === "greater";
-      void load();
+      void trouble.during(load);
     }),
     choices("order", say({ en: "Order", zh: "次序" }), [["near", say({ en: "the nearer first", zh: "先画近的" })], ["far", say({ en: "the farther first", zh: "先画远的" })]], "near", (value) => {
       reversed = value === "far";
-      void load();
+      void trouble.during(load);
     }),
-  ]);
+  ], trouble);
 }
 
 const functions = ["NEVER", "LESS", "EQUAL", "LEQUAL", "GREATER", "NOTEQUAL", "GEQUAL", "ALWAYS"];
 
 function pictureFigure(): HTMLElement {
   const colors = plate(say({ en: "Which triangle", zh: "哪个三角形" })), depths = plate(say({ en: "Depth that is stored: near is dark", zh: "所存深度：近处暗" }));
-  const said = element("p", { class: "said", "aria-live": "polite" }, say({ en: "Point at a pixel to see every comparison that was made there.", zh: "指向一个像素，查看在那里进行的每次比较。" }));
+  const said = element("p", { class: "said", "aria-live": "polite" }), hint = say({ en: "Point at a pixel to see every comparison that was made there.", zh: "指向一个像素，查看在那里进行的每次比较。" });
   const list = element("ol", { class: "hits" });
   let scene = "cubes", func = 1, pixel: [number, number] | undefined;
   const latest = new Latest((answer) => {
@@ -83,14 +84,18 @@ function pictureFigure(): HTMLElement {
   let most = -1;
 
   function mark(answer: Answer): void {
-    if (!pixel) return;
+    const drawn = say({ en: `${stepper.step} triangles are drawn.`, zh: `已画 ${stepper.step} 个三角形。` });
+    if (!pixel) {
+      said.textContent = `${drawn} ${hint}`;
+      return;
+    }
     for (const { canvas } of [colors, depths]) {
       const pen = canvas.getContext("2d")!;
       pen.strokeStyle = "#fff";
       pen.lineWidth = 1;
       pen.strokeRect(pixel[0] - 3.5, pixel[1] - 3.5, 8, 8);
     }
-    said.textContent = say({ en: `Pixel (${pixel[0]}, ${pixel[1]}), ${functions[func]}:`, zh: `像素 (${pixel[0]}, ${pixel[1]})，${functions[func]}：` });
+    said.textContent = drawn + say({ en: ` Pixel (${pixel[0]}, ${pixel[1]}), ${functions[func]}:`, zh: `像素 (${pixel[0]}, ${pixel[1]})，${functions[func]}：` });
     list.replaceChildren(...(answer.comparisons ?? []).map((one: Answer) =>
       element("li", {}, element("span", {}, say({ en: `Triangle ${one.triangle}`, zh: `三角形 ${one.triangle}` })),
         element("span", { class: "number" }, `${one.depth.toFixed(5)} : ${one.before.toFixed(5)} ${one.passes ? "✓" : "✗"}`))));
@@ -99,13 +104,10 @@ function pictureFigure(): HTMLElement {
     latest.ask({ ask: "lesson.zbuffer", example: "picture", scene, func, step, width: 320, height: 240, ...(pixel ? { pixel } : {}) });
   }
   const stepper = steps(24, show, 250);
-  for (const { canvas } of [colors, depths]) {
-    canvas.style.cursor = "crosshair";
-    canvas.addEventListener("pointermove", (event) => {
-      pixel = [Math.min(319, Math.floor((event.offsetX / canvas.clientWidth) * 320)), Math.min(239, Math.floor((event.offsetY / canvas.clientHeight) * 240))];
-      show(stepper.step);
-    });
-  }
+  pointing([colors, depths], [160, 120], (x, y) => {
+    pixel = [x, y];
+    show(stepper.step);
+  });
   const picker = element("select", { "aria-label": say({ en: "Depth function", zh: "深度函数" }) }, ...functions.map((name, i) => element("option", { value: i, selected: i === 1 }, name)));
   picker.addEventListener("change", () => {
     func = Number(picker.value);
@@ -122,7 +124,7 @@ function pictureFigure(): HTMLElement {
       stepper.set(10000);
     }),
     element("label", { class: "field" }, element("span", {}, say({ en: "Function", zh: "函数" })), picker),
-  ]);
+  ], latest);
 }
 
 export const zbuffer: Lesson = {
