@@ -3,7 +3,8 @@
 # bench.sh FOLDER [ARGS]: says what machine this is, then runs every benchmark program of FOLDER.
 # bench.sh FOLDER zbuffer|abuffer|drawings [ARGS]: the tables of one method alone; stream [ARGS]: models of growing length,
 # streamed; shade MODEL... : pictures of models one after another, beside llvmpipe's; python: the module beside the library,
-# and beside VTK and Open3D; web: the WebAssembly module beside the program, when ./dev page has built it.
+# and beside VTK and Open3D; web: the WebAssembly module beside the program, beside WebGL and beside three.js, when ./dev page
+# has built it.
 set -euo pipefail
 folder=$1
 shift
@@ -27,7 +28,9 @@ case "${1:-}" in
     ;;
   web)
     shift
-    exec node bench/web/speed.mjs build/web/web/frontmost.mjs build/release/frontmost out/page
+    node bench/web/speed.mjs build/web/web/frontmost.mjs build/release/frontmost out/page
+    echo
+    exec node bench/web/peers.mjs out/page
     ;;
   python)
     shift

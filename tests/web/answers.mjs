@@ -220,6 +220,8 @@ for (const [scene, least, visited] of [["teapot", 30, undefined], ["gallery", 8,
   assert.equal(frontmost.give({ ask: "lesson.open", name: "one.stl" }, facets).triangles, 1);
   const own = () => ask({ ask: "lesson.frame", scene: "own", width: 100, height: 100, forward: [0, -1, 0] });
   assert.deepEqual(own().world_up, [0, 0, 1]);
+  const { corners } = ask({ ask: "lesson.frame", scene: "own", width: 100, height: 100, forward: [0, -1, 0], corners: true });
+  assert.deepEqual([...new Float32Array(plane(corners).buffer)], [0, 0, 0, 1, 0, 0, 0, 1, 0]);
   ask({ ask: "lesson.frame", scene: "cubes", width: 100, height: 100, forward: [0, -1, 0] });
   assert.equal(ask({ ask: "lesson.lines", scene: "own", camera: own() }).boundaries, 3);
 }

@@ -3,11 +3,11 @@
 import { createRequire } from "node:module";
 import { serve } from "../../scripts/page/server.mjs";
 
-export async function openBrowser(folder, headers = undefined) {
+export async function openBrowser(folder, more = ["--disable-gpu", "--enable-unsafe-swiftshader"]) {
   const { chromium } = createRequire(new URL("../../web/page/package.json", import.meta.url))("playwright-core");
-  const { server, address } = await serve(folder, 0, headers);
+  const { server, address } = await serve(folder);
   const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", headless: true,
-    args: ["--no-sandbox", "--disable-gpu", "--host-resolver-rules=MAP plain.test 127.0.0.1", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"] });
+    args: ["--no-sandbox", ...more, "--host-resolver-rules=MAP plain.test 127.0.0.1", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"] });
   return { browser, address, async close() {
     await browser.close();
     server.close();

@@ -50,7 +50,8 @@ struct LessonScene {
   Surfaces surfaces;
 };
 /// {"scene", "width", "height", "forward"} -> a camera that shows all of it, and the points "beside" it; "angle" in
-/// degrees. Directions are told for scenes whose y is up, and turned for others.
+/// degrees. Directions are told for scenes whose y is up, and turned for others. With {"corners": true} also those of
+/// all its triangles, for who draws them otherwise.
 PlainJson frame_lesson(const PlainJson& question);
 
 /// {"name"}: the bytes of a file become the scene "own", which is kept beside the last of the others.
