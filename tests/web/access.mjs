@@ -17,7 +17,7 @@ function check(holds, otherwise) {
 
 const operable = new Set(["button", "link", "radio", "checkbox", "slider", "combobox", "textbox", "application", "radiogroup", "image"]);
 // Names of formats, people and programs are the same in every language.
-const international = /^(Frontmost|English|中文|PNG|SVG|PDF|DXF|[\w.-]+\.(npy|exr|pfm)|D16|D24|F32|Newell, Newell, Sancha|Newell、Newell、Sancha|[A-Z]+|[01 ]+|builtin:.*|[\d.]+)$/;
+const international = /^(Frontmost|English|中文|PNG|SVG|PDF|DXF|[\w.-]+\.(npy|exr|pfm)|D16|D24|F32|Newell, Newell, Sancha|Newell、Newell、Sancha|[A-Z]+|builtin:.*|[\d.]+)$/;
 const chinese = /[\u4e00-\u9fff]/;
 
 async function readyPage(path, lang, more = {}) {

@@ -195,6 +195,9 @@ export function figure(pictures: HTMLElement[], controls: HTMLElement[], trouble
   return element("figure", { class: "figure" }, element("div", { class: pictures.length > 3 ? "picture pairs" : "picture" }, ...pictures), element("div", { class: "controls" }, trouble?.root, ...controls));
 }
 
+/** What a figure may take that does all anew at every step. */
+export const manyTriangles = 10000;
+
 /** The model of one's own that was opened last, by any figure of the page: the module holds one. */
 let own: { name: string; triangles: number } | undefined;
 
@@ -208,7 +211,7 @@ export function sceneChoices(name: string, scenes: [string, Text][], chosen: str
     chosen = scene;
     const count = own?.triangles.toLocaleString();
     note.textContent = scene !== "own" ? "" : own!.triangles <= most ? say({ en: `${count} triangles.`, zh: `${count} 个三角形。` })
-      : say({ en: `Of its ${count} triangles this figure shows the ${most} that lie foremost, numbered anew.`, zh: `它有 ${count} 个三角形；此图只显示最靠前的 ${most} 个，并重新编号。` });
+      : say({ en: `Of its ${count} triangles this figure shows the ${most.toLocaleString()} that lie foremost, numbered anew.`, zh: `它有 ${count} 个三角形；此图只显示最靠前的 ${most.toLocaleString()} 个，并重新编号。` });
     change(scene);
   }
   function showOwn(): void {

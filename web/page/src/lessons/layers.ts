@@ -14,7 +14,7 @@ function maskPicture(mask: string): SVGElement {
   svg.setAttribute("viewBox", "0 0 8 8");
   svg.setAttribute("style", "width:36px;height:36px;flex:none;border-radius:4px");
   svg.setAttribute("role", "img");
-  svg.setAttribute("aria-label", mask.match(/.{8}/g)!.join(" "));
+  svg.setAttribute("aria-label", say({ en: `Covers ${mask.replaceAll("0", "").length} of 64 sub-samples`, zh: `覆盖 64 个子采样中的 ${mask.replaceAll("0", "").length} 个` }));
   const cells = [...mask].map((bit, i) => `<rect x="${i % 8}" y="${Math.floor(i / 8)}" width=".9" height=".9" fill="${bit === "1" ? "var(--accent)" : "var(--line)"}"/>`);
   svg.innerHTML = cells.join("");
   return svg;

@@ -3,7 +3,7 @@
 import type { Answer } from "../answer.ts";
 import { choices, element } from "../dom.ts";
 import { say, type Text } from "../language.ts";
-import { Eye, facts, figure, ink, Latest, plate, steps, sceneChoices } from "./figure.ts";
+import { Eye, facts, figure, ink, Latest, manyTriangles, plate, steps, sceneChoices } from "./figure.ts";
 import { mostTriangles, treeFigure } from "./tree.ts";
 import type { Lesson } from "./list.ts";
 
@@ -60,12 +60,12 @@ function paintFigure(): HTMLElement {
     facts.replaceChildren(...rows.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value.toLocaleString())]));
   }
   function show(step: number): void {
-    if (eye.camera) latest.ask({ ask: "lesson.painter", scene, method, step, camera: eye.camera });
+    if (eye.camera) latest.ask({ ask: "lesson.painter", scene, most: manyTriangles, method, step, camera: eye.camera });
   }
   const stepper = steps(0, show, 400);
   async function place(): Promise<void> {
     most = -1;
-    await eye.place(scene, scene === "cycle" ? [-0.05, -0.1, -1] : [-0.6, -0.45, -0.8], size);
+    await eye.place(scene, scene === "cycle" ? [-0.05, -0.1, -1] : [-0.6, -0.45, -0.8], size, { most: manyTriangles });
     show(100000);
   }
   void latest.during(place);
@@ -79,7 +79,7 @@ function paintFigure(): HTMLElement {
     sceneChoices("pscene", [["cycle", { en: "three in a ring", zh: "三者成环" }], ["cubes", { en: "two cubes that intersect", zh: "相交的立方体" }], ["concave", { en: "a concave body", zh: "凹体" }]], scene, (value) => {
       scene = value;
       void latest.during(place);
-    }),
+    }, manyTriangles),
   ], latest);
 }
 

@@ -4,7 +4,7 @@ import type { Answer } from "../answer.ts";
 import { element } from "../dom.ts";
 import { say, type Text } from "../language.ts";
 import type { Camera } from "../orbit.ts";
-import { dot, Eye, facts, figure, framed, Latest, lines, plate, pointing, sceneChoices, steps } from "./figure.ts";
+import { dot, Eye, facts, figure, framed, Latest, lines, manyTriangles, plate, pointing, sceneChoices, steps } from "./figure.ts";
 import type { Lesson } from "./list.ts";
 
 const scenes: [string, Text][] = [["blocks", { en: "blocks on a floor", zh: "地面上的方块" }], ["cubes", { en: "two cubes that intersect", zh: "相交的立方体" }],
@@ -112,11 +112,11 @@ function levelFigure(): HTMLElement {
       [say({ en: "pixels that differ from the library's", zh: "与程序库不同的像素" }), answer.differing]]);
   });
   function show(level: number): void {
-    if (eye.camera) latest.ask({ ask: "lesson.rays", example: "levels", scene, camera: eye.camera, level });
+    if (eye.camera) latest.ask({ ask: "lesson.rays", example: "levels", scene, most: manyTriangles, camera: eye.camera, level });
   }
   const stepper = steps(12, show, 700);
   async function place(level: number): Promise<void> {
-    await eye.place(scene, [-0.6, -0.45, -0.8], [240, 180]);
+    await eye.place(scene, [-0.6, -0.45, -0.8], [240, 180], { most: manyTriangles });
     depth = -1;
     stepper.set(level);
   }
@@ -125,7 +125,7 @@ function levelFigure(): HTMLElement {
     sceneChoices("lscene", scenes, scene, (value) => {
       scene = value;
       void latest.during(() => place(stepper.step));
-    })], latest);
+    }, manyTriangles)], latest);
 }
 
 export const rays: Lesson = {

@@ -78,13 +78,14 @@ function pictureFigure(): HTMLElement {
     if (answer.triangles !== most) {
       most = answer.triangles;
       stepper.limit(most);
+      stepper.set(most);
     }
     mark(answer);
   });
   let most = -1;
 
   function mark(answer: Answer): void {
-    const drawn = say({ en: `${stepper.step} triangles are drawn.`, zh: `已画 ${stepper.step} 个三角形。` });
+    const drawn = say({ en: `Triangles drawn: ${stepper.step}.`, zh: `已画三角形：${stepper.step}。` });
     if (!pixel) {
       said.textContent = `${drawn} ${hint}`;
       return;
@@ -121,7 +122,7 @@ function pictureFigure(): HTMLElement {
       most = -1;
       pixel = undefined;
       list.replaceChildren();
-      stepper.set(10000);
+      show(0);
     }),
     element("label", { class: "field" }, element("span", {}, say({ en: "Function", zh: "函数" })), picker),
   ], latest);
