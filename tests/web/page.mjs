@@ -261,7 +261,7 @@ const watchTroubles = () => {
 /** Without its module every figure says why it shows nothing. */
 async function tryWithoutModule(id) {
   const { page, context } = await openPage(browser, { serviceWorkers: "block" });
-  await page.route("**/frontmost.wasm", (route) => route.abort());
+  await page.route("**/frontmost*.wasm", (route) => route.abort());
   await page.goto(`${address}lesson.html?lesson=${id}&lang=en`);
   for (const figure of await page.locator(".figure").all())
     if (await figure.locator(".trouble").count()) await figure.locator(".controls > .trouble:not([hidden])").waitFor(patience);
