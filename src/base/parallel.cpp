@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loops over chunks on threads: those of TBB, where it is built in and can be trusted, or threads made for one loop.
+// Loops over chunks on threads: those of TBB, where it is built in and can be trusted, else threads made for one loop;
+// without TBB those of a crew, which stay.
 //
 //   caller    --- check --- chunk 0 --- chunk 2 --- chunk 5 ---+
 //   helper    ------------- chunk 1 --- chunk 4 ---------------+--- the first exception is thrown again, or go on
@@ -18,12 +19,14 @@
 #include <utility>
 #include <vector>
 
-#include "base/spare_threads.h"
-
-#if defined(FRONTMOST_THREADS_tbb)
+#if defined(FRONTMOST_THREADS_std)
+#include "base/crew.h"
+#elif defined(FRONTMOST_THREADS_tbb)
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+
+#include "base/spare_threads.h"
 #endif
 
 namespace frontmost {
@@ -71,7 +74,7 @@ class ChunkQueue {
   std::exception_ptr error_;
 };
 
-#if !defined(FRONTMOST_THREADS_serial)
+#if defined(FRONTMOST_THREADS_tbb)
 /// Threads for this loop alone.
 void drain_on_own(int threads, ChunkQueue& queue) {
   std::vector<std::thread> helpers;
@@ -84,9 +87,7 @@ void drain_on_own(int threads, ChunkQueue& queue) {
   queue.drain();
   for (std::thread& helper : helpers) helper.join();
 }
-#endif
 
-#if defined(FRONTMOST_THREADS_tbb)
 /// A place for that many threads: more than cores need both an arena of their own and a higher global limit.
 struct Helpers {
   explicit Helpers(int threads)
@@ -147,7 +148,10 @@ void drain_on(int threads, ChunkQueue& queue) {
   helpers.arena.execute([&] { drain_here(threads, queue); });
 }
 #elif defined(FRONTMOST_THREADS_std)
-void drain_on(int threads, ChunkQueue& queue) { drain_on_own(threads, queue); }
+void drain_on(int threads, ChunkQueue& queue) {
+  static Crew& crew = *new Crew;
+  crew.run(threads - 1, [&] { queue.drain(); });
+}
 #else
 void drain_on(int, ChunkQueue& queue) { queue.drain(); }
 #endif

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Threads that stay: all work is done once, whoever does it, also where callers and loops share them.
+#include "base/crew.h"
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <set>
+
+namespace frontmost {
+namespace {
+
+/// Takes numbers below `count` one by one until none is left, as loops do.
+struct Numbers {
+  explicit Numbers(int most) : count(most), taken(std::size_t(most)) {}
+  template <class Body>
+  void drain(const Body& body) {
+    for (int i = next++; i < count; i = next++) {
+      ++taken[std::size_t(i)];
+      body(i);
+    }
+  }
+  [[nodiscard]] bool are_all_taken_once() const {
+    return std::all_of(taken.begin(), taken.end(), [](const std::atomic<int>& times) { return times == 1; });
+  }
+  int count;
+  std::atomic<int> next{0};
+  std::vector<std::atomic<int>> taken;
+};
+
+/// Lives as long as the process, as crews do.
+Crew& crew() {
+  static Crew& made = *new Crew;
+  return made;
+}
+
+TEST(CrewThreads, AllWorkIsDoneOnce) {
+  for (const int helpers : {0, 1, 3, 7})
+    for (int round = 0; round < 200; ++round) {
+      Numbers numbers(50);
+      crew().run(helpers, [&] { numbers.drain([](int) {}); });
+      ASSERT_TRUE(numbers.are_all_taken_once());
+    }
+}
+
+TEST(CrewThreads, HelpersComeAndAreTheSameNextTime) {
+  std::set<std::thread::id> seen;
+  for (int round = 0; round < 20; ++round) {
+    std::mutex mutex;
+    std::condition_variable met;
+    int inside = 0;
+    // Nobody leaves before three have come: the caller and two others.
+    crew().run(2, [&] {
+      std::unique_lock lock(mutex);
+      seen.insert(std::this_thread::get_id());
+      ++inside;
+      met.notify_all();
+      met.wait(lock, [&] { return inside == 3; });
+    });
+  }
+  // Seven were made by the test before, at most.
+  EXPECT_GE(seen.size(), 3u);
+  EXPECT_LE(seen.size(), 8u);
+}
+
+TEST(CrewThreads, LoopsWithinLoopsShareThem) {
+  Numbers outer(12);
+  std::atomic<int> inner_done{0};
+  crew().run(3, [&] {
+    outer.drain([&](int) {
+      Numbers inner(20);
+      crew().run(3, [&] { inner.drain([](int) {}); });
+      inner_done += inner.are_all_taken_once();
+    });
+  });
+  EXPECT_TRUE(outer.are_all_taken_once());
+  EXPECT_EQ(inner_done, 12);
+}
+
+TEST(CrewThreads, SeveralCallersShareThem) {
+  std::vector<std::thread> callers;
+  std::atomic<int> done{0};
+  for (int caller = 0; caller < 4; ++caller)
+    callers.emplace_back([&] {
+      for (int round = 0; round < 100; ++round) {
+        Numbers numbers(30);
+        crew().run(2, [&] { numbers.drain([](int) {}); });
+        done += numbers.are_all_taken_once();
+      }
+    });
+  for (std::thread& caller : callers) caller.join();
+  EXPECT_EQ(done, 400);
+}
+
+}  // namespace
+}  // namespace frontmost
