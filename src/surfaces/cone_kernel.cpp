@@ -57,6 +57,8 @@ class ConeMaker {
     const float squared_altitude = Least(least_squared_altitude_);
     if (squared_altitude == kMost) return Leave(i, cones);  // no triangle has a normal
     const glm::vec3 axis = Axis();
+    // Normals that cancel out have none. Asked here, as Min of NaN and a number is either, by processor.
+    if (!(glm::dot(axis, axis) <= kMost)) return Leave(i, cones);
     const float cosine = LeastCosine(axis), altitude = std::sqrt(squared_altitude) * widest;
     if (!(cosine > 0 && altitude > 0 && altitude <= kMost)) return Leave(i, cones);
     cones.x[i] = axis.x, cones.y[i] = axis.y, cones.z[i] = axis.z;
@@ -141,8 +143,7 @@ class ConeMaker {
   [[nodiscard]] glm::vec3 Axis() const {
     const glm::vec3 middle(Least(low_.x) + Greatest(high_.x), Least(low_.y) + Greatest(high_.y),
                            Least(low_.z) + Greatest(high_.z));
-    return middle *
-           (1.0f / std::sqrt(glm::dot(middle, middle)));  // NaN, which no comparison passes, where there is none
+    return middle * (1.0f / std::sqrt(glm::dot(middle, middle)));  // not finite where there is none
   }
 
   [[nodiscard]] float LeastCosine(const glm::vec3& axis) const {
