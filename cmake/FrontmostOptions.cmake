@@ -19,6 +19,18 @@ target_compile_options(frontmost_flags INTERFACE -ffp-contract=off -Wall -Wextra
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(frontmost_flags INTERFACE -Wno-stringop-overflow -Wno-array-bounds -Wno-maybe-uninitialized)
 endif()
+# On Arm's 64-bit processors Highway compiles for those with cryptography, of which nothing is used here; but g++ has to be
+# told so for whole files, or what it makes itself (constructors, closures) does not go with the rest.
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
+  include(CheckCXXSourceCompiles)
+  check_cxx_source_compiles("#ifndef __ARM_FEATURE_CRYPTO
+    #error
+    #endif
+    int main() {}" FRONTMOST_HAS_CRYPTO)
+  if(NOT FRONTMOST_HAS_CRYPTO)
+    target_compile_options(frontmost_flags INTERFACE -march=armv8-a+crypto)
+  endif()
+endif()
 
 # Cold code with heavy headers: at -O3 it takes twice as long to build, for nothing that can be measured.
 set(FRONTMOST_COLD_FLAGS $<$<CONFIG:Release>:-O1> CACHE STRING "Compiler options of code that no speed depends on")

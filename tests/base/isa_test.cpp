@@ -15,7 +15,7 @@ TEST(Isa, ScalarIsAlwaysThereAndComesFirst) {
 
 TEST(Isa, HighwayFindsTheSame) {
   // Of those that this build has kernels for.
-  const auto finds = [](std::int64_t target) { return (hwy::SupportedTargets() & HWY_TARGETS & target) != 0; };
+  const auto finds = [](std::int64_t target) { return (HWY_SUPPORTED_TARGETS & HWY_TARGETS & target) != 0; };
   const auto there = [](Isa isa) { return std::ranges::find(available_isas(), isa) != available_isas().end(); };
   EXPECT_EQ(there(Isa::sse4), finds(HWY_SSE4));
   EXPECT_EQ(there(Isa::avx2), finds(HWY_AVX2));

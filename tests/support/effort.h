@@ -11,7 +11,8 @@
 
 namespace frontmost::test {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+// So it is under an emulator, which is as slow.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || defined(FRONTMOST_EMULATED)
 inline constexpr bool under_sanitizer = true;
 #elif defined(__has_feature)
 inline constexpr bool under_sanitizer = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);

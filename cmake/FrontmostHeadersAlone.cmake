@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: Apache-2.0
+# What a build for another kind of machine needs of this one's: the packages that are headers alone, found where Debian
+# has them without the rest of the machine's headers, which would be wrong there.
+
+set(headers ${CMAKE_BINARY_DIR}/headers)
+file(MAKE_DIRECTORY ${headers})
+
+# headers_of(PACKAGE TARGET FOLDER): lets find_package(PACKAGE) find TARGET, whose headers are in FOLDER.
+function(headers_of package target folder)
+  if(NOT EXISTS /usr/include/${folder})
+    message(FATAL_ERROR "/usr/include/${folder} is not there: packages.txt names what a build needs")
+  endif()
+  file(CREATE_LINK /usr/include/${folder} ${headers}/${folder} SYMBOLIC)
+  file(WRITE ${headers}/${package}Config.cmake "if(NOT TARGET ${target})
+  add_library(${target} INTERFACE IMPORTED)
+  set_target_properties(${target} PROPERTIES INTERFACE_INCLUDE_DIRECTORIES ${headers})
+endif()\n")
+  set(${package}_DIR ${headers} CACHE PATH "Written by the build" FORCE)
+endfunction()
+
+headers_of(hwy hwy::hwy hwy)
+headers_of(glm glm::glm glm)
+headers_of(nlohmann_json nlohmann_json::nlohmann_json nlohmann)
+
+# Without Highway's library there is one instruction set each: a table of one.
+add_compile_definitions(HWY_COMPILE_ONLY_STATIC)

@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# quick.sh ANSWERS : builds for arm64. What QEMU runs of it gives the answers that ANSWERS does, the same program of this
+# machine, and passes the tests of the rooms below. 77, which means skipped, where something for that is not there.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+skip() {
+  echo "skipped: there is no $1"
+  exit 77
+}
+for tool in aarch64-linux-gnu-g++ qemu-aarch64; do command -v "$tool" >/dev/null || skip "$tool"; done
+for folder in /usr/aarch64-linux-gnu/lib /usr/src/googletest; do [ -d "$folder" ] || skip "$folder"; done
+
+export QEMU_LD_PREFIX=/usr/aarch64-linux-gnu
+scripts/run_quietly.sh cmake --preset arm64
+scripts/run_quietly.sh cmake --build build/arm64 -j "$(nproc)" --target frontmost_tests answers
+echo "the answers, of this machine (<) and of arm64 (>)"
+diff <("$1") <(qemu-aarch64 build/arm64/tests/arm64/answers)
+# The flight is about memory, which is the same everywhere, and takes a minute.
+find build/arm64/tests -name '*_test' -type f -executable | sort -r |
+  xargs -P "$(nproc)" -I{} scripts/run_quietly.sh qemu-aarch64 {} --gtest_brief=1 --gtest_filter='-*AFlightAllocatesNothing*'
