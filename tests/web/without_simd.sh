@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# without_simd.sh PROGRAM : builds the module for engines without vectors; its hashes are those of the program. 77, which
+# means skipped, where there is no emscripten or no Node.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+for tool in em++ node; do
+  if ! command -v "$tool" >/dev/null; then
+    echo "skipped: there is no $tool"
+    exit 77
+  fi
+done
+scripts/run_quietly.sh cmake --preset web-plain
+scripts/run_quietly.sh cmake --build build/web-plain -j "$(nproc)" --target frontmost_web
+exec node tests/web/hashes.mjs build/web-plain/web/frontmost.mjs "$1"
