@@ -15,7 +15,7 @@
 namespace frontmost::test {
 namespace {
 
-void add_square(Mesh& mesh, float half, float height) {
+void add_level_square(Mesh& mesh, float half, float height) {
   const glm::vec3 a(-half, -half, height), b(half, -half, height), c(half, half, height), d(-half, half, height);
   add_triangle(mesh, a, b, c);
   add_triangle(mesh, a, c, d);
@@ -40,7 +40,7 @@ StippleOptions options_of(double spacing, const glm::dvec3& to_light) {
 /// A square of 3.2 units, 320 pixels, whose brightness is `cosine`: ten periods of the pattern of spacing 1.
 std::vector<Stipple> dots_at(double cosine, double spacing) {
   Mesh mesh;
-  add_square(mesh, 1.6f, 0);
+  add_level_square(mesh, 1.6f, 0);
   const Scene scene = scene_of(std::move(mesh));
   const Surfaces surfaces(scene);
   return stipple(surfaces, from_above(), options_of(spacing, {std::sqrt(1 - cosine * cosine), 0, cosine}));
@@ -87,8 +87,8 @@ TEST(Stipple, DotsKeepApart) {
 
 TEST(Stipple, ShadowsAreFull) {
   Mesh floor, plate;
-  add_square(floor, 1.6f, 0);
-  add_square(plate, 0.4f, 0.25f);
+  add_level_square(floor, 1.6f, 0);
+  add_level_square(plate, 0.4f, 0.25f);
   Scene scene = scene_of(std::move(floor));
   scene.meshes.push_back(std::move(plate));
   scene.instances.push_back({"plate", 1, glm::dmat4(1.0)});
