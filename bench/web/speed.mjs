@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// speed.mjs MODULE PROGRAM [PAGE]: the z-buffer and shading in Node, and in Chromium where a page is given, beside the
-// program on one thread with SSE4, on the same views: the least of 30 frames, in milliseconds, as machines are shared.
+// speed.mjs MODULE PROGRAM [PAGE]: the z-buffer and shading in Node, and in Chromium where a page is given, on one thread and
+// on all, beside the z-buffer of the program on one thread with SSE4, on the same views: the least of 30 frames, in
+// milliseconds, as machines are shared.
 import { execFileSync } from "node:child_process";
 import { openBrowser, openPage } from "../../tests/web/browser.mjs";
 import { loadModule } from "../../tests/web/module.mjs";
@@ -28,32 +29,46 @@ function native(name) {
   return JSON.parse(told).timings_ms.visible.min;
 }
 
-async function inChromium() {
+/** In a worker, as the page has it: threads are waited for there alone. */
+async function inChromium(module) {
   const { browser, address, close } = await openBrowser(folder);
   const { page } = await openPage(browser);
   await page.goto(`${address}lessons.html`);
-  const found = await page.evaluate(async ([measured, names, one, count]) => {
-    const { default: create } = await import(new URL("frontmost.mjs", location.href));
-    const m = await create({});
-    const ask = (question) => {
-      const text = JSON.stringify(question), bytes = m.lengthBytesUTF8(text) + 1, at = m._malloc(bytes);
-      m.stringToUTF8(text, at, bytes);
-      const answer = JSON.parse(m.UTF8ToString(m._frontmost_ask(at)));
-      m._free(at);
-      return answer;
-    };
-    const run = new Function(`return ${measured}`)();
-    return names.map((name) => run(ask, name, one, count));
-  }, [measure.toString(), scenes, size, frames]);
+  const found = await page.evaluate(([measured, name, names, one, count]) => {
+    const body = `onmessage = async () => {
+      const { default: create } = await import("${new URL(name, location.href)}");
+      const m = await create({});
+      const ask = (question) => {
+        const text = JSON.stringify(question), bytes = m.lengthBytesUTF8(text) + 1, at = m._malloc(bytes);
+        m.stringToUTF8(text, at, bytes);
+        const answer = JSON.parse(m.UTF8ToString(m._frontmost_ask(at)));
+        m._free(at);
+        return answer;
+      };
+      const measure = ${measured};
+      postMessage(${JSON.stringify(names)}.map((scene) => measure(ask, scene, ${JSON.stringify(one)}, ${count})));
+    };`;
+    const worker = new Worker(URL.createObjectURL(new Blob([body], { type: "text/javascript" })), { type: "module" });
+    return new Promise((found, fail) => {
+      worker.onmessage = (event) => found(event.data);
+      worker.onerror = (event) => fail(new Error(event.message));
+      worker.postMessage(0);
+    });
+  }, [measure.toString(), module, scenes, size, frames]);
   await close();
   return found;
 }
 
-const frontmost = await loadModule(path);
-const inNode = scenes.map((name) => measure((question) => frontmost.ask(question), name, size, frames));
-const chromium = folder ? await inChromium() : undefined;
-console.log("scene     native  Node see  shade  Chromium see  shade");
+async function inNode(module) {
+  const frontmost = await loadModule(module);
+  return scenes.map((name) => measure((question) => frontmost.ask(question), name, size, frames));
+}
+
+const columns = [await inNode(path), await inNode(path.replace(".mjs", "-threads.mjs"))];
+if (folder) columns.push(await inChromium("frontmost.mjs"), await inChromium("frontmost-threads.mjs"));
+console.log(`z-buffer and shading, ms${" ".repeat(10)}program      Node, one thread     all    Chromium, one thread     all`);
 scenes.forEach((name, i) => {
-  const numbers = [native(name), inNode[i].see, inNode[i].shade, chromium?.[i].see, chromium?.[i].shade];
-  console.log(name.padEnd(10), numbers.map((n) => (n === undefined ? "-" : n.toFixed(1)).padStart(7)).join(" "));
+  const cells = columns.map((column) => `${column[i].see.toFixed(1).padStart(7)} +${column[i].shade.toFixed(1).padStart(6)}`);
+  console.log(name.padEnd(30), native(name).toFixed(1).padStart(8), ...cells);
 });
+process.exit(0); // threads wait for more

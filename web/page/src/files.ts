@@ -7,31 +7,39 @@ export interface NamedFile { name: string; file: File }
 
 /** Suffixes of models, and of what they name. What comes first is the model where there are several. */
 const models = [".glb", ".gltf", ".obj", ".stl", ".ply", ".off"];
-export const accepted = [...models, ".mtl", ".bin", ".png", ".jpg", ".jpeg"].join(",");
+const named = [...models, ".mtl", ".bin", ".png", ".jpg", ".jpeg"];
+export const accepted = named.join(",");
+/** A folder that holds more is not one of a model. */
+const mostFiles = 5000;
 const rank = ({ name }: NamedFile) => {
   const of = models.findIndex((suffix) => name.toLowerCase().endsWith(suffix));
   return (of < 0 ? models.length : of) + 100 * name.split("/").length;
 };
 
-async function below(entry: FileSystemEntry, path: string): Promise<NamedFile[]> {
+/** Adds to `found` a file, or those in a folder that a model may be or name. */
+async function find(entry: FileSystemEntry, path: string, found: NamedFile[]): Promise<void> {
   if (entry.isFile) {
-    const file = await new Promise<File>((found, fail) => (entry as FileSystemFileEntry).file(found, fail));
-    return [{ name: path + entry.name, file }];
+    if (path !== "" && !named.some((suffix) => entry.name.toLowerCase().endsWith(suffix))) return;
+    if (found.length === mostFiles) throw new Error(`${path}: more than ${mostFiles} files`);
+    const file = await new Promise<File>((take, fail) => (entry as FileSystemFileEntry).file(take, fail));
+    found.push({ name: path + entry.name, file });
+    return;
   }
-  const reader = (entry as FileSystemDirectoryEntry).createReader(), found: NamedFile[] = [];
+  const reader = (entry as FileSystemDirectoryEntry).createReader();
   for (;;) {
     const some = await new Promise<FileSystemEntry[]>((take, fail) => reader.readEntries(take, fail));
-    if (some.length === 0) return found;
-    for (const one of some) found.push(...(await below(one, `${path}${entry.name}/`)));
+    if (some.length === 0) return;
+    for (const one of some) await find(one, `${path}${entry.name}/`, found);
   }
 }
 
 /** All that was dropped, folders with what is in them. To be called before anything is waited for. */
 export async function dropped(transfer: DataTransfer): Promise<NamedFile[]> {
   const entries = [...transfer.items].map((item) => item.webkitGetAsEntry?.()).filter((entry) => entry !== null && entry !== undefined);
-  const plain = chosen(transfer.files);
+  const plain = chosen(transfer.files), found: NamedFile[] = [];
   if (entries.length === 0) return plain;
-  return (await Promise.all(entries.map((entry) => below(entry, "")))).flat();
+  for (const entry of entries) await find(entry, "", found);
+  return found;
 }
 
 export function chosen(files: FileList): NamedFile[] {
