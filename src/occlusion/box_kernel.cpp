@@ -30,6 +30,16 @@ struct Linear {
   float offset;
 };
 
+// Corners beyond the floats are not numbers. Of one of these and a number some processors' Min gives the number; here
+// it is the second operand on all of them.
+#if HWY_TARGET == HWY_NEON || HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
+HWY_INLINE VF MinOf(VF a, VF b) { return hn::IfThenElse(hn::Lt(a, b), a, b); }
+HWY_INLINE VF MaxOf(VF a, VF b) { return hn::IfThenElse(hn::Gt(a, b), a, b); }
+#else
+HWY_INLINE VF MinOf(VF a, VF b) { return hn::Min(a, b); }
+HWY_INLINE VF MaxOf(VF a, VF b) { return hn::Max(a, b); }
+#endif
+
 /// What a linear function is at the corners of boxes.
 struct Terms {
   VF low[3], high[3];  ///< each axis' part; the offset is in that of the first axis
@@ -43,8 +53,8 @@ struct Terms {
 
  private:
   [[nodiscard]] static HWY_INLINE VF Sum(VF x, VF y, VF z) { return hn::Add(hn::Add(x, y), z); }
-  [[nodiscard]] HWY_INLINE VF Lesser(int axis) const { return hn::Min(low[axis], high[axis]); }
-  [[nodiscard]] HWY_INLINE VF Greater(int axis) const { return hn::Max(low[axis], high[axis]); }
+  [[nodiscard]] HWY_INLINE VF Lesser(int axis) const { return MinOf(low[axis], high[axis]); }
+  [[nodiscard]] HWY_INLINE VF Greater(int axis) const { return MaxOf(low[axis], high[axis]); }
 };
 
 /// Boxes measured from the eye.
@@ -60,7 +70,7 @@ struct Boxes {
       const VF factor = hn::Set(d, linear.row[std::size_t(axis)]);
       t.low[axis] = hn::Mul(factor, low[axis]);
       t.high[axis] = hn::Mul(factor, high[axis]);
-      sum = hn::Add(sum, hn::Max(hn::Abs(t.low[axis]), hn::Abs(t.high[axis])));
+      sum = hn::Add(sum, MaxOf(hn::Abs(t.low[axis]), hn::Abs(t.high[axis])));
     }
     t.low[0] = hn::Add(t.low[0], offset);
     t.high[0] = hn::Add(t.high[0], offset);
@@ -79,12 +89,12 @@ HWY_INLINE QuotientRange Divided(const Terms& x, const VF (&inverse)[8], VF d_sl
   VF greatest_inverse = inverse[0];
   for (int corner = 1; corner < 8; ++corner) {
     const VF at = hn::Mul(x.AtCorner(corner), inverse[corner]);
-    e.least = hn::Min(e.least, at);
-    e.greatest = hn::Max(e.greatest, at);
-    greatest_inverse = hn::Max(greatest_inverse, inverse[corner]);
+    e.least = MinOf(e.least, at);
+    e.greatest = MaxOf(e.greatest, at);
+    greatest_inverse = MaxOf(greatest_inverse, inverse[corner]);
   }
   // x and d may both be off by their slack.
-  const VF farthest = hn::Max(hn::Abs(e.least), hn::Abs(e.greatest));
+  const VF farthest = MaxOf(hn::Abs(e.least), hn::Abs(e.greatest));
   const VF off = hn::Mul(hn::Add(x.slack, hn::Mul(farthest, d_slack)), hn::Mul(greatest_inverse, hn::Set(DF(), 1.01f)));
   return {hn::Sub(e.least, off), hn::Add(e.greatest, off)};
 }

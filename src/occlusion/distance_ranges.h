@@ -33,7 +33,8 @@ class DistanceRanges {
   [[nodiscard]] int count() const { return count_; }
   [[nodiscard]] int operator()(float distance) const {
     if (!(distance > least_)) return 0;
-    if (orthographic_) return int(std::min((distance - least_) * per_unit_, float(count_ - 1)));
+    // The limit comes first, so that it is taken where distances overflow and their share is not a number.
+    if (orthographic_) return int(std::min(float(count_ - 1), (distance - least_) * per_unit_));
     // Positive floats are in the order of their bits, which grow as a logarithm does.
     const std::uint32_t bits = bits_of(distance) - bits_of(least_);
     return std::min(int(bits >> shift_), count_ - 1);

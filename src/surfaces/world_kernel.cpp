@@ -17,7 +17,8 @@ namespace frontmost {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-#if HWY_TARGET == HWY_SCALAR
+// Where there are no vectors, Highway turns doubles beyond the floats into the greatest one instead of infinity.
+#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
 
 void PlaceVertices(const glm::dmat4& m, std::span<const glm::vec3> from, glm::vec3* to) {
   for (std::size_t i = 0; i < from.size(); ++i) to[i] = to_world(m, from[i]);

@@ -173,6 +173,49 @@ TEST(Occlusion, AnswersAreThoseOfEveryInstructionSetAndThreadCountAndOfAFreshSta
   }
 }
 
+/// Corners of such boxes overflow before the eye: what is then no number must not be told by the processor.
+TEST(Occlusion, BoxesAtTheEndOfTheFloatsHaveTheSameAnswerOnEveryInstructionSet) {
+  Scene scene;
+  Mesh wall;
+  add_square(wall, 4, 0);
+  scene.meshes = {wall};
+  scene.instances = {{"wall", 0, glm::dmat4(1.0)}};
+  const Surfaces surfaces(scene);
+  const View view = make_view(0.9, 640, 480).looking({0, 0, 1}, {-0.0216, -0.816, -0.577}, {0, 1, 0});
+  std::vector<Box> boxes;
+  for (int i = 0; i < 40; ++i)
+    for (int k = 0; k < 40; ++k) {
+      const float y = 2e32f * float(i + 1), z = 2e32f * float(k);
+      boxes.push_back({{-2.98e32f, -8.33e33f, -5.89e33f + z}, {1e32f * float(k - 20), -8.33e33f + y, -1e30f}});
+    }
+  std::vector<ObjectSight> expected;
+  for (const Isa isa : available_isas()) {
+    const Execution execution{.threads = 1, .isa = isa};
+    Occlusion occlusion(surfaces, ObjectUnit::instances, execution);
+    (void)occlusion.cull(view, {}, execution);
+    std::vector<ObjectSight> sights(boxes.size());
+    occlusion.find_sights(boxes, sights);
+    if (expected.empty()) expected = sights;
+    EXPECT_EQ(sights, expected) << name(isa);
+  }
+}
+
+TEST(Occlusion, DistancesThatOverflowInParallelProjectionAreTheFarthest) {
+  Scene scene;
+  for (const float z : {-3e38f, 3e38f, -1e38f}) {
+    Mesh mesh;
+    mesh.positions = {{-1, -1, z}, {1, -1, z}, {0, 1, z}};
+    mesh.triangles = {{0, 1, 2}};
+    scene.instances.push_back({"at " + std::to_string(z), std::uint32_t(scene.meshes.size()), glm::dmat4(1.0)});
+    scene.meshes.push_back(mesh);
+  }
+  const Surfaces surfaces(scene);
+  View view = from({0, 0, 0});
+  view.projection = make_orthographic(-1, 1, -1, 1, {-3e38, 3e38});
+  Occlusion occlusion(surfaces);
+  EXPECT_EQ(occlusion.cull(view)[1], ObjectSight::may_be_seen);
+}
+
 TEST(Occlusion, CellsOutOfRangeAndBrokenViewsAreRefused) {
   const Scene scene = wall_and_thing();
   const Surfaces surfaces(scene);

@@ -253,5 +253,42 @@ TEST(Light, HugeTinyAndEmptyTrianglesAreNoTrouble) {
   }
 }
 
+// The corners of such an instance's box are infinities of both signs, although its triangles are finite: its shadow
+// must not depend on which of NaN and a number is the greater one to a processor.
+TEST(Light, BoxesWithoutAnEndThrowTheSameShadowsOnEveryInstructionSet) {
+  Scene scene;
+  Mesh receiver;
+  receiver.positions = {{-1e30f, 0, -1e30f}, {1e30f, 0, -1e30f}, {0, 0, 1e30f}};
+  receiver.triangles = {{0, 1, 2}};
+  add(scene, receiver);
+  Mesh caster;
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    const float along = 1e9f + 4.8e5f * float(i), aside = 3.2e9f + 3e6f * (float(i % 200) - 100);
+    caster.positions.insert(caster.positions.end(), {{along, -along + 64, aside - 3e8f},
+                                                     {along + 3.2e7f, -along - 3.2e7f + 64, aside},
+                                                     {along, -along + 64, aside + 3e8f}});
+    caster.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  glm::dmat4 placed(0.0);
+  placed[0] = {0, 1e30, 1e22, 0}, placed[1] = {0, 1e30, 0, 0}, placed[2] = {1e22, 0, 0, 0};
+  placed[3] = {0, 0, -1.05e31, 1};
+  add(scene, caster, placed);
+  add(scene, caster, placed);
+  const Surfaces surfaces(scene);
+  const RayIndex index(scene);
+  std::vector<TrianglePoint> points(400);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i] = {.primitive = 0,
+                 .corners = surfaces.corners(0),
+                 .weights = glm::vec3(float(i % 20), float(i / 20), 7.5f) / 30.0f};
+  std::vector<std::uint8_t> expected;
+  for (const Isa isa : available_isas()) {
+    std::vector<std::uint8_t> lit(points.size());
+    are_lit(index, points, {0.5f, 1, 0}, lit, {.isa = isa});
+    if (expected.empty()) expected = lit;
+    EXPECT_EQ(lit, expected) << name(isa);
+  }
+}
+
 }  // namespace
 }  // namespace frontmost::test

@@ -225,6 +225,9 @@ class LightPacket {
       low_d = hn::Max(hn::Sub(low_d, pad), hn::Set(d, b.low_d));
       outside = hn::Or(outside, Beside(node, first, {axes_.u, axes_.slope_u, b.low_u, b.high_u}, low_d, high_d));
       outside = hn::Or(outside, Beside(node, first, {axes_.v, axes_.slope_v, b.low_v, b.high_v}, low_d, high_d));
+      // A box whose ends are infinities of both signs is looked into; the greater of NaN and a number is either one, by
+      // processor.
+      outside = hn::And(outside, hn::Eq(high_d, high_d));
       const std::uint32_t used = (1u << std::min(kLightLanes, node.count - first)) - 1;
       for (std::uint32_t inside = ~LaneBits(outside) & used; inside != 0; inside &= inside - 1)
         stack_[count++] = node.child[first + hwy::Num0BitsBelowLS1Bit_Nonzero32(inside)];
