@@ -10,7 +10,10 @@
 // free comes to help. Nothing is waited for but work that has begun.
 #pragma once
 
+#include <pthread.h>
+
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <exception>
 #include <functional>
@@ -20,10 +23,18 @@
 
 namespace frontmost {
 
-/// Is never destroyed, as threads wait in it until the process ends. A process that forked has none of the threads: it
-/// does all of its work itself.
+/// Is never destroyed, as threads wait in it until the process ends.
 class Crew {
  public:
+  /// That of all loops. A process that was forked has one of its own, because a fork takes no threads along.
+  static Crew& of_process() {
+    static std::atomic<Crew*> crew = new Crew;
+#if !defined(__EMSCRIPTEN__)
+    [[maybe_unused]] static const int is_told = pthread_atfork(nullptr, nullptr, [] { crew = new Crew; });
+#endif
+    return *crew;
+  }
+
   /// Does `work` here and on up to `helpers` other threads at the same time. \returns when all have come back. `work`
   /// must not throw, and must return at once where nothing is left to do.
   void run(int helpers, const std::function<void()>& work) {
@@ -49,11 +60,13 @@ class Crew {
 
   /// So that there are as many threads as the largest loop so far wanted.
   void hire(int helpers) {
+    if (pause_ > 0) return void(--pause_);
     try {
-      for (; size_ < std::min(helpers, most_); ++size_) std::thread([this] { serve(); }).detach();
+      for (; size_ < helpers; ++size_) std::thread([this] { serve(); }).detach();
     } catch (const std::exception&) {
-      // The system gives no more threads: those that there are do the same work.
-      most_ = size_;
+      // The system gives no more threads now: those that there are do the same work, and it is asked again later.
+      constexpr int loops = 1000;
+      pause_ = loops;
     }
   }
 
@@ -78,7 +91,8 @@ class Crew {
   std::mutex mutex_;
   std::condition_variable called_, left_;
   std::vector<Job*> jobs_;
-  int size_ = 0, most_ = 1024;
+  int size_ = 0;
+  int pause_ = 0;  ///< loops until more threads are asked for, where some were refused
 };
 
 }  // namespace frontmost

@@ -149,8 +149,7 @@ void drain_on(int threads, ChunkQueue& queue) {
 }
 #elif defined(FRONTMOST_THREADS_std)
 void drain_on(int threads, ChunkQueue& queue) {
-  static Crew& crew = *new Crew;
-  crew.run(threads - 1, [&] { queue.drain(); });
+  Crew::of_process().run(threads - 1, [&] { queue.drain(); });
 }
 #else
 void drain_on(int, ChunkQueue& queue) { queue.drain(); }

@@ -3,6 +3,8 @@
 #include "base/crew.h"
 
 #include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <set>
@@ -28,11 +30,7 @@ struct Numbers {
   std::vector<std::atomic<int>> taken;
 };
 
-/// Lives as long as the process, as crews do.
-Crew& crew() {
-  static Crew& made = *new Crew;
-  return made;
-}
+Crew& crew() { return Crew::of_process(); }
 
 TEST(CrewThreads, AllWorkIsDoneOnce) {
   for (const int helpers : {0, 1, 3, 7})
@@ -90,6 +88,24 @@ TEST(CrewThreads, SeveralCallersShareThem) {
     });
   for (std::thread& caller : callers) caller.join();
   EXPECT_EQ(done, 400);
+}
+
+// ThreadSanitizer does not let a process start threads that was forked from one with several.
+TEST(Crew, AForkedProcessHasOneOfItsOwn) {
+  crew().run(3, [] {});
+  const pid_t child = fork();
+  if (child == 0) {
+    for (int round = 0; round < 50; ++round) {
+      Numbers numbers(100);
+      crew().run(3, [&] { numbers.drain([](int) {}); });
+      if (!numbers.are_all_taken_once()) _exit(1);
+    }
+    _exit(0);
+  }
+  ASSERT_GT(child, 0);
+  int status = -1;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }
 
 }  // namespace
