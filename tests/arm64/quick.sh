@@ -13,9 +13,14 @@ for folder in /usr/aarch64-linux-gnu/lib /usr/src/googletest; do [ -d "$folder" 
 
 export QEMU_LD_PREFIX=/usr/aarch64-linux-gnu
 scripts/run_quietly.sh cmake --preset arm64
-scripts/run_quietly.sh cmake --build build/arm64 -j "$(nproc)" --target frontmost_tests answers
+scripts/run_quietly.sh cmake --build build/arm64 -j "$(nproc)" --target frontmost_tests arm64_answers
+mkdir -p build/arm64/told
+"$1" >build/arm64/told/here
+qemu-aarch64 build/arm64/tests/arm64/arm64_answers >build/arm64/told/arm64
+[ "$(wc -l <build/arm64/told/here)" -ge 30 ]
 echo "the answers, of this machine (<) and of arm64 (>)"
-diff <("$1") <(qemu-aarch64 build/arm64/tests/arm64/answers)
+diff build/arm64/told/here build/arm64/told/arm64
 # Without those of zbuffer that take a minute each.
-find build/arm64/tests -name '*_test' -type f -executable | sort -r |
+programs=(build/arm64/tests/{zbuffer/zbuffer,view/view,surfaces/surfaces,base/base}_test)
+printf '%s\n' "${programs[@]}" |
   xargs -P "$(nproc)" -I{} scripts/run_quietly.sh qemu-aarch64 {} --gtest_brief=1 --gtest_filter='-*AFlightAllocatesNothing*:*ReversedFloatIsTheDefault*:LargestImage.*:DepthBuffer/*'

@@ -69,9 +69,9 @@ TEST_F(Figures, AreCutWhereColoursVary) {
 }
 
 TEST_F(Figures, MergeNeighboursOnRequest) {
-  succeed("render builtin:gallery -o apart.svg --shading ids --resolution 96,54 --quiet");
+  succeed("render builtin:teapot -o apart.svg --shading ids --resolution 96,54 --quiet");
   succeed(
-      "render builtin:gallery -o joined.svg -o joined.pdf --shading ids --resolution 96,54 --merge-neighbours "
+      "render builtin:teapot -o joined.svg -o joined.pdf --shading ids --resolution 96,54 --merge-neighbours "
       "--quiet");
   EXPECT_LT(3 * count("joined.svg", "<path"), count("apart.svg", "<path"));
   EXPECT_LT(2 * read("joined.svg").size(), read("apart.svg").size());
@@ -79,8 +79,8 @@ TEST_F(Figures, MergeNeighboursOnRequest) {
 }
 
 TEST_F(Figures, AreTheSameForAnyNumberOfThreads) {
-  succeed("render builtin:gallery --resolution 96,54 -o one.svg --threads 1 --quiet");
-  succeed("render builtin:gallery --resolution 96,54 -o three.svg --threads 3 --quiet");
+  succeed("render builtin:teapot --resolution 96,54 -o one.svg --threads 1 --quiet");
+  succeed("render builtin:teapot --resolution 96,54 -o three.svg --threads 3 --quiet");
   EXPECT_EQ(read("one.svg"), read("three.svg"));
 }
 
