@@ -95,7 +95,7 @@ PlainJson answer_to(const std::string& text) {
 
 extern "C" {
 
-/// Room for the bytes of a file, which the next "open" reads. Null where there is not enough memory.
+/// Room for the bytes that the next question brings: a file, or pixels. Null where there is not enough memory.
 EMSCRIPTEN_KEEPALIVE void* frontmost_room(std::size_t bytes) {
   try {
     frontmost::web::room().reserve(bytes + 1);  // a file may be empty

@@ -31,8 +31,9 @@ Scene load_opening(const std::string& name, std::span<const std::byte> bytes, co
 
 PlainJson Workbench::put_file(std::span<const std::byte> bytes, const PlainJson& question) {
   const fs::path name = fs::path(question.at("name").get<std::string>()).lexically_normal();
-  if (name.empty() || name.is_absolute() || *name.begin() == "..")
+  if (name.empty() || name.is_absolute() || *name.begin() == ".." || name == "-")
     throw Error(ErrorCode::bad_argument, "file: not a name below the model's folder");
+  if (question.value("first", false)) forget_files();
   fs::create_directories((folder() / name).parent_path());
   fs::current_path(folder());  // so that names in messages are those of the page
   save_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name);

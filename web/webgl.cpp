@@ -158,11 +158,14 @@ PlainJson Workbench::triangles(const PlainJson&) {
           {"colors", place_of(colors_.data(), colors_.size())},
           {"matrix", to_json(matrix)},
           {"width", view_.width},
-          {"height", view_.height}};
+          {"height", view_.height},
+          {"view", view_number_}};
 }
 
 PlainJson Workbench::compare(std::span<const std::byte> bytes, const PlainJson& question) {
   const Visible& visible = seen();
+  if (question.at("view") != view_number_)
+    throw Error(ErrorCode::bad_argument, "compare: another view was drawn meanwhile");
   const std::size_t pixels = visible.primitives.size();
   if (bytes.size() != 4 * pixels)
     throw Error(ErrorCode::bad_argument, "compare: not four bytes for each pixel of the last view");

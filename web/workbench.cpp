@@ -135,6 +135,7 @@ PlainJson Workbench::draw(const PlainJson& question) {
   zbuffer_.draw(now.surfaces, one);
   visible_ = zbuffer_.take();
   is_current_ = true;
+  ++view_number_;
   const double see = clock.lap();
   if (question.value("hash", false)) answer["hash"] = hash_text(content_hash(visible_));
   clock.lap();

@@ -22,7 +22,7 @@ namespace frontmost::web {
 /// questions that lack something.
 class Workbench {
  public:
-  /// A file that the next model names: {"name"}, which may have folders.
+  /// A file that the next model names: {"name"}, which may have folders; with {"first"} those before are gone.
   PlainJson put_file(std::span<const std::byte> bytes, const PlainJson& question);
   /// The bytes of a model, and its {"name"}; without bytes it is one of the files that were put. \returns what there
   /// is:
@@ -53,12 +53,13 @@ class Workbench {
   /// The last view's camera in all conventions.
   PlainJson conventions(const PlainJson& question);
 
-  /// What WebGL needs to draw the last view: corners of all triangles, a colour for each corner, and the matrix to clip
-  /// coordinates of OpenGL, four rows.
+  /// What WebGL needs to draw the last view: corners of all triangles, a colour for each corner, the matrix to clip
+  /// coordinates of OpenGL, four rows, and the number of the view.
   PlainJson triangles(const PlainJson& question);
   /// The numbers of the triangles that WebGL has drawn, from 1 on, 0 where there is none, four bytes a pixel, the top
-  /// row first; {"subpixel_bits"} as WebGL tells -> {"differences", "counts"}: for each pixel that differs x, y, the
-  /// reason, pixels to the nearest border, steps of a 24-bit depth buffer, and both triangles or -1; seven floats.
+  /// row first; {"subpixel_bits"} as WebGL tells, {"view"} as triangles() -> {"differences", "counts"}: for each pixel
+  /// that differs x, y, the reason, pixels to the nearest border, steps of a 24-bit depth buffer, and both triangles or
+  /// -1; seven floats.
   PlainJson compare(std::span<const std::byte> bytes, const PlainJson& question);
 
   [[nodiscard]] const Scene& scene() const { return model().scene; }
@@ -90,6 +91,7 @@ class Workbench {
   ZBuffer zbuffer_;
   Visible visible_;  ///< of the last view, one sample a pixel
   bool is_current_ = false;
+  int view_number_ = 0;
   View view_;
   Bitmap bitmap_;
   std::vector<float> segments_, corners_, differences_;

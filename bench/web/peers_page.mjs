@@ -26,10 +26,9 @@ function look(name, forward) {
 
 /** A built-in scene, its corners in the world, and a camera. */
 function open(name) {
-  const forward = [-0.6, -0.45, -0.8], { corners } = ask({ ask: "lesson.frame", scene: name, ...size, forward, corners: true });
-  const positions = new Float32Array(plane(corners).buffer);
   ask({ ask: "builtin", name });
-  return { positions, camera: look(name, forward) };
+  const camera = look(name, [-0.6, -0.45, -0.8]);
+  return { positions: new Float32Array(plane(ask({ ask: "triangles" }).corners).buffer), camera };
 }
 
 /** Which triangle each pixel shows, by the module: an NPY of uint32, of which a file's header is left out. */

@@ -5,7 +5,7 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
-import { crc32, deflateSync } from "node:zlib";
+import { deflateSync } from "node:zlib";
 import { serve } from "../../scripts/page/server.mjs";
 import { openBrowser, openPage } from "./browser.mjs";
 
@@ -56,6 +56,15 @@ async function isReadable(page, path) {
   }, data);
   const canvas = await page.evaluate(() => [document.querySelector("canvas").width, document.querySelector("canvas").height]);
   assert.deepEqual(size, canvas);
+}
+
+function crc32(bytes) {
+  let crc = ~0;
+  for (const byte of bytes) {
+    crc ^= byte;
+    for (let bit = 0; bit < 8; ++bit) crc = crc & 1 ? (crc >>> 1) ^ 0xedb88320 : crc >>> 1;
+  }
+  return ~crc >>> 0;
 }
 
 /** Eight bits, red, green, blue, alpha. */

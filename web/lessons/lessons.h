@@ -50,8 +50,7 @@ struct LessonScene {
   Surfaces surfaces;
 };
 /// {"scene", "width", "height", "forward"} -> a camera that shows all of it, and the points "beside" it; "angle" in
-/// degrees. Directions are told for scenes whose y is up, and turned for others. With {"corners": true} also those of
-/// all its triangles, for who draws them otherwise.
+/// degrees. Directions are told for scenes whose y is up, and turned for others.
 PlainJson frame_lesson(const PlainJson& question);
 
 /// {"name"}: the bytes of a file become the scene "own", which is kept beside the last of the others.

@@ -176,11 +176,6 @@ PlainJson frame_lesson(const PlainJson& question) {
   const View view = frame(box, stage.scene.up, question.at("width"), question.at("height"), options);
   PlainJson camera = camera_json(view, box.centre());
   camera["world_up"] = to_json(up);
-  static std::vector<std::array<glm::vec3, 3>> corners;
-  corners.clear();
-  if (!question.value("corners", false)) return camera;
-  for (PrimitiveId id = 0; id < stage.surfaces.primitive_count(); ++id) corners.push_back(stage.surfaces.corners(id));
-  camera["corners"] = place_of(corners.data(), corners.size());
   return camera;
 }
 

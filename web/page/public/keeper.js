@@ -4,6 +4,7 @@
 const store = "frontmost";
 
 function isolated(response) {
+  if (response.status === 0) return response; // a redirection, which the browser follows itself
   const headers = new Headers(response.headers);
   headers.set("cross-origin-opener-policy", "same-origin");
   headers.set("cross-origin-embedder-policy", "require-corp");

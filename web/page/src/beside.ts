@@ -17,6 +17,7 @@ const words = {
   depth: { en: "nearly as far: its roundings decide", zh: "距离几乎相等：由其取整决定" },
   other: { en: "for other reasons", zh: "其他原因" },
   choose: { en: "Choose a mark, or step through them.", zh: "点击标记，或逐个查看。" },
+  some: { en: " Not all of them have one.", zh: "并非每个像素都有标记。" },
   on: { en: "Next", zh: "下一个" },
   back: { en: "Back", zh: "上一个" },
   close: { en: "Close", zh: "关闭" },
@@ -24,10 +25,11 @@ const words = {
 } satisfies Record<string, Text>;
 const reasons = ["edge", "depth", "other"] as const;
 const colors = ["--accent", "--blue", "--bad"];
+const mostMarks = 3000;
 
-interface Difference { x: number; y: number; reason: number; border: number; steps: number; ours: number; theirs: number }
-function differencesOf(answer: Answer): Difference[] {
-  const numbers = new Float32Array(answer.differences), found: Difference[] = [];
+interface PixelDifference { x: number; y: number; reason: number; border: number; steps: number; ours: number; theirs: number }
+function differencesOf(answer: Answer): PixelDifference[] {
+  const numbers = new Float32Array(answer.differences), found: PixelDifference[] = [];
   for (let i = 0; i < numbers.length; i += 7) {
     const [x, y, reason, border, steps, ours, theirs] = numbers.subarray(i, i + 7);
     found.push({ x, y, reason, border, steps, ours, theirs });
@@ -36,7 +38,7 @@ function differencesOf(answer: Answer): Difference[] {
 }
 
 const brief = (value: number) => (value < 10 ? value.toPrecision(2) : Math.round(value).toLocaleString());
-function explained(one: Difference, { subpixelBits }: Drawn): string {
+function explained(one: PixelDifference, { subpixelBits }: Drawn): string {
   const called = (triangle: number): Text => (triangle < 0 ? words.nothing : { en: `triangle ${triangle}`, zh: `三角形 ${triangle}` });
   const [ours, theirs] = [say(called(one.ours)), say(called(one.theirs))], far = brief(one.border), steps = brief(one.steps);
   const begin = say({ en: `At ${one.x}, ${one.y} Frontmost sees ${ours}, WebGL ${theirs}. `, zh: `在 ${one.x}, ${one.y} 处，Frontmost 看到${ours}，WebGL 看到${theirs}。` });
@@ -48,7 +50,7 @@ function explained(one: Difference, { subpixelBits }: Drawn): string {
 }
 
 /** What is about a pixel, each triangle in a colour of its own. */
-function loupe(label: string, numberAt: (x: number, y: number) => number, { x, y }: Difference): HTMLElement {
+function loupe(label: string, numberAt: (x: number, y: number) => number, { x, y }: PixelDifference): HTMLElement {
   const reach = 6, side = 2 * reach + 1, canvas = element("canvas", { width: side, height: side, role: "img", "aria-label": label });
   const pen = canvas.getContext("2d")!;
   for (let down = 0; down < side; ++down)
@@ -61,15 +63,18 @@ function loupe(label: string, numberAt: (x: number, y: number) => number, { x, y
   return element("figure", { class: "loupe" }, canvas, element("figcaption", { class: "soft" }, label));
 }
 
-function pane(title: string, image: ImageData, differences: Difference[], choose: (i: number) => void): HTMLElement {
+interface Pane { root: HTMLElement; show(chosen: PixelDifference): void }
+function pane(title: string, image: ImageData, differences: PixelDifference[], choose: (i: number) => void): Pane {
   const canvas = element("canvas", { width: image.width, height: image.height, role: "img", "aria-label": title });
   canvas.getContext("2d")!.putImageData(image, 0, 0);
   const marks = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   marks.setAttribute("viewBox", `0 0 ${image.width} ${image.height}`);
   marks.setAttribute("aria-hidden", "true");
-  // Where there are thousands, dots can still be told apart.
+  // Where there are thousands, dots can still be told apart; of more than some thousand, some are shown.
+  const every = Math.ceil(differences.length / mostMarks);
   const radius = (image.width / 100) * Math.min(1, Math.max(0.2, Math.sqrt(60 / differences.length)));
-  marks.innerHTML = differences.map(({ x, y, reason }, i) => `<circle data-i="${i}" cx="${x + 0.5}" cy="${y + 0.5}" r="${radius.toFixed(1)}" fill="none" stroke="var(${colors[reason]})" stroke-width="${(radius / 3).toFixed(1)}"/>`).join("");
+  const circle = ({ x, y }: PixelDifference, color: string, wide: number) => `<circle cx="${x + 0.5}" cy="${y + 0.5}" r="${radius.toFixed(1)}" fill="none" stroke="var(${color})" stroke-width="${(radius * wide).toFixed(1)}"/>`;
+  marks.innerHTML = differences.filter((_, i) => i % every === 0).map((one) => circle(one, colors[one.reason], 0.33)).join("") + `<g class="chosen"></g>`;
   marks.addEventListener("click", (event) => {
     const rect = marks.getBoundingClientRect(), x = ((event.clientX - rect.left) / rect.width) * image.width, y = ((event.clientY - rect.top) / rect.height) * image.height;
     let nearest = -1, least = Infinity;
@@ -79,7 +84,10 @@ function pane(title: string, image: ImageData, differences: Difference[], choose
     });
     if (nearest >= 0) choose(nearest);
   });
-  return element("div", { class: "plate" }, element("h3", {}, title), element("div", { class: "pane" }, canvas, marks as unknown as HTMLElement));
+  return {
+    root: element("div", { class: "plate" }, element("h3", {}, title), element("div", { class: "pane" }, canvas, marks)),
+    show: (chosen) => (marks.querySelector(".chosen")!.innerHTML = circle(chosen, "--ink", 0.5)),
+  };
 }
 
 export interface Seen { client: Client; image: ImageData; eye: Vector }
@@ -88,13 +96,13 @@ export async function besideWebGL({ client, image, eye }: Seen, close: () => voi
   const view = await client.ask({ ask: "triangles" });
   const drawn = drawByWebGL(view, eye);
   const numbers = drawn.numbers.slice();
-  const answer = await client.ask({ ask: "compare", subpixel_bits: drawn.subpixelBits }, drawn.numbers.buffer);
+  const answer = await client.ask({ ask: "compare", view: view.view, subpixel_bits: drawn.subpixelBits }, drawn.numbers.buffer);
   const differences = differencesOf(answer);
   const ourNumbers = numbers.slice();
   for (const { x, y, ours } of differences) ourNumbers[y * view.width + x] = ours + 1;
   const at = (of: Uint32Array) => (x: number, y: number) => (x < 0 || y < 0 || x >= view.width || y >= view.height ? -1 : of[y * view.width + x] - 1);
 
-  const said = element("p", { class: "said", "aria-live": "polite" }, differences.length > 0 && say(words.choose));
+  const said = element("p", { class: "said", "aria-live": "polite" }, differences.length > 0 && say(words.choose), differences.length > mostMarks && say(words.some));
   const loupes = element("div", { class: "row" });
   let chosen = -1;
   const choose = (i: number) => {
@@ -102,15 +110,15 @@ export async function besideWebGL({ client, image, eye }: Seen, close: () => voi
     const one = differences[chosen];
     said.textContent = explained(one, drawn);
     loupes.replaceChildren(loupe(say(words.ours), at(ourNumbers), one), loupe("WebGL", at(numbers), one));
-    for (const mark of root.querySelectorAll("circle")) mark.classList.toggle("chosen", mark.dataset.i === String(chosen));
+    for (const pane of panes) pane.show(one);
   };
   const button = (text: Text, act: () => void) => element("button", { class: "button", onclick: act }, say(text));
   const count = (text: Text, many: number, color?: string) => element("li", {}, color && element("i", { class: "swatch", style: `background:var(${color})` }), element("b", { class: "number" }, many.toLocaleString()), ` ${say(text)}`);
-  const root = element("section", { class: "beside", tabindex: -1, "aria-label": "WebGL" },
-    element("div", { class: "panes" }, pane(say(words.ours), image, differences, choose), pane(`${say(words.theirs)} ${drawn.renderer}`, drawn.picture, differences, choose)),
+  const panes = [pane(say(words.ours), image, differences, choose), pane(`${say(words.theirs)} ${drawn.renderer}`, drawn.picture, differences, choose)];
+  return element("section", { class: "beside", tabindex: -1, "aria-label": "WebGL" },
+    element("div", { class: "panes" }, ...panes.map((one) => one.root)),
     element("div", { class: "verdict" },
       element("div", {}, differences.length === 0 ? element("p", {}, say(words.same)) : element("ul", {}, count(words.differ, differences.length), ...reasons.map((reason, i) => answer.counts[reason] > 0 && count(words[reason], answer.counts[reason], colors[i]))), said),
       loupes,
       element("div", { class: "row" }, ...(differences.length > 0 ? [button(words.back, () => choose(Math.max(chosen, 0) - 1)), button(words.on, () => choose(chosen + 1))] : []), button(words.close, close))));
-  return root;
 }

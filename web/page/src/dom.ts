@@ -77,7 +77,20 @@ export function bar(page: "workbench" | "lessons"): HTMLElement {
       element("button", { class: "button plain", lang: language === "en" ? "zh-Hans" : "en", onclick: switchLanguage }, language === "en" ? "中文" : "English")));
 }
 
-/** Once everything has been loaded, pages work without a network. */
-export function keepForLater(): void {
-  if ("serviceWorker" in navigator && isSecureContext) void navigator.serviceWorker.register("keeper.js").catch(() => undefined);
+/** Once everything has been loaded, pages work without a network. What came before there was anybody to keep it is asked
+ * for again, which the browser answers from what it holds. */
+export async function keepForLater(): Promise<void> {
+  if (!("serviceWorker" in navigator) || !isSecureContext) return;
+  try {
+    const isFirst = !navigator.serviceWorker.controller;
+    await navigator.serviceWorker.register("keeper.js");
+    await navigator.serviceWorker.ready;
+    if (!isFirst) return;
+    const name = crossOriginIsolated ? "frontmost-threads" : "frontmost";
+    const loaded = [location.href, ...performance.getEntriesByType("resource").map((entry) => entry.name), `${name}.mjs`, `${name}.wasm`];
+    if (crossOriginIsolated) loaded.push(`${name}.worker.js`);
+    for (const address of new Set(loaded)) await fetch(address, { cache: "force-cache" });
+  } catch {
+    // Then the page needs the network the next time, too.
+  }
 }

@@ -13,7 +13,7 @@ export const accepted = named.join(",");
 const mostFiles = 5000;
 const rank = ({ name }: NamedFile) => {
   const of = models.findIndex((suffix) => name.toLowerCase().endsWith(suffix));
-  return (of < 0 ? models.length : of) + 100 * name.split("/").length;
+  return of < 0 ? Infinity : of + 100 * name.split("/").length;
 };
 
 /** Adds to `found` a file, or those in a folder that a model may be or name. */
@@ -48,9 +48,9 @@ export function chosen(files: FileList): NamedFile[] {
 
 /** \returns what the module tells of the model, and its name. */
 export async function openFiles(client: Client, files: NamedFile[]): Promise<{ name: string; opened: Answer }> {
-  const [model, ...others] = [...files].sort((a, b) => rank(a) - rank(b));
+  const [model, ...others] = [...files].sort((a, b) => (rank(a) < rank(b) ? -1 : 1));
   const { name } = model;
   if (others.length === 0) return { name, opened: await client.ask({ ask: "open", name }, await model.file.arrayBuffer()) };
-  for (const one of files) await client.ask({ ask: "file", name: one.name }, await one.file.arrayBuffer());
+  for (const [i, one] of files.entries()) await client.ask({ ask: "file", name: one.name, first: i === 0 }, await one.file.arrayBuffer());
   return { name, opened: await client.ask({ ask: "open", name }) };
 }

@@ -2,10 +2,28 @@
 // Pixels of PNG and JPEG files as they are stored: neither multiplied by alpha nor brought to the screen's colours, as a
 // canvas would.
 
-/** As many as the library takes of one image. */
-const mostPixels = 2 ** 28;
-function check(width: number, height: number): void {
-  if (width * height > mostPixels) throw new Error(`${width} x ${height} pixels are too many`);
+/** Pixels as a PNG's or a JPEG's header states them; 0 where it does not. */
+function pixelsOf(file: Uint8Array): number {
+  const view = new DataView(file.buffer, file.byteOffset, file.byteLength);
+  if (file[0] === 0x89) return file.length < 24 ? 0 : view.getUint32(16) * view.getUint32(20);
+  for (let at = 2; at + 9 < file.length && file[at] === 0xff; ) {
+    const marker = file[at + 1];
+    // A start of a frame, of which there are several kinds.
+    if (marker >= 0xc0 && marker <= 0xcf && ![0xc4, 0xc8, 0xcc].includes(marker)) return view.getUint16(at + 5) * view.getUint16(at + 7);
+    at += 2 + view.getUint16(at + 2);
+  }
+  return 0;
+}
+
+/** As many pixels as the library takes for all textures of a model: asked before any is decoded. */
+export class PixelBudget {
+  private left = 2 ** 26;
+  take(file: Uint8Array): void {
+    const pixels = pixelsOf(file);
+    this.left += 64 * file.length;
+    if (pixels > this.left) throw new Error("the textures together have too many pixels");
+    this.left -= pixels;
+  }
 }
 
 export interface Pixels { width: number; height: number; rgba: Uint8Array<ArrayBuffer> }
@@ -23,7 +41,6 @@ async function byDecoder(data: Uint8Array<ArrayBuffer>, type: string): Promise<P
   try {
     const { image } = await decoder.decode();
     const { width, height } = image.visibleRect!;
-    check(width, height);
     const rgba = new Uint8Array(image.allocationSize({ format: "RGBA" }));
     await image.copyTo(rgba, { format: "RGBA" });
     image.close();
@@ -36,9 +53,7 @@ async function byDecoder(data: Uint8Array<ArrayBuffer>, type: string): Promise<P
 /** Where there is no decoder a texture gives back what it was given. */
 async function byWebGL(data: Uint8Array<ArrayBuffer>, type: string): Promise<Pixels> {
   const bitmap = await createImageBitmap(new Blob([data], { type }), { premultiplyAlpha: "none", colorSpaceConversion: "none" });
-  const { width, height } = bitmap;
-  check(width, height);
-  const gl = new OffscreenCanvas(1, 1).getContext("webgl2");
+  const { width, height } = bitmap, gl = new OffscreenCanvas(1, 1).getContext("webgl2");
   if (!gl) throw new Error("this browser decodes no textures without WebGL");
   gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
   gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, bitmap);

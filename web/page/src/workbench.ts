@@ -22,6 +22,7 @@ let modelArgument = "";
 let camera: Camera | undefined;
 let show = "picture", layer = 1, withHidden = false;
 let scale = 0.5; // of pictures while turning; the first one shows how fast this machine is
+let requests = 0; // of pictures, so far
 let isDrawing = false, wanted: "none" | "quick" | "fine" = "none";
 let restTimer = 0;
 let lastImage: ImageData | undefined;
@@ -147,6 +148,7 @@ async function drawOnce(kind: "quick" | "fine"): Promise<void> {
 function request(kind: "quick" | "fine"): void {
   if (!camera) return;
   closeBeside();
+  ++requests;
   wanted = kind;
   if (kind === "quick" || show !== "edges") overlay.width = overlay.width;
   clearTimeout(restTimer);
@@ -205,7 +207,12 @@ async function openBuiltin(name: string): Promise<void> {
   });
 }
 
-async function openAll(files: NamedFile[] | Promise<NamedFile[]>): Promise<void> {
+let opening: Promise<unknown> = Promise.resolve();
+/** One model after the other, as the files of one must not be taken for those of another. */
+function openAll(files: NamedFile[] | Promise<NamedFile[]>): Promise<unknown> {
+  return (opening = opening.then(() => openThese(files)));
+}
+async function openThese(files: NamedFile[] | Promise<NamedFile[]>): Promise<void> {
   await working(async () => {
     const all = await files;
     if (all.length === 0) return;
@@ -244,13 +251,20 @@ function closeBeside(): void {
 async function askWebGL(): Promise<void> {
   await working(async () => {
     await settle();
-    closeBeside();
-    beside = await besideWebGL({ client, image: lastImage!, eye: camera!.eye }, () => {
+    const asked = requests;
+    try {
+      const made = await besideWebGL({ client, image: lastImage!, eye: camera!.eye }, () => {
+        closeBeside();
+        canvas.focus();
+      });
+      if (requests !== asked) return; // it turns again
       closeBeside();
-      canvas.focus();
-    });
-    stage.append(beside);
-    beside.focus();
+      beside = made;
+      stage.append(made);
+      made.focus();
+    } catch (error) {
+      if (requests === asked) throw error;
+    }
   });
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The worker: holds the module, and answers one question after another, so that the page never waits.
 import type { Answer, Answered, Asked, Question } from "./answer.ts";
-import { decodeImage } from "./images.ts";
+import { decodeImage, PixelBudget } from "./images.ts";
 
 interface Module {
   HEAPU8: Uint8Array;
@@ -15,11 +15,19 @@ interface Module {
   lengthBytesUTF8(text: string): number;
 }
 
-/** With threads where the page may have memory that they share. */
-async function load(base: string): Promise<Module> {
-  const name = self.crossOriginIsolated ? "frontmost-threads" : "frontmost";
+async function loadModule(base: string, name: string): Promise<Module> {
   const { default: create } = await import(/* @vite-ignore */ `${base}${name}.mjs`);
   return create({ locateFile: (file: string) => base + file });
+}
+/** With threads where the page may have memory that they share, and gets it: some phones give less of it. */
+async function load(base: string): Promise<Module> {
+  if (self.crossOriginIsolated)
+    try {
+      return await loadModule(base, "frontmost-threads");
+    } catch (error) {
+      console.info(`without threads: ${error}`);
+    }
+  return loadModule(base, "frontmost");
 }
 
 /** All of its memory. A thread that asked for more has told nobody. */
@@ -58,10 +66,13 @@ function ask(m: Module, question: Question, bytes?: Uint8Array): Answer {
 async function withImages(m: Module, answer: Answer): Promise<Answer> {
   while (answer.images) {
     const files: Uint8Array<ArrayBuffer>[] = answer.images.map((place: { at: number; bytes: number }) => bytesAt(m, place));
+    const budget = new PixelBudget();
     for (const [number, file] of files.entries())
       try {
+        budget.take(file);
         const { width, height, rgba } = await decodeImage(file);
-        ask(m, { ask: "image", number, width, height }, rgba);
+        const told = ask(m, { ask: "image", number, width, height }, rgba);
+        if (told.error) throw new Error(told.error);
       } catch (error) {
         ask(m, { ask: "image", number, problem: error instanceof Error ? error.message : String(error) });
       }
