@@ -5,6 +5,7 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
+import { createServer } from "node:http";
 import { deflateSync } from "node:zlib";
 import { serve } from "../../scripts/page/server.mjs";
 import { openBrowser, openPage } from "./browser.mjs";
@@ -113,8 +114,9 @@ async function tryTexture(page) {
 
 /** WebGL's picture of the view, every pixel that differs explained. */
 async function tryWebGL(page) {
-  await page.locator("[data-webgl]").click();
-  await page.waitForSelector(".beside", patience);
+  // Twice at once, of which one is shown.
+  await page.locator("[data-webgl]").dblclick();
+  await page.waitForFunction(() => document.querySelectorAll(".beside").length === 1 && document.querySelector(".busy").hidden, undefined, patience);
   const { marks, counts } = await page.evaluate(() => ({ marks: document.querySelectorAll(".beside .plate:first-child circle").length, counts: [...document.querySelectorAll(".beside li b")].map((b) => Number(b.textContent.replaceAll(",", ""))) }));
   assert.ok(counts[0] > 0 && counts[0] < 2000 && marks === counts[0], `${counts} pixels, ${marks} marks`);
   assert.equal(counts.slice(1).reduce((a, b) => a + b, 0), counts[0]);
@@ -195,6 +197,41 @@ async function tryPlainHost() {
   assert.deepEqual(complaints, []);
   await context.close();
   server.close();
+}
+
+/** A host that gives pages other addresses: they are found on the second visit, too. */
+async function tryRedirectingHost() {
+  const host = createServer(async (request, response) => {
+    const { pathname } = new URL(request.url, address);
+    if (pathname === "/lessons.html") return response.writeHead(308, { location: "/lessons" }).end();
+    const found = await fetch(new URL(pathname === "/lessons" ? "/lessons.html" : pathname, address));
+    response.writeHead(found.status, { "content-type": found.headers.get("content-type") ?? "text/plain" }).end(Buffer.from(await found.arrayBuffer()));
+  });
+  await new Promise((go) => host.listen(0, "127.0.0.1", go));
+  const { page, context } = await openPage(browser);
+  for (let visit = 0; visit < 2; ++visit) {
+    await page.goto(`http://127.0.0.1:${host.address().port}/lessons.html?lang=en`);
+    await page.waitForSelector(".contents a", patience);
+    await page.waitForFunction(() => navigator.serviceWorker.controller, undefined, patience);
+  }
+  await context.close();
+  host.close();
+}
+
+/** After one visit the page needs no network. */
+async function tryOffline() {
+  const { server, address: gone } = await serve(folder), { page, complaints, context } = await openPage(browser);
+  await page.goto(`${gone}index.html?lang=en&scene=cubes`);
+  await settled(page);
+  const hash = await hashOf(page);
+  await page.waitForFunction(async () => (await (await caches.open("frontmost")).keys()).some(({ url }) => url.endsWith("frontmost-threads.worker.js")), undefined, patience);
+  server.close();
+  server.closeAllConnections();
+  await page.goto(`${gone}index.html?lang=en&scene=cubes`);
+  await settled(page);
+  assert.equal(await hashOf(page), hash);
+  assert.deepEqual(complaints.filter((text) => !/ERR_CONNECTION_REFUSED/.test(text)), []);
+  await context.close();
 }
 
 /** Fifty models, one after the other: what the browser's processes hold grows no more after the first ten. */
@@ -308,18 +345,14 @@ async function tryLesson(id, lang, viewport) {
 }
 
 try {
-  await tryWorkbench("en", { width: 1280, height: 720 });
-  await tryWorkbench("zh", { width: 390, height: 844 });
-  await tryPlainHost();
-  memory = await tryManyModels();
+  memory = await tryManyModels(); // alone, as others hold memory, too
+  await Promise.all([tryWorkbench("en", { width: 1280, height: 720 }), tryWorkbench("zh", { width: 390, height: 844 }), tryPlainHost(), tryRedirectingHost(), tryOffline()]);
   const { page, context } = await openPage(browser);
   await page.goto(`${address}lessons.html?lang=en`);
   const ids = await page.locator(".contents a").evaluateAll((links) => links.map((link) => new URL(link.href).searchParams.get("lesson")));
   await context.close();
   assert.ok(ids.length >= 4);
-  for (const id of ids)
-    for (const [lang, viewport] of [["en", { width: 1280, height: 900 }], ["zh", { width: 390, height: 844 }]]) await tryLesson(id, lang, viewport);
-  for (const id of ids) await tryWithoutModule(id);
+  for (const id of ids) await Promise.all([tryLesson(id, "en", { width: 1280, height: 900 }), tryLesson(id, "zh", { width: 390, height: 844 }), tryWithoutModule(id)]);
 } finally {
   await close();
 }

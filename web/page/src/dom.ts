@@ -82,10 +82,10 @@ export function bar(page: "workbench" | "lessons"): HTMLElement {
 export async function keepForLater(): Promise<void> {
   if (!("serviceWorker" in navigator) || !isSecureContext) return;
   try {
-    const isFirst = !navigator.serviceWorker.controller;
+    if (navigator.serviceWorker.controller) return void (await navigator.serviceWorker.register("keeper.js"));
+    const isKept = new Promise((kept) => navigator.serviceWorker.addEventListener("controllerchange", kept, { once: true }));
     await navigator.serviceWorker.register("keeper.js");
-    await navigator.serviceWorker.ready;
-    if (!isFirst) return;
+    await isKept;
     const name = crossOriginIsolated ? "frontmost-threads" : "frontmost";
     const loaded = [location.href, ...performance.getEntriesByType("resource").map((entry) => entry.name), `${name}.mjs`, `${name}.wasm`];
     if (crossOriginIsolated) loaded.push(`${name}.worker.js`);
