@@ -175,18 +175,20 @@ TEST(Occlusion, AnswersAreThoseOfEveryInstructionSetAndThreadCountAndOfAFreshSta
 
 /// Corners of such boxes overflow before the eye: what is then no number must not be told by the processor.
 TEST(Occlusion, BoxesAtTheEndOfTheFloatsHaveTheSameAnswerOnEveryInstructionSet) {
+  View view = make_view(0.9, 640, 480).looking({0, 0, 0}, {-0.0216184, -0.816451, 0.577009}, {0, 1, 0});
+  view.projection.clip = {0.1, std::numeric_limits<double>::infinity()};
   Scene scene;
-  Mesh wall;
-  add_square(wall, 4, 0);
-  scene.meshes = {wall};
-  scene.instances = {{"wall", 0, glm::dmat4(1.0)}};
+  Mesh wall;  // which does not cover the whole picture
+  for (const glm::dvec2 at : {glm::dvec2(-0.5, -0.7), {0.7, -0.7}, {0.7, 0.7}, {-0.5, 0.7}})
+    wall.positions.emplace_back(view.forward() + view.right() * at.x + view.up() * at.y);
+  wall.triangles = {{0, 1, 2}, {0, 2, 3}};
+  add(scene, wall);
   const Surfaces surfaces(scene);
-  const View view = make_view(0.9, 640, 480).looking({0, 0, 1}, {-0.0216, -0.816, -0.577}, {0, 1, 0});
   std::vector<Box> boxes;
   for (int i = 0; i < 40; ++i)
     for (int k = 0; k < 40; ++k) {
-      const float y = 2e32f * float(i + 1), z = 2e32f * float(k);
-      boxes.push_back({{-2.98e32f, -8.33e33f, -5.89e33f + z}, {1e32f * float(k - 20), -8.33e33f + y, -1e30f}});
+      const float high = -2.41e33f + 5e31f * float(i), far = 5.89e33f - 5e31f * float(k);
+      boxes.push_back({{-2.98e32f, -8.33e33f, 0}, {0, high, far}});
     }
   std::vector<ObjectSight> expected;
   for (const Isa isa : available_isas()) {
