@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // PNG and JPEG textures, which the browser decodes: the module holds no libraries for them.
 //
-//   load() -- asks for pixels --> GivenImages: not there yet, noted --> the page decodes what was noted --> load()
-//   again
+//   load() -- asks for pixels --> GivenImages: not there, noted --> the page decodes what was noted --> load() again
 #pragma once
 
 #include <frontmost/io.h>
@@ -26,7 +25,7 @@ class GivenImages : public ImageDecoder {
   void give(std::size_t number, int width, int height, std::span<const std::byte> rgba);
   /// Why a wanted file is none; it is not asked for again.
   void refuse(std::size_t number, const std::string& reason);
-  /// What is wanted from now on.
+  /// Before loading again: the list begins anew.
   void forget_wanted() { wanted_.clear(); }
 
  private:

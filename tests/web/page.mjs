@@ -96,8 +96,15 @@ async function drop(page, files) {
 /** A square whose texture is 2 x 2 pixels, one of which is nearly transparent: all colours arrive as they are stored. */
 async function tryTexture(page) {
   const texture = pngOf(2, 2, [255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 250, 128, 6, 255]);
-  await drop(page, { "quad.obj": "mtllib quad.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3 4/4\n", "quad.mtl": "newmtl m\nmap_Kd texture.png\n",
-    "texture.png": { base64: texture.toString("base64") } });
+  const files = { "quad.obj": "mtllib quad.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3 4/4\n", "quad.mtl": "newmtl m\nmap_Kd texture.png\n" };
+  // A header that states more pixels than a model's textures may have: refused before anybody decodes it.
+  const huge = Buffer.from(texture);
+  huge.writeUInt32BE(16000, 16);
+  huge.writeUInt32BE(16000, 20);
+  await drop(page, { ...files, "texture.png": { base64: huge.toString("base64") } });
+  await page.waitForFunction(() => document.querySelector(".facts").textContent.includes("too many pixels"), undefined, patience);
+  await drop(page, { ...files, "texture.png": { base64: texture.toString("base64") } });
+  await page.waitForFunction(() => !document.querySelector(".facts").textContent.includes("too many pixels"), undefined, patience);
   await page.waitForFunction(() => document.querySelector(".facts").textContent.includes("quad"), undefined, patience);
   await settled(page);
   assert.doesNotMatch(await page.locator(".facts").textContent(), /⚠/);

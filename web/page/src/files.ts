@@ -48,9 +48,8 @@ export function chosen(files: FileList): NamedFile[] {
 
 /** \returns what the module tells of the model, and its name. */
 export async function openFiles(client: Client, files: NamedFile[]): Promise<{ name: string; opened: Answer }> {
-  const [model, ...others] = [...files].sort((a, b) => (rank(a) < rank(b) ? -1 : 1));
-  const { name } = model;
-  if (others.length === 0) return { name, opened: await client.ask({ ask: "open", name }, await model.file.arrayBuffer()) };
+  const model = files.reduce((best, one) => (rank(one) < rank(best) ? one : best)), { name } = model;
+  if (files.length === 1) return { name, opened: await client.ask({ ask: "open", name }, await model.file.arrayBuffer()) };
   for (const [i, one] of files.entries()) await client.ask({ ask: "file", name: one.name, first: i === 0 }, await one.file.arrayBuffer());
   return { name, opened: await client.ask({ ask: "open", name }) };
 }

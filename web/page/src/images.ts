@@ -8,6 +8,10 @@ function pixelsOf(file: Uint8Array): number {
   if (file[0] === 0x89) return file.length < 24 ? 0 : view.getUint32(16) * view.getUint32(20);
   for (let at = 2; at + 9 < file.length && file[at] === 0xff; ) {
     const marker = file[at + 1];
+    if (marker === 0xff) {
+      ++at; // bytes that fill
+      continue;
+    }
     // A start of a frame, of which there are several kinds.
     if (marker >= 0xc0 && marker <= 0xcf && ![0xc4, 0xc8, 0xcc].includes(marker)) return view.getUint16(at + 5) * view.getUint16(at + 7);
     at += 2 + view.getUint16(at + 2);
@@ -20,6 +24,7 @@ export class PixelBudget {
   private left = 2 ** 26;
   take(file: Uint8Array): void {
     const pixels = pixelsOf(file);
+    if (pixels === 0) throw new Error("its header states no size");
     this.left += 64 * file.length;
     if (pixels > this.left) throw new Error("the textures together have too many pixels");
     this.left -= pixels;
