@@ -231,7 +231,11 @@ async function tryOffline() {
   await page.goto(`${gone}index.html?lang=en&scene=cubes`);
   await settled(page);
   const hash = await hashOf(page);
-  await page.waitForFunction(async () => (await (await caches.open("frontmost")).keys()).some(({ url }) => url.endsWith("frontmost-threads.worker.js")), undefined, patience);
+  await page.waitForFunction(async () => {
+    const kept = (await (await caches.open("frontmost")).keys()).map(({ url }) => url);
+    const loaded = [location.href, ...performance.getEntriesByType("resource").map(({ name }) => name)].filter((url) => url.startsWith(location.origin));
+    return [...loaded, "frontmost-threads.mjs", "frontmost-threads.wasm", "frontmost-threads.worker.js"].every((end) => kept.some((url) => url.endsWith(end)));
+  }, undefined, patience);
   server.close();
   server.closeAllConnections();
   await page.goto(`${gone}index.html?lang=en&scene=cubes`);
