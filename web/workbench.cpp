@@ -142,6 +142,7 @@ PlainJson Workbench::draw(const PlainJson& question) {
   ShadeOptions options;
   options.background.reset();
   options.shadows = question.value("shadows", true) ? Shadows::map : Shadows::off;
+  options.rate = question.value("coarse", false) ? ShadingRate::each_2x2 : ShadingRate::each_pixel;
   if (show == "primitives" || show == "materials") {
     color_ids(visible_, show == "primitives" ? IdKind::primitive : IdKind::material);
     answer.update(pixels_of(bitmap_));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // shade_table [--size W,H] [--frames N] [--samples N] [--picture FILE.png] MODEL... : pictures of models one after
 // another while the camera turns about them, on one thread, beside llvmpipe with base colours alone, in turns of one
-// frame each. scene:NAME is a scene of harness/scenes.h; through those with a camera inside it flies.
+// frame each. builtin:NAME is a scene of the library, scene:NAME one of harness/scenes.h; through those with a camera
+// inside it flies.
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
@@ -48,8 +49,10 @@ struct Times {
 /// Our frames: what is visible, then colours.
 class Pictures {
  public:
-  Pictures(const Surfaces& surfaces, Shadows shadows) : surfaces_(surfaces), shader_(surfaces) {
+  Pictures(const Surfaces& surfaces, Shadows shadows, ShadingRate rate = ShadingRate::each_pixel)
+      : surfaces_(surfaces), shader_(surfaces) {
     options_.shadows = shadows;
+    options_.rate = rate;
   }
   void draw(const View& view, Times& visibility, Times& colors) {
     const Execution execution{.threads = 1};
@@ -73,7 +76,11 @@ struct Subject {
 };
 
 Subject subject_of(const std::string& model) {
-  constexpr std::string_view own = "scene:";
+  constexpr std::string_view own = "scene:", built_in = "builtin:";
+  if (model.rfind(built_in, 0) == 0) {
+    const std::string name = model.substr(built_in.size());
+    return {name, builtin(name)};
+  }
   if (model.rfind(own, 0) != 0) return {std::filesystem::path(model).stem().string(), load(model)};
   const SceneEntry& entry = find_scene(model.substr(own.size()));
   return {std::string(entry.name), make_scene(entry.name, FRONTMOST_MODELS), entry.camera};
@@ -99,15 +106,17 @@ View next_view(const View& view, const Subject& subject, const Box& bounds) {
 void measure(const std::string& model, const Request& request, Table& table) {
   const Subject subject = subject_of(model);
   const Surfaces surfaces(subject.scene);
-  Pictures plain(surfaces, Shadows::off), shadowed(surfaces, Shadows::map);
+  Pictures plain(surfaces, Shadows::off), shadowed(surfaces, Shadows::map),
+      coarse(surfaces, Shadows::map, ShadingRate::each_2x2);
   TexturedGl peer(subject.scene, request.width, request.height, 1);
   View view = first_view(subject, surfaces, request);
   view.samples = request.samples;
-  Times visible, again, colors, with_shadows, theirs;
+  Times visible, again, colors, with_shadows, by_blocks, theirs;
   for (int i = 0; i < request.frames; ++i) {
     theirs.all.push_back(milliseconds([&] { peer.draw(view); }));
     plain.draw(view, visible, colors);
     shadowed.draw(view, again, with_shadows);
+    coarse.draw(view, again, by_blocks);
     view = next_view(view, subject, surfaces.bounds());
   }
   if (!request.picture.empty()) save(peer.read(), request.picture);
@@ -117,6 +126,7 @@ void measure(const std::string& model, const Request& request, Table& table) {
              {visible.median()},
              {colors.median(), 1},
              {with_shadows.median(), 1},
+             {by_blocks.median(), 1},
              {with_shadows.first(), 1},
              {1000 / all, 0},
              {theirs.median(), 1},
@@ -152,8 +162,8 @@ Request request_of(int count, char** arguments) {
 int main(int count, char** arguments) try {
   using namespace frontmost::bench;
   const Request request = request_of(count, arguments);
-  Table table("pictures one after another, one thread, ms",
-              {"model", "triangles", "visible", "colours", "with shadows", "first", "a second", "llvmpipe", "times"});
+  Table table("pictures one after another, one thread, ms", {"model", "triangles", "visible", "colours", "with shadows",
+                                                             "by 2x2", "first", "a second", "llvmpipe", "times"});
   for (const std::string& model : request.models) measure(model, request, table);
 } catch (const frontmost::Error& error) {
   std::fprintf(stderr, "shade_table: %s\n", error.what());

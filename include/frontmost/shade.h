@@ -64,6 +64,16 @@ enum class SeeThrough : std::uint8_t {
   never,         ///< what is visible, over the background
 };
 
+/// For how many pixels a colour is found at once. Of lit, flat and normals alone.
+/// (K. Vaidyanathan et al. Coarse Pixel Shading. High-Performance Graphics 2014.)
+enum class ShadingRate : std::uint8_t {
+  each_pixel,
+  /// Those of two by two pixels that show the same primitive have the colour of the first of them: up to four times as
+  /// quick, for pictures that are followed by others at once. Borders stay as sharp; textures, shadows and highlights
+  /// do not.
+  each_2x2,
+};
+
 /// In which numbers a picture is blended: what is half transparent, and the samples of a pixel.
 enum class Blend : std::uint8_t {
   linear,  ///< light, as nature does
@@ -127,6 +137,8 @@ struct ShadeOptions {
   Blend blend = Blend::linear;
   /// Of lit pictures alone, but for the environment as background.
   LightOptions light = {};
+  /// Of pictures of views; not of scans, deep images or figures.
+  ShadingRate rate = ShadingRate::each_pixel;
 };
 
 /// What is to be shaded, and what a caller may have found already of what shadows need. Borrows everything.

@@ -41,6 +41,10 @@ struct FragmentColors {
     if (alphas.empty()) alphas.assign(straight.size(), glm::vec3(-1));
     alphas[number] = by_channel;
   }
+  void copy(std::uint32_t from, std::uint32_t to) {
+    straight[to] = straight[from];
+    if (!alphas.empty()) alphas[to] = alphas[from];
+  }
 };
 
 /// The pixels of a rectangle, row by row.

@@ -22,11 +22,11 @@ void FragmentShader::add_row(PrimitiveId id, int count, const RowStart& start) {
   for (int k = 0; k < count; k += at_once)
     for (int lane = 0; lane < at_once; ++lane) {
       const int i = out.count + k + lane;
-      out.pixel[i] = start.number + std::uint32_t(k + lane);
+      out.pixel[i] = start.number + std::uint32_t(start.step * (k + lane));
       out.triangle[i] = found.number;
       out.samples[i] = start.samples;
       out.weight[i] = start.weight;
-      out.screen.x[i] = start.screen.x + float(k + lane);
+      out.screen.x[i] = start.screen.x + float(start.step * (k + lane));
       out.screen.y[i] = start.screen.y;
     }
   out.count += count;

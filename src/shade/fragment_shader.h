@@ -75,14 +75,15 @@ class FragmentShader {
   void add(PrimitiveId id, std::uint32_t number, const glm::vec2& screen, std::uint64_t samples, float weight) {
     add_row(id, 1, {number, screen, samples, weight});
   }
-  /// What pixels side by side share, and the number and position of the first.
+  /// What pixels of a row share, and the number and position of the first.
   struct RowStart {
     std::uint32_t number;
     glm::vec2 screen;
     std::uint64_t samples;
     float weight;
+    int step = 1;  ///< pixels from each to the next
   };
-  /// The same for `count` pixels side by side, whose numbers are consecutive. Precondition: as much room.
+  /// The same for `count` pixels of a row, whose numbers are as far apart as they. Precondition: as much room.
   void add_row(PrimitiveId id, int count, const RowStart& start);
   /// What is handed out of a fragment.
   struct Shaded {

@@ -40,7 +40,7 @@ void shade_tiles(const ShadedLayer& layer, const Painting& painting, PreparedSce
   const auto rows = std::size_t((view.height + tile_height - 1) / tile_height);
   parallel_for(execution, rows, 1, [&](std::size_t begin, std::size_t end) {
     const auto work = scene.works.borrow([] { return std::make_unique<TileWork>(); });
-    work->begin(layer, painting.colorist, execution.isa);
+    work->begin(layer, painting.colorist, painting.rate, execution.isa);
     for (std::size_t row = begin; row < end; ++row)
       for (int x = 0; x < view.width; x += tile_width) {
         const int y = int(row) * tile_height;
@@ -90,7 +90,7 @@ class ShownMaterials {
   /// Precondition: with layers.
   [[nodiscard]] DeepImage deep(const Surfaces& surfaces, const FragmentShader::Colorist& colorist,
                                const Execution& execution) const {
-    const LayerShader shader(*source_, *layers_, colorist, execution.isa);
+    const LayerShader shader(*source_, *layers_, colorist, ShadingRate::each_pixel, execution.isa);
     return deep_layers(surfaces, input_.view(), *layers_, shader, execution);
   }
 
@@ -172,11 +172,12 @@ void paint_materials(const Request& request, TileCanvas& canvas) {
   const ShadeOptions& options = request.options;
   with_colorist(request, shown, [&](const FragmentShader::Colorist& colorist) {
     if (options.blend == Blend::linear)
-      return shown.paint({canvas, colorist, background_color(options), options.opacity}, request.execution);
+      return shown.paint({canvas, colorist, background_color(options), options.opacity, options.rate},
+                         request.execution);
     LinearCanvas in_srgb(canvas);
     const FragmentShader::Colorist srgb = SrgbColorist{colorist};
     const glm::vec4 background = options.background ? glm::vec4(*options.background, 1) : glm::vec4(0);
-    shown.paint({in_srgb, srgb, background, options.opacity}, request.execution);
+    shown.paint({in_srgb, srgb, background, options.opacity, options.rate}, request.execution);
   });
 }
 

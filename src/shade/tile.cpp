@@ -6,9 +6,20 @@
 #include "base/memory.h"
 
 namespace frontmost::shading {
+namespace {
 
-void TileWork::begin(const ShadedLayer& layer, const Colorist& colorist, Isa isa) {
+/// A fragment's number is that of its pixel. Where pixels of a block share it, that of the block's first one, and above
+/// these bits one for each of the four that do.
+constexpr std::uint32_t kBlockBits = 16;
+constexpr std::uint32_t kWholeBlock = 15u << kBlockBits;
+static_assert(tile_pixels <= 1 << kBlockBits);
+static_assert(tile_width % 2 == 0 && tile_height % 2 == 0, "blocks lie within tiles");
+
+}  // namespace
+
+void TileWork::begin(const ShadedLayer& layer, const Colorist& colorist, ShadingRate rate, Isa isa) {
   visible_ = &layer.visible;
+  rate_ = rate;
   mixed_ = layer.pixels;
   samples_ = layer.use == SampleUse::first ? 1 : layer.view().samples;
   const auto all = sample_offsets(layer.view().samples);
@@ -22,6 +33,7 @@ void TileWork::begin(const ShadedLayer& layer, const Colorist& colorist, Isa isa
 
 bool TileWork::shade(const TileRectangle& tile) {
   fragments_.clear();
+  width_ = tile.width;
   bool anything = false;
   for (int y = 0; y < tile.height; ++y) {
     look_at_row({tile.x, tile.y + y}, tile.width, rows_[y]);
@@ -30,11 +42,14 @@ bool TileWork::shade(const TileRectangle& tile) {
   if (!anything) return false;
   // Most of a picture is background: nothing is cleared before something is found.
   std::fill(pixels_.begin(), pixels_.end(), glm::vec4(0));
-  // Block by block: what is shaded at once then lies together on the surface, as rays that are cast at once should.
-  constexpr int block = 16;
-  for (int left = 0; left < tile.width; left += block)
-    for (int y = 0; y < tile.height; ++y)
-      if (!rows_[y].is_empty) add_pixels(tile, y, left, std::min(left + block, tile.width));
+  // Strip by strip: what is shaded at once then lies together on the surface, as rays that are cast at once should.
+  constexpr int strip = 16;
+  const bool is_coarse = rate_ == ShadingRate::each_2x2;
+  for (int left = 0; left < tile.width; left += strip) {
+    const int right = std::min(left + strip, tile.width);
+    for (int y = 0; y < tile.height; y += is_coarse ? 2 : 1)
+      is_coarse ? add_blocks(tile, y, left, right) : add_pixels(tile, y, left, right);
+  }
   flush();
   return true;
 }
@@ -99,6 +114,7 @@ void TileWork::list_ids(const TileRectangle& tile, int x, int y, PrimitiveId* id
 
 void TileWork::add_pixels(const TileRectangle& tile, int y, int left, int right) {
   const Row& row = rows_[y];
+  if (row.is_empty) return;
   for (int x = left; x < right;) {
     const auto pixel = std::uint32_t(y * tile.width + x);
     const glm::ivec2 at(tile.x + x, tile.y + y);
@@ -110,17 +126,17 @@ void TileWork::add_pixels(const TileRectangle& tile, int y, int left, int right)
     const PrimitiveId id = row.first[x];
     const int begin = x++;
     while (x < right && row.first[x] == id && row.differing[x] == 0) ++x;
-    if (id != no_primitive) add_row(id, x - begin, pixel, glm::vec2(at) + centre_);
+    if (id != no_primitive) add_row(id, x - begin, {pixel, glm::vec2(at) + centre_, all_samples(), 1.0f});
   }
 }
 
-void TileWork::add_row(PrimitiveId id, int count, std::uint32_t pixel, glm::vec2 screen) {
+void TileWork::add_row(PrimitiveId id, int count, FragmentShader::RowStart start) {
   while (count > 0) {
     if (fragments_.is_full()) flush();
     const int part = std::min(count, fragments_.room());
-    fragments_.add_row(id, part, {pixel, screen, (1u << samples_) - 1, 1.0f});
-    pixel += std::uint32_t(part);
-    screen.x += float(part);
+    fragments_.add_row(id, part, start);
+    start.number += std::uint32_t(start.step * part);
+    start.screen.x += float(start.step * part);
     count -= part;
   }
 }
@@ -147,10 +163,68 @@ void TileWork::add_mixed_pixel(const TileRectangle& tile, int x, int y) {
   }
 }
 
+void TileWork::add_blocks(const TileRectangle& tile, int y, int left, int right) {
+  for (int x = left; x < right;) {
+    const glm::vec2 corner(float(tile.x + x), float(tile.y + y));
+    const auto pixel = std::uint32_t(y * tile.width + x);
+    const int whole = y + 1 < tile.height ? whole_blocks(y, x, right) : 0;
+    if (whole > 0) {
+      const PrimitiveId id = rows_[y].first[x];
+      if (id != no_primitive) add_row(id, whole, {pixel | kWholeBlock, corner + centre_, all_samples(), 1.0f, 2});
+      x += 2 * whole;
+      continue;
+    }
+    PrimitiveId ids[4];
+    for (int p = 0; p < 4; ++p) {
+      const int column = x + p % 2, row = y + p / 2;
+      ids[p] = no_primitive;
+      if (column >= tile.width || row >= tile.height) continue;
+      if (rows_[row].differing[column] != 0)
+        add_mixed_pixel(tile, column, row);
+      else
+        ids[p] = rows_[row].first[column];
+    }
+    add_shared(ids, corner, pixel);
+    x += 2;
+  }
+}
+
+int TileWork::whole_blocks(int y, int x, int right) const {
+  const Row &upper = rows_[y], &lower = rows_[y + 1];
+  const PrimitiveId id = upper.first[x];
+  const int begin = x;
+  for (; x + 1 < right; x += 2) {
+    const PrimitiveId others =
+        (upper.first[x] ^ id) | (upper.first[x + 1] ^ id) | (lower.first[x] ^ id) | (lower.first[x + 1] ^ id);
+    const PrimitiveId mixed = upper.differing[x] | upper.differing[x + 1] | lower.differing[x] | lower.differing[x + 1];
+    if ((others | mixed) != 0) break;
+  }
+  return (x - begin) / 2;
+}
+
+void TileWork::add_shared(PrimitiveId (&ids)[4], glm::vec2 corner, std::uint32_t pixel) {
+  for (int p = 0; p < 4; ++p) {
+    const PrimitiveId id = ids[p];
+    if (id == no_primitive) continue;
+    std::uint32_t sharing = 0;
+    for (int other = p; other < 4; ++other) {
+      if (ids[other] != id) continue;
+      sharing |= 1u << other;
+      ids[other] = no_primitive;
+    }
+    const glm::vec2 first = corner + glm::vec2(float(p % 2), float(p / 2));
+    add_row(id, 1, {pixel | sharing << kBlockBits, first + centre_, all_samples(), 1.0f});
+  }
+}
+
 void TileWork::flush() {
   // In the order of arrival, which is that of samples: sums of a pixel do not depend on its neighbours.
   fragments_.hand_out([this](const FragmentShader::Shaded& s) {
-    pixels_[s.number] += glm::vec4(s.light * (s.weight * s.alpha), s.weight * s.alpha);
+    const glm::vec4 color(s.light * (s.weight * s.alpha), s.weight * s.alpha);
+    const std::uint32_t pixel = s.number & ((1u << kBlockBits) - 1), sharing = s.number >> kBlockBits;
+    if (sharing == 0) return void(pixels_[pixel] += color);
+    for (std::uint32_t p = 0; p < 4; ++p)
+      if (sharing >> p & 1) pixels_[pixel + p / 2 * std::uint32_t(width_) + p % 2] += color;
   });
 }
 

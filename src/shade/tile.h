@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "frontmost/shade.h"
 #include "frontmost/visible.h"
 #include "frontmost/visible_pixels.h"
 #include "shade/fragment_shader.h"
@@ -38,7 +39,7 @@ class TileWork {
 
   TileWork() : pixels_(tile_pixels) {}
   /// Starts a picture; borrows everything. Precondition of shade().
-  void begin(const ShadedLayer& layer, const Colorist& colorist, Isa isa);
+  void begin(const ShadedLayer& layer, const Colorist& colorist, ShadingRate rate, Isa isa);
 
   /// Premultiplied sums over the samples of each pixel, row by row of the tile. False where nothing is seen at all.
   bool shade(const TileRectangle& tile);
@@ -64,13 +65,23 @@ class TileWork {
   void list_ids(const TileRectangle& tile, int x, int y, PrimitiveId* ids);
   /// Fragments of the pixels [left, right) of a row of the tile.
   void add_pixels(const TileRectangle& tile, int y, int left, int right);
-  void add_row(PrimitiveId id, int count, std::uint32_t pixel, glm::vec2 screen);
+  /// As FragmentShader's, of pixels that no other primitive shares; `count` of any size.
+  void add_row(PrimitiveId id, int count, FragmentShader::RowStart start);
+  /// Fragments of two rows, y and the one below: of pixels that share them one.
+  void add_blocks(const TileRectangle& tile, int y, int left, int right);
+  /// How many blocks side by side show one primitive alone, or none, as far as `right`.
+  [[nodiscard]] int whole_blocks(int y, int x, int right) const;
+  /// One for each of the ids of a block, from its upper left corner and first pixel on; they are used up.
+  void add_shared(PrimitiveId (&ids)[4], glm::vec2 corner, std::uint32_t pixel);
   void add_mixed_pixel(const TileRectangle& tile, int x, int y);
+  [[nodiscard]] std::uint64_t all_samples() const { return (1u << samples_) - 1; }
   void flush();
 
   const Visible* visible_ = nullptr;
   const VisiblePixels* mixed_ = nullptr;  ///< null where `visible_` holds all samples
   int samples_ = 1;
+  ShadingRate rate_ = ShadingRate::each_pixel;
+  int width_ = 0;                        ///< of the tile
   std::array<glm::vec2, 16> offsets_{};  ///< of the samples within a pixel
   glm::vec2 centre_{0};                  ///< their mean
   FragmentShader fragments_;

@@ -59,7 +59,7 @@ std::map<std::pair<int, int>, std::vector<Seen>> fragments(const Fake& fake) {
     }
   };
   TileWork work;
-  work.begin({source, fake.visible}, colorist, Isa::best);
+  work.begin({source, fake.visible}, colorist, ShadingRate::each_pixel, Isa::best);
   const View& view = fake.visible.view;
   for (int y = 0; y < view.height; y += tile_height)
     for (int x = 0; x < view.width; x += tile_width) {

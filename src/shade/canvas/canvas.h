@@ -25,6 +25,7 @@ struct Painting {
   const FragmentShader::Colorist& colorist;
   glm::vec4 background;  ///< what an empty pixel gets
   float opacity = 1;     ///< of everything, where it is not the A-buffer's
+  ShadingRate rate = ShadingRate::each_pixel;
 };
 
 /// An image of up to four channels, named as they are to be.

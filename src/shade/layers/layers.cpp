@@ -19,11 +19,25 @@ std::vector<glm::vec4> laid_over(const PaintedPixels& painted, const glm::vec3& 
   return pixels;
 }
 
+/// The first fragment of the same primitive, as many layers deep, in the two by two pixels to which pixel p belongs;
+/// `i` itself where there is none before it.
+std::size_t shared_fragment(const Rectangle& pixels, const PixelLists& lists, std::size_t p, std::size_t i) {
+  const auto width = std::size_t(pixels.width), x = p % width, y = p / width;
+  const std::size_t left = x - x % 2, top = y - y % 2;
+  for (const auto& [column, row] : {std::pair(left, top), std::pair(left + 1, top), std::pair(left, top + 1)}) {
+    const std::size_t other = row * width + column;
+    if (column == width || other >= p) continue;
+    const std::size_t same = lists.begin[other] + (i - lists.begin[p]);
+    if (same < lists.begin[other + 1] && lists.fragments[same].primitive == lists.fragments[i].primitive) return same;
+  }
+  return i;
+}
+
 }  // namespace
 
 LayerShader::LayerShader(const TriangleSource& source, const FragmentPass& pass,
-                         const FragmentShader::Colorist& colorist, Isa isa)
-    : source_(source), colorist_(colorist), isa_(isa) {
+                         const FragmentShader::Colorist& colorist, ShadingRate rate, Isa isa)
+    : source_(source), colorist_(colorist), rate_(rate), isa_(isa) {
   for (const glm::ivec2& s : pass.samples()) positions_.push_back(glm::vec2(s) / 256.0f);
 }
 
@@ -42,16 +56,23 @@ void LayerShader::shade(const Rectangle& pixels, const PixelLists& lists, std::s
                         FragmentColors& colors) const {
   const auto shader = shaders_.borrow([] { return std::make_unique<FragmentShader>(); });
   const auto receive = [&](const FragmentShader::Shaded& s) { colors.set(s.number, s.light, s.alpha, s.alphas); };
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> shared;  // from whom and to whom
   shader->begin(source_, colorist_, isa_);
   for (std::size_t p = 0; p + 1 < lists.begin.size(); ++p) {
     const glm::vec2 corner(float(pixels.x + int(p) % pixels.width), float(pixels.y + int(p) / pixels.width));
     for (std::size_t i = lists.begin[p]; i < lists.begin[p + 1]; ++i) {
-      if (shader->is_full()) shader->hand_out(receive);
       const Fragment& f = lists.fragments[i];
+      if (rate_ == ShadingRate::each_2x2)
+        if (const std::size_t same = shared_fragment(pixels, lists, p, i); same != i) {
+          shared.push_back({numbers[same], numbers[i]});
+          continue;
+        }
+      if (shader->is_full()) shader->hand_out(receive);
       shader->add(f.primitive, numbers[i], corner + centroid(f.mask), f.mask, 1.0f);
     }
   }
   shader->hand_out(receive);
+  for (const auto& [from, to] : shared) colors.copy(from, to);
 }
 
 BitSet seen_primitives(const Surfaces& surfaces, const FragmentPass& pass, const Execution& execution) {
@@ -66,7 +87,7 @@ BitSet seen_primitives(const Surfaces& surfaces, const FragmentPass& pass, const
 
 void shade_layers(const TriangleSource& source, const FragmentPass& pass, const Painting& painting,
                   const Execution& execution) {
-  const LayerShader shader(source, pass, painting.colorist, execution.isa);
+  const LayerShader shader(source, pass, painting.colorist, painting.rate, execution.isa);
   const auto paint = [&](const Rectangle& pixels, const PixelLists& lists, FragmentColors& colors) {
     shader.shade(pixels, lists, lists.numbers, colors);
   };

@@ -19,9 +19,10 @@ namespace frontmost::shading {
 class LayerShader {
  public:
   LayerShader(const TriangleSource& source, const abuffer_detail::FragmentPass& pass,
-              const FragmentShader::Colorist& colorist, Isa isa);
+              const FragmentShader::Colorist& colorist, ShadingRate rate, Isa isa);
 
   /// Sets the colours of number numbers[i] for every fragment i: shaded at the middle of what it covers of its pixel.
+  /// Pixels of a block share one where the same primitive is as many layers deep.
   void shade(const abuffer_detail::Rectangle& pixels, const abuffer_detail::PixelLists& lists,
              std::span<const std::uint32_t> numbers, abuffer_detail::FragmentColors& colors) const;
 
@@ -31,6 +32,7 @@ class LayerShader {
 
   const TriangleSource& source_;
   const FragmentShader::Colorist& colorist_;
+  ShadingRate rate_;
   Isa isa_;
   std::vector<glm::vec2> positions_;  ///< of the masks' bits
   mutable Pool<FragmentShader> shaders_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The workbench: a model, its picture, and what may be asked of it.
 //
-//   turning      a quick picture for every move: one sample, smaller where the machine is slow
+//   turning      a quick picture for every move: one sample, and as fine as this machine draws it in time
 //   at rest      the same view with four samples a pixel, its hash, edges where they are asked for
 import type { Answer, Question } from "./answer.ts";
 import { Client, toImage } from "./client.ts";
@@ -14,14 +14,24 @@ import { besideWebGL } from "./beside.ts";
 import { accountTable, hidingTable, hitList, neverSeenTable } from "./answers.ts";
 import { scenes, views, words } from "./words.ts";
 
-const quickMilliseconds = 30;
+/** What pictures are like while the view turns, the quickest first: as large as can be drawn thirty times a second, pixels
+ * sharing colours; then, where sixty a second leave time for it, with shadows, and with a colour for every pixel. */
+interface Quality {
+  scale: number;
+  coarse: boolean;
+  shadows: boolean;
+  milliseconds: number; // that it may take
+  more: number; // of the one before, about
+}
+const qualities: Quality[] = [0.35, 0.39, 0.42, 0.47, 0.51, 0.56, 0.62, 0.68, 0.75, 0.83, 0.91, 1].map((scale) => ({ scale, coarse: true, shadows: false, milliseconds: 30, more: 1.21 }));
+qualities.push({ scale: 1, coarse: true, shadows: true, milliseconds: 14, more: 1.3 }, { scale: 1, coarse: false, shadows: true, milliseconds: 14, more: 2 });
 
 const client = new Client();
 let model: Answer;
 let modelArgument = "";
 let camera: Camera | undefined;
 let show = "picture", layer = 1, withHidden = false;
-let scale = 0.5; // of pictures while turning; the first one shows how fast this machine is
+let quality = 4; // of pictures while turning; the first one shows how fast this machine is
 let requests = 0; // of pictures, so far
 let isDrawing = false, wanted: "none" | "quick" | "fine" = "none";
 let restTimer = 0;
@@ -71,8 +81,8 @@ function pictureSize(): [number, number] {
 }
 
 function paint(image: ImageData): void {
-  canvas.width = image.width;
-  canvas.height = image.height;
+  if (canvas.width !== image.width) canvas.width = image.width;
+  if (canvas.height !== image.height) canvas.height = image.height;
   canvas.getContext("2d")!.putImageData(image, 0, 0);
 }
 
@@ -100,14 +110,14 @@ function paintEdges(answer: Answer, width: number, height: number): void {
 
 function drawQuestion(kind: "quick" | "fine"): Question {
   const [width, height] = pictureSize();
-  const shrink = kind === "quick" ? scale : 1;
+  const quick = qualities[quality], shrink = kind === "quick" ? quick.scale : 1;
   const one: Camera = { ...camera!, width: Math.max(8, Math.round(width * shrink)), height: Math.max(8, Math.round(height * shrink)) };
   delete one.near;
   delete one.far;
   // While it turns, edges have triangles' depth to be followed by.
   const what = show === "edges" ? "depth" : show;
   if (kind === "fine" && what === "picture") one.samples = 4;
-  return { ask: "draw", camera: one, show: what, layer, hash: kind === "fine", shadows: kind === "fine" || scale === 1 };
+  return { ask: "draw", camera: one, show: what, layer, hash: kind === "fine", shadows: kind === "fine" || quick.shadows, coarse: kind === "quick" && quick.coarse };
 }
 
 function tell(answer: Answer, kind: "quick" | "fine"): void {
@@ -126,8 +136,9 @@ async function drawOnce(kind: "quick" | "fine"): Promise<void> {
   tell(answer, kind);
   if (kind === "quick") {
     const passed = performance.now() - begin;
-    if (passed > quickMilliseconds * 1.2 && scale > 0.35) scale *= 0.8;
-    else if (passed < quickMilliseconds * 0.6 && scale < 1) scale = Math.min(1, scale * 1.15);
+    const next = qualities[quality + 1];
+    if (passed > qualities[quality].milliseconds * 1.2 && quality > 0) --quality;
+    else if (next && passed * next.more < next.milliseconds) ++quality;
     return;
   }
   fineAnswer = answer;

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures of which two by two pixels share colours, beside those of which every pixel has its own.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "frontmost/abuffer.h"
+#include "frontmost/shade.h"
+#include "frontmost/zbuffer.h"
+#include "shade/support.h"
+
+namespace frontmost {
+namespace {
+
+using namespace test;
+
+std::vector<std::uint8_t> bytes_of(const Bitmap& bitmap) { return {bitmap.rgba.begin(), bitmap.rgba.end()}; }
+
+ShadeOptions with_rate(ShadeOptions options, ShadingRate rate) {
+  options.rate = rate;
+  return options;
+}
+
+View odd_view(const Surfaces& surfaces, int samples) {
+  View view = frame(surfaces, 333, 187);
+  view.samples = samples;
+  return view;
+}
+
+/// What the samples of a pixel see, if that is one primitive.
+PrimitiveId only_primitive(const Visible& visible, int x, int y) {
+  const PrimitiveId first = visible.primitives[visible.index(x, y)];
+  for (int s = 1; s < visible.view.samples; ++s)
+    if (visible.primitives[visible.index(x, y, s)] != first) return no_primitive;
+  return first;
+}
+
+/// The pixel whose colour the one at (x, y) is to have.
+glm::ivec2 leader_of(const Visible& visible, int x, int y) {
+  const PrimitiveId own = only_primitive(visible, x, y);
+  if (own == no_primitive) return {x, y};
+  for (const glm::ivec2 at : {glm::ivec2(0, 0), glm::ivec2(1, 0), glm::ivec2(0, 1), glm::ivec2(1, 1)}) {
+    const glm::ivec2 p = glm::ivec2(x / 2 * 2, y / 2 * 2) + at;
+    if (p.x < visible.view.width && p.y < visible.view.height && only_primitive(visible, p.x, p.y) == own) return p;
+  }
+  ADD_FAILURE() << "the pixel is in its own block";
+  return {x, y};
+}
+
+/// A triangle's planes are rounded about the first of its pixels that is shaded.
+constexpr float kRounding = 2e-5f;
+
+struct Compared {
+  std::size_t shared = 0;
+  float farthest = 0;  ///< of any channel from what it is to be
+};
+
+Compared compare_with_leaders(const Visible& visible, const Image& coarse, const Image& fine) {
+  Compared compared;
+  for (int y = 0; y < visible.view.height; ++y)
+    for (int x = 0; x < visible.view.width; ++x) {
+      const glm::ivec2 leader = leader_of(visible, x, y);
+      compared.shared += leader != glm::ivec2(x, y);
+      const glm::vec4 off = glm::abs(color_at(coarse, x, y) - color_at(fine, leader.x, leader.y));
+      compared.farthest = std::max({compared.farthest, off.r, off.g, off.b, off.a});
+    }
+  return compared;
+}
+
+TEST(ShadingRate, PixelsOfABlockHaveTheColourOfTheFirstThatShowsTheirPrimitive) {
+  for (const char* name : {"teapot", "cubes", "city"})
+    for (const int samples : {1, 4})
+      for (const Shading shading : {Shading::lit, Shading::normals}) {
+        SCOPED_TRACE(testing::Message() << name << ", " << samples << " samples");
+        const Scene scene = builtin(name);
+        const Surfaces surfaces(scene);
+        const Visible visible = zbuffer(surfaces, odd_view(surfaces, samples));
+        const ShadeOptions options{.shading = shading, .see_through = SeeThrough::never};
+        const Image fine = shade(surfaces, visible, options);
+        const Image coarse = shade(surfaces, visible, with_rate(options, ShadingRate::each_2x2));
+        const Compared compared = compare_with_leaders(visible, coarse, fine);
+        EXPECT_LT(compared.farthest, kRounding);
+        EXPECT_GT(compared.shared, visible.view.pixel_count() / 100);
+      }
+}
+
+TEST(ShadingRate, RaysOfShadowsAreCastFromTheFirstPixel) {
+  const Scene scene = builtin("cubes");
+  const Surfaces surfaces(scene);
+  const Visible visible = zbuffer(surfaces, odd_view(surfaces, 2));
+  const ShadeOptions options{.shadows = Shadows::rays};
+  const Image fine = shade(surfaces, visible, options);
+  const Image coarse = shade(surfaces, visible, with_rate(options, ShadingRate::each_2x2));
+  EXPECT_LT(compare_with_leaders(visible, coarse, fine).farthest, kRounding);
+}
+
+/// Three squares before each other, the two in front of glass, with colours that change from pixel to pixel.
+Scene panes() {
+  Scene scene;
+  scene.up = Axis::y;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    Mesh mesh = square();
+    mesh.colors.values = {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}, {1, 1, 1, 1}};
+    mesh.material_ids = {i};
+    const std::uint32_t object = add(scene, std::move(mesh));
+    scene.instances[object].world_from_mesh[3] = {0.3 * i, 0.17 * i, -double(i), 1};
+    Material material = colored({1, 1, 1, i == 2 ? 1.0f : 0.4f});
+    if (i < 2) material.alpha = Material::Alpha::blend;
+    scene.materials.push_back(material);
+  }
+  return scene;
+}
+
+/// The fragments of one pixel of a deep image, nearest first.
+struct DeepPixel {
+  const DeepImage& image;
+  std::size_t begin, end;
+
+  DeepPixel(const DeepImage& deep, int x, int y) : image(deep) {
+    const auto pixel = std::size_t(y * deep.width + x);
+    begin = deep.first[pixel], end = deep.first[pixel + 1];
+  }
+  [[nodiscard]] std::size_t size() const { return end - begin; }
+  [[nodiscard]] const Channel& channel(std::string_view name) const {
+    return *std::find_if(image.channels.begin(), image.channels.end(),
+                         [&](const Channel& c) { return c.name == name; });
+  }
+  [[nodiscard]] std::uint32_t primitive(std::size_t k) const { return channel("primitive").integers()[begin + k]; }
+  [[nodiscard]] float value(std::string_view name, std::size_t k) const { return channel(name).floats()[begin + k]; }
+};
+
+/// The k-th of a pixel, or of the first one in its block whose k-th is of the same primitive.
+std::pair<DeepPixel, std::size_t> shared_layer(const DeepImage& deep, int x, int y, std::size_t k) {
+  const DeepPixel own(deep, x, y);
+  for (const glm::ivec2 at : {glm::ivec2(0, 0), glm::ivec2(1, 0), glm::ivec2(0, 1)}) {
+    const glm::ivec2 p = glm::ivec2(x / 2 * 2, y / 2 * 2) + at;
+    if (p.x >= deep.width || p.y * deep.width + p.x >= y * deep.width + x) continue;
+    const DeepPixel other(deep, p.x, p.y);
+    if (k < other.size() && other.primitive(k) == own.primitive(k)) return {other, k};
+  }
+  return {own, k};
+}
+
+TEST(ShadingRate, LayersAreSharedWhereTheyAreAsManyDeep) {
+  const Scene scene = panes();
+  const Surfaces surfaces(scene);
+  View view = front_view(64);
+  view.width = 63;
+  view.height = 61;
+  const ShadeOptions options{.background = std::nullopt, .shadows = Shadows::off};
+  const Visible visible = zbuffer(surfaces, view);
+  const DeepImage deep = shade_deep(surfaces, visible, options);
+  const Image coarse = shade(surfaces, visible, with_rate(options, ShadingRate::each_2x2));
+  std::size_t shared = 0;
+  for (int y = 0; y < view.height; ++y)
+    for (int x = 0; x < view.width; ++x) {
+      const DeepPixel own(deep, x, y);
+      glm::vec4 wanted(0);
+      for (std::size_t k = 0; k < own.size(); ++k) {
+        const auto [layer, i] = shared_layer(deep, x, y, k);
+        shared += layer.begin != own.begin;
+        const glm::vec4 color(layer.value("R", i), layer.value("G", i), layer.value("B", i), layer.value("A", i));
+        wanted += (1 - wanted.a) * color;
+      }
+      const glm::vec4 found = color_at(coarse, x, y);
+      for (int c = 0; c < 4; ++c) ASSERT_NEAR(found[c], wanted[c], 1e-5f) << x << ", " << y << ", channel " << c;
+    }
+  EXPECT_GT(shared, 2000u);
+}
+
+TEST(ShadingRate, TheBytesDependNeitherOnThreadsNorOnTheInstructionSet) {
+  for (const char* name : {"teapot", "gallery"}) {
+    const Scene scene = builtin(name);
+    const Surfaces surfaces(scene);
+    const Visible visible = zbuffer(surfaces, odd_view(surfaces, 1));
+    const ShadeOptions options{.rate = ShadingRate::each_2x2};
+    const std::vector<std::uint8_t> one = bytes_of(shade_bitmap(surfaces, visible, options, {.threads = 1}));
+    for (const Isa isa : available_isas())
+      EXPECT_EQ(bytes_of(shade_bitmap(surfaces, visible, options, {.threads = 3, .isa = isa})), one) << name;
+  }
+}
+
+TEST(ShadingRate, MapsAreOfEveryPixel) {
+  const Scene scene = builtin("teapot");
+  const Surfaces surfaces(scene);
+  const Visible visible = zbuffer(surfaces, odd_view(surfaces, 1));
+  for (const Shading shading : {Shading::depth, Shading::ids, Shading::uv}) {
+    const ShadeOptions options{.shading = shading};
+    EXPECT_EQ(bytes_of(shade_bitmap(surfaces, visible, with_rate(options, ShadingRate::each_2x2))),
+              bytes_of(shade_bitmap(surfaces, visible, options)));
+  }
+}
+
+}  // namespace
+}  // namespace frontmost
