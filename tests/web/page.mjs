@@ -225,22 +225,23 @@ async function tryRedirectingHost() {
   host.close();
 }
 
-/** After one visit the page needs no network. */
+/** After one visit no page needs a network, those that were not visited neither. */
 async function tryOffline() {
   const { server, address: gone } = await serve(folder), { page, complaints, context } = await openPage(browser);
   await page.goto(`${gone}index.html?lang=en&scene=cubes`);
   await settled(page);
   const hash = await hashOf(page);
   await page.waitForFunction(async () => {
-    const kept = (await (await caches.open("frontmost")).keys()).map(({ url }) => url);
-    const loaded = [location.href, ...performance.getEntriesByType("resource").map(({ name }) => name)].filter((url) => url.startsWith(location.origin));
-    return [...loaded, "frontmost-threads.mjs", "frontmost-threads.wasm", "frontmost-threads.worker.js"].every((end) => kept.some((url) => url.endsWith(end)));
+    const kept = (await (await caches.open("frontmost")).keys()).map(({ url }) => url), files = await (await fetch("files.json")).json();
+    return [...files, "frontmost-threads.mjs", "frontmost-threads.wasm", "frontmost-threads.worker.js"].every((file) => kept.some((url) => url.endsWith(file)));
   }, undefined, patience);
   server.close();
   server.closeAllConnections();
   await page.goto(`${gone}index.html?lang=en&scene=cubes`);
   await settled(page);
   assert.equal(await hashOf(page), hash);
+  await page.goto(`${gone}lesson.html?lesson=z-buffer&lang=zh`);
+  await page.waitForFunction(() => /\/ [1-9]/.test(document.querySelector(".steps output")?.textContent ?? ""), undefined, patience);
   assert.deepEqual(complaints.filter((text) => !/ERR_CONNECTION_REFUSED/.test(text)), []);
   await context.close();
 }

@@ -77,7 +77,7 @@ export function bar(page: "workbench" | "lessons"): HTMLElement {
       element("button", { class: "button plain", lang: language === "en" ? "zh-Hans" : "en", onclick: switchLanguage }, language === "en" ? "中文" : "English")));
 }
 
-/** Once everything has been loaded, pages work without a network. What came before there was anybody to keep it is asked
+/** Once a page has been loaded, all of them work without a network. What came before there was anybody to keep it is asked
  * for again, which the browser answers from what it holds. */
 export async function keepForLater(): Promise<void> {
   if (!("serviceWorker" in navigator) || !isSecureContext) return;
@@ -87,9 +87,9 @@ export async function keepForLater(): Promise<void> {
     await navigator.serviceWorker.register("keeper.js");
     await isKept;
     const name = crossOriginIsolated ? "frontmost-threads" : "frontmost";
-    const loaded = [location.href, ...performance.getEntriesByType("resource").map((entry) => entry.name), `${name}.mjs`, `${name}.wasm`];
-    if (crossOriginIsolated) loaded.push(`${name}.worker.js`);
-    for (const address of new Set(loaded)) await fetch(address, { cache: "force-cache" });
+    const files: string[] = await (await fetch("files.json")).json();
+    files.push(location.href, `${name}.mjs`, `${name}.wasm`, ...(crossOriginIsolated ? [`${name}.worker.js`] : []));
+    for (const file of files) await fetch(file, { cache: "force-cache" });
   } catch {
     // Then the page needs the network the next time, too.
   }
