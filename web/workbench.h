@@ -38,7 +38,8 @@ class Workbench {
   /// {"width", "height", "view": "three-quarter", ...} -> a camera that shows all of it.
   PlainJson frame(const PlainJson& question);
   /// {"camera", "show", ...} -> {"pixels", "width", "height", "near", "far", "milliseconds"}; with "hash" the hash of
-  /// what is visible, too; with "coarse" pixels share colours. "show" is picture, depth, primitives, objects, materials, normals or layer.
+  /// what is visible, too; with "coarse" pixels share colours. "show" is picture, depth, primitives, objects,
+  /// materials, normals or layer.
   PlainJson draw(const PlainJson& question);
   /// The feature edges of the last view: x and y of both ends, and 1 where they are hidden; five floats an edge.
   PlainJson edges(const PlainJson& question);

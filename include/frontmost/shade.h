@@ -59,7 +59,7 @@ enum class Shadows : std::uint8_t {
 
 /// How much of what lies one behind another a picture shows. Of lit, flat and normals alone.
 enum class SeeThrough : std::uint8_t {
-  where_needed,  ///< every layer, by the A-buffer, of scenes in which something can be seen through
+  where_needed,  ///< every layer, by the A-buffer, wherever something is visible that can be seen through
   always,        ///< the same of opaque scenes: for the A-buffer's sub-samples
   never,         ///< what is visible, over the background
 };
@@ -179,8 +179,8 @@ struct ScanInput {
                                                  const LightOptions& light = {}, const Execution& execution = {});
 
 /// A picture with channels R, G, B, A. Shades once per pixel and primitive and averages over the samples.
-/// Where materials are blended, or the opacity is below 1, the A-buffer of the same view says all that is seen through,
-/// in true order at every sample.
+/// Where something is visible that can be seen through, or the opacity is below 1, the A-buffer of the same view says
+/// all that is seen, in true order at every sample: of 64 x 64 pixels at a time, or of all with a grid of sub-samples.
 /// \throws Error bad_argument for an opacity, a grid, ambient occlusion or light options out of range; limit_exceeded
 /// for more than 4096 lights that count; unsupported for depths of pixels. Borrows everything; O(covered pixels). The
 /// bytes do not depend on threads or instruction set.

@@ -50,7 +50,7 @@ FragmentCounts count_fragments(const Surfaces& surfaces, const View& view, const
     counts.longest = std::max(counts.longest, longest);
   };
   const CopyRule all;
-  frame.visit_tiles(all, visit, execution);
+  frame.visit_tiles(all, visit, nullptr, execution);
   return counts;
 }
 

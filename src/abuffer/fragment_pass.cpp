@@ -140,21 +140,22 @@ PixelLists FragmentPass::lists_of(const Rectangle& pixels, const GatherScratch& 
   return lister.take();
 }
 
-void FragmentPass::list_primitives(const Note& note, const Execution& execution) const {
+void FragmentPass::list_primitives(const Note& note, const LeaveOut& leave_out, const Execution& execution) const {
   const auto visit = [&](const Rectangle& /*pixels*/, const GatherScratch* fragments) {
     if (fragments) note({fragments->triangles.id.data(), fragments->triangles.count});
   };
-  frame_.visit_tiles(copies_, visit, execution);
+  frame_.visit_tiles(copies_, visit, leave_out, execution);
 }
 
 void FragmentPass::look(const Look& look, const Execution& execution) const {
   const auto visit = [&](const Rectangle& pixels, const GatherScratch* fragments) {
     if (fragments) look(pixels, lists_of(pixels, *fragments, 0));
   };
-  frame_.visit_lists(copies_, visit, execution);
+  frame_.visit_lists(copies_, visit, nullptr, execution);
 }
 
-void FragmentPass::paint(const Paint& paint, const Receive& receive, const Execution& execution) const {
+void FragmentPass::paint(const Paint& paint, const Receive& receive, const LeaveOut& leave_out,
+                         const Execution& execution) const {
   const CompositeInput input{frame_.pattern(), opacity_, execution.isa};
   const auto visit = [&](const Rectangle& pixels, const GatherScratch* fragments) {
     if (!fragments) return receive(pixels, nullptr);
@@ -165,7 +166,7 @@ void FragmentPass::paint(const Paint& paint, const Receive& receive, const Execu
     const PaintedPixels painted = composite(input, pixels, *fragments, colors);
     receive(pixels, &painted);
   };
-  frame_.visit_lists(copies_, visit, execution);
+  frame_.visit_lists(copies_, visit, leave_out, execution);
 }
 
 }  // namespace frontmost::abuffer_detail

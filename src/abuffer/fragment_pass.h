@@ -65,10 +65,14 @@ class FragmentPass {
   /// Positions of the masks' bits in 1/256 pixel.
   [[nodiscard]] std::vector<glm::ivec2> samples() const { return frame_.pattern().positions(); }
 
+  /// Nothing is seen through it, whatever its texture says.
+  [[nodiscard]] bool is_opaque(PrimitiveId id) const { return opacities_.is_opaque(id); }
+
+  using LeaveOut = PreparedFrame::LeaveOut;
   /// The primitives in one part of the picture after another: all that are seen, some hidden ones, some several times.
   /// Quicker than looking at their fragments.
   using Note = std::function<void(std::span<const PrimitiveId> primitives)>;
-  void list_primitives(const Note& note, const Execution& execution) const;
+  void list_primitives(const Note& note, const LeaveOut& leave_out, const Execution& execution) const;
 
   /// Takes the lists without what lies wholly behind opaque fragments that cover the whole pixel.
   using Look = std::function<void(const Rectangle& pixels, PixelLists lists)>;
@@ -80,7 +84,7 @@ class FragmentPass {
   /// Takes the finished pixels of the rectangle; null where nothing is seen.
   using Receive = std::function<void(const Rectangle& pixels, const PaintedPixels* painted)>;
   /// Lays the colours over each other, every alpha multiplied by the options' opacity.
-  void paint(const Paint& paint, const Receive& receive, const Execution& execution) const;
+  void paint(const Paint& paint, const Receive& receive, const LeaveOut& leave_out, const Execution& execution) const;
 
  private:
   /// Leaves out what lies wholly behind opaque fragments that cover the whole pixel; and what lies wholly behind

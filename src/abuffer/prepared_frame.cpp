@@ -93,7 +93,8 @@ PreparedFrame::PreparedFrame(const Surfaces& surfaces, const View& view, const A
                              const Execution& execution)
     : pattern_(sample_pattern(valid(view, options), options.grid)), plan_(surfaces, view, execution) {}
 
-void PreparedFrame::visit_tiles(const CopyRule& copies, const Visit& visit, const Execution& execution) const {
+void PreparedFrame::visit_tiles(const CopyRule& copies, const Visit& visit, const LeaveOut& leave_out,
+                                const Execution& execution) const {
   const IeeeScope ieee;
   std::atomic<std::size_t> done{0};
   const std::size_t tiles = plan_.tile_count();
@@ -104,6 +105,7 @@ void PreparedFrame::visit_tiles(const CopyRule& copies, const Visit& visit, cons
     TileVisitor visitor(*scratch, visit);
     for (std::size_t tile = begin; tile < end; ++tile) {
       const GatherJob job{plan_.tile(tile), tile};
+      if (leave_out && leave_out(job.pixels)) continue;
       if (visitor.visit_whole({plan_, pattern_, execution.isa}, job)) continue;
       visitor.visit_in_parts({crowded.thinned(), pattern_, execution.isa}, job);
     }
@@ -111,7 +113,8 @@ void PreparedFrame::visit_tiles(const CopyRule& copies, const Visit& visit, cons
   });
 }
 
-void PreparedFrame::visit_lists(const CopyRule& copies, const Visit& visit, const Execution& execution) const {
+void PreparedFrame::visit_lists(const CopyRule& copies, const Visit& visit, const LeaveOut& leave_out,
+                                const Execution& execution) const {
   const GatherInput input{plan_, pattern_, execution.isa};
   const auto sort_and_visit = [&](const Rectangle& pixels, GatherScratch* fragments) {
     if (fragments) {
@@ -120,7 +123,7 @@ void PreparedFrame::visit_lists(const CopyRule& copies, const Visit& visit, cons
     }
     visit(pixels, fragments);
   };
-  visit_tiles(copies, sort_and_visit, execution);
+  visit_tiles(copies, sort_and_visit, leave_out, execution);
 }
 
 }  // namespace frontmost::abuffer_detail

@@ -85,7 +85,7 @@ std::vector<Visible> visible_layers(const Surfaces& surfaces, const View& view, 
           }
         }
   };
-  frame.visit_lists(copies, visit, execution);
+  frame.visit_lists(copies, visit, nullptr, execution);
   return layers;
 }
 

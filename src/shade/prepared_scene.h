@@ -14,6 +14,15 @@
 
 namespace frontmost::shading {
 
+/// Every primitive that holds a sample.
+[[nodiscard]] inline BitSet seen_primitives(const Surfaces& surfaces, const ShadeInput& input,
+                                            const Execution& execution, BitSet memory) {
+  BitSet seen = seen_primitives(surfaces, input.visible, execution, std::move(memory));
+  for (std::size_t i = 0; input.pixels && i < input.pixels->other_count; ++i)
+    if (input.pixels->others[i] != no_primitive) seen.add(input.pixels->others[i]);
+  return seen;
+}
+
 struct PreparedScene {
   /// Borrows the surfaces and their scene. O(instances + materials).
   explicit PreparedScene(const Surfaces& from)
@@ -46,9 +55,7 @@ struct PreparedScene {
   /// The same of what is visible, which is not looked at where nothing is left to be made ready.
   void make_materials_ready(const ShadeInput& input, const Execution& execution) {
     if (materials.is_ready()) return;
-    seen = seen_primitives(surfaces, input.visible, execution, std::move(seen));
-    for (std::size_t i = 0; input.pixels && i < input.pixels->other_count; ++i)
-      if (input.pixels->others[i] != no_primitive) seen.add(input.pixels->others[i]);
+    seen = seen_primitives(surfaces, input, execution, std::move(seen));
     make_materials_ready(seen, execution);
   }
 

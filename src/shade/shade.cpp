@@ -1,23 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frontmost/shade.h"
 
-#include <algorithm>
 #include <functional>
 
-#include "base/parallel.h"
-#include "base/pool.h"
 #include "base/srgb.h"
 #include "shade/canvas/canvas.h"
 #include "shade/canvas/environment_canvas.h"
 #include "shade/canvas/srgb_blend.h"
 #include "shade/colorists.h"
 #include "shade/figure/colored_order.h"
-#include "shade/layers/layers.h"
-#include "shade/layers/opaque_part.h"
 #include "shade/picture_parts.h"
-#include "shade/prepared_scene.h"
 #include "shade/scan/scan_picture.h"
+#include "shade/shade_tiles.h"
 #include "shade/shadow/light_view.h"
+#include "shade/shown_materials.h"
 #include "view/answer.h"
 
 namespace frontmost {
@@ -25,113 +21,11 @@ namespace {
 
 using namespace shading;
 
-void shade_tile(const TileRectangle& tile, TileWork& work, const Painting& painting) {
-  if (work.shade(tile)) {
-    if (painting.opacity != 1.0f) work.fade(painting.opacity);
-    painting.canvas.write(tile, work.pixels(), painting.background);
-  } else {
-    painting.canvas.fill(tile, painting.background);
-  }
-}
-
-/// Shades all tiles, one row of tiles to a thread at a time.
-void shade_tiles(const ShadedLayer& layer, const Painting& painting, PreparedScene& scene, const Execution& execution) {
-  const View& view = layer.view();
-  const auto rows = std::size_t((view.height + tile_height - 1) / tile_height);
-  parallel_for(execution, rows, 1, [&](std::size_t begin, std::size_t end) {
-    const auto work = scene.works.borrow([] { return std::make_unique<TileWork>(); });
-    work->begin(layer, painting.colorist, painting.rate, execution.isa);
-    for (std::size_t row = begin; row < end; ++row)
-      for (int x = 0; x < view.width; x += tile_width) {
-        const int y = int(row) * tile_height;
-        shade_tile({x, y, std::min(tile_width, view.width - x), std::min(tile_height, view.height - y)}, *work,
-                   painting);
-      }
-  });
-}
-
 glm::vec4 background_color(const ShadeOptions& options) {
   if (!options.background) return glm::vec4(0);
   const glm::vec3& c = *options.background;
   return {linear_of_shown(c.x), linear_of_shown(c.y), linear_of_shown(c.z), 1.0f};
 }
-
-/// All that a picture is made from.
-struct Request {
-  PreparedScene& scene;
-  const ShadeInput& input;
-  const ShadeOptions& options;
-  const Execution& execution;
-};
-
-/// What a picture of materials is made of: what a Visible shows, or, where materials can be seen through, all layers.
-class ShownMaterials {
- public:
-  /// Makes ready what the scene does not have yet.
-  explicit ShownMaterials(const Request& request)
-      : input_(request.input), scene_(request.scene), large_(std::move(scene_.large)) {
-    const bool wants_normals =
-        request.options.shading != Shading::flat && lacks_normals(request.scene.surfaces.scene());
-    wants_layers(request) ? find_layers(request, wants_normals) : find_front(request, wants_normals);
-    if (wants_normals) scene_.triangles.smooth(large_, request.execution);
-    source_.emplace(scene_.triangles, input_.view(), wants_normals ? &large_ : nullptr);
-    if (!scene_.materials.has_textures()) source_->leave_out_texcoords();
-  }
-
-  ~ShownMaterials() { scene_.large = std::move(large_); }
-  ShownMaterials(const ShownMaterials&) = delete;
-  ShownMaterials& operator=(const ShownMaterials&) = delete;
-
-  /// Where a fragment's samples lie within its pixel, in 1/256.
-  [[nodiscard]] std::span<const glm::ivec2> samples() const {
-    return layers_ ? std::span(layer_samples_) : sample_offsets(input_.view().samples);
-  }
-
-  /// Precondition: with layers.
-  [[nodiscard]] DeepImage deep(const Surfaces& surfaces, const FragmentShader::Colorist& colorist,
-                               const Execution& execution) const {
-    const LayerShader shader(*source_, *layers_, colorist, ShadingRate::each_pixel, execution.isa);
-    return deep_layers(surfaces, input_.view(), *layers_, shader, execution);
-  }
-
-  void paint(const Painting& painting, const Execution& execution) const {
-    if (layers_)
-      shade_layers(*source_, *layers_, painting, execution);
-    else
-      shade_tiles({*source_, input_.visible, SampleUse::all, input_.pixels}, painting, scene_, execution);
-  }
-
- private:
-  static bool wants_layers(const Request& request) {
-    if (request.options.see_through != SeeThrough::where_needed)
-      return request.options.see_through == SeeThrough::always;
-    return has_see_through(request.scene.surfaces.scene()) || request.options.opacity < 1.0f;
-  }
-
-  void find_front(const Request& request, bool wants_normals) {
-    const Surfaces& surfaces = request.scene.surfaces;
-    if (wants_normals)
-      large_ = large_primitives(surfaces.primitive_count(), input_.visible, request.execution, std::move(large_));
-    request.scene.make_materials_ready(input_, request.execution);
-  }
-
-  void find_layers(const Request& request, bool wants_normals) {
-    const Surfaces& surfaces = request.scene.surfaces;
-    layers_.emplace(surfaces, input_.view(), AbufferOptions{request.options.grid, request.options.opacity},
-                    request.execution);
-    layer_samples_ = layers_->samples();
-    if (!wants_normals && scene_.materials.is_ready()) return;
-    large_ = seen_primitives(surfaces, *layers_, request.execution);
-    request.scene.make_materials_ready(large_, request.execution);
-  }
-
-  const ShadeInput& input_;
-  PreparedScene& scene_;
-  std::optional<abuffer_detail::FragmentPass> layers_;
-  std::vector<glm::ivec2> layer_samples_;
-  BitSet large_;  ///< primitives that are worth a smooth normal where the model has none
-  std::optional<TriangleSource> source_;
-};
 
 Lighting lighting_of(const Request& request) {
   const LightOptions& options = request.options.light;
@@ -187,7 +81,7 @@ void paint_map(const Request& request, TileCanvas& canvas) {
   const TriangleSource source(request.scene.triangles, visible.view, nullptr);
   const auto paint = [&](const TileWork::Colorist& colorist) {
     shade_tiles({source, visible, SampleUse::all, request.input.pixels}, {canvas, colorist, background_color(options)},
-                request.scene, request.execution);
+                request.scene.works, request.execution);
   };
   if (options.shading == Shading::ids) return paint(Ids{});
   if (options.shading == Shading::uv) return paint(Texcoords{});
@@ -228,7 +122,7 @@ void paint_normals(PreparedScene& scene, const Visible& visible, const Execution
   TriangleSource source(scene.triangles, visible.view, large ? &*large : nullptr);
   if (!scene.materials.has_textures()) source.leave_out_texcoords();
   const TileWork::Colorist colorist = RawNormals{scene.materials, execution.isa};
-  shade_tiles({source, visible, SampleUse::first}, {canvas, colorist, glm::vec4(0)}, scene, execution);
+  shade_tiles({source, visible, SampleUse::first}, {canvas, colorist, glm::vec4(0)}, scene.works, execution);
 }
 
 }  // namespace

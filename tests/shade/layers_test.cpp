@@ -229,5 +229,79 @@ TEST(SeeThrough, AlwaysGivesOpaqueScenesTheSubSamplesOfTheABuffer) {
   EXPECT_EQ(color_at(image, 17, 32), glm::vec4(1, 0, 0, 1));
 }
 
+struct Difference {
+  float farthest = 0;      ///< of any channel
+  std::size_t pixels = 0;  ///< that differ by more than rounding
+};
+
+Difference difference_of(const Image& a, const Image& b) {
+  Difference found;
+  for (int y = 0; y < a.height; ++y)
+    for (int x = 0; x < a.width; ++x) {
+      const glm::vec4 off = glm::abs(color_at(a, x, y) - color_at(b, x, y));
+      const float most = std::max({off.r, off.g, off.b, off.a});
+      found.farthest = std::max(found.farthest, most);
+      found.pixels += most > plane_rounding;
+    }
+  return found;
+}
+
+/// The pictures with layers in every tile, and with layers where something can be seen through.
+struct Pictures {
+  Image everywhere, where_needed;
+
+  Pictures(const Surfaces& surfaces, const ShadeInput& input, ShadeOptions options = {}) {
+    where_needed = shade(surfaces, input, options);
+    options.see_through = SeeThrough::always;
+    everywhere = shade(surfaces, input, options);
+  }
+  [[nodiscard]] Difference difference() const { return difference_of(everywhere, where_needed); }
+};
+
+TEST(SeeThrough, TilesOfWhatIsOpaqueNeedNoLayers) {
+  const Scene scene = builtin("gallery");
+  const Surfaces surfaces(scene);
+  for (const int samples : {1, 4, 16})
+    for (const Shading shading : {Shading::lit, Shading::flat, Shading::normals}) {
+      View view = frame(surfaces, 333, 187);
+      view.samples = samples;
+      const ShadeOptions options{.shading = shading};
+      SCOPED_TRACE(testing::Message() << samples << " samples, shading " << int(shading));
+      const Pictures pictures(surfaces, zbuffer(surfaces, view), options);
+      const Difference difference = pictures.difference();
+      // The A-buffer shades a fragment at the middle of what it covers of a pixel, also where something hides part of
+      // it.
+      EXPECT_LT(difference.farthest, samples == 1 ? plane_rounding : 0.1f);
+      EXPECT_LT(difference.pixels, samples == 1 ? 1 : view.pixel_count() / 50);
+      const Image by_pixels = shade(surfaces, zbuffer_pixels(surfaces, view), options);
+      EXPECT_EQ(content_hash(by_pixels), content_hash(pictures.where_needed));
+    }
+}
+
+/// A blue wall, and before it a red pane far thinner than a pixel is wide.
+Scene wall_behind_sliver(double middle, double width) {
+  Scene scene = layered_scene(Material::Alpha::blend, {1, 0, 0, 0.25f});
+  glm::dmat4& place = scene.instances[0].world_from_mesh;
+  place = glm::dmat4(1);
+  place[0][0] = width / 2;
+  place[3] = {middle, 0, 0, 1};
+  return scene;
+}
+
+TEST(SeeThrough, LayersAreFoundWhereOneSampleOfATileSeesThroughSomething) {
+  std::size_t unseen_by_first = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Scene scene = wall_behind_sliver(-1 + i * 0.0517, 0.02);
+    const Surfaces surfaces(scene);
+    const VisiblePixels pixels = zbuffer_pixels(surfaces, front_view(64, 4));
+    const auto is_pane = [](PrimitiveId id) { return id < 2; };
+    unseen_by_first += std::none_of(pixels.first.primitives.begin(), pixels.first.primitives.end(), is_pane) &&
+                       std::any_of(pixels.others.data(), pixels.others.data() + pixels.other_count, is_pane);
+    EXPECT_EQ(Pictures(surfaces, pixels).difference().pixels, 0u) << i;
+    EXPECT_EQ(Pictures(surfaces, zbuffer(surfaces, front_view(64, 4))).difference().pixels, 0u) << i;
+  }
+  EXPECT_GT(unseen_by_first, 5u);
+}
+
 }  // namespace
 }  // namespace frontmost

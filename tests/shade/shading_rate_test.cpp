@@ -47,9 +47,6 @@ glm::ivec2 leader_of(const Visible& visible, int x, int y) {
   return {x, y};
 }
 
-/// A triangle's planes are rounded about the first of its pixels that is shaded.
-constexpr float kRounding = 2e-5f;
-
 struct Compared {
   std::size_t shared = 0;
   float farthest = 0;  ///< of any channel from what it is to be
@@ -79,7 +76,7 @@ TEST(ShadingRate, PixelsOfABlockHaveTheColourOfTheFirstThatShowsTheirPrimitive) 
         const Image fine = shade(surfaces, visible, options);
         const Image coarse = shade(surfaces, visible, with_rate(options, ShadingRate::each_2x2));
         const Compared compared = compare_with_leaders(visible, coarse, fine);
-        EXPECT_LT(compared.farthest, kRounding);
+        EXPECT_LT(compared.farthest, plane_rounding);
         EXPECT_GT(compared.shared, visible.view.pixel_count() / 100);
       }
 }
@@ -91,7 +88,7 @@ TEST(ShadingRate, RaysOfShadowsAreCastFromTheFirstPixel) {
   const ShadeOptions options{.shadows = Shadows::rays};
   const Image fine = shade(surfaces, visible, options);
   const Image coarse = shade(surfaces, visible, with_rate(options, ShadingRate::each_2x2));
-  EXPECT_LT(compare_with_leaders(visible, coarse, fine).farthest, kRounding);
+  EXPECT_LT(compare_with_leaders(visible, coarse, fine).farthest, plane_rounding);
 }
 
 /// Three squares before each other, the two in front of glass, with colours that change from pixel to pixel.

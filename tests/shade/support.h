@@ -62,6 +62,10 @@ inline Texture texture_of(int width, int height, std::vector<glm::u8vec4> pixels
   return texture;
 }
 
+/// A triangle's planes are rounded about the first of its pixels that is shaded: colours differ by less than this where
+/// that is another one.
+inline constexpr float plane_rounding = 2e-5f;
+
 inline glm::vec4 color_at(const Image& image, int x, int y) {
   const auto i = std::size_t(y * image.width + x);
   glm::vec4 color;

@@ -75,18 +75,16 @@ void LayerShader::shade(const Rectangle& pixels, const PixelLists& lists, std::s
   for (const auto& [from, to] : shared) colors.copy(from, to);
 }
 
-BitSet seen_primitives(const Surfaces& surfaces, const FragmentPass& pass, const Execution& execution) {
-  BitSet seen(surfaces.primitive_count());
-  pass.list_primitives(
-      [&](std::span<const PrimitiveId> primitives) {
-        for (const PrimitiveId id : primitives) seen.add(id);
-      },
-      execution);
-  return seen;
+void add_seen_primitives(const FragmentPass& pass, const FragmentPass::LeaveOut& leave_out, BitSet& seen,
+                         const Execution& execution) {
+  const auto note = [&](std::span<const PrimitiveId> primitives) {
+    for (const PrimitiveId id : primitives) seen.add(id);
+  };
+  pass.list_primitives(note, leave_out, execution);
 }
 
-void shade_layers(const TriangleSource& source, const FragmentPass& pass, const Painting& painting,
-                  const Execution& execution) {
+void shade_layers(const TriangleSource& source, const FragmentPass& pass, const FragmentPass::LeaveOut& leave_out,
+                  const Painting& painting, const Execution& execution) {
   const LayerShader shader(source, pass, painting.colorist, painting.rate, execution.isa);
   const auto paint = [&](const Rectangle& pixels, const PixelLists& lists, FragmentColors& colors) {
     shader.shade(pixels, lists, lists.numbers, colors);
@@ -101,7 +99,7 @@ void shade_layers(const TriangleSource& source, const FragmentPass& pass, const 
     else
       painting.canvas.write(tile, laid_over(*painted, glm::vec3(background)), background);
   };
-  pass.paint(paint, receive, execution);
+  pass.paint(paint, receive, leave_out, execution);
 }
 
 }  // namespace frontmost::shading

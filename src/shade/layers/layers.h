@@ -11,9 +11,10 @@
 
 namespace frontmost::shading {
 
-/// Every primitive that is seen, and perhaps some that something opaque hides. O(fragments).
-[[nodiscard]] BitSet seen_primitives(const Surfaces& surfaces, const abuffer_detail::FragmentPass& pass,
-                                     const Execution& execution);
+/// Adds every primitive that is seen, and perhaps some that something opaque hides. O(fragments).
+void add_seen_primitives(const abuffer_detail::FragmentPass& pass,
+                         const abuffer_detail::FragmentPass::LeaveOut& leave_out, BitSet& seen,
+                         const Execution& execution);
 
 /// Colours the fragments of one rectangle after another, from several threads at once.
 class LayerShader {
@@ -38,8 +39,9 @@ class LayerShader {
   mutable Pool<FragmentShader> shaders_;
 };
 
-/// Shades every such fragment once and lays them over each other.
-void shade_layers(const TriangleSource& source, const abuffer_detail::FragmentPass& pass, const Painting& painting,
+/// Shades every such fragment once and lays them over each other; paints nothing of tiles that are left out.
+void shade_layers(const TriangleSource& source, const abuffer_detail::FragmentPass& pass,
+                  const abuffer_detail::FragmentPass::LeaveOut& leave_out, const Painting& painting,
                   const Execution& execution);
 
 // Layers as data: every fragment with its colour, in the order of depth.
