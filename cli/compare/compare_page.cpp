@@ -175,8 +175,8 @@ void save_pictures(const Comparisons& all, const StagedFolder& folder, const Exe
   bool is_first = true;
   for (const Compared& compared : all.methods) {
     const ComparedMethod& method = *compared.run.method;
-    const Image picture = shade(all.surfaces, compared.run.answer.visible,
-                                {.shading = Shading::lit, .background = std::nullopt}, execution);
+    const ShadeOptions options{.background = std::nullopt, .see_through = SeeThrough::never};  // what this one sees
+    const Image picture = shade(all.surfaces, compared.run.answer.visible, options, execution);
     save(picture, folder.path(picture_name(method)), {}, execution);
     if (!std::exchange(is_first, false))
       save(difference_map(compared, picture), folder.path(map_name(method)), {}, execution);

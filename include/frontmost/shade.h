@@ -59,18 +59,22 @@ enum class Shadows : std::uint8_t {
 
 /// How much of what lies one behind another a picture shows. Of lit, flat and normals alone.
 enum class SeeThrough : std::uint8_t {
-  where_needed,  ///< every layer, by the A-buffer, wherever something is visible that can be seen through
-  always,        ///< the same of opaque scenes: for the A-buffer's sub-samples
-  never,         ///< what is visible, over the background
+  /// Every layer, by the A-buffer, wherever something is visible that can be seen through; what is opaque elsewhere.
+  /// The
+  /// Visible has to be the front-most of its view: for others `never` shows what they hold.
+  where_needed,
+  always,  ///< every layer everywhere, of opaque scenes too: for the A-buffer's sub-samples
+  never,   ///< what is visible, over the background
 };
 
 /// For how many pixels a colour is found at once. Of lit, flat and normals alone.
 /// (K. Vaidyanathan et al. Coarse Pixel Shading. High-Performance Graphics 2014.)
 enum class ShadingRate : std::uint8_t {
   each_pixel,
-  /// Those of two by two pixels that show the same primitive have the colour of the first of them: up to four times as
-  /// quick, for pictures that are followed by others at once. Borders stay as sharp; textures, shadows and highlights
-  /// do not.
+  /// Those of two by two pixels all of whose samples see the same primitive have the colour of the first of them, and
+  /// pixels with several layers share those that are as many deep and cover the same samples. For pictures that are
+  /// followed by others at once: down to a quarter of the colours are found. Borders of triangles stay as sharp;
+  /// textures, with their holes, shadows and highlights do not.
   each_2x2,
 };
 
@@ -195,10 +199,10 @@ struct ScanInput {
 /// Every fragment of the picture by itself, nearest first: channels R, G, B (multiplied by A), A, Z and ZBack, and the
 /// integers "primitive", "object" and "material". A is the part that a sample hides of what those before it leave
 /// uncovered, at the options' sub-samples: laid over each other with nothing in between, samples give the picture that
-/// shade() gives over a transparent background, edges included. Z is the planar depth at the pixel's centre; surfaces
-/// have no thickness, so ZBack is the same.
-/// O(fragments * sub-samples); 36 bytes a fragment, twice that while it works. Options as for shade().
-/// \throws Error as shade() and abuffer() do, unsupported for other shadings than lit, flat and normals.
+/// shade() gives with SeeThrough::always over a transparent background, edges included. Z is the planar depth at the
+/// pixel's centre; surfaces have no thickness, so ZBack is the same. O(fragments * sub-samples); 36 bytes a fragment,
+/// twice that while it works. Options as for shade(). \throws Error as shade() and abuffer() do, unsupported for other
+/// shadings than lit, flat and normals.
 [[nodiscard]] DeepImage shade_deep(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options = {},
                                    const Execution& execution = {});
 

@@ -467,7 +467,8 @@ class Visible:
         """Distance from the eye along the ray; inf where nothing is seen. In parallel projection as depth."""
     def layers(self, count: int, *, opacity: float = 1.0, threads: int = 0, progress: Progress = None) -> list[Visible]:
         """The nearest layers of the same view, 1 to 1024: the k-th holds the k-th nearest triangle at every sample. Behind
-        what is opaque nothing is seen, unless opacity is below 1. The first is what the z-buffer gives."""
+        what is opaque nothing is seen, unless opacity is below 1. The first is what the z-buffer gives. shade() shows
+        one with see_through="never"."""
     def account(self, *, canvas: float = 3.0, all_hiders: bool = False, threads: int = 0,
                 progress: Progress = None) -> Accounting:
         """How much of every object is seen, how much lies beyond the frame, and who hides the rest; of what zbuffer() gave.

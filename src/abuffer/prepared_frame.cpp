@@ -101,11 +101,11 @@ void PreparedFrame::visit_tiles(const CopyRule& copies, const Visit& visit, cons
   CrowdedFrame crowded(plan_, copies);
   Pool<GatherScratch> scratches;
   parallel_for(execution, tiles, 1, [&](std::size_t begin, std::size_t end) {
-    const auto scratch = scratches.borrow([] { return std::make_unique<GatherScratch>(); });
-    TileVisitor visitor(*scratch, visit);
     for (std::size_t tile = begin; tile < end; ++tile) {
       const GatherJob job{plan_.tile(tile), tile};
       if (leave_out && leave_out(job.pixels)) continue;
+      const auto scratch = scratches.borrow([] { return std::make_unique<GatherScratch>(); });
+      TileVisitor visitor(*scratch, visit);
       if (visitor.visit_whole({plan_, pattern_, execution.isa}, job)) continue;
       visitor.visit_in_parts({crowded.thinned(), pattern_, execution.isa}, job);
     }

@@ -47,11 +47,11 @@ class PreparedFrame {
 
   /// Takes a rectangle of the picture and its fragments; null where nothing is seen.
   using Visit = std::function<void(const Rectangle& pixels, GatherScratch* fragments)>;
-  /// Whether a tile is not to be visited.
+  /// Whether a tile is not to be visited; null: all are.
   using LeaveOut = std::function<bool(const Rectangle& tile)>;
   /// Calls `visit` for rectangles that make up the picture, in any order, from several threads at once. They are the
-  /// tiles, and parts of those that have too many fragments: this is what bounds memory. `copies` says what may be left
-  /// out of such tiles. Fragments are in the order of arrival, and holes count as covered. No `leave_out`: none is.
+  /// tiles that are not left out, and parts of those that have too many fragments: this is what bounds memory. `copies`
+  /// says what may be left out of such tiles. Fragments are in the order of arrival, and holes count as covered.
   void visit_tiles(const CopyRule& copies, const Visit& visit, const LeaveOut& leave_out,
                    const Execution& execution) const;
   /// The same with fragments in sorted lists, without their holes.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shade/shade_tiles.h"
 
+#include <algorithm>
+#include <memory>
+
 #include "base/parallel.h"
 
 namespace frontmost::shading {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shade/shown_materials.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "shade/layers/opaque_part.h"
@@ -92,16 +93,19 @@ void ShownMaterials::find_layers(const Request& request, bool wants_normals) {
   layers_.emplace(surfaces, input_.view(), AbufferOptions{request.options.grid, request.options.opacity},
                   request.execution);
   layer_samples_ = layers_->samples();
-  has_opaque_tiles_ = request.options.see_through == SeeThrough::where_needed && request.options.grid == 0;
+  takes_front_ = request.options.see_through == SeeThrough::where_needed && request.options.grid == 0;
   if (!wants_normals && scene_.materials.is_ready()) return;
-  large_ = seen_primitives(surfaces, input_, request.execution, std::move(large_));
+  if (takes_front_)
+    large_ = seen_primitives(surfaces, input_, request.execution, std::move(large_));
+  else
+    large_.clear(surfaces.primitive_count());
   const auto is_opaque = [&](const Rectangle& tile) { return shows_front_alone(tile); };
   add_seen_primitives(*layers_, is_opaque, large_, request.execution);
   request.scene.make_materials_ready(large_, request.execution);
 }
 
 bool ShownMaterials::shows_front_alone(const Rectangle& tile) const {
-  if (!has_opaque_tiles_) return false;
+  if (!takes_front_) return false;
   PrimitiveId last = no_primitive;
   return all_of_tile(input_, tile, [&](PrimitiveId id) {
     if (id == last || id == no_primitive) return true;

@@ -48,8 +48,8 @@ class ShownMaterials {
   PreparedScene& scene_;
   std::optional<abuffer_detail::FragmentPass> layers_;
   std::vector<glm::ivec2> layer_samples_;
-  bool has_opaque_tiles_ = false;  ///< layers are found at the samples of the view, and only where they are needed
-  BitSet large_;                   ///< primitives that are worth a smooth normal where the model has none
+  bool takes_front_ = false;  ///< what is visible where no layers are needed: they are found at the same samples
+  BitSet large_;              ///< primitives that are worth a smooth normal where the model has none
   std::optional<TriangleSource> source_;
 };
 

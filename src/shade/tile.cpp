@@ -8,11 +8,11 @@
 namespace frontmost::shading {
 namespace {
 
-/// A fragment's number is that of its pixel. Where pixels of a block share it, that of the block's first one, and above
-/// these bits one for each of the four that do.
-constexpr std::uint32_t kBlockBits = 16;
-constexpr std::uint32_t kWholeBlock = 15u << kBlockBits;
-static_assert(tile_pixels <= 1 << kBlockBits);
+/// A fragment's number is that of its pixel. Where two by two pixels share it, these bits are the number of the first
+/// of them, and the next four say which of them do.
+constexpr std::uint32_t kPixelBits = 16;
+constexpr std::uint32_t kWholeBlock = 15u << kPixelBits;
+static_assert(tile_pixels <= 1 << kPixelBits);
 static_assert(tile_width % 2 == 0 && tile_height % 2 == 0, "blocks lie within tiles");
 
 }  // namespace
@@ -164,6 +164,7 @@ void TileWork::add_mixed_pixel(const TileRectangle& tile, int x, int y) {
 }
 
 void TileWork::add_blocks(const TileRectangle& tile, int y, int left, int right) {
+  if (rows_[y].is_empty && (y + 1 == tile.height || rows_[y + 1].is_empty)) return;
   for (int x = left; x < right;) {
     const glm::vec2 corner(float(tile.x + x), float(tile.y + y));
     const auto pixel = std::uint32_t(y * tile.width + x);
@@ -213,7 +214,7 @@ void TileWork::add_shared(PrimitiveId (&ids)[4], glm::vec2 corner, std::uint32_t
       ids[other] = no_primitive;
     }
     const glm::vec2 first = corner + glm::vec2(float(p % 2), float(p / 2));
-    add_row(id, 1, {pixel | sharing << kBlockBits, first + centre_, all_samples(), 1.0f});
+    add_row(id, 1, {pixel | sharing << kPixelBits, first + centre_, all_samples(), 1.0f});
   }
 }
 
@@ -221,7 +222,7 @@ void TileWork::flush() {
   // In the order of arrival, which is that of samples: sums of a pixel do not depend on its neighbours.
   fragments_.hand_out([this](const FragmentShader::Shaded& s) {
     const glm::vec4 color(s.light * (s.weight * s.alpha), s.weight * s.alpha);
-    const std::uint32_t pixel = s.number & ((1u << kBlockBits) - 1), sharing = s.number >> kBlockBits;
+    const std::uint32_t pixel = s.number & ((1u << kPixelBits) - 1), sharing = s.number >> kPixelBits;
     if (sharing == 0) return void(pixels_[pixel] += color);
     for (std::uint32_t p = 0; p < 4; ++p)
       if (sharing >> p & 1) pixels_[pixel + p / 2 * std::uint32_t(width_) + p % 2] += color;

@@ -108,6 +108,7 @@ TEST(Shader, AFlightAllocatesNothingOnceItHasBeenFlown) {
   for (const Shading shading : {Shading::lit, Shading::flat, Shading::normals, Shading::ids}) {
     ShadeOptions options{.shading = shading};
     if (shading == Shading::lit) options.ambient_occlusion.emplace();
+    if (shading == Shading::flat) options.rate = ShadingRate::each_2x2;
     const void* planes = nullptr;
     const auto fly = [&] {
       std::size_t count = 0;

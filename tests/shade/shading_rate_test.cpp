@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "frontmost/abuffer.h"
 #include "frontmost/shade.h"
@@ -81,6 +82,41 @@ TEST(ShadingRate, PixelsOfABlockHaveTheColourOfTheFirstThatShowsTheirPrimitive) 
       }
 }
 
+/// How far the colour of a pixel that one primitive covers is from those of all pixels of its block that it covers.
+float distance_to_block(const Visible& visible, const Image& coarse, const Image& fine, int x, int y) {
+  float nearest = 1;
+  for (int j = y / 2 * 2; j <= y; ++j)
+    for (int i = x / 2 * 2; i < std::min(x / 2 * 2 + 2, visible.view.width); ++i) {
+      if (only_primitive(visible, i, j) != only_primitive(visible, x, y)) continue;
+      const glm::vec4 off = glm::abs(color_at(coarse, x, y) - color_at(fine, i, j));
+      nearest = std::min(nearest, std::max({off.r, off.g, off.b, off.a}));
+    }
+  return nearest;
+}
+
+TEST(ShadingRate, LayersOfWholePixelsAreSharedWithWholePixelsAlone) {
+  // Nothing is before anything else, so that a primitive shows wherever it covers a sample.
+  Mesh mesh = square();
+  mesh.colors.values = {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}, {1, 1, 1, 1}};
+  Scene scene = scene_of(std::move(mesh), colored({1, 1, 1, 1}));
+  scene.instances[0].world_from_mesh = glm::rotate(glm::dmat4(1), 0.3, glm::dvec3(0, 0, 1));
+  const Surfaces surfaces(scene);
+  const Visible visible = zbuffer(surfaces, front_view(65, 4));
+  const ShadeOptions options{.shading = Shading::flat, .see_through = SeeThrough::always};
+  const Image fine = shade(surfaces, visible, options);
+  const Image coarse = shade(surfaces, visible, with_rate(options, ShadingRate::each_2x2));
+  float farthest = 0;
+  std::size_t shared = 0;
+  for (int y = 0; y < visible.view.height; ++y)
+    for (int x = 0; x < visible.view.width; ++x) {
+      if (only_primitive(visible, x, y) == no_primitive) continue;
+      farthest = std::max(farthest, distance_to_block(visible, coarse, fine, x, y));
+      shared += color_at(coarse, x, y) != color_at(fine, x, y);
+    }
+  EXPECT_LT(farthest, plane_rounding);
+  EXPECT_GT(shared, 500u);
+}
+
 TEST(ShadingRate, RaysOfShadowsAreCastFromTheFirstPixel) {
   const Scene scene = builtin("cubes");
   const Surfaces surfaces(scene);
@@ -138,12 +174,20 @@ std::pair<DeepPixel, std::size_t> shared_layer(const DeepImage& deep, int x, int
   return {own, k};
 }
 
-TEST(ShadingRate, LayersAreSharedWhereTheyAreAsManyDeep) {
-  const Scene scene = panes();
-  const Surfaces surfaces(scene);
-  View view = front_view(64);
-  view.width = 63;
-  view.height = 61;
+/// What a pixel shows of its layers laid over each other, each with the colour that it is to have.
+glm::vec4 laid_over(const DeepImage& deep, int x, int y, std::size_t& shared) {
+  const DeepPixel own(deep, x, y);
+  glm::vec4 sum(0);
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    const auto [layer, i] = shared_layer(deep, x, y, k);
+    shared += layer.begin != own.begin;
+    sum += (1 - sum.a) * glm::vec4(layer.value("R", i), layer.value("G", i), layer.value("B", i), layer.value("A", i));
+  }
+  return sum;
+}
+
+/// Whether two images of odd sizes are the same but for what pixels share.
+void expect_shared_layers(const Surfaces& surfaces, const View& view, std::size_t least_shared) {
   const ShadeOptions options{.background = std::nullopt, .shadows = Shadows::off};
   const Visible visible = zbuffer(surfaces, view);
   const DeepImage deep = shade_deep(surfaces, visible, options);
@@ -151,18 +195,83 @@ TEST(ShadingRate, LayersAreSharedWhereTheyAreAsManyDeep) {
   std::size_t shared = 0;
   for (int y = 0; y < view.height; ++y)
     for (int x = 0; x < view.width; ++x) {
-      const DeepPixel own(deep, x, y);
-      glm::vec4 wanted(0);
-      for (std::size_t k = 0; k < own.size(); ++k) {
-        const auto [layer, i] = shared_layer(deep, x, y, k);
-        shared += layer.begin != own.begin;
-        const glm::vec4 color(layer.value("R", i), layer.value("G", i), layer.value("B", i), layer.value("A", i));
-        wanted += (1 - wanted.a) * color;
-      }
-      const glm::vec4 found = color_at(coarse, x, y);
-      for (int c = 0; c < 4; ++c) ASSERT_NEAR(found[c], wanted[c], 1e-5f) << x << ", " << y << ", channel " << c;
+      const glm::vec4 wanted = laid_over(deep, x, y, shared), found = color_at(coarse, x, y);
+      for (int c = 0; c < 4; ++c)
+        ASSERT_NEAR(found[c], wanted[c], plane_rounding) << x << ", " << y << ", channel " << c;
     }
-  EXPECT_GT(shared, 2000u);
+  EXPECT_GT(shared, least_shared);
+}
+
+TEST(ShadingRate, LayersAreSharedWhereTheyAreAsManyDeep) {
+  const Scene scene = panes();
+  const Surfaces surfaces(scene);
+  View view = front_view(64);
+  view.width = 63;
+  view.height = 61;
+  expect_shared_layers(surfaces, view, 2000);
+}
+
+/// Tinted glass before a wall whose colour changes from pixel to pixel.
+Scene tinted() {
+  Scene scene = panes();
+  scene.instances.resize(2);
+  scene.instances[1].mesh = 2;
+  scene.materials[0] = colored({0.9f, 0.5f, 0.2f, 1});
+  scene.materials[0].transmission.factor = 1;
+  scene.materials[0].roughness = 0.5f;
+  return scene;
+}
+
+TEST(ShadingRate, TintedGlassIsShared) {
+  for (const Scene& scene : {panes(), tinted()}) {
+    const Surfaces surfaces(scene);
+    View view = front_view(65, 4);
+    const Visible visible = zbuffer(surfaces, view);
+    for (const Shading shading : {Shading::lit, Shading::flat}) {
+      const ShadeOptions options{.shading = shading, .shadows = Shadows::off, .see_through = SeeThrough::always};
+      const Image fine = shade(surfaces, visible, options);
+      const Image coarse = shade(surfaces, visible, with_rate(options, ShadingRate::each_2x2));
+      // Colours change slowly from pixel to pixel; those of other triangles, and of edges, are farther away.
+      float farthest = 0;
+      for (int y = 0; y < view.height; ++y)
+        for (int x = 0; x < view.width; ++x) {
+          const glm::vec4 off = glm::abs(color_at(coarse, x, y) - color_at(fine, x, y));
+          farthest = std::max({farthest, off.r, off.g, off.b, off.a});
+        }
+      EXPECT_GT(farthest, 0.001f);
+      EXPECT_LT(farthest, 0.1f);
+    }
+  }
+}
+
+TEST(ShadingRate, PixelsOfSeveralSamplesAreThoseOfPlanes) {
+  for (const char* name : {"city", "gallery"}) {
+    const Scene scene = builtin(name);
+    const Surfaces surfaces(scene);
+    for (const int samples : {2, 4, 16}) {
+      const View view = odd_view(surfaces, samples);
+      const ShadeOptions options{.rate = ShadingRate::each_2x2};
+      EXPECT_EQ(bytes_of(shade_bitmap(surfaces, zbuffer_pixels(surfaces, view), options)),
+                bytes_of(shade_bitmap(surfaces, zbuffer(surfaces, view), options)))
+          << name << ", " << samples << " samples";
+    }
+  }
+}
+
+TEST(ShadingRate, TheSmallestPicturesAreWhole) {
+  const Scene scene = panes();
+  const Surfaces surfaces(scene);
+  for (const auto& [width, height] : {std::pair(1, 1), std::pair(1, 7), std::pair(7, 1), std::pair(65, 9)})
+    for (const SeeThrough see_through : {SeeThrough::always, SeeThrough::never}) {
+      View view = front_view(64, 2);
+      view.width = width;
+      view.height = height;
+      const ShadeOptions options{.shading = Shading::flat, .see_through = see_through};
+      const Image fine = shade(surfaces, zbuffer(surfaces, view), options);
+      const Image coarse = shade(surfaces, zbuffer(surfaces, view), with_rate(options, ShadingRate::each_2x2));
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) EXPECT_EQ(color_at(coarse, x, y).a, color_at(fine, x, y).a) << x << ", " << y;
+    }
 }
 
 TEST(ShadingRate, TheBytesDependNeitherOnThreadsNorOnTheInstructionSet) {

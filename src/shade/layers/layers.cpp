@@ -19,8 +19,8 @@ std::vector<glm::vec4> laid_over(const PaintedPixels& painted, const glm::vec3& 
   return pixels;
 }
 
-/// The first fragment of the same primitive, as many layers deep, in the two by two pixels to which pixel p belongs;
-/// `i` itself where there is none before it.
+/// The first fragment of the same primitive that covers the same samples, as many layers deep, in the two by two pixels
+/// to which pixel p belongs; `i` itself where there is none before it.
 std::size_t shared_fragment(const Rectangle& pixels, const PixelLists& lists, std::size_t p, std::size_t i) {
   const auto width = std::size_t(pixels.width), x = p % width, y = p / width;
   const std::size_t left = x - x % 2, top = y - y % 2;
@@ -28,7 +28,9 @@ std::size_t shared_fragment(const Rectangle& pixels, const PixelLists& lists, st
     const std::size_t other = row * width + column;
     if (column == width || other >= p) continue;
     const std::size_t same = lists.begin[other] + (i - lists.begin[p]);
-    if (same < lists.begin[other + 1] && lists.fragments[same].primitive == lists.fragments[i].primitive) return same;
+    if (same >= lists.begin[other + 1]) continue;
+    const Fragment &own = lists.fragments[i], &found = lists.fragments[same];
+    if (found.primitive == own.primitive && found.mask == own.mask) return same;
   }
   return i;
 }
@@ -83,7 +85,7 @@ void add_seen_primitives(const FragmentPass& pass, const FragmentPass::LeaveOut&
   pass.list_primitives(note, leave_out, execution);
 }
 
-void shade_layers(const TriangleSource& source, const FragmentPass& pass, const FragmentPass::LeaveOut& leave_out,
+void shade_layers(const TriangleSource& source, const FragmentPass& pass, const FragmentPass::LeaveOut& paint_otherwise,
                   const Painting& painting, const Execution& execution) {
   const LayerShader shader(source, pass, painting.colorist, painting.rate, execution.isa);
   const auto paint = [&](const Rectangle& pixels, const PixelLists& lists, FragmentColors& colors) {
@@ -99,7 +101,7 @@ void shade_layers(const TriangleSource& source, const FragmentPass& pass, const 
     else
       painting.canvas.write(tile, laid_over(*painted, glm::vec3(background)), background);
   };
-  pass.paint(paint, receive, leave_out, execution);
+  pass.paint(paint, receive, paint_otherwise, execution);
 }
 
 }  // namespace frontmost::shading

@@ -23,7 +23,7 @@ class LayerShader {
               const FragmentShader::Colorist& colorist, ShadingRate rate, Isa isa);
 
   /// Sets the colours of number numbers[i] for every fragment i: shaded at the middle of what it covers of its pixel.
-  /// Pixels of a block share one where the same primitive is as many layers deep.
+  /// Two by two pixels share one where the same primitive covers the same samples, as many layers deep.
   void shade(const abuffer_detail::Rectangle& pixels, const abuffer_detail::PixelLists& lists,
              std::span<const std::uint32_t> numbers, abuffer_detail::FragmentColors& colors) const;
 
@@ -39,9 +39,10 @@ class LayerShader {
   mutable Pool<FragmentShader> shaders_;
 };
 
-/// Shades every such fragment once and lays them over each other; paints nothing of tiles that are left out.
+/// Shades every such fragment once and lays them over each other. `paint_otherwise` says of a tile whether it has
+/// painted it, so that no layers of it are needed.
 void shade_layers(const TriangleSource& source, const abuffer_detail::FragmentPass& pass,
-                  const abuffer_detail::FragmentPass::LeaveOut& leave_out, const Painting& painting,
+                  const abuffer_detail::FragmentPass::LeaveOut& paint_otherwise, const Painting& painting,
                   const Execution& execution);
 
 // Layers as data: every fragment with its colour, in the order of depth.

@@ -82,14 +82,15 @@ export function bar(page: "workbench" | "lessons"): HTMLElement {
 export async function keepForLater(): Promise<void> {
   if (!("serviceWorker" in navigator) || !isSecureContext) return;
   try {
-    if (navigator.serviceWorker.controller) return void (await navigator.serviceWorker.register("keeper.js"));
-    const isKept = new Promise((kept) => navigator.serviceWorker.addEventListener("controllerchange", kept, { once: true }));
+    const isControlled = new Promise((done) => navigator.serviceWorker.addEventListener("controllerchange", done, { once: true }));
     await navigator.serviceWorker.register("keeper.js");
-    await isKept;
+    if (!navigator.serviceWorker.controller) await isControlled;
     const name = crossOriginIsolated ? "frontmost-threads" : "frontmost";
     const files: string[] = await (await fetch("files.json")).json();
     files.push(location.href, `${name}.mjs`, `${name}.wasm`, ...(crossOriginIsolated ? [`${name}.worker.js`] : []));
-    for (const file of files) await fetch(file, { cache: "force-cache" });
+    for (const file of files)
+      if (file.endsWith(".html")) await fetch(file); // may have changed
+      else if (!(await caches.match(file))) await fetch(file, { cache: "force-cache" });
   } catch {
     // Then the page needs the network the next time, too.
   }

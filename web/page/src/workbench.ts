@@ -127,6 +127,14 @@ function tell(answer: Answer, kind: "quick" | "fine"): void {
     ...(kind === "fine" ? [part(`${say(words.hash)} ${answer.hash}`)] : []));
 }
 
+/** One step up where the next picture would still be in time; down as many as this one was late, but three at most, as one
+ * may be late by chance. */
+function adaptQuality(passed: number): void {
+  const next = qualities[quality + 1];
+  if (next && passed * next.more < next.milliseconds) ++quality;
+  for (let i = 0; i < 3 && quality > 0 && passed > qualities[quality].milliseconds * 1.2; ++i) passed /= qualities[quality--].more;
+}
+
 async function drawOnce(kind: "quick" | "fine"): Promise<void> {
   const question = drawQuestion(kind), begin = performance.now();
   const answer = await client.ask(question);
@@ -135,10 +143,7 @@ async function drawOnce(kind: "quick" | "fine"): Promise<void> {
   paint(lastImage);
   tell(answer, kind);
   if (kind === "quick") {
-    const passed = performance.now() - begin;
-    const next = qualities[quality + 1];
-    if (passed > qualities[quality].milliseconds * 1.2 && quality > 0) --quality;
-    else if (next && passed * next.more < next.milliseconds) ++quality;
+    adaptQuality(performance.now() - begin);
     return;
   }
   fineAnswer = answer;
