@@ -117,7 +117,9 @@ async function tryLesson(id) {
       at = await top();
       assert.equal(await page.evaluate(() => visualViewport.scale), 1, `${name}: the page grew`);
       const still = turns && await atRest(figure);
-      await drag(cdp, [x, y, x + 4, y - 120]);
+      // Down, or up where the page ends below.
+      const room = await page.evaluate(() => document.documentElement.scrollHeight - innerHeight - scrollY);
+      await drag(cdp, [x, y, x + 4, y + (room > 200 ? -120 : 120)]);
       await page.waitForFunction((old) => Math.abs(scrollY - old) > 60, at, patience).catch(() => assert.fail(`${name}: the page does not scroll`));
       if (still) assert.ok(await atRest(figure) === still, `${name}: turned while the page scrolls`);
       ++pictures;
