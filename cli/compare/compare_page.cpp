@@ -175,7 +175,9 @@ void save_pictures(const Comparisons& all, const StagedFolder& folder, const Exe
   bool is_first = true;
   for (const Compared& compared : all.methods) {
     const ComparedMethod& method = *compared.run.method;
-    const ShadeOptions options{.background = std::nullopt, .see_through = SeeThrough::never};  // what this one sees
+    // What this method sees; the one that keeps lists sees through glass.
+    const ShadeOptions options{.background = std::nullopt,
+                               .see_through = method.lists ? SeeThrough::always : SeeThrough::never};
     const Image picture = shade(all.surfaces, compared.run.answer.visible, options, execution);
     save(picture, folder.path(picture_name(method)), {}, execution);
     if (!std::exchange(is_first, false))

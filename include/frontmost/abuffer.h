@@ -77,7 +77,8 @@ struct FragmentCounts {
 /// The first `count` layers, nearest first, at the view's samples: the k-th holds the k-th nearest primitive at every
 /// sample, by the key there. Behind an opaque primitive nothing is seen. The nearest layer is what zbuffer() gives, to
 /// the bit; shade() shows the others with SeeThrough::never. Memory: `count` Visibles and a few megabytes a thread.
-/// `options.grid` has no meaning here. \throws Error as abuffer() does; bad_argument unless `count` is 1 to 1024.
+/// `options.grid` has no meaning here.
+/// \throws Error as abuffer() does; bad_argument unless `count` is 1 to 1024.
 [[nodiscard]] std::vector<Visible> visible_layers(const Surfaces& surfaces, const View& view, int count,
                                                   const AbufferOptions& options = {}, const Execution& execution = {});
 

@@ -59,9 +59,8 @@ enum class Shadows : std::uint8_t {
 
 /// How much of what lies one behind another a picture shows. Of lit, flat and normals alone.
 enum class SeeThrough : std::uint8_t {
-  /// Every layer, by the A-buffer, wherever something is visible that can be seen through; what is opaque elsewhere.
-  /// The
-  /// Visible has to be the front-most of its view: for others `never` shows what they hold.
+  /// Every layer, by the A-buffer, wherever something is visible that can be seen through; what is visible elsewhere.
+  /// The Visible has to be the front-most of its view: what others hold is shown by `never`.
   where_needed,
   always,  ///< every layer everywhere, of opaque scenes too: for the A-buffer's sub-samples
   never,   ///< what is visible, over the background

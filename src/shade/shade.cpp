@@ -27,7 +27,7 @@ glm::vec4 background_color(const ShadeOptions& options) {
   return {linear_of_shown(c.x), linear_of_shown(c.y), linear_of_shown(c.z), 1.0f};
 }
 
-Lighting lighting_of(const Request& request) {
+Lighting lighting_of(const PictureRequest& request) {
   const LightOptions& options = request.options.light;
   return lighting_for(request.input.view(), request.scene.surfaces.scene().up, options,
                       request.scene.environment(options, request.execution));
@@ -35,7 +35,7 @@ Lighting lighting_of(const Request& request) {
 
 /// Calls use(colorist) with what colours fragments as the options say. Precondition: shows_materials().
 template <class Use>
-void with_colorist(const Request& request, const ShownMaterials& shown, const Use& use) {
+void with_colorist(const PictureRequest& request, const ShownMaterials& shown, const Use& use) {
   const ShadeOptions& options = request.options;
   const MaterialTable& materials = request.scene.materials;
   const auto use_it = [&](const auto& colorist) { use(FragmentShader::Colorist(std::cref(colorist))); };
@@ -47,7 +47,7 @@ void with_colorist(const Request& request, const ShownMaterials& shown, const Us
   use_it(lit);
 }
 
-void check(const Request& request) {
+void check(const PictureRequest& request) {
   check_opacity(request.options);
   check_ambient_occlusion(request.options);
   check_light(request.options.light);
@@ -61,7 +61,7 @@ void check(const Request& request) {
     throw Error(ErrorCode::unsupported, "shade: pictures of depths need the planes of a Visible");
 }
 
-void paint_materials(const Request& request, TileCanvas& canvas) {
+void paint_materials(const PictureRequest& request, TileCanvas& canvas) {
   const ShownMaterials shown(request);
   const ShadeOptions& options = request.options;
   with_colorist(request, shown, [&](const FragmentShader::Colorist& colorist) {
@@ -75,7 +75,7 @@ void paint_materials(const Request& request, TileCanvas& canvas) {
   });
 }
 
-void paint_map(const Request& request, TileCanvas& canvas) {
+void paint_map(const PictureRequest& request, TileCanvas& canvas) {
   const Visible& visible = request.input.visible;
   const ShadeOptions& options = request.options;
   const TriangleSource source(request.scene.triangles, visible.view, nullptr);
@@ -91,18 +91,18 @@ void paint_map(const Request& request, TileCanvas& canvas) {
 }
 
 /// Precondition: check().
-void paint_surfaces(const Request& request, TileCanvas& canvas) {
+void paint_surfaces(const PictureRequest& request, TileCanvas& canvas) {
   shows_materials(request.options.shading) ? paint_materials(request, canvas) : paint_map(request, canvas);
 }
 
 /// The same.
-void paint(const Request& request, TileCanvas& canvas) {
+void paint(const PictureRequest& request, TileCanvas& canvas) {
   if (!request.options.light.shows_environment) return paint_surfaces(request, canvas);
   EnvironmentCanvas surrounded(canvas, request.input.view(), lighting_of(request), request.execution.isa);
   paint_surfaces(request, surrounded);
 }
 
-DeepImage deep_image(const Request& request) {
+DeepImage deep_image(const PictureRequest& request) {
   check(request);
   const ShownMaterials shown(request);
   DeepImage image;
@@ -146,7 +146,7 @@ Shader::Shader(Shader&&) noexcept = default;
 Shader& Shader::operator=(Shader&&) noexcept = default;
 
 const Image& Shader::shade(const ShadeInput& input, const ShadeOptions& options, const Execution& execution) {
-  const Request request{state_->now(execution), input, options, execution};
+  const PictureRequest request{state_->now(execution), input, options, execution};
   check(request);
   PlanesCanvas canvas(input.view(), {"R", "G", "B", "A"}, take());
   paint(request, canvas);
@@ -154,7 +154,7 @@ const Image& Shader::shade(const ShadeInput& input, const ShadeOptions& options,
 }
 
 const Bitmap& Shader::shade_bitmap(const ShadeInput& input, const ShadeOptions& options, const Execution& execution) {
-  const Request request{state_->now(execution), input, options, execution};
+  const PictureRequest request{state_->now(execution), input, options, execution};
   check(request);
   BitmapCanvas canvas(input.view(), take_bitmap(), execution.isa);
   paint(request, canvas);

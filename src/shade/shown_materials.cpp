@@ -14,7 +14,7 @@ using abuffer_detail::Rectangle;
 
 namespace {
 
-bool wants_layers(const Request& request) {
+bool wants_layers(const PictureRequest& request) {
   if (request.options.see_through != SeeThrough::where_needed) return request.options.see_through == SeeThrough::always;
   return has_see_through(request.scene.surfaces.scene()) || request.options.opacity < 1.0f;
 }
@@ -55,7 +55,7 @@ bool all_of_tile(const ShadeInput& input, const Rectangle& tile, const IsSo& is_
 
 }  // namespace
 
-ShownMaterials::ShownMaterials(const Request& request)
+ShownMaterials::ShownMaterials(const PictureRequest& request)
     : input_(request.input), scene_(request.scene), large_(std::move(scene_.large)) {
   const bool wants_normals = request.options.shading != Shading::flat && lacks_normals(request.scene.surfaces.scene());
   wants_layers(request) ? find_layers(request, wants_normals) : find_front(request, wants_normals);
@@ -81,14 +81,14 @@ void ShownMaterials::paint(const Painting& painting, const Execution& execution)
   shade_layers(*source_, *layers_, paint_opaque, painting, execution);
 }
 
-void ShownMaterials::find_front(const Request& request, bool wants_normals) {
+void ShownMaterials::find_front(const PictureRequest& request, bool wants_normals) {
   const Surfaces& surfaces = request.scene.surfaces;
   if (wants_normals)
     large_ = large_primitives(surfaces.primitive_count(), input_.visible, request.execution, std::move(large_));
   request.scene.make_materials_ready(input_, request.execution);
 }
 
-void ShownMaterials::find_layers(const Request& request, bool wants_normals) {
+void ShownMaterials::find_layers(const PictureRequest& request, bool wants_normals) {
   const Surfaces& surfaces = request.scene.surfaces;
   layers_.emplace(surfaces, input_.view(), AbufferOptions{request.options.grid, request.options.opacity},
                   request.execution);

@@ -13,7 +13,7 @@
 namespace frontmost::shading {
 
 /// All that a picture is made from.
-struct Request {
+struct PictureRequest {
   PreparedScene& scene;
   const ShadeInput& input;
   const ShadeOptions& options;
@@ -23,7 +23,7 @@ struct Request {
 class ShownMaterials {
  public:
   /// Makes ready what the scene does not have yet.
-  explicit ShownMaterials(const Request& request);
+  explicit ShownMaterials(const PictureRequest& request);
   ~ShownMaterials() { scene_.large = std::move(large_); }
   ShownMaterials(const ShownMaterials&) = delete;
   ShownMaterials& operator=(const ShownMaterials&) = delete;
@@ -39,8 +39,8 @@ class ShownMaterials {
   void paint(const Painting& painting, const Execution& execution) const;
 
  private:
-  void find_front(const Request& request, bool wants_normals);
-  void find_layers(const Request& request, bool wants_normals);
+  void find_front(const PictureRequest& request, bool wants_normals);
+  void find_layers(const PictureRequest& request, bool wants_normals);
   /// Whether nothing can be seen through that is seen in a tile, so that what is visible there is all that is seen.
   [[nodiscard]] bool shows_front_alone(const abuffer_detail::Rectangle& tile) const;
 

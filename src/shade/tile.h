@@ -67,8 +67,7 @@ class TileWork {
   void add_pixels(const TileRectangle& tile, int y, int left, int right);
   /// As FragmentShader's, of pixels that no other primitive shares; `count` of any size.
   void add_row(PrimitiveId id, int count, FragmentShader::RowStart start);
-  /// Fragments of two rows, y and the one below, two by two pixels at a time: one for those that see the same
-  /// primitive.
+  /// Fragments of rows y and y + 1, two by two pixels at a time: one for those that see the same primitive.
   void add_blocks(const TileRectangle& tile, int y, int left, int right);
   /// How many blocks side by side show one primitive alone, or none, as far as `right`.
   [[nodiscard]] int whole_blocks(int y, int x, int right) const;

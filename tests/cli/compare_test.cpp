@@ -145,6 +145,15 @@ TEST_F(Compare, WritesAPageThatHoldsItsPictures) {
   EXPECT_THAT(page, HasSubstr("Occlusion culling: of 1 object"));
 }
 
+TEST_F(Compare, ShowsWhatEachMethodSees) {
+  const std::string view = " builtin:gallery --resolution 96,64 ";
+  succeed("compare" + view + "--runs 1 -q -o page");
+  succeed("render" + view + "--method zbuffer --samples 1 --background transparent -q -o alone.png");
+  EXPECT_TRUE(read("page/zbuffer.png") == read("alone.png")) << "glass hides what is behind it";
+  EXPECT_FALSE(read("page/abuffer.png") == read("page/zbuffer.png")) << "glass is seen through";
+  EXPECT_FALSE(read("page/painter-centroid.png") == read("page/zbuffer.png")) << "a wrong order is shown as it is";
+}
+
 TEST_F(Compare, NamesInThePageAreText) {
   write("a<b>&.stl", cube_stl());
   ASSERT_EQ(run({"compare", "a<b>&.stl", "--resolution", "32,24", "--runs", "1", "-o", "page"}).status, 0);

@@ -21,7 +21,7 @@ interface Quality {
   coarse: boolean;
   shadows: boolean;
   milliseconds: number; // that it may take
-  more: number; // of the one before, about
+  more: number; // times as long as the one before, about
 }
 const qualities: Quality[] = [0.35, 0.39, 0.42, 0.47, 0.51, 0.56, 0.62, 0.68, 0.75, 0.83, 0.91, 1].map((scale) => ({ scale, coarse: true, shadows: false, milliseconds: 30, more: 1.21 }));
 qualities.push({ scale: 1, coarse: true, shadows: true, milliseconds: 14, more: 1.3 }, { scale: 1, coarse: false, shadows: true, milliseconds: 14, more: 2 });
