@@ -11,15 +11,6 @@ if(FRONTMOST_WEB_SIMD)
 endif()
 
 option(FRONTMOST_WEB_SMALL "Take the time to make the module small" ON)
-# frontmost_small(FOLDER...): what people wait for once a file or a drawing is to be small before it is quick. Where
-# folders are compiled as one, the options are those of the file that CMake writes for each. Headers that were compiled with
-# others cannot be used there.
-function(frontmost_small)
-  if(FRONTMOST_TOGETHER AND FRONTMOST_WEB_SMALL)
-    foreach(folder ${ARGN})
-      string(MAKE_C_IDENTIFIER "unity_${folder}_0_cxx" file)
-      set_source_files_properties(${CMAKE_BINARY_DIR}/src/CMakeFiles/frontmost.dir/Unity/${file}.cxx
-        TARGET_DIRECTORY frontmost PROPERTIES COMPILE_OPTIONS -Oz SKIP_PRECOMPILE_HEADERS ON)
-    endforeach()
-  endif()
-endfunction()
+if(FRONTMOST_WEB_SMALL) # what people wait for once a file or a drawing is to be small before it is quick
+  set(FRONTMOST_COLD_FLAGS -Oz)
+endif()

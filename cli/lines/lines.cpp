@@ -20,14 +20,14 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr std::array<std::string_view, edge_kind_count> kind_names = {"boundary", "silhouette", "border", "crease",
-                                                                      "intersection"};
+constexpr std::array<std::string_view, edge_kind_count> edge_kind_names = {"boundary", "silhouette", "border", "crease",
+                                                                           "intersection"};
 
 Json view_json(const DrawnView& view, const std::string& name) {
   std::array<std::size_t, edge_kind_count> edges{};
   for (const DrawnEdge& edge : view.drawing.edges) ++edges[std::size_t(edge.kind)];
   Json kinds = Json::object();
-  for (std::size_t i = 0; i < edges.size(); ++i) kinds[std::string(kind_names[i])] = edges[i];
+  for (std::size_t i = 0; i < edges.size(); ++i) kinds[std::string(edge_kind_names[i])] = edges[i];
   double seen = 0, hidden = 0;
   for (const DrawnPart& part : view.drawing.parts)
     (part.hidden_by != 0 ? hidden : seen) += glm::distance(part.from, part.to) * view.placed.millimetres_per_pixel;

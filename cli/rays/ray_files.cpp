@@ -15,7 +15,7 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr std::uint64_t most_bytes = std::uint64_t(1) << 30;
+constexpr std::uint64_t largest_ray_file = std::uint64_t(1) << 30;
 constexpr std::size_t most_lines = std::size_t(1) << 22;
 constexpr std::string_view blanks = " \t\r\v\f,";
 
@@ -73,7 +73,7 @@ void append_ids(std::string& bytes, const RangeScan& scan, const glm::ivec2& at,
 }  // namespace
 
 std::vector<double> read_number_lines(const std::string& path, const LineRule& rule) {
-  const std::string text = load_text(path, most_bytes);
+  const std::string text = load_text(path, largest_ray_file);
   std::vector<double> numbers;
   std::size_t lines = 0;
   std::string_view rest = text;

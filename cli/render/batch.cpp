@@ -88,7 +88,7 @@ Json parse_batch_json(const std::string& text, const std::string& name) {
   return Json::parse(text);
 }
 
-constexpr std::uint64_t most_bytes = std::uint64_t(1) << 26;
+constexpr std::uint64_t largest_batch_file = std::uint64_t(1) << 26;
 
 /// A value and where it stands, such as "batch.json: views[2].resolution".
 struct JsonPlace {
@@ -232,7 +232,7 @@ std::vector<Settings> parse_batch(const std::string& text, const std::string& na
 }
 
 std::vector<Settings> read_batch(const std::string& path, const Settings& defaults) {
-  return parse_batch(load_text(path, most_bytes), path, defaults);
+  return parse_batch(load_text(path, largest_batch_file), path, defaults);
 }
 
 }  // namespace frontmost::cli

@@ -13,7 +13,7 @@ namespace frontmost::cli {
 namespace {
 
 /// A pose is a few hundred characters; anything much longer is some other file.
-constexpr std::uint64_t most_bytes = 1 << 16;
+constexpr std::uint64_t largest_pose_file = 1 << 16;
 
 glm::dmat4 pose_in(const std::string& text, const std::string& path) {
   std::vector<double> values;
@@ -47,7 +47,7 @@ void read_pose_file(ViewSettings& settings) {
   std::error_code ignored;
   if (path != "-" && !std::filesystem::exists(path, ignored))
     throw UsageError(fmt::format("--pose: {} is neither 16 numbers nor a file that can be read", cli::quoted(path)));
-  settings.pose = pose_in(load_text(path, most_bytes), path);
+  settings.pose = pose_in(load_text(path, largest_pose_file), path);
 }
 
 }  // namespace frontmost::cli

@@ -6,7 +6,8 @@
 namespace frontmost::cli {
 namespace {
 
-constexpr unsigned views = for_render | for_camera | for_precision | for_compare | for_lines | for_report | for_visible;
+constexpr unsigned for_views =
+    for_render | for_camera | for_precision | for_compare | for_lines | for_report | for_visible;
 constexpr int max_side = 16384;
 
 Axis axis_of(const glm::dvec3& direction) {
@@ -46,41 +47,43 @@ constexpr Option view_options[] = {
      [](Settings& s, const Given& g) { s.load.format = g.choice<ModelFormat>(); }},
 
     {"view", 0, "front|back|left|right|top|bottom|iso", "Look from there, far enough away to see the model.",
-     Group::camera, views, [](Settings& s, const Given& g) { s.view.named = g.choice<NamedView>(); }},
+     Group::camera, for_views, [](Settings& s, const Given& g) { s.view.named = g.choice<NamedView>(); }},
     {"frame", 0, "subject|all",
      "What is fitted into the picture: by default the objects that hold most of the model's detail, without those "
      "that reach eight times as far and farther, such as a plane under a village; or all of it.",
-     Group::camera, views & ~for_lines, [](Settings& s, const Given& g) { s.view.framed = g.choice<FramedObjects>(); }},
-    {"camera-position", 0, "X,Y,Z", "Where the eye is.", Group::camera, views,
+     Group::camera, for_views & ~for_lines,
+     [](Settings& s, const Given& g) { s.view.framed = g.choice<FramedObjects>(); }},
+    {"camera-position", 0, "X,Y,Z", "Where the eye is.", Group::camera, for_views,
      [](Settings& s, const Given& g) { s.view.position = parse_vector(g.text); }},
     {"camera-focal-point", 0, "X,Y,Z", "What the eye looks at; by default the middle of what is framed.", Group::camera,
-     views, [](Settings& s, const Given& g) { s.view.focal_point = parse_vector(g.text); }},
-    {"camera-direction", 0, "X,Y,Z", "Which way the eye looks; also an axis, such as -z.", Group::camera, views,
+     for_views, [](Settings& s, const Given& g) { s.view.focal_point = parse_vector(g.text); }},
+    {"camera-direction", 0, "X,Y,Z", "Which way the eye looks; also an axis, such as -z.", Group::camera, for_views,
      [](Settings& s, const Given& g) { s.view.direction = parse_direction(g.text); }},
-    {"camera-view-up", 0, "X,Y,Z", "Which way is up in the picture; also an axis.", Group::camera, views,
+    {"camera-view-up", 0, "X,Y,Z", "Which way is up in the picture; also an axis.", Group::camera, for_views,
      [](Settings& s, const Given& g) { s.view.view_up = parse_direction(g.text); }},
     {"camera-view-angle", 0, "DEGREES", "Vertical field of view, 0.001 to 179; 30 for the smaller side by default.",
-     Group::camera, views,
+     Group::camera, for_views,
      [](Settings& s, const Given& g) {
        s.view.view_angle = g.number({0.001, 179});
      }},
     {"camera-zoom-factor", 0, "FACTOR", "Divide the view angle (or the height, if orthographic) by this.",
-     Group::camera, views,
+     Group::camera, for_views,
      [](Settings& s, const Given& g) {
        s.view.zoom = g.number({1e-3, 1e6});
      }},
     {"camera-azimuth-angle", 0, "DEGREES", "Then turn the eye to the right about what it looks at.", Group::camera,
-     views,
+     for_views,
      [](Settings& s, const Given& g) {
        s.view.azimuth = g.number({-36000, 36000});
      }},
-    {"camera-elevation-angle", 0, "DEGREES", "Then turn the eye upwards about what it looks at.", Group::camera, views,
+    {"camera-elevation-angle", 0, "DEGREES", "Then turn the eye upwards about what it looks at.", Group::camera,
+     for_views,
      [](Settings& s, const Given& g) {
        s.view.elevation = g.number({-36000, 36000});
      }},
-    {"camera-orthographic", 0, "", "Parallel projection.", Group::camera, views,
+    {"camera-orthographic", 0, "", "Parallel projection.", Group::camera, for_views,
      [](Settings& s, const Given&) { s.view.orthographic = true; }},
-    {"camera-index", 0, "N", "Look through the model's own camera of this number, from 0.", Group::camera, views,
+    {"camera-index", 0, "N", "Look through the model's own camera of this number, from 0.", Group::camera, for_views,
      [](Settings& s, const Given& g) {
        s.view.camera_index = g.integer({0, 1e6});
      }},
@@ -94,7 +97,7 @@ constexpr Option view_options[] = {
        s.view.fisheye_angle = g.number({0.001, 360});
      }},
 
-    {"intrinsics", 0, "FX,FY,CX,CY", "Pinhole camera matrix, in pixels.", Group::vision, views,
+    {"intrinsics", 0, "FX,FY,CX,CY", "Pinhole camera matrix, in pixels.", Group::vision, for_views,
      [](Settings& s, const Given& g) {
        const std::vector<double> k = parse_numbers(g.text, 4);
        if (!(k[0] > 0 && k[1] > 0)) throw UsageError("focal lengths must be above 0");
@@ -102,15 +105,15 @@ constexpr Option view_options[] = {
      }},
     {"pixel-center", 0, "half|integer",
      "Where cx,cy put the centre of the first pixel: 0.5,0.5 (OpenGL) or 0,0 (OpenCV, the default).", Group::vision,
-     views, [](Settings& s, const Given& g) { s.view.pixel_rule = g.choice<PixelRule>(); }},
+     for_views, [](Settings& s, const Given& g) { s.view.pixel_rule = g.choice<PixelRule>(); }},
     {"pose", 0, "FILE", "Camera pose: 16 numbers row by row, or a file that holds them. Needs --pose-convention.",
-     Group::vision, views, [](Settings& s, const Given& g) { set_pose(s.view, g); }},
+     Group::vision, for_views, [](Settings& s, const Given& g) { set_pose(s.view, g); }},
     {"pose-convention", 0,
      "opengl-camera-to-world|opengl-world-to-camera|opencv-camera-to-world|opencv-world-to-camera",
      "What the pose maps, and its axes: opengl looks down -z with y up, opencv down +z with y down.", Group::vision,
-     views, [](Settings& s, const Given& g) { s.view.pose_convention = g.choice<PoseConvention>(); }},
+     for_views, [](Settings& s, const Given& g) { s.view.pose_convention = g.choice<PoseConvention>(); }},
 
-    {"resolution", 0, "W,H", "Pixels, 1 to 16384 each; 1920,1080 by default.", Group::grid, views,
+    {"resolution", 0, "W,H", "Pixels, 1 to 16384 each; 1920,1080 by default.", Group::grid, for_views,
      [](Settings& s, const Given& g) { s.view.resolution = resolution_from(g.text); }},
     {"samples", 0, "1|2|4|8|16|64",
      "Samples per pixel of the picture; 4 by default, fewer above 8192 x 8192; 64 with --method abuffer, up to 16 "
@@ -120,10 +123,10 @@ constexpr Option view_options[] = {
        constexpr int counts[] = {1, 2, 4, 8, 16, 64};
        s.view.samples = counts[g.choice<int>()];
      }},
-    {"near", 0, "DISTANCE", "Nearest distance that is drawn; fitted to the model by default.", Group::grid, views,
+    {"near", 0, "DISTANCE", "Nearest distance that is drawn; fitted to the model by default.", Group::grid, for_views,
      [](Settings& s, const Given& g) { s.view.near = g.number(); }},
     {"far", 0, "DISTANCE", "Farthest distance that is drawn, or inf; fitted to the model by default.", Group::grid,
-     views,
+     for_views,
      [](Settings& s, const Given& g) {
        s.view.far = g.text == "inf" ? std::numeric_limits<double>::infinity() : g.number();
      }},

@@ -12,8 +12,8 @@
 
 #include <array>
 
+#include "base/highway-inl.h"
 #include "base/wasm_lanes-inl.h"
-#include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::HWY_NAMESPACE {

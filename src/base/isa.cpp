@@ -9,7 +9,7 @@
 #include <array>
 #include <vector>
 
-#include "hwy/highway.h"
+#include "base/highway-inl.h"
 
 #if HWY_ARCH_X86
 #include <cpuid.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Choosing a kernel by Execution::isa. Include after hwy/highway.h.
+// Choosing a kernel by Execution::isa. Include after base/highway-inl.h.
 //
-// A *_kernel.cpp is compiled once for each instruction set, by foreach_target.h, and leaves a table of functions:
+// A *_kernel.cpp is compiled once for each instruction set, by base/highway-inl.h, and leaves a table of functions:
 //
 //   Kernels[]  = { ..., AVX-512, AVX2, ..., SSE4, ..., none }   one entry for each of Highway's targets, the best first
 //   kernel_for(Kernels, isa)  ->  the entry of the highest target that `isa` allows

@@ -16,8 +16,8 @@
 #include <cstring>
 #include <type_traits>
 
+#include "base/highway-inl.h"
 #include "base/wasm_lanes-inl.h"
-#include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::HWY_NAMESPACE {

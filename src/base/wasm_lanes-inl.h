@@ -14,7 +14,7 @@
 #define FRONTMOST_BASE_WASM_LANES_INL_H_
 #endif
 
-#include "hwy/highway.h"
+#include "base/highway-inl.h"
 
 #if HWY_TARGET == HWY_WASM
 HWY_BEFORE_NAMESPACE();

@@ -13,8 +13,8 @@
 #include <glm/glm.hpp>
 
 #include "base/exact_vector.h"
+#include "base/highway-inl.h"
 #include "base/wasm_lanes-inl.h"
-#include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::lines_detail {

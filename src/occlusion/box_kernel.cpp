@@ -6,9 +6,8 @@
 #define HWY_TARGET_INCLUDE "occlusion/box_kernel.cpp"
 #include <cmath>
 
+#include "base/highway-inl.h"
 #include "base/isa.h"
-#include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "hwy/highway.h"
 // After Highway: a block of its own.
 #include "base/lane_types-inl.h"
 #include "base/lanes-inl.h"

@@ -9,8 +9,8 @@
 #define FRONTMOST_OCCLUSION_CELL_ROWS_INL_H_
 #endif
 
+#include "base/highway-inl.h"
 #include "base/lanes-inl.h"
-#include "hwy/highway.h"
 #include "occlusion/cover.h"
 
 HWY_BEFORE_NAMESPACE();

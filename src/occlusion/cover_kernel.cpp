@@ -7,9 +7,8 @@
 #define HWY_TARGET_INCLUDE "occlusion/cover_kernel.cpp"
 #include <cmath>
 
+#include "base/highway-inl.h"
 #include "base/isa.h"
-#include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "hwy/highway.h"
 // After Highway: a block of its own.
 #include "occlusion/cell_rows-inl.h"
 

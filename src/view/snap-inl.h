@@ -16,7 +16,7 @@
 #define FRONTMOST_VIEW_SNAP_INL_H_
 #endif
 
-#include "hwy/highway.h"
+#include "base/highway-inl.h"
 #include "view/screen_transform.h"
 
 HWY_BEFORE_NAMESPACE();

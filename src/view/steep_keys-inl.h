@@ -12,8 +12,8 @@
 #define FRONTMOST_VIEW_STEEP_KEYS_INL_H_
 #endif
 
+#include "base/highway-inl.h"
 #include "base/lane_types-inl.h"
-#include "hwy/highway.h"
 #include "view/triangle_keys.h"
 
 HWY_BEFORE_NAMESPACE();

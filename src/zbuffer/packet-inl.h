@@ -14,10 +14,10 @@
 #define FRONTMOST_ZBUFFER_PACKET_INL_H_
 #endif
 
+#include "base/highway-inl.h"
 #include "base/lane_types-inl.h"
 #include "base/lanes-inl.h"
 #include "frontmost/view.h"
-#include "hwy/highway.h"
 #include "view/key_planes-inl.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -3,9 +3,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "base/lanes_kernel.cpp"
+#include "base/highway-inl.h"
 #include "base/isa.h"
-#include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "hwy/highway.h"
 // After Highway: a block of its own.
 #include "base/compactor-inl.h"
 #include "base/lane_types-inl.h"

@@ -34,8 +34,8 @@ class Shards : public ProgramTest {
   /// Numbers of the views that a run draws, besides those that were finished before.
   std::vector<std::string> drawn(const std::string& options) const {
     std::vector<std::string> names;
-    const nlohmann::json json = succeed(shard_line + options + " --json").json();
-    for (const auto& view : json["views"]) names.push_back(view["name"]);
+    const nlohmann::json report = succeed(shard_line + options + " --json").json();
+    for (const auto& view : report["views"]) names.push_back(view["name"]);
     return names;
   }
   /// All that was made, but for manifests.
@@ -192,10 +192,10 @@ class Merging : public Shards {
 
 TEST_F(Merging, GathersTheFilesOfAllFolders) {
   expect_failure("batch-merge a", 1, "3 of 10 views are not finished: views[1], views[4], views[7]");
-  const auto json = succeed("batch-merge a b -o all/of/them --json").json();
-  EXPECT_EQ(json["views"], 10);
-  EXPECT_EQ(json["files"], 20);
-  EXPECT_EQ(json["manifests"].size(), 3u);
+  const auto merged = succeed("batch-merge a b -o all/of/them --json").json();
+  EXPECT_EQ(merged["views"], 10);
+  EXPECT_EQ(merged["files"], 20);
+  EXPECT_EQ(merged["manifests"].size(), 3u);
   succeed(shard_line);
   for (const auto& [name, content] : made()) EXPECT_EQ(read("all/of/them/" + name), content) << name;
   EXPECT_FALSE(exists("all/of/them/cube.v.1-of-3.jsonl"));

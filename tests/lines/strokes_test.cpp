@@ -10,6 +10,7 @@
 
 #include "support/effort.h"
 #include "support/meshes.h"
+#include "support/seeds.h"
 
 namespace frontmost::test {
 namespace {
@@ -292,7 +293,7 @@ struct PiecesOfLines {
 };
 
 PiecesOfLines pieces_of_lines(int line_count, int piece_count, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
+  std::mt19937_64 random(test::noted_seed(seed));
   const auto up_to = [&](double most) { return most * double(random() >> 11) / double(1ull << 53); };
   const auto near = [&](const glm::dvec2& place, double most) {
     const double x = up_to(most);

@@ -14,6 +14,7 @@
 #include "frontmost/zbuffer.h"
 #include "shade/support.h"
 #include "support/refusal.h"
+#include "support/seeds.h"
 
 namespace frontmost::shading {
 namespace {
@@ -193,7 +194,7 @@ std::unique_ptr<FragmentBatch> strewn(int count, double spread, const glm::dvec3
 }
 
 TEST(Lamps, WhatArrivesIsTheExtensionsFormulaOnEveryInstructionSet) {
-  std::mt19937 random(7);
+  std::mt19937 random(test::noted_seed(7));
   const glm::dvec3 eye(3, -2, 5);
   PictureLights lights;
   const std::vector<Light> all = all_kinds();
@@ -225,7 +226,7 @@ TEST(Lamps, WhatArrivesIsTheExtensionsFormulaOnEveryInstructionSet) {
 }
 
 TEST(Lamps, ABoxThatALampDoesNotReachHoldsNoLight) {
-  std::mt19937 random(5);
+  std::mt19937 random(test::noted_seed(5));
   std::uniform_real_distribution<double> unit(0, 1), both(-4, 4);
   int passed_over = 0, lit = 0;
   const auto arriving = std::make_unique<LampLight>();
@@ -252,7 +253,7 @@ TEST(Lamps, ABoxThatALampDoesNotReachHoldsNoLight) {
 }
 
 TEST(Lamps, ARangeThatIsNextToNothingReachesNothing) {
-  std::mt19937 random(3);
+  std::mt19937 random(test::noted_seed(3));
   Light light = light_at_place(Light::Kind::point, {0, 0, 0}, {0, 0, -1}, 1);
   light.range = 1e-60;
   PictureLights lights;

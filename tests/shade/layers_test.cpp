@@ -273,7 +273,9 @@ TEST(SeeThrough, TilesOfWhatIsOpaqueNeedNoLayers) {
       // it.
       EXPECT_LT(difference.farthest, samples == 1 ? plane_rounding : 0.1f);
       EXPECT_LT(difference.pixels, samples == 1 ? 1 : view.pixel_count() / 50);
-      if (samples > 1) EXPECT_GT(difference.pixels, 0u) << "layers are found everywhere";
+      if (samples > 1) {
+        EXPECT_GT(difference.pixels, 0u) << "layers are found everywhere";
+      }
       const Image by_pixels = shade(surfaces, zbuffer_pixels(surfaces, view), options);
       EXPECT_EQ(content_hash(by_pixels), content_hash(pictures.where_needed));
     }

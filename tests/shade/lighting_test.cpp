@@ -12,6 +12,7 @@
 
 #include "shade/light_reference.h"
 #include "support/odd_numbers.h"
+#include "support/seeds.h"
 
 namespace frontmost::shading {
 namespace {
@@ -338,7 +339,7 @@ TEST(Lighting, AnyInputGivesColoursBetweenZeroAndOne) {
 
 TEST(Lighting, AFragmentsColourDoesNotDependOnItsPlaceInTheBatchNorOnTheInstructionSet) {
   // The loop takes several at a time, how many depends on the machine, and its rest one by one: all must round alike.
-  std::mt19937 random(11);
+  std::mt19937 random(test::noted_seed(11));
   std::uniform_real_distribution<float> unit(0, 1), both(-1, 1);
   std::vector<Surface> surfaces;
   for (int i = 0; i < 61; ++i)
@@ -364,7 +365,7 @@ TEST(Lighting, AFragmentsColourDoesNotDependOnItsPlaceInTheBatchNorOnTheInstruct
 }
 
 TEST(Lighting, KernelsGiveWhatTheFormulasOfTheStandardGiveInDoubles) {
-  std::mt19937 random(5);
+  std::mt19937 random(test::noted_seed(5));
   std::uniform_real_distribution<float> unit(0, 1), both(-1, 1);
   double greatest = 0;
   for (const Environment& environment : {Environment::studio(), Environment::sky()})

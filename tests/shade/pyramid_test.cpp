@@ -12,6 +12,7 @@
 #include "base/srgb.h"
 #include "shade/texture/texture_sampler.h"
 #include "support/random_scene.h"
+#include "support/seeds.h"
 
 namespace frontmost::shading {
 namespace {
@@ -126,7 +127,7 @@ std::uint8_t mean_of(const std::array<std::uint8_t, 4>& bytes, Encoding encoding
 }
 
 TEST(Pyramid, FourOpaqueTexelsMakeTheirMeanWhateverIsBesideThem) {
-  std::mt19937 random(11);
+  std::mt19937 random(test::noted_seed(11));
   for (const Encoding encoding : {Encoding::srgb, Encoding::linear})
     for (const bool has_clear : {false, true}) {
       Texture texture = constant(38, 22, glm::u8vec4(255));

@@ -12,6 +12,7 @@
 #include "frontmost/io.h"
 #include "support/meshes.h"
 #include "support/models.h"
+#include "support/seeds.h"
 
 namespace frontmost::shading {
 namespace {
@@ -52,7 +53,7 @@ glm::vec3 facet_normal(const Mesh& mesh, std::size_t t) {
 }
 
 TEST(PackedNormal, KeepsDirectionsToAHundredthOfADegree) {
-  std::mt19937 random(3);
+  std::mt19937 random(test::noted_seed(3));
   std::normal_distribution<float> component;
   for (int i = 0; i < 20000; ++i) {
     const glm::vec3 n = glm::normalize(glm::vec3(component(random), component(random), component(random)));

@@ -5,12 +5,13 @@
 #include <random>
 
 #include "sheets/layout/layout.h"
+#include "support/seeds.h"
 
 namespace frontmost::test {
 namespace {
 
 TEST(PlanSheet, NoViewReachesTheTitleBlockAndNoLargerStandardScaleWould) {
-  std::mt19937 random(7);
+  std::mt19937 random(test::noted_seed(7));
   std::uniform_real_distribution<double> side(1, 300);
   int beside = 0;
   for (int round = 0; round < 500; ++round) {

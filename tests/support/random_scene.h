@@ -6,13 +6,14 @@
 
 #include "frontmost/scene.h"
 #include "frontmost/view.h"
+#include "support/seeds.h"
 
 namespace frontmost::test {
 
 /// Numbers that do not depend on the standard library.
 class Random {
  public:
-  explicit Random(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15u + 0x1234567) {}
+  explicit Random(std::uint64_t seed) : state_(noted_seed(seed) * 0x9E3779B97F4A7C15u + 0x1234567) {}
   std::uint32_t next() {
     state_ = state_ * 6364136223846793005u + 1442695040888963407u;
     return std::uint32_t(state_ >> 32) ^ std::uint32_t(state_ >> 13);

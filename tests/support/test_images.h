@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "frontmost/io.h"
+#include "support/seeds.h"
 
 namespace frontmost::test {
 
@@ -31,7 +32,7 @@ inline Channel id_channel(const std::string& name, std::vector<std::uint32_t> va
 /// Channels of random bits, or of random numbers in [low, high].
 inline Image random_floats(int width, int height, const std::vector<std::string>& names, float low = 0,
                            float high = 1) {
-  std::mt19937 random(unsigned(width * 31 + height));
+  std::mt19937 random(test::noted_seed(unsigned(width * 31 + height)));
   std::uniform_real_distribution<float> number(low, high);
   Image image{width, height, {}};
   for (const std::string& name : names) {
@@ -43,7 +44,7 @@ inline Image random_floats(int width, int height, const std::vector<std::string>
 }
 
 inline Image random_ids(int width, int height, const std::vector<std::string>& names, std::uint32_t most = no_index) {
-  std::mt19937 random(unsigned(width * 37 + height));
+  std::mt19937 random(test::noted_seed(unsigned(width * 37 + height)));
   Image image{width, height, {}};
   for (const std::string& name : names) {
     Buffer<std::uint32_t> values(std::size_t(width) * std::size_t(height));

@@ -7,11 +7,13 @@
 #include <random>
 #include <vector>
 
+#include "support/seeds.h"
+
 namespace frontmost::test {
 namespace {
 
 Buffer<std::uint64_t> random_items(std::size_t count, int key_bits) {
-  std::mt19937_64 random(count);
+  std::mt19937_64 random(test::noted_seed(count));
   Buffer<std::uint64_t> items(count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint64_t above = random() << 32 << key_bits;  // what is beside the key must not count

@@ -9,6 +9,7 @@
 #include "frontmost/scene.h"
 #include "frontmost/view.h"
 #include "support/random_scene.h"
+#include "support/seeds.h"
 
 namespace frontmost::test {
 namespace {
@@ -49,7 +50,7 @@ void expect_boxes_give_the_same(std::vector<glm::vec3> points, const FilledFrust
 }
 
 std::vector<glm::vec3> random_points(std::size_t count, unsigned seed) {
-  std::mt19937 random(seed);
+  std::mt19937 random(test::noted_seed(seed));
   std::normal_distribution<float> draw;
   std::vector<glm::vec3> points(count);
   for (glm::vec3& p : points) p = {draw(random), draw(random), draw(random)};

@@ -10,9 +10,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "abuffer/composite/composite_kernel.cpp"
+#include "base/highway-inl.h"
 #include "base/isa.h"
-#include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "hwy/highway.h"
 // After Highway: a block of its own.
 #include "abuffer/composite/conflicts-inl.h"
 #include "abuffer/composite/group_composite-inl.h"

@@ -20,9 +20,9 @@
 
 #include "abuffer/gather/gather_kernel.h"
 #include "base/compactor-inl.h"
+#include "base/highway-inl.h"
 #include "base/lane_types-inl.h"
 #include "base/lanes-inl.h"
-#include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace frontmost::abuffer_detail {

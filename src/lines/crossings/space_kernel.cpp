@@ -16,9 +16,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lines/crossings/space_kernel.cpp"
+#include "base/highway-inl.h"
 #include "base/isa.h"
-#include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "hwy/highway.h"
 // After foreach_target.h, for each target.
 #include "base/lanes-inl.h"
 #include "lines/vector3-inl.h"

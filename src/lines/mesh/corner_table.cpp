@@ -19,7 +19,7 @@ namespace {
 
 /// Each takes four bytes a vertex.
 constexpr std::size_t kMostBands = 8;
-constexpr std::size_t kTrianglesPerPoll = 1 << 18;
+constexpr std::size_t kTrianglesBetweenPolls = 1 << 18;
 
 }  // namespace
 
@@ -34,7 +34,7 @@ CornerTable::CornerTable(const WeldedMesh& mesh, const Execution& execution) {
     parallel_for(execution, bands, 1, [&](std::size_t band, std::size_t) {
       const std::size_t end = triangles * (band + 1) / bands;
       for (std::size_t t = triangles * band / bands; t < end; ++t) {
-        if (t % kTrianglesPerPoll == 0) check_cancelled(execution);
+        if (t % kTrianglesBetweenPolls == 0) check_cancelled(execution);
         for (std::uint32_t k = 0; k < 3; ++k) visit(band, (&mesh.triangles[t].x)[k], Corner(std::uint32_t(t), k));
       }
     });

@@ -12,9 +12,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lines/mesh/seen_kernel.cpp"
+#include "base/highway-inl.h"
 #include "base/isa.h"
-#include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "hwy/highway.h"
 // After foreach_target.h, for each target.
 #include "lines/vector3-inl.h"
 

@@ -18,7 +18,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hwy/highway.h"
+#include "base/highway-inl.h"
 #include "raycast/packet/scan_packet.h"
 #include "raycast/query/ray_axis-inl.h"
 

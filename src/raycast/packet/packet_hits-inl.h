@@ -18,8 +18,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/highway-inl.h"
 #include "base/wasm_lanes-inl.h"
-#include "hwy/highway.h"
 #include "raycast/packet/packet_triangles-inl.h"
 #include "raycast/query/queries.h"
 

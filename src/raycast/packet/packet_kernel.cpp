@@ -17,9 +17,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raycast/packet/packet_kernel.cpp"
+#include "base/highway-inl.h"
 #include "base/isa.h"
-#include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "hwy/highway.h"
 // After Highway: a block of its own.
 #include "base/lanes-inl.h"
 #include "raycast/packet/packet_hits-inl.h"

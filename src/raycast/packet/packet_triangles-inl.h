@@ -16,7 +16,7 @@
 #define FRONTMOST_RAYCAST_PACKET_TRIANGLES_INL_H_
 #endif
 
-#include "hwy/highway.h"
+#include "base/highway-inl.h"
 #include "raycast/packet/packet_cone-inl.h"
 
 HWY_BEFORE_NAMESPACE();

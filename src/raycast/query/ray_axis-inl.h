@@ -18,7 +18,7 @@
 #include <cmath>
 
 #include "base/compactor-inl.h"
-#include "hwy/highway.h"
+#include "base/highway-inl.h"
 #include "raycast/query/queries.h"
 
 HWY_BEFORE_NAMESPACE();

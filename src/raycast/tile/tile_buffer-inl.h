@@ -17,9 +17,9 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/highway-inl.h"
 #include "base/wasm_lanes-inl.h"
 #include "hwy/cache_control.h"
-#include "hwy/highway.h"
 #include "raycast/tile/tile_kernel.h"
 
 HWY_BEFORE_NAMESPACE();

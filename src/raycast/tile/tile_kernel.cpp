@@ -14,9 +14,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raycast/tile/tile_kernel.cpp"
+#include "base/highway-inl.h"
 #include "base/isa.h"
-#include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "hwy/highway.h"
 #include "raycast/index/placement.h"
 #include "raycast/tile/triangle_queue-inl.h"
 

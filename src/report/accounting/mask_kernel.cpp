@@ -17,9 +17,8 @@
 #define HWY_TARGET_INCLUDE "report/accounting/mask_kernel.cpp"
 #include <bit>
 
+#include "base/highway-inl.h"
 #include "base/isa.h"
-#include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "hwy/highway.h"
 // After Highway: a block of its own.
 #include "base/lanes-inl.h"
 #include "zbuffer/packet-inl.h"

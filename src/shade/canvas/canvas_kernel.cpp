@@ -10,9 +10,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/highway-inl.h"
 #include "base/isa.h"
-#include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "hwy/highway.h"
 // After Highway: a block of its own.
 #include "base/lane_types-inl.h"
 #include "image/srgb_pixels.h"

@@ -7,9 +7,8 @@
 #include <algorithm>
 #include <array>
 
+#include "base/highway-inl.h"
 #include "base/isa.h"
-#include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "hwy/highway.h"
 // After Highway: a block of its own.
 #include "shade/environment/octahedral_lookup-inl.h"
 

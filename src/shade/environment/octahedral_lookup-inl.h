@@ -13,7 +13,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "hwy/highway.h"
+#include "base/highway-inl.h"
 // After Highway: a block of its own.
 #include "shade/light/fragment_terms-inl.h"
 

@@ -12,7 +12,7 @@
 
 #include <cmath>
 
-#include "hwy/highway.h"
+#include "base/highway-inl.h"
 #include "shade/batch.h"
 
 HWY_BEFORE_NAMESPACE();

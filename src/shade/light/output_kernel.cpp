@@ -6,9 +6,8 @@
 #define HWY_TARGET_INCLUDE "shade/light/output_kernel.cpp"
 #include <algorithm>
 
+#include "base/highway-inl.h"
 #include "base/isa.h"
-#include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "hwy/highway.h"
 #include "shade/light/layers.h"
 // After Highway: a block of its own.
 #include "shade/light/fragment_terms-inl.h"

@@ -8,9 +8,8 @@
 #define HWY_TARGET_INCLUDE "shade/occlusion/occlusion_kernel.cpp"
 #include <algorithm>
 
+#include "base/highway-inl.h"
 #include "base/isa.h"
-#include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "hwy/highway.h"
 // After Highway: a block of its own.
 #include "base/lane_types-inl.h"
 

@@ -13,9 +13,8 @@
 #include <cstring>
 #include <type_traits>
 
+#include "base/highway-inl.h"
 #include "base/isa.h"
-#include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "hwy/highway.h"
 // After Highway: a block of its own.
 #include "base/lane_types-inl.h"
 

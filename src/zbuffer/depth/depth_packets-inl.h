@@ -20,7 +20,7 @@
 
 #include <cstring>
 
-#include "hwy/highway.h"
+#include "base/highway-inl.h"
 #include "zbuffer/depth/depth_call.h"
 #include "zbuffer/depth/depth_rows-inl.h"
 #include "zbuffer/packet-inl.h"

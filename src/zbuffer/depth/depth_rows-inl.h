@@ -15,8 +15,8 @@
 #include <cstring>
 #include <optional>
 
+#include "base/highway-inl.h"
 #include "base/wasm_lanes-inl.h"
-#include "hwy/highway.h"
 #include "view/steep_keys-inl.h"
 #include "zbuffer/depth/depth_call.h"
 #include "zbuffer/packet-inl.h"

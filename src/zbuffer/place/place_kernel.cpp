@@ -14,9 +14,8 @@
 #define HWY_TARGET_INCLUDE "zbuffer/place/place_kernel.cpp"
 #include <limits>
 
+#include "base/highway-inl.h"
 #include "base/isa.h"
-#include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "hwy/highway.h"
 // After Highway: a block of its own.
 #include "base/compactor-inl.h"
 #include "view/snap-inl.h"

@@ -16,7 +16,7 @@
 #define FRONTMOST_ZBUFFER_RUN_READER_INL_H_
 #endif
 
-#include "hwy/highway.h"
+#include "base/highway-inl.h"
 #include "zbuffer/packet-inl.h"
 #include "zbuffer/place/triangle_batch.h"
 

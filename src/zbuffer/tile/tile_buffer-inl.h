@@ -19,8 +19,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/highway-inl.h"
 #include "hwy/cache_control.h"
-#include "hwy/highway.h"
 #include "zbuffer/cull.h"
 #include "zbuffer/packet-inl.h"
 #include "zbuffer/tile/tile.h"

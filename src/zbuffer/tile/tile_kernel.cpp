@@ -14,9 +14,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "zbuffer/tile/tile_kernel.cpp"
+#include "base/highway-inl.h"
 #include "base/isa.h"
-#include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "hwy/highway.h"
 #include "view/snap-inl.h"
 #include "zbuffer/tile/large_triangles-inl.h"
 #include "zbuffer/tile/small_triangles-inl.h"

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "support/radiance_maker.h"
+#include "support/seeds.h"
 #include "support/test_images.h"
 
 namespace frontmost::test {
@@ -12,7 +13,7 @@ Image read_hdr(const std::string& bytes) { return load_image(std::as_bytes(std::
 
 /// Noise, and long and short runs of pixels and of single components.
 RadianceRows random_rows(std::size_t width, std::size_t height, unsigned seed) {
-  std::mt19937 random(seed);
+  std::mt19937 random(test::noted_seed(seed));
   RadianceRows rows(height, std::vector<RadiancePixel>(width));
   for (auto& row : rows) {
     RadiancePixel pixel = {9, 200, 3, 130};

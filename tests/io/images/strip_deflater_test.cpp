@@ -10,6 +10,8 @@
 #include <random>
 #include <vector>
 
+#include "support/seeds.h"
+
 #if defined(__x86_64__)
 #include <cpuid.h>
 #include <immintrin.h>
@@ -21,7 +23,7 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 Bytes random_bytes(std::size_t count, unsigned seed, unsigned different) {
-  std::mt19937 random(seed);
+  std::mt19937 random(test::noted_seed(seed));
   Bytes bytes(count);
   for (std::uint8_t& byte : bytes) byte = std::uint8_t(random() % different);
   return bytes;
@@ -29,7 +31,7 @@ Bytes random_bytes(std::size_t count, unsigned seed, unsigned different) {
 
 /// Runs of all lengths, mostly short ones, of few bytes.
 Bytes random_runs(std::size_t count, unsigned seed) {
-  std::mt19937 random(seed);
+  std::mt19937 random(test::noted_seed(seed));
   Bytes bytes;
   while (bytes.size() < count)
     bytes.insert(bytes.end(), std::min<std::size_t>(count - bytes.size(), 1 + (random() % 700 >> random() % 10)),
@@ -39,7 +41,7 @@ Bytes random_runs(std::size_t count, unsigned seed) {
 
 /// What a filter leaves of a smooth picture: small steps up and down.
 Bytes small_steps(std::size_t count) {
-  std::mt19937 random(3);
+  std::mt19937 random(test::noted_seed(3));
   std::normal_distribution<double> step(0, 3);
   Bytes bytes(count);
   for (std::uint8_t& byte : bytes) byte = std::uint8_t(int(step(random)));

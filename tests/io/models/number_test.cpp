@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "support/seeds.h"
+
 namespace frontmost {
 namespace {
 
@@ -83,7 +85,7 @@ TEST(ParseFloat, KnowsNanAndInfinityInEverySpelling) {
 
 // strtof of the C library rounds correctly, slowly.
 TEST(ParseFloat, RoundsLikeTheCLibrary) {
-  std::mt19937_64 random(1);
+  std::mt19937_64 random(test::noted_seed(1));
   std::size_t compared = 0;
   for (int i = 0; i < 300'000; ++i) {
     std::string text = random() % 2 ? "-" : "";
@@ -103,7 +105,7 @@ TEST(ParseFloat, RoundsLikeTheCLibrary) {
 
 // Half way between two floats, and one digit to either side: where rounding twice would show.
 TEST(ParseFloat, RoundsHalfWaysOnce) {
-  std::mt19937 random(2);
+  std::mt19937 random(test::noted_seed(2));
   for (int i = 0; i < 20'000; ++i) {
     const auto low = float(random() % (1 << 24)) / 1024;
     const double half = (double(low) + double(std::nextafter(low, 1e9f))) / 2;
@@ -136,7 +138,7 @@ TEST(ParseInteger, TakesUpTo18Digits) {
 }
 
 TEST(ParseBoth, GivesTheNearestFloatAndTheNearestDouble) {
-  std::mt19937_64 random(7);
+  std::mt19937_64 random(test::noted_seed(7));
   std::vector<std::string> texts = {"0",
                                     "-0.0",
                                     "nan",

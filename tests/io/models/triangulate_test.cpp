@@ -11,6 +11,7 @@
 #include "base/orientation.h"
 #include "frontmost/io.h"
 #include "support/models.h"
+#include "support/seeds.h"
 
 namespace frontmost {
 namespace {
@@ -98,7 +99,7 @@ TEST(Triangulate, CornersOnALineNeedNoFlatTriangles) {
 TEST(Triangulate, EveryPlaneAndDirection) {
   // An L in many planes: areas agree, and normals point the polygon's way.
   const std::vector<glm::dvec2> shape{{0, 0}, {2, 0}, {2, 0.5}, {0.5, 0.5}, {0.5, 2}, {0, 2}};
-  std::mt19937 random(4);
+  std::mt19937 random(test::noted_seed(4));
   std::normal_distribution<double> normal;
   for (int i = 0; i < 500; ++i) {
     const glm::dvec3 u(normal(random), normal(random), normal(random)),
@@ -123,7 +124,7 @@ TEST(Triangulate, HolesJoinedByDoubledEdges) {
 }
 
 TEST(Triangulate, RandomStarsAndSpirals) {
-  std::mt19937 random(5);
+  std::mt19937 random(test::noted_seed(5));
   std::uniform_real_distribution<double> radius(0.1, 1);
   for (int i = 0; i < 300; ++i) {
     const int count = 4 + int(random() % 60);
@@ -143,7 +144,7 @@ TEST(Triangulate, RandomStarsAndSpirals) {
 
 // Staircases and combs on a coarse grid: many corners on one line, many touching.
 TEST(Triangulate, RandomRectilinearSkylines) {
-  std::mt19937 random(6);
+  std::mt19937 random(test::noted_seed(6));
   for (int i = 0; i < 300; ++i) {
     Polygon skyline{{0, -1, 0}};
     const int count = 3 + int(random() % 20);
@@ -185,7 +186,7 @@ TEST(Triangulate, DegenerateAndCrossingPolygonsKeepTheirCount) {
 // A saw around a disc: every other corner is a blocker. Within the budget of work, which once ended at a few ten
 // thousand corners, each triangle turns the polygon's way; a fan over what is left would not.
 TEST(Triangulate, ManyJaggedCornersAreCutRightly) {
-  std::mt19937 random(8);
+  std::mt19937 random(test::noted_seed(8));
   std::uniform_real_distribution<double> radius(0.8, 1);
   Polygon saw;
   for (int i = 0; i < 200'000; ++i) {
@@ -197,7 +198,7 @@ TEST(Triangulate, ManyJaggedCornersAreCutRightly) {
 
 // The budget of work ends what would take hours, and the count still holds.
 TEST(Triangulate, HostilePolygonsEndSoon) {
-  std::mt19937 random(7);
+  std::mt19937 random(test::noted_seed(7));
   Polygon tangle;
   for (int i = 0; i < 100'000; ++i) tangle.emplace_back(random() % 1000, random() % 1000, 0);
   Triangulator triangulate;

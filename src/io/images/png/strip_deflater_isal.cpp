@@ -18,7 +18,7 @@ namespace {
 /// Of rendered pictures, depths and ids, level 0, whose Huffman codes are fixed, makes files a fifth larger to twice as
 /// large and saves little time; level 2 takes up to a sixth longer for less than a hundredth of the size; level 3 takes
 /// half as long again to twenty times as long, for files of about the same size. docs/performance.md has the figures.
-constexpr std::uint32_t level = 1;
+constexpr std::uint32_t deflate_level = 1;
 constexpr std::size_t level_memory_size = ISAL_DEF_LVL1_DEFAULT;
 
 /// What does not become smaller is stored in blocks of 65535 bytes, five more bytes each.
@@ -52,7 +52,7 @@ StripDeflater::~StripDeflater() = default;
 std::span<const std::uint8_t> StripDeflater::compress(std::span<const std::uint8_t> raw, bool last) {
   isal_zstream& stream = state_->stream;
   ::isal_deflate_stateless_init(&stream);
-  stream.level = level;
+  stream.level = deflate_level;
   stream.level_buf = state_->level_memory.data();
   stream.level_buf_size = std::uint32_t(state_->level_memory.size());
   stream.next_in = const_cast<std::uint8_t*>(raw.data());  // ISA-L does not write there
