@@ -36,7 +36,7 @@ f 4 1 5 8
 
 
 def run(*words):
-    done = subprocess.run([str(w) for w in words], capture_output=True, text=True, timeout=120)
+    done = subprocess.run([str(w) for w in words], capture_output=True, text=True, timeout=900)
     if done.returncode != 0 or done.stderr:
         sys.exit(f"{' '.join(map(str, words))}: {done.stderr}")
 

@@ -46,7 +46,7 @@ LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
 
 
 def run(*words):
-    done = subprocess.run([str(w) for w in words], capture_output=True, text=True, timeout=120)
+    done = subprocess.run([str(w) for w in words], capture_output=True, text=True, timeout=900)
     if done.returncode != 0 or done.stderr:  # no warnings either
         sys.exit(f"{' '.join(map(str, words))}: {done.stderr}")
     return done.stdout

@@ -26,7 +26,7 @@ SIZE = "96,72"
 
 
 def run(*words, fails=False):
-    done = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, timeout=120)
+    done = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, timeout=900)
     if (done.returncode != 0) != fails:
         sys.exit(f"{' '.join(map(str, words))}: status {done.returncode}: {done.stderr.decode()}")
     return done.stdout

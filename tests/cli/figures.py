@@ -67,7 +67,7 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 
 def run(*words):
-    done = subprocess.run([str(w) for w in words], capture_output=True, text=True, timeout=120)
+    done = subprocess.run([str(w) for w in words], capture_output=True, text=True, timeout=900)
     if done.returncode != 0:
         sys.exit(f"{' '.join(map(str, words))}: {done.stderr}")
     if done.stderr.strip():
@@ -238,7 +238,7 @@ def screenshot(folder, width, height):
     words = [browser(), "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--force-device-scale-factor=1",
              f"--user-data-dir={folder}/profile", f"--window-size={width},{height}", f"--screenshot={shot}", page.as_uri()]
     try:
-        subprocess.run([str(word) for word in words], capture_output=True, timeout=60)
+        subprocess.run([str(word) for word in words], capture_output=True, timeout=900)
     except subprocess.TimeoutExpired:
         return None
     return read_png(shot) if shot.exists() else None

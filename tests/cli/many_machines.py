@@ -26,7 +26,7 @@ skipped = []
 def run(folder, command, **variables):
     environment = {**os.environ, "PATH": f"{PROGRAM.parent}:{os.environ['PATH']}", **variables}
     done = subprocess.run(["bash", "-euo", "pipefail", "-c", command], cwd=folder, env=environment,
-                          capture_output=True, text=True, timeout=120)
+                          capture_output=True, text=True, timeout=900)
     if done.returncode != 0:
         sys.exit(f"{command}: status {done.returncode}\n{done.stdout}{done.stderr}")
     return done.stdout

@@ -89,7 +89,7 @@ bool catches(pid_t child, int signal) {
 /// Sends the signal that a call asks for, so long after the program is ready for it; a busy machine takes a while.
 void interrupt(pid_t child, const Call& call) {
   using std::chrono::steady_clock;
-  constexpr std::chrono::seconds kMostWait(60);
+  constexpr std::chrono::seconds kMostWait(900);
   const auto start = steady_clock::now();
   while (!catches(child, *call.signal) && steady_clock::now() - start < kMostWait)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));

@@ -95,7 +95,7 @@ def look(browser, page, script, width):
     copy.write_text(text.replace("</body>", "<script>const told = {}; try {" + script + "} catch (error) { told.error = String(error); }" +
                                  NOTE + "</script></body>"))
     done = subprocess.run([browser, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={page.parent}/user",
-                           f"--window-size={width},900", "--dump-dom", copy.as_uri()], capture_output=True, timeout=100)
+                           f"--window-size={width},900", "--dump-dom", copy.as_uri()], capture_output=True, timeout=900)
     found = re.search(r'<pre id="told">(.*?)</pre>', done.stdout.decode())
     if not found:
         sys.exit(f"{browser} says nothing: {done.stderr.decode()[-500:]}")
@@ -145,7 +145,7 @@ def main():
 
         def report(model, page, *options):
             subprocess.run([program, "report", model, "-o", page, "--quiet", *options], cwd=folder, check=True,
-                           stdout=subprocess.DEVNULL, timeout=60)
+                           stdout=subprocess.DEVNULL, timeout=900)
             return folder / page
 
         (folder / "squares.obj").write_text("".join(square(*s) for s in SQUARES))

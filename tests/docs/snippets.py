@@ -68,7 +68,7 @@ def emit(out):
 
 def run_shell(page, first, text, folder, environment):
     done = subprocess.run(["bash", "-euo", "pipefail", "-c", text], cwd=folder, env=environment, capture_output=True,
-                          text=True, timeout=120)
+                          text=True, timeout=900)
     if done.returncode == 0:
         return True
     print(f"{page}:{first}: exit status {done.returncode}\n{text}\n{done.stdout}{done.stderr}")
@@ -80,7 +80,7 @@ def run(program, frontmost):
         folder = pathlib.Path(folder)
         sample_models.write(folder)
         environment = dict(os.environ, PATH=f"{frontmost.resolve().parent}:{os.environ['PATH']}")
-        good = subprocess.run([program.resolve()], cwd=folder, timeout=120).returncode == 0
+        good = subprocess.run([program.resolve()], cwd=folder, timeout=900).returncode == 0
         commands = list(blocks("sh"))
         good = all([run_shell(*block, folder, environment) for block in commands]) and good
     print(f"{len(list(blocks('cpp')))} C++ blocks, {len(commands)} shell blocks")

@@ -19,7 +19,7 @@ LEAST = numpy.array([[-1, -2, -3], [4, 5, 6]], dtype=numpy.float32)
 
 def run(folder, command):
     variables = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-    return subprocess.run([*map(str, command)], cwd=folder, env=variables, capture_output=True, text=True, timeout=200)
+    return subprocess.run([*map(str, command)], cwd=folder, env=variables, capture_output=True, text=True, timeout=900)
 
 
 def needs(*modules):

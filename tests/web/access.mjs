@@ -7,7 +7,7 @@ import { openBrowser, openPage } from "./browser.mjs";
 
 const [folder] = process.argv.slice(2);
 const { browser, address, close } = await openBrowser(folder);
-const patience = { timeout: 60000 };
+const patience = { timeout: 300000 };
 const complaints = [];
 let names = 0, stops = 0, texts = 0, keyed = 0;
 
@@ -137,7 +137,7 @@ const shown = (figure) => figure.evaluate((one) => [...one.querySelectorAll("can
 const told = (figure) => figure.evaluate((one) => [...one.querySelectorAll("[aria-live], [role=status]")].map((region) => region.textContent).join(" | "));
 
 async function becomes(look, before, what) {
-  for (let i = 0; i < 200; ++i) {
+  for (let i = 0; i < 6000; ++i) {
     if (await look() !== before) return;
     await new Promise((go) => setTimeout(go, 50));
   }

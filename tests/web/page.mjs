@@ -12,7 +12,7 @@ import { openBrowser, openPage } from "./browser.mjs";
 
 const [folder, program] = process.argv.slice(2);
 const { browser, address, close } = await openBrowser(folder);
-const patience = { timeout: 60000 };
+const patience = { timeout: 300000 };
 let downloads = 0, steps = 0, lessons = 0, ownModels = 0, memory = [];
 
 const settled = (page) => page.waitForFunction(() => /[0-9a-f]{16}/.test(document.querySelector(".state")?.textContent ?? "") && document.querySelector(".busy")?.hidden, undefined, patience);

@@ -6,7 +6,7 @@ import { openBrowser, openPage } from "./browser.mjs";
 
 const [folder] = process.argv.slice(2);
 const { browser, address, close } = await openBrowser(folder);
-const patience = { timeout: 60000 }, phone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
+const patience = { timeout: 300000 }, phone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 let pictures = 0;
 
 async function openPhone(path, more = {}) {
@@ -91,7 +91,7 @@ async function atRest(figure) {
 async function changes(figure, act, what) {
   const before = await shown(figure);
   await act();
-  for (let i = 0; i < 100; ++i) {
+  for (let i = 0; i < 6000; ++i) {
     await new Promise((go) => setTimeout(go, 50));
     if (await shown(figure) !== before) return;
   }

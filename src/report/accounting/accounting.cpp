@@ -92,18 +92,18 @@ class Accountant {
   }
 
   void draw_objects(Accounting& result) {
-    constexpr std::size_t kGrain = 64;
+    constexpr std::size_t kObjectsPerChunk = 64;
     const std::vector<std::size_t> first = first_ranges(scene_);
     const std::size_t count = result.objects.size();
-    std::vector<std::vector<HiddenSamples>> hidden((count + kGrain - 1) / kGrain);
+    std::vector<std::vector<HiddenSamples>> hidden((count + kObjectsPerChunk - 1) / kObjectsPerChunk);
     Pool<AccountScratch> scratches;
-    parallel_for(execution_, count, kGrain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(execution_, count, kObjectsPerChunk, [&](std::size_t begin, std::size_t end) {
       const auto scratch =
           scratches.borrow([&] { return std::make_unique<AccountScratch>(scene_, canvas_, execution_.isa); });
       for (std::size_t i = begin; i < end; ++i) {
         scratch->mask.draw(std::span(scene_.ranges).subspan(first[i], first[i + 1] - first[i]));
         note_alone(scratch->mask, result.objects[i]);
-        note_hidden(std::uint32_t(i), *scratch, hidden[begin / kGrain]);
+        note_hidden(std::uint32_t(i), *scratch, hidden[begin / kObjectsPerChunk]);
       }
     });
     for (const std::vector<HiddenSamples>& part : hidden)
