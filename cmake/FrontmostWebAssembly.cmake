@@ -11,6 +11,6 @@ if(FRONTMOST_WEB_SIMD)
 endif()
 
 option(FRONTMOST_WEB_SMALL "Take the time to make the module small" ON)
-if(FRONTMOST_WEB_SMALL) # what people wait for once a file or a drawing is to be small before it is quick
+if(FRONTMOST_WEB_SMALL) # cold code runs once for a file or a drawing, and a small module loads sooner
   set(FRONTMOST_COLD_FLAGS -Oz)
 endif()

@@ -154,6 +154,15 @@ def name_errors(places):
             yield f"{name} means {len(meanings)} things: {', '.join(meanings.values())}"
 
 
+def highway_errors(path, text):
+    """Highway's operations are included by way of base/highway-inl.h: they may be precompiled."""
+    if path.parts[:2] == ("src", "base") and path.name in {"highway-inl.h", "all_targets.h"}:
+        return
+    for number, line in enumerate(text.splitlines(), 1):
+        if re.match(r"\s*#\s*include\s+[\"<]hwy/(highway|foreach_target|contrib/|ops/)", line):
+            yield f"{path}:{number}: base/highway-inl.h includes Highway"
+
+
 def file_errors(path, text):
     lines = text.splitlines()
     if path.suffix in CODE and len(lines) > LONGEST_FILE:
@@ -183,6 +192,7 @@ def main():
         errors += file_errors(path, text)
         if path.suffix in CODE:
             errors += arrow_errors(path, text, allowed, headers)
+            errors += highway_errors(path, text)
             texts[path] = text
             if path.parts[0] in LIBRARY:
                 types += [(path, *found) for found in types_of(text)]

@@ -8,9 +8,9 @@ start=$(date +%s)
 "$@" >"$log" 2>&1
 status=$?
 if [ "$status" = 0 ]; then
-  echo "passed $1 ($(($(date +%s) - start)) s)"
+  echo "passed $* ($(($(date +%s) - start)) s)"
 else
   cat "$log"
-  echo "FAILED $1 with $status"
+  echo "FAILED $* with $status"
   exit 1 # the others still run: one run tells of all faults
 fi

@@ -1,12 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# sanitized.sh PROGRAM [ARGUMENTS...] : runs a program of a sanitizer's build, which stops at the first finding.
-# 77, which means skipped, where the program is not built: ./dev test builds it.
+# sanitized.sh PROGRAM [ARGUMENTS...] : runs a program of a sanitizer's build, which stops at the first finding. The exit
+# status is 77 (skipped) if the program is not built; ./dev test builds it. A filter of GoogleTest that selects no test
+# is an error.
 set -euo pipefail
 [ -x "$1" ] || {
   echo "skipped: $1 is not built"
   exit 77
 }
+if [[ " $*" == *--gtest_filter* ]] && ! "$@" --gtest_list_tests | grep -q '^  '; then
+  echo "no test of $1 is selected: $*"
+  exit 1
+fi
 export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_stack_use_after_return=1:strict_string_checks=1}
 export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
 export TSAN_OPTIONS=${TSAN_OPTIONS:-halt_on_error=1}

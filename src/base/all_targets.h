@@ -7,7 +7,7 @@
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
 
-// A kernel includes foreach_target.h again, which expects none of these macros of Highway 1.0.
+// A kernel includes foreach_target.h again. In Highway 1.0 that header must not find these macros defined.
 #undef HWY_TARGET_INCLUDE
 #undef HIGHWAY_HWY_FOREACH_TARGET_H_
 #undef HWY_HIGHWAY_INCLUDED

@@ -2,7 +2,7 @@
 // Highway for kernels: include this header, and nothing of Highway's own.
 //
 // A *_kernel.cpp defines HWY_TARGET_INCLUDE as its own name first. This header then includes that file again for each
-// instruction set but the static one, which follows when the file goes on.
+// instruction set but the static one. The rest of the file is compiled for the static instruction set.
 //
 // Highway's operations take 1.4 s to parse for four instruction sets. So base/all_targets.h, which is precompiled,
 // declares them for every instruction set. A kernel then only needs the macros of its instruction set.

@@ -21,7 +21,7 @@ namespace frontmost {
 /// Highway's target bits that may run for `isa`. \throws Error unsupported when this machine or build lacks it.
 [[nodiscard]] std::int64_t highway_targets(Isa isa);
 
-/// The kernels that foreach_target.h made of `function`, in Highway's order, as `functionKernels`. HWY_EXPORT's table
+/// The kernels that base/highway-inl.h made of `function`, in Highway's order, as `functionKernels`. HWY_EXPORT's table
 /// holds in addition an entry that needs Highway's library, whose loading costs every start of a program 2 ms.
 #define FRONTMOST_KERNELS(function)                                                                                  \
   static constexpr decltype(&HWY_STATIC_DISPATCH(function)) function##Kernels[] = {HWY_CHOOSE_TARGET_LIST(function), \

@@ -8,6 +8,7 @@
 #include "frontmost/io.h"
 #include "frontmost/model_file.h"
 #include "frontmost/surfaces.h"
+#include "support/scratch_folder.h"
 
 namespace frontmost::test {
 namespace {
@@ -29,12 +30,7 @@ class ModelFiles : public testing::Test {
     scene_.instances[1].world_from_mesh[0][0] = -2;
     scene_.instances[1].world_from_mesh[3] = {5, 6, 7, 1};
   }
-  ~ModelFiles() override {
-    for (const char* suffix : {".ply", ".stl", ".glb"}) std::filesystem::remove(path(suffix));
-  }
-  [[nodiscard]] static std::string path(const char* suffix) {
-    return testing::TempDir() + "frontmost_model_files_test" + suffix;
-  }
+  [[nodiscard]] std::string path(const std::string& suffix) const { return folder_.file("model" + suffix); }
   /// Of all triangles in order; of mirrored objects wound as they face.
   static std::vector<std::array<glm::vec3, 3>> triangles_of(const Scene& scene) {
     const Surfaces surfaces(scene);
@@ -49,6 +45,7 @@ class ModelFiles : public testing::Test {
   }
 
   Scene scene_;
+  const test::ScratchFolder folder_;
 };
 
 TEST_F(ModelFiles, HoldTheSameTriangles) {

@@ -9,19 +9,19 @@
 #include <filesystem>
 
 #include "frontmost/io.h"
+#include "support/scratch_folder.h"
 
 namespace frontmost::test {
 namespace {
 
 class Tables : public testing::Test {
  protected:
-  ~Tables() override { std::filesystem::remove(path_); }
-
   [[nodiscard]] std::string written(const Table& table, TableFormat format) const {
     save(table, path_, format);
     return load_text(path_, 1 << 24);
   }
-  const std::string path_ = testing::TempDir() + "frontmost_table_test";
+  const test::ScratchFolder folder_;
+  const std::string path_ = folder_.file("table");
   const Table table_{{{"small", std::vector<std::uint8_t>{255, 0}},
                       {"whole", std::vector<std::uint32_t>{7, 4294967295u}},
                       {"real", std::vector<double>{0.1, -1e-300}}}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The seeds of random tests: a test that fails prints those that it drew numbers from last.
+// A failing test prints the last seeds of its random numbers.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ inline std::uint64_t noted_seed(std::uint64_t seed) {
   return seed;
 }
 
-/// Prints the last seeds behind the first failure of a test.
+/// Prints the last seeds at the first failure of a test.
 class SeedPrinter : public testing::EmptyTestEventListener {
   void OnTestStart(const testing::TestInfo&) override {
     last_seeds.count = 0;

@@ -137,7 +137,7 @@ const shown = (figure) => figure.evaluate((one) => [...one.querySelectorAll("can
 const told = (figure) => figure.evaluate((one) => [...one.querySelectorAll("[aria-live], [role=status]")].map((region) => region.textContent).join(" | "));
 
 async function becomes(look, before, what) {
-  for (let i = 0; i < 6000; ++i) {
+  for (let i = 0; i < 1200; ++i) {
     if (await look() !== before) return;
     await new Promise((go) => setTimeout(go, 50));
   }

@@ -91,7 +91,7 @@ async function atRest(figure) {
 async function changes(figure, act, what) {
   const before = await shown(figure);
   await act();
-  for (let i = 0; i < 6000; ++i) {
+  for (let i = 0; i < 1200; ++i) {
     await new Promise((go) => setTimeout(go, 50));
     if (await shown(figure) !== before) return;
   }

@@ -12,7 +12,7 @@
 #define HWY_TARGET_INCLUDE "lines/hiding/shadow_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// After foreach_target.h, for each target.
+// After base/highway-inl.h, for each target.
 #include "base/lanes-inl.h"
 #include "lines/vector3-inl.h"
 

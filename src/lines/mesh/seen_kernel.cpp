@@ -14,7 +14,7 @@
 #define HWY_TARGET_INCLUDE "lines/mesh/seen_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// After foreach_target.h, for each target.
+// After base/highway-inl.h, for each target.
 #include "lines/vector3-inl.h"
 
 HWY_BEFORE_NAMESPACE();

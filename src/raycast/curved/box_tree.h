@@ -102,11 +102,11 @@ template <class Enter, class IsPast, class Visit>
 void DoubleBoxTree::walk_together(std::uint32_t lanes, const Enter& enter, const IsPast& is_past,
                                   const Visit& visit) const {
   if (nodes_.empty()) return;
-  struct Waiting {
+  struct WaitingNode {
     std::uint32_t node;
     BoxEntry entry;
   };
-  std::array<Waiting, kDeepest> stack;
+  std::array<WaitingNode, kDeepest> stack;
   std::size_t size = 0;
   const auto push = [&](std::uint32_t node, std::uint32_t of) {
     const BoxEntry entry = enter(nodes_[node].box, of);
@@ -114,7 +114,7 @@ void DoubleBoxTree::walk_together(std::uint32_t lanes, const Enter& enter, const
   };
   push(0, lanes);
   while (size > 0) {
-    const Waiting next = stack[--size];
+    const WaitingNode next = stack[--size];
     if (is_past(next.entry)) continue;
     const Node& node = nodes_[next.node];
     for (std::uint32_t i = 0; i < node.count; ++i) visit(items_[node.first + i], next.entry.lanes);

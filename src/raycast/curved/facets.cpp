@@ -26,12 +26,12 @@ struct Chart {
 };
 
 Chart chart_of(const Sphere& sphere, const glm::dmat3& world, const glm::dvec2& at) {
-  constexpr double kPi = 3.14159265358979323846;
-  const double around = 2 * kPi * at.x, down = kPi * at.y;
-  const glm::dvec3 u = glm::dvec3(-std::sin(around), 0, -std::cos(around)) * (2 * kPi * std::sin(down));
+  constexpr double pi = 3.14159265358979323846;
+  const double around = 2 * pi * at.x, down = pi * at.y;
+  const glm::dvec3 u = glm::dvec3(-std::sin(around), 0, -std::cos(around)) * (2 * pi * std::sin(down));
   const glm::dvec3 v{std::cos(down) * std::cos(around), -std::sin(down), -std::cos(down) * std::sin(around)};
   const glm::dmat3 axes = world * sphere.radius;
-  return {axes * u, axes * (v * kPi), at, {1, 0}, {0, 1}};
+  return {axes * u, axes * (v * pi), at, {1, 0}, {0, 1}};
 }
 
 Chart chart_of(const BezierPatch& patch, const glm::dmat3& world, const glm::dvec2& at) {

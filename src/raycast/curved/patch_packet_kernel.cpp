@@ -15,7 +15,7 @@
 #define HWY_TARGET_INCLUDE "raycast/curved/patch_packet_kernel.cpp"
 #include "base/highway-inl.h"
 #include "base/isa.h"
-// After foreach_target.h, for each target.
+// After base/highway-inl.h, for each target.
 #include "base/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
