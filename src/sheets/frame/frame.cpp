@@ -16,11 +16,11 @@
 namespace frontmost::detail {
 namespace {
 
-constexpr double filing_margin = 20, margin = 10;  // millimetres, of paper outside the frame
-constexpr double strip = 5;                        // width of the zones' border, outside the frame
-constexpr double zone = 50;                        // from the centring marks on
-constexpr double mark_inside = 10;                 // of centring marks
-constexpr double narrow_page = 210;                // A4 has zones on two sides
+constexpr double filing_margin = 20, frame_margin = 10;  // millimetres, of paper outside the frame
+constexpr double strip = 5;                              // width of the zones' border, outside the frame
+constexpr double zone = 50;                              // from the centring marks on
+constexpr double mark_inside = 10;                       // of centring marks
+constexpr double narrow_page = 210;                      // A4 has zones on two sides
 constexpr double frame_width = 0.7, zone_width = 0.35, zone_text = 3.5;
 
 /// A, B, ... without I and O, which look like figures; AA follows Z.
@@ -133,7 +133,7 @@ DrawingSpace drawing_space(const glm::dvec2& page) {
   // Written so that NaN fails.
   if (!(page.x >= least_framed_page.x && page.y >= least_framed_page.y))
     throw Error(ErrorCode::bad_argument, "page: a frame and its title block need 210 x 100 mm or more");
-  DrawingSpace space{{filing_margin, margin}, page - margin};
+  DrawingSpace space{{filing_margin, frame_margin}, page - frame_margin};
   space.block = space.high - title_block_size;
   return space;
 }
