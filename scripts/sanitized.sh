@@ -8,7 +8,7 @@ set -euo pipefail
   echo "skipped: $1 is not built"
   exit 77
 }
-if [[ " $*" == *--gtest_filter* ]] && ! "$@" --gtest_list_tests | grep -q '^  '; then
+if [[ " $*" == *--gtest_filter* ]] && [ "$("$@" --gtest_list_tests | grep -c '^  ')" = 0 ]; then
   echo "no test of $1 is selected: $*"
   exit 1
 fi

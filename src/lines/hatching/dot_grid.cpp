@@ -12,7 +12,7 @@
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr int side = DotGrid::side, count = side * side;
+constexpr int cells_along = DotGrid::side, cell_count = cells_along * cells_along;
 
 /// How crowded each cell is by those that are taken. Its loops are as compilers take many cells at a time: in others it
 /// is most of what few dots cost.
@@ -20,11 +20,13 @@ class Torus {
  public:
   Torus() {
     barred_[1].fill(never);
-    for (int y = 0; y < side; ++y)
-      for (int x = 0; x < 2 * side; ++x) {
-        const int from_x = std::min(x % side, side - x % side), from_y = std::min(y, side - y);
+    for (int y = 0; y < cells_along; ++y)
+      for (int x = 0; x < 2 * cells_along; ++x) {
+        const int from_x = std::min(x % cells_along, cells_along - x % cells_along),
+                  from_y = std::min(y, cells_along - y);
         // As a float it is the same with every C library.
-        near_[std::size_t(2 * side * y + x)] = float(std::exp(-(from_x * from_x + from_y * from_y) / (2 * 1.9 * 1.9)));
+        near_[std::size_t(2 * cells_along * y + x)] =
+            float(std::exp(-(from_x * from_x + from_y * from_y) / (2 * 1.9 * 1.9)));
       }
   }
 
@@ -32,30 +34,30 @@ class Torus {
   void set(int cell, bool taken) {
     barred_[taken][std::size_t(cell)] = 0;
     barred_[!taken][std::size_t(cell)] = never;
-    const int x = cell % side, y = cell / side;
+    const int x = cell % cells_along, y = cell / cells_along;
     const double sign = taken ? 1 : -1;
-    for (int j = 0; j < side; ++j) {
-      const float* near = near_.data() + 2 * side * ((j - y) & (side - 1)) + side - x;
-      double* crowd = crowd_.data() + side * j;
-      for (int i = 0; i < side; ++i) crowd[i] += sign * double(near[i]);
+    for (int j = 0; j < cells_along; ++j) {
+      const float* near = near_.data() + 2 * cells_along * ((j - y) & (cells_along - 1)) + cells_along - x;
+      double* crowd = crowd_.data() + cells_along * j;
+      for (int i = 0; i < cells_along; ++i) crowd[i] += sign * double(near[i]);
     }
   }
   /// Of the taken cells the most crowded, or of the free ones the least; of equals the first.
   [[nodiscard]] int extreme(bool taken) const {
     const double sign = taken ? 1 : -1;
     const auto value = [&](int cell) { return sign * crowd_[std::size_t(cell)] + barred_[taken][std::size_t(cell)]; };
-    std::array<double, side> most;
+    std::array<double, cells_along> most;
     most.fill(never);
-    for (int j = 0; j < count; j += side)
-      for (int i = 0; i < side; ++i) {
+    for (int j = 0; j < cell_count; j += cells_along)
+      for (int i = 0; i < cells_along; ++i) {
         const double here = value(j + i), there = most[std::size_t(i)];
         most[std::size_t(i)] = here > there ? here : there;
       }
     const double best = *std::max_element(most.begin(), most.end());
-    int first = count;
-    for (int i = 0; i < side; ++i)
+    int first = cell_count;
+    for (int i = 0; i < cells_along; ++i)
       if (most[std::size_t(i)] == best)
-        for (int cell = i; cell < first; cell += side)
+        for (int cell = i; cell < first; cell += cells_along)
           if (value(cell) == best) first = cell;
     return first;
   }
@@ -63,9 +65,10 @@ class Torus {
  private:
   static constexpr double never = -1e300;
 
-  std::array<float, 2 * count> near_{};  ///< by the distance, from minus to plus the size of a row
-  std::array<double, count> crowd_{};
-  std::array<std::array<double, count>, 2> barred_{};  ///< of those that are free, and taken: 0, and never for others
+  std::array<float, 2 * cell_count> near_{};  ///< by the distance, from minus to plus the size of a row
+  std::array<double, cell_count> crowd_{};
+  std::array<std::array<double, cell_count>, 2>
+      barred_{};  ///< of those that are free, and taken: 0, and never for others
 };
 
 /// The same numbers everywhere.
@@ -81,31 +84,31 @@ class Shuffle {
 };
 
 std::vector<int> ranks() {
-  constexpr int first = count / 10;
+  constexpr int first = cell_count / 10;
   Torus torus;
   Shuffle shuffle;
   for (int taken = 0; taken < first;) {
-    const int cell = int(shuffle.next() % count);
+    const int cell = int(shuffle.next() % cell_count);
     if (torus.is_taken(cell)) continue;
     torus.set(cell, true);
     ++taken;
   }
   // From the thickest crowd to the widest void, until that is where it came from.
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < cell_count; ++i) {
     const int from = torus.extreme(true);
     torus.set(from, false);
     const int to = torus.extreme(false);
     torus.set(to, true);
     if (from == to) break;
   }
-  std::vector<int> rank(count);
+  std::vector<int> rank(cell_count);
   Torus rest = torus;
   for (int left = first; left > 0;) {
     const int cell = torus.extreme(true);
     torus.set(cell, false);
     rank[std::size_t(cell)] = --left;
   }
-  for (int taken = first; taken < count; ++taken) {
+  for (int taken = first; taken < cell_count; ++taken) {
     const int cell = rest.extreme(false);
     rest.set(cell, true);
     rank[std::size_t(cell)] = taken;
@@ -118,7 +121,7 @@ std::vector<int> ranks() {
 DotGrid::DotGrid(double spacing, double width)
     : cell_(cell_of(spacing)), width_(width), columns_(std::int32_t(width / cell_) + 1) {
   // A quarter of the cells at most: where more were taken their rows would show.
-  constexpr double most = count / 4.0;
+  constexpr double most = cell_count / 4.0;
   static const std::vector<int> rank_of = ranks();
   Shuffle shuffle;
   for (const int rank : rank_of) {
