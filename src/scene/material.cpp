@@ -9,7 +9,7 @@ namespace frontmost {
 namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
-constexpr float largest = 1e12f;
+constexpr float largest_number = 1e12f;
 
 /// Pointers to const for a const material.
 template <class M>
@@ -46,25 +46,25 @@ std::array<MaterialNumber, material_number_count> numbers_of(Material& m) {
            {"baseColorFactor", &m.base_color.w, 0, 1, 1},
            {"metallicFactor", &m.metallic, 0, 1, 0},
            {"roughnessFactor", &m.roughness, 0, 1, 0.6f},
-           {"emissiveFactor", &m.emissive.x, 0, largest, 0},
-           {"emissiveFactor", &m.emissive.y, 0, largest, 0},
-           {"emissiveFactor", &m.emissive.z, 0, largest, 0},
+           {"emissiveFactor", &m.emissive.x, 0, largest_number, 0},
+           {"emissiveFactor", &m.emissive.y, 0, largest_number, 0},
+           {"emissiveFactor", &m.emissive.z, 0, largest_number, 0},
            {"occlusionTexture.strength", &m.occlusion_strength, 0, 1, 1},
-           {"ior", &m.ior, least_ior, largest, 1.5f},
+           {"ior", &m.ior, least_ior, largest_number, 1.5f},
            {"specularFactor", &m.specular.factor, 0, 1, 1},
-           {"specularColorFactor", &m.specular.color.x, 0, largest, 1},
-           {"specularColorFactor", &m.specular.color.y, 0, largest, 1},
-           {"specularColorFactor", &m.specular.color.z, 0, largest, 1},
+           {"specularColorFactor", &m.specular.color.x, 0, largest_number, 1},
+           {"specularColorFactor", &m.specular.color.y, 0, largest_number, 1},
+           {"specularColorFactor", &m.specular.color.z, 0, largest_number, 1},
            {"clearcoatFactor", &m.clearcoat.factor, 0, 1, 0},
            {"clearcoatRoughnessFactor", &m.clearcoat.roughness, 0, 1, 0},
-           {"clearcoatNormalTexture.scale", &m.clearcoat.normal_scale, -largest, largest, 1},
+           {"clearcoatNormalTexture.scale", &m.clearcoat.normal_scale, -largest_number, largest_number, 1},
            {"sheenColorFactor", &m.sheen.color.x, 0, 1, 0},
            {"sheenColorFactor", &m.sheen.color.y, 0, 1, 0},
            {"sheenColorFactor", &m.sheen.color.z, 0, 1, 0},
            {"sheenRoughnessFactor", &m.sheen.roughness, 0, 1, 0},
            {"transmissionFactor", &m.transmission.factor, 0, 1, 0},
-           {"thicknessFactor", &m.volume.thickness, 0, largest, 0},
-           {"attenuationDistance", &m.volume.attenuation_distance, 1 / largest, infinite, infinite},
+           {"thicknessFactor", &m.volume.thickness, 0, largest_number, 0},
+           {"attenuationDistance", &m.volume.attenuation_distance, 1 / largest_number, infinite, infinite},
            {"attenuationColor", &m.volume.attenuation_color.x, 0, 1, 1},
            {"attenuationColor", &m.volume.attenuation_color.y, 0, 1, 1},
            {"attenuationColor", &m.volume.attenuation_color.z, 0, 1, 1}}};
