@@ -14,7 +14,7 @@ import sys
 import tempfile
 
 sys.dont_write_bytecode = True
-from rasters import read_ids, read_png  # noqa: E402
+from rasters import read_ids, read_picture  # noqa: E402
 
 WIDTH, HEIGHT = 60, 50  # millimetres
 FINE = 20  # pixels to the millimetre
@@ -51,7 +51,7 @@ class Ink:
             text = drawing.read_text()
             drawing.write_text(text[: text.index('<g id="layer2"')] + "</svg>\n")
         run("rsvg-convert", "-w", WIDTH * FINE, "-h", HEIGHT * FINE, "-b", "white", drawing, "-o", picture)
-        self.rows = read_png(picture).channel(0)
+        self.rows = read_picture(picture)[:, :, 0]
 
     def runs(self, y):
         """Widths of what is dark along a row, in millimetres, with where they are."""
@@ -66,9 +66,8 @@ class Ink:
 
     def share(self, x, y, reach):
         """How much of a square about a place is ink."""
-        rows = self.rows[int((y - reach) * FINE) : int((y + reach) * FINE)]
-        part = [value for row in rows for value in row[int((x - reach) * FINE) : int((x + reach) * FINE)]]
-        return 1 - sum(part) / 255 / len(part)
+        (top, bottom), (left, right) = ([int((at - reach) * FINE), int((at + reach) * FINE)] for at in (y, x))
+        return 1 - self.rows[top:bottom, left:right].mean() / 255
 
 
 def check_pens(program, folder, cube):
@@ -104,11 +103,11 @@ def check_hatched_is_seen(program, folder):
     """Where the z-buffer sees nothing there is no hatching; where it sees something dark there is."""
     camera = ["builtin:gallery", "--tessellation-error", "1", "--resolution", f"{WIDTH * FINE},{HEIGHT * FINE}"]
     run(program, "render", *camera, "--ids", f"object={folder}/ids.npy")
-    ids = read_ids(folder / "ids.npy", WIDTH * FINE, HEIGHT * FINE)
+    ids = read_ids(folder / "ids.npy")
     hatched = Ink(program, folder, *camera, "--margin", "0", "--hatch", "0.5", "--pen", "0.2", lowest_alone=True)
     nothing = 2**32 - 1
-    beside = sum(1 for row, seen in zip(hatched.rows, ids) for value, id_ in zip(row, seen) if value < 128 and id_ == nothing)
-    ink = sum(1 for row in hatched.rows for value in row if value < 128)
+    dark = hatched.rows < 128
+    ink, beside = dark.sum(), (dark & (ids == nothing)).sum()
     assert ink > 20000 and beside < 0.01 * ink, (ink, beside)  # half a pen's width
 
 

@@ -11,7 +11,6 @@ between their samples, the triangles are those of an id map of four times the re
 hold what the JSON holds. Views from all sides of one model are sheets' views, one by one. Programs that are not installed are skipped, and counted.
 """
 import json
-import os
 import pathlib
 import re
 import shutil
@@ -21,16 +20,11 @@ import tempfile
 import xml.etree.ElementTree
 
 sys.dont_write_bytecode = True
-SYSTEM_PYTHON = "/usr/bin/python3"
-from rasters import read_ids, read_png, read_pnm  # noqa: E402
+from rasters import near, numpy, read_ids, read_picture  # noqa: E402
 
 try:
     import ezdxf
 except ImportError:
-    # Where python3 is not the system's, Debian's package is for another one.
-    elsewhere = sys.executable != SYSTEM_PYTHON and os.path.exists(SYSTEM_PYTHON)
-    if elsewhere and subprocess.run([SYSTEM_PYTHON, "-c", "import ezdxf"], stderr=subprocess.DEVNULL).returncode == 0:
-        os.execv(SYSTEM_PYTHON, [SYSTEM_PYTHON, *sys.argv])
     ezdxf = None
 
 WIDTH, HEIGHT = 480, 270
@@ -54,20 +48,18 @@ def run(*words):
 
 def borders(ids, fine=1):
     """Pixels whose right or lower neighbour differs; of an id map that is `fine` times as fine those around them."""
-    found = set()
-    for y, row in enumerate(ids):
-        below = ids[min(y + 1, len(ids) - 1)]
-        found.update((x // fine, y // fine) for x, (a, b, c) in enumerate(zip(row, row[1:] + row[-1:], below)) if a != b or a != c)
-    return found
+    beside, below = (numpy.concatenate((ids, ids.take([-1], axis)), axis) for axis in (1, 0))
+    differs = (ids != beside[:, 1:]) | (ids != below[1:])
+    return near(differs, fine, 0, fine).any((-2, -1))
 
 
-def grown(points):
-    return {(x + dx, y + dy) for x, y in points for dx in range(-REACH, REACH + 1) for dy in range(-REACH, REACH + 1)}
+def grown(pixels):
+    return near(numpy.pad(pixels, REACH), 1, REACH, 2 * REACH + 1).any((-2, -1))[REACH:-REACH, REACH:-REACH]
 
 
 def ink_of(rows):
-    assert len(rows) == HEIGHT and len(rows[0]) == WIDTH, (len(rows[0]), len(rows))
-    return {(x, y) for y in range(HEIGHT) for x in range(WIDTH) if rows[y][x] < INK}
+    assert rows.shape == (HEIGHT, WIDTH), rows.shape
+    return rows < INK
 
 
 def check_xml(path, names):
@@ -127,11 +119,11 @@ def check_view(program, view, folder):
         readers = check_formats(program, [*view, *size, *page], folder)
     camera = [word for word in view if word not in ("--crease-angle", "0")]
     run(program, "render", *camera, *size, "--ids", f"object={folder}/objects.npy")
-    outlines = borders(read_ids(folder / "objects.npy", WIDTH, HEIGHT))
+    outlines = borders(read_ids(folder / "objects.npy"))
     fine = FINE if view == NARROW else 1
     width, height = WIDTH * fine, HEIGHT * fine
     run(program, "render", *camera, "--resolution", f"{width},{height}", "--ids", f"primitive={folder}/primitives.npy")
-    edges = grown(borders(read_ids(folder / "primitives.npy", width, height), fine))
+    edges = grown(borders(read_ids(folder / "primitives.npy"), fine))
     for scale in SCALES if view != NARROW else SCALES[:1]:
         readers += check_ink(program, [*view, *size], folder, scale, outlines, edges)
     return readers
@@ -144,15 +136,15 @@ def check_ink(program, drawing, folder, scale, outlines, edges):
     inks = {}
     if shutil.which("rsvg-convert"):
         run("rsvg-convert", "-w", WIDTH, "-h", HEIGHT, "-b", "white", folder / "a.svg", "-o", folder / "svg.png")
-        inks["librsvg"] = ink_of(read_png(folder / "svg.png").channel(0))
+        inks["librsvg"] = ink_of(read_picture(folder / "svg.png")[:, :, 0])
     if shutil.which("pdftoppm"):
         run("pdftoppm", "-r", str(25.4 * scale), "-gray", "-singlefile", folder / "a.pdf", folder / "pdf")
-        inks["poppler"] = ink_of(read_pnm(folder / "pdf.pgm").rows)
+        inks["poppler"] = ink_of(read_picture(folder / "pdf.pgm"))
     for name, ink in inks.items():
-        missing, stray = outlines - grown(ink), ink - edges
-        assert len(ink) > 500, f"{drawing}: {name}: hardly any ink"
-        assert not missing, f"{drawing}: {name}: {len(missing)} border pixels without ink, such as {min(missing)}"
-        assert not stray, f"{drawing}: {name}: {len(stray)} ink pixels beside no border, such as {min(stray)}"
+        missing, stray = (numpy.argwhere(a & ~b) for a, b in ((outlines, grown(ink)), (ink, edges)))
+        assert ink.sum() > 500, f"{drawing}: {name}: hardly any ink"
+        assert not len(missing), f"{drawing}: {name}: {len(missing)} border pixels without ink, such as {missing[0]}"
+        assert not len(stray), f"{drawing}: {name}: {len(stray)} ink pixels beside no border, such as {stray[0]}"
     return len(inks)
 
 

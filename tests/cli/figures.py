@@ -24,9 +24,10 @@ import xml.etree.ElementTree
 import zlib
 
 sys.dont_write_bytecode = True
-from rasters import Raster, read_ids, read_png, read_pnm  # noqa: E402
+from rasters import near, numpy, read_ids, read_picture  # noqa: E402
 
 WIDTH, HEIGHT = 240, 160
+NOTHING = 0xFFFFFFFF
 LAYERS = 12  # more than one behind the other
 BOUND = 3  # steps of 8 bits: viewers round, and blend twice at rims
 TOLERANCE = 6  # what --color-tolerance allows by default
@@ -146,17 +147,16 @@ def check_solid(program, name, folder, words, bound, most=0):
         width, height = int(scale * WIDTH), int(scale * HEIGHT)
         run(program, "render", *words, "--quiet", "--resolution", f"{4 * width},{4 * height}", "--ids",
             f"primitive={folder}/ids.npy")
-        ids = read_ids(folder / "ids.npy", 4 * width, 4 * height)
-        covered = [[all(0xFFFFFFFF not in row[4 * x - 4 : 4 * x + 8] for row in ids[4 * y - 4 : 4 * y + 8])
-                    for x in range(1, width - 1)] for y in range(1, height - 1)]
-        inner = [(x + 1, y + 1) for y, row in enumerate(covered) for x, is_inner in enumerate(row) if is_inner]
-        assert len(inner) > 100 * scale, f"{name}: {len(inner)} pixels are within"
+        covered = read_ids(folder / "ids.npy") != NOTHING
+        inner = numpy.zeros((height, width), bool)
+        inner[1:-1, 1:-1] = near(covered, 4, 4, 12).all((-2, -1))[1:-1, 1:-1]
+        assert inner.sum() > 100 * scale, f"{name}: {inner.sum()} pixels are within"
         for viewer, black in found.items():
             let_through = differing(black, pictures["white"][scale][viewer], inner, bound)
-            told = (f"{name} at {scale:.0%}: {viewer}: {len(let_through)} of {len(inner)} pixels let more than "
+            told = (f"{name} at {scale:.0%}: {viewer}: {len(let_through)} of {inner.sum()} pixels let more than "
                     f"{bound / 255:.0%} of the background through")
             print(told)
-            assert len(let_through) <= most * len(inner), (told, let_through[:5])
+            assert len(let_through) <= most * inner.sum(), (told, let_through[:5])
     return len(pictures["black"][1]) * 3, 6 - len(pictures["black"][1]) * 3
 
 
@@ -178,51 +178,32 @@ def check_xml(path):
     assert len(list(root.iter(SVG + "path"))) > 2, f"{path}: hardly any paths"
 
 
-def reach(fine, choose):
-    """The least or greatest of a picture twice as fine, within a pixel of each pixel."""
-    width, height, found = fine.width // 2, fine.height // 2, []
-    for number in range(3):
-        across = [[choose(row[max(0, 2 * x - 2) : 2 * x + 4]) for x in range(width)] for row in fine.channel(number)]
-        found.append([[choose(column) for column in zip(*across[max(0, 2 * y - 2) : 2 * y + 4])] for y in range(height)])
-    return found
-
-
 def laid_over_each_other(layers):
     """As viewers blend: in the values of the file, where the z-buffer's pictures blend light."""
-    picture = Raster(layers[0].width, layers[0].height, 3, [])
-    for y in range(picture.height):
-        row = bytearray()
-        for x in range(picture.width):
-            color = [255.0] * 3
-            for layer in reversed(layers):
-                *front, opacity = layer.rows[y][4 * x : 4 * x + 4]
-                color = [(f * opacity + c * (255 - opacity)) / 255 for f, c in zip(front, color)]
-            row += bytes(round(c) for c in color)
-        picture.rows.append(bytes(row))
-    return picture
+    picture = numpy.full((*layers[0].shape[:2], 3), 255.0)
+    for layer in reversed(layers):
+        opacity = layer[:, :, 3:] / 255
+        picture = layer[:, :, :3] * opacity + picture * (1 - opacity)
+    return picture.round().astype(int)
 
 
 def inner_pixels(ids):
     """Those whose neighbours all around show the same triangle."""
-    return [(x, y) for y in range(1, len(ids) - 1) for x in range(1, len(ids[0]) - 1)
-            if all(ids[y + dy][x + dx] == ids[y][x] for dy in (-1, 0, 1) for dx in (-1, 0, 1))]
+    inner = numpy.zeros(ids.shape, bool)
+    inner[1:-1, 1:-1] = (near(ids, 1, 1, 3) == ids[:, :, None, None]).all((-2, -1))[1:-1, 1:-1]
+    return inner
 
 
-def strays(raster, low, high, bound):
-    """By how much the pixels that are beyond the bound are beyond."""
-    found = {}
-    for number in range(3):
-        for y, row in enumerate(raster.channel(number)):
-            for x, value in enumerate(row):
-                excess = max(low[number][y][x] - value, value - high[number][y][x])
-                if excess > bound:
-                    found[x, y] = max(excess, found.get((x, y), 0))
-    return found
+def excess_of(picture, fine):
+    """By how much each pixel is outside of what the picture twice as fine has within a pixel."""
+    around = near(fine[:, :, :3], 2, 2, 6)
+    picture = picture[:, :, :3]
+    return numpy.maximum(around.min((-2, -1)) - picture, picture - around.max((-2, -1))).max(2)
 
 
-def differing(raster, picture, pixels, bound):
-    channels = [(raster.channel(number), picture.channel(number)) for number in range(3)]
-    return [(x, y) for x, y in pixels if any(abs(a[y][x] - b[y][x]) > bound for a, b in channels)]
+def differing(a, b, pixels, bound):
+    """Places of those pixels whose colours differ by more than the bound."""
+    return numpy.argwhere(pixels & (abs(a[:, :, :3] - b[:, :, :3]).max(2) > bound))
 
 
 def browser():
@@ -241,20 +222,20 @@ def screenshot(folder, width, height):
         subprocess.run([str(word) for word in words], capture_output=True, timeout=900)
     except subprocess.TimeoutExpired:
         return None
-    return read_png(shot) if shot.exists() else None
+    return read_picture(shot) if shot.exists() else None
 
 
 def rasters_of(folder, scale, by_browser):
     width, height, found = int(scale * WIDTH), int(scale * HEIGHT), {}
     if shutil.which("rsvg-convert"):
         run("rsvg-convert", "-w", width, "-h", height, folder / "a.svg", "-o", folder / "svg.png")
-        found["librsvg"] = read_png(folder / "svg.png")
+        found["librsvg"] = read_picture(folder / "svg.png")
     if shutil.which("pdftoppm"):
         run("pdftoppm", "-r", 96 * scale, "-singlefile", folder / "a.pdf", folder / "pdf")
-        found["poppler"] = read_pnm(folder / "pdf.ppm")
+        found["poppler"] = read_picture(folder / "pdf.ppm")
     if by_browser and browser():
         shot = screenshot(folder, width, height)
-        if shot:
+        if shot is not None:
             found["Chromium"] = shot
     return found
 
@@ -269,28 +250,28 @@ def check_scale(program, name, case, folder, scale):
                 folder / file, *how, *more)
         if "--opacity" not in words:
             draw("a.png")
-            return read_png(folder / "a.png")
+            return read_picture(folder / "a.png")
         draw("{layer}.png", "--layers", LAYERS, "--background", "transparent")
-        return laid_over_each_other([read_png(folder / f"{layer}.png") for layer in range(LAYERS)])
+        return laid_over_each_other([read_picture(folder / f"{layer}.png") for layer in range(LAYERS)])
 
     same = picture(1)
     run(program, "render", *words, "--resolution", f"{width},{height}", "--ids", f"primitive={folder}/ids.npy")
     fine = picture(2)
-    low, high = reach(fine, min), reach(fine, max)
-    inner = inner_pixels(read_ids(folder / "ids.npy", width, height))
+    inner = inner_pixels(read_ids(folder / "ids.npy"))
     by_browser = case.browser is not None and scale == 1
     found = rasters_of(folder, scale, by_browser)
     for viewer, raster in found.items():
-        assert (raster.width, raster.height) == (width, height), (raster.width, raster.height)
-        stray, wrong = strays(raster, low, high, case.bound), differing(raster, same, inner, case.bound)
-        told = (f"{name} at {scale:.0%}: {viewer}: {len(stray)} of {width * height} pixels stray, by up to "
-                f"{max(stray.values(), default=0)}; {len(wrong)} of {len(inner)} inner ones differ")
+        assert raster.shape[:2] == (height, width), raster.shape
+        excess, wrong = excess_of(raster, fine), differing(raster, same, inner, case.bound)
+        stray = (excess > case.bound).sum()
+        told = (f"{name} at {scale:.0%}: {viewer}: {stray} of {width * height} pixels stray, by up to "
+                f"{max(excess.max(), 0)}; {len(wrong)} of {inner.sum()} inner ones differ")
         print(told)
         share = case.browser if viewer == "Chromium" else case.most
         most = share / min(scale, 1)  # of fewer pixels more are rims
-        assert len(stray) <= most * width * height and len(wrong) <= most * len(inner), (
-            told, sorted(stray.items(), key=lambda e: -e[1])[:5], wrong[:5])
-        assert max(stray.values(), default=0) <= case.furthest, told
+        assert stray <= most * width * height and len(wrong) <= most * inner.sum(), (
+            told, numpy.argwhere(excess > case.bound)[:5], wrong[:5])
+        assert stray == 0 or excess.max() <= case.furthest, told
     return len(found), 2 + by_browser - len(found)
 
 
