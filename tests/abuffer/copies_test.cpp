@@ -14,7 +14,7 @@ namespace frontmost::test {
 namespace {
 
 // More than a tile has room for, also of the small squares.
-constexpr int kCrowd = under_sanitizer ? 12'000 : 100'000;
+const int kCrowd = under_sanitizer ? 12'000 : 100'000;
 
 /// A square in two triangles, `count` times: as it is, and with its corners in other orders.
 Mesh squares(int count, float size) {

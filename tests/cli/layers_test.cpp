@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "program.h"
+#include "support/effort.h"
 
 namespace frontmost::test {
 namespace {
@@ -79,7 +80,7 @@ std::string stack_obj(int count) {
 
 // The fragments are 7 million: as lists 250 MB, and as much again while they are made.
 TEST_F(Layers, FiveHundredFitIntoTheMemoryOfFew) {
-  if (takes_all_addresses) GTEST_SKIP() << "the sanitizer takes all addresses";
+  if (under_sanitizer) GTEST_SKIP() << "the sanitizer takes all addresses";
   write("stack.obj", stack_obj(500));
   const auto call = [&](const std::vector<std::string>& output) {
     Call one{.words = {"render", "stack.obj", "--opacity", "0.01", "--camera-position", "0,0,5", "--camera-direction",

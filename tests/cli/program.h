@@ -14,20 +14,6 @@
 
 namespace frontmost::test {
 
-/// A sanitizer takes all addresses for itself, so that there is nothing to limit.
-inline constexpr bool takes_all_addresses =
-#if defined(__SANITIZE_ADDRESS__)
-    true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-    true;
-#else
-    false;
-#endif
-#else
-    false;
-#endif
-
 struct Outcome {
   int status = -1;  ///< exit status; 128 + signal when a signal ended it
   std::string out, err;

@@ -9,6 +9,7 @@
 #include "cli/failure.h"
 #include "cli/render/jobs.h"
 #include "program.h"
+#include "support/effort.h"
 
 namespace frontmost::test {
 namespace {
@@ -37,7 +38,7 @@ class SideFiles : public ProgramTest {
 TEST_F(SideFiles, DevicesWithoutAnEndAreRefused) {
   for (const char* line : side_files) {
     Call call{.words = words_of(line + std::string(" /dev/zero"))};
-    if (!takes_all_addresses) call.address_space = std::size_t(1) << 30;
+    if (!under_sanitizer) call.address_space = std::size_t(1) << 30;
     const Outcome outcome = run(call);
     EXPECT_EQ(outcome.status, 1) << line;
     EXPECT_THAT(outcome.err, HasSubstr("frontmost: /dev/zero: larger than the limit of")) << line;

@@ -6,6 +6,7 @@
 #include <initializer_list>
 
 #include "program.h"
+#include "support/effort.h"
 
 namespace frontmost::test {
 namespace {
@@ -129,7 +130,7 @@ std::string sheet_stl(std::uint32_t columns, std::uint32_t rows) {
 
 // 150 MB of triangles, of which the model in memory takes 150 MB and the mapped file its own size.
 TEST_F(StreamedProgram, DrawsInMemoryThatTheModelDoesNotFitInto) {
-  if (takes_all_addresses) GTEST_SKIP() << "the sanitizer takes all addresses";
+  if (under_sanitizer) GTEST_SKIP() << "the sanitizer takes all addresses";
   write("sheet.stl", sheet_stl(1500, 1000));
   const auto call = [](const char* name, bool stream, std::optional<std::size_t> limit) {
     Call one{.words = {"render", "sheet.stl", "--resolution", "160,120", "--threads", "1", "-o", name}};

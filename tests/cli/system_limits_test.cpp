@@ -5,6 +5,7 @@
 #include <signal.h>
 
 #include "program.h"
+#include "support/effort.h"
 
 namespace frontmost::test {
 namespace {
@@ -23,7 +24,7 @@ class SystemLimits : public ProgramTest {
 };
 
 TEST_F(SystemLimits, ThreadsThatCannotBeMadeAreDoneWithout) {
-  if (takes_all_addresses) GTEST_SKIP() << "a sanitizer's own thread cannot be made";
+  if (under_sanitizer) GTEST_SKIP() << "a sanitizer's own thread cannot be made";
   open_to_all();
   const std::string line = "render builtin:city --resolution 640,360 --threads 16 --hash";
   const Outcome all = succeed(line);
@@ -43,7 +44,7 @@ TEST_F(SystemLimits, ThreadsThatCannotBeMadeAreDoneWithout) {
 }
 
 TEST_F(SystemLimits, ThreadsThatMemoryHasNoRoomForAreDoneWithout) {
-  if (takes_all_addresses) GTEST_SKIP() << "there is nothing to limit";
+  if (under_sanitizer) GTEST_SKIP() << "there is nothing to limit";
   const std::string line = "render builtin:cubes --resolution 320,180 --hash --threads ";
   const Outcome one = succeed(line + "1");
   for (const std::size_t mebibytes : {200, 300, 500, 900}) {
@@ -54,7 +55,7 @@ TEST_F(SystemLimits, ThreadsThatMemoryHasNoRoomForAreDoneWithout) {
 }
 
 TEST_F(SystemLimits, WhereMemoryEndsTheModelIsNamed) {
-  if (takes_all_addresses) GTEST_SKIP() << "there is nothing to limit";
+  if (under_sanitizer) GTEST_SKIP() << "there is nothing to limit";
   const Outcome outcome = run(Call{.words = words("render cube.stl -o a.png --resolution 16000,16000 --threads 1"),
                                    .address_space = std::size_t(400) << 20});
   EXPECT_EQ(outcome.status, 1);

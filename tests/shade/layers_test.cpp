@@ -80,9 +80,9 @@ TEST(DeepImage, FlattensToThePicture) {
       const Image picture = shade(surfaces, visible, options);
       double worst = 0;
       for (std::size_t pixel = 0; pixel < view.pixel_count(); ++pixel) {
-        const glm::dvec4 flat = flattened(deep, pixel);
+        const glm::dvec4 shown = flattened(deep, pixel);
         for (int k = 0; k < 4; ++k) {
-          worst = std::max(worst, std::abs(flat[k] - double(picture.channels[std::size_t(k)].floats()[pixel])));
+          worst = std::max(worst, std::abs(shown[k] - double(picture.channels[std::size_t(k)].floats()[pixel])));
         }
       }
       EXPECT_LT(worst, 1e-5) << samples << " samples, opacity " << opacity;
