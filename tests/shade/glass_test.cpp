@@ -104,6 +104,27 @@ TEST(Glass, HighlightsAreThoseOfABlackSurface) {
   EXPECT_NEAR(alone.a, kMirrored, 1e-5f);
 }
 
+// Before an environment of one colour everything looks as before a background of that colour.
+TEST(Glass, TintsAShownEnvironmentAsItTintsABackground) {
+  const float grey = 0.5f, radiance = std::pow((grey + 0.055f) / 1.055f, 2.4f);
+  Image picture{4, 2, {}};
+  for (const char* name : {"R", "G", "B"}) picture.channels.push_back({name, Buffer<float>(8, radiance)});
+  ShadeOptions options = lit;
+  options.light.environment = Environment(picture);
+  options.background = glm::vec3(grey);
+  const Surfaces surfaces(panes({glass({0.9f, 0.5f, 0.1f}), glass({0.2f, 0.6f, 0.8f})}));
+  const Visible seen = zbuffer(surfaces, front_view());
+  const Image expected = shade(surfaces, seen, options);
+  options.light.shows_environment = true;
+  for (const std::optional<glm::vec3> background : {std::optional(glm::vec3(1)), std::optional<glm::vec3>()}) {
+    options.background = background;
+    const Image shown = shade(surfaces, seen, options);
+    for (std::size_t k = 0; k < 4; ++k)
+      for (std::size_t i = 0; i < seen.view.pixel_count(); ++i)
+        ASSERT_NEAR(shown.channels[k].floats()[i], expected.channels[k].floats()[i], 2e-5f) << k << ' ' << i;
+  }
+}
+
 TEST(Glass, TintsTheBackgroundToo) {
   const glm::vec3 tint{0.9f, 0.5f, 0.1f};
   expect_near(middle_of(panes({glass(tint)}), flat), tint, 1e-5f);

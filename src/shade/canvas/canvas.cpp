@@ -20,6 +20,15 @@ float over(const glm::vec4& pixel, const glm::vec4& background, int k) {
 
 }  // namespace
 
+void TileCanvas::write_tinted(const TileRectangle& tile, const abuffer_detail::PaintedPixels& pixels,
+                              const glm::vec4& background) {
+  if (background.a < 1) return write(tile, pixels.colors, background);
+  std::vector<glm::vec4> opaque = pixels.colors;
+  for (std::size_t i = 0; i < opaque.size(); ++i)
+    opaque[i] = glm::vec4(glm::vec3(opaque[i]) + glm::vec3(background) * (1.0f - pixels.alphas[i]), 1.0f);
+  write(tile, opaque, background);
+}
+
 void store_rgba8(const glm::vec4& color, std::uint8_t* out) {
   store_srgb({color.r, color.g, color.b}, color.a, out);
   out[3] = rounded_fraction<std::uint8_t>(color.a);

@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <vector>
 
+#include "abuffer/fragment_pass.h"
 #include "frontmost/image.h"
 #include "shade/tile.h"
 
@@ -17,6 +18,10 @@ class TileCanvas {
   /// `pixels` of the tile, row by row, premultiplied, are laid over the background.
   virtual void write(const TileRectangle& tile, const std::vector<glm::vec4>& pixels, const glm::vec4& background) = 0;
   virtual void fill(const TileRectangle& tile, const glm::vec4& value) = 0;
+  /// Pixels with an alpha for each channel, through which what is behind is seen tinted. A background that is not
+  /// opaque stays without tint: a picture has one alpha.
+  virtual void write_tinted(const TileRectangle& tile, const abuffer_detail::PaintedPixels& pixels,
+                            const glm::vec4& background);
 };
 
 /// How a picture is made of what is seen.

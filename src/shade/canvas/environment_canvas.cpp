@@ -44,6 +44,17 @@ void EnvironmentCanvas::write(const TileRectangle& tile, const std::vector<glm::
   canvas_.write(tile, work->pixels, background);
 }
 
+void EnvironmentCanvas::write_tinted(const TileRectangle& tile, const abuffer_detail::PaintedPixels& pixels,
+                                     const glm::vec4& background) {
+  const auto work = works_.borrow([] { return std::make_unique<Work>(); });
+  draw(tile, *work);
+  for (std::size_t i = 0; i < work->pixels.size(); ++i) {
+    const glm::vec3 behind(work->pixels[i]);
+    work->pixels[i] = glm::vec4(glm::vec3(pixels.colors[i]) + behind * (1.0f - pixels.alphas[i]), 1.0f);
+  }
+  canvas_.write(tile, work->pixels, background);
+}
+
 void EnvironmentCanvas::fill(const TileRectangle& tile, const glm::vec4& value) {
   const auto work = works_.borrow([] { return std::make_unique<Work>(); });
   draw(tile, *work);

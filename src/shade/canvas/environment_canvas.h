@@ -17,6 +17,8 @@ class EnvironmentCanvas final : public TileCanvas {
       : canvas_(canvas), rays_(view), lighting_(lighting), isa_(isa) {}
   void write(const TileRectangle& tile, const std::vector<glm::vec4>& pixels, const glm::vec4& background) override;
   void fill(const TileRectangle& tile, const glm::vec4& value) override;
+  void write_tinted(const TileRectangle& tile, const abuffer_detail::PaintedPixels& pixels,
+                    const glm::vec4& background) override;
 
  private:
   /// Used by one thread at a time.

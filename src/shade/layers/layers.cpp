@@ -11,14 +11,6 @@ using abuffer_detail::Rectangle;
 
 namespace {
 
-/// Through what is tinted the background is seen tinted, too.
-std::vector<glm::vec4> laid_over(const PaintedPixels& painted, const glm::vec3& background) {
-  std::vector<glm::vec4> pixels = painted.colors;
-  for (std::size_t i = 0; i < pixels.size(); ++i)
-    pixels[i] = glm::vec4(glm::vec3(pixels[i]) + background * (1.0f - painted.alphas[i]), 1.0f);
-  return pixels;
-}
-
 /// The first fragment of the same primitive that covers the same samples, as many layers deep, in the two by two pixels
 /// to which pixel p belongs; `i` itself where there is none before it.
 std::size_t shared_fragment(const Rectangle& pixels, const PixelLists& lists, std::size_t p, std::size_t i) {
@@ -96,10 +88,10 @@ void shade_layers(const TriangleSource& source, const FragmentPass& pass, const 
     const TileRectangle tile{r.x, r.y, r.width, r.height};
     if (!painted)
       painting.canvas.fill(tile, background);
-    else if (painted->alphas.empty() || background.a < 1)
+    else if (painted->alphas.empty())
       painting.canvas.write(tile, painted->colors, background);
     else
-      painting.canvas.write(tile, laid_over(*painted, glm::vec3(background)), background);
+      painting.canvas.write_tinted(tile, *painted, background);
   };
   pass.paint(paint, receive, paint_otherwise, execution);
 }
