@@ -64,17 +64,28 @@ py::object depth_of(HeldVisible& held) {
   return held.depth;
 }
 
-void move_object(const std::shared_ptr<HeldSurfaces>& held, const py::object& object, const py::object& pose,
-                 int threads) {
-  const std::uint32_t number = object_of(*held->scene, object);
-  if (held->scene->surfaces_count > 1)
-    throw Error(ErrorCode::bad_argument, "object: other surfaces show this scene too; make these of scene.copy()");
+/// One object and its pose, or as many objects as poses.
+void move_objects(const std::shared_ptr<HeldSurfaces>& held, const py::object& object, const py::object& pose,
+                  int threads) {
   const KeptScene& scene = *held->scene;
-  const glm::dmat4 placed = placed_by(matrix(pose, "pose"), scene, scene.meshes[scene.instances[number].mesh]);
+  std::vector<Surfaces::Placement> placements;
+  const auto add = [&](const py::handle& one, const py::handle& its) {
+    const std::uint32_t number = object_of(scene, one);
+    placements.push_back({number, placed_by(matrix(its, "pose"), scene, scene.meshes[scene.instances[number].mesh])});
+  };
+  if (py::isinstance<py::str>(object) || PyIndex_Check(object.ptr())) {
+    add(object, pose);
+  } else {
+    const py::list objects(object), poses(pose);
+    if (objects.size() != poses.size()) throw py::value_error("pose: must be one for each object");
+    for (std::size_t i = 0; i < objects.size(); ++i) add(objects[i], poses[i]);
+  }
+  if (scene.surfaces_count > 1)
+    throw Error(ErrorCode::bad_argument, "object: other surfaces show this scene too; make these of scene.copy()");
   held->moves += 1;
   run(threads, py::none(), [&](const Execution& execution) {
     const std::unique_lock lock(held->scene->reading);
-    held->surfaces.move(*held->scene, number, placed, execution);
+    held->surfaces.move(*held->scene, placements, execution);
   });
 }
 
@@ -166,7 +177,7 @@ void bind_surfaces(py::module_& m) {
                                 }));
           },
           "view"_a, py::kw_only(), "threads"_a = 0, "progress"_a = py::none(), doc("Surfaces.raycast"))
-      .def("move", &move_object, "object"_a, "pose"_a, py::kw_only(), "threads"_a = 0, doc("Surfaces.move"))
+      .def("move", &move_objects, "object"_a, "pose"_a, py::kw_only(), "threads"_a = 0, doc("Surfaces.move"))
       .def_property_readonly(
           "scene", [](const HeldSurfaces& held) { return HeldScene{held.scene}; }, doc("Surfaces.scene"))
       .def_property_readonly(

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "frontmost/base.h"
 #include "frontmost/scene.h"
@@ -49,14 +50,22 @@ class Surfaces {
 
   /// Gives an instance another transform, in the scene and here: from then on everything answers as if these surfaces
   /// had been made of the scene as it is now. An Occlusion and a Shader of these surfaces follow by themselves at their
-  /// next call; a RayIndex by RayIndex::follow(). O(triangles of the instance), and O(instances) where it reached the
-  /// side of bounds(); the first time O(triangles), where there are clusters, to list what is where. Clusters stay as
+  /// next call; a RayIndex by RayIndex::follow(). O(triangles of the instance + log(instances)); the first time
+  /// O(triangles), where there are clusters, to list what is where. Clusters stay as
   /// they were cut, so that pictures grow slower the less of the old neighbourhoods is left; they are made anew where
   /// corners become finite, or are so no more. Where an index shares triangles with holes, all of these are copied.
   /// Not while anything else reads the surfaces or the scene. \param scene the one that the surfaces were made of.
   /// \throws Error bad_argument for another scene, an instance that is not there, and a transform that is not finite;
   /// nothing has moved then.
   void move(Scene& scene, std::uint32_t instance, const glm::dmat4& world_from_mesh, const Execution& execution = {});
+
+  struct Placement {
+    std::uint32_t instance;
+    glm::dmat4 world_from_mesh;
+  };
+  /// The same of many, one after the other. \throws Error as above, also where only one of them is wrong; nothing has
+  /// moved then.
+  void move(Scene& scene, std::span<const Placement> placements, const Execution& execution = {});
 
   [[nodiscard]] const Scene& scene() const;
   [[nodiscard]] std::uint32_t primitive_count() const;

@@ -15,12 +15,7 @@
 namespace frontmost {
 namespace {
 
-/// Whether `inner` reaches a side of the box around it.
-bool reaches_side(const Box& inner, const Box& around) {
-  if (inner.is_empty()) return false;
-  return glm::any(glm::lessThanEqual(inner.low, around.low)) ||
-         glm::any(glm::greaterThanEqual(inner.high, around.high));
-}
+constexpr std::size_t kBoxesAround = 16;  ///< in a box of PlacedScene::levels
 
 /// Whether its three corners are one.
 bool is_a_point(const Mesh& mesh, const glm::uvec3& c) {
@@ -40,7 +35,7 @@ bool PlacedScene::has_cutouts(std::uint32_t instance) const {
 void PlacedScene::follow(std::uint32_t instance, Isa isa) {
   const glm::dmat4& world_from_mesh = scene->instances[instance].world_from_mesh;
   mirrored[instance] = mirrors(world_from_mesh);
-  const Box before = std::exchange(instance_bounds[instance], Box());
+  instance_bounds[instance] = Box();
   const auto first = std::lower_bound(ranges.begin(), ranges.end(), instance,
                                       [](const MeshRange& range, std::uint32_t i) { return range.instance < i; });
   WorldScratch scratch;
@@ -50,16 +45,34 @@ void PlacedScene::follow(std::uint32_t instance, Isa isa) {
     find_boxes(world_triangles(*this, *range, isa, scratch), isa, own);
     for (std::uint32_t k = 0; k < range->box_count(); ++k) instance_bounds[instance].include(own[k]);
   }
-  if (reaches_side(before, bounds)) {
-    bounds = Box();
-    for (const Box& box : instance_bounds) bounds.include(box);
-  } else {
-    bounds.include(instance_bounds[instance]);
-  }
+  follow_bounds(instance);
   if (!has_cutouts(instance)) return;
   // What an index holds stays as it is until that follows.
   if (cutouts.use_count() > 1) cutouts = std::make_shared<Cutouts>(*cutouts);
   cutouts->move(scene->meshes[scene->instances[instance].mesh], world_from_mesh, first_primitives[instance]);
+}
+
+void PlacedScene::find_bounds() {
+  levels.clear();
+  for (std::size_t count = instance_bounds.size(); count > 1;) {
+    count = (count + kBoxesAround - 1) / kBoxesAround;
+    levels.emplace_back(count);
+  }
+  for (std::size_t first = 0; first < instance_bounds.size(); first += kBoxesAround)
+    follow_bounds(std::uint32_t(first));
+}
+
+void PlacedScene::follow_bounds(std::uint32_t instance) {
+  const std::vector<Box>* below = &instance_bounds;
+  std::size_t at = instance;
+  for (std::vector<Box>& level : levels) {
+    at /= kBoxesAround;
+    const std::size_t begin = at * kBoxesAround, end = std::min(begin + kBoxesAround, below->size());
+    level[at] = Box();
+    for (std::size_t i = begin; i < end; ++i) level[at].include((*below)[i]);
+    below = &level;
+  }
+  bounds = below->front();
 }
 
 bool ClusterSet::move_triangles(const PlacedScene& placed, const InstanceMove& move, std::size_t cluster) {

@@ -83,7 +83,7 @@ PlacedScene place_scene(const Scene& scene, const Execution& execution) {
   for (const MeshRange& range : placed.ranges)
     for (std::uint32_t k = 0; k < range.box_count(); ++k)
       placed.instance_bounds[range.instance].include(placed.boxes[range.first_box + k]);
-  for (const Box& box : placed.instance_bounds) placed.bounds.include(box);
+  placed.find_bounds();
   placed.cutouts = Cutouts::of(scene, placed.first_primitives);
   report_progress(execution, "surfaces", 1);
   return placed;

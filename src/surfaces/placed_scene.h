@@ -115,6 +115,8 @@ struct PlacedScene {
   std::vector<MeshRange> ranges;              ///< of all triangles, in the order of their ids
   std::vector<Box> boxes;                     ///< of those with finite corners, a few consecutive ones each
   std::vector<Box> instance_bounds;
+  /// Around 16 consecutive boxes of the level below each, the lowest level around instances; up to a single box.
+  std::vector<std::vector<Box>> levels;
   Box bounds;
   MoveLog moves;
 
@@ -131,6 +133,10 @@ struct PlacedScene {
   [[nodiscard]] bool has_cutouts(std::uint32_t instance) const;
   /// Follows an instance to where it is in the scene.
   void follow(std::uint32_t instance, Isa isa);
+  /// Makes the levels. O(instances).
+  void find_bounds();
+  /// Makes them follow the bounds of an instance. O(log instances).
+  void follow_bounds(std::uint32_t instance);
 
   /// Calls visit(vertex) for the world-space corners of a box's triangles; those that a triangle shares with the one
   /// before are not visited again.

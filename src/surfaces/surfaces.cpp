@@ -40,18 +40,27 @@ Surfaces::Surfaces(const Scene& scene, const Execution& execution) {
 
 void Surfaces::move(Scene& scene, std::uint32_t instance, const glm::dmat4& world_from_mesh,
                     const Execution& execution) {
+  const Placement placement{instance, world_from_mesh};
+  move(scene, std::span(&placement, 1), execution);
+}
+
+void Surfaces::move(Scene& scene, std::span<const Placement> placements, const Execution& execution) {
   PlacedScene& placed = state_->placed;
   if (&scene != placed.scene) throw Error(ErrorCode::bad_argument, "move: the surfaces are of another scene");
-  if (instance >= scene.instances.size())
-    throw Error(ErrorCode::bad_argument, "move: there is no instance " + std::to_string(instance));
-  check_transform(scene, instance, world_from_mesh);
+  for (const auto& [instance, world_from_mesh] : placements) {
+    if (instance >= scene.instances.size())
+      throw Error(ErrorCode::bad_argument, "move: there is no instance " + std::to_string(instance));
+    check_transform(scene, instance, world_from_mesh);
+  }
   const IeeeScope ieee;
-  const InstanceMove move{instance, placed.mirrored[instance] != 0};
-  scene.instances[instance].world_from_mesh = world_from_mesh;
-  state_->clusters.leave_cutouts();
-  placed.follow(instance, execution.isa);
-  state_->clusters.follow(placed, move, execution.isa);
-  placed.moves.add(instance, scene.instances.size());
+  for (const auto& [instance, world_from_mesh] : placements) {
+    const InstanceMove move{instance, placed.mirrored[instance] != 0};
+    scene.instances[instance].world_from_mesh = world_from_mesh;
+    state_->clusters.leave_cutouts();
+    placed.follow(instance, execution.isa);
+    state_->clusters.follow(placed, move, execution.isa);
+    placed.moves.add(instance, scene.instances.size());
+  }
 }
 
 Surfaces::~Surfaces() = default;

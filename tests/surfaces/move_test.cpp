@@ -202,6 +202,27 @@ TEST(Move, WhatAnIndexSeesThroughStaysUntilItFollows) {
   ASSERT_NO_FATAL_FAILURE(expect_same(before, raycast(index, view)));
 }
 
+TEST(Move, OfManyIsThatOfEach) {
+  for (const std::size_t count : {1, 2, 16, 17, 300}) {
+    Scene scene = moving_scene(3);
+    scene.instances.resize(count, scene.instances[0]);
+    Surfaces surfaces(scene);
+    Random random(count);
+    for (int step = 0; step < 20; ++step) {
+      std::vector<Surfaces::Placement> placements;
+      for (int i = 0; i < 5; ++i) placements.push_back({std::uint32_t(random.below(count)), next_placement(random)});
+      surfaces.move(scene, placements);
+      ASSERT_NO_FATAL_FAILURE(expect_same_boxes(surfaces, Surfaces(scene))) << count << ' ' << step;
+    }
+    // All of them or none.
+    const Box before = surfaces.bounds();
+    const std::vector<Surfaces::Placement> wrong{{0, glm::dmat4(3.0)}, {std::uint32_t(count), glm::dmat4(1.0)}};
+    EXPECT_EQ(code_of([&] { surfaces.move(scene, wrong); }), ErrorCode::bad_argument);
+    EXPECT_EQ(surfaces.bounds().low, before.low);
+    EXPECT_NE(scene.instances[0].world_from_mesh, glm::dmat4(3.0));
+  }
+}
+
 TEST(Move, OtherScenesInstancesAndTransformsAreRefused) {
   Scene scene = moving_scene(1), other = scene;
   Surfaces surfaces(scene);
