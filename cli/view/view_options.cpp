@@ -87,18 +87,18 @@ Aim aim_of(const ViewSettings& settings, const Surfaces& surfaces, const View& b
   const glm::dvec3 target =
       settings.focal_point ? *settings.focal_point - origin : middle_of(subject_box(settings, surfaces));
   Aim aim{base.world_from_eye, target, true};
-  if (settings.pose || settings.camera_index) {
-    aim.world_from_eye = settings.pose ? in_scene(world_from_eye(*settings.pose, *settings.pose_convention), origin)
-                                       : model_camera(settings, surfaces.scene()).world_from_eye;
+  const auto looking_ahead = [&](const glm::dmat4& world_from_eye) {
     View view;
-    view.world_from_eye = aim.world_from_eye;
-    return {aim.world_from_eye, ahead_of(settings, view, surfaces), false};
-  }
+    view.world_from_eye = world_from_eye;
+    return Aim{world_from_eye, ahead_of(settings, view, surfaces), false};
+  };
+  if (settings.pose) return looking_ahead(in_scene(world_from_eye(*settings.pose, *settings.pose_convention), origin));
+  if (settings.camera_index) return looking_ahead(model_camera(settings, surfaces.scene()).world_from_eye);
   const glm::dvec3 up =
       settings.view_up.value_or(settings.position || settings.direction ? direction(surfaces.scene().up) : base.up());
   if (settings.position) {
     const glm::dvec3 eye = *settings.position - origin;
-    if (settings.direction) aim.target = eye + *settings.direction;
+    if (settings.direction) return looking_ahead(looking(eye, *settings.direction, up));
     if (aim.target == eye) throw UsageError("--camera-position is where the camera looks; give --camera-direction");
     return {looking(eye, aim.target - eye, up), aim.target, false};
   }
@@ -240,7 +240,10 @@ glm::dvec3 focal_point_of(const ViewSettings& settings, const View& view, const 
 }
 
 bool depends_on_model(const ViewSettings& s) {
-  const bool is_placed = s.pose || (s.position && (s.focal_point || s.direction));
+  const bool is_turned = s.azimuth != 0 || s.elevation != 0;
+  // A parallel projection, and what the camera turns about, are as far ahead as the model.
+  const bool is_ahead = (s.pose || (s.position && s.direction)) && !s.orthographic && !is_turned;
+  const bool is_placed = is_ahead || (s.position && s.focal_point);
   return !is_placed || !s.near || !s.far;
 }
 

@@ -2,13 +2,16 @@
 // From camera options to views: what they mean, checked against each other and against points of known place.
 #include "cli/view/view_options.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "cli/option.h"
 #include "program.h"
+#include "support/seeds.h"
 
 namespace frontmost::cli {
 namespace {
@@ -75,6 +78,47 @@ class ViewOptions : public testing::Test {
   Scene scene_ = box_scene();
   Surfaces surfaces_{scene_};
 };
+
+TEST_F(ViewOptions, LengthsOfDirectionsMeanNothing) {
+  std::mt19937_64 random(test::noted_seed(7));
+  std::uniform_real_distribution<double> number(-10, 10);
+  const auto text = [](const glm::dvec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); };
+  for (int i = 0; i < 200; ++i) {
+    const auto place = [&] { return glm::dvec3(number(random), number(random), number(random)); };
+    const glm::dvec3 eye = place(), direction = place(), up = place();
+    std::vector<std::pair<std::string, std::string>> camera;
+    if (random() % 4) camera.emplace_back("camera-position", text(eye * 3.0));
+    if (random() % 2) camera.emplace_back("camera-orthographic", "true");
+    if (random() % 2) camera.emplace_back("camera-azimuth-angle", "30");
+    if (random() % 2) camera.emplace_back("camera-elevation-angle", "-20");
+    const auto with_length = [&](double length) {
+      Pairs pairs(camera.begin(), camera.end());
+      const std::string ahead = text(direction * length), above = text(up * length);
+      pairs.emplace_back("camera-direction", ahead);
+      pairs.emplace_back("camera-view-up", above);
+      return view(pairs);
+    };
+    const View once = with_length(1), thrice = with_length(3);
+    for (int column = 0; column < 4; ++column)
+      EXPECT_LT(glm::distance(once.world_from_eye[column], thrice.world_from_eye[column]), 1e-9) << i;
+    EXPECT_NEAR(once.projection.top, thrice.projection.top, 1e-9) << i;
+    EXPECT_NEAR(once.projection.clip.near, thrice.projection.clip.near, 1e-9) << i;
+  }
+}
+
+TEST_F(ViewOptions, AParallelCameraThatIsPlacedSeesAsFarAheadAsTheModelIs) {
+  // The middle of the box, (1, 2, 3), is 12 ahead of the eye.
+  const View v =
+      view({{"camera-position", "15,-10,5"}, {"camera-direction", "0,9,0"}, {"camera-orthographic", "true"}});
+  EXPECT_NEAR(v.projection.top, 12 * std::tan(glm::radians(15.0)), 1e-12);
+  EXPECT_FALSE(depends_on_model(
+      settings({{"camera-position", "15,-10,5"}, {"camera-direction", "y"}, {"near", "1"}, {"far", "9"}})));
+  EXPECT_TRUE(depends_on_model(settings({{"camera-position", "15,-10,5"},
+                                         {"camera-direction", "y"},
+                                         {"near", "1"},
+                                         {"far", "9"},
+                                         {"camera-orthographic", "true"}})));
+}
 
 TEST_F(ViewOptions, PositionFocalPointAndUpMakeTheCamera) {
   const View v = view({{"camera-position", "1,-10,3"},
