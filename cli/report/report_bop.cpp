@@ -56,6 +56,14 @@ Json camera_json(const ReportRun& run, double millimetres, double depth_scale) {
           {"cam_t_w2c", to_json(glm::dvec3(pose[3]) * millimetres)}};
 }
 
+/// The category's number; objects without a category are counted on from the highest of these, by mesh.
+std::uint64_t object_number(const Scene& scene, const Instance& instance) {
+  if (instance.category != no_index) return scene.categories[instance.category].number;
+  std::uint64_t highest = 0;
+  for (const Category& category : scene.categories) highest = std::max<std::uint64_t>(highest, category.number);
+  return highest + instance.mesh + 1;
+}
+
 /// \throws Error unsupported where an object is stretched or mirrored: BOP's poses turn and move.
 Json pose_json(const ReportRun& run, std::uint32_t object, double millimetres) {
   const Instance& instance = run.scene().instances[object];
@@ -70,10 +78,9 @@ Json pose_json(const ReportRun& run, std::uint32_t object, double millimetres) {
     throw Error(ErrorCode::unsupported,
                 fmt::format("object {} ({}) is stretched or mirrored, which BOP's poses cannot be", object,
                             printable_name(instance.name)));
-  const std::uint32_t number =
-      instance.category == no_index ? instance.mesh + 1 : run.scene().categories[instance.category].number;
-  return {
-      {"cam_R_m2c", rows_json(turn)}, {"cam_t_m2c", to_json(glm::dvec3(pose[3]) * millimetres)}, {"obj_id", number}};
+  return {{"cam_R_m2c", rows_json(turn)},
+          {"cam_t_m2c", to_json(glm::dvec3(pose[3]) * millimetres)},
+          {"obj_id", object_number(run.scene(), instance)}};
 }
 
 /// As bop_toolkit has it: from the first pixel to the last, which is one less than their number.

@@ -294,6 +294,7 @@ TEST_F(Report, CategoriesOfAFileCountInCocoAndBop) {
   const json poses = json::parse(read("scene/scene_gt.json"))["0"];
   EXPECT_EQ(poses[0]["obj_id"], 17);
   EXPECT_EQ(poses[1]["obj_id"], 1);
+  EXPECT_EQ(poses[2]["obj_id"], 20) << "the third mesh, counted on from the highest category";
   expect_failure("report squares.obj --coco c.json --categories none.json", 1, "none.json: ");
   write("wrong.json", R"({"categories": ["plate"], "objects": {"far": "wall"}})");
   expect_failure("report squares.obj --coco c.json --categories wrong.json", 1,
