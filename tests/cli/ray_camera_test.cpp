@@ -170,6 +170,11 @@ TEST_F(RayCameras, ALidarNamesWhatIsWrong) {
   expect_failure("lidar cube.stl --from 0,0,0 --elevations 10,-10 -o a.ply", 2, "--elevations");
   expect_failure("lidar cube.stl --from 0,0,0 --directions short.txt --steps 4 -o a.ply", 2, "two ways");
   expect_failure("lidar cube.stl --from 0,0,0 --directions short.txt -o a.ply", 1, "short.txt: line 1: three numbers");
+  write("still.txt", "0 0 -1\n0 0 0\n");
+  expect_failure("lidar cube.stl --from 0,0,0 --directions still.txt -o a.npy", 1,
+                 "still.txt: number 2 of its directions");
+  write("far.txt", "0 0 1e300\n");
+  expect_failure("lidar cube.stl --from 0,0,0 --directions far.txt -o a.npy", 1, "far.txt: number 1 of its directions");
   expect_failure("lidar cube.stl --from 0,0,0 --directions empty.txt -o a.ply", 1, "no direction");
 }
 
