@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "cli/failure.h"
 #include "cli/option.h"
+#include "cli/values.h"
 
 namespace frontmost::cli {
 namespace {
@@ -66,12 +67,21 @@ void take_leftovers(const Command& command, const std::vector<std::string>& word
   }
 }
 
+/// "--hidden needs a value: none, dashed or thin"
+std::string value_needed(const Option& option) {
+  std::vector<std::string_view> words = split(option.choices(), '|');
+  if (option.choices().empty()) return fmt::format("--{} needs a value", option.name);
+  const std::string_view last = words.back();
+  words.pop_back();
+  return fmt::format("--{} needs a value: {} or {}", option.name, fmt::join(words, ", "), last);
+}
+
 /// "--output --hash" forgot a file name; a file of that name can still be written as ./--hash.
 void refuse_flag_as_value(const Command& command, const GivenOption& found) {
   for (const std::string& text : found.texts) {
     if (text.substr(0, 2) != "--") continue;
     for (const std::string_view flag : known_flags(command)) {
-      if (text.substr(2) == flag) throw UsageError(fmt::format("--{} needs a value, not {}", found.option->name, text));
+      if (text.substr(2) == flag) throw UsageError(fmt::format("{}, not {}", value_needed(*found.option), text));
     }
   }
 }
@@ -101,7 +111,10 @@ Settings parse_command_line(const Command& command, std::span<const char* const>
   try {
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ArgumentMismatch&) {
-    throw UsageError(fmt::format("{} needs a value", words.back()));
+    const std::string_view last = words.back();
+    for (const GivenOption& found : all)
+      if (last == fmt::format("--{}", found.option->name)) throw UsageError(value_needed(*found.option));
+    throw UsageError(fmt::format("{} needs a value", last));
   } catch (const CLI::ParseError& error) {
     throw UsageError(error.what());
   }

@@ -4,6 +4,7 @@
 #include "cli/render/blank.h"
 
 #include <fmt/format.h>
+#include <frontmost/zbuffer.h>
 
 #include <algorithm>
 #include <array>
@@ -73,6 +74,16 @@ Cause cause_of(const std::array<glm::vec3, 3>& corners, const View& view) {
 
 constexpr float most_steps = 8;
 constexpr std::size_t one_in = 1000;
+
+/// Whether a blank picture would show something if materials had no holes.
+bool is_all_holes(const Surfaces& surfaces, const View& view) {
+  const auto has_holes = [](const Material& material) { return material.alpha == Material::Alpha::mask; };
+  const std::vector<Material>& materials = surfaces.scene().materials;
+  if (std::none_of(materials.begin(), materials.end(), has_holes)) return false;
+  Scene scene = surfaces.scene();
+  for (Material& material : scene.materials) material.alpha = Material::Alpha::opaque;
+  return !is_blank(zbuffer(Surfaces(scene), view));
+}
 
 float linear(float srgb) { return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f); }
 
@@ -144,6 +155,8 @@ std::string BlankReason::clause() const {
 }
 
 std::string blank_reason(const Surfaces& surfaces, const View& view) {
+  if (is_all_holes(surfaces, view))
+    return "all of the model in the picture is a hole of its materials (alpha mode MASK)";
   BlankReason reason(view);
   std::vector<std::array<glm::vec3, 3>> corners;
   constexpr PrimitiveId at_once = 4096;
@@ -191,7 +204,29 @@ bool nothing_stands_out(const Figure& figure, const glm::vec3& background) {
   return !figure.shapes.empty() && std::all_of(figure.shapes.begin(), figure.shapes.end(), is_like);
 }
 
-std::string contrast_warning() {
+bool is_invisible(const Surfaces& surfaces, std::span<const PrimitiveId> primitives) {
+  const std::vector<Material>& materials = surfaces.scene().materials;
+  bool is_anything_seen = false;
+  for (const PrimitiveId id : primitives) {
+    if (id == no_primitive) continue;
+    const PrimitiveSource source = surfaces.source(id);
+    const std::uint32_t material = surfaces.scene().meshes[source.mesh].material_of(source.triangle);
+    if (material >= materials.size() || materials[material].alpha != Material::Alpha::blend ||
+        materials[material].base_color.a > 0)
+      return false;
+    is_anything_seen = true;
+  }
+  return is_anything_seen;
+}
+
+bool is_invisible(const Figure& figure) {
+  return !figure.shapes.empty() && std::all_of(figure.shapes.begin(), figure.shapes.end(),
+                                               [](const FigureShape& shape) { return shape.color.a == 0; });
+}
+
+std::string contrast_warning(bool is_invisible) {
+  if (is_invisible)
+    return "nothing in the picture stands out from its background: the opacity of all materials in it is 0";
   return fmt::format(
       "nothing in the picture stands out from its background: fewer than 1 in {} of the pixels that see something "
       "differ from it by more than {:.0f} of 255 steps; another --background would show them",

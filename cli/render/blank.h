@@ -40,7 +40,7 @@ class BlankReason {
   std::array<std::uint64_t, cause_count> counts_{};
 };
 
-/// What keeps all triangles of a blank picture out of it. O(triangles).
+/// What keeps all triangles of a blank picture out of it. O(triangles), and a picture where materials have holes.
 [[nodiscard]] std::string blank_reason(const Surfaces& surfaces, const View& view);
 
 /// A pixel stands out when one of its channels differs from the background's by more than 8 of 255 steps, which is
@@ -54,7 +54,11 @@ class BlankReason {
 /// The same of shapes, however large: all of them are like the background.
 [[nodiscard]] bool nothing_stands_out(const Figure& figure, const glm::vec3& background);
 
-/// What to say then.
-[[nodiscard]] std::string contrast_warning();
+/// Whether all that is seen is of a material whose opacity is 0. False where nothing is seen.
+[[nodiscard]] bool is_invisible(const Surfaces& surfaces, std::span<const PrimitiveId> primitives);
+[[nodiscard]] bool is_invisible(const Figure& figure);
+
+/// What to say where nothing stands out.
+[[nodiscard]] std::string contrast_warning(bool is_invisible);
 
 }  // namespace frontmost::cli

@@ -9,6 +9,7 @@
 #include "cli/console.h"
 #include "cli/failure.h"
 #include "cli/inputs.h"
+#include "cli/outputs.h"
 #include "cli/render/jobs.h"
 #include "cli/render/json_report.h"
 #include "cli/render/output_writer.h"
@@ -43,14 +44,23 @@ bool lets_light_through(const Scene& scene) {
                      [](const Material& m) { return m.is_see_through(); });
 }
 
+/// "render model.obj out.png" lacks an "-o".
+std::optional<std::string> picture_among_models(const Settings& settings) {
+  for (const std::string& model : settings.more_models)
+    if (format_by_suffix(model) || is_figure(model)) return model;
+  return std::nullopt;
+}
+
 /// Without any result asked for, the picture goes to the terminal, if there is one. What MPI's ranks write to is none.
 bool shows_on_terminal(const Settings& settings, std::vector<Job>& jobs) {
   if (has_result(settings, jobs)) return false;
   const std::optional<glm::ivec2> terminal = settings.run.mpi ? std::nullopt : output_terminal();
   if (!terminal) {
     throw UsageError(
-        "nothing to do: give an output such as -o FILE (without one the picture is shown on a terminal, "
-        "and standard output is none)");
+        fmt::format("nothing to do: give an output such as -o {} (without one the picture is shown on a terminal, and "
+                    "standard output "
+                    "is none)",
+                    picture_among_models(settings).value_or("FILE")));
   }
   for (Job& job : jobs) prepare_for_terminal(job, *terminal);
   return true;

@@ -150,7 +150,7 @@ ViewResult render_around(const Job& job, const RenderContext& context) {
       result.warnings.emplace_back(
           "spheres and patches are plain all around: lit from the eye, opaque, without textures and shadows");
     if (job.output.background && nothing_stands_out(*picture, first, *job.output.background))
-      result.warnings.push_back(contrast_warning());
+      result.warnings.push_back(contrast_warning(false));
   }
   const auto map = [&](OutputKind kind) { return map_around(kind, job, rays, around); };
   if (job.output.reference) result.reference = compare_with_reference(*picture, job, context.execution);

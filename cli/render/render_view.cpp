@@ -228,7 +228,7 @@ void finish_view(const Job& job, const RenderContext& context, const Sights& sig
     const std::optional<glm::vec3>& background = job.output.background;
     if (background && (picture ? nothing_stands_out(*picture, visible.primitives, *background)
                                : nothing_stands_out(*bitmap, visible.primitives, *background)))
-      result.warnings.push_back(contrast_warning());
+      result.warnings.push_back(contrast_warning(is_invisible(context.surfaces, visible.primitives)));
   }
   const auto map = [&](OutputKind kind) { return map_of(kind, job, context, sights); };
   const auto deep = [&] { return context.shader.shade_deep(input(), options, context.execution); };

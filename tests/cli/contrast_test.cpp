@@ -53,6 +53,26 @@ TEST_F(Contrast, WhiteOnWhiteSaysSo) {
   EXPECT_THAT(succeed("render white.gltf --json -o a.png" + view).json()["warnings"].dump(), HasSubstr("stands out"));
 }
 
+TEST_F(Contrast, WhatMaterialsHideIsSaidToBeHiddenByThem) {
+  const std::string plain = square("0.5,0.5,0.5"), at = R"("doubleSided":true)";
+  const auto with = [&](const std::string& alpha) {
+    return std::string(plain).replace(plain.find(at), at.size(), at + alpha);
+  };
+  write("holes.gltf", with(R"(,"alphaMode":"MASK","alphaCutoff":1.5)"));
+  EXPECT_THAT(
+      succeed("render holes.gltf --view front -o a.png").err,
+      HasSubstr("nothing is in view: all of the model in the picture is a hole of its materials (alpha mode MASK)"));
+  EXPECT_THAT(succeed("render holes.gltf --camera-position 0,0,9 --camera-direction +z -o a.png").err,
+              HasSubstr("all of the model is behind the camera"));
+  std::string clear = with(R"(,"alphaMode":"BLEND")");
+  clear.replace(clear.find("0.5,1]"), 6, "0.5,0]");
+  write("clear.gltf", clear);
+  for (const char* file : {"a.png", "a.svg"})
+    EXPECT_THAT(succeed(std::string("render clear.gltf --view front -o ") + file).err,
+                HasSubstr("stands out from its background: the opacity of all materials in it is 0"))
+        << file;
+}
+
 TEST_F(Contrast, WhatIsNoPictureOrHasNoBackgroundSaysNothing) {
   const std::string view = " --resolution 64,64 --view front ";
   for (const char* file :

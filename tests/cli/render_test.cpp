@@ -258,6 +258,7 @@ TEST_F(Render, OutputsAreCheckedBeforeAnyWork) {
   write("cube.exr", cube_stl());
   expect_failure("render cube.exr --input-format stl -o ./cube.exr", 2, "is the model itself");
   expect_failure("render cube.stl", 2, "nothing to do: give an output such as -o FILE");
+  expect_failure("render cube.stl out.png", 2, "nothing to do: give an output such as -o out.png (");
   expect_failure("render cube.stl -o a.png --method raytrace", 2, "--method");
   expect_failure("render cube.stl -o a.png --isa neon", 2, "--isa: 'neon' is not one of");
   expect_failure("render cube.stl -o a.png --samples 3", 2, "--samples: '3' is not one of 1, 2, 4, 8, 16");

@@ -107,6 +107,8 @@ TEST_F(Usage, WrongOptionsAreNamed) {
   expect_failure("camera cube.stl -x", 2, "unknown option -x");
   expect_failure("camera cube.stl cube.stl", 2, "one model at a time");
   expect_failure("camera cube.stl --resolution", 2, "--resolution needs a value");
+  expect_failure("lines cube.stl --hidden", 2, "--hidden needs a value: none, dashed or thin");
+  expect_failure("lines cube.stl --hidden --json", 2, "--hidden needs a value: none, dashed or thin, not --json");
   expect_failure("camera cube.stl --near --json", 2, "--near needs a value, not --json");
   expect_failure("camera cube.stl --near 1 --near 2", 2, "--near is given 2 times");
 }

@@ -269,8 +269,10 @@ TEST(FightingFaces, EndWithTheRemediesThatAreGiven) {
   const ExactVisible exact = find_exact_visible(surfaces, view);
   const DepthSetup setup{view.projection.clip, DepthFormat::d16};
   const std::vector<FightRemedy> remedies = try_remedies(surfaces, exact, setup);
-  ASSERT_EQ(remedies.size(), 1u);
-  EXPECT_EQ(remedies[0].wrong, 0u);
+  ASSERT_EQ(remedies.size(), 4u) << "the planes alone, 24 bits, reversed floats, these with the planes";
+  for (const FightRemedy& remedy : remedies) EXPECT_EQ(remedy.wrong, 0u);
+  EXPECT_EQ(remedies[1].setup.format, DepthFormat::d24);
+  EXPECT_TRUE(remedies[2].setup.reversed && remedies[2].setup.format == DepthFormat::f32);
   EXPECT_EQ(remedies[0].setup.format, DepthFormat::d16);
   EXPECT_NEAR(remedies[0].setup.clip.near, 59.94, 1e-3);
   EXPECT_NEAR(remedies[0].setup.clip.far, 61.061, 1e-3);

@@ -12,6 +12,13 @@
 namespace frontmost {
 namespace {
 
+/// Of a scene without triangles.
+std::string points_told(const Scene& scene) {
+  std::size_t points = 0;
+  for (const Mesh& mesh : scene.meshes) points += mesh.positions.size();
+  return points == 0 ? "" : "; its " + std::to_string(points) + " points have no surface that hides anything";
+}
+
 constexpr std::string_view builtin_prefix = "builtin:";
 
 Scene read(ModelFormat format, Bytes bytes, const ModelSource& source) {
@@ -50,7 +57,7 @@ Scene read_any(Bytes bytes, const ModelSource& source, std::optional<ModelFormat
   }
   // A reader of text has chosen one already.
   if (scene.origin == glm::dvec3(0)) set_origin(scene, fitting_origin(scene));
-  if (triangle_count(scene) == 0) scene.warnings.emplace_back(no_triangles_warning);
+  if (triangle_count(scene) == 0) scene.warnings.push_back(no_triangles_warning + points_told(scene));
   for (std::string& warning : scene.warnings) warning = source.with_name(warning);
   report_progress(source.execution(), "load", 1);
   return scene;

@@ -88,7 +88,6 @@ std::vector<FightRemedy> try_remedies(const Surfaces& surfaces, const ExactVisib
     if (is_same(tried, setup) || (tried.format == DepthFormat::d24 && integer_bits(setup.format) == 0)) continue;
     const FightRemedy remedy{tried, wrong_with(tried)};
     if (remedy.wrong < now) remedies.push_back(remedy);
-    if (remedy.wrong == 0) break;
   }
   return remedies;
 }

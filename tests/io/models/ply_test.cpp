@@ -33,6 +33,15 @@ TEST(Ply, PolygonsRememberTheirFace) {
   EXPECT_EQ(scene.up, Axis::y);
 }
 
+TEST(Ply, CloudsOfPointsAreCounted) {
+  const Scene scene = load_text(
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+      "0 0 0\n1 1 1\n");
+  EXPECT_THAT(scene.warnings,
+              testing::ElementsAre("model: the file holds no triangles; its 2 points have no surface that "
+                                   "hides anything"));
+}
+
 TEST(Ply, TrianglesAloneNeedNoFaceIds) {
   const Scene scene = load_text(square_with("3 0 1 2\n3 2 3 0\n", 2));
   EXPECT_TRUE(scene.meshes.at(0).face_ids.empty());
