@@ -64,8 +64,8 @@ py::dict inspected(const HeldScene& held, int threads, const py::object& progres
   return py::dict(
       "name"_a = utf8_text(report.name), "up"_a = report.up, "triangles"_a = report.triangles,
       "stored_triangles"_a = report.stored_triangles, "vertices"_a = report.vertices,
-      "origin"_a = array_of(report.origin), "bounds"_a = bounds, "rounding"_a = report.rounding,
-      "odd"_a = dict_of(report.odd),
+      "origin"_a = array_of(report.origin), "bounds"_a = bounds, "rounding"_a = report.rounding, "area"_a = report.area,
+      "volume"_a = report.volume, "odd"_a = dict_of(report.odd),
       "meshes"_a = dicts_of(report.meshes, [](const MeshReport& mesh) { return dict_of(mesh); }),
       "materials"_a = dicts_of(report.materials, [](const MaterialReport& material) { return dict_of(material); }),
       "cameras"_a =

@@ -102,7 +102,9 @@ Json object_json(const ObjectReport& object, const glm::dvec3& origin) {
           {"mesh", object.mesh},
           {"triangles", object.triangles},
           {"bounds", box_json(object.bounds, origin)},
-          {"size", size_json(object.bounds)}};
+          {"size", size_json(object.bounds)},
+          {"area", object.area},
+          {"volume", object.volume ? Json(*object.volume) : Json(nullptr)}};
 }
 
 Json material_json(const MaterialReport& material) {
@@ -245,6 +247,8 @@ Json info_json(const SceneReport& report, const std::optional<ModelUnit>& unit) 
                {"textures", report.texture_count},
                {"bounds", box_json(report.bounds, report.origin)},
                {"size", size_json(report.bounds)},
+               {"area", report.area},
+               {"volume", report.volume ? Json(*report.volume) : Json(nullptr)},
                {"unit", unit_json(unit)},
                {"origin", to_json(report.origin)},
                {"rounding", report.rounding}};
@@ -272,7 +276,9 @@ std::string info_text(const SceneReport& report, const std::optional<ModelUnit>&
                         place_text(report.bounds.high, report.origin));
     const glm::dvec3 size = size_of(report.bounds);
     text += fmt::format("  size       {:.6g} x {:.6g} x {:.6g}\n", size.x, size.y, size.z);
-    text += unit_line(unit, report.bounds);
+    text += fmt::format("  area       {:.6g}", report.area);
+    if (report.volume) text += fmt::format(", volume {:.6g} of what is closed", *report.volume);
+    text += "\n" + unit_line(unit, report.bounds);
     text += rounding_line(report);
   }
   const std::size_t closed = std::size_t(

@@ -64,7 +64,10 @@ struct ObjectReport {
   std::string name;
   std::uint32_t mesh = no_index;
   std::uint64_t triangles = 0;
-  Box bounds;  ///< of its finite triangles, in world space
+  Box bounds;       ///< of its finite triangles, in world space
+  double area = 0;  ///< of its finite triangles, in world space
+  /// Enclosed in world space, less what hollows enclose; of meshes with a genus alone.
+  std::optional<double> volume;
 };
 
 struct MaterialReport {
@@ -100,8 +103,10 @@ struct SceneReport {
   std::uint64_t stored_triangles = 0;  ///< over all meshes
   std::uint64_t vertices = 0;          ///< stored, over all meshes
   std::uint64_t texture_count = 0;
-  glm::dvec3 origin{0};  ///< of the scene: world space is about it
-  Box bounds;            ///< world space
+  glm::dvec3 origin{0};          ///< of the scene: world space is about it
+  Box bounds;                    ///< world space
+  double area = 0;               ///< of all objects
+  std::optional<double> volume;  ///< of the objects that have one; none without any
   /// How far from where the file has it a vertex may lie, because floats are kept: half a step of the farthest.
   double rounding = 0;
   std::vector<MeshReport> meshes;

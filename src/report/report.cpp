@@ -86,6 +86,37 @@ Box bounds_of(const std::vector<glm::vec3>& points, const glm::dmat4& world_from
   return bounds;
 }
 
+struct Measures {
+  double area = 0, volume = 0;
+};
+
+/// Sums over blocks of triangles, so that the number of threads changes nothing. Volumes are of tetrahedra whose tip is
+/// in the middle of the bounds: far from zero others would cancel badly.
+Measures measures_of(const Mesh& mesh, const glm::dmat4& world_from_mesh, const Box& bounds,
+                     const Execution& execution) {
+  constexpr std::size_t block = std::size_t(1) << 14;
+  std::vector<Measures> sums((mesh.triangles.size() + block - 1) / block);
+  const glm::dvec3 tip = (glm::dvec3(bounds.low) + glm::dvec3(bounds.high)) * 0.5;
+  const auto world = [&](std::uint32_t vertex) {
+    return glm::dvec3(world_from_mesh * glm::dvec4(glm::dvec3(mesh.positions[vertex]), 1));
+  };
+  parallel_for(execution, sums.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b)
+      for (std::size_t t = b * block; t < std::min((b + 1) * block, mesh.triangles.size()); ++t) {
+        const glm::uvec3& c = mesh.triangles[t];
+        const glm::dvec3 p = world(c.x) - tip, q = world(c.y) - tip, r = world(c.z) - tip;
+        const glm::dvec3 across = glm::cross(q - p, r - p);
+        const double area = 0.5 * glm::length(across), volume = glm::dot(p, across) / 6;
+        if (!std::isfinite(area) || !std::isfinite(volume)) continue;
+        sums[b].area += area;
+        sums[b].volume += volume;
+      }
+  });
+  Measures all;
+  for (const Measures& sum : sums) all = {all.area + sum.area, all.volume + sum.volume};
+  return all;
+}
+
 double rounding_within(const Box& bounds) {
   if (bounds.is_empty()) return 0;
   float farthest = 0;
@@ -140,8 +171,19 @@ void report_objects(const Scene& scene, const std::vector<std::uint32_t>& instan
   for (const std::uint32_t i : instances) {
     const Instance& instance = scene.instances[i];
     const MeshReport& mesh = report.meshes[instance.mesh];
-    report.objects[i] = {instance.name, instance.mesh, mesh.triangles,
-                         bounds_of(topology.points, instance.world_from_mesh, execution)};
+    report.objects[i] = {instance.name,
+                         instance.mesh,
+                         mesh.triangles,
+                         bounds_of(topology.points, instance.world_from_mesh, execution),
+                         0,
+                         std::nullopt};
+    const Measures measures =
+        measures_of(scene.meshes[instance.mesh], instance.world_from_mesh, report.objects[i].bounds, execution);
+    report.area += report.objects[i].area = measures.area;
+    if (mesh.genus) {
+      report.objects[i].volume = std::abs(measures.volume);
+      report.volume = report.volume.value_or(0) + std::abs(measures.volume);
+    }
     report.bounds.include(report.objects[i].bounds);
     report.triangles += mesh.triangles;
     for (const MaterialUse& use : mesh.materials)

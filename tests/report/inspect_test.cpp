@@ -152,6 +152,28 @@ TEST(Inspect, CountsPiecesOverCornersAndShellsOverEdges) {
   }
 }
 
+TEST(Inspect, MeasuresAreaAndVolumeInTheWorld) {
+  Scene scene;
+  Mesh hollow = bare(box({10, 10, 10}, {13, 13, 13}));  // with a hollow of 1, inside out
+  Mesh inner = bare(box({11, 11, 11}, {12, 12, 12}));
+  for (glm::uvec3& triangle : inner.triangles) std::swap(triangle.y, triangle.z);
+  append(hollow, inner);
+  scene.meshes = {hollow, tetrahedron()};
+  scene.meshes[1].triangles.pop_back();
+  glm::dmat4 place(1.0);
+  place[0].x = -2;  // mirrored, twice as long along x
+  place[3] = {1e7, 0, 0, 1};
+  scene.instances = {{"hollow", 0, glm::dmat4(1.0)}, {"long", 0, place}, {"open", 1, glm::dmat4(1.0)}};
+  const SceneReport report = inspect(scene);
+  EXPECT_NEAR(report.objects[0].area, 60, 1e-9);
+  EXPECT_NEAR(report.objects[0].volume.value(), 26, 1e-9);
+  EXPECT_NEAR(report.objects[1].area, 20 + 2 * 40, 1e-6);
+  EXPECT_NEAR(report.objects[1].volume.value(), 52, 1e-6);
+  EXPECT_FALSE(report.objects[2].volume);
+  EXPECT_NEAR(report.volume.value(), 78, 1e-6);
+  EXPECT_NEAR(report.area, 160 + report.objects[2].area, 1e-6);
+}
+
 TEST(Inspect, GenusIsTheNumberOfHandles) {
   EXPECT_EQ(inspect_mesh(sphere(9)).genus, 0u);
   EXPECT_EQ(inspect_mesh(torus_knot({})).genus, 1u);
