@@ -153,6 +153,10 @@ def main():
         gallery = report("builtin:gallery", "gallery.html", "--resolution", "320,240")
         told = look(browser, gallery, WIDTHS, 1200)
         check("the width of the table", told["table"][0], told["table"][1])
+        long = "a_part_of_an_assembly_whose_name_is_long"
+        (folder / "long.obj").write_text("".join(square(long + s[0], *s[1:]) for s in SQUARES))
+        told = look(browser, report("long.obj", "long.html", "--resolution", "4000,4000", "--view", "front"), WIDTHS, 1200)
+        check("the width of a table of long names", told["table"][0], told["table"][1])
         for width in [1200, 390]:
             told = look(browser, gallery, WIDTHS, width)
             for state in ["page", "chosen"]:
