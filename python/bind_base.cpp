@@ -3,6 +3,10 @@
 #include <frontmost/base.h>
 #include <frontmost/version.h>
 
+#include <limits>
+#include <vector>
+
+#include "python/arrays.h"
 #include "python/bindings.h"
 
 namespace frontmost::python {
@@ -36,6 +40,22 @@ void translate(std::exception_ptr thrown) {
   }
 }
 
+/// PyTorch and others know few operations on unsigned numbers.
+py::array signed_ids(const py::array& ids, const std::string& dtype) {
+  if (ids.dtype().kind() != 'u' || ids.itemsize() != sizeof(PrimitiveId))
+    throw py::type_error("ids: must be an array of uint32");
+  if (dtype != "int32" && dtype != "int64") throw py::value_error("dtype: '" + dtype + "' is not one of int32, int64");
+  const Array<PrimitiveId> from = Array<PrimitiveId>::ensure(ids);
+  py::array_t<std::int64_t> to(std::vector<py::ssize_t>(from.shape(), from.shape() + from.ndim()));
+  for (py::ssize_t i = 0; i < from.size(); ++i) {
+    const PrimitiveId id = from.data()[i];
+    if (id != no_primitive && dtype == "int32" && id > PrimitiveId(std::numeric_limits<std::int32_t>::max()))
+      throw py::value_error("ids: int32 does not hold " + std::to_string(id));
+    to.mutable_data()[i] = id == no_primitive ? -1 : std::int64_t(id);
+  }
+  return dtype == "int64" ? py::array(to) : py::array(to.attr("astype")(dtype));
+}
+
 }  // namespace
 
 void bind_base(py::module_& m) {
@@ -45,6 +65,7 @@ void bind_base(py::module_& m) {
   m.attr("version") = FRONTMOST_VERSION;
   m.attr("no_primitive") = no_primitive;
   m.attr("no_index") = no_index;
+  m.def("signed_ids", &signed_ids, "ids"_a, py::kw_only(), "dtype"_a = "int64", doc("signed_ids"));
 }
 
 }  // namespace frontmost::python

@@ -112,8 +112,10 @@ void save_picture(const py::object& image, const py::object& path, const std::op
   const bool is_color = array && array.ndim() == 3 && (array.shape(2) == 3 || array.shape(2) == 4);
   if (is_color && array.dtype().kind() == 'u' && array.itemsize() == 1) return write(bitmap_of(array));
   if (is_color && array.dtype().kind() == 'f') return write(image_of_colors(array));
+  if (array && array.ndim() == 2 && array.dtype().kind() == 'b') return write(image_of_planes(py::dict("Y"_a = image)));
   throw py::type_error(
-      "image: must be (height, width, 3 or 4) of uint8 or floats, or a dict of planes by name, such as {'Z': depth}");
+      "image: must be (height, width, 3 or 4) of uint8 or floats, a bool mask (height, width), or a dict "
+      "of planes by name, such as {'Z': depth}");
 }
 
 py::dict load_picture(const py::object& path) {

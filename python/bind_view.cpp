@@ -35,7 +35,7 @@ Intrinsics intrinsics_from(const py::handle& given, PixelRule rule) {
   for (const auto& [row, column, wanted] : {std::array{0, 1, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 1}})
     if (k.at(row, column) != wanted)
       throw py::value_error("K: element " + std::to_string(row) + ", " + std::to_string(column) + " is not " +
-                            std::to_string(wanted) + ": cameras have no skew");
+                            std::to_string(wanted) + (row == 0 ? ": cameras have no skew" : ", as in every K"));
   return {k.at(0, 0), k.at(1, 1), k.at(0, 2), k.at(1, 2), rule};
 }
 

@@ -6,10 +6,13 @@
 
 #include "python/words.h"
 
-FRONTMOST_WORDS(frontmost::Axis, "up",
+FRONTMOST_WORDS(frontmost::Axis, "axis",
                 {{frontmost::Axis::x, "x"},
                  {frontmost::Axis::y, "y"},
                  {frontmost::Axis::z, "z"},
                  {frontmost::Axis::minus_x, "-x"},
                  {frontmost::Axis::minus_y, "-y"},
-                 {frontmost::Axis::minus_z, "-z"}});
+                 {frontmost::Axis::minus_z, "-z"},
+                 {frontmost::Axis::x, "+x"},
+                 {frontmost::Axis::y, "+y"},
+                 {frontmost::Axis::z, "+z"}});

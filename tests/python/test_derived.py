@@ -30,8 +30,9 @@ def test_planes_beside_the_model_cut_nothing(box):
     assert surfaces.cut("-x", 2).scene.triangle_count == 0
     with pytest.raises(fm.Error):
         surfaces.cut("x", numpy.nan)
-    with pytest.raises(ValueError, match="^up: 'w' is not one of x, y, z"):
+    with pytest.raises(ValueError, match="^axis: 'w' is not one of x, y, z"):
         surfaces.cut("w")
+    assert surfaces.cut("+x", 1).scene.triangle_count == surfaces.cut("x", 1).scene.triangle_count > 0
 
 
 def test_curved_meshes_are_as_fine_as_asked():

@@ -77,8 +77,11 @@ def test_files_come_back(tmp_path):
     ids = numpy.arange(12, dtype=numpy.int16).reshape(3, 4)
     fm.save({"object": ids}, tmp_path / "ids.exr")
     assert (fm.load_image(tmp_path / "ids.exr")["object"] == ids).all()
-    fm.save({"Y": ids > 5}, tmp_path / "mask.npy")
-    assert (numpy.load(tmp_path / "mask.npy") == (ids > 5)).all()
+    for mask in ({"Y": ids > 5}, ids > 5):
+        fm.save(mask, tmp_path / "mask.npy")
+        assert (numpy.load(tmp_path / "mask.npy") == (ids > 5)).all()
+    fm.save(ids > 5, tmp_path / "mask.png")
+    assert (fm.load_image(tmp_path / "mask.png")["Y"] == (ids > 5)).all()
 
 
 @pytest.mark.parametrize("image, error, message", [

@@ -131,6 +131,20 @@ def test_python_threads_draw_at_once():
     assert hashes == [wanted] * 40
 
 
+def test_signed_ids():
+    ids = numpy.array([[0, 7], [fm.no_index, 2**31]], numpy.uint32)
+    signed = fm.signed_ids(ids)
+    assert signed.dtype == numpy.int64 and signed.tolist() == [[0, 7], [-1, 2**31]] and signed.flags.writeable
+    assert fm.signed_ids(ids[0], dtype="int32").dtype == numpy.int32
+    assert fm.signed_ids(ids[:, :1].T, dtype="int32").tolist() == [[0, -1]]
+    with pytest.raises(ValueError, match="^ids: int32 does not hold 2147483648"):
+        fm.signed_ids(ids, dtype="int32")
+    with pytest.raises(ValueError, match="^dtype: 'uint8' is not one of"):
+        fm.signed_ids(ids, dtype="uint8")
+    with pytest.raises(TypeError, match="^ids: "):
+        fm.signed_ids([1, 2])
+
+
 def test_moved_objects():
     scene = fm.builtin("cubes")
     surfaces = fm.Surfaces(scene)
@@ -151,6 +165,15 @@ def test_moved_objects():
     del other
     gc.collect()
     surfaces.move(scene.objects[0].name, pose)
+    poses = numpy.stack([item.pose for item in scene.objects])
+    poses[:, 0, 3] += numpy.arange(len(poses))
+    surfaces.move(numpy.arange(len(poses)), poses)
+    assert (numpy.stack([item.pose for item in scene.objects]) == poses).all()
+    with pytest.raises(ValueError, match="^pose: must be one for each object"):
+        surfaces.move([0, 1], poses[:1])
+    with pytest.raises(ValueError, match="^object: there is no object 99"):
+        surfaces.move([0, 99], poses[:2] + 1)
+    assert (scene.objects[0].pose == poses[0]).all()
 
 
 @pytest.mark.skipif("FRONTMOST_SANITIZED" in os.environ, reason="a sanitizer keeps what was freed for a while")

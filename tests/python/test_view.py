@@ -88,6 +88,7 @@ def test_copies_with_one_thing_changed(box):
     ({"K": numpy.eye(4)}, ValueError, "^K: "),
     ({"K": [1, 2, 3]}, ValueError, "^K: "),
     ({"K": [[600, 1, 320], [0, 600, 240], [0, 0, 1]]}, ValueError, "^K: .*skew"),
+    ({"K": [[600, 0, 320], [0, 600, 240], [0, 0, 2]]}, ValueError, "^K: element 2, 2 is not 1, as in every K"),
     ({"K": K * numpy.nan}, (ValueError, fm.Error), ""),
     ({"width": 0}, fm.Error, "width"),
     ({"width": 100000}, fm.Error, ""),
