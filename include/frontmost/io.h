@@ -95,7 +95,8 @@ void save(const DeepImage& image, const std::string& path, const Execution& exec
 /// Writes text, such as an SVG drawing, with the same care: whole or not at all. \throws Error file_unwritable.
 void save_text(std::string_view text, const std::string& path);
 
-/// Reads a whole file, or "-", which is standard input, such as a list of points; what the bytes are is not looked at.
+/// Reads a whole file, or "-", which is standard input, such as a list of points, without a UTF-8 byte order mark at
+/// its start; the other bytes are not looked at.
 /// \throws Error file_unreadable; limit_exceeded for more than `most_bytes`, which is found out without reading on, so
 /// that a device or a pipe without an end does no harm.
 [[nodiscard]] std::string load_text(const std::string& path, std::uint64_t most_bytes);

@@ -117,8 +117,12 @@ std::string load_text(const std::string& path, std::uint64_t most_bytes) {
   const bool is_input = path == "-";
   const InputFile file =
       is_input ? InputFile::standard_input("standard input", most_bytes) : InputFile::open(path, path, most_bytes);
-  const std::span<const std::byte> bytes = file.bytes();
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  return std::string(text_of(file.bytes()));
+}
+
+std::string_view text_of(std::span<const std::byte> bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
 }
 
 void fail_to_read(const std::string& name, const std::string& reason) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace frontmost {
 
@@ -53,6 +54,9 @@ class InputFile {
   Data data_;
   std::size_t size_ = 0;
 };
+
+/// Bytes as text, without a UTF-8 byte order mark at their start. Every reader of text takes its bytes through this.
+[[nodiscard]] std::string_view text_of(std::span<const std::byte> bytes);
 
 /// \throws Error file_unreadable: "name: reason".
 [[noreturn]] void fail_to_read(const std::string& name, const std::string& reason);

@@ -137,6 +137,11 @@ TEST_F(StreamFormats, PipesThatPromiseTooMuchAreRefusedBeforeMemoryIsAskedFor) {
   }
 }
 
+TEST_F(StreamFormats, AByteOrderMarkIsStreamedAsItIsLoaded) {
+  const std::string text = "\xEF\xBB\xBF" + bytes_of(seed("quads_little.ply"));
+  expect_streams_as_whole({file("marked.ply", text)}, 3);
+}
+
 TEST_F(StreamFormats, TextIsRefusedWithAReason) {
   const std::string ply = file("a.ply",
                                "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"

@@ -93,7 +93,7 @@ std::optional<std::string> conversion_by_suffix(const std::string& path) {
 
 std::optional<std::string> conversion_by_content(Bytes bytes) {
   constexpr std::size_t window = 1024;
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), window));
+  const std::string_view text = text_of(bytes.first(std::min(bytes.size(), window)));
   const auto contains = [&](std::string_view word) { return text.find(word) != std::string_view::npos; };
   if (text.starts_with("ISO-10303-21;"))
     return contains("FILE_SCHEMA(('IFC") ? advice(ifc, "model.ifc") : advice(step, "model.step");

@@ -12,11 +12,10 @@
 namespace frontmost {
 namespace {
 
-/// The first bytes as text, without leading white space, byte order mark and comment lines.
+/// The first bytes as text, without leading white space and comment lines.
 std::string_view first_statement(Bytes bytes) {
   constexpr std::size_t window = 1 << 16;
-  std::string_view text(reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), window));
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  std::string_view text = text_of(bytes.first(std::min(bytes.size(), window)));
   for (;;) {
     text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
     if (!text.starts_with('#')) return text;
@@ -42,10 +41,7 @@ bool looks_like_obj(std::string_view text) {
 }
 
 /// Of JSON. It may stand anywhere, as writers that sort keys put accessors before it.
-bool has_asset(Bytes bytes) {
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  return text.find("\"asset\"") != std::string_view::npos;
-}
+bool has_asset(Bytes bytes) { return text_of(bytes).find("\"asset\"") != std::string_view::npos; }
 
 }  // namespace
 

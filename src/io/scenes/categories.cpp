@@ -62,8 +62,7 @@ std::uint32_t CategoryNames::get(const JsonValue& value) {
 
 void load_categories(std::span<const std::byte> bytes, const std::string& name, Scene& scene) {
   const ModelSource source(name, {});
-  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  const std::string_view text = text_of(bytes);
   const JsonDocument document(text, source);
   refuse_repeated_keys(text, source);
   const JsonValue root(document, source);

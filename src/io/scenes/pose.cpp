@@ -46,7 +46,7 @@ std::vector<double> numbers_in_file(const JsonValue& name) {
   constexpr std::uint64_t most_bytes = 1 << 16;
   constexpr std::string_view separators = " \t\r\n,;[]()";
   const InputFile file = name.source().open(name.to_string(), most_bytes);
-  std::string_view text(reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size());
+  std::string_view text = text_of(file.bytes());
   std::vector<double> numbers;
   for (;;) {
     text.remove_prefix(std::min(text.find_first_not_of(separators), text.size()));

@@ -100,7 +100,6 @@ PlacedModel read_object(const JsonValue& json, const SceneFile& file, CategoryNa
 }  // namespace
 
 SceneFile parse_scene_file(std::string_view text, const ModelSource& source) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   const JsonDocument document(text, source);
   refuse_repeated_keys(text, source);
   const JsonValue root(document, source);

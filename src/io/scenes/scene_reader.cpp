@@ -158,9 +158,7 @@ class PlacedMeshes {
 class SceneReader {
  public:
   SceneReader(Bytes bytes, const ModelSource& source)
-      : file_(parse_scene_file({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, source)),
-        source_(source),
-        text_bytes_(bytes.size()) {}
+      : file_(parse_scene_file(text_of(bytes), source)), source_(source), text_bytes_(bytes.size()) {}
 
   Scene read() {
     scene_.categories = std::move(file_.categories);

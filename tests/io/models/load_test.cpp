@@ -42,12 +42,31 @@ std::string failure(const std::string& path, ErrorCode code) {
 }
 
 TEST(Load, KnowsFormatsByContent) {
-  for (const std::string& text : {one_obj, one_off, one_ply, one_stl, "\xEF\xBB\xBF# bom\n" + one_obj}) {
+  for (const std::string& text : {one_obj, one_off, one_ply, one_stl}) {
     const Scene scene = load_text(text);
     EXPECT_EQ(triangle_count(scene), 1u);
     EXPECT_EQ(scene.name, "model");
     EXPECT_EQ(scene.up, &text == &one_stl || text == one_stl ? Axis::z : Axis::y);
   }
+}
+
+// Editors of Windows write one before every text.
+TEST(Load, AByteOrderMarkIsPassedOver) {
+  const std::string mark = "\xEF\xBB\xBF";
+  test::ByteWriter binary_ply;
+  binary_ply.text = one_ply.substr(0, one_ply.find("0 0 0"));
+  binary_ply.text.replace(binary_ply.text.find("ascii"), 5, "binary_little_endian");
+  binary_ply.put({0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f}).put(std::uint8_t(3)).put({0, 1, 2});
+  for (const std::string& text : {one_obj, one_off, one_ply, one_stl, binary_ply.text}) {
+    const Scene plain = load_text(text), marked = load_text(mark + text);
+    ASSERT_EQ(triangle_count(marked), 1u) << text;
+    EXPECT_EQ(marked.meshes[0].positions, plain.meshes[0].positions);
+    EXPECT_TRUE(marked.warnings.empty());
+  }
+  const std::string path = temporary("marked.txt");
+  std::ofstream(path) << mark + "1 0 0" + mark;
+  EXPECT_EQ(frontmost::load_text(path, 100), "1 0 0" + mark);
+  std::filesystem::remove(path);
 }
 
 TEST(Load, RefusesWhatIsNoModel) {

@@ -195,6 +195,15 @@ TEST(Obj, AGreyBesideATextureDoesNotDarkenItAndAHueDoes) {
   EXPECT_EQ(base_color("Kd 0.5 0.5 0.5\nmap_Kd none.png\n"), glm::vec4(glm::vec3(linear_of_srgb16(32768)), 1));
 }
 
+TEST(Obj, AByteOrderMarkHidesNoStatement) {
+  const Folder folder;
+  folder.write("m.mtl", "\xEF\xBB\xBFnewmtl red\nKd 1 0 0\n");
+  const Scene scene =
+      load(folder.write("model.obj", "\xEF\xBB\xBFmtllib m.mtl\n" + square_corners + "usemtl red\nf 1 2 3\n"));
+  EXPECT_EQ(scene.materials.at(0).base_color, glm::vec4(1, 0, 0, 1));
+  EXPECT_TRUE(scene.warnings.empty());
+}
+
 TEST(Obj, ABrokenLibraryIsAWarning) {
   const Folder folder;
   folder.write("broken.mtl", "newmtl a\nd much\n");

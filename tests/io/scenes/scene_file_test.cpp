@@ -33,7 +33,9 @@ TEST(SceneFile, PlacesModelsInOrderAndSharesTheirMeshes) {
 TEST(SceneFile, PosesAreMatricesByRowsAsThoseOfCameras) {
   SceneFolder folder;
   // A quarter turn about z, and moved: x to y, y to -x.
-  folder.write("pose.txt", "0 -1 0 7; 1 0 0 8\n0 0 1 9\n[0 0 0 1]\n");
+  folder.write("pose.txt",
+               "\xEF\xBB\xBF"
+               "0 -1 0 7; 1 0 0 8\n0 0 1 9\n[0 0 0 1]\n");
   const auto corners = [&](const std::string& pose) {
     return world_corners(folder.load_objects(R"({"model": "corner.off", )" + pose + "}"));
   };

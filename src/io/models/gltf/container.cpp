@@ -20,8 +20,6 @@ std::uint32_t little_endian(Bytes bytes, std::size_t at) {
   return value;
 }
 
-std::string_view text_of(Bytes bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
-
 /// The bytes that the header accounts for.
 Bytes checked_body(Bytes bytes, const ModelSource& source) {
   if (bytes.size() < header_size) source.fail("GLB header", "the file ends within it");

@@ -81,12 +81,8 @@ void check_counts(const JsonValue& root) {
   check(find_lights(root));
 }
 
-std::string_view without_byte_order_mark(std::string_view text) {
-  return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
-}
-
 Scene read_scene(const Container& container, const ModelSource& source) {
-  const JsonDocument document(without_byte_order_mark(container.json), source);
+  const JsonDocument document(container.json, source);
   const JsonValue root(document, source);
   Scene scene;
   check_version(root);

@@ -111,12 +111,12 @@ class HeaderReader {
   /// \n after it could not be told from the first byte of binary rows.
   void end_header() {
     text_.rest();
-    const auto* start = reinterpret_cast<const char*>(bytes_.data());
-    std::size_t at = bytes_.size() - text_.bytes_left();
-    const bool bare_returns = bytes_.size() > 4 && start[3] == '\r' && start[4] != '\n';
-    if (at < bytes_.size() && start[at] == '\r') ++at;
-    if (at < bytes_.size() && start[at] == '\n' && !bare_returns) ++at;
-    header_.size = at;
+    const std::string_view text = text_of(bytes_);
+    std::size_t at = text.size() - text_.bytes_left();
+    const bool bare_returns = text.size() > 4 && text[3] == '\r' && text[4] != '\n';
+    if (at < text.size() && text[at] == '\r') ++at;
+    if (at < text.size() && text[at] == '\n' && !bare_returns) ++at;
+    header_.size = bytes_.size() - text.size() + at;
     header_.line_count = text_.line();
   }
 

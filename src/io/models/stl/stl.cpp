@@ -33,11 +33,11 @@ bool is_text(Bytes bytes) {
 }
 
 bool starts_like_ascii(Bytes bytes) {
-  const auto* text = reinterpret_cast<const char*>(bytes.data());
+  const std::string_view text = text_of(bytes);
   std::size_t i = 0;
-  while (i < bytes.size() && (text[i] == ' ' || text[i] == '\t' || text[i] == '\n' || text[i] == '\r')) ++i;
+  while (i < text.size() && (text[i] == ' ' || text[i] == '\t' || text[i] == '\n' || text[i] == '\r')) ++i;
   const auto is = [&](std::string_view word) {
-    if (bytes.size() - i < word.size()) return false;
+    if (text.size() - i < word.size()) return false;
     for (std::size_t k = 0; k < word.size(); ++k)
       if ((text[i + k] | 0x20) != word[k]) return false;
     return true;

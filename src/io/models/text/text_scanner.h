@@ -23,8 +23,8 @@ class TextScanner {
   enum class Comments : bool { none, hash };
 
   TextScanner(Bytes bytes, const ModelSource& source, Comments comments = Comments::none)
-      : at_(reinterpret_cast<const char*>(bytes.data())),
-        end_(at_ + bytes.size()),
+      : at_(text_of(bytes).data()),
+        end_(at_ + text_of(bytes).size()),
         released_(at_),
         source_(source),
         comments_(comments) {}
