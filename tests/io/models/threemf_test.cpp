@@ -67,8 +67,22 @@ TEST(ThreeMf, TheUnitIsThatOfTheFile) {
     EXPECT_EQ(scene.source.metres_per_unit, metres);
     EXPECT_EQ(scene.meshes[0].positions[1], glm::vec3(1, 0, 0)) << "nothing is scaled";
   }
-  EXPECT_THAT(error_of(model_of(one_object(), R"(unit="parsec")")),
-              HasSubstr(R"(3D/3dmodel.model: line 2: unit "parsec" is not a unit of length)"));
+  const Scene scene = read(model_of(one_object(), R"(unit="mm")"));
+  EXPECT_EQ(scene.source.metres_per_unit, 1e-3);
+  EXPECT_THAT(scene.warnings,
+              ElementsAre(R"(model: 3D/3dmodel.model: line 2: unit "mm" is not a unit of 3MF; millimeter is assumed)"));
+}
+
+TEST(ThreeMf, TheNamespaceMayBeMissing) {
+  const std::string good = model_of(one_object());
+  for (const char* space : {"", R"( xmlns="http://schemas.microsoft.com/3dmanufacturing/2013/01")"}) {
+    const Scene scene =
+        read(replaced(good, R"( xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02")", space));
+    EXPECT_EQ(triangle_count(scene), 4u) << space;
+    EXPECT_THAT(
+        scene.warnings,
+        ElementsAre("model: 3D/3dmodel.model: line 2: model is not in the namespace of 3MF, and read as if it were"));
+  }
 }
 
 // Row vectors: the last three numbers are the way, and a component's transform comes before that of what holds it.
@@ -205,6 +219,47 @@ TEST(ThreeMf, WhatIsNotReadIsTold) {
           R"(line 2: requires the extension http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02, which)"));
 }
 
+// A model without its colours is better than none.
+TEST(ThreeMf, WrongLooksAreWarnings) {
+  const auto warnings = [](const std::string& attributes, const std::string& resources) {
+    const Scene scene = read(model_of(one_object(attributes, resources)));
+    EXPECT_EQ(triangle_count(scene), 4u);
+    return scene.warnings;
+  };
+  const std::string line = "model: 3D/3dmodel.model: line 4: ";
+  EXPECT_THAT(warnings(R"(pid="3" pindex="0")", {}),
+              ElementsAre(line + "triangle 0 of the object: property group 3 does not exist"));
+  EXPECT_THAT(warnings(R"(pid="5" pindex="2")",
+                       R"(<basematerials id="5"><base name="a" displaycolor="#123456"/></basematerials>)"),
+              ElementsAre(line + "triangle 0 of the object: property 2 does not exist, group 5 has 1"));
+  EXPECT_THAT(warnings(R"(pid="five" pindex="first")", {}),
+              ElementsAre(line + "pid \"five\" is not a whole number below 4294967295",
+                          line + "pindex \"first\" is not a whole number below 4294967295"));
+  EXPECT_THAT(
+      warnings(
+          {},
+          R"(<basematerials id="5"/><basematerials id="5"><base name="a" displaycolor="#000000"/></basematerials>)"),
+      ElementsAre(line + "id \"5\" is that of an earlier group, too, which counts"));
+  EXPECT_THAT(warnings(R"(pid="5" pindex="0")", R"(<basematerials><base/></basematerials>)"),
+              ElementsAre(line + "displaycolor is missing",
+                          line + "triangle 0 of the object: property group 5 does not exist"));
+
+  const std::string colors =
+      R"(<basematerials id="5"><base name="a" displaycolor="red"/><base name="b" displaycolor="#12"/><base displaycolor="#FF0000"/></basematerials>)";
+  const Scene scene = read(model_of(one_object(R"(pid="5" pindex="0")", colors)));
+  ASSERT_EQ(scene.materials.size(), 3u);
+  EXPECT_EQ(scene.materials[0].base_color, glm::vec4(1));
+  EXPECT_EQ(scene.materials[2].base_color, glm::vec4(1, 0, 0, 1));
+  EXPECT_THAT(scene.meshes.at(0).material_ids, ElementsAre(0, 0, 0, 0));
+  EXPECT_THAT(scene.warnings, ElementsAre(line + "displaycolor \"red\" is not a colour such as #RRGGBB or #RRGGBBAA"))
+      << "the first of its kind";
+  const Scene corner =
+      read(replaced(model_of(one_object({}, R"(<m:colorgroup id="6"><m:color color="#00FF00"/></m:colorgroup>)")),
+                    R"(<triangle v1="1")", R"(<triangle pid="6" p1="0" p2="x" v1="1")"));
+  EXPECT_EQ(corner.meshes.at(0).colors.values.size(), 2u);
+  EXPECT_THAT(corner.warnings, ElementsAre(HasSubstr("p2 \"x\" is not a whole number")));
+}
+
 TEST(ThreeMf, ErrorsNameThePartAndTheLine) {
   const std::string good = model_of(one_object());
   const auto error = [&](const std::string& from, const std::string& to) { return error_of(replaced(good, from, to)); };
@@ -221,13 +276,6 @@ TEST(ThreeMf, ErrorsNameThePartAndTheLine) {
             "model: 3D/3dmodel.model: line 6: transform \"1 0 0 0 1 0 0 0 1 0 0\" is not twelve finite numbers");
   EXPECT_EQ(error(R"(<item objectid="1")", R"(<item objectid="1" p:path="/no.model")"),
             "model: no.model: there is no such part in the archive");
-  EXPECT_EQ(error(R"(<object id="1")", R"(<object id="1" pid="3" pindex="0")"),
-            "model: 3D/3dmodel.model: line 4: triangle 0 of the object: property group 3 does not exist");
-  EXPECT_THAT(error_of(model_of(one_object(R"(pid="5" pindex="2")", two_materials))),
-              HasSubstr("property 2 does not exist, group 5 has 2"));
-  EXPECT_THAT(error_of(model_of(one_object({}, R"(<basematerials id="5"><base name="a" displaycolor="#12"/>
-</basematerials>)"))),
-              HasSubstr("line 4: displaycolor \"#12\" is not a colour such as #RRGGBB or #RRGGBBAA"));
   EXPECT_EQ(error_of(std::string("<html/>")), "model: 3D/3dmodel.model: is no 3MF model: its first tag is not model");
 }
 

@@ -74,6 +74,7 @@ class PlainMaterials {
 };
 
 /// Gives the meshes of a part the materials and colours that its triangles ask for.
-void apply_properties(const ModelPart& part, const ModelSource& source, PlainMaterials& plain, Scene& scene);
+/// What they ask for and the part does not have is a warning.
+void apply_properties(const ModelPart& part, PlainMaterials& plain, Scene& scene);
 
 }  // namespace frontmost::threemf

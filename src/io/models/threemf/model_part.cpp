@@ -93,11 +93,13 @@ constexpr Rule rules[] = {
     {Tag::build, core, "item", Tag::item},
 };
 
-Tag tag_of(Tag parent, std::string_view name) {
-  for (const Rule& rule : rules)
-    if (rule.parent == parent && name.size() == rule.space.size() + rule.name.size() && name.ends_with(rule.name) &&
-        name.starts_with(rule.space))
-      return rule.tag;
+/// `core_space` is what stands before the names of the core specification's tags in this file.
+Tag tag_of(Tag parent, std::string_view name, std::string_view core_space) {
+  for (const Rule& rule : rules) {
+    if (rule.parent != parent || !name.ends_with(rule.name)) continue;
+    const std::string_view space = rule.space == core ? core_space : rule.space;
+    if (name.size() == space.size() + rule.name.size() && name.starts_with(space)) return rule.tag;
+  }
   return Tag::passed_over;
 }
 
@@ -124,7 +126,8 @@ class ModelPartReader : public XmlPart {
  protected:
   void start(std::string_view name, const Attributes& attributes) override {
     const Tag parent = path_.empty() ? Tag::document : path_.back();
-    const Tag tag = tag_of(parent, name);
+    if (parent == Tag::document) core_space_ = name.substr(0, name.rfind('|') + 1);
+    const Tag tag = tag_of(parent, name, core_space_);
     path_.push_back(tag);
     const TagReader tags(attributes, *this);
     switch (tag) {
@@ -158,7 +161,7 @@ class ModelPartReader : public XmlPart {
   /// Values of a tag, with messages that name it.
   class TagReader {
    public:
-    TagReader(const Attributes& attributes, const ModelPartReader& reader) : attributes_(attributes), reader_(reader) {}
+    TagReader(const Attributes& attributes, ModelPartReader& reader) : attributes_(attributes), reader_(reader) {}
 
     [[nodiscard]] const char* find(std::string_view name) const { return attributes_.find(name); }
     [[nodiscard]] const char* require(std::string_view name) const {
@@ -173,29 +176,49 @@ class ModelPartReader : public XmlPart {
     }
     [[nodiscard]] std::uint32_t index(std::string_view name) const {
       const std::optional<std::uint32_t> value = parse_index(require(name));
-      if (!value) fail(name, "is not a whole number below 4294967295");
+      if (!value) fail(name, no_index_reason);
       return *value;
     }
-    [[nodiscard]] std::uint32_t index_or(std::string_view name, std::uint32_t absent) const {
-      return find(name) == nullptr ? absent : index(name);
+    /// An index that only changes how the model looks: a wrong one is a warning, and counts as absent.
+    [[nodiscard]] std::uint32_t look_index_or(std::string_view name, std::uint32_t absent) const {
+      const std::optional<std::uint32_t> value = find(name) == nullptr ? absent : parse_index(require(name));
+      if (!value) warn(name, no_index_reason);
+      return value.value_or(absent);
     }
     [[noreturn]] void fail(std::string_view name, const std::string& reason) const {
-      reader_.fail(std::string(name) + " " + in_quotes(require(name)) + " " + reason);
+      reader_.fail(complaint(name, reason));
+    }
+    void warn(std::string_view name, const std::string& reason) const {
+      reader_.warn_once(std::string(name), complaint(name, reason));
     }
 
    private:
+    [[nodiscard]] std::string complaint(std::string_view name, const std::string& reason) const {
+      const char* const value = find(name);
+      return std::string(name) + " " + (value == nullptr ? "is missing" : in_quotes(value) + " " + reason);
+    }
+    static constexpr const char* no_index_reason = "is not a whole number below 4294967295";
     const Attributes& attributes_;
-    const ModelPartReader& reader_;
+    ModelPartReader& reader_;
   };
+
+  /// Warns of the first of a kind: a file may hold millions.
+  void warn_once(const std::string& kind, const std::string& what) {
+    if (warned_.insert(kind).second) part_.warnings.push_back(place() + ": " + what);
+  }
 
   void read_model(const TagReader& tags) {
     has_model_ = true;
+    if (core_space_ != core)
+      part_.warnings.push_back(place() + ": model is not in the namespace of 3MF, and read as if it were");
     if (const char* const required = tags.find("requiredextensions")) check_extensions(required);
     if (const char* const unit = tags.find("unit")) {
       const auto known =
           std::find_if(std::begin(units), std::end(units), [&](const Unit& u) { return u.name == unit; });
-      if (known == std::end(units)) tags.fail("unit", "is not a unit of length");
-      part_.metres_per_unit = known->metres;
+      if (known == std::end(units))
+        tags.warn("unit", "is not a unit of 3MF; millimeter is assumed");
+      else
+        part_.metres_per_unit = known->metres;
     }
   }
 
@@ -217,28 +240,30 @@ class ModelPartReader : public XmlPart {
     if (parent != Tag::resources && parent != Tag::object && parent != Tag::mesh) return;
     const std::string local(name.substr(name.rfind('|') + 1));
     if (std::find(std::begin(invisible), std::end(invisible), local) != std::end(invisible)) return;
-    if (passed_over_.insert(local).second) part_.warnings.push_back(place() + ": " + in_quotes(local) + " is not read");
+    warn_once(local, in_quotes(local) + " is not read");
   }
 
   void start_group(PropertyGroup::Kind kind, const TagReader& tags, std::string_view name) {
-    const auto [entry, is_new] = part_.groups.try_emplace(tags.index("id"));
-    if (!is_new) tags.fail("id", "is that of an earlier group, too");
-    group_ = &entry->second;
+    const auto [entry, is_new] = part_.groups.try_emplace(tags.look_index_or("id", no_index));
+    if (!is_new) tags.warn("id", "is that of an earlier group, too, which counts");
+    group_ = is_new ? &entry->second : &repeated_group_;
     group_->kind = kind;
     group_->first_material = std::uint32_t(scene_.materials.size());
     group_->element = name.substr(name.rfind('|') + 1);
   }
 
-  glm::vec4 color(const TagReader& tags, std::string_view name) const {
-    const std::optional<glm::vec4> color = parse_color(tags.require(name));
-    if (!color) tags.fail(name, "is not a colour such as #RRGGBB or #RRGGBBAA");
-    return *color;
+  /// \returns white if the value is no colour.
+  static glm::vec4 color(const TagReader& tags, std::string_view name) {
+    const char* const value = tags.find(name);
+    const std::optional<glm::vec4> color = value == nullptr ? std::nullopt : parse_color(value);
+    if (!color) tags.warn(name, "is not a colour such as #RRGGBB or #RRGGBBAA");
+    return color.value_or(glm::vec4(1));
   }
 
   void read_base(const TagReader& tags) {
     if (scene_.materials.size() >= max_objects) source().fail_limit(place(), "too many materials");
     Material& material = scene_.materials.emplace_back();
-    material.name = name_of(tags.require("name"));
+    if (const char* const name = tags.find("name")) material.name = name_of(name);
     material.base_color = color(tags, "displaycolor");
     if (material.base_color.a < 1) material.alpha = Material::Alpha::blend;
     ++group_->count;
@@ -256,8 +281,8 @@ class ModelPartReader : public XmlPart {
     object_ = &entry->second;
     object_->line = line();
     if (const char* const name = tags.find("name")) object_->name = name_of(name);
-    object_->property.group = tags.index_or("pid", no_index);
-    object_->property.corners.fill(tags.index_or("pindex", no_index));
+    object_->property.group = tags.look_index_or("pid", no_index);
+    object_->property.corners.fill(tags.look_index_or("pindex", no_index));
   }
 
   void start_mesh() {
@@ -294,10 +319,10 @@ class ModelPartReader : public XmlPart {
     mesh.triangles.push_back(corners);
     if (tags.find("pid") == nullptr && tags.find("p1") == nullptr && object_->triangle_properties.empty()) return;
     Property property = object_->property;
-    property.group = tags.index_or("pid", property.group);
+    property.group = tags.look_index_or("pid", property.group);
     if (tags.find("p1") != nullptr) {
-      const std::uint32_t first = tags.index("p1");
-      property.corners = {first, tags.index_or("p2", first), tags.index_or("p3", first)};
+      const std::uint32_t first = tags.look_index_or("p1", no_index);
+      property.corners = {first, tags.look_index_or("p2", first), tags.look_index_or("p3", first)};
     }
     object_->triangle_properties.resize(mesh.triangles.size() - 1, object_->property);
     object_->triangle_properties.push_back(property);
@@ -321,10 +346,12 @@ class ModelPartReader : public XmlPart {
   Scene& scene_;
   ModelPart part_;
   std::map<std::string, std::string> spaces_;  ///< that the first tag declares, by prefix
-  std::set<std::string> passed_over_;
+  std::string core_space_;                     ///< the namespace of the first tag, with a | behind it where it has one
+  std::set<std::string> warned_;               ///< kinds of warnings
   std::vector<Tag> path_;
   bool has_model_ = false;
   PropertyGroup* group_ = nullptr;
+  PropertyGroup repeated_group_;  ///< whose number an earlier one has
   Object* object_ = nullptr;
   std::vector<glm::dvec3> vertices_;  ///< of the mesh that is being read
   std::size_t placed_count_ = 0;

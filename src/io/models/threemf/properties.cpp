@@ -4,7 +4,9 @@
 //
 // A triangle names a group and, of it, one property for all corners or one for each; a triangle without has its
 // object's. Where a colour can be seen through, the plain material is one that blends.
+#include <algorithm>
 #include <unordered_map>
+#include <utility>
 
 #include "io/models/model_source.h"
 #include "io/models/threemf/model.h"
@@ -15,8 +17,13 @@ namespace {
 /// Colours one mesh.
 class Painter {
  public:
-  Painter(const ModelPart& part, const Object& object, const ModelSource& source, PlainMaterials& plain, Scene& scene)
-      : part_(part), object_(object), source_(source), plain_(plain), scene_(scene), mesh_(scene.meshes[object.mesh]) {}
+  Painter(const ModelPart& part, const Object& object, bool& has_warned, PlainMaterials& plain, Scene& scene)
+      : part_(part),
+        object_(object),
+        has_warned_(has_warned),
+        plain_(plain),
+        scene_(scene),
+        mesh_(scene.meshes[object.mesh]) {}
 
   void paint() {
     const std::size_t count = mesh_.triangles.size();
@@ -24,34 +31,36 @@ class Painter {
       const Property& property =
           object_.triangle_properties.empty() ? object_.property : object_.triangle_properties[t];
       if (property.group == no_index) continue;
-      const PropertyGroup& group = group_of(property, t);
-      if (group.kind == PropertyGroup::Kind::unknown || property.corners[0] == no_index) continue;
-      for (const std::uint32_t number : property.corners)
-        if (number >= group.count)
-          fail(t, "property " + std::to_string(number) + " does not exist, group " + std::to_string(property.group) +
-                      " has " + std::to_string(group.count));
-      if (group.kind == PropertyGroup::Kind::materials)
-        set_material(t, group.first_material + property.corners[0]);
+      const PropertyGroup* const group = group_of(property, t);
+      if (group == nullptr || group->kind == PropertyGroup::Kind::unknown || property.corners[0] == no_index) continue;
+      if (const std::uint32_t most = *std::max_element(property.corners.begin(), property.corners.end());
+          most >= group->count)
+        warn(t, "property " + std::to_string(most) + " does not exist, group " + std::to_string(property.group) +
+                    " has " + std::to_string(group->count));
+      else if (group->kind == PropertyGroup::Kind::materials)
+        set_material(t, group->first_material + property.corners[0]);
       else
-        set_colors(t, property, group);
+        set_colors(t, property, *group);
     }
   }
 
  private:
-  const PropertyGroup& group_of(const Property& property, std::size_t triangle) {
+  /// \returns null if the part has no such group.
+  const PropertyGroup* group_of(const Property& property, std::size_t triangle) {
     if (group_ == nullptr || property.group != group_number_) {
       const auto found = part_.groups.find(property.group);
-      if (found == part_.groups.end())
-        fail(triangle, "property group " + std::to_string(property.group) + " does not exist");
-      group_ = &found->second;
+      group_ = found == part_.groups.end() ? nullptr : &found->second;
       group_number_ = property.group;
     }
-    return *group_;
+    if (group_ == nullptr) warn(triangle, "property group " + std::to_string(property.group) + " does not exist");
+    return group_;
   }
 
-  [[noreturn]] void fail(std::size_t triangle, const std::string& reason) const {
-    source_.fail(printable(part_.name) + ": line " + std::to_string(object_.line),
-                 "triangle " + std::to_string(triangle) + " of the object: " + reason);
+  /// Warns once a part: a file may hold millions of such triangles.
+  void warn(std::size_t triangle, const std::string& reason) {
+    if (std::exchange(has_warned_, true)) return;
+    scene_.warnings.push_back(printable(part_.name) + ": line " + std::to_string(object_.line) + ": triangle " +
+                              std::to_string(triangle) + " of the object: " + reason);
   }
 
   void set_material(std::size_t triangle, std::uint32_t material) {
@@ -79,7 +88,7 @@ class Painter {
 
   const ModelPart& part_;
   const Object& object_;
-  const ModelSource& source_;
+  bool& has_warned_;
   PlainMaterials& plain_;
   Scene& scene_;
   Mesh& mesh_;
@@ -100,9 +109,10 @@ std::uint32_t PlainMaterials::get(bool is_see_through, Scene& scene) {
   return number;
 }
 
-void apply_properties(const ModelPart& part, const ModelSource& source, PlainMaterials& plain, Scene& scene) {
+void apply_properties(const ModelPart& part, PlainMaterials& plain, Scene& scene) {
+  bool has_warned = false;
   for (const auto& [id, object] : part.objects)
-    if (object.mesh != no_index) Painter(part, object, source, plain, scene).paint();
+    if (object.mesh != no_index) Painter(part, object, has_warned, plain, scene).paint();
   for (const auto& [id, group] : part.groups)
     if (group.kind == PropertyGroup::Kind::unknown)
       scene.warnings.push_back(printable(part.name) + ": group " + std::to_string(id) + ": colours of a " +

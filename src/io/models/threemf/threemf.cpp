@@ -35,7 +35,7 @@ ModelParts read_parts(const std::string& start, Package& package, const ModelSou
     if (parts.count(name) > 0) continue;
     ModelPart part = read_model_part(name, package, source, scene);
     scene.warnings.insert(scene.warnings.end(), part.warnings.begin(), part.warnings.end());
-    apply_properties(part, source, plain, scene);
+    apply_properties(part, plain, scene);
     for (auto& [id, object] : part.objects) {
       object.triangle_properties = {};
       for (const PlacedObject& component : object.components)
