@@ -28,10 +28,10 @@ bool starts_with_word(std::string_view text, std::string_view word) {
 }
 
 bool looks_like_off(std::string_view text) {
-  // [ST][C][N][4][n]OFF
-  for (const std::string_view prefix : {"ST", "C", "N", "4", "n"})
-    if (text.starts_with(prefix)) text.remove_prefix(prefix.size());
-  return starts_with_word(text, "OFF");
+  // [ST][C][N][4][n]OFF, the prefixes in any order and the first count perhaps without a blank before it.
+  text.remove_prefix(std::min(text.find_first_not_of("STCN4n"), text.size()));
+  constexpr std::string_view followers = " \t\r\n#0123456789";
+  return text.starts_with("OFF") && (text.size() == 3 || followers.find(text[3]) != std::string_view::npos);
 }
 
 bool looks_like_obj(std::string_view text) {

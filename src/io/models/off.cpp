@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// OFF, the text form, with the optional colours, normals and texture coordinates of Geomview: [ST][C][N]OFF.
+// OFF, the text form, with the optional colours, normals and texture coordinates of Geomview: [ST][C][N]OFF, with the
+// prefixes in any order, as other programs write them.
 //
 //   COFF
 //   4 2 0                        vertices, faces, edges (nobody needs the last)
@@ -10,6 +11,7 @@
 // Colours go from 0 to 1 or from 0 to 255, and only the greatest of all tells which. Counts are held against the length
 // of the file before memory is asked for.
 #include <algorithm>
+#include <cmath>
 
 #include "io/models/coordinates.h"
 #include "io/models/mesh_building.h"
@@ -22,9 +24,17 @@ namespace {
 class RawColors {
  public:
   void add(const glm::vec4& color) {
-    for (int k = 0; k < 4; ++k) greatest_ = std::max(greatest_, color[k]);
+    for (int k = 0; k < 4; ++k) {
+      greatest_ = std::max(greatest_, color[k]);
+      least_ = std::min(least_, color[k]);
+    }
+    constexpr float tolerance = 0.01f;
+    may_be_normals_ = may_be_normals_ && std::isnan(color.a) && std::abs(glm::length(glm::vec3(color)) - 1) < tolerance;
+    has_none_ = has_none_ || std::isnan(color.r);
     colors_.push_back(color);
   }
+  /// Whether the numbers can only be colours, also where the keyword does not say so.
+  [[nodiscard]] bool are_unmistakable() const { return least_ >= 0 && !may_be_normals_ && !has_none_; }
   [[nodiscard]] std::size_t size() const { return colors_.size(); }
   std::vector<glm::vec4> take_linear() {
     const float range = greatest_ > 1 ? 255.0f : 1.0f;
@@ -36,7 +46,8 @@ class RawColors {
 
  private:
   std::vector<glm::vec4> colors_;
-  float greatest_ = 0;
+  float greatest_ = 0, least_ = 0;
+  bool may_be_normals_ = true, has_none_ = false;
 };
 
 class OffReader {
@@ -59,7 +70,7 @@ class OffReader {
     TextScanner ahead = text_;
     // The keyword may be left out, by Geomview's own manual; then the file begins with the number of vertices.
     const bool has_keyword = !ahead.integer(count) || !ahead.at_blank();
-    if (has_keyword) read_keyword(text_.word());
+    if (has_keyword) read_keyword();
     if (!text_.to_word() || !text_.integer(count)) text_.fail("the number of vertices was expected");
     vertex_count_ = checked(count, has_normals_ ? 6 : 3, "vertices");
     if (!text_.integer(count)) text_.fail("the number of faces was expected");
@@ -68,20 +79,26 @@ class OffReader {
     if (!text_.at_line_end()) text_.fail("the header holds three counts: vertices, faces, edges");
   }
 
-  void read_keyword(std::string_view word) {
-    const std::string keyword = in_quotes(word);
-    const auto take = [&](std::string_view prefix) {
-      const bool found = word.starts_with(prefix);
-      if (found) word.remove_prefix(prefix.size());
-      return found;
-    };
-    has_texcoords_ = take("ST");
-    has_colors_ = take("C");
-    has_normals_ = take("N");
-    if (word == "4OFF" || word == "nOFF" || word == "4nOFF" || text_.next_is('B'))
+  /// Letter by letter: files of ModelNet have no blank between the keyword and the number of vertices.
+  void read_keyword() {
+    const std::string word = in_quotes(TextScanner(text_).word());
+    bool is_supported = true, is_known = true;
+    while (is_known && !text_.take('O')) {
+      if (text_.take('C')) {
+        has_colors_ = true;
+        is_normal_named_first_ = has_normals_;
+      } else if (text_.take('N')) {
+        has_normals_ = true;
+      } else if (text_.take('4') || text_.take('n')) {
+        is_supported = false;
+      } else {
+        is_known = has_texcoords_ = text_.take('S') && text_.take('T');
+      }
+    }
+    if (!is_known || !text_.take('F') || !text_.take('F')) text_.fail(word + " where \"OFF\" was expected");
+    if (!is_supported || text_.next_is('B'))
       throw Error(ErrorCode::unsupported,
                   source_.name() + ": " + text_.place() + ": four-dimensional and binary OFF files are not supported");
-    if (word != "OFF") text_.fail(keyword + " where \"OFF\" was expected");
   }
 
   /// Before memory is asked for: the rest of the file must have room for the rows, at two characters a value.
@@ -112,8 +129,8 @@ class OffReader {
       glm::dvec3 exact(0);
       const glm::vec3 rounded = three_numbers(exact);
       mesh.positions.push_back(coordinates_(rounded, exact));
-      if (has_normals_) mesh.normals.values.push_back(three_numbers(exact));
-      if (!has_colors_ && !has_texcoords_) continue;
+      glm::vec3 normal(0);
+      if (has_normals_) normal = three_numbers(exact);
       float extra[6];
       int count = rest_of_row(extra);
       if (has_texcoords_) {
@@ -121,15 +138,26 @@ class OffReader {
         count -= 2;
         mesh.texcoords.values.emplace_back(extra[count], 1.0f - extra[count + 1]);
       }
-      if (has_colors_) colors.add(color(extra, count));
+      // MeshLab's NCOFF has the colour first, with an alpha of 255; others have the normal first.
+      if (is_normal_named_first_ && count == 4 && extra[0] > 1 && std::abs(extra[3]) <= 1) {
+        colors.add({normal, extra[0]});
+        normal = {extra[1], extra[2], extra[3]};
+      } else if (has_colors_ || count > 0) {
+        colors.add(color(extra, count));
+      }
+      if (has_normals_) mesh.normals.values.push_back(normal);
     }
-    mesh.colors.values = colors.take_linear();
+    if (has_colors_ || (colors.size() == vertex_count_ && colors.are_unmistakable()))
+      mesh.colors.values = colors.take_linear();
+    else if (colors.size() > 0)
+      scene_.warnings.emplace_back(
+          "vertices: the numbers after the coordinates are not read; C, N or ST before OFF would say what they are");
   }
 
   /// The numbers that are left on the line, at most six.
   int rest_of_row(float (&values)[6]) {
     int count = 0;
-    while (count < 6 && text_.number(values[count])) ++count;
+    while (count < 6 && !text_.at_line_end() && text_.number(values[count])) ++count;
     return count;
   }
   /// Three or four components. Anything else, such as a number in a colour map, is no colour.
@@ -185,7 +213,7 @@ class OffReader {
   const ModelSource& source_;
   Coordinates& coordinates_;
   Scene scene_;
-  bool has_texcoords_ = false, has_colors_ = false, has_normals_ = false;
+  bool has_texcoords_ = false, has_colors_ = false, has_normals_ = false, is_normal_named_first_ = false;
   std::size_t vertex_count_ = 0, face_count_ = 0;
 };
 

@@ -44,6 +44,60 @@ TEST(Off, KeywordAndEdgeCountMayBeMissing) {
   EXPECT_EQ(triangle_count(load_text("3 1\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2", ModelFormat::off)), 1u);
 }
 
+// As in ModelNet40.
+TEST(Off, CountsMayFollowTheKeywordWithoutABlank) {
+  const std::string rows = "3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  for (const char* keyword : {"OFF", "OFF ", "COFF", "NCSTOFF"})
+    EXPECT_THAT(error_of(std::string(keyword) + "1 1 0\n0 0 0  1 0 0  0 1\n3 0 0 1\n", std::nullopt),
+                HasSubstr("vertex 1 is out of range"))
+        << keyword;
+  EXPECT_EQ(triangle_count(load_text("OFF" + rows)), 1u);
+}
+
+TEST(Off, PrefixesComeInAnyOrder) {
+  // Geomview's order of numbers, as Open3D writes them; and that of MeshLab: colour, normal, texture coordinates.
+  const std::string count = " 1 0 0\n";
+  for (const std::string& text :
+       {"CNOFF" + count + "0 0 0  0 0 1  255 0 0 255", "NCOFF" + count + "0 0 0  0 0 1  255 0 0 255",
+        "NCOFF" + count + "0 0 0  255 0 0 255  0 0 1", "NCSTOFF" + count + "0 0 0  255 0 0 255  0 0 1  0.5 0.5",
+        "NCOFF" + count + "0 0 0  0 0 1  1.0 0 0 0.5", "NSTCOFF" + count + "0 0 0  0 0 1  1 0 0  0.5 0.5"}) {
+    const Scene scene = load_text(text);
+    const Mesh& mesh = scene.meshes.at(0);
+    EXPECT_THAT(mesh.normals.values, ElementsAre(glm::vec3(0, 0, 1))) << text;
+    EXPECT_EQ(glm::vec3(mesh.colors.values.at(0)), glm::vec3(1, 0, 0)) << text;
+    EXPECT_EQ(mesh.texcoords.values.size(), text.find("ST") == std::string::npos ? 0u : 1u);
+  }
+  for (const char* keyword : {"4OFF", "nOFF", "4nOFF", "C4OFF", "N4CnOFF"})
+    EXPECT_THAT(error_of(keyword + count + "0 0 0 0\n", std::nullopt), HasSubstr("four-dimensional and binary OFF"))
+        << keyword;
+  for (const char* keyword : {"SOFF", "XOFF", "OF", "COF F", "coff"})
+    EXPECT_THAT(error_of(keyword + count, ModelFormat::off), HasSubstr("where \"OFF\" was expected")) << keyword;
+}
+
+TEST(Off, ColorsThatTheKeywordDoesNotNameAreReadOrTold) {
+  const auto scene_of = [](const std::string& a, const std::string& b) {
+    return load_text("OFF\n2 0 0\n0 0 0 " + a + "\n1 0 0 " + b + "\n");
+  };
+  const auto colors = [&](const std::string& a, const std::string& b) {
+    return scene_of(a, b).meshes.at(0).colors.values;
+  };
+  EXPECT_THAT(colors("255 0 0", "0 255 0 # green"), ElementsAre(glm::vec4(1, 0, 0, 1), glm::vec4(0, 1, 0, 1)));
+  EXPECT_THAT(colors("1 0 0 1", "0 0 1 0.5"), ElementsAre(glm::vec4(1, 0, 0, 1), glm::vec4(0, 0, 1, 0.5f)));
+  EXPECT_TRUE(scene_of("", "").warnings.size() == 1) << "no triangles";
+  // Normals, a texture coordinate, a colour for one vertex alone.
+  for (const auto& [a, b] : {std::pair{"0 0 1", "0 0.6 0.8"},
+                             {"-0.5 0.5 0.5", "1 0 0"},
+                             {"0.5 0.5", "1 1"},
+                             {"255 0 0", ""},
+                             {"1 2 3 4 5", "1 2 3 4 5"}}) {
+    const Scene scene = scene_of(a, b);
+    EXPECT_TRUE(scene.meshes.at(0).colors.empty()) << a;
+    EXPECT_THAT(scene.warnings,
+                testing::Contains(HasSubstr("vertices: the numbers after the coordinates are not read")))
+        << a;
+  }
+}
+
 TEST(Off, ErrorsNameTheLine) {
   const auto error = [](const std::string& text) { return error_of(text, ModelFormat::off); };
   EXPECT_EQ(error("OBJ\n"), "model: line 1: \"OBJ\" where \"OFF\" was expected");
