@@ -137,6 +137,28 @@ TEST_F(StreamFormats, PipesThatPromiseTooMuchAreRefusedBeforeMemoryIsAskedFor) {
   }
 }
 
+TEST_F(StreamFormats, ColorsOfAnStlAreStreamedIfTheyStartEarly) {
+  constexpr std::uint32_t count = 1200;
+  const auto write = [&](std::uint32_t colored) {
+    Mesh mesh;
+    for (std::uint32_t t = 0; t < count; ++t) {
+      for (const glm::vec2 corner : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(0, 1)})
+        mesh.positions.emplace_back(corner.x + float(t % 40), corner.y + float(t / 40), 0);
+      mesh.triangles.emplace_back(3 * t, 3 * t + 1, 3 * t + 2);
+    }
+    std::string text = test::stl_of(mesh);
+    const std::uint16_t red = 0xFC00;
+    std::memcpy(&text[84 + 50 * colored + 48], &red, sizeof red);
+    return text;
+  };
+  for (const std::uint32_t at_once : {1u, 500u}) expect_streams_as_whole({file("early.stl", write(999))}, at_once);
+  const std::string early = write(0);
+  EXPECT_TRUE(fuzz_stream(file("first.stl", early), as_bytes(early), 7)) << "from a pipe, too";
+  const Flat late = read_in_pieces(file("late.stl", write(1000)), {}, 600);
+  EXPECT_TRUE(late.colors.empty());
+  EXPECT_THAT(late.warnings, testing::ElementsAre(testing::HasSubstr("none of the first 1000 triangles has one")));
+}
+
 TEST_F(StreamFormats, AByteOrderMarkIsStreamedAsItIsLoaded) {
   const std::string text = "\xEF\xBB\xBF" + bytes_of(seed("quads_little.ply"));
   expect_streams_as_whole({file("marked.ply", text)}, 3);

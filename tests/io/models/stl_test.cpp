@@ -10,7 +10,7 @@ using test::load_text;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// Triangle k has its corners at (k, 0, 0), (k + 1, 0, 0), (k, 1, 0).
+/// Triangle k has its corners at (k, 0, 0), (k + 1, 0, 0), (k, 1, 0), and k in its last two bytes.
 std::string binary_stl(const std::string& header, std::uint32_t promised, std::uint32_t count) {
   ByteWriter out;
   out.text = header;
@@ -112,6 +112,42 @@ TEST(Stl, FacetsBehindASolidBelongToNone) {
   EXPECT_EQ(triangle_count(load_text(solid, ModelFormat::stl)), 1u);
   EXPECT_EQ(error_of(solid + facet("0"), ModelFormat::stl), "model: line 10: \"facet\" outside a solid");
   EXPECT_EQ(triangle_count(load_text(solid + "solid two\n" + facet("0") + "endsolid\n", ModelFormat::stl)), 2u);
+}
+
+/// The colours of triangles with these last two bytes.
+std::vector<glm::vec4> colors_of(const std::string& header, const std::vector<std::uint16_t>& attributes) {
+  std::string text = binary_stl(header, std::uint32_t(attributes.size()), std::uint32_t(attributes.size()));
+  for (std::size_t i = 0; i < attributes.size(); ++i) std::memcpy(&text[84 + 50 * i + 48], &attributes[i], 2);
+  const Scene scene = load_text(text, ModelFormat::stl);
+  EXPECT_TRUE(scene.warnings.empty());
+  const Mesh& mesh = scene.meshes.at(0);
+  std::vector<glm::vec4> colors;
+  if (mesh.colors.empty()) return colors;
+  for (std::uint32_t t = 0; t < attributes.size(); ++t) {
+    const glm::uvec3& corners = mesh.corners(mesh.colors, t);
+    EXPECT_TRUE(corners.x == corners.y && corners.x == corners.z);
+    colors.push_back(mesh.colors.values.at(corners.x));
+  }
+  return colors;
+}
+
+TEST(Stl, AttributesAreColors) {
+  const glm::vec4 white(1), red(1, 0, 0, 1), green(0, 1, 0, 1), blue(0, 0, 1, 1), black(0, 0, 0, 1);
+  EXPECT_THAT(colors_of("VisCAM", {0xFC00, 0x83E0, 0x801F, 0x8000, 0x7FFF, 0}),
+              ElementsAre(red, green, blue, black, white, white));
+  const std::string magics("COLOR=\0\xff\0\xff,MATERIAL=", 20);
+  EXPECT_THAT(colors_of(magics, {0x8000, 0x001F, 0x7C00, 0xFFFF, 0}), ElementsAre(green, red, blue, green, black));
+  EXPECT_THAT(colors_of("part COLOR=" + std::string("\0\0\xff\0", 4), {0x8000}), ElementsAre(blue));
+  const std::string meshlab("COLOR=\x7f\x7f\x7f MATERIAL=", 19);
+  EXPECT_THAT(colors_of(meshlab, {0x801F, 0xFC00}), ElementsAre(red, blue));
+  for (const std::string& header : {std::string("a part"), magics, meshlab})
+    EXPECT_TRUE(colors_of(header, {0, 0, 0}).empty());
+  EXPECT_TRUE(colors_of("a part", {1, 0x7FFF, 17}).empty()) << "no colours, whatever they are";
+  EXPECT_TRUE(colors_of(std::string(74, ' ') + "COLOR=", {1}).empty()) << "the header ends before the colour";
+  // In a later block of the reader.
+  std::vector<std::uint16_t> many(20'001, 0);
+  many.back() = 0x801F;
+  EXPECT_THAT(colors_of("a part", many), testing::AllOf(testing::SizeIs(many.size()), testing::Contains(blue)));
 }
 
 TEST(Stl, HeadersSayNothingOfPlaces) {

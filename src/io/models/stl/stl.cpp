@@ -3,24 +3,26 @@
 //
 //   byte   0                    80        84                134               184
 //          | anything, 80 bytes | count   | triangle 0      | triangle 1      | ...
-//                                         normal, three corners (12 floats), 2 bytes of anybody's
+//                                         normal, three corners (12 floats), 2 bytes: perhaps a colour
 //
 // Neither the header nor the count can be trusted: text may stand in the one, and writers that cannot go back leave the
 // other open. What decides is the size of the file.
 #include "io/models/stl/stl.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "io/models/bytes.h"
+#include "io/models/mesh_building.h"
 
 namespace frontmost {
 namespace {
 
 constexpr std::size_t header_size = 80, prelude_size = stl_prelude_size, record_size = stl_record_size;
-constexpr std::size_t normal_size = 12, corners_size = 36;
+constexpr std::size_t normal_size = 12, corners_size = 36, attribute_offset = normal_size + corners_size;
 // Every triangle has three vertices of its own, which 32-bit indices must reach.
 constexpr std::uint64_t max_triangles = no_index / 3;
 
@@ -61,7 +63,44 @@ void copy_records(Bytes records, std::size_t first, Mesh& mesh) {
       }
 }
 
+/// Fills the colours of triangles from number `first` on. The mesh has room for them.
+void color_records(Bytes records, const StlColors& colors, std::size_t first, Mesh& mesh) {
+  for (std::size_t t = first; !records.empty(); ++t, records = records.subspan(record_size)) {
+    mesh.colors.values[t] = colors.of(records);
+    mesh.colors.triangles[t] = glm::uvec3(std::uint32_t(t));
+  }
+}
+
+std::uint16_t attribute_of(Bytes record) {
+  return read_value<std::uint16_t>(record.data() + attribute_offset, Endian::little);
+}
+
 }  // namespace
+
+StlColors::StlColors(Bytes prelude) {
+  constexpr std::string_view key = "COLOR=";
+  const std::string_view header(reinterpret_cast<const char*>(prelude.data()), header_size);
+  const std::size_t at = header.find(key), end = at + key.size() + 3;
+  if (at == std::string_view::npos || end > header_size) return;
+  for (int k = 0; k < 3; ++k) part_[k] = float(static_cast<unsigned char>(header[end - 3 + std::size_t(k)])) / 255;
+  part_ = linear_color(part_);
+  is_red_lowest_ = true;
+  is_own_by_bit_ = header.substr(end).starts_with(" MATERIAL=");  // MeshLab
+}
+
+bool StlColors::are_in(Bytes records) const {
+  std::uint32_t bits = 0;
+  for (; records.size() >= record_size; records = records.subspan(record_size)) bits |= attribute_of(records);
+  return (bits & (is_own_by_bit_ ? 0x8000 : 0xFFFF)) != 0;
+}
+
+glm::vec4 StlColors::of(Bytes record) const {
+  const std::uint16_t bits = attribute_of(record);
+  if (((bits & 0x8000) != 0) != is_own_by_bit_) return part_;
+  const auto channel = [&](int lowest) { return float((bits >> lowest) & 31) / 31; };
+  const int red = is_red_lowest_ ? 0 : 10;
+  return linear_color({channel(red), channel(5), channel(10 - red), 1});
+}
 
 std::uint64_t stl_promised_count(Bytes prelude) {
   return read_value<std::uint32_t>(prelude.data() + header_size, Endian::little);
@@ -98,7 +137,7 @@ std::string stl_header_name(Bytes prelude) {
   return name;
 }
 
-void append_stl_records(Bytes records, Mesh& mesh) {
+void append_stl_records(Bytes records, const StlColors* colors, Mesh& mesh) {
   const std::size_t first = mesh.triangles.size(), count = records.size() / record_size;
   // In blocks small enough that growing (which writes zeros) and filling meet in the cache.
   constexpr std::size_t block = 8192;
@@ -106,7 +145,12 @@ void append_stl_records(Bytes records, Mesh& mesh) {
     const std::size_t end = std::min(count, begin + block);
     mesh.positions.resize(3 * (first + end));
     mesh.triangles.resize(first + end);
-    copy_records(records.subspan(begin * record_size, (end - begin) * record_size), first + begin, mesh);
+    const Bytes part = records.subspan(begin * record_size, (end - begin) * record_size);
+    copy_records(part, first + begin, mesh);
+    if (colors == nullptr) continue;
+    mesh.colors.values.resize(first + end);
+    mesh.colors.triangles.resize(first + end);
+    color_records(part, *colors, first + begin, mesh);
   }
 }
 
@@ -150,11 +194,25 @@ Scene read_binary_stl(Bytes bytes, const ModelSource& source) {
   mesh.positions.resize(3 * count);
   mesh.triangles.resize(count);
   constexpr std::size_t block = 1u << 14;
+  const StlColors colors(bytes);
+  std::atomic<bool> has_colors = false;
+  const auto records_of = [&](std::size_t begin, std::size_t end) {
+    return bytes.subspan(prelude_size + begin * record_size, (end - begin) * record_size);
+  };
   parallel_for(source.execution(), count, block, [&](std::size_t begin, std::size_t end) {
-    const Bytes records = bytes.subspan(prelude_size + begin * record_size, (end - begin) * record_size);
+    const Bytes records = records_of(begin, end);
     copy_records(records, begin, mesh);
+    if (colors.are_in(records)) has_colors = true;
     source.release(records);
   });
+  if (has_colors) {
+    mesh.colors.values.resize(count);
+    mesh.colors.triangles.resize(count);
+    parallel_for(source.execution(), count, block, [&](std::size_t begin, std::size_t end) {
+      color_records(records_of(begin, end), colors, begin, mesh);
+      source.release(records_of(begin, end));
+    });
+  }
   scene.instances.push_back({.name = mesh.name, .mesh = 0});
   scene.meshes.push_back(std::move(mesh));
   return scene;

@@ -34,7 +34,25 @@ inline constexpr std::size_t stl_prelude_size = 84, stl_record_size = 50;
                                               std::vector<std::string>& warnings);
 /// The solid's name, if the header is text. Exporters often put "solid NAME" there.
 [[nodiscard]] std::string stl_header_name(Bytes prelude);
-/// Appends the triangles of whole records.
-void append_stl_records(Bytes records, Mesh& mesh);
+
+/// The colours of triangles, which two groups of programs keep in the two bytes behind each, 5 bits a channel:
+/// - VisCAM and SolidView: with bit 15 set a triangle has a colour, blue in the lowest bits;
+/// - Magics: the header has "COLOR=" and the colour of the whole part. With bit 15 clear a triangle has a colour of its
+///   own, red in the lowest bits. MeshLab writes such files with bit 15 set.
+class StlColors {
+ public:
+  explicit StlColors(Bytes prelude);
+  /// Whether any of these records has a colour. Without one the bytes are all 0, or mean something else.
+  [[nodiscard]] bool are_in(Bytes records) const;
+  /// Linear and opaque: some writers leave alpha open. White for a triangle that has none.
+  [[nodiscard]] glm::vec4 of(Bytes record) const;
+
+ private:
+  glm::vec4 part_{1};
+  bool is_red_lowest_ = false, is_own_by_bit_ = true;
+};
+
+/// Appends the triangles of whole records, with colours where `colors` is not null.
+void append_stl_records(Bytes records, const StlColors* colors, Mesh& mesh);
 
 }  // namespace frontmost

@@ -2,7 +2,8 @@
 // Binary STL, piece by piece: records of 50 bytes.
 //
 // A record has all of its triangle, so a piece is so many records, and nothing of what came before is needed. How many
-// there are is the header's to say, or the size's; of a pipe whose header leaves it open the end says it.
+// there are is the header's to say, or the size's; of a pipe whose header leaves it open the end says it. Whether
+// triangles have colours must be known at the first piece, so the first thousand records say it.
 #include <algorithm>
 
 #include "base/parallel.h"
@@ -12,6 +13,8 @@
 
 namespace frontmost {
 namespace {
+
+constexpr std::uint64_t color_window = 1000;  // which a warning names
 
 class StlStream final : public ModelStream {
  public:
@@ -26,6 +29,8 @@ class StlStream final : public ModelStream {
       count_ = is_open_ ? std::numeric_limits<std::uint64_t>::max() : promised_;
     }
     if (count_ == 0) return;
+    const std::uint64_t window = std::min({count_, color_window, std::uint64_t(left_.size() / stl_record_size)});
+    has_colors_ = colors_.are_in(left_.first(std::size_t(window) * stl_record_size));
     Mesh& mesh = scene_.meshes.emplace_back();
     mesh.name = stl_header_name(start_);
     scene_.instances.push_back({.name = mesh.name, .mesh = 0});
@@ -56,6 +61,10 @@ class StlStream final : public ModelStream {
     piece.used = std::size_t(got) * stl_record_size;
     piece.triangle_count = got;
     if (got == 0) warn_of_the_rest();
+    if (!has_colors_ && !has_warned_of_colors_ && colors_.are_in(Bytes(piece.bytes).first(piece.used))) {
+      has_warned_of_colors_ = true;
+      scene_.warnings.emplace_back("colours: not read in a stream, because none of the first 1000 triangles has one");
+    }
     return got > 0;
   }
 
@@ -72,7 +81,7 @@ class StlStream final : public ModelStream {
   }
 
   void parse(StreamPiece& piece) const override {
-    append_stl_records(Bytes(piece.bytes).first(piece.used), piece.mesh);
+    append_stl_records(Bytes(piece.bytes).first(piece.used), has_colors_ ? &colors_ : nullptr, piece.mesh);
   }
 
  private:
@@ -121,12 +130,15 @@ class StlStream final : public ModelStream {
   Bytes left_ = Bytes(start_).subspan(stl_prelude_size);  ///< of the start, not yet in a piece
   std::uint64_t promised_ = 0, count_ = 0, next_ = 0;
   bool is_open_ = false;  ///< a pipe whose header does not say how many triangles follow
+  StlColors colors_{start_};
+  bool has_colors_ = false, has_warned_of_colors_ = false;
 };
 
 }  // namespace
 
 std::unique_ptr<ModelStream> open_stl_stream(StreamStart start, const ModelSource& source) {
   const std::optional<std::uint64_t> size = start.size();
+  start.extend(stl_prelude_size + color_window * stl_record_size);
   return std::make_unique<StlStream>(std::move(start), size, source);
 }
 
