@@ -93,10 +93,12 @@ void validate(const Page& page);
 /// DXF (AutoCAD release 12), lines only: LINE, POLYLINE, ARC, CIRCLE and POINT with line types, y up from the page's
 /// lower left corner; it has no widths, and no groups: each is a layer named by layer and group, "2_VISIBLE-WHEEL", or
 /// all of a layer are one where there are a thousand or more. Line types and colours are those of layers: that of the
-/// pen, and where it is black one by the digit that the page's layer begins its name with. $INSUNITS says millimetres.
-/// Such names keep letters, digits and - alone, 31 at most. JSON: all of the page, as it is. Characters that a format
-/// does not allow are replaced in names. Memory is constant beside the page's own. \throws Error as validate() does;
-/// bad_argument without a format; unsupported for fills in DXF; file_unwritable.
+/// pen, and where it is black one by the digit that the page's layer begins its name with. Line types are HIDDEN,
+/// CENTER and PHANTOM for one, two and more dashes in a period, with "2" or "X2" behind the name of much shorter or
+/// longer ones; pens that share a name have the dashes of the first. $INSUNITS says millimetres. Such names keep
+/// letters, digits and - alone, 31 at most. JSON: all of the page, as it is. Characters that a format does not allow
+/// are replaced in names. Memory is constant beside the page's own. \throws Error as validate() does; bad_argument
+/// without a format; unsupported for fills in DXF; file_unwritable.
 void save(const Page& page, const std::string& path, std::optional<PageFormat> format = std::nullopt,
           const Execution& execution = {});
 

@@ -182,7 +182,7 @@ TEST_F(LinesCommand, SheetsHaveCentreLines) {
   EXPECT_EQ(layer_named(drawn("box.obj --up +z --views front,top"), "6 centre lines"), nullptr);
   succeed("lines " + sheet + " -o peg.svg -o peg.dxf -o peg.pdf");
   EXPECT_THAT(read("peg.svg"), HasSubstr("inkscape:label=\"6 centre lines\""));
-  EXPECT_THAT(read("peg.dxf"), HasSubstr("6_CENTRE_LINES"));
+  EXPECT_THAT(read("peg.dxf"), HasSubstr("\n6_CENTRE_LINES\n70\n0\n62\n1\n6\nCENTER\n"));
   EXPECT_THAT(read("peg.pdf"), HasSubstr("<FEFF0036002000630065006E007400720065"));  // "6 centre", in UTF-16
   expect_failure("lines peg.obj -o a.svg --centre-lines yes", 2, "--centre-lines: perspective has none");
 }
@@ -416,7 +416,7 @@ TEST_F(LinesCommand, PlottersGetDashesAsLines) {
   EXPECT_GE(group["paths"].size(), 31u);
   EXPECT_LE(group["paths"].size(), 33u);
   // Programs know line types.
-  EXPECT_THAT(read("plot.dxf"), HasSubstr("DASHED1"));
+  EXPECT_THAT(read("plot.dxf"), HasSubstr("\nHIDDEN\n"));
 }
 
 TEST_F(LinesCommand, EachEdgeOfACubeOnce) {

@@ -14,7 +14,9 @@
 // change their direction.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "io/drawings/arc.h"
@@ -131,8 +133,7 @@ class DxfWriter {
   DxfWriter(const Page& page, OutputFile& file, const Execution& execution)
       : page_(page), layers_(page), sink_(file), out_(sink_), progress_(std::span(&page, 1), execution) {
     for (const PageLayer& layer : page.layers)
-      for (const PageGroup& group : layer.groups)
-        if (type_of(group.pen) == 0) dashes_.push_back(group.pen.dashes);
+      for (const PageGroup& group : layer.groups) types_.try_emplace(type_name(group.pen), group.pen.dashes);
   }
 
   void write() {
@@ -195,15 +196,18 @@ class DxfWriter {
     end_section();
   }
 
-  /// -1: without gaps; otherwise 1 + the place in dashes_, or 0 where it is not there.
-  [[nodiscard]] int type_of(const Pen& pen) const {
-    if (pen.dashes.empty()) return -1;
-    const auto found = std::find(dashes_.begin(), dashes_.end(), pen.dashes);
-    return found == dashes_.end() ? 0 : int(found - dashes_.begin()) + 1;
-  }
+  /// Some readers know line types by their standard names alone, and draw all others solid. A name says how many dashes
+  /// a period has; "2" and "X2" behind it stand for a period about half or twice as long as that of the first such pen.
   [[nodiscard]] std::string type_name(const Pen& pen) const {
-    const int type = type_of(pen);
-    return type < 0 ? "CONTINUOUS" : "DASHED" + std::to_string(type);
+    constexpr const char* names[] = {"CONTINUOUS", "HIDDEN", "CENTER", "PHANTOM"};
+    const std::string name = names[std::min(pen.dashes.size() / 2, std::size(names) - 1)];
+    const auto first = types_.find(name);
+    if (first == types_.end() || pen.dashes.empty()) return name;
+    const double ratio = period_of(pen.dashes) / period_of(first->second);
+    return ratio < 0.7 ? name + "2" : ratio > 1.4 ? name + "X2" : name;
+  }
+  [[nodiscard]] static double period_of(const std::vector<double>& dashes) {
+    return std::accumulate(dashes.begin(), dashes.end(), 0.0);
   }
 
   void line_type(const std::string& name, const std::vector<double>& dashes) {
@@ -213,9 +217,7 @@ class DxfWriter {
     text(3, dashes.empty() ? "Solid line" : "Dashed, in millimetres");
     integer(72, 'A');
     integer(73, int(dashes.size()));
-    double length = 0;
-    for (const double dash : dashes) length += dash;
-    number(40, length);
+    number(40, period_of(dashes));
     for (std::size_t i = 0; i < dashes.size(); ++i) number(49, i % 2 == 0 ? dashes[i] : -dashes[i]);
   }
 
@@ -227,9 +229,8 @@ class DxfWriter {
 
   void write_tables() {
     section("TABLES");
-    table("LTYPE", dashes_.size() + 1);
-    line_type("CONTINUOUS", {});
-    for (std::size_t i = 0; i < dashes_.size(); ++i) line_type("DASHED" + std::to_string(i + 1), dashes_[i]);
+    table("LTYPE", types_.size());
+    for (const auto& [name, dashes] : types_) line_type(name, dashes);
     text(0, "ENDTAB");
     table("LAYER", layers_.list.size());
     for (const Layer& layer : layers_.list) {
@@ -278,12 +279,15 @@ class DxfWriter {
     }
   }
 
-  /// DXF counts degrees anticlockwise with y up: the other way round, and from the other end.
+  /// DXF counts degrees anticlockwise with y up: the other way round, and from the other end. An ARC between two equal
+  /// angles would be nothing to some readers, so a whole turn is a CIRCLE, whether its path is closed or not.
   void write_arc(const Arc& arc, bool is_closed, const std::string& layer) {
-    entity(is_closed ? "CIRCLE" : "ARC", layer);
+    constexpr double whole = 6.28318529;  // short of it by less than the last digit of an angle
+    const bool is_whole = is_closed || std::abs(arc.turn) > whole;
+    entity(is_whole ? "CIRCLE" : "ARC", layer);
     point(arc.centre);
     number(40, arc.radius);
-    if (is_closed) return;
+    if (is_whole) return;
     const double low = arc.turn > 0 ? arc.begin : arc.begin + arc.turn, high = low + std::abs(arc.turn);
     const auto degrees = [](double angle) {
       const double turned = std::fmod(-angle * 57.295779513082321, 360);
@@ -314,7 +318,7 @@ class DxfWriter {
   FileSink sink_;
   PageText out_;
   WritingProgress progress_;
-  std::vector<std::vector<double>> dashes_;
+  std::map<std::string, std::vector<double>> types_{{"CONTINUOUS", {}}};  ///< line types: the dashes of each name
   /// Of the group that is written, where it differs from its layer.
   std::string own_type_;
   int own_color_ = by_layer;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What each format holds, to the character where it matters.
+#include <gmock/gmock.h>
+
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -364,7 +366,7 @@ TEST(Dxf, SaysItsUnitAndLeavesColoursAndLineTypesToLayers) {
   Page page = sample_page();
   const std::string dxf = saved(page, PageFormat::dxf);
   EXPECT_TRUE(has(dxf, "9\n$INSUNITS\n70\n4\n"));
-  EXPECT_TRUE(has(dxf, "0\nLAYER\n2\n1_HIDDEN-AXLE\n70\n0\n62\n6\n6\nDASHED1\n"));       // black, as hidden lines are
+  EXPECT_TRUE(has(dxf, "0\nLAYER\n2\n1_HIDDEN-AXLE\n70\n0\n62\n6\n6\nHIDDEN\n"));        // black, as hidden lines are
   EXPECT_TRUE(has(dxf, "0\nLAYER\n2\n2_VISIBLE-WHEEL\n70\n0\n62\n1\n6\nCONTINUOUS\n"));  // red, as its pen is
   EXPECT_TRUE(has(dxf, "0\nLAYER\n2\n2_VISIBLE-RING\n70\n0\n62\n7\n6\nCONTINUOUS\n"));
   for (const Entity& entity : entities_of(dxf)) {
@@ -379,14 +381,53 @@ TEST(Dxf, SaysItsUnitAndLeavesColoursAndLineTypesToLayers) {
   EXPECT_EQ(all[5].codes.count(62), 0u);
   EXPECT_EQ(all[11].text(8), "2_VISIBLE");
   EXPECT_EQ(all[11].text(62), "7");
-  EXPECT_EQ(all[11].text(6), "DASHED2");
+  EXPECT_EQ(all[11].text(6), "HIDDEN2");
 }
 
 TEST(Dxf, LineTypesHaveTheirDashesAndGaps) {
   // Length 3.75: a dash is positive and a gap negative.
   EXPECT_TRUE(has(saved(sample_page(), PageFormat::dxf),
-                  "2\nDASHED1\n70\n0\n3\nDashed, in millimetres\n72\n65\n73\n2\n40\n3.75\n49\n3\n49\n-0.75\n"))
+                  "2\nHIDDEN\n70\n0\n3\nDashed, in millimetres\n72\n65\n73\n2\n40\n3.75\n49\n3\n49\n-0.75\n"))
       << saved(sample_page(), PageFormat::dxf);
+}
+
+// Some readers draw line types solid whose names they do not know.
+TEST(Dxf, LineTypesHaveStandardNames) {
+  Page page{100, 100, "", {{"6 centre lines", {}}}};
+  const std::vector<std::vector<double>> patterns = {
+      {6, 1, 0.1, 1}, {6.2, 1, 0.1, 1}, {3, 1, 0.1, 1}, {20, 1, 0.1, 1}, {3, 0.75}, {9, 1, 3, 1, 3, 1}, {},
+      {3.1, 0.75}};
+  for (const std::vector<double>& dashes : patterns) {
+    page.layers[0].groups.push_back({"", {0.25, {}, dashes}});
+    page.layers[0].groups.back().add(std::vector<glm::dvec2>{{1, 1}, {90, 1}}, false);
+  }
+  std::vector<std::string> names;
+  const std::string dxf = saved(page, PageFormat::dxf);
+  for (const Entity& entity : entities_of(dxf))
+    if (entity.kind == "LINE") names.push_back(entity.codes.count(6) > 0 ? entity.text(6) : "BYLAYER");
+  EXPECT_THAT(names, testing::ElementsAre("BYLAYER", "BYLAYER", "CENTER2", "CENTERX2", "HIDDEN", "PHANTOM",
+                                          "CONTINUOUS", "HIDDEN"));
+  EXPECT_TRUE(has(dxf, "0\nLAYER\n2\n6_CENTRE_LINES\n70\n0\n62\n1\n6\nCENTER\n"));
+  EXPECT_EQ(count(dxf, "0\nLTYPE\n"), 6u);
+}
+
+// The circle of a diameter sign is two half circles, one after the other, of a path that is not closed.
+TEST(Dxf, AWholeTurnIsACircle) {
+  Page page{100, 100, "", {{"7 dimensions", {{"", {}}}}}};
+  PageGroup& sign = page.layers[0].groups[0];
+  sign.points = {{60, 30}, {40, 30}, {60, 30}};
+  sign.bulges = {1, 1, 0};
+  for (const double direction : {1.0, -1.0}) {
+    sign.bulges[0] = sign.bulges[1] = direction;
+    sign.paths = {{0, 3, false}};
+    const std::vector<Entity> all = entities_of(saved(page, PageFormat::dxf));
+    EXPECT_EQ(all[0].kind, "CIRCLE");
+    EXPECT_EQ(all[0].number(10), 50);
+    EXPECT_EQ(all[0].number(40), 10);
+    EXPECT_EQ(all[0].codes.count(50), 0u);
+    sign.paths = {{0, 2, false}};
+    EXPECT_EQ(entities_of(saved(page, PageFormat::dxf))[0].kind, "ARC");
+  }
 }
 
 TEST(Dxf, BulgesTurnTheOtherWayRound) {
