@@ -134,8 +134,13 @@ void warn_of(const Sheet& sheet, const Surfaces& surfaces, const Settings& setti
   if (sheet.is_empty) warn({"nothing is seen; the drawing is empty"});
   if (const auto hint = unit_hint(settings.drawing, surfaces, sheet.scale.value_or(0))) warn({*hint});
   warn(open_outlines(sheet));
-  if (sheet.left_out == 0) return;
-  warn({fmt::format("{} diameters had no room; take a larger --page or fewer views", sheet.left_out)});
+  if (sheet.left_out > 0)
+    warn({fmt::format("{} diameters had no room (a sheet has 64 at most); take a larger --page or fewer views",
+                      sheet.left_out)});
+  if (sheet.undrawn > 0)
+    warn(
+        {fmt::format("cylinders without a diameter, because no line of theirs is drawn: {}{}", sheet.undrawn,
+                     settings.drawing.sheet.hidden == HiddenLines::none ? "; --hidden dashed draws hidden ones" : "")});
 }
 
 /// Draws one model, and writes its own files; its page goes to `pages` where some file holds all. \returns the report.

@@ -153,6 +153,7 @@ struct Sheet {
   std::size_t left_out = 0;      ///< diameters for which there was no room
 };
 
+  std::size_t undrawn = 0;       ///< diameters of cylinders that are seen along their axes, but not drawn: hidden
 /// \throws Error bad_argument for values out of range and what excludes or needs another; the message begins with the
 /// name of the field.
 void validate(const SheetOptions& options);

@@ -1023,6 +1023,12 @@ class Sheet:
     def size(self) -> tuple[float, float]:
         """Width and height in millimetres."""
 
+    @property
+    def left_out(self) -> int:
+        """Diameters for which there was no room."""
+    @property
+    def undrawn(self) -> int:
+        """Diameters of cylinders that are seen along their axes, but not drawn: hidden."""
 class Figure:
     """A picture of polygons, to be filled one after the other, which shows itself in notebooks."""
     def save(self, path: Path) -> None:

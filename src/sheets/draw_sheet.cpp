@@ -75,13 +75,12 @@ void draw_in_places(std::vector<PlannedView>& views, const SheetOptions& options
 }
 
 /// Puts dimensions on the page, clear of its rim, or of the frame and title block that it is to have, and of `marks`.
-/// \returns how many diameters there was no room for.
-std::size_t add_dimensions(Page& page, const std::vector<PlannedView>& views, const std::vector<PageBox>& marks,
-                           const Scene& scene, const SheetOptions& options) {
+void add_dimensions(Sheet& sheet, const std::vector<PlannedView>& views, const std::vector<PageBox>& marks,
+                    const Scene& scene, const SheetOptions& options) {
   DimensionOptions numbers;
   numbers.numbers_per_unit = millimetres_per_unit(options, scene) / (options.in_inches ? inch : 1);
   numbers.decimals = options.in_inches ? 3 : 2;
-  const glm::dvec2 size(page.width, page.height);
+  const glm::dvec2 size(sheet.page.width, sheet.page.height);
   PageBox area{glm::dvec2(page_rim), size - page_rim};
   std::vector<PageBox> taken = marks;
   if (options.title_block) {
@@ -90,8 +89,9 @@ std::size_t add_dimensions(Page& page, const std::vector<PlannedView>& views, co
     taken.push_back({space.block, space.high});
   }
   Dimensions all = place_dimensions(dimensioned_views(views), area, taken, numbers);
-  if (all.count > 0) page.layers.push_back(std::move(all.layer));
-  return all.left_out;
+  if (all.count > 0) sheet.page.layers.push_back(std::move(all.layer));
+  sheet.left_out = all.left_out;
+  sheet.undrawn = all.undrawn;
 }
 
 void add_frame(Page& page, const SheetOptions& options, std::optional<double> scale) {
@@ -122,7 +122,7 @@ Sheet finish(std::vector<PlannedView> views, const Surfaces& surfaces, const She
   if (views[0].drawing.view.projection.orthographic) sheet.scale = plan.scale;
   SectionMarks marks = section_marks_of(views, pens.centre);
   if (!marks.layer.groups.empty()) sheet.page.layers.push_back(std::move(marks.layer));
-  if (options.dimensions) sheet.left_out = add_dimensions(sheet.page, views, marks.boxes, surfaces.scene(), options);
+  if (options.dimensions) add_dimensions(sheet, views, marks.boxes, surfaces.scene(), options);
   if (options.title_block) add_frame(sheet.page, options, sheet.scale);
   for (PlannedView& view : views) sheet.views.push_back(std::move(view));
   return sheet;

@@ -209,6 +209,15 @@ TEST_F(LinesCommand, SheetsHaveDimensionsWhereTheyAreAskedFor) {
   succeed("lines " + sheet + "--dimensions -o peg.dxf --plot");
   EXPECT_THAT(read("peg.dxf"), HasSubstr("7_DIMENSIONS"));
   expect_failure("lines peg.obj -o a.svg --dimensions", 2, "--dimensions needs --views");
+  // A peg that is hidden by another.
+  write("core.obj", peg_obj(5, 20));
+  write("pegs.json",
+        R"({"up": "z", "objects": [{"model": "peg.obj"}, {"model": "core.obj", "translation": [0, 0, 9]}]})");
+  const std::string pegs = "lines pegs.json --views front,top --dimensions -o a.svg";
+  EXPECT_THAT(
+      succeed(pegs).err,
+      HasSubstr("warning: cylinders without a diameter, because no line of theirs is drawn: 1; --hidden dashed"));
+  EXPECT_EQ(succeed(pegs + " --hidden dashed").err, "");
 }
 
 TEST_F(LinesCommand, ViewsStandInLine) {

@@ -167,6 +167,48 @@ TEST(Rounds, HalvesCountAndFilletsDoNot) {
   EXPECT_TRUE(rounds_of({.sides = 18, .turn = pi / 2}).rounds.empty());
 }
 
+// A wall of one quad from rim to rim, whose every triangle has a neighbour that is no part of it.
+TEST(Rounds, WallsEndAtFilletsAndSlightChamfers) {
+  struct Case {
+    double radius, fillet;
+    int sides, steps;         // of the fillet; none: a chamfer of 15 degrees
+    double turned_first = 0;  // steps: 0 where the fillet begins along the wall
+  };
+  for (const Case& c : {Case{8, 1.5, 48, 6}, Case{8, 1.5, 24, 5}, Case{50, 3, 24, 8}, Case{50, 0.5, 24, 10},
+                        Case{5, 4, 64, 20}, Case{8, 3, 36, 0}, Case{8, 1.5, 36, 6, 0.5}}) {
+    SCOPED_TRACE(testing::Message() << c.radius << ' ' << c.fillet << ' ' << c.sides << ' ' << c.steps);
+    std::vector<glm::dvec2> upper{{c.radius, 5}};
+    const double first = c.steps > 0 ? c.turned_first * pi / 2 / c.steps : 0;
+    for (int i = 1; i <= c.steps; ++i) {
+      const double angle = first + (pi / 2 - first) * i / c.steps;
+      upper.emplace_back(c.radius + c.fillet * (std::cos(first) - std::cos(angle)), 5 + c.fillet * std::sin(angle));
+    }
+    if (c.steps == 0) upper.emplace_back(c.radius + c.fillet * std::tan(pi / 12), 5 + c.fillet);
+    upper.emplace_back(2 * c.radius, 5 + c.fillet);
+    std::vector<glm::dvec2> profile(upper.rbegin(), upper.rend());
+    for (const glm::dvec2& p : upper) profile.emplace_back(p.x, -p.y);
+    Mesh mesh;
+    add_revolved(mesh, profile, c.sides, false, anywhere());
+    const std::vector<Round> walls = of_kind(rounds_of(scene_of(mesh)), RoundKind::cylinder);
+    ASSERT_EQ(walls.size(), 1u);
+    EXPECT_NEAR(walls[0].radius, c.radius, 3e-5);
+    EXPECT_NEAR(walls[0].turn, 2 * pi, 1e-6);
+  }
+}
+
+// A sphere or torus of an odd number of rings has one whose rims are of one radius.
+TEST(Rounds, RingsOfWhatIsBentBothWaysAreNoWalls) {
+  for (const int rings : {19, 25, 61}) {
+    Mesh sphere, torus;
+    add_revolved(sphere, bow(0, 8, -pi / 2, pi / 2, rings), 48, false, anywhere());
+    std::vector<glm::dvec2> profile = bow(15, 5, pi / rings, 2 * pi + pi / rings, rings);
+    profile.pop_back();
+    add_revolved(torus, profile, 48, true, anywhere());
+    for (const Mesh* const mesh : {&sphere, &torus})
+      EXPECT_TRUE(of_kind(rounds_of(scene_of(*mesh)), RoundKind::cylinder).empty()) << rings;
+  }
+}
+
 TEST(Rounds, WhatIsRoundAboutAnAxisIsOne) {
   const glm::dmat4 place = anywhere();
   struct Case {

@@ -44,6 +44,29 @@ void add_peg(Mesh& mesh, const glm::vec3& foot, float radius, float height, int 
   }
 }
 
+/// A ring of square section, 10 high, with bevels at the bore as wide as high: one of 45 degrees, or rounded by six.
+void add_ring(Mesh& mesh, const glm::dvec3& foot, double bore, double bevel, bool is_rounded) {
+  constexpr int sides = 36;
+  std::vector<glm::dvec2> profile = {{bore + 5, 0}};
+  for (const int end : {0, 1})
+    for (int i = 0; i <= 6; i += is_rounded ? 1 : 6) {
+      const double angle = std::numbers::pi / 12 * (end == 0 ? 6 - i : i), out = bevel * (1 - std::cos(angle));
+      const double up = bevel * (1 - std::sin(angle));
+      profile.emplace_back(bore + out, end == 0 ? up : 10 - up);
+    }
+  profile.emplace_back(bore + 5, 10);
+  const auto at = [&](std::size_t i, int k) {
+    const double angle = 2 * std::numbers::pi * (k % sides) / sides + 0.03;
+    const glm::dvec2& p = profile[i % profile.size()];
+    return glm::vec3(foot + glm::dvec3(p.x * std::cos(angle), p.x * std::sin(angle), p.y));
+  };
+  for (std::size_t i = 0; i < profile.size(); ++i)
+    for (int k = 0; k < sides; ++k) {
+      add_triangle(mesh, at(i, k), at(i + 1, k + 1), at(i, k + 1));
+      add_triangle(mesh, at(i, k), at(i + 1, k), at(i + 1, k + 1));
+    }
+}
+
 /// Views of a scene one below the other at full scale on a large page.
 class DimensionsTest : public testing::Test {
  protected:
@@ -188,6 +211,38 @@ TEST_F(DimensionsTest, DiametersOfOneSizeAreOne) {
   PageGroup expected;
   for (const char* const number : {"100", "60", "18", "4\u00d7\u230012", "\u23006"}) add_text(expected, number, {0, 0});
   EXPECT_EQ(all.layer.groups.at(1).points.size(), expected.points.size());
+}
+
+TEST_F(DimensionsTest, BoresHaveDiametersWhateverTheirRims) {
+  for (const bool is_rounded : {false, true}) {
+    Mesh mesh;
+    for (int i = 0; i < 8; ++i) add_ring(mesh, {25 * (i % 4), 25 * (i / 4), 0}, 4, 1, is_rounded);
+    scene_ = scene_of(mesh);
+    draw({NamedView::front, NamedView::top});
+    const Dimensions all = dimensioned();
+    PageGroup expected;
+    for (const char* const number : {"93", "43", "10", "8\u00d7\u23008", "8\u00d7\u230018"})
+      add_text(expected, number, {0, 0});
+    EXPECT_EQ(all.layer.groups.at(1).points.size(), expected.points.size()) << is_rounded;
+    EXPECT_EQ(all.left_out + all.undrawn, 0u) << is_rounded;
+  }
+}
+
+TEST_F(DimensionsTest, WhatIsNotDrawnIsCounted) {
+  Mesh mesh;
+  add_box(mesh, {100, 60, 20});
+  add_peg(mesh, {20, 30, 5}, 6, 8);
+  add_peg(mesh, {20, 30, 15}, 6, 2);  // the same once more
+  add_peg(mesh, {60, 30, 5}, 3, 8);
+  scene_ = scene_of(mesh);
+  draw({NamedView::front, NamedView::top});
+  EXPECT_EQ(dimensioned().undrawn, 0u);
+  std::vector<DimensionedView> seen = views();
+  for (DimensionedView& view : seen) view.with_hidden = false;
+  const Dimensions all = place_dimensions(seen, {{0, 0}, {1000, 1000}}, {});
+  EXPECT_EQ(all.count, 3u);
+  EXPECT_EQ(all.undrawn, 2u);
+  EXPECT_EQ(all.left_out, 0u);
 }
 
 TEST_F(DimensionsTest, NothingLiesOnANumber) {

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kSeedsPerPart = 4096;
 constexpr double kFlat = 0.9999999;  // cosine of 0.026 degrees: the two halves of a plane
-constexpr double kUpright = 0.01;    // the cosine of normals with the axis, of neighbours of two
+constexpr double kUpright = 0.01;    // radians from the axis, of neighbours of two
 constexpr double kRoughlyUpright = 0.1;
 constexpr double kFacesOut = 0.9;       // the cosine of normals with the direction from the axis
 constexpr double kWholeSagitta = 1.05;  // of that of the mean side
@@ -43,20 +43,54 @@ class Seeds {
     if (other == no_index || other < seed.triangle || !mesh_.is_smooth(seed.triangle, seed.side)) return false;
     if (glm::dot(mesh_.normals[seed.triangle], mesh_.normals[other]) > kFlat) return false;
     const glm::dvec3 side = mesh_.corner(seed.triangle, (seed.side + 1) % 3) - mesh_.corner(seed.triangle, seed.side);
-    const glm::dvec3 axis = side / glm::length(side);
-    return goes_on(seed.triangle, other, axis) && goes_on(other, seed.triangle, axis);
+    return goes_on(seed.triangle, other, side) && goes_on(other, seed.triangle, side);
   }
 
  private:
-  /// Beyond `triangle`, seen from `before`, there is a smooth neighbour, and all such stand upright.
-  [[nodiscard]] bool goes_on(std::uint32_t triangle, std::uint32_t before, const glm::dvec3& axis) const {
+  /// Beyond `triangle`, seen from `before`, there is a smooth neighbour that stands upright, and no other one that is
+  /// part of a surface bent both ways.
+  [[nodiscard]] bool goes_on(std::uint32_t triangle, std::uint32_t before, const glm::dvec3& side) const {
+    const double length = glm::length(side);
+    const glm::dvec3 axis = side / length;
     bool has_one = false;
     for (int k = 0; k < 3; ++k) {
-      if (mesh_.across[triangle][k] == before || !mesh_.is_smooth(triangle, k)) continue;
-      if (std::abs(glm::dot(mesh_.normals[mesh_.across[triangle][k]], axis)) > kUpright) return false;
-      has_one = true;
+      const std::uint32_t next = mesh_.across[triangle][k];
+      if (next == before || !mesh_.is_smooth(triangle, k)) continue;
+      if (std::abs(lean(next, axis)) <= kUpright)
+        has_one = true;
+      else if (2 * height(next, axis) > length && leans_on(next, axis))
+        return false;
     }
     return has_one;
+  }
+
+  /// Whether the next ring leans twice as much as the triangle does. So it is beside a ring of a sphere or torus, which
+  /// is no cylinder, and no higher than the next. A fillet leans by half a step where it begins at a wall and by three
+  /// halves next; a slight chamfer leans on as it did.
+  [[nodiscard]] bool leans_on(std::uint32_t triangle, const glm::dvec3& axis) const {
+    const double first = lean(triangle, axis);
+    const auto is_twice = [&](std::uint32_t t) { return std::abs(lean(t, axis) / first - 2) < 0.4; };
+    for (int k = 0; k < 3; ++k) {
+      if (!mesh_.is_smooth(triangle, k)) continue;
+      const std::uint32_t next = mesh_.across[triangle][k];
+      if (is_twice(next)) return true;
+      // The next ring may begin behind the other half of the triangle's quad.
+      for (int j = 0; j < 3; ++j)
+        if (mesh_.is_smooth(next, j) && is_twice(mesh_.across[next][j])) return true;
+    }
+    return false;
+  }
+
+  /// How far a triangle reaches along the axis.
+  [[nodiscard]] double height(std::uint32_t triangle, const glm::dvec3& axis) const {
+    double at[3];
+    for (int k = 0; k < 3; ++k) at[k] = glm::dot(mesh_.corner(triangle, k), axis);
+    return *std::max_element(at, at + 3) - *std::min_element(at, at + 3);
+  }
+
+  /// The angle of a triangle with the axis; 0 where it stands upright.
+  [[nodiscard]] double lean(std::uint32_t triangle, const glm::dvec3& axis) const {
+    return std::asin(std::clamp(glm::dot(mesh_.normals[triangle], axis), -1.0, 1.0));
   }
 
   const SmoothMesh& mesh_;
@@ -157,6 +191,8 @@ class WallGrower {
   bool fit() {
     std::vector<glm::dvec3> normals, points;
     for (const std::uint32_t t : triangles_) {
+      // The first ring of a fillet may lie within the slack of the radius, and is no part of it.
+      if (std::abs(glm::dot(mesh_.normals[t], tube_.axis)) > kUpright) continue;
       normals.push_back(mesh_.normals[t]);
       for (int k = 0; k < 3; ++k) points.push_back(mesh_.corner(t, k));
     }

@@ -119,7 +119,12 @@ std::optional<Diameters::Leader> Diameters::best_leader(const Group& group, std:
   return best;
 }
 
+void Diameters::count_undrawn(const MeasuredView& view, Dimensions& all) {
+  for (const Round* const round : view.undrawn()) all.undrawn += round->turn >= least_turn && take(*round);
+}
+
 void Diameters::add(const MeasuredView& view, Dimensions& all) {
+  all.left_out += view.circles().size() - std::min(view.circles().size(), most_circles);
   for (const Group& group : groups_of(view)) {
     const std::size_t count = group.circles.size();
     const std::string text = count > 1 ? std::to_string(count) + "\u00d7" + group.text : group.text;

@@ -52,6 +52,7 @@ struct Dimensions {
   PageLayer layer{"7 dimensions"};  ///< a group of lines and one of texts, neither with a name
   std::size_t count = 0;            ///< of dimensions on the page
   std::size_t left_out = 0;         ///< diameters for which there was no room
+  std::size_t undrawn = 0;          ///< diameters of cylinders that are seen along their axes, but not drawn
 };
 
 /// Overall sizes as overall_sizes_of() shares them out, and diameters of circles and cylinders that are seen along

@@ -42,8 +42,10 @@ void MeasuredView::find_circles() {
     if (round.kind == RoundKind::revolved) continue;  // its largest circle is no edge
     if (glm::length(glm::cross(round.axis, view_.drawing->view.forward())) > square) continue;
     const double radius = round.radius * millimetres_;
-    if (lengths[i] * view_.sheet->millimetres_per_pixel < least_drawn * round.turn * radius) continue;
-    circles_.push_back({&round, on_page(round.from), radius});
+    if (lengths[i] * view_.sheet->millimetres_per_pixel >= least_drawn * round.turn * radius)
+      circles_.push_back({&round, on_page(round.from), radius});
+    else if (round.kind == RoundKind::cylinder)
+      undrawn_.push_back(&round);
   }
 }
 

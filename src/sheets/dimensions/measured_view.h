@@ -34,6 +34,8 @@ class MeasuredView {
   [[nodiscard]] double foot_of_end(int axis, double end) const;
   /// Those that are seen along their axes and are drawn, at least by a fifth.
   [[nodiscard]] const std::vector<SeenCircle>& circles() const { return circles_; }
+  /// Cylinders that are seen along their axes, and of which less is drawn.
+  [[nodiscard]] const std::vector<const Round*>& undrawn() const { return undrawn_; }
   [[nodiscard]] glm::dvec2 on_page(const glm::dvec3& point) const;
 
  private:
@@ -44,6 +46,7 @@ class MeasuredView {
   bool is_empty_ = true;
   PageBox box_;
   std::vector<SeenCircle> circles_;
+  std::vector<const Round*> undrawn_;
 };
 
 }  // namespace frontmost::detail
