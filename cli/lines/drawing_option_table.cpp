@@ -64,12 +64,6 @@ void set_scale(Settings& s, const Given& g) {
   if (g.text != "fit" && g.text != "standard") sheet.scale = scale_from(g.text);
 }
 
-void set_unit(Settings& s, const Given& g) {
-  const LengthUnit& unit = length_units[g.choice<int>()];
-  s.drawing.sheet.millimetres_per_unit = unit.millimetres;
-  s.drawing.sheet.in_inches = std::string_view(unit.name) == "in";
-}
-
 glm::dvec3 light_from(std::string_view text) {
   const std::vector<double> parts = parse_numbers(text, 3, {-1e6, 1e6});
   const glm::dvec3 light(parts[0], parts[1], parts[2]);
@@ -141,8 +135,14 @@ constexpr Option drawing_options[] = {
      "of ISO 5455 that fits. For parallel projection; standard by default with --views, fit otherwise.",
      Group::drawing, for_lines, set_scale},
     {"unit", 0, "mm|cm|m|in",
-     "What the model's unit of length is; by default what a 3MF says, m for glTF, mm for others.", Group::drawing,
-     for_lines, set_unit},
+     "What the numbers of the model's file are; by default what a 3MF says, m for glTF, mm for others.", Group::drawing,
+     for_lines,
+     [](Settings& s, const Given& g) {
+       s.drawing.sheet.millimetres_per_unit = length_units[g.choice<int>()].millimetres;
+     }},
+    {"dimension-unit", 0, "mm|in",
+     "What the sheet states its dimensions in; by default in for models in inches, mm for others.", Group::drawing,
+     for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.in_inches = g.choice<int>() == 1; }},
     {"views", 0, "V,V,...",
      "Several views on one sheet, in parallel projection, aligned, at one scale: front, back, left, right, top, "
      "bottom, "
@@ -162,7 +162,7 @@ constexpr Option drawing_options[] = {
      [](Settings& s, const Given& g) { s.drawing.sheet.centre_lines = g.choice<int>() == 0; }},
     {"dimensions", 0, "",
      "Sizes on sheets of --views: the whole width, height and depth, and the diameters of circles, each once, in the "
-     "unit of the drawing.",
+     "--dimension-unit.",
      Group::drawing, for_lines, [](Settings& s, const Given&) { s.drawing.sheet.dimensions = true; }},
     {"plot", 0, "",
      "For pen plotters: long strokes whatever they belong to, ordered to spare lifts of the pen; dashes are lines of "

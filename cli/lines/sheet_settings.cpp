@@ -5,6 +5,7 @@
 #include <frontmost/report.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "cli/failure.h"
 #include "cli/option.h"
@@ -86,8 +87,16 @@ bool is_framed(const ViewSettings& s) {
 
 std::optional<std::string> unit_hint(const DrawingSettings& s, const Surfaces& surfaces, double scale) {
   const SceneSource& source = surfaces.scene().source;
+  if (s.sheet.millimetres_per_unit) {
+    const double own = 1000 * source.metres_per_unit.value_or(*s.sheet.millimetres_per_unit / 1000);
+    if (std::abs(own / *s.sheet.millimetres_per_unit - 1) < 1e-9) return std::nullopt;
+    return fmt::format(
+        "--unit overrules the file, which says that its unit is {:.6g} mm; --dimension-unit is for what "
+        "the sheet states",
+        own);
+  }
   const bool is_sheet = s.is_sheet() || s.has_frame() || s.sheet.standard_scale.value_or(false);
-  if (!is_sheet || s.sheet.scale || s.sheet.millimetres_per_unit || source.metres_per_unit) return std::nullopt;
+  if (!is_sheet || s.sheet.scale || source.metres_per_unit) return std::nullopt;
   if (!source.format || !(scale > largest_usual)) return std::nullopt;
   const std::vector<double> likely = likely_units(surfaces.bounds());
   std::string named;

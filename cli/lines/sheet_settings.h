@@ -22,9 +22,9 @@ struct LengthUnit {
 /// In the order of --unit.
 inline constexpr LengthUnit length_units[] = {{"mm", 1}, {"cm", 10}, {"m", 1000}, {"in", 25.4}};
 
-/// What to say where a sheet's scale, which nobody asked for, is larger than any that drawings have (50:1, ISO 5455),
-/// because the file says no unit and millimetres were taken: the units that are likely for a model of this size.
-/// None where all is well, or nothing else is likely.
+/// What to say where --unit overrules the file. And where a sheet's scale, which nobody asked for, is larger than any
+/// that drawings have (50:1, ISO 5455), because the file says no unit and millimetres were taken: the units that are
+/// likely for a model of this size. None where all is well, or nothing else is likely.
 [[nodiscard]] std::optional<std::string> unit_hint(const DrawingSettings& settings, const Surfaces& surfaces,
                                                    double scale);
 

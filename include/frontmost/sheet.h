@@ -110,9 +110,11 @@ struct SheetOptions {
   std::optional<double> scale = std::nullopt;
   /// That largest scale is one of ISO 5455. None: on sheets of named views.
   std::optional<bool> standard_scale = std::nullopt;
-  /// What the model's unit of length is. None: as SceneSource says, else 1.
+  /// What the model's numbers are, in place of what its file says. None: as SceneSource says, else 1.
   std::optional<double> millimetres_per_unit = std::nullopt;
-  bool in_inches = false;  ///< what dimensions and the title block say: inches with three decimals
+  /// What dimensions and the title block say: inches with three decimals, or millimetres with two. None: inches where
+  /// the model's numbers are inches.
+  std::optional<bool> in_inches = std::nullopt;
   /// A frame with this title block. Scale, unit, paper and projection are filled in.
   std::optional<TitleBlock> title_block = std::nullopt;
 
@@ -151,9 +153,9 @@ struct Sheet {
   std::vector<DrawnView> views;  ///< whole ones, then sections, in their order
   bool is_empty = false;         ///< no line of the model is on it
   std::size_t left_out = 0;      ///< diameters for which there was no room
+  std::size_t undrawn = 0;       ///< diameters of cylinders that are seen along their axes, but not drawn: hidden
 };
 
-  std::size_t undrawn = 0;       ///< diameters of cylinders that are seen along their axes, but not drawn: hidden
 /// \throws Error bad_argument for values out of range and what excludes or needs another; the message begins with the
 /// name of the field.
 void validate(const SheetOptions& options);

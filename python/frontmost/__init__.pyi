@@ -327,15 +327,16 @@ class Surfaces:
                    centre_lines: bool | None = None, plot: bool = False,
                    page: str | tuple[float, float] | None = None, margin: float = 10.0, scale: float | None = None,
                    standard_scale: bool | None = None, millimetres_per_unit: float | None = None,
-                   in_inches: bool = False, title_block: dict[str, str] | None = None, hatch: float | None = None,
+                   in_inches: bool | None = None, title_block: dict[str, str] | None = None, hatch: float | None = None,
                    stipple: float | None = None, hatch_angle: float = 45.0, light: ArrayLike | None = None,
                    casts_shadows: bool = True, keeps_picture: bool = False, threads: int = 0,
                    progress: Progress = None) -> Sheet:
         """A drawing on paper: named views to scale, or one View, with hidden lines removed.
 
         sections: directions, or (direction, place of the plane in the coordinates of the file). page: "a4", "a3-landscape",
-        ..., or (width, height). pen, margin, hatch, stipple, shortest_stroke: millimetres. scale: paper to model. title_block:
-        title, number, author, date, owner. hatch_angle, crease_angle: degrees. plot: strokes in an order for plotters.
+        ..., or (width, height). pen, margin, hatch, stipple, shortest_stroke: millimetres. scale: paper to model.
+        millimetres_per_unit: what the model's numbers are, in place of what its file says. in_inches: what dimensions say,
+        True by default for models in inches. title_block: title, number, author, date, owner. hatch_angle, crease_angle: degrees. plot: strokes in an order for plotters.
         Raises Error: bad_argument, limit_exceeded.
         """
     def draw_figure(self, view: View, *, tolerance: float = 6.0, visible_only: bool = True,
@@ -1022,13 +1023,13 @@ class Sheet:
     @property
     def size(self) -> tuple[float, float]:
         """Width and height in millimetres."""
-
     @property
     def left_out(self) -> int:
         """Diameters for which there was no room."""
     @property
     def undrawn(self) -> int:
         """Diameters of cylinders that are seen along their axes, but not drawn: hidden."""
+
 class Figure:
     """A picture of polygons, to be filled one after the other, which shows itself in notebooks."""
     def save(self, path: Path) -> None:

@@ -20,7 +20,6 @@ namespace {
 using namespace detail;
 
 constexpr double gap_between_views = 15;  // millimetres
-constexpr double inch = 25.4;             // millimetres
 constexpr double page_rim = 5;            // millimetres, in which printers do not print
 
 std::vector<DimensionedView> dimensioned_views(const std::vector<PlannedView>& views) {
@@ -78,8 +77,9 @@ void draw_in_places(std::vector<PlannedView>& views, const SheetOptions& options
 void add_dimensions(Sheet& sheet, const std::vector<PlannedView>& views, const std::vector<PageBox>& marks,
                     const Scene& scene, const SheetOptions& options) {
   DimensionOptions numbers;
-  numbers.numbers_per_unit = millimetres_per_unit(options, scene) / (options.in_inches ? inch : 1);
-  numbers.decimals = options.in_inches ? 3 : 2;
+  const bool in_inches = is_in_inches(options, scene);
+  numbers.numbers_per_unit = millimetres_per_unit(options, scene) / (in_inches ? inch : 1);
+  numbers.decimals = in_inches ? 3 : 2;
   const glm::dvec2 size(sheet.page.width, sheet.page.height);
   PageBox area{glm::dvec2(page_rim), size - page_rim};
   std::vector<PageBox> taken = marks;
@@ -94,11 +94,11 @@ void add_dimensions(Sheet& sheet, const std::vector<PlannedView>& views, const s
   sheet.undrawn = all.undrawn;
 }
 
-void add_frame(Page& page, const SheetOptions& options, std::optional<double> scale) {
+void add_frame(Page& page, const SheetOptions& options, const Scene& scene, std::optional<double> scale) {
   TitleBlock block = *options.title_block;
   page.title = block.title;
   block.scale = scale ? scale_text(*scale) : "\xE2\x80\x93";  // a dash: in perspective nothing has one
-  block.unit = options.in_inches ? "in" : "mm";
+  block.unit = is_in_inches(options, scene) ? "in" : "mm";
   block.paper = paper_name({page.width, page.height});
   block.projection = has_named_views(options) ? options.projection : ProjectionMethod::none;
   page.layers.push_back(draw_frame({page.width, page.height}, block));
@@ -123,7 +123,7 @@ Sheet finish(std::vector<PlannedView> views, const Surfaces& surfaces, const She
   SectionMarks marks = section_marks_of(views, pens.centre);
   if (!marks.layer.groups.empty()) sheet.page.layers.push_back(std::move(marks.layer));
   if (options.dimensions) add_dimensions(sheet, views, marks.boxes, surfaces.scene(), options);
-  if (options.title_block) add_frame(sheet.page, options, sheet.scale);
+  if (options.title_block) add_frame(sheet.page, options, surfaces.scene(), sheet.scale);
   for (PlannedView& view : views) sheet.views.push_back(std::move(view));
   return sheet;
 }

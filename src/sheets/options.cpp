@@ -110,6 +110,10 @@ double millimetres_per_unit(const SheetOptions& options, const Scene& scene) {
   return options.millimetres_per_unit.value_or(1000 * scene.source.metres_per_unit.value_or(0.001));
 }
 
+bool is_in_inches(const SheetOptions& options, const Scene& scene) {
+  return options.in_inches.value_or(std::abs(millimetres_per_unit(options, scene) - inch) < 1e-9);
+}
+
 LinePens pens_of(const SheetOptions& options) {
   LinePens pens = options.style == DrawingStyle::figure ? figure_pens() : technical_pens();
   if (options.hidden == HiddenLines::thin) pens.hidden = thin_pen();

@@ -236,6 +236,40 @@ TEST_F(SheetsCommand, DxfLayersAreNamedByTheFileAndNotByTheHeaderOfAnStl) {
   EXPECT_THAT(read("knob.svg"), HasSubstr("inkscape:label=\"knob\""));
 }
 
+TEST_F(SheetsCommand, WhatTheFilesNumbersAreIsNotWhatTheSheetStates) {
+  const auto placed = [](const std::string& metres) {
+    return R"({"up": "z", "metres_per_unit": )" + metres + R"(, "objects": [{"model": "box.obj"}]})";
+  };
+  write("metres.json", placed("1"));
+  write("inches.json", placed("0.0254"));
+  struct Case {
+    const char *options, *unit, *width;  // of a box that is 40 wide
+    bool overrules = false;
+  };
+  const Case cases[] = {{"box.obj", "mm", "40"},
+                        {"box.obj --dimension-unit in", "in", "1.575"},
+                        {"box.obj --unit in", "in", "40"},
+                        {"box.obj --unit in --dimension-unit mm", "mm", "1016"},
+                        {"metres.json", "mm", "40000"},
+                        {"metres.json --dimension-unit in", "in", "1574.803"},
+                        {"metres.json --unit m", "mm", "40000"},
+                        {"metres.json --unit mm", "mm", "40", true},
+                        {"inches.json", "in", "40"},
+                        {"inches.json --unit in --dimension-unit mm", "mm", "1016"},
+                        {"inches.json --unit mm", "mm", "40", true}};
+  for (const Case& c : cases) {
+    const std::string said =
+        succeed(std::string("lines ") + c.options + " --up +z --views front --dimensions --frame -o drawing.json").err;
+    const json page = json::parse(read("drawing.json"));
+    EXPECT_TRUE(says(page, c.unit, 2.5)) << c.options;
+    EXPECT_TRUE(holds_text(points_of(page, "7 dimensions"), c.width, 3.5)) << c.options;
+    if (c.overrules)
+      EXPECT_THAT(said, HasSubstr("warning: --unit overrules the file, which says that its unit is ")) << c.options;
+    else
+      EXPECT_EQ(said, "") << c.options;
+  }
+}
+
 TEST_F(SheetsCommand, AnAbsurdScaleNamesTheUnitsThatWouldMakeSense) {
   write("metres.obj", pitted_box_obj(0.001));
   const std::string sheet = "lines metres.obj --up +z --views front,top,left ";
