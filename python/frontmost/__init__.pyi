@@ -169,8 +169,8 @@ class Scene:
     def inspect(self, *, threads: int = 0, progress: Progress = None) -> dict[str, Any]:
         """What is in it, and what is odd: names and numbers as `frontmost info --json` has them.
 
-        triangles, stored_triangles (of meshes), vertices, bounds (2, 3) in the coordinates of the file, rounding; odd: counts of
-        triangles that are not finite, degenerate or there twice, and of edges on a boundary, of more than two triangles, or
+        triangles, stored_triangles (of meshes), vertices, bounds (2, 3) in the coordinates of the file, area of all triangles,
+        volume of the objects whose meshes have a genus (None without any), rounding; odd: counts of triangles that are not finite, degenerate or there twice, and of edges on a boundary, of more than two triangles, or
         wound both ways; meshes: these and pieces, shells, closed, genus; materials; cameras: position, direction, up,
         orthographic, and vertical, the field of view in degrees or the height.
         """
@@ -384,9 +384,10 @@ class Surfaces:
 
         towards: what lies on this side is taken away. at: the plane's coordinate along that axis, also of a minus axis.
         """
-    def move(self, object: int | str, pose: ArrayLike, *, threads: int = 0) -> None:
-        """Gives an object another pose, 4x4, in the scene and here. What was visible before is so no more: its pictures
-        and reports raise Error. Raises Error where other surfaces show the same scene."""
+    def move(self, object: int | str | Any, pose: ArrayLike, *, threads: int = 0) -> None:
+        """Gives an object another pose, 4x4, in the scene and here; or each object of a list the pose of its place in
+        (n, 4, 4). What was visible before is so no more: its pictures and reports raise Error. Raises Error where other
+        surfaces show the same scene."""
     @property
     def scene(self) -> Scene:
         """What they are of."""
@@ -513,10 +514,16 @@ def save(image: ArrayLike | dict[str, Any], path: Path, *, format: ImageFormat |
          depth_scale: float | None = None, quality: int = 90) -> None:
     """Writes an image whole or not at all; the format is the suffix's: PNG, OpenEXR, PFM, NPY, JPEG, WebP.
 
-    image: (height, width, 3 or 4) of uint8 (sRGB, straight alpha) or floats (linear light, multiplied by alpha); or planes
-    (height, width) by name, as files hold them: {"Z": seen.depth}, {"object": seen.object}, {"N.X": ..., ...}; bool masks
-    are 0 and 1, and as {"Y": mask} a black and white picture. bits: 8 or 16, of colours in PNG. depth_scale: PNG holds
+    image: (height, width, 3 or 4) of uint8 (sRGB, straight alpha) or floats (linear light, multiplied by alpha); a bool mask
+    (height, width), which becomes a black and white picture; or planes (height, width) by name, as files hold them:
+    {"Z": seen.depth}, {"object": seen.object}, {"N.X": ..., ...}; there bool masks are 0 and 1. bits: 8 or 16, of colours in PNG. depth_scale: PNG holds
     depth times this, rounded; None fits the range. quality: 1 to 100, of JPEG and WebP. Raises Error: file_unwritable, unsupported, limit_exceeded, bad_argument.
+    """
+
+def signed_ids(ids: NDArray[numpy.uint32], *, dtype: Literal["int32", "int64"] = "int64") -> NDArray[Any]:
+    """Ids as signed numbers, for libraries that know no uint32: -1 where there is nothing.
+
+    torch.from_numpy(fm.signed_ids(seen.object)) shares the new array. Raises ValueError where int32 does not hold an id.
     """
 
 def load_image(path: Path) -> dict[str, NDArray[Any]]:
