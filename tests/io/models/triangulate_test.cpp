@@ -5,8 +5,10 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <random>
+#include <set>
 
 #include "base/orientation.h"
 #include "frontmost/io.h"
@@ -35,17 +37,19 @@ double signed_area(const Polygon& polygon) {
 struct Result {
   std::vector<glm::uvec3> triangles;
   std::size_t flat = 0;  ///< of zero area
+  double area = 0;
 };
 
-/// Checks what holds for every simple polygon in the xy plane: n - 2 triangles, every corner used, all turned like
-/// the polygon, so that their areas add up without overlap.
+/// Checks what holds for every polygon in the xy plane that does not cross itself: n - 2 triangles, every corner used,
+/// all turned like the polygon, so that their areas add up without overlap.
 Result check(const Polygon& polygon) {
   Triangulator triangulate;
   const auto span = triangulate(polygon);
-  Result result{{span.begin(), span.end()}, 0};
+  Result result;
+  result.triangles.assign(span.begin(), span.end());
   EXPECT_EQ(result.triangles.size(), polygon.size() - 2);
   const int side = signed_area(polygon) > 0 ? 1 : -1;
-  double sum = 0;
+  double& sum = result.area;
   std::vector<int> uses(polygon.size(), 0);
   for (const glm::uvec3& t : result.triangles) {
     const glm::vec3 a = polygon[t.x], b = polygon[t.y], c = polygon[t.z];
@@ -162,6 +166,166 @@ TEST(Triangulate, RandomRectilinearSkylines) {
     }
     EXPECT_NEAR(sum, signed_area(skyline), 1e-6);
   }
+}
+
+TEST(Triangulate, OutlinesThatTouchThemselves) {
+  // Two squares that meet at a corner, a spike outside and one inside, an outline that passes a corner twice, a hole
+  // that touches the outline, two squares joined by a bridge with a bend, and a hole with such a bridge.
+  EXPECT_EQ(check({{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {4, 2, 0}, {4, 4, 0}, {2, 4, 0}, {2, 2, 0}, {0, 2, 0}}).area, 8);
+  EXPECT_EQ(check({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {2, 4, 0}, {2, 8, 0}, {2, 4, 0}, {0, 4, 0}}).area, 16);
+  EXPECT_EQ(check({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {2, 4, 0}, {2, 1, 0}, {2, 4, 0}, {0, 4, 0}}).area, 16);
+  EXPECT_EQ(check({{6, 18, 0}, {6, 14, 0}, {4, 14, 0}, {6, 12, 0}, {6, 14, 0}, {17, 16, 0}}).area, 24);
+  EXPECT_EQ(check({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0}, {1, 2, 0}, {2, 1, 0}}).area, 14.5);
+  const Polygon squares{{0, 0, 0}, {1, 0, 0}, {2, 2, 0}, {5, 1, 0}, {6, 1, 0}, {6, 2, 0},
+                        {5, 2, 0}, {5, 1, 0}, {2, 2, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  EXPECT_EQ(check(squares).area, 2);
+  EXPECT_EQ(check({{0, 0, 0},
+                   {8, 0, 0},
+                   {8, 8, 0},
+                   {0, 8, 0},
+                   {0, 0, 0},
+                   {4, 1, 0},
+                   {3, 3, 0},
+                   {3, 5, 0},
+                   {5, 5, 0},
+                   {5, 3, 0},
+                   {3, 3, 0},
+                   {4, 1, 0}})
+                .area,
+            60);
+}
+
+using Loop = std::vector<glm::ivec2>;
+constexpr glm::ivec2 steps[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+
+/// The boundary of random cells of a grid, which lie on its left. Where two cells meet at a corner alone it goes on to
+/// the left or to the right, so that loops touch themselves and each other there and never cross.
+std::vector<Loop> boundary_of_cells(int size, std::mt19937& random) {
+  std::set<std::pair<int, int>> cells;
+  for (int i = 0; i < size * size; ++i)
+    if (random() % 3 != 0) cells.emplace(i % size, i / size);
+  std::multimap<std::pair<int, int>, glm::ivec2> ahead;
+  for (const auto& [x, y] : cells) {
+    glm::ivec2 corner(x, y);
+    for (const glm::ivec2& step : steps) {
+      const glm::ivec2 outside = glm::ivec2(x, y) + glm::ivec2(step.y, -step.x);
+      if (!cells.contains({outside.x, outside.y})) ahead.emplace(std::pair(corner.x, corner.y), corner + step);
+      corner += step;
+    }
+  }
+  std::vector<Loop> loops;
+  while (!ahead.empty()) {
+    const glm::ivec2 start(ahead.begin()->first.first, ahead.begin()->first.second);
+    Loop& loop = loops.emplace_back();
+    for (glm::ivec2 at = start; loop.empty() || at != start;) {
+      loop.push_back(at);
+      auto next = ahead.find({at.x, at.y});
+      if (ahead.count({at.x, at.y}) == 2 && random() % 2 == 0) ++next;
+      at = next->second;
+      ahead.erase(next);
+    }
+  }
+  return loops;
+}
+
+/// From corners that the loops pass once, goes a step of the grid: to a corner of another loop that is passed once,
+/// too, which makes one loop of both, else there and back.
+void add_bridges_and_spikes(std::vector<Loop>& loops, int count, std::mt19937& random) {
+  const auto is_passed_once = [&](const glm::ivec2& corner) {
+    std::ptrdiff_t passes = 0;
+    for (const Loop& loop : loops) passes += std::count(loop.begin(), loop.end(), corner);
+    return passes == 1;
+  };
+  for (int i = 0; i < count; ++i) {
+    Loop& loop = loops[random() % loops.size()];
+    const std::size_t place = random() % loop.size();
+    const glm::ivec2 from = loop[place], to = from + steps[random() % 4];
+    if (!is_passed_once(from)) continue;
+    Loop detour{to, from};
+    const bool is_bridge = is_passed_once(to);
+    for (Loop& other : loops) {
+      const auto found = std::find(other.begin(), other.end(), to);
+      if (!is_bridge || found == other.end() || &other == &loop) continue;
+      std::rotate(other.begin(), found, other.end());
+      detour.insert(detour.begin(), other.begin(), other.end());
+      other.clear();
+    }
+    loop.insert(loop.begin() + std::ptrdiff_t(place) + 1, detour.begin(), detour.end());
+    std::erase_if(loops, [](const Loop& l) { return l.empty(); });
+  }
+}
+
+/// The corners of a loop. Those of the grid may be moved, so little that its edges do not meet elsewhere. Else some of
+/// those on a straight line are left out, so that edges lie on parts of others. A few are there twice in a row.
+Polygon outline_of(const Loop& loop, bool is_moved, std::mt19937& random) {
+  std::map<std::pair<int, int>, glm::vec3> places;
+  Polygon outline;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const glm::ivec2 &corner = loop[i], &next = loop[(i + 1) % loop.size()];
+    if (!is_moved && i > 0 && corner - loop[i - 1] == next - corner && random() % 2 == 0) continue;
+    const glm::vec2 by = is_moved ? glm::vec2(random() % 25, random() % 25) / 64.0f : glm::vec2(0);
+    const glm::vec3 place =
+        places.try_emplace({corner.x, corner.y}, glm::vec3(glm::vec2(corner) + by, 0)).first->second;
+    outline.insert(outline.end(), random() % 16 == 0 ? 2 : 1, place);
+  }
+  return outline;
+}
+
+/// How often an outline winds around a point.
+int winding(const Polygon& outline, const glm::dvec2& p) {
+  int turns = 0;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const glm::dvec2 a = glm::dvec2(outline[i]) - p, b = glm::dvec2(outline[(i + 1) % outline.size()]) - p;
+    if ((a.y > 0) == (b.y > 0)) continue;
+    turns += a.x * b.y - b.x * a.y > 0 ? b.y > 0 : -int(b.y <= 0);
+  }
+  return turns;
+}
+
+void expect_filled_as_it_winds(const Polygon& outline, int size, std::mt19937& random) {
+  const Result result = check(outline);
+  std::uniform_real_distribution<double> anywhere(-1, size + 1);
+  for (int i = 0; i < 20; ++i) {
+    const glm::dvec2 p(anywhere(random), anywhere(random));
+    int covered = 0;
+    for (const glm::uvec3& t : result.triangles) covered += winding({outline[t.x], outline[t.y], outline[t.z]}, p);
+    ASSERT_EQ(covered, winding(outline, p)) << p.x << ", " << p.y;
+    ASSERT_LE(std::abs(covered), 1);
+  }
+}
+
+/// An outline is one loop of edges of a grid that touches itself in all ways, and crosses itself nowhere.
+template <class Use>
+void for_each_touching_outline(int rounds, std::uint64_t seed, Use use) {
+  std::mt19937 random(std::uint32_t(test::noted_seed(seed)));
+  for (int round = 0; round < rounds && !testing::Test::HasFailure(); ++round) {
+    const int size = round % 100 == 0 ? 40 : 2 + int(random() % 6);
+    std::vector<Loop> loops = boundary_of_cells(size, random);
+    if (!loops.empty()) add_bridges_and_spikes(loops, int(random() % unsigned(2 * size * size)), random);
+    for (Loop& loop : loops) {
+      std::rotate(loop.begin(), loop.begin() + std::ptrdiff_t(random() % loop.size()), loop.end());
+      const Polygon outline = outline_of(loop, random() % 2 == 0, random);
+      use(random() % 2 == 0 ? outline : reversed(outline), size, random);
+    }
+  }
+}
+
+TEST(Triangulate, RandomOutlinesThatTouchThemselvesAreFilledAsTheyWind) {
+  for_each_touching_outline(1000, 9, expect_filled_as_it_winds);
+}
+
+// In a tilted plane corners are rounded, and edges that should touch cross a little.
+TEST(Triangulate, TouchingOutlinesInTiltedPlanesKeepTheirArea) {
+  const glm::vec3 u(0.3f, -0.1f, 0.7f), v(0.2f, 0.9f, -0.4f), origin(3, 1, 2);
+  for_each_touching_outline(300, 10, [&](const Polygon& outline, int, std::mt19937&) {
+    if (outline.size() > 500) return;  // more than can be tried
+    Polygon tilted;
+    for (const glm::vec3& p : outline) tilted.push_back(origin + u * p.x + v * p.y);
+    Triangulator triangulate;
+    double sum = 0;
+    for (const glm::uvec3& t : triangulate(tilted)) sum += area(tilted[t.x], tilted[t.y], tilted[t.z]);
+    EXPECT_NEAR(sum, std::abs(signed_area(outline)) * double(glm::length(glm::cross(u, v))), 1e-4 * sum);
+  });
 }
 
 TEST(Triangulate, DegenerateAndCrossingPolygonsKeepTheirCount) {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A point lies in a triangle if it lies to the left of its three sides, by exact signs. A box may hold such a point if
-// its corner farthest to the left of each side does. Together with the counts of marked corners in every node, that
+// A point lies in a triangle if it lies to the left of its three edges, by exact signs. A box may hold such a point if
+// its corner farthest to the left of each edge does. Together with the counts of marked corners in every node, that
 // leaves few boxes to be opened, also in polygons of a million corners.
+//
+// An outline that touches itself has several corners at one place. Which of them block an ear is decided by where their
+// edges lead: the outline does not cross itself, so every edge that enters the ear has an end in it or on its edges.
 #include "io/models/polygons/corner_tree.h"
 
 #include <algorithm>
@@ -12,29 +15,46 @@
 namespace frontmost {
 namespace {
 
-/// What holds for a point within the triangle a, b, c: it lies to the left of all edges, or at least (0) on them.
-struct Within {
-  const std::array<glm::vec2, 3>& triangle;
-  int least;
+/// An ear a, b, c with its tip at b, counter-clockwise.
+struct BlockableEar {
+  const std::array<glm::vec2, 3>& corners;
 
-  [[nodiscard]] bool holds(const glm::vec2& p) const {
-    const auto& [a, b, c] = triangle;
-    return orientation(a, b, p) >= least && orientation(b, c, p) >= least && orientation(c, a, p) >= least;
+  /// On which side of ab, bc and ca a point lies: +1 is the inner side.
+  [[nodiscard]] std::array<int, 3> sides(const glm::vec2& p) const {
+    const auto& [a, b, c] = corners;
+    return {orientation(a, b, p), orientation(b, c, p), orientation(c, a, p)};
   }
-  /// False only if it holds for no point of the box: the corner farthest to the left of some edge is not left enough.
+  /// False only if the ear holds no point of the box, not even on its edges.
   [[nodiscard]] bool may_hold(const glm::vec2& low, const glm::vec2& high) const {
     for (std::size_t k = 0; k < 3; ++k) {
-      const glm::vec2 &from = triangle[k], &to = triangle[(k + 1) % 3];
-      if (orientation(from, to, {to.y > from.y ? low.x : high.x, to.x > from.x ? high.y : low.y}) < least) return false;
+      const glm::vec2 &from = corners[k], &to = corners[(k + 1) % 3];
+      if (orientation(from, to, {to.y > from.y ? low.x : high.x, to.x > from.x ? high.y : low.y}) < 0) return false;
     }
     return true;
+  }
+  /// Whether the corner p of an outline blocks the ear; `before` and `after` are its neighbours.
+  [[nodiscard]] bool is_blocked(const glm::vec2& p, const glm::vec2& before, const glm::vec2& after,
+                                bool by_touching) const {
+    const std::array<int, 3> at = sides(p);
+    if (at[0] < 0 || at[1] < 0 || at[2] < 0) return false;
+    const std::array<int, 3> from = sides(before), to = sides(after);
+    // From an edge of the ear only the inner side leads into it.
+    const auto enters = [&](const std::array<int, 3>& end) {
+      return (at[0] > 0 || end[0] > 0) && (at[1] > 0 || end[1] > 0) && (at[2] > 0 || end[2] > 0);
+    };
+    if (enters(from) || enters(to)) return true;
+    if (!by_touching || p == corners[0] || p == corners[2]) return false;
+    return p != corners[1] || (from[0] >= 0 && from[1] >= 0 && to[0] >= 0 && to[1] >= 0);
   }
 };
 
 }  // namespace
 
-void CornerTree::build(std::span<const glm::vec2> points) {
+void CornerTree::build(std::span<const glm::vec2> points, std::span<const std::uint32_t> previous,
+                       std::span<const std::uint32_t> next) {
   points_ = points;
+  previous_ = previous;
+  next_ = next;
   const auto count = std::uint32_t(points.size());
   order_.resize(count);
   std::iota(order_.begin(), order_.end(), 0u);
@@ -78,19 +98,19 @@ void CornerTree::mark(std::uint32_t corner, bool is_marked) {
   }
 }
 
-bool CornerTree::any_within(const std::array<glm::vec2, 3>& triangle, bool by_touching, std::uint64_t& work) const {
-  const auto& [a, b, c] = triangle;
+bool CornerTree::blocks(const std::array<glm::vec2, 3>& ear, bool by_touching, std::uint64_t& work) const {
+  const auto& [a, b, c] = ear;
   const glm::vec2 low = glm::min(a, glm::min(b, c)), high = glm::max(a, glm::max(b, c));
   const auto is_apart = [&](const glm::vec2& l, const glm::vec2& h) {
     return h.x < low.x || l.x > high.x || h.y < low.y || l.y > high.y;
   };
-  const Within within{triangle, by_touching ? 0 : 1};
+  const BlockableEar blockable{ear};
   std::array<std::uint32_t, 64> stack{};  // deeper than the tree of 2^32 corners
   for (std::size_t depth = 1; depth > 0;) {
     const std::uint32_t number = stack[--depth];
     const Node& node = nodes_[number];
     ++work;
-    if (node.marked == 0 || is_apart(node.low, node.high) || !within.may_hold(node.low, node.high)) continue;
+    if (node.marked == 0 || is_apart(node.low, node.high) || !blockable.may_hold(node.low, node.high)) continue;
     if (!node.is_leaf()) {
       stack[depth++] = 2 * number + 1;
       stack[depth++] = 2 * number + 2;
@@ -98,9 +118,10 @@ bool CornerTree::any_within(const std::array<glm::vec2, 3>& triangle, bool by_to
     }
     work += node.end - node.begin;
     for (std::uint32_t i = node.begin; i < node.end; ++i) {
-      const glm::vec2& p = points_[order_[i]];
-      if (!is_marked_[order_[i]] || is_apart(p, p) || p == a || p == b || p == c) continue;
-      if (within.holds(p)) return true;
+      const std::uint32_t corner = order_[i];
+      const glm::vec2& p = points_[corner];
+      if (!is_marked_[corner] || is_apart(p, p)) continue;
+      if (blockable.is_blocked(p, points_[previous_[corner]], points_[next_[corner]], by_touching)) return true;
     }
   }
   return false;

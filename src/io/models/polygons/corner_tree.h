@@ -14,14 +14,18 @@ namespace frontmost {
 /// the tree is as deep as the logarithm of their number. Keeps its arrays from polygon to polygon.
 class CornerTree {
  public:
-  /// Borrows the points, none of which is marked then. O(n log n).
-  void build(std::span<const glm::vec2> points);
+  /// Borrows the points, none of which is marked then, and for each corner the numbers of its neighbours on the
+  /// outline, which may change. O(n log n).
+  void build(std::span<const glm::vec2> points, std::span<const std::uint32_t> previous,
+             std::span<const std::uint32_t> next);
   /// O(log n).
   void mark(std::uint32_t corner, bool is_marked);
 
-  /// Whether a marked corner lies within the counter-clockwise triangle, or on its edges if `by_touching`. Corners at
-  /// the place of one of the triangle's own do not count. Adds to `work` one for each box and corner looked at.
-  [[nodiscard]] bool any_within(const std::array<glm::vec2, 3>& triangle, bool by_touching, std::uint64_t& work) const;
+  /// Whether a marked corner blocks the ear a, b, c with its tip at b. A corner blocks if one of its edges leads into
+  /// the ear. If `by_touching`, a corner on an edge of the ear blocks, too, and so does a corner at b whose edges
+  /// follow those of the ear: it may belong to a bridge that turns there. Adds to `work` one for each box and corner
+  /// looked at.
+  [[nodiscard]] bool blocks(const std::array<glm::vec2, 3>& ear, bool by_touching, std::uint64_t& work) const;
 
  private:
   static constexpr std::uint32_t leaf_size = 8;
@@ -35,6 +39,7 @@ class CornerTree {
   void build(std::uint32_t node);
 
   std::span<const glm::vec2> points_;
+  std::span<const std::uint32_t> previous_, next_;  ///< by corner
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> order_;
   std::vector<std::uint32_t> leaf_of_;  ///< by corner

@@ -4,12 +4,18 @@
 // Every cut takes a triangle that turns the polygon's way, so the signed areas add up: for a polygon that does not
 // cross itself, triangles that all turn left cover it once, whatever else went wrong. That is also why the first
 // attempt, a fan whose triangles all turn left, needs no further test; it serves all convex polygons.
+//
+// Where an outline touches itself, rounding makes edges cross a little that should lie on each other, unless they have
+// both corners in common. Then no ear may be left, and a triangle turns the other way. So all triangulations are tried,
+// which takes O(n^3), and the one with the least area of such triangles is taken.
+//
 // What may block an ear is found by place, so that cutting takes time in proportion to the corners and the logarithm of
 // their number, unless ears are far apart: looking for one takes O(n) tests at worst.
 #include "io/models/polygons/triangulate.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/orientation.h"
 #include "frontmost/base.h"
@@ -57,6 +63,8 @@ std::span<const glm::uvec3> Triangulator::operator()(std::span<const glm::vec3> 
   project(corners);
   if (is_flat_ && !fan_is_right()) {
     clip_ears();
+    if (std::any_of(triangles_.begin(), triangles_.end(), [&](const glm::uvec3& t) { return wrong_area(t) > 0; }))
+      try_all();
   } else {
     for (std::uint32_t i = 1; i + 1 < count; ++i) triangles_.emplace_back(0, i, i + 1);
   }
@@ -81,7 +89,7 @@ void Triangulator::clip_ears() {
     next_[i] = i + 1 == count ? 0 : i + 1;
   }
   is_left_.assign(count, true);
-  blockers_.build(points_);
+  blockers_.build(points_, previous_, next_);
   for (std::uint32_t i = 0; i < count; ++i) note_turn(i);
   // Files of any size get time in proportion, and one polygon half a second at once: enough for millions of corners of
   // which some can always be cut.
@@ -91,7 +99,8 @@ void Triangulator::clip_ears() {
   for (std::uint32_t left = count; left > 3; --left) {
     std::uint32_t ear = corner;
     bool found = false;
-    // Ears that nothing touches first; corners on a line with their neighbours before worse. Something always is.
+    // Ears that nothing touches first, and spikes; corners on a line with their neighbours before worse. Something
+    // always is.
     for (const Ear kind : {Ear::clear, Ear::flat, Ear::touched, Ear::any}) {
       ear = corner;
       for (std::uint32_t tried = 0; tried < left && !found && may_work(); ++tried)
@@ -110,7 +119,7 @@ void Triangulator::clip_ears() {
 bool Triangulator::is_ear(std::uint32_t corner, Ear kind) {
   ++work_;
   switch (kind) {
-    case Ear::clear: return is_left_[corner] && !is_blocked(corner, true);
+    case Ear::clear: return is_left_[corner] ? !is_blocked(corner, true) : is_spike(corner);
     case Ear::flat: return !is_left_[corner] && turn(corner) == 0;
     case Ear::touched: return is_left_[corner] && !is_blocked(corner, false);
     case Ear::any: return true;
@@ -118,11 +127,14 @@ bool Triangulator::is_ear(std::uint32_t corner, Ear kind) {
   return true;
 }
 
-/// Whether another corner lies within the triangle at `corner`, or on its edges if `by_touching`. Corners at the
-/// place of one of the triangle's own do not count: that is how holes are joined to an outline.
 bool Triangulator::is_blocked(std::uint32_t corner, bool by_touching) {
-  const std::array<glm::vec2, 3> ear{points_[previous_[corner]], points_[corner], points_[next_[corner]]};
-  return blockers_.any_within(ear, by_touching, work_);
+  return blockers_.blocks({points_[previous_[corner]], points_[corner], points_[next_[corner]]}, by_touching, work_);
+}
+
+/// Whether the outline turns back at the corner, so that nothing lies between its two edges.
+bool Triangulator::is_spike(std::uint32_t corner) const {
+  const glm::vec2 &a = points_[previous_[corner]], &b = points_[corner], &c = points_[next_[corner]];
+  return turn(corner) == 0 && b != glm::clamp(b, glm::min(a, c), glm::max(a, c));
 }
 
 void Triangulator::clip(std::uint32_t corner) {
@@ -134,6 +146,47 @@ void Triangulator::clip(std::uint32_t corner) {
   blockers_.mark(corner, false);  // it is gone, so it blocks nothing
   note_turn(before);
   note_turn(after);
+}
+
+/// Twice the area of a triangle that turns right; 0 for others.
+double Triangulator::wrong_area(const glm::uvec3& t) const {
+  const glm::vec2 &a = points_[t.x], &b = points_[t.y], &c = points_[t.z];
+  if (orientation(a, b, c) >= 0) return 0;
+  const glm::dvec2 u = glm::dvec2(b) - glm::dvec2(a), v = glm::dvec2(c) - glm::dvec2(a);
+  return std::max(u.y * v.x - u.x * v.y, std::numeric_limits<double>::min());
+}
+
+/// Takes the triangulation with the least area that turns the wrong way (G. Klincsek. Minimal Triangulations of
+/// Polygonal Domains. 1980). Does nothing if that is more work than is allowed.
+void Triangulator::try_all() {
+  constexpr std::uint32_t most_corners = 1000;  // 16 MB
+  const auto count = std::uint32_t(points_.size());
+  const std::uint64_t work = std::uint64_t(count) * count * count / 6;
+  if (count > most_corners || work_ + work > allowed_work_) return;
+  work_ += work;
+  const auto cut = [&](std::uint32_t begin, std::uint32_t end) -> Cut& { return cuts_[begin * count + end]; };
+  cuts_.assign(std::size_t(count) * count, {});
+  for (std::uint32_t length = 2; length < count; ++length)
+    for (std::uint32_t begin = 0, end = length; end < count; ++begin, ++end) {
+      Cut best{std::numeric_limits<double>::infinity()};
+      for (std::uint32_t tip = begin + 1; tip < end && best.wrong > 0; ++tip) {
+        double wrong = cut(begin, tip).wrong + cut(tip, end).wrong;
+        if (wrong < best.wrong) wrong += wrong_area({begin, tip, end});
+        if (wrong < best.wrong) best = {wrong, tip};
+      }
+      cut(begin, end) = best;
+    }
+  triangles_.clear();
+  std::vector<glm::uvec2> rest{{0, count - 1}};
+  while (!rest.empty()) {
+    const glm::uvec2 part = rest.back();
+    rest.pop_back();
+    if (part.y - part.x < 2) continue;
+    const std::uint32_t tip = cut(part.x, part.y).tip;
+    triangles_.emplace_back(part.x, tip, part.y);
+    rest.emplace_back(part.x, tip);
+    rest.emplace_back(tip, part.y);
+  }
 }
 
 }  // namespace frontmost

@@ -16,10 +16,11 @@ namespace frontmost {
 class Triangulator {
  public:
   /// Triangles as numbers of `corners`, in the polygon's winding. Right for every simple polygon, convex or not, flat
-  /// or nearly so, also when holes are joined to its outline by doubled edges. Zero-area triangles appear only where
-  /// corners coincide or lie on one line. Polygons that cross themselves are covered somehow; those without a
-  /// direction (all corners on one line, or not finite), and what is left of one that takes too long, become fans.
-  /// The result is valid until the next call. Precondition: at least 3 corners.
+  /// or nearly so, and for outlines that touch themselves without crossing: at corners, along bridges to holes and
+  /// islands, at spikes. Zero-area triangles appear only where corners coincide or lie on one line. Polygons that cross
+  /// themselves are covered somehow, those of up to 1000 corners with the least area turned the wrong way. Polygons
+  /// without a direction (all corners on one line, or not finite), and the rest of one that takes too long, become
+  /// fans. The result is valid until the next call. Precondition: at least 3 corners.
   std::span<const glm::uvec3> operator()(std::span<const glm::vec3> corners);
 
  private:
@@ -30,6 +31,9 @@ class Triangulator {
   enum class Ear : std::uint8_t { clear, flat, touched, any };
   bool is_ear(std::uint32_t corner, Ear kind);
   bool is_blocked(std::uint32_t corner, bool by_touching);
+  bool is_spike(std::uint32_t corner) const;
+  double wrong_area(const glm::uvec3& triangle) const;
+  void try_all();
   void clip(std::uint32_t corner);
   int turn(std::uint32_t corner) const;
   void note_turn(std::uint32_t corner);
@@ -39,6 +43,12 @@ class Triangulator {
   std::vector<std::uint32_t> previous_, next_;  ///< rings of the corners that remain
   CornerTree blockers_;                         ///< marks corners that do not turn left: only they can block an ear
   std::vector<bool> is_left_;
+  /// How corners begin to end are cut best: with a triangle that has its third corner at `tip`.
+  struct Cut {
+    double wrong = 0;  ///< the area that turns the wrong way
+    std::uint32_t tip = 0;
+  };
+  std::vector<Cut> cuts_;  ///< at begin * count + end
   std::vector<glm::uvec3> triangles_;
   std::uint64_t work_ = 0, allowed_work_ = 1 << 25;  ///< counted in boxes and corners held against ears
   bool is_flat_ = true;                              ///< the polygon has a direction to be seen from
