@@ -249,6 +249,31 @@ TEST(Gltf, OnlyTheChosenSceneIsShown) {
   EXPECT_THAT(error_of(maker), HasSubstr("scene: 2 does not exist, there are 2"));
 }
 
+TEST(Gltf, HiddenNodesHideWhatIsBelowThemButForCameras) {
+  GltfMaker maker = triangle_maker();
+  maker.set("extensionsRequired", R"(["KHR_node_visibility"])");
+  maker.set("extensions", R"({"KHR_lights_punctual":{"lights":[{"type":"point"}]}})");
+  maker.add("cameras", R"({"type":"perspective","perspective":{"yfov":1,"znear":1}})");
+  const auto visible = [](const char* value) {
+    return std::string(R"("extensions":{"KHR_node_visibility":{"visible":)") + value + "}}";
+  };
+  maker.add("nodes", R"({"name":"seen","mesh":0,"children":[1],)" + visible("true") + "}");
+  maker.add("nodes", R"({"children":[2,3,4],)" + visible("false") + "}");
+  maker.add("nodes", R"({"name":"below","mesh":0,)" + visible("true") + "}");
+  maker.add("nodes", R"({"camera":0})");
+  maker.add("nodes", R"({"extensions":{"KHR_lights_punctual":{"light":0}}})");
+  maker.add("nodes", R"({"name":"default","mesh":0,"extensions":{"KHR_node_visibility":{}}})");
+  const Scene scene = load_glb(maker);
+  ASSERT_EQ(scene.instances.size(), 2u);
+  EXPECT_EQ(scene.instances[0].name, "seen");
+  EXPECT_EQ(scene.instances[1].name, "default");
+  EXPECT_EQ(scene.cameras.size(), 1u);
+  EXPECT_EQ(scene.lights.size(), 0u);
+  EXPECT_THAT(scene.warnings, ElementsAre("t.glb: KHR_node_visibility: the file hides 4 of 6 nodes"));
+  maker.add("nodes", "{" + visible("0") + "}");
+  EXPECT_THAT(error_of(maker), HasSubstr("nodes[6].extensions.KHR_node_visibility.visible"));
+}
+
 TEST(Gltf, LoopsAndSecondParentsAreErrors) {
   const auto tree = [](std::vector<std::string> children) {
     GltfMaker maker;

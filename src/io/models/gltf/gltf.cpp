@@ -23,6 +23,7 @@ constexpr std::string_view supported_extensions[] = {
     "EXT_mesh_gpu_instancing",
     "KHR_materials_emissive_strength",
     "KHR_lights_punctual",
+    "KHR_node_visibility",
     "KHR_materials_ior",
     "KHR_materials_specular",
     "KHR_materials_clearcoat",
@@ -94,7 +95,7 @@ Scene read_scene(const Container& container, const ModelSource& source) {
   // Materials before meshes, because their textures decide which sets of texture coordinates are read.
   MaterialList materials = read_materials(root, textures, scene.warnings);
   const std::vector<MeshPlan> plans = plan_meshes(root, data, materials, scene.warnings);
-  const NodeTree tree = read_nodes(root, data);
+  const NodeTree tree = read_nodes(root, data, scene.warnings);
   scene.materials = std::move(materials.materials);
   place_meshes(root, data, plans, tree, scene);
   place_cameras(root, tree, scene);

@@ -77,7 +77,7 @@ class PosedMeshes {
   void place() {
     scene_.meshes.resize(plans_.size());
     for (const std::uint32_t id : tree_.shown)
-      if (tree_.nodes[id].mesh != no_index) place_node(tree_.nodes[id]);
+      if (tree_.nodes[id].mesh != no_index && !tree_.nodes[id].is_hidden) place_node(tree_.nodes[id]);
     for (std::uint32_t i = 0; i < plans_.size(); ++i)
       // Meshes that no node shows are read as well: they keep the file's numbers, and a user may place them.
       if (!is_read_[i]) (void)read(i, {plans_[i].weights});

@@ -111,7 +111,7 @@ void place_lights(const JsonValue& root, const NodeTree& tree, Scene& scene) {
   }
   for (const std::uint32_t id : tree.shown) {
     const Node& node = tree.nodes[id];
-    if (node.light == no_index || !lights[node.light]) continue;
+    if (node.light == no_index || !lights[node.light] || node.is_hidden) continue;
     Light light = *lights[node.light];
     const std::optional<glm::dmat4> placed = placement(light, node.world);
     if (!placed) {

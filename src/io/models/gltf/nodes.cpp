@@ -77,6 +77,8 @@ Node read_node(const JsonValue& json, const Counts& counts, const Data& data) {
     node.light = light->require("light").to_index(counts.lights);
   node.world = read_transform(json);  // of its parent's space, until all parents are known
   node.copies = read_copies(json, data);
+  if (const auto visibility = json.extension("KHR_node_visibility"))
+    node.is_hidden = !visibility->bool_or("visible", true);
   const std::optional<JsonValue> children = json.find("children");
   for (std::size_t i = 0; children && i < children->size(); ++i)
     node.children.push_back((*children)[i].to_index(counts.nodes));
@@ -121,7 +123,8 @@ bool is_finite_matrix(const glm::dmat4& m) {
   return true;
 }
 
-/// Takes transforms from parents' spaces to the world. \returns the nodes without parents.
+/// Takes transforms from parents' spaces to the world, and hides what is below hidden nodes. \returns the nodes without
+/// parents.
 std::vector<std::uint32_t> place_in_world(std::vector<Node>& nodes, const ModelSource& source) {
   std::vector<std::uint32_t> roots;
   for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -136,7 +139,10 @@ std::vector<std::uint32_t> place_in_world(std::vector<Node>& nodes, const ModelS
   }
   for (const std::uint32_t id : order) {
     Node& node = nodes[id];
-    if (node.parent != no_index) node.world = nodes[node.parent].world * node.world;
+    if (node.parent != no_index) {
+      node.world = nodes[node.parent].world * node.world;
+      node.is_hidden |= nodes[node.parent].is_hidden;
+    }
     if (!is_finite_matrix(node.world)) source.fail(node.place, "its transform is not finite");
   }
   return roots;
@@ -169,7 +175,7 @@ glm::dmat4 compose(const glm::dvec3& translation, const glm::dvec4& rotation, co
   return m;
 }
 
-NodeTree read_nodes(const JsonValue& root, const Data& data) {
+NodeTree read_nodes(const JsonValue& root, const Data& data, std::vector<std::string>& warnings) {
   NodeTree tree;
   const std::optional<JsonValue> array = root.find("nodes");
   const std::optional<JsonValue> lights = find_lights(root);
@@ -179,6 +185,11 @@ NodeTree read_nodes(const JsonValue& root, const Data& data) {
   find_parents(tree.nodes, root.source());
   std::vector<std::uint32_t> roots = place_in_world(tree.nodes, root.source());
   tree.shown = walk(tree.nodes, scene_starts(root, counts.nodes, std::move(roots)));
+  const auto hidden =
+      std::count_if(tree.shown.begin(), tree.shown.end(), [&](std::uint32_t id) { return tree.nodes[id].is_hidden; });
+  if (hidden > 0)
+    warnings.push_back("KHR_node_visibility: the file hides " + std::to_string(hidden) + " of " +
+                       std::to_string(tree.shown.size()) + " nodes");
   return tree;
 }
 
