@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Textures that a model names as files: each is read once, and what cannot be read is told, not fatal. And what becomes
-// of a material whose texture cannot be used.
+// Textures that a model names as files, for colours and for alpha. A file that cannot be read is told, not fatal. And
+// what becomes of a material whose texture cannot be used.
 #pragma once
 
+#include <filesystem>
 #include <map>
+#include <optional>
+#include <set>
 #include <string>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "io/models/budget.h"
@@ -13,20 +16,37 @@
 
 namespace frontmost {
 
+/// The files that a texture is made of. An empty name: there is no such file.
+struct TextureParts {
+  std::string color = {};
+  std::string alpha = {};  ///< the name of the colour file: the alpha of its own pixels
+  Texture::Wrap wrap = Texture::Wrap::repeat;
+};
+
+struct MadeTexture {
+  std::uint32_t texture = no_index;  ///< in the scene; no_index where no file can be read
+  bool has_color = false;            ///< the colour file was read; without it the texture is white
+  /// What the alpha file needs: mask where all values are near 0 or 255, blend where some lie between.
+  Material::Alpha alpha = Material::Alpha::opaque;
+};
+
 class TextureFiles {
  public:
   TextureFiles(const ModelSource& source, Scene& scene) : source_(source), scene_(scene) {}
 
-  /// The number of the texture in the scene; no_index where it cannot be read, with a warning at `place`.
-  std::uint32_t get(const std::string& reference, const std::string& place, Texture::Wrap wrap = Texture::Wrap::repeat);
+  /// A texture of the scene. Files that cannot be read are left out, with a warning at `place`.
+  MadeTexture get(const TextureParts& parts, const std::string& place);
 
  private:
-  std::uint32_t read(const std::string& reference, const std::string& place, Texture::Wrap wrap);
+  MadeTexture make(const TextureParts& parts, const std::string& place);
+  std::optional<Texture> read(const std::string& reference, const std::string& place);
+  bool add_alpha(std::optional<Texture>& texture, Texture& alpha);
 
   const ModelSource& source_;
   Scene& scene_;
   PixelBudget budget_;
-  std::map<std::pair<std::string, Texture::Wrap>, std::uint32_t> known_;
+  std::set<std::filesystem::path> files_;  ///< those that added to the budget
+  std::map<std::tuple<std::string, std::string, Texture::Wrap>, MadeTexture> known_;
 };
 
 // A factor is the greatest value that its texture allows, not a mean: where the texture says which parts glow or are of

@@ -204,6 +204,115 @@ TEST(Obj, AByteOrderMarkHidesNoStatement) {
   EXPECT_TRUE(scene.warnings.empty());
 }
 
+/// A model with one material, and images for it.
+class TexturedSquare {
+ public:
+  TexturedSquare() { write("model.obj", "mtllib m.mtl\n" + square_corners + "usemtl leaf\nf 1 2 3 4\n"); }
+  void write(const std::string& name, const std::string& text) { folder_.write(name, text); }
+  /// A grey picture, row by row; or a red one with these alphas.
+  void picture(const std::string& name, int width, const std::vector<float>& values, bool are_alphas = false) {
+    const int height = int(values.size()) / width;
+    Buffer<float> grey(values.size(), 0.0f), red(values.size(), 0.0f);
+    std::copy(values.begin(), values.end(), grey.begin());
+    Image image{width, height, {{"R", grey}, {"G", grey}, {"B", grey}}};
+    if (are_alphas) image.channels = {{"R", grey}, {"G", red}, {"B", red}, {"A", grey}};
+    save(image, (folder_.path / name).string());
+  }
+  Scene load_with(const std::string& lines) {
+    write("m.mtl", "newmtl leaf\n" + lines + "newmtl other\n");
+    return load((folder_.path / "model.obj").string());
+  }
+
+ private:
+  Folder folder_;
+};
+
+std::vector<int> alphas_of(const Scene& scene) {
+  std::vector<int> alphas;
+  for (const glm::u8vec4& pixel : scene.textures.at(scene.materials.at(0).base_color_texture.texture).pixels)
+    alphas.push_back(pixel.a);
+  return alphas;
+}
+
+TEST(Obj, MapDIsTheAlphaOfTheColours) {
+  TexturedSquare square;
+  square.picture("red.png", 1, {1, 1}, true);
+  square.picture("mask.png", 4, {0, 0, 1, 1});
+  Scene scene = square.load_with("Kd 0.5 0.5 0.5\nmap_Kd -s 2 2 red.png\nmap_d -imfchan l mask.png\n");
+  EXPECT_THAT(scene.warnings, ElementsAre());
+  ASSERT_EQ(scene.textures.size(), 1u);
+  EXPECT_EQ(scene.textures[0].width, 4);
+  EXPECT_EQ(scene.textures[0].height, 2);
+  EXPECT_THAT(alphas_of(scene), ElementsAre(0, 0, 255, 255, 0, 0, 255, 255));
+  for (const glm::u8vec4& pixel : scene.textures[0].pixels) EXPECT_EQ(glm::u8vec3(pixel), glm::u8vec3(255, 0, 0));
+  EXPECT_EQ(scene.materials[0].alpha, Material::Alpha::mask);
+  EXPECT_EQ(scene.materials[0].alpha_cutoff, 0.5f);
+  EXPECT_EQ(scene.materials[0].base_color, glm::vec4(1));
+  EXPECT_EQ(scene.materials[0].base_color_texture.scale, glm::vec2(2));
+  // The smaller image gives the alphas: they are interpolated, and the values of the file itself choose the mode.
+  square.picture("small.png", 2, {0, 1});
+  square.picture("wide.png", 4, {1, 1, 1, 1}, true);
+  scene = square.load_with("map_d small.png\nmap_Kd -clamp on wide.png\n");
+  EXPECT_THAT(alphas_of(scene), ElementsAre(0, 64, 191, 255));
+  EXPECT_EQ(scene.materials[0].alpha, Material::Alpha::mask);
+  // With a factor, nothing is a hole at half of it.
+  scene = square.load_with("map_d mask.png\nmap_Kd red.png\nd 0.4\n");
+  EXPECT_EQ(scene.materials[0].alpha, Material::Alpha::blend);
+  EXPECT_EQ(scene.materials[0].base_color, glm::vec4(1, 1, 1, 0.4f));
+}
+
+TEST(Obj, MapDWithoutColoursLeavesKd) {
+  TexturedSquare square;
+  square.picture("mask.png", 2, {0, 1});
+  for (const std::string before : {"", "map_Kd none.png\n"}) {
+    const Scene scene = square.load_with(before + "Kd 1 0 0\nmap_d -s 3 3 mask.png\n");
+    EXPECT_EQ(scene.materials[0].base_color, glm::vec4(1, 0, 0, 1));
+    EXPECT_EQ(scene.materials[0].alpha, Material::Alpha::mask);
+    EXPECT_EQ(scene.materials[0].base_color_texture.scale, glm::vec2(before.empty() ? 3 : 1));
+    ASSERT_EQ(scene.textures.size(), 1u);
+    EXPECT_THAT(scene.textures[0].pixels, ElementsAre(glm::u8vec4(255, 255, 255, 0), glm::u8vec4(255)));
+    EXPECT_EQ(scene.warnings.size(), before.empty() ? 0u : 1u);
+  }
+  EXPECT_EQ(square.load_with("Kd 0\nmap_d mask.png\n").materials[0].base_color, glm::vec4(0, 0, 0, 1));
+}
+
+TEST(Obj, TheValuesOfMapDChooseTheAlphaMode) {
+  TexturedSquare square;
+  square.picture("soft.png", 3, {0, 0.5f, 1});
+  square.picture("full.png", 2, {1, 0.99f});
+  square.picture("grey.png", 2, {0, 1});
+  square.picture("cut.png", 2, {0, 1}, true);
+  square.picture("glass.png", 2, {0.5f, 1}, true);
+  const auto mode = [&](const std::string& lines) { return square.load_with(lines).materials[0].alpha; };
+  EXPECT_EQ(mode("map_d soft.png\n"), Material::Alpha::blend);
+  EXPECT_EQ(mode("map_d full.png\n"), Material::Alpha::opaque);
+  EXPECT_EQ(square.load_with("map_d full.png\n").textures.size(), 0u);
+  // An image with alpha means it, whatever its colours are.
+  EXPECT_EQ(mode("map_d cut.png\n"), Material::Alpha::mask);
+  EXPECT_EQ(mode("map_Kd grey.png\nmap_d glass.png\n"), Material::Alpha::blend);
+  // The same file for both: only its alpha counts.
+  EXPECT_EQ(mode("map_Kd cut.png\nmap_d cut.png\n"), Material::Alpha::mask);
+  EXPECT_EQ(mode("map_Kd glass.png\nmap_d glass.png\n"), Material::Alpha::blend);
+  EXPECT_EQ(mode("map_Kd grey.png\nmap_d grey.png\n"), Material::Alpha::opaque);
+  EXPECT_EQ(mode("map_Kd cut.png\n"), Material::Alpha::opaque);
+}
+
+TEST(Obj, AMapDThatCannotBeUsedIsAWarning) {
+  TexturedSquare square;
+  square.picture("grey.png", 1, {0.5f});
+  Scene scene = square.load_with("map_Kd grey.png\nmap_d none.png\n");
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("material leaf: texture left out: none.png: cannot be found")));
+  EXPECT_EQ(scene.materials[0].alpha, Material::Alpha::opaque);
+  EXPECT_TRUE(scene.materials[0].base_color_texture.is_set());
+  // Two short files: a row and a column would make a gigabyte together.
+  square.picture("row.png", 16384, std::vector<float>(16384, 0.0f));
+  square.picture("column.png", 1, std::vector<float>(16384, 0.0f));
+  scene = square.load_with("map_Kd row.png\nmap_d column.png\n");
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("column.png: the textures together have too many pixels")));
+  EXPECT_EQ(scene.materials[0].alpha, Material::Alpha::opaque);
+  EXPECT_EQ(scene.textures.at(0).height, 1);
+}
+
 TEST(Obj, ABrokenLibraryIsAWarning) {
   const Folder folder;
   folder.write("broken.mtl", "newmtl a\nd much\n");

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "io/models/mesh_building.h"
 #include "io/models/model_source.h"
@@ -27,6 +28,7 @@ class MtlReader {
     do {
       const std::string_view word = text_.word();
       if (word == "newmtl") {
+        finish_material();
         number_ = materials_.define(name_of(text_.rest()));
       } else if (number_ != no_index) {
         statement(word);
@@ -62,14 +64,12 @@ class MtlReader {
 
   void texture_statement(std::string_view word) {
     if (word == "map_Kd") {
-      material().base_color_texture = texture();
-      textured_.push_back(number_);
+      maps_[number_].color = read_map();
+    } else if (word == "map_d") {
+      maps_[number_].alpha = read_map();
     } else if (word == "map_Ke") {
       material().emissive_texture = texture();
       glowing_.push_back(number_);
-    } else if (word == "map_d") {
-      // The alpha of the colour texture is the only one there is; usually it is the same file.
-      if (material().alpha == Material::Alpha::opaque) material().alpha = Material::Alpha::blend;
     } else if (word == "norm") {
       material().normal_texture = texture();
     }
@@ -106,10 +106,18 @@ class MtlReader {
     return glm::vec3(linear_color(srgb));
   }
 
-  /// [-option values]... file name
-  TextureUse texture() {
+  struct Map {
     TextureUse use;
     Texture::Wrap wrap = Texture::Wrap::repeat;
+    std::string file;  ///< empty: there is no map
+  };
+  struct BaseMaps {
+    Map color, alpha;  ///< map_Kd, map_d
+  };
+
+  /// [-option values]... file name
+  Map read_map() {
+    Map map;
     glm::vec2 scale(1), offset(0);
     while (text_.next_is('-')) {
       const std::string_view option = text_.word();
@@ -118,7 +126,7 @@ class MtlReader {
       } else if (option == "-o") {
         offset = pair(0);
       } else if (option == "-clamp") {
-        if (text_.word() == "on") wrap = Texture::Wrap::clamp;
+        if (text_.word() == "on") map.wrap = Texture::Wrap::clamp;
         // Turbulence: of no use here, but its numbers must not become the file's name.
       } else if (option == "-t") {
         pair(0);
@@ -131,12 +139,18 @@ class MtlReader {
     }
     const std::string file(text_.rest());
     if (file.empty()) text_.fail("a file name was expected");
-    use.texture =
-        textures_.get(folder_.empty() ? file : folder_ + "/" + file, "material " + printable(material().name), wrap);
+    map.file = folder_.empty() ? file : folder_ + "/" + file;
     // In the file v goes up: v' = s v + o there is v' = s v + (1 - s - o) here.
-    use.scale = scale;
-    use.offset = {offset.x, 1 - scale.y - offset.y};
-    return use;
+    map.use.scale = scale;
+    map.use.offset = {offset.x, 1 - scale.y - offset.y};
+    return map;
+  }
+
+  MadeTexture made(const TextureParts& parts) { return textures_.get(parts, "material " + printable(material().name)); }
+  TextureUse texture() {
+    Map map = read_map();
+    map.use.texture = made({map.file, {}, map.wrap}).texture;
+    return map.use;
   }
 
   /// Up to three numbers, of which two count.
@@ -147,15 +161,29 @@ class MtlReader {
     return {values.x, values.y};
   }
 
+  /// Colours and alpha become one texture. Its options are those of map_Kd, if there is one, else those of map_d.
+  ///
   /// Exporters write their own grey as Kd beside a texture, or black, and mean the texture as it is; MTL's own text
   /// multiplies the two, and whoever means that gives a hue. Black is white where the texture cannot be read, too; so
   /// is a black Ke.
+  void finish_material() {
+    const auto found = maps_.find(number_);
+    if (found == maps_.end()) return;
+    const BaseMaps& maps = found->second;
+    const bool is_colored = !maps.color.file.empty();
+    const Map& map = is_colored ? maps.color : maps.alpha;
+    Material& m = material();
+    const MadeTexture texture = made({maps.color.file, maps.alpha.file, map.wrap});
+    m.base_color_texture = map.use;
+    m.base_color_texture.texture = texture.texture;
+    if (m.alpha == Material::Alpha::opaque) m.alpha = texture.alpha;
+    glm::vec4& c = m.base_color;
+    const bool is_grey = c.r == c.g && c.g == c.b, is_black = glm::vec3(c) == glm::vec3(0);
+    if (is_colored && (is_black || (is_grey && texture.has_color))) c = glm::vec4(1, 1, 1, c.a);
+  }
+
   void finish() {
-    for (const std::uint32_t number : textured_) {
-      glm::vec4& c = materials_[number].base_color;
-      const bool is_grey = c.r == c.g && c.g == c.b, is_black = glm::vec3(c) == glm::vec3(0);
-      if (is_black || (is_grey && materials_[number].base_color_texture.is_set())) c = glm::vec4(1, 1, 1, c.a);
-    }
+    finish_material();
     for (const std::uint32_t number : glowing_) {
       Material& m = materials_[number];
       if (m.emissive == glm::vec3(0)) m.emissive = glm::vec3(1);
@@ -169,7 +197,8 @@ class MtlReader {
   TextureFiles& textures_;
   NamedMaterials& materials_;
   std::uint32_t number_ = no_index;
-  std::vector<std::uint32_t> textured_, glowing_;  ///< materials with a map_Kd, with a map_Ke
+  std::map<std::uint32_t, BaseMaps> maps_;  ///< by the number of their material
+  std::vector<std::uint32_t> glowing_;      ///< materials with a map_Ke
 };
 
 }  // namespace

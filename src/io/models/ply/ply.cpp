@@ -81,7 +81,7 @@ void add_texture_materials(const PlyHeader& header, const ModelSource& source, S
   for (const std::string& file : header.texture_files) {
     Material& material = scene.materials.emplace_back();
     material.name = std::filesystem::path(file).stem().string();
-    material.base_color_texture.texture = textures.get(file, "header");
+    material.base_color_texture.texture = textures.get({.color = file}, "header").texture;
   }
   if (scene.meshes[0].material_ids.empty()) scene.meshes[0].material_ids = {0};
 }
