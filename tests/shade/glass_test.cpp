@@ -112,7 +112,8 @@ TEST(Glass, TintsAShownEnvironmentAsItTintsABackground) {
   ShadeOptions options = lit;
   options.light.environment = Environment(picture);
   options.background = glm::vec3(grey);
-  const Surfaces surfaces(panes({glass({0.9f, 0.5f, 0.1f}), glass({0.2f, 0.6f, 0.8f})}));
+  const Scene scene = panes({glass({0.9f, 0.5f, 0.1f}), glass({0.2f, 0.6f, 0.8f})});
+  const Surfaces surfaces(scene);
   const Visible seen = zbuffer(surfaces, front_view());
   const Image expected = shade(surfaces, seen, options);
   options.light.shows_environment = true;
