@@ -68,7 +68,8 @@ svg.graph { display: block; max-width: none; margin: 0 auto; }
 .graph text { fill: var(--ink); font-size: 13px; text-anchor: middle; }
 .node { cursor: pointer; }
 .node.chosen rect { stroke: var(--accent); stroke-width: 2; }
-@media (max-width: 1280px) { th:first-child button { max-width: 9em; } td:last-child { min-width: 11em; } }
+@media (max-width: 1280px) { th:first-child button { max-width: 7em; } td:last-child { min-width: 9em; }
+  th, td { padding-left: 10px; } }
 @media (max-width: 860px) { .look { grid-template-columns: minmax(0, 1fr); } header, main { padding: 0 14px; }
   header { padding-top: 24px; } #panel { max-height: none; } .scroll { padding: 6px 12px; }
   th:first-child button { max-width: 8em; } }

@@ -83,8 +83,8 @@ struct FightRemedy {
 };
 
 /// Draws the view with what usually helps: planes that leave out no face of the picture; 24 bits; floats reversed; the
-/// last with the former's planes. \returns what was drawn that has fewer wrong samples than the setup itself. Costs up to
-/// five pictures. \throws Error bad_argument when `exact` is of another view.
+/// last with the former's planes. \returns what was drawn that has fewer wrong samples than the setup itself. Costs up
+/// to five pictures. \throws Error bad_argument when `exact` is of another view.
 [[nodiscard]] std::vector<FightRemedy> try_remedies(const Surfaces& surfaces, const ExactVisible& exact,
                                                     const DepthSetup& setup, const Execution& execution = {});
 

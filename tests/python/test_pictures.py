@@ -81,7 +81,7 @@ def test_files_come_back(tmp_path):
         fm.save(mask, tmp_path / "mask.npy")
         assert (numpy.load(tmp_path / "mask.npy") == (ids > 5)).all()
     fm.save(ids > 5, tmp_path / "mask.png")
-    assert (fm.load_image(tmp_path / "mask.png")["Y"] == (ids > 5)).all()
+    assert (fm.load_image(tmp_path / "mask.png")["R"] == (ids > 5)).all()
 
 
 @pytest.mark.parametrize("image, error, message", [

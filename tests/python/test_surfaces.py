@@ -142,7 +142,7 @@ def test_signed_ids():
     with pytest.raises(ValueError, match="^dtype: 'uint8' is not one of"):
         fm.signed_ids(ids, dtype="uint8")
     with pytest.raises(TypeError, match="^ids: "):
-        fm.signed_ids([1, 2])
+        fm.signed_ids(ids.astype("int64"))
 
 
 def test_moved_objects():
