@@ -73,7 +73,7 @@ void move_objects(const std::shared_ptr<HeldSurfaces>& held, const py::object& o
     const std::uint32_t number = object_of(scene, one);
     placements.push_back({number, placed_by(matrix(its, "pose"), scene, scene.meshes[scene.instances[number].mesh])});
   };
-  if (py::isinstance<py::str>(object) || PyIndex_Check(object.ptr())) {
+  if (py::isinstance<py::str>(object) || !py::hasattr(object, "__len__")) {
     add(object, pose);
   } else {
     const py::list objects(object), poses(pose);

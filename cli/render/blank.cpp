@@ -219,11 +219,6 @@ bool is_invisible(const Surfaces& surfaces, std::span<const PrimitiveId> primiti
   return is_anything_seen;
 }
 
-bool is_invisible(const Figure& figure) {
-  return !figure.shapes.empty() && std::all_of(figure.shapes.begin(), figure.shapes.end(),
-                                               [](const FigureShape& shape) { return shape.color.a == 0; });
-}
-
 std::string contrast_warning(bool is_invisible) {
   if (is_invisible)
     return "nothing in the picture stands out from its background: the opacity of all materials in it is 0";

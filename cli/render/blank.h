@@ -56,7 +56,6 @@ class BlankReason {
 
 /// Whether all that is seen is of a material whose opacity is 0. False where nothing is seen.
 [[nodiscard]] bool is_invisible(const Surfaces& surfaces, std::span<const PrimitiveId> primitives);
-[[nodiscard]] bool is_invisible(const Figure& figure);
 
 /// What to say where nothing stands out.
 [[nodiscard]] std::string contrast_warning(bool is_invisible);

@@ -50,7 +50,7 @@ th, td { padding: 7px 0 7px 14px; border-bottom: 1px solid var(--line); text-ali
 th:first-child { padding-left: 0; text-align: left; position: sticky; left: 0; background: var(--card); }
 th:first-child button { display: block; max-width: 16em; overflow: hidden; text-overflow: ellipsis; }
 td:last-child, th:last-child { text-align: left; }
-td:last-child { white-space: normal; min-width: 17em; }
+td:last-child { white-space: normal; overflow-wrap: anywhere; min-width: 17em; }
 thead th { position: sticky; top: 0; background: var(--card); font-weight: 650; padding-top: 12px;
   white-space: normal; vertical-align: bottom; line-height: 1.25; }
 thead th:first-child { z-index: 1; }

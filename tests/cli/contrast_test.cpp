@@ -67,10 +67,8 @@ TEST_F(Contrast, WhatMaterialsHideIsSaidToBeHiddenByThem) {
   std::string clear = with(R"(,"alphaMode":"BLEND")");
   clear.replace(clear.find("0.5,1]"), 6, "0.5,0]");
   write("clear.gltf", clear);
-  for (const char* file : {"a.png", "a.svg"})
-    EXPECT_THAT(succeed(std::string("render clear.gltf --view front -o ") + file).err,
-                HasSubstr("stands out from its background: the opacity of all materials in it is 0"))
-        << file;
+  EXPECT_THAT(succeed("render clear.gltf --view front -o a.png").err,
+              HasSubstr("stands out from its background: the opacity of all materials in it is 0"));
 }
 
 TEST_F(Contrast, WhatIsNoPictureOrHasNoBackgroundSaysNothing) {

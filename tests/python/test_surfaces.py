@@ -172,7 +172,7 @@ def test_moved_objects():
     with pytest.raises(ValueError, match="^pose: must be one for each object"):
         surfaces.move([0, 1], poses[:1])
     with pytest.raises(ValueError, match="^object: there is no object 99"):
-        surfaces.move([0, 99], poses[:2] + 1)
+        surfaces.move([0, 99], poses[[1, 0]])
     assert (scene.objects[0].pose == poses[0]).all()
 
 
