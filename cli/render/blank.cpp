@@ -76,13 +76,13 @@ constexpr float most_steps = 8;
 constexpr std::size_t one_in = 1000;
 
 /// Whether a blank picture would show something if materials had no holes.
-bool is_all_holes(const Surfaces& surfaces, const View& view) {
+bool is_all_holes(const Surfaces& surfaces, const View& view, const Execution& execution) {
   const auto has_holes = [](const Material& material) { return material.alpha == Material::Alpha::mask; };
   const std::vector<Material>& materials = surfaces.scene().materials;
   if (std::none_of(materials.begin(), materials.end(), has_holes)) return false;
   Scene scene = surfaces.scene();
   for (Material& material : scene.materials) material.alpha = Material::Alpha::opaque;
-  return !is_blank(zbuffer(Surfaces(scene), view));
+  return !is_blank(zbuffer(Surfaces(scene, execution), view, execution));
 }
 
 float linear(float srgb) { return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f); }
@@ -142,6 +142,8 @@ void BlankReason::gather(Ranks& ranks) {
   }
 }
 
+bool BlankReason::has_small() const { return counts_[too_small] > 0; }
+
 std::string BlankReason::clause() const {
   static_assert(clauses.size() == cause_count);
   const std::uint64_t all = std::accumulate(counts_.begin(), counts_.end(), std::uint64_t(0));
@@ -154,9 +156,7 @@ std::string BlankReason::clause() const {
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
-std::string blank_reason(const Surfaces& surfaces, const View& view) {
-  if (is_all_holes(surfaces, view))
-    return "all of the model in the picture is a hole of its materials (alpha mode MASK)";
+std::string blank_reason(const Surfaces& surfaces, const View& view, const Execution& execution) {
   BlankReason reason(view);
   std::vector<std::array<glm::vec3, 3>> corners;
   constexpr PrimitiveId at_once = 4096;
@@ -167,6 +167,8 @@ std::string blank_reason(const Surfaces& surfaces, const View& view) {
     corners.clear();
   }
   reason.add(corners);
+  if (reason.has_small() && is_all_holes(surfaces, view, execution))
+    return "all of the model in the picture is a hole of its materials (alpha mode MASK)";
   return reason.clause();
 }
 

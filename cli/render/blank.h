@@ -29,6 +29,8 @@ class BlankReason {
   void add(std::span<const std::array<glm::vec3, 3>> triangles);
   /// Adds on rank 0 what all others have counted. All of them call it.
   void gather(Ranks& ranks);
+  /// Whether a triangle is in the frame, but seen at no sample: by its size, or by holes of its material.
+  [[nodiscard]] bool has_small() const;
   /// In a clause: "all of the model is behind the camera".
   [[nodiscard]] std::string clause() const;
 
@@ -40,8 +42,9 @@ class BlankReason {
   std::array<std::uint64_t, cause_count> counts_{};
 };
 
-/// What keeps all triangles of a blank picture out of it. O(triangles), and a picture where materials have holes.
-[[nodiscard]] std::string blank_reason(const Surfaces& surfaces, const View& view);
+/// What keeps all triangles of a blank picture out of it. O(triangles), and a picture of a copy of the scene if some of
+/// them are in the frame and materials have holes.
+[[nodiscard]] std::string blank_reason(const Surfaces& surfaces, const View& view, const Execution& execution);
 
 /// A pixel stands out when one of its channels differs from the background's by more than 8 of 255 steps, which is
 /// about what an eye can tell on a screen. Nothing stands out where fewer than one in a thousand of the pixels do that

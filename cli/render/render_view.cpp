@@ -116,8 +116,8 @@ Image window_depth_image(const SeenView& sight) {
 void warn_if_blank(const Sights& sights, const RenderContext& context, ViewResult& result) {
   if (!sights.is_blank()) return;
   // Of a stream, the triangles that are not seen are gone.
-  const std::string reason =
-      sights.blank_reason ? sights.blank_reason->clause() : blank_reason(context.surfaces, result.view);
+  const std::string reason = sights.blank_reason ? sights.blank_reason->clause()
+                                                 : blank_reason(context.surfaces, result.view, context.execution);
   result.warnings.push_back("nothing is in view: " + reason);
 }
 

@@ -66,7 +66,7 @@ struct ObjectReport {
   std::uint64_t triangles = 0;
   Box bounds;       ///< of its finite triangles, in world space
   double area = 0;  ///< of its finite triangles, in world space
-  /// Enclosed in world space, less what hollows enclose; of meshes with a genus alone.
+  /// Enclosed in world space; of meshes with a genus alone. Shells that wind the other way are taken off, as hollows.
   std::optional<double> volume;
 };
 

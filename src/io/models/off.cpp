@@ -139,7 +139,8 @@ class OffReader {
         mesh.texcoords.values.emplace_back(extra[count], 1.0f - extra[count + 1]);
       }
       // MeshLab's NCOFF has the colour first, with an alpha of 255; others have the normal first.
-      if (is_normal_named_first_ && count == 4 && extra[0] > 1 && std::abs(extra[3]) <= 1) {
+      const auto is_unit = [](float value) { return std::abs(value) <= 1; };
+      if (is_normal_named_first_ && count == 4 && extra[0] > 1 && std::all_of(extra + 1, extra + 4, is_unit)) {
         colors.add({normal, extra[0]});
         normal = {extra[1], extra[2], extra[3]};
       } else if (has_colors_ || count > 0) {

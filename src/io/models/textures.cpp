@@ -64,12 +64,23 @@ MadeTexture TextureFiles::get(const TextureParts& parts, const std::string& plac
   return entry->second;
 }
 
+/// By whatever names: "wood.png" and "./wood.png" are one.
+bool TextureFiles::is_same_file(const std::string& a, const std::string& b) const {
+  if (a == b) return true;
+  if (a.empty() || b.empty() || !source_.has_folder()) return false;
+  try {
+    return source_.path_of(a) == source_.path_of(b);
+  } catch (const Error&) {
+    return false;  // reading it tells why
+  }
+}
+
 MadeTexture TextureFiles::make(const TextureParts& parts, const std::string& place) {
   MadeTexture made;
   std::optional<Texture> texture = read(parts.color, place);
   made.has_color = texture.has_value();
   if (texture) texture->wrap_u = texture->wrap_v = parts.wrap;
-  if (parts.alpha == parts.color) {
+  if (is_same_file(parts.alpha, parts.color)) {
     if (texture) made.alpha = alpha_mode(*texture);
   } else if (std::optional<Texture> alpha = read(parts.alpha, place)) {
     alpha->wrap_u = alpha->wrap_v = parts.wrap;

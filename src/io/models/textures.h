@@ -40,6 +40,7 @@ class TextureFiles {
  private:
   MadeTexture make(const TextureParts& parts, const std::string& place);
   std::optional<Texture> read(const std::string& reference, const std::string& place);
+  [[nodiscard]] bool is_same_file(const std::string& a, const std::string& b) const;
   bool add_alpha(std::optional<Texture>& texture, Texture& alpha);
 
   const ModelSource& source_;

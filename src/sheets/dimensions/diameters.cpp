@@ -120,7 +120,9 @@ std::optional<Diameters::Leader> Diameters::best_leader(const Group& group, std:
 }
 
 void Diameters::count_undrawn(const MeasuredView& view, Dimensions& all) {
-  for (const Round* const round : view.undrawn()) all.undrawn += round->turn >= least_turn && take(*round);
+  std::size_t looked_at = 0;
+  for (const Round* const round : view.undrawn())
+    all.undrawn += round->turn >= least_turn && (++looked_at > most_circles || take(*round));
 }
 
 void Diameters::add(const MeasuredView& view, Dimensions& all) {

@@ -234,6 +234,14 @@ std::vector<int> alphas_of(const Scene& scene) {
   return alphas;
 }
 
+TEST(Obj, MapDOfTheSameFileByAnotherNameIsThatFile) {
+  TexturedSquare square;
+  square.picture("wood.png", 1, {0.2f, 0.9f});
+  const Scene scene = square.load_with("map_Kd wood.png\nmap_d ./wood.png\n");
+  EXPECT_EQ(scene.materials.at(0).alpha, Material::Alpha::opaque);
+  EXPECT_EQ(square.load_with("map_d\nKd 1 0 0\n").materials.at(0).base_color, glm::vec4(1, 0, 0, 1));
+}
+
 TEST(Obj, MapDIsTheAlphaOfTheColours) {
   TexturedSquare square;
   square.picture("red.png", 1, {1, 1}, true);

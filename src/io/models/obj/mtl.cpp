@@ -66,7 +66,7 @@ class MtlReader {
     if (word == "map_Kd") {
       maps_[number_].color = read_map();
     } else if (word == "map_d") {
-      maps_[number_].alpha = read_map();
+      if (!text_.at_line_end()) maps_[number_].alpha = read_map();  // some exporters leave it empty
     } else if (word == "map_Ke") {
       material().emissive_texture = texture();
       glowing_.push_back(number_);

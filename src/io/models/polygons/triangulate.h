@@ -18,7 +18,7 @@ class Triangulator {
   /// Triangles as numbers of `corners`, in the polygon's winding. Right for every simple polygon, convex or not, flat
   /// or nearly so, and for outlines that touch themselves without crossing: at corners, along bridges to holes and
   /// islands, at spikes. Zero-area triangles appear only where corners coincide or lie on one line. Polygons that cross
-  /// themselves are covered somehow, those of up to 1000 corners with the least area turned the wrong way. Polygons
+  /// themselves are covered somehow, the smaller ones with the least area turned the wrong way. Polygons
   /// without a direction (all corners on one line, or not finite), and the rest of one that takes too long, become
   /// fans. The result is valid until the next call. Precondition: at least 3 corners.
   std::span<const glm::uvec3> operator()(std::span<const glm::vec3> corners);
