@@ -60,7 +60,7 @@ class BlankReason {
 /// Whether all that is seen is of a material whose opacity is 0. False where nothing is seen.
 [[nodiscard]] bool is_invisible(const Surfaces& surfaces, std::span<const PrimitiveId> primitives);
 
-/// What to say where nothing stands out.
+/// The warning for a picture in which nothing stands out.
 [[nodiscard]] std::string contrast_warning(bool is_invisible);
 
 }  // namespace frontmost::cli

@@ -63,8 +63,8 @@ class Surfaces {
     std::uint32_t instance;
     glm::dmat4 world_from_mesh;
   };
-  /// The same of many, one after the other. \throws Error as above, also where only one of them is wrong; nothing has
-  /// moved then.
+  /// Moves many instances, one after the other, each as above. \throws Error as above if any placement is wrong; no
+  /// instance has moved then.
   void move(Scene& scene, std::span<const Placement> placements, const Execution& execution = {});
 
   [[nodiscard]] const Scene& scene() const;

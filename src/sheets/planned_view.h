@@ -26,7 +26,7 @@ inline constexpr double centre_overshoot = 3;
 /// Of the model's unit of length.
 [[nodiscard]] double millimetres_per_unit(const SheetOptions& options, const Scene& scene);
 inline constexpr double inch = 25.4;  ///< millimetres
-/// Of what the sheet says.
+/// Whether the sheet states its dimensions in inches.
 [[nodiscard]] bool is_in_inches(const SheetOptions& options, const Scene& scene);
 /// The pens of the style, as wide as asked for.
 [[nodiscard]] LinePens pens_of(const SheetOptions& options);

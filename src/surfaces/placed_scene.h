@@ -133,9 +133,9 @@ struct PlacedScene {
   [[nodiscard]] bool has_cutouts(std::uint32_t instance) const;
   /// Follows an instance to where it is in the scene.
   void follow(std::uint32_t instance, Isa isa);
-  /// Makes the levels. O(instances).
+  /// Makes the levels, and from them the bounds. O(instances * log(instances)).
   void find_bounds();
-  /// Makes them follow the bounds of an instance. O(log instances).
+  /// Makes the levels and the bounds follow those of one instance. O(log(instances)).
   void follow_bounds(std::uint32_t instance);
 
   /// Calls visit(vertex) for the world-space corners of a box's triangles; those that a triangle shares with the one

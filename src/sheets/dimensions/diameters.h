@@ -24,7 +24,8 @@ class Diameters {
   bool take(const Round& round);
   /// Those that a view shows and no view before it.
   void add(const MeasuredView& view, Dimensions& all);
-  /// Counts the cylinders of a view that have none, because no view draws them. After all views were added.
+  /// Counts the cylinders of a view that have no diameter, because no view draws them. Call it after all views were
+  /// added.
   void count_undrawn(const MeasuredView& view, Dimensions& all);
 
  private:
